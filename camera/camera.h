@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the integrator knows of a camera: a point on the film in, weighted rays out.
+#pragma once
+
+#include <array>
+
+#include "core/ray.h"
+#include "core/spectrum.h"
+
+namespace petzval {
+
+/// Where on the film, and two random numbers for where on the lens.
+struct FilmPoint {
+    V2f film;  ///< [0, 1)^2 over the full frame, (0, 0) at the top left as the picture is seen
+    V2f lens;  ///< [0, 1)^2
+};
+
+/// A world-space ray; direction has unit length.
+struct CameraPath {
+    Ray ray;
+    f4 weight;  ///< radiance along the ray times this is the film's estimate
+    m4 lanes;   ///< bands that share this ray
+};
+
+/// 0 paths: vignetted. 1: shared by all lanes. 2 to 4: split by dispersion.
+struct CameraSample {
+    int count = 0;
+    std::array<CameraPath, 4> path;
+};
+
+class Camera {
+  public:
+    virtual ~Camera() = default;
+    [[nodiscard]] virtual CameraSample sample(const FilmPoint&, const Bands&) const = 0;
+};
+
+}  // namespace petzval

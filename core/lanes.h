@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Four floats side by side, and a mask over them: what a sample carries through the scene.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+namespace petzval {
+
+// Explicit typedefs: g++ 12 drops vector_size from a dependent alias template.
+typedef float f4 __attribute__((vector_size(16)));
+/// All bits of a lane set (-1): on. All clear (0): off.
+typedef int32_t m4 __attribute__((vector_size(16)));
+
+[[nodiscard]] inline f4 splat(float a) {
+    return f4{a, a, a, a};
+}
+[[nodiscard]] inline f4 select(m4 mask, f4 yes, f4 no) {
+    return mask ? yes : no;
+}
+[[nodiscard]] inline f4 zero_off(m4 on, f4 a) {
+    return (f4)((m4)a & on);
+}
+[[nodiscard]] inline f4 min(f4 a, f4 b) {
+    return a < b ? a : b;
+}
+[[nodiscard]] inline f4 max(f4 a, f4 b) {
+    return a > b ? a : b;
+}
+[[nodiscard]] inline float hsum(f4 a) {
+    return (a[0] + a[1]) + (a[2] + a[3]);
+}
+[[nodiscard]] inline float hmax(f4 a) {
+    return std::fmax(std::fmax(a[0], a[1]), std::fmax(a[2], a[3]));
+}
+[[nodiscard]] inline bool any(m4 m) {
+    return (m[0] | m[1] | m[2] | m[3]) != 0;
+}
+[[nodiscard]] inline int count(m4 m) {
+    return -(m[0] + m[1] + m[2] + m[3]);
+}
+[[nodiscard]] inline f4 exp(f4 a) {
+    return f4{std::exp(a[0]), std::exp(a[1]), std::exp(a[2]), std::exp(a[3])};
+}
+[[nodiscard]] inline bool all_finite(f4 a) {
+    const f4 difference = a - a;  // 0 for a finite number, NaN for every other
+    return !any(difference != difference);
+}
+
+}  // namespace petzval

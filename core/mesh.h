@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Triangles as arrays, and where copies of them stand.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/math.h"
+
+namespace petzval {
+
+/// One glTF primitive as indexed triangles. Optional arrays are empty or as long as `positions`.
+struct Mesh {
+    std::vector<V3f> positions;  ///< metres, in the mesh's own space
+    std::vector<V3f> normals;    ///< unit; empty: flat shading
+    std::vector<V4f> tangents;   ///< unit xyz, w = +-1: bitangent = w * cross(normal, tangent)
+    std::array<std::vector<V2f>, 2> uv;              ///< TEXCOORD_0 and TEXCOORD_1
+    std::vector<V4f> colours;                        ///< COLOR_0, linear RGBA
+    std::vector<std::array<uint32_t, 3>> triangles;  ///< counter-clockwise seen from the front
+    uint32_t material = 0;
+};
+
+/// A placed mesh. A mesh that stands once is stored in world space, with the identity here.
+struct Instance {
+    uint32_t mesh = 0;
+    bool identity = true;
+    bool flips = false;        ///< the matrix mirrors: front faces appear clockwise
+    M44f to_world;             ///< affine
+    M44f to_local;             ///< its inverse
+    int32_t first_light = -1;  ///< light of triangle 0; -1: the instance does not emit
+};
+
+}  // namespace petzval

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Random numbers as a pure function of (seed, x, y, sample index, named dimension).
+#pragma once
+
+#include "core/math.h"
+
+namespace petzval {
+
+/// Owen: Sobol points, nested uniform scrambling. Sobol: the same points, digits shifted only.
+/// Independent: a hash. Every kind pads: each dimension has a shuffled 2-D sequence of its own.
+enum class SamplerKind { Owen, Sobol, Independent };
+
+/// Every use of a random number has a name, so that adding one leaves the others as they were.
+enum class Dim : uint32_t {
+    Film,
+    Lens,
+    Wavelength,
+    Coverage,
+    BsdfLobe,
+    Bsdf,
+    LightPick,
+    Light,
+    Roulette,
+    Count
+};
+
+struct SampleId {
+    int32_t x, y;    ///< pixel of the full frame, whatever the crop
+    uint32_t index;  ///< 0 is the first sample; a shorter render is a prefix of a longer one
+};
+
+class Sampler {
+  public:
+    Sampler(SamplerKind kind, uint32_t seed, SampleId id)
+        : kind_(kind),
+          key_(hash32(hash32(static_cast<uint32_t>(id.x), static_cast<uint32_t>(id.y)), seed)),
+          index_(id.index) {}
+
+    /// A number in [0, 1) for the named use at a path vertex (0: the camera).
+    [[nodiscard]] float get1(Dim dim, uint32_t vertex = 0) const;
+    /// A point of [0, 1)^2, stratified in both coordinates together.
+    [[nodiscard]] V2f get2(Dim dim, uint32_t vertex = 0) const;
+    /// 32 random bits for decisions that are taken out of order (coverage of BLEND surfaces).
+    [[nodiscard]] uint32_t get_bits(Dim dim, uint32_t vertex = 0) const;
+
+  private:
+    [[nodiscard]] uint32_t dimension_key(Dim dim, uint32_t vertex) const;
+
+    SamplerKind kind_;
+    uint32_t key_, index_;
+};
+
+/// First two dimensions of Sobol's sequence (Sobol 1967), 32 bits: the radical inverse in base 2,
+/// and Pascal's triangle modulo 2.
+[[nodiscard]] uint32_t sobol_0(uint32_t index);
+[[nodiscard]] uint32_t sobol_1(uint32_t index);
+
+}  // namespace petzval

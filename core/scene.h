@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// All that can be seen: immutable arrays that name each other by index.
+#pragma once
+
+#include <vector>
+
+#include "core/light.h"
+#include "core/material.h"
+#include "core/mesh.h"
+#include "core/sky.h"
+#include "core/texture.h"
+
+namespace petzval {
+
+/// Metres, y up, right-handed, as in glTF. io fills the arrays down to `sky`, then calls
+/// finish_scene once; nothing changes afterwards.
+struct Scene {
+    std::vector<Image> images;
+    std::vector<Material> materials;  ///< at least one where there is a mesh
+    std::vector<Mesh> meshes;
+    std::vector<Instance> instances;
+    std::vector<Light> lights;  ///< punctual lights of the file; finish_scene adds the others
+    Sky sky;
+
+    Box3f bounds;  ///< of all instances, in world space; empty where there are none
+};
+
+/// Computes the bounds and appends a light for every triangle of an emissive instance and for the
+/// sky where it is not black.
+void finish_scene(Scene&);
+
+/// Three world-space corners of a triangle.
+[[nodiscard]] std::array<V3f, 3> triangle_corners(const Scene&, uint32_t instance,
+                                                  uint32_t triangle);
+
+}  // namespace petzval

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Images in memory and how a material reads them.
+#pragma once
+
+#include <array>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/lanes.h"
+#include "core/math.h"
+
+namespace petzval {
+
+/// Decoded RGBA texels, row 0 at the top (glTF's v = 0).
+struct Image {
+    std::string name;
+    int width = 0, height = 0;
+    /// 4 numbers a texel: 8 bits as in the file, or floats where it has more.
+    std::variant<std::vector<uint8_t>, std::vector<float>> texels;
+};
+
+enum class Wrap : uint8_t { Repeat, MirroredRepeat, ClampToEdge };
+enum class Encoding : uint8_t { Linear, Srgb };  ///< of the colour channels; alpha is linear
+
+/// One texture slot of a material. Colour encodings are decoded before filtering, as glTF asks.
+struct TextureSlot {
+    int32_t image = -1;  ///< -1: no texture, reads as 1
+    Wrap wrap_u = Wrap::Repeat, wrap_v = Wrap::Repeat;
+    bool nearest = false;
+    Encoding encoding = Encoding::Linear;
+    uint8_t uv_set = 0;
+    /// KHR_texture_transform: (u, v, 1) times these two rows.
+    std::array<float, 3> u_row{1, 0, 0}, v_row{0, 1, 0};
+
+    [[nodiscard]] bool present() const { return image >= 0; }
+};
+
+/// RGBA at uv, decoded to linear; bilinear or nearest as the slot says. Defined for any finite uv.
+[[nodiscard]] f4 sample_texture(const std::vector<Image>& images, const TextureSlot& slot, V2f uv);
+
+}  // namespace petzval

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one kind of exception that io throws: something outside the program is not as it must be.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace petzval {
+
+/// what() reads "FILE: PLACE: MESSAGE", or "FILE: MESSAGE" where the place is the whole file.
+/// place: a JSON path such as /accessors/3/byteOffset, or a line. message: what is wrong and what
+/// to do about it, one line, no full stop.
+class InputError : public std::runtime_error {
+  public:
+    InputError(const std::string& file, const std::string& place, const std::string& message)
+        : std::runtime_error(file + ": " + (place.empty() ? "" : place + ": ") + message) {}
+};
+
+}  // namespace petzval

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// A glTF file taken apart and checked: what the loader may rely on.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace petzval {
+
+/// JSON that passed every check of check_gltf, with the bytes it refers to.
+struct GltfSource {
+    std::filesystem::path path;
+    nlohmann::json json;
+    /// Bytes of each buffer, read from its file, its data URI or the binary chunk; at least
+    /// byteLength long. Empty for a buffer that the file leaves undefined.
+    std::vector<std::vector<uint8_t>> buffers;
+    /// Encoded bytes of each image (PNG, JPEG ...), whatever way the file stores them.
+    std::vector<std::vector<uint8_t>> images;
+    std::vector<std::string> warnings;  ///< one line each: odd, but no reason to refuse
+    uint64_t hash = 0;                  ///< FNV-1a of the scene file and of every file it names
+};
+
+/// Reads a .gltf or .glb with everything it refers to, and checks it before anything else looks:
+/// container, JSON (and its depth), version, required extensions, every index, every byte range,
+/// the node tree, counts against the sizes of the buffers. Throws InputError with file and JSON
+/// path.
+[[nodiscard]] GltfSource read_gltf_source(const std::filesystem::path&);
+
+}  // namespace petzval

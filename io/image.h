@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures on disk: any format that OpenImageIO reads; EXR, PNG and JPEG out.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "core/texture.h"
+
+namespace petzval {
+
+/// Float pixels, row 0 at the top, channels interleaved, linear.
+struct Picture {
+    int width = 0, height = 0;            ///< of the pixels held (a crop)
+    int x = 0, y = 0;                     ///< where they lie in the full frame
+    int full_width = 0, full_height = 0;  ///< the full frame
+    std::vector<std::string> channels;    ///< "R", "G", "B", "A", "albedo.R", "depth.Z" ...
+    std::vector<float> pixels;
+    std::vector<std::pair<std::string, std::variant<int, float, std::string>>> metadata;
+};
+
+/// Every channel as floats, nothing converted but integers to [0, 1]. Throws InputError.
+[[nodiscard]] Picture read_picture(const std::filesystem::path&);
+/// Decodes an image of a scene from its encoded bytes; name is for messages. Throws InputError.
+[[nodiscard]] Image decode_image(const std::vector<uint8_t>& bytes, const std::string& file,
+                                 const std::string& place);
+/// 32-bit float scene-linear EXR, every channel and all metadata. Equal pictures give equal files.
+void write_exr(const std::filesystem::path&, const Picture&);
+/// 8-bit PNG or JPEG (by the name's ending) of display-encoded R, G, B (and A, unassociated) in [0,
+/// 1].
+void write_8bit(const std::filesystem::path&, const Picture& encoded);
+
+}  // namespace petzval

@@ -87,8 +87,11 @@ Image decode_image(const std::vector<uint8_t>& bytes, const std::string& file,
 
     const size_t count = size_t(spec.width) * spec.height * spec.nchannels;
     const auto read = [&](OIIO::TypeDesc type, void* to) {
-        if (!input->read_image(0, 0, 0, spec.nchannels, type, to))
-            throw refuse("cannot be decoded: " + first_line(input->geterror()));
+        const bool success = input->read_image(0, 0, 0, spec.nchannels, type, to);
+        // OpenImageIO calls a JPEG cut short a success; libjpeg's other warnings do no harm.
+        const std::string error = first_line(input->geterror());
+        if (!success || error.find("Premature end") != std::string::npos)
+            throw refuse("cannot be decoded: " + error);
     };
     Image image{.name = "", .width = spec.width, .height = spec.height, .texels = {}};
     if (spec.format == OIIO::TypeDesc::UINT8) {

@@ -110,7 +110,7 @@ class Reader {
 
   private:
     [[noreturn]] void fail(const std::string& place, const std::string& message) const {
-        throw InputError(gltf_.file(), place, message);
+        throw InputError(gltf_.file, place, message);
     }
 
     template <class Number, class Slot>

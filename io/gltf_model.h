@@ -17,8 +17,7 @@ namespace petzval {
 struct GltfModel {
     const GltfSource& source;
     const tinygltf::Model& typed;
-
-    [[nodiscard]] std::string file() const { return source.path.string(); }
+    const std::string& file;  ///< name of the file, for messages
 };
 
 /// Hands the JSON to tinygltf, which sees neither buffers nor images nor the file system: both

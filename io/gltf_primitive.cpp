@@ -84,7 +84,7 @@ class PrimitiveReader {
         if (index.empty()) return;
         const auto largest = std::max_element(index.begin(), index.end());
         if (*largest >= vertex_count)
-            throw InputError(gltf_.file(), place_ + "/indices",
+            throw InputError(gltf_.file, place_ + "/indices",
                              fmt::format("index {} is {}, but the primitive has {} vertices",
                                          largest - index.begin(), *largest, vertex_count));
     }
@@ -137,32 +137,34 @@ int attribute(const tinygltf::Primitive& primitive, const std::string& name) {
 void check_attribute_count(const GltfModel& gltf, const std::string& place, const std::string& name,
                            size_t count, size_t expected) {
     if (count != expected)
-        throw InputError(gltf.file(), place + (name.empty() ? "" : "/attributes/" + name),
+        throw InputError(gltf.file, place + (name.empty() ? "" : "/attributes/" + name),
                          fmt::format("has {} elements where POSITION has {}", count, expected));
 }
 
-std::optional<Mesh> read_primitive(const GltfModel& gltf, const tinygltf::Primitive& primitive,
-                                   const std::string& place,
-                                   const std::vector<double>& morph_weights, bool with_tangents,
-                                   GltfTally& tally) {
+bool is_drawn(const tinygltf::Primitive& primitive, GltfTally& tally) {
     if (primitive.mode == TINYGLTF_MODE_POINTS) {
         ++tally.point_primitives;
-        return {};
+        return false;
     }
     if (primitive.mode < TINYGLTF_MODE_TRIANGLES) {
         ++tally.line_primitives;
-        return {};
+        return false;
     }
     if (attribute(primitive, "POSITION") < 0) {
         ++tally.primitives_without_positions;
-        return {};
+        return false;
     }
+    return true;
+}
+
+Mesh read_primitive(const GltfModel& gltf, const tinygltf::Primitive& primitive,
+                    const std::string& place, const std::vector<double>& morph_weights,
+                    bool with_tangents, GltfTally& tally) {
     const PrimitiveReader reader(gltf, primitive, place, tally);
     Mesh mesh;
     reader.read_attributes(mesh, with_tangents);
     reader.add_morph_targets(mesh, morph_weights);
     reader.read_triangles(mesh);
-    if (mesh.triangles.empty()) return {};
     return mesh;
 }
 

@@ -2,7 +2,6 @@
 // One glTF primitive as a Mesh, in the mesh's own space.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "core/mesh.h"
@@ -15,13 +14,16 @@ struct Primitive;
 
 namespace petzval {
 
-/// Reads attributes and triangles and applies the morph targets with their weights. Tangents are
-/// read only on request: they serve normal maps. The material is left at 0. Nothing where there is
-/// nothing to draw (points, lines, no positions, no triangle). Throws InputError.
-[[nodiscard]] std::optional<Mesh> read_primitive(const GltfModel&, const tinygltf::Primitive&,
-                                                 const std::string& place,
-                                                 const std::vector<double>& morph_weights,
-                                                 bool with_tangents, GltfTally&);
+/// False, and counted, for points, lines and primitives without positions.
+[[nodiscard]] bool is_drawn(const tinygltf::Primitive&, GltfTally&);
+
+/// Reads attributes and triangles of a primitive that is drawn, and applies the morph targets with
+/// their weights. Tangents are read only on request: they serve normal maps. Directions are as the
+/// file has them, the material is left at 0. Throws InputError.
+[[nodiscard]] Mesh read_primitive(const GltfModel&, const tinygltf::Primitive&,
+                                  const std::string& place,
+                                  const std::vector<double>& morph_weights, bool with_tangents,
+                                  GltfTally&);
 
 /// Index of the accessor, -1 where the primitive has no such attribute.
 [[nodiscard]] int attribute(const tinygltf::Primitive&, const std::string& name);

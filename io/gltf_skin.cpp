@@ -18,7 +18,7 @@ std::vector<M44d> joint_matrices(const GltfModel& gltf, const GltfNodes& nodes, 
     if (skin.inverseBindMatrices >= 0) {
         const auto inverse_bind = read_matrices(gltf, skin.inverseBindMatrices);
         if (inverse_bind.size() < matrices.size())
-            throw InputError(gltf.file(), json_path("skins", skin_index, "inverseBindMatrices"),
+            throw InputError(gltf.file, json_path("skins", skin_index, "inverseBindMatrices"),
                              fmt::format("has {} matrices for {} joints", inverse_bind.size(),
                                          matrices.size()));
         std::copy_n(inverse_bind.begin(), matrices.size(), matrices.begin());
@@ -50,7 +50,7 @@ std::vector<Influences> read_influences(const GltfModel& gltf, const tinygltf::P
             for (int k = 0; k < 4; ++k)
                 if (sets.back().weights[v][k] != 0.f &&
                     sets.back().joints[v][static_cast<size_t>(k)] >= joint_count)
-                    throw InputError(gltf.file(), place + "/attributes/" + joints,
+                    throw InputError(gltf.file, place + "/attributes/" + joints,
                                      fmt::format("vertex {} names a joint beyond the skin's {}", v,
                                                  joint_count));
     }

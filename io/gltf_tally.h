@@ -15,7 +15,7 @@ struct GltfTally {
     uint64_t primitives_without_positions = 0;
     uint64_t incomplete_primitives = 0;  ///< vertices left over after the last triangle
     uint64_t singular_nodes = 0;         ///< whose matrix flattens space
-    uint64_t zero_normals = 0;           ///< of no length, replaced by those of the faces
+    uint64_t replaced_normals = 0;       ///< of no length
     uint64_t occlusion_textures = 0, ranged_lights = 0;
     std::set<std::string> honoured;     ///< features that the scene uses, in words
     std::vector<std::string> warnings;  ///< one line each

@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "io/error.h"
-#include "io/gltf_accessor.h"
+#include "io/gltf_arrays.h"
 #include "io/gltf_triangles.h"
 
 namespace petzval {

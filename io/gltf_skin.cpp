@@ -5,7 +5,7 @@
 #include <tiny_gltf.h>
 
 #include "io/error.h"
-#include "io/gltf_accessor.h"
+#include "io/gltf_arrays.h"
 #include "io/gltf_bake.h"
 #include "io/gltf_primitive.h"
 

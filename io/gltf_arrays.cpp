@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/gltf_accessor.h"
+#include "io/gltf_arrays.h"
 
 #include <fmt/format.h>
 #include <tiny_gltf.h>

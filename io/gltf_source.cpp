@@ -4,11 +4,27 @@
 #include "io/error.h"
 #include "io/glb.h"
 #include "io/gltf_budget.h"
+#include "io/gltf_check.h"
 #include "io/gltf_files.h"
 #include "io/json_parse.h"
 #include "io/read_file.h"
 
 namespace petzval {
+namespace {
+
+/// Everything that consists of references and numbers only.
+void check_scene_graph(GltfCheck& check) {
+    check_textures(check);
+    check_materials(check);
+    check_meshes(check);
+    check_cameras(check);
+    check_lights(check);
+    check_skins(check);
+    check_nodes(check);
+    check_animations(check);
+}
+
+}  // namespace
 
 GltfSource read_gltf_source(const std::filesystem::path& path) {
     const std::string name = path.string();
@@ -26,8 +42,17 @@ GltfSource read_gltf_source(const std::filesystem::path& path) {
     if (binary) chunks = split_glb(file.bytes, name, source.warnings);
     source.json = parse_json(chunks.json, name);
 
+    GltfCheck check{source, JsonCursor(source.json, name), budget, {}};
+    check_asset(check);
+    check_extensions(check);
+    check_collections(check);
+    check_buffers(check);
     read_buffers(source, {binary, chunks.bin}, budget);
+    check_buffer_views(check);
+    check_accessors(check);
     read_images(source, budget);
+    check_scene_graph(check);
+    check_data(check);
     return source;
 }
 

@@ -30,12 +30,18 @@ T load(const uint8_t* bytes) {
 template <class Visit>
 void with_component_type(int component_type, Visit&& visit) {
     switch (component_type) {
-        case TINYGLTF_COMPONENT_TYPE_BYTE: return visit(int8_t{});
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return visit(uint8_t{});
-        case TINYGLTF_COMPONENT_TYPE_SHORT: return visit(int16_t{});
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return visit(uint16_t{});
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return visit(uint32_t{});
-        default: return visit(float{});
+        case TINYGLTF_COMPONENT_TYPE_BYTE:
+            return visit(int8_t{});
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+            return visit(uint8_t{});
+        case TINYGLTF_COMPONENT_TYPE_SHORT:
+            return visit(int16_t{});
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+            return visit(uint16_t{});
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+            return visit(uint32_t{});
+        default:
+            return visit(float{});
     }
 }
 
@@ -72,8 +78,8 @@ class Reader {
           index_(index),
           accessor_(gltf.typed.accessors.at(static_cast<size_t>(index))),
           width_(tinygltf::GetNumComponentsInType(static_cast<uint32_t>(accessor_.type))),
-          component_size_(tinygltf::GetComponentSizeInBytes(
-              static_cast<uint32_t>(accessor_.componentType))) {}
+          component_size_(
+              tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(accessor_.componentType))) {}
 
     [[nodiscard]] size_t count() const { return accessor_.count; }
 
@@ -153,8 +159,8 @@ class Reader {
         if (stride == 0) stride = size;
         const size_t begin = view.byteOffset + offset;
         if (element_size <= 0 || begin > bytes.size() ||
-            (count > 0 && (bytes.size() - begin < size ||
-                           (count - 1) > (bytes.size() - begin - size) / stride)))
+            (count > 0 &&
+             (bytes.size() - begin < size || (count - 1) > (bytes.size() - begin - size) / stride)))
             fail(json_path("accessors", index_), "reaches beyond the end of its buffer");
         return {bytes.data() + begin, stride, count};
     }
@@ -197,7 +203,8 @@ std::vector<M44d> read_matrices(const GltfModel& gltf, int accessor) {
     reader.require_type(TINYGLTF_TYPE_MAT4, "MAT4");
     reader.require_float();
     std::vector<M44d> values(reader.count(), M44d(0.0));
-    // Columns of a matrix for column vectors, as the file has them, are rows of one for row vectors.
+    // Columns of a matrix for column vectors, as the file has them, are rows of one for row
+    // vectors.
     if (!values.empty()) reader.read(values.front().getValue(), 16);
     return values;
 }

@@ -12,11 +12,9 @@ namespace petzval {
 namespace {
 
 constexpr std::array<std::string_view, 9> kExtensions = {
-    "KHR_lights_punctual",     "KHR_materials_emissive_strength",
-    "KHR_materials_unlit",     "KHR_materials_ior",
-    "KHR_materials_specular",  "KHR_materials_transmission",
-    "KHR_materials_volume",    "KHR_texture_transform",
-    "KHR_mesh_quantization"};
+    "KHR_lights_punctual",  "KHR_materials_emissive_strength", "KHR_materials_unlit",
+    "KHR_materials_ior",    "KHR_materials_specular",          "KHR_materials_transmission",
+    "KHR_materials_volume", "KHR_texture_transform",           "KHR_mesh_quantization"};
 
 std::string plural(uint64_t count, const char* what) {
     return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
@@ -37,8 +35,8 @@ std::string describe_lights(const Scene& scene) {
 std::string describe_camera(size_t index, const GltfCamera& camera) {
     const std::string head = fmt::format("camera {}: {}, ", index, named(camera.name));
     if (camera.orthographic)
-        return head + fmt::format("orthographic, {:g} x {:g} m", 2 * camera.xmag_m,
-                                  2 * camera.ymag_m);
+        return head +
+               fmt::format("orthographic, {:g} x {:g} m", 2 * camera.xmag_m, 2 * camera.ymag_m);
     const std::string aspect =
         camera.aspect ? fmt::format(", aspect {:.4g}", *camera.aspect) : std::string();
     return head + fmt::format("perspective, {:.4g} deg vertical", camera.yfov_rad * 180 / kPi) +

@@ -34,8 +34,7 @@ std::optional<Light> make_light(const tinygltf::Light& light, const M44d& to_wor
     if (light.type == "directional") return SunLight{*direction, colour};
     const double outer_rad = light.spot.outerConeAngle;
     const double inner_rad = std::min(light.spot.innerConeAngle, outer_rad);
-    return SpotLight{position, *direction, colour,
-                     static_cast<float>(std::cos(inner_rad)),
+    return SpotLight{position, *direction, colour, static_cast<float>(std::cos(inner_rad)),
                      static_cast<float>(std::cos(outer_rad))};
 }
 

@@ -103,8 +103,7 @@ void GltfMaterials::read_specular(const JsonCursor& json, Material& material) {
     if (const auto specular = json.extension("KHR_materials_specular")) {
         material.specular = number_or(*specular, "specularFactor", 1.f, kUnit);
         material.specular_texture = textures_.slot(*specular, "specularTexture", Encoding::Linear);
-        material.specular_color =
-            rgb_or(*specular, "specularColorFactor", Rgb(1.f), kPositive);
+        material.specular_color = rgb_or(*specular, "specularColorFactor", Rgb(1.f), kPositive);
         material.specular_color_texture =
             textures_.slot(*specular, "specularColorTexture", Encoding::Srgb);
     }
@@ -120,9 +119,8 @@ void GltfMaterials::read_glass(const JsonCursor& json, Material& material) {
     if (const auto volume = json.extension("KHR_materials_volume")) {
         material.has_volume = number_or(*volume, "thicknessFactor", 0.f, kPositive) > 0.f;
         material.attenuation_color = rgb_or(*volume, "attenuationColor", Rgb(1.f), kUnit);
-        material.attenuation_distance_m =
-            number_or(*volume, "attenuationDistance", kInfinity,
-                      {std::numeric_limits<float>::min()});
+        material.attenuation_distance_m = number_or(*volume, "attenuationDistance", kInfinity,
+                                                    {std::numeric_limits<float>::min()});
     }
 }
 

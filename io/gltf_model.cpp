@@ -51,8 +51,7 @@ tinygltf::Model parse_model(const GltfSource& source) {
     } catch (const std::exception& e) {
         error = e.what();
     }
-    if (!parsed)
-        throw InputError(source.path.string(), "", "cannot be parsed: " + one_line(error));
+    if (!parsed) throw InputError(source.path.string(), "", "cannot be parsed: " + one_line(error));
 
     model.bufferViews.pop_back();
     for (tinygltf::Accessor& accessor : model.accessors)

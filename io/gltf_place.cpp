@@ -61,8 +61,7 @@ class Placer {
         : gltf_(gltf), nodes_(nodes), materials_(materials), scene_(scene), tally_(tally) {}
 
     void place(const Placement& placement) {
-        const auto& primitives =
-            gltf_.typed.meshes[static_cast<size_t>(placement.mesh)].primitives;
+        const auto& primitives = gltf_.typed.meshes[static_cast<size_t>(placement.mesh)].primitives;
         for (size_t i = 0; i < primitives.size(); ++i) {
             if (!is_drawn(primitives[i], tally_)) continue;
             place_primitive(placement, primitives[i],
@@ -100,8 +99,8 @@ class Placer {
     Mesh read_shaded(const Placement& placement, const tinygltf::Primitive& primitive,
                      const std::string& where, const Material& material) {
         const bool normal_mapped = material.normal_texture.present();
-        Mesh mesh = read_primitive(gltf_, primitive, where, placement.morph_weights, normal_mapped,
-                                   tally_);
+        Mesh mesh =
+            read_primitive(gltf_, primitive, where, placement.morph_weights, normal_mapped, tally_);
         tally_.replaced_normals += repair_normals(mesh);
         if (normal_mapped && mesh.tangents.empty()) {
             add_tangents(mesh, material.normal_texture);

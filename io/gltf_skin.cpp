@@ -18,9 +18,9 @@ std::vector<M44d> joint_matrices(const GltfModel& gltf, const GltfNodes& nodes, 
     if (skin.inverseBindMatrices >= 0) {
         const auto inverse_bind = read_matrices(gltf, skin.inverseBindMatrices);
         if (inverse_bind.size() < matrices.size())
-            throw InputError(gltf.file, json_path("skins", skin_index, "inverseBindMatrices"),
-                             fmt::format("has {} matrices for {} joints", inverse_bind.size(),
-                                         matrices.size()));
+            throw InputError(
+                gltf.file, json_path("skins", skin_index, "inverseBindMatrices"),
+                fmt::format("has {} matrices for {} joints", inverse_bind.size(), matrices.size()));
         std::copy_n(inverse_bind.begin(), matrices.size(), matrices.begin());
     }
     for (size_t i = 0; i < matrices.size(); ++i)
@@ -75,8 +75,8 @@ M44d blend(const std::vector<Influences>& sets, const std::vector<M44d>& matrice
 bool pose_by_skin(const GltfModel& gltf, const GltfNodes& nodes, int skin,
                   const tinygltf::Primitive& primitive, const std::string& place, Mesh& mesh) {
     const std::vector<M44d> matrices = joint_matrices(gltf, nodes, skin);
-    const auto sets = read_influences(gltf, primitive, place, mesh.positions.size(),
-                                      matrices.size());
+    const auto sets =
+        read_influences(gltf, primitive, place, mesh.positions.size(), matrices.size());
     if (sets.empty() || matrices.empty()) return false;
     for (size_t v = 0; v < mesh.positions.size(); ++v)
         transform_vertex(mesh, v, blend(sets, matrices, v));

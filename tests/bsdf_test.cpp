@@ -75,7 +75,8 @@ TEST(Bsdf, OpaqueWhiteReflectsEverythingAtEveryRoughness) {
                 BsdfInput in = dielectric(roughness);
                 in.metallic = metallic;
                 EXPECT_NEAR(albedo_of(in, cosine), 1.f, 0.005f)
-                    << "metallic " << metallic << " roughness " << roughness << " cosine " << cosine;
+                    << "metallic " << metallic << " roughness " << roughness << " cosine "
+                    << cosine;
             }
 }
 
@@ -93,7 +94,8 @@ TEST(Bsdf, SpecularWeightsKeepWhiteWhite) {
 TEST(Bsdf, TransmissionNeverGains) {
     for (const float roughness : kRoughnesses)
         for (const float cosine : kCosines) {
-            EXPECT_LE(albedo_of(thin_glass(roughness), cosine), 1.005f) << roughness << ' ' << cosine;
+            EXPECT_LE(albedo_of(thin_glass(roughness), cosine), 1.005f)
+                << roughness << ' ' << cosine;
             for (const float eta : {1.5f, 1 / 1.5f, 2.4f, 1.001f})
                 EXPECT_LE(albedo_of(glass(roughness, eta), cosine), 1.005f)
                     << roughness << ' ' << cosine << " eta " << eta;
@@ -140,7 +142,8 @@ TEST(Microfacet, AlbedoTableMatchesDirectIntegration) {
                 for (int j = 0; j < side; ++j) {
                     const double r = std::sqrt((i + unit_u(random)) / side);
                     const double phi = 2 * M_PI * (j + unit_u(random)) / side;
-                    const V3f wi(static_cast<float>(r * std::cos(phi)), static_cast<float>(r * std::sin(phi)),
+                    const V3f wi(static_cast<float>(r * std::cos(phi)),
+                                 static_cast<float>(r * std::sin(phi)),
                                  static_cast<float>(std::sqrt(std::max(1e-12, 1 - r * r))));
                     const V3f m = unit(wo + wi);
                     const float g = 1 / (1 + ggx_lambda(wo, alpha) + ggx_lambda(wi, alpha));
@@ -149,7 +152,8 @@ TEST(Microfacet, AlbedoTableMatchesDirectIntegration) {
                     schlick += f * schlick_weight(wo.dot(m));
                 }
             const GgxAlbedo table = ggx_albedo(cosine, alpha);
-            EXPECT_NEAR(table.total(), total / (side * side), 0.004 * table.total()) << alpha << ' ' << cosine;
+            EXPECT_NEAR(table.total(), total / (side * side), 0.004 * table.total())
+                << alpha << ' ' << cosine;
             EXPECT_NEAR(table.f90, schlick / (side * side), 0.003) << alpha << ' ' << cosine;
         }
 }
@@ -200,17 +204,19 @@ TEST_P(BsdfSampling, WeightsAreValueOverDensity) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All, BsdfSampling,
-    testing::Values(Case{"diffuse", dielectric(1.f), 0.7f}, Case{"coat", dielectric(0.4f), 0.4f},
-                    Case{"metal", metal(0.5f), 0.6f}, Case{"grazing metal", metal(0.7f), 0.1f},
-                    Case{"glass in", glass(0.5f, 1.5f), 0.7f}, Case{"glass out", glass(0.5f, 1 / 1.5f), 0.8f},
-                    Case{"thin", thin_glass(0.6f), 0.5f}),
-    [](const auto& case_info) {
-        std::string name = case_info.param.name;
-        for (char& c : name) c = c == ' ' ? '_' : c;
-        return name;
-    });
+INSTANTIATE_TEST_SUITE_P(All, BsdfSampling,
+                         testing::Values(Case{"diffuse", dielectric(1.f), 0.7f},
+                                         Case{"coat", dielectric(0.4f), 0.4f},
+                                         Case{"metal", metal(0.5f), 0.6f},
+                                         Case{"grazing metal", metal(0.7f), 0.1f},
+                                         Case{"glass in", glass(0.5f, 1.5f), 0.7f},
+                                         Case{"glass out", glass(0.5f, 1 / 1.5f), 0.8f},
+                                         Case{"thin", thin_glass(0.6f), 0.5f}),
+                         [](const auto& case_info) {
+                             std::string name = case_info.param.name;
+                             for (char& c : name) c = c == ' ' ? '_' : c;
+                             return name;
+                         });
 
 // Where one lobe answers alone, its density is the inverse of the area that u is spread over.
 TEST(Bsdf, JacobianOfTheReflectionLobe) {

@@ -159,7 +159,7 @@ void sync_folder(const fs::path& folder) {
 
 }  // namespace
 
-void write_file(const fs::path& path, std::span<const uint8_t> bytes) {
+void write_file_atomically(const fs::path& path, std::span<const uint8_t> bytes) {
     const std::optional<struct stat> status = status_of(path);
     if (is_stream(path, status)) return write_stream(path, bytes);
 
@@ -177,11 +177,12 @@ void write_file(const fs::path& path, std::span<const uint8_t> bytes) {
     sync_folder(folder);
 }
 
-void write_file(const fs::path& path, std::string_view text) {
-    write_file(path, std::span(reinterpret_cast<const uint8_t*>(text.data()), text.size()));
+void write_file_atomically(const fs::path& path, std::string_view text) {
+    write_file_atomically(path,
+                          std::span(reinterpret_cast<const uint8_t*>(text.data()), text.size()));
 }
 
-void require_writable(const fs::path& path) {
+void check_writable(const fs::path& path) {
     if (is_stream(path, status_of(path))) return;
     const TemporaryFile trial(folder_of(follow_links(path), path), path);
 }

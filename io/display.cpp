@@ -44,16 +44,22 @@ std::vector<std::string> views_of(const Config& loaded) {
     return views;
 }
 
-/// Sends interleaved pixels through the view. Lossless: OpenColorIO's fast powers are off by more
-/// than a 16-bit step.
-void apply_view(const std::string& view, std::vector<float>& pixels, long width, long height,
-                long channels) {
-    const Config loaded = load_config();
+/// The config, which must have that view.
+Config load_config_with(const std::string& view) {
+    Config loaded = load_config();
     const std::vector<std::string> views = views_of(loaded);
     if (std::find(views.begin(), views.end(), view) == views.end())
         throw InputError(
             loaded.path, "",
             fmt::format("there is no view \"{}\"; there are {}", view, fmt::join(views, ", ")));
+    return loaded;
+}
+
+/// Sends interleaved pixels through the view. Lossless: OpenColorIO's fast powers are off by more
+/// than a 16-bit step.
+void apply_view(const std::string& view, std::vector<float>& pixels, long width, long height,
+                long channels) {
+    const Config loaded = load_config_with(view);
     try {
         const auto processor = loaded.config->getProcessor(
             ocio::ROLE_SCENE_LINEAR, loaded.display(), view.c_str(), ocio::TRANSFORM_DIR_FORWARD);
@@ -74,6 +80,10 @@ std::array<int, 3> colour_channels(const Picture& picture) {
 
 std::vector<std::string> display_views() {
     return views_of(load_config());
+}
+
+void check_view(const std::string& view) {
+    static_cast<void>(load_config_with(view));
 }
 
 Picture to_display(const Picture& linear, float exposure_ev, const std::string& view,
@@ -98,14 +108,6 @@ Picture to_display(const Picture& linear, float exposure_ev, const std::string& 
     }
     apply_view(view, shown.pixels, shown.width, shown.height, long(shown.channels.size()));
     return shown;
-}
-
-void write_picture(const std::filesystem::path& path, const Picture& linear, float exposure_ev,
-                   const std::string& view) {
-    const PictureFormat format = picture_format(path);
-    if (format == PictureFormat::Exr) return write_exr(path, linear);
-    const AlphaUse use = format == PictureFormat::Png ? AlphaUse::Keep : AlphaUse::OnBlack;
-    write_8bit(path, to_display(linear, exposure_ev, view, use));
 }
 
 }  // namespace petzval

@@ -2,7 +2,6 @@
 // From scene-linear light to what a display is sent, as assets/color/config.ocio says.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -16,6 +15,9 @@ inline constexpr const char* kDefaultView = "sRGB";
 /// The views that there are, the default one first. Throws InputError if the config is missing.
 [[nodiscard]] std::vector<std::string> display_views();
 
+/// Throws InputError, naming the views there are, for any other.
+void check_view(const std::string& view);
+
 enum class AlphaUse : uint8_t {
     Keep,    ///< colours divided by alpha, and alpha as it is: for PNG
     OnBlack  ///< colours as they are, no alpha
@@ -23,13 +25,8 @@ enum class AlphaUse : uint8_t {
 
 /// R, G, B (and A) of a linear picture with premultiplied alpha, times 2^exposure_ev, through the
 /// view; a grey picture (Y) counts as R = G = B. Values are those a display shows in [0, 1], not
-/// yet clamped. Throws InputError, naming the views there are, for another view.
+/// yet clamped. Throws InputError for an unknown view.
 [[nodiscard]] Picture to_display(const Picture& linear, float exposure_ev, const std::string& view,
                                  AlphaUse alpha);
-
-/// Writes a linear picture in the format that the path's ending names: EXR as it is, PNG and JPEG
-/// through the view. Throws InputError.
-void write_picture(const std::filesystem::path&, const Picture& linear, float exposure_ev,
-                   const std::string& view);
 
 }  // namespace petzval

@@ -53,7 +53,8 @@ void check_kind(const std::filesystem::path& path) {
 
 }  // namespace
 
-SkyFile load_sky(const std::filesystem::path& path, float rotate_deg, float strength) {
+Sky load_sky(const std::filesystem::path& path, float rotate_deg, float strength,
+             const std::function<void(const std::string&)>& notice) {
     check_kind(path);
     const Picture picture = read_picture(path);
     if (picture.width != picture.full_width || picture.height != picture.full_height)
@@ -61,18 +62,16 @@ SkyFile load_sky(const std::filesystem::path& path, float rotate_deg, float stre
             path.string(), "",
             fmt::format("holds {}x{} of {}x{} pixels; an environment must be whole", picture.width,
                         picture.height, picture.full_width, picture.full_height));
-    SkyFile file;
     uint64_t negative_count = 0;
     std::vector<float> rgb = sky_texels(picture, path, negative_count);
     if (negative_count > 0)
-        file.warnings.push_back(
-            fmt::format("{}: {} negative values read as 0", path.string(), negative_count));
+        notice(fmt::format("warning: {}: {} negative values read as 0", path.string(),
+                           negative_count));
     if (picture.width != 2 * picture.height)
-        file.warnings.push_back(
-            fmt::format("{}: {}x{} pixels are not 2:1; the picture is stretched over the sphere",
-                        path.string(), picture.width, picture.height));
-    file.sky = Sky::picture(std::move(rgb), picture.width, picture.height, rotate_deg, strength);
-    return file;
+        notice(fmt::format(
+            "warning: {}: {}x{} pixels are not 2:1; the picture is stretched over the sphere",
+            path.string(), picture.width, picture.height));
+    return Sky::picture(std::move(rgb), picture.width, picture.height, rotate_deg, strength);
 }
 
 }  // namespace petzval

@@ -76,7 +76,7 @@ PictureFormat picture_format(const std::filesystem::path& path) {
 
 void write_exr(const std::filesystem::path& path, const Picture& picture) {
     check_shape(picture);
-    write_file(path, encode(path, "exr", exr_spec(picture), picture.pixels.data()));
+    write_file_atomically(path, encode(path, "exr", exr_spec(picture), picture.pixels.data()));
 }
 
 void write_8bit(const std::filesystem::path& path, const Picture& encoded) {
@@ -98,7 +98,7 @@ void write_8bit(const std::filesystem::path& path, const Picture& encoded) {
     spec.attribute("oiio:UnassociatedAlpha", 1);
     spec.attribute("CompressionQuality", 95);
     spec.attribute("jpeg:subsampling", "4:4:4");  // small coloured lights keep their colour
-    write_file(path, encode(path, png ? "png" : "jpg", spec, pixels.data()));
+    write_file_atomically(path, encode(path, png ? "png" : "jpg", spec, pixels.data()));
 }
 
 }  // namespace petzval

@@ -102,11 +102,11 @@ class Placer {
         Mesh mesh =
             read_primitive(gltf_, primitive, placement.morph_weights, normal_mapped, tally_);
         tally_.replaced_normals += repair_normals(mesh);
+        repair_tangents(mesh);
         if (normal_mapped && mesh.tangents.empty()) {
             add_tangents(mesh, material.normal_texture);
             tally_.honoured.insert("tangents computed for normal maps");
         }
-        repair_tangents(mesh);
         return mesh;
     }
 

@@ -110,7 +110,7 @@ class AccessorCheck {
                               element_size(accessor.type, accessor.component_type, false),
                               component_size(accessor.component_type));
         }
-        if (accessor.bytes.empty()) check_.budget.ask(saturating(accessor.count, size), json);
+        check_.budget.ask(saturating(accessor.count, size), json);
     }
 
     GltfSparse read_sparse(const JsonCursor& json, const GltfAccessor& accessor) {

@@ -116,6 +116,7 @@ class MeshCheck {
         const Attributes found = read_attributes(attributes, false);
         const uint64_t vertices = found.empty() ? 0 : check_.accessors[found.begin()->second].count;
         check_counts(attributes, found, vertices);
+        check_stored(primitive, found);
         const uint64_t texcoords = check_sets(attributes, found);
         if (primitive.has("indices")) check_indices(primitive);
         ask_for_shared(primitive, found, vertices);
@@ -206,6 +207,16 @@ class MeshCheck {
                 attributes.fail(name, fmt::format("accessor {} has {} elements, but another "
                                                   "attribute has {}",
                                                   index, check_.accessors[index].count, vertices));
+    }
+
+    /// A compressed primitive may or may not hold its vertices plainly as well.
+    void check_stored(const JsonCursor& primitive, const Attributes& found) const {
+        if (!primitive.extension("KHR_draco_mesh_compression")) return;
+        for (const auto& [unused, index] : found)
+            if (!check_.accessors[index].view)
+                primitive.fail(
+                    "its vertices are only in KHR_draco_mesh_compression, which is not supported; "
+                    "export it without");
     }
 
     /// Sets count from 0 without gaps; returns how many TEXCOORD_n there are.

@@ -113,9 +113,9 @@ TEST(TriangleLight, SamplesFollowTheDensity) {
         return s->direction;
     };
     const auto turned = [](const V3f& w) { return V3f(w.x, -w.z, w.y); };  // y to z
-    EXPECT_TRUE(
-        test::chi_square_sphere([&](Random& random) { return turned(*draw(random.next2())); },
-                                [&](const V3f& w) { return pdf(V3f(w.x, w.z, -w.y)); }, 1, 100000));
+    EXPECT_TRUE(test::chi_square_sphere(
+        [&](Random& random) { return turned(*draw(random.next2())); },
+        [&](const V3f& w) { return pdf(V3f(w.x, w.z, -w.y)); }, 1, 100000, 3));
     EXPECT_TRUE(test::jacobian_matches(draw, pdf, 2));
 }
 

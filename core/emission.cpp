@@ -34,7 +34,7 @@ Rgb emitted_radiance(const Scene& scene, uint32_t instance, uint32_t triangle, V
     return material.emissive * Rgb(texel);
 }
 
-float expected_coverage(const Scene& scene, uint32_t instance, uint32_t triangle, V2f barycentric) {
+float coverage(const Scene& scene, uint32_t instance, uint32_t triangle, V2f barycentric) {
     const Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
     const Material& material = scene.materials[mesh.material];
     if (!material.cutout()) return 1.f;

@@ -18,7 +18,6 @@ struct Scene;
 
 /// Share of the rays towards the point that stop there, [0, 1]: 1 for OPAQUE, 0 or 1 for MASK,
 /// alpha for BLEND.
-[[nodiscard]] float expected_coverage(const Scene&, uint32_t instance, uint32_t triangle,
-                                      V2f barycentric);
+[[nodiscard]] float coverage(const Scene&, uint32_t instance, uint32_t triangle, V2f barycentric);
 
 }  // namespace petzval

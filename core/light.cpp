@@ -78,7 +78,7 @@ std::optional<LightSample> sample(const Scene& scene, const TriangleLight& light
 
     const bool front = (facing > 0.f) != scene.instances[light.instance].flips;
     const Rgb emitted = emitted_radiance(scene, light.instance, light.triangle, b, front) *
-                        expected_coverage(scene, light.instance, light.triangle, b);
+                        coverage(scene, light.instance, light.triangle, b);
     if (!(hmax(emitted.v) > 0.f)) return std::nullopt;
     const V3f error = plane_error(scene, light, target, to_light, corner);
     return LightSample{to_light / distance,
@@ -121,7 +121,7 @@ float mean_emission(const Scene& scene, const TriangleLight& light) {
         const V2f u((i / 4 + 0.5f) / 4, (i % 4 + 0.5f) / 4);
         const V2f b = uniform_triangle(u);
         sum += luminance(emitted_radiance(scene, light.instance, light.triangle, b, true)) *
-               expected_coverage(scene, light.instance, light.triangle, b);
+               coverage(scene, light.instance, light.triangle, b);
     }
     return std::max(sum / 16, 1e-3f * untextured);
 }

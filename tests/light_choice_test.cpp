@@ -2,7 +2,7 @@
 #include "core/light_choice.h"
 
 #include "tests/support/chi_square.h"
-#include "tests/support/scenes.h"
+#include "tests/support/lamp.h"
 
 namespace petzval {
 namespace {

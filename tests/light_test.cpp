@@ -4,7 +4,7 @@
 #include "core/scene.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/jacobian.h"
-#include "tests/support/scenes.h"
+#include "tests/support/lamp.h"
 
 namespace petzval {
 namespace {

@@ -1,52 +1,71 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small scenes, written by hand.
+// Scenes made of code, for tests of the renderer itself.
 #pragma once
+
+#include <cmath>
+#include <utility>
 
 #include "core/scene.h"
 
 namespace petzval::test {
 
-/// Front side towards -y: seen from below, a, b, c run counter-clockwise.
-inline constexpr std::array<std::array<float, 3>, 3> kLampCorners{
-    {{-0.5f, 2.f, -0.4f}, {1.1f, 2.2f, 0.1f}, {0.2f, 1.7f, 1.3f}}};
+/// A material that is one thing only: rough, not metallic.
+inline Material diffuse_material(float albedo) {
+    Material m;
+    m.base_color = Rgb(albedo);
+    m.metallic = 0;
+    m.roughness = 1;
+    m.specular = 0;
+    m.double_sided = true;
+    return m;
+}
 
-[[nodiscard]] inline Mesh one_triangle(const V3f& a, const V3f& b, const V3f& c,
-                                       uint32_t material = 0) {
+inline Material emitter_material(float radiance, float albedo = 0.f) {
+    Material m = diffuse_material(albedo);
+    m.emissive = Rgb(radiance);
+    return m;
+}
+
+/// Latitude-longitude sphere; rows >= 2. Normals point outward, smooth normals on demand.
+inline Mesh sphere(V3f centre, float radius, int rows, bool smooth) {
     Mesh mesh;
-    mesh.positions = {a, b, c};
-    mesh.triangles = {{0, 1, 2}};
-    mesh.uv[0] = {V2f(0, 0), V2f(1, 0), V2f(0, 1)};
-    mesh.material = material;
+    const int columns = 2 * rows;
+    for (int i = 0; i <= rows; ++i) {
+        for (int j = 0; j < columns; ++j) {
+            const float theta = kPi * static_cast<float>(i) / static_cast<float>(rows);
+            const float phi = 2 * kPi * static_cast<float>(j) / static_cast<float>(columns);
+            const V3f n(std::sin(theta) * std::cos(phi), std::cos(theta), -std::sin(theta) * std::sin(phi));
+            mesh.positions.push_back(centre + n * radius);
+            if (smooth) mesh.normals.push_back(n);
+        }
+    }
+    const auto at = [&](int i, int j) { return static_cast<uint32_t>(i * columns + j % columns); };
+    for (int i = 0; i < rows; ++i) {
+        for (int j = 0; j < columns; ++j) {
+            if (i > 0) mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i, j + 1)});
+            if (i + 1 < rows) mesh.triangles.push_back({at(i, j + 1), at(i + 1, j), at(i + 1, j + 1)});
+        }
+    }
     return mesh;
 }
 
-[[nodiscard]] inline Material glowing(Rgb nits, bool double_sided = false) {
-    Material material;
-    material.emissive = nits;
-    material.double_sided = double_sided;
-    return material;
+/// A parallelogram corner + s*a + t*b; the front is where cross(a, b) points.
+inline Mesh quad(V3f corner, V3f a, V3f b) {
+    Mesh mesh;
+    mesh.positions = {corner, corner + a, corner + a + b, corner + b};
+    mesh.uv[0] = {V2f(0, 0), V2f(1, 0), V2f(1, 1), V2f(0, 1)};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return mesh;
 }
 
-[[nodiscard]] inline Instance placed(uint32_t mesh, const M44f& to_world) {
+/// Puts a mesh with a material of its own into world space.
+inline void place(Scene& scene, Mesh mesh, const Material& material) {
+    mesh.material = static_cast<uint32_t>(scene.materials.size());
+    scene.materials.push_back(material);
     Instance instance;
-    instance.mesh = mesh;
-    instance.identity = false;
-    instance.to_world = to_world;
-    instance.to_local = to_world.inverse();
-    instance.flips = to_world.determinant() < 0;
-    return instance;
-}
-
-/// A lamp above the origin, one-sided, shining down; not yet finished.
-[[nodiscard]] inline Scene lamp_scene(Rgb nits = Rgb(5.f, 3.f, 1.f), bool double_sided = false) {
-    const auto corner = [](int i) {
-        return V3f(kLampCorners[i][0], kLampCorners[i][1], kLampCorners[i][2]);
-    };
-    Scene scene;
-    scene.materials = {glowing(nits, double_sided)};
-    scene.meshes = {one_triangle(corner(0), corner(1), corner(2))};
-    scene.instances.resize(1);
-    return scene;
+    instance.mesh = static_cast<uint32_t>(scene.meshes.size());
+    scene.meshes.push_back(std::move(mesh));
+    scene.instances.push_back(instance);
 }
 
 }  // namespace petzval::test

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/gltf.h"
+
+#include <tiny_gltf.h>
+
+#include "io/gltf_info.h"
+#include "io/gltf_lights.h"
+#include "io/gltf_place.h"
+
+namespace petzval {
+
+GltfFile load_gltf(const std::filesystem::path& path) {
+    const GltfSource source = read_gltf_source(path);
+    const tinygltf::Model model = parse_model(source);
+    const std::string name = path.string();
+    const GltfModel gltf{source, model, name};
+
+    GltfFile file;
+    GltfTally tally;
+    const GltfNodes nodes = flatten_nodes(gltf);
+    GltfMaterials materials(gltf, file.scene, tally);
+    place_meshes(gltf, nodes, materials, file.scene, tally);
+    file.scene.lights = read_lights(gltf, nodes, tally);
+    file.cameras = read_cameras(gltf, nodes, tally);
+
+    file.hash = source.hash;
+    file.warnings = source.warnings;
+    describe(gltf, tally, file);
+    return file;
+}
+
+}  // namespace petzval

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an accessor says about its data (glTF 2.0, section 3.6.2), in checked numbers.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace petzval {
+
+/// The elements that a sparse accessor replaces.
+struct GltfSparse {
+    uint64_t count = 0;
+    int index_component_type = 0;
+    std::span<const uint8_t> indices, values;  ///< tightly packed; empty reads as zeros
+};
+
+struct GltfAccessor {
+    int component_type = 0;  ///< 5120 int8, 5121 uint8, 5122 int16, 5123 uint16, 5125 uint32, 5126
+                             ///< float
+    std::string type;        ///< "SCALAR", "VEC3", "MAT4" ...
+    int components = 0;      ///< in an element; 0 when the type or component type is unknown
+    bool normalized = false;
+    uint64_t count = 0;              ///< elements
+    size_t stride = 0;               ///< bytes from one element to the next
+    std::optional<size_t> view;      ///< its bufferView
+    uint64_t offset = 0;             ///< bytes from the start of the bufferView
+    std::span<const uint8_t> bytes;  ///< from the first element on; empty reads as zeros
+    std::optional<GltfSparse> sparse;
+};
+
+/// Bytes of a component; 0 for an unknown type.
+[[nodiscard]] size_t component_size(int component_type);
+
+/// Components of a type such as "VEC3"; 0 for an unknown one.
+[[nodiscard]] int component_count(const std::string& type);
+
+/// Bytes from the first to behind the last component of an element. The columns of a matrix start
+/// at multiples of four bytes; padded: including the bytes behind the last column.
+[[nodiscard]] size_t element_size(const std::string& type, int component_type, bool padded);
+
+/// All components of a SCALAR or VECn accessor of an unsigned integer type, sparse ones replaced.
+[[nodiscard]] std::vector<uint32_t> read_unsigned(const GltfAccessor&);
+
+/// All components of a float accessor, sparse ones replaced.
+[[nodiscard]] std::vector<float> read_floats(const GltfAccessor&);
+
+}  // namespace petzval

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/gltf_arrays.h"
+
+#include <fmt/format.h>
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <cstring>
+#include <functional>
+
+#include "io/error.h"
+
+namespace petzval {
+namespace {
+
+/// Where elements lie in a buffer.
+struct Elements {
+    const uint8_t* first = nullptr;
+    size_t stride = 0, count = 0;
+};
+
+template <class T>
+T load(const uint8_t* bytes) {
+    T value;
+    std::memcpy(&value, bytes, sizeof value);  // accessors need not be aligned in memory
+    return value;
+}
+
+/// Calls visit with a value of the component's C++ type, so that loops are compiled for each.
+template <class Visit>
+void with_component_type(int component_type, Visit&& visit) {
+    switch (component_type) {
+        case TINYGLTF_COMPONENT_TYPE_BYTE: return visit(int8_t{});
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return visit(uint8_t{});
+        case TINYGLTF_COMPONENT_TYPE_SHORT: return visit(int16_t{});
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return visit(uint16_t{});
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return visit(uint32_t{});
+        default: return visit(float{});
+    }
+}
+
+template <class Number, class T>
+Number convert(T raw, bool normalized) {
+    if constexpr (std::is_integral_v<T> && std::is_floating_point_v<Number>) {
+        if (normalized)
+            return std::max(Number(raw) / Number(std::numeric_limits<T>::max()), Number(-1));
+    }
+    return static_cast<Number>(raw);
+}
+
+/// Decodes into rows of `row` numbers each, element i into row slot(i).
+template <class T, class Number, class Slot>
+void decode(const Elements& from, int width, bool normalized, Number* to, int row, Slot slot) {
+    if constexpr (std::is_same_v<T, Number> && std::is_same_v<Slot, std::identity>) {
+        if (width == row && from.stride == width * sizeof(T)) {
+            std::memcpy(to, from.first, from.count * from.stride);
+            return;
+        }
+    }
+    for (size_t i = 0; i < from.count; ++i) {
+        const uint8_t* element = from.first + i * from.stride;
+        Number* out = to + slot(i) * row;
+        for (int k = 0; k < width; ++k)
+            out[k] = convert<Number>(load<T>(element + k * sizeof(T)), normalized);
+    }
+}
+
+class Reader {
+  public:
+    Reader(const GltfModel& gltf, int index)
+        : gltf_(gltf),
+          index_(index),
+          accessor_(gltf.typed.accessors.at(static_cast<size_t>(index))),
+          width_(tinygltf::GetNumComponentsInType(static_cast<uint32_t>(accessor_.type))),
+          component_size_(tinygltf::GetComponentSizeInBytes(
+              static_cast<uint32_t>(accessor_.componentType))) {}
+
+    [[nodiscard]] size_t count() const { return accessor_.count; }
+
+    void require(bool condition, const char* expected) const {
+        if (!condition) fail(json_path("accessors", index_), std::string("must be ") + expected);
+    }
+    void require_type(int type, const char* expected) const {
+        require(accessor_.type == type, expected);
+    }
+    void require_unsigned() const {
+        const int type = accessor_.componentType;
+        require(type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
+                    type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
+                    type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
+                "of unsigned integers");
+    }
+    void require_float() const {
+        require(accessor_.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT, "of floats");
+    }
+    [[nodiscard]] bool is(int type) const { return accessor_.type == type; }
+
+    /// Fills rows that hold what an undefined element reads as.
+    template <class Number>
+    void read(Number* to, int row) const {
+        if (accessor_.bufferView >= 0) {
+            const size_t stride =
+                gltf_.typed.bufferViews.at(static_cast<size_t>(accessor_.bufferView)).byteStride;
+            const Elements from = elements(accessor_.bufferView, accessor_.byteOffset,
+                                           accessor_.count, width_ * component_size_, stride);
+            decode_as(from, to, row, std::identity{});
+        }
+        if (accessor_.sparse.isSparse) read_sparse(to, row);
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& place, const std::string& message) const {
+        throw InputError(gltf_.file, place, message);
+    }
+
+    template <class Number, class Slot>
+    void decode_as(const Elements& from, Number* to, int row, Slot slot) const {
+        with_component_type(accessor_.componentType, [&](auto type) {
+            decode<decltype(type)>(from, width_, accessor_.normalized, to, row, slot);
+        });
+    }
+
+    template <class Number>
+    void read_sparse(Number* to, int row) const {
+        const auto& sparse = accessor_.sparse;
+        const auto count = static_cast<size_t>(sparse.count);
+        const int type = sparse.indices.componentType;
+        const int size = tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(type));
+        const Elements index_bytes =
+            elements(sparse.indices.bufferView, static_cast<size_t>(sparse.indices.byteOffset),
+                     count, size, 0);
+        std::vector<uint32_t> slots(count);
+        with_component_type(type, [&](auto component) {
+            decode<decltype(component)>(index_bytes, 1, false, slots.data(), 1, std::identity{});
+        });
+        for (size_t i = 0; i < count; ++i)
+            if (slots[i] >= accessor_.count)
+                fail(json_path("accessors", index_, "sparse", "indices"),
+                     fmt::format("index {} is {}, but the accessor has {} elements", i, slots[i],
+                                 accessor_.count));
+        const Elements values =
+            elements(sparse.values.bufferView, static_cast<size_t>(sparse.values.byteOffset), count,
+                     width_ * component_size_, 0);
+        decode_as(values, to, row, [&](size_t i) { return slots[i]; });
+    }
+
+    /// stride 0: tightly packed.
+    Elements elements(int view_index, size_t offset, size_t count, int element_size,
+                      size_t stride) const {
+        const auto& view = gltf_.typed.bufferViews.at(static_cast<size_t>(view_index));
+        const auto& bytes = gltf_.source.buffers.at(static_cast<size_t>(view.buffer));
+        const auto size = static_cast<size_t>(element_size);
+        if (stride == 0) stride = size;
+        const size_t begin = view.byteOffset + offset;
+        if (element_size <= 0 || begin > bytes.size() ||
+            (count > 0 && (bytes.size() - begin < size ||
+                           (count - 1) > (bytes.size() - begin - size) / stride)))
+            fail(json_path("accessors", index_), "reaches beyond the end of its buffer");
+        return {bytes.data() + begin, stride, count};
+    }
+
+    const GltfModel& gltf_;
+    int index_;
+    const tinygltf::Accessor& accessor_;
+    int width_, component_size_;
+};
+
+}  // namespace
+
+std::vector<V2f> read_vec2(const GltfModel& gltf, int accessor) {
+    const Reader reader(gltf, accessor);
+    reader.require_type(TINYGLTF_TYPE_VEC2, "VEC2");
+    std::vector<V2f> values(reader.count(), V2f(0.f));
+    if (!values.empty()) reader.read(values.front().getValue(), 2);
+    return values;
+}
+
+std::vector<V3f> read_vec3(const GltfModel& gltf, int accessor) {
+    const Reader reader(gltf, accessor);
+    reader.require_type(TINYGLTF_TYPE_VEC3, "VEC3");
+    std::vector<V3f> values(reader.count(), V3f(0.f));
+    if (!values.empty()) reader.read(values.front().getValue(), 3);
+    return values;
+}
+
+std::vector<V4f> read_vec4(const GltfModel& gltf, int accessor) {
+    const Reader reader(gltf, accessor);
+    const bool three = reader.is(TINYGLTF_TYPE_VEC3);
+    reader.require(three || reader.is(TINYGLTF_TYPE_VEC4), "VEC4 or VEC3");
+    std::vector<V4f> values(reader.count(), V4f(0.f, 0.f, 0.f, three ? 1.f : 0.f));
+    if (!values.empty()) reader.read(&values.front().x, 4);
+    return values;
+}
+
+std::vector<M44d> read_matrices(const GltfModel& gltf, int accessor) {
+    const Reader reader(gltf, accessor);
+    reader.require_type(TINYGLTF_TYPE_MAT4, "MAT4");
+    reader.require_float();
+    std::vector<M44d> values(reader.count(), M44d(0.0));
+    // Columns of a matrix for column vectors, as the file has them, are rows of one for row vectors.
+    if (!values.empty()) reader.read(values.front().getValue(), 16);
+    return values;
+}
+
+std::vector<uint32_t> read_indices(const GltfModel& gltf, int accessor) {
+    const Reader reader(gltf, accessor);
+    reader.require_type(TINYGLTF_TYPE_SCALAR, "SCALAR");
+    reader.require_unsigned();
+    std::vector<uint32_t> values(reader.count(), 0u);
+    if (!values.empty()) reader.read(values.data(), 1);
+    return values;
+}
+
+std::vector<std::array<uint32_t, 4>> read_joints(const GltfModel& gltf, int accessor) {
+    const Reader reader(gltf, accessor);
+    reader.require_type(TINYGLTF_TYPE_VEC4, "VEC4");
+    reader.require_unsigned();
+    std::vector<std::array<uint32_t, 4>> values(reader.count());
+    if (!values.empty()) reader.read(values.front().data(), 4);
+    return values;
+}
+
+}  // namespace petzval

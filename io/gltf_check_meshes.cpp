@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Apache-2.0
+// Meshes: glTF 2.0, section 3.7.2, and KHR_mesh_quantization.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <map>
+#include <set>
+
+#include "io/gltf_check.h"
+#include "io/json_parse.h"
+
+namespace petzval {
+namespace {
+
+/// "TEXCOORD_1" taken apart. A name of an application's own begins with '_'.
+struct Semantic {
+    std::string base;
+    std::optional<uint64_t> set;
+    bool custom = false;
+};
+
+/// Allowed formats of an attribute: components are f(loat), i8, u8, i16, u16, with n for
+/// normalized.
+struct Formats {
+    std::string_view base;
+    bool numbered;
+    std::vector<std::string_view> types, components, quantized;
+};
+
+const std::vector<Formats>& formats() {
+    static const std::vector<Formats> table = {
+        {"POSITION",
+         false,
+         {"VEC3"},
+         {"f"},
+         {"i8", "i8n", "u8", "u8n", "i16", "i16n", "u16", "u16n"}},
+        {"NORMAL", false, {"VEC3"}, {"f"}, {"i8n", "i16n"}},
+        {"TANGENT", false, {"VEC4"}, {"f"}, {"i8n", "i16n"}},
+        {"TEXCOORD",
+         true,
+         {"VEC2"},
+         {"f", "u8n", "u16n"},
+         {"i8", "i8n", "u8", "i16", "i16n", "u16"}},
+        {"COLOR", true, {"VEC3", "VEC4"}, {"f", "u8n", "u16n"}, {}},
+        {"JOINTS", true, {"VEC4"}, {"u8", "u16"}, {}},
+        {"WEIGHTS", true, {"VEC4"}, {"f", "u8n", "u16n"}, {}}};
+    return table;
+}
+
+const Formats* find_formats(std::string_view base) {
+    for (const Formats& row : formats())
+        if (row.base == base) return &row;
+    return nullptr;
+}
+
+bool lists(const std::vector<std::string_view>& list, std::string_view word) {
+    return std::find(list.begin(), list.end(), word) != list.end();
+}
+
+std::string component_name(const GltfAccessor& accessor) {
+    static const std::map<int, std::string> names = {{5120, "i8"},  {5121, "u8"},  {5122, "i16"},
+                                                     {5123, "u16"}, {5125, "u32"}, {5126, "f"}};
+    const auto at = names.find(accessor.component_type);
+    return (at == names.end() ? "unknown" : at->second) + (accessor.normalized ? "n" : "");
+}
+
+std::optional<Semantic> parse_semantic(const std::string& name) {
+    if (name.starts_with('_')) return Semantic{name, {}, true};
+    const size_t bar = name.find('_');
+    Semantic semantic{name.substr(0, bar), {}, false};
+    const Formats* row = find_formats(semantic.base);
+    if (!row || row->numbered != (bar != std::string::npos)) return std::nullopt;
+    if (!row->numbered) return semantic;
+    const std::string digits = name.substr(bar + 1);
+    if (digits.empty() || (digits.size() > 1 && digits[0] == '0')) return std::nullopt;
+    uint64_t set = 0;
+    const char* end = digits.data() + digits.size();
+    if (std::from_chars(digits.data(), end, set).ptr != end) return std::nullopt;
+    semantic.set = set;
+    return semantic;
+}
+
+class MeshCheck {
+  public:
+    explicit MeshCheck(GltfCheck& check)
+        : check_(check),
+          accessors_(check.root.objects("accessors")),
+          views_(check.root.objects("bufferViews")) {
+        const auto used = check.root.value().find("extensionsUsed");
+        quantized_ = used != check.root.value().end() &&
+                     std::find(used->begin(), used->end(), "KHR_mesh_quantization") != used->end();
+        for (const JsonCursor& material : check.root.objects("materials"))
+            texcoords_needed_.push_back(texcoord_sets_needed(material));
+    }
+
+    void check_mesh(const JsonCursor& mesh) {
+        mesh.require("primitives");
+        std::optional<size_t> targets;
+        for (const JsonCursor& primitive : mesh.objects("primitives")) {
+            check_primitive(primitive);
+            const size_t count = primitive.length("targets");
+            if (targets.value_or(count) != count)
+                primitive.fail("all primitives of a mesh must have equally many morph targets");
+            targets = count;
+        }
+        if (mesh.has("weights")) (void)mesh.numbers("weights", targets.value_or(0));
+    }
+
+  private:
+    using Attributes = std::map<std::string, size_t>;  ///< accessor by name
+
+    void check_primitive(const JsonCursor& primitive) {
+        const JsonCursor attributes = primitive.object("attributes");
+        const Attributes found = read_attributes(attributes, false);
+        const uint64_t vertices = found.empty() ? 0 : check_.accessors[found.begin()->second].count;
+        check_counts(attributes, found, vertices);
+        const uint64_t texcoords = check_sets(attributes, found);
+        if (primitive.has("indices")) check_indices(primitive);
+        if (primitive.integer_or("mode", 4) > 6) check_.warn(primitive, "mode is unknown");
+        const auto material = primitive.index("material", texcoords_needed_.size(), "material");
+        if (material && texcoords_needed_[*material] > texcoords)
+            primitive.fail(
+                fmt::format("material {} has a texture on TEXCOORD_{}, which the "
+                            "primitive lacks",
+                            *material, texcoords_needed_[*material] - 1));
+        for (const JsonCursor& target : primitive.objects("targets"))
+            check_target(target, found, vertices);
+    }
+
+    Attributes read_attributes(const JsonCursor& attributes, bool is_target) {
+        Attributes found;
+        for (const auto& [name, unused] : attributes.value().items()) {
+            const auto semantic = parse_semantic(name);
+            if (!semantic)
+                attributes.fail(name, "is no attribute of glTF; names of your own begin with _");
+            const size_t index =
+                attributes.required_index(name.c_str(), accessors_.size(), "accessor");
+            const GltfAccessor& accessor = check_.accessors[index];
+            if (semantic->custom)
+                check_custom(attributes, name, accessor);
+            else
+                check_format(attributes, name, *find_formats(semantic->base), accessor, is_target);
+            check_layout(attributes, name, index);
+            ask_for_repeat(attributes, index);
+            found[name] = index;
+        }
+        return found;
+    }
+
+    static void check_custom(const JsonCursor& attributes, const std::string& name,
+                             const GltfAccessor& accessor) {
+        if (accessor.component_type == 5125)
+            attributes.fail(name, "an attribute must not be of 32-bit integers");
+    }
+
+    void check_format(const JsonCursor& attributes, const std::string& name, const Formats& row,
+                      const GltfAccessor& accessor, bool is_target) const {
+        // The sign of a tangent's fourth component cannot be morphed.
+        const bool short_tangent = is_target && row.base == "TANGENT";
+        const bool type_ok =
+            short_tangent ? accessor.type == "VEC3" : lists(row.types, accessor.type);
+        const std::string component = component_name(accessor);
+        if (type_ok &&
+            (lists(row.components, component) || (quantized_ && lists(row.quantized, component))))
+            return;
+        attributes.fail(name, fmt::format("is {} of {}, which {} must not be",
+                                          printable(accessor.type), component, row.base));
+    }
+
+    /// Starts at a multiple of 4 bytes, and so does every next element; who shares says how far.
+    void check_layout(const JsonCursor& attributes, const std::string& name, size_t index) {
+        const GltfAccessor& accessor = check_.accessors[index];
+        if (!accessor.view) return;
+        if (accessor.offset % 4 != 0 || accessor.stride % 4 != 0)
+            attributes.fail(name, fmt::format("accessor {} has an attribute that is not aligned to "
+                                              "4 bytes",
+                                              index));
+        if (views_[*accessor.view].has("byteStride")) return;
+        const size_t first = users_.try_emplace(*accessor.view, index).first->second;
+        if (first != index)
+            attributes.fail(name, fmt::format("accessors {} and {} share bufferView {}, so it "
+                                              "must have a byteStride",
+                                              first, index, *accessor.view));
+    }
+
+    /// A loader may copy an accessor for each primitive that uses it.
+    void ask_for_repeat(const JsonCursor& place, size_t index) {
+        const GltfAccessor& accessor = check_.accessors[index];
+        if (seen_.insert(index).second) return;
+        check_.budget.ask(
+            accessor.count * element_size(accessor.type, accessor.component_type, true), place);
+    }
+
+    void check_counts(const JsonCursor& attributes, const Attributes& found, uint64_t vertices) {
+        for (const auto& [name, index] : found)
+            if (check_.accessors[index].count != vertices)
+                attributes.fail(name, fmt::format("accessor {} has {} elements, but another "
+                                                  "attribute has {}",
+                                                  index, check_.accessors[index].count, vertices));
+    }
+
+    /// Sets count from 0 without gaps; returns how many TEXCOORD_n there are.
+    static uint64_t check_sets(const JsonCursor& attributes, const Attributes& found) {
+        std::map<std::string, std::set<uint64_t>> sets;
+        for (const auto& [name, unused] : found)
+            if (const auto semantic = parse_semantic(name); semantic->set)
+                sets[semantic->base].insert(*semantic->set);
+        for (const auto& [base, numbers] : sets)
+            if (*numbers.rbegin() != numbers.size() - 1)
+                attributes.fail(fmt::format("the {}_n must count from 0 without gaps", base));
+        return sets["TEXCOORD"].size();
+    }
+
+    void check_indices(const JsonCursor& primitive) {
+        const size_t index = primitive.required_index("indices", accessors_.size(), "accessor");
+        const GltfAccessor& accessor = check_.accessors[index];
+        const std::string component = component_name(accessor);
+        if (accessor.type != "SCALAR" || !lists({"u8", "u16", "u32"}, component))
+            primitive.fail("indices", fmt::format("accessor {} is {} of {}, not SCALAR of an "
+                                                  "unsigned integer",
+                                                  index, printable(accessor.type), component));
+        if (accessor.view && views_[*accessor.view].has("byteStride"))
+            primitive.fail("indices", "their bufferView must not have a byteStride");
+        ask_for_repeat(primitive, index);
+    }
+
+    void check_target(const JsonCursor& target, const Attributes& base, uint64_t vertices) {
+        const Attributes found = read_attributes(target, true);
+        check_counts(target, found, vertices);
+        for (const auto& [name, unused] : found)
+            if (!base.contains(name)) target.fail(name, "morphs an attribute that is not there");
+    }
+
+    GltfCheck& check_;
+    const std::vector<JsonCursor> accessors_, views_;
+    std::vector<uint64_t> texcoords_needed_;  ///< of each material
+    bool quantized_ = false;
+    std::map<size_t, size_t> users_;  ///< the first accessor in each bufferView without stride
+    std::set<size_t> seen_;           ///< accessors that a primitive has used
+};
+
+}  // namespace
+
+void check_meshes(GltfCheck& check) {
+    MeshCheck meshes(check);
+    for (const JsonCursor& mesh : check.root.objects("meshes")) meshes.check_mesh(mesh);
+}
+
+}  // namespace petzval

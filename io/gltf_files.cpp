@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/gltf_files.h"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "io/json_cursor.h"
+#include "io/json_parse.h"
+#include "io/read_file.h"
+#include "io/uri.h"
+
+namespace petzval {
+namespace {
+
+using Bytes = std::vector<uint8_t>;
+
+/// Reads what a "uri" names, and keeps count of it.
+class Fetcher {
+  public:
+    Fetcher(GltfSource& source, GltfBudget& budget) : source_(source), budget_(budget) {}
+
+    Bytes fetch(const JsonCursor& owner, std::string* mime_type) {
+        const std::string uri = owner.text("uri");
+        return is_data_uri(uri) ? from_data(owner, uri, mime_type) : from_file(owner, uri);
+    }
+
+  private:
+    Bytes from_data(const JsonCursor& owner, const std::string& uri, std::string* mime_type) {
+        auto data = parse_data_uri(uri);
+        if (!data) owner.fail("uri", "is not a valid data URI; it must hold base64");
+        *mime_type = data->mime_type;
+        return std::move(data->bytes);
+    }
+
+    Bytes from_file(const JsonCursor& owner, const std::string& uri) {
+        const auto path = relative_path(uri);
+        if (!path)
+            owner.fail("uri", fmt::format("\"{}\" is not a relative path to a file; network and "
+                                          "absolute addresses are not read",
+                                          printable(uri)));
+        FileBytes file = read_file(source_.path.parent_path() / *path);
+        if (!file.error.empty())
+            owner.fail("uri", fmt::format("\"{}\": {}", printable(*path), file.error));
+        count(*path, file.bytes, owner);
+        return std::move(file.bytes);
+    }
+
+    void count(const std::string& path, const Bytes& bytes, const JsonCursor& owner) {
+        if (++times_read_[path] > 1) return budget_.ask(bytes.size(), owner);
+        budget_.add_owned(bytes.size());
+        source_.hash = fnv1a(bytes, source_.hash);
+    }
+
+    GltfSource& source_;
+    GltfBudget& budget_;
+    std::map<std::string, int> times_read_;
+};
+
+Bytes read_buffer(const JsonCursor& buffer, Fetcher& fetcher) {
+    std::string mime_type;
+    Bytes bytes = fetcher.fetch(buffer, &mime_type);
+    const uint64_t length = buffer.integer("byteLength");
+    if (bytes.size() < length)
+        buffer.fail(fmt::format("byteLength is {}, but there are {} bytes", length, bytes.size()));
+    return bytes;
+}
+
+/// The binary chunk is padded to four bytes, so it may be longer than the buffer.
+Bytes buffer_from_chunk(const JsonCursor& buffer, std::span<const uint8_t> bin) {
+    const uint64_t length = buffer.integer("byteLength");
+    if (bin.size() < length)
+        buffer.fail(
+            fmt::format("byteLength is {}, but the BIN chunk has {} bytes", length, bin.size()));
+    return {bin.begin(), bin.begin() + ptrdiff_t(length)};
+}
+
+Bytes image_from_view(GltfSource& source, const JsonCursor& root, const JsonCursor& image,
+                      GltfBudget& budget) {
+    const auto views = root.objects("bufferViews");
+    const JsonCursor& view = views[image.required_index("bufferView", views.size(), "bufferView")];
+    const Bytes& buffer = source.buffers[view.integer("buffer")];
+    if (buffer.empty()) {
+        source.warnings.push_back(image.path() + ": lies in a buffer without data; left empty");
+        return {};
+    }
+    const uint64_t offset = view.integer_or("byteOffset", 0), length = view.integer("byteLength");
+    budget.ask(length, image);
+    return {buffer.begin() + ptrdiff_t(offset), buffer.begin() + ptrdiff_t(offset + length)};
+}
+
+}  // namespace
+
+uint64_t fnv1a(std::span<const uint8_t> bytes, uint64_t hash) {
+    for (uint8_t byte : bytes) hash = (hash ^ byte) * 0x100000001B3u;
+    return hash;
+}
+
+void read_buffers(GltfSource& source, const GltfContainer& container, GltfBudget& budget) {
+    const std::string file = source.path.string();
+    Fetcher fetcher(source, budget);
+    for (const JsonCursor& buffer : JsonCursor(source.json, file).objects("buffers")) {
+        const bool first = source.buffers.empty();
+        if (buffer.has("uri"))
+            source.buffers.push_back(read_buffer(buffer, fetcher));
+        else if (first && container.bin)
+            source.buffers.push_back(buffer_from_chunk(buffer, *container.bin));
+        else if (first && container.binary)
+            buffer.fail("has no uri, and the file has no BIN chunk; the file is cut short");
+        else
+            source.buffers.emplace_back();
+    }
+}
+
+void read_images(GltfSource& source, GltfBudget& budget) {
+    const std::string file = source.path.string();
+    const JsonCursor root(source.json, file);
+    Fetcher fetcher(source, budget);
+    for (const JsonCursor& image : root.objects("images")) {
+        std::string mime_type = image.text_or("mimeType", "");
+        source.images.push_back(image.has("uri") ? fetcher.fetch(image, &mime_type)
+                                                 : image_from_view(source, root, image, budget));
+    }
+}
+
+}  // namespace petzval

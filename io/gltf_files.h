@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Brings in the bytes that a glTF file's JSON refers to.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "io/gltf_budget.h"
+#include "io/gltf_source.h"
+
+namespace petzval {
+
+/// FNV-1a, 64 bits, continued from hash (Fowler, Noll, Vo 1991; constants of RFC 9923).
+[[nodiscard]] uint64_t fnv1a(std::span<const uint8_t> bytes, uint64_t hash = 0xCBF29CE484222325u);
+
+/// What the JSON came in: text, or a .glb with or without a binary chunk.
+struct GltfContainer {
+    bool binary = false;
+    std::optional<std::span<const uint8_t>> bin;
+};
+
+/// Fills source.buffers from data URIs, side files and the binary chunk, and checks their lengths.
+void read_buffers(GltfSource& source, const GltfContainer&, GltfBudget&);
+
+/// Fills source.images from data URIs, side files and bufferViews (which must be checked already),
+/// and checks what kind of image the bytes are.
+void read_images(GltfSource& source, GltfBudget&);
+
+}  // namespace petzval

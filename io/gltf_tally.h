@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the loader met on its way: the source of warnings and of what `petzval info` prints.
+#pragma once
+
+#include <cstdint>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace petzval {
+
+struct GltfTally {
+    uint64_t zero_area_triangles = 0;
+    uint64_t point_primitives = 0, line_primitives = 0;
+    uint64_t primitives_without_positions = 0;
+    uint64_t incomplete_primitives = 0;  ///< vertices left over after the last triangle
+    uint64_t singular_nodes = 0;         ///< whose matrix flattens space
+    uint64_t replaced_normals = 0;       ///< of no length
+    uint64_t occlusion_textures = 0, ranged_lights = 0;
+    std::set<std::string> honoured;     ///< features that the scene uses, in words
+    std::vector<std::string> warnings;  ///< one line each
+};
+
+}  // namespace petzval

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Normals and tangents that a glTF file leaves to the reader.
+#pragma once
+
+#include "core/mesh.h"
+#include "core/texture.h"
+
+namespace petzval {
+
+/// Makes normals unit. One without a length (or not finite) becomes the mean of the faces around
+/// it, weighted by area; returns how many there were.
+size_t repair_normals(Mesh&);
+
+/// Makes tangents unit and w +-1. One that is useless is replaced by some direction across the
+/// normal.
+void repair_tangents(Mesh&);
+
+/// Computes tangents for a normal map from the texture coordinates that it is read with: along
+/// increasing u, averaged over the faces about each vertex by their angle there. A vertex between
+/// faces whose textures are mirrored is split in two; flat-shaded meshes lose all shared vertices.
+/// In the spirit of Mikkelsen 2008, "Simulation of Wrinkled Surfaces Revisited", with the sign of
+/// glTF 2.0, section 3.7.2.1 (v runs down, green points up). Nothing happens without coordinates.
+void add_tangents(Mesh&, const TextureSlot& normal_map);
+
+}  // namespace petzval

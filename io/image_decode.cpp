@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// Textures: encoded bytes to RGBA texels.
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <string_view>
+
+#include "io/error.h"
+#include "io/first_line.h"
+#include "io/image.h"
+
+namespace petzval {
+namespace {
+
+constexpr int kMaxSide = 32768;
+// Deflate packs at most 1032 bytes into one (RFC 1951: 258 bytes in two bits), JPEG less. A picture
+// with more texels for each of its bytes is broken or made to fill the memory, unless it is small.
+constexpr uint64_t kMaxTexelsPerByte = 1200;
+constexpr uint64_t kAlwaysAllowedTexels = uint64_t{4096} * 4096;
+
+/// Ending of the format that the first bytes announce; empty for any other.
+std::string_view ending_of(const std::vector<uint8_t>& bytes) {
+    const std::string_view head(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (head.starts_with("\x89PNG\r\n\x1a\n")) return "png";
+    if (head.starts_with("\xff\xd8\xff")) return "jpg";
+    if (head.starts_with("RIFF") &&
+        head.substr(std::min<size_t>(8, head.size())).starts_with("WEBP"))
+        return "webp";
+    return "";
+}
+
+/// What is wrong with the size, or nothing.
+std::string size_complaint(const OIIO::ImageSpec& spec, size_t byte_count) {
+    if (spec.width <= 0 || spec.height <= 0 || spec.depth > 1)
+        return fmt::format("a picture of {}x{} texels holds nothing", spec.width, spec.height);
+    if (spec.nchannels < 1 || spec.nchannels > 4)
+        return fmt::format("has {} channels; 1 to 4 can be used", spec.nchannels);
+    if (spec.width > kMaxSide || spec.height > kMaxSide)
+        return fmt::format("is {}x{} texels; at most {} on a side can be used, scale it down",
+                           spec.width, spec.height, kMaxSide);
+    const uint64_t texels = uint64_t(spec.width) * spec.height;
+    if (texels > kAlwaysAllowedTexels && texels / kMaxTexelsPerByte > byte_count)
+        return fmt::format("claims {}x{} texels in {} bytes, which cannot be", spec.width,
+                           spec.height, byte_count);
+    return "";
+}
+
+/// Spreads 1 (grey), 2 (grey, alpha) or 3 (colour) channels of every texel to RGBA.
+template <class T>
+std::vector<T> to_rgba(std::vector<T> in, int channels, T opaque) {
+    if (channels == 4) return in;
+    const size_t count = in.size() / channels;
+    std::vector<T> out(count * 4);
+    for (size_t i = 0; i < count; ++i) {
+        const T* texel = &in[i * channels];
+        const bool grey = channels < 3;
+        out[i * 4] = texel[0];
+        out[i * 4 + 1] = grey ? texel[0] : texel[1];
+        out[i * 4 + 2] = grey ? texel[0] : texel[2];
+        out[i * 4 + 3] = channels == 2 ? texel[1] : opaque;
+    }
+    return out;
+}
+
+}  // namespace
+
+Image decode_image(const std::vector<uint8_t>& bytes, const std::string& file,
+                   const std::string& place) {
+    const auto refuse = [&](const std::string& why) -> InputError {
+        return {file, place, "the image " + why};
+    };
+    const std::string_view ending = ending_of(bytes);
+    if (ending.empty()) throw refuse("is not a PNG, JPEG or WebP file; convert it to one of these");
+
+    OIIO::Filesystem::IOMemReader reader(bytes.data(), bytes.size());
+    OIIO::Filesystem::IOProxy* proxy = &reader;
+    OIIO::ImageSpec config;
+    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    config.attribute("oiio:UnassociatedAlpha", 1);
+    const auto input = OIIO::ImageInput::open(fmt::format("memory.{}", ending), &config);
+    if (!input) throw refuse("cannot be decoded: " + first_line(OIIO::geterror()));
+    const OIIO::ImageSpec& spec = input->spec();
+    if (const std::string why = size_complaint(spec, bytes.size()); !why.empty()) throw refuse(why);
+
+    const size_t count = size_t(spec.width) * spec.height * spec.nchannels;
+    const auto read = [&](OIIO::TypeDesc type, void* to) {
+        const bool success = input->read_image(0, 0, 0, spec.nchannels, type, to);
+        // OpenImageIO calls a JPEG cut short a success; libjpeg's other warnings do no harm.
+        const std::string error = first_line(input->geterror());
+        if (!success || error.find("Premature end") != std::string::npos)
+            throw refuse("cannot be decoded: " + error);
+    };
+    Image image{.name = "", .width = spec.width, .height = spec.height, .texels = {}};
+    if (spec.format == OIIO::TypeDesc::UINT8) {
+        std::vector<uint8_t> texels(count);
+        read(OIIO::TypeDesc::UINT8, texels.data());
+        image.texels = to_rgba<uint8_t>(std::move(texels), spec.nchannels, 255);
+    } else {
+        std::vector<float> texels(count);
+        read(OIIO::TypeDesc::FLOAT, texels.data());
+        image.texels = to_rgba<float>(std::move(texels), spec.nchannels, 1.f);
+    }
+    return image;
+}
+
+}  // namespace petzval

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+namespace petzval {
+
+/// Containers may be nested this deep. Far more than any scene needs, far less than a stack holds.
+inline constexpr int max_json_depth = 128;
+
+/// Parses UTF-8 JSON (RFC 8259) from a file that may be hostile: depth is limited before anything
+/// recurses, a byte order mark and a repeated key are refused (as glTF 2.0, section 2.7, demands),
+/// and so is a number beyond the range of a double. Whole numbers written as 3.0 become integers,
+/// so that no reader has to know both ways. file: its name, for the InputError.
+[[nodiscard]] nlohmann::json parse_json(std::string_view text, const std::string& file);
+
+/// Text from a file made fit for a message of one line: control characters become '?', and what
+/// is longer than 80 bytes is cut.
+[[nodiscard]] std::string printable(std::string_view text);
+
+}  // namespace petzval

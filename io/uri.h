@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// URIs as glTF uses them: a relative path to a side file, or the data itself.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace petzval {
+
+/// The content of a "data:" URI (RFC 2397).
+struct DataUri {
+    std::string mime_type;  ///< lower case, without parameters; may be empty
+    std::vector<uint8_t> bytes;
+};
+
+[[nodiscard]] bool is_data_uri(std::string_view uri);
+
+/// Takes a data URI apart; nothing when it is not base64 or the base64 is broken.
+[[nodiscard]] std::optional<DataUri> parse_data_uri(std::string_view uri);
+
+/// Decodes base64 (RFC 4648, section 4), with or without padding; nothing when a character is
+/// foreign or the length impossible.
+[[nodiscard]] std::optional<std::vector<uint8_t>> decode_base64(std::string_view text);
+
+/// The path that a relative URI reference names, percent-escapes decoded (RFC 3986); nothing when
+/// it has a scheme or a host, is absolute or empty, or an escape is broken or hides a zero byte.
+[[nodiscard]] std::optional<std::string> relative_path(std::string_view uri);
+
+}  // namespace petzval

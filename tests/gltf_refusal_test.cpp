@@ -302,6 +302,13 @@ TEST(GltfRefusal, NodeTreeDeeperThanAnyRig) {
     EXPECT_TRUE(has(refused(chain(1025)), "/nodes/1024: lies more than 1024 nodes deep"));
 }
 
+TEST(GltfRefusal, AnAttributeOf32BitIntegers) {
+    TinyGltf file;
+    const int mine = file.add_accessor<uint32_t>("SCALAR", {1, 2, 3});
+    file.add_mesh({{"attributes", {{"_MINE", mine}}}});
+    EXPECT_TRUE(has(refused(file), "/attributes/_MINE: is SCALAR of uint32"));
+}
+
 TEST(GltfRefusal, IndicesBeyondTheVertices) {
     for (const auto& [index, expected] : {std::pair<uint16_t, const char*>{3, "there are 3 vert"},
                                           {0xFFFF, "would restart the primitive"}}) {

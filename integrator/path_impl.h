@@ -16,6 +16,10 @@ struct PathTracer<Caster>::Vertex {
     bool light_sampled = false;  ///< next-event estimation could have found what the ray finds
 };
 
+/// A shadow ray ends this share of the way to the light, as traversal knows distances to a few
+/// roundings only and the light must not shadow itself. Relative: no scale of a scene matters.
+inline constexpr float kShadowLength = 0.9999f;
+
 /// Weight of a sample drawn with density a where b might have drawn it too. Veach 1997, "Robust
 /// Monte Carlo Methods for Light Transport Simulation", equation 9.13 with beta = 2.
 [[nodiscard]] inline float power_heuristic(float a, float b) {
@@ -35,10 +39,11 @@ f4 PathTracer<Caster>::backdrop(const Ray& ray, const Bands& bands, FilmSample& 
 template <RayCaster Caster>
 f4 PathTracer<Caster>::escaped(const Ray& ray, const Bands& bands, const Vertex& last) const {
     if (scene_.sky.black()) return f4{};
-    const f4 radiance = uplift_radiance(scene_.sky.radiance(ray.direction), bands);
+    const Sky::Found found = scene_.sky.find(ray.direction);
+    const f4 radiance = uplift_radiance(found.radiance, bands);
     if (!last.light_sampled) return radiance;
     const uint32_t sky_light = static_cast<uint32_t>(scene_.lights.size()) - 1;
-    const float light_pdf = lights_.probability(sky_light) * scene_.sky.pdf(ray.direction);
+    const float light_pdf = lights_.probability(sky_light) * found.pdf;
     if (options_.technique == Technique::LightOnly && light_pdf > 0.f) return f4{};
     return radiance * power_heuristic(last.pdf, light_pdf);
 }
@@ -68,7 +73,7 @@ f4 PathTracer<Caster>::direct_light(const Surface& s, const Frame& frame, const 
     const auto pick = lights_.pick(sampler.get1(Dim::LightPick, depth));
     if (!pick) return f4{};
     const auto light = sample_light(scene_, scene_.lights[pick->light], s.p,
-                                    sampler.get2(Dim::Light, depth), bands);
+                                    sampler.get2(Dim::LightPoint, depth), bands);
     if (!light) return f4{};
     const V3f wi = frame.to_local(light->direction);
     // Shading and geometric normal must agree on the side, or light would leak through.
@@ -83,7 +88,7 @@ f4 PathTracer<Caster>::direct_light(const Surface& s, const Frame& frame, const 
         shadow.direction = light->direction;
     } else {
         shadow.direction = light->target - shadow.origin;
-        shadow.t_max = kOneMinus;
+        shadow.t_max = kShadowLength;
     }
     if (caster_.has_cutouts()) shadow.coin = sampler.get_bits(Dim::Coverage, 2 * depth + 1);
     ++stats.shadow_rays;

@@ -3,84 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <map>
 #include <set>
 
+#include "io/gltf_attributes.h"
 #include "io/gltf_check.h"
 #include "io/json_parse.h"
 
 namespace petzval {
 namespace {
-
-/// "TEXCOORD_1" taken apart. A name of an application's own begins with '_'.
-struct Semantic {
-    std::string base;
-    std::optional<uint64_t> set;
-    bool custom = false;
-};
-
-/// Allowed formats of an attribute: components are f(loat), i8, u8, i16, u16, with n for
-/// normalized.
-struct Formats {
-    std::string_view base;
-    bool numbered;
-    std::vector<std::string_view> types, components, quantized;
-};
-
-const std::vector<Formats>& formats() {
-    static const std::vector<Formats> table = {
-        {"POSITION",
-         false,
-         {"VEC3"},
-         {"f"},
-         {"i8", "i8n", "u8", "u8n", "i16", "i16n", "u16", "u16n"}},
-        {"NORMAL", false, {"VEC3"}, {"f"}, {"i8n", "i16n"}},
-        {"TANGENT", false, {"VEC4"}, {"f"}, {"i8n", "i16n"}},
-        {"TEXCOORD",
-         true,
-         {"VEC2"},
-         {"f", "u8n", "u16n"},
-         {"i8", "i8n", "u8", "i16", "i16n", "u16"}},
-        {"COLOR", true, {"VEC3", "VEC4"}, {"f", "u8n", "u16n"}, {}},
-        {"JOINTS", true, {"VEC4"}, {"u8", "u16"}, {}},
-        {"WEIGHTS", true, {"VEC4"}, {"f", "u8n", "u16n"}, {}}};
-    return table;
-}
-
-const Formats* find_formats(std::string_view base) {
-    for (const Formats& row : formats())
-        if (row.base == base) return &row;
-    return nullptr;
-}
-
-bool lists(const std::vector<std::string_view>& list, std::string_view word) {
-    return std::find(list.begin(), list.end(), word) != list.end();
-}
-
-std::string component_name(const GltfAccessor& accessor) {
-    static const std::map<int, std::string> names = {{5120, "i8"},  {5121, "u8"},  {5122, "i16"},
-                                                     {5123, "u16"}, {5125, "u32"}, {5126, "f"}};
-    const auto at = names.find(accessor.component_type);
-    return (at == names.end() ? "unknown" : at->second) + (accessor.normalized ? "n" : "");
-}
-
-std::optional<Semantic> parse_semantic(const std::string& name) {
-    if (name.starts_with('_')) return Semantic{name, {}, true};
-    const size_t bar = name.find('_');
-    Semantic semantic{name.substr(0, bar), {}, false};
-    const Formats* row = find_formats(semantic.base);
-    if (!row || row->numbered != (bar != std::string::npos)) return std::nullopt;
-    if (!row->numbered) return semantic;
-    const std::string digits = name.substr(bar + 1);
-    if (digits.empty() || (digits.size() > 1 && digits[0] == '0')) return std::nullopt;
-    uint64_t set = 0;
-    const char* end = digits.data() + digits.size();
-    if (std::from_chars(digits.data(), end, set).ptr != end) return std::nullopt;
-    semantic.set = set;
-    return semantic;
-}
 
 class MeshCheck {
   public:
@@ -116,8 +47,10 @@ class MeshCheck {
         const Attributes found = read_attributes(attributes, false);
         const uint64_t vertices = found.empty() ? 0 : check_.accessors[found.begin()->second].count;
         check_counts(attributes, found, vertices);
+        check_stored(primitive, found);
         const uint64_t texcoords = check_sets(attributes, found);
         if (primitive.has("indices")) check_indices(primitive);
+        ask_for_shared(primitive, found, vertices);
         if (primitive.integer_or("mode", 4) > 6) check_.warn(primitive, "mode is unknown");
         const auto material = primitive.index("material", texcoords_needed_.size(), "material");
         if (material && texcoords_needed_[*material] > texcoords)
@@ -132,41 +65,26 @@ class MeshCheck {
     Attributes read_attributes(const JsonCursor& attributes, bool is_target) {
         Attributes found;
         for (const auto& [name, unused] : attributes.value().items()) {
-            const auto semantic = parse_semantic(name);
+            const auto semantic = parse_gltf_semantic(name);
             if (!semantic)
                 attributes.fail(name, "is no attribute of glTF; names of your own begin with _");
             const size_t index =
                 attributes.required_index(name.c_str(), accessors_.size(), "accessor");
             const GltfAccessor& accessor = check_.accessors[index];
-            if (semantic->custom)
-                check_custom(attributes, name, accessor);
-            else
-                check_format(attributes, name, *find_formats(semantic->base), accessor, is_target);
+            check_format(attributes, name, *semantic, accessor, is_target);
             check_layout(attributes, name, index);
-            ask_for_repeat(attributes, index);
             found[name] = index;
         }
         return found;
     }
 
-    static void check_custom(const JsonCursor& attributes, const std::string& name,
-                             const GltfAccessor& accessor) {
-        if (accessor.component_type == 5125)
-            attributes.fail(name, "an attribute must not be of 32-bit integers");
-    }
-
-    void check_format(const JsonCursor& attributes, const std::string& name, const Formats& row,
-                      const GltfAccessor& accessor, bool is_target) const {
-        // The sign of a tangent's fourth component cannot be morphed.
-        const bool short_tangent = is_target && row.base == "TANGENT";
-        const bool type_ok =
-            short_tangent ? accessor.type == "VEC3" : lists(row.types, accessor.type);
-        const std::string component = component_name(accessor);
-        if (type_ok &&
-            (lists(row.components, component) || (quantized_ && lists(row.quantized, component))))
-            return;
-        attributes.fail(name, fmt::format("is {} of {}, which {} must not be",
-                                          printable(accessor.type), component, row.base));
+    void check_format(const JsonCursor& attributes, const std::string& name,
+                      const GltfSemantic& semantic, const GltfAccessor& accessor,
+                      bool is_target) const {
+        if (!is_allowed_format(semantic, accessor, quantized_, is_target))
+            attributes.fail(
+                name, fmt::format("is {} of {}, which {} must not be", printable(accessor.type),
+                                  component_name(accessor), name));
     }
 
     /// Starts at a multiple of 4 bytes, and so does every next element; who shares says how far.
@@ -185,12 +103,19 @@ class MeshCheck {
                                               first, index, *accessor.view));
     }
 
-    /// A loader may copy an accessor for each primitive that uses it.
-    void ask_for_repeat(const JsonCursor& place, size_t index) {
-        const GltfAccessor& accessor = check_.accessors[index];
-        if (seen_.insert(index).second) return;
-        check_.budget.ask(
-            accessor.count * element_size(accessor.type, accessor.component_type, true), place);
+    /// A loader may keep a copy of its vertices for each primitive that shares them with another.
+    void ask_for_shared(const JsonCursor& primitive, const Attributes& found, uint64_t vertices) {
+        bool shared = false;
+        uint64_t size = 0;
+        for (const auto& [unused, index] : found) {
+            const GltfAccessor& accessor = check_.accessors[index];
+            size += element_size(accessor.type, accessor.component_type, true);
+            shared |= !seen_.insert(index).second;
+        }
+        if (!shared) return;
+        const auto indices = primitive.index("indices", accessors_.size(), "accessor");
+        const uint64_t used = indices ? check_.accessors[*indices].count : vertices;
+        check_.budget.ask(std::min(used, vertices) * size, primitive);
     }
 
     void check_counts(const JsonCursor& attributes, const Attributes& found, uint64_t vertices) {
@@ -201,11 +126,21 @@ class MeshCheck {
                                                   index, check_.accessors[index].count, vertices));
     }
 
+    /// A compressed primitive may or may not hold its vertices plainly as well.
+    void check_stored(const JsonCursor& primitive, const Attributes& found) const {
+        if (!primitive.extension("KHR_draco_mesh_compression")) return;
+        for (const auto& [unused, index] : found)
+            if (!check_.accessors[index].view)
+                primitive.fail(
+                    "its vertices are only in KHR_draco_mesh_compression, which is not supported; "
+                    "export it without");
+    }
+
     /// Sets count from 0 without gaps; returns how many TEXCOORD_n there are.
     static uint64_t check_sets(const JsonCursor& attributes, const Attributes& found) {
         std::map<std::string, std::set<uint64_t>> sets;
         for (const auto& [name, unused] : found)
-            if (const auto semantic = parse_semantic(name); semantic->set)
+            if (const auto semantic = parse_gltf_semantic(name); semantic->set)
                 sets[semantic->base].insert(*semantic->set);
         for (const auto& [base, numbers] : sets)
             if (*numbers.rbegin() != numbers.size() - 1)
@@ -217,13 +152,13 @@ class MeshCheck {
         const size_t index = primitive.required_index("indices", accessors_.size(), "accessor");
         const GltfAccessor& accessor = check_.accessors[index];
         const std::string component = component_name(accessor);
-        if (accessor.type != "SCALAR" || !lists({"u8", "u16", "u32"}, component))
+        if (accessor.type != "SCALAR" ||
+            (component != "uint8" && component != "uint16" && component != "uint32"))
             primitive.fail("indices", fmt::format("accessor {} is {} of {}, not SCALAR of an "
                                                   "unsigned integer",
                                                   index, printable(accessor.type), component));
         if (accessor.view && views_[*accessor.view].has("byteStride"))
             primitive.fail("indices", "their bufferView must not have a byteStride");
-        ask_for_repeat(primitive, index);
     }
 
     void check_target(const JsonCursor& target, const Attributes& base, uint64_t vertices) {

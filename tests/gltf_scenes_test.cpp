@@ -58,8 +58,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Expected{"morph-stress/morph-stress-test.glb", 2412, 2412, 2, 0, 0},
                     Expected{"shadows-spot/shadows-spot.gltf", 1108, 1108, 0, 1, 1},
                     Expected{"two-cylinder-engine/2CylinderEngine.glb", 65311, 110336, 0, 0, 1}),
-    [](const auto& info) {
-        const std::string file = info.param.file;
+    [](const auto& scene) {
+        const std::string file = scene.param.file;
         std::string name;
         for (char c : file.substr(0, file.find('/')))
             if (c != '-') name += c;

@@ -10,12 +10,17 @@
 
 namespace petzval {
 
+/// Probabilities are whole multiples of 2^-24, the grain of the sampler's numbers: what is drawn
+/// and what is said to be drawn then agree to the last bit.
+inline constexpr uint32_t kDistributionUnits = 1u << 24;
+
 /// Density over [0, 1) in equal cells. Inversion by a guide table (Chen and Asau 1974), so that a
-/// draw costs the same for a thousand cells and for a million.
+/// draw costs the same for a thousand cells and for a million: two comparisons on average.
 class Piecewise1D {
   public:
     Piecewise1D() = default;
-    /// Weights must be finite and not negative, with at least one above 0.
+    /// Weights must be finite and not negative, with at least one above 0. A weight of 0 is never
+    /// drawn; each other one has at least a probability of 2^-24, unless they are more than 2^23.
     explicit Piecewise1D(std::span<const float> weights);
 
     struct Draw {
@@ -23,13 +28,16 @@ class Piecewise1D {
         float offset;       ///< position within the cell, [0, 1): may be used again
         float probability;  ///< of the cell
     };
+    /// u in [0, 1]. The cell does not decrease as u grows.
     [[nodiscard]] Draw sample(float u) const;
-    [[nodiscard]] float probability(uint32_t cell) const { return cdf_[cell + 1] - cdf_[cell]; }
-    [[nodiscard]] uint32_t size() const { return static_cast<uint32_t>(cdf_.size()) - 1; }
+    [[nodiscard]] float probability(uint32_t cell) const {
+        return static_cast<float>(cdf_[cell + 1] - cdf_[cell]) / kDistributionUnits;
+    }
+    [[nodiscard]] uint32_t size() const { return static_cast<uint32_t>(guide_.size()); }
     [[nodiscard]] double sum() const { return sum_; }  ///< of the weights
 
   private:
-    std::vector<float> cdf_;       ///< size + 1 values from 0 to 1
+    std::vector<uint32_t> cdf_;    ///< size + 1 values from 0 to kDistributionUnits
     std::vector<uint32_t> guide_;  ///< first cell that a u of k/size can fall in
     double sum_ = 0;
 };
@@ -38,18 +46,27 @@ class Piecewise1D {
 class Piecewise2D {
   public:
     Piecewise2D() = default;
+    /// Weights as for Piecewise1D, width * height of them, row by row.
     Piecewise2D(std::span<const float> weights, uint32_t width, uint32_t height);
 
     struct Draw {
-        V2f point;
-        float pdf;
+        uint32_t column, row;
+        V2f offset;         ///< position within the cell, [0, 1)^2
+        float probability;  ///< of the cell; its density by area is this * width * height
     };
+    /// u in [0, 1]^2; u.y draws the row, u.x the cell in it.
     [[nodiscard]] Draw sample(V2f u) const;
-    [[nodiscard]] float pdf(V2f point) const;
+    [[nodiscard]] float probability(uint32_t column, uint32_t row) const;
+
+    [[nodiscard]] uint32_t width() const { return width_; }
+    [[nodiscard]] uint32_t height() const { return height_; }
+    [[nodiscard]] double sum() const { return marginal_.sum(); }  ///< of the weights
 
   private:
-    std::vector<Piecewise1D> rows_;  ///< a row without weight has no cells and is never drawn
-    Piecewise1D marginal_;
+    uint32_t width_ = 0, height_ = 0;
+    std::vector<uint32_t> cdf_;    ///< width + 1 values a row; all 0 where the row has no weight
+    std::vector<uint32_t> guide_;  ///< width values a row
+    Piecewise1D marginal_;         ///< over the rows
 };
 
 }  // namespace petzval

@@ -2,6 +2,8 @@
 // Light from infinitely far: an equirectangular picture or one colour, and its importance sampling.
 #pragma once
 
+#include <vector>
+
 #include "core/distribution.h"
 #include "core/math.h"
 #include "core/spectrum.h"
@@ -17,27 +19,42 @@ class Sky {
     /// The same radiance, in nits, from everywhere.
     static Sky uniform(Rgb radiance);
     /// RGB texels in nits, row 0 at the zenith; strength multiplies them. Texels must be finite and
-    /// not negative.
+    /// not negative; width and height at least 1.
     static Sky picture(std::vector<float> rgb, int width, int height, float rotate_deg,
                        float strength);
 
     [[nodiscard]] bool black() const { return average_ <= 0.f; }
     /// Mean luminance over the sphere, nits.
     [[nodiscard]] float average_luminance() const { return average_; }
-    [[nodiscard]] Rgb radiance(const V3f& direction) const;
-    /// Draws a direction in proportion to luminance.
-    [[nodiscard]] V3f sample(V2f u) const;
-    /// Density of `sample`, 1/sr; 0 for a black sky.
-    [[nodiscard]] float pdf(const V3f& direction) const;
+
+    /// What a ray that leaves the scene finds.
+    struct Found {
+        Rgb radiance;  ///< bilinear between texel centres: around in u, clamped in v
+        float pdf;     ///< of `sample` for the direction, 1/sr; 0 for a black sky
+    };
+    [[nodiscard]] Found find(const V3f& direction) const;
+    [[nodiscard]] Rgb radiance(const V3f& direction) const { return find(direction).radiance; }
+    [[nodiscard]] float pdf(const V3f& direction) const { return find(direction).pdf; }
+
+    struct Draw {
+        V3f direction;  ///< unit
+        Rgb radiance;
+        float pdf;  ///< 1/sr
+    };
+    /// Draws a direction: a texel in proportion to the light that comes from it, uniform by solid
+    /// angle within. The sky must not be black.
+    [[nodiscard]] Draw sample(V2f u) const;
 
   private:
     [[nodiscard]] V2f to_uv(const V3f& direction) const;
+    [[nodiscard]] Rgb filtered(V2f uv) const;
 
     Rgb colour_{0.f};
     float average_ = 0.f;
-    int width_ = 0, height_ = 0;  ///< 0: uniform
-    std::vector<float> rgb_;
-    float turn_ = 0.f;  ///< rotation in turns
+    int width_ = 0, height_ = 0;     ///< 0: uniform
+    std::vector<f4> texels_;         ///< RGB, and the pdf of the texel's own cell
+    std::vector<float> row_height_;  ///< cosine at the upper edge of each row, then -1
+    float turn_ = 0.f;               ///< rotation in turns
     Piecewise2D importance_;
 };
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -28,10 +29,19 @@ struct Picture {
 /// Decodes an image of a scene from its encoded bytes; name is for messages. Throws InputError.
 [[nodiscard]] Image decode_image(const std::vector<uint8_t>& bytes, const std::string& file,
                                  const std::string& place);
-/// 32-bit float scene-linear EXR, every channel and all metadata. Equal pictures give equal files.
+
+/// Pictures that can be written. Only Exr holds scene-linear values, only Jpeg holds no alpha.
+enum class PictureFormat : uint8_t { Exr, Png, Jpeg };
+/// By the ending of the name (.exr, .png, .jpg, .jpeg). Throws InputError for any other.
+[[nodiscard]] PictureFormat picture_format(const std::filesystem::path&);
+/// 32-bit float EXR, every channel and all metadata. Equal pictures give equal files: there is no
+/// date in them. Throws InputError where it cannot be written.
 void write_exr(const std::filesystem::path&, const Picture&);
-/// 8-bit PNG or JPEG (by the name's ending) of display-encoded R, G, B (and A, unassociated) in [0,
-/// 1].
+/// 8-bit PNG or JPEG of display-encoded R, G, B in [0, 1] (and, in PNG, unassociated A if there is
+/// one); of a crop just the crop. Throws InputError where it cannot be written.
 void write_8bit(const std::filesystem::path&, const Picture& encoded);
+
+/// Place of the channel of that name among a picture's channels; -1 where there is none.
+[[nodiscard]] int channel_index(const Picture&, std::string_view name);
 
 }  // namespace petzval

@@ -8,18 +8,13 @@
 #include <memory>
 #include <string_view>
 
+#include "io/decoder_message.h"
 #include "io/error.h"
-#include "io/first_line.h"
 #include "io/image.h"
+#include "io/image_limits.h"
 
 namespace petzval {
 namespace {
-
-constexpr int kMaxSide = 32768;
-// Deflate packs at most 1032 bytes into one (RFC 1951: 258 bytes in two bits), JPEG less. A picture
-// with more texels for each of its bytes is broken or made to fill the memory, unless it is small.
-constexpr uint64_t kMaxTexelsPerByte = 1200;
-constexpr uint64_t kAlwaysAllowedTexels = uint64_t{4096} * 4096;
 
 /// Ending of the format that the first bytes announce; empty for any other.
 std::string_view ending_of(const std::vector<uint8_t>& bytes) {
@@ -29,22 +24,6 @@ std::string_view ending_of(const std::vector<uint8_t>& bytes) {
     if (head.starts_with("RIFF") &&
         head.substr(std::min<size_t>(8, head.size())).starts_with("WEBP"))
         return "webp";
-    return "";
-}
-
-/// What is wrong with the size, or nothing.
-std::string size_complaint(const OIIO::ImageSpec& spec, size_t byte_count) {
-    if (spec.width <= 0 || spec.height <= 0 || spec.depth > 1)
-        return fmt::format("a picture of {}x{} texels holds nothing", spec.width, spec.height);
-    if (spec.nchannels < 1 || spec.nchannels > 4)
-        return fmt::format("has {} channels; 1 to 4 can be used", spec.nchannels);
-    if (spec.width > kMaxSide || spec.height > kMaxSide)
-        return fmt::format("is {}x{} texels; at most {} on a side can be used, scale it down",
-                           spec.width, spec.height, kMaxSide);
-    const uint64_t texels = uint64_t(spec.width) * spec.height;
-    if (texels > kAlwaysAllowedTexels && texels / kMaxTexelsPerByte > byte_count)
-        return fmt::format("claims {}x{} texels in {} bytes, which cannot be", spec.width,
-                           spec.height, byte_count);
     return "";
 }
 
@@ -83,15 +62,15 @@ Image decode_image(const std::vector<uint8_t>& bytes, const std::string& file,
     const auto input = OIIO::ImageInput::open(fmt::format("memory.{}", ending), &config);
     if (!input) throw refuse("cannot be decoded: " + first_line(OIIO::geterror()));
     const OIIO::ImageSpec& spec = input->spec();
-    if (const std::string why = size_complaint(spec, bytes.size()); !why.empty()) throw refuse(why);
+    const std::string why =
+        size_complaint(spec.width, spec.height, spec.depth, spec.nchannels, bytes.size());
+    if (!why.empty()) throw refuse(why);
 
     const size_t count = size_t(spec.width) * spec.height * spec.nchannels;
     const auto read = [&](OIIO::TypeDesc type, void* to) {
         const bool success = input->read_image(0, 0, 0, spec.nchannels, type, to);
-        // OpenImageIO calls a JPEG cut short a success; libjpeg's other warnings do no harm.
         const std::string error = first_line(input->geterror());
-        if (!success || error.find("Premature end") != std::string::npos)
-            throw refuse("cannot be decoded: " + error);
+        if (!success || is_cut_short(error)) throw refuse("cannot be decoded: " + error);
     };
     Image image{.name = "", .width = spec.width, .height = spec.height, .texels = {}};
     if (spec.format == OIIO::TypeDesc::UINT8) {

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// petzval image: pictures compared and shown.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace petzval {
+
+/// Adds the subcommands "image diff" and "image view"; their callbacks do the work and throw
+/// InputError, also for pictures further apart than --fail-above allows.
+void add_image_commands(CLI::App&);
+
+}  // namespace petzval

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// Checks of what the command line says about pictures, in the form that CLI11 asks for: what is
+// wrong, or an empty text.
+#pragma once
+
+#include <string>
+
+namespace petzval {
+
+/// Of the name of a picture to write.
+[[nodiscard]] std::string complaint_about_picture_name(const std::string&);
+/// The same where it must be one for a display.
+[[nodiscard]] std::string complaint_about_display_name(const std::string&);
+/// Of the name of a display view.
+[[nodiscard]] std::string complaint_about_view(const std::string&);
+
+}  // namespace petzval

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/parse.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <string_view>
+
+namespace petzval {
+namespace {
+
+constexpr int kLargestSide_px = 65536;
+
+[[noreturn]] void refuse(const std::string& option, const std::string& text,
+                         const std::string& want) {
+    throw CLI::ValidationError(option, fmt::format("\"{}\" is not {}", text, want));
+}
+
+std::vector<std::string_view> split(std::string_view text, char at) {
+    std::vector<std::string_view> parts;
+    for (;;) {
+        const size_t end = text.find(at);
+        parts.push_back(text.substr(0, end));
+        if (end == std::string_view::npos) return parts;
+        text.remove_prefix(end + 1);
+    }
+}
+
+template <class T>
+std::optional<T> number(std::string_view text) {
+    T value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || text.empty())
+        return std::nullopt;
+    if constexpr (std::is_floating_point_v<T>)
+        if (!std::isfinite(value)) return std::nullopt;
+    return value;
+}
+
+}  // namespace
+
+std::vector<float> parse_numbers(const std::string& option, const std::string& text, size_t n) {
+    std::vector<float> values;
+    for (const std::string_view part : split(text, ','))
+        if (const auto value = number<float>(part)) values.push_back(*value);
+    if (values.size() != n || split(text, ',').size() != n)
+        refuse(option, text, fmt::format("{} numbers with commas between them", n));
+    return values;
+}
+
+V2i parse_size(const std::string& option, const std::string& text) {
+    const auto parts = split(text, 'x');
+    if (parts.size() == 2) {
+        const auto w = number<int>(parts[0]), h = number<int>(parts[1]);
+        const auto fits = [](int side) { return side >= 1 && side <= kLargestSide_px; };
+        if (w && h && fits(*w) && fits(*h)) return {*w, *h};
+    }
+    refuse(option, text, fmt::format("WIDTHxHEIGHT in pixels, 1 to {} each", kLargestSide_px));
+}
+
+V2f parse_sensor(const std::string& option, const std::string& text) {
+    const auto parts = split(text, 'x');
+    if (parts.size() == 2) {
+        const auto w = number<float>(parts[0]), h = number<float>(parts[1]);
+        if (w && h && *w > 0 && *h > 0) return {*w, *h};
+    }
+    refuse(option, text, "WIDTHxHEIGHT in millimetres, above 0");
+}
+
+Rect parse_crop(const std::string& option, const std::string& text, V2i frame) {
+    const auto parts = split(text, ',');
+    std::vector<int> v;
+    for (const std::string_view part : parts)
+        if (const auto value = number<int>(part)) v.push_back(*value);
+    if (v.size() == 4 && parts.size() == 4) {
+        const auto inside = [](int at, int size, int whole) {
+            return at >= 0 && at < whole && size >= 1 && size <= whole - at;
+        };
+        if (inside(v[0], v[2], frame.x) && inside(v[1], v[3], frame.y))
+            return {v[0], v[1], v[0] + v[2], v[1] + v[3]};
+    }
+    refuse(option, text, fmt::format("x,y,width,height inside the {}x{} frame", frame.x, frame.y));
+}
+
+double parse_duration_s(const std::string& option, const std::string& text) {
+    double unit_s = 1;
+    std::string_view digits = text;
+    if (!digits.empty()) {
+        const char last = digits.back();
+        if (last == 's' || last == 'm' || last == 'h') {
+            unit_s = last == 'h' ? 3600 : last == 'm' ? 60 : 1;
+            digits.remove_suffix(1);
+        }
+    }
+    const auto value = number<double>(digits);
+    if (!value || *value <= 0) refuse(option, text, "a time such as 90s, 1.5m or 2h");
+    return *value * unit_s;
+}
+
+Focus parse_focus(const std::string& option, const std::string& text) {
+    if (text == "auto") return FocusAuto{};
+    if (text.find(',') != std::string::npos) {
+        const auto at = parse_numbers(option, text, 2);
+        return FocusPixel{at[0], at[1]};
+    }
+    std::string_view digits = text;
+    if (!digits.empty() && digits.back() == 'm') digits.remove_suffix(1);
+    const auto value = number<float>(digits);
+    if (!value || *value <= 0)
+        refuse(option, text, "a distance in metres above 0, a pixel x,y or auto");
+    return FocusDistance{*value};
+}
+
+std::vector<Aov> parse_aovs(const std::string& option, const std::string& text) {
+    std::vector<Aov> aovs;
+    for (const std::string_view name : split(text, ',')) {
+        const auto aov = aov_from_name(name);
+        if (!aov) {
+            std::string known;
+            for (int i = 0; i < static_cast<int>(Aov::Count); ++i)
+                known += fmt::format("{}{}", i ? ", " : "", aov_info(static_cast<Aov>(i)).name);
+            refuse(option, std::string(name), "a layer; there are " + known);
+        }
+        if (std::find(aovs.begin(), aovs.end(), *aov) == aovs.end()) aovs.push_back(*aov);
+    }
+    return aovs;
+}
+
+}  // namespace petzval

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Words of the command line as values. Each throws CLI::ValidationError, which ends with exit
+// code 2.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/film.h"
+#include "io/session.h"
+
+namespace petzval {
+
+/// "a,b,c": exactly n finite numbers.
+[[nodiscard]] std::vector<float> parse_numbers(const std::string& option, const std::string& text,
+                                               size_t n);
+/// "1280x720": whole numbers from 1 to 65536.
+[[nodiscard]] V2i parse_size(const std::string& option, const std::string& text);
+/// "36x24": two numbers above 0.
+[[nodiscard]] V2f parse_sensor(const std::string& option, const std::string& text);
+/// "x,y,w,h" in pixels of a frame; must lie inside it and hold a pixel.
+[[nodiscard]] Rect parse_crop(const std::string& option, const std::string& text, V2i frame);
+/// "90", "90s", "1.5m", "2h": seconds above 0.
+[[nodiscard]] double parse_duration_s(const std::string& option, const std::string& text);
+/// "auto", "1.5", "1.5m" (metres above 0) or "x,y" (a pixel).
+[[nodiscard]] Focus parse_focus(const std::string& option, const std::string& text);
+/// "albedo,normal": names of layers.
+[[nodiscard]] std::vector<Aov> parse_aovs(const std::string& option, const std::string& text);
+
+}  // namespace petzval

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a render shows on stderr while it runs.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "integrator/render.h"
+
+namespace petzval {
+
+enum class ProgressStyle { Auto, Bar, Lines, Json, None };
+
+/// Watches a render from a thread of its own until it is destroyed.
+class Progress {
+  public:
+    /// total: pixel samples of the whole job; of a job bounded by time only, none.
+    Progress(ProgressStyle, const RenderMonitor&, std::optional<uint64_t> total,
+             std::optional<double> time_limit_s);
+    ~Progress();
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+
+  private:
+    void watch(const std::stop_token&);
+    void show(bool last);
+
+    ProgressStyle style_;
+    const RenderMonitor& monitor_;
+    std::optional<uint64_t> total_;
+    std::optional<double> time_limit_s_;
+    std::chrono::steady_clock::time_point start_;
+    std::jthread thread_;
+};
+
+}  // namespace petzval

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cameras without glass: pinhole, thin lens, orthographic.
+#pragma once
+
+#include "camera/camera.h"
+
+namespace petzval {
+
+/// A thin lens of no aberration; radius 0 makes it a pinhole. It stands at the origin of its own
+/// space, looks along -z with y up, and images the plane at focus_m sharply.
+struct ThinLens {
+    M44f to_world;
+    float yfov_rad = 0.7f;  ///< full vertical angle, seen from the lens's centre
+    float aspect = 1.5f;    ///< width / height of the film
+    float radius_m = 0.f;
+    float focus_m = 1.f;  ///< axial distance
+};
+
+class ThinLensCamera final : public Camera {
+  public:
+    explicit ThinLensCamera(const ThinLens&);
+    [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
+
+  private:
+    ThinLens lens_;
+    float tan_half_y_;
+};
+
+/// Parallel projection: half sizes of the view in metres.
+class OrthographicCamera final : public Camera {
+  public:
+    OrthographicCamera(const M44f& to_world, float half_width_m, float half_height_m);
+    [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
+
+  private:
+    M44f to_world_;
+    float half_width_m_, half_height_m_;
+};
+
+/// Rigid transform of a camera at eye that looks at target; up is +y, or -z where it looks along y.
+[[nodiscard]] M44f look_at(const V3f& eye, const V3f& target);
+
+}  // namespace petzval

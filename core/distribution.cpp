@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/distribution.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace petzval {
+namespace {
+
+double sum_of(std::span<const float> weights) {
+    return std::accumulate(weights.begin(), weights.end(), 0.0);
+}
+
+// The weight that makes at least one unit of n cells' share, whatever the others weigh.
+double least_weight(double sum, ptrdiff_t n) {
+    constexpr double slack = 1 + 1e-9;  // for the rounding of the running sum
+    return n <= kDistributionUnits / 2 ? slack * sum / (kDistributionUnits - n) : 0;
+}
+
+void fill_cdf(std::span<const float> weights, double sum, uint32_t* cdf) {
+    const auto positive =
+        std::count_if(weights.begin(), weights.end(), [](float w) { return w > 0; });
+    const double least = least_weight(sum, positive);
+    const auto lifted = [least](float w) { return w > 0 ? std::max<double>(w, least) : 0.0; };
+    double total = 0, running = 0;
+    for (const float w : weights) total += lifted(w);
+    const double scale = kDistributionUnits / total;
+    cdf[0] = 0;
+    for (size_t i = 0; i < weights.size(); ++i) {
+        running += lifted(weights[i]);
+        // Rounding is monotone: no weight, no width, and a unit of weight has a unit of width.
+        cdf[i + 1] = static_cast<uint32_t>(running * scale + 0.5);
+    }
+}
+
+void fill_guide(const uint32_t* cdf, uint32_t size, uint32_t* guide) {
+    uint32_t cell = 0;
+    for (uint64_t k = 0; k < size; ++k) {
+        const uint64_t first = (k * kDistributionUnits + size - 1) / size;
+        while (cell + 1 < size && cdf[cell + 1] <= first) ++cell;
+        guide[k] = cell;
+    }
+}
+
+Piecewise1D::Draw draw(const uint32_t* cdf, const uint32_t* guide, uint32_t size, float u) {
+    const float position = u * kDistributionUnits;
+    const uint32_t units = std::min(static_cast<uint32_t>(position), kDistributionUnits - 1);
+    uint32_t cell = guide[static_cast<uint64_t>(units) * size / kDistributionUnits];
+    while (cdf[cell + 1] <= units) ++cell;
+    const float width = static_cast<float>(cdf[cell + 1] - cdf[cell]);
+    const float offset = (position - static_cast<float>(cdf[cell])) / width;
+    return {cell, std::min(offset, kOneMinus), width / kDistributionUnits};
+}
+
+}  // namespace
+
+Piecewise1D::Piecewise1D(std::span<const float> weights)
+    : cdf_(weights.size() + 1), guide_(weights.size()), sum_(sum_of(weights)) {
+    fill_cdf(weights, sum_, cdf_.data());
+    fill_guide(cdf_.data(), size(), guide_.data());
+}
+
+Piecewise1D::Draw Piecewise1D::sample(float u) const {
+    return draw(cdf_.data(), guide_.data(), size(), u);
+}
+
+Piecewise2D::Piecewise2D(std::span<const float> weights, uint32_t width, uint32_t height)
+    : width_(width),
+      height_(height),
+      cdf_(size_t{width + 1} * height),
+      guide_(size_t{width} * height) {
+    std::vector<float> row_sums(height);
+    for (size_t row = 0; row < height; ++row) {
+        const auto row_weights = weights.subspan(row * width, width);
+        const double sum = sum_of(row_weights);
+        row_sums[row] = static_cast<float>(sum);
+        if (!(row_sums[row] > 0)) continue;
+        uint32_t* cdf = &cdf_[row * (width + 1)];
+        fill_cdf(row_weights, sum, cdf);
+        fill_guide(cdf, width, &guide_[row * width]);
+    }
+    marginal_ = Piecewise1D(row_sums);
+}
+
+Piecewise2D::Draw Piecewise2D::sample(V2f u) const {
+    const auto row = marginal_.sample(u.y);
+    const size_t first = size_t{row.cell} * width_;
+    const auto column = draw(&cdf_[first + row.cell], &guide_[first], width_, u.x);
+    return {
+        column.cell, row.cell, {column.offset, row.offset}, column.probability * row.probability};
+}
+
+float Piecewise2D::probability(uint32_t column, uint32_t row) const {
+    const uint32_t* cdf = &cdf_[size_t{row} * (width_ + 1) + column];
+    return marginal_.probability(row) * (static_cast<float>(cdf[1] - cdf[0]) / kDistributionUnits);
+}
+
+}  // namespace petzval

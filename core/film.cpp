@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/film.h"
+
+namespace petzval {
+namespace {
+
+constexpr std::array<AovInfo, static_cast<size_t>(Aov::Count)> kAovs{{
+    {"albedo", {"albedo.R", "albedo.G", "albedo.B"}, 3},
+    {"normal", {"normal.X", "normal.Y", "normal.Z"}, 3},
+    {"depth", {"depth.Z", "", ""}, 1},
+    {"position", {"position.X", "position.Y", "position.Z"}, 3},
+    {"uv", {"uv.U", "uv.V", ""}, 2},
+    {"emission", {"emission.R", "emission.G", "emission.B"}, 3},
+    {"cost", {"cost.N", "", ""}, 1},
+}};
+
+// 0 where every number is finite, else not a number.
+float not_finite(const V3f& a) {
+    return (a.x - a.x) + (a.y - a.y) + (a.z - a.z);
+}
+
+}  // namespace
+
+const AovInfo& aov_info(Aov aov) {
+    return kAovs[static_cast<size_t>(aov)];
+}
+
+std::optional<Aov> aov_from_name(std::string_view name) {
+    for (size_t i = 0; i < kAovs.size(); ++i)
+        if (kAovs[i].name == name) return static_cast<Aov>(i);
+    return std::nullopt;
+}
+
+Film::Film(V2i full_size, Rect crop, std::vector<Aov> aovs)
+    : full_size_(full_size),
+      crop_(crop),
+      aovs_(std::move(aovs)),
+      pixels_(static_cast<size_t>(crop.width()) * crop.height()),
+      aov_sums_(pixels_.size() * aovs_.size()) {}
+
+void Film::add(int x, int y, uint32_t index, const FilmSample& sample) {
+    const size_t at = offset(x, y);
+    Pixel& pixel = pixels_[at];
+    const V3f colour(sample.colour[0], sample.colour[1], sample.colour[2]);
+    float fault = not_finite(colour) + (sample.alpha - sample.alpha);
+    if (sample.hit)
+        for (const Aov aov : aovs_) fault += not_finite(sample.aov[static_cast<size_t>(aov)]);
+    if (fault != 0.f) {
+        if (pixel.bad++ == 0 || index < pixel.first_bad_index) pixel.first_bad_index = index;
+        return;
+    }
+    for (int i = 0; i < 3; ++i) pixel.sum[i] += colour[i];
+    pixel.sum[3] += sample.alpha;
+    ++pixel.count;
+    if (!sample.hit) return;
+    ++pixel.hits;
+    for (size_t layer = 0; layer < aovs_.size(); ++layer) {
+        const V3f& value = sample.aov[static_cast<size_t>(aovs_[layer])];
+        auto& sum = aov_sums_[at * aovs_.size() + layer];
+        for (int i = 0; i < 3; ++i) sum[i] += value[i];
+    }
+}
+
+V4f Film::colour(int x, int y) const {
+    const Pixel& p = pixel(x, y);
+    const double scale = p.count > 0 ? 1.0 / p.count : 0.0;
+    const auto mean = [&](int i) { return static_cast<float>(p.sum[i] * scale); };
+    return {mean(0), mean(1), mean(2), mean(3)};
+}
+
+V3f Film::aov(int x, int y, size_t layer) const {
+    const uint32_t hits = pixel(x, y).hits;
+    const double scale = hits > 0 ? 1.0 / hits : 0.0;
+    const auto& sum = aov_sums_[offset(x, y) * aovs_.size() + layer];
+    const auto mean = [&](int i) { return static_cast<float>(sum[i] * scale); };
+    return {mean(0), mean(1), mean(2)};
+}
+
+uint64_t Film::bad_count() const {
+    uint64_t total = 0;
+    for (const Pixel& p : pixels_) total += p.bad;
+    return total;
+}
+
+std::optional<Film::BadSample> Film::first_bad() const {
+    for (int y = crop_.y0; y < crop_.y1; ++y)
+        for (int x = crop_.x0; x < crop_.x1; ++x)
+            if (const Pixel& p = pixel(x, y); p.bad > 0) return BadSample{x, y, p.first_bad_index};
+    return std::nullopt;
+}
+
+}  // namespace petzval

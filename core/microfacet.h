@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// GGX microfacets and Fresnel reflection. Directions are unit vectors in the frame of the surface,
+// z along its normal.
+#pragma once
+
+#include "core/math.h"
+
+namespace petzval {
+
+/// Below this GGX width a lobe is a mirror: floats no longer resolve it.
+inline constexpr float kSmallestAlpha = 1e-3f;
+
+/// Normal density, 1/sr. Walter et al. 2007, "Microfacet Models for Refraction", equation 33.
+[[nodiscard]] inline float ggx_d(const V3f& m, float alpha) {
+    // Written in the slopes so that nothing cancels for a narrow lobe.
+    const float a2 = sqr(alpha);
+    const float e = (sqr(m.x) + sqr(m.y)) / a2 + sqr(m.z);
+    return kInvPi / (a2 * sqr(e));
+}
+
+/// Smith's auxiliary function. Heitz 2014, "Understanding the Masking-Shadowing Function",
+/// equation 72.
+[[nodiscard]] inline float ggx_lambda(const V3f& w, float alpha) {
+    const float tan2 = (sqr(w.x) + sqr(w.y)) / sqr(w.z);
+    return 0.5f * (std::sqrt(1.f + sqr(alpha) * tan2) - 1.f);
+}
+
+/// A microfacet normal in proportion to what is visible of it from wo (wo.z > 0). Dupuy and
+/// Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", listing 3.
+[[nodiscard]] inline V3f ggx_sample_visible(const V3f& wo, float alpha, V2f u) {
+    const V3f stretched = unit({wo.x * alpha, wo.y * alpha, wo.z});
+    const float phi = 2.f * kPi * u.x;
+    const float z = 1.f - u.y * (1.f + stretched.z);
+    const float sin_theta = safe_sqrt(1.f - sqr(z));
+    const V3f half = V3f(sin_theta * std::cos(phi), sin_theta * std::sin(phi), z) + stretched;
+    return unit({half.x * alpha, half.y * alpha, std::fmax(half.z, 1e-9f)});
+}
+
+/// Schlick 1994's weight (1 - cos)^5.
+[[nodiscard]] inline float schlick_weight(float cosine) {
+    const float a = std::fmin(std::fmax(1.f - cosine, 0.f), 1.f);
+    return sqr(sqr(a)) * a;
+}
+
+/// Unpolarised reflectance of a boundary; eta = index behind over index in front; cosine >= 0 in
+/// front. 1 under total reflection. Born and Wolf 1999, "Principles of Optics", 1.5.2.
+[[nodiscard]] inline float fresnel_dielectric(float cosine, float eta) {
+    const float sin2_behind = (1.f - sqr(cosine)) / sqr(eta);
+    if (sin2_behind >= 1.f) return 1.f;
+    const float cos_behind = std::sqrt(1.f - sin2_behind);
+    const float parallel = (eta * cosine - cos_behind) / (eta * cosine + cos_behind);
+    const float perpendicular = (cosine - eta * cos_behind) / (cosine + eta * cos_behind);
+    return 0.5f * (sqr(parallel) + sqr(perpendicular));
+}
+
+/// Share of light that single scattering on a GGX surface reflects, split by Schlick's weight:
+/// a reflectance F0 (1 - s) + F90 s has the directional albedo F0 * f0 + F90 * f90.
+struct GgxAlbedo {
+    float f0, f90;
+    [[nodiscard]] float total() const { return f0 + f90; }
+};
+/// From a table, bilinear in sqrt(cosine) and sqrt(alpha); relative error of total() < 0.3 %.
+[[nodiscard]] GgxAlbedo ggx_albedo(float cosine, float alpha);
+
+}  // namespace petzval

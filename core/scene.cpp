@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/scene.h"
+
+namespace petzval {
+namespace {
+
+V3f placed(const Instance& instance, const V3f& position) {
+    return instance.identity ? position : position * instance.to_world;
+}
+
+bool emissive(const Scene& scene, const Instance& instance) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    if (mesh.triangles.empty()) return false;
+    const Material& material = scene.materials[mesh.material];
+    return material.emits() && !material.unlit;
+}
+
+}  // namespace
+
+void finish_scene(Scene& scene) {
+    for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+        Instance& instance = scene.instances[i];
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        for (const auto& triangle : mesh.triangles)
+            for (const uint32_t corner : triangle)
+                scene.bounds.extendBy(placed(instance, mesh.positions[corner]));
+        if (!emissive(scene, instance)) continue;
+        instance.first_light = static_cast<int32_t>(scene.lights.size());
+        for (uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle)
+            scene.lights.push_back(TriangleLight{i, triangle});
+    }
+    if (!scene.sky.black()) scene.lights.push_back(SkyLight{});
+}
+
+std::array<V3f, 3> triangle_corners(const Scene& scene, uint32_t instance, uint32_t triangle) {
+    const Instance& placement = scene.instances[instance];
+    const Mesh& mesh = scene.meshes[placement.mesh];
+    const auto& corner = mesh.triangles[triangle];
+    return {placed(placement, mesh.positions[corner[0]]),
+            placed(placement, mesh.positions[corner[1]]),
+            placed(placement, mesh.positions[corner[2]])};
+}
+
+}  // namespace petzval

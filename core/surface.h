@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// A point on a triangle with what shading needs of it, and how a material answers there.
+#pragma once
+
+#include "core/bsdf.h"
+#include "core/math.h"
+#include "core/ray.h"
+#include "core/scene.h"
+
+namespace petzval {
+
+struct Surface {
+    V3f p;        ///< world space, interpolated from the corners, not from t
+    V3f p_error;  ///< bound on the rounding error of p in each axis
+    V3f ng;       ///< unit geometric normal, on the front side
+    V3f ns;       ///< unit interpolated normal, on the front side
+    bool front;   ///< the ray came from the front side
+    std::array<V2f, 2> uv;
+    const Instance* instance;
+    const Mesh* mesh;
+    const Material* material;
+    Hit hit;
+};
+
+/// Geometry of a hit of a ray that travels along `direction`.
+[[nodiscard]] Surface make_surface(const Scene&, const V3f& direction, const Hit&);
+/// COLOR_0 at the hit as linear RGBA; 1 where the mesh has none.
+[[nodiscard]] f4 vertex_colour(const Surface&);
+/// The material at the hit, textures read: what the Bsdf is made from, and what glows.
+struct ShadingInput {
+    BsdfInput bsdf;
+    Rgb unlit{0.f};  ///< KHR_materials_unlit: shown as it is, nits
+    Frame frame;     ///< shading frame on wo's side, the normal map applied
+};
+[[nodiscard]] ShadingInput read_material(const Scene&, const Surface&, const V3f& wo, const Bands&);
+
+/// Share of light that is left after a way through a volume: Beer and Lambert's law, with the
+/// coefficient that KHR_materials_volume defines, -ln(attenuationColor) / attenuationDistance.
+[[nodiscard]] f4 transmittance(const Material&, float distance_m, const Bands&);
+
+}  // namespace petzval

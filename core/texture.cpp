@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/texture.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "core/colour.h"
+
+namespace petzval {
+namespace {
+
+typedef uint8_t u8x4 __attribute__((vector_size(4)));
+
+// Readers turn texel i into linear RGBA.
+struct FloatReader {
+    const float* texels;
+    f4 operator()(size_t i) const {
+        f4 texel;
+        std::memcpy(&texel, texels + 4 * i, sizeof texel);
+        return texel;
+    }
+};
+
+struct ByteReader {
+    const uint8_t* texels;
+    f4 operator()(size_t i) const {
+        u8x4 texel;
+        std::memcpy(&texel, texels + 4 * i, sizeof texel);
+        return __builtin_convertvector(texel, f4) * (1.f / 255.f);
+    }
+};
+
+// Fifth root by Newton's iteration, for 0 <= a <= 1.
+constexpr double fifth_root(double a) {
+    double root = 1;
+    for (int i = 0; i < 100; ++i) root = (4 * root + a / (root * root * root * root)) / 5;
+    return root;
+}
+
+// The curve of srgb_to_linear at the 256 codes, by arithmetic that a compiler can do: x^2.4 is the
+// fifth root of x^12.
+constexpr std::array<float, 256> make_srgb_table() {
+    std::array<float, 256> table{};
+    for (int i = 0; i < 256; ++i) {
+        const double encoded = i / 255.0, x = (encoded + 0.055) / 1.055;
+        const double x4 = x * x * x * x;
+        table[i] =
+            static_cast<float>(encoded <= 0.04045 ? encoded / 12.92 : fifth_root(x4 * x4 * x4));
+    }
+    return table;
+}
+constexpr std::array<float, 256> kSrgbToLinear = make_srgb_table();
+
+struct SrgbByteReader {
+    const uint8_t* texels;
+    f4 operator()(size_t i) const {
+        const uint8_t* t = texels + 4 * i;
+        return f4{kSrgbToLinear[t[0]], kSrgbToLinear[t[1]], kSrgbToLinear[t[2]],
+                  t[3] * (1.f / 255.f)};
+    }
+};
+
+struct SrgbFloatReader {
+    FloatReader encoded;
+    f4 operator()(size_t i) const {
+        const f4 t = encoded(i);
+        return f4{srgb_to_linear(t[0]), srgb_to_linear(t[1]), srgb_to_linear(t[2]), t[3]};
+    }
+};
+
+// Position along one axis in texels, 0 to size; what is not a number reads the first texel.
+float wrapped_position(float coordinate, Wrap wrap, int size) {
+    float unit = coordinate;
+    if (wrap == Wrap::Repeat) unit = coordinate - std::floor(coordinate);
+    if (wrap == Wrap::MirroredRepeat)
+        unit = 1.f - std::fabs(coordinate - 2.f * std::floor(0.5f * coordinate) - 1.f);
+    unit = unit > 0.f ? unit : 0.f;
+    return (unit < 1.f ? unit : 1.f) * static_cast<float>(size);
+}
+
+struct Pair {
+    int first, second;
+    float weight;  // of the second
+};
+
+// The two texels whose centres lie about a position.
+Pair neighbours(float position, Wrap wrap, int size) {
+    const float shifted = position + 0.5f;  // at least 0, so that truncation is floor
+    const int above = static_cast<int>(shifted);
+    const bool repeat = wrap == Wrap::Repeat;
+    const int first = above > 0 ? above - 1 : (repeat ? size - 1 : 0);
+    const int second = above < size ? above : (repeat ? 0 : size - 1);
+    return {first, second, shifted - static_cast<float>(above)};
+}
+
+template <class Reader>
+f4 filtered(const Reader& read, int width, int height, const TextureSlot& slot, V2f uv) {
+    const float x = wrapped_position(uv.x, slot.wrap_u, width);
+    const float y = wrapped_position(uv.y, slot.wrap_v, height);
+    const auto row_length = static_cast<size_t>(width);
+    if (slot.nearest) {
+        const int column = std::min(static_cast<int>(x), width - 1);
+        const int row = std::min(static_cast<int>(y), height - 1);
+        return read(row * row_length + column);
+    }
+    const Pair across = neighbours(x, slot.wrap_u, width);
+    const Pair down = neighbours(y, slot.wrap_v, height);
+    const size_t row0 = down.first * row_length, row1 = down.second * row_length;
+    const f4 a = read(row0 + across.first), b = read(row0 + across.second);
+    const f4 c = read(row1 + across.first), d = read(row1 + across.second);
+    const f4 top = a + (b - a) * across.weight, bottom = c + (d - c) * across.weight;
+    return top + (bottom - top) * down.weight;
+}
+
+}  // namespace
+
+f4 sample_texture(const std::vector<Image>& images, const TextureSlot& slot, V2f uv) {
+    if (!slot.present()) return splat(1.f);
+    const Image& image = images[slot.image];
+    const V2f at(uv.x * slot.u_row[0] + uv.y * slot.u_row[1] + slot.u_row[2],
+                 uv.x * slot.v_row[0] + uv.y * slot.v_row[1] + slot.v_row[2]);
+    const bool srgb = slot.encoding == Encoding::Srgb;
+    if (const auto* bytes = std::get_if<std::vector<uint8_t>>(&image.texels)) {
+        return srgb ? filtered(SrgbByteReader{bytes->data()}, image.width, image.height, slot, at)
+                    : filtered(ByteReader{bytes->data()}, image.width, image.height, slot, at);
+    }
+    const FloatReader read{std::get<std::vector<float>>(image.texels).data()};
+    return srgb ? filtered(SrgbFloatReader{read}, image.width, image.height, slot, at)
+                : filtered(read, image.width, image.height, slot, at);
+}
+
+}  // namespace petzval

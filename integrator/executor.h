@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who runs the tiles. The tile loop takes either; the second exists because thread sanitizers do
+// not see into oneTBB's library.
+#pragma once
+
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <atomic>
+#include <thread>
+#include <vector>
+
+namespace petzval {
+
+/// Runs f(task, worker) for every task in [0, count); worker < threads(), and no two tasks run at
+/// once with the same worker.
+class TbbExecutor {
+  public:
+    /// threads >= 1; more than the machine has cores is allowed.
+    explicit TbbExecutor(int threads)
+        : limit_(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads)),
+          arena_(threads) {}
+    [[nodiscard]] int threads() const { return arena_.max_concurrency(); }
+
+    template <class F>
+    void run(int count, const F& f) {
+        arena_.execute([&] {
+            tbb::parallel_for(
+                tbb::blocked_range<int>(0, count, 1),
+                [&](const tbb::blocked_range<int>& range) {
+                    const int worker = tbb::this_task_arena::current_thread_index();
+                    for (int i = range.begin(); i < range.end(); ++i) f(i, worker);
+                },
+                tbb::simple_partitioner());
+        });
+    }
+    /// Runs f inside the arena: work that f starts there uses these threads only.
+    template <class F>
+    auto inside(const F& f) {
+        return arena_.execute(f);
+    }
+
+  private:
+    tbb::global_control limit_;
+    tbb::task_arena arena_;
+};
+
+class ThreadExecutor {
+  public:
+    explicit ThreadExecutor(int threads) : threads_(threads) {}
+    [[nodiscard]] int threads() const { return threads_; }
+
+    template <class F>
+    void run(int count, const F& f) {
+        std::atomic<int> next = 0;
+        std::vector<std::jthread> pool;
+        for (int worker = 0; worker < threads_; ++worker) {
+            pool.emplace_back([&, worker] {
+                for (int i = next++; i < count; i = next++) f(i, worker);
+            });
+        }
+    }
+
+  private:
+    int threads_;
+};
+
+}  // namespace petzval

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Focus by looking: how far a scene is under a point of the film.
+#pragma once
+
+#include <optional>
+
+#include "camera/camera.h"
+#include "core/bvh.h"
+
+namespace petzval {
+
+/// Distance along `axis` (unit, the camera's viewing direction) from `eye` to what a point of the
+/// film shows, metres; nothing where the ray of the film's point meets nothing.
+[[nodiscard]] std::optional<float> depth_under(const Bvh&, const Camera& pinhole, const V3f& eye,
+                                               const V3f& axis, V2f film);
+
+/// Median depth over the middle ninth of the film; nothing where that is empty.
+[[nodiscard]] std::optional<float> depth_of_middle(const Bvh&, const Camera& pinhole,
+                                                   const V3f& eye, const V3f& axis);
+
+}  // namespace petzval

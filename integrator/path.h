@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// The path tracer: light that arrives along a ray.
+#pragma once
+
+#include <concepts>
+#include <optional>
+
+#include "core/bvh.h"
+#include "core/emission.h"
+#include "core/film.h"
+#include "core/light_choice.h"
+#include "core/sampler.h"
+#include "core/scene.h"
+#include "core/surface.h"
+#include "integrator/stats.h"
+
+namespace petzval {
+
+/// Mis: light and BSDF samples, weighted by the power heuristic. The other two are the halves of
+/// it, each complete by itself where it can reach the light at all; tests hold all three together.
+enum class Technique { Mis, LightOnly, BsdfOnly };
+
+struct PathOptions {
+    int max_depth = 16;      ///< scatterings; 0 shows emitters only
+    int roulette_depth = 3;  ///< scatterings before Russian roulette begins
+    Technique technique = Technique::Mis;
+    /// What camera rays see in place of the sky; its light stays.
+    std::optional<Rgb> backdrop;
+    bool transparent = false;  ///< camera rays that miss leave alpha 0 and no light
+};
+
+/// What a path needs of a ray caster; Bvh, or a test's own.
+template <class T>
+concept RayCaster = requires(const T t, const Ray& r) {
+    { t.intersect(r) } -> std::same_as<std::optional<Hit>>;
+    { t.occluded(r) } -> std::same_as<bool>;
+    { t.has_cutouts() } -> std::same_as<bool>;
+};
+
+template <RayCaster Caster = Bvh>
+class PathTracer {
+  public:
+    /// All three must outlive the tracer.
+    PathTracer(const Scene& scene, const Caster& caster, const LightChoice& lights,
+               const PathOptions& options)
+        : scene_(scene), caster_(caster), lights_(lights), options_(options) {}
+
+    /// Estimate of the radiance that arrives along a camera ray. The sample's alpha and layers are
+    /// filled in on the way; aovs: layers are wanted. Pure but for the counts.
+    [[nodiscard]] f4 radiance(const Ray&, const Bands&, const Sampler&, bool aovs, FilmSample&,
+                              PathStats&) const;
+
+  private:
+    struct Vertex;
+    [[nodiscard]] f4 backdrop(const Ray&, const Bands&, FilmSample&) const;
+    [[nodiscard]] f4 escaped(const Ray&, const Bands&, const Vertex& last) const;
+    [[nodiscard]] f4 emitted(const Surface&, const Bands&, const Vertex& last) const;
+    [[nodiscard]] f4 direct_light(const Surface&, const Frame&, const Bsdf&, const Bands&,
+                                  const Sampler&, uint32_t depth, PathStats&) const;
+
+    const Scene& scene_;
+    const Caster& caster_;
+    const LightChoice& lights_;
+    PathOptions options_;
+};
+
+extern template class PathTracer<Bvh>;
+
+}  // namespace petzval

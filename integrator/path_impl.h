@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+// Definitions of PathTracer, for who instantiates it with a ray caster of its own.
+#pragma once
+
+#include "core/colour.h"
+#include "core/surface.h"
+#include "integrator/path.h"
+
+namespace petzval {
+
+/// What the last scattering left behind: the ray's origin, and how likely light sampling was.
+template <RayCaster Caster>
+struct PathTracer<Caster>::Vertex {
+    V3f p;
+    float pdf = 0;               ///< of the BSDF's direction, 1/sr
+    bool light_sampled = false;  ///< next-event estimation could have found what the ray finds
+};
+
+/// A shadow ray ends this share of the way to the light, as traversal knows distances to a few
+/// roundings only and the light must not shadow itself. Relative: no scale of a scene matters.
+inline constexpr float kShadowLength = 0.9999f;
+
+/// Weight of a sample drawn with density a where b might have drawn it too. Veach 1997, "Robust
+/// Monte Carlo Methods for Light Transport Simulation", equation 9.13 with beta = 2.
+[[nodiscard]] inline float power_heuristic(float a, float b) {
+    if (a <= 0.f) return 0.f;
+    const float ratio = b / a;  // the densities may overflow when squared, their ratio hardly can
+    return 1.f / (1.f + ratio * ratio);
+}
+
+template <RayCaster Caster>
+f4 PathTracer<Caster>::backdrop(const Ray& ray, const Bands& bands, FilmSample& out) const {
+    if (options_.transparent) return f4{};
+    out.alpha = 1.f;
+    if (options_.backdrop) return uplift_radiance(*options_.backdrop, bands);
+    return uplift_radiance(scene_.sky.radiance(ray.direction), bands);
+}
+
+template <RayCaster Caster>
+f4 PathTracer<Caster>::escaped(const Ray& ray, const Bands& bands, const Vertex& last) const {
+    if (scene_.sky.black()) return f4{};
+    const f4 radiance = uplift_radiance(scene_.sky.radiance(ray.direction), bands);
+    if (!last.light_sampled) return radiance;
+    const uint32_t sky_light = static_cast<uint32_t>(scene_.lights.size()) - 1;
+    const float light_pdf = lights_.probability(sky_light) * scene_.sky.pdf(ray.direction);
+    if (options_.technique == Technique::LightOnly && light_pdf > 0.f) return f4{};
+    return radiance * power_heuristic(last.pdf, light_pdf);
+}
+
+template <RayCaster Caster>
+f4 PathTracer<Caster>::emitted(const Surface& s, const Bands& bands, const Vertex& last) const {
+    if (!s.material->emits()) return f4{};
+    const Rgb rgb =
+        emitted_radiance(scene_, s.hit.instance, s.hit.triangle, s.hit.barycentric, s.front);
+    const f4 radiance = uplift_radiance(rgb, bands);
+    if (!last.light_sampled || s.instance->first_light < 0) return radiance;
+    const uint32_t light = static_cast<uint32_t>(s.instance->first_light) + s.hit.triangle;
+    const V3f along = s.p - last.p;
+    const float distance_squared = along.dot(along);
+    const float cosine = s.ng.dot(along) / std::sqrt(distance_squared);
+    const float light_pdf =
+        lights_.probability(light) * triangle_light_pdf(scene_, {s.hit.instance, s.hit.triangle},
+                                                        distance_squared, std::fabs(cosine));
+    if (options_.technique == Technique::LightOnly && light_pdf > 0.f) return f4{};
+    return radiance * power_heuristic(last.pdf, light_pdf);
+}
+
+template <RayCaster Caster>
+f4 PathTracer<Caster>::direct_light(const Surface& s, const Frame& frame, const Bsdf& bsdf,
+                                    const Bands& bands, const Sampler& sampler, uint32_t depth,
+                                    PathStats& stats) const {
+    const auto pick = lights_.pick(sampler.get1(Dim::LightPick, depth));
+    if (!pick) return f4{};
+    const auto light = sample_light(scene_, scene_.lights[pick->light], s.p,
+                                    sampler.get2(Dim::LightPoint, depth), bands);
+    if (!light) return f4{};
+    const V3f wi = frame.to_local(light->direction);
+    // Shading and geometric normal must agree on the side, or light would leak through.
+    const bool front_side = light->direction.dot(s.ng) > 0.f;
+    if ((wi.z > 0.f) != (front_side == s.front)) return f4{};
+    const BsdfValue value = bsdf.eval(wi);
+    if (value.pdf <= 0.f) return f4{};
+
+    Ray shadow;
+    shadow.origin = offset_origin(s.p, s.p_error, s.ng, light->direction);
+    if (light->at_infinity) {
+        shadow.direction = light->direction;
+    } else {
+        shadow.direction = light->target - shadow.origin;
+        shadow.t_max = kShadowLength;
+    }
+    if (caster_.has_cutouts()) shadow.coin = sampler.get_bits(Dim::Coverage, 2 * depth + 1);
+    ++stats.shadow_rays;
+    {
+        const SectionTimer timer(stats, Section::Traversal);
+        if (caster_.occluded(shadow)) return f4{};
+    }
+    const float light_pdf = pick->probability * light->pdf;
+    const float weight = light->delta || options_.technique == Technique::LightOnly
+                             ? 1.f
+                             : power_heuristic(light_pdf, value.pdf);
+    return value.f_cos * light->radiance * (weight / light_pdf);
+}
+
+/// The layers of a sample's first surface.
+inline void record_layers(const Surface& s, const ShadingInput& shading, Rgb emission,
+                          const V3f& camera, const V3f& wo, const Bands& bands, FilmSample& out) {
+    const auto layer = [&](Aov aov) -> V3f& { return out.aov[static_cast<size_t>(aov)]; };
+    const auto vector = [](Rgb c) { return V3f(c[0], c[1], c[2]); };
+    const Bsdf bsdf(shading.bsdf, bands, shading.frame.to_local(wo));
+    out.hit = true;
+    layer(Aov::Albedo) = vector(s.material->unlit ? shading.unlit : to_rgb(bsdf.albedo(), bands));
+    layer(Aov::Normal) = shading.frame.z;
+    layer(Aov::Depth) = V3f((s.p - camera).length(), 0, 0);
+    layer(Aov::Position) = s.p;
+    layer(Aov::Uv) = V3f(s.uv[0].x, s.uv[0].y, 0);
+    layer(Aov::Emission) = vector(emission);
+}
+
+template <RayCaster Caster>
+f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const Sampler& sampler,
+                                bool aovs, FilmSample& out, PathStats& stats) const {
+    f4 sum{}, throughput = uniform(1.f, bands);
+    Ray ray = camera_ray;
+    Vertex last{camera_ray.origin};
+    const Material* medium = nullptr;
+    bool seen = false;  // the camera ray has found a surface that shows itself
+
+    for (uint32_t depth = 0;;) {
+        if (caster_.has_cutouts()) ray.coin = sampler.get_bits(Dim::Coverage, 2 * depth);
+        ++(depth == 0 ? stats.camera_rays : stats.bounce_rays);
+        std::optional<Hit> hit;
+        {
+            const SectionTimer timer(stats, Section::Traversal);
+            hit = caster_.intersect(ray);
+        }
+        if (!hit) {
+            sum += throughput * (seen ? escaped(ray, bands, last) : backdrop(ray, bands, out));
+            break;
+        }
+        const Surface s = make_surface(scene_, ray.direction, *hit);
+        // glTF culls the backs of single-sided surfaces from view. Light must not pass them, so
+        // only camera rays do; the inside of a volume is never culled.
+        if (!seen && !s.front && !s.material->double_sided && !s.material->has_volume) {
+            ray.origin = offset_origin(s.p, s.p_error, s.ng, ray.direction);
+            continue;
+        }
+        ++stats.vertices;
+        if (medium) throughput *= transmittance(*medium, (s.p - last.p).length(), bands);
+        const V3f wo = -ray.direction;
+        ShadingInput shading;
+        {
+            const SectionTimer timer(stats, Section::Texture);
+            shading = read_material(scene_, s, wo, bands);
+        }
+        out.alpha = 1.f;
+        const f4 glow = emitted(s, bands, last) + uplift_radiance(shading.unlit, bands);
+        sum += throughput * glow;
+        if (!seen && aovs)
+            record_layers(s, shading, to_rgb(glow, bands), camera_ray.origin, wo, bands, out);
+        seen = true;
+        if (s.material->unlit || static_cast<int>(depth) >= options_.max_depth) break;
+
+        const Bsdf bsdf(shading.bsdf, bands, shading.frame.to_local(wo));
+        const bool light_sampled =
+            options_.technique != Technique::BsdfOnly && bsdf.has_wide_lobe();
+        if (light_sampled)
+            sum += throughput * direct_light(s, shading.frame, bsdf, bands, sampler, depth, stats);
+
+        const auto next =
+            bsdf.sample(sampler.get1(Dim::BsdfLobe, depth), sampler.get2(Dim::Bsdf, depth));
+        if (!next) break;
+        const V3f direction = shading.frame.to_world(next->wi);
+        const bool crosses = (direction.dot(s.ng) > 0.f) != s.front;
+        if (crosses != next->transmitted) break;
+        throughput *= next->weight;
+        if (crosses && s.material->has_volume) medium = s.front ? s.material : nullptr;
+
+        ++depth;
+        if (static_cast<int>(depth) > options_.roulette_depth) {
+            const float survival = std::fmin(hmax(throughput), 0.95f);
+            if (sampler.get1(Dim::Roulette, depth) >= survival) break;
+            throughput *= 1.f / survival;
+        }
+        last = {s.p, next->pdf, light_sampled && !next->delta};
+        ray.origin = offset_origin(s.p, s.p_error, s.ng, direction);
+        ray.direction = unit(direction);
+    }
+    return sum;
+}
+
+}  // namespace petzval

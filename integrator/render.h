@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a job to a film: progressive passes over tiles.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <numeric>
+#include <optional>
+#include <vector>
+
+#include "camera/camera.h"
+#include "core/colour.h"
+#include "core/film.h"
+#include "core/filter.h"
+#include "core/sampler.h"
+#include "integrator/path.h"
+#include "integrator/tiles.h"
+
+namespace petzval {
+
+struct RenderJob {
+    uint32_t first_sample = 0, end_sample = 64;  ///< sample indices [first, end) of every pixel
+    std::optional<double> time_limit_s;  ///< ends with the pass that reaches it, end_sample or not
+    uint32_t seed = 0;
+    SamplerKind sampler = SamplerKind::Owen;
+    Filter filter{FilterKind::BlackmanHarris, 1.5f};
+    int tile_size_px = 16;
+    bool timing = false;  ///< measure where the time goes, on one sample of sixteen
+};
+
+/// What a render shows of itself while it runs, and how it is told to stop. Any thread may look.
+struct RenderMonitor {
+    std::atomic<bool> stop = false;  ///< set it: tiles under way are finished, no more begun
+    std::atomic<uint64_t> pixel_samples_done = 0;
+};
+
+struct RenderResult {
+    PathStats stats;
+    int workers = 0;          ///< threads that rendered at least one tile
+    uint32_t end_sample = 0;  ///< samples [first, end) are complete in every pixel
+    bool stopped = false;     ///< the monitor said stop before the job was done
+};
+
+/// One sample of one pixel: a pure function of its arguments.
+template <class Tracer>
+void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& job, SampleId id,
+                   Film& film, PathStats& stats) {
+    stats.timing = job.timing && (id.index + static_cast<uint32_t>(id.x + 3 * id.y)) % 16 == 0;
+    ++stats.samples;
+    stats.timed_samples += stats.timing;
+    const SectionTimer whole(stats, Section::Sample);
+    const Sampler sampler(job.sampler, job.seed, id);
+    const Bands bands = Bands::rgb();
+    const bool aovs = !film.aovs().empty();
+    const uint64_t vertices_before = stats.vertices;
+
+    CameraSample seen;
+    {
+        const SectionTimer timer(stats, Section::Camera);
+        const V2f offset = job.filter.sample(sampler.get2(Dim::Film));
+        const V2f size(film.full_size());
+        const V2f at = V2f(id.x + 0.5f, id.y + 0.5f) + offset;
+        seen = camera.sample({at / size, sampler.get2(Dim::Lens)}, bands);
+    }
+    FilmSample sample;
+    f4 sum{};
+    for (int k = 0; k < seen.count; ++k) {
+        const CameraPath& path = seen.path[k];
+        sum +=
+            path.weight * tracer.radiance(path.ray, bands, sampler, aovs && k == 0, sample, stats);
+    }
+    sample.colour = to_rgb(sum, bands);
+    sample.aov[static_cast<size_t>(Aov::Cost)].x =
+        static_cast<float>(stats.vertices - vertices_before);
+    film.add(id.x, id.y, id.index, sample);
+}
+
+/// Samples of the next pass: they grow so that a first picture comes early and passes stay short.
+[[nodiscard]] inline uint32_t pass_size(uint32_t done, uint32_t wanted) {
+    const uint32_t grown = done == 0 ? 1 : std::min(done, 16u);
+    return std::min(grown, wanted - done);
+}
+
+/// Renders every pixel of the film's crop. Pixels do not depend on the executor, its threads, the
+/// tile size, the crop or the passes.
+template <class Executor, class Tracer>
+RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob& job, Film& film,
+                    Executor& executor, RenderMonitor& monitor) {
+    using Clock = std::chrono::steady_clock;
+    const auto start = Clock::now();
+    const auto elapsed_s = [&] {
+        return std::chrono::duration<double>(Clock::now() - start).count();
+    };
+    const std::vector<Rect> tiles = tiles_of(film.crop(), job.tile_size_px);
+    struct alignas(128) Worker {  // a cache-line pair each, so that counting does not contend
+        PathStats stats;
+    };
+    std::vector<Worker> workers(static_cast<size_t>(executor.threads()));
+
+    RenderResult result;
+    const uint32_t wanted = job.end_sample - job.first_sample;
+    uint32_t done = 0;
+    while (done < wanted && !monitor.stop) {
+        uint32_t pass = pass_size(done, wanted);
+        if (job.time_limit_s && done > 0) {
+            const double left_s = *job.time_limit_s - elapsed_s();
+            const double fits = left_s / (elapsed_s() / done);
+            if (fits < 1) break;
+            pass = std::min(pass, static_cast<uint32_t>(fits));
+        }
+        executor.run(static_cast<int>(tiles.size()), [&](int task, int worker) {
+            if (monitor.stop) return;
+            PathStats& stats = workers[static_cast<size_t>(worker)].stats;
+            const Rect& tile = tiles[static_cast<size_t>(task)];
+            const uint32_t first = job.first_sample + done;
+            for (int y = tile.y0; y < tile.y1; ++y)
+                for (int x = tile.x0; x < tile.x1; ++x)
+                    for (uint32_t i = first; i < first + pass; ++i)
+                        render_sample(tracer, camera, job, {x, y, i}, film, stats);
+            ++stats.tiles;
+            monitor.pixel_samples_done +=
+                static_cast<uint64_t>(tile.width()) * tile.height() * pass;
+        });
+        if (monitor.stop) break;
+        done += pass;
+    }
+    result.end_sample = job.first_sample + done;
+    result.stopped = monitor.stop;
+    for (const Worker& worker : workers) {
+        result.stats += worker.stats;
+        result.workers += worker.stats.tiles > 0;
+    }
+    return result;
+}
+
+}  // namespace petzval

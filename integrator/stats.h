@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Counts and times of one worker; the workers' sums are the render's.
+#pragma once
+
+#include <x86intrin.h>
+
+#include <array>
+#include <cstdint>
+
+namespace petzval {
+
+/// Sample is the whole; what the others leave of it is shading.
+enum class Section : uint8_t { Sample, Camera, Traversal, Texture, Count };
+
+struct PathStats {
+    uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0;
+    uint64_t vertices = 0;  ///< hits that were shaded
+    uint64_t tiles = 0;     ///< tiles that this worker rendered
+    bool timing = false;    ///< the current sample is one of those that are timed
+    uint64_t timed_samples = 0, samples = 0;
+    std::array<uint64_t, static_cast<size_t>(Section::Count)> ticks{};
+
+    PathStats& operator+=(const PathStats& o) {
+        camera_rays += o.camera_rays;
+        bounce_rays += o.bounce_rays;
+        shadow_rays += o.shadow_rays;
+        vertices += o.vertices;
+        tiles += o.tiles;
+        timed_samples += o.timed_samples;
+        samples += o.samples;
+        for (size_t i = 0; i < ticks.size(); ++i) ticks[i] += o.ticks[i];
+        return *this;
+    }
+};
+
+/// Adds the time of its scope to a section, where the current sample is timed.
+class SectionTimer {
+  public:
+    SectionTimer(PathStats& stats, Section section)
+        : stats_(stats), section_(section), start_(stats.timing ? __rdtsc() : 0) {}
+    ~SectionTimer() {
+        if (stats_.timing) stats_.ticks[static_cast<size_t>(section_)] += __rdtsc() - start_;
+    }
+    SectionTimer(const SectionTimer&) = delete;
+    SectionTimer& operator=(const SectionTimer&) = delete;
+
+  private:
+    PathStats& stats_;
+    Section section_;
+    uint64_t start_;
+};
+
+}  // namespace petzval

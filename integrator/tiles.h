@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// The order in which a picture is rendered.
+#pragma once
+
+#include <vector>
+
+#include "core/film.h"
+
+namespace petzval {
+
+/// Square tiles (cut at the edges) that cover a crop, along a Hilbert curve, so that neighbours in
+/// time are neighbours in the scene. size_px >= 1.
+[[nodiscard]] std::vector<Rect> tiles_of(const Rect& crop, int size_px);
+
+}  // namespace petzval

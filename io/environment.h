@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// An environment picture on disk as a sky.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "core/sky.h"
+
+namespace petzval {
+
+/// Equirectangular Radiance (.hdr) or OpenEXR (.exr) picture, linear sRGB in nits or grey (Y).
+/// rotate_deg turns it about +y, counter-clockwise seen from above; strength multiplies it. Values
+/// below zero become 0, a picture not twice as wide as high is stretched; notice gets one line for
+/// each. Throws InputError for any other file and for a texel that is not finite, which it names.
+[[nodiscard]] Sky load_sky(const std::filesystem::path&, float rotate_deg, float strength,
+                           const std::function<void(const std::string&)>& notice);
+
+}  // namespace petzval

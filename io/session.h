@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// From what a user asks for to something that can be rendered.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "camera/camera.h"
+#include "core/bvh.h"
+#include "core/light_choice.h"
+#include "core/scene.h"
+
+namespace petzval {
+
+struct FocusAuto {};
+struct FocusDistance {
+    float m;
+};
+struct FocusPixel {
+    float x, y;
+};
+using Focus = std::variant<FocusAuto, FocusDistance, FocusPixel>;
+
+/// Everything absent means: as the file has it, else a sensible choice that is reported.
+struct SceneRequest {
+    std::filesystem::path scene;
+    V2i size{1280, 720};
+    std::optional<std::string> camera;          ///< name or index
+    std::optional<std::array<V3f, 2>> look_at;  ///< eye and target
+    std::optional<float> fov_deg;               ///< vertical
+    std::optional<float> fstop, focal_length_mm, lens_radius_m;
+    std::optional<V2f> sensor_mm;
+    Focus focus;
+    std::optional<std::filesystem::path> environment;
+    float environment_rotate_deg = 0, environment_strength = 1;
+    std::optional<Rgb> background;
+    LightChoiceKind light_choice = LightChoiceKind::Power;
+    Traversal traversal = Traversal::Robust;
+};
+
+/// What the camera turned out to be, for the picture's metadata.
+struct CameraReport {
+    std::string name;
+    V3f eye, target;  ///< target: one metre ahead, or what --look-at said
+    bool orthographic = false;
+    float yfov_deg = 0, focal_length_mm = 0, sensor_width_mm = 0, sensor_height_mm = 0;
+    float lens_radius_m = 0, focus_m = 0;  ///< 0: a pinhole
+};
+
+/// A scene that is ready: nothing in it changes any more.
+struct Session {
+    std::unique_ptr<Scene> scene;  ///< on the heap: bvh and lights point to it
+    std::unique_ptr<Bvh> bvh;
+    std::unique_ptr<LightChoice> lights;
+    std::unique_ptr<Camera> camera;
+    CameraReport camera_report;
+    std::optional<Rgb> backdrop;  ///< shown behind the scene in place of the environment
+    uint64_t scene_hash = 0;
+    double load_s = 0, bvh_s = 0;
+};
+
+/// Loads the file, its sky and its camera. `notice` gets one line for everything that was chosen
+/// for the user or is odd in the file. Throws InputError.
+[[nodiscard]] Session open_session(const SceneRequest&,
+                                   const std::function<void(const std::string&)>& notice);
+
+}  // namespace petzval

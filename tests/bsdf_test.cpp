@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/bsdf.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "core/microfacet.h"
+#include "tests/support/chi_square.h"
+#include "tests/support/jacobian.h"
+
+namespace petzval {
+namespace {
+
+using test::chi_square_sphere;
+
+V3f from_cosine(float cosine, float azimuth = 0.f) {
+    const float sine = safe_sqrt(1 - sqr(cosine));
+    return {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine};
+}
+
+BsdfInput dielectric(float roughness) {
+    BsdfInput in;
+    in.base_color = uniform(1.f, Bands::rgb());
+    in.roughness = roughness;
+    in.dielectric_f0 = uniform(0.04f, Bands::rgb());
+    return in;
+}
+
+BsdfInput metal(float roughness) {
+    BsdfInput in = dielectric(roughness);
+    in.metallic = 1.f;
+    return in;
+}
+
+BsdfInput glass(float roughness, float eta) {
+    BsdfInput in = dielectric(roughness);
+    in.transmission = 1.f;
+    in.thin = false;
+    in.eta = eta;
+    return in;
+}
+
+BsdfInput thin_glass(float roughness) {
+    BsdfInput in = dielectric(roughness);
+    in.transmission = 1.f;
+    return in;
+}
+
+// Mean weight over a jittered grid: lobes along one axis, directions along the two others.
+float albedo_of(const BsdfInput& in, float cosine) {
+    const Bsdf bsdf(in, Bands::rgb(), from_cosine(cosine));
+    constexpr int lobes = 24, side = 96;
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> jitter;
+    double sum = 0;
+    for (int k = 0; k < lobes; ++k)
+        for (int i = 0; i < side; ++i)
+            for (int j = 0; j < side; ++j) {
+                const float u_lobe = std::min((k + jitter(random)) / lobes, kOneMinus);
+                const V2f u(std::min((i + jitter(random)) / side, kOneMinus),
+                            std::min((j + jitter(random)) / side, kOneMinus));
+                if (const auto s = bsdf.sample(u_lobe, u)) sum += s->weight[0];
+            }
+    return static_cast<float>(sum / (lobes * side * side));
+}
+
+constexpr float kCosines[] = {0.05f, 0.1f, 0.25f, 0.5f, 0.8f, 1.f};
+constexpr float kRoughnesses[] = {0.f, 0.05f, 0.15f, 0.3f, 0.5f, 0.7f, 0.85f, 1.f};
+
+TEST(Bsdf, OpaqueWhiteReflectsEverythingAtEveryRoughness) {
+    for (const float metallic : {0.f, 0.5f, 1.f})
+        for (const float roughness : kRoughnesses)
+            for (const float cosine : kCosines) {
+                BsdfInput in = dielectric(roughness);
+                in.metallic = metallic;
+                EXPECT_NEAR(albedo_of(in, cosine), 1.f, 0.005f)
+                    << "metallic " << metallic << " roughness " << roughness << " cosine "
+                    << cosine;
+            }
+}
+
+TEST(Bsdf, SpecularWeightsKeepWhiteWhite) {
+    for (const float specular : {0.f, 0.3f})
+        for (const float roughness : {0.f, 0.4f, 1.f}) {
+            BsdfInput in = dielectric(roughness);
+            in.dielectric_f0 = in.dielectric_f0 * specular;
+            in.dielectric_f90 = specular;
+            EXPECT_NEAR(albedo_of(in, 0.4f), 1.f, 0.005f) << specular << ' ' << roughness;
+        }
+}
+
+// Transmission may lose what single scattering shadows; it never gains.
+TEST(Bsdf, TransmissionNeverGains) {
+    for (const float roughness : kRoughnesses)
+        for (const float cosine : kCosines) {
+            EXPECT_LE(albedo_of(thin_glass(roughness), cosine), 1.005f)
+                << roughness << ' ' << cosine;
+            for (const float eta : {1.5f, 1 / 1.5f, 2.4f, 1.001f})
+                EXPECT_LE(albedo_of(glass(roughness, eta), cosine), 1.005f)
+                    << roughness << ' ' << cosine << " eta " << eta;
+        }
+}
+
+TEST(Bsdf, SmoothGlassLosesNothing) {
+    for (const float eta : {1.5f, 1 / 1.5f})
+        for (const float cosine : kCosines)
+            EXPECT_NEAR(albedo_of(glass(0.f, eta), cosine), 1.f, 1e-4f) << eta << ' ' << cosine;
+    EXPECT_GT(albedo_of(glass(0.3f, 1.5f), 0.8f), 0.99f);
+    EXPECT_GT(albedo_of(glass(1.f, 1.5f), 0.8f), 0.80f);
+}
+
+TEST(Bsdf, RefractionObeysSnell) {
+    const V3f wo = from_cosine(0.6f);
+    const Bsdf bsdf(glass(0.f, 1.5f), Bands::rgb(), wo);
+    const auto s = bsdf.sample(0.9f, {0.3f, 0.3f});
+    ASSERT_TRUE(s && s->delta && s->transmitted);
+    EXPECT_NEAR(std::hypot(s->wi.x, s->wi.y), 0.8f / 1.5f, 1e-6f);
+    EXPECT_LT(s->wi.x * wo.x, 0.f);
+    EXPECT_LT(s->wi.z, 0.f);
+}
+
+TEST(Bsdf, TotalReflectionInsideGlass) {
+    const Bsdf bsdf(glass(0.f, 1 / 1.5f), Bands::rgb(), from_cosine(0.5f));
+    for (const float u : {0.01f, 0.5f, 0.99f}) {
+        const auto s = bsdf.sample(u, {0.5f, 0.5f});
+        ASSERT_TRUE(s);
+        EXPECT_FALSE(s->transmitted);
+    }
+}
+
+// The table against brute force over cosine-weighted directions, which share nothing with it.
+TEST(Microfacet, AlbedoTableMatchesDirectIntegration) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> unit_u;
+    for (const float alpha : {0.09f, 0.31f, 0.77f})
+        for (const float cosine : {0.23f, 0.55f, 0.93f}) {
+            const V3f wo = from_cosine(cosine);
+            double total = 0, schlick = 0;
+            constexpr int side = 1200;
+            for (int i = 0; i < side; ++i)
+                for (int j = 0; j < side; ++j) {
+                    const double r = std::sqrt((i + unit_u(random)) / side);
+                    const double phi = 2 * M_PI * (j + unit_u(random)) / side;
+                    const V3f wi(static_cast<float>(r * std::cos(phi)),
+                                 static_cast<float>(r * std::sin(phi)),
+                                 static_cast<float>(std::sqrt(std::max(1e-12, 1 - r * r))));
+                    const V3f m = unit(wo + wi);
+                    const float g = 1 / (1 + ggx_lambda(wo, alpha) + ggx_lambda(wi, alpha));
+                    const double f = ggx_d(m, alpha) * g / (4 * wo.z * wi.z) * kPi;
+                    total += f;
+                    schlick += f * schlick_weight(wo.dot(m));
+                }
+            const GgxAlbedo table = ggx_albedo(cosine, alpha);
+            EXPECT_NEAR(table.total(), total / (side * side), 0.004 * table.total())
+                << alpha << ' ' << cosine;
+            EXPECT_NEAR(table.f90, schlick / (side * side), 0.003) << alpha << ' ' << cosine;
+        }
+}
+
+TEST(Microfacet, FresnelAtNormalIncidenceAndAtTheCriticalAngle) {
+    EXPECT_NEAR(fresnel_dielectric(1.f, 1.5f), 0.04f, 1e-6f);
+    EXPECT_NEAR(fresnel_dielectric(1.f, 1 / 1.5f), 0.04f, 1e-6f);
+    EXPECT_FLOAT_EQ(fresnel_dielectric(0.74f, 1 / 1.5f), 1.f);
+    EXPECT_LT(fresnel_dielectric(0.75f, 1 / 1.5f), 1.f);
+    // Brewster's angle: the parallel part vanishes, half of the perpendicular one is left.
+    const float brewster = std::cos(std::atan(1.5f));
+    EXPECT_NEAR(fresnel_dielectric(brewster, 1.5f), 0.5f * sqr((1 - 2.25f) / (1 + 2.25f)), 1e-5f);
+}
+
+struct Case {
+    const char* name;
+    BsdfInput in;
+    float cosine;
+};
+
+class BsdfSampling : public testing::TestWithParam<Case> {};
+
+TEST_P(BsdfSampling, DirectionsFollowTheDensity) {
+    const Bsdf bsdf(GetParam().in, Bands::rgb(), from_cosine(GetParam().cosine, 0.7f));
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> u;
+    const auto draw = [&]() -> std::optional<V3f> {
+        const float u_lobe = u(random), ux = u(random), uy = u(random);
+        const auto s = bsdf.sample(u_lobe, {ux, uy});
+        return s ? std::optional(s->wi) : std::nullopt;
+    };
+    const auto pdf = [&](const V3f& wi) { return bsdf.eval(wi).pdf; };
+    EXPECT_TRUE(chi_square_sphere(draw, pdf)) << GetParam().name;
+}
+
+TEST_P(BsdfSampling, WeightsAreValueOverDensity) {
+    const Bsdf bsdf(GetParam().in, Bands::rgb(), from_cosine(GetParam().cosine, 0.7f));
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> u;
+    for (int i = 0; i < 1000; ++i) {
+        const float u_lobe = u(random), ux = u(random), uy = u(random);
+        const auto s = bsdf.sample(u_lobe, {ux, uy});
+        if (!s) continue;
+        const BsdfValue v = bsdf.eval(s->wi);
+        EXPECT_FLOAT_EQ(s->pdf, v.pdf);
+        EXPECT_NEAR(s->weight[1], v.f_cos[1] / v.pdf, 1e-4f * s->weight[1]);
+        EXPECT_EQ(s->transmitted, s->wi.z < 0);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, BsdfSampling,
+                         testing::Values(Case{"diffuse", dielectric(1.f), 0.7f},
+                                         Case{"coat", dielectric(0.4f), 0.4f},
+                                         Case{"metal", metal(0.5f), 0.6f},
+                                         Case{"grazing metal", metal(0.7f), 0.1f},
+                                         Case{"glass in", glass(0.5f, 1.5f), 0.7f},
+                                         Case{"glass out", glass(0.5f, 1 / 1.5f), 0.8f},
+                                         Case{"thin", thin_glass(0.6f), 0.5f}),
+                         [](const auto& case_info) {
+                             std::string name = case_info.param.name;
+                             for (char& c : name) c = c == ' ' ? '_' : c;
+                             return name;
+                         });
+
+// Where one lobe answers alone, its density is the inverse of the area that u is spread over.
+TEST(Bsdf, JacobianOfTheReflectionLobe) {
+    const V3f wo = from_cosine(0.6f, 0.3f);
+    for (const float roughness : {0.3f, 0.8f}) {
+        const Bsdf bsdf(metal(roughness), Bands::rgb(), wo);
+        const auto direction = [&](V2f u) -> std::optional<V3f> {
+            const auto s = bsdf.sample(0.5f, u);
+            return s ? std::optional(s->wi) : std::nullopt;
+        };
+        const auto pdf = [&](const V3f& wi) { return bsdf.eval(wi).pdf; };
+        EXPECT_TRUE(test::jacobian_matches(direction, pdf)) << roughness;
+    }
+}
+
+}  // namespace
+}  // namespace petzval

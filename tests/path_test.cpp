@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "integrator/path.h"
+
+#include <gtest/gtest.h>
+
+#include "core/colour.h"
+#include "tests/support/scenes.h"
+
+namespace petzval {
+namespace {
+
+using test::diffuse_material;
+using test::emitter_material;
+using test::place;
+using test::quad;
+using test::sphere;
+
+struct World {
+    Scene scene;
+    std::unique_ptr<Bvh> bvh;
+    std::unique_ptr<LightChoice> lights;
+
+    void finish() {
+        finish_scene(scene);
+        bvh = std::make_unique<Bvh>(scene, Traversal::Robust);
+        lights = std::make_unique<LightChoice>(scene, LightChoiceKind::Power);
+    }
+};
+
+struct Estimate {
+    double mean = 0, error = 0;  ///< standard error of the mean
+};
+
+// Mean red radiance over a bundle of rays; the error comes from 12 independent scrambles, as the
+// points of one scramble are not independent.
+template <class MakeRay>
+Estimate estimate(const World& world, const PathOptions& options, uint32_t samples,
+                  const MakeRay& make_ray, float* alpha = nullptr) {
+    constexpr int scrambles = 12;
+    const PathTracer tracer(world.scene, *world.bvh, *world.lights, options);
+    PathStats stats;
+    double sum = 0, sum2 = 0;
+    for (uint32_t seed = 0; seed < scrambles; ++seed) {
+        double mean = 0;
+        for (uint32_t i = 0; i < samples; ++i) {
+            const Sampler sampler(SamplerKind::Owen, seed, {3, 5, i});
+            FilmSample out;
+            mean += tracer.radiance(make_ray(sampler.get2(Dim::Film)), Bands::rgb(), sampler, false,
+                                    out, stats)[0];
+            if (alpha) *alpha += out.alpha / static_cast<float>(samples * scrambles);
+        }
+        mean /= samples;
+        sum += mean;
+        sum2 += mean * mean;
+    }
+    Estimate e;
+    e.mean = sum / scrambles;
+    e.error = std::sqrt(std::max(0.0, sum2 / scrambles - e.mean * e.mean) / (scrambles - 1));
+    return e;
+}
+
+Ray ray_to(V3f origin, V3f target) {
+    Ray ray;
+    ray.origin = origin;
+    ray.direction = unit(target - origin);
+    return ray;
+}
+
+// A bundle over the square [-0.5, 0.5]^2 at z = 0, seen from z = 4.
+Ray bundle(V2f u) {
+    return ray_to(V3f(0, 0, 4), V3f(u.x - 0.5f, u.y - 0.5f, 0));
+}
+
+void expect_within_3_sigma(const Estimate& e, double truth, const char* what) {
+    EXPECT_NEAR(e.mean, truth, 3 * e.error + 1e-5 * truth) << what << " sigma " << e.error;
+}
+
+// Inside a closed diffuse emitter radiance is emission / (1 - albedo), whatever its shape.
+TEST(Path, ClosedSphereHasItsKnownRadiance) {
+    World world;
+    Mesh inside = sphere(V3f(0.f), 2.f, 16, false);
+    place(world.scene, inside, emitter_material(0.7f, 0.6f));
+    world.finish();
+    PathOptions options;
+    options.max_depth = 1000;
+    for (const Technique technique : {Technique::Mis, Technique::BsdfOnly, Technique::LightOnly}) {
+        options.technique = technique;
+        const Estimate e = estimate(world, options, 1024, [](V2f u) {
+            return ray_to(V3f(0.3f, 0.2f, -0.1f), V3f(u.x * 6 - 3, u.y * 6 - 3, 1));
+        });
+        expect_within_3_sigma(e, 0.7 / (1 - 0.6), "closed sphere");
+    }
+}
+
+TEST(Path, WhiteObjectsVanishInAWhiteSky) {
+    for (const float metallic : {0.f, 1.f})
+        for (const float roughness : {0.f, 0.3f, 1.f}) {
+            World world;
+            Material m;
+            m.metallic = metallic;
+            m.roughness = roughness;
+            place(world.scene, sphere(V3f(0.f), 1.f, 48, true), m);
+            world.scene.sky = Sky::uniform(Rgb(1.f));
+            world.finish();
+            PathOptions options;
+            options.max_depth = 64;
+            const Estimate e = estimate(world, options, 2048, bundle);
+            EXPECT_NEAR(e.mean, 1.0, 0.005 + 3 * e.error) << metallic << ' ' << roughness;
+        }
+}
+
+// A solid glass ball takes nothing away from a white sky.
+TEST(Path, ClearGlassVanishesInAWhiteSky) {
+    World world;
+    Material m;
+    m.metallic = 0;
+    m.roughness = 0;
+    m.transmission = 1;
+    m.has_volume = true;
+    place(world.scene, sphere(V3f(0.f), 1.f, 64, true), m);
+    world.scene.sky = Sky::uniform(Rgb(1.f));
+    world.finish();
+    PathOptions options;
+    options.max_depth = 200;
+    const Estimate e = estimate(world, options, 2048, bundle);
+    EXPECT_NEAR(e.mean, 1.0, 0.01 + 3 * e.error);  // facets and smooth normals disagree at the rim
+}
+
+TEST(Path, AbsorptionFollowsBeerAndLambert) {
+    World world;
+    Material m;
+    m.metallic = 0;
+    m.roughness = 0;
+    m.transmission = 1;
+    m.ior = 1;  // nothing bends or reflects: only the way inside counts
+    m.has_volume = true;
+    m.attenuation_color = Rgb(0.25f);
+    m.attenuation_distance_m = 0.5f;
+    place(world.scene, quad(V3f(-2, -2, 0), V3f(4, 0, 0), V3f(0, 4, 0)), m);
+    place(world.scene, quad(V3f(-2, -2, -1), V3f(0, 4, 0), V3f(4, 0, 0)), m);
+    world.scene.sky = Sky::uniform(Rgb(1.f));
+    world.finish();
+    const Estimate e =
+        estimate(world, PathOptions(), 64, [](V2f) { return ray_to(V3f(0, 0, 3), V3f(0.f)); });
+    EXPECT_NEAR(e.mean, std::pow(0.25, 1.0 / 0.5), 1e-4);
+}
+
+World floor_under(Light light) {
+    World world;
+    place(world.scene, quad(V3f(-50, -50, 0), V3f(100, 0, 0), V3f(0, 100, 0)),
+          diffuse_material(0.5f));
+    world.scene.lights.push_back(light);
+    world.finish();
+    return world;
+}
+
+TEST(Path, PunctualLightsGiveTheirIlluminance) {
+    const auto centre = [](V2f) { return ray_to(V3f(0, 0, 4), V3f(0.f)); };
+    const double albedo_over_pi = 0.5 / M_PI;
+    const World point = floor_under(PointLight{V3f(0, 3, 4), Rgb(100.f)});
+    expect_within_3_sigma(estimate(point, PathOptions(), 16, centre),
+                          albedo_over_pi * 100 / 25 * 0.8, "point");
+    const World sun = floor_under(SunLight{unit(V3f(0, -3, -4)), Rgb(10.f)});
+    expect_within_3_sigma(estimate(sun, PathOptions(), 16, centre), albedo_over_pi * 10 * 0.8,
+                          "sun");
+    const World spot = floor_under(SpotLight{V3f(0, 0, 2), V3f(0, 0, -1), Rgb(8.f), 0.9f, 0.8f});
+    expect_within_3_sigma(estimate(spot, PathOptions(), 16, centre), albedo_over_pi * 8 / 4,
+                          "spot");
+}
+
+// A disk's worth of closed form: a square emitter seen from below its centre. Configuration factor
+// of a differential plane to a parallel rectangle corner, times four (Howell, C-11).
+TEST(Path, SquareEmitterMatchesItsConfigurationFactor) {
+    World world;
+    place(world.scene, quad(V3f(-50, -50, 0), V3f(100, 0, 0), V3f(0, 100, 0)),
+          diffuse_material(0.5f));
+    Material light = emitter_material(3.f);
+    place(world.scene, quad(V3f(-1, -1, 2), V3f(0, 2, 0), V3f(2, 0, 0)), light);
+    world.finish();
+    const double a = 0.5, b = 0.5;  // half sides over the distance
+    const double corner = 1 / (2 * M_PI) *
+                          (a / std::sqrt(1 + a * a) * std::atan(b / std::sqrt(1 + a * a)) +
+                           b / std::sqrt(1 + b * b) * std::atan(a / std::sqrt(1 + b * b)));
+    const double truth = 0.5 * 3 * 4 * corner;
+    PathOptions options;
+    options.max_depth = 1;
+    for (const Technique technique : {Technique::Mis, Technique::LightOnly, Technique::BsdfOnly}) {
+        options.technique = technique;
+        const Estimate e =
+            estimate(world, options, 4096, [](V2f) { return ray_to(V3f(3, 0, 1.9f), V3f(0.f)); });
+        expect_within_3_sigma(e, truth, "square");
+        EXPECT_LT(e.error, 0.02 * truth);
+    }
+}
+
+// Three estimators of one integral: lights only, BSDF only, both.
+TEST(Path, TechniquesAgree) {
+    World world;
+    Material floor;
+    floor.base_color = Rgb(0.6f);
+    floor.metallic = 0.3f;
+    floor.roughness = 0.4f;
+    floor.double_sided = true;
+    place(world.scene, quad(V3f(-3, -3, -1), V3f(6, 0, 0), V3f(0, 6, 0)), floor);
+    place(world.scene, sphere(V3f(0, 0, 0), 0.6f, 24, true), diffuse_material(0.7f));
+    place(world.scene, quad(V3f(-1, 1.5f, 1), V3f(2, 0, 0), V3f(0, 1, 0.5f)),
+          emitter_material(5.f));
+    std::vector<float> sky(3 * 32 * 16, 0.2f);
+    for (int i = 0; i < 12; ++i) sky[3 * (4 * 32 + 3 * 4) + static_cast<size_t>(i)] = 20.f;
+    world.scene.sky = Sky::picture(sky, 32, 16, 0.f, 1.f);
+    world.finish();
+    PathOptions options;
+    options.max_depth = 4;
+    std::array<Estimate, 3> e;
+    for (int i = 0; i < 3; ++i) {
+        options.technique = static_cast<Technique>(i);
+        e[static_cast<size_t>(i)] = estimate(world, options, 4096, [](V2f u) {
+            return ray_to(V3f(0, 0.5f, 4), V3f(2 * u.x - 1, 2 * u.y - 1, -0.5f));
+        });
+    }
+    for (int i = 1; i < 3; ++i) {
+        const Estimate& other = e[static_cast<size_t>(i)];
+        EXPECT_NEAR(e[0].mean, other.mean, 3 * std::hypot(e[0].error, other.error)) << i;
+        EXPECT_LT(other.error, 0.02 * other.mean);
+        EXPECT_LE(e[0].error, other.error);  // what combining the two is for
+    }
+}
+
+TEST(Path, CoverageMixesSurfaceAndSky) {
+    World world;
+    Material m = diffuse_material(0.f);
+    m.alpha_mode = AlphaMode::Blend;
+    m.alpha = 0.25f;
+    place(world.scene, quad(V3f(-2, -2, 0), V3f(4, 0, 0), V3f(0, 4, 0)), m);
+    world.scene.sky = Sky::uniform(Rgb(2.f));
+    world.finish();
+    expect_within_3_sigma(estimate(world, PathOptions(), 4096, bundle), 0.75 * 2, "blend");
+    PathOptions options;
+    options.transparent = true;
+    float alpha = 0;
+    const Estimate e = estimate(world, options, 4096, bundle, &alpha);
+    EXPECT_EQ(e.mean, 0.0);
+    EXPECT_NEAR(alpha, 0.25f, 0.01f);
+}
+
+TEST(Path, BacksOfSingleSidedSurfacesAreCulledFromViewButCastShadows) {
+    World world;
+    Material m = diffuse_material(0.5f);
+    m.double_sided = false;
+    place(world.scene, quad(V3f(-2, -2, 0), V3f(0, 4, 0), V3f(4, 0, 0)), m);  // front away from us
+    world.scene.sky = Sky::uniform(Rgb(1.f));
+    world.finish();
+    EXPECT_NEAR(estimate(world, PathOptions(), 16, bundle).mean, 1.0, 1e-5);
+
+    World shaded;
+    place(shaded.scene, quad(V3f(-50, -50, -1), V3f(100, 0, 0), V3f(0, 100, 0)),
+          diffuse_material(0.5f));
+    place(shaded.scene, quad(V3f(-2, -2, 0), V3f(0, 4, 0), V3f(4, 0, 0)), m);
+    shaded.scene.lights.push_back(SunLight{V3f(0, 0, -1), Rgb(10.f)});
+    shaded.finish();
+    PathOptions direct;
+    direct.max_depth = 1;
+    EXPECT_EQ(estimate(shaded, direct, 16, bundle).mean, 0.0);
+}
+
+TEST(Path, BackdropIsSeenAndTheEnvironmentLights) {
+    World world;
+    place(world.scene, quad(V3f(-2, -2, 0), V3f(4, 0, 0), V3f(0, 4, 0)), diffuse_material(0.5f));
+    world.scene.sky = Sky::uniform(Rgb(2.f));
+    world.finish();
+    PathOptions options;
+    options.backdrop = Rgb(7.f);
+    EXPECT_NEAR(
+        estimate(world, options, 16, [](V2f) { return ray_to(V3f(0, 0, 4), V3f(9, 9, 4)); }).mean,
+        7.0, 1e-5);
+    expect_within_3_sigma(estimate(world, options, 1024, bundle), 0.5 * 2,
+                          "lit by the environment");
+}
+
+TEST(Path, UnlitShowsItsColour) {
+    World world;
+    Material m = diffuse_material(0.4f);
+    m.unlit = true;
+    place(world.scene, quad(V3f(-2, -2, 0), V3f(4, 0, 0), V3f(0, 4, 0)), m);
+    world.finish();
+    EXPECT_NEAR(estimate(world, PathOptions(), 16, bundle).mean, 0.4, 1e-6);
+}
+
+}  // namespace
+}  // namespace petzval

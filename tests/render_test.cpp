@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "integrator/render.h"
+
+#include <gtest/gtest.h>
+
+#include <condition_variable>
+#include <cstring>
+#include <mutex>
+#include <set>
+
+#include "camera/thin_lens.h"
+#include "integrator/executor.h"
+#include "tests/support/scenes.h"
+
+namespace petzval {
+namespace {
+
+struct Studio {
+    Scene scene;
+    std::unique_ptr<Bvh> bvh;
+    std::unique_ptr<LightChoice> lights;
+    std::unique_ptr<PathTracer<>> tracer;
+    std::unique_ptr<Camera> camera;
+
+    explicit Studio(V2i size) {
+        using namespace test;
+        place(scene, quad(V3f(-3, -3, -1), V3f(6, 0, 0), V3f(0, 6, 0)), diffuse_material(0.6f));
+        Material metal;
+        metal.roughness = 0.3f;
+        place(scene, sphere(V3f(0, 0, 0), 0.6f, 24, true), metal);
+        place(scene, quad(V3f(-1, 1.5f, 1), V3f(2, 0, 0), V3f(0, 1, 0.5f)), emitter_material(5.f));
+        scene.sky = Sky::uniform(Rgb(0.1f, 0.2f, 0.4f));
+        finish_scene(scene);
+        bvh = std::make_unique<Bvh>(scene, Traversal::Robust);
+        lights = std::make_unique<LightChoice>(scene, LightChoiceKind::Power);
+        tracer = std::make_unique<PathTracer<>>(scene, *bvh, *lights, PathOptions());
+        ThinLens lens;
+        lens.to_world = look_at(V3f(0.5f, 0.7f, 4), V3f(0.f));
+        lens.aspect = static_cast<float>(size.x) / static_cast<float>(size.y);
+        lens.radius_m = 0.05f;
+        lens.focus_m = 3.5f;
+        camera = std::make_unique<ThinLensCamera>(lens);
+    }
+};
+
+const V2i kSize(53, 37);
+const Rect kWhole{0, 0, kSize.x, kSize.y};
+
+template <class Executor>
+Film picture(Executor executor, RenderJob job, Rect crop = kWhole, RenderResult* result = nullptr) {
+    static const Studio studio(kSize);
+    Film film(kSize, crop, {Aov::Albedo, Aov::Normal, Aov::Depth});
+    RenderMonitor monitor;
+    const RenderResult r = render(*studio.tracer, *studio.camera, job, film, executor, monitor);
+    if (result) *result = r;
+    return film;
+}
+
+RenderJob job_of(uint32_t spp) {
+    RenderJob job;
+    job.end_sample = spp;
+    return job;
+}
+
+void expect_same_bytes(const Film& a, const Film& b, Rect where = kWhole) {
+    int differ = 0;
+    for (int y = where.y0; y < where.y1; ++y)
+        for (int x = where.x0; x < where.x1; ++x) {
+            const V4f ca = a.colour(x, y), cb = b.colour(x, y);
+            differ += std::memcmp(&ca, &cb, sizeof ca) != 0;
+            for (size_t layer = 0; layer < a.aovs().size(); ++layer) {
+                const V3f va = a.aov(x, y, layer), vb = b.aov(x, y, layer);
+                differ += std::memcmp(&va, &vb, sizeof va) != 0;
+            }
+        }
+    EXPECT_EQ(differ, 0);
+}
+
+TEST(Tiles, CoverEveryPixelOnce) {
+    for (const Rect crop : {Rect{0, 0, 53, 37}, Rect{5, 7, 6, 8}, Rect{3, 1, 100, 17}})
+        for (const int size : {1, 8, 16}) {
+            std::set<std::pair<int, int>> seen;
+            size_t pixels = 0;
+            for (const Rect& t : tiles_of(crop, size))
+                for (int y = t.y0; y < t.y1; ++y)
+                    for (int x = t.x0; x < t.x1; ++x) {
+                        seen.insert({x, y});
+                        ++pixels;
+                        EXPECT_TRUE(x >= crop.x0 && x < crop.x1 && y >= crop.y0 && y < crop.y1);
+                    }
+            EXPECT_EQ(pixels, static_cast<size_t>(crop.width() * crop.height()));
+            EXPECT_EQ(seen.size(), pixels);
+        }
+}
+
+TEST(Tiles, NeighboursInTimeTouch) {
+    const auto tiles = tiles_of({0, 0, 128, 128}, 16);
+    for (size_t i = 1; i < tiles.size(); ++i)
+        EXPECT_EQ(std::abs(tiles[i].x0 - tiles[i - 1].x0) + std::abs(tiles[i].y0 - tiles[i - 1].y0),
+                  16);
+}
+
+TEST(Render, PixelsDoNotDependOnThreads) {
+    const Film one = picture(ThreadExecutor(1), job_of(8));
+    expect_same_bytes(one, picture(ThreadExecutor(2), job_of(8)));
+    expect_same_bytes(one, picture(ThreadExecutor(5), job_of(8)));
+}
+
+TEST(RenderTbb, PixelsDoNotDependOnThreads) {
+    const Film one = picture(ThreadExecutor(1), job_of(8));
+    for (const int threads : {1, 2, 5}) {
+        TbbExecutor executor(threads);
+        static const Studio studio(kSize);
+        Film film(kSize, kWhole, {Aov::Albedo, Aov::Normal, Aov::Depth});
+        RenderMonitor monitor;
+        (void)render(*studio.tracer, *studio.camera, job_of(8), film, executor, monitor);
+        expect_same_bytes(one, film);
+    }
+}
+
+TEST(Render, PixelsDoNotDependOnTileSize) {
+    RenderJob small = job_of(8);
+    small.tile_size_px = 8;
+    expect_same_bytes(picture(ThreadExecutor(2), job_of(8)), picture(ThreadExecutor(2), small));
+}
+
+TEST(Render, ACropIsAPartOfTheWhole) {
+    const Rect crop{11, 6, 30, 29};
+    expect_same_bytes(picture(ThreadExecutor(2), job_of(8)),
+                      picture(ThreadExecutor(2), job_of(8), crop), crop);
+}
+
+// The first 16 samples of 64 are the 16 samples of 16: stopped there, both films are the same.
+TEST(Render, AShorterRenderIsAPrefixOfALongerOne) {
+    const Film whole = picture(ThreadExecutor(2), job_of(64));
+    const Film first = picture(ThreadExecutor(2), job_of(16));
+    RenderJob rest = job_of(64);
+    rest.first_sample = 16;
+    const Film last = picture(ThreadExecutor(2), rest);
+    for (int y = 0; y < kSize.y; ++y)
+        for (int x = 0; x < kSize.x; ++x)
+            for (int i = 0; i < 4; ++i)
+                EXPECT_NEAR(whole.colour(x, y)[i],
+                            (first.colour(x, y)[i] + 3 * last.colour(x, y)[i]) / 4,
+                            4e-7 * (1 + whole.colour(x, y)[i]));
+}
+
+// Counts what it is asked for, and holds every thread back until all have come: with more threads
+// than cores, a fast one would otherwise do all the work before the last wakes up.
+class CountingTracer {
+  public:
+    explicit CountingTracer(int threads)
+        : threads_(threads), counts_(static_cast<size_t>(kSize.x * kSize.y)) {}
+
+    f4 radiance(const Ray&, const Bands&, const Sampler&, bool, FilmSample&, PathStats&) const {
+        std::unique_lock lock(mutex_);
+        if (arrived_.insert(std::this_thread::get_id()).second) {
+            all_.notify_all();
+            all_.wait_for(lock, std::chrono::seconds(20),
+                          [&] { return static_cast<int>(arrived_.size()) >= threads_; });
+        }
+        return splat(1.f);
+    }
+    [[nodiscard]] int arrived() const { return static_cast<int>(arrived_.size()); }
+
+  private:
+    int threads_;
+    std::vector<int> counts_;
+    mutable std::mutex mutex_;
+    mutable std::condition_variable all_;
+    mutable std::set<std::thread::id> arrived_;
+};
+
+template <class Executor>
+void expect_all_threads_work(int threads) {
+    const CountingTracer tracer(threads);
+    const ThinLensCamera camera((ThinLens()));
+    Film film(kSize, kWhole, {});
+    RenderMonitor monitor;
+    Executor executor(threads);
+    const RenderResult result = render(tracer, camera, job_of(5), film, executor, monitor);
+    EXPECT_EQ(result.workers, threads);
+    EXPECT_EQ(tracer.arrived(), threads);
+    EXPECT_EQ(result.end_sample, 5u);
+    EXPECT_EQ(result.stats.samples, 5u * kSize.x * kSize.y);
+    EXPECT_EQ(monitor.pixel_samples_done, result.stats.samples);
+    for (int y = 0; y < kSize.y; ++y)
+        for (int x = 0; x < kSize.x; ++x) {
+            EXPECT_EQ(film.sample_count(x, y), 5u);
+            EXPECT_EQ(film.colour(x, y)[0], 1.f);
+        }
+}
+
+TEST(Render, EveryPixelIsSampledExactlySppTimesByAllThreads) {
+    for (const int threads : {1, 2, 5}) expect_all_threads_work<ThreadExecutor>(threads);
+}
+
+TEST(RenderTbb, EveryPixelIsSampledExactlySppTimesByAllThreads) {
+    for (const int threads : {1, 2, 5}) expect_all_threads_work<TbbExecutor>(threads);
+}
+
+TEST(Render, StopsWhenTold) {
+    static const Studio studio(kSize);
+    Film film(kSize, kWhole, {});
+    RenderMonitor monitor;
+    monitor.stop = true;
+    ThreadExecutor executor(2);
+    const RenderResult result =
+        render(*studio.tracer, *studio.camera, job_of(8), film, executor, monitor);
+    EXPECT_TRUE(result.stopped);
+    EXPECT_EQ(result.end_sample, 0u);
+}
+
+TEST(Render, ATimeLimitEndsAWholePass) {
+    RenderJob job = job_of(1u << 30);
+    job.time_limit_s = 0.05;
+    RenderResult result;
+    const Film film = picture(ThreadExecutor(2), job, kWhole, &result);
+    EXPECT_FALSE(result.stopped);
+    EXPECT_GE(result.end_sample, 1u);
+    for (int y = 0; y < kSize.y; ++y)
+        for (int x = 0; x < kSize.x; ++x) EXPECT_EQ(film.sample_count(x, y), result.end_sample);
+}
+
+// Halves of a Monte Carlo render, one after the other, cost what they cost: not a number here, but
+// what is not finite must not reach a picture.
+class BadTracer {
+  public:
+    f4 radiance(const Ray& ray, const Bands&, const Sampler&, bool, FilmSample&, PathStats&) const {
+        return splat(ray.direction.x > 0 ? std::numeric_limits<float>::quiet_NaN() : 2.f);
+    }
+};
+
+TEST(Render, SamplesThatAreNotFiniteAreCountedAndLeftOut) {
+    const ThinLensCamera camera((ThinLens()));
+    Film film(kSize, kWhole, {});
+    RenderMonitor monitor;
+    ThreadExecutor executor(2);
+    (void)render(BadTracer(), camera, job_of(4), film, executor, monitor);
+    EXPECT_GT(film.bad_count(), 0u);
+    ASSERT_TRUE(film.first_bad());
+    EXPECT_EQ(film.first_bad()->y, 0);
+    for (int y = 0; y < kSize.y; ++y)
+        for (int x = 0; x < kSize.x; ++x) EXPECT_TRUE(std::isfinite(film.colour(x, y)[0]));
+    EXPECT_EQ(film.colour(3, 3)[0], 2.f);
+}
+
+}  // namespace
+}  // namespace petzval

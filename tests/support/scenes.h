@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scenes made of code, for tests of the renderer itself.
+#pragma once
+
+#include <cmath>
+#include <utility>
+
+#include "core/scene.h"
+
+namespace petzval::test {
+
+/// A material that is one thing only: rough, not metallic.
+inline Material diffuse_material(float albedo) {
+    Material m;
+    m.base_color = Rgb(albedo);
+    m.metallic = 0;
+    m.roughness = 1;
+    m.specular = 0;
+    m.double_sided = true;
+    return m;
+}
+
+inline Material emitter_material(float radiance, float albedo = 0.f) {
+    Material m = diffuse_material(albedo);
+    m.emissive = Rgb(radiance);
+    return m;
+}
+
+/// Latitude-longitude sphere; rows >= 2. Normals point outward, smooth normals on demand.
+inline Mesh sphere(V3f centre, float radius, int rows, bool smooth) {
+    Mesh mesh;
+    const int columns = 2 * rows;
+    for (int i = 0; i <= rows; ++i) {
+        for (int j = 0; j < columns; ++j) {
+            const float theta = kPi * static_cast<float>(i) / static_cast<float>(rows);
+            const float phi = 2 * kPi * static_cast<float>(j) / static_cast<float>(columns);
+            const V3f n(std::sin(theta) * std::cos(phi), std::cos(theta),
+                        -std::sin(theta) * std::sin(phi));
+            mesh.positions.push_back(centre + n * radius);
+            if (smooth) mesh.normals.push_back(n);
+        }
+    }
+    const auto at = [&](int i, int j) { return static_cast<uint32_t>(i * columns + j % columns); };
+    for (int i = 0; i < rows; ++i) {
+        for (int j = 0; j < columns; ++j) {
+            if (i > 0) mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i, j + 1)});
+            if (i + 1 < rows)
+                mesh.triangles.push_back({at(i, j + 1), at(i + 1, j), at(i + 1, j + 1)});
+        }
+    }
+    return mesh;
+}
+
+/// A parallelogram corner + s*a + t*b; the front is where cross(a, b) points.
+inline Mesh quad(V3f corner, V3f a, V3f b) {
+    Mesh mesh;
+    mesh.positions = {corner, corner + a, corner + a + b, corner + b};
+    mesh.uv[0] = {V2f(0, 0), V2f(1, 0), V2f(1, 1), V2f(0, 1)};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return mesh;
+}
+
+/// Puts a mesh with a material of its own into world space.
+inline void place(Scene& scene, Mesh mesh, const Material& material) {
+    mesh.material = static_cast<uint32_t>(scene.materials.size());
+    scene.materials.push_back(material);
+    Instance instance;
+    instance.mesh = static_cast<uint32_t>(scene.meshes.size());
+    scene.meshes.push_back(std::move(mesh));
+    scene.instances.push_back(instance);
+}
+
+}  // namespace petzval::test

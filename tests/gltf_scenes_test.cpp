@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "io/error.h"
 #include "tests/support/load_tiny_gltf.h"
 
 namespace petzval {

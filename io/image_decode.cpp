@@ -59,9 +59,12 @@ Image decode_image(const std::vector<uint8_t>& bytes, const std::string& file,
     OIIO::ImageSpec config;
     config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
     config.attribute("oiio:UnassociatedAlpha", 1);
-    const auto input = OIIO::ImageInput::open(fmt::format("memory.{}", ending), &config);
+    // In two steps: OpenImageIO's open in one would offer broken bytes to all its readers.
+    const auto input = OIIO::ImageInput::create(std::string(ending));
     if (!input) throw refuse("cannot be decoded: " + first_line(OIIO::geterror()));
-    const OIIO::ImageSpec& spec = input->spec();
+    OIIO::ImageSpec spec;
+    if (!input->open(fmt::format("memory.{}", ending), spec, config))
+        throw refuse("cannot be decoded: " + first_line(input->geterror()));
     const std::string why =
         size_complaint(spec.width, spec.height, spec.depth, spec.nchannels, bytes.size());
     if (!why.empty()) throw refuse(why);

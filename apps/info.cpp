@@ -20,7 +20,8 @@ void print_list(const char* title, const std::vector<std::string>& lines) {
 
 void add_info_command(CLI::App& app) {
     auto path = std::make_shared<std::filesystem::path>();
-    CLI::App* command = app.add_subcommand("info", "print what a glTF file holds and what of it is honoured");
+    CLI::App* command =
+        app.add_subcommand("info", "print what a glTF file holds and what of it is honoured");
     command->add_option("scene", *path, "glTF scene, .gltf or .glb")->required();
     command->callback([path] {
         const GltfFile file = load_gltf(*path);

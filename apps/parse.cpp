@@ -13,7 +13,8 @@ namespace {
 
 constexpr int kLargestSide_px = 65536;
 
-[[noreturn]] void refuse(const std::string& option, const std::string& text, const std::string& want) {
+[[noreturn]] void refuse(const std::string& option, const std::string& text,
+                         const std::string& want) {
     throw CLI::ValidationError(option, fmt::format("\"{}\" is not {}", text, want));
 }
 
@@ -31,7 +32,8 @@ template <class T>
 std::optional<T> number(std::string_view text) {
     T value{};
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || text.empty()) return std::nullopt;
+    if (error != std::errc() || end != text.data() + text.size() || text.empty())
+        return std::nullopt;
     if constexpr (std::is_floating_point_v<T>)
         if (!std::isfinite(value)) return std::nullopt;
     return value;
@@ -106,7 +108,8 @@ Focus parse_focus(const std::string& option, const std::string& text) {
     std::string_view digits = text;
     if (!digits.empty() && digits.back() == 'm') digits.remove_suffix(1);
     const auto value = number<float>(digits);
-    if (!value || *value <= 0) refuse(option, text, "a distance in metres above 0, a pixel x,y or auto");
+    if (!value || *value <= 0)
+        refuse(option, text, "a distance in metres above 0, a pixel x,y or auto");
     return FocusDistance{*value};
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Words of the command line as values. Each throws CLI::ValidationError, which ends with exit code 2.
+// Words of the command line as values. Each throws CLI::ValidationError, which ends with exit
+// code 2.
 #pragma once
 
 #include <optional>

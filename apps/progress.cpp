@@ -26,7 +26,8 @@ std::string rate_text(double per_s) {
 std::string bar(double fraction) {
     constexpr int width = 30;
     const int full = static_cast<int>(fraction * width);
-    return std::string(static_cast<size_t>(full), '#') + std::string(static_cast<size_t>(width - full), '.');
+    return std::string(static_cast<size_t>(full), '#') +
+           std::string(static_cast<size_t>(width - full), '.');
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ CameraSample ThinLensCamera::sample(const FilmPoint& at, const Bands& bands) con
     const V3f direction{(2.f * at.film.x - 1.f) * tan_half_y_ * lens_.aspect,
                         (1.f - 2.f * at.film.y) * tan_half_y_, -1.f};
     if (lens_.radius_m <= 0.f) return one_path(lens_.to_world, V3f(0.f), direction, bands);
-    const V2f stop = concentric_disk(at.lens) * lens_.radius_m;
+    const V2f stop = uniform_disk(at.lens) * lens_.radius_m;
     const V3f origin{stop.x, stop.y, 0.f};
     return one_path(lens_.to_world, origin, direction * lens_.focus_m - origin, bands);
 }

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/surface.h"
+#include "core/emission.h"
 
 namespace petzval {
 namespace {
@@ -17,42 +17,35 @@ struct Context {
     uint32_t coin;
 };
 
-// What a filter needs to know of the mesh it belongs to.
-struct Cutout {
-    const Scene* scene;
-    uint32_t mesh;
-};
-
-// A pure function of its arguments: Embree may ask twice for one triangle (spatial splits), and the
-// second answer must be the first one.
-bool lets_pass(const Cutout& cutout, uint32_t instance, uint32_t triangle, V2f barycentric,
-               uint32_t coin) {
-    const Mesh& mesh = cutout.scene->meshes[cutout.mesh];
-    const Material& material = cutout.scene->materials[mesh.material];
-    const float alpha = coverage(*cutout.scene, cutout.mesh, triangle, barycentric);
-    if (material.alpha_mode == AlphaMode::Mask) return alpha < material.alpha_cutoff;
-    return to_unit_float(hash32(hash32(coin, instance), triangle)) >= alpha;
-}
-
 uint32_t instance_of(uint32_t inst_id, uint32_t geom_id) {
     return inst_id != RTC_INVALID_GEOMETRY_ID ? inst_id : geom_id;
+}
+
+// A ray passes where a coin that belongs to it and to the triangle says so. A pure function of its
+// arguments: Embree may ask twice for one triangle (spatial splits), and the second answer must be
+// the first one.
+bool lets_pass(const Scene& scene, const RTCHit& hit, uint32_t coin) {
+    const uint32_t instance = instance_of(hit.instID[0], hit.geomID);
+    const float covered = coverage(scene, instance, hit.primID, {hit.u, hit.v});
+    return to_unit_float(hash32(hash32(coin, instance), hit.primID)) >= covered;
 }
 
 // Embree fixes the signature; the packet has one ray, as only the single-ray calls are used.
 void filter(const RTCFilterFunctionNArguments* args) {
     if (args->valid[0] != -1) return;
-    const auto& cutout = *static_cast<const Cutout*>(args->geometryUserPtr);
+    const auto& scene = *static_cast<const Scene*>(args->geometryUserPtr);
     const auto& context = *reinterpret_cast<const Context*>(args->context);
-    const auto& hit = *reinterpret_cast<const RTCHit*>(args->hit);
-    const uint32_t instance = instance_of(hit.instID[0], hit.geomID);
-    if (lets_pass(cutout, instance, hit.primID, {hit.u, hit.v}, context.coin)) args->valid[0] = 0;
+    if (lets_pass(scene, *reinterpret_cast<const RTCHit*>(args->hit), context.coin))
+        args->valid[0] = 0;
 }
 
 RTCRay to_embree(const Ray& r) {
     RTCRay ray;
     ray.org_x = r.origin.x, ray.org_y = r.origin.y, ray.org_z = r.origin.z;
     ray.dir_x = r.direction.x, ray.dir_y = r.direction.y, ray.dir_z = r.direction.z;
-    ray.tnear = 0.f, ray.tfar = r.t_max;
+    // Above 0: in a plane through the origin of an axis nothing rounds, so that no offset moves a ray
+    // off it, and it would meet at 0 what it leaves.
+    ray.tnear = std::numeric_limits<float>::min(), ray.tfar = r.t_max;
     ray.time = 0.f, ray.mask = ~0u, ray.id = 0, ray.flags = 0;
     return ray;
 }
@@ -63,7 +56,6 @@ struct Bvh::Impl {
     RTCDevice device = nullptr;
     RTCScene top = nullptr;
     std::vector<RTCScene> shared;  // one for each mesh that instances share, else null
-    std::vector<Cutout> cutouts;   // one for each mesh; filters point here
     bool has_cutouts = false;
 
     ~Impl() {
@@ -99,7 +91,8 @@ struct Bvh::Impl {
                                    mesh.triangles.size());
         if (scene.materials[mesh.material].cutout()) {
             has_cutouts = true;
-            rtcSetGeometryUserData(geometry, &cutouts[mesh_id]);
+            // Embree wants a pointer to something that may change; the filter only reads.
+            rtcSetGeometryUserData(geometry, const_cast<Scene*>(&scene));
             rtcSetGeometryIntersectFilterFunction(geometry, filter);
             rtcSetGeometryOccludedFilterFunction(geometry, filter);
         }
@@ -114,7 +107,6 @@ Bvh::Bvh(const Scene& scene, Traversal traversal) : impl_(std::make_unique<Impl>
     if (!d.device) d.check();
     d.top = d.new_scene(traversal);
     d.shared.resize(scene.meshes.size(), nullptr);
-    for (uint32_t i = 0; i < scene.meshes.size(); ++i) d.cutouts.push_back({&scene, i});
 
     for (uint32_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];

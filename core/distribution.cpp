@@ -11,20 +11,25 @@ double sum_of(std::span<const float> weights) {
     return std::accumulate(weights.begin(), weights.end(), 0.0);
 }
 
-// One unit for every cell that has weight, the other units in proportion.
+// The weight that makes at least one unit of n cells' share, whatever the others weigh.
+double least_weight(double sum, ptrdiff_t n) {
+    constexpr double slack = 1 + 1e-9;  // for the rounding of the running sum
+    return n <= kDistributionUnits / 2 ? slack * sum / (kDistributionUnits - n) : 0;
+}
+
 void fill_cdf(std::span<const float> weights, double sum, uint32_t* cdf) {
     const auto positive =
         std::count_if(weights.begin(), weights.end(), [](float w) { return w > 0; });
-    const bool fits = positive <= kDistributionUnits / 2;
-    const double scale = (kDistributionUnits - (fits ? positive : 0)) / sum;
-    double running = 0;
-    uint32_t seen = 0;
+    const double least = least_weight(sum, positive);
+    const auto lifted = [least](float w) { return w > 0 ? std::max<double>(w, least) : 0.0; };
+    double total = 0, running = 0;
+    for (const float w : weights) total += lifted(w);
+    const double scale = kDistributionUnits / total;
     cdf[0] = 0;
     for (size_t i = 0; i < weights.size(); ++i) {
-        running += weights[i];
-        seen += fits && weights[i] > 0;
-        // Rounding is monotone, so a cell without weight keeps the value of its neighbour.
-        cdf[i + 1] = seen + static_cast<uint32_t>(running * scale + 0.5);
+        running += lifted(weights[i]);
+        // Rounding is monotone: no weight, no width, and a unit of weight has a unit of width.
+        cdf[i + 1] = static_cast<uint32_t>(running * scale + 0.5);
     }
 }
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "core/scene.h"
+
 namespace petzval {
 namespace {
 
@@ -12,12 +14,12 @@ T interpolated(const std::vector<T>& values, const std::array<uint32_t, 3>& corn
            values[corner[2]] * b.y;
 }
 
-}  // namespace
-
 V2f uv_at(const Mesh& mesh, uint32_t triangle, V2f barycentric, int uv_set) {
     const auto& uv = mesh.uv[uv_set];
     return uv.empty() ? V2f(0.f) : interpolated(uv, mesh.triangles[triangle], barycentric);
 }
+
+}  // namespace
 
 Rgb emitted_radiance(const Scene& scene, uint32_t instance, uint32_t triangle, V2f barycentric,
                      bool front) {

@@ -23,7 +23,7 @@ double profile(FilterKind kind, double x) {
 
 }  // namespace
 
-Filter::Filter(FilterKind kind, float radius_px) : radius_px_(radius_px) {
+Filter::Filter(FilterKind kind, float radius_px) : kind_(kind), radius_px_(radius_px) {
     constexpr int kCells = 1024;
     std::array<float, kCells> weights;
     for (int i = 0; i < kCells; ++i)

@@ -20,9 +20,13 @@ class Filter {
     /// Offset from the pixel's centre, in pixels, distributed as the filter. u in [0, 1)^2.
     [[nodiscard]] V2f sample(V2f u) const;
 
+    [[nodiscard]] FilterKind kind() const { return kind_; }
+    [[nodiscard]] float radius_px() const { return radius_px_; }
+
   private:
     [[nodiscard]] float sample1(float u) const;
 
+    FilterKind kind_;
     float radius_px_;
     Piecewise1D profile_;  ///< along one axis
 };

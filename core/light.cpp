@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/emission.h"
+#include "core/scene.h"
 #include "core/warp.h"
 
 namespace petzval {
@@ -51,6 +52,17 @@ std::optional<LightSample> sample(const Scene&, const SunLight& light, const V3f
         -light.direction, {}, true, uplift_radiance(light.illuminance_lx, bands), 1.f, true};
 }
 
+// How far from the triangle's plane a point of it may seem to lie: the roundings of its own
+// coordinates (interpolation, placement), and those of the ray's, which grow with the distance.
+V3f plane_error(const Scene& scene, const TriangleLight& light, const V3f& target,
+                const V3f& to_light, const std::array<V3f, 3>& corner) {
+    const V3f corners = abs(corner[0]) + abs(corner[1]) + abs(corner[2]) + abs(target);
+    V3f error = (corners + abs(to_light)) * rounding_bound(8);
+    if (scene.instances[light.instance].identity) return error;
+    const M44f& m = scene.instances[light.instance].to_world;
+    return error + abs(V3f(m[3][0], m[3][1], m[3][2])) * rounding_bound(8);
+}
+
 std::optional<LightSample> sample(const Scene& scene, const TriangleLight& light, const V3f& p,
                                   V2f u, const Bands& bands) {
     const auto corner = triangle_corners(scene, light.instance, light.triangle);
@@ -60,15 +72,21 @@ std::optional<LightSample> sample(const Scene& scene, const TriangleLight& light
     const V3f target = corner[0] + edge1 * b.x + edge2 * b.y;
     const V3f to_light = target - p;
     const float distance2 = to_light.dot(to_light), facing = -cross.dot(to_light);
-    const float pdf = 2.f * distance2 * std::sqrt(distance2) / std::fabs(facing);
+    const float distance = std::sqrt(distance2);
+    const float pdf = 2.f * distance2 * distance / std::fabs(facing);
     if (!(pdf > 0.f && pdf < kInfinity)) return std::nullopt;
 
     const bool front = (facing > 0.f) != scene.instances[light.instance].flips;
     const Rgb emitted = emitted_radiance(scene, light.instance, light.triangle, b, front) *
                         coverage(scene, light.instance, light.triangle, b);
     if (!(hmax(emitted.v) > 0.f)) return std::nullopt;
-    return LightSample{to_light / std::sqrt(distance2), target, false,
-                       uplift_radiance(emitted, bands), pdf,    false};
+    const V3f error = plane_error(scene, light, target, to_light, corner);
+    return LightSample{to_light / distance,
+                       offset_origin(target, error, unit(cross), -to_light),
+                       false,
+                       uplift_radiance(emitted, bands),
+                       pdf,
+                       false};
 }
 
 std::optional<LightSample> sample(const Scene& scene, const SkyLight&, const V3f&, V2f u,

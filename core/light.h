@@ -5,12 +5,11 @@
 #include <optional>
 #include <variant>
 
+#include "core/emission.h"
 #include "core/math.h"
 #include "core/spectrum.h"
 
 namespace petzval {
-
-struct Scene;
 
 /// KHR_lights_punctual "point".
 struct PointLight {
@@ -40,7 +39,7 @@ using Light = std::variant<PointLight, SpotLight, SunLight, TriangleLight, SkyLi
 /// Light that arrives at a point, before anything in between is known.
 struct LightSample {
     V3f direction;  ///< unit, from the point to the light
-    V3f target;     ///< where a shadow ray ends; meaningless when at_infinity
+    V3f target;     ///< where a shadow ray ends, clear of the light; meaningless when at_infinity
     bool at_infinity;
     f4 radiance;  ///< for a delta light: the irradiance on a surface that faces it
     float pdf;    ///< 1/sr; 1 for a delta light

@@ -19,7 +19,7 @@ enum class Dim : uint32_t {
     BsdfLobe,
     Bsdf,
     LightPick,
-    Light,
+    LightPoint,
     Roulette,
     Count
 };

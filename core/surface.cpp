@@ -122,21 +122,7 @@ f4 vertex_colour(const Surface& s) {
     if (s.mesh->colours.empty()) return splat(1.f);
     const V4f c =
         interpolate(s.mesh->colours, s.mesh->triangles[s.hit.triangle], s.hit.barycentric);
-    return {c.x, c.y, c.z, c.w};
-}
-
-float coverage(const Scene& scene, uint32_t mesh_id, uint32_t triangle, V2f barycentric) {
-    const Mesh& mesh = scene.meshes[mesh_id];
-    const Material& m = scene.materials[mesh.material];
-    const auto& corner = mesh.triangles[triangle];
-    float alpha = m.alpha;
-    if (m.base_color_texture.present()) {
-        const auto& uv = mesh.uv[m.base_color_texture.uv_set];
-        const V2f at = uv.empty() ? V2f(0, 0) : interpolate(uv, corner, barycentric);
-        alpha *= sample_texture(scene.images, m.base_color_texture, at)[3];
-    }
-    if (!mesh.colours.empty()) alpha *= interpolate(mesh.colours, corner, barycentric).w;
-    return alpha;
+    return f4{c.x, c.y, c.z, c.w};
 }
 
 ShadingInput read_material(const Scene& scene, const Surface& s, const V3f& wo,

@@ -26,9 +26,6 @@ struct Surface {
 [[nodiscard]] Surface make_surface(const Scene&, const V3f& direction, const Hit&);
 /// COLOR_0 at the hit as linear RGBA; 1 where the mesh has none.
 [[nodiscard]] f4 vertex_colour(const Surface&);
-/// Coverage (alpha) of the base colour at a point of a triangle, 0 to 1.
-[[nodiscard]] float coverage(const Scene&, uint32_t mesh, uint32_t triangle, V2f barycentric);
-
 /// The material at the hit, textures read: what the Bsdf is made from, and what glows.
 struct ShadingInput {
     BsdfInput bsdf;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/bvh.h"
+#include "core/emission.h"
 #include "core/film.h"
 #include "core/light_choice.h"
 #include "core/sampler.h"

@@ -16,6 +16,10 @@ struct PathTracer<Caster>::Vertex {
     bool light_sampled = false;  ///< next-event estimation could have found what the ray finds
 };
 
+/// A shadow ray ends this share of the way to the light, as traversal knows distances to a few
+/// roundings only and the light must not shadow itself. Relative: no scale of a scene matters.
+inline constexpr float kShadowLength = 0.9999f;
+
 /// Weight of a sample drawn with density a where b might have drawn it too. Veach 1997, "Robust
 /// Monte Carlo Methods for Light Transport Simulation", equation 9.13 with beta = 2.
 [[nodiscard]] inline float power_heuristic(float a, float b) {
@@ -68,7 +72,7 @@ f4 PathTracer<Caster>::direct_light(const Surface& s, const Frame& frame, const 
     const auto pick = lights_.pick(sampler.get1(Dim::LightPick, depth));
     if (!pick) return f4{};
     const auto light = sample_light(scene_, scene_.lights[pick->light], s.p,
-                                    sampler.get2(Dim::Light, depth), bands);
+                                    sampler.get2(Dim::LightPoint, depth), bands);
     if (!light) return f4{};
     const V3f wi = frame.to_local(light->direction);
     // Shading and geometric normal must agree on the side, or light would leak through.
@@ -83,7 +87,7 @@ f4 PathTracer<Caster>::direct_light(const Surface& s, const Frame& frame, const 
         shadow.direction = light->direction;
     } else {
         shadow.direction = light->target - shadow.origin;
-        shadow.t_max = kOneMinus;
+        shadow.t_max = kShadowLength;
     }
     if (caster_.has_cutouts()) shadow.coin = sampler.get_bits(Dim::Coverage, 2 * depth + 1);
     ++stats.shadow_rays;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "camera/camera.h"
+#include "core/colour.h"
 #include "core/film.h"
 #include "core/filter.h"
 #include "core/sampler.h"

@@ -10,18 +10,24 @@ namespace {
 
 const char* name_of(SamplerKind kind) {
     switch (kind) {
-        case SamplerKind::Owen: return "owen";
-        case SamplerKind::Sobol: return "sobol";
-        case SamplerKind::Independent: return "independent";
+        case SamplerKind::Owen:
+            return "owen";
+        case SamplerKind::Sobol:
+            return "sobol";
+        case SamplerKind::Independent:
+            return "independent";
     }
     return "";
 }
 
 const char* name_of(FilterKind kind) {
     switch (kind) {
-        case FilterKind::Box: return "box";
-        case FilterKind::Gauss: return "gauss";
-        case FilterKind::BlackmanHarris: return "blackman-harris";
+        case FilterKind::Box:
+            return "box";
+        case FilterKind::Gauss:
+            return "gauss";
+        case FilterKind::BlackmanHarris:
+            return "blackman-harris";
     }
     return "";
 }
@@ -68,7 +74,8 @@ Picture develop(const Film& film, const Session& session, const RenderJob& job,
         for (int i = 0; i < info.channel_count; ++i)
             picture.channels.push_back(fmt::format("{}.{}", info.name, info.channels[i]));
     }
-    picture.pixels.reserve(picture.channels.size() * static_cast<size_t>(picture.width) * picture.height);
+    picture.pixels.reserve(picture.channels.size() * static_cast<size_t>(picture.width) *
+                           picture.height);
     for (int y = crop.y0; y < crop.y1; ++y) {
         for (int x = crop.x0; x < crop.x1; ++x) {
             const V4f colour = film.colour(x, y);

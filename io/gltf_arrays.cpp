@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/gltf_arrays.h"
 
-#include <fmt/format.h>
 #include <tiny_gltf.h>
 
 #include <algorithm>
 #include <cstring>
 #include <functional>
 
-#include "io/error.h"
+#include "io/gltf_accessor.h"
 
 namespace petzval {
 namespace {
@@ -30,12 +29,18 @@ T load(const uint8_t* bytes) {
 template <class Visit>
 void with_component_type(int component_type, Visit&& visit) {
     switch (component_type) {
-        case TINYGLTF_COMPONENT_TYPE_BYTE: return visit(int8_t{});
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return visit(uint8_t{});
-        case TINYGLTF_COMPONENT_TYPE_SHORT: return visit(int16_t{});
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return visit(uint16_t{});
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return visit(uint32_t{});
-        default: return visit(float{});
+        case TINYGLTF_COMPONENT_TYPE_BYTE:
+            return visit(int8_t{});
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+            return visit(uint8_t{});
+        case TINYGLTF_COMPONENT_TYPE_SHORT:
+            return visit(int16_t{});
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+            return visit(uint16_t{});
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+            return visit(uint32_t{});
+        default:
+            return visit(float{});
     }
 }
 
@@ -69,48 +74,28 @@ class Reader {
   public:
     Reader(const GltfModel& gltf, int index)
         : gltf_(gltf),
-          index_(index),
           accessor_(gltf.typed.accessors.at(static_cast<size_t>(index))),
-          width_(tinygltf::GetNumComponentsInType(static_cast<uint32_t>(accessor_.type))),
-          component_size_(tinygltf::GetComponentSizeInBytes(
-              static_cast<uint32_t>(accessor_.componentType))) {}
+          width_(tinygltf::GetNumComponentsInType(static_cast<uint32_t>(accessor_.type))) {}
 
     [[nodiscard]] size_t count() const { return accessor_.count; }
+    [[nodiscard]] int width() const { return width_; }
 
-    void require(bool condition, const char* expected) const {
-        if (!condition) fail(json_path("accessors", index_), std::string("must be ") + expected);
-    }
-    void require_type(int type, const char* expected) const {
-        require(accessor_.type == type, expected);
-    }
-    void require_unsigned() const {
-        const int type = accessor_.componentType;
-        require(type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
-                    type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
-                    type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
-                "of unsigned integers");
-    }
-    void require_float() const {
-        require(accessor_.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT, "of floats");
-    }
-    [[nodiscard]] bool is(int type) const { return accessor_.type == type; }
-
-    /// Fills rows that hold what an undefined element reads as.
+    /// Fills rows of `row` numbers, which must hold what an undefined element reads as.
     template <class Number>
     void read(Number* to, int row) const {
         if (accessor_.bufferView >= 0) {
             const size_t stride =
-                gltf_.typed.bufferViews.at(static_cast<size_t>(accessor_.bufferView)).byteStride;
-            const Elements from = elements(accessor_.bufferView, accessor_.byteOffset,
-                                           accessor_.count, width_ * component_size_, stride);
-            decode_as(from, to, row, std::identity{});
+                gltf_.typed.bufferViews[static_cast<size_t>(accessor_.bufferView)].byteStride;
+            decode_as(elements(accessor_.bufferView, accessor_.byteOffset, accessor_.count,
+                               element_size(), stride),
+                      to, row, std::identity{});
         }
         if (accessor_.sparse.isSparse) read_sparse(to, row);
     }
 
   private:
-    [[noreturn]] void fail(const std::string& place, const std::string& message) const {
-        throw InputError(gltf_.file, place, message);
+    [[nodiscard]] size_t element_size() const {
+        return static_cast<size_t>(width_) * component_size(accessor_.componentType);
     }
 
     template <class Number, class Slot>
@@ -125,51 +110,37 @@ class Reader {
         const auto& sparse = accessor_.sparse;
         const auto count = static_cast<size_t>(sparse.count);
         const int type = sparse.indices.componentType;
-        const int size = tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(type));
-        const Elements index_bytes =
+        const Elements indices =
             elements(sparse.indices.bufferView, static_cast<size_t>(sparse.indices.byteOffset),
-                     count, size, 0);
+                     count, component_size(type), 0);
         std::vector<uint32_t> slots(count);
         with_component_type(type, [&](auto component) {
-            decode<decltype(component)>(index_bytes, 1, false, slots.data(), 1, std::identity{});
+            decode<decltype(component)>(indices, 1, false, slots.data(), 1, std::identity{});
         });
-        for (size_t i = 0; i < count; ++i)
-            if (slots[i] >= accessor_.count)
-                fail(json_path("accessors", index_, "sparse", "indices"),
-                     fmt::format("index {} is {}, but the accessor has {} elements", i, slots[i],
-                                 accessor_.count));
         const Elements values =
             elements(sparse.values.bufferView, static_cast<size_t>(sparse.values.byteOffset), count,
-                     width_ * component_size_, 0);
+                     element_size(), 0);
         decode_as(values, to, row, [&](size_t i) { return slots[i]; });
     }
 
-    /// stride 0: tightly packed.
-    Elements elements(int view_index, size_t offset, size_t count, int element_size,
-                      size_t stride) const {
-        const auto& view = gltf_.typed.bufferViews.at(static_cast<size_t>(view_index));
-        const auto& bytes = gltf_.source.buffers.at(static_cast<size_t>(view.buffer));
-        const auto size = static_cast<size_t>(element_size);
-        if (stride == 0) stride = size;
-        const size_t begin = view.byteOffset + offset;
-        if (element_size <= 0 || begin > bytes.size() ||
-            (count > 0 && (bytes.size() - begin < size ||
-                           (count - 1) > (bytes.size() - begin - size) / stride)))
-            fail(json_path("accessors", index_), "reaches beyond the end of its buffer");
-        return {bytes.data() + begin, stride, count};
+    /// None where the buffer is undefined. stride 0: tightly packed.
+    [[nodiscard]] Elements elements(int view_index, size_t offset, size_t count, size_t size,
+                                    size_t stride) const {
+        const auto& view = gltf_.typed.bufferViews[static_cast<size_t>(view_index)];
+        const auto& bytes = gltf_.source.buffers[static_cast<size_t>(view.buffer)];
+        if (bytes.empty()) return {};
+        return {bytes.data() + view.byteOffset + offset, stride == 0 ? size : stride, count};
     }
 
     const GltfModel& gltf_;
-    int index_;
     const tinygltf::Accessor& accessor_;
-    int width_, component_size_;
+    int width_;
 };
 
 }  // namespace
 
 std::vector<V2f> read_vec2(const GltfModel& gltf, int accessor) {
     const Reader reader(gltf, accessor);
-    reader.require_type(TINYGLTF_TYPE_VEC2, "VEC2");
     std::vector<V2f> values(reader.count(), V2f(0.f));
     if (!values.empty()) reader.read(values.front().getValue(), 2);
     return values;
@@ -177,7 +148,6 @@ std::vector<V2f> read_vec2(const GltfModel& gltf, int accessor) {
 
 std::vector<V3f> read_vec3(const GltfModel& gltf, int accessor) {
     const Reader reader(gltf, accessor);
-    reader.require_type(TINYGLTF_TYPE_VEC3, "VEC3");
     std::vector<V3f> values(reader.count(), V3f(0.f));
     if (!values.empty()) reader.read(values.front().getValue(), 3);
     return values;
@@ -185,27 +155,22 @@ std::vector<V3f> read_vec3(const GltfModel& gltf, int accessor) {
 
 std::vector<V4f> read_vec4(const GltfModel& gltf, int accessor) {
     const Reader reader(gltf, accessor);
-    const bool three = reader.is(TINYGLTF_TYPE_VEC3);
-    reader.require(three || reader.is(TINYGLTF_TYPE_VEC4), "VEC4 or VEC3");
-    std::vector<V4f> values(reader.count(), V4f(0.f, 0.f, 0.f, three ? 1.f : 0.f));
+    std::vector<V4f> values(reader.count(), V4f(0.f, 0.f, 0.f, reader.width() == 3 ? 1.f : 0.f));
     if (!values.empty()) reader.read(&values.front().x, 4);
     return values;
 }
 
 std::vector<M44d> read_matrices(const GltfModel& gltf, int accessor) {
     const Reader reader(gltf, accessor);
-    reader.require_type(TINYGLTF_TYPE_MAT4, "MAT4");
-    reader.require_float();
     std::vector<M44d> values(reader.count(), M44d(0.0));
-    // Columns of a matrix for column vectors, as the file has them, are rows of one for row vectors.
+    // Columns of a matrix for column vectors, as the file has them, are rows of one for row
+    // vectors.
     if (!values.empty()) reader.read(values.front().getValue(), 16);
     return values;
 }
 
 std::vector<uint32_t> read_indices(const GltfModel& gltf, int accessor) {
     const Reader reader(gltf, accessor);
-    reader.require_type(TINYGLTF_TYPE_SCALAR, "SCALAR");
-    reader.require_unsigned();
     std::vector<uint32_t> values(reader.count(), 0u);
     if (!values.empty()) reader.read(values.data(), 1);
     return values;
@@ -213,8 +178,6 @@ std::vector<uint32_t> read_indices(const GltfModel& gltf, int accessor) {
 
 std::vector<std::array<uint32_t, 4>> read_joints(const GltfModel& gltf, int accessor) {
     const Reader reader(gltf, accessor);
-    reader.require_type(TINYGLTF_TYPE_VEC4, "VEC4");
-    reader.require_unsigned();
     std::vector<std::array<uint32_t, 4>> values(reader.count());
     if (!values.empty()) reader.read(values.front().data(), 4);
     return values;

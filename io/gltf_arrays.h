@@ -12,7 +12,7 @@ namespace petzval {
 
 /// The readers below decode the accessor of that index. Integers become floats, normalised ones as
 /// glTF 2.0, section 3.11 has it; elements that the file leaves undefined are 0; sparse values are
-/// in place. They throw InputError where the accessor is of another shape.
+/// in place. That the accessor has the shape asked for was checked when the file was read.
 [[nodiscard]] std::vector<V2f> read_vec2(const GltfModel&, int accessor);
 [[nodiscard]] std::vector<V3f> read_vec3(const GltfModel&, int accessor);
 /// VEC4, or VEC3 with a fourth component of 1.

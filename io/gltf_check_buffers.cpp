@@ -28,7 +28,8 @@ void check_stride(const JsonCursor& view, uint64_t length) {
         view.fail("byteStride", "does not go with the target of an index buffer");
 }
 
-void check_buffer_view(const JsonCursor& view, const std::vector<JsonCursor>& buffers) {
+void check_buffer_view(const GltfCheck& check, const JsonCursor& view,
+                       const std::vector<JsonCursor>& buffers) {
     const size_t buffer = view.required_index("buffer", buffers.size(), "buffer");
     const uint64_t offset = view.integer_or("byteOffset", 0), length = view.integer("byteLength");
     const uint64_t size = buffers[buffer].integer("byteLength");
@@ -36,6 +37,10 @@ void check_buffer_view(const JsonCursor& view, const std::vector<JsonCursor>& bu
     if (offset > size || length > size - offset)
         view.fail(fmt::format("ends at byte {}, beyond the {} bytes of buffer {}", offset + length,
                               size, buffer));
+    if (check.source.buffers[buffer].empty() && view.extension("EXT_meshopt_compression"))
+        view.fail(
+            "its data is only in EXT_meshopt_compression, which is not supported; export it "
+            "without");
     check_stride(view, length);
     if (view.has("target")) (void)view.integer("target");
 }
@@ -110,7 +115,7 @@ class AccessorCheck {
                               element_size(accessor.type, accessor.component_type, false),
                               component_size(accessor.component_type));
         }
-        if (accessor.bytes.empty()) check_.budget.ask(saturating(accessor.count, size), json);
+        check_.budget.ask(saturating(accessor.count, size), json);
     }
 
     GltfSparse read_sparse(const JsonCursor& json, const GltfAccessor& accessor) {
@@ -179,7 +184,7 @@ void check_buffers(const GltfCheck& check) {
 void check_buffer_views(const GltfCheck& check) {
     const auto buffers = check.root.objects("buffers");
     for (const JsonCursor& view : check.root.objects("bufferViews"))
-        check_buffer_view(view, buffers);
+        check_buffer_view(check, view, buffers);
 }
 
 void check_accessors(GltfCheck& check) {

@@ -3,6 +3,7 @@
 
 #include <set>
 
+#include "io/error.h"
 #include "io/gltf_check.h"
 #include "io/gltf_extensions.h"
 #include "io/json_parse.h"
@@ -64,38 +65,40 @@ Names read_names(const JsonCursor& root, const char* key) {
 /// limited, so recursion is safe.
 class Walk {
   public:
-    Walk(const JsonCursor& root, const Names& used) : root_(root), used_(used) {}
+    Walk(const std::string& file, const Names& used) : file_(file), used_(used) {}
 
     void visit(const json& value, std::string_view key, const std::string& path) const {
         if (value.is_object()) check(value, key, path);
         if (!value.is_structured()) return;
         for (const auto& [name, child] : value.items()) {
             if (!child.is_structured() || (value.is_object() && name == "extras")) continue;
-            visit(child, value.is_array() ? key : name, path + "/" + name);
+            visit(child, value.is_array() ? key : name, child_path(path, name));
         }
     }
 
   private:
+    static std::string child_path(const std::string& path, const std::string& name) {
+        return path + "/" + printable(name);
+    }
+
     void check(const json& object, std::string_view key, const std::string& path) const {
         const auto at = object.find("extensions");
         if (at == object.end()) return;
-        const std::string place = path + "/extensions";
+        const std::string place = child_path(path, "extensions");
         if (!at->is_object()) fail(place, "must be an object");
         for (const auto& [name, content] : at->items()) {
-            const std::string shown = printable(name);
-            if (!content.is_object()) fail(place + "/" + shown, "must be an object");
-            if (!used_.contains(name))
-                fail(place + "/" + shown, "is not declared; list it in /extensionsUsed");
-            if (!is_at_home(name, key))
-                fail(place + "/" + shown, "stands where this extension has no meaning");
+            const std::string where = child_path(place, name);
+            if (!content.is_object()) fail(where, "must be an object");
+            if (!used_.contains(name)) fail(where, "is not declared; list it in /extensionsUsed");
+            if (!is_at_home(name, key)) fail(where, "stands where this extension has no meaning");
         }
     }
 
     [[noreturn]] void fail(const std::string& path, const char* message) const {
-        root_.fail(std::string_view(path).substr(1), message);
+        throw InputError(file_, path, message);
     }
 
-    const JsonCursor& root_;
+    const std::string& file_;
     const Names& used_;
 };
 
@@ -116,9 +119,10 @@ void check_extensions(GltfCheck& check) {
     }
     for (const std::string& name : used)
         if (!is_supported_gltf_extension(name))
-            check.warn(check.root,
-                       "/extensionsUsed: " + printable(name) + " is not supported and is ignored");
-    Walk(check.root, used).visit(check.root.value(), "", "");
+            check.source.warnings.push_back("/extensionsUsed: " + printable(name) +
+                                            " is not supported and is ignored");
+    const std::string file = check.source.path.string();
+    Walk(file, used).visit(check.root.value(), "", "");
 }
 
 }  // namespace petzval

@@ -21,8 +21,7 @@ struct Semantic {
     bool custom = false;
 };
 
-/// Allowed formats of an attribute: components are f(loat), i8, u8, i16, u16, with n for
-/// normalized.
+/// Allowed formats of an attribute; a component's name ends in n when it is normalized.
 struct Formats {
     std::string_view base;
     bool numbered;
@@ -34,18 +33,18 @@ const std::vector<Formats>& formats() {
         {"POSITION",
          false,
          {"VEC3"},
-         {"f"},
-         {"i8", "i8n", "u8", "u8n", "i16", "i16n", "u16", "u16n"}},
-        {"NORMAL", false, {"VEC3"}, {"f"}, {"i8n", "i16n"}},
-        {"TANGENT", false, {"VEC4"}, {"f"}, {"i8n", "i16n"}},
+         {"float"},
+         {"int8", "int8n", "uint8", "uint8n", "int16", "int16n", "uint16", "uint16n"}},
+        {"NORMAL", false, {"VEC3"}, {"float"}, {"int8n", "int16n"}},
+        {"TANGENT", false, {"VEC4"}, {"float"}, {"int8n", "int16n"}},
         {"TEXCOORD",
          true,
          {"VEC2"},
-         {"f", "u8n", "u16n"},
-         {"i8", "i8n", "u8", "i16", "i16n", "u16"}},
-        {"COLOR", true, {"VEC3", "VEC4"}, {"f", "u8n", "u16n"}, {}},
-        {"JOINTS", true, {"VEC4"}, {"u8", "u16"}, {}},
-        {"WEIGHTS", true, {"VEC4"}, {"f", "u8n", "u16n"}, {}}};
+         {"float", "uint8n", "uint16n"},
+         {"int8", "int8n", "uint8", "int16", "int16n", "uint16"}},
+        {"COLOR", true, {"VEC3", "VEC4"}, {"float", "uint8n", "uint16n"}, {}},
+        {"JOINTS", true, {"VEC4"}, {"uint8", "uint16"}, {}},
+        {"WEIGHTS", true, {"VEC4"}, {"float", "uint8n", "uint16n"}, {}}};
     return table;
 }
 
@@ -60,8 +59,9 @@ bool lists(const std::vector<std::string_view>& list, std::string_view word) {
 }
 
 std::string component_name(const GltfAccessor& accessor) {
-    static const std::map<int, std::string> names = {{5120, "i8"},  {5121, "u8"},  {5122, "i16"},
-                                                     {5123, "u16"}, {5125, "u32"}, {5126, "f"}};
+    static const std::map<int, std::string> names = {{5120, "int8"},   {5121, "uint8"},
+                                                     {5122, "int16"},  {5123, "uint16"},
+                                                     {5125, "uint32"}, {5126, "float"}};
     const auto at = names.find(accessor.component_type);
     return (at == names.end() ? "unknown" : at->second) + (accessor.normalized ? "n" : "");
 }
@@ -116,8 +116,10 @@ class MeshCheck {
         const Attributes found = read_attributes(attributes, false);
         const uint64_t vertices = found.empty() ? 0 : check_.accessors[found.begin()->second].count;
         check_counts(attributes, found, vertices);
+        check_stored(primitive, found);
         const uint64_t texcoords = check_sets(attributes, found);
         if (primitive.has("indices")) check_indices(primitive);
+        ask_for_shared(primitive, found, vertices);
         if (primitive.integer_or("mode", 4) > 6) check_.warn(primitive, "mode is unknown");
         const auto material = primitive.index("material", texcoords_needed_.size(), "material");
         if (material && texcoords_needed_[*material] > texcoords)
@@ -143,7 +145,6 @@ class MeshCheck {
             else
                 check_format(attributes, name, *find_formats(semantic->base), accessor, is_target);
             check_layout(attributes, name, index);
-            ask_for_repeat(attributes, index);
             found[name] = index;
         }
         return found;
@@ -185,12 +186,19 @@ class MeshCheck {
                                               first, index, *accessor.view));
     }
 
-    /// A loader may copy an accessor for each primitive that uses it.
-    void ask_for_repeat(const JsonCursor& place, size_t index) {
-        const GltfAccessor& accessor = check_.accessors[index];
-        if (seen_.insert(index).second) return;
-        check_.budget.ask(
-            accessor.count * element_size(accessor.type, accessor.component_type, true), place);
+    /// A loader may keep a copy of its vertices for each primitive that shares them with another.
+    void ask_for_shared(const JsonCursor& primitive, const Attributes& found, uint64_t vertices) {
+        bool shared = false;
+        uint64_t size = 0;
+        for (const auto& [unused, index] : found) {
+            const GltfAccessor& accessor = check_.accessors[index];
+            size += element_size(accessor.type, accessor.component_type, true);
+            shared |= !seen_.insert(index).second;
+        }
+        if (!shared) return;
+        const auto indices = primitive.index("indices", accessors_.size(), "accessor");
+        const uint64_t used = indices ? check_.accessors[*indices].count : vertices;
+        check_.budget.ask(std::min(used, vertices) * size, primitive);
     }
 
     void check_counts(const JsonCursor& attributes, const Attributes& found, uint64_t vertices) {
@@ -199,6 +207,16 @@ class MeshCheck {
                 attributes.fail(name, fmt::format("accessor {} has {} elements, but another "
                                                   "attribute has {}",
                                                   index, check_.accessors[index].count, vertices));
+    }
+
+    /// A compressed primitive may or may not hold its vertices plainly as well.
+    void check_stored(const JsonCursor& primitive, const Attributes& found) const {
+        if (!primitive.extension("KHR_draco_mesh_compression")) return;
+        for (const auto& [unused, index] : found)
+            if (!check_.accessors[index].view)
+                primitive.fail(
+                    "its vertices are only in KHR_draco_mesh_compression, which is not supported; "
+                    "export it without");
     }
 
     /// Sets count from 0 without gaps; returns how many TEXCOORD_n there are.
@@ -217,13 +235,12 @@ class MeshCheck {
         const size_t index = primitive.required_index("indices", accessors_.size(), "accessor");
         const GltfAccessor& accessor = check_.accessors[index];
         const std::string component = component_name(accessor);
-        if (accessor.type != "SCALAR" || !lists({"u8", "u16", "u32"}, component))
+        if (accessor.type != "SCALAR" || !lists({"uint8", "uint16", "uint32"}, component))
             primitive.fail("indices", fmt::format("accessor {} is {} of {}, not SCALAR of an "
                                                   "unsigned integer",
                                                   index, printable(accessor.type), component));
         if (accessor.view && views_[*accessor.view].has("byteStride"))
             primitive.fail("indices", "their bufferView must not have a byteStride");
-        ask_for_repeat(primitive, index);
     }
 
     void check_target(const JsonCursor& target, const Attributes& base, uint64_t vertices) {

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "io/gltf_check.h"
+#include "io/json_parse.h"
 
 namespace petzval {
 namespace {
@@ -40,7 +41,9 @@ void check_texture(const GltfCheck& check, const JsonCursor& texture) {
     const auto extensions = texture.find_object("extensions");
     if (!extensions) return;
     for (const auto& [name, unused] : extensions->value().items())
-        (void)extensions->object(name.c_str()).index("source", images, "image");
+        if (extensions->object(name.c_str()).index("source", images, "image") && !source)
+            texture.fail("its image is only in " + printable(name) +
+                         ", which is not supported; export it with PNG or JPEG");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 #include "io/json_cursor.h"
@@ -14,22 +15,26 @@ namespace petzval {
 namespace {
 
 using Bytes = std::vector<uint8_t>;
+using MimeTypes = std::vector<std::string_view>;
 
 /// Reads what a "uri" names, and keeps count of it.
 class Fetcher {
   public:
     Fetcher(GltfSource& source, GltfBudget& budget) : source_(source), budget_(budget) {}
 
-    Bytes fetch(const JsonCursor& owner, std::string* mime_type) {
+    /// mime_types: what a data URI may say that it is; empty: anything.
+    Bytes fetch(const JsonCursor& owner, const MimeTypes& mime_types) {
         const std::string uri = owner.text("uri");
-        return is_data_uri(uri) ? from_data(owner, uri, mime_type) : from_file(owner, uri);
+        return is_data_uri(uri) ? from_data(owner, uri, mime_types) : from_file(owner, uri);
     }
 
   private:
-    Bytes from_data(const JsonCursor& owner, const std::string& uri, std::string* mime_type) {
+    Bytes from_data(const JsonCursor& owner, const std::string& uri, const MimeTypes& types) {
         auto data = parse_data_uri(uri);
         if (!data) owner.fail("uri", "is not a valid data URI; it must hold base64");
-        *mime_type = data->mime_type;
+        if (!types.empty() && std::find(types.begin(), types.end(), data->mime_type) == types.end())
+            owner.fail("uri", fmt::format("holds \"{}\" instead of {}", printable(data->mime_type),
+                                          types.front()));
         return std::move(data->bytes);
     }
 
@@ -58,8 +63,7 @@ class Fetcher {
 };
 
 Bytes read_buffer(const JsonCursor& buffer, Fetcher& fetcher) {
-    std::string mime_type;
-    Bytes bytes = fetcher.fetch(buffer, &mime_type);
+    Bytes bytes = fetcher.fetch(buffer, {"application/octet-stream", "application/gltf-buffer"});
     const uint64_t length = buffer.integer("byteLength");
     if (bytes.size() < length)
         buffer.fail(fmt::format("byteLength is {}, but there are {} bytes", length, bytes.size()));
@@ -75,9 +79,8 @@ Bytes buffer_from_chunk(const JsonCursor& buffer, std::span<const uint8_t> bin) 
     return {bin.begin(), bin.begin() + ptrdiff_t(length)};
 }
 
-Bytes image_from_view(GltfSource& source, const JsonCursor& root, const JsonCursor& image,
-                      GltfBudget& budget) {
-    const auto views = root.objects("bufferViews");
+Bytes image_from_view(GltfSource& source, const std::vector<JsonCursor>& views,
+                      const JsonCursor& image, GltfBudget& budget) {
     const JsonCursor& view = views[image.required_index("bufferView", views.size(), "bufferView")];
     const Bytes& buffer = source.buffers[view.integer("buffer")];
     if (buffer.empty()) {
@@ -107,19 +110,23 @@ void read_buffers(GltfSource& source, const GltfContainer& container, GltfBudget
             source.buffers.push_back(buffer_from_chunk(buffer, *container.bin));
         else if (first && container.binary)
             buffer.fail("has no uri, and the file has no BIN chunk; the file is cut short");
-        else
+        else {
             source.buffers.emplace_back();
+            source.warnings.push_back(buffer.path() + ": has no data; reads as zeros");
+        }
     }
 }
 
 void read_images(GltfSource& source, GltfBudget& budget) {
     const std::string file = source.path.string();
     const JsonCursor root(source.json, file);
+    const auto views = root.objects("bufferViews");
     Fetcher fetcher(source, budget);
     for (const JsonCursor& image : root.objects("images")) {
-        std::string mime_type = image.text_or("mimeType", "");
-        source.images.push_back(image.has("uri") ? fetcher.fetch(image, &mime_type)
-                                                 : image_from_view(source, root, image, budget));
+        if (image.has("uri") == image.has("bufferView"))
+            image.fail("must have either a uri or a bufferView");
+        source.images.push_back(image.has("uri") ? fetcher.fetch(image, {})
+                                                 : image_from_view(source, views, image, budget));
     }
 }
 

@@ -6,19 +6,13 @@
 
 #include <algorithm>
 
+#include "io/gltf_extensions.h"
 #include "io/json_parse.h"
 
 namespace petzval {
 namespace {
 
-constexpr std::array<std::string_view, 9> kExtensions = {
-    "KHR_lights_punctual",     "KHR_materials_emissive_strength",
-    "KHR_materials_unlit",     "KHR_materials_ior",
-    "KHR_materials_specular",  "KHR_materials_transmission",
-    "KHR_materials_volume",    "KHR_texture_transform",
-    "KHR_mesh_quantization"};
-
-std::string plural(uint64_t count, const char* what) {
+std::string plural(uint64_t count, std::string_view what) {
     return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
@@ -37,8 +31,8 @@ std::string describe_lights(const Scene& scene) {
 std::string describe_camera(size_t index, const GltfCamera& camera) {
     const std::string head = fmt::format("camera {}: {}, ", index, named(camera.name));
     if (camera.orthographic)
-        return head + fmt::format("orthographic, {:g} x {:g} m", 2 * camera.xmag_m,
-                                  2 * camera.ymag_m);
+        return head +
+               fmt::format("orthographic, {:g} x {:g} m", 2 * camera.xmag_m, 2 * camera.ymag_m);
     const std::string aspect =
         camera.aspect ? fmt::format(", aspect {:.4g}", *camera.aspect) : std::string();
     return head + fmt::format("perspective, {:.4g} deg vertical", camera.yfov_rad * 180 / kPi) +
@@ -75,11 +69,9 @@ void describe_contents(const GltfModel& gltf, GltfFile& file) {
 
 void describe_support(const GltfModel& gltf, const GltfTally& tally, GltfFile& file) {
     file.honoured.assign(tally.honoured.begin(), tally.honoured.end());
-    for (const std::string& name : gltf.typed.extensionsUsed) {
-        const bool known =
-            std::find(kExtensions.begin(), kExtensions.end(), name) != kExtensions.end();
-        (known ? file.honoured : file.ignored).push_back(printable(name));
-    }
+    for (const std::string& name : gltf.typed.extensionsUsed)
+        (is_supported_gltf_extension(name) ? file.honoured : file.ignored)
+            .push_back(printable(name));
     const auto ignore = [&](uint64_t count, const char* what, const char* why) {
         if (count > 0) file.ignored.push_back(fmt::format("{} ({})", plural(count, what), why));
     };
@@ -88,8 +80,8 @@ void describe_support(const GltfModel& gltf, const GltfTally& tally, GltfFile& f
            "the stored pose is shown");
     ignore(tally.occlusion_textures, "occlusion texture", "path tracing finds occlusion itself");
     ignore(tally.ranged_lights, "light range", "light falls off with the squared distance");
-    ignore(tally.point_primitives, "primitive of points", "points have no surface");
-    ignore(tally.line_primitives, "primitive of lines", "lines have no surface");
+    ignore(tally.point_primitives, "point primitive", "points have no surface");
+    ignore(tally.line_primitives, "line primitive", "lines have no surface");
 }
 
 void append_warnings(const GltfTally& tally, std::vector<std::string>& warnings) {
@@ -98,7 +90,7 @@ void append_warnings(const GltfTally& tally, std::vector<std::string>& warnings)
         if (count > 0) warnings.push_back(plural(count, what) + " " + outcome);
     };
     warn(tally.zero_area_triangles, "triangle", "without area skipped");
-    warn(tally.point_primitives + tally.line_primitives, "primitive", "of points or lines skipped");
+    warn(tally.point_primitives + tally.line_primitives, "point or line primitive", "skipped");
     warn(tally.primitives_without_positions, "primitive", "without positions skipped");
     warn(tally.incomplete_primitives, "primitive",
          "with vertices left over after the last whole triangle");

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "io/error.h"
 #include "io/json_cursor.h"
 
 namespace petzval {
@@ -32,10 +31,10 @@ std::optional<Light> make_light(const tinygltf::Light& light, const M44d& to_wor
     const std::optional<V3f> direction = forward(to_world);
     if (!direction) return {};
     if (light.type == "directional") return SunLight{*direction, colour};
+    if (light.type != "spot") return {};
     const double outer_rad = light.spot.outerConeAngle;
     const double inner_rad = std::min(light.spot.innerConeAngle, outer_rad);
-    return SpotLight{position, *direction, colour,
-                     static_cast<float>(std::cos(inner_rad)),
+    return SpotLight{position, *direction, colour, static_cast<float>(std::cos(inner_rad)),
                      static_cast<float>(std::cos(outer_rad))};
 }
 
@@ -70,13 +69,9 @@ GltfCamera to_camera(const tinygltf::Camera& from, const M44f& to_world) {
     return camera;
 }
 
-void check_camera(const GltfModel& gltf, int index, const GltfCamera& camera) {
-    const std::string place = json_path("cameras", index);
-    if (camera.orthographic && !(camera.xmag_m > 0 && camera.ymag_m > 0))
-        throw InputError(gltf.file, place + "/orthographic", "xmag and ymag must not be 0");
-    if (!camera.orthographic && !(camera.yfov_rad > 0 && camera.yfov_rad < kPi))
-        throw InputError(gltf.file, place + "/perspective/yfov",
-                         "must lie between 0 and pi, in radians");
+/// A field of view from 0 to pi; cameras of unknown type have none.
+bool is_usable(const GltfCamera& camera) {
+    return camera.orthographic || (camera.yfov_rad > 0 && camera.yfov_rad < kPi);
 }
 
 }  // namespace
@@ -91,13 +86,12 @@ std::vector<Light> read_lights(const GltfModel& gltf, const GltfNodes& nodes, Gl
         const tinygltf::Light& light = gltf.typed.lights.at(
             extension->required_index("light", gltf.typed.lights.size(), "light"));
         if (is_dark(light)) continue;
-        const auto made = make_light(light, nodes.to_world[index]);
-        if (!made) {
-            ++tally.singular_nodes;
-            continue;
+        if (const auto made = make_light(light, nodes.to_world[index])) {
+            tally.ranged_lights += light.range > 0;
+            lights.push_back(*made);
+        } else {
+            tally.warnings.push_back(json_path("nodes", node) + ": its light is left out");
         }
-        tally.ranged_lights += light.range > 0;
-        lights.push_back(*made);
     }
     return lights;
 }
@@ -114,9 +108,14 @@ std::vector<GltfCamera> read_cameras(const GltfModel& gltf, const GltfNodes& nod
             continue;
         }
         const auto& from = gltf.typed.cameras.at(static_cast<size_t>(node.camera));
-        cameras.push_back(to_camera(from, *to_world));
-        cameras.back().name = from.name.empty() ? node.name : from.name;
-        check_camera(gltf, node.camera, cameras.back());
+        GltfCamera camera = to_camera(from, *to_world);
+        camera.name = from.name.empty() ? node.name : from.name;
+        if (is_usable(camera))
+            cameras.push_back(camera);
+        else
+            tally.warnings.push_back(json_path("cameras", node.camera) +
+                                     ": left out, as its view "
+                                     "cannot be drawn");
     }
     return cameras;
 }

@@ -8,20 +8,17 @@
 namespace petzval {
 namespace {
 
-constexpr Range kUnit{0, 1};
-constexpr Range kPositive{0};
-
 Rgb to_rgb(const std::vector<double>& c) {
     return {static_cast<float>(c[0]), static_cast<float>(c[1]), static_cast<float>(c[2])};
 }
 
-Rgb rgb_or(const JsonCursor& json, const char* key, Rgb otherwise, Range range) {
-    const auto values = json.numbers(key, 3, range);
+Rgb rgb_or(const JsonCursor& json, const char* key, Rgb otherwise) {
+    const auto values = json.numbers(key, 3);
     return values.empty() ? otherwise : to_rgb(values);
 }
 
-float number_or(const JsonCursor& json, const char* key, float otherwise, Range range) {
-    return static_cast<float>(json.number_or(key, otherwise, range));
+float number_or(const JsonCursor& json, const char* key, float otherwise) {
+    return static_cast<float>(json.number_or(key, otherwise));
 }
 
 AlphaMode to_alpha_mode(const std::string& mode) {
@@ -29,7 +26,7 @@ AlphaMode to_alpha_mode(const std::string& mode) {
     return mode == "BLEND" ? AlphaMode::Blend : AlphaMode::Opaque;
 }
 
-/// Factors of the core specification. Range checks are the source's.
+/// Factors of the core specification.
 Material core_factors(const tinygltf::Material& from) {
     const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
     Material material;
@@ -89,22 +86,18 @@ void GltfMaterials::read_surface(const JsonCursor& json, Material& material) {
             textures_.slot(*pbr, "metallicRoughnessTexture", Encoding::Linear);
     material.normal_texture = textures_.slot(json, "normalTexture", Encoding::Linear);
     if (const auto strength = json.extension("KHR_materials_emissive_strength"))
-        material.emissive =
-            material.emissive * number_or(*strength, "emissiveStrength", 1.f, kPositive);
+        material.emissive = material.emissive * number_or(*strength, "emissiveStrength", 1.f);
     if (material.emits())  // the texture only scales the factor
         material.emissive_texture = textures_.slot(json, "emissiveTexture", Encoding::Srgb);
 }
 
 void GltfMaterials::read_specular(const JsonCursor& json, Material& material) {
-    if (const auto ior = json.extension("KHR_materials_ior")) {
-        material.ior = number_or(*ior, "ior", 1.5f, kPositive);
-        if (material.ior != 0.f && material.ior < 1.f) ior->fail("ior", "must be 0, or 1 and more");
-    }
+    if (const auto ior = json.extension("KHR_materials_ior"))
+        material.ior = number_or(*ior, "ior", 1.5f);
     if (const auto specular = json.extension("KHR_materials_specular")) {
-        material.specular = number_or(*specular, "specularFactor", 1.f, kUnit);
+        material.specular = number_or(*specular, "specularFactor", 1.f);
         material.specular_texture = textures_.slot(*specular, "specularTexture", Encoding::Linear);
-        material.specular_color =
-            rgb_or(*specular, "specularColorFactor", Rgb(1.f), kPositive);
+        material.specular_color = rgb_or(*specular, "specularColorFactor", Rgb(1.f));
         material.specular_color_texture =
             textures_.slot(*specular, "specularColorTexture", Encoding::Srgb);
     }
@@ -112,17 +105,15 @@ void GltfMaterials::read_specular(const JsonCursor& json, Material& material) {
 
 void GltfMaterials::read_glass(const JsonCursor& json, Material& material) {
     if (const auto transmission = json.extension("KHR_materials_transmission")) {
-        material.transmission = number_or(*transmission, "transmissionFactor", 0.f, kUnit);
+        material.transmission = number_or(*transmission, "transmissionFactor", 0.f);
         if (material.transmission > 0.f)
             material.transmission_texture =
                 textures_.slot(*transmission, "transmissionTexture", Encoding::Linear);
     }
     if (const auto volume = json.extension("KHR_materials_volume")) {
-        material.has_volume = number_or(*volume, "thicknessFactor", 0.f, kPositive) > 0.f;
-        material.attenuation_color = rgb_or(*volume, "attenuationColor", Rgb(1.f), kUnit);
-        material.attenuation_distance_m =
-            number_or(*volume, "attenuationDistance", kInfinity,
-                      {std::numeric_limits<float>::min()});
+        material.has_volume = number_or(*volume, "thicknessFactor", 0.f) > 0.f;
+        material.attenuation_color = rgb_or(*volume, "attenuationColor", Rgb(1.f));
+        material.attenuation_distance_m = number_or(*volume, "attenuationDistance", kInfinity);
     }
 }
 

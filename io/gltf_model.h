@@ -21,7 +21,8 @@ struct GltfModel {
 };
 
 /// Hands the JSON to tinygltf, which sees neither buffers nor images nor the file system: both
-/// arrays of the model hold nothing of the file's. An accessor without a bufferView has -1 there.
+/// arrays of the model hold nothing of the file's. An accessor without a bufferView has -1 there,
+/// a camera of unknown type a yfov of 0.
 /// Throws InputError where tinygltf refuses the JSON.
 [[nodiscard]] tinygltf::Model parse_model(const GltfSource&);
 

@@ -61,8 +61,7 @@ class Placer {
         : gltf_(gltf), nodes_(nodes), materials_(materials), scene_(scene), tally_(tally) {}
 
     void place(const Placement& placement) {
-        const auto& primitives =
-            gltf_.typed.meshes[static_cast<size_t>(placement.mesh)].primitives;
+        const auto& primitives = gltf_.typed.meshes[static_cast<size_t>(placement.mesh)].primitives;
         for (size_t i = 0; i < primitives.size(); ++i) {
             if (!is_drawn(primitives[i], tally_)) continue;
             place_primitive(placement, primitives[i],
@@ -74,11 +73,11 @@ class Placer {
     void place_primitive(const Placement& placement, const tinygltf::Primitive& primitive,
                          const std::string& where) {
         const uint32_t material = materials_.use(primitive.material);
-        Mesh mesh = read_shaded(placement, primitive, where, scene_.materials[material]);
+        Mesh mesh = read_shaded(placement, primitive, scene_.materials[material]);
         mesh.material = material;
 
-        const bool posed = placement.skin >= 0 &&
-                           pose_by_skin(gltf_, nodes_, placement.skin, primitive, where, mesh);
+        const bool posed =
+            placement.skin >= 0 && pose_by_skin(gltf_, nodes_, placement.skin, primitive, mesh);
         if (posed) tally_.honoured.insert("skins, in the pose that the nodes stand in");
         const bool baked = posed || placement.nodes.size() == 1;
         if (baked && !posed) bake(mesh, matrix_of(placement.nodes.front()));
@@ -98,16 +97,16 @@ class Placer {
 
     // Tangents are found before the mesh is moved, so that every copy of it shades alike.
     Mesh read_shaded(const Placement& placement, const tinygltf::Primitive& primitive,
-                     const std::string& where, const Material& material) {
+                     const Material& material) {
         const bool normal_mapped = material.normal_texture.present();
-        Mesh mesh = read_primitive(gltf_, primitive, where, placement.morph_weights, normal_mapped,
-                                   tally_);
+        Mesh mesh =
+            read_primitive(gltf_, primitive, placement.morph_weights, normal_mapped, tally_);
         tally_.replaced_normals += repair_normals(mesh);
+        repair_tangents(mesh);
         if (normal_mapped && mesh.tangents.empty()) {
             add_tangents(mesh, material.normal_texture);
             tally_.honoured.insert("tangents computed for normal maps");
         }
-        repair_tangents(mesh);
         return mesh;
     }
 

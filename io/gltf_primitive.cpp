@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/gltf_primitive.h"
 
-#include <fmt/format.h>
 #include <tiny_gltf.h>
 
 #include <algorithm>
 #include <numeric>
 
-#include "io/error.h"
 #include "io/gltf_arrays.h"
 #include "io/gltf_triangles.h"
 
@@ -17,17 +15,16 @@ namespace {
 /// One primitive on its way to a Mesh.
 class PrimitiveReader {
   public:
-    PrimitiveReader(const GltfModel& gltf, const tinygltf::Primitive& primitive,
-                    const std::string& place, GltfTally& tally)
-        : gltf_(gltf), primitive_(primitive), place_(place), tally_(tally) {}
+    PrimitiveReader(const GltfModel& gltf, const tinygltf::Primitive& primitive, GltfTally& tally)
+        : gltf_(gltf), primitive_(primitive), tally_(tally) {}
 
     void read_attributes(Mesh& mesh, bool with_tangents) const {
         mesh.positions = read_vec3(gltf_, attribute(primitive_, "POSITION"));
-        mesh.normals = read("NORMAL", read_vec3, mesh);
+        mesh.normals = read("NORMAL", read_vec3);
         if (with_tangents && !mesh.normals.empty())  // flat normals void the file's tangents
-            mesh.tangents = read("TANGENT", read_vec4, mesh);
-        mesh.uv = {read("TEXCOORD_0", read_vec2, mesh), read("TEXCOORD_1", read_vec2, mesh)};
-        mesh.colours = read("COLOR_0", read_vec4, mesh);
+            mesh.tangents = read("TANGENT", read_vec4);
+        mesh.uv = {read("TEXCOORD_0", read_vec2), read("TEXCOORD_1", read_vec2)};
+        mesh.colours = read("COLOR_0", read_vec4);
         if (!mesh.colours.empty()) tally_.honoured.insert("vertex colours");
     }
 
@@ -35,7 +32,6 @@ class PrimitiveReader {
         std::vector<uint32_t> index;
         if (primitive_.indices >= 0) {
             index = read_indices(gltf_, primitive_.indices);
-            check_range(index, mesh.positions.size());
         } else {
             index.resize(mesh.positions.size());
             std::iota(index.begin(), index.end(), 0u);
@@ -52,20 +48,18 @@ class PrimitiveReader {
             const auto weight = static_cast<float>(weights[i]);
             if (weight == 0.f) continue;
             for (const auto& [name, accessor] : primitive_.targets[i])
-                add_target(mesh, name, accessor, weight, json_path("targets", i, name));
+                add_target(mesh, name, accessor, weight);
             tally_.honoured.insert("morph targets, with the stored weights");
         }
     }
 
   private:
     template <class Value>
-    std::vector<Value> read(const char* name, std::vector<Value> (*reader)(const GltfModel&, int),
-                            const Mesh& mesh) const {
+    std::vector<Value> read(const char* name,
+                            std::vector<Value> (*reader)(const GltfModel&, int)) const {
         const int accessor = attribute(primitive_, name);
         if (accessor < 0) return {};
-        auto values = reader(gltf_, accessor);
-        check_attribute_count(gltf_, place_, name, values.size(), mesh.positions.size());
-        return values;
+        return reader(gltf_, accessor);
     }
 
     [[nodiscard]] TriangleMode triangle_mode() const {
@@ -80,50 +74,35 @@ class PrimitiveReader {
         return TriangleMode::List;
     }
 
-    void check_range(const std::vector<uint32_t>& index, size_t vertex_count) const {
-        if (index.empty()) return;
-        const auto largest = std::max_element(index.begin(), index.end());
-        if (*largest >= vertex_count)
-            throw InputError(gltf_.file, place_ + "/indices",
-                             fmt::format("index {} is {}, but the primitive has {} vertices",
-                                         largest - index.begin(), *largest, vertex_count));
-    }
-
     // A target's tangents have no w; a target may change an attribute only where there is one.
-    void add_target(Mesh& mesh, const std::string& name, int accessor, float weight,
-                    const std::string& where) const {
-        if (name == "POSITION") add(mesh.positions, read_vec3(gltf_, accessor), weight, where);
-        if (name == "NORMAL") add(mesh.normals, read_vec3(gltf_, accessor), weight, where);
-        if (name == "TANGENT") add(mesh.tangents, read_vec3(gltf_, accessor), weight, where);
-        if (name == "TEXCOORD_0") add(mesh.uv[0], read_vec2(gltf_, accessor), weight, where);
-        if (name == "TEXCOORD_1") add(mesh.uv[1], read_vec2(gltf_, accessor), weight, where);
-        if (name == "COLOR_0") add_colours(mesh.colours, accessor, weight, where);
+    void add_target(Mesh& mesh, const std::string& name, int accessor, float weight) const {
+        if (name == "POSITION") add(mesh.positions, read_vec3(gltf_, accessor), weight);
+        if (name == "NORMAL") add(mesh.normals, read_vec3(gltf_, accessor), weight);
+        if (name == "TANGENT") add(mesh.tangents, read_vec3(gltf_, accessor), weight);
+        if (name == "TEXCOORD_0") add(mesh.uv[0], read_vec2(gltf_, accessor), weight);
+        if (name == "TEXCOORD_1") add(mesh.uv[1], read_vec2(gltf_, accessor), weight);
+        if (name == "COLOR_0") add_colours(mesh.colours, accessor, weight);
     }
 
-    void add_colours(std::vector<V4f>& to, int accessor, float weight,
-                     const std::string& where) const {
+    void add_colours(std::vector<V4f>& to, int accessor, float weight) const {
         const int type = gltf_.typed.accessors[static_cast<size_t>(accessor)].type;
         if (type == TINYGLTF_TYPE_VEC3)
-            add(to, read_vec3(gltf_, accessor), weight, where);
+            add(to, read_vec3(gltf_, accessor), weight);
         else
-            add(to, read_vec4(gltf_, accessor), weight, where);
+            add(to, read_vec4(gltf_, accessor), weight);
         for (V4f& c : to)  // as glTF 2.0, section 3.7.2.2 asks after morphing
             for (int k = 0; k < 4; ++k) c[k] = std::clamp(c[k], 0.f, 1.f);
     }
 
     template <class To, class Delta>
-    void add(std::vector<To>& to, const std::vector<Delta>& deltas, float weight,
-             const std::string& where) const {
-        if (to.empty()) return;
-        check_attribute_count(gltf_, place_ + where, "", deltas.size(), to.size());
-        for (size_t i = 0; i < to.size(); ++i)
+    static void add(std::vector<To>& to, const std::vector<Delta>& deltas, float weight) {
+        for (size_t i = 0; i < to.size(); ++i)  // `to` is empty where it is of no use
             for (unsigned k = 0; k < Delta::dimensions(); ++k)
                 to[i][static_cast<int>(k)] += weight * deltas[i][static_cast<int>(k)];
     }
 
     const GltfModel& gltf_;
     const tinygltf::Primitive& primitive_;
-    const std::string& place_;
     GltfTally& tally_;
 };
 
@@ -134,18 +113,12 @@ int attribute(const tinygltf::Primitive& primitive, const std::string& name) {
     return found == primitive.attributes.end() ? -1 : found->second;
 }
 
-void check_attribute_count(const GltfModel& gltf, const std::string& place, const std::string& name,
-                           size_t count, size_t expected) {
-    if (count != expected)
-        throw InputError(gltf.file, place + (name.empty() ? "" : "/attributes/" + name),
-                         fmt::format("has {} elements where POSITION has {}", count, expected));
-}
-
 bool is_drawn(const tinygltf::Primitive& primitive, GltfTally& tally) {
     if (primitive.mode == TINYGLTF_MODE_POINTS) {
         ++tally.point_primitives;
         return false;
     }
+    if (primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN) return false;  // warned of by the checks
     if (primitive.mode < TINYGLTF_MODE_TRIANGLES) {
         ++tally.line_primitives;
         return false;
@@ -158,9 +131,9 @@ bool is_drawn(const tinygltf::Primitive& primitive, GltfTally& tally) {
 }
 
 Mesh read_primitive(const GltfModel& gltf, const tinygltf::Primitive& primitive,
-                    const std::string& place, const std::vector<double>& morph_weights,
-                    bool with_tangents, GltfTally& tally) {
-    const PrimitiveReader reader(gltf, primitive, place, tally);
+                    const std::vector<double>& morph_weights, bool with_tangents,
+                    GltfTally& tally) {
+    const PrimitiveReader reader(gltf, primitive, tally);
     Mesh mesh;
     reader.read_attributes(mesh, with_tangents);
     reader.add_morph_targets(mesh, morph_weights);

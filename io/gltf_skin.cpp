@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
-#include "io/error.h"
 #include "io/gltf_arrays.h"
 #include "io/gltf_bake.h"
 #include "io/gltf_primitive.h"
@@ -17,10 +16,6 @@ std::vector<M44d> joint_matrices(const GltfModel& gltf, const GltfNodes& nodes, 
     std::vector<M44d> matrices(skin.joints.size());
     if (skin.inverseBindMatrices >= 0) {
         const auto inverse_bind = read_matrices(gltf, skin.inverseBindMatrices);
-        if (inverse_bind.size() < matrices.size())
-            throw InputError(gltf.file, json_path("skins", skin_index, "inverseBindMatrices"),
-                             fmt::format("has {} matrices for {} joints", inverse_bind.size(),
-                                         matrices.size()));
         std::copy_n(inverse_bind.begin(), matrices.size(), matrices.begin());
     }
     for (size_t i = 0; i < matrices.size(); ++i)
@@ -34,25 +29,14 @@ struct Influences {
     std::vector<V4f> weights;
 };
 
-std::vector<Influences> read_influences(const GltfModel& gltf, const tinygltf::Primitive& primitive,
-                                        const std::string& place, size_t vertex_count,
-                                        size_t joint_count) {
+std::vector<Influences> read_influences(const GltfModel& gltf,
+                                        const tinygltf::Primitive& primitive) {
     std::vector<Influences> sets;
     for (int set = 0;; ++set) {
-        const std::string joints = fmt::format("JOINTS_{}", set);
-        const std::string weights = fmt::format("WEIGHTS_{}", set);
-        if (attribute(primitive, joints) < 0 || attribute(primitive, weights) < 0) return sets;
-        sets.push_back({read_joints(gltf, attribute(primitive, joints)),
-                        read_vec4(gltf, attribute(primitive, weights))});
-        check_attribute_count(gltf, place, joints, sets.back().joints.size(), vertex_count);
-        check_attribute_count(gltf, place, weights, sets.back().weights.size(), vertex_count);
-        for (size_t v = 0; v < vertex_count; ++v)
-            for (int k = 0; k < 4; ++k)
-                if (sets.back().weights[v][k] != 0.f &&
-                    sets.back().joints[v][static_cast<size_t>(k)] >= joint_count)
-                    throw InputError(gltf.file, place + "/attributes/" + joints,
-                                     fmt::format("vertex {} names a joint beyond the skin's {}", v,
-                                                 joint_count));
+        const int joints = attribute(primitive, fmt::format("JOINTS_{}", set));
+        const int weights = attribute(primitive, fmt::format("WEIGHTS_{}", set));
+        if (joints < 0 || weights < 0) return sets;
+        sets.push_back({read_joints(gltf, joints), read_vec4(gltf, weights)});
     }
 }
 
@@ -73,11 +57,10 @@ M44d blend(const std::vector<Influences>& sets, const std::vector<M44d>& matrice
 }  // namespace
 
 bool pose_by_skin(const GltfModel& gltf, const GltfNodes& nodes, int skin,
-                  const tinygltf::Primitive& primitive, const std::string& place, Mesh& mesh) {
+                  const tinygltf::Primitive& primitive, Mesh& mesh) {
     const std::vector<M44d> matrices = joint_matrices(gltf, nodes, skin);
-    const auto sets = read_influences(gltf, primitive, place, mesh.positions.size(),
-                                      matrices.size());
-    if (sets.empty() || matrices.empty()) return false;
+    const auto sets = read_influences(gltf, primitive);
+    if (sets.empty()) return false;
     for (size_t v = 0; v < mesh.positions.size(); ++v)
         transform_vertex(mesh, v, blend(sets, matrices, v));
     return true;

@@ -16,6 +16,6 @@ namespace petzval {
 /// inverse bind matrix * joint's place (glTF 2.0, section 3.7.3.3; the place of the node that holds
 /// the mesh does not count). False, and no change, where the primitive names no joints.
 [[nodiscard]] bool pose_by_skin(const GltfModel&, const GltfNodes&, int skin,
-                                const tinygltf::Primitive&, const std::string& place, Mesh&);
+                                const tinygltf::Primitive&, Mesh&);
 
 }  // namespace petzval

@@ -17,7 +17,8 @@ struct GltfSource {
     /// Bytes of each buffer, read from its file, its data URI or the binary chunk; at least
     /// byteLength long. Empty for a buffer that the file leaves undefined.
     std::vector<std::vector<uint8_t>> buffers;
-    /// Encoded bytes of each image (PNG, JPEG ...), whatever way the file stores them.
+    /// Encoded bytes of each image (PNG, JPEG ...), whatever way the file stores them. Not yet
+    /// decoded: they may be no image. Empty for an image in an undefined buffer.
     std::vector<std::vector<uint8_t>> images;
     std::vector<std::string> warnings;  ///< one line each: odd, but no reason to refuse
     uint64_t hash = 0;                  ///< FNV-1a of the scene file and of every file it names

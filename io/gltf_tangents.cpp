@@ -99,9 +99,8 @@ class TangentBuilder {
         first.reserve(equal_.size());
         for (uint32_t i = 0; i < equal_.size(); ++i) {
             const V3f &p = mesh_.positions[i], &n = mesh_.normals[i];
-            equal_[i] =
-                first.try_emplace({p.x, p.y, p.z, n.x, n.y, n.z, uv_[i].x, uv_[i].y}, i)
-                    .first->second;
+            equal_[i] = first.try_emplace({p.x, p.y, p.z, n.x, n.y, n.z, uv_[i].x, uv_[i].y}, i)
+                            .first->second;
         }
     }
 
@@ -115,16 +114,14 @@ class TangentBuilder {
         const V2f ta = uv_[t[1]] - uv_[t[0]], tb = uv_[t[2]] - uv_[t[0]];
         const V3d p[3] = {V3d(mesh_.positions[t[0]]), V3d(mesh_.positions[t[1]]),
                           V3d(mesh_.positions[t[2]])};
-        const V3d along_u =
-            ((p[1] - p[0]) * tb.y - (p[2] - p[0]) * ta.y) * (area < 0 ? -1.0 : 1.0);
+        const V3d along_u = ((p[1] - p[0]) * tb.y - (p[2] - p[0]) * ta.y) * (area < 0 ? -1.0 : 1.0);
         for (int k = 0; k < 3; ++k) {
             const V3d n = normal(t, k);
             const V3d tangent = across(along_u, n);
             const V3d to_next = across(p[(k + 1) % 3] - p[k], n);
             const V3d to_last = across(p[(k + 2) % 3] - p[k], n);
             if (!usable(tangent) || !usable(to_next) || !usable(to_last)) continue;
-            const double angle =
-                std::atan2(to_next.cross(to_last).length(), to_next.dot(to_last));
+            const double angle = std::atan2(to_next.cross(to_last).length(), to_next.dot(to_last));
             sum(t[static_cast<size_t>(k)], area > 0) += tangent.normalized() * angle;
         }
     }
@@ -165,9 +162,9 @@ class TangentBuilder {
                 V3d tangent = across(sum(vertex, mirrored), n);
                 if (!usable(tangent)) tangent = V3d(Frame::about(V3f(n)).x);
                 tangent.normalize();
-                mesh_.tangents[vertex] = V4f(static_cast<float>(tangent.x),
-                                             static_cast<float>(tangent.y),
-                                             static_cast<float>(tangent.z), mirrored ? -1.f : 1.f);
+                mesh_.tangents[vertex] =
+                    V4f(static_cast<float>(tangent.x), static_cast<float>(tangent.y),
+                        static_cast<float>(tangent.z), mirrored ? -1.f : 1.f);
             }
     }
 

@@ -11,8 +11,8 @@ namespace petzval {
 /// it, weighted by area; returns how many there were.
 size_t repair_normals(Mesh&);
 
-/// Makes tangents unit and w +-1. One that is useless is replaced by some direction across the
-/// normal.
+/// Makes tangents unit and w +-1, in a mesh that has normals if it has tangents. One that is
+/// useless is replaced by some direction across the normal.
 void repair_tangents(Mesh&);
 
 /// Computes tangents for a normal map from the texture coordinates that it is read with: along

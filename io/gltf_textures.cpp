@@ -44,8 +44,9 @@ TextureSlot GltfTextures::slot(const JsonCursor& parent, const char* key, Encodi
     const tinygltf::Texture& texture = gltf_.typed.textures.at(
         info->required_index("index", gltf_.typed.textures.size(), "texture"));
     if (texture.source < 0) {
-        tally_.warnings.push_back(info->path() + ": its texture has no image that can be read; "
-                                                 "the slot is left without");
+        tally_.warnings.push_back(info->path() +
+                                  ": its texture has no image that can be read; "
+                                  "the slot is left without");
         return {};
     }
 

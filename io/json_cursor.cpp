@@ -157,7 +157,7 @@ size_t JsonCursor::as_index(const json& value, const std::string& place, size_t 
     const uint64_t index = as_integer(value, place);
     if (index >= count)
         throw InputError(*file_, place,
-                         fmt::format("names {} {}, but the file has {}", what, index, count));
+                         fmt::format("there is no {} {}; the file has {}", what, index, count));
     return index;
 }
 

@@ -53,9 +53,19 @@ class Watch {
     std::vector<std::set<std::string>> keys_;  ///< of each open object
 };
 
-std::string line_of(std::string_view text, size_t byte) {
-    const std::string_view before = text.substr(0, std::min(byte, text.size()));
-    return fmt::format("line {}", 1 + std::count(before.begin(), before.end(), '\n'));
+/// byte: of the text, counted from 0.
+std::string place_of(std::string_view text, size_t byte) {
+    const std::string_view before = text.substr(0, byte);
+    const size_t line_start = before.rfind('\n') + 1;  // npos + 1 is 0
+    return fmt::format("line {}, column {}", 1 + std::count(before.begin(), before.end(), '\n'),
+                       1 + before.size() - line_start);
+}
+
+/// The number that overflowed, which the parser's message quotes; its first occurrence is the one.
+size_t find_quoted(std::string_view text, std::string_view message) {
+    const size_t first = message.find('\'') + 1, last = message.rfind('\'');
+    const size_t at = last > first ? text.find(message.substr(first, last - first)) : 0;
+    return at == std::string_view::npos ? 0 : at;
 }
 
 }  // namespace
@@ -75,9 +85,11 @@ json parse_json(std::string_view text, const std::string& file) {
     try {
         return json::parse(text, std::ref(watch));
     } catch (const json::parse_error& error) {
-        throw InputError(file, line_of(text, error.byte), "is not valid JSON here");
-    } catch (const json::out_of_range&) {
-        throw InputError(file, "", "a JSON number is beyond the range of a double");
+        throw InputError(file, place_of(text, std::max<size_t>(error.byte, 1) - 1),
+                         "is not valid JSON from here on");
+    } catch (const json::out_of_range& error) {
+        throw InputError(file, place_of(text, find_quoted(text, error.what())),
+                         "the number is beyond the range of a double");
     }
 }
 

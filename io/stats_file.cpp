@@ -23,7 +23,9 @@ rusage usage() {
 
 // CPU seconds of the render by section: shares of the timed samples, applied to the whole.
 nlohmann::ordered_json sections(const PathStats& stats, double cpu_s) {
-    const auto ticks = [&](Section s) { return static_cast<double>(stats.ticks[static_cast<size_t>(s)]); };
+    const auto ticks = [&](Section s) {
+        return static_cast<double>(stats.ticks[static_cast<size_t>(s)]);
+    };
     const double whole = ticks(Section::Sample);
     if (whole <= 0) return nullptr;
     const double camera = ticks(Section::Camera), traversal = ticks(Section::Traversal),
@@ -60,7 +62,10 @@ void write_stats(const std::filesystem::path& path, const Session& session,
     out["bvh_build_s"] = session.bvh_s;
     out["render_wall_s"] = cost.render_wall_s;
     out["render_cpu_s"] = cost.render_cpu_s;
-    out["rays"] = {{"camera", s.camera_rays}, {"bounce", s.bounce_rays}, {"shadow", s.shadow_rays}, {"all", rays}};
+    out["rays"] = {{"camera", s.camera_rays},
+                   {"bounce", s.bounce_rays},
+                   {"shadow", s.shadow_rays},
+                   {"all", rays}};
     out["path_vertices"] = s.vertices;
     out["rays_per_cpu_s"] = static_cast<double>(rays) / cost.render_cpu_s;
     out["samples_per_cpu_s"] = static_cast<double>(s.samples) / cost.render_cpu_s;

@@ -144,8 +144,11 @@ Scene leaf_scene(AlphaMode mode) {
     // Long thin triangles in a fan of slants invite spatial splits, which call a filter twice.
     for (int i = 0; i < 200; ++i) {
         const float a = 0.031f * static_cast<float>(i);
-        place(scene, quad(V3f(-5 * std::cos(a), -5 * std::sin(a), 0.01f * static_cast<float>(i)),
-                          V3f(10 * std::cos(a), 10 * std::sin(a), 0.02f), V3f(-0.05f * std::sin(a), 0.05f * std::cos(a), 0.3f)), m);
+        place(scene,
+              quad(V3f(-5 * std::cos(a), -5 * std::sin(a), 0.01f * static_cast<float>(i)),
+                   V3f(10 * std::cos(a), 10 * std::sin(a), 0.02f),
+                   V3f(-0.05f * std::sin(a), 0.05f * std::cos(a), 0.3f)),
+              m);
     }
     finish_scene(scene);
     return scene;

@@ -15,13 +15,11 @@
 namespace petzval {
 namespace {
 
-using test::Bytes;
+using Bytes = std::vector<uint8_t>;
 using test::noise;
 using test::picture;
-using test::PngColour;
 using test::read_bytes;
 using test::TemporaryFolder;
-using test::tiny_png;
 using test::write_bytes;
 
 Bytes texels8(const Bytes& png) {
@@ -30,9 +28,10 @@ Bytes texels8(const Bytes& png) {
 std::vector<float> texels_float(const Bytes& png) {
     return std::get<std::vector<float>>(decode_image(png, "a.gltf", "/images/0").texels);
 }
-Bytes operator+(Bytes a, const Bytes& b) {
-    a.insert(a.end(), b.begin(), b.end());
-    return a;
+Bytes png_chunk(std::string_view type, const Bytes& data) {
+    Bytes chunk;
+    put_png_chunk(chunk, type, data);
+    return chunk;
 }
 template <class F>
 std::string message_of(F&& f) {
@@ -59,11 +58,11 @@ TEST(DecodeImage, SpreadsFewerChannels) {
 }
 
 TEST(DecodeImage, ExpandsPalettesAndBits) {
-    const Bytes palette = test::png_chunk("PLTE", {1, 2, 3, 200, 100, 50});
-    const Bytes alpha = test::png_chunk("tRNS", {0, 77});
+    Bytes palette = png_chunk("PLTE", {1, 2, 3, 200, 100, 50});
     EXPECT_EQ(texels8(tiny_png(2, 1, 8, PngColour::Palette, {{1, 0}}, palette)),
               (Bytes{200, 100, 50, 255, 1, 2, 3, 255}));
-    EXPECT_EQ(texels8(tiny_png(2, 1, 1, PngColour::Palette, {{0x80}}, palette + alpha)),
+    put_png_chunk(palette, "tRNS", Bytes{0, 77});
+    EXPECT_EQ(texels8(tiny_png(2, 1, 1, PngColour::Palette, {{0x80}}, palette)),
               (Bytes{200, 100, 50, 77, 1, 2, 3, 0}));
     EXPECT_EQ(texels8(tiny_png(2, 1, 1, PngColour::Grey, {{0x40}})),
               (Bytes{0, 0, 0, 255, 255, 255, 255, 255}));
@@ -71,10 +70,9 @@ TEST(DecodeImage, ExpandsPalettesAndBits) {
 
 TEST(DecodeImage, IgnoresGamma) {
     Bytes gamma;
-    test::append_u32(gamma, 100000);
-    EXPECT_EQ(
-        texels8(tiny_png(1, 1, 8, PngColour::Rgb, {{9, 99, 199}}, test::png_chunk("gAMA", gamma))),
-        (Bytes{9, 99, 199, 255}));
+    put_big_endian(gamma, 100000);
+    EXPECT_EQ(texels8(tiny_png(1, 1, 8, PngColour::Rgb, {{9, 99, 199}}, png_chunk("gAMA", gamma))),
+              (Bytes{9, 99, 199, 255}));
 }
 
 TEST(DecodeImage, SixteenBitsBecomeFloats) {

@@ -34,8 +34,8 @@ struct Estimate {
 // Mean red radiance over a bundle of rays; the error comes from 12 independent scrambles, as the
 // points of one scramble are not independent.
 template <class MakeRay>
-Estimate estimate(const World& world, const PathOptions& options, uint32_t samples, const MakeRay& make_ray,
-                  float* alpha = nullptr) {
+Estimate estimate(const World& world, const PathOptions& options, uint32_t samples,
+                  const MakeRay& make_ray, float* alpha = nullptr) {
     constexpr int scrambles = 12;
     const PathTracer tracer(world.scene, *world.bvh, *world.lights, options);
     PathStats stats;
@@ -45,7 +45,8 @@ Estimate estimate(const World& world, const PathOptions& options, uint32_t sampl
         for (uint32_t i = 0; i < samples; ++i) {
             const Sampler sampler(SamplerKind::Owen, seed, {3, 5, i});
             FilmSample out;
-            mean += tracer.radiance(make_ray(sampler.get2(Dim::Film)), Bands::rgb(), sampler, false, out, stats)[0];
+            mean += tracer.radiance(make_ray(sampler.get2(Dim::Film)), Bands::rgb(), sampler, false,
+                                    out, stats)[0];
             if (alpha) *alpha += out.alpha / static_cast<float>(samples * scrambles);
         }
         mean /= samples;
@@ -139,13 +140,15 @@ TEST(Path, AbsorptionFollowsBeerAndLambert) {
     place(world.scene, quad(V3f(-2, -2, -1), V3f(0, 4, 0), V3f(4, 0, 0)), m);
     world.scene.sky = Sky::uniform(Rgb(1.f));
     world.finish();
-    const Estimate e = estimate(world, PathOptions(), 64, [](V2f) { return ray_to(V3f(0, 0, 3), V3f(0.f)); });
+    const Estimate e =
+        estimate(world, PathOptions(), 64, [](V2f) { return ray_to(V3f(0, 0, 3), V3f(0.f)); });
     EXPECT_NEAR(e.mean, std::pow(0.25, 1.0 / 0.5), 1e-4);
 }
 
 World floor_under(Light light) {
     World world;
-    place(world.scene, quad(V3f(-50, -50, 0), V3f(100, 0, 0), V3f(0, 100, 0)), diffuse_material(0.5f));
+    place(world.scene, quad(V3f(-50, -50, 0), V3f(100, 0, 0), V3f(0, 100, 0)),
+          diffuse_material(0.5f));
     world.scene.lights.push_back(light);
     world.finish();
     return world;
@@ -155,18 +158,22 @@ TEST(Path, PunctualLightsGiveTheirIlluminance) {
     const auto centre = [](V2f) { return ray_to(V3f(0, 0, 4), V3f(0.f)); };
     const double albedo_over_pi = 0.5 / M_PI;
     const World point = floor_under(PointLight{V3f(0, 3, 4), Rgb(100.f)});
-    expect_within_3_sigma(estimate(point, PathOptions(), 16, centre), albedo_over_pi * 100 / 25 * 0.8, "point");
+    expect_within_3_sigma(estimate(point, PathOptions(), 16, centre),
+                          albedo_over_pi * 100 / 25 * 0.8, "point");
     const World sun = floor_under(SunLight{unit(V3f(0, -3, -4)), Rgb(10.f)});
-    expect_within_3_sigma(estimate(sun, PathOptions(), 16, centre), albedo_over_pi * 10 * 0.8, "sun");
+    expect_within_3_sigma(estimate(sun, PathOptions(), 16, centre), albedo_over_pi * 10 * 0.8,
+                          "sun");
     const World spot = floor_under(SpotLight{V3f(0, 0, 2), V3f(0, 0, -1), Rgb(8.f), 0.9f, 0.8f});
-    expect_within_3_sigma(estimate(spot, PathOptions(), 16, centre), albedo_over_pi * 8 / 4, "spot");
+    expect_within_3_sigma(estimate(spot, PathOptions(), 16, centre), albedo_over_pi * 8 / 4,
+                          "spot");
 }
 
 // A disk's worth of closed form: a square emitter seen from below its centre. Configuration factor
 // of a differential plane to a parallel rectangle corner, times four (Howell, C-11).
 TEST(Path, SquareEmitterMatchesItsConfigurationFactor) {
     World world;
-    place(world.scene, quad(V3f(-50, -50, 0), V3f(100, 0, 0), V3f(0, 100, 0)), diffuse_material(0.5f));
+    place(world.scene, quad(V3f(-50, -50, 0), V3f(100, 0, 0), V3f(0, 100, 0)),
+          diffuse_material(0.5f));
     Material light = emitter_material(3.f);
     place(world.scene, quad(V3f(-1, -1, 2), V3f(0, 2, 0), V3f(2, 0, 0)), light);
     world.finish();
@@ -179,7 +186,8 @@ TEST(Path, SquareEmitterMatchesItsConfigurationFactor) {
     options.max_depth = 1;
     for (const Technique technique : {Technique::Mis, Technique::LightOnly, Technique::BsdfOnly}) {
         options.technique = technique;
-        const Estimate e = estimate(world, options, 4096, [](V2f) { return ray_to(V3f(3, 0, 1.9f), V3f(0.f)); });
+        const Estimate e =
+            estimate(world, options, 4096, [](V2f) { return ray_to(V3f(3, 0, 1.9f), V3f(0.f)); });
         expect_within_3_sigma(e, truth, "square");
         EXPECT_LT(e.error, 0.02 * truth);
     }
@@ -195,7 +203,8 @@ TEST(Path, TechniquesAgree) {
     floor.double_sided = true;
     place(world.scene, quad(V3f(-3, -3, -1), V3f(6, 0, 0), V3f(0, 6, 0)), floor);
     place(world.scene, sphere(V3f(0, 0, 0), 0.6f, 24, true), diffuse_material(0.7f));
-    place(world.scene, quad(V3f(-1, 1.5f, 1), V3f(2, 0, 0), V3f(0, 1, 0.5f)), emitter_material(5.f));
+    place(world.scene, quad(V3f(-1, 1.5f, 1), V3f(2, 0, 0), V3f(0, 1, 0.5f)),
+          emitter_material(5.f));
     std::vector<float> sky(3 * 32 * 16, 0.2f);
     for (int i = 0; i < 12; ++i) sky[3 * (4 * 32 + 3 * 4) + static_cast<size_t>(i)] = 20.f;
     world.scene.sky = Sky::picture(sky, 32, 16, 0.f, 1.f);
@@ -244,7 +253,8 @@ TEST(Path, BacksOfSingleSidedSurfacesAreCulledFromViewButCastShadows) {
     EXPECT_NEAR(estimate(world, PathOptions(), 16, bundle).mean, 1.0, 1e-5);
 
     World shaded;
-    place(shaded.scene, quad(V3f(-50, -50, -1), V3f(100, 0, 0), V3f(0, 100, 0)), diffuse_material(0.5f));
+    place(shaded.scene, quad(V3f(-50, -50, -1), V3f(100, 0, 0), V3f(0, 100, 0)),
+          diffuse_material(0.5f));
     place(shaded.scene, quad(V3f(-2, -2, 0), V3f(0, 4, 0), V3f(4, 0, 0)), m);
     shaded.scene.lights.push_back(SunLight{V3f(0, 0, -1), Rgb(10.f)});
     shaded.finish();
@@ -260,8 +270,11 @@ TEST(Path, BackdropIsSeenAndTheEnvironmentLights) {
     world.finish();
     PathOptions options;
     options.backdrop = Rgb(7.f);
-    EXPECT_NEAR(estimate(world, options, 16, [](V2f) { return ray_to(V3f(0, 0, 4), V3f(9, 9, 4)); }).mean, 7.0, 1e-5);
-    expect_within_3_sigma(estimate(world, options, 1024, bundle), 0.5 * 2, "lit by the environment");
+    EXPECT_NEAR(
+        estimate(world, options, 16, [](V2f) { return ray_to(V3f(0, 0, 4), V3f(9, 9, 4)); }).mean,
+        7.0, 1e-5);
+    expect_within_3_sigma(estimate(world, options, 1024, bundle), 0.5 * 2,
+                          "lit by the environment");
 }
 
 TEST(Path, UnlitShowsItsColour) {

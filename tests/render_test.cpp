@@ -96,7 +96,8 @@ TEST(Tiles, CoverEveryPixelOnce) {
 TEST(Tiles, NeighboursInTimeTouch) {
     const auto tiles = tiles_of({0, 0, 128, 128}, 16);
     for (size_t i = 1; i < tiles.size(); ++i)
-        EXPECT_EQ(std::abs(tiles[i].x0 - tiles[i - 1].x0) + std::abs(tiles[i].y0 - tiles[i - 1].y0), 16);
+        EXPECT_EQ(std::abs(tiles[i].x0 - tiles[i - 1].x0) + std::abs(tiles[i].y0 - tiles[i - 1].y0),
+                  16);
 }
 
 TEST(Render, PixelsDoNotDependOnThreads) {
@@ -125,7 +126,8 @@ TEST(Render, PixelsDoNotDependOnTileSize) {
 
 TEST(Render, ACropIsAPartOfTheWhole) {
     const Rect crop{11, 6, 30, 29};
-    expect_same_bytes(picture(ThreadExecutor(2), job_of(8)), picture(ThreadExecutor(2), job_of(8), crop), crop);
+    expect_same_bytes(picture(ThreadExecutor(2), job_of(8)),
+                      picture(ThreadExecutor(2), job_of(8), crop), crop);
 }
 
 // The first 16 samples of 64 are the 16 samples of 16: stopped there, both films are the same.
@@ -138,7 +140,8 @@ TEST(Render, AShorterRenderIsAPrefixOfALongerOne) {
     for (int y = 0; y < kSize.y; ++y)
         for (int x = 0; x < kSize.x; ++x)
             for (int i = 0; i < 4; ++i)
-                EXPECT_NEAR(whole.colour(x, y)[i], (first.colour(x, y)[i] + 3 * last.colour(x, y)[i]) / 4,
+                EXPECT_NEAR(whole.colour(x, y)[i],
+                            (first.colour(x, y)[i] + 3 * last.colour(x, y)[i]) / 4,
                             4e-7 * (1 + whole.colour(x, y)[i]));
 }
 
@@ -146,7 +149,8 @@ TEST(Render, AShorterRenderIsAPrefixOfALongerOne) {
 // than cores, a fast one would otherwise do all the work before the last wakes up.
 class CountingTracer {
   public:
-    explicit CountingTracer(int threads) : threads_(threads), counts_(static_cast<size_t>(kSize.x * kSize.y)) {}
+    explicit CountingTracer(int threads)
+        : threads_(threads), counts_(static_cast<size_t>(kSize.x * kSize.y)) {}
 
     f4 radiance(const Ray&, const Bands&, const Sampler&, bool, FilmSample&, PathStats&) const {
         std::unique_lock lock(mutex_);
@@ -201,7 +205,8 @@ TEST(Render, StopsWhenTold) {
     RenderMonitor monitor;
     monitor.stop = true;
     ThreadExecutor executor(2);
-    const RenderResult result = render(*studio.tracer, *studio.camera, job_of(8), film, executor, monitor);
+    const RenderResult result =
+        render(*studio.tracer, *studio.camera, job_of(8), film, executor, monitor);
     EXPECT_TRUE(result.stopped);
     EXPECT_EQ(result.end_sample, 0u);
 }

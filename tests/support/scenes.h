@@ -34,7 +34,8 @@ inline Mesh sphere(V3f centre, float radius, int rows, bool smooth) {
         for (int j = 0; j < columns; ++j) {
             const float theta = kPi * static_cast<float>(i) / static_cast<float>(rows);
             const float phi = 2 * kPi * static_cast<float>(j) / static_cast<float>(columns);
-            const V3f n(std::sin(theta) * std::cos(phi), std::cos(theta), -std::sin(theta) * std::sin(phi));
+            const V3f n(std::sin(theta) * std::cos(phi), std::cos(theta),
+                        -std::sin(theta) * std::sin(phi));
             mesh.positions.push_back(centre + n * radius);
             if (smooth) mesh.normals.push_back(n);
         }
@@ -43,7 +44,8 @@ inline Mesh sphere(V3f centre, float radius, int rows, bool smooth) {
     for (int i = 0; i < rows; ++i) {
         for (int j = 0; j < columns; ++j) {
             if (i > 0) mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i, j + 1)});
-            if (i + 1 < rows) mesh.triangles.push_back({at(i, j + 1), at(i + 1, j), at(i + 1, j + 1)});
+            if (i + 1 < rows)
+                mesh.triangles.push_back({at(i, j + 1), at(i + 1, j), at(i + 1, j + 1)});
         }
     }
     return mesh;

@@ -1,71 +1,81 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG files byte by byte, of kinds that no writer of ours makes. ISO/IEC 15948:2004, RFC 1950,
-// 1951.
+// Tiny PNG files for tests, of every kind, without a PNG library.
 #pragma once
 
 #include <cstdint>
-#include <string>
+#include <span>
+#include <string_view>
 #include <vector>
 
-namespace petzval::test {
+namespace petzval {
 
-using Bytes = std::vector<uint8_t>;
-
-/// Colour types of PNG.
 enum class PngColour : uint8_t { Grey = 0, Rgb = 2, Palette = 3, GreyAlpha = 4, Rgba = 6 };
 
-inline void append_u32(Bytes& to, uint32_t value) {
-    for (int shift = 24; shift >= 0; shift -= 8) to.push_back(uint8_t(value >> shift));
+inline void put_big_endian(std::vector<uint8_t>& to, uint32_t word) {
+    for (int shift = 24; shift >= 0; shift -= 8) to.push_back(uint8_t(word >> shift));
 }
 
-/// Length, type, data and CRC-32 (polynomial 0xedb88320, reflected).
-[[nodiscard]] inline Bytes png_chunk(const std::string& type, const Bytes& data) {
-    Bytes chunk;
-    append_u32(chunk, uint32_t(data.size()));
-    chunk.insert(chunk.end(), type.begin(), type.end());
-    chunk.insert(chunk.end(), data.begin(), data.end());
+/// CRC-32 of a PNG chunk: its polynomial bit by bit (PNG, third edition, annex D).
+inline uint32_t png_crc(std::span<const uint8_t> bytes) {
     uint32_t crc = ~0u;
-    for (size_t i = 4; i < chunk.size(); ++i) {
-        crc ^= chunk[i];
-        for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ ((crc & 1) ? 0xedb88320u : 0u);
+    for (uint8_t byte : bytes) {
+        crc ^= byte;
+        for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ (crc & 1 ? 0xEDB88320u : 0u);
     }
-    append_u32(chunk, ~crc);
-    return chunk;
+    return ~crc;
 }
 
-/// A zlib stream of one block that is not compressed: at most 65535 bytes.
-[[nodiscard]] inline Bytes zlib_stored(const Bytes& data) {
-    const auto size = uint16_t(data.size());
-    Bytes out{
-        0x78, 0x01, 0x01, uint8_t(size), uint8_t(size >> 8), uint8_t(~size), uint8_t(~size >> 8)};
-    out.insert(out.end(), data.begin(), data.end());
-    uint32_t a = 1, b = 0;  // Adler-32
-    for (const uint8_t byte : data) {
-        a = (a + byte) % 65521;
-        b = (b + a) % 65521;
-    }
-    append_u32(out, b << 16 | a);
-    return out;
+inline void put_png_chunk(std::vector<uint8_t>& to, std::string_view type,
+                          std::span<const uint8_t> data) {
+    put_big_endian(to, uint32_t(data.size()));
+    const size_t start = to.size();
+    to.insert(to.end(), type.begin(), type.end());
+    to.insert(to.end(), data.begin(), data.end());
+    put_big_endian(to, png_crc(std::span(to).subspan(start)));
 }
 
-/// A whole file. rows: each row's bytes as PNG packs them, one after another; extra: chunks between
-/// header and data.
-[[nodiscard]] inline Bytes tiny_png(uint32_t width, uint32_t height, uint8_t bits, PngColour colour,
-                                    const std::vector<Bytes>& rows, const Bytes& extra = {}) {
-    Bytes header;
-    append_u32(header, width);
-    append_u32(header, height);
+/// One stored block (RFC 1951, section 3.2.4) in a zlib stream (RFC 1950); at most 65535 bytes.
+inline std::vector<uint8_t> zlib_stored(std::span<const uint8_t> bytes) {
+    const auto size = uint16_t(bytes.size());
+    std::vector<uint8_t> stream = {0x78, 0x01, 0x01, uint8_t(size), uint8_t(size >> 8)};
+    stream.push_back(uint8_t(~size));
+    stream.push_back(uint8_t(uint16_t(~size) >> 8));
+    stream.insert(stream.end(), bytes.begin(), bytes.end());
+    uint32_t a = 1, b = 0;
+    for (uint8_t byte : bytes) a = (a + byte) % 65521, b = (b + a) % 65521;
+    put_big_endian(stream, b << 16 | a);
+    return stream;
+}
+
+/// rows: the bytes of each row as PNG packs them, row 0 at the top. extra: whole chunks that stand
+/// between header and data. Nothing is checked, so that broken files can be made too.
+inline std::vector<uint8_t> tiny_png(uint32_t width, uint32_t height, uint8_t bits,
+                                     PngColour colour,
+                                     const std::vector<std::vector<uint8_t>>& rows,
+                                     const std::vector<uint8_t>& extra = {}) {
+    std::vector<uint8_t> header, data;
+    put_big_endian(header, width);
+    put_big_endian(header, height);
     header.insert(header.end(), {bits, uint8_t(colour), 0, 0, 0});
-    Bytes filtered;
-    for (const Bytes& row : rows) {
-        filtered.push_back(0);  // no filter
-        filtered.insert(filtered.end(), row.begin(), row.end());
+    for (const std::vector<uint8_t>& row : rows) {
+        data.push_back(0);  // no filter
+        data.insert(data.end(), row.begin(), row.end());
     }
-    Bytes png{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-    for (const Bytes& part : {png_chunk("IHDR", header), extra,
-                              png_chunk("IDAT", zlib_stored(filtered)), png_chunk("IEND", {})})
-        png.insert(png.end(), part.begin(), part.end());
+    std::vector<uint8_t> png = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+    put_png_chunk(png, "IHDR", header);
+    png.insert(png.end(), extra.begin(), extra.end());
+    put_png_chunk(png, "IDAT", zlib_stored(data));
+    put_png_chunk(png, "IEND", {});
     return png;
 }
 
-}  // namespace petzval::test
+/// An 8-bit RGBA PNG of width * height texels, row 0 at the top; at most 16000 texels.
+inline std::vector<uint8_t> tiny_png(uint32_t width, uint32_t height,
+                                     const std::vector<uint8_t>& rgba) {
+    std::vector<std::vector<uint8_t>> rows;
+    for (uint32_t y = 0; y < height; ++y)
+        rows.emplace_back(rgba.begin() + y * width * 4, rgba.begin() + (y + 1) * width * 4);
+    return tiny_png(width, height, 8, PngColour::Rgba, rows);
+}
+
+}  // namespace petzval

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/light_choice.h"
+
+#include "tests/support/chi_square.h"
+#include "tests/support/lamp.h"
+
+namespace petzval {
+namespace {
+
+using test::Random;
+
+Scene mixed_scene() {
+    Scene scene = test::lamp_scene();
+    scene.lights = {PointLight{V3f(0.f), Rgb(2.f)}, PointLight{V3f(0.f), Rgb(0.f)},
+                    SunLight{V3f(0, -1, 0), Rgb(0.5f)}};
+    scene.sky = Sky::uniform(Rgb(0.1f));
+    finish_scene(scene);
+    return scene;
+}
+
+void expect_consistent(const Scene& scene, const LightChoice& choice,
+                       const std::vector<double>& weights, uint32_t seed) {
+    const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+    std::vector<double> observed(weights.size()), expected;
+    for (uint32_t i = 0; i < scene.lights.size(); ++i) {
+        EXPECT_NEAR(choice.probability(i), weights[i] / sum, 1e-6) << i;
+        expected.push_back(100000 * weights[i] / sum);
+    }
+    Random random(seed);
+    for (int i = 0; i < 100000; ++i) {
+        const auto pick = choice.pick(random.next());
+        ASSERT_TRUE(pick);
+        ASSERT_EQ(pick->probability, choice.probability(pick->light));
+        ++observed[pick->light];
+    }
+    EXPECT_TRUE(test::chi_square(observed, expected));
+}
+
+TEST(LightChoice, PowerWeighs) {
+    const Scene scene = mixed_scene();
+    std::vector<double> weights;
+    for (const Light& light : scene.lights) weights.push_back(light_power(scene, light));
+    expect_consistent(scene, LightChoice(scene, LightChoiceKind::Power), weights, 1);
+}
+
+TEST(LightChoice, UniformTreatsThoseWithPowerAlike) {
+    const Scene scene = mixed_scene();
+    expect_consistent(scene, LightChoice(scene, LightChoiceKind::Uniform), {1, 0, 1, 1, 1}, 2);
+}
+
+TEST(LightChoice, NothingToChoose) {
+    Scene scene;
+    EXPECT_FALSE(LightChoice(scene, LightChoiceKind::Power).pick(0.5f));
+    scene.lights = {PointLight{V3f(0.f), Rgb(0.f)}};
+    const LightChoice choice(scene, LightChoiceKind::Uniform);
+    EXPECT_FALSE(choice.pick(0.5f));
+    EXPECT_EQ(choice.probability(0), 0.f);
+}
+
+TEST(LightChoice, AFaintLightBesideManyStrongOnesKeepsAChance) {
+    Scene scene;
+    for (int i = 0; i < 200000; ++i)
+        scene.lights.push_back(PointLight{V3f(0.f), Rgb(i == 777 ? 1e-9f : 1e6f)});
+    const LightChoice choice(scene, LightChoiceKind::Power);
+    EXPECT_GT(choice.probability(777), 0.f);
+    double sum = 0;
+    for (uint32_t i = 0; i < scene.lights.size(); ++i) sum += choice.probability(i);
+    EXPECT_NEAR(sum, 1, 1e-6);
+}
+
+TEST(LightChoice, KeepsStrata) {
+    Scene scene;
+    for (int i = 0; i < 8; ++i) scene.lights.push_back(PointLight{V3f(0.f), Rgb(1.f)});
+    const LightChoice choice(scene, LightChoiceKind::Power);
+    for (uint32_t i = 0; i < 8; ++i)
+        EXPECT_EQ(choice.pick((static_cast<float>(i) + 0.5f) / 8)->light, i);
+}
+
+}  // namespace
+}  // namespace petzval

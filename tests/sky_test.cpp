@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/sky.h"
+
+#include "tests/support/chi_square.h"
+#include "tests/support/jacobian.h"
+
+namespace petzval {
+namespace {
+
+using test::Random;
+
+// The direction that looks at (u, v) of a picture that is not turned.
+V3f direction_at(double u, double v) {
+    const double azimuth = 2 * M_PI * (u - 0.5), polar = M_PI * v;
+    return {static_cast<float>(std::sin(polar) * std::cos(azimuth)),
+            static_cast<float>(std::cos(polar)),
+            static_cast<float>(std::sin(polar) * std::sin(azimuth))};
+}
+
+// Texel (x, y) holds (x, y, 1), so that a lookup tells where it fell.
+Sky coordinates(int width, int height, float rotate_deg = 0.f) {
+    std::vector<float> rgb;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            rgb.push_back(static_cast<float>(x));
+            rgb.push_back(static_cast<float>(y));
+            rgb.push_back(1.f);
+        }
+    return Sky::picture(rgb, width, height, rotate_deg, 1.f);
+}
+
+Sky spiky(int width, int height, float rotate_deg, uint32_t seed) {
+    std::vector<float> rgb;
+    Random random(seed);
+    for (int i = 0; i < 3 * width * height; ++i) rgb.push_back(std::pow(random.next(), 4.f));
+    rgb[3 * (width + 2)] = 40.f;
+    return Sky::picture(rgb, width, height, rotate_deg, 2.f);
+}
+
+// The tests' cells are about +z.
+V3f y_to_z(const V3f& w) {
+    return {w.x, -w.z, w.y};
+}
+V3f z_to_y(const V3f& w) {
+    return {w.x, w.z, -w.y};
+}
+
+TEST(Sky, TexelsStandWhereTheConventionSays) {
+    const Sky sky = coordinates(16, 8);
+    for (int y = 0; y < 8; ++y)
+        for (int x = 0; x < 16; ++x) {
+            const Rgb found = sky.radiance(direction_at((x + 0.5) / 16, (y + 0.5) / 8));
+            ASSERT_NEAR(found[0], x, 1e-4);
+            ASSERT_NEAR(found[1], y, 1e-4);
+            ASSERT_NEAR(found[2], 1, 1e-5);
+        }
+    // u = 0.5 looks along +x, 0.25 along -z, 0.75 along +z; v = 0 is up.
+    EXPECT_NEAR(sky.radiance({1, 0, 0})[0], 7.5, 1e-4);
+    EXPECT_NEAR(sky.radiance({0, 0, -1})[0], 3.5, 1e-4);
+    EXPECT_NEAR(sky.radiance({0, 0, 1})[0], 11.5, 1e-4);
+    EXPECT_NEAR(sky.radiance({0, 1, 0})[1], 0, 1e-4);
+    EXPECT_NEAR(sky.radiance({0, -1, 0})[1], 7, 1e-4);
+}
+
+TEST(Sky, TurnsCounterClockwiseSeenFromAbove) {
+    // From above, with x to the right, -z is up: a quarter turn takes +x there.
+    const Sky sky = coordinates(16, 8, 90.f);
+    EXPECT_NEAR(sky.radiance({0, 0, -1})[0], 7.5, 1e-4);
+    EXPECT_NEAR(sky.radiance({1, 0, 0})[0], 11.5, 1e-4);
+    const Sky back = coordinates(16, 8, -270.f), twice = coordinates(16, 8, 450.f);
+    for (const V3f& w : {direction_at(0.1, 0.3), direction_at(0.7, 0.6)}) {
+        EXPECT_NEAR(back.radiance(w)[0], sky.radiance(w)[0], 1e-4);
+        EXPECT_NEAR(twice.radiance(w)[0], sky.radiance(w)[0], 1e-4);
+    }
+}
+
+TEST(Sky, IsBilinearWithASeamThatCloses) {
+    const Sky sky = coordinates(16, 8);
+    EXPECT_NEAR(sky.radiance(direction_at(5.75 / 16, 3.25 / 8))[0], 5.25, 1e-4);
+    EXPECT_NEAR(sky.radiance(direction_at(5.75 / 16, 3.25 / 8))[1], 2.75, 1e-4);
+    EXPECT_NEAR(sky.radiance(direction_at(0.0, 0.5))[0], 7.5, 1e-4);  // between 15 and 0
+    EXPECT_NEAR(sky.radiance(direction_at(0.25 / 16, 0.5))[0], 3.75, 1e-4);
+    EXPECT_NEAR(sky.radiance(direction_at(0.3, 0.25 / 8))[1], 0, 1e-4);
+    EXPECT_NEAR(sky.radiance(direction_at(0.3, 7.75 / 8))[1], 7, 1e-4);
+}
+
+TEST(Sky, AverageIsTheIntegralOfWhatLookupsFind) {
+    for (const Sky& sky : {spiky(7, 5, 33.f, 1), spiky(1, 1, 0.f, 2), spiky(32, 3, 200.f, 3)}) {
+        const auto luminance_at = [&](double u, double v) {
+            return luminance(sky.radiance(direction_at(u, v))) * std::sin(M_PI * v) * M_PI / 2;
+        };
+        const double integral = test::integrate(luminance_at, 0, 1, 0, 1, 1e-7, 4);
+        // The importance takes the mean over a texel before the sine: exact to the cells' size.
+        EXPECT_NEAR(sky.average_luminance(), integral, 0.03 * integral);
+    }
+    const Sky fine = spiky(128, 64, 0.f, 4);
+    double sum = 0;
+    for (int i = 0; i < 1024 * 512; ++i) {
+        const double u = (i % 1024 + 0.5) / 1024, v = (i / 1024 + 0.5) / 512;
+        sum += luminance(fine.radiance(direction_at(u, v))) * std::sin(M_PI * v) * M_PI / 2;
+    }
+    EXPECT_NEAR(fine.average_luminance(), sum / (1024 * 512), 1e-3 * fine.average_luminance());
+}
+
+TEST(Sky, SamplesFollowTheDensity) {
+    const Sky picture = spiky(20, 10, 36.f, 5), uniform = Sky::uniform(Rgb(3.f));
+    uint32_t seed = 6;
+    for (const Sky* sky : {&picture, &uniform}) {
+        EXPECT_TRUE(test::chi_square_sphere(
+            [&](Random& random) { return y_to_z(sky->sample(random.next2()).direction); },
+            [&](const V3f& w) { return sky->pdf(z_to_y(w)); }, seed++));
+        EXPECT_TRUE(test::jacobian_matches([&](V2f u) { return sky->sample(u).direction; },
+                                           [&](const V3f& w) { return sky->pdf(w); }, seed++, 0.01,
+                                           2e-4));
+    }
+}
+
+TEST(Sky, DrawsCarryWhatLookupsFind) {
+    const Sky sky = spiky(256, 128, 77.f, 9);
+    Random random(10);
+    int other_cell = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const auto drawn = sky.sample(random.next2());
+        const auto found = sky.find(drawn.direction);
+        ASSERT_NEAR(drawn.direction.length(), 1, 1e-6);
+        ASSERT_GT(drawn.pdf, 0);
+        for (int c = 0; c < 3; ++c) ASSERT_NEAR(drawn.radiance[c], found.radiance[c], 2e-4 * 80);
+        other_cell += std::fabs(drawn.pdf - found.pdf) > 1e-4f * drawn.pdf;
+    }
+    EXPECT_LT(other_cell, 40);  // rounding across the edge of a texel
+}
+
+TEST(Sky, EstimatesTheLightThatArrives) {
+    const Sky sky = spiky(24, 12, 10.f, 11);
+    double expected = 0;  // irradiance on a surface that faces up
+    for (int i = 0; i < 1024 * 512; ++i) {
+        const double u = (i % 1024 + 0.5) / 1024, v = (i / 1024 + 0.5) / 512;
+        const V3f w = direction_at(u, v);
+        if (w.y > 0)
+            expected += luminance(sky.radiance(w)) * w.y * std::sin(M_PI * v) * 2 * M_PI * M_PI /
+                        (1024.0 * 512);
+    }
+    Random random(12);
+    test::Moments moments;
+    for (int i = 0; i < 100000; ++i) {
+        const auto drawn = sky.sample(random.next2());
+        moments.add(luminance(drawn.radiance) * std::max(drawn.direction.y, 0.f) / drawn.pdf);
+    }
+    EXPECT_TRUE(test::z_test(moments.mean(), moments.standard_error(), expected))
+        << moments.mean() << " +- " << moments.standard_error() << ", not " << expected;
+}
+
+TEST(Sky, StrengthScales) {
+    const std::vector<float> rgb(3 * 8 * 4, 2.f);
+    const Sky sky = Sky::picture(rgb, 8, 4, 0.f, 1.5f);
+    EXPECT_NEAR(sky.average_luminance(), 3, 1e-5);
+    EXPECT_NEAR(sky.radiance({0, 0, 1})[1], 3, 1e-6);
+    EXPECT_NEAR(sky.pdf({0, 0, 1}), 1 / (4 * M_PI), 1e-6);
+}
+
+TEST(Sky, BlackSkies) {
+    for (const Sky& sky : {Sky(), Sky::uniform(Rgb(0.f)),
+                           Sky::picture(std::vector<float>(3 * 8 * 4), 8, 4, 0.f, 1.f)}) {
+        EXPECT_TRUE(sky.black());
+        EXPECT_EQ(sky.pdf({0, 1, 0}), 0.f);
+        EXPECT_EQ(sky.radiance({0, 1, 0})[0], 0.f);
+    }
+    EXPECT_FALSE(Sky::uniform(Rgb(0, 0, 0.1f)).black());
+}
+
+TEST(Sky, PolesAndAxesAreFinite) {
+    const Sky sky = spiky(64, 32, 123.f, 13);
+    for (const V3f& w : {V3f(0, 1, 0), V3f(0, -1, 0), V3f(1, 0, 0), V3f(-1, 0, 0), V3f(-1, 0, -0.f),
+                         V3f(0, 0, 1), V3f(0, 0, -1)}) {
+        const auto found = sky.find(w);
+        EXPECT_TRUE(all_finite(found.radiance.v));
+        EXPECT_GT(found.pdf, 0.f);
+        EXPECT_LT(found.pdf, kInfinity);
+    }
+    for (const float x : {0.f, kOneMinus, 1.f})
+        for (const float y : {0.f, kOneMinus, 1.f})
+            EXPECT_NEAR(sky.sample({x, y}).direction.length(), 1, 1e-6);
+}
+
+}  // namespace
+}  // namespace petzval

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a TinyGltf straight to what the loader makes of it.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "io/error.h"
+#include "io/gltf.h"
+#include "tests/support/tiny_gltf.h"
+
+namespace petzval {
+
+inline GltfFile load(const TinyGltf& file) {
+    const TempFolder folder;
+    return load_gltf(file.save_glb(folder.path / "test.glb"));
+}
+
+/// The one mesh of a file's scene.
+inline Mesh load_mesh(const TinyGltf& file) {
+    GltfFile loaded = load(file);
+    EXPECT_EQ(loaded.scene.meshes.size(), 1u);
+    return loaded.scene.meshes.empty() ? Mesh{} : std::move(loaded.scene.meshes[0]);
+}
+
+/// The message with which a file is refused; empty where it is not.
+inline std::string refusal(const TinyGltf& file) {
+    try {
+        (void)load(file);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return {};
+}
+
+inline bool contains_line(const std::vector<std::string>& lines, const std::string& part) {
+    for (const std::string& line : lines)
+        if (line.find(part) != std::string::npos) return true;
+    return false;
+}
+
+}  // namespace petzval

@@ -3,84 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <map>
 #include <set>
 
+#include "io/gltf_attributes.h"
 #include "io/gltf_check.h"
 #include "io/json_parse.h"
 
 namespace petzval {
 namespace {
-
-/// "TEXCOORD_1" taken apart. A name of an application's own begins with '_'.
-struct Semantic {
-    std::string base;
-    std::optional<uint64_t> set;
-    bool custom = false;
-};
-
-/// Allowed formats of an attribute; a component's name ends in n when it is normalized.
-struct Formats {
-    std::string_view base;
-    bool numbered;
-    std::vector<std::string_view> types, components, quantized;
-};
-
-const std::vector<Formats>& formats() {
-    static const std::vector<Formats> table = {
-        {"POSITION",
-         false,
-         {"VEC3"},
-         {"float"},
-         {"int8", "int8n", "uint8", "uint8n", "int16", "int16n", "uint16", "uint16n"}},
-        {"NORMAL", false, {"VEC3"}, {"float"}, {"int8n", "int16n"}},
-        {"TANGENT", false, {"VEC4"}, {"float"}, {"int8n", "int16n"}},
-        {"TEXCOORD",
-         true,
-         {"VEC2"},
-         {"float", "uint8n", "uint16n"},
-         {"int8", "int8n", "uint8", "int16", "int16n", "uint16"}},
-        {"COLOR", true, {"VEC3", "VEC4"}, {"float", "uint8n", "uint16n"}, {}},
-        {"JOINTS", true, {"VEC4"}, {"uint8", "uint16"}, {}},
-        {"WEIGHTS", true, {"VEC4"}, {"float", "uint8n", "uint16n"}, {}}};
-    return table;
-}
-
-const Formats* find_formats(std::string_view base) {
-    for (const Formats& row : formats())
-        if (row.base == base) return &row;
-    return nullptr;
-}
-
-bool lists(const std::vector<std::string_view>& list, std::string_view word) {
-    return std::find(list.begin(), list.end(), word) != list.end();
-}
-
-std::string component_name(const GltfAccessor& accessor) {
-    static const std::map<int, std::string> names = {{5120, "int8"},   {5121, "uint8"},
-                                                     {5122, "int16"},  {5123, "uint16"},
-                                                     {5125, "uint32"}, {5126, "float"}};
-    const auto at = names.find(accessor.component_type);
-    return (at == names.end() ? "unknown" : at->second) + (accessor.normalized ? "n" : "");
-}
-
-std::optional<Semantic> parse_semantic(const std::string& name) {
-    if (name.starts_with('_')) return Semantic{name, {}, true};
-    const size_t bar = name.find('_');
-    Semantic semantic{name.substr(0, bar), {}, false};
-    const Formats* row = find_formats(semantic.base);
-    if (!row || row->numbered != (bar != std::string::npos)) return std::nullopt;
-    if (!row->numbered) return semantic;
-    const std::string digits = name.substr(bar + 1);
-    if (digits.empty() || (digits.size() > 1 && digits[0] == '0')) return std::nullopt;
-    uint64_t set = 0;
-    const char* end = digits.data() + digits.size();
-    if (std::from_chars(digits.data(), end, set).ptr != end) return std::nullopt;
-    semantic.set = set;
-    return semantic;
-}
 
 class MeshCheck {
   public:
@@ -134,40 +65,26 @@ class MeshCheck {
     Attributes read_attributes(const JsonCursor& attributes, bool is_target) {
         Attributes found;
         for (const auto& [name, unused] : attributes.value().items()) {
-            const auto semantic = parse_semantic(name);
+            const auto semantic = parse_gltf_semantic(name);
             if (!semantic)
                 attributes.fail(name, "is no attribute of glTF; names of your own begin with _");
             const size_t index =
                 attributes.required_index(name.c_str(), accessors_.size(), "accessor");
             const GltfAccessor& accessor = check_.accessors[index];
-            if (semantic->custom)
-                check_custom(attributes, name, accessor);
-            else
-                check_format(attributes, name, *find_formats(semantic->base), accessor, is_target);
+            check_format(attributes, name, *semantic, accessor, is_target);
             check_layout(attributes, name, index);
             found[name] = index;
         }
         return found;
     }
 
-    static void check_custom(const JsonCursor& attributes, const std::string& name,
-                             const GltfAccessor& accessor) {
-        if (accessor.component_type == 5125)
-            attributes.fail(name, "an attribute must not be of 32-bit integers");
-    }
-
-    void check_format(const JsonCursor& attributes, const std::string& name, const Formats& row,
-                      const GltfAccessor& accessor, bool is_target) const {
-        // The sign of a tangent's fourth component cannot be morphed.
-        const bool short_tangent = is_target && row.base == "TANGENT";
-        const bool type_ok =
-            short_tangent ? accessor.type == "VEC3" : lists(row.types, accessor.type);
-        const std::string component = component_name(accessor);
-        if (type_ok &&
-            (lists(row.components, component) || (quantized_ && lists(row.quantized, component))))
-            return;
-        attributes.fail(name, fmt::format("is {} of {}, which {} must not be",
-                                          printable(accessor.type), component, row.base));
+    void check_format(const JsonCursor& attributes, const std::string& name,
+                      const GltfSemantic& semantic, const GltfAccessor& accessor,
+                      bool is_target) const {
+        if (!is_allowed_format(semantic, accessor, quantized_, is_target))
+            attributes.fail(
+                name, fmt::format("is {} of {}, which {} must not be", printable(accessor.type),
+                                  component_name(accessor), name));
     }
 
     /// Starts at a multiple of 4 bytes, and so does every next element; who shares says how far.
@@ -223,7 +140,7 @@ class MeshCheck {
     static uint64_t check_sets(const JsonCursor& attributes, const Attributes& found) {
         std::map<std::string, std::set<uint64_t>> sets;
         for (const auto& [name, unused] : found)
-            if (const auto semantic = parse_semantic(name); semantic->set)
+            if (const auto semantic = parse_gltf_semantic(name); semantic->set)
                 sets[semantic->base].insert(*semantic->set);
         for (const auto& [base, numbers] : sets)
             if (*numbers.rbegin() != numbers.size() - 1)
@@ -235,7 +152,8 @@ class MeshCheck {
         const size_t index = primitive.required_index("indices", accessors_.size(), "accessor");
         const GltfAccessor& accessor = check_.accessors[index];
         const std::string component = component_name(accessor);
-        if (accessor.type != "SCALAR" || !lists({"uint8", "uint16", "uint32"}, component))
+        if (accessor.type != "SCALAR" ||
+            (component != "uint8" && component != "uint16" && component != "uint32"))
             primitive.fail("indices", fmt::format("accessor {} is {} of {}, not SCALAR of an "
                                                   "unsigned integer",
                                                   index, printable(accessor.type), component));

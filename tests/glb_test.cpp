@@ -85,6 +85,9 @@ TEST(Glb, RefusesBrokenHeaders) {
     file[12] = 0xFC;  // the JSON chunk's length
     EXPECT_TRUE(has(refused(file), "byte 12: a chunk promises 252 bytes, 16 are left"));
     file = container(good);
+    file[24] = 8;  // the BIN chunk's length, of which 4 bytes are there
+    EXPECT_TRUE(has(refused(file), "byte 24: a chunk promises 8 bytes, 4 are left"));
+    file = container(good);
     file[11] = 0xFF;  // the container's length
     EXPECT_TRUE(has(refused(file), "byte 8: the header promises"));
 }

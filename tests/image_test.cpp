@@ -267,8 +267,13 @@ TEST(Fuzz, BrokenFilesDoNoHarm) {
             for (size_t k = 0; k < changes; ++k) bytes[random() % whole.size()] = uint8_t(random());
             std::filesystem::remove(broken);  // some file systems sync what is overwritten
             write_bytes(broken, bytes);
-            refused += !message_of([&] { (void)read_picture(broken); }).empty();
-            (void)message_of([&] { (void)decode_image(bytes, "a.gltf", "/images/0"); });
+            const bool texture = name == "a.png" || name == "a.jpg";
+            refused += !message_of([&] {
+                            if (texture)
+                                (void)decode_image(bytes, "a.gltf", "/images/0");
+                            else
+                                (void)read_picture(broken);
+                        }).empty();
         }
     }
     EXPECT_GT(refused, 200);

@@ -73,17 +73,17 @@ INSTANTIATE_TEST_SUITE_P(All, Kinds,
 
 TEST_P(Kinds, IsAFunctionOfItsArgumentsOnly) {
     const Sampler a(GetParam(), 5, {10, 20, 30}), b(GetParam(), 5, {10, 20, 30});
-    const V2f later = a.get2(Dim::Light, 4);
+    const V2f later = a.get2(Dim::LightPoint, 4);
     EXPECT_EQ(a.get1(Dim::Film), b.get1(Dim::Film));
-    EXPECT_EQ(later, b.get2(Dim::Light, 4));
+    EXPECT_EQ(later, b.get2(Dim::LightPoint, 4));
     EXPECT_EQ(a.get_bits(Dim::Coverage, 2), b.get_bits(Dim::Coverage, 2));
     const Sampler others[] = {
         Sampler(GetParam(), 6, {10, 20, 30}), Sampler(GetParam(), 5, {11, 20, 30}),
         Sampler(GetParam(), 5, {10, 21, 30}), Sampler(GetParam(), 5, {20, 10, 30}),
         Sampler(GetParam(), 5, {10, 20, 31}), Sampler(GetParam(), 5, {-10, 20, 30})};
     for (const Sampler& other : others) {
-        EXPECT_NE(a.get2(Dim::Light, 4), other.get2(Dim::Light, 4));
-        EXPECT_NE(a.get_bits(Dim::Light, 4), other.get_bits(Dim::Light, 4));
+        EXPECT_NE(a.get2(Dim::LightPoint, 4), other.get2(Dim::LightPoint, 4));
+        EXPECT_NE(a.get_bits(Dim::LightPoint, 4), other.get_bits(Dim::LightPoint, 4));
     }
 }
 
@@ -126,8 +126,8 @@ TEST_P(Kinds, DimensionsVerticesAndPixelsAreIndependent) {
     };
     const auto base = series(Dim::Bsdf, 1, 0, 1, false);
     EXPECT_TRUE(uncorrelated(base, series(Dim::Bsdf, 1, 0, 1, true)));
-    EXPECT_TRUE(uncorrelated(base, series(Dim::Light, 1, 0, 1, false)));
-    EXPECT_TRUE(uncorrelated(base, series(Dim::Light, 1, 0, 1, true)));
+    EXPECT_TRUE(uncorrelated(base, series(Dim::LightPoint, 1, 0, 1, false)));
+    EXPECT_TRUE(uncorrelated(base, series(Dim::LightPoint, 1, 0, 1, true)));
     EXPECT_TRUE(uncorrelated(base, series(Dim::Bsdf, 2, 0, 1, false)));
     EXPECT_TRUE(uncorrelated(base, series(Dim::Bsdf, 1, 1, 1, false)));
     EXPECT_TRUE(uncorrelated(base, series(Dim::Bsdf, 1, 0, 2, false)));
@@ -141,7 +141,7 @@ TEST(Sampler, StratifiedPointsIntegrateBetter) {
         for (int pixel = 0; pixel < 200; ++pixel) {
             double sum = 0;
             for (uint32_t i = 0; i < 256; ++i) {
-                const V2f p = Sampler(kind, 1, {pixel, 0, i}).get2(Dim::Light, 2);
+                const V2f p = Sampler(kind, 1, {pixel, 0, i}).get2(Dim::LightPoint, 2);
                 sum += p.x * p.x * std::cos(p.y);
             }
             total += std::pow(sum / 256 - std::sin(1.0) / 3, 2);

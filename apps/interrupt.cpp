@@ -3,8 +3,6 @@
 
 #include <unistd.h>
 
-#include <ctime>
-
 namespace petzval {
 
 Interrupt::Interrupt(RenderMonitor& monitor) : monitor_(monitor) {
@@ -17,14 +15,16 @@ Interrupt::Interrupt(RenderMonitor& monitor) : monitor_(monitor) {
 
 Interrupt::~Interrupt() {
     thread_.request_stop();
+    pthread_kill(thread_.native_handle(), SIGTERM);  // wakes it, and nobody else
     thread_.join();
     pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);
 }
 
 void Interrupt::watch(const std::stop_token& stop) {
-    const timespec patience{0, 50'000'000};
-    while (!stop.stop_requested()) {
-        if (sigtimedwait(&signals_, nullptr, &patience) < 0) continue;
+    for (;;) {
+        int signal = 0;
+        sigwait(&signals_, &signal);
+        if (stop.stop_requested()) return;
         if (!armed_ || monitor_.stop) _exit(130);
         monitor_.stop = true;
     }

@@ -1,28 +1,54 @@
 // SPDX-License-Identifier: Apache-2.0
 // petzval: photographs glTF scenes.
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
 
+#include "apps/console.h"
 #include "apps/image.h"
 #include "apps/info.h"
 #include "apps/render.h"
 #include "io/develop.h"
+#include "io/error.h"
 
 namespace {
 
-constexpr int kBadArguments = 2, kFailure = 1;
+constexpr int kFailure = 1, kBadArguments = 2;
 
-int fail(const char* what) {
-    fmt::print(stderr, "petzval: error: {}\n", what);
-    return kFailure;
+int fail(int exit_code, const std::string& what) {
+    petzval::print_error_line("petzval: error: " + what);
+    return exit_code;
+}
+
+// Help and the version are "errors" to CLI11 as well.
+int stop_parsing(const CLI::App& app, const CLI::ParseError& e) {
+    if (e.get_exit_code() == 0) return app.exit(e);
+    return fail(kBadArguments, std::string(e.what()) + " (--help says more)");
+}
+
+int run(CLI::App& app, int argc, char** argv, const int& exit_code) {
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+        return stop_parsing(app, e);
+    } catch (const petzval::ArgumentError& e) {
+        return fail(kBadArguments, e.what());
+    } catch (const std::bad_alloc&) {
+        return fail(kFailure, "out of memory");
+    } catch (const std::exception& e) {
+        return fail(kFailure, e.what());
+    }
+    return exit_code;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+    // A limit on the size of files then fails a write, as a full disk does, instead of killing.
+    std::signal(SIGXFSZ, SIG_IGN);
     CLI::App app("A path tracer whose camera is a lens. Every subcommand has --help.");
     app.name("petzval");
     app.set_version_flag("--version", petzval::program_version());
@@ -31,14 +57,8 @@ int main(int argc, char** argv) {
     petzval::add_render_command(app, exit_code);
     petzval::add_info_command(app);
     petzval::add_image_commands(app);
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError& e) {
-        return app.exit(e) == 0 ? 0 : kBadArguments;
-    } catch (const std::bad_alloc&) {
-        return fail("out of memory");
-    } catch (const std::exception& e) {
-        return fail(e.what());
-    }
-    return exit_code;
+    const int result = run(app, argc, argv, exit_code);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+        return fail(kFailure, "standard output cannot be written");
+    return result;
 }

@@ -12,6 +12,7 @@ namespace petzval {
 namespace {
 
 constexpr int kLargestSide_px = 65536;
+constexpr float kNearestFocus_m = 1e-6f, kFarthestFocus_m = 1e9f;
 
 [[noreturn]] void refuse(const std::string& option, const std::string& text,
                          const std::string& want) {
@@ -30,6 +31,7 @@ std::vector<std::string_view> split(std::string_view text, char at) {
 
 template <class T>
 std::optional<T> number(std::string_view text) {
+    if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
     T value{};
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size() || text.empty())
@@ -60,13 +62,14 @@ V2i parse_size(const std::string& option, const std::string& text) {
     refuse(option, text, fmt::format("WIDTHxHEIGHT in pixels, 1 to {} each", kLargestSide_px));
 }
 
-V2f parse_sensor(const std::string& option, const std::string& text) {
+V2f parse_sensor(const std::string& option, const std::string& text, double least, double most) {
     const auto parts = split(text, 'x');
     if (parts.size() == 2) {
         const auto w = number<float>(parts[0]), h = number<float>(parts[1]);
-        if (w && h && *w > 0 && *h > 0) return {*w, *h};
+        const auto fits = [&](float side) { return side >= least && side <= most; };
+        if (w && h && fits(*w) && fits(*h)) return {*w, *h};
     }
-    refuse(option, text, "WIDTHxHEIGHT in millimetres, above 0");
+    refuse(option, text, fmt::format("WIDTHxHEIGHT in millimetres, {:g} to {:g}", least, most));
 }
 
 Rect parse_crop(const std::string& option, const std::string& text, V2i frame) {
@@ -99,17 +102,20 @@ double parse_duration_s(const std::string& option, const std::string& text) {
     return *value * unit_s;
 }
 
-Focus parse_focus(const std::string& option, const std::string& text) {
+Focus parse_focus(const std::string& option, const std::string& text, V2i frame) {
     if (text == "auto") return FocusAuto{};
-    if (text.find(',') != std::string::npos) {
-        const auto at = parse_numbers(option, text, 2);
-        return FocusPixel{at[0], at[1]};
+    if (const auto parts = split(text, ','); parts.size() == 2) {
+        const auto x = number<int>(parts[0]), y = number<int>(parts[1]);
+        if (x && y && *x >= 0 && *y >= 0 && *x < frame.x && *y < frame.y) return FocusPixel{*x, *y};
+        refuse(option, text, fmt::format("a pixel x,y of the {}x{} frame", frame.x, frame.y));
     }
     std::string_view digits = text;
     if (!digits.empty() && digits.back() == 'm') digits.remove_suffix(1);
     const auto value = number<float>(digits);
-    if (!value || *value <= 0)
-        refuse(option, text, "a distance in metres above 0, a pixel x,y or auto");
+    if (!value || *value < kNearestFocus_m || *value > kFarthestFocus_m)
+        refuse(option, text,
+               fmt::format("a distance of {:g} to {:g} metres, a pixel x,y or auto",
+                           kNearestFocus_m, kFarthestFocus_m));
     return FocusDistance{*value};
 }
 
@@ -126,6 +132,22 @@ std::vector<Aov> parse_aovs(const std::string& option, const std::string& text) 
         if (std::find(aovs.begin(), aovs.end(), *aov) == aovs.end()) aovs.push_back(*aov);
     }
     return aovs;
+}
+
+Check number_between(double least, double most) {
+    return [=](const std::string& text) -> std::string {
+        const auto value = number<double>(text);
+        if (value && *value >= least && *value <= most) return "";
+        return fmt::format("\"{}\" is not a number from {:g} to {:g}", text, least, most);
+    };
+}
+
+Check whole_number_between(uint64_t least, uint64_t most) {
+    return [=](const std::string& text) -> std::string {
+        const auto value = number<uint64_t>(text);
+        if (value && *value >= least && *value <= most) return "";
+        return fmt::format("\"{}\" is not a whole number from {} to {}", text, least, most);
+    };
 }
 
 }  // namespace petzval

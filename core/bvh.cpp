@@ -50,6 +50,15 @@ RTCRay to_embree(const Ray& r) {
     return ray;
 }
 
+// Debian's Embree ends the program on other rays: its bound is 1.844e18 for every coordinate.
+bool traceable(const Ray& r) {
+    constexpr float bound = 1.8e18f;
+    const auto within = [](const V3f& v) {
+        return std::fabs(v.x) <= bound && std::fabs(v.y) <= bound && std::fabs(v.z) <= bound;
+    };
+    return within(r.origin) && within(r.direction) && r.t_max >= 0.f;
+}
+
 }  // namespace
 
 struct Bvh::Impl {
@@ -139,6 +148,7 @@ Bvh::Bvh(const Scene& scene, Traversal traversal) : impl_(std::make_unique<Impl>
 Bvh::~Bvh() = default;
 
 std::optional<Hit> Bvh::intersect(const Ray& r) const {
+    if (!traceable(r)) return std::nullopt;
     Context context;
     rtcInitIntersectContext(&context.embree);
     context.coin = r.coin;
@@ -154,6 +164,7 @@ std::optional<Hit> Bvh::intersect(const Ray& r) const {
 }
 
 bool Bvh::occluded(const Ray& r) const {
+    if (!traceable(r)) return false;
     Context context;
     rtcInitIntersectContext(&context.embree);
     context.coin = r.coin;

@@ -106,7 +106,7 @@ RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob&
             const double left_s = *job.time_limit_s - elapsed_s();
             const double fits = left_s / (elapsed_s() / done);
             if (fits < 1) break;
-            pass = std::min(pass, static_cast<uint32_t>(fits));
+            if (fits < pass) pass = static_cast<uint32_t>(fits);  // fits may be beyond uint32_t
         }
         executor.run(static_cast<int>(tiles.size()), [&](int task, int worker) {
             if (monitor.stop) return;

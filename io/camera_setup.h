@@ -12,8 +12,9 @@ struct CameraSetup {
     CameraReport report;
 };
 
-/// file.scene is finished and in bvh. Throws InputError for a camera that the file does not have
-/// and for a lens that cannot be (focal length or f-number not above 0 ...).
+/// The scene is finished and in bvh. Whatever `notice` is told in the form of options gives the
+/// same camera when it is passed back. Throws ArgumentError for a camera that the file does not
+/// have, for a lens that it cannot take, and where there is nothing to focus on.
 [[nodiscard]] CameraSetup set_up_camera(const SceneRequest&, const std::vector<GltfCamera>&,
                                         const Scene&, const Bvh&,
                                         const std::function<void(const std::string&)>& notice);

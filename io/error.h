@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one kind of exception that io throws: something outside the program is not as it must be.
+// The exceptions that io throws: something outside the program is not as it must be.
 #pragma once
 
 #include <stdexcept>
@@ -14,6 +14,12 @@ class InputError : public std::runtime_error {
   public:
     InputError(const std::string& file, const std::string& place, const std::string& message)
         : std::runtime_error(file + ": " + (place.empty() ? "" : place + ": ") + message) {}
+};
+
+/// The file is as it should be, but has not what was asked of it: a camera of that name, say.
+class ArgumentError : public InputError {
+  public:
+    using InputError::InputError;
 };
 
 }  // namespace petzval

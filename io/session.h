@@ -22,9 +22,12 @@ struct FocusDistance {
     float m;
 };
 struct FocusPixel {
-    float x, y;
+    int x, y;  ///< of the full frame; its centre is meant
 };
 using Focus = std::variant<FocusAuto, FocusDistance, FocusPixel>;
+
+/// Vertical angles of view that a perspective camera may be asked for.
+inline constexpr float kSmallestFov_deg = 0.001f, kLargestFov_deg = 179.f;
 
 /// Everything absent means: as the file has it, else a sensible choice that is reported.
 struct SceneRequest {
@@ -65,7 +68,8 @@ struct Session {
 };
 
 /// Loads the file, its sky and its camera. `notice` gets one line for everything that was chosen
-/// for the user or is odd in the file. Throws InputError.
+/// for the user or is odd in the file. Throws InputError, of which ArgumentError where the request
+/// does not fit the file.
 [[nodiscard]] Session open_session(const SceneRequest&,
                                    const std::function<void(const std::string&)>& notice);
 

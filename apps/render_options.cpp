@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/render_options.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <limits>
+#include <thread>
+
+#include "apps/output_checks.h"
+#include "apps/parse.h"
+
+namespace petzval {
+namespace {
+
+constexpr uint32_t kDefaultSpp = 64;
+
+// Bounds that keep every product of two lengths a float; no real lens or place comes near.
+constexpr double kLeast = 1e-6, kMost = 1e6;
+constexpr float kFarthest_m = 1e12f, kNearest_m = 1e-12f;
+
+template <class T>
+using Choices = std::vector<std::pair<std::string, T>>;
+
+template <class T>
+void add_choice(CLI::App& app, const std::string& name, T& value, const Choices<T>& choices,
+                const std::string& help) {
+    const auto read = [=, &value](const std::string& text) {
+        std::string known;
+        for (const auto& [word, choice] : choices) {
+            if (word == text) {
+                value = choice;
+                return;
+            }
+            known += (known.empty() ? "" : ", ") + word;
+        }
+        throw CLI::ValidationError(name, fmt::format("\"{}\" is none of {}", text, known));
+    };
+    app.add_option_function<std::string>(name, read, help);
+}
+
+void add_camera_options(CLI::App& app, RenderOptions& o) {
+    SceneRequest& s = o.scene;
+    const auto length = number_between(kLeast, kMost);
+    const auto add = [&](const char* name, auto& value, const char* help) {
+        return app.add_option(name, value, help)->group("Camera");
+    };
+    add("--camera", s.camera, "camera of the file, by name or index");
+    add("--look-at", o.look_at, "ex,ey,ez,tx,ty,tz: eye and target in metres");
+    add("--fov", s.fov_deg, "vertical angle of view in degrees")
+        ->check(number_between(kSmallestFov_deg, kLargestFov_deg));
+    auto* fstop = add("--fstop", s.fstop, "thin lens of this f-number")->check(length);
+    add("--lens-radius", s.lens_radius_m, "thin lens of this radius in metres")
+        ->check(length)
+        ->excludes(fstop);
+    add("--focal-length", s.focal_length_mm,
+        "of the thin lens in mm; without --fov it sets the angle of view too")
+        ->check(length);
+    add("--sensor", o.sensor, "WxH in mm (default 36x24), cropped to the picture's aspect");
+    add("--focus", o.focus, "sharp plane: metres (1.5 or 1.5m), the pixel x,y, or auto");
+}
+
+void add_light_options(CLI::App& app, RenderOptions& o) {
+    SceneRequest& s = o.scene;
+    const auto add = [&](const char* name, auto& value, const char* help) {
+        return app.add_option(name, value, help)->group("Light");
+    };
+    auto* env = add("--env", s.environment, "equirectangular environment picture, .hdr or .exr");
+    add("--env-rotate", s.environment_rotate_deg, "degrees about +y, counter-clockwise from above")
+        ->check(number_between(-kMost, kMost))
+        ->needs(env);
+    add("--env-strength", s.environment_strength, "factor on the environment")
+        ->check(number_between(0, kMost))
+        ->needs(env);
+    add("--background", o.background,
+        "R,G,B in nits: a uniform environment; with --env only what the camera sees behind");
+    app.add_flag("--transparent", o.path.transparent,
+                 "the sky lights the scene but is not seen: alpha 0")
+        ->group("Light");
+}
+
+void add_frame_options(CLI::App& app, RenderOptions& o) {
+    app.add_option("--size", o.size, "WIDTHxHEIGHT in pixels (default 1280x720)");
+    app.add_option("--crop", o.crop, "x,y,width,height: only these pixels of the full frame");
+    app.add_option("--spp", o.spp, "samples of each pixel (default 64)")
+        ->check(whole_number_between(1, kMostSamples));
+    app.add_option("--time", o.time,
+                   "render for this long: 60s, 10m, 1h; with --spp whichever ends first");
+    app.add_option("--seed", o.job.seed, "another seed, another noise")
+        ->check(whole_number_between(0, std::numeric_limits<uint32_t>::max()));
+    app.add_option("--threads", o.threads, "default: one for each core")
+        ->check(whole_number_between(1, 1024));
+}
+
+void add_sampling_options(CLI::App& app, RenderOptions& o) {
+    app.add_option("--max-depth", o.path.max_depth, "scatterings of a path (default 16)")
+        ->check(whole_number_between(0, 10000));
+    add_choice<FilterKind>(app, "--filter", o.filter,
+                           {{"box", FilterKind::Box},
+                            {"gauss", FilterKind::Gauss},
+                            {"blackman-harris", FilterKind::BlackmanHarris}},
+                           "pixel filter: box, gauss, blackman-harris (default)");
+    app.add_option("--filter-radius", o.filter_radius_px,
+                   "pixels (default: box 0.5, the others 1.5)")
+        ->check(number_between(0.01, 16.0));
+    add_choice<SamplerKind>(app, "--sampler", o.job.sampler,
+                            {{"owen", SamplerKind::Owen},
+                             {"sobol", SamplerKind::Sobol},
+                             {"independent", SamplerKind::Independent}},
+                            "owen (default), sobol, independent");
+    add_choice<LightChoiceKind>(
+        app, "--light-choice", o.scene.light_choice,
+        {{"power", LightChoiceKind::Power}, {"uniform", LightChoiceKind::Uniform}},
+        "how one of many lights is chosen: power (default), uniform");
+    add_choice<Traversal>(app, "--traversal", o.scene.traversal,
+                          {{"robust", Traversal::Robust}, {"fast", Traversal::Fast}},
+                          "robust (default): watertight; fast: may leak at edges");
+}
+
+void add_output_options(CLI::App& app, RenderOptions& o) {
+    const auto add = [&](const char* name, auto& value, const char* help) {
+        return app.add_option(name, value, help)->group("Output");
+    };
+    add("-o,--output", o.outputs, "picture to write: .exr, .png, .jpg; may be given more than once")
+        ->required()
+        ->allow_extra_args(false)  // one name each, so that the scene may follow
+        ->check(complaint_about_picture_name);
+    add("--exposure", o.display.exposure_ev, "stops, for PNG and JPEG; EXR is always scene-linear")
+        ->check(number_between(-100, 100));
+    add("--view", o.display.view, "display transform of PNG and JPEG: sRGB (default), ACES, raw")
+        ->check(complaint_about_view);
+    add("--aov", o.aovs, "layers of the EXR: albedo,normal,depth,position,uv,emission,cost");
+    add("--stats", o.stats, "write counts and times to this JSON file");
+    add_choice<ProgressStyle>(app, "--progress", o.progress,
+                              {{"auto", ProgressStyle::Auto},
+                               {"bar", ProgressStyle::Bar},
+                               {"lines", ProgressStyle::Lines},
+                               {"json", ProgressStyle::Json},
+                               {"none", ProgressStyle::None}},
+                              "on stderr: auto (default), bar, lines, json, none");
+    app.add_flag("--quiet", o.quiet, "print nothing but errors");
+}
+
+std::array<V3f, 2> parse_look_at(const std::string& text) {
+    const auto v = parse_numbers("--look-at", text, 6);
+    for (const float x : v)
+        if (std::fabs(x) > kFarthest_m)
+            throw CLI::ValidationError("--look-at", fmt::format("{:g} m is too far away", x));
+    const std::array<V3f, 2> aim{V3f(v[0], v[1], v[2]), V3f(v[3], v[4], v[5])};
+    if ((aim[0] - aim[1]).length() < kNearest_m)
+        throw CLI::ValidationError("--look-at", "eye and target are the same point");
+    return aim;
+}
+
+void resolve_camera(RenderOptions& o) {
+    SceneRequest& s = o.scene;
+    if (!o.look_at.empty()) {
+        s.look_at = parse_look_at(o.look_at);
+        if (s.camera) throw CLI::ValidationError("--look-at", "excludes --camera");
+    }
+    if (!o.sensor.empty()) s.sensor_mm = parse_sensor("--sensor", o.sensor, kLeast, kMost);
+    if (o.focus.empty()) return;
+    s.focus = parse_focus("--focus", o.focus, s.size);
+    if (!s.fstop && !s.lens_radius_m)
+        throw CLI::ValidationError("--focus",
+                                   "a pinhole has no focus: give --fstop or --lens-radius too");
+}
+
+void resolve_job(RenderOptions& o) {
+    if (!o.time.empty()) o.job.time_limit_s = parse_duration_s("--time", o.time);
+    o.job.end_sample = o.spp.value_or(o.job.time_limit_s ? kMostSamples : kDefaultSpp);
+    const float usual_radius_px = o.filter == FilterKind::Box ? 0.5f : 1.5f;
+    o.job.filter = Filter(o.filter, o.filter_radius_px > 0 ? o.filter_radius_px : usual_radius_px);
+    o.job.timing = o.stats.has_value();
+    if (o.threads == 0)
+        o.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+// Memory is promised before it is there, so that asking for too much would kill instead of fail.
+void require_memory(const RenderFrame& frame) {
+    const double pixels = static_cast<double>(frame.crop.width()) * frame.crop.height();
+    const double layers = static_cast<double>(frame.aovs.size());
+    const double film = 48 + 24 * layers, pictures = 2 * 4 * (4 + 3 * layers);
+    const double needed = pixels * (film + pictures);
+    const double there =
+        static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+    if (needed > there)
+        throw CLI::ValidationError(
+            "--size", fmt::format("needs {:.1f} GiB of memory, this machine has {:.1f}",
+                                  needed * 0x1p-30, there * 0x1p-30));
+}
+
+}  // namespace
+
+void add_render_options(CLI::App& app, RenderOptions& o) {
+    app.add_option("scene", o.scene.scene, "glTF scene, .gltf or .glb")->required();
+    add_frame_options(app, o);
+    add_sampling_options(app, o);
+    add_camera_options(app, o);
+    add_light_options(app, o);
+    add_output_options(app, o);
+}
+
+RenderFrame resolve(RenderOptions& o) {
+    SceneRequest& s = o.scene;
+    s.size = parse_size("--size", o.size);
+    resolve_camera(o);
+    resolve_job(o);
+    if (!o.background.empty()) {
+        const auto v = parse_numbers("--background", o.background, 3);
+        if (*std::min_element(v.begin(), v.end()) < 0)
+            throw CLI::ValidationError("--background", "is negative");
+        s.background = Rgb(v[0], v[1], v[2]);
+    }
+    if (o.stats && std::find(o.outputs.begin(), o.outputs.end(), *o.stats) != o.outputs.end())
+        throw CLI::ValidationError("--stats", "would overwrite the picture");
+    RenderFrame frame{{0, 0, s.size.x, s.size.y}, {}};
+    if (!o.crop.empty()) frame.crop = parse_crop("--crop", o.crop, s.size);
+    if (!o.aovs.empty()) frame.aovs = parse_aovs("--aov", o.aovs);
+    require_memory(frame);
+    return frame;
+}
+
+}  // namespace petzval

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// The options of petzval render.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/progress.h"
+#include "core/film.h"
+#include "integrator/path.h"
+#include "integrator/render.h"
+#include "io/output.h"
+#include "io/session.h"
+
+namespace CLI {
+class App;
+}
+
+namespace petzval {
+
+/// Samples of a pixel that nobody reaches: what --time alone asks for.
+inline constexpr uint32_t kMostSamples = 1u << 30;
+
+/// As given; the texts become values in resolve().
+struct RenderOptions {
+    SceneRequest scene;
+    std::vector<std::filesystem::path> outputs;
+    std::optional<std::filesystem::path> stats;
+    std::string size = "1280x720", crop, look_at, sensor, focus, time, background, aovs;
+    std::optional<uint32_t> spp;
+    int threads = 0;  ///< 0: one for each core
+    RenderJob job;
+    PathOptions path;
+    FilterKind filter = FilterKind::BlackmanHarris;
+    float filter_radius_px = 0;
+    DisplayOptions display;
+    ProgressStyle progress = ProgressStyle::Auto;
+    bool quiet = false;
+};
+
+/// What the texts of RenderOptions say that has no place elsewhere.
+struct RenderFrame {
+    Rect crop;
+    std::vector<Aov> aovs;
+};
+
+/// Declares the options; they write to the struct, which must outlive the parsing.
+void add_render_options(CLI::App&, RenderOptions&);
+
+/// Reads the options that depend on each other. Throws CLI::ValidationError.
+[[nodiscard]] RenderFrame resolve(RenderOptions&);
+
+}  // namespace petzval

@@ -55,6 +55,8 @@ TEST(Environment, SaysWhatItMendsOrDoubts) {
     ASSERT_EQ(notices.size(), 2u);
     EXPECT_NE(notices[0].find("2 negative values"), std::string::npos) << notices[0];
     EXPECT_NE(notices[1].find("2:1"), std::string::npos) << notices[1];
+    write_exr(folder / "dark.exr", picture(4, 2, {"Y"}, std::vector<float>(8, -1.f)));
+    EXPECT_EQ(load(folder / "dark.exr").sky.radiance({0, 1, 0})[0], 0.f);
 }
 
 TEST(Environment, NamesTheTexelThatIsNotFinite) {

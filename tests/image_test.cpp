@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "io/error.h"
+#include "io/image_limits.h"
 #include "tests/support/pictures.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tiny_png.h"
@@ -99,7 +100,22 @@ TEST(DecodeImage, RefusesASmallFileThatAsksForGigabytes) {
         EXPECT_THROW(
             (void)decode_image(tiny_png(side, side, 8, PngColour::Rgba, {{0, 0, 0, 0}}), "a", "b"),
             InputError);
+    const std::string message = message_of([] {
+        (void)decode_image(tiny_png(20000, 20000, 8, PngColour::Rgba, {{0, 0, 0, 0}}), "a", "b");
+    });
+    EXPECT_NE(message.find("claims 20000x20000 pixels"), std::string::npos) << message;
     EXPECT_THROW((void)decode_image(tiny_png(0, 1, 8, PngColour::Rgba, {}), "a", "b"), InputError);
+}
+
+TEST(SizeComplaint, AllowsWhatDeflateCanPackAndNoMore) {
+    const int side = 8192;
+    const uint64_t values = uint64_t{4} * side * side;
+    EXPECT_EQ(size_complaint(side, side, 1, 4, values / 4000), "") << "a palette of one colour";
+    EXPECT_NE(size_complaint(side, side, 1, 4, values / 5000), "");
+    EXPECT_EQ(size_complaint(4096, 4096, 1, 4, 30), "");
+    EXPECT_EQ(size_complaint(32768, 1, 1, 3, 200), "");
+    EXPECT_NE(size_complaint(32769, 1, 1, 3, 1u << 30), "");
+    EXPECT_NE(size_complaint(4, 4, 2, 3, 1000), "");
 }
 
 TEST(DecodeImage, RefusesFilesCutShort) {

@@ -6,14 +6,17 @@
 namespace petzval {
 namespace {
 
-CameraSample one_path(const M44f& to_world, const V3f& origin, const V3f& direction,
+// A camera ray from a point and a direction of the camera's own space.
+CameraSample one_path(const Pose& pose, const V3f& origin, const V3f& direction,
                       const Bands& bands) {
+    const auto to_world = [&](const V3f& v) {
+        return pose.right * v.x + pose.up * v.y + pose.back * v.z;
+    };
     CameraSample out;
     out.count = 1;
     CameraPath& path = out.path[0];
-    to_world.multVecMatrix(origin, path.ray.origin);
-    to_world.multDirMatrix(direction, path.ray.direction);
-    path.ray.direction = unit(path.ray.direction);
+    path.ray.origin = pose.origin + to_world(origin);
+    path.ray.direction = unit(to_world(direction));
     path.weight = uniform(1.f, bands);
     path.lanes = bands.on;
     return out;
@@ -21,26 +24,36 @@ CameraSample one_path(const M44f& to_world, const V3f& origin, const V3f& direct
 
 }  // namespace
 
+Pose::Pose(const M44f& m)
+    : origin(m[3][0], m[3][1], m[3][2]),
+      right(unit({m[0][0], m[0][1], m[0][2]})),
+      up(unit({m[1][0], m[1][1], m[1][2]})),
+      back(unit({m[2][0], m[2][1], m[2][2]})) {}
+
 ThinLensCamera::ThinLensCamera(const ThinLens& lens)
-    : lens_(lens), tan_half_y_(std::tan(lens.yfov_rad / 2)) {}
+    : pose_(lens.to_world),
+      radius_m_(lens.radius_m),
+      focus_m_(lens.focus_m),
+      tan_half_x_(std::tan(lens.yfov_rad / 2) * lens.aspect),
+      tan_half_y_(std::tan(lens.yfov_rad / 2)) {}
 
 CameraSample ThinLensCamera::sample(const FilmPoint& at, const Bands& bands) const {
-    const V3f direction{(2.f * at.film.x - 1.f) * tan_half_y_ * lens_.aspect,
+    const V3f direction{(2.f * at.film.x - 1.f) * tan_half_x_,
                         (1.f - 2.f * at.film.y) * tan_half_y_, -1.f};
-    if (lens_.radius_m <= 0.f) return one_path(lens_.to_world, V3f(0.f), direction, bands);
-    const V2f stop = uniform_disk(at.lens) * lens_.radius_m;
+    if (radius_m_ <= 0.f) return one_path(pose_, V3f(0.f), direction, bands);
+    const V2f stop = uniform_disk(at.lens) * radius_m_;
     const V3f origin{stop.x, stop.y, 0.f};
-    return one_path(lens_.to_world, origin, direction * lens_.focus_m - origin, bands);
+    return one_path(pose_, origin, direction * focus_m_ - origin, bands);
 }
 
 OrthographicCamera::OrthographicCamera(const M44f& to_world, float half_width_m,
                                        float half_height_m)
-    : to_world_(to_world), half_width_m_(half_width_m), half_height_m_(half_height_m) {}
+    : pose_(to_world), half_width_m_(half_width_m), half_height_m_(half_height_m) {}
 
 CameraSample OrthographicCamera::sample(const FilmPoint& at, const Bands& bands) const {
     const V3f origin{(2.f * at.film.x - 1.f) * half_width_m_,
                      (1.f - 2.f * at.film.y) * half_height_m_, 0.f};
-    return one_path(to_world_, origin, V3f(0, 0, -1), bands);
+    return one_path(pose_, origin, V3f(0, 0, -1), bands);
 }
 
 M44f look_at(const V3f& eye, const V3f& target) {

@@ -16,14 +16,20 @@ struct ThinLens {
     float focus_m = 1.f;  ///< axial distance
 };
 
+/// Where a camera stands and its axes in world space, unit: what its matrix says, unpacked.
+struct Pose {
+    V3f origin, right, up, back;
+    explicit Pose(const M44f& to_world);
+};
+
 class ThinLensCamera final : public Camera {
   public:
     explicit ThinLensCamera(const ThinLens&);
     [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
 
   private:
-    ThinLens lens_;
-    float tan_half_y_;
+    Pose pose_;
+    float radius_m_, focus_m_, tan_half_x_, tan_half_y_;
 };
 
 /// Parallel projection: half sizes of the view in metres.
@@ -33,7 +39,7 @@ class OrthographicCamera final : public Camera {
     [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
 
   private:
-    M44f to_world_;
+    Pose pose_;
     float half_width_m_, half_height_m_;
 };
 

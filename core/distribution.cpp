@@ -33,20 +33,28 @@ void fill_cdf(std::span<const float> weights, double sum, uint32_t* cdf) {
     }
 }
 
-void fill_guide(const uint32_t* cdf, uint32_t size, uint32_t* guide) {
+template <class Index>
+void fill_guide(const uint32_t* cdf, uint32_t size, Index* guide) {
     uint32_t cell = 0;
     for (uint64_t k = 0; k < size; ++k) {
         const uint64_t first = (k * kDistributionUnits + size - 1) / size;
         while (cell + 1 < size && cdf[cell + 1] <= first) ++cell;
-        guide[k] = cell;
+        guide[k] = static_cast<Index>(cell);
     }
 }
 
-Piecewise1D::Draw draw(const uint32_t* cdf, const uint32_t* guide, uint32_t size, float u) {
-    const float position = u * kDistributionUnits;
-    const uint32_t units = std::min(static_cast<uint32_t>(position), kDistributionUnits - 1);
+uint32_t units_of(float position) {
+    return std::min(static_cast<uint32_t>(position), kDistributionUnits - 1);
+}
+
+template <class Index>
+uint32_t find_cell(const uint32_t* cdf, const Index* guide, uint32_t size, uint32_t units) {
     uint32_t cell = guide[static_cast<uint64_t>(units) * size / kDistributionUnits];
     while (cdf[cell + 1] <= units) ++cell;
+    return cell;
+}
+
+Piecewise1D::Draw draw_in(const uint32_t* cdf, uint32_t cell, float position) {
     const float width = static_cast<float>(cdf[cell + 1] - cdf[cell]);
     const float offset = (position - static_cast<float>(cdf[cell])) / width;
     return {cell, std::min(offset, kOneMinus), width / kDistributionUnits};
@@ -58,10 +66,16 @@ Piecewise1D::Piecewise1D(std::span<const float> weights)
     : cdf_(weights.size() + 1), guide_(weights.size()), sum_(sum_of(weights)) {
     fill_cdf(weights, sum_, cdf_.data());
     fill_guide(cdf_.data(), size(), guide_.data());
+    for (uint32_t i = 1; i < size(); ++i)
+        if (cdf_[i + 1] - cdf_[i] > cdf_[widest_ + 1] - cdf_[widest_]) widest_ = i;
 }
 
 Piecewise1D::Draw Piecewise1D::sample(float u) const {
-    return draw(cdf_.data(), guide_.data(), size(), u);
+    const float position = u * kDistributionUnits;
+    const uint32_t units = units_of(position);
+    const bool common = units >= cdf_[widest_] && units < cdf_[widest_ + 1];
+    const uint32_t cell = common ? widest_ : find_cell(cdf_.data(), guide_.data(), size(), units);
+    return draw_in(cdf_.data(), cell, position);
 }
 
 Piecewise2D::Piecewise2D(std::span<const float> weights, uint32_t width, uint32_t height)
@@ -85,7 +99,10 @@ Piecewise2D::Piecewise2D(std::span<const float> weights, uint32_t width, uint32_
 Piecewise2D::Draw Piecewise2D::sample(V2f u) const {
     const auto row = marginal_.sample(u.y);
     const size_t first = size_t{row.cell} * width_;
-    const auto column = draw(&cdf_[first + row.cell], &guide_[first], width_, u.x);
+    const uint32_t* cdf = &cdf_[first + row.cell];
+    const float position = u.x * kDistributionUnits;
+    const auto column =
+        draw_in(cdf, find_cell(cdf, &guide_[first], width_, units_of(position)), position);
     return {
         column.cell, row.cell, {column.offset, row.offset}, column.probability * row.probability};
 }

@@ -39,6 +39,7 @@ class Piecewise1D {
   private:
     std::vector<uint32_t> cdf_;    ///< size + 1 values from 0 to kDistributionUnits
     std::vector<uint32_t> guide_;  ///< first cell that a u of k/size can fall in
+    uint32_t widest_ = 0;          ///< looked at first: one light often has most of the power
     double sum_ = 0;
 };
 
@@ -46,7 +47,7 @@ class Piecewise1D {
 class Piecewise2D {
   public:
     Piecewise2D() = default;
-    /// Weights as for Piecewise1D, width * height of them, row by row.
+    /// Weights as for Piecewise1D, width * height of them, row by row; width at most 65536.
     Piecewise2D(std::span<const float> weights, uint32_t width, uint32_t height);
 
     struct Draw {
@@ -65,7 +66,7 @@ class Piecewise2D {
   private:
     uint32_t width_ = 0, height_ = 0;
     std::vector<uint32_t> cdf_;    ///< width + 1 values a row; all 0 where the row has no weight
-    std::vector<uint32_t> guide_;  ///< width values a row
+    std::vector<uint16_t> guide_;  ///< width values a row
     Piecewise1D marginal_;         ///< over the rows
 };
 

@@ -3,7 +3,8 @@
 // the same weight (filter importance sampling: Ernst et al. 2006).
 #pragma once
 
-#include "core/distribution.h"
+#include <vector>
+
 #include "core/math.h"
 
 namespace petzval {
@@ -28,7 +29,7 @@ class Filter {
 
     FilterKind kind_;
     float radius_px_;
-    Piecewise1D profile_;  ///< along one axis
+    std::vector<float> quantiles_;  ///< along one axis, in pixels, at equal steps of probability
 };
 
 }  // namespace petzval

@@ -93,40 +93,73 @@ Pair neighbours(float position, Wrap wrap, int size) {
     return {first, second, shifted - static_cast<float>(above)};
 }
 
+// The one texel that holds a position, as a pair.
+Pair nearest(float position, int size) {
+    const int texel = std::min(static_cast<int>(position), size - 1);
+    return {texel, texel, 0.f};
+}
+
 template <class Reader>
-f4 filtered(const Reader& read, int width, int height, const TextureSlot& slot, V2f uv) {
-    const float x = wrapped_position(uv.x, slot.wrap_u, width);
-    const float y = wrapped_position(uv.y, slot.wrap_v, height);
-    const auto row_length = static_cast<size_t>(width);
-    if (slot.nearest) {
-        const int column = std::min(static_cast<int>(x), width - 1);
-        const int row = std::min(static_cast<int>(y), height - 1);
-        return read(row * row_length + column);
-    }
-    const Pair across = neighbours(x, slot.wrap_u, width);
-    const Pair down = neighbours(y, slot.wrap_v, height);
-    const size_t row0 = down.first * row_length, row1 = down.second * row_length;
-    const f4 a = read(row0 + across.first), b = read(row0 + across.second);
-    const f4 c = read(row1 + across.first), d = read(row1 + across.second);
-    const f4 top = a + (b - a) * across.weight, bottom = c + (d - c) * across.weight;
-    return top + (bottom - top) * down.weight;
+f4 filtered(const Reader& read, const TextureLookup& at) {
+    const f4 a = read(at.texel[0]), b = read(at.texel[1]);
+    const f4 c = read(at.texel[2]), d = read(at.texel[3]);
+    const f4 upper = a + (b - a) * at.right, lower = c + (d - c) * at.right;
+    return upper + (lower - upper) * at.lower;
 }
 
 }  // namespace
 
-f4 sample_texture(const std::vector<Image>& images, const TextureSlot& slot, V2f uv) {
-    if (!slot.present()) return splat(1.f);
+TextureLookup locate_texture(const std::vector<Image>& images, const TextureSlot& slot, V2f uv) {
+    if (!slot.present()) return {};
     const Image& image = images[slot.image];
-    const V2f at(uv.x * slot.u_row[0] + uv.y * slot.u_row[1] + slot.u_row[2],
-                 uv.x * slot.v_row[0] + uv.y * slot.v_row[1] + slot.v_row[2]);
+    const float u = uv.x * slot.u_row[0] + uv.y * slot.u_row[1] + slot.u_row[2];
+    const float v = uv.x * slot.v_row[0] + uv.y * slot.v_row[1] + slot.v_row[2];
+    const float x = wrapped_position(u, slot.wrap_u, image.width);
+    const float y = wrapped_position(v, slot.wrap_v, image.height);
+    const Pair across =
+        slot.nearest ? nearest(x, image.width) : neighbours(x, slot.wrap_u, image.width);
+    const Pair down =
+        slot.nearest ? nearest(y, image.height) : neighbours(y, slot.wrap_v, image.height);
+    const auto width = static_cast<uint32_t>(image.width);
+    const uint32_t row0 = down.first * width, row1 = down.second * width;
+
+    using Format = TextureLookup::Format;
+    const auto* bytes = std::get_if<std::vector<uint8_t>>(&image.texels);
     const bool srgb = slot.encoding == Encoding::Srgb;
-    if (const auto* bytes = std::get_if<std::vector<uint8_t>>(&image.texels)) {
-        return srgb ? filtered(SrgbByteReader{bytes->data()}, image.width, image.height, slot, at)
-                    : filtered(ByteReader{bytes->data()}, image.width, image.height, slot, at);
+    TextureLookup at;
+    at.texel = {row0 + across.first, row0 + across.second, row1 + across.first,
+                row1 + across.second};
+    at.right = across.weight;
+    at.lower = down.weight;
+    if (bytes) {
+        at.texels = bytes->data();
+        at.format = srgb ? Format::SrgbBytes : Format::Bytes;
+    } else {
+        at.texels = std::get<std::vector<float>>(image.texels).data();
+        at.format = srgb ? Format::SrgbFloats : Format::Floats;
     }
-    const FloatReader read{std::get<std::vector<float>>(image.texels).data()};
-    return srgb ? filtered(SrgbFloatReader{read}, image.width, image.height, slot, at)
-                : filtered(read, image.width, image.height, slot, at);
+    const size_t texel_bytes = bytes ? 4 : 16;
+    for (const int row : {0, 2})
+        __builtin_prefetch(static_cast<const char*>(at.texels) + at.texel[row] * texel_bytes);
+    return at;
+}
+
+f4 read_texture(const TextureLookup& at) {
+    const auto* bytes = static_cast<const uint8_t*>(at.texels);
+    const auto* floats = static_cast<const float*>(at.texels);
+    switch (at.format) {
+        case TextureLookup::Format::None:
+            break;
+        case TextureLookup::Format::Bytes:
+            return filtered(ByteReader{bytes}, at);
+        case TextureLookup::Format::SrgbBytes:
+            return filtered(SrgbByteReader{bytes}, at);
+        case TextureLookup::Format::Floats:
+            return filtered(FloatReader{floats}, at);
+        case TextureLookup::Format::SrgbFloats:
+            return filtered(SrgbFloatReader{{floats}}, at);
+    }
+    return splat(1.f);
 }
 
 }  // namespace petzval

@@ -36,7 +36,26 @@ struct TextureSlot {
     [[nodiscard]] bool present() const { return image >= 0; }
 };
 
-/// RGBA at uv, decoded to linear; bilinear or nearest as the slot says. Defined for any finite uv.
-[[nodiscard]] f4 sample_texture(const std::vector<Image>& images, const TextureSlot& slot, V2f uv);
+/// Where a slot's value lies in memory: the four texels about uv (the same one four times where the
+/// slot asks for the nearest). Locating several slots before reading the first lets their cache
+/// misses overlap.
+struct TextureLookup {
+    enum class Format : uint8_t { None, Bytes, SrgbBytes, Floats, SrgbFloats };
+    const void* texels = nullptr;
+    std::array<uint32_t, 4> texel{};  ///< upper left, upper right, lower left, lower right
+    float right = 0, lower = 0;       ///< weights of the right and of the lower texels
+    Format format = Format::None;
+};
+/// Finds the texels and asks the processor to fetch them. Defined for any finite uv.
+[[nodiscard]] TextureLookup locate_texture(const std::vector<Image>& images,
+                                           const TextureSlot& slot, V2f uv);
+/// RGBA, decoded to linear, then filtered; 1 where the slot has no texture.
+[[nodiscard]] f4 read_texture(const TextureLookup&);
+
+/// Both steps at once.
+[[nodiscard]] inline f4 sample_texture(const std::vector<Image>& images, const TextureSlot& slot,
+                                       V2f uv) {
+    return read_texture(locate_texture(images, slot, uv));
+}
 
 }  // namespace petzval

@@ -39,10 +39,11 @@ f4 PathTracer<Caster>::backdrop(const Ray& ray, const Bands& bands, FilmSample& 
 template <RayCaster Caster>
 f4 PathTracer<Caster>::escaped(const Ray& ray, const Bands& bands, const Vertex& last) const {
     if (scene_.sky.black()) return f4{};
-    const f4 radiance = uplift_radiance(scene_.sky.radiance(ray.direction), bands);
+    const Sky::Found found = scene_.sky.find(ray.direction);
+    const f4 radiance = uplift_radiance(found.radiance, bands);
     if (!last.light_sampled) return radiance;
     const uint32_t sky_light = static_cast<uint32_t>(scene_.lights.size()) - 1;
-    const float light_pdf = lights_.probability(sky_light) * scene_.sky.pdf(ray.direction);
+    const float light_pdf = lights_.probability(sky_light) * found.pdf;
     if (options_.technique == Technique::LightOnly && light_pdf > 0.f) return f4{};
     return radiance * power_heuristic(last.pdf, light_pdf);
 }

@@ -119,6 +119,7 @@ bool is_stream(const fs::path& path, const std::optional<struct stat>& status) {
 
 /// Nothing where there is no such file yet; throws where there can be none.
 std::optional<struct stat> status_of(const fs::path& path) {
+    if (!path.has_filename()) throw refusal(path, "it names no file");
     struct stat status {};
     if (::stat(path.c_str(), &status) != 0) {
         if (errno == ENOENT) return std::nullopt;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/gltf_place.h"
 
+#include <Imath/ImathBoxAlgo.h>
 #include <tiny_gltf.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 #include "io/error.h"
@@ -92,7 +94,9 @@ class Placer {
             return;
         }
         tally_.honoured.insert("mesh instancing");
-        for (int node : placement.nodes) scene_.instances.push_back(instance(index, node));
+        Box3f bounds;
+        for (const V3f& position : scene_.meshes[index].positions) bounds.extendBy(position);
+        for (int node : placement.nodes) scene_.instances.push_back(instance(index, node, bounds));
     }
 
     // Tangents are found before the mesh is moved, so that every copy of it shades alike.
@@ -112,18 +116,18 @@ class Placer {
 
     const M44d& matrix_of(int node) const { return nodes_.to_world[static_cast<size_t>(node)]; }
 
-    Instance instance(uint32_t mesh, int node) const {
+    Instance instance(uint32_t mesh, int node, const Box3f& bounds) const {
         const M44d& to_world = matrix_of(node);
         const Instance made{.mesh = mesh,
                             .identity = false,
                             .flips = relative_determinant(to_world) < 0,
                             .to_world = M44f(to_world),
                             .to_local = M44f(to_world.inverse())};
-        for (int k = 0; k < 16; ++k)
-            if (!std::isfinite(made.to_world[k / 4][k % 4]) ||
-                !std::isfinite(made.to_local[k / 4][k % 4]))
-                throw InputError(gltf_.file, json_path("nodes", node),
-                                 "its place in the world is beyond the range of a float");
+        const Box3f placed = Imath::transform(bounds, made.to_world);
+        const Box3f back = Imath::transform(placed, made.to_local);
+        if (!all_finite(std::array{placed.min, placed.max, back.min, back.max}, 3))
+            throw InputError(gltf_.file, json_path("nodes", node),
+                             "places its mesh beyond the range of a float");
         return made;
     }
 

@@ -27,6 +27,21 @@ std::string_view ending_of(const std::vector<uint8_t>& bytes) {
     return "";
 }
 
+/// Whether the chunks of a PNG fit into it and end with IEND. libpng would find out too, but print
+/// a line of its own, and OpenImageIO would leak its message.
+bool is_whole_png(const std::vector<uint8_t>& bytes) {
+    constexpr size_t kSignature = 8, kAroundData = 12;  // length, type, CRC
+    size_t at = kSignature;
+    while (bytes.size() - at >= kAroundData) {
+        size_t length = 0;
+        for (size_t i = 0; i < 4; ++i) length = length << 8 | bytes[at + i];
+        if (length > bytes.size() - at - kAroundData) return false;
+        if (std::equal(&bytes[at + 4], &bytes[at + 8], "IEND")) return true;
+        at += length + kAroundData;
+    }
+    return false;
+}
+
 /// Spreads 1 (grey), 2 (grey, alpha) or 3 (colour) channels of every texel to RGBA.
 template <class T>
 std::vector<T> to_rgba(std::vector<T> in, int channels, T opaque) {
@@ -54,14 +69,19 @@ Image decode_image(const std::vector<uint8_t>& bytes, const std::string& file,
     const std::string_view ending = ending_of(bytes);
     if (ending.empty()) throw refuse("is not a PNG, JPEG or WebP file; convert it to one of these");
 
+    if (ending == "png" && !is_whole_png(bytes)) throw refuse("is a PNG that is cut short");
+
     OIIO::Filesystem::IOMemReader reader(bytes.data(), bytes.size());
     OIIO::Filesystem::IOProxy* proxy = &reader;
     OIIO::ImageSpec config;
     config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
     config.attribute("oiio:UnassociatedAlpha", 1);
-    const auto input = OIIO::ImageInput::open(fmt::format("memory.{}", ending), &config);
+    // In two steps: OpenImageIO's open in one would offer broken bytes to all its readers.
+    const auto input = OIIO::ImageInput::create(std::string(ending));
     if (!input) throw refuse("cannot be decoded: " + first_line(OIIO::geterror()));
-    const OIIO::ImageSpec& spec = input->spec();
+    OIIO::ImageSpec spec;
+    if (!input->open(fmt::format("memory.{}", ending), spec, config))
+        throw refuse("cannot be decoded: " + first_line(input->geterror()));
     const std::string why =
         size_complaint(spec.width, spec.height, spec.depth, spec.nchannels, bytes.size());
     if (!why.empty()) throw refuse(why);

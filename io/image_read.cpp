@@ -55,11 +55,14 @@ Picture read_picture(const std::filesystem::path& path) {
     const uint64_t byte_count = size_on_disk(path);
     OIIO::ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1);
-    const auto input = OIIO::ImageInput::open(path.string(), &config);
+    // In two steps: OpenImageIO's open in one would offer a broken file to all its readers.
+    const auto input = OIIO::ImageInput::create(path.string());
     if (!input) throw refuse("cannot be read: " + first_line(OIIO::geterror()));
+    OIIO::ImageSpec spec;
+    if (!input->open(path.string(), spec, config))
+        throw refuse("cannot be read: " + first_line(input->geterror()));
     if (input->format_name() == std::string_view("hdr") && !has_radiance_magic(path))
         throw refuse("cannot be read: it does not begin with #? as Radiance files do");
-    const OIIO::ImageSpec& spec = input->spec();
     const std::string why =
         size_complaint(spec.width, spec.height, spec.depth, spec.nchannels, byte_count);
     if (!why.empty()) throw refuse(why);

@@ -124,6 +124,16 @@ TEST(GltfArrays, QuantisedPositionsAndNormals) {
     EXPECT_EQ(mesh.normals, (std::vector<V3f>{{0, 0, 1}, {-1, 0, 0}, {0, -1, 0}}));
 }
 
+TEST(GltfArrays, TheLeastSignedNumberIsMinusOneToo) {
+    TinyGltf file = triangle_with("TEXCOORD_0", [](TinyGltf& f) {
+        return f.add_accessor<int16_t>("VEC2", {-32768, -32767, 32767, 0, 1, -1},
+                                       {{"normalized", true}});
+    });
+    file.json["extensionsUsed"] = file.json["extensionsRequired"] = {"KHR_mesh_quantization"};
+    EXPECT_EQ(load_mesh(file).uv[0],
+              (std::vector<V2f>{{-1, -1}, {1, 0}, {1 / 32767.f, -1 / 32767.f}}));
+}
+
 TEST(GltfArrays, InterleavedAttributes) {
     TinyGltf file;
     const int view = file.add_view_of<float>({0, 0, 0, 0.1f, 0.2f,  //

@@ -99,7 +99,7 @@ TEST(GltfTangents, AVertexBetweenMirroredFacesIsSplit) {
 
 TEST(GltfTangents, EqualVerticesShareTheirTangent) {
     Mesh shared = square(), repeated = square();
-    shared.uv[0][1] = repeated.uv[0][1] = {2, 1};  // the faces' tangents differ
+    shared.uv[0][3] = repeated.uv[0][3] = {0, -1};  // the faces' own tangents differ
     repeated.triangles = {{0, 1, 2}, {4, 5, 3}};
     for (const size_t vertex : {0, 2}) {
         repeated.positions.push_back(repeated.positions[vertex]);
@@ -111,6 +111,7 @@ TEST(GltfTangents, EqualVerticesShareTheirTangent) {
     EXPECT_EQ(repeated.tangents[4], repeated.tangents[0]);
     EXPECT_EQ(repeated.tangents[5], repeated.tangents[2]);
     EXPECT_EQ(shared.tangents[0], repeated.tangents[0]);
+    EXPECT_NE(shared.tangents[0], shared.tangents[1]);
 }
 
 TEST(GltfTangents, FlatMeshesGetOneForEachFace) {

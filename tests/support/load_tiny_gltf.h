@@ -6,7 +6,6 @@
 
 #include <string>
 
-#include "io/error.h"
 #include "io/gltf.h"
 #include "tests/support/tiny_gltf.h"
 
@@ -22,16 +21,6 @@ inline Mesh load_mesh(const TinyGltf& file) {
     GltfFile loaded = load(file);
     EXPECT_EQ(loaded.scene.meshes.size(), 1u);
     return loaded.scene.meshes.empty() ? Mesh{} : std::move(loaded.scene.meshes[0]);
-}
-
-/// The message with which a file is refused; empty where it is not.
-inline std::string refusal(const TinyGltf& file) {
-    try {
-        (void)load(file);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return {};
 }
 
 inline bool contains_line(const std::vector<std::string>& lines, const std::string& part) {

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: Apache-2.0
+# Two commands for a fresh Debian 12: make render, make test. Everything else is CMake's.
+PACKAGES = cmake ninja-build ccache mold libembree-dev libtbb-dev libimath-dev \
+    libopenimageio-dev openimageio-tools libopencolorio-dev libtinygltf-dev nlohmann-json3-dev \
+    libfmt-dev libcli11-dev libgtest-dev libgmock-dev libbenchmark-dev
+SOURCES = git ls-files '*.h' '*.cpp'
+
+.PHONY: render test build deps format format-check
+
+render: build
+	mkdir -p out
+	build/bin/petzval render assets/scenes/first_light.glb --size 960x540 --spp 256 \
+	    -o out/first_light.exr -o out/first_light.png
+
+test: build
+	ctest --preset release --parallel $$(nproc)
+
+build: deps
+	cmake --preset release
+	cmake --build --preset release
+
+deps:
+	@.ci/install_packages $(PACKAGES)
+
+format:
+	@.ci/install_packages clang-format
+	$(SOURCES) | xargs clang-format -i
+
+format-check:
+	@.ci/install_packages clang-format
+	$(SOURCES) | xargs clang-format --dry-run --Werror

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/atomic_file.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <thread>
+
+#include "io/error.h"
+#include "tests/support/temporary_folder.h"
+
+namespace petzval {
+namespace {
+
+namespace fs = std::filesystem;
+using test::read_bytes;
+using test::TemporaryFolder;
+
+std::string text_of(const fs::path& path) {
+    const auto bytes = read_bytes(path);
+    return {bytes.begin(), bytes.end()};
+}
+mode_t mode_of(const fs::path& path) {
+    struct stat status {};
+    EXPECT_EQ(::stat(path.c_str(), &status), 0);
+    return status.st_mode & 07777;
+}
+/// What write_file_atomically says is wrong; empty for nothing.
+std::string complaint(const fs::path& path, std::string_view text) {
+    try {
+        write_file_atomically(path, text);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+/// Files of this process end after so many bytes, as on a full disk.
+class FileSizeLimit {
+  public:
+    explicit FileSizeLimit(rlim_t bytes) {
+        ::getrlimit(RLIMIT_FSIZE, &before_);
+        const rlimit limit{bytes, before_.rlim_max};
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+        handler_ = std::signal(SIGXFSZ, SIG_IGN);
+    }
+    FileSizeLimit(const FileSizeLimit&) = delete;
+    FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+    ~FileSizeLimit() {
+        ::setrlimit(RLIMIT_FSIZE, &before_);
+        std::signal(SIGXFSZ, handler_);
+    }
+
+  private:
+    rlimit before_{};
+    void (*handler_)(int);
+};
+
+TEST(AtomicFile, WritesANewFileWithTheUsersMask) {
+    const TemporaryFolder folder;
+    const mode_t mask = ::umask(027);
+    write_file_atomically(folder / "a", "one");
+    ::umask(mask);
+    EXPECT_EQ(text_of(folder / "a"), "one");
+    EXPECT_EQ(mode_of(folder / "a"), 0640u);
+    EXPECT_EQ(folder.count(), 1u);
+}
+
+TEST(AtomicFile, ReplacesAndKeepsPermissions) {
+    const TemporaryFolder folder;
+    write_file_atomically(folder / "a", "a longer first text");
+    fs::permissions(folder / "a", fs::perms(0604));
+    write_file_atomically(folder / "a", "two");
+    EXPECT_EQ(text_of(folder / "a"), "two");
+    EXPECT_EQ(mode_of(folder / "a"), 0604u);
+}
+
+TEST(AtomicFile, FollowsLinks) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "real");
+    fs::create_symlink("real/a", folder / "link");
+    fs::create_symlink("link", folder / "link2");
+    for (const char* text : {"through a link to nothing", "and to a file"}) {
+        write_file_atomically(folder / "link2", text);
+        EXPECT_TRUE(fs::is_symlink(folder / "link2"));
+        EXPECT_EQ(text_of(folder / "real" / "a"), text);
+    }
+    fs::create_symlink("loop", folder / "loop");
+    EXPECT_NE(complaint(folder / "loop", "x"), "");
+}
+
+TEST(AtomicFile, AFailingWriteLeavesTheOldFileAndNothingElse) {
+    const TemporaryFolder folder;
+    write_file_atomically(folder / "a", "old");
+    const std::string large(100000, 'x');
+    {
+        const FileSizeLimit limit(4096);
+        const std::string message = complaint(folder / "a", large);
+        EXPECT_EQ(message.find((folder / "a").string() + ": cannot be written: "), 0u) << message;
+        EXPECT_NE(complaint(folder / "b", large), "");
+    }
+    EXPECT_EQ(text_of(folder / "a"), "old");
+    EXPECT_EQ(folder.count(), 1u);
+}
+
+TEST(AtomicFile, WritesMoreThanAPipeTakesAtOnce) {
+    const TemporaryFolder folder;
+    const fs::path pipe = folder / "pipe";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    std::string received;
+    std::thread reader([&] { received = text_of(pipe); });
+    write_file_atomically(pipe, std::string(300000, 'y'));
+    reader.join();
+    EXPECT_EQ(received, std::string(300000, 'y'));
+    EXPECT_TRUE(fs::is_fifo(pipe));
+}
+
+TEST(AtomicFile, WritesToDevices) {
+    write_file_atomically("/dev/null", "gone");
+    EXPECT_TRUE(fs::is_character_file("/dev/null"));
+    EXPECT_NE(complaint("/dev/full", "x").find("No space left on device"), std::string::npos);
+}
+
+TEST(AtomicFile, RefusesPlacesWhereNothingCanBe) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "b");
+    test::write_bytes(folder / "file", {'x'});
+    for (const fs::path& path : {folder / "none" / "a", folder / "b", folder / "file" / "a",
+                                 fs::path(""), fs::path("/sys/petzval-test")}) {
+        EXPECT_THROW(write_file_atomically(path, "x"), InputError) << path;
+        EXPECT_THROW(check_writable(path), InputError) << path;
+    }
+    EXPECT_NE(complaint(folder / "none" / "a", "").find("there is no folder"), std::string::npos);
+}
+
+TEST(AtomicFile, RefusesAFolderThatIsLocked) {
+    if (::geteuid() == 0) GTEST_SKIP() << "root may write anywhere";
+    const TemporaryFolder folder;
+    fs::permissions(folder.path(), fs::perms::owner_read | fs::perms::owner_exec);
+    EXPECT_THROW(write_file_atomically(folder / "a", "x"), InputError);
+    EXPECT_THROW(check_writable(folder / "a"), InputError);
+    fs::permissions(folder.path(), fs::perms::owner_all);
+}
+
+TEST(AtomicFile, AskingChangesNothing) {
+    const TemporaryFolder folder;
+    check_writable(folder / "a");
+    EXPECT_EQ(folder.count(), 0u);
+    write_file_atomically(folder / "a", "kept");
+    check_writable(folder / "a");
+    EXPECT_EQ(text_of(folder / "a"), "kept");
+}
+
+}  // namespace
+}  // namespace petzval

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// How much of a render is bare traversal: the rays of a render, recorded and traced again with
+// nothing around the library's calls. One thread, CPU time, everything in one run.
+//
+//   replay SCENE [--look-at ...] [--fov ...] [--env ...] [--size ...] [--spp ...] [--traversal ...]
+#include <embree3/rtcore.h>
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "apps/parse.h"
+#include "integrator/executor.h"
+#include "integrator/path_impl.h"
+#include "integrator/render.h"
+#include "io/session.h"
+#include "io/stats_file.h"
+
+namespace petzval {
+namespace {
+
+struct Recorder {
+    const Bvh& bvh;
+    mutable std::vector<Ray> nearest, shadow;
+
+    std::optional<Hit> intersect(const Ray& r) const {
+        nearest.push_back(r);
+        return bvh.intersect(r);
+    }
+    bool occluded(const Ray& r) const {
+        shadow.push_back(r);
+        return bvh.occluded(r);
+    }
+    bool has_cutouts() const { return bvh.has_cutouts(); }
+};
+
+RTCRay bare(const Ray& r) {
+    RTCRay ray{};
+    ray.org_x = r.origin.x, ray.org_y = r.origin.y, ray.org_z = r.origin.z;
+    ray.dir_x = r.direction.x, ray.dir_y = r.direction.y, ray.dir_z = r.direction.z;
+    ray.tnear = 1e-30f, ray.tfar = r.t_max, ray.mask = ~0u;
+    return ray;
+}
+
+// Seconds to trace what was recorded, in the order of the render. Rays through cutouts have no coin
+// here, which scenes without BLEND do not notice.
+double retrace_s(RTCScene scene, const std::vector<Ray>& nearest, const std::vector<Ray>& shadow) {
+    struct {
+        RTCIntersectContext embree;
+        uint32_t coin = 0;
+    } context;
+    rtcInitIntersectContext(&context.embree);
+    const double start_s = process_cpu_s();
+    for (const Ray& r : nearest) {
+        RTCRayHit query;
+        query.ray = bare(r);
+        query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        rtcIntersect1(scene, &context.embree, &query);
+    }
+    for (const Ray& r : shadow) {
+        RTCRay query = bare(r);
+        rtcOccluded1(scene, &context.embree, &query);
+    }
+    return process_cpu_s() - start_s;
+}
+
+template <class Tracer>
+std::pair<double, PathStats> timed(const Tracer& tracer, const Session& session, const RenderJob& job,
+                                   V2i size) {
+    Film film(size, {0, 0, size.x, size.y}, {});
+    RenderMonitor monitor;
+    ThreadExecutor executor(1);
+    const double start_s = process_cpu_s();
+    const RenderResult result = render(tracer, *session.camera, job, film, executor, monitor);
+    return {process_cpu_s() - start_s, result.stats};
+}
+
+int run(int argc, char** argv) {
+    CLI::App app("Traversal floor of a render.");
+    SceneRequest request;
+    std::string look_at, size = "640x480";
+    RenderJob job;
+    job.end_sample = 4;
+    app.add_option("scene", request.scene)->required();
+    app.add_option("--look-at", look_at);
+    app.add_option("--fov", request.fov_deg);
+    app.add_option("--env", request.environment);
+    app.add_option("--size", size);
+    app.add_option("--spp", job.end_sample);
+    app.add_option("--traversal", request.traversal)
+        ->transform(CLI::CheckedTransformer(std::map<std::string, Traversal>{
+            {"robust", Traversal::Robust}, {"fast", Traversal::Fast}}));
+    CLI11_PARSE(app, argc, argv);
+    request.size = parse_size("--size", size);
+    if (!look_at.empty()) {
+        const auto v = parse_numbers("--look-at", look_at, 6);
+        request.look_at = {V3f(v[0], v[1], v[2]), V3f(v[3], v[4], v[5])};
+    }
+    flush_denormals();
+    const Session session = open_session(request, [](const std::string&) {});
+    const PathOptions options;
+    const PathTracer<Bvh> tracer(*session.scene, *session.bvh, *session.lights, options);
+    const Recorder recorder{*session.bvh, {}, {}};
+    const PathTracer<Recorder> recording(*session.scene, recorder, *session.lights, options);
+    (void)timed(recording, session, job, request.size);
+
+    // Pairs, as the machine's speed drifts; the medians are printed.
+    std::vector<double> ratios, outside_ns, floors_ns;
+    for (int i = 0; i < 5; ++i) {
+        const auto [render_s, stats] = timed(tracer, session, job, request.size);
+        const double floor_s = retrace_s(session.bvh->native(), recorder.nearest, recorder.shadow);
+        const double rays = static_cast<double>(recorder.nearest.size() + recorder.shadow.size());
+        ratios.push_back(floor_s / render_s);
+        outside_ns.push_back(1e9 * (render_s - floor_s) / static_cast<double>(stats.vertices));
+        floors_ns.push_back(1e9 * floor_s / rays);
+        fmt::print("render {:.3f} s, floor {:.3f} s for {:.0f} rays, {} vertices, {} samples\n", render_s,
+                   floor_s, rays, stats.vertices, stats.samples);
+    }
+    const auto median = [](std::vector<double>& v) {
+        std::sort(v.begin(), v.end());
+        return v[v.size() / 2];
+    };
+    fmt::print("floor / render {:.3f} ({:.3f} to {:.3f}); floor {:.0f} ns a ray; outside {:.0f} ns a vertex\n",
+               median(ratios), ratios.front(), ratios.back(), median(floors_ns), median(outside_ns));
+    return 0;
+}
+
+}  // namespace
+}  // namespace petzval
+
+int main(int argc, char** argv) {
+    return petzval::run(argc, argv);
+}

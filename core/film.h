@@ -38,8 +38,8 @@ struct Rect {
 struct FilmSample {
     Rgb colour;
     float alpha = 0.f;
-    bool hit = false;  ///< the layers below hold something
-    std::array<V3f, static_cast<size_t>(Aov::Count)> aov{};
+    bool hit = false;                                      ///< the layers below hold something
+    std::array<V3f, static_cast<size_t>(Aov::Count)> aov;  ///< unset where nothing was hit
 };
 
 class Film {

@@ -70,8 +70,8 @@ void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& 
             path.weight * tracer.radiance(path.ray, bands, sampler, aovs && k == 0, sample, stats);
     }
     sample.colour = to_rgb(sum, bands);
-    sample.aov[static_cast<size_t>(Aov::Cost)].x =
-        static_cast<float>(stats.vertices - vertices_before);
+    sample.aov[static_cast<size_t>(Aov::Cost)] =
+        V3f(static_cast<float>(stats.vertices - vertices_before), 0, 0);
     film.add(id.x, id.y, id.index, sample);
 }
 

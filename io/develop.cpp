@@ -72,7 +72,7 @@ Picture develop(const Film& film, const Session& session, const RenderJob& job,
     for (const Aov aov : film.aovs()) {
         const AovInfo& info = aov_info(aov);
         for (int i = 0; i < info.channel_count; ++i)
-            picture.channels.push_back(fmt::format("{}.{}", info.name, info.channels[i]));
+            picture.channels.emplace_back(info.channels[i]);
     }
     picture.pixels.reserve(picture.channels.size() * static_cast<size_t>(picture.width) *
                            picture.height);

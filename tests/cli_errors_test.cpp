@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the program refuses: one line, an exit code, and nothing left behind.
+#include <deque>
+
+#include "tests/support/cli.h"
+
+namespace petzval {
+namespace {
+
+class CliErrors : public CliTest {
+  protected:
+    /// A failed run's one line, without its newline.
+    static std::string only_line(const Finished& run, int exit_code) {
+        EXPECT_EQ(run.exit_code, exit_code) << run.err;
+        EXPECT_EQ(run.out, "");
+        EXPECT_EQ(run.err.find('\n'), run.err.size() - 1) << run.err;
+        EXPECT_TRUE(run.err.starts_with("petzval: error: ")) << run.err;
+        return run.err.substr(0, run.err.find('\n'));
+    }
+    /// The same of a run that must leave the folder as it was.
+    std::string error_of(const Words& words, int exit_code, const ProcessOptions& options = {}) {
+        const auto before = listing();
+        const std::string line = only_line(run_petzval(words, options), exit_code);
+        EXPECT_EQ(listing(), before) << line;
+        return line;
+    }
+
+    struct Case {
+        Words words;
+        std::string part;  ///< of the error
+    };
+    /// Renders of the studio, all at once.
+    void expect_refused(int exit_code, const std::vector<Case>& cases) {
+        const auto before = listing();
+        std::deque<Process> runs;
+        for (const Case& c : cases) {
+            Words words = render_words(c.words, scene_);
+            words.emplace_back("--quiet");
+            if (std::find(c.words.begin(), c.words.end(), "-o") == c.words.end())
+                words.insert(words.end(), {"-o", path("out.exr")});
+            runs.emplace_back(words);
+        }
+        for (size_t i = 0; i < cases.size(); ++i) {
+            const std::string line = only_line(runs[i].wait(), exit_code);
+            EXPECT_NE(line.find(cases[i].part), std::string::npos)
+                << line << "\nwithout: " << cases[i].part;
+        }
+        EXPECT_EQ(listing(), before);
+    }
+};
+
+// Starting takes a fifth of a second (some 260 libraries come along), so each rule is tried once or
+// twice.
+TEST_F(CliErrors, NumbersThatAreNone) {
+    expect_refused(2, {{{"--size", "0x0"}, "--size: \"0x0\""},
+                       {{"--size", "16"}, "--size: \"16\""},
+                       {{"--spp", "-1"}, "--spp: \"-1\" is not a whole number from 1"},
+                       {{"--spp", "1.5"}, "--spp: \"1.5\""},
+                       {{"--threads", "0"}, "--threads: \"0\""},
+                       {{"--seed", "5000000000"}, "--seed: \"5000000000\""},
+                       {{"--max-depth", "x"}, "--max-depth: \"x\""},
+                       {{"--fov", "0"}, "--fov: \"0\" is not a number from 0.001 to 179"},
+                       {{"--fstop", "nan"}, "--fstop: \"nan\""},
+                       {{"--lens-radius", "inf"}, "--lens-radius: \"inf\""},
+                       {{"--focal-length", "-50"}, "--focal-length: \"-50\""},
+                       {{"--filter-radius", "1px"}, "--filter-radius: \"1px\""},
+                       {{"--exposure", "nan"}, "--exposure: \"nan\""},
+                       {{"--time", "0"}, "--time: \"0\""},
+                       {{"--time", "10d"}, "--time: \"10d\""}});
+}
+
+TEST_F(CliErrors, WordsThatAreNone) {
+    expect_refused(2, {{{"--view", "film"}, "\"film\"; there are sRGB, ACES, raw"},
+                       {{"--aov", "depth,heat"}, "\"heat\" is not a layer; there are albedo"},
+                       {{"--filter", "cube"}, "box, gauss, blackman-harris"},
+                       {{"--sampler", "dice"}, "owen, sobol, independent"},
+                       {{"--light-choice", "best"}, "power, uniform"},
+                       {{"--traversal", "slow"}, "robust, fast"},
+                       {{"--progress", "loud"}, "auto, bar, lines, json, none"},
+                       {{"--frob"}, "--frob"},
+                       {{"-o", path("out.tga")}, "must end in .exr, .png, .jpg or .jpeg"},
+                       {{"-o", ""}, "must end in .exr"}});
+}
+
+TEST_F(CliErrors, ListsThatDoNotFit) {
+    expect_refused(2, {{{"--crop", "0,0,17,1"}, "inside the 16x16 frame"},
+                       {{"--crop", "0,0,4"}, "inside the 16x16 frame"},
+                       {{"--look-at", "0,0,0,0,0"}, "--look-at"},
+                       {{"--look-at", "1e30,0,0,0,0,0"}, "too far away"},
+                       {{"--look-at", "1,2,3,1,2,3"}, "the same point"},
+                       {{"--sensor", "-36x24"}, "--sensor"},
+                       {{"--background", "-1,0,0"}, "--background"},
+                       {{"--background", "nan,0,0"}, "--background"},
+                       {{"--fstop", "2", "--focus", "0"}, "--focus: \"0\""},
+                       {{"--fstop", "2", "--focus", "16,0"}, "a pixel x,y of the 16x16 frame"}});
+}
+
+TEST_F(CliErrors, OptionsThatDoNotGoTogether) {
+    expect_refused(2, {{{"--focus", "1"}, "a pinhole has no focus"},
+                       {{"--fstop", "2", "--lens-radius", "0.1"}, "--fstop excludes --lens-radius"},
+                       {{"--look-at", "0,0,0,0,0,-1", "--camera", "0"}, "excludes --camera"},
+                       {{"--env-rotate", "10"}, "--env-rotate requires --env"},
+                       {{"--env-strength", "2"}, "--env-strength requires --env"},
+                       {{"--stats", path("out.exr")}, "--stats"},
+                       {{"--size", "65536x65536", "--aov", "normal,position"}, "GiB of memory"}});
+}
+
+TEST_F(CliErrors, CommandLinesThatSayTooLittle) {
+    EXPECT_NE(error_of({}, 2).find("subcommand"), std::string::npos);
+    EXPECT_NE(error_of({"paint"}, 2).find("subcommand"), std::string::npos);
+    EXPECT_NE(error_of({"image"}, 2).find("subcommand"), std::string::npos);
+    EXPECT_NE(error_of({"info"}, 2).find("scene"), std::string::npos);
+    EXPECT_NE(error_of({"render", scene_}, 2).find("--output"), std::string::npos);
+    EXPECT_NE(error_of({"render", "-o", path("out.exr")}, 2).find("scene"), std::string::npos);
+}
+
+TEST_F(CliErrors, WhatTheFileDoesNotHave) {
+    expect_refused(2, {{{"--camera", "fish"},
+                        scene_ + ": no camera \"fish\"; it has 0 \"wide\", 1 \"tele\", 2 \"plan\""},
+                       {{"--camera", "3"}, "no camera \"3\""},
+                       {{"--camera", "plan", "--fstop", "2"}, "camera \"plan\" is orthographic"},
+                       {{"--camera", "plan", "--fov", "20"}, "camera \"plan\" is orthographic"},
+                       {{"--fstop", "2", "--focus", "0,0"}, "focus on under pixel 0,0"},
+                       {{"--fstop", "2", "--look-at", "0,0,0,0,0,1"}, "give --focus in metres"},
+                       {{"--focal-length", "1e-6"}, "angle of view"}});
+}
+
+TEST_F(CliErrors, FilesThatCannotBeRead) {
+    const auto render = [&](const std::string& file, const Words& more = {}) {
+        Words words = {"render", file, "-o", path("out.exr"), "--quiet"};
+        words.insert(words.end(), more.begin(), more.end());
+        return error_of(words, 1);
+    };
+    const auto broken = [&](const std::string& name, const std::string& text) {
+        return write_bytes(folder_.path / name,
+                           {reinterpret_cast<const uint8_t*>(text.data()), text.size()})
+            .string();
+    };
+    EXPECT_EQ(render(path("none.glb")), "petzval: error: " + path("none.glb") + ": no such file");
+    EXPECT_EQ(render(path("two\nlines.glb")),
+              "petzval: error: " + path("two?lines.glb") + ": no such file");
+    EXPECT_EQ(render(folder_.path.string()),
+              "petzval: error: " + folder_.path.string() + ": is a folder");
+    EXPECT_NE(render(broken("cut.glb", file_bytes(scene_).substr(0, 100))).find("cut.glb: "),
+              std::string::npos);
+    EXPECT_NE(render(broken("not.gltf", "{\n \"asset\": }")).find("not.gltf: line 2, column"),
+              std::string::npos);
+    TinyGltf bad = studio();
+    bad.json["meshes"][0]["primitives"][0]["indices"] = 99;
+    EXPECT_NE(render(bad.save_glb(folder_.path / "bad.glb").string())
+                  .find("bad.glb: /meshes/0/primitives/0/indices: "),
+              std::string::npos);
+    EXPECT_NE(error_of({"info", path("none.glb")}, 1).find("none.glb: no such file"),
+              std::string::npos);
+
+    EXPECT_NE(render(scene_, {"--env", path("none.hdr")}).find("none.hdr: "), std::string::npos);
+    EXPECT_NE(render(scene_, {"--env", broken("sky.hdr", "#?RADIANCE\nhello")}).find("sky.hdr: "),
+              std::string::npos);
+    EXPECT_NE(render(scene_, {"--env", scene_}).find("studio.glb: an environment must be"),
+              std::string::npos);
+}
+
+TEST_F(CliErrors, OutputsThatCannotBeWritten) {
+    std::filesystem::create_directory(path("folder.exr"));
+    std::filesystem::create_symlink("/dev/full", path("full.exr"));
+    std::vector<Case> cases = {{{"--stats", path("none/s.json")}, path("none/s.json")}};
+    for (const char* name : {"none/out.exr", "studio.glb/out.exr", "folder.exr", "full.exr"})
+        cases.push_back({{"-o", path(name)}, path(name) + ": cannot be written: "});
+    expect_refused(1, cases);
+}
+
+TEST_F(CliErrors, ADiskThatIsFullLeavesTheOldPicture) {
+    for (const char* name : {"out.exr", "out.png", "out.jpg"}) {
+        std::ofstream(path(name)) << "the old one";
+        Words words = render_words({"-o", path(name), "--quiet"}, scene_);
+        ProcessOptions options;
+        options.file_size_limit_bytes = 100;
+        EXPECT_EQ(error_of(words, 1, options),
+                  "petzval: error: " + path(name) + ": cannot be written: File too large");
+        EXPECT_EQ(file_bytes(path(name)), "the old one");
+    }
+}
+
+TEST_F(CliErrors, StandardStreamsThatAreFull) {
+    ProcessOptions options;
+    options.out = "/dev/full";
+    EXPECT_NE(error_of({"info", scene_}, 1, options).find("standard output"), std::string::npos);
+    options = {};
+    options.err = "/dev/full";
+    EXPECT_EQ(run_petzval({"info", path("none.glb")}, options).exit_code, 1);
+    EXPECT_EQ(run_petzval(render_words({"-o", path("out.exr")}, scene_), options).exit_code, 0);
+}
+
+}  // namespace
+}  // namespace petzval

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/light.h"
 
+#include "core/bvh.h"
 #include "core/scene.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/jacobian.h"
@@ -236,6 +237,39 @@ TEST(TriangleLight, ShadowRaysEndBeforeTheLight) {
         const auto t = meet(corners(scene, {0, 0}), V3d(p), V3d(s->target - p));
         ASSERT_GT(t.value_or(kInfinity), 1.0) << "scale " << scale << " distance " << distance;
     }
+}
+
+TEST(TriangleLight, TheTraversalAgrees) {
+    Random random(7);
+    int rays = 0, hits = 0;
+    for (int i = 0; i < 60; ++i) {
+        const float scale = std::pow(10.f, 6 * random.next() - 3);
+        const V3f centre = random.direction() * (100 * random.next() * scale);
+        Scene scene;
+        scene.materials = {test::glowing(Rgb(1.f), true)};
+        scene.meshes = {test::one_triangle(centre + random.direction() * scale,
+                                           centre + random.direction() * scale,
+                                           centre + random.direction() * scale)};
+        scene.instances = {test::placed(0, M44f().rotate(random.direction()))};
+        for (const Traversal traversal : {Traversal::Robust, Traversal::Fast}) {
+            const Bvh bvh(scene, traversal);
+            for (int k = 0; k < 300; ++k) {
+                Ray shadow;
+                shadow.origin = random.direction() * (100 * random.next() * scale);
+                const auto s =
+                    sample_light(scene, TriangleLight{0, 0}, shadow.origin, random.next2(), kRgb);
+                if (!s) continue;
+                shadow.direction = s->target - shadow.origin;
+                shadow.t_max = kOneMinus;
+                ASSERT_FALSE(bvh.occluded(shadow)) << "scale " << scale << " sample " << k;
+                shadow.direction = s->direction;
+                shadow.t_max = kInfinity;
+                hits += bvh.occluded(shadow);
+                ++rays;
+            }
+        }
+    }
+    EXPECT_GT(hits, 0.99 * rays);  // the direction itself does lead to the lamp
 }
 
 TEST(TriangleLight, ZeroAreaIsNoLight) {

@@ -43,8 +43,8 @@ RTCRay to_embree(const Ray& r) {
     RTCRay ray;
     ray.org_x = r.origin.x, ray.org_y = r.origin.y, ray.org_z = r.origin.z;
     ray.dir_x = r.direction.x, ray.dir_y = r.direction.y, ray.dir_z = r.direction.z;
-    // Above 0: in a plane through the origin of an axis nothing rounds, so that no offset moves a ray
-    // off it, and it would meet at 0 what it leaves.
+    // Above 0: in a plane through the origin of an axis nothing rounds, so that no offset moves a
+    // ray off it, and it would meet at 0 what it leaves.
     ray.tnear = std::numeric_limits<float>::min(), ray.tfar = r.t_max;
     ray.time = 0.f, ray.mask = ~0u, ray.id = 0, ray.flags = 0;
     return ray;

@@ -172,6 +172,9 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
             bsdf.sample(sampler.get1(Dim::BsdfLobe, depth), sampler.get2(Dim::Bsdf, depth));
         if (!next) break;
         const V3f direction = shading.frame.to_world(next->wi);
+        // No ray that is not a number goes on: the film counts the sample and names its pixel.
+        if (!std::isfinite(direction.x + direction.y + direction.z))
+            return splat(std::numeric_limits<float>::quiet_NaN());
         const bool crosses = (direction.dot(s.ng) > 0.f) != s.front;
         if (crosses != next->transmitted) break;
         throughput *= next->weight;

@@ -216,7 +216,7 @@ class Lamps:
 
 
 def festoons(glb, m, lamps):
-    """Strings of lamps between posts, and the lights of a far shore."""
+    """Strings of lamps between posts, and garden lamps on stakes beyond them."""
     rng = random.Random(59)
     post = glb.mesh("post", (tube([(0, 0, 0), (0, 3.2, 0)], [0.04, 0.035], 12), m.twig))
     wires = Shape()
@@ -233,12 +233,14 @@ def festoons(glb, m, lamps):
             lamps.put(x, y - 0.09, z, colour, rng.uniform(0.09, 0.12))
     for x, z in {(p[0], p[2]): None for string in strings for p in string[:2]}:
         glb.node("post", at=(x, 0, z), mesh=post)
-    glb.node("wires", mesh=glb.mesh("wires", (wires, m.twig)))
     for k in range(34):
         x = -7.2 + 14.4 * (k + rng.uniform(0.1, 0.9)) / 34
         z = -rng.uniform(12.6, 14.6)
         colour = rng.choice((0, 0, 1, 1, 2, 2, 3, 4, 5, 5, 6))
-        lamps.put(x, rng.uniform(0.3, 1.25), z, colour, rng.uniform(0.10, 0.15))
+        y = rng.uniform(0.3, 1.25)
+        lamps.put(x, y, z, colour, rng.uniform(0.10, 0.15))
+        wires.join(tube([(x, 0, z - 0.05), (x, y, z - 0.05)], [0.012, 0.012], 6))
+    glb.node("wires", mesh=glb.mesh("wires and stakes", (wires, m.twig)))
 
 
 def still_life(glb, m):

@@ -9,10 +9,11 @@ import math
 import random
 import sys
 
+import first_light_objects as objects
 import first_light_textures as textures
 from first_light_glb import GlbWriter, then, turn
-from first_light_shapes import (Shape, add, arc, brilliant, cross, lathe, prism, rounded_box, sphere,
-                                spline, sub, surface, tube, unit)
+from first_light_shapes import (Shape, add, arc, brilliant, cross, lathe, prism, rounded_box, spline,
+                                sub, surface, tube, unit)
 
 X, Y, Z = (1, 0, 0), (0, 1, 0), (0, 0, 1)
 TABLE_M = 0.74
@@ -69,11 +70,11 @@ class Materials:
         self.pages = glb.material("pages", "#d8c9a6", 0.9)
         self.paper_lantern = glb.material("paper lantern", "#d8c8a8", 0.9, emissive="#ffffff", nits=3.2, maps={
             "emissiveTexture": texture("paper glow", textures.paper_glow())})
-        self.stone = glb.material("terrace", "#3a3f48", 0.3)
-        self.trees = glb.material("trees", "#141b20", 0.95)
+        self.stone = glb.material("terrace", "#3a3f48", 0.22)
+        self.trees = glb.material("trees", "#141b20", 0.95, emissive="#1c2542", nits=0.5)
         self.dusk = glb.material("dusk", "#000000", 1.0, emissive="#ffffff", nits=0.42, maps={
             "emissiveTexture": texture("dusk", textures.dusk())})
-        self.key = glb.material("pendant light", "#000000", 1.0, emissive="#ffd3a0", nits=24)
+        self.key = glb.material("pendant light", "#000000", 1.0, emissive="#ffd3a0", nits=15)
         self.fill = glb.material("blue light", "#000000", 1.0, emissive="#8fb4ff", nits=1.3)
         self.enamel = glb.material("enamel", "#20332f", 0.3)
         self.lamps = [glb.material("lamp " + c, "#000000", 1.0, emissive=c, nits=n) for c, n in LAMP_COLOURS]
@@ -127,18 +128,17 @@ ON_CLOTH_M = TABLE_M + 0.0024
 def chart(glb, m):
     """A card that stands square to the optical axis of "table", its face at FOCUS_M; a brass foot holds it."""
     lean = turn(X, PITCH_DEG)
-    w, h, foot_y = 0.12, 0.16, 0.006
-    face = surface(lambda s, t: ((s - 0.5) * w, (t - 0.5) * h, 0.00165), 1, 1, uv=lambda s, t: (s, 1 - t))
+    w, h, foot_y, front = 0.12, 0.16, 0.006, 0.00165
+    face = surface(lambda s, t: ((s - 0.5) * w, (t - 0.5) * h, front), 1, 1, uv=lambda s, t: (s, 1 - t))
     mesh = glb.mesh("chart", (face, m.chart), (rounded_box((w, h, 0.003), 0.0012), m.card))
     bottom = ON_CLOTH_M + foot_y
-    # Along the axis, the face's distance is that of the point where it meets the axis.
-    slope = math.tan(math.radians(-PITCH_DEG))
-    rise = bottom + h / 2 * math.cos(math.radians(PITCH_DEG))
-    z = -(FOCUS_M - (EYE[1] - rise) * math.sin(math.radians(-PITCH_DEG))) / math.cos(math.radians(PITCH_DEG))
+    sine, cosine = math.sin(math.radians(-PITCH_DEG)), math.cos(math.radians(PITCH_DEG))
+    rise = bottom + h / 2 * cosine
+    z = -(FOCUS_M + front - (EYE[1] - rise) * sine) / cosine
     x = -0.075
     glb.node("chart", at=(x, rise, z), rotation=lean, mesh=mesh)
     bar = rounded_box((0.09, 0.012, 0.016), 0.002)
-    foot_z = z + slope * h / 2 - 0.0105
+    foot_z = z + sine / cosine * h / 2 - 0.0105
     stay = rounded_box((0.012, 0.05, 0.003), 0.001)
     brass = glb.mesh("chart foot", (bar, m.brass))
     glb.node("chart foot", at=(x, ON_CLOTH_M + 0.0062, foot_z), mesh=brass)
@@ -146,134 +146,11 @@ def chart(glb, m):
              mesh=glb.mesh("chart stay", (stay, m.brass)))
 
 
-def petzval_lens(glb, m, at, yaw_deg):
-    """A brass portrait lens on its side: it rests on the rims of flange and hood, both of one radius."""
-    r = 0.046
-    body = lathe([
-        [(0.030, 0.0), (0.040, 0.0)], arc((0.040, 0.002), 0.002, -90, 0, 3), [(0.042, 0.002), (0.042, 0.012)],
-        [(0.042, 0.012), (r - 0.0015, 0.012)], arc((r - 0.0015, 0.0135), 0.0015, -90, 90, 6),
-        [(r - 0.0015, 0.015), (0.036, 0.015)], spline([(0.036, 0.015), (0.0335, 0.020), (0.0335, 0.060)], 4),
-        [(0.0335, 0.060), (0.0365, 0.060)], arc((0.0365, 0.061), 0.001, -90, 90, 4),
-        [(0.0365, 0.062), (0.0345, 0.062)], [(0.0345, 0.062), (0.0345, 0.098)],
-        spline([(0.0345, 0.098), (0.0365, 0.104), (0.042, 0.110), (r - 0.001, 0.120)], 6),
-        [(r - 0.001, 0.120), (r - 0.001, 0.148)], arc((r - 0.0015, 0.149), 0.0015, -40, 180, 6)], 72)
-    bore = lathe([[(r - 0.003, 0.149), (0.041, 0.121), (0.0335, 0.108)], [(0.0335, 0.108), (0.0320, 0.096)],
-                  [(0.0320, 0.096), (0.030, 0.0)]], 72)
-    front = lathe([lens_cap(0.0312, 0.097, -0.004),
-                   [(0.0312, 0.097), (0.0312, 0.099)], lens_cap(0.0312, 0.099, 0.008)[::-1]], 64)
-    knob = lathe([[(0, 0), (0.004, 0)], [(0.004, 0), (0.004, 0.010)], [(0.004, 0.010), (0.0095, 0.010)],
-                  [(0.0095, 0.010), (0.0100, 0.011), (0.0100, 0.0165)], [(0.0100, 0.0165), (0.0090, 0.018), (0, 0.0185)]], 40)
-    pose = then(turn(X, 90), turn(Y, yaw_deg))
-    group = glb.node("petzval lens", at=add(at, (0, r, 0)), rotation=pose)
-    glb.node("barrel", group, mesh=glb.mesh("barrel", (body, m.brass), (bore, m.black)))
-    glb.node("front element", group, mesh=glb.mesh("front element", (front, m.glass)))
-    glb.node("rack knob", group, at=(0.0325, 0.040, 0), rotation=turn(Z, -90), mesh=glb.mesh("rack knob", (knob, m.brass)))
-
-
-def lens_cap(radius, y, sag, steps=10):
-    """Profile of a spherical surface from the axis to its rim at (radius, y); sag is how far its vertex rises."""
-    return [(radius * k / steps, y + sag * (1 - (k / steps) ** 2)) for k in range(steps + 1)]
-
-
-def wine_glass():
-    """One closed body, 0.2 m high: foot, stem, bowl and the inside of the bowl."""
-    foot = [(0, 0.0020), (0.022, 0.0010), (0.0325, 0.0003)]
-    outside = spline([(0.0325, 0.0003), (0.0342, 0.0013), (0.0325, 0.0026), (0.020, 0.0048), (0.008, 0.0095), (0.0042, 0.020),
-                      (0.0038, 0.050), (0.0043, 0.078), (0.0085, 0.0895), (0.021, 0.0985), (0.0335, 0.1135),
-                      (0.0392, 0.1350), (0.0380, 0.1620), (0.0342, 0.1850), (0.0316, 0.2000)], 5)
-    rim = arc((0.0310, 0.2000), 0.0006, 0, 180, 6)
-    inside = spline([(0.0304, 0.2000), (0.0330, 0.1850), (0.0367, 0.1620), (0.0378, 0.1352), (0.0322, 0.1150),
-                     (0.0200, 0.1008), (0.0080, 0.0945), (0, 0.0932)], 5)
-    return lathe([foot, outside + rim[1:] + inside[1:]], 72)
-
-
-def mug():
-    """A hammered copper mug without its handle: outside, rim and inside in one closed body."""
-    outside = [(0, 0.001), (0.030, 0.0)] + arc((0.032, 0.004), 0.004, -90, -5, 4)
-    wall = spline([(0.036, 0.004), (0.0405, 0.03), (0.0415, 0.055), (0.039, 0.092)], 5)
-    rim = arc((0.0405, 0.0925), 0.0018, -150, 130, 10)
-    inside = spline([(0.0388, 0.0930), (0.0400, 0.055), (0.0390, 0.03), (0.034, 0.006)], 4)
-    return lathe([outside, wall, rim, inside, [(0.034, 0.006), (0, 0.005)]], 64)
-
-
-def vase():
-    outside = spline([(0.026, 0.0015), (0.030, 0.004), (0.052, 0.040), (0.062, 0.078), (0.054, 0.120), (0.030, 0.158),
-                      (0.0205, 0.185), (0.0215, 0.205), (0.029, 0.222)], 6)
-    rim = arc((0.0272, 0.2225), 0.0018, 0, 180, 6)
-    inside = spline([(0.0254, 0.2220), (0.0185, 0.205), (0.0175, 0.185), (0.026, 0.160), (0.040, 0.120)], 4)
-    return lathe([[(0, 0.002), (0.024, 0.002), (0.026, 0.0)], [(0.026, 0.0), (0.026, 0.0015)], outside + rim[1:] + inside[1:],
-                  [(0.040, 0.120), (0, 0.110)]], 64)
-
-
-def twigs(glb, m, at):
-    """Five curved twigs that stand in the vase, each with a few berries at its side shoots."""
-    rng = random.Random(43)
-    wood, berry = Shape(), glb.mesh("berry", (sphere(0.0052, 7, 12), m.berry))
-    group = glb.node("twigs", at=at)
-    for k in range(6):
-        azimuth = 2 * math.pi * k / 6 + rng.uniform(-0.4, 0.4)
-        out, height = rng.uniform(0.06, 0.15), rng.uniform(0.34, 0.52)
-        def along(t, a=azimuth, o=out, h=height):
-            r = 0.008 + o * max(0.0, t - 0.38) ** 1.5 * 1.8
-            return (r * math.cos(a + 0.5 * t), 0.12 + (h - 0.12) * t, r * math.sin(a + 0.5 * t))
-        path = [along(i / 14) for i in range(15)]
-        wood.join(tube(path, [0.0024 - 0.0016 * i / 14 for i in range(15)], 7))
-        for i in range(6, 15):
-            side = rng.uniform(0, 2 * math.pi)
-            tip = add(path[i], (0.016 * math.cos(side), rng.uniform(0.006, 0.016), 0.016 * math.sin(side)))
-            wood.join(tube([path[i], tip], [0.0009, 0.0007], 5))
-            glb.node("berry", group, at=tip, scale=rng.uniform(0.75, 1.2), mesh=berry)
-    glb.node("twig wood", group, mesh=glb.mesh("twig wood", (wood, m.twig)))
-
-
-def lemon():
-    """Long axis along y, with a nipple at one end."""
-    return lathe([spline([(0, -0.0375), (0.004, -0.0365), (0.011, -0.0325), (0.022, -0.0215), (0.0275, -0.004), (0.0265, 0.010),
-                          (0.0195, 0.0245), (0.0095, 0.0325), (0.0055, 0.0365), (0.0032, 0.0402), (0, 0.0410)], 4)], 48)
-
-
-def cherries(glb, m, at, yaw_deg):
-    """A pair on joined stems, lying on the table."""
-    fruit = lathe([spline([(0, -0.0108), (0.006, -0.0098), (0.0112, -0.0035), (0.0115, 0.003), (0.0075, 0.0088),
-                           (0.003, 0.0090), (0.0012, 0.0072), (0, 0.0066)], 6)], 40)
-    body = glb.mesh("cherry", (fruit, m.cherry))
-    group = glb.node("cherries", at=at, rotation=turn(Y, yaw_deg))
-    joint = (0.004, 0.006, -0.052)
-    stems = Shape()
-    for x, z, tilt in ((-0.0145, 0.0, -12), (0.0150, 0.006, 14)):
-        glb.node("cherry", group, at=(x, 0.0108, z), rotation=then(turn(X, -14), turn(Z, tilt)), mesh=body)
-        start = (x - 0.007 * math.sin(math.radians(tilt)), 0.0175, z - 0.002)
-        stems.join(tube(spline([start, (0.8 * x, 0.036, z - 0.014), (0.4 * x, 0.027, -0.036), joint], 6), [0.0008] * 19, 7))
-    stems.join(tube([joint, add(joint, (0.001, 0.001, -0.006))], [0.0015, 0.0019], 8))
-    glb.node("stems", group, mesh=glb.mesh("stems", (stems, m.stem)))
-
-
-def chess_base(scale):
-    return [(0, 0), (scale * 0.0155, 0)], spline([(scale * 0.0155, 0), (scale * 0.0168, 0.003), (scale * 0.0160, 0.006),
-                                                  (scale * 0.0135, 0.008), (scale * 0.0132, 0.011), (scale * 0.0105, 0.014)], 5)
-
-
-def pawn():
-    floor, base = chess_base(0.95)
-    stem = spline([(0.0100, 0.014), (0.0068, 0.022), (0.0052, 0.034)], 8)
-    collar = arc((0.0080, 0.0358), 0.0016, -90, 90, 6)
-    return lathe([floor, base, stem, [(0.0052, 0.0342)] + collar + [(0.0055, 0.0374)],
-                  [(max(r, 0), y) for r, y in arc((0, 0.0450), 0.0093, -56, 90, 12)]], 36)
-
-
-def bishop():
-    floor, base = chess_base(1.05)
-    stem = spline([(0.0110, 0.014), (0.0072, 0.024), (0.0056, 0.048)], 8)
-    collar = arc((0.0092, 0.0500), 0.0018, -90, 90, 6)
-    head = spline([(0.0058, 0.0518), (0.0100, 0.0590), (0.0098, 0.0655), (0.0050, 0.0745), (0.0022, 0.0778)], 6)
-    return lathe([floor, base, stem, [(0.0056, 0.0482)] + collar + [(0.0058, 0.0518)], head,
-                  [(max(r, 0), y) for r, y in arc((0, 0.0798), 0.0029, -45, 90, 8)]], 36)
-
-
 def rule(glb, m):
     """A folding rule laid out along the table from 0.5 m on: a scale for the depth of field."""
-    group = glb.node("folding rule", at=(0.125, TABLE_M, -0.53), rotation=turn(Y, 95))
-    rivet = glb.mesh("rivet", (lathe([[(0.0045, -0.003), (0.0045, 0.0003)], spline([(0.0045, 0.0003), (0.003, 0.0008), (0, 0.001)], 3)], 20), m.brass))
+    group = glb.node("folding rule", at=(0.125, ON_CLOTH_M, -0.53), rotation=turn(Y, 95))
+    head = spline([(0.0045, 0.0003), (0.003, 0.0008), (0, 0.001)], 3)
+    rivet = glb.mesh("rivet", (lathe([[(0.0045, -0.003), (0.0045, 0.0003)], head], 20), m.brass))
     for i in range(RULE_PIECES):
         piece = rounded_box((0.2 + 0.016, 0.003, 0.016), 0.0007)
         def atlas(a, b, i=i):
@@ -281,50 +158,18 @@ def rule(glb, m):
             v = min(0.98, max(0.02, b / 0.016 + 0.5))
             return (0.001 + 0.998 * u, (i + v) / RULE_PIECES)
         up = 0.0016 if i % 2 == 0 else 0.0047
-        glb.node("rule %d" % i, group, at=(0.1 + 0.2 * i, up, 0), mesh=glb.mesh("rule %d" % i, (piece.map_uv(atlas), m.rule)))
+        glb.node("rule %d" % i, group, at=(0.1 + 0.2 * i, up, 0),
+                 mesh=glb.mesh("rule %d" % i, (piece.map_uv(atlas), m.rule)))
         if i:
             glb.node("rivet", group, at=(0.2 * i, 0.0062, 0), mesh=rivet)
 
 
-def books(glb, m, at, yaw_deg):
-    """Two old books, the upper one turned a little."""
-    y = 0.0
-    for i, (w, h, d, yaw) in enumerate(((0.20, 0.034, 0.145, 0), (0.18, 0.028, 0.125, 11))):
-        board, inset = 0.0028, 0.004
-        cover = rounded_box((w, board, d), 0.0010)
-        spine = rounded_box((w, h, 0.004), 0.0018)
-        case = Shape().join(cover, (0, board / 2, 0)).join(cover, (0, h - board / 2, 0)).join(spine, (0, h / 2, d / 2))
-        case.map_uv(lambda a, b: (a / 0.12, b / 0.12))
-        leaves = Shape().join(rounded_box((w - 2 * inset, h - 2 * board, d - inset - 0.003), 0.0005), (0, h / 2, (inset - 0.003) / 2))
-        bands = Shape()
-        for x in (-0.32, -0.27, 0.27, 0.32):
-            bands.join(rounded_box((0.0035, h + 0.0006, 0.0052), 0.002), (x * w, h / 2, d / 2))
-        glb.node("book %d" % i, at=add(at, (0, y, 0)), rotation=turn(Y, yaw_deg + yaw),
-                 mesh=glb.mesh("book %d" % i, (case, m.cover[i]), (leaves, m.pages), (bands, m.brass)))
-        y += h + 0.0003
-    return add(at, (0, y, 0))
-
-
-def paper_lanterns(glb, m, spots):
-    """Paper cylinders that glow, with a lacquered ring at each end."""
-    r, h = 0.055, 0.17
-    paper = lathe([[(r, 0.008 + h * k / 4) for k in range(5)]], 40)
-    ring = lathe([[(0, 0), (r + 0.002, 0)], [(r + 0.002, 0), (r + 0.002, 0.009)], [(r + 0.002, 0.009), (r - 0.004, 0.009)],
-                  [(r - 0.004, 0.009), (0, 0.009)]], 48)
-    frame = Shape().join(ring).join(ring, (0, h + 0.007, 0))
-    mesh = glb.mesh("paper lantern", (paper, m.paper_lantern), (frame, m.black))
-    for x, z, scale in spots:
-        glb.node("paper lantern", at=(x, TABLE_M + 0.0002, z), scale=scale, mesh=mesh)
-
-
 def key_and_fill(glb, m):
     """A wide pendant lamp above the table, out of the picture, and a patch of blue sky on the right."""
-    r = 0.27
-    disc = lathe([[(r, 0.012), (r * 0.66, 0.012), (r * 0.33, 0.012), (0, 0.012)][::-1]], 32)
-    disc.normals = [(0, -1, 0)] * len(disc.normals)
-    disc.indices = [i for k in range(0, len(disc.indices), 3) for i in disc.indices[k:k + 3][::-1]]
+    r = 0.36
+    disc = lathe([[(r * k / 3, 0.012) for k in range(4)]], 32)
     shade = lathe([[(r, 0.012), (r + 0.004, 0.0), (r + 0.008, 0.002)],
-                   spline([(r + 0.008, 0.002), (0.20, 0.09), (0.07, 0.15), (0.03, 0.19), (0, 0.20)], 8)], 48)
+                   spline([(r + 0.008, 0.002), (0.27, 0.09), (0.09, 0.15), (0.03, 0.19), (0, 0.20)], 8)], 48)
     cord = tube([(0, 0.195, 0), (0, 1.6, 0)], [0.004, 0.004])
     glb.node("pendant", at=(-0.42, TABLE_M + 0.80, -0.95), rotation=then(turn(Z, 14), turn(X, 10)), mesh=glb.mesh(
         "pendant", (disc, m.key), (shade, m.enamel), (cord, m.black)))
@@ -345,8 +190,8 @@ def backdrop(glb, m):
     sky = surface(round_wall(17, lambda s: 1.15, lambda s: 4.0), 20, 10, uv=lambda s, t: (s, 1 - t))
     glb.node("dusk sky", mesh=glb.mesh("dusk sky", (sky, m.dusk)))
     def crowns(s):
-        return (1.45 + 0.25 * math.sin(9 * s + 1) + 0.12 * math.sin(31 * s) + 0.10 * abs(math.sin(70 * s + 2 * math.sin(13 * s)))
-                + 0.05 * abs(math.sin(211 * s)))
+        hills = 0.25 * math.sin(9 * s + 1) + 0.12 * math.sin(31 * s)
+        return 1.45 + hills + 0.10 * abs(math.sin(70 * s + 2 * math.sin(13 * s))) + 0.05 * abs(math.sin(211 * s))
     trees = surface(round_wall(16.5, lambda s: -0.1, crowns), 260, 2)
     glb.node("trees", mesh=glb.mesh("trees", (trees, m.trees)))
 
@@ -358,18 +203,20 @@ class Lamps:
         self.glb = glb
         cap = lathe([[(max(r, 0), y) for r, y in arc((0, -0.02), 0.0583, 19, 90, 3)]], 20)
         housing = lathe([spline([(0, -0.06), (0.035, -0.05), (0.055, -0.015), (0.0555, 0.0)], 3)], 20)
-        self.meshes = [glb.mesh("lamp %d" % i, (cap, material), (housing, m.black)) for i, material in enumerate(m.lamps)]
+        self.meshes = [glb.mesh("lamp %d" % i, (cap, material), (housing, m.black))
+                       for i, material in enumerate(m.lamps)]
 
     def put(self, x, y, z, colour, diameter_m):
         """Turned toward the camera, its cap's axis along the line of sight."""
         away = unit(sub(EYE, (x, y, z)))
         spin = unit(cross(Y, away))
         angle = math.degrees(math.acos(max(-1.0, min(1.0, away[1]))))
-        self.glb.node("lamp", at=(x, y, z), rotation=turn(spin, angle), scale=diameter_m / 0.11, mesh=self.meshes[colour])
+        self.glb.node("lamp", at=(x, y, z), rotation=turn(spin, angle), scale=diameter_m / 0.11,
+                      mesh=self.meshes[colour])
 
 
 def festoons(glb, m, lamps):
-    """Strings of lamps between posts, and the lights of a far shore."""
+    """Strings of lamps between posts, and garden lamps on stakes beyond them."""
     rng = random.Random(59)
     post = glb.mesh("post", (tube([(0, 0, 0), (0, 3.2, 0)], [0.04, 0.035], 12), m.twig))
     wires = Shape()
@@ -386,35 +233,39 @@ def festoons(glb, m, lamps):
             lamps.put(x, y - 0.09, z, colour, rng.uniform(0.09, 0.12))
     for x, z in {(p[0], p[2]): None for string in strings for p in string[:2]}:
         glb.node("post", at=(x, 0, z), mesh=post)
-    glb.node("wires", mesh=glb.mesh("wires", (wires, m.twig)))
     for k in range(34):
         x = -7.2 + 14.4 * (k + rng.uniform(0.1, 0.9)) / 34
         z = -rng.uniform(12.6, 14.6)
         colour = rng.choice((0, 0, 1, 1, 2, 2, 3, 4, 5, 5, 6))
-        lamps.put(x, rng.uniform(0.3, 1.25), z, colour, rng.uniform(0.10, 0.15))
+        y = rng.uniform(0.3, 1.25)
+        lamps.put(x, y, z, colour, rng.uniform(0.10, 0.15))
+        wires.join(tube([(x, 0, z - 0.05), (x, y, z - 0.05)], [0.012, 0.012], 6))
+    glb.node("wires", mesh=glb.mesh("wires and stakes", (wires, m.twig)))
 
 
 def still_life(glb, m):
     def put(name, shape, material, x, z, y=ON_CLOTH_M, **more):
         glb.node(name, at=(x, y, z), mesh=glb.mesh(name, (shape, material)), **more)
     chart(glb, m)
-    petzval_lens(glb, m, (0.165, ON_CLOTH_M, -1.03), 24)
-    put("wine glass", wine_glass(), m.glass, -0.215, -1.10)
+    objects.petzval_lens(glb, m, (0.165, ON_CLOTH_M, -1.03), 24)
+    put("wine glass", objects.wine_glass(), m.glass, -0.215, -1.10)
     gem, size = brilliant(), 0.030
     main_deg = 40.75
     deep = (math.sin(math.radians(main_deg)) + 0.02 * math.cos(math.radians(main_deg))) * size
-    put("brilliant", gem, m.flint, -0.115, -0.845, ON_CLOTH_M + deep + 0.0002, rotation=then(turn(Z, -main_deg), turn(Y, -100)), scale=size)
-    put("prism", prism(0.032, 0.085), m.glass, 0.045, -0.89, ON_CLOTH_M + 0.0002, rotation=turn(Y, 28))
-    peel = glb.mesh("lemon", (lemon(), m.lemon))
+    put("brilliant", gem, m.flint, -0.115, -0.845, ON_CLOTH_M + deep + 0.0002, scale=size,
+        rotation=then(turn(Z, -main_deg), turn(Y, -40)))
+    put("prism", prism(0.036, 0.075), m.glass, 0.040, -0.885, ON_CLOTH_M + 0.0377,
+        rotation=then(turn(Z, 90), turn(Y, 20)))
+    peel = glb.mesh("lemon", (objects.lemon(), m.lemon))
     for x, z, y, pose in ((0.275, -0.86, ON_CLOTH_M, then(turn(Z, 84), turn(Y, 25))),
                           (0.335, -1.32, TABLE_M, then(turn(Z, 96), turn(Y, -50)))):
         glb.node("lemon", at=(x, y + 0.0274, z), rotation=pose, mesh=peel)
-    cherries(glb, m, (0.21, TABLE_M, -0.74), -35)
-    put("mug", mug(), m.copper, 0.435, -1.42, TABLE_M)
-    put("vase", vase(), m.glaze, -0.42, -1.46, TABLE_M)
-    twigs(glb, m, (-0.42, TABLE_M, -1.46))
-    top = books(glb, m, (-0.235, TABLE_M, -1.75), 14)
-    small, tall = pawn(), bishop()
+    objects.cherries(glb, m, (0.165, ON_CLOTH_M, -0.815), -35)
+    put("mug", objects.mug(), m.copper, 0.435, -1.42, TABLE_M)
+    put("vase", objects.vase(), m.glaze, -0.395, -1.46, TABLE_M)
+    objects.twigs(glb, m, (-0.395, TABLE_M, -1.46))
+    top = objects.books(glb, m, (-0.235, TABLE_M, -1.75), 14)
+    small, tall = objects.pawn(), objects.bishop()
     pawns = [glb.mesh("pawn", (small, m.boxwood)), glb.mesh("dark pawn", (small, m.ebony))]
     bishops = [glb.mesh("bishop", (tall, m.boxwood)), glb.mesh("dark bishop", (tall, m.ebony))]
     for i, (x, z) in enumerate(((0.155, -1.36), (0.165, -1.62), (0.175, -1.92), (0.185, -2.27), (0.20, -2.7))):
@@ -422,14 +273,14 @@ def still_life(glb, m):
     glb.node("bishop", at=add(top, (0.03, 0, 0.0)), scale=1.2, mesh=bishops[0])
     glb.node("bishop", at=add(top, (-0.035, 0, 0.01)), scale=1.2, mesh=bishops[1])
     rule(glb, m)
-    paper_lanterns(glb, m, ((0.56, -2.15, 1.0), (0.02, -2.75, 1.15)))
+    objects.paper_lanterns(glb, m, ((0.56, TABLE_M, -2.15, 1.0), (0.02, TABLE_M, -2.75, 1.15)))
 
 
 def build():
     glb = GlbWriter("first_light.py of Petzval")
     m = Materials(glb)
     glb.camera("table", 28, EYE, turn(X, PITCH_DEG))
-    glb.camera("close", 22, (-0.10, 0.90, -0.42), turn(X, -15))
+    glb.camera("close", 22, (-0.095, 0.86, -0.50), turn(X, -11))
     table(glb, m)
     runner(glb, m)
     still_life(glb, m)

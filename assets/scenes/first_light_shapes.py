@@ -106,7 +106,8 @@ def lathe(parts, segments=64):
             v = (length + sum(span[:i])) / total
             row = []
             for j in range(segments + 1):
-                c, s = math.cos(2 * math.pi * (j % segments) / segments), math.sin(2 * math.pi * (j % segments) / segments)
+                angle = 2 * math.pi * (j % segments) / segments
+                c, s = math.cos(angle), math.sin(angle)
                 row.append(((r * c, y, -r * s), (nr * c, ny, -nr * s), (j / segments, 1 - v)))
             rows.append(row)
         shape.sheet(rows)

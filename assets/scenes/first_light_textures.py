@@ -203,7 +203,7 @@ def folding_rule(pieces, width=1000, row_height=80):
     """One strip for each 0.2 m piece of a folding rule, millimetre ticks and centimetre figures."""
     rng = random.Random(17)
     grain = noise(rng, width, pieces * row_height, 30, pieces * row_height // 4)
-    rows = [bytearray(c for g in line for c in (3 * round((a - 30 * g) / 3) for a in (238, 206, 116))) for line in grain]
+    rows = [bytearray(3 * round((c - 30 * g) / 3) for g in line for c in (238, 206, 116)) for line in grain]
     for piece in range(pieces):
         top = piece * row_height
         for mm in range(200):
@@ -254,7 +254,8 @@ def dusk(width=512, height=256):
     """The sky from zenith side (row 0) to horizon, streaked by thin cloud; dithered against banding."""
     rng = random.Random(29)
     cloud = blend([(0.6, noise(rng, width, height, 4, 14)), (0.4, noise(rng, width, height, 11, 40))])
-    stops = [(0, "#232f5c"), (0.35, "#374878"), (0.58, "#6d6790"), (0.74, "#bb7c82"), (0.87, "#f0995f"), (1, "#ffb45a")]
+    stops = [(0, "#232f5c"), (0.35, "#374878"), (0.58, "#6d6790"), (0.74, "#bb7c82"), (0.87, "#f0995f"),
+             (1, "#ffb45a")]
     field = [[j / height + 0.22 * (c - 0.5) * (0.3 + j / height) for c in cloud[j]] for j in range(height)]
     rows = ramp(field, stops, 1)
     return png([[min(255, c + rng.getrandbits(1)) for c in row] for row in rows])

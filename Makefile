@@ -9,7 +9,7 @@ SOURCES = git ls-files '*.h' '*.cpp'
 
 render: build
 	mkdir -p out
-	build/bin/petzval render assets/scenes/first_light.glb --size 960x540 --spp 256 \
+	build/bin/petzval render assets/scenes/first_light.glb --fstop 2 --focus 1m --size 960x540 --spp 256 \
 	    -o out/first_light.exr -o out/first_light.png
 
 test: build

@@ -5,14 +5,15 @@
 #include <array>
 
 #include "core/ray.h"
+#include "core/sampler.h"
 #include "core/spectrum.h"
 
 namespace petzval {
 
-/// Where on the film, and two random numbers for where on the lens.
+/// Where on the film, and the numbers from which a camera draws the rest (Dim::Lens).
 struct FilmPoint {
     V2f film;  ///< [0, 1)^2 over the full frame, (0, 0) at the top left as the picture is seen
-    V2f lens;  ///< [0, 1)^2
+    Sampler sampler;
 };
 
 /// A world-space ray; direction has unit length.

@@ -41,7 +41,7 @@ CameraSample ThinLensCamera::sample(const FilmPoint& at, const Bands& bands) con
     const V3f direction{(2.f * at.film.x - 1.f) * tan_half_x_,
                         (1.f - 2.f * at.film.y) * tan_half_y_, -1.f};
     if (radius_m_ <= 0.f) return one_path(pose_, V3f(0.f), direction, bands);
-    const V2f stop = uniform_disk(at.lens) * radius_m_;
+    const V2f stop = uniform_disk(at.sampler.get2(Dim::Lens)) * radius_m_;
     const V3f origin{stop.x, stop.y, 0.f};
     return one_path(pose_, origin, direction * focus_m_ - origin, bands);
 }

@@ -4,13 +4,6 @@
 namespace petzval {
 namespace {
 
-uint32_t reverse_bits(uint32_t a) {
-    a = __builtin_bswap32(a);
-    a = ((a >> 4) & 0x0f0f0f0fu) | ((a & 0x0f0f0f0fu) << 4);
-    a = ((a >> 2) & 0x33333333u) | ((a & 0x33333333u) << 2);
-    return ((a >> 1) & 0x55555555u) | ((a & 0x55555555u) << 1);
-}
-
 // Nested uniform scrambling (Owen 1995) of a bit-reversed word: each bit is flipped by a hash of
 // the bits below it. Laine and Karras 2011, with the constants of Vegdahl 2021, "Building a Better
 // LK Hash".
@@ -55,7 +48,7 @@ V2f Sampler::get2(Dim dim, uint32_t vertex) const {
         const uint32_t first = hash32(key, index_);
         return {to_unit_float(first), to_unit_float(hash32(first + 0x68bc21ebu))};
     }
-    const uint32_t index = reverse_bits(scramble_reversed(reverse_bits(index_), key));
+    const uint32_t index = reverse_bits(scramble_reversed(reversed_, key));
     const uint32_t key_x = hash32(key ^ 0x2c1b3c6du), key_y = hash32(key ^ 0x297a2d39u);
     if (kind_ == SamplerKind::Sobol)
         return {to_unit_float(sobol_0(index) ^ key_x), to_unit_float(sobol_1(index) ^ key_y)};
@@ -66,7 +59,7 @@ V2f Sampler::get2(Dim dim, uint32_t vertex) const {
 float Sampler::get1(Dim dim, uint32_t vertex) const {
     const uint32_t key = dimension_key(dim, vertex);
     if (kind_ == SamplerKind::Independent) return to_unit_float(hash32(key, index_));
-    const uint32_t index = reverse_bits(scramble_reversed(reverse_bits(index_), key));
+    const uint32_t index = reverse_bits(scramble_reversed(reversed_, key));
     const uint32_t key_x = hash32(key ^ 0x2c1b3c6du);
     if (kind_ == SamplerKind::Sobol) return to_unit_float(sobol_0(index) ^ key_x);
     return to_unit_float(reverse_bits(scramble_reversed(index, key_x)));

@@ -29,12 +29,21 @@ struct SampleId {
     uint32_t index;  ///< 0 is the first sample; a shorter render is a prefix of a longer one
 };
 
+/// The bits of a word, lowest first.
+[[nodiscard]] constexpr uint32_t reverse_bits(uint32_t a) {
+    a = __builtin_bswap32(a);
+    a = ((a >> 4) & 0x0f0f0f0fu) | ((a & 0x0f0f0f0fu) << 4);
+    a = ((a >> 2) & 0x33333333u) | ((a & 0x33333333u) << 2);
+    return ((a >> 1) & 0x55555555u) | ((a & 0x55555555u) << 1);
+}
+
 class Sampler {
   public:
     Sampler(SamplerKind kind, uint32_t seed, SampleId id)
         : kind_(kind),
           key_(hash32(hash32(static_cast<uint32_t>(id.x), static_cast<uint32_t>(id.y)), seed)),
-          index_(id.index) {}
+          index_(id.index),
+          reversed_(reverse_bits(id.index)) {}
 
     /// A number in [0, 1) for the named use at a path vertex (0: the camera).
     [[nodiscard]] float get1(Dim dim, uint32_t vertex = 0) const;
@@ -47,7 +56,7 @@ class Sampler {
     [[nodiscard]] uint32_t dimension_key(Dim dim, uint32_t vertex) const;
 
     SamplerKind kind_;
-    uint32_t key_, index_;
+    uint32_t key_, index_, reversed_;  ///< reversed_: index_, lowest bit first
 };
 
 /// First two dimensions of Sobol's sequence (Sobol 1967), 32 bits: the radical inverse in base 2,

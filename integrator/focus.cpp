@@ -8,7 +8,8 @@ namespace petzval {
 
 std::optional<float> depth_under(const Bvh& bvh, const Camera& pinhole, const V3f& eye,
                                  const V3f& axis, V2f film) {
-    const CameraSample seen = pinhole.sample({film, V2f(0.5f, 0.5f)}, Bands::rgb());
+    const CameraSample seen =
+        pinhole.sample({film, Sampler(SamplerKind::Owen, 0, {0, 0, 0})}, Bands::rgb());
     if (seen.count == 0) return std::nullopt;
     const Ray& ray = seen.path[0].ray;
     const std::optional<Hit> hit = bvh.intersect(ray);

@@ -22,7 +22,7 @@ enum class Technique { Mis, LightOnly, BsdfOnly };
 
 struct PathOptions {
     int max_depth = 16;      ///< scatterings; 0 shows emitters only
-    int roulette_depth = 3;  ///< scatterings before Russian roulette begins
+    int roulette_depth = 1;  ///< scatterings before Russian roulette begins
     Technique technique = Technique::Mis;
     /// What camera rays see in place of the sky; its light stays.
     std::optional<Rgb> backdrop;

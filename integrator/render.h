@@ -60,7 +60,7 @@ void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& 
         const V2f offset = job.filter.sample(sampler.get2(Dim::Film));
         const V2f size(film.full_size());
         const V2f at = V2f(id.x + 0.5f, id.y + 0.5f) + offset;
-        seen = camera.sample({at / size, sampler.get2(Dim::Lens)}, bands);
+        seen = camera.sample({at / size, sampler}, bands);
     }
     FilmSample sample;
     f4 sum{};

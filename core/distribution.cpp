@@ -43,23 +43,6 @@ void fill_guide(const uint32_t* cdf, uint32_t size, Index* guide) {
     }
 }
 
-uint32_t units_of(float position) {
-    return std::min(static_cast<uint32_t>(position), kDistributionUnits - 1);
-}
-
-template <class Index>
-uint32_t find_cell(const uint32_t* cdf, const Index* guide, uint32_t size, uint32_t units) {
-    uint32_t cell = guide[static_cast<uint64_t>(units) * size / kDistributionUnits];
-    while (cdf[cell + 1] <= units) ++cell;
-    return cell;
-}
-
-Piecewise1D::Draw draw_in(const uint32_t* cdf, uint32_t cell, float position) {
-    const float width = static_cast<float>(cdf[cell + 1] - cdf[cell]);
-    const float offset = (position - static_cast<float>(cdf[cell])) / width;
-    return {cell, std::min(offset, kOneMinus), width / kDistributionUnits};
-}
-
 }  // namespace
 
 Piecewise1D::Piecewise1D(std::span<const float> weights)
@@ -68,14 +51,6 @@ Piecewise1D::Piecewise1D(std::span<const float> weights)
     fill_guide(cdf_.data(), size(), guide_.data());
     for (uint32_t i = 1; i < size(); ++i)
         if (cdf_[i + 1] - cdf_[i] > cdf_[widest_ + 1] - cdf_[widest_]) widest_ = i;
-}
-
-Piecewise1D::Draw Piecewise1D::sample(float u) const {
-    const float position = u * kDistributionUnits;
-    const uint32_t units = units_of(position);
-    const bool common = units >= cdf_[widest_] && units < cdf_[widest_ + 1];
-    const uint32_t cell = common ? widest_ : find_cell(cdf_.data(), guide_.data(), size(), units);
-    return draw_in(cdf_.data(), cell, position);
 }
 
 Piecewise2D::Piecewise2D(std::span<const float> weights, uint32_t width, uint32_t height)
@@ -97,12 +72,12 @@ Piecewise2D::Piecewise2D(std::span<const float> weights, uint32_t width, uint32_
 }
 
 Piecewise2D::Draw Piecewise2D::sample(V2f u) const {
-    const auto row = marginal_.sample(u.y);
+    const Piecewise1D::Draw row = marginal_.sample(u.y);
     const size_t first = size_t{row.cell} * width_;
     const uint32_t* cdf = &cdf_[first + row.cell];
     const float position = u.x * kDistributionUnits;
-    const auto column =
-        draw_in(cdf, find_cell(cdf, &guide_[first], width_, units_of(position)), position);
+    const auto column = Piecewise1D::draw_in(
+        cdf, Piecewise1D::find_cell(cdf, &guide_[first], width_, position), position);
     return {
         column.cell, row.cell, {column.offset, row.offset}, column.probability * row.probability};
 }

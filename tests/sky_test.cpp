@@ -33,7 +33,7 @@ Sky spiky(int width, int height, float rotate_deg, uint32_t seed) {
     std::vector<float> rgb;
     Random random(seed);
     for (int i = 0; i < 3 * width * height; ++i) rgb.push_back(std::pow(random.next(), 4.f));
-    rgb[3 * (width + 2)] = 40.f;
+    rgb[3 * ((width + 2) % (width * height))] = 40.f;
     return Sky::picture(rgb, width, height, rotate_deg, 2.f);
 }
 

@@ -33,16 +33,16 @@ V3f transform_direction(const V3f& v, const M44f& m) {
     return out;
 }
 
-V2f texture_uv(const Surface& s, const TextureSlot& slot) {
-    return s.uv[slot.uv_set];
+TextureLookup locate(const Scene& scene, const Surface& s, const TextureSlot& slot) {
+    return locate_texture(scene.images, slot, s.uv[slot.uv_set]);
 }
 
 f4 read(const Scene& scene, const Surface& s, const TextureSlot& slot) {
-    return sample_texture(scene.images, slot, texture_uv(s, slot));
+    return read_texture(locate(scene, s, slot));
 }
 
 // The normal map's normal in the frame that the tangents span, on the front side.
-V3f mapped_normal(const Scene& scene, const Surface& s) {
+V3f mapped_normal(const Surface& s, const TextureLookup& map) {
     const Material& m = *s.material;
     const V4f t4 =
         interpolate(s.mesh->tangents, s.mesh->triangles[s.hit.triangle], s.hit.barycentric);
@@ -53,7 +53,7 @@ V3f mapped_normal(const Scene& scene, const Surface& s) {
     t = unit(t);
     const float flip = s.instance->flips ? -1.f : 1.f;
     const V3f bitangent = s.ns.cross(t) * (t4.w < 0.f ? -flip : flip);
-    const f4 texel = read(scene, s, m.normal_texture) * 2.f - 1.f;
+    const f4 texel = read_texture(map) * 2.f - 1.f;
     const V3f n =
         t * (texel[0] * m.normal_scale) + bitangent * (texel[1] * m.normal_scale) + s.ns * texel[2];
     return n.dot(n) > 1e-12f ? unit(n) : s.ns;
@@ -129,13 +129,16 @@ ShadingInput read_material(const Scene& scene, const Surface& s, const V3f& wo,
                            const Bands& bands) {
     const Material& m = *s.material;
     ShadingInput out;
-    f4 base = m.base_color.v;
-    if (m.base_color_texture.present()) base *= read(scene, s, m.base_color_texture);
+    // All three are asked for before one is read, so that their cache misses overlap.
+    const TextureLookup base_map = locate(scene, s, m.base_color_texture);
+    const TextureLookup surface_map = locate(scene, s, m.metallic_roughness_texture);
+    const TextureLookup normal_map = locate(scene, s, m.normal_texture);
+    f4 base = m.base_color.v * read_texture(base_map);
     if (!s.mesh->colours.empty()) base *= vertex_colour(s);
     base[3] = 0.f;
     const Rgb base_color(base);
     V3f n = s.ns;
-    if (m.normal_texture.present() && !s.mesh->tangents.empty()) n = mapped_normal(scene, s);
+    if (m.normal_texture.present() && !s.mesh->tangents.empty()) n = mapped_normal(s, normal_map);
     out.frame = Frame::about(face_towards(s.front ? n : -n, wo));
     if (m.unlit) {
         out.unlit = base_color;
@@ -143,13 +146,9 @@ ShadingInput read_material(const Scene& scene, const Surface& s, const V3f& wo,
     }
     BsdfInput& b = out.bsdf;
     b.base_color = uplift_reflectance(base_color, bands);
-    b.metallic = m.metallic;
-    b.roughness = m.roughness;
-    if (m.metallic_roughness_texture.present()) {
-        const f4 texel = read(scene, s, m.metallic_roughness_texture);
-        b.roughness *= texel[1];
-        b.metallic *= texel[2];
-    }
+    const f4 surface_texel = read_texture(surface_map);
+    b.roughness = m.roughness * surface_texel[1];
+    b.metallic = m.metallic * surface_texel[2];
     float specular = m.specular;
     if (m.specular_texture.present()) specular *= read(scene, s, m.specular_texture)[3];
     Rgb specular_color = m.specular_color;

@@ -65,8 +65,8 @@ double retrace_s(RTCScene scene, const std::vector<Ray>& nearest, const std::vec
 }
 
 template <class Tracer>
-std::pair<double, PathStats> timed(const Tracer& tracer, const Session& session, const RenderJob& job,
-                                   V2i size) {
+std::pair<double, PathStats> timed(const Tracer& tracer, const Session& session,
+                                   const RenderJob& job, V2i size) {
     Film film(size, {0, 0, size.x, size.y}, {});
     RenderMonitor monitor;
     ThreadExecutor executor(1);
@@ -113,15 +113,17 @@ int run(int argc, char** argv) {
         ratios.push_back(floor_s / render_s);
         outside_ns.push_back(1e9 * (render_s - floor_s) / static_cast<double>(stats.vertices));
         floors_ns.push_back(1e9 * floor_s / rays);
-        fmt::print("render {:.3f} s, floor {:.3f} s for {:.0f} rays, {} vertices, {} samples\n", render_s,
-                   floor_s, rays, stats.vertices, stats.samples);
+        fmt::print("render {:.3f} s, floor {:.3f} s for {:.0f} rays, {} vertices, {} samples\n",
+                   render_s, floor_s, rays, stats.vertices, stats.samples);
     }
     const auto median = [](std::vector<double>& v) {
         std::sort(v.begin(), v.end());
         return v[v.size() / 2];
     };
-    fmt::print("floor / render {:.3f} ({:.3f} to {:.3f}); floor {:.0f} ns a ray; outside {:.0f} ns a vertex\n",
-               median(ratios), ratios.front(), ratios.back(), median(floors_ns), median(outside_ns));
+    fmt::print(
+        "floor / render {:.3f} ({:.3f} to {:.3f}); floor {:.0f} ns a ray; outside {:.0f} ns a "
+        "vertex\n",
+        median(ratios), ratios.front(), ratios.back(), median(floors_ns), median(outside_ns));
     return 0;
 }
 

@@ -139,6 +139,7 @@ std::optional<BsdfSample> Bsdf::sample_delta(float u) const {
     }
     u -= p_spec_;
     if (u < p_thin_) return BsdfSample{-wo_, thin_ * (1.f / p_thin_), 0.f, true, true};
+    if (p_glass_ <= 0.f) return std::nullopt;  // the chances add up to 1 but for a rounding
     u = (u - p_thin_) / p_glass_;
     const float r = glass_reflectance(wo_.z);
     const f4 share = zero_off(on_, splat(glass_share_ / p_glass_));
@@ -156,6 +157,7 @@ std::optional<V3f> Bsdf::draw(float u_lobe, V2f u) const {
     u_lobe -= p_spec_;
     if (u_lobe < p_thin_)
         return mirrored.z > 0.f ? std::optional(mirror_below(mirrored)) : std::nullopt;
+    if (p_glass_ <= 0.f) return std::nullopt;
     u_lobe = (u_lobe - p_thin_) / p_glass_;
     if (u_lobe < glass_reflectance(wo_m))
         return mirrored.z > 0.f ? std::optional(mirrored) : std::nullopt;

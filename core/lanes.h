@@ -15,9 +15,6 @@ typedef int32_t m4 __attribute__((vector_size(16)));
 [[nodiscard]] inline f4 splat(float a) {
     return f4{a, a, a, a};
 }
-[[nodiscard]] inline f4 select(m4 mask, f4 yes, f4 no) {
-    return mask ? yes : no;
-}
 [[nodiscard]] inline f4 zero_off(m4 on, f4 a) {
     return (f4)((m4)a & on);
 }
@@ -32,19 +29,6 @@ typedef int32_t m4 __attribute__((vector_size(16)));
 }
 [[nodiscard]] inline float hmax(f4 a) {
     return std::fmax(std::fmax(a[0], a[1]), std::fmax(a[2], a[3]));
-}
-[[nodiscard]] inline bool any(m4 m) {
-    return (m[0] | m[1] | m[2] | m[3]) != 0;
-}
-[[nodiscard]] inline int count(m4 m) {
-    return -(m[0] + m[1] + m[2] + m[3]);
-}
-[[nodiscard]] inline f4 exp(f4 a) {
-    return f4{std::exp(a[0]), std::exp(a[1]), std::exp(a[2]), std::exp(a[3])};
-}
-[[nodiscard]] inline bool all_finite(f4 a) {
-    const f4 difference = a - a;  // 0 for a finite number, NaN for every other
-    return !any(difference != difference);
 }
 
 }  // namespace petzval

@@ -2,6 +2,7 @@
 #include "core/light_choice.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace petzval {
 
@@ -9,7 +10,11 @@ LightChoice::LightChoice(const Scene& scene, LightChoiceKind kind) {
     std::vector<float> weights;
     weights.reserve(scene.lights.size());
     for (const Light& light : scene.lights) {
-        const float power = light_power(scene, light);
+        // The sum of all must stay finite, however bright the file says a lamp is.
+        const float most =
+            std::numeric_limits<float>::max() / static_cast<float>(scene.lights.size());
+        float power = light_power(scene, light);
+        if (!(power <= most)) power = most;
         weights.push_back(kind == LightChoiceKind::Uniform && power > 0.f ? 1.f : power);
     }
     if (std::any_of(weights.begin(), weights.end(), [](float w) { return w > 0.f; }))

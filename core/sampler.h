@@ -41,7 +41,9 @@ class Sampler {
   public:
     Sampler(SamplerKind kind, uint32_t seed, SampleId id)
         : kind_(kind),
-          key_(hash32(hash32(static_cast<uint32_t>(id.x), static_cast<uint32_t>(id.y)), seed)),
+          key_(hash32(hash32(hash32(static_cast<uint32_t>(id.x)) +
+                             0x9e3779b9u * static_cast<uint32_t>(id.y)),
+                      seed)),
           index_(id.index),
           reversed_(reverse_bits(id.index)) {}
 

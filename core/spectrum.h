@@ -48,9 +48,5 @@ struct Bands {
 [[nodiscard]] inline f4 uniform(float a, const Bands& bands) {
     return zero_off(bands.on, splat(a));
 }
-/// Mean over the lanes that are on: the scalar that choices (lobe, roulette) are made by.
-[[nodiscard]] inline float mean(f4 a, const Bands& bands) {
-    return hsum(zero_off(bands.on, a)) / static_cast<float>(count(bands.on));
-}
 
 }  // namespace petzval

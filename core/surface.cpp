@@ -105,8 +105,6 @@ Surface make_surface(const Scene& scene, const V3f& direction, const Hit& hit) {
         s.p = moved;
         n = transform_normal(n, s.instance->to_local);
         ns = smooth ? transform_normal(ns, s.instance->to_local) : n;
-        if (s.instance->flips) n = -n;
-        if (s.instance->flips && !smooth) ns = -ns;
     }
     s.ng = unit(n);
     const float length2 = ns.dot(ns);

@@ -15,7 +15,7 @@ struct Surface {
     V3f ng;       ///< unit geometric normal, on the front side
     V3f ns;       ///< unit interpolated normal, on the front side
     bool front;   ///< the ray came from the front side
-    std::array<V2f, 2> uv;
+    std::array<V2f, 2> uv{V2f(0.f), V2f(0.f)};  ///< (0, 0) where the mesh has none
     const Instance* instance;
     const Mesh* mesh;
     const Material* material;
@@ -24,6 +24,10 @@ struct Surface {
 
 /// Geometry of a hit of a ray that travels along `direction`.
 [[nodiscard]] Surface make_surface(const Scene&, const V3f& direction, const Hit&);
+/// The back of a single-sided surface, which glTF culls from view; the inside of a volume is seen.
+[[nodiscard]] inline bool culled_from_view(const Surface& s) {
+    return !s.front && !s.material->double_sided && !s.material->has_volume;
+}
 /// COLOR_0 at the hit as linear RGBA; 1 where the mesh has none.
 [[nodiscard]] f4 vertex_colour(const Surface&);
 /// The material at the hit, textures read: what the Bsdf is made from, and what glows.

@@ -4,27 +4,33 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/surface.h"
+
 namespace petzval {
 
-std::optional<float> depth_under(const Bvh& bvh, const Camera& pinhole, const V3f& eye,
-                                 const V3f& axis, V2f film) {
+std::optional<float> depth_under(const Scene& scene, const Bvh& bvh, const Camera& pinhole,
+                                 const V3f& eye, const V3f& axis, V2f film) {
     const CameraSample seen =
         pinhole.sample({film, Sampler(SamplerKind::Owen, 0, {0, 0, 0})}, Bands::rgb());
     if (seen.count == 0) return std::nullopt;
-    const Ray& ray = seen.path[0].ray;
-    const std::optional<Hit> hit = bvh.intersect(ray);
-    if (!hit) return std::nullopt;
-    return (ray.origin + ray.direction * hit->t - eye).dot(axis);
+    Ray ray = seen.path[0].ray;
+    // What is culled from view is no place to focus on.
+    while (const std::optional<Hit> hit = bvh.intersect(ray)) {
+        const Surface s = make_surface(scene, ray.direction, *hit);
+        if (!culled_from_view(s)) return (s.p - eye).dot(axis);
+        ray.origin = offset_origin(s.p, s.p_error, s.ng, ray.direction);
+    }
+    return std::nullopt;
 }
 
-std::optional<float> depth_of_middle(const Bvh& bvh, const Camera& pinhole, const V3f& eye,
-                                     const V3f& axis) {
+std::optional<float> depth_of_middle(const Scene& scene, const Bvh& bvh, const Camera& pinhole,
+                                     const V3f& eye, const V3f& axis) {
     constexpr int side = 9;
     std::vector<float> depths;
     for (int j = 0; j < side; ++j) {
         for (int i = 0; i < side; ++i) {
             const V2f film = (V2f(i + 0.5f, j + 0.5f) / side + V2f(1, 1)) / 3.f;
-            if (const auto depth = depth_under(bvh, pinhole, eye, axis, film))
+            if (const auto depth = depth_under(scene, bvh, pinhole, eye, axis, film))
                 depths.push_back(*depth);
         }
     }

@@ -56,7 +56,8 @@ class PathTracer {
     [[nodiscard]] f4 escaped(const Ray&, const Bands&, const Vertex& last) const;
     [[nodiscard]] f4 emitted(const Surface&, const Bands&, const Vertex& last) const;
     [[nodiscard]] f4 direct_light(const Surface&, const Frame&, const Bsdf&, const Bands&,
-                                  const Sampler&, uint32_t depth, PathStats&) const;
+                                  const Sampler&, uint32_t depth, const Material* medium,
+                                  PathStats&) const;
 
     const Scene& scene_;
     const Caster& caster_;

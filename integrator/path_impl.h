@@ -16,10 +16,6 @@ struct PathTracer<Caster>::Vertex {
     bool light_sampled = false;  ///< next-event estimation could have found what the ray finds
 };
 
-/// A shadow ray ends this share of the way to the light, as traversal knows distances to a few
-/// roundings only and the light must not shadow itself. Relative: no scale of a scene matters.
-inline constexpr float kShadowLength = 0.9999f;
-
 /// Weight of a sample drawn with density a where b might have drawn it too. Veach 1997, "Robust
 /// Monte Carlo Methods for Light Transport Simulation", equation 9.13 with beta = 2.
 [[nodiscard]] inline float power_heuristic(float a, float b) {
@@ -69,7 +65,7 @@ f4 PathTracer<Caster>::emitted(const Surface& s, const Bands& bands, const Verte
 template <RayCaster Caster>
 f4 PathTracer<Caster>::direct_light(const Surface& s, const Frame& frame, const Bsdf& bsdf,
                                     const Bands& bands, const Sampler& sampler, uint32_t depth,
-                                    PathStats& stats) const {
+                                    const Material* medium, PathStats& stats) const {
     const auto pick = lights_.pick(sampler.get1(Dim::LightPick, depth));
     if (!pick) return f4{};
     const auto light = sample_light(scene_, scene_.lights[pick->light], s.p,
@@ -88,7 +84,7 @@ f4 PathTracer<Caster>::direct_light(const Surface& s, const Frame& frame, const 
         shadow.direction = light->direction;
     } else {
         shadow.direction = light->target - shadow.origin;
-        shadow.t_max = kShadowLength;
+        shadow.t_max = kOneMinus;  // the target stands clear of the light
     }
     if (caster_.has_cutouts()) shadow.coin = sampler.get_bits(Dim::Coverage, 2 * depth + 1);
     ++stats.shadow_rays;
@@ -96,11 +92,16 @@ f4 PathTracer<Caster>::direct_light(const Surface& s, const Frame& frame, const 
         const SectionTimer timer(stats, Section::Traversal);
         if (caster_.occluded(shadow)) return f4{};
     }
+    f4 radiance = light->radiance;
+    const Material* behind = s.material->has_volume ? (s.front ? s.material : nullptr) : medium;
+    const Material* through = wi.z > 0.f ? medium : behind;
+    if (through && !light->at_infinity)
+        radiance *= transmittance(*through, (light->target - s.p).length(), bands);
     const float light_pdf = pick->probability * light->pdf;
     const float weight = light->delta || options_.technique == Technique::LightOnly
                              ? 1.f
                              : power_heuristic(light_pdf, value.pdf);
-    return value.f_cos * light->radiance * (weight / light_pdf);
+    return value.f_cos * radiance * (weight / light_pdf);
 }
 
 /// The layers of a sample's first surface.
@@ -142,7 +143,7 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         const Surface s = make_surface(scene_, ray.direction, *hit);
         // glTF culls the backs of single-sided surfaces from view. Light must not pass them, so
         // only camera rays do; the inside of a volume is never culled.
-        if (!seen && !s.front && !s.material->double_sided && !s.material->has_volume) {
+        if (!seen && culled_from_view(s)) {
             ray.origin = offset_origin(s.p, s.p_error, s.ng, ray.direction);
             continue;
         }
@@ -155,7 +156,9 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
             shading = read_material(scene_, s, wo, bands);
         }
         out.alpha = 1.f;
-        const f4 glow = emitted(s, bands, last) + uplift_radiance(shading.unlit, bands);
+        const bool shows = s.front || s.material->double_sided;
+        f4 glow = emitted(s, bands, last);
+        if (s.material->unlit && shows) glow += uplift_radiance(shading.unlit, bands);
         sum += throughput * glow;
         if (!seen && aovs)
             record_layers(s, shading, to_rgb(glow, bands), camera_ray.origin, wo, bands, out);
@@ -166,7 +169,8 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         const bool light_sampled =
             options_.technique != Technique::BsdfOnly && bsdf.has_wide_lobe();
         if (light_sampled)
-            sum += throughput * direct_light(s, shading.frame, bsdf, bands, sampler, depth, stats);
+            sum += throughput *
+                   direct_light(s, shading.frame, bsdf, bands, sampler, depth, medium, stats);
 
         const auto next =
             bsdf.sample(sampler.get1(Dim::BsdfLobe, depth), sampler.get2(Dim::Bsdf, depth));

@@ -100,7 +100,12 @@ RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob&
     RenderResult result;
     const uint32_t wanted = job.end_sample - job.first_sample;
     uint32_t done = 0;
-    while (done < wanted && !monitor.stop) {
+    bool stopped = false;
+    while (done < wanted) {
+        if (monitor.stop) {
+            stopped = true;
+            break;
+        }
         uint32_t pass = pass_size(done, wanted);
         if (job.time_limit_s && done > 0) {
             const double left_s = *job.time_limit_s - elapsed_s();
@@ -121,11 +126,14 @@ RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob&
             monitor.pixel_samples_done +=
                 static_cast<uint64_t>(tile.width()) * tile.height() * pass;
         });
-        if (monitor.stop) break;
+        if (monitor.stop) {
+            stopped = true;
+            break;
+        }
         done += pass;
     }
     result.end_sample = job.first_sample + done;
-    result.stopped = monitor.stop;
+    result.stopped = stopped;
     for (const Worker& worker : workers) {
         result.stats += worker.stats;
         result.workers += worker.stats.tiles > 0;

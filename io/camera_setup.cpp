@@ -84,8 +84,8 @@ float chosen_fov_deg(const SceneRequest& request, const V2f& sensor_mm) {
     return fov_deg;
 }
 
-float find_focus(const SceneRequest& request, const ThinLens& lens, const Bvh& bvh,
-                 const Notice& notice) {
+float find_focus(const SceneRequest& request, const ThinLens& lens, const Scene& scene,
+                 const Bvh& bvh, const Notice& notice) {
     if (const auto* distance = std::get_if<FocusDistance>(&request.focus)) return distance->m;
     ThinLens pinhole = lens;
     pinhole.radius_m = 0;
@@ -94,12 +94,12 @@ float find_focus(const SceneRequest& request, const ThinLens& lens, const Bvh& b
     std::optional<float> depth;
     if (const auto* pixel = std::get_if<FocusPixel>(&request.focus)) {
         const V2f film = (V2f(pixel->x, pixel->y) + V2f(0.5f)) / V2f(request.size);
-        depth = depth_under(bvh, camera, eye, axis, film);
+        depth = depth_under(scene, bvh, camera, eye, axis, film);
         if (!depth)
             throw unfit(request,
                         fmt::format("nothing to focus on under pixel {},{}", pixel->x, pixel->y));
     } else {
-        depth = depth_of_middle(bvh, camera, eye, axis);
+        depth = depth_of_middle(scene, bvh, camera, eye, axis);
         if (!depth)
             throw unfit(request,
                         "nothing in the middle of the picture to focus on; give --focus in metres");
@@ -176,7 +176,7 @@ CameraSetup set_up_camera(const SceneRequest& request, const std::vector<GltfCam
     if (request.lens_radius_m) lens.radius_m = *request.lens_radius_m;
     if (request.fstop) lens.radius_m = report.focal_length_mm * 1e-3f / (2 * *request.fstop);
     if (request.fstop || request.lens_radius_m) {
-        lens.focus_m = find_focus(request, lens, bvh, notice);
+        lens.focus_m = find_focus(request, lens, scene, bvh, notice);
         report.focus_m = lens.focus_m;
     }
     report.sensor_width_mm = sensor_mm.x;

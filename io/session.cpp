@@ -24,12 +24,13 @@ Sky choose_sky(const SceneRequest& request, const Scene& scene,
         return load_sky(*request.environment, request.environment_rotate_deg,
                         request.environment_strength, notice);
     if (request.background) return Sky::uniform(*request.background);
-    bool lit = !scene.lights.empty();
+    bool lit = !scene.lights.empty(), all_unlit = !scene.instances.empty();
     for (const Instance& instance : scene.instances) {
         const Material& material = scene.materials[scene.meshes[instance.mesh].material];
-        lit = lit || material.emits() || material.unlit;
+        lit = lit || material.emits();
+        all_unlit = all_unlit && material.unlit;
     }
-    if (lit) return Sky();
+    if (lit || all_unlit) return Sky();
     notice(
         "no light in the file: a uniform white environment of 1 nit is used (--background 1,1,1)");
     return Sky::uniform(Rgb(1.f));

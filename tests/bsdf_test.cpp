@@ -110,6 +110,19 @@ TEST(Bsdf, SmoothGlassLosesNothing) {
     EXPECT_GT(albedo_of(glass(1.f, 1.5f), 0.8f), 0.80f);
 }
 
+TEST(Bsdf, SmoothGlassReflectsFresnelsShare) {
+    for (const float cosine : {0.1f, 0.4f, 1.f}) {
+        const Bsdf bsdf(glass(0.f, 1.5f), Bands::rgb(), from_cosine(cosine));
+        constexpr int n = 4000;
+        int reflected = 0;
+        for (int i = 0; i < n; ++i) {
+            const auto s = bsdf.sample((static_cast<float>(i) + 0.5f) / n, {0.5f, 0.5f});
+            reflected += s && !s->transmitted;
+        }
+        EXPECT_NEAR(reflected / float(n), fresnel_dielectric(cosine, 1.5f), 1.f / n);
+    }
+}
+
 TEST(Bsdf, RefractionObeysSnell) {
     const V3f wo = from_cosine(0.6f);
     const Bsdf bsdf(glass(0.f, 1.5f), Bands::rgb(), wo);
@@ -187,19 +200,26 @@ TEST_P(BsdfSampling, DirectionsFollowTheDensity) {
     EXPECT_TRUE(chi_square_sphere(draw, pdf, 11)) << GetParam().name;
 }
 
-TEST_P(BsdfSampling, WeightsAreValueOverDensity) {
+// The integral of the value over uniform directions, which know nothing of the lobes, against the
+// mean weight of the sampler's own.
+TEST_P(BsdfSampling, WeightsIntegrateTheValue) {
     const Bsdf bsdf(GetParam().in, Bands::rgb(), from_cosine(GetParam().cosine, 0.7f));
-    std::mt19937 random(5);
-    std::uniform_real_distribution<float> u;
-    for (int i = 0; i < 1000; ++i) {
-        const float u_lobe = u(random), ux = u(random), uy = u(random);
-        const auto s = bsdf.sample(u_lobe, {ux, uy});
-        if (!s) continue;
-        const BsdfValue v = bsdf.eval(s->wi);
-        EXPECT_FLOAT_EQ(s->pdf, v.pdf);
-        EXPECT_NEAR(s->weight[1], v.f_cos[1] / v.pdf, 1e-4f * s->weight[1]);
-        EXPECT_EQ(s->transmitted, s->wi.z < 0);
+    constexpr int n = 400000;
+    test::Random random(5);
+    double value = 0, value2 = 0, weight = 0, weight2 = 0;
+    for (int i = 0; i < n; ++i) {
+        const double f = 4 * M_PI * bsdf.eval(random.direction()).f_cos[1];
+        value += f;
+        value2 += f * f;
+        const float u_lobe = random.next();
+        const auto s = bsdf.sample(u_lobe, random.next2());
+        const double w = s ? s->weight[1] : 0.f;
+        weight += w;
+        weight2 += w * w;
     }
+    const double variance =
+        (value2 / n - value * value / n / n + weight2 / n - weight * weight / n / n) / n;
+    EXPECT_NEAR(value / n, weight / n, 4.5 * std::sqrt(variance));  // alpha 0.01 over 1000 tests
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BsdfSampling,

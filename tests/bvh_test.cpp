@@ -13,6 +13,7 @@ namespace petzval {
 namespace {
 
 using test::diffuse_material;
+using test::emitter_material;
 using test::place;
 using test::quad;
 using test::sphere;
@@ -103,6 +104,41 @@ TEST(Bvh, RaysLeaveInstancedSurfaces) {
     const Crossing count = cross_convex(scene, bvh, V3f(40, -2, 7), 3.f, 50000);
     EXPECT_EQ(count.self_hits, 0);
     EXPECT_EQ(count.leaks, 0);
+}
+
+// A mirroring matrix turns the winding, not the front: glTF's front of a mirrored sphere is
+// outside.
+TEST(Bvh, MirroredInstancesKeepTheirFrontOutside) {
+    for (const bool smooth : {false, true}) {
+        Scene scene;
+        place(scene, sphere(V3f(0.5f, 0, 0), 1.f, 24, smooth), emitter_material(1.f));
+        scene.materials[0].double_sided = false;
+        Instance& instance = scene.instances[0];
+        M44f m;
+        m.scale(V3f(-2.f, 1.f, 1.5f));
+        instance.identity = false;
+        instance.flips = true;
+        instance.to_world = m;
+        instance.to_local = m.inverse();
+        finish_scene(scene);
+        const Bvh bvh(scene, Traversal::Robust);
+        Random random(3);
+        for (int i = 0; i < 1000; ++i) {
+            Ray ray;
+            const V3f outward = random.direction();
+            ray.origin = V3f(-1.f, 0, 0) + outward * 9.f;
+            ray.direction = -outward;
+            const auto hit = bvh.intersect(ray);
+            ASSERT_TRUE(hit);
+            const Surface s = make_surface(scene, ray.direction, *hit);
+            EXPECT_TRUE(s.front);
+            EXPECT_LT(s.ng.dot(ray.direction), 0.f);
+            EXPECT_GT(s.ns.dot(s.ng), 0.5f);
+            // A light sample of the very triangle shines to where the hit says the front is.
+            const Light light = TriangleLight{hit->instance, hit->triangle};
+            EXPECT_TRUE(sample_light(scene, light, ray.origin, V2f(0.3f, 0.4f), Bands::rgb()));
+        }
+    }
 }
 
 TEST(Bvh, NoRayPassesAlongSharedEdges) {

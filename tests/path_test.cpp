@@ -145,6 +145,35 @@ TEST(Path, AbsorptionFollowsBeerAndLambert) {
     EXPECT_NEAR(e.mean, std::pow(0.25, 1.0 / 0.5), 1e-4);
 }
 
+// Light on its way through a volume is absorbed whichever technique finds it.
+TEST(Path, TechniquesAgreeInsideAVolume) {
+    World world;
+    Material m;
+    m.metallic = 0;
+    m.roughness = 0.6f;
+    m.transmission = 1;
+    m.ior = 1.2f;
+    m.has_volume = true;
+    m.attenuation_color = Rgb(0.5f);
+    m.attenuation_distance_m = 1.5f;
+    place(world.scene, sphere(V3f(0.f), 1.5f, 24, false), m);
+    place(world.scene, quad(V3f(-0.6f, -0.6f, 0.2f), V3f(1.2f, 0, 0), V3f(0, 1.2f, 0)),
+          diffuse_material(0.7f));
+    place(world.scene, quad(V3f(-0.5f, 0.7f, 0.3f), V3f(1, 0, 0), V3f(0, 0, 0.7f)),
+          emitter_material(5.f));
+    world.finish();
+    PathOptions options;
+    options.max_depth = 6;
+    std::array<Estimate, 3> e;
+    for (size_t i = 0; i < 3; ++i) {
+        options.technique = static_cast<Technique>(i);
+        e[i] = estimate(world, options, 16384, bundle);
+    }
+    EXPECT_NEAR(e[0].mean, e[1].mean, 3 * std::hypot(e[0].error, e[1].error));
+    EXPECT_NEAR(e[0].mean, e[2].mean, 3 * std::hypot(e[0].error, e[2].error));
+    EXPECT_LT(e[2].error, 0.05 * e[2].mean);
+}
+
 World floor_under(Light light) {
     World world;
     place(world.scene, quad(V3f(-50, -50, 0), V3f(100, 0, 0), V3f(0, 100, 0)),

@@ -145,12 +145,11 @@ TEST(Render, AShorterRenderIsAPrefixOfALongerOne) {
                             4e-7 * (1 + whole.colour(x, y)[i]));
 }
 
-// Counts what it is asked for, and holds every thread back until all have come: with more threads
+// Holds every thread back until all have come: with more threads
 // than cores, a fast one would otherwise do all the work before the last wakes up.
 class CountingTracer {
   public:
-    explicit CountingTracer(int threads)
-        : threads_(threads), counts_(static_cast<size_t>(kSize.x * kSize.y)) {}
+    explicit CountingTracer(int threads) : threads_(threads) {}
 
     f4 radiance(const Ray&, const Bands&, const Sampler&, bool, FilmSample&, PathStats&) const {
         std::unique_lock lock(mutex_);
@@ -165,7 +164,6 @@ class CountingTracer {
 
   private:
     int threads_;
-    std::vector<int> counts_;
     mutable std::mutex mutex_;
     mutable std::condition_variable all_;
     mutable std::set<std::thread::id> arrived_;
@@ -222,8 +220,7 @@ TEST(Render, ATimeLimitEndsAWholePass) {
         for (int x = 0; x < kSize.x; ++x) EXPECT_EQ(film.sample_count(x, y), result.end_sample);
 }
 
-// Halves of a Monte Carlo render, one after the other, cost what they cost: not a number here, but
-// what is not finite must not reach a picture.
+// Not a number for one half of the picture.
 class BadTracer {
   public:
     f4 radiance(const Ray& ray, const Bands&, const Sampler&, bool, FilmSample&, PathStats&) const {

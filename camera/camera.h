@@ -12,7 +12,9 @@ namespace petzval {
 
 /// Where on the film, and the numbers from which a camera draws the rest (Dim::Lens).
 struct FilmPoint {
-    V2f film;  ///< [0, 1)^2 over the full frame, (0, 0) at the top left as the picture is seen
+    /// [0, 1)^2 over the full frame, (0, 0) at the top left as the picture is seen; a pixel filter
+    /// reaches a little beyond.
+    V2f film;
     Sampler sampler;
 };
 

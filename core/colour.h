@@ -6,8 +6,8 @@
 
 namespace petzval {
 
-/// Luminous efficacy of 540 THz radiation, lm/W: the SI's definition of the candela (BIPM 2019) at
-/// 555 nm, rounded as CIE 015:2018 has it for photopic vision. The one number between photometric
+/// K_m, the largest luminous efficacy of photopic vision, lm/W, near 555 nm: it follows from the
+/// 683 lm/W at 540 THz that define the candela (CIE 015:2018). The one number between photometric
 /// and radiometric: luminance in nits = 683.002 * integral of ybar(nm) * radiance, W/(m2 sr nm).
 inline constexpr float kLuminousEfficacy_lm_per_w = 683.002f;
 

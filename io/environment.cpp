@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -64,6 +65,13 @@ Sky load_sky(const std::filesystem::path& path, float rotate_deg, float strength
                         picture.height, picture.full_width, picture.full_height));
     uint64_t negative_count = 0;
     std::vector<float> rgb = sky_texels(picture, path, negative_count);
+    constexpr float brightest_nits = 1e20f;  // sums over the sky and the scene stay finite
+    if (!rgb.empty() && *std::max_element(rgb.begin(), rgb.end()) * strength > brightest_nits)
+        throw InputError(
+            path.string(), "",
+            fmt::format("brighter than {:g} nits once it is multiplied by {:g}; give a "
+                        "smaller --env-strength",
+                        brightest_nits, strength));
     if (negative_count > 0)
         notice(fmt::format("warning: {}: {} negative values read as 0", path.string(),
                            negative_count));

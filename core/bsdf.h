@@ -16,8 +16,12 @@ struct BsdfInput {
     f4 dielectric_f0{};        ///< reflectance at normal incidence, KHR_materials_specular included
     float dielectric_f90 = 1;  ///< at grazing incidence
     float transmission = 0;
-    float eta = 1.5f;  ///< index on the far side over index on wo's side
-    bool thin = true;  ///< transmission without a volume: nothing bends
+    f4 eta = splat(1.5f);    ///< index on the far side over index on wo's side
+    bool disperses = false;  ///< eta differs from lane to lane
+    bool thin = true;        ///< transmission without a volume: nothing bends
+    /// The metallic part is of the index metal_n + i metal_k instead of base_color.
+    bool measured_metal = false;
+    f4 metal_n{}, metal_k{};
 };
 
 /// f cos and density together; both 0 where only a delta lobe could answer.
@@ -37,9 +41,15 @@ struct BsdfSample {
 /// Directions point away from the surface, in the shading frame turned to wo's side (wo.z > 0).
 /// Paths carry basic radiance L / n^2 (Nicodemus 1963), so refraction scales nothing and no
 /// weight's mean exceeds 1.
+///
+/// Where wavelengths go different ways, the way of one lane is drawn, in proportion to what the
+/// lane carries, and the density is the mean over the lanes by the same proportion: single-sample
+/// MIS with the balance heuristic (Veach 1997, 9.2.3; Wilkie et al. 2014, section 3.2). A delta
+/// lobe leaves the drawn lane alone.
 class Bsdf {
   public:
-    Bsdf(const BsdfInput&, const Bands&, const V3f& wo);
+    /// throughput: what each lane of the path carries, not all 0; it steers what is drawn.
+    Bsdf(const BsdfInput&, const Bands&, const V3f& wo, f4 throughput = splat(1.f));
 
     [[nodiscard]] BsdfValue eval(const V3f& wi) const;
     /// u_lobe picks the lobe, u the direction. Nothing where the drawn direction is absorbed.
@@ -52,16 +62,22 @@ class Bsdf {
   private:
     [[nodiscard]] float pdf_of_normal(float wo_m, float d) const;
     void add_glass(const V3f& wi, BsdfValue&) const;
-    [[nodiscard]] float glass_reflectance(float wo_m) const;
+    [[nodiscard]] f4 glass_reflectance(float wo_m) const;
+    [[nodiscard]] f4 specular_reflectance(float wo_m) const;
+    [[nodiscard]] int draw_lane(f4 reflectance, float u) const;
     [[nodiscard]] std::optional<BsdfSample> sample_delta(float u_lobe) const;
     [[nodiscard]] std::optional<V3f> draw(float u_lobe, V2f u) const;
 
     V3f wo_;
-    float alpha_, eta_;
-    bool delta_;
+    float alpha_;
+    f4 eta_, share_;  ///< share_: of the lanes in what the path carries
+    bool disperses_, delta_;
     float lambda_o_;
     // Reflection: single-scatter GGX times spec0 (1 - s) + spec90 s, multiple scattering included.
     f4 spec0_, spec90_;
+    f4 metal_n_, metal_k_,
+        metal_;  ///< measured metal: its index, and the factor on its reflectance
+    bool measured_metal_;
     float albedo_f0_, albedo_f90_;  ///< GGX's own, for wo
     f4 diffuse_;                    ///< albedo
     f4 thin_;                       ///< albedo of straight transmission

@@ -13,7 +13,11 @@ inline constexpr float kLuminousEfficacy_lm_per_w = 683.002f;
 
 /// Linear sRGB estimate of one sample, in nits of the white point.
 [[nodiscard]] inline Rgb to_rgb(f4 radiance, const Bands& bands) {
-    return Rgb(zero_off(bands.on, radiance));
+    return {hsum(radiance * bands.to_r), hsum(radiance * bands.to_g), hsum(radiance * bands.to_b)};
+}
+/// Linear sRGB estimate of a reflectance: as it looks under the white light.
+[[nodiscard]] inline Rgb reflectance_to_rgb(f4 reflectance, const Bands& bands) {
+    return to_rgb(reflectance * bands.white, bands);
 }
 
 /// Linear value of an sRGB-encoded one in [0, 1]: IEC 61966-2-1:1999, equation 5 and 6.

@@ -8,15 +8,9 @@
 namespace petzval {
 namespace {
 
-template <class T>
-T interpolated(const std::vector<T>& values, const std::array<uint32_t, 3>& corner, V2f b) {
-    return values[corner[0]] * (1.f - b.x - b.y) + values[corner[1]] * b.x +
-           values[corner[2]] * b.y;
-}
-
 V2f uv_at(const Mesh& mesh, uint32_t triangle, V2f barycentric, int uv_set) {
     const auto& uv = mesh.uv[uv_set];
-    return uv.empty() ? V2f(0.f) : interpolated(uv, mesh.triangles[triangle], barycentric);
+    return uv.empty() ? V2f(0.f) : interpolate(uv, mesh.triangles[triangle], barycentric);
 }
 
 }  // namespace
@@ -34,6 +28,11 @@ Rgb emitted_radiance(const Scene& scene, uint32_t instance, uint32_t triangle, V
     return material.emissive * Rgb(texel);
 }
 
+const Illuminant* white_of(const Scene& scene, uint32_t instance) {
+    const Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
+    return scene.illuminant(scene.materials[mesh.material].illuminant);
+}
+
 float coverage(const Scene& scene, uint32_t instance, uint32_t triangle, V2f barycentric) {
     const Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
     const Material& material = scene.materials[mesh.material];
@@ -45,7 +44,7 @@ float coverage(const Scene& scene, uint32_t instance, uint32_t triangle, V2f bar
         alpha *= sample_texture(scene.images, slot, uv)[3];
     }
     if (!mesh.colours.empty())
-        alpha *= interpolated(mesh.colours, mesh.triangles[triangle], barycentric).w;
+        alpha *= interpolate(mesh.colours, mesh.triangles[triangle], barycentric).w;
     if (material.alpha_mode == AlphaMode::Mask) return alpha >= material.alpha_cutoff ? 1.f : 0.f;
     return std::clamp(alpha, 0.f, 1.f);
 }

@@ -9,12 +9,16 @@
 namespace petzval {
 
 struct Scene;
+struct Illuminant;
 
 /// Nits towards every direction on the front side, and on the back side where the material is
 /// double-sided. barycentric: weights of the second and third vertex. Materials with
 /// KHR_materials_unlit emit nothing here.
 [[nodiscard]] Rgb emitted_radiance(const Scene&, uint32_t instance, uint32_t triangle,
                                    V2f barycentric, bool front);
+
+/// The white of what an instance emits; nullptr: the scene's own.
+[[nodiscard]] const Illuminant* white_of(const Scene&, uint32_t instance);
 
 /// Share of the rays towards the point that stop there, [0, 1]: 1 for OPAQUE, 0 or 1 for MASK,
 /// alpha for BLEND.

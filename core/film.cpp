@@ -31,15 +31,29 @@ std::optional<Aov> aov_from_name(std::string_view name) {
     return std::nullopt;
 }
 
-Film::Film(V2i full_size, Rect crop, std::vector<Aov> aovs)
+Film::Film(V2i full_size, Rect crop, std::vector<Aov> aovs, std::optional<Bins> bins)
     : full_size_(full_size),
       crop_(crop),
       aovs_(std::move(aovs)),
       pixels_(static_cast<size_t>(crop.width()) * crop.height()),
-      aov_sums_(pixels_.size() * aovs_.size()) {}
+      aov_sums_(pixels_.size() * aovs_.size()) {
+    if (bins) spectral_.emplace(pixels_.size(), *bins);
+}
 
 void Film::add(int x, int y, uint32_t index, const FilmSample& sample) {
+    static_cast<void>(accept(offset(x, y), index, sample));
+}
+
+void Film::add(int x, int y, uint32_t index, const FilmSample& sample,
+               const SpectralSample& spectral, const Bands& bands) {
     const size_t at = offset(x, y);
+    // A lane that is not finite shows in the colour, which every lane adds to.
+    if (accept(at, index, sample))
+        spectral_->add(at, spectral.scramble, sample.colour, spectral.xyz, spectral.radiance,
+                       bands);
+}
+
+bool Film::accept(size_t at, uint32_t index, const FilmSample& sample) {
     Pixel& pixel = pixels_[at];
     const V3f colour(sample.colour[0], sample.colour[1], sample.colour[2]);
     float fault = not_finite(colour) + (sample.alpha - sample.alpha);
@@ -47,18 +61,19 @@ void Film::add(int x, int y, uint32_t index, const FilmSample& sample) {
         for (const Aov aov : aovs_) fault += not_finite(sample.aov[static_cast<size_t>(aov)]);
     if (fault != 0.f) {
         if (pixel.bad++ == 0 || index < pixel.first_bad_index) pixel.first_bad_index = index;
-        return;
+        return false;
     }
     for (int i = 0; i < 3; ++i) pixel.sum[i] += colour[i];
     pixel.sum[3] += sample.alpha;
     ++pixel.count;
-    if (!sample.hit) return;
+    if (!sample.hit) return true;
     ++pixel.hits;
     for (size_t layer = 0; layer < aovs_.size(); ++layer) {
         const V3f& value = sample.aov[static_cast<size_t>(aovs_[layer])];
         auto& sum = aov_sums_[at * aovs_.size() + layer];
         for (int i = 0; i < 3; ++i) sum[i] += value[i];
     }
+    return true;
 }
 
 V4f Film::colour(int x, int y) const {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/math.h"
+#include "core/spectral_film.h"
 #include "core/spectrum.h"
 
 namespace petzval {
@@ -45,14 +46,30 @@ struct FilmSample {
 class Film {
   public:
     /// crop: the part of a full frame that is kept; pixels are named by full-frame coordinates.
-    Film(V2i full_size, Rect crop, std::vector<Aov> aovs);
+    /// bins: keep a spectral film beside RGB.
+    Film(V2i full_size, Rect crop, std::vector<Aov> aovs, std::optional<Bins> bins = {});
 
     /// A sample that is not finite is counted, the first is remembered, and nothing is added.
     void add(int x, int y, uint32_t index, const FilmSample&);
 
+    /// What a spectral film keeps of a sample beside FilmSample.
+    struct SpectralSample {
+        uint32_t scramble;  ///< < kScrambles
+        f4 radiance;
+        V3f xyz;
+    };
+    /// The same for a film with bins.
+    void add(int x, int y, uint32_t index, const FilmSample&, const SpectralSample&, const Bands&);
+
     [[nodiscard]] V2i full_size() const { return full_size_; }
     [[nodiscard]] Rect crop() const { return crop_; }
     [[nodiscard]] const std::vector<Aov>& aovs() const { return aovs_; }
+    /// Bins, XYZ and errors; nothing unless the film was made with bins.
+    [[nodiscard]] const std::optional<SpectralFilm>& spectral() const { return spectral_; }
+    /// Index of a pixel of the crop among spectral()'s.
+    [[nodiscard]] size_t offset(int x, int y) const {
+        return static_cast<size_t>(y - crop_.y0) * crop_.width() + (x - crop_.x0);
+    }
     [[nodiscard]] uint32_t sample_count(int x, int y) const { return pixel(x, y).count; }
     /// Mean linear RGB in nits, and alpha; zero where there is no sample.
     [[nodiscard]] V4f colour(int x, int y) const;
@@ -72,9 +89,7 @@ class Film {
         std::array<double, 4> sum{};
         uint32_t count = 0, hits = 0, bad = 0, first_bad_index = 0;
     };
-    [[nodiscard]] size_t offset(int x, int y) const {
-        return static_cast<size_t>(y - crop_.y0) * crop_.width() + (x - crop_.x0);
-    }
+    [[nodiscard]] bool accept(size_t at, uint32_t index, const FilmSample&);
     [[nodiscard]] const Pixel& pixel(int x, int y) const { return pixels_[offset(x, y)]; }
 
     V2i full_size_;
@@ -82,6 +97,7 @@ class Film {
     std::vector<Aov> aovs_;
     std::vector<Pixel> pixels_;
     std::vector<std::array<double, 3>> aov_sums_;  ///< pixel-major
+    std::optional<SpectralFilm> spectral_;
 };
 
 }  // namespace petzval

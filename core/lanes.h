@@ -24,6 +24,9 @@ typedef int32_t m4 __attribute__((vector_size(16)));
 [[nodiscard]] inline f4 max(f4 a, f4 b) {
     return a > b ? a : b;
 }
+[[nodiscard]] inline f4 sqrt(f4 a) {
+    return f4{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
+}
 [[nodiscard]] inline float hsum(f4 a) {
     return (a[0] + a[1]) + (a[2] + a[3]);
 }

@@ -18,27 +18,29 @@ float spot_falloff(const SpotLight& light, float cosine) {
     return sqr(std::clamp((cosine - light.cos_outer) / spot_width(light), 0.f, 1.f));
 }
 
-std::optional<LightSample> sample_at(const V3f& position, Rgb intensity, const V3f& p,
+template <class L>
+std::optional<LightSample> sample_at(const Scene& scene, const L& light, const V3f& p,
                                      const Bands& bands) {
-    const V3f to_light = position - p;
+    const V3f to_light = light.position - p;
     const float distance2 = to_light.dot(to_light);
     if (!(distance2 > 0.f)) return std::nullopt;
     return LightSample{to_light / std::sqrt(distance2),
-                       position,
+                       light.position,
                        false,
-                       uplift_radiance(intensity * (1.f / distance2), bands),
+                       uplift_radiance(light.intensity_cd * (1.f / distance2), bands,
+                                       scene.illuminant(light.illuminant)),
                        1.f,
                        true};
 }
 
-std::optional<LightSample> sample(const Scene&, const PointLight& light, const V3f& p, V2f,
+std::optional<LightSample> sample(const Scene& scene, const PointLight& light, const V3f& p, V2f,
                                   const Bands& bands) {
-    return sample_at(light.position, light.intensity_cd, p, bands);
+    return sample_at(scene, light, p, bands);
 }
 
-std::optional<LightSample> sample(const Scene&, const SpotLight& light, const V3f& p, V2f,
+std::optional<LightSample> sample(const Scene& scene, const SpotLight& light, const V3f& p, V2f,
                                   const Bands& bands) {
-    auto drawn = sample_at(light.position, light.intensity_cd, p, bands);
+    auto drawn = sample_at(scene, light, p, bands);
     if (!drawn) return drawn;
     const float falloff = spot_falloff(light, -drawn->direction.dot(light.direction));
     if (falloff == 0.f) return std::nullopt;
@@ -46,10 +48,11 @@ std::optional<LightSample> sample(const Scene&, const SpotLight& light, const V3
     return drawn;
 }
 
-std::optional<LightSample> sample(const Scene&, const SunLight& light, const V3f&, V2f,
+std::optional<LightSample> sample(const Scene& scene, const SunLight& light, const V3f&, V2f,
                                   const Bands& bands) {
-    return LightSample{
-        -light.direction, {}, true, uplift_radiance(light.illuminance_lx, bands), 1.f, true};
+    const f4 irradiance =
+        uplift_radiance(light.illuminance_lx, bands, scene.illuminant(light.illuminant));
+    return LightSample{-light.direction, {}, true, irradiance, 1.f, true};
 }
 
 // How far from the triangle's plane a point of it may seem to lie: the roundings of its own
@@ -84,7 +87,7 @@ std::optional<LightSample> sample(const Scene& scene, const TriangleLight& light
     return LightSample{to_light / distance,
                        offset_origin(target, error, unit(cross), -to_light),
                        false,
-                       uplift_radiance(emitted, bands),
+                       uplift_radiance(emitted, bands, white_of(scene, light.instance)),
                        pdf,
                        false};
 }

@@ -2,8 +2,10 @@
 // The one material model of glTF 2.0, with the extensions that Petzval honours.
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "core/dispersion.h"
 #include "core/spectrum.h"
 #include "core/texture.h"
 
@@ -29,6 +31,9 @@ struct Material {
     bool unlit = false;  ///< KHR_materials_unlit: shows its base colour, as nits
 
     float ior = 1.5f;              ///< KHR_materials_ior; 0 means a specular weight of 1
+    std::optional<Glass> glass;    ///< where the index depends on wavelength; ior is its nd
+    int32_t metal = -1;            ///< measured, of Scene::metals: in place of the base colour
+    int32_t illuminant = -1;       ///< of Scene::illuminants: the white of what it emits
     float specular = 1.f;          ///< KHR_materials_specular
     TextureSlot specular_texture;  ///< a
     Rgb specular_color{1.f};

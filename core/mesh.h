@@ -20,6 +20,14 @@ struct Mesh {
     uint32_t material = 0;
 };
 
+/// Value at a point of a triangle; b: weights of the second and third corner.
+template <class T>
+[[nodiscard]] T interpolate(const std::vector<T>& values, const std::array<uint32_t, 3>& corner,
+                            V2f b) {
+    return values[corner[0]] * (1.f - b.x - b.y) + values[corner[1]] * b.x +
+           values[corner[2]] * b.y;
+}
+
 /// A placed mesh. A mesh that stands once is stored in world space, with the identity here.
 struct Instance {
     uint32_t mesh = 0;

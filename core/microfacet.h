@@ -3,6 +3,7 @@
 // z along its normal.
 #pragma once
 
+#include "core/lanes.h"
 #include "core/math.h"
 
 namespace petzval {
@@ -44,13 +45,27 @@ inline constexpr float kSmallestAlpha = 1e-3f;
 
 /// Unpolarised reflectance of a boundary; eta = index behind over index in front; cosine >= 0 in
 /// front. 1 under total reflection. Born and Wolf 1999, "Principles of Optics", 1.5.2.
-[[nodiscard]] inline float fresnel_dielectric(float cosine, float eta) {
-    const float sin2_behind = (1.f - sqr(cosine)) / sqr(eta);
-    if (sin2_behind >= 1.f) return 1.f;
-    const float cos_behind = std::sqrt(1.f - sin2_behind);
-    const float parallel = (eta * cosine - cos_behind) / (eta * cosine + cos_behind);
-    const float perpendicular = (cosine - eta * cos_behind) / (cosine + eta * cos_behind);
-    return 0.5f * (sqr(parallel) + sqr(perpendicular));
+[[nodiscard]] inline f4 fresnel_dielectric(float cosine, f4 eta) {
+    const f4 cos2_behind = splat(1.f) - splat(1.f - sqr(cosine)) / (eta * eta);
+    const f4 cos_behind = sqrt(max(cos2_behind, f4{}));
+    const f4 parallel = (eta * cosine - cos_behind) / (eta * cosine + cos_behind);
+    const f4 perpendicular = (cosine - eta * cos_behind) / (cosine + eta * cos_behind);
+    const f4 share = 0.5f * (parallel * parallel + perpendicular * perpendicular);
+    return cos2_behind > 0.f ? share : splat(1.f);
+}
+
+/// The same for a metal of index n + ik over the index in front. Born and Wolf 1999, 14.2, with the
+/// complex cosine behind written as a + ib.
+[[nodiscard]] inline f4 fresnel_conductor(float cosine, f4 n, f4 k) {
+    const float cos2 = sqr(cosine), sin2 = 1.f - cos2;
+    const f4 p = n * n - k * k - sin2, nk = n * k;
+    const f4 length = sqrt(p * p + 4.f * nk * nk);  // a^2 + b^2
+    const f4 a = sqrt(max(0.5f * (length + p), f4{}));
+    const f4 perpendicular =
+        (length + cos2 - 2.f * cosine * a) / (length + cos2 + 2.f * cosine * a);
+    const f4 c = cos2 * length + sqr(sin2), d = 2.f * cosine * sin2 * a;
+    const f4 parallel = perpendicular * (c - d) / (c + d);
+    return 0.5f * (perpendicular + parallel);
 }
 
 /// Share of light that single scattering on a GGX surface reflects, split by Schlick's weight:

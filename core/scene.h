@@ -4,9 +4,11 @@
 
 #include <vector>
 
+#include "core/illuminant.h"
 #include "core/light.h"
 #include "core/material.h"
 #include "core/mesh.h"
+#include "core/metal.h"
 #include "core/sky.h"
 #include "core/texture.h"
 
@@ -17,12 +19,19 @@ namespace petzval {
 struct Scene {
     std::vector<Image> images;
     std::vector<Material> materials;  ///< at least one where there is a mesh
+    std::vector<Metal> metals;
+    std::vector<Illuminant> illuminants;
     std::vector<Mesh> meshes;
     std::vector<Instance> instances;
     std::vector<Light> lights;  ///< punctual lights of the file; finish_scene adds the others
     Sky sky;
 
     Box3f bounds;  ///< of all instances, in world space; empty where there are none
+
+    /// nullptr for -1, which means the scene's own white.
+    [[nodiscard]] const Illuminant* illuminant(int32_t index) const {
+        return index < 0 ? nullptr : &illuminants[static_cast<size_t>(index)];
+    }
 };
 
 /// Computes the bounds and appends a light for every triangle of an emissive instance and for the

@@ -26,23 +26,33 @@ struct Rgb {
     return 0.2126f * c.v[0] + 0.7152f * c.v[1] + 0.0722f * c.v[2];
 }
 
-/// Meaning of the lanes of one sample. Nothing but core/spectrum and core/colour looks inside.
+/// Meaning of the lanes of one sample: linear R, G, B in lanes 0 to 2, or a sampled wavelength in
+/// each. Numbers of the scene come in, and the film's go out, by linear maps that do not ask which.
+/// Nothing but core/spectrum, core/colour and core/observer looks inside.
 struct Bands {
-    f4 nm{};   ///< sampled wavelengths; unused while the lanes carry linear RGB
-    f4 pdf{};  ///< density of each wavelength, 1/nm; 1 for RGB
-    m4 on{};   ///< lanes in use
+    f4 nm{};                ///< wavelengths in air; 0 while the lanes carry linear RGB
+    f4 pdf{};               ///< density of each wavelength, 1/nm; 1 for RGB
+    m4 on{};                ///< lanes in use
+    f4 red, green, blue;    ///< reflectance of what is 1 in R, in G, in B
+    f4 white;               ///< radiance of the white light at 1 nit, W/(m2 sr nm); 1 for RGB
+    f4 to_r, to_g, to_b;    ///< what a unit of each lane adds to the film's R, G, B
+    bool spectral = false;  ///< nm holds wavelengths
 
     /// Lanes 0 to 2 carry linear R, G and B.
-    [[nodiscard]] static Bands rgb() { return {f4{}, f4{1, 1, 1, 1}, m4{-1, -1, -1, 0}}; }
+    [[nodiscard]] static Bands rgb() {
+        const f4 r{1, 0, 0, 0}, g{0, 1, 0, 0}, b{0, 0, 1, 0};
+        return {f4{}, f4{1, 1, 1, 1}, m4{-1, -1, -1, 0}, r, g, b, f4{1, 1, 1, 0}, r, g, b, false};
+    }
 };
 
-/// Reflectance, transmittance or any other share of light (0 to 1), lane by lane.
-[[nodiscard]] inline f4 uplift_reflectance(Rgb c, const Bands&) {
-    return c.v;
+/// Reflectance, transmittance or any other share of light (0 to 1), lane by lane. Linear, as in
+/// Mallett and Yuksel 2019, "Spectral Primary Decomposition for Rendering with sRGB Reflectance".
+[[nodiscard]] inline f4 uplift_reflectance(Rgb c, const Bands& bands) {
+    return bands.red * c.v[0] + bands.green * c.v[1] + bands.blue * c.v[2];
 }
 /// Radiance of a source, lane by lane; an Rgb of 1 is 1 nit of the white point.
-[[nodiscard]] inline f4 uplift_radiance(Rgb c, const Bands&) {
-    return c.v;
+[[nodiscard]] inline f4 uplift_radiance(Rgb c, const Bands& bands) {
+    return uplift_reflectance(c, bands) * bands.white;
 }
 /// The same number in every lane that is on.
 [[nodiscard]] inline f4 uniform(float a, const Bands& bands) {

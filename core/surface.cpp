@@ -6,12 +6,6 @@
 namespace petzval {
 namespace {
 
-template <class T>
-T interpolate(const std::vector<T>& values, const std::array<uint32_t, 3>& corner, V2f b) {
-    return values[corner[0]] * (1.f - b.x - b.y) + values[corner[1]] * b.x +
-           values[corner[2]] * b.y;
-}
-
 V3f abs_transform(const V3f& p, const M44f& m) {
     V3f sum;
     for (int j = 0; j < 3; ++j)
@@ -144,6 +138,12 @@ ShadingInput read_material(const Scene& scene, const Surface& s, const V3f& wo,
     }
     BsdfInput& b = out.bsdf;
     b.base_color = uplift_reflectance(base_color, bands);
+    if (m.metal >= 0 && bands.spectral) {
+        const Metal& metal = scene.metals[static_cast<size_t>(m.metal)];
+        b.measured_metal = true;
+        b.metal_n = metal.n.at(bands.nm);
+        b.metal_k = metal.k.at(bands.nm);
+    }
     const f4 surface_texel = read_texture(surface_map);
     b.roughness = m.roughness * surface_texel[1];
     b.metallic = m.metallic * surface_texel[2];
@@ -161,9 +161,11 @@ ShadingInput read_material(const Scene& scene, const Surface& s, const V3f& wo,
     if (m.transmission_texture.present())
         b.transmission *= read(scene, s, m.transmission_texture)[0];
     b.thin = !m.has_volume;
-    const float ior = m.ior == 0.f ? 1.f : m.ior;
+    b.disperses = bands.spectral && m.glass && !b.thin;
+    f4 index = b.disperses ? m.glass->index(bands.nm) : splat(m.ior == 0.f ? 1.f : m.ior);
     // A facet between equal indices has no half vector; a thousandth bends nothing that shows.
-    const float index = std::fabs(ior - 1.f) < 1e-3f ? 1.001f : ior;
+    const f4 bend = index - 1.f;
+    index = max(bend, -bend) < 1e-3f ? splat(1.001f) : index;
     b.eta = s.front ? index : 1.f / index;
     return out;
 }

@@ -49,7 +49,7 @@ f4 PathTracer<Caster>::emitted(const Surface& s, const Bands& bands, const Verte
     if (!s.material->emits()) return f4{};
     const Rgb rgb =
         emitted_radiance(scene_, s.hit.instance, s.hit.triangle, s.hit.barycentric, s.front);
-    const f4 radiance = uplift_radiance(rgb, bands);
+    const f4 radiance = uplift_radiance(rgb, bands, scene_.illuminant(s.material->illuminant));
     if (!last.light_sampled || s.instance->first_light < 0) return radiance;
     const uint32_t light = static_cast<uint32_t>(s.instance->first_light) + s.hit.triangle;
     const V3f along = s.p - last.p;
@@ -111,7 +111,8 @@ inline void record_layers(const Surface& s, const ShadingInput& shading, Rgb emi
     const auto vector = [](Rgb c) { return V3f(c[0], c[1], c[2]); };
     const Bsdf bsdf(shading.bsdf, bands, shading.frame.to_local(wo));
     out.hit = true;
-    layer(Aov::Albedo) = vector(s.material->unlit ? shading.unlit : to_rgb(bsdf.albedo(), bands));
+    layer(Aov::Albedo) =
+        vector(s.material->unlit ? shading.unlit : reflectance_to_rgb(bsdf.albedo(), bands));
     layer(Aov::Normal) = shading.frame.z;
     layer(Aov::Depth) = V3f((s.p - camera).length(), 0, 0);
     layer(Aov::Position) = s.p;
@@ -158,14 +159,18 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         out.alpha = 1.f;
         const bool shows = s.front || s.material->double_sided;
         f4 glow = emitted(s, bands, last);
-        if (s.material->unlit && shows) glow += uplift_radiance(shading.unlit, bands);
+        if (s.material->unlit && shows)
+            glow +=
+                uplift_radiance(shading.unlit, bands, scene_.illuminant(s.material->illuminant));
         sum += throughput * glow;
         if (!seen && aovs)
             record_layers(s, shading, to_rgb(glow, bands), camera_ray.origin, wo, bands, out);
         seen = true;
         if (s.material->unlit || static_cast<int>(depth) >= options_.max_depth) break;
 
-        const Bsdf bsdf(shading.bsdf, bands, shading.frame.to_local(wo));
+        // Volumes and black surfaces leave nothing to go on with.
+        if (!(hmax(throughput) >= std::numeric_limits<float>::min())) break;
+        const Bsdf bsdf(shading.bsdf, bands, shading.frame.to_local(wo), throughput);
         const bool light_sampled =
             options_.technique != Technique::BsdfOnly && bsdf.has_wide_lobe();
         if (light_sampled)

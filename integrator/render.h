@@ -12,6 +12,7 @@
 #include "core/colour.h"
 #include "core/film.h"
 #include "core/filter.h"
+#include "core/observer.h"
 #include "core/sampler.h"
 #include "integrator/path.h"
 #include "integrator/tiles.h"
@@ -25,7 +26,9 @@ struct RenderJob {
     SamplerKind sampler = SamplerKind::Owen;
     Filter filter{FilterKind::BlackmanHarris, 1.5f};
     int tile_size_px = 16;
-    bool timing = false;  ///< measure where the time goes, on one sample of sixteen
+    Observer observer;       ///< what the lanes carry
+    uint32_t scrambles = 1;  ///< kScrambles for a film with bins
+    bool timing = false;     ///< measure where the time goes, on one sample of sixteen
 };
 
 /// What a render shows of itself while it runs, and how it is told to stop. Any thread may look.
@@ -41,6 +44,11 @@ struct RenderResult {
     bool stopped = false;     ///< the monitor said stop before the job was done
 };
 
+/// Seed of one of the scrambles; a number of its own for each pair.
+[[nodiscard]] inline uint32_t scrambled(uint32_t seed, uint32_t scramble) {
+    return hash32(seed, scramble + 1);
+}
+
 /// One sample of one pixel: a pure function of its arguments.
 template <class Tracer>
 void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& job, SampleId id,
@@ -49,8 +57,12 @@ void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& 
     ++stats.samples;
     stats.timed_samples += stats.timing;
     const SectionTimer whole(stats, Section::Sample);
-    const Sampler sampler(job.sampler, job.seed, id);
-    const Bands bands = Bands::rgb();
+    const uint32_t scramble = id.index % job.scrambles;
+    const Sampler sampler(job.sampler,
+                          job.scrambles == 1 ? job.seed : scrambled(job.seed, scramble),
+                          {id.x, id.y, id.index / job.scrambles});
+    const Bands bands =
+        job.observer.spectral() ? job.observer.draw(sampler.get1(Dim::Wavelength)) : Bands::rgb();
     const bool aovs = !film.aovs().empty();
     const uint64_t vertices_before = stats.vertices;
 
@@ -72,12 +84,17 @@ void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& 
     sample.colour = to_rgb(sum, bands);
     sample.aov[static_cast<size_t>(Aov::Cost)] =
         V3f(static_cast<float>(stats.vertices - vertices_before), 0, 0);
-    film.add(id.x, id.y, id.index, sample);
+    if (film.spectral())
+        film.add(id.x, id.y, id.index, sample, {scramble, sum, job.observer.to_xyz(sum, bands)},
+                 bands);
+    else
+        film.add(id.x, id.y, id.index, sample);
 }
 
 /// Samples of the next pass: they grow so that a first picture comes early and passes stay short.
-[[nodiscard]] inline uint32_t pass_size(uint32_t done, uint32_t wanted) {
-    const uint32_t grown = done == 0 ? 1 : std::min(done, 16u);
+/// Never fewer than `least`, but for the last.
+[[nodiscard]] inline uint32_t pass_size(uint32_t done, uint32_t wanted, uint32_t least = 1) {
+    const uint32_t grown = std::max(done == 0 ? 1 : std::min(done, 16u), least);
     return std::min(grown, wanted - done);
 }
 
@@ -106,7 +123,7 @@ RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob&
             stopped = true;
             break;
         }
-        uint32_t pass = pass_size(done, wanted);
+        uint32_t pass = pass_size(done, wanted, job.scrambles);
         if (job.time_limit_s && done > 0) {
             const double left_s = *job.time_limit_s - elapsed_s();
             const double fits = left_s / (elapsed_s() / done);

@@ -37,7 +37,7 @@ BsdfInput glass(float roughness, float eta) {
     BsdfInput in = dielectric(roughness);
     in.transmission = 1.f;
     in.thin = false;
-    in.eta = eta;
+    in.eta = splat(eta);
     return in;
 }
 
@@ -119,7 +119,7 @@ TEST(Bsdf, SmoothGlassReflectsFresnelsShare) {
             const auto s = bsdf.sample((static_cast<float>(i) + 0.5f) / n, {0.5f, 0.5f});
             reflected += s && !s->transmitted;
         }
-        EXPECT_NEAR(reflected / float(n), fresnel_dielectric(cosine, 1.5f), 1.f / n);
+        EXPECT_NEAR(reflected / float(n), fresnel_dielectric(cosine, splat(1.5f))[0], 1.f / n);
     }
 }
 
@@ -172,13 +172,13 @@ TEST(Microfacet, AlbedoTableMatchesDirectIntegration) {
 }
 
 TEST(Microfacet, FresnelAtNormalIncidenceAndAtTheCriticalAngle) {
-    EXPECT_NEAR(fresnel_dielectric(1.f, 1.5f), 0.04f, 1e-6f);
-    EXPECT_NEAR(fresnel_dielectric(1.f, 1 / 1.5f), 0.04f, 1e-6f);
-    EXPECT_FLOAT_EQ(fresnel_dielectric(0.74f, 1 / 1.5f), 1.f);
-    EXPECT_LT(fresnel_dielectric(0.75f, 1 / 1.5f), 1.f);
+    EXPECT_NEAR(fresnel_dielectric(1.f, splat(1.5f))[0], 0.04f, 1e-6f);
+    EXPECT_NEAR(fresnel_dielectric(1.f, splat(1 / 1.5f))[0], 0.04f, 1e-6f);
+    EXPECT_FLOAT_EQ(fresnel_dielectric(0.74f, splat(1 / 1.5f))[0], 1.f);
+    EXPECT_LT(fresnel_dielectric(0.75f, splat(1 / 1.5f))[0], 1.f);
     // Brewster's angle: the parallel part vanishes, half of the perpendicular one is left.
     const float brewster = std::cos(std::atan(1.5f));
-    EXPECT_NEAR(fresnel_dielectric(brewster, 1.5f), 0.5f * sqr((1 - 2.25f) / (1 + 2.25f)), 1e-5f);
+    EXPECT_NEAR(fresnel_dielectric(brewster, splat(1.5f))[0], 0.5f * sqr((1 - 2.25f) / (1 + 2.25f)), 1e-5f);
 }
 
 struct Case {

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/dispersion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace petzval {
+namespace {
+
+double index_of(const Sellmeier& formula, double um) {
+    const double w2 = um * um;
+    double n2 = 1 + formula.constant;
+    for (const auto& [b, c] : formula.terms) n2 += b * w2 / (w2 - c);
+    return std::sqrt(n2);
+}
+
+double index_of(const PowerSeries& formula, double um) {
+    double n2 = 0;
+    for (const auto& [a, power] : formula.terms) n2 += a * std::pow(um, power);
+    return std::sqrt(n2);
+}
+
+double index_of(const Cauchy& formula, double um) {
+    return formula.a + formula.b / (um * um);
+}
+
+double index_of(const IndexTable& table, double um) {
+    const auto& points = table.points;
+    const double nm = um * 1e3;
+    const auto next = std::upper_bound(points.begin(), points.end(), nm,
+                                       [](double x, const auto& point) { return x < point[0]; });
+    if (next == points.begin()) return points.front()[1];
+    if (next == points.end()) return points.back()[1];
+    const double t = (nm - next[-1][0]) / ((*next)[0] - next[-1][0]);
+    return next[-1][1] * (1 - t) + (*next)[1] * t;
+}
+
+}  // namespace
+
+double Glass::index(double nm) const {
+    const double um = std::clamp(nm, first_nm, last_nm) * 1e-3;
+    return std::visit([um](const auto& kind) { return index_of(kind, um); }, formula);
+}
+
+f4 Glass::index(f4 nm) const {
+    f4 n{};
+    for (int i = 0; i < 4; ++i) n[i] = static_cast<float>(index(double(nm[i])));
+    return n;
+}
+
+double Glass::abbe() const {
+    const double spread = index(kLineF_nm) - index(kLineC_nm);
+    if (spread == 0) return std::numeric_limits<double>::infinity();
+    return (index(kLineD_nm) - 1) / spread;
+}
+
+Cauchy cauchy_through(double nd, double abbe) {
+    const auto per_um2 = [](double nm) { return 1e6 / (nm * nm); };
+    const double b = (nd - 1) / abbe / (per_um2(kLineF_nm) - per_um2(kLineC_nm));
+    return {nd - b * per_um2(kLineD_nm), b};
+}
+
+}  // namespace petzval

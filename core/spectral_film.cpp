@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/spectral_film.h"
+
+#include <limits>
+
+namespace petzval {
+
+SpectralFilm::SpectralFilm(size_t pixels, const Bins& bins)
+    : bins_(bins),
+      bin_sums_(pixels * static_cast<size_t>(bins.count)),
+      xyz_sums_(pixels),
+      scramble_sums_(pixels) {}
+
+void SpectralFilm::add(size_t pixel, uint32_t scramble, Rgb colour, const V3f& xyz, f4 radiance,
+                       const Bands& bands) {
+    double* bins = bin_sums_.data() + pixel * static_cast<size_t>(bins_.count);
+    int lanes = 0;
+    for (int i = 0; i < 4; ++i) lanes += bands.on[i] != 0;
+    for (int i = 0; i < 4; ++i) {
+        const int bin = bands.on[i] ? bins_.index(bands.nm[i]) : -1;
+        if (bin >= 0) bins[bin] += radiance[i] / (bands.pdf[i] * lanes * bins_.width_nm);
+    }
+    for (int i = 0; i < 3; ++i) xyz_sums_[pixel][static_cast<size_t>(i)] += xyz[i];
+    auto& sums = scramble_sums_[pixel][scramble];
+    for (int i = 0; i < 3; ++i) sums[static_cast<size_t>(i)] += colour[i];
+}
+
+void SpectralFilm::bin_means(size_t pixel, uint32_t count, float* out) const {
+    const double* bins = bin_sums_.data() + pixel * static_cast<size_t>(bins_.count);
+    for (int i = 0; i < bins_.count; ++i)
+        out[i] = count > 0 ? static_cast<float>(bins[i] / count) : 0.f;
+}
+
+V3f SpectralFilm::xyz(size_t pixel, uint32_t count) const {
+    if (count == 0) return V3f(0.f);
+    const auto& sum = xyz_sums_[pixel];
+    return V3f(Imath::V3d(sum[0], sum[1], sum[2]) / double(count));
+}
+
+// Standard error of the mean of the scrambles' means. The first (count mod kScrambles) scrambles
+// have one sample more.
+template <class Number>
+float SpectralFilm::error_of(size_t pixel, uint32_t count, const Number& number) const {
+    if (count < kScrambles) return std::numeric_limits<float>::infinity();
+    std::array<double, kScrambles> mean;
+    double centre = 0, squares = 0;
+    for (uint32_t k = 0; k < kScrambles; ++k) {
+        const uint32_t samples = (count - k + kScrambles - 1) / kScrambles;
+        mean[k] = number(scramble_sums_[pixel][k]) / samples;
+        centre += mean[k] / kScrambles;
+    }
+    for (const double m : mean) squares += (m - centre) * (m - centre);
+    return static_cast<float>(std::sqrt(squares / (kScrambles * (kScrambles - 1.))));
+}
+
+V3f SpectralFilm::standard_error(size_t pixel, uint32_t count) const {
+    const auto of = [&](size_t c) {
+        return error_of(pixel, count, [c](const auto& rgb) { return double(rgb[c]); });
+    };
+    return {of(0), of(1), of(2)};
+}
+
+float SpectralFilm::luminance_error(size_t pixel, uint32_t count) const {
+    return error_of(pixel, count,
+                    [](const auto& rgb) { return double(luminance(Rgb(rgb[0], rgb[1], rgb[2]))); });
+}
+
+}  // namespace petzval

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Measured spectra: those that ship in assets/spectra, and a user's own as CSV. First column:
+// wavelength in nm, strictly rising; then one column, or three, of values >= 0.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/illuminant.h"
+#include "core/metal.h"
+#include "core/spectrum_table.h"
+
+namespace petzval {
+
+/// CIE 1931 2 degrees: xbar, ybar, zbar.
+[[nodiscard]] std::array<SpectrumTable, 3> standard_observer();
+/// Reflectances of linear sRGB's red, green and blue.
+[[nodiscard]] std::array<SpectrumTable, 3> rgb_basis();
+/// The reflectances that sensors are fitted to: 24 measured patches of a colour chart.
+[[nodiscard]] std::vector<SpectrumTable> training_reflectances();
+
+/// "d65", "a", "f11", or a CSV file of one column, whatever it is called: relative power, 0 beyond
+/// its ends. Throws InputError; for a name that is neither it lists the names there are.
+[[nodiscard]] SpectrumTable find_illuminant(const std::string& name_or_file);
+/// "cie1931" or a CSV file of three columns: sensitivities of R, G and B, 0 beyond their ends; the
+/// curve that rises above 0 at all must cover some of kFirst_nm to kLast_nm. Throws InputError.
+[[nodiscard]] std::array<SpectrumTable, 3> find_response(const std::string& name_or_file);
+
+/// An illuminant that ships, by name, for a light of the scene. Nothing where there is none.
+[[nodiscard]] std::optional<Illuminant> find_light_spectrum(const std::string& name);
+/// A metal that ships: "ag", "al", "au", "cu", whatever the case. Nothing where there is none.
+[[nodiscard]] std::optional<Metal> find_metal(const std::string& name);
+/// Linear sRGB of a metal's reflectance at normal incidence under D65; may lie outside [0, 1].
+[[nodiscard]] Rgb colour_of(const Metal&);
+
+/// Names that ship, for messages: "d65, a, f11" and "ag, al, au, cu".
+[[nodiscard]] std::string illuminant_names();
+[[nodiscard]] std::string metal_names();
+
+}  // namespace petzval

@@ -56,10 +56,10 @@ TEST(Csv, ErrorsNameFileAndLine) {
         std::string text, place, message;
     };
     const Case cases[] = {
-        {"nm,v\n400,0.5\n410\n", "line 3", "has 1 columns"},
-        {"nm,v\n400,0.5,1\n", "line 2", "has 3 columns"},
-        {"nm,v\n400,0.5,\n", "line 2", "has 3 columns"},
-        {"nm,v\n400;0,5;1\n410\n", "line 3", "separate columns by commas"},
+        {"nm,v\n400,0.5\n410\n", "line 3", "number of columns is 1, and 2"},
+        {"nm,v\n400,0.5,1\n", "line 2", "number of columns is 3, and 2"},
+        {"nm,v\n400,0.5,\n", "line 2", "number of columns is 3, and 2"},
+        {"nm,v\n400;0,5;1,2\n", "line 2", "separate columns by commas"},
         {"nm,v\n400,\n", "line 2", "\"\" in column v is not a finite number"},
         {"nm,v\n,0.5\n", "line 2", "\"\" in column nm"},
         {"# x\n\nnm,v\n400,0.5x\n", "line 4", "\"0.5x\" in column v"},

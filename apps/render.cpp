@@ -71,7 +71,7 @@ int render_command(RenderOptions& o) {
     cost.threads = o.threads;
 
     report_bad_samples(film, notice);
-    const Picture picture = develop(film, session, o.job, o.path, result.end_sample);
+    const PictureRows picture = develop(film, session, o.job, o.path, result.end_sample);
     if (result.stopped) {
         for (const auto& partial : write_partial(o.outputs, picture))
             notice(fmt::format("stopped: what there is, is in {}", partial.string()));

@@ -182,8 +182,7 @@ void resolve_job(RenderOptions& o) {
 void require_memory(const RenderFrame& frame) {
     const double pixels = static_cast<double>(frame.crop.width()) * frame.crop.height();
     const double layers = static_cast<double>(frame.aovs.size());
-    const double film = 48 + 24 * layers, pictures = 2 * 4 * (4 + 3 * layers);
-    const double needed = pixels * (film + pictures);
+    const double needed = pixels * (48 + 24 * layers);
     const double there =
         static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
     if (needed > there)

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <clocale>
-
 #include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 
@@ -40,15 +38,6 @@ TEST(Csv, AllowsWhatSpreadsheetsAndEditorsWrite) {
     EXPECT_EQ(read("nm,v\n4E2,5e-1\n410,2.0\n").rows, rows) << "exponents";
     EXPECT_EQ(read("# a\n\nnm,v\n400,0.5\n").line_of_row, std::vector<int>{4});
     EXPECT_EQ(read("\xEF\xBB\xBFnm,v\n400,0.5\n").names[0], "nm");
-}
-
-TEST(Csv, DecimalsHaveAPointInEveryLocale) {
-    const std::string before = std::setlocale(LC_NUMERIC, nullptr);
-    for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8", "C.UTF-8"})
-        if (std::setlocale(LC_NUMERIC, name)) break;
-    const double value = read("nm,v\n400,0.5\n").rows[0][1];
-    std::setlocale(LC_NUMERIC, before.c_str());
-    EXPECT_EQ(value, 0.5);
 }
 
 TEST(Csv, ErrorsNameFileAndLine) {

@@ -98,6 +98,8 @@ TEST(Glass, ATableIsLinearBetweenAndHeldBeyond) {
     const Glass one{"one", IndexTable{{{550, 1.5}}}};
     EXPECT_DOUBLE_EQ(one.index(400.), 1.5);
     EXPECT_EQ(one.abbe(), std::numeric_limits<double>::infinity());
+    const Glass air{"air", IndexTable{{{550, 1}}}};
+    EXPECT_EQ(air.abbe(), std::numeric_limits<double>::infinity()) << "not 0 / 0";
 }
 
 TEST(Cauchy, GoesThroughNdAndAbbe) {

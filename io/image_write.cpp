@@ -35,8 +35,7 @@ class FileProxy : public OIIO::Filesystem::IOProxy {
     size_t size_ = 0;
 };
 
-/// Rows that are compressed at once, by as many threads as there are; a multiple of what any EXR
-/// compression packs together.
+/// Rows that OpenEXR gets at once, to compress them by as many threads as there are.
 constexpr int kBandRows = 32;
 
 /// Writes a file with that ending, band by band. fill(y, values) makes one row.
@@ -81,7 +80,9 @@ OIIO::ImageSpec exr_spec(const PictureLayout& picture) {
     spec.attribute("DateTime", "");  // else the time of writing goes in
     for (const auto& [name, value] : picture.metadata)
         std::visit([&, &key = name](const auto& v) { spec.attribute(key, v); }, value);
-    spec.attribute("compression", "zip");
+    // Each row by itself: with zip, which packs 16 rows, OpenEXR's buffers for a spectral picture
+    // would take half a gigabyte on 16 cores, to save 0.3 % of the file.
+    spec.attribute("compression", "zips");
     return spec;
 }
 

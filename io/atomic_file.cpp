@@ -260,10 +260,6 @@ void AtomicFile::write(std::span<const uint8_t> bytes, uint64_t offset) noexcept
     if (state_->error == 0) state_->error = write_at(state_->file().get(), bytes, offset);
 }
 
-bool AtomicFile::failed() const noexcept {
-    return state_->error != 0;
-}
-
 void AtomicFile::commit() {
     state_->check(state_->error);
     if (state_->spooled)

@@ -25,7 +25,6 @@ class AtomicFile {
     /// Writes at any place, in any order. The first failure is kept for commit(), and nothing is
     /// written after it: libraries that encode pictures do not get along with failing writes.
     void write(std::span<const uint8_t> bytes, uint64_t offset) noexcept;
-    [[nodiscard]] bool failed() const noexcept;
     /// Syncs and puts the file in place. Throws InputError with the system's reason, also for a
     /// failed write.
     void commit();

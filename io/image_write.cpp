@@ -54,13 +54,13 @@ void encode(const std::filesystem::path& path, const std::string& ending, OIIO::
     bool good = output->open("petzval." + ending, spec);
     const size_t row = size_t(spec.width) * size_t(spec.nchannels);
     std::vector<Value> band(row * size_t(std::min(kBandRows, spec.height)));
-    for (int y0 = 0; good && !file.failed() && y0 < spec.height; y0 += kBandRows) {
+    for (int y0 = 0; good && y0 < spec.height; y0 += kBandRows) {
         const int y1 = std::min(y0 + kBandRows, spec.height);
         for (int y = y0; y < y1; ++y) fill(y, band.data() + row * size_t(y - y0));
         good = output->write_scanlines(spec.y + y0, spec.y + y1, 0, spec.format, band.data());
     }
     good = output->close() && good;
-    if (!good && !file.failed()) throw refuse(output->geterror());
+    if (!good) throw refuse(output->geterror());
     file.commit();
 }
 

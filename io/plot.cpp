@@ -48,28 +48,46 @@ std::string quoted(const std::string& text) {
 const char* style_name(PlotStyle style) {
     switch (style) {
         case PlotStyle::Lines:
+        case PlotStyle::Steps:
             return "lines";
         case PlotStyle::Points:
             return "points";
         case PlotStyle::LinesAndPoints:
             return "linespoints";
-        case PlotStyle::Steps:
-            return "histeps";
     }
     return "";
+}
+
+using Points = std::vector<std::array<double, 2>>;
+
+/// Both ends of the level around each point. gnuplot's own steps leave out the outer halves of the
+/// first and the last.
+Points steps(const Points& points) {
+    Points ends;
+    const size_t count = points.size();
+    for (size_t i = 0; i < count; ++i) {
+        const auto [x, y] = points[i];
+        const double before = i > 0 ? x - points[i - 1][0] : count > 1 ? points[1][0] - x : 0;
+        const double after = i + 1 < count ? points[i + 1][0] - x : before;
+        ends.push_back({x - before / 2, y});
+        ends.push_back({x + after / 2, y});
+    }
+    return ends;
 }
 
 std::string script(const char* terminal_name, const Plot& plot) {
     std::string text = fmt::format(
         "set encoding utf8\n"
         "set terminal {} size 960,600 noenhanced font 'sans,14' background rgb 'white'\n"
-        "set title {}\nset xlabel {}\nset ylabel {}\nset grid\n",
+        "set title {}\nset xlabel {}\nset ylabel {}\nset grid\nset offsets 0, 0, graph 0.05, graph "
+        "0.05\n",
         terminal_name, quoted(plot.title), quoted(plot.x_label), quoted(plot.y_label));
     std::string lines;
     for (size_t i = 0; i < plot.series.size(); ++i) {
         const PlotSeries& series = plot.series[i];
         text += fmt::format("$series{} << end\n", i);
-        for (const auto& [x, y] : series.points)
+        const bool is_steps = series.style == PlotStyle::Steps;
+        for (const auto& [x, y] : is_steps ? steps(series.points) : series.points)
             if (std::isfinite(x) && std::isfinite(y)) text += fmt::format("{} {}\n", x, y);
         text += "end\n";
         lines += fmt::format("{}$series{} using 1:2 with {} linewidth 2 {}",

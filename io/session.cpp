@@ -18,24 +18,22 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// The sky that lights the scene: a picture, else the background's colour, else white where nothing
-// else would shine.
-Sky choose_sky(const SceneRequest& request, const Scene& scene,
-               const std::function<void(const std::string&)>& notice) {
-    if (request.environment)
-        return load_sky(*request.environment, request.environment_rotate_deg,
-                        request.environment_strength, notice);
-    if (request.background) return Sky::uniform(*request.background);
+// Whether a scene would be black by itself. What is unlit needs no light.
+bool is_dark(const Scene& scene) {
     bool lit = !scene.lights.empty(), all_unlit = !scene.instances.empty();
     for (const Instance& instance : scene.instances) {
         const Material& material = scene.materials[scene.meshes[instance.mesh].material];
         lit = lit || material.emits();
         all_unlit = all_unlit && material.unlit;
     }
-    if (lit || all_unlit) return Sky();
-    notice(
-        "no light in the file: a uniform white environment of 1 nit is used (--background 1,1,1)");
-    return Sky::uniform(Rgb(1.f));
+    return !lit && !all_unlit;
+}
+
+Sky sky_of(const SceneRequest& request, const std::function<void(const std::string&)>& notice) {
+    if (request.environment)
+        return load_sky(*request.environment, request.environment_rotate_deg,
+                        request.environment_strength, notice);
+    return request.background ? Sky::uniform(*request.background) : Sky();
 }
 
 // Of a file its name alone: equal renders in other folders are equal files.
@@ -61,8 +59,9 @@ std::vector<std::pair<std::string, std::string>> describe(const SceneRequest& re
 
 }  // namespace
 
-Session open_session(const SceneRequest& request,
+Session open_session(const SceneRequest& asked,
                      const std::function<void(const std::string&)>& notice) {
+    SceneRequest request = asked;
     Session session;
     const auto load_start = Clock::now();
     GltfFile file = load_gltf(request.scene);
@@ -70,7 +69,13 @@ Session open_session(const SceneRequest& request,
     session.scene = std::make_unique<Scene>(std::move(file.scene));
     Scene& scene = *session.scene;
     session.scene_hash = file.hash;
-    scene.sky = choose_sky(request, scene, notice);
+    if (!request.environment && !request.background && is_dark(scene)) {
+        request.background = Rgb(1.f);
+        notice(
+            "no light in the file: a uniform white environment of 1 nit is used (--background "
+            "1,1,1)");
+    }
+    scene.sky = sky_of(request, notice);
     if (request.environment) session.backdrop = request.background;
     finish_scene(scene);
     if (scene.instances.empty())

@@ -62,7 +62,7 @@ void describe_camera(const CameraReport& c, PictureLayout& layout) {
 }
 
 /// Mean over the pixels with light of the standard error of their luminance, relative to it;
-/// infinite where one has too few samples to tell.
+/// not finite where there are none or one has too few samples to tell.
 float mean_relative_error(const Film& film) {
     const Rect crop = film.crop();
     double sum = 0;
@@ -77,7 +77,7 @@ float mean_relative_error(const Film& film) {
                                                            film.sample_count(x, y))) /
                    light;
         }
-    return lit > 0 ? static_cast<float>(sum / double(lit)) : 0.f;
+    return static_cast<float>(sum / double(lit));
 }
 
 void describe_spectrum(const Film& film, PictureLayout& layout) {

@@ -25,14 +25,11 @@ class FileProxy : public OIIO::Filesystem::IOProxy {
     }
     size_t pwrite(const void* bytes, size_t count, int64_t offset) override {
         file_.write({static_cast<const uint8_t*>(bytes), count}, uint64_t(offset));
-        size_ = std::max(size_, size_t(offset) + count);
         return count;
     }
-    [[nodiscard]] size_t size() const override { return size_; }
 
   private:
     AtomicFile& file_;
-    size_t size_ = 0;
 };
 
 /// Rows that OpenEXR gets at once, to compress them by as many threads as there are.

@@ -61,6 +61,16 @@ TEST(Plot, IsADrawingWithItsLabels) {
     EXPECT_EQ(folder.count(), 3u);
 }
 
+TEST(Plot, StepsReachHalfOfTheWayAndBeyondTheEnds) {
+    const TemporaryFolder folder;
+    Plot p = plot();
+    p.series = {{{{0, 1}, {1, 2}, {3, 0}}, PlotStyle::Steps, ""}};
+    write_plot(folder / "a.svg", p);
+    p.series = {{{{-0.5, 1}, {0.5, 1}, {0.5, 2}, {2, 2}, {2, 0}, {4, 0}}, PlotStyle::Lines, ""}};
+    write_plot(folder / "b.svg", p);
+    EXPECT_EQ(text_of(folder / "a.svg"), text_of(folder / "b.svg"));
+}
+
 // What gnuplot or a shell would take for an order.
 TEST(Plot, ShowsTextsLetterByLetter) {
     const TemporaryFolder folder;

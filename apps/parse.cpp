@@ -119,6 +119,27 @@ Focus parse_focus(const std::string& option, const std::string& text, V2i frame)
     return FocusDistance{*value};
 }
 
+Bins parse_bins(const std::string& option, const std::string& text) {
+    constexpr int most = 1024;  // more channels than readers of EXR expect
+    const auto parts = split(text, ':');
+    std::vector<double> v;
+    for (const std::string_view part : parts)
+        if (const auto value = number<double>(part)) v.push_back(*value);
+    if (v.size() != 3 || parts.size() != 3)
+        refuse(option, text, "FIRST:LAST:WIDTH in nm, as 380:730:10");
+    const double range_nm = v[1] - v[0];
+    if (!(range_nm > 0)) refuse(option, text, "in rising order: FIRST must be below LAST");
+    if (v[0] < kFirst_nm || v[1] > kLast_nm)
+        refuse(option, text,
+               fmt::format("inside {} to {} nm, all that paths carry", kFirst_nm, kLast_nm));
+    const double count = range_nm / v[2];
+    if (!(v[2] > 0) || !(count < most + 0.5))
+        refuse(option, text, fmt::format("1 to {} bins of a width above 0", most));
+    if (std::fabs(count - std::round(count)) > 1e-6 || count < 0.5)
+        refuse(option, text, "a whole number of bins from FIRST to LAST");
+    return {v[0], v[2], static_cast<int>(std::lround(count))};
+}
+
 std::vector<Aov> parse_aovs(const std::string& option, const std::string& text) {
     std::vector<Aov> aovs;
     for (const std::string_view name : split(text, ',')) {

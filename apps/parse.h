@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/bins.h"
 #include "core/film.h"
 #include "io/session.h"
 
@@ -28,6 +29,8 @@ namespace petzval {
 [[nodiscard]] double parse_duration_s(const std::string& option, const std::string& text);
 /// "auto", "1.5", "1.5m" (metres above 0) or "x,y" (a pixel of the frame).
 [[nodiscard]] Focus parse_focus(const std::string& option, const std::string& text, V2i frame);
+/// "380:730:10": edges of equal bins in nm, inside the wavelengths that paths carry.
+[[nodiscard]] Bins parse_bins(const std::string& option, const std::string& text);
 /// "albedo,normal": names of layers.
 [[nodiscard]] std::vector<Aov> parse_aovs(const std::string& option, const std::string& text);
 

@@ -57,7 +57,8 @@ int render_command(RenderOptions& o) {
     const Notice notice = notice_to_stderr(o);
     const Session session = executor.inside([&] { return open_session(o.scene, notice); });
     o.path.backdrop = session.backdrop;
-    Film film(o.scene.size, frame.crop, frame.aovs);
+    o.job.observer = session.spectra.observer;
+    Film film(o.scene.size, frame.crop, frame.aovs, o.scene.spectral.bins);
     const PathTracer tracer(*session.scene, *session.bvh, *session.lights, o.path);
 
     interrupt.arm();

@@ -9,6 +9,7 @@
 #include <limits>
 #include <thread>
 
+#include "apps/choice.h"
 #include "apps/output_checks.h"
 #include "apps/parse.h"
 
@@ -20,26 +21,6 @@ constexpr uint32_t kDefaultSpp = 64;
 // Bounds that keep every product of two lengths a float; no real lens or place comes near.
 constexpr double kLeast = 1e-6, kMost = 1e6;
 constexpr float kFarthest_m = 1e12f, kNearest_m = 1e-12f;
-
-template <class T>
-using Choices = std::vector<std::pair<std::string, T>>;
-
-template <class T>
-void add_choice(CLI::App& app, const std::string& name, T& value, const Choices<T>& choices,
-                const std::string& help) {
-    const auto read = [=, &value](const std::string& text) {
-        std::string known;
-        for (const auto& [word, choice] : choices) {
-            if (word == text) {
-                value = choice;
-                return;
-            }
-            known += (known.empty() ? "" : ", ") + word;
-        }
-        throw CLI::ValidationError(name, fmt::format("\"{}\" is none of {}", text, known));
-    };
-    app.add_option_function<std::string>(name, read, help);
-}
 
 void add_camera_options(CLI::App& app, RenderOptions& o) {
     SceneRequest& s = o.scene;
@@ -171,6 +152,12 @@ void resolve_camera(RenderOptions& o) {
 void resolve_job(RenderOptions& o) {
     if (!o.time.empty()) o.job.time_limit_s = parse_duration_s("--time", o.time);
     o.job.end_sample = o.spp.value_or(o.job.time_limit_s ? kMostSamples : kDefaultSpp);
+    if (o.scene.spectral.bins) {
+        o.job.scrambles = kScrambles;
+        if (o.job.end_sample < kScrambles)
+            throw CLI::ValidationError(
+                "--spp", fmt::format("the standard errors of --bins need at least {}", kScrambles));
+    }
     const float usual_radius_px = o.filter == FilterKind::Box ? 0.5f : 1.5f;
     o.job.filter = Filter(o.filter, o.filter_radius_px > 0 ? o.filter_radius_px : usual_radius_px);
     o.job.timing = o.stats.has_value();
@@ -179,10 +166,11 @@ void resolve_job(RenderOptions& o) {
 }
 
 // Memory is promised before it is there, so that asking for too much would kill instead of fail.
-void require_memory(const RenderFrame& frame) {
+void require_memory(const RenderFrame& frame, const std::optional<Bins>& bins) {
     const double pixels = static_cast<double>(frame.crop.width()) * frame.crop.height();
     const double layers = static_cast<double>(frame.aovs.size());
-    const double film = 48 + 24 * layers, pictures = 2 * 4 * (4 + 3 * layers);
+    const double spectral = bins ? 8. * bins->count + 24 + 12 * kScrambles : 0;
+    const double film = 48 + 24 * layers + spectral, pictures = 2 * 4 * (4 + 3 * layers);
     const double needed = pixels * (film + pictures);
     const double there =
         static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
@@ -200,12 +188,15 @@ void add_render_options(CLI::App& app, RenderOptions& o) {
     add_sampling_options(app, o);
     add_camera_options(app, o);
     add_light_options(app, o);
+    add_spectral_options(app, o.spectral);
     add_output_options(app, o);
 }
 
 RenderFrame resolve(RenderOptions& o) {
     SceneRequest& s = o.scene;
     s.size = parse_size("--size", o.size);
+    resolve(o.spectral);
+    s.spectral = o.spectral.request;
     resolve_camera(o);
     resolve_job(o);
     if (!o.background.empty()) {
@@ -219,7 +210,7 @@ RenderFrame resolve(RenderOptions& o) {
     RenderFrame frame{{0, 0, s.size.x, s.size.y}, {}};
     if (!o.crop.empty()) frame.crop = parse_crop("--crop", o.crop, s.size);
     if (!o.aovs.empty()) frame.aovs = parse_aovs("--aov", o.aovs);
-    require_memory(frame);
+    require_memory(frame, s.spectral.bins);
     return frame;
 }
 

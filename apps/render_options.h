@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/progress.h"
+#include "apps/spectral_options.h"
 #include "core/film.h"
 #include "integrator/path.h"
 #include "integrator/render.h"
@@ -26,6 +27,7 @@ inline constexpr uint32_t kMostSamples = 1u << 30;
 /// As given; the texts become values in resolve().
 struct RenderOptions {
     SceneRequest scene;
+    SpectralOptions spectral;
     std::vector<std::filesystem::path> outputs;
     std::optional<std::filesystem::path> stats;
     std::string size = "1280x720", crop, look_at, sensor, focus, time, background, aovs;

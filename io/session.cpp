@@ -52,6 +52,7 @@ Session open_session(const SceneRequest& request,
     finish_scene(scene);
     if (scene.instances.empty())
         notice("warning: the scene is empty: only its background is rendered");
+    session.spectra = set_up_spectra(request.spectral, scene, notice);
     session.load_s = seconds_since(load_start);
 
     const auto bvh_start = Clock::now();

@@ -14,6 +14,7 @@
 #include "core/bvh.h"
 #include "core/light_choice.h"
 #include "core/scene.h"
+#include "io/spectral_setup.h"
 
 namespace petzval {
 
@@ -44,6 +45,7 @@ struct SceneRequest {
     std::optional<Rgb> background;
     LightChoiceKind light_choice = LightChoiceKind::Power;
     Traversal traversal = Traversal::Robust;
+    SpectralRequest spectral;
 };
 
 /// What the camera turned out to be, for the picture's metadata.
@@ -62,6 +64,7 @@ struct Session {
     std::unique_ptr<LightChoice> lights;
     std::unique_ptr<Camera> camera;
     CameraReport camera_report;
+    SpectralSetup spectra;
     std::optional<Rgb> backdrop;  ///< shown behind the scene in place of the environment
     uint64_t scene_hash = 0;
     double load_s = 0, bvh_s = 0;

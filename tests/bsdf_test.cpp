@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <complex>
 #include <random>
 
 #include "core/microfacet.h"
@@ -38,6 +39,24 @@ BsdfInput glass(float roughness, float eta) {
     in.transmission = 1.f;
     in.thin = false;
     in.eta = splat(eta);
+    return in;
+}
+
+/// A glass of 1.3, 1.5 and 1.9 in the three lanes: further apart than any real one.
+BsdfInput dispersing(float roughness, bool from_inside) {
+    BsdfInput in = glass(roughness, 1.5f);
+    in.eta = f4{1.3f, 1.5f, 1.9f, 1.f};
+    if (from_inside) in.eta = 1.f / in.eta;
+    in.disperses = true;
+    return in;
+}
+
+/// n and k of gold near 610, 540 and 450 nm.
+BsdfInput gold(float roughness) {
+    BsdfInput in = metal(roughness);
+    in.measured_metal = true;
+    in.metal_n = f4{0.21f, 0.43f, 1.5f, 1.f};
+    in.metal_k = f4{3.25f, 2.35f, 1.88f, 0.f};
     return in;
 }
 
@@ -96,6 +115,7 @@ TEST(Bsdf, TransmissionNeverGains) {
         for (const float cosine : kCosines) {
             EXPECT_LE(albedo_of(thin_glass(roughness), cosine), 1.005f)
                 << roughness << ' ' << cosine;
+            EXPECT_LE(albedo_of(gold(roughness), cosine), 1.005f) << roughness << ' ' << cosine;
             for (const float eta : {1.5f, 1 / 1.5f, 2.4f, 1.001f})
                 EXPECT_LE(albedo_of(glass(roughness, eta), cosine), 1.005f)
                     << roughness << ' ' << cosine << " eta " << eta;
@@ -178,19 +198,23 @@ TEST(Microfacet, FresnelAtNormalIncidenceAndAtTheCriticalAngle) {
     EXPECT_LT(fresnel_dielectric(0.75f, splat(1 / 1.5f))[0], 1.f);
     // Brewster's angle: the parallel part vanishes, half of the perpendicular one is left.
     const float brewster = std::cos(std::atan(1.5f));
-    EXPECT_NEAR(fresnel_dielectric(brewster, splat(1.5f))[0], 0.5f * sqr((1 - 2.25f) / (1 + 2.25f)), 1e-5f);
+    EXPECT_NEAR(fresnel_dielectric(brewster, splat(1.5f))[0], 0.5f * sqr((1 - 2.25f) / (1 + 2.25f)),
+                1e-5f);
 }
 
 struct Case {
     const char* name;
     BsdfInput in;
     float cosine;
+    int lane = 1;
+    f4 throughput = splat(1.f);
 };
 
 class BsdfSampling : public testing::TestWithParam<Case> {};
 
 TEST_P(BsdfSampling, DirectionsFollowTheDensity) {
-    const Bsdf bsdf(GetParam().in, Bands::rgb(), from_cosine(GetParam().cosine, 0.7f));
+    const Bsdf bsdf(GetParam().in, Bands::rgb(), from_cosine(GetParam().cosine, 0.7f),
+                    GetParam().throughput);
     const auto draw = [&](test::Random& random) -> std::optional<V3f> {
         const float u_lobe = random.next();
         const auto s = bsdf.sample(u_lobe, random.next2());
@@ -203,17 +227,19 @@ TEST_P(BsdfSampling, DirectionsFollowTheDensity) {
 // The integral of the value over uniform directions, which know nothing of the lobes, against the
 // mean weight of the sampler's own.
 TEST_P(BsdfSampling, WeightsIntegrateTheValue) {
-    const Bsdf bsdf(GetParam().in, Bands::rgb(), from_cosine(GetParam().cosine, 0.7f));
+    const Bsdf bsdf(GetParam().in, Bands::rgb(), from_cosine(GetParam().cosine, 0.7f),
+                    GetParam().throughput);
+    const int lane = GetParam().lane;
     constexpr int n = 400000;
     test::Random random(5);
     double value = 0, value2 = 0, weight = 0, weight2 = 0;
     for (int i = 0; i < n; ++i) {
-        const double f = 4 * M_PI * bsdf.eval(random.direction()).f_cos[1];
+        const double f = 4 * M_PI * bsdf.eval(random.direction()).f_cos[lane];
         value += f;
         value2 += f * f;
         const float u_lobe = random.next();
         const auto s = bsdf.sample(u_lobe, random.next2());
-        const double w = s ? s->weight[1] : 0.f;
+        const double w = s ? s->weight[lane] : 0.f;
         weight += w;
         weight2 += w * w;
     }
@@ -222,19 +248,74 @@ TEST_P(BsdfSampling, WeightsIntegrateTheValue) {
     EXPECT_NEAR(value / n, weight / n, 4.5 * std::sqrt(variance));  // alpha 0.01 over 1000 tests
 }
 
-INSTANTIATE_TEST_SUITE_P(All, BsdfSampling,
-                         testing::Values(Case{"diffuse", dielectric(1.f), 0.7f},
-                                         Case{"coat", dielectric(0.4f), 0.4f},
-                                         Case{"metal", metal(0.5f), 0.6f},
-                                         Case{"grazing metal", metal(0.7f), 0.1f},
-                                         Case{"glass in", glass(0.5f, 1.5f), 0.7f},
-                                         Case{"glass out", glass(0.5f, 1 / 1.5f), 0.8f},
-                                         Case{"thin", thin_glass(0.6f), 0.5f}),
-                         [](const auto& case_info) {
-                             std::string name = case_info.param.name;
-                             for (char& c : name) c = c == ' ' ? '_' : c;
-                             return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    All, BsdfSampling,
+    testing::Values(Case{"diffuse", dielectric(1.f), 0.7f}, Case{"coat", dielectric(0.4f), 0.4f},
+                    Case{"metal", metal(0.5f), 0.6f}, Case{"grazing metal", metal(0.7f), 0.1f},
+                    Case{"glass in", glass(0.5f, 1.5f), 0.7f},
+                    Case{"glass out", glass(0.5f, 1 / 1.5f), 0.8f},
+                    Case{"thin", thin_glass(0.6f), 0.5f}, Case{"gold", gold(0.5f), 0.6f},
+                    Case{"dispersing in", dispersing(0.5f, false), 0.7f, 0},
+                    Case{"dispersing out", dispersing(0.5f, true), 0.8f, 2},
+                    Case{"one lane left", dispersing(0.5f, true), 0.8f, 2, f4{0, 0, 1, 0}},
+                    Case{"unequal lanes", dispersing(0.4f, false), 0.6f, 1, f4{1, 0.2f, 3, 0}}),
+    [](const auto& case_info) {
+        std::string name = case_info.param.name;
+        for (char& c : name) c = c == ' ' ? '_' : c;
+        return name;
+    });
+
+// The mean over what is drawn is the same for each lane, though each refracts another way.
+TEST(Bsdf, SmoothDispersingGlassLosesNothingInAnyLane) {
+    const f4 throughput{1.f, 0.3f, 2.f, 0.f};
+    for (const bool from_inside : {false, true})
+        for (const float cosine : {0.3f, 0.66f, 0.9f}) {
+            const BsdfInput in = dispersing(0.f, from_inside);
+            const Bsdf bsdf(in, Bands::rgb(), from_cosine(cosine), throughput);
+            constexpr int n = 1 << 16;
+            std::array<double, 3> sum{}, refracted{};
+            for (int i = 0; i < n; ++i) {
+                const auto s = bsdf.sample((static_cast<float>(i) + 0.5f) / n, {0.5f, 0.5f});
+                ASSERT_TRUE(s && s->delta);
+                for (size_t lane = 0; lane < 3; ++lane) {
+                    const float weight = s->weight[static_cast<int>(lane)];
+                    sum[lane] += weight / n;
+                    if (!s->transmitted) continue;
+                    refracted[lane] += weight / n;
+                    if (weight == 0.f) continue;
+                    // Snell's law for the one lane that is left.
+                    EXPECT_NEAR(std::hypot(s->wi.x, s->wi.y),
+                                safe_sqrt(1 - sqr(cosine)) / in.eta[static_cast<int>(lane)], 1e-5f);
+                    EXPECT_EQ(hsum(s->weight), weight);
+                }
+            }
+            const f4 reflectance = fresnel_dielectric(cosine, in.eta);
+            for (size_t lane = 0; lane < 3; ++lane) {
+                EXPECT_NEAR(sum[lane], 1., 1e-3) << lane << ' ' << cosine << from_inside;
+                EXPECT_NEAR(refracted[lane], 1 - reflectance[static_cast<int>(lane)], 1e-3);
+            }
+        }
+}
+
+TEST(Bsdf, MeasuredMetalReflectsAsItsIndexSays) {
+    const BsdfInput in = gold(0.f);
+    for (const float cosine : {1.f, 0.5f, 0.05f}) {
+        const Bsdf bsdf(in, Bands::rgb(), from_cosine(cosine));
+        const auto s = bsdf.sample(0.5f, {0.5f, 0.5f});
+        ASSERT_TRUE(s);
+        for (int lane = 0; lane < 3; ++lane) {
+            // Fresnel's amplitudes in complex arithmetic: another way to the same number.
+            const std::complex<double> index(in.metal_n[lane], in.metal_k[lane]);
+            const std::complex<double> behind =
+                std::sqrt(1. - (1. - cosine * double(cosine)) / (index * index));
+            const double rs =
+                std::norm((double(cosine) - index * behind) / (double(cosine) + index * behind));
+            const double rp =
+                std::norm((index * double(cosine) - behind) / (index * double(cosine) + behind));
+            EXPECT_NEAR(s->weight[lane], (rs + rp) / 2, 2e-6) << lane << ' ' << cosine;
+        }
+    }
+}
 
 // Where one lobe answers alone, its density is the inverse of the area that u is spread over.
 TEST(Bsdf, JacobianOfTheReflectionLobe) {

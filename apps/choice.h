@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// An option whose value is one of a few words.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace petzval {
+
+template <class T>
+using Choices = std::vector<std::pair<std::string, T>>;
+
+/// Any other word ends with exit code 2 and the list of the known ones. value must outlive parsing.
+template <class T>
+CLI::Option* add_choice(CLI::App& app, const std::string& name, T& value, const Choices<T>& choices,
+                        const std::string& help) {
+    const auto read = [=, &value](const std::string& text) {
+        std::string known;
+        for (const auto& [word, choice] : choices) {
+            if (word == text) {
+                value = choice;
+                return;
+            }
+            known += (known.empty() ? "" : ", ") + word;
+        }
+        throw CLI::ValidationError(name, fmt::format("\"{}\" is none of {}", text, known));
+    };
+    return app.add_option_function<std::string>(name, read, help);
+}
+
+}  // namespace petzval

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/spectral_options.h"
+
+#include "apps/choice.h"
+#include "apps/parse.h"
+
+namespace petzval {
+
+void add_spectral_options(CLI::App& app, SpectralOptions& o) {
+    SpectralRequest& s = o.request;
+    const auto group = [](CLI::Option* option) { option->group("Spectrum"); };
+    group(add_choice<SpectralMode>(
+        app, "--spectral", s.mode,
+        {{"auto", SpectralMode::Auto}, {"rgb", SpectralMode::Rgb}, {"hero", SpectralMode::Hero}},
+        "what a path carries: rgb, four wavelengths (hero), or auto "
+        "(default): wavelengths where something depends on them"));
+    group(app.add_option("--bins", o.bins,
+                         "FIRST:LAST:WIDTH in nm, as 380:730:10: a spectrum for each pixel of the "
+                         "EXR, with its standard error"));
+    group(app.add_option("--illuminant", s.illuminant,
+                         "what white RGB light means: d65 (default), a, f11, FILE.csv"));
+    group(app.add_option("--response", s.response,
+                         "sensitivities of R, G and B: cie1931 (default), FILE.csv"));
+    group(add_choice<WhiteBalance>(
+        app, "--white-balance", s.white_balance,
+        {{"none", WhiteBalance::None}, {"illuminant", WhiteBalance::Illuminant}},
+        "none (default); illuminant: the illuminant looks white"));
+}
+
+void resolve(SpectralOptions& o) {
+    if (o.bins.empty()) return;
+    o.request.bins = parse_bins("--bins", o.bins);
+    if (o.request.mode == SpectralMode::Rgb)
+        throw CLI::ValidationError("--bins", "needs wavelengths: leave out --spectral rgb");
+}
+
+}  // namespace petzval

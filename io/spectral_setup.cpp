@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/spectral_setup.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <stdexcept>
+
+#include "core/sensor_fit.h"
+#include "io/error.h"
+#include "io/needs_wavelengths.h"
+#include "io/spectra.h"
+
+namespace petzval {
+namespace {
+
+using Notice = std::function<void(const std::string&)>;
+
+// What of request and scene only wavelengths can show.
+std::vector<std::string> reasons(const SpectralRequest& request, const Scene& scene) {
+    std::vector<std::string> found;
+    if (request.bins) found.emplace_back("--bins asks for spectra");
+    if (request.illuminant != "d65")
+        found.push_back(fmt::format("--illuminant is {}", request.illuminant));
+    if (request.response != "cie1931")
+        found.push_back(fmt::format("--response is {}", request.response));
+    for (std::string& reason : reasons_for_wavelengths(scene)) found.push_back(std::move(reason));
+    return found;
+}
+
+bool decide(const SpectralRequest& request, const Scene& scene, const Notice& notice) {
+    const std::vector<std::string> why = reasons(request, scene);
+    const std::string because = fmt::format("{}", fmt::join(why, "; "));
+    switch (request.mode) {
+        case SpectralMode::Auto:
+            if (why.empty()) {
+                notice("spectral: rgb, as nothing here depends on wavelength");
+                return false;
+            }
+            notice("spectral: hero wavelengths, as " + because);
+            return true;
+        case SpectralMode::Rgb:
+            notice("spectral: rgb, as --spectral says");
+            if (!why.empty()) notice("warning: --spectral rgb cannot show that " + because);
+            return false;
+        case SpectralMode::Hero:
+            notice("spectral: hero wavelengths, as --spectral says");
+            return true;
+    }
+    return false;
+}
+
+void warn_of_glasses(const SpectralRequest& request, const Scene& scene, const Notice& notice) {
+    for (const std::string& warning : glass_range_warnings(scene)) notice("warning: " + warning);
+    if (!request.bins) return;
+    const auto beyond =
+        glass_beyond(scene, request.bins->first_edge_nm, request.bins->last_edge_nm());
+    if (beyond) throw ArgumentError("--bins", "", *beyond);
+}
+
+std::array<V3f, 3> rows(const Matrix3& m) {
+    return {V3f(m.row[0]), V3f(m.row[1]), V3f(m.row[2])};
+}
+
+// XYZ to the film's linear sRGB: D65 is its white, or whatever the illuminant is after adaptation.
+Matrix3 to_srgb(const SpectralRequest& request, const ObserverInput& in) {
+    const auto white_of = [&](const SpectrumTable& light) {
+        const V3d xyz = respond(in.xyz_bar, light);
+        return xyz / xyz.y;
+    };
+    const V3d d65 = white_of(find_illuminant("d65"));
+    const Matrix3 matrix = srgb_to_xyz(d65).inverse();
+    if (request.white_balance == WhiteBalance::None) return matrix;
+    return matrix * bradford(white_of(in.white), d65);
+}
+
+Matrix3 fitted(const SpectralRequest& request, const ObserverInput& in, const Matrix3& xyz_to_srgb,
+               const Notice& notice) {
+    if (request.response == "cie1931") return xyz_to_srgb;
+    const std::vector<SpectrumTable> training = training_reflectances();
+    try {
+        const SensorFit fit = fit_sensor(in.response, in.xyz_bar, in.white, xyz_to_srgb, training);
+        notice(
+            fmt::format("response {}: matrix fitted to {} reflectances, residual CIEDE2000 {:.2f} "
+                        "mean, {:.2f} worst",
+                        request.response, training.size(), fit.mean_delta_e, fit.worst_delta_e));
+        return fit.matrix;
+    } catch (const std::invalid_argument& error) {
+        throw InputError(request.response, "", error.what());
+    }
+}
+
+}  // namespace
+
+SpectralSetup set_up_spectra(const SpectralRequest& request, const Scene& scene,
+                             const Notice& notice) {
+    SpectralSetup setup;
+    if (!decide(request, scene, notice)) {
+        setup.metadata = {{"petzval:spectral", "rgb"}};
+        return setup;
+    }
+    warn_of_glasses(request, scene, notice);
+    ObserverInput in;
+    in.xyz_bar = standard_observer();
+    in.response = find_response(request.response);
+    in.white = find_illuminant(request.illuminant);
+    in.basis = rgb_basis();
+    for (const Illuminant& light : scene.illuminants) in.lights.push_back(light.per_nit);
+    in.bins = request.bins;
+    in.matrix = rows(fitted(request, in, to_srgb(request, in), notice));
+    setup.observer = Observer(in);
+
+    const auto numbers = [](const V3f& v) {
+        return fmt::format("{:.9g},{:.9g},{:.9g}", v.x, v.y, v.z);
+    };
+    setup.metadata = {
+        {"petzval:spectral", "hero"},
+        {"petzval:illuminant", request.illuminant},
+        {"petzval:response", request.response},
+        {"petzval:whiteBalance",
+         request.white_balance == WhiteBalance::None ? "none" : "illuminant"},
+        {"petzval:responseToSrgb", fmt::format("{};{};{}", numbers(in.matrix[0]),
+                                               numbers(in.matrix[1]), numbers(in.matrix[2]))}};
+    return setup;
+}
+
+}  // namespace petzval

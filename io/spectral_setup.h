@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether a render carries wavelengths, and who looks at them.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/observer.h"
+#include "core/scene.h"
+
+namespace petzval {
+
+enum class SpectralMode { Auto, Rgb, Hero };
+enum class WhiteBalance { None, Illuminant };
+
+struct SpectralRequest {
+    SpectralMode mode = SpectralMode::Auto;
+    std::optional<Bins> bins;
+    std::string illuminant = "d65", response = "cie1931";  ///< names, or CSV files
+    WhiteBalance white_balance = WhiteBalance::None;
+};
+
+struct SpectralSetup {
+    Observer observer;
+    /// What the pixels follow from, for the picture's metadata.
+    std::vector<std::pair<std::string, std::string>> metadata;
+};
+
+/// Decides between RGB and wavelengths, tells `notice` the decision with its reason, and reads what
+/// the decision needs. Throws InputError for a file that is not as it should be, ArgumentError for
+/// bins that a glass of the scene is not known for.
+[[nodiscard]] SpectralSetup set_up_spectra(const SpectralRequest&, const Scene&,
+                                           const std::function<void(const std::string&)>& notice);
+
+}  // namespace petzval

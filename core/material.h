@@ -50,6 +50,8 @@ struct Material {
     [[nodiscard]] bool emits() const {
         return emissive[0] > 0 || emissive[1] > 0 || emissive[2] > 0;
     }
+    /// Some of the light that meets it is refracted into it.
+    [[nodiscard]] bool refracts() const { return has_volume && transmission > 0 && metallic < 1; }
 };
 
 }  // namespace petzval

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tables of numbers as text.
+// Tables as text: one line of names, then rows, separated by commas. Lines that begin with # and
+// empty lines are comments.
 #pragma once
 
 #include <filesystem>
@@ -8,20 +9,27 @@
 
 namespace petzval {
 
-/// Columns of finite numbers under one line of names, separated by commas. Lines that begin with #
-/// and empty lines are comments.
-struct CsvTable {
+/// What a table's cells are: text without the spaces around it, or finite numbers.
+template <class Cell>
+struct Table {
     std::string file;
     std::vector<std::string> names;
-    std::vector<std::vector<double>> rows;  ///< each as long as names; at least one
-    std::vector<int> line_of_row;           ///< for messages, from 1
+    std::vector<std::vector<Cell>> rows;  ///< each as long as names; at least one
+    std::vector<int> line_of_row;         ///< for messages, from 1
 
     /// "line N", for InputError's place.
-    [[nodiscard]] std::string place(size_t row) const;
+    [[nodiscard]] std::string place(size_t row) const {
+        return "line " + std::to_string(line_of_row[row]);
+    }
 };
+using CsvText = Table<std::string>;
+using CsvTable = Table<double>;
 
-/// Throws InputError with the line: a missing or broken number, a row too short or too long, no
-/// row, a file that cannot be read or is not text.
+/// Throws InputError with the line: a row too short or too long, no row, a file over 4 MiB, one
+/// that cannot be read or is not text.
+[[nodiscard]] CsvText read_csv_text(const std::filesystem::path&);
+
+/// As read_csv_text; and a missing or broken number, one that is not finite, no line of names.
 [[nodiscard]] CsvTable read_csv(const std::filesystem::path&);
 
 }  // namespace petzval

@@ -20,7 +20,7 @@ GltfFile load_gltf(const std::filesystem::path& path) {
     const GltfNodes nodes = flatten_nodes(gltf);
     GltfMaterials materials(gltf, file.scene, tally);
     place_meshes(gltf, nodes, materials, file.scene, tally);
-    file.scene.lights = read_lights(gltf, nodes, tally);
+    read_lights(gltf, nodes, file.scene, tally);
     file.cameras = read_cameras(gltf, nodes, tally);
 
     file.hash = source.hash;

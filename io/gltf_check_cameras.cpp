@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "io/gltf_check.h"
+#include "io/gltf_spectral.h"
 #include "io/json_parse.h"
 
 namespace petzval {
@@ -43,6 +44,7 @@ void check_light(GltfCheck& check, const JsonCursor& light) {
     (void)light.numbers("color", 3, {0, 1});
     (void)light.number_or("intensity", 1, not_negative);
     if (light.has("range")) (void)positive(light, "range");
+    check_light_extras(light);
     const std::string type = light.text("type");
     if (type == "spot")
         check_spot(light.object("spot"));

@@ -7,6 +7,7 @@
 
 #include "io/gltf_check.h"
 #include "io/gltf_extensions.h"
+#include "io/gltf_spectral.h"
 
 namespace petzval {
 namespace {
@@ -60,6 +61,8 @@ void check_volume(const JsonCursor& volume) {
 }
 
 void check_material_extensions(const JsonCursor& material) {
+    if (const auto dispersion = material.extension("KHR_materials_dispersion"))
+        (void)dispersion->number_or("dispersion", 0, not_negative);
     if (const auto strength = material.extension("KHR_materials_emissive_strength"))
         (void)strength->number_or("emissiveStrength", 1, not_negative);
     if (const auto transmission = material.extension("KHR_materials_transmission"))
@@ -100,6 +103,7 @@ void check_materials(GltfCheck& check) {
     for (const JsonCursor& material : check.root.objects("materials")) {
         check_core(material);
         check_material_extensions(material);
+        check_material_extras(material);
         for (const JsonCursor& owner : texture_owners(material, false))
             for (const JsonCursor& info : texture_infos(owner)) check_texture_info(info, textures);
     }

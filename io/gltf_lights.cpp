@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "io/gltf_spectral.h"
 #include "io/json_cursor.h"
 
 namespace petzval {
@@ -36,6 +37,13 @@ std::optional<Light> make_light(const tinygltf::Light& light, const M44d& to_wor
     const double inner_rad = std::min(light.spot.innerConeAngle, outer_rad);
     return SpotLight{position, *direction, colour, static_cast<float>(std::cos(inner_rad)),
                      static_cast<float>(std::cos(outer_rad))};
+}
+
+void set_illuminant(Light& light, int32_t illuminant) {
+    const auto set = [&](auto& kind) {
+        if constexpr (requires { kind.illuminant; }) kind.illuminant = illuminant;
+    };
+    std::visit(set, light);
 }
 
 bool is_dark(const tinygltf::Light& light) {
@@ -76,24 +84,26 @@ bool is_usable(const GltfCamera& camera) {
 
 }  // namespace
 
-std::vector<Light> read_lights(const GltfModel& gltf, const GltfNodes& nodes, GltfTally& tally) {
-    std::vector<Light> lights;
-    const auto json = JsonCursor(gltf.source.json, gltf.file).objects("nodes");
+void read_lights(const GltfModel& gltf, const GltfNodes& nodes, Scene& scene, GltfTally& tally) {
+    const JsonCursor root(gltf.source.json, gltf.file);
+    const auto definitions = root.extension("KHR_lights_punctual");
+    if (!definitions) return;
+    const auto lights = definitions->objects("lights"), json = root.objects("nodes");
     for (int node : nodes.in_scene) {
         const auto index = static_cast<size_t>(node);
         const auto extension = json[index].extension("KHR_lights_punctual");
         if (!extension) continue;
-        const tinygltf::Light& light = gltf.typed.lights.at(
-            extension->required_index("light", gltf.typed.lights.size(), "light"));
+        const size_t number = extension->required_index("light", lights.size(), "light");
+        const tinygltf::Light& light = gltf.typed.lights.at(number);
         if (is_dark(light)) continue;
-        if (const auto made = make_light(light, nodes.to_world[index])) {
+        if (auto made = make_light(light, nodes.to_world[index])) {
             tally.ranged_lights += light.range > 0;
-            lights.push_back(*made);
+            set_illuminant(*made, read_illuminant(lights[number], scene, tally));
+            scene.lights.push_back(*made);
         } else {
             tally.warnings.push_back(json_path("nodes", node) + ": its light is left out");
         }
     }
-    return lights;
 }
 
 std::vector<GltfCamera> read_cameras(const GltfModel& gltf, const GltfNodes& nodes,

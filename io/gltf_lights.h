@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/light.h"
+#include "core/scene.h"
 #include "io/gltf.h"
 #include "io/gltf_model.h"
 #include "io/gltf_nodes.h"
@@ -12,8 +12,9 @@
 
 namespace petzval {
 
-/// Punctual lights of the scene's nodes, in depth-first order; those of no intensity are left out.
-[[nodiscard]] std::vector<Light> read_lights(const GltfModel&, const GltfNodes&, GltfTally&);
+/// Adds the punctual lights of the scene's nodes, in depth-first order, but those of no intensity;
+/// and the illuminants that they name.
+void read_lights(const GltfModel&, const GltfNodes&, Scene&, GltfTally&);
 
 /// Cameras of the scene's nodes, in depth-first order.
 [[nodiscard]] std::vector<GltfCamera> read_cameras(const GltfModel&, const GltfNodes&, GltfTally&);

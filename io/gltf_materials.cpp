@@ -3,6 +3,7 @@
 
 #include <tiny_gltf.h>
 
+#include "io/gltf_spectral.h"
 #include "io/json_parse.h"
 
 namespace petzval {
@@ -76,6 +77,7 @@ Material GltfMaterials::read(size_t index) {
         read_specular(json, material);
         read_glass(json, material);
     }
+    read_spectral(json, material, scene_, tally_);
     count(json, material);
     return material;
 }

@@ -15,7 +15,9 @@ namespace petzval {
 inline void add_scene(TinyGltf& file) {
     using nlohmann::literals::operator""_json;
     file.json["materials"] = R"([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}},
-        "extensions": {"KHR_materials_ior": {"ior": 1.4}}}])"_json;
+        "extensions": {"KHR_materials_ior": {"ior": 1.4},
+                       "KHR_materials_dispersion": {"dispersion": 0.3}},
+        "extras": {"petzval": {"glass": "schott:N-SF11", "illuminant": "a"}}}])"_json;
     file.json["textures"] = R"([{"source": 0, "sampler": 0}])"_json;
     file.json["samplers"] = R"([{"magFilter": 9728}])"_json;
     file.json["cameras"] = R"([{"type": "perspective", "perspective": {"yfov": 1, "znear": 1}},
@@ -27,9 +29,11 @@ inline void add_scene(TinyGltf& file) {
     file.json["scenes"] = R"([{"nodes": [0]}])"_json;
     file.json["scene"] = 0;
     file.json["extensionsUsed"] =
-        R"(["KHR_lights_punctual", "KHR_materials_ior", "KHR_texture_transform"])"_json;
+        R"(["KHR_lights_punctual", "KHR_materials_ior", "KHR_texture_transform",
+            "KHR_materials_dispersion"])"_json;
     file.json["extensions"] = R"({"KHR_lights_punctual": {"lights": [
-        {"type": "spot", "spot": {"innerConeAngle": 0.1, "outerConeAngle": 0.2}}]}})"_json;
+        {"type": "spot", "spot": {"innerConeAngle": 0.1, "outerConeAngle": 0.2},
+         "extras": {"petzval": {"illuminant": "f11"}}}]}})"_json;
     file.json["animations"] = R"([{"samplers": [{"input": 6, "output": 0}],
         "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}])"_json;
 }

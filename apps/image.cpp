@@ -8,9 +8,12 @@
 #include <optional>
 
 #include "apps/output_checks.h"
+#include "apps/parse.h"
 #include "io/error.h"
 #include "io/image_diff.h"
 #include "io/output.h"
+#include "io/plot.h"
+#include "io/spectral_layout.h"
 
 namespace petzval {
 namespace {
@@ -82,6 +85,33 @@ void add_view(CLI::App& image) {
         [options] { write_output(options->out, read_picture(options->in), options->display); });
 }
 
+struct SpectrumOptions {
+    std::string in, pixel, plot;
+};
+
+void spectrum_command(const SpectrumOptions& o) {
+    const V2i at = parse_pixel("pixel", o.pixel);
+    if (!o.plot.empty()) check_plot(o.plot);
+    const auto spectrum = spectrum_of_pixel(read_picture(o.in), o.in, at.x, at.y);
+    if (!o.plot.empty())
+        write_plot(o.plot, {.title = fmt::format("pixel {},{} of {}", at.x, at.y, o.in),
+                            .x_label = "wavelength (nm)",
+                            .y_label = "spectral radiance (W m⁻² sr⁻¹ nm⁻¹)",
+                            .series = {{spectrum, PlotStyle::Steps, ""}}});
+    for (const auto& [nm, value] : spectrum) fmt::print("{:.7g} {:.9g}\n", nm, value);
+}
+
+void add_spectrum(CLI::App& image) {
+    auto options = std::make_shared<SpectrumOptions>();
+    CLI::App* spectrum =
+        image.add_subcommand("spectrum", "print one pixel of a spectral picture: nm and value");
+    spectrum->add_option("picture", options->in, "spectral .exr, as render --bins writes")
+        ->required();
+    spectrum->add_option("pixel", options->pixel, "x,y in pixels of the full frame")->required();
+    spectrum->add_option("-o,--output", options->plot, "plot to write too, .svg or .png");
+    spectrum->callback([options] { spectrum_command(*options); });
+}
+
 }  // namespace
 
 void add_image_commands(CLI::App& app) {
@@ -89,6 +119,7 @@ void add_image_commands(CLI::App& app) {
     image->require_subcommand(1);
     add_diff(*image);
     add_view(*image);
+    add_spectrum(*image);
 }
 
 }  // namespace petzval

@@ -8,8 +8,8 @@ class App;
 
 namespace petzval {
 
-/// Adds the subcommands "image diff" and "image view"; their callbacks do the work and throw
-/// InputError, also for pictures further apart than --fail-above allows.
+/// Adds the subcommands "image diff", "image view" and "image spectrum"; their callbacks do the work
+/// and throw InputError, also for pictures further apart than --fail-above allows.
 void add_image_commands(CLI::App&);
 
 }  // namespace petzval

@@ -87,6 +87,14 @@ Rect parse_crop(const std::string& option, const std::string& text, V2i frame) {
     refuse(option, text, fmt::format("x,y,width,height inside the {}x{} frame", frame.x, frame.y));
 }
 
+V2i parse_pixel(const std::string& option, const std::string& text) {
+    if (const auto parts = split(text, ','); parts.size() == 2) {
+        const auto x = number<int>(parts[0]), y = number<int>(parts[1]);
+        if (x && y) return {*x, *y};
+    }
+    refuse(option, text, "a pixel x,y");
+}
+
 double parse_duration_s(const std::string& option, const std::string& text) {
     double unit_s = 1;
     std::string_view digits = text;

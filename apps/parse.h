@@ -25,6 +25,8 @@ namespace petzval {
                                double most);
 /// "x,y,w,h" in pixels of a frame; must lie inside it and hold a pixel.
 [[nodiscard]] Rect parse_crop(const std::string& option, const std::string& text, V2i frame);
+/// "x,y": two whole numbers.
+[[nodiscard]] V2i parse_pixel(const std::string& option, const std::string& text);
 /// "90", "90s", "1.5m", "2h": seconds above 0.
 [[nodiscard]] double parse_duration_s(const std::string& option, const std::string& text);
 /// "auto", "1.5", "1.5m" (metres above 0) or "x,y" (a pixel of the frame).

@@ -57,7 +57,7 @@ int render_command(RenderOptions& o) {
     const Notice notice = notice_to_stderr(o);
     const Session session = executor.inside([&] { return open_session(o.scene, notice); });
     o.path.backdrop = session.backdrop;
-    o.job.observer = session.spectra.observer;
+    o.job.observer = session.observer;
     Film film(o.scene.size, frame.crop, frame.aovs, o.scene.spectral.bins);
     const PathTracer tracer(*session.scene, *session.bvh, *session.lights, o.path);
 
@@ -72,7 +72,7 @@ int render_command(RenderOptions& o) {
     cost.threads = o.threads;
 
     report_bad_samples(film, notice);
-    const Picture picture = develop(film, session, o.job, o.path, result.end_sample);
+    const PictureRows picture = develop(film, session, o.job, o.path, result.end_sample);
     if (result.stopped) {
         for (const auto& partial : write_partial(o.outputs, picture))
             notice(fmt::format("stopped: what there is, is in {}", partial.string()));

@@ -170,8 +170,7 @@ void require_memory(const RenderFrame& frame, const std::optional<Bins>& bins) {
     const double pixels = static_cast<double>(frame.crop.width()) * frame.crop.height();
     const double layers = static_cast<double>(frame.aovs.size());
     const double spectral = bins ? 8. * bins->count + 24 + 12 * kScrambles : 0;
-    const double film = 48 + 24 * layers + spectral, pictures = 2 * 4 * (4 + 3 * layers);
-    const double needed = pixels * (film + pictures);
+    const double needed = pixels * (48 + 24 * layers + spectral);
     const double there =
         static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
     if (needed > there)

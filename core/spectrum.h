@@ -30,13 +30,13 @@ struct Rgb {
 /// each. Numbers of the scene come in, and the film's go out, by linear maps that do not ask which.
 /// Nothing but core/spectrum, core/colour and core/observer looks inside.
 struct Bands {
-    f4 nm{};                ///< wavelengths in air; 0 while the lanes carry linear RGB
-    f4 pdf{};               ///< density of each wavelength, 1/nm; 1 for RGB
-    m4 on{};                ///< lanes in use
-    f4 red, green, blue;    ///< reflectance of what is 1 in R, in G, in B
-    f4 white;               ///< radiance of the white light at 1 nit, W/(m2 sr nm); 1 for RGB
-    f4 to_r, to_g, to_b;    ///< what a unit of each lane adds to the film's R, G, B
-    bool spectral = false;  ///< nm holds wavelengths
+    f4 nm{};                    ///< wavelengths in air; 0 while the lanes carry linear RGB
+    f4 pdf{};                   ///< density of each wavelength, 1/nm; 1 for RGB
+    m4 on{};                    ///< lanes in use
+    f4 red{}, green{}, blue{};  ///< reflectance of what is 1 in R, in G, in B
+    f4 white{};                 ///< radiance of the white light at 1 nit, W/(m2 sr nm); 1 for RGB
+    f4 to_r{}, to_g{}, to_b{};  ///< what a unit of each lane adds to the film's R, G, B
+    bool spectral = false;      ///< nm holds wavelengths
 
     /// Lanes 0 to 2 carry linear R, G and B.
     [[nodiscard]] static Bands rgb() {

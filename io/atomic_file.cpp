@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -44,14 +45,34 @@ class Descriptor {
     int fd_;
 };
 
-/// Error number, 0 for none.
-int write_all(int fd, std::span<const uint8_t> bytes) {
+/// Error number of writing at a place; 0 for none.
+int write_at(int fd, std::span<const uint8_t> bytes, uint64_t offset) {
     while (!bytes.empty()) {
-        const ssize_t written = ::write(fd, bytes.data(), bytes.size());
+        const ssize_t written =
+            ::pwrite(fd, bytes.data(), bytes.size(), static_cast<off_t>(offset));
         if (written < 0 && errno != EINTR) return errno;
-        if (written > 0) bytes = bytes.subspan(static_cast<size_t>(written));
+        if (written <= 0) continue;
+        offset += static_cast<uint64_t>(written);
+        bytes = bytes.subspan(static_cast<size_t>(written));
     }
     return 0;
+}
+
+/// Copies a whole file to a stream. Error number, 0 for none.
+int copy_all(int from, int to) {
+    std::array<uint8_t, 65536> bytes;
+    for (off_t offset = 0;;) {
+        const ssize_t there = ::pread(from, bytes.data(), bytes.size(), offset);
+        if (there == 0) return 0;
+        if (there < 0 && errno != EINTR) return errno;
+        for (ssize_t done = 0; done < there;) {
+            const ssize_t written =
+                ::write(to, bytes.data() + done, static_cast<size_t>(there - done));
+            if (written < 0 && errno != EINTR) return errno;
+            if (written > 0) done += written;
+        }
+        if (there > 0) offset += there;
+    }
 }
 
 /// Error number, 0 for none; file systems that cannot sync are no error.
@@ -60,7 +81,13 @@ int sync(int fd) {
     return errno;
 }
 
-/// A file of its own beside the target, deleted when it goes unless it was renamed.
+std::string random_name() {
+    std::random_device random;
+    return fmt::format(".petzval-{:08x}{:08x}", random(), random());
+}
+
+/// A file of its own beside the target: without a name where the file system has such files, else
+/// with one, and deleted when it goes unless it was renamed.
 class TemporaryFile {
   public:
     TemporaryFile(const fs::path& folder, const fs::path& for_message);
@@ -71,6 +98,16 @@ class TemporaryFile {
     }
     [[nodiscard]] Descriptor& file() { return *file_; }
     /// Error number, 0 for none.
+    [[nodiscard]] int name_it() {
+        if (!path_.empty()) return 0;
+        const std::string unnamed = fmt::format("/proc/self/fd/{}", file_->get());
+        const fs::path path = folder_ / random_name();
+        if (::linkat(AT_FDCWD, unnamed.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) != 0)
+            return errno;
+        path_ = path;
+        return 0;
+    }
+    /// Error number, 0 for none.
     [[nodiscard]] int rename_to(const fs::path& target) {
         if (::rename(path_.c_str(), target.c_str()) != 0) return errno;
         path_.clear();
@@ -78,14 +115,22 @@ class TemporaryFile {
     }
 
   private:
-    fs::path path_;
+    fs::path folder_, path_;
     std::optional<Descriptor> file_;
 };
 
-TemporaryFile::TemporaryFile(const fs::path& folder, const fs::path& for_message) {
-    std::random_device random;
+TemporaryFile::TemporaryFile(const fs::path& folder, const fs::path& for_message)
+    : folder_(folder) {
+    // Without /proc it could not get a name.
+    if (::access("/proc/self/fd", X_OK) == 0) {
+        const int fd = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+        if (fd >= 0) {
+            file_.emplace(fd);
+            return;
+        }
+    }
     for (;;) {
-        const fs::path path = folder / fmt::format(".petzval-{:08x}{:08x}", random(), random());
+        const fs::path path = folder / random_name();
         const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (fd >= 0) {
             path_ = path;
@@ -96,6 +141,16 @@ TemporaryFile::TemporaryFile(const fs::path& folder, const fs::path& for_message
         throw refusal(for_message, fmt::format("no file can be made in the folder {}: {}",
                                                folder.string(), std::strerror(errno)));
     }
+}
+
+/// What a stream waits in, open for reading too.
+Descriptor spool(const fs::path& for_message) {
+    std::FILE* file = std::tmpfile();
+    if (!file) throw system_refusal(for_message, errno);
+    Descriptor descriptor(::fcntl(::fileno(file), F_DUPFD_CLOEXEC, 0));
+    std::fclose(file);
+    if (descriptor.get() < 0) throw system_refusal(for_message, errno);
+    return descriptor;
 }
 
 /// What the path leads to, through any number of links up to Linux's own limit; it may not exist.
@@ -139,11 +194,10 @@ fs::path folder_of(const fs::path& target, const fs::path& for_message) {
     return folder;
 }
 
-void write_stream(const fs::path& path, std::span<const uint8_t> bytes) {
+Descriptor open_stream(const fs::path& path) {
     Descriptor file(::open(path.c_str(), O_WRONLY | O_APPEND | O_NOCTTY | O_CLOEXEC));
     if (file.get() < 0) throw system_refusal(path, errno);
-    if (const int error = write_all(file.get(), bytes)) throw system_refusal(path, error);
-    if (const int error = file.close()) throw system_refusal(path, error);
+    return file;
 }
 
 /// Owner (where that is allowed) and permissions of the file that is replaced.
@@ -160,22 +214,64 @@ void sync_folder(const fs::path& folder) {
 
 }  // namespace
 
-void write_file_atomically(const fs::path& path, std::span<const uint8_t> bytes) {
-    const std::optional<struct stat> status = status_of(path);
-    if (is_stream(path, status)) return write_stream(path, bytes);
+struct AtomicFile::State {
+    explicit State(const fs::path& target) : path(target), status(status_of(target)) {
+        if (is_stream(path, status)) {
+            spooled.emplace(spool(path));
+            return;
+        }
+        real_path = follow_links(path);
+        beside.emplace(folder_of(real_path, path), path);
+    }
+    void check(int error_number) const {
+        if (error_number != 0) throw system_refusal(path, error_number);
+    }
+    Descriptor& file() { return spooled ? *spooled : beside->file(); }
+    void rename();
+    void send();
 
-    const fs::path target = follow_links(path);
-    const fs::path folder = folder_of(target, path);
-    TemporaryFile temporary(folder, path);
-    const auto check = [&](int error) {
-        if (error != 0) throw system_refusal(path, error);
-    };
-    check(write_all(temporary.file().get(), bytes));
-    if (status) check(keep_rights(temporary.file().get(), *status));
-    check(sync(temporary.file().get()));
-    check(temporary.file().close());
-    check(temporary.rename_to(target));
-    sync_folder(folder);
+    fs::path path;
+    std::optional<struct stat> status;
+    fs::path real_path;
+    std::optional<Descriptor> spooled;    ///< of a stream,
+    std::optional<TemporaryFile> beside;  ///< or of a file
+    int error = 0;
+};
+
+void AtomicFile::State::rename() {
+    if (status) check(keep_rights(file().get(), *status));
+    check(sync(file().get()));
+    check(beside->name_it());
+    check(file().close());
+    check(beside->rename_to(real_path));
+    sync_folder(folder_of(real_path, path));
+}
+
+void AtomicFile::State::send() {
+    Descriptor stream = open_stream(path);
+    check(copy_all(file().get(), stream.get()));
+    check(stream.close());
+}
+
+AtomicFile::AtomicFile(const fs::path& target) : state_(std::make_unique<State>(target)) {}
+AtomicFile::~AtomicFile() = default;
+
+void AtomicFile::write(std::span<const uint8_t> bytes, uint64_t offset) noexcept {
+    if (state_->error == 0) state_->error = write_at(state_->file().get(), bytes, offset);
+}
+
+void AtomicFile::commit() {
+    state_->check(state_->error);
+    if (state_->spooled)
+        state_->send();
+    else
+        state_->rename();
+}
+
+void write_file_atomically(const fs::path& path, std::span<const uint8_t> bytes) {
+    AtomicFile file(path);
+    file.write(bytes, 0);
+    file.commit();
 }
 
 void write_file_atomically(const fs::path& path, std::string_view text) {

@@ -4,20 +4,42 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string_view>
 
 namespace petzval {
 
-/// Writes the bytes to a temporary file beside the target, syncs it and renames it over the target:
-/// on any error the target is as it was and nothing else is left behind. A link is followed, the
-/// permissions of a file that is replaced are kept. Pipes and devices (/dev/stdout, /dev/null) are
-/// written to directly. Throws InputError with the system's reason.
+/// A file that takes the place of its target, with the permissions of a file that was there, once
+/// it is committed; before, the target is as it was. Where the file system can, it has no name
+/// until then, so that nothing is left behind even by a process that is killed. A link is followed.
+/// What is meant for pipes and devices (/dev/stdout, /dev/null) waits in a file in /tmp.
+class AtomicFile {
+  public:
+    /// Throws InputError, with the system's reason, where the file could not be put in place.
+    explicit AtomicFile(const std::filesystem::path& target);
+    AtomicFile(const AtomicFile&) = delete;
+    AtomicFile& operator=(const AtomicFile&) = delete;
+    ~AtomicFile();
+
+    /// Writes at any place, in any order. The first failure is kept for commit(), and nothing is
+    /// written after it: libraries that encode pictures do not get along with failing writes.
+    void write(std::span<const uint8_t> bytes, uint64_t offset) noexcept;
+    /// Syncs and puts the file in place. Throws InputError with the system's reason, also for a
+    /// failed write.
+    void commit();
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// The same for bytes that are there already. Throws InputError with the system's reason.
 void write_file_atomically(const std::filesystem::path&, std::span<const uint8_t> bytes);
 void write_file_atomically(const std::filesystem::path&, std::string_view text);
 
-/// Throws what write_file_atomically would throw for a missing or locked folder, a folder in the
-/// place of the file, or a file that must not be changed: to be asked before hours of work.
+/// Throws what AtomicFile would throw for a missing or locked folder, a folder in the place of the
+/// file, or a file that must not be changed: to be asked before hours of work.
 void check_writable(const std::filesystem::path&);
 
 }  // namespace petzval

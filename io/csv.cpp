@@ -90,8 +90,8 @@ CsvText read_csv_text(const std::filesystem::path& path) {
         }
         if (cells.size() != table.names.size())
             throw refuse(
-                fmt::format("has {} columns, and the line of names has {}; separate columns "
-                            "by commas, decimals by a point",
+                fmt::format("number of columns is {}, and {} in the line of names; separate "
+                            "columns by commas, write decimals with a point",
                             cells.size(), table.names.size()));
         table.rows.push_back(std::move(cells));
         table.line_of_row.push_back(line_number);

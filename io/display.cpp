@@ -55,23 +55,22 @@ Config load_config_with(const std::string& view) {
     return loaded;
 }
 
-/// Sends interleaved pixels through the view. Lossless: OpenColorIO's fast powers are off by more
-/// than a 16-bit step.
-void apply_view(const std::string& view, std::vector<float>& pixels, long width, long height,
-                long channels) {
+/// What sends pixels through the view. Lossless: OpenColorIO's fast powers are off by more than a
+/// 16-bit step.
+ocio::ConstCPUProcessorRcPtr view_processor(const std::string& view) {
     const Config loaded = load_config_with(view);
     try {
-        const auto processor = loaded.config->getProcessor(
-            ocio::ROLE_SCENE_LINEAR, loaded.display(), view.c_str(), ocio::TRANSFORM_DIR_FORWARD);
-        ocio::PackedImageDesc image(pixels.data(), width, height, channels);
-        processor->getOptimizedCPUProcessor(ocio::OPTIMIZATION_LOSSLESS)->apply(image);
+        return loaded.config
+            ->getProcessor(ocio::ROLE_SCENE_LINEAR, loaded.display(), view.c_str(),
+                           ocio::TRANSFORM_DIR_FORWARD)
+            ->getOptimizedCPUProcessor(ocio::OPTIMIZATION_LOSSLESS);
     } catch (const ocio::Exception& error) {
         throw config_error(loaded.path, error);
     }
 }
 
 /// Where R, G and B are among the channels.
-std::array<int, 3> colour_channels(const Picture& picture) {
+std::array<int, 3> colour_channels(const PictureLayout& picture) {
     if (const int grey = channel_index(picture, "Y"); grey >= 0) return {grey, grey, grey};
     return {channel_index(picture, "R"), channel_index(picture, "G"), channel_index(picture, "B")};
 }
@@ -86,28 +85,33 @@ void check_view(const std::string& view) {
     static_cast<void>(load_config_with(view));
 }
 
-Picture to_display(const Picture& linear, float exposure_ev, const std::string& view,
-                   AlphaUse alpha_use) {
-    const std::array<int, 3> from = colour_channels(linear);
+PictureRows to_display(const PictureRows& linear, float exposure_ev, const std::string& view,
+                       AlphaUse alpha_use) {
+    const std::array<int, 3> from = colour_channels(linear.layout);
     if (*std::min_element(from.begin(), from.end()) < 0)
         throw InputError("the picture", "", "has no channels R, G and B (nor Y) to show");
-    const int alpha_from = alpha_use == AlphaUse::Keep ? channel_index(linear, "A") : -1;
+    const int alpha_from = alpha_use == AlphaUse::Keep ? channel_index(linear.layout, "A") : -1;
 
-    Picture shown = linear;
-    shown.channels = {"R", "G", "B"};
-    if (alpha_from >= 0) shown.channels.emplace_back("A");
-    shown.pixels.clear();
-    shown.pixels.reserve(size_t(linear.width) * linear.height * shown.channels.size());
+    PictureLayout layout = linear.layout;
+    layout.channels = {"R", "G", "B"};
+    if (alpha_from >= 0) layout.channels.emplace_back("A");
+    const size_t width = size_t(layout.width), channels = linear.layout.channels.size();
+    const long shown_channels = long(layout.channels.size());
     const float scale = std::exp2(exposure_ev);
-    for (size_t i = 0; i < linear.pixels.size(); i += linear.channels.size()) {
-        const float* pixel = &linear.pixels[i];
-        const float alpha = alpha_from < 0 ? 1.f : pixel[alpha_from];
-        for (const int channel : from)
-            shown.pixels.push_back(alpha > 0.f ? pixel[channel] * scale / alpha : 0.f);
-        if (alpha_from >= 0) shown.pixels.push_back(alpha);
-    }
-    apply_view(view, shown.pixels, shown.width, shown.height, long(shown.channels.size()));
-    return shown;
+    const auto row = [=, source = linear.row, processor = view_processor(view),
+                      values = std::vector<float>(width * channels)](int y, float* out) mutable {
+        source(y, values.data());
+        ocio::PackedImageDesc shown(out, long(width), 1, shown_channels);
+        for (size_t i = 0; i < values.size(); i += channels) {
+            const float* pixel = &values[i];
+            const float alpha = alpha_from < 0 ? 1.f : pixel[alpha_from];
+            for (const int channel : from)
+                *out++ = alpha > 0.f ? pixel[channel] * scale / alpha : 0.f;
+            if (alpha_from >= 0) *out++ = alpha;
+        }
+        processor->apply(shown);
+    };
+    return {std::move(layout), row};
 }
 
 }  // namespace petzval

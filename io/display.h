@@ -26,7 +26,7 @@ enum class AlphaUse : uint8_t {
 /// R, G, B (and A) of a linear picture with premultiplied alpha, times 2^exposure_ev, through the
 /// view; a grey picture (Y) counts as R = G = B. Values are those a display shows in [0, 1], not
 /// yet clamped. Throws InputError for an unknown view.
-[[nodiscard]] Picture to_display(const Picture& linear, float exposure_ev, const std::string& view,
-                                 AlphaUse alpha);
+[[nodiscard]] PictureRows to_display(const PictureRows& linear, float exposure_ev,
+                                     const std::string& view, AlphaUse alpha);
 
 }  // namespace petzval

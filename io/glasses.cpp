@@ -95,6 +95,13 @@ std::optional<Glass> find_glass(const std::string& maker_and_name) {
     return std::nullopt;
 }
 
+std::vector<Glass> glass_catalog() {
+    const CsvText catalog = read_catalog();
+    std::vector<Glass> glasses;
+    for (size_t i = 0; i < catalog.rows.size(); ++i) glasses.push_back(parse(catalog, i));
+    return glasses;
+}
+
 std::vector<std::string> glasses_near(const std::string& text) {
     // No name is nearly as long, and the distance takes time in proportion.
     const std::string wanted = lower(text.substr(0, 64));

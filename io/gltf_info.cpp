@@ -80,8 +80,7 @@ void describe_support(const GltfModel& gltf, const GltfTally& tally, GltfFile& f
            "the stored pose is shown");
     ignore(tally.occlusion_textures, "occlusion texture", "path tracing finds occlusion itself");
     ignore(tally.ranged_lights, "light range", "light falls off with the squared distance");
-    ignore(tally.idle_dispersions, "dispersion",
-           "the material refracts nothing");
+    ignore(tally.idle_dispersions, "dispersion", "the material refracts nothing");
     ignore(tally.point_primitives, "point primitive", "points have no surface");
     ignore(tally.line_primitives, "line primitive", "lines have no surface");
 }

@@ -89,6 +89,7 @@ void read_lights(const GltfModel& gltf, const GltfNodes& nodes, Scene& scene, Gl
     const auto definitions = root.extension("KHR_lights_punctual");
     if (!definitions) return;
     const auto lights = definitions->objects("lights"), json = root.objects("nodes");
+    GltfSpectral spectral(scene, tally);
     for (int node : nodes.in_scene) {
         const auto index = static_cast<size_t>(node);
         const auto extension = json[index].extension("KHR_lights_punctual");
@@ -98,7 +99,7 @@ void read_lights(const GltfModel& gltf, const GltfNodes& nodes, Scene& scene, Gl
         if (is_dark(light)) continue;
         if (auto made = make_light(light, nodes.to_world[index])) {
             tally.ranged_lights += light.range > 0;
-            set_illuminant(*made, read_illuminant(lights[number], scene, tally));
+            set_illuminant(*made, spectral.illuminant(lights[number]));
             scene.lights.push_back(*made);
         } else {
             tally.warnings.push_back(json_path("nodes", node) + ": its light is left out");

@@ -3,7 +3,6 @@
 
 #include <tiny_gltf.h>
 
-#include "io/gltf_spectral.h"
 #include "io/json_parse.h"
 
 namespace petzval {
@@ -51,6 +50,7 @@ GltfMaterials::GltfMaterials(const GltfModel& gltf, Scene& scene, GltfTally& tal
       scene_(scene),
       tally_(tally),
       textures_(gltf, scene.images, tally),
+      spectral_(scene, tally),
       json_(JsonCursor(gltf.source.json, gltf.file).objects("materials")),
       used_(gltf.typed.materials.size() + 1) {}
 
@@ -77,7 +77,7 @@ Material GltfMaterials::read(size_t index) {
         read_specular(json, material);
         read_glass(json, material);
     }
-    read_spectral(json, material, scene_, tally_);
+    spectral_.apply(json, material);
     count(json, material);
     return material;
 }

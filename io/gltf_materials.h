@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/scene.h"
+#include "io/gltf_spectral.h"
 #include "io/gltf_textures.h"
 
 namespace petzval {
@@ -29,6 +30,7 @@ class GltfMaterials {
     Scene& scene_;
     GltfTally& tally_;
     GltfTextures textures_;
+    GltfSpectral spectral_;
     std::vector<JsonCursor> json_;
     std::vector<std::optional<uint32_t>> used_;  ///< by material of the file; the default is last
 };

@@ -8,6 +8,7 @@
 
 #include "io/glasses.h"
 #include "io/json_parse.h"
+#include "io/lower.h"
 #include "io/spectra.h"
 
 namespace petzval {
@@ -48,72 +49,19 @@ Glass khronos_glass(double nd, double dispersion) {
     return glass;
 }
 
-void read_dispersion(const JsonCursor& json, Material& material, GltfTally& tally) {
-    const auto extension = json.extension("KHR_materials_dispersion");
-    const double dispersion = extension ? extension->number_or("dispersion", 0) : 0;
-    if (dispersion == 0) return;
-    if (!material.refracts()) {
-        ++tally.idle_dispersions;
-        return;
-    }
-    if (material.ior <= 1) return;  // nothing bends, at any wavelength
-    material.glass = khronos_glass(material.ior, dispersion);
-    tally.honoured.insert("dispersion");
-}
-
-Glass named_glass(const JsonCursor& extras) {
-    const std::string name = extras.text("glass");
-    if (auto glass = find_glass(name)) return *std::move(glass);
-    const auto near = glasses_near(name);
-    const std::string hint = near.empty() ? "write it as maker:NAME"
-                                          : fmt::format("near it are {}", fmt::join(near, ", "));
-    extras.fail("glass", fmt::format("there is no glass \"{}\"; {}", printable(name), hint));
-}
-
-void read_glass(const JsonCursor& json, const JsonCursor& extras, Material& material,
-                GltfTally& tally) {
-    const auto warn = [&](const std::string& message) {
-        tally.warnings.push_back(extras.path_of("glass") + ": " + message);
-    };
-    material.glass = named_glass(extras);
-    material.ior = static_cast<float>(material.glass->index(kLineD_nm));
-    tally.honoured.insert("named glass " + material.glass->name);
-    for (const char* overridden : {"KHR_materials_ior", "KHR_materials_dispersion"})
-        if (json.extension(overridden))
-            warn(fmt::format("stands in place of the material's {}", overridden));
-    if (material.refracts())
-        tally.honoured.insert("dispersion");
-    else
-        warn(
-            "disperses nothing, as the material does not refract light: it needs "
-            "transmissionFactor and thicknessFactor above 0, and metallicFactor below 1");
-}
-
-/// Place of a thing with this name, which is added where it is not yet there.
+/// Place of the thing of this name, which is looked up and added where it is not yet there;
+/// nothing where there is none.
 template <class Thing>
-int32_t place_of(std::vector<Thing>& things, Thing thing) {
+std::optional<int32_t> place_of(std::vector<Thing>& things, const std::string& name,
+                                std::optional<Thing> look_up(const std::string&)) {
     const auto at = std::find_if(things.begin(), things.end(),
-                                 [&](const Thing& other) { return other.name == thing.name; });
+                                 [&](const Thing& thing) { return thing.name == lower(name); });
     const auto place = static_cast<int32_t>(at - things.begin());
-    if (at == things.end()) things.push_back(std::move(thing));
+    if (at != things.end()) return place;
+    auto found = look_up(name);
+    if (!found) return std::nullopt;
+    things.push_back(*std::move(found));
     return place;
-}
-
-void read_metal(const JsonCursor& extras, Material& material, Scene& scene, GltfTally& tally) {
-    const std::string name = extras.text("metal");
-    const auto metal = find_metal(name);
-    if (!metal)
-        extras.fail("metal", fmt::format("there is no metal \"{}\"; there are {}", printable(name),
-                                         metal_names()));
-    const Rgb colour = colour_of(*metal);
-    for (int i = 0; i < 3; ++i) material.base_color.v[i] = std::clamp(colour[i], 0.f, 1.f);
-    // The texture of a cutout has its holes too.
-    if (!material.cutout()) material.base_color_texture = TextureSlot();
-    material.metal = place_of(scene.metals, *metal);
-    tally.honoured.insert("measured metal " + metal->name);
-    if (material.metallic == 0)
-        tally.warnings.push_back(extras.path_of("metal") +
-                                 ": is not seen, as the material's metallicFactor is 0");
 }
 
 }  // namespace
@@ -129,36 +77,98 @@ void check_light_extras(const JsonCursor& light) {
     check_extras(light, "light", {"illuminant"});
 }
 
-void read_spectral(const JsonCursor& json, Material& material, Scene& scene, GltfTally& tally) {
+GltfSpectral::GltfSpectral(Scene& scene, GltfTally& tally) : scene_(scene), tally_(tally) {}
+
+void GltfSpectral::apply(const JsonCursor& json, Material& material) {
     const auto extras = petzval_extras(json);
     if (material.unlit) {  // its base colour is all there is to see
-        tally.idle_dispersions += json.extension("KHR_materials_dispersion").has_value();
+        tally_.idle_dispersions += json.extension("KHR_materials_dispersion").has_value();
         if (extras)
-            tally.warnings.push_back(extras->path() + ": an unlit material has no use for it");
+            tally_.warnings.push_back(extras->path() + ": an unlit material has no use for it");
         return;
     }
     if (extras && extras->has("glass"))
-        read_glass(json, *extras, material, tally);
+        apply_glass(json, *extras, material);
     else
-        read_dispersion(json, material, tally);
-    if (extras && extras->has("metal")) read_metal(*extras, material, scene, tally);
+        apply_dispersion(json, material);
+    if (extras && extras->has("metal")) apply_metal(*extras, material);
     if (material.emits())
-        material.illuminant = read_illuminant(json, scene, tally);
+        material.illuminant = illuminant(json);
     else if (extras && extras->has("illuminant"))
-        tally.warnings.push_back(extras->path_of("illuminant") +
-                                 ": is not seen, as the material emits no light");
+        tally_.warnings.push_back(extras->path_of("illuminant") +
+                                  ": is not seen, as the material emits no light");
 }
 
-int32_t read_illuminant(const JsonCursor& owner, Scene& scene, GltfTally& tally) {
+int32_t GltfSpectral::illuminant(const JsonCursor& owner) {
     const auto extras = petzval_extras(owner);
     if (!extras || !extras->has("illuminant")) return -1;
     const std::string name = extras->text("illuminant");
-    const auto illuminant = find_light_spectrum(name);
-    if (!illuminant)
+    const auto place = place_of(scene_.illuminants, name, find_light_spectrum);
+    if (!place)
         extras->fail("illuminant", fmt::format("there is no illuminant \"{}\"; there are {}",
                                                printable(name), illuminant_names()));
-    tally.honoured.insert("illuminant " + illuminant->name);
-    return place_of(scene.illuminants, *illuminant);
+    tally_.honoured.insert("illuminant " + scene_.illuminant(*place)->name);
+    return *place;
+}
+
+void GltfSpectral::apply_dispersion(const JsonCursor& json, Material& material) {
+    const auto extension = json.extension("KHR_materials_dispersion");
+    const double dispersion = extension ? extension->number_or("dispersion", 0) : 0;
+    if (dispersion == 0) return;
+    if (!material.refracts()) {
+        ++tally_.idle_dispersions;
+        return;
+    }
+    if (material.ior <= 1) return;  // nothing bends, at any wavelength
+    material.glass = khronos_glass(material.ior, dispersion);
+    tally_.honoured.insert("dispersion of light");
+}
+
+void GltfSpectral::apply_glass(const JsonCursor& json, const JsonCursor& extras,
+                               Material& material) {
+    const auto warn = [&](const std::string& message) {
+        tally_.warnings.push_back(extras.path_of("glass") + ": " + message);
+    };
+    material.glass = glass(extras);
+    material.ior = static_cast<float>(material.glass->index(kLineD_nm));
+    tally_.honoured.insert("named glass " + material.glass->name);
+    for (const char* overridden : {"KHR_materials_ior", "KHR_materials_dispersion"})
+        if (json.extension(overridden))
+            warn(fmt::format("stands in place of the material's {}", overridden));
+    if (material.refracts())
+        tally_.honoured.insert("dispersion of light");
+    else
+        warn(
+            "disperses nothing, as the material does not refract light; that takes "
+            "transmissionFactor and thicknessFactor above 0, and metallicFactor below 1");
+}
+
+const Glass& GltfSpectral::glass(const JsonCursor& extras) {
+    const std::string name = extras.text("glass");
+    if (const auto known = glasses_.find(name); known != glasses_.end()) return known->second;
+    if (auto found = find_glass(name))
+        return glasses_.emplace(name, *std::move(found)).first->second;
+    extras.fail("glass", fmt::format("there is no glass \"{}\"; near it are {}", printable(name),
+                                     fmt::join(glasses_near(name), ", ")));
+}
+
+void GltfSpectral::apply_metal(const JsonCursor& extras, Material& material) {
+    const std::string name = extras.text("metal");
+    const auto place = place_of(scene_.metals, name, find_metal);
+    if (!place)
+        extras.fail("metal", fmt::format("there is no metal \"{}\"; there are {}", printable(name),
+                                         metal_names()));
+    const Metal& metal = scene_.metals[static_cast<size_t>(*place)];
+    const auto [colour, is_new] = metal_colours_.try_emplace(*place);
+    if (is_new) colour->second = Rgb(max(f4{}, min(splat(1.f), colour_of(metal).v)));
+    material.metal = *place;
+    material.base_color = colour->second;
+    // The texture of a cutout has its holes too.
+    if (!material.cutout()) material.base_color_texture = TextureSlot();
+    tally_.honoured.insert("measured metal " + metal.name);
+    if (material.metallic == 0)
+        tally_.warnings.push_back(extras.path_of("metal") +
+                                  ": is not seen, as the material's metallicFactor is 0");
 }
 
 }  // namespace petzval

@@ -4,6 +4,9 @@
 // A material may name a glass or a metal, and an illuminant; a punctual light an illuminant.
 #pragma once
 
+#include <map>
+#include <string>
+
 #include "core/scene.h"
 #include "io/gltf_tally.h"
 #include "io/json_cursor.h"
@@ -15,13 +18,29 @@ void check_material_extras(const JsonCursor& material);
 /// The same for an entry of KHR_lights_punctual's lights.
 void check_light_extras(const JsonCursor& light);
 
-/// Sets a material's glass, metal and illuminant, and what follows from them (index, base colour),
-/// once everything else in it is set. Metals and illuminants are added to the scene, each once.
-/// Throws InputError for a name that is in no catalogue.
-void read_spectral(const JsonCursor& json, Material&, Scene&, GltfTally&);
+/// Looks up what the file names, and adds metals and illuminants to the scene, each once.
+/// Throws InputError with the JSON path for a name that is in no catalogue.
+class GltfSpectral {
+  public:
+    GltfSpectral(Scene&, GltfTally&);
 
-/// Place in the scene of the illuminant that extras.petzval names, which is added where it is not
-/// yet there; -1 where none is named. Throws InputError for one that is not known.
-[[nodiscard]] int32_t read_illuminant(const JsonCursor& owner, Scene&, GltfTally&);
+    /// Sets a material's glass, metal and illuminant, and what follows from them (index, base
+    /// colour), once everything else in it is set.
+    void apply(const JsonCursor& json, Material&);
+    /// Place in the scene of the illuminant that extras.petzval names; -1 where it names none.
+    [[nodiscard]] int32_t illuminant(const JsonCursor& owner);
+
+  private:
+    void apply_dispersion(const JsonCursor& json, Material&);
+    void apply_glass(const JsonCursor& json, const JsonCursor& extras, Material&);
+    void apply_metal(const JsonCursor& extras, Material&);
+    [[nodiscard]] const Glass& glass(const JsonCursor& extras);
+
+    Scene& scene_;
+    GltfTally& tally_;
+    // Reading a table takes a millisecond, and materials may be many.
+    std::map<std::string, Glass> glasses_;  ///< by name as the file has it
+    std::map<int32_t, Rgb> metal_colours_;  ///< by place in the scene
+};
 
 }  // namespace petzval

@@ -17,7 +17,7 @@ struct GltfTally {
     uint64_t singular_nodes = 0;         ///< whose matrix flattens space
     uint64_t replaced_normals = 0;       ///< of no length
     uint64_t occlusion_textures = 0, ranged_lights = 0;
-    uint64_t idle_dispersions = 0;       ///< of materials that refract nothing
+    uint64_t idle_dispersions = 0;      ///< of materials that refract nothing
     std::set<std::string> honoured;     ///< features that the scene uses, in words
     std::vector<std::string> warnings;  ///< one line each
 };

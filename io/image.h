@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,14 +15,32 @@
 
 namespace petzval {
 
-/// Float pixels, row 0 at the top, channels interleaved, linear.
-struct Picture {
+/// A picture but for its pixels.
+struct PictureLayout {
     int width = 0, height = 0;            ///< of the pixels held (a crop)
     int x = 0, y = 0;                     ///< where they lie in the full frame
     int full_width = 0, full_height = 0;  ///< the full frame
     std::vector<std::string> channels;    ///< "R", "G", "B", "A", "albedo.R", "depth.Z" ...
-    std::vector<float> pixels;
     std::vector<std::pair<std::string, std::variant<int, float, std::string>>> metadata;
+};
+
+/// With float pixels, row 0 at the top, channels interleaved, linear.
+struct Picture : PictureLayout {
+    std::vector<float> pixels;
+};
+
+/// A picture whose rows are made when they are asked for: those of a spectral film would not fit
+/// into memory beside it.
+struct PictureRows {
+    PictureLayout layout;
+    /// Fills row y (0 is the top one of those held): width times the channels.
+    std::function<void(int y, float* row)> row;
+
+    PictureRows(PictureLayout l, std::function<void(int, float*)> r)
+        : layout(std::move(l)), row(std::move(r)) {}
+    /// The rows of a picture, which must outlive this. Throws std::invalid_argument where its
+    /// pixels do not match its size and channels.
+    PictureRows(const Picture&);
 };
 
 /// Every channel as floats, nothing converted but integers to [0, 1]. Throws InputError.
@@ -36,12 +55,12 @@ enum class PictureFormat : uint8_t { Exr, Png, Jpeg };
 [[nodiscard]] PictureFormat picture_format(const std::filesystem::path&);
 /// 32-bit float EXR, every channel and all metadata. Equal pictures give equal files: there is no
 /// date in them. Throws InputError where it cannot be written.
-void write_exr(const std::filesystem::path&, const Picture&);
+void write_exr(const std::filesystem::path&, const PictureRows&);
 /// 8-bit PNG or JPEG of display-encoded R, G, B in [0, 1] (and, in PNG, unassociated A if there is
 /// one); of a crop just the crop. Throws InputError where it cannot be written.
-void write_8bit(const std::filesystem::path&, const Picture& encoded);
+void write_8bit(const std::filesystem::path&, const PictureRows& encoded);
 
 /// Place of the channel of that name among a picture's channels; -1 where there is none.
-[[nodiscard]] int channel_index(const Picture&, std::string_view name);
+[[nodiscard]] int channel_index(const PictureLayout&, std::string_view name);
 
 }  // namespace petzval

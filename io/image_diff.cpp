@@ -6,10 +6,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
 #include "io/error.h"
+#include "io/spectral_layout.h"
 
 namespace petzval {
 namespace {
@@ -69,13 +71,38 @@ std::string frame(const Picture& p) {
                        p.full_width, p.full_height);
 }
 
+std::string why_not_the_same_wavelengths(const Picture& a, const Picture& b) {
+    const auto in_a = spectral_channels(a), in_b = spectral_channels(b);
+    if (in_a.empty() != in_b.empty())
+        return fmt::format("the {} is spectral, the {} is not", in_a.empty() ? "latter" : "former",
+                           in_a.empty() ? "former" : "latter");
+    for (size_t i = 0; i < std::min(in_a.size(), in_b.size()); ++i)
+        if (in_a[i].nm != in_b[i].nm)
+            return fmt::format("wavelength {} is {:.7g} nm against {:.7g} nm", i + 1, in_a[i].nm,
+                               in_b[i].nm);
+    if (in_a.size() != in_b.size())
+        return fmt::format("{} wavelengths, up to {:.7g} nm, against {}, up to {:.7g} nm",
+                           in_a.size(), in_a.back().nm, in_b.size(), in_b.back().nm);
+    return "";
+}
+
+/// What is in one sorted list and not in the other.
+std::string only_in(const std::vector<std::string>& a, const std::vector<std::string>& b) {
+    std::vector<std::string> rest;
+    std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(rest));
+    return rest.empty() ? "none" : fmt::format("{}", fmt::join(rest, " "));
+}
+
 }  // namespace
 
 std::string why_not_comparable(const Picture& a, const Picture& b) {
     if (frame(a) != frame(b)) return fmt::format("{} against {}", frame(a), frame(b));
-    if (sorted(a.channels) != sorted(b.channels))
-        return fmt::format("channels {} against {}", fmt::join(a.channels, ","),
-                           fmt::join(b.channels, ","));
+    std::string why = why_not_the_same_wavelengths(a, b);
+    if (!why.empty()) return why;
+    const auto in_a = sorted(a.channels), in_b = sorted(b.channels);
+    if (in_a != in_b)
+        return fmt::format("channels only in the former: {}; only in the latter: {}",
+                           only_in(in_a, in_b), only_in(in_b, in_a));
     return "";
 }
 

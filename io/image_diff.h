@@ -31,7 +31,8 @@ struct LayerDifference {
     int max_x = 0, max_y = 0;  ///< of this pixel of the full frame
 };
 
-/// Why the pictures cannot be compared (size, crop, channels by name); empty where they can.
+/// Why the pictures cannot be compared (size, crop, wavelengths, channels by name), where a is the
+/// former and b the latter; empty where they can.
 [[nodiscard]] std::string why_not_comparable(const Picture& a, const Picture& b);
 /// a against the reference b, layer by layer in b's order. They must be comparable; the order of
 /// the channels may differ.

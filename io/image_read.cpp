@@ -67,15 +67,15 @@ Picture read_picture(const std::filesystem::path& path) {
         size_complaint(spec.width, spec.height, spec.depth, spec.nchannels, byte_count);
     if (!why.empty()) throw refuse(why);
 
-    Picture picture{.width = spec.width,
-                    .height = spec.height,
-                    .x = spec.x - spec.full_x,
-                    .y = spec.y - spec.full_y,
-                    .full_width = spec.full_width,
-                    .full_height = spec.full_height,
-                    .channels = spec.channelnames,
-                    .pixels = {},
-                    .metadata = metadata_of(spec)};
+    Picture picture{{.width = spec.width,
+                     .height = spec.height,
+                     .x = spec.x - spec.full_x,
+                     .y = spec.y - spec.full_y,
+                     .full_width = spec.full_width,
+                     .full_height = spec.full_height,
+                     .channels = spec.channelnames,
+                     .metadata = metadata_of(spec)},
+                    {}};
     picture.pixels.resize(size_t(spec.width) * spec.height * spec.nchannels);
     const bool success =
         input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, picture.pixels.data());

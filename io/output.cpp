@@ -12,7 +12,7 @@ void check_output(const std::filesystem::path& path, const DisplayOptions& displ
     check_writable(path);
 }
 
-void write_output(const std::filesystem::path& path, const Picture& linear,
+void write_output(const std::filesystem::path& path, const PictureRows& linear,
                   const DisplayOptions& display) {
     const PictureFormat format = picture_format(path);
     if (format == PictureFormat::Exr) return write_exr(path, linear);
@@ -21,7 +21,7 @@ void write_output(const std::filesystem::path& path, const Picture& linear,
 }
 
 std::vector<std::filesystem::path> write_partial(const std::vector<std::filesystem::path>& outputs,
-                                                 const Picture& linear) {
+                                                 const PictureRows& linear) {
     std::vector<std::filesystem::path> written;
     for (std::filesystem::path path : outputs) {
         path.replace_extension(".partial.exr");

@@ -23,11 +23,11 @@ struct DisplayOptions {
 void check_output(const std::filesystem::path&, const DisplayOptions&);
 
 /// Writes a linear picture in the format that the path's ending names. Throws InputError.
-void write_output(const std::filesystem::path&, const Picture& linear, const DisplayOptions&);
+void write_output(const std::filesystem::path&, const PictureRows& linear, const DisplayOptions&);
 
 /// Writes an unfinished picture to NAME.partial.exr beside each output NAME.*, once for each name,
 /// and says where. Throws InputError.
 std::vector<std::filesystem::path> write_partial(const std::vector<std::filesystem::path>& outputs,
-                                                 const Picture& linear);
+                                                 const PictureRows& linear);
 
 }  // namespace petzval

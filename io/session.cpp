@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/session.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 
 #include "io/camera_setup.h"
@@ -36,6 +38,27 @@ Sky choose_sky(const SceneRequest& request, const Scene& scene,
     return Sky::uniform(Rgb(1.f));
 }
 
+// Of a file its name alone: equal renders in other folders are equal files.
+std::vector<std::pair<std::string, std::string>> describe(const SceneRequest& request) {
+    std::vector<std::pair<std::string, std::string>> m;
+    m.emplace_back("petzval:scene", request.scene.filename().string());
+    if (request.environment) {
+        m.emplace_back("petzval:environment", request.environment->filename().string());
+        m.emplace_back("petzval:environmentRotate_deg",
+                       fmt::format("{:.9g}", request.environment_rotate_deg));
+        m.emplace_back("petzval:environmentStrength",
+                       fmt::format("{:.9g}", request.environment_strength));
+    }
+    if (const auto& b = request.background)
+        m.emplace_back("petzval:background",
+                       fmt::format("{:.9g},{:.9g},{:.9g}", (*b)[0], (*b)[1], (*b)[2]));
+    m.emplace_back("petzval:lightChoice",
+                   request.light_choice == LightChoiceKind::Power ? "power" : "uniform");
+    m.emplace_back("petzval:traversal",
+                   request.traversal == Traversal::Robust ? "robust" : "fast");
+    return m;
+}
+
 }  // namespace
 
 Session open_session(const SceneRequest& request,
@@ -52,7 +75,11 @@ Session open_session(const SceneRequest& request,
     finish_scene(scene);
     if (scene.instances.empty())
         notice("warning: the scene is empty: only its background is rendered");
-    session.spectra = set_up_spectra(request.spectral, scene, notice);
+    SpectralSetup spectra = set_up_spectra(request.spectral, scene, notice);
+    session.observer = std::move(spectra.observer);
+    session.metadata = describe(request);
+    session.metadata.insert(session.metadata.end(), spectra.metadata.begin(),
+                            spectra.metadata.end());
     session.load_s = seconds_since(load_start);
 
     const auto bvh_start = Clock::now();

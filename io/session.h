@@ -64,9 +64,11 @@ struct Session {
     std::unique_ptr<LightChoice> lights;
     std::unique_ptr<Camera> camera;
     CameraReport camera_report;
-    SpectralSetup spectra;
+    Observer observer;
     std::optional<Rgb> backdrop;  ///< shown behind the scene in place of the environment
     uint64_t scene_hash = 0;
+    /// What else the pixels follow from, for the picture's metadata.
+    std::vector<std::pair<std::string, std::string>> metadata;
     double load_s = 0, bvh_s = 0;
 };
 

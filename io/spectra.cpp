@@ -49,10 +49,11 @@ fs::path shipped_or_file(Names names, const std::string& name_or_file) {
 CsvTable read_spectra(const fs::path& path, size_t columns) {
     CsvTable table = read_csv(path);
     if (table.names.size() != 1 + columns)
-        throw InputError(table.file, "",
-                         fmt::format("has {} columns, and must have {}: wavelength in nm, then {}",
-                                     table.names.size(), 1 + columns,
-                                     columns == 1 ? "one value" : "one value for each curve"));
+        throw InputError(
+            table.file, "",
+            fmt::format("number of columns is {} and must be {}: wavelength in nm, then {}",
+                        table.names.size(), 1 + columns,
+                        columns == 1 ? "one value" : "one value for each curve"));
     double previous_nm = 0;
     for (size_t row = 0; row < table.rows.size(); ++row) {
         const std::vector<double>& values = table.rows[row];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Measured spectra: those that ship in assets/spectra, and a user's own as CSV. First column:
-// wavelength in nm, strictly rising; then one column, or three, of values >= 0.
+// wavelength in nm, strictly rising; then one column, or three, of values >= 0. Names that ship may
+// be in any case, and go before files of that name; each call reads the files anew.
 #pragma once
 
 #include <array>
@@ -22,14 +23,16 @@ namespace petzval {
 /// The reflectances that sensors are fitted to: 24 measured patches of a colour chart.
 [[nodiscard]] std::vector<SpectrumTable> training_reflectances();
 
-/// "d65", "a", "f11", or a CSV file of one column, whatever it is called: relative power, 0 beyond
-/// its ends. Throws InputError; for a name that is neither it lists the names there are.
+/// "d65", "a", "f11", or a CSV file of one column, whatever it is called: relative power, at most
+/// 1, 0 beyond its ends, somewhere above 0. Throws InputError; for a name that is neither it is an
+/// ArgumentError that lists the names there are.
 [[nodiscard]] SpectrumTable find_illuminant(const std::string& name_or_file);
-/// "cie1931" or a CSV file of three columns: sensitivities of R, G and B, 0 beyond their ends; the
-/// curve that rises above 0 at all must cover some of kFirst_nm to kLast_nm. Throws InputError.
+/// "cie1931" or a CSV file of three columns: sensitivities of R, G and B up to one factor, at most
+/// 1, 0 beyond their ends; each somewhere above 0. Throws as find_illuminant does.
 [[nodiscard]] std::array<SpectrumTable, 3> find_response(const std::string& name_or_file);
 
 /// An illuminant that ships, by name, for a light of the scene. Nothing where there is none.
+/// Its 1 nit is one of the tables' sums: kLuminousEfficacy_lm_per_w * sum of ybar * per_nit = 1.
 [[nodiscard]] std::optional<Illuminant> find_light_spectrum(const std::string& name);
 /// A metal that ships: "ag", "al", "au", "cu", whatever the case. Nothing where there is none.
 [[nodiscard]] std::optional<Metal> find_metal(const std::string& name);

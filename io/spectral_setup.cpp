@@ -8,6 +8,7 @@
 
 #include "core/sensor_fit.h"
 #include "io/error.h"
+#include "io/lower.h"
 #include "io/needs_wavelengths.h"
 #include "io/spectra.h"
 
@@ -16,13 +17,19 @@ namespace {
 
 using Notice = std::function<void(const std::string&)>;
 
+constexpr std::string_view kUsualIlluminant = "d65", kUsualResponse = "cie1931";
+
+bool is(const std::string& name, std::string_view usual) {
+    return lower(name) == usual;
+}
+
 // What of request and scene only wavelengths can show.
 std::vector<std::string> reasons(const SpectralRequest& request, const Scene& scene) {
     std::vector<std::string> found;
     if (request.bins) found.emplace_back("--bins asks for spectra");
-    if (request.illuminant != "d65")
+    if (!is(request.illuminant, kUsualIlluminant))
         found.push_back(fmt::format("--illuminant is {}", request.illuminant));
-    if (request.response != "cie1931")
+    if (!is(request.response, kUsualResponse))
         found.push_back(fmt::format("--response is {}", request.response));
     for (std::string& reason : reasons_for_wavelengths(scene)) found.push_back(std::move(reason));
     return found;
@@ -76,7 +83,7 @@ Matrix3 to_srgb(const SpectralRequest& request, const ObserverInput& in) {
 
 Matrix3 fitted(const SpectralRequest& request, const ObserverInput& in, const Matrix3& xyz_to_srgb,
                const Notice& notice) {
-    if (request.response == "cie1931") return xyz_to_srgb;
+    if (is(request.response, kUsualResponse)) return xyz_to_srgb;
     const std::vector<SpectrumTable> training = training_reflectances();
     try {
         const SensorFit fit = fit_sensor(in.response, in.xyz_bar, in.white, xyz_to_srgb, training);
@@ -102,7 +109,7 @@ SpectralSetup set_up_spectra(const SpectralRequest& request, const Scene& scene,
     warn_of_glasses(request, scene, notice);
     ObserverInput in;
     in.xyz_bar = standard_observer();
-    in.response = find_response(request.response);
+    in.response = is(request.response, kUsualResponse) ? in.xyz_bar : find_response(request.response);
     in.white = find_illuminant(request.illuminant);
     in.basis = rgb_basis();
     for (const Illuminant& light : scene.illuminants) in.lights.push_back(light.per_nit);

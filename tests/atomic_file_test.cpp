@@ -3,14 +3,13 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <thread>
 
 #include "io/error.h"
+#include "tests/support/file_size_limit.h"
 #include "tests/support/temporary_folder.h"
 
 namespace petzval {
@@ -38,27 +37,6 @@ std::string complaint(const fs::path& path, std::string_view text) {
     }
     return "";
 }
-
-/// Files of this process end after so many bytes, as on a full disk.
-class FileSizeLimit {
-  public:
-    explicit FileSizeLimit(rlim_t bytes) {
-        ::getrlimit(RLIMIT_FSIZE, &before_);
-        const rlimit limit{bytes, before_.rlim_max};
-        ::setrlimit(RLIMIT_FSIZE, &limit);
-        handler_ = std::signal(SIGXFSZ, SIG_IGN);
-    }
-    FileSizeLimit(const FileSizeLimit&) = delete;
-    FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-    ~FileSizeLimit() {
-        ::setrlimit(RLIMIT_FSIZE, &before_);
-        std::signal(SIGXFSZ, handler_);
-    }
-
-  private:
-    rlimit before_{};
-    void (*handler_)(int);
-};
 
 TEST(AtomicFile, WritesANewFileWithTheUsersMask) {
     const TemporaryFolder folder;
@@ -98,13 +76,41 @@ TEST(AtomicFile, AFailingWriteLeavesTheOldFileAndNothingElse) {
     write_file_atomically(folder / "a", "old");
     const std::string large(100000, 'x');
     {
-        const FileSizeLimit limit(4096);
+        const test::FileSizeLimit limit(4096);
         const std::string message = complaint(folder / "a", large);
         EXPECT_EQ(message.find((folder / "a").string() + ": cannot be written: "), 0u) << message;
         EXPECT_NE(complaint(folder / "b", large), "");
     }
     EXPECT_EQ(text_of(folder / "a"), "old");
     EXPECT_EQ(folder.count(), 1u);
+}
+
+TEST(AtomicFile, WritesInAnyOrderAndOnlyWhatIsCommitted) {
+    const TemporaryFolder folder;
+    {
+        AtomicFile file(folder / "a");
+        file.write(std::vector<uint8_t>{'c', 'd'}, 2);
+        file.write(std::vector<uint8_t>{'a', 'x'}, 0);
+        file.write(std::vector<uint8_t>{'b'}, 1);
+        EXPECT_FALSE(fs::exists(folder / "a"));
+        file.commit();
+        EXPECT_EQ(text_of(folder / "a"), "abcd");
+        AtomicFile forgotten(folder / "b");
+        forgotten.write(std::vector<uint8_t>{'x'}, 0);
+    }
+    EXPECT_EQ(folder.count(), 1u);
+}
+
+TEST(AtomicFile, KeepsTheFirstFailureForTheEnd) {
+    const TemporaryFolder folder;
+    AtomicFile file(folder / "a");
+    {
+        const test::FileSizeLimit limit(10);
+        file.write(std::vector<uint8_t>(11), 0);
+    }
+    file.write(std::vector<uint8_t>(11), 0);  // would succeed now
+    EXPECT_THROW(file.commit(), InputError);
+    EXPECT_FALSE(fs::exists(folder / "a"));
 }
 
 TEST(AtomicFile, WritesMoreThanAPipeTakesAtOnce) {

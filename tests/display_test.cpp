@@ -14,12 +14,12 @@
 namespace petzval {
 namespace {
 
+using test::held;
 using test::picture;
 
 std::vector<float> shown(const std::vector<float>& rgb, const std::string& view, float ev = 0.f) {
-    return to_display(picture(int(rgb.size() / 3), 1, {"R", "G", "B"}, rgb), ev, view,
-                      AlphaUse::Keep)
-        .pixels;
+    const Picture linear = picture(int(rgb.size() / 3), 1, {"R", "G", "B"}, rgb);
+    return held(to_display(linear, ev, view, AlphaUse::Keep)).pixels;
 }
 float shown_grey(float value, const std::string& view, float ev = 0.f) {
     const auto rgb = shown({value, value, value}, view, ev);
@@ -103,18 +103,19 @@ TEST(Display, AcesKeepsTheOrderOfTheChannels) {
 TEST(Display, AlphaDividesForPngAndStaysForBlack) {
     const Picture p = picture(2, 1, {"A", "depth.Z", "R", "G", "B"},
                               {0.5f, 9.f, 0.1f, 0.2f, 0.4f, 0.f, 9.f, 0.f, 0.f, 0.f});
-    const Picture kept = to_display(p, 0.f, "raw", AlphaUse::Keep);
+    const Picture kept = held(to_display(p, 0.f, "raw", AlphaUse::Keep));
     EXPECT_EQ(kept.channels, (std::vector<std::string>{"R", "G", "B", "A"}));
     EXPECT_EQ(kept.pixels, (std::vector<float>{0.2f, 0.4f, 0.8f, 0.5f, 0, 0, 0, 0}));
-    const Picture black = to_display(p, 0.f, "raw", AlphaUse::OnBlack);
+    const Picture black = held(to_display(p, 0.f, "raw", AlphaUse::OnBlack));
     EXPECT_EQ(black.channels, (std::vector<std::string>{"R", "G", "B"}));
     EXPECT_EQ(black.pixels, (std::vector<float>{0.1f, 0.2f, 0.4f, 0, 0, 0}));
-    const Picture curve = to_display(p, 3.f, "sRGB", AlphaUse::Keep);
+    const Picture curve = held(to_display(p, 3.f, "sRGB", AlphaUse::Keep));
     EXPECT_FLOAT_EQ(curve.pixels[3], 0.5f) << "alpha has neither exposure nor curve";
 }
 
 TEST(Display, ShowsGreyAndRefusesWhatHasNoColour) {
-    const Picture grey = to_display(picture(1, 1, {"Y"}, {0.3f}), 0.f, "raw", AlphaUse::Keep);
+    const Picture y = picture(1, 1, {"Y"}, {0.3f});
+    const Picture grey = held(to_display(y, 0.f, "raw", AlphaUse::Keep));
     EXPECT_EQ(grey.pixels, (std::vector<float>{0.3f, 0.3f, 0.3f}));
     EXPECT_THROW((void)to_display(picture(1, 1, {"depth.Z"}), 0.f, "raw", AlphaUse::Keep),
                  InputError);

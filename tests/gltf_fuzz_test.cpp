@@ -17,7 +17,10 @@ using Bytes = std::vector<uint8_t>;
 
 TinyGltf sample_file() {
     TinyGltf file;
-    file.add("materials", {{"normalTexture", {{"index", 0}, {"texCoord", 0}}}});
+    file.add("materials", {{"normalTexture", {{"index", 0}, {"texCoord", 0}}},
+                           {"extensions", {{"KHR_materials_dispersion", {{"dispersion", 1}}}}},
+                           {"extras", {{"petzval", {{"metal", "au"}, {"illuminant", "a"}}}}}});
+    file.json["extensionsUsed"] = {"KHR_materials_dispersion"};
     file.add("textures", {{"source", file.add_image(Bytes{1, 2, 3})}});
     const int mesh = file.add_triangle({{"material", 0}});
     file.json["meshes"][size_t(mesh)]["primitives"][0]["attributes"]["TEXCOORD_0"] =

@@ -82,7 +82,7 @@ int run(int argc, char** argv) {
     const PathTracer<Bvh> tracer(*session.scene, *session.bvh, *session.lights, PathOptions());
 
     std::array<RenderJob, 2> jobs{job, job};
-    jobs[1].observer = session.spectra.observer;
+    jobs[1].observer = session.observer;
     std::array<std::vector<Film>, 2> films;
     std::vector<double> ratios;
     for (uint32_t seed = 0; seed < kSeeds; ++seed) {

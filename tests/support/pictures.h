@@ -15,13 +15,22 @@ namespace petzval::test {
 [[nodiscard]] inline Picture picture(int width, int height, std::vector<std::string> channels,
                                      std::vector<float> pixels = {}) {
     if (pixels.empty()) pixels.resize(size_t(width) * height * channels.size());
-    return {.width = width,
-            .height = height,
-            .full_width = width,
-            .full_height = height,
-            .channels = std::move(channels),
-            .pixels = std::move(pixels),
-            .metadata = {}};
+    return {{.width = width,
+             .height = height,
+             .full_width = width,
+             .full_height = height,
+             .channels = std::move(channels),
+             .metadata = {}},
+            std::move(pixels)};
+}
+
+/// Every row of a picture.
+[[nodiscard]] inline Picture held(const PictureRows& rows) {
+    Picture p{rows.layout, {}};
+    const size_t row = size_t(p.width) * p.channels.size();
+    p.pixels.resize(row * size_t(p.height));
+    for (int y = 0; y < p.height; ++y) rows.row(y, p.pixels.data() + size_t(y) * row);
+    return p;
 }
 
 /// The same with random values in [0, 1).

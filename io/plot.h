@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Diagrams, drawn by gnuplot in a process of its own.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace petzval {
+
+enum class PlotStyle : uint8_t {
+    Lines,
+    Points,
+    LinesAndPoints,
+    Steps  ///< level around each x, half of the way to its neighbours
+};
+
+struct PlotSeries {
+    std::vector<std::array<double, 2>> points;  ///< x, y; a point that is not finite is left out
+    PlotStyle style = PlotStyle::Lines;
+    std::string label;  ///< in the key; none where it is empty
+};
+
+/// Texts are shown as they are, letter by letter; UTF-8.
+struct Plot {
+    std::string title, x_label, y_label;  ///< labels with units
+    std::vector<PlotSeries> series;       ///< at least one
+};
+
+/// Throws InputError where the name ends in neither .svg nor .png or cannot be written.
+void check_plot(const std::filesystem::path&);
+/// Writes an SVG or PNG of 960 x 600 pixels, as its name ends. Throws InputError where it cannot be
+/// written, gnuplot is not there, or it fails, as with series that hold nothing finite.
+void write_plot(const std::filesystem::path&, const Plot&);
+
+}  // namespace petzval

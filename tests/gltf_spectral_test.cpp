@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: Apache-2.0
+// KHR_materials_dispersion and extras.petzval: what becomes of them, what is refused, and what
+// follows for a render.
+#include <gtest/gtest.h>
+
+#include "io/glasses.h"
+#include "io/needs_wavelengths.h"
+#include "io/spectra.h"
+#include "tests/support/load_tiny_gltf.h"
+#include "tests/support/refusal.h"
+#include "tests/support/tiny_png.h"
+
+namespace petzval {
+namespace {
+
+using nlohmann::json;
+using nlohmann::literals::operator""_json;
+
+/// A triangle for each material.
+TinyGltf file_with(std::vector<json> materials) {
+    TinyGltf file;
+    file.json["extensionsUsed"] = {"KHR_materials_dispersion",   "KHR_materials_ior",
+                                   "KHR_materials_transmission", "KHR_materials_volume",
+                                   "KHR_materials_unlit",        "KHR_lights_punctual"};
+    for (json& material : materials) {
+        const int index = file.add("materials", std::move(material));
+        file.add_root({{"mesh", file.add_triangle({{"material", index}})}});
+    }
+    return file;
+}
+
+/// A material that light is refracted into, called "prism".
+json prism(json extensions = json::object(), json extras = nullptr) {
+    extensions["KHR_materials_transmission"] = {{"transmissionFactor", 1}};
+    extensions["KHR_materials_volume"] = {{"thicknessFactor", 1}};
+    json material = {{"name", "prism"},
+                     {"pbrMetallicRoughness", {{"metallicFactor", 0}}},
+                     {"extensions", extensions}};
+    if (!extras.is_null()) material["extras"]["petzval"] = extras;
+    return material;
+}
+
+json dispersing(double dispersion, double ior = 1.5) {
+    return {{"KHR_materials_dispersion", {{"dispersion", dispersion}}},
+            {"KHR_materials_ior", {{"ior", ior}}}};
+}
+
+/// A material called "thing" with these extras.
+json thing(json extras) {
+    return {{"name", "thing"}, {"extras", {{"petzval", std::move(extras)}}}};
+}
+
+json lamp(json extras, const char* type = "point") {
+    json light = {{"type", type}, {"extras", {{"petzval", std::move(extras)}}}};
+    if (std::string(type) == "spot") light["spot"] = json::object();
+    return light;
+}
+
+/// A node for each light.
+TinyGltf lit(std::vector<json> lights) {
+    TinyGltf file = file_with({});
+    for (size_t i = 0; i < lights.size(); ++i)
+        file.add_root({{"extensions", {{"KHR_lights_punctual", {{"light", i}}}}}});
+    file.json["extensions"]["KHR_lights_punctual"]["lights"] = std::move(lights);
+    return file;
+}
+
+Material material_of(json material) {
+    return load(file_with({std::move(material)})).scene.materials.at(0);
+}
+
+std::string refused(const TinyGltf& file) {
+    return refusal([&] { (void)load(file); });
+}
+std::string refused(json material) {
+    return refused(file_with({std::move(material)}));
+}
+
+TEST(GltfDispersion, IsCauchysFormulaThroughTheIndex) {
+    const Material m = material_of(prism(dispersing(0.36, 2.42)));
+    ASSERT_TRUE(m.glass.has_value());
+    EXPECT_EQ(m.ior, 2.42f);
+    EXPECT_NEAR(m.glass->index(kLineD_nm), 2.42, 1e-6);
+    EXPECT_NEAR(m.glass->abbe(), 20 / 0.36, 1e-4);
+    // The extension's own numbers, rounded as its text rounds them.
+    for (const double nm : {360., 500., 830.})
+        EXPECT_NEAR(m.glass->index(nm), 2.42 + 1.42 / (20 / 0.36) * (523655 / (nm * nm) - 1.5168),
+                    1e-5);
+    EXPECT_LE(m.glass->first_nm, kFirst_nm);
+    EXPECT_GE(m.glass->last_nm, kLast_nm);
+}
+
+TEST(GltfDispersion, IndexOf1_5WhereTheFileHasNone) {
+    const Material m = material_of(prism({{"KHR_materials_dispersion", {{"dispersion", 1}}}}));
+    ASSERT_TRUE(m.glass.has_value());
+    EXPECT_NEAR(m.glass->index(kLineD_nm), 1.5, 1e-6);
+    EXPECT_NEAR(m.glass->abbe(), 20, 1e-6);
+}
+
+TEST(GltfDispersion, NeverBelowAnIndexOf1) {
+    for (const double dispersion : {26., 30., 1e3, 3e38}) {
+        const Material m = material_of(prism(dispersing(dispersion, 2)));
+        ASSERT_TRUE(m.glass.has_value());
+        for (int nm = kFirst_nm; nm <= kLast_nm; ++nm) {
+            const double asked = 2 + dispersion / 20 * (523655 / (double(nm) * nm) - 1.5168);
+            const double index = m.glass->index(nm);
+            ASSERT_GE(index, 1) << dispersion << " at " << nm;
+            ASSERT_LE(index, 1e3) << dispersion << " at " << nm;
+            if (asked > 900) continue;
+            ASSERT_NEAR(index, std::max(asked, 1.), 2e-5 * dispersion);
+        }
+    }
+}
+
+TEST(GltfDispersion, NothingDispersesWhereNothingBends) {
+    const auto has_glass = [](json material) { return material_of(material).glass.has_value(); };
+    EXPECT_TRUE(has_glass(prism(dispersing(1))));
+    EXPECT_FALSE(has_glass(prism(dispersing(0))));
+    EXPECT_FALSE(has_glass(prism({{"KHR_materials_dispersion", json::object()}})));
+    for (const double unbending : {0., 1.})
+        EXPECT_FALSE(has_glass(prism(dispersing(1, unbending))));
+
+    json thin = prism(dispersing(1)), opaque = thin, metallic = thin, unlit = thin;
+    thin["extensions"].erase("KHR_materials_volume");
+    opaque["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = 0;
+    metallic["pbrMetallicRoughness"]["metallicFactor"] = 1;
+    unlit["extensions"]["KHR_materials_unlit"] = json::object();
+    for (const json& idle : {thin, opaque, metallic, unlit}) {
+        const GltfFile loaded = load(file_with({idle}));
+        EXPECT_FALSE(loaded.scene.materials[0].glass.has_value()) << idle;
+        EXPECT_TRUE(contains_line(loaded.ignored, "1 dispersion (")) << idle;
+        EXPECT_FALSE(contains_line(loaded.honoured, "dispersion of light")) << idle;
+    }
+}
+
+TEST(GltfDispersion, WrongOnesAreRefused) {
+    const std::string path = "/materials/0/extensions/KHR_materials_dispersion/dispersion: must be";
+    EXPECT_TRUE(has(refused(prism(dispersing(-0.5))), path + " from 0 to"));
+    json text = prism(dispersing(1));
+    text["extensions"]["KHR_materials_dispersion"]["dispersion"] = "1";
+    EXPECT_TRUE(has(refused(text), path + " a number, but is string"));
+}
+
+TEST(GltfDispersion, IsListed) {
+    const GltfFile loaded = load(file_with({prism(dispersing(1))}));
+    EXPECT_TRUE(contains_line(loaded.honoured, "KHR_materials_dispersion"));
+    EXPECT_TRUE(contains_line(loaded.honoured, "dispersion of light"));
+    EXPECT_FALSE(contains_line(loaded.ignored, "dispersion"));
+    EXPECT_TRUE(loaded.warnings.empty());
+}
+
+TEST(GltfExtras, GlassOfTheCatalogue) {
+    const GltfFile loaded = load(file_with({prism({}, {{"glass", "Schott:n-sf11"}})}));
+    const Material& m = loaded.scene.materials[0];
+    ASSERT_TRUE(m.glass.has_value());
+    EXPECT_EQ(m.glass->name, "schott:N-SF11");
+    EXPECT_NEAR(m.glass->index(kLineD_nm), 1.78472, 5e-6);  // Schott's data sheet
+    EXPECT_NEAR(m.glass->abbe(), 25.68, 0.005);
+    EXPECT_NEAR(m.ior, 1.78472, 5e-6);
+    EXPECT_TRUE(contains_line(loaded.honoured, "named glass schott:N-SF11"));
+    EXPECT_TRUE(contains_line(loaded.honoured, "dispersion of light"));
+    EXPECT_TRUE(loaded.warnings.empty());
+}
+
+TEST(GltfExtras, GlassStandsInPlaceOfTheExtensions) {
+    const GltfFile loaded =
+        load(file_with({prism(dispersing(5, 2.42), {{"glass", "schott:N-BK7"}})}));
+    EXPECT_EQ(loaded.scene.materials[0].glass->name, "schott:N-BK7");
+    EXPECT_NEAR(loaded.scene.materials[0].ior, 1.5168, 5e-6);
+    const std::string where = "/materials/0/extras/petzval/glass: stands in place of ";
+    EXPECT_TRUE(contains_line(loaded.warnings, where + "the material's KHR_materials_ior"));
+    EXPECT_TRUE(contains_line(loaded.warnings, where + "the material's KHR_materials_dispersion"));
+    EXPECT_EQ(loaded.warnings.size(), 2u);
+}
+
+TEST(GltfExtras, GlassThatRefractsNothingIsWarnedOf) {
+    const GltfFile loaded = load(file_with({thing({{"glass", "schott:N-BK7"}})}));
+    EXPECT_NEAR(loaded.scene.materials[0].ior, 1.5168, 5e-6);
+    EXPECT_TRUE(contains_line(loaded.warnings, "extras/petzval/glass: disperses nothing"));
+    EXPECT_FALSE(contains_line(loaded.honoured, "dispersion of light"));
+    EXPECT_TRUE(reasons_for_wavelengths(loaded.scene).empty());
+}
+
+TEST(GltfExtras, MeasuredMetal) {
+    TinyGltf file =
+        file_with({thing({{"metal", "Au"}}), thing({{"metal", "ag"}}), thing({{"metal", "au"}})});
+    file.json["materials"][0]["pbrMetallicRoughness"] = {{"baseColorFactor", {0, 0, 1, 0.5}},
+                                                         {"baseColorTexture", {{"index", 0}}}};
+    file.add("textures", {{"source", file.add_image(tiny_png(1, 1, {1, 2, 3, 4}))}});
+    file.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] =
+        file.add_accessor<float>("VEC2", {0, 0, 1, 0, 0, 1});
+    const GltfFile loaded = load(file);
+    const Scene& scene = loaded.scene;
+    ASSERT_EQ(scene.metals.size(), 2u);
+    EXPECT_EQ(scene.metals[0].name, "au");
+    EXPECT_EQ(scene.metals[1].name, "ag");
+    EXPECT_EQ(scene.materials[0].metal, 0);
+    EXPECT_EQ(scene.materials[1].metal, 1);
+    EXPECT_EQ(scene.materials[2].metal, 0);
+    EXPECT_FALSE(scene.materials[0].base_color_texture.present());
+    EXPECT_EQ(scene.materials[0].alpha, 0.5f);
+    for (const Material& m : scene.materials) {
+        const Rgb colour = colour_of(scene.metals[size_t(m.metal)]);
+        for (int i = 0; i < 3; ++i)
+            EXPECT_EQ(m.base_color[i], std::min(1.f, std::max(0.f, colour[i])));
+    }
+    EXPECT_GT(scene.materials[0].base_color[0], 2 * scene.materials[0].base_color[2]);  // golden
+    EXPECT_TRUE(contains_line(loaded.honoured, "measured metal au"));
+    EXPECT_TRUE(contains_line(loaded.honoured, "measured metal ag"));
+    EXPECT_TRUE(loaded.warnings.empty());
+
+    file.json["materials"][0]["alphaMode"] = "MASK";  // its holes are in the texture
+    EXPECT_TRUE(load(file).scene.materials[0].base_color_texture.present());
+}
+
+TEST(GltfExtras, MetalThatIsNotSeenIsWarnedOf) {
+    json dull = thing({{"metal", "cu"}});
+    dull["pbrMetallicRoughness"]["metallicFactor"] = 0;
+    const GltfFile loaded = load(file_with({dull}));
+    EXPECT_TRUE(contains_line(loaded.warnings, "/materials/0/extras/petzval/metal: is not seen"));
+    EXPECT_TRUE(reasons_for_wavelengths(loaded.scene).empty());
+}
+
+TEST(GltfExtras, IlluminantOfAMaterial) {
+    json bulb = thing({{"illuminant", "A"}, {"metal", "al"}}),
+         tube = thing({{"illuminant", "f11"}}), wire = thing({{"illuminant", "a"}});
+    for (json* shining : {&bulb, &tube, &wire}) (*shining)["emissiveFactor"] = {1, 1, 1};
+    const GltfFile loaded = load(file_with({bulb, tube, wire, json::object()}));
+    const Scene& scene = loaded.scene;
+    ASSERT_EQ(scene.illuminants.size(), 2u);
+    EXPECT_EQ(scene.illuminants[0].name, "a");
+    EXPECT_EQ(scene.illuminants[1].name, "f11");
+    const std::vector<int32_t> expected = {0, 1, 0, -1};
+    for (size_t i = 0; i < expected.size(); ++i)
+        EXPECT_EQ(scene.materials[i].illuminant, expected[i]);
+    EXPECT_EQ(scene.materials[0].metal, 0);
+    EXPECT_TRUE(contains_line(loaded.honoured, "illuminant a"));
+    EXPECT_TRUE(contains_line(loaded.honoured, "illuminant f11"));
+    EXPECT_TRUE(loaded.warnings.empty());
+
+    const GltfFile dark = load(file_with({thing({{"illuminant", "a"}})}));
+    EXPECT_TRUE(dark.scene.illuminants.empty());
+    EXPECT_EQ(dark.scene.materials[0].illuminant, -1);
+    EXPECT_TRUE(contains_line(dark.warnings, "/materials/0/extras/petzval/illuminant: is not"));
+}
+
+TEST(GltfExtras, IlluminantsOfLights) {
+    const GltfFile loaded =
+        load(lit({lamp({{"illuminant", "f11"}}), lamp({{"illuminant", "a"}}, "spot"),
+                  lamp({{"illuminant", "F11"}}, "directional"), lamp(json::object())}));
+    const Scene& scene = loaded.scene;
+    ASSERT_EQ(scene.lights.size(), 4u);
+    ASSERT_EQ(scene.illuminants.size(), 2u);
+    EXPECT_EQ(scene.illuminants[0].name, "f11");
+    EXPECT_EQ(scene.illuminants[1].name, "a");
+    EXPECT_EQ(std::get<PointLight>(scene.lights[0]).illuminant, 0);
+    EXPECT_EQ(std::get<SpotLight>(scene.lights[1]).illuminant, 1);
+    EXPECT_EQ(std::get<SunLight>(scene.lights[2]).illuminant, 0);
+    EXPECT_EQ(std::get<PointLight>(scene.lights[3]).illuminant, -1);
+    EXPECT_TRUE(contains_line(loaded.honoured, "illuminant f11"));
+}
+
+TEST(GltfExtras, UnlitMaterialsHaveNoUseForThem) {
+    json unlit = thing({{"metal", "au"}, {"illuminant", "a"}});
+    unlit["extensions"]["KHR_materials_unlit"] = json::object();
+    const GltfFile loaded = load(file_with({unlit}));
+    EXPECT_EQ(loaded.scene.materials[0].metal, -1);
+    EXPECT_EQ(loaded.scene.materials[0].base_color[2], 1.f);
+    EXPECT_TRUE(contains_line(loaded.warnings, "/materials/0/extras/petzval: an unlit material"));
+}
+
+TEST(GltfExtras, ThoseOfOthersAreIgnored) {
+    for (const json& extras : {R"(1)"_json, R"("petzval")"_json, R"([{"petzval": 1}])"_json,
+                               R"({"glass": "x", "petzvaL": {"glass": 1}})"_json}) {
+        TinyGltf file = file_with({{{"extras", extras}}});
+        for (const char* other : {"meshes", "nodes", "scenes", "asset"}) {
+            json& owner = file.json[other];
+            (owner.is_array() ? owner[0] : owner)["extras"]["petzval"] = 1;
+        }
+        EXPECT_TRUE(load(file).warnings.empty()) << extras;
+    }
+    const Material m = material_of(thing(json::object()));
+    EXPECT_FALSE(m.glass.has_value());
+    EXPECT_EQ(m.metal, -1);
+    EXPECT_EQ(m.illuminant, -1);
+}
+
+TEST(GltfExtras, WrongOnesOfMaterialsAreRefused) {
+    struct Wrong {
+        json extras;
+        const char* expected;
+    };
+    const std::vector<Wrong> cases = {
+        {R"(1)"_json, ": must be an object, but is number"},
+        {R"(null)"_json, ": must be an object, but is null"},
+        {R"(["glass"])"_json, ": must be an object, but is array"},
+        {R"({"glas": "schott:N-BK7"})"_json,
+         "/glas: is not known; in a material's extras.petzval there may be glass, metal, ill"},
+        {R"({"glass": 1})"_json, "/glass: must be a string, but is number"},
+        {R"({"metal": ["au"]})"_json, "/metal: must be a string, but is array"},
+        {R"({"illuminant": null})"_json, "/illuminant: must be a string, but is null"},
+        {R"({"glass": "schott:N-BK7", "metal": "au"})"_json,
+         ": names a glass and a metal; a material is one of them"},
+        {R"({"metal": "gold"})"_json, "/metal: there is no metal \"gold\"; there are ag, al, au, "},
+        {R"({"glass": "shott:N-SF11"})"_json,
+         "/glass: there is no glass \"shott:N-SF11\"; near it are schott:N-SF11, "},
+        {R"({"glass": "\u0007"})"_json, "/glass: there is no glass \"?\""},
+        {R"({"illuminant": "b"})"_json,
+         "/illuminant: there is no illuminant \"b\"; there are d65, a, f11"},
+    };
+    for (const Wrong& wrong : cases) {
+        json material = thing(wrong.extras);
+        material["emissiveFactor"] = {1, 1, 1};
+        const std::string message = refused(material);
+        EXPECT_TRUE(
+            has(message, std::string("test.glb: /materials/0/extras/petzval") + wrong.expected));
+    }
+}
+
+TEST(GltfExtras, WrongOnesOfLightsAreRefused) {
+    const std::string path = "test.glb: /extensions/KHR_lights_punctual/lights/0/extras/petzval";
+    EXPECT_TRUE(has(refused(lit({lamp(1)})), path + ": must be an object"));
+    EXPECT_TRUE(has(refused(lit({lamp({{"metal", "au"}})})),
+                    path + "/metal: is not known; in a light's extras.petzval there may be illum"));
+    EXPECT_TRUE(
+        has(refused(lit({lamp({{"illuminant", 2}})})), path + "/illuminant: must be a string"));
+    EXPECT_TRUE(has(refused(lit({lamp({{"illuminant", "f12"}})})),
+                    path + "/illuminant: there is no illuminant \"f12\"; there are d65, a, f11"));
+}
+
+TEST(NeedsWavelengths, NothingInAnOrdinaryScene) {
+    TinyGltf file = file_with({prism(), json::object()});
+    file.json["materials"][1]["emissiveFactor"] = {1, 1, 1};
+    const GltfFile loaded = load(file);
+    EXPECT_TRUE(reasons_for_wavelengths(loaded.scene).empty());
+    EXPECT_TRUE(glass_range_warnings(loaded.scene).empty());
+    EXPECT_FALSE(glass_beyond(loaded.scene, 100, 5000));
+}
+
+TEST(NeedsWavelengths, OneReasonForEachKind) {
+    json bulb = thing({{"illuminant", "a"}}), nameless = prism(dispersing(1));
+    bulb["emissiveFactor"] = {1, 1, 1};
+    nameless.erase("name");
+    Scene scene = load(file_with({prism({}, {{"glass", "schott:N-SF11"}}), thing({{"metal", "au"}}),
+                                  bulb, nameless, prism(dispersing(2)), bulb}))
+                      .scene;
+    scene.lights = {PointLight{V3f(0.f), Rgb(1.f), 0}, PointLight{V3f(0.f), Rgb(1.f)}};
+    EXPECT_EQ(reasons_for_wavelengths(scene),
+              (std::vector<std::string>{"material \"prism\" disperses (schott:N-SF11), and 2 more",
+                                        "material \"thing\" is a measured metal (au)",
+                                        "material \"thing\" shines as illuminant a, and 1 more",
+                                        "a light shines as illuminant a"}));
+    EXPECT_EQ(reasons_for_wavelengths(load(file_with({nameless})).scene),
+              (std::vector<std::string>{
+                  "a material without a name disperses (KHR_materials_dispersion)"}));
+}
+
+TEST(NeedsWavelengths, GlassThatIsNotKnownEverywhere) {
+    const json flint = prism({}, {{"glass", "schott:N-SF11"}});
+    const Scene scene =
+        load(file_with({flint, flint, prism(dispersing(1)), thing({{"glass", "schott:N-SF57"}}),
+                        prism({}, {{"glass", "schott:N-BK7"}})}))
+            .scene;
+    EXPECT_EQ(glass_range_warnings(scene),
+              std::vector<std::string>{"glass schott:N-SF11 is known from 370 to 2500 nm: "
+                                       "the value at the end is held outside"});
+    EXPECT_FALSE(glass_beyond(scene, 370, 2500));
+    for (const auto& [first_nm, last_nm] : {std::pair{369., 800.}, std::pair{400., 2501.}})
+        EXPECT_EQ(glass_beyond(scene, first_nm, last_nm).value_or(""),
+                  "glass schott:N-SF11 is known from 370 to 2500 nm, not from " +
+                      std::to_string(int(first_nm)) + " to " + std::to_string(int(last_nm)) +
+                      " nm");
+}
+
+}  // namespace
+}  // namespace petzval

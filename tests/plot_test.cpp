@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/plot.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "io/error.h"
+#include "io/image.h"
+#include "tests/support/file_size_limit.h"
+#include "tests/support/temporary_folder.h"
+
+namespace petzval {
+namespace {
+
+using test::read_bytes;
+using test::TemporaryFolder;
+
+Plot plot() {
+    return {.title = "a title",
+            .x_label = "x (mm)",
+            .y_label = "y (mm)",
+            .series = {{{{0, 0}, {1, 2}, {2, NAN}, {3, 1}}, PlotStyle::Lines, "first"},
+                       {{{0, 3}, {1, 2}, {3, INFINITY}}, PlotStyle::Points, "second"},
+                       {{{0.5, 0.5}, {2.5, 1.5}}, PlotStyle::LinesAndPoints, "third"},
+                       {{{0, 1}, {1, 1.5}, {2, 0.5}}, PlotStyle::Steps, ""}}};
+}
+std::string text_of(const std::filesystem::path& path) {
+    const auto bytes = read_bytes(path);
+    return {bytes.begin(), bytes.end()};
+}
+std::string complaint(const std::filesystem::path& path, const Plot& p) {
+    try {
+        write_plot(path, p);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(Plot, IsADrawingWithItsLabels) {
+    const TemporaryFolder folder;
+    write_plot(folder / "a.svg", plot());
+    const std::string svg = text_of(folder / "a.svg");
+    for (const char* text : {"a title", "x (mm)", "y (mm)", "first", "second", "third"})
+        EXPECT_NE(svg.find(text), std::string::npos) << text;
+    EXPECT_TRUE(svg.ends_with("</svg>\n\n")) << svg.substr(svg.size() - 20);
+    write_plot(folder / "b.svg", plot());
+    EXPECT_EQ(svg, text_of(folder / "b.svg"));
+    Plot other = plot();
+    other.series[3].style = PlotStyle::Lines;
+    write_plot(folder / "b.svg", other);
+    EXPECT_NE(svg, text_of(folder / "b.svg"));
+
+    write_plot(folder / "a.PNG", plot());
+    const Picture png = read_picture(folder / "a.PNG");
+    EXPECT_EQ(png.width, 960);
+    EXPECT_EQ(png.height, 600);
+    EXPECT_EQ(png.pixels.front(), 1.f) << "white around it";
+    EXPECT_EQ(folder.count(), 3u);
+}
+
+// What gnuplot or a shell would take for an order.
+TEST(Plot, ShowsTextsLetterByLetter) {
+    const TemporaryFolder folder;
+    const std::string harm =
+        "it's \"q\" `touch " + (folder / "x").string() + "` $(ls) \\n a_b^c {d}";
+    Plot p = plot();
+    p.title = harm + "\nset output 'x'\t|";
+    p.x_label = p.series[0].label = harm;
+    write_plot(folder / "a.svg", p);
+    const std::string svg = text_of(folder / "a.svg");
+    size_t found = 0;
+    for (size_t at = 0; (at = svg.find("$(ls) \\n a_b^c {d}", at)) != std::string::npos; ++at)
+        ++found;
+    EXPECT_EQ(found, 3u);
+    EXPECT_NE(svg.find("{d}?set output 'x'?|"), std::string::npos);
+    EXPECT_EQ(folder.count(), 1u);
+}
+
+TEST(Plot, ManyPointsDoNotGetStuck) {
+    const TemporaryFolder folder;
+    Plot p = plot();
+    p.series[0].points.clear();
+    for (int i = 0; i < 50000; ++i) p.series[0].points.push_back({double(i), std::sin(double(i))});
+    write_plot(folder / "a.svg", p);
+    EXPECT_GT(read_bytes(folder / "a.svg").size(), 500000u);
+}
+
+TEST(Plot, FailuresSayWhyAndLeaveNothing) {
+    const TemporaryFolder folder;
+    Plot nothing = plot();
+    nothing.series = {{{{0, NAN}}, PlotStyle::Steps, ""}};
+    EXPECT_NE(complaint(folder / "a.svg", nothing).find("a.svg: cannot be plotted: gnuplot failed"),
+              std::string::npos)
+        << complaint(folder / "a.svg", nothing);
+    EXPECT_NE(complaint(folder / "a.pdf", plot()).find(".svg or .png"), std::string::npos);
+    EXPECT_THROW(check_plot(folder / "a.pdf"), InputError);
+    EXPECT_THROW(check_plot(folder / "none" / "a.svg"), InputError);
+    EXPECT_NO_THROW(check_plot(folder / "a.svg"));
+    EXPECT_NE(complaint("/dev/full", plot()), "");
+    {
+        const test::FileSizeLimit limit(2000);  // enough for the script, not for the plot
+        EXPECT_NE(complaint(folder / "a.svg", plot()).find("cannot be written: File too large"),
+                  std::string::npos);
+    }
+    EXPECT_EQ(folder.count(), 0u);
+}
+
+TEST(Plot, NamesThePackageThatIsMissing) {
+    const TemporaryFolder folder;
+    const std::string path = std::getenv("PATH");
+    ::setenv("PATH", folder.path().c_str(), 1);
+    const std::string message = complaint(folder / "a.svg", plot());
+    ::setenv("PATH", path.c_str(), 1);
+    EXPECT_NE(message.find("install the package gnuplot-nox"), std::string::npos) << message;
+    EXPECT_EQ(folder.count(), 0u);
+}
+
+}  // namespace
+}  // namespace petzval

@@ -13,7 +13,13 @@ from first_light_shapes import Shape, add, arc, cross, dot, lathe, sub, times, u
 
 X, Y, Z = (1, 0, 0), (0, 1, 0), (0, 0, 1)
 EYE, TARGET, FOV_DEG = (0.0, 0.088, 0.40), (-0.001, 0.0205, 0.0), 10.6
-PAVILION_DEG, CROWN_DEG = 40.75, 34.5
+TABLE, CROWN_DEG, PAVILION_DEG = 0.53, 34.5, 40.75
+GIRDLE = 0.028  # half of its thickness where the mains touch it, in radii of the stone
+CLEAR_M = 0.0002  # between glass and what it stands on
+STONE_AT = (0.022, 0.0, -0.002)
+PRISM_AT, PRISM_EDGE_DEG = (-0.042, CLEAR_M, -0.018), 9
+SF11_ND = 1.78472  # Schott's data sheet of N-SF11
+GOLDEN_ANGLE_DEG = 137.50776
 
 
 def around(angle_deg, radius, y):
@@ -23,8 +29,8 @@ def around(angle_deg, radius, y):
 
 
 def flat_body(faces, centre=(0, 0, 0)):
-    """The flat-shaded body of convex polygons that face away from its centre. It is closed where faces share equal
-    corners."""
+    """The flat-shaded convex body of these polygons; any point within is its centre. It is closed where faces share
+    equal corners."""
     shape = Shape()
     for face in faces:
         normal = unit(cross(sub(face[1], face[0]), sub(face[2], face[1])))
@@ -43,24 +49,24 @@ def round_brilliant():
     """A round brilliant of girdle radius 1, table up, with the proportions of Tolkowsky (Diamond Design, 1919): table
     53 % of the diameter, crown 34.5 and pavilion 40.75 degrees. He left open how far the stars and the lower girdle
     facets reach: here half of the crown's width, and 0.78 of the pavilion's radius."""
-    table, girdle, pieces = 0.53, 0.012, 4
+    pieces = 4
     between = math.cos(math.radians(22.5))
     slopes = {1: math.tan(math.radians(CROWN_DEG)), -1: math.tan(math.radians(PAVILION_DEG))}
-    reach = {1: (1 + table * between) / 2, -1: 1 - 0.78}
+    reach = {1: (1 + TABLE * between) / 2, -1: 1 - 0.78}
 
     def tip(angle_deg, side):
         """Where two mains and two girdle facets meet."""
-        return around(angle_deg, reach[side], side * (girdle + (1 - reach[side] * between) * slopes[side]))
+        return around(angle_deg, reach[side], side * (GIRDLE + (1 - reach[side] * between) * slopes[side]))
 
     def rim(angle_deg, side):
         """Where a girdle facet meets the round girdle; every facet touches it at multiples of 22.5 degrees."""
-        p, a = tip(22.5, side), around(0, 1, side * girdle)
-        n = cross(sub(a, p), sub(around(22.5, 1, side * girdle), p))
+        p, a = tip(22.5, side), around(0, 1, side * GIRDLE)
+        n = cross(sub(a, p), sub(around(22.5, 1, side * GIRDLE), p))
         x, _, z = around(abs((angle_deg + 22.5) % 45 - 22.5), 1, 0)
         return around(angle_deg, 1, p[1] - (n[0] * (x - p[0]) + n[2] * (z - p[2])) / n[1])
 
-    corners = [around(45 * k, table, girdle + (1 - table) * slopes[1]) for k in range(8)]
-    culet = (0, -girdle - slopes[-1], 0)
+    corners = [around(45 * k, TABLE, GIRDLE + (1 - TABLE) * slopes[1]) for k in range(8)]
+    culet = (0, -GIRDLE - slopes[-1], 0)
     faces = [corners]
     for k in range(8):
         main = 45 * k
@@ -113,30 +119,54 @@ def through_prism(heading_deg, edge_deg, n):
 
 
 class Materials:
+    """Every material of the scene by name."""
+
     def __init__(self, glb):
-        self.plinth = glb.material("plinth", "#2b2d31", 0.10)
+        self.plinth = glb.material("polished stone", "#2b2d31", 0.10)
         self.wall = glb.material("wall", "#3a3c42", 0.95)
         glass = dict(roughness=0.0, transmission=1, volume={"thicknessFactor": 0.01})
-        self.stone = glb.material("stone", ior=2.417, dispersion=20 / STONE_ABBE, **glass)
+        # About strontium titanate, which disperses four times as much as diamond (nd 2.417, Abbe number 55).
+        self.brilliant = glb.material("brilliant", ior=2.41, dispersion=round(20 / 13, 5), **glass)
         self.prism = glb.material("prism", ior=SF11_ND, extras={"petzval": {"glass": "schott:N-SF11"}}, **glass)
+
         def light(name, colour, nits):
             return glb.material(name, "#000000", 1.0, emissive=colour, nits=nits)
-        self.slit = light("slit", "#ffffff", 10)
-        self.spark = light("spark", "#ffffff", 6)
-        self.glow = light("glow", "#dfe8ff", 30)
+        self.slit = light("slit", "#ffffff", 5)
+        self.panels = light("panels", "#ffffff", 5.5)
+        self.glow = light("glow", "#dfe8ff", 18)
 
 
-STONE_ABBE = 13
-SF11_ND = 1.78472  # Schott's data sheet of N-SF11
-PRISM_AT, PRISM_SIDE_M, PRISM_HEIGHT_M, PRISM_EDGE_DEG = (-0.042, 0.0002, -0.018), 0.038, 0.052, 9
-SLIT_AWAY_M, SLIT_WIDE_M = 0.16, 0.0024
-STONE_AT = (0.022, 0.0, -0.002)
+def stones(glb, m):
+    """Brilliants that lie on a pavilion main and turn their tables to the camera."""
+    mesh = glb.mesh("brilliant", (round_brilliant(), m.brilliant))
+    lean = math.radians(PAVILION_DEG)
+    for (x, _, z), radius, yaw_deg in ((STONE_AT, 0.0185, -6), ((0.056, 0, 0.016), 0.006, -12),
+                                       ((-0.013, 0, 0.020), 0.0045, 20)):
+        y = radius * (math.sin(lean) + GIRDLE * math.cos(lean)) + CLEAR_M
+        glb.node("stone", mesh=mesh, at=(x, y, z), scale=radius,
+                 rotation=then(turn(X, PAVILION_DEG), turn(Y, yaw_deg)))
 
 
-def lie_on_main(size):
-    """Height of the girdle's centre above the ground for a stone that lies on a pavilion main facet."""
-    a = math.radians(PAVILION_DEG)
-    return size * (math.sin(a) + 0.012 * math.cos(a))
+def slit(m):
+    """A lamp left of the picture, where the ray from the camera through the prism arrives."""
+    seen = sub(PRISM_AT, EYE)
+    heading = through_prism(math.degrees(math.atan2(seen[0], seen[2])), PRISM_EDGE_DEG, SF11_ND)
+    x, _, z = add(PRISM_AT, around(heading, 0.16, 0))
+    return panel((x, 0, z), (PRISM_AT[0], 0, PRISM_AT[2]), 0.0024, 0.3), m.slit
+
+
+def panels(m):
+    """Small panels all about the axis of the stone: what its facets flash with. None stands where the prism mirrors
+    it, low, nor where the stone's table does, right above."""
+    shape, at = Shape(), add(STONE_AT, (0, 0.011, 0))
+    lean = math.radians(PAVILION_DEG)
+    for i in range(32):
+        away = math.radians(12 + 2 * i)
+        x, y, z = around(GOLDEN_ANGLE_DEG * i, math.sin(away), math.cos(away))
+        y, z = y * math.cos(lean) - z * math.sin(lean), y * math.sin(lean) + z * math.cos(lean)
+        if 0.1 < y < 0.97:
+            shape.join(panel(add(at, times((x, y, z), 0.65)), at, 0.07, 0.07))
+    return shape, m.panels
 
 
 def build():
@@ -145,40 +175,16 @@ def build():
     glb.camera("table", FOV_DEG, EYE, look(EYE, TARGET))
 
     def put(name, shape, material, **more):
-        return glb.node(name, mesh=glb.mesh(name, (shape, material)), **more)
-
-    r, soft = 0.14, 0.003
-    put("plinth", lathe([[(0, -0.2), (r, -0.2)], [(r, -0.2), (r, -soft)], arc((r - soft, -soft), soft, 0, 90, 6),
-                         [(r - soft, 0), (0, 0)]], 160), m.plinth)
+        glb.node(name, mesh=glb.mesh(name, (shape, material)), **more)
+    r, edge = 0.14, 0.003
+    put("plinth", lathe([[(0, -0.2), (r, -0.2)], [(r, -0.2), (r, -edge)], arc((r - edge, -edge), edge, 0, 90, 6),
+                         [(r - edge, 0), (0, 0)]], 160), m.plinth)
     put("wall", panel((0, 0.2, -0.7), (0, 0.2, 0), 2.4, 1.6), m.wall)
-
-    gem = glb.mesh("brilliant", (round_brilliant(), m.stone))
-    for name, (x, _, z), size, yaw in (("stone", STONE_AT, 0.0185, -6), ("small stone", (0.056, 0, 0.016), 0.006, -12),
-                                       ("small stone", (-0.013, 0, 0.020), 0.0045, 20)):
-        pose = then(turn(X, PAVILION_DEG), turn(Y, yaw))
-        glb.node(name, mesh=gem, at=(x, lie_on_main(size) + 0.0002, z), scale=size, rotation=pose)
-
-    put("prism", prism(PRISM_SIDE_M, PRISM_HEIGHT_M), m.prism, at=PRISM_AT, rotation=turn(Y, PRISM_EDGE_DEG))
-    seen = sub(PRISM_AT, EYE)
-    view = math.degrees(math.atan2(seen[0], seen[2]))
-    leaves = through_prism(view, PRISM_EDGE_DEG, SF11_ND)
-    print("view", view, "leaves", leaves, [through_prism(view, PRISM_EDGE_DEG, n) for n in (1.77, 1.83)])
-    slit = add(PRISM_AT, around(leaves, SLIT_AWAY_M, 0.0))
-    put("slit", panel(slit, (PRISM_AT[0], slit[1], PRISM_AT[2]), SLIT_WIDE_M, 0.30), m.slit)
-
-    put("glow", panel((0.05, -0.32, -0.6), (0.05, -0.12, -0.7), 0.4, 0.06), m.glow)
-    stone = add(STONE_AT, (0, 0.011, 0))
-    sparks = Shape()
-    golden = 137.50776
-    for i in range(32):
-        away = math.radians(12 + 2 * i)
-        d = around(golden * i, math.sin(away), math.cos(away))
-        a = math.radians(PAVILION_DEG)
-        d = (d[0], d[1] * math.cos(a) - d[2] * math.sin(a), d[1] * math.sin(a) + d[2] * math.cos(a))
-        if not 0.1 < d[1] < 0.97:
-            continue
-        sparks.join(panel(add(stone, times(d, 0.65)), stone, 0.065, 0.065))
-    put("sparks", sparks, m.spark)
+    stones(glb, m)
+    put("prism", prism(0.038, 0.052), m.prism, at=PRISM_AT, rotation=turn(Y, PRISM_EDGE_DEG))
+    put("slit", *slit(m))
+    put("panels", *panels(m))
+    put("glow", panel((0.05, -0.32, -0.6), (0.05, -0.12, -0.7), 0.35, 0.06), m.glow)
     return glb
 
 

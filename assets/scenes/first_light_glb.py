@@ -81,9 +81,9 @@ class GlbWriter:
         return slot
 
     def material(self, name, colour="#ffffff", roughness=0.5, metallic=0.0, emissive=None, nits=None,
-                 maps=None, double_sided=False, **extensions):
+                 maps=None, double_sided=False, extras=None, **extensions):
         """colour and emissive are '#rrggbb'; nits scales emissive; maps are slots by their glTF names;
-        extensions such as ior=1.5 or volume={...} go out as KHR_materials_*."""
+        extensions such as ior=1.5 or volume={...} go out as KHR_materials_*; extras as they are."""
         pbr = {"baseColorFactor": linear(colour) + [1], "metallicFactor": metallic, "roughnessFactor": roughness}
         material = {"name": name, "pbrMetallicRoughness": pbr}
         for slot, value in (maps or {}).items():
@@ -94,8 +94,10 @@ class GlbWriter:
             extensions["emissive_strength"] = {"emissiveStrength": nits}
         if double_sided:
             material["doubleSided"] = True
+        if extras:
+            material["extras"] = extras
         if extensions:
-            simple = {"ior": "ior", "transmission": "transmissionFactor"}
+            simple = {"ior": "ior", "dispersion": "dispersion", "transmission": "transmissionFactor"}
             full = {"KHR_materials_" + k: ({simple[k]: v} if k in simple else v) for k, v in extensions.items()}
             self.used.update(full)
             material["extensions"] = full

@@ -254,6 +254,7 @@ TEST_F(Cli, WhatIsChosenCanBePassedBack) {
     for (std::string word, value; in >> word;)
         if (word.starts_with("--") && in >> value) words.insert(words.end(), {word, value});
     ASSERT_EQ(words.size(), 4u + 8) << first.err;  // background, look-at, fov, focus
+    words.insert(words.end(), {"--progress", "none"});
     const Finished second = run_petzval(render_words(words, dark));
     EXPECT_EQ(second.err, "petzval: spectral: rgb, as nothing here depends on wavelength\n");
     EXPECT_TRUE(file_bytes(path("a.exr")) == file_bytes(path("b.exr")));

@@ -15,14 +15,18 @@ double index_of(const Sellmeier& formula, double um) {
     return std::sqrt(n2);
 }
 
-double index_of(const PowerSeries& formula, double um) {
-    double n2 = 0;
-    for (const auto& [a, power] : formula.terms) n2 += a * std::pow(um, power);
-    return std::sqrt(n2);
+double sum_of_powers(const std::vector<std::array<double, 2>>& terms, double um) {
+    double sum = 0;
+    for (const auto& [a, power] : terms) sum += a * std::pow(um, power);
+    return sum;
 }
 
-double index_of(const Cauchy& formula, double um) {
-    return formula.a + formula.b / (um * um);
+double index_of(const PowerSeries& formula, double um) {
+    return std::sqrt(sum_of_powers(formula.terms, um));
+}
+
+double index_of(const IndexSeries& formula, double um) {
+    return sum_of_powers(formula.terms, um);
 }
 
 double index_of(const IndexTable& table, double um) {
@@ -55,10 +59,26 @@ double Glass::abbe() const {
     return (index(kLineD_nm) - 1) / spread;
 }
 
-Cauchy cauchy_through(double nd, double abbe) {
+IndexSeries cauchy_through(double nd, double abbe) {
     const auto per_um2 = [](double nm) { return 1e6 / (nm * nm); };
     const double b = (nd - 1) / abbe / (per_um2(kLineF_nm) - per_um2(kLineC_nm));
-    return {nd - b * per_um2(kLineD_nm), b};
+    return {{{nd - b * per_um2(kLineD_nm), 0}, {b, -2}}};
+}
+
+IndexSeries glass_like(double nd, double abbe) {
+    if (std::isinf(abbe)) return {{{nd, 0}}};
+    const auto power = [](double nm, double p) { return std::pow(nm * 1e-3, p); };
+    const auto between = [&power](double nm1, double nm2, double p) {
+        return power(nm1, p) - power(nm2, p);
+    };
+    const double nF_nC = (nd - 1) / abbe;
+    const double ng_nF = (0.505549 - 0.000142809 * abbe + 2.8816 / abbe) * nF_nC;
+    const double b1 = between(kLineF_nm, kLineC_nm, -1.5), c1 = between(kLineF_nm, kLineC_nm, -4.5);
+    const double b2 = between(kLineG_nm, kLineF_nm, -1.5), c2 = between(kLineG_nm, kLineF_nm, -4.5);
+    const double determinant = b1 * c2 - b2 * c1;
+    const double b = (nF_nC * c2 - ng_nF * c1) / determinant;
+    const double c = (b1 * ng_nF - b2 * nF_nC) / determinant;
+    return {{{nd - b * power(kLineD_nm, -1.5) - c * power(kLineD_nm, -4.5), 0}, {b, -1.5}, {c, -4.5}}};
 }
 
 }  // namespace petzval

@@ -111,10 +111,51 @@ TEST(Cauchy, GoesThroughNdAndAbbe) {
             EXPECT_NEAR(glass.abbe(), abbe, 1e-9);
         }
     // b for N-BK7, worked by hand: 0.5168 / 64.17 / (1 / 0.4861327^2 - 1 / 0.6562725^2) um^2.
-    EXPECT_NEAR(cauchy_through(1.5168, 64.17).b, 0.00421738, 1e-7);
+    EXPECT_NEAR(cauchy_through(1.5168, 64.17).terms[1][0], 0.00421738, 1e-7);
     const Glass plain{"plain", cauchy_through(1.5, std::numeric_limits<double>::infinity())};
     EXPECT_EQ(plain.index(400.), 1.5);
     EXPECT_EQ(plain.abbe(), std::numeric_limits<double>::infinity());
+}
+
+// nF and nC of three lenses, worked by another program.
+TEST(GlassLike, GoesThroughNdAbbeAndTheUsualPartialDispersion) {
+    struct Worked {
+        double nd, abbe, nF, nC;
+    };
+    for (const auto& [nd, abbe, nF, nC] :
+         {Worked{1.80416, 46.6, 1.816241284800218, 1.7989846324397032},
+          Worked{1.72, 50.2, 1.7300233687933682, 1.7156807393112965},
+          Worked{1.6031, 60.7, 1.6100150953485897, 1.6000793457604514}}) {
+        const Glass glass{"model", glass_like(nd, abbe)};
+        EXPECT_NEAR(glass.index(kLineD_nm), nd, 1e-14);
+        EXPECT_NEAR(glass.index(kLineF_nm), nF, 1e-13);
+        EXPECT_NEAR(glass.index(kLineC_nm), nC, 1e-13);
+        EXPECT_NEAR(glass.abbe(), abbe, 1e-9);
+    }
+    const Glass plain{"plain", glass_like(1.5, std::numeric_limits<double>::infinity())};
+    EXPECT_EQ(plain.index(400.), 1.5);
+}
+
+// The worst glasses are those of the most unusual partial dispersion.
+TEST(GlassLike, IsCloserToCatalogueGlassesThanCauchy) {
+    std::vector<double> errors, cauchy_errors;
+    for (const Glass& glass : glass_catalog()) {
+        const double nd = glass.index(kLineD_nm), abbe = glass.abbe();
+        const Glass like{"like", glass_like(nd, abbe)}, cauchy{"c", cauchy_through(nd, abbe)};
+        double error = 0, cauchy_error = 0;
+        for (double nm = 400; nm <= 700; nm += 10) {
+            error = std::max(error, std::fabs(like.index(nm) - glass.index(nm)));
+            cauchy_error = std::max(cauchy_error, std::fabs(cauchy.index(nm) - glass.index(nm)));
+        }
+        errors.push_back(error);
+        cauchy_errors.push_back(cauchy_error);
+    }
+    std::sort(errors.begin(), errors.end());
+    std::sort(cauchy_errors.begin(), cauchy_errors.end());
+    const size_t half = errors.size() / 2;
+    EXPECT_LT(errors[half], 2e-4);
+    EXPECT_GT(cauchy_errors[half], 7e-4);
+    EXPECT_LT(errors.back(), 2e-3);
 }
 
 // Makers list nd to 1e-5 or better and fit within 4e-5 of it (Sumita); Sumita rounds the Abbe

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+// The numbers that a ray through a lens may be made of: one float, four floats, four doubles, and
+// any of these with two derivatives. One march serves them all.
+#pragma once
+
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <type_traits>
+
+#include "core/lanes.h"
+
+namespace petzval {
+
+// Explicit typedefs: g++ 12 drops vector_size from a dependent alias template.
+typedef double d4 __attribute__((vector_size(32)));
+/// All bits of a lane set (-1): on. All clear (0): off.
+typedef int64_t l4 __attribute__((vector_size(32)));
+
+/// Scalar: what constants are made of. Value: the number without derivatives. Mask: what comparing
+/// gives. Code: an integer for each lane.
+template <class N>
+struct NumberTraits;
+template <>
+struct NumberTraits<float> {
+    using Scalar = float;
+    using Value = float;
+    using Mask = bool;
+    using Code = int32_t;
+    static constexpr int lanes = 1;
+};
+template <>
+struct NumberTraits<f4> {
+    using Scalar = float;
+    using Value = f4;
+    using Mask = m4;
+    using Code = m4;
+    static constexpr int lanes = 4;
+};
+template <>
+struct NumberTraits<d4> {
+    using Scalar = double;
+    using Value = d4;
+    using Mask = l4;
+    using Code = l4;
+    static constexpr int lanes = 4;
+};
+template <class N>
+using ScalarOf = typename NumberTraits<N>::Scalar;
+template <class N>
+using ValueOf = typename NumberTraits<N>::Value;
+template <class N>
+using MaskOf = typename NumberTraits<N>::Mask;
+template <class N>
+using CodeOf = typename NumberTraits<N>::Code;
+
+/// The same in all lanes.
+template <class V>
+[[nodiscard]] V broadcast(ScalarOf<V> a) {
+    return V{} + a;
+}
+
+[[nodiscard]] inline float sqrt(float a) {
+    return std::sqrt(a);
+}
+[[nodiscard]] inline d4 sqrt(d4 a) {
+    return d4{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
+}
+
+[[nodiscard]] inline bool all(bool on) {
+    return on;
+}
+[[nodiscard]] inline bool all(m4 on) {
+    return __builtin_ia32_movmskps((f4)on) == 15;
+}
+[[nodiscard]] inline bool all(l4 on) {
+    return __builtin_ia32_movmskpd256((d4)on) == 15;
+}
+template <class Mask>
+[[nodiscard]] bool any(Mask on) {
+    return !all(!on);
+}
+
+[[nodiscard]] inline bool lane(bool a, int) {
+    return a;
+}
+[[nodiscard]] inline float lane(float a, int) {
+    return a;
+}
+[[nodiscard]] inline int32_t lane(int32_t a, int) {
+    return a;
+}
+[[nodiscard]] inline auto lane(const auto& a, int i) {
+    return a[i];
+}
+
+/// a where on, b elsewhere.
+template <class Mask, class V>
+[[nodiscard]] V select(Mask on, V a, V b) {
+    return on ? a : b;
+}
+
+/// A number with its derivatives by two parameters; with them the march gives exact Jacobians.
+/// Comparing and choosing look at the value.
+template <class V>
+struct Dual {
+    V value{}, du{}, dv{};
+
+    friend Dual operator-(Dual a) { return {-a.value, -a.du, -a.dv}; }
+    friend Dual operator+(Dual a, Dual b) { return {a.value + b.value, a.du + b.du, a.dv + b.dv}; }
+    friend Dual operator-(Dual a, Dual b) { return {a.value - b.value, a.du - b.du, a.dv - b.dv}; }
+    friend Dual operator*(Dual a, Dual b) {
+        return {a.value * b.value, a.du * b.value + a.value * b.du,
+                a.dv * b.value + a.value * b.dv};
+    }
+    friend Dual operator/(Dual a, Dual b) {
+        const V by = 1 / b.value, quotient = a.value * by;
+        return {quotient, (a.du - quotient * b.du) * by, (a.dv - quotient * b.dv) * by};
+    }
+};
+
+/// What has no derivative: V, or a constant for all lanes.
+template <class C, class V>
+concept ConstantFor = std::same_as<C, V> || std::is_arithmetic_v<C>;
+
+/// A constant as V's operators want it.
+template <class V, ConstantFor<V> C>
+[[nodiscard]] auto fit(C c) {
+    if constexpr (std::same_as<C, V>)
+        return c;
+    else
+        return static_cast<ScalarOf<V>>(c);
+}
+
+template <class V, ConstantFor<V> C>
+[[nodiscard]] Dual<V> operator+(Dual<V> a, C c) {
+    return {a.value + fit<V>(c), a.du, a.dv};
+}
+template <class V, ConstantFor<V> C>
+[[nodiscard]] Dual<V> operator+(C c, Dual<V> a) {
+    return a + c;
+}
+template <class V, ConstantFor<V> C>
+[[nodiscard]] Dual<V> operator-(Dual<V> a, C c) {
+    return {a.value - fit<V>(c), a.du, a.dv};
+}
+template <class V, ConstantFor<V> C>
+[[nodiscard]] Dual<V> operator-(C c, Dual<V> a) {
+    return {fit<V>(c) - a.value, -a.du, -a.dv};
+}
+template <class V, ConstantFor<V> C>
+[[nodiscard]] Dual<V> operator*(Dual<V> a, C c) {
+    return {a.value * fit<V>(c), a.du * fit<V>(c), a.dv * fit<V>(c)};
+}
+template <class V, ConstantFor<V> C>
+[[nodiscard]] Dual<V> operator*(C c, Dual<V> a) {
+    return a * c;
+}
+template <class V>
+[[nodiscard]] Dual<V> operator/(Dual<V> a, V c) {
+    const V by = 1 / c;
+    return {a.value * by, a.du * by, a.dv * by};
+}
+template <class V, ConstantFor<V> C>
+[[nodiscard]] Dual<V> operator/(C c, Dual<V> a) {
+    const V by = 1 / a.value, quotient = fit<V>(c) * by;
+    return {quotient, -quotient * by * a.du, -quotient * by * a.dv};
+}
+
+/// The derivative of the root of 0, infinite, is given as 0.
+template <class V>
+[[nodiscard]] Dual<V> sqrt(Dual<V> a) {
+    const V root = sqrt(a.value);
+    const V half = select(root > 0, V(ScalarOf<V>(0.5) / root), V{});
+    return {root, a.du * half, a.dv * half};
+}
+template <class Mask, class V>
+[[nodiscard]] Dual<V> select(Mask on, Dual<V> a, Dual<V> b) {
+    return {select(on, a.value, b.value), select(on, a.du, b.du), select(on, a.dv, b.dv)};
+}
+
+template <class V>
+struct NumberTraits<Dual<V>> : NumberTraits<V> {};
+
+template <class V>
+[[nodiscard]] V value_of(V a) {
+    return a;
+}
+template <class V>
+[[nodiscard]] V value_of(Dual<V> a) {
+    return a.value;
+}
+/// Without derivatives.
+template <class N>
+[[nodiscard]] N constant(ValueOf<N> a) {
+    if constexpr (std::same_as<N, ValueOf<N>>)
+        return a;
+    else
+        return {a};
+}
+
+/// Three of them: Imath's vectors want numbers that compare to a bool.
+template <class N>
+struct Vec3 {
+    N x{}, y{}, z{};
+
+    friend Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+    template <class C>
+    friend Vec3 operator*(Vec3 a, C c) {
+        return {a.x * c, a.y * c, a.z * c};
+    }
+};
+template <class N>
+[[nodiscard]] N dot(Vec3<N> a, Vec3<N> b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <class N>
+[[nodiscard]] Vec3<ValueOf<N>> value_of(const Vec3<N>& a) {
+    return {value_of(a.x), value_of(a.y), value_of(a.z)};
+}
+template <class Mask, class N>
+[[nodiscard]] Vec3<N> select(Mask on, Vec3<N> a, Vec3<N> b) {
+    return {select(on, a.x, b.x), select(on, a.y, b.y), select(on, a.z, b.z)};
+}
+
+}  // namespace petzval

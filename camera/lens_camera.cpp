@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "camera/lens_camera.h"
+
+#include <algorithm>
+
+#include "core/dispersion.h"
+
+namespace petzval {
+namespace {
+
+f4 wavelengths_of(const Bands& bands, Chroma chroma) {
+    const bool achromatic = !bands.spectral || chroma == Chroma::Shared;
+    return achromatic ? splat(static_cast<float>(kLineD_nm)) : bands.nm;
+}
+
+// The lane whose ray is solved for: any of those that are on.
+int pick_lane(m4 on, float u) {
+    int count = 0, lane = 0;
+    for (int i = 0; i < 4; ++i) count += on[i] != 0;
+    int wanted = std::min(static_cast<int>(u * static_cast<float>(count)), count - 1);
+    for (int i = 0; i < 4; ++i) {
+        if (!on[i]) continue;
+        lane = i;
+        if (wanted-- == 0) break;
+    }
+    return lane;
+}
+
+m4 only(int lane) {
+    m4 on{};
+    on[lane] = -1;
+    return on;
+}
+
+f4 transmitted(const Iris& iris, f4 x, f4 y) {
+    f4 out;
+    for (int i = 0; i < 4; ++i) out[i] = iris.transmits({x[i], y[i]});
+    return out;
+}
+
+float count_of(m4 on) {
+    float count = 0;
+    for (int i = 0; i < 4; ++i) count += on[i] != 0;
+    return count;
+}
+
+}  // namespace
+
+LensCamera::LensCamera(LensCameraInput in)
+    : in_(std::move(in)),
+      pose_(in_.to_world),
+      pupil_(*in_.lens, in_.film_mm, 0.5 * std::hypot(in_.film_width_mm, in_.film_height_mm)),
+      area_mm2_(static_cast<float>(in_.iris.area_mm2())) {}
+
+// Irradiance is the integral of radiance dL dM, L and M the direction cosines at the film: the
+// cosine is in it. A point drawn evenly on the iris and solved for one lane has the density
+// stretch / area in (L, M); other lanes might have drawn the same direction, and all are weighed
+// with the mean density (balance heuristic: Veach 1997, 9.2.3), so that light at the iris's edge is
+// not lost where its image differs between wavelengths.
+LensCamera::Draw LensCamera::draw(V2f film_mm, V2f u, float u_lane, const Bands& bands) const {
+    Draw out;
+    const LensIndices<f4> indices = in_.lens->indices(wavelengths_of(bands, in_.chroma));
+    const V2f on_iris = in_.iris.sample(u);
+    const int lane = pick_lane(bands.on, u_lane);
+    const m4 on = in_.chroma == Chroma::Single ? only(lane) : bands.on;
+    const auto cosines = pupil_.direction(film_mm, on_iris, indices, lane);
+    if (!cosines) return out;
+    const StopCrossing c = pupil_.cross(film_mm, *cosines, indices);
+    const f4 open = zero_off(on & c.ray.alive(), transmitted(in_.iris, c.x_mm, c.y_mm));
+    const float density = hsum(open * c.stretch_mm2()) / (area_mm2_ * count_of(on));
+    if (!(density > 0.f)) return out;
+    out.ray = c.ray;
+    static_cast<void>(march<f4>(*in_.lens, indices, Towards::Scene, {0, in_.lens->stop() - 1},
+                                out.ray, Clip::Yes));
+    const float gain = static_cast<float>(in_.gain) * count_of(bands.on) / count_of(on);
+    out.weight = zero_off(c.clear & out.ray.alive(), open * (gain / density));
+    return out;
+}
+
+Ray LensCamera::world_ray(const LensRay<f4>& ray, int lane) const {
+    const double to_m = 1e-3 * in_.scale;
+    const double z = ray.origin.z[lane] + in_.lens->vertex_mm(ray.counted_from) -
+                     in_.entrance_pupil_mm;
+    Ray out;
+    out.origin = pose_.origin + pose_.right * static_cast<float>(ray.origin.x[lane] * to_m) +
+                 pose_.up * static_cast<float>(ray.origin.y[lane] * to_m) +
+                 pose_.back * static_cast<float>(z * to_m);
+    out.direction = unit(pose_.right * ray.direction.x[lane] + pose_.up * ray.direction.y[lane] +
+                         pose_.back * ray.direction.z[lane]);
+    return out;
+}
+
+// Whether two lanes meet the plane of focus within the tolerance, seen from the lens.
+bool LensCamera::together(const LensRay<f4>& ray, int a, int b) const {
+    if (in_.chroma == Chroma::Split) return false;
+    const float focus_mm = in_.focus_m * 1e3f / static_cast<float>(in_.scale);
+    const auto on_plane = [&](int lane) {
+        const auto z = static_cast<float>(ray.origin.z[lane] +
+                                          in_.lens->vertex_mm(ray.counted_from) -
+                                          in_.entrance_pupil_mm);
+        const float t = (focus_mm + z) / -ray.direction.z[lane];
+        return V2f(ray.origin.x[lane] + t * ray.direction.x[lane],
+                   ray.origin.y[lane] + t * ray.direction.y[lane]);
+    };
+    // A fisheye's rays that lead backwards never meet the plane: no guess is made about them.
+    if (!(ray.direction.z[a] < 0.f && ray.direction.z[b] < 0.f)) return false;
+    return (on_plane(a) - on_plane(b)).length() <= in_.tolerance_rad * focus_mm;
+}
+
+CameraSample LensCamera::sample(const FilmPoint& point, const Bands& bands) const {
+    // The image stands on its head: what is seen on the right falls on the left of the film.
+    const V2f film((0.5f - point.film.x) * static_cast<float>(in_.film_width_mm),
+                   (point.film.y - 0.5f) * static_cast<float>(in_.film_height_mm));
+    const Draw drawn =
+        draw(film, point.sampler.get2(Dim::Lens), point.sampler.get1(Dim::LensLane), bands);
+    CameraSample out;
+    const m4 alive = drawn.weight > 0.f;
+    if (!any(alive)) return out;
+    int first = 0;
+    while (!alive[first]) ++first;
+    const bool one_ray = !bands.spectral || in_.chroma == Chroma::Shared;
+    m4 left = alive;
+    // Lanes that go nearly the same way share the first one's ray.
+    for (int lane = first; lane < 4; ++lane) {
+        if (!left[lane]) continue;
+        CameraPath& path = out.path[static_cast<size_t>(out.count++)];
+        path.ray = world_ray(drawn.ray, lane);
+        path.lanes = left;
+        for (int other = lane + 1; other < 4; ++other)
+            if (!one_ray && left[other] && !together(drawn.ray, lane, other)) path.lanes[other] = 0;
+        path.weight = zero_off(path.lanes, drawn.weight);
+        left &= ~path.lanes;
+    }
+    return out;
+}
+
+double axial_irradiance(const LensCamera& camera) {
+    // Midpoints of a grid over the square that the iris is drawn from: smooth but for its edge.
+    constexpr int side = 64;
+    double sum = 0;
+    for (int i = 0; i < side; ++i)
+        for (int j = 0; j < side; ++j) {
+            const V2f u((static_cast<float>(i) + 0.5f) / side, (static_cast<float>(j) + 0.5f) / side);
+            sum += camera.draw(V2f(0.f), u, 0.f, Bands::rgb()).weight[0];
+        }
+    return sum / (side * side);
+}
+
+}  // namespace petzval

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// The camera that is a lens: rays leave the film, cross the iris, and go out through the glass.
+#pragma once
+
+#include <memory>
+
+#include "camera/camera.h"
+#include "camera/iris.h"
+#include "camera/lens.h"
+#include "camera/pupil.h"
+#include "camera/thin_lens.h"
+
+namespace petzval {
+
+/// How wavelengths that leave the lens apart are carried into the scene. Auto: one ray for all
+/// lanes where they would land within a tolerance, else one for each. Shared: the ray of line d,
+/// as if the lens were achromatic. Split: one for each, always. Single: one wavelength a path.
+enum class Chroma : uint8_t { Auto, Shared, Split, Single };
+
+struct LensCameraInput {
+    std::shared_ptr<const Lens> lens;
+    Iris iris;
+    M44f to_world;              ///< the middle of the entrance pupil, looking along -z, y up
+    double film_mm = 0;         ///< z of the film, behind the lens
+    double film_width_mm = 36, film_height_mm = 24;
+    double entrance_pupil_mm = 0;  ///< z of what stands at to_world's origin
+    double scale = 1;           ///< a lens twice as large has 2
+    double gain = 1;            ///< on every weight: see normal_gain
+    Chroma chroma = Chroma::Auto;
+    float focus_m = 1;          ///< where wavelengths are compared, along the axis
+    float tolerance_rad = 0;    ///< Auto: how far apart directions may be, seen from the lens
+};
+
+class LensCamera final : public Camera {
+  public:
+    explicit LensCamera(LensCameraInput);
+
+    [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
+
+    /// What one draw of the iris brings: a film point's irradiance over the radiance of a scene of
+    /// the same radiance everywhere is its mean. Lanes of the bands; u in [0, 1)^2.
+    struct Draw {
+        f4 weight{};        ///< 0 where the lane is blocked
+        LensRay<f4> ray;    ///< in front of the lens
+    };
+    /// film_mm: a point of the film. u_lane picks the lane whose ray hits the drawn iris point.
+    [[nodiscard]] Draw draw(V2f film_mm, V2f u, float u_lane, const Bands&) const;
+
+  private:
+    [[nodiscard]] Ray world_ray(const LensRay<f4>&, int lane) const;
+    [[nodiscard]] bool together(const LensRay<f4>&, int a, int b) const;
+
+    LensCameraInput in_;
+    Pose pose_;
+    Pupil pupil_;
+    float area_mm2_;
+};
+
+/// Irradiance over radiance at the middle of the film, of the lens and the iris as they stand, at
+/// line d: pi sin^2 u' for a round iris. By quadrature over the iris.
+[[nodiscard]] double axial_irradiance(const LensCamera&);
+
+}  // namespace petzval

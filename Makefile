@@ -2,7 +2,7 @@
 # Two commands for a fresh Debian 12: make render, make test. Everything else is CMake's.
 PACKAGES = cmake ninja-build ccache mold libembree-dev libtbb-dev libimath-dev \
     libopenimageio-dev openimageio-tools libopencolorio-dev libtinygltf-dev nlohmann-json3-dev \
-    libfmt-dev libcli11-dev gnuplot-nox libgtest-dev libgmock-dev libbenchmark-dev
+    libfmt-dev libcli11-dev libpugixml-dev gnuplot-nox libgtest-dev libgmock-dev libbenchmark-dev
 SOURCES = git ls-files '*.h' '*.cpp'
 
 .PHONY: render test build deps format format-check

@@ -21,6 +21,7 @@ enum class Dim : uint32_t {
     LightPick,
     LightPoint,
     Roulette,
+    LensLane,
     Count
 };
 

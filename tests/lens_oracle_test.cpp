@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "camera/lens_march.h"
-
+// Rays that an independent program traced in float64 and in 34 digits: tests/data/oracle.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <vector>
 
+#include "camera/lens_march.h"
 #include "tests/support/lens_json.h"
-#include "tests/support/statistics.h"
+#include "tests/support/lens_rays.h"
 
 namespace petzval {
 namespace {
@@ -19,7 +18,11 @@ namespace {
 using test::kOracleLenses;
 using test::read_lens;
 using test::read_oracle;
-using Three = std::array<double, 3>;
+using test::at_lane;
+using test::Three;
+using test::unit;
+using test::vectors_of;
+using test::whole;
 
 struct End {
     std::string status;
@@ -31,7 +34,7 @@ struct Row {
     double nm;
     Three origin, direction;
     End clipped;
-    double margin_mm;  ///< least distance from an edge, infinite where it is not known
+    double margin_mm;  ///< least distance from an edge, large where it is not known
     End unclipped;
     bool leaves;  ///< there is a ray on the far side where apertures are not obeyed
     Three point, leaving;
@@ -42,7 +45,7 @@ struct Row {
 std::vector<Row> rows_of(const nlohmann::json& table) {
     std::vector<Row> rows;
     for (const auto& item : table) {
-        Row row{item[0], item[1], item[2], {item[3], item[4]},      kInfinity, {item[6], item[7]},
+        Row row{item[0], item[1], item[2], {item[3], item[4]}, 1e9, {item[6], item[7]},
                 false,   {},      {},      0,                       {}};
         if (item[5].is_number()) row.margin_mm = item[5];
         if (item.size() > 8) {
@@ -60,34 +63,8 @@ const char* name_of(Fate fate) {
     return names[static_cast<int>(fate)];
 }
 
-template <class N>
-using Code4 = CodeOf<N>;
-
-/// A number in each lane. N: f4 or d4.
-template <class V, class F>
-V lanes_of(const F& f) {
-    V out{};
-    for (int i = 0; i < 4; ++i) out[i] = static_cast<ScalarOf<V>>(f(i));
-    return out;
-}
-template <class V, class F>
-Vec3<V> vectors_of(const F& f) {
-    return {lanes_of<V>([&](int i) { return f(i)[0]; }), lanes_of<V>([&](int i) { return f(i)[1]; }),
-            lanes_of<V>([&](int i) { return f(i)[2]; })};
-}
-Three at_lane(const auto& v, int i) {
-    return {double(v.x[i]), double(v.y[i]), double(v.z[i])};
-}
-Three unit(Three a) {
-    const double length = std::hypot(a[0], a[1], a[2]);
-    return {a[0] / length, a[1] / length, a[2] / length};
-}
 double distance(Three a, Three b) {
     return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
-}
-
-SurfaceRange whole(const Lens& lens) {
-    return {0, lens.last()};
 }
 
 template <class V>
@@ -108,13 +85,14 @@ Worst<V> compare(const Lens& lens, const std::vector<Row>& rows, Towards towards
             return rows[std::min(first + size_t(i), rows.size() - 1)];
         };
         LensRay<V> ray;
+        ray.counted_from = begin;
         ray.origin = vectors_of<V>([&](int i) {
             Three origin = row(i).origin;
             origin[2] -= lens.vertex_mm(begin);
             return origin;
         });
         ray.direction = vectors_of<V>([&](int i) { return unit(row(i).direction); });
-        const auto indices = lens.exact_indices(lanes_of<V>([&](int i) { return row(i).nm; }));
+        const auto indices = lens.exact_indices(test::lanes_of<V>([&](int i) { return row(i).nm; }));
         V path{};
         const auto add_path = [&path](const LensHit<V>& hit) {
             path = select(hit.reached, V(path + hit.index * hit.distance_mm), path);

@@ -22,8 +22,9 @@ struct SurfaceRange {
 };
 
 /// Millimetres; the direction has unit length (in floats within 1e-6, less where light grazes a
-/// surface) and says where light is followed to, z towards the film. z of the origin counts from the vertex of a surface, so that no digits are lost on the
-/// length of the lens: the last one that was met.
+/// surface) and says where light is followed to, z towards the film. z of the origin counts from
+/// the vertex of a surface, so that no digits are lost on the length of the lens: the last one that
+/// was met.
 ///
 /// Lanes that are blocked keep their fate, and go on along the axis, where nothing can go wrong.
 template <class N>
@@ -68,8 +69,8 @@ template <class N>
     return select(value_of(a) > 0, a, N{});
 }
 
-/// The root of a t^2 + 2 b t + c = 0 at which a t + b = -root, where root^2 = b^2 - a c: in that one
-/// of its two forms in which nothing cancels.
+/// The root of a t^2 + 2 b t + c = 0 at which a t + b = -root, where root^2 = b^2 - a c: in that
+/// one of its two forms in which nothing cancels.
 template <class N>
 [[nodiscard]] N root_of(N a, N b, N c, N root) {
     const auto same_sign = value_of(b) * value_of(root) <= 0;
@@ -86,8 +87,8 @@ template <class N>
     Hit<N> hit;
     hit.cosine2 = direction.z * direction.z - c * beyond;
     hit.cosine = sqrt(or_zero(hit.cosine2));
-    hit.distance = root_of<N>(constant<N>(broadcast<ValueOf<N>>(c)), -direction.z, beyond,
-                              sign * hit.cosine);
+    hit.distance =
+        root_of<N>(constant<N>(broadcast<ValueOf<N>>(c)), -direction.z, beyond, sign * hit.cosine);
     hit.point = foot + direction * hit.distance;
     const N sheet = 1 - c * hit.point.z;
     hit.found = (value_of(hit.cosine2) >= 0) & (value_of(sheet) > 0);
@@ -165,9 +166,9 @@ template <class N>
         return p.x * p.x * s.across_x + p.y * p.y * s.across_y;
     };
     const auto step = [&]<class M>(const Vec3<M>& p, const Vec3<M>& d, const Sag<M>& sag) {
-        const V slope = value_of(d.z) - value_of(sag.slope_by_r) *
-                                            (value_of(p.x) * value_of(d.x) * s.across_x +
-                                             value_of(p.y) * value_of(d.y) * s.across_y);
+        const V slope =
+            value_of(d.z) - value_of(sag.slope_by_r) * (value_of(p.x) * value_of(d.x) * s.across_x +
+                                                        value_of(p.y) * value_of(d.y) * s.across_y);
         return (sag.height - p.z) / slope;
     };
     const Vec3<V> from = value_of(foot), along = value_of(direction);
@@ -186,8 +187,7 @@ template <class N>
     hit.point = foot + direction * hit.distance;
     const Sag<N> sag = sag_at<N>(s, r2_of(hit.point));
     const Vec3<N> ahead{hit.point.x * sag.slope_by_r * (-s.across_x),
-                        hit.point.y * sag.slope_by_r * (-s.across_y),
-                        constant<N>(broadcast<V>(1))};
+                        hit.point.y * sag.slope_by_r * (-s.across_y), constant<N>(broadcast<V>(1))};
     hit.normal = ahead * (sign / sqrt(dot(ahead, ahead)));
     hit.cosine = dot(hit.normal, direction);
     hit.cosine2 = hit.cosine * hit.cosine;
@@ -202,9 +202,8 @@ template <class N>
     using Code = CodeOf<N>;
     const auto code = [](auto a) { return Code{} + static_cast<int>(a); };
     const MaskOf<N> fresh = ray.alive() & !(found & inside & refracted);
-    const Code fate =
-        select(!found, code(Fate::Missed),
-               select(!inside, code(Fate::Vignetted), code(Fate::TotallyReflected)));
+    const Code fate = select(!found, code(Fate::Missed),
+                             select(!inside, code(Fate::Vignetted), code(Fate::TotallyReflected)));
     ray.fate_code = select(fresh, fate, ray.fate_code);
     ray.end_surface = select(fresh, code(surface), ray.end_surface);
     const MaskOf<N> on = ray.alive();
@@ -237,8 +236,7 @@ template <class N, class Observer = NoObserver>
     LensRay<N> ray = marched;
     if (range.first > range.last) return ray.alive();
     if (ray.counted_from != begin)
-        ray.origin.z = ray.origin.z +
-                       S(lens.vertex_mm(ray.counted_from) - lens.vertex_mm(begin));
+        ray.origin.z = ray.origin.z + S(lens.vertex_mm(ray.counted_from) - lens.vertex_mm(begin));
     for (int left = range.last - range.first, i = begin; left >= 0; --left, i += to_film ? 1 : -1) {
         const SurfaceFacts<S>& s = facts[i];
         ray.counted_from = i;
@@ -246,10 +244,10 @@ template <class N, class Observer = NoObserver>
         const N to_foot = -dot(ray.origin, ray.direction);
         const Vec3<N> foot = ray.origin + ray.direction * to_foot;
         const Hit<N> hit =
-            s.shape == Shape::Sphere    ? meet_sphere<N>(s.curvature_y, sign, foot, ray.direction)
-            : s.shape == Shape::Quadric ? meet_quadric<N>(s, sign, foot, ray.direction)
-                                        : meet_asphere<N>(s, lens.aspheres<S>()[s.asphere], sign,
-                                                          foot, ray.direction);
+            s.shape == Shape::Sphere ? meet_sphere<N>(s.curvature_y, sign, foot, ray.direction)
+            : s.shape == Shape::Quadric
+                ? meet_quadric<N>(s, sign, foot, ray.direction)
+                : meet_asphere<N>(s, lens.aspheres<S>()[s.asphere], sign, foot, ray.direction);
         ray.origin = hit.point;
         const V x = value_of(hit.point.x), y = value_of(hit.point.y);
         const MaskOf<N> inside =
@@ -264,8 +262,8 @@ template <class N, class Observer = NoObserver>
             const V ratio = indices.of_medium[from] / indices.of_medium[into];
             const N cosine2 = 1 - ratio * ratio * (1 - hit.cosine2);
             refracted = value_of(cosine2) >= 0;
-            ray.direction = ray.direction * ratio +
-                            hit.normal * (sqrt(or_zero(cosine2)) - hit.cosine * ratio);
+            ray.direction =
+                ray.direction * ratio + hit.normal * (sqrt(or_zero(cosine2)) - hit.cosine * ratio);
         }
         if (!all(hit.found & inside & refracted)) [[unlikely]] {
             ray = block(ray, i, sign, hit.found, inside, refracted);

@@ -41,7 +41,8 @@ class ParaxialLens {
         ray.reduced_angle -= ray.height * (after(i) - before(i)) * curvature(i);
     }
     void go_to_next(ParaxialRay& ray, int i) const {
-        ray.height += ray.reduced_angle / after(i) * lens_.prescription().surfaces[size_t(i)].thickness_mm;
+        ray.height +=
+            ray.reduced_angle / after(i) * lens_.prescription().surfaces[size_t(i)].thickness_mm;
     }
     /// From before surface `first` to behind surface `last`.
     [[nodiscard]] ParaxialRay follow(ParaxialRay ray, int first, int last) const {
@@ -68,8 +69,7 @@ FirstOrder first_order(const Lens& lens, double nm, Section section) {
     const auto height_to_stop = system.follow({1, 0}, 0, stop);
     const auto angle_to_stop = system.follow({0, 1}, 0, stop);
     const auto angle_from_stop = system.follow({0, 1}, stop, last);
-    const double stop_diameter =
-        2 * lens.prescription().surfaces[size_t(stop)].semi_diameter_mm;
+    const double stop_diameter = 2 * lens.prescription().surfaces[size_t(stop)].semi_diameter_mm;
 
     FirstOrder out{};
     out.focal_length_mm = -1 / height.reduced_angle;
@@ -78,8 +78,7 @@ FirstOrder first_order(const Lens& lens, double nm, Section section) {
     out.front_principal_mm = out.front_focus_mm + out.focal_length_mm;
     out.rear_principal_mm = out.back_focus_mm - system.behind() * out.focal_length_mm;
     out.entrance_pupil_mm = angle_to_stop.height / height_to_stop.height;
-    out.exit_pupil_mm =
-        -system.behind() * angle_from_stop.height / angle_from_stop.reduced_angle;
+    out.exit_pupil_mm = -system.behind() * angle_from_stop.height / angle_from_stop.reduced_angle;
     out.entrance_pupil_diameter_mm = stop_diameter / std::fabs(height_to_stop.height);
     out.exit_pupil_diameter_mm = stop_diameter / std::fabs(angle_from_stop.reduced_angle);
     out.fnumber = std::fabs(out.focal_length_mm) / out.entrance_pupil_diameter_mm;

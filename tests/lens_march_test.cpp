@@ -243,7 +243,8 @@ TEST(March, ThereAndBackAndThereAgain) {
             LensRay<V> ray;
             ray.origin = test::vectors_of<V>([&](int i) { return at_lane(start.origin, i); });
             ray.direction = test::vectors_of<V>([&](int i) { return at_lane(start.direction, i); });
-            ASSERT_TRUE(all(march(lens, indices, Towards::Film, whole(lens), ray, Clip::No))) << name;
+            ASSERT_TRUE(all(march(lens, indices, Towards::Film, whole(lens), ray, Clip::No)))
+                << name;
             const auto there = ray;
             ray.direction = ray.direction * ScalarOf<V>(-1);
             ASSERT_TRUE(all(march(lens, indices, Towards::Scene, whole(lens), ray, Clip::No)));
@@ -304,7 +305,8 @@ TEST(March, ABlockedLaneStaysBlocked) {
     const auto passed = march(lens, indices, Towards::Film, {3, 3}, ray, Clip::Yes, look);
     const m4 passed_wanted{-1, 0, 0, -1}, ends{0, 0, 2, 0};
     ASSERT_EQ(reached.size(), 4u);
-    const m4 reached_wanted[] = {{-1, -1, -1, -1}, {-1, 0, -1, -1}, {-1, 0, -1, -1}, {-1, 0, 0, -1}};
+    const m4 reached_wanted[] = {
+        {-1, -1, -1, -1}, {-1, 0, -1, -1}, {-1, 0, -1, -1}, {-1, 0, 0, -1}};
     for (int i = 0; i < 4; ++i) {
         EXPECT_EQ(passed[i], passed_wanted[i]);
         EXPECT_EQ(ray.fate(i), passed_wanted[i] ? Fate::Passed : Fate::Vignetted);

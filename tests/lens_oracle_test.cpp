@@ -15,10 +15,10 @@
 namespace petzval {
 namespace {
 
+using test::at_lane;
 using test::kOracleLenses;
 using test::read_lens;
 using test::read_oracle;
-using test::at_lane;
 using test::Three;
 using test::unit;
 using test::vectors_of;
@@ -45,8 +45,8 @@ struct Row {
 std::vector<Row> rows_of(const nlohmann::json& table) {
     std::vector<Row> rows;
     for (const auto& item : table) {
-        Row row{item[0], item[1], item[2], {item[3], item[4]}, 1e9, {item[6], item[7]},
-                false,   {},      {},      0,                       {}};
+        Row row{item[0], item[1], item[2], {item[3], item[4]}, 1e9, {item[6], item[7]}, false, {},
+                {},      0,       {}};
         if (item[5].is_number()) row.margin_mm = item[5];
         if (item.size() > 8) {
             row.leaves = true;
@@ -92,7 +92,8 @@ Worst<V> compare(const Lens& lens, const std::vector<Row>& rows, Towards towards
             return origin;
         });
         ray.direction = vectors_of<V>([&](int i) { return unit(row(i).direction); });
-        const auto indices = lens.exact_indices(test::lanes_of<V>([&](int i) { return row(i).nm; }));
+        const auto indices =
+            lens.exact_indices(test::lanes_of<V>([&](int i) { return row(i).nm; }));
         V path{};
         const auto add_path = [&path](const LensHit<V>& hit) {
             path = select(hit.reached, V(path + hit.index * hit.distance_mm), path);
@@ -153,7 +154,6 @@ class Oracle : public ::testing::TestWithParam<const char*> {
                 EXPECT_LT(worst.direction, direction);
                 EXPECT_LT(worst.path_mm, path_mm);
                 EXPECT_GT(worst.passed, 80);
-                printf("ACC %s %zu film %d clip %d: point %.2e image %.2e dir %.2e path %.2e pass %d block %d\n", GetParam(), sizeof(V), towards==Towards::Film, clip==Clip::Yes, worst.point_mm, worst.image_mm, worst.direction, worst.path_mm, worst.passed, worst.blocked);
             }
     }
 };

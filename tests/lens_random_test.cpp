@@ -130,8 +130,7 @@ void expect_snell(const LensSurface& s, Three point, Three before, Three after, 
     if (rounding * steep > 1e-6) return;
     ASSERT_NEAR(point[2], sag, 100 * rounding * steep);
     const double by_r = r > 0 ? 1 / r : 0;
-    const Three normal =
-        test::unit({-slope * x * by_r * sign, -slope * y * by_r * sign, sign});
+    const Three normal = test::unit({-slope * x * by_r * sign, -slope * y * by_r * sign, sign});
     ASSERT_GE(dot(normal, before), -1e-6);
     ASSERT_GE(dot(normal, after), -1e-6);
     const Three change = plus(plus({}, after, n_after), before, -n_before);
@@ -222,18 +221,19 @@ TEST(RandomLens, PointsAreOnTheSurfacesAndSnellsLawHolds) {
 }
 
 TEST(RandomLens, NumbersThatAreNoneMiss) {
-    const Lens lens = test::lens_of(
-        {test::surface_of(0.02, 5, 1.5), test::surface_of(0, 5, 1), test::surface_of(-0.02, 5, 1.7)});
+    const Lens lens = test::lens_of({test::surface_of(0.02, 5, 1.5), test::surface_of(0, 5, 1),
+                                     test::surface_of(-0.02, 5, 1.7)});
     const double inf = std::numeric_limits<double>::infinity(), nan = std::nan("");
     for (const double bad : {inf, -inf, nan})
         for (int place = 0; place < 6; ++place)
             for (const auto towards : {Towards::Film, Towards::Scene}) {
-                auto ray = test::ray_of<f4>({0, 0, -5}, {0, 0, towards == Towards::Film ? 1. : -1.});
+                auto ray =
+                    test::ray_of<f4>({0, 0, -5}, {0, 0, towards == Towards::Film ? 1. : -1.});
                 f4* const number[] = {&ray.origin.x,    &ray.origin.y,    &ray.origin.z,
                                       &ray.direction.x, &ray.direction.y, &ray.direction.z};
                 (*number[place])[2] = float(bad);
-                const auto alive =
-                    march(lens, lens.exact_indices(splat(550)), towards, whole(lens), ray, Clip::No);
+                const auto alive = march(lens, lens.exact_indices(splat(550)), towards, whole(lens),
+                                         ray, Clip::No);
                 expect_defined(ray, lens, towards, 1e-5);
                 EXPECT_EQ(ray.fate(2), Fate::Missed) << place << ' ' << bad;
                 for (const int i : {0, 1, 3}) EXPECT_TRUE(alive[i]);

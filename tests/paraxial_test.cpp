@@ -32,12 +32,16 @@ TEST_P(Oracle, FirstOrderDataInBothSections) {
     for (const auto& [key, wanted] : oracle.at("first_order").items()) {
         const auto section = key.find('x') == std::string::npos ? Section::Y : Section::X;
         const FirstOrder data = first_order(lens, std::stod(key), section);
-        for (const auto& [name, value] :
-             {std::pair{"efl", data.focal_length_mm}, {"bfd", data.back_focus_mm},
-              {"ffd", data.front_focus_mm}, {"front_principal", data.front_principal_mm},
-              {"rear_principal", data.rear_principal_mm}, {"enp_z", data.entrance_pupil_mm},
-              {"exp_z", data.exit_pupil_mm}, {"epd", data.entrance_pupil_diameter_mm},
-              {"xpd", data.exit_pupil_diameter_mm}, {"fno", data.fnumber}}) {
+        for (const auto& [name, value] : {std::pair{"efl", data.focal_length_mm},
+                                          {"bfd", data.back_focus_mm},
+                                          {"ffd", data.front_focus_mm},
+                                          {"front_principal", data.front_principal_mm},
+                                          {"rear_principal", data.rear_principal_mm},
+                                          {"enp_z", data.entrance_pupil_mm},
+                                          {"exp_z", data.exit_pupil_mm},
+                                          {"epd", data.entrance_pupil_diameter_mm},
+                                          {"xpd", data.exit_pupil_diameter_mm},
+                                          {"fno", data.fnumber}}) {
             expect_relative(value, wanted.at(name), 1e-11, key + ' ' + name);
             ++compared;
         }

@@ -121,11 +121,11 @@ template <class N>
     return hit;
 }
 
-/// Sag of an asphere and its slope divided by r, d sag / dr / r; exists: r is not beyond the conic.
+/// Sag of an asphere and its slope divided by r, d sag / dr / r: infinite where r is beyond the
+/// conic.
 template <class N>
 struct Sag {
     N height, slope_by_r;
-    MaskOf<N> exists;
 };
 
 template <class N>
@@ -146,8 +146,7 @@ template <class N>
         even = even + odd * r;
         even_slope = even_slope + odd_slope * r;
     }
-    return {s.curvature * r2 / (1 + root) + even * r2, s.curvature / root + even_slope,
-            value_of(under_root) > 0};
+    return {s.curvature * r2 / (1 + root) + even * r2, s.curvature / root + even_slope};
 }
 
 /// Newton's method from the quadric's point. Each lane stops when it has converged, so that what
@@ -191,7 +190,8 @@ template <class N>
     hit.normal = ahead * (sign / sqrt(dot(ahead, ahead)));
     hit.cosine = dot(hit.normal, direction);
     hit.cosine2 = hit.cosine * hit.cosine;
-    hit.found = converged & sag.exists & (value_of(hit.cosine) >= 0);
+    // An infinite slope makes no number of the cosine.
+    hit.found = converged & (value_of(hit.cosine) >= 0);
     return hit;
 }
 
@@ -220,7 +220,7 @@ template <class N>
 /// lanes that passed. N: float, f4, d4, Dual<f4> or Dual<d4>; the observer is called with a
 /// LensHit<N>.
 ///
-/// Refraction in vector form (Welford 1986, Aberrations of Optical Systems, 4.4). Any input has a
+/// Refraction in vector form (Welford 1986, Aberrations of Optical Systems, ch. 4). Any input has a
 /// defined result; NaN misses.
 template <class N, class Observer = NoObserver>
 [[nodiscard]] MaskOf<N> march(const Lens& lens, const LensIndices<ValueOf<N>>& indices,

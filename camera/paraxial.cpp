@@ -7,7 +7,7 @@
 namespace petzval {
 namespace {
 
-/// Height, and index times angle: what a refraction at a plane leaves alone. Welford 1986, 3.5.
+/// Height, and index times angle: what refraction at a plane leaves alone. Welford 1986, ch. 3.
 struct ParaxialRay {
     double height, reduced_angle;
 };

@@ -36,7 +36,7 @@ struct Image {
 
 /// Welford's sums S1 to S5 (spherical aberration, coma, astigmatism, Petzval curvature, distortion)
 /// and his C1, C2 (axial and lateral colour, F to C), mm: wavefront W040 = S1 / 8 and so on.
-/// Welford 1986, Aberrations of Optical Systems, 8.2, 8.4, 8.7, 10.2.
+/// Welford 1986, Aberrations of Optical Systems, ch. 8 and 10.
 using SeidelSums = std::array<double, 7>;
 
 struct Seidel {

@@ -313,6 +313,15 @@ TEST(March, ABlockedLaneStaysBlocked) {
         EXPECT_EQ(ray.end_surface[i], ends[i]);
         for (size_t k = 0; k < 4; ++k) EXPECT_EQ(reached[k][i], reached_wanted[k][i]);
     }
+    // A lane that was blocked from the start keeps what it was given, wherever its ray runs.
+    ray = ray_of<f4>({0, 0, -5}, {0, 0, 1});
+    ray.fate_code[1] = int(Fate::TotallyReflected), ray.end_surface[1] = 3;
+    ray.origin.x[1] = std::nanf("");
+    (void)march(lens, indices, Towards::Film, whole(lens), ray, Clip::Yes);
+    EXPECT_EQ(ray.fate(1), Fate::TotallyReflected);
+    EXPECT_EQ(ray.end_surface[1], 3);
+    EXPECT_EQ(at_lane(ray.origin, 1), (Three{}));
+    EXPECT_EQ(ray.fate(0), Fate::Passed);
     // Once all are blocked, nothing is looked at any more.
     reached.clear();
     ray = ray_of<f4>({0, 11, -5}, {0, 0, 1});
@@ -389,6 +398,20 @@ TEST(Dual, JacobiansAreThoseOfCentralDifferences) {
             compare([](const auto& ray) { return ray.direction.z; });
         }
     }
+}
+
+TEST(Dual, DerivativesAreFiniteAtThePoleOfAnOddAsphere) {
+    auto surface = surface_of(0, 5, 1.6);
+    surface.asphere = {{3, 1e-3}};
+    const Lens lens = lens_of({surface});
+    auto ray = moved(ray_of<d4>({0, 0, -1}, {0, 0, 1}), D{d4{}, broadcast<d4>(1), {}},
+                     D{d4{}, {}, broadcast<d4>(1)});
+    ASSERT_TRUE(
+        all(march(lens, lens.exact_indices(kD_nm), Towards::Film, whole(lens), ray, Clip::No)));
+    EXPECT_NEAR(ray.origin.x.du[0], 0.6, 1e-15);
+    EXPECT_NEAR(ray.origin.x.dv[0], 0.7, 1e-15);
+    EXPECT_NEAR(ray.direction.x.dv[0], 0.7 / 1.6, 1e-15);
+    EXPECT_EQ(sqrt(D{d4{}, broadcast<d4>(1), {}}).du[0], 0);
 }
 
 // Etendue: dx dy dp dq is the same before and behind a lens. In a plane of symmetry this holds for

@@ -79,7 +79,8 @@ template <class N>
 
 /// `foot` is the ray's point that is nearest to the vertex: from there the root has no large terms
 /// that cancel, wherever the ray came from, and B is -direction.z (Feder 1951, J. Opt. Soc. Am. 41,
-/// 630). The root is the one on the sheet that has the vertex, crossed in the light's direction.
+/// 630); it halves what floats err, for the same time. The root is the one on the sheet that has
+/// the vertex, crossed in the light's direction.
 template <class N>
 [[nodiscard]] Hit<N> meet_sphere(ScalarOf<N> c, ScalarOf<N> sign, const Vec3<N>& foot,
                                  const Vec3<N>& direction) {

@@ -21,30 +21,20 @@ typedef int64_t l4 __attribute__((vector_size(32)));
 /// gives. Code: an integer for each lane.
 template <class N>
 struct NumberTraits;
-template <>
-struct NumberTraits<float> {
-    using Scalar = float;
-    using Value = float;
-    using Mask = bool;
-    using Code = int32_t;
-    static constexpr int lanes = 1;
+template <class S, class V, class M, class C, int n>
+struct TraitsOf {
+    using Scalar = S;
+    using Value = V;
+    using Mask = M;
+    using Code = C;
+    static constexpr int lanes = n;
 };
 template <>
-struct NumberTraits<f4> {
-    using Scalar = float;
-    using Value = f4;
-    using Mask = m4;
-    using Code = m4;
-    static constexpr int lanes = 4;
-};
+struct NumberTraits<float> : TraitsOf<float, float, bool, int32_t, 1> {};
 template <>
-struct NumberTraits<d4> {
-    using Scalar = double;
-    using Value = d4;
-    using Mask = l4;
-    using Code = l4;
-    static constexpr int lanes = 4;
-};
+struct NumberTraits<f4> : TraitsOf<float, f4, m4, m4, 4> {};
+template <>
+struct NumberTraits<d4> : TraitsOf<double, d4, l4, l4, 4> {};
 template <class N>
 using ScalarOf = typename NumberTraits<N>::Scalar;
 template <class N>
@@ -60,7 +50,8 @@ template <class V>
     return V{} + a;
 }
 
-[[nodiscard]] inline float sqrt(float a) {
+template <std::floating_point S>
+[[nodiscard]] S sqrt(S a) {
     return std::sqrt(a);
 }
 [[nodiscard]] inline d4 sqrt(d4 a) {
@@ -81,17 +72,12 @@ template <class Mask>
     return !all(!on);
 }
 
-[[nodiscard]] inline bool lane(bool a, int) {
-    return a;
-}
-[[nodiscard]] inline float lane(float a, int) {
-    return a;
-}
-[[nodiscard]] inline int32_t lane(int32_t a, int) {
-    return a;
-}
-[[nodiscard]] inline auto lane(const auto& a, int i) {
-    return a[i];
+template <class V>
+[[nodiscard]] auto lane(const V& a, int i) {
+    if constexpr (std::is_arithmetic_v<V>)
+        return a;
+    else
+        return a[i];
 }
 
 /// a where on, b elsewhere.

@@ -252,8 +252,7 @@ Imath::M33d read_svg_transform(std::string_view text, const TextPlace& place) {
         const std::string name(in.word());
         in.expect('(');
         std::vector<double> v;
-        for (in.skip_space(); in.peek() != ')' && v.size() < 7; in.skip_space())
-            v.push_back(in.number());
+        while (!in.done() && in.peek() != ')' && v.size() < 7) v.push_back(in.number());
         const auto has = [&](const char* kind, std::initializer_list<size_t> counts) {
             return name == kind &&
                    std::find(counts.begin(), counts.end(), v.size()) != counts.end();

@@ -194,10 +194,12 @@ class PathReader {
                 move(end, end);
                 break;
             }
-            case 'Z':
-                move(subpath().start, out_.back().start);
+            case 'Z': {
+                const V2d start = subpath().start;
+                move(start, start);
                 closed_ = true;
                 break;
+            }
             default:
                 in_.refuse(
                     fmt::format("'{}' is no command of a path; there are M L H V C S Q T A "

@@ -193,6 +193,7 @@ TEST(SvgAperture, CutShort) {
         }
     }
     EXPECT_EQ(read_svg_path(whole, {"cut", "d"}).size(), 1u);
+    EXPECT_EQ(read_svg_path("M0 0 1 1 2 0ZZZ", {"cut", "d"}).size(), 1u);
 }
 
 TEST(MaskAperture, LuminanceTimesAlpha) {

@@ -395,7 +395,7 @@ TEST(Iris, ShareBeyondACircle) {
     }
 }
 
-// The pentagram's tips beyond the stop hold 13 % of its light.
+// The pentagram's tips beyond the stop hold 24 % of its light.
 TEST(Iris, ShareOfAStarBeyondItsStop) {
     const double reach = std::sqrt(M_PI / (5 * kGolden * std::sin(M_PI / 5)));
     // Half a tip: from the circle outwards between its axis and the edge, which runs at 18 degrees.

@@ -102,10 +102,10 @@ PolygonIris::PolygonIris(const Polygon& polygon, bool formula)
         triangles_.push_back({rounded(apex), rounded(first - apex), rounded(second - first)});
         areas.push_back(static_cast<float>(area / area_));
     };
-    for (const Trapezoid& t : trapezoids_) {
-        add(t.corner(0), t.corner(1), t.corner(2));
-        add(t.corner(2), t.corner(3), t.corner(0));
-    }
+    // All lower halves before all upper ones: each half of u.x then runs up the shape once, where
+    // turns of one and the other would leave the half to the last bits of u.x.
+    for (const Trapezoid& t : trapezoids_) add(t.corner(0), t.corner(1), t.corner(2));
+    for (const Trapezoid& t : trapezoids_) add(t.corner(2), t.corner(3), t.corner(0));
     choice_ = Piecewise1D(areas);
 }
 

@@ -14,8 +14,8 @@ namespace {
 }
 
 void check(const LensSurface& surface, size_t i) {
-    for (const double number : {surface.curvature_1_mm, surface.conic, surface.thickness_mm,
-                                surface.semi_diameter_mm})
+    for (const double number :
+         {surface.curvature_1_mm, surface.conic, surface.thickness_mm, surface.semi_diameter_mm})
         if (!std::isfinite(number)) refuse(i, "has a number that is not finite");
     for (const auto& [power, coefficient] : surface.asphere) {
         if (!(power >= 2 && power <= kMaxAspherePower && power == std::floor(power)))
@@ -56,16 +56,24 @@ SurfaceFacts<double> facts_of(const LensSurface& surface) {
 }
 
 SurfaceFacts<float> in_floats(const SurfaceFacts<double>& a) {
-    return {float(a.curvature_x), float(a.curvature_y),
-            float(a.curvature_z), float(a.gap_mm),
-            float(a.semi_diameter2_mm2), a.shape,
-            a.medium_before,      a.medium_after,
+    return {float(a.curvature_x),
+            float(a.curvature_y),
+            float(a.curvature_z),
+            float(a.gap_mm),
+            float(a.semi_diameter2_mm2),
+            a.shape,
+            a.medium_before,
+            a.medium_after,
             a.asphere};
 }
 
 Asphere<float> in_floats(const Asphere<double>& a) {
-    return {float(a.curvature), float(a.one_plus_k),           float(a.across_x),
-            float(a.across_y),  {a.even.begin(), a.even.end()}, {a.odd.begin(), a.odd.end()}};
+    return {float(a.curvature),
+            float(a.one_plus_k),
+            float(a.across_x),
+            float(a.across_y),
+            {a.even.begin(), a.even.end()},
+            {a.odd.begin(), a.odd.end()}};
 }
 
 SpectrumTable table_of(const Glass& glass) {

@@ -21,15 +21,17 @@ struct SurfaceRange {
     int first = 0, last = 0;
 };
 
-/// Millimetres; the direction has unit length and says where light is followed to, z towards the
-/// film. z of the origin counts from the vertex of the surface that is next to be met or was the
-/// last to be met, so that no digits are lost on the length of the lens.
+/// Millimetres; the direction has unit length (in floats within 1e-6, less where light grazes a
+/// surface) and says where light is followed to, z towards the film. z of the origin counts from
+/// the vertex of a surface, so that no digits are lost on the length of the lens: the last one that
+/// was met.
 ///
 /// Lanes that are blocked keep their fate, and go on along the axis, where nothing can go wrong.
 template <class N>
 struct LensRay {
     Vec3<N> origin, direction;
-    CodeOf<N> fate_code{};   ///< Fate, as a number
+    int counted_from = 0;     ///< the surface from whose vertex z of the origin counts
+    CodeOf<N> fate_code{};    ///< Fate, as a number
     CodeOf<N> end_surface{};  ///< where a blocked lane ended
 
     [[nodiscard]] MaskOf<N> alive() const { return fate_code == 0; }
@@ -67,6 +69,14 @@ template <class N>
     return select(value_of(a) > 0, a, N{});
 }
 
+/// The root of a t^2 + 2 b t + c = 0 at which a t + b = -root, where root^2 = b^2 - a c: in that
+/// one of its two forms in which nothing cancels.
+template <class N>
+[[nodiscard]] N root_of(N a, N b, N c, N root) {
+    const auto same_sign = value_of(b) * value_of(root) <= 0;
+    return select(same_sign, c, -b - root) / select(same_sign, root - b, a);
+}
+
 /// `foot` is the ray's point that is nearest to the vertex: from there the root has no large terms
 /// that cancel, wherever the ray came from, and B is -direction.z (Feder 1951, J. Opt. Soc. Am. 41,
 /// 630). The root is the one on the sheet that has the vertex, crossed in the light's direction.
@@ -77,7 +87,8 @@ template <class N>
     Hit<N> hit;
     hit.cosine2 = direction.z * direction.z - c * beyond;
     hit.cosine = sqrt(or_zero(hit.cosine2));
-    hit.distance = beyond / (direction.z + sign * hit.cosine);
+    hit.distance =
+        root_of<N>(constant<N>(broadcast<ValueOf<N>>(c)), -direction.z, beyond, sign * hit.cosine);
     hit.point = foot + direction * hit.distance;
     const N sheet = 1 - c * hit.point.z;
     hit.found = (value_of(hit.cosine2) >= 0) & (value_of(sheet) > 0);
@@ -99,14 +110,13 @@ template <class N>
     const N discriminant = b * b - a * c;
     const N root = sqrt(or_zero(discriminant));
     Hit<N> hit;
-    hit.distance = c / (sign * root - b);
+    hit.distance = root_of<N>(a, b, c, sign * root);
     hit.point = foot + direction * hit.distance;
     const N sheet = 1 - s.curvature_z * hit.point.z;
     hit.found = (value_of(discriminant) >= 0) & (value_of(sheet) > 0);
     const Vec3<N> along{hit.point.x * (-s.curvature_x), hit.point.y * (-s.curvature_y), sheet};
-    const N by_length = 1 / sqrt(dot(along, along));
-    hit.normal = along * (by_length * sign);
-    hit.cosine = root * by_length;
+    hit.normal = along * (sign / sqrt(dot(along, along)));
+    hit.cosine = dot(hit.normal, direction);
     hit.cosine2 = hit.cosine * hit.cosine;
     return hit;
 }
@@ -156,9 +166,9 @@ template <class N>
         return p.x * p.x * s.across_x + p.y * p.y * s.across_y;
     };
     const auto step = [&]<class M>(const Vec3<M>& p, const Vec3<M>& d, const Sag<M>& sag) {
-        const V slope = value_of(d.z) - value_of(sag.slope_by_r) *
-                                            (value_of(p.x) * value_of(d.x) * s.across_x +
-                                             value_of(p.y) * value_of(d.y) * s.across_y);
+        const V slope =
+            value_of(d.z) - value_of(sag.slope_by_r) * (value_of(p.x) * value_of(d.x) * s.across_x +
+                                                        value_of(p.y) * value_of(d.y) * s.across_y);
         return (sag.height - p.z) / slope;
     };
     const Vec3<V> from = value_of(foot), along = value_of(direction);
@@ -177,8 +187,7 @@ template <class N>
     hit.point = foot + direction * hit.distance;
     const Sag<N> sag = sag_at<N>(s, r2_of(hit.point));
     const Vec3<N> ahead{hit.point.x * sag.slope_by_r * (-s.across_x),
-                        hit.point.y * sag.slope_by_r * (-s.across_y),
-                        constant<N>(broadcast<V>(1))};
+                        hit.point.y * sag.slope_by_r * (-s.across_y), constant<N>(broadcast<V>(1))};
     hit.normal = ahead * (sign / sqrt(dot(ahead, ahead)));
     hit.cosine = dot(hit.normal, direction);
     hit.cosine2 = hit.cosine * hit.cosine;
@@ -186,30 +195,30 @@ template <class N>
     return hit;
 }
 
-/// Lanes that are blocked just now get their fate, and the axis for a ray.
+/// Lanes that are blocked just now get their fate; all blocked ones have the axis for a ray.
 template <class N>
 [[gnu::noinline]] LensRay<N> block(LensRay<N> ray, int surface, ScalarOf<N> sign, MaskOf<N> found,
                                    MaskOf<N> inside, MaskOf<N> refracted) {
     using Code = CodeOf<N>;
     const auto code = [](auto a) { return Code{} + static_cast<int>(a); };
     const MaskOf<N> fresh = ray.alive() & !(found & inside & refracted);
-    const Code fate =
-        select(!found, code(Fate::Missed),
-               select(!inside, code(Fate::Vignetted), code(Fate::TotallyReflected)));
+    const Code fate = select(!found, code(Fate::Missed),
+                             select(!inside, code(Fate::Vignetted), code(Fate::TotallyReflected)));
     ray.fate_code = select(fresh, fate, ray.fate_code);
     ray.end_surface = select(fresh, code(surface), ray.end_surface);
+    const MaskOf<N> on = ray.alive();
     const auto axis = constant<N>(broadcast<ValueOf<N>>(sign));
-    ray.origin = select(fresh, Vec3<N>{}, ray.origin);
-    ray.direction = select(fresh, Vec3<N>{N{}, N{}, axis}, ray.direction);
+    ray.origin = select(on, ray.origin, Vec3<N>{});
+    ray.direction = select(on, ray.direction, Vec3<N>{N{}, N{}, axis});
     return ray;
 }
 
 }  // namespace lens_march
 
-/// Takes a ray through the surfaces of a range. Origin before: counted from the vertex of the first
-/// surface on its way, anywhere on the line of light; t < 0 is as good as t > 0. After: on the last
-/// surface, counted from its vertex. Returns the lanes that passed. N: float, f4, d4, Dual<f4> or
-/// Dual<d4>; the observer is called with a LensHit<N>.
+/// Takes a ray through the surfaces of a range, from anywhere on its line: backwards along it to
+/// the first surface is as good as forwards. It ends on the last surface, refracted. Returns the
+/// lanes that passed. N: float, f4, d4, Dual<f4> or Dual<d4>; the observer is called with a
+/// LensHit<N>.
 ///
 /// Refraction in vector form (Welford 1986, Aberrations of Optical Systems, 4.4). Any input has a
 /// defined result; NaN misses.
@@ -225,16 +234,20 @@ template <class N, class Observer = NoObserver>
     const SurfaceFacts<S>* const facts = lens.surfaces<S>().data();
     const int begin = to_film ? range.first : range.last;
     LensRay<N> ray = marched;
+    if (range.first > range.last) return ray.alive();
+    if (ray.counted_from != begin)
+        ray.origin.z = ray.origin.z + S(lens.vertex_mm(ray.counted_from) - lens.vertex_mm(begin));
     for (int left = range.last - range.first, i = begin; left >= 0; --left, i += to_film ? 1 : -1) {
         const SurfaceFacts<S>& s = facts[i];
+        ray.counted_from = i;
         if (i != begin) ray.origin.z = ray.origin.z - (to_film ? facts[i - 1].gap_mm : -s.gap_mm);
         const N to_foot = -dot(ray.origin, ray.direction);
         const Vec3<N> foot = ray.origin + ray.direction * to_foot;
         const Hit<N> hit =
-            s.shape == Shape::Sphere    ? meet_sphere<N>(s.curvature_y, sign, foot, ray.direction)
-            : s.shape == Shape::Quadric ? meet_quadric<N>(s, sign, foot, ray.direction)
-                                        : meet_asphere<N>(s, lens.aspheres<S>()[s.asphere], sign,
-                                                          foot, ray.direction);
+            s.shape == Shape::Sphere ? meet_sphere<N>(s.curvature_y, sign, foot, ray.direction)
+            : s.shape == Shape::Quadric
+                ? meet_quadric<N>(s, sign, foot, ray.direction)
+                : meet_asphere<N>(s, lens.aspheres<S>()[s.asphere], sign, foot, ray.direction);
         ray.origin = hit.point;
         const V x = value_of(hit.point.x), y = value_of(hit.point.y);
         const MaskOf<N> inside =
@@ -249,8 +262,8 @@ template <class N, class Observer = NoObserver>
             const V ratio = indices.of_medium[from] / indices.of_medium[into];
             const N cosine2 = 1 - ratio * ratio * (1 - hit.cosine2);
             refracted = value_of(cosine2) >= 0;
-            ray.direction = ray.direction * ratio +
-                            hit.normal * (sqrt(or_zero(cosine2)) - hit.cosine * ratio);
+            ray.direction =
+                ray.direction * ratio + hit.normal * (sqrt(or_zero(cosine2)) - hit.cosine * ratio);
         }
         if (!all(hit.found & inside & refracted)) [[unlikely]] {
             ray = block(ray, i, sign, hit.found, inside, refracted);

@@ -78,7 +78,8 @@ IndexSeries glass_like(double nd, double abbe) {
     const double determinant = b1 * c2 - b2 * c1;
     const double b = (nF_nC * c2 - ng_nF * c1) / determinant;
     const double c = (b1 * ng_nF - b2 * nF_nC) / determinant;
-    return {{{nd - b * power(kLineD_nm, -1.5) - c * power(kLineD_nm, -4.5), 0}, {b, -1.5}, {c, -4.5}}};
+    return {
+        {{nd - b * power(kLineD_nm, -1.5) - c * power(kLineD_nm, -4.5), 0}, {b, -1.5}, {c, -4.5}}};
 }
 
 }  // namespace petzval

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "camera/lens.h"
 #include "core/dispersion.h"
 #include "core/spectrum_table.h"
 #include "io/csv.h"
@@ -143,7 +144,7 @@ TEST(GlassLike, IsCloserToCatalogueGlassesThanCauchy) {
         const double nd = glass.index(kLineD_nm), abbe = glass.abbe();
         const Glass like{"like", glass_like(nd, abbe)}, cauchy{"c", cauchy_through(nd, abbe)};
         double error = 0, cauchy_error = 0;
-        for (double nm = 400; nm <= 700; nm += 10) {
+        for (double nm = std::max(400., glass.first_nm); nm <= 700; nm += 10) {
             error = std::max(error, std::fabs(like.index(nm) - glass.index(nm)));
             cauchy_error = std::max(cauchy_error, std::fabs(cauchy.index(nm) - glass.index(nm)));
         }
@@ -188,6 +189,38 @@ TEST(GlassCatalog, EveryIndexFallsFromBlueToRedAndIsThatOfGlass) {
             before = n;
         }
     }
+}
+
+// What rendering looks up, a table of 1 nm in floats, against the formula in the middle between.
+// Where a range ends, the index has a kink.
+TEST(GlassCatalog, IndicesOfLensesAreCloseToTheFormula) {
+    const std::vector<Glass> glasses = glass_catalog();
+    double worst = 0, worst_visible = 0;
+    for (size_t i = 0; i < glasses.size();) {
+        Prescription lens;
+        for (; i < glasses.size() && lens.surfaces.size() < kMaxMedia - 1; ++i) {
+            lens.surfaces.emplace_back().glass = glasses[i];
+            lens.surfaces.back().glass->name += std::to_string(i);
+        }
+        lens.surfaces.front().stop = true;
+        const Lens ready(lens);
+        ASSERT_EQ(ready.media().size(), lens.surfaces.size() + 1);
+        for (float nm = 360.5f; nm < 830; nm += 5) {
+            const auto table = ready.indices(splat(nm)), exact = ready.exact_indices(splat(nm));
+            for (size_t k = 1; k < ready.media().size(); ++k) {
+                const Glass& glass = ready.media()[k];
+                const double n = glass.index(double(nm));
+                ASSERT_EQ(exact.of_medium[k][3], float(n));
+                const double error = std::fabs(table.of_medium[k][1] - n);
+                if (std::fabs(nm - glass.first_nm) < 1 || std::fabs(nm - glass.last_nm) < 1)
+                    continue;
+                worst = std::max(worst, error);
+                if (nm > 400) worst_visible = std::max(worst_visible, error);
+            }
+        }
+    }
+    EXPECT_LT(worst, 1.2e-5);
+    EXPECT_LT(worst_visible, 3.5e-6);
 }
 
 TEST(GlassCatalog, IsSearchedWhateverTheCase) {

@@ -21,8 +21,8 @@ namespace petzval::test {
 }
 
 inline const char* const kOracleLenses[] = {
-    "canon-14mm-f2.8-asph",      "cooke-triplet-50mm-f5",       "double-gauss-100mm-f2",
-    "kodak-petzval-100mm-f2",    "minolta-fisheye-16mm-f2.8",   "nikkor-retrofocus-28mm-f2.8",
+    "canon-14mm-f2.8-asph",      "cooke-triplet-50mm-f5",     "double-gauss-100mm-f2",
+    "kodak-petzval-100mm-f2",    "minolta-fisheye-16mm-f2.8", "nikkor-retrofocus-28mm-f2.8",
     "schneider-anamorphic-31mm", "takumar-50mm-f1.2"};
 
 /// Glasses are tables of the oracle's indices at the lines F, d and C.

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lenses that nobody would build, and rays that no light takes.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "camera/lens_march.h"
+#include "tests/support/lens_rays.h"
+#include "tests/support/statistics.h"
+
+namespace petzval {
+namespace {
+
+using test::at_lane;
+using test::dot;
+using test::length;
+using test::plus;
+using test::Random;
+using test::Three;
+using test::vectors_of;
+using test::whole;
+
+double between(Random& random, double a, double b) {
+    return a + (b - a) * random.next();
+}
+
+LensSurface random_surface(Random& random) {
+    LensSurface out;
+    if (random.next() < 0.9f) out.curvature_1_mm = 1 / between(random, 3, 100);
+    if (random.next() < 0.5f) out.curvature_1_mm *= -1;
+    if (random.next() < 0.1f) out.curvature_1_mm *= 1e-6;
+    if (random.next() < 0.3f) out.conic = between(random, -6, 6);
+    if (random.next() < 0.2f)
+        out.profile = random.next() < 0.5f ? Profile::CylinderX : Profile::CylinderY;
+    if (random.next() < 0.3f) {
+        // Each term adds up to 1 mm at 8 mm, or, where r is 30 mm, up to 10^9 mm.
+        const int terms = 1 + int(random.next() * 5);
+        for (int i = 0; i < terms; ++i) {
+            const int power = 2 + int(random.next() * 15);
+            out.asphere.push_back({double(power), between(random, -1, 1) * std::pow(8, -power)});
+        }
+    }
+    out.thickness_mm = between(random, -1, 12);
+    out.semi_diameter_mm = between(random, 1, 30);
+    if (random.next() < 0.6f) out.glass = test::constant_glass(between(random, 1, 2.2));
+    return out;
+}
+
+Lens random_lens(Random& random) {
+    std::vector<LensSurface> surfaces(1 + size_t(random.next() * 12));
+    for (auto& surface : surfaces) surface = random_surface(random);
+    auto& stop = surfaces[size_t(random.next() * float(surfaces.size()))];
+    stop.stop = true;
+    return test::lens_of(std::move(surfaces));
+}
+
+struct Line {
+    Three origin, direction;
+};
+
+/// Half of them somewhat along the axis, others from anywhere to anywhere; some of them along an
+/// axis of coordinates, where zeros meet.
+Line random_line(Random& random, bool to_film) {
+    const auto place = [&](double size) { return between(random, -size, size); };
+    Line out;
+    const double size = random.next() < 0.5f ? 4 : 40;
+    out.origin = {place(size), place(size), place(50)};
+    const V3f anywhere = random.direction();
+    out.direction = {anywhere.x, anywhere.y, anywhere.z};
+    const float kind = random.next();
+    if (kind < 0.6f) {
+        out.direction[2] = (to_film ? 1 : -1) * (2 + std::fabs(out.direction[2]));
+    } else if (kind < 0.75f) {
+        Three axis{};
+        axis[size_t(random.next() * 3)] = random.next() < 0.5f ? 1 : -1;
+        out.direction = axis;
+        for (double& x : out.origin)
+            if (random.next() < 0.5f) x = 0;
+    }
+    out.direction = test::unit(out.direction);
+    return out;
+}
+
+template <class V>
+LensRay<V> rays_of(const std::array<Line, 4>& lines) {
+    LensRay<V> ray;
+    ray.origin = vectors_of<V>([&](int i) { return lines[size_t(i)].origin; });
+    ray.direction = vectors_of<V>([&](int i) { return lines[size_t(i)].direction; });
+    return ray;
+}
+
+bool finite(Three a) {
+    return std::isfinite(a[0] + a[1] + a[2]);
+}
+
+/// What holds for every ray that has been marched.
+template <class N>
+void expect_defined(const LensRay<N>& ray, const Lens& lens, Towards towards, double tolerance) {
+    const auto origin = value_of(ray.origin), direction = value_of(ray.direction);
+    for (int i = 0; i < NumberTraits<N>::lanes; ++i) {
+        ASSERT_TRUE(finite(at_lane(origin, i)) && finite(at_lane(direction, i)));
+        ASSERT_NEAR(length(at_lane(direction, i)), 1, tolerance);
+        const int fate = int(lane(ray.fate_code, i)), end = int(lane(ray.end_surface, i));
+        ASSERT_TRUE(fate >= 0 && fate <= 3);
+        ASSERT_TRUE(end >= 0 && end < lens.size());
+        if (fate == 0) continue;
+        ASSERT_EQ(at_lane(origin, i), (Three{}));
+        ASSERT_EQ(at_lane(direction, i), (Three{0, 0, towards == Towards::Film ? 1. : -1.}));
+    }
+}
+
+/// The point lies on the surface, and n times the direction changes along its normal only: from the
+/// definition of the sag and its derivative.
+void expect_snell(const LensSurface& s, Three point, Three before, Three after, double n_before,
+                  double n_after, double sign) {
+    const double x = s.profile == Profile::CylinderX ? 0 : point[0];
+    const double y = s.profile == Profile::CylinderY ? 0 : point[1];
+    const double r = std::hypot(x, y), c = s.curvature_1_mm;
+    const double root = std::sqrt(1 - (1 + s.conic) * c * c * r * r);
+    double sag = c * r * r / (1 + root), slope = c * r / root, sum = std::fabs(sag);
+    for (const auto& [power, coefficient] : s.asphere) {
+        sag += coefficient * std::pow(r, power);
+        sum += std::fabs(coefficient * std::pow(r, power));
+        slope += coefficient * power * std::pow(r, power - 1);
+    }
+    const double rounding = 1e-14 * (1 + sum + length(point)) / (root * root);
+    const double steep = std::hypot(1, slope);
+    if (rounding * steep > 1e-6) return;
+    ASSERT_NEAR(point[2], sag, 100 * rounding * steep);
+    const double by_r = r > 0 ? 1 / r : 0;
+    const Three normal = test::unit({-slope * x * by_r * sign, -slope * y * by_r * sign, sign});
+    ASSERT_GE(dot(normal, before), -1e-6);
+    ASSERT_GE(dot(normal, after), -1e-6);
+    const Three change = plus(plus({}, after, n_after), before, -n_before);
+    ASSERT_LT(length(plus(change, normal, -dot(change, normal))), 1e-8 + 100 * rounding * steep);
+}
+
+TEST(RandomLens, EveryRayHasADefinedEnd) {
+    Random random(20);
+    int fates[4] = {};
+    for (int trial = 0; trial < 10000; ++trial) {
+        const Lens lens = random_lens(random);
+        const auto towards = trial % 2 ? Towards::Film : Towards::Scene;
+        const auto clip = trial % 4 < 2 ? Clip::Yes : Clip::No;
+        std::array<Line, 4> lines;
+        for (auto& line : lines) line = random_line(random, towards == Towards::Film);
+        auto doubles = rays_of<d4>(lines);
+        auto floats = rays_of<f4>(lines);
+        LensRay<Dual<f4>> dual;
+        using D = Dual<f4>;
+        const auto& [at, along] = std::pair(floats.origin, floats.direction);
+        dual.origin = {D{at.x, splat(1), {}}, D{at.y, {}, splat(1)}, D{at.z}};
+        dual.direction = {D{along.x}, D{along.y}, D{along.z}};
+        SCOPED_TRACE(trial);
+        const auto indices = lens.exact_indices(splat(550));
+        (void)march(lens, lens.exact_indices(d4{} + 550), towards, whole(lens), doubles, clip);
+        (void)march(lens, indices, towards, whole(lens), floats, clip);
+        (void)march(lens, indices, towards, whole(lens), dual, clip);
+        // Grazing incidence on a sphere loses half the digits.
+        expect_defined(doubles, lens, towards, 1e-9);
+        expect_defined(floats, lens, towards, 0.05);
+        expect_defined(dual, lens, towards, 0.05);
+        if (HasFatalFailure()) return;
+        // One float does to the last bit what a lane does, so lanes do not look at each other;
+        // derivatives do not change values.
+        LensIndices<float> one_index;
+        for (size_t i = 0; i < lens.media().size(); ++i)
+            one_index.of_medium[i] = indices.of_medium[i][0];
+        for (int i = 0; i < 4; ++i) {
+            ++fates[doubles.fate_code[i]];
+            LensRay<float> one;
+            const auto& [origin, direction] = lines[size_t(i)];
+            one.origin = {float(origin[0]), float(origin[1]), float(origin[2])};
+            one.direction = {float(direction[0]), float(direction[1]), float(direction[2])};
+            (void)march(lens, one_index, towards, whole(lens), one, clip);
+            ASSERT_EQ(one.fate(0), floats.fate(i));
+            ASSERT_EQ(one.end_surface, floats.end_surface[i]);
+            ASSERT_EQ(at_lane(one.origin, 0), at_lane(floats.origin, i));
+            ASSERT_EQ(at_lane(one.direction, 0), at_lane(floats.direction, i));
+            ASSERT_EQ(dual.fate(i), floats.fate(i));
+        }
+    }
+    for (const int count : fates) EXPECT_GT(count, 500);
+}
+
+TEST(RandomLens, PointsAreOnTheSurfacesAndSnellsLawHolds) {
+    Random random(21);
+    int checked = 0, aspheres = 0;
+    for (int trial = 0; trial < 10000; ++trial) {
+        const Lens lens = random_lens(random);
+        const bool to_film = trial % 2;
+        std::array<Line, 4> lines;
+        for (auto& line : lines) line = random_line(random, to_film);
+        auto ray = rays_of<d4>(lines);
+        const auto indices = lens.exact_indices(d4{} + 550);
+        for (int k = 0; k < lens.size(); ++k) {
+            const int i = to_film ? k : lens.last() - k;
+            const LensSurface& surface = lens.prescription().surfaces[size_t(i)];
+            const auto& facts = lens.surfaces<double>()[size_t(i)];
+            const auto before = ray;
+            (void)march(lens, indices, to_film ? Towards::Film : Towards::Scene, {i, i}, ray,
+                        Clip::Yes);
+            double n[] = {indices.of_medium[facts.medium_before][0],
+                          indices.of_medium[facts.medium_after][0]};
+            if (!to_film) std::swap(n[0], n[1]);
+            for (int j = 0; j < 4; ++j) {
+                if (ray.fate(j) != Fate::Passed) continue;
+                SCOPED_TRACE(::testing::Message() << trial << ", surface " << i);
+                expect_snell(surface, at_lane(ray.origin, j), at_lane(before.direction, j),
+                             at_lane(ray.direction, j), n[0], n[1], to_film ? 1 : -1);
+                if (HasFatalFailure()) return;
+                ++checked;
+                aspheres += !surface.asphere.empty();
+            }
+        }
+    }
+    EXPECT_GT(checked, 20000);
+    EXPECT_GT(aspheres, 3000);
+}
+
+TEST(RandomLens, NumbersThatAreNoneMiss) {
+    const Lens lens = test::lens_of({test::surface_of(0.02, 5, 1.5), test::surface_of(0, 5, 1),
+                                     test::surface_of(-0.02, 5, 1.7)});
+    const double inf = std::numeric_limits<double>::infinity(), nan = std::nan("");
+    for (const double bad : {inf, -inf, nan})
+        for (int place = 0; place < 6; ++place)
+            for (const auto towards : {Towards::Film, Towards::Scene}) {
+                auto ray =
+                    test::ray_of<f4>({0, 0, -5}, {0, 0, towards == Towards::Film ? 1. : -1.});
+                f4* const number[] = {&ray.origin.x,    &ray.origin.y,    &ray.origin.z,
+                                      &ray.direction.x, &ray.direction.y, &ray.direction.z};
+                (*number[place])[2] = float(bad);
+                const auto alive = march(lens, lens.exact_indices(splat(550)), towards, whole(lens),
+                                         ray, Clip::No);
+                expect_defined(ray, lens, towards, 1e-5);
+                EXPECT_EQ(ray.fate(2), Fate::Missed) << place << ' ' << bad;
+                for (const int i : {0, 1, 3}) EXPECT_TRUE(alive[i]);
+            }
+}
+
+}  // namespace
+}  // namespace petzval

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Four rays at once, filled and read lane by lane.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "camera/lens_march.h"
+
+namespace petzval::test {
+
+using Three = std::array<double, 3>;
+
+/// f(i) in lane i. V: f4 or d4.
+template <class V>
+[[nodiscard]] V lanes_of(const auto& f) {
+    V out{};
+    for (int i = 0; i < 4; ++i) out[i] = static_cast<ScalarOf<V>>(f(i));
+    return out;
+}
+/// The three numbers f(i) in lane i.
+template <class V>
+[[nodiscard]] Vec3<V> vectors_of(const auto& f) {
+    return {lanes_of<V>([&](int i) { return f(i)[0]; }),
+            lanes_of<V>([&](int i) { return f(i)[1]; }),
+            lanes_of<V>([&](int i) { return f(i)[2]; })};
+}
+[[nodiscard]] inline Three at_lane(const auto& v, int i) {
+    return {double(lane(v.x, i)), double(lane(v.y, i)), double(lane(v.z, i))};
+}
+
+[[nodiscard]] inline Three plus(Three a, Three b, double scale = 1) {
+    return {a[0] + scale * b[0], a[1] + scale * b[1], a[2] + scale * b[2]};
+}
+[[nodiscard]] inline double dot(Three a, Three b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+[[nodiscard]] inline double length(Three a) {
+    return std::hypot(a[0], a[1], a[2]);
+}
+[[nodiscard]] inline Three unit(Three a) {
+    return plus({}, a, 1 / length(a));
+}
+
+[[nodiscard]] inline SurfaceRange whole(const Lens& lens) {
+    return {0, lens.last()};
+}
+
+/// A ray with the same in all lanes; z counts from a surface's vertex.
+template <class V>
+[[nodiscard]] LensRay<V> ray_of(Three origin, Three direction, int counted_from = 0) {
+    LensRay<V> ray;
+    ray.origin = vectors_of<V>([&](int) { return origin; });
+    ray.direction = vectors_of<V>([&](int) { return unit(direction); });
+    ray.counted_from = counted_from;
+    return ray;
+}
+
+/// One surface, which is the stop, from air into an index, or from it into air.
+[[nodiscard]] inline Glass constant_glass(double n) {
+    return {"constant", IndexSeries{{{n, 0}}}};
+}
+[[nodiscard]] inline LensSurface surface_of(double curvature_1_mm, double thickness_mm, double n,
+                                            double semi_diameter_mm = 100) {
+    LensSurface out;
+    out.curvature_1_mm = curvature_1_mm;
+    out.thickness_mm = thickness_mm;
+    out.semi_diameter_mm = semi_diameter_mm;
+    if (n != 1) out.glass = constant_glass(n);
+    return out;
+}
+/// The first surface becomes the stop where there is none.
+[[nodiscard]] inline Lens lens_of(std::vector<LensSurface> surfaces) {
+    bool stop = false;
+    for (const auto& surface : surfaces) stop = stop || surface.stop;
+    if (!stop) surfaces.front().stop = true;
+    Prescription out;
+    out.surfaces = std::move(surfaces);
+    return Lens(std::move(out));
+}
+
+}  // namespace petzval::test

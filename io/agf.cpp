@@ -82,10 +82,12 @@ void append_numbers(std::vector<double>& out, const std::vector<std::string>& li
 
 }  // namespace
 
-AgfCatalog::AgfCatalog(const std::filesystem::path& path)
-    : file_(path.string()), maker_(lower(path.stem().string())) {
+AgfCatalog::AgfCatalog(const std::filesystem::path& path) : AgfCatalog(text_of_file(path), path) {}
+
+AgfCatalog::AgfCatalog(std::string_view text, const std::filesystem::path& file)
+    : file_(file.string()), maker_(lower(file.stem().string())) {
     bool in_coefficients = false;
-    for (const TextLine& line : text_lines(text_of_file(path), file_)) {
+    for (const TextLine& line : text_lines(text, file_)) {
         const auto word = words(line.text);
         if (word.empty()) continue;
         const std::string key = lower(word[0]);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/dispersion.h"
@@ -16,6 +17,8 @@ class AgfCatalog {
   public:
     /// Throws InputError where the file cannot be read, is no text or has no glass.
     explicit AgfCatalog(const std::filesystem::path&);
+    /// The same from the text of a file of that name.
+    AgfCatalog(std::string_view text, const std::filesystem::path& file);
 
     [[nodiscard]] const std::string& maker() const { return maker_; }  ///< lower case
     [[nodiscard]] size_t size() const { return entries_.size(); }

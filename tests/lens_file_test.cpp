@@ -10,6 +10,7 @@
 
 #include "camera/paraxial.h"
 #include "io/lens_formats.h"
+#include "io/text_lines.h"
 #include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/text_mutation.h"
@@ -358,6 +359,18 @@ TEST_F(LensText, OurJsonIsRead) {
         R"({"surfaces": [{"radius": null, "thickness": 1, "medium": null, "semi_diameter": 1,
             "stop": true}]})";
     EXPECT_EQ(read("a.json", minimal).lens.image_circle_mm, 0);
+}
+
+TEST_F(LensText, TheExampleOfTheDocsIsALens) {
+    const std::string docs = text_of_file(PETZVAL_ASSETS "/../docs/lenses.md");
+    const size_t begin = docs.find("```json\n") + 8;
+    const Prescription lens =
+        read("a.json", docs.substr(begin, docs.find("```", begin) - begin)).lens;
+    EXPECT_EQ(lens.name, "landscape");
+    const FirstOrder traced = first_order(Lens(lens), kLineD_nm);
+    EXPECT_NEAR(traced.focal_length_mm, *lens.stated_focal_length_mm, 0.1);
+    EXPECT_NEAR(traced.back_focus_mm, lens.surfaces.back().thickness_mm, 0.1);
+    EXPECT_NEAR(traced.fnumber, *lens.stated_fnumber, 0.2);
 }
 
 TEST_F(LensText, RefusesJsonThatIsNoLens) {

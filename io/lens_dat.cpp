@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// pbrt's lens descriptions (Pharr, Jakob, Humphreys 2016, Physically Based Rendering, 6.4.1): a
+// pbrt's lens descriptions (Pharr, Jakob, Humphreys 2016, Physically Based Rendering, 6.4): a
 // line for each surface from the scene to the film, of radius, thickness, index behind it and
 // diameter in mm; # begins a comment. Radius 0: the stop, or a plane of glass; index 0 or 1: air.
 #include <fmt/format.h>

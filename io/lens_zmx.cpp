@@ -26,14 +26,12 @@ bool any_of(const std::array<const char*, N>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// Shapes of the aperture and bodies in it, mirrors of a grid, surfaces tilted by themselves.
-constexpr std::array kRefused{"SQAP", "SQOB", "ELAP", "ELOB", "OBSC", "SPID", "UDAD",
-                              "USAP", "USOB", "XDAT", "YDAT", "GRID", "DCTX", "TILT"};
-// Names, notes, coatings, mechanics, drawing and solves, whose results stand in the file.
+// Shapes of the aperture and bodies in it.
+constexpr std::array kRefused{"SQAP", "SQOB", "ELAP", "ELOB", "OBSC", "SPID", "UDAD", "USAP"};
+// Notes, coatings, mechanics, drawing and solves, whose results stand in the file.
 constexpr std::array kHarmless{"COMM", "COAT", "HIDE", "MIRR", "SLAB", "POPS", "PZUP",
                                "PKUP", "MAZH", "MEMA", "OEMA", "FIMP", "PPAR", "VPAR",
-                               "LANG", "SCOL", "BLNK", "VDSZ", "PARM", "CONF", "PUSH",
-                               "GLRS", "COFN", "DMFS", "FLAP", "CONI"};
+                               "LANG", "SCOL", "BLNK", "VDSZ", "FLAP"};
 
 struct Surface {
     TextLine at;

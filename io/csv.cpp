@@ -4,13 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <optional>
 #include <string_view>
 
 #include "io/error.h"
 #include "io/read_file.h"
+#include "io/text_lines.h"
 
 namespace petzval {
 namespace {
@@ -49,16 +48,6 @@ bool is_text(std::string_view line) {
     for (const char c : line)
         if ((static_cast<unsigned char>(c) < ' ' && c != '\t') || c == '\x7f') return false;
     return true;
-}
-
-// Nothing where the cell is no finite number. Not strtod: that depends on the locale.
-std::optional<double> number(std::string_view cell) {
-    if (cell.starts_with('+') && !cell.starts_with("+-")) cell.remove_prefix(1);
-    double value = 0;
-    const char* end = cell.data() + cell.size();
-    const auto [stop, error] = std::from_chars(cell.data(), end, value);
-    if (error != std::errc() || stop != end || !std::isfinite(value)) return std::nullopt;
-    return value;
 }
 
 std::string shortened(const std::string& cell) {
@@ -105,7 +94,7 @@ CsvText read_csv_text(const std::filesystem::path& path) {
 CsvTable read_csv(const std::filesystem::path& path) {
     CsvText text = read_csv_text(path);
     CsvTable table{std::move(text.file), std::move(text.names), {}, std::move(text.line_of_row)};
-    if (number(table.names.front()))
+    if (finite_number(table.names.front()))
         throw InputError(
             table.file, "",
             "has no line of names; put one before the numbers, as wavelength_nm,value");
@@ -113,7 +102,7 @@ CsvTable read_csv(const std::filesystem::path& path) {
         std::vector<double>& values = table.rows.emplace_back();
         for (size_t column = 0; column < table.names.size(); ++column) {
             const std::string& cell = text.rows[row][column];
-            const std::optional<double> value = number(cell);
+            const std::optional<double> value = finite_number(cell);
             if (!value)
                 throw InputError(table.file, table.place(row),
                                  fmt::format("\"{}\" in column {} is not a finite number; write it "

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files of lines and words, as programs of lens design write them.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace petzval {
+
+struct TextLine {
+    int number;        ///< from 1
+    std::string text;  ///< without its end
+
+    /// "line N", for InputError's place.
+    [[nodiscard]] std::string place() const { return "line " + std::to_string(number); }
+};
+
+/// A whole file, at most 16 MiB. Throws InputError where it cannot be read.
+[[nodiscard]] std::string text_of_file(const std::filesystem::path&);
+
+/// The lines of a text: LF or CR LF; UTF-16 with a byte order mark becomes UTF-8, and what is not
+/// UTF-16 stays as it is, less its byte order mark. file: its name. Throws InputError with the line
+/// where there is a zero byte: that is no text.
+[[nodiscard]] std::vector<TextLine> text_lines(std::string_view text, const std::string& file);
+
+/// What stands between spaces and tabs.
+[[nodiscard]] std::vector<std::string> words(std::string_view line);
+
+/// A finite number and nothing else, whatever the locale; a leading + is allowed.
+[[nodiscard]] std::optional<double> finite_number(std::string_view);
+
+}  // namespace petzval

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/spectrum_table.h"
 #include "core/warp.h"
 
 namespace petzval {
@@ -17,7 +18,7 @@ void require_stop(const Singlet& lens, double radius_mm, double focus_mm) {
     if (!(radius_mm >= 0)) throw std::invalid_argument("radius of the stop must not be negative");
     const double least_mm = std::fmin(std::fabs(lens.r1_mm), std::fabs(lens.r2_mm));
     bool narrow = radius_mm < least_mm;
-    for (const double nm : {360., kLineD_nm, 830.}) {
+    for (const double nm : {double(kFirst_nm), kLineD_nm, double(kLast_nm)}) {
         const SingletOptics at = lens.at(nm);
         const double rim_mm = zonal_focal_length_mm(at, focus_mm, radius_mm);
         narrow = narrow && rim_mm > kLeastZone * at.focal_mm;

@@ -48,7 +48,7 @@ CameraSample AberratedLensCamera::sample(const FilmPoint& at, const Bands& bands
                              (1.f - 2.f * at.film.y) * tan_half_y_, -1.f};
     const V2f stop = uniform_disk(at.sampler.get2(Dim::Lens)) * static_cast<float>(radius_mm_);
     const V3f point_mm{stop.x, stop.y, 0.f};
-    const double h_mm = std::hypot(double(stop.x), double(stop.y));
+    const double h_mm = double(stop.length());
     const bool split = bands.spectral && radius_mm_ > 0;
 
     CameraSample out;

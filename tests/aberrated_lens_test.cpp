@@ -204,6 +204,9 @@ TEST(AberratedLens, RefusesWhatItCannotImage) {
     EXPECT_NE(refusal(plain(constant(1.5), 0, 51, 1)).find("too wide"), std::string::npos);
     EXPECT_NE(refusal(plain(constant(1.5), 20, 3, 1)).find("too wide"), std::string::npos);
     EXPECT_NE(refusal(plain(constant(1.5), -1.5, 25, 1)).find("too wide"), std::string::npos);
+    // Past a surface's edge though f(h) is above f/2; f(h) below f/2 though within the surfaces.
+    EXPECT_NE(refusal(plain(constant(1.5), 5. / 7, 31, 1)).find("too wide"), std::string::npos);
+    EXPECT_NE(refusal(plain(constant(4), 0, 50, 1)).find("too wide"), std::string::npos);
     const Glass fades{"fades", IndexTable{{{400, 1.5}, {800, 1.0}}}};
     EXPECT_NE(refusal(plain(fades, 0, 5, 1)).find("gather"), std::string::npos);
 }

@@ -86,7 +86,7 @@ TEST(ThinLensOptics, BlurOfPhotographersTables) {
     EXPECT_EQ(blur_diameter_mm(50, 25, 2000, 2000), 0);
 }
 
-// The formula's printed form, K h^2 / 2, and the factor that a finite object needs.
+// The law as it is often printed, K h^2 / 2, and the factor (S'/f)^2 that a finite object needs.
 TEST(ThinLensOptics, SphericalAberrationAgreesWithTraces) {
     int finite = 0;
     for (const auto& row : test::kTracedSinglets) {
@@ -103,6 +103,10 @@ TEST(ThinLensOptics, SphericalAberrationAgreesWithTraces) {
         if (!far) {
             EXPECT_GT(error(k / 2, 0), 0.4) << "K h^2 / 2 holds for an object at infinity only";
             ++finite;
+        } else if (row.bending != 0) {
+            // p with its sign turned is the lens turned round.
+            EXPECT_GT(error(spherical_coefficient_per_mm({row.n, 100, -row.bending}, kInf) / 2, 0),
+                      0.4);
         }
         // The domain: 1 % to f / 20 (and f / 16), 10 % to f / 5.
         EXPECT_LT(error(spherical_aberration_mm(lens, row.object_mm, 5), 1), 0.006);
@@ -139,6 +143,8 @@ TEST(ThinLensOptics, TellsWhereTheFormulaIsOutOfItsDomain) {
     const SingletOptics lens{1.5, 100, -2};
     EXPECT_EQ(spherical_aberration_error(lens, kInf, 30), kInf) << "reflected within";
     EXPECT_FALSE(traced_spherical_aberration_mm(lens, kInf, 30));
+    EXPECT_EQ(spherical_aberration_error({6, 100, 0}, 101, 136), kInf) << "f(h) is below 0";
+    EXPECT_TRUE(traced_spherical_aberration_mm({6, 100, 0}, 101, 136));
     EXPECT_EQ(spherical_aberration_error(lens, kInf, 0), 0);
     EXPECT_GT(spherical_aberration_error(lens, kInf, 22), 0.1);
     EXPECT_TRUE(says([&] { (void)spherical_aberration_mm(lens, kInf, 330); }, "narrow the stop"));

@@ -9,14 +9,11 @@ namespace {
 // A camera ray from a point and a direction of the camera's own space.
 CameraSample one_path(const Pose& pose, const V3f& origin, const V3f& direction,
                       const Bands& bands) {
-    const auto to_world = [&](const V3f& v) {
-        return pose.right * v.x + pose.up * v.y + pose.back * v.z;
-    };
     CameraSample out;
     out.count = 1;
     CameraPath& path = out.path[0];
-    path.ray.origin = pose.origin + to_world(origin);
-    path.ray.direction = unit(to_world(direction));
+    path.ray.origin = pose.origin + pose.to_world(origin);
+    path.ray.direction = unit(pose.to_world(direction));
     path.weight = uniform(1.f, bands);
     path.lanes = bands.on;
     return out;

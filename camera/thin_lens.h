@@ -19,7 +19,8 @@ struct ThinLens {
 /// Where a camera stands and its axes in world space, unit: what its matrix says, unpacked.
 struct Pose {
     V3f origin, right, up, back;
-    explicit Pose(const M44f& to_world);
+    explicit Pose(const M44f& matrix);
+    [[nodiscard]] V3f to_world(const V3f& v) const { return right * v.x + up * v.y + back * v.z; }
 };
 
 class ThinLensCamera final : public Camera {

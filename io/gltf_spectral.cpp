@@ -88,7 +88,7 @@ void GltfSpectral::apply(const JsonCursor& json, Material& material) {
         return;
     }
     if (extras && extras->has("glass"))
-        apply_glass(json, *extras, material);
+        apply_glass(*extras, material);
     else
         apply_dispersion(json, material);
     if (extras && extras->has("metal")) apply_metal(*extras, material);
@@ -124,22 +124,16 @@ void GltfSpectral::apply_dispersion(const JsonCursor& json, Material& material) 
     tally_.honoured.insert("dispersion of light");
 }
 
-void GltfSpectral::apply_glass(const JsonCursor& json, const JsonCursor& extras,
-                               Material& material) {
-    const auto warn = [&](const std::string& message) {
-        tally_.warnings.push_back(extras.path_of("glass") + ": " + message);
-    };
+void GltfSpectral::apply_glass(const JsonCursor& extras, Material& material) {
     material.glass = glass(extras);
     material.ior = static_cast<float>(material.glass->index(kLineD_nm));
     tally_.honoured.insert("named glass " + material.glass->name);
-    for (const char* overridden : {"KHR_materials_ior", "KHR_materials_dispersion"})
-        if (json.extension(overridden))
-            warn(fmt::format("stands in place of the material's {}", overridden));
     if (material.refracts())
         tally_.honoured.insert("dispersion of light");
     else
-        warn(
-            "disperses nothing, as the material does not refract light; that takes "
+        tally_.warnings.push_back(
+            extras.path_of("glass") +
+            ": disperses nothing, as the material does not refract light; that takes "
             "transmissionFactor and thicknessFactor above 0, and metallicFactor below 1");
 }
 

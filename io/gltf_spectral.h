@@ -32,7 +32,7 @@ class GltfSpectral {
 
   private:
     void apply_dispersion(const JsonCursor& json, Material&);
-    void apply_glass(const JsonCursor& json, const JsonCursor& extras, Material&);
+    void apply_glass(const JsonCursor& extras, Material&);
     void apply_metal(const JsonCursor& extras, Material&);
     [[nodiscard]] const Glass& glass(const JsonCursor& extras);
 

@@ -79,8 +79,7 @@ std::string script(const char* terminal_name, const Plot& plot) {
     std::string text = fmt::format(
         "set encoding utf8\n"
         "set terminal {} size 960,600 noenhanced font 'sans,14' background rgb 'white'\n"
-        "set title {}\nset xlabel {}\nset ylabel {}\nset grid\nset offsets 0, 0, graph 0.05, graph "
-        "0.05\n",
+        "set title {}\nset xlabel {}\nset ylabel {}\nset grid\nset offsets 0, 0, graph 0.05, 0\n",
         terminal_name, quoted(plot.title), quoted(plot.x_label), quoted(plot.y_label));
     std::string lines;
     for (size_t i = 0; i < plot.series.size(); ++i) {

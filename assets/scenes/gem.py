@@ -122,7 +122,7 @@ class Materials:
     """Every material of the scene by name."""
 
     def __init__(self, glb):
-        self.plinth = glb.material("polished stone", "#2b2d31", 0.10)
+        self.plinth = glb.material("polished stone", "#101114", 0.06)
         self.wall = glb.material("wall", "#3a3c42", 0.95)
         glass = dict(roughness=0.0, transmission=1, volume={"thicknessFactor": 0.01})
         # About strontium titanate, which disperses four times as much as diamond (nd 2.417, Abbe number 55).
@@ -131,7 +131,7 @@ class Materials:
 
         def light(name, colour, nits):
             return glb.material(name, "#000000", 1.0, emissive=colour, nits=nits)
-        self.slit = light("slit", "#ffffff", 5)
+        self.slit = light("slit", "#ffffff", 4.5)
         self.panels = light("panels", "#ffffff", 5.5)
         self.glow = light("glow", "#dfe8ff", 18)
 
@@ -152,7 +152,7 @@ def slit(m):
     seen = sub(PRISM_AT, EYE)
     heading = through_prism(math.degrees(math.atan2(seen[0], seen[2])), PRISM_EDGE_DEG, SF11_ND)
     x, _, z = add(PRISM_AT, around(heading, 0.16, 0))
-    return panel((x, 0, z), (PRISM_AT[0], 0, PRISM_AT[2]), 0.0024, 0.3), m.slit
+    return panel((x, 0, z), (PRISM_AT[0], 0, PRISM_AT[2]), 0.0032, 0.3), m.slit
 
 
 def panels(m):

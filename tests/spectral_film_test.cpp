@@ -40,14 +40,14 @@ TEST(SpectralFilm, ALaneGoesToItsBinAlone) {
     film.add(1, 0, Rgb(0.f), V3f(1, 2, 3), f4{3, 5, 7, 9},
              bands_at(f4{380, 390, 379.99f, 730}, f4{0.5f, 0.25f, 1, 1}, m4{-1, -1, -1, -1}));
     // A lane that is off adds nothing, whatever it holds; it is not one of the lanes that share.
-    film.add(1, 1, Rgb(0.f), V3f(3, 2, 5), f4{8, NAN, 1, 1},
+    film.add(1, 1, Rgb(0.f), V3f(3, 6, 9), f4{8, NAN, 1, 1},
              bands_at(f4{405, 405, 405, 405}, f4{2, 0, 0, 0}, m4{-1, 0, 0, 0}));
     const std::vector<float> found = means(film, 1, 2);
     EXPECT_FLOAT_EQ(found[0], 3 / (0.5f * 4 * 10) / 2);
     EXPECT_FLOAT_EQ(found[1], 5 / (0.25f * 4 * 10) / 2);
     EXPECT_FLOAT_EQ(found[2], 8 / (2.f * 1 * 10) / 2);
     for (size_t i = 3; i < found.size(); ++i) EXPECT_EQ(found[i], 0.f) << i;
-    EXPECT_EQ(film.xyz(1, 2), V3f(2, 2, 4));
+    EXPECT_EQ(film.xyz(1, 2), V3f(2, 4, 6));
     for (const float mean : means(film, 0, 2)) EXPECT_EQ(mean, 0.f);
     EXPECT_EQ(film.xyz(0, 2), V3f(0.f));
 }

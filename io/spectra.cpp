@@ -73,18 +73,18 @@ CsvTable read_spectra(const fs::path& path, size_t columns) {
     return table;
 }
 
-SpectrumTable tabulate(const CsvTable& table, size_t column, Beyond beyond, double scale = 1) {
+SpectrumTable tabulate(const CsvTable& table, size_t column, Beyond beyond, double unit = 1) {
     std::vector<std::pair<float, float>> points;
     points.reserve(table.rows.size());
     for (const auto& row : table.rows)
-        points.emplace_back(static_cast<float>(row[0]), static_cast<float>(row[column] * scale));
+        points.emplace_back(static_cast<float>(row[0]), static_cast<float>(row[column] / unit));
     return petzval::tabulate(points, beyond);
 }
 
 template <size_t N>
-std::array<SpectrumTable, N> tabulate(const CsvTable& table, Beyond beyond, double scale = 1) {
+std::array<SpectrumTable, N> tabulate(const CsvTable& table, Beyond beyond, double unit = 1) {
     std::array<SpectrumTable, N> curves;
-    for (size_t i = 0; i < N; ++i) curves[i] = tabulate(table, 1 + i, beyond, scale);
+    for (size_t i = 0; i < N; ++i) curves[i] = tabulate(table, 1 + i, beyond, unit);
     return curves;
 }
 
@@ -101,7 +101,7 @@ std::array<SpectrumTable, N> read_relative(const fs::path& path) {
     double greatest = 0;
     for (const auto& row : table.rows)
         greatest = std::max(greatest, *std::max_element(row.begin() + 1, row.end()));
-    const auto curves = tabulate<N>(table, Beyond::Zero, greatest > 0 ? 1 / greatest : 0);
+    const auto curves = tabulate<N>(table, Beyond::Zero, greatest > 0 ? greatest : 1);
     for (size_t i = 0; i < N; ++i)
         if (!(integral(curves[i]) > 0))
             throw InputError(table.file, table.place(0),

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <filesystem>
 #include <stdexcept>
 
 #include "core/sensor_fit.h"
@@ -117,13 +118,17 @@ SpectralSetup set_up_spectra(const SpectralRequest& request, const Scene& scene,
     in.matrix = rows(fitted(request, in, to_srgb(request, in), notice));
     setup.observer = Observer(in);
 
+    // Of a file its name alone: equal renders in other folders are equal files.
+    const auto named = [](const std::string& name_or_file) {
+        return std::filesystem::path(name_or_file).filename().string();
+    };
     const auto numbers = [](const V3f& v) {
         return fmt::format("{:.9g},{:.9g},{:.9g}", v.x, v.y, v.z);
     };
     setup.metadata = {
         {"petzval:spectral", "hero"},
-        {"petzval:illuminant", request.illuminant},
-        {"petzval:response", request.response},
+        {"petzval:illuminant", named(request.illuminant)},
+        {"petzval:response", named(request.response)},
         {"petzval:whiteBalance",
          request.white_balance == WhiteBalance::None ? "none" : "illuminant"},
         {"petzval:responseToSrgb", fmt::format("{};{};{}", numbers(in.matrix[0]),

@@ -92,8 +92,9 @@ Bands Observer::draw(float u) const {
     if (!spectral()) return Bands::rgb();
     f4 nm, pdf;
     for (int i = 0; i < 4; ++i) {
-        const float turned = u + 0.25f * static_cast<float>(i);
-        const Piecewise1D::Draw drawn = density_.sample(turned < 1.f ? turned : turned - 1.f);
+        const float turn = 0.25f * static_cast<float>(i);
+        const float turned = u < 1.f - turn ? u + turn : u - (1.f - turn);
+        const Piecewise1D::Draw drawn = density_.sample(turned);
         nm[i] = static_cast<float>(kFirst_nm) + static_cast<float>(drawn.cell) + drawn.offset;
         pdf[i] = drawn.probability;  // the cell is 1 nm wide
     }

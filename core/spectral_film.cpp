@@ -51,7 +51,10 @@ float SpectralFilm::error_of(size_t pixel, uint32_t count, const Number& number)
         const double off = number(sums[k]) / samples(k) - centre;
         squares += samples(k) * off * off;
     }
-    return static_cast<float>(std::sqrt(squares / (count * (kScrambles - 1.))));
+    const double error = std::sqrt(squares / (count * (kScrambles - 1.)));
+    // The sums are floats, and overflow where the picture does not.
+    return std::isfinite(error) ? static_cast<float>(error)
+                                : std::numeric_limits<float>::infinity();
 }
 
 V3f SpectralFilm::standard_error(size_t pixel, uint32_t count) const {

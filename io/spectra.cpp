@@ -88,12 +88,12 @@ std::array<SpectrumTable, N> tabulate(const CsvTable& table, Beyond beyond, doub
     return curves;
 }
 
-// Of a column's straight lines between kFirst_nm and kLast_nm.
-double area(const CsvTable& table, size_t column) {
+// Of a column's straight lines between kFirst_nm and kLast_nm, in multiples of a unit.
+double area(const CsvTable& table, size_t column, double unit) {
     double sum = 0;
     for (size_t row = 0; row + 1 < table.rows.size(); ++row) {
         const double x0 = table.rows[row][0], x1 = table.rows[row + 1][0];
-        const double y0 = table.rows[row][column], y1 = table.rows[row + 1][column];
+        const double y0 = table.rows[row][column] / unit, y1 = table.rows[row + 1][column] / unit;
         const double a = std::max(x0, double{kFirst_nm}), b = std::min(x1, double{kLast_nm});
         if (a >= b) continue;
         const auto at = [&](double x) { return y0 + (y1 - y0) * ((x - x0) / (x1 - x0)); };
@@ -122,7 +122,7 @@ std::array<SpectrumTable, N> read_relative(const fs::path& path) {
                              fmt::format("column {} is 0 at every whole nm from {} to {}",
                                          table.names[1 + i], kFirst_nm, kLast_nm));
     for (size_t i = 0; i < N; ++i) {
-        const double whole = area(table, 1 + i) / greatest, kept = integral(curves[i]);
+        const double whole = area(table, 1 + i, greatest), kept = integral(curves[i]);
         if (kept < 0.99 * whole)
             throw InputError(table.file, "",
                              fmt::format("column {} has lines too narrow for tables of 1 nm, which "

@@ -329,7 +329,8 @@ TEST_F(CliSpectral, AFileIsNamedWithoutItsFolder) {
     const std::string here = csv("flat.csv", flat), there = csv("folder/flat.csv", flat);
     const std::string a = render_bytes({"--illuminant", here});
     EXPECT_TRUE(a == render_bytes({"--illuminant", there}));
-    EXPECT_EQ(metadata_of(read_picture(path("out.exr")), "petzval:illuminant"), "flat.csv");
+    EXPECT_EQ(metadata_of(read_picture(path("out.exr")), "petzval:illuminant").substr(0, 10),
+              "flat.csv (");
 }
 
 // The difference of two seeds against what each says of its own error.

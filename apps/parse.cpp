@@ -129,6 +129,8 @@ Focus parse_focus(const std::string& option, const std::string& text, V2i frame)
 
 Bins parse_bins(const std::string& option, const std::string& text) {
     constexpr int most = 1024;  // more channels than readers of EXR expect
+    // A wavelength is a float, which has steps of 0.00006 nm: narrower bins would show them.
+    constexpr double narrowest_nm = 0.1;
     const auto parts = split(text, ':');
     std::vector<double> v;
     for (const std::string_view part : parts)
@@ -141,8 +143,8 @@ Bins parse_bins(const std::string& option, const std::string& text) {
         refuse(option, text,
                fmt::format("inside {} to {} nm, all that paths carry", kFirst_nm, kLast_nm));
     const double count = range_nm / v[2];
-    if (!(v[2] > 0) || !(count < most + 0.5))
-        refuse(option, text, fmt::format("1 to {} bins of a width above 0", most));
+    if (!(v[2] >= narrowest_nm) || !(count < most + 0.5))
+        refuse(option, text, fmt::format("1 to {} bins of at least {} nm", most, narrowest_nm));
     if (std::fabs(count - std::round(count)) > 1e-6 || count < 0.5)
         refuse(option, text, "a whole number of bins from FIRST to LAST");
     return {v[0], v[2], static_cast<int>(std::lround(count))};

@@ -196,6 +196,9 @@ RenderFrame resolve(RenderOptions& o) {
     s.size = parse_size("--size", o.size);
     resolve(o.spectral);
     s.spectral = o.spectral.request;
+    const auto is_exr = [](const auto& path) { return picture_format(path) == PictureFormat::Exr; };
+    if (s.spectral.bins && std::none_of(o.outputs.begin(), o.outputs.end(), is_exr))
+        throw CLI::ValidationError("--bins", "needs an output that keeps them: -o FILE.exr");
     resolve_camera(o);
     resolve_job(o);
     if (!o.background.empty()) {

@@ -8,7 +8,10 @@ namespace petzval {
 
 void add_spectral_options(CLI::App& app, SpectralOptions& o) {
     SpectralRequest& s = o.request;
-    const auto group = [](CLI::Option* option) { option->group("Spectrum"); };
+    const auto group = [](CLI::Option* option) { return option->group("Spectrum"); };
+    const auto not_empty = [](const std::string& text) {
+        return text.empty() ? "is empty" : std::string();
+    };
     group(add_choice<SpectralMode>(
         app, "--spectral", s.mode,
         {{"auto", SpectralMode::Auto}, {"rgb", SpectralMode::Rgb}, {"hero", SpectralMode::Hero}},
@@ -16,11 +19,14 @@ void add_spectral_options(CLI::App& app, SpectralOptions& o) {
         "(default): wavelengths where something depends on them"));
     group(app.add_option("--bins", o.bins,
                          "FIRST:LAST:WIDTH in nm, as 380:730:10: a spectrum for each pixel of the "
-                         "EXR, with its standard error"));
+                         "EXR, with its standard error"))
+        ->check(not_empty);
     group(app.add_option("--illuminant", s.illuminant,
-                         "what white RGB light means: d65 (default), a, f11, FILE.csv"));
+                         "what white RGB light means: d65 (default), a, f11, FILE.csv"))
+        ->check(not_empty);
     group(app.add_option("--response", s.response,
-                         "sensitivities of R, G and B: cie1931 (default), FILE.csv"));
+                         "sensitivities of R, G and B: cie1931 (default), FILE.csv"))
+        ->check(not_empty);
     group(add_choice<WhiteBalance>(
         app, "--white-balance", s.white_balance,
         {{"none", WhiteBalance::None}, {"illuminant", WhiteBalance::Illuminant}},

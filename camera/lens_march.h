@@ -57,7 +57,7 @@ namespace lens_march {
 /// Where a ray meets a surface. normal: unit, along the light that crosses the surface. The cosine
 /// of incidence and its square, as the square is there before the root.
 template <class N>
-struct Hit {
+struct Meeting {
     N distance;
     Vec3<N> point, normal;
     N cosine, cosine2;
@@ -82,10 +82,10 @@ template <class N>
 /// 630); it halves what floats err, for the same time. The root is the one on the sheet that has
 /// the vertex, crossed in the light's direction.
 template <class N>
-[[nodiscard]] Hit<N> meet_sphere(ScalarOf<N> c, ScalarOf<N> sign, const Vec3<N>& foot,
+[[nodiscard]] Meeting<N> meet_sphere(ScalarOf<N> c, ScalarOf<N> sign, const Vec3<N>& foot,
                                  const Vec3<N>& direction) {
     const N beyond = c * dot(foot, foot) - 2 * foot.z;
-    Hit<N> hit;
+    Meeting<N> hit;
     hit.cosine2 = direction.z * direction.z - c * beyond;
     hit.cosine = sqrt(or_zero(hit.cosine2));
     hit.distance =
@@ -100,7 +100,7 @@ template <class N>
 /// The same for curvature_x x^2 + curvature_y y^2 + curvature_z z^2 = 2 z, whose gradient is not
 /// of unit length.
 template <class N>
-[[nodiscard]] Hit<N> meet_quadric(const SurfaceFacts<ScalarOf<N>>& s, ScalarOf<N> sign,
+[[nodiscard]] Meeting<N> meet_quadric(const SurfaceFacts<ScalarOf<N>>& s, ScalarOf<N> sign,
                                   const Vec3<N>& foot, const Vec3<N>& direction) {
     const auto curved = [&s](const Vec3<N>& a) {
         return Vec3<N>{a.x * s.curvature_x, a.y * s.curvature_y, a.z * s.curvature_z};
@@ -110,7 +110,7 @@ template <class N>
     const N c = dot(curved(foot), foot) - 2 * foot.z;
     const N discriminant = b * b - a * c;
     const N root = sqrt(or_zero(discriminant));
-    Hit<N> hit;
+    Meeting<N> hit;
     hit.distance = root_of<N>(a, b, c, sign * root);
     hit.point = foot + direction * hit.distance;
     const N sheet = 1 - s.curvature_z * hit.point.z;
@@ -154,7 +154,7 @@ template <class N>
 /// it finds does not depend on its neighbours. The last step, in N, squares what error is left
 /// and brings the derivatives: those of an implicit function.
 template <class N>
-[[nodiscard]] Hit<N> meet_asphere(const SurfaceFacts<ScalarOf<N>>& facts,
+[[nodiscard]] Meeting<N> meet_asphere(const SurfaceFacts<ScalarOf<N>>& facts,
                                   const Asphere<ScalarOf<N>>& s, ScalarOf<N> sign,
                                   const Vec3<N>& foot, const Vec3<N>& direction) {
     using V = ValueOf<N>;
@@ -182,7 +182,7 @@ template <class N>
         converged = converged | (by * by <= (kConverged * kConverged) * size2);
     }
     const Vec3<N> near = foot + direction * distance;
-    Hit<N> hit;
+    Meeting<N> hit;
     hit.distance = step(near, direction, sag_at<N>(s, r2_of(near))) + distance;
     hit.point = foot + direction * hit.distance;
     const Sag<N> sag = sag_at<N>(s, r2_of(hit.point));
@@ -244,7 +244,7 @@ template <class N, class Observer = NoObserver>
         if (i != begin) ray.origin.z = ray.origin.z - (to_film ? facts[i - 1].gap_mm : -s.gap_mm);
         const N to_foot = -dot(ray.origin, ray.direction);
         const Vec3<N> foot = ray.origin + ray.direction * to_foot;
-        const Hit<N> hit =
+        const Meeting<N> hit =
             s.shape == Shape::Sphere ? meet_sphere<N>(s.curvature_y, sign, foot, ray.direction)
             : s.shape == Shape::Quadric
                 ? meet_quadric<N>(s, sign, foot, ray.direction)

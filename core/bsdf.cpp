@@ -36,10 +36,10 @@ Bsdf::Bsdf(const BsdfInput& in, const Bands& bands, const V3f& wo, f4 throughput
       eta_(in.eta),
       share_(zero_off(bands.on, throughput)),
       disperses_(in.disperses),
+      measured_metal_(in.measured_metal && in.metallic > 0.f),
       metal_n_(in.metal_n),
       metal_k_(in.metal_k),
       metal_(),
-      measured_metal_(in.measured_metal && in.metallic > 0.f),
       on_(bands.on) {
     share_ *= 1.f / hsum(share_);
     delta_ = alpha_ < kSmallestAlpha;
@@ -226,7 +226,8 @@ std::optional<V3f> Bsdf::draw(float u_lobe, V2f u) const {
     if (u_lobe < p_thin_)
         return mirrored.z > 0.f ? std::optional(mirror_below(mirrored)) : std::nullopt;
     if (p_glass_ <= 0.f) return std::nullopt;
-    const int lane = draw_lane(glass_reflectance(wo_m), (u_lobe - p_thin_) / p_glass_);
+    const int lane =
+        draw_lane(zero_off(on_, glass_reflectance(wo_m)), (u_lobe - p_thin_) / p_glass_);
     if (lane < 0) return mirrored.z > 0.f ? std::optional(mirrored) : std::nullopt;
     const V3f wi = refract(wo_, m, wo_m, eta_[lane]);
     return wi.z < 0.f ? std::optional(wi) : std::nullopt;

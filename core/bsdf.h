@@ -75,9 +75,9 @@ class Bsdf {
     float lambda_o_;
     // Reflection: single-scatter GGX times spec0 (1 - s) + spec90 s, multiple scattering included.
     f4 spec0_, spec90_;
-    f4 metal_n_, metal_k_,
-        metal_;  ///< measured metal: its index, and the factor on its reflectance
     bool measured_metal_;
+    f4 metal_n_, metal_k_;
+    f4 metal_;                      ///< on what a measured metal reflects
     float albedo_f0_, albedo_f90_;  ///< GGX's own, for wo
     f4 diffuse_;                    ///< albedo
     f4 thin_;                       ///< albedo of straight transmission

@@ -41,22 +41,22 @@ Film::Film(V2i full_size, Rect crop, std::vector<Aov> aovs, std::optional<Bins> 
 }
 
 void Film::add(int x, int y, uint32_t index, const FilmSample& sample) {
-    static_cast<void>(accept(offset(x, y), index, sample));
+    static_cast<void>(accept(offset(x, y), index, sample, 0.f));
 }
 
 void Film::add(int x, int y, uint32_t index, const FilmSample& sample,
                const SpectralSample& spectral, const Bands& bands) {
     const size_t at = offset(x, y);
     // A lane that is not finite shows in the colour, which every lane adds to.
-    if (accept(at, index, sample))
+    if (accept(at, index, sample, not_finite(spectral.xyz)))
         spectral_->add(at, spectral.scramble, sample.colour, spectral.xyz, spectral.radiance,
                        bands);
 }
 
-bool Film::accept(size_t at, uint32_t index, const FilmSample& sample) {
+bool Film::accept(size_t at, uint32_t index, const FilmSample& sample, float fault) {
     Pixel& pixel = pixels_[at];
     const V3f colour(sample.colour[0], sample.colour[1], sample.colour[2]);
-    float fault = not_finite(colour) + (sample.alpha - sample.alpha);
+    fault += not_finite(colour) + (sample.alpha - sample.alpha);
     if (sample.hit)
         for (const Aov aov : aovs_) fault += not_finite(sample.aov[static_cast<size_t>(aov)]);
     if (fault != 0.f) {

@@ -71,6 +71,8 @@ class Film {
         return static_cast<size_t>(y - crop_.y0) * crop_.width() + (x - crop_.x0);
     }
     [[nodiscard]] uint32_t sample_count(int x, int y) const { return pixel(x, y).count; }
+    /// Samples of a pixel that were not finite.
+    [[nodiscard]] uint32_t bad_count(int x, int y) const { return pixel(x, y).bad; }
     /// Mean linear RGB in nits, and alpha; zero where there is no sample.
     [[nodiscard]] V4f colour(int x, int y) const;
     /// Mean over the samples that hit something; zero where none did.
@@ -89,7 +91,7 @@ class Film {
         std::array<double, 4> sum{};
         uint32_t count = 0, hits = 0, bad = 0, first_bad_index = 0;
     };
-    [[nodiscard]] bool accept(size_t at, uint32_t index, const FilmSample&);
+    [[nodiscard]] bool accept(size_t at, uint32_t index, const FilmSample&, float fault);
     [[nodiscard]] const Pixel& pixel(int x, int y) const { return pixels_[offset(x, y)]; }
 
     V2i full_size_;

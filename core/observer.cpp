@@ -19,16 +19,18 @@ f4 mix(f4 a, f4 b, float t) {
 
 // Where wavelengths are worth drawing, a weight for each cell of 1 nm. For a grey scene under one
 // light the summed variance of R, G and B is least in proportion to the light times the length of
-// the sensor's response; a twentieth is kept for light of any other spectrum.
-std::vector<float> sensor_weights(const ObserverInput& in, const std::vector<f4>& response) {
+// the sensor's response; a twentieth is kept for light of any other spectrum. Half of that goes
+// where the eye sees: a sensor may be blind there, and XYZ is not.
+std::vector<float> sensor_weights(const ObserverInput& in, const std::vector<f4>& response,
+                                  const std::vector<f4>& eye) {
     std::vector<const SpectrumTable*> lights{&in.white};
     for (const SpectrumTable& light : in.lights) lights.push_back(&light);
     std::vector<double> sum(kSpectrumSize - 1);
-    const auto add = [&](const SpectrumTable* light, double share) {
+    const auto add = [&](const std::vector<f4>& sensor, const SpectrumTable* light, double share) {
         std::vector<double> weight(sum.size());
         double total = 0;
         for (size_t i = 0; i < sum.size(); ++i) {
-            const f4 r = response[i] + response[i + 1];
+            const f4 r = sensor[i] + sensor[i + 1];
             weight[i] = std::sqrt(double(r[0]) * r[0] + double(r[1]) * r[1] + double(r[2]) * r[2]);
             if (light) weight[i] *= double(light->value[i]) + light->value[i + 1];
             total += weight[i];
@@ -36,8 +38,9 @@ std::vector<float> sensor_weights(const ObserverInput& in, const std::vector<f4>
         if (!(total > 0)) return;
         for (size_t i = 0; i < sum.size(); ++i) sum[i] += share * weight[i] / total;
     };
-    for (const SpectrumTable* light : lights) add(light, 0.95 / double(lights.size()));
-    add(nullptr, 0.05);
+    for (const SpectrumTable* light : lights) add(response, light, 0.95 / double(lights.size()));
+    add(response, nullptr, 0.025);
+    add(eye, nullptr, 0.025);
     return {sum.begin(), sum.end()};
 }
 
@@ -59,7 +62,7 @@ void mix_in(const Bins& bins, std::vector<float>& weights) {
 
 Observer::Observer(const ObserverInput& in) : rows_(kSpectrumSize), bins_(in.bins) {
     const double white = per_nit(in.white, in.xyz_bar[1]);
-    std::vector<f4> response(kSpectrumSize);
+    std::vector<f4> response(kSpectrumSize), eye(kSpectrumSize);
     for (size_t i = 0; i < rows_.size(); ++i) {
         Row& row = rows_[i];
         for (int c = 0; c < 3; ++c) {
@@ -73,8 +76,9 @@ Observer::Observer(const ObserverInput& in) : rows_(kSpectrumSize), bins_(in.bin
         }
         row.basis_white[3] = static_cast<float>(in.white.value[i] * white);
         response[i] = row.to_rgb;
+        eye[i] = row.xyz_bar;
     }
-    std::vector<float> weights = sensor_weights(in, response);
+    std::vector<float> weights = sensor_weights(in, response, eye);
     if (bins_) mix_in(*bins_, weights);
     density_ = Piecewise1D(weights);
 }
@@ -88,8 +92,9 @@ Bands Observer::draw(float u) const {
     if (!spectral()) return Bands::rgb();
     f4 nm, pdf;
     for (int i = 0; i < 4; ++i) {
-        const float turned = u + 0.25f * static_cast<float>(i);
-        const Piecewise1D::Draw drawn = density_.sample(turned < 1.f ? turned : turned - 1.f);
+        const float turn = 0.25f * static_cast<float>(i);
+        const float turned = u < 1.f - turn ? u + turn : u - (1.f - turn);
+        const Piecewise1D::Draw drawn = density_.sample(turned);
         nm[i] = static_cast<float>(kFirst_nm) + static_cast<float>(drawn.cell) + drawn.offset;
         pdf[i] = drawn.probability;  // the cell is 1 nm wide
     }

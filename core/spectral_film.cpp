@@ -37,20 +37,24 @@ V3f SpectralFilm::xyz(size_t pixel, uint32_t count) const {
     return V3f(Imath::V3d(sum[0], sum[1], sum[2]) / double(count));
 }
 
-// Standard error of the mean of the scrambles' means. The first (count mod kScrambles) scrambles
-// have one sample more.
+// Standard error of the mean of all samples from the scrambles' means, each as heavy as it has
+// samples: the first (count mod kScrambles) have one more. The sum of n_k (m_k - m)^2 over
+// the scrambles is K - 1 variances of one sample, so that the squared error is unbiased.
 template <class Number>
 float SpectralFilm::error_of(size_t pixel, uint32_t count, const Number& number) const {
     if (count < kScrambles) return std::numeric_limits<float>::infinity();
-    std::array<double, kScrambles> mean;
+    const auto samples = [count](uint32_t k) { return (count - k + kScrambles - 1) / kScrambles; };
+    const auto& sums = scramble_sums_[pixel];
     double centre = 0, squares = 0;
+    for (uint32_t k = 0; k < kScrambles; ++k) centre += number(sums[k]) / count;
     for (uint32_t k = 0; k < kScrambles; ++k) {
-        const uint32_t samples = (count - k + kScrambles - 1) / kScrambles;
-        mean[k] = number(scramble_sums_[pixel][k]) / samples;
-        centre += mean[k] / kScrambles;
+        const double off = number(sums[k]) / samples(k) - centre;
+        squares += samples(k) * off * off;
     }
-    for (const double m : mean) squares += (m - centre) * (m - centre);
-    return static_cast<float>(std::sqrt(squares / (kScrambles * (kScrambles - 1.))));
+    const double error = std::sqrt(squares / (count * (kScrambles - 1.)));
+    // The sums are floats, and overflow where the picture does not.
+    return std::isfinite(error) ? static_cast<float>(error)
+                                : std::numeric_limits<float>::infinity();
 }
 
 V3f SpectralFilm::standard_error(size_t pixel, uint32_t count) const {

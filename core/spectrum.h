@@ -28,7 +28,9 @@ struct Rgb {
 
 /// Meaning of the lanes of one sample: linear R, G, B in lanes 0 to 2, or a sampled wavelength in
 /// each. Numbers of the scene come in, and the film's go out, by linear maps that do not ask which.
-/// Nothing but core/spectrum, core/colour and core/observer looks inside.
+/// Whoever scatters, adds or weighs light does not look inside; only those do who turn a function
+/// of wavelength into lanes, or lanes into bins (core/colour, illuminant, observer, spectral_film,
+/// surface).
 struct Bands {
     f4 nm{};                    ///< wavelengths in air; 0 while the lanes carry linear RGB
     f4 pdf{};                   ///< density of each wavelength, 1/nm; 1 for RGB

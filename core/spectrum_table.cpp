@@ -35,14 +35,17 @@ SpectrumTable tabulate(std::span<const std::pair<float, float>> points, Beyond b
 }
 
 double integral(const SpectrumTable& a) {
-    double sum = 0;
+    double sum = -(double(a.value.front()) + a.value.back()) / 2;
     for (const float value : a.value) sum += value;
     return sum;
 }
 
 double integral_of_product(const SpectrumTable& a, const SpectrumTable& b) {
     double sum = 0;
-    for (size_t i = 0; i < a.value.size(); ++i) sum += double(a.value[i]) * b.value[i];
+    for (size_t i = 0; i + 1 < a.value.size(); ++i) {
+        const double a0 = a.value[i], a1 = a.value[i + 1], b0 = b.value[i], b1 = b.value[i + 1];
+        sum += (2 * (a0 * b0 + a1 * b1) + a0 * b1 + a1 * b0) / 6;
+    }
     return sum;
 }
 

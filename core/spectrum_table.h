@@ -31,7 +31,8 @@ enum class Beyond { Zero, Hold };
 /// (nm, value) points in rising order of nm, at least one, joined by straight lines.
 [[nodiscard]] SpectrumTable tabulate(std::span<const std::pair<float, float>> points, Beyond);
 
-/// Sum over the table's nanometres: what CIE 015:2018 (7.2) calls summation at 1 nm.
+/// Integral over nm of the straight lines, and of the product of two tables' straight lines: what
+/// a render finds, and CIE 015:2018's summation at 1 nm but for curves that bend within 1 nm.
 [[nodiscard]] double integral(const SpectrumTable&);
 [[nodiscard]] double integral_of_product(const SpectrumTable&, const SpectrumTable&);
 

@@ -44,7 +44,7 @@ struct RenderResult {
     bool stopped = false;     ///< the monitor said stop before the job was done
 };
 
-/// Seed of one of the scrambles; a number of its own for each pair.
+/// Seed of one of the scrambles: a hash of the pair.
 [[nodiscard]] inline uint32_t scrambled(uint32_t seed, uint32_t scramble) {
     return hash32(seed, scramble + 1);
 }
@@ -61,8 +61,7 @@ void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& 
     const Sampler sampler(job.sampler,
                           job.scrambles == 1 ? job.seed : scrambled(job.seed, scramble),
                           {id.x, id.y, id.index / job.scrambles});
-    const Bands bands =
-        job.observer.spectral() ? job.observer.draw(sampler.get1(Dim::Wavelength)) : Bands::rgb();
+    const Bands bands = job.observer.draw(sampler.get1(Dim::Wavelength));
     const bool aovs = !film.aovs().empty();
     const uint64_t vertices_before = stats.vertices;
 

@@ -61,8 +61,15 @@ void describe_camera(const CameraReport& c, PictureLayout& layout) {
     m.emplace_back("petzval:focus_m", c.focus_m);
 }
 
+/// Samples whose spread tells a pixel's error: none where one was left out, as it is not known
+/// which scramble it was dealt to.
+uint32_t dealt_samples(const Film& film, int x, int y) {
+    return film.bad_count(x, y) == 0 ? film.sample_count(x, y) : 0;
+}
+
 /// Mean over the pixels with light of the standard error of their luminance, relative to it;
-/// not finite where there are none or one has too few samples to tell.
+/// infinite where one has too few samples to tell. Pixels with samples that were left out do not
+/// count.
 float mean_relative_error(const Film& film) {
     const Rect crop = film.crop();
     double sum = 0;
@@ -71,13 +78,13 @@ float mean_relative_error(const Film& film) {
         for (int x = crop.x0; x < crop.x1; ++x) {
             const V4f mean = film.colour(x, y);
             const float light = luminance({mean.x, mean.y, mean.z});
-            if (!(light > 0)) continue;
+            if (!(light > 0) || film.bad_count(x, y) > 0) continue;
             ++lit;
             sum += double(film.spectral()->luminance_error(film.offset(x, y),
-                                                           film.sample_count(x, y))) /
+                                                           dealt_samples(film, x, y))) /
                    light;
         }
-    return static_cast<float>(sum / double(lit));
+    return lit > 0 ? static_cast<float>(sum / double(lit)) : 0.f;
 }
 
 void describe_spectrum(const Film& film, PictureLayout& layout) {
@@ -90,8 +97,8 @@ void describe_spectrum(const Film& film, PictureLayout& layout) {
     m.emplace_back("petzval:binScale", "S0 is the average over the bin in W.m^-2.sr^-1.nm^-1");
     m.emplace_back("petzval:scrambles", static_cast<int>(kScrambles));
     m.emplace_back("petzval:stderr",
-                   fmt::format("standard error of the mean; {:.9g} where it is not known, with "
-                               "fewer than {} samples",
+                   fmt::format("standard error of the mean; {:.9g} where it is not known: with "
+                               "fewer than {} samples, or one that was not finite",
                                kUnknownError, kScrambles));
     if (const float error = mean_relative_error(film); std::isfinite(error))
         m.emplace_back("petzval:meanRelativeError", error);
@@ -124,7 +131,7 @@ float* develop_pixel(const Film& film, int x, int y, float* out) {
         spectral->bin_means(at, count, out);
         out += spectral->bins().count;
         put(spectral->xyz(at, count), 3);
-        V3f error = spectral->standard_error(at, count);
+        V3f error = spectral->standard_error(at, dealt_samples(film, x, y));
         for (int i = 0; i < 3; ++i) error[i] = std::min(error[i], kUnknownError);
         put(error, 3);
     }
@@ -158,7 +165,8 @@ PictureRows develop(const Film& film, const Session& session, const RenderJob& j
                      {"petzval:filter", name_of(job.filter.kind())},
                      {"petzval:filterRadius_px", job.filter.radius_px()},
                      {"petzval:maxDepth", options.max_depth},
-                     {"petzval:scale", "RGB 1 = 1 nit of D65 white"},
+                     {"petzval:scale", session.scale},
+                     {"petzval:transparent", int(options.transparent)},
                      {"petzval:luminousEfficacy_lm_per_W", kLuminousEfficacy_lm_per_w}}};
     for (const auto& [name, value] : session.metadata) layout.metadata.emplace_back(name, value);
     describe_camera(session.camera_report, layout);

@@ -94,11 +94,6 @@ Bytes image_from_view(GltfSource& source, const std::vector<JsonCursor>& views,
 
 }  // namespace
 
-uint64_t fnv1a(std::span<const uint8_t> bytes, uint64_t hash) {
-    for (uint8_t byte : bytes) hash = (hash ^ byte) * 0x100000001B3u;
-    return hash;
-}
-
 void read_buffers(GltfSource& source, const GltfContainer& container, GltfBudget& budget) {
     const std::string file = source.path.string();
     Fetcher fetcher(source, budget);

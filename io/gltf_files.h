@@ -10,9 +10,6 @@
 
 namespace petzval {
 
-/// FNV-1a, 64 bits, continued from hash (Fowler, Noll, Vo 1991; constants of RFC 9923).
-[[nodiscard]] uint64_t fnv1a(std::span<const uint8_t> bytes, uint64_t hash = 0xCBF29CE484222325u);
-
 /// What the JSON came in: text, or a .glb with or without a binary chunk.
 struct GltfContainer {
     bool binary = false;

@@ -8,6 +8,7 @@
 #include "io/atomic_file.h"
 #include "io/decoder_message.h"
 #include "io/error.h"
+#include "io/lower.h"
 #include "io/image.h"
 
 namespace petzval {
@@ -105,9 +106,7 @@ int channel_index(const PictureLayout& picture, std::string_view name) {
 }
 
 PictureFormat picture_format(const std::filesystem::path& path) {
-    std::string ending = path.extension().string();
-    for (char& c : ending)
-        if (c >= 'A' && c <= 'Z') c += 'a' - 'A';
+    const std::string ending = lower(path.extension().string());
     if (ending == ".exr") return PictureFormat::Exr;
     if (ending == ".png") return PictureFormat::Png;
     if (ending == ".jpg" || ending == ".jpeg") return PictureFormat::Jpeg;

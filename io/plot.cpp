@@ -15,6 +15,7 @@
 
 #include "io/atomic_file.h"
 #include "io/error.h"
+#include "io/lower.h"
 
 namespace petzval {
 namespace {
@@ -27,9 +28,7 @@ InputError refusal(const fs::path& path, const std::string& why) {
 
 /// gnuplot's name for what draws that kind of file.
 const char* terminal(const fs::path& path) {
-    std::string ending = path.extension().string();
-    for (char& c : ending)
-        if (c >= 'A' && c <= 'Z') c += 'a' - 'A';
+    const std::string ending = lower(path.extension().string());
     if (ending == ".svg") return "svg";
     if (ending == ".png") return "pngcairo";
     throw InputError(path.string(), "", "a plot's name must end in .svg or .png");

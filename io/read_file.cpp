@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/read_file.h"
 
+#include <fmt/format.h>
+
 #include <fstream>
 
 namespace petzval {
@@ -23,6 +25,17 @@ FileBytes read_file(const std::filesystem::path& path) {
     in.read(reinterpret_cast<char*>(file.bytes.data()), std::streamsize(size));
     if (uintmax_t(in.gcount()) != size) return {{}, "cannot be read to its end"};
     return file;
+}
+
+uint64_t fnv1a(std::span<const uint8_t> bytes, uint64_t hash) {
+    for (uint8_t byte : bytes) hash = (hash ^ byte) * 0x100000001B3u;
+    return hash;
+}
+
+std::string name_and_hash(const std::filesystem::path& path) {
+    const FileBytes file = read_file(path);
+    if (!file.error.empty()) return path.string();
+    return fmt::format("{} ({:016x})", path.filename().string(), fnv1a(file.bytes));
 }
 
 }  // namespace petzval

@@ -8,6 +8,7 @@
 #include "io/camera_setup.h"
 #include "io/environment.h"
 #include "io/gltf.h"
+#include "io/read_file.h"
 
 namespace petzval {
 namespace {
@@ -36,12 +37,11 @@ Sky sky_of(const SceneRequest& request, const std::function<void(const std::stri
     return request.background ? Sky::uniform(*request.background) : Sky();
 }
 
-// Of a file its name alone: equal renders in other folders are equal files.
 std::vector<std::pair<std::string, std::string>> describe(const SceneRequest& request) {
     std::vector<std::pair<std::string, std::string>> m;
     m.emplace_back("petzval:scene", request.scene.filename().string());
     if (request.environment) {
-        m.emplace_back("petzval:environment", request.environment->filename().string());
+        m.emplace_back("petzval:environment", name_and_hash(*request.environment));
         m.emplace_back("petzval:environmentRotate_deg",
                        fmt::format("{:.9g}", request.environment_rotate_deg));
         m.emplace_back("petzval:environmentStrength",
@@ -52,8 +52,7 @@ std::vector<std::pair<std::string, std::string>> describe(const SceneRequest& re
                        fmt::format("{:.9g},{:.9g},{:.9g}", (*b)[0], (*b)[1], (*b)[2]));
     m.emplace_back("petzval:lightChoice",
                    request.light_choice == LightChoiceKind::Power ? "power" : "uniform");
-    m.emplace_back("petzval:traversal",
-                   request.traversal == Traversal::Robust ? "robust" : "fast");
+    m.emplace_back("petzval:traversal", request.traversal == Traversal::Robust ? "robust" : "fast");
     return m;
 }
 
@@ -82,6 +81,7 @@ Session open_session(const SceneRequest& asked,
         notice("warning: the scene is empty: only its background is rendered");
     SpectralSetup spectra = set_up_spectra(request.spectral, scene, notice);
     session.observer = std::move(spectra.observer);
+    session.scale = std::move(spectra.scale);
     session.metadata = describe(request);
     session.metadata.insert(session.metadata.end(), spectra.metadata.begin(),
                             spectra.metadata.end());

@@ -67,6 +67,7 @@ struct Session {
     Observer observer;
     std::optional<Rgb> backdrop;  ///< shown behind the scene in place of the environment
     uint64_t scene_hash = 0;
+    std::string scale;  ///< what RGB 1 means
     /// What else the pixels follow from, for the picture's metadata.
     std::vector<std::pair<std::string, std::string>> metadata;
     double load_s = 0, bvh_s = 0;

@@ -73,19 +73,33 @@ CsvTable read_spectra(const fs::path& path, size_t columns) {
     return table;
 }
 
-SpectrumTable tabulate(const CsvTable& table, size_t column, Beyond beyond, double scale = 1) {
+SpectrumTable tabulate(const CsvTable& table, size_t column, Beyond beyond, double unit = 1) {
     std::vector<std::pair<float, float>> points;
     points.reserve(table.rows.size());
     for (const auto& row : table.rows)
-        points.emplace_back(static_cast<float>(row[0]), static_cast<float>(row[column] * scale));
+        points.emplace_back(static_cast<float>(row[0]), static_cast<float>(row[column] / unit));
     return petzval::tabulate(points, beyond);
 }
 
 template <size_t N>
-std::array<SpectrumTable, N> tabulate(const CsvTable& table, Beyond beyond, double scale = 1) {
+std::array<SpectrumTable, N> tabulate(const CsvTable& table, Beyond beyond, double unit = 1) {
     std::array<SpectrumTable, N> curves;
-    for (size_t i = 0; i < N; ++i) curves[i] = tabulate(table, 1 + i, beyond, scale);
+    for (size_t i = 0; i < N; ++i) curves[i] = tabulate(table, 1 + i, beyond, unit);
     return curves;
+}
+
+// Of a column's straight lines between kFirst_nm and kLast_nm, in multiples of a unit.
+double area(const CsvTable& table, size_t column, double unit) {
+    double sum = 0;
+    for (size_t row = 0; row + 1 < table.rows.size(); ++row) {
+        const double x0 = table.rows[row][0], x1 = table.rows[row + 1][0];
+        const double y0 = table.rows[row][column] / unit, y1 = table.rows[row + 1][column] / unit;
+        const double a = std::max(x0, double{kFirst_nm}), b = std::min(x1, double{kLast_nm});
+        if (a >= b) continue;
+        const auto at = [&](double x) { return y0 + (y1 - y0) * ((x - x0) / (x1 - x0)); };
+        sum += (at(a) + at(b)) / 2 * (b - a);
+    }
+    return sum;
 }
 
 // Curves of any unit, brought to a greatest value of 1 before they must fit in floats.
@@ -101,12 +115,20 @@ std::array<SpectrumTable, N> read_relative(const fs::path& path) {
     double greatest = 0;
     for (const auto& row : table.rows)
         greatest = std::max(greatest, *std::max_element(row.begin() + 1, row.end()));
-    const auto curves = tabulate<N>(table, Beyond::Zero, greatest > 0 ? 1 / greatest : 0);
+    const auto curves = tabulate<N>(table, Beyond::Zero, greatest > 0 ? greatest : 1);
     for (size_t i = 0; i < N; ++i)
         if (!(integral(curves[i]) > 0))
             throw InputError(table.file, table.place(0),
                              fmt::format("column {} is 0 at every whole nm from {} to {}",
                                          table.names[1 + i], kFirst_nm, kLast_nm));
+    for (size_t i = 0; i < N; ++i) {
+        const double whole = area(table, 1 + i, greatest), kept = integral(curves[i]);
+        if (kept < 0.99 * whole)
+            throw InputError(table.file, "",
+                             fmt::format("column {} has lines too narrow for tables of 1 nm, which "
+                                         "would keep {:.0f} % of it; make them 2 nm wide",
+                                         table.names[1 + i], 100 * kept / whole));
+    }
     return curves;
 }
 

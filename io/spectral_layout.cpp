@@ -99,13 +99,13 @@ std::vector<std::array<double, 2>> spectrum_of_pixel(const Picture& picture,
         throw ArgumentError(
             file.string(), "",
             "is not spectral, it has no channels S0; render with --bins to get one");
-    if (x < picture.x || y < picture.y || x - picture.x >= picture.width ||
-        y - picture.y >= picture.height)
+    const int64_t column = int64_t{x} - picture.x, row = int64_t{y} - picture.y;
+    if (column < 0 || row < 0 || column >= picture.width || row >= picture.height)
         throw ArgumentError(
             file.string(), "",
             fmt::format("has no pixel {},{}; it has {},{} to {},{}", x, y, picture.x, picture.y,
                         picture.x + picture.width - 1, picture.y + picture.height - 1));
-    const size_t pixel = size_t(y - picture.y) * size_t(picture.width) + size_t(x - picture.x);
+    const size_t pixel = size_t(row) * size_t(picture.width) + size_t(column);
     std::vector<std::array<double, 2>> spectrum;
     for (const auto& [nm, index] : channels)
         spectrum.push_back({nm, picture.pixels[pixel * picture.channels.size() + index]});

@@ -4,12 +4,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <filesystem>
 #include <stdexcept>
 
 #include "core/sensor_fit.h"
 #include "io/error.h"
 #include "io/lower.h"
 #include "io/needs_wavelengths.h"
+#include "io/read_file.h"
 #include "io/spectra.h"
 
 namespace petzval {
@@ -102,6 +104,10 @@ Matrix3 fitted(const SpectralRequest& request, const ObserverInput& in, const Ma
 SpectralSetup set_up_spectra(const SpectralRequest& request, const Scene& scene,
                              const Notice& notice) {
     SpectralSetup setup;
+    setup.scale = "RGB 1 = 1 nit of D65 white";
+    // Names and files are looked at in any mode: a slip of the pen must not pass for a choice.
+    const SpectrumTable white = find_illuminant(request.illuminant);
+    const auto response = find_response(request.response);
     if (!decide(request, scene, notice)) {
         setup.metadata = {{"petzval:spectral", "rgb"}};
         return setup;
@@ -109,21 +115,23 @@ SpectralSetup set_up_spectra(const SpectralRequest& request, const Scene& scene,
     warn_of_glasses(request, scene, notice);
     ObserverInput in;
     in.xyz_bar = standard_observer();
-    in.response = is(request.response, kUsualResponse) ? in.xyz_bar : find_response(request.response);
-    in.white = find_illuminant(request.illuminant);
+    in.response = is(request.response, kUsualResponse) ? in.xyz_bar : response;
+    in.white = white;
     in.basis = rgb_basis();
     for (const Illuminant& light : scene.illuminants) in.lights.push_back(light.per_nit);
     in.bins = request.bins;
     in.matrix = rows(fitted(request, in, to_srgb(request, in), notice));
     setup.observer = Observer(in);
 
+    if (request.white_balance == WhiteBalance::Illuminant)
+        setup.scale = "RGB 1 = 1 nit of the illuminant";
     const auto numbers = [](const V3f& v) {
         return fmt::format("{:.9g},{:.9g},{:.9g}", v.x, v.y, v.z);
     };
     setup.metadata = {
         {"petzval:spectral", "hero"},
-        {"petzval:illuminant", request.illuminant},
-        {"petzval:response", request.response},
+        {"petzval:illuminant", name_and_hash(request.illuminant)},
+        {"petzval:response", name_and_hash(request.response)},
         {"petzval:whiteBalance",
          request.white_balance == WhiteBalance::None ? "none" : "illuminant"},
         {"petzval:responseToSrgb", fmt::format("{};{};{}", numbers(in.matrix[0]),

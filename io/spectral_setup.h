@@ -25,6 +25,7 @@ struct SpectralRequest {
 
 struct SpectralSetup {
     Observer observer;
+    std::string scale;  ///< what RGB 1 means
     /// What the pixels follow from, for the picture's metadata.
     std::vector<std::pair<std::string, std::string>> metadata;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What read_gltf_source accepts, and what it hands on.
 #include "io/gltf_source.h"
+#include "io/read_file.h"
 
 #include <gtest/gtest.h>
 

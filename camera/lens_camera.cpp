@@ -79,8 +79,8 @@ LensCamera::Draw LensCamera::draw(V2f film_mm, V2f u, float u_lane, const Bands&
 
 Ray LensCamera::world_ray(const LensRay<f4>& ray, int lane) const {
     const double to_m = 1e-3 * in_.scale;
-    const double z = ray.origin.z[lane] + in_.lens->vertex_mm(ray.counted_from) -
-                     in_.entrance_pupil_mm;
+    const double z =
+        ray.origin.z[lane] + in_.lens->vertex_mm(ray.counted_from) - in_.entrance_pupil_mm;
     Ray out;
     out.origin = pose_.origin + pose_.right * static_cast<float>(ray.origin.x[lane] * to_m) +
                  pose_.up * static_cast<float>(ray.origin.y[lane] * to_m) +
@@ -95,9 +95,8 @@ bool LensCamera::together(const LensRay<f4>& ray, int a, int b) const {
     if (in_.chroma == Chroma::Split) return false;
     const float focus_mm = in_.focus_m * 1e3f / static_cast<float>(in_.scale);
     const auto on_plane = [&](int lane) {
-        const auto z = static_cast<float>(ray.origin.z[lane] +
-                                          in_.lens->vertex_mm(ray.counted_from) -
-                                          in_.entrance_pupil_mm);
+        const auto z = static_cast<float>(
+            ray.origin.z[lane] + in_.lens->vertex_mm(ray.counted_from) - in_.entrance_pupil_mm);
         const float t = (focus_mm + z) / -ray.direction.z[lane];
         return V2f(ray.origin.x[lane] + t * ray.direction.x[lane],
                    ray.origin.y[lane] + t * ray.direction.y[lane]);
@@ -140,7 +139,8 @@ double axial_irradiance(const LensCamera& camera) {
     double sum = 0;
     for (int i = 0; i < side; ++i)
         for (int j = 0; j < side; ++j) {
-            const V2f u((static_cast<float>(i) + 0.5f) / side, (static_cast<float>(j) + 0.5f) / side);
+            const V2f u((static_cast<float>(i) + 0.5f) / side,
+                        (static_cast<float>(j) + 0.5f) / side);
             sum += camera.draw(V2f(0.f), u, 0.f, Bands::rgb()).weight[0];
         }
     return sum / (side * side);

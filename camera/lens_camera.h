@@ -20,15 +20,15 @@ enum class Chroma : uint8_t { Auto, Shared, Split, Single };
 struct LensCameraInput {
     std::shared_ptr<const Lens> lens;
     Iris iris;
-    M44f to_world;              ///< the middle of the entrance pupil, looking along -z, y up
-    double film_mm = 0;         ///< z of the film, behind the lens
+    M44f to_world;       ///< the middle of the entrance pupil, looking along -z, y up
+    double film_mm = 0;  ///< z of the film, behind the lens
     double film_width_mm = 36, film_height_mm = 24;
     double entrance_pupil_mm = 0;  ///< z of what stands at to_world's origin
-    double scale = 1;           ///< a lens twice as large has 2
-    double gain = 1;            ///< on every weight: see normal_gain
+    double scale = 1;              ///< a lens twice as large has 2
+    double gain = 1;               ///< on every weight: see normal_gain
     Chroma chroma = Chroma::Auto;
-    float focus_m = 1;          ///< where wavelengths are compared, along the axis
-    float tolerance_rad = 0;    ///< Auto: how far apart directions may be, seen from the lens
+    float focus_m = 1;        ///< where wavelengths are compared, along the axis
+    float tolerance_rad = 0;  ///< Auto: how far apart directions may be, seen from the lens
 };
 
 class LensCamera final : public Camera {
@@ -40,8 +40,8 @@ class LensCamera final : public Camera {
     /// What one draw of the iris brings: a film point's irradiance over the radiance of a scene of
     /// the same radiance everywhere is its mean. Lanes of the bands; u in [0, 1)^2.
     struct Draw {
-        f4 weight{};        ///< 0 where the lane is blocked
-        LensRay<f4> ray;    ///< in front of the lens
+        f4 weight{};      ///< 0 where the lane is blocked
+        LensRay<f4> ray;  ///< in front of the lens
     };
     /// film_mm: a point of the film. u_lane picks the lane whose ray hits the drawn iris point.
     [[nodiscard]] Draw draw(V2f film_mm, V2f u, float u_lane, const Bands&) const;

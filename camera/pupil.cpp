@@ -163,8 +163,10 @@ std::optional<V2f> Pupil::between(V2f film_point_mm, V2f stop_point_mm) const {
     for (int k = 0; k < 16; ++k) {
         const bool right = k & 1, up = k & 2, p = k & 4, q = k & 8;
         if (right && columns_ == 1) continue;
-        const float weight = (right ? s : columns_ == 1 ? 1.f : 1.f - s) * (up ? t : 1.f - t) *
-                             (p ? u : 1.f - u) * (q ? v : 1.f - v);
+        const float weight = (right           ? s
+                              : columns_ == 1 ? 1.f
+                                              : 1.f - s) *
+                             (up ? t : 1.f - t) * (p ? u : 1.f - u) * (q ? v : 1.f - v);
         if (!(weight > 0.f)) continue;
         const Known& corner = known(column + right, row + up, i + p, j + q);
         if (!corner.there) continue;

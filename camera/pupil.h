@@ -39,8 +39,7 @@ class Pupil {
                                                const LensIndices<f4>&, int lane) const;
     /// The rays with these direction cosines, the same in all lanes. Semi-diameters do not stop
     /// them: a ray that glass blocks at one wavelength may have been drawn for another.
-    [[nodiscard]] StopCrossing cross(V2f film_point_mm, V2f cosines,
-                                     const LensIndices<f4>&) const;
+    [[nodiscard]] StopCrossing cross(V2f film_point_mm, V2f cosines, const LensIndices<f4>&) const;
 
   private:
     struct Known {

@@ -32,7 +32,8 @@ void add_camera_options(CLI::App& app, RenderOptions& o) {
     add("--look-at", o.look_at, "ex,ey,ez,tx,ty,tz: eye and target in metres");
     add("--fov", s.fov_deg, "vertical angle of view in degrees")
         ->check(number_between(kSmallestFov_deg, kLargestFov_deg));
-    auto* fstop = add("--fstop", s.fstop, "thin lens of this f-number")->check(length);
+    auto* fstop =
+        add("--fstop", s.fstop, "thin lens of this f-number; with --lens its iris")->check(length);
     add("--lens-radius", s.lens_radius_m, "thin lens of this radius in metres")
         ->check(length)
         ->excludes(fstop);
@@ -142,9 +143,17 @@ void resolve_camera(RenderOptions& o) {
         if (s.camera) throw CLI::ValidationError("--look-at", "excludes --camera");
     }
     if (!o.sensor.empty()) s.sensor_mm = parse_sensor("--sensor", o.sensor, kLeast, kMost);
+    if (!o.lens.request.lens.empty()) {
+        s.lens = o.lens.request;
+        if (s.fov_deg || s.focal_length_mm || s.lens_radius_m)
+            throw CLI::ValidationError(
+                "--lens",
+                "gives the angle of view and the focal length: leave out --fov, "
+                "--focal-length and --lens-radius");
+    }
     if (o.focus.empty()) return;
     s.focus = parse_focus("--focus", o.focus, s.size);
-    if (!s.fstop && !s.lens_radius_m)
+    if (!s.fstop && !s.lens_radius_m && !s.lens)
         throw CLI::ValidationError("--focus",
                                    "a pinhole has no focus: give --fstop or --lens-radius too");
 }
@@ -186,6 +195,7 @@ void add_render_options(CLI::App& app, RenderOptions& o) {
     add_frame_options(app, o);
     add_sampling_options(app, o);
     add_camera_options(app, o);
+    add_lens_options(app, o.lens);
     add_light_options(app, o);
     add_spectral_options(app, o.spectral);
     add_output_options(app, o);

@@ -74,11 +74,14 @@ void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& 
         seen = camera.sample({at / size, sampler}, bands);
     }
     FilmSample sample;
+    if (seen.count == 0) sample.alpha = 1.f;  // the lens is in the way, and black
     f4 sum{};
     for (int k = 0; k < seen.count; ++k) {
         const CameraPath& path = seen.path[k];
-        sum +=
-            path.weight * tracer.radiance(path.ray, bands, sampler, aovs && k == 0, sample, stats);
+        Bands on_path = bands;
+        on_path.on &= path.lanes;
+        sum += path.weight *
+               tracer.radiance(path.ray, on_path, sampler, aovs && k == 0, sample, stats);
     }
     sample.colour = to_rgb(sum, bands);
     sample.aov[static_cast<size_t>(Aov::Cost)] =

@@ -145,10 +145,36 @@ void place(const SceneRequest& request, const GltfCamera* from, const Box3f& bou
     report.eye = position(lens.to_world);
 }
 
+// The lens decides what is seen; where it stands and looks is as for a thin lens of its angle.
+CameraSetup with_lens(const SceneRequest& request, const LoadedLens& loaded, const GltfCamera* from,
+                      const Scene& scene, const Bvh& bvh, float aspect, const Notice& notice) {
+    CameraSetup setup;
+    CameraReport& report = setup.report;
+    ThinLens stand_in;
+    stand_in.aspect = aspect;
+    stand_in.yfov_rad = loaded.yfov_rad();
+    report.yfov_deg = stand_in.yfov_rad / kDegree;
+    place(request, from, scene.bounds, notice, stand_in, report);
+    report.focus_m = find_focus(request, stand_in, scene, bvh, notice);
+    LensSetup lens = set_up_lens(*request.lens, loaded, stand_in.to_world, report.focus_m,
+                                 request.fstop, request.size.x, notice);
+    report.lens = loaded.file.lens.name;
+    report.aperture = request.lens->aperture;
+    report.focal_length_mm = static_cast<float>(loaded.focal_length_mm);
+    report.sensor_width_mm = loaded.film_mm.x;
+    report.sensor_height_mm = loaded.film_mm.y;
+    report.film_mm = lens.film_mm;
+    report.stop_radius_mm = lens.stop_radius_mm;
+    report.lens_radius_m = static_cast<float>(loaded.focal_length_mm * 1e-3 / (2 * lens.fnumber));
+    setup.camera = std::move(lens.camera);
+    return setup;
+}
+
 }  // namespace
 
 CameraSetup set_up_camera(const SceneRequest& request, const std::vector<GltfCamera>& cameras,
-                          const Scene& scene, const Bvh& bvh, const Notice& notice) {
+                          const std::optional<LoadedLens>& loaded, const Scene& scene,
+                          const Bvh& bvh, const Notice& notice) {
     const float aspect = static_cast<float>(request.size.x) / static_cast<float>(request.size.y);
     const GltfCamera* from = nullptr;
     if (request.camera)
@@ -157,6 +183,7 @@ CameraSetup set_up_camera(const SceneRequest& request, const std::vector<GltfCam
         from = &cameras.front();
     if (from && from->orthographic) return orthographic(request, *from, aspect);
 
+    if (loaded) return with_lens(request, *loaded, from, scene, bvh, aspect, notice);
     CameraSetup setup;
     CameraReport& report = setup.report;
     const V2f sensor_mm = cropped_sensor_mm(request, aspect);

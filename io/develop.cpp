@@ -56,6 +56,12 @@ void describe_camera(const CameraReport& c, PictureLayout& layout) {
     m.emplace_back("petzval:sensorWidth_mm", c.sensor_width_mm);
     m.emplace_back("petzval:sensorHeight_mm", c.sensor_height_mm);
     m.emplace_back("petzval:lensRadius_m", c.lens_radius_m);
+    if (!c.lens.empty()) {
+        m.emplace_back("petzval:lens", c.lens);
+        m.emplace_back("petzval:aperture", c.aperture);
+        m.emplace_back("petzval:film_mm", static_cast<float>(c.film_mm));
+        m.emplace_back("petzval:stopRadius_mm", static_cast<float>(c.stop_radius_mm));
+    }
     if (c.lens_radius_m <= 0) return;
     m.emplace_back("petzval:fstop", c.focal_length_mm * 1e-3f / (2 * c.lens_radius_m));
     m.emplace_back("petzval:focus_m", c.focus_m);

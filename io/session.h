@@ -14,6 +14,7 @@
 #include "core/bvh.h"
 #include "core/light_choice.h"
 #include "core/scene.h"
+#include "io/lens_setup.h"
 #include "io/spectral_setup.h"
 
 namespace petzval {
@@ -46,6 +47,7 @@ struct SceneRequest {
     LightChoiceKind light_choice = LightChoiceKind::Power;
     Traversal traversal = Traversal::Robust;
     SpectralRequest spectral;
+    std::optional<LensRequest> lens;  ///< absent: a thin lens or a pinhole
 };
 
 /// What the camera turned out to be, for the picture's metadata.
@@ -55,6 +57,8 @@ struct CameraReport {
     bool orthographic = false;
     float yfov_deg = 0, focal_length_mm = 0, sensor_width_mm = 0, sensor_height_mm = 0;
     float lens_radius_m = 0, focus_m = 0;  ///< 0: a pinhole
+    std::string lens, aperture;            ///< of a lens made of glass
+    double film_mm = 0, stop_radius_mm = 0;
 };
 
 /// A scene that is ready: nothing in it changes any more.

@@ -33,6 +33,8 @@ std::vector<std::string> reasons(const SpectralRequest& request, const Scene& sc
         found.push_back(fmt::format("--illuminant is {}", request.illuminant));
     if (!is(request.response, kUsualResponse))
         found.push_back(fmt::format("--response is {}", request.response));
+    if (!request.dispersive_lens.empty())
+        found.push_back(fmt::format("lens {} disperses", request.dispersive_lens));
     for (std::string& reason : reasons_for_wavelengths(scene)) found.push_back(std::move(reason));
     return found;
 }

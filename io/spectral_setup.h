@@ -21,6 +21,7 @@ struct SpectralRequest {
     std::optional<Bins> bins;
     std::string illuminant = "d65", response = "cie1931";  ///< names, or CSV files
     WhiteBalance white_balance = WhiteBalance::None;
+    std::string dispersive_lens;  ///< its name, or nothing
 };
 
 struct SpectralSetup {

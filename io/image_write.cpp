@@ -8,8 +8,8 @@
 #include "io/atomic_file.h"
 #include "io/decoder_message.h"
 #include "io/error.h"
-#include "io/lower.h"
 #include "io/image.h"
+#include "io/lower.h"
 
 namespace petzval {
 namespace {

@@ -156,9 +156,9 @@ TEST(Observer, XyzOfASensorThatIsNearlyBlind) {
     in.bins = Bins{500, 10, 1};
     const Observer observer(in);
     const V3d white = respond(in.xyz_bar, in.white);
-    expect_near(mean_over_draws(observer,
-                                [&](const Bands& b) { return observer.to_xyz(b.white, b); }),
-                white / white.y, 0.01);
+    expect_near(
+        mean_over_draws(observer, [&](const Bands& b) { return observer.to_xyz(b.white, b); }),
+        white / white.y, 0.01);
 }
 
 TEST(Observer, FourQuartersOfTheSpectrumInEveryDraw) {

@@ -8,8 +8,8 @@
 // A quadratic programme: red and blue at the knots are sought, green is what they leave of 1. The
 // summed squares of second differences are least where each, under D65, is its own colour and
 // nothing falls below 0. By alternating directions (Stellato et al. 2020, "OSQP: an operator
-// splitting solver for quadratic programs", algorithm 1), and then exactly with what lies at a bound
-// held there.
+// splitting solver for quadratic programs", algorithm 1), and then exactly with what lies at a
+// bound held there.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -196,7 +196,8 @@ void run() {
     fmt::print(stderr, "largest violation of a constraint: {:.3g}\n", worst);
     fmt::print(
         "# Reflectances of linear sRGB's red, green and blue (ITU-R BT.709 primaries, D65 white).\n"
-        "# Unit: 1, at wavelengths in nm; straight lines between the rows. They add up to 1; each is\n"
+        "# Unit: 1, at wavelengths in nm; straight lines between the rows. They add up to 1; each "
+        "is\n"
         "# its own colour under D65 for the CIE 1931 observer, summed at 1 nm.\n"
         "# Source: made by tests/bench/make_rgb_basis.cpp from cie1931.csv and d65.csv, after\n"
         "# Mallett and Yuksel 2019.\n"

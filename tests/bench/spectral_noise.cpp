@@ -101,9 +101,10 @@ int run(int argc, char** argv) {
     const Noise rgb = noise_of(films[0], request.size), hero = noise_of(films[1], request.size);
     fmt::print("CPU time a sample, hero / rgb: {:.3f} ({:.3f} to {:.3f})\n", cost, ratios.front(),
                ratios.back());
-    fmt::print("variance at {} samples: luminance rgb {:.3g} hero {:.3g}, chroma rgb {:.3g} hero "
-               "{:.3g}\n",
-               job.end_sample, rgb.luminance, hero.luminance, rgb.chroma, hero.chroma);
+    fmt::print(
+        "variance at {} samples: luminance rgb {:.3g} hero {:.3g}, chroma rgb {:.3g} hero "
+        "{:.3g}\n",
+        job.end_sample, rgb.luminance, hero.luminance, rgb.chroma, hero.chroma);
     fmt::print("error at equal time, hero / rgb: luminance {:.3f}, chroma {:.3f}\n",
                std::sqrt(cost * hero.luminance / rgb.luminance),
                std::sqrt(cost * hero.chroma / rgb.chroma));

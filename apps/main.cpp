@@ -10,6 +10,7 @@
 #include "apps/console.h"
 #include "apps/image.h"
 #include "apps/info.h"
+#include "apps/lens.h"
 #include "apps/render.h"
 #include "io/develop.h"
 #include "io/error.h"
@@ -57,6 +58,7 @@ int main(int argc, char** argv) {
     petzval::add_render_command(app, exit_code);
     petzval::add_info_command(app);
     petzval::add_image_commands(app);
+    petzval::add_lens_commands(app);
     const int result = run(app, argc, argv, exit_code);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
         return fail(kFailure, "standard output cannot be written");

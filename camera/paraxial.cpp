@@ -85,7 +85,7 @@ FirstOrder first_order(const Lens& lens, double nm, Section section) {
     return out;
 }
 
-Image image_of(const Lens& lens, double object_mm, double nm, Section section) {
+ParaxialImage image_of(const Lens& lens, double object_mm, double nm, Section section) {
     const ParaxialLens system(lens, nm, section);
     // A ray from the foot of the object, at an angle of 1.
     const auto ray = system.follow({-object_mm, 1}, 0, lens.last());

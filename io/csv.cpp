@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string_view>
 
@@ -112,6 +113,18 @@ CsvTable read_csv(const std::filesystem::path& path) {
         }
     }
     return table;
+}
+
+std::string csv_text(const std::vector<std::string>& names,
+                     const std::vector<std::vector<double>>& rows) {
+    std::string text = fmt::format("{}\n", fmt::join(names, ","));
+    for (const auto& row : rows) {
+        std::vector<std::string> cells;
+        for (const double number : row)
+            cells.push_back(std::isfinite(number) ? fmt::format("{:.9g}", number) : "");
+        text += fmt::format("{}\n", fmt::join(cells, ","));
+    }
+    return text;
 }
 
 }  // namespace petzval

@@ -32,4 +32,8 @@ using CsvTable = Table<double>;
 /// As read_csv_text; and a missing or broken number, one that is not finite, no line of names.
 [[nodiscard]] CsvTable read_csv(const std::filesystem::path&);
 
+/// Names without commas, then rows; a number that is not finite is an empty cell.
+[[nodiscard]] std::string csv_text(const std::vector<std::string>& names,
+                                   const std::vector<std::vector<double>>& rows);
+
 }  // namespace petzval

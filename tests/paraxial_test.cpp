@@ -59,7 +59,7 @@ TEST_P(Oracle, SectionsAreAlikeWithoutCylinders) {
 
 TEST_P(Oracle, Conjugates) {
     for (const auto& row : oracle.at("conjugates_d")) {
-        const Image image = image_of(lens, row[0], kLineD_nm);
+        const ParaxialImage image = image_of(lens, row[0], kLineD_nm);
         expect_relative(image.from_last_vertex_mm, row[1], 1e-11, row.dump());
         expect_relative(image.magnification, row[2], 1e-11, row.dump());
     }

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which lens a subcommand of `petzval lens` is about.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "camera/lens.h"
+
+namespace petzval {
+
+struct LensRequest {
+    std::string lens;                   ///< name or file
+    std::vector<std::string> catalogs;  ///< files of glasses
+};
+/// The argument `lens` and --glasses.
+void add_lens_request(CLI::App&, LensRequest&);
+
+/// The lens, made ready; its file's warnings go to stderr.
+[[nodiscard]] std::shared_ptr<const Lens> open_lens(const LensRequest&);
+
+[[nodiscard]] bool has_cylinders(const Lens&);
+
+void add_lens_table_commands(CLI::App& lens);     ///< list, show, check
+void add_lens_trace_commands(CLI::App& lens);     ///< draw, trace
+void add_lens_analysis_commands(CLI::App& lens);  ///< spot, fan, mtf, distortion, vignetting
+
+}  // namespace petzval

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cross-sections of lenses, as SVG.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "camera/lens.h"
+#include "camera/profile.h"
+
+namespace petzval {
+
+struct DrawnRay {
+    Outline path;        ///< {z, height}, mm
+    std::string colour;  ///< as SVG names it, #2060d0 say
+};
+
+struct LensDrawing {
+    Section section = Section::Y;
+    double film_mm = 0;         ///< from the first vertex
+    double film_radius_mm = 0;  ///< half of what is drawn of it
+    std::vector<DrawnRay> rays;
+    std::string caption;  ///< one line below
+};
+
+/// Glass, stop, film, axis and rays, z to the right, in the same scale both ways; a millimetre is a
+/// unit of the SVG's viewBox. Every face, the stop and the film have an id: face0, stop, film.
+[[nodiscard]] std::string lens_svg(const Lens&, const LensDrawing&);
+
+/// Throws InputError where the name does not end in .svg or cannot be written.
+void check_drawing(const std::filesystem::path&);
+/// Throws InputError where the file cannot be written.
+void write_drawing(const std::filesystem::path&, const Lens&, const LensDrawing&);
+
+}  // namespace petzval

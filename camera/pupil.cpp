@@ -23,21 +23,22 @@ bool of_revolution(const Lens& lens) {
                        [](const auto& s) { return s.profile == Profile::Rotational; });
 }
 
-// Weights of equally spaced nodes in Lagrange's parabola and cubic, t steps from the first.
-struct Parabola {
-    int first, count;
-    float weight[3];
-};
-Parabola parabola(float t, int size) {
-    if (size == 1) return {0, 1, {1, 0, 0}};
-    t = std::clamp(t, 0.f, static_cast<float>(size - 1));
-    const int first = std::clamp(static_cast<int>(t - 0.5f), 0, size - 3);
-    t -= static_cast<float>(first);
-    return {first, 3, {0.5f * (t - 1) * (t - 2), t * (2 - t), 0.5f * t * (t - 1)}};
-}
+// Lagrange's cubic through the nodes 0, 1, 2, 3: their weights at t.
 f4 cubic(float t) {
     const float a = t - 1, b = t - 2, c = t - 3;
     return f4{a * b * c, t * b * c, t * a * c, t * a * b} * f4{-1 / 6.f, 0.5f, -0.5f, 1 / 6.f};
+}
+
+// The four nodes about a place, or the only one.
+struct Nodes {
+    int first, count;
+    f4 weight;
+};
+Nodes nodes_about(float t, int size) {
+    if (size == 1) return {0, 1, f4{1, 0, 0, 0}};
+    t = std::clamp(t, 0.f, static_cast<float>(size - 1));
+    const int first = std::clamp(static_cast<int>(t) - 1, 0, size - 4);
+    return {first, 4, cubic(t - static_cast<float>(first))};
 }
 
 }  // namespace
@@ -155,19 +156,19 @@ void Pupil::solve_table() {
 
 V2f Pupil::between(V2f film_point_mm, V2f stop_point_mm, float nm) const {
     const auto along = [](const Axis& axis, float at) {
-        return parabola((at - axis.first) * float(axis.size - 1) / (axis.last - axis.first),
-                        axis.size);
+        return nodes_about((at - axis.first) * float(axis.size - 1) / (axis.last - axis.first),
+                           axis.size);
     };
-    const Parabola column = along(columns_, film_point_mm.x), row = along(rows_, film_point_mm.y);
-    const Parabola across = along(across_, stop_point_mm.x), up = along(up_, stop_point_mm.y);
+    const Nodes column = along(columns_, film_point_mm.x), row = along(rows_, film_point_mm.y);
+    const Nodes across = along(across_, stop_point_mm.x), up = along(up_, stop_point_mm.y);
     f4 l{}, m{};
     for (int a = 0; a < column.count; ++a)
         for (int b = 0; b < row.count; ++b)
-            for (int c = 0; c < 3; ++c) {
+            for (int c = 0; c < 4; ++c) {
                 const float weight = column.weight[a] * row.weight[b] * across.weight[c];
                 const Node* node =
                     &table_[place(column.first + a, row.first + b, across.first + c, up.first)];
-                for (int d = 0; d < 3; ++d) {
+                for (int d = 0; d < 4; ++d) {
                     l += node[d].l * (weight * up.weight[d]);
                     m += node[d].m * (weight * up.weight[d]);
                 }

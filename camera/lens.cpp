@@ -136,8 +136,17 @@ LensIndices<f4> Lens::exact_indices(f4 nm) const {
 }
 
 LensIndices<f4> Lens::indices(f4 nm) const {
+    // As SpectrumTable::at, but the place in the tables is looked for once.
+    const f4 place = min(max(nm - float(kFirst_nm), f4{}), splat(kSpectrumSize - 1));
+    const m4 i = __builtin_convertvector(min(place, splat(kSpectrumSize - 2)), m4);
+    const f4 t = place - __builtin_convertvector(i, f4);
     LensIndices<f4> out;
-    for (size_t i = 0; i < tables_.size(); ++i) out.of_medium[i] = tables_[i].at(nm);
+    for (size_t k = 0; k < tables_.size(); ++k) {
+        const float* at = tables_[k].value.data();
+        const f4 below{at[i[0]], at[i[1]], at[i[2]], at[i[3]]};
+        const f4 above{at[i[0] + 1], at[i[1] + 1], at[i[2] + 1], at[i[3] + 1]};
+        out.of_medium[k] = below * (1 - t) + above * t;
+    }
     return out;
 }
 

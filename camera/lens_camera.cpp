@@ -8,11 +8,6 @@
 namespace petzval {
 namespace {
 
-f4 wavelengths_of(const Bands& bands, Chroma chroma) {
-    const bool achromatic = !bands.spectral || chroma == Chroma::Shared;
-    return achromatic ? splat(static_cast<float>(kLineD_nm)) : bands.nm;
-}
-
 // The lane whose ray is solved for: any of those that are on.
 int pick_lane(m4 on, float u) {
     int count = 0, lane = 0;
@@ -33,8 +28,9 @@ m4 only(int lane) {
 }
 
 f4 transmitted(const Iris& iris, f4 x, f4 y) {
-    f4 out;
-    for (int i = 0; i < 4; ++i) out[i] = iris.transmits({x[i], y[i]});
+    f4 out = splat(iris.transmits({x[0], y[0]}));
+    for (int i = 1; i < 4; ++i)
+        if (x[i] != x[0] || y[i] != y[0]) out[i] = iris.transmits({x[i], y[i]});
     return out;
 }
 
@@ -50,6 +46,7 @@ LensCamera::LensCamera(LensCameraInput in)
     : in_(std::move(in)),
       pose_(in_.to_world),
       pupil_(*in_.lens, in_.film_mm, 0.5 * std::hypot(in_.film_width_mm, in_.film_height_mm)),
+      line_d_(in_.lens->exact_indices(splat(static_cast<float>(kLineD_nm)))),
       area_mm2_(static_cast<float>(in_.iris.area_mm2())) {}
 
 // Irradiance is the integral of radiance dL dM, L and M the direction cosines at the film: the
@@ -58,22 +55,30 @@ LensCamera::LensCamera(LensCameraInput in)
 // with the mean density (balance heuristic: Veach 1997, 9.2.3), so that light at the iris's edge is
 // not lost where its image differs between wavelengths.
 LensCamera::Draw LensCamera::draw(V2f film_mm, V2f u, float u_lane, const Bands& bands) const {
-    Draw out;
-    const LensIndices<f4> indices = in_.lens->indices(wavelengths_of(bands, in_.chroma));
-    const V2f on_iris = in_.iris.sample(u);
     const int lane = pick_lane(bands.on, u_lane);
+    if (!bands.spectral || in_.chroma == Chroma::Shared)
+        return draw(film_mm, u, lane, bands, line_d_, static_cast<float>(kLineD_nm));
+    return draw(film_mm, u, lane, bands, in_.lens->indices(bands.nm), bands.nm[lane]);
+}
+
+LensCamera::Draw LensCamera::draw(V2f film_mm, V2f u, int lane, const Bands& bands,
+                                  const LensIndices<f4>& indices, float nm) const {
+    Draw out;
+    const V2f on_iris = in_.iris.sample(u);
     const m4 on = in_.chroma == Chroma::Single ? only(lane) : bands.on;
-    const auto cosines = pupil_.direction(film_mm, on_iris, indices, lane);
-    if (!cosines) return out;
-    const StopCrossing c = pupil_.cross(film_mm, *cosines, indices);
-    const f4 open = zero_off(on & c.ray.alive(), transmitted(in_.iris, c.x_mm, c.y_mm));
-    const float density = hsum(open * c.stretch_mm2()) / (area_mm2_ * count_of(on));
+    const auto c = pupil_.solve(film_mm, on_iris, indices, lane, nm);
+    if (!c) return out;
+    // What the solver leaves is taken off, so that the lane crosses the iris where it was drawn:
+    // an iris may be smaller than the tolerance.
+    const f4 x = c->x_mm + (on_iris.x - c->x_mm[lane]), y = c->y_mm + (on_iris.y - c->y_mm[lane]);
+    const f4 open = zero_off(on & c->ray.alive(), transmitted(in_.iris, x, y));
+    const float density = hsum(open * c->stretch_mm2()) / (area_mm2_ * count_of(on));
     if (!(density > 0.f)) return out;
-    out.ray = c.ray;
+    out.ray = c->ray;
     static_cast<void>(march<f4>(*in_.lens, indices, Towards::Scene, {0, in_.lens->stop() - 1},
                                 out.ray, Clip::Yes));
     const float gain = static_cast<float>(in_.gain) * count_of(bands.on) / count_of(on);
-    out.weight = zero_off(c.clear & out.ray.alive(), open * (gain / density));
+    out.weight = zero_off(c->clear & out.ray.alive(), open * (gain / density));
     return out;
 }
 

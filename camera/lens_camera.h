@@ -47,12 +47,15 @@ class LensCamera final : public Camera {
     [[nodiscard]] Draw draw(V2f film_mm, V2f u, float u_lane, const Bands&) const;
 
   private:
+    [[nodiscard]] Draw draw(V2f film_mm, V2f u, int lane, const Bands&, const LensIndices<f4>&,
+                            float nm) const;
     [[nodiscard]] Ray world_ray(const LensRay<f4>&, int lane) const;
     [[nodiscard]] bool together(const LensRay<f4>&, int a, int b) const;
 
     LensCameraInput in_;
     Pose pose_;
     Pupil pupil_;
+    LensIndices<f4> line_d_;
     float area_mm2_;
 };
 

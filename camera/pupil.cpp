@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/dispersion.h"
-
 namespace petzval {
 namespace {
 
 constexpr float kTolerance = 1e-4f;  // of the stop's radius
 constexpr int kMostSteps = 12, kMostHalvings = 6;
-constexpr int kStopSide = 9;
+
+// Wavelengths at which the table is solved: evenly in 1 / nm, over what is visible.
+constexpr f4 kNodes_nm = {400, 466.6667f, 560, 700};
 
 V2f turned(V2f p, V2f cosine_sine) {
     return {p.x * cosine_sine.x - p.y * cosine_sine.y, p.x * cosine_sine.y + p.y * cosine_sine.x};
@@ -23,30 +23,56 @@ bool of_revolution(const Lens& lens) {
                        [](const auto& s) { return s.profile == Profile::Rotational; });
 }
 
+// Lagrange's cubic through the nodes 0, 1, 2, 3: their weights at t.
+f4 cubic(float t) {
+    const float a = t - 1, b = t - 2, c = t - 3;
+    return f4{a * b * c, t * b * c, t * a * c, t * a * b} * f4{-1 / 6.f, 0.5f, -0.5f, 1 / 6.f};
+}
+
+// The four nodes about a place, or the only one.
+struct Nodes {
+    int first, count;
+    f4 weight;
+};
+Nodes nodes_about(float t, int size) {
+    if (size == 1) return {0, 1, f4{1, 0, 0, 0}};
+    t = std::clamp(t, 0.f, static_cast<float>(size - 1));
+    const int first = std::clamp(static_cast<int>(t) - 1, 0, size - 4);
+    return {first, 4, cubic(t - static_cast<float>(first))};
+}
+
 }  // namespace
+
+float Pupil::Axis::at(int i) const {
+    return size == 1 ? first : first + (last - first) * static_cast<float>(i) / float(size - 1);
+}
 
 Pupil::Pupil(const Lens& lens, double film_mm, double film_reach_mm)
     : lens_(lens),
       film_mm_(film_mm),
-      film_reach_mm_(static_cast<float>(film_reach_mm)),
       stop_radius_mm_(static_cast<float>(
           lens.prescription().surfaces[static_cast<size_t>(lens.stop())].semi_diameter_mm)),
-      symmetric_(of_revolution(lens)),
-      columns_(symmetric_ ? 1 : 6),
-      rows_(symmetric_ ? 12 : 6),
-      table_(static_cast<size_t>(columns_) * rows_ * kStopSide * kStopSide) {
+      symmetric_(of_revolution(lens)) {
+    const float reach = static_cast<float>(film_reach_mm), radius = stop_radius_mm_;
+    columns_ = symmetric_ ? Axis{0, 0, 1} : Axis{0, reach, 6};
+    rows_ = {0, reach, symmetric_ ? 12 : 6};
+    across_ = symmetric_ ? Axis{0, radius, 7} : Axis{-radius, radius, 13};
+    up_ = {-radius, radius, 13};
     solve_table();
 }
 
-StopCrossing Pupil::cross(V2f film_point_mm, V2f cosines, const LensIndices<f4>& indices) const {
+StopCrossing Pupil::cross(V2f film_point_mm, const Node& cosines,
+                          const LensIndices<f4>& indices) const {
     using D = Dual<f4>;
-    const D l{splat(cosines.x), splat(1.f), f4{}}, m{splat(cosines.y), f4{}, splat(1.f)};
+    const D l{cosines.l, splat(1.f), f4{}}, m{cosines.m, f4{}, splat(1.f)};
     LensRay<D> ray;
     ray.counted_from = lens_.last();
     const auto z = static_cast<float>(film_mm_ - lens_.vertex_mm(lens_.last()));
     ray.origin = {D{splat(film_point_mm.x)}, D{splat(film_point_mm.y)}, D{splat(z)}};
     ray.direction = {l, m, -sqrt(1 - l * l - m * m)};
     StopCrossing out;
+    out.l = cosines.l;
+    out.m = cosines.m;
     out.clear = m4{-1, -1, -1, -1};
     const auto& facts = lens_.surfaces<float>();
     const auto clip = [&](const LensHit<D>& hit) {
@@ -69,133 +95,103 @@ StopCrossing Pupil::cross(V2f film_point_mm, V2f cosines, const LensIndices<f4>&
     return out;
 }
 
-std::optional<V2f> Pupil::newton(V2f film_point_mm, V2f stop_point_mm, V2f cosines,
-                                 const LensIndices<f4>& indices, int lane) const {
-    V2f good = cosines, step(0.f);
+std::optional<StopCrossing> Pupil::newton(V2f film_point_mm, V2f stop_point_mm, Node cosines,
+                                          const LensIndices<f4>& indices,
+                                          std::optional<int> lead) const {
+    Node good = cosines, step;
     int halvings = 0;
     for (int i = 0; i < kMostSteps; ++i) {
         const StopCrossing c = cross(film_point_mm, cosines, indices);
-        const bool inside = cosines.dot(cosines) < 1.f && c.ray.alive()[lane];
-        if (!inside) {  // too far: rays there never reach the stop
-            if (++halvings > kMostHalvings) return std::nullopt;
-            step *= 0.5f;
-            cosines = good + step;
-            continue;
-        }
-        const V2f off(stop_point_mm.x - c.x_mm[lane], stop_point_mm.y - c.y_mm[lane]);
-        if (off.length2() < sqr(kTolerance * stop_radius_mm_)) return cosines;
-        const float a = c.x_by_l[lane], b = c.x_by_m[lane], d = c.y_by_l[lane], e = c.y_by_m[lane];
-        const float determinant = a * e - b * d;
-        if (!(std::fabs(determinant) > 0.f)) return std::nullopt;
-        good = cosines;
-        step = V2f(e * off.x - b * off.y, a * off.y - d * off.x) / determinant;
-        cosines = good + step;
+        const m4 inside = c.ray.alive() & (c.l * c.l + c.m * c.m < 1.f);
+        const f4 off_x = stop_point_mm.x - c.x_mm, off_y = stop_point_mm.y - c.y_mm;
+        const m4 close =
+            inside & (off_x * off_x + off_y * off_y < sqr(kTolerance * stop_radius_mm_));
+        if (lead ? close[*lead] != 0 : all(close)) return c;
+        // Too far where rays never reach the stop: half the way, then.
+        if ((lead ? !inside[*lead] : !all(inside)) && ++halvings > kMostHalvings) break;
+        const f4 by = 1 / c.determinant();
+        step.l = inside ? (c.y_by_m * off_x - c.x_by_m * off_y) * by : 0.5f * step.l;
+        step.m = inside ? (c.x_by_l * off_y - c.y_by_l * off_x) * by : 0.5f * step.m;
+        good = {inside ? c.l : good.l, inside ? c.m : good.m};
+        cosines = {good.l + step.l, good.m + step.m};
+        if (lead) cosines = {splat(cosines.l[*lead]), splat(cosines.m[*lead])};
     }
     return std::nullopt;
 }
 
-V2f Pupil::film_point(int column, int row) const {
-    const float step = film_reach_mm_ / static_cast<float>(rows_ - 1);
-    return {static_cast<float>(column) * step, static_cast<float>(row) * step};
-}
-
-V2f Pupil::stop_point(int i, int j) const {
-    const float step = 2 * stop_radius_mm_ / (kStopSide - 1);
-    return {static_cast<float>(i) * step - stop_radius_mm_,
-            static_cast<float>(j) * step - stop_radius_mm_};
-}
-
-Pupil::Known& Pupil::known(int column, int row, int i, int j) {
-    return table_[static_cast<size_t>(((column * rows_ + row) * kStopSide + i) * kStopSide + j)];
-}
-
-// Each ray from one that is known next to it, outwards from the axis: first the ray to the middle
-// of the stop from the film point before, then to the stop's rim.
+// Outwards from the middle of the stop, each ray guessed from those that are known next to it: as
+// from the film point before, so here.
 void Pupil::solve_table() {
-    const LensIndices<f4> indices = lens_.exact_indices(splat(static_cast<float>(kLineD_nm)));
-    constexpr int middle = kStopSide / 2;
+    const LensIndices<f4> indices = lens_.exact_indices(kNodes_nm);
+    table_.resize(place(columns_.size, 0, 0, 0));
+    const int mid_i = symmetric_ ? 0 : across_.size / 2, mid_j = up_.size / 2;
     std::vector<std::array<int, 2>> order;
-    for (int i = 0; i < kStopSide; ++i)
-        for (int j = 0; j < kStopSide; ++j) order.push_back({i, j});
-    const auto away = [](const std::array<int, 2>& p) {
-        return std::max(std::abs(p[0] - middle), std::abs(p[1] - middle));
+    for (int i = 0; i < across_.size; ++i)
+        for (int j = 0; j < up_.size; ++j) order.push_back({i, j});
+    const auto away = [&](const std::array<int, 2>& p) {
+        return std::max(std::abs(p[0] - mid_i), std::abs(p[1] - mid_j));
     };
     std::stable_sort(order.begin(), order.end(),
                      [&](const auto& a, const auto& b) { return away(a) < away(b); });
-    const auto towards_middle = [](int i) { return i + (i < middle) - (i > middle); };
-    for (int column = 0; column < columns_; ++column) {
-        for (int row = 0; row < rows_; ++row) {
+    const auto towards = [](int i, int middle) { return i + (i < middle) - (i > middle); };
+    for (int column = 0; column < columns_.size; ++column)
+        for (int row = 0; row < rows_.size; ++row)
             for (const auto& [i, j] : order) {
-                V2f guess(0.f);
-                const Known* before = nullptr;
-                if (row > 0 || column > 0)
-                    before = &known(row > 0 ? column : column - 1, row > 0 ? row - 1 : 0, i, j);
-                const Known* inner = nullptr;
-                if (i != middle || j != middle)
-                    inner = &known(column, row, towards_middle(i), towards_middle(j));
-                if (inner && inner->there)
-                    guess = inner->cosines;
-                else if (before && before->there)
-                    guess = before->cosines;
-                if (const auto solved =
-                        newton(film_point(column, row), stop_point(i, j), guess, indices, 0))
-                    known(column, row, i, j) = {*solved, true};
+                const int inner_i = towards(i, mid_i), inner_j = towards(j, mid_j);
+                const int before_c = row > 0 ? column : std::max(column - 1, 0);
+                const int before_r = std::max(row - 1, 0);
+                const Node inner = table_[place(column, row, inner_i, inner_j)];
+                const Node before = table_[place(before_c, before_r, i, j)];
+                const Node other = table_[place(before_c, before_r, inner_i, inner_j)];
+                const bool middle = i == mid_i && j == mid_j;
+                const Node guess =
+                    middle ? before
+                           : Node{inner.l + before.l - other.l, inner.m + before.m - other.m};
+                const auto solved =
+                    newton({columns_.at(column), rows_.at(row)}, {across_.at(i), up_.at(j)}, guess,
+                           indices, std::nullopt);
+                table_[place(column, row, i, j)] = solved ? Node{solved->l, solved->m} : inner;
             }
-        }
-    }
 }
 
-// Linear between the solved rays about the two points; the nearest of them where one is missing.
-std::optional<V2f> Pupil::between(V2f film_point_mm, V2f stop_point_mm) const {
-    const auto place = [](float at, int size) {
-        const float inside = std::clamp(at, 0.f, static_cast<float>(size - 1));
-        const int cell = std::min(static_cast<int>(inside), std::max(size - 2, 0));
-        return std::pair(cell, inside - static_cast<float>(cell));
+V2f Pupil::between(V2f film_point_mm, V2f stop_point_mm, float nm) const {
+    const auto along = [](const Axis& axis, float at) {
+        return nodes_about((at - axis.first) * float(axis.size - 1) / (axis.last - axis.first),
+                           axis.size);
     };
-    const float film_scale = static_cast<float>(rows_ - 1) / film_reach_mm_;
-    const float stop_scale = (kStopSide - 1) / (2 * stop_radius_mm_);
-    const auto [column, s] = place(film_point_mm.x * film_scale, columns_);
-    const auto [row, t] = place(film_point_mm.y * film_scale, rows_);
-    const auto [i, u] = place((stop_point_mm.x + stop_radius_mm_) * stop_scale, kStopSide);
-    const auto [j, v] = place((stop_point_mm.y + stop_radius_mm_) * stop_scale, kStopSide);
-    V2f sum(0.f);
-    float there = 0.f;
-    for (int k = 0; k < 16; ++k) {
-        const bool right = k & 1, up = k & 2, p = k & 4, q = k & 8;
-        if (right && columns_ == 1) continue;
-        const float weight = (right           ? s
-                              : columns_ == 1 ? 1.f
-                                              : 1.f - s) *
-                             (up ? t : 1.f - t) * (p ? u : 1.f - u) * (q ? v : 1.f - v);
-        if (!(weight > 0.f)) continue;
-        const Known& corner = known(column + right, row + up, i + p, j + q);
-        if (!corner.there) continue;
-        sum += corner.cosines * weight;
-        there += weight;
-    }
-    if (!(there > 0.f)) return std::nullopt;
-    return sum / there;
+    const Nodes column = along(columns_, film_point_mm.x), row = along(rows_, film_point_mm.y);
+    const Nodes across = along(across_, stop_point_mm.x), up = along(up_, stop_point_mm.y);
+    f4 l{}, m{};
+    for (int a = 0; a < column.count; ++a)
+        for (int b = 0; b < row.count; ++b)
+            for (int c = 0; c < 4; ++c) {
+                const float weight = column.weight[a] * row.weight[b] * across.weight[c];
+                const Node* node =
+                    &table_[place(column.first + a, row.first + b, across.first + c, up.first)];
+                for (int d = 0; d < 4; ++d) {
+                    l += node[d].l * (weight * up.weight[d]);
+                    m += node[d].m * (weight * up.weight[d]);
+                }
+            }
+    const f4 weights =
+        cubic(3 * (1 / kNodes_nm[0] - 1 / nm) / (1 / kNodes_nm[0] - 1 / kNodes_nm[3]));
+    return {hsum(l * weights), hsum(m * weights)};
 }
 
-std::optional<V2f> Pupil::direction(V2f film_point_mm, V2f stop_point_mm,
-                                    const LensIndices<f4>& indices, int lane) const {
-    // Into the part of the film that the table covers, and back.
+std::optional<StopCrossing> Pupil::solve(V2f film_point_mm, V2f stop_point_mm,
+                                         const LensIndices<f4>& indices, int lane, float nm) const {
+    // Into the part that the table covers, and back.
     V2f p = film_point_mm, q = stop_point_mm;
-    V2f turn(1.f, 0.f), mirror(1.f, 1.f);
+    V2f turn(1.f, 0.f);
     if (symmetric_) {
         const float r = p.length();
         if (r > 0.f) turn = V2f(p.y, p.x) / r;  // takes p to (0, r)
-        p = turned(p, turn);
+        p = {0.f, r};
         q = turned(q, turn);
-    } else {
-        mirror = {p.x < 0.f ? -1.f : 1.f, p.y < 0.f ? -1.f : 1.f};
-        p = p * mirror;
-        q = q * mirror;
     }
-    const auto guess = between(p, q);
-    if (!guess) return std::nullopt;
-    const V2f back = turned(*guess, V2f(turn.x, -turn.y)) * mirror;
-    return newton(film_point_mm, stop_point_mm, back, indices, lane);
+    const V2f mirror((symmetric_ ? q.x : p.x) < 0.f ? -1.f : 1.f, p.y < 0.f ? -1.f : 1.f);
+    const V2f guess = turned(between(p * mirror, q * mirror, nm) * mirror, V2f(turn.x, -turn.y));
+    return newton(film_point_mm, stop_point_mm, {splat(guess.x), splat(guess.y)}, indices, lane);
 }
 
 }  // namespace petzval

@@ -7,7 +7,7 @@
 namespace petzval {
 
 void add_lens_options(CLI::App& app, LensOptions& o) {
-    LensRequest& r = o.request;
+    LensCameraRequest& r = o.request;
     const auto group = [](CLI::Option* option) { return option->group("Lens"); };
     CLI::Option* lens = group(app.add_option(
         "--lens", r.lens, "a lens that ships (petzval lens list) or FILE.json, .dat, .zmx"));

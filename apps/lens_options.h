@@ -13,7 +13,7 @@ class App;
 namespace petzval {
 
 struct LensOptions {
-    LensRequest request;  ///< request.lens as given: pinhole, thin, a name or a file
+    LensCameraRequest request;  ///< request.lens as given: pinhole, thin, a name or a file
 };
 
 /// Declares the options; they write to the struct, which must outlive the parsing.

@@ -11,7 +11,7 @@
 
 namespace petzval {
 
-struct LensRequest {
+struct LensCameraRequest {
     std::string lens;  ///< a name in assets/lenses, or a file
     std::string aperture = "circle";
     ApertureScale aperture_scale = ApertureScale::EqualArea;
@@ -42,7 +42,7 @@ struct LensSetup {
 /// focus_m: along the axis from the middle of the entrance pupil. fstop: absent for the stop as it
 /// is filed. Throws InputError or ArgumentError: a focus nearer than the lens can, an iris that is
 /// none.
-[[nodiscard]] LensSetup set_up_lens(const LensRequest&, const LoadedLens&, const M44f& to_world,
+[[nodiscard]] LensSetup set_up_lens(const LensCameraRequest&, const LoadedLens&, const M44f& to_world,
                                     float focus_m, std::optional<float> fstop, int width_px,
                                     const std::function<void(const std::string&)>& notice);
 

@@ -47,7 +47,7 @@ struct SceneRequest {
     LightChoiceKind light_choice = LightChoiceKind::Power;
     Traversal traversal = Traversal::Robust;
     SpectralRequest spectral;
-    std::optional<LensRequest> lens;  ///< absent: a thin lens or a pinhole
+    std::optional<LensCameraRequest> lens;  ///< absent: a thin lens or a pinhole
 };
 
 /// What the camera turned out to be, for the picture's metadata.

@@ -62,7 +62,7 @@ void print_spot(double field_deg, const char* line, const SpotSize& size) {
 }
 
 Found spot_analysis(const std::shared_ptr<const Lens>& lens, const AnalysisOptions& o) {
-    constexpr int side = 100, drawn_side = 28;
+    constexpr int side = 300, drawn_side = 28;
     const FieldSetup setup = set_up(*lens, o.field, {0, 0.7, 1});
     Found out;
     out.names = {"field_deg", "nm", "x_mm", "y_mm"};

@@ -55,18 +55,20 @@ void append(std::vector<BeamRay>& all, const std::vector<BeamRay>& more) {
 }
 
 void print_spot(double field_deg, const char* line, const SpotSize& size) {
+    // Not -0.000000.
+    const auto shown = [](double mm) { return std::fabs(mm) < 5e-7 ? 0 : mm; };
     fmt::print("{:>10.4g} {:>6} {:>12.6f} {:>12.6f} {:>12.4f}\n", field_deg, line,
-               size.centroid_mm[0], size.centroid_mm[1], kMicrons * size.rms_mm);
+               shown(size.centroid_mm[0]), shown(size.centroid_mm[1]), kMicrons * size.rms_mm);
 }
 
 Found spot_analysis(const std::shared_ptr<const Lens>& lens, const AnalysisOptions& o) {
-    constexpr int side = 100, drawn_side = 28;
+    constexpr int side = 300, drawn_side = 28;
     const FieldSetup setup = set_up(*lens, o.field, {0, 0.7, 1});
     Found out;
     out.names = {"field_deg", "nm", "x_mm", "y_mm"};
     std::vector<PlotSeries> series;
     for (const SpectralLine& line : kSpectralLines)
-        series.push_back({{}, PlotStyle::Points, line.name});
+        series.push_back({{}, PlotStyle::Dots, line.name});
     fmt::print("film at {:.6f} mm\n{:>10} {:>6} {:>12} {:>12} {:>12}\n", setup.film_mm, "field (°)",
                "line", "x (mm)", "y (mm)", "RMS (µm)");
     std::vector<std::vector<std::vector<BeamRay>>> drawn;  // by field, by line
@@ -107,7 +109,8 @@ Found spot_analysis(const std::shared_ptr<const Lens>& lens, const AnalysisOptio
     out.plot = {.title = title_of(*lens, "spots of the fields " + fields + ", left to right"),
                 .x_label = "x from each centroid (µm)",
                 .y_label = "y from the centroid (µm)",
-                .series = std::move(series)};
+                .series = std::move(series),
+                .equal_scale = true};
     return out;
 }
 

@@ -47,7 +47,7 @@ double best_film_shift_mm(const Lens& lens, double film_mm, double distance_mm) 
     for (const double nm : {kLineF_nm, kLineD_nm, kLineC_nm}) {
         const auto beam = Beam::aim(lens, {.field_deg = 0, .distance_mm = distance_mm}, nm);
         if (!beam) continue;
-        const auto more = beam->trace(beam->grid(100), film_mm);
+        const auto more = beam->trace(beam->grid(300), film_mm);
         rays.insert(rays.end(), more.begin(), more.end());
     }
     if (rays.empty()) throw std::invalid_argument("no ray along the axis reaches the film");

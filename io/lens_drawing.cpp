@@ -80,26 +80,27 @@ std::string stop_paths(const Lens& lens) {
 std::string lens_svg(const Lens& lens, const LensDrawing& drawing) {
     constexpr double width_px = 1200;
     const Bounds bounds = bounds_of(lens, drawing);
-    const double width = bounds.right - bounds.left, text = 0.018 * width;
+    const double width = bounds.right - bounds.left, text = 0.013 * width;
     const double height = 2 * bounds.top + 2.5 * text;
     std::string out = fmt::format(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.0f}\" height=\"{:.0f}\" "
         "viewBox=\"{:.4f} {:.4f} {:.4f} {:.4f}\">\n",
         width_px, width_px * height / width, bounds.left, -bounds.top, width, height);
-    out +=
-        "<style>path{fill:none;stroke:#222;stroke-width:1.2;vector-effect:non-scaling-stroke}"
-        " .glass{fill:#9cc4e4;fill-opacity:0.45;stroke:none} .ray{stroke-width:0.8}"
-        " .axis{stroke:#888;stroke-width:0.8;stroke-dasharray:8 3 2 3} .stop{stroke-width:3}"
-        " .film{stroke-width:2}</style>\n";
+    // A line's width in mm, for one pixel.
+    const double px = width / width_px;
+    out += fmt::format(
+        "<style>path{{fill:none;stroke:#222;stroke-width:{:.4f}}}"
+        " .glass{{fill:#9cc4e4;fill-opacity:0.45}} .ray{{stroke-width:{:.4f}}}"
+        " .axis{{stroke:#888;stroke-width:{:.4f};stroke-dasharray:{:.4f} {:.4f}}}"
+        " .stop,.film{{stroke-width:{:.4f}}}</style>\n",
+        1.2 * px, 0.7 * px, 0.7 * px, 8 * px, 5 * px, 3 * px);
     out += fmt::format(
         "<rect x=\"{:.4f}\" y=\"{:.4f}\" width=\"{:.4f}\" height=\"{:.4f}\" fill=\"white\"/>\n",
         bounds.left, -bounds.top, width, height);
     out += path_element("class=\"axis\"", {{bounds.left, 0}, {bounds.right, 0}});
     for (int i = 0; i < lens.size(); ++i)
-        if (const Outline element = element_outline(lens, i, drawing.section); !element.empty()) {
+        if (const Outline element = element_outline(lens, i, drawing.section); !element.empty())
             out += path_element("class=\"glass\"", element, true);
-            out += path_element("class=\"rim\"", element, true);
-        }
     for (const DrawnRay& ray : drawing.rays)
         out += path_element(fmt::format("class=\"ray\" style=\"stroke:{}\"", ray.colour), ray.path);
     for (int i = 0; i < lens.size(); ++i)

@@ -51,6 +51,8 @@ const char* style_name(PlotStyle style) {
             return "lines";
         case PlotStyle::Points:
             return "points";
+        case PlotStyle::Dots:
+            return "points pointtype 7 pointsize 0.3";
         case PlotStyle::LinesAndPoints:
             return "linespoints";
     }
@@ -80,6 +82,7 @@ std::string script(const char* terminal_name, const Plot& plot) {
         "set terminal {} size 960,600 noenhanced font 'sans,14' background rgb 'white'\n"
         "set title {}\nset xlabel {}\nset ylabel {}\nset grid\nset offsets 0, 0, graph 0.05, 0\n",
         terminal_name, quoted(plot.title), quoted(plot.x_label), quoted(plot.y_label));
+    if (plot.equal_scale) text += "set size ratio -1\n";
     std::string lines;
     for (size_t i = 0; i < plot.series.size(); ++i) {
         const PlotSeries& series = plot.series[i];

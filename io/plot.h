@@ -13,6 +13,7 @@ namespace petzval {
 enum class PlotStyle : uint8_t {
     Lines,
     Points,
+    Dots,  ///< small ones, for thousands
     LinesAndPoints,
     Steps  ///< level around each x, half of the way to its neighbours
 };
@@ -27,6 +28,7 @@ struct PlotSeries {
 struct Plot {
     std::string title, x_label, y_label;  ///< labels with units
     std::vector<PlotSeries> series;       ///< at least one
+    bool equal_scale = false;             ///< a unit of x is as long as one of y
 };
 
 /// Throws InputError where the name ends in neither .svg nor .png or cannot be written.

@@ -150,7 +150,7 @@ void Pupil::solve_table() {
                 const auto solved =
                     newton({columns_.at(column), rows_.at(row)}, {across_.at(i), up_.at(j)}, guess,
                            indices, std::nullopt);
-                table_[place(column, row, i, j)] = solved ? Node{solved->l, solved->m} : inner;
+                table_[place(column, row, i, j)] = solved ? Node{solved->l, solved->m} : guess;
             }
 }
 
@@ -161,21 +161,24 @@ V2f Pupil::between(V2f film_point_mm, V2f stop_point_mm, float nm) const {
     };
     const Nodes column = along(columns_, film_point_mm.x), row = along(rows_, film_point_mm.y);
     const Nodes across = along(across_, stop_point_mm.x), up = along(up_, stop_point_mm.y);
-    f4 l{}, m{};
+    Node sum;
     for (int a = 0; a < column.count; ++a)
         for (int b = 0; b < row.count; ++b)
             for (int c = 0; c < 4; ++c) {
-                const float weight = column.weight[a] * row.weight[b] * across.weight[c];
                 const Node* node =
                     &table_[place(column.first + a, row.first + b, across.first + c, up.first)];
+                Node line;
                 for (int d = 0; d < 4; ++d) {
-                    l += node[d].l * (weight * up.weight[d]);
-                    m += node[d].m * (weight * up.weight[d]);
+                    line.l += node[d].l * up.weight[d];
+                    line.m += node[d].m * up.weight[d];
                 }
+                const float weight = column.weight[a] * row.weight[b] * across.weight[c];
+                sum.l += line.l * weight;
+                sum.m += line.m * weight;
             }
     const f4 weights =
         cubic(3 * (1 / kNodes_nm[0] - 1 / nm) / (1 / kNodes_nm[0] - 1 / kNodes_nm[3]));
-    return {hsum(l * weights), hsum(m * weights)};
+    return {hsum(sum.l * weights), hsum(sum.m * weights)};
 }
 
 std::optional<StopCrossing> Pupil::solve(V2f film_point_mm, V2f stop_point_mm,

@@ -192,13 +192,15 @@ TEST(LensCamera, IrradianceOnTheAxisIsPiSineSquared) {
 }
 
 TEST(LensCamera, ARoundIrisIsTheSameAtEveryAzimuth) {
-    for (const double scale : {1., 0.4}) {
-        const LensCameraInput in = input_of(kTakumar, {.stop_scale = scale});
+    const std::string fisheye = "minolta-fisheye-16mm-f2.8";
+    for (const auto& [name, height, scale] :
+         {std::tuple(kTakumar, 12., 1.), {kTakumar, 12., 0.4}, {fisheye, 19., 1.}}) {
+        const LensCameraInput in = input_of(name, {.stop_scale = scale});
         const LensCamera camera(in);
-        const double expected = quadrature(in, V2f(0, 12));
+        const double expected = quadrature(in, V2f(0, float(height)));
         for (const double azimuth : {0., 37., 90., 143., 200., 311.})
-            EXPECT_TRUE(agree(irradiance(camera, at_azimuth(12, azimuth))[0], expected))
-                << scale << ' ' << azimuth;
+            EXPECT_TRUE(agree(irradiance(camera, at_azimuth(height, azimuth))[0], expected))
+                << name << ' ' << scale << ' ' << azimuth;
     }
 }
 
@@ -295,7 +297,8 @@ TEST(LensCamera, NothingIsNotANumber) {
                 for (const float reach : {1.f, 20.f, 200.f, 1e6f, 1e30f})
                     for (int i = 0; i < 300; ++i) {
                         const V2f film = (random.next2() - V2f(0.5f)) * reach;
-                        const V2f u = random.next2();
+                        V2f u = random.next2();
+                        if (i % 2) u = V2f(u.x < 0.5f ? 0 : kOneMinus, u.y < 0.5f ? 0 : kOneMinus);
                         const auto drawn = camera.draw(film, u, random.next(), four_wavelengths());
                         for (int lane = 0; lane < 4; ++lane) {
                             ASSERT_TRUE(drawn.weight[lane] >= 0 && drawn.weight[lane] < 1e30f);

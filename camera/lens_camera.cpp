@@ -73,7 +73,7 @@ LensCamera::Draw LensCamera::draw(V2f film_mm, V2f u, int lane, const Bands& ban
     const f4 x = c->x_mm + (on_iris.x - c->x_mm[lane]), y = c->y_mm + (on_iris.y - c->y_mm[lane]);
     const f4 open = zero_off(on & c->ray.alive(), transmitted(in_.iris, x, y));
     const float density = hsum(open * c->stretch_mm2()) / (area_mm2_ * count_of(on));
-    if (!(density > 0.f)) return out;
+    if (!(density > 0.f) || !any(c->clear & (open > 0.f))) return out;
     out.ray = c->ray;
     static_cast<void>(march<f4>(*in_.lens, indices, Towards::Scene, {0, in_.lens->stop() - 1},
                                 out.ray, Clip::Yes));

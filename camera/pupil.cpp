@@ -7,7 +7,8 @@
 namespace petzval {
 namespace {
 
-constexpr float kTolerance = 1e-4f;  // of the stop's radius
+// Of the stop's radius; Newton's next step squares the latter.
+constexpr float kTolerance = 1e-4f, kToleranceBeforeStep = 3e-3f;
 constexpr int kMostSteps = 12, kMostHalvings = 6;
 
 // Wavelengths at which the table is solved: evenly in 1 / nm, over what is visible.
@@ -41,6 +42,15 @@ Nodes nodes_about(float t, int size) {
     return {first, 4, cubic(t - static_cast<float>(first))};
 }
 
+struct Step {
+    f4 l, m, left2_mm2;
+};
+Step step_towards(V2f stop_point_mm, const StopCrossing& c) {
+    const f4 x = stop_point_mm.x - c.x_mm, y = stop_point_mm.y - c.y_mm;
+    const f4 by = 1 / c.determinant();
+    return {(c.y_by_m * x - c.x_by_m * y) * by, (c.x_by_l * y - c.y_by_l * x) * by, x * x + y * y};
+}
+
 }  // namespace
 
 float Pupil::Axis::at(int i) const {
@@ -56,8 +66,8 @@ Pupil::Pupil(const Lens& lens, double film_mm, double film_reach_mm)
     const float reach = static_cast<float>(film_reach_mm), radius = stop_radius_mm_;
     columns_ = symmetric_ ? Axis{0, 0, 1} : Axis{0, reach, 6};
     rows_ = {0, reach, symmetric_ ? 12 : 6};
-    across_ = symmetric_ ? Axis{0, radius, 7} : Axis{-radius, radius, 13};
-    up_ = {-radius, radius, 13};
+    across_ = symmetric_ ? Axis{0, radius, 8} : Axis{-radius, radius, 13};
+    up_ = {-radius, radius, 15};
     solve_table();
 }
 
@@ -95,28 +105,40 @@ StopCrossing Pupil::cross(V2f film_point_mm, const Node& cosines,
     return out;
 }
 
-std::optional<StopCrossing> Pupil::newton(V2f film_point_mm, V2f stop_point_mm, Node cosines,
-                                          const LensIndices<f4>& indices,
-                                          std::optional<int> lead) const {
-    Node good = cosines, step;
+// Newton's method from a guess: half the step where it leads to where rays never reach the stop.
+std::optional<StopCrossing> Pupil::newton(V2f film_point_mm, V2f stop_point_mm, V2f cosines,
+                                          const LensIndices<f4>& indices, int lane) const {
+    V2f good = cosines, step(0.f);
     int halvings = 0;
     for (int i = 0; i < kMostSteps; ++i) {
-        const StopCrossing c = cross(film_point_mm, cosines, indices);
-        const m4 inside = c.ray.alive() & (c.l * c.l + c.m * c.m < 1.f);
-        const f4 off_x = stop_point_mm.x - c.x_mm, off_y = stop_point_mm.y - c.y_mm;
-        const m4 close =
-            inside & (off_x * off_x + off_y * off_y < sqr(kTolerance * stop_radius_mm_));
-        if (lead ? close[*lead] != 0 : all(close)) return c;
-        // Too far where rays never reach the stop: half the way, then.
-        if ((lead ? !inside[*lead] : !all(inside)) && ++halvings > kMostHalvings) break;
-        const f4 by = 1 / c.determinant();
-        step.l = inside ? (c.y_by_m * off_x - c.x_by_m * off_y) * by : 0.5f * step.l;
-        step.m = inside ? (c.x_by_l * off_y - c.y_by_l * off_x) * by : 0.5f * step.m;
-        good = {inside ? c.l : good.l, inside ? c.m : good.m};
-        cosines = {good.l + step.l, good.m + step.m};
-        if (lead) cosines = {splat(cosines.l[*lead]), splat(cosines.m[*lead])};
+        const StopCrossing c = cross(film_point_mm, {splat(cosines.x), splat(cosines.y)}, indices);
+        if (cosines.length2() < 1.f && c.ray.alive()[lane]) {
+            const Step by = step_towards(stop_point_mm, c);
+            if (by.left2_mm2[lane] < sqr(kTolerance * stop_radius_mm_)) return c;
+            good = cosines;
+            step = {by.l[lane], by.m[lane]};
+        } else {
+            if (i == 0 || ++halvings > kMostHalvings) break;
+            step *= 0.5f;
+        }
+        cosines = good + step;
     }
     return std::nullopt;
+}
+
+// The same for each lane by itself, but for one that fails: it keeps the guess.
+Pupil::Node Pupil::settled(V2f film_point_mm, V2f stop_point_mm, const Node& guess,
+                           const LensIndices<f4>& indices) const {
+    Node at = guess;
+    m4 inside{}, close{};
+    for (int i = 0; i < kMostSteps && !all(close); ++i) {
+        const StopCrossing c = cross(film_point_mm, at, indices);
+        inside = c.ray.alive() & (at.l * at.l + at.m * at.m < 1.f);
+        const Step by = step_towards(stop_point_mm, c);
+        close = ~inside | (by.left2_mm2 < sqr(kToleranceBeforeStep * stop_radius_mm_));
+        at = {inside ? at.l + by.l : guess.l, inside ? at.m + by.m : guess.m};
+    }
+    return {inside & close ? at.l : guess.l, inside & close ? at.m : guess.m};
 }
 
 // Outwards from the middle of the stop, each ray guessed from those that are known next to it: as
@@ -147,10 +169,9 @@ void Pupil::solve_table() {
                 const Node guess =
                     middle ? before
                            : Node{inner.l + before.l - other.l, inner.m + before.m - other.m};
-                const auto solved =
-                    newton({columns_.at(column), rows_.at(row)}, {across_.at(i), up_.at(j)}, guess,
-                           indices, std::nullopt);
-                table_[place(column, row, i, j)] = solved ? Node{solved->l, solved->m} : inner;
+                table_[place(column, row, i, j)] =
+                    settled({columns_.at(column), rows_.at(row)}, {across_.at(i), up_.at(j)}, guess,
+                            indices);
             }
 }
 
@@ -161,21 +182,24 @@ V2f Pupil::between(V2f film_point_mm, V2f stop_point_mm, float nm) const {
     };
     const Nodes column = along(columns_, film_point_mm.x), row = along(rows_, film_point_mm.y);
     const Nodes across = along(across_, stop_point_mm.x), up = along(up_, stop_point_mm.y);
-    f4 l{}, m{};
+    Node sum;
     for (int a = 0; a < column.count; ++a)
         for (int b = 0; b < row.count; ++b)
             for (int c = 0; c < 4; ++c) {
-                const float weight = column.weight[a] * row.weight[b] * across.weight[c];
                 const Node* node =
                     &table_[place(column.first + a, row.first + b, across.first + c, up.first)];
+                Node line;
                 for (int d = 0; d < 4; ++d) {
-                    l += node[d].l * (weight * up.weight[d]);
-                    m += node[d].m * (weight * up.weight[d]);
+                    line.l += node[d].l * up.weight[d];
+                    line.m += node[d].m * up.weight[d];
                 }
+                const float weight = column.weight[a] * row.weight[b] * across.weight[c];
+                sum.l += line.l * weight;
+                sum.m += line.m * weight;
             }
     const f4 weights =
         cubic(3 * (1 / kNodes_nm[0] - 1 / nm) / (1 / kNodes_nm[0] - 1 / kNodes_nm[3]));
-    return {hsum(l * weights), hsum(m * weights)};
+    return {hsum(sum.l * weights), hsum(sum.m * weights)};
 }
 
 std::optional<StopCrossing> Pupil::solve(V2f film_point_mm, V2f stop_point_mm,
@@ -191,7 +215,7 @@ std::optional<StopCrossing> Pupil::solve(V2f film_point_mm, V2f stop_point_mm,
     }
     const V2f mirror((symmetric_ ? q.x : p.x) < 0.f ? -1.f : 1.f, p.y < 0.f ? -1.f : 1.f);
     const V2f guess = turned(between(p * mirror, q * mirror, nm) * mirror, V2f(turn.x, -turn.y));
-    return newton(film_point_mm, stop_point_mm, {splat(guess.x), splat(guess.y)}, indices, lane);
+    return newton(film_point_mm, stop_point_mm, guess, indices, lane);
 }
 
 }  // namespace petzval

@@ -52,10 +52,11 @@ class Pupil {
     };
     [[nodiscard]] StopCrossing cross(V2f film_point_mm, const Node& cosines,
                                      const LensIndices<f4>&) const;
-    /// lead: the lane that all follow; each goes its own way where there is none.
     [[nodiscard]] std::optional<StopCrossing> newton(V2f film_point_mm, V2f stop_point_mm,
-                                                     Node cosines, const LensIndices<f4>&,
-                                                     std::optional<int> lead) const;
+                                                     V2f cosines, const LensIndices<f4>&,
+                                                     int lane) const;
+    [[nodiscard]] Node settled(V2f film_point_mm, V2f stop_point_mm, const Node& guess,
+                               const LensIndices<f4>&) const;
     [[nodiscard]] V2f between(V2f film_point_mm, V2f stop_point_mm, float nm) const;
     void solve_table();
     [[nodiscard]] size_t place(int column, int row, int i, int j) const {

@@ -108,7 +108,7 @@ std::vector<double> film_irradiance(std::shared_ptr<const Lens> lens, double fil
     for (const double height : heights_mm) reach = std::max(reach, std::fabs(height));
     in.film_width_mm = in.film_height_mm = reach * std::numbers::sqrt2;
     const LensCamera camera(std::move(in));
-    constexpr int side = 64;
+    constexpr int side = 128;
     std::vector<double> out;
     for (const double height : heights_mm) {
         V2f film(0.f);

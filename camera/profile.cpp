@@ -16,8 +16,9 @@ double sag_mm(const LensSurface& surface, double height_mm, Section section) {
 }
 
 Outline surface_outline(const Lens& lens, int surface, Section section) {
-    constexpr int steps = 64;
     const LensSurface& s = lens.prescription().surfaces[static_cast<size_t>(surface)];
+    const bool plane = s.curvature_1_mm == 0 && s.asphere.empty();
+    const int steps = plane ? 2 : 64;
     Outline out;
     for (int i = -steps / 2; i <= steps / 2; ++i) {
         const double height = s.semi_diameter_mm * 2 * i / steps;

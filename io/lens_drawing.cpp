@@ -37,11 +37,11 @@ std::string escaped(const std::string& text) {
     return out;
 }
 
-// SVG's y points down.
+// SVG's y points down. 0 - h: no -0.0000.
 std::string path_data(const Outline& points, bool closed) {
     std::string out;
     for (const auto& [z, height] : points)
-        out += fmt::format("{}{:.4f} {:.4f}", out.empty() ? "M" : "L", z, -height);
+        out += fmt::format("{}{:.4f} {:.4f}", out.empty() ? "M" : "L", z, 0 - height);
     return out + (closed ? "Z" : "");
 }
 

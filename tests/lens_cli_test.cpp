@@ -130,8 +130,9 @@ TEST_P(LensTrace, RaysAreTheOracles) {
                 rows.push_back(row);
                 table += "587.5618";
                 for (const int k : {1, 2})
-                    for (int j = 0; j < 3; ++j) table += "," + row[size_t(k)][size_t(j)].dump();
-                table += "\n";
+                    for (int j = 0; j < 3; ++j)
+                        table.append(",").append(row[size_t(k)][size_t(j)].dump());
+                table += '\n';
             }
             write("in.csv", table);
             Words words{"trace", path("lens.json"), "--rays", path("in.csv"), "-o", path("out.csv")};
@@ -194,8 +195,8 @@ TEST_F(LensCli, DrawsEachFaceAndRay) {
     for (const char* colour : {"#2060d0", "#d09000", "#c02020"})
         EXPECT_EQ(count_of(svg, std::string("stroke:") + colour), 6u);
     // From the edge of the first face, 56.20238 - sqrt(56.20238^2 - 29^2) behind its vertex.
-    EXPECT_TRUE(holds(svg, "<path id=\"face0\" class=\"face\" d=\"M8.0595 29.0000L")) << svg;
-    EXPECT_TRUE(holds(svg, "<path id=\"film\" class=\"film\" d=\"M139.4549 24.9500L")) << svg;
+    EXPECT_TRUE(holds(svg, "<path id=\"face0\" class=\"face\" d=\"M8.0598 29.0000L"));
+    EXPECT_TRUE(holds(svg, "<path id=\"film\" class=\"film\" d=\"M139.4549 24.9500L"));
     EXPECT_TRUE(holds(svg, "fields 0°, 9.8°"));
     EXPECT_TRUE(svg.ends_with("</svg>\n"));
 
@@ -271,7 +272,7 @@ TEST_F(LensCli, RefusesBadRequests) {
     expect_error({"mtf", kLens, "-o", out, "--cycles", "0"}, 2, "--cycles");
     expect_error({"fan", kLens, "-o", out, "--glasses", path("none.agf")}, 1, "none.agf");
 
-    write("bare.dat", "20 3 1.5 10\n0 5 1 4\n-20 20 1 10\n");
+    write("bare.dat", "20 3 1.5 10\n-20 5 1 10\n0 20 1 4\n");
     for (const Words& words : {Words{"spot", "give --field"}, {"vignetting", "give --image-circle"}}) {
         const Finished run = run_petzval({"lens", words[0], path("bare.dat"), "-o", out});
         EXPECT_EQ(run.exit_code, 2);

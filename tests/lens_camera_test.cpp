@@ -56,7 +56,7 @@ Bands four_wavelengths() {
 /// Irradiance over radiance at a film point, lane by lane.
 using Estimate = std::array<Moments, 4>;
 Estimate irradiance(const LensCamera& camera, V2f film_mm, const Bands& bands = Bands::rgb(),
-                    int side = 32) {
+                    int side = 24) {
     constexpr int kReplicates = 64;
     Estimate out;
     test::Random random(5);

@@ -37,7 +37,7 @@ struct Nodes {
 };
 Nodes nodes_about(float t, int size) {
     if (size == 1) return {0, 1, f4{1, 0, 0, 0}};
-    t = std::clamp(t, 0.f, static_cast<float>(size - 1));
+    t = std::fmin(std::fmax(t, 0.f), static_cast<float>(size - 1));  // NaN: 0
     const int first = std::clamp(static_cast<int>(t) - 1, 0, size - 4);
     return {first, 4, cubic(t - static_cast<float>(first))};
 }

@@ -90,8 +90,8 @@ Found spot_analysis(const std::shared_ptr<const Lens>& lens, const AnalysisOptio
         for (const auto& rays : drawn.back())
             for (const BeamRay& ray : rays)
                 for (size_t k = 0; k < 2; ++k)
-                    reach_mm = std::max(reach_mm, std::fabs(ray.film_mm[k] -
-                                                            sizes.back().centroid_mm[k]));
+                    reach_mm =
+                        std::max(reach_mm, std::fabs(ray.film_mm[k] - sizes.back().centroid_mm[k]));
     }
     std::string fields;
     for (size_t i = 0; i < drawn.size(); ++i) {
@@ -99,8 +99,8 @@ Found spot_analysis(const std::shared_ptr<const Lens>& lens, const AnalysisOptio
         const double aside_mm = 2.4 * reach_mm * static_cast<double>(i);
         for (size_t line = 0; line < kSpectralLines.size(); ++line)
             for (const BeamRay& ray : drawn[i][line]) {
-                out.rows.push_back({setup.fields_deg[i], kSpectralLines[line].nm, ray.film_mm[0],
-                                    ray.film_mm[1]});
+                out.rows.push_back(
+                    {setup.fields_deg[i], kSpectralLines[line].nm, ray.film_mm[0], ray.film_mm[1]});
                 series[line].points.push_back(
                     {kMicrons * (ray.film_mm[0] - sizes[i].centroid_mm[0] + aside_mm),
                      kMicrons * (ray.film_mm[1] - sizes[i].centroid_mm[1])});
@@ -187,8 +187,7 @@ Found distortion_analysis(const std::shared_ptr<const Lens>& lens, const Analysi
     PlotSeries series{{}, PlotStyle::LinesAndPoints, {}};
     for (const double deg : setup.fields_deg) {
         if (deg <= 0 || deg > widest_deg) continue;  // f tan(field) ends at 90
-        const auto found =
-            distortion(*lens, deg, setup.film_mm, setup.distance_mm, setup.section);
+        const auto found = distortion(*lens, deg, setup.film_mm, setup.distance_mm, setup.section);
         if (!found) continue;
         out.rows.push_back({deg, found->height_mm, found->ideal_height_mm, found->relative()});
         series.points.push_back({deg, 100 * found->relative()});

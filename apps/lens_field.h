@@ -40,7 +40,8 @@ struct FieldSetup {
 };
 /// shares: of the half field, where --field does not say. Throws CLI::ValidationError, or
 /// ArgumentError where the lens has no such thing.
-[[nodiscard]] FieldSetup set_up(const Lens&, const FieldRequest&, const std::vector<double>& shares);
+[[nodiscard]] FieldSetup set_up(const Lens&, const FieldRequest&,
+                                const std::vector<double>& shares);
 
 /// Throws ArgumentError where no ray of that field passes the middle of the stop.
 [[nodiscard]] Beam aim(const Lens&, const FieldSetup&, double field_deg, double nm);

@@ -6,8 +6,8 @@
 
 #include "apps/lens_field.h"
 #include "apps/lens_request.h"
-#include "io/atomic_file.h"
 #include "camera/traced_ray.h"
+#include "io/atomic_file.h"
 #include "io/lens_drawing.h"
 #include "io/ray_table.h"
 
@@ -21,12 +21,11 @@ struct DrawOptions {
 };
 
 // From a little before the first face, or its plane, to the film or to where it ends.
-Outline path_of(const Lens& lens, const Beam& beam, Launch launch, double film_mm,
-                double lead_mm) {
+Outline path_of(const Lens& lens, const Beam& beam, Launch launch, double film_mm, double lead_mm) {
     const size_t axis = beam.object().section == Section::X ? 0 : 1;
     const Beam::Line line = beam.line(launch);
-    const TracedRay ray = trace_ray(lens, line.origin_mm, line.direction, beam.nm(), Towards::Film,
-                                    Clip::Yes);
+    const TracedRay ray =
+        trace_ray(lens, line.origin_mm, line.direction, beam.nm(), Towards::Film, Clip::Yes);
     const auto height = [axis](const V3d& p) { return axis == 0 ? p.x : p.y; };
     const V3d first = ray.points.empty() ? line.origin_mm : ray.points.front();
     const V3d start = first - line.direction * lead_mm;
@@ -40,7 +39,8 @@ void draw_command(const DrawOptions& o) {
     check_drawing(o.out);
     const auto lens = open_lens(o.field.request);
     const FieldSetup setup = set_up(*lens, o.field, {0, 0.7});
-    LensDrawing drawing{.section = setup.section, .film_mm = setup.film_mm, .rays = {}, .caption = {}};
+    LensDrawing drawing{
+        .section = setup.section, .film_mm = setup.film_mm, .rays = {}, .caption = {}};
     drawing.film_radius_mm = lens->prescription().image_circle_mm / 2;
     const double lead_mm = 0.25 * setup.film_mm;
     const size_t tangential = 1;
@@ -60,8 +60,8 @@ void draw_command(const DrawOptions& o) {
                 drawing.rays.push_back(
                     {path_of(*lens, beam, launch, setup.film_mm, lead_mm), line.colour});
                 if (drawing.rays.back().path.size() == size_t(lens->size()) + 2)
-                    drawing.film_radius_mm = std::max(
-                        drawing.film_radius_mm, std::abs(drawing.rays.back().path.back()[1]));
+                    drawing.film_radius_mm = std::max(drawing.film_radius_mm,
+                                                      std::abs(drawing.rays.back().path.back()[1]));
             }
         }
     }
@@ -102,15 +102,17 @@ void add_lens_trace_commands(CLI::App& lens) {
     auto options = std::make_shared<TraceOptions>();
     CLI::App* trace = lens.add_subcommand("trace", "trace the rays of a table");
     add_lens_request(*trace, options->request);
-    trace->add_option("--rays", options->rays, "CSV with the columns x,y,z,dx,dy,dz,nm")->required();
+    trace->add_option("--rays", options->rays, "CSV with the columns x,y,z,dx,dy,dz,nm")
+        ->required();
     trace->add_option("-o,--output", options->out, "CSV to write")->required();
     trace->add_flag("--reverse", options->reverse, "from the film to the scene");
     trace->add_flag("--unclipped", options->unclipped, "semi-diameters do not stop rays");
-    trace->footer("Millimetres; z = 0 at the first vertex, +z towards the film. A ray may begin "
-                  "anywhere on its line. Rows come in the order of the rays: where and how each "
-                  "leaves the last surface, where it meets the film, its optical path from the "
-                  "origin, its status (ok, vignetted, tir, miss) and, if it was blocked, the "
-                  "surface where, counted from 0.");
+    trace->footer(
+        "Millimetres; z = 0 at the first vertex, +z towards the film. A ray may begin "
+        "anywhere on its line. Rows come in the order of the rays: where and how each "
+        "leaves the last surface, where it meets the film, its optical path from the "
+        "origin, its status (ok, vignetted, tir, miss) and, if it was blocked, the "
+        "surface where, counted from 0.");
     trace->callback([options] { trace_command(*options); });
 }
 

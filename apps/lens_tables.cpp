@@ -51,17 +51,17 @@ void show_command(const LensRequest& request) {
     print_if("half field {:g}°\n", file.stated_field_half_deg);
     if (file.image_circle_mm > 0) fmt::print("image circle {:g} mm\n", file.image_circle_mm);
     if (file.focus_group)
-        fmt::print("focuses by surfaces {} to {}\n", (*file.focus_group)[0], (*file.focus_group)[1]);
+        fmt::print("focuses by surfaces {} to {}\n", (*file.focus_group)[0],
+                   (*file.focus_group)[1]);
     fmt::print("\n{:>2} {:>12} {:>12} {:>10}  {:<20} {:>8} {:>6}\n", "", "radius mm",
                "thickness mm", "semi-diam.", "glass", "nd", "vd");
     for (size_t i = 0; i < file.surfaces.size(); ++i) {
         const LensSurface& s = file.surfaces[i];
         const std::string radius =
             s.curvature_1_mm == 0 ? "plane" : fmt::format("{:.8g}", 1 / s.curvature_1_mm);
-        const std::string glass =
-            s.glass ? fmt::format("{:<20} {:>8.6f} {:>6.2f}", s.glass->name,
-                                  s.glass->index(kLineD_nm), s.glass->abbe())
-                    : fmt::format("{:<36}", "");
+        const std::string glass = s.glass ? fmt::format("{:<20} {:>8.6f} {:>6.2f}", s.glass->name,
+                                                        s.glass->index(kLineD_nm), s.glass->abbe())
+                                          : fmt::format("{:<36}", "");
         fmt::print("{:>2} {:>12} {:>12.8g} {:>10.6g}  {}{}\n", i, radius, s.thickness_mm,
                    s.semi_diameter_mm, glass, shape_of(s));
     }
@@ -94,8 +94,7 @@ Check check(const Lens& lens) {
     constexpr double widest_deg = 60;
     out.field_deg = field_half_deg(lens.prescription());
     if (out.field_deg) out.field_deg = std::min(*out.field_deg, widest_deg);
-    out.seidel =
-        seidel(lens, std::tan(out.field_deg.value_or(0) * std::numbers::pi / 180));
+    out.seidel = seidel(lens, std::tan(out.field_deg.value_or(0) * std::numbers::pi / 180));
     return out;
 }
 
@@ -183,11 +182,11 @@ void check_command(const CheckOptions& o) {
     if (!o.fail_above_percent) return;
     for (const StatedFigure& figure : result.stated)
         if (!(std::fabs(100 * figure.relative()) <= *o.fail_above_percent))
-            throw InputError(o.request.lens, "",
-                             fmt::format("{}: {:.6g} is stated and {:.6g} comes out, which differs "
-                                         "by more than {:g} %",
-                                         figure.name, figure.stated, figure.computed,
-                                         *o.fail_above_percent));
+            throw InputError(
+                o.request.lens, "",
+                fmt::format("{}: {:.6g} is stated and {:.6g} comes out, which differs "
+                            "by more than {:g} %",
+                            figure.name, figure.stated, figure.computed, *o.fail_above_percent));
 }
 
 }  // namespace
@@ -202,15 +201,18 @@ void add_lens_table_commands(CLI::App& lens) {
 
     auto options = std::make_shared<CheckOptions>();
     CLI::App* check =
-        lens.add_subcommand("check", "print first-order data and Seidel sums, and compare what "
-                                     "the file states with what comes out");
+        lens.add_subcommand("check",
+                            "print first-order data and Seidel sums, and compare what "
+                            "the file states with what comes out");
     add_lens_request(*check, options->request);
     check->add_flag("--json", options->json, "print JSON");
-    check->add_option("--fail-above", options->fail_above_percent,
-                      "exit with 1 if a stated figure is further off than this, in per cent")
+    check
+        ->add_option("--fail-above", options->fail_above_percent,
+                     "exit with 1 if a stated figure is further off than this, in per cent")
         ->check(number_between(0, 1e6));
-    check->footer("Pupils and foci count from the vertex on their side of the lens. Seidel sums "
-                  "are Welford's, for a distant object and half fields of 60° at most.");
+    check->footer(
+        "Pupils and foci count from the vertex on their side of the lens. Seidel sums "
+        "are Welford's, for a distant object and half fields of 60° at most.");
     check->callback([options] { check_command(*options); });
 }
 

@@ -36,8 +36,9 @@ double film_focused_mm(const Lens& lens, double distance_mm) {
     const FirstOrder first = first_order(lens, kLineD_nm);
     const double object = object_mm(lens, distance_mm, Section::Y);
     if (!(object < std::min(first.front_focus_mm, 0.)))
-        throw std::invalid_argument("the plane of focus is too near: it must lie before the lens "
-                                    "and its front focus");
+        throw std::invalid_argument(
+            "the plane of focus is too near: it must lie before the lens "
+            "and its front focus");
     return lens.film_mm() + image_of(lens, object, kLineD_nm).from_last_vertex_mm -
            first.back_focus_mm;
 }

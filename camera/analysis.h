@@ -27,7 +27,7 @@ namespace petzval {
 
 struct Distortion {
     double field_deg;
-    double height_mm;        ///< where the ray through the middle of the stop meets the film, line d
+    double height_mm;  ///< where the ray through the middle of the stop meets the film, line d
     double ideal_height_mm;  ///< f tan(field), or the paraxial magnification times the object
     [[nodiscard]] double relative() const { return height_mm / ideal_height_mm - 1; }
 };

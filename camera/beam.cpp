@@ -38,7 +38,8 @@ LensRay<N> Beam::launched(N sagittal, N tangential) const {
     LensRay<N> ray;
     Vec3<N> direction{number(0), number(sine), number(cosine)};
     if (std::isfinite(object_.distance_mm)) {
-        direction = {sagittal, along + object_.distance_mm * sine / cosine, z + object_.distance_mm};
+        direction = {sagittal, along + object_.distance_mm * sine / cosine,
+                     z + object_.distance_mm};
         direction = direction * (1 / sqrt(dot(direction, direction)));
     }
     ray.origin = {sagittal, along, z + entrance_pupil_mm_};
@@ -149,8 +150,8 @@ std::vector<BeamRay> Beam::trace(std::span<const Launch> launches, double film_m
             stop_x = hit.point.x;
             stop_y = hit.point.y;
         };
-        const auto passed = march<d4>(*lens_, indices_, Towards::Film, {0, lens_->last()}, ray,
-                                      clip, at_stop);
+        const auto passed =
+            march<d4>(*lens_, indices_, Towards::Film, {0, lens_->last()}, ray, clip, at_stop);
         for (int i = 0; i < static_cast<int>(count); ++i) {
             if (!passed[i] || !(ray.direction.z[i] > 0)) continue;
             const double slope_x = ray.direction.x[i] / ray.direction.z[i];

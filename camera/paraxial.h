@@ -32,7 +32,8 @@ struct ParaxialImage {
     double magnification;  ///< height of the image over that of the object
 };
 /// Where an object at object_mm (from the first vertex, < 0 before the lens) is imaged.
-[[nodiscard]] ParaxialImage image_of(const Lens&, double object_mm, double nm, Section = Section::Y);
+[[nodiscard]] ParaxialImage image_of(const Lens&, double object_mm, double nm,
+                                     Section = Section::Y);
 
 /// Welford's sums S1 to S5 (spherical aberration, coma, astigmatism, Petzval curvature, distortion)
 /// and his C1, C2 (axial and lateral colour, F to C), mm: wavefront W040 = S1 / 8 and so on.

@@ -51,8 +51,8 @@ double geometric_mtf(std::span<const BeamRay> rays, double cycles_per_mm, Sectio
     const size_t k = along == Section::X ? 0 : 1;
     std::complex<double> sum;
     for (const BeamRay& ray : rays)
-        sum += std::polar(1., 2 * std::numbers::pi * cycles_per_mm *
-                                  (ray.film_mm[k] - rays.front().film_mm[k]));
+        sum += std::polar(
+            1., 2 * std::numbers::pi * cycles_per_mm * (ray.film_mm[k] - rays.front().film_mm[k]));
     return std::abs(sum) / static_cast<double>(rays.size());
 }
 

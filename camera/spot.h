@@ -28,13 +28,12 @@ struct SpotSize {
 
 /// Transverse aberrations of a line of rays across the aperture.
 struct FanPoint {
-    double stop;                        ///< where the ray crosses the stop, in its radii
-    std::array<double, 2> from_mm;      ///< x, y on the film from a point
+    double stop;                    ///< where the ray crosses the stop, in its radii
+    std::array<double, 2> from_mm;  ///< x, y on the film from a point
 };
 /// Rays through the middle of the aperture, `along` the section or across it; from: on the film,
-/// by custom where the chief ray of the main wavelength arrives. Those that pass.
-[[nodiscard]] std::vector<FanPoint> ray_fan(const Lens&, const Beam&, Section along,
-                                            double film_mm, std::array<double, 2> from_mm,
-                                            int count = 65);
+/// usually where the chief ray of the main wavelength arrives. Those that pass.
+[[nodiscard]] std::vector<FanPoint> ray_fan(const Lens&, const Beam&, Section along, double film_mm,
+                                            std::array<double, 2> from_mm, int count = 65);
 
 }  // namespace petzval

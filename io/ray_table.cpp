@@ -54,8 +54,7 @@ std::vector<RayToTrace> read_rays(const std::filesystem::path& path) {
         const auto refuse = [&](const std::string& message) {
             return InputError(table.file, table.place(row), message);
         };
-        const RayToTrace ray{
-            {cell(0), cell(1), cell(2)}, {cell(3), cell(4), cell(5)}, cell(6)};
+        const RayToTrace ray{{cell(0), cell(1), cell(2)}, {cell(3), cell(4), cell(5)}, cell(6)};
         for (size_t i = 0; i < 6; ++i)
             if (std::abs(cell(i)) > kFarthest_mm)
                 throw refuse(fmt::format("{} is {:g}; it may be {:g} at most", kColumns[i], cell(i),
@@ -63,8 +62,8 @@ std::vector<RayToTrace> read_rays(const std::filesystem::path& path) {
         if (!(ray.direction.length() > 1e-9))
             throw refuse("dx,dy,dz has no length; give a direction");
         if (ray.nm < kFirst_nm || ray.nm > kLast_nm)
-            throw refuse(fmt::format("nm is {:g}; it must be from {} to {}", ray.nm, kFirst_nm,
-                                     kLast_nm));
+            throw refuse(
+                fmt::format("nm is {:g}; it must be from {} to {}", ray.nm, kFirst_nm, kLast_nm));
         rays.push_back(ray);
     }
     return rays;
@@ -77,8 +76,7 @@ std::string ray_table(std::span<const TracedRay> rays, Towards towards, double f
             out += fmt::format(",,,,,,,,,{},{}\n", status_of(ray.fate), ray.end_surface);
             continue;
         }
-        const auto film =
-            towards == Towards::Film ? ray.at_plane(film_mm) : std::nullopt;
+        const auto film = towards == Towards::Film ? ray.at_plane(film_mm) : std::nullopt;
         out += fmt::format("{},{},{},{},{},{},{},{},ok,\n", ray.point.x, ray.point.y, ray.point.z,
                            ray.direction.x, ray.direction.y, ray.direction.z,
                            film ? fmt::format("{},{}", (*film)[0], (*film)[1]) : ",", ray.path_mm);

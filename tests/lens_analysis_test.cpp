@@ -70,7 +70,8 @@ TEST_P(Oracle, BeamsFillTheStop) {
             const Launch chief = beam.chief();
             const auto middle = beam.trace({&chief, 1}, film_mm, Clip::No);
             ASSERT_EQ(middle.size(), 1u);
-            EXPECT_NEAR(std::hypot(middle[0].stop_mm[0], middle[0].stop_mm[1]), 0, 1e-8 * radius_mm);
+            EXPECT_NEAR(std::hypot(middle[0].stop_mm[0], middle[0].stop_mm[1]), 0,
+                        1e-8 * radius_mm);
             const size_t along = section == Section::X ? 0 : 1;
             EXPECT_NEAR(middle[0].film_mm[1 - along], 0, 1e-9);
             EXPECT_GE(middle[0].film_mm[along], -1e-9);
@@ -95,8 +96,9 @@ TEST_P(Oracle, SagsAreWhereRaysMeetSurfaces) {
                                             kLineD_nm, Towards::Film, Clip::No);
             for (size_t i = 0; i < ray.points.size(); ++i, ++compared) {
                 const V3d& p = ray.points[i];
-                EXPECT_NEAR(p.z, lens.vertex_mm(int(i)) +
-                                     sag_mm(file.surfaces[i], x ? p.x : p.y, section), 1e-9)
+                EXPECT_NEAR(
+                    p.z, lens.vertex_mm(int(i)) + sag_mm(file.surfaces[i], x ? p.x : p.y, section),
+                    1e-9)
                     << i << ' ' << height;
             }
         }
@@ -108,8 +110,8 @@ TEST_P(Oracle, FocusMovesTheFilmToTheImage) {
     const double pupil_mm = first_order(lens, kLineD_nm).entrance_pupil_mm;
     for (const auto& row : oracle.at("conjugates_d")) {
         const double object_mm = row[0], image_mm = row[1];
-        EXPECT_NEAR(film_focused_mm(lens, pupil_mm - object_mm), lens.vertex_mm(lens.last()) +
-                                                                     image_mm, 2e-6);
+        EXPECT_NEAR(film_focused_mm(lens, pupil_mm - object_mm),
+                    lens.vertex_mm(lens.last()) + image_mm, 2e-6);
     }
     EXPECT_THROW((void)film_focused_mm(lens, pupil_mm * 0.5), std::invalid_argument);
 }

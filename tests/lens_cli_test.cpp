@@ -75,9 +75,11 @@ TEST_F(LensCli, ChecksFirstOrderDataAndSeidelSums) {
     const json oracle = read_oracle(kLens);
     const json wanted = oracle.at("first_order").at("587.5618");
     const json data = check.at("first_order").at("d 587.5618 nm");
-    for (const auto& [ours, theirs] :
-         {std::pair{"focal_length_mm", "efl"}, {"back_focus_mm", "bfd"}, {"fnumber", "fno"},
-          {"entrance_pupil_mm", "enp_z"}, {"exit_pupil_mm", "exp_z"}})
+    for (const auto& [ours, theirs] : {std::pair{"focal_length_mm", "efl"},
+                                       {"back_focus_mm", "bfd"},
+                                       {"fnumber", "fno"},
+                                       {"entrance_pupil_mm", "enp_z"},
+                                       {"exit_pupil_mm", "exp_z"}})
         EXPECT_NEAR(double(data.at(ours)), double(wanted.at(theirs)), 1e-6) << ours;
     EXPECT_EQ(double(check.at("seidel").at("half_field_deg")), 14);
     for (size_t k = 0; k < 7; ++k)
@@ -90,8 +92,9 @@ TEST_F(LensCli, ChecksFirstOrderDataAndSeidelSums) {
     EXPECT_NEAR(double(stated[0].at("relative_difference")), 3.72e-5, 1e-6);
 
     const std::string text = output_of({"check", kLens});
-    for (const char* part : {"100.003720", "Seidel sums (mm), wide open, half field 14°",
-                             "focal length (mm)                          100      100.004    0.004 %"})
+    for (const char* part :
+         {"100.003720", "Seidel sums (mm), wide open, half field 14°",
+          "focal length (mm)                          100      100.004    0.004 %"})
         EXPECT_TRUE(holds(text, part)) << text;
     const std::string cylinders = output_of({"check", "schneider-anamorphic-31mm"});
     EXPECT_TRUE(holds(cylinders, "d 587.5618 nm, x")) << cylinders;
@@ -105,7 +108,8 @@ TEST_F(LensCli, CheckFailsWhereTheFileIsWrong) {
     const Finished run = run_petzval({"lens", "check", path("wrong.json"), "--fail-above", "2"});
     EXPECT_EQ(run.exit_code, 1);
     EXPECT_TRUE(holds(run.out, "-2.909 %")) << run.out;
-    EXPECT_TRUE(holds(run.err, "focal length (mm): 103 is stated and 100.004 comes out")) << run.err;
+    EXPECT_TRUE(holds(run.err, "focal length (mm): 103 is stated and 100.004 comes out"))
+        << run.err;
     (void)output_of({"check", path("wrong.json"), "--fail-above", "3"});
 }
 
@@ -135,7 +139,8 @@ TEST_P(LensTrace, RaysAreTheOracles) {
                 table += '\n';
             }
             write("in.csv", table);
-            Words words{"trace", path("lens.json"), "--rays", path("in.csv"), "-o", path("out.csv")};
+            Words words{"trace", path("lens.json"), "--rays", path("in.csv"),
+                        "-o",    path("out.csv")};
             if (reverse) words.push_back("--reverse");
             if (unclipped) words.push_back("--unclipped");
             EXPECT_EQ(output_of(words), "");
@@ -181,7 +186,8 @@ TEST_F(LensCli, RefusesRaysThatAreNone) {
     refused(names + "0,0,0,0,0,1,5500\n", "line 2: nm is 5500; it must be from 360 to 830");
     refused(names + "0,0,nan,0,0,1,550\n", "line 2: \"nan\" in column z");
     refused(names + "0,0,1e300,0,0,1,550\n", "line 2: z is 1e+300");
-    expect_error({"trace", kLens, "--rays", path("none.csv"), "-o", path("out.csv")}, 1, "none.csv");
+    expect_error({"trace", kLens, "--rays", path("none.csv"), "-o", path("out.csv")}, 1,
+                 "none.csv");
     expect_error({"trace", kLens, "-o", path("out.csv")}, 2, "--rays");
 }
 
@@ -208,8 +214,8 @@ TEST_F(LensCli, DrawsEachFaceAndRay) {
 }
 
 TEST_F(LensCli, PrintsSpots) {
-    const std::string text = output_of({"spot", kLens, "-o", path("a.svg"), "--field", "0", "--csv",
-                                        path("a.csv")});
+    const std::string text =
+        output_of({"spot", kLens, "-o", path("a.svg"), "--field", "0", "--csv", path("a.csv")});
     // The oracle's RMS radius at line d, 0.0747596 mm.
     const size_t d = text.find(" d ");
     ASSERT_NE(d, text.npos) << text;
@@ -220,8 +226,8 @@ TEST_F(LensCli, PrintsSpots) {
     const CsvTable table = read_csv(path("a.csv"));
     EXPECT_EQ(table.names, (Words{"field_deg", "nm", "x_mm", "y_mm"}));
     EXPECT_GT(table.rows.size(), 1000u);
-    const std::string best = output_of(
-        {"spot", kLens, "-o", path("b.svg"), "--field", "0", "--film-shift", "best"});
+    const std::string best =
+        output_of({"spot", kLens, "-o", path("b.svg"), "--field", "0", "--film-shift", "best"});
     EXPECT_TRUE(best.starts_with("film at 139.0")) << best;
     const std::string near = output_of({"spot", kLens, "-o", path("b.svg"), "--focus", "2"});
     EXPECT_TRUE(near.starts_with("film at 144.")) << near;
@@ -273,7 +279,8 @@ TEST_F(LensCli, RefusesBadRequests) {
     expect_error({"fan", kLens, "-o", out, "--glasses", path("none.agf")}, 1, "none.agf");
 
     write("bare.dat", "20 3 1.5 10\n-20 5 1 10\n0 20 1 4\n");
-    for (const Words& words : {Words{"spot", "give --field"}, {"vignetting", "give --image-circle"}}) {
+    for (const Words& words :
+         {Words{"spot", "give --field"}, {"vignetting", "give --image-circle"}}) {
         const Finished run = run_petzval({"lens", words[0], path("bare.dat"), "-o", out});
         EXPECT_EQ(run.exit_code, 2);
         EXPECT_TRUE(holds(run.err, words[1])) << run.err;

@@ -99,7 +99,7 @@ TEST(ShippedLenses, FocusByTheGroupOfThePatent) {
     Prescription close = lens;
     close.surfaces[10].thickness_mm += 15.27;
     close.surfaces[15].thickness_mm -= 15.27;
-    const Image image = image_of(Lens(close), -2203.01, kLineD_nm);
+    const ParaxialImage image = image_of(Lens(close), -2203.01, kLineD_nm);
     EXPECT_NEAR(image.from_last_vertex_mm, lens.surfaces[32].thickness_mm, 0.4);
     EXPECT_NEAR(image.magnification, -0.173, 0.001);
     EXPECT_FALSE(load_lens("takumar-50mm-f1.2").lens.focus_group);

@@ -83,7 +83,7 @@ template <class N>
 /// the vertex, crossed in the light's direction.
 template <class N>
 [[nodiscard]] Meeting<N> meet_sphere(ScalarOf<N> c, ScalarOf<N> sign, const Vec3<N>& foot,
-                                 const Vec3<N>& direction) {
+                                     const Vec3<N>& direction) {
     const N beyond = c * dot(foot, foot) - 2 * foot.z;
     Meeting<N> hit;
     hit.cosine2 = direction.z * direction.z - c * beyond;
@@ -101,7 +101,7 @@ template <class N>
 /// of unit length.
 template <class N>
 [[nodiscard]] Meeting<N> meet_quadric(const SurfaceFacts<ScalarOf<N>>& s, ScalarOf<N> sign,
-                                  const Vec3<N>& foot, const Vec3<N>& direction) {
+                                      const Vec3<N>& foot, const Vec3<N>& direction) {
     const auto curved = [&s](const Vec3<N>& a) {
         return Vec3<N>{a.x * s.curvature_x, a.y * s.curvature_y, a.z * s.curvature_z};
     };
@@ -155,8 +155,8 @@ template <class N>
 /// and brings the derivatives: those of an implicit function.
 template <class N>
 [[nodiscard]] Meeting<N> meet_asphere(const SurfaceFacts<ScalarOf<N>>& facts,
-                                  const Asphere<ScalarOf<N>>& s, ScalarOf<N> sign,
-                                  const Vec3<N>& foot, const Vec3<N>& direction) {
+                                      const Asphere<ScalarOf<N>>& s, ScalarOf<N> sign,
+                                      const Vec3<N>& foot, const Vec3<N>& direction) {
     using V = ValueOf<N>;
     using S = ScalarOf<N>;
     constexpr int kIterations = 12;

@@ -16,8 +16,7 @@ struct CameraSetup {
 /// same camera when it is passed back. Throws ArgumentError for a camera that the file does not
 /// have, for a lens that it cannot take, and where there is nothing to focus on.
 [[nodiscard]] CameraSetup set_up_camera(const SceneRequest&, const std::vector<GltfCamera>&,
-                                        const std::optional<LoadedLens>&,
-                                        const Scene&, const Bvh&,
+                                        const std::optional<LoadedLens>&, const Scene&, const Bvh&,
                                         const std::function<void(const std::string&)>& notice);
 
 }  // namespace petzval

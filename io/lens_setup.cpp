@@ -50,8 +50,8 @@ LoadedLens load_lens_for_film(const std::string& name_or_file, std::optional<V2f
     return loaded;
 }
 
-LensSetup set_up_lens(const LensCameraRequest& request, const LoadedLens& loaded, const M44f& to_world,
-                      float focus_m, std::optional<float> fstop, int width_px,
+LensSetup set_up_lens(const LensCameraRequest& request, const LoadedLens& loaded,
+                      const M44f& to_world, float focus_m, std::optional<float> fstop, int width_px,
                       const std::function<void(const std::string&)>& notice) {
     for (const std::string& warning : loaded.file.warnings) notice("warning: " + warning);
     const Lens filed(loaded.file.lens);

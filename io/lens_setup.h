@@ -42,8 +42,9 @@ struct LensSetup {
 /// focus_m: along the axis from the middle of the entrance pupil. fstop: absent for the stop as it
 /// is filed. Throws InputError or ArgumentError: a focus nearer than the lens can, an iris that is
 /// none.
-[[nodiscard]] LensSetup set_up_lens(const LensCameraRequest&, const LoadedLens&, const M44f& to_world,
-                                    float focus_m, std::optional<float> fstop, int width_px,
+[[nodiscard]] LensSetup set_up_lens(const LensCameraRequest&, const LoadedLens&,
+                                    const M44f& to_world, float focus_m, std::optional<float> fstop,
+                                    int width_px,
                                     const std::function<void(const std::string&)>& notice);
 
 }  // namespace petzval

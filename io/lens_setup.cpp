@@ -78,11 +78,12 @@ LensSetup set_up_lens(const LensCameraRequest& request, const LoadedLens& loaded
         in.film_width_mm = loaded.film_mm.x;
         in.film_height_mm = loaded.film_mm.y;
         in.entrance_pupil_mm = loaded.entrance_pupil_mm;
-        in.chroma = request.chroma;
         in.focus_m = focus_m;
         in.tolerance_rad = static_cast<float>(request.chroma_tolerance_px * loaded.film_mm.x /
                                               width_px / loaded.focal_length_mm);
+        in.chroma = Chroma::Shared;
         const double axial = axial_irradiance(LensCamera(in));
+        in.chroma = request.chroma;
         if (!(axial > 0))
             throw ArgumentError(request.lens, "",
                                 "lets no light through to the middle of the film");

@@ -6,8 +6,7 @@
 
 namespace petzval {
 
-void add_lens_options(CLI::App& app, LensOptions& o) {
-    LensCameraRequest& r = o.request;
+void add_lens_options(CLI::App& app, LensCameraRequest& r) {
     const auto group = [](CLI::Option* option) { return option->group("Lens"); };
     CLI::Option* lens = group(app.add_option(
         "--lens", r.lens, "a lens that ships (petzval lens list) or FILE.json, .dat, .zmx"));

@@ -143,8 +143,8 @@ void resolve_camera(RenderOptions& o) {
         if (s.camera) throw CLI::ValidationError("--look-at", "excludes --camera");
     }
     if (!o.sensor.empty()) s.sensor_mm = parse_sensor("--sensor", o.sensor, kLeast, kMost);
-    if (!o.lens.request.lens.empty()) {
-        s.lens = o.lens.request;
+    if (!o.lens.lens.empty()) {
+        s.lens = o.lens;
         if (s.fov_deg || s.focal_length_mm || s.lens_radius_m)
             throw CLI::ValidationError(
                 "--lens",

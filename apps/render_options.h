@@ -29,7 +29,7 @@ inline constexpr uint32_t kMostSamples = 1u << 30;
 struct RenderOptions {
     SceneRequest scene;
     SpectralOptions spectral;
-    LensOptions lens;
+    LensCameraRequest lens;
     std::vector<std::filesystem::path> outputs;
     std::optional<std::filesystem::path> stats;
     std::string size = "1280x720", crop, look_at, sensor, focus, time, background, aovs;

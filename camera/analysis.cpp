@@ -109,18 +109,11 @@ std::vector<double> film_irradiance(std::shared_ptr<const Lens> lens, double fil
     for (const double height : heights_mm) reach = std::max(reach, std::fabs(height));
     in.film_width_mm = in.film_height_mm = reach * std::numbers::sqrt2;
     const LensCamera camera(std::move(in));
-    constexpr int side = 128;
     std::vector<double> out;
     for (const double height : heights_mm) {
         V2f film(0.f);
         (section == Section::X ? film.x : film.y) = static_cast<float>(height);
-        double sum = 0;
-        for (int i = 0; i < side * side; ++i) {
-            const V2f u((static_cast<float>(i / side) + 0.5f) / side,
-                        (static_cast<float>(i % side) + 0.5f) / side);
-            sum += camera.draw(film, u, 0.f, Bands::rgb()).weight[0];
-        }
-        out.push_back(sum / (side * side));
+        out.push_back(camera.irradiance(film, 128));
     }
     return out;
 }

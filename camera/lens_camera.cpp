@@ -10,9 +10,8 @@ namespace {
 
 // The lane whose ray is solved for: any of those that are on.
 int pick_lane(m4 on, float u) {
-    int count = 0, lane = 0;
-    for (int i = 0; i < 4; ++i) count += on[i] != 0;
-    int wanted = std::min(static_cast<int>(u * static_cast<float>(count)), count - 1);
+    const int count = lane_count(on);
+    int wanted = std::min(static_cast<int>(u * static_cast<float>(count)), count - 1), lane = 0;
     for (int i = 0; i < 4; ++i) {
         if (!on[i]) continue;
         lane = i;
@@ -32,12 +31,6 @@ f4 transmitted(const Iris& iris, f4 x, f4 y) {
     for (int i = 1; i < 4; ++i)
         if (x[i] != x[0] || y[i] != y[0]) out[i] = iris.transmits({x[i], y[i]});
     return out;
-}
-
-float count_of(m4 on) {
-    float count = 0;
-    for (int i = 0; i < 4; ++i) count += on[i] != 0;
-    return count;
 }
 
 }  // namespace
@@ -72,37 +65,37 @@ LensCamera::Draw LensCamera::draw(V2f film_mm, V2f u, int lane, const Bands& ban
     // an iris may be smaller than the tolerance.
     const f4 x = c->x_mm + (on_iris.x - c->x_mm[lane]), y = c->y_mm + (on_iris.y - c->y_mm[lane]);
     const f4 open = zero_off(on & c->ray.alive(), transmitted(in_.iris, x, y));
-    const float density = hsum(open * c->stretch_mm2()) / (area_mm2_ * count_of(on));
+    const auto lanes = static_cast<float>(lane_count(on));
+    const float density = hsum(open * c->stretch_mm2()) / (area_mm2_ * lanes);
     if (!(density > 0.f) || !any(c->clear & (open > 0.f))) return out;
     out.ray = c->ray;
     static_cast<void>(march<f4>(*in_.lens, indices, Towards::Scene, {0, in_.lens->stop() - 1},
                                 out.ray, Clip::Yes));
-    const float gain = static_cast<float>(in_.gain) * count_of(bands.on) / count_of(on);
+    const float gain = gain_ * static_cast<float>(lane_count(bands.on)) / lanes;
     out.weight = zero_off(c->clear & out.ray.alive(), open * (gain / density));
     return out;
 }
 
 Ray LensCamera::world_ray(const LensRay<f4>& ray, int lane) const {
-    const double to_m = 1e-3 * in_.scale;
-    const double z =
-        ray.origin.z[lane] + in_.lens->vertex_mm(ray.counted_from) - in_.entrance_pupil_mm;
+    const V3f point_mm{ray.origin.x[lane], ray.origin.y[lane], behind_pupil_mm(ray, lane)};
     Ray out;
-    out.origin = pose_.origin + pose_.right * static_cast<float>(ray.origin.x[lane] * to_m) +
-                 pose_.up * static_cast<float>(ray.origin.y[lane] * to_m) +
-                 pose_.back * static_cast<float>(z * to_m);
-    out.direction = unit(pose_.right * ray.direction.x[lane] + pose_.up * ray.direction.y[lane] +
-                         pose_.back * ray.direction.z[lane]);
+    out.origin = pose_.origin + pose_.to_world(point_mm * 1e-3f);
+    out.direction =
+        unit(pose_.to_world({ray.direction.x[lane], ray.direction.y[lane], ray.direction.z[lane]}));
     return out;
+}
+
+float LensCamera::behind_pupil_mm(const LensRay<f4>& ray, int lane) const {
+    return static_cast<float>(ray.origin.z[lane] + in_.lens->vertex_mm(ray.counted_from) -
+                              in_.entrance_pupil_mm);
 }
 
 // Whether two lanes meet the plane of focus within the tolerance, seen from the lens.
 bool LensCamera::together(const LensRay<f4>& ray, int a, int b) const {
     if (in_.chroma == Chroma::Split) return false;
-    const float focus_mm = in_.focus_m * 1e3f / static_cast<float>(in_.scale);
+    const float focus_mm = in_.focus_m * 1e3f;
     const auto on_plane = [&](int lane) {
-        const auto z = static_cast<float>(
-            ray.origin.z[lane] + in_.lens->vertex_mm(ray.counted_from) - in_.entrance_pupil_mm);
-        const float t = (focus_mm + z) / -ray.direction.z[lane];
+        const float t = (focus_mm + behind_pupil_mm(ray, lane)) / -ray.direction.z[lane];
         return V2f(ray.origin.x[lane] + t * ray.direction.x[lane],
                    ray.origin.y[lane] + t * ray.direction.y[lane]);
     };
@@ -138,17 +131,17 @@ CameraSample LensCamera::sample(const FilmPoint& point, const Bands& bands) cons
     return out;
 }
 
-double axial_irradiance(const LensCamera& camera) {
-    // Midpoints of a grid over the square that the iris is drawn from: smooth but for its edge.
-    constexpr int side = 64;
+// Smooth but for the edges of the iris and of the rims.
+double LensCamera::irradiance(V2f film_mm, int side) const {
+    const Bands bands = Bands::rgb();
     double sum = 0;
     for (int i = 0; i < side; ++i)
         for (int j = 0; j < side; ++j) {
-            const V2f u((static_cast<float>(i) + 0.5f) / side,
-                        (static_cast<float>(j) + 0.5f) / side);
-            sum += camera.draw(V2f(0.f), u, 0.f, Bands::rgb()).weight[0];
+            const V2f u((static_cast<float>(i) + 0.5f) / static_cast<float>(side),
+                        (static_cast<float>(j) + 0.5f) / static_cast<float>(side));
+            sum += hsum(draw(film_mm, u, 0.f, bands).weight);
         }
-    return sum / (side * side);
+    return sum / (double(side) * side * lane_count(bands.on));
 }
 
 }  // namespace petzval

@@ -24,8 +24,6 @@ struct LensCameraInput {
     double film_mm = 0;  ///< z of the film, behind the lens
     double film_width_mm = 36, film_height_mm = 24;
     double entrance_pupil_mm = 0;  ///< z of what stands at to_world's origin
-    double scale = 1;              ///< a lens twice as large has 2
-    double gain = 1;               ///< on every weight: see normal_gain
     Chroma chroma = Chroma::Auto;
     float focus_m = 1;        ///< where wavelengths are compared, along the axis
     float tolerance_rad = 0;  ///< Auto: how far apart directions may be, seen from the lens
@@ -36,6 +34,12 @@ class LensCamera final : public Camera {
     explicit LensCamera(LensCameraInput);
 
     [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
+
+    /// Factor on every weight from here on; 1 before.
+    void set_gain(double gain) { gain_ = static_cast<float>(gain); }
+    /// Irradiance at a film point over the radiance of an even scene, at line d, the gain included;
+    /// on the axis pi sin^2 u' for a round iris. Midpoints of side x side draws of the iris.
+    [[nodiscard]] double irradiance(V2f film_mm, int side) const;
 
     /// What one draw of the iris brings: a film point's irradiance over the radiance of a scene of
     /// the same radiance everywhere is its mean. Lanes of the bands; u in [0, 1)^2.
@@ -50,17 +54,15 @@ class LensCamera final : public Camera {
     [[nodiscard]] Draw draw(V2f film_mm, V2f u, int lane, const Bands&, const LensIndices<f4>&,
                             float nm) const;
     [[nodiscard]] Ray world_ray(const LensRay<f4>&, int lane) const;
+    /// How far the ray's origin lies behind the middle of the entrance pupil.
+    [[nodiscard]] float behind_pupil_mm(const LensRay<f4>&, int lane) const;
     [[nodiscard]] bool together(const LensRay<f4>&, int a, int b) const;
 
     LensCameraInput in_;
     Pose pose_;
     Pupil pupil_;
     LensIndices<f4> line_d_;
-    float area_mm2_;
+    float area_mm2_, gain_ = 1.f;
 };
-
-/// Irradiance over radiance at the middle of the film, of the lens and the iris as they stand, at
-/// line d: pi sin^2 u' for a round iris. By quadrature over the iris.
-[[nodiscard]] double axial_irradiance(const LensCamera&);
 
 }  // namespace petzval

@@ -4,9 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "camera/lens_march.h"
 #include "camera/paraxial.h"
-#include "core/dispersion.h"
+#include "camera/traced_ray.h"
 
 namespace petzval {
 namespace {
@@ -31,16 +30,17 @@ Prescription moved(Prescription p, const std::array<int, 2>& group, double by_mm
 
 }  // namespace
 
-std::optional<Prescription> focused(const Prescription& filed, double object_mm) {
+std::optional<Prescription> focused(const Lens& lens, double object_mm) {
+    const Prescription& filed = lens.prescription();
     if (!filed.focus_group) {
-        const auto mm = image_distance_mm(Lens(filed), object_mm);
+        const auto mm = image_distance_mm(lens, object_mm);
         if (!mm) return std::nullopt;
         Prescription p = filed;
         p.surfaces.back().thickness_mm = *mm;
         return p;
     }
     // The film stays where a distant point is sharp with the group as it is filed.
-    const auto rest = image_distance_mm(Lens(filed), -std::numeric_limits<double>::infinity());
+    const auto rest = image_distance_mm(lens, -std::numeric_limits<double>::infinity());
     if (!rest) return std::nullopt;
     Prescription base = filed;
     base.surfaces.back().thickness_mm = *rest;
@@ -83,24 +83,20 @@ std::optional<Prescription> focused(const Prescription& filed, double object_mm)
 }
 
 std::optional<AxialRay> axial_ray(const Lens& lens, double height_mm) {
-    const LensIndices<d4> indices = lens.exact_indices(d4{} + kLineD_nm);
-    LensRay<d4> ray;
-    ray.origin = {d4{}, d4{} + height_mm, d4{} - 1};
-    ray.direction = {d4{}, d4{}, d4{} + 1};
-    const auto& facts = lens.surfaces<double>();
-    bool clear = true;
-    double stop_height = 0;
-    const auto watch = [&](const LensHit<d4>& hit) {
-        const double r = std::hypot(hit.point.x[0], hit.point.y[0]);
-        if (hit.surface == lens.stop())
-            stop_height = r;
-        else
-            clear &= r * r <= facts[size_t(hit.surface)].semi_diameter2_mm2;
-    };
-    static_cast<void>(
-        march<d4>(lens, indices, Towards::Film, {0, lens.last()}, ray, Clip::No, watch));
-    if (!clear || ray.fate(0) != Fate::Passed) return std::nullopt;
-    return AxialRay{stop_height, std::hypot(ray.direction.x[0], ray.direction.y[0])};
+    const TracedRay ray =
+        trace_ray(lens, {0, height_mm, -1}, {0, 0, 1}, kLineD_nm, Towards::Film, Clip::No);
+    if (ray.fate != Fate::Passed) return std::nullopt;
+    const auto& surfaces = lens.prescription().surfaces;
+    AxialRay out{0, std::hypot(ray.direction.x, ray.direction.y)};
+    for (int i = 0; i < lens.size(); ++i) {
+        const V3d& point = ray.points[static_cast<size_t>(i)];
+        const double r = std::hypot(point.x, point.y);
+        if (i == lens.stop())
+            out.stop_height_mm = r;
+        else if (r > surfaces[static_cast<size_t>(i)].semi_diameter_mm)
+            return std::nullopt;
+    }
+    return out;
 }
 
 // Rays farther from the axis come in at a steeper angle, as far as the glass lets them through.

@@ -11,7 +11,7 @@ namespace petzval {
 /// The prescription with its film, or its focusing group, where an axial point at object_mm (from
 /// the first vertex, < 0; -infinity for a distant one) is sharp at line d, paraxially. Nothing
 /// where the lens cannot: the point is too near.
-[[nodiscard]] std::optional<Prescription> focused(const Prescription&, double object_mm);
+[[nodiscard]] std::optional<Prescription> focused(const Lens&, double object_mm);
 
 /// Real rays of line d from a distant axial point.
 struct AxialRay {

@@ -18,6 +18,9 @@ typedef int32_t m4 __attribute__((vector_size(16)));
 [[nodiscard]] inline f4 zero_off(m4 on, f4 a) {
     return (f4)((m4)a & on);
 }
+[[nodiscard]] inline int lane_count(m4 on) {
+    return (on[0] != 0) + (on[1] != 0) + (on[2] != 0) + (on[3] != 0);
+}
 [[nodiscard]] inline f4 min(f4 a, f4 b) {
     return a < b ? a : b;
 }

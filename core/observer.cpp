@@ -98,28 +98,24 @@ Bands Observer::draw(float u) const {
         nm[i] = static_cast<float>(kFirst_nm) + static_cast<float>(drawn.cell) + drawn.offset;
         pdf[i] = drawn.probability;  // the cell is 1 nm wide
     }
-    return at(nm, pdf, m4{-1, -1, -1, -1}, 4);
+    return at(nm, pdf, m4{-1, -1, -1, -1});
 }
 
-Bands Observer::at(f4 nm, f4 pdf, m4 on, int lanes) const {
+Bands Observer::at(f4 nm, f4 pdf, m4 on) const {
     Bands bands;
     bands.nm = nm;
     bands.pdf = pdf;
     bands.on = on;
     bands.spectral = true;
+    const auto lanes = static_cast<float>(lane_count(on));
     for (int i = 0; i < 4; ++i) {
         if (!on[i]) continue;
-        const float place = nm[i] - static_cast<float>(kFirst_nm);
-        const int k = std::clamp(static_cast<int>(place), 0, kSpectrumSize - 2);
-        const float t = place - static_cast<float>(k);
-        const Row& a = rows_[static_cast<size_t>(k)];
-        const Row& b = rows_[static_cast<size_t>(k) + 1];
-        const f4 in = mix(a.basis_white, b.basis_white, t);
-        const f4 out = mix(a.to_rgb, b.to_rgb, t) / (pdf[i] * static_cast<float>(lanes));
-        bands.red[i] = in[0];
-        bands.green[i] = in[1];
-        bands.blue[i] = in[2];
-        bands.white[i] = in[3];
+        const Row row = at(nm[i]);
+        const f4 out = row.to_rgb / (pdf[i] * lanes);
+        bands.red[i] = row.basis_white[0];
+        bands.green[i] = row.basis_white[1];
+        bands.blue[i] = row.basis_white[2];
+        bands.white[i] = row.basis_white[3];
         bands.to_r[i] = out[0];
         bands.to_g[i] = out[1];
         bands.to_b[i] = out[2];
@@ -127,20 +123,22 @@ Bands Observer::at(f4 nm, f4 pdf, m4 on, int lanes) const {
     return bands;
 }
 
+Observer::Row Observer::at(float nm) const {
+    const float place = nm - static_cast<float>(kFirst_nm);
+    const int k = std::clamp(static_cast<int>(place), 0, kSpectrumSize - 2);
+    const float t = place - static_cast<float>(k);
+    const Row& a = rows_[static_cast<size_t>(k)];
+    const Row& b = rows_[static_cast<size_t>(k) + 1];
+    return {mix(a.basis_white, b.basis_white, t), mix(a.to_rgb, b.to_rgb, t),
+            mix(a.xyz_bar, b.xyz_bar, t)};
+}
+
 V3f Observer::to_xyz(f4 radiance, const Bands& bands) const {
-    f4 sum{};
-    int lanes = 0;
     if (!spectral()) return V3f(0.f);
-    for (int i = 0; i < 4; ++i) {
-        if (!bands.on[i]) continue;
-        ++lanes;
-        const float place = bands.nm[i] - static_cast<float>(kFirst_nm);
-        const int k = std::clamp(static_cast<int>(place), 0, kSpectrumSize - 2);
-        const f4 bar = mix(rows_[static_cast<size_t>(k)].xyz_bar,
-                           rows_[static_cast<size_t>(k) + 1].xyz_bar, place - float(k));
-        sum += bar * (radiance[i] / bands.pdf[i]);
-    }
-    sum /= splat(static_cast<float>(std::max(lanes, 1)));
+    f4 sum{};
+    for (int i = 0; i < 4; ++i)
+        if (bands.on[i]) sum += at(bands.nm[i]).xyz_bar * (radiance[i] / bands.pdf[i]);
+    sum *= 1.f / static_cast<float>(lane_count(bands.on));
     return {sum[0], sum[1], sum[2]};
 }
 

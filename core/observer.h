@@ -42,8 +42,8 @@ class Observer {
     /// Sampling", section 3.1, in the quantiles instead of the range).
     [[nodiscard]] Bands draw(float u) const;
     /// Lanes of these wavelengths, kFirst_nm to kLast_nm, that were drawn with these densities
-    /// (1/nm): the mean of `lanes` estimates goes to the film.
-    [[nodiscard]] Bands at(f4 nm, f4 pdf, m4 on, int lanes) const;
+    /// (1/nm); the mean of the estimates of those that are on goes to the film.
+    [[nodiscard]] Bands at(f4 nm, f4 pdf, m4 on) const;
     /// Density of a wavelength that draw gives, 1/nm.
     [[nodiscard]] float pdf(float nm) const;
     /// CIE XYZ estimate of one sample, nits; zero unless spectral().
@@ -56,6 +56,8 @@ class Observer {
         f4 to_rgb;
         f4 xyz_bar;  ///< times the luminous efficacy
     };
+    [[nodiscard]] Row at(float nm) const;  ///< straight lines between the rows
+
     std::vector<Row> rows_;  ///< kSpectrumSize, or none
     Piecewise1D density_;    ///< a cell between two nanometres
     std::optional<Bins> bins_;

@@ -14,8 +14,7 @@ SpectralFilm::SpectralFilm(size_t pixels, const Bins& bins)
 void SpectralFilm::add(size_t pixel, uint32_t scramble, Rgb colour, const V3f& xyz, f4 radiance,
                        const Bands& bands) {
     double* bins = bin_sums_.data() + pixel * static_cast<size_t>(bins_.count);
-    int lanes = 0;
-    for (int i = 0; i < 4; ++i) lanes += bands.on[i] != 0;
+    const int lanes = lane_count(bands.on);
     for (int i = 0; i < 4; ++i) {
         const int bin = bands.on[i] ? bins_.index(bands.nm[i]) : -1;
         if (bin >= 0) bins[bin] += radiance[i] / (bands.pdf[i] * lanes * bins_.width_nm);

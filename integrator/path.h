@@ -45,10 +45,11 @@ class PathTracer {
                const PathOptions& options)
         : scene_(scene), caster_(caster), lights_(lights), options_(options) {}
 
-    /// Estimate of the radiance that arrives along a camera ray. The sample's alpha and layers are
-    /// filled in on the way; aovs: layers are wanted. Pure but for the counts.
+    /// Estimate of the radiance that arrives along a camera ray, in `lanes` of the bands, 0 in the
+    /// others. The sample's alpha and layers are filled in on the way; aovs: layers are wanted, of
+    /// all lanes. Pure but for the counts.
     [[nodiscard]] f4 radiance(const Ray&, const Bands&, const Sampler&, bool aovs, FilmSample&,
-                              PathStats&) const;
+                              PathStats&, m4 lanes = m4{-1, -1, -1, -1}) const;
 
   private:
     struct Vertex;

@@ -74,15 +74,19 @@ void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& 
         seen = camera.sample({at / size, sampler}, bands);
     }
     FilmSample sample;
-    if (seen.count == 0) sample.alpha = 1.f;  // the lens is in the way, and black
     f4 sum{};
+    float alpha = 0.f, carried = 0.f;  // over the lanes that paths carry
     for (int k = 0; k < seen.count; ++k) {
         const CameraPath& path = seen.path[k];
-        Bands on_path = bands;
-        on_path.on &= path.lanes;
+        sample.alpha = 0.f;
         sum += path.weight *
-               tracer.radiance(path.ray, on_path, sampler, aovs && k == 0, sample, stats);
+               tracer.radiance(path.ray, bands, sampler, aovs && k == 0, sample, stats, path.lanes);
+        const auto lanes = static_cast<float>(lane_count(path.lanes));
+        alpha += lanes * sample.alpha;
+        carried += lanes;
     }
+    // What a lens keeps from the film is black, not transparent.
+    sample.alpha = carried > 0.f ? alpha / carried : 1.f;
     sample.colour = to_rgb(sum, bands);
     sample.aov[static_cast<size_t>(Aov::Cost)] =
         V3f(static_cast<float>(stats.vertices - vertices_before), 0, 0);

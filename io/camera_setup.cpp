@@ -5,6 +5,7 @@
 
 #include <charconv>
 
+#include "camera/sensor.h"
 #include "camera/thin_lens.h"
 #include "integrator/focus.h"
 #include "io/error.h"
@@ -63,12 +64,6 @@ std::array<V3f, 2> frame_bounds(const SceneRequest& request, const Box3f& bounds
     if (!(std::fmax(distance_m, centre.length()) < kFarthest_m) || eye == centre)
         throw unfit(request, "is too large or too far away to be framed; give --look-at");
     return {eye, centre};
-}
-
-// The largest part of a sensor with the picture's aspect, width and height in mm.
-V2f cropped_sensor_mm(const SceneRequest& request, float aspect) {
-    const V2f full = request.sensor_mm.value_or(V2f(36.f, 24.f));
-    return full.x / full.y > aspect ? V2f(full.y * aspect, full.y) : V2f(full.x, full.x / aspect);
 }
 
 // Where no camera of the file has a say. Degrees, so that a printed angle is the same angle.
@@ -158,7 +153,7 @@ CameraSetup with_lens(const SceneRequest& request, const LoadedLens& loaded, con
     report.focus_m = find_focus(request, stand_in, scene, bvh, notice);
     LensSetup lens = set_up_lens(*request.lens, loaded, stand_in.to_world, report.focus_m,
                                  request.fstop, request.size.x, notice);
-    report.lens = loaded.file.lens.name;
+    report.lens = loaded.name();
     report.aperture = request.lens->aperture;
     report.focal_length_mm = static_cast<float>(loaded.focal_length_mm);
     report.sensor_width_mm = loaded.film_mm.x;
@@ -186,7 +181,7 @@ CameraSetup set_up_camera(const SceneRequest& request, const std::vector<GltfCam
     if (loaded) return with_lens(request, *loaded, from, scene, bvh, aspect, notice);
     CameraSetup setup;
     CameraReport& report = setup.report;
-    const V2f sensor_mm = cropped_sensor_mm(request, aspect);
+    const V2f sensor_mm = film_within(request.sensor_mm.value_or(V2f(36.f, 24.f)), aspect);
     ThinLens lens;
     lens.aspect = aspect;
     if (from && !request.fov_deg && !request.focal_length_mm) {

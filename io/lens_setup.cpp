@@ -9,6 +9,7 @@
 
 #include "camera/lens_focus.h"
 #include "camera/paraxial.h"
+#include "camera/sensor.h"
 #include "io/aperture_file.h"
 #include "io/error.h"
 
@@ -29,80 +30,80 @@ float LoadedLens::yfov_rad() const {
     return 2 * std::atan(film_mm.y / 2 / static_cast<float>(focal_length_mm));
 }
 
+double LoadedLens::stop_radius_mm() const {
+    return lens.prescription().surfaces[static_cast<size_t>(lens.stop())].semi_diameter_mm;
+}
+
 bool LoadedLens::disperses() const {
-    const auto& surfaces = file.lens.surfaces;
-    return std::any_of(surfaces.begin(), surfaces.end(), [](const LensSurface& s) {
-        return s.glass && s.glass->index(kLineF_nm) != s.glass->index(kLineC_nm);
+    const auto& media = lens.media();
+    return std::any_of(media.begin(), media.end(), [](const Glass& glass) {
+        return glass.index(kLineF_nm) != glass.index(kLineC_nm);
     });
 }
 
 LoadedLens load_lens_for_film(const std::string& name_or_file, std::optional<V2f> sensor_mm,
                               float aspect) {
-    LoadedLens loaded{load_lens(name_or_file), 0, 0, {}};
-    const FirstOrder f = first_order(Lens(loaded.file.lens), kLineD_nm);
+    LensFile file = load_lens(name_or_file);
+    LoadedLens loaded{Lens(std::move(file.lens)), std::move(file.warnings), 0, 0, {}};
+    const FirstOrder f = first_order(loaded.lens, kLineD_nm);
     if (!(f.focal_length_mm > 0) || !std::isfinite(f.focal_length_mm))
         throw InputError(name_or_file, "", "has no positive focal length: it forms no image");
     loaded.focal_length_mm = f.focal_length_mm;
     loaded.entrance_pupil_mm = f.entrance_pupil_mm;
-    const V2f full = sensor_mm ? *sensor_mm : usual_sensor_mm(loaded.file.lens.image_circle_mm);
-    loaded.film_mm =
-        full.x / full.y > aspect ? V2f(full.y * aspect, full.y) : V2f(full.x, full.x / aspect);
+    loaded.film_mm = film_within(
+        sensor_mm.value_or(usual_sensor_mm(loaded.lens.prescription().image_circle_mm)), aspect);
     return loaded;
 }
 
 LensSetup set_up_lens(const LensCameraRequest& request, const LoadedLens& loaded,
                       const M44f& to_world, float focus_m, std::optional<float> fstop, int width_px,
                       const std::function<void(const std::string&)>& notice) {
-    for (const std::string& warning : loaded.file.warnings) notice("warning: " + warning);
-    const Lens filed(loaded.file.lens);
-    const auto sharp = focused(loaded.file.lens, loaded.entrance_pupil_mm - 1e3 * double(focus_m));
+    for (const std::string& warning : loaded.warnings) notice("warning: " + warning);
+    auto sharp = focused(loaded.lens, loaded.entrance_pupil_mm - 1e3 * double(focus_m));
     if (!sharp)
         throw ArgumentError(
             request.lens, "",
             fmt::format("cannot focus at {:g} m; give --focus a greater distance", focus_m));
-    auto lens = std::make_shared<const Lens>(*sharp);
-    double stop_mm = loaded.file.lens.surfaces[size_t(filed.stop())].semi_diameter_mm;
+    LensSetup setup;
+    setup.stop_radius_mm = loaded.stop_radius_mm();
     if (fstop) {
-        const auto wanted = stop_radius_for(filed, *fstop);
-        if (wanted && *wanted <= stop_mm * (1 + 1e-6))
-            stop_mm = *wanted;
+        const auto wanted = stop_radius_for(loaded.lens, *fstop);
+        if (wanted && *wanted <= setup.stop_radius_mm * (1 + 1e-6))
+            setup.stop_radius_mm = *wanted;
         else
             notice(fmt::format("warning: {} opens to f/{:.3g} at most, not to f/{:g}",
-                               loaded.file.lens.name, fnumber_of(filed, stop_mm), *fstop));
+                               loaded.name(), fnumber_of(loaded.lens, setup.stop_radius_mm),
+                               *fstop));
     }
+    setup.fnumber = fnumber_of(loaded.lens, setup.stop_radius_mm);
     try {
-        const Iris iris(parse_aperture(request.aperture), stop_mm, request.aperture_scale,
-                        request.iris_sampling);
-        LensCameraInput in{.lens = lens, .iris = iris, .to_world = to_world};
-        in.film_mm = lens->film_mm();
-        in.film_width_mm = loaded.film_mm.x;
-        in.film_height_mm = loaded.film_mm.y;
-        in.entrance_pupil_mm = loaded.entrance_pupil_mm;
-        in.focus_m = focus_m;
-        in.tolerance_rad = static_cast<float>(request.chroma_tolerance_px * loaded.film_mm.x /
-                                              width_px / loaded.focal_length_mm);
-        in.chroma = Chroma::Shared;
-        const double axial = axial_irradiance(LensCamera(in));
-        in.chroma = request.chroma;
-        if (!(axial > 0))
-            throw ArgumentError(request.lens, "",
-                                "lets no light through to the middle of the film");
-        const double clear_mm = loaded.file.lens.surfaces[size_t(filed.stop())].semi_diameter_mm;
-        if (const double lost = iris.share_beyond(clear_mm); lost > 5e-4)
+        const Iris iris(parse_aperture(request.aperture), setup.stop_radius_mm,
+                        request.aperture_scale, request.iris_sampling);
+        if (const double lost = iris.share_beyond(loaded.stop_radius_mm()); lost > 5e-4)
             notice(
                 fmt::format("aperture {}: {:.1f} % of it lies beyond the stop's rim and is cut "
                             "off",
                             request.aperture, 100 * lost));
-        in.gain = 1 / axial;
-        LensSetup setup;
-        setup.film_mm = in.film_mm;
-        setup.stop_radius_mm = stop_mm;
-        setup.fnumber = fnumber_of(filed, stop_mm);
+        LensCameraInput in{.lens = std::make_shared<const Lens>(*std::move(sharp)),
+                           .iris = iris,
+                           .to_world = to_world};
+        in.film_mm = setup.film_mm = in.lens->film_mm();
+        in.film_width_mm = loaded.film_mm.x;
+        in.film_height_mm = loaded.film_mm.y;
+        in.entrance_pupil_mm = loaded.entrance_pupil_mm;
+        in.chroma = request.chroma;
+        in.focus_m = focus_m;
+        in.tolerance_rad = static_cast<float>(request.chroma_tolerance_px * loaded.film_mm.x /
+                                              width_px / loaded.focal_length_mm);
         setup.camera = std::make_unique<LensCamera>(std::move(in));
-        return setup;
     } catch (const std::invalid_argument& error) {
         throw ArgumentError(request.aperture, "", error.what());
     }
+    const double axial = setup.camera->irradiance(V2f(0.f), 64);
+    if (!(axial > 0))
+        throw ArgumentError(request.lens, "", "lets no light through to the middle of the film");
+    setup.camera->set_gain(1 / axial);
+    return setup;
 }
 
 }  // namespace petzval

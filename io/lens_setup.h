@@ -22,9 +22,13 @@ struct LensCameraRequest {
 
 /// A lens that is not yet focused.
 struct LoadedLens {
-    LensFile file;
+    Lens lens;  ///< as filed
+    std::vector<std::string> warnings;
     double focal_length_mm, entrance_pupil_mm;
     V2f film_mm;  ///< width and height, of the picture's aspect
+
+    [[nodiscard]] const std::string& name() const { return lens.prescription().name; }
+    [[nodiscard]] double stop_radius_mm() const;
     [[nodiscard]] float yfov_rad() const;
     [[nodiscard]] bool disperses() const;
 };

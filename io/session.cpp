@@ -85,7 +85,7 @@ Session open_session(const SceneRequest& asked,
             request.lens->lens, request.sensor_mm,
             static_cast<float>(request.size.x) / static_cast<float>(request.size.y));
         if (lens->disperses() && request.lens->chroma != Chroma::Shared)
-            request.spectral.dispersive_lens = lens->file.lens.name;
+            request.spectral.dispersive_lens = lens->name();
     }
     SpectralSetup spectra = set_up_spectra(request.spectral, scene, notice);
     session.observer = std::move(spectra.observer);

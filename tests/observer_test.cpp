@@ -192,7 +192,7 @@ TEST(Observer, OneLaneIsAnEstimateOfItsOwn) {
     for (int i = 0; i < n; ++i) {
         const float nm = kFirst_nm + (kLast_nm - kFirst_nm) * (static_cast<float>(i) + 0.5f) / n;
         const Bands bands =
-            observer.at(splat(nm), splat(1.f / (kLast_nm - kFirst_nm)), m4{-1, 0, 0, 0}, 1);
+            observer.at(splat(nm), splat(1.f / (kLast_nm - kFirst_nm)), m4{-1, 0, 0, 0});
         sum += V3d(vector(to_rgb(uplift_radiance(Rgb(2, 1, 0.5f), bands), bands))) / n;
     }
     expect_near(sum, V3d(2, 1, 0.5), 1e-3);

@@ -260,8 +260,7 @@ TEST(SpectralRender, PrismBendsEachWavelengthAsSnellSays) {
         const double outside = std::asin(n * std::sin(apex - inside));
         const double deviation = incidence + outside - apex;
 
-        const Bands bands =
-            observer.at(splat(static_cast<float>(nm)), splat(1.f), m4{-1, 0, 0, 0}, 1);
+        const Bands bands = observer.at(splat(static_cast<float>(nm)), splat(1.f), m4{-1, 0, 0, 0});
         Ray ray;
         ray.direction =
             V3f(static_cast<float>(std::cos(heading)), static_cast<float>(std::sin(heading)), 0);
@@ -305,7 +304,7 @@ TEST(SpectralRender, MetalsReflectAsTheirIndicesSay) {
         ASSERT_TRUE(hit);
         const Surface s = make_surface(world.scene, ray.direction, *hit);
         const f4 nm{400, 500, 587.5f, 700};
-        const Bands bands = observer.at(nm, splat(1.f), m4{-1, -1, -1, -1}, 4);
+        const Bands bands = observer.at(nm, splat(1.f), m4{-1, -1, -1, -1});
         const ShadingInput shading = read_material(world.scene, s, -ray.direction, bands);
         const Bsdf bsdf(shading.bsdf, bands, V3f(0, 0, 1));
         const auto sample = bsdf.sample(0.5f, {0.5f, 0.5f});
@@ -385,7 +384,7 @@ TEST(SpectralRender, HeroAgreesWithOneWavelengthAPath) {
     const auto hero = estimate(hero_samples, 0, [&](float u) { return observer.draw(u); });
     const auto single = estimate(single_samples, 1000, [&](float u) {
         const float nm = kFirst_nm + u * (kLast_nm - kFirst_nm);
-        return observer.at(splat(nm), splat(1.f / (kLast_nm - kFirst_nm)), m4{-1, 0, 0, 0}, 1);
+        return observer.at(splat(nm), splat(1.f / (kLast_nm - kFirst_nm)), m4{-1, 0, 0, 0});
     });
     double squares = 0;
     for (size_t p = 0; p < hero.size(); ++p)

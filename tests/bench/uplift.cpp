@@ -103,7 +103,7 @@ std::vector<Bands> every_nm(const Observer& observer) {
     for (int nm = kFirst_nm; nm <= kLast_nm; nm += 4) {
         const auto first = static_cast<float>(nm);
         const m4 on{-1, -1, -1, nm + 3 <= kLast_nm ? -1 : 0};
-        all.push_back(observer.at(f4{first, first + 1, first + 2, first + 3}, splat(1.f), on, 4));
+        all.push_back(observer.at(f4{first, first + 1, first + 2, first + 3}, splat(1.f), on));
     }
     return all;
 }

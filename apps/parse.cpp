@@ -110,6 +110,16 @@ double parse_duration_s(const std::string& option, const std::string& text) {
     return *value * unit_s;
 }
 
+float parse_shutter_s(const std::string& option, const std::string& text) {
+    constexpr float shortest_s = 1e-9f, longest_s = 1e9f;
+    const auto parts = split(text, '/');
+    const auto above = number<float>(parts[0]);
+    const auto below = parts.size() == 2 ? number<float>(parts[1]) : std::optional(1.f);
+    if (parts.size() <= 2 && above && below)
+        if (const float s = *above / *below; s >= shortest_s && s <= longest_s) return s;
+    refuse(option, text, "seconds above 0, as 0.01 or 1/100");
+}
+
 Focus parse_focus(const std::string& option, const std::string& text, V2i frame) {
     if (text == "auto") return FocusAuto{};
     if (const auto parts = split(text, ','); parts.size() == 2) {

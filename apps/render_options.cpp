@@ -18,31 +18,7 @@ namespace {
 
 constexpr uint32_t kDefaultSpp = 64;
 
-// Bounds that keep every product of two lengths a float; no real lens or place comes near.
-constexpr double kLeast = 1e-6, kMost = 1e6;
-constexpr float kFarthest_m = 1e12f, kNearest_m = 1e-12f;
-
-void add_camera_options(CLI::App& app, RenderOptions& o) {
-    SceneRequest& s = o.scene;
-    const auto length = number_between(kLeast, kMost);
-    const auto add = [&](const char* name, auto& value, const char* help) {
-        return app.add_option(name, value, help)->group("Camera");
-    };
-    add("--camera", s.camera, "camera of the file, by name or index");
-    add("--look-at", o.look_at, "ex,ey,ez,tx,ty,tz: eye and target in metres");
-    add("--fov", s.fov_deg, "vertical angle of view in degrees")
-        ->check(number_between(kSmallestFov_deg, kLargestFov_deg));
-    auto* fstop =
-        add("--fstop", s.fstop, "thin lens of this f-number; with --lens its iris")->check(length);
-    add("--lens-radius", s.lens_radius_m, "thin lens of this radius in metres")
-        ->check(length)
-        ->excludes(fstop);
-    add("--focal-length", s.focal_length_mm,
-        "of the thin lens in mm; without --fov it sets the angle of view too")
-        ->check(length);
-    add("--sensor", o.sensor, "WxH in mm (default 36x24), cropped to the picture's aspect");
-    add("--focus", o.focus, "sharp plane: metres (1.5 or 1.5m), the pixel x,y, or auto");
-}
+constexpr double kMost = 1e6;  ///< keeps every product of two numbers a float
 
 void add_light_options(CLI::App& app, RenderOptions& o) {
     SceneRequest& s = o.scene;
@@ -125,39 +101,6 @@ void add_output_options(CLI::App& app, RenderOptions& o) {
     app.add_flag("--quiet", o.quiet, "print nothing but errors");
 }
 
-std::array<V3f, 2> parse_look_at(const std::string& text) {
-    const auto v = parse_numbers("--look-at", text, 6);
-    for (const float x : v)
-        if (std::fabs(x) > kFarthest_m)
-            throw CLI::ValidationError("--look-at", fmt::format("{:g} m is too far away", x));
-    const std::array<V3f, 2> aim{V3f(v[0], v[1], v[2]), V3f(v[3], v[4], v[5])};
-    if ((aim[0] - aim[1]).length() < kNearest_m)
-        throw CLI::ValidationError("--look-at", "eye and target are the same point");
-    return aim;
-}
-
-void resolve_camera(RenderOptions& o) {
-    SceneRequest& s = o.scene;
-    if (!o.look_at.empty()) {
-        s.look_at = parse_look_at(o.look_at);
-        if (s.camera) throw CLI::ValidationError("--look-at", "excludes --camera");
-    }
-    if (!o.sensor.empty()) s.sensor_mm = parse_sensor("--sensor", o.sensor, kLeast, kMost);
-    if (!o.lens.lens.empty()) {
-        s.lens = o.lens;
-        if (s.fov_deg || s.focal_length_mm || s.lens_radius_m)
-            throw CLI::ValidationError(
-                "--lens",
-                "gives the angle of view and the focal length: leave out --fov, "
-                "--focal-length and --lens-radius");
-    }
-    if (o.focus.empty()) return;
-    s.focus = parse_focus("--focus", o.focus, s.size);
-    if (!s.fstop && !s.lens_radius_m && !s.lens)
-        throw CLI::ValidationError("--focus",
-                                   "a pinhole has no focus: give --fstop or --lens-radius too");
-}
-
 void resolve_job(RenderOptions& o) {
     if (!o.time.empty()) o.job.time_limit_s = parse_duration_s("--time", o.time);
     o.job.end_sample = o.spp.value_or(o.job.time_limit_s ? kMostSamples : kDefaultSpp);
@@ -194,8 +137,7 @@ void add_render_options(CLI::App& app, RenderOptions& o) {
     app.add_option("scene", o.scene.scene, "glTF scene, .gltf or .glb")->required();
     add_frame_options(app, o);
     add_sampling_options(app, o);
-    add_camera_options(app, o);
-    add_lens_options(app, o.lens);
+    add_camera_options(app, o.camera);
     add_light_options(app, o);
     add_spectral_options(app, o.spectral);
     add_output_options(app, o);
@@ -209,7 +151,7 @@ RenderFrame resolve(RenderOptions& o) {
     const auto is_exr = [](const auto& path) { return picture_format(path) == PictureFormat::Exr; };
     if (s.spectral.bins && std::none_of(o.outputs.begin(), o.outputs.end(), is_exr))
         throw CLI::ValidationError("--bins", "needs an output that keeps them: -o FILE.exr");
-    resolve_camera(o);
+    s.camera = resolve(o.camera, s.size);
     resolve_job(o);
     if (!o.background.empty()) {
         const auto v = parse_numbers("--background", o.background, 3);

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/lens_options.h"
+#include "apps/camera_options.h"
 #include "apps/progress.h"
 #include "apps/spectral_options.h"
 #include "core/film.h"
@@ -29,10 +29,10 @@ inline constexpr uint32_t kMostSamples = 1u << 30;
 struct RenderOptions {
     SceneRequest scene;
     SpectralOptions spectral;
-    LensCameraRequest lens;
+    CameraOptions camera;
     std::vector<std::filesystem::path> outputs;
     std::optional<std::filesystem::path> stats;
-    std::string size = "1280x720", crop, look_at, sensor, focus, time, background, aovs;
+    std::string size = "1280x720", crop, time, background, aovs;
     std::optional<uint32_t> spp;
     int threads = 0;  ///< 0: one for each core
     RenderJob job;

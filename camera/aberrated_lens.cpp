@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "core/spectrum_table.h"
-#include "core/warp.h"
 
 namespace petzval {
 namespace {
@@ -32,48 +31,58 @@ void require_stop(const Singlet& lens, double radius_mm, double focus_mm) {
 }  // namespace
 
 AberratedLensCamera::AberratedLensCamera(AberratedLens lens)
-    : pose_(lens.to_world),
-      singlet_(std::move(lens.singlet)),
-      at_d_(singlet_.at(kLineD_nm)),
-      radius_mm_(lens.radius_mm),
-      focus_mm_(lens.focus_m * 1e3),
+    : in_(std::move(lens)),
+      pose_(in_.to_world),
+      at_d_(in_.singlet.at(kLineD_nm)),
+      focus_mm_(in_.focus_m * 1e3),
       film_mm_(image_distance_mm(at_d_.focal_mm, focus_mm_)),
-      tan_half_x_(std::tan(lens.yfov_rad / 2) * lens.aspect),
-      tan_half_y_(std::tan(lens.yfov_rad / 2)) {
-    require_stop(singlet_, radius_mm_, focus_mm_);
+      tan_half_x_(std::tan(in_.yfov_rad / 2) * in_.aspect),
+      tan_half_y_(std::tan(in_.yfov_rad / 2)) {
+    require_stop(in_.singlet, in_.iris.bounding_radius_mm(), focus_mm_);
 }
 
 CameraSample AberratedLensCamera::sample(const FilmPoint& at, const Bands& bands) const {
     const V3f through_centre{(2.f * at.film.x - 1.f) * tan_half_x_,
                              (1.f - 2.f * at.film.y) * tan_half_y_, -1.f};
-    const V2f stop = uniform_disk(at.sampler.get2(Dim::Lens)) * static_cast<float>(radius_mm_);
+    const V2f stop = in_.iris.sample(at.sampler.get2(Dim::Lens));
     const V3f point_mm{stop.x, stop.y, 0.f};
-    const double h_mm = double(stop.length());
-    const bool split = bands.spectral && radius_mm_ > 0;
+    const float h_mm = stop.length();
+    const bool split = bands.spectral && in_.chroma != Chroma::Shared;
+    m4 on = bands.on;
+    float gain = in_.gain;
+    if (split && in_.chroma == Chroma::Single) {
+        on = only_lane(pick_lane(bands.on, at.sampler.get1(Dim::LensLane)));
+        gain *= static_cast<float>(lane_count(bands.on));
+    }
 
     CameraSample out;
-    std::array<double, 4> index{};  // of each path
+    // 1/S for each path's ray. Unlike S it stays finite when the ray crosses no axis ahead.
+    std::array<float, 4> vergence_per_mm{};
     for (int lane = 0; lane < 4; ++lane) {
-        if (!bands.on[lane]) continue;
-        const double n = split ? singlet_.glass.index(double(bands.nm[lane])) : at_d_.n;
+        if (!on[lane]) continue;
+        const double n = split ? in_.singlet.glass.index(double(bands.nm[lane])) : at_d_.n;
+        const double focal_mm = zonal_mm(n, double(h_mm));
+        // Only what holds between the wavelengths that the constructor tried can fail here.
+        if (!(focal_mm > kLeastZone / 2 * at_d_.focal_mm)) continue;
+        const auto vergence = static_cast<float>(1 / focal_mm - 1 / film_mm_);
+        const auto together = [&](int k) {
+            return h_mm * std::fabs(vergence - vergence_per_mm[k]) <= in_.tolerance_rad &&
+                   !(split && in_.chroma == Chroma::Split);
+        };
         int k = 0;
-        while (k < out.count && index[k] != n) ++k;
+        while (k < out.count && !together(k)) ++k;
         CameraPath& path = out.path[k];
         if (k == out.count) {
-            const double focal_mm = zonal_mm(n, h_mm);
-            // Only what holds between the wavelengths that the constructor tried can fail here.
-            if (!(focal_mm > kLeastZone / 2 * at_d_.focal_mm)) continue;
-            index[k] = n;
+            vergence_per_mm[k] = vergence;
             ++out.count;
-            // 1/S for this ray. Unlike S it stays finite when the ray crosses no axis ahead.
-            const auto vergence_per_mm = static_cast<float>(1 / focal_mm - 1 / film_mm_);
             path.ray.origin = pose_.origin + pose_.to_world(point_mm * 1e-3f);
-            path.ray.direction = unit(pose_.to_world(through_centre - point_mm * vergence_per_mm));
+            path.ray.direction = unit(pose_.to_world(through_centre - point_mm * vergence));
             path.lanes = m4{};
         }
         path.lanes[lane] = -1;
     }
-    for (int k = 0; k < out.count; ++k) out.path[k].weight = zero_off(out.path[k].lanes, splat(1));
+    for (int k = 0; k < out.count; ++k)
+        out.path[k].weight = zero_off(out.path[k].lanes, splat(gain));
     return out;
 }
 

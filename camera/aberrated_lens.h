@@ -2,6 +2,7 @@
 // The thin lens with the two aberrations that its closed forms know: spherical and chromatic.
 #pragma once
 
+#include "camera/chroma.h"
 #include "camera/thin_lens.h"
 #include "camera/thin_lens_optics.h"
 
@@ -12,10 +13,13 @@ namespace petzval {
 struct AberratedLens {
     M44f to_world;  ///< rigid; metres
     Singlet singlet;
-    double radius_mm = 0;   ///< of the stop, at the lens; 0 makes it a pinhole
+    Iris iris;              ///< at the lens
     double focus_m = 1;     ///< axial distance; may be infinite
     float yfov_rad = 0.7f;  ///< full vertical angle, seen from the lens's centre
     float aspect = 1.5f;    ///< width / height of the film
+    Chroma chroma = Chroma::Auto;
+    float tolerance_rad = 0;  ///< Auto: how far apart directions may be, seen from the lens
+    float gain = 1.f;         ///< factor on every weight
 };
 
 /// A ray that meets the lens h off the axis is bent as by an ideal lens of focal length f(h,
@@ -24,7 +28,7 @@ struct AberratedLens {
 class AberratedLensCamera final : public Camera {
   public:
     /// Error (std::invalid_argument): focus within the focal length, a lens that does not gather
-    /// light at all of 360 to 830 nm, or a stop wider than its surfaces or than f(h) > f/2 allows.
+    /// light at all of 360 to 830 nm, or an iris wider than its surfaces or than f(h) > f/2 allows.
     explicit AberratedLensCamera(AberratedLens);
     [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
     [[nodiscard]] double film_distance_mm() const { return film_mm_; }
@@ -32,10 +36,10 @@ class AberratedLensCamera final : public Camera {
   private:
     [[nodiscard]] double zonal_mm(double n, double h_mm) const;
 
+    AberratedLens in_;
     Pose pose_;
-    Singlet singlet_;
     SingletOptics at_d_;
-    double radius_mm_, focus_mm_, film_mm_;
+    double focus_mm_, film_mm_;
     float tan_half_x_, tan_half_y_;
 };
 

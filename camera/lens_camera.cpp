@@ -1,30 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "camera/lens_camera.h"
 
-#include <algorithm>
-
 #include "core/dispersion.h"
 
 namespace petzval {
 namespace {
-
-// The lane whose ray is solved for: any of those that are on.
-int pick_lane(m4 on, float u) {
-    const int count = lane_count(on);
-    int wanted = std::min(static_cast<int>(u * static_cast<float>(count)), count - 1), lane = 0;
-    for (int i = 0; i < 4; ++i) {
-        if (!on[i]) continue;
-        lane = i;
-        if (wanted-- == 0) break;
-    }
-    return lane;
-}
-
-m4 only(int lane) {
-    m4 on{};
-    on[lane] = -1;
-    return on;
-}
 
 f4 transmitted(const Iris& iris, f4 x, f4 y) {
     f4 out = splat(iris.transmits({x[0], y[0]}));
@@ -58,7 +38,7 @@ LensCamera::Draw LensCamera::draw(V2f film_mm, V2f u, int lane, const Bands& ban
                                   const LensIndices<f4>& indices, float nm) const {
     Draw out;
     const V2f on_iris = in_.iris.sample(u);
-    const m4 on = in_.chroma == Chroma::Single ? only(lane) : bands.on;
+    const m4 on = in_.chroma == Chroma::Single ? only_lane(lane) : bands.on;
     const auto c = pupil_.solve(film_mm, on_iris, indices, lane, nm);
     if (!c) return out;
     // What the solver leaves is taken off, so that the lane crosses the iris where it was drawn:

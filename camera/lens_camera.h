@@ -5,17 +5,13 @@
 #include <memory>
 
 #include "camera/camera.h"
+#include "camera/chroma.h"
 #include "camera/iris.h"
 #include "camera/lens.h"
 #include "camera/pupil.h"
 #include "camera/thin_lens.h"
 
 namespace petzval {
-
-/// How wavelengths that leave the lens apart are carried into the scene. Auto: one ray for all
-/// lanes where they would land within a tolerance, else one for each. Shared: the ray of line d,
-/// as if the lens were achromatic. Split: one for each, always. Single: one wavelength a path.
-enum class Chroma : uint8_t { Auto, Shared, Split, Single };
 
 struct LensCameraInput {
     std::shared_ptr<const Lens> lens;

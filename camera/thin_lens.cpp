@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "camera/thin_lens.h"
 
-#include "core/warp.h"
+#include <utility>
 
 namespace petzval {
 namespace {
 
 // A camera ray from a point and a direction of the camera's own space.
-CameraSample one_path(const Pose& pose, const V3f& origin, const V3f& direction,
-                      const Bands& bands) {
+CameraSample one_path(const Pose& pose, const V3f& origin, const V3f& direction, const Bands& bands,
+                      float gain) {
     CameraSample out;
     out.count = 1;
     CameraPath& path = out.path[0];
     path.ray.origin = pose.origin + pose.to_world(origin);
     path.ray.direction = unit(pose.to_world(direction));
-    path.weight = uniform(1.f, bands);
+    path.weight = uniform(gain, bands);
     path.lanes = bands.on;
     return out;
 }
@@ -27,20 +27,21 @@ Pose::Pose(const M44f& m)
       up(unit({m[1][0], m[1][1], m[1][2]})),
       back(unit({m[2][0], m[2][1], m[2][2]})) {}
 
-ThinLensCamera::ThinLensCamera(const ThinLens& lens)
+ThinLensCamera::ThinLensCamera(ThinLens lens)
     : pose_(lens.to_world),
-      radius_m_(lens.radius_m),
+      iris_(std::move(lens.iris)),
       focus_m_(lens.focus_m),
+      gain_(lens.gain),
       tan_half_x_(std::tan(lens.yfov_rad / 2) * lens.aspect),
       tan_half_y_(std::tan(lens.yfov_rad / 2)) {}
 
 CameraSample ThinLensCamera::sample(const FilmPoint& at, const Bands& bands) const {
     const V3f direction{(2.f * at.film.x - 1.f) * tan_half_x_,
                         (1.f - 2.f * at.film.y) * tan_half_y_, -1.f};
-    if (radius_m_ <= 0.f) return one_path(pose_, V3f(0.f), direction, bands);
-    const V2f stop = uniform_disk(at.sampler.get2(Dim::Lens)) * radius_m_;
+    if (!iris_) return one_path(pose_, V3f(0.f), direction, bands, gain_);
+    const V2f stop = iris_->sample(at.sampler.get2(Dim::Lens)) * 1e-3f;
     const V3f origin{stop.x, stop.y, 0.f};
-    return one_path(pose_, origin, direction * focus_m_ - origin, bands);
+    return one_path(pose_, origin, direction * focus_m_ - origin, bands, gain_);
 }
 
 OrthographicCamera::OrthographicCamera(const M44f& to_world, float half_width_m,
@@ -50,7 +51,7 @@ OrthographicCamera::OrthographicCamera(const M44f& to_world, float half_width_m,
 CameraSample OrthographicCamera::sample(const FilmPoint& at, const Bands& bands) const {
     const V3f origin{(2.f * at.film.x - 1.f) * half_width_m_,
                      (1.f - 2.f * at.film.y) * half_height_m_, 0.f};
-    return one_path(pose_, origin, V3f(0, 0, -1), bands);
+    return one_path(pose_, origin, V3f(0, 0, -1), bands, 1.f);
 }
 
 M44f look_at(const V3f& eye, const V3f& target) {

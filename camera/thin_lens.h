@@ -2,18 +2,22 @@
 // Cameras without glass: pinhole, thin lens, orthographic.
 #pragma once
 
+#include <optional>
+
 #include "camera/camera.h"
+#include "camera/iris.h"
 
 namespace petzval {
 
-/// A thin lens of no aberration; radius 0 makes it a pinhole. It stands at the origin of its own
-/// space, looks along -z with y up, and images the plane at focus_m sharply.
+/// A thin lens of no aberration; without an iris it is a pinhole. It stands at the origin of its
+/// own space, looks along -z with y up, and images the plane at focus_m sharply.
 struct ThinLens {
     M44f to_world;
     float yfov_rad = 0.7f;  ///< full vertical angle, seen from the lens's centre
     float aspect = 1.5f;    ///< width / height of the film
-    float radius_m = 0.f;
+    std::optional<Iris> iris;
     float focus_m = 1.f;  ///< axial distance
+    float gain = 1.f;     ///< factor on every weight
 };
 
 /// Where a camera stands and its axes in world space, unit: what its matrix says, unpacked.
@@ -25,12 +29,13 @@ struct Pose {
 
 class ThinLensCamera final : public Camera {
   public:
-    explicit ThinLensCamera(const ThinLens&);
+    explicit ThinLensCamera(ThinLens);
     [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
 
   private:
     Pose pose_;
-    float radius_m_, focus_m_, tan_half_x_, tan_half_y_;
+    std::optional<Iris> iris_;
+    float focus_m_, gain_, tan_half_x_, tan_half_y_;
 };
 
 /// Parallel projection: half sizes of the view in metres.

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which camera a render uses: the file's, the user's, or one framed from the scene's bounds.
+// From a plan and a scene to a camera: where it stands, what it is focused on, and its exposure.
 #pragma once
 
-#include "io/gltf.h"
-#include "io/session.h"
+#include "core/bvh.h"
+#include "core/scene.h"
+#include "io/camera_plan.h"
+#include "io/camera_report.h"
 
 namespace petzval {
 
@@ -12,11 +14,11 @@ struct CameraSetup {
     CameraReport report;
 };
 
-/// The scene is finished and in bvh. Whatever `notice` is told in the form of options gives the
-/// same camera when it is passed back. Throws ArgumentError for a camera that the file does not
-/// have, for a lens that it cannot take, and where there is nothing to focus on.
-[[nodiscard]] CameraSetup set_up_camera(const SceneRequest&, const std::vector<GltfCamera>&,
-                                        const std::optional<LoadedLens>&, const Scene&, const Bvh&,
+/// The scene is finished and in bvh; scene_file is its name, for errors. Whatever `notice` is told
+/// in the form of options gives the same camera when it is passed back. Throws ArgumentError for a
+/// lens that cannot do what is asked, and where there is nothing to focus on.
+[[nodiscard]] CameraSetup set_up_camera(const CameraPlan&, const std::string& scene_file, V2i size,
+                                        const Scene&, const Bvh&,
                                         const std::function<void(const std::string&)>& notice);
 
 }  // namespace petzval

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/colour.h"
+#include "io/camera_report.h"
 #include "io/spectral_layout.h"
 
 namespace petzval {
@@ -39,32 +40,6 @@ const char* name_of(FilterKind kind) {
             return "blackman-harris";
     }
     return "";
-}
-
-std::string numbers(const V3f& v) {
-    return fmt::format("{:.9g},{:.9g},{:.9g}", v.x, v.y, v.z);
-}
-
-void describe_camera(const CameraReport& c, PictureLayout& layout) {
-    auto& m = layout.metadata;
-    m.emplace_back("petzval:camera", c.name);
-    m.emplace_back("petzval:cameraEye_m", numbers(c.eye));
-    m.emplace_back("petzval:cameraTarget_m", numbers(c.target));
-    if (c.orthographic) return;
-    m.emplace_back("petzval:fov_deg", c.yfov_deg);
-    m.emplace_back("petzval:focalLength_mm", c.focal_length_mm);
-    m.emplace_back("petzval:sensorWidth_mm", c.sensor_width_mm);
-    m.emplace_back("petzval:sensorHeight_mm", c.sensor_height_mm);
-    m.emplace_back("petzval:lensRadius_m", c.lens_radius_m);
-    if (!c.lens.empty()) {
-        m.emplace_back("petzval:lens", c.lens);
-        m.emplace_back("petzval:aperture", c.aperture);
-        m.emplace_back("petzval:film_mm", static_cast<float>(c.film_mm));
-        m.emplace_back("petzval:stopRadius_mm", static_cast<float>(c.stop_radius_mm));
-    }
-    if (c.lens_radius_m <= 0) return;
-    m.emplace_back("petzval:fstop", c.focal_length_mm * 1e-3f / (2 * c.lens_radius_m));
-    m.emplace_back("petzval:focus_m", c.focus_m);
 }
 
 /// Samples whose spread tells a pixel's error: none where one was left out, as it is not known

@@ -11,6 +11,13 @@
 
 namespace petzval {
 
+/// What extras.petzval of a camera asks for; gltf_extras.h has the keys.
+struct CameraWishes {
+    std::optional<std::string> lens, aperture;
+    std::optional<float> fstop, focus_m;
+    std::optional<V2f> sensor_mm;
+};
+
 /// A camera node of the file.
 struct GltfCamera {
     std::string name;  ///< of the camera, else of its node; may be empty
@@ -19,6 +26,7 @@ struct GltfCamera {
     float yfov_rad = 0.f;
     std::optional<float> aspect;       ///< width / height, where the file gives one
     float xmag_m = 0.f, ymag_m = 0.f;  ///< half width and half height of an orthographic view
+    CameraWishes wishes;
 };
 
 struct GltfFile {

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "io/gltf_check.h"
+#include "io/gltf_extras.h"
 #include "io/gltf_spectral.h"
 #include "io/json_parse.h"
 
@@ -56,6 +57,7 @@ void check_light(GltfCheck& check, const JsonCursor& light) {
 
 void check_cameras(GltfCheck& check) {
     for (const JsonCursor& camera : check.root.objects("cameras")) {
+        (void)camera_wishes(camera);
         const std::string type = camera.text("type");
         if (type == "perspective")
             check_perspective(camera.object("perspective"));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "io/gltf_extras.h"
 #include "io/gltf_spectral.h"
 #include "io/json_cursor.h"
 
@@ -110,6 +111,7 @@ void read_lights(const GltfModel& gltf, const GltfNodes& nodes, Scene& scene, Gl
 std::vector<GltfCamera> read_cameras(const GltfModel& gltf, const GltfNodes& nodes,
                                      GltfTally& tally) {
     std::vector<GltfCamera> cameras;
+    const auto json = JsonCursor(gltf.source.json, gltf.file).objects("cameras");
     for (int index : nodes.in_scene) {
         const tinygltf::Node& node = gltf.typed.nodes[static_cast<size_t>(index)];
         if (node.camera < 0) continue;
@@ -121,6 +123,8 @@ std::vector<GltfCamera> read_cameras(const GltfModel& gltf, const GltfNodes& nod
         const auto& from = gltf.typed.cameras.at(static_cast<size_t>(node.camera));
         GltfCamera camera = to_camera(from, *to_world);
         camera.name = from.name.empty() ? node.name : from.name;
+        camera.wishes = camera_wishes(json[static_cast<size_t>(node.camera)]);
+        if (camera.wishes.lens) tally.honoured.insert("lens " + *camera.wishes.lens);
         if (is_usable(camera))
             cameras.push_back(camera);
         else

@@ -2,11 +2,11 @@
 #include "io/gltf_spectral.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 
 #include "io/glasses.h"
+#include "io/gltf_extras.h"
 #include "io/json_parse.h"
 #include "io/lower.h"
 #include "io/spectra.h"
@@ -17,24 +17,11 @@ namespace {
 /// Keeps the square of an index, and what is computed with it, far from a float's end.
 constexpr double kGreatestIndex = 1e3;
 
-using Keys = std::vector<std::string_view>;
-
-/// Other people's extras may be of any type.
-std::optional<JsonCursor> petzval_extras(const JsonCursor& owner) {
-    const auto extras = owner.value().find("extras");
-    if (extras == owner.value().end() || !extras->is_object()) return std::nullopt;
-    return owner.object("extras").find_object("petzval");
-}
-
-void check_extras(const JsonCursor& owner, const char* what, const Keys& known) {
-    const auto extras = petzval_extras(owner);
-    if (!extras) return;
-    for (const auto& [key, unused] : extras->value().items()) {
-        if (std::find(known.begin(), known.end(), key) == known.end())
-            extras->fail(key, fmt::format("is not known; in a {}'s extras.petzval there may be {}",
-                                          what, fmt::join(known, ", ")));
-        (void)extras->text(key.c_str());
-    }
+void check_texts(const JsonCursor& owner, const char* what,
+                 const std::vector<std::string_view>& known) {
+    require_known_extras(owner, what, known);
+    if (const auto extras = petzval_extras(owner))
+        for (const auto& [key, unused] : extras->value().items()) (void)extras->text(key.c_str());
 }
 
 /// KHR_materials_dispersion: Cauchy's formula, but never an index below 1. Only dispersion above
@@ -67,14 +54,14 @@ std::optional<int32_t> place_of(std::vector<Thing>& things, const std::string& n
 }  // namespace
 
 void check_material_extras(const JsonCursor& material) {
-    check_extras(material, "material", {"glass", "metal", "illuminant"});
+    check_texts(material, "material", {"glass", "metal", "illuminant"});
     const auto extras = petzval_extras(material);
     if (extras && extras->has("glass") && extras->has("metal"))
         extras->fail("names a glass and a metal; a material is one of them");
 }
 
 void check_light_extras(const JsonCursor& light) {
-    check_extras(light, "light", {"illuminant"});
+    check_texts(light, "light", {"illuminant"});
 }
 
 GltfSpectral::GltfSpectral(Scene& scene, GltfTally& tally) : scene_(scene), tally_(tally) {}

@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
+#include "camera/analysis.h"
+#include "camera/exposure.h"
 #include "camera/lens_focus.h"
 #include "camera/paraxial.h"
 #include "camera/sensor.h"
@@ -24,11 +27,41 @@ V2f usual_sensor_mm(double image_circle_mm) {
     return {3 * unit_mm, 2 * unit_mm};
 }
 
-}  // namespace
-
-float LoadedLens::yfov_rad() const {
-    return 2 * std::atan(film_mm.y / 2 / static_cast<float>(focal_length_mm));
+// By the ray through the middle of the stop; a lens that sends none there has its paraxial angle.
+float yfov_of(const Lens& lens, float film_height_mm, double focal_length_mm) {
+    const double half_mm = 0.5 * double(film_height_mm);
+    if (const auto film = focused(lens, -std::numeric_limits<double>::infinity()))
+        if (const auto deg = field_of_height_deg(Lens(*film), half_mm, Lens(*film).film_mm()))
+            return static_cast<float>(2 * *deg * M_PI / 180);
+    return static_cast<float>(2 * std::atan(half_mm / focal_length_mm));
 }
+
+// All of a camera but its focus, film and iris.
+LensCameraInput input_of(const LoadedLens& loaded, const M44f& to_world, Prescription sharp,
+                         Iris iris) {
+    LensCameraInput in{.lens = std::make_shared<const Lens>(std::move(sharp)),
+                       .iris = std::move(iris),
+                       .to_world = to_world};
+    in.film_mm = in.lens->film_mm();
+    in.film_width_mm = loaded.film_mm.x;
+    in.film_height_mm = loaded.film_mm.y;
+    in.entrance_pupil_mm = loaded.entrance_pupil_mm;
+    return in;
+}
+
+// What --fstop asks for, as far as the lens opens.
+double stop_radius_of(const LoadedLens& loaded, std::optional<float> fstop,
+                      const std::function<void(const std::string&)>& notice) {
+    const double filed_mm = loaded.stop_radius_mm();
+    if (!fstop) return filed_mm;
+    const auto wanted_mm = stop_radius_for(loaded.lens, *fstop);
+    if (wanted_mm && *wanted_mm <= filed_mm * (1 + 1e-6)) return *wanted_mm;
+    notice(fmt::format("warning: {} opens to f/{:.3g} at most, not to f/{:g}", loaded.name(),
+                       fnumber_of(loaded.lens, filed_mm), *fstop));
+    return filed_mm;
+}
+
+}  // namespace
 
 double LoadedLens::stop_radius_mm() const {
     return lens.prescription().surfaces[static_cast<size_t>(lens.stop())].semi_diameter_mm;
@@ -41,10 +74,10 @@ bool LoadedLens::disperses() const {
     });
 }
 
-LoadedLens load_lens_for_film(const std::string& name_or_file, std::optional<V2f> sensor_mm,
-                              float aspect) {
-    LensFile file = load_lens(name_or_file);
-    LoadedLens loaded{Lens(std::move(file.lens)), std::move(file.warnings), 0, 0, {}};
+LoadedLens load_lens_for_film(const std::string& name_or_file, std::span<const AgfCatalog> catalogs,
+                              std::optional<V2f> sensor_mm, float aspect) {
+    LensFile file = load_lens(name_or_file, catalogs);
+    LoadedLens loaded{Lens(std::move(file.lens)), std::move(file.warnings), 0, 0, {}, 0};
     const FirstOrder f = first_order(loaded.lens, kLineD_nm);
     if (!(f.focal_length_mm > 0) || !std::isfinite(f.focal_length_mm))
         throw InputError(name_or_file, "", "has no positive focal length: it forms no image");
@@ -52,58 +85,57 @@ LoadedLens load_lens_for_film(const std::string& name_or_file, std::optional<V2f
     loaded.entrance_pupil_mm = f.entrance_pupil_mm;
     loaded.film_mm = film_within(
         sensor_mm.value_or(usual_sensor_mm(loaded.lens.prescription().image_circle_mm)), aspect);
+    loaded.yfov_rad = yfov_of(loaded.lens, loaded.film_mm.y, loaded.focal_length_mm);
     return loaded;
 }
 
-LensSetup set_up_lens(const LensCameraRequest& request, const LoadedLens& loaded,
-                      const M44f& to_world, float focus_m, std::optional<float> fstop, int width_px,
+LensSetup set_up_lens(const CameraRequest& asked, const LoadedLens& loaded, const M44f& to_world,
+                      float focus_m, int width_px,
                       const std::function<void(const std::string&)>& notice) {
     for (const std::string& warning : loaded.warnings) notice("warning: " + warning);
+    LensSetup setup;
+    setup.stop_radius_mm = stop_radius_of(loaded, asked.fstop, notice);
+    setup.fnumber = fnumber_of(loaded.lens, setup.stop_radius_mm);
     auto sharp = focused(loaded.lens, loaded.entrance_pupil_mm - 1e3 * double(focus_m));
     if (!sharp)
         throw ArgumentError(
-            request.lens, "",
+            loaded.name(), "",
             fmt::format("cannot focus at {:g} m; give --focus a greater distance", focus_m));
-    LensSetup setup;
-    setup.stop_radius_mm = loaded.stop_radius_mm();
-    if (fstop) {
-        const auto wanted = stop_radius_for(loaded.lens, *fstop);
-        if (wanted && *wanted <= setup.stop_radius_mm * (1 + 1e-6))
-            setup.stop_radius_mm = *wanted;
-        else
-            notice(fmt::format("warning: {} opens to f/{:.3g} at most, not to f/{:g}",
-                               loaded.name(), fnumber_of(loaded.lens, setup.stop_radius_mm),
-                               *fstop));
-    }
-    setup.fnumber = fnumber_of(loaded.lens, setup.stop_radius_mm);
+    const std::string aperture = asked.aperture.value_or("circle");
     try {
-        const Iris iris(parse_aperture(request.aperture), setup.stop_radius_mm,
-                        request.aperture_scale, request.iris_sampling);
+        const Iris iris(parse_aperture(aperture), setup.stop_radius_mm, asked.aperture_scale,
+                        asked.iris_sampling);
         if (const double lost = iris.share_beyond(loaded.stop_radius_mm()); lost > 5e-4)
             notice(
                 fmt::format("aperture {}: {:.1f} % of it lies beyond the stop's rim and is cut "
                             "off",
-                            request.aperture, 100 * lost));
-        LensCameraInput in{.lens = std::make_shared<const Lens>(*std::move(sharp)),
-                           .iris = iris,
-                           .to_world = to_world};
-        in.film_mm = setup.film_mm = in.lens->film_mm();
-        in.film_width_mm = loaded.film_mm.x;
-        in.film_height_mm = loaded.film_mm.y;
-        in.entrance_pupil_mm = loaded.entrance_pupil_mm;
-        in.chroma = request.chroma;
+                            aperture, 100 * lost));
+        LensCameraInput in = input_of(loaded, to_world, *std::move(sharp), iris);
+        setup.film_mm = in.film_mm;
+        in.chroma = asked.chroma;
         in.focus_m = focus_m;
-        in.tolerance_rad = static_cast<float>(request.chroma_tolerance_px * loaded.film_mm.x /
+        in.tolerance_rad = static_cast<float>(asked.chroma_tolerance_px * double(loaded.film_mm.x) /
                                               width_px / loaded.focal_length_mm);
         setup.camera = std::make_unique<LensCamera>(std::move(in));
     } catch (const std::invalid_argument& error) {
-        throw ArgumentError(request.aperture, "", error.what());
+        throw ArgumentError(aperture, "", error.what());
     }
     const double axial = setup.camera->irradiance(V2f(0.f), 64);
     if (!(axial > 0))
-        throw ArgumentError(request.lens, "", "lets no light through to the middle of the film");
-    setup.camera->set_gain(1 / axial);
+        throw ArgumentError(loaded.name(), "", "lets no light through to the middle of the film");
+    setup.camera->set_gain(asked.exposure == ExposureMode::Photographic
+                               ? photographic_gain(1, double(asked.iso), double(asked.shutter_s))
+                               : 1 / axial);
     return setup;
+}
+
+std::unique_ptr<LensCamera> viewfinder(const LoadedLens& loaded, const M44f& to_world) {
+    constexpr double kStoppedDown = 100;
+    auto distant = focused(loaded.lens, -std::numeric_limits<double>::infinity());
+    if (!distant) throw ArgumentError(loaded.name(), "", "forms no image of a distant scene");
+    return std::make_unique<LensCamera>(
+        input_of(loaded, to_world, *std::move(distant),
+                 Iris(Disk{}, loaded.stop_radius_mm() / kStoppedDown)));
 }
 
 }  // namespace petzval

@@ -79,14 +79,10 @@ Session open_session(const SceneRequest& asked,
     finish_scene(scene);
     if (scene.instances.empty())
         notice("warning: the scene is empty: only its background is rendered");
-    std::optional<LoadedLens> lens;
-    if (request.lens) {
-        lens = load_lens_for_film(
-            request.lens->lens, request.sensor_mm,
-            static_cast<float>(request.size.x) / static_cast<float>(request.size.y));
-        if (lens->disperses() && request.lens->chroma != Chroma::Shared)
-            request.spectral.dispersive_lens = lens->name();
-    }
+    const CameraPlan plan =
+        plan_camera(request.camera, request.scene, file.cameras,
+                    static_cast<float>(request.size.x) / static_cast<float>(request.size.y));
+    request.spectral.dispersive_lens = plan.dispersive_name();
     SpectralSetup spectra = set_up_spectra(request.spectral, scene, notice);
     session.observer = std::move(spectra.observer);
     session.scale = std::move(spectra.scale);
@@ -100,9 +96,10 @@ Session open_session(const SceneRequest& asked,
     session.lights = std::make_unique<LightChoice>(scene, request.light_choice);
     session.bvh_s = seconds_since(bvh_start);
 
-    CameraSetup setup = set_up_camera(request, file.cameras, lens, scene, *session.bvh, notice);
+    CameraSetup setup =
+        set_up_camera(plan, request.scene.string(), request.size, scene, *session.bvh, notice);
     session.camera = std::move(setup.camera);
-    session.camera_report = setup.report;
+    session.camera_report = std::move(setup.report);
     return session;
 }
 

@@ -7,58 +7,28 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "camera/camera.h"
 #include "core/bvh.h"
 #include "core/light_choice.h"
 #include "core/scene.h"
-#include "io/lens_setup.h"
+#include "io/camera_report.h"
 #include "io/spectral_setup.h"
 
 namespace petzval {
-
-struct FocusAuto {};
-struct FocusDistance {
-    float m;
-};
-struct FocusPixel {
-    int x, y;  ///< of the full frame; its centre is meant
-};
-using Focus = std::variant<FocusAuto, FocusDistance, FocusPixel>;
-
-/// Vertical angles of view that a perspective camera may be asked for.
-inline constexpr float kSmallestFov_deg = 0.001f, kLargestFov_deg = 179.f;
 
 /// Everything absent means: as the file has it, else a sensible choice that is reported.
 struct SceneRequest {
     std::filesystem::path scene;
     V2i size{1280, 720};
-    std::optional<std::string> camera;          ///< name or index
-    std::optional<std::array<V3f, 2>> look_at;  ///< eye and target
-    std::optional<float> fov_deg;               ///< vertical
-    std::optional<float> fstop, focal_length_mm, lens_radius_m;
-    std::optional<V2f> sensor_mm;
-    Focus focus;
+    CameraRequest camera;
     std::optional<std::filesystem::path> environment;
     float environment_rotate_deg = 0, environment_strength = 1;
     std::optional<Rgb> background;
     LightChoiceKind light_choice = LightChoiceKind::Power;
     Traversal traversal = Traversal::Robust;
     SpectralRequest spectral;
-    std::optional<LensCameraRequest> lens;  ///< absent: a thin lens or a pinhole
-};
-
-/// What the camera turned out to be, for the picture's metadata.
-struct CameraReport {
-    std::string name;
-    V3f eye, target;  ///< target: one metre ahead, or what --look-at said
-    bool orthographic = false;
-    float yfov_deg = 0, focal_length_mm = 0, sensor_width_mm = 0, sensor_height_mm = 0;
-    float lens_radius_m = 0, focus_m = 0;  ///< 0: a pinhole
-    std::string lens, aperture;            ///< of a lens made of glass
-    double film_mm = 0, stop_radius_mm = 0;
 };
 
 /// A scene that is ready: nothing in it changes any more.

@@ -37,7 +37,7 @@ struct Studio {
         ThinLens lens;
         lens.to_world = look_at(V3f(0.5f, 0.7f, 4), V3f(0.f));
         lens.aspect = static_cast<float>(size.x) / static_cast<float>(size.y);
-        lens.radius_m = 0.05f;
+        lens.iris = Iris(Disk{}, 50);
         lens.focus_m = 3.5f;
         camera = std::make_unique<ThinLensCamera>(lens);
     }

@@ -83,7 +83,7 @@ int run(int argc, char** argv) {
     job.end_sample = 4;
     app.add_option("scene", request.scene)->required();
     app.add_option("--look-at", look_at);
-    app.add_option("--fov", request.fov_deg);
+    app.add_option("--fov", request.camera.fov_deg);
     app.add_option("--env", request.environment);
     app.add_option("--size", size);
     app.add_option("--spp", job.end_sample);
@@ -94,7 +94,7 @@ int run(int argc, char** argv) {
     request.size = parse_size("--size", size);
     if (!look_at.empty()) {
         const auto v = parse_numbers("--look-at", look_at, 6);
-        request.look_at = {V3f(v[0], v[1], v[2]), V3f(v[3], v[4], v[5])};
+        request.camera.look_at = {V3f(v[0], v[1], v[2]), V3f(v[3], v[4], v[5])};
     }
     flush_denormals();
     const Session session = open_session(request, [](const std::string&) {});

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a camera does with wavelengths that its lens sends different ways.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "core/lanes.h"
+
+namespace petzval {
+
+/// Auto: one ray for all lanes where they would land within a tolerance, else one for each. Shared:
+/// the ray of line d, as if the lens were achromatic. Split: one for each, always. Single: one
+/// wavelength a path.
+enum class Chroma : uint8_t { Auto, Shared, Split, Single };
+
+/// One of the lanes that are on, each as likely; u in [0, 1).
+[[nodiscard]] inline int pick_lane(m4 on, float u) {
+    const int count = lane_count(on);
+    int wanted = std::min(static_cast<int>(u * static_cast<float>(count)), count - 1), lane = 0;
+    for (int i = 0; i < 4; ++i) {
+        if (!on[i]) continue;
+        lane = i;
+        if (wanted-- == 0) break;
+    }
+    return lane;
+}
+
+[[nodiscard]] inline m4 only_lane(int lane) {
+    m4 on{};
+    on[lane] = -1;
+    return on;
+}
+
+}  // namespace petzval

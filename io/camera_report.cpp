@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/camera_report.h"
+
+#include <fmt/format.h>
+
+#include "io/camera_words.h"
+
+namespace petzval {
+namespace {
+
+std::string numbers(const V3f& v) {
+    return fmt::format("{:.9g},{:.9g},{:.9g}", v.x, v.y, v.z);
+}
+
+void describe_iris(const CameraReport& c, PictureLayout& layout) {
+    auto& m = layout.metadata;
+    m.emplace_back("petzval:aperture", c.asked.aperture.value_or("circle"));
+    m.emplace_back("petzval:apertureScale", word_of(c.asked.aperture_scale));
+    if (c.asked.iris_sampling)
+        m.emplace_back("petzval:irisSampling", word_of(*c.asked.iris_sampling));
+    m.emplace_back("petzval:exposureMode", word_of(c.asked.exposure));
+    if (c.asked.exposure == ExposureMode::Photographic) {
+        m.emplace_back("petzval:iso", c.asked.iso);
+        m.emplace_back("petzval:shutter_s", c.asked.shutter_s);
+    }
+}
+
+void describe_glass(const CameraReport& c, PictureLayout& layout) {
+    auto& m = layout.metadata;
+    m.emplace_back("petzval:lens", c.lens);
+    m.emplace_back("petzval:film_mm", static_cast<float>(c.film_mm));
+    m.emplace_back("petzval:stopRadius_mm", static_cast<float>(c.stop_radius_mm));
+    m.emplace_back("petzval:chroma", word_of(c.asked.chroma));
+    if (c.asked.chroma == Chroma::Auto)
+        m.emplace_back("petzval:chromaTolerance_px", c.asked.chroma_tolerance_px);
+}
+
+}  // namespace
+
+void describe_camera(const CameraReport& c, PictureLayout& layout) {
+    auto& m = layout.metadata;
+    m.emplace_back("petzval:camera", c.name);
+    m.emplace_back("petzval:cameraEye_m", numbers(c.eye));
+    m.emplace_back("petzval:cameraTarget_m", numbers(c.target));
+    if (c.orthographic) return;
+    m.emplace_back("petzval:fov_deg", c.yfov_deg);
+    m.emplace_back("petzval:focalLength_mm", c.focal_length_mm);
+    m.emplace_back("petzval:sensorWidth_mm", c.sensor_mm.x);
+    m.emplace_back("petzval:sensorHeight_mm", c.sensor_mm.y);
+    m.emplace_back("petzval:lensRadius_m", c.lens_radius_m);
+    if (!c.lens.empty()) describe_glass(c, layout);
+    if (c.lens_radius_m <= 0) return;
+    describe_iris(c, layout);
+    m.emplace_back("petzval:fstop", c.focal_length_mm * 1e-3f / (2 * c.lens_radius_m));
+    m.emplace_back("petzval:focus_m", c.focus_m);
+}
+
+}  // namespace petzval

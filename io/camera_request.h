@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a user, or a camera of the file, asks of the camera.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "camera/chroma.h"
+#include "camera/iris.h"
+#include "core/math.h"
+
+namespace petzval {
+
+struct FocusAuto {};
+struct FocusDistance {
+    float m;
+};
+struct FocusPixel {
+    int x, y;  ///< of the full frame; its centre is meant
+};
+using Focus = std::variant<FocusAuto, FocusDistance, FocusPixel>;
+
+/// Normalised: an even scene is as bright as it is through a pinhole, whatever the iris.
+/// Photographic: 78 / ISO lx s on the film become 1 (saturation: ISO 12232:2019, 6.2).
+enum class ExposureMode : uint8_t { Normalised, Photographic };
+
+/// What gives the angle of view: a lens's own focal length, or the camera's, to which the lens is
+/// scaled.
+enum class Fit : uint8_t { Lens, Fov };
+
+/// Vertical angles of view that a perspective camera may be asked for.
+inline constexpr float kSmallestFov_deg = 0.001f, kLargestFov_deg = 179.f;
+
+/// Everything absent means: as the file has it, else a sensible choice that is reported.
+struct CameraRequest {
+    std::optional<std::string> name;            ///< of the file's cameras, or its index
+    std::optional<std::array<V3f, 2>> look_at;  ///< eye and target
+    std::optional<float> fov_deg;               ///< vertical
+    /// "pinhole", "thin", "singlet:GLASS[,BENDING]", "singlet:GLASS,R1_MM,R2_MM", the name of a
+    /// lens in assets/lenses, or a file.
+    std::optional<std::string> lens;
+    std::optional<float> fstop, focal_length_mm, lens_radius_m;
+    std::optional<float> film_distance_mm;  ///< from a thin lens
+    std::optional<V2f> sensor_mm;
+    std::optional<Focus> focus;
+    Fit fit = Fit::Lens;
+    std::optional<std::string> aperture;  ///< as parse_aperture reads it
+    ApertureScale aperture_scale = ApertureScale::EqualArea;
+    std::optional<IrisSampling> iris_sampling;
+    Chroma chroma = Chroma::Auto;
+    float chroma_tolerance_px = 0.1f;
+    ExposureMode exposure = ExposureMode::Normalised;
+    float iso = 100, shutter_s = 0.01f;
+    std::vector<std::filesystem::path> glasses;  ///< catalogues that go before those that ship
+};
+
+}  // namespace petzval

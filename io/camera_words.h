@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// The words that options and metadata have for the choices of a camera.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/camera_request.h"
+
+namespace petzval {
+
+template <class T>
+using Words = std::vector<std::pair<std::string, T>>;
+
+/// Every word of a choice; the argument only says which choice.
+[[nodiscard]] inline Words<Chroma> words_of(Chroma) {
+    return {{"auto", Chroma::Auto},
+            {"shared", Chroma::Shared},
+            {"split", Chroma::Split},
+            {"single", Chroma::Single}};
+}
+[[nodiscard]] inline Words<ApertureScale> words_of(ApertureScale) {
+    return {{"area", ApertureScale::EqualArea}, {"inscribed", ApertureScale::Inscribed}};
+}
+[[nodiscard]] inline Words<IrisSampling> words_of(IrisSampling) {
+    return {{"formula", IrisSampling::Formula},
+            {"rejection", IrisSampling::Rejection},
+            {"triangles", IrisSampling::Triangles}};
+}
+[[nodiscard]] inline Words<ExposureMode> words_of(ExposureMode) {
+    return {{"normalised", ExposureMode::Normalised}, {"photographic", ExposureMode::Photographic}};
+}
+[[nodiscard]] inline Words<Fit> words_of(Fit) {
+    return {{"lens", Fit::Lens}, {"fov", Fit::Fov}};
+}
+
+template <class T>
+[[nodiscard]] std::string word_of(T value) {
+    for (const auto& [word, choice] : words_of(value))
+        if (choice == value) return word;
+    return "";
+}
+
+}  // namespace petzval

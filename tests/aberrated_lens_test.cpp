@@ -123,6 +123,34 @@ TEST(AberratedLens, BlurIsTheCircleOfConfusion) {
     }
 }
 
+// Rays leave through the shape, upright and not mirrored, all over it.
+TEST(AberratedLens, IrisShapesTheBundle) {
+    const Iris iris(regular_polygon(3, 20), 8);
+    AberratedLens lens = plain(constant(1.5), 0.5, 8, 2);
+    lens.iris = iris;
+    const AberratedLensCamera aberrated(lens);
+    const ThinLensCamera ideal({look_at({0, 0, 0}, {0, 0, -1}), 0.4f, 1.5f, iris, 2});
+    const auto expect_shape = [&](const Camera& camera) {
+        V2f lowest(100), highest(-100);
+        for (uint32_t i = 0; i < 4096; ++i) {
+            const V3f& from = camera.sample(at({0.5f, 0.5f}, i), Bands::rgb()).path[0].ray.origin;
+            // A little smaller, as points on the very edge may fall on either side of it.
+            const V2f mm = V2f(from.x, from.y) * 999.9f;
+            EXPECT_EQ(iris.transmits(mm), 1) << mm.x << ' ' << mm.y;
+            lowest = V2f(std::fmin(lowest.x, mm.x), std::fmin(lowest.y, mm.y));
+            highest = V2f(std::fmax(highest.x, mm.x), std::fmax(highest.y, mm.y));
+        }
+        // Tips at 110, 230 and 350 degrees; of the area of a disk of 8 mm.
+        const double r = 8 * std::sqrt(M_PI * 4 / (3 * std::sqrt(3.)));
+        EXPECT_NEAR(highest.y, r * std::sin(110 * M_PI / 180), 0.3);
+        EXPECT_NEAR(lowest.y, r * std::sin(230 * M_PI / 180), 0.3);
+        EXPECT_NEAR(highest.x, r * std::cos(350 * M_PI / 180), 0.3);
+        EXPECT_NEAR(lowest.x, r * std::cos(230 * M_PI / 180), 0.3);
+    };
+    expect_shape(aberrated);
+    expect_shape(ideal);
+}
+
 // A point at the distance in focus, traced to the axis behind the lens at several h and lambda.
 TEST(AberratedLens, AxisCrossingsShowTheFormulasAberration) {
     for (const double focus_m : {0.1, 0.4, kInf})

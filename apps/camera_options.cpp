@@ -60,12 +60,9 @@ void add_lens_options(CLI::App& app, CameraOptions& o) {
     group(add_choice<ApertureScale>(
         app, "--aperture-scale", r.aperture_scale, words_of(ApertureScale()),
         "area (default): the round stop's area; inscribed: inside the round stop"));
-    group(add_choice<std::optional<IrisSampling>>(
-        app, "--iris-sampling", r.iris_sampling,
-        {{"formula", IrisSampling::Formula},
-         {"rejection", IrisSampling::Rejection},
-         {"triangles", IrisSampling::Triangles}},
-        "formula, rejection, triangles (default: the best that the shape has)"));
+    group(add_choice<IrisSampling>(
+        app, "--iris-sampling", r.iris_sampling, words_of(IrisSampling()),
+        "formula, rejection, triangles, alias (default: the best that the shape has)"));
     group(add_choice<Chroma>(app, "--chroma", r.chroma, words_of(Chroma()),
                              "wavelengths that leave the lens apart: auto (default), shared, "
                              "split, single"));

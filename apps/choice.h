@@ -14,10 +14,11 @@ namespace petzval {
 template <class T>
 using Choices = std::vector<std::pair<std::string, T>>;
 
-/// Any other word ends with exit code 2 and the list of the known ones. value must outlive parsing.
-template <class T>
-CLI::Option* add_choice(CLI::App& app, const std::string& name, T& value, const Choices<T>& choices,
-                        const std::string& help) {
+/// Any other word ends with exit code 2 and the list of the known ones. value, a T or something
+/// that one can be assigned to, must outlive parsing.
+template <class T, class Value>
+CLI::Option* add_choice(CLI::App& app, const std::string& name, Value& value,
+                        const Choices<T>& choices, const std::string& help) {
     const auto read = [=, &value](const std::string& text) {
         std::string known;
         for (const auto& [word, choice] : choices) {

@@ -79,16 +79,20 @@ std::vector<IrisSampling> iris_samplings(const ApertureShape& shape) {
     using enum IrisSampling;
     const auto* polygon = std::get_if<Polygon>(&shape);
     if (!polygon) return {Formula, Rejection};
-    if (PolygonIris::has_formula(*polygon)) return {Formula, Triangles, Rejection};
-    return {Triangles, Rejection};
+    if (PolygonIris::has_formula(*polygon)) return {Formula, Triangles, Alias, Rejection};
+    return {Triangles, Alias, Rejection};
 }
 
 Iris::Shape Iris::scaled(const ApertureShape& shape, double mm, IrisSampling sampling) {
     const auto polygon_of = [&](Polygon polygon) {
         for (auto& contour : polygon.contours)
             for (V2d& p : contour) p *= mm;
-        return PolygonIris(
-            polygon, sampling != IrisSampling::Triangles && PolygonIris::has_formula(polygon));
+        PolygonDraw how = PolygonDraw::RunningSum;
+        if (sampling == IrisSampling::Alias)
+            how = PolygonDraw::Alias;
+        else if (sampling != IrisSampling::Triangles && PolygonIris::has_formula(polygon))
+            how = PolygonDraw::Formula;
+        return PolygonIris(polygon, how);
     };
     return std::visit(Overloaded{[&](const Disk&) {
                                      return Shape(Round{mm, static_cast<float>(mm)});

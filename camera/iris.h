@@ -17,9 +17,9 @@ enum class ApertureScale : uint8_t { EqualArea, Inscribed };
 
 /// How points are drawn. All are uniform by area (a mask: in proportion to its transmission).
 /// Formula: in closed form (circle, triangle, parallelogram) or by the inverse of a mask's running
-/// sums. Triangles: one is chosen by the running sum of their areas, then a point of it. Rejection:
-/// points of the bounding box until one is inside.
-enum class IrisSampling : uint8_t { Formula, Triangles, Rejection };
+/// sums. Triangles: one is chosen by the running sum of their areas, then a point of it. Alias: the
+/// same by an alias table. Rejection: points of the bounding box until one is inside.
+enum class IrisSampling : uint8_t { Formula, Triangles, Alias, Rejection };
 
 /// Those that a shape has; the first keeps stratification best. Circle and mask have no triangles,
 /// other polygons no formula.

@@ -83,10 +83,10 @@ PolygonRaster::PolygonRaster(const Polygon& polygon, std::span<const Trapezoid> 
         }
 }
 
-PolygonIris::PolygonIris(const Polygon& polygon, bool formula)
-    : formula_(formula), trapezoids_(trapezoids(polygon)), raster_(polygon, trapezoids_) {
+PolygonIris::PolygonIris(const Polygon& polygon, PolygonDraw how)
+    : how_(how), trapezoids_(trapezoids(polygon)), raster_(polygon, trapezoids_) {
     for (const Trapezoid& t : trapezoids_) area_ += t.area();
-    if (formula) {
+    if (how == PolygonDraw::Formula) {
         const auto& p = polygon.contours[0];
         parallelogram_ = p.size() == 4;
         corner_ = rounded(p[0]);
@@ -106,7 +106,10 @@ PolygonIris::PolygonIris(const Polygon& polygon, bool formula)
     // turns of one and the other would leave the half to the last bits of u.x.
     for (const Trapezoid& t : trapezoids_) add(t.corner(0), t.corner(1), t.corner(2));
     for (const Trapezoid& t : trapezoids_) add(t.corner(2), t.corner(3), t.corner(0));
-    choice_ = Piecewise1D(areas);
+    if (how == PolygonDraw::Alias)
+        aliases_ = AliasTable(areas);
+    else
+        choice_ = Piecewise1D(areas);
 }
 
 bool PolygonIris::has_formula(const Polygon& polygon) {

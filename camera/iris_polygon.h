@@ -5,6 +5,7 @@
 #include <span>
 
 #include "camera/trapezoids.h"
+#include "core/alias_table.h"
 #include "core/distribution.h"
 #include "core/warp.h"
 
@@ -40,14 +41,31 @@ class PolygonRaster {
     std::vector<Piece> pieces_;
 };
 
+/// How points of a polygon are drawn: in closed form, or from triangles, of which one is chosen by
+/// the running sum of their areas or by an alias table.
+enum class PolygonDraw : uint8_t { Formula, RunningSum, Alias };
+
 class PolygonIris {
   public:
-    /// A polygon without fault, in millimetres. formula: needs has_formula().
-    PolygonIris(const Polygon&, bool formula);
+    /// A polygon without fault, in millimetres. Formula needs has_formula().
+    PolygonIris(const Polygon&, PolygonDraw);
     /// Triangles and parallelograms.
     [[nodiscard]] static bool has_formula(const Polygon&);
 
-    [[nodiscard]] V2f draw(V2f u) const { return formula_ ? by_formula(u) : by_triangles(u); }
+    [[nodiscard]] V2f draw(V2f u) const {
+        switch (how_) {
+            case PolygonDraw::Formula:
+                return by_formula(u);
+            case PolygonDraw::RunningSum: {
+                const Piecewise1D::Draw draw = choice_.sample(u.x);
+                return in_triangle(draw.cell, draw.offset, u.y);
+            }
+            case PolygonDraw::Alias:
+                break;
+        }
+        const AliasTable::Draw draw = aliases_.sample(u.x);
+        return in_triangle(draw.cell, draw.offset, u.y);
+    }
     [[nodiscard]] float transmits(V2f p) const { return raster_.holds(p) ? 1.f : 0.f; }
     [[nodiscard]] float peak() const { return 1.f; }
     [[nodiscard]] V2f lower() const { return raster_.lower(); }
@@ -66,15 +84,16 @@ class PolygonIris {
         }
         return corner_ + sides_[0] * u.x + sides_[1] * u.y;
     }
-    // u.x rises with the triangles and within each, u.y runs across them: neighbours stay such.
-    [[nodiscard]] V2f by_triangles(V2f u) const {
-        const Piecewise1D::Draw draw = choice_.sample(u.x);
-        const Triangle& t = triangles_[draw.cell];
-        const float root = std::sqrt(u.y);
-        return t.apex + t.to_first * root + t.first_to_second * (root * draw.offset);
+    // By the running sum u.x rises with the triangles and within each, u.y runs across them:
+    // neighbours stay such.
+    [[nodiscard]] V2f in_triangle(size_t which, float along, float across) const {
+        const Triangle& t = triangles_[which];
+        const float root = std::sqrt(across);
+        return t.apex + t.to_first * root + t.first_to_second * (root * along);
     }
 
-    bool formula_, parallelogram_ = false;
+    PolygonDraw how_;
+    bool parallelogram_ = false;
     V2f corner_;
     V2f sides_[2];
     double area_ = 0;
@@ -82,6 +101,7 @@ class PolygonIris {
     PolygonRaster raster_;
     std::vector<Triangle> triangles_;
     Piecewise1D choice_;
+    AliasTable aliases_;
 };
 
 inline bool PolygonRaster::holds(V2f p) const {

@@ -26,7 +26,8 @@ using Words = std::vector<std::pair<std::string, T>>;
 [[nodiscard]] inline Words<IrisSampling> words_of(IrisSampling) {
     return {{"formula", IrisSampling::Formula},
             {"rejection", IrisSampling::Rejection},
-            {"triangles", IrisSampling::Triangles}};
+            {"triangles", IrisSampling::Triangles},
+            {"alias", IrisSampling::Alias}};
 }
 [[nodiscard]] inline Words<ExposureMode> words_of(ExposureMode) {
     return {{"normalised", ExposureMode::Normalised}, {"photographic", ExposureMode::Photographic}};

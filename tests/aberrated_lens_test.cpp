@@ -133,7 +133,7 @@ TEST(AberratedLens, IrisShapesTheBundle) {
     const auto expect_shape = [&](const Camera& camera) {
         V2f lowest(100), highest(-100);
         for (uint32_t i = 0; i < 4096; ++i) {
-            const V3f& from = camera.sample(at({0.5f, 0.5f}, i), Bands::rgb()).path[0].ray.origin;
+            const V3f from = camera.sample(at({0.5f, 0.5f}, i), Bands::rgb()).path[0].ray.origin;
             // A little smaller, as points on the very edge may fall on either side of it.
             const V2f mm = V2f(from.x, from.y) * 999.9f;
             EXPECT_EQ(iris.transmits(mm), 1) << mm.x << ' ' << mm.y;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/distribution.h"
+#include "core/alias_table.h"
 
 #include "tests/support/chi_square.h"
 
@@ -128,6 +129,28 @@ TEST(Piecewise2D, KeepsStrataApart) {
         EXPECT_NEAR((drawn.column + drawn.offset.x) / 7, u.x, 1e-5);
         EXPECT_NEAR((drawn.row + drawn.offset.y) / 5, u.y, 1e-5);
     }
+}
+
+// Over a fine grid of u each cell comes up in proportion, with offsets that fill [0, 1).
+TEST(AliasTable, DrawsByWeightAndLeavesAUniformNumber) {
+    const std::vector<float> weights = {3, 0, 1, 0.5f, 0, 7, 1e-3f, 2};
+    const AliasTable table(weights);
+    constexpr int kSteps = 1 << 20;
+    std::vector<double> count(weights.size()), offsets(weights.size());
+    for (int i = 0; i < kSteps; ++i) {
+        const auto [cell, offset] = table.sample((i + 0.5f) / kSteps);
+        ASSERT_LT(cell, weights.size());
+        ASSERT_TRUE(offset >= 0 && offset < 1);
+        count[cell] += 1;
+        offsets[cell] += offset;
+    }
+    for (size_t i = 0; i < weights.size(); ++i) {
+        EXPECT_NEAR(count[i] / kSteps, weights[i] / 13.501, 16. / kSteps) << i;
+        if (count[i] < 1000) continue;
+        EXPECT_NEAR(offsets[i] / count[i], 0.5, 1e-3) << i;
+    }
+    const AliasTable one(std::vector<float>{5});
+    EXPECT_EQ(one.sample(0.999999f).cell, 0u);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ struct Spokes {
     /// The farthest that pass. To the last digits, so that spots change smoothly with the lens.
     [[nodiscard]] double rim_mm() const {
         double low = 0, high = 2 * lens.prescription().surfaces.front().semi_diameter_mm;
-        while (high - low > 1e-13 * high) {
+        for (int i = 0; i < 48; ++i) {
             const double middle = (low + high) / 2;
             (trace(middle) ? low : high) = middle;
         }

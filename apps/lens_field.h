@@ -25,8 +25,8 @@ inline constexpr std::array<SpectralLine, 3> kSpectralLines{
 
 struct FieldRequest {
     LensRequest request;
-    std::string fields;      ///< degrees with commas between them
-    std::string focus;       ///< metres
+    std::string fields;  ///< degrees with commas between them
+    std::string focus;   ///< metres
     std::optional<FocusBy> focus_by;
     std::string film_shift;  ///< mm, or best
     std::string section = "y";
@@ -41,8 +41,8 @@ struct FieldSetup {
     double film_mm = 0;
     Section section = Section::Y;
 };
-/// Opens the lens. shares: of the half field, where --field does not say. Throws CLI::ValidationError, or
-/// ArgumentError where the lens has no such thing.
+/// Opens the lens. shares: of the half field, where --field does not say. Throws
+/// CLI::ValidationError, or ArgumentError where the lens has no such thing.
 [[nodiscard]] FieldSetup set_up(const FieldRequest&, const std::vector<double>& shares);
 
 /// Throws ArgumentError where no ray of that field passes the middle of the stop.

@@ -12,8 +12,8 @@ namespace petzval {
 /// of the entrance pupil that passes. The centroid lies on the axis: lenses have two planes of
 /// symmetry at least.
 struct AxialSpot {
-    double square_mm2 = 0;   ///< of the distance from the axis
-    double product_mm = 0;   ///< of that and of its change per mm of film
+    double square_mm2 = 0;  ///< of the distance from the axis
+    double product_mm = 0;  ///< of that and of its change per mm of film
     double slope_square = 0;
 
     /// In a plane that lies this far behind the film.

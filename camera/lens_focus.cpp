@@ -144,8 +144,7 @@ std::optional<Prescription> focused(const Lens& lens, double object_mm, FocusBy 
                                     double stop_radius_mm) {
     const Prescription& filed = lens.prescription();
     const auto& group = filed.focus_group;
-    auto sharp =
-        group ? group_focused(filed, *group, object_mm) : film_focused(filed, object_mm);
+    auto sharp = group ? group_focused(filed, *group, object_mm) : film_focused(filed, object_mm);
     if (!sharp || by == FocusBy::Paraxial) return sharp;
     if (group) return group_at_best_spot(*sharp, *group, object_mm, stop_radius_mm);
     const Lens there(*sharp);

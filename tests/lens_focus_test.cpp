@@ -143,8 +143,7 @@ TEST(LensFocus, ANarrowIrisFocusesNearTheAxis) {
         double sum = 0, weights = 0;
         for (const double nm : {kLineF_nm, kLineD_nm, kLineC_nm}) {
             const FirstOrder f = first_order(Lens(paraxial), nm);
-            const double slope =
-                f.exit_pupil_diameter_mm / 2 / (f.back_focus_mm - f.exit_pupil_mm);
+            const double slope = f.exit_pupil_diameter_mm / 2 / (f.back_focus_mm - f.exit_pupil_mm);
             sum += slope * slope * (f.back_focus_mm - film_gap(paraxial));
             weights += slope * slope;
         }
@@ -198,6 +197,7 @@ TEST(LensFocus, NothingWhereNoRayPassesOrThePointIsTooNear) {
     for (const FocusBy by : {FocusBy::Paraxial, FocusBy::Traced}) {
         EXPECT_FALSE(focused(lens, first_order(lens, kLineD_nm).front_focus_mm + 0.01, by));
         EXPECT_FALSE(focused(lens, 10, by));
+        EXPECT_FALSE(focused(lens, 200, by));  // light that converges is no object in front
         EXPECT_FALSE(focused(shipped("nikkor-400mm-f2.8-fl"), -300, by));
     }
 }

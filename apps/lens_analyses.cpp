@@ -30,7 +30,7 @@ struct AnalysisOptions {
     double most_cycles = 100, image_circle_mm = 0;
 };
 
-using Analysis = std::function<Found(const std::shared_ptr<const Lens>&, const AnalysisOptions&)>;
+using Analysis = std::function<Found(const AnalysisOptions&)>;
 
 constexpr double kMicrons = 1000;  // in a mm
 
@@ -61,9 +61,9 @@ void print_spot(double field_deg, const char* line, const SpotSize& size) {
                shown(size.centroid_mm[0]), shown(size.centroid_mm[1]), kMicrons * size.rms_mm);
 }
 
-Found spot_analysis(const std::shared_ptr<const Lens>& lens, const AnalysisOptions& o) {
+Found spot_analysis(const AnalysisOptions& o) {
     constexpr int side = 300, drawn_side = 28;
-    const FieldSetup setup = set_up(*lens, o.field, {0, 0.7, 1});
+    const FieldSetup setup = set_up(o.field, {0, 0.7, 1});
     Found out;
     out.names = {"field_deg", "nm", "x_mm", "y_mm"};
     std::vector<PlotSeries> series;
@@ -78,9 +78,9 @@ Found spot_analysis(const std::shared_ptr<const Lens>& lens, const AnalysisOptio
         std::vector<BeamRay> all;
         drawn.emplace_back();
         for (const SpectralLine& line : kSpectralLines) {
-            const Beam beam = aim(*lens, setup, deg, line.nm);
+            const Beam beam = aim(setup, deg, line.nm);
             const auto rays = traced(beam, setup.film_mm, side);
-            if (rays.empty()) refuse_dark(*lens, deg);
+            if (rays.empty()) refuse_dark(*setup.lens, deg);
             print_spot(deg, line.name, spot_size(rays));
             append(all, rays);
             drawn.back().push_back(traced(beam, setup.film_mm, drawn_side));
@@ -106,7 +106,7 @@ Found spot_analysis(const std::shared_ptr<const Lens>& lens, const AnalysisOptio
                      kMicrons * (ray.film_mm[1] - sizes[i].centroid_mm[1])});
             }
     }
-    out.plot = {.title = title_of(*lens, "spots of the fields " + fields + ", left to right"),
+    out.plot = {.title = title_of(*setup.lens, "spots of the fields " + fields + ", left to right"),
                 .x_label = "x from each centroid (µm)",
                 .y_label = "y from the centroid (µm)",
                 .series = std::move(series),
@@ -114,25 +114,25 @@ Found spot_analysis(const std::shared_ptr<const Lens>& lens, const AnalysisOptio
     return out;
 }
 
-Found fan_analysis(const std::shared_ptr<const Lens>& lens, const AnalysisOptions& o) {
-    const FieldSetup setup = set_up(*lens, o.field, {0.7});
+Found fan_analysis(const AnalysisOptions& o) {
+    const FieldSetup setup = set_up(o.field, {0.7});
     const Section other = setup.section == Section::X ? Section::Y : Section::X;
     Found out;
     out.names = {"field_deg", "nm", "tangential", "stop_radii", "dx_mm", "dy_mm"};
     for (const double deg : setup.fields_deg) {
-        const Beam main = aim(*lens, setup, deg, kLineD_nm);
+        const Beam main = aim(setup, deg, kLineD_nm);
         const Launch chief = main.chief();
         const auto centre = main.trace({&chief, 1}, setup.film_mm, Clip::No);
-        if (centre.empty()) refuse_dark(*lens, deg);
+        if (centre.empty()) refuse_dark(*setup.lens, deg);
         for (const Section along : {setup.section, other})
             for (const SpectralLine& line : kSpectralLines) {
                 const bool tangential = along == setup.section;
                 PlotSeries series{{}, PlotStyle::Lines, {}};
                 series.label = fmt::format("{:.4g}° {} {}", deg, line.name,
                                            tangential ? "tangential" : "sagittal");
-                const Beam beam = aim(*lens, setup, deg, line.nm);
+                const Beam beam = aim(setup, deg, line.nm);
                 for (const FanPoint& point :
-                     ray_fan(*lens, beam, along, setup.film_mm, centre[0].film_mm)) {
+                     ray_fan(*setup.lens, beam, along, setup.film_mm, centre[0].film_mm)) {
                     series.points.push_back(
                         {point.stop, kMicrons * point.from_mm[along == Section::X ? 0 : 1]});
                     out.rows.push_back({deg, line.nm, double(tangential), point.stop,
@@ -141,23 +141,23 @@ Found fan_analysis(const std::shared_ptr<const Lens>& lens, const AnalysisOption
                 out.plot.series.push_back(std::move(series));
             }
     }
-    out.plot.title = title_of(*lens, "ray fans");
+    out.plot.title = title_of(*setup.lens, "ray fans");
     out.plot.x_label = "where the ray crosses the stop (radii)";
     out.plot.y_label = "from the chief ray of line d on the film (µm)";
     return out;
 }
 
-Found mtf_analysis(const std::shared_ptr<const Lens>& lens, const AnalysisOptions& o) {
+Found mtf_analysis(const AnalysisOptions& o) {
     constexpr int side = 100, steps = 50;
-    const FieldSetup setup = set_up(*lens, o.field, {0, 0.7, 1});
+    const FieldSetup setup = set_up(o.field, {0, 0.7, 1});
     const Section other = setup.section == Section::X ? Section::Y : Section::X;
     Found out;
     out.names = {"field_deg", "cycles_per_mm", "tangential", "sagittal"};
     for (const double deg : setup.fields_deg) {
         std::vector<BeamRay> rays;
         for (const SpectralLine& line : kSpectralLines)
-            append(rays, traced(aim(*lens, setup, deg, line.nm), setup.film_mm, side));
-        if (rays.empty()) refuse_dark(*lens, deg);
+            append(rays, traced(aim(setup, deg, line.nm), setup.film_mm, side));
+        if (rays.empty()) refuse_dark(*setup.lens, deg);
         PlotSeries tangential{{}, PlotStyle::Lines, fmt::format("{:.4g}° tangential", deg)};
         PlotSeries sagittal{{}, PlotStyle::Lines, fmt::format("{:.4g}° sagittal", deg)};
         for (int i = 0; i <= steps; ++i) {
@@ -171,23 +171,24 @@ Found mtf_analysis(const std::shared_ptr<const Lens>& lens, const AnalysisOption
         out.plot.series.push_back(std::move(tangential));
         out.plot.series.push_back(std::move(sagittal));
     }
-    out.plot.title = title_of(*lens, "geometric MTF (no diffraction), F + d + C");
+    out.plot.title = title_of(*setup.lens, "geometric MTF (no diffraction), F + d + C");
     out.plot.x_label = "cycles per mm on the film";
     out.plot.y_label = "contrast";
     return out;
 }
 
-Found distortion_analysis(const std::shared_ptr<const Lens>& lens, const AnalysisOptions& o) {
+Found distortion_analysis(const AnalysisOptions& o) {
     constexpr double widest_deg = 89;
     std::vector<double> shares;
     for (int i = 1; i <= 40; ++i) shares.push_back(i / 40.);
-    const FieldSetup setup = set_up(*lens, o.field, shares);
+    const FieldSetup setup = set_up(o.field, shares);
     Found out;
     out.names = {"field_deg", "height_mm", "ideal_height_mm", "distortion"};
     PlotSeries series{{}, PlotStyle::LinesAndPoints, {}};
     for (const double deg : setup.fields_deg) {
         if (deg <= 0 || deg > widest_deg) continue;  // f tan(field) ends at 90
-        const auto found = distortion(*lens, deg, setup.film_mm, setup.distance_mm, setup.section);
+        const auto found =
+            distortion(*setup.lens, deg, setup.film_mm, setup.distance_mm, setup.section);
         if (!found) continue;
         out.rows.push_back({deg, found->height_mm, found->ideal_height_mm, found->relative()});
         series.points.push_back({deg, 100 * found->relative()});
@@ -197,24 +198,24 @@ Found distortion_analysis(const std::shared_ptr<const Lens>& lens, const Analysi
                             fmt::format("no field above 0° and up to {:g}° reaches the film; give "
                                         "other ones by --field",
                                         widest_deg));
-    out.plot = {.title = title_of(*lens, "distortion at line d"),
+    out.plot = {.title = title_of(*setup.lens, "distortion at line d"),
                 .x_label = "field (degrees)",
                 .y_label = "height on the film against f tan(field) (%)",
                 .series = {std::move(series)}};
     return out;
 }
 
-Found vignetting_analysis(const std::shared_ptr<const Lens>& lens, const AnalysisOptions& o) {
+Found vignetting_analysis(const AnalysisOptions& o) {
     constexpr int steps = 32;
-    const FieldSetup setup = set_up(*lens, o.field, {});
+    const FieldSetup setup = set_up(o.field, {});
     const double circle_mm =
-        o.image_circle_mm > 0 ? o.image_circle_mm : lens->prescription().image_circle_mm;
+        o.image_circle_mm > 0 ? o.image_circle_mm : setup.lens->prescription().image_circle_mm;
     if (!(circle_mm > 0))
         throw ArgumentError(o.field.request.lens, "",
                             "does not state its image circle; give --image-circle");
     std::vector<double> heights;
     for (int i = 0; i <= steps; ++i) heights.push_back(circle_mm / 2 * i / steps);
-    const auto light = film_irradiance(lens, setup.film_mm, heights, setup.section);
+    const auto light = film_irradiance(setup.lens, setup.film_mm, heights, setup.section);
     if (!(light[0] > 0))
         throw ArgumentError(o.field.request.lens, "", "no light reaches the middle of the film");
     Found out;
@@ -224,7 +225,7 @@ Found vignetting_analysis(const std::shared_ptr<const Lens>& lens, const Analysi
         out.rows.push_back({heights[i], light[i], light[i] / light[0]});
         series.points.push_back({heights[i], 100 * light[i] / light[0]});
     }
-    out.plot = {.title = title_of(*lens, "vignetting, wide open, line d"),
+    out.plot = {.title = title_of(*setup.lens, "vignetting, wide open, line d"),
                 .x_label = "height on the film (mm)",
                 .y_label = "irradiance against the middle (%)",
                 .series = {std::move(series)}};
@@ -243,7 +244,7 @@ std::shared_ptr<AnalysisOptions> add_analysis(CLI::App& lens, const char* name, 
     command->callback([options, analyse] {
         check_plot(options->plot);
         if (!options->csv.empty()) check_writable(options->csv);
-        const Found found = analyse(open_lens(options->field.request), *options);
+        const Found found = analyse(*options);
         write_plot(options->plot, found.plot);
         if (!options->csv.empty())
             write_file_atomically(options->csv, csv_text(found.names, found.rows));

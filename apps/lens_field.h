@@ -11,6 +11,7 @@
 #include "apps/lens_request.h"
 #include "apps/parse.h"
 #include "camera/beam.h"
+#include "camera/lens_focus.h"
 
 namespace petzval {
 
@@ -24,26 +25,27 @@ inline constexpr std::array<SpectralLine, 3> kSpectralLines{
 
 struct FieldRequest {
     LensRequest request;
-    std::string fields;      ///< degrees with commas between them
-    std::string focus;       ///< metres
+    std::string fields;  ///< degrees with commas between them
+    std::string focus;   ///< metres
+    std::optional<FocusBy> focus_by;
     std::string film_shift;  ///< mm, or best
     std::string section = "y";
 };
-/// The lens, --focus, --film-shift, --section; and --field.
+/// The lens, --focus, --focus-by, --film-shift, --section; and --field.
 void add_field_request(CLI::App&, FieldRequest&, bool with_fields = true);
 
 struct FieldSetup {
+    std::shared_ptr<const Lens> lens;  ///< in focus; as filed where the request is silent
     std::vector<double> fields_deg;
-    double distance_mm = 0;  ///< infinite by default
+    double distance_mm = 0;  ///< from the lens's entrance pupil; infinite by default
     double film_mm = 0;
     Section section = Section::Y;
 };
-/// shares: of the half field, where --field does not say. Throws CLI::ValidationError, or
-/// ArgumentError where the lens has no such thing.
-[[nodiscard]] FieldSetup set_up(const Lens&, const FieldRequest&,
-                                const std::vector<double>& shares);
+/// Opens the lens. shares: of the half field, where --field does not say. Throws
+/// CLI::ValidationError, or ArgumentError where the lens has no such thing.
+[[nodiscard]] FieldSetup set_up(const FieldRequest&, const std::vector<double>& shares);
 
 /// Throws ArgumentError where no ray of that field passes the middle of the stop.
-[[nodiscard]] Beam aim(const Lens&, const FieldSetup&, double field_deg, double nm);
+[[nodiscard]] Beam aim(const FieldSetup&, double field_deg, double nm);
 
 }  // namespace petzval

@@ -37,18 +37,18 @@ Outline path_of(const Lens& lens, const Beam& beam, Launch launch, double film_m
 
 void draw_command(const DrawOptions& o) {
     check_drawing(o.out);
-    const auto lens = open_lens(o.field.request);
-    const FieldSetup setup = set_up(*lens, o.field, {0, 0.7});
+    const FieldSetup setup = set_up(o.field, {0, 0.7});
+    const Lens& lens = *setup.lens;
     LensDrawing drawing{
         .section = setup.section, .film_mm = setup.film_mm, .rays = {}, .caption = {}};
-    drawing.film_radius_mm = lens->prescription().image_circle_mm / 2;
+    drawing.film_radius_mm = lens.prescription().image_circle_mm / 2;
     const double lead_mm = 0.25 * setup.film_mm;
     const size_t tangential = 1;
     std::string fields;
     for (const double deg : setup.fields_deg) {
         fields += fmt::format("{}{:.4g}°", fields.empty() ? "" : ", ", deg);
         for (const SpectralLine& line : kSpectralLines) {
-            const Beam beam = aim(*lens, setup, deg, line.nm);
+            const Beam beam = aim(setup, deg, line.nm);
             for (int i = 0; i < o.rays; ++i) {
                 Launch launch = beam.chief();
                 const double least = beam.least()[tangential], most = beam.most()[tangential];
@@ -58,17 +58,17 @@ void draw_command(const DrawOptions& o) {
                     launch[tangential] = least + (most - least) * at;
                 }
                 drawing.rays.push_back(
-                    {path_of(*lens, beam, launch, setup.film_mm, lead_mm), line.colour});
-                if (drawing.rays.back().path.size() == size_t(lens->size()) + 2)
+                    {path_of(lens, beam, launch, setup.film_mm, lead_mm), line.colour});
+                if (drawing.rays.back().path.size() == size_t(lens.size()) + 2)
                     drawing.film_radius_mm = std::max(drawing.film_radius_mm,
                                                       std::abs(drawing.rays.back().path.back()[1]));
             }
         }
     }
-    const Prescription& file = lens->prescription();
+    const Prescription& file = lens.prescription();
     drawing.caption = fmt::format("{}: fields {}; rays of F (blue), d (yellow), C (red)",
                                   file.title.empty() ? file.name : file.title, fields);
-    write_drawing(o.out, *lens, drawing);
+    write_drawing(o.out, lens, drawing);
 }
 
 struct TraceOptions {

@@ -12,6 +12,7 @@
 #include "apps/lens_request.h"
 #include "apps/parse.h"
 #include "camera/analysis.h"
+#include "camera/lens_focus.h"
 #include "io/error.h"
 #include "io/lens_file.h"
 
@@ -72,6 +73,7 @@ constexpr std::array<std::pair<const char*, double>, 3> kLines{
 
 struct Check {
     std::vector<std::pair<std::string, FirstOrder>> first_order;  ///< by line, and by section
+    double traced_fnumber;                                        ///< the smallest, by real rays
     std::optional<double> field_deg;                              ///< of the Seidel sums
     std::optional<Seidel> seidel;
     std::vector<StatedFigure> stated;
@@ -79,6 +81,8 @@ struct Check {
 
 Check check(const Lens& lens) {
     Check out;
+    const auto stop = static_cast<size_t>(lens.stop());
+    out.traced_fnumber = fnumber_of(lens, lens.prescription().surfaces[stop].semi_diameter_mm);
     for (const auto& [name, nm] : kLines) {
         const std::string line = fmt::format("{} {:.4f} nm", name, nm);
         if (!has_cylinders(lens)) {
@@ -121,6 +125,8 @@ void print_check(const Lens& lens, const Check& c) {
         for (const auto& [line, data] : c.first_order) fmt::print(" {:>16.6f}", data.*member);
         fmt::print("\n");
     }
+    fmt::print("\nsmallest f-number by real rays, 1 / (2 sin u') at line d: {:.4f}\n",
+               c.traced_fnumber);
     if (c.seidel) {
         fmt::print("\nSeidel sums (mm), wide open, {}\n{:>7}",
                    c.field_deg ? fmt::format("half field {:g}°", *c.field_deg)
@@ -149,6 +155,7 @@ Json json_of(const Lens& lens, const Check& c) {
     out["name"] = lens.prescription().name;
     for (const auto& [line, data] : c.first_order)
         for (const auto& [name, member] : kFigures) out["first_order"][line][name] = data.*member;
+    out["fnumber_by_real_rays"] = c.traced_fnumber;
     out["seidel"] = nullptr;
     if (c.seidel) {
         Json& sums = out["seidel"] = Json::object();

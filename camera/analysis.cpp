@@ -4,11 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 
-#include "camera/beam.h"
 #include "camera/lens_camera.h"
-#include "camera/spot.h"
 
 namespace petzval {
 namespace {
@@ -20,39 +17,15 @@ double object_mm(const Lens& lens, double distance_mm, Section section) {
     return first_order(lens, kLineD_nm, section).entrance_pupil_mm - distance_mm;
 }
 
-/// Where the ray through the middle of the stop arrives; NaN where it does not.
-double chief_height_mm(const Lens& lens, const ObjectPoint& object, double film_mm) {
-    const auto beam = Beam::aim(lens, object, kLineD_nm);
-    if (!beam) return NAN;
-    const Launch chief = beam->chief();
-    const auto rays = beam->trace({&chief, 1}, film_mm, Clip::No);
-    return rays.empty() ? NAN : rays[0].film_mm[object.section == Section::X ? 0 : 1];
-}
-
 }  // namespace
 
-double film_focused_mm(const Lens& lens, double distance_mm) {
-    if (!std::isfinite(distance_mm)) return lens.film_mm();
-    const FirstOrder first = first_order(lens, kLineD_nm);
-    const double object = object_mm(lens, distance_mm, Section::Y);
-    if (!(object < std::min(first.front_focus_mm, 0.)))
-        throw std::invalid_argument(
-            "the plane of focus is too near: it must lie before the lens "
-            "and its front focus");
-    return lens.film_mm() + image_of(lens, object, kLineD_nm).from_last_vertex_mm -
-           first.back_focus_mm;
-}
-
-double best_film_shift_mm(const Lens& lens, double film_mm, double distance_mm) {
-    std::vector<BeamRay> rays;
-    for (const double nm : {kLineF_nm, kLineD_nm, kLineC_nm}) {
-        const auto beam = Beam::aim(lens, {.field_deg = 0, .distance_mm = distance_mm}, nm);
-        if (!beam) continue;
-        const auto more = beam->trace(beam->grid(300), film_mm);
-        rays.insert(rays.end(), more.begin(), more.end());
-    }
-    if (rays.empty()) throw std::invalid_argument("no ray along the axis reaches the film");
-    return best_shift_mm(rays);
+std::optional<double> chief_height_mm(const Lens& lens, const ObjectPoint& object, double film_mm) {
+    const auto beam = Beam::aim(lens, object, kLineD_nm);
+    if (!beam) return std::nullopt;
+    const Launch chief = beam->chief();
+    const auto rays = beam->trace({&chief, 1}, film_mm, Clip::No);
+    if (rays.empty()) return std::nullopt;
+    return rays[0].film_mm[object.section == Section::X ? 0 : 1];
 }
 
 std::optional<double> field_half_deg(const Prescription& lens) {
@@ -65,8 +38,8 @@ std::optional<double> field_half_deg(const Prescription& lens) {
 
 std::optional<Distortion> distortion(const Lens& lens, double field_deg, double film_mm,
                                      double distance_mm, Section section) {
-    const double height = chief_height_mm(lens, {field_deg, distance_mm, section}, film_mm);
-    if (!std::isfinite(height)) return std::nullopt;
+    const auto height = chief_height_mm(lens, {field_deg, distance_mm, section}, film_mm);
+    if (!height) return std::nullopt;
     const double tangent = std::tan(field_deg * kDegree);
     const double scale_mm =
         std::isfinite(distance_mm)
@@ -74,7 +47,7 @@ std::optional<Distortion> distortion(const Lens& lens, double field_deg, double 
                       .magnification *
                   distance_mm
             : first_order(lens, kLineD_nm, section).focal_length_mm;
-    return Distortion{field_deg, height, scale_mm * tangent};
+    return Distortion{field_deg, *height, scale_mm * tangent};
 }
 
 // Heights grow with the angle as far as a lens is used: halving.
@@ -82,7 +55,9 @@ std::optional<double> field_of_height_deg(const Lens& lens, double height_mm, do
                                           Section section) {
     constexpr double last_deg = 120, step_deg = 2;
     const auto over = [&](double deg) {
-        return chief_height_mm(lens, {.field_deg = deg, .section = section}, film_mm) - height_mm;
+        return chief_height_mm(lens, {.field_deg = deg, .section = section}, film_mm)
+                   .value_or(NAN) -
+               height_mm;
     };
     double low = 0, high = 0;
     do {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a lens is like as a whole: focus, distortion, vignetting, and what its file states of it.
+// What a lens is like as a whole: distortion, vignetting, and what its file states of it.
 #pragma once
 
 #include <memory>
@@ -7,23 +7,20 @@
 #include <string>
 #include <vector>
 
+#include "camera/beam.h"
 #include "camera/lens.h"
 #include "camera/paraxial.h"
 
 namespace petzval {
 
-/// Where the film stands, from the first vertex, when the whole lens is moved to focus on a plane
-/// this far in front of the entrance pupil: the prescription's film moves as the paraxial image
-/// does at line d. std::invalid_argument where that plane lies within the front focus.
-[[nodiscard]] double film_focused_mm(const Lens&, double distance_mm);
-
-/// How far the film must move for the least mean square radius of the spot on the axis, with equal
-/// light of the lines F, d and C. std::invalid_argument where no ray passes.
-[[nodiscard]] double best_film_shift_mm(const Lens&, double film_mm, double distance_mm);
-
 /// The field to which the lens is meant to be used: what its file states, or else its image circle
 /// says; nothing where neither does.
 [[nodiscard]] std::optional<double> field_half_deg(const Prescription&);
+
+/// Where the ray of line d through the middle of the stop meets the film, in the object's section;
+/// nothing where it is lost. No rim stops it.
+[[nodiscard]] std::optional<double> chief_height_mm(const Lens&, const ObjectPoint&,
+                                                    double film_mm);
 
 struct Distortion {
     double field_deg;

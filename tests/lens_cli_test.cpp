@@ -86,6 +86,7 @@ TEST_F(LensCli, ChecksFirstOrderDataAndSeidelSums) {
         EXPECT_NEAR(double(check.at("seidel").at("total")[k]),
                     double(oracle.at("seidel").at("total")[k]), 1e-6)
             << k;
+    EXPECT_NEAR(double(check.at("fnumber_by_real_rays")), 1.9762, 5e-5);  // the oracle's
     const json stated = check.at("stated");
     ASSERT_EQ(stated.size(), 4u);
     EXPECT_EQ(stated[0].at("figure"), "focal length (mm)");
@@ -93,7 +94,8 @@ TEST_F(LensCli, ChecksFirstOrderDataAndSeidelSums) {
 
     const std::string text = output_of({"check", kLens});
     for (const char* part :
-         {"100.003720", "Seidel sums (mm), wide open, half field 14°",
+         {"100.003720", "smallest f-number by real rays, 1 / (2 sin u') at line d: 1.9762",
+          "Seidel sums (mm), wide open, half field 14°",
           "focal length (mm)                          100      100.004    0.004 %"})
         EXPECT_TRUE(holds(text, part)) << text;
     const std::string cylinders = output_of({"check", "schneider-anamorphic-31mm"});
@@ -231,6 +233,35 @@ TEST_F(LensCli, PrintsSpots) {
     EXPECT_TRUE(best.starts_with("film at 139.0")) << best;
     const std::string near = output_of({"spot", kLens, "-o", path("b.svg"), "--focus", "2"});
     EXPECT_TRUE(near.starts_with("film at 144.")) << near;
+}
+
+TEST_F(LensCli, FocusesAsTheRendererDoes) {
+    const auto spot = [&](const char* lens, const Words& more) {
+        Words words{"spot", lens, "-o", path("a.svg"), "--field", "0"};
+        words.insert(words.end(), more.begin(), more.end());
+        const std::string text = output_of(words);
+        double film_mm = 0, rms_um = 0;
+        EXPECT_EQ(std::sscanf(text.c_str(), "film at %lf", &film_mm), 1) << text;
+        const size_t all = text.find("F+d+C");
+        EXPECT_EQ(std::sscanf(text.c_str() + all, "F+d+C %*f %*f %lf", &rms_um), 1) << text;
+        return std::pair(film_mm, rms_um);
+    };
+    // Without a focus group the film moves: to where --film-shift best has it.
+    const auto traced = spot(kLens, {"--focus-by", "traced"});
+    EXPECT_NEAR(traced.first, spot(kLens, {"--film-shift", "best"}).first, 1e-6);
+    EXPECT_NEAR(traced.first, spot(kLens, {}).first - 0.3834, 0.002);
+    EXPECT_EQ(spot(kLens, {"--focus", "2m"}), spot(kLens, {"--focus", "2"}));
+    // With one the film stays, and the group, which takes the entrance pupil along, focuses.
+    constexpr const char* tele = "nikkor-400mm-f2.8-fl";
+    const auto far = spot(tele, {}), near = spot(tele, {"--focus", "8m"}),
+               better = spot(tele, {"--focus", "8m", "--focus-by", "traced"});
+    EXPECT_NEAR(near.first, far.first, 1e-5);
+    EXPECT_NEAR(better.first, far.first, 1e-5);
+    EXPECT_LT(near.second, 7);
+    EXPECT_LT(better.second, 0.95 * near.second);
+    const std::string out = path("a.svg");
+    expect_error({"spot", tele, "-o", out, "--focus", "0.5"}, 2, "too near for the group");
+    expect_error({"spot", tele, "-o", out, "--focus-by", "eye"}, 2, "none of paraxial, traced");
 }
 
 TEST_F(LensCli, PlotsEachAnalysis) {

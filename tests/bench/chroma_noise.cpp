@@ -127,8 +127,8 @@ int run(int argc, char** argv) {
     LensCameraRequest lens;
     std::string size = "240x160", crop_text, focus = "1m";
     RenderJob job;
-    job.end_sample = 16;
-    uint32_t reference_spp = 2048;
+    job.end_sample = 64;
+    uint32_t reference_spp = 1024;
     app.add_option("scene", request.scene)->required();
     app.add_option("--lens", lens.lens)->required();
     app.add_option("--fstop", request.fstop);

@@ -29,7 +29,7 @@ picture() {
     echo "$name: petzval render $* --size $size --spp $spp"
     "$petzval" render "$@" --size "$size" --spp "$spp" --progress none \
         -o "$out/$name.exr" -o "$out/$name.png"
-    oiiotool "$out/$name.png" --ch R,G,B ${shape:+--resize "$shape"} --compression jpeg:82 \
+    oiiotool "$out/$name.png" --ch R,G,B ${shape:+--resize "$shape"} --compression jpeg:78 \
         -o "$out/$name.jpg"
     [[ -z ${GALLERY_DOCS:-} ]] || cp "$out/$name.jpg" "$GALLERY_DOCS/"
 }

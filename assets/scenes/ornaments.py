@@ -3,7 +3,7 @@
 """Makes the scene of sharp and blurred, ornaments before far lamps: python3 ornaments.py out.glb
 
 Metres, y up; the camera "front" stands at the origin and looks along -z; RGB 1 is 1 nit. What is at 1 m is seen on the
-left, what is at 2 m on the right, twice as large, so that both look alike; lamps fill the whole frame 6 m away.
+left, what is at 2 m on the right, twice as large, so that both look alike; lamps fill the whole 3:2 frame 6 m away.
 """
 import math
 import random
@@ -66,7 +66,8 @@ def ornaments(glb):
                                  glb.material("thread", "#d8d8d8", 0.7)))
     black, cream = (14, 14, 16), (238, 232, 216)
     striped = glb.mesh("bars", (card, painted("bars", bars())))
-    for name, glyph, side, z, colour in (("near", "1", -1, NEAR_M, (176, 24, 20)), ("far", "2", 1, FAR_M, (16, 52, 140))):
+    red, blue = (176, 24, 20), (16, 52, 140)
+    for name, glyph, side, z, colour in (("near", "1", -1, NEAR_M, red), ("far", "2", 1, FAR_M, blue)):
         figured = glb.mesh(name + " cube", (cube, painted(name + " figure", figure(glyph, colour, cream))))
         chequered = glb.mesh(name + " ball", (ball, painted(name + " chequers", chequers(black, cream, 16, 8))))
         # In units of the distance: the front of the cube, the limb of the ball and the card are there.

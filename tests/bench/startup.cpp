@@ -152,7 +152,7 @@ int run(int runs) {
         least_ms([&] { return spectra_ms(scene); }), least_ms([&] { return tree_ms(scene); }),
         least_ms([] { return ms_of([] { static_cast<void>(glass_catalog()); }); }));
     fmt::print(
-        "| lens | file | set-up | of which table | to the first ray | median "
+        "| lens | file | set-up | of which table | to the first ray | by the clock "
         "|\n|---|---|---|---|---|---|\n");
     bool kept = true;
     for (const LensSummary& lens : lenses) {

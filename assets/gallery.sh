@@ -74,8 +74,8 @@ shape=
 # What a real lens does to lamps and edges. The fringes are a piece of a large frame, near its corner.
 picture cats_eyes 480x320 $ornaments --lens takumar-50mm-f1.2 --focus 0.6m \
     --look-at -0.12,-0.06,-0.4,-0.12,-0.06,-1
-picture star 480x320 $ornaments --lens double-gauss-100mm-f2 --look-at 0,0,1,0,0,-1 --focus 2m \
-    --aperture star:5
+picture star 480x320 $ornaments --lens double-gauss-100mm-f2 --focus 1m --aperture star:5 \
+    --aperture-scale inscribed --look-at -0.1,-0.06,0,-0.1,-0.06,-1
 picture fringes 1920x1280 $ornaments --lens petzval-portrait-100mm-f3.6 --crop 0,905,420,280 \
     --look-at -0.12,0,1,-0.12,0,-1 --focus 2m
 

@@ -5,12 +5,16 @@ PACKAGES = cmake ninja-build ccache mold libembree-dev libtbb-dev libimath-dev \
     libfmt-dev libcli11-dev libpugixml-dev gnuplot-nox libgtest-dev libgmock-dev libbenchmark-dev
 SOURCES = git ls-files '*.h' '*.cpp'
 
-.PHONY: render test build deps format format-check
+.PHONY: render gallery test build deps format format-check
 
 render: build
 	mkdir -p out
 	build/bin/petzval render assets/scenes/first_light.glb --fstop 2 --focus 1m --size 960x540 --spp 256 \
 	    -o out/first_light.exr -o out/first_light.png
+
+# About ten minutes on eight cores; GALLERY_SPP=16 for a first look.
+gallery: build
+	GALLERY_DOCS=docs/gallery assets/gallery.sh
 
 test: build
 	ctest --preset release --parallel $$(nproc)

@@ -7,56 +7,15 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 
 #include "apps/parse.h"
-#include "integrator/executor.h"
-#include "integrator/render.h"
 #include "io/session.h"
-#include "io/stats_file.h"
+#include "tests/bench/noise.h"
 
 namespace petzval {
 namespace {
 
 constexpr uint32_t kSeeds = 8;
-
-struct Noise {
-    double luminance = 0, chroma = 0;  ///< mean over pixels of variance / (mean luminance^2 + 0.01)
-};
-
-// Chroma: what is left of a colour's variance when its luminance's is taken away, as the summed
-// variance of R - Y, G - Y and B - Y.
-Noise noise_of(const std::vector<Film>& films, V2i size) {
-    Noise noise;
-    for (int y = 0; y < size.y; ++y)
-        for (int x = 0; x < size.x; ++x) {
-            std::array<double, 4> sum{}, squares{};
-            for (const Film& film : films) {
-                const V4f c = film.colour(x, y);
-                const double l = luminance(Rgb(c.x, c.y, c.z));
-                const std::array<double, 4> v{l, c.x - l, c.y - l, c.z - l};
-                for (size_t i = 0; i < 4; ++i) {
-                    sum[i] += v[i] / kSeeds;
-                    squares[i] += v[i] * v[i] / kSeeds;
-                }
-            }
-            const double scale = 1 / ((sum[0] * sum[0] + 0.01) * size.x * size.y);
-            const auto variance = [&](size_t i) {
-                return (squares[i] - sum[i] * sum[i]) * kSeeds / (kSeeds - 1.);
-            };
-            noise.luminance += variance(0) * scale;
-            noise.chroma += (variance(1) + variance(2) + variance(3)) * scale;
-        }
-    return noise;
-}
-
-double timed_s(const PathTracer<>& tracer, const Camera& camera, const RenderJob& job, Film& film) {
-    RenderMonitor monitor;
-    ThreadExecutor executor(1);
-    const double start_s = process_cpu_s();
-    static_cast<void>(render(tracer, camera, job, film, executor, monitor));
-    return process_cpu_s() - start_s;
-}
 
 int run(int argc, char** argv) {
     CLI::App app("Cost and noise of wavelengths against RGB.");
@@ -96,9 +55,8 @@ int run(int argc, char** argv) {
         }
         ratios.push_back(cpu_s[1] / cpu_s[0]);
     }
-    std::sort(ratios.begin(), ratios.end());
-    const double cost = 0.5 * (ratios[kSeeds / 2 - 1] + ratios[kSeeds / 2]);
-    const Noise rgb = noise_of(films[0], request.size), hero = noise_of(films[1], request.size);
+    const double cost = median(ratios);
+    const LumaChroma rgb = noise_of(moments_of(films[0])), hero = noise_of(moments_of(films[1]));
     fmt::print("CPU time a sample, hero / rgb: {:.3f} ({:.3f} to {:.3f})\n", cost, ratios.front(),
                ratios.back());
     fmt::print(

@@ -51,6 +51,9 @@ void add_lens_options(CLI::App& app, CameraOptions& o) {
                          "catalogue of glasses, .agf, that goes before those that ship; may be "
                          "given more than once"))
         ->allow_extra_args(false);
+    group(add_choice<FocusBy>(app, "--focus-by", r.focus_by, words_of(FocusBy()),
+                              "paraxial (default): rays near the axis; traced: the smallest spot "
+                              "on the axis through the iris that is set"));
     group(add_choice<Fit>(app, "--fit", r.fit, words_of(Fit()),
                           "lens (default): the lens gives the angle of view; fov: it is scaled "
                           "to that of the camera or --fov"));

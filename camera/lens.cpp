@@ -122,6 +122,16 @@ double Lens::film_mm() const {
     return vertices_mm_.back() + prescription_.surfaces.back().thickness_mm;
 }
 
+void Lens::set_thickness(int surface, double mm) {
+    const auto i = static_cast<size_t>(surface);
+    if (!std::isfinite(mm)) refuse(i, "has a number that is not finite");
+    prescription_.surfaces[i].thickness_mm = mm;
+    surfaces_d_[i].gap_mm = mm;
+    surfaces_f_[i].gap_mm = float(mm);
+    for (size_t k = i + 1; k < vertices_mm_.size(); ++k)
+        vertices_mm_[k] = vertices_mm_[k - 1] + prescription_.surfaces[k - 1].thickness_mm;
+}
+
 LensIndices<d4> Lens::exact_indices(d4 nm) const {
     LensIndices<d4> out;
     for (size_t i = 0; i < media_.size(); ++i)

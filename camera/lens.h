@@ -66,6 +66,9 @@ class Lens {
     [[nodiscard]] double vertex_mm(int surface) const { return vertices_mm_[size_t(surface)]; }
     /// Where the prescription has the film: behind the last thickness.
     [[nodiscard]] double film_mm() const;
+    /// Moves what lies behind a surface to this distance from it; what is known of the glasses
+    /// stays. std::invalid_argument where it is not finite.
+    void set_thickness(int surface, double mm);
     /// Air, then each glass once.
     [[nodiscard]] const std::vector<Glass>& media() const { return media_; }
 

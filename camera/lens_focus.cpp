@@ -27,45 +27,59 @@ std::optional<double> image_distance_mm(const Lens& lens, double object_mm) {
 
 using Group = std::array<int, 2>;
 
-// The group moves towards the film by `by`.
-Prescription moved(Prescription p, const Group& group, double by_mm) {
-    if (group[0] > 0) p.surfaces[size_t(group[0] - 1)].thickness_mm += by_mm;
-    p.surfaces[size_t(group[1])].thickness_mm -= by_mm;
-    return p;
+double thickness_mm(const Lens& lens, int surface) {
+    return lens.prescription().surfaces[static_cast<size_t>(surface)].thickness_mm;
 }
 
-// How far it can move towards the scene and towards the film.
-std::array<double, 2> room_mm(const Prescription& p, const Group& group) {
-    const double before = group[0] > 0 ? p.surfaces[size_t(group[0] - 1)].thickness_mm
-                                       : p.surfaces.back().thickness_mm;
-    return {before, p.surfaces[size_t(group[1])].thickness_mm};
-}
+// A lens whose group stands somewhere else.
+class GroupMove {
+  public:
+    GroupMove(const Lens& lens, const Group& group)
+        : lens_(lens),
+          group_(group),
+          before_mm_(thickness_mm(lens, group[0] > 0 ? group[0] - 1 : lens.last())),
+          behind_mm_(thickness_mm(lens, group[1])) {}
 
-std::optional<Prescription> film_focused(Prescription p, double object_mm) {
-    const auto mm = image_distance_mm(Lens(p), object_mm);
+    /// The group has moved towards the film by that much, from where it was at first.
+    const Lens& to(double by_mm) {
+        if (group_[0] > 0) lens_.set_thickness(group_[0] - 1, before_mm_ + by_mm);
+        lens_.set_thickness(group_[1], behind_mm_ - by_mm);
+        return lens_;
+    }
+    /// How far it can move towards the scene (below 0) and towards the film.
+    [[nodiscard]] double least_mm() const { return -before_mm_; }
+    [[nodiscard]] double most_mm() const { return behind_mm_; }
+
+  private:
+    Lens lens_;
+    Group group_;
+    double before_mm_, behind_mm_;
+};
+
+std::optional<Lens> film_focused(Lens lens, double object_mm) {
+    const auto mm = image_distance_mm(lens, object_mm);
     if (!mm) return std::nullopt;
-    p.surfaces.back().thickness_mm = *mm;
-    return p;
+    lens.set_thickness(lens.last(), *mm);
+    return lens;
 }
 
-std::optional<Prescription> group_focused(const Prescription& filed, const Group& group,
-                                          double object_mm) {
-    const auto base = film_focused(filed, -std::numeric_limits<double>::infinity());
+std::optional<Lens> group_focused(const Lens& filed, const Group& group, double object_mm) {
+    auto base = film_focused(filed, -std::numeric_limits<double>::infinity());
     if (!base) return std::nullopt;
+    GroupMove move(*base, group);
     const auto miss = [&](double by_mm) -> std::optional<double> {
-        const Prescription p = moved(*base, group, by_mm);
-        const auto mm = image_distance_mm(Lens(p), object_mm);
+        const Lens& lens = move.to(by_mm);
+        const auto mm = image_distance_mm(lens, object_mm);
         if (!mm) return std::nullopt;
-        return *mm - p.surfaces.back().thickness_mm;
+        return *mm - thickness_mm(lens, lens.last());
     };
-    const auto room = room_mm(*base, group);
     double a = 0, b = 0;
     const auto at_rest = miss(0);
     if (!at_rest) return std::nullopt;
     if (std::fabs(*at_rest) < 1e-9) return base;
     // A root on either side, as groups of both signs are used.
     for (int side = 0; side < 2 && b == 0; ++side) {
-        const double reach = side == 0 ? room[1] : -room[0];
+        const double reach = side == 0 ? move.most_mm() : move.least_mm();
         for (int i = 1; i <= 64; ++i) {
             const double by = reach * i / 64;
             const auto there = miss(by);
@@ -84,7 +98,7 @@ std::optional<Prescription> group_focused(const Prescription& filed, const Group
         if (!there) return std::nullopt;
         (*there * *at_rest > 0 ? a : b) = middle;
     }
-    return moved(*base, group, (a + b) / 2);
+    return move.to((a + b) / 2);
 }
 
 // Downhill in growing steps from a minimum's neighbourhood, then the golden section (Kiefer 1953,
@@ -122,36 +136,33 @@ double least_near(const auto& f, double step) {
 }
 
 // From where it is sharp paraxially.
-std::optional<Prescription> group_at_best_spot(const Prescription& sharp, const Group& group,
-                                               double object_mm, double stop_radius_mm) {
-    const Lens lens(sharp);
-    const auto shift = best_film_shift_mm(lens, lens.film_mm(), object_mm, stop_radius_mm);
+std::optional<Lens> group_at_best_spot(const Lens& sharp, const Group& group, double object_mm,
+                                       double stop_radius_mm) {
+    const auto shift = best_film_shift_mm(sharp, sharp.film_mm(), object_mm, stop_radius_mm);
     if (!shift) return std::nullopt;
-    const auto room = room_mm(sharp, group);
+    GroupMove move(sharp, group);
     const auto blur = [&](double by_mm) {
-        if (by_mm < -room[0] || by_mm > room[1]) return kInfinity_mm;
-        const Lens there(moved(sharp, group, by_mm));
+        if (by_mm < move.least_mm() || by_mm > move.most_mm()) return kInfinity_mm;
+        const Lens& there = move.to(by_mm);
         const auto spot = axial_spot(there, object_mm, there.film_mm(), stop_radius_mm);
         return spot ? spot->mean_square_mm2() : kInfinity_mm;
     };
     constexpr double least_step_mm = 1e-6;
-    return moved(sharp, group, least_near(blur, std::max(std::fabs(*shift) / 8, least_step_mm)));
+    return move.to(least_near(blur, std::max(std::fabs(*shift) / 8, least_step_mm)));
 }
 
 }  // namespace
 
-std::optional<Prescription> focused(const Lens& lens, double object_mm, FocusBy by,
-                                    double stop_radius_mm) {
-    const Prescription& filed = lens.prescription();
-    const auto& group = filed.focus_group;
-    auto sharp = group ? group_focused(filed, *group, object_mm) : film_focused(filed, object_mm);
+std::optional<Lens> focused(const Lens& lens, double object_mm, FocusBy by, double stop_radius_mm) {
+    const auto& group = lens.prescription().focus_group;
+    auto sharp = group ? group_focused(lens, *group, object_mm) : film_focused(lens, object_mm);
     if (!sharp || by == FocusBy::Paraxial) return sharp;
     if (group) return group_at_best_spot(*sharp, *group, object_mm, stop_radius_mm);
-    const Lens there(*sharp);
-    const auto shift = best_film_shift_mm(there, there.film_mm(), object_mm, stop_radius_mm);
-    double& to_film_mm = sharp->surfaces.back().thickness_mm;
-    if (!shift || !(to_film_mm + *shift > 0)) return std::nullopt;
-    to_film_mm += *shift;
+    const auto shift = best_film_shift_mm(*sharp, sharp->film_mm(), object_mm, stop_radius_mm);
+    if (!shift) return std::nullopt;
+    const double mm = thickness_mm(*sharp, sharp->last()) + *shift;
+    if (!(mm > 0)) return std::nullopt;
+    sharp->set_thickness(sharp->last(), mm);
     return sharp;
 }
 

@@ -14,13 +14,13 @@ enum class FocusBy : uint8_t {
     Traced     ///< the least mean square radius of the spot on the axis: F, d and C, full aperture
 };
 
-/// The prescription with its film, or its focusing group, where an axial point at object_mm (from
+/// The lens with its film, or its focusing group, where an axial point at object_mm (from
 /// the first vertex of what is returned, < 0; -infinity for a distant one) is sharp. The film is
 /// what moves where the file names no group; where it does, the film stands where a distant point
 /// is sharp, paraxially, with the group as filed. stop_radius_mm: of the iris, for traced rays; the
 /// stop as filed where that is smaller. Nothing where the lens cannot: the point is too near, or,
 /// traced, no ray passes.
-[[nodiscard]] std::optional<Prescription> focused(
+[[nodiscard]] std::optional<Lens> focused(
     const Lens&, double object_mm, FocusBy = FocusBy::Paraxial,
     double stop_radius_mm = std::numeric_limits<double>::infinity());
 

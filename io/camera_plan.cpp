@@ -111,7 +111,15 @@ SingleLens parse_singlet(const std::string& text, LensGlasses& glasses) {
     return lens;
 }
 
-Optics optics_of(const CameraRequest& asked, float aspect) {
+// The angle of view that a lens is scaled to.
+std::optional<float> fit_yfov_rad(const CameraRequest& asked, const GltfCamera* from) {
+    if (asked.fit != Fit::Fov) return std::nullopt;
+    if (asked.fov_deg) return *asked.fov_deg * kPi / 180.f;
+    if (from) return from->yfov_rad;
+    throw ArgumentError("--fit", "", "no camera gives an angle of view: give --fov too");
+}
+
+Optics optics_of(const CameraRequest& asked, const GltfCamera* from, float aspect) {
     if (!asked.lens)
         return asked.fstop || asked.lens_radius_m ? Optics(IdealLens()) : Optics(NoLens());
     if (*asked.lens == "pinhole") return NoLens();
@@ -119,7 +127,8 @@ Optics optics_of(const CameraRequest& asked, float aspect) {
     const std::vector<AgfCatalog> catalogs = open_catalogs(asked);
     LensGlasses glasses(catalogs);
     if (asked.lens->starts_with(kSinglet)) return parse_singlet(*asked.lens, glasses);
-    return load_lens_for_film(*asked.lens, catalogs, asked.sensor_mm, aspect);
+    return load_lens_for_film(*asked.lens, catalogs, asked.sensor_mm, aspect,
+                              fit_yfov_rad(asked, from));
 }
 
 void check_pinhole(const CameraRequest& asked) {
@@ -191,7 +200,9 @@ CameraPlan plan_camera(const CameraRequest& request, const std::filesystem::path
     } else if (plan.from) {
         take_wishes(plan.from->wishes, scene, asked);
     }
-    plan.optics = optics_of(asked, aspect);
+    plan.optics = optics_of(asked, plan.from, aspect);
+    if (asked.fit == Fit::Fov && !std::holds_alternative<LoadedLens>(plan.optics))
+        throw ArgumentError("--fit", "", "fov scales a lens of glass: give --lens NAME or FILE");
     if (std::holds_alternative<NoLens>(plan.optics))
         check_pinhole(asked);
     else if (std::holds_alternative<LoadedLens>(plan.optics))

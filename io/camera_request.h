@@ -11,6 +11,7 @@
 
 #include "camera/chroma.h"
 #include "camera/iris.h"
+#include "camera/lens_focus.h"
 #include "core/math.h"
 
 namespace petzval {
@@ -47,6 +48,7 @@ struct CameraRequest {
     std::optional<float> film_distance_mm;  ///< from a thin lens
     std::optional<V2f> sensor_mm;
     std::optional<Focus> focus;
+    FocusBy focus_by = FocusBy::Paraxial;
     Fit fit = Fit::Lens;
     std::optional<std::string> aperture;  ///< as parse_aperture reads it
     ApertureScale aperture_scale = ApertureScale::EqualArea;

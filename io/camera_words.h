@@ -32,6 +32,9 @@ using Words = std::vector<std::pair<std::string, T>>;
 [[nodiscard]] inline Words<ExposureMode> words_of(ExposureMode) {
     return {{"normalised", ExposureMode::Normalised}, {"photographic", ExposureMode::Photographic}};
 }
+[[nodiscard]] inline Words<FocusBy> words_of(FocusBy) {
+    return {{"paraxial", FocusBy::Paraxial}, {"traced", FocusBy::Traced}};
+}
 [[nodiscard]] inline Words<Fit> words_of(Fit) {
     return {{"lens", Fit::Lens}, {"fov", Fit::Fov}};
 }

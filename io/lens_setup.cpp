@@ -11,6 +11,7 @@
 #include "camera/analysis.h"
 #include "camera/exposure.h"
 #include "camera/lens_focus.h"
+#include "camera/lens_scale.h"
 #include "camera/paraxial.h"
 #include "camera/sensor.h"
 #include "io/aperture_file.h"
@@ -20,6 +21,7 @@ namespace petzval {
 namespace {
 
 constexpr float kFullFrameCircle_mm = 43.27f;
+constexpr double kDistant_mm = -std::numeric_limits<double>::infinity();
 
 V2f usual_sensor_mm(double image_circle_mm) {
     const float circle = image_circle_mm > 0 ? float(image_circle_mm) : kFullFrameCircle_mm;
@@ -30,15 +32,36 @@ V2f usual_sensor_mm(double image_circle_mm) {
 // By the ray through the middle of the stop; a lens that sends none there has its paraxial angle.
 float yfov_of(const Lens& lens, float film_height_mm, double focal_length_mm) {
     const double half_mm = 0.5 * double(film_height_mm);
-    if (const auto film = focused(lens, -std::numeric_limits<double>::infinity()))
-        if (const auto deg = field_of_height_deg(Lens(*film), half_mm, Lens(*film).film_mm()))
+    if (const auto distant = focused(lens, kDistant_mm))
+        if (const auto deg = field_of_height_deg(*distant, half_mm, distant->film_mm()))
             return static_cast<float>(2 * *deg * M_PI / 180);
     return static_cast<float>(2 * std::atan(half_mm / focal_length_mm));
 }
 
+// So large that a distant scene of that height fills the film.
+Lens fitted(const Lens& lens, V2f film_mm, float yfov_rad, std::vector<std::string>& warnings) {
+    const double half_deg = double(yfov_rad) / 2 * 180 / M_PI;
+    std::optional<double> factor;
+    if (const auto distant = focused(lens, kDistant_mm))
+        factor = scale_for_field(*distant, double(film_mm.y) / 2, half_deg, distant->film_mm());
+    const std::string& name = lens.prescription().name;
+    if (!factor)
+        throw ArgumentError("--fit", "",
+                            fmt::format("{} does not see {:.4g} degrees: take a smaller --fov or "
+                                        "another lens",
+                                        name, 2 * half_deg));
+    Lens out(scaled(lens.prescription(), *factor));
+    const double circle_mm = out.prescription().image_circle_mm;
+    if (circle_mm > 0 && double(film_mm.length()) > circle_mm * 1.001)
+        warnings.push_back(
+            fmt::format("{} covers a circle of {:.3g} mm once it is scaled to the "
+                        "angle of view; the film's corners are {:.3g} mm apart",
+                        name, circle_mm, double(film_mm.length())));
+    return out;
+}
+
 // All of a camera but its focus, film and iris.
-LensCameraInput input_of(const LoadedLens& loaded, const M44f& to_world, Prescription sharp,
-                         Iris iris) {
+LensCameraInput input_of(const LoadedLens& loaded, const M44f& to_world, Lens sharp, Iris iris) {
     LensCameraInput in{.lens = std::make_shared<const Lens>(std::move(sharp)),
                        .iris = std::move(iris),
                        .to_world = to_world};
@@ -75,16 +98,19 @@ bool LoadedLens::disperses() const {
 }
 
 LoadedLens load_lens_for_film(const std::string& name_or_file, std::span<const AgfCatalog> catalogs,
-                              std::optional<V2f> sensor_mm, float aspect) {
+                              std::optional<V2f> sensor_mm, float aspect,
+                              std::optional<float> fit_yfov_rad) {
     LensFile file = load_lens(name_or_file, catalogs);
     LoadedLens loaded{Lens(std::move(file.lens)), std::move(file.warnings), 0, 0, {}, 0};
+    loaded.film_mm = film_within(
+        sensor_mm.value_or(usual_sensor_mm(loaded.lens.prescription().image_circle_mm)), aspect);
+    if (fit_yfov_rad)
+        loaded.lens = fitted(loaded.lens, loaded.film_mm, *fit_yfov_rad, loaded.warnings);
     const FirstOrder f = first_order(loaded.lens, kLineD_nm);
     if (!(f.focal_length_mm > 0) || !std::isfinite(f.focal_length_mm))
         throw InputError(name_or_file, "", "has no positive focal length: it forms no image");
     loaded.focal_length_mm = f.focal_length_mm;
     loaded.entrance_pupil_mm = f.entrance_pupil_mm;
-    loaded.film_mm = film_within(
-        sensor_mm.value_or(usual_sensor_mm(loaded.lens.prescription().image_circle_mm)), aspect);
     loaded.yfov_rad = yfov_of(loaded.lens, loaded.film_mm.y, loaded.focal_length_mm);
     return loaded;
 }
@@ -96,7 +122,8 @@ LensSetup set_up_lens(const CameraRequest& asked, const LoadedLens& loaded, cons
     LensSetup setup;
     setup.stop_radius_mm = stop_radius_of(loaded, asked.fstop, notice);
     setup.fnumber = fnumber_of(loaded.lens, setup.stop_radius_mm);
-    auto sharp = focused(loaded.lens, loaded.entrance_pupil_mm - 1e3 * double(focus_m));
+    auto sharp = focused(loaded.lens, loaded.entrance_pupil_mm - 1e3 * double(focus_m),
+                         asked.focus_by, setup.stop_radius_mm);
     if (!sharp)
         throw ArgumentError(
             loaded.name(), "",
@@ -131,7 +158,7 @@ LensSetup set_up_lens(const CameraRequest& asked, const LoadedLens& loaded, cons
 
 std::unique_ptr<LensCamera> viewfinder(const LoadedLens& loaded, const M44f& to_world) {
     constexpr double kStoppedDown = 100;
-    auto distant = focused(loaded.lens, -std::numeric_limits<double>::infinity());
+    auto distant = focused(loaded.lens, kDistant_mm);
     if (!distant) throw ArgumentError(loaded.name(), "", "forms no image of a distant scene");
     return std::make_unique<LensCamera>(
         input_of(loaded, to_world, *std::move(distant),

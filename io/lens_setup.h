@@ -27,10 +27,13 @@ struct LoadedLens {
 };
 
 /// sensor_mm: absent for the largest 3:2 rectangle in the image circle, at most 36 x 24. The film
-/// is the largest rectangle of the picture's aspect in it. Throws InputError.
+/// is the largest rectangle of the picture's aspect in it. fit_yfov_rad: the lens is scaled until a
+/// distant scene of that height fills the film. Throws InputError, and ArgumentError for a lens
+/// that does not see so far to the side.
 [[nodiscard]] LoadedLens load_lens_for_film(const std::string& name_or_file,
                                             std::span<const AgfCatalog> catalogs,
-                                            std::optional<V2f> sensor_mm, float aspect);
+                                            std::optional<V2f> sensor_mm, float aspect,
+                                            std::optional<float> fit_yfov_rad);
 
 struct LensSetup {
     std::unique_ptr<LensCamera> camera;

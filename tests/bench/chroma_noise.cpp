@@ -50,7 +50,7 @@ double parted_px(const Session& split, const RenderJob& job, V2i size, Rect crop
         ++count;
     }
     const double pixel_m =
-        double(report.sensor_width_mm) / size.x / report.focal_length_mm * report.focus_m;
+        double(report.sensor_mm.x) / size.x / report.focal_length_mm * report.focus_m;
     return std::sqrt(sum / count) / pixel_m;
 }
 
@@ -124,14 +124,14 @@ void print(std::vector<Strategy>& strategies, size_t split, size_t shared,
 int run(int argc, char** argv) {
     CLI::App app("Cost, noise and bias of the ways to carry wavelengths through a lens.");
     SceneRequest request;
-    LensCameraRequest lens;
+    CameraRequest& camera = request.camera;
     std::string size = "240x160", crop_text, focus = "1m";
     RenderJob job;
     job.end_sample = 64;
     uint32_t reference_spp = 1024;
     app.add_option("scene", request.scene)->required();
-    app.add_option("--lens", lens.lens)->required();
-    app.add_option("--fstop", request.fstop);
+    app.add_option("--lens", camera.lens)->required();
+    app.add_option("--fstop", camera.fstop);
     app.add_option("--focus", focus);
     app.add_option("--size", size);
     app.add_option("--crop", crop_text);
@@ -139,7 +139,7 @@ int run(int argc, char** argv) {
     app.add_option("--reference-spp", reference_spp, "of each of four renders");
     CLI11_PARSE(app, argc, argv);
     request.size = parse_size("--size", size);
-    request.focus = parse_focus("--focus", focus, request.size);
+    camera.focus = parse_focus("--focus", focus, request.size);
     const Rect crop = crop_text.empty() ? Rect{0, 0, request.size.x, request.size.y}
                                         : parse_crop("--crop", crop_text, request.size);
     flush_denormals();
@@ -152,9 +152,8 @@ int run(int argc, char** argv) {
     for (const float px : {0.03f, 0.1f, 0.3f, 1.f})
         strategies.push_back({fmt::format("auto {}", px), Chroma::Auto, px});
     for (Strategy& s : strategies) {
-        lens.chroma = s.chroma;
-        lens.chroma_tolerance_px = s.tolerance_px;
-        request.lens = lens;
+        camera.chroma = s.chroma;
+        camera.chroma_tolerance_px = s.tolerance_px;
         s.session = open_session(request, [](const std::string&) {});
     }
     for (uint32_t seed = 0; seed < kSeeds; ++seed) {
@@ -163,8 +162,7 @@ int run(int argc, char** argv) {
             render_into(strategies[(i + seed) % strategies.size()], job, request.size, crop);
     }
     Strategy reference{"reference", Chroma::Single};
-    lens.chroma = Chroma::Single;
-    request.lens = lens;
+    camera.chroma = Chroma::Single;
     reference.session = open_session(request, [](const std::string&) {});
     RenderJob long_job = job;
     long_job.end_sample = reference_spp;
@@ -174,8 +172,8 @@ int run(int argc, char** argv) {
     }
     const auto truth = moments_of(reference.films);
     const LumaChroma noise = noise_of(truth);
-    fmt::print("{} f/{:g}, {} pixels of {}: 450 and 650 nm part by {:.2g} px\n", lens.lens,
-               request.fstop.value_or(0), crop.width() * crop.height(), size,
+    fmt::print("{} f/{:g}, {} pixels of {}: 450 and 650 nm part by {:.2g} px\n", *camera.lens,
+               camera.fstop.value_or(0), crop.width() * crop.height(), size,
                parted_px(strategies[1].session, job, request.size, crop));
     fmt::print("{} samples, {} seeds; error of the reference: Y {:.2f} %, chroma {:.2f} %\n\n",
                job.end_sample, kSeeds, 100 * std::sqrt(noise.luminance / kReferenceSeeds),

@@ -87,9 +87,9 @@ std::vector<double> measured(int runs, const std::function<double()>& f) {
 SceneRequest request_for(const fs::path& scene, const std::string& lens) {
     SceneRequest request;
     request.scene = scene;
-    request.look_at = {V3f(0, 0, 10), V3f(0, 0, 0)};
-    request.focus = FocusDistance{10};
-    request.lens.emplace().lens = lens;
+    request.camera.look_at = {V3f(0, 0, 10), V3f(0, 0, 0)};
+    request.camera.focus = FocusDistance{10};
+    request.camera.lens = lens;
     return request;
 }
 
@@ -110,9 +110,9 @@ double first_ray_ms(const SceneRequest& request, double (*now_ms)() = thread_cpu
 // The same without a lens: what is left of the difference, the lens's file taken off, is focus,
 // f-number, table and irradiance.
 double without_lens_ms(SceneRequest request) {
-    request.lens.reset();
+    request.camera.lens.reset();
     request.spectral.mode = SpectralMode::Hero;
-    request.fstop = 2;
+    request.camera.fstop = 2;
     return first_ray_ms(request);
 }
 

@@ -87,8 +87,8 @@ StopCrossing Pupil::cross(V2f film_point_mm, const Node& cosines,
     out.m = cosines.m;
     out.clear = m4{-1, -1, -1, -1};
     const auto& facts = lens_.surfaces<float>();
-    const auto clip = [&](const LensHit<D>& hit) {
-        const f4 x = hit.point.x.value, y = hit.point.y.value;
+    const auto clip = [&](const LensHit<f4>& hit) {
+        const f4 x = hit.point.x, y = hit.point.y;
         out.clear &= x * x + y * y <= facts[static_cast<size_t>(hit.surface)].semi_diameter2_mm2;
     };
     static_cast<void>(march<D>(lens_, indices, Towards::Scene, {lens_.stop(), lens_.last()}, ray,

@@ -76,11 +76,12 @@ template <class V>
     return select(a > 0, V(1 / a), V{});
 }
 
-/// The root of a t^2 + 2 b t + c = 0 at which a t + b = -root, where root^2 = b^2 - a c: in that
-/// one of its two forms in which nothing cancels.
+/// The root of a t^2 + 2 b t + c = 0 at which a t + b = -sign * size, where size^2 = b^2 - a c: in
+/// that one of its two forms in which nothing cancels. The choice does not wait for the size.
 template <class V>
-[[nodiscard]] V root_of(V a, V b, V c, V root) {
-    const auto same_sign = b * root <= 0;
+[[nodiscard]] V root_of(V a, V b, V c, ScalarOf<V> sign, V size) {
+    const auto same_sign = b * sign <= 0;
+    const V root = size * sign;
     return select(same_sign, c, V(-b - root)) / select(same_sign, V(root - b), a);
 }
 
@@ -95,11 +96,11 @@ template <class V>
     Meeting<V> hit;
     hit.cosine2 = direction.z * direction.z - c * beyond;
     hit.cosine = sqrt(or_zero(hit.cosine2));
-    hit.distance = root_of<V>(broadcast<V>(c), -direction.z, beyond, sign * hit.cosine);
+    hit.distance = root_of<V>(broadcast<V>(c), -direction.z, beyond, sign, hit.cosine);
     hit.point = foot + direction * hit.distance;
-    const V sheet = 1 - c * hit.point.z;
-    hit.found = (hit.cosine2 >= 0) & (sheet > 0);
-    hit.normal = {hit.point.x * (-sign * c), hit.point.y * (-sign * c), sheet * sign};
+    const V turn = hit.point.z * (sign * c);
+    hit.found = (hit.cosine2 >= 0) & (turn * sign < 1);
+    hit.normal = {hit.point.x * (-sign * c), hit.point.y * (-sign * c), sign - turn};
     hit.per_gradient = broadcast<V>(1);
     return hit;
 }
@@ -118,7 +119,7 @@ template <class V>
     const V discriminant = b * b - a * c;
     const V root = sqrt(or_zero(discriminant));
     Meeting<V> hit;
-    hit.distance = root_of<V>(a, b, c, sign * root);
+    hit.distance = root_of<V>(a, b, c, sign, root);
     hit.point = foot + direction * hit.distance;
     const V sheet = 1 - s.curvature_z * hit.point.z;
     hit.found = (discriminant >= 0) & (sheet > 0);

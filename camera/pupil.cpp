@@ -37,7 +37,8 @@ struct Nodes {
 };
 Nodes nodes_about(float t, int size) {
     if (size == 1) return {0, 1, f4{1, 0, 0, 0}};
-    t = std::fmin(std::fmax(t, 0.f), static_cast<float>(size - 1));  // NaN: 0
+    const auto last = static_cast<float>(size - 1);
+    t = t > 0.f ? (t < last ? t : last) : 0.f;  // NaN: 0
     const int first = std::clamp(static_cast<int>(t) - 1, 0, size - 4);
     return {first, 4, cubic(t - static_cast<float>(first))};
 }

@@ -351,10 +351,10 @@ template <class N, class Observer = NoObserver>
         const Vec3<V> foot = ray.origin + ray.direction * to_foot;
         const Asphere<S>* const asphere =
             s.shape == Shape::Asphere ? &lens.aspheres<S>()[s.asphere] : nullptr;
-        const Meeting<V> hit =
-            s.shape == Shape::Sphere ? meet_sphere<V>(s.curvature_y, sign, foot, ray.direction)
-            : asphere ? meet_asphere<V>(s, *asphere, sign, foot, ray.direction)
-                      : meet_quadric<V>(s, sign, foot, ray.direction);
+        const Meeting<V> hit = s.shape == Shape::Sphere
+                                   ? meet_sphere<V>(s.curvature_y, sign, foot, ray.direction)
+                               : asphere ? meet_asphere<V>(s, *asphere, sign, foot, ray.direction)
+                                         : meet_quadric<V>(s, sign, foot, ray.direction);
         const V distance = hit.distance + to_foot;
         ray.origin = hit.point;
         const V x = hit.point.x, y = hit.point.y;

@@ -56,9 +56,9 @@ LaneFates<uint32_t> fates(m4 on, const LensDraw<V>& drawn, MaskOf<V> clear) {
     const auto count = [on](MaskOf<V> lanes) {
         return static_cast<uint32_t>(lane_count(on & lanes_as<m4>(lanes)));
     };
-    LaneFates<uint32_t> out{.drawn = static_cast<uint32_t>(lane_count(on))};
+    LaneFates<uint32_t> out = drawn.lanes;
     const MaskOf<V> lost = !(drawn.weight > 0);
-    if (count(lost) == 0) return out;
+    if (!any(on & lanes_as<m4>(lost))) return out;
     const auto ended = [&](Fate fate) {
         return count(clear & (drawn.ray.fate_code == static_cast<int>(fate)));
     };
@@ -91,8 +91,9 @@ LensDraw<V> LensCamera::draw(const Aim& aim, const Bands& bands, Coating coating
     const V2f on_iris = in_.iris.sample(aim.u);
     const m4 on = in_.chroma == Chroma::Single ? only(aim.lane) : bands.on;
     const auto solved = pupil_.solve(aim.film_mm, on_iris, in_floats, aim.lane, aim.nm);
+    out.lanes.drawn = static_cast<uint32_t>(lane_count(on));
     if (!solved) {
-        out.lanes.drawn = out.lanes.unreached = static_cast<uint32_t>(lane_count(on));
+        out.lanes.unreached = out.lanes.drawn;
         return out;
     }
     const StopCrossing<V>& c = [&]() -> decltype(auto) {
@@ -108,7 +109,7 @@ LensDraw<V> LensCamera::draw(const Aim& aim, const Bands& bands, Coating coating
     const V y = c.ray.origin.y + (S(on_iris.y) - c.ray.origin.y[aim.lane]);
     const V open =
         select(lanes_as<MaskOf<V>>(on) & c.ray.alive(), petzval::transmitted(in_.iris, x, y), V{});
-    const auto lanes = static_cast<S>(lane_count(on));
+    const auto lanes = static_cast<S>(out.lanes.drawn);
     const S density = sum<V>(open * c.stretch_mm2()) / (S(in_.iris.area_mm2()) * lanes);
     out.ray = c.ray;
     if (density > 0 && any(c.clear & (open > 0))) {

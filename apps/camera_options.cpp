@@ -75,6 +75,16 @@ void add_lens_options(CLI::App& app, CameraOptions& o) {
         ->check(number_between(0, 1000));
 }
 
+void add_glass_options(CLI::App& app, CameraOptions& o) {
+    CameraRequest& r = o.request;
+    const auto group = [](CLI::Option* option) { return option->group("Lens"); };
+    group(add_choice<Coating>(app, "--coating", r.coating, words_of(Coating()),
+                              "light lost at each surface: ideal (default, none), uncoated, mgf2 "
+                              "(one layer against air)"));
+    group(add_choice<March>(app, "--march", r.march, words_of(March()),
+                            "rays through the lens in float (default) or double"));
+}
+
 void add_exposure_options(CLI::App& app, CameraOptions& o) {
     CameraRequest& r = o.request;
     const auto group = [](CLI::Option* option) { return option->group("Lens"); };
@@ -104,6 +114,7 @@ std::array<V3f, 2> parse_look_at(const std::string& text) {
 void add_camera_options(CLI::App& app, CameraOptions& o) {
     add_place_options(app, o);
     add_lens_options(app, o);
+    add_glass_options(app, o);
     add_exposure_options(app, o);
 }
 

@@ -25,10 +25,35 @@ struct CameraPath {
     m4 lanes;   ///< bands that share this ray
 };
 
+/// What became of the lanes for which a lens was asked; those not named went out. All 0: a camera
+/// that has nothing to lose light at.
+template <class Count>
+struct LaneFates {
+    Count drawn{};
+    Count vignetted{};  ///< by a rim, or outside the iris
+    Count totally_reflected{};
+    Count missed{};     ///< a surface
+    Count unreached{};  ///< no ray leads from the film point to the iris point
+
+    [[nodiscard]] Count lost() const {
+        return static_cast<Count>(vignetted + totally_reflected + missed + unreached);
+    }
+    template <class Other>
+    LaneFates& operator+=(const LaneFates<Other>& o) {
+        drawn += o.drawn;
+        vignetted += o.vignetted;
+        totally_reflected += o.totally_reflected;
+        missed += o.missed;
+        unreached += o.unreached;
+        return *this;
+    }
+};
+
 /// 0 paths: vignetted. 1: shared by all lanes. 2 to 4: split by dispersion.
 struct CameraSample {
     int count = 0;
     std::array<CameraPath, 4> path;
+    LaneFates<uint32_t> lanes;
 };
 
 class Camera {

@@ -6,10 +6,45 @@
 namespace petzval {
 namespace {
 
-f4 transmitted(const Iris& iris, f4 x, f4 y) {
-    f4 out = splat(iris.transmits({x[0], y[0]}));
+template <class V>
+V transmitted(const Iris& iris, V x, V y) {
+    const auto at = [&](int i) {
+        return iris.transmits({static_cast<float>(x[i]), static_cast<float>(y[i])});
+    };
+    V out = broadcast<V>(at(0));
     for (int i = 1; i < 4; ++i)
-        if (x[i] != x[0] || y[i] != y[0]) out[i] = iris.transmits({x[i], y[i]});
+        if (x[i] != x[0] || y[i] != y[0]) out[i] = at(i);
+    return out;
+}
+
+template <class To, class From>
+To lanes_as(From a) {
+    if constexpr (std::same_as<To, From>)
+        return a;
+    else
+        return __builtin_convertvector(a, To);
+}
+
+template <class V>
+ScalarOf<V> sum(V a) {
+    return (a[0] + a[1]) + (a[2] + a[3]);
+}
+
+// What took each lane that is on and did not pass. A rim comes before what befalls a ray behind it.
+template <class V>
+LaneFates<uint32_t> fates(m4 on, const LensDraw<V>& drawn, MaskOf<V> clear) {
+    const auto count = [on](MaskOf<V> lanes) {
+        return static_cast<uint32_t>(lane_count(on & lanes_as<m4>(lanes)));
+    };
+    LaneFates<uint32_t> out = drawn.lanes;
+    const MaskOf<V> lost = !(drawn.weight > 0);
+    if (!any(on & lanes_as<m4>(lost))) return out;
+    const auto ended = [&](Fate fate) {
+        return count(clear & (drawn.ray.fate_code == static_cast<int>(fate)));
+    };
+    out.totally_reflected = ended(Fate::TotallyReflected);
+    out.missed = ended(Fate::Missed);
+    out.vignetted = count(lost) - out.totally_reflected - out.missed;
     return out;
 }
 
@@ -20,95 +55,162 @@ LensCamera::LensCamera(LensCameraInput in)
       pose_(in_.to_world),
       pupil_(*in_.lens, in_.film_mm, 0.5 * std::hypot(in_.film_width_mm, in_.film_height_mm)),
       line_d_(in_.lens->exact_indices(splat(static_cast<float>(kLineD_nm)))),
-      area_mm2_(static_cast<float>(in_.iris.area_mm2())) {}
+      exact_line_d_(in_.lens->exact_indices(broadcast<d4>(kLineD_nm))) {}
 
 // Irradiance is the integral of radiance dL dM, L and M the direction cosines at the film: the
 // cosine is in it. A point drawn evenly on the iris and solved for one lane has the density
 // stretch / area in (L, M); other lanes might have drawn the same direction, and all are weighed
 // with the mean density (balance heuristic: Veach 1997, 9.2.3), so that light at the iris's edge is
 // not lost where its image differs between wavelengths.
-LensCamera::Draw LensCamera::draw(V2f film_mm, V2f u, float u_lane, const Bands& bands) const {
-    const int lane = pick_lane(bands.on, u_lane);
-    if (!bands.spectral || in_.chroma == Chroma::Shared)
-        return draw(film_mm, u, lane, bands, line_d_, static_cast<float>(kLineD_nm));
-    return draw(film_mm, u, lane, bands, in_.lens->indices(bands.nm), bands.nm[lane]);
-}
-
-LensCamera::Draw LensCamera::draw(V2f film_mm, V2f u, int lane, const Bands& bands,
-                                  const LensIndices<f4>& indices, float nm) const {
-    Draw out;
-    const V2f on_iris = in_.iris.sample(u);
-    const m4 on = in_.chroma == Chroma::Single ? only_lane(lane) : bands.on;
-    const auto c = pupil_.solve(film_mm, on_iris, indices, lane, nm);
-    if (!c) return out;
+template <class V>
+LensDraw<V> LensCamera::draw(const Aim& aim, const Bands& bands, Coating coating,
+                             const LensIndices<f4>& in_floats,
+                             const LensIndices<V>& indices) const {
+    using S = ScalarOf<V>;
+    LensDraw<V> out;
+    const V2f on_iris = in_.iris.sample(aim.u);
+    const m4 on = in_.chroma == Chroma::Single ? only_lane(aim.lane) : bands.on;
+    const auto solved = pupil_.solve(aim.film_mm, on_iris, in_floats, aim.lane, aim.nm);
+    out.lanes.drawn = static_cast<uint32_t>(lane_count(on));
+    if (!solved) {
+        out.lanes.unreached = out.lanes.drawn;
+        return out;
+    }
+    const StopCrossing<V>& c = [&]() -> decltype(auto) {
+        if constexpr (std::same_as<V, f4>)
+            return (*solved);
+        else
+            return pupil_.cross(aim.film_mm, lanes_as<V>(solved->l), lanes_as<V>(solved->m),
+                                indices);
+    }();
     // What the solver leaves is taken off, so that the lane crosses the iris where it was drawn:
     // an iris may be smaller than the tolerance.
-    const f4 x = c->x_mm + (on_iris.x - c->x_mm[lane]), y = c->y_mm + (on_iris.y - c->y_mm[lane]);
-    const f4 open = zero_off(on & c->ray.alive(), transmitted(in_.iris, x, y));
-    const auto lanes = static_cast<float>(lane_count(on));
-    const float density = hsum(open * c->stretch_mm2()) / (area_mm2_ * lanes);
-    if (!(density > 0.f) || !any(c->clear & (open > 0.f))) return out;
-    out.ray = c->ray;
-    static_cast<void>(march<f4>(*in_.lens, indices, Towards::Scene, {0, in_.lens->stop() - 1},
-                                out.ray, Clip::Yes));
-    const float gain = gain_ * static_cast<float>(lane_count(bands.on)) / lanes;
-    out.weight = zero_off(c->clear & out.ray.alive(), open * (gain / density));
+    const V x = c.ray.origin.x + (S(on_iris.x) - c.ray.origin.x[aim.lane]);
+    const V y = c.ray.origin.y + (S(on_iris.y) - c.ray.origin.y[aim.lane]);
+    const V open =
+        select(lanes_as<MaskOf<V>>(on) & c.ray.alive(), petzval::transmitted(in_.iris, x, y), V{});
+    const auto lanes = static_cast<S>(out.lanes.drawn);
+    const S density = sum<V>(open * c.stretch_mm2()) / (S(in_.iris.area_mm2()) * lanes);
+    out.ray = c.ray;
+    if (density > 0 && any(c.clear & (open > 0))) {
+        static_cast<void>(march<V>(*in_.lens, indices, Towards::Scene, {0, in_.lens->stop() - 1},
+                                   out.ray, Clip::Yes));
+        const S gain = S(gain_) * static_cast<S>(lane_count(bands.on)) / lanes;
+        out.weight = select(c.clear & out.ray.alive(), V(open * (gain / density)), V{});
+    }
+    out.lanes = fates(on, out, c.clear);
+    if (coating != Coating::Ideal && any(out.weight > 0)) {
+        const f4 nm = bands.spectral ? bands.nm : splat(aim.nm);
+        out.weight *= lanes_as<V>(transmitted(aim.film_mm, c, coating, indices, nm));
+    }
     return out;
 }
 
-Ray LensCamera::world_ray(const LensRay<f4>& ray, int lane) const {
-    const V3f point_mm{ray.origin.x[lane], ray.origin.y[lane], behind_pupil_mm(ray, lane)};
+template <class V>
+LensDraw<V> LensCamera::draw(V2f film_mm, V2f u, float u_lane, const Bands& bands,
+                             Coating coating) const {
+    const Lens& lens = *in_.lens;
+    Aim aim{film_mm, u, pick_lane(bands.on, u_lane), static_cast<float>(kLineD_nm)};
+    if (one_ray(bands)) {
+        if constexpr (std::same_as<V, f4>)
+            return draw(aim, bands, coating, line_d_, line_d_);
+        else
+            return draw(aim, bands, coating, line_d_, exact_line_d_);
+    }
+    aim.nm = bands.nm[aim.lane];
+    const LensIndices<f4> indices = lens.indices(bands.nm);
+    if constexpr (std::same_as<V, f4>)
+        return draw(aim, bands, coating, indices, indices);
+    else
+        return draw(aim, bands, coating, indices, lens.exact_indices(lanes_as<d4>(bands.nm)));
+}
+template LensDraw<f4> LensCamera::draw(V2f, V2f, float, const Bands&, Coating) const;
+template LensDraw<d4> LensCamera::draw(V2f, V2f, float, const Bands&, Coating) const;
+
+template <class V>
+f4 LensCamera::transmitted(V2f film_mm, const StopCrossing<V>& c, Coating coating,
+                           const LensIndices<V>& indices, f4 nm) const {
+    const Lens& lens = *in_.lens;
+    f4 out = splat(1.f);
+    const auto lose = [&](const LensHit<V>& hit) {
+        const auto& s = lens.surfaces<ScalarOf<V>>()[static_cast<size_t>(hit.surface)];
+        if (s.medium_before == s.medium_after) return;
+        const Crossing crossing{lanes_as<f4>(hit.index),
+                                lanes_as<f4>(indices.of_medium[s.medium_before]),
+                                lanes_as<f4>(hit.cosine)};
+        out *= transmittance(coating, crossing, touches_air(s), nm);
+    };
+    LensRay<V> ray = pupil_.leave(film_mm, c.l, c.m);
+    static_cast<void>(
+        march<V>(lens, indices, Towards::Scene, {0, lens.last()}, ray, Clip::No, lose));
+    return out;
+}
+
+template <class V>
+Ray LensCamera::world_ray(const LensRay<V>& ray, int lane) const {
+    using S = ScalarOf<V>;
+    const auto &o = ray.origin, &d = ray.direction;
+    const V3f point_m(static_cast<float>(o.x[lane] * S(1e-3)),
+                      static_cast<float>(o.y[lane] * S(1e-3)),
+                      static_cast<float>(behind_pupil_mm(ray, lane) * S(1e-3)));
+    const V3f direction(static_cast<float>(d.x[lane]), static_cast<float>(d.y[lane]),
+                        static_cast<float>(d.z[lane]));
     Ray out;
-    out.origin = pose_.origin + pose_.to_world(point_mm * 1e-3f);
-    out.direction =
-        unit(pose_.to_world({ray.direction.x[lane], ray.direction.y[lane], ray.direction.z[lane]}));
+    out.origin = pose_.origin + pose_.to_world(point_m);
+    out.direction = unit(pose_.to_world(direction));
     return out;
 }
 
-float LensCamera::behind_pupil_mm(const LensRay<f4>& ray, int lane) const {
-    return static_cast<float>(ray.origin.z[lane] + in_.lens->vertex_mm(ray.counted_from) -
-                              in_.entrance_pupil_mm);
+template <class V>
+ScalarOf<V> LensCamera::behind_pupil_mm(const LensRay<V>& ray, int lane) const {
+    return static_cast<ScalarOf<V>>(ray.origin.z[lane] + in_.lens->vertex_mm(ray.counted_from) -
+                                    in_.entrance_pupil_mm);
 }
 
 // Whether two lanes meet the plane of focus within the tolerance, seen from the lens.
-bool LensCamera::together(const LensRay<f4>& ray, int a, int b) const {
+template <class V>
+bool LensCamera::together(const LensRay<V>& ray, int a, int b) const {
+    using S = ScalarOf<V>;
     if (in_.chroma == Chroma::Split) return false;
     const float focus_mm = in_.focus_m * 1e3f;
     const auto on_plane = [&](int lane) {
-        const float t = (focus_mm + behind_pupil_mm(ray, lane)) / -ray.direction.z[lane];
-        return V2f(ray.origin.x[lane] + t * ray.direction.x[lane],
-                   ray.origin.y[lane] + t * ray.direction.y[lane]);
+        const S t = (S(focus_mm) + behind_pupil_mm(ray, lane)) / -ray.direction.z[lane];
+        return V2f(static_cast<float>(ray.origin.x[lane] + t * ray.direction.x[lane]),
+                   static_cast<float>(ray.origin.y[lane] + t * ray.direction.y[lane]));
     };
     // A fisheye's rays that lead backwards never meet the plane: no guess is made about them.
-    if (!(ray.direction.z[a] < 0.f && ray.direction.z[b] < 0.f)) return false;
+    if (!(ray.direction.z[a] < 0 && ray.direction.z[b] < 0)) return false;
     return (on_plane(a) - on_plane(b)).length() <= in_.tolerance_rad * focus_mm;
+}
+
+template <class V>
+CameraSample LensCamera::paths(const LensDraw<V>& drawn, const Bands& bands) const {
+    CameraSample out;
+    out.lanes = drawn.lanes;
+    m4 left = lanes_as<m4>(drawn.weight > 0);
+    // Lanes that go nearly the same way share the first one's ray.
+    for (int lane = 0; lane < 4; ++lane) {
+        if (!left[lane]) continue;
+        CameraPath& path = out.path[static_cast<size_t>(out.count++)];
+        path.ray = world_ray(drawn.ray, lane);
+        path.lanes = left;
+        for (int other = lane + 1; other < 4; ++other)
+            if (!one_ray(bands) && left[other] && !together(drawn.ray, lane, other))
+                path.lanes[other] = 0;
+        path.weight = zero_off(path.lanes, lanes_as<f4>(drawn.weight));
+        left &= ~path.lanes;
+    }
+    return out;
 }
 
 CameraSample LensCamera::sample(const FilmPoint& point, const Bands& bands) const {
     // The image stands on its head: what is seen on the right falls on the left of the film.
     const V2f film((0.5f - point.film.x) * static_cast<float>(in_.film_width_mm),
                    (point.film.y - 0.5f) * static_cast<float>(in_.film_height_mm));
-    const Draw drawn =
-        draw(film, point.sampler.get2(Dim::Lens), point.sampler.get1(Dim::LensLane), bands);
-    CameraSample out;
-    const m4 alive = drawn.weight > 0.f;
-    if (!any(alive)) return out;
-    int first = 0;
-    while (!alive[first]) ++first;
-    const bool one_ray = !bands.spectral || in_.chroma == Chroma::Shared;
-    m4 left = alive;
-    // Lanes that go nearly the same way share the first one's ray.
-    for (int lane = first; lane < 4; ++lane) {
-        if (!left[lane]) continue;
-        CameraPath& path = out.path[static_cast<size_t>(out.count++)];
-        path.ray = world_ray(drawn.ray, lane);
-        path.lanes = left;
-        for (int other = lane + 1; other < 4; ++other)
-            if (!one_ray && left[other] && !together(drawn.ray, lane, other)) path.lanes[other] = 0;
-        path.weight = zero_off(path.lanes, drawn.weight);
-        left &= ~path.lanes;
-    }
-    return out;
+    const V2f u = point.sampler.get2(Dim::Lens);
+    const float u_lane = point.sampler.get1(Dim::LensLane);
+    if (in_.march == March::Double) return paths(draw<d4>(film, u, u_lane, bands), bands);
+    return paths(draw<f4>(film, u, u_lane, bands), bands);
 }
 
 // Smooth but for the edges of the iris and of the rims.
@@ -119,7 +221,7 @@ double LensCamera::irradiance(V2f film_mm, int side) const {
         for (int j = 0; j < side; ++j) {
             const V2f u((static_cast<float>(i) + 0.5f) / static_cast<float>(side),
                         (static_cast<float>(j) + 0.5f) / static_cast<float>(side));
-            sum += hsum(draw(film_mm, u, 0.f, bands).weight);
+            sum += hsum(draw<f4>(film_mm, u, 0.f, bands, Coating::Ideal).weight);
         }
     return sum / (double(side) * side * lane_count(bands.on));
 }

@@ -6,12 +6,26 @@
 
 #include "camera/camera.h"
 #include "camera/chroma.h"
+#include "camera/coating.h"
 #include "camera/iris.h"
 #include "camera/lens.h"
 #include "camera/pupil.h"
 #include "camera/thin_lens.h"
 
 namespace petzval {
+
+/// What a drawn ray is marched in. Its direction at the film is solved for in floats either way; in
+/// doubles it is then followed anew, with the glasses' own formulas, and becomes a ray of floats in
+/// the world.
+enum class March : uint8_t { Float, Double };
+
+/// A draw of the iris. V: f4 or d4.
+template <class V>
+struct LensDraw {
+    V weight{};      ///< 0 where the lane is blocked
+    LensRay<V> ray;  ///< in front of the lens
+    LaneFates<uint32_t> lanes;
+};
 
 struct LensCameraInput {
     std::shared_ptr<const Lens> lens;
@@ -23,6 +37,8 @@ struct LensCameraInput {
     Chroma chroma = Chroma::Auto;
     float focus_m = 1;        ///< where wavelengths are compared, along the axis
     float tolerance_rad = 0;  ///< Auto: how far apart directions may be, seen from the lens
+    Coating coating = Coating::Ideal;
+    March march = March::Float;  ///< of sample()
 };
 
 class LensCamera final : public Camera {
@@ -33,32 +49,56 @@ class LensCamera final : public Camera {
 
     /// Factor on every weight from here on; 1 before.
     void set_gain(double gain) { gain_ = static_cast<float>(gain); }
-    /// Irradiance at a film point over the radiance of an even scene, at line d, the gain included;
-    /// on the axis pi sin^2 u' for a round iris. Midpoints of side x side draws of the iris.
+    /// Irradiance at a film point over the radiance of an even scene, at line d, the gain included,
+    /// but not what surfaces reflect; on the axis pi sin^2 u' for a round iris. Midpoints of side x
+    /// side draws of the iris.
     [[nodiscard]] double irradiance(V2f film_mm, int side) const;
 
     /// What one draw of the iris brings: a film point's irradiance over the radiance of a scene of
-    /// the same radiance everywhere is its mean. Lanes of the bands; u in [0, 1)^2.
-    struct Draw {
-        f4 weight{};      ///< 0 where the lane is blocked
-        LensRay<f4> ray;  ///< in front of the lens
-    };
-    /// film_mm: a point of the film. u_lane picks the lane whose ray hits the drawn iris point.
-    [[nodiscard]] Draw draw(V2f film_mm, V2f u, float u_lane, const Bands&) const;
+    /// the same radiance everywhere is its mean. Lanes of the bands; u in [0, 1)^2. film_mm: a
+    /// point of the film. u_lane picks the lane whose ray hits the drawn iris point. V: f4 or d4.
+    template <class V = f4>
+    [[nodiscard]] LensDraw<V> draw(V2f film_mm, V2f u, float u_lane, const Bands& bands) const {
+        return draw<V>(film_mm, u, u_lane, bands, in_.coating);
+    }
 
   private:
-    [[nodiscard]] Draw draw(V2f film_mm, V2f u, int lane, const Bands&, const LensIndices<f4>&,
-                            float nm) const;
-    [[nodiscard]] Ray world_ray(const LensRay<f4>&, int lane) const;
+    /// A draw's film point, number, lane that is solved for, and wavelength.
+    struct Aim {
+        V2f film_mm, u;
+        int lane;
+        float nm;
+    };
+    template <class V>
+    [[nodiscard]] LensDraw<V> draw(V2f film_mm, V2f u, float u_lane, const Bands&, Coating) const;
+    /// Solved with the indices in floats, marched with the others.
+    template <class V>
+    [[nodiscard]] LensDraw<V> draw(const Aim&, const Bands&, Coating, const LensIndices<f4>&,
+                                   const LensIndices<V>&) const;
+    /// What the surfaces let through of the ray that leaves the film towards the crossing.
+    template <class V>
+    [[nodiscard]] f4 transmitted(V2f film_mm, const StopCrossing<V>&, Coating,
+                                 const LensIndices<V>&, f4 nm) const;
+    template <class V>
+    [[nodiscard]] CameraSample paths(const LensDraw<V>&, const Bands&) const;
+    template <class V>
+    [[nodiscard]] Ray world_ray(const LensRay<V>&, int lane) const;
     /// How far the ray's origin lies behind the middle of the entrance pupil.
-    [[nodiscard]] float behind_pupil_mm(const LensRay<f4>&, int lane) const;
-    [[nodiscard]] bool together(const LensRay<f4>&, int a, int b) const;
+    template <class V>
+    [[nodiscard]] ScalarOf<V> behind_pupil_mm(const LensRay<V>&, int lane) const;
+    template <class V>
+    [[nodiscard]] bool together(const LensRay<V>&, int a, int b) const;
+    /// Whether all lanes have the ray of line d.
+    [[nodiscard]] bool one_ray(const Bands& bands) const {
+        return !bands.spectral || in_.chroma == Chroma::Shared;
+    }
 
     LensCameraInput in_;
     Pose pose_;
     Pupil pupil_;
     LensIndices<f4> line_d_;
-    float area_mm2_, gain_ = 1.f;
+    LensIndices<d4> exact_line_d_;
+    float gain_ = 1.f;
 };
 
 }  // namespace petzval

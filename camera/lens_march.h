@@ -38,14 +38,15 @@ struct LensRay {
     [[nodiscard]] Fate fate(int i) const { return Fate(lane(fate_code, i)); }
 };
 
-/// What an observer is told at each surface, before light is refracted there.
-template <class N>
+/// What an observer is told at each surface, before light is refracted there. Without derivatives.
+template <class V>
 struct LensHit {
     int surface;
-    Vec3<N> point;      ///< counted from this surface's vertex
-    N distance_mm;      ///< from the point before
-    ValueOf<N> index;   ///< of the medium on the way
-    MaskOf<N> reached;  ///< lanes for which the above is true: blocked here at most
+    Vec3<V> point;      ///< counted from this surface's vertex
+    V distance_mm;      ///< from the point before
+    V cosine;           ///< of incidence, 0 to 1
+    V index;            ///< of the medium on the way
+    MaskOf<V> reached;  ///< lanes for which the above is true: blocked here at most
 };
 
 struct NoObserver {
@@ -56,67 +57,76 @@ namespace lens_march {
 
 /// Where a ray meets a surface. normal: unit, along the light that crosses the surface. The cosine
 /// of incidence and its square, as the square is there before the root.
-template <class N>
+template <class V>
 struct Meeting {
-    N distance;
-    Vec3<N> point, normal;
-    N cosine, cosine2;
-    MaskOf<N> found;
+    V distance;
+    Vec3<V> point, normal;
+    V cosine, cosine2;
+    MaskOf<V> found;
+    V per_gradient;  ///< 1 over the length of the gradient of which the normal is made; sphere: 1
 };
 
 template <class N>
 [[nodiscard]] N or_zero(N a) {
     return select(value_of(a) > 0, a, N{});
 }
+/// What grows beyond all bounds, derivatives where light grazes, is given as 0.
+template <class V>
+[[nodiscard]] V inverse_or_zero(V a) {
+    return select(a > 0, V(1 / a), V{});
+}
 
-/// The root of a t^2 + 2 b t + c = 0 at which a t + b = -root, where root^2 = b^2 - a c: in that
-/// one of its two forms in which nothing cancels.
-template <class N>
-[[nodiscard]] N root_of(N a, N b, N c, N root) {
-    const auto same_sign = value_of(b) * value_of(root) <= 0;
-    return select(same_sign, c, -b - root) / select(same_sign, root - b, a);
+/// The root of a t^2 + 2 b t + c = 0 at which a t + b = -sign * size, where size^2 = b^2 - a c: in
+/// that one of its two forms in which nothing cancels. The choice does not wait for the size.
+template <class V>
+[[nodiscard]] V root_of(V a, V b, V c, ScalarOf<V> sign, V size) {
+    const auto same_sign = b * sign <= 0;
+    const V root = size * sign;
+    return select(same_sign, c, V(-b - root)) / select(same_sign, V(root - b), a);
 }
 
 /// `foot` is the ray's point that is nearest to the vertex: from there the root has no large terms
 /// that cancel, wherever the ray came from, and B is -direction.z (Feder 1951, J. Opt. Soc. Am. 41,
 /// 630); it halves what floats err, for the same time. The root is the one on the sheet that has
-/// the vertex, crossed in the light's direction.
-template <class N>
-[[nodiscard]] Meeting<N> meet_sphere(ScalarOf<N> c, ScalarOf<N> sign, const Vec3<N>& foot,
-                                     const Vec3<N>& direction) {
-    const N beyond = c * dot(foot, foot) - 2 * foot.z;
-    Meeting<N> hit;
+/// the vertex, crossed in the light's direction. A call would cost a tenth of a draw.
+template <class V>
+[[nodiscard, gnu::always_inline]] inline Meeting<V> meet_sphere(ScalarOf<V> c, ScalarOf<V> sign,
+                                                                const Vec3<V>& foot,
+                                                                const Vec3<V>& direction) {
+    const V beyond = c * dot(foot, foot) - 2 * foot.z;
+    Meeting<V> hit;
     hit.cosine2 = direction.z * direction.z - c * beyond;
     hit.cosine = sqrt(or_zero(hit.cosine2));
-    hit.distance =
-        root_of<N>(constant<N>(broadcast<ValueOf<N>>(c)), -direction.z, beyond, sign * hit.cosine);
+    hit.distance = root_of<V>(broadcast<V>(c), -direction.z, beyond, sign, hit.cosine);
     hit.point = foot + direction * hit.distance;
-    const N sheet = 1 - c * hit.point.z;
-    hit.found = (value_of(hit.cosine2) >= 0) & (value_of(sheet) > 0);
-    hit.normal = {hit.point.x * (-sign * c), hit.point.y * (-sign * c), sheet * sign};
+    const V turn = hit.point.z * (sign * c);
+    hit.found = (hit.cosine2 >= 0) & (turn * sign < 1);
+    hit.normal = {hit.point.x * (-sign * c), hit.point.y * (-sign * c), sign - turn};
+    hit.per_gradient = broadcast<V>(1);
     return hit;
 }
 
 /// The same for curvature_x x^2 + curvature_y y^2 + curvature_z z^2 = 2 z, whose gradient is not
 /// of unit length.
-template <class N>
-[[nodiscard]] Meeting<N> meet_quadric(const SurfaceFacts<ScalarOf<N>>& s, ScalarOf<N> sign,
-                                      const Vec3<N>& foot, const Vec3<N>& direction) {
-    const auto curved = [&s](const Vec3<N>& a) {
-        return Vec3<N>{a.x * s.curvature_x, a.y * s.curvature_y, a.z * s.curvature_z};
+template <class V>
+[[nodiscard]] Meeting<V> meet_quadric(const SurfaceFacts<ScalarOf<V>>& s, ScalarOf<V> sign,
+                                      const Vec3<V>& foot, const Vec3<V>& direction) {
+    const auto curved = [&s](const Vec3<V>& a) {
+        return Vec3<V>{a.x * s.curvature_x, a.y * s.curvature_y, a.z * s.curvature_z};
     };
-    const N a = dot(curved(direction), direction);
-    const N b = dot(curved(direction), foot) - direction.z;
-    const N c = dot(curved(foot), foot) - 2 * foot.z;
-    const N discriminant = b * b - a * c;
-    const N root = sqrt(or_zero(discriminant));
-    Meeting<N> hit;
-    hit.distance = root_of<N>(a, b, c, sign * root);
+    const V a = dot(curved(direction), direction);
+    const V b = dot(curved(direction), foot) - direction.z;
+    const V c = dot(curved(foot), foot) - 2 * foot.z;
+    const V discriminant = b * b - a * c;
+    const V root = sqrt(or_zero(discriminant));
+    Meeting<V> hit;
+    hit.distance = root_of<V>(a, b, c, sign, root);
     hit.point = foot + direction * hit.distance;
-    const N sheet = 1 - s.curvature_z * hit.point.z;
-    hit.found = (value_of(discriminant) >= 0) & (value_of(sheet) > 0);
-    const Vec3<N> along{hit.point.x * (-s.curvature_x), hit.point.y * (-s.curvature_y), sheet};
-    hit.normal = along * (sign / sqrt(dot(along, along)));
+    const V sheet = 1 - s.curvature_z * hit.point.z;
+    hit.found = (discriminant >= 0) & (sheet > 0);
+    const Vec3<V> along{hit.point.x * (-s.curvature_x), hit.point.y * (-s.curvature_y), sheet};
+    hit.per_gradient = 1 / sqrt(dot(along, along));
+    hit.normal = along * (sign * hit.per_gradient);
     hit.cosine = dot(hit.normal, direction);
     hit.cosine2 = hit.cosine * hit.cosine;
     return hit;
@@ -150,50 +160,144 @@ template <class N>
     return {s.curvature * r2 / (1 + root) + even * r2, s.curvature / root + even_slope};
 }
 
+/// x^2 and y^2, as far as the asphere goes by them.
+template <class V>
+[[nodiscard]] V r2_of(const Asphere<ScalarOf<V>>& s, const Vec3<V>& p) {
+    return p.x * p.x * s.across_x + p.y * p.y * s.across_y;
+}
+
 /// Newton's method from the quadric's point. Each lane stops when it has converged, so that what
-/// it finds does not depend on its neighbours. The last step, in N, squares what error is left
-/// and brings the derivatives: those of an implicit function.
-template <class N>
-[[nodiscard]] Meeting<N> meet_asphere(const SurfaceFacts<ScalarOf<N>>& facts,
-                                      const Asphere<ScalarOf<N>>& s, ScalarOf<N> sign,
-                                      const Vec3<N>& foot, const Vec3<N>& direction) {
-    using V = ValueOf<N>;
-    using S = ScalarOf<N>;
+/// it finds does not depend on its neighbours. One more step squares what error is left.
+template <class V>
+[[nodiscard]] Meeting<V> meet_asphere(const SurfaceFacts<ScalarOf<V>>& facts,
+                                      const Asphere<ScalarOf<V>>& s, ScalarOf<V> sign,
+                                      const Vec3<V>& foot, const Vec3<V>& direction) {
+    using S = ScalarOf<V>;
     constexpr int kIterations = 12;
     // Newton squares the relative error: after this, one step reaches the last digit.
     constexpr S kConverged = sizeof(S) == sizeof(float) ? S(1e-4) : S(1e-8);
-    const auto r2_of = [&s](const auto& p) {
-        return p.x * p.x * s.across_x + p.y * p.y * s.across_y;
-    };
-    const auto step = [&]<class M>(const Vec3<M>& p, const Vec3<M>& d, const Sag<M>& sag) {
-        const V slope =
-            value_of(d.z) - value_of(sag.slope_by_r) * (value_of(p.x) * value_of(d.x) * s.across_x +
-                                                        value_of(p.y) * value_of(d.y) * s.across_y);
+    const auto step = [&](const Vec3<V>& p) {
+        const Sag<V> sag = sag_at<V>(s, r2_of<V>(s, p));
+        const V slope = direction.z - sag.slope_by_r * (p.x * direction.x * s.across_x +
+                                                        p.y * direction.y * s.across_y);
         return (sag.height - p.z) / slope;
     };
-    const Vec3<V> from = value_of(foot), along = value_of(direction);
-    V distance = meet_quadric<V>(facts, sign, from, along).distance;
-    MaskOf<N> converged = distance != distance;
+    V distance = meet_quadric<V>(facts, sign, foot, direction).distance;
+    MaskOf<V> converged = distance != distance;
     for (int i = 0; i < kIterations && !all(converged); ++i) {
-        const Vec3<V> p = from + along * distance;
-        const V by = step(p, along, sag_at<V>(s, r2_of(p)));
-        distance = select(converged, distance, distance + by);
+        const Vec3<V> p = foot + direction * distance;
+        const V by = step(p);
+        distance = select(converged, distance, V(distance + by));
         const V size2 = dot(p, p) + distance * distance;
         converged = converged | (by * by <= (kConverged * kConverged) * size2);
     }
-    const Vec3<N> near = foot + direction * distance;
-    Meeting<N> hit;
-    hit.distance = step(near, direction, sag_at<N>(s, r2_of(near))) + distance;
+    Meeting<V> hit;
+    hit.distance = step(foot + direction * distance) + distance;
     hit.point = foot + direction * hit.distance;
-    const Sag<N> sag = sag_at<N>(s, r2_of(hit.point));
-    const Vec3<N> ahead{hit.point.x * sag.slope_by_r * (-s.across_x),
-                        hit.point.y * sag.slope_by_r * (-s.across_y), constant<N>(broadcast<V>(1))};
-    hit.normal = ahead * (sign / sqrt(dot(ahead, ahead)));
+    const Sag<V> sag = sag_at<V>(s, r2_of<V>(s, hit.point));
+    const Vec3<V> ahead{hit.point.x * sag.slope_by_r * (-s.across_x),
+                        hit.point.y * sag.slope_by_r * (-s.across_y), broadcast<V>(1)};
+    hit.per_gradient = 1 / sqrt(dot(ahead, ahead));
+    hit.normal = ahead * (sign * hit.per_gradient);
     hit.cosine = dot(hit.normal, direction);
     hit.cosine2 = hit.cosine * hit.cosine;
     // An infinite slope makes no number of the cosine.
-    hit.found = converged & (value_of(hit.cosine) >= 0);
+    hit.found = converged & (hit.cosine >= 0);
     return hit;
+}
+
+/// How the unit normal turns where the point moves along the surface.
+template <class V>
+class NormalChange {
+    using S = ScalarOf<V>;
+
+  public:
+    NormalChange(const SurfaceFacts<S>& facts, const Asphere<S>* asphere, S sign,
+                 const Meeting<V>& hit)
+        : facts_(facts), asphere_(asphere), sign_(sign), hit_(hit) {
+        if (!asphere) return;
+        const Dual<V> r2{r2_of<V>(*asphere, hit.point), broadcast<V>(1), V{}};
+        const Sag<Dual<V>> sag = sag_at<Dual<V>>(*asphere, r2);
+        slope_by_r_ = sag.slope_by_r.value;
+        by_r2_ = sag.slope_by_r.du;
+    }
+    [[nodiscard]] Vec3<V> operator()(const Vec3<V>& moved) const {
+        if (facts_.shape == Shape::Sphere) return moved * (-sign_ * facts_.curvature_y);
+        const Vec3<V> turned = gradient(moved) * (sign_ * hit_.per_gradient);
+        return turned + hit_.normal * -dot(hit_.normal, turned);
+    }
+
+  private:
+    [[nodiscard]] Vec3<V> gradient(const Vec3<V>& moved) const {
+        if (!asphere_)
+            return {moved.x * -facts_.curvature_x, moved.y * -facts_.curvature_y,
+                    moved.z * -facts_.curvature_z};
+        const V x = hit_.point.x * asphere_->across_x, y = hit_.point.y * asphere_->across_y;
+        const V slope_change = 2 * (x * moved.x + y * moved.y) * by_r2_;
+        return {-(moved.x * asphere_->across_x * slope_by_r_ + x * slope_change),
+                -(moved.y * asphere_->across_y * slope_by_r_ + y * slope_change), V{}};
+    }
+
+    const SurfaceFacts<S>& facts_;
+    const Asphere<S>* asphere_;
+    S sign_;
+    const Meeting<V>& hit_;
+    V slope_by_r_{}, by_r2_{};
+};
+
+/// How a ray changes by one parameter.
+template <class V>
+struct RayChange {
+    Vec3<V> origin, direction;
+};
+/// Those that a number carries.
+template <class N>
+struct RayChanges {
+    static constexpr bool kAny = false;
+    explicit RayChanges(const LensRay<N>&) {}
+    void keep(MaskOf<N>) {}
+    void put_into(LensRay<N>&) const {}
+};
+template <class V>
+struct RayChanges<Dual<V>> {
+    static constexpr bool kAny = true;
+    RayChange<V> by[2];
+
+    explicit RayChanges(const LensRay<Dual<V>>& ray) {
+        const auto &o = ray.origin, &d = ray.direction;
+        by[0] = {{o.x.du, o.y.du, o.z.du}, {d.x.du, d.y.du, d.z.du}};
+        by[1] = {{o.x.dv, o.y.dv, o.z.dv}, {d.x.dv, d.y.dv, d.z.dv}};
+    }
+    void keep(MaskOf<V> on) {
+        for (RayChange<V>& c : by)
+            c = {select(on, c.origin, Vec3<V>{}), select(on, c.direction, Vec3<V>{})};
+    }
+    void put_into(LensRay<Dual<V>>& ray) const {
+        const auto put = [this](Vec3<Dual<V>>& to, auto which) {
+            const Vec3<V>&u = by[0].*which, &v = by[1].*which;
+            to.x.du = u.x, to.y.du = u.y, to.z.du = u.z;
+            to.x.dv = v.x, to.y.dv = v.y, to.z.dv = v.z;
+        };
+        put(ray.origin, &RayChange<V>::origin);
+        put(ray.direction, &RayChange<V>::direction);
+    }
+};
+
+/// The values of a ray, or values put back into one that has derivatives.
+template <class To, class From>
+[[nodiscard]] LensRay<To> converted(const LensRay<From>& ray) {
+    if constexpr (std::same_as<To, From>)
+        return ray;
+    else {
+        const auto vector = [](const Vec3<From>& a) {
+            if constexpr (std::same_as<To, ValueOf<From>>)
+                return value_of(a);
+            else
+                return Vec3<To>{constant<To>(a.x), constant<To>(a.y), constant<To>(a.z)};
+        };
+        return {vector(ray.origin), vector(ray.direction), ray.counted_from, ray.fate_code,
+                ray.end_surface};
+    }
 }
 
 /// Lanes that are blocked just now get their fate; all blocked ones have the axis for a ray.
@@ -208,9 +312,8 @@ template <class N>
     ray.fate_code = select(fresh, fate, ray.fate_code);
     ray.end_surface = select(fresh, code(surface), ray.end_surface);
     const MaskOf<N> on = ray.alive();
-    const auto axis = constant<N>(broadcast<ValueOf<N>>(sign));
     ray.origin = select(on, ray.origin, Vec3<N>{});
-    ray.direction = select(on, ray.direction, Vec3<N>{N{}, N{}, axis});
+    ray.direction = select(on, ray.direction, Vec3<N>{N{}, N{}, broadcast<N>(sign)});
     return ray;
 }
 
@@ -219,9 +322,11 @@ template <class N>
 /// Takes a ray through the surfaces of a range, from anywhere on its line: backwards along it to
 /// the first surface is as good as forwards. It ends on the last surface, refracted. Returns the
 /// lanes that passed. N: float, f4, d4, Dual<f4> or Dual<d4>; the observer is called with a
-/// LensHit<N>.
+/// LensHit<ValueOf<N>>.
 ///
-/// Refraction in vector form (Welford 1986, Aberrations of Optical Systems, ch. 4). Any input has a
+/// Refraction in vector form (Welford 1986, Aberrations of Optical Systems, ch. 4). Derivatives go
+/// from surface to surface as those of points, normals and directions (Igehy 1999, Tracing Ray
+/// Differentials, sec. 3): a third of what Dual's own arithmetic would cost. Any input has a
 /// defined result; NaN misses.
 template <class N, class Observer = NoObserver>
 [[nodiscard]] MaskOf<N> march(const Lens& lens, const LensIndices<ValueOf<N>>& indices,
@@ -234,45 +339,67 @@ template <class N, class Observer = NoObserver>
     const S sign = to_film ? S(1) : S(-1);
     const SurfaceFacts<S>* const facts = lens.surfaces<S>().data();
     const int begin = to_film ? range.first : range.last;
-    LensRay<N> ray = marched;
-    if (range.first > range.last) return ray.alive();
+    if (range.first > range.last) return marched.alive();
+    LensRay<V> ray = converted<V>(marched);
+    RayChanges<N> changes(marched);
     if (ray.counted_from != begin)
         ray.origin.z = ray.origin.z + S(lens.vertex_mm(ray.counted_from) - lens.vertex_mm(begin));
     for (int left = range.last - range.first, i = begin; left >= 0; --left, i += to_film ? 1 : -1) {
         const SurfaceFacts<S>& s = facts[i];
         ray.counted_from = i;
         if (i != begin) ray.origin.z = ray.origin.z - (to_film ? facts[i - 1].gap_mm : -s.gap_mm);
-        const N to_foot = -dot(ray.origin, ray.direction);
-        const Vec3<N> foot = ray.origin + ray.direction * to_foot;
-        const Meeting<N> hit =
-            s.shape == Shape::Sphere ? meet_sphere<N>(s.curvature_y, sign, foot, ray.direction)
-            : s.shape == Shape::Quadric
-                ? meet_quadric<N>(s, sign, foot, ray.direction)
-                : meet_asphere<N>(s, lens.aspheres<S>()[s.asphere], sign, foot, ray.direction);
+        const V to_foot = -dot(ray.origin, ray.direction);
+        const Vec3<V> foot = ray.origin + ray.direction * to_foot;
+        const Asphere<S>* const asphere =
+            s.shape == Shape::Asphere ? &lens.aspheres<S>()[s.asphere] : nullptr;
+        const Meeting<V> hit = s.shape == Shape::Sphere
+                                   ? meet_sphere<V>(s.curvature_y, sign, foot, ray.direction)
+                               : asphere ? meet_asphere<V>(s, *asphere, sign, foot, ray.direction)
+                                         : meet_quadric<V>(s, sign, foot, ray.direction);
+        const V distance = hit.distance + to_foot;
         ray.origin = hit.point;
-        const V x = value_of(hit.point.x), y = value_of(hit.point.y);
-        const MaskOf<N> inside =
+        const V x = hit.point.x, y = hit.point.y;
+        const MaskOf<V> inside =
             x * x + y * y <=
             (clip == Clip::Yes ? s.semi_diameter2_mm2 : std::numeric_limits<S>::infinity());
         const int from = to_film ? s.medium_before : s.medium_after;
         const int into = to_film ? s.medium_after : s.medium_before;
-        observe(LensHit<N>{i, hit.point, hit.distance + to_foot, indices.of_medium[from],
-                           MaskOf<N>(ray.alive() & hit.found)});
-        MaskOf<N> refracted = !MaskOf<N>{};
+        observe(LensHit<V>{i, hit.point, distance, hit.cosine, indices.of_medium[from],
+                           MaskOf<V>(ray.alive() & hit.found)});
+        if constexpr (RayChanges<N>::kAny) {
+            const V per_cosine = inverse_or_zero(hit.cosine);
+            for (auto& c : changes.by) {
+                c.origin = c.origin + c.direction * distance;
+                c.origin = c.origin + ray.direction * (-dot(hit.normal, c.origin) * per_cosine);
+            }
+        }
+        MaskOf<V> refracted = !MaskOf<V>{};
         if (from != into) {
             const V ratio = indices.of_medium[from] / indices.of_medium[into];
-            const N cosine2 = 1 - ratio * ratio * (1 - hit.cosine2);
-            refracted = value_of(cosine2) >= 0;
-            ray.direction =
-                ray.direction * ratio + hit.normal * (sqrt(or_zero(cosine2)) - hit.cosine * ratio);
+            const V cosine2 = 1 - ratio * ratio * (1 - hit.cosine2);
+            refracted = cosine2 >= 0;
+            const V cosine = sqrt(or_zero(cosine2)), bend = cosine - hit.cosine * ratio;
+            if constexpr (RayChanges<N>::kAny) {
+                const NormalChange<V> turned(s, asphere, sign, hit);
+                const V by_cosine = ratio * (ratio * hit.cosine * inverse_or_zero(cosine) - 1);
+                for (auto& c : changes.by) {
+                    const Vec3<V> turn = turned(c.origin);
+                    const V change = dot(c.direction, hit.normal) + dot(ray.direction, turn);
+                    c.direction =
+                        c.direction * ratio + turn * bend + hit.normal * (change * by_cosine);
+                }
+            }
+            ray.direction = ray.direction * ratio + hit.normal * bend;
         }
         if (!all(hit.found & inside & refracted)) [[unlikely]] {
             ray = block(ray, i, sign, hit.found, inside, refracted);
+            changes.keep(ray.alive());
             if (!any(ray.alive())) break;
         }
     }
-    marched = ray;
-    return ray.alive();
+    marched = converted<N>(ray);
+    changes.put_into(marched);
+    return marched.alive();
 }
 
 }  // namespace petzval

@@ -37,7 +37,8 @@ struct Nodes {
 };
 Nodes nodes_about(float t, int size) {
     if (size == 1) return {0, 1, f4{1, 0, 0, 0}};
-    t = std::fmin(std::fmax(t, 0.f), static_cast<float>(size - 1));  // NaN: 0
+    const auto last = static_cast<float>(size - 1);
+    t = t > 0.f ? (t < last ? t : last) : 0.f;  // NaN: 0
     const int first = std::clamp(static_cast<int>(t) - 1, 0, size - 4);
     return {first, 4, cubic(t - static_cast<float>(first))};
 }
@@ -45,8 +46,8 @@ Nodes nodes_about(float t, int size) {
 struct Step {
     f4 l, m, left2_mm2;
 };
-Step step_towards(V2f stop_point_mm, const StopCrossing& c) {
-    const f4 x = stop_point_mm.x - c.x_mm, y = stop_point_mm.y - c.y_mm;
+Step step_towards(V2f stop_point_mm, const StopCrossing<f4>& c) {
+    const f4 x = stop_point_mm.x - c.ray.origin.x, y = stop_point_mm.y - c.ray.origin.y;
     const f4 by = 1 / c.determinant();
     return {(c.y_by_m * x - c.x_by_m * y) * by, (c.x_by_l * y - c.y_by_l * x) * by, x * x + y * y};
 }
@@ -73,47 +74,41 @@ Pupil::Pupil(const Lens& lens, double film_mm, double film_reach_mm)
     solve_table();
 }
 
-StopCrossing Pupil::cross(V2f film_point_mm, const Node& cosines,
-                          const LensIndices<f4>& indices) const {
-    using D = Dual<f4>;
-    const D l{cosines.l, splat(1.f), f4{}}, m{cosines.m, f4{}, splat(1.f)};
-    LensRay<D> ray;
-    ray.counted_from = lens_.last();
-    const auto z = static_cast<float>(film_mm_ - lens_.vertex_mm(lens_.last()));
-    ray.origin = {D{splat(film_point_mm.x)}, D{splat(film_point_mm.y)}, D{splat(z)}};
-    ray.direction = {l, m, -sqrt(1 - l * l - m * m)};
-    StopCrossing out;
-    out.l = cosines.l;
-    out.m = cosines.m;
-    out.clear = m4{-1, -1, -1, -1};
-    const auto& facts = lens_.surfaces<float>();
-    const auto clip = [&](const LensHit<D>& hit) {
-        const f4 x = hit.point.x.value, y = hit.point.y.value;
-        out.clear &= x * x + y * y <= facts[static_cast<size_t>(hit.surface)].semi_diameter2_mm2;
+template <class V>
+StopCrossing<V> Pupil::cross(V2f film_point_mm, V l, V m, const LensIndices<V>& indices) const {
+    using D = Dual<V>;
+    const V one = broadcast<V>(1);
+    LensRay<D> ray = leave(film_point_mm, D{l, one, V{}}, D{m, V{}, one});
+    StopCrossing<V> out;
+    out.l = l;
+    out.m = m;
+    out.clear = !MaskOf<V>{};
+    const auto& facts = lens_.surfaces<ScalarOf<V>>();
+    const auto clip = [&](const LensHit<V>& hit) {
+        const V x = hit.point.x, y = hit.point.y;
+        const auto rim2 = facts[static_cast<size_t>(hit.surface)].semi_diameter2_mm2;
+        out.clear &= (x * x + y * y <= rim2) | (hit.reached == 0);
     };
     static_cast<void>(march<D>(lens_, indices, Towards::Scene, {lens_.stop(), lens_.last()}, ray,
                                Clip::No, clip));
-    out.ray.origin = value_of(ray.origin);
-    out.ray.direction = value_of(ray.direction);
-    out.ray.counted_from = ray.counted_from;
-    out.ray.fate_code = ray.fate_code;
-    out.ray.end_surface = ray.end_surface;
-    out.x_mm = ray.origin.x.value;
-    out.y_mm = ray.origin.y.value;
+    out.ray = lens_march::converted<V>(ray);
     out.x_by_l = ray.origin.x.du;
     out.y_by_l = ray.origin.y.du;
     out.x_by_m = ray.origin.x.dv;
     out.y_by_m = ray.origin.y.dv;
     return out;
 }
+template StopCrossing<f4> Pupil::cross(V2f, f4, f4, const LensIndices<f4>&) const;
+template StopCrossing<d4> Pupil::cross(V2f, d4, d4, const LensIndices<d4>&) const;
 
 // Newton's method from a guess: half the step where it leads to where rays never reach the stop.
-std::optional<StopCrossing> Pupil::newton(V2f film_point_mm, V2f stop_point_mm, V2f cosines,
-                                          const LensIndices<f4>& indices, int lane) const {
+std::optional<StopCrossing<f4>> Pupil::newton(V2f film_point_mm, V2f stop_point_mm, V2f cosines,
+                                              const LensIndices<f4>& indices, int lane) const {
     V2f good = cosines, step(0.f);
     int halvings = 0;
     for (int i = 0; i < kMostSteps; ++i) {
-        const StopCrossing c = cross(film_point_mm, {splat(cosines.x), splat(cosines.y)}, indices);
+        const StopCrossing<f4> c =
+            cross<f4>(film_point_mm, splat(cosines.x), splat(cosines.y), indices);
         if (cosines.length2() < 1.f && c.ray.alive()[lane]) {
             const Step by = step_towards(stop_point_mm, c);
             if (by.left2_mm2[lane] < sqr(kTolerance * stop_radius_mm_)) return c;
@@ -134,7 +129,7 @@ Pupil::Node Pupil::settled(V2f film_point_mm, V2f stop_point_mm, const Node& gue
     Node at = guess;
     m4 inside{}, close{};
     for (int i = 0; i < kMostSteps && !all(close); ++i) {
-        const StopCrossing c = cross(film_point_mm, at, indices);
+        const StopCrossing<f4> c = cross<f4>(film_point_mm, at.l, at.m, indices);
         inside = c.ray.alive() & (at.l * at.l + at.m * at.m < 1.f);
         const Step by = step_towards(stop_point_mm, c);
         close = ~inside | (by.left2_mm2 < sqr(kToleranceBeforeStep * stop_radius_mm_));
@@ -204,8 +199,9 @@ V2f Pupil::between(V2f film_point_mm, V2f stop_point_mm, float nm) const {
     return {hsum(sum.l * weights), hsum(sum.m * weights)};
 }
 
-std::optional<StopCrossing> Pupil::solve(V2f film_point_mm, V2f stop_point_mm,
-                                         const LensIndices<f4>& indices, int lane, float nm) const {
+std::optional<StopCrossing<f4>> Pupil::solve(V2f film_point_mm, V2f stop_point_mm,
+                                             const LensIndices<f4>& indices, int lane,
+                                             float nm) const {
     // Into the part that the table covers, and back.
     V2f p = film_point_mm, q = stop_point_mm;
     V2f turn(1.f, 0.f);

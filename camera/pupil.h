@@ -11,18 +11,21 @@
 
 namespace petzval {
 
-/// Where rays from the film cross the plane of the stop, lane by lane.
+/// Where rays from the film cross the plane of the stop, lane by lane. V: f4 or d4.
+template <class V>
 struct StopCrossing {
-    f4 l, m;          ///< direction cosines at the film
-    LensRay<f4> ray;  ///< at the stop, on its way to the scene
-    f4 x_mm, y_mm;
-    m4 clear;  ///< inside the clear semi-diameters on the way, the stop's too
+    V l, m;           ///< direction cosines at the film
+    LensRay<V> ray;   ///< at the stop, on its way to the scene
+    MaskOf<V> clear;  ///< inside the clear semi-diameters of all that it met, the stop's too
     /// d(x, y) / d(l, m): columns by l and by m.
-    f4 x_by_l, y_by_l, x_by_m, y_by_m;
+    V x_by_l, y_by_l, x_by_m, y_by_m;
 
-    [[nodiscard]] f4 determinant() const { return x_by_l * y_by_m - x_by_m * y_by_l; }
+    [[nodiscard]] V determinant() const { return x_by_l * y_by_m - x_by_m * y_by_l; }
     /// Area on the stop for a unit of dl dm, which is projected solid angle at the film.
-    [[nodiscard]] f4 stretch_mm2() const { return max(determinant(), -determinant()); }
+    [[nodiscard]] V stretch_mm2() const {
+        const V d = determinant();
+        return d < 0 ? -d : d;
+    }
 };
 
 /// The rear of a lens, film to stop. Millimetres; coordinates as in Prescription.
@@ -35,9 +38,25 @@ class Pupil {
     /// wavelength is nm, meets a point of the stop to a ten-thousandth of the stop's radius.
     /// Nothing where no ray gets there. Semi-diameters do not stop rays: one that glass blocks at
     /// one wavelength may have been drawn for another.
-    [[nodiscard]] std::optional<StopCrossing> solve(V2f film_point_mm, V2f stop_point_mm,
-                                                    const LensIndices<f4>&, int lane,
-                                                    float nm) const;
+    [[nodiscard]] std::optional<StopCrossing<f4>> solve(V2f film_point_mm, V2f stop_point_mm,
+                                                        const LensIndices<f4>&, int lane,
+                                                        float nm) const;
+    /// The ray that leaves the film with direction cosines l and m. V: f4 or d4.
+    template <class V>
+    [[nodiscard]] StopCrossing<V> cross(V2f film_point_mm, V l, V m, const LensIndices<V>&) const;
+    /// Its beginning. N: V, or V with derivatives.
+    template <class N>
+    [[nodiscard]] LensRay<N> leave(V2f film_point_mm, const N& l, const N& m) const {
+        const auto number = [](double a) {
+            return constant<N>(broadcast<ValueOf<N>>(ScalarOf<N>(a)));
+        };
+        LensRay<N> ray;
+        ray.counted_from = lens_.last();
+        ray.origin = {number(film_point_mm.x), number(film_point_mm.y),
+                      number(film_mm_ - lens_.vertex_mm(lens_.last()))};
+        ray.direction = {l, m, -sqrt(1 - l * l - m * m)};
+        return ray;
+    }
 
   private:
     /// Equal steps over [first, last].
@@ -50,11 +69,9 @@ class Pupil {
     struct Node {
         f4 l{}, m{};
     };
-    [[nodiscard]] StopCrossing cross(V2f film_point_mm, const Node& cosines,
-                                     const LensIndices<f4>&) const;
-    [[nodiscard]] std::optional<StopCrossing> newton(V2f film_point_mm, V2f stop_point_mm,
-                                                     V2f cosines, const LensIndices<f4>&,
-                                                     int lane) const;
+    [[nodiscard]] std::optional<StopCrossing<f4>> newton(V2f film_point_mm, V2f stop_point_mm,
+                                                         V2f cosines, const LensIndices<f4>&,
+                                                         int lane) const;
     [[nodiscard]] Node settled(V2f film_point_mm, V2f stop_point_mm, const Node& guess,
                                const LensIndices<f4>&) const;
     [[nodiscard]] V2f between(V2f film_point_mm, V2f stop_point_mm, float nm) const;

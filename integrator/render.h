@@ -72,6 +72,7 @@ void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& 
         const V2f size(film.full_size());
         const V2f at = V2f(id.x + 0.5f, id.y + 0.5f) + offset;
         seen = camera.sample({at / size, sampler}, bands);
+        stats.lens_lanes += seen.lanes;
     }
     FilmSample sample;
     f4 sum{};

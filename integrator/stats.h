@@ -7,6 +7,8 @@
 #include <array>
 #include <cstdint>
 
+#include "camera/camera.h"
+
 namespace petzval {
 
 /// Sample is the whole; what the others leave of it is shading.
@@ -16,6 +18,7 @@ struct PathStats {
     uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0;
     uint64_t vertices = 0;  ///< hits that were shaded
     uint64_t tiles = 0;     ///< tiles that this worker rendered
+    LaneFates<uint64_t> lens_lanes;
     bool timing = false;    ///< the current sample is one of those that are timed
     uint64_t timed_samples = 0, samples = 0;
     std::array<uint64_t, static_cast<size_t>(Section::Count)> ticks{};
@@ -26,6 +29,7 @@ struct PathStats {
         shadow_rays += o.shadow_rays;
         vertices += o.vertices;
         tiles += o.tiles;
+        lens_lanes += o.lens_lanes;
         timed_samples += o.timed_samples;
         samples += o.samples;
         for (size_t i = 0; i < ticks.size(); ++i) ticks[i] += o.ticks[i];

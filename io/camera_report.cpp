@@ -31,6 +31,8 @@ void describe_glass(const CameraReport& c, PictureLayout& layout) {
     m.emplace_back("petzval:film_mm", static_cast<float>(c.film_mm));
     m.emplace_back("petzval:stopRadius_mm", static_cast<float>(c.stop_radius_mm));
     m.emplace_back("petzval:focusBy", word_of(c.asked.focus_by));
+    m.emplace_back("petzval:coating", word_of(c.asked.coating));
+    m.emplace_back("petzval:march", word_of(c.asked.march));
     m.emplace_back("petzval:fit", word_of(c.asked.fit));
     m.emplace_back("petzval:chroma", word_of(c.asked.chroma));
     if (c.asked.chroma == Chroma::Auto)

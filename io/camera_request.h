@@ -9,8 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "camera/chroma.h"
-#include "camera/iris.h"
+#include "camera/lens_camera.h"
 #include "camera/lens_focus.h"
 #include "core/math.h"
 
@@ -55,6 +54,8 @@ struct CameraRequest {
     std::optional<IrisSampling> iris_sampling;
     Chroma chroma = Chroma::Auto;
     float chroma_tolerance_px = 0.1f;
+    Coating coating = Coating::Ideal;
+    March march = March::Float;
     ExposureMode exposure = ExposureMode::Normalised;
     float iso = 100, shutter_s = 0.01f;
     std::vector<std::filesystem::path> glasses;  ///< catalogues that go before those that ship

@@ -29,6 +29,12 @@ using Words = std::vector<std::pair<std::string, T>>;
             {"triangles", IrisSampling::Triangles},
             {"alias", IrisSampling::Alias}};
 }
+[[nodiscard]] inline Words<Coating> words_of(Coating) {
+    return {{"ideal", Coating::Ideal}, {"uncoated", Coating::Uncoated}, {"mgf2", Coating::MgF2}};
+}
+[[nodiscard]] inline Words<March> words_of(March) {
+    return {{"float", March::Float}, {"double", March::Double}};
+}
 [[nodiscard]] inline Words<ExposureMode> words_of(ExposureMode) {
     return {{"normalised", ExposureMode::Normalised}, {"photographic", ExposureMode::Photographic}};
 }

@@ -140,6 +140,8 @@ LensSetup set_up_lens(const CameraRequest& asked, const LoadedLens& loaded, cons
         LensCameraInput in = input_of(loaded, to_world, *std::move(sharp), iris);
         setup.film_mm = in.film_mm;
         in.chroma = asked.chroma;
+        in.coating = asked.coating;
+        in.march = asked.march;
         in.focus_m = focus_m;
         in.tolerance_rad = static_cast<float>(asked.chroma_tolerance_px * double(loaded.film_mm.x) /
                                               width_px / loaded.focal_length_mm);

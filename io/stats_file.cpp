@@ -36,6 +36,17 @@ nlohmann::ordered_json sections(const PathStats& stats, double cpu_s) {
             {"shading_s", cpu_s * (whole - camera - traversal - texture) / whole}};
 }
 
+// What the lens did to the lanes that were drawn; nothing for a camera that is none.
+nlohmann::ordered_json lens_lanes(const LaneFates<uint64_t>& lanes) {
+    if (lanes.drawn == 0) return nullptr;
+    return {{"drawn", lanes.drawn},
+            {"passed", lanes.drawn - lanes.lost()},
+            {"vignetted", lanes.vignetted},
+            {"totally_reflected", lanes.totally_reflected},
+            {"missed", lanes.missed},
+            {"unreached", lanes.unreached}};
+}
+
 }  // namespace
 
 double peak_memory_mib() {
@@ -66,6 +77,7 @@ void write_stats(const std::filesystem::path& path, const Session& session,
                    {"bounce", s.bounce_rays},
                    {"shadow", s.shadow_rays},
                    {"all", rays}};
+    out["lens_lanes"] = lens_lanes(s.lens_lanes);
     out["path_vertices"] = s.vertices;
     out["rays_per_cpu_s"] = static_cast<double>(rays) / cost.render_cpu_s;
     out["samples_per_cpu_s"] = static_cast<double>(s.samples) / cost.render_cpu_s;

@@ -191,8 +191,8 @@ template <class N>
     hit.normal = ahead * (sign / sqrt(dot(ahead, ahead)));
     hit.cosine = dot(hit.normal, direction);
     hit.cosine2 = hit.cosine * hit.cosine;
-    // An infinite slope makes no number of the cosine.
-    hit.found = converged & (value_of(hit.cosine) >= 0);
+    // An infinite slope makes no number of the cosine, one whose square is infinite makes it 0.
+    hit.found = converged & (value_of(hit.cosine) > 0);
     return hit;
 }
 

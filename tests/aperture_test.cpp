@@ -420,7 +420,7 @@ TEST(Iris, RulesForContoursInContours) {
 }
 
 TEST(Iris, RefusesWhatIsNotThere) {
-    for (const double radius : {0.0, -1.0, double{NAN}, HUGE_VAL})
+    for (const double radius : {0.0, -1.0, 1e-30, double{NAN}, HUGE_VAL})
         EXPECT_THAT(complaint([&] { (void)Iris(Disk(), radius); }), HasSubstr("radius"));
     const auto with = [](const ApertureShape& shape, IrisSampling way) {
         return complaint([&] { (void)Iris(shape, 1, ApertureScale::EqualArea, way); });

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/colour.h"
+#include "io/numbers.h"
 #include "io/spectral_layout.h"
 
 namespace petzval {
@@ -41,15 +42,11 @@ const char* name_of(FilterKind kind) {
     return "";
 }
 
-std::string numbers(const V3f& v) {
-    return fmt::format("{:.9g},{:.9g},{:.9g}", v.x, v.y, v.z);
-}
-
 void describe_camera(const CameraReport& c, PictureLayout& layout) {
     auto& m = layout.metadata;
     m.emplace_back("petzval:camera", c.name);
-    m.emplace_back("petzval:cameraEye_m", numbers(c.eye));
-    m.emplace_back("petzval:cameraTarget_m", numbers(c.target));
+    m.emplace_back("petzval:cameraEye_m", with_commas(c.eye));
+    m.emplace_back("petzval:cameraTarget_m", with_commas(c.target));
     if (c.orthographic) return;
     m.emplace_back("petzval:fov_deg", c.yfov_deg);
     m.emplace_back("petzval:focalLength_mm", c.focal_length_mm);

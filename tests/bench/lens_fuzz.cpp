@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Random lenses by the million through all that is done with a lens: nothing may crash, hang, throw
 // anything but std::invalid_argument, or make a number that is none of what was one. Half of them
-// are meant to break something. For a build with sanitizers, which the machine's library of tests
-// is too slow for:
+// are meant to break something; a tenth has numbers of any size, which may come to nothing but not
+// crash. For a build with sanitizers:
 //
 //   cmake --preset asan && cmake --build build-asan --target lens_fuzz
 //   build-asan/bin/lens_fuzz [COUNT=1000000] [SEED=1] [--threads 2] [--seconds S] [--first N]
@@ -92,17 +92,28 @@ bool is_index(double n) {
     return n > 0.1 && n < 10;
 }
 
+// An asphere's curvature at its vertex, to the powers that the third order has.
+bool overflows(const Prescription& lens) {
+    for (const LensSurface& surface : lens.surfaces)
+        for (const auto& [power, a] : surface.asphere)
+            if (std::fabs(a) > 1e50) return true;
+    return false;
+}
+
 /// All that is done with one lens.
 class Trial {
   public:
     Trial(const Subject& subject, Random& random, Tally& tally)
         : random_(random), tally_(tally), kind_(subject.kind), lens_(subject.prescription) {
         const auto& media = lens_.media();
-        sound_ =
-            kind_ != Kind::Wild && std::all_of(media.begin(), media.end(), [](const Glass& glass) {
-                return is_index(glass.index(kLineF_nm)) && is_index(glass.index(kLineD_nm)) &&
-                       is_index(glass.index(kLineC_nm));
-            });
+        sound_ = kind_ != Kind::Wild &&
+                 std::all_of(media.begin(), media.end(),
+                             [](const Glass& glass) {
+                                 return is_index(glass.index(kLineF_nm)) &&
+                                        is_index(glass.index(kLineD_nm)) &&
+                                        is_index(glass.index(kLineC_nm));
+                             }) &&
+                 !overflows(subject.prescription);
     }
 
     void run() {
@@ -146,10 +157,11 @@ class Trial {
                         doubles, clip);
             (void)march(lens_, indices, towards, test::whole(lens_), floats, clip);
             (void)march(lens_, indices, towards, test::whole(lens_), dual, clip);
-            if (!has_indices(nm, indices)) continue;
+            if (kind_ == Kind::Wild || !has_indices(nm, indices)) continue;
             defined(doubles, towards, kind_ == Kind::Random ? 1e-9 : 1e-6, "doubles");
-            defined(floats, towards, 0.05, "floats");
-            defined(dual, towards, 0.05, "Duals");
+            // Light that grazed a surface comes from so far away that a float's digits are gone.
+            defined(floats, towards, 0.5, "floats");
+            defined(dual, towards, 0.5, "Duals");
             // Derivatives may change a value's last digit, as a quotient is another product there.
             for (int i = 0; i < 4; ++i) {
                 ++tally_.rays;
@@ -204,6 +216,7 @@ class Trial {
             const TracedRay ray = trace_ray(lens_, v(line.origin), v(line.direction),
                                             wavelength_nm(), towards, Clip::Yes);
             require(ray.points.size() <= size_t(lens_.size()), "more points than surfaces");
+            if (kind_ == Kind::Wild) continue;
             for (const V3d& p : ray.points)
                 require(std::isfinite(p.x + p.y + p.z), "a traced point is not finite");
             if (ray.fate == Fate::Passed) {

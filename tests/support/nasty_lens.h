@@ -62,7 +62,7 @@ namespace petzval::test {
         out.conic = one_of(random, {-1, -1 - 1e-15, -1 + 1e-12, -2, 1e3, -1e3, 1e9, -1e9});
     if (by_chance(random, 0.2f)) {
         const int power = 2 + int(random.next() * 39);
-        const double at_8_mm = one_of(random, {1, 1e3, 1e6, 1e9, 1e12, 1e30, 1e-30});
+        const double at_8_mm = one_of(random, {1, 1e3, 1e6, 1e12, 1e30, 1e150, 1e290, 1e-30});
         out.asphere.push_back({double(power), sign * at_8_mm * std::pow(8, -power)});
     }
     if (by_chance(random, 0.05f)) out.asphere = {{2 + std::floor(39 * random.next()), 0}};

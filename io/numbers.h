@@ -5,13 +5,12 @@
 
 #include <string>
 
-#include "core/math.h"
-
 namespace petzval {
 
-/// "x,y,z", as options take it: as few digits as give the same floats when they are read again.
-[[nodiscard]] inline std::string with_commas(const V3f& v) {
-    return fmt::format("{},{},{}", v.x, v.y, v.z);
+/// Three numbers of a V3f or an Rgb as options take them: as few digits as give the same when they
+/// are read again.
+[[nodiscard]] std::string with_commas(const auto& v) {
+    return fmt::format("{},{},{}", v[0], v[1], v[2]);
 }
 
 }  // namespace petzval

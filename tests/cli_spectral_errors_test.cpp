@@ -2,42 +2,13 @@
 // What petzval render with wavelengths refuses.
 #include <array>
 #include <cmath>
-#include <deque>
 
 #include "tests/support/cli_spectral.h"
 
 namespace petzval {
 namespace {
 
-class CliSpectralErrors : public CliSpectral {
-  protected:
-    struct Case {
-        Words words;
-        std::string part;  ///< of the error
-    };
-    /// All at once; the last line of each is the error.
-    void expect_refused(int exit_code, const std::vector<Case>& cases) {
-        const auto before = listing();
-        std::deque<Process> runs;
-        for (const Case& c : cases) {
-            Words words = c.words;
-            words.emplace_back("--quiet");
-            if (std::find(words.begin(), words.end(), "-o") == words.end())
-                words.insert(words.end(), {"-o", path("out.exr")});
-            if (words.front() != "render") words = render_words(words, scene_);
-            runs.emplace_back(words);
-        }
-        for (size_t i = 0; i < cases.size(); ++i) {
-            const Finished run = runs[i].wait();
-            EXPECT_EQ(run.exit_code, exit_code) << run.err;
-            EXPECT_TRUE(run.err.starts_with("petzval: error: ")) << run.err;
-            EXPECT_EQ(run.err.find('\n'), run.err.size() - 1) << run.err;
-            EXPECT_NE(run.err.find(cases[i].part), std::string::npos)
-                << run.err << "without: " << cases[i].part;
-        }
-        EXPECT_EQ(listing(), before);
-    }
-};
+class CliSpectralErrors : public CliSpectral {};
 
 TEST_F(CliSpectralErrors, BinsThatAreNone) {
     use(lamp());

@@ -76,8 +76,8 @@ TEST(Dual, DerivativesAreFiniteAtThePoleOfAnOddAsphere) {
     const Lens lens = lens_of({surface});
     auto ray = moved(ray_of<d4>({0, 0, -1}, {0, 0, 1}), D{d4{}, broadcast<d4>(1), {}},
                      D{d4{}, {}, broadcast<d4>(1)});
-    ASSERT_TRUE(
-        all(march(lens, lens.exact_indices(broadcast<d4>(kLineD_nm)), Towards::Film, whole(lens), ray, Clip::No)));
+    ASSERT_TRUE(all(march(lens, lens.exact_indices(broadcast<d4>(kLineD_nm)), Towards::Film,
+                          whole(lens), ray, Clip::No)));
     EXPECT_NEAR(ray.origin.x.du[0], 0.6, 1e-15);
     EXPECT_NEAR(ray.origin.x.dv[0], 0.7, 1e-15);
     EXPECT_NEAR(ray.direction.x.dv[0], 0.7 / 1.6, 1e-15);

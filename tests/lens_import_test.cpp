@@ -139,42 +139,41 @@ TEST_F(LensText, ZemaxsGlassesComeFromWhereTheyCan) {
     EXPECT_EQ(glass_of("GLAS ___BLANK 1 0 1.6 0").lens.surfaces[1].glass->index(400.), 1.6);
 
     const std::string agf = "NM N-BK7 5 0\nCD 1.7 0 0\nNM MINE 5 0\nCD 1.8 0 0\n";
-    test::write_bytes(folder_ / "Schott.agf", {agf.begin(), agf.end()});
+    test::write_text(folder_ / "Schott.agf", agf);
     const std::vector<AgfCatalog> catalogs{AgfCatalog(folder_ / "Schott.agf")};
-    test::write_bytes(folder_ / "a.zmx", {kZmx, kZmx + std::string(kZmx).size()});
+    test::write_text(folder_ / "a.zmx", kZmx);
     const auto first = load_lens((folder_ / "a.zmx").string(), catalogs).lens.surfaces[1].glass;
     EXPECT_EQ(first->index(500.), 1.7) << "the user's catalogue goes first";
 }
 
 TEST_F(LensText, RefusesZemaxsLensesThatItCannotFollow) {
-    expect_refused("a.zmx", kZmx,
-         {{"MODE SEQ", "MODE NSC", "a.zmx: line 1: is not sequential"},
-          {"UNIT MM", "UNIT FURLONG", "line 2: has a UNIT other than"},
-          {"GCAT SCHOTT", "MNUM 3 1", "line 3: has several configurations"},
-          {"TYPE EVENASPH", "TYPE COORDBRK", "line 13: has a surface of type COORDBRK"},
-          {"TYPE EVENASPH", "TYPE TOROIDAL", "line 13: has a surface of type TOROIDAL"},
-          {"PARM 2 1e-6", "PARM 9 1", "line 16: has a power of r"},
-          {"PARM 2 1e-6", "PARM 2 x", "line 16: has no finite number after PARM"},
-          {"PARM 2 1e-6", "OBSC 0 1", "line 16: has OBSC, which"},
-          {"PARM 2 1e-6", "OBDC 1 0", "line 16: has an aperture beside the axis"},
-          {"PARM 2 1e-6", "CLAP 1 5", "line 16: has an aperture with a hole"},
-          {"GLAS N-BK7", "GLAS MIRROR", "line 10: has a mirror"},
-          {"GLAS N-BK7", "GLAS N-BK77",
-                "line 10: has the glass N-BK77, which no catalogue has"},
-          {"N-BK7 0", "N-BK7 2", "line 10: takes its glass from another surface"},
-          {"N-BK7 0 0 1.5 40", "___BLANK 1 0 0.5 40", "line 10: has a glass with nd 0.5"},
-          {"N-BK7 0 0 1.5 40", "___BLANK 1 0 4 1",
-                "line 10: has a glass whose Vd is too small"},
-          {"  STOP\n", "", "a.zmx: has no stop (STOP)"},
-          {"  TYPE EV", "  STOP\n  TYPE EV", "line 12: is a second stop; that at line 6"},
-          {"CURV 0.02", "CURV", "line 8: has no finite number after CURV"},
-          {"CURV 0.02", "CURV 1e9", "line 6: has a radius that is too small"},
-          {"DIAM 10", "DIAM 0", "line 6: has an aperture of 0 mm"},
-          {"DISZ 4", "DISZ INFINITY", "line 6: is at an infinite distance"},
-          {"DISZ 4", "DISZ 1e6", "line 6: has a distance of more than"},
-          {"SURF 4\n  DISZ 0", "SURF 4\n  CURV 0.1", "line 22: has a curved image"},
-          {"DISZ INFINITY", "GLAS N-BK7", "line 5: has an object in glass"},
-          {kZmx, "SURF 0\nSURF 1\n", "a.zmx: has no lens"}});
+    expect_refused(
+        "a.zmx", kZmx,
+        {{"MODE SEQ", "MODE NSC", "a.zmx: line 1: is not sequential"},
+         {"UNIT MM", "UNIT FURLONG", "line 2: has a UNIT other than"},
+         {"GCAT SCHOTT", "MNUM 3 1", "line 3: has several configurations"},
+         {"TYPE EVENASPH", "TYPE COORDBRK", "line 13: has a surface of type COORDBRK"},
+         {"TYPE EVENASPH", "TYPE TOROIDAL", "line 13: has a surface of type TOROIDAL"},
+         {"PARM 2 1e-6", "PARM 9 1", "line 16: has a power of r"},
+         {"PARM 2 1e-6", "PARM 2 x", "line 16: has no finite number after PARM"},
+         {"PARM 2 1e-6", "OBSC 0 1", "line 16: has OBSC, which"},
+         {"PARM 2 1e-6", "OBDC 1 0", "line 16: has an aperture beside the axis"},
+         {"PARM 2 1e-6", "CLAP 1 5", "line 16: has an aperture with a hole"},
+         {"GLAS N-BK7", "GLAS MIRROR", "line 10: has a mirror"},
+         {"GLAS N-BK7", "GLAS N-BK77", "line 10: has the glass N-BK77, which no catalogue has"},
+         {"N-BK7 0", "N-BK7 2", "line 10: takes its glass from another surface"},
+         {"N-BK7 0 0 1.5 40", "___BLANK 1 0 0.5 40", "line 10: has a glass with nd 0.5"},
+         {"N-BK7 0 0 1.5 40", "___BLANK 1 0 4 1", "line 10: has a glass whose Vd is too small"},
+         {"  STOP\n", "", "a.zmx: has no stop (STOP)"},
+         {"  TYPE EV", "  STOP\n  TYPE EV", "line 12: is a second stop; that at line 6"},
+         {"CURV 0.02", "CURV", "line 8: has no finite number after CURV"},
+         {"CURV 0.02", "CURV 1e9", "line 6: has a radius that is too small"},
+         {"DIAM 10", "DIAM 0", "line 6: has an aperture of 0 mm"},
+         {"DISZ 4", "DISZ INFINITY", "line 6: is at an infinite distance"},
+         {"DISZ 4", "DISZ 1e6", "line 6: has a distance of more than"},
+         {"SURF 4\n  DISZ 0", "SURF 4\n  CURV 0.1", "line 22: has a curved image"},
+         {"DISZ INFINITY", "GLAS N-BK7", "line 5: has an object in glass"},
+         {kZmx, "SURF 0\nSURF 1\n", "a.zmx: has no lens"}});
     const auto warnings = read("a.zmx", with(kZmx, "COMM a", "ABCD a")).warnings;
     EXPECT_TRUE(has(warnings.at(0), "line 20: ABCD is not known and left out"));
 }
@@ -186,17 +185,19 @@ TEST_F(LensText, RefusesPbrtsDescriptionsThatAreWrong) {
     EXPECT_FALSE(surfaces[1].glass) << "index 1";
     const auto plane = read("a.dat", with(kDat, "\n60 ", "\n0 ")).lens.surfaces;
     EXPECT_FALSE(plane[3].stop) << "a plane of glass";
-    expect_refused("a.dat", kDat,
-         {{"50 4 1.5 20", "50 4 1.5", "a.dat: line 2: has 3 columns; each surface has 4"},
-          {"50 4 1.5 20", "50 4 1.5 20 1", "line 2: has 5 columns"},
-          {"50 4 1.5 20", "50 4 1,5 20", "line 2: \"1,5\" is not a finite number"},
-          {"50 4 1.5 20", "50 4 inf 20", "line 2: \"inf\" is not a finite number"},
-          {"50 4 1.5 20", "50 4 0.5 20", "line 2: has the index 0.5; it must be 0 for air"},
-          {"50 4 1.5 20", "50 4 1.5 -20", "line 2: has an aperture of -20 mm"},
-          {"50 4 1.5 20", "50 1e9 1.5 20", "line 2: has a thickness of"},
-          {"50 4 1.5 20", "1e-9 4 1.5 20", "line 2: has a radius that is too small"},
-          {"60 4 1.6", "0 4 0", "line 5: is a second stop (radius 0 in air); that at line 4"},
-          {"\n0 3", "\n70 3", "a.dat: has no stop"}, {kDat, "", "a.dat: has no stop"}});
+    expect_refused(
+        "a.dat", kDat,
+        {{"50 4 1.5 20", "50 4 1.5", "a.dat: line 2: has 3 columns; each surface has 4"},
+         {"50 4 1.5 20", "50 4 1.5 20 1", "line 2: has 5 columns"},
+         {"50 4 1.5 20", "50 4 1,5 20", "line 2: \"1,5\" is not a finite number"},
+         {"50 4 1.5 20", "50 4 inf 20", "line 2: \"inf\" is not a finite number"},
+         {"50 4 1.5 20", "50 4 0.5 20", "line 2: has the index 0.5; it must be 0 for air"},
+         {"50 4 1.5 20", "50 4 1.5 -20", "line 2: has an aperture of -20 mm"},
+         {"50 4 1.5 20", "50 1e9 1.5 20", "line 2: has a thickness of"},
+         {"50 4 1.5 20", "1e-9 4 1.5 20", "line 2: has a radius that is too small"},
+         {"60 4 1.6", "0 4 0", "line 5: is a second stop (radius 0 in air); that at line 4"},
+         {"\n0 3", "\n70 3", "a.dat: has no stop"},
+         {kDat, "", "a.dat: has no stop"}});
 }
 
 }  // namespace

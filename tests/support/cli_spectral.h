@@ -80,10 +80,6 @@ class CliSpectral : public CliTest {
         }
         return path(name);
     }
-    std::string text_file(const std::string& name, const std::string& text) {
-        std::ofstream(path(name)) << text;
-        return path(name);
-    }
     /// A sensor whose curves are mixtures of the eye's, so that a matrix undoes them.
     std::string mixed_eye() {
         const auto eye = standard_observer();

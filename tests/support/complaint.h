@@ -8,7 +8,7 @@ namespace petzval::test {
 
 /// The message of the std::invalid_argument that action() throws; "none" where it throws nothing.
 [[nodiscard]] std::string complaint(const auto& action) {
-try {
+    try {
         action();
     } catch (const std::invalid_argument& error) {
         return error.what();

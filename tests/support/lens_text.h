@@ -23,7 +23,8 @@ inline const char* const kDat =
     "18\n";
 
 /// With the first `from` as `to`; there must be one.
-[[nodiscard]] inline std::string with(std::string text, const std::string& from, const std::string& to) {
+[[nodiscard]] inline std::string with(std::string text, const std::string& from,
+                                      const std::string& to) {
     const size_t at = text.find(from);
     EXPECT_NE(at, text.npos) << from;
     return text.replace(at, from.size(), to);
@@ -37,7 +38,7 @@ struct TextFault {
 class LensText : public testing::Test {
   protected:
     LensFile read(const std::string& name, const std::string& bytes) {
-        write_bytes(folder_ / name, {bytes.begin(), bytes.end()});
+        write_text(folder_ / name, bytes);
         return load_lens((folder_ / name).string());
     }
     std::string refused(const std::string& name, const std::string& text) {

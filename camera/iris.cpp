@@ -105,8 +105,8 @@ Iris::Shape Iris::scaled(const ApertureShape& shape, double mm, IrisSampling sam
 Iris::Iris(const ApertureShape& shape, double stop_radius_mm, ApertureScale scale,
            std::optional<IrisSampling> sampling)
     : rejection_(sampling == IrisSampling::Rejection) {
-    if (!(stop_radius_mm > 0 && stop_radius_mm <= kMaxStopRadius_mm))
-        throw std::invalid_argument("the stop's radius must be above 0 and at most a kilometre");
+    if (!(stop_radius_mm >= kMinStopRadius_mm && stop_radius_mm <= kMaxStopRadius_mm))
+        throw std::invalid_argument("the stop's radius must be a picometre to a kilometre");
     require_whole(shape);
     const std::vector<IrisSampling> ways = iris_samplings(shape);
     const IrisSampling way = sampling.value_or(ways.front());

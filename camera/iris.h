@@ -29,7 +29,7 @@ enum class IrisSampling : uint8_t { Formula, Triangles, Alias, Rejection };
 class Iris {
   public:
     /// Samples by the first of iris_samplings() where none is named. Throws std::invalid_argument
-    /// for a radius that is not above 0 or beyond kMaxStopRadius_mm, for a shape with a fault, and
+    /// for a radius beyond kMinStopRadius_mm to kMaxStopRadius_mm, for a shape with a fault, and
     /// for a way of sampling that the shape does not have.
     Iris(const ApertureShape&, double stop_radius_mm, ApertureScale = ApertureScale::EqualArea,
          std::optional<IrisSampling> = {});
@@ -52,6 +52,8 @@ class Iris {
     [[nodiscard]] double share_beyond(double radius_mm) const;
 
     static constexpr int kTries = 256;
+    /// So that areas are floats above 0.
+    static constexpr double kMinStopRadius_mm = 1e-9;
     static constexpr double kMaxStopRadius_mm = 1e6;
 
   private:

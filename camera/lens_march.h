@@ -201,8 +201,8 @@ template <class V>
     hit.normal = ahead * (sign * hit.per_gradient);
     hit.cosine = dot(hit.normal, direction);
     hit.cosine2 = hit.cosine * hit.cosine;
-    // An infinite slope makes no number of the cosine.
-    hit.found = converged & (hit.cosine >= 0);
+    // An infinite slope makes no number of the cosine, one whose square is infinite makes it 0.
+    hit.found = converged & (hit.cosine > 0);
     return hit;
 }
 

@@ -33,6 +33,7 @@ Outline element_outline(const Lens& lens, int surface, Section section) {
     if (surface >= lens.last() || !surfaces[static_cast<size_t>(surface)].glass) return {};
     Outline front = surface_outline(lens, surface, section);
     Outline back = surface_outline(lens, surface + 1, section);
+    if (front.empty() || back.empty()) return {};
     const double rim = std::max(front.back()[1], back.back()[1]);
     const auto add_rims = [rim](Outline& face) {
         if (face.back()[1] == rim) return;

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/camera_report.h"
 
-#include <fmt/format.h>
-
 #include "io/camera_words.h"
+#include "io/numbers.h"
 
 namespace petzval {
 namespace {
-
-std::string numbers(const V3f& v) {
-    return fmt::format("{:.9g},{:.9g},{:.9g}", v.x, v.y, v.z);
-}
 
 void describe_iris(const CameraReport& c, PictureLayout& layout) {
     auto& m = layout.metadata;
@@ -44,8 +39,8 @@ void describe_glass(const CameraReport& c, PictureLayout& layout) {
 void describe_camera(const CameraReport& c, PictureLayout& layout) {
     auto& m = layout.metadata;
     m.emplace_back("petzval:camera", c.name);
-    m.emplace_back("petzval:cameraEye_m", numbers(c.eye));
-    m.emplace_back("petzval:cameraTarget_m", numbers(c.target));
+    m.emplace_back("petzval:cameraEye_m", with_commas(c.eye));
+    m.emplace_back("petzval:cameraTarget_m", with_commas(c.target));
     if (c.orthographic) return;
     m.emplace_back("petzval:fov_deg", c.yfov_deg);
     m.emplace_back("petzval:focalLength_mm", c.focal_length_mm);

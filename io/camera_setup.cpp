@@ -5,6 +5,7 @@
 
 #include "integrator/focus.h"
 #include "io/error.h"
+#include "io/numbers.h"
 #include "io/thin_setup.h"
 
 namespace petzval {
@@ -22,11 +23,6 @@ V3f position(const M44f& m) {
 V3f forward(const M44f& m) {
     return {-m[2][0], -m[2][1], -m[2][2]};
 }
-// As few digits as give the same number when they are read again.
-std::string numbers(const V3f& v) {
-    return fmt::format("{},{},{}", v.x, v.y, v.z);
-}
-
 // Everything that the steps below look at.
 struct Place {
     const CameraPlan& plan;
@@ -72,7 +68,7 @@ M44f stand(const Place& at, float yfov_rad, CameraReport& report) {
         report.target = aim[1];
         if (!asked.look_at)
             at.notice(fmt::format("no camera in the file: --look-at {},{} --fov {}",
-                                  numbers(aim[0]), numbers(aim[1]), report.yfov_deg));
+                                  with_commas(aim[0]), with_commas(aim[1]), report.yfov_deg));
     }
     report.eye = position(to_world);
     return to_world;

@@ -8,6 +8,7 @@
 #include "io/camera_setup.h"
 #include "io/environment.h"
 #include "io/gltf.h"
+#include "io/numbers.h"
 #include "io/read_file.h"
 
 namespace petzval {
@@ -48,8 +49,7 @@ std::vector<std::pair<std::string, std::string>> describe(const SceneRequest& re
                        fmt::format("{:.9g}", request.environment_strength));
     }
     if (const auto& b = request.background)
-        m.emplace_back("petzval:background",
-                       fmt::format("{:.9g},{:.9g},{:.9g}", (*b)[0], (*b)[1], (*b)[2]));
+        m.emplace_back("petzval:background", with_commas(*b));
     m.emplace_back("petzval:lightChoice",
                    request.light_choice == LightChoiceKind::Power ? "power" : "uniform");
     m.emplace_back("petzval:traversal", request.traversal == Traversal::Robust ? "robust" : "fast");

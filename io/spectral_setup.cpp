@@ -11,6 +11,7 @@
 #include "io/error.h"
 #include "io/lower.h"
 #include "io/needs_wavelengths.h"
+#include "io/numbers.h"
 #include "io/read_file.h"
 #include "io/spectra.h"
 
@@ -127,17 +128,15 @@ SpectralSetup set_up_spectra(const SpectralRequest& request, const Scene& scene,
 
     if (request.white_balance == WhiteBalance::Illuminant)
         setup.scale = "RGB 1 = 1 nit of the illuminant";
-    const auto numbers = [](const V3f& v) {
-        return fmt::format("{:.9g},{:.9g},{:.9g}", v.x, v.y, v.z);
-    };
     setup.metadata = {
         {"petzval:spectral", "hero"},
         {"petzval:illuminant", name_and_hash(request.illuminant)},
         {"petzval:response", name_and_hash(request.response)},
         {"petzval:whiteBalance",
          request.white_balance == WhiteBalance::None ? "none" : "illuminant"},
-        {"petzval:responseToSrgb", fmt::format("{};{};{}", numbers(in.matrix[0]),
-                                               numbers(in.matrix[1]), numbers(in.matrix[2]))}};
+        {"petzval:responseToSrgb",
+         fmt::format("{};{};{}", with_commas(in.matrix[0]), with_commas(in.matrix[1]),
+                     with_commas(in.matrix[2]))}};
     return setup;
 }
 

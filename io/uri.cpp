@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/uri.h"
 
-#include <algorithm>
-#include <cctype>
+#include "io/lower.h"
 
 namespace petzval {
 namespace {
@@ -18,13 +17,6 @@ int hex_digit(char c) {
     if (c >= '0' && c <= '9') return c - '0';
     if (c >= 'A' && c <= 'F') return c - 'A' + 10;
     return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
-}
-
-std::string lower(std::string_view text) {
-    std::string out(text);
-    std::transform(out.begin(), out.end(), out.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
-    return out;
 }
 
 std::optional<std::string> decode_percent(std::string_view text) {
@@ -65,13 +57,13 @@ std::optional<std::vector<uint8_t>> decode_base64(std::string_view text) {
 }
 
 bool is_data_uri(std::string_view uri) {
-    return lower(uri.substr(0, 5)) == "data:";
+    return lower(std::string(uri.substr(0, 5))) == "data:";
 }
 
 std::optional<DataUri> parse_data_uri(std::string_view uri) {
     const size_t comma = uri.find(',');
     if (!is_data_uri(uri) || comma == std::string_view::npos) return std::nullopt;
-    const std::string head = lower(uri.substr(5, comma - 5));
+    const std::string head = lower(std::string(uri.substr(5, comma - 5)));
     if (!head.ends_with(";base64")) return std::nullopt;
     auto bytes = decode_base64(uri.substr(comma + 1));
     if (!bytes) return std::nullopt;

@@ -19,7 +19,7 @@ constexpr double kLineE_nm = 546.0740;
 class Agf : public testing::Test {
   protected:
     AgfCatalog read(const std::string& bytes) {
-        test::write_bytes(folder_ / "Mine.AGF", {bytes.begin(), bytes.end()});
+        test::write_text(folder_ / "Mine.AGF", bytes);
         return AgfCatalog(folder_ / "Mine.AGF");
     }
     std::string refused(const std::string& text, const std::string& glass = "G") {

@@ -20,7 +20,7 @@ Polygon read(const std::string& elements, const std::string& attributes = "viewB
     const TemporaryFolder folder;
     const std::string text = "<?xml version=\"1.0\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" " +
                              attributes + ">\n" + elements + "\n</svg>\n";
-    test::write_bytes(folder / "iris.svg", {text.begin(), text.end()});
+    test::write_text(folder / "iris.svg", text);
     return read_svg_aperture(folder / "iris.svg");
 }
 Polygon path(const std::string& d, const std::string& more = "") {
@@ -174,7 +174,7 @@ TEST(SvgAperture, Refuses) {
 
     const TemporaryFolder folder;
     const std::string html = "<html/>";
-    test::write_bytes(folder / "page.svg", {html.begin(), html.end()});
+    test::write_text(folder / "page.svg", html);
     test::write_bytes(folder / "empty.svg", {});
     EXPECT_TRUE(
         has(refusal([&] { (void)parse_aperture("page.svg", folder.path()); }), "is no SVG"));

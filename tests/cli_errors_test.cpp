@@ -1,53 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the program refuses: one line, an exit code, and nothing left behind.
-#include <deque>
-
 #include "tests/support/cli.h"
 
 namespace petzval {
 namespace {
 
-class CliErrors : public CliTest {
-  protected:
-    /// A failed run's one line, without its newline.
-    static std::string only_line(const Finished& run, int exit_code) {
-        EXPECT_EQ(run.exit_code, exit_code) << run.err;
-        EXPECT_EQ(run.out, "");
-        EXPECT_EQ(run.err.find('\n'), run.err.size() - 1) << run.err;
-        EXPECT_TRUE(run.err.starts_with("petzval: error: ")) << run.err;
-        return run.err.substr(0, run.err.find('\n'));
-    }
-    /// The same of a run that must leave the folder as it was.
-    std::string error_of(const Words& words, int exit_code, const ProcessOptions& options = {}) {
-        const auto before = listing();
-        const std::string line = only_line(run_petzval(words, options), exit_code);
-        EXPECT_EQ(listing(), before) << line;
-        return line;
-    }
-
-    struct Case {
-        Words words;
-        std::string part;  ///< of the error
-    };
-    /// Renders of the studio, all at once.
-    void expect_refused(int exit_code, const std::vector<Case>& cases) {
-        const auto before = listing();
-        std::deque<Process> runs;
-        for (const Case& c : cases) {
-            Words words = render_words(c.words, scene_);
-            words.emplace_back("--quiet");
-            if (std::find(c.words.begin(), c.words.end(), "-o") == c.words.end())
-                words.insert(words.end(), {"-o", path("out.exr")});
-            runs.emplace_back(words);
-        }
-        for (size_t i = 0; i < cases.size(); ++i) {
-            const std::string line = only_line(runs[i].wait(), exit_code);
-            EXPECT_NE(line.find(cases[i].part), std::string::npos)
-                << line << "\nwithout: " << cases[i].part;
-        }
-        EXPECT_EQ(listing(), before);
-    }
-};
+class CliErrors : public CliTest {};
 
 // Starting takes a fifth of a second (some 260 libraries come along), so each rule is tried once or
 // twice.

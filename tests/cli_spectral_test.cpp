@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// petzval render with wavelengths: what it decides, what light reads as, what a spectral file holds
-// and what is refused.
+// petzval render with wavelengths: what it decides, what light reads as, and what a spectral file
+// holds.
 #include <deque>
 #include <functional>
 #include <sstream>
@@ -9,110 +9,17 @@
 #include "core/colour.h"
 #include "io/spectra.h"
 #include "io/spectral_layout.h"
-#include "tests/support/cli.h"
+#include "tests/support/cli_spectral.h"
 #include "tests/support/statistics.h"
 
 namespace petzval {
 namespace {
-
-using nlohmann::json;
-
-/// A wall of its own colour fills the frame of "wide"; more: what its material has beside.
-TinyGltf big_wall(const json& more) {
-    TinyGltf file;
-    add_wall(file, -9, -9, 9, 9, -2, {0, 0, 0});
-    file.json["materials"][0].update(more);
-    for (const char* extension : {"KHR_materials_transmission", "KHR_materials_volume",
-                                  "KHR_materials_dispersion", "KHR_lights_punctual"})
-        file.json["extensionsUsed"].push_back(extension);
-    add_perspective(file, "wide", 1.2f);
-    return file;
-}
-
-json extras(const char* key, const char* value) {
-    return {{"extras", {{"petzval", {{key, value}}}}}};
-}
-
-/// A lamp of 1 nit.
-TinyGltf lamp(json more = json::object()) {
-    more["emissiveFactor"] = {1, 1, 1};
-    return big_wall(more);
-}
-
-json glass(json more = json::object()) {
-    more["pbrMetallicRoughness"] = {{"metallicFactor", 0}, {"roughnessFactor", 0}};
-    more["extensions"]["KHR_materials_transmission"] = {{"transmissionFactor", 1}};
-    more["extensions"]["KHR_materials_volume"] = {{"thicknessFactor", 1}};
-    return more;
-}
-
-json metal(const char* name) {
-    json more = extras("metal", name);
-    more["pbrMetallicRoughness"] = {{"roughnessFactor", 0.3}};
-    return more;
-}
-
-/// The studio with a pane of glass, gold and a lamp of illuminant A: all that needs wavelengths.
-TinyGltf mixed() {
-    TinyGltf file = studio();
-    const auto add = [&](float x, float y, const json& more) {
-        add_wall(file, x, y, x + 0.4f, y + 0.4f, -0.9f, {0.5f, 0.5f, 0.5f});
-        file.json["materials"].back().update(more);
-    };
-    add(0, 0, glass(extras("glass", "schott:N-SF11")));
-    add(-0.5f, -0.5f, metal("au"));
-    json bulb = extras("illuminant", "a");
-    bulb["emissiveFactor"] = {1, 1, 1};
-    add(0, -0.5f, bulb);
-    for (const char* extension : {"KHR_materials_transmission", "KHR_materials_volume"})
-        file.json["extensionsUsed"].push_back(extension);
-    return file;
-}
 
 /// What a plain run says where there is nothing but the decision.
 struct Decision {
     json material;
     Words words;
     std::string expected;
-};
-
-class CliSpectral : public CliTest {
-  protected:
-    /// A CSV file of a column for each number that `row` gives, at every nanometre.
-    std::string csv(const std::string& name, const std::function<std::vector<double>(int)>& row) {
-        std::ofstream file(path(name));
-        file << "nm";
-        for (size_t i = 0; i < row(kFirst_nm).size(); ++i) file << ",curve" << i;
-        file.precision(9);
-        for (int nm = kFirst_nm; nm <= kLast_nm; ++nm) {
-            file << '\n' << nm;
-            for (const double value : row(nm)) file << ',' << value;
-        }
-        return path(name);
-    }
-    std::string text_file(const std::string& name, const std::string& text) {
-        std::ofstream(path(name)) << text;
-        return path(name);
-    }
-    /// A sensor whose curves are mixtures of the eye's, so that a matrix undoes them.
-    std::string mixed_eye() {
-        const auto eye = standard_observer();
-        return csv("eye.csv", [&](int nm) -> std::vector<double> {
-            const double x = eye[0].at_nm(nm), y = eye[1].at_nm(nm), z = eye[2].at_nm(nm);
-            return {0.9 * x + 0.2 * y, 0.1 * x + 0.8 * y + 0.1 * z, 0.1 * y + 0.9 * z};
-        });
-    }
-    void use(const TinyGltf& scene) {
-        scene_ = scene.save_glb(folder_.path / "scene.glb").string();
-    }
-    /// stderr of a render that must succeed.
-    std::string said(const Words& words, const std::string& name = "out.exr") {
-        Words all = {"-o", path(name), "--progress", "none"};
-        all.insert(all.end(), words.begin(), words.end());
-        const Finished run = run_petzval(render_words(all, scene_));
-        EXPECT_EQ(run.exit_code, 0) << run.err;
-        return run.err;
-    }
 };
 
 TEST_F(CliSpectral, SaysWhatItDecidesAndWhy) {
@@ -407,121 +314,6 @@ TEST_F(CliSpectral, AStoppedRenderKeepsItsSpectra) {
     EXPECT_EQ(spectral_channels(partial).size(), 6u);
     EXPECT_GT(mean_of(partial, spectral_channel(525)), 0);
     EXPECT_FALSE(std::filesystem::exists(path("out.exr")));
-}
-
-class CliSpectralErrors : public CliSpectral {
-  protected:
-    struct Case {
-        Words words;
-        std::string part;  ///< of the error
-    };
-    /// All at once; the last line of each is the error.
-    void expect_refused(int exit_code, const std::vector<Case>& cases) {
-        const auto before = listing();
-        std::deque<Process> runs;
-        for (const Case& c : cases) {
-            Words words = c.words;
-            words.emplace_back("--quiet");
-            if (std::find(words.begin(), words.end(), "-o") == words.end())
-                words.insert(words.end(), {"-o", path("out.exr")});
-            if (words.front() != "render") words = render_words(words, scene_);
-            runs.emplace_back(words);
-        }
-        for (size_t i = 0; i < cases.size(); ++i) {
-            const Finished run = runs[i].wait();
-            EXPECT_EQ(run.exit_code, exit_code) << run.err;
-            EXPECT_TRUE(run.err.starts_with("petzval: error: ")) << run.err;
-            EXPECT_EQ(run.err.find('\n'), run.err.size() - 1) << run.err;
-            EXPECT_NE(run.err.find(cases[i].part), std::string::npos)
-                << run.err << "without: " << cases[i].part;
-        }
-        EXPECT_EQ(listing(), before);
-    }
-};
-
-TEST_F(CliSpectralErrors, BinsThatAreNone) {
-    use(lamp());
-    const std::string inside = "inside 360 to 830 nm", whole = "a whole number of bins",
-                      rising = "FIRST must be below LAST", form = "FIRST:LAST:WIDTH in nm",
-                      wide = "1 to 1024 bins of at least 0.1 nm";
-    std::vector<Case> cases;
-    for (const auto& [bins, part] :
-         std::vector<std::pair<std::string, std::string>>{{"350:730:10", inside},
-                                                          {"730:380:10", rising},
-                                                          {"380:730:11", whole},
-                                                          {"500:501:0.01", wide},
-                                                          {"380:730:nan", form},
-                                                          {"", "--bins: is empty"}})
-        cases.push_back({{"--bins", bins, "--spp", "8"}, part});
-    expect_refused(2, cases);
-}
-
-TEST_F(CliSpectralErrors, OptionsThatDoNotGoTogether) {
-    use(mixed());
-    const Words bins = {"--bins", "380:730:10"};
-    const auto with = [&](const Words& more) {
-        Words words = bins;
-        words.insert(words.end(), more.begin(), more.end());
-        return words;
-    };
-    expect_refused(
-        2, {{with({"--spp", "7"}), "--spp: the standard errors of --bins need at least 8"},
-            {with({"--spectral", "rgb", "--spp", "8"}), "--bins: needs wavelengths"},
-            {with({"--spp", "8", "-o", path("out.png")}), "--bins: needs an output"},
-            {{"--bins", "360:830:10", "--spp", "8"}, "glass schott:N-SF11 is known from 370 to"},
-            {{"--spectral", "full"}, "auto, rgb, hero"},
-            {{"--white-balance", "a"}, "none, illuminant"},
-            {{"--illuminant", path("none.csv")}, "none.csv: is neither a file nor a name; the"},
-            {{"--illuminant", "d50"}, "the names are d65, a, f11"},
-            {{"--illuminant", ""}, "--illuminant: is empty"},
-            {{"--response", "canon"}, "the names are cie1931"},
-            {{"--response", ""}, "--response: is empty"}});
-}
-
-TEST_F(CliSpectralErrors, FilesThatAreNotAsTheyShouldBe) {
-    use(lamp());
-    const auto gauss = [](int nm, double centre) {
-        return std::exp(-std::pow((nm - centre) / 30, 2));
-    };
-    const std::string equal = csv("equal.csv", [&](int nm) -> std::vector<double> {
-        return {gauss(nm, 600), gauss(nm, 450), gauss(nm, 450)};
-    });
-    const std::string blank = csv("blank.csv", [&](int nm) -> std::vector<double> {
-        return {gauss(nm, 600), 0, gauss(nm, 450)};
-    });
-    const auto light = [&](const std::string& name, const std::string& text,
-                           const std::string& part) {
-        return Case{{"--illuminant", text_file(name, text)}, name + ": " + part};
-    };
-    expect_refused(
-        1, {light("empty.csv", "", "line 1: ends without a row"),
-            light("unsorted.csv", "nm,v\n500,1\n490,1\n", "line 3: wavelength 490 nm must be"),
-            light("missing.csv", "nm,v\n500\n", "line 2: number of columns is 1, and 2"),
-            light("dark.csv", "nm,v\n400,0\n700,0\n", "line 2: column v is 0 at every"),
-            {{"--illuminant", folder_.path.string()}, "is a folder"},
-            {{"--illuminant", equal}, "number of columns is 4 and must be 2"},
-            {{"--response", equal}, "the three curves do not tell three colours apart"},
-            {{"--response", blank}, "column curve1 is 0 at every"}});
-    std::vector<Case> scenes;
-    for (const auto& [key, name, part] : std::vector<std::array<const char*, 3>>{
-             {"glass", "schott:BK77", "there is no glass \"schott:BK77\"; near it are schott:"},
-             {"metal", "fe", "there is no metal \"fe\"; there are ag, al, au, cu"},
-             {"illuminant", "d50", "there is no illuminant \"d50\"; there are d65, a, f11"}}) {
-        const auto file =
-            lamp(extras(key, name)).save_glb(folder_.path / (key + std::string("s.glb")));
-        scenes.push_back({{"render", file.string(), "--size", "4x4"}, part});
-    }
-    expect_refused(1, scenes);
-}
-
-TEST_F(CliSpectralErrors, ASpectralFileAgainstAnRgbOne) {
-    use(lamp());
-    (void)render({}, "rgb.exr");
-    (void)render({"--bins", "400:700:100", "--spp", "8"}, "bins.exr");
-    const Finished run = run_petzval({"image", "diff", path("bins.exr"), path("rgb.exr")});
-    EXPECT_EQ(run.exit_code, 1);
-    EXPECT_NE(run.err.find("the former is spectral, the latter is not"), std::string::npos)
-        << run.err;
 }
 
 }  // namespace

@@ -21,15 +21,6 @@ class CliSpectrum : public CliTest {
         write_exr(path(name), p);
         return path(name);
     }
-    std::string error_of(const Words& words, int exit_code) {
-        const auto before = listing();
-        const Finished run = run_petzval(words);
-        EXPECT_EQ(run.exit_code, exit_code) << run.err;
-        EXPECT_EQ(run.out, "");
-        EXPECT_TRUE(run.err.starts_with("petzval: error: ")) << run.err;
-        EXPECT_EQ(listing(), before);
-        return run.err;
-    }
 };
 
 TEST_F(CliSpectrum, PrintsThePixelsBins) {

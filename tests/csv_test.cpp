@@ -13,7 +13,7 @@ using test::TemporaryFolder;
 
 std::filesystem::path file_of(const TemporaryFolder& folder, const std::string& text) {
     const auto path = folder / "table.csv";
-    test::write_bytes(path, {text.begin(), text.end()});
+    test::write_text(path, text);
     return path;
 }
 

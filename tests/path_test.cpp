@@ -14,18 +14,7 @@ using test::emitter_material;
 using test::place;
 using test::quad;
 using test::sphere;
-
-struct World {
-    Scene scene;
-    std::unique_ptr<Bvh> bvh;
-    std::unique_ptr<LightChoice> lights;
-
-    void finish() {
-        finish_scene(scene);
-        bvh = std::make_unique<Bvh>(scene, Traversal::Robust);
-        lights = std::make_unique<LightChoice>(scene, LightChoiceKind::Power);
-    }
-};
+using test::World;
 
 struct Estimate {
     double mean = 0, error = 0;  ///< standard error of the mean

@@ -17,7 +17,7 @@ using test::TemporaryFolder;
 
 std::string file_of(const TemporaryFolder& folder, const std::string& text) {
     const auto path = folder / "mine.csv";
-    test::write_bytes(path, {text.begin(), text.end()});
+    test::write_text(path, text);
     return path.string();
 }
 

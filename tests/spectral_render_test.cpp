@@ -25,16 +25,11 @@ using test::place;
 using test::quad;
 using test::sphere;
 
-struct World {
-    Scene scene;
-    std::unique_ptr<Bvh> bvh;
-    std::unique_ptr<LightChoice> lights;
+struct World : test::World {
     std::unique_ptr<PathTracer<>> tracer;
 
     void finish(int max_depth = 16) {
-        finish_scene(scene);
-        bvh = std::make_unique<Bvh>(scene, Traversal::Robust);
-        lights = std::make_unique<LightChoice>(scene, LightChoiceKind::Power);
+        test::World::finish();
         PathOptions options;
         options.max_depth = max_depth;
         tracer = std::make_unique<PathTracer<>>(scene, *bvh, *lights, options);

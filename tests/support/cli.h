@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <deque>
 #include <fstream>
 #include <iterator>
 #include <set>
@@ -116,6 +117,50 @@ class CliTest : public ::testing::Test {
         for (const auto& entry : std::filesystem::directory_iterator(folder_.path))
             names.insert(entry.path().filename().string());
         return names;
+    }
+    std::string text_file(const std::string& name, const std::string& text) const {
+        std::ofstream(path(name)) << text;
+        return path(name);
+    }
+
+    /// A failed run's one line, without its newline.
+    static std::string only_line(const Finished& run, int exit_code) {
+        EXPECT_EQ(run.exit_code, exit_code) << run.err;
+        EXPECT_EQ(run.out, "");
+        EXPECT_EQ(run.err.find('\n'), run.err.size() - 1) << run.err;
+        EXPECT_TRUE(run.err.starts_with("petzval: error: ")) << run.err;
+        return run.err.substr(0, run.err.find('\n'));
+    }
+    /// The same of a run that must leave the folder as it was.
+    std::string error_of(const Words& words, int exit_code, const ProcessOptions& options = {}) {
+        const auto before = listing();
+        const std::string line = only_line(run_petzval(words, options), exit_code);
+        EXPECT_EQ(listing(), before) << line;
+        return line;
+    }
+
+    struct Case {
+        Words words;
+        std::string part;  ///< of the error
+    };
+    /// Renders of the scene, all at once; words that begin with "render" name their own.
+    void expect_refused(int exit_code, const std::vector<Case>& cases) {
+        const auto before = listing();
+        std::deque<Process> runs;
+        for (const Case& c : cases) {
+            Words words = c.words;
+            words.emplace_back("--quiet");
+            if (std::find(words.begin(), words.end(), "-o") == words.end())
+                words.insert(words.end(), {"-o", path("out.exr")});
+            if (words.front() != "render") words = render_words(words, scene_);
+            runs.emplace_back(words);
+        }
+        for (size_t i = 0; i < cases.size(); ++i) {
+            const std::string line = only_line(runs[i].wait(), exit_code);
+            EXPECT_NE(line.find(cases[i].part), std::string::npos)
+                << line << "\nwithout: " << cases[i].part;
+        }
+        EXPECT_EQ(listing(), before);
     }
 };
 

@@ -25,6 +25,10 @@ inline const char* const kOracleLenses[] = {
     "kodak-petzval-100mm-f2",    "minolta-fisheye-16mm-f2.8", "nikkor-retrofocus-28mm-f2.8",
     "schneider-anamorphic-31mm", "takumar-50mm-f1.2"};
 
+/// Of different shapes: spheres, aspheres, cylinders, and a field beyond 90 degrees.
+inline const char* const kLensKinds[] = {"double-gauss-100mm-f2", "canon-14mm-f2.8-asph",
+                              "schneider-anamorphic-31mm", "minolta-fisheye-16mm-f2.8"};
+
 /// Glasses are tables of the oracle's indices at the lines F, d and C.
 [[nodiscard]] inline Prescription read_lens(const std::string& name) {
     const auto file = read_json(PETZVAL_ASSETS "/lenses/" + name + ".json");

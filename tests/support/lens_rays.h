@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "camera/lens_march.h"
+#include "camera/paraxial.h"
+#include "tests/support/statistics.h"
 
 namespace petzval::test {
 
@@ -77,6 +79,17 @@ template <class V>
     Prescription out;
     out.surfaces = std::move(surfaces);
     return Lens(std::move(out));
+}
+
+/// Through the stop's neighbourhood from a field of some degrees: passes all of kLensKinds.
+[[nodiscard]] inline LensRay<d4> usual_ray(const Lens& lens, Random& random) {
+    const FirstOrder x = first_order(lens, kLineD_nm, Section::X), y = first_order(lens, kLineD_nm);
+    const double radius = 0.2 * std::fabs(x.entrance_pupil_diameter_mm);
+    const auto part = [&random] { return 2. * random.next() - 1; };
+    const Three at_pupil{part() * radius, part() * radius, y.entrance_pupil_mm};
+    const Three direction = unit({0.1 * part(), 0.1 * part(), 1});
+    const double to_first = -10 - at_pupil[2];
+    return ray_of<d4>(plus(at_pupil, direction, to_first / direction[2]), direction);
 }
 
 }  // namespace petzval::test

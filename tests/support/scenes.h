@@ -3,8 +3,11 @@
 #pragma once
 
 #include <cmath>
+#include <memory>
 #include <utility>
 
+#include "core/bvh.h"
+#include "core/light_choice.h"
 #include "core/scene.h"
 
 namespace petzval::test {
@@ -69,5 +72,19 @@ inline void place(Scene& scene, Mesh mesh, const Material& material) {
     scene.meshes.push_back(std::move(mesh));
     scene.instances.push_back(instance);
 }
+
+/// A scene and what a tracer wants beside it.
+struct World {
+    Scene scene;
+    std::unique_ptr<Bvh> bvh;
+    std::unique_ptr<LightChoice> lights;
+
+    /// Once all is placed.
+    void finish() {
+        finish_scene(scene);
+        bvh = std::make_unique<Bvh>(scene, Traversal::Robust);
+        lights = std::make_unique<LightChoice>(scene, LightChoiceKind::Power);
+    }
+};
 
 }  // namespace petzval::test

@@ -53,4 +53,8 @@ inline void write_bytes(const std::filesystem::path& path, const std::vector<uin
     if (!out.flush()) throw std::runtime_error("cannot write " + path.string());
 }
 
+inline void write_text(const std::filesystem::path& path, const std::string& text) {
+    write_bytes(path, {text.begin(), text.end()});
+}
+
 }  // namespace petzval::test

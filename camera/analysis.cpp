@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "camera/lens_camera.h"
+#include "camera/traced_ray.h"
 
 namespace petzval {
 namespace {
@@ -50,26 +51,47 @@ std::optional<Distortion> distortion(const Lens& lens, double field_deg, double 
     return Distortion{field_deg, *height, scale_mm * tangent};
 }
 
-// Heights grow with the angle as far as a lens is used: halving.
+// From the film backwards: of a film point's rays the secant method finds the one through the
+// middle of the stop. It begins near the axis with the paraxial one and follows it outwards, as
+// aspheres lead it far from there.
 std::optional<double> field_of_height_deg(const Lens& lens, double height_mm, double film_mm,
                                           Section section) {
-    constexpr double last_deg = 120, step_deg = 2;
-    const auto over = [&](double deg) {
-        return chief_height_mm(lens, {.field_deg = deg, .section = section}, film_mm)
-                   .value_or(NAN) -
-               height_mm;
+    constexpr double last_deg = 120, close_mm = 1e-10;
+    constexpr int steps = 8, tries = 50;
+    const bool along_x = section == Section::X;
+    const auto trace = [&](double from_mm, double slope) {
+        const V3d from = along_x ? V3d(from_mm, 0, film_mm) : V3d(0, from_mm, film_mm);
+        const V3d direction = along_x ? V3d(slope, 0, -1) : V3d(0, slope, -1);
+        return trace_ray(lens, from, direction, kLineD_nm, Towards::Scene, Clip::No);
     };
-    double low = 0, high = 0;
-    do {
-        low = high;
-        high += step_deg;
-        if (high > last_deg || std::isnan(over(high))) return std::nullopt;
-    } while (over(high) < 0);
-    while (high - low > 1e-9) {
-        const double middle = (low + high) / 2;
-        (over(middle) < 0 ? low : high) = middle;
+    const auto miss_of = [&](const TracedRay& ray) {
+        const auto met = static_cast<size_t>(lens.last() - lens.stop());
+        if (ray.points.size() <= met) return double{NAN};
+        return along_x ? ray.points[met].x : ray.points[met].y;
+    };
+    const double to_pupil_mm =
+        film_mm - lens.vertex_mm(lens.last()) - first_order(lens, kLineD_nm, section).exit_pupil_mm;
+    double slope_by_mm = -1 / to_pupil_mm;
+    TracedRay ray;
+    for (int step = 1; step <= steps; ++step) {
+        const double from_mm = height_mm * step / steps;
+        double before = from_mm * slope_by_mm * 0.99, slope = from_mm * slope_by_mm;
+        double miss_before = miss_of(trace(from_mm, before));
+        for (int i = 0;; ++i) {
+            ray = trace(from_mm, slope);
+            const double miss = miss_of(ray);
+            if (std::fabs(miss) < close_mm) break;
+            if (!std::isfinite(miss) || i == tries) return std::nullopt;
+            const double next = slope - miss * (slope - before) / (miss - miss_before);
+            before = slope;
+            miss_before = miss;
+            slope = next;
+        }
+        slope_by_mm = slope / from_mm;
     }
-    return (low + high) / 2;
+    if (ray.fate != Fate::Passed) return std::nullopt;
+    const double deg = std::acos(-ray.direction.z) / kDegree;
+    return deg <= last_deg ? std::optional(deg) : std::nullopt;
 }
 
 std::vector<double> film_irradiance(std::shared_ptr<const Lens> lens, double film_mm,

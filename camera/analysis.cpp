@@ -110,7 +110,7 @@ std::vector<double> film_irradiance(std::shared_ptr<const Lens> lens, double fil
     for (const double height : heights_mm) {
         V2f film(0.f);
         (section == Section::X ? film.x : film.y) = static_cast<float>(height);
-        out.push_back(camera.irradiance(film, 128));
+        out.push_back(camera.irradiance(film, 1 << 14));
     }
     return out;
 }

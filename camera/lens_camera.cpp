@@ -214,16 +214,14 @@ CameraSample LensCamera::sample(const FilmPoint& point, const Bands& bands) cons
 }
 
 // Smooth but for the edges of the iris and of the rims.
-double LensCamera::irradiance(V2f film_mm, int side) const {
+double LensCamera::irradiance(V2f film_mm, uint32_t count) const {
     const Bands bands = Bands::rgb();
     double sum = 0;
-    for (int i = 0; i < side; ++i)
-        for (int j = 0; j < side; ++j) {
-            const V2f u((static_cast<float>(i) + 0.5f) / static_cast<float>(side),
-                        (static_cast<float>(j) + 0.5f) / static_cast<float>(side));
-            sum += hsum(draw<f4>(film_mm, u, 0.f, bands, Coating::Ideal).weight);
-        }
-    return sum / (double(side) * side * lane_count(bands.on));
+    for (uint32_t i = 0; i < count; ++i) {
+        const V2f u = Sampler(SamplerKind::Owen, 0, {0, 0, i}).get2(Dim::Lens);
+        sum += hsum(draw<f4>(film_mm, u, 0.f, bands, Coating::Ideal).weight);
+    }
+    return sum / (double(count) * lane_count(bands.on));
 }
 
 }  // namespace petzval

@@ -50,9 +50,10 @@ class LensCamera final : public Camera {
     /// Factor on every weight from here on; 1 before.
     void set_gain(double gain) { gain_ = static_cast<float>(gain); }
     /// Irradiance at a film point over the radiance of an even scene, at line d, the gain included,
-    /// but not what surfaces reflect; on the axis pi sin^2 u' for a round iris. Midpoints of side x
-    /// side draws of the iris.
-    [[nodiscard]] double irradiance(V2f film_mm, int side) const;
+    /// but not what surfaces reflect; on the axis pi sin^2 u' for a round iris. From `count` draws,
+    /// best a power of two: with 1024 the error is below 1e-4 for the lenses that ship, and 0.2 %
+    /// where a rim just touches the beam.
+    [[nodiscard]] double irradiance(V2f film_mm, uint32_t count) const;
 
     /// What one draw of the iris brings: a film point's irradiance over the radiance of a scene of
     /// the same radiance everywhere is its mean. Lanes of the bands; u in [0, 1)^2. film_mm: a

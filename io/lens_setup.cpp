@@ -149,7 +149,7 @@ LensSetup set_up_lens(const CameraRequest& asked, const LoadedLens& loaded, cons
     } catch (const std::invalid_argument& error) {
         throw ArgumentError(aperture, "", error.what());
     }
-    const double axial = setup.camera->irradiance(V2f(0.f), 64);
+    const double axial = setup.camera->irradiance(V2f(0.f), 1024);
     if (!(axial > 0))
         throw ArgumentError(loaded.name(), "", "lets no light through to the middle of the film");
     setup.camera->set_gain(asked.exposure == ExposureMode::Photographic

@@ -344,7 +344,7 @@ TEST(LensCameraCoating, LossesMultiplyTheWeight) {
                 EXPECT_NEAR(through, axial_transmittance(*in.lens, coating, bands.nm[lane]), 1e-3);
                 EXPECT_NEAR(through, precise.weight[lane] / bare.weight[lane], 1e-4);
             }
-            EXPECT_EQ(camera.irradiance(V2f(0.f), 8), ideal.irradiance(V2f(0.f), 8));
+            EXPECT_EQ(camera.irradiance(V2f(0.f), 64), ideal.irradiance(V2f(0.f), 64));
         }
 }
 

@@ -303,7 +303,7 @@ class Trial {
             check(made.sample({random_.next2(), Sampler(SamplerKind::Owen, 1, {i, i, 0})},
                               of_sample));
         }
-        const double irradiance = made.irradiance(V2f(0.f, float(between(random_, 0, 14))), 8);
+        const double irradiance = made.irradiance(V2f(0.f, float(between(random_, 0, 14))), 64);
         require(std::isfinite(irradiance) && irradiance >= 0, "an irradiance is none");
         tally_.lit += irradiance > 0;
     }

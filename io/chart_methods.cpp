@@ -1,0 +1,393 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/chart_methods.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "io/aperture_file.h"
+#include "io/atomic_file.h"
+#include "io/camera_words.h"
+#include "io/error.h"
+#include "io/image.h"
+
+namespace petzval {
+namespace {
+
+using Notice = std::function<void(const std::string&)>;
+
+/// What a scene and a request turned out to be.
+struct Found {
+    SceneRequest request;  ///< with the wishes of the file's camera
+    CameraReport report;
+    size_t lights = 0;
+};
+
+bool is_prescription(const CameraRequest& camera) {
+    return camera.lens && *camera.lens != "pinhole" && *camera.lens != "thin" &&
+           !camera.lens->starts_with("singlet:");
+}
+
+Found look(const SceneRequest& request, const Notice& notice) {
+    const Session session = open_session(request, notice);
+    Found found{request, session.camera_report, session.scene->lights.size()};
+    if (session.camera_report.orthographic) return found;
+    found.request.camera = session.camera_report.asked;
+    // So that all methods are sharp at one distance.
+    if (found.report.focus_m > 0 && !found.request.camera.film_distance_mm)
+        found.request.camera.focus = FocusDistance{found.report.focus_m};
+    return found;
+}
+
+/// Collects the methods of one case.
+class Cases {
+  public:
+    Cases(ChartAxis axis, const RenderJob& job, std::string name, std::string title) : job_(job) {
+        case_.axis = axis;
+        case_.name = std::move(name);
+        case_.title = std::move(title);
+    }
+    using Change = std::function<void(SceneRequest&, RenderJob&)>;
+
+    void remark(std::string text) { case_.remarks.push_back(std::move(text)); }
+    void remark(const std::vector<std::string>& texts) {
+        case_.remarks.insert(case_.remarks.end(), texts.begin(), texts.end());
+    }
+    /// One whose scene differs.
+    void add(std::string name, const SceneRequest& base, const Change& change) {
+        case_.methods.push_back(made(std::move(name), base, change));
+    }
+    void reference(std::string name, const SceneRequest& base, const Change& change) {
+        case_.reference = made(std::move(name), base, change);
+    }
+    /// One that only the job tells apart.
+    void add(std::string name, std::shared_ptr<const SceneRequest> scene, const RenderJob& job) {
+        case_.methods.push_back({std::move(name), std::move(scene), job});
+    }
+    [[nodiscard]] ChartCase result() && { return std::move(case_); }
+
+  private:
+    [[nodiscard]] ChartMethod made(std::string name, const SceneRequest& base,
+                                   const Change& change) const {
+        auto scene = std::make_shared<SceneRequest>(base);
+        RenderJob job = job_;
+        change(*scene, job);
+        return {std::move(name), std::move(scene), job};
+    }
+
+    RenderJob job_;
+    ChartCase case_;
+};
+
+/// Where wavelengths and rims ask for a real lens: the request's, else kChartLens.
+SceneRequest with_lens(const Found& found, std::vector<std::string>& remarks) {
+    SceneRequest request = found.request;
+    CameraRequest& camera = request.camera;
+    if (is_prescription(camera)) return request;
+    remarks.push_back(fmt::format("No lens with a prescription was asked for: {} was taken",
+                                  kChartLens));
+    camera.lens = kChartLens;
+    camera.fit = Fit::Lens;
+    camera.fov_deg = camera.focal_length_mm = camera.lens_radius_m = std::nullopt;
+    camera.film_distance_mm = std::nullopt;
+    return request;
+}
+
+/// The angle of view, in degrees, at which a pinhole in the entrance pupil sees the plane of focus
+/// as the lens does at half the height of the film: a lens that is focused near sees less than its
+/// focal length says.
+float fov_at_focus_deg(const Session& lens) {
+    const CameraReport& report = lens.camera_report;
+    const V3f axis = (report.target - report.eye).normalized();
+    const Bands bands = Observer().draw(0.5f);
+    const auto mean_on_plane = [&](float film_y) {
+        V3d sum(0);
+        double weight = 0;
+        for (uint32_t i = 0; i < 1024; ++i) {
+            const Sampler sampler(SamplerKind::Owen, 0, {0, 0, i});
+            const CameraSample seen = lens.camera->sample({{0.5f, film_y}, sampler}, bands);
+            for (int k = 0; k < seen.count; ++k) {
+                const Ray& ray = seen.path[static_cast<size_t>(k)].ray;
+                const float w = hsum(seen.path[static_cast<size_t>(k)].weight);
+                const float t =
+                    (report.focus_m - (ray.origin - report.eye).dot(axis)) / ray.direction.dot(axis);
+                sum += V3d(ray.origin + t * ray.direction) * double(w);
+                weight += double(w);
+            }
+        }
+        return sum / weight;
+    };
+    const double height_m = (mean_on_plane(0.25f) - mean_on_plane(0.75f)).length();
+    return static_cast<float>(2 * std::atan(height_m / double(report.focus_m)) * 180 / M_PI);
+}
+
+ChartCase camera_case(const Found& found, const RenderJob& job, const Notice& notice) {
+    Cases cases(ChartAxis::Camera, job, "camera",
+                "models of the camera against its lens (a bias is their point)");
+    std::vector<std::string> remarks;
+    SceneRequest lens = with_lens(found, remarks);
+    const Session session = open_session(lens, notice);
+    const CameraReport& report = session.camera_report;
+    lens.camera.focus = FocusDistance{report.focus_m};
+    const float fov_deg = fov_at_focus_deg(session);
+    cases.remark(remarks);
+    cases.remark(fmt::format("Pinhole, thin and singlet stand in the entrance pupil of the lens, "
+                             "see {:.4g} degrees as it does when it is focused, and have its iris",
+                             fov_deg));
+
+    SceneRequest thin = lens;
+    thin.camera.lens = "thin";
+    thin.camera.fit = Fit::Lens;
+    thin.camera.fov_deg = fov_deg;
+    thin.camera.fstop = std::nullopt;
+    thin.camera.lens_radius_m = report.lens_radius_m;
+    thin.camera.sensor_mm = report.sensor_mm;
+    cases.add("pinhole", thin, [](SceneRequest& s, RenderJob&) {
+        s.camera.lens = "pinhole";
+        s.camera.lens_radius_m = std::nullopt;
+        s.camera.focus = std::nullopt;
+        s.camera.aperture = std::nullopt;
+    });
+    cases.add("thin", thin, [](SceneRequest&, RenderJob&) {});
+    cases.add("singlet (aberrated thin)", thin,
+              [](SceneRequest& s, RenderJob&) { s.camera.lens = "singlet:N-BK7"; });
+    cases.add("lens, one ray for all wavelengths", lens,
+              [](SceneRequest& s, RenderJob&) { s.camera.chroma = Chroma::Shared; });
+    cases.add("lens", lens, [](SceneRequest& s, RenderJob&) { s.camera.chroma = Chroma::Auto; });
+    cases.reference("the lens, wavelengths always split, rays followed in doubles", lens,
+                    [](SceneRequest& s, RenderJob&) {
+                        s.camera.chroma = Chroma::Split;
+                        s.camera.march = March::Double;
+                    });
+    return std::move(cases).result();
+}
+
+ChartCase chroma_case(const Found& found, const RenderJob& job) {
+    Cases cases(ChartAxis::Chroma, job, "chroma", "ways to carry wavelengths through the lens");
+    std::vector<std::string> remarks;
+    SceneRequest lens = with_lens(found, remarks);
+    lens.spectral.mode = SpectralMode::Hero;
+    cases.remark(remarks);
+    const auto with = [](Chroma chroma) {
+        return [chroma](SceneRequest& s, RenderJob&) { s.camera.chroma = chroma; };
+    };
+    cases.add("split", lens, with(Chroma::Split));
+    cases.add(fmt::format("auto, {:g} px", lens.camera.chroma_tolerance_px), lens,
+              with(Chroma::Auto));
+    cases.add("shared (hero only)", lens, with(Chroma::Shared));
+    cases.add("single", lens, with(Chroma::Single));
+    cases.remark("shared is biased: it leaves out the colour errors of the lens");
+    cases.reference("split, rays followed in doubles with the glasses' own formulas", lens,
+                    [](SceneRequest& s, RenderJob&) {
+                        s.camera.chroma = Chroma::Split;
+                        s.camera.march = March::Double;
+                    });
+    return std::move(cases).result();
+}
+
+ChartCase spectral_case(const Found& found, const RenderJob& job) {
+    Cases cases(ChartAxis::Spectral, job, "spectral", "what a path carries");
+    const auto with = [](SpectralMode mode) {
+        return [mode](SceneRequest& s, RenderJob&) { s.spectral.mode = mode; };
+    };
+    cases.add("rgb", found.request, with(SpectralMode::Rgb));
+    cases.add("hero", found.request, with(SpectralMode::Hero));
+    cases.add("hero with bins of 10 nm", found.request, [](SceneRequest& s, RenderJob& j) {
+        s.spectral.mode = SpectralMode::Hero;
+        s.spectral.bins = Bins{380, 10, 35};
+        j.scrambles = kScrambles;
+    });
+    cases.remark("rgb is biased where light and reflectance multiply by wavelength");
+    cases.reference("hero, independent points", found.request, [](SceneRequest& s, RenderJob& j) {
+        s.spectral.mode = SpectralMode::Hero;
+        j.sampler = SamplerKind::Independent;
+    });
+    return std::move(cases).result();
+}
+
+/// A rectangle 1000 times as long as it is wide, aslant, so that its bounding box is mostly empty.
+std::string write_sliver(const std::filesystem::path& folder) {
+    const auto path = folder / "iris-sliver.svg";
+    write_file_atomically(path, std::string_view(
+                                    "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-1000 "
+                                    "-1000 2000 2000\">\n<rect x=\"-500\" y=\"-0.5\" "
+                                    "width=\"1000\" height=\"1\" transform=\"rotate(-30)\"/>\n"
+                                    "</svg>\n"));
+    return path.string();
+}
+
+/// A disk that darkens towards its rim, as an apodisation filter does.
+std::string write_mask(const std::filesystem::path& folder) {
+    constexpr int kSide = 64;
+    Picture mask;
+    mask.width = mask.height = mask.full_width = mask.full_height = kSide;
+    mask.channels = {"R", "G", "B"};
+    for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x) {
+            const double r = std::hypot(x - 31.5, y - 31.5) / 32;
+            mask.pixels.insert(mask.pixels.end(), 3, float(std::fmax(0, 1 - r * r)));
+        }
+    const auto path = folder / "iris-mask.png";
+    write_8bit(path, mask);
+    return path.string();
+}
+
+std::vector<ChartCase> iris_cases(const Found& found, const ChartSubject& subject) {
+    std::vector<std::string> remarks;
+    SceneRequest lens = with_lens(found, remarks);
+    lens.camera.chroma = Chroma::Shared;  // the iris is measured, not the glass
+    remarks.emplace_back("One ray for all wavelengths");
+    const std::vector<std::pair<std::string, std::string>> shapes{
+        {"disk", "circle"},
+        {"hexagon", "polygon:6"},
+        {"star", "star:5"},
+        {"sliver", write_sliver(subject.folder)},
+        {"mask", write_mask(subject.folder)}};
+    std::vector<ChartCase> all;
+    for (const auto& [name, aperture] : shapes) {
+        Cases cases(ChartAxis::Iris, subject.job, "iris-" + name,
+                    "ways to draw points of the iris: " + name);
+        lens.camera.aperture = aperture;
+        // A sliver of the round stop's area would reach far beyond the stop's rim.
+        const bool sliver = name == "sliver";
+        lens.camera.aperture_scale =
+            sliver ? ApertureScale::Inscribed : ApertureScale::EqualArea;
+        for (const IrisSampling way : iris_samplings(parse_aperture(aperture)))
+            cases.add(petzval::word_of(way), lens, [way](SceneRequest& s, RenderJob&) {
+                s.camera.iris_sampling = way;
+            });
+        cases.remark(remarks);
+        if (sliver)
+            cases.remark("1:1000 and aslant: rejection mostly gives up and falls back on triangles");
+        cases.reference(sliver ? "triangles, independent points" : "rejection, independent points",
+                        lens, [sliver](SceneRequest& s, RenderJob& j) {
+                            s.camera.iris_sampling =
+                                sliver ? IrisSampling::Triangles : IrisSampling::Rejection;
+                            j.sampler = SamplerKind::Independent;
+                        });
+        all.push_back(std::move(cases).result());
+        all.back().weight = 1. / static_cast<double>(shapes.size());
+    }
+    return all;
+}
+
+ChartCase sampler_case(const Found& found, const RenderJob& job) {
+    Cases cases(ChartAxis::Sampler, job, "sampler", "sources of sample points");
+    const auto scene = std::make_shared<const SceneRequest>(found.request);
+    for (const auto& [name, kind] : {std::pair{"independent", SamplerKind::Independent},
+                                     std::pair{"sobol", SamplerKind::Sobol},
+                                     std::pair{"owen", SamplerKind::Owen}}) {
+        RenderJob one = job;
+        one.sampler = kind;
+        cases.add(name, scene, one);
+    }
+    cases.reference("independent points of other seeds", found.request,
+                    [](SceneRequest&, RenderJob& j) { j.sampler = SamplerKind::Independent; });
+    return std::move(cases).result();
+}
+
+ChartCase lights_case(const Found& found, const RenderJob& job) {
+    Cases cases(ChartAxis::Lights, job, "lights", "ways to choose one of the lights");
+    if (found.lights < 2) {
+        cases.remark(fmt::format("Left out: the scene has {} light, and a choice needs two",
+                                 found.lights == 0 ? "no" : "one"));
+        return std::move(cases).result();
+    }
+    cases.remark(fmt::format("The scene has {} lights, emissive triangles counted one by one",
+                             found.lights));
+    const auto with = [](LightChoiceKind kind) {
+        return [kind](SceneRequest& s, RenderJob&) { s.light_choice = kind; };
+    };
+    cases.add("uniform", found.request, with(LightChoiceKind::Uniform));
+    cases.add("power", found.request, with(LightChoiceKind::Power));
+    cases.reference("by power, independent points", found.request,
+                    [](SceneRequest& s, RenderJob& j) {
+                        s.light_choice = LightChoiceKind::Power;
+                        j.sampler = SamplerKind::Independent;
+                    });
+    return std::move(cases).result();
+}
+
+ChartCase precision_case(const Found& found, const RenderJob& job) {
+    Cases cases(ChartAxis::Precision, job, "precision",
+                "floats and doubles in the lens, robust and fast traversal");
+    std::vector<std::string> remarks;
+    SceneRequest lens = with_lens(found, remarks);
+    lens.camera.chroma = Chroma::Shared;
+    remarks.emplace_back("One ray for all wavelengths");
+    cases.remark(remarks);
+    const auto with = [](March march, Traversal traversal) {
+        return [=](SceneRequest& s, RenderJob&) {
+            s.camera.march = march;
+            s.traversal = traversal;
+        };
+    };
+    cases.add("float, robust", lens, with(March::Float, Traversal::Robust));
+    cases.add("double, robust", lens, with(March::Double, Traversal::Robust));
+    cases.add("float, fast", lens, with(March::Float, Traversal::Fast));
+    cases.reference("double and robust, independent points", lens,
+                    [](SceneRequest& s, RenderJob& j) {
+                        s.camera.march = March::Double;
+                        s.traversal = Traversal::Robust;
+                        j.sampler = SamplerKind::Independent;
+                    });
+    return std::move(cases).result();
+}
+
+}  // namespace
+
+const std::vector<std::pair<std::string, ChartAxis>>& chart_axes() {
+    static const std::vector<std::pair<std::string, ChartAxis>> axes{
+        {"camera", ChartAxis::Camera},     {"chroma", ChartAxis::Chroma},
+        {"spectral", ChartAxis::Spectral}, {"iris", ChartAxis::Iris},
+        {"sampler", ChartAxis::Sampler},   {"lights", ChartAxis::Lights},
+        {"precision", ChartAxis::Precision}};
+    return axes;
+}
+
+std::string word_of(ChartAxis axis) {
+    for (const auto& [word, one] : chart_axes())
+        if (one == axis) return word;
+    return "";
+}
+
+std::vector<ChartCase> chart_cases(const std::vector<ChartAxis>& axes, const ChartSubject& subject,
+                                   const Notice& notice) {
+    const Found found = look(subject.request, notice);
+    std::vector<ChartCase> cases;
+    for (const ChartAxis axis : axes) {
+        const bool needs_lens = axis == ChartAxis::Camera || axis == ChartAxis::Chroma ||
+                                axis == ChartAxis::Iris || axis == ChartAxis::Precision;
+        if (needs_lens && found.report.orthographic)
+            throw ArgumentError(subject.request.scene.string(), "",
+                                fmt::format("axis {} needs a lens, and the camera is orthographic: "
+                                            "give --camera or --look-at",
+                                            word_of(axis)));
+        switch (axis) {
+            case ChartAxis::Camera:
+                cases.push_back(camera_case(found, subject.job, notice));
+                break;
+            case ChartAxis::Chroma:
+                cases.push_back(chroma_case(found, subject.job));
+                break;
+            case ChartAxis::Spectral:
+                cases.push_back(spectral_case(found, subject.job));
+                break;
+            case ChartAxis::Iris:
+                for (ChartCase& one : iris_cases(found, subject)) cases.push_back(std::move(one));
+                break;
+            case ChartAxis::Sampler:
+                cases.push_back(sampler_case(found, subject.job));
+                break;
+            case ChartAxis::Lights:
+                cases.push_back(lights_case(found, subject.job));
+                break;
+            case ChartAxis::Precision:
+                cases.push_back(precision_case(found, subject.job));
+                break;
+        }
+    }
+    return cases;
+}
+
+}  // namespace petzval

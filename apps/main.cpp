@@ -7,6 +7,7 @@
 #include <new>
 #include <string>
 
+#include "apps/chart.h"
 #include "apps/console.h"
 #include "apps/image.h"
 #include "apps/info.h"
@@ -56,6 +57,7 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     int exit_code = 0;
     petzval::add_render_command(app, exit_code);
+    petzval::add_chart_command(app, exit_code);
     petzval::add_info_command(app);
     petzval::add_image_commands(app);
     petzval::add_lens_commands(app);

@@ -20,25 +20,6 @@ constexpr uint32_t kDefaultSpp = 64;
 
 constexpr double kMost = 1e6;  ///< keeps every product of two numbers a float
 
-void add_light_options(CLI::App& app, RenderOptions& o) {
-    SceneRequest& s = o.scene;
-    const auto add = [&](const char* name, auto& value, const char* help) {
-        return app.add_option(name, value, help)->group("Light");
-    };
-    auto* env = add("--env", s.environment, "equirectangular environment picture, .hdr or .exr");
-    add("--env-rotate", s.environment_rotate_deg, "degrees about +y, counter-clockwise from above")
-        ->check(number_between(-kMost, kMost))
-        ->needs(env);
-    add("--env-strength", s.environment_strength, "factor on the environment")
-        ->check(number_between(0, kMost))
-        ->needs(env);
-    add("--background", o.background,
-        "R,G,B in nits: a uniform environment; with --env only what the camera sees behind");
-    app.add_flag("--transparent", o.path.transparent,
-                 "the sky lights the scene but is not seen: alpha 0")
-        ->group("Light");
-}
-
 void add_frame_options(CLI::App& app, RenderOptions& o) {
     app.add_option("--size", o.size, "WIDTHxHEIGHT in pixels (default 1280x720)");
     app.add_option("--crop", o.crop, "x,y,width,height: only these pixels of the full frame");
@@ -133,12 +114,38 @@ void require_memory(const RenderFrame& frame, const std::optional<Bins>& bins) {
 
 }  // namespace
 
+void add_light_options(CLI::App& app, SceneRequest& s, std::string& background) {
+    const auto add = [&](const char* name, auto& value, const char* help) {
+        return app.add_option(name, value, help)->group("Light");
+    };
+    auto* env = add("--env", s.environment, "equirectangular environment picture, .hdr or .exr");
+    add("--env-rotate", s.environment_rotate_deg, "degrees about +y, counter-clockwise from above")
+        ->check(number_between(-kMost, kMost))
+        ->needs(env);
+    add("--env-strength", s.environment_strength, "factor on the environment")
+        ->check(number_between(0, kMost))
+        ->needs(env);
+    add("--background", background,
+        "R,G,B in nits: a uniform environment; with --env only what the camera sees behind");
+}
+
+void resolve_background(const std::string& text, SceneRequest& scene) {
+    if (text.empty()) return;
+    const auto v = parse_numbers("--background", text, 3);
+    if (*std::min_element(v.begin(), v.end()) < 0)
+        throw CLI::ValidationError("--background", "is negative");
+    scene.background = Rgb(v[0], v[1], v[2]);
+}
+
 void add_render_options(CLI::App& app, RenderOptions& o) {
     app.add_option("scene", o.scene.scene, "glTF scene, .gltf or .glb")->required();
     add_frame_options(app, o);
     add_sampling_options(app, o);
     add_camera_options(app, o.camera);
-    add_light_options(app, o);
+    add_light_options(app, o.scene, o.background);
+    app.add_flag("--transparent", o.path.transparent,
+                 "the sky lights the scene but is not seen: alpha 0")
+        ->group("Light");
     add_spectral_options(app, o.spectral);
     add_output_options(app, o);
 }
@@ -153,12 +160,7 @@ RenderFrame resolve(RenderOptions& o) {
         throw CLI::ValidationError("--bins", "needs an output that keeps them: -o FILE.exr");
     s.camera = resolve(o.camera, s.size);
     resolve_job(o);
-    if (!o.background.empty()) {
-        const auto v = parse_numbers("--background", o.background, 3);
-        if (*std::min_element(v.begin(), v.end()) < 0)
-            throw CLI::ValidationError("--background", "is negative");
-        s.background = Rgb(v[0], v[1], v[2]);
-    }
+    resolve_background(o.background, s);
     if (o.stats && std::find(o.outputs.begin(), o.outputs.end(), *o.stats) != o.outputs.end())
         throw CLI::ValidationError("--stats", "would overwrite the picture");
     RenderFrame frame{{0, 0, s.size.x, s.size.y}, {}};

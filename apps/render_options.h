@@ -53,6 +53,12 @@ struct RenderFrame {
 /// Declares the options; they write to the struct, which must outlive the parsing.
 void add_render_options(CLI::App&, RenderOptions&);
 
+/// Declares the options of a scene's light; they write to the arguments, which must outlive the
+/// parsing. The text becomes a value in resolve_background().
+void add_light_options(CLI::App&, SceneRequest&, std::string& background);
+/// Nothing for an empty text. Throws CLI::ValidationError.
+void resolve_background(const std::string& text, SceneRequest&);
+
 /// Reads the options that depend on each other. Throws CLI::ValidationError.
 [[nodiscard]] RenderFrame resolve(RenderOptions&);
 

@@ -149,9 +149,9 @@ ChartCase camera_case(const Found& found, const RenderJob& job, const Notice& no
         s.camera.aperture = std::nullopt;
     });
     cases.add("thin", thin, [](SceneRequest&, RenderJob&) {});
-    cases.add("singlet (aberrated thin)", thin,
+    cases.add("singlet", thin,
               [](SceneRequest& s, RenderJob&) { s.camera.lens = "singlet:N-BK7"; });
-    cases.add("lens, one ray for all wavelengths", lens,
+    cases.add("lens one-ray", lens,
               [](SceneRequest& s, RenderJob&) { s.camera.chroma = Chroma::Shared; });
     cases.add("lens", lens, [](SceneRequest& s, RenderJob&) { s.camera.chroma = Chroma::Auto; });
     cases.reference("the lens, wavelengths always split, rays followed in doubles", lens,
@@ -172,9 +172,9 @@ ChartCase chroma_case(const Found& found, const RenderJob& job) {
         return [chroma](SceneRequest& s, RenderJob&) { s.camera.chroma = chroma; };
     };
     cases.add("split", lens, with(Chroma::Split));
-    cases.add(fmt::format("auto, {:g} px", lens.camera.chroma_tolerance_px), lens,
+    cases.add(fmt::format("auto {:g} px", lens.camera.chroma_tolerance_px), lens,
               with(Chroma::Auto));
-    cases.add("shared (hero only)", lens, with(Chroma::Shared));
+    cases.add("shared", lens, with(Chroma::Shared));
     cases.add("single", lens, with(Chroma::Single));
     cases.remark("shared is biased: it leaves out the colour errors of the lens");
     cases.reference("split, rays followed in doubles with the glasses' own formulas", lens,
@@ -192,11 +192,12 @@ ChartCase spectral_case(const Found& found, const RenderJob& job) {
     };
     cases.add("rgb", found.request, with(SpectralMode::Rgb));
     cases.add("hero", found.request, with(SpectralMode::Hero));
-    cases.add("hero with bins of 10 nm", found.request, [](SceneRequest& s, RenderJob& j) {
+    cases.add("hero with bins", found.request, [](SceneRequest& s, RenderJob& j) {
         s.spectral.mode = SpectralMode::Hero;
         s.spectral.bins = Bins{380, 10, 35};
         j.scrambles = kScrambles;
     });
+    cases.remark("The bins are 35 of 10 nm");
     cases.remark("rgb is biased where light and reflectance multiply by wavelength");
     cases.reference("hero, independent points", found.request, [](SceneRequest& s, RenderJob& j) {
         s.spectral.mode = SpectralMode::Hero;
@@ -322,9 +323,9 @@ ChartCase precision_case(const Found& found, const RenderJob& job) {
             s.traversal = traversal;
         };
     };
-    cases.add("float, robust", lens, with(March::Float, Traversal::Robust));
-    cases.add("double, robust", lens, with(March::Double, Traversal::Robust));
-    cases.add("float, fast", lens, with(March::Float, Traversal::Fast));
+    cases.add("float robust", lens, with(March::Float, Traversal::Robust));
+    cases.add("double robust", lens, with(March::Double, Traversal::Robust));
+    cases.add("float fast", lens, with(March::Float, Traversal::Fast));
     cases.reference("double and robust, independent points", lens,
                     [](SceneRequest& s, RenderJob& j) {
                         s.camera.march = March::Double;

@@ -55,6 +55,8 @@ const char* style_name(PlotStyle style) {
             return "points pointtype 7 pointsize 0.3";
         case PlotStyle::LinesAndPoints:
             return "linespoints";
+        case PlotStyle::Dashes:
+            return "lines dashtype 2";
     }
     return "";
 }
@@ -76,23 +78,41 @@ Points steps(const Points& points) {
     return ends;
 }
 
+/// Rows of numbers as gnuplot reads them, without what cannot be drawn.
+std::string rows(const PlotSeries& series, bool logarithmic) {
+    const bool is_steps = series.style == PlotStyle::Steps;
+    const Points points = is_steps ? steps(series.points) : series.points;
+    std::string text;
+    for (size_t i = 0; i < points.size(); ++i) {
+        const auto [x, y] = points[i];
+        if (!std::isfinite(x) || !std::isfinite(y) || (logarithmic && !(x > 0 && y > 0))) continue;
+        text += fmt::format("{} {}", x, y);
+        if (!series.y_bounds.empty()) {
+            auto [low, high] = series.y_bounds[i];
+            if (logarithmic && !(low > 0)) low = y / 10;
+            text += fmt::format(" {} {}", low, high);
+        }
+        text += '\n';
+    }
+    return text;
+}
+
 std::string script(const char* terminal_name, const Plot& plot) {
     std::string text = fmt::format(
         "set encoding utf8\n"
         "set terminal {} size 960,600 noenhanced font 'sans,14' background rgb 'white'\n"
         "set title {}\nset xlabel {}\nset ylabel {}\nset grid\nset offsets 0, 0, graph 0.05, 0\n",
         terminal_name, quoted(plot.title), quoted(plot.x_label), quoted(plot.y_label));
+    if (plot.logarithmic) text += "set logscale xy\nset offsets 0, 0, 0, 0\n";
     if (plot.equal_scale) text += "set size ratio -1\n";
     std::string lines;
     for (size_t i = 0; i < plot.series.size(); ++i) {
         const PlotSeries& series = plot.series[i];
-        text += fmt::format("$series{} << end\n", i);
-        const bool is_steps = series.style == PlotStyle::Steps;
-        for (const auto& [x, y] : is_steps ? steps(series.points) : series.points)
-            if (std::isfinite(x) && std::isfinite(y)) text += fmt::format("{} {}\n", x, y);
-        text += "end\n";
-        lines += fmt::format("{}$series{} using 1:2 with {} linewidth 2 {}",
-                             i == 0 ? "plot " : ", ", i, style_name(series.style),
+        text += fmt::format("$series{} << end\n{}end\n", i, rows(series, plot.logarithmic));
+        const bool bars = !series.y_bounds.empty();
+        lines += fmt::format("{}$series{} using {} with {} linewidth 2 {}", i == 0 ? "plot " : ", ",
+                             i, bars ? "1:2:3:4" : "1:2",
+                             bars ? "yerrorlines" : style_name(series.style),
                              series.label.empty() ? "notitle" : "title " + quoted(series.label));
     }
     return text + lines + "\n";

@@ -15,13 +15,16 @@ enum class PlotStyle : uint8_t {
     Points,
     Dots,  ///< small ones, for thousands
     LinesAndPoints,
-    Steps  ///< level around each x, half of the way to its neighbours
+    Steps,  ///< level around each x, half of the way to its neighbours
+    Dashes
 };
 
 struct PlotSeries {
     std::vector<std::array<double, 2>> points;  ///< x, y; a point that is not finite is left out
     PlotStyle style = PlotStyle::Lines;
     std::string label;  ///< in the key; none where it is empty
+    /// Ends of an error bar in y at each point, drawn with lines and marks; none where it is empty.
+    std::vector<std::array<double, 2>> y_bounds{};
 };
 
 /// Texts are shown as they are, letter by letter; UTF-8.
@@ -29,6 +32,8 @@ struct Plot {
     std::string title, x_label, y_label;  ///< labels with units
     std::vector<PlotSeries> series;       ///< at least one
     bool equal_scale = false;             ///< a unit of x is as long as one of y
+    bool logarithmic = false;  ///< both axes; a point that is not above 0 is left out, and an end
+                               ///< of a bar is drawn at a tenth of its point
 };
 
 /// Throws InputError where the name ends in neither .svg nor .png or cannot be written.

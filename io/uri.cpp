@@ -70,6 +70,19 @@ std::optional<DataUri> parse_data_uri(std::string_view uri) {
     return DataUri{head.substr(0, head.find(';')), std::move(*bytes)};
 }
 
+std::string encode_base64(std::span<const uint8_t> bytes) {
+    constexpr std::string_view kDigits =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    for (size_t i = 0; i < bytes.size(); i += 3) {
+        const size_t n = std::min<size_t>(3, bytes.size() - i);
+        uint32_t word = 0;
+        for (size_t k = 0; k < 3; ++k) word = word << 8 | (k < n ? bytes[i + k] : 0u);
+        for (size_t k = 0; k < 4; ++k) text += k <= n ? kDigits[word >> (18 - 6 * k) & 63] : '=';
+    }
+    return text;
+}
+
 std::optional<std::string> relative_path(std::string_view uri) {
     const size_t colon = uri.find(':');
     const bool has_scheme = colon != std::string_view::npos && colon < uri.find('/');

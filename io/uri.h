@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,6 +25,9 @@ struct DataUri {
 /// Decodes base64 (RFC 4648, section 4), with or without padding; nothing when a character is
 /// foreign or the length impossible.
 [[nodiscard]] std::optional<std::vector<uint8_t>> decode_base64(std::string_view text);
+
+/// Base64 with padding (RFC 4648, section 4).
+[[nodiscard]] std::string encode_base64(std::span<const uint8_t> bytes);
 
 /// The path that a relative URI reference names, percent-escapes decoded (RFC 3986); nothing when
 /// it has a scheme or a host, is absolute or empty, or an escape is broken or hides a zero byte.

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/chart.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+
+#include "io/atomic_file.h"
+#include "io/error.h"
+#include "io/plot.h"
+
+namespace petzval {
+namespace {
+
+namespace fs = std::filesystem;
+
+void make_folder(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder / "pictures", error);
+    if (error)
+        throw InputError(folder.string(), "",
+                         "cannot be made a folder for the report: " + error.message());
+    check_plot(folder / "report.svg");
+    check_writable(folder / "report.html");
+}
+
+// Memory is promised before it is there, so that asking for too much would kill instead of fail.
+void require_memory(const std::vector<ChartCase>& cases, const ChartFrame& frame) {
+    double most = 0;
+    for (const ChartCase& of : cases) {
+        double per_pixel = 0;
+        for (const ChartMethod& method : of.methods) {
+            const auto& bins = method.scene->spectral.bins;
+            per_pixel += frame.seeds * (48 + (bins ? 8. * bins->count + 24 + 12 * kScrambles : 0));
+            per_pixel += 12 * 20;  // pictures of the levels
+        }
+        most = std::max(most, per_pixel);
+    }
+    const double needed = most * frame.crop.width() * frame.crop.height();
+    const double there =
+        static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+    if (needed > there)
+        throw ArgumentError("--size", "",
+                            fmt::format("needs {:.1f} GiB of memory, this machine has {:.1f}; give "
+                                        "a smaller --size, a --crop or fewer --seeds",
+                                        needed * 0x1p-30, there * 0x1p-30));
+}
+
+}  // namespace
+
+ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, RenderMonitor& monitor,
+                       const std::function<void(const std::string&)>& notice,
+                       const std::function<void(const MeasuredCase&)>& finished) {
+    using SteadyClock = std::chrono::steady_clock;
+    const auto start = SteadyClock::now();
+    const auto elapsed_s = [&] {
+        return std::chrono::duration<double>(SteadyClock::now() - start).count();
+    };
+    const double least_s = kLeastChartBudget_s * static_cast<double>(request.axes.size());
+    if (request.budget_s < least_s)
+        throw ArgumentError("--budget", "",
+                            fmt::format("is too small: {} axes need {:g} s at least",
+                                        request.axes.size(), least_s));
+    std::set<std::string> said;  // by one of the sessions
+    const auto once = [&](const std::string& text) {
+        if (said.insert(text).second) notice(text);
+    };
+    ChartFrame frame = request.frame;
+    if (request.reference) {
+        frame.reference = read_reference(*request.reference, frame.size, frame.crop);
+        frame.reference_name = request.reference->filename().string();
+    }
+    const fs::path& folder = request.subject.folder;
+    make_folder(folder);
+    const std::vector<ChartCase> cases = executor.inside(
+        [&] { return chart_cases(request.axes, request.subject, once); });
+    require_memory(cases, frame);
+    const bool nothing = std::all_of(cases.begin(), cases.end(),
+                                     [](const ChartCase& of) { return of.methods.empty(); });
+    if (nothing) throw ArgumentError("--axis", "", cases.front().remarks.front());
+
+    double weight_left = 0;
+    for (const ChartCase& of : cases) weight_left += of.methods.empty() ? 0 : of.weight;
+    ChartReport report{request.subject, frame, request.budget_s, executor.threads(), {}};
+    ChartOutcome outcome;
+    for (const ChartCase& of : cases) {
+        const double share_s = (request.budget_s - elapsed_s()) * of.weight / weight_left;
+        std::optional<MeasuredCase> measured =
+            measure(of, frame, share_s, executor, monitor, once);
+        if (!measured) {
+            outcome.stopped = true;
+            return outcome;
+        }
+        if (!of.methods.empty()) weight_left -= of.weight;
+        report.cases.push_back(*std::move(measured));
+        write_case(report, report.cases.back());
+        write_report(report);
+        ++outcome.measured;
+        finished(report.cases.back());
+    }
+    return outcome;
+}
+
+}  // namespace petzval

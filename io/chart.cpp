@@ -10,22 +10,42 @@
 
 #include "io/atomic_file.h"
 #include "io/error.h"
-#include "io/plot.h"
 
 namespace petzval {
 namespace {
 
 namespace fs = std::filesystem;
 
-void make_folder(const fs::path& folder) {
-    std::error_code error;
-    fs::create_directories(folder / "pictures", error);
-    if (error)
-        throw InputError(folder.string(), "",
-                         "cannot be made a folder for the report: " + error.message());
-    check_plot(folder / "report.svg");
-    check_writable(folder / "report.html");
-}
+/// The report's folder. One that was made here goes again unless something is kept in it.
+class Folder {
+  public:
+    explicit Folder(const fs::path& path) : path_(path) {
+        std::error_code error;
+        if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
+        made_ = fs::create_directory(path, error);
+        if (!fs::is_directory(path))
+            throw InputError(path.string(), "",
+                             "cannot be made a folder for the report: " +
+                                 (error ? error.message() : "there is a file of that name"));
+        check_writable(path / "report.html");
+        made_pictures_ = fs::create_directory(path / "pictures", error);
+    }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+    ~Folder() {
+        std::error_code ignored;
+        if (kept_) return;
+        if (made_)
+            fs::remove_all(path_, ignored);
+        else if (made_pictures_)
+            fs::remove(path_ / "pictures", ignored);
+    }
+    void keep() { kept_ = true; }
+
+  private:
+    fs::path path_;
+    bool made_ = false, made_pictures_ = false, kept_ = false;
+};
 
 // Memory is promised before it is there, so that asking for too much would kill instead of fail.
 void require_memory(const std::vector<ChartCase>& cases, const ChartFrame& frame) {
@@ -73,8 +93,7 @@ ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, Rende
         frame.reference = read_reference(*request.reference, frame.size, frame.crop);
         frame.reference_name = request.reference->filename().string();
     }
-    const fs::path& folder = request.subject.folder;
-    make_folder(folder);
+    Folder folder(request.subject.folder);
     const std::vector<ChartCase> cases = executor.inside(
         [&] { return chart_cases(request.axes, request.subject, once); });
     require_memory(cases, frame);
@@ -96,6 +115,7 @@ ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, Rende
         }
         if (!of.methods.empty()) weight_left -= of.weight;
         report.cases.push_back(*std::move(measured));
+        folder.keep();
         write_case(report, report.cases.back());
         write_report(report);
         ++outcome.measured;

@@ -16,7 +16,7 @@
 namespace petzval {
 namespace {
 
-constexpr double kReferenceShare = 0.4;  ///< at most; sample counts that double use 0.2 to 0.4
+constexpr double kReferenceShare = 0.4;  ///< at most; counts that grow in steps use 0.25 to 0.4
 constexpr double kMeasuringShare = 0.9;  ///< the rest is for plots and pictures
 
 class Clock {
@@ -123,6 +123,16 @@ double relative_variance(const std::vector<Picture>& parts, const Picture& mean)
     return sum / static_cast<double>(mean.pixels.size());
 }
 
+/// once_s: what a first look at everything will take.
+void require_time(double once_s, double budget_s, const char* what) {
+    if (once_s <= budget_s) return;
+    throw ArgumentError("--budget", "",
+                        fmt::format("is too small: the first samples of {} take {:.0f} s, and "
+                                    "{:.0f} s are there for them; give more time or a smaller "
+                                    "--size",
+                                    what, once_s, std::max(budget_s, 0.)));
+}
+
 std::optional<ChartReference> render_reference(const ChartMethod& method, const Session& session,
                                                const Workplace& at, double budget_s) {
     const Clock clock;
@@ -130,13 +140,20 @@ std::optional<ChartReference> render_reference(const ChartMethod& method, const 
     if (!track.warm_up()) return std::nullopt;
     // A film with scrambles is whole after one sample of each.
     const uint32_t first = std::max(2u, method.job.scrambles);
-    for (uint32_t end = first; end <= 1u << 20; end *= 2) {
-        if (end > first && clock.elapsed_s() + track.next_s() > budget_s) break;
+    require_time(clock.elapsed_s() * (1 + first * kReferenceParts), budget_s, "the reference");
+    for (uint32_t end = first; end <= 1u << 20;) {
         const Clock level;
         for (uint32_t part = 0; part < kReferenceParts; ++part)
             if (!track.advance(part, end)) return std::nullopt;
+        track.last_s = level.elapsed_s() * end / (end - track.samples());
         track.reached(end);
-        track.last_s = level.elapsed_s();
+        const double left_s = budget_s - clock.elapsed_s();
+        if (track.last_s <= left_s)
+            end *= 2;
+        else if (track.last_s / 2 <= left_s)
+            end += end / 2;
+        else
+            break;
     }
     ChartReference reference;
     reference.parts = kReferenceParts;
@@ -172,14 +189,7 @@ class Race {
         const Clock clock;
         for (Track& track : tracks_)
             if (!track.warm_up()) return false;
-        const double all_once_s = clock.elapsed_s() * at_.frame.seeds;
-        if (clock.elapsed_s() + all_once_s > budget_s)
-            throw ArgumentError(
-                "--budget", "",
-                fmt::format("one sample of each pixel with every method takes {:.0f} s of the "
-                            "{:.0f} s there are for the methods of this axis; give more time or "
-                            "a smaller --size",
-                            all_once_s, budget_s));
+        require_time(clock.elapsed_s() * (1 + at_.frame.seeds), budget_s, "all methods");
         const double share_s = budget_s / static_cast<double>(tracks_.size());
         for (;;) {
             const auto next = chosen(share_s, budget_s - clock.elapsed_s());

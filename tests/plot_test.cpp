@@ -61,6 +61,44 @@ TEST(Plot, IsADrawingWithItsLabels) {
     EXPECT_EQ(folder.count(), 3u);
 }
 
+// A line in x and y that is straight in their logarithms, with what those have no place for.
+TEST(Plot, LogarithmicAxesLeaveOutWhatIsNotAbove0) {
+    const TemporaryFolder folder;
+    Plot p = plot();
+    p.logarithmic = true;
+    p.series = {{{{0.01, 1e-3}, {0, 1}, {1, 0}, {-1, 1}, {1, 1e-1}}, PlotStyle::Lines, ""}};
+    write_plot(folder / "a.svg", p);
+    p.series = {{{{0.01, 1e-3}, {1, 1e-1}}, PlotStyle::Lines, ""}};
+    write_plot(folder / "b.svg", p);
+    EXPECT_EQ(text_of(folder / "a.svg"), text_of(folder / "b.svg"));
+    p.series = {{{{0.01, 1e-3}, {0.1, 1e-2}, {1, 1e-1}}, PlotStyle::Lines, ""}};
+    write_plot(folder / "b.svg", p);
+    EXPECT_NE(text_of(folder / "b.svg").find(">0.001<"), std::string::npos) << "a tick";
+    p.logarithmic = false;
+    write_plot(folder / "b.svg", p);
+    EXPECT_NE(text_of(folder / "a.svg"), text_of(folder / "b.svg"));
+}
+
+TEST(Plot, BarsReachTheirEnds) {
+    const TemporaryFolder folder;
+    Plot p = plot();
+    p.logarithmic = true;
+    const auto drawn = [&](double low, double high) {
+        p.series = {{{{1, 2}, {10, 3}}, PlotStyle::LinesAndPoints, "m", {{1, 4}, {low, high}}}};
+        write_plot(folder / "a.svg", p);
+        return text_of(folder / "a.svg");
+    };
+    EXPECT_EQ(drawn(2, 5), drawn(2, 5));
+    EXPECT_NE(drawn(2, 5), drawn(2, 6));
+    EXPECT_NE(drawn(2, 5), drawn(2.5, 5));
+    EXPECT_EQ(drawn(-1, 5), drawn(0.3, 5)) << "a tenth of the point";
+    p.series = {{{{1, 2}, {10, 3}}, PlotStyle::Lines, ""}};
+    write_plot(folder / "a.svg", p);
+    p.series[0].style = PlotStyle::Dashes;
+    write_plot(folder / "b.svg", p);
+    EXPECT_NE(text_of(folder / "a.svg"), text_of(folder / "b.svg"));
+}
+
 TEST(Plot, StepsReachHalfOfTheWayAndBeyondTheEnds) {
     const TemporaryFolder folder;
     Plot p = plot();

@@ -53,7 +53,7 @@ void require_memory(const std::vector<ChartCase>& cases, const ChartFrame& frame
     for (const ChartCase& of : cases) {
         double per_pixel = 0;
         for (const ChartMethod& method : of.methods) {
-            const auto& bins = method.scene->spectral.bins;
+            const auto& bins = method.scene.spectral.bins;
             per_pixel += frame.seeds * (48 + (bins ? 8. * bins->count + 24 + 12 * kScrambles : 0));
             per_pixel += 12 * 20;  // pictures of the levels
         }
@@ -94,8 +94,12 @@ ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, Rende
         frame.reference_name = request.reference->filename().string();
     }
     Folder folder(request.subject.folder);
-    const std::vector<ChartCase> cases = executor.inside(
-        [&] { return chart_cases(request.axes, request.subject, once); });
+    const Session first =
+        executor.inside([&] { return open_session(request.subject.request, once); });
+    const OpenSession open = [&](const SceneRequest& one) {
+        return executor.inside([&] { return open_session(one, once, &first); });
+    };
+    const std::vector<ChartCase> cases = chart_cases(request.axes, request.subject, open);
     require_memory(cases, frame);
     const bool nothing = std::all_of(cases.begin(), cases.end(),
                                      [](const ChartCase& of) { return of.methods.empty(); });
@@ -107,20 +111,30 @@ ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, Rende
     ChartOutcome outcome;
     for (const ChartCase& of : cases) {
         const double share_s = (request.budget_s - elapsed_s()) * of.weight / weight_left;
-        std::optional<MeasuredCase> measured =
-            measure(of, frame, share_s, executor, monitor, once);
+        std::optional<MeasuredCase> measured;
+        try {
+            measured = measure(of, frame, share_s, executor, monitor, open);
+        } catch (const TooSlow& error) {
+            if (cases.size() == 1) throw;
+            measured.emplace().of = of;
+            measured->of.methods.clear();
+            measured->of.remarks.push_back(std::string("Left out: ") + error.what());
+        }
         if (!measured) {
             outcome.stopped = true;
             return outcome;
         }
         if (!of.methods.empty()) weight_left -= of.weight;
+        outcome.measured += !measured->methods.empty();
         report.cases.push_back(*std::move(measured));
+        finished(report.cases.back());
+        if (outcome.measured == 0) continue;
         folder.keep();
         write_case(report, report.cases.back());
         write_report(report);
-        ++outcome.measured;
-        finished(report.cases.back());
     }
+    if (outcome.measured == 0)
+        throw ArgumentError("--budget", "", "is too small for each of the axes");
     return outcome;
 }
 

@@ -14,8 +14,6 @@
 namespace petzval {
 namespace {
 
-using Notice = std::function<void(const std::string&)>;
-
 /// What a scene and a request turned out to be.
 struct Found {
     SceneRequest request;  ///< with the wishes of the file's camera
@@ -28,8 +26,8 @@ bool is_prescription(const CameraRequest& camera) {
            !camera.lens->starts_with("singlet:");
 }
 
-Found look(const SceneRequest& request, const Notice& notice) {
-    const Session session = open_session(request, notice);
+Found look(const SceneRequest& request, const OpenSession& open) {
+    const Session session = open(request);
     Found found{request, session.camera_report, session.scene->lights.size()};
     if (session.camera_report.orthographic) return found;
     found.request.camera = session.camera_report.asked;
@@ -53,26 +51,20 @@ class Cases {
     void remark(const std::vector<std::string>& texts) {
         case_.remarks.insert(case_.remarks.end(), texts.begin(), texts.end());
     }
-    /// One whose scene differs.
     void add(std::string name, const SceneRequest& base, const Change& change) {
         case_.methods.push_back(made(std::move(name), base, change));
     }
     void reference(std::string name, const SceneRequest& base, const Change& change) {
         case_.reference = made(std::move(name), base, change);
     }
-    /// One that only the job tells apart.
-    void add(std::string name, std::shared_ptr<const SceneRequest> scene, const RenderJob& job) {
-        case_.methods.push_back({std::move(name), std::move(scene), job});
-    }
     [[nodiscard]] ChartCase result() && { return std::move(case_); }
 
   private:
     [[nodiscard]] ChartMethod made(std::string name, const SceneRequest& base,
                                    const Change& change) const {
-        auto scene = std::make_shared<SceneRequest>(base);
-        RenderJob job = job_;
-        change(*scene, job);
-        return {std::move(name), std::move(scene), job};
+        ChartMethod method{std::move(name), base, job_};
+        change(method.scene, method.job);
+        return method;
     }
 
     RenderJob job_;
@@ -121,12 +113,12 @@ float fov_at_focus_deg(const Session& lens) {
     return static_cast<float>(2 * std::atan(height_m / double(report.focus_m)) * 180 / M_PI);
 }
 
-ChartCase camera_case(const Found& found, const RenderJob& job, const Notice& notice) {
+ChartCase camera_case(const Found& found, const RenderJob& job, const OpenSession& open) {
     Cases cases(ChartAxis::Camera, job, "camera",
                 "models of the camera against its lens (a bias is their point)");
     std::vector<std::string> remarks;
     SceneRequest lens = with_lens(found, remarks);
-    const Session session = open_session(lens, notice);
+    const Session session = open(lens);
     const CameraReport& report = session.camera_report;
     lens.camera.focus = FocusDistance{report.focus_m};
     const float fov_deg = fov_at_focus_deg(session);
@@ -274,14 +266,11 @@ std::vector<ChartCase> iris_cases(const Found& found, const ChartSubject& subjec
 
 ChartCase sampler_case(const Found& found, const RenderJob& job) {
     Cases cases(ChartAxis::Sampler, job, "sampler", "sources of sample points");
-    const auto scene = std::make_shared<const SceneRequest>(found.request);
     for (const auto& [name, kind] : {std::pair{"independent", SamplerKind::Independent},
                                      std::pair{"sobol", SamplerKind::Sobol},
-                                     std::pair{"owen", SamplerKind::Owen}}) {
-        RenderJob one = job;
-        one.sampler = kind;
-        cases.add(name, scene, one);
-    }
+                                     std::pair{"owen", SamplerKind::Owen}})
+        cases.add(name, found.request,
+                  [way = kind](SceneRequest&, RenderJob& j) { j.sampler = way; });
     cases.reference("independent points of other seeds", found.request,
                     [](SceneRequest&, RenderJob& j) { j.sampler = SamplerKind::Independent; });
     return std::move(cases).result();
@@ -353,8 +342,8 @@ std::string word_of(ChartAxis axis) {
 }
 
 std::vector<ChartCase> chart_cases(const std::vector<ChartAxis>& axes, const ChartSubject& subject,
-                                   const Notice& notice) {
-    const Found found = look(subject.request, notice);
+                                   const OpenSession& open) {
+    const Found found = look(subject.request, open);
     std::vector<ChartCase> cases;
     for (const ChartAxis axis : axes) {
         const bool needs_lens = axis == ChartAxis::Camera || axis == ChartAxis::Chroma ||
@@ -366,7 +355,7 @@ std::vector<ChartCase> chart_cases(const std::vector<ChartAxis>& axes, const Cha
                                             word_of(axis)));
         switch (axis) {
             case ChartAxis::Camera:
-                cases.push_back(camera_case(found, subject.job, notice));
+                cases.push_back(camera_case(found, subject.job, open));
                 break;
             case ChartAxis::Chroma:
                 cases.push_back(chroma_case(found, subject.job));

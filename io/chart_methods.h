@@ -5,7 +5,6 @@
 
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,7 +22,7 @@ enum class ChartAxis : uint8_t { Camera, Chroma, Spectral, Iris, Sampler, Lights
 
 struct ChartMethod {
     std::string name;
-    std::shared_ptr<const SceneRequest> scene;  ///< methods that share it share a session
+    SceneRequest scene;
     RenderJob job;
 };
 
@@ -47,11 +46,13 @@ struct ChartSubject {
     std::filesystem::path folder;  ///< where shapes of irises are written
 };
 
-/// Opens the scene once, to see what it allows; `notice` as of open_session. A case without methods
+/// Makes a session of a request: open_session with what it shares and whom it tells.
+using OpenSession = std::function<Session(const SceneRequest&)>;
+
+/// Opens the scene, to see what it allows. A case without methods
 /// only has remarks. Throws InputError for faults of the scene, ArgumentError where an axis that
 /// needs a perspective camera gets none.
-[[nodiscard]] std::vector<ChartCase> chart_cases(
-    const std::vector<ChartAxis>&, const ChartSubject&,
-    const std::function<void(const std::string&)>& notice);
+[[nodiscard]] std::vector<ChartCase> chart_cases(const std::vector<ChartAxis>&,
+                                                 const ChartSubject&, const OpenSession&);
 
 }  // namespace petzval

@@ -6,9 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
 
-#include "io/error.h"
 #include "io/flip.h"
 #include "io/image_diff.h"
 #include "io/stats_file.h"
@@ -38,13 +36,13 @@ struct Workplace {
 /// One method's renders of several seeds, all at the same number of samples.
 class Track {
   public:
-    Track(const ChartMethod& method, const Session& session, const Workplace& at,
-          uint32_t first_seed, uint32_t seeds)
-        : job_(method.job), session_(session), at_(at), first_seed_(first_seed) {
-        job_.observer = session.observer;
+    Track(const ChartMethod& method, Session session, const Workplace& at, uint32_t first_seed,
+          uint32_t seeds)
+        : job_(method.job), session_(std::move(session)), at_(at), first_seed_(first_seed) {
+        job_.observer = session_.observer;
         PathOptions options;
-        options.backdrop = session.backdrop;
-        tracer_.emplace(*session.scene, *session.bvh, *session.lights, options);
+        options.backdrop = session_.backdrop;
+        tracer_.emplace(*session_.scene, *session_.bvh, *session_.lights, options);
         for (uint32_t i = 0; i < seeds; ++i) films_.push_back(new_film());
         cpu_s_.resize(seeds, 0.);
     }
@@ -88,7 +86,7 @@ class Track {
     }
 
     RenderJob job_;
-    const Session& session_;
+    Session session_;
     const Workplace& at_;
     uint32_t first_seed_, samples_ = 0;
     std::optional<PathTracer<>> tracer_;
@@ -126,17 +124,17 @@ double relative_variance(const std::vector<Picture>& parts, const Picture& mean)
 /// once_s: what a first look at everything will take.
 void require_time(double once_s, double budget_s, const char* what) {
     if (once_s <= budget_s) return;
-    throw ArgumentError("--budget", "",
+    throw TooSlow("--budget", "",
                         fmt::format("is too small: the first samples of {} take {:.0f} s, and "
                                     "{:.0f} s are there for them; give more time or a smaller "
                                     "--size",
                                     what, once_s, std::max(budget_s, 0.)));
 }
 
-std::optional<ChartReference> render_reference(const ChartMethod& method, const Session& session,
+std::optional<ChartReference> render_reference(const ChartMethod& method, Session session,
                                                const Workplace& at, double budget_s) {
     const Clock clock;
-    Track track(method, session, at, kFirstReferenceSeed, kReferenceParts);
+    Track track(method, std::move(session), at, kFirstReferenceSeed, kReferenceParts);
     if (!track.warm_up()) return std::nullopt;
     // A film with scrambles is whole after one sample of each.
     const uint32_t first = std::max(2u, method.job.scrambles);
@@ -175,10 +173,10 @@ std::optional<ChartReference> render_reference(const ChartMethod& method, const 
 class Race {
   public:
     Race(const ChartCase& of, const Workplace& at, const ChartReference& reference,
-         const std::map<const SceneRequest*, Session>& sessions)
+         const OpenSession& open)
         : at_(at), reference_(reference), flip_(reference.picture, at.frame.exposure_ev) {
         for (const ChartMethod& method : of.methods) {
-            tracks_.emplace_back(method, sessions.at(method.scene.get()), at, 0, at.frame.seeds);
+            tracks_.emplace_back(method, open(method.scene), at, 0, at.frame.seeds);
             methods_.emplace_back().name = method.name;
         }
         pictures_.resize(tracks_.size());
@@ -331,29 +329,23 @@ Picture read_reference(const std::filesystem::path& path, V2i size, Rect crop) {
 
 std::optional<MeasuredCase> measure(const ChartCase& of, const ChartFrame& frame, double budget_s,
                                     TbbExecutor& executor, RenderMonitor& monitor,
-                                    const std::function<void(const std::string&)>& notice) {
+                                    const OpenSession& open) {
     const Clock clock;
     MeasuredCase out;
     out.of = of;
     if (of.methods.empty()) return out;
+    require_time(0, budget_s, "this axis");
     const Workplace at{frame, executor, monitor};
     const double measuring_s = kMeasuringShare * budget_s;
-    const auto open = [&](const SceneRequest& request) {
-        return executor.inside([&] { return open_session(request, notice); });
-    };
     if (frame.reference) {
         out.reference.picture = *frame.reference;
     } else {
-        const Session session = open(*of.reference.scene);
-        auto reference = render_reference(of.reference, session, at, kReferenceShare * budget_s);
+        auto reference = render_reference(of.reference, open(of.reference.scene), at,
+                                          kReferenceShare * budget_s);
         if (!reference) return std::nullopt;
         out.reference = *std::move(reference);
     }
-    std::map<const SceneRequest*, Session> sessions;
-    for (const ChartMethod& method : of.methods)
-        if (!sessions.contains(method.scene.get()))
-            sessions.emplace(method.scene.get(), open(*method.scene));
-    Race race(out.of, at, out.reference, sessions);
+    Race race(out.of, at, out.reference, open);
     if (!race.run(measuring_s - clock.elapsed_s())) return std::nullopt;
     out.methods = std::move(race).result(out.equal_cpu_s);
     out.wall_s = clock.elapsed_s();

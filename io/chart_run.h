@@ -2,7 +2,6 @@
 // Measures methods against a reference: cost and error over growing numbers of samples.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +9,7 @@
 #include "integrator/executor.h"
 #include "io/chart_methods.h"
 #include "io/chart_points.h"
+#include "io/error.h"
 #include "io/image.h"
 
 namespace petzval {
@@ -18,6 +18,12 @@ inline constexpr uint32_t kChartSeeds = 5;           ///< at least: for an inter
 inline constexpr double kLeastChartBudget_s = 4;     ///< for each case of weight 1
 inline constexpr uint32_t kReferenceParts = 4;       ///< independent renders
 inline constexpr uint32_t kFirstReferenceSeed = 1'000'000;
+
+/// The budget is too small for a first look at everything.
+class TooSlow : public ArgumentError {
+  public:
+    using ArgumentError::ArgumentError;
+};
 
 /// What is the same for all cases of a chart.
 struct ChartFrame {
@@ -67,10 +73,9 @@ struct MeasuredCase {
 /// Renders the reference in about a third of the time, then all methods, turn by turn, at 1, 2, 4,
 /// ... samples, as long as the next number fits: a method's renders with one seed are one render
 /// that is looked at on its way. Ends within the budget but for what one sample of each takes.
-/// Nothing where the monitor said stop. Throws InputError as open_session, ArgumentError where the
-/// budget is too small for one sample of everything.
-[[nodiscard]] std::optional<MeasuredCase> measure(
-    const ChartCase&, const ChartFrame&, double budget_s, TbbExecutor&, RenderMonitor&,
-    const std::function<void(const std::string&)>& notice);
+/// Nothing where the monitor said stop. Throws what OpenSession does, and TooSlow.
+[[nodiscard]] std::optional<MeasuredCase> measure(const ChartCase&, const ChartFrame&,
+                                                  double budget_s, TbbExecutor&, RenderMonitor&,
+                                                  const OpenSession&);
 
 }  // namespace petzval

@@ -100,7 +100,7 @@ Flip::Flip(const Picture& reference, float exposure_ev, double pixels_per_degree
       height_(reference.height),
       scale_(std::exp2(exposure_ev)),
       pixels_per_degree_(pixels_per_degree) {
-    if (width_ < 1 || height_ < 1) throw std::invalid_argument("a picture without pixels");
+    if (reference.pixels.empty() || width_ < 1 || height_ < 1) throw std::invalid_argument("a picture without pixels");
     if (!(pixels_per_degree > 0)) throw std::invalid_argument("pixels per degree must be above 0");
     reference_ = see(reference);
 }

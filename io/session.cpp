@@ -56,31 +56,60 @@ std::vector<std::pair<std::string, std::string>> describe(const SceneRequest& re
     return m;
 }
 
-}  // namespace
+bool same(const std::optional<Rgb>& a, const std::optional<Rgb>& b) {
+    return a.has_value() == b.has_value() &&
+           (!a || (a->v[0] == b->v[0] && a->v[1] == b->v[1] && a->v[2] == b->v[2]));
+}
 
-Session open_session(const SceneRequest& asked,
-                     const std::function<void(const std::string&)>& notice) {
-    SceneRequest request = asked;
-    Session session;
-    const auto load_start = Clock::now();
+bool same_scene(const SceneRequest& a, const SceneRequest& b) {
+    return a.scene == b.scene && a.environment == b.environment &&
+           a.environment_rotate_deg == b.environment_rotate_deg &&
+           a.environment_strength == b.environment_strength && same(a.background, b.background);
+}
+
+void load(SceneRequest request, Session& session,
+          const std::function<void(const std::string&)>& notice) {
     GltfFile file = load_gltf(request.scene);
     for (const std::string& warning : file.warnings) notice("warning: " + warning);
-    session.scene = std::make_unique<Scene>(std::move(file.scene));
-    Scene& scene = *session.scene;
+    auto scene = std::make_shared<Scene>(std::move(file.scene));
     session.scene_hash = file.hash;
-    if (!request.environment && !request.background && is_dark(scene)) {
+    session.cameras = std::make_shared<std::vector<GltfCamera>>(std::move(file.cameras));
+    if (!request.environment && !request.background && is_dark(*scene)) {
         request.background = Rgb(1.f);
         notice(
             "no light in the file: a uniform white environment of 1 nit is used (--background "
             "1,1,1)");
     }
-    scene.sky = sky_of(request, notice);
-    if (request.environment) session.backdrop = request.background;
-    finish_scene(scene);
-    if (scene.instances.empty())
+    session.background = request.background;
+    scene->sky = sky_of(request, notice);
+    finish_scene(*scene);
+    if (scene->instances.empty())
         notice("warning: the scene is empty: only its background is rendered");
+    session.scene = std::move(scene);
+}
+
+}  // namespace
+
+Session open_session(const SceneRequest& asked,
+                     const std::function<void(const std::string&)>& notice, const Session* like) {
+    Session session;
+    session.asked = asked;
+    const auto load_start = Clock::now();
+    const bool shares = like != nullptr && same_scene(asked, like->asked);
+    if (shares) {
+        session.cameras = like->cameras;
+        session.scene = like->scene;
+        session.background = like->background;
+        session.scene_hash = like->scene_hash;
+    } else {
+        load(asked, session, notice);
+    }
+    SceneRequest request = asked;
+    request.background = session.background;
+    if (request.environment) session.backdrop = request.background;
+    const Scene& scene = *session.scene;
     const CameraPlan plan =
-        plan_camera(request.camera, request.scene, file.cameras,
+        plan_camera(request.camera, request.scene, *session.cameras,
                     static_cast<float>(request.size.x) / static_cast<float>(request.size.y));
     request.spectral.dispersive_lens = plan.dispersive_name();
     SpectralSetup spectra = set_up_spectra(request.spectral, scene, notice);
@@ -92,8 +121,12 @@ Session open_session(const SceneRequest& asked,
     session.load_s = seconds_since(load_start);
 
     const auto bvh_start = Clock::now();
-    session.bvh = std::make_unique<Bvh>(scene, request.traversal);
-    session.lights = std::make_unique<LightChoice>(scene, request.light_choice);
+    session.bvh = shares && asked.traversal == like->asked.traversal
+                      ? like->bvh
+                      : std::make_shared<const Bvh>(scene, request.traversal);
+    session.lights = shares && asked.light_choice == like->asked.light_choice
+                         ? like->lights
+                         : std::make_shared<const LightChoice>(scene, request.light_choice);
     session.bvh_s = seconds_since(bvh_start);
 
     CameraSetup setup =

@@ -14,6 +14,7 @@
 #include "core/light_choice.h"
 #include "core/scene.h"
 #include "io/camera_report.h"
+#include "io/gltf.h"
 #include "io/spectral_setup.h"
 
 namespace petzval {
@@ -33,13 +34,16 @@ struct SceneRequest {
 
 /// A scene that is ready: nothing in it changes any more.
 struct Session {
-    std::unique_ptr<Scene> scene;  ///< on the heap: bvh and lights point to it
-    std::unique_ptr<Bvh> bvh;
-    std::unique_ptr<LightChoice> lights;
+    SceneRequest asked;
+    std::shared_ptr<const std::vector<GltfCamera>> cameras;  ///< of the file
+    std::shared_ptr<const Scene> scene;  ///< on the heap: bvh and lights point to it
+    std::shared_ptr<const Bvh> bvh;
+    std::shared_ptr<const LightChoice> lights;
     std::unique_ptr<Camera> camera;
     CameraReport camera_report;
     Observer observer;
-    std::optional<Rgb> backdrop;  ///< shown behind the scene in place of the environment
+    std::optional<Rgb> background;  ///< as asked, or what a dark scene gets
+    std::optional<Rgb> backdrop;    ///< shown behind the scene in place of the environment
     uint64_t scene_hash = 0;
     std::string scale;  ///< what RGB 1 means
     /// What else the pixels follow from, for the picture's metadata.
@@ -49,8 +53,10 @@ struct Session {
 
 /// Loads the file, its sky and its camera. `notice` gets one line for everything that was chosen
 /// for the user or is odd in the file. Throws InputError, of which ArgumentError where the request
-/// does not fit the file.
+/// does not fit the file. like: a session whose scene, BVH and lights are shared where the request
+/// asks for the same ones; its notices about them are not repeated.
 [[nodiscard]] Session open_session(const SceneRequest&,
-                                   const std::function<void(const std::string&)>& notice);
+                                   const std::function<void(const std::string&)>& notice,
+                                   const Session* like = nullptr);
 
 }  // namespace petzval

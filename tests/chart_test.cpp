@@ -93,7 +93,9 @@ TEST(ChartReport, EfficiencyIsOfTheLastPointThatIsBelieved) {
 class ChartCli : public CliTest {
   protected:
     [[nodiscard]] Words chart_words(const Words& more) const {
-        Words all{"chart", scene_, "--size", "16x16", "--threads", "2", "--quiet"};
+        Words all{"chart", scene_, "--threads", "2", "--quiet"};
+        if (std::find(more.begin(), more.end(), "--size") == more.end())
+            all.insert(all.end(), {"--size", "16x16"});
         all.insert(all.end(), more.begin(), more.end());
         return all;
     }

@@ -114,8 +114,8 @@ TEST(Flip, RefusesWhatCannotBeCompared) {
     Picture depth = filled(8, 8, V3f(0));
     depth.channels = {"X", "Y", "Z"};
     EXPECT_THROW(static_cast<void>(of.map(depth)), std::invalid_argument);
-    EXPECT_THROW(Flip{Picture()}, std::invalid_argument);
-    EXPECT_THROW(Flip(filled(8, 8, V3f(0)), 0, 0), std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(Flip(Picture(), 0)), std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(Flip(filled(8, 8, V3f(0)), 0, 0)), std::invalid_argument);
 }
 
 }  // namespace

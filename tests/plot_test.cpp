@@ -73,7 +73,7 @@ TEST(Plot, LogarithmicAxesLeaveOutWhatIsNotAbove0) {
     EXPECT_EQ(text_of(folder / "a.svg"), text_of(folder / "b.svg"));
     p.series = {{{{0.01, 1e-3}, {0.1, 1e-2}, {1, 1e-1}}, PlotStyle::Lines, ""}};
     write_plot(folder / "b.svg", p);
-    EXPECT_NE(text_of(folder / "b.svg").find(">0.001<"), std::string::npos) << "a tick";
+    EXPECT_NE(text_of(folder / "b.svg").find("0.001"), std::string::npos) << "a tick";
     p.logarithmic = false;
     write_plot(folder / "b.svg", p);
     EXPECT_NE(text_of(folder / "a.svg"), text_of(folder / "b.svg"));

@@ -88,16 +88,27 @@ TEST(Flip, SeesCoarsePatternsBetterThanFineOnes) {
     EXPECT_LT(fine, 0.5 * coarse);
 }
 
-// The same difference of colour counts for more where it makes an edge or a point.
+// One bright pixel, computed by hand: the eye's contrast leaves w of its luminance, which alone
+// would be an error c; the detector of points, whose weights there are p across and s down, makes it
+// c^(1 - sqrt(0.8 p s)). The detector of edges is 0 there.
 TEST(Flip, CountsPointsForMore) {
-    Picture point = filled(41, 41, V3f(0.2f));
-    for (size_t c = 0; c < 3; ++c) point.pixels[3 * (20 * 41 + 20) + c] = 1.f;
-    const auto map = Flip(filled(41, 41, V3f(0.2f))).map(point);
-    const float here = map[20 * 41 + 20];
-    // The contrast filter leaves 1 / (sum of its weights) of the pixel's luminance, a difference of
-    // L* that alone would be less than 0.4.
-    EXPECT_GT(here, 0.4f);
-    EXPECT_EQ(map[0], 0.f);
+    Picture point = filled(61, 61, V3f(0.2f));
+    for (size_t c = 0; c < 3; ++c) point.pixels[3 * (30 * 61 + 30) + c] = 1.f;
+    const double sigma = 0.5 * 0.082 * 67;
+    double contrast = 0, smooth = 0, negative = 0;
+    for (int x = -10; x <= 10; ++x) contrast += std::exp(-M_PI * M_PI * x * x / (67. * 67 * 0.0047));
+    for (int x = -9; x <= 9; ++x) {
+        const double g = std::exp(-x * x / (2 * sigma * sigma));
+        smooth += g;
+        negative += std::fmax(0, (1 - x * x / (sigma * sigma)) * g);
+    }
+    const auto even = static_cast<float>(0.2 + 0.8 / (contrast * contrast));
+    const double alone = flip(filled(8, 8, V3f(0.2f)), filled(8, 8, V3f(even)));
+    const double expected = std::pow(alone, 1 - std::sqrt(0.8 / (negative * smooth)));
+    ASSERT_GT(expected, 1.2 * alone);
+    const auto map = Flip(filled(61, 61, V3f(0.2f))).map(point);
+    EXPECT_NEAR(map[30 * 61 + 30], expected, 1e-4);
+    EXPECT_NEAR(map[0], 0.f, 1e-3f);
 }
 
 TEST(Flip, ShowsPicturesAsADisplayDoes) {

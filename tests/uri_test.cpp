@@ -37,6 +37,7 @@ TEST(Base64, InvertsTheEncoder) {
         Bytes bytes(size);
         for (uint8_t& byte : bytes) byte = uint8_t(random());
         EXPECT_EQ(decode_base64(base64(bytes)), bytes);
+        EXPECT_EQ(encode_base64(bytes), base64(bytes));
     }
 }
 

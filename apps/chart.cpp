@@ -39,8 +39,7 @@ std::string known_axes() {
 void add_chart_options(CLI::App& app, ChartOptions& o) {
     ChartRequest& r = o.request;
     app.add_option("scene", r.subject.request.scene, "glTF scene, .gltf or .glb")->required();
-    app.add_option("--axis", o.axes,
-                   known_axes() + " (default); may be given more than once")
+    app.add_option("--axis", o.axes, known_axes() + " (default); may be given more than once")
         ->allow_extra_args(false);
     app.add_option("-o,--output", r.subject.folder, "folder of the report; made if need be")
         ->required();
@@ -72,8 +71,8 @@ std::vector<ChartAxis> parse_axes(const std::vector<std::string>& words) {
     for (const std::string& word : words) {
         const auto named = [&](const auto& known) { return known.first == word; };
         if (word != "all" && std::none_of(chart_axes().begin(), chart_axes().end(), named))
-            throw CLI::ValidationError(
-                "--axis", fmt::format("\"{}\" is none of {}", word, known_axes()));
+            throw CLI::ValidationError("--axis",
+                                       fmt::format("\"{}\" is none of {}", word, known_axes()));
     }
     return axes;
 }
@@ -102,11 +101,12 @@ void print_case(const MeasuredCase& of) {
         fmt::print("  reference: {}, {} x {} samples, relative MSE {:.2g}\n", of.of.reference.name,
                    of.reference.parts, of.reference.samples, *of.reference.relative_mse);
     for (const EfficiencyRow& row : efficiencies(of))
-        fmt::print("  {:<20} {:>6} samples {:>8.3g} CPU s  relative MSE {:<8.3g} FLIP {:<6.3g} "
-                   "efficiency {:.3g}/s{}\n",
-                   row.method, row.point.samples, row.point.cpu_s().mean,
-                   row.point.relative_mse().mean, row.point.flip().mean,
-                   row.point.efficiency().mean, row.believed ? "" : " (not believed)");
+        fmt::print(
+            "  {:<20} {:>6} samples {:>8.3g} CPU s  relative MSE {:<8.3g} FLIP {:<6.3g} "
+            "efficiency {:.3g}/s{}\n",
+            row.method, row.point.samples, row.point.cpu_s().mean, row.point.relative_mse().mean,
+            row.point.flip().mean, row.point.efficiency().mean,
+            row.believed ? "" : " (not believed)");
     std::fflush(stdout);
 }
 

@@ -62,9 +62,10 @@ std::string drawing(const fs::path& path) {
 }
 
 std::string figure(const fs::path& path, const std::string& caption) {
-    return fmt::format("<figure><img alt=\"\" src=\"data:image/png;base64,{}\">"
-                       "<figcaption>{}</figcaption></figure>\n",
-                       encode_base64(bytes_of(path)), escaped(caption));
+    return fmt::format(
+        "<figure><img alt=\"\" src=\"data:image/png;base64,{}\">"
+        "<figcaption>{}</figcaption></figure>\n",
+        encode_base64(bytes_of(path)), escaped(caption));
 }
 
 std::string with_bounds(const Interval& v) {
@@ -102,16 +103,16 @@ std::string pictures(const fs::path& folder, const MeasuredCase& of) {
     }
     text += "</div>\n<div class=\"pictures\">\n";
     for (const MeasuredMethod& method : of.methods)
-        text += figure(folder / picture_names(of, method).error,
-                       fmt::format("{}: FLIP {:.3g}", method.name,
-                                   method.points[method.shown].flip().mean));
+        text += figure(
+            folder / picture_names(of, method).error,
+            fmt::format("{}: FLIP {:.3g}", method.name, method.points[method.shown].flip().mean));
     return text + "</div>\n";
 }
 
 std::string section(const ChartReport& report, const MeasuredCase& of) {
     const fs::path& folder = report.subject.folder;
-    std::string text = fmt::format("<h2>{}: {}</h2>\n<p>", escaped(of.of.name),
-                                   escaped(of.of.title));
+    std::string text =
+        fmt::format("<h2>{}: {}</h2>\n<p>", escaped(of.of.name), escaped(of.of.title));
     for (const std::string& sentence : head_of(report, of)) text += escaped(sentence) + " ";
     text += "</p>\n";
     if (of.methods.empty()) return text;

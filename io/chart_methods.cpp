@@ -76,8 +76,8 @@ SceneRequest with_lens(const Found& found, std::vector<std::string>& remarks) {
     SceneRequest request = found.request;
     CameraRequest& camera = request.camera;
     if (is_prescription(camera)) return request;
-    remarks.push_back(fmt::format("No lens with a prescription was asked for: {} was taken",
-                                  kChartLens));
+    remarks.push_back(
+        fmt::format("No lens with a prescription was asked for: {} was taken", kChartLens));
     camera.lens = kChartLens;
     camera.fit = Fit::Lens;
     camera.fov_deg = camera.focal_length_mm = camera.lens_radius_m = std::nullopt;
@@ -101,8 +101,8 @@ float fov_at_focus_deg(const Session& lens) {
             for (int k = 0; k < seen.count; ++k) {
                 const Ray& ray = seen.path[static_cast<size_t>(k)].ray;
                 const float w = hsum(seen.path[static_cast<size_t>(k)].weight);
-                const float t =
-                    (report.focus_m - (ray.origin - report.eye).dot(axis)) / ray.direction.dot(axis);
+                const float t = (report.focus_m - (ray.origin - report.eye).dot(axis)) /
+                                ray.direction.dot(axis);
                 sum += V3d(ray.origin + t * ray.direction) * double(w);
                 weight += double(w);
             }
@@ -123,9 +123,10 @@ ChartCase camera_case(const Found& found, const RenderJob& job, const OpenSessio
     lens.camera.focus = FocusDistance{report.focus_m};
     const float fov_deg = fov_at_focus_deg(session);
     cases.remark(remarks);
-    cases.remark(fmt::format("Pinhole, thin and singlet stand in the entrance pupil of the lens, "
-                             "see {:.4g} degrees as it does when it is focused, and have its iris",
-                             fov_deg));
+    cases.remark(
+        fmt::format("Pinhole, thin and singlet stand in the entrance pupil of the lens, "
+                    "see {:.4g} degrees as it does when it is focused, and have its iris",
+                    fov_deg));
 
     SceneRequest thin = lens;
     thin.camera.lens = "thin";
@@ -201,11 +202,11 @@ ChartCase spectral_case(const Found& found, const RenderJob& job) {
 /// A rectangle 1000 times as long as it is wide, aslant, so that its bounding box is mostly empty.
 std::string write_sliver(const std::filesystem::path& folder) {
     const auto path = folder / "iris-sliver.svg";
-    write_file_atomically(path, std::string_view(
-                                    "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-1000 "
-                                    "-1000 2000 2000\">\n<rect x=\"-500\" y=\"-0.5\" "
-                                    "width=\"1000\" height=\"1\" transform=\"rotate(-30)\"/>\n"
-                                    "</svg>\n"));
+    write_file_atomically(
+        path, std::string_view("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-1000 "
+                               "-1000 2000 2000\">\n<rect x=\"-500\" y=\"-0.5\" "
+                               "width=\"1000\" height=\"1\" transform=\"rotate(-30)\"/>\n"
+                               "</svg>\n"));
     return path.string();
 }
 
@@ -243,15 +244,14 @@ std::vector<ChartCase> iris_cases(const Found& found, const ChartSubject& subjec
         lens.camera.aperture = aperture;
         // A sliver of the round stop's area would reach far beyond the stop's rim.
         const bool sliver = name == "sliver";
-        lens.camera.aperture_scale =
-            sliver ? ApertureScale::Inscribed : ApertureScale::EqualArea;
+        lens.camera.aperture_scale = sliver ? ApertureScale::Inscribed : ApertureScale::EqualArea;
         for (const IrisSampling way : iris_samplings(parse_aperture(aperture)))
-            cases.add(petzval::word_of(way), lens, [way](SceneRequest& s, RenderJob&) {
-                s.camera.iris_sampling = way;
-            });
+            cases.add(petzval::word_of(way), lens,
+                      [way](SceneRequest& s, RenderJob&) { s.camera.iris_sampling = way; });
         cases.remark(remarks);
         if (sliver)
-            cases.remark("1:1000 and aslant: rejection mostly gives up and falls back on triangles");
+            cases.remark(
+                "1:1000 and aslant: rejection mostly gives up and falls back on triangles");
         cases.reference(sliver ? "triangles, independent points" : "rejection, independent points",
                         lens, [sliver](SceneRequest& s, RenderJob& j) {
                             s.camera.iris_sampling =
@@ -266,9 +266,9 @@ std::vector<ChartCase> iris_cases(const Found& found, const ChartSubject& subjec
 
 ChartCase sampler_case(const Found& found, const RenderJob& job) {
     Cases cases(ChartAxis::Sampler, job, "sampler", "sources of sample points");
-    for (const auto& [name, kind] : {std::pair{"independent", SamplerKind::Independent},
-                                     std::pair{"sobol", SamplerKind::Sobol},
-                                     std::pair{"owen", SamplerKind::Owen}})
+    for (const auto& [name, kind] :
+         {std::pair{"independent", SamplerKind::Independent},
+          std::pair{"sobol", SamplerKind::Sobol}, std::pair{"owen", SamplerKind::Owen}})
         cases.add(name, found.request,
                   [way = kind](SceneRequest&, RenderJob& j) { j.sampler = way; });
     cases.reference("independent points of other seeds", found.request,
@@ -328,9 +328,9 @@ ChartCase precision_case(const Found& found, const RenderJob& job) {
 
 const std::vector<std::pair<std::string, ChartAxis>>& chart_axes() {
     static const std::vector<std::pair<std::string, ChartAxis>> axes{
-        {"camera", ChartAxis::Camera},     {"chroma", ChartAxis::Chroma},
-        {"spectral", ChartAxis::Spectral}, {"iris", ChartAxis::Iris},
-        {"sampler", ChartAxis::Sampler},   {"lights", ChartAxis::Lights},
+        {"camera", ChartAxis::Camera},      {"chroma", ChartAxis::Chroma},
+        {"spectral", ChartAxis::Spectral},  {"iris", ChartAxis::Iris},
+        {"sampler", ChartAxis::Sampler},    {"lights", ChartAxis::Lights},
         {"precision", ChartAxis::Precision}};
     return axes;
 }

@@ -52,7 +52,7 @@ using OpenSession = std::function<Session(const SceneRequest&)>;
 /// Opens the scene, to see what it allows. A case without methods
 /// only has remarks. Throws InputError for faults of the scene, ArgumentError where an axis that
 /// needs a perspective camera gets none.
-[[nodiscard]] std::vector<ChartCase> chart_cases(const std::vector<ChartAxis>&,
-                                                 const ChartSubject&, const OpenSession&);
+[[nodiscard]] std::vector<ChartCase> chart_cases(const std::vector<ChartAxis>&, const ChartSubject&,
+                                                 const OpenSession&);
 
 }  // namespace petzval

@@ -51,9 +51,9 @@ PlotSeries front_of(const MeasuredCase& of, Measure error) {
     std::vector<std::array<double, 2>> points;
     for (const MeasuredMethod& method : of.methods)
         for (const ChartPoint& point : method.points)
-            if (of.believed(point))
-                points.push_back({point.cpu_s().mean, (point.*error)().mean});
+            if (of.believed(point)) points.push_back({point.cpu_s().mean, (point.*error)().mean});
     PlotSeries front{{}, PlotStyle::Dashes, "Pareto front"};
+    front.grey = true;
     for (const size_t i : pareto_front(points)) front.points.push_back(points[i]);
     return front;
 }
@@ -63,6 +63,7 @@ Plot plot_of(const MeasuredCase& of, Measure error, const std::string& y_label,
     Plot plot{.title = of.of.title, .x_label = "CPU time (s)", .y_label = y_label, .series = {}};
     plot.logarithmic = true;
     PlotSeries doubted{{}, PlotStyle::Points, "not believed: too near the reference's error"};
+    doubted.grey = true;
     double first_s = INFINITY, last_s = 0;
     for (const MeasuredMethod& method : of.methods) {
         PlotSeries series{{}, PlotStyle::LinesAndPoints, method.name};
@@ -82,7 +83,9 @@ Plot plot_of(const MeasuredCase& of, Measure error, const std::string& y_label,
     if (floor && *floor > 0)
         plot.series.push_back({{{first_s, *floor}, {last_s, *floor}},
                                PlotStyle::Lines,
-                               "error of the reference"});
+                               "error of the reference",
+                               {},
+                               true});
     if (!doubted.points.empty()) plot.series.push_back(std::move(doubted));
     return plot;
 }
@@ -129,12 +132,9 @@ Json json_of(const MeasuredCase& of, const ChartFrame& frame) {
                      {"cpu_s", r.cpu_s},
                      {"relative_mse", or_null(r.relative_mse)},
                      {"flip_at_most", or_null(r.flip)}};
-    return {{"axis", word_of(of.of.axis)},
-            {"name", of.of.name},
-            {"remarks", of.of.remarks},
-            {"reference", std::move(reference)},
-            {"wall_s", of.wall_s},
-            {"methods", std::move(methods)}};
+    return {{"axis", word_of(of.of.axis)}, {"name", of.of.name},
+            {"remarks", of.of.remarks},    {"reference", std::move(reference)},
+            {"wall_s", of.wall_s},         {"methods", std::move(methods)}};
 }
 
 std::string csv_of(const ChartReport& report) {
@@ -143,18 +143,18 @@ std::string csv_of(const ChartReport& report) {
         for (const MeasuredMethod& method : of.methods)
             for (const ChartPoint& point : method.points)
                 for (const ChartSeed& s : point.seeds)
-                    text += fmt::format("{},{},{},{},{},{:.9g},{:.9g},{:.9g},{}\n",
-                                        word_of(of.of.axis), of.of.name, method.name,
-                                        point.samples, s.seed, s.cpu_s, s.relative_mse, s.flip,
-                                        of.believed(point) ? 1 : 0);
+                    text +=
+                        fmt::format("{},{},{},{},{},{:.9g},{:.9g},{:.9g},{}\n", word_of(of.of.axis),
+                                    of.of.name, method.name, point.samples, s.seed, s.cpu_s,
+                                    s.relative_mse, s.flip, of.believed(point) ? 1 : 0);
     return text;
 }
 
 std::string settings_of(const ChartReport& report) {
     const SceneRequest& scene = report.subject.request;
     const ChartFrame& frame = report.frame;
-    std::string text = fmt::format("{} at {}x{}", scene.scene.filename().string(), frame.size.x,
-                                   frame.size.y);
+    std::string text =
+        fmt::format("{} at {}x{}", scene.scene.filename().string(), frame.size.x, frame.size.y);
     if (frame.crop.width() != frame.size.x || frame.crop.height() != frame.size.y)
         text += fmt::format(", pixels {},{} to {},{}", frame.crop.x0, frame.crop.y0, frame.crop.x1,
                             frame.crop.y1);
@@ -174,8 +174,8 @@ std::vector<EfficiencyRow> efficiencies(const MeasuredCase& of) {
                                        [&](const ChartPoint& p) { return of.believed(p); });
         EfficiencyRow row{method.name, method.points.back(), last != method.points.rend()};
         if (row.believed) row.point = *last;
-        const double first = rows.empty() ? row.point.efficiency().mean
-                                          : rows.front().point.efficiency().mean;
+        const double first =
+            rows.empty() ? row.point.efficiency().mean : rows.front().point.efficiency().mean;
         row.to_first = row.point.efficiency().mean / first;
         rows.push_back(std::move(row));
     }
@@ -186,9 +186,10 @@ std::vector<std::string> head_of(const ChartReport& report, const MeasuredCase& 
     std::vector<std::string> head{settings_of(report) + "."};
     const ChartReference& r = of.reference;
     if (report.frame.reference) {
-        head.push_back(fmt::format("Reference: {}; its own error is not known, so that there is no "
-                                   "floor and every point is taken as it is.",
-                                   report.frame.reference_name));
+        head.push_back(
+            fmt::format("Reference: {}; its own error is not known, so that there is no "
+                        "floor and every point is taken as it is.",
+                        report.frame.reference_name));
     } else if (r.relative_mse) {
         head.push_back(fmt::format(
             "Reference: {}; {} parts of {} samples, {:.3g} CPU s. Its own relative MSE is {:.2g}, "

@@ -22,15 +22,15 @@ const M33d kToXyz(0.4124, 0.2126, 0.0193, 0.3576, 0.7152, 0.1192, 0.1805, 0.0722
 struct Sensitivity {
     double a1, b1, a2, b2;
 };
-constexpr std::array<Sensitivity, 3> kSensitivity{{{1, 0.0047, 0, 1e-5},        // Y
-                                                   {1, 0.0053, 0, 1e-5},        // Cx
+constexpr std::array<Sensitivity, 3> kSensitivity{{{1, 0.0047, 0, 1e-5},         // Y
+                                                   {1, 0.0053, 0, 1e-5},         // Cx
                                                    {34.1, 0.04, 13.5, 0.025}}};  // Cz
 constexpr double kWidestGaussian = 0.04;
 
-constexpr double kColourExponent = 0.7;          ///< q_c: of the colour difference
+constexpr double kColourExponent = 0.7;           ///< q_c: of the colour difference
 constexpr double kKneeIn = 0.4, kKneeOut = 0.95;  ///< p_c, p_t: where it bends
-constexpr double kFeatureWidth_deg = 0.082;      ///< w: of the feature detectors
-constexpr double kFeatureExponent = 0.5;         ///< q_f: of the feature difference
+constexpr double kFeatureWidth_deg = 0.082;       ///< w: of the feature detectors
+constexpr double kFeatureExponent = 0.5;          ///< q_f: of the feature difference
 
 /// X, Y and Z of white.
 V3d white() {
@@ -100,7 +100,8 @@ Flip::Flip(const Picture& reference, float exposure_ev, double pixels_per_degree
       height_(reference.height),
       scale_(std::exp2(exposure_ev)),
       pixels_per_degree_(pixels_per_degree) {
-    if (reference.pixels.empty() || width_ < 1 || height_ < 1) throw std::invalid_argument("a picture without pixels");
+    if (reference.pixels.empty() || width_ < 1 || height_ < 1)
+        throw std::invalid_argument("a picture without pixels");
     if (!(pixels_per_degree > 0)) throw std::invalid_argument("pixels per degree must be above 0");
     reference_ = see(reference);
 }
@@ -208,8 +209,8 @@ std::vector<float> Flip::map(const Picture& test) const {
         const double feature = std::max(std::fabs(double(reference_.edge[i]) - seen.edge[i]),
                                         std::fabs(double(reference_.point[i]) - seen.point[i]));
         const double visible = std::pow(std::min(1., feature * M_SQRT1_2), kFeatureExponent);
-        out[i] = static_cast<float>(
-            std::pow(colour_error(reference_.lab[i], seen.lab[i]), 1 - visible));
+        out[i] =
+            static_cast<float>(std::pow(colour_error(reference_.lab[i], seen.lab[i]), 1 - visible));
     }
     return out;
 }

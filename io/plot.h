@@ -25,6 +25,7 @@ struct PlotSeries {
     std::string label;  ///< in the key; none where it is empty
     /// Ends of an error bar in y at each point, drawn with lines and marks; none where it is empty.
     std::vector<std::array<double, 2>> y_bounds{};
+    bool grey = false;  ///< what the others are read against
 };
 
 /// Texts are shown as they are, letter by letter; UTF-8.

@@ -112,10 +112,10 @@ TEST_F(ChartCli, WritesAReport) {
     ASSERT_EQ(run.exit_code, 0) << run.err;
     EXPECT_EQ(run.out + run.err, "");
     EXPECT_LT(took.count(), 1.2 * 5);
-    for (const char* name : {"lights.svg", "lights.png", "lights-flip.svg", "lights-flip.png",
-                             "points.csv", "points.json", "report.html",
-                             "pictures/lights-reference.png", "pictures/lights-power.png",
-                             "pictures/lights-power-flip.png"})
+    for (const char* name :
+         {"lights.svg", "lights.png", "lights-flip.svg", "lights-flip.png", "points.csv",
+          "points.json", "report.html", "pictures/lights-reference.png",
+          "pictures/lights-power.png", "pictures/lights-power-flip.png"})
         EXPECT_FALSE(file_bytes(path(std::string("report/") + name)).empty()) << name;
 
     const json all = points("report");
@@ -156,9 +156,9 @@ TEST_F(ChartCli, WritesAReport) {
 
 TEST_F(ChartCli, TakesAReferenceFromAFile) {
     static_cast<void>(render_bytes({"--spp", "256", "--seed", "9"}, "reference.exr"));
-    const Finished run = run_petzval(chart_words({"--axis", "sampler", "--budget", "5s",
-                                                  "--reference", path("reference.exr"), "-o",
-                                                  path("report")}));
+    const Finished run =
+        run_petzval(chart_words({"--axis", "sampler", "--budget", "5s", "--reference",
+                                 path("reference.exr"), "-o", path("report")}));
     ASSERT_EQ(run.exit_code, 0) << run.err;
     const json of = points("report")["cases"][0];
     EXPECT_EQ(of["reference"]["by"], "reference.exr");
@@ -190,8 +190,8 @@ TEST_F(ChartCli, RefusesWhatItCannotDo) {
 }
 
 TEST_F(ChartCli, StopsAndSaysWhatThereIs) {
-    Words words{"chart", scene_, "--size", "16x16", "--axis", "sampler", "--axis", "spectral",
-                "--budget", "120s", "-o", path("report")};
+    Words words{"chart",  scene_,     "--size",   "16x16", "--axis", "sampler",
+                "--axis", "spectral", "--budget", "120s",  "-o",     path("report")};
     Process run(words);
     ASSERT_TRUE(run.wait_for_stderr("spectral: "));
     std::this_thread::sleep_for(std::chrono::milliseconds(500));

@@ -89,14 +89,15 @@ TEST(Flip, SeesCoarsePatternsBetterThanFineOnes) {
 }
 
 // One bright pixel, computed by hand: the eye's contrast leaves w of its luminance, which alone
-// would be an error c; the detector of points, whose weights there are p across and s down, makes it
-// c^(1 - sqrt(0.8 p s)). The detector of edges is 0 there.
+// would be an error c; the detector of points, whose weights there are p across and s down, makes
+// it c^(1 - sqrt(0.8 p s)). The detector of edges is 0 there.
 TEST(Flip, CountsPointsForMore) {
     Picture point = filled(61, 61, V3f(0.2f));
     for (size_t c = 0; c < 3; ++c) point.pixels[3 * (30 * 61 + 30) + c] = 1.f;
     const double sigma = 0.5 * 0.082 * 67;
     double contrast = 0, smooth = 0, negative = 0;
-    for (int x = -10; x <= 10; ++x) contrast += std::exp(-M_PI * M_PI * x * x / (67. * 67 * 0.0047));
+    for (int x = -10; x <= 10; ++x)
+        contrast += std::exp(-M_PI * M_PI * x * x / (67. * 67 * 0.0047));
     for (int x = -9; x <= 9; ++x) {
         const double g = std::exp(-x * x / (2 * sigma * sigma));
         smooth += g;

@@ -97,6 +97,9 @@ TEST(Plot, BarsReachTheirEnds) {
     p.series[0].style = PlotStyle::Dashes;
     write_plot(folder / "b.svg", p);
     EXPECT_NE(text_of(folder / "a.svg"), text_of(folder / "b.svg"));
+    p.series[0].grey = true;
+    write_plot(folder / "a.svg", p);
+    EXPECT_NE(text_of(folder / "a.svg"), text_of(folder / "b.svg"));
 }
 
 TEST(Plot, StepsReachHalfOfTheWayAndBeyondTheEnds) {

@@ -69,7 +69,8 @@ LensDraw<V> LensCamera::draw(const Aim& aim, const Bands& bands, Coating coating
     using S = ScalarOf<V>;
     LensDraw<V> out;
     const V2f on_iris = in_.iris.sample(aim.u);
-    const m4 on = in_.chroma == Chroma::Single ? only_lane(aim.lane) : bands.on;
+    const bool single = in_.chroma == Chroma::Single && !one_ray(bands);
+    const m4 on = single ? only_lane(aim.lane) : bands.on;
     const auto solved = pupil_.solve(aim.film_mm, on_iris, in_floats, aim.lane, aim.nm);
     out.lanes.drawn = static_cast<uint32_t>(lane_count(on));
     if (!solved) {

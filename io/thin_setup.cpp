@@ -104,6 +104,7 @@ ThinView thin_view(const CameraPlan& plan, const std::string& scene, float aspec
     } else if (asked.fov_deg || !view.focal_mm) {
         view.yfov_deg = asked.fov_deg.value_or(kDefaultFov_deg);
     } else {
+        view.angle_by_focal = true;
         view.yfov_deg = of_half(*view.focal_mm);
         require_fov(view.yfov_deg, scene,
                     fmt::format("a focal length of {:g} mm with a sensor {:g} mm high",
@@ -113,6 +114,14 @@ ThinView thin_view(const CameraPlan& plan, const std::string& scene, float aspec
     if (!view.focal_mm && !asked.film_distance_mm)
         view.focal_mm = half_mm / std::tan(view.yfov_rad / 2);
     return view;
+}
+
+float yfov_at_rad(const ThinView& view, std::optional<float> focus_m) {
+    const double focus_mm = focus_m ? 1e3 * double(*focus_m) : 0;
+    // Nearer than the focal length nothing is sharp; set_up_thin() will say so.
+    if (!view.angle_by_focal || !(focus_mm > *view.focal_mm)) return view.yfov_rad;
+    const double film_mm = image_distance_mm(*view.focal_mm, focus_mm);
+    return 2 * std::atan(view.sensor_mm.y / 2 / static_cast<float>(film_mm));
 }
 
 ThinSetup set_up_thin(const CameraPlan& plan, const ThinView& view, ThinLens lens,

@@ -130,6 +130,11 @@ TEST_F(CliCamera, PhotographicExposureFollowsIrisShutterAndSpeed) {
                     expected,
                 3 * std::sqrt(3.) / (4 * M_PI), 1e-4);
     EXPECT_NEAR(green({"--focal-length", "50", "--fstop", "2", "--focus", "1"}), 100, 1e-2);
+    const double slow = std::sin(std::atan(50 / 16. / film_mm));
+    EXPECT_NEAR(with({"--lens", "singlet:schott:N-BK7", "--chroma", "shared", "--focal-length",
+                      "50", "--fstop", "8", "--focus", "1"}) /
+                    (expected * sqr(slow / sine)),
+                1, 1e-4);
     // A lens of glass at the same f-number, focused far away: a thin lens without its bellows.
     const double far = M_PI / 16 * 100 / 50 * 200 / 78;
     EXPECT_NEAR(with({"--lens", "double-gauss-100mm-f2", "--fstop", "2.8", "--focus", "1000",
@@ -213,10 +218,12 @@ TEST_F(CliCamera, ASharedRayNeedsNoWavelengths) {
 
 // As many rays for twice the pixels and twice the tolerance, and whatever the film's height.
 TEST_F(CliCamera, ChromaToleranceIsInPixelsOfTheFilm) {
-    const auto rays = [&](const std::string& lens, const char* size, const char* tolerance) {
+    const auto rays = [&](const std::string& lens, const char* size, const char* tolerance,
+                          const char* chroma = "auto") {
         Words words = {"--lens",  lens, "--fstop", "4",      "--focus",
                        "2",       "--sensor", "30x20", "--size", size,
-                       "--chroma-tolerance", tolerance, "--stats", path("s.json")};
+                       "--chroma-tolerance", tolerance, "--stats", path("s.json"),
+                       "--chroma", chroma};
         if (lens.starts_with("singlet")) words.insert(words.end(), {"--focal-length", "100"});
         const Finished done = finished(scene_, words);
         EXPECT_EQ(done.exit_code, 0) << done.err;
@@ -231,6 +238,8 @@ TEST_F(CliCamera, ChromaToleranceIsInPixelsOfTheFilm) {
         EXPECT_LT(some, 3.7) << lens;
         EXPECT_NEAR(rays(lens, "120x80", twice), some, 0.05) << lens;
         EXPECT_LT(rays(lens, "60x40", twice), some - 0.1) << lens;
+        EXPECT_GT(rays(lens, "60x40", "1000", "split"), 3.7) << lens;
+        EXPECT_LE(rays(lens, "60x40", "0", "single"), 1) << lens;
     }
     const char* singlet = "singlet:schott:N-BK7";
     EXPECT_NEAR(rays(singlet, "60x10", "0.1"), rays(singlet, "60x40", "0.1"), 0.05);

@@ -169,7 +169,7 @@ TEST_F(CliLens, AFilmLargerThanTheImageCircleIsSaid) {
         EXPECT_EQ(done.exit_code, 0) << done.err;
         return done.err;
     };
-    EXPECT_NE(err("120x120").find("covers a circle of 86.5 mm; the film's corners are 170 mm apart"),
+    EXPECT_NE(err("120x120").find("covers a circle of 86.5 mm; the film's corners are 170 mm "),
               std::string::npos);
     EXPECT_EQ(err("36x24").find("covers"), std::string::npos);
 }

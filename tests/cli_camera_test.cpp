@@ -66,10 +66,9 @@ TEST_F(CliCamera, TheFilesCameraIsEnough) {
                                               "polygon:6,10", "--sensor", "30x20"})
                                .pixels);
     const Picture radius = picture_of(full, {"--lens-radius", "0.02"});
-    EXPECT_EQ(radius.pixels,
-              picture_of(plain, {"--lens-radius", "0.02", "--focus", "2", "--aperture",
-                                 "polygon:6,10", "--sensor", "30x20"})
-                  .pixels);
+    EXPECT_EQ(radius.pixels, picture_of(plain, {"--lens-radius", "0.02", "--focus", "2",
+                                                "--aperture", "polygon:6,10", "--sensor", "30x20"})
+                                 .pixels);
 }
 
 TEST_F(CliCamera, WishesGiveWayToWhatTheUserFixes) {
@@ -82,11 +81,13 @@ TEST_F(CliCamera, WishesGiveWayToWhatTheUserFixes) {
     // A film and a focal length say what is in focus.
     const Words fixed = {"--fstop", "2", "--film-distance", "52", "--focal-length", "50"};
     EXPECT_EQ(picture_of(focus, fixed).pixels,
-              picture_of(plain, [&] {
-                  Words words = fixed;
-                  words.insert(words.end(), {"--aperture", "square"});
-                  return words;
-              }()).pixels);
+              picture_of(plain,
+                         [&] {
+                             Words words = fixed;
+                             words.insert(words.end(), {"--aperture", "square"});
+                             return words;
+                         }())
+                  .pixels);
 }
 
 TEST_F(CliCamera, WishesThatAreNone) {
@@ -203,7 +204,7 @@ TEST_F(CliCamera, TheFirstRadiusFacesTheScene) {
 }
 
 TEST_F(CliCamera, ASharedRayNeedsNoWavelengths) {
-    const Words lens = {"--lens", "singlet:schott:N-BK7", "--fstop", "8", "--focus", "2",
+    const Words lens = {"--lens",  "singlet:schott:N-BK7", "--fstop", "8", "--focus", "2",
                         "--chroma"};
     const auto err = [&](const char* chroma) {
         Words words = lens;
@@ -220,10 +221,22 @@ TEST_F(CliCamera, ASharedRayNeedsNoWavelengths) {
 TEST_F(CliCamera, ChromaToleranceIsInPixelsOfTheFilm) {
     const auto rays = [&](const std::string& lens, const char* size, const char* tolerance,
                           const char* chroma = "auto") {
-        Words words = {"--lens",  lens, "--fstop", "4",      "--focus",
-                       "2",       "--sensor", "30x20", "--size", size,
-                       "--chroma-tolerance", tolerance, "--stats", path("s.json"),
-                       "--chroma", chroma};
+        Words words = {"--lens",
+                       lens,
+                       "--fstop",
+                       "4",
+                       "--focus",
+                       "2",
+                       "--sensor",
+                       "30x20",
+                       "--size",
+                       size,
+                       "--chroma-tolerance",
+                       tolerance,
+                       "--stats",
+                       path("s.json"),
+                       "--chroma",
+                       chroma};
         if (lens.starts_with("singlet")) words.insert(words.end(), {"--focal-length", "100"});
         const Finished done = finished(scene_, words);
         EXPECT_EQ(done.exit_code, 0) << done.err;

@@ -177,9 +177,12 @@ TEST_F(CliLens, AFilmLargerThanTheImageCircleIsSaid) {
 // The picture is not that of a thin lens: a wall's edge is where the fisheye shows it.
 TEST_F(CliLens, FocusIsOnWhatThePixelShows) {
     scene_ = walls().save_gltf(folder_.path / "walls.gltf").string();
-    const Words lens = {"--lens",   "minolta-fisheye-16mm-f2.8", "--look-at", "0,0,0,0,0,-1",
-                        "--size",   "180x120",                   "--crop",    "0,60,180,1",
-                        "--chroma", "shared",                    "--focus"};
+    const Words lens = {"--lens",    "minolta-fisheye-16mm-f2.8",
+                        "--look-at", "0,0,0,0,0,-1",
+                        "--size",    "180x120",
+                        "--crop",    "0,60,180,1",
+                        "--chroma",  "shared",
+                        "--focus"};
     Words seen = lens;
     seen.insert(seen.end(), {"1", "--fstop", "22", "--aov", "position", "--spp", "16"});
     const Picture p = render(seen);

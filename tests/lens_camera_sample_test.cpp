@@ -263,7 +263,7 @@ TEST(LaneFates, AtTheFisheyesRimRaysGrazeThenAreTotallyReflected) {
         EXPECT_GT(rim.lanes.vignetted, rim.lanes.drawn / 50);
         EXPECT_EQ(rim.lanes.lost(), rim.lanes.vignetted) << height_mm;
         EXPECT_GT(rim.least_transmitted, 0.25) << height_mm;
-        EXPECT_EQ(rim.least_ahead < 0, height_mm > 21.8f) << height_mm;
+        EXPECT_EQ(rim.least_ahead<0, height_mm> 21.8f) << height_mm;
     }
     const Rim last = at(23);
     EXPECT_LT(last.least_ahead, -0.25);  // 15 degrees beyond a right angle

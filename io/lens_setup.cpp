@@ -96,15 +96,14 @@ LoadedLens load_lens_for_film(const std::string& name_or_file, std::span<const A
     LoadedLens loaded{Lens(std::move(file.lens)), std::move(file.warnings), 0, 0, {}, 0};
     loaded.film_mm = film_within(
         sensor_mm.value_or(usual_sensor_mm(loaded.lens.prescription().image_circle_mm)), aspect);
-    if (fit_yfov_rad)
-        loaded.lens = fitted(loaded.lens, loaded.film_mm, *fit_yfov_rad);
+    if (fit_yfov_rad) loaded.lens = fitted(loaded.lens, loaded.film_mm, *fit_yfov_rad);
     const double circle_mm = loaded.lens.prescription().image_circle_mm;
     if (const auto corners_mm = double(loaded.film_mm.length());
         circle_mm > 0 && corners_mm > circle_mm * 1.001)
-        loaded.warnings.push_back(fmt::format(
-            "{} covers a circle of {:.3g} mm{}; the film's corners are {:.3g} mm apart",
-            loaded.name(), circle_mm, fit_yfov_rad ? " once it is scaled to the angle of view" : "",
-            corners_mm));
+        loaded.warnings.push_back(
+            fmt::format("{} covers a circle of {:.3g} mm{}; the film's corners are {:.3g} mm apart",
+                        loaded.name(), circle_mm,
+                        fit_yfov_rad ? " once it is scaled to the angle of view" : "", corners_mm));
     const FirstOrder f = first_order(loaded.lens, kLineD_nm);
     if (!(f.focal_length_mm > 0) || !std::isfinite(f.focal_length_mm))
         throw InputError(name_or_file, "", "has no positive focal length: it forms no image");

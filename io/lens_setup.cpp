@@ -39,25 +39,17 @@ float yfov_of(const Lens& lens, float film_height_mm, double focal_length_mm) {
 }
 
 // So large that a distant scene of that height fills the film.
-Lens fitted(const Lens& lens, V2f film_mm, float yfov_rad, std::vector<std::string>& warnings) {
+Lens fitted(const Lens& lens, V2f film_mm, float yfov_rad) {
     const double half_deg = double(yfov_rad) / 2 * 180 / M_PI;
     std::optional<double> factor;
     if (const auto distant = focused(lens, kDistant_mm))
         factor = scale_for_field(*distant, double(film_mm.y) / 2, half_deg, distant->film_mm());
-    const std::string& name = lens.prescription().name;
     if (!factor)
         throw ArgumentError("--fit", "",
                             fmt::format("{} does not see {:.4g} degrees: take a smaller --fov or "
                                         "another lens",
-                                        name, 2 * half_deg));
-    Lens out(scaled(lens.prescription(), *factor));
-    const double circle_mm = out.prescription().image_circle_mm;
-    if (circle_mm > 0 && double(film_mm.length()) > circle_mm * 1.001)
-        warnings.push_back(
-            fmt::format("{} covers a circle of {:.3g} mm once it is scaled to the "
-                        "angle of view; the film's corners are {:.3g} mm apart",
-                        name, circle_mm, double(film_mm.length())));
-    return out;
+                                        lens.prescription().name, 2 * half_deg));
+    return Lens(scaled(lens.prescription(), *factor));
 }
 
 // A lens in focus, and its entrance pupil, which moves with a group that focuses.
@@ -136,8 +128,14 @@ LoadedLens load_lens_for_film(const std::string& name_or_file, std::span<const A
     LoadedLens loaded{Lens(std::move(file.lens)), std::move(file.warnings), 0, {}, 0};
     loaded.film_mm = film_within(
         sensor_mm.value_or(usual_sensor_mm(loaded.lens.prescription().image_circle_mm)), aspect);
-    if (fit_yfov_rad)
-        loaded.lens = fitted(loaded.lens, loaded.film_mm, *fit_yfov_rad, loaded.warnings);
+    if (fit_yfov_rad) loaded.lens = fitted(loaded.lens, loaded.film_mm, *fit_yfov_rad);
+    const double circle_mm = loaded.lens.prescription().image_circle_mm;
+    if (const auto corners_mm = double(loaded.film_mm.length());
+        circle_mm > 0 && corners_mm > circle_mm * 1.001)
+        loaded.warnings.push_back(
+            fmt::format("{} covers a circle of {:.3g} mm{}; the film's corners are {:.3g} mm apart",
+                        loaded.name(), circle_mm,
+                        fit_yfov_rad ? " once it is scaled to the angle of view" : "", corners_mm));
     const FirstOrder f = first_order(loaded.lens, kLineD_nm);
     if (!(f.focal_length_mm > 0) || !std::isfinite(f.focal_length_mm))
         throw InputError(name_or_file, "", "has no positive focal length: it forms no image");

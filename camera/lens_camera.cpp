@@ -188,6 +188,7 @@ template <class V>
 CameraSample LensCamera::paths(const LensDraw<V>& drawn, const Bands& bands) const {
     CameraSample out;
     out.lanes = drawn.lanes;
+    out.exposure = exposure_;
     m4 left = lanes_as<m4>(drawn.weight > 0);
     // Lanes that go nearly the same way share the first one's ray.
     for (int lane = 0; lane < 4; ++lane) {

@@ -38,15 +38,15 @@ const GltfCamera& find_camera(const std::string& wanted, const std::string& scen
 // A file named in a scene lies beside it.
 std::string beside(const std::filesystem::path& scene, const std::string& name) {
     const auto path = scene.parent_path() / name;
-    return std::filesystem::path(name).is_relative() && std::filesystem::is_regular_file(path)
-               ? path.string()
-               : name;
+    const bool is_file = path.has_extension() && std::filesystem::path(name).is_relative() &&
+                         std::filesystem::is_regular_file(path);
+    return is_file ? path.string() : name;
 }
 
 // What the user has not said, the file's camera may.
 void take_wishes(const CameraWishes& file, const std::filesystem::path& scene,
                  CameraRequest& asked) {
-    if (!asked.lens && file.lens && !asked.lens_radius_m) asked.lens = beside(scene, *file.lens);
+    if (!asked.lens && file.lens) asked.lens = beside(scene, *file.lens);
     if (!asked.sensor_mm) asked.sensor_mm = file.sensor_mm;
     if (asked.lens == "pinhole") return;
     if (!asked.fstop && !asked.lens_radius_m) asked.fstop = file.fstop;
@@ -133,7 +133,7 @@ Optics optics_of(const CameraRequest& asked, const GltfCamera* from, float aspec
 }
 
 // What only a lens of a prescription can do.
-void check_no_prescription(const CameraRequest& asked) {
+void check_no_prescription(const CameraRequest& asked, bool has_glass) {
     const auto refuse = [](const char* option) {
         throw ArgumentError(option, "",
                             "needs a lens that is traced surface by surface: give --lens NAME or "
@@ -143,6 +143,7 @@ void check_no_prescription(const CameraRequest& asked) {
     if (asked.coating != Coating::Ideal) refuse("--coating");
     if (asked.march != March::Float) refuse("--march");
     if (asked.focus_by != FocusBy::Paraxial) refuse("--focus-by");
+    if (!asked.glasses.empty() && !has_glass) refuse("--glasses");
 }
 
 void check_pinhole(const CameraRequest& asked) {
@@ -218,8 +219,16 @@ CameraPlan plan_camera(const CameraRequest& request, const std::filesystem::path
     } else if (plan.from) {
         take_wishes(plan.from->wishes, scene, asked);
     }
-    plan.optics = optics_of(asked, plan.from, aspect);
-    if (!std::holds_alternative<LoadedLens>(plan.optics)) check_no_prescription(asked);
+    try {
+        plan.optics = optics_of(asked, plan.from, aspect);
+    } catch (const ArgumentError& error) {
+        if (request.lens || !asked.lens) throw;
+        throw InputError(scene.string(),
+                         fmt::format("extras.petzval of camera \"{}\"", printable(plan.from->name)),
+                         error.what());
+    }
+    if (!std::holds_alternative<LoadedLens>(plan.optics))
+        check_no_prescription(asked, std::holds_alternative<SingleLens>(plan.optics));
     if (std::holds_alternative<NoLens>(plan.optics))
         check_pinhole(asked);
     else if (std::holds_alternative<LoadedLens>(plan.optics))

@@ -179,9 +179,10 @@ LensSetup set_up_lens(const CameraRequest& asked, const LoadedLens& loaded, cons
     const double axial = setup.camera->irradiance(V2f(0.f), 1024);
     if (!(axial > 0))
         throw ArgumentError(loaded.name(), "", "lets no light through to the middle of the film");
-    setup.camera->set_gain(asked.exposure == ExposureMode::Photographic
-                               ? photographic_gain(1, double(asked.iso), double(asked.shutter_s))
-                               : 1 / axial);
+    const bool normalised = asked.exposure == ExposureMode::Normalised;
+    setup.camera->set_exposure(
+        normalised ? 1 : photographic_gain(axial, double(asked.iso), double(asked.shutter_s)),
+        axial);
     return setup;
 }
 

@@ -147,7 +147,7 @@ ThinSetup set_up_thin(const CameraPlan& plan, const ThinView& view, ThinLens len
                   asked.aperture_scale, asked.iris_sampling);
         lens.focus_m = *focus_m;
         if (asked.exposure == ExposureMode::Photographic)
-            lens.gain = static_cast<float>(
+            lens.exposure = static_cast<float>(
                 photographic_gain(irradiance_of(radius_mm, setup.film_mm, iris.area_mm2()),
                                   double(asked.iso), double(asked.shutter_s)));
         if (const auto* single = std::get_if<SingleLens>(&plan.optics)) {
@@ -157,7 +157,7 @@ ThinSetup set_up_thin(const CameraPlan& plan, const ThinView& view, ThinLens len
             glass.chroma = asked.chroma;
             glass.tolerance_rad = static_cast<float>(
                 asked.chroma_tolerance_px * double(view.sensor_mm.x) / width_px / setup.film_mm);
-            glass.gain = lens.gain;
+            glass.exposure = lens.exposure;
             warn_of_formula(glass.singlet, plan, focus_mm, glass.iris.bounding_radius_mm(), notice);
             setup.camera = std::make_unique<AberratedLensCamera>(std::move(glass));
         } else {

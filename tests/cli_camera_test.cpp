@@ -65,10 +65,18 @@ TEST_F(CliCamera, TheFilesCameraIsEnough) {
     EXPECT_EQ(thin.pixels, picture_of(plain, {"--fstop", "4", "--focus", "2", "--aperture",
                                               "polygon:6,10", "--sensor", "30x20"})
                                .pixels);
-    const Picture radius = picture_of(full, {"--lens-radius", "0.02"});
+    // A radius goes with a thin lens, not with the file's lens of glass.
+    EXPECT_NE(finished(full, {"--lens-radius", "0.02"}).err.find("leave out"), std::string::npos);
+    const Picture radius = picture_of(full, {"--lens", "thin", "--lens-radius", "0.02"});
     EXPECT_EQ(radius.pixels, picture_of(plain, {"--lens-radius", "0.02", "--focus", "2",
                                                 "--aperture", "polygon:6,10", "--sensor", "30x20"})
                                  .pixels);
+    const std::string none = scene_with("none.gltf", {{"lens", "lens/none.json"}});
+    const Finished lost = finished(none, {});
+    EXPECT_EQ(lost.exit_code, 1);
+    EXPECT_NE(lost.err.find("none.gltf: extras.petzval of camera \"wide\": lens/none.json"),
+              std::string::npos)
+        << lost.err;
 }
 
 TEST_F(CliCamera, WishesGiveWayToWhatTheUserFixes) {

@@ -171,7 +171,7 @@ TEST(LensCameraSample, GainIsInTheWeight) {
     LensCamera camera(in);
     const FilmPoint at = film_point({0.5f, 0.5f}, 1);
     const float before = camera.sample(at, Bands::rgb()).path[0].weight[0];
-    camera.set_gain(2);
+    camera.set_exposure(2, 1);
     EXPECT_FLOAT_EQ(camera.sample(at, Bands::rgb()).path[0].weight[0], 2 * before);
 }
 

@@ -127,6 +127,10 @@ CameraRequest resolve(CameraOptions& o, V2i frame) {
     if (!o.sensor.empty()) r.sensor_mm = parse_sensor("--sensor", o.sensor, kLeast, kMost);
     if (!o.focus.empty()) r.focus = parse_focus("--focus", o.focus, frame);
     if (!o.shutter.empty()) r.shutter_s = parse_shutter_s("--shutter", o.shutter);
+    if (r.exposure != ExposureMode::Photographic &&
+        (!o.shutter.empty() || r.iso != CameraRequest().iso))
+        throw CLI::ValidationError("--exposure-mode",
+                                   "--iso and --shutter have no effect but with photographic");
     return r;
 }
 

@@ -49,13 +49,14 @@ CameraSample AberratedLensCamera::sample(const FilmPoint& at, const Bands& bands
     const float h_mm = stop.length();
     const bool split = bands.spectral && in_.chroma != Chroma::Shared;
     m4 on = bands.on;
-    float gain = in_.gain;
+    float weight = in_.exposure;
     if (split && in_.chroma == Chroma::Single) {
         on = only_lane(pick_lane(bands.on, at.sampler.get1(Dim::LensLane)));
-        gain *= static_cast<float>(lane_count(bands.on));
+        weight *= static_cast<float>(lane_count(bands.on));
     }
 
     CameraSample out;
+    out.exposure = in_.exposure;
     // 1/S for each path's ray. Unlike S it stays finite when the ray crosses no axis ahead.
     std::array<float, 4> vergence_per_mm{};
     for (int lane = 0; lane < 4; ++lane) {
@@ -82,7 +83,7 @@ CameraSample AberratedLensCamera::sample(const FilmPoint& at, const Bands& bands
         path.lanes[lane] = -1;
     }
     for (int k = 0; k < out.count; ++k)
-        out.path[k].weight = zero_off(out.path[k].lanes, splat(gain));
+        out.path[k].weight = zero_off(out.path[k].lanes, splat(weight));
     return out;
 }
 

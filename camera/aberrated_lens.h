@@ -19,7 +19,7 @@ struct AberratedLens {
     float aspect = 1.5f;    ///< width / height of the film
     Chroma chroma = Chroma::Auto;
     float tolerance_rad = 0;  ///< Auto: how far apart directions may be, seen from the lens
-    float gain = 1.f;         ///< factor on every weight
+    float exposure = 1.f;     ///< factor on every weight
 };
 
 /// A ray that meets the lens h off the axis is bent as by an ideal lens of focal length f(h,

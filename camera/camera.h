@@ -54,6 +54,7 @@ struct CameraSample {
     int count = 0;
     std::array<CameraPath, 4> path;
     LaneFates<uint32_t> lanes;
+    float exposure = 1;  ///< what the weights of a lane are on average where nothing is lost
 };
 
 class Camera {

@@ -48,6 +48,9 @@ double reach_of(const Mask& mask) {
     return reach;
 }
 
+// Points within a rim are found by trying: not where it leaves next to nothing.
+constexpr double kMostCut = 0.9;
+
 void require_whole(const ApertureShape& shape) {
     if (const auto* polygon = std::get_if<Polygon>(&shape))
         if (const auto fault = find_fault(*polygon)) throw std::invalid_argument(fault->message);
@@ -103,7 +106,7 @@ Iris::Shape Iris::scaled(const ApertureShape& shape, double mm, IrisSampling sam
 }
 
 Iris::Iris(const ApertureShape& shape, double stop_radius_mm, ApertureScale scale,
-           std::optional<IrisSampling> sampling)
+           std::optional<IrisSampling> sampling, double rim_radius_mm)
     : rejection_(sampling == IrisSampling::Rejection) {
     if (!(stop_radius_mm >= kMinStopRadius_mm && stop_radius_mm <= kMaxStopRadius_mm))
         throw std::invalid_argument("the stop's radius must be a picometre to a kilometre");
@@ -124,6 +127,12 @@ Iris::Iris(const ApertureShape& shape, double stop_radius_mm, ApertureScale scal
     shape_ = scaled(shape, mm, way);
     reach_ = mm * reach;
     area_ = std::visit([](const auto& s) { return s.area_mm2(); }, shape_);
+    share_cut_ = share_beyond(rim_radius_mm);
+    cut_ = share_cut_ > 0 && share_cut_ < kMostCut;
+    if (!cut_) return;
+    area_ *= 1 - share_cut_;
+    reach_ = rim_radius_mm;
+    rim2_mm2_ = static_cast<float>(rim_radius_mm * rim_radius_mm);
 }
 
 template <class Drawn>
@@ -140,9 +149,18 @@ V2f Iris::reject(const Drawn& shape, V2f u) {
     return shape.draw(candidates.next2());
 }
 
-V2f Iris::sample(V2f u) const {
+V2f Iris::sample_whole(V2f u) const {
     return std::visit(
         [&](const auto& shape) { return rejection_ ? reject(shape, u) : shape.draw(u); }, shape_);
+}
+
+V2f Iris::sample(V2f u) const {
+    V2f p = sample_whole(u);
+    if (!cut_ || within_rim(p)) return p;
+    Candidates candidates(u);
+    static_cast<void>(candidates.next2());  // u itself
+    for (int i = 1; i < kTries && !within_rim(p); ++i) p = sample_whole(candidates.next2());
+    return p;
 }
 
 double Iris::share_beyond(double radius_mm) const {

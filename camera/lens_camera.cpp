@@ -69,7 +69,8 @@ LensDraw<V> LensCamera::draw(const Aim& aim, const Bands& bands, Coating coating
     using S = ScalarOf<V>;
     LensDraw<V> out;
     const V2f on_iris = in_.iris.sample(aim.u);
-    const m4 on = in_.chroma == Chroma::Single ? only_lane(aim.lane) : bands.on;
+    const bool single = in_.chroma == Chroma::Single && !one_ray(bands);
+    const m4 on = single ? only_lane(aim.lane) : bands.on;
     const auto solved = pupil_.solve(aim.film_mm, on_iris, in_floats, aim.lane, aim.nm);
     out.lanes.drawn = static_cast<uint32_t>(lane_count(on));
     if (!solved) {
@@ -187,6 +188,7 @@ template <class V>
 CameraSample LensCamera::paths(const LensDraw<V>& drawn, const Bands& bands) const {
     CameraSample out;
     out.lanes = drawn.lanes;
+    out.exposure = exposure_;
     m4 left = lanes_as<m4>(drawn.weight > 0);
     // Lanes that go nearly the same way share the first one's ray.
     for (int lane = 0; lane < 4; ++lane) {

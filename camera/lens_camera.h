@@ -47,8 +47,12 @@ class LensCamera final : public Camera {
 
     [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
 
-    /// Factor on every weight from here on; 1 before.
-    void set_gain(double gain) { gain_ = static_cast<float>(gain); }
+    /// From here on weights average to the exposure in the middle of the film, where they averaged
+    /// to its irradiance(). axial: that irradiance, before the first call.
+    void set_exposure(double exposure, double axial) {
+        exposure_ = static_cast<float>(exposure);
+        gain_ = static_cast<float>(exposure / axial);
+    }
     /// Irradiance at a film point over the radiance of an even scene, at line d, the gain included,
     /// but not what surfaces reflect; on the axis pi sin^2 u' for a round iris. From `count` draws,
     /// best a power of two: with 1024 the error is below 1e-4 for the lenses that ship, and 0.2 %
@@ -99,7 +103,7 @@ class LensCamera final : public Camera {
     Pupil pupil_;
     LensIndices<f4> line_d_;
     LensIndices<d4> exact_line_d_;
-    float gain_ = 1.f;
+    float gain_ = 1.f, exposure_ = 1.f;
 };
 
 }  // namespace petzval

@@ -102,8 +102,9 @@ std::optional<Lens> group_focused(const Lens& filed, const Group& group, double 
 }
 
 // Downhill in growing steps from a minimum's neighbourhood, then the golden section (Kiefer 1953,
-// Proc. Amer. Math. Soc. 4, 502), to what the square root of rounding allows.
+// Proc. Amer. Math. Soc. 4, 502) to a ten-thousandth of the bracket.
 double least_near(const auto& f, double step) {
+    constexpr int kRounds = 20;
     double middle = 0, at_middle = f(0.);
     if (f(step) > at_middle) step = -step;
     double low = -step, high = step;
@@ -117,7 +118,7 @@ double least_near(const auto& f, double step) {
     constexpr double golden = std::numbers::phi - 1;
     double left = high - golden * (high - low), right = low + golden * (high - low);
     double at_left = f(left), at_right = f(right);
-    for (int i = 0; i < 48; ++i) {
+    for (int i = 0; i < kRounds; ++i) {
         if (at_left < at_right) {
             high = right;
             right = left;

@@ -11,7 +11,7 @@ namespace petzval {
 
 enum class FocusBy : uint8_t {
     Paraxial,  ///< line d, rays near the axis
-    Traced     ///< the least mean square radius of the spot on the axis: F, d and C, full aperture
+    Traced  ///< the least mean square radius of the spot on the axis: F, d and C, through the iris
 };
 
 /// The lens with its film, or its focusing group, where an axial point at object_mm (from

@@ -8,13 +8,14 @@ namespace {
 
 // A camera ray from a point and a direction of the camera's own space.
 CameraSample one_path(const Pose& pose, const V3f& origin, const V3f& direction, const Bands& bands,
-                      float gain) {
+                      float exposure) {
     CameraSample out;
     out.count = 1;
+    out.exposure = exposure;
     CameraPath& path = out.path[0];
     path.ray.origin = pose.origin + pose.to_world(origin);
     path.ray.direction = unit(pose.to_world(direction));
-    path.weight = uniform(gain, bands);
+    path.weight = uniform(exposure, bands);
     path.lanes = bands.on;
     return out;
 }
@@ -31,17 +32,17 @@ ThinLensCamera::ThinLensCamera(ThinLens lens)
     : pose_(lens.to_world),
       iris_(std::move(lens.iris)),
       focus_m_(lens.focus_m),
-      gain_(lens.gain),
+      exposure_(lens.exposure),
       tan_half_x_(std::tan(lens.yfov_rad / 2) * lens.aspect),
       tan_half_y_(std::tan(lens.yfov_rad / 2)) {}
 
 CameraSample ThinLensCamera::sample(const FilmPoint& at, const Bands& bands) const {
     const V3f direction{(2.f * at.film.x - 1.f) * tan_half_x_,
                         (1.f - 2.f * at.film.y) * tan_half_y_, -1.f};
-    if (!iris_) return one_path(pose_, V3f(0.f), direction, bands, gain_);
+    if (!iris_) return one_path(pose_, V3f(0.f), direction, bands, exposure_);
     const V2f stop = iris_->sample(at.sampler.get2(Dim::Lens)) * 1e-3f;
     const V3f origin{stop.x, stop.y, 0.f};
-    return one_path(pose_, origin, direction * focus_m_ - origin, bands, gain_);
+    return one_path(pose_, origin, direction * focus_m_ - origin, bands, exposure_);
 }
 
 OrthographicCamera::OrthographicCamera(const M44f& to_world, float half_width_m,

@@ -16,8 +16,8 @@ struct ThinLens {
     float yfov_rad = 0.7f;  ///< full vertical angle, seen from the lens's centre
     float aspect = 1.5f;    ///< width / height of the film
     std::optional<Iris> iris;
-    float focus_m = 1.f;  ///< axial distance
-    float gain = 1.f;     ///< factor on every weight
+    float focus_m = 1.f;   ///< axial distance
+    float exposure = 1.f;  ///< factor on every weight
 };
 
 /// Where a camera stands and its axes in world space, unit: what its matrix says, unpacked.
@@ -35,7 +35,7 @@ class ThinLensCamera final : public Camera {
   private:
     Pose pose_;
     std::optional<Iris> iris_;
-    float focus_m_, gain_, tan_half_x_, tan_half_y_;
+    float focus_m_, exposure_, tan_half_x_, tan_half_y_;
 };
 
 /// Parallel projection: half sizes of the view in metres.

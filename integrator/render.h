@@ -76,18 +76,16 @@ void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& 
     }
     FilmSample sample;
     f4 sum{};
-    float alpha = 0.f, carried = 0.f;  // over the lanes that paths carry
+    float behind = 0.f;  // light of what stands behind the scene, where all of it would be 1
     for (int k = 0; k < seen.count; ++k) {
         const CameraPath& path = seen.path[k];
         sample.alpha = 0.f;
         sum += path.weight *
                tracer.radiance(path.ray, bands, sampler, aovs && k == 0, sample, stats, path.lanes);
-        const auto lanes = static_cast<float>(lane_count(path.lanes));
-        alpha += lanes * sample.alpha;
-        carried += lanes;
+        behind += hsum(zero_off(path.lanes, path.weight)) * (1.f - sample.alpha);
     }
     // What a lens keeps from the film is black, not transparent.
-    sample.alpha = carried > 0.f ? alpha / carried : 1.f;
+    sample.alpha = 1.f - behind / (seen.exposure * static_cast<float>(lane_count(bands.on)));
     sample.colour = to_rgb(sum, bands);
     sample.aov[static_cast<size_t>(Aov::Cost)] =
         V3f(static_cast<float>(stats.vertices - vertices_before), 0, 0);

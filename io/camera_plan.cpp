@@ -38,22 +38,22 @@ const GltfCamera& find_camera(const std::string& wanted, const std::string& scen
 // A file named in a scene lies beside it.
 std::string beside(const std::filesystem::path& scene, const std::string& name) {
     const auto path = scene.parent_path() / name;
-    return std::filesystem::path(name).is_relative() && std::filesystem::is_regular_file(path)
-               ? path.string()
-               : name;
+    const bool is_file = path.has_extension() && std::filesystem::path(name).is_relative() &&
+                         std::filesystem::is_regular_file(path);
+    return is_file ? path.string() : name;
 }
 
 // What the user has not said, the file's camera may.
 void take_wishes(const CameraWishes& file, const std::filesystem::path& scene,
                  CameraRequest& asked) {
-    if (!asked.lens && file.lens && !asked.lens_radius_m) asked.lens = beside(scene, *file.lens);
+    if (!asked.lens && file.lens) asked.lens = beside(scene, *file.lens);
     if (!asked.sensor_mm) asked.sensor_mm = file.sensor_mm;
     if (asked.lens == "pinhole") return;
     if (!asked.fstop && !asked.lens_radius_m) asked.fstop = file.fstop;
+    if (!asked.fstop && !asked.lens_radius_m && !asked.lens) return;
     if (!asked.focus && file.focus_m && !asked.film_distance_mm)
         asked.focus = FocusDistance{*file.focus_m};
-    if (!asked.aperture && file.aperture && (asked.fstop || asked.lens_radius_m || asked.lens))
-        asked.aperture = beside(scene, *file.aperture);
+    if (!asked.aperture && file.aperture) asked.aperture = beside(scene, *file.aperture);
 }
 
 std::vector<AgfCatalog> open_catalogs(const CameraRequest& asked) {
@@ -82,6 +82,7 @@ SingleLens parse_singlet(const std::string& text, LensGlasses& glasses) {
                                  "; it must read singlet:GLASS[,BENDING] or "
                                  "singlet:GLASS,R1,R2 with radii in mm (inf: flat)");
     };
+    if (text.ends_with(',')) throw refuse("nothing follows the last comma");
     std::istringstream words(text.substr(kSinglet.size()));
     std::string name, word;
     std::getline(words, name, ',');
@@ -131,6 +132,20 @@ Optics optics_of(const CameraRequest& asked, const GltfCamera* from, float aspec
                               fit_yfov_rad(asked, from));
 }
 
+// What only a lens of a prescription can do.
+void check_no_prescription(const CameraRequest& asked, bool has_glass) {
+    const auto refuse = [](const char* option) {
+        throw ArgumentError(option, "",
+                            "needs a lens that is traced surface by surface: give --lens NAME or "
+                            "FILE");
+    };
+    if (asked.fit == Fit::Fov) refuse("--fit");
+    if (asked.coating != Coating::Ideal) refuse("--coating");
+    if (asked.march != March::Float) refuse("--march");
+    if (asked.focus_by != FocusBy::Paraxial) refuse("--focus-by");
+    if (!asked.glasses.empty() && !has_glass) refuse("--glasses");
+}
+
 void check_pinhole(const CameraRequest& asked) {
     const auto refuse = [](const char* option, const std::string& why) {
         throw ArgumentError(option, "", why);
@@ -140,6 +155,9 @@ void check_pinhole(const CameraRequest& asked) {
     if (asked.focus) refuse("--focus", "a pinhole has no focus: give --fstop or --lens-radius too");
     if (asked.aperture)
         refuse("--aperture", "a pinhole has no iris: give --fstop, --lens-radius or --lens too");
+    if (asked.aperture_scale != ApertureScale::EqualArea || asked.iris_sampling)
+        refuse(asked.iris_sampling ? "--iris-sampling" : "--aperture-scale",
+               "a pinhole has no iris: give --fstop, --lens-radius or --lens too");
     if (asked.film_distance_mm)
         refuse("--film-distance", "a pinhole has no focus: give --fstop or --lens-radius too");
     if (asked.exposure == ExposureMode::Photographic)
@@ -192,17 +210,25 @@ CameraPlan plan_camera(const CameraRequest& request, const std::filesystem::path
     CameraRequest& asked = plan.asked;
     if (plan.from && plan.from->orthographic) {
         if (asked.fstop || asked.lens_radius_m || asked.fov_deg || asked.focal_length_mm ||
+            asked.focus || asked.aperture || asked.film_distance_mm || asked.sensor_mm ||
             (asked.lens && *asked.lens != "pinhole"))
             throw ArgumentError(scene.string(), "",
                                 fmt::format("camera \"{}\" is orthographic: it takes neither a "
-                                            "lens nor an angle of view",
+                                            "lens, its focus or sensor, nor an angle of view",
                                             printable(plan.from->name)));
     } else if (plan.from) {
         take_wishes(plan.from->wishes, scene, asked);
     }
-    plan.optics = optics_of(asked, plan.from, aspect);
-    if (asked.fit == Fit::Fov && !std::holds_alternative<LoadedLens>(plan.optics))
-        throw ArgumentError("--fit", "", "fov scales a lens of glass: give --lens NAME or FILE");
+    try {
+        plan.optics = optics_of(asked, plan.from, aspect);
+    } catch (const ArgumentError& error) {
+        if (request.lens || !asked.lens) throw;
+        throw InputError(scene.string(),
+                         fmt::format("extras.petzval of camera \"{}\"", printable(plan.from->name)),
+                         error.what());
+    }
+    if (!std::holds_alternative<LoadedLens>(plan.optics))
+        check_no_prescription(asked, std::holds_alternative<SingleLens>(plan.optics));
     if (std::holds_alternative<NoLens>(plan.optics))
         check_pinhole(asked);
     else if (std::holds_alternative<LoadedLens>(plan.optics))

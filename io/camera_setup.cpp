@@ -54,8 +54,8 @@ std::array<V3f, 2> frame_bounds(const Place& at, float yfov_rad) {
     return {eye, centre};
 }
 
-// Where the lens stands and what it looks at.
-M44f stand(const Place& at, float yfov_rad, CameraReport& report) {
+// Where the lens stands and what it looks at. fov_option: what gives the same angle of view again.
+M44f stand(const Place& at, float yfov_rad, const std::string& fov_option, CameraReport& report) {
     const CameraRequest& asked = at.plan.asked;
     M44f to_world;
     if (const GltfCamera* from = at.plan.from) {
@@ -67,35 +67,47 @@ M44f stand(const Place& at, float yfov_rad, CameraReport& report) {
         to_world = look_at(aim[0], aim[1]);
         report.target = aim[1];
         if (!asked.look_at)
-            at.notice(fmt::format("no camera in the file: --look-at {},{} --fov {}",
-                                  with_commas(aim[0]), with_commas(aim[1]), report.yfov_deg));
+            at.notice(fmt::format("no camera in the file: --look-at {},{}{}", with_commas(aim[0]),
+                                  with_commas(aim[1]), fov_option));
     }
     report.eye = position(to_world);
     return to_world;
 }
 
-// finder: makes a camera of narrow iris that shows what the real one will.
-float find_focus(const Place& at, const M44f& to_world,
-                 const std::function<std::unique_ptr<Camera>()>& finder) {
-    const Focus focus = at.plan.asked.focus.value_or(FocusAuto{});
-    if (const auto* distance = std::get_if<FocusDistance>(&focus)) return distance->m;
+using Finder = std::function<std::unique_ptr<Camera>(std::optional<float> focus_m)>;
+
+float depth_of(const Place& at, const Focus& focus, const M44f& to_world, const Camera& finder) {
     const V3f eye = position(to_world), axis = forward(to_world);
-    const std::unique_ptr<Camera> seen_by = finder();
-    std::optional<float> depth;
     if (const auto* pixel = std::get_if<FocusPixel>(&focus)) {
         const V2f film = (V2f(pixel->x, pixel->y) + V2f(0.5f)) / V2f(at.size);
-        depth = depth_under(at.scene, at.bvh, *seen_by, eye, axis, film);
+        const auto depth = depth_under(at.scene, at.bvh, finder, eye, axis, film);
         if (!depth)
             throw at.unfit(
                 fmt::format("nothing to focus on under pixel {},{}", pixel->x, pixel->y));
-    } else {
-        depth = depth_of_middle(at.scene, at.bvh, *seen_by, eye, axis);
-        if (!depth)
-            throw at.unfit(
-                "nothing in the middle of the picture to focus on; give --focus in metres");
+        return *depth;
     }
-    at.notice(fmt::format("focus: {:.4g} m (--focus {})", *depth, *depth));
+    const auto depth = depth_of_middle(at.scene, at.bvh, finder, eye, axis);
+    if (!depth)
+        throw at.unfit("nothing in the middle of the picture to focus on; give --focus in metres");
     return *depth;
+}
+
+// finder: makes a camera of narrow iris that shows what the real one will when it is focused there,
+// or far away. What a pixel shows moves with the focus, as the film goes back: it is looked at
+// again until it stays, or jumps to and fro between two things.
+float find_focus(const Place& at, const M44f& to_world, const Finder& finder) {
+    constexpr int kRounds = 8;
+    constexpr float kSettled = 1e-5f;
+    const Focus focus = at.plan.asked.focus.value_or(FocusAuto{});
+    if (const auto* distance = std::get_if<FocusDistance>(&focus)) return distance->m;
+    float depth_m = depth_of(at, focus, to_world, *finder(std::nullopt));
+    for (int i = 0; i < kRounds; ++i) {
+        const float before_m = depth_m;
+        depth_m = depth_of(at, focus, to_world, *finder(before_m));
+        if (std::fabs(depth_m - before_m) <= kSettled * before_m) break;
+    }
+    at.notice(fmt::format("focus: {:.4g} m (--focus {})", depth_m, depth_m));
+    return depth_m;
 }
 
 CameraSetup orthographic(const Place& at, const GltfCamera& from) {
@@ -115,8 +127,10 @@ CameraSetup with_lens(const Place& at, const LoadedLens& loaded) {
     CameraReport& report = setup.report;
     report.asked = at.plan.asked;
     report.yfov_deg = loaded.yfov_rad / kDegree;
-    const M44f to_world = stand(at, loaded.yfov_rad, report);
-    report.focus_m = find_focus(at, to_world, [&] { return viewfinder(loaded, to_world); });
+    const M44f to_world = stand(at, loaded.yfov_rad, "", report);
+    report.focus_m = find_focus(at, to_world, [&](std::optional<float> focus_m) {
+        return viewfinder(loaded, to_world, focus_m);
+    });
     LensSetup lens =
         set_up_lens(report.asked, loaded, to_world, report.focus_m, at.size.x, at.notice);
     report.lens = loaded.name();
@@ -134,16 +148,22 @@ CameraSetup without_prescription(const Place& at) {
     CameraReport& report = setup.report;
     report.asked = at.plan.asked;
     const ThinView view = thin_view(at.plan, at.scene_file, at.aspect());
-    report.yfov_deg = view.yfov_deg;
     report.sensor_mm = view.sensor_mm;
+    report.yfov_deg = view.yfov_deg;
+    const std::string fov_option =
+        view.angle_by_focal ? "" : fmt::format(" --fov {}", view.yfov_deg);
     ThinLens pose;
     pose.aspect = at.aspect();
-    pose.yfov_rad = view.yfov_rad;
-    pose.to_world = stand(at, view.yfov_rad, report);
+    pose.to_world = stand(at, view.yfov_rad, fov_option, report);
     std::optional<float> focus_m = view.focus_m;
     if (at.plan.has_iris() && !focus_m)
-        focus_m =
-            find_focus(at, pose.to_world, [&] { return std::make_unique<ThinLensCamera>(pose); });
+        focus_m = find_focus(at, pose.to_world, [&](std::optional<float> focused_m) {
+            ThinLens finder = pose;
+            finder.yfov_rad = yfov_at_rad(view, focused_m);
+            return std::make_unique<ThinLensCamera>(finder);
+        });
+    pose.yfov_rad = yfov_at_rad(view, focus_m);
+    if (pose.yfov_rad != view.yfov_rad) report.yfov_deg = pose.yfov_rad / kDegree;
     ThinSetup thin = set_up_thin(at.plan, view, pose, focus_m, at.size.x, at.notice);
     report.focus_m = focus_m.value_or(0);
     report.focal_length_mm = static_cast<float>(thin.focal_mm);

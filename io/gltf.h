@@ -16,6 +16,8 @@ struct CameraWishes {
     std::optional<std::string> lens, aperture;
     std::optional<float> fstop, focus_m;
     std::optional<V2f> sensor_mm;
+
+    [[nodiscard]] bool any() const { return lens || aperture || fstop || focus_m || sensor_mm; }
 };
 
 /// A camera node of the file.

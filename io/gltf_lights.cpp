@@ -124,6 +124,9 @@ std::vector<GltfCamera> read_cameras(const GltfModel& gltf, const GltfNodes& nod
         GltfCamera camera = to_camera(from, *to_world);
         camera.name = from.name.empty() ? node.name : from.name;
         camera.wishes = camera_wishes(json[static_cast<size_t>(node.camera)]);
+        if (camera.orthographic && camera.wishes.any())
+            tally.warnings.push_back(json_path("cameras", node.camera) +
+                                     "/extras/petzval: an orthographic camera has no use for it");
         if (camera.wishes.lens) tally.honoured.insert("lens " + *camera.wishes.lens);
         if (is_usable(camera))
             cameras.push_back(camera);

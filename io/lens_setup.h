@@ -17,7 +17,7 @@ namespace petzval {
 struct LoadedLens {
     Lens lens;  ///< as filed
     std::vector<std::string> warnings;
-    double focal_length_mm, entrance_pupil_mm;
+    double focal_length_mm;
     V2f film_mm;     ///< width and height, of the picture's aspect
     float yfov_rad;  ///< that a distant scene fills the film's height with, line d
 
@@ -46,8 +46,9 @@ struct LensSetup {
                                     float focus_m, int width_px,
                                     const std::function<void(const std::string&)>& notice);
 
-/// The same lens stopped down so far that where it is focused does not matter: what a photographer
-/// looks through to choose a focus.
-[[nodiscard]] std::unique_ptr<LensCamera> viewfinder(const LoadedLens&, const M44f& to_world);
+/// The same lens stopped down so far that nothing is blurred: what a photographer looks through to
+/// choose a focus. focus_m: absent for far away; it decides the scale of the picture.
+[[nodiscard]] std::unique_ptr<LensCamera> viewfinder(const LoadedLens&, const M44f& to_world,
+                                                     std::optional<float> focus_m);
 
 }  // namespace petzval

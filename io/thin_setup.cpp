@@ -104,6 +104,7 @@ ThinView thin_view(const CameraPlan& plan, const std::string& scene, float aspec
     } else if (asked.fov_deg || !view.focal_mm) {
         view.yfov_deg = asked.fov_deg.value_or(kDefaultFov_deg);
     } else {
+        view.angle_by_focal = true;
         view.yfov_deg = of_half(*view.focal_mm);
         require_fov(view.yfov_deg, scene,
                     fmt::format("a focal length of {:g} mm with a sensor {:g} mm high",
@@ -113,6 +114,14 @@ ThinView thin_view(const CameraPlan& plan, const std::string& scene, float aspec
     if (!view.focal_mm && !asked.film_distance_mm)
         view.focal_mm = half_mm / std::tan(view.yfov_rad / 2);
     return view;
+}
+
+float yfov_at_rad(const ThinView& view, std::optional<float> focus_m) {
+    const double focus_mm = focus_m ? 1e3 * double(*focus_m) : 0;
+    // Nearer than the focal length nothing is sharp; set_up_thin() will say so.
+    if (!view.angle_by_focal || !(focus_mm > *view.focal_mm)) return view.yfov_rad;
+    const double film_mm = image_distance_mm(*view.focal_mm, focus_mm);
+    return 2 * std::atan(view.sensor_mm.y / 2 / static_cast<float>(film_mm));
 }
 
 ThinSetup set_up_thin(const CameraPlan& plan, const ThinView& view, ThinLens lens,
@@ -138,7 +147,7 @@ ThinSetup set_up_thin(const CameraPlan& plan, const ThinView& view, ThinLens len
                   asked.aperture_scale, asked.iris_sampling);
         lens.focus_m = *focus_m;
         if (asked.exposure == ExposureMode::Photographic)
-            lens.gain = static_cast<float>(
+            lens.exposure = static_cast<float>(
                 photographic_gain(irradiance_of(radius_mm, setup.film_mm, iris.area_mm2()),
                                   double(asked.iso), double(asked.shutter_s)));
         if (const auto* single = std::get_if<SingleLens>(&plan.optics)) {
@@ -148,7 +157,7 @@ ThinSetup set_up_thin(const CameraPlan& plan, const ThinView& view, ThinLens len
             glass.chroma = asked.chroma;
             glass.tolerance_rad = static_cast<float>(
                 asked.chroma_tolerance_px * double(view.sensor_mm.x) / width_px / setup.film_mm);
-            glass.gain = lens.gain;
+            glass.exposure = lens.exposure;
             warn_of_formula(glass.singlet, plan, focus_mm, glass.iris.bounding_radius_mm(), notice);
             setup.camera = std::make_unique<AberratedLensCamera>(std::move(glass));
         } else {

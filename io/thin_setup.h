@@ -14,8 +14,9 @@ namespace petzval {
 
 /// What follows from a request before anything of the scene is known.
 struct ThinView {
-    float yfov_rad, yfov_deg;        ///< both, so that an angle that is printed is the same angle
-    V2f sensor_mm;                   ///< as much as the picture uses
+    float yfov_rad, yfov_deg;  ///< both, so that an angle that is printed is the same angle
+    bool angle_by_focal;  ///< the angle follows from the focal length: it is that of a far focus
+    V2f sensor_mm;        ///< as much as the picture uses
     std::optional<double> focal_mm;  ///< absent: follows from the distance in focus
     std::optional<float> focus_m;    ///< where the place of the film decides
 };
@@ -23,6 +24,10 @@ struct ThinView {
 /// aspect: of the picture. scene: the file, for errors. Throws ArgumentError for numbers that no
 /// lens can have together.
 [[nodiscard]] ThinView thin_view(const CameraPlan&, const std::string& scene, float aspect);
+
+/// The vertical angle of view of the lens in focus: one that follows from its focal length narrows
+/// as the film goes back. focus_m: absent for far away.
+[[nodiscard]] float yfov_at_rad(const ThinView&, std::optional<float> focus_m);
 
 struct ThinSetup {
     std::unique_ptr<Camera> camera;

@@ -32,8 +32,9 @@ class CliCamera : public CliTest {
         EXPECT_EQ(done.exit_code, 0) << done.err;
         return read_picture(path("out.exr"));
     }
-    [[nodiscard]] std::string refusal(const Words& more) {
-        const Finished done = finished(scene_, more);
+    [[nodiscard]] std::string refusal(const Words& more) { return refusal(scene_, more); }
+    [[nodiscard]] std::string refusal(const std::string& scene, const Words& more) {
+        const Finished done = finished(scene, more);
         EXPECT_EQ(done.exit_code, 2) << done.err;
         return done.err;
     }
@@ -64,6 +65,37 @@ TEST_F(CliCamera, TheFilesCameraIsEnough) {
     EXPECT_EQ(thin.pixels, picture_of(plain, {"--fstop", "4", "--focus", "2", "--aperture",
                                               "polygon:6,10", "--sensor", "30x20"})
                                .pixels);
+    // A radius goes with a thin lens, not with the file's lens of glass.
+    EXPECT_NE(finished(full, {"--lens-radius", "0.02"}).err.find("leave out"), std::string::npos);
+    const Picture radius = picture_of(full, {"--lens", "thin", "--lens-radius", "0.02"});
+    EXPECT_EQ(radius.pixels, picture_of(plain, {"--lens-radius", "0.02", "--focus", "2",
+                                                "--aperture", "polygon:6,10", "--sensor", "30x20"})
+                                 .pixels);
+    const std::string none = scene_with("none.gltf", {{"lens", "lens/none.json"}});
+    const Finished lost = finished(none, {});
+    EXPECT_EQ(lost.exit_code, 1);
+    EXPECT_NE(lost.err.find("none.gltf: extras.petzval of camera \"wide\": lens/none.json"),
+              std::string::npos)
+        << lost.err;
+}
+
+TEST_F(CliCamera, WishesGiveWayToWhatTheUserFixes) {
+    // A camera that has no iris has no use for its focus, until the user gives it one.
+    const std::string focus = scene_with("focus.gltf", {{"focus_m", 2}, {"aperture", "square"}});
+    const std::string plain = scene_with("plain.gltf", nlohmann::json::object());
+    EXPECT_EQ(picture_of(focus, {}).pixels, picture_of(plain, {}).pixels);
+    EXPECT_EQ(picture_of(focus, {"--fstop", "2"}).pixels,
+              picture_of(plain, {"--fstop", "2", "--focus", "2", "--aperture", "square"}).pixels);
+    // A film and a focal length say what is in focus.
+    const Words fixed = {"--fstop", "2", "--film-distance", "52", "--focal-length", "50"};
+    EXPECT_EQ(picture_of(focus, fixed).pixels,
+              picture_of(plain,
+                         [&] {
+                             Words words = fixed;
+                             words.insert(words.end(), {"--aperture", "square"});
+                             return words;
+                         }())
+                  .pixels);
 }
 
 TEST_F(CliCamera, WishesThatAreNone) {
@@ -107,6 +139,11 @@ TEST_F(CliCamera, PhotographicExposureFollowsIrisShutterAndSpeed) {
                     expected,
                 3 * std::sqrt(3.) / (4 * M_PI), 1e-4);
     EXPECT_NEAR(green({"--focal-length", "50", "--fstop", "2", "--focus", "1"}), 100, 1e-2);
+    const double slow = std::sin(std::atan(50 / 16. / film_mm));
+    EXPECT_NEAR(with({"--lens", "singlet:schott:N-BK7", "--chroma", "shared", "--focal-length",
+                      "50", "--fstop", "8", "--focus", "1"}) /
+                    (expected * sqr(slow / sine)),
+                1, 1e-4);
     // A lens of glass at the same f-number, focused far away: a thin lens without its bellows.
     const double far = M_PI / 16 * 100 / 50 * 200 / 78;
     EXPECT_NEAR(with({"--lens", "double-gauss-100mm-f2", "--fstop", "2.8", "--focus", "1000",
@@ -119,13 +156,12 @@ TEST_F(CliCamera, PhotographicExposureFollowsIrisShutterAndSpeed) {
 TEST_F(CliCamera, TwoDistancesGiveTheThird) {
     const double film_mm = image_distance_mm(50, 1500);
     const std::string film = fmt::format("{:.9g}", film_mm);
-    const std::string fov = fmt::format("{:.9g}", 2 * std::atan(12 / film_mm) * 180 / M_PI);
     const Words view = {"--look-at", "0,0,0,0,0,-1", "--fstop", "1.4"};
     const auto picture = [&](Words more) {
         more.insert(more.begin(), view.begin(), view.end());
         return picture_of(scene_, more);
     };
-    const Picture expected = picture({"--focal-length", "50", "--focus", "1.5", "--fov", fov});
+    const Picture expected = picture({"--focal-length", "50", "--focus", "1.5"});
     const auto expect_same = [&](const Picture& p) {
         for (size_t i = 0; i < p.pixels.size(); ++i)
             ASSERT_NEAR(p.pixels[i], expected.pixels[i], 2e-4f) << i;
@@ -150,6 +186,117 @@ TEST_F(CliCamera, ASingletWarnsWhereItsFormulaEnds) {
     EXPECT_NE(err("8").find("as lens singlet:schott:N-BK7,1 disperses"), std::string::npos);
 }
 
+// A flat back is the front of the lens turned round: as bendings 1 and -1.
+TEST_F(CliCamera, TheFirstRadiusFacesTheScene) {
+    const double radius_mm = 100 * (1.5168 - 1);
+    const auto picture = [&](const std::string& lens, Words more) {
+        more.insert(more.end(), {"--lens", "singlet:schott:N-BK7," + lens, "--fstop", "5", "--fov",
+                                 "1", "--focus", "1", "--chroma", "shared", "--look-at",
+                                 "-0.2,0,0,-0.2,0,-1", "--spp", "64"});
+        return picture_of(scene_, more);
+    };
+    const auto error_of = [&](const Picture& a, const Picture& b) {
+        double sum = 0;
+        for (size_t i = 0; i < a.pixels.size(); ++i)
+            sum += std::fabs(double(a.pixels[i]) - double(b.pixels[i]));
+        return sum / double(a.pixels.size());
+    };
+    const Picture front = picture(fmt::format("{:.9g},inf", radius_mm), {});
+    const Picture back = picture(fmt::format("inf,{:.9g}", -radius_mm), {});
+    const Picture bent = picture("1", {"--focal-length", "100"});
+    const Picture turned = picture("-1", {"--focal-length", "100"});
+    EXPECT_LT(error_of(front, bent), 1e-5);
+    EXPECT_LT(error_of(back, turned), 1e-5);
+    EXPECT_GT(error_of(front, back), 1e-3);
+}
+
+TEST_F(CliCamera, ASharedRayNeedsNoWavelengths) {
+    const Words lens = {"--lens",  "singlet:schott:N-BK7", "--fstop", "8", "--focus", "2",
+                        "--chroma"};
+    const auto err = [&](const char* chroma) {
+        Words words = lens;
+        words.emplace_back(chroma);
+        const Finished done = finished(scene_, words);
+        EXPECT_EQ(done.exit_code, 0) << done.err;
+        return done.err;
+    };
+    EXPECT_NE(err("auto").find("hero wavelengths"), std::string::npos);
+    EXPECT_NE(err("shared").find("spectral: rgb"), std::string::npos);
+}
+
+// As many rays for twice the pixels and twice the tolerance, and whatever the film's height.
+TEST_F(CliCamera, ChromaToleranceIsInPixelsOfTheFilm) {
+    const auto rays = [&](const std::string& lens, const char* size, const char* tolerance,
+                          const char* chroma = "auto") {
+        Words words = {"--lens",
+                       lens,
+                       "--fstop",
+                       "4",
+                       "--focus",
+                       "2",
+                       "--sensor",
+                       "30x20",
+                       "--size",
+                       size,
+                       "--chroma-tolerance",
+                       tolerance,
+                       "--stats",
+                       path("s.json"),
+                       "--chroma",
+                       chroma};
+        if (lens.starts_with("singlet")) words.insert(words.end(), {"--focal-length", "100"});
+        const Finished done = finished(scene_, words);
+        EXPECT_EQ(done.exit_code, 0) << done.err;
+        const auto s = nlohmann::json::parse(file_bytes(path("s.json")));
+        return s["rays"]["camera"].get<double>() / s["pixel_samples"].get<double>();
+    };
+    const std::tuple<const char*, const char*, const char*> cases[] = {
+        {"singlet:schott:N-BK7", "0.1", "0.2"}, {"kodak-petzval-100mm-f2", "0.01", "0.02"}};
+    for (const auto& [lens, tolerance, twice] : cases) {
+        const double some = rays(lens, "60x40", tolerance);
+        EXPECT_GT(some, 1.3) << lens;
+        EXPECT_LT(some, 3.7) << lens;
+        EXPECT_NEAR(rays(lens, "120x80", twice), some, 0.05) << lens;
+        EXPECT_LT(rays(lens, "60x40", twice), some - 0.1) << lens;
+        EXPECT_GT(rays(lens, "60x40", "1000", "split"), 3.7) << lens;
+        EXPECT_LE(rays(lens, "60x40", "0", "single"), 1) << lens;
+    }
+    const char* singlet = "singlet:schott:N-BK7";
+    EXPECT_NEAR(rays(singlet, "60x10", "0.1"), rays(singlet, "60x40", "0.1"), 0.05);
+}
+
+TEST_F(CliCamera, RefusesWhatHasNoEffect) {
+    const Words thin = {"--lens", "thin", "--fstop", "2", "--focus", "1"};
+    const Words singlet = {"--lens", "singlet:schott:N-BK7", "--fstop", "8", "--focus", "1"};
+    const Words pinhole = {"--lens", "pinhole"};
+    const std::pair<const char*, const char*> surfaces[] = {{"--coating", "uncoated"},
+                                                            {"--march", "double"},
+                                                            {"--focus-by", "traced"},
+                                                            {"--fit", "fov"}};
+    for (const Words& camera : {thin, singlet, pinhole})
+        for (const auto& [option, value] : surfaces) {
+            Words words = camera;
+            words.insert(words.end(), {option, value});
+            const std::string err = refusal(words);
+            EXPECT_NE(err.find(std::string(option) + ": needs a lens that is traced"),
+                      std::string::npos)
+                << err;
+        }
+    const std::pair<Words, std::string> cases[] = {
+        {{"--iris-sampling", "rejection"}, "--iris-sampling: a pinhole has no iris"},
+        {{"--aperture-scale", "inscribed"}, "--aperture-scale: a pinhole has no iris"},
+        {{"--exposure-mode", "normalised", "--iso", "400"}, "but with photographic"},
+        {{"--exposure-mode", "normalised", "--shutter", "1/50"}, "but with photographic"},
+        {{"--camera", "plan", "--focus", "2"}, "is orthographic"},
+        {{"--camera", "plan", "--aperture", "square"}, "is orthographic"},
+        {{"--camera", "plan", "--film-distance", "50"}, "is orthographic"},
+        {{"--camera", "plan", "--sensor", "36x24"}, "is orthographic"}};
+    for (const auto& [words, part] : cases) {
+        const std::string err = refusal(words);
+        EXPECT_NE(err.find(part), std::string::npos) << err;
+    }
+}
+
 TEST_F(CliCamera, RefusesWhatDoesNotGoTogether) {
     const std::pair<Words, std::string> cases[] = {
         {{"--lens", "pinhole", "--fstop", "2"}, "a pinhole has no iris"},
@@ -161,6 +308,8 @@ TEST_F(CliCamera, RefusesWhatDoesNotGoTogether) {
         {{"--lens", "singlet:schott:N-BK7,x", "--fstop", "4"}, "\"x\" is no number"},
         {{"--lens", "singlet:schott:N-BK7,0,5", "--fstop", "4"}, "a radius is 0"},
         {{"--lens", "singlet:schott:N-BK7,1,2,3", "--fstop", "4"}, "too many numbers"},
+        {{"--lens", "singlet:schott:N-BK7,50,", "--fstop", "4"}, "nothing follows the last comma"},
+        {{"--lens", "singlet:F2", "--fstop", "4"}, "several makers: say which of cdgm:F2"},
         {{"--lens", "singlet:schott:N-BK7,-50,50", "--fstop", "4"}, "gather"},
         {{"--lens", "singlet:schott:N-BK7,50,-50", "--fstop", "4", "--focal-length", "5"},
          "follows from the radii"},
@@ -175,8 +324,7 @@ TEST_F(CliCamera, RefusesWhatDoesNotGoTogether) {
         {{"--shutter", "1/0", "--exposure-mode", "photographic"}, "--shutter"},
         {{"--fstop", "2", "--focus", "1", "--aperture", "star:2"}, "star"}};
     for (const auto& [words, part] : cases)
-        EXPECT_NE(refusal(words).find(part), std::string::npos)
-            << part << " by " << words[1];
+        EXPECT_NE(refusal(words).find(part), std::string::npos) << part << " by " << words[1];
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Renders through lenses of glass, by the program.
+#include <cmath>
+
 #include "tests/support/cli.h"
 
 namespace petzval {
@@ -119,6 +121,124 @@ TEST_F(CliLens, FocusByTracedRaysMovesTheFilm) {
         return std::stof(metadata_of(p, "petzval:film_mm"));
     };
     EXPECT_NEAR(film_mm("traced") - film_mm("paraxial"), -0.38, 0.02);
+}
+
+// A lens that bends all wavelengths alike: index 1.5, f = 100 mm.
+const char* const kGrey = R"({"name": "grey", "image_circle": 43.27, "surfaces": [
+    {"radius": 100, "thickness": 0.5, "medium": {"n": 1.5}, "semi_diameter": 7},
+    {"radius": -100, "thickness": 0, "medium": null, "semi_diameter": 7},
+    {"radius": null, "thickness": 99, "medium": null, "semi_diameter": 6.25, "stop": true}]})";
+
+TEST_F(CliLens, GlassReflectsWhereItIsAskedTo) {
+    const std::string lens = text_file("grey.json", kGrey);
+    const auto grey = [&](const char* coating) {
+        return double(middle(flat({"--lens", lens, "--coating", coating, "--fstop", "16"}), "G"));
+    };
+    const double ideal = grey("ideal"), film = sqr((1.5 - 1.38 * 1.38) / (1.5 + 1.38 * 1.38));
+    EXPECT_NEAR(ideal, 1, 2e-3);
+    EXPECT_NEAR(grey("uncoated") / ideal, sqr(1 - 0.04), 2e-4);
+    // At line d a quarter wave of 550 nm is a little thin.
+    const double phase = M_PI * 550 / 587.5618, a = -0.38 / 2.38, b = -0.12 / 2.88;
+    const double both = 2 * a * b * std::cos(phase);
+    const double reflected = (a * a + b * b + both) / (1 + sqr(a * b) + both);
+    EXPECT_GT(reflected, film);
+    EXPECT_NEAR(grey("mgf2") / ideal, sqr(1 - reflected), 2e-4);
+}
+
+TEST_F(CliLens, DoublesAreAskedForAndAgree) {
+    const std::string walls_file = walls().save_gltf(folder_.path / "walls.gltf").string();
+    const auto picture = [&](const char* march) {
+        scene_ = walls_file;
+        return render({"--lens", "double-gauss-100mm-f2", "--march", march, "--background", "1,1,1",
+                       "--look-at", "-0.4,0,0,-0.4,0,-1", "--focus", "1", "--spp", "64"});
+    };
+    const Picture in_floats = picture("float"), in_doubles = picture("double");
+    EXPECT_NE(in_floats.pixels, in_doubles.pixels);
+    double sum = 0;
+    for (size_t i = 0; i < in_floats.pixels.size(); ++i)
+        sum += std::fabs(double(in_floats.pixels[i]) - double(in_doubles.pixels[i]));
+    EXPECT_LT(sum / double(in_floats.pixels.size()), 2e-3);
+}
+
+TEST_F(CliLens, AFilmLargerThanTheImageCircleIsSaid) {
+    const Words lens = {"--lens", "tessar-100mm-f2.8", "--focus", "3", "--sensor"};
+    const auto err = [&](const char* sensor) {
+        Words words = lens;
+        words.emplace_back(sensor);
+        const Finished done = run(words);
+        EXPECT_EQ(done.exit_code, 0) << done.err;
+        return done.err;
+    };
+    EXPECT_NE(err("120x120").find("covers a circle of 86.5 mm; the film's corners are 170 mm "),
+              std::string::npos);
+    EXPECT_EQ(err("36x24").find("covers"), std::string::npos);
+}
+
+// The picture is not that of a thin lens: a wall's edge is where the fisheye shows it.
+TEST_F(CliLens, FocusIsOnWhatThePixelShows) {
+    scene_ = walls().save_gltf(folder_.path / "walls.gltf").string();
+    const Words lens = {"--lens",    "minolta-fisheye-16mm-f2.8",
+                        "--look-at", "0,0,0,0,0,-1",
+                        "--size",    "180x120",
+                        "--crop",    "0,60,180,1",
+                        "--chroma",  "shared",
+                        "--focus"};
+    Words seen = lens;
+    seen.insert(seen.end(), {"1", "--fstop", "22", "--aov", "position", "--spp", "16"});
+    const Picture p = render(seen);
+    int edge = 0;
+    while (edge < 90 && std::fabs(value_at(p, edge, 0, "position.Z") + 1) > 0.01f) ++edge;
+    ASSERT_GT(edge, 20);
+    ASSERT_LT(edge, 80);
+    const auto focused_on = [&](int x) {
+        Words words = lens;
+        words.insert(words.end(), {std::to_string(x) + ",60", "-o", path("out.exr")});
+        return run_petzval(render_words(words, scene_));
+    };
+    const Finished wall = focused_on(edge + 2), nothing = focused_on(edge - 3);
+    EXPECT_EQ(wall.exit_code, 0) << wall.err;
+    EXPECT_NEAR(std::stof(metadata_of(read_picture(path("out.exr")), "petzval:focus_m")), 1, 1e-4);
+    EXPECT_EQ(nothing.exit_code, 2);
+    EXPECT_NE(nothing.err.find("nothing to focus on under pixel"), std::string::npos);
+}
+
+// Lanes that left the film went out or were lost to a cause; a thin lens has none to lose.
+TEST_F(CliLens, StatsTellWhatBecameOfTheLanes) {
+    const auto lanes = [&](const Words& more) {
+        Words words = {"--stats", path("s.json")};
+        words.insert(words.end(), more.begin(), more.end());
+        (void)flat(words);
+        return nlohmann::json::parse(file_bytes(path("s.json"))).at("lens_lanes");
+    };
+    const int samples = 30 * 20 * 256;
+    const auto sum = [](const nlohmann::json& l) {
+        int all = 0;
+        for (const auto& [key, count] : l.items())
+            if (key != "drawn") all += count.get<int>();
+        return all;
+    };
+    const std::pair<Words, int> cases[] = {
+        {{"--lens", "takumar-50mm-f1.2", "--chroma", "split"}, 4},
+        {{"--lens", "takumar-50mm-f1.2", "--chroma", "single"}, 1},
+        {{"--lens", "takumar-50mm-f1.2", "--chroma", "shared"}, 3},
+        {{"--lens", "takumar-50mm-f1.2", "--chroma", "split", "--march", "double"}, 4}};
+    for (const auto& [words, each] : cases) {
+        const nlohmann::json l = lanes(words);
+        EXPECT_EQ(l.size(), 6u);
+        EXPECT_EQ(l.at("drawn"), samples * each);
+        EXPECT_EQ(sum(l), samples * each) << l;
+        EXPECT_GT(l.at("vignetted"), samples * each / 10);
+        EXPECT_GT(l.at("passed"), samples * each / 2);
+    }
+    const nlohmann::json wide =
+        lanes({"--lens", "canon-14mm-f2.8-asph", "--chroma", "shared", "--sensor", "45x30"});
+    for (const char* cause : {"vignetted", "totally_reflected", "missed"})
+        EXPECT_GT(wide.at(cause), 0) << cause;
+    EXPECT_EQ(sum(wide), wide.at("drawn"));
+    const nlohmann::json beyond =
+        lanes({"--lens", "double-gauss-100mm-f2", "--chroma", "shared", "--sensor", "300x200"});
+    EXPECT_GT(beyond.at("unreached"), samples);
+    EXPECT_TRUE(lanes({"--lens", "thin", "--fstop", "2"}).is_null());
 }
 
 }  // namespace

@@ -86,8 +86,11 @@ TEST_F(Cli, Lens) {
     EXPECT_EQ(metadata_of(p, "petzval:sensorHeight_mm"), "20.000000");
     EXPECT_EQ(metadata_of(p, "petzval:focalLength_mm"), "50.000000");
     EXPECT_EQ(metadata_of(p, "petzval:lensRadius_m"), "0.012500");
-    EXPECT_EQ(metadata_of(p, "petzval:fov_deg"), "22.619865");  // 2 atan(10 / 50)
     EXPECT_NEAR(std::stod(metadata_of(p, "petzval:focus_m")), 2, 1e-5);
+    // 2 atan(10 / S'), where 1 / S' = 1 / 50 - 1 / 2000: the film goes back to focus.
+    EXPECT_NEAR(std::stod(metadata_of(p, "petzval:fov_deg")), 22.068414, 1e-4);
+    EXPECT_EQ(metadata_of(render({"--focal-length", "50", "--sensor", "40x20"}), "petzval:fov_deg"),
+              "22.619865");  // 2 atan(10 / 50)
 
     const auto focus_of = [&](const std::string& focus) {
         const Picture q = render({"--lens-radius", "0.1", "--focus", focus});

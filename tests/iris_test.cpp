@@ -377,6 +377,33 @@ TEST(Iris, RulesForContoursInContours) {
     EXPECT_TRUE(uniform_over(frame(), Iris(nested, kStop_mm), 95));
 }
 
+// What a rim cuts off is not drawn; what is left is drawn evenly, and keeps its brightness.
+TEST(Iris, ARimCutsWhatLiesBeyond) {
+    for (const auto& [name, shape] : shapes())
+        for (const IrisSampling way : iris_samplings(shape)) {
+            const Iris whole(shape, 1, ApertureScale::EqualArea, way);
+            const double rim = 0.8 * double(whole.bounding_radius_mm());
+            const double lost = whole.share_beyond(rim);
+            const Iris cut(shape, 1, ApertureScale::EqualArea, way, rim);
+            EXPECT_NEAR(cut.share_cut(), lost, 1e-12);
+            if (lost == 0 || lost > 0.9) continue;
+            EXPECT_NEAR(cut.area_mm2(), whole.area_mm2() * (1 - lost), 1e-9) << name;
+            // Of two that halve the cut shape's points, each has the share that its area says.
+            const double inner = 0.7 * rim;
+            const double expected = (1 - whole.share_beyond(inner)) / (1 - lost);
+            Random random(77);
+            test::Moments inside;
+            for (int i = 0; i < 40000; ++i) {
+                const V2f p = cut.sample(random.next2());
+                ASSERT_LE(p.length(), rim * (1 + 1e-6)) << name;
+                inside.add(p.length() <= inner);
+            }
+            EXPECT_TRUE(test::z_test(inside.mean(), inside.standard_error(), expected))
+                << name << ", way " << int(way) << ": " << inside.mean() << ", not " << expected;
+            EXPECT_EQ(cut.transmits({float(rim) * 1.01f, 0}), 0.f);
+        }
+}
+
 TEST(Iris, RefusesWhatIsNotThere) {
     for (const double radius : {0.0, -1.0, 1e-30, double{NAN}, HUGE_VAL})
         EXPECT_THAT(complaint([&] { (void)Iris(Disk(), radius); }), HasSubstr("radius"));

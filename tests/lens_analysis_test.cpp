@@ -218,6 +218,17 @@ TEST(LensAnalysis, ComparesWhatTheFileStates) {
     EXPECT_EQ(*field_half_deg(wide), 57);
 }
 
+// Each section of an anamorphic lens has its own field, there and back.
+TEST(LensAnalysis, FieldsOfHeightsAreThoseOfTheirSection) {
+    const Lens lens(read_lens("schneider-anamorphic-31mm"));
+    for (const Section section : {Section::X, Section::Y}) {
+        const ObjectPoint object{.field_deg = 11, .section = section};
+        const auto height_mm = chief_height_mm(lens, object, lens.film_mm());
+        ASSERT_TRUE(height_mm);
+        EXPECT_NEAR(*field_of_height_deg(lens, *height_mm, lens.film_mm(), section), 11, 1e-6);
+    }
+}
+
 TEST(LensAnalysis, SaysWhereNoRayGetsThrough) {
     const Lens lens(read_lens("kodak-petzval-100mm-f2"));
     EXPECT_FALSE(Beam::aim(lens, {.field_deg = 100}, kLineD_nm));

@@ -50,6 +50,12 @@ Bands four_wavelengths() {
     return bands;
 }
 
+int first_lane(const CameraPath& path) {
+    int lane = 0;
+    while (lane < 3 && !path.lanes[lane]) ++lane;
+    return lane;
+}
+
 FilmPoint film_point(V2f film, uint32_t index) {
     return {film, Sampler(SamplerKind::Owen, 7, {0, 0, index})};
 }
@@ -165,8 +171,113 @@ TEST(LensCameraSample, GainIsInTheWeight) {
     LensCamera camera(in);
     const FilmPoint at = film_point({0.5f, 0.5f}, 1);
     const float before = camera.sample(at, Bands::rgb()).path[0].weight[0];
-    camera.set_gain(2);
+    camera.set_exposure(2, 1);
     EXPECT_FLOAT_EQ(camera.sample(at, Bands::rgb()).path[0].weight[0], 2 * before);
+}
+
+// Lanes share a ray where they meet the plane of focus within the tolerance: on a close one it
+// matters how far the lens's front stands before its pupil. Rays that lead backwards meet no plane,
+// and none are shared.
+TEST(LensCameraSample, AutoSharesWhatMeetsOnThePlaneOfFocus) {
+    const V3f eye(1, 2, 3), ahead(0.48f, -0.6f, -0.64f);
+    const Bands bands = four_wavelengths();
+    for (const auto& [name, side_mm] : {std::pair{kTakumar, 24.}, {kFisheye, 38.}}) {
+        LensCameraInput in = input_of(name);
+        in.film_width_mm = in.film_height_mm = side_mm;
+        in.focus_m = 0.15f;
+        in.tolerance_rad = 3e-4f;
+        const LensCamera split(in);
+        in.chroma = Chroma::Auto;
+        const LensCamera automatic(in);
+        test::Random random(8);
+        int shared = 0, parted = 0, backwards = 0;
+        for (uint32_t i = 0; i < 20000; ++i) {
+            const FilmPoint at = film_point(random.next2(), i);
+            const CameraSample a = split.sample(at, bands), b = automatic.sample(at, bands);
+            if (a.count < 2) continue;
+            const Ray &first = a.path[0].ray, &second = a.path[1].ray;
+            const bool together = b.path[0].lanes[first_lane(a.path[1])] != 0;
+            const float cosine1 = first.direction.dot(ahead), cosine2 = second.direction.dot(ahead);
+            if (cosine1 <= 0 || cosine2 <= 0) {
+                ++backwards;
+                ASSERT_FALSE(together);
+                continue;
+            }
+            const auto on_plane = [&](const Ray& ray, float cosine) {
+                return ray.origin +
+                       ray.direction * ((in.focus_m - (ray.origin - eye).dot(ahead)) / cosine);
+            };
+            const float apart =
+                (on_plane(first, cosine1) - on_plane(second, cosine2)).length() / in.focus_m;
+            if (std::fabs(apart / in.tolerance_rad - 1) < 0.02f) continue;  // rounding
+            ASSERT_EQ(together, apart < in.tolerance_rad) << name << ' ' << apart;
+            ++(together ? shared : parted);
+        }
+        EXPECT_GT(shared, 100) << name;
+        EXPECT_GT(parted, 100) << name;
+        if (name == kFisheye) {
+            EXPECT_GT(backwards, 20);
+        }
+    }
+}
+
+// Where the fisheye's image ends: rims take rays first; beyond a field of 90 degrees rays graze the
+// front surface, then are totally reflected within it, before the film point sees no stop at all.
+TEST(LaneFates, AtTheFisheyesRimRaysGrazeThenAreTotallyReflected) {
+    const LensCameraInput in = input_of(kFisheye, Chroma::Shared);
+    LensCameraInput bare = in;
+    bare.coating = Coating::Uncoated;
+    const LensCamera camera(in), uncoated(bare);
+    const double radius_mm = 1 / in.lens->prescription().surfaces.front().curvature_1_mm;
+    struct Rim {
+        LaneFates<uint64_t> lanes;
+        double least_ahead = 1, least_cosine = 1, least_transmitted = 1;
+    };
+    const auto at = [&](float height_mm) {
+        Rim rim;
+        test::Random random(6);
+        for (int i = 0; i < 4000; ++i) {
+            const V2f u = random.next2(), film(0, height_mm);
+            const auto drawn = camera.draw<f4>(film, u, 0, Bands::rgb());
+            const auto lossy = uncoated.draw<f4>(film, u, 0, Bands::rgb());
+            rim.lanes += drawn.lanes;
+            const double weight = double(drawn.weight[0]);
+            EXPECT_EQ(weight > 0, drawn.lanes.lost() == 0);
+            if (!(weight > 0)) continue;
+            const auto &o = drawn.ray.origin, &d = drawn.ray.direction;
+            const V3d from_centre(o.x[0], o.y[0], double(o.z[0]) - radius_mm);
+            const double cosine = from_centre.dot(V3d(d.x[0], d.y[0], d.z[0])) / radius_mm;
+            const double transmitted = double(lossy.weight[0]) / weight;
+            EXPECT_GE(transmitted, 0);
+            EXPECT_LT(transmitted, 1);
+            rim.least_ahead = std::min(rim.least_ahead, -double(d.z[0]));
+            if (cosine < rim.least_cosine) {
+                rim.least_cosine = cosine;
+                rim.least_transmitted = transmitted;
+            }
+        }
+        return rim;
+    };
+    for (const float height_mm : {18.f, 21.6f, 22.f}) {
+        const Rim rim = at(height_mm);
+        EXPECT_GT(rim.lanes.vignetted, rim.lanes.drawn / 50);
+        EXPECT_EQ(rim.lanes.lost(), rim.lanes.vignetted) << height_mm;
+        EXPECT_GT(rim.least_transmitted, 0.25) << height_mm;
+        EXPECT_EQ(rim.least_ahead<0, height_mm> 21.8f) << height_mm;
+    }
+    const Rim last = at(23);
+    EXPECT_LT(last.least_ahead, -0.25);  // 15 degrees beyond a right angle
+    EXPECT_LT(last.least_cosine, 0.01);
+    EXPECT_LT(last.least_transmitted, 0.02);
+    EXPECT_GT(last.lanes.totally_reflected, last.lanes.drawn / 10);
+    EXPECT_LT(last.lanes.lost(), last.lanes.drawn);
+    for (const float height_mm : {24.f, 25.f, 28.f}) {
+        const LaneFates<uint64_t> dark = at(height_mm).lanes;
+        EXPECT_EQ(dark.lost(), dark.drawn) << height_mm;
+        EXPECT_EQ(dark.totally_reflected > 0, height_mm < 26) << height_mm;
+        EXPECT_EQ(dark.unreached > 0, height_mm > 26) << height_mm;
+        EXPECT_EQ(dark.missed, 0u);
+    }
 }
 
 /// Of many samples over a film. Every sample's lanes must add up.

@@ -91,12 +91,12 @@ fi
 picture chromatic_aberration 480x320 $ornaments --lens singlet:schott:N-SF11,0.7 --fov 16 \
     --look-at 0,-0.1,0,0,-0.1,-1 --focal-length 200 --fstop 4 --focus 2m
 
-# The built-in scene through six cameras. Those of longer focal length stand farther back, and look
-# a little higher, at the lamps; the fisheye stands nearer.
+# The built-in scene through six cameras. Those of longer focal length stand farther back, the Petzval looks a
+# little higher, at the lamps, and the fisheye stands nearer.
 picture pinhole 480x320 $dusk
 picture thin 480x320 $dusk --fstop 2 --focus 1m
 picture double_gauss 480x320 $dusk --lens double-gauss-100mm-f2 \
-    --look-at 0,1.133,0.994,0,1.06,0 --focus 2m
+    --look-at 0,1.133,0.994,0,1.02,0 --focus 2m
 picture petzval 480x320 $dusk --lens kodak-petzval-100mm-f2 \
     --look-at 0,1.303,2.484,0,1.09,0 --focus 3.5m
 picture fisheye 480x320 $dusk --lens minolta-fisheye-16mm-f2.8 \

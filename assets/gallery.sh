@@ -67,8 +67,8 @@ done
 more=1
 
 # An ideal lens on the left, one of N-BK7 on the right; shared wavelengths leave its colours out.
-# First what is sharp; then lamps behind and before the sharp plane, from between ornaments and lamps, through
-# a lens so wide that their discs are larger than they are.
+# First what is sharp; then lamps behind and before the sharp plane, from between ornaments and
+# lamps, through a lens so wide that their discs are larger than they are.
 if is_wanted spherical_aberration; then
     among_lamps=(--look-at 0,0,-2.2,0,0,-4 --fov 22 --focal-length 800 --lens-radius 0.15)
     panels=()
@@ -91,8 +91,8 @@ fi
 picture chromatic_aberration 480x320 $ornaments --lens singlet:schott:N-SF11,0.7 --fov 16 \
     --look-at 0,-0.1,0,0,-0.1,-1 --focal-length 200 --fstop 4 --focus 2m
 
-# The built-in scene through six cameras. Those of longer focal length stand farther back, the Petzval looks a
-# little higher, at the lamps, and the fisheye stands nearer.
+# The built-in scene through six cameras. Those of longer focal length stand farther back, the
+# Petzval looks a little higher, at the lamps, and the fisheye stands nearer.
 picture pinhole 480x320 $dusk
 picture thin 480x320 $dusk --fstop 2 --focus 1m
 picture double_gauss 480x320 $dusk --lens double-gauss-100mm-f2 \

@@ -12,7 +12,7 @@ render: build
 	build/bin/petzval render assets/scenes/first_light.glb --fstop 2 --focus 1m --size 960x540 --spp 256 \
 	    -o out/first_light.exr -o out/first_light.png
 
-# About ten minutes on eight cores; GALLERY_SPP=16 for a first look.
+# About half an hour of CPU time; GALLERY_SPP=16 for a first look.
 gallery: build
 	GALLERY_DOCS=docs/gallery assets/gallery.sh
 

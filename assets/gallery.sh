@@ -19,19 +19,34 @@ wanted=("$@")
 known=()
 mkdir -p "$out" ${GALLERY_DOCS:+"$GALLERY_DOCS"}
 
-# picture NAME WIDTHxHEIGHT RENDER_ARGUMENTS...: shape is what the JPEG is resized to.
-shape=
-picture() {
+# is_wanted NAME: whether to render it; every picture asks, and so is known.
+is_wanted() {
+    known+=("$1")
+    [[ ${#wanted[@]} -eq 0 || " ${wanted[*]} " == *" $1 "* ]]
+}
+
+# render NAME WIDTHxHEIGHT RENDER_ARGUMENTS... of one frame; more: how often GALLERY_SPP.
+more=1
+render() {
     local name=$1 size=$2
     shift 2
-    known+=("$name")
-    [[ ${#wanted[@]} -eq 0 || " ${wanted[*]} " == *" $name "* ]] || return 0
-    echo "$name: petzval render $* --size $size --spp $spp"
-    "$petzval" render "$@" --size "$size" --spp "$spp" --progress none \
+    echo "$name: petzval render $* --size $size --spp $((spp * more))"
+    "$petzval" render "$@" --size "$size" --spp $((spp * more)) --progress none \
         -o "$out/$name.exr" -o "$out/$name.png"
-    oiiotool "$out/$name.png" --ch R,G,B ${shape:+--resize "$shape"} --compression jpeg:78 \
-        -o "$out/$name.jpg"
+}
+
+# jpeg NAME OIIOTOOL_ARGUMENTS... of what those arguments leave
+jpeg() {
+    local name=$1
+    shift
+    oiiotool "$@" --ch R,G,B --compression jpeg:78 -o "$out/$name.jpg"
     [[ -z ${GALLERY_DOCS:-} ]] || cp "$out/$name.jpg" "$GALLERY_DOCS/"
+}
+
+picture() {
+    is_wanted "$1" || return 0
+    render "$@"
+    jpeg "$1" "$out/$1.png"
 }
 
 # What is sharp, and how deep: ornaments at 1 m and 2 m through a thin lens that is 2 cm or 10 cm
@@ -39,45 +54,69 @@ picture() {
 # ratio of five.
 picture focus_1_aperture_0.1 480x320 $ornaments --lens-radius 0.01 --focus 1m
 picture focus_2_aperture_0.1 480x320 $ornaments --lens-radius 0.01 --focus 2m
-picture focus_1_aperture_0.5 480x320 $ornaments --lens-radius 0.05 --focus 1m
 picture focus_2_aperture_0.5 480x320 $ornaments --lens-radius 0.05 --focus 2m
+more=4 # the wider a lamp's disc, the fewer samples find the lamp
+picture focus_1_aperture_0.5 480x320 $ornaments --lens-radius 0.05 --focus 1m
 
-# The four shapes, in the round iris's area: every lamp becomes one.
+# The four shapes, in the round iris's area: every lamp becomes one. The narrow view has large ones.
+more=2
 for iris in triangle rhomboid star:5 frame; do
-    picture "iris_${iris%:*}" 480x320 $ornaments --lens thin --lens-radius 0.03 --focus 1m \
-        --aperture "$iris"
+    picture "iris_${iris%:*}" 480x320 $ornaments --lens thin --fov 26 --lens-radius 0.045 \
+        --focus 1m --aperture "$iris"
 done
+more=1
 
-# One lens of N-BK7, curved alike on both sides (bending 0): a haze about all that is sharp, and
-# discs with a bright rim or a bright middle. Shared wavelengths leave its colours out.
-picture spherical_aberration 480x320 $ornaments --lens singlet:schott:N-BK7,0 --focal-length 33 \
-    --fstop 2 --focus 1m --chroma shared
-# One lens of dense flint, small enough that colour is what is left to see.
-picture chromatic_aberration 480x320 $ornaments --lens singlet:schott:N-SF11,0.7 --focal-length 33 \
-    --fstop 5.6 --focus 1m
+# An ideal lens on the left, one of N-BK7 on the right; shared wavelengths leave its colours out.
+# First what is sharp; then lamps behind and before the sharp plane, from between ornaments and
+# lamps, through a lens so wide that their discs are larger than they are.
+if is_wanted spherical_aberration; then
+    among_lamps=(--look-at 0,0,-2.2,0,0,-4 --fov 22 --focal-length 800 --lens-radius 0.15)
+    panels=()
+    for row in sharp behind before; do
+        case $row in
+            sharp) view=(--look-at -0.1,-0.04,0,-0.1,-0.04,-1 --fov 24 --focal-length 60 --fstop 3.5
+                         --focus 1m) ;;
+            behind) view=("${among_lamps[@]}" --focus 2m --exposure -0.5) ;;
+            before) view=("${among_lamps[@]}" --focus 100m --exposure -0.5) ;;
+        esac
+        for lens in thin singlet:schott:N-BK7,0; do
+            panels+=("$out/spherical_${row}_${lens%%:*}.png")
+            render "spherical_${row}_${lens%%:*}" 360x240 $ornaments --lens $lens --chroma shared \
+                "${view[@]}"
+        done
+    done
+    jpeg spherical_aberration "${panels[@]}" --mosaic:pad=4 2x3
+fi
+# One lens of dense flint, bent for the least spherical aberration, so that colour is what is seen.
+picture chromatic_aberration 480x320 $ornaments --lens singlet:schott:N-SF11,0.7 --fov 16 \
+    --look-at 0,-0.1,0,0,-0.1,-1 --focal-length 200 --fstop 4 --focus 2m
 
-# The built-in scene through six cameras. Those of longer focal length stand farther back, on the
-# axis of the file's camera, so that all but the fisheye see the same table.
-back_1m=0,1.133,0.994,0,1.02,0
-back_2_5m=0,1.303,2.484,0,1.02,0
+# The built-in scene through six cameras. Those of longer focal length stand farther back, the
+# Petzval looks a little higher, at the lamps, and the fisheye stands nearer.
 picture pinhole 480x320 $dusk
 picture thin 480x320 $dusk --fstop 2 --focus 1m
-picture double_gauss 480x320 $dusk --lens double-gauss-100mm-f2 --look-at $back_1m --focus 2m
-picture petzval 480x320 $dusk --lens kodak-petzval-100mm-f2 --look-at $back_2_5m --focus 3.5m
-picture fisheye 480x320 $dusk --lens minolta-fisheye-16mm-f2.8 --look-at 0,1.15,-0.45,0,1,-1.5 \
-    --focus 0.6m
+picture double_gauss 480x320 $dusk --lens double-gauss-100mm-f2 \
+    --look-at 0,1.133,0.994,0,1.02,0 --focus 2m
+picture petzval 480x320 $dusk --lens kodak-petzval-100mm-f2 \
+    --look-at 0,1.303,2.484,0,1.09,0 --focus 3.5m
+picture fisheye 480x320 $dusk --lens minolta-fisheye-16mm-f2.8 \
+    --look-at 0,1.15,-0.45,0,1,-1.5 --focus 0.6m
 # The film holds everything half as wide as it is; the JPEG is stretched.
-shape=640x320
-picture anamorphic 320x320 $dusk --lens schneider-anamorphic-31mm --look-at $back_1m --focus 2m
-shape=
+if is_wanted anamorphic; then
+    render anamorphic 320x320 $dusk --lens schneider-anamorphic-31mm \
+        --look-at 0,1.133,0.994,0,1.02,0 --focus 2m
+    jpeg anamorphic "$out/anamorphic.png" --resize 640x320
+fi
 
-# What a real lens does to lamps and edges. The fringes are a piece of a large frame, near its corner.
+# What a real lens does to lamps and edges. The fringes are a piece of a large frame.
+more=2
 picture cats_eyes 480x320 $ornaments --lens takumar-50mm-f1.2 --focus 0.6m \
-    --look-at -0.12,-0.06,-0.4,-0.12,-0.06,-1
+    --look-at 0,0,-0.4,0,0,-1
+more=1
 picture star 480x320 $ornaments --lens double-gauss-100mm-f2 --focus 1m --aperture star:5 \
     --aperture-scale inscribed --look-at -0.1,-0.06,0,-0.1,-0.06,-1
-picture fringes 1920x1280 $ornaments --lens petzval-portrait-100mm-f3.6 --crop 0,905,420,280 \
-    --look-at -0.12,0,1,-0.12,0,-1 --focus 2m
+picture fringes 1920x1280 $ornaments --lens petzval-portrait-100mm-f3.6 --crop 754,520,480,320 \
+    --look-at 0,-0.17,3,0,-0.17,-1 --focus 4.6m
 
 for name in "${wanted[@]}"; do
     [[ " ${known[*]} " == *" $name "* ]] || {

@@ -110,11 +110,11 @@ std::string script(const char* terminal_name, const Plot& plot) {
         const PlotSeries& series = plot.series[i];
         text += fmt::format("$series{} << end\n{}end\n", i, rows(series, plot.logarithmic));
         const bool bars = !series.y_bounds.empty();
-        lines += fmt::format("{}$series{} using {} with {} linewidth 2 {}{}",
-                             i == 0 ? "plot " : ", ", i, bars ? "1:2:3:4" : "1:2",
-                             bars ? "yerrorlines" : style_name(series.style),
-                             series.grey ? "linecolor 'gray40' " : "",
-                             series.label.empty() ? "notitle" : "title " + quoted(series.label));
+        lines +=
+            fmt::format("{}$series{} using {} with {} linewidth 2 {}{}", i == 0 ? "plot " : ", ", i,
+                        bars ? "1:2:3:4" : "1:2", bars ? "yerrorlines" : style_name(series.style),
+                        series.grey ? "linecolor 'gray40' " : "",
+                        series.label.empty() ? "notitle" : "title " + quoted(series.label));
     }
     return text + lines + "\n";
 }

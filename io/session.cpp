@@ -48,8 +48,7 @@ std::vector<std::pair<std::string, std::string>> describe(const SceneRequest& re
         m.emplace_back("petzval:environmentStrength",
                        fmt::format("{:.9g}", request.environment_strength));
     }
-    if (const auto& b = request.background)
-        m.emplace_back("petzval:background", with_commas(*b));
+    if (const auto& b = request.background) m.emplace_back("petzval:background", with_commas(*b));
     m.emplace_back("petzval:lightChoice",
                    request.light_choice == LightChoiceKind::Power ? "power" : "uniform");
     m.emplace_back("petzval:traversal", request.traversal == Traversal::Robust ? "robust" : "fast");

@@ -128,15 +128,14 @@ SpectralSetup set_up_spectra(const SpectralRequest& request, const Scene& scene,
 
     if (request.white_balance == WhiteBalance::Illuminant)
         setup.scale = "RGB 1 = 1 nit of the illuminant";
-    setup.metadata = {
-        {"petzval:spectral", "hero"},
-        {"petzval:illuminant", name_and_hash(request.illuminant)},
-        {"petzval:response", name_and_hash(request.response)},
-        {"petzval:whiteBalance",
-         request.white_balance == WhiteBalance::None ? "none" : "illuminant"},
-        {"petzval:responseToSrgb",
-         fmt::format("{};{};{}", with_commas(in.matrix[0]), with_commas(in.matrix[1]),
-                     with_commas(in.matrix[2]))}};
+    setup.metadata = {{"petzval:spectral", "hero"},
+                      {"petzval:illuminant", name_and_hash(request.illuminant)},
+                      {"petzval:response", name_and_hash(request.response)},
+                      {"petzval:whiteBalance",
+                       request.white_balance == WhiteBalance::None ? "none" : "illuminant"},
+                      {"petzval:responseToSrgb",
+                       fmt::format("{};{};{}", with_commas(in.matrix[0]), with_commas(in.matrix[1]),
+                                   with_commas(in.matrix[2]))}};
     return setup;
 }
 

@@ -27,7 +27,7 @@ inline const char* const kOracleLenses[] = {
 
 /// Of different shapes: spheres, aspheres, cylinders, and a field beyond 90 degrees.
 inline const char* const kLensKinds[] = {"double-gauss-100mm-f2", "canon-14mm-f2.8-asph",
-                              "schneider-anamorphic-31mm", "minolta-fisheye-16mm-f2.8"};
+                                         "schneider-anamorphic-31mm", "minolta-fisheye-16mm-f2.8"};
 
 /// Glasses are tables of the oracle's indices at the lines F, d and C.
 [[nodiscard]] inline Prescription read_lens(const std::string& name) {

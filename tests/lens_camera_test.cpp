@@ -12,12 +12,13 @@
 
 #include "camera/lens_march.h"
 #include "camera/paraxial.h"
-#include "tests/support/lens_json.h"
+#include "tests/support/lens_cameras.h"
 #include "tests/support/statistics.h"
 
 namespace petzval {
 namespace {
 
+using test::four_wavelengths;
 using test::Moments;
 using test::read_lens;
 using test::read_oracle;
@@ -42,15 +43,6 @@ LensCameraInput input_of(const std::string& name, const Setup& setup = {}) {
     in.entrance_pupil_mm = first_order(*lens, kLineD_nm).entrance_pupil_mm;
     in.chroma = setup.chroma;
     return in;
-}
-
-/// Inside the lines F to C, between which the glasses of read_lens have their dispersion.
-Bands four_wavelengths() {
-    Bands bands = Bands::rgb();
-    bands.spectral = true;
-    bands.nm = f4{490, 530, 610, 652};
-    bands.on = m4{-1, -1, -1, -1};
-    return bands;
 }
 
 /// Irradiance over radiance at a film point, lane by lane.

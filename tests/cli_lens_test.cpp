@@ -54,6 +54,24 @@ TEST_F(CliLens, CornersAreDarkerAndOpaque) {
     EXPECT_EQ(value_at(p, 0, 0, "A"), 1.f);
 }
 
+// What is laid under a transparent picture is darkened as the lens darkens the sky.
+TEST_F(CliLens, AlphaIsWhatTheLensKeepsBack) {
+    const Words lens = {"--lens", "takumar-50mm-f1.2", "--chroma", "shared"};
+    Words photographic = lens;
+    photographic.insert(photographic.end(), {"--exposure-mode", "photographic", "--iso", "400"});
+    for (const Words& words : {lens, photographic}) {
+        Words clear = words;
+        clear.emplace_back("--transparent");
+        const Picture sky = flat(words), under = flat(clear);
+        const float white = value_at(sky, 15, 10, "G");
+        for (const V2i& at : {V2i(0, 0), V2i(4, 9), V2i(15, 10)})
+            EXPECT_NEAR(value_at(under, at.x, at.y, "A"),
+                        1 - value_at(sky, at.x, at.y, "G") / white, 0.01)
+                << at.x;
+        EXPECT_GT(value_at(under, 0, 0, "A"), 0.6f);
+    }
+}
+
 TEST_F(CliLens, RefusesWhatALensCannotDo) {
     const std::pair<Words, std::string> cases[] = {
         {{"--lens", "takumar"}, "takumar"},

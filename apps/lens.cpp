@@ -27,12 +27,6 @@ std::shared_ptr<const Lens> open_lens(const LensRequest& request) {
     return std::make_shared<const Lens>(std::move(file.lens));
 }
 
-bool has_cylinders(const Lens& lens) {
-    const auto& surfaces = lens.prescription().surfaces;
-    return std::any_of(surfaces.begin(), surfaces.end(),
-                       [](const auto& s) { return s.profile != Profile::Rotational; });
-}
-
 void add_lens_commands(CLI::App& app) {
     CLI::App* lens = app.add_subcommand("lens", "an optics bench: show, check and trace lenses");
     lens->require_subcommand(1);

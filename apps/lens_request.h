@@ -21,8 +21,6 @@ void add_lens_request(CLI::App&, LensRequest&);
 /// The lens, made ready; its file's warnings go to stderr.
 [[nodiscard]] std::shared_ptr<const Lens> open_lens(const LensRequest&);
 
-[[nodiscard]] bool has_cylinders(const Lens&);
-
 void add_lens_table_commands(CLI::App& lens);     ///< list, show, check
 void add_lens_trace_commands(CLI::App& lens);     ///< draw, trace
 void add_lens_analysis_commands(CLI::App& lens);  ///< spot, fan, mtf, distortion, vignetting

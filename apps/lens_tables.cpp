@@ -85,7 +85,7 @@ Check check(const Lens& lens) {
     out.traced_fnumber = fnumber_of(lens, lens.prescription().surfaces[stop].semi_diameter_mm);
     for (const auto& [name, nm] : kLines) {
         const std::string line = fmt::format("{} {:.4f} nm", name, nm);
-        if (!has_cylinders(lens)) {
+        if (lens.of_revolution()) {
             out.first_order.push_back({line, first_order(lens, nm)});
             continue;
         }
@@ -93,7 +93,7 @@ Check check(const Lens& lens) {
         out.first_order.push_back({line + ", x", first_order(lens, nm, Section::X)});
     }
     out.stated = stated_figures(lens);
-    if (has_cylinders(lens)) return out;
+    if (!lens.of_revolution()) return out;
     // The sums are for the tangent of the field, which grows without bounds.
     constexpr double widest_deg = 60;
     out.field_deg = field_half_deg(lens.prescription());

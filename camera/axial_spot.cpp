@@ -49,11 +49,7 @@ double AxialSpot::best_shift_mm() const {
 std::optional<AxialSpot> axial_spot(const Lens& lens, double object_mm, double film_mm,
                                     double stop_radius_mm) {
     constexpr int rings = 100, azimuths_with_cylinders = 24;
-    const auto& surfaces = lens.prescription().surfaces;
-    const bool round = std::all_of(surfaces.begin(), surfaces.end(), [](const LensSurface& s) {
-        return s.profile == Profile::Rotational;
-    });
-    const int azimuths = round ? 1 : azimuths_with_cylinders;
+    const int azimuths = lens.of_revolution() ? 1 : azimuths_with_cylinders;
     AxialSpot sum;
     int lines = 0;
     for (const double nm : {kLineF_nm, kLineD_nm, kLineC_nm}) {

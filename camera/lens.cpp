@@ -122,6 +122,11 @@ double Lens::film_mm() const {
     return vertices_mm_.back() + prescription_.surfaces.back().thickness_mm;
 }
 
+bool Lens::of_revolution() const {
+    return std::all_of(prescription_.surfaces.begin(), prescription_.surfaces.end(),
+                       [](const LensSurface& s) { return s.profile == Profile::Rotational; });
+}
+
 void Lens::set_thickness(int surface, double mm) {
     const auto i = static_cast<size_t>(surface);
     if (!std::isfinite(mm)) refuse(i, "has a number that is not finite");

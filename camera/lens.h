@@ -69,6 +69,8 @@ class Lens {
     /// Moves what lies behind a surface to this distance from it; what is known of the glasses
     /// stays. std::invalid_argument where it is not finite.
     void set_thickness(int surface, double mm);
+    /// Whether it is the same at every azimuth: no cylinder.
+    [[nodiscard]] bool of_revolution() const;
     /// Air, then each glass once.
     [[nodiscard]] const std::vector<Glass>& media() const { return media_; }
 

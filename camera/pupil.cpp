@@ -18,12 +18,6 @@ V2f turned(V2f p, V2f cosine_sine) {
     return {p.x * cosine_sine.x - p.y * cosine_sine.y, p.x * cosine_sine.y + p.y * cosine_sine.x};
 }
 
-bool of_revolution(const Lens& lens) {
-    const auto& surfaces = lens.prescription().surfaces;
-    return std::all_of(surfaces.begin(), surfaces.end(),
-                       [](const auto& s) { return s.profile == Profile::Rotational; });
-}
-
 // Lagrange's cubic through the nodes 0, 1, 2, 3: their weights at t.
 f4 cubic(float t) {
     const float a = t - 1, b = t - 2, c = t - 3;
@@ -63,7 +57,7 @@ Pupil::Pupil(const Lens& lens, double film_mm, double film_reach_mm)
       film_mm_(film_mm),
       stop_radius_mm_(static_cast<float>(
           lens.prescription().surfaces[static_cast<size_t>(lens.stop())].semi_diameter_mm)),
-      symmetric_(of_revolution(lens)) {
+      symmetric_(lens.of_revolution()) {
     const float reach = static_cast<float>(film_reach_mm), radius = stop_radius_mm_;
     // So fine that a guess is a solution for nearly all rays, so coarse that a lens is set up in
     // milliseconds: lens_camera_bench.

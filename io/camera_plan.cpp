@@ -62,17 +62,18 @@ std::vector<AgfCatalog> open_catalogs(const CameraRequest& asked) {
     return catalogs;
 }
 
-// A text with or without its maker.
-Glass find_singlet_glass(const std::string& text, LensGlasses& glasses, const ArgumentError& no) {
+// A text with or without its maker; `refuse` makes the error of why there is none.
+Glass find_singlet_glass(const std::string& text, LensGlasses& glasses, const auto& refuse) {
     if (auto glass = glasses.find(text)) return *std::move(glass);
     std::vector<Glass> found = glasses.of_any_maker(text);
     if (found.size() == 1) return std::move(found.front());
-    if (found.empty()) throw no;
+    if (found.empty())
+        throw refuse(fmt::format("there is no glass \"{}\", near are {}", text,
+                                 fmt::join(glasses_near(text), ", ")));
     std::vector<std::string> names;
     for (const Glass& glass : found) names.push_back(glass.name);
-    throw ArgumentError("--lens", "singlet",
-                        fmt::format("glass \"{}\" has several makers: say which of {}", text,
-                                    fmt::join(names, ", ")));
+    throw refuse(fmt::format("glass \"{}\" has several makers: say which of {}", text,
+                             fmt::join(names, ", ")));
 }
 
 SingleLens parse_singlet(const std::string& text, LensGlasses& glasses) {
@@ -96,11 +97,8 @@ SingleLens parse_singlet(const std::string& text, LensGlasses& glasses) {
         numbers.push_back(value);
     }
     if (numbers.size() > 2) throw refuse("has too many numbers");
-    const auto near = glasses_near(name);
     SingleLens lens;
-    lens.glass = find_singlet_glass(
-        name, glasses,
-        refuse(fmt::format("there is no glass \"{}\", near are {}", name, fmt::join(near, ", "))));
+    lens.glass = find_singlet_glass(name, glasses, refuse);
     if (numbers.size() == 1) {
         if (!std::isfinite(numbers[0])) throw refuse("the bending must be finite");
         lens.bending = numbers[0];

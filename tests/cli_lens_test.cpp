@@ -31,7 +31,6 @@ float middle(const Picture& p, const char* channel) {
     return static_cast<float>(sum / 24);
 }
 
-// Within three standard errors of the noisiest, one wavelength a path.
 // Whatever the lens, its f-number and its iris: what fills the world with 1 shows as 1 in the
 // middle.
 TEST_F(CliLens, MidGreyIsMidGreyThroughEveryLens) {

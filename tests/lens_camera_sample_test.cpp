@@ -109,7 +109,7 @@ TEST(LensCameraSample, OneWavelengthAPathIsAllInTheMean) {
     }
 }
 
-TEST(LensCameraSample, GainIsInTheWeight) {
+TEST(LensCameraSample, ExposureIsInTheWeight) {
     const LensCameraInput in = input_of(kGauss, Chroma::Shared);
     LensCamera camera(in);
     const FilmPoint at = film_point({0.5f, 0.5f}, 1);

@@ -163,6 +163,9 @@ TEST(LensFocus, ANarrowIrisFocusesNearTheAxis) {
         for (size_t i = 0; i < traced.surfaces.size(); ++i)
             EXPECT_NEAR(traced.surfaces[i].thickness_mm, paraxial.surfaces[i].thickness_mm, 0.03)
                 << name << ' ' << i;
+        if (!lens.prescription().focus_group) {
+            EXPECT_NEAR(film_gap(traced), film_gap(paraxial) + shift(stop_mm), 1e-9) << name;
+        }
     }
 }
 

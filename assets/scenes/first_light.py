@@ -7,11 +7,10 @@ procedural and from fixed seeds, so that equal versions of Python and zlib give 
 """
 import math
 import random
-import sys
 
 import first_light_objects as objects
 import first_light_textures as textures
-from first_light_glb import GlbWriter, then, turn
+from first_light_glb import GlbWriter, then, turn, write_scene
 from first_light_shapes import (Shape, add, arc, brilliant, cross, lathe, prism, rounded_box, spline,
                                 sub, surface, tube, unit)
 
@@ -290,15 +289,5 @@ def build():
     return glb
 
 
-def main():
-    if len(sys.argv) != 2:
-        sys.exit("usage: first_light.py OUT.glb")
-    glb = build()
-    data = glb.bytes()
-    with open(sys.argv[1], "wb") as file:
-        file.write(data)
-    print("%s: %d bytes, %d triangles" % (sys.argv[1], len(data), glb.triangles()))
-
-
 if __name__ == "__main__":
-    main()
+    write_scene("first_light.py", build)

@@ -3,6 +3,7 @@
 import json
 import math
 import struct
+import sys
 
 ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER = 34962, 34963
 UNSIGNED_SHORT, UNSIGNED_INT, FLOAT = 5123, 5125, 5126
@@ -149,3 +150,14 @@ class GlbWriter:
         chunks = struct.pack("<I4s", len(text), b"JSON") + text
         chunks += struct.pack("<I4s", len(self.binary), b"BIN\0") + self.binary
         return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
+
+
+def write_scene(script, build):
+    """The main program of a script: writes the scene that build() makes to the file it is given."""
+    if len(sys.argv) != 2:
+        sys.exit("usage: %s OUT.glb" % script)
+    glb = build()
+    data = glb.bytes()
+    with open(sys.argv[1], "wb") as file:
+        file.write(data)
+    print("%s: %d bytes, %d triangles" % (sys.argv[1], len(data), glb.triangles()))

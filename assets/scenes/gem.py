@@ -6,9 +6,8 @@ Metres, y up, the plinth's top at y = 0; RGB 1 is 1 nit. All light comes from me
 as it cannot find a point.
 """
 import math
-import sys
 
-from first_light_glb import GlbWriter, then, turn
+from first_light_glb import GlbWriter, then, turn, write_scene
 from first_light_shapes import Shape, add, arc, cross, dot, lathe, sub, times, unit
 
 X, Y, Z = (1, 0, 0), (0, 1, 0), (0, 0, 1)
@@ -188,15 +187,5 @@ def build():
     return glb
 
 
-def main():
-    if len(sys.argv) != 2:
-        sys.exit("usage: gem.py OUT.glb")
-    glb = build()
-    data = glb.bytes()
-    with open(sys.argv[1], "wb") as file:
-        file.write(data)
-    print("%s: %d bytes, %d triangles" % (sys.argv[1], len(data), glb.triangles()))
-
-
 if __name__ == "__main__":
-    main()
+    write_scene("gem.py", build)

@@ -7,9 +7,8 @@ left, what is at 2 m on the right, twice as large, so that both look alike; lamp
 """
 import math
 import random
-import sys
 
-from first_light_glb import GlbWriter
+from first_light_glb import GlbWriter, write_scene
 from first_light_shapes import Shape, lathe, rounded_box, sphere, tube
 from first_light_textures import GLYPHS, png
 from gem import panel
@@ -111,15 +110,5 @@ def build():
     return glb
 
 
-def main():
-    if len(sys.argv) != 2:
-        sys.exit("usage: ornaments.py OUT.glb")
-    glb = build()
-    data = glb.bytes()
-    with open(sys.argv[1], "wb") as file:
-        file.write(data)
-    print("%s: %d bytes, %d triangles" % (sys.argv[1], len(data), glb.triangles()))
-
-
 if __name__ == "__main__":
-    main()
+    write_scene("ornaments.py", build)

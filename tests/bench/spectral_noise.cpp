@@ -11,6 +11,7 @@
 #include "apps/parse.h"
 #include "io/session.h"
 #include "tests/bench/noise.h"
+#include "tests/bench/program.h"
 
 namespace petzval {
 namespace {
@@ -73,10 +74,5 @@ int run(int argc, char** argv) {
 }  // namespace petzval
 
 int main(int argc, char** argv) {
-    try {
-        return petzval::run(argc, argv);
-    } catch (const std::exception& e) {
-        fmt::print(stderr, "{}\n", e.what());
-        return 1;
-    }
+    return petzval::guarded(petzval::run, argc, argv);
 }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/seams.h"
 #include "io/aperture_file.h"
 #include "io/atomic_file.h"
 #include "io/camera_words.h"
@@ -298,7 +299,26 @@ ChartCase lights_case(const Found& found, const RenderJob& job) {
     return std::move(cases).result();
 }
 
-ChartCase precision_case(const Found& found, const RenderJob& job) {
+/// A wrong pixel here and there hardly shows in an error, so leaks are counted.
+std::string leak_count(const SceneRequest& request, const OpenSession& open) {
+    constexpr size_t kRays = 20000;
+    std::vector<Ray> rays;
+    const auto through = [&](Traversal traversal) {
+        SceneRequest one = request;
+        one.traversal = traversal;
+        const Session session = open(one);
+        if (rays.empty()) rays = seam_rays(*session.scene, kRays, 0);
+        return leaks(*session.bvh, rays);
+    };
+    const size_t robust = through(Traversal::Robust), fast = through(Traversal::Fast);
+    if (rays.empty()) return "No leaks were counted: the scene has no edges that triangles share";
+    return fmt::format(
+        "Leaks: of {} rays aimed at edges that two triangles share, robust traversal let {} "
+        "through and fast {}",
+        rays.size(), robust, fast);
+}
+
+ChartCase precision_case(const Found& found, const RenderJob& job, const OpenSession& open) {
     Cases cases(ChartAxis::Precision, job, "precision",
                 "floats and doubles in the lens, robust and fast traversal");
     std::vector<std::string> remarks;
@@ -306,6 +326,7 @@ ChartCase precision_case(const Found& found, const RenderJob& job) {
     lens.camera.chroma = Chroma::Shared;
     remarks.emplace_back("One ray for all wavelengths");
     cases.remark(remarks);
+    cases.remark(leak_count(lens, open));
     const auto with = [](March march, Traversal traversal) {
         return [=](SceneRequest& s, RenderJob&) {
             s.camera.march = march;
@@ -373,7 +394,7 @@ std::vector<ChartCase> chart_cases(const std::vector<ChartAxis>& axes, const Cha
                 cases.push_back(lights_case(found, subject.job));
                 break;
             case ChartAxis::Precision:
-                cases.push_back(precision_case(found, subject.job));
+                cases.push_back(precision_case(found, subject.job, open));
                 break;
         }
     }

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays at the edges that triangles share, where a traversal that rounds may let them through.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/bvh.h"
+
+namespace petzval {
+
+/// `count` rays aimed at random points of random edges that two opaque triangles of a mesh share,
+/// one on either side of the edge as the ray sees it. Each starts one length of its edge away and
+/// ends just behind the edge (t_max). A pure function of scene and seed. Fewer than count, or none,
+/// where the scene has hardly such edges; large meshes are looked at in part.
+[[nodiscard]] std::vector<Ray> seam_rays(const Scene&, size_t count, uint32_t seed);
+
+/// How many of the rays meet nothing: each went through between two triangles.
+[[nodiscard]] size_t leaks(const Bvh&, const std::vector<Ray>& seam_rays);
+
+}  // namespace petzval

@@ -359,7 +359,7 @@ const std::vector<std::pair<std::string, ChartAxis>>& chart_axes() {
 std::string word_of(ChartAxis axis) {
     for (const auto& [word, one] : chart_axes())
         if (one == axis) return word;
-    return "";
+    return "peers";
 }
 
 std::vector<ChartCase> chart_cases(const std::vector<ChartAxis>& axes, const ChartSubject& subject,
@@ -375,6 +375,8 @@ std::vector<ChartCase> chart_cases(const std::vector<ChartAxis>& axes, const Cha
                                             "give --camera or --look-at",
                                             word_of(axis)));
         switch (axis) {
+            case ChartAxis::Peers:
+                break;
             case ChartAxis::Camera:
                 cases.push_back(camera_case(found, subject.job, open));
                 break;

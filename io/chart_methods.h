@@ -14,7 +14,17 @@
 
 namespace petzval {
 
-enum class ChartAxis : uint8_t { Camera, Chroma, Spectral, Iris, Sampler, Lights, Precision };
+/// Peers: other programs, which are not measured from in here.
+enum class ChartAxis : uint8_t {
+    Camera,
+    Chroma,
+    Spectral,
+    Iris,
+    Sampler,
+    Lights,
+    Precision,
+    Peers
+};
 
 /// Every axis with its word, in the order of a report.
 [[nodiscard]] const std::vector<std::pair<std::string, ChartAxis>>& chart_axes();

@@ -153,19 +153,15 @@ std::optional<ChartReference> render_reference(const ChartMethod& method, Sessio
         else
             break;
     }
-    ChartReference reference;
-    reference.parts = kReferenceParts;
-    reference.samples = track.samples();
     std::vector<Picture> parts;
+    double cpu_s = 0;
     for (uint32_t i = 0; i < kReferenceParts; ++i) {
         parts.push_back(track.picture(i));
-        reference.cpu_s += track.cpu_s(i);
+        cpu_s += track.cpu_s(i);
     }
-    reference.picture = mean_of(parts);
-    reference.relative_mse = relative_variance(parts, reference.picture);
-    const auto middle = parts.begin() + kReferenceParts / 2;
-    reference.flip = Flip(mean_of({parts.begin(), middle}), at.frame.exposure_ev)
-                         .mean(mean_of({middle, parts.end()}));
+    ChartReference reference = reference_of(parts, at.frame.exposure_ev);
+    reference.samples = track.samples();
+    reference.cpu_s = cpu_s;
     return reference;
 }
 
@@ -302,6 +298,17 @@ Picture rgb_picture(const Film& film) {
             picture.pixels.insert(picture.pixels.end(), {c.x, c.y, c.z});
         }
     return picture;
+}
+
+ChartReference reference_of(const std::vector<Picture>& parts, float exposure_ev) {
+    ChartReference reference;
+    reference.parts = static_cast<uint32_t>(parts.size());
+    reference.picture = mean_of(parts);
+    reference.relative_mse = relative_variance(parts, reference.picture);
+    const auto middle = parts.begin() + static_cast<long>(parts.size() / 2);
+    reference.flip =
+        Flip(mean_of({parts.begin(), middle}), exposure_ev).mean(mean_of({middle, parts.end()}));
+    return reference;
 }
 
 Picture read_reference(const std::filesystem::path& path, V2i size, Rect crop) {

@@ -67,6 +67,8 @@ struct MeasuredCase {
 
 /// A film as a plain picture of R, G and B.
 [[nodiscard]] Picture rgb_picture(const Film&);
+/// A reference from independent renders, two or more, with its own error from their spread.
+[[nodiscard]] ChartReference reference_of(const std::vector<Picture>& parts, float exposure_ev);
 /// A reference from a file: R, G and B of the crop. Throws InputError where it has not this frame.
 [[nodiscard]] Picture read_reference(const std::filesystem::path&, V2i size, Rect crop);
 

@@ -51,8 +51,8 @@ struct LaneFates {
     }
 };
 
-/// 0 paths: vignetted. 1: shared by all lanes. 2 to 4: split by dispersion. Two-level cameras: a
-/// shared one, then up to 4 split ones, in any of which lanes may weigh 0, or less.
+/// 0 paths: vignetted. 1: shared by all lanes. 2 to 4: split by dispersion. Two-level cameras: up
+/// to 4 split ones, whose lanes may weigh 0, then a shared one, whose weight may be negative.
 struct CameraSample {
     int count = 0;
     std::array<CameraPath, 5> path;

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "camera/two_level.h"
 #include "core/spectrum_table.h"
 
 namespace petzval {
@@ -42,15 +43,22 @@ AberratedLensCamera::AberratedLensCamera(AberratedLens lens)
 }
 
 CameraSample AberratedLensCamera::sample(const FilmPoint& at, const Bands& bands) const {
+    if (!two_level() || !bands.spectral) return sample(at, bands, in_.chroma);
+    return petzval::two_level(at, bands.on,
+                              [&](Chroma chroma) { return sample(at, bands, chroma); });
+}
+
+CameraSample AberratedLensCamera::sample(const FilmPoint& at, const Bands& bands,
+                                         Chroma chroma) const {
     const V3f through_centre{(2.f * at.film.x - 1.f) * tan_half_x_,
                              (1.f - 2.f * at.film.y) * tan_half_y_, -1.f};
     const V2f stop = in_.iris.sample(at.sampler.get2(Dim::Lens));
     const V3f point_mm{stop.x, stop.y, 0.f};
     const float h_mm = stop.length();
-    const bool split = bands.spectral && in_.chroma != Chroma::Shared;
+    const bool split = bands.spectral && chroma != Chroma::Shared;
     m4 on = bands.on;
     float weight = in_.exposure;
-    if (split && in_.chroma == Chroma::Single) {
+    if (split && chroma == Chroma::Single) {
         on = only_lane(pick_lane(bands.on, at.sampler.get1(Dim::LensLane)));
         weight *= static_cast<float>(lane_count(bands.on));
     }
@@ -68,7 +76,7 @@ CameraSample AberratedLensCamera::sample(const FilmPoint& at, const Bands& bands
         const auto vergence = static_cast<float>(1 / focal_mm - 1 / film_mm_);
         const auto together = [&](int k) {
             return h_mm * std::fabs(vergence - vergence_per_mm[k]) <= in_.tolerance_rad &&
-                   !(split && in_.chroma == Chroma::Split);
+                   !(split && chroma == Chroma::Split);
         };
         int k = 0;
         while (k < out.count && !together(k)) ++k;

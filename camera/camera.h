@@ -16,6 +16,8 @@ struct FilmPoint {
     /// reaches a little beyond.
     V2f film;
     Sampler sampler;
+    /// Of taking the difference to the split paths, in a camera that is two_level(); 0: never.
+    float split_probability = 1;
 };
 
 /// A world-space ray; direction has unit length.
@@ -49,10 +51,11 @@ struct LaneFates {
     }
 };
 
-/// 0 paths: vignetted. 1: shared by all lanes. 2 to 4: split by dispersion.
+/// 0 paths: vignetted. 1: shared by all lanes. 2 to 4: split by dispersion. Two-level cameras: up
+/// to 4 split ones, whose lanes may weigh 0, then a shared one, whose weight may be negative.
 struct CameraSample {
     int count = 0;
-    std::array<CameraPath, 4> path;
+    std::array<CameraPath, 5> path;
     LaneFates<uint32_t> lanes;
     float exposure = 1;  ///< what the weights of a lane are on average where nothing is lost
 };
@@ -61,6 +64,8 @@ class Camera {
   public:
     virtual ~Camera() = default;
     [[nodiscard]] virtual CameraSample sample(const FilmPoint&, const Bands&) const = 0;
+    /// Whether split_probability makes a difference.
+    [[nodiscard]] virtual bool two_level() const { return false; }
 };
 
 }  // namespace petzval

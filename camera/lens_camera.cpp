@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "camera/lens_camera.h"
 
+#include "camera/two_level.h"
 #include "core/dispersion.h"
 
 namespace petzval {
@@ -63,13 +64,13 @@ LensCamera::LensCamera(LensCameraInput in)
 // with the mean density (balance heuristic: Veach 1997, 9.2.3), so that light at the iris's edge is
 // not lost where its image differs between wavelengths.
 template <class V>
-LensDraw<V> LensCamera::draw(const Aim& aim, const Bands& bands, Coating coating,
+LensDraw<V> LensCamera::draw(const Aim& aim, const Bands& bands, Coating coating, Chroma chroma,
                              const LensIndices<f4>& in_floats,
                              const LensIndices<V>& indices) const {
     using S = ScalarOf<V>;
     LensDraw<V> out;
     const V2f on_iris = in_.iris.sample(aim.u);
-    const bool single = in_.chroma == Chroma::Single && !one_ray(bands);
+    const bool single = chroma == Chroma::Single && !one_ray(bands, chroma);
     const m4 on = single ? only_lane(aim.lane) : bands.on;
     const auto solved = pupil_.solve(aim.film_mm, on_iris, in_floats, aim.lane, aim.nm);
     out.lanes.drawn = static_cast<uint32_t>(lane_count(on));
@@ -108,25 +109,26 @@ LensDraw<V> LensCamera::draw(const Aim& aim, const Bands& bands, Coating coating
 }
 
 template <class V>
-LensDraw<V> LensCamera::draw(V2f film_mm, V2f u, float u_lane, const Bands& bands,
-                             Coating coating) const {
+LensDraw<V> LensCamera::draw(V2f film_mm, V2f u, float u_lane, const Bands& bands, Coating coating,
+                             Chroma chroma) const {
     const Lens& lens = *in_.lens;
     Aim aim{film_mm, u, pick_lane(bands.on, u_lane), static_cast<float>(kLineD_nm)};
-    if (one_ray(bands)) {
+    if (one_ray(bands, chroma)) {
         if constexpr (std::same_as<V, f4>)
-            return draw(aim, bands, coating, line_d_, line_d_);
+            return draw(aim, bands, coating, chroma, line_d_, line_d_);
         else
-            return draw(aim, bands, coating, line_d_, exact_line_d_);
+            return draw(aim, bands, coating, chroma, line_d_, exact_line_d_);
     }
     aim.nm = bands.nm[aim.lane];
     const LensIndices<f4> indices = lens.indices(bands.nm);
     if constexpr (std::same_as<V, f4>)
-        return draw(aim, bands, coating, indices, indices);
+        return draw(aim, bands, coating, chroma, indices, indices);
     else
-        return draw(aim, bands, coating, indices, lens.exact_indices(lanes_as<d4>(bands.nm)));
+        return draw(aim, bands, coating, chroma, indices,
+                    lens.exact_indices(lanes_as<d4>(bands.nm)));
 }
-template LensDraw<f4> LensCamera::draw(V2f, V2f, float, const Bands&, Coating) const;
-template LensDraw<d4> LensCamera::draw(V2f, V2f, float, const Bands&, Coating) const;
+template LensDraw<f4> LensCamera::draw(V2f, V2f, float, const Bands&, Coating, Chroma) const;
+template LensDraw<d4> LensCamera::draw(V2f, V2f, float, const Bands&, Coating, Chroma) const;
 
 template <class V>
 f4 LensCamera::transmitted(V2f film_mm, const StopCrossing<V>& c, Coating coating,
@@ -170,9 +172,9 @@ ScalarOf<V> LensCamera::behind_pupil_mm(const LensRay<V>& ray, int lane) const {
 
 // Whether two lanes meet the plane of focus within the tolerance, seen from the lens.
 template <class V>
-bool LensCamera::together(const LensRay<V>& ray, int a, int b) const {
+bool LensCamera::together(const LensRay<V>& ray, int a, int b, Chroma chroma) const {
     using S = ScalarOf<V>;
-    if (in_.chroma == Chroma::Split) return false;
+    if (chroma == Chroma::Split) return false;
     const float focus_mm = in_.focus_m * 1e3f;
     const auto on_plane = [&](int lane) {
         const S t = (S(focus_mm) + behind_pupil_mm(ray, lane)) / -ray.direction.z[lane];
@@ -185,7 +187,7 @@ bool LensCamera::together(const LensRay<V>& ray, int a, int b) const {
 }
 
 template <class V>
-CameraSample LensCamera::paths(const LensDraw<V>& drawn, const Bands& bands) const {
+CameraSample LensCamera::paths(const LensDraw<V>& drawn, const Bands& bands, Chroma chroma) const {
     CameraSample out;
     out.lanes = drawn.lanes;
     out.exposure = exposure_;
@@ -197,7 +199,7 @@ CameraSample LensCamera::paths(const LensDraw<V>& drawn, const Bands& bands) con
         path.ray = world_ray(drawn.ray, lane);
         path.lanes = left;
         for (int other = lane + 1; other < 4; ++other)
-            if (!one_ray(bands) && left[other] && !together(drawn.ray, lane, other))
+            if (!one_ray(bands, chroma) && left[other] && !together(drawn.ray, lane, other, chroma))
                 path.lanes[other] = 0;
         path.weight = zero_off(path.lanes, lanes_as<f4>(drawn.weight));
         left &= ~path.lanes;
@@ -211,8 +213,14 @@ CameraSample LensCamera::sample(const FilmPoint& point, const Bands& bands) cons
                    (point.film.y - 0.5f) * static_cast<float>(in_.film_height_mm));
     const V2f u = point.sampler.get2(Dim::Lens);
     const float u_lane = point.sampler.get1(Dim::LensLane);
-    if (in_.march == March::Double) return paths(draw<d4>(film, u, u_lane, bands), bands);
-    return paths(draw<f4>(film, u, u_lane, bands), bands);
+    const auto drawn = [&](Chroma chroma) {
+        const auto in = [&]<class V>(V) {
+            return paths(draw<V>(film, u, u_lane, bands, in_.coating, chroma), bands, chroma);
+        };
+        return in_.march == March::Double ? in(d4{}) : in(f4{});
+    };
+    return two_level() && bands.spectral ? petzval::two_level(point, bands.on, drawn)
+                                         : drawn(in_.chroma);
 }
 
 // Smooth but for the edges of the iris and of the rims.
@@ -221,7 +229,7 @@ double LensCamera::irradiance(V2f film_mm, uint32_t count) const {
     double sum = 0;
     for (uint32_t i = 0; i < count; ++i) {
         const V2f u = Sampler(SamplerKind::Owen, 0, {0, 0, i}).get2(Dim::Lens);
-        sum += hsum(draw<f4>(film_mm, u, 0.f, bands, Coating::Ideal).weight);
+        sum += hsum(draw<f4>(film_mm, u, 0.f, bands, Coating::Ideal, in_.chroma).weight);
     }
     return sum / (double(count) * lane_count(bands.on));
 }

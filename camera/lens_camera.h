@@ -46,6 +46,7 @@ class LensCamera final : public Camera {
     explicit LensCamera(LensCameraInput);
 
     [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
+    [[nodiscard]] bool two_level() const override { return in_.chroma == Chroma::TwoLevel; }
 
     /// From here on weights average to the exposure in the middle of the film, where they averaged
     /// to its irradiance(). axial: that irradiance, before the first call.
@@ -64,7 +65,7 @@ class LensCamera final : public Camera {
     /// point of the film. u_lane picks the lane whose ray hits the drawn iris point. V: f4 or d4.
     template <class V = f4>
     [[nodiscard]] LensDraw<V> draw(V2f film_mm, V2f u, float u_lane, const Bands& bands) const {
-        return draw<V>(film_mm, u, u_lane, bands, in_.coating);
+        return draw<V>(film_mm, u, u_lane, bands, in_.coating, in_.chroma);
     }
 
   private:
@@ -75,27 +76,28 @@ class LensCamera final : public Camera {
         float nm;
     };
     template <class V>
-    [[nodiscard]] LensDraw<V> draw(V2f film_mm, V2f u, float u_lane, const Bands&, Coating) const;
+    [[nodiscard]] LensDraw<V> draw(V2f film_mm, V2f u, float u_lane, const Bands&, Coating,
+                                   Chroma) const;
     /// Solved with the indices in floats, marched with the others.
     template <class V>
-    [[nodiscard]] LensDraw<V> draw(const Aim&, const Bands&, Coating, const LensIndices<f4>&,
-                                   const LensIndices<V>&) const;
+    [[nodiscard]] LensDraw<V> draw(const Aim&, const Bands&, Coating, Chroma,
+                                   const LensIndices<f4>&, const LensIndices<V>&) const;
     /// What the surfaces let through of the ray that leaves the film towards the crossing.
     template <class V>
     [[nodiscard]] f4 transmitted(V2f film_mm, const StopCrossing<V>&, Coating,
                                  const LensIndices<V>&, f4 nm) const;
     template <class V>
-    [[nodiscard]] CameraSample paths(const LensDraw<V>&, const Bands&) const;
+    [[nodiscard]] CameraSample paths(const LensDraw<V>&, const Bands&, Chroma) const;
     template <class V>
     [[nodiscard]] Ray world_ray(const LensRay<V>&, int lane) const;
     /// How far the ray's origin lies behind the middle of the entrance pupil.
     template <class V>
     [[nodiscard]] ScalarOf<V> behind_pupil_mm(const LensRay<V>&, int lane) const;
     template <class V>
-    [[nodiscard]] bool together(const LensRay<V>&, int a, int b) const;
+    [[nodiscard]] bool together(const LensRay<V>&, int a, int b, Chroma) const;
     /// Whether all lanes have the ray of line d.
-    [[nodiscard]] bool one_ray(const Bands& bands) const {
-        return !bands.spectral || in_.chroma == Chroma::Shared;
+    [[nodiscard]] static bool one_ray(const Bands& bands, Chroma chroma) {
+        return !bands.spectral || chroma == Chroma::Shared;
     }
 
     LensCameraInput in_;

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "core/sampler.h"
 #include "integrator/path.h"
 #include "integrator/tiles.h"
+#include "integrator/two_level.h"
 
 namespace petzval {
 
@@ -29,6 +31,8 @@ struct RenderJob {
     Observer observer;       ///< what the lanes carry
     uint32_t scrambles = 1;  ///< kScrambles for a film with bins
     bool timing = false;     ///< measure where the time goes, on one sample of sixteen
+    /// For a camera that is two_level(); without one, render() learns it first.
+    std::shared_ptr<const SplitGrid> split;
 };
 
 /// What a render shows of itself while it runs, and how it is told to stop. Any thread may look.
@@ -42,6 +46,8 @@ struct RenderResult {
     int workers = 0;          ///< threads that rendered at least one tile
     uint32_t end_sample = 0;  ///< samples [first, end) are complete in every pixel
     bool stopped = false;     ///< the monitor said stop before the job was done
+    /// The job's, or what was learned; saves learning it again for other samples of this render.
+    std::shared_ptr<const SplitGrid> split;
 };
 
 /// Seed of one of the scrambles: a hash of the pair.
@@ -71,7 +77,8 @@ void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& 
         const V2f offset = job.filter.sample(sampler.get2(Dim::Film));
         const V2f size(film.full_size());
         const V2f at = V2f(id.x + 0.5f, id.y + 0.5f) + offset;
-        seen = camera.sample({at / size, sampler}, bands);
+        const float split = job.split ? job.split->at(id.x, id.y) : 1.f;
+        seen = camera.sample({at / size, sampler, split}, bands);
         stats.lens_lanes += seen.lanes;
     }
     FilmSample sample;
@@ -106,7 +113,7 @@ void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& 
 /// Renders every pixel of the film's crop. Pixels do not depend on the executor, its threads, the
 /// tile size, the crop or the passes.
 template <class Executor, class Tracer>
-RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob& job, Film& film,
+RenderResult render(const Tracer& tracer, const Camera& camera, RenderJob job, Film& film,
                     Executor& executor, RenderMonitor& monitor) {
     using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
@@ -119,7 +126,15 @@ RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob&
     };
     std::vector<Worker> workers(static_cast<size_t>(executor.threads()));
 
+    if (camera.two_level() && job.observer.spectral() && !job.split) {
+        const SplitPilot pilot(tracer, camera, job.observer, job.filter, film.full_size(),
+                               job.seed);
+        job.split =
+            std::make_shared<const SplitGrid>(pilot.learn(film.crop(), executor, monitor.stop));
+    }
+
     RenderResult result;
+    result.split = job.split;
     const uint32_t wanted = job.end_sample - job.first_sample;
     uint32_t done = 0;
     bool stopped = false;

@@ -18,7 +18,8 @@ using Words = std::vector<std::pair<std::string, T>>;
     return {{"auto", Chroma::Auto},
             {"shared", Chroma::Shared},
             {"split", Chroma::Split},
-            {"single", Chroma::Single}};
+            {"single", Chroma::Single},
+            {"two-level", Chroma::TwoLevel}};
 }
 [[nodiscard]] inline Words<ApertureScale> words_of(ApertureScale) {
     return {{"area", ApertureScale::EqualArea}, {"inscribed", ApertureScale::Inscribed}};

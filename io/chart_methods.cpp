@@ -170,6 +170,7 @@ ChartCase chroma_case(const Found& found, const RenderJob& job) {
               with(Chroma::Auto));
     cases.add("shared", lens, with(Chroma::Shared));
     cases.add("single", lens, with(Chroma::Single));
+    cases.add("two-level", lens, with(Chroma::TwoLevel));
     cases.remark("shared is biased: it leaves out the colour errors of the lens");
     cases.reference("split, rays followed in doubles with the glasses' own formulas", lens,
                     [](SceneRequest& s, RenderJob&) {

@@ -150,6 +150,7 @@ int run(int argc, char** argv) {
     strategies.push_back({"shared", Chroma::Shared});
     strategies.push_back({"split", Chroma::Split});
     strategies.push_back({"single", Chroma::Single});
+    strategies.push_back({"two-level", Chroma::TwoLevel});
     for (const float px : {0.03f, 0.1f, 0.3f, 1.f})
         strategies.push_back({fmt::format("auto {}", px), Chroma::Auto, px});
     for (Strategy& s : strategies) {

@@ -101,8 +101,9 @@ std::optional<StopCrossing<f4>> Pupil::newton(V2f film_point_mm, V2f stop_point_
     V2f good = cosines, step(0.f);
     int halvings = 0;
     for (int i = 0; i < kMostSteps; ++i) {
-        const StopCrossing<f4> c =
+        StopCrossing<f4> c =
             cross<f4>(film_point_mm, splat(cosines.x), splat(cosines.y), indices);
+        c.marches = i + 1;
         if (cosines.length2() < 1.f && c.ray.alive()[lane]) {
             const Step by = step_towards(stop_point_mm, c);
             if (by.left2_mm2[lane] < sqr(kTolerance * stop_radius_mm_)) return c;

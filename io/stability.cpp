@@ -52,7 +52,11 @@ std::string section(const Finding& f) {
 }  // namespace
 
 std::string stability::number(double a) {
-    return std::isfinite(a) ? fmt::format("{:.3g}", a) : "none";
+    if (!std::isfinite(a)) return std::isnan(a) ? "NaN" : a > 0 ? "infinity" : "-infinity";
+    const double rounded = std::stod(fmt::format("{:.2e}", a));
+    const double size = std::fabs(rounded);
+    return size == 0 || (size >= 1e-4 && size < 1e5) ? fmt::format("{}", rounded)
+                                                     : fmt::format("{:.3g}", rounded);
 }
 
 std::string stability::percent(double share) {

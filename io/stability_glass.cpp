@@ -59,8 +59,8 @@ Finding dispersion_out_of_range() {
         "is below 1, or jumps by more than 0.05 in a nm.",
         kFirst_sweep_nm, kLast_sweep_nm);
     f.table.columns = {"formula", "glasses",       "not a number",
-                       "below 1", "jumps",         "breaks at most (nm)",
-                       "breaks at least (nm)", "as used: any of these"};
+                       "below 1", "jumps",         "breaks below (nm)",
+                       "breaks above (nm)", "as used: any of these"};
     const std::vector<Glass> catalogue = glass_catalog();
     double blue_nm = 0, red_nm = HUGE_VAL;
     size_t broken = 0, broken_as_used = 0;
@@ -90,7 +90,9 @@ Finding dispersion_out_of_range() {
                 }
         }
         f.table.rows.push_back(row(kind, count, no_number, below_one, jumps,
-                                   blue_here > 0 ? number(blue_here) : "none", red_here, used));
+                                   blue_here > 0 ? number(blue_here) : "none",
+                                   std::isfinite(red_here) ? number(red_here) : "none", used));
+        if (used) std::fprintf(stderr,"used %s\n", kind.c_str());
         blue_nm = std::fmax(blue_nm, blue_here), red_nm = std::fmin(red_nm, red_here);
         broken_as_used += used;
     }

@@ -231,7 +231,7 @@ Finding degenerate_polygons() {
         number(worst_lost), refused_by, number(worst_refused),
         stray ? "Points leave the polygon where the table says so"
               : "No drawn point leaves the polygon by more than 1e-6 of its size");
-    const auto fault = find_fault(nearly_touching(0));
+    const auto fault = find_fault(Polygon{{{{-1, -1}, {1, -1}, {1, 1}, {0, -1}, {-1, 1}}}});
     f.instead = fmt::format(
         "Areas and triangles are made in doubles. What touches or encloses nothing is refused "
         "(\"{}\").",
@@ -266,14 +266,14 @@ Finding choice_by_weight() {
         f.table.rows.push_back(row(w, sum_ratio(w), alias_ratio(w)));
     const auto off = first_failure(
         1e-2, 1e-10, [&](double w) { return std::fabs(sum_ratio(w) - 1) > 0.1; });
-    f.where = fmt::format("Probabilities are off by 10 % below w = {}, by half of the grain of "
-                          "2^-24; below it the faint one is drawn too often by the running sum and "
-                          "never by the alias table",
-                          number(off));
+    f.where = fmt::format(
+        "Probabilities are off by 10 % below w = {}: they are whole multiples of 2^-24, and never "
+        "0, so that the faint one is drawn too often",
+        number(off));
     f.instead =
         "Lights and skies divide by the probability that was used, so that only variance is paid. "
-        "A mask brightens texels fainter than 2^-24 of all; a triangle that small is drawn too "
-        "often, or by the alias table never.";
+        "An iris does not: triangles and texels of a mask that hold less than 2^-24 of all are "
+        "brightened to that.";
     f.guards = {"Piecewise1D.TinyWeightsKeepAChance", "Piecewise1D.ProbabilityIsExactlyTheShareOfAllNumbers",
                 "AliasTable.DrawsByWeightAndLeavesAUniformNumber"};
     return f;

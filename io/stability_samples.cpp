@@ -149,7 +149,8 @@ Finding film_sums() {
         "The mean is within {} up to 2^24 samples; the stated standard error is at worst {} times "
         "the exact one, at n = {}",
         number(worst_mean), number(worst_error), worst_at);
-    f.instead = "Sums are doubles and counts 32 bits.";
+    f.instead = "Sums of the picture are doubles. Those of the scrambles, from which the standard "
+                "error comes, are floats: it is overstated there, never understated.";
     f.guards = {"Film.SmallSamplesAreNotLostInALargeSum", "SpectralFilm.StandardErrorOfAKnownVariance"};
     return f;
 }

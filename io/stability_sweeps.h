@@ -13,9 +13,9 @@
 
 namespace petzval::stability {
 
-/// Three digits; "none" for infinity and for NaN.
+/// Three digits.
 [[nodiscard]] std::string number(double);
-/// The same of what a sweep did not find.
+/// The same, or "none" for what a sweep did not find.
 [[nodiscard]] inline std::string number(const std::optional<double>& a) {
     return a ? number(*a) : "none";
 }

@@ -104,8 +104,7 @@ std::optional<StopCrossing<f4>> Pupil::newton(V2f film_point_mm, V2f stop_point_
     V2f good = cosines, step(0.f);
     int halvings = 0;
     for (int i = 0; i < kMostSteps; ++i) {
-        StopCrossing<f4> c =
-            cross<f4>(film_point_mm, splat(cosines.x), splat(cosines.y), indices);
+        StopCrossing<f4> c = cross<f4>(film_point_mm, splat(cosines.x), splat(cosines.y), indices);
         c.marches = i + 1;
         if (cosines.length2() < 1.f && c.ray.alive()[lane]) {
             const Step by = step_towards(stop_point_mm, c);

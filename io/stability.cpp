@@ -43,7 +43,8 @@ std::string guards_of(const Finding& f) {
 }
 
 std::string section(const Finding& f) {
-    std::string out = fmt::format("## {}\n{}\n\n{}", f.method, f.sweep, table_head(f.table.columns));
+    std::string out =
+        fmt::format("## {}\n{}\n\n{}", f.method, f.sweep, table_head(f.table.columns));
     for (const auto& cells : f.table.rows) out += table_row(cells);
     return out + fmt::format("\n- **Fails:** {}. {}\n- **There:** {}\n- **Guard:** {}\n", f.fails,
                              f.where, f.instead, guards_of(f));
@@ -100,7 +101,7 @@ std::string stability_markdown(const std::vector<Finding>& findings) {
         table_head({"method", "what fails", "where"});
     for (const Finding& f : findings)
         out += table_row({fmt::format("[{}](#{})", f.method, anchor(f.method)), f.fails, f.where});
-    for (const Finding& f : findings) out += "\n" + section(f);
+    for (const Finding& f : findings) (out += "\n") += section(f);
     return out;
 }
 
@@ -114,15 +115,16 @@ std::string stability_csv(const std::vector<Finding>& findings) {
     return out;
 }
 
-std::filesystem::path write_stability(const std::vector<Finding>& findings,
-                                      const std::filesystem::path& folder) {
+std::filesystem::path write_stability(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error)
         throw InputError(folder.string(), "",
                          fmt::format("cannot be made a folder: {}", error.message()));
-    write_file_atomically(folder / "stability.csv", stability_csv(findings));
     const std::filesystem::path page = folder / "stability.md";
+    check_writable(page);
+    const std::vector<Finding> findings = stability_findings();
+    write_file_atomically(folder / "stability.csv", stability_csv(findings));
     write_file_atomically(page, stability_markdown(findings));
     return page;
 }

@@ -35,9 +35,8 @@ struct Finding {
 /// All tables in one: a row for each cell.
 [[nodiscard]] std::string stability_csv(const std::vector<Finding>&);
 
-/// Writes stability.md and stability.csv into a folder, which is made if need be. Returns the
-/// first. Throws InputError.
-[[nodiscard]] std::filesystem::path write_stability(const std::vector<Finding>&,
-                                                    const std::filesystem::path& folder);
+/// Sweeps, and writes stability.md and stability.csv into a folder, which is made before if need
+/// be. Returns the first. Throws InputError.
+[[nodiscard]] std::filesystem::path write_stability(const std::filesystem::path& folder);
 
 }  // namespace petzval

@@ -58,12 +58,13 @@ Finding dispersion_out_of_range() {
         "the range that it was fitted to, and as it is used. Glasses whose index is not a number, "
         "is below 1, or jumps by more than 0.05 in a nm.",
         kFirst_sweep_nm, kLast_sweep_nm);
-    f.table.columns = {"formula", "glasses",       "not a number",
-                       "below 1", "jumps",         "breaks below (nm)",
-                       "breaks above (nm)", "as used: any of these"};
+    f.table.columns = {
+        "formula", "glasses",           "not a number",      "below 1",
+        "jumps",   "breaks below (nm)", "breaks above (nm)", "as used: any of these"};
     const std::vector<Glass> catalogue = glass_catalog();
     double blue_nm = 0, red_nm = HUGE_VAL;
     size_t broken = 0, broken_as_used = 0;
+    std::string used_name;
     for (const std::string kind : {"Sellmeier", "power series"}) {
         size_t count = 0, no_number = 0, below_one = 0, jumps = 0, used = 0;
         double blue_here = 0, red_here = HUGE_VAL;
@@ -75,7 +76,8 @@ Finding dispersion_out_of_range() {
             no_number += faults.no_number;
             below_one += faults.below_one;
             jumps += faults.jumps;
-            used += faults_of(glass, kFirst_sweep_nm, kLast_sweep_nm).breaks();
+            if (faults_of(glass, kFirst_sweep_nm, kLast_sweep_nm).breaks())
+                ++used, used_name = glass.name;
             broken += faults.breaks();
             if (!faults.breaks()) continue;
             for (double nm = kLineD_nm; nm >= kFirst_sweep_nm; --nm)
@@ -92,7 +94,7 @@ Finding dispersion_out_of_range() {
         f.table.rows.push_back(row(kind, count, no_number, below_one, jumps,
                                    blue_here > 0 ? number(blue_here) : "none",
                                    std::isfinite(red_here) ? number(red_here) : "none", used));
-        if (used) std::fprintf(stderr,"used %s\n", kind.c_str());
+
         blue_nm = std::fmax(blue_nm, blue_here), red_nm = std::fmin(red_nm, red_here);
         broken_as_used += used;
     }
@@ -103,18 +105,19 @@ Finding dispersion_out_of_range() {
     for (const Glass& glass : catalogue) {
         double off = 0;
         for (int nm = kFirst_nm; nm <= kLast_nm; ++nm)
-            off = std::fmax(off, std::fabs(glass.index(double(nm)) -
-                                           without_range(glass).index(double(nm))));
+            off = std::fmax(
+                off, std::fabs(glass.index(double(nm)) - without_range(glass).index(double(nm))));
         held += off > 0;
         if (off > most_held) most_held = off, held_name = glass.name;
     }
     f.where = fmt::format(
-        "{} of {} formulas break somewhere, in the blue up to {} nm, in the red {}; as used, {}. "
+        "{} of {} formulas break somewhere, in the blue up to {} nm, in the red {}; as used, {}{}. "
         "From {} to {} nm, {} glasses are out of their range somewhere: the index that is held is "
         "up to {} off the formula ({})",
         broken, catalogue.size(), number(blue_nm),
         std::isfinite(red_nm) ? "from " + number(red_nm) + " nm on" : std::string("nowhere"),
-        broken_as_used, kFirst_nm, kLast_nm, held, number(most_held), held_name);
+        broken_as_used, used_name.empty() ? "" : " (" + used_name + ")", kFirst_nm, kLast_nm, held,
+        number(most_held), held_name);
     const std::string pole = "CC bad\nNM POLE 2 0 1.5 50\nCD 1.0 0.25 0 0 0 0\nLD 0.2 3.0\n";
     f.instead = fmt::format(
         "Out of its range a glass keeps the index of the range's end. A catalogue whose formula "

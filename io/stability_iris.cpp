@@ -55,9 +55,8 @@ double share_refused(const Iris& iris) {
     constexpr uint32_t kPoints = 8192;
     uint32_t refused = 0;
     for (uint32_t i = 0; i < kPoints; ++i)
-        refused += !(iris.transmits(
-                         iris.sample(Sampler(SamplerKind::Owen, 5, {0, 0, i}).get2(Dim::Lens))) >
-                     0);
+        refused += !(iris.transmits(iris.sample(
+                         Sampler(SamplerKind::Owen, 5, {0, 0, i}).get2(Dim::Lens))) > 0);
     return double(refused) / kPoints;
 }
 
@@ -70,7 +69,7 @@ Iris iris_of(const Polygon& polygon, IrisSampling way = IrisSampling::Triangles)
 Finding rejection_of_slivers() {
     Finding f;
     f.method = "Rejection from slivers";
-    f.fails = "no answer (time), then bias";
+    f.fails = "time, then bias";
     f.sweep = fmt::format(
         "A rectangle 1:N along the diagonal of its bounding box, {:g} mm to its corners. Points of "
         "the box that are tried for each one inside, of {} that there may be at most; the share of "
@@ -87,8 +86,7 @@ Finding rejection_of_slivers() {
     const auto lost = [](double ratio) { return share_refused(iris_of(sliver(ratio))); };
     for (const double ratio : {1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7}) {
         const Rejection r = rejected(ratio);
-        f.table.rows.push_back(
-            row(ratio, r.attempts, percent(r.gives_up), percent(lost(ratio))));
+        f.table.rows.push_back(row(ratio, r.attempts, percent(r.gives_up), percent(lost(ratio))));
     }
     const auto few = first_failure(10, 1e6, [&](double n) { return rejected(n).gives_up > 0.01; });
     const auto half = first_failure(10, 1e6, [&](double n) { return rejected(n).gives_up > 0.5; });
@@ -128,7 +126,8 @@ double distance_outside(const std::vector<V2d>& contour, const V2d& p) {
     double least = HUGE_VAL;
     for (size_t i = 0; i < contour.size(); ++i) {
         const V2d &a = contour[i], &b = contour[(i + 1) % contour.size()], along = b - a;
-        if ((a.y > p.y) != (b.y > p.y) && (cross(along, p - a) > 0) == (b.y > a.y)) inside = !inside;
+        if ((a.y > p.y) != (b.y > p.y) && (cross(along, p - a) > 0) == (b.y > a.y))
+            inside = !inside;
         const double t = std::clamp((p - a).dot(along) / along.dot(along), 0.0, 1.0);
         least = std::fmin(least, (p - (a + along * t)).length());
     }
@@ -146,10 +145,15 @@ Polygon nearly_collinear(double delta) {
 }
 // A square with a slot whose two long edges are delta apart.
 Polygon nearly_touching(double delta) {
-    return turned(
-        {{{{-1, -1}, {1, -1}, {1, -delta / 2}, {-0.5, -delta / 2}, {-0.5, delta / 2},
-           {1, delta / 2}, {1, 1}, {-1, 1}}}},
-        0.3);
+    return turned({{{{-1, -1},
+                     {1, -1},
+                     {1, -delta / 2},
+                     {-0.5, -delta / 2},
+                     {-0.5, delta / 2},
+                     {1, delta / 2},
+                     {1, 1},
+                     {-1, 1}}}},
+                  0.3);
 }
 Polygon needle(double delta) {
     return turned({{{{-1, 0}, {1, 0}, {0.2, delta}}}}, 0.3);
@@ -226,11 +230,11 @@ Finding degenerate_polygons() {
         if (refused.value_or(0) > worst_refused) worst_refused = *refused, refused_by = family.name;
         stray = stray || strays;
     }
-    f.where = fmt::format(
-        "{}: 1 % of the light is lost below d = {}. {}: refused below d = {}. {}", lost_by,
-        number(worst_lost), refused_by, number(worst_refused),
-        stray ? "Points leave the polygon where the table says so"
-              : "No drawn point leaves the polygon by more than 1e-6 of its size");
+    f.where =
+        fmt::format("{}: 1 % of the light is lost below d = {}. {}: refused below d = {}. {}",
+                    lost_by, number(worst_lost), refused_by, number(worst_refused),
+                    stray ? "Points leave the polygon where the table says so"
+                          : "No drawn point leaves the polygon by more than 1e-6 of its size");
     const auto fault = find_fault(Polygon{{{{-1, -1}, {1, -1}, {1, 1}, {0, -1}, {-1, 1}}}});
     f.instead = fmt::format(
         "Areas and triangles are made in doubles. What touches or encloses nothing is refused "
@@ -264,8 +268,8 @@ Finding choice_by_weight() {
     };
     for (const double w : {1e-2, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9})
         f.table.rows.push_back(row(w, sum_ratio(w), alias_ratio(w)));
-    const auto off = first_failure(
-        1e-2, 1e-10, [&](double w) { return std::fabs(sum_ratio(w) - 1) > 0.1; });
+    const auto off =
+        first_failure(1e-2, 1e-10, [&](double w) { return std::fabs(sum_ratio(w) - 1) > 0.1; });
     f.where = fmt::format(
         "Probabilities are off by 10 % below w = {}: they are whole multiples of 2^-24, and never "
         "0, so that the faint one is drawn too often",
@@ -274,7 +278,8 @@ Finding choice_by_weight() {
         "Lights and skies divide by the probability that was used, so that only variance is paid. "
         "An iris does not: triangles and texels of a mask that hold less than 2^-24 of all are "
         "brightened to that.";
-    f.guards = {"Piecewise1D.TinyWeightsKeepAChance", "Piecewise1D.ProbabilityIsExactlyTheShareOfAllNumbers",
+    f.guards = {"Piecewise1D.TinyWeightsKeepAChance",
+                "Piecewise1D.ProbabilityIsExactlyTheShareOfAllNumbers",
                 "AliasTable.DrawsByWeightAndLeavesAUniformNumber"};
     return f;
 }

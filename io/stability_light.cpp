@@ -45,8 +45,8 @@ World under_sun(int width) {
     place_floor(world);
     const int height = width / 2, x = width / 3, y = height / 5;
     std::vector<float> rgb(3 * static_cast<size_t>(width) * height);
-    const double solid_angle = 2 * M_PI / width * (std::cos(M_PI * y / height) -
-                                                   std::cos(M_PI * (y + 1) / height));
+    const double solid_angle =
+        2 * M_PI / width * (std::cos(M_PI * y / height) - std::cos(M_PI * (y + 1) / height));
     for (int i = 0; i < 3; ++i)
         rgb[3 * (static_cast<size_t>(y) * width + x) + size_t(i)] =
             static_cast<float>(100 / solid_angle);
@@ -99,10 +99,12 @@ Finding tiny_sun() {
     }
     f.where = fmt::format(
         "Without light samples the variance passes {} (1 % of error in 1e8 samples) at a width of "
-        "{} (the sun itself would fill a texel of 680); as rendered it is {} at most, at every width",
+        "{} (the sun itself would fill a texel of 680); as rendered it is {} at most, at every "
+        "width",
         number(kMost), number(blind), number(worst_both));
-    f.instead = "Light samples and surface samples are weighed against each other by the power "
-                "heuristic; the sky is drawn from by its texels.";
+    f.instead =
+        "Light samples and surface samples are weighed against each other by the power "
+        "heuristic; the sky is drawn from by its texels.";
     f.guards = {"Sky.SamplesFollowTheDensity", "Sky.EstimatesTheLightThatArrives",
                 "Path.TechniquesAgree"};
     return f;
@@ -131,13 +133,13 @@ Finding tiny_lamp() {
         [](double side) {
             return lit(under_lamp(side, false), Technique::BsdfOnly).relative_variance > kMost;
         },
-        4);
+        2);
     const auto glass = first_failure(
         10, 1e-3,
         [](double side) {
             return lit(under_lamp(side, true), Technique::Mis, 8).relative_variance > kMost;
         },
-        4);
+        2);
     const auto both = first_failure(
         10, 1e-6,
         [](double side) {
@@ -151,9 +153,10 @@ Finding tiny_lamp() {
         number(kMost), number(surface), number(glass), kSamples,
         both ? "above 1 below a side of " + number(*both) + " m"
              : std::string("never above 1 down to a micrometre"));
-    f.instead = "Lamps are drawn from by light samples, which glass blocks: through glass only "
-                "paths that happen to meet the lamp bring its light. Punctual lights and the sun "
-                "of a glTF file, which no path can meet, do not shine through glass at all.";
+    f.instead =
+        "Lamps are drawn from by light samples, which glass blocks: through glass only "
+        "paths that happen to meet the lamp bring its light. Punctual lights and the sun "
+        "of a glTF file, which no path can meet, do not shine through glass at all.";
     f.guards = {"Path.TechniquesAgree", "Path.SquareEmitterMatchesItsConfigurationFactor",
                 "TriangleLight.EstimatesLambertsIrradiance"};
     return f;
@@ -176,14 +179,14 @@ Highlight highlight(double side_m, double fstop) {
     lamp.emissive = Rgb(1.f);
     world.place(quad(V3f(-a / 2, -a / 2, -float(kBehind_m)), V3f(a, 0, 0), V3f(0, a, 0)), lamp);
     world.finish();
-    const ThinLensCamera camera({M44f(), 0.47f, 1.5f, Iris(Disk{}, kFocal_mm / (2 * fstop)),
-                                 float(kFocus_m)});
+    const ThinLensCamera camera(
+        {M44f(), 0.47f, 1.5f, Iris(Disk{}, kFocal_mm / (2 * fstop)), float(kFocus_m)});
     const V2f pixel(0.5f + 0.0007f, 0.5f + 0.0004f);
     const auto ray = [&](const Sampler& sampler) {
         return camera.sample({pixel, sampler}, Bands::rgb()).path[0].ray;
     };
     Highlight out;
-    out.all = measure(world, PathOptions(), 1u << 18, ray, SamplerKind::Owen);
+    out.all = measure(world, PathOptions(), 1u << 17, ray, SamplerKind::Owen);
     constexpr uint32_t kMeans = 128, kEach = 256;
     const PathTracer tracer(world.scene, *world.bvh, *world.lights, PathOptions());
     PathStats stats;
@@ -194,7 +197,8 @@ Highlight highlight(double side_m, double fstop) {
             const Sampler sampler(SamplerKind::Owen, seed, {0, 0, i});
             FilmSample sample;
             mean += double(tracer.radiance(ray(sampler), Bands::rgb(), sampler, false, sample,
-                                           stats)[0]) / kEach;
+                                           stats)[0]) /
+                    kEach;
         }
         variance += std::pow(mean - out.all.mean, 2) / kMeans;
     }
@@ -220,8 +224,8 @@ Finding defocused_highlights() {
         "highlight fills, variance of one sample over the mean squared, samples for 10 % of error, "
         "and by what Owen-scrambled points divide the variance of 256 samples.",
         kFocal_mm, kFocus_m, kBehind_m);
-    f.table.columns = {"side (m)",          "f/",       "blur (px)",           "blur there (m)",
-                       "share",             "variance", "samples for 10 %", "gain of Owen"};
+    f.table.columns = {"side (m)", "f/",       "blur (px)",        "blur there (m)",
+                       "share",    "variance", "samples for 10 %", "gain of Owen"};
     const double film_mm = kFocal_mm / (1 - kFocal_mm / (kFocus_m * 1e3));
     for (const double fstop : {1.4, 5.6})
         for (const double side : {0.1, 0.03, 0.01, 3e-3}) {
@@ -229,9 +233,9 @@ Finding defocused_highlights() {
             const double there_m = confusion_m(fstop);
             const double blur_px = there_m / kBehind_m * film_mm / kFilm_px_mm;
             const double v = h.all.relative_variance;
-            f.table.rows.push_back(row(side, fstop, blur_px, there_m,
-                                       side * side / (M_PI / 4 * there_m * there_m), v, v / 0.01,
-                                       h.all.found * 32768 > 100 && h.all.found < 1 ? number(h.owen_gain) : ""));
+            f.table.rows.push_back(row(
+                side, fstop, blur_px, there_m, side * side / (M_PI / 4 * there_m * there_m), v,
+                v / 0.01, h.all.found * 32768 > 100 && h.all.found < 1 ? number(h.owen_gain) : ""));
         }
     const auto below = [](double fstop, double most) {
         return first_failure(0.2, 1e-4, [=](double side) {
@@ -245,8 +249,9 @@ Finding defocused_highlights() {
         "999 below {} m ({} of the blur's width)",
         number(confusion_m(1.4)), number(hundred), number(thousand),
         percent(thousand.value_or(0) / confusion_m(1.4)));
-    f.instead = "Nothing: no light sample passes a lens. Noise falls with the samples, the sooner "
-                "for scrambled points; `--spp` is all there is.";
+    f.instead =
+        "Nothing: no light sample passes a lens. Noise falls with the samples, the sooner "
+        "for scrambled points; `--spp` is all there is.";
     f.guards = {"Stability.ADefocusedHighlightVariesAsItsShareOfTheBlur",
                 "AberratedLens.BlurIsTheCircleOfConfusion"};
     return f;

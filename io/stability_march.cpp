@@ -111,7 +111,8 @@ Spread out_of_glass(double cosine) {
     Draws draws(12);
     return worst_of(512, [&] {
         const double c = cosine * (1 + 0.1 * double(draws.next()));
-        const double sine = std::sqrt(1 - c * c) / kGlassIndex, at = 2 * M_PI * double(draws.next());
+        const double sine = std::sqrt(1 - c * c) / kGlassIndex,
+                     at = 2 * M_PI * double(draws.next());
         return march_both(lens, {1, 1}, {0, 0, -3},
                           {sine * std::cos(at), sine * std::sin(at), std::sqrt(1 - sine * sine)});
     });
@@ -133,8 +134,8 @@ Finding march_at_grazing_incidence() {
                        "other fate there"};
     for (const double c : {0.9, 0.3, 0.1, 1e-2, 1e-3, 1e-4, 1e-5}) {
         const Spread in = into_glass(c), out = out_of_glass(c);
-        f.table.rows.push_back(row(c, in.apart_mm, percent(in.fates_differ), out.apart_mm,
-                                   percent(out.fates_differ)));
+        f.table.rows.push_back(
+            row(c, in.apart_mm, percent(in.fates_differ), out.apart_mm, percent(out.fates_differ)));
     }
     const auto sphere =
         first_failure(0.9, 1e-6, [](double c) { return into_glass(c).apart_mm > kPixel_mm; });
@@ -162,15 +163,17 @@ namespace {
 
 // Through a bent plate of 5 mm, 20 degrees off the axis and 10 mm from it.
 double over_radius_mm(double radius_mm) {
-    const Lens lens = lens_of({surface(1 / radius_mm, 1e3, 5, true),
-                               surface(1 / radius_mm, 1e3, 100, false)});
+    const Lens lens =
+        lens_of({surface(1 / radius_mm, 1e3, 5, true), surface(1 / radius_mm, 1e3, 100, false)});
     Draws draws(13);
-    return worst_of(512, [&] {
-               const double at = 2 * M_PI * double(draws.next());
-               const double h_mm = 10 * double(draws.next());
-               return march_both(lens, {0, 1}, {h_mm * std::cos(at), h_mm * std::sin(at), -10},
-                                 {0.34 * double(draws.next()), 0.1, 1});
-           })
+    return worst_of(512,
+                    [&] {
+                        const double at = 2 * M_PI * double(draws.next());
+                        const double h_mm = 10 * double(draws.next());
+                        return march_both(lens, {0, 1},
+                                          {h_mm * std::cos(at), h_mm * std::sin(at), -10},
+                                          {0.34 * double(draws.next()), 0.1, 1});
+                    })
         .apart_mm;
 }
 
@@ -178,11 +181,12 @@ double over_radius_mm(double radius_mm) {
 double from_afar_mm(double distance_mm) {
     const Lens lens = lens_of({surface(1 / 50., 1e3, 100, true)});
     Draws draws(14);
-    return worst_of(512, [&] {
-               const V3d aim(10 * double(draws.next()), 10 * double(draws.next()), 0);
-               const V3d direction = V3d(0.34 * double(draws.next()), 0.1, 1).normalized();
-               return march_both(lens, {0, 0}, aim - direction * distance_mm, direction);
-           })
+    return worst_of(512,
+                    [&] {
+                        const V3d aim(10 * double(draws.next()), 10 * double(draws.next()), 0);
+                        const V3d direction = V3d(0.34 * double(draws.next()), 0.1, 1).normalized();
+                        return march_both(lens, {0, 0}, aim - direction * distance_mm, direction);
+                    })
         .apart_mm;
 }
 
@@ -224,7 +228,8 @@ namespace {
 
 // What Newton's method makes of rays onto one asphere, against a search for changes of sign.
 struct Newton {
-    double missed = 0, other = 0;  ///< shares: a surface that is there, a root that is not the first
+    double missed = 0,
+           other = 0;  ///< shares: a surface that is there, a root that is not the first
 };
 
 LensSurface scaled_asphere(LensSurface s, double factor) {
@@ -270,8 +275,8 @@ Newton newton_on(const LensSurface& s) {
             const Pair pair = march_both(lens, {0, 0}, aim - d * semi_mm, d);
             const auto judge = [&](Fate fate, double y) {
                 out.missed += fate == Fate::Missed;
-                out.other += fate == Fate::Passed &&
-                             std::fabs(y - (aim + d * *root).y) > 1e-3 * semi_mm;
+                out.other +=
+                    fate == Fate::Passed && std::fabs(y - (aim + d * *root).y) > 1e-3 * semi_mm;
             };
             judge(pair.in_floats.fate(0), double(pair.in_floats.origin.y[0]));
             judge(pair.in_doubles.fate(0), pair.in_doubles.origin.y[0]);
@@ -289,11 +294,12 @@ Finding newton_on_strong_aspheres() {
     f.fails = "no answer";
     f.sweep =
         "Each asphere of the lenses that ship, alone, its coefficients multiplied by a factor from "
-        "1 to 1e4, and 48 rays at 0 and 22 degrees, in floats and in doubles, against a search for the first change "
+        "1 to 1e4, and 48 rays at 0 and 22 degrees, in floats and in doubles, against a search for "
+        "the first change "
         "of sign along the ray within the semi-diameter: the factor from which a ray misses a "
         "surface that is there, or meets another point of it than the first.";
-    f.table.columns = {"lens", "surface", "departure at the rim / semi-diameter", "a miss from",
-                       "10 % miss from", "another point from"};
+    f.table.columns = {"lens",        "surface",        "departure at the rim / semi-diameter",
+                       "a miss from", "10 % miss from", "another point from"};
     double least = HUGE_VAL, least_share = 0;
     std::string least_name;
     for (const LensSummary& summary : list_lenses()) {
@@ -309,8 +315,8 @@ Finding newton_on_strong_aspheres() {
                 semi_mm;
             const auto from = [&](auto fails) {
                 return first_failure(
-                    1, 1e4, [&](double factor) { return fails(newton_on(scaled_asphere(s, factor))); },
-                    5);
+                    1, 1e4,
+                    [&](double factor) { return fails(newton_on(scaled_asphere(s, factor))); }, 5);
             };
             const auto miss = from([](const Newton& n) { return n.missed > 0; });
             const auto many = from([](const Newton& n) { return n.missed > 0.1; });

@@ -56,9 +56,9 @@ Finding many_samples() {
         "samples of one dimension; and how many cells of 256 x 256 the 65536 points from an index "
         "on leave empty, up to the last index, 2^32 - 1.",
         kSeeds);
-    f.table.columns = {"samples, or first index", "Owen",          "Sobol",
-                       "independent",             "empty by Owen", "empty by Sobol",
-                       "empty by independent"};
+    f.table.columns = {
+        "samples or first index", "Owen", "Sobol", "independent", "empty by Owen", "empty by Sobol",
+        "empty by independent"};
     std::array<std::vector<double>, 3> errors;
     for (size_t k = 0; k < 3; ++k) errors[k] = errors_of(kKinds[k]);
     for (size_t i = 0; i < errors[0].size(); ++i) {
@@ -71,9 +71,10 @@ Finding many_samples() {
     }
     uint32_t empty = 0;
     for (const uint32_t first : {1u << 24, 1u << 31, 0xffff0000u}) {
-        std::vector<std::string> cells =
-            row(first == 0xffff0000u ? "2^32 - 2^16" : first == 1u << 31 ? "2^31" : "2^24", "", "",
-                "");
+        std::vector<std::string> cells = row(first == 0xffff0000u ? "2^32 - 2^16"
+                                             : first == 1u << 31  ? "2^31"
+                                                                  : "2^24",
+                                             "", "", "");
         for (const SamplerKind kind : kKinds)
             cells.push_back(std::to_string(empty_cells(kind, first)));
         empty += empty_cells(SamplerKind::Owen, first);
@@ -90,8 +91,9 @@ Finding many_samples() {
         "{:.2f} (independent); no cell stays empty up to 2^32 samples",
         slope(0), slope(1), slope(2));
     if (empty > 0) f.where += " but for " + std::to_string(empty);
-    f.instead = "Indices are 32 bits, and so are the points before they become floats of 24: from "
-                "2^24 samples on a dimension repeats its numbers, to 6e-8.";
+    f.instead =
+        "Indices are 32 bits, and so are the points before they become floats of 24: from "
+        "2^24 samples on a dimension repeats its numbers, to 6e-8.";
     f.guards = {"Stratified.EveryBlockIsANet", "Sampler.StratifiedPointsIntegrateBetter",
                 "Stability.BlocksAreNetsUpToTheLastIndex"};
     return f;
@@ -114,7 +116,8 @@ Finding film_sums() {
     Finding f;
     f.method = "Sums of films";
     f.sweep =
-        "One pixel of a spectral film that gets n samples of 1 plus an even random number from -0.1 to "
+        "One pixel of a spectral film that gets n samples of 1 plus an even random number from "
+        "-0.1 to "
         "0.1: error of its mean against exact sums, and the standard error that it states, from "
         "its eight scrambles, over the one of exact sums.";
     f.table.columns = {"n", "error of the mean", "stated / exact standard error"};
@@ -149,9 +152,11 @@ Finding film_sums() {
         "The mean is within {} up to 2^24 samples; the stated standard error is at worst {} times "
         "the exact one, at n = {}",
         number(worst_mean), number(worst_error), worst_at);
-    f.instead = "Sums of the picture are doubles. Those of the scrambles, from which the standard "
-                "error comes, are floats: it is overstated there, never understated.";
-    f.guards = {"Film.SmallSamplesAreNotLostInALargeSum", "SpectralFilm.StandardErrorOfAKnownVariance"};
+    f.instead =
+        "Sums of the picture are doubles. Those of the scrambles, from which the standard "
+        "error comes, are floats: their rounding adds to it.";
+    f.guards = {"Film.SmallSamplesAreNotLostInALargeSum",
+                "SpectralFilm.StandardErrorOfAKnownVariance"};
     return f;
 }
 

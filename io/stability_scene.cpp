@@ -65,12 +65,12 @@ Finding scene_scale() {
         "A closed ball of 2208 triangles. Of 1500 rays from within, those that leak, or that hit "
         "the triangle which they just left: over its radius with its middle at the origin, and, "
         "with a radius of 1 m, over the distance of its middle from the origin.";
-    f.table.columns = {"radius (m)", "leaks",        "self-hits",
+    f.table.columns = {"radius (m)",   "leaks",       "self-hits",
                        "away (radii)", "leaks there", "self-hits there"};
     for (int k = -8; k <= 8; ++k) {
         const double radius = std::pow(10, 2 * k);
-        std::vector<std::string> cells =
-            row(radius, percent(leave_ball(radius, 0).leaks), percent(leave_ball(radius, 0).self_hits));
+        std::vector<std::string> cells = row(radius, percent(leave_ball(radius, 0).leaks),
+                                             percent(leave_ball(radius, 0).self_hits));
         const double away = std::pow(10, k + 1);
         const auto more = k < 0 ? row("", "", "")
                                 : row(away, percent(leave_ball(1, away).leaks),
@@ -78,12 +78,12 @@ Finding scene_scale() {
         cells.insert(cells.end(), more.begin(), more.end());
         f.table.rows.push_back(cells);
     }
-    const auto small =
-        first_failure(1, 1e-30, [](double r) { return leave_ball(r, 0).all() > 0; }, 1);
-    const auto large =
-        first_failure(1, 1e30, [](double r) { return leave_ball(r, 0).all() > 0; }, 1);
-    const auto away =
-        first_failure(1, 1e9, [](double d) { return leave_ball(1, d).all() > 0; }, 2);
+    const auto small = first_failure(
+        1, 1e-30, [](double r) { return leave_ball(r, 0).all() > 0; }, 1);
+    const auto large = first_failure(
+        1, 1e30, [](double r) { return leave_ball(r, 0).all() > 0; }, 1);
+    const auto away = first_failure(
+        1, 1e9, [](double d) { return leave_ball(1, d).all() > 0; }, 2);
     f.where = fmt::format(
         "Below a radius of {} m and above {} m, where squares leave the range of floats; at {} "
         "radii from the origin, where the corners of triangles become one",
@@ -115,12 +115,15 @@ double place_error_px(double away_m) {
     for (int i = 0; i < 1000; ++i) {
         const V2f film = draws.next2();
         const Ray ray =
-            camera.sample({film, Sampler(SamplerKind::Owen, 1, {0, 0, 0})}, Bands::rgb()).path[0].ray;
+            camera.sample({film, Sampler(SamplerKind::Owen, 1, {0, 0, 0})}, Bands::rgb())
+                .path[0]
+                .ray;
         const auto hit = world.bvh->intersect(ray);
         if (!hit) return HUGE_VAL;
         const V3d p(make_surface(world.scene, ray.direction, *hit).p);
         const double half = std::tan(double(yfov) / 2);
-        const V3d toward((2 * double(film.x) - 1) * half * 1.5, (1 - 2 * double(film.y)) * half, -1);
+        const V3d toward((2 * double(film.x) - 1) * half * 1.5, (1 - 2 * double(film.y)) * half,
+                         -1);
         // A wall that rounding moved is a scene of its own; its picture is asked for.
         const double depth = double(eye.z) - wall_z;
         const V3d exact = V3d(eye) + toward * depth;

@@ -34,8 +34,8 @@ template <class... Cells>
     return {text(cells)...};
 }
 
-/// The parameter at which fails(x) is first true, on geometric steps from one end to the other, then
-/// halved until its relative error is below 1e-3; nothing where it never is.
+/// The parameter at which fails(x) is first true, on geometric steps from one end to the other,
+/// then halved until its relative error is below 1e-3; nothing where it never is.
 template <class Fails>
 [[nodiscard]] std::optional<double> first_failure(double from, double to, const Fails& fails,
                                                   int steps_per_decade = 8) {

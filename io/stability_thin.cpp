@@ -61,8 +61,9 @@ Finding third_order_formula() {
         "{:g} um apart on the film, until no ray comes through, and until the camera refuses the "
         "iris; as f-numbers, f / 2h.",
         kFocal_mm, kPixel_mm * 1e3);
-    f.table.columns = {"object S/f", "q",          "1 % below f/",   "10 % below f/",
-                       "1 px below f/", "no ray below f/", "refused below f/"};
+    f.table.columns = {
+        "object S/f",      "q", "1 % below f/", "10 % below f/", "1 px below f/", "no ray below f/",
+        "refused below f/"};
     double one_far = 0, ten_far = 0, px_far = 0;
     double ten_worst = 0, ten_worst_at = 0, px_worst = 0, px_worst_at = 0;
     for (const double q : {0., 1.})
@@ -80,9 +81,8 @@ Finding third_order_formula() {
                 });
             };
             const auto one = off_by(0.01), ten = off_by(0.1);
-            const auto pixel = fnumber([&](double h_mm) {
-                return film_error_mm(lens, object_mm, h_mm) > kPixel_mm;
-            });
+            const auto pixel = fnumber(
+                [&](double h_mm) { return film_error_mm(lens, object_mm, h_mm) > kPixel_mm; });
             const auto no_ray = fnumber([&](double h_mm) {
                 return !traced_spherical_aberration_mm(lens, object_mm, h_mm);
             });
@@ -105,9 +105,8 @@ Finding third_order_formula() {
     f.instead = fmt::format(
         "From 10 % on a warning says from which f-number on the formula holds (at f/1.5: \"{}\"). "
         "An iris at whose rim f(h) falls below half of f is refused: \"{}\".",
-        warning_of(glass, 1.5f), refusal_of([&] {
-            AberratedLensCamera(singlet_camera(glass, 0, 0.7 * kFocal_mm, kFar));
-        }));
+        warning_of(glass, 1.5f),
+        refusal_of([&] { AberratedLensCamera(singlet_camera(glass, 0, 0.7 * kFocal_mm, kFar)); }));
     f.guards = {"ThinLensOptics.TellsWhereTheFormulaIsOutOfItsDomain",
                 "CliCamera.ASingletWarnsWhereItsFormulaEnds",
                 "AberratedLens.RefusesWhatItCannotImage"};
@@ -168,7 +167,7 @@ Finding focus_near_focal_length() {
         "10 to 198 mm), and how far the rays of one film point miss each other on the plane in "
         "focus, in pixels of 6 um, with the camera at the origin of the scene and at (1, 1, 1) m.";
     f.table.columns = {"S/f - 1", "magnification S'/S", "error of S'", "miss at the origin (px)",
-                       "miss at (1, 1, 1) m (px)"};
+                       "miss 1.7 m from it (px)"};
     for (int k = 0; k <= 8; ++k) {
         const double closeness = std::pow(10, -k);
         f.table.rows.push_back(row(closeness, 1 / closeness, film_place_error(closeness),
@@ -182,9 +181,9 @@ Finding focus_near_focal_length() {
         "(1, 1, 1) m (magnification {}) and below {} at the origin; the film's place is off by 1 % "
         "below {}. At S <= f there is no image",
         number(away), number(1 / away.value_or(0)), number(here), number(place));
-    f.instead = fmt::format(
-        "Down to the last float the camera renders what it has; for S = f, \"{}\".",
-        refusal_of([] { static_cast<void>(image_distance_mm(kFocal_mm, kFocal_mm)); }));
+    f.instead =
+        fmt::format("Down to the last float the camera renders what it has; for S = f, \"{}\".",
+                    refusal_of([] { static_cast<void>(image_distance_mm(kFocal_mm, kFocal_mm)); }));
     f.guards = {"ThinLensOptics.RefusesWhatHasNoImage",
                 "Stability.RaysOfAThinLensMeetAtTenfoldMagnification"};
     return f;

@@ -36,7 +36,7 @@ Measured through(const World& world, int max_depth, int roulette_depth) {
     PathOptions options;
     options.max_depth = max_depth;
     options.roulette_depth = roulette_depth;
-    return measure(world, options, 1u << 14, along_z);
+    return measure(world, options, 1u << 13, along_z);
 }
 
 // Share of the light that the end of paths cuts off: without roulette, which does not change it.
@@ -51,7 +51,7 @@ Finding chains_of_glass() {
     f.method = "Chains of glass";
     f.fails = "bias, variance";
     f.sweep =
-        "A ray onto N clear panes (n = 1.5) in a white sky, 16384 samples: what of 1 is lost "
+        "A ray onto N clear panes (n = 1.5) in a white sky, 8192 samples: what of 1 is lost "
         "because paths end at --max-depth, 16 unless it is given; and the variance of one sample "
         "over the mean squared, which Russian roulette makes.";
     f.table.columns = {"panes", "lost at depth 16", "lost at depth 64", "lost at depth 1000",
@@ -69,7 +69,8 @@ Finding chains_of_glass() {
         return count;
     };
     f.where = fmt::format(
-        "At the usual depth of {} 1 % is lost from {} panes on and half of it from {}: a pane takes "
+        "At the usual depth of {} 1 % is lost from {} panes on and half of it from {}: a pane "
+        "takes "
         "two scatterings and more. Roulette ends a twentieth of the paths at each scattering of "
         "clear glass: without bias, but the variance of one sample passes 1 at {} panes",
         usual, first([&](const World& w) { return lost(w, usual) > 0.01; }),
@@ -105,11 +106,13 @@ Finding nested_volumes() {
         f.table.rows.push_back(row(a, seen, due, seen / due));
         worst = std::fmax(worst, seen / due);
     }
-    f.where = fmt::format("The metre behind the inner slab is not absorbed: 1/a too bright, {} "
-                          "times at a = 0.01",
-                          number(worst));
-    f.instead = "A path remembers one volume: when it leaves the inner one it is in none. Nested "
-                "volumes have to be modelled with a gap or as shells.";
+    f.where = fmt::format(
+        "The metre behind the inner slab is not absorbed: 1/a too bright, {} "
+        "times at a = 0.01",
+        number(worst));
+    f.instead =
+        "A path remembers one volume: when it leaves the inner one it is in none. Nested "
+        "volumes have to be modelled with a gap or as shells.";
     f.guards = {"Path.AbsorptionFollowsBeerAndLambert", "Path.TechniquesAgreeInsideAVolume"};
     return f;
 }

@@ -48,8 +48,8 @@ template <class MakeRay>
     for (uint32_t i = 0; i < samples; ++i) {
         const Sampler sampler(kind, 1, {0, 0, i});
         FilmSample out;
-        const double a = double(
-            tracer.radiance(ray(sampler), Bands::rgb(), sampler, false, out, stats)[0]);
+        const double a =
+            double(tracer.radiance(ray(sampler), Bands::rgb(), sampler, false, out, stats)[0]);
         sum += a;
         squares += a * a;
         found += a != 0;

@@ -38,7 +38,7 @@ std::string table_head(const std::vector<std::string>& columns) {
 
 std::string guards_of(const Finding& f) {
     std::vector<std::string> code;
-    for (const std::string& guard : f.guards) code.push_back("`" + guard + "`");
+    for (const std::string& guard : f.guards) code.push_back(fmt::format("`{}`", guard));
     return fmt::format("{}", fmt::join(code, ", "));
 }
 
@@ -101,7 +101,7 @@ std::string stability_markdown(const std::vector<Finding>& findings) {
         table_head({"method", "what fails", "where"});
     for (const Finding& f : findings)
         out += table_row({fmt::format("[{}](#{})", f.method, anchor(f.method)), f.fails, f.where});
-    for (const Finding& f : findings) (out += "\n") += section(f);
+    for (const Finding& f : findings) out += "\n" + section(f);
     return out;
 }
 

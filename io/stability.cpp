@@ -101,7 +101,7 @@ std::string stability_markdown(const std::vector<Finding>& findings) {
         table_head({"method", "what fails", "where"});
     for (const Finding& f : findings)
         out += table_row({fmt::format("[{}](#{})", f.method, anchor(f.method)), f.fails, f.where});
-    for (const Finding& f : findings) out += "\n" + section(f);
+    for (const Finding& f : findings) out += fmt::format("\n{}", section(f));
     return out;
 }
 

@@ -3,6 +3,7 @@
 // what no other test holds.
 #include "io/stability.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -62,7 +63,7 @@ TEST(StabilityPage, NamesTestsThatThereAre) {
         const std::string text = (*line)[1];
         size_t named = 0;
         for (std::sregex_iterator g(text.begin(), text.end(), name); g != end; ++g, ++named) {
-            const std::string arguments = "(" + (*g)[1].str() + ", " + (*g)[2].str() + ")";
+            const std::string arguments = fmt::format("({}, {})", (*g)[1].str(), (*g)[2].str());
             EXPECT_NE(tests.find(arguments), std::string::npos) << arguments;
         }
         EXPECT_GT(named, 0u) << text;

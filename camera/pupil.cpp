@@ -9,6 +9,9 @@ namespace {
 
 // Of the stop's radius; Newton's next step squares the latter.
 constexpr float kTolerance = 1e-4f, kToleranceBeforeStep = 3e-3f;
+// Of a direction cosine. Where the pupil folds, directions far apart meet the stop at nearly one
+// point: a ray that is near it there may have any stretch, and with it any weight.
+constexpr float kMostStepLeft = 1e-3f;
 constexpr int kMostSteps = 12, kMostHalvings = 6;
 
 // Wavelengths at which the table is solved: evenly in 1 / nm, over what is visible.
@@ -101,13 +104,15 @@ std::optional<StopCrossing<f4>> Pupil::newton(V2f film_point_mm, V2f stop_point_
     V2f good = cosines, step(0.f);
     int halvings = 0;
     for (int i = 0; i < kMostSteps; ++i) {
-        const StopCrossing<f4> c =
-            cross<f4>(film_point_mm, splat(cosines.x), splat(cosines.y), indices);
+        StopCrossing<f4> c = cross<f4>(film_point_mm, splat(cosines.x), splat(cosines.y), indices);
+        c.marches = i + 1;
         if (cosines.length2() < 1.f && c.ray.alive()[lane]) {
             const Step by = step_towards(stop_point_mm, c);
-            if (by.left2_mm2[lane] < sqr(kTolerance * stop_radius_mm_)) return c;
             good = cosines;
             step = {by.l[lane], by.m[lane]};
+            if (by.left2_mm2[lane] < sqr(kTolerance * stop_radius_mm_) &&
+                step.length2() < sqr(kMostStepLeft))
+                return c;
         } else {
             if (i == 0 || ++halvings > kMostHalvings) break;
             step *= 0.5f;

@@ -68,7 +68,7 @@ void add_lens_options(CLI::App& app, CameraOptions& o) {
         "formula, rejection, triangles, alias (default: the best that the shape has)"));
     group(add_choice<Chroma>(app, "--chroma", r.chroma, words_of(Chroma()),
                              "wavelengths that leave the lens apart: auto (default), shared, "
-                             "split, single, two-level"));
+                             "split, single, two-level, hero"));
     group(app.add_option("--chroma-tolerance", r.chroma_tolerance_px,
                          "pixels on the film within which --chroma auto shares a ray (default "
                          "0.1)"))

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "camera/hero.h"
 #include "camera/two_level.h"
 #include "core/spectrum_table.h"
 
@@ -43,6 +44,8 @@ AberratedLensCamera::AberratedLensCamera(AberratedLens lens)
 }
 
 CameraSample AberratedLensCamera::sample(const FilmPoint& at, const Bands& bands) const {
+    if (in_.chroma == Chroma::Hero && bands.spectral)
+        return at.pixel.filter ? hero(at, bands) : sample(at, bands, Chroma::Split);
     if (!two_level() || !bands.spectral) return sample(at, bands, in_.chroma);
     return petzval::two_level(at, bands.on,
                               [&](Chroma chroma) { return sample(at, bands, chroma); });
@@ -92,6 +95,39 @@ CameraSample AberratedLensCamera::sample(const FilmPoint& at, const Bands& bands
     }
     for (int k = 0; k < out.count; ++k)
         out.path[k].weight = zero_off(out.path[k].lanes, splat(weight));
+    return out;
+}
+
+// Through a point of the lens, the same ray of the scene belongs to film points that differ by the
+// vergences of the lanes.
+CameraSample AberratedLensCamera::hero(const FilmPoint& at, const Bands& bands) const {
+    const V2f stop = in_.iris.sample(at.sampler.get2(Dim::Lens));
+    const int lead = pick_lane(bands.on, at.sampler.get1(Dim::LensLane));
+    f4 vergence_per_mm{};
+    m4 open = bands.on;
+    for (int lane = 0; lane < 4; ++lane) {
+        if (!bands.on[lane]) continue;
+        const double n = in_.singlet.glass.index(double(bands.nm[lane]));
+        const double focal_mm = zonal_mm(n, double(stop.length()));
+        if (!(focal_mm > kLeastZone / 2 * at_d_.focal_mm)) open[lane] = 0;
+        vergence_per_mm[lane] = static_cast<float>(1 / focal_mm - 1 / film_mm_);
+    }
+    CameraSample out;
+    out.exposure = in_.exposure;
+    if (!open[lead]) return out;
+    const f4 off = vergence_per_mm - splat(vergence_per_mm[lead]);
+    const V2f px = 0.5f * at.pixel.frame_px / V2f(tan_half_x_, tan_half_y_);
+    const f4 shares =
+        hero_shares(at.pixel, off * (stop.x * px.x), off * (-stop.y * px.y), bands.on, open);
+    const V3f through_centre{(2.f * at.film.x - 1.f) * tan_half_x_,
+                             (1.f - 2.f * at.film.y) * tan_half_y_, -1.f};
+    const V3f point_mm{stop.x, stop.y, 0.f};
+    CameraPath& path = out.path[0];
+    path.ray.origin = pose_.origin + pose_.to_world(point_mm * 1e-3f);
+    path.ray.direction = unit(pose_.to_world(through_centre - point_mm * vergence_per_mm[lead]));
+    path.weight = shares * in_.exposure;
+    path.lanes = shares > 0;
+    out.count = lane_count(path.lanes) > 0 ? 1 : 0;
     return out;
 }
 

@@ -36,6 +36,7 @@ class AberratedLensCamera final : public Camera {
 
   private:
     [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&, Chroma) const;
+    [[nodiscard]] CameraSample hero(const FilmPoint&, const Bands&) const;
     [[nodiscard]] double zonal_mm(double n, double h_mm) const;
 
     AberratedLens in_;

@@ -4,11 +4,20 @@
 
 #include <array>
 
+#include "core/filter.h"
 #include "core/ray.h"
 #include "core/sampler.h"
 #include "core/spectrum.h"
 
 namespace petzval {
+
+/// The pixel filter that drew a film point; nullptr: none is known, and a camera that asks for it
+/// splits its lanes instead.
+struct PixelFilter {
+    const Filter* filter = nullptr;
+    V2f offset_px{0.f};  ///< of the film point from the pixel's centre, y down
+    V2f frame_px{1.f};   ///< width and height of the full frame
+};
 
 /// Where on the film, and the numbers from which a camera draws the rest (Dim::Lens).
 struct FilmPoint {
@@ -18,6 +27,7 @@ struct FilmPoint {
     Sampler sampler;
     /// Of taking the difference to the split paths, in a camera that is two_level(); 0: never.
     float split_probability = 1;
+    PixelFilter pixel{};
 };
 
 /// A world-space ray; direction has unit length.

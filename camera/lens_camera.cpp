@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "camera/lens_camera.h"
 
+#include "camera/hero.h"
 #include "camera/two_level.h"
 #include "core/dispersion.h"
 
@@ -174,7 +175,7 @@ ScalarOf<V> LensCamera::behind_pupil_mm(const LensRay<V>& ray, int lane) const {
 template <class V>
 bool LensCamera::together(const LensRay<V>& ray, int a, int b, Chroma chroma) const {
     using S = ScalarOf<V>;
-    if (chroma == Chroma::Split) return false;
+    if (chroma == Chroma::Split || chroma == Chroma::Hero) return false;
     const float focus_mm = in_.focus_m * 1e3f;
     const auto on_plane = [&](int lane) {
         const S t = (S(focus_mm) + behind_pupil_mm(ray, lane)) / -ray.direction.z[lane];
@@ -207,10 +208,78 @@ CameraSample LensCamera::paths(const LensDraw<V>& drawn, const Bands& bands, Chr
     return out;
 }
 
+// The ray of one lane, as `single` draws it, goes back through the lens in all lanes. What rounding
+// and the solver leave shows in the drawn lane, whose way is known, and is taken off all of them.
+template <class V>
+CameraSample LensCamera::hero(const FilmPoint& point, V2f film_mm, const Bands& bands) const {
+    using S = ScalarOf<V>;
+    const Lens& lens = *in_.lens;
+    const V2f u = point.sampler.get2(Dim::Lens);
+    const float u_lane = point.sampler.get1(Dim::LensLane);
+    const int lead = pick_lane(bands.on, u_lane);
+    const LensDraw<V> drawn = draw<V>(film_mm, u, u_lane, bands, Coating::Ideal, Chroma::Single);
+    CameraSample out;
+    out.lanes = drawn.lanes;
+    out.exposure = exposure_;
+    if (!(drawn.weight[lead] > 0)) return out;
+
+    const LensIndices<V> indices = [&] {
+        if constexpr (std::same_as<V, f4>)
+            return lens.indices(bands.nm);
+        else
+            return lens.exact_indices(lanes_as<d4>(bands.nm));
+    }();
+    f4 through = splat(1.f);
+    const auto lose = [&](const LensHit<V>& hit) {
+        const auto& s = lens.surfaces<S>()[static_cast<size_t>(hit.surface)];
+        if (in_.coating == Coating::Ideal || s.medium_before == s.medium_after) return;
+        const Crossing crossing{lanes_as<f4>(hit.index),
+                                lanes_as<f4>(indices.of_medium[s.medium_after]),
+                                lanes_as<f4>(hit.cosine)};
+        through *= transmittance(in_.coating, crossing, touches_air(s), bands.nm);
+    };
+    const auto of_lead = [&](V a, S sign) { return broadcast<V>(sign * a[lead]); };
+    LensRay<V> ray;
+    ray.counted_from = drawn.ray.counted_from;
+    const auto &o = drawn.ray.origin, &d = drawn.ray.direction;
+    ray.origin = {of_lead(o.x, 1), of_lead(o.y, 1), of_lead(o.z, 1)};
+    ray.direction = {of_lead(d.x, -1), of_lead(d.y, -1), of_lead(d.z, -1)};
+    static_cast<void>(
+        march<V>(lens, indices, Towards::Film, {0, lens.stop()}, ray, Clip::Yes, lose));
+    const V2f on_iris = in_.iris.sample(u);
+    const V x = ray.origin.x + (S(on_iris.x) - ray.origin.x[lead]);
+    const V y = ray.origin.y + (S(on_iris.y) - ray.origin.y[lead]);
+    MaskOf<V> open = petzval::transmitted(in_.iris, x, y) > 0;
+    open &= march<V>(lens, indices, Towards::Film, {lens.stop() + 1, lens.last()}, ray, Clip::Yes,
+                     lose);
+    const V to_film =
+        (S(in_.film_mm - lens.vertex_mm(ray.counted_from)) - ray.origin.z) / ray.direction.z;
+    const V film_x = ray.origin.x + to_film * ray.direction.x;
+    const V film_y = ray.origin.y + to_film * ray.direction.y;
+    // The image stands on its head.
+    const f4 dx_px =
+        lanes_as<f4>(V((film_x[lead] - film_x) / S(in_.film_width_mm))) * point.pixel.frame_px.x;
+    const f4 dy_px =
+        lanes_as<f4>(V((film_y - film_y[lead]) / S(in_.film_height_mm))) * point.pixel.frame_px.y;
+    const f4 shares = hero_shares(point.pixel, dx_px, dy_px, bands.on, lanes_as<m4>(open));
+    CameraPath& path = out.path[0];
+    path.ray = world_ray(drawn.ray, lead);
+    // `single` has weighed its one lane for all that are on.
+    path.weight =
+        shares * through *
+        (static_cast<float>(drawn.weight[lead]) / static_cast<float>(lane_count(bands.on)));
+    path.lanes = path.weight > 0;
+    out.count = lane_count(path.lanes) > 0 ? 1 : 0;
+    return out;
+}
+
 CameraSample LensCamera::sample(const FilmPoint& point, const Bands& bands) const {
     // The image stands on its head: what is seen on the right falls on the left of the film.
     const V2f film((0.5f - point.film.x) * static_cast<float>(in_.film_width_mm),
                    (point.film.y - 0.5f) * static_cast<float>(in_.film_height_mm));
+    if (in_.chroma == Chroma::Hero && bands.spectral && point.pixel.filter)
+        return in_.march == March::Double ? hero<d4>(point, film, bands)
+                                          : hero<f4>(point, film, bands);
     const V2f u = point.sampler.get2(Dim::Lens);
     const float u_lane = point.sampler.get1(Dim::LensLane);
     const auto drawn = [&](Chroma chroma) {

@@ -87,6 +87,8 @@ class LensCamera final : public Camera {
     [[nodiscard]] f4 transmitted(V2f film_mm, const StopCrossing<V>&, Coating,
                                  const LensIndices<V>&, f4 nm) const;
     template <class V>
+    [[nodiscard]] CameraSample hero(const FilmPoint&, V2f film_mm, const Bands&) const;
+    template <class V>
     [[nodiscard]] CameraSample paths(const LensDraw<V>&, const Bands&, Chroma) const;
     template <class V>
     [[nodiscard]] Ray world_ray(const LensRay<V>&, int lane) const;

@@ -26,7 +26,10 @@ double profile(FilterKind kind, double x) {
 // The profile is integrated on a fine grid and its quantiles are read off, with straight lines
 // between them: a lookup without a search, as every camera ray makes two.
 Filter::Filter(FilterKind kind, float radius_px) : kind_(kind), radius_px_(radius_px) {
-    constexpr int cells = 1 << 17, steps = 1 << 13;
+    constexpr int cells = 1 << 17, steps = 1 << 13, values = 1 << 9;
+    for (int i = 0; i <= values; ++i)
+        values_.push_back(
+            static_cast<float>(profile(kind, i / static_cast<double>(values)) / profile(kind, 0)));
     std::vector<double> cdf(cells + 1, 0.0);
     for (int i = 0; i < cells; ++i)
         cdf[i + 1] = cdf[i] + profile(kind, (2 * i + 1) / static_cast<double>(cells) - 1);
@@ -44,6 +47,15 @@ float Filter::sample1(float u) const {
     const float position = u * static_cast<float>(quantiles_.size() - 1);
     const auto step = static_cast<size_t>(position);
     return lerp(quantiles_[step], quantiles_[step + 1], position - static_cast<float>(step));
+}
+
+float Filter::value1(float offset_px) const {
+    const float position =
+        std::fabs(offset_px) / radius_px_ * static_cast<float>(values_.size() - 1);
+    const auto last = static_cast<float>(values_.size() - 1);
+    if (!(position < last)) return position == last ? values_.back() : 0.f;
+    const auto step = static_cast<size_t>(position);
+    return lerp(values_[step], values_[step + 1], position - static_cast<float>(step));
 }
 
 V2f Filter::sample(V2f u) const {

@@ -20,15 +20,22 @@ class Filter {
     Filter(FilterKind, float radius_px);
     /// Offset from the pixel's centre, in pixels, distributed as the filter. u in [0, 1)^2.
     [[nodiscard]] V2f sample(V2f u) const;
+    /// What the density of sample() is there, up to a factor: 1 at the centre, 0 beyond the radius.
+    /// Any offset.
+    [[nodiscard]] float value(V2f offset_px) const {
+        return value1(offset_px.x) * value1(offset_px.y);
+    }
 
     [[nodiscard]] FilterKind kind() const { return kind_; }
     [[nodiscard]] float radius_px() const { return radius_px_; }
 
   private:
     [[nodiscard]] float sample1(float u) const;
+    [[nodiscard]] float value1(float offset_px) const;
 
     FilterKind kind_;
     float radius_px_;
+    std::vector<float> values_;     ///< along half an axis, at equal steps from the centre
     std::vector<float> quantiles_;  ///< along one axis, in pixels, at equal steps of probability
 };
 

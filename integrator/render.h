@@ -78,7 +78,7 @@ void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& 
         const V2f size(film.full_size());
         const V2f at = V2f(id.x + 0.5f, id.y + 0.5f) + offset;
         const float split = job.split ? job.split->at(id.x, id.y) : 1.f;
-        seen = camera.sample({at / size, sampler, split}, bands);
+        seen = camera.sample({at / size, sampler, split, {&job.filter, offset, size}}, bands);
         stats.lens_lanes += seen.lanes;
     }
     FilmSample sample;

@@ -19,7 +19,8 @@ using Words = std::vector<std::pair<std::string, T>>;
             {"shared", Chroma::Shared},
             {"split", Chroma::Split},
             {"single", Chroma::Single},
-            {"two-level", Chroma::TwoLevel}};
+            {"two-level", Chroma::TwoLevel},
+            {"hero", Chroma::Hero}};
 }
 [[nodiscard]] inline Words<ApertureScale> words_of(ApertureScale) {
     return {{"area", ApertureScale::EqualArea}, {"inscribed", ApertureScale::Inscribed}};

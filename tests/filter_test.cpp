@@ -73,5 +73,33 @@ TEST(Filters, BoxOfHalfAPixelIsThePixel) {
     }
 }
 
+// Against counts of samples in cells of a twentieth of the radius; the outermost of 2^13 quantiles
+// is a straight line.
+TEST(Filter, ValueIsTheDensityOfSamples) {
+    for (const FilterKind kind : {FilterKind::Box, FilterKind::Gauss, FilterKind::BlackmanHarris}) {
+        const Filter filter(kind, 1.7f);
+        constexpr int kCells = 20, kDraws = 1 << 20;
+        std::vector<double> count(kCells), due(kCells);
+        double sum = 0;
+        for (int i = 0; i < kDraws; ++i) {
+            const float x = filter.sample({(i + 0.5f) / kDraws, 0.5f}).x;
+            ++count[size_t(std::min(kCells - 1, int(std::fabs(x) / 1.7f * kCells)))];
+        }
+        for (int c = 0; c < kCells; ++c)
+            for (int i = 0; i < 100; ++i) {
+                const float x = (float(c) + (float(i) + 0.5f) / 100) / kCells * 1.7f;
+                due[size_t(c)] += double(filter.value({x, 0}));
+                sum += double(filter.value({-x, 0}));
+            }
+        for (int c = 0; c < kCells; ++c)
+            EXPECT_NEAR(count[size_t(c)] / kDraws, due[size_t(c)] / sum, 1e-4) << int(kind) << c;
+        EXPECT_EQ(filter.value({0, 0}), 1);
+        EXPECT_EQ(filter.value({1.71f, 0}), 0);
+        EXPECT_EQ(filter.value({0, -1.71f}), 0);
+        EXPECT_FLOAT_EQ(filter.value({0.4f, 0.9f}),
+                        filter.value({0.4f, 0}) * filter.value({0, 0.9f}));
+    }
+}
+
 }  // namespace
 }  // namespace petzval

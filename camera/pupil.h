@@ -36,9 +36,10 @@ class Pupil {
     Pupil(const Lens&, double film_mm, double film_reach_mm);
 
     /// The ray that leaves the film in the same direction in all lanes, and in one of them, whose
-    /// wavelength is nm, meets a point of the stop to a ten-thousandth of the stop's radius.
-    /// Nothing where no ray gets there. Semi-diameters do not stop rays: one that glass blocks at
-    /// one wavelength may have been drawn for another.
+    /// wavelength is nm, meets a point of the stop to a ten-thousandth of the stop's radius, and is
+    /// within a thousandth of the direction that does. Nothing where no ray gets there.
+    /// Semi-diameters do not stop rays: one that glass blocks at one wavelength may have been drawn
+    /// for another.
     [[nodiscard]] std::optional<StopCrossing<f4>> solve(V2f film_point_mm, V2f stop_point_mm,
                                                         const LensIndices<f4>&, int lane,
                                                         float nm) const;

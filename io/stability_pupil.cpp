@@ -32,17 +32,23 @@ struct Subject {
 
 // Irradiance at a film point over the radiance of an even scene: by counting directions on a grid
 // that pass through the lens, without the solver.
-double counted_irradiance(const Subject& of, V2f film_mm) {
+struct Counted {
+    double irradiance = 0;
+    /// Share of it by directions that meet the stop the other way round than most: beyond a fold.
+    double folded = 0;
+};
+
+Counted count_light(const Subject& of, V2f film_mm) {
     const Lens& lens = *of.lens;
     const Pupil pupil(lens, lens.film_mm(), film_mm.length());
     const LensIndices<f4> indices = of.line_d();
     V2f low(-1.f), high(1.f);
-    double counted = 0;
+    Counted out;
     // The first look finds the box that the second one looks into.
     for (const int side : {160, 400}) {
         const V2f cell = (high - low) / static_cast<float>(side);
         V2f least(1.f), most(-1.f);
-        uint32_t passed = 0;
+        uint32_t passed = 0, turned = 0;
         for (int y = 0; y < side; ++y)
             for (int x = 0; x < side; x += 4) {
                 const f4 l = low.x + cell.x * (f4{0.5f, 1.5f, 2.5f, 3.5f} + static_cast<float>(x));
@@ -56,15 +62,17 @@ double counted_irradiance(const Subject& of, V2f film_mm) {
                 for (int i = 0; i < 4; ++i) {
                     if (!on[i]) continue;
                     ++passed;
+                    turned += c.determinant()[i] < 0;
                     least = {std::min(least.x, l[i]), std::min(least.y, m[i])};
                     most = {std::max(most.x, l[i]), std::max(most.y, m[i])};
                 }
             }
-        if (passed == 0) return 0;
-        counted = double(passed) * double(cell.x) * double(cell.y);
+        if (passed == 0) return {};
+        out.irradiance = double(passed) * double(cell.x) * double(cell.y);
+        out.folded = double(std::min(turned, passed - turned)) / passed;
         low = least - cell * 1.5f, high = most + cell * 1.5f;
     }
-    return counted;
+    return out;
 }
 
 // Draws of the whole stop from a film point, by the solver of a film that reaches so far.
@@ -130,14 +138,21 @@ Finding pupil_at_wide_fields() {
         "Every lens that ships, wide open, line d, at 0.98 of the rim of its image circle: 1024 "
         "draws of the stop for which no ray is found; how often the others march through the rear "
         "of the lens; the irradiance of 65536 draws against counting directions on a grid of "
-        "400 x 400, without the solver; the weight of the heaviest draw over the mean of those "
+        "400 x 400, without the solver, and the share of those directions that meet the stop the "
+        "other way round; the weight of the heaviest draw over the mean of those "
         "that pass. And from "
         "where on, in steps of 5 % to three times the circle, some draw of 1024 has no ray.";
-    f.table.columns = {
-        "lens",           "height (mm)",       "no ray",        "marches (mean)",
-        "marches (most)", "irradiance off by", "heaviest draw", "first without a ray (circles)"};
-    double worst_off = 0, heaviest = 0;
-    std::string off_name, heavy_name;
+    f.table.columns = {"lens",
+                       "height (mm)",
+                       "no ray",
+                       "marches (mean)",
+                       "marches (most)",
+                       "irradiance off by",
+                       "light beyond a fold",
+                       "heaviest draw",
+                       "first without a ray (circles)"};
+    double worst_off = 0, folded = 0, heaviest = 0;
+    std::string off_name, folded_name, heavy_name;
     int most = 0, clear = 0, all = 0;
     for (const LensSummary& summary : list_lenses()) {
         const Subject of(summary.name);
@@ -145,23 +160,27 @@ Finding pupil_at_wide_fields() {
         const V2f film_mm = kAcross * static_cast<float>(r_mm);
         const Solved corner = solved_at(of, r_mm);
         const Drawn drawn = drawn_at(of, film_mm);
-        const double counted = counted_irradiance(of, film_mm);
-        const double off = counted > 0 ? drawn.irradiance / counted - 1 : 0;
+        const Counted counted = count_light(of, film_mm);
+        const double off = counted.irradiance > 0 ? drawn.irradiance / counted.irradiance - 1 : 0;
         std::optional<double> first;
         for (int i = 0; i <= 60 && !first; ++i)
             if (solved_at(of, of.half_circle_mm * 0.05 * i).unreached > 0) first = 0.05 * i;
         f.table.rows.push_back(row(summary.name, r_mm, percent(corner.unreached), corner.marches,
-                                   corner.most_marches, percent(off), drawn.heaviest, first));
+                                   corner.most_marches, percent(off), percent(counted.folded),
+                                   drawn.heaviest, first));
         ++all, clear += corner.unreached == 0;
         most = std::max(most, corner.most_marches);
+        if (counted.folded > folded) folded = counted.folded, folded_name = summary.name;
         if (drawn.heaviest > heaviest) heaviest = drawn.heaviest, heavy_name = summary.name;
         if (std::fabs(off) > std::fabs(worst_off)) worst_off = off, off_name = summary.name;
     }
     f.where = fmt::format(
         "{} of {} lenses have a ray for every draw near the rim of their circle, in {} marches at "
-        "most. Where the pupil folds, one point of the stop has two rays and one of them is found: "
-        "{} is {} off. Heaviest draw: {} times the mean ({})",
-        clear, all, most, off_name, percent(worst_off), number(heaviest), heavy_name);
+        "most. Where the pupil folds, a point of the stop has two rays, of which one is found: the "
+        "other side of the fold holds {} of the light of {}. Irradiance {} off at worst ({}); "
+        "heaviest draw {} times the mean ({})",
+        clear, all, most, percent(folded), folded_name, percent(worst_off), off_name,
+        number(heaviest), heavy_name);
     f.instead =
         "A draw that no ray reaches brings no light and is counted (`unreached` in the statistics "
         "of `render`); it takes at most 12 marches to give up. At a fold the solver goes on until "

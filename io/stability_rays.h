@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// One ray through a few surfaces, in floats and in doubles, for the sweeps.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "camera/lens_march.h"
+#include "core/math.h"
+
+namespace petzval::stability {
+
+inline constexpr double kGlassIndex = 1.5;
+inline constexpr double kBehind_mm = 50;  ///< of the plane on which rays are compared
+
+/// Of no conic, and glass of kGlassIndex behind it where there is some.
+[[nodiscard]] inline LensSurface surface(double curvature_1_mm, double semi_mm, double thickness_mm,
+                                         bool glass) {
+    LensSurface s;
+    s.curvature_1_mm = curvature_1_mm;
+    s.semi_diameter_mm = semi_mm;
+    s.thickness_mm = thickness_mm;
+    if (glass) s.glass = Glass{"n", IndexSeries{{{kGlassIndex, 0}}}};
+    return s;
+}
+
+/// With a stop behind all of it, through which everything passes.
+[[nodiscard]] inline Lens lens_of(std::vector<LensSurface> surfaces) {
+    surfaces.push_back(surface(0, 1e6, kBehind_mm, surfaces.back().glass.has_value()));
+    surfaces.back().stop = true;
+    Prescription p;
+    p.surfaces = std::move(surfaces);
+    return Lens(std::move(p));
+}
+
+/// One ray in four equal lanes.
+template <class V>
+[[nodiscard]] LensRay<V> ray_from(const V3d& origin_mm, const V3d& direction) {
+    using S = ScalarOf<V>;
+    const auto all = [](double a) { return broadcast<V>(static_cast<S>(a)); };
+    const V3d d = direction / direction.length();
+    LensRay<V> ray;
+    ray.origin = {all(origin_mm.x), all(origin_mm.y), all(origin_mm.z)};
+    ray.direction = {all(d.x), all(d.y), all(d.z)};
+    return ray;
+}
+
+/// A ray marched in floats and in doubles.
+struct Pair {
+    LensRay<f4> in_floats;
+    LensRay<d4> in_doubles;
+
+    [[nodiscard]] bool fates_differ() const { return in_floats.fate(0) != in_doubles.fate(0); }
+    [[nodiscard]] bool passed() const {
+        return in_floats.fate(0) == Fate::Passed && in_doubles.fate(0) == Fate::Passed;
+    }
+    /// Of the crossing with a plane so far behind the vertex of the last surface that was met.
+    [[nodiscard]] double apart_mm(double behind_mm) const {
+        const auto at = [behind_mm](const auto& ray) {
+            const double t = (behind_mm - double(ray.origin.z[0])) / double(ray.direction.z[0]);
+            return V3d(double(ray.origin.x[0]) + t * double(ray.direction.x[0]),
+                       double(ray.origin.y[0]) + t * double(ray.direction.y[0]), 0);
+        };
+        return (at(in_floats) - at(in_doubles)).length();
+    }
+};
+
+/// Both from the same origin and direction, as floats have them.
+[[nodiscard]] inline Pair march_both(const Lens& lens, SurfaceRange range, const V3d& origin_mm,
+                                     const V3d& direction) {
+    const LensRay<f4> start = ray_from<f4>(origin_mm, direction);
+    const auto lane_0 = [](const Vec3<f4>& a) {
+        return V3d(double(a.x[0]), double(a.y[0]), double(a.z[0]));
+    };
+    Pair out{start, ray_from<d4>(lane_0(start.origin), lane_0(start.direction))};
+    const float nm = static_cast<float>(kLineD_nm);
+    static_cast<void>(march<f4>(lens, lens.exact_indices(splat(nm)), Towards::Film, range,
+                                out.in_floats, Clip::No));
+    static_cast<void>(march<d4>(lens, lens.exact_indices(broadcast<d4>(kLineD_nm)), Towards::Film,
+                                range, out.in_doubles, Clip::No));
+    return out;
+}
+
+}  // namespace petzval::stability

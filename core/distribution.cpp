@@ -83,8 +83,7 @@ Piecewise2D::Draw Piecewise2D::sample(V2f u) const {
 }
 
 float Piecewise2D::probability(uint32_t column, uint32_t row) const {
-    const uint32_t* cdf = &cdf_[size_t{row} * (width_ + 1) + column];
-    return marginal_.probability(row) * (static_cast<float>(cdf[1] - cdf[0]) / kDistributionUnits);
+    return row_probability(row) * (static_cast<float>(units(column, row)) / kDistributionUnits);
 }
 
 }  // namespace petzval

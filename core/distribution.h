@@ -69,6 +69,21 @@ class Piecewise2D {
     [[nodiscard]] Draw sample(V2f u) const;
     [[nodiscard]] float probability(uint32_t column, uint32_t row) const;
 
+    /// The same draw in whole numbers, for who divides the cells further.
+    struct UnitDraw {
+        uint32_t column, row;
+        float row_offset;      ///< position within the row, [0, 1)
+        uint32_t units, unit;  ///< the cell's share of its row, and which of them was drawn
+        float rest;            ///< what u.x goes beyond that unit, [0, 1]
+    };
+    [[nodiscard]] inline UnitDraw sample_units(V2f u) const;
+    /// A cell's share of its row, of kDistributionUnits.
+    [[nodiscard]] uint32_t units(uint32_t column, uint32_t row) const {
+        const uint32_t* cdf = &cdf_[size_t{row} * (width_ + 1) + column];
+        return cdf[1] - cdf[0];
+    }
+    [[nodiscard]] float row_probability(uint32_t row) const { return marginal_.probability(row); }
+
     [[nodiscard]] uint32_t width() const { return width_; }
     [[nodiscard]] uint32_t height() const { return height_; }
     [[nodiscard]] double sum() const { return marginal_.sum(); }  ///< of the weights
@@ -105,6 +120,21 @@ inline Piecewise1D::Draw Piecewise1D::sample(float u) const {
     const uint32_t cell =
         common ? widest_ : find_cell(cdf_.data(), guide_.data(), size(), position);
     return draw_in(cdf_.data(), cell, position);
+}
+
+inline Piecewise2D::UnitDraw Piecewise2D::sample_units(V2f u) const {
+    const Piecewise1D::Draw row = marginal_.sample(u.y);
+    const size_t first = size_t{row.cell} * width_;
+    const uint32_t* cdf = &cdf_[first + row.cell];
+    const float position = u.x * kDistributionUnits;
+    const uint32_t unit = Piecewise1D::units_of(position);
+    const uint32_t column = Piecewise1D::find_cell(cdf, &guide_[first], width_, position);
+    return {column,
+            row.cell,
+            row.offset,
+            cdf[column + 1] - cdf[column],
+            unit - cdf[column],
+            position - static_cast<float>(unit)};
 }
 
 }  // namespace petzval

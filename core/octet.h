@@ -26,8 +26,8 @@ class alignas(64) Octet {
     /// Texels may be fewer than eight; RGB, finite, not negative; lane 3 is ignored.
     explicit Octet(std::span<const f4> texels);
     /// Weights of the texels, finite, not negative; share: at least a unit for each above 0, below
-    /// 2^31. A texel has a share in proportion, none where its weight is 0, and not less than a unit
-    /// or 2^-15 of all where it is above.
+    /// 2^31. A texel has a share in proportion, none where its weight is 0, and not less than a
+    /// unit or 2^-15 of all where it is above.
     void divide(const std::array<float, kSize>& weights, uint32_t share);
 
     /// RGB in lanes 0 to 2; lane 3 means nothing.

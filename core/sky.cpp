@@ -79,8 +79,8 @@ void Sky::fill_importance() {
     for (int y = 0; y < height_; ++y) {
         // cos a - cos b, written so that nothing cancels at the poles.
         const double half = 0.5 * static_cast<double>(kPi) / height_;
-        const double solid_angle = 4 * static_cast<double>(kPi) / width_ *
-                                   std::sin(half * (2 * y + 1)) * std::sin(half);
+        const double solid_angle =
+            4 * static_cast<double>(kPi) / width_ * std::sin(half * (2 * y + 1)) * std::sin(half);
         rows_.push_back({static_cast<float>(std::cos(2 * half * y)),
                          static_cast<float>(1 / (solid_angle * kDistributionUnits))});
         const std::span row(&weights[static_cast<size_t>(y) * width_], width_);
@@ -111,9 +111,11 @@ void Sky::fill_importance() {
 
 // The polar angle comes from both coordinates, so that it is as exact at the poles as elsewhere.
 V2f Sky::to_uv(const V3f& direction) const {
-    const float u = 0.5f + atan2_turns(direction.z, direction.x) + turn_;
     const float radius = std::sqrt(sqr(direction.x) + sqr(direction.z));
-    return {u - std::floor(u), 2.f * atan2_turns(radius, direction.y)};
+    const f4 turns =
+        atan2_turns(f4{direction.z, radius, 0.f, 0.f}, f4{direction.x, direction.y, 1.f, 1.f});
+    const float u = 0.5f + turns[0] + turn_;
+    return {u - std::floor(u), 2.f * turns[1]};
 }
 
 Rgb Sky::filtered(V2f uv) const {
@@ -149,7 +151,7 @@ Sky::Found Sky::find(const V3f& direction) const {
 }
 
 Sky::Draw Sky::sample(V2f u) const {
-    if (width_ == 0) return {uniform_sphere(u), colour_, uniform_sphere_pdf()};
+    if (width_ == 0) return {uniform_sphere(u), uniform_sphere_pdf()};
     const Piecewise2D::UnitDraw drawn = importance_.sample_units(u);
     const int row = static_cast<int>(drawn.row);
     const Octet& octet = octets_of(row)[drawn.column];
@@ -161,14 +163,14 @@ Sky::Draw Sky::sample(V2f u) const {
     const uint32_t units = octet.begin(texel + 1, drawn.units) - begin;
     const float offset =
         (static_cast<float>(drawn.unit - begin) + drawn.rest) / static_cast<float>(units);
-    const float u_drawn = (static_cast<float>(drawn.column * Octet::kSize + texel) +
-                           std::min(offset, kOneMinus)) / width_;
+    const float u_drawn =
+        (static_cast<float>(drawn.column * Octet::kSize + texel) + std::min(offset, kOneMinus)) /
+        width_;
     const float y = lerp(rows_[row].top, rows_[row + 1].top, drawn.row_offset);
     const float radius = safe_sqrt((1.f - y) * (1.f + y));
     const SinCos azimuth = sincos_turns(u_drawn - 0.5f - turn_);
-    const V3f direction(radius * azimuth.cosine, y, radius * azimuth.sine);
-    const float v = 2.f * atan2_turns(radius, y);
-    return {direction, filtered({u_drawn, v}), static_cast<float>(units) * rows_[row].density};
+    return {{radius * azimuth.cosine, y, radius * azimuth.sine},
+            static_cast<float>(units) * rows_[row].density};
 }
 
 }  // namespace petzval

@@ -40,11 +40,11 @@ class Sky {
 
     struct Draw {
         V3f direction;  ///< unit
-        Rgb radiance;
-        float pdf;  ///< 1/sr
+        float pdf;      ///< 1/sr
     };
     /// Draws a direction: a texel in proportion to the light that comes from it, uniform by solid
-    /// angle within. The sky must not be black.
+    /// angle within. The sky must not be black. What radiance(direction) reads is on its way to
+    /// the cache then.
     [[nodiscard]] Draw sample(V2f u) const;
 
   private:

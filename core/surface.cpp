@@ -142,7 +142,8 @@ ShadingInput read_material(const Scene& scene, const Surface& s, const MaterialL
     base[3] = 0.f;
     const Rgb base_color(base);
     V3f n = s.ns;
-    if (m.normal_texture.present() && !s.mesh->tangents.empty()) n = mapped_normal(s, lookups.normal);
+    if (m.normal_texture.present() && !s.mesh->tangents.empty())
+        n = mapped_normal(s, lookups.normal);
     out.frame = Frame::about(face_towards(s.front ? n : -n, wo));
     if (lookups.emits) {
         f4 texel = read_texture(lookups.emissive);

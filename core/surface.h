@@ -35,7 +35,7 @@ struct ShadingInput {
     BsdfInput bsdf;
     Rgb unlit{0.f};    ///< KHR_materials_unlit: shown as it is, nits
     Rgb emitted{0.f};  ///< as emitted_radiance says, core/emission.h
-    Frame frame;     ///< shading frame on wo's side, the normal map applied
+    Frame frame;       ///< shading frame on wo's side, the normal map applied
 };
 /// Where the textures lie that nearly every material has. Time between locating and reading is not
 /// lost: they are on their way.

@@ -21,6 +21,7 @@ template <RayCaster Caster>
 struct PathTracer<Caster>::DrawnLight {
     LightSample sample;
     float pick_probability;
+    bool of_sky;  ///< its radiance is not looked up yet: many draws point the wrong way
 };
 
 /// Weight of a sample drawn with density a where b might have drawn it too. Veach 1997, "Robust
@@ -73,9 +74,16 @@ auto PathTracer<Caster>::draw_light(const V3f& p, const Sampler::VertexNumbers& 
                                     const Bands& bands) const -> std::optional<DrawnLight> {
     const auto pick = lights_.pick(u.light_pick);
     if (!pick) return std::nullopt;
-    const auto sample = sample_light(scene_, scene_.lights[pick->light], p, u.light_point, bands);
+    const Light& light = scene_.lights[pick->light];
+    if (std::holds_alternative<SkyLight>(light)) {
+        if (scene_.sky.black()) return std::nullopt;
+        const Sky::Draw drawn = scene_.sky.sample(u.light_point);
+        return DrawnLight{
+            {drawn.direction, {}, true, f4{}, drawn.pdf, false}, pick->probability, true};
+    }
+    const auto sample = sample_light(scene_, light, p, u.light_point, bands);
     if (!sample) return std::nullopt;
-    return DrawnLight{*sample, pick->probability};
+    return DrawnLight{*sample, pick->probability, false};
 }
 
 template <RayCaster Caster>
@@ -105,7 +113,8 @@ f4 PathTracer<Caster>::direct_light(const Surface& s, const Frame& frame, const 
         const SectionTimer timer(stats, Section::Traversal);
         if (caster_.occluded(shadow)) return f4{};
     }
-    f4 radiance = light.radiance;
+    f4 radiance = drawn.of_sky ? uplift_radiance(scene_.sky.radiance(light.direction), bands)
+                               : light.radiance;
     const Material* behind = s.material->has_volume ? (s.front ? s.material : nullptr) : medium;
     const Material* through = wi.z > 0.f ? medium : behind;
     if (through && !light.at_infinity)

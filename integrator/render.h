@@ -61,9 +61,8 @@ void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& 
     const Sampler sampler(job.sampler,
                           job.scrambles == 1 ? job.seed : scrambled(job.seed, scramble),
                           {id.x, id.y, id.index / job.scrambles});
-    const Bands bands = job.observer.spectral()
-                            ? job.observer.draw(sampler.get1(Dim::Wavelength))
-                            : Bands::rgb();
+    const Bands bands =
+        job.observer.spectral() ? job.observer.draw(sampler.get1(Dim::Wavelength)) : Bands::rgb();
     const bool aovs = !film.aovs().empty();
     const uint64_t vertices_before = stats.vertices;
 

@@ -121,8 +121,8 @@ TEST(Piecewise2D, IsUniformWithinCells) {
 }
 
 TEST(Piecewise2D, UnitsSayTheSame) {
-    const auto weights = spiky_weights(40 * 25, 7);
-    const Piecewise2D distribution(weights, 40, 25);
+    const auto weights = spiky_weights(300 * 25, 7);
+    const Piecewise2D distribution(weights, 300, 25);
     Random random(8);
     for (int i = 0; i < 20000; ++i) {
         const V2f u = i == 0 ? V2f(1.f) : random.next2();

@@ -33,13 +33,12 @@ void fill_cdf(std::span<const float> weights, double sum, uint32_t* cdf) {
     }
 }
 
-template <class Index>
-void fill_guide(const uint32_t* cdf, uint32_t size, Index* guide) {
+void fill_guide(const uint32_t* cdf, uint32_t size, uint32_t* guide) {
     uint32_t cell = 0;
     for (uint64_t k = 0; k < size; ++k) {
         const uint64_t first = (k * kDistributionUnits + size - 1) / size;
         while (cell + 1 < size && cdf[cell + 1] <= first) ++cell;
-        guide[k] = static_cast<Index>(cell);
+        guide[k] = cell;
     }
 }
 
@@ -53,38 +52,41 @@ Piecewise1D::Piecewise1D(std::span<const float> weights)
         if (cdf_[i + 1] - cdf_[i] > cdf_[widest_ + 1] - cdf_[widest_]) widest_ = i;
 }
 
+void RunningSums::index_row(size_t i) {
+    for (uint32_t k = kEight; k < sums_in_row_; k += kEight)
+        tops_[i * tops_in_row_ + k / kEight - 1] = row(i)[k];
+}
+
 Piecewise2D::Piecewise2D(std::span<const float> weights, uint32_t width, uint32_t height)
-    : width_(width),
-      height_(height),
-      cdf_(size_t{width + 1} * height),
-      guide_(size_t{width} * height) {
+    : width_(width), height_(height), rows_(width, height), marginal_(height, 1) {
     std::vector<float> row_sums(height);
     for (size_t row = 0; row < height; ++row) {
         const auto row_weights = weights.subspan(row * width, width);
         const double sum = sum_of(row_weights);
         row_sums[row] = static_cast<float>(sum);
-        if (!(row_sums[row] > 0)) continue;
-        uint32_t* cdf = &cdf_[row * (width + 1)];
-        fill_cdf(row_weights, sum, cdf);
-        fill_guide(cdf, width, &guide_[row * width]);
+        if (row_sums[row] > 0)
+            fill_cdf(row_weights, sum, rows_.row(row));
+        else
+            std::fill_n(rows_.row(row), width + 1, 0);
+        rows_.index_row(row);
     }
-    marginal_ = Piecewise1D(row_sums);
+    sum_ = sum_of(row_sums);
+    fill_cdf(row_sums, sum_, marginal_.row(0));
+    marginal_.index_row(0);
 }
 
 Piecewise2D::Draw Piecewise2D::sample(V2f u) const {
-    const Piecewise1D::Draw row = marginal_.sample(u.y);
-    const size_t first = size_t{row.cell} * width_;
-    const uint32_t* cdf = &cdf_[first + row.cell];
-    const float position = u.x * kDistributionUnits;
-    const auto column = Piecewise1D::draw_in(
-        cdf, Piecewise1D::find_cell(cdf, &guide_[first], width_, position), position);
-    return {
-        column.cell, row.cell, {column.offset, row.offset}, column.probability * row.probability};
+    const UnitDraw drawn = sample_units(u);
+    const float offset =
+        (static_cast<float>(drawn.unit) + drawn.rest) / static_cast<float>(drawn.units);
+    return {drawn.column,
+            drawn.row,
+            {std::min(offset, kOneMinus), drawn.row_offset},
+            probability(drawn.column, drawn.row)};
 }
 
 float Piecewise2D::probability(uint32_t column, uint32_t row) const {
-    const uint32_t* cdf = &cdf_[size_t{row} * (width_ + 1) + column];
-    return marginal_.probability(row) * (static_cast<float>(cdf[1] - cdf[0]) / kDistributionUnits);
+    return row_probability(row) * (static_cast<float>(units(column, row)) / kDistributionUnits);
 }
 
 }  // namespace petzval

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/film.h"
 
+#include <cstring>
+
 namespace petzval {
 namespace {
 
@@ -54,17 +56,21 @@ void Film::add(int x, int y, uint32_t index, const FilmSample& sample,
 }
 
 bool Film::accept(size_t at, uint32_t index, const FilmSample& sample, float fault) {
+    typedef double d4 __attribute__((vector_size(32)));
     Pixel& pixel = pixels_[at];
-    const V3f colour(sample.colour[0], sample.colour[1], sample.colour[2]);
-    fault += not_finite(colour) + (sample.alpha - sample.alpha);
+    f4 rgba = sample.colour.v;
+    rgba[3] = sample.alpha;
+    fault += hsum(rgba - rgba);
     if (sample.hit)
         for (const Aov aov : aovs_) fault += not_finite(sample.aov[static_cast<size_t>(aov)]);
     if (fault != 0.f) {
         if (pixel.bad++ == 0 || index < pixel.first_bad_index) pixel.first_bad_index = index;
         return false;
     }
-    for (int i = 0; i < 3; ++i) pixel.sum[i] += colour[i];
-    pixel.sum[3] += sample.alpha;
+    d4 sum;
+    std::memcpy(&sum, pixel.sum.data(), sizeof sum);
+    sum += __builtin_convertvector(rgba, d4);
+    std::memcpy(pixel.sum.data(), &sum, sizeof sum);
     ++pixel.count;
     if (!sample.hit) return true;
     ++pixel.hits;

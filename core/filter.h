@@ -36,7 +36,7 @@ class Filter {
     FilterKind kind_;
     float radius_px_;
     std::vector<float> values_;     ///< along half an axis, at equal steps from the centre
-    std::vector<float> quantiles_;  ///< along one axis, in pixels, at equal steps of probability
+    std::vector<float> quantiles_;  ///< of the left half, in pixels; see the constructor
 };
 
 }  // namespace petzval

@@ -33,8 +33,13 @@ typedef int32_t m4 __attribute__((vector_size(16)));
 [[nodiscard]] inline float hsum(f4 a) {
     return (a[0] + a[1]) + (a[2] + a[3]);
 }
+/// Of the lanes that are numbers; not a number where none is.
 [[nodiscard]] inline float hmax(f4 a) {
-    return std::fmax(std::fmax(a[0], a[1]), std::fmax(a[2], a[3]));
+    constexpr float least = -__builtin_inff();
+    a = a == a ? a : splat(least);
+    const float even = a[0] > a[2] ? a[0] : a[2], odd = a[1] > a[3] ? a[1] : a[3];
+    const float most = even > odd ? even : odd;
+    return most > least ? most : __builtin_nanf("");
 }
 
 }  // namespace petzval

@@ -96,8 +96,9 @@ std::optional<LightSample> sample(const Scene& scene, const SkyLight&, const V3f
                                   const Bands& bands) {
     if (scene.sky.black()) return std::nullopt;
     const Sky::Draw drawn = scene.sky.sample(u);
-    return LightSample{drawn.direction, {},   true, uplift_radiance(drawn.radiance, bands),
-                       drawn.pdf,       false};
+    return LightSample{
+        drawn.direction, {},   true, uplift_radiance(scene.sky.radiance(drawn.direction), bands),
+        drawn.pdf,       false};
 }
 
 float triangle_area(const Scene& scene, const TriangleLight& light) {

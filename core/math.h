@@ -38,6 +38,11 @@ inline constexpr float kOneMinus = 0x1.fffffep-1f;
 [[nodiscard]] inline float safe_sqrt(float a) {
     return std::sqrt(a > 0.f ? a : 0.f);
 }
+/// a within [0, 1]; 0 where a is not a number.
+[[nodiscard]] inline float clamp_unit(float a) {
+    a = a > 0.f ? a : 0.f;
+    return a < 1.f ? a : 1.f;
+}
 /// Unit vector along v; v must not be zero.
 [[nodiscard]] inline V3f unit(const V3f& v) {
     return v * (1.f / std::sqrt(v.dot(v)));
@@ -72,6 +77,15 @@ struct Frame {
     return n * half_ulp / (1 - n * half_ulp);
 }
 
+/// The neighbouring float above a (up) or below: std::nextafter without the call. a must be finite.
+[[nodiscard]] inline float neighbour(float a, bool up) {
+    const auto bits = std::bit_cast<int32_t>(a);
+    const int32_t outwards = (bits >= 0) == up ? 1 : -1;
+    // Either zero counts as one of the side that is wanted.
+    return std::bit_cast<float>(a == 0.f ? (up ? 1 : std::numeric_limits<int32_t>::min() + 1)
+                                         : bits + outwards);
+}
+
 /// Where a ray that leaves p towards w must start: outside the box of half-widths p_error about p,
 /// measured along the geometric normal. Pharr et al. 2023, "Physically Based Rendering", 6.8.6.
 [[nodiscard]] inline V3f offset_origin(const V3f& p, const V3f& p_error, const V3f& normal,
@@ -80,19 +94,24 @@ struct Frame {
     const V3f offset = w.dot(normal) < 0.f ? normal * -distance : normal * distance;
     V3f moved = p + offset;
     for (int i = 0; i < 3; ++i) {  // rounding must not carry the point back
-        if (offset[i] > 0.f) moved[i] = std::nextafter(moved[i], kInfinity);
-        if (offset[i] < 0.f) moved[i] = std::nextafter(moved[i], -kInfinity);
+        const float next = neighbour(moved[i], offset[i] > 0.f);
+        moved[i] = offset[i] != 0.f ? next : moved[i];
     }
     return moved;
 }
 
 /// Finaliser of MurmurHash3 (Appleby 2011, public domain): a bijection of 32 bits that mixes well.
-[[nodiscard]] constexpr uint32_t hash32(uint32_t a) {
+/// Word: uint32_t, or several of them side by side.
+template <class Word>
+[[nodiscard]] constexpr Word hash_words(Word a) {
     a ^= a >> 16;
     a *= 0x85ebca6bu;
     a ^= a >> 13;
     a *= 0xc2b2ae35u;
     return a ^ (a >> 16);
+}
+[[nodiscard]] constexpr uint32_t hash32(uint32_t a) {
+    return hash_words(a);
 }
 [[nodiscard]] constexpr uint32_t hash32(uint32_t a, uint32_t b) {
     return hash32(a ^ (hash32(b + 0x9e3779b9u)));

@@ -7,8 +7,8 @@ namespace petzval {
 
 GgxAlbedo ggx_albedo(float cosine, float alpha) {
     constexpr int last = kGgxAlbedoSize - 1;
-    const float y = std::sqrt(std::fmin(alpha, 1.f)) * last;
-    const float x = std::sqrt(std::fmin(std::fmax(cosine, 0.f), 1.f)) * last;
+    const float y = std::sqrt(clamp_unit(alpha)) * last;
+    const float x = std::sqrt(clamp_unit(cosine)) * last;
     const int j = std::min(static_cast<int>(y), last - 1);
     const int i = std::min(static_cast<int>(x), last - 1);
     const float fy = y - static_cast<float>(j), fx = x - static_cast<float>(i);

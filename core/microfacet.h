@@ -5,6 +5,7 @@
 
 #include "core/lanes.h"
 #include "core/math.h"
+#include "core/trig.h"
 
 namespace petzval {
 
@@ -30,16 +31,16 @@ inline constexpr float kSmallestAlpha = 1e-3f;
 /// Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", listing 3.
 [[nodiscard]] inline V3f ggx_sample_visible(const V3f& wo, float alpha, V2f u) {
     const V3f stretched = unit({wo.x * alpha, wo.y * alpha, wo.z});
-    const float phi = 2.f * kPi * u.x;
+    const SinCos phi = sincos_turns(u.x);
     const float z = 1.f - u.y * (1.f + stretched.z);
     const float sin_theta = safe_sqrt(1.f - sqr(z));
-    const V3f half = V3f(sin_theta * std::cos(phi), sin_theta * std::sin(phi), z) + stretched;
-    return unit({half.x * alpha, half.y * alpha, std::fmax(half.z, 1e-9f)});
+    const V3f half = V3f(sin_theta * phi.cosine, sin_theta * phi.sine, z) + stretched;
+    return unit({half.x * alpha, half.y * alpha, half.z > 1e-9f ? half.z : 1e-9f});
 }
 
 /// Schlick 1994's weight (1 - cos)^5.
 [[nodiscard]] inline float schlick_weight(float cosine) {
-    const float a = std::fmin(std::fmax(1.f - cosine, 0.f), 1.f);
+    const float a = clamp_unit(1.f - cosine);
     return sqr(sqr(a)) * a;
 }
 

@@ -2,6 +2,8 @@
 // Random numbers as a pure function of (seed, x, y, sample index, named dimension).
 #pragma once
 
+#include <utility>
+
 #include "core/math.h"
 
 namespace petzval {
@@ -52,11 +54,21 @@ class Sampler {
     [[nodiscard]] float get1(Dim dim, uint32_t vertex = 0) const;
     /// A point of [0, 1)^2, stratified in both coordinates together.
     [[nodiscard]] V2f get2(Dim dim, uint32_t vertex = 0) const;
+    /// What a path asks at a vertex, in one go: the numbers that get1 and get2 give for BsdfLobe,
+    /// Bsdf, LightPick and LightPoint at this vertex, and for Roulette at the next.
+    struct VertexNumbers {
+        float bsdf_lobe, light_pick, roulette_after;
+        V2f bsdf, light_point;
+    };
+    [[nodiscard]] VertexNumbers at_vertex(uint32_t vertex) const;
     /// 32 random bits for decisions that are taken out of order (coverage of BLEND surfaces).
     [[nodiscard]] uint32_t get_bits(Dim dim, uint32_t vertex = 0) const;
 
   private:
     [[nodiscard]] uint32_t dimension_key(Dim dim, uint32_t vertex) const;
+    /// Both coordinates for a dimension's key; Word may be several keys side by side.
+    template <class Word>
+    [[nodiscard]] std::pair<Word, Word> bits(Word key) const;
 
     SamplerKind kind_;
     uint32_t key_, index_, reversed_;  ///< reversed_: index_, lowest bit first

@@ -15,9 +15,31 @@ bool emissive(const Scene& scene, const Instance& instance) {
     return material.emits() && !material.unlit;
 }
 
+bool same_place(const Scene& scene, const TextureSlot& a, const TextureSlot& b) {
+    if (!a.present() || !b.present()) return false;
+    const Image &one = scene.images[a.image], &other = scene.images[b.image];
+    return one.width == other.width && one.height == other.height && a.wrap_u == b.wrap_u &&
+           a.wrap_v == b.wrap_v && a.nearest == b.nearest && a.uv_set == b.uv_set &&
+           a.u_row == b.u_row && a.v_row == b.v_row;
+}
+
+void find_places(const Scene& scene, Material& m) {
+    TextureSlot* const slots[] = {&m.base_color_texture, &m.metallic_roughness_texture,
+                                  &m.normal_texture, &m.emissive_texture};
+    uint8_t number = 0;
+    for (TextureSlot* const slot : slots) {
+        slot->place = ++number;
+        for (const TextureSlot* const before : slots) {
+            if (before == slot) break;
+            if (same_place(scene, *before, *slot)) slot->place = before->place;
+        }
+    }
+}
+
 }  // namespace
 
 void finish_scene(Scene& scene) {
+    for (Material& material : scene.materials) find_places(scene, material);
     for (uint32_t i = 0; i < scene.instances.size(); ++i) {
         Instance& instance = scene.instances[i];
         const Mesh& mesh = scene.meshes[instance.mesh];

@@ -34,7 +34,7 @@ struct Scene {
     }
 };
 
-/// Computes the bounds and appends a light for every triangle of an emissive instance and for the
+/// Computes the bounds, says which texture slots share their place, and appends a light for every triangle of an emissive instance and for the
 /// sky where it is not black.
 void finish_scene(Scene&);
 

@@ -6,6 +6,7 @@
 
 #include "core/distribution.h"
 #include "core/math.h"
+#include "core/octet.h"
 #include "core/spectrum.h"
 
 namespace petzval {
@@ -19,7 +20,8 @@ class Sky {
     /// The same radiance, in nits, from everywhere.
     static Sky uniform(Rgb radiance);
     /// RGB texels in nits, row 0 at the zenith; strength multiplies them. Texels must be finite and
-    /// not negative; width and height at least 1.
+    /// not negative; width and height at least 1. They are kept as half floats
+    /// beside a common power of two for each eight (core/octet.h).
     static Sky picture(std::vector<float> rgb, int width, int height, float rotate_deg,
                        float strength);
 
@@ -33,29 +35,38 @@ class Sky {
         float pdf;     ///< of `sample` for the direction, 1/sr; 0 for a black sky
     };
     [[nodiscard]] Found find(const V3f& direction) const;
-    [[nodiscard]] Rgb radiance(const V3f& direction) const { return find(direction).radiance; }
+    [[nodiscard]] Rgb radiance(const V3f& direction) const;
     [[nodiscard]] float pdf(const V3f& direction) const { return find(direction).pdf; }
 
     struct Draw {
         V3f direction;  ///< unit
-        Rgb radiance;
-        float pdf;  ///< 1/sr
+        float pdf;      ///< 1/sr
     };
     /// Draws a direction: a texel in proportion to the light that comes from it, uniform by solid
-    /// angle within. The sky must not be black.
+    /// angle within. The sky must not be black. What radiance(direction) reads is on its way to
+    /// the cache then.
     [[nodiscard]] Draw sample(V2f u) const;
 
   private:
+    struct Row {
+        float top;      ///< cosine at the upper edge
+        float density;  ///< 1/sr for a unit of the row
+    };
+    void fill_importance();
+    [[nodiscard]] const Octet* octets_of(int y) const {
+        return &octets_[static_cast<size_t>(y) * octets_across_];
+    }
     [[nodiscard]] V2f to_uv(const V3f& direction) const;
     [[nodiscard]] Rgb filtered(V2f uv) const;
 
     Rgb colour_{0.f};
     float average_ = 0.f;
-    int width_ = 0, height_ = 0;     ///< 0: uniform
-    std::vector<f4> texels_;         ///< RGB, and the pdf of the texel's own cell
-    std::vector<float> row_height_;  ///< cosine at the upper edge of each row, then -1
-    float turn_ = 0.f;               ///< rotation in turns
-    Piecewise2D importance_;
+    int width_ = 0, height_ = 0;  ///< 0: uniform
+    int octets_across_ = 0;
+    std::vector<Octet> octets_;  ///< row by row
+    Piecewise2D importance_;     ///< of the octets
+    std::vector<Row> rows_;      ///< height_ + 1
+    float turn_ = 0.f;           ///< rotation in turns
 };
 
 }  // namespace petzval

@@ -117,21 +117,39 @@ f4 vertex_colour(const Surface& s) {
     return f4{c.x, c.y, c.z, c.w};
 }
 
-ShadingInput read_material(const Scene& scene, const Surface& s, const V3f& wo,
-                           const Bands& bands) {
+MaterialLookups locate_material(const Scene& scene, const Surface& s) {
+    const Material& m = *s.material;
+    MaterialLookups out;
+    out.base_color = locate(scene, s, m.base_color_texture);
+    const auto locate_next = [&](const TextureSlot& slot) {
+        return slot.place != 0 && slot.place == m.base_color_texture.place
+                   ? locate_beside(scene.images, slot, out.base_color)
+                   : locate(scene, s, slot);
+    };
+    out.metallic_roughness = locate_next(m.metallic_roughness_texture);
+    out.normal = locate_next(m.normal_texture);
+    out.emits = m.emits() && !m.unlit && (s.front || m.double_sided);
+    if (out.emits) out.emissive = locate_next(m.emissive_texture);
+    return out;
+}
+
+ShadingInput read_material(const Scene& scene, const Surface& s, const MaterialLookups& lookups,
+                           const V3f& wo, const Bands& bands) {
     const Material& m = *s.material;
     ShadingInput out;
-    // All three are asked for before one is read, so that their cache misses overlap.
-    const TextureLookup base_map = locate(scene, s, m.base_color_texture);
-    const TextureLookup surface_map = locate(scene, s, m.metallic_roughness_texture);
-    const TextureLookup normal_map = locate(scene, s, m.normal_texture);
-    f4 base = m.base_color.v * read_texture(base_map);
+    f4 base = m.base_color.v * read_texture(lookups.base_color);
     if (!s.mesh->colours.empty()) base *= vertex_colour(s);
     base[3] = 0.f;
     const Rgb base_color(base);
     V3f n = s.ns;
-    if (m.normal_texture.present() && !s.mesh->tangents.empty()) n = mapped_normal(s, normal_map);
+    if (m.normal_texture.present() && !s.mesh->tangents.empty())
+        n = mapped_normal(s, lookups.normal);
     out.frame = Frame::about(face_towards(s.front ? n : -n, wo));
+    if (lookups.emits) {
+        f4 texel = read_texture(lookups.emissive);
+        texel[3] = 0.f;
+        out.emitted = m.emissive * Rgb(texel);
+    }
     if (m.unlit) {
         out.unlit = base_color;
         return out;
@@ -144,7 +162,7 @@ ShadingInput read_material(const Scene& scene, const Surface& s, const V3f& wo,
         b.metal_n = metal.n.at(bands.nm);
         b.metal_k = metal.k.at(bands.nm);
     }
-    const f4 surface_texel = read_texture(surface_map);
+    const f4 surface_texel = read_texture(lookups.metallic_roughness);
     b.roughness = m.roughness * surface_texel[1];
     b.metallic = m.metallic * surface_texel[2];
     float specular = m.specular;

@@ -33,10 +33,23 @@ struct Surface {
 /// The material at the hit, textures read: what the Bsdf is made from, and what glows.
 struct ShadingInput {
     BsdfInput bsdf;
-    Rgb unlit{0.f};  ///< KHR_materials_unlit: shown as it is, nits
-    Frame frame;     ///< shading frame on wo's side, the normal map applied
+    Rgb unlit{0.f};    ///< KHR_materials_unlit: shown as it is, nits
+    Rgb emitted{0.f};  ///< as emitted_radiance says, core/emission.h
+    Frame frame;       ///< shading frame on wo's side, the normal map applied
 };
-[[nodiscard]] ShadingInput read_material(const Scene&, const Surface&, const V3f& wo, const Bands&);
+/// Where the textures lie that nearly every material has. Time between locating and reading is not
+/// lost: they are on their way.
+struct MaterialLookups {
+    TextureLookup base_color, metallic_roughness, normal, emissive;
+    bool emits;  ///< on the side that is seen
+};
+[[nodiscard]] MaterialLookups locate_material(const Scene&, const Surface&);
+[[nodiscard]] ShadingInput read_material(const Scene&, const Surface&, const MaterialLookups&,
+                                         const V3f& wo, const Bands&);
+[[nodiscard]] inline ShadingInput read_material(const Scene& scene, const Surface& s, const V3f& wo,
+                                                const Bands& bands) {
+    return read_material(scene, s, locate_material(scene, s), wo, bands);
+}
 
 /// Share of light that is left after a way through a volume: Beer and Lambert's law, with the
 /// coefficient that KHR_materials_volume defines, -ln(attenuationColor) / attenuationDistance.

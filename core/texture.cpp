@@ -21,12 +21,12 @@ struct FloatReader {
     }
 };
 
-struct ByteReader {
+struct ByteReader {  // codes, 255 times the number
     const uint8_t* texels;
     f4 operator()(size_t i) const {
         u8x4 texel;
         std::memcpy(&texel, texels + 4 * i, sizeof texel);
-        return __builtin_convertvector(texel, f4) * (1.f / 255.f);
+        return __builtin_convertvector(texel, f4);
     }
 };
 
@@ -107,6 +107,23 @@ f4 filtered(const Reader& read, const TextureLookup& at) {
     return upper + (lower - upper) * at.lower;
 }
 
+// What is read there, and how; the texels are on their way from here on.
+void fetch(const Image& image, const TextureSlot& slot, TextureLookup& at) {
+    using Format = TextureLookup::Format;
+    const auto* bytes = std::get_if<std::vector<uint8_t>>(&image.texels);
+    const bool srgb = slot.encoding == Encoding::Srgb;
+    if (bytes) {
+        at.texels = bytes->data();
+        at.format = srgb ? Format::SrgbBytes : Format::Bytes;
+    } else {
+        at.texels = std::get<std::vector<float>>(image.texels).data();
+        at.format = srgb ? Format::SrgbFloats : Format::Floats;
+    }
+    const size_t texel_bytes = bytes ? 4 : 16;
+    for (const int row : {0, 2})
+        __builtin_prefetch(static_cast<const char*>(at.texels) + at.texel[row] * texel_bytes);
+}
+
 }  // namespace
 
 TextureLookup locate_texture(const std::vector<Image>& images, const TextureSlot& slot, V2f uv) {
@@ -123,24 +140,19 @@ TextureLookup locate_texture(const std::vector<Image>& images, const TextureSlot
     const auto width = static_cast<uint32_t>(image.width);
     const uint32_t row0 = down.first * width, row1 = down.second * width;
 
-    using Format = TextureLookup::Format;
-    const auto* bytes = std::get_if<std::vector<uint8_t>>(&image.texels);
-    const bool srgb = slot.encoding == Encoding::Srgb;
     TextureLookup at;
     at.texel = {row0 + across.first, row0 + across.second, row1 + across.first,
                 row1 + across.second};
     at.right = across.weight;
     at.lower = down.weight;
-    if (bytes) {
-        at.texels = bytes->data();
-        at.format = srgb ? Format::SrgbBytes : Format::Bytes;
-    } else {
-        at.texels = std::get<std::vector<float>>(image.texels).data();
-        at.format = srgb ? Format::SrgbFloats : Format::Floats;
-    }
-    const size_t texel_bytes = bytes ? 4 : 16;
-    for (const int row : {0, 2})
-        __builtin_prefetch(static_cast<const char*>(at.texels) + at.texel[row] * texel_bytes);
+    fetch(image, slot, at);
+    return at;
+}
+
+TextureLookup locate_beside(const std::vector<Image>& images, const TextureSlot& slot,
+                            const TextureLookup& located) {
+    TextureLookup at = located;
+    fetch(images[slot.image], slot, at);
     return at;
 }
 
@@ -151,7 +163,7 @@ f4 read_texture(const TextureLookup& at) {
         case TextureLookup::Format::None:
             break;
         case TextureLookup::Format::Bytes:
-            return filtered(ByteReader{bytes}, at);
+            return filtered(ByteReader{bytes}, at) * (1.f / 255.f);
         case TextureLookup::Format::SrgbBytes:
             return filtered(SrgbByteReader{bytes}, at);
         case TextureLookup::Format::Floats:

@@ -30,6 +30,9 @@ struct TextureSlot {
     bool nearest = false;
     Encoding encoding = Encoding::Linear;
     uint8_t uv_set = 0;
+    /// Slots of a material with the same number above 0 find their texels at the same places of
+    /// pictures of one size; finish_scene says which.
+    uint8_t place = 0;
     /// KHR_texture_transform: (u, v, 1) times these two rows.
     std::array<float, 3> u_row{1, 0, 0}, v_row{0, 1, 0};
 
@@ -49,6 +52,9 @@ struct TextureLookup {
 /// Finds the texels and asks the processor to fetch them. Defined for any finite uv.
 [[nodiscard]] TextureLookup locate_texture(const std::vector<Image>& images,
                                            const TextureSlot& slot, V2f uv);
+/// The same where another slot of the same `place` has been located already.
+[[nodiscard]] TextureLookup locate_beside(const std::vector<Image>& images, const TextureSlot& slot,
+                                          const TextureLookup& located);
 /// RGBA, decoded to linear, then filtered; 1 where the slot has no texture.
 [[nodiscard]] f4 read_texture(const TextureLookup&);
 

@@ -3,6 +3,7 @@
 // speed and so that pixels do not depend on the library's version.
 #pragma once
 
+#include "core/lanes.h"
 #include "core/math.h"
 
 namespace petzval {
@@ -30,15 +31,15 @@ struct SinCos {
     return {(quadrant & 2) != 0 ? -sine : sine, ((quadrant + 1) & 2) != 0 ? -cosine : cosine};
 }
 
-/// atan2(y, x) in turns, [-0.5, 0.5]; 0 for (0, 0). Odd polynomial fitted by Remez exchange;
-/// absolute error below 1e-7 turns.
-[[nodiscard]] inline float atan2_turns(float y, float x) {
-    const float ax = std::fabs(x), ay = std::fabs(y);
-    const float larger = ax > ay ? ax : ay, smaller = ax > ay ? ay : ax;
-    const float a = smaller / (larger > 0.f ? larger : 1.f);
-    const float t = a * a;
-    float p = -0.000746958084f;
-    p = p * t + 0.00385988986f;
+/// atan2(y, x) in turns, [-0.5, 0.5], lane by lane; 0 for (0, 0). Odd polynomial fitted by Remez
+/// exchange; absolute error below 1e-7 turns.
+[[nodiscard]] inline f4 atan2_turns(f4 y, f4 x) {
+    const m4 sign = m4{} + std::numeric_limits<int32_t>::min();
+    const f4 ax = (f4)((m4)x & ~sign), ay = (f4)((m4)y & ~sign);
+    const f4 larger = max(ax, ay), smaller = min(ay, ax);
+    const f4 a = smaller / (larger > 0.f ? larger : splat(1.f));
+    const f4 t = a * a;
+    f4 p = t * -0.000746958084f + 0.00385988986f;
     p = p * t - 0.00946755357f;
     p = p * t + 0.0157790872f;
     p = p * t - 0.0223126969f;
@@ -47,7 +48,10 @@ struct SinCos {
     p = (p * t + 0.159154927f) * a;
     p = ay > ax ? 0.25f - p : p;
     p = x < 0.f ? 0.5f - p : p;
-    return std::copysign(p, y);
+    return (f4)(((m4)p & ~sign) | ((m4)y & sign));
+}
+[[nodiscard]] inline float atan2_turns(float y, float x) {
+    return atan2_turns(splat(y), splat(x))[0];
 }
 
 }  // namespace petzval

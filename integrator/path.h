@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "core/bvh.h"
-#include "core/emission.h"
 #include "core/film.h"
 #include "core/light_choice.h"
 #include "core/sampler.h"
@@ -53,12 +52,15 @@ class PathTracer {
 
   private:
     struct Vertex;
+    struct DrawnLight;
     [[nodiscard]] f4 backdrop(const Ray&, const Bands&, FilmSample&) const;
     [[nodiscard]] f4 escaped(const Ray&, const Bands&, const Vertex& last) const;
-    [[nodiscard]] f4 emitted(const Surface&, const Bands&, const Vertex& last) const;
-    [[nodiscard]] f4 direct_light(const Surface&, const Frame&, const Bsdf&, const Bands&,
-                                  const Sampler&, uint32_t depth, const Material* medium,
-                                  PathStats&) const;
+    [[nodiscard]] f4 emitted(const Surface&, Rgb, const Bands&, const Vertex& last) const;
+    [[nodiscard]] std::optional<DrawnLight> draw_light(const V3f& p, const Sampler::VertexNumbers&,
+                                                       const Bands&) const;
+    [[nodiscard]] f4 direct_light(const Surface&, const Frame&, const Bsdf&, const DrawnLight&,
+                                  const Bands&, const Sampler&, uint32_t depth,
+                                  const Material* medium, PathStats&) const;
 
     const Scene& scene_;
     const Caster& caster_;

@@ -16,6 +16,14 @@ struct PathTracer<Caster>::Vertex {
     bool light_sampled = false;  ///< next-event estimation could have found what the ray finds
 };
 
+/// A light sample, and how likely its light was picked.
+template <RayCaster Caster>
+struct PathTracer<Caster>::DrawnLight {
+    LightSample sample;
+    float pick_probability;
+    bool of_sky;  ///< its radiance is not looked up yet: many draws point the wrong way
+};
+
 /// Weight of a sample drawn with density a where b might have drawn it too. Veach 1997, "Robust
 /// Monte Carlo Methods for Light Transport Simulation", equation 9.13 with beta = 2.
 [[nodiscard]] inline float power_heuristic(float a, float b) {
@@ -45,10 +53,9 @@ f4 PathTracer<Caster>::escaped(const Ray& ray, const Bands& bands, const Vertex&
 }
 
 template <RayCaster Caster>
-f4 PathTracer<Caster>::emitted(const Surface& s, const Bands& bands, const Vertex& last) const {
+f4 PathTracer<Caster>::emitted(const Surface& s, Rgb rgb, const Bands& bands,
+                               const Vertex& last) const {
     if (!s.material->emits()) return f4{};
-    const Rgb rgb =
-        emitted_radiance(scene_, s.hit.instance, s.hit.triangle, s.hit.barycentric, s.front);
     const f4 radiance = uplift_radiance(rgb, bands, scene_.illuminant(s.material->illuminant));
     if (!last.light_sampled || s.instance->first_light < 0) return radiance;
     const uint32_t light = static_cast<uint32_t>(s.instance->first_light) + s.hit.triangle;
@@ -63,27 +70,41 @@ f4 PathTracer<Caster>::emitted(const Surface& s, const Bands& bands, const Verte
 }
 
 template <RayCaster Caster>
+auto PathTracer<Caster>::draw_light(const V3f& p, const Sampler::VertexNumbers& u,
+                                    const Bands& bands) const -> std::optional<DrawnLight> {
+    const auto pick = lights_.pick(u.light_pick);
+    if (!pick) return std::nullopt;
+    const Light& light = scene_.lights[pick->light];
+    if (std::holds_alternative<SkyLight>(light)) {
+        if (scene_.sky.black()) return std::nullopt;
+        const Sky::Draw drawn = scene_.sky.sample(u.light_point);
+        return DrawnLight{
+            {drawn.direction, {}, true, f4{}, drawn.pdf, false}, pick->probability, true};
+    }
+    const auto sample = sample_light(scene_, light, p, u.light_point, bands);
+    if (!sample) return std::nullopt;
+    return DrawnLight{*sample, pick->probability, false};
+}
+
+template <RayCaster Caster>
 f4 PathTracer<Caster>::direct_light(const Surface& s, const Frame& frame, const Bsdf& bsdf,
-                                    const Bands& bands, const Sampler& sampler, uint32_t depth,
-                                    const Material* medium, PathStats& stats) const {
-    const auto pick = lights_.pick(sampler.get1(Dim::LightPick, depth));
-    if (!pick) return f4{};
-    const auto light = sample_light(scene_, scene_.lights[pick->light], s.p,
-                                    sampler.get2(Dim::LightPoint, depth), bands);
-    if (!light) return f4{};
-    const V3f wi = frame.to_local(light->direction);
+                                    const DrawnLight& drawn, const Bands& bands,
+                                    const Sampler& sampler, uint32_t depth, const Material* medium,
+                                    PathStats& stats) const {
+    const LightSample& light = drawn.sample;
+    const V3f wi = frame.to_local(light.direction);
     // Shading and geometric normal must agree on the side, or light would leak through.
-    const bool front_side = light->direction.dot(s.ng) > 0.f;
+    const bool front_side = light.direction.dot(s.ng) > 0.f;
     if ((wi.z > 0.f) != (front_side == s.front)) return f4{};
     const BsdfValue value = bsdf.eval(wi);
     if (value.pdf <= 0.f) return f4{};
 
     Ray shadow;
-    shadow.origin = offset_origin(s.p, s.p_error, s.ng, light->direction);
-    if (light->at_infinity) {
-        shadow.direction = light->direction;
+    shadow.origin = offset_origin(s.p, s.p_error, s.ng, light.direction);
+    if (light.at_infinity) {
+        shadow.direction = light.direction;
     } else {
-        shadow.direction = light->target - shadow.origin;
+        shadow.direction = light.target - shadow.origin;
         shadow.t_max = kOneMinus;  // the target stands clear of the light
     }
     if (caster_.has_cutouts()) shadow.coin = sampler.get_bits(Dim::Coverage, 2 * depth + 1);
@@ -92,13 +113,14 @@ f4 PathTracer<Caster>::direct_light(const Surface& s, const Frame& frame, const 
         const SectionTimer timer(stats, Section::Traversal);
         if (caster_.occluded(shadow)) return f4{};
     }
-    f4 radiance = light->radiance;
+    f4 radiance = drawn.of_sky ? uplift_radiance(scene_.sky.radiance(light.direction), bands)
+                               : light.radiance;
     const Material* behind = s.material->has_volume ? (s.front ? s.material : nullptr) : medium;
     const Material* through = wi.z > 0.f ? medium : behind;
-    if (through && !light->at_infinity)
-        radiance *= transmittance(*through, (light->target - s.p).length(), bands);
-    const float light_pdf = pick->probability * light->pdf;
-    const float weight = light->delta || options_.technique == Technique::LightOnly
+    if (through && !light.at_infinity)
+        radiance *= transmittance(*through, (light.target - s.p).length(), bands);
+    const float light_pdf = drawn.pick_probability * light.pdf;
+    const float weight = light.delta || options_.technique == Technique::LightOnly
                              ? 1.f
                              : power_heuristic(light_pdf, value.pdf);
     return value.f_cos * radiance * (weight / light_pdf);
@@ -132,11 +154,10 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
     for (uint32_t depth = 0;;) {
         if (caster_.has_cutouts()) ray.coin = sampler.get_bits(Dim::Coverage, 2 * depth);
         ++(depth == 0 ? stats.camera_rays : stats.bounce_rays);
-        std::optional<Hit> hit;
-        {
+        const std::optional<Hit> hit = [&] {
             const SectionTimer timer(stats, Section::Traversal);
-            hit = caster_.intersect(ray);
-        }
+            return caster_.intersect(ray);
+        }();
         if (!hit) {
             sum += throughput * (seen ? escaped(ray, bands, last) : backdrop(ray, bands, out));
             break;
@@ -151,14 +172,21 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         ++stats.vertices;
         if (medium) throughput *= transmittance(*medium, (s.p - last.p).length(), bands);
         const V3f wo = -ray.direction;
-        ShadingInput shading;
-        {
+        const MaterialLookups lookups = [&] {
             const SectionTimer timer(stats, Section::Texture);
-            shading = read_material(scene_, s, wo, bands);
-        }
+            return locate_material(scene_, s);
+        }();
+        // Before the textures are read, so that the wait for them and for the sky's tables is one.
+        const Sampler::VertexNumbers u = sampler.at_vertex(depth);
+        std::optional<DrawnLight> light;
+        if (options_.technique != Technique::BsdfOnly) light = draw_light(s.p, u, bands);
+        const ShadingInput shading = [&] {
+            const SectionTimer timer(stats, Section::Texture);
+            return read_material(scene_, s, lookups, wo, bands);
+        }();
         out.alpha = 1.f;
         const bool shows = s.front || s.material->double_sided;
-        f4 glow = emitted(s, bands, last);
+        f4 glow = emitted(s, shading.emitted, bands, last);
         if (s.material->unlit && shows)
             glow +=
                 uplift_radiance(shading.unlit, bands, scene_.illuminant(s.material->illuminant));
@@ -173,12 +201,11 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         const Bsdf bsdf(shading.bsdf, bands, shading.frame.to_local(wo), throughput);
         const bool light_sampled =
             options_.technique != Technique::BsdfOnly && bsdf.has_wide_lobe();
-        if (light_sampled)
-            sum += throughput *
-                   direct_light(s, shading.frame, bsdf, bands, sampler, depth, medium, stats);
+        if (light_sampled && light)
+            sum += throughput * direct_light(s, shading.frame, bsdf, *light, bands, sampler, depth,
+                                             medium, stats);
 
-        const auto next =
-            bsdf.sample(sampler.get1(Dim::BsdfLobe, depth), sampler.get2(Dim::Bsdf, depth));
+        const auto next = bsdf.sample(u.bsdf_lobe, u.bsdf);
         if (!next) break;
         const V3f direction = shading.frame.to_world(next->wi);
         // No ray that is not a number goes on: the film counts the sample and names its pixel.
@@ -191,8 +218,8 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
 
         ++depth;
         if (static_cast<int>(depth) > options_.roulette_depth) {
-            const float survival = std::fmin(hmax(throughput), 0.95f);
-            if (sampler.get1(Dim::Roulette, depth) >= survival) break;
+            const float most = hmax(throughput), survival = most < 0.95f ? most : 0.95f;
+            if (u.roulette_after >= survival) break;
             throughput *= 1.f / survival;
         }
         last = {s.p, next->pdf, light_sampled && !next->delta};

@@ -67,20 +67,20 @@ void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& 
     const Sampler sampler(job.sampler,
                           job.scrambles == 1 ? job.seed : scrambled(job.seed, scramble),
                           {id.x, id.y, id.index / job.scrambles});
-    const Bands bands = job.observer.draw(sampler.get1(Dim::Wavelength));
+    const Bands bands =
+        job.observer.spectral() ? job.observer.draw(sampler.get1(Dim::Wavelength)) : Bands::rgb();
     const bool aovs = !film.aovs().empty();
     const uint64_t vertices_before = stats.vertices;
 
-    CameraSample seen;
-    {
+    const CameraSample seen = [&] {
         const SectionTimer timer(stats, Section::Camera);
         const V2f offset = job.filter.sample(sampler.get2(Dim::Film));
         const V2f size(film.full_size());
         const V2f at = V2f(id.x + 0.5f, id.y + 0.5f) + offset;
         const float split = job.split ? job.split->at(id.x, id.y) : 1.f;
-        seen = camera.sample({at / size, sampler, split, {&job.filter, offset, size}}, bands);
-        stats.lens_lanes += seen.lanes;
-    }
+        return camera.sample({at / size, sampler, split, {&job.filter, offset, size}}, bands);
+    }();
+    stats.lens_lanes += seen.lanes;
     FilmSample sample;
     f4 sum{};
     float behind = 0.f;  // light of what stands behind the scene, where all of it would be 1

@@ -71,6 +71,15 @@ Crossing cross_convex(const Scene& scene, const Bvh& bvh, V3f centre, float radi
     return count;
 }
 
+TEST(Math, NeighboursAreThoseOfTheLibrary) {
+    for (uint32_t i = 0; i < 100000; ++i) {
+        const float a = i == 0 ? 0.f : i == 1 ? -0.f : std::bit_cast<float>(hash32(i));
+        if (!std::isfinite(a)) continue;
+        ASSERT_EQ(neighbour(a, true), std::nextafter(a, kInfinity)) << a;
+        ASSERT_EQ(neighbour(a, false), std::nextafter(a, -kInfinity)) << a;
+    }
+}
+
 // The offset follows the error of the point, so that neither the scale of a scene nor its distance
 // from the origin matters.
 TEST(Bvh, RaysLeaveSurfacesAtEveryScaleAndPlace) {

@@ -120,6 +120,26 @@ TEST(Piecewise2D, IsUniformWithinCells) {
     EXPECT_TRUE(test::chi_square_grid({0, 1, 0, 1, 16, 16}, density, place, 100000, 6));
 }
 
+TEST(Piecewise2D, UnitsSayTheSame) {
+    const auto weights = spiky_weights(300 * 25, 7);
+    const Piecewise2D distribution(weights, 300, 25);
+    Random random(8);
+    for (int i = 0; i < 20000; ++i) {
+        const V2f u = i == 0 ? V2f(1.f) : random.next2();
+        const auto drawn = distribution.sample(u);
+        const auto units = distribution.sample_units(u);
+        ASSERT_EQ(units.column, drawn.column);
+        ASSERT_EQ(units.row, drawn.row);
+        ASSERT_EQ(units.units, distribution.units(drawn.column, drawn.row));
+        ASSERT_LT(units.unit, units.units);
+        const float offset = (units.unit + units.rest) / units.units;
+        ASSERT_NEAR(offset, drawn.offset.x, 1e-6);
+        ASSERT_EQ(units.row_offset, drawn.offset.y);
+        ASSERT_EQ(distribution.row_probability(units.row) * (units.units * 0x1p-24f),
+                  drawn.probability);
+    }
+}
+
 TEST(Piecewise2D, KeepsStrataApart) {
     // A uniform density must hand a stratified set on as it is.
     const Piecewise2D distribution(std::vector<float>(7 * 5, 2.f), 7, 5);

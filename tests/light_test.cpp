@@ -2,7 +2,9 @@
 #include "core/light.h"
 
 #include "core/bvh.h"
+#include "core/emission.h"
 #include "core/scene.h"
+#include "core/surface.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/jacobian.h"
 #include "tests/support/lamp.h"
@@ -200,6 +202,28 @@ TEST(TriangleLight, ShowsWhatAHitShows) {
         const Rgb expected = emitted_radiance(scene, 0, 0, b, true);
         for (int k = 0; k < 3; ++k) ASSERT_NEAR(s->radiance[k], expected[k], 1e-4);
     }
+}
+
+// Whether or not its texture lies where the base colour's does.
+TEST(TriangleLight, ASurfaceEmitsWhatLightSamplesSay) {
+    for (const bool apart : {false, true})
+        for (const bool double_sided : {false, true}) {
+            Scene scene = test::lamp_scene(Rgb(1.f), double_sided);
+            scene.images = {checker(), checker()};
+            scene.materials[0].base_color_texture.image = 1;
+            scene.materials[0].emissive_texture.image = 0;
+            if (apart) scene.materials[0].emissive_texture.u_row = {0.5f, 0.2f, 0.1f};
+            finish_scene(scene);
+            Random random(9);
+            for (int i = 0; i < 400; ++i) {
+                const V2f b = random.next2() * 0.5f;
+                const V3f along = random.direction();
+                const Surface s = make_surface(scene, along, Hit{1.f, b, 0, 0});
+                const Rgb found = read_material(scene, s, -along, kRgb).emitted;
+                const Rgb expected = emitted_radiance(scene, 0, 0, b, s.front);
+                for (int k = 0; k < 3; ++k) ASSERT_EQ(found[k], expected[k]);
+            }
+        }
 }
 
 TEST(TriangleLight, CutoutsShineWithTheirCoverage) {

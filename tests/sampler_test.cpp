@@ -87,6 +87,18 @@ TEST_P(Kinds, IsAFunctionOfItsArgumentsOnly) {
     }
 }
 
+TEST_P(Kinds, NumbersOfAVertexAreThoseOfItsDimensions) {
+    for (uint32_t i = 0; i < 2000; ++i) {
+        const Sampler sampler(GetParam(), 9, {static_cast<int>(i % 7), -3, hash32(i) >> (i % 32)});
+        const auto numbers = sampler.at_vertex(i % 17);
+        ASSERT_EQ(numbers.bsdf_lobe, sampler.get1(Dim::BsdfLobe, i % 17));
+        ASSERT_EQ(numbers.bsdf, sampler.get2(Dim::Bsdf, i % 17));
+        ASSERT_EQ(numbers.light_pick, sampler.get1(Dim::LightPick, i % 17));
+        ASSERT_EQ(numbers.light_point, sampler.get2(Dim::LightPoint, i % 17));
+        ASSERT_EQ(numbers.roulette_after, sampler.get1(Dim::Roulette, i % 17 + 1));
+    }
+}
+
 TEST_P(Kinds, IsUniformInTheUnitSquare) {
     // Over the first samples of many pixels, which no construction makes uniform by itself.
     std::vector<double> observed(256), expected(256, 65536.0 / 256);

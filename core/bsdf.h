@@ -56,6 +56,8 @@ class Bsdf {
     [[nodiscard]] std::optional<BsdfSample> sample(float u_lobe, V2f u) const;
     /// Some lobe is wide enough for light sampling to help.
     [[nodiscard]] bool has_wide_lobe() const { return p_diffuse_ > 0 || !delta_; }
+    /// Light from behind counts too.
+    [[nodiscard]] bool transmits() const { return p_thin_ > 0 || p_glass_ > 0; }
     /// Share of light that is scattered, all lobes together (glass: as if it lost nothing).
     [[nodiscard]] f4 albedo() const;
 

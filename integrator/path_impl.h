@@ -14,6 +14,10 @@ struct PathTracer<Caster>::Vertex {
     V3f p;
     float pdf = 0;               ///< of the BSDF's direction, 1/sr
     bool light_sampled = false;  ///< next-event estimation could have found what the ray finds
+    bool transmits = false;      ///< else light from behind counts nothing
+    V3f normal{0.f};             ///< of shading, on the side that the path came from
+
+    [[nodiscard]] LightReceiver receiver() const { return {p, normal, transmits}; }
 };
 
 /// Weight of a sample drawn with density a where b might have drawn it too. Veach 1997, "Robust
@@ -39,7 +43,7 @@ f4 PathTracer<Caster>::escaped(const Ray& ray, const Bands& bands, const Vertex&
     const f4 radiance = uplift_radiance(found.radiance, bands);
     if (!last.light_sampled) return radiance;
     const uint32_t sky_light = static_cast<uint32_t>(scene_.lights.size()) - 1;
-    const float light_pdf = lights_.probability(sky_light) * found.pdf;
+    const float light_pdf = lights_.probability(sky_light, last.receiver()) * found.pdf;
     if (options_.technique == Technique::LightOnly && light_pdf > 0.f) return f4{};
     return radiance * power_heuristic(last.pdf, light_pdf);
 }
@@ -49,6 +53,7 @@ f4 PathTracer<Caster>::emitted(const Surface& s, const Bands& bands, const Verte
     if (!s.material->emits()) return f4{};
     const Rgb rgb =
         emitted_radiance(scene_, s.hit.instance, s.hit.triangle, s.hit.barycentric, s.front);
+    if (!(hmax(rgb.v) > 0.f)) return f4{};
     const f4 radiance = uplift_radiance(rgb, bands, scene_.illuminant(s.material->illuminant));
     if (!last.light_sampled || s.instance->first_light < 0) return radiance;
     const uint32_t light = static_cast<uint32_t>(s.instance->first_light) + s.hit.triangle;
@@ -56,8 +61,9 @@ f4 PathTracer<Caster>::emitted(const Surface& s, const Bands& bands, const Verte
     const float distance_squared = along.dot(along);
     const float cosine = s.ng.dot(along) / std::sqrt(distance_squared);
     const float light_pdf =
-        lights_.probability(light) * triangle_light_pdf(scene_, {s.hit.instance, s.hit.triangle},
-                                                        distance_squared, std::fabs(cosine));
+        lights_.probability(light, last.receiver()) *
+        triangle_light_pdf(scene_, {s.hit.instance, s.hit.triangle}, distance_squared,
+                           std::fabs(cosine));
     if (options_.technique == Technique::LightOnly && light_pdf > 0.f) return f4{};
     return radiance * power_heuristic(last.pdf, light_pdf);
 }
@@ -66,7 +72,8 @@ template <RayCaster Caster>
 f4 PathTracer<Caster>::direct_light(const Surface& s, const Frame& frame, const Bsdf& bsdf,
                                     const Bands& bands, const Sampler& sampler, uint32_t depth,
                                     const Material* medium, PathStats& stats) const {
-    const auto pick = lights_.pick(sampler.get1(Dim::LightPick, depth));
+    const auto pick =
+        lights_.pick(sampler.get1(Dim::LightPick, depth), {s.p, frame.z, bsdf.transmits()});
     if (!pick) return f4{};
     const auto light = sample_light(scene_, scene_.lights[pick->light], s.p,
                                     sampler.get2(Dim::LightPoint, depth), bands);
@@ -195,7 +202,7 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
             if (sampler.get1(Dim::Roulette, depth) >= survival) break;
             throughput *= 1.f / survival;
         }
-        last = {s.p, next->pdf, light_sampled && !next->delta};
+        last = {s.p, next->pdf, light_sampled && !next->delta, bsdf.transmits(), shading.frame.z};
         ray.origin = offset_origin(s.p, s.p_error, s.ng, direction);
         ray.direction = unit(direction);
     }

@@ -18,14 +18,12 @@ struct BoundsOf {
     float power;  ///< light_power, above 0
 
     std::optional<LightBounds> operator()(const PointLight& light) const {
-        return LightBounds{Box3f(light.position), V3f(0, 0, 1), kPi, kPi / 2, false,
-                           power / (4 * kPi)};
+        return LightBounds{Box3f(light.position), V3f(0, 0, 1), kPi, kPi / 2, false, power};
     }
     std::optional<LightBounds> operator()(const SpotLight& light) const {
         const float inner = std::acos(light.cos_inner), outer = std::acos(light.cos_outer);
-        return LightBounds{
-            Box3f(light.position), light.direction, inner,
-            outer - inner,         false,           finite(scene, luminance(light.intensity_cd))};
+        return LightBounds{Box3f(light.position), light.direction, inner,
+                           outer - inner,         false,           power};
     }
     std::optional<LightBounds> operator()(const TriangleLight& light) const {
         const auto corner = triangle_corners(scene, light.instance, light.triangle);
@@ -34,8 +32,7 @@ struct BoundsOf {
         const Instance& instance = scene.instances[light.instance];
         const bool two_sided = scene.materials[scene.meshes[instance.mesh].material].double_sided;
         const V3f front = (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
-        return LightBounds{box,       instance.flips ? -front : front,        0, kPi / 2,
-                           two_sided, power / (kPi * (two_sided ? 2.f : 1.f))};
+        return LightBounds{box, instance.flips ? -front : front, 0, kPi / 2, two_sided, power};
     }
     std::optional<LightBounds> operator()(const SunLight&) const { return std::nullopt; }
     std::optional<LightBounds> operator()(const SkyLight&) const { return std::nullopt; }

@@ -13,6 +13,11 @@ constexpr float kSlack = 1e-3f;
 // Share of the brightest light that each light has at least, or its weight would underflow.
 constexpr float kFaintest = 1e-12f;
 
+// Lights outside the tree count that much more: clusters are weighed as if nothing stood before
+// them. On lowpoly-village, a landscape with lamps under a sky, 1 to 4 give a relative MSE of 2.1,
+// 1.97 and 1.91e-3.
+constexpr float kUnshadowed = 2;
+
 float diagonal2(const Box3f& box) {
     const V3f size = box.size();
     return size.dot(size);
@@ -22,16 +27,17 @@ float diagonal2(const Box3f& box) {
 // and Kulla 2018, section 4.3.
 float directions(const LightBounds& b) {
     const float end = std::min(b.spread + b.reach, kPi);
-    return 2 * kPi * (1 - std::cos(b.spread)) +
-           0.5f * kPi *
-               (2 * end * std::sin(b.spread) - std::cos(b.spread - 2 * end) -
-                2 * b.spread * std::sin(b.spread) + std::cos(b.spread));
+    const float one = 2 * kPi * (1 - std::cos(b.spread)) +
+                      0.5f * kPi *
+                          (2 * end * std::sin(b.spread) - std::cos(b.spread - 2 * end) -
+                           2 * b.spread * std::sin(b.spread) + std::cos(b.spread));
+    return std::clamp(b.two_sided ? 2 * one : one, 1e-6f, 4 * kPi);
 }
 
 // What a cluster contributes to the cost of a split. The sphere's size, not the box's: it is the
 // sphere that the lights are weighed by.
 float cost(const LightBounds& b) {
-    return b.intensity * diagonal2(b.box) * directions(b);
+    return b.power * diagonal2(b.box) * directions(b);
 }
 
 }  // namespace
@@ -41,7 +47,7 @@ LightBounds LightBounds::operator|(const LightBounds& other) const {
     sum.box.extendBy(other.box);
     sum.reach = std::max(reach, other.reach);
     sum.two_sided = two_sided || other.two_sided;
-    sum.intensity += other.intensity;
+    sum.power += other.power;
     float cosine = axis.dot(other.axis);
     const V3f other_axis = sum.two_sided && cosine < 0 ? -other.axis : other.axis;
     cosine = std::clamp(axis.dot(other_axis), -1.f, 1.f);
@@ -55,8 +61,8 @@ LightBounds LightBounds::operator|(const LightBounds& other) const {
     sum.spread = 0.5f * (spread + between + other.spread);
     const V3f across = other_axis - axis * cosine;
     const float length = across.length();
-    if (sum.spread >= kPi || !(length > 0.f)) {
-        sum.spread = length > 0.f || cosine < 0 ? kPi : std::max(spread, other.spread);
+    if (!(sum.spread < kPi && length > 0.f)) {
+        sum.spread = kPi;
         return sum;
     }
     const float turn = sum.spread - spread;
@@ -71,46 +77,34 @@ LightTree::LightTree(std::span<const std::optional<LightBounds>> lights, float o
     for (uint32_t i = 0; i < lights.size(); ++i) {
         if (!lights[i]) continue;
         items.push_back({*lights[i], i});
-        brightest = std::max(brightest, lights[i]->intensity);
+        brightest = std::max(brightest, lights[i]->power);
     }
-    for (Item& item : items)
-        item.bounds.intensity = std::max(item.bounds.intensity / brightest, kFaintest);
-    outside_ = items.empty() ? outside : std::min(outside / brightest, 1e30f);
+    for (Item& item : items) item.bounds.power = std::max(item.bounds.power / brightest, kFaintest);
+    outside_ = items.empty() ? outside : std::min(kUnshadowed * outside / brightest, 1e30f);
     nodes_.emplace_back();
     parent_.push_back(kOutside);
     build(items, 0);
 }
 
-// Opens the part that costs most until there are eight.
+// Splits the largest part until there are eight.
 void LightTree::build(std::span<Item> items, uint32_t node) {
-    struct Part {
-        std::span<Item> items;
-        LightBounds bounds;
-        float cost;
-    };
-    const auto part_of = [](std::span<Item> some) {
-        LightBounds bounds = some[0].bounds;
-        for (const Item& item : some.subspan(1)) bounds = bounds | item.bounds;
-        // Lights in one point cost nothing, but they have to be parted too.
-        return Part{some, bounds, some.size() > 1 ? cost(bounds) : -1.f};
-    };
-    std::vector<Part> parts;
+    std::vector<std::span<Item>> parts;
     if (items.size() <= 8)
-        for (size_t i = 0; i < items.size(); ++i) parts.push_back(part_of(items.subspan(i, 1)));
+        for (size_t i = 0; i < items.size(); ++i) parts.push_back(items.subspan(i, 1));
     else
-        parts.push_back(part_of(items));
-    while (parts.size() < 8 && items.size() > parts.size()) {
-        Part& costly =
-            *std::max_element(parts.begin(), parts.end(),
-                              [](const Part& a, const Part& b) { return a.cost < b.cost; });
-        const std::span<Item> all = costly.items;
+        parts.push_back(items);
+    while (parts.size() < std::min<size_t>(items.size(), 8)) {
+        auto& largest = *std::max_element(parts.begin(), parts.end(),
+                                          [](auto& a, auto& b) { return a.size() < b.size(); });
+        const std::span<Item> all = largest;
         const size_t first = split(all);
-        costly = part_of(all.first(first));
-        parts.push_back(part_of(all.subspan(first)));
+        largest = all.first(first);
+        parts.push_back(all.subspan(first));
     }
 
     for (uint32_t i = 0; i < parts.size(); ++i) {
-        const LightBounds& b = parts[i].bounds;
+        LightBounds b = parts[i][0].bounds;
+        for (const Item& item : parts[i].subspan(1)) b = b | item.bounds;
         Node& n = nodes_[node];
         const V3f centre = b.box.min + b.box.size() * 0.5f;
         // Centre and radius are rounded; the sphere must hold the box.
@@ -126,11 +120,11 @@ void LightTree::build(std::span<Item> items, uint32_t node) {
         n.cos_spread[i] = std::cos(b.spread);
         n.sin_spread[i] = std::sin(b.spread);
         n.cos_reach[i] = std::cos(b.reach);
-        n.intensity[i] = b.intensity;
+        n.intensity[i] = b.power / directions(b);
         n.two_sided[i] = b.two_sided ? -1 : 0;
-        if (parts[i].items.size() == 1) {
+        if (parts[i].size() == 1) {
             n.is_light |= 1u << i;
-            n.child[i] = parts[i].items[0].light;
+            n.child[i] = parts[i][0].light;
             place_[n.child[i]] = 8 * node + i;
             continue;
         }
@@ -138,7 +132,7 @@ void LightTree::build(std::span<Item> items, uint32_t node) {
         n.child[i] = below;
         nodes_.emplace_back();
         parent_.push_back(8 * node + i);
-        build(parts[i].items, below);
+        build(parts[i], below);
     }
 }
 
@@ -207,17 +201,25 @@ inline f8 root(f8 a) {
 inline f8 sine_of(f8 cosine) {
     return root(larger(1.f - cosine * cosine, f8{}));
 }
+// Of a normal with the directions to a sphere, those behind it counted as 0: near enough where that
+// is known (a point: the cosine; all around: 1/4; a hemisphere across the normal: 1/4).
+inline f8 mean_cosine(f8 cos_normal, f8 cos_sphere) {
+    const f8 length = 0.5f + 0.5f * cos_sphere, mean = cos_normal * length;
+    const f8 variance = 0.25f * (1.f - length * length) + kSlack * kSlack;
+    return 0.5f * (mean + root(mean * mean + variance));
+}
 
 }  // namespace
 
-// Conty Estevez and Kulla 2018, equation 3: intensity times the cosines at both ends over the
-// squared distance, angles taken at their least over the sphere and the cone.
+// After Conty Estevez and Kulla 2018, equation 3: intensity times the cosines at both ends over the
+// squared distance, 0 where the least angles over sphere and cone leave nothing. The receiver's
+// cosine is the mean over the sphere, not the greatest: clusters all around would count four times.
 f8 LightTree::weigh(const Node& n, const LightReceiver& r) {
     const f8 x = n.x - r.p.x, y = n.y - r.p.y, z = n.z - r.p.z;
     const f8 centre2 = x * x + y * y + z * z, radius2 = n.radius * n.radius;
     const m8 inside = centre2 <= radius2;
     // No nearer than the radius: within the sphere a light may be anywhere.
-    f8 distance2 = larger(larger(centre2, radius2), all(1e-30f));
+    f8 distance2 = larger(larger(centre2, radius2), all(1e-24f));
     distance2 = distance2 < 1e30f ? distance2 : all(1e30f);
     const f8 scale = 1.f / root(distance2);
     const f8 sin_sphere = n.radius * scale;
@@ -229,17 +231,16 @@ f8 LightTree::weigh(const Node& n, const LightReceiver& r) {
     const m8 in_spread = cos_axis > n.cos_spread;
     const f8 cos_off = in_spread ? all(1.f) : cos_axis * n.cos_spread + sin_axis * n.sin_spread;
     const f8 sin_off = in_spread ? f8{} : sin_axis * n.cos_spread - cos_axis * n.sin_spread;
-    const f8 cos_light =
-        cos_off > cos_sphere ? all(1.f) : cos_off * cos_sphere + sin_off * sin_sphere;
-    const f8 emitted = cos_light > n.cos_reach - kSlack ? larger(cos_light, all(kSlack)) : f8{};
+    const f8 cos_light = cos_off * cos_sphere + sin_off * sin_sphere;
+    const m8 shines = (cos_off > cos_sphere) | (cos_light > n.cos_reach - kSlack);
+    const f8 emitted = cos_off > cos_sphere ? all(1.f) : larger(cos_light, all(kSlack));
 
     const f8 facing = (x * r.normal.x + y * r.normal.y + z * r.normal.z) * scale;
     const f8 cos_normal = r.both_sides ? magnitude(facing) : facing;
-    const f8 cos_receiver = cos_normal > cos_sphere
-                                ? all(1.f)
-                                : cos_normal * cos_sphere + sine_of(cos_normal) * sin_sphere;
-    const f8 received = cos_receiver > -kSlack ? larger(cos_receiver, all(kSlack)) : f8{};
-    return n.intensity * emitted * received * (scale * scale);
+    const f8 cos_receiver = cos_normal * cos_sphere + sine_of(cos_normal) * sin_sphere;
+    const m8 arrives = (cos_normal > cos_sphere) | (cos_receiver > -kSlack);
+    const f8 weight = n.intensity * emitted * mean_cosine(cos_normal, cos_sphere) * (scale * scale);
+    return shines & arrives ? weight : f8{};
 }
 
 namespace {

@@ -32,8 +32,8 @@ struct LightBounds {
     V3f axis{0, 0, 1};            ///< unit
     float spread = 0, reach = 0;  ///< rad; spread up to pi, reach up to pi / 2
     bool two_sided = false;       ///< the opposite of an axis is an axis as well
-    /// Candela where it shines brightest, up to a common factor; above 0 and finite, in a sum too.
-    float intensity = 0;
+    /// Lumen, up to a common factor; above 0 and finite, in a sum too.
+    float power = 0;
 
     /// Bounds of both together.
     [[nodiscard]] LightBounds operator|(const LightBounds&) const;
@@ -41,8 +41,8 @@ struct LightBounds {
 
 class LightTree {
   public:
-    /// A light for each element, if it has bounds. outside: illuminance, in the unit of the
-    /// intensities per square metre, of lights that stand nowhere and share the choice.
+    /// A light for each element, if it has bounds. outside: illuminance, in the unit of
+    /// the powers per square metre, of lights that stand nowhere and share the choice.
     LightTree(std::span<const std::optional<LightBounds>> lights, float outside);
 
     static constexpr uint32_t kOutside = ~0u;

@@ -9,7 +9,7 @@ namespace {
 
 using test::Random;
 
-const LightReceiver kAnywhere{V3f(0.f), V3f(0, 1, 0), true};
+const LightReceiver kAnywhere{V3f(0.3f, -1, 0.5f), V3f(0, 1, 0), true};
 
 Scene mixed_scene() {
     Scene scene = test::lamp_scene();

@@ -133,11 +133,11 @@ void light_pick_and_sample(benchmark::State& state) {
     const auto u = points(true);
     size_t i = 0;
     for (auto _ : state) {
-        const auto pick = choice.pick(u[i++ % kArguments].x, receiver);
+        const auto pick = choice.pick(u[i % kArguments].x, receiver);
+        ++i;
         if (!pick) continue;
         benchmark::DoNotOptimize(sample_light(scene, scene.lights[pick->light], V3f(0.f),
-                                              u[(i + 7) % kArguments], kRgb));
-        ++i;
+                                              u[(i + 6) % kArguments], kRgb));
     }
 }
 BENCHMARK(light_pick_and_sample)

@@ -178,6 +178,54 @@ TEST(LightTree, DirectLightIsThatOfTheUniformChoice) {
     }
 }
 
+// Alone in a node, a light counts for what it gives the receiver.
+TEST(LightTree, SingleLightsAreWeighedByWhatTheyGive) {
+    Scene scene;
+    scene.materials = {test::glowing(Rgb(700.f))};
+    scene.meshes = {test::one_triangle(V3f(1, 5, 1), V3f(1.04f, 5.02f, 1), V3f(1, 5, 1.05f))};
+    scene.instances.resize(1);
+    scene.lights = {PointLight{V3f(0, 2, 0), Rgb(1.f)}, PointLight{V3f(6, 1, 0), Rgb(9.f)},
+                    PointLight{V3f(0, 30, 4), Rgb(90.f)}, PointLight{V3f(0, -1, 0), Rgb(9.f)},
+                    SpotLight{V3f(-2, 3, 1), unit(V3f(2, -3, -1)), Rgb(2.f), 0.99f, 0.9f}};
+    finish_scene(scene);
+    const LightChoice choice(scene, LightChoiceKind::Tree);
+    const LightReceiver receiver{V3f(0.f), V3f(0, 1, 0), false};
+    std::vector<double> given;
+    for (const Light& light : scene.lights) {
+        const auto drawn = sample_light(scene, light, receiver.p, V2f(0.5f), Bands::rgb());
+        given.push_back(std::max(0.f, drawn->direction.y) * drawn->radiance[1] / drawn->pdf);
+    }
+    // A spot light counts for its mean over its cone, wherever in it the receiver stands.
+    given[4] *= light_power(scene, scene.lights[4]) / (2 * M_PI * (1 - 0.9) * 2);
+    const double sum = std::accumulate(given.begin(), given.end(), 0.0);
+    for (uint32_t i = 0; i < scene.lights.size(); ++i)
+        EXPECT_NEAR(choice.probability(i, receiver), given[i] / sum, 0.02 * given[i] / sum) << i;
+}
+
+// The only lights whose reach is narrow: from within a cluster of them, too, none is out of reach
+// that is not.
+TEST(LightTree, SpotLightsSideBySide) {
+    Random random(45);
+    Scene scene;
+    for (int i = 0; i < 100; ++i) {
+        const V3f at(2 * random.next() - 1, 2 * random.next() - 1, 2 * random.next() - 1);
+        scene.lights.push_back(
+            SpotLight{at, unit(V3f(0, -1, 0) + random.direction() * 0.2f), Rgb(1.f), 0.95f, 0.9f});
+    }
+    const LightChoice choice(scene, LightChoiceKind::Tree);
+    int reached = 0;
+    for (int k = 0; k < 1000; ++k) {
+        const V3f p = random.direction() * random.next();
+        for (uint32_t i = 0; i < scene.lights.size(); ++i) {
+            const auto drawn = sample_light(scene, scene.lights[i], p, V2f(0.5f), Bands::rgb());
+            if (!drawn || drawn->direction.y <= 0) continue;
+            ++reached;
+            ASSERT_GT(choice.probability(i, {p, V3f(0, 1, 0), false}), 0) << i;
+        }
+    }
+    EXPECT_GT(reached, 1000);
+}
+
 // A street of lamps: near ones matter, those behind do not.
 TEST(LightTree, HasLessVarianceThanPower) {
     Scene scene;

@@ -247,9 +247,7 @@ namespace {
 
 // One order of summation for what is drawn and what is said to be drawn.
 inline float sum_of(f8 a) {
-    float sum = 0.f;
-    for (int i = 0; i < 8; ++i) sum += a[i];
-    return sum;
+    return ((a[0] + a[4]) + (a[2] + a[6])) + ((a[1] + a[5]) + (a[3] + a[7]));
 }
 
 }  // namespace
@@ -260,23 +258,19 @@ std::optional<LightTree::Pick> LightTree::pick(float u, const LightReceiver& rec
         const Node& n = nodes_[node];
         const f8 weight = weigh(n, receiver);
         const float sum = outside + sum_of(weight);
-        if (!(sum > 0.f)) return std::nullopt;
-        const float at = u * sum;
-        if (at < outside) return Pick{kOutside, outside / sum, at / outside};
-        // Without a branch for each child: which one it is cannot be foretold.
-        const float left = at - outside;
-        float running = 0.f, before = 0.f;
-        int child = 0;
+        float left = u * sum;
+        if (left < outside) return Pick{kOutside, outside / sum, left / outside};
+        left -= outside;
+        int child = -1;
         for (int i = 0; i < 8; ++i) {
-            running += weight[i];
-            const bool passed = running <= left;
-            child += passed;
-            before = passed ? running : before;
+            if (!(weight[i] > 0.f)) continue;
+            if (child >= 0) left -= weight[child];
+            child = i;
+            if (left < weight[i]) break;
         }
-        for (child = std::min(child, 7); !(weight[child] > 0.f); --child)
-            if (child == 0) return std::nullopt;  // rounding, beyond all of the children
+        if (child < 0) return std::nullopt;
         probability *= weight[child] / sum;
-        u = std::clamp((left - before) / weight[child], 0.f, kOneMinus);
+        u = std::clamp(left / weight[child], 0.f, kOneMinus);
         if (n.is_light >> child & 1) return Pick{n.child[child], probability, u};
         node = n.child[child];
         outside = 0.f;

@@ -49,12 +49,13 @@ void add_sampling_options(CLI::App& app, RenderOptions& o) {
                              {"sobol", SamplerKind::Sobol},
                              {"independent", SamplerKind::Independent}},
                             "owen (default), sobol, independent");
-    add_choice<LightChoiceKind>(app, "--light-choice", o.scene.light_choice,
-                                {{"power", LightChoiceKind::Power},
-                                 {"tree", LightChoiceKind::Tree},
-                                 {"uniform", LightChoiceKind::Uniform}},
-                                "how one of many lights is chosen: power (default), uniform, tree "
-                                "(by power, distance and direction)");
+    add_choice<LightChoiceKind>(
+        app, "--light-choice", o.scene.light_choice,
+        {{"tree", LightChoiceKind::Tree},
+         {"power", LightChoiceKind::Power},
+         {"uniform", LightChoiceKind::Uniform}},
+        "how one of many lights is chosen: tree (default; power, distance and direction), power, "
+        "uniform");
     add_choice<Traversal>(app, "--traversal", o.scene.traversal,
                           {{"robust", Traversal::Robust}, {"fast", Traversal::Fast}},
                           "robust (default): watertight; fast: may leak at edges");

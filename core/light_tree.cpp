@@ -48,6 +48,11 @@ LightBounds LightBounds::operator|(const LightBounds& other) const {
     sum.reach = std::max(reach, other.reach);
     sum.two_sided = two_sided || other.two_sided;
     sum.power += other.power;
+    if (spread >= kPi) return sum;
+    if (other.spread >= kPi) {
+        sum.spread = kPi;
+        return sum;
+    }
     float cosine = axis.dot(other.axis);
     const V3f other_axis = sum.two_sided && cosine < 0 ? -other.axis : other.axis;
     cosine = std::clamp(axis.dot(other_axis), -1.f, 1.f);

@@ -51,8 +51,11 @@ void add_sampling_options(CLI::App& app, RenderOptions& o) {
                             "owen (default), sobol, independent");
     add_choice<LightChoiceKind>(
         app, "--light-choice", o.scene.light_choice,
-        {{"power", LightChoiceKind::Power}, {"uniform", LightChoiceKind::Uniform}},
-        "how one of many lights is chosen: power (default), uniform");
+        {{"tree", LightChoiceKind::Tree},
+         {"power", LightChoiceKind::Power},
+         {"uniform", LightChoiceKind::Uniform}},
+        "how one of many lights is chosen: tree (default; power, distance and direction), power, "
+        "uniform");
     add_choice<Traversal>(app, "--traversal", o.scene.traversal,
                           {{"robust", Traversal::Robust}, {"fast", Traversal::Fast}},
                           "robust (default): watertight; fast: may leak at edges");

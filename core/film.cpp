@@ -76,8 +76,8 @@ bool Film::accept(size_t at, uint32_t index, const FilmSample& sample, float fau
     ++pixel.hits;
     for (size_t layer = 0; layer < aovs_.size(); ++layer) {
         const V3f& value = sample.aov[static_cast<size_t>(aovs_[layer])];
-        auto& sum = aov_sums_[at * aovs_.size() + layer];
-        for (int i = 0; i < 3; ++i) sum[i] += value[i];
+        auto& to = aov_sums_[at * aovs_.size() + layer];
+        for (int i = 0; i < 3; ++i) to[i] += value[i];
     }
     return true;
 }

@@ -5,12 +5,15 @@
 #include <optional>
 
 #include "core/distribution.h"
+#include "core/light_tree.h"
 #include "core/scene.h"
 
 namespace petzval {
 
-/// Power: in proportion to light_power. Uniform: the same for every light that has power.
-enum class LightChoiceKind { Power, Uniform };
+/// Power: in proportion to light_power. Uniform: the same for every light that has power. Tree: in
+/// proportion to what light could do at the receiver, by a LightTree over the lights that stand
+/// somewhere; sky and suns share its first choice, and are chosen among by their illuminance.
+enum class LightChoiceKind { Power, Uniform, Tree };
 
 class LightChoice {
   public:
@@ -22,13 +25,17 @@ class LightChoice {
         uint32_t light;  ///< index into the scene's lights
         float probability;
     };
-    /// u in [0, 1). Nothing where the scene has no light.
-    [[nodiscard]] std::optional<Pick> pick(float u) const;
-    /// Of picking the light; 0 for one without power.
-    [[nodiscard]] float probability(uint32_t light) const;
+    /// u in [0, 1). Nothing where the scene has no light, or no light that was drawn can reach the
+    /// receiver.
+    [[nodiscard]] std::optional<Pick> pick(float u, const LightReceiver&) const;
+    /// Of picking the light; 0 for one without power, or that cannot reach the receiver.
+    [[nodiscard]] float probability(uint32_t light, const LightReceiver&) const;
 
   private:
-    Piecewise1D choice_;
+    void plant(const Scene&, std::span<float> power);
+
+    Piecewise1D choice_;  ///< where there is a tree, among the lights outside it
+    std::optional<LightTree> tree_;
 };
 
 }  // namespace petzval

@@ -56,7 +56,8 @@ class PathTracer {
     [[nodiscard]] f4 backdrop(const Ray&, const Bands&, FilmSample&) const;
     [[nodiscard]] f4 escaped(const Ray&, const Bands&, const Vertex& last) const;
     [[nodiscard]] f4 emitted(const Surface&, Rgb, const Bands&, const Vertex& last) const;
-    [[nodiscard]] std::optional<DrawnLight> draw_light(const V3f& p, const Sampler::VertexNumbers&,
+    [[nodiscard]] std::optional<DrawnLight> draw_light(const LightReceiver&,
+                                                       const Sampler::VertexNumbers&,
                                                        const Bands&) const;
     [[nodiscard]] f4 direct_light(const Surface&, const Frame&, const Bsdf&, const DrawnLight&,
                                   const Bands&, const Sampler&, uint32_t depth,

@@ -14,7 +14,14 @@ struct PathTracer<Caster>::Vertex {
     V3f p;
     float pdf = 0;               ///< of the BSDF's direction, 1/sr
     bool light_sampled = false;  ///< next-event estimation could have found what the ray finds
+    LightReceiver receiver{};
 };
+
+/// What a choice among lights may count on before a surface's textures are read: reflected light
+/// lies on the triangle's own side, whatever the shading normal.
+[[nodiscard]] inline LightReceiver receiver_at(const Surface& s) {
+    return {s.p, s.front ? s.ng : -s.ng, s.material->transmission > 0};
+}
 
 /// A light sample, and how likely its light was picked.
 template <RayCaster Caster>
@@ -47,7 +54,7 @@ f4 PathTracer<Caster>::escaped(const Ray& ray, const Bands& bands, const Vertex&
     const f4 radiance = uplift_radiance(found.radiance, bands);
     if (!last.light_sampled) return radiance;
     const uint32_t sky_light = static_cast<uint32_t>(scene_.lights.size()) - 1;
-    const float light_pdf = lights_.probability(sky_light) * found.pdf;
+    const float light_pdf = lights_.probability(sky_light, last.receiver) * found.pdf;
     if (options_.technique == Technique::LightOnly && light_pdf > 0.f) return f4{};
     return radiance * power_heuristic(last.pdf, light_pdf);
 }
@@ -56,23 +63,24 @@ template <RayCaster Caster>
 f4 PathTracer<Caster>::emitted(const Surface& s, Rgb rgb, const Bands& bands,
                                const Vertex& last) const {
     if (!s.material->emits()) return f4{};
+    if (!(hmax(rgb.v) > 0.f)) return f4{};
     const f4 radiance = uplift_radiance(rgb, bands, scene_.illuminant(s.material->illuminant));
     if (!last.light_sampled || s.instance->first_light < 0) return radiance;
     const uint32_t light = static_cast<uint32_t>(s.instance->first_light) + s.hit.triangle;
     const V3f along = s.p - last.p;
     const float distance_squared = along.dot(along);
     const float cosine = s.ng.dot(along) / std::sqrt(distance_squared);
-    const float light_pdf =
-        lights_.probability(light) * triangle_light_pdf(scene_, {s.hit.instance, s.hit.triangle},
-                                                        distance_squared, std::fabs(cosine));
+    const float light_pdf = lights_.probability(light, last.receiver) *
+                            triangle_light_pdf(scene_, {s.hit.instance, s.hit.triangle},
+                                               distance_squared, std::fabs(cosine));
     if (options_.technique == Technique::LightOnly && light_pdf > 0.f) return f4{};
     return radiance * power_heuristic(last.pdf, light_pdf);
 }
 
 template <RayCaster Caster>
-auto PathTracer<Caster>::draw_light(const V3f& p, const Sampler::VertexNumbers& u,
+auto PathTracer<Caster>::draw_light(const LightReceiver& receiver, const Sampler::VertexNumbers& u,
                                     const Bands& bands) const -> std::optional<DrawnLight> {
-    const auto pick = lights_.pick(u.light_pick);
+    const auto pick = lights_.pick(u.light_pick, receiver);
     if (!pick) return std::nullopt;
     const Light& light = scene_.lights[pick->light];
     if (std::holds_alternative<SkyLight>(light)) {
@@ -81,7 +89,7 @@ auto PathTracer<Caster>::draw_light(const V3f& p, const Sampler::VertexNumbers& 
         return DrawnLight{
             {drawn.direction, {}, true, f4{}, drawn.pdf, false}, pick->probability, true};
     }
-    const auto sample = sample_light(scene_, light, p, u.light_point, bands);
+    const auto sample = sample_light(scene_, light, receiver.p, u.light_point, bands);
     if (!sample) return std::nullopt;
     return DrawnLight{*sample, pick->probability, false};
 }
@@ -178,8 +186,9 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         }();
         // Before the textures are read, so that the wait for them and for the sky's tables is one.
         const Sampler::VertexNumbers u = sampler.at_vertex(depth);
+        const LightReceiver receiver = receiver_at(s);
         std::optional<DrawnLight> light;
-        if (options_.technique != Technique::BsdfOnly) light = draw_light(s.p, u, bands);
+        if (options_.technique != Technique::BsdfOnly) light = draw_light(receiver, u, bands);
         const ShadingInput shading = [&] {
             const SectionTimer timer(stats, Section::Texture);
             return read_material(scene_, s, lookups, wo, bands);
@@ -222,7 +231,7 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
             if (u.roulette_after >= survival) break;
             throughput *= 1.f / survival;
         }
-        last = {s.p, next->pdf, light_sampled && !next->delta};
+        last = {s.p, next->pdf, light_sampled && !next->delta, receiver};
         ray.origin = offset_origin(s.p, s.p_error, s.ng, direction);
         ray.direction = unit(direction);
     }

@@ -293,6 +293,7 @@ ChartCase lights_case(const Found& found, const RenderJob& job) {
     };
     cases.add("uniform", found.request, with(LightChoiceKind::Uniform));
     cases.add("power", found.request, with(LightChoiceKind::Power));
+    cases.add("tree", found.request, with(LightChoiceKind::Tree));
     cases.reference("by power, independent points", found.request,
                     [](SceneRequest& s, RenderJob& j) {
                         s.light_choice = LightChoiceKind::Power;

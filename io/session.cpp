@@ -38,6 +38,15 @@ Sky sky_of(const SceneRequest& request, const std::function<void(const std::stri
     return request.background ? Sky::uniform(*request.background) : Sky();
 }
 
+std::string word_of(LightChoiceKind kind) {
+    switch (kind) {
+        case LightChoiceKind::Power: return "power";
+        case LightChoiceKind::Uniform: return "uniform";
+        case LightChoiceKind::Tree: break;
+    }
+    return "tree";
+}
+
 std::vector<std::pair<std::string, std::string>> describe(const SceneRequest& request) {
     std::vector<std::pair<std::string, std::string>> m;
     m.emplace_back("petzval:scene", request.scene.filename().string());
@@ -49,8 +58,7 @@ std::vector<std::pair<std::string, std::string>> describe(const SceneRequest& re
                        fmt::format("{:.9g}", request.environment_strength));
     }
     if (const auto& b = request.background) m.emplace_back("petzval:background", with_commas(*b));
-    m.emplace_back("petzval:lightChoice",
-                   request.light_choice == LightChoiceKind::Power ? "power" : "uniform");
+    m.emplace_back("petzval:lightChoice", word_of(request.light_choice));
     m.emplace_back("petzval:traversal", request.traversal == Traversal::Robust ? "robust" : "fast");
     return m;
 }

@@ -27,7 +27,7 @@ struct SceneRequest {
     std::optional<std::filesystem::path> environment;
     float environment_rotate_deg = 0, environment_strength = 1;
     std::optional<Rgb> background;
-    LightChoiceKind light_choice = LightChoiceKind::Power;
+    LightChoiceKind light_choice = LightChoiceKind::Tree;
     Traversal traversal = Traversal::Robust;
     SpectralRequest spectral;
 };

@@ -124,7 +124,7 @@ TEST_F(ChartCli, WritesAReport) {
     EXPECT_EQ(of["axis"], "lights");
     EXPECT_GE(of["reference"]["parts"], 2);
     EXPECT_GT(of["reference"]["relative_mse"], 0.);
-    ASSERT_EQ(of["methods"].size(), 2u);
+    ASSERT_EQ(of["methods"].size(), 3u);  // uniform, power, tree
     size_t renders = 0;
     for (const json& method : of["methods"]) {
         const json& first = method["points"].front();

@@ -32,7 +32,7 @@ TEST_F(CliErrors, WordsThatAreNone) {
                        {{"--aov", "depth,heat"}, "\"heat\" is not a layer; there are albedo"},
                        {{"--filter", "cube"}, "box, gauss, blackman-harris"},
                        {{"--sampler", "dice"}, "owen, sobol, independent"},
-                       {{"--light-choice", "best"}, "power, uniform"},
+                       {{"--light-choice", "best"}, "tree, power, uniform"},
                        {{"--traversal", "slow"}, "robust, fast"},
                        {{"--progress", "loud"}, "auto, bar, lines, json, none"},
                        {{"--frob"}, "--frob"},

@@ -149,10 +149,11 @@ TEST_F(Cli, DepthFilterSamplerLightChoiceTraversal) {
     add({"--filter", "box", "--filter-radius", "2"}, "filterRadius_px", "2.000000");
     add({"--sampler", "sobol"}, "sampler", "sobol");
     add({"--sampler", "independent"}, "sampler", "independent");
-    pictures.insert(render_bytes({"--light-choice", "uniform"}));
-    EXPECT_EQ(pictures.size(), 7u);
+    add({"--light-choice", "uniform"}, "lightChoice", "uniform");
+    add({"--light-choice", "power"}, "lightChoice", "power");
+    EXPECT_EQ(pictures.size(), 8u);
     EXPECT_EQ(render_bytes({"--sampler", "owen", "--filter", "blackman-harris", "--light-choice",
-                            "power", "--traversal", "robust"}),
+                            "tree", "--traversal", "robust"}),
               render_bytes({}));
     EXPECT_LT(difference({"--traversal", "fast"}, {}), 1e-3);
 }

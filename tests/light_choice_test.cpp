@@ -9,6 +9,8 @@ namespace {
 
 using test::Random;
 
+const LightReceiver kAnywhere{V3f(0.3f, -1, 0.5f), V3f(0, 1, 0), true};
+
 Scene mixed_scene() {
     Scene scene = test::lamp_scene();
     scene.lights = {PointLight{V3f(0.f), Rgb(2.f)}, PointLight{V3f(0.f), Rgb(0.f)},
@@ -23,14 +25,15 @@ void expect_consistent(const Scene& scene, const LightChoice& choice,
     const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
     std::vector<double> observed(weights.size()), expected;
     for (uint32_t i = 0; i < scene.lights.size(); ++i) {
-        EXPECT_NEAR(choice.probability(i), weights[i] / sum, 1e-6) << i;
+        EXPECT_NEAR(choice.probability(i, kAnywhere), weights[i] / sum, 1e-6) << i;
         expected.push_back(100000 * weights[i] / sum);
     }
     Random random(seed);
     for (int i = 0; i < 100000; ++i) {
-        const auto pick = choice.pick(random.next());
+        const auto pick = choice.pick(random.next(), kAnywhere);
         ASSERT_TRUE(pick);
-        ASSERT_EQ(pick->probability, choice.probability(pick->light));
+        const float said = choice.probability(pick->light, kAnywhere);
+        ASSERT_NEAR(pick->probability, said, 1e-6f * said);
         ++observed[pick->light];
     }
     EXPECT_TRUE(test::chi_square(observed, expected));
@@ -50,11 +53,11 @@ TEST(LightChoice, UniformTreatsThoseWithPowerAlike) {
 
 TEST(LightChoice, NothingToChoose) {
     Scene scene;
-    EXPECT_FALSE(LightChoice(scene, LightChoiceKind::Power).pick(0.5f));
+    EXPECT_FALSE(LightChoice(scene, LightChoiceKind::Power).pick(0.5f, kAnywhere));
     scene.lights = {PointLight{V3f(0.f), Rgb(0.f)}};
     const LightChoice choice(scene, LightChoiceKind::Uniform);
-    EXPECT_FALSE(choice.pick(0.5f));
-    EXPECT_EQ(choice.probability(0), 0.f);
+    EXPECT_FALSE(choice.pick(0.5f, kAnywhere));
+    EXPECT_EQ(choice.probability(0, kAnywhere), 0.f);
 }
 
 TEST(LightChoice, AFaintLightBesideManyStrongOnesKeepsAChance) {
@@ -62,10 +65,30 @@ TEST(LightChoice, AFaintLightBesideManyStrongOnesKeepsAChance) {
     for (int i = 0; i < 200000; ++i)
         scene.lights.push_back(PointLight{V3f(0.f), Rgb(i == 777 ? 1e-9f : 1e6f)});
     const LightChoice choice(scene, LightChoiceKind::Power);
-    EXPECT_GT(choice.probability(777), 0.f);
+    EXPECT_GT(choice.probability(777, kAnywhere), 0.f);
     double sum = 0;
-    for (uint32_t i = 0; i < scene.lights.size(); ++i) sum += choice.probability(i);
+    for (uint32_t i = 0; i < scene.lights.size(); ++i) sum += choice.probability(i, kAnywhere);
     EXPECT_NEAR(sum, 1, 1e-6);
+}
+
+// What stands somewhere is chosen by the tree, the rest by power, and a scene without any of the
+// former is not charged for a tree.
+TEST(LightChoice, TreeSharesWithSkyAndSun) {
+    const Scene scene = mixed_scene();
+    const LightChoice choice(scene, LightChoiceKind::Tree);
+    std::vector<double> weights;
+    for (uint32_t i = 0; i < scene.lights.size(); ++i)
+        weights.push_back(choice.probability(i, kAnywhere));
+    expect_consistent(scene, choice, weights, 3);
+    for (const uint32_t i : {0u, 2u, 3u, 4u}) EXPECT_GT(weights[i], 0) << i;
+    EXPECT_EQ(weights[1], 0);
+
+    Scene open;
+    open.lights = {SunLight{V3f(0, -1, 0), Rgb(0.5f)}};
+    open.sky = Sky::uniform(Rgb(0.1f));
+    finish_scene(open);
+    weights = {light_power(open, open.lights[0]), light_power(open, open.lights[1])};
+    expect_consistent(open, LightChoice(open, LightChoiceKind::Tree), weights, 4);
 }
 
 TEST(LightChoice, KeepsStrata) {
@@ -73,7 +96,7 @@ TEST(LightChoice, KeepsStrata) {
     for (int i = 0; i < 8; ++i) scene.lights.push_back(PointLight{V3f(0.f), Rgb(1.f)});
     const LightChoice choice(scene, LightChoiceKind::Power);
     for (uint32_t i = 0; i < 8; ++i)
-        EXPECT_EQ(choice.pick((static_cast<float>(i) + 0.5f) / 8)->light, i);
+        EXPECT_EQ(choice.pick((static_cast<float>(i) + 0.5f) / 8, kAnywhere)->light, i);
 }
 
 }  // namespace

@@ -244,6 +244,44 @@ TEST(Path, TechniquesAgree) {
     }
 }
 
+// The same by the light tree, whose probabilities depend on the vertex: emitters of one side and of
+// two, a bulb and a sky, a glossy floor below and a pane that transmits.
+TEST(Path, TechniquesAgreeWithTheLightTree) {
+    World world;
+    Material floor = diffuse_material(0.6f);
+    floor.metallic = 0.3f;
+    floor.roughness = 0.4f;
+    place(world.scene, quad(V3f(-3, -3, -1), V3f(6, 0, 0), V3f(0, 6, 0)), floor);
+    Material pane = diffuse_material(0.9f);
+    pane.transmission = 0.7f;
+    pane.roughness = 0.5f;
+    place(world.scene, quad(V3f(-0.5f, -0.5f, 0.2f), V3f(1, 0, 0), V3f(0, 1, 0.3f)), pane);
+    Material one_sided = emitter_material(5.f);
+    one_sided.double_sided = false;
+    place(world.scene, quad(V3f(-1, 1.5f, 1), V3f(2, 0, 0), V3f(0, 1, 0.5f)), one_sided);
+    place(world.scene, quad(V3f(-1.5f, -1, -0.6f), V3f(0, 0.4f, 0), V3f(0, 0, 0.4f)),
+          emitter_material(8.f, 0.5f));
+    place(world.scene, sphere(V3f(1, -0.5f, -0.5f), 0.2f, 8, false), emitter_material(3.f, 0.2f));
+    world.scene.sky = Sky::uniform(Rgb(0.05f));
+    world.finish();
+    PathOptions options;
+    options.max_depth = 4;
+    const auto measure = [&](Technique technique, LightChoiceKind kind) {
+        options.technique = technique;
+        world.lights = std::make_unique<LightChoice>(world.scene, kind);
+        return estimate(world, options, 8192, [](V2f u) {
+            return ray_to(V3f(0, -0.5f, 4), V3f(2 * u.x - 1, 2 * u.y - 1, -0.5f));
+        });
+    };
+    const Estimate mis = measure(Technique::Mis, LightChoiceKind::Tree);
+    for (const Estimate& other : {measure(Technique::LightOnly, LightChoiceKind::Tree),
+                                  measure(Technique::BsdfOnly, LightChoiceKind::Tree),
+                                  measure(Technique::Mis, LightChoiceKind::Power)}) {
+        EXPECT_NEAR(mis.mean, other.mean, 3 * std::hypot(mis.error, other.error));
+        EXPECT_LT(other.error, 0.02 * other.mean);
+    }
+}
+
 TEST(Path, CoverageMixesSurfaceAndSky) {
     World world;
     Material m = diffuse_material(0.f);

@@ -128,23 +128,31 @@ Scene lamps(uint32_t n) {
 
 void light_pick_and_sample(benchmark::State& state) {
     const Scene scene = lamps(static_cast<uint32_t>(state.range(0)));
-    const LightChoice choice(scene, LightChoiceKind::Power);
+    const LightChoice choice(scene, static_cast<LightChoiceKind>(state.range(1)));
+    const LightReceiver receiver{V3f(0.f), V3f(0, 1, 0), false};
     const auto u = points(true);
     size_t i = 0;
     for (auto _ : state) {
-        const auto pick = choice.pick(u[i % kArguments].x);
-        benchmark::DoNotOptimize(sample_light(scene, scene.lights[pick->light], V3f(0.f),
-                                              u[(i + 7) % kArguments], kRgb));
+        const auto pick = choice.pick(u[i % kArguments].x, receiver);
         ++i;
+        if (!pick) continue;
+        benchmark::DoNotOptimize(sample_light(scene, scene.lights[pick->light], V3f(0.f),
+                                              u[(i + 6) % kArguments], kRgb));
     }
 }
-BENCHMARK(light_pick_and_sample)->ArgName("lights")->Arg(10)->Arg(200000);
+BENCHMARK(light_pick_and_sample)
+    ->ArgNames({"lights", "tree"})
+    ->ArgsProduct({{10, 200000}, {int(LightChoiceKind::Power), int(LightChoiceKind::Tree)}});
 
 void light_choice_build(benchmark::State& state) {
     const Scene scene = lamps(static_cast<uint32_t>(state.range(0)));
-    for (auto _ : state) benchmark::DoNotOptimize(LightChoice(scene, LightChoiceKind::Power));
+    for (auto _ : state)
+        benchmark::DoNotOptimize(LightChoice(scene, static_cast<LightChoiceKind>(state.range(1))));
 }
-BENCHMARK(light_choice_build)->ArgName("lights")->Arg(200000)->Unit(benchmark::kMillisecond);
+BENCHMARK(light_choice_build)
+    ->ArgNames({"lights", "tree"})
+    ->ArgsProduct({{200000}, {int(LightChoiceKind::Power), int(LightChoiceKind::Tree)}})
+    ->Unit(benchmark::kMillisecond);
 
 void piecewise_1d(benchmark::State& state) {
     std::vector<float> weights(state.range(0));

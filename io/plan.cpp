@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/plan.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/camera_words.h"
+#include "io/plan_comparison.h"
+#include "io/stats_file.h"
+
+namespace petzval {
+namespace {
+
+using Notice = std::function<void(const std::string&)>;
+using Candidates = std::vector<PlanCandidate>;
+
+constexpr int kPixels = 1024, kFewPixels = 256;
+constexpr uint32_t kLeastSamples = 4;
+
+std::string percent(double share) {
+    return fmt::format("{:.2g} %", 100 * share);
+}
+
+const PlanCandidate* find(const Candidates& all, const std::string& name) {
+    const auto found = std::find_if(all.begin(), all.end(),
+                                    [&](const PlanCandidate& c) { return c.name == name; });
+    return found == all.end() ? nullptr : &*found;
+}
+
+// How a candidate is spoken of that was not taken.
+std::string off(const PlanCandidate& c) {
+    if (c.outside)
+        return fmt::format("{} would be off by {}", c.name, percent(std::sqrt(c.square_bias.mean)));
+    return c.inside ? fmt::format("{} would need more samples", c.name)
+                    : fmt::format("{} may be off by {}", c.name, percent(c.predicted()));
+}
+
+std::string at_most(const PlanCandidate& c) {
+    return fmt::format("off by {} at most", percent(c.predicted()));
+}
+
+bool is_camera(const std::string& name) {
+    return name == "pinhole" || name == "thin";
+}
+
+// Samples until noise fills what bias leaves of the squared tolerance.
+double samples_for(const PlanCandidate& c, double tolerance) {
+    return std::max(1., c.variance.high() / (tolerance * tolerance - c.square_bias.high()));
+}
+
+size_t cheapest(const Candidates& all, double tolerance) {
+    const auto cost = [&](const PlanCandidate& c) { return samples_for(c, tolerance) * c.rays; };
+    size_t best = all.size() - 1;
+    for (size_t i = best; i-- > 0;)
+        if (all[i].inside && cost(all[i]) <= cost(all[best])) best = i;
+    return best;
+}
+
+/// What a plan tells of.
+struct Look {
+    const PlanRequest& request;
+    const Session& session;
+    const PlanOpen& open;
+    const Candidates& all;
+    const PlanCandidate& chosen;
+    double spread_px;
+
+    [[nodiscard]] std::string depends() const {
+        return fmt::format("{}", fmt::join(session.depends, "; "));
+    }
+    [[nodiscard]] std::string spreads() const {
+        return fmt::format("dispersion of {} spreads {:.2g} px", session.dispersive_lens,
+                           spread_px);
+    }
+    [[nodiscard]] bool chose(const char* name) const { return chosen.name == name; }
+};
+
+PlanLine camera_line(const Look& at) {
+    const CameraReport& report = at.session.camera_report;
+    if (report.orthographic) return {"camera", "orthographic", "the file has it", {}};
+    if (!(report.lens_radius_m > 0)) return {"camera", "pinhole", "nothing has an iris", {}};
+    if (is_camera(at.chosen.name))
+        return {"camera", at.chosen.name, at_most(at.chosen), at.chosen.predicted()};
+    std::vector<std::string> why;
+    for (const PlanCandidate& c : at.all)
+        if (is_camera(c.name)) why.push_back(off(c));
+    return {"camera",
+            report.lens.empty() ? "thin" : report.lens,
+            why.empty() ? "it was asked for" : fmt::format("{}", fmt::join(why, ", ")),
+            {}};
+}
+
+PlanLine spectral_line(const Look& at) {
+    if (at.chose("rgb"))
+        return {"spectral", "rgb", fmt::format("{}, though {}", at_most(at.chosen), at.depends()),
+                at.chosen.predicted()};
+    if (at.request.scene.spectral.mode != SpectralMode::Auto)
+        return {
+            "spectral", at.session.observer.spectral() ? "hero" : "rgb", "it was asked for", {}};
+    if (!at.session.observer.spectral() || (is_camera(at.chosen.name) && at.open.chroma))
+        return {"spectral", "rgb", "nothing depends on wavelength", {}};
+    const PlanCandidate* rgb = find(at.all, "rgb");
+    return {"spectral", "hero", (rgb ? off(*rgb) + ", as " : "") + at.depends(), {}};
+}
+
+PlanLine chroma_line(const Look& at) {
+    const auto& asked = at.session.camera_report.asked.chroma;
+    if (is_camera(at.chosen.name) || at.session.dispersive_lens.empty())
+        return {"chroma", "shared", "no lens parts wavelengths", {}};
+    if (!at.open.chroma)
+        return {"chroma",
+                word_of(asked.value_or(Chroma::Auto)),
+                asked ? "it was asked for" : "spectra are asked for",
+                {}};
+    const PlanCandidate *shared = find(at.all, "shared"), *tolerance = find(at.all, "tolerance");
+    const std::string because = at.spreads() + ": ";
+    if (at.chose("split"))
+        return {"chroma", "split", because + off(*shared) + ", " + off(*tolerance), {}};
+    if (at.chose("tolerance"))
+        return {"chroma", "tolerance",
+                fmt::format("{}{}, this {}", because, off(*shared), at_most(at.chosen)),
+                at.chosen.predicted()};
+    return {"chroma", "shared", because + "one ray for all wavelengths, " + at_most(at.chosen),
+            at.chosen.predicted()};
+}
+
+std::vector<PlanOption> options_of(const Look& at, uint64_t samples) {
+    std::vector<PlanOption> out{{"--spp", std::to_string(samples)}};
+    const CameraRequest& camera = at.chosen.scene.camera;
+    const auto set = [&](const char* name, const auto& value) {
+        out.emplace_back(name, fmt::format("{}", value));
+    };
+    const auto leave_out = [&](std::initializer_list<const char*> names) {
+        for (const char* name : names) out.emplace_back(name, std::nullopt);
+    };
+    if (is_camera(at.chosen.name)) {
+        leave_out({"--fit", "--fstop", "--focal-length", "--film-distance", "--coating", "--march",
+                   "--focus-by", "--glasses", "--chroma", "--chroma-tolerance"});
+        set("--lens", at.chosen.name);
+        set("--fov", *camera.fov_deg);
+        set("--sensor", fmt::format("{}x{}", camera.sensor_mm->x, camera.sensor_mm->y));
+        if (at.chose("pinhole")) {
+            leave_out(
+                {"--focus", "--aperture", "--aperture-scale", "--iris-sampling", "--lens-radius"});
+        } else {
+            set("--lens-radius", *camera.lens_radius_m);
+            set("--focus", std::get<FocusDistance>(*camera.focus).m);
+        }
+        return out;
+    }
+    if (at.open.any()) set("--spectral", at.chose("rgb") ? "rgb" : "hero");
+    if (at.open.chroma) set("--chroma", word_of(*camera.chroma));
+    return out;
+}
+
+// Opens the request; what is said of it is kept.
+Session open_first(const PlanRequest& request, TbbExecutor& executor,
+                   std::vector<std::string>& said) {
+    return executor.inside([&] {
+        return open_session(request.scene, [&](const std::string& text) { said.push_back(text); });
+    });
+}
+
+// The session of the candidate that was chosen in place of the first.
+Session reopened(const Look& at, TbbExecutor& executor) {
+    SceneRequest scene = at.chosen.scene;
+    scene.spectral.because =
+        at.chose("rgb") ? fmt::format("it is {}, though {}", at_most(at.chosen), at.depends())
+                        : at.depends();
+    Session session = executor.inside([&] {
+        return open_session(
+            scene, [](const std::string&) {}, &at.session);
+    });
+    session.load_s += at.session.load_s;
+    session.bvh_s += at.session.bvh_s;
+    return session;
+}
+
+}  // namespace
+
+Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& notice,
+               double most_samples) {
+    std::vector<std::string> said;
+    const Session first = open_first(request, executor, said);
+    for (const std::string& text : said)
+        if (text != first.spectral_decision) notice(text);
+    const PlanOpen open(request.scene, first);
+    PlanComparison compared(request, first, open, kPixels, executor);
+    compared.add_simpler_cameras();
+    if (open.spectral) compared.add_rgb();
+    if (open.chroma) {
+        compared.add_shared();
+        compared.add_parted("tolerance", Chroma::Auto);
+    }
+    compared.look(most_samples, true);
+
+    Plan plan;
+    plan.candidates = compared.candidates();
+    const size_t best = cheapest(plan.candidates, request.tolerance);
+    const PlanCandidate& chosen = plan.candidates[best];
+    plan.scene = chosen.scene;
+    plan.bias = chosen.predicted();
+    plan.samples = static_cast<uint64_t>(std::ceil(samples_for(chosen, request.tolerance)));
+    plan.noise = std::sqrt(chosen.variance.high() / static_cast<double>(plan.samples));
+    plan.cpu_s = compared.cpu_s_per_sample(best) * static_cast<double>(plan.samples) *
+                 request.scene.size.x * request.scene.size.y;
+    const Look at{request, first, open, plan.candidates, chosen, compared.spread()};
+    plan.lines = {camera_line(at), spectral_line(at), chroma_line(at)};
+    plan.options = options_of(at, plan.samples);
+    return plan;
+}
+
+Session open_planned(const PlanRequest& request, TbbExecutor& executor, const Notice& notice) {
+    std::vector<std::string> said;
+    Session first = open_first(request, executor, said);
+    const std::string decision = first.spectral_decision;
+    const PlanOpen open(request.scene, first);
+    const double most_samples = 0.25 * request.scene.size.x * request.scene.size.y;
+    const int models = (open.spectral ? 1 : 0) + (open.chroma ? 2 : 1);
+    const auto fits = [&](int pixels) {
+        return double(pixels) * kLooks * kLeastSamples * models <= most_samples;
+    };
+    if (!open.any() || !fits(kFewPixels)) {
+        for (const std::string& text : said) notice(text);
+        return first;
+    }
+    PlanComparison compared(request, first, open, fits(kPixels) ? kPixels : kFewPixels, executor);
+    if (open.spectral) compared.add_rgb();
+    if (open.chroma) compared.add_shared();
+    compared.look(most_samples, false);
+    const Candidates all = compared.candidates();
+    const auto& chosen =
+        *std::find_if(all.begin(), all.end(), [](const auto& c) { return c.inside; });
+    const Look at{request, first, open, all, chosen, compared.spread()};
+    const bool simpler = &chosen != &all.back();
+    std::string why = simpler ? at_most(chosen) : off(all.front()), chroma;
+    if (open.chroma) {
+        why = at.spreads() + ": " +
+              (simpler ? "one ray for all wavelengths, " + why : off(*find(all, "shared")));
+        chroma = fmt::format("chroma: {}, as {}", simpler ? "shared" : "tolerance", why);
+    }
+    // What the look does not clear stays as it was opened.
+    Session session = simpler ? reopened(at, executor) : std::move(first);
+    for (const std::string& text : said)
+        notice(text == decision ? session.spectral_decision : text);
+    if (!chroma.empty()) notice(chroma);
+    session.metadata.emplace_back("petzval:plan",
+                                  fmt::format("{}: {}", percent(request.tolerance), why));
+    return session;
+}
+
+}  // namespace petzval

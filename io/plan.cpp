@@ -18,7 +18,9 @@ using Notice = std::function<void(const std::string&)>;
 using Candidates = std::vector<PlanCandidate>;
 
 constexpr int kPixels = 1024, kFewPixels = 256;
-constexpr uint32_t kLeastSamples = 4;
+// Of each look. Many samples of few pixels are better than few of many: what wavelengths and edges
+// do in a pixel evens out faster than in proportion.
+constexpr double kLeastSamples = 4, kEnoughSamples = 16;
 
 std::string percent(double share) {
     return fmt::format("{:.2g} %", 100 * share);
@@ -202,6 +204,7 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
     const size_t best = cheapest(plan.candidates, request.tolerance);
     const PlanCandidate& chosen = plan.candidates[best];
     plan.scene = chosen.scene;
+    plan.chosen = chosen.name;
     plan.bias = chosen.predicted();
     plan.samples = static_cast<uint64_t>(std::ceil(samples_for(chosen, request.tolerance)));
     plan.noise = std::sqrt(chosen.variance.high() / static_cast<double>(plan.samples));
@@ -220,14 +223,15 @@ Session open_planned(const PlanRequest& request, TbbExecutor& executor, const No
     const PlanOpen open(request.scene, first);
     const double most_samples = 0.25 * request.scene.size.x * request.scene.size.y;
     const int models = (open.spectral ? 1 : 0) + (open.chroma ? 2 : 1);
-    const auto fits = [&](int pixels) {
-        return double(pixels) * kLooks * kLeastSamples * models <= most_samples;
+    const auto fit = [&](int pixels, double samples) {
+        return pixels * kLooks * samples * models <= most_samples;
     };
-    if (!open.any() || !fits(kFewPixels)) {
+    if (!open.any() || !fit(kFewPixels, kLeastSamples)) {
         for (const std::string& text : said) notice(text);
         return first;
     }
-    PlanComparison compared(request, first, open, fits(kPixels) ? kPixels : kFewPixels, executor);
+    PlanComparison compared(request, first, open,
+                            fit(kPixels, kEnoughSamples) ? kPixels : kFewPixels, executor);
     if (open.spectral) compared.add_rgb();
     if (open.chroma) compared.add_shared();
     compared.look(most_samples, false);

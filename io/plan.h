@@ -51,13 +51,13 @@ using PlanOption = std::pair<std::string, std::optional<std::string>>;
 
 struct Plan {
     SceneRequest scene;
+    std::string chosen;               ///< name of the candidate
     std::vector<PlanOption> options;  ///< that lead to it, in place of those that were given
     std::vector<PlanLine> lines;
-    std::vector<PlanCandidate> candidates;  ///< the cheapest first; chosen or not
+    std::vector<PlanCandidate> candidates;  ///< chosen or not; last the fullest model
     double bias = 0, noise = 0;             ///< predicted, of what was chosen with `samples`
     uint64_t samples = 0;                   ///< of each pixel
     double cpu_s = 0;                       ///< about what they take here
-    double pilot_cpu_s = 0;
 
     [[nodiscard]] double error() const { return std::hypot(bias, noise); }
 };

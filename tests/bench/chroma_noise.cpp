@@ -151,7 +151,7 @@ int run(int argc, char** argv) {
     strategies.push_back({"split", Chroma::Split});
     strategies.push_back({"single", Chroma::Single});
     for (const float px : {0.03f, 0.1f, 0.3f, 1.f})
-        strategies.push_back({fmt::format("auto {}", px), Chroma::Auto, px});
+        strategies.push_back({fmt::format("tolerance {}", px), Chroma::Auto, px});
     for (Strategy& s : strategies) {
         camera.chroma = s.chroma;
         camera.chroma_tolerance_px = s.tolerance_px;

@@ -74,19 +74,20 @@ TEST_F(Plans, APilotFindsADifferenceThatIsKnown) {
     EXPECT_NEAR(pilot.variance(*a, *b).mean, 0, 1e-12);
 }
 
-// Two ways to choose lights show one picture, with different noise: the square of their difference
-// is 0 but for the estimate's own error. The mean of squares is not.
+// A white lamp is white in RGB and in wavelengths, which are noisy: the square of the difference is
+// 0 but for the estimate's own error. The mean of squares is not.
 TEST_F(Plans, NoiseIsNoBias) {
-    const SceneRequest power = request(scene_, {64, 36});
-    SceneRequest uniform = power;
-    uniform.light_choice = LightChoiceKind::Uniform;
+    use(lamp());
+    SceneRequest rgb = request(scene_, {64, 36}), hero = rgb;
+    hero.spectral.mode = SpectralMode::Hero;
     const Pilot pilot({64, 36}, 600, executor_);
-    const auto a = model(pilot, uniform), b = model(pilot, power);
+    const auto a = model(pilot, hero), b = model(pilot, rgb);
     pilot.look(*a, 4);
     pilot.look(*b, 4);
     const Estimate found = pilot.square({{a.get(), 1}, {b.get(), -1}}, *b);
     EXPECT_TRUE(test::z_test(found.mean, found.error, 0)) << found.mean << ' ' << found.error;
     EXPECT_GT(pilot.variance(*a, *b).mean, 10 * found.error);
+    EXPECT_NEAR(pilot.variance(*b, *b).mean, 0, 1e-12);
 }
 
 // Pixels that differ by chance only: a pilot's variance is that of the same number of samples

@@ -10,6 +10,7 @@
 
 #include "apps/console.h"
 #include "apps/render_options.h"
+#include "io/numbers.h"
 #include "io/plan.h"
 
 namespace petzval {
@@ -49,10 +50,6 @@ std::string command_of(const CLI::App& app, const Plan& plan) {
     return command + " -o out.exr";
 }
 
-std::string percent(double share) {
-    return fmt::format("{:.2g} %", 100 * share);
-}
-
 std::string duration(double s) {
     if (s < 100) return fmt::format("{:.2g} s", s);
     return s < 6000 ? fmt::format("{:.2g} min", s / 60) : fmt::format("{:.2g} h", s / 3600);
@@ -61,8 +58,8 @@ std::string duration(double s) {
 void print(const Plan& plan, const std::string& command) {
     for (const PlanLine& line : plan.lines)
         fmt::print("{:<9} {}: {}\n", line.choice, line.chosen, line.reason);
-    fmt::print("{:<9} {}: {} of error with one\n", "samples", plan.samples,
-               percent(plan.noise * std::sqrt(double(plan.samples))));
+    fmt::print("{:<9} {}: they bring noise from {} to {}\n", "samples", plan.samples,
+               percent(plan.first_noise), percent(plan.noise));
     fmt::print("{:<9} {}: {} by the model, {} by noise; about {} of CPU time here\n", "error",
                percent(plan.error()), percent(plan.bias), percent(plan.noise),
                duration(plan.cpu_s));

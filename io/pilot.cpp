@@ -93,6 +93,7 @@ void Pilot::look(PilotModel& model, uint32_t samples) const {
     model.cpu_s_ += process_cpu_s() - start_s;
     model.samples_ = std::max(model.samples_, samples);
     for (const PathStats& s : stats) model.stats_ += s;
+    model.variances_.push_back(variances_of(model));
 }
 
 std::vector<V3d> Pilot::weights(const PilotModel& scale) const {
@@ -122,19 +123,29 @@ Estimate Pilot::square(const std::vector<PilotTerm>& terms, const PilotModel& sc
     return mean_of(values);
 }
 
-Estimate Pilot::variance(const PilotModel& model, const PilotModel& scale) const {
-    const std::vector<V3d> weight = weights(scale);
-    std::vector<double> values;
-    for (size_t p = 0; p < pixels_.size(); ++p) {
+std::vector<V3d> Pilot::variances_of(const PilotModel& model) const {
+    std::vector<V3d> out;
+    for (const auto& sums : model.sums_) {
         V3d mean(0.), squares(0.);
-        for (const V3d& sum : model.sums_[p]) mean += sum / double(kLooks * model.samples_);
-        for (const V3d& sum : model.sums_[p]) {
+        for (const V3d& sum : sums) mean += sum / double(kLooks * model.samples_);
+        for (const V3d& sum : sums) {
             const V3d d = sum / double(model.samples_) - mean;
             squares += d * d;
         }
-        values.push_back(squares.dot(weight[p]) / double(kLooks - 1));
+        out.push_back(squares / double(kLooks - 1));
     }
-    return mean_of(values);
+    return out;
+}
+
+std::vector<Estimate> Pilot::variances(const PilotModel& model, const PilotModel& scale) const {
+    const std::vector<V3d> weight = weights(scale);
+    std::vector<Estimate> out;
+    for (const std::vector<V3d>& turn : model.variances_) {
+        std::vector<double> values;
+        for (size_t p = 0; p < turn.size(); ++p) values.push_back(turn[p].dot(weight[p]));
+        out.push_back(mean_of(values));
+    }
+    return out;
 }
 
 }  // namespace petzval

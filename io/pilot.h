@@ -46,6 +46,7 @@ class PilotModel {
     RenderJob job_;
     PathTracer<> tracer_;
     std::vector<std::array<V3d, kLooks>> sums_;  ///< of the samples of each pixel
+    std::vector<std::vector<V3d>> variances_;    ///< of one look at each pixel, by turn
     uint32_t samples_ = 0;
     PathStats stats_;
     double cpu_s_ = 0;
@@ -74,10 +75,14 @@ class Pilot {
     /// terms add up to with endless samples; b: what `scale` shows. Not biased, so it may be
     /// negative: only products of different looks count. All have as many samples.
     [[nodiscard]] Estimate square(const std::vector<PilotTerm>&, const PilotModel& scale) const;
-    /// The same mean of the variance of one look.
-    [[nodiscard]] Estimate variance(const PilotModel&, const PilotModel& scale) const;
+    /// The same mean of the variance of one look, as it was after each turn of look().
+    [[nodiscard]] std::vector<Estimate> variances(const PilotModel&, const PilotModel& scale) const;
+    [[nodiscard]] Estimate variance(const PilotModel& model, const PilotModel& scale) const {
+        return variances(model, scale).back();
+    }
 
   private:
+    [[nodiscard]] std::vector<V3d> variances_of(const PilotModel&) const;
     [[nodiscard]] std::vector<V3d> weights(const PilotModel& scale) const;
 
     V2i size_px_;

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "io/camera_words.h"
+#include "io/numbers.h"
 #include "io/plan_comparison.h"
 #include "io/stats_file.h"
 
@@ -21,10 +22,6 @@ constexpr int kPixels = 1024, kFewPixels = 256;
 // Of each look. Many samples of few pixels are better than few of many: what wavelengths and edges
 // do in a pixel evens out faster than in proportion.
 constexpr double kLeastSamples = 4, kEnoughSamples = 16;
-
-std::string percent(double share) {
-    return fmt::format("{:.2g} %", 100 * share);
-}
 
 const PlanCandidate* find(const Candidates& all, const std::string& name) {
     const auto found = std::find_if(all.begin(), all.end(),
@@ -48,13 +45,8 @@ bool is_camera(const std::string& name) {
     return name == "pinhole" || name == "thin";
 }
 
-// Samples until noise fills what bias leaves of the squared tolerance.
-double samples_for(const PlanCandidate& c, double tolerance) {
-    return std::max(1., c.variance.high() / (tolerance * tolerance - c.square_bias.high()));
-}
-
 size_t cheapest(const Candidates& all, double tolerance) {
-    const auto cost = [&](const PlanCandidate& c) { return samples_for(c, tolerance) * c.rays; };
+    const auto cost = [&](const PlanCandidate& c) { return c.samples_for(tolerance) * c.rays; };
     size_t best = all.size() - 1;
     for (size_t i = best; i-- > 0;)
         if (all[i].inside && cost(all[i]) <= cost(all[best])) best = i;
@@ -70,8 +62,12 @@ struct Look {
     const PlanCandidate& chosen;
     double spread_px;
 
+    /// On wavelength, but for the lens where it is not the camera any more.
     [[nodiscard]] std::string depends() const {
-        return fmt::format("{}", fmt::join(session.depends, "; "));
+        std::vector<std::string> found = session.depends;
+        if (is_camera(chosen.name))
+            std::erase(found, fmt::format("lens {} disperses", session.dispersive_lens));
+        return fmt::format("{}", fmt::join(found, "; "));
     }
     [[nodiscard]] std::string spreads() const {
         return fmt::format("dispersion of {} spreads {:.2g} px", session.dispersive_lens,
@@ -102,8 +98,7 @@ PlanLine spectral_line(const Look& at) {
     if (at.request.scene.spectral.mode != SpectralMode::Auto)
         return {
             "spectral", at.session.observer.spectral() ? "hero" : "rgb", "it was asked for", {}};
-    if (!at.session.observer.spectral() || (is_camera(at.chosen.name) && at.open.chroma))
-        return {"spectral", "rgb", "nothing depends on wavelength", {}};
+    if (at.depends().empty()) return {"spectral", "rgb", "nothing depends on wavelength", {}};
     const PlanCandidate* rgb = find(at.all, "rgb");
     return {"spectral", "hero", (rgb ? off(*rgb) + ", as " : "") + at.depends(), {}};
 }
@@ -112,6 +107,7 @@ PlanLine chroma_line(const Look& at) {
     const auto& asked = at.session.camera_report.asked.chroma;
     if (is_camera(at.chosen.name) || at.session.dispersive_lens.empty())
         return {"chroma", "shared", "no lens parts wavelengths", {}};
+    if (!at.session.observer.spectral()) return {"chroma", "shared", "RGB goes along one ray", {}};
     if (!at.open.chroma)
         return {"chroma",
                 word_of(asked.value_or(Chroma::Auto)),
@@ -183,6 +179,20 @@ Session reopened(const Look& at, TbbExecutor& executor) {
 
 }  // namespace
 
+double PlanCandidate::variance_with(double samples) const {
+    size_t turn = 0;
+    while (turn + 1 < variances.size() && samples >= std::exp2(turn + 1)) ++turn;
+    return variances[turn].high() * std::exp2(turn) / samples;
+}
+
+double PlanCandidate::samples_for(double tolerance) const {
+    const double left = tolerance * tolerance - square_bias.high();
+    for (size_t turn = 0;; ++turn) {
+        const double samples = std::exp2(turn) * std::max(1., variances[turn].high() / left);
+        if (turn + 1 == variances.size() || samples <= std::exp2(turn + 1)) return samples;
+    }
+}
+
 Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& notice,
                double most_samples) {
     std::vector<std::string> said;
@@ -206,8 +216,9 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
     plan.scene = chosen.scene;
     plan.chosen = chosen.name;
     plan.bias = chosen.predicted();
-    plan.samples = static_cast<uint64_t>(std::ceil(samples_for(chosen, request.tolerance)));
-    plan.noise = std::sqrt(chosen.variance.high() / static_cast<double>(plan.samples));
+    plan.samples = static_cast<uint64_t>(std::ceil(chosen.samples_for(request.tolerance)));
+    plan.noise = std::sqrt(chosen.variance_with(static_cast<double>(plan.samples)));
+    plan.first_noise = std::sqrt(chosen.variance_with(1));
     plan.cpu_s = compared.cpu_s_per_sample(best) * static_cast<double>(plan.samples) *
                  request.scene.size.x * request.scene.size.y;
     const Look at{request, first, open, plan.candidates, chosen, compared.spread()};

@@ -35,10 +35,16 @@ struct PlanCandidate {
     bool inside = false;   ///< surely within its share of the tolerance
     bool outside = false;  ///< surely beyond it
     double rays = 0;       ///< of a sample, as PilotModel counts them
-    Estimate variance{};   ///< of one sample
+    /// Variances of the mean of 1, 2, 4, ... samples: well spread points make them fall faster than
+    /// in proportion.
+    std::vector<Estimate> variances{};
 
     /// A bound that the error without noise keeps.
     [[nodiscard]] double predicted() const { return std::sqrt(square_bias.high()); }
+    /// The same of the variance with so many samples, 1 at least.
+    [[nodiscard]] double variance_with(double samples) const;
+    /// Samples until noise and bias are inside the tolerance together; bias alone must be.
+    [[nodiscard]] double samples_for(double tolerance) const;
 };
 
 struct PlanLine {
@@ -56,6 +62,7 @@ struct Plan {
     std::vector<PlanLine> lines;
     std::vector<PlanCandidate> candidates;  ///< chosen or not; last the fullest model
     double bias = 0, noise = 0;             ///< predicted, of what was chosen with `samples`
+    double first_noise = 0;                 ///< with one sample
     uint64_t samples = 0;                   ///< of each pixel
     double cpu_s = 0;                       ///< about what they take here
 

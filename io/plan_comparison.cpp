@@ -13,7 +13,7 @@ namespace {
 // Wavelengths are parted so far that they stand out of the noise, but stay within a pixel: there
 // the error grows in proportion.
 constexpr double kParted_px = 0.35, kMostFactor = 64;
-constexpr uint32_t kFirstSamples = 4, kThoroughSamples = 32;
+constexpr uint32_t kLeastSamples = 4, kThoroughSamples = 32;
 constexpr double kSmallShare = 0.25;  // of the tolerance: smaller errors are told no finer
 
 }  // namespace
@@ -120,21 +120,15 @@ void PlanComparison::look(double most_samples, bool thorough) {
     double models = shared_ ? 2 : 1;
     for (const Entry& e : entries_) models += e.own != nullptr;
     const double once = static_cast<double>(pilot_.pixels()) * kLooks * models;
-    for (uint32_t n = kFirstSamples;; n *= 2) {
+    for (uint32_t n = 1;; n *= 2) {
         pilot_.look(*full_, n);
         if (shared_) pilot_.look(*shared_, n);
         for (const Entry& e : entries_)
             if (e.own) pilot_.look(*e.own, n);
         evaluate();
         if (once * 2 * n > most_samples) return;
-        if (settled_all(thorough) && (!thorough || n >= kThoroughSamples)) return;
+        if (n >= (thorough ? kThoroughSamples : kLeastSamples) && settled_all(thorough)) return;
     }
-}
-
-void PlanComparison::measure(const PilotModel& of, PlanCandidate& found) const {
-    const Estimate look = pilot_.variance(of, *scale_);
-    found.variance = {look.mean * of.samples(), look.error * of.samples()};
-    found.rays = of.rays_per_sample();
 }
 
 void PlanComparison::evaluate() {
@@ -143,7 +137,6 @@ void PlanComparison::evaluate() {
         e.found.square_bias = pilot_.square(e.difference, *scale_);
         e.found.inside = e.found.square_bias.high() <= most;
         e.found.outside = e.found.square_bias.low() > most;
-        measure(*e.model, e.found);
     }
 }
 
@@ -158,12 +151,15 @@ bool PlanComparison::settled_all(bool thorough) const {
 
 std::vector<PlanCandidate> PlanComparison::candidates() const {
     std::vector<PlanCandidate> out;
-    for (const Entry& e : entries_) out.push_back(e.found);
-    PlanCandidate& full = out.emplace_back();
-    full.name = open_.chroma ? "split" : "full";
-    full.scene = full_scene_;
+    const auto measured = [&](PlanCandidate found, const PilotModel& model) {
+        found.variances = pilot_.variances(model, *scale_);
+        found.rays = model.rays_per_sample();
+        out.push_back(std::move(found));
+    };
+    for (const Entry& e : entries_) measured(e.found, *e.model);
+    PlanCandidate full{open_.chroma ? "split" : "full", full_scene_};
     full.inside = true;
-    measure(*full_, full);
+    measured(std::move(full), *full_);
     return out;
 }
 

@@ -60,7 +60,6 @@ class PlanComparison {
     void part_wavelengths();
     void add(const std::string& name, const SceneRequest&);
     void evaluate();
-    void measure(const PilotModel&, PlanCandidate&) const;
     [[nodiscard]] bool settled_all(bool thorough) const;
 
     const PlanRequest& request_;

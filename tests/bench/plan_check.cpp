@@ -96,8 +96,11 @@ void check(const std::string& scene, const std::string& lens, const Settings& se
             judge(where, c.name, c.predicted(), square, request.tolerance, chosen, tally);
         }
         if (!chosen) continue;
-        Estimate noise = pilot.variance(*models[i], full);
-        const double scale = double(models[i]->samples()) / double(plan.samples);
+        const auto chosen_model =
+            pilot.model(open_session(c.scene, silent, &first), request.job, request.path);
+        pilot.look(*chosen_model, samples);
+        const Estimate noise = pilot.variance(*chosen_model, full);
+        const double scale = double(samples) / double(plan.samples);
         judge(where, fmt::format("all, {} samples", plan.samples), plan.error(),
               {square.mean + noise.mean * scale, std::hypot(square.error, noise.error * scale)},
               request.tolerance, true, tally);

@@ -124,15 +124,16 @@ TEST_F(Plans, SpreadIsInPixelsAndGrowsWithTheFactor) {
 // Parting wavelengths by half a pixel and dividing what comes of it, against the lens as it is on
 // other pixels with other seeds and many samples: both estimates agree.
 TEST_F(Plans, PartingFurtherFindsTheSameErrorWithLessNoise) {
-    const SceneRequest scene = tabletop({320, 180});
+    SceneRequest scene = tabletop({160, 90});
+    scene.scene = kOrnaments;
     const PlanRequest request{scene, {}, {}, 0.05};
     const Session first = open_session(scene, kSilent);
     PlanComparison compared(request, first, PlanOpen(scene, first), 512, executor_);
     compared.add_shared();
-    compared.look(75'000, true);
+    compared.look(150'000, true);
     const PlanCandidate shared = compared.candidates().front();
-    EXPECT_GT(compared.spread(), 0.05);
-    EXPECT_LT(compared.spread(), 0.2);
+    EXPECT_GT(compared.spread(), 0.02);
+    EXPECT_LT(compared.spread(), 0.1);
 
     const Pilot pilot(scene.size, 512, executor_, 1);
     const auto one = model(pilot, with(scene, Chroma::Shared)),

@@ -114,7 +114,8 @@ double parse_share(const std::string& option, const std::string& text) {
     const bool per_cent = text.ends_with('%');
     const auto value = number<double>(std::string_view(text).substr(0, text.size() - per_cent));
     const double share = value.value_or(0) / (per_cent ? 100 : 1);
-    if (!(share > 0 && share <= 1)) refuse(option, text, "a share such as 1% or 0.01, 100% at most");
+    if (!(share > 0 && share <= 1))
+        refuse(option, text, "a share such as 1% or 0.01, 100% at most");
     return share;
 }
 

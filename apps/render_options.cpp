@@ -166,7 +166,8 @@ RenderFrame resolve(RenderOptions& o) {
     resolve(o.spectral);
     s.spectral = o.spectral.request;
     const auto is_exr = [](const auto& path) { return picture_format(path) == PictureFormat::Exr; };
-    if (s.spectral.bins && !o.outputs.empty() && std::none_of(o.outputs.begin(), o.outputs.end(), is_exr))
+    if (s.spectral.bins && !o.outputs.empty() &&
+        std::none_of(o.outputs.begin(), o.outputs.end(), is_exr))
         throw CLI::ValidationError("--bins", "needs an output that keeps them: -o FILE.exr");
     s.camera = resolve(o.camera, s.size);
     resolve_job(o);

@@ -117,8 +117,8 @@ PlanLine chroma_line(const Look& at) {
     const std::string because = at.spreads() + ": ";
     if (at.chose("split"))
         return {"chroma", "split", because + off(*shared) + ", " + off(*tolerance), {}};
-    if (at.chose("tolerance"))
-        return {"chroma", "tolerance",
+    if (!at.chose("shared") && !at.chose("rgb"))
+        return {"chroma", at.chosen.name,
                 fmt::format("{}{}, this {}", because, off(*shared), at_most(at.chosen)),
                 at.chosen.predicted()};
     return {"chroma", "shared", because + "one ray for all wavelengths, " + at_most(at.chosen),

@@ -31,9 +31,9 @@ struct SpectralRequest {
 
 struct SpectralSetup {
     Observer observer;
-    std::string scale;  ///< what RGB 1 means
-    std::string decision;                    ///< what `notice` was told of it
-    std::vector<std::string> depends;        ///< phrases for what RGB cannot tell
+    std::string scale;                 ///< what RGB 1 means
+    std::string decision;              ///< what `notice` was told of it
+    std::vector<std::string> depends;  ///< phrases for what RGB cannot tell
     /// What the pixels follow from, for the picture's metadata.
     std::vector<std::pair<std::string, std::string>> metadata;
 };

@@ -66,12 +66,19 @@ void add_lens_options(CLI::App& app, CameraOptions& o) {
     group(add_choice<IrisSampling>(
         app, "--iris-sampling", r.iris_sampling, words_of(IrisSampling()),
         "formula, rejection, triangles, alias (default: the best that the shape has)"));
-    group(add_choice<Chroma>(app, "--chroma", r.chroma, words_of(Chroma()),
-                             "wavelengths that leave the lens apart: auto (default), shared, "
-                             "split, single, two-level, hero"));
-    group(app.add_option("--chroma-tolerance", r.chroma_tolerance_px,
-                         "pixels on the film within which --chroma auto shares a ray (default "
-                         "0.1)"))
+    Choices<std::optional<Chroma>> chromas{{"auto", std::nullopt}};
+    for (const auto& [word, chroma] : words_of(Chroma())) chromas.emplace_back(word, chroma);
+    group(add_choice<std::optional<Chroma>>(
+        app, "--chroma", r.chroma, chromas,
+        "wavelengths that leave the lens apart: auto (default: the cheapest within --tolerance), "
+        "shared, tolerance, split, single, two-level, hero"));
+    const auto share_within = [&r](float px) {
+        r.chroma_tolerance_px = px;
+        if (!r.chroma) r.chroma = Chroma::Tolerance;
+    };
+    group(app.add_option_function<float>("--chroma-tolerance", share_within,
+                                         "pixels on the film within which --chroma tolerance, "
+                                         "which this asks for, shares a ray (default 0.1)"))
         ->check(number_between(0, 1000));
 }
 

@@ -12,6 +12,7 @@
 #include "apps/image.h"
 #include "apps/info.h"
 #include "apps/lens.h"
+#include "apps/plan.h"
 #include "apps/render.h"
 #include "io/develop.h"
 #include "io/error.h"
@@ -57,6 +58,7 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     int exit_code = 0;
     petzval::add_render_command(app, exit_code);
+    petzval::add_plan_command(app);
     petzval::add_chart_command(app, exit_code);
     petzval::add_info_command(app);
     petzval::add_image_commands(app);

@@ -110,6 +110,15 @@ double parse_duration_s(const std::string& option, const std::string& text) {
     return *value * unit_s;
 }
 
+double parse_share(const std::string& option, const std::string& text) {
+    const bool per_cent = text.ends_with('%');
+    const auto value = number<double>(std::string_view(text).substr(0, text.size() - per_cent));
+    const double share = value.value_or(0) / (per_cent ? 100 : 1);
+    if (!(share > 0 && share <= 1))
+        refuse(option, text, "a share such as 1% or 0.01, 100% at most");
+    return share;
+}
+
 float parse_shutter_s(const std::string& option, const std::string& text) {
     constexpr float shortest_s = 1e-9f, longest_s = 1e9f;
     const auto parts = split(text, '/');

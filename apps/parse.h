@@ -29,6 +29,8 @@ namespace petzval {
 [[nodiscard]] V2i parse_pixel(const std::string& option, const std::string& text);
 /// "90", "90s", "1.5m", "2h": seconds above 0.
 [[nodiscard]] double parse_duration_s(const std::string& option, const std::string& text);
+/// "1%" or "0.01": a share above 0, 1 at most.
+[[nodiscard]] double parse_share(const std::string& option, const std::string& text);
 /// "0.01" or "1/100": seconds above 0.
 [[nodiscard]] float parse_shutter_s(const std::string& option, const std::string& text);
 /// "auto", "1.5", "1.5m" (metres above 0) or "x,y" (a pixel of the frame).

@@ -11,6 +11,7 @@
 #include "apps/render_options.h"
 #include "integrator/executor.h"
 #include "io/develop.h"
+#include "io/plan.h"
 #include "io/stats_file.h"
 
 namespace petzval {
@@ -55,7 +56,8 @@ int render_command(RenderOptions& o) {
     flush_denormals();
     TbbExecutor executor(o.threads);
     const Notice notice = notice_to_stderr(o);
-    const Session session = executor.inside([&] { return open_session(o.scene, notice); });
+    const Session session =
+        open_planned({o.scene, o.job, o.path, frame.tolerance}, executor, notice);
     o.path.backdrop = session.backdrop;
     o.job.observer = session.observer;
     Film film(o.scene.size, frame.crop, frame.aovs, o.scene.spectral.bins);

@@ -20,8 +20,16 @@ constexpr uint32_t kDefaultSpp = 64;
 
 constexpr double kMost = 1e6;  ///< keeps every product of two numbers a float
 
-void add_frame_options(CLI::App& app, RenderOptions& o) {
+void add_scene_options(CLI::App& app, RenderOptions& o) {
+    app.add_option("scene", o.scene.scene, "glTF scene, .gltf or .glb")->required();
     app.add_option("--size", o.size, "WIDTHxHEIGHT in pixels (default 1280x720)");
+    app.add_option("--tolerance", o.tolerance,
+                   "error that what is chosen for you may bring: 1% (default) or 0.01");
+    app.add_option("--threads", o.threads, "default: one for each core")
+        ->check(whole_number_between(1, 1024));
+}
+
+void add_frame_options(CLI::App& app, RenderOptions& o) {
     app.add_option("--crop", o.crop, "x,y,width,height: only these pixels of the full frame");
     app.add_option("--spp", o.spp, "samples of each pixel (default 64)")
         ->check(whole_number_between(1, kMostSamples));
@@ -29,8 +37,6 @@ void add_frame_options(CLI::App& app, RenderOptions& o) {
                    "render for this long: 60s, 10m, 1h; with --spp whichever ends first");
     app.add_option("--seed", o.job.seed, "another seed, another noise")
         ->check(whole_number_between(0, std::numeric_limits<uint32_t>::max()));
-    app.add_option("--threads", o.threads, "default: one for each core")
-        ->check(whole_number_between(1, 1024));
 }
 
 void add_sampling_options(CLI::App& app, RenderOptions& o) {
@@ -140,9 +146,8 @@ void resolve_background(const std::string& text, SceneRequest& scene) {
     scene.background = Rgb(v[0], v[1], v[2]);
 }
 
-void add_render_options(CLI::App& app, RenderOptions& o) {
-    app.add_option("scene", o.scene.scene, "glTF scene, .gltf or .glb")->required();
-    add_frame_options(app, o);
+void add_plan_options(CLI::App& app, RenderOptions& o) {
+    add_scene_options(app, o);
     add_sampling_options(app, o);
     add_camera_options(app, o.camera);
     add_light_options(app, o.scene, o.background);
@@ -150,6 +155,11 @@ void add_render_options(CLI::App& app, RenderOptions& o) {
                  "the sky lights the scene but is not seen: alpha 0")
         ->group("Light");
     add_spectral_options(app, o.spectral);
+}
+
+void add_render_options(CLI::App& app, RenderOptions& o) {
+    add_frame_options(app, o);
+    add_plan_options(app, o);
     add_output_options(app, o);
 }
 
@@ -159,14 +169,15 @@ RenderFrame resolve(RenderOptions& o) {
     resolve(o.spectral);
     s.spectral = o.spectral.request;
     const auto is_exr = [](const auto& path) { return picture_format(path) == PictureFormat::Exr; };
-    if (s.spectral.bins && std::none_of(o.outputs.begin(), o.outputs.end(), is_exr))
+    if (s.spectral.bins && !o.outputs.empty() &&
+        std::none_of(o.outputs.begin(), o.outputs.end(), is_exr))
         throw CLI::ValidationError("--bins", "needs an output that keeps them: -o FILE.exr");
     s.camera = resolve(o.camera, s.size);
     resolve_job(o);
     resolve_background(o.background, s);
     if (o.stats && std::find(o.outputs.begin(), o.outputs.end(), *o.stats) != o.outputs.end())
         throw CLI::ValidationError("--stats", "would overwrite the picture");
-    RenderFrame frame{{0, 0, s.size.x, s.size.y}, {}};
+    RenderFrame frame{{0, 0, s.size.x, s.size.y}, {}, parse_share("--tolerance", o.tolerance)};
     if (!o.crop.empty()) frame.crop = parse_crop("--crop", o.crop, s.size);
     if (!o.aovs.empty()) frame.aovs = parse_aovs("--aov", o.aovs);
     require_memory(frame, s.spectral.bins);

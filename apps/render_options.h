@@ -32,7 +32,7 @@ struct RenderOptions {
     CameraOptions camera;
     std::vector<std::filesystem::path> outputs;
     std::optional<std::filesystem::path> stats;
-    std::string size = "1280x720", crop, time, background, aovs;
+    std::string size = "1280x720", crop, time, background, aovs, tolerance = "1%";
     std::optional<uint32_t> spp;
     int threads = 0;  ///< 0: one for each core
     RenderJob job;
@@ -48,10 +48,14 @@ struct RenderOptions {
 struct RenderFrame {
     Rect crop;
     std::vector<Aov> aovs;
+    double tolerance = 0;
 };
 
 /// Declares the options; they write to the struct, which must outlive the parsing.
 void add_render_options(CLI::App&, RenderOptions&);
+
+/// The same for petzval plan: those that a prediction depends on.
+void add_plan_options(CLI::App&, RenderOptions&);
 
 /// Declares the options of a scene's light; they write to the arguments, which must outlive the
 /// parsing. The text becomes a value in resolve_background().

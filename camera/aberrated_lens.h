@@ -17,8 +17,8 @@ struct AberratedLens {
     double focus_m = 1;     ///< axial distance; may be infinite
     float yfov_rad = 0.7f;  ///< full vertical angle, seen from the lens's centre
     float aspect = 1.5f;    ///< width / height of the film
-    Chroma chroma = Chroma::Auto;
-    float tolerance_rad = 0;  ///< Auto: how far apart directions may be, seen from the lens
+    Chroma chroma = Chroma::Tolerance;
+    float tolerance_rad = 0;  ///< Tolerance: how far apart directions may be, seen from the lens
     float exposure = 1.f;     ///< factor on every weight
 };
 

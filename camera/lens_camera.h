@@ -34,9 +34,9 @@ struct LensCameraInput {
     double film_mm = 0;  ///< z of the film, behind the lens
     double film_width_mm = 36, film_height_mm = 24;
     double entrance_pupil_mm = 0;  ///< z of what stands at to_world's origin
-    Chroma chroma = Chroma::Auto;
+    Chroma chroma = Chroma::Tolerance;
     float focus_m = 1;        ///< where wavelengths are compared, along the axis
-    float tolerance_rad = 0;  ///< Auto: how far apart directions may be, seen from the lens
+    float tolerance_rad = 0;  ///< Tolerance: how far apart directions may be, seen from the lens
     Coating coating = Coating::Ideal;
     March march = March::Float;  ///< of sample()
 };

@@ -29,8 +29,9 @@ void describe_glass(const CameraReport& c, PictureLayout& layout) {
     m.emplace_back("petzval:coating", word_of(c.asked.coating));
     m.emplace_back("petzval:march", word_of(c.asked.march));
     m.emplace_back("petzval:fit", word_of(c.asked.fit));
-    m.emplace_back("petzval:chroma", word_of(c.asked.chroma));
-    if (c.asked.chroma == Chroma::Auto)
+    const Chroma chroma = c.asked.chroma.value_or(Chroma::Tolerance);
+    m.emplace_back("petzval:chroma", word_of(chroma));
+    if (chroma == Chroma::Tolerance)
         m.emplace_back("petzval:chromaTolerance_px", c.asked.chroma_tolerance_px);
 }
 

@@ -15,7 +15,7 @@ using Words = std::vector<std::pair<std::string, T>>;
 
 /// Every word of a choice; the argument only says which choice.
 [[nodiscard]] inline Words<Chroma> words_of(Chroma) {
-    return {{"auto", Chroma::Auto},
+    return {{"tolerance", Chroma::Tolerance},
             {"shared", Chroma::Shared},
             {"split", Chroma::Split},
             {"single", Chroma::Single},

@@ -11,6 +11,7 @@
 #include "io/camera_words.h"
 #include "io/error.h"
 #include "io/image.h"
+#include "io/simpler_camera.h"
 
 namespace petzval {
 namespace {
@@ -29,13 +30,7 @@ bool is_prescription(const CameraRequest& camera) {
 
 Found look(const SceneRequest& request, const OpenSession& open) {
     const Session session = open(request);
-    Found found{request, session.camera_report, session.scene->lights.size()};
-    if (session.camera_report.orthographic) return found;
-    found.request.camera = session.camera_report.asked;
-    // So that all methods are sharp at one distance.
-    if (found.report.focus_m > 0 && !found.request.camera.film_distance_mm)
-        found.request.camera.focus = FocusDistance{found.report.focus_m};
-    return found;
+    return {settled(session), session.camera_report, session.scene->lights.size()};
 }
 
 /// Collects the methods of one case.
@@ -86,34 +81,6 @@ SceneRequest with_lens(const Found& found, std::vector<std::string>& remarks) {
     return request;
 }
 
-/// The angle of view, in degrees, at which a pinhole in the entrance pupil sees the plane of focus
-/// as the lens does at half the height of the film: a lens that is focused near sees less than its
-/// focal length says.
-float fov_at_focus_deg(const Session& lens) {
-    const CameraReport& report = lens.camera_report;
-    const V3f axis = (report.target - report.eye).normalized();
-    const Bands bands = Observer().draw(0.5f);
-    const auto mean_on_plane = [&](float film_y) {
-        V3d sum(0);
-        double weight = 0;
-        for (uint32_t i = 0; i < 1024; ++i) {
-            const Sampler sampler(SamplerKind::Owen, 0, {0, 0, i});
-            const CameraSample seen = lens.camera->sample({{0.5f, film_y}, sampler}, bands);
-            for (int k = 0; k < seen.count; ++k) {
-                const Ray& ray = seen.path[static_cast<size_t>(k)].ray;
-                const float w = hsum(seen.path[static_cast<size_t>(k)].weight);
-                const float t = (report.focus_m - (ray.origin - report.eye).dot(axis)) /
-                                ray.direction.dot(axis);
-                sum += V3d(ray.origin + t * ray.direction) * double(w);
-                weight += double(w);
-            }
-        }
-        return sum / weight;
-    };
-    const double height_m = (mean_on_plane(0.25f) - mean_on_plane(0.75f)).length();
-    return static_cast<float>(2 * std::atan(height_m / double(report.focus_m)) * 180 / M_PI);
-}
-
 ChartCase camera_case(const Found& found, const RenderJob& job, const OpenSession& open) {
     Cases cases(ChartAxis::Camera, job, "camera",
                 "models of the camera against its lens (a bias is their point)");
@@ -122,32 +89,19 @@ ChartCase camera_case(const Found& found, const RenderJob& job, const OpenSessio
     const Session session = open(lens);
     const CameraReport& report = session.camera_report;
     lens.camera.focus = FocusDistance{report.focus_m};
-    const float fov_deg = fov_at_focus_deg(session);
+    const SceneRequest thin = thin_like(lens, session);
     cases.remark(remarks);
     cases.remark(
         fmt::format("Pinhole, thin and singlet stand in the entrance pupil of the lens, "
                     "see {:.4g} degrees as it does when it is focused, and have its iris",
-                    fov_deg));
-
-    SceneRequest thin = lens;
-    thin.camera.lens = "thin";
-    thin.camera.fit = Fit::Lens;
-    thin.camera.fov_deg = fov_deg;
-    thin.camera.fstop = std::nullopt;
-    thin.camera.lens_radius_m = report.lens_radius_m;
-    thin.camera.sensor_mm = report.sensor_mm;
-    cases.add("pinhole", thin, [](SceneRequest& s, RenderJob&) {
-        s.camera.lens = "pinhole";
-        s.camera.lens_radius_m = std::nullopt;
-        s.camera.focus = std::nullopt;
-        s.camera.aperture = std::nullopt;
-    });
+                    *thin.camera.fov_deg));
+    cases.add("pinhole", pinhole_like(lens, session), [](SceneRequest&, RenderJob&) {});
     cases.add("thin", thin, [](SceneRequest&, RenderJob&) {});
     cases.add("singlet", thin,
               [](SceneRequest& s, RenderJob&) { s.camera.lens = "singlet:N-BK7"; });
     cases.add("lens one-ray", lens,
               [](SceneRequest& s, RenderJob&) { s.camera.chroma = Chroma::Shared; });
-    cases.add("lens", lens, [](SceneRequest& s, RenderJob&) { s.camera.chroma = Chroma::Auto; });
+    cases.add("lens", lens, [](SceneRequest& s, RenderJob&) { s.camera.chroma = Chroma::Hero; });
     cases.reference("the lens, wavelengths always split, rays followed in doubles", lens,
                     [](SceneRequest& s, RenderJob&) {
                         s.camera.chroma = Chroma::Split;
@@ -166,8 +120,8 @@ ChartCase chroma_case(const Found& found, const RenderJob& job) {
         return [chroma](SceneRequest& s, RenderJob&) { s.camera.chroma = chroma; };
     };
     cases.add("split", lens, with(Chroma::Split));
-    cases.add(fmt::format("auto {:g} px", lens.camera.chroma_tolerance_px), lens,
-              with(Chroma::Auto));
+    cases.add(fmt::format("tolerance {:g} px", lens.camera.chroma_tolerance_px), lens,
+              with(Chroma::Tolerance));
     cases.add("shared", lens, with(Chroma::Shared));
     cases.add("single", lens, with(Chroma::Single));
     cases.add("two-level", lens, with(Chroma::TwoLevel));

@@ -163,7 +163,7 @@ LensSetup set_up_lens(const CameraRequest& asked, const LoadedLens& loaded, cons
                             aperture, 100 * iris.share_cut()));
         LensCameraInput in = input_of(loaded, to_world, std::move(sharp), iris);
         setup.film_mm = in.film_mm;
-        in.chroma = asked.chroma;
+        in.chroma = asked.chroma.value_or(Chroma::Tolerance);
         in.coating = asked.coating;
         in.march = asked.march;
         in.focus_m = focus_m;

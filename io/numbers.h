@@ -13,4 +13,10 @@ namespace petzval {
     return fmt::format("{},{},{}", v[0], v[1], v[2]);
 }
 
+/// A share as a person reads it: "0.43 %", "62 %".
+[[nodiscard]] inline std::string percent(double share) {
+    return share < 0.1 ? fmt::format("{:.2g} %", 100 * share)
+                       : fmt::format("{:.0f} %", 100 * share);
+}
+
 }  // namespace petzval

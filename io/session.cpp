@@ -122,6 +122,9 @@ Session open_session(const SceneRequest& asked,
     SpectralSetup spectra = set_up_spectra(request.spectral, scene, notice);
     session.observer = std::move(spectra.observer);
     session.scale = std::move(spectra.scale);
+    session.dispersive_lens = request.spectral.dispersive_lens;
+    session.depends = std::move(spectra.depends);
+    session.spectral_decision = std::move(spectra.decision);
     session.metadata = describe(request);
     session.metadata.insert(session.metadata.end(), spectra.metadata.begin(),
                             spectra.metadata.end());

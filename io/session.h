@@ -45,7 +45,10 @@ struct Session {
     std::optional<Rgb> background;  ///< as asked, or what a dark scene gets
     std::optional<Rgb> backdrop;    ///< shown behind the scene in place of the environment
     uint64_t scene_hash = 0;
-    std::string scale;  ///< what RGB 1 means
+    std::string scale;                 ///< what RGB 1 means
+    std::string dispersive_lens;       ///< name of one that sends wavelengths different ways
+    std::vector<std::string> depends;  ///< on wavelength: what RGB cannot tell, in phrases
+    std::string spectral_decision;     ///< what `notice` was told of it
     /// What else the pixels follow from, for the picture's metadata.
     std::vector<std::pair<std::string, std::string>> metadata;
     double load_s = 0, bvh_s = 0;

@@ -26,40 +26,39 @@ bool is(const std::string& name, std::string_view usual) {
     return lower(name) == usual;
 }
 
-// What of request and scene only wavelengths can show.
-std::vector<std::string> reasons(const SpectralRequest& request, const Scene& scene) {
+std::vector<std::string> wishes(const SpectralRequest& request) {
     std::vector<std::string> found;
     if (request.bins) found.emplace_back("--bins asks for spectra");
     if (!is(request.illuminant, kUsualIlluminant))
         found.push_back(fmt::format("--illuminant is {}", request.illuminant));
     if (!is(request.response, kUsualResponse))
         found.push_back(fmt::format("--response is {}", request.response));
+    return found;
+}
+
+// What of request and scene only wavelengths can show.
+std::vector<std::string> reasons(const SpectralRequest& request, const Scene& scene) {
+    std::vector<std::string> found = wishes(request);
     if (!request.dispersive_lens.empty())
         found.push_back(fmt::format("lens {} disperses", request.dispersive_lens));
     for (std::string& reason : reasons_for_wavelengths(scene)) found.push_back(std::move(reason));
     return found;
 }
 
-bool decide(const SpectralRequest& request, const Scene& scene, const Notice& notice) {
-    const std::vector<std::string> why = reasons(request, scene);
-    const std::string because = fmt::format("{}", fmt::join(why, "; "));
-    switch (request.mode) {
-        case SpectralMode::Auto:
-            if (why.empty()) {
-                notice("spectral: rgb, as nothing here depends on wavelength");
-                return false;
-            }
-            notice("spectral: hero wavelengths, as " + because);
-            return true;
-        case SpectralMode::Rgb:
-            notice("spectral: rgb, as --spectral says");
-            if (!why.empty()) notice("warning: --spectral rgb cannot show that " + because);
-            return false;
-        case SpectralMode::Hero:
-            notice("spectral: hero wavelengths, as --spectral says");
-            return true;
-    }
-    return false;
+// Whether paths carry wavelengths; fills in the setup's decision and its grounds.
+bool decide(const SpectralRequest& request, const Scene& scene, const Notice& notice,
+            SpectralSetup& setup) {
+    setup.depends = reasons(request, scene);
+    const bool depends = !setup.depends.empty(), chosen = request.mode == SpectralMode::Auto;
+    const bool hero = chosen ? depends : request.mode == SpectralMode::Hero;
+    const std::string what = fmt::format("{}", fmt::join(setup.depends, "; "));
+    std::string because = request.because.empty() ? "--spectral says" : request.because;
+    if (chosen) because = depends ? what : "nothing here depends on wavelength";
+    setup.decision = fmt::format("spectral: {}, as {}", hero ? "hero wavelengths" : "rgb", because);
+    notice(setup.decision);
+    if (!hero && depends && request.because.empty())
+        notice("warning: --spectral rgb cannot show that " + what);
+    return hero;
 }
 
 void warn_of_glasses(const SpectralRequest& request, const Scene& scene, const Notice& notice) {
@@ -104,6 +103,10 @@ Matrix3 fitted(const SpectralRequest& request, const ObserverInput& in, const Ma
 
 }  // namespace
 
+bool asks_for_wavelengths(const SpectralRequest& request) {
+    return request.mode == SpectralMode::Hero || !wishes(request).empty();
+}
+
 SpectralSetup set_up_spectra(const SpectralRequest& request, const Scene& scene,
                              const Notice& notice) {
     SpectralSetup setup;
@@ -111,7 +114,7 @@ SpectralSetup set_up_spectra(const SpectralRequest& request, const Scene& scene,
     // Names and files are looked at in any mode: a slip of the pen must not pass for a choice.
     const SpectrumTable white = find_illuminant(request.illuminant);
     const auto response = find_response(request.response);
-    if (!decide(request, scene, notice)) {
+    if (!decide(request, scene, notice, setup)) {
         setup.metadata = {{"petzval:spectral", "rgb"}};
         return setup;
     }

@@ -22,11 +22,18 @@ struct SpectralRequest {
     std::string illuminant = "d65", response = "cie1931";  ///< names, or CSV files
     WhiteBalance white_balance = WhiteBalance::None;
     std::string dispersive_lens;  ///< its name, or nothing
+    /// Of a mode that is not Auto: why, where a plan chose it; else the user did.
+    std::string because;
 };
+
+/// Whether the request itself, whatever the scene, asks for more than RGB.
+[[nodiscard]] bool asks_for_wavelengths(const SpectralRequest&);
 
 struct SpectralSetup {
     Observer observer;
-    std::string scale;  ///< what RGB 1 means
+    std::string scale;                 ///< what RGB 1 means
+    std::string decision;              ///< what `notice` was told of it
+    std::vector<std::string> depends;  ///< phrases for what RGB cannot tell
     /// What the pixels follow from, for the picture's metadata.
     std::vector<std::pair<std::string, std::string>> metadata;
 };

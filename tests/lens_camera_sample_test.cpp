@@ -39,7 +39,7 @@ TEST(LensCameraSample, RaysLeaveThePupilTowardsWhatIsSeenThere) {
 TEST(LensCameraSample, LanesOfPathsPartitionThoseThatPass) {
     const Bands bands = four_wavelengths();
     for (const std::string& name : {kTakumar, kFisheye})
-        for (const Chroma chroma : {Chroma::Auto, Chroma::Shared, Chroma::Split, Chroma::Single}) {
+        for (const Chroma chroma : {Chroma::Tolerance, Chroma::Shared, Chroma::Split, Chroma::Single}) {
             LensCameraInput in = input_of(name, chroma);
             in.tolerance_rad = 5e-5f;
             const LensCamera camera(in);
@@ -76,7 +76,7 @@ TEST(LensCameraSample, LanesOfPathsPartitionThoseThatPass) {
             if (chroma == Chroma::Split) {
                 EXPECT_GT(counts[4], 1000) << name;
             }
-            if (chroma == Chroma::Auto) {
+            if (chroma == Chroma::Tolerance) {
                 EXPECT_GT(
                     std::min(counts[1] + counts[2] + counts[3], counts[2] + counts[3] + counts[4]),
                     100)
@@ -130,7 +130,7 @@ TEST(LensCameraSample, AutoSharesWhatMeetsOnThePlaneOfFocus) {
         in.focus_m = 0.15f;
         in.tolerance_rad = 3e-4f;
         const LensCamera split(in);
-        in.chroma = Chroma::Auto;
+        in.chroma = Chroma::Tolerance;
         const LensCamera automatic(in);
         test::Random random(8);
         int shared = 0, parted = 0, backwards = 0;

@@ -153,7 +153,7 @@ int run(int argc, char** argv) {
     strategies.push_back({"two-level", Chroma::TwoLevel});
     strategies.push_back({"hero", Chroma::Hero});
     for (const float px : {0.03f, 0.1f, 0.3f, 1.f})
-        strategies.push_back({fmt::format("auto {}", px), Chroma::Auto, px});
+        strategies.push_back({fmt::format("tolerance {}", px), Chroma::Tolerance, px});
     for (Strategy& s : strategies) {
         camera.chroma = s.chroma;
         camera.chroma_tolerance_px = s.tolerance_px;

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// petzval plan
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace petzval {
+
+/// Adds the subcommand; its callback prints to stdout how a scene is best rendered.
+void add_plan_command(CLI::App&);
+
+}  // namespace petzval

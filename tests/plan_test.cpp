@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a pilot finds, what a plan makes of it, and what petzval plan and render say.
+#include "io/plan.h"
+
+#include <cmath>
+
+#include "io/image_diff.h"
+#include "io/parted_rays.h"
+#include "io/plan_comparison.h"
+#include "tests/support/cli_spectral.h"
+#include "tests/support/statistics.h"
+
+namespace petzval {
+namespace {
+
+const auto kSilent = [](const std::string&) {};
+const std::string kFirstLight = PETZVAL_ASSETS "/scenes/first_light.glb",
+                  kOrnaments = PETZVAL_ASSETS "/scenes/ornaments.glb";
+
+class Plans : public CliSpectral {
+  protected:
+    TbbExecutor executor_{2};
+
+    [[nodiscard]] SceneRequest request(const std::string& scene, V2i size) const {
+        SceneRequest r;
+        r.scene = scene;
+        r.size = size;
+        return r;
+    }
+    /// The built-in scene through a lens.
+    [[nodiscard]] SceneRequest tabletop(V2i size, const char* lens = "takumar-50mm-f1.2") const {
+        SceneRequest r = request(kFirstLight, size);
+        r.camera.lens = lens;
+        r.camera.focus = FocusDistance{2};
+        return r;
+    }
+    [[nodiscard]] std::unique_ptr<PilotModel> model(const Pilot& pilot,
+                                                    const SceneRequest& r) const {
+        return pilot.model(open_session(r, kSilent), RenderJob(), PathOptions());
+    }
+    [[nodiscard]] static SceneRequest with(SceneRequest r, Chroma chroma) {
+        r.spectral.mode = SpectralMode::Hero;
+        r.camera.chroma = chroma;
+        return r;
+    }
+    /// petzval plan with small settings where the words have none of their own; must succeed.
+    [[nodiscard]] json planned(Words words) {
+        words.insert(words.begin(), {"plan", scene_, "--json", "--quiet", "--threads", "2"});
+        if (std::find(words.begin(), words.end(), "--size") == words.end())
+            words.insert(words.end(), {"--size", "32x18"});
+        const Finished run = run_petzval(words);
+        EXPECT_EQ(run.exit_code, 0) << run.err;
+        EXPECT_EQ(run.err, "");
+        return json::parse(run.out, nullptr, false);
+    }
+};
+
+// Nothing but a sky: a picture without noise, whose error is known to the last digit.
+TEST_F(Plans, APilotFindsADifferenceThatIsKnown) {
+    TinyGltf nothing;
+    add_perspective(nothing, "wide", 1.f);
+    use(nothing);
+    SceneRequest one = request(scene_, {64, 36}), more = one;
+    one.background = Rgb(1, 1, 1);
+    more.background = Rgb(1.02f, 1, 1);
+    const Pilot pilot({64, 36}, 100, executor_);
+    EXPECT_NEAR(double(pilot.pixels()), 100, 10);
+    const auto a = model(pilot, more), b = model(pilot, one);
+    pilot.look(*a, 4);
+    pilot.look(*b, 4);
+    const Estimate found = pilot.square({{a.get(), 1}, {b.get(), -1}}, *b);
+    EXPECT_NEAR(found.mean, 0.02 * 0.02 / 1.01 / 3, 1e-9);
+    EXPECT_NEAR(found.error, 0, 1e-9);
+    EXPECT_NEAR(pilot.variance(*a, *b).mean, 0, 1e-12);
+}
+
+// A white lamp is white in RGB and in wavelengths, which are noisy: the square of the difference is
+// 0 but for the estimate's own error. The mean of squares is not.
+TEST_F(Plans, NoiseIsNoBias) {
+    use(lamp());
+    SceneRequest rgb = request(scene_, {64, 36}), hero = rgb;
+    hero.spectral.mode = SpectralMode::Hero;
+    const Pilot pilot({64, 36}, 600, executor_);
+    const auto a = model(pilot, hero), b = model(pilot, rgb);
+    pilot.look(*a, 4);
+    pilot.look(*b, 4);
+    const Estimate found = pilot.square({{a.get(), 1}, {b.get(), -1}}, *b);
+    EXPECT_TRUE(test::z_test(found.mean, found.error, 0)) << found.mean << ' ' << found.error;
+    EXPECT_GT(pilot.variance(*a, *b).mean, 10 * found.error);
+    EXPECT_NEAR(pilot.variance(*b, *b).mean, 0, 1e-12);
+}
+
+// Pixels that differ by chance only: a pilot's variance is that of the same number of samples
+// anywhere, and falls in proportion where points are independent.
+TEST_F(Plans, VarianceIsThatOfALook) {
+    const Pilot pilot({64, 36}, 600, executor_);
+    RenderJob job;
+    job.sampler = SamplerKind::Independent;
+    const auto a =
+        pilot.model(open_session(request(scene_, {64, 36}), kSilent), job, PathOptions());
+    pilot.look(*a, 8);
+    const Estimate eight = pilot.variance(*a, *a);
+    pilot.look(*a, 32);
+    const Estimate all = pilot.variance(*a, *a);
+    EXPECT_TRUE(test::z_test(eight.mean - 4 * all.mean, std::hypot(eight.error, 4 * all.error), 0))
+        << eight.mean << ' ' << all.mean;
+    EXPECT_GT(eight.mean, 3 * eight.error) << "and there is some";
+}
+
+TEST_F(Plans, SpreadIsInPixelsAndGrowsWithTheFactor) {
+    const SceneRequest narrow = tabletop({100, 60});
+    const Session split = open_session(with(narrow, Chroma::Split), kSilent);
+    const Session shared = open_session(with(narrow, Chroma::Shared), kSilent, &split);
+    const double once = spread_px(split, shared, {100, 60});
+    EXPECT_NEAR(spread_px(split, shared, {400, 240}), 4 * once, 0.02 * once);
+    EXPECT_NEAR(spread_px(shared, shared, {100, 60}), 0, 1e-4 * once);
+    Session further = open_session(with(narrow, Chroma::Split), kSilent, &split);
+    further.camera =
+        parted_further(std::move(further.camera),
+                       open_session(with(narrow, Chroma::Shared), kSilent, &split).camera, 3.f);
+    EXPECT_NEAR(spread_px(further, shared, {100, 60}), 3 * once, 0.02 * once);
+}
+
+// Parting wavelengths by half a pixel and dividing what comes of it, against the lens as it is on
+// other pixels with other seeds and many samples: both estimates agree.
+TEST_F(Plans, PartingFurtherFindsTheSameErrorWithLessNoise) {
+    SceneRequest scene = tabletop({160, 90});
+    scene.scene = kOrnaments;
+    const PlanRequest request{scene, {}, {}, 0.05};
+    const Session first = open_session(scene, kSilent);
+    PlanComparison compared(request, first, PlanOpen(scene, first), 512, executor_);
+    compared.add_shared();
+    compared.look(150'000, true);
+    const PlanCandidate shared = compared.candidates().front();
+    EXPECT_GT(compared.spread(), 0.02);
+    EXPECT_LT(compared.spread(), 0.1);
+
+    const Pilot pilot(scene.size, 512, executor_, 1);
+    const auto one = model(pilot, with(scene, Chroma::Shared)),
+               split = model(pilot, with(scene, Chroma::Split));
+    pilot.look(*one, 32);
+    pilot.look(*split, 32);
+    const Estimate plain = pilot.square({{one.get(), 1}, {split.get(), -1}}, *split);
+    EXPECT_TRUE(test::z_test(shared.square_bias.mean - plain.mean,
+                             std::hypot(shared.square_bias.error, plain.error), 0))
+        << shared.square_bias.mean << ' ' << plain.mean << ' ' << plain.error;
+    EXPECT_LT(shared.square_bias.error, plain.error);
+}
+
+// The fixed sample of tests/bench/plan_check: predictions hold on other pixels and seeds.
+TEST_F(Plans, PredictionsHoldAndAreNotThreeTimesTooCareful) {
+    constexpr double kTolerance = 0.1;
+    SceneRequest scene = tabletop({160, 90}, "cooke-triplet-50mm-f5");
+    scene.scene = kOrnaments;
+    const Plan plan = make_plan({scene, {}, {}, kTolerance}, executor_, kSilent, 1e6);
+    const Session first = open_session(scene, kSilent);
+    const Pilot pilot(scene.size, 512, executor_, 1);
+    const auto full = model(pilot, plan.candidates.back().scene);
+    const auto samples = static_cast<uint32_t>(plan.samples);
+    ASSERT_LT(samples, 400u);
+    pilot.look(*full, samples);
+    const auto holds = [&](double predicted, double mean, double error) {
+        const double square = predicted * predicted;
+        return square >= mean - 1.645 * error &&
+               (predicted <= kTolerance / 4 || square <= 9 * (std::max(mean, 0.) + 1.645 * error));
+    };
+    for (const PlanCandidate& c : plan.candidates) {
+        if (c.name == "split" || c.name == "tolerance") continue;
+        const auto simpler = model(pilot, c.scene);
+        pilot.look(*simpler, samples);
+        const Estimate bias = pilot.square({{simpler.get(), 1}, {full.get(), -1}}, *full);
+        EXPECT_TRUE(holds(c.predicted(), bias.mean, bias.error))
+            << c.name << ' ' << c.predicted() << ' ' << bias.mean << ' ' << bias.error;
+        if (c.name != plan.chosen) continue;
+        const Estimate noise = pilot.variance(*simpler, *full);
+        EXPECT_TRUE(
+            holds(plan.error(), bias.mean + noise.mean, std::hypot(bias.error, noise.error)))
+            << plan.error() << ' ' << bias.mean << ' ' << noise.mean;
+    }
+    EXPECT_NEAR(plan.error(), kTolerance, 1e-3);
+}
+
+// Far away nothing is sharper or blurrier than a pinhole shows it; near, everything is.
+TEST_F(Plans, APinholeDoesWhereTheBlurIsSmall) {
+    EXPECT_EQ(planned({"--fstop", "20000", "--focus", "2"})["camera"]["chosen"], "pinhole");
+    const json near = planned({"--fstop", "0.5", "--focus", "0.1", "--focal-length", "50"});
+    EXPECT_EQ(near["camera"]["chosen"], "thin");
+    EXPECT_NE(near["camera"]["reason"].get<std::string>().find("pinhole would be off by"),
+              std::string::npos);
+}
+
+TEST_F(Plans, ReasonsAreGivenInALineEach) {
+    json plan = planned({});
+    EXPECT_EQ(plan["camera"]["reason"], "nothing has an iris");
+    EXPECT_EQ(plan["spectral"]["chosen"], "rgb");
+    EXPECT_EQ(plan["spectral"]["reason"], "nothing depends on wavelength");
+    EXPECT_EQ(plan["chroma"]["reason"], "no lens parts wavelengths");
+    EXPECT_TRUE(plan["chroma"]["predicted_error"].is_null());
+    plan = planned({"--spectral", "hero"});
+    EXPECT_EQ(plan["spectral"]["chosen"], "hero");
+    EXPECT_EQ(plan["spectral"]["reason"], "it was asked for");
+    plan = planned({"--lens", "double-gauss-100mm-f2", "--focus", "2", "--tolerance", "20%"});
+    EXPECT_EQ(plan["camera"]["chosen"], "double-gauss-100mm-f2");
+    const auto chroma = plan["chroma"]["reason"].get<std::string>();
+    EXPECT_TRUE(chroma.starts_with("dispersion of double-gauss-100mm-f2 spreads 0.0")) << chroma;
+    EXPECT_NE(chroma.find(" px: one ray for all wavelengths, off by "), std::string::npos);
+    EXPECT_EQ(plan["chroma"]["chosen"], "shared");
+    plan = planned({"--lens", "double-gauss-100mm-f2", "--focus", "2", "--chroma", "split"});
+    EXPECT_EQ(plan["chroma"]["chosen"], "split");
+    EXPECT_EQ(plan["chroma"]["reason"], "it was asked for");
+}
+
+TEST_F(Plans, AGemThatDispersesNeedsWavelengths) {
+    scene_ = PETZVAL_ASSETS "/scenes/gem.glb";
+    const json plan = planned({"--tolerance", "20%"});
+    EXPECT_EQ(plan["spectral"]["chosen"], "hero");
+    EXPECT_NE(plan["spectral"]["reason"].get<std::string>().find("rgb would be off by"),
+              std::string::npos)
+        << plan;
+}
+
+// The last line is a command; what it writes is about the tolerance off a long one.
+TEST_F(Plans, TheCommandRenders) {
+    const Words options = {"--fstop", "2", "--focus", "1.5", "--size", "32x18"};
+    scene_ = kOrnaments;
+    Words words = {"plan", scene_, "--tolerance", "8%"};
+    words.insert(words.end(), options.begin(), options.end());
+    const Finished run = run_petzval(words);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    std::istringstream lines(run.out);
+    std::vector<std::string> all;
+    for (std::string line; std::getline(lines, line);) all.push_back(line);
+    ASSERT_EQ(all.size(), 6u) << run.out;
+    for (size_t i = 0; i < 5; ++i)
+        EXPECT_TRUE(
+            all[i].starts_with(Words{"camera ", "spectral ", "chroma ", "samples ", "error "}[i]))
+            << all[i];
+    std::istringstream command(all.back());
+    Words parts;
+    for (std::string word; command >> word;) parts.push_back(word);
+    ASSERT_EQ(parts[0], "petzval");
+    ASSERT_EQ(parts.back(), "out.exr");
+    parts.erase(parts.begin());
+    parts.back() = path("out.exr");
+    parts.emplace_back("--quiet");
+    const Finished rendered = run_petzval(parts);
+    ASSERT_EQ(rendered.exit_code, 0) << rendered.err;
+    Words long_render = options;
+    long_render.insert(long_render.end(), {"--spp", "4096"});
+    const Picture reference = render(long_render, "reference.exr");
+    const double mse = compare(read_picture(path("out.exr")), reference).front().relative_mse;
+    EXPECT_LT(std::sqrt(mse), 1.25 * 0.08) << "one picture, and what is predicted is the mean";
+    EXPECT_GT(std::sqrt(mse), 0.08 / 3);
+}
+
+TEST_F(Plans, NeedlessOptionsAreLeftOutOfTheCommandAndOddWordsQuoted) {
+    scene_ = studio().save_glb(folder_.path / "it's a studio.glb").string();
+    const json plan = planned({"--lens", "double-gauss-100mm-f2", "--fstop", "22", "--focus", "2",
+                               "--tolerance", "100%", "--coating", "mgf2", "--transparent"});
+    ASSERT_EQ(plan["camera"]["chosen"], "pinhole") << plan;
+    const auto command = plan["command"].get<std::string>();
+    EXPECT_NE(command.find("it'\\''s a studio.glb'"), std::string::npos) << command;
+    for (const char* kept : {" --lens pinhole", " --fov ", " --transparent", " --spp "})
+        EXPECT_NE(command.find(kept), std::string::npos) << kept << " in " << command;
+    for (const char* gone :
+         {"--fstop", "--focus", "--coating", "--tolerance", "--json", "--chroma"})
+        EXPECT_EQ(command.find(gone), std::string::npos) << gone << " in " << command;
+}
+
+TEST_F(Plans, ArgumentsThatAreWrongEndWithTwo) {
+    const std::pair<Words, const char*> cases[] = {
+        {{"plan"}, "scene is required"},
+        {{"plan", scene_, "--tolerance", "0"}, "--tolerance: \"0\" is not a share"},
+        {{"plan", scene_, "--tolerance", "101%"}, "is not a share such as 1% or 0.01"},
+        {{"plan", scene_, "--tolerance", "%"}, "is not a share"},
+        {{"plan", scene_, "--lens", "no-such-lens"}, "no-such-lens"},
+        {{"plan", scene_, "--chroma", "some"}, "none of auto, tolerance, shared, split, single"},
+        {{"plan", scene_, "--spp", "4"}, "--spp"}};
+    for (const auto& [words, part] : cases) {
+        const std::string line = error_of(words, 2);
+        EXPECT_NE(line.find(part), std::string::npos) << line;
+    }
+    EXPECT_NE(error_of({"plan", path("none.glb")}, 1).find("none.glb"), std::string::npos);
+}
+
+/// Renders that choose for themselves, of a frame that is large enough for a look.
+class AutoRender : public Plans {
+  protected:
+    AutoRender() { use(lamp()); }
+    [[nodiscard]] static Words lens(Words more = {}) {
+        Words words = {
+            "--lens", "cooke-triplet-50mm-f5", "--focus", "2", "--size", "500x320", "--spp", "1"};
+        words.insert(words.end(), more.begin(), more.end());
+        return words;
+    }
+};
+
+TEST_F(AutoRender, TakesRgbWhereTheLensDoesNotShow) {
+    const std::string text = said(lens({"--tolerance", "5%"}), "auto.exr");
+    EXPECT_NE(text.find("spectral: rgb, as it is off by "), std::string::npos) << text;
+    EXPECT_NE(text.find("though lens cooke-triplet-50mm-f5 disperses\n"), std::string::npos);
+    EXPECT_NE(text.find("chroma: shared, as dispersion of cooke-triplet-50mm-f5 spreads "),
+              std::string::npos)
+        << text;
+    EXPECT_EQ(text.find("hero"), std::string::npos) << text;
+    const Picture picture = read_picture(path("auto.exr"));
+    static_cast<void>(said(lens({"--spectral", "rgb", "--chroma", "shared"}), "asked.exr"));
+    EXPECT_EQ(picture.pixels, read_picture(path("asked.exr")).pixels);
+    EXPECT_NE(file_bytes(path("auto.exr")).find("petzval:plan"), std::string::npos);
+    EXPECT_EQ(file_bytes(path("asked.exr")).find("petzval:plan"), std::string::npos);
+}
+
+TEST_F(AutoRender, KeepsWavelengthsApartWhereTheToleranceIsTight) {
+    const std::string text = said(lens({"--tolerance", "0.001%"}), "auto.exr");
+    EXPECT_NE(text.find("spectral: hero wavelengths, as lens cooke"), std::string::npos) << text;
+    EXPECT_NE(text.find("chroma: tolerance, as dispersion of "), std::string::npos) << text;
+    static_cast<void>(said(lens({"--chroma", "tolerance"}), "asked.exr"));
+    EXPECT_EQ(read_picture(path("auto.exr")).pixels, read_picture(path("asked.exr")).pixels);
+}
+
+// What is decided is a matter of the frame, not of the samples, the seed, the threads or the crop.
+TEST_F(AutoRender, DecidesTheSameForEveryPartOfTheFrame) {
+    const std::string whole = said(lens(), "whole.exr");
+    for (const Words& more :
+         {Words{"--crop", "10,20,3,2"}, Words{"--seed", "7"}, Words{"--threads", "1"}}) {
+        Words words = lens(more);
+        EXPECT_EQ(said(words, "part.exr"), whole) << more[0];
+    }
+    EXPECT_EQ(read_picture(path("part.exr")).pixels, read_picture(path("whole.exr")).pixels);
+}
+
+// No look where there is nothing to decide, for a thumbnail, or where all was asked for.
+TEST_F(AutoRender, LooksOnlyWhereItMust) {
+    const auto looked = [&](const Words& words) {
+        static_cast<void>(said(words));
+        return file_bytes(path("out.exr")).find("petzval:plan") != std::string::npos;
+    };
+    EXPECT_TRUE(looked(lens()));
+    Words small = lens();
+    small[5] = "64x40";
+    EXPECT_FALSE(looked(small));
+    EXPECT_FALSE(looked(lens({"--spectral", "rgb"})));
+    EXPECT_FALSE(looked(lens({"--chroma", "split"})));
+    EXPECT_FALSE(looked(lens({"--chroma-tolerance", "0.2"})));
+    EXPECT_FALSE(looked({"--fstop", "2", "--focus", "2", "--size", "500x320", "--spp", "1"}));
+}
+
+}  // namespace
+}  // namespace petzval

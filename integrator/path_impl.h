@@ -118,7 +118,7 @@ f4 PathTracer<Caster>::direct_light(const Surface& s, const Frame& frame, const 
     if (caster_.has_cutouts()) shadow.coin = sampler.get_bits(Dim::Coverage, 2 * depth + 1);
     ++stats.shadow_rays;
     {
-        const SectionTimer timer(stats, Section::Traversal);
+        const SectionTimer timer(stats, TimedSection::Traversal);
         if (caster_.occluded(shadow)) return f4{};
     }
     f4 radiance = drawn.of_sky ? uplift_radiance(scene_.sky.radiance(light.direction), bands)
@@ -163,7 +163,7 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         if (caster_.has_cutouts()) ray.coin = sampler.get_bits(Dim::Coverage, 2 * depth);
         ++(depth == 0 ? stats.camera_rays : stats.bounce_rays);
         const std::optional<Hit> hit = [&] {
-            const SectionTimer timer(stats, Section::Traversal);
+            const SectionTimer timer(stats, TimedSection::Traversal);
             return caster_.intersect(ray);
         }();
         if (!hit) {
@@ -181,7 +181,7 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         if (medium) throughput *= transmittance(*medium, (s.p - last.p).length(), bands);
         const V3f wo = -ray.direction;
         const MaterialLookups lookups = [&] {
-            const SectionTimer timer(stats, Section::Texture);
+            const SectionTimer timer(stats, TimedSection::Texture);
             return locate_material(scene_, s);
         }();
         // Before the textures are read, so that the wait for them and for the sky's tables is one.
@@ -190,7 +190,7 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         std::optional<DrawnLight> light;
         if (options_.technique != Technique::BsdfOnly) light = draw_light(receiver, u, bands);
         const ShadingInput shading = [&] {
-            const SectionTimer timer(stats, Section::Texture);
+            const SectionTimer timer(stats, TimedSection::Texture);
             return read_material(scene_, s, lookups, wo, bands);
         }();
         out.alpha = 1.f;

@@ -62,7 +62,7 @@ void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& 
     stats.timing = job.timing && (id.index + static_cast<uint32_t>(id.x + 3 * id.y)) % 16 == 0;
     ++stats.samples;
     stats.timed_samples += stats.timing;
-    const SectionTimer whole(stats, Section::Sample);
+    const SectionTimer whole(stats, TimedSection::Sample);
     const uint32_t scramble = id.index % job.scrambles;
     const Sampler sampler(job.sampler,
                           job.scrambles == 1 ? job.seed : scrambled(job.seed, scramble),
@@ -73,7 +73,7 @@ void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& 
     const uint64_t vertices_before = stats.vertices;
 
     const CameraSample seen = [&] {
-        const SectionTimer timer(stats, Section::Camera);
+        const SectionTimer timer(stats, TimedSection::Camera);
         const V2f offset = job.filter.sample(sampler.get2(Dim::Film));
         const V2f size(film.full_size());
         const V2f at = V2f(id.x + 0.5f, id.y + 0.5f) + offset;

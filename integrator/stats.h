@@ -12,7 +12,7 @@
 namespace petzval {
 
 /// Sample is the whole; what the others leave of it is shading.
-enum class Section : uint8_t { Sample, Camera, Traversal, Texture, Count };
+enum class TimedSection : uint8_t { Sample, Camera, Traversal, Texture, Count };
 
 struct PathStats {
     uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0;
@@ -21,7 +21,7 @@ struct PathStats {
     LaneFates<uint64_t> lens_lanes;
     bool timing = false;  ///< the current sample is one of those that are timed
     uint64_t timed_samples = 0, samples = 0;
-    std::array<uint64_t, static_cast<size_t>(Section::Count)> ticks{};
+    std::array<uint64_t, static_cast<size_t>(TimedSection::Count)> ticks{};
 
     PathStats& operator+=(const PathStats& o) {
         camera_rays += o.camera_rays;
@@ -40,7 +40,7 @@ struct PathStats {
 /// Adds the time of its scope to a section, where the current sample is timed.
 class SectionTimer {
   public:
-    SectionTimer(PathStats& stats, Section section)
+    SectionTimer(PathStats& stats, TimedSection section)
         : stats_(stats), section_(section), start_(stats.timing ? __rdtsc() : 0) {}
     ~SectionTimer() {
         if (stats_.timing) stats_.ticks[static_cast<size_t>(section_)] += __rdtsc() - start_;
@@ -50,7 +50,7 @@ class SectionTimer {
 
   private:
     PathStats& stats_;
-    Section section_;
+    TimedSection section_;
     uint64_t start_;
 };
 

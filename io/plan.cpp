@@ -11,6 +11,7 @@
 #include "io/numbers.h"
 #include "io/parted_rays.h"
 #include "io/plan_comparison.h"
+#include "io/simpler_camera.h"
 #include "io/stats_file.h"
 
 namespace petzval {
@@ -23,6 +24,9 @@ constexpr int kPixels = 1024, kFewPixels = 256;
 // Of each look. Many samples of few pixels are better than few of many: what wavelengths and edges
 // do in a pixel evens out faster than in proportion.
 constexpr double kLeastSamples = 4, kEnoughSamples = 16;
+
+// Costs are known no better, and the simpler one is taken.
+constexpr double kAsCheap = 1.05;
 
 const PlanCandidate* find(const Candidates& all, const std::string& name) {
     const auto found = std::find_if(all.begin(), all.end(),
@@ -50,7 +54,7 @@ size_t cheapest(const Candidates& all, double tolerance) {
     const auto cost = [&](const PlanCandidate& c) { return c.samples_for(tolerance) * c.rays; };
     size_t best = all.size() - 1;
     for (size_t i = best; i-- > 0;)
-        if (all[i].inside && cost(all[i]) <= cost(all[best])) best = i;
+        if (all[i].inside && cost(all[i]) <= kAsCheap * cost(all[best])) best = i;
     return best;
 }
 
@@ -227,8 +231,8 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
     if (open.spectral) compared.add_rgb();
     if (open.chroma) {
         compared.add_shared();
-        compared.add_parted("tolerance", Chroma::Tolerance);
         compared.add_unbiased("hero", Chroma::Hero);
+        compared.add_parted("tolerance", Chroma::Tolerance);
     }
     compared.look(most_samples, true);
 

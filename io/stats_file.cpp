@@ -23,13 +23,13 @@ rusage usage() {
 
 // CPU seconds of the render by section: shares of the timed samples, applied to the whole.
 nlohmann::ordered_json sections(const PathStats& stats, double cpu_s) {
-    const auto ticks = [&](Section s) {
+    const auto ticks = [&](TimedSection s) {
         return static_cast<double>(stats.ticks[static_cast<size_t>(s)]);
     };
-    const double whole = ticks(Section::Sample);
+    const double whole = ticks(TimedSection::Sample);
     if (whole <= 0) return nullptr;
-    const double camera = ticks(Section::Camera), traversal = ticks(Section::Traversal),
-                 texture = ticks(Section::Texture);
+    const double camera = ticks(TimedSection::Camera), traversal = ticks(TimedSection::Traversal),
+                 texture = ticks(TimedSection::Texture);
     return {{"camera_s", cpu_s * camera / whole},
             {"traversal_s", cpu_s * traversal / whole},
             {"texture_s", cpu_s * texture / whole},

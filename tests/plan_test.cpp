@@ -177,7 +177,8 @@ TEST_F(Plans, PredictionsHoldAndAreNotThreeTimesTooCareful) {
             holds(plan.error(), bias.mean + noise.mean, std::hypot(bias.error, noise.error)))
             << plan.error() << ' ' << bias.mean << ' ' << noise.mean;
     }
-    EXPECT_NEAR(plan.error(), kTolerance, 1e-3);
+    EXPECT_LE(plan.error(), kTolerance * (1 + 1e-9));
+    EXPECT_GT(plan.error(), 0.7 * kTolerance) << "samples are whole";
 }
 
 // Far away nothing is sharper or blurrier than a pinhole shows it; near, everything is.

@@ -34,8 +34,8 @@ struct Scene {
     }
 };
 
-/// Computes the bounds, says which texture slots share their place, and appends a light for every triangle of an emissive instance and for the
-/// sky where it is not black.
+/// Computes the bounds, says which texture slots share their place, and appends a light for every
+/// triangle of an emissive instance and for the sky where it is not black.
 void finish_scene(Scene&);
 
 /// Three world-space corners of a triangle.

@@ -40,9 +40,12 @@ Sky sky_of(const SceneRequest& request, const std::function<void(const std::stri
 
 std::string word_of(LightChoiceKind kind) {
     switch (kind) {
-        case LightChoiceKind::Power: return "power";
-        case LightChoiceKind::Uniform: return "uniform";
-        case LightChoiceKind::Tree: break;
+        case LightChoiceKind::Power:
+            return "power";
+        case LightChoiceKind::Uniform:
+            return "uniform";
+        case LightChoiceKind::Tree:
+            break;
     }
     return "tree";
 }

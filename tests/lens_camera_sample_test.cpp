@@ -39,7 +39,8 @@ TEST(LensCameraSample, RaysLeaveThePupilTowardsWhatIsSeenThere) {
 TEST(LensCameraSample, LanesOfPathsPartitionThoseThatPass) {
     const Bands bands = four_wavelengths();
     for (const std::string& name : {kTakumar, kFisheye})
-        for (const Chroma chroma : {Chroma::Tolerance, Chroma::Shared, Chroma::Split, Chroma::Single}) {
+        for (const Chroma chroma :
+             {Chroma::Tolerance, Chroma::Shared, Chroma::Split, Chroma::Single}) {
             LensCameraInput in = input_of(name, chroma);
             in.tolerance_rad = 5e-5f;
             const LensCamera camera(in);

@@ -70,7 +70,8 @@ void add_lens_options(CLI::App& app, CameraOptions& o) {
     for (const auto& [word, chroma] : words_of(Chroma())) chromas.emplace_back(word, chroma);
     group(add_choice<std::optional<Chroma>>(
         app, "--chroma", r.chroma, chromas,
-        "wavelengths that leave the lens apart: auto (default: the cheapest within --tolerance), "
+        "wavelengths that leave the lens apart: auto (default: by how far they part, "
+        "docs/plan.md; in charts as tolerance), "
         "shared, tolerance, split, single, two-level, hero"));
     const auto share_within = [&r](float px) {
         r.chroma_tolerance_px = px;

@@ -16,7 +16,8 @@ void add_spectral_options(CLI::App& app, SpectralOptions& o) {
         app, "--spectral", s.mode,
         {{"auto", SpectralMode::Auto}, {"rgb", SpectralMode::Rgb}, {"hero", SpectralMode::Hero}},
         "what a path carries: rgb, four wavelengths (hero), or auto "
-        "(default): wavelengths where something depends on them"));
+        "(default): wavelengths where something depends on them and rgb is not surely within "
+        "--tolerance"));
     group(app.add_option("--bins", o.bins,
                          "FIRST:LAST:WIDTH in nm, as 380:730:10: a spectrum for each pixel of the "
                          "EXR, with its standard error"))

@@ -104,7 +104,7 @@ CameraSample AberratedLensCamera::hero(const FilmPoint& at, const Bands& bands) 
     const V2f stop = in_.iris.sample(at.sampler.get2(Dim::Lens));
     const int lead = pick_lane(bands.on, at.sampler.get1(Dim::LensLane));
     f4 vergence_per_mm{};
-    m4 open = bands.on;
+    f4 open = zero_off(bands.on, splat(1.f));
     for (int lane = 0; lane < 4; ++lane) {
         if (!bands.on[lane]) continue;
         const double n = in_.singlet.glass.index(double(bands.nm[lane]));
@@ -114,7 +114,7 @@ CameraSample AberratedLensCamera::hero(const FilmPoint& at, const Bands& bands) 
     }
     CameraSample out;
     out.exposure = in_.exposure;
-    if (!open[lead]) return out;
+    if (!(open[lead] > 0)) return out;
     const f4 off = vergence_per_mm - splat(vergence_per_mm[lead]);
     const V2f px = 0.5f * at.pixel.frame_px / V2f(tan_half_x_, tan_half_y_);
     const f4 shares =

@@ -14,12 +14,13 @@ namespace petzval {
 /// itself (balance heuristic: Veach 1997, 9.2.3; for wavelengths, Wilkie et al. 2014, "Hero
 /// Wavelength Spectral Sampling", equation 12). The shares add up to the number of lanes that are
 /// on, so that no weight is larger than that. dx_px, dy_px: from the drawn point to where the lane
-/// reaches the film, pixels, y down. open: lanes that are on and that the lens lets through there.
-[[nodiscard]] inline f4 hero_shares(const PixelFilter& pixel, f4 dx_px, f4 dy_px, m4 on, m4 open) {
+/// reaches the film, pixels, y down. open: [0, 1], what iris and rims let through of the lane; as
+/// iris points are drawn in proportion to it, it is a part of the density.
+[[nodiscard]] inline f4 hero_shares(const PixelFilter& pixel, f4 dx_px, f4 dy_px, m4 on, f4 open) {
     f4 value{};
     for (int i = 0; i < 4; ++i)
-        if (on[i] && open[i])
-            value[i] = pixel.filter->value(pixel.offset_px + V2f(dx_px[i], dy_px[i]));
+        if (on[i] && open[i] > 0)
+            value[i] = open[i] * pixel.filter->value(pixel.offset_px + V2f(dx_px[i], dy_px[i]));
     const float sum = hsum(value);
     return sum > 0 ? value * (static_cast<float>(lane_count(on)) / sum) : f4{};
 }

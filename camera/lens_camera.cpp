@@ -249,9 +249,10 @@ CameraSample LensCamera::hero(const FilmPoint& point, V2f film_mm, const Bands& 
     const V2f on_iris = in_.iris.sample(u);
     const V x = ray.origin.x + (S(on_iris.x) - ray.origin.x[lead]);
     const V y = ray.origin.y + (S(on_iris.y) - ray.origin.y[lead]);
-    MaskOf<V> open = petzval::transmitted(in_.iris, x, y) > 0;
-    open &= march<V>(lens, indices, Towards::Film, {lens.stop() + 1, lens.last()}, ray, Clip::Yes,
-                     lose);
+    const V iris = petzval::transmitted(in_.iris, x, y);
+    const MaskOf<V> arrived = march<V>(lens, indices, Towards::Film, {lens.stop() + 1, lens.last()},
+                                       ray, Clip::Yes, lose);
+    const f4 open = lanes_as<f4>(select(arrived, iris, V{}));
     const V to_film =
         (S(in_.film_mm - lens.vertex_mm(ray.counted_from)) - ray.origin.z) / ray.direction.z;
     const V film_x = ray.origin.x + to_film * ray.direction.x;
@@ -261,7 +262,7 @@ CameraSample LensCamera::hero(const FilmPoint& point, V2f film_mm, const Bands& 
         lanes_as<f4>(V((film_x[lead] - film_x) / S(in_.film_width_mm))) * point.pixel.frame_px.x;
     const f4 dy_px =
         lanes_as<f4>(V((film_y - film_y[lead]) / S(in_.film_height_mm))) * point.pixel.frame_px.y;
-    const f4 shares = hero_shares(point.pixel, dx_px, dy_px, bands.on, lanes_as<m4>(open));
+    const f4 shares = hero_shares(point.pixel, dx_px, dy_px, bands.on, open);
     CameraPath& path = out.path[0];
     path.ray = world_ray(drawn.ray, lead);
     // `single` has weighed its one lane for all that are on.

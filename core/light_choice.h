@@ -12,7 +12,8 @@ namespace petzval {
 
 /// Power: in proportion to light_power. Uniform: the same for every light that has power. Tree: in
 /// proportion to what light could do at the receiver, by a LightTree over the lights that stand
-/// somewhere; sky and suns share its first choice, and are chosen among by their illuminance.
+/// somewhere; sky and suns share its first choice by their illuminance, and are chosen among by
+/// power.
 enum class LightChoiceKind { Power, Uniform, Tree };
 
 class LightChoice {

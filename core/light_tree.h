@@ -21,7 +21,7 @@ typedef int32_t m8 __attribute__((vector_size(32)));
 /// A point that light is chosen for.
 struct LightReceiver {
     V3f p;
-    V3f normal;       ///< unit, of shading, on the side of the surface that is looked at
+    V3f normal;       ///< unit, of the triangle, on the side that is looked at
     bool both_sides;  ///< light from behind counts too: the surface transmits
 };
 

@@ -52,7 +52,7 @@ struct CameraRequest {
     std::optional<std::string> aperture;  ///< as parse_aperture reads it
     ApertureScale aperture_scale = ApertureScale::EqualArea;
     std::optional<IrisSampling> iris_sampling;
-    std::optional<Chroma> chroma;  ///< absent: Auto, unless a plan finds what is cheaper
+    std::optional<Chroma> chroma;  ///< absent: Tolerance, unless a plan finds what is cheaper
     float chroma_tolerance_px = 0.1f;
     Coating coating = Coating::Ideal;
     March march = March::Float;

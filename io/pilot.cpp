@@ -46,6 +46,7 @@ PilotModel::PilotModel(Session session, const RenderJob& job, const PathOptions&
       sums_(pixels) {
     job_.sampler = job.sampler;
     job_.filter = job.filter;
+    job_.scrambles = job.scrambles;
     job_.observer = session_.observer;
 }
 

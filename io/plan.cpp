@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "io/camera_words.h"
+#include "io/error.h"
 #include "io/numbers.h"
 #include "io/parted_rays.h"
 #include "io/plan_comparison.h"
@@ -25,6 +26,7 @@ constexpr int kPixels = 1024, kFewPixels = 256;
 // do in a pixel evens out faster than in proportion.
 constexpr double kLeastSamples = 4, kEnoughSamples = 16;
 
+constexpr double kMostPlannedSamples = 1 << 30;
 // Costs are known no better, and the simpler one is taken.
 constexpr double kAsCheap = 1.05;
 
@@ -52,9 +54,11 @@ bool is_camera(const std::string& name) {
 
 size_t cheapest(const Candidates& all, double tolerance) {
     const auto cost = [&](const PlanCandidate& c) { return c.samples_for(tolerance) * c.rays; };
-    size_t best = all.size() - 1;
-    for (size_t i = best; i-- > 0;)
-        if (all[i].inside && cost(all[i]) <= kAsCheap * cost(all[best])) best = i;
+    double least = cost(all.back());
+    for (const PlanCandidate& c : all)
+        if (c.inside) least = std::min(least, cost(c));
+    size_t best = 0;
+    while (!all[best].inside || cost(all[best]) > kAsCheap * least) ++best;
     return best;
 }
 
@@ -192,7 +196,8 @@ struct Parted {
 Parted part_wavelengths(const Session& first, TbbExecutor& executor) {
     SceneRequest scene = settled(first);
     scene.spectral.mode = SpectralMode::Hero;
-    scene.spectral.because = fmt::format("{}", fmt::join(first.depends, "; "));
+    if (first.asked.spectral.mode == SpectralMode::Auto)
+        scene.spectral.because = fmt::format("{}", fmt::join(first.depends, "; "));
     const auto with = [&](Chroma chroma) {
         scene.camera.chroma = chroma;
         return reopened(scene, first, executor);
@@ -201,6 +206,22 @@ Parted part_wavelengths(const Session& first, TbbExecutor& executor) {
     const double spread = spread_px(split, shared, scene.size);
     scene.camera.chroma = spread <= kMostHeroSpread_px ? Chroma::Hero : Chroma::Tolerance;
     return {spread, scene};
+}
+
+// Spectra through a lens: nothing is left out of them, and so chroma is a matter of the spread.
+Plan plan_with_bins(const PlanRequest& request, const Session& first, TbbExecutor& executor,
+                    const Notice& notice, double most_samples) {
+    const Parted parted = part_wavelengths(first, executor);
+    PlanRequest settled = request;
+    settled.scene.camera.chroma = parted.scene.camera.chroma;
+    Plan plan = make_plan(settled, executor, notice, most_samples);
+    for (PlanLine& line : plan.lines)
+        if (line.choice == "chroma" && !is_camera(plan.chosen)) {
+            line.reason = fmt::format("dispersion of {} spreads {:.2g} px", first.dispersive_lens,
+                                      parted.spread_px);
+            plan.options.emplace_back("--chroma", line.chosen);
+        }
+    return plan;
 }
 
 }  // namespace
@@ -223,9 +244,15 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
                double most_samples) {
     std::vector<std::string> said;
     const Session first = open_first(request, executor, said);
+    if (const PlanOpen open(request.scene, first); open.parted && !open.chroma)
+        return plan_with_bins(request, first, executor, notice, most_samples);
     for (const std::string& text : said)
         if (text != first.spectral_decision) notice(text);
     const PlanOpen open(request.scene, first);
+    if (first.camera_report.asked.chroma == Chroma::TwoLevel)
+        throw ArgumentError("--chroma two-level", "",
+                            "learns its probabilities while it renders, which a plan cannot "
+                            "foresee; leave it out");
     PlanComparison compared(request, first, open, kPixels, executor);
     compared.add_simpler_cameras();
     if (open.spectral) compared.add_rgb();
@@ -243,7 +270,15 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
     plan.scene = chosen.scene;
     plan.chosen = chosen.name;
     plan.bias = chosen.predicted();
-    plan.samples = static_cast<uint64_t>(std::ceil(chosen.samples_for(request.tolerance)));
+    const double samples = std::ceil(chosen.samples_for(request.tolerance));
+    if (!(samples <= kMostPlannedSamples))
+        throw ArgumentError(
+            "--tolerance", "",
+            fmt::format("would take {:.2g} samples of each pixel; give a larger one", samples));
+    plan.samples = static_cast<uint64_t>(samples);
+    // Their standard errors come from as many scrambles, each with the same share of the samples.
+    if (request.scene.spectral.bins)
+        plan.samples = (plan.samples + kScrambles - 1) / kScrambles * kScrambles;
     plan.noise = std::sqrt(chosen.variance_with(static_cast<double>(plan.samples)));
     plan.first_noise = std::sqrt(chosen.variance_with(1));
     plan.cpu_s = compared.cpu_s_per_sample(best) * static_cast<double>(plan.samples) *
@@ -288,9 +323,10 @@ Session open_planned(const PlanRequest& request, TbbExecutor& executor, const No
         std::string found = simpler ? at_most(chosen) : off(all.front());
         if (simpler) {
             other = chosen.scene;
-            other->spectral.because = at.chose("rgb")
-                                          ? fmt::format("it is {}, though {}", found, at.depends())
-                                          : at.depends();
+            if (request.scene.spectral.mode == SpectralMode::Auto)
+                other->spectral.because =
+                    at.chose("rgb") ? fmt::format("it is {}, though {}", found, at.depends())
+                                    : at.depends();
         }
         if (open.chroma) {
             found = simpler ? "one ray for all wavelengths, " + found : off(*find(all, "shared"));

@@ -7,7 +7,8 @@ namespace petzval {
 namespace {
 
 // The angle of view, in degrees, at which a pinhole in the entrance pupil sees the plane of focus
-// as the lens does at half the height of the film.
+// as the lens does at half the height of the film; what the lens is said to see where it leaves
+// that dark.
 float fov_at_focus_deg(const Session& lens) {
     const CameraReport& report = lens.camera_report;
     const V3f axis = (report.target - report.eye).normalized();
@@ -30,6 +31,7 @@ float fov_at_focus_deg(const Session& lens) {
         return sum / weight;
     };
     const double height_m = (mean_on_plane(0.25f) - mean_on_plane(0.75f)).length();
+    if (!(height_m > 0)) return report.yfov_deg;
     return static_cast<float>(2 * std::atan(height_m / double(report.focus_m)) * 180 / M_PI);
 }
 

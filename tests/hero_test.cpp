@@ -114,6 +114,22 @@ TEST(Hero, EachLaneHasTheMeanOfSplitPaths) {
                 }
 }
 
+// A mask whose lower half is nearly shut, behind glass that parts the lanes there.
+TEST(Hero, EachLaneHasItsMeanThroughAGreyIris) {
+    Mask mask;
+    mask.width = mask.height = 16;
+    for (int i = 0; i < 256; ++i) mask.texels.push_back(i < 128 ? 1.f : 0.1f);
+    const auto camera = [&](Chroma chroma) {
+        LensCameraInput in = singlet(chroma, 1.68, 1.64, false);
+        in.iris = Iris(mask, 6);
+        return LensCamera(in);
+    };
+    const Filter wide(FilterKind::Gauss, 12.f);
+    EXPECT_GE(
+        least_p(in_pixel(camera(Chroma::Hero), wide, 1), in_pixel(camera(Chroma::Split), wide, 2)),
+        test::sidak());
+}
+
 TEST(Hero, SharedRaysHaveAnotherMean) {
     const auto mean = [](Chroma chroma, uint32_t seed) {
         return in_pixel(LensCamera(singlet(chroma, 1.70, 1.62, true)), filters()[0], seed);
@@ -157,18 +173,19 @@ TEST(Hero, RaysInDoublesAreThoseInFloats) {
 TEST(Hero, SharesAddUpToTheNumberOfLanes) {
     const PixelFilter pixel{&filters()[0], V2f(0.3f, -0.2f), kFrame_px};
     const m4 all{-1, -1, -1, -1}, three{-1, 0, -1, -1};
-    const f4 same = hero_shares(pixel, f4{}, f4{}, all, all);
+    const f4 same = hero_shares(pixel, f4{}, f4{}, all, splat(1));
     for (int i = 0; i < 4; ++i) EXPECT_FLOAT_EQ(same[i], 1);
-    const f4 apart = hero_shares(pixel, f4{0, 0.5f, -0.4f, 9}, f4{0, 0.1f, 0.2f, 0}, three, three);
+    const f4 apart =
+        hero_shares(pixel, f4{0, 0.5f, -0.4f, 9}, f4{0, 0.1f, 0.2f, 0}, three, splat(1));
     EXPECT_FLOAT_EQ(hsum(apart), 3);
     EXPECT_EQ(apart[1], 0) << "is off";
     EXPECT_EQ(apart[3], 0) << "lands beyond the filter";
     const auto value = [](float x, float y) { return filters()[0].value({x, y}); };
     EXPECT_NEAR(apart[2] / apart[0], value(-0.1f, 0) / value(0.3f, -0.2f), 1e-5);
-    const f4 blocked = hero_shares(pixel, f4{}, f4{}, all, three);
+    const f4 blocked = hero_shares(pixel, f4{}, f4{}, all, f4{1, 0, 1, 1});
     EXPECT_EQ(blocked[1], 0);
     EXPECT_FLOAT_EQ(blocked[0], 4.f / 3);
-    EXPECT_EQ(hsum(hero_shares(pixel, splat(9), f4{}, all, all)), 0);
+    EXPECT_EQ(hsum(hero_shares(pixel, splat(9), f4{}, all, splat(1))), 0);
 }
 
 TEST(Hero, WithoutAFilterLanesAreSplit) {

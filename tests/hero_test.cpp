@@ -15,6 +15,8 @@
 namespace petzval {
 namespace {
 
+using test::least_p;
+
 const V2f kFrame_px(48, 32);
 
 Bands four_wavelengths(float u) {
@@ -78,15 +80,6 @@ std::array<test::Moments, 4> in_pixel(const Camera& camera, const Filter& filter
         for (size_t lane = 0; lane < 4; ++lane) out[lane].add(double(sum[int(lane)]));
     }
     return out;
-}
-
-double least_p(const std::array<test::Moments, 4>& a, const std::array<test::Moments, 4>& b) {
-    double least = 1;
-    for (size_t i = 0; i < 4; ++i) {
-        const double error = std::hypot(a[i].standard_error(), b[i].standard_error());
-        least = std::min(least, test::two_sided_p((a[i].mean() - b[i].mean()) / error));
-    }
-    return least;
 }
 
 const std::vector<Filter>& filters() {

@@ -18,6 +18,8 @@
 namespace petzval {
 namespace {
 
+using test::least_p;
+
 const V2i kSize(48, 32);
 const Rect kWhole{0, 0, kSize.x, kSize.y};
 
@@ -106,15 +108,6 @@ std::array<test::Moments, 4> beyond_edge(const Camera& camera, float probability
         for (size_t lane = 0; lane < 4; ++lane) out[lane].add(double(sum[int(lane)]));
     }
     return out;
-}
-
-double least_p(const std::array<test::Moments, 4>& a, const std::array<test::Moments, 4>& b) {
-    double least = 1;
-    for (size_t i = 0; i < 4; ++i) {
-        const double error = std::hypot(a[i].standard_error(), b[i].standard_error());
-        least = std::min(least, test::two_sided_p((a[i].mean() - b[i].mean()) / error));
-    }
-    return least;
 }
 
 // The estimates share their numbers: the errors are overestimates, which the test of power makes

@@ -2,6 +2,8 @@
 // Significance: the few distributions that tests need, and the correction for running many tests.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -72,6 +74,18 @@ class Moments {
   private:
     double count_ = 0, mean_ = 0, squares_ = 0;
 };
+
+/// Least chance, place by place, that two lists of means differ by as much if they estimate the
+/// same.
+template <size_t N>
+[[nodiscard]] double least_p(const std::array<Moments, N>& a, const std::array<Moments, N>& b) {
+    double least = 1;
+    for (size_t i = 0; i < N; ++i) {
+        const double error = std::hypot(a[i].standard_error(), b[i].standard_error());
+        least = std::min(least, two_sided_p((a[i].mean() - b[i].mean()) / error));
+    }
+    return least;
+}
 
 /// Numbers in [0, 1) that are the same on every machine: hashes of a counter.
 class Random {

@@ -215,20 +215,21 @@ CameraSample LensCamera::hero(const FilmPoint& point, V2f film_mm, const Bands& 
     using S = ScalarOf<V>;
     const Lens& lens = *in_.lens;
     const V2f u = point.sampler.get2(Dim::Lens);
-    const float u_lane = point.sampler.get1(Dim::LensLane);
-    const int lead = pick_lane(bands.on, u_lane);
-    const LensDraw<V> drawn = draw<V>(film_mm, u, u_lane, bands, Coating::Ideal, Chroma::Single);
+    const int lead = pick_lane(bands.on, point.sampler.get1(Dim::LensLane));
+    const LensIndices<f4> in_floats = lens.indices(bands.nm);
+    const LensIndices<V>& indices = [&]() -> decltype(auto) {
+        if constexpr (std::same_as<V, f4>)
+            return (in_floats);
+        else
+            return lens.exact_indices(lanes_as<d4>(bands.nm));
+    }();
+    const LensDraw<V> drawn = draw({film_mm, u, lead, bands.nm[lead]}, bands, Coating::Ideal,
+                                   Chroma::Single, in_floats, indices);
     CameraSample out;
     out.lanes = drawn.lanes;
     out.exposure = exposure_;
     if (!(drawn.weight[lead] > 0)) return out;
 
-    const LensIndices<V> indices = [&] {
-        if constexpr (std::same_as<V, f4>)
-            return lens.indices(bands.nm);
-        else
-            return lens.exact_indices(lanes_as<d4>(bands.nm));
-    }();
     f4 through = splat(1.f);
     const auto lose = [&](const LensHit<V>& hit) {
         const auto& s = lens.surfaces<S>()[static_cast<size_t>(hit.surface)];

@@ -191,7 +191,7 @@ Session reopened(const SceneRequest& scene, const Session& first, TbbExecutor& e
 struct Parted {
     double spread_px;
     SceneRequest scene;
-    [[nodiscard]] bool hero() const { return spread_px <= kMostHeroSpread_px; }
+    [[nodiscard]] bool hero() const { return scene.camera.chroma == Chroma::Hero; }
 };
 Parted part_wavelengths(const Session& first, TbbExecutor& executor) {
     SceneRequest scene = settled(first);
@@ -301,7 +301,7 @@ Session open_planned(const PlanRequest& request, TbbExecutor& executor, const No
         if (parted.hero()) other = parted.scene;
         why = fmt::format("dispersion of {} spreads {:.2g} px", first.dispersive_lens,
                           parted.spread_px);
-        chroma = parted.hero() ? "hero" : "tolerance";
+        chroma = word_of(*parted.scene.camera.chroma);
     }
     const double most_samples = 0.25 * request.scene.size.x * request.scene.size.y;
     const int models = (open.spectral ? 1 : 0) + (open.chroma ? 2 : 1);

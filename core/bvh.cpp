@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/emission.h"
+#include "core/coverage.h"
 
 namespace petzval {
 namespace {

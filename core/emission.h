@@ -20,8 +20,4 @@ struct Illuminant;
 /// The white of what an instance emits; nullptr: the scene's own.
 [[nodiscard]] const Illuminant* white_of(const Scene&, uint32_t instance);
 
-/// Share of the rays towards the point that stop there, [0, 1]: 1 for OPAQUE, 0 or 1 for MASK,
-/// alpha for BLEND.
-[[nodiscard]] float coverage(const Scene&, uint32_t instance, uint32_t triangle, V2f barycentric);
-
 }  // namespace petzval

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The five kinds of light. Each can be sampled from a point, and tells the density it does so with.
+// The five kinds of light that a scene may hold.
 #pragma once
 
-#include <optional>
+#include <cstdint>
 #include <variant>
 
-#include "core/emission.h"
 #include "core/math.h"
 #include "core/spectrum.h"
 
@@ -38,25 +37,5 @@ struct TriangleLight {
 struct SkyLight {};
 
 using Light = std::variant<PointLight, SpotLight, SunLight, TriangleLight, SkyLight>;
-
-/// Light that arrives at a point, before anything in between is known.
-struct LightSample {
-    V3f direction;  ///< unit, from the point to the light
-    V3f target;     ///< where a shadow ray ends, clear of the light; meaningless when at_infinity
-    bool at_infinity;
-    f4 radiance;  ///< for a delta light: the irradiance on a surface that faces it
-    float pdf;    ///< 1/sr; 1 for a delta light
-    bool delta;   ///< a BSDF sample can never find this light
-};
-
-/// Draws a direction from p to the light. u in [0, 1)^2. Nothing where no light can arrive.
-[[nodiscard]] std::optional<LightSample> sample_light(const Scene&, const Light&, const V3f& p,
-                                                      V2f u, const Bands&);
-/// Density, 1/sr, with which sample_light draws the direction from p to a point of a triangle light
-/// that was hit: the squared distance, and the cosine at the light (its absolute value counts).
-[[nodiscard]] float triangle_light_pdf(const Scene&, const TriangleLight&, float distance_squared,
-                                       float cosine);
-/// Power for choosing among lights, in lumen up to a common factor.
-[[nodiscard]] float light_power(const Scene&, const Light&);
 
 }  // namespace petzval

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/light_sampling.h"
+
 namespace petzval {
 namespace {
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/light.h"
+#include "core/light_sampling.h"
 
 #include <algorithm>
 
+#include "core/coverage.h"
 #include "core/emission.h"
 #include "core/scene.h"
 #include "core/warp.h"

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/colour.h"
+#include "core/light_sampling.h"
 #include "core/surface.h"
 #include "integrator/path.h"
 

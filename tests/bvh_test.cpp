@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "core/light_sampling.h"
 #include "core/seams.h"
 #include "core/surface.h"
 #include "core/warp.h"

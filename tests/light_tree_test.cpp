@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/light_choice.h"
+#include "core/light_sampling.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/lamp.h"
 

@@ -6,6 +6,7 @@
 #include "core/film.h"
 #include "core/filter.h"
 #include "core/light_choice.h"
+#include "core/light_sampling.h"
 #include "core/sampler.h"
 #include "core/warp.h"
 #include "tests/support/lamp.h"

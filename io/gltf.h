@@ -8,17 +8,9 @@
 #include <vector>
 
 #include "core/scene.h"
+#include "io/gltf_camera_extras.h"
 
 namespace petzval {
-
-/// What extras.petzval of a camera asks for; gltf_extras.h has the keys.
-struct CameraWishes {
-    std::optional<std::string> lens, aperture;
-    std::optional<float> fstop, focus_m;
-    std::optional<V2f> sensor_mm;
-
-    [[nodiscard]] bool any() const { return lens || aperture || fstop || focus_m || sensor_mm; }
-};
 
 /// A camera node of the file.
 struct GltfCamera {

@@ -4,7 +4,6 @@
 
 #include "io/gltf_check.h"
 #include "io/gltf_extras.h"
-#include "io/gltf_spectral.h"
 #include "io/json_parse.h"
 
 namespace petzval {

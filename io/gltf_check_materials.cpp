@@ -7,7 +7,7 @@
 
 #include "io/gltf_check.h"
 #include "io/gltf_extensions.h"
-#include "io/gltf_spectral.h"
+#include "io/gltf_extras.h"
 
 namespace petzval {
 namespace {

@@ -24,14 +24,7 @@ std::optional<float> length_at(const JsonCursor& extras, const char* key) {
     return static_cast<float>(extras.number(key, kLength));
 }
 
-}  // namespace
-
-std::optional<JsonCursor> petzval_extras(const JsonCursor& owner) {
-    const auto extras = owner.value().find("extras");
-    if (extras == owner.value().end() || !extras->is_object()) return std::nullopt;
-    return owner.object("extras").find_object("petzval");
-}
-
+// Refuses a key that is not known. what: "material" ...
 void require_known_extras(const JsonCursor& owner, const char* what,
                           const std::vector<std::string_view>& known) {
     const auto extras = petzval_extras(owner);
@@ -40,6 +33,32 @@ void require_known_extras(const JsonCursor& owner, const char* what,
         if (std::find(known.begin(), known.end(), key) == known.end())
             extras->fail(key, fmt::format("is not known; in a {}'s extras.petzval there may be {}",
                                           what, fmt::join(known, ", ")));
+}
+
+void check_texts(const JsonCursor& owner, const char* what,
+                 const std::vector<std::string_view>& known) {
+    require_known_extras(owner, what, known);
+    if (const auto extras = petzval_extras(owner))
+        for (const auto& [key, unused] : extras->value().items()) (void)extras->text(key.c_str());
+}
+
+}  // namespace
+
+std::optional<JsonCursor> petzval_extras(const JsonCursor& owner) {
+    const auto extras = owner.value().find("extras");
+    if (extras == owner.value().end() || !extras->is_object()) return std::nullopt;
+    return owner.object("extras").find_object("petzval");
+}
+
+void check_material_extras(const JsonCursor& material) {
+    check_texts(material, "material", {"glass", "metal", "illuminant"});
+    const auto extras = petzval_extras(material);
+    if (extras && extras->has("glass") && extras->has("metal"))
+        extras->fail("names a glass and a metal; a material is one of them");
+}
+
+void check_light_extras(const JsonCursor& light) {
+    check_texts(light, "light", {"illuminant"});
 }
 
 CameraWishes camera_wishes(const JsonCursor& camera) {

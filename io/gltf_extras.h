@@ -3,10 +3,8 @@
 #pragma once
 
 #include <optional>
-#include <string_view>
-#include <vector>
 
-#include "io/gltf.h"
+#include "io/gltf_camera_extras.h"
 #include "io/json_cursor.h"
 
 namespace petzval {
@@ -14,9 +12,10 @@ namespace petzval {
 /// extras.petzval of an object. Other people's extras may be of any type: they are none of ours.
 [[nodiscard]] std::optional<JsonCursor> petzval_extras(const JsonCursor& owner);
 
-/// Refuses a key that is not known. what: "material" ... Throws InputError with the JSON path.
-void require_known_extras(const JsonCursor& owner, const char* what,
-                          const std::vector<std::string_view>& known);
+/// Keys and types of a material's extras.petzval. Throws InputError with the JSON path.
+void check_material_extras(const JsonCursor& material);
+/// The same for an entry of KHR_lights_punctual's lights.
+void check_light_extras(const JsonCursor& light);
 
 /// Of a camera: {"lens": "takumar-50mm-f1.2", "fstop": 2, "focus_m": 1.5, "aperture": "polygon:6",
 /// "sensor_mm": [36, 24]}, each of which may be absent. Throws InputError with the JSON path for a

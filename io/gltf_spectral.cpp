@@ -17,13 +17,6 @@ namespace {
 /// Keeps the square of an index, and what is computed with it, far from a float's end.
 constexpr double kGreatestIndex = 1e3;
 
-void check_texts(const JsonCursor& owner, const char* what,
-                 const std::vector<std::string_view>& known) {
-    require_known_extras(owner, what, known);
-    if (const auto extras = petzval_extras(owner))
-        for (const auto& [key, unused] : extras->value().items()) (void)extras->text(key.c_str());
-}
-
 /// KHR_materials_dispersion: Cauchy's formula, but never an index below 1. Only dispersion above
 /// 26 gets there, so that all others keep the formula, which is faster than a table.
 Glass khronos_glass(double nd, double dispersion) {
@@ -52,17 +45,6 @@ std::optional<int32_t> place_of(std::vector<Thing>& things, const std::string& n
 }
 
 }  // namespace
-
-void check_material_extras(const JsonCursor& material) {
-    check_texts(material, "material", {"glass", "metal", "illuminant"});
-    const auto extras = petzval_extras(material);
-    if (extras && extras->has("glass") && extras->has("metal"))
-        extras->fail("names a glass and a metal; a material is one of them");
-}
-
-void check_light_extras(const JsonCursor& light) {
-    check_texts(light, "light", {"illuminant"});
-}
 
 GltfSpectral::GltfSpectral(Scene& scene, GltfTally& tally) : scene_(scene), tally_(tally) {}
 

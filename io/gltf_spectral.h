@@ -13,11 +13,6 @@
 
 namespace petzval {
 
-/// Keys and types of a material's extras.petzval. Throws InputError with the JSON path.
-void check_material_extras(const JsonCursor& material);
-/// The same for an entry of KHR_lights_punctual's lights.
-void check_light_extras(const JsonCursor& light);
-
 /// Looks up what the file names, and adds metals and illuminants to the scene, each once.
 /// Throws InputError with the JSON path for a name that is in no catalogue.
 class GltfSpectral {

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// What extras.petzval of a camera asks for.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/math.h"
+
+namespace petzval {
+
+/// gltf_extras.h has the keys.
+struct CameraWishes {
+    std::optional<std::string> lens, aperture;
+    std::optional<float> fstop, focus_m;
+    std::optional<V2f> sensor_mm;
+
+    [[nodiscard]] bool any() const { return lens || aperture || fstop || focus_m || sensor_mm; }
+};
+
+}  // namespace petzval

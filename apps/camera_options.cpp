@@ -72,7 +72,7 @@ void add_lens_options(CLI::App& app, CameraOptions& o) {
         app, "--chroma", r.chroma, chromas,
         "wavelengths that leave the lens apart: auto (default: by how far they part, "
         "docs/plan.md; in charts as tolerance), "
-        "shared, tolerance, split, single, two-level, hero"));
+        "shared, tolerance, split, single, hero"));
     const auto share_within = [&r](float px) {
         r.chroma_tolerance_px = px;
         if (!r.chroma) r.chroma = Chroma::Tolerance;

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "camera/hero.h"
-#include "camera/two_level.h"
 #include "core/spectrum_table.h"
 
 namespace petzval {
@@ -46,9 +45,7 @@ AberratedLensCamera::AberratedLensCamera(AberratedLens lens)
 CameraSample AberratedLensCamera::sample(const FilmPoint& at, const Bands& bands) const {
     if (in_.chroma == Chroma::Hero && bands.spectral)
         return at.pixel.filter ? hero(at, bands) : sample(at, bands, Chroma::Split);
-    if (!two_level() || !bands.spectral) return sample(at, bands, in_.chroma);
-    return petzval::two_level(at, bands.on,
-                              [&](Chroma chroma) { return sample(at, bands, chroma); });
+    return sample(at, bands, in_.chroma);
 }
 
 CameraSample AberratedLensCamera::sample(const FilmPoint& at, const Bands& bands,
@@ -77,24 +74,23 @@ CameraSample AberratedLensCamera::sample(const FilmPoint& at, const Bands& bands
         // Only what holds between the wavelengths that the constructor tried can fail here.
         if (!(focal_mm > kLeastZone / 2 * at_d_.focal_mm)) continue;
         const auto vergence = static_cast<float>(1 / focal_mm - 1 / film_mm_);
-        const auto together = [&](int k) {
+        const auto together = [&](size_t k) {
             return h_mm * std::fabs(vergence - vergence_per_mm[k]) <= in_.tolerance_rad &&
                    !(split && chroma == Chroma::Split);
         };
-        int k = 0;
-        while (k < out.count && !together(k)) ++k;
-        CameraPath& path = out.path[k];
-        if (k == out.count) {
+        size_t k = 0;
+        while (k < out.size() && !together(k)) ++k;
+        const bool is_new = k == out.size();
+        CameraPath& path = is_new ? out.add() : out[k];
+        if (is_new) {
             vergence_per_mm[k] = vergence;
-            ++out.count;
             path.ray.origin = pose_.origin + pose_.to_world(point_mm * 1e-3f);
             path.ray.direction = unit(pose_.to_world(through_centre - point_mm * vergence));
             path.lanes = m4{};
         }
         path.lanes[lane] = -1;
     }
-    for (int k = 0; k < out.count; ++k)
-        out.path[k].weight = zero_off(out.path[k].lanes, splat(weight));
+    for (CameraPath& path : out) path.weight = zero_off(path.lanes, splat(weight));
     return out;
 }
 
@@ -122,12 +118,13 @@ CameraSample AberratedLensCamera::hero(const FilmPoint& at, const Bands& bands) 
     const V3f through_centre{(2.f * at.film.x - 1.f) * tan_half_x_,
                              (1.f - 2.f * at.film.y) * tan_half_y_, -1.f};
     const V3f point_mm{stop.x, stop.y, 0.f};
-    CameraPath& path = out.path[0];
+    const m4 reached = shares > 0;
+    if (lane_count(reached) == 0) return out;
+    CameraPath& path = out.add();
     path.ray.origin = pose_.origin + pose_.to_world(point_mm * 1e-3f);
     path.ray.direction = unit(pose_.to_world(through_centre - point_mm * vergence_per_mm[lead]));
     path.weight = shares * in_.exposure;
-    path.lanes = shares > 0;
-    out.count = lane_count(path.lanes) > 0 ? 1 : 0;
+    path.lanes = reached;
     return out;
 }
 

@@ -31,7 +31,6 @@ class AberratedLensCamera final : public Camera {
     /// light at all of 360 to 830 nm, or an iris wider than its surfaces or than f(h) > f/2 allows.
     explicit AberratedLensCamera(AberratedLens);
     [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
-    [[nodiscard]] bool two_level() const override { return in_.chroma == Chroma::TwoLevel; }
     [[nodiscard]] double film_distance_mm() const { return film_mm_; }
 
   private:

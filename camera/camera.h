@@ -25,8 +25,6 @@ struct FilmPoint {
     /// reaches a little beyond.
     V2f film;
     Sampler sampler;
-    /// Of taking the difference to the split paths, in a camera that is two_level(); 0: never.
-    float split_probability = 1;
     PixelFilter pixel{};
 };
 
@@ -35,6 +33,8 @@ struct CameraPath {
     Ray ray;
     f4 weight;  ///< radiance along the ray times this is the film's estimate
     m4 lanes;   ///< bands that share this ray
+    /// Fills the sample's alpha; the first path that does fills its layers too.
+    bool fills_layers = true;
 };
 
 /// What became of the lanes for which a lens was asked; those not named went out. All 0: a camera
@@ -61,21 +61,35 @@ struct LaneFates {
     }
 };
 
-/// 0 paths: vignetted. 1: shared by all lanes. 2 to 4: split by dispersion. Two-level cameras: up
-/// to 4 split ones, whose lanes may weigh 0, then a shared one, whose weight may be negative.
-struct CameraSample {
-    int count = 0;
-    std::array<CameraPath, 5> path;
+/// The paths that one film point begins. None: vignetted. 1: shared by all lanes. 2 to 4: split by
+/// dispersion.
+class CameraSample {
+  public:
+    static constexpr size_t kMostPaths = 4;
+
     LaneFates<uint32_t> lanes;
     float exposure = 1;  ///< what the weights of a lane are on average where nothing is lost
+
+    [[nodiscard]] bool empty() const { return size_ == 0; }
+    [[nodiscard]] size_t size() const { return size_; }
+    [[nodiscard]] CameraPath& operator[](size_t i) { return paths_[i]; }
+    [[nodiscard]] const CameraPath& operator[](size_t i) const { return paths_[i]; }
+    [[nodiscard]] CameraPath* begin() { return paths_.data(); }
+    [[nodiscard]] CameraPath* end() { return paths_.data() + size_; }
+    [[nodiscard]] const CameraPath* begin() const { return paths_.data(); }
+    [[nodiscard]] const CameraPath* end() const { return paths_.data() + size_; }
+    /// Appends a path, to be filled in. Of at most kMostPaths.
+    CameraPath& add() { return paths_[size_++]; }
+
+  private:
+    size_t size_ = 0;
+    std::array<CameraPath, kMostPaths> paths_;
 };
 
 class Camera {
   public:
     virtual ~Camera() = default;
     [[nodiscard]] virtual CameraSample sample(const FilmPoint&, const Bands&) const = 0;
-    /// Whether split_probability makes a difference.
-    [[nodiscard]] virtual bool two_level() const { return false; }
 };
 
 }  // namespace petzval

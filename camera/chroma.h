@@ -11,10 +11,9 @@ namespace petzval {
 
 /// Tolerance: one ray for all lanes where they would land within a tolerance, else one for each.
 /// Shared: the ray of line d, as if the lens were achromatic. Split: one for each, always. Single:
-/// one wavelength a path. TwoLevel: Shared, and now and then the difference to Split (two_level.h).
-/// Hero: the ray of one lane, weighed for each lane by where it would have reached the film
-/// (hero.h).
-enum class Chroma : uint8_t { Tolerance, Shared, Split, Single, TwoLevel, Hero };
+/// one wavelength a path. Hero: the ray of one lane, weighed for each lane by where it would have
+/// reached the film (hero.h).
+enum class Chroma : uint8_t { Tolerance, Shared, Split, Single, Hero };
 
 /// One of the lanes that are on, each as likely; u in [0, 1).
 [[nodiscard]] inline int pick_lane(m4 on, float u) {

@@ -2,7 +2,6 @@
 #include "camera/lens_camera.h"
 
 #include "camera/hero.h"
-#include "camera/two_level.h"
 #include "core/dispersion.h"
 
 namespace petzval {
@@ -196,7 +195,7 @@ CameraSample LensCamera::paths(const LensDraw<V>& drawn, const Bands& bands, Chr
     // Lanes that go nearly the same way share the first one's ray.
     for (int lane = 0; lane < 4; ++lane) {
         if (!left[lane]) continue;
-        CameraPath& path = out.path[static_cast<size_t>(out.count++)];
+        CameraPath& path = out.add();
         path.ray = world_ray(drawn.ray, lane);
         path.lanes = left;
         for (int other = lane + 1; other < 4; ++other)
@@ -264,14 +263,16 @@ CameraSample LensCamera::hero(const FilmPoint& point, V2f film_mm, const Bands& 
     const f4 dy_px =
         lanes_as<f4>(V((film_y - film_y[lead]) / S(in_.film_height_mm))) * point.pixel.frame_px.y;
     const f4 shares = hero_shares(point.pixel, dx_px, dy_px, bands.on, open);
-    CameraPath& path = out.path[0];
-    path.ray = world_ray(drawn.ray, lead);
     // `single` has weighed its one lane for all that are on.
-    path.weight =
+    const f4 weight =
         shares * through *
         (static_cast<float>(drawn.weight[lead]) / static_cast<float>(lane_count(bands.on)));
-    path.lanes = path.weight > 0;
-    out.count = lane_count(path.lanes) > 0 ? 1 : 0;
+    const m4 reached = weight > 0;
+    if (lane_count(reached) == 0) return out;
+    CameraPath& path = out.add();
+    path.ray = world_ray(drawn.ray, lead);
+    path.weight = weight;
+    path.lanes = reached;
     return out;
 }
 
@@ -284,14 +285,10 @@ CameraSample LensCamera::sample(const FilmPoint& point, const Bands& bands) cons
                                           : hero<f4>(point, film, bands);
     const V2f u = point.sampler.get2(Dim::Lens);
     const float u_lane = point.sampler.get1(Dim::LensLane);
-    const auto drawn = [&](Chroma chroma) {
-        const auto in = [&]<class V>(V) {
-            return paths(draw<V>(film, u, u_lane, bands, in_.coating, chroma), bands, chroma);
-        };
-        return in_.march == March::Double ? in(d4{}) : in(f4{});
+    const auto drawn = [&]<class V>(V) {
+        return paths(draw<V>(film, u, u_lane, bands, in_.coating, in_.chroma), bands, in_.chroma);
     };
-    return two_level() && bands.spectral ? petzval::two_level(point, bands.on, drawn)
-                                         : drawn(in_.chroma);
+    return in_.march == March::Double ? drawn(d4{}) : drawn(f4{});
 }
 
 // Smooth but for the edges of the iris and of the rims.

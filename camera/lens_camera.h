@@ -46,7 +46,6 @@ class LensCamera final : public Camera {
     explicit LensCamera(LensCameraInput);
 
     [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
-    [[nodiscard]] bool two_level() const override { return in_.chroma == Chroma::TwoLevel; }
 
     /// From here on weights average to the exposure in the middle of the film, where they averaged
     /// to its irradiance(). axial: that irradiance, before the first call.

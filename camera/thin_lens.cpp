@@ -10,9 +10,8 @@ namespace {
 CameraSample one_path(const Pose& pose, const V3f& origin, const V3f& direction, const Bands& bands,
                       float exposure) {
     CameraSample out;
-    out.count = 1;
     out.exposure = exposure;
-    CameraPath& path = out.path[0];
+    CameraPath& path = out.add();
     path.ray.origin = pose.origin + pose.to_world(origin);
     path.ray.direction = unit(pose.to_world(direction));
     path.weight = uniform(exposure, bands);

@@ -12,8 +12,8 @@ std::optional<float> depth_under(const Scene& scene, const Bvh& bvh, const Camer
                                  const V3f& eye, const V3f& axis, V2f film) {
     const CameraSample seen =
         pinhole.sample({film, Sampler(SamplerKind::Owen, 0, {0, 0, 0})}, Bands::rgb());
-    if (seen.count == 0) return std::nullopt;
-    Ray ray = seen.path[0].ray;
+    if (seen.empty()) return std::nullopt;
+    Ray ray = seen[0].ray;
     // What is culled from view is no place to focus on.
     while (const std::optional<Hit> hit = bvh.intersect(ray)) {
         const Surface s = make_surface(scene, ray.direction, *hit);

@@ -17,7 +17,6 @@
 #include "core/sampler.h"
 #include "integrator/path.h"
 #include "integrator/tiles.h"
-#include "integrator/two_level.h"
 
 namespace petzval {
 
@@ -31,8 +30,6 @@ struct RenderJob {
     Observer observer;       ///< what the lanes carry
     uint32_t scrambles = 1;  ///< kScrambles for a film with bins
     bool timing = false;     ///< measure where the time goes, on one sample of sixteen
-    /// For a camera that is two_level(); without one, render() learns it first.
-    std::shared_ptr<const SplitGrid> split;
 };
 
 /// What a render shows of itself while it runs, and how it is told to stop. Any thread may look.
@@ -46,8 +43,6 @@ struct RenderResult {
     int workers = 0;          ///< threads that rendered at least one tile
     uint32_t end_sample = 0;  ///< samples [first, end) are complete in every pixel
     bool stopped = false;     ///< the monitor said stop before the job was done
-    /// The job's, or what was learned; saves learning it again for other samples of this render.
-    std::shared_ptr<const SplitGrid> split;
 };
 
 /// Seed of one of the scrambles: a hash of the pair.
@@ -77,18 +72,21 @@ void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& 
         const V2f offset = job.filter.sample(sampler.get2(Dim::Film));
         const V2f size(film.full_size());
         const V2f at = V2f(id.x + 0.5f, id.y + 0.5f) + offset;
-        const float split = job.split ? job.split->at(id.x, id.y) : 1.f;
-        return camera.sample({at / size, sampler, split, {&job.filter, offset, size}}, bands);
+        return camera.sample({at / size, sampler, {&job.filter, offset, size}}, bands);
     }();
     stats.lens_lanes += seen.lanes;
     FilmSample sample;
     f4 sum{};
     float behind = 0.f;  // light of what stands behind the scene, where all of it would be 1
-    for (int k = 0; k < seen.count; ++k) {
-        const CameraPath& path = seen.path[k];
-        sample.alpha = 0.f;
-        sum += path.weight *
-               tracer.radiance(path.ray, bands, sampler, aovs && k == 0, sample, stats, path.lanes);
+    bool layers = aovs;  // still to be filled in
+    for (const CameraPath& path : seen) {
+        FilmSample other;
+        FilmSample& of_path = path.fills_layers ? sample : other;
+        of_path.alpha = 0.f;
+        sum += path.weight * tracer.radiance(path.ray, bands, sampler, layers && path.fills_layers,
+                                             of_path, stats, path.lanes);
+        if (!path.fills_layers) continue;
+        layers = false;
         behind += hsum(zero_off(path.lanes, path.weight)) * (1.f - sample.alpha);
     }
     // What a lens keeps from the film is black, not transparent.
@@ -113,7 +111,7 @@ void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& 
 /// Renders every pixel of the film's crop. Pixels do not depend on the executor, its threads, the
 /// tile size, the crop or the passes.
 template <class Executor, class Tracer>
-RenderResult render(const Tracer& tracer, const Camera& camera, RenderJob job, Film& film,
+RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob& job, Film& film,
                     Executor& executor, RenderMonitor& monitor) {
     using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
@@ -126,15 +124,7 @@ RenderResult render(const Tracer& tracer, const Camera& camera, RenderJob job, F
     };
     std::vector<Worker> workers(static_cast<size_t>(executor.threads()));
 
-    if (camera.two_level() && job.observer.spectral() && !job.split) {
-        const SplitPilot pilot(tracer, camera, job.observer, job.filter, film.full_size(),
-                               job.seed);
-        job.split =
-            std::make_shared<const SplitGrid>(pilot.learn(film.crop(), executor, monitor.stop));
-    }
-
     RenderResult result;
-    result.split = job.split;
     const uint32_t wanted = job.end_sample - job.first_sample;
     uint32_t done = 0;
     bool stopped = false;

@@ -15,9 +15,11 @@ using Words = std::vector<std::pair<std::string, T>>;
 
 /// Every word of a choice; the argument only says which choice.
 [[nodiscard]] inline Words<Chroma> words_of(Chroma) {
-    return {{"tolerance", Chroma::Tolerance}, {"shared", Chroma::Shared},
-            {"split", Chroma::Split},         {"single", Chroma::Single},
-            {"two-level", Chroma::TwoLevel},  {"hero", Chroma::Hero}};
+    return {{"tolerance", Chroma::Tolerance},
+            {"shared", Chroma::Shared},
+            {"split", Chroma::Split},
+            {"single", Chroma::Single},
+            {"hero", Chroma::Hero}};
 }
 [[nodiscard]] inline Words<ApertureScale> words_of(ApertureScale) {
     return {{"area", ApertureScale::EqualArea}, {"inscribed", ApertureScale::Inscribed}};

@@ -124,7 +124,6 @@ ChartCase chroma_case(const Found& found, const RenderJob& job) {
               with(Chroma::Tolerance));
     cases.add("shared", lens, with(Chroma::Shared));
     cases.add("single", lens, with(Chroma::Single));
-    cases.add("two-level", lens, with(Chroma::TwoLevel));
     cases.add("hero", lens, with(Chroma::Hero));
     cases.remark("shared is biased: it leaves out the colour errors of the lens");
     cases.reference("split, rays followed in doubles with the glasses' own formulas", lens,

@@ -45,12 +45,11 @@ class Track {
         tracer_.emplace(*session_.scene, *session_.bvh, *session_.lights, options);
         for (uint32_t i = 0; i < seeds; ++i) films_.push_back(new_film());
         cpu_s_.resize(seeds, 0.);
-        splits_.resize(seeds);
     }
 
     /// Continues one seed's render; false where it was stopped.
     [[nodiscard]] bool advance(uint32_t seed, uint32_t end_sample) {
-        return render_into(films_[seed], seed, samples_, end_sample, cpu_s_[seed], splits_[seed]);
+        return render_into(films_[seed], seed, samples_, end_sample, cpu_s_[seed]);
     }
     /// After all seeds have been advanced there.
     void reached(uint32_t samples) { samples_ = samples; }
@@ -58,8 +57,7 @@ class Track {
     [[nodiscard]] bool warm_up() {
         Film scratch = new_film();
         double ignored_s = 0;
-        std::shared_ptr<const SplitGrid> ignored;
-        return render_into(scratch, 0, 0, 1, ignored_s, ignored);
+        return render_into(scratch, 0, 0, 1, ignored_s);
     }
 
     [[nodiscard]] uint32_t samples() const { return samples_; }
@@ -75,18 +73,15 @@ class Track {
     [[nodiscard]] Film new_film() const {
         return {at_.frame.size, at_.frame.crop, {}, session_.observer.bins()};
     }
-    bool render_into(Film& film, uint32_t seed, uint32_t first, uint32_t end, double& cpu_s,
-                     std::shared_ptr<const SplitGrid>& split) {
+    bool render_into(Film& film, uint32_t seed, uint32_t first, uint32_t end, double& cpu_s) {
         RenderJob job = job_;
         job.seed = first_seed_ + seed;
         job.first_sample = first;
         job.end_sample = end;
-        job.split = split;
         const double start_s = process_cpu_s();
         const RenderResult result =
             render(*tracer_, *session_.camera, job, film, at_.executor, at_.monitor);
         cpu_s += process_cpu_s() - start_s;
-        split = result.split;
         return !result.stopped;
     }
 
@@ -97,7 +92,6 @@ class Track {
     std::optional<PathTracer<>> tracer_;
     std::vector<Film> films_;
     std::vector<double> cpu_s_;
-    std::vector<std::shared_ptr<const SplitGrid>> splits_;  ///< learned with the first samples
 };
 
 double relative_mse(const Picture& a, const Picture& b) {

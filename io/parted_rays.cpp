@@ -17,10 +17,10 @@ class PartedFurther final : public Camera {
     [[nodiscard]] CameraSample sample(const FilmPoint& point, const Bands& bands) const override {
         CameraSample out = parted_->sample(point, bands);
         const CameraSample middle = shared_->sample(point, bands);
-        if (middle.count == 0) return out;
-        const Ray& d = middle.path[0].ray;
-        for (int k = 0; k < out.count; ++k) {
-            Ray& ray = out.path[static_cast<size_t>(k)].ray;
+        if (middle.empty()) return out;
+        const Ray& d = middle[0].ray;
+        for (size_t k = 0; k < out.size(); ++k) {
+            Ray& ray = out[k].ray;
             ray.origin = d.origin + factor_ * (ray.origin - d.origin);
             ray.direction = unit(d.direction + factor_ * (ray.direction - d.direction));
         }
@@ -57,13 +57,13 @@ double spread_px(const Session& split, const Session& shared, V2i size_px) {
         const V2f beside(film.x + 1.f / static_cast<float>(size_px.x), film.y);
         const CameraSample middle = shared.camera->sample({film, sampler}, bands);
         const CameraSample next = shared.camera->sample({beside, sampler}, bands);
-        if (middle.count == 0 || next.count == 0) continue;
-        const auto at = on_plane(middle.path[0].ray), pixel_on = on_plane(next.path[0].ray);
+        if (middle.empty() || next.empty()) continue;
+        const auto at = on_plane(middle[0].ray), pixel_on = on_plane(next[0].ray);
         if (!at || !pixel_on || *at == *pixel_on) continue;
         const double pixel2 = double((*pixel_on - *at).length2());
         const CameraSample parted = split.camera->sample({film, sampler}, bands);
-        for (int k = 0; k < parted.count; ++k) {
-            const CameraPath& path = parted.path[static_cast<size_t>(k)];
+        for (size_t k = 0; k < parted.size(); ++k) {
+            const CameraPath& path = parted[k];
             const auto here = on_plane(path.ray);
             if (!here) continue;
             const double share = lane_count(path.lanes);

@@ -249,10 +249,6 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
     for (const std::string& text : said)
         if (text != first.spectral_decision) notice(text);
     const PlanOpen open(request.scene, first);
-    if (first.camera_report.asked.chroma == Chroma::TwoLevel)
-        throw ArgumentError("--chroma two-level", "",
-                            "learns its probabilities while it renders, which a plan cannot "
-                            "foresee; leave it out");
     PlanComparison compared(request, first, open, kPixels, executor);
     compared.add_simpler_cameras();
     if (open.spectral) compared.add_rgb();

@@ -19,9 +19,9 @@ float fov_at_focus_deg(const Session& lens) {
         for (uint32_t i = 0; i < 1024; ++i) {
             const Sampler sampler(SamplerKind::Owen, 0, {0, 0, i});
             const CameraSample seen = lens.camera->sample({{0.5f, film_y}, sampler}, bands);
-            for (int k = 0; k < seen.count; ++k) {
-                const Ray& ray = seen.path[static_cast<size_t>(k)].ray;
-                const float w = hsum(seen.path[static_cast<size_t>(k)].weight);
+            for (size_t k = 0; k < seen.size(); ++k) {
+                const Ray& ray = seen[k].ray;
+                const float w = hsum(seen[k].weight);
                 const float t = (report.focus_m - (ray.origin - report.eye).dot(axis)) /
                                 ray.direction.dot(axis);
                 sum += V3d(ray.origin + t * ray.direction) * double(w);

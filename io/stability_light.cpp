@@ -183,7 +183,7 @@ Highlight highlight(double side_m, double fstop) {
         {M44f(), 0.47f, 1.5f, Iris(Disk{}, kFocal_mm / (2 * fstop)), float(kFocus_m)});
     const V2f pixel(0.5f + 0.0007f, 0.5f + 0.0004f);
     const auto ray = [&](const Sampler& sampler) {
-        return camera.sample({pixel, sampler}, Bands::rgb()).path[0].ray;
+        return camera.sample({pixel, sampler}, Bands::rgb())[0].ray;
     };
     Highlight out;
     out.all = measure(world, PathOptions(), 1u << 17, ray, SamplerKind::Owen);

@@ -115,9 +115,7 @@ double place_error_px(double away_m) {
     for (int i = 0; i < 1000; ++i) {
         const V2f film = draws.next2();
         const Ray ray =
-            camera.sample({film, Sampler(SamplerKind::Owen, 1, {0, 0, 0})}, Bands::rgb())
-                .path[0]
-                .ray;
+            camera.sample({film, Sampler(SamplerKind::Owen, 1, {0, 0, 0})}, Bands::rgb())[0].ray;
         const auto hit = world.bvh->intersect(ray);
         if (!hit) return HUGE_VAL;
         const V3d p(make_surface(world.scene, ray.direction, *hit).p);

@@ -130,8 +130,7 @@ double spread_px(double closeness, float away_m) {
         std::optional<V3d> first;
         for (uint32_t i = 0; i < 256; ++i) {
             const CameraPath path =
-                camera.sample({film, Sampler(SamplerKind::Owen, 1, {0, 0, i})}, Bands::rgb())
-                    .path[0];
+                camera.sample({film, Sampler(SamplerKind::Owen, 1, {0, 0, i})}, Bands::rgb())[0];
             const V3d o(path.ray.origin), d(path.ray.direction);
             const V3d p = o + d * ((z_m - o.z) / d.z);
             if (!first) first = p;

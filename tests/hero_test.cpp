@@ -70,10 +70,10 @@ std::array<test::Moments, 4> in_pixel(const Camera& camera, const Filter& filter
         const Sampler sampler(SamplerKind::Independent, seed, {0, 0, i});
         const V2f offset = filter.sample(sampler.get2(Dim::Film));
         const CameraSample seen = camera.sample(
-            {(centre + offset) / kFrame_px, sampler, 1, {&filter, offset, kFrame_px}}, bands);
+            {(centre + offset) / kFrame_px, sampler, {&filter, offset, kFrame_px}}, bands);
         f4 sum{};
-        for (int k = 0; k < seen.count; ++k) {
-            const CameraPath& path = seen.path[size_t(k)];
+        for (size_t k = 0; k < seen.size(); ++k) {
+            const CameraPath& path = seen[k];
             const V3f d = path.ray.direction * (-1 / path.ray.direction.z);
             if (d.x + d.y > 0.0045f) sum += path.weight;
         }
@@ -149,13 +149,12 @@ TEST(Hero, RaysInDoublesAreThoseInFloats) {
     for (uint32_t i = 0; i < 1000; ++i) {
         const FilmPoint at{V2f(0.4f, 0.6f),
                            Sampler(SamplerKind::Owen, 1, {0, 0, i}),
-                           1,
                            {&filters()[0], V2f(0.2f), kFrame_px}};
         const CameraSample a = floats.sample(at, bands), b = doubles.sample(at, bands);
-        ASSERT_LE(a.count, 1);
-        if (a.count == 0 || b.count == 0) continue;
-        ASSERT_LT((a.path[0].ray.direction - b.path[0].ray.direction).length(), 1e-5f);
-        ASSERT_LT(hmax(a.path[0].weight - b.path[0].weight), 2e-3f);
+        ASSERT_LE(a.size(), 1u);
+        if (a.empty() || b.empty()) continue;
+        ASSERT_LT((a[0].ray.direction - b[0].ray.direction).length(), 1e-5f);
+        ASSERT_LT(hmax(a[0].weight - b[0].weight), 2e-3f);
         ++compared;
     }
     EXPECT_GT(compared, 900);
@@ -189,10 +188,9 @@ TEST(Hero, WithoutAFilterLanesAreSplit) {
         const FilmPoint at{V2f(0.5f, 0.6f), Sampler(SamplerKind::Owen, 1, {3, 2, i})};
         const CameraSample a = hero.sample(at, four_wavelengths(0.2f)),
                            b = split.sample(at, four_wavelengths(0.2f));
-        ASSERT_EQ(a.count, b.count);
-        for (int k = 0; k < a.count; ++k)
-            EXPECT_EQ(a.path[size_t(k)].ray.direction, b.path[size_t(k)].ray.direction);
-        parted += a.count == 4;
+        ASSERT_EQ(a.size(), b.size());
+        for (size_t k = 0; k < a.size(); ++k) EXPECT_EQ(a[k].ray.direction, b[k].ray.direction);
+        parted += a.size() == 4;
     }
     EXPECT_GT(parted, 50);
 }

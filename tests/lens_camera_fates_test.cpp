@@ -80,8 +80,7 @@ LaneFates<uint64_t> fates(const LensCameraInput& in, const Bands& bands) {
     for (uint32_t i = 0; i < 4000; ++i) {
         const CameraSample seen = camera.sample(film_point(random.next2(), i), bands);
         uint32_t passed = 0;
-        for (int k = 0; k < seen.count; ++k)
-            passed += uint32_t(lane_count(seen.path[size_t(k)].lanes));
+        for (size_t k = 0; k < seen.size(); ++k) passed += uint32_t(lane_count(seen[k].lanes));
         EXPECT_EQ(seen.lanes.drawn, in.chroma == Chroma::Single ? 1 : lane_count(bands.on));
         EXPECT_EQ(passed + seen.lanes.lost(), seen.lanes.drawn);
         out += seen.lanes;

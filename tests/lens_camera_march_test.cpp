@@ -25,13 +25,12 @@ TEST(LensCameraMarch, DoublesAgreeWithFloats) {
         for (uint32_t i = 0; i < 1000; ++i) {
             const FilmPoint at = film_point(random.next2(), i);
             const CameraSample a = floats.sample(at, bands), b = camera.sample(at, bands);
-            if (a.count != 4 || b.count != 4) continue;
+            if (a.size() != 4 || b.size() != 4) continue;
             ++checked;
             for (size_t k = 0; k < 4; ++k) {
-                ASSERT_LT((a.path[k].ray.direction - b.path[k].ray.direction).length(), 2e-5);
-                ASSERT_LT((a.path[k].ray.origin - b.path[k].ray.origin).length(), 2e-6) << name;
-                ASSERT_NEAR(a.path[k].weight[int(k)], b.path[k].weight[int(k)],
-                            1e-3f * a.path[k].weight[int(k)]);
+                ASSERT_LT((a[k].ray.direction - b[k].ray.direction).length(), 2e-5);
+                ASSERT_LT((a[k].ray.origin - b[k].ray.origin).length(), 2e-6) << name;
+                ASSERT_NEAR(a[k].weight[int(k)], b[k].weight[int(k)], 1e-3f * a[k].weight[int(k)]);
             }
         }
         EXPECT_GT(checked, 300) << name;

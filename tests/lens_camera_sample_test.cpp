@@ -22,8 +22,8 @@ TEST(LensCameraSample, RaysLeaveThePupilTowardsWhatIsSeenThere) {
     for (const V2f& film : {V2f(0.5f, 0.5f), V2f(0.9f, 0.5f), V2f(0.5f, 0.1f), V2f(0.2f, 0.8f)})
         for (uint32_t i = 0; i < 64; ++i) {
             const CameraSample seen = camera.sample(film_point(film, i), Bands::rgb());
-            ASSERT_EQ(seen.count, 1);
-            const Ray& ray = seen.path[0].ray;
+            ASSERT_EQ(seen.size(), 1u);
+            const Ray& ray = seen[0].ray;
             EXPECT_NEAR(ray.direction.length(), 1, 1e-6);
             // Right on the film is right in the scene; its top is up.
             const float ahead = -ray.direction.dot(back);
@@ -50,11 +50,11 @@ TEST(LensCameraSample, LanesOfPathsPartitionThoseThatPass) {
                 const FilmPoint at = film_point(random.next2(), i);
                 const LensDraw<f4> drawn = draw_of(camera, in, at, bands);
                 const CameraSample seen = camera.sample(at, bands);
-                ++counts[size_t(seen.count)];
+                ++counts[seen.size()];
                 f4 weight{};
                 m4 lanes{};
-                for (int k = 0; k < seen.count; ++k) {
-                    const CameraPath& path = seen.path[size_t(k)];
+                for (size_t k = 0; k < seen.size(); ++k) {
+                    const CameraPath& path = seen[k];
                     ASSERT_GT(lane_count(path.lanes), 0);
                     ASSERT_EQ(lane_count(path.lanes & lanes), 0);
                     lanes |= path.lanes;
@@ -66,7 +66,7 @@ TEST(LensCameraSample, LanesOfPathsPartitionThoseThatPass) {
                     ASSERT_EQ(weight[lane], drawn.weight[lane]);
                 }
                 if (chroma == Chroma::Split) {
-                    ASSERT_EQ(seen.count, lane_count(passed));
+                    ASSERT_EQ(int(seen.size()), lane_count(passed));
                 }
                 if (chroma == Chroma::Single) {
                     ASSERT_LE(lane_count(lanes), 1);
@@ -94,7 +94,7 @@ TEST(LensCameraSample, OneWavelengthAPathIsAllInTheMean) {
         for (uint32_t i = 0; i < 1 << 14; ++i) {
             const CameraSample seen = camera.sample(film_point({0.8f, 0.3f}, i), bands);
             f4 weight{};
-            for (int k = 0; k < seen.count; ++k) weight += seen.path[size_t(k)].weight;
+            for (size_t k = 0; k < seen.size(); ++k) weight += seen[k].weight;
             for (size_t lane = 0; lane < 4; ++lane) out[lane].add(weight[int(lane)]);
         }
         return out;
@@ -114,9 +114,9 @@ TEST(LensCameraSample, ExposureIsInTheWeight) {
     const LensCameraInput in = input_of(kGauss, Chroma::Shared);
     LensCamera camera(in);
     const FilmPoint at = film_point({0.5f, 0.5f}, 1);
-    const float before = camera.sample(at, Bands::rgb()).path[0].weight[0];
+    const float before = camera.sample(at, Bands::rgb())[0].weight[0];
     camera.set_exposure(2, 1);
-    EXPECT_FLOAT_EQ(camera.sample(at, Bands::rgb()).path[0].weight[0], 2 * before);
+    EXPECT_FLOAT_EQ(camera.sample(at, Bands::rgb())[0].weight[0], 2 * before);
 }
 
 // Lanes share a ray where they meet the plane of focus within the tolerance: on a close one it
@@ -138,9 +138,9 @@ TEST(LensCameraSample, AutoSharesWhatMeetsOnThePlaneOfFocus) {
         for (uint32_t i = 0; i < 20000; ++i) {
             const FilmPoint at = film_point(random.next2(), i);
             const CameraSample a = split.sample(at, bands), b = automatic.sample(at, bands);
-            if (a.count < 2) continue;
-            const Ray &first = a.path[0].ray, &second = a.path[1].ray;
-            const bool together = b.path[0].lanes[first_lane(a.path[1])] != 0;
+            if (a.size() < 2) continue;
+            const Ray &first = a[0].ray, &second = a[1].ray;
+            const bool together = b[0].lanes[first_lane(a[1])] != 0;
             const float cosine1 = first.direction.dot(ahead), cosine2 = second.direction.dot(ahead);
             if (cosine1 <= 0 || cosine2 <= 0) {
                 ++backwards;

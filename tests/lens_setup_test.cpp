@@ -18,8 +18,8 @@ double pupil_m(const LensCamera& camera) {
     for (uint32_t i = 0; i < kRays; ++i) {
         const FilmPoint at{{0.75f, 0.5f}, Sampler(SamplerKind::Owen, 3, {0, 0, i})};
         const CameraSample seen = camera.sample(at, Bands::rgb());
-        EXPECT_EQ(seen.count, 1);
-        const Ray& ray = seen.path[0].ray;
+        EXPECT_EQ(seen.size(), 1u);
+        const Ray& ray = seen[0].ray;
         sum += double(ray.origin.z) -
                double(ray.origin.x) * double(ray.direction.z) / double(ray.direction.x);
     }
@@ -45,7 +45,7 @@ TEST(LensSetup, PixelsOfTheFilmNarrowAsTheFilmGoesBack) {
         double sum = 0;
         for (uint32_t i = 0; i < 1024; ++i) {
             const FilmPoint at{{0.9f, 0.5f}, Sampler(SamplerKind::Owen, 3, {0, 0, i})};
-            const V3f d = camera->sample(at, Bands::rgb()).path[0].ray.direction;
+            const V3f d = camera->sample(at, Bands::rgb())[0].ray.direction;
             sum += double(d.x) / -double(d.z) / 1024;
         }
         return sum;

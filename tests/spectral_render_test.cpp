@@ -368,8 +368,8 @@ TEST(SpectralRender, HeroAgreesWithOneWavelengthAPath) {
                     FilmSample out;
                     PathStats stats;
                     const f4 radiance =
-                        world.tracer->radiance(seen.path[0].ray, bands, sampler, false, out, stats);
-                    const Rgb colour = to_rgb(seen.path[0].weight * radiance, bands);
+                        world.tracer->radiance(seen[0].ray, bands, sampler, false, out, stats);
+                    const Rgb colour = to_rgb(seen[0].weight * radiance, bands);
                     for (int c = 0; c < 3; ++c) sum[size_t(c)] += colour[c] / samples;
                 }
                 for (size_t c = 0; c < 3; ++c) pixels[size_t(p)][c].add(sum[c]);

@@ -115,7 +115,7 @@ TEST(Stability, RaysOfAThinLensMeetAtTenfoldMagnification) {
     std::optional<V3d> first;
     for (uint32_t i = 0; i < 1000; ++i) {
         const Sampler sampler(SamplerKind::Owen, 3, {0, 0, i});
-        const Ray ray = camera.sample({{0.9f, 0.2f}, sampler}, Bands::rgb()).path[0].ray;
+        const Ray ray = camera.sample({{0.9f, 0.2f}, sampler}, Bands::rgb())[0].ray;
         const V3d o(ray.origin), d(ray.direction);
         const V3d p = o + d * ((1 - double(focus_m) - o.z) / d.z);
         if (!first) first = p;
@@ -198,7 +198,7 @@ TEST(Stability, APictureAHundredMetresFromTheOriginIsSharp) {
     test::Random random(2);
     for (int i = 0; i < 2000; ++i) {
         const FilmPoint at{random.next2(), Sampler(SamplerKind::Owen, 1, {0, 0, 0})};
-        const Ray ray = camera.sample(at, Bands::rgb()).path[0].ray;
+        const Ray ray = camera.sample(at, Bands::rgb())[0].ray;
         const auto hit = world.bvh->intersect(ray);
         ASSERT_TRUE(hit);
         const V3d p(make_surface(world.scene, ray.direction, *hit).p);
@@ -250,7 +250,7 @@ TEST(Stability, ADefocusedHighlightVariesAsItsShareOfTheBlur) {
     test::Moments light;
     for (uint32_t i = 0; i < 200000; ++i) {
         const Sampler sampler(SamplerKind::Independent, 9, {0, 0, i});
-        const Ray ray = camera.sample({{0.5007f, 0.5004f}, sampler}, Bands::rgb()).path[0].ray;
+        const Ray ray = camera.sample({{0.5007f, 0.5004f}, sampler}, Bands::rgb())[0].ray;
         FilmSample out;
         light.add(double(tracer.radiance(ray, Bands::rgb(), sampler, false, out, stats)[0]));
     }

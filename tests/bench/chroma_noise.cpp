@@ -41,13 +41,13 @@ double parted_px(const Session& split, const RenderJob& job, V2i size, Rect crop
     for (uint32_t i = 0; i < 4096; ++i) {
         const Sampler sampler(job.sampler, job.seed, {crop.x0, crop.y0, i});
         const CameraSample seen = split.camera->sample({middle / V2f(size), sampler}, bands);
-        if (seen.count != 2) continue;
+        if (seen.size() != 2) continue;
         const auto on_plane = [&](const Ray& ray) {
             const float t =
                 (report.focus_m - (ray.origin - report.eye).dot(axis)) / ray.direction.dot(axis);
             return ray.origin + t * ray.direction;
         };
-        sum += (on_plane(seen.path[0].ray) - on_plane(seen.path[1].ray)).length2();
+        sum += (on_plane(seen[0].ray) - on_plane(seen[1].ray)).length2();
         ++count;
     }
     const double pixel_m =
@@ -150,7 +150,6 @@ int run(int argc, char** argv) {
     strategies.push_back({"shared", Chroma::Shared});
     strategies.push_back({"split", Chroma::Split});
     strategies.push_back({"single", Chroma::Single});
-    strategies.push_back({"two-level", Chroma::TwoLevel});
     strategies.push_back({"hero", Chroma::Hero});
     for (const float px : {0.03f, 0.1f, 0.3f, 1.f})
         strategies.push_back({fmt::format("tolerance {}", px), Chroma::Tolerance, px});

@@ -308,9 +308,9 @@ class Trial {
         tally_.lit += irradiance > 0;
     }
     static void check(const CameraSample& sample) {
-        require(sample.count >= 0 && sample.count <= 4, "a bad number of rays");
-        for (int i = 0; i < sample.count; ++i) {
-            const CameraPath& path = sample.path[size_t(i)];
+        require(sample.size() <= 4, "a bad number of rays");
+        for (size_t i = 0; i < sample.size(); ++i) {
+            const CameraPath& path = sample[i];
             const V3f sum = path.ray.origin + path.ray.direction;
             require(std::isfinite(sum.x + sum.y + sum.z), "a camera ray is not finite");
             require(std::fabs(path.ray.direction.length() - 1) < 1e-4f, "a camera ray's length");

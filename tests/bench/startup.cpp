@@ -102,7 +102,7 @@ double first_ray_ms(const SceneRequest& request, double (*now_ms)() = thread_cpu
             const Sampler sampler(SamplerKind::Owen, 0, {0, 0, 0});
             const Bands bands = session.observer.draw(0.5f);
             const CameraSample seen = session.camera->sample({V2f(0.5f, 0.5f), sampler}, bands);
-            if (seen.count > 0) static_cast<void>(session.bvh->intersect(seen.path[0].ray));
+            if (seen.size() > 0) static_cast<void>(session.bvh->intersect(seen[0].ray));
         },
         now_ms);
 }

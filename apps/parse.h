@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "core/bins.h"
-#include "core/film.h"
+#include "core/film/film.h"
+#include "core/spectrum/bins.h"
 #include "io/session.h"
 
 namespace petzval {

@@ -10,7 +10,7 @@
 #include "apps/camera_options.h"
 #include "apps/progress.h"
 #include "apps/spectral_options.h"
-#include "core/film.h"
+#include "core/film/film.h"
 #include "integrator/path.h"
 #include "integrator/render.h"
 #include "io/output.h"

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "camera/hero.h"
-#include "core/spectrum_table.h"
+#include "core/spectrum/spectrum_table.h"
 
 namespace petzval {
 namespace {

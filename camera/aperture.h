@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/math.h"
+#include "core/math/math.h"
 
 namespace petzval {
 

@@ -10,7 +10,7 @@
 
 #include "camera/lens_march.h"
 #include "camera/paraxial.h"
-#include "core/math.h"
+#include "core/math/math.h"
 
 namespace petzval {
 

@@ -4,10 +4,10 @@
 
 #include <array>
 
-#include "core/filter.h"
-#include "core/ray.h"
-#include "core/sampler.h"
-#include "core/spectrum.h"
+#include "core/math/ray.h"
+#include "core/sampling/filter.h"
+#include "core/sampling/sampler.h"
+#include "core/spectrum/bands.h"
 
 namespace petzval {
 

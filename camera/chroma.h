@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "core/lanes.h"
+#include "core/math/lanes.h"
 
 namespace petzval {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "camera/aperture.h"
-#include "core/distribution.h"
+#include "core/sampling/distribution.h"
 
 namespace petzval {
 

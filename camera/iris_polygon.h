@@ -5,9 +5,9 @@
 #include <span>
 
 #include "camera/trapezoids.h"
-#include "core/alias_table.h"
-#include "core/distribution.h"
-#include "core/warp.h"
+#include "core/sampling/alias_table.h"
+#include "core/sampling/distribution.h"
+#include "core/sampling/warp.h"
 
 namespace petzval {
 

@@ -6,7 +6,7 @@
 
 #include "camera/number.h"
 #include "camera/prescription.h"
-#include "core/spectrum_table.h"
+#include "core/spectrum/spectrum_table.h"
 
 namespace petzval {
 

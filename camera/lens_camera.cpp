@@ -2,7 +2,7 @@
 #include "camera/lens_camera.h"
 
 #include "camera/hero.h"
-#include "core/dispersion.h"
+#include "core/spectrum/glass.h"
 
 namespace petzval {
 namespace {

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "core/lanes.h"
+#include "core/math/lanes.h"
 
 namespace petzval {
 

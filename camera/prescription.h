@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/dispersion.h"
+#include "core/spectrum/glass.h"
 
 namespace petzval {
 

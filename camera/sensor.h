@@ -2,7 +2,7 @@
 // What of a sensor a picture uses.
 #pragma once
 
-#include "core/math.h"
+#include "core/math/math.h"
 
 namespace petzval {
 

@@ -6,7 +6,7 @@
 
 #include <optional>
 
-#include "core/dispersion.h"
+#include "core/spectrum/glass.h"
 
 namespace petzval {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "camera/lens_march.h"
-#include "core/math.h"
+#include "core/math/math.h"
 
 namespace petzval {
 

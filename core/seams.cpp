@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "core/warp.h"
+#include "core/sampling/warp.h"
 
 namespace petzval {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/bvh.h"
+#include "core/traversal/bvh.h"
 
 namespace petzval {
 

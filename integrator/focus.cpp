@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/surface.h"
+#include "core/shading/surface.h"
 
 namespace petzval {
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "camera/camera.h"
-#include "core/bvh.h"
+#include "core/traversal/bvh.h"
 
 namespace petzval {
 

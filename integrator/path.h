@@ -5,12 +5,12 @@
 #include <concepts>
 #include <optional>
 
-#include "core/bvh.h"
-#include "core/film.h"
-#include "core/light_choice.h"
-#include "core/sampler.h"
-#include "core/scene.h"
-#include "core/surface.h"
+#include "core/film/film.h"
+#include "core/light/light_choice.h"
+#include "core/sampling/sampler.h"
+#include "core/scene/scene.h"
+#include "core/shading/surface.h"
+#include "core/traversal/bvh.h"
 #include "integrator/stats.h"
 
 namespace petzval {

@@ -2,9 +2,9 @@
 // Definitions of PathTracer, for who instantiates it with a ray caster of its own.
 #pragma once
 
-#include "core/colour.h"
-#include "core/light_sampling.h"
-#include "core/surface.h"
+#include "core/light/light_sampling.h"
+#include "core/shading/surface.h"
+#include "core/spectrum/colour.h"
 #include "integrator/path.h"
 
 namespace petzval {

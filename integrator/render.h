@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "camera/camera.h"
-#include "core/colour.h"
-#include "core/film.h"
-#include "core/filter.h"
-#include "core/observer.h"
-#include "core/sampler.h"
+#include "core/film/film.h"
+#include "core/sampling/filter.h"
+#include "core/sampling/sampler.h"
+#include "core/spectrum/colour.h"
+#include "core/spectrum/observer.h"
 #include "integrator/path.h"
 #include "integrator/tiles.h"
 

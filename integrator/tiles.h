@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/film.h"
+#include "core/film/film.h"
 
 namespace petzval {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/spectrum_table.h"
+#include "core/spectrum/spectrum_table.h"
 #include "io/error.h"
 #include "io/json_parse.h"
 #include "io/lower.h"

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/dispersion.h"
+#include "core/spectrum/glass.h"
 
 namespace petzval {
 

@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/dispersion.h"
+#include "core/spectrum/glass.h"
 #include "io/camera_request.h"
 #include "io/gltf.h"
 #include "io/lens_setup.h"

@@ -11,7 +11,7 @@
 
 #include "camera/lens_camera.h"
 #include "camera/lens_focus.h"
-#include "core/math.h"
+#include "core/math/math.h"
 
 namespace petzval {
 

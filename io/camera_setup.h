@@ -2,8 +2,8 @@
 // From a plan and a scene to a camera: where it stands, what it is focused on, and its exposure.
 #pragma once
 
-#include "core/bvh.h"
-#include "core/scene.h"
+#include "core/scene/scene.h"
+#include "core/traversal/bvh.h"
 #include "io/camera_plan.h"
 #include "io/camera_report.h"
 

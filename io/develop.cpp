@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/colour.h"
+#include "core/spectrum/colour.h"
 #include "io/camera_report.h"
 #include "io/spectral_layout.h"
 

@@ -2,7 +2,7 @@
 // From a film to a picture with its layers and everything needed to make it again.
 #pragma once
 
-#include "core/film.h"
+#include "core/film/film.h"
 #include "integrator/render.h"
 #include "io/image.h"
 #include "io/session.h"

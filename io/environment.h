@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-#include "core/sky.h"
+#include "core/scene/sky.h"
 
 namespace petzval {
 

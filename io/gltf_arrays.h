@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "core/math.h"
+#include "core/math/math.h"
 #include "io/gltf_model.h"
 
 namespace petzval {

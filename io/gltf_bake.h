@@ -2,7 +2,7 @@
 // Meshes carried from one space into another.
 #pragma once
 
-#include "core/mesh.h"
+#include "core/scene/mesh.h"
 
 namespace petzval {
 

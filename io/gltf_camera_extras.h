@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "core/math.h"
+#include "core/math/math.h"
 
 namespace petzval {
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/scene.h"
+#include "core/scene/scene.h"
 #include "io/gltf.h"
 #include "io/gltf_model.h"
 #include "io/gltf_nodes.h"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/scene.h"
+#include "core/scene/scene.h"
 #include "io/gltf_spectral.h"
 #include "io/gltf_textures.h"
 

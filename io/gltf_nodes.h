@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/math.h"
+#include "core/math/math.h"
 #include "io/gltf_model.h"
 
 namespace tinygltf {

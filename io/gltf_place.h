@@ -2,7 +2,7 @@
 // The meshes of a glTF scene, placed.
 #pragma once
 
-#include "core/scene.h"
+#include "core/scene/scene.h"
 #include "io/gltf_materials.h"
 #include "io/gltf_model.h"
 #include "io/gltf_nodes.h"

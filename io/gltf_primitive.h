@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/mesh.h"
+#include "core/scene/mesh.h"
 #include "io/gltf_model.h"
 #include "io/gltf_tally.h"
 

@@ -2,7 +2,7 @@
 // Skinned meshes in the pose that the file's nodes stand in.
 #pragma once
 
-#include "core/mesh.h"
+#include "core/scene/mesh.h"
 #include "io/gltf_model.h"
 #include "io/gltf_nodes.h"
 

@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 
-#include "core/scene.h"
+#include "core/scene/scene.h"
 #include "io/gltf_tally.h"
 #include "io/json_cursor.h"
 

@@ -2,8 +2,8 @@
 // Normals and tangents that a glTF file leaves to the reader.
 #pragma once
 
-#include "core/mesh.h"
-#include "core/texture.h"
+#include "core/scene/mesh.h"
+#include "core/scene/texture.h"
 
 namespace petzval {
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/scene.h"
+#include "core/scene/scene.h"
 #include "io/gltf_model.h"
 #include "io/gltf_tally.h"
 #include "io/json_cursor.h"

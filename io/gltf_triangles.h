@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/mesh.h"
+#include "core/scene/mesh.h"
 
 namespace petzval {
 

@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/texture.h"
+#include "core/scene/texture.h"
 
 namespace petzval {
 

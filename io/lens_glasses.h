@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/dispersion.h"
+#include "core/spectrum/glass.h"
 #include "io/agf.h"
 
 namespace petzval {

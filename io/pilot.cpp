@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/sampler.h"
+#include "core/sampling/sampler.h"
 #include "io/image_diff.h"
 #include "io/stats_file.h"
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "core/spectrum.h"
+#include "core/spectrum/bands.h"
 #include "io/csv.h"
 #include "io/error.h"
 

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "camera/camera.h"
-#include "core/bvh.h"
-#include "core/light_choice.h"
-#include "core/scene.h"
+#include "core/light/light_choice.h"
+#include "core/scene/scene.h"
+#include "core/traversal/bvh.h"
 #include "io/camera_report.h"
 #include "io/gltf.h"
 #include "io/spectral_setup.h"

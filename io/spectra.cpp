@@ -9,8 +9,8 @@
 #include <string_view>
 #include <system_error>
 
-#include "core/colorimetry.h"
-#include "core/colour.h"
+#include "core/spectrum/colorimetry.h"
+#include "core/spectrum/colour.h"
 #include "io/assets.h"
 #include "io/csv.h"
 #include "io/error.h"

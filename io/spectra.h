@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "core/illuminant.h"
-#include "core/metal.h"
-#include "core/spectrum_table.h"
+#include "core/spectrum/illuminant.h"
+#include "core/spectrum/metal.h"
+#include "core/spectrum/spectrum_table.h"
 
 namespace petzval {
 

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "core/sensor_fit.h"
+#include "core/spectrum/sensor_fit.h"
 #include "io/error.h"
 #include "io/lower.h"
 #include "io/needs_wavelengths.h"

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/observer.h"
-#include "core/scene.h"
+#include "core/scene/scene.h"
+#include "core/spectrum/observer.h"
 
 namespace petzval {
 

@@ -7,7 +7,7 @@
 #include <cctype>
 #include <cmath>
 
-#include "core/bvh.h"
+#include "core/traversal/bvh.h"
 #include "io/atomic_file.h"
 #include "io/error.h"
 #include "io/stability_sweeps.h"

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "core/bsdf.h"
-#include "core/microfacet.h"
+#include "core/shading/bsdf.h"
+#include "core/shading/microfacet.h"
 #include "io/stability_sweeps.h"
 
 namespace petzval::stability {

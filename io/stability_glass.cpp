@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/spectrum_table.h"
+#include "core/spectrum/spectrum_table.h"
 #include "io/agf.h"
 #include "io/glasses.h"
 #include "io/stability_sweeps.h"

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "camera/iris.h"
-#include "core/alias_table.h"
-#include "core/distribution.h"
+#include "core/sampling/alias_table.h"
+#include "core/sampling/distribution.h"
 #include "io/stability_sweeps.h"
 
 namespace petzval::stability {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "core/film.h"
+#include "core/film/film.h"
 #include "io/stability_sweeps.h"
 
 namespace petzval::stability {

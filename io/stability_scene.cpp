@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "camera/thin_lens.h"
-#include "core/surface.h"
-#include "core/warp.h"
+#include "core/sampling/warp.h"
+#include "core/shading/surface.h"
 #include "io/stability_sweeps.h"
 #include "io/stability_world.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <type_traits>
 
-#include "core/sampler.h"
+#include "core/sampling/sampler.h"
 #include "io/stability.h"
 
 namespace petzval::stability {

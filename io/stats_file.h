@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "core/film.h"
+#include "core/film/film.h"
 #include "integrator/render.h"
 #include "io/session.h"
 

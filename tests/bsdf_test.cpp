@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/bsdf.h"
+#include "core/shading/bsdf.h"
 
 #include <gtest/gtest.h>
 
 #include <complex>
 #include <random>
 
-#include "core/microfacet.h"
+#include "core/shading/microfacet.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/jacobian.h"
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/bvh.h"
+#include "core/traversal/bvh.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "core/light_sampling.h"
+#include "core/light/light_sampling.h"
+#include "core/sampling/warp.h"
 #include "core/seams.h"
-#include "core/surface.h"
-#include "core/warp.h"
+#include "core/shading/surface.h"
 #include "tests/support/scenes.h"
 
 namespace petzval {

@@ -5,8 +5,8 @@
 #include <functional>
 #include <sstream>
 
-#include "core/colorimetry.h"
-#include "core/colour.h"
+#include "core/spectrum/colorimetry.h"
+#include "core/spectrum/colour.h"
 #include "io/spectra.h"
 #include "io/spectral_layout.h"
 #include "tests/support/cli_spectral.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/colorimetry.h"
+#include "core/spectrum/colorimetry.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/colour.h"
+#include "core/spectrum/colour.h"
 #include "io/assets.h"
 #include "io/error.h"
 #include "tests/support/pictures.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/distribution.h"
-#include "core/alias_table.h"
+#include "core/sampling/distribution.h"
+#include "core/sampling/alias_table.h"
 
 #include "tests/support/chi_square.h"
 

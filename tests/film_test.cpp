@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/film.h"
+#include "core/film/film.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/filter.h"
+#include "core/sampling/filter.h"
 
 #include "tests/support/chi_square.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/colour.h"
+#include "core/spectrum/colour.h"
 #include "tests/support/statistics.h"
 
 namespace petzval {

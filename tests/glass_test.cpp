@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "camera/lens.h"
-#include "core/dispersion.h"
-#include "core/spectrum_table.h"
+#include "core/spectrum/glass.h"
+#include "core/spectrum/spectrum_table.h"
 #include "io/csv.h"
 #include "io/glasses.h"
 

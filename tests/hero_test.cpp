@@ -8,7 +8,7 @@
 
 #include "camera/aberrated_lens.h"
 #include "camera/lens_camera.h"
-#include "core/observer.h"
+#include "core/spectrum/observer.h"
 #include "tests/support/observers.h"
 #include "tests/support/statistics.h"
 

@@ -5,7 +5,7 @@
 
 #include <map>
 
-#include "core/sampler.h"
+#include "core/sampling/sampler.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/clip.h"
 #include "tests/support/complaint.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/light_choice.h"
+#include "core/light/light_choice.h"
 
-#include "core/light_sampling.h"
+#include "core/light/light_sampling.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/lamp.h"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/light_sampling.h"
+#include "core/light/light_sampling.h"
 
-#include "core/bvh.h"
-#include "core/emission.h"
-#include "core/scene.h"
-#include "core/surface.h"
+#include "core/light/emission.h"
+#include "core/scene/scene.h"
+#include "core/shading/surface.h"
+#include "core/traversal/bvh.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/jacobian.h"
 #include "tests/support/lamp.h"

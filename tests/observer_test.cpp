@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/observer.h"
+#include "core/spectrum/observer.h"
 
 #include <gtest/gtest.h>
 
-#include "core/colorimetry.h"
-#include "core/colour.h"
-#include "core/sensor_fit.h"
+#include "core/spectrum/colorimetry.h"
+#include "core/spectrum/colour.h"
+#include "core/spectrum/sensor_fit.h"
 #include "io/spectra.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/observers.h"

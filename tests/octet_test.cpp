@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/octet.h"
+#include "core/scene/texel_block.h"
 
 #include <gtest/gtest.h>
 

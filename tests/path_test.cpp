@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/colour.h"
+#include "core/spectrum/colour.h"
 #include "tests/support/scenes.h"
 
 namespace petzval {

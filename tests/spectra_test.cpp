@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "core/colorimetry.h"
-#include "core/colour.h"
+#include "core/spectrum/colorimetry.h"
+#include "core/spectrum/colour.h"
 #include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 

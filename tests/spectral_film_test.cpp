@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/spectral_film.h"
+#include "core/film/spectral_film.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/film.h"
+#include "core/film/film.h"
 #include "tests/support/statistics.h"
 
 namespace petzval {

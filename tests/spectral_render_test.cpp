@@ -5,8 +5,8 @@
 #include <cstring>
 
 #include "camera/thin_lens.h"
-#include "core/colorimetry.h"
-#include "core/colour.h"
+#include "core/spectrum/colorimetry.h"
+#include "core/spectrum/colour.h"
 #include "integrator/executor.h"
 #include "integrator/render.h"
 #include "io/glasses.h"

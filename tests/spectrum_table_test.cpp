@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/spectrum_table.h"
+#include "core/spectrum/spectrum_table.h"
 
 #include <gtest/gtest.h>
 

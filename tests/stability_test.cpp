@@ -11,8 +11,8 @@
 #include <sstream>
 
 #include "camera/lens_camera.h"
-#include "core/bsdf.h"
-#include "core/surface.h"
+#include "core/shading/bsdf.h"
+#include "core/shading/surface.h"
 #include "integrator/path.h"
 #include "io/csv.h"
 #include "io/lens_file.h"

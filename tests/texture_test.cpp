@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/texture.h"
+#include "core/scene/texture.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "core/colour.h"
+#include "core/spectrum/colour.h"
 #include "tests/support/statistics.h"
 
 namespace petzval {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/warp.h"
+#include "core/sampling/warp.h"
 
 #include "tests/support/chi_square.h"
 #include "tests/support/jacobian.h"

@@ -3,12 +3,12 @@
 // about (bounced rays), "near" ones stay in a neighbourhood (camera rays of a tile).
 #include <benchmark/benchmark.h>
 
-#include "core/film.h"
-#include "core/filter.h"
-#include "core/light_choice.h"
-#include "core/light_sampling.h"
-#include "core/sampler.h"
-#include "core/warp.h"
+#include "core/film/film.h"
+#include "core/light/light_choice.h"
+#include "core/light/light_sampling.h"
+#include "core/sampling/filter.h"
+#include "core/sampling/sampler.h"
+#include "core/sampling/warp.h"
 #include "tests/support/lamp.h"
 #include "tests/support/statistics.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prints core/ggx_albedo_table.h: the directional albedo of single-scattering GGX, by quadrature
-// over the visible normals. Run it as: make_ggx_albedo > core/ggx_albedo_table.h
+// Prints core/shading/ggx_albedo_table.h: the directional albedo of single-scattering GGX, by
+// quadrature over the visible normals. Run it as: make_ggx_albedo > core/shading/ggx_albedo_table.h
 #include <cmath>
 #include <cstdio>
 

@@ -15,7 +15,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "core/colorimetry.h"
+#include "core/spectrum/colorimetry.h"
 #include "io/spectra.h"
 
 namespace petzval {

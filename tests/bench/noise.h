@@ -9,8 +9,8 @@
 #include <cmath>
 #include <vector>
 
-#include "core/colour.h"
-#include "core/film.h"
+#include "core/film/film.h"
+#include "core/spectrum/colour.h"
 #include "integrator/executor.h"
 #include "integrator/render.h"
 #include "io/stats_file.h"

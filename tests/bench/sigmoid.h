@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "core/colorimetry.h"
-#include "core/spectrum.h"
+#include "core/spectrum/bands.h"
+#include "core/spectrum/colorimetry.h"
 
 namespace petzval::bench {
 

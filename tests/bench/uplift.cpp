@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares two ways from linear sRGB to reflectances: the linear basis that the renderer has
-// (core/spectrum.h), and sigmoids of polynomials (tests/bench/sigmoid.h). Prints tables.
+// (core/spectrum/bands.h), and sigmoids of polynomials (tests/bench/sigmoid.h). Prints tables.
 //
 //   uplift
 #include <benchmark/benchmark.h>
@@ -11,8 +11,8 @@
 #include <functional>
 #include <numeric>
 
-#include "core/colour.h"
-#include "core/texture.h"
+#include "core/scene/texture.h"
+#include "core/spectrum/colour.h"
 #include "io/spectra.h"
 #include "tests/bench/sigmoid.h"
 #include "tests/support/observers.h"

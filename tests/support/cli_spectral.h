@@ -4,9 +4,9 @@
 
 #include <functional>
 
-#include "core/colorimetry.h"
-#include "core/observer.h"
-#include "core/spectrum_table.h"
+#include "core/spectrum/colorimetry.h"
+#include "core/spectrum/observer.h"
+#include "core/spectrum/spectrum_table.h"
 #include "io/spectra.h"
 #include "tests/support/cli.h"
 

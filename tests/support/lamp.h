@@ -2,7 +2,7 @@
 // A lamp of one triangle, for tests of lights.
 #pragma once
 
-#include "core/scene.h"
+#include "core/scene/scene.h"
 
 namespace petzval::test {
 

@@ -6,9 +6,9 @@
 #include <memory>
 #include <utility>
 
-#include "core/bvh.h"
-#include "core/light_choice.h"
-#include "core/scene.h"
+#include "core/light/light_choice.h"
+#include "core/scene/scene.h"
+#include "core/traversal/bvh.h"
 
 namespace petzval::test {
 

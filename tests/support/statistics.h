@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/math.h"
+#include "core/math/math.h"
 
 namespace petzval::test {
 

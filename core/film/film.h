@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where samples add up. Double sums: a pixel's value does not depend on how its samples are grouped
+// beyond rounding far below float's.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "core/film/spectral_film.h"
+#include "core/math/math.h"
+#include "core/spectrum/bands.h"
+
+namespace petzval {
+
+/// Layers beside the picture: what the camera sees first at each sample.
+enum class Aov : uint8_t { Albedo, Normal, Depth, Position, Uv, Emission, Cost, Count };
+
+/// Name and channels of a layer, as they stand in files and on the command line.
+struct AovInfo {
+    std::string_view name;
+    std::array<std::string_view, 3> channels;
+    int channel_count;
+};
+[[nodiscard]] const AovInfo& aov_info(Aov);
+[[nodiscard]] std::optional<Aov> aov_from_name(std::string_view);
+
+/// Half-open rectangle of pixels.
+struct Rect {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+    [[nodiscard]] int width() const { return x1 - x0; }
+    [[nodiscard]] int height() const { return y1 - y0; }
+    bool operator==(const Rect&) const = default;
+};
+
+/// One finished sample of a pixel.
+struct FilmSample {
+    Rgb colour;
+    float alpha = 0.f;
+    bool hit = false;                                      ///< the layers below hold something
+    std::array<V3f, static_cast<size_t>(Aov::Count)> aov;  ///< unset where nothing was hit
+};
+
+class Film {
+  public:
+    /// crop: the part of a full frame that is kept; pixels are named by full-frame coordinates.
+    /// bins: keep a spectral film beside RGB.
+    Film(V2i full_size, Rect crop, std::vector<Aov> aovs, std::optional<Bins> bins = {});
+
+    /// A sample that is not finite is counted, the first is remembered, and nothing is added.
+    void add(int x, int y, uint32_t index, const FilmSample&);
+
+    /// What a spectral film keeps of a sample beside FilmSample.
+    struct SpectralSample {
+        uint32_t scramble;  ///< < kScrambles
+        f4 radiance;
+        V3f xyz;
+    };
+    /// The same for a film with bins.
+    void add(int x, int y, uint32_t index, const FilmSample&, const SpectralSample&, const Bands&);
+
+    [[nodiscard]] V2i full_size() const { return full_size_; }
+    [[nodiscard]] Rect crop() const { return crop_; }
+    [[nodiscard]] const std::vector<Aov>& aovs() const { return aovs_; }
+    /// Bins, XYZ and errors; nothing unless the film was made with bins.
+    [[nodiscard]] const std::optional<SpectralFilm>& spectral() const { return spectral_; }
+    /// Index of a pixel of the crop among spectral()'s.
+    [[nodiscard]] size_t offset(int x, int y) const {
+        return static_cast<size_t>(y - crop_.y0) * crop_.width() + (x - crop_.x0);
+    }
+    [[nodiscard]] uint32_t sample_count(int x, int y) const { return pixel(x, y).count; }
+    /// Samples of a pixel that were not finite.
+    [[nodiscard]] uint32_t bad_count(int x, int y) const { return pixel(x, y).bad; }
+    /// Mean linear RGB in nits, and alpha; zero where there is no sample.
+    [[nodiscard]] V4f colour(int x, int y) const;
+    /// Mean over the samples that hit something; zero where none did.
+    [[nodiscard]] V3f aov(int x, int y, size_t layer) const;
+
+    struct BadSample {
+        int x, y;
+        uint32_t index;
+    };
+    /// Samples that were not finite, and the first in scan order.
+    [[nodiscard]] uint64_t bad_count() const;
+    [[nodiscard]] std::optional<BadSample> first_bad() const;
+
+  private:
+    struct Pixel {
+        std::array<double, 4> sum{};
+        uint32_t count = 0, hits = 0, bad = 0, first_bad_index = 0;
+    };
+    [[nodiscard]] bool accept(size_t at, uint32_t index, const FilmSample&, float fault);
+    [[nodiscard]] const Pixel& pixel(int x, int y) const { return pixels_[offset(x, y)]; }
+
+    V2i full_size_;
+    Rect crop_;
+    std::vector<Aov> aovs_;
+    std::vector<Pixel> pixels_;
+    std::vector<std::array<double, 3>> aov_sums_;  ///< pixel-major
+    std::optional<SpectralFilm> spectral_;
+};
+
+}  // namespace petzval

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/light/light_choice.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/light/light_sampling.h"
+
+namespace petzval {
+namespace {
+
+// The sum of all must stay finite, however bright the file says a lamp is.
+float finite(const Scene& scene, float power) {
+    const float most = std::numeric_limits<float>::max() / static_cast<float>(scene.lights.size());
+    return power <= most ? power : most;
+}
+
+struct BoundsOf {
+    const Scene& scene;
+    float power;  ///< light_power, above 0
+
+    std::optional<LightBounds> operator()(const PointLight& light) const {
+        return LightBounds{Box3f(light.position), V3f(0, 0, 1), kPi, kPi / 2, false, power};
+    }
+    std::optional<LightBounds> operator()(const SpotLight& light) const {
+        const float inner = std::acos(light.cos_inner), outer = std::acos(light.cos_outer);
+        return LightBounds{Box3f(light.position), light.direction, inner,
+                           outer - inner,         false,           power};
+    }
+    std::optional<LightBounds> operator()(const TriangleLight& light) const {
+        const auto corner = triangle_corners(scene, light.instance, light.triangle);
+        Box3f box;
+        for (const V3f& c : corner) box.extendBy(c);
+        const Instance& instance = scene.instances[light.instance];
+        const bool two_sided = scene.materials[scene.meshes[instance.mesh].material].double_sided;
+        const V3f front = (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
+        return LightBounds{box, instance.flips ? -front : front, 0, kPi / 2, two_sided, power};
+    }
+    std::optional<LightBounds> operator()(const SunLight&) const { return std::nullopt; }
+    std::optional<LightBounds> operator()(const SkyLight&) const { return std::nullopt; }
+};
+
+// Lux on a surface that faces a light outside the tree.
+float illuminance(const Scene& scene, const Light& light) {
+    if (const auto* sun = std::get_if<SunLight>(&light)) return luminance(sun->illuminance_lx);
+    return kPi * scene.sky.average_luminance();
+}
+
+}  // namespace
+
+LightChoice::LightChoice(const Scene& scene, LightChoiceKind kind) {
+    std::vector<float> weights;
+    weights.reserve(scene.lights.size());
+    for (const Light& light : scene.lights) {
+        const float power = finite(scene, light_power(scene, light));
+        weights.push_back(kind == LightChoiceKind::Uniform && power > 0.f ? 1.f : power);
+    }
+    if (kind == LightChoiceKind::Tree) plant(scene, weights);
+    if (std::any_of(weights.begin(), weights.end(), [](float w) { return w > 0.f; }))
+        choice_ = Piecewise1D(weights);
+}
+
+// Lights that stand somewhere go from the weights into the tree.
+void LightChoice::plant(const Scene& scene, std::span<float> power) {
+    std::vector<std::optional<LightBounds>> bounds(power.size());
+    float outside = 0;
+    for (size_t i = 0; i < power.size(); ++i) {
+        if (!(power[i] > 0.f)) continue;
+        bounds[i] = std::visit(BoundsOf{scene, power[i]}, scene.lights[i]);
+        if (!bounds[i]) outside += finite(scene, illuminance(scene, scene.lights[i]));
+    }
+    if (std::none_of(bounds.begin(), bounds.end(), [](const auto& b) { return b.has_value(); }))
+        return;
+    for (size_t i = 0; i < power.size(); ++i)
+        if (bounds[i]) power[i] = 0.f;
+    tree_.emplace(bounds, outside);
+}
+
+std::optional<LightChoice::Pick> LightChoice::pick(float u, const LightReceiver& receiver) const {
+    float probability = 1.f;
+    if (tree_) {
+        const auto pick = tree_->pick(u, receiver);
+        if (!pick) return std::nullopt;
+        if (pick->light != LightTree::kOutside) return Pick{pick->light, pick->probability};
+        u = pick->u;
+        probability = pick->probability;
+    }
+    if (choice_.size() == 0) return std::nullopt;
+    const Piecewise1D::Draw drawn = choice_.sample(u);
+    return Pick{drawn.cell, probability * drawn.probability};
+}
+
+float LightChoice::probability(uint32_t light, const LightReceiver& receiver) const {
+    const float among = choice_.size() == 0 ? 0.f : choice_.probability(light);
+    if (!tree_) return among;
+    return among > 0.f ? tree_->probability(LightTree::kOutside, receiver) * among
+                       : tree_->probability(light, receiver);
+}
+
+}  // namespace petzval

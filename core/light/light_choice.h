@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which light to sample at a path vertex.
+#pragma once
+
+#include <optional>
+
+#include "core/light/light_tree.h"
+#include "core/sampling/distribution.h"
+#include "core/scene/scene.h"
+
+namespace petzval {
+
+/// Power: in proportion to light_power. Uniform: the same for every light that has power. Tree: in
+/// proportion to what light could do at the receiver, by a LightTree over the lights that stand
+/// somewhere; sky and suns share its first choice by their illuminance, and are chosen among by
+/// power.
+enum class LightChoiceKind { Power, Uniform, Tree };
+
+class LightChoice {
+  public:
+    /// The scene must be finished. Every light that has power gets a probability above 0, up to
+    /// 2^23 lights.
+    LightChoice(const Scene&, LightChoiceKind);
+
+    struct Pick {
+        uint32_t light;  ///< index into the scene's lights
+        float probability;
+    };
+    /// u in [0, 1). Nothing where the scene has no light, or no light that was drawn can reach the
+    /// receiver.
+    [[nodiscard]] std::optional<Pick> pick(float u, const LightReceiver&) const;
+    /// Of picking the light; 0 for one without power, or that cannot reach the receiver.
+    [[nodiscard]] float probability(uint32_t light, const LightReceiver&) const;
+
+  private:
+    void plant(const Scene&, std::span<float> power);
+
+    Piecewise1D choice_;  ///< where there is a tree, among the lights outside it
+    std::optional<LightTree> tree_;
+};
+
+}  // namespace petzval

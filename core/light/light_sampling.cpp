@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/light/light_sampling.h"
+
+#include <algorithm>
+
+#include "core/light/emission.h"
+#include "core/sampling/warp.h"
+#include "core/scene/coverage.h"
+#include "core/scene/scene.h"
+
+namespace petzval {
+namespace {
+
+// Angular attenuation: KHR_lights_punctual, "Inner and Outer Cone Angles".
+float spot_width(const SpotLight& light) {
+    return std::max(0.001f, light.cos_inner - light.cos_outer);
+}
+float spot_falloff(const SpotLight& light, float cosine) {
+    return sqr(std::clamp((cosine - light.cos_outer) / spot_width(light), 0.f, 1.f));
+}
+
+template <class L>
+std::optional<LightSample> sample_at(const Scene& scene, const L& light, const V3f& p,
+                                     const Bands& bands) {
+    const V3f to_light = light.position - p;
+    const float distance2 = to_light.dot(to_light);
+    if (!(distance2 > 0.f)) return std::nullopt;
+    return LightSample{to_light / std::sqrt(distance2),
+                       light.position,
+                       false,
+                       uplift_radiance(light.intensity_cd * (1.f / distance2), bands,
+                                       scene.illuminant(light.illuminant)),
+                       1.f,
+                       true};
+}
+
+std::optional<LightSample> sample(const Scene& scene, const PointLight& light, const V3f& p, V2f,
+                                  const Bands& bands) {
+    return sample_at(scene, light, p, bands);
+}
+
+std::optional<LightSample> sample(const Scene& scene, const SpotLight& light, const V3f& p, V2f,
+                                  const Bands& bands) {
+    auto drawn = sample_at(scene, light, p, bands);
+    if (!drawn) return drawn;
+    const float falloff = spot_falloff(light, -drawn->direction.dot(light.direction));
+    if (falloff == 0.f) return std::nullopt;
+    drawn->radiance *= falloff;
+    return drawn;
+}
+
+std::optional<LightSample> sample(const Scene& scene, const SunLight& light, const V3f&, V2f,
+                                  const Bands& bands) {
+    const f4 irradiance =
+        uplift_radiance(light.illuminance_lx, bands, scene.illuminant(light.illuminant));
+    return LightSample{-light.direction, {}, true, irradiance, 1.f, true};
+}
+
+// How far from the triangle's plane a point of it may seem to lie: the roundings of its own
+// coordinates (interpolation, placement), and those of the ray's, which grow with the distance.
+V3f plane_error(const Scene& scene, const TriangleLight& light, const V3f& target,
+                const V3f& to_light, const std::array<V3f, 3>& corner) {
+    const V3f corners = abs(corner[0]) + abs(corner[1]) + abs(corner[2]) + abs(target);
+    V3f error = (corners + abs(to_light)) * rounding_bound(8);
+    if (scene.instances[light.instance].identity) return error;
+    const M44f& m = scene.instances[light.instance].to_world;
+    return error + abs(V3f(m[3][0], m[3][1], m[3][2])) * rounding_bound(8);
+}
+
+std::optional<LightSample> sample(const Scene& scene, const TriangleLight& light, const V3f& p,
+                                  V2f u, const Bands& bands) {
+    const auto corner = triangle_corners(scene, light.instance, light.triangle);
+    const V3f edge1 = corner[1] - corner[0], edge2 = corner[2] - corner[0];
+    const V3f cross = edge1.cross(edge2);  // twice the area long
+    const V2f b = uniform_triangle(u);
+    const V3f target = corner[0] + edge1 * b.x + edge2 * b.y;
+    const V3f to_light = target - p;
+    const float distance2 = to_light.dot(to_light), facing = -cross.dot(to_light);
+    const float distance = std::sqrt(distance2);
+    const float pdf = 2.f * distance2 * distance / std::fabs(facing);
+    if (!(pdf > 0.f && pdf < kInfinity)) return std::nullopt;
+
+    const bool front = (facing > 0.f) != scene.instances[light.instance].flips;
+    const Rgb emitted = emitted_radiance(scene, light.instance, light.triangle, b, front) *
+                        coverage(scene, light.instance, light.triangle, b);
+    if (!(hmax(emitted.v) > 0.f)) return std::nullopt;
+    const V3f error = plane_error(scene, light, target, to_light, corner);
+    return LightSample{to_light / distance,
+                       offset_origin(target, error, unit(cross), -to_light),
+                       false,
+                       uplift_radiance(emitted, bands, white_of(scene, light.instance)),
+                       pdf,
+                       false};
+}
+
+std::optional<LightSample> sample(const Scene& scene, const SkyLight&, const V3f&, V2f u,
+                                  const Bands& bands) {
+    if (scene.sky.black()) return std::nullopt;
+    const Sky::Draw drawn = scene.sky.sample(u);
+    return LightSample{
+        drawn.direction, {},   true, uplift_radiance(scene.sky.radiance(drawn.direction), bands),
+        drawn.pdf,       false};
+}
+
+float triangle_area(const Scene& scene, const TriangleLight& light) {
+    const auto corner = triangle_corners(scene, light.instance, light.triangle);
+    return 0.5f * (corner[1] - corner[0]).cross(corner[2] - corner[0]).length();
+}
+
+// Area of the scene's silhouette from afar, bounded by its sphere; of a unit sphere where the scene
+// has no extent, so that its lights keep their proportions.
+float silhouette_m2(const Scene& scene) {
+    const float radius2 = scene.bounds.isEmpty() ? 0.f : 0.25f * scene.bounds.size().length2();
+    return kPi * (radius2 > 0.f ? radius2 : 1.f);
+}
+
+// Mean luminance over 16 points, one in each of 16 equal parts of the triangle. Texels may shine
+// between the points: what they miss keeps a thousandth of the untextured value.
+float mean_emission(const Scene& scene, const TriangleLight& light) {
+    const Mesh& mesh = scene.meshes[scene.instances[light.instance].mesh];
+    const Material& material = scene.materials[mesh.material];
+    const float untextured = luminance(material.emissive);
+    if (!material.emissive_texture.present() && !material.cutout()) return untextured;
+    float sum = 0.f;
+    for (int i = 0; i < 16; ++i) {
+        const V2f u((i / 4 + 0.5f) / 4, (i % 4 + 0.5f) / 4);
+        const V2f b = uniform_triangle(u);
+        sum += luminance(emitted_radiance(scene, light.instance, light.triangle, b, true)) *
+               coverage(scene, light.instance, light.triangle, b);
+    }
+    return std::max(sum / 16, 1e-3f * untextured);
+}
+
+float power(const Scene&, const PointLight& light) {
+    return 4 * kPi * luminance(light.intensity_cd);
+}
+
+// The integral of the falloff over the sphere; the narrowest cones saturate beyond the axis.
+float power(const Scene&, const SpotLight& light) {
+    const float width = spot_width(light), reach = 1.f - light.cos_outer;
+    const float ramp = std::min(reach, width);
+    const float integral = ramp * sqr(ramp / width) / 3 + (reach - ramp);
+    return 2 * kPi * integral * luminance(light.intensity_cd);
+}
+
+float power(const Scene& scene, const SunLight& light) {
+    return luminance(light.illuminance_lx) * silhouette_m2(scene);
+}
+
+float power(const Scene& scene, const TriangleLight& light) {
+    const Mesh& mesh = scene.meshes[scene.instances[light.instance].mesh];
+    const float area = triangle_area(scene, light);
+    if (!(area > 0.f)) return 0.f;
+    const float sides = scene.materials[mesh.material].double_sided ? 2.f : 1.f;
+    return sides * kPi * area * mean_emission(scene, light);
+}
+
+float power(const Scene& scene, const SkyLight&) {
+    return 4 * kPi * scene.sky.average_luminance() * silhouette_m2(scene);
+}
+
+}  // namespace
+
+std::optional<LightSample> sample_light(const Scene& scene, const Light& light, const V3f& p, V2f u,
+                                        const Bands& bands) {
+    return std::visit([&](const auto& kind) { return sample(scene, kind, p, u, bands); }, light);
+}
+
+float triangle_light_pdf(const Scene& scene, const TriangleLight& light, float distance_squared,
+                         float cosine) {
+    return distance_squared / (std::fabs(cosine) * triangle_area(scene, light));
+}
+
+float light_power(const Scene& scene, const Light& light) {
+    return std::visit([&](const auto& kind) { return power(scene, kind); }, light);
+}
+
+}  // namespace petzval

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// A ray and what it hits: the records that bvh, camera and integrator exchange.
+#pragma once
+
+#include "core/math/math.h"
+
+namespace petzval {
+
+struct Ray {
+    V3f origin;
+    V3f direction;  ///< unit length for rays that measure distance; t counts in its length
+    float t_max = kInfinity;
+    uint32_t coin = 0;  ///< decides BLEND coverage: the same coin and triangle, the same answer
+};
+
+/// A triangle hit, as the traversal reports it. 24 bytes; Surface (core/shading/surface.h) has the
+/// rest.
+struct Hit {
+    float t;
+    V2f barycentric;  ///< weights of the second and third vertex
+    uint32_t instance, triangle;
+};
+
+}  // namespace petzval

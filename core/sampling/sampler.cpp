@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/sampling/sampler.h"
+
+namespace petzval {
+namespace {
+
+// Eight words side by side.
+typedef uint32_t u32x8 __attribute__((vector_size(32)));
+typedef int32_t i32x8 __attribute__((vector_size(32)));
+typedef float f8 __attribute__((vector_size(32)));
+
+u32x8 reverse_bits(u32x8 a) {
+    typedef uint8_t u8x32 __attribute__((vector_size(32)));
+    constexpr u8x32 swapped{3,  2,  1,  0,  7,  6,  5,  4,  11, 10, 9,  8,  15, 14, 13, 12,
+                            19, 18, 17, 16, 23, 22, 21, 20, 27, 26, 25, 24, 31, 30, 29, 28};
+    a = (u32x8)__builtin_shuffle((u8x32)a, swapped);
+    a = ((a >> 4) & 0x0f0f0f0fu) | ((a & 0x0f0f0f0fu) << 4);
+    a = ((a >> 2) & 0x33333333u) | ((a & 0x33333333u) << 2);
+    return ((a >> 1) & 0x55555555u) | ((a & 0x55555555u) << 1);
+}
+
+f8 to_unit_floats(u32x8 bits) {
+    return __builtin_convertvector((i32x8)(bits >> 8), f8) * 0x1p-24f;
+}
+
+// Nested uniform scrambling (Owen 1995) of a bit-reversed word: each bit is flipped by a hash of
+// the bits below it. Laine and Karras 2011, with the constants of Vegdahl 2021, "Building a Better
+// LK Hash".
+template <class Word>
+Word scramble_reversed(Word a, Word seed) {
+    a ^= a * 0x3d20adeau;
+    a += seed;
+    a *= (seed >> 16) | 1u;
+    a ^= a * 0x05526c56u;
+    a ^= a * 0x53a22864u;
+    return a;
+}
+
+// sobol_1 with the output bits reversed: row k of Pascal's triangle modulo 2 for each set bit k.
+// By Lucas's theorem the matrix is a Kronecker power, so five masked shifts apply it.
+template <class Word>
+Word pascal_mod_2(Word a) {
+    a ^= (a & 0xaaaaaaaau) >> 1;
+    a ^= (a & 0xccccccccu) >> 2;
+    a ^= (a & 0xf0f0f0f0u) >> 4;
+    a ^= (a & 0xff00ff00u) >> 8;
+    return a ^ ((a & 0xffff0000u) >> 16);
+}
+
+}  // namespace
+
+uint32_t sobol_0(uint32_t index) {
+    return reverse_bits(index);
+}
+
+uint32_t sobol_1(uint32_t index) {
+    return reverse_bits(pascal_mod_2(index));
+}
+
+uint32_t Sampler::dimension_key(Dim dim, uint32_t vertex) const {
+    return hash32(key_ + vertex * static_cast<uint32_t>(Dim::Count) + static_cast<uint32_t>(dim));
+}
+
+// Padding as in Burley 2020, "Practical Hash-based Owen Scrambling": the index is shuffled by a
+// scramble of its own in each dimension, which keeps every power-of-two block together.
+template <class Word>
+std::pair<Word, Word> Sampler::bits(Word key) const {
+    if (kind_ == SamplerKind::Independent) {
+        const Word first = hash_words(key ^ hash32(index_ + 0x9e3779b9u));
+        return {first, hash_words(first + 0x68bc21ebu)};
+    }
+    const Word index = reverse_bits(scramble_reversed(Word{} + reversed_, key));
+    const Word key_x = hash_words(key ^ 0x2c1b3c6du), key_y = hash_words(key ^ 0x297a2d39u);
+    if (kind_ == SamplerKind::Sobol)
+        return {reverse_bits(index) ^ key_x, reverse_bits(pascal_mod_2(index)) ^ key_y};
+    return {reverse_bits(scramble_reversed(index, key_x)),
+            reverse_bits(scramble_reversed(pascal_mod_2(index), key_y))};
+}
+
+V2f Sampler::get2(Dim dim, uint32_t vertex) const {
+    const auto [x, y] = bits(dimension_key(dim, vertex));
+    return {to_unit_float(x), to_unit_float(y)};
+}
+
+float Sampler::get1(Dim dim, uint32_t vertex) const {
+    return to_unit_float(bits(dimension_key(dim, vertex)).first);
+}
+
+Sampler::VertexNumbers Sampler::at_vertex(uint32_t vertex) const {
+    constexpr auto number = [](Dim dim) { return static_cast<uint32_t>(dim); };
+    constexpr u32x8 dims{number(Dim::BsdfLobe), number(Dim::Bsdf), number(Dim::LightPick),
+                         number(Dim::LightPoint), number(Dim::Count) + number(Dim::Roulette)};
+    const auto [bits_x, bits_y] = bits(hash_words(dims + (key_ + vertex * number(Dim::Count))));
+    const f8 x = to_unit_floats(bits_x), y = to_unit_floats(bits_y);
+    return {x[0], x[2], x[4], {x[1], y[1]}, {x[3], y[3]}};
+}
+
+uint32_t Sampler::get_bits(Dim dim, uint32_t vertex) const {
+    return hash32(dimension_key(dim, vertex), index_);
+}
+
+}  // namespace petzval

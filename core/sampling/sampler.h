@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Random numbers as a pure function of (seed, x, y, sample index, named dimension).
+#pragma once
+
+#include <utility>
+
+#include "core/math/math.h"
+
+namespace petzval {
+
+/// Owen: Sobol points, nested uniform scrambling. Sobol: the same points, digits shifted only.
+/// Independent: a hash. Every kind pads: each dimension has a shuffled 2-D sequence of its own.
+enum class SamplerKind { Owen, Sobol, Independent };
+
+/// Every use of a random number has a name, so that adding one leaves the others as they were.
+enum class Dim : uint32_t {
+    Film,
+    Lens,
+    Wavelength,
+    Coverage,
+    BsdfLobe,
+    Bsdf,
+    LightPick,
+    LightPoint,
+    Roulette,
+    LensLane,
+    Count
+};
+
+struct SampleId {
+    int32_t x, y;    ///< pixel of the full frame, whatever the crop
+    uint32_t index;  ///< 0 is the first sample; a shorter render is a prefix of a longer one
+};
+
+/// The bits of a word, lowest first.
+[[nodiscard]] constexpr uint32_t reverse_bits(uint32_t a) {
+    a = __builtin_bswap32(a);
+    a = ((a >> 4) & 0x0f0f0f0fu) | ((a & 0x0f0f0f0fu) << 4);
+    a = ((a >> 2) & 0x33333333u) | ((a & 0x33333333u) << 2);
+    return ((a >> 1) & 0x55555555u) | ((a & 0x55555555u) << 1);
+}
+
+class Sampler {
+  public:
+    Sampler(SamplerKind kind, uint32_t seed, SampleId id)
+        : kind_(kind),
+          key_(hash32(hash32(hash32(static_cast<uint32_t>(id.x)) +
+                             0x9e3779b9u * static_cast<uint32_t>(id.y)),
+                      seed)),
+          index_(id.index),
+          reversed_(reverse_bits(id.index)) {}
+
+    /// A number in [0, 1) for the named use at a path vertex (0: the camera).
+    [[nodiscard]] float get1(Dim dim, uint32_t vertex = 0) const;
+    /// A point of [0, 1)^2, stratified in both coordinates together.
+    [[nodiscard]] V2f get2(Dim dim, uint32_t vertex = 0) const;
+    /// What a path asks at a vertex, in one go: the numbers that get1 and get2 give for BsdfLobe,
+    /// Bsdf, LightPick and LightPoint at this vertex, and for Roulette at the next.
+    struct VertexNumbers {
+        float bsdf_lobe, light_pick, roulette_after;
+        V2f bsdf, light_point;
+    };
+    [[nodiscard]] VertexNumbers at_vertex(uint32_t vertex) const;
+    /// 32 random bits for decisions that are taken out of order (coverage of BLEND surfaces).
+    [[nodiscard]] uint32_t get_bits(Dim dim, uint32_t vertex = 0) const;
+
+  private:
+    [[nodiscard]] uint32_t dimension_key(Dim dim, uint32_t vertex) const;
+    /// Both coordinates for a dimension's key; Word may be several keys side by side.
+    template <class Word>
+    [[nodiscard]] std::pair<Word, Word> bits(Word key) const;
+
+    SamplerKind kind_;
+    uint32_t key_, index_, reversed_;  ///< reversed_: index_, lowest bit first
+};
+
+/// First two dimensions of Sobol's sequence (Sobol 1967), 32 bits: the radical inverse in base 2,
+/// and Pascal's triangle modulo 2.
+[[nodiscard]] uint32_t sobol_0(uint32_t index);
+[[nodiscard]] uint32_t sobol_1(uint32_t index);
+
+}  // namespace petzval

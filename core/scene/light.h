@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// The five kinds of light that a scene may hold.
+#pragma once
+
+#include <cstdint>
+#include <variant>
+
+#include "core/math/math.h"
+#include "core/spectrum/bands.h"
+
+namespace petzval {
+
+/// KHR_lights_punctual "point".
+struct PointLight {
+    V3f position;
+    Rgb intensity_cd;
+    int32_t illuminant = -1;  ///< its white, of Scene::illuminants; -1: the scene's
+};
+/// KHR_lights_punctual "spot": intensity falls off between the two cones as its specification says.
+struct SpotLight {
+    V3f position, direction;  ///< unit, the way the light shines
+    Rgb intensity_cd;
+    float cos_inner, cos_outer;
+    int32_t illuminant = -1;
+};
+/// KHR_lights_punctual "directional".
+struct SunLight {
+    V3f direction;  ///< unit, the way the light shines
+    Rgb illuminance_lx;
+    int32_t illuminant = -1;
+};
+/// One emissive triangle of an instance.
+struct TriangleLight {
+    uint32_t instance, triangle;
+};
+/// The scene's sky (core/scene/sky.h): an environment picture or a uniform colour.
+struct SkyLight {};
+
+using Light = std::variant<PointLight, SpotLight, SunLight, TriangleLight, SkyLight>;
+
+}  // namespace petzval

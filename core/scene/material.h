@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one material model of glTF 2.0, with the extensions that Petzval honours.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/scene/texture.h"
+#include "core/spectrum/bands.h"
+#include "core/spectrum/glass.h"
+
+namespace petzval {
+
+enum class AlphaMode : uint8_t { Opaque, Mask, Blend };
+
+/// Factors and textures as in the file; names follow the glTF specification.
+struct Material {
+    std::string name;
+    Rgb base_color{1.f};
+    float alpha = 1.f;
+    TextureSlot base_color_texture;  ///< rgb: base colour, a: coverage
+    float metallic = 1.f, roughness = 1.f;
+    TextureSlot metallic_roughness_texture;  ///< g: roughness, b: metallic
+    TextureSlot normal_texture;
+    float normal_scale = 1.f;
+    Rgb emissive{0.f};  ///< nits, KHR_materials_emissive_strength included
+    TextureSlot emissive_texture;
+    AlphaMode alpha_mode = AlphaMode::Opaque;
+    float alpha_cutoff = 0.5f;
+    bool double_sided = false;
+    bool unlit = false;  ///< KHR_materials_unlit: shows its base colour, as nits
+
+    float ior = 1.5f;              ///< KHR_materials_ior; 0 means a specular weight of 1
+    std::optional<Glass> glass;    ///< where the index depends on wavelength; ior is its nd
+    int32_t metal = -1;            ///< measured, of Scene::metals: in place of the base colour
+    int32_t illuminant = -1;       ///< of Scene::illuminants: the white of what it emits
+    float specular = 1.f;          ///< KHR_materials_specular
+    TextureSlot specular_texture;  ///< a
+    Rgb specular_color{1.f};
+    TextureSlot specular_color_texture;  ///< rgb
+
+    float transmission = 0.f;          ///< KHR_materials_transmission
+    TextureSlot transmission_texture;  ///< r
+    bool has_volume = false;           ///< KHR_materials_volume with a thickness above 0
+    Rgb attenuation_color{1.f};
+    float attenuation_distance_m = kInfinity;
+
+    /// Coverage has to be asked for at each hit.
+    [[nodiscard]] bool cutout() const { return alpha_mode != AlphaMode::Opaque; }
+    [[nodiscard]] bool emits() const {
+        return emissive[0] > 0 || emissive[1] > 0 || emissive[2] > 0;
+    }
+    /// Some of the light that meets it is refracted into it.
+    [[nodiscard]] bool refracts() const { return has_volume && transmission > 0 && metallic < 1; }
+};
+
+}  // namespace petzval

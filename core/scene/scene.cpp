@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/scene/scene.h"
+
+namespace petzval {
+namespace {
+
+V3f placed(const Instance& instance, const V3f& position) {
+    return instance.identity ? position : position * instance.to_world;
+}
+
+bool emissive(const Scene& scene, const Instance& instance) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    if (mesh.triangles.empty()) return false;
+    const Material& material = scene.materials[mesh.material];
+    return material.emits() && !material.unlit;
+}
+
+bool same_place(const Scene& scene, const TextureSlot& a, const TextureSlot& b) {
+    if (!a.present() || !b.present()) return false;
+    const Image &one = scene.images[a.image], &other = scene.images[b.image];
+    return one.width == other.width && one.height == other.height && a.wrap_u == b.wrap_u &&
+           a.wrap_v == b.wrap_v && a.nearest == b.nearest && a.uv_set == b.uv_set &&
+           a.u_row == b.u_row && a.v_row == b.v_row;
+}
+
+void find_places(const Scene& scene, Material& m) {
+    TextureSlot* const slots[] = {&m.base_color_texture, &m.metallic_roughness_texture,
+                                  &m.normal_texture, &m.emissive_texture};
+    uint8_t number = 0;
+    for (TextureSlot* const slot : slots) {
+        slot->place = ++number;
+        for (const TextureSlot* const before : slots) {
+            if (before == slot) break;
+            if (same_place(scene, *before, *slot)) slot->place = before->place;
+        }
+    }
+}
+
+}  // namespace
+
+void finish_scene(Scene& scene) {
+    for (Material& material : scene.materials) find_places(scene, material);
+    for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+        Instance& instance = scene.instances[i];
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        for (const auto& triangle : mesh.triangles)
+            for (const uint32_t corner : triangle)
+                scene.bounds.extendBy(placed(instance, mesh.positions[corner]));
+        if (!emissive(scene, instance)) continue;
+        instance.first_light = static_cast<int32_t>(scene.lights.size());
+        for (uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle)
+            scene.lights.push_back(TriangleLight{i, triangle});
+    }
+    if (!scene.sky.black()) scene.lights.push_back(SkyLight{});
+}
+
+std::array<V3f, 3> triangle_corners(const Scene& scene, uint32_t instance, uint32_t triangle) {
+    const Instance& placement = scene.instances[instance];
+    const Mesh& mesh = scene.meshes[placement.mesh];
+    const auto& corner = mesh.triangles[triangle];
+    return {placed(placement, mesh.positions[corner[0]]),
+            placed(placement, mesh.positions[corner[1]]),
+            placed(placement, mesh.positions[corner[2]])};
+}
+
+}  // namespace petzval

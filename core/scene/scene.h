@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// All that can be seen: immutable arrays that name each other by index.
+#pragma once
+
+#include <vector>
+
+#include "core/scene/light.h"
+#include "core/scene/material.h"
+#include "core/scene/mesh.h"
+#include "core/scene/sky.h"
+#include "core/scene/texture.h"
+#include "core/spectrum/illuminant.h"
+#include "core/spectrum/metal.h"
+
+namespace petzval {
+
+/// Metres, y up, right-handed, as in glTF. io fills the arrays down to `sky`, then calls
+/// finish_scene once; nothing changes afterwards.
+struct Scene {
+    std::vector<Image> images;
+    std::vector<Material> materials;  ///< at least one where there is a mesh
+    std::vector<Metal> metals;
+    std::vector<Illuminant> illuminants;
+    std::vector<Mesh> meshes;
+    std::vector<Instance> instances;
+    std::vector<Light> lights;  ///< punctual lights of the file; finish_scene adds the others
+    Sky sky;
+
+    Box3f bounds;  ///< of all instances, in world space; empty where there are none
+
+    /// nullptr for -1, which means the scene's own white.
+    [[nodiscard]] const Illuminant* illuminant(int32_t index) const {
+        return index < 0 ? nullptr : &illuminants[static_cast<size_t>(index)];
+    }
+};
+
+/// Computes the bounds, says which texture slots share their place, and appends a light for every
+/// triangle of an emissive instance and for the sky where it is not black.
+void finish_scene(Scene&);
+
+/// Three world-space corners of a triangle.
+[[nodiscard]] std::array<V3f, 3> triangle_corners(const Scene&, uint32_t instance,
+                                                  uint32_t triangle);
+
+}  // namespace petzval

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light from infinitely far: an equirectangular picture or one colour, and its importance sampling.
+#pragma once
+
+#include <vector>
+
+#include "core/math/math.h"
+#include "core/sampling/distribution.h"
+#include "core/scene/texel_block.h"
+#include "core/spectrum/bands.h"
+
+namespace petzval {
+
+/// Directions are world space. u = 0.5 + atan2(z, x) / 2 pi, v = acos(y) / pi from the top, before
+/// the rotation about +y (counter-clockwise seen from above).
+class Sky {
+  public:
+    /// A black sky.
+    Sky() = default;
+    /// The same radiance, in nits, from everywhere.
+    static Sky uniform(Rgb radiance);
+    /// RGB texels in nits, row 0 at the zenith; strength multiplies them. Texels must be finite and
+    /// not negative; width and height at least 1. They are kept as half floats
+    /// beside a common power of two for each eight (core/scene/texel_block.h).
+    static Sky picture(std::vector<float> rgb, int width, int height, float rotate_deg,
+                       float strength);
+
+    [[nodiscard]] bool black() const { return average_ <= 0.f; }
+    /// Mean luminance over the sphere, nits.
+    [[nodiscard]] float average_luminance() const { return average_; }
+
+    /// What a ray that leaves the scene finds.
+    struct Found {
+        Rgb radiance;  ///< bilinear between texel centres: around in u, clamped in v
+        float pdf;     ///< of `sample` for the direction, 1/sr; 0 for a black sky
+    };
+    [[nodiscard]] Found find(const V3f& direction) const;
+    [[nodiscard]] Rgb radiance(const V3f& direction) const;
+    [[nodiscard]] float pdf(const V3f& direction) const { return find(direction).pdf; }
+
+    struct Draw {
+        V3f direction;  ///< unit
+        float pdf;      ///< 1/sr
+    };
+    /// Draws a direction: a texel in proportion to the light that comes from it, uniform by solid
+    /// angle within. The sky must not be black. What radiance(direction) reads is on its way to
+    /// the cache then.
+    [[nodiscard]] Draw sample(V2f u) const;
+
+  private:
+    struct Row {
+        float top;      ///< cosine at the upper edge
+        float density;  ///< 1/sr for a unit of the row
+    };
+    void fill_importance();
+    [[nodiscard]] const Octet* octets_of(int y) const {
+        return &octets_[static_cast<size_t>(y) * octets_across_];
+    }
+    [[nodiscard]] V2f to_uv(const V3f& direction) const;
+    [[nodiscard]] Rgb filtered(V2f uv) const;
+
+    Rgb colour_{0.f};
+    float average_ = 0.f;
+    int width_ = 0, height_ = 0;  ///< 0: uniform
+    int octets_across_ = 0;
+    std::vector<Octet> octets_;  ///< row by row
+    Piecewise2D importance_;     ///< of the octets
+    std::vector<Row> rows_;      ///< height_ + 1
+    float turn_ = 0.f;           ///< rotation in turns
+};
+
+}  // namespace petzval

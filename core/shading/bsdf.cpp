@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/shading/bsdf.h"
+
+#include "core/sampling/warp.h"
+#include "core/shading/microfacet.h"
+
+namespace petzval {
+namespace {
+
+// Refracted direction of wo at the facet m, eta as in BsdfInput; the caller has excluded total
+// reflection. Walter et al. 2007, equation 40.
+V3f refract(const V3f& wo, const V3f& m, float wo_m, float eta) {
+    const float cos_behind = safe_sqrt(1.f - (1.f - sqr(wo_m)) / sqr(eta));
+    return m * (wo_m / eta - cos_behind) - wo * (1.f / eta);
+}
+
+f4 only(int lane, float value) {
+    f4 lanes{};
+    lanes[lane] = value;
+    return lanes;
+}
+
+V3f mirror_below(const V3f& w) {
+    return {w.x, w.y, -w.z};
+}
+
+}  // namespace
+
+// Layers as in the glTF 2.0 specification, appendix B: metal beside a dielectric coat over its
+// body. Energy lost by single scattering comes back by Turquin 2019, "Practical multiple scattering
+// compensation for microfacet models", equation 16, for each of the two; the body gets what the
+// coat leaves.
+Bsdf::Bsdf(const BsdfInput& in, const Bands& bands, const V3f& wo, f4 throughput)
+    : wo_(wo),
+      alpha_(sqr(in.roughness)),
+      eta_(in.eta),
+      share_(zero_off(bands.on, throughput)),
+      disperses_(in.disperses),
+      measured_metal_(in.measured_metal && in.metallic > 0.f),
+      metal_n_(in.metal_n),
+      metal_k_(in.metal_k),
+      metal_(),
+      on_(bands.on) {
+    share_ *= 1.f / hsum(share_);
+    delta_ = alpha_ < kSmallestAlpha;
+    const float schlick = schlick_weight(wo.z);
+    const GgxAlbedo ggx = delta_ ? GgxAlbedo{1.f - schlick, schlick} : ggx_albedo(wo.z, alpha_);
+    albedo_f0_ = ggx.f0;
+    albedo_f90_ = ggx.f90;
+    lambda_o_ = delta_ ? 0.f : ggx_lambda(wo, alpha_);
+    const float lost = (1.f - ggx.total()) / ggx.total();
+
+    const f4 one = uniform(1.f, bands);
+    const float metal = in.metallic, body = 1.f - metal;
+    const float glass_part = in.thin ? 0.f : in.transmission;
+    const f4 coat_f90 = one * in.dielectric_f90;
+    const f4 coat_gain = one + in.dielectric_f0 * lost;
+    const f4 metal_f0 =
+        measured_metal_ ? zero_off(on_, fresnel_conductor(1.f, metal_n_, metal_k_)) : in.base_color;
+    const f4 metal_gain = (one + metal_f0 * lost) * metal;
+    const f4 coat = (in.dielectric_f0 * ggx.f0 + coat_f90 * ggx.f90) * coat_gain;
+    const float coat_part = body * (1.f - glass_part);
+    spec0_ = in.dielectric_f0 * coat_gain * coat_part;
+    spec90_ = coat_f90 * coat_gain * coat_part;
+    p_spec_ =
+        hsum((spec0_ * ggx.f0 + spec90_ * ggx.f90 + metal_gain * (metal_f0 * ggx.f0 + ggx.f90)) *
+             share_);
+    if (measured_metal_) {
+        metal_ = metal_gain;
+    } else {
+        spec0_ += metal_f0 * metal_gain;
+        spec90_ += metal_gain;
+    }
+    const f4 below = in.base_color * (one - coat) * body;
+    diffuse_ = below * (1.f - in.transmission);
+    thin_ = in.thin ? below * in.transmission : f4{};
+    glass_share_ = body * glass_part;
+    glass_specular_ = in.dielectric_f90;
+    glass_ = in.base_color;
+
+    p_diffuse_ = hsum(diffuse_ * share_);
+    p_thin_ = hsum(thin_ * share_);
+    p_glass_ = glass_share_;
+    const float sum = p_spec_ + p_diffuse_ + p_thin_ + p_glass_;
+    const float scale = sum > 0.f ? 1.f / sum : 0.f;
+    p_spec_ *= scale;
+    p_diffuse_ *= scale;
+    p_thin_ *= scale;
+    p_glass_ *= scale;
+}
+
+f4 Bsdf::albedo() const {
+    f4 albedo = spec0_ * albedo_f0_ + spec90_ * albedo_f90_ + diffuse_ + thin_ +
+                zero_off(on_, splat(glass_share_));
+    // As if every facet met the light at wo's angle.
+    if (measured_metal_)
+        albedo +=
+            metal_ * fresnel_conductor(wo_.z, metal_n_, metal_k_) * (albedo_f0_ + albedo_f90_);
+    return albedo;
+}
+
+f4 Bsdf::glass_reflectance(float wo_m) const {
+    const f4 reflectance = fresnel_dielectric(wo_m, eta_);
+    return reflectance < 1.f ? reflectance * glass_specular_ : splat(1.f);
+}
+
+f4 Bsdf::specular_reflectance(float wo_m) const {
+    const float s = schlick_weight(wo_m);
+    const f4 reflectance = spec0_ * (1.f - s) + spec90_ * s;
+    if (!measured_metal_) return reflectance;
+    return reflectance + metal_ * fresnel_conductor(wo_m, metal_n_, metal_k_);
+}
+
+// Reflection goes the same way for all lanes, so it is drawn by the lanes' mean. Else: the lane
+// whose way the light goes through, in proportion to what of it is not reflected.
+int Bsdf::draw_lane(f4 reflectance, float u) const {
+    const float reflected = hsum(share_ * reflectance);
+    if (u < reflected) return -1;
+    if (!disperses_) return 0;
+    float left = u - reflected;
+    int lane = 3;
+    for (int i = 0; i < 4; ++i) {
+        const float chance = share_[i] * (1.f - reflectance[i]);
+        if (!(chance > 0.f)) continue;
+        lane = i;
+        if (left < chance) break;
+        left -= chance;
+    }
+    return lane;
+}
+
+// Density of the visible normals, 1/sr, from GGX's d at the normal: Heitz 2014, equation 2.
+float Bsdf::pdf_of_normal(float wo_m, float d) const {
+    return d * wo_m / ((1.f + lambda_o_) * wo_.z);
+}
+
+BsdfValue Bsdf::eval(const V3f& wi) const {
+    BsdfValue value;
+    if (wi.z > 0.f && p_diffuse_ > 0.f) {
+        value.f_cos = diffuse_ * (wi.z * kInvPi);
+        value.pdf = p_diffuse_ * wi.z * kInvPi;
+    }
+    if (delta_ || wi.z == 0.f) return value;
+    const V3f above = wi.z > 0.f ? wi : mirror_below(wi);
+    if (wi.z > 0.f || p_thin_ > 0.f) {
+        const V3f m = unit(wo_ + above);
+        const float wo_m = wo_.dot(m);
+        const float d = ggx_d(m, alpha_);
+        // Height-correlated masking and shadowing: Heitz 2014, equation 99.
+        const float g2 = 1.f / (1.f + lambda_o_ + ggx_lambda(above, alpha_));
+        const float single = d * g2 / (4.f * wo_.z);
+        const float pdf = pdf_of_normal(wo_m, d) / (4.f * wo_m);
+        if (wi.z > 0.f) {
+            f4 reflectance = specular_reflectance(wo_m);
+            float chance = p_spec_;
+            if (glass_share_ > 0.f) {
+                const f4 r = zero_off(on_, glass_reflectance(wo_m));
+                reflectance += glass_share_ * r;
+                chance += p_glass_ * hsum(share_ * r);
+            }
+            value.f_cos += reflectance * single;
+            value.pdf += chance * pdf;
+        } else {
+            value.f_cos += thin_ * (single / (albedo_f0_ + albedo_f90_));
+            value.pdf += p_thin_ * pdf;
+        }
+    }
+    if (wi.z < 0.f && glass_share_ > 0.f) add_glass(wi, value);
+    return value;
+}
+
+// Refraction at a facet: Walter et al. 2007, equations 16, 17 and 21, less the factor eta^2 that
+// turns radiance into basic radiance; separable masking and shadowing, equation 23.
+void Bsdf::add_glass(const V3f& wi, BsdfValue& value) const {
+    const float shadowing = 1.f / (1.f + ggx_lambda(wi, alpha_));
+    f4 density{};  // with which each lane would draw wi
+    for (int i = 0; i < (disperses_ ? 4 : 1); ++i) {
+        const float eta = eta_[i];
+        V3f m = wo_ + wi * eta;
+        if (m.dot(m) < 1e-12f) continue;
+        m = unit(m);
+        if (m.z < 0.f) m = -m;
+        const float wo_m = wo_.dot(m), wi_m = wi.dot(m);
+        if (wo_m <= 0.f || wi_m >= 0.f) continue;
+        const float denominator = wo_m + eta * wi_m;
+        const float jacobian = sqr(eta) * -wi_m / sqr(denominator);
+        const float transmittance = 1.f - glass_reflectance(wo_m)[i];
+        density[i] = transmittance * pdf_of_normal(wo_m, ggx_d(m, alpha_)) * jacobian;
+    }
+    if (!disperses_) density = splat(density[0]);
+    value.f_cos += zero_off(on_, glass_ * density) * (glass_share_ * shadowing);
+    value.pdf += p_glass_ * hsum(share_ * density);
+}
+
+std::optional<BsdfSample> Bsdf::sample_delta(float u) const {
+    const V3f mirrored{-wo_.x, -wo_.y, wo_.z};
+    if (u < p_spec_) {
+        const f4 reflectance = specular_reflectance(wo_.z);
+        return BsdfSample{mirrored, reflectance * (1.f / p_spec_), 0.f, true, false};
+    }
+    u -= p_spec_;
+    if (u < p_thin_) return BsdfSample{-wo_, thin_ * (1.f / p_thin_), 0.f, true, true};
+    if (p_glass_ <= 0.f) return std::nullopt;  // the chances add up to 1 but for a rounding
+    u = (u - p_thin_) / p_glass_;
+    const f4 r = zero_off(on_, glass_reflectance(wo_.z));
+    const float share = glass_share_ / p_glass_;
+    const int lane = draw_lane(r, u);
+    if (lane < 0) {
+        // The same for all lanes of one index: no rounding, so that nothing is gained or lost.
+        const f4 weight = disperses_ ? r / hsum(share_ * r) : zero_off(on_, splat(1.f));
+        return BsdfSample{mirrored, weight * share, 0.f, true, false};
+    }
+    const V3f wi = refract(wo_, {0, 0, 1}, wo_.z, eta_[lane]);
+    f4 weight = zero_off(on_, glass_ * share);
+    if (disperses_) weight = only(lane, weight[lane] / share_[lane]);
+    return BsdfSample{wi, weight, 0.f, true, true};
+}
+
+std::optional<V3f> Bsdf::draw(float u_lobe, V2f u) const {
+    const V3f m = ggx_sample_visible(wo_, alpha_, u);
+    const float wo_m = wo_.dot(m);
+    if (wo_m <= 0.f) return std::nullopt;
+    const V3f mirrored = reflect(wo_, m);
+    if (u_lobe < p_spec_) return mirrored.z > 0.f ? std::optional(mirrored) : std::nullopt;
+    u_lobe -= p_spec_;
+    if (u_lobe < p_thin_)
+        return mirrored.z > 0.f ? std::optional(mirror_below(mirrored)) : std::nullopt;
+    if (p_glass_ <= 0.f) return std::nullopt;
+    const int lane =
+        draw_lane(zero_off(on_, glass_reflectance(wo_m)), (u_lobe - p_thin_) / p_glass_);
+    if (lane < 0) return mirrored.z > 0.f ? std::optional(mirrored) : std::nullopt;
+    const V3f wi = refract(wo_, m, wo_m, eta_[lane]);
+    return wi.z < 0.f ? std::optional(wi) : std::nullopt;
+}
+
+std::optional<BsdfSample> Bsdf::sample(float u_lobe, V2f u) const {
+    V3f wi;
+    if (u_lobe < p_diffuse_) {
+        wi = cosine_hemisphere(u);
+    } else {
+        u_lobe -= p_diffuse_;
+        if (p_spec_ + p_thin_ + p_glass_ <= 0.f) return std::nullopt;
+        if (delta_) return sample_delta(u_lobe);
+        const std::optional<V3f> drawn = draw(u_lobe, u);
+        if (!drawn) return std::nullopt;
+        wi = unit(*drawn);
+    }
+    const BsdfValue value = eval(wi);
+    if (!(value.pdf > 0.f)) return std::nullopt;
+    return BsdfSample{wi, value.f_cos * (1.f / value.pdf), value.pdf, false, wi.z < 0.f};
+}
+
+}  // namespace petzval

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a glTF surface scatters light: one GGX reflection over a diffuse, thin or glass body.
+#pragma once
+
+#include <optional>
+
+#include "core/math/math.h"
+#include "core/spectrum/bands.h"
+
+namespace petzval {
+
+/// The numbers of a material at a point, textures applied. Shares of light are per lane.
+struct BsdfInput {
+    f4 base_color{};
+    float metallic = 0, roughness = 1;
+    f4 dielectric_f0{};        ///< reflectance at normal incidence, KHR_materials_specular included
+    float dielectric_f90 = 1;  ///< at grazing incidence
+    float transmission = 0;
+    f4 eta = splat(1.5f);    ///< index on the far side over index on wo's side
+    bool disperses = false;  ///< eta differs from lane to lane
+    bool thin = true;        ///< transmission without a volume: nothing bends
+    /// The metallic part is of the index metal_n + i metal_k instead of base_color.
+    bool measured_metal = false;
+    f4 metal_n{}, metal_k{};
+};
+
+/// f cos and density together; both 0 where only a delta lobe could answer.
+struct BsdfValue {
+    f4 f_cos{};
+    float pdf = 0;  ///< 1/sr
+};
+
+struct BsdfSample {
+    V3f wi;
+    f4 weight;  ///< f cos / pdf
+    float pdf;  ///< 1/sr; meaningless for a delta lobe
+    bool delta;
+    bool transmitted;  ///< wi lies on the other side
+};
+
+/// Directions point away from the surface, in the shading frame turned to wo's side (wo.z > 0).
+/// Paths carry basic radiance L / n^2 (Nicodemus 1963), so refraction scales nothing and no
+/// weight's mean exceeds 1.
+///
+/// Where wavelengths go different ways, the way of one lane is drawn, in proportion to what the
+/// lane carries, and the density is the mean over the lanes by the same proportion: single-sample
+/// MIS with the balance heuristic (Veach 1997, 9.2.3; Wilkie et al. 2014, section 3.2). A delta
+/// lobe leaves the drawn lane alone.
+class Bsdf {
+  public:
+    /// throughput: what each lane of the path carries, not all 0; it steers what is drawn.
+    Bsdf(const BsdfInput&, const Bands&, const V3f& wo, f4 throughput = splat(1.f));
+
+    [[nodiscard]] BsdfValue eval(const V3f& wi) const;
+    /// u_lobe picks the lobe, u the direction. Nothing where the drawn direction is absorbed.
+    [[nodiscard]] std::optional<BsdfSample> sample(float u_lobe, V2f u) const;
+    /// Some lobe is wide enough for light sampling to help.
+    [[nodiscard]] bool has_wide_lobe() const { return p_diffuse_ > 0 || !delta_; }
+    /// Share of light that is scattered, all lobes together (glass: as if it lost nothing).
+    [[nodiscard]] f4 albedo() const;
+
+  private:
+    [[nodiscard]] float pdf_of_normal(float wo_m, float d) const;
+    void add_glass(const V3f& wi, BsdfValue&) const;
+    [[nodiscard]] f4 glass_reflectance(float wo_m) const;
+    [[nodiscard]] f4 specular_reflectance(float wo_m) const;
+    [[nodiscard]] int draw_lane(f4 reflectance, float u) const;
+    [[nodiscard]] std::optional<BsdfSample> sample_delta(float u_lobe) const;
+    [[nodiscard]] std::optional<V3f> draw(float u_lobe, V2f u) const;
+
+    V3f wo_;
+    float alpha_;
+    f4 eta_, share_;  ///< share_: of the lanes in what the path carries
+    bool disperses_, delta_;
+    float lambda_o_;
+    // Reflection: single-scatter GGX times spec0 (1 - s) + spec90 s, multiple scattering included.
+    f4 spec0_, spec90_;
+    bool measured_metal_;
+    f4 metal_n_, metal_k_;
+    f4 metal_;                      ///< on what a measured metal reflects
+    float albedo_f0_, albedo_f90_;  ///< GGX's own, for wo
+    f4 diffuse_;                    ///< albedo
+    f4 thin_;                       ///< albedo of straight transmission
+    f4 glass_;                      ///< tint of refracted light; its untinted share is glass_share_
+    float glass_share_, glass_specular_;
+    float p_spec_, p_diffuse_, p_thin_, p_glass_;
+    m4 on_;
+};
+
+}  // namespace petzval

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// A point on a triangle with what shading needs of it, and how a material answers there.
+#pragma once
+
+#include "core/math/math.h"
+#include "core/math/ray.h"
+#include "core/scene/scene.h"
+#include "core/shading/bsdf.h"
+
+namespace petzval {
+
+struct Surface {
+    V3f p;        ///< world space, interpolated from the corners, not from t
+    V3f p_error;  ///< bound on the rounding error of p in each axis
+    V3f ng;       ///< unit geometric normal, on the front side
+    V3f ns;       ///< unit interpolated normal, on the front side
+    bool front;   ///< the ray came from the front side
+    std::array<V2f, 2> uv{V2f(0.f), V2f(0.f)};  ///< (0, 0) where the mesh has none
+    const Instance* instance;
+    const Mesh* mesh;
+    const Material* material;
+    Hit hit;
+};
+
+/// Geometry of a hit of a ray that travels along `direction`.
+[[nodiscard]] Surface make_surface(const Scene&, const V3f& direction, const Hit&);
+/// The back of a single-sided surface, which glTF culls from view; the inside of a volume is seen.
+[[nodiscard]] inline bool culled_from_view(const Surface& s) {
+    return !s.front && !s.material->double_sided && !s.material->has_volume;
+}
+/// COLOR_0 at the hit as linear RGBA; 1 where the mesh has none.
+[[nodiscard]] f4 vertex_colour(const Surface&);
+/// The material at the hit, textures read: what the Bsdf is made from, and what glows.
+struct ShadingInput {
+    BsdfInput bsdf;
+    Rgb unlit{0.f};    ///< KHR_materials_unlit: shown as it is, nits
+    Rgb emitted{0.f};  ///< as emitted_radiance says, core/light/emission.h
+    Frame frame;       ///< shading frame on wo's side, the normal map applied
+};
+/// Where the textures lie that nearly every material has. Time between locating and reading is not
+/// lost: they are on their way.
+struct MaterialLookups {
+    TextureLookup base_color, metallic_roughness, normal, emissive;
+    bool emits;  ///< on the side that is seen
+};
+[[nodiscard]] MaterialLookups locate_material(const Scene&, const Surface&);
+[[nodiscard]] ShadingInput read_material(const Scene&, const Surface&, const MaterialLookups&,
+                                         const V3f& wo, const Bands&);
+[[nodiscard]] inline ShadingInput read_material(const Scene& scene, const Surface& s, const V3f& wo,
+                                                const Bands& bands) {
+    return read_material(scene, s, locate_material(scene, s), wo, bands);
+}
+
+/// Share of light that is left after a way through a volume: Beer and Lambert's law, with the
+/// coefficient that KHR_materials_volume defines, -ln(attenuationColor) / attenuationDistance.
+[[nodiscard]] f4 transmittance(const Material&, float distance_m, const Bands&);
+
+}  // namespace petzval

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the four lanes of a sample mean, and how RGB numbers of a scene reach them.
+#pragma once
+
+#include "core/math/lanes.h"
+
+namespace petzval {
+
+/// Three numbers relative to linear sRGB (Rec. 709 primaries, D65) in lanes 0 to 2; lane 3 is 0.
+struct Rgb {
+    f4 v{};
+
+    Rgb() = default;
+    explicit Rgb(f4 rgb0) : v(rgb0) {}
+    Rgb(float r, float g, float b) : v{r, g, b, 0.f} {}
+    explicit Rgb(float grey) : v{grey, grey, grey, 0.f} {}
+    [[nodiscard]] float operator[](int i) const { return v[i]; }
+    friend Rgb operator*(Rgb a, Rgb b) { return Rgb(a.v * b.v); }
+    friend Rgb operator*(Rgb a, float b) { return Rgb(a.v * b); }
+    friend Rgb operator+(Rgb a, Rgb b) { return Rgb(a.v + b.v); }
+    Rgb& operator+=(Rgb b) { return *this = *this + b; }
+};
+
+/// Relative luminance of linear sRGB: second row of IEC 61966-2-1:1999's RGB to XYZ matrix.
+[[nodiscard]] inline float luminance(Rgb c) {
+    return 0.2126f * c.v[0] + 0.7152f * c.v[1] + 0.0722f * c.v[2];
+}
+
+/// Meaning of the lanes of one sample: linear R, G, B in lanes 0 to 2, or a sampled wavelength in
+/// each. Numbers of the scene come in, and the film's go out, by linear maps that do not ask which.
+/// Whoever scatters, adds or weighs light does not look inside; only those do who turn a function
+/// of wavelength into lanes, or lanes into bins (core/colour, illuminant, observer, spectral_film,
+/// surface).
+struct Bands {
+    f4 nm{};                    ///< wavelengths in air; 0 while the lanes carry linear RGB
+    f4 pdf{};                   ///< density of each wavelength, 1/nm; 1 for RGB
+    m4 on{};                    ///< lanes in use
+    f4 red{}, green{}, blue{};  ///< reflectance of what is 1 in R, in G, in B
+    f4 white{};                 ///< radiance of the white light at 1 nit, W/(m2 sr nm); 1 for RGB
+    f4 to_r{}, to_g{}, to_b{};  ///< what a unit of each lane adds to the film's R, G, B
+    bool spectral = false;      ///< nm holds wavelengths
+
+    /// Lanes 0 to 2 carry linear R, G and B.
+    [[nodiscard]] static Bands rgb() {
+        const f4 r{1, 0, 0, 0}, g{0, 1, 0, 0}, b{0, 0, 1, 0};
+        return {f4{}, f4{1, 1, 1, 1}, m4{-1, -1, -1, 0}, r, g, b, f4{1, 1, 1, 0}, r, g, b, false};
+    }
+};
+
+/// Reflectance, transmittance or any other share of light (0 to 1), lane by lane. Linear, as in
+/// Mallett and Yuksel 2019, "Spectral Primary Decomposition for Rendering with sRGB Reflectance".
+[[nodiscard]] inline f4 uplift_reflectance(Rgb c, const Bands& bands) {
+    return bands.red * c.v[0] + bands.green * c.v[1] + bands.blue * c.v[2];
+}
+/// Radiance of a source, lane by lane; an Rgb of 1 is 1 nit of the white point.
+[[nodiscard]] inline f4 uplift_radiance(Rgb c, const Bands& bands) {
+    return uplift_reflectance(c, bands) * bands.white;
+}
+/// The same number in every lane that is on.
+[[nodiscard]] inline f4 uniform(float a, const Bands& bands) {
+    return zero_off(bands.on, splat(a));
+}
+
+}  // namespace petzval

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// A measured metal.
+#pragma once
+
+#include <string>
+
+#include "core/spectrum/spectrum_table.h"
+
+namespace petzval {
+
+/// Complex index of refraction n + ik, relative to air.
+struct Metal {
+    std::string name;
+    SpectrumTable n, k;
+};
+
+}  // namespace petzval

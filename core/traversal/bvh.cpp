@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/traversal/bvh.h"
+
+#include <embree3/rtcore.h>
+#include <pmmintrin.h>
+
+#include <stdexcept>
+#include <string>
+
+#include "core/scene/coverage.h"
+
+namespace petzval {
+namespace {
+
+struct Context {
+    RTCIntersectContext embree;  // first: Embree hands back a pointer to it
+    uint32_t coin;
+};
+
+uint32_t instance_of(uint32_t inst_id, uint32_t geom_id) {
+    return inst_id != RTC_INVALID_GEOMETRY_ID ? inst_id : geom_id;
+}
+
+// A ray passes where a coin that belongs to it and to the triangle says so. A pure function of its
+// arguments: Embree may ask twice for one triangle (spatial splits), and the second answer must be
+// the first one.
+bool lets_pass(const Scene& scene, const RTCHit& hit, uint32_t coin) {
+    const uint32_t instance = instance_of(hit.instID[0], hit.geomID);
+    const float covered = coverage(scene, instance, hit.primID, {hit.u, hit.v});
+    return to_unit_float(hash32(hash32(coin, instance), hit.primID)) >= covered;
+}
+
+// Embree fixes the signature; the packet has one ray, as only the single-ray calls are used.
+void filter(const RTCFilterFunctionNArguments* args) {
+    if (args->valid[0] != -1) return;
+    const auto& scene = *static_cast<const Scene*>(args->geometryUserPtr);
+    const auto& context = *reinterpret_cast<const Context*>(args->context);
+    if (lets_pass(scene, *reinterpret_cast<const RTCHit*>(args->hit), context.coin))
+        args->valid[0] = 0;
+}
+
+RTCRay to_embree(const Ray& r) {
+    RTCRay ray;
+    ray.org_x = r.origin.x, ray.org_y = r.origin.y, ray.org_z = r.origin.z;
+    ray.dir_x = r.direction.x, ray.dir_y = r.direction.y, ray.dir_z = r.direction.z;
+    // Above 0: in a plane through the origin of an axis nothing rounds, so that no offset moves a
+    // ray off it, and it would meet at 0 what it leaves.
+    ray.tnear = std::numeric_limits<float>::min(), ray.tfar = r.t_max;
+    ray.time = 0.f, ray.mask = ~0u, ray.id = 0, ray.flags = 0;
+    return ray;
+}
+
+// Debian's Embree ends the program on other rays: its bound is 1.844e18 for every coordinate.
+bool traceable(const Ray& r) {
+    constexpr float bound = 1.8e18f;
+    const auto beyond = [](const V3f& v) {  // no branches: nearly every ray is within
+        return int{!(std::fabs(v.x) <= bound)} | int{!(std::fabs(v.y) <= bound)} |
+               int{!(std::fabs(v.z) <= bound)};
+    };
+    return (beyond(r.origin) | beyond(r.direction) | int{!(r.t_max >= 0.f)}) == 0;
+}
+
+}  // namespace
+
+struct Bvh::Impl {
+    RTCDevice device = nullptr;
+    RTCScene top = nullptr;
+    std::vector<RTCScene> shared;  // one for each mesh that instances share, else null
+    bool has_cutouts = false;
+
+    ~Impl() {
+        for (RTCScene s : shared)
+            if (s) rtcReleaseScene(s);
+        if (top) rtcReleaseScene(top);
+        if (device) rtcReleaseDevice(device);
+    }
+
+    void check() const {
+        const RTCError error = rtcGetDeviceError(device);
+        if (error == RTC_ERROR_NONE) return;
+        if (error == RTC_ERROR_OUT_OF_MEMORY)
+            throw std::runtime_error("out of memory while building the acceleration structure");
+        throw std::runtime_error("Embree failed with error " + std::to_string(error));
+    }
+
+    RTCScene new_scene(Traversal traversal) const {
+        RTCScene scene = rtcNewScene(device);
+        rtcSetSceneFlags(
+            scene, traversal == Traversal::Robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+        rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
+        return scene;
+    }
+
+    RTCGeometry triangles(const Scene& scene, uint32_t mesh_id) {
+        const Mesh& mesh = scene.meshes[mesh_id];
+        RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                   mesh.positions.data(), 0, sizeof(V3f), mesh.positions.size());
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                   mesh.triangles.data(), 0, sizeof(mesh.triangles[0]),
+                                   mesh.triangles.size());
+        if (scene.materials[mesh.material].cutout()) {
+            has_cutouts = true;
+            // Embree wants a pointer to something that may change; the filter only reads.
+            rtcSetGeometryUserData(geometry, const_cast<Scene*>(&scene));
+            rtcSetGeometryIntersectFilterFunction(geometry, filter);
+            rtcSetGeometryOccludedFilterFunction(geometry, filter);
+        }
+        rtcCommitGeometry(geometry);
+        return geometry;
+    }
+};
+
+Bvh::Bvh(const Scene& scene, Traversal traversal) : impl_(std::make_unique<Impl>()) {
+    Impl& d = *impl_;
+    d.device = rtcNewDevice(nullptr);
+    if (!d.device) d.check();
+    d.top = d.new_scene(traversal);
+    d.shared.resize(scene.meshes.size(), nullptr);
+
+    for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+        const Instance& instance = scene.instances[i];
+        RTCGeometry geometry = nullptr;
+        if (instance.identity) {
+            geometry = d.triangles(scene, instance.mesh);
+        } else {
+            RTCScene& part = d.shared[instance.mesh];
+            if (!part) {
+                part = d.new_scene(traversal);
+                RTCGeometry mesh = d.triangles(scene, instance.mesh);
+                rtcAttachGeometry(part, mesh);
+                rtcReleaseGeometry(mesh);
+                rtcCommitScene(part);
+            }
+            geometry = rtcNewGeometry(d.device, RTC_GEOMETRY_TYPE_INSTANCE);
+            rtcSetGeometryInstancedScene(geometry, part);
+            // Imath's rows are Embree's columns.
+            rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR,
+                                    instance.to_world.getValue());
+            rtcCommitGeometry(geometry);
+        }
+        rtcAttachGeometryByID(d.top, geometry, i);
+        rtcReleaseGeometry(geometry);
+    }
+    rtcCommitScene(d.top);
+    d.check();
+}
+
+Bvh::~Bvh() = default;
+
+std::optional<Hit> Bvh::intersect(const Ray& r) const {
+    if (!traceable(r)) return std::nullopt;
+    Context context;
+    rtcInitIntersectContext(&context.embree);
+    context.coin = r.coin;
+    RTCRayHit query;
+    query.ray = to_embree(r);
+    query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(impl_->top, &context.embree, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+    return Hit{query.ray.tfar,
+               {query.hit.u, query.hit.v},
+               instance_of(query.hit.instID[0], query.hit.geomID),
+               query.hit.primID};
+}
+
+bool Bvh::occluded(const Ray& r) const {
+    if (!traceable(r)) return false;
+    Context context;
+    rtcInitIntersectContext(&context.embree);
+    context.coin = r.coin;
+    RTCRay ray = to_embree(r);
+    rtcOccluded1(impl_->top, &context.embree, &ray);
+    return ray.tfar < 0.f;
+}
+
+bool Bvh::has_cutouts() const {
+    return impl_->has_cutouts;
+}
+
+RTCSceneTy* Bvh::native() const {
+    return impl_->top;
+}
+
+void flush_denormals() {
+    _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
+    _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
+}
+
+}  // namespace petzval

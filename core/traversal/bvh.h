@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ray traversal. The only file pair that sees Embree.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "core/math/ray.h"
+#include "core/scene/scene.h"
+
+struct RTCSceneTy;
+
+namespace petzval {
+
+/// Robust: no ray passes between neighbouring triangles. Fast: spatial splits and cheaper edge
+/// tests, which may leak at edges and build longer.
+enum class Traversal { Robust, Fast };
+
+class Bvh {
+  public:
+    /// Shares the scene's vertex and index buffers: the scene must outlive the Bvh, unchanged.
+    /// Throws std::runtime_error where Embree fails (out of memory).
+    Bvh(const Scene&, Traversal);
+    ~Bvh();
+    Bvh(const Bvh&) = delete;
+    Bvh& operator=(const Bvh&) = delete;
+
+    /// Nearest hit in (0, t_max].
+    [[nodiscard]] std::optional<Hit> intersect(const Ray&) const;
+    /// Whether anything lies in (0, t_max).
+    [[nodiscard]] bool occluded(const Ray&) const;
+    /// Some material is MASK or BLEND: rays need their coin.
+    [[nodiscard]] bool has_cutouts() const;
+    /// The library's own scene, for measuring what bare traversal costs.
+    [[nodiscard]] RTCSceneTy* native() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Denormals count as zero on the calling thread, as Embree wants it. Threads started afterwards
+/// inherit it, so call it before the first use of a task library.
+void flush_denormals();
+
+}  // namespace petzval

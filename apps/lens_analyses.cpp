@@ -7,8 +7,8 @@
 #include <functional>
 
 #include "apps/lens_field.h"
-#include "camera/analysis.h"
-#include "camera/spot.h"
+#include "camera/bench/analysis.h"
+#include "camera/bench/spot.h"
 #include "io/atomic_file.h"
 #include "io/csv.h"
 #include "io/error.h"

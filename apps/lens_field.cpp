@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "apps/choice.h"
-#include "camera/analysis.h"
+#include "camera/bench/analysis.h"
 #include "io/error.h"
 
 namespace petzval {

@@ -10,8 +10,8 @@
 
 #include "apps/lens_request.h"
 #include "apps/parse.h"
-#include "camera/beam.h"
-#include "camera/lens_focus.h"
+#include "camera/bench/ray_bundle.h"
+#include "camera/lens/focus.h"
 
 namespace petzval {
 

@@ -6,7 +6,7 @@
 
 #include "apps/lens_field.h"
 #include "apps/lens_request.h"
-#include "camera/traced_ray.h"
+#include "camera/lens/traced_ray.h"
 #include "io/atomic_file.h"
 #include "io/lens_drawing.h"
 #include "io/ray_table.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "camera/lens.h"
+#include "camera/lens/lens.h"
 
 namespace petzval {
 

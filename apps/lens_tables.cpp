@@ -11,8 +11,8 @@
 
 #include "apps/lens_request.h"
 #include "apps/parse.h"
-#include "camera/analysis.h"
-#include "camera/lens_focus.h"
+#include "camera/bench/analysis.h"
+#include "camera/lens/focus.h"
 #include "io/error.h"
 #include "io/lens_file.h"
 

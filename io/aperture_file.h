@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "camera/aperture.h"
+#include "camera/iris/aperture.h"
 
 namespace petzval {
 

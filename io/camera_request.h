@@ -9,8 +9,8 @@
 #include <variant>
 #include <vector>
 
-#include "camera/lens_camera.h"
-#include "camera/lens_focus.h"
+#include "camera/lens/focus.h"
+#include "camera/models/lens_camera.h"
 #include "core/math/math.h"
 
 namespace petzval {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "camera/lens.h"
-#include "camera/profile.h"
+#include "camera/lens/lens.h"
+#include "camera/lens/profile.h"
 
 namespace petzval {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "camera/lens.h"
+#include "camera/lens/lens.h"
 #include "io/assets.h"
 #include "io/error.h"
 #include "io/lens_formats.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "camera/prescription.h"
+#include "camera/lens/prescription.h"
 #include "io/agf.h"
 
 namespace petzval {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <initializer_list>
 
-#include "camera/lens.h"
+#include "camera/lens/lens.h"
 #include "io/glasses.h"
 #include "io/json_cursor.h"
 #include "io/json_parse.h"

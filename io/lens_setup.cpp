@@ -8,12 +8,12 @@
 #include <limits>
 #include <stdexcept>
 
-#include "camera/analysis.h"
-#include "camera/exposure.h"
-#include "camera/lens_focus.h"
-#include "camera/lens_scale.h"
-#include "camera/paraxial.h"
-#include "camera/sensor.h"
+#include "camera/bench/analysis.h"
+#include "camera/bench/lens_scale.h"
+#include "camera/lens/focus.h"
+#include "camera/lens/paraxial.h"
+#include "camera/models/exposure.h"
+#include "camera/models/sensor.h"
 #include "io/aperture_file.h"
 #include "io/error.h"
 

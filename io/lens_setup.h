@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "camera/lens_camera.h"
+#include "camera/models/lens_camera.h"
 #include "io/camera_request.h"
 #include "io/lens_file.h"
 

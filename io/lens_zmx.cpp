@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-#include "camera/lens.h"
+#include "camera/lens/lens.h"
 #include "io/error.h"
 #include "io/glasses.h"
 #include "io/json_parse.h"

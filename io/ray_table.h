@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "camera/traced_ray.h"
+#include "camera/lens/traced_ray.h"
 
 namespace petzval {
 

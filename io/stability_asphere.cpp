@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "camera/profile.h"
+#include "camera/lens/profile.h"
 #include "io/lens_file.h"
 #include "io/stability_rays.h"
 #include "io/stability_sweeps.h"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "camera/iris.h"
+#include "camera/iris/iris.h"
 #include "core/sampling/alias_table.h"
 #include "core/sampling/distribution.h"
 #include "io/stability_sweeps.h"

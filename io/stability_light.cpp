@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "camera/thin_lens.h"
+#include "camera/models/thin_lens.h"
 #include "io/stability_sweeps.h"
 #include "io/stability_world.h"
 

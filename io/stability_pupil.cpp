@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "camera/lens_camera.h"
-#include "camera/paraxial.h"
+#include "camera/lens/paraxial.h"
+#include "camera/models/lens_camera.h"
 #include "io/lens_file.h"
 #include "io/stability_sweeps.h"
 

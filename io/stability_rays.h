@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "camera/lens_march.h"
+#include "camera/lens/trace.h"
 #include "core/math/math.h"
 
 namespace petzval::stability {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "camera/aberrated_lens.h"
-#include "camera/thin_lens_optics.h"
+#include "camera/models/aberrated_lens.h"
+#include "camera/models/thin_lens_optics.h"
 #include "io/glasses.h"
 #include "io/stability_sweeps.h"
 #include "io/thin_setup.h"

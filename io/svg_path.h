@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "camera/aperture.h"
+#include "camera/iris/aperture.h"
 
 namespace petzval {
 

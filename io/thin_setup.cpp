@@ -7,10 +7,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "camera/aberrated_lens.h"
-#include "camera/exposure.h"
-#include "camera/sensor.h"
-#include "camera/thin_lens_optics.h"
+#include "camera/models/aberrated_lens.h"
+#include "camera/models/exposure.h"
+#include "camera/models/sensor.h"
+#include "camera/models/thin_lens_optics.h"
 #include "io/aperture_file.h"
 #include "io/error.h"
 

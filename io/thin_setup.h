@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "camera/camera.h"
-#include "camera/thin_lens.h"
+#include "camera/models/thin_lens.h"
 #include "io/camera_plan.h"
 
 namespace petzval {

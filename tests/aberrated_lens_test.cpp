@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "camera/aberrated_lens.h"
+#include "camera/models/aberrated_lens.h"
 
 #include <gtest/gtest.h>
 

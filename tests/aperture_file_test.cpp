@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "camera/iris.h"
+#include "camera/iris/iris.h"
 #include "io/svg_path.h"
 #include "tests/support/clip.h"
 #include "tests/support/refusal.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "camera/aperture.h"
+#include "camera/iris/aperture.h"
 
 #include <gmock/gmock.h>
 
-#include "camera/iris.h"
+#include "camera/iris/iris.h"
 #include "tests/support/complaint.h"
 
 namespace petzval {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "camera/thin_lens_optics.h"
+#include "camera/models/thin_lens_optics.h"
 #include "tests/support/cli.h"
 
 namespace petzval {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What surfaces reflect, against textbook cases and against a sum over the layer's matrices.
-#include "camera/coating.h"
+#include "camera/lens/coating.h"
 
 #include <gtest/gtest.h>
 

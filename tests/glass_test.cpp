@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "camera/lens.h"
+#include "camera/lens/lens.h"
 #include "core/spectrum/glass.h"
 #include "core/spectrum/spectrum_table.h"
 #include "io/csv.h"

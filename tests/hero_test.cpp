@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // One ray for all lanes: every lane keeps its mean over the pixel.
-#include "camera/hero.h"
+#include "camera/dispersion/hero.h"
 
 #include <gtest/gtest.h>
 
 #include <map>
 
-#include "camera/aberrated_lens.h"
-#include "camera/lens_camera.h"
+#include "camera/models/aberrated_lens.h"
+#include "camera/models/lens_camera.h"
 #include "core/spectrum/observer.h"
 #include "tests/support/observers.h"
 #include "tests/support/statistics.h"

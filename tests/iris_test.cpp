@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "camera/iris.h"
+#include "camera/iris/iris.h"
 
 #include <gmock/gmock.h>
 

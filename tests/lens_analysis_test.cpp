@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Analyses of lenses against figures that an independent program worked, and against theory.
-#include "camera/analysis.h"
+#include "camera/bench/analysis.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "camera/beam.h"
-#include "camera/lens_focus.h"
-#include "camera/profile.h"
-#include "camera/spot.h"
-#include "camera/traced_ray.h"
+#include "camera/bench/ray_bundle.h"
+#include "camera/bench/spot.h"
+#include "camera/lens/focus.h"
+#include "camera/lens/profile.h"
+#include "camera/lens/traced_ray.h"
 #include "tests/support/lens_json.h"
 
 namespace petzval {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "camera/traced_ray.h"
+#include "camera/lens/traced_ray.h"
 #include "tests/support/lens_cameras.h"
 #include "tests/support/statistics.h"
 

@@ -4,14 +4,14 @@
 //
 // Estimates are means of 64 stratified ones, so that their standard errors are known; each is
 // compared with sidak()'s significance after the tolerance that is named.
-#include "camera/lens_camera.h"
+#include "camera/models/lens_camera.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "camera/lens_march.h"
-#include "camera/paraxial.h"
+#include "camera/lens/paraxial.h"
+#include "camera/lens/trace.h"
 #include "tests/support/lens_cameras.h"
 #include "tests/support/statistics.h"
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "camera/traced_ray.h"
+#include "camera/lens/traced_ray.h"
 
 namespace petzval {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "camera/lens_march.h"
-#include "camera/paraxial.h"
+#include "camera/lens/paraxial.h"
+#include "camera/lens/trace.h"
 #include "tests/support/lens_json.h"
 #include "tests/support/lens_rays.h"
 #include "tests/support/statistics.h"

@@ -8,7 +8,7 @@
 #include <functional>
 #include <random>
 
-#include "camera/paraxial.h"
+#include "camera/lens/paraxial.h"
 #include "io/lens_formats.h"
 #include "io/text_lines.h"
 #include "tests/support/lens_text.h"

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Focus by traced rays against brute force over the place of the film or of the group.
-#include "camera/lens_focus.h"
+#include "camera/lens/focus.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "camera/paraxial.h"
-#include "camera/traced_ray.h"
+#include "camera/lens/paraxial.h"
+#include "camera/lens/traced_ray.h"
 #include "io/lens_file.h"
 
 namespace petzval {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "camera/lens.h"
+#include "camera/lens/lens.h"
 #include "tests/support/lens_text.h"
 
 namespace petzval {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What must hold of rays through a lens whatever its figures: geometry that can be worked by hand,
 // and ways there and back.
-#include "camera/lens_march.h"
+#include "camera/lens/trace.h"
 
 #include <gtest/gtest.h>
 

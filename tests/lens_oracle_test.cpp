@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "camera/lens_march.h"
+#include "camera/lens/trace.h"
 #include "tests/support/lens_json.h"
 #include "tests/support/lens_rays.h"
 

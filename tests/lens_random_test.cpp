@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "camera/lens_march.h"
+#include "camera/lens/trace.h"
 #include "tests/support/random_lens.h"
 
 namespace petzval {

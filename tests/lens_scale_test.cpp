@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lenses made larger and smaller.
-#include "camera/lens_scale.h"
+#include "camera/bench/lens_scale.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "camera/analysis.h"
-#include "camera/traced_ray.h"
+#include "camera/bench/analysis.h"
+#include "camera/lens/traced_ray.h"
 #include "io/lens_file.h"
 
 namespace petzval {

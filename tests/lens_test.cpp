@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "camera/lens.h"
+#include "camera/lens/lens.h"
 
 #include <gtest/gtest.h>
 

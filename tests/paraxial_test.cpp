@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "camera/paraxial.h"
+#include "camera/lens/paraxial.h"
 
 #include <gtest/gtest.h>
 

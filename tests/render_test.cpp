@@ -8,7 +8,7 @@
 #include <mutex>
 #include <set>
 
-#include "camera/thin_lens.h"
+#include "camera/models/thin_lens.h"
 #include "integrator/executor.h"
 #include "tests/support/scenes.h"
 

@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-#include "camera/thin_lens.h"
+#include "camera/models/thin_lens.h"
 #include "core/spectrum/colorimetry.h"
 #include "core/spectrum/colour.h"
 #include "integrator/executor.h"

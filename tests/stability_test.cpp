@@ -10,7 +10,7 @@
 #include <regex>
 #include <sstream>
 
-#include "camera/lens_camera.h"
+#include "camera/models/lens_camera.h"
 #include "core/shading/bsdf.h"
 #include "core/shading/surface.h"
 #include "integrator/path.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "camera/thin_lens_optics.h"
+#include "camera/models/thin_lens_optics.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "camera/aberrated_lens.h"
+#include "camera/models/aberrated_lens.h"
 #include "tests/support/traced_singlets.h"
 
 namespace petzval {

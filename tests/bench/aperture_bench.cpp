@@ -3,7 +3,7 @@
 // passes; seconds of making an iris matter little, but not nothing, so they are here too.
 #include <benchmark/benchmark.h>
 
-#include "camera/iris.h"
+#include "camera/iris/iris.h"
 #include "tests/support/statistics.h"
 
 namespace petzval {

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "camera/lens_march.h"
+#include "camera/lens/trace.h"
 #include "tests/support/lens_json.h"
 #include "tests/support/statistics.h"
 

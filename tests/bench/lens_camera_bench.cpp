@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "camera/lens_camera.h"
-#include "camera/paraxial.h"
+#include "camera/lens/paraxial.h"
+#include "camera/models/lens_camera.h"
 #include "io/lens_file.h"
 #include "tests/support/statistics.h"
 

@@ -21,12 +21,12 @@
 #include <sanitizer/common_interface_defs.h>
 #endif
 
-#include "camera/analysis.h"
-#include "camera/beam.h"
-#include "camera/lens_camera.h"
-#include "camera/lens_focus.h"
-#include "camera/profile.h"
-#include "camera/traced_ray.h"
+#include "camera/bench/analysis.h"
+#include "camera/bench/ray_bundle.h"
+#include "camera/lens/focus.h"
+#include "camera/lens/profile.h"
+#include "camera/lens/traced_ray.h"
+#include "camera/models/lens_camera.h"
 #include "tests/support/nasty_lens.h"
 
 namespace petzval {

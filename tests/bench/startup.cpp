@@ -15,7 +15,7 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "camera/pupil.h"
+#include "camera/lens/ray_aiming.h"
 #include "io/glasses.h"
 #include "io/gltf.h"
 #include "io/lens_file.h"

@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "camera/aperture.h"
+#include "camera/iris/aperture.h"
 
 namespace petzval::test {
 

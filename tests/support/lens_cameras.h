@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "camera/lens_camera.h"
-#include "camera/paraxial.h"
+#include "camera/lens/paraxial.h"
+#include "camera/models/lens_camera.h"
 #include "tests/support/lens_json.h"
 
 namespace petzval::test {

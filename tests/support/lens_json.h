@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "camera/prescription.h"
+#include "camera/lens/prescription.h"
 
 namespace petzval::test {
 

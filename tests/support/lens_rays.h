@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "camera/lens_march.h"
-#include "camera/paraxial.h"
+#include "camera/lens/paraxial.h"
+#include "camera/lens/trace.h"
 #include "tests/support/statistics.h"
 
 namespace petzval::test {

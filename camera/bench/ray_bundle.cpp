@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "camera/bench/ray_bundle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace petzval {
+namespace {
+
+constexpr double kTolerance = 1e-9;  // of the stop's radius
+constexpr int kMostSteps = 30, kMostHalvings = 8;
+
+double stop_radius_mm(const Lens& lens) {
+    return lens.prescription().surfaces[static_cast<size_t>(lens.stop())].semi_diameter_mm;
+}
+
+}  // namespace
+
+Beam::Beam(const Lens& lens, const ObjectPoint& object, double nm)
+    : lens_(&lens),
+      object_(object),
+      nm_(nm),
+      entrance_pupil_mm_(first_order(lens, kLineD_nm, object.section).entrance_pupil_mm),
+      indices_(lens.exact_indices(broadcast<d4>(nm))) {
+    // Of a lens that is telecentric on the side of the scene: any plane does.
+    if (!(std::fabs(entrance_pupil_mm_) < 1e6)) entrance_pupil_mm_ = 0;
+}
+
+template <class N>
+LensRay<N> Beam::launched(N sagittal, N tangential) const {
+    const double angle = object_.field_deg * std::numbers::pi / 180;
+    const double sine = std::sin(angle), cosine = std::cos(angle);
+    const auto number = [](double a) { return constant<N>(broadcast<ValueOf<N>>(a)); };
+    // As if the section were y-z: along it, and down the axis.
+    const N along = tangential * cosine;
+    const N z = tangential * -sine;
+    LensRay<N> ray;
+    Vec3<N> direction{number(0), number(sine), number(cosine)};
+    if (std::isfinite(object_.distance_mm)) {
+        direction = {sagittal, along + object_.distance_mm * sine / cosine,
+                     z + object_.distance_mm};
+        direction = direction * (1 / sqrt(dot(direction, direction)));
+    }
+    ray.origin = {sagittal, along, z + entrance_pupil_mm_};
+    ray.direction = direction;
+    if (object_.section == Section::X) {
+        std::swap(ray.origin.x, ray.origin.y);
+        std::swap(ray.direction.x, ray.direction.y);
+    }
+    return ray;
+}
+
+// Newton's method with the march's own derivatives.
+std::optional<Launch> Beam::solve(std::array<double, 2> stop_mm, Launch guess) const {
+    using D = Dual<d4>;
+    const double tolerance_mm = kTolerance * stop_radius_mm(*lens_);
+    Launch at = guess, good = guess, step{};
+    int halvings = 0;
+    for (int i = 0; i < kMostSteps; ++i) {
+        auto ray = launched<D>({broadcast<d4>(at[0]), broadcast<d4>(1), d4{}},
+                               {broadcast<d4>(at[1]), d4{}, broadcast<d4>(1)});
+        const auto passed =
+            march<D>(*lens_, indices_, Towards::Film, {0, lens_->stop()}, ray, Clip::No);
+        if (!passed[0]) {  // too far: rays there never reach the stop
+            if (++halvings > kMostHalvings) return std::nullopt;
+            for (size_t k = 0; k < 2; ++k) at[k] = good[k] + (step[k] *= 0.5);
+            continue;
+        }
+        const D &x = ray.origin.x, &y = ray.origin.y;
+        const double off_x = stop_mm[0] - x.value[0], off_y = stop_mm[1] - y.value[0];
+        if (std::hypot(off_x, off_y) <= tolerance_mm) return at;
+        const double a = x.du[0], b = x.dv[0], c = y.du[0], d = y.dv[0];
+        const double determinant = a * d - b * c;
+        if (!(std::fabs(determinant) > 0)) return std::nullopt;
+        good = at;
+        step = {(d * off_x - b * off_y) / determinant, (a * off_y - c * off_x) / determinant};
+        for (size_t k = 0; k < 2; ++k) at[k] += step[k];
+    }
+    return std::nullopt;
+}
+
+std::optional<Beam> Beam::aim(const Lens& lens, const ObjectPoint& object, double nm) {
+    // Entrance pupils of wide-angle lenses wander: each ray begins at one that is near.
+    for (const double step_deg : {2., 0.25}) {
+        const int steps = std::max(1, static_cast<int>(std::ceil(object.field_deg / step_deg)));
+        std::optional<Launch> chief = Launch{};
+        Beam beam(lens, object, nm);
+        for (int i = 1; i <= steps && chief; ++i) {
+            beam.object_.field_deg = object.field_deg * i / steps;
+            chief = beam.solve({}, *chief);
+        }
+        if (!chief) continue;
+        beam.object_ = object;
+        beam.chief_ = *chief;
+        beam.find_box();
+        return beam;
+    }
+    return std::nullopt;
+}
+
+void Beam::find_box() {
+    constexpr int directions = 32, steps = 4;
+    constexpr double margin = 0.02;  // what the rim may bulge between two directions, and more
+    least_ = most_ = chief_;
+    for (int i = 0; i < directions; ++i) {
+        const double angle = 2 * std::numbers::pi * i / directions;
+        Launch before = chief_, at = chief_;
+        for (int k = 1; k <= steps; ++k) {
+            const double r = stop_radius_mm(*lens_) * k / steps;
+            const Launch guess{2 * at[0] - before[0], 2 * at[1] - before[1]};
+            const auto next = solve({r * std::cos(angle), r * std::sin(angle)}, guess);
+            if (!next) break;
+            before = at;
+            at = *next;
+            for (size_t j = 0; j < 2; ++j) {
+                least_[j] = std::min(least_[j], at[j]);
+                most_[j] = std::max(most_[j], at[j]);
+            }
+        }
+    }
+    for (size_t j = 0; j < 2; ++j) {
+        const double more = margin * (most_[j] - least_[j]);
+        least_[j] -= more;
+        most_[j] += more;
+    }
+}
+
+Beam::Line Beam::line(Launch launch) const {
+    const auto ray = launched<d4>(broadcast<d4>(launch[0]), broadcast<d4>(launch[1]));
+    return {V3d(ray.origin.x[0], ray.origin.y[0], ray.origin.z[0]),
+            V3d(ray.direction.x[0], ray.direction.y[0], ray.direction.z[0])};
+}
+
+std::vector<BeamRay> Beam::trace(std::span<const Launch> launches, double film_mm,
+                                 Clip clip) const {
+    std::vector<BeamRay> out;
+    const double to_film_mm = film_mm - lens_->vertex_mm(lens_->last());
+    for (size_t first = 0; first < launches.size(); first += 4) {
+        const size_t count = std::min<size_t>(4, launches.size() - first);
+        d4 sagittal{}, tangential{}, stop_x{}, stop_y{};
+        for (int i = 0; i < 4; ++i) {
+            const Launch& launch = launches[first + std::min(size_t(i), count - 1)];
+            sagittal[i] = launch[0];
+            tangential[i] = launch[1];
+        }
+        LensRay<d4> ray = launched<d4>(sagittal, tangential);
+        const auto at_stop = [&](const LensHit<d4>& hit) {
+            if (hit.surface != lens_->stop()) return;
+            stop_x = hit.point.x;
+            stop_y = hit.point.y;
+        };
+        const auto passed =
+            march<d4>(*lens_, indices_, Towards::Film, {0, lens_->last()}, ray, clip, at_stop);
+        for (int i = 0; i < static_cast<int>(count); ++i) {
+            if (!passed[i] || !(ray.direction.z[i] > 0)) continue;
+            const double slope_x = ray.direction.x[i] / ray.direction.z[i];
+            const double slope_y = ray.direction.y[i] / ray.direction.z[i];
+            const double dz = to_film_mm - ray.origin.z[i];
+            out.push_back({launches[first + size_t(i)],
+                           {stop_x[i], stop_y[i]},
+                           {ray.origin.x[i] + slope_x * dz, ray.origin.y[i] + slope_y * dz},
+                           {slope_x, slope_y}});
+        }
+    }
+    return out;
+}
+
+std::vector<Launch> Beam::grid(int side) const {
+    std::vector<Launch> out;
+    for (int i = 0; i < side; ++i)
+        for (int j = 0; j < side; ++j)
+            out.push_back({least_[0] + (most_[0] - least_[0]) * (i + 0.5) / side,
+                           least_[1] + (most_[1] - least_[1]) * (j + 0.5) / side});
+    return out;
+}
+
+}  // namespace petzval

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Focus and f-number of a lens: what a photographer sets before the picture is taken.
+#pragma once
+
+#include <limits>
+#include <optional>
+
+#include "camera/lens/lens.h"
+
+namespace petzval {
+
+enum class FocusBy : uint8_t {
+    Paraxial,  ///< line d, rays near the axis
+    Traced  ///< the least mean square radius of the spot on the axis: F, d and C, through the iris
+};
+
+/// The lens with its film, or its focusing group, where an axial point at object_mm (from
+/// the first vertex of what is returned, < 0; -infinity for a distant one) is sharp. The film is
+/// what moves where the file names no group; where it does, the film stands where a distant point
+/// is sharp, paraxially, with the group as filed. stop_radius_mm: of the iris, for traced rays; the
+/// stop as filed where that is smaller. Nothing where the lens cannot: the point is too near, or,
+/// traced, no ray passes.
+[[nodiscard]] std::optional<Lens> focused(
+    const Lens&, double object_mm, FocusBy = FocusBy::Paraxial,
+    double stop_radius_mm = std::numeric_limits<double>::infinity());
+
+/// How far the film must move from film_mm (from the first vertex) for the least mean square
+/// radius of the axial spot, as FocusBy::Traced has it. Nothing where no ray passes.
+[[nodiscard]] std::optional<double> best_film_shift_mm(
+    const Lens&, double film_mm, double object_mm,
+    double stop_radius_mm = std::numeric_limits<double>::infinity());
+
+/// Real rays of line d from a distant axial point.
+struct AxialRay {
+    double stop_height_mm;
+    double sine;  ///< of its angle with the axis behind the lens
+};
+/// The ray that enters parallel to the axis at this height; nothing where it does not come through
+/// the clear semi-diameters, the stop's left out.
+[[nodiscard]] std::optional<AxialRay> axial_ray(const Lens&, double height_mm);
+
+/// Stop radius that gives an f-number 1 / (2 sin u') for a distant axial point; nothing where the
+/// glass does not let such a ray through, or no ray has that angle.
+[[nodiscard]] std::optional<double> stop_radius_for(const Lens&, double fnumber);
+/// The f-number of a stop radius, by the same measure; infinite where no ray gets there.
+[[nodiscard]] double fnumber_of(const Lens&, double stop_radius_mm);
+
+}  // namespace petzval

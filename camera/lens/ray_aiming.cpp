@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "camera/lens/ray_aiming.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace petzval {
+namespace {
+
+// Of the stop's radius; Newton's next step squares the latter.
+constexpr float kTolerance = 1e-4f, kToleranceBeforeStep = 3e-3f;
+// Of a direction cosine. Where the pupil folds, directions far apart meet the stop at nearly one
+// point: a ray that is near it there may have any stretch, and with it any weight.
+constexpr float kMostStepLeft = 1e-3f;
+constexpr int kMostSteps = 12, kMostHalvings = 6;
+
+// Wavelengths at which the table is solved: evenly in 1 / nm, over what is visible.
+constexpr f4 kNodes_nm = {400, 466.6667f, 560, 700};
+
+V2f turned(V2f p, V2f cosine_sine) {
+    return {p.x * cosine_sine.x - p.y * cosine_sine.y, p.x * cosine_sine.y + p.y * cosine_sine.x};
+}
+
+// Lagrange's cubic through the nodes 0, 1, 2, 3: their weights at t.
+f4 cubic(float t) {
+    const float a = t - 1, b = t - 2, c = t - 3;
+    return f4{a * b * c, t * b * c, t * a * c, t * a * b} * f4{-1 / 6.f, 0.5f, -0.5f, 1 / 6.f};
+}
+
+// The four nodes about a place, or the only one.
+struct Nodes {
+    int first, count;
+    f4 weight;
+};
+Nodes nodes_about(float t, int size) {
+    if (size == 1) return {0, 1, f4{1, 0, 0, 0}};
+    const auto last = static_cast<float>(size - 1);
+    t = t > 0.f ? (t < last ? t : last) : 0.f;  // NaN: 0
+    const int first = std::clamp(static_cast<int>(t) - 1, 0, size - 4);
+    return {first, 4, cubic(t - static_cast<float>(first))};
+}
+
+struct Step {
+    f4 l, m, left2_mm2;
+};
+Step step_towards(V2f stop_point_mm, const StopCrossing<f4>& c) {
+    const f4 x = stop_point_mm.x - c.ray.origin.x, y = stop_point_mm.y - c.ray.origin.y;
+    const f4 by = 1 / c.determinant();
+    return {(c.y_by_m * x - c.x_by_m * y) * by, (c.x_by_l * y - c.y_by_l * x) * by, x * x + y * y};
+}
+
+}  // namespace
+
+float Pupil::Axis::at(int i) const {
+    return size == 1 ? first : first + (last - first) * static_cast<float>(i) / float(size - 1);
+}
+
+Pupil::Pupil(const Lens& lens, double film_mm, double film_reach_mm)
+    : lens_(lens),
+      film_mm_(film_mm),
+      stop_radius_mm_(static_cast<float>(
+          lens.prescription().surfaces[static_cast<size_t>(lens.stop())].semi_diameter_mm)),
+      symmetric_(lens.of_revolution()) {
+    const float reach = static_cast<float>(film_reach_mm), radius = stop_radius_mm_;
+    // So fine that a guess is a solution for nearly all rays, so coarse that a lens is set up in
+    // milliseconds: lens_camera_bench.
+    columns_ = symmetric_ ? Axis{0, 0, 1} : Axis{0, reach, 6};
+    rows_ = {0, reach, symmetric_ ? 12 : 6};
+    across_ = symmetric_ ? Axis{0, radius, 8} : Axis{-radius, radius, 13};
+    up_ = {-radius, radius, 15};
+    solve_table();
+}
+
+template <class V>
+StopCrossing<V> Pupil::cross(V2f film_point_mm, V l, V m, const LensIndices<V>& indices) const {
+    using D = Dual<V>;
+    const V one = broadcast<V>(1);
+    LensRay<D> ray = leave(film_point_mm, D{l, one, V{}}, D{m, V{}, one});
+    StopCrossing<V> out;
+    out.l = l;
+    out.m = m;
+    out.clear = !MaskOf<V>{};
+    const auto& facts = lens_.surfaces<ScalarOf<V>>();
+    const auto clip = [&](const LensHit<V>& hit) {
+        const V x = hit.point.x, y = hit.point.y;
+        const auto rim2 = facts[static_cast<size_t>(hit.surface)].semi_diameter2_mm2;
+        out.clear &= (x * x + y * y <= rim2) | (hit.reached == 0);
+    };
+    static_cast<void>(march<D>(lens_, indices, Towards::Scene, {lens_.stop(), lens_.last()}, ray,
+                               Clip::No, clip));
+    out.ray = lens_march::converted<V>(ray);
+    out.x_by_l = ray.origin.x.du;
+    out.y_by_l = ray.origin.y.du;
+    out.x_by_m = ray.origin.x.dv;
+    out.y_by_m = ray.origin.y.dv;
+    return out;
+}
+template StopCrossing<f4> Pupil::cross(V2f, f4, f4, const LensIndices<f4>&) const;
+template StopCrossing<d4> Pupil::cross(V2f, d4, d4, const LensIndices<d4>&) const;
+
+// Newton's method from a guess: half the step where it leads to where rays never reach the stop.
+std::optional<StopCrossing<f4>> Pupil::newton(V2f film_point_mm, V2f stop_point_mm, V2f cosines,
+                                              const LensIndices<f4>& indices, int lane) const {
+    V2f good = cosines, step(0.f);
+    int halvings = 0;
+    for (int i = 0; i < kMostSteps; ++i) {
+        StopCrossing<f4> c = cross<f4>(film_point_mm, splat(cosines.x), splat(cosines.y), indices);
+        c.marches = i + 1;
+        if (cosines.length2() < 1.f && c.ray.alive()[lane]) {
+            const Step by = step_towards(stop_point_mm, c);
+            good = cosines;
+            step = {by.l[lane], by.m[lane]};
+            if (by.left2_mm2[lane] < sqr(kTolerance * stop_radius_mm_) &&
+                step.length2() < sqr(kMostStepLeft))
+                return c;
+        } else {
+            if (i == 0 || ++halvings > kMostHalvings) break;
+            step *= 0.5f;
+        }
+        cosines = good + step;
+    }
+    return std::nullopt;
+}
+
+// The same for each lane by itself, but for one that fails: it keeps the guess.
+Pupil::Node Pupil::settled(V2f film_point_mm, V2f stop_point_mm, const Node& guess,
+                           const LensIndices<f4>& indices) const {
+    Node at = guess;
+    m4 inside{}, close{};
+    for (int i = 0; i < kMostSteps && !all(close); ++i) {
+        const StopCrossing<f4> c = cross<f4>(film_point_mm, at.l, at.m, indices);
+        inside = c.ray.alive() & (at.l * at.l + at.m * at.m < 1.f);
+        const Step by = step_towards(stop_point_mm, c);
+        close = ~inside | (by.left2_mm2 < sqr(kToleranceBeforeStep * stop_radius_mm_));
+        at = {inside ? at.l + by.l : guess.l, inside ? at.m + by.m : guess.m};
+    }
+    return {inside & close ? at.l : guess.l, inside & close ? at.m : guess.m};
+}
+
+// Outwards from the middle of the stop, each ray guessed from those that are known next to it: as
+// from the film point before, so here.
+void Pupil::solve_table() {
+    const LensIndices<f4> indices = lens_.exact_indices(kNodes_nm);
+    table_.resize(place(columns_.size, 0, 0, 0));
+    const int mid_i = symmetric_ ? 0 : across_.size / 2, mid_j = up_.size / 2;
+    std::vector<std::array<int, 2>> order;
+    for (int i = 0; i < across_.size; ++i)
+        for (int j = 0; j < up_.size; ++j) order.push_back({i, j});
+    const auto away = [&](const std::array<int, 2>& p) {
+        return std::max(std::abs(p[0] - mid_i), std::abs(p[1] - mid_j));
+    };
+    std::stable_sort(order.begin(), order.end(),
+                     [&](const auto& a, const auto& b) { return away(a) < away(b); });
+    const auto towards = [](int i, int middle) { return i + (i < middle) - (i > middle); };
+    for (int column = 0; column < columns_.size; ++column)
+        for (int row = 0; row < rows_.size; ++row)
+            for (const auto& [i, j] : order) {
+                const int inner_i = towards(i, mid_i), inner_j = towards(j, mid_j);
+                const int before_c = row > 0 ? column : std::max(column - 1, 0);
+                const int before_r = std::max(row - 1, 0);
+                const Node inner = table_[place(column, row, inner_i, inner_j)];
+                const Node before = table_[place(before_c, before_r, i, j)];
+                const Node other = table_[place(before_c, before_r, inner_i, inner_j)];
+                const bool middle = i == mid_i && j == mid_j;
+                const Node guess =
+                    middle ? before
+                           : Node{inner.l + before.l - other.l, inner.m + before.m - other.m};
+                table_[place(column, row, i, j)] =
+                    settled({columns_.at(column), rows_.at(row)}, {across_.at(i), up_.at(j)}, guess,
+                            indices);
+            }
+}
+
+V2f Pupil::between(V2f film_point_mm, V2f stop_point_mm, float nm) const {
+    const auto along = [](const Axis& axis, float at) {
+        return nodes_about((at - axis.first) * float(axis.size - 1) / (axis.last - axis.first),
+                           axis.size);
+    };
+    const Nodes column = along(columns_, film_point_mm.x), row = along(rows_, film_point_mm.y);
+    const Nodes across = along(across_, stop_point_mm.x), up = along(up_, stop_point_mm.y);
+    Node sum;
+    for (int a = 0; a < column.count; ++a)
+        for (int b = 0; b < row.count; ++b)
+            for (int c = 0; c < 4; ++c) {
+                const Node* node =
+                    &table_[place(column.first + a, row.first + b, across.first + c, up.first)];
+                Node line;
+                for (int d = 0; d < 4; ++d) {
+                    line.l += node[d].l * up.weight[d];
+                    line.m += node[d].m * up.weight[d];
+                }
+                const float weight = column.weight[a] * row.weight[b] * across.weight[c];
+                sum.l += line.l * weight;
+                sum.m += line.m * weight;
+            }
+    const f4 weights =
+        cubic(3 * (1 / kNodes_nm[0] - 1 / nm) / (1 / kNodes_nm[0] - 1 / kNodes_nm[3]));
+    return {hsum(sum.l * weights), hsum(sum.m * weights)};
+}
+
+std::optional<StopCrossing<f4>> Pupil::solve(V2f film_point_mm, V2f stop_point_mm,
+                                             const LensIndices<f4>& indices, int lane,
+                                             float nm) const {
+    // Into the part that the table covers, and back.
+    V2f p = film_point_mm, q = stop_point_mm;
+    V2f turn(1.f, 0.f);
+    if (symmetric_) {
+        const float r = p.length();
+        if (r > 0.f) turn = V2f(p.y, p.x) / r;  // takes p to (0, r)
+        p = {0.f, r};
+        q = turned(q, turn);
+    }
+    const V2f mirror((symmetric_ ? q.x : p.x) < 0.f ? -1.f : 1.f, p.y < 0.f ? -1.f : 1.f);
+    const V2f guess = turned(between(p * mirror, q * mirror, nm) * mirror, V2f(turn.x, -turn.y));
+    return newton(film_point_mm, stop_point_mm, guess, indices, lane);
+}
+
+}  // namespace petzval

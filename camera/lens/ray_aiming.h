@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a point of the film to a point of the stop: which way does the ray leave the film?
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "camera/lens/lens.h"
+#include "camera/lens/trace.h"
+#include "core/math/math.h"
+
+namespace petzval {
+
+/// Where rays from the film cross the plane of the stop, lane by lane. V: f4 or d4.
+template <class V>
+struct StopCrossing {
+    V l, m;           ///< direction cosines at the film
+    LensRay<V> ray;   ///< at the stop, on its way to the scene
+    MaskOf<V> clear;  ///< inside the clear semi-diameters of all that it met, the stop's too
+    /// d(x, y) / d(l, m): columns by l and by m.
+    V x_by_l, y_by_l, x_by_m, y_by_m;
+    int marches = 1;  ///< that it took to find it
+
+    [[nodiscard]] V determinant() const { return x_by_l * y_by_m - x_by_m * y_by_l; }
+    /// Area on the stop for a unit of dl dm, which is projected solid angle at the film.
+    [[nodiscard]] V stretch_mm2() const {
+        const V d = determinant();
+        return d < 0 ? -d : d;
+    }
+};
+
+/// The rear of a lens, film to stop. Millimetres; coordinates as in Prescription.
+class Pupil {
+  public:
+    /// film_reach_mm: how far film points lie from the axis at most. The lens must outlive it.
+    Pupil(const Lens&, double film_mm, double film_reach_mm);
+
+    /// The ray that leaves the film in the same direction in all lanes, and in one of them, whose
+    /// wavelength is nm, meets a point of the stop to a ten-thousandth of the stop's radius, and is
+    /// within a thousandth of the direction that does. Nothing where no ray gets there.
+    /// Semi-diameters do not stop rays: one that glass blocks at one wavelength may have been drawn
+    /// for another.
+    [[nodiscard]] std::optional<StopCrossing<f4>> solve(V2f film_point_mm, V2f stop_point_mm,
+                                                        const LensIndices<f4>&, int lane,
+                                                        float nm) const;
+    /// The ray that leaves the film with direction cosines l and m. V: f4 or d4.
+    template <class V>
+    [[nodiscard]] StopCrossing<V> cross(V2f film_point_mm, V l, V m, const LensIndices<V>&) const;
+    /// Its beginning. N: V, or V with derivatives.
+    template <class N>
+    [[nodiscard]] LensRay<N> leave(V2f film_point_mm, const N& l, const N& m) const {
+        const auto number = [](double a) {
+            return constant<N>(broadcast<ValueOf<N>>(ScalarOf<N>(a)));
+        };
+        LensRay<N> ray;
+        ray.counted_from = lens_.last();
+        ray.origin = {number(film_point_mm.x), number(film_point_mm.y),
+                      number(film_mm_ - lens_.vertex_mm(lens_.last()))};
+        ray.direction = {l, m, -sqrt(1 - l * l - m * m)};
+        return ray;
+    }
+
+  private:
+    /// Equal steps over [first, last].
+    struct Axis {
+        float first, last;
+        int size;
+        [[nodiscard]] float at(int i) const;
+    };
+    /// Direction cosines at kNodes_nm.
+    struct Node {
+        f4 l{}, m{};
+    };
+    [[nodiscard]] std::optional<StopCrossing<f4>> newton(V2f film_point_mm, V2f stop_point_mm,
+                                                         V2f cosines, const LensIndices<f4>&,
+                                                         int lane) const;
+    [[nodiscard]] Node settled(V2f film_point_mm, V2f stop_point_mm, const Node& guess,
+                               const LensIndices<f4>&) const;
+    [[nodiscard]] V2f between(V2f film_point_mm, V2f stop_point_mm, float nm) const;
+    void solve_table();
+    [[nodiscard]] size_t place(int column, int row, int i, int j) const {
+        return static_cast<size_t>(((column * rows_.size + row) * across_.size + i) * up_.size + j);
+    }
+
+    const Lens& lens_;
+    double film_mm_;
+    float stop_radius_mm_;
+    bool symmetric_;       ///< about the axis: film points on the +y axis say it all
+    Axis columns_, rows_;  ///< x and y of film points, >= 0
+    Axis across_, up_;     ///< x and y of stop points
+    std::vector<Node> table_;
+};
+
+}  // namespace petzval

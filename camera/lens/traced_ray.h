@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// One ray through a lens, with all that can be told of it.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "camera/lens/trace.h"
+#include "core/math/math.h"
+
+namespace petzval {
+
+/// Millimetres; z = 0 at the first vertex, +z towards the film.
+struct TracedRay {
+    std::vector<V3d> points;  ///< on each surface that it met, the one that blocked it too
+    V3d point, direction;     ///< where and how it leaves; of a ray that passed
+    double path_mm = 0;       ///< optical path from the origin to there
+    Fate fate = Fate::Passed;
+    int end_surface = -1;  ///< where it was blocked
+
+    /// Where a ray that passed meets a plane across the axis; nothing where it does not lead there.
+    [[nodiscard]] std::optional<std::array<double, 2>> at_plane(double z_mm) const;
+};
+
+/// The march in doubles with the glasses' own formulas. direction: of any length but 0.
+[[nodiscard]] TracedRay trace_ray(const Lens&, const V3d& origin_mm, const V3d& direction,
+                                  double nm, Towards, Clip);
+
+}  // namespace petzval

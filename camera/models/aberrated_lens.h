@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// The thin lens with the two aberrations that its closed forms know: spherical and chromatic.
+#pragma once
+
+#include "camera/dispersion/dispersion_mode.h"
+#include "camera/models/thin_lens.h"
+#include "camera/models/thin_lens_optics.h"
+
+namespace petzval {
+
+/// A single lens that stands as ThinLens does. The film is where the plane at focus_m is sharp for
+/// rays near the axis at the d line.
+struct AberratedLens {
+    M44f to_world;  ///< rigid; metres
+    Singlet singlet;
+    Iris iris;              ///< at the lens
+    double focus_m = 1;     ///< axial distance; may be infinite
+    float yfov_rad = 0.7f;  ///< full vertical angle, seen from the lens's centre
+    float aspect = 1.5f;    ///< width / height of the film
+    Chroma chroma = Chroma::Tolerance;
+    float tolerance_rad = 0;  ///< Tolerance: how far apart directions may be, seen from the lens
+    float exposure = 1.f;     ///< factor on every weight
+};
+
+/// A ray that meets the lens h off the axis is bent as by an ideal lens of focal length f(h,
+/// wavelength): zonal_focal_length_mm for the distance in focus. Coma, astigmatism and curvature of
+/// field are left out: a film point images as the film's centre does.
+class AberratedLensCamera final : public Camera {
+  public:
+    /// Error (std::invalid_argument): focus within the focal length, a lens that does not gather
+    /// light at all of 360 to 830 nm, or an iris wider than its surfaces or than f(h) > f/2 allows.
+    explicit AberratedLensCamera(AberratedLens);
+    [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
+    [[nodiscard]] double film_distance_mm() const { return film_mm_; }
+
+  private:
+    [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&, Chroma) const;
+    [[nodiscard]] CameraSample hero(const FilmPoint&, const Bands&) const;
+    [[nodiscard]] double zonal_mm(double n, double h_mm) const;
+
+    AberratedLens in_;
+    Pose pose_;
+    SingletOptics at_d_;
+    double focus_mm_, film_mm_;
+    float tan_half_x_, tan_half_y_;
+};
+
+}  // namespace petzval

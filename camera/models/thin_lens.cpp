@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "camera/models/thin_lens.h"
+
+#include <utility>
+
+namespace petzval {
+namespace {
+
+// A camera ray from a point and a direction of the camera's own space.
+CameraSample one_path(const Pose& pose, const V3f& origin, const V3f& direction, const Bands& bands,
+                      float exposure) {
+    CameraSample out;
+    out.exposure = exposure;
+    CameraPath& path = out.add();
+    path.ray.origin = pose.origin + pose.to_world(origin);
+    path.ray.direction = unit(pose.to_world(direction));
+    path.weight = uniform(exposure, bands);
+    path.lanes = bands.on;
+    return out;
+}
+
+}  // namespace
+
+Pose::Pose(const M44f& m)
+    : origin(m[3][0], m[3][1], m[3][2]),
+      right(unit({m[0][0], m[0][1], m[0][2]})),
+      up(unit({m[1][0], m[1][1], m[1][2]})),
+      back(unit({m[2][0], m[2][1], m[2][2]})) {}
+
+ThinLensCamera::ThinLensCamera(ThinLens lens)
+    : pose_(lens.to_world),
+      iris_(std::move(lens.iris)),
+      focus_m_(lens.focus_m),
+      exposure_(lens.exposure),
+      tan_half_x_(std::tan(lens.yfov_rad / 2) * lens.aspect),
+      tan_half_y_(std::tan(lens.yfov_rad / 2)) {}
+
+CameraSample ThinLensCamera::sample(const FilmPoint& at, const Bands& bands) const {
+    const V3f direction{(2.f * at.film.x - 1.f) * tan_half_x_,
+                        (1.f - 2.f * at.film.y) * tan_half_y_, -1.f};
+    if (!iris_) return one_path(pose_, V3f(0.f), direction, bands, exposure_);
+    const V2f stop = iris_->sample(at.sampler.get2(Dim::Lens)) * 1e-3f;
+    const V3f origin{stop.x, stop.y, 0.f};
+    return one_path(pose_, origin, direction * focus_m_ - origin, bands, exposure_);
+}
+
+OrthographicCamera::OrthographicCamera(const M44f& to_world, float half_width_m,
+                                       float half_height_m)
+    : pose_(to_world), half_width_m_(half_width_m), half_height_m_(half_height_m) {}
+
+CameraSample OrthographicCamera::sample(const FilmPoint& at, const Bands& bands) const {
+    const V3f origin{(2.f * at.film.x - 1.f) * half_width_m_,
+                     (1.f - 2.f * at.film.y) * half_height_m_, 0.f};
+    return one_path(pose_, origin, V3f(0, 0, -1), bands, 1.f);
+}
+
+M44f look_at(const V3f& eye, const V3f& target) {
+    const V3f back = unit(eye - target);
+    const V3f up = std::fabs(back.y) > 0.9999f ? V3f(0, 0, -1) : V3f(0, 1, 0);
+    const V3f right = unit(up.cross(back));
+    const V3f true_up = back.cross(right);
+    return M44f(right.x, right.y, right.z, 0, true_up.x, true_up.y, true_up.z, 0, back.x, back.y,
+                back.z, 0, eye.x, eye.y, eye.z, 1);
+}
+
+}  // namespace petzval

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cameras without glass: pinhole, thin lens, orthographic.
+#pragma once
+
+#include <optional>
+
+#include "camera/camera.h"
+#include "camera/iris/iris.h"
+
+namespace petzval {
+
+/// A thin lens of no aberration; without an iris it is a pinhole. It stands at the origin of its
+/// own space, looks along -z with y up, and images the plane at focus_m sharply.
+struct ThinLens {
+    M44f to_world;
+    float yfov_rad = 0.7f;  ///< full vertical angle, seen from the lens's centre
+    float aspect = 1.5f;    ///< width / height of the film
+    std::optional<Iris> iris;
+    float focus_m = 1.f;   ///< axial distance
+    float exposure = 1.f;  ///< factor on every weight
+};
+
+/// Where a camera stands and its axes in world space, unit: what its matrix says, unpacked.
+struct Pose {
+    V3f origin, right, up, back;
+    explicit Pose(const M44f& matrix);
+    [[nodiscard]] V3f to_world(const V3f& v) const { return right * v.x + up * v.y + back * v.z; }
+};
+
+class ThinLensCamera final : public Camera {
+  public:
+    explicit ThinLensCamera(ThinLens);
+    [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
+
+  private:
+    Pose pose_;
+    std::optional<Iris> iris_;
+    float focus_m_, exposure_, tan_half_x_, tan_half_y_;
+};
+
+/// Parallel projection: half sizes of the view in metres.
+class OrthographicCamera final : public Camera {
+  public:
+    OrthographicCamera(const M44f& to_world, float half_width_m, float half_height_m);
+    [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
+
+  private:
+    Pose pose_;
+    float half_width_m_, half_height_m_;
+};
+
+/// Rigid transform of a camera at eye that looks at target; up is +y, or -z where it looks along y.
+[[nodiscard]] M44f look_at(const V3f& eye, const V3f& target);
+
+}  // namespace petzval

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "integrator/focus.h"
+#include "integrator/autofocus.h"
 #include "io/error.h"
 #include "io/numbers.h"
 #include "io/thin_setup.h"

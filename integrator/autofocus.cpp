@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "integrator/focus.h"
+#include "integrator/autofocus.h"
 
 #include <algorithm>
 #include <vector>

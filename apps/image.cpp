@@ -9,11 +9,11 @@
 
 #include "apps/output_checks.h"
 #include "apps/parse.h"
-#include "io/error.h"
-#include "io/image_diff.h"
-#include "io/output.h"
-#include "io/plot.h"
-#include "io/spectral_layout.h"
+#include "io/base/error.h"
+#include "io/image/difference.h"
+#include "io/image/output.h"
+#include "io/image/spectral_layout.h"
+#include "io/plot/plot.h"
 
 namespace petzval {
 namespace {

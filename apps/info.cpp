@@ -5,7 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "io/gltf.h"
+#include "io/gltf/gltf.h"
 
 namespace petzval {
 namespace {

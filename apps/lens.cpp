@@ -5,8 +5,8 @@
 
 #include "apps/console.h"
 #include "apps/lens_request.h"
-#include "io/agf.h"
-#include "io/lens_file.h"
+#include "io/glass/agf.h"
+#include "io/lens/lens_file.h"
 
 namespace petzval {
 

@@ -9,10 +9,10 @@
 #include "apps/lens_field.h"
 #include "camera/bench/analysis.h"
 #include "camera/bench/spot.h"
-#include "io/atomic_file.h"
-#include "io/csv.h"
-#include "io/error.h"
-#include "io/plot.h"
+#include "io/base/atomic_file.h"
+#include "io/base/csv.h"
+#include "io/base/error.h"
+#include "io/plot/plot.h"
 
 namespace petzval {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "apps/choice.h"
 #include "camera/bench/analysis.h"
-#include "io/error.h"
+#include "io/base/error.h"
 
 namespace petzval {
 namespace {

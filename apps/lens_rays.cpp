@@ -7,9 +7,9 @@
 #include "apps/lens_field.h"
 #include "apps/lens_request.h"
 #include "camera/lens/traced_ray.h"
-#include "io/atomic_file.h"
-#include "io/lens_drawing.h"
-#include "io/ray_table.h"
+#include "io/base/atomic_file.h"
+#include "io/lens/lens_drawing.h"
+#include "io/lens/ray_table.h"
 
 namespace petzval {
 namespace {

@@ -13,8 +13,8 @@
 #include "apps/parse.h"
 #include "camera/bench/analysis.h"
 #include "camera/lens/focus.h"
-#include "io/error.h"
-#include "io/lens_file.h"
+#include "io/base/error.h"
+#include "io/lens/lens_file.h"
 
 namespace petzval {
 namespace {

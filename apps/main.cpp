@@ -14,8 +14,8 @@
 #include "apps/lens.h"
 #include "apps/plan.h"
 #include "apps/render.h"
+#include "io/base/error.h"
 #include "io/develop.h"
-#include "io/error.h"
 
 namespace {
 

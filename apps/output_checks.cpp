@@ -6,8 +6,8 @@
 
 #include <algorithm>
 
-#include "io/display.h"
-#include "io/error.h"
+#include "io/base/error.h"
+#include "io/image/display.h"
 
 namespace petzval {
 

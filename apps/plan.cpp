@@ -10,7 +10,7 @@
 
 #include "apps/console.h"
 #include "apps/render_options.h"
-#include "io/numbers.h"
+#include "io/base/format.h"
 #include "io/plan.h"
 
 namespace petzval {

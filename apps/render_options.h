@@ -13,7 +13,7 @@
 #include "core/film/film.h"
 #include "integrator/path.h"
 #include "integrator/render.h"
-#include "io/output.h"
+#include "io/image/output.h"
 #include "io/session.h"
 
 namespace CLI {

@@ -8,10 +8,10 @@
 #include <cmath>
 #include <sstream>
 
-#include "io/error.h"
-#include "io/glasses.h"
-#include "io/json_parse.h"
-#include "io/lens_glasses.h"
+#include "io/base/error.h"
+#include "io/base/json_parse.h"
+#include "io/glass/catalogue.h"
+#include "io/glass/glass_lookup.h"
 
 namespace petzval {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "core/spectrum/glass.h"
 #include "io/camera_request.h"
-#include "io/gltf.h"
+#include "io/gltf/gltf.h"
 #include "io/lens_setup.h"
 
 namespace petzval {

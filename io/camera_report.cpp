@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/camera_report.h"
 
+#include "io/base/format.h"
 #include "io/camera_words.h"
-#include "io/numbers.h"
 
 namespace petzval {
 namespace {

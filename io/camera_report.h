@@ -3,7 +3,7 @@
 #pragma once
 
 #include "io/camera_request.h"
-#include "io/image.h"
+#include "io/image/picture.h"
 
 namespace petzval {
 

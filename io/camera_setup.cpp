@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include "integrator/autofocus.h"
-#include "io/error.h"
-#include "io/numbers.h"
+#include "io/base/error.h"
+#include "io/base/format.h"
 #include "io/thin_setup.h"
 
 namespace petzval {

@@ -8,8 +8,8 @@
 #include <chrono>
 #include <set>
 
-#include "io/atomic_file.h"
-#include "io/error.h"
+#include "io/base/atomic_file.h"
+#include "io/base/error.h"
 
 namespace petzval {
 namespace {

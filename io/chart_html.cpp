@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include "io/base/error.h"
+#include "io/base/read_file.h"
+#include "io/base/uri.h"
 #include "io/chart_report.h"
 #include "io/develop.h"
-#include "io/error.h"
-#include "io/read_file.h"
-#include "io/uri.h"
 
 namespace petzval {
 namespace {

@@ -6,11 +6,11 @@
 #include <cmath>
 
 #include "core/seams.h"
-#include "io/aperture_file.h"
-#include "io/atomic_file.h"
+#include "io/aperture/aperture_file.h"
+#include "io/base/atomic_file.h"
+#include "io/base/error.h"
 #include "io/camera_words.h"
-#include "io/error.h"
-#include "io/image.h"
+#include "io/image/picture.h"
 #include "io/simpler_camera.h"
 
 namespace petzval {

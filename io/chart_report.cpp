@@ -8,11 +8,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "io/atomic_file.h"
+#include "io/base/atomic_file.h"
 #include "io/develop.h"
-#include "io/flip.h"
-#include "io/output.h"
-#include "io/plot.h"
+#include "io/image/flip.h"
+#include "io/image/output.h"
+#include "io/plot/plot.h"
 
 namespace petzval {
 namespace {

@@ -7,8 +7,8 @@
 #include <chrono>
 #include <cmath>
 
-#include "io/flip.h"
-#include "io/image_diff.h"
+#include "io/image/difference.h"
+#include "io/image/flip.h"
 #include "io/stats_file.h"
 
 namespace petzval {

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "integrator/executor.h"
+#include "io/base/error.h"
 #include "io/chart_methods.h"
 #include "io/chart_points.h"
-#include "io/error.h"
-#include "io/image.h"
+#include "io/image/picture.h"
 
 namespace petzval {
 

@@ -9,7 +9,7 @@
 
 #include "core/spectrum/colour.h"
 #include "io/camera_report.h"
-#include "io/spectral_layout.h"
+#include "io/image/spectral_layout.h"
 
 namespace petzval {
 namespace {

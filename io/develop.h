@@ -4,7 +4,7 @@
 
 #include "core/film/film.h"
 #include "integrator/render.h"
-#include "io/image.h"
+#include "io/image/picture.h"
 #include "io/session.h"
 
 namespace petzval {
@@ -13,9 +13,9 @@ namespace petzval {
 [[nodiscard]] std::string program_version();
 
 /// R, G, B, A in nits of the white point; of a film with bins the channels S0 of
-/// io/spectral_layout.h, XYZ in nits and the standard errors of R, G and B; then the film's layers
-/// as "layer.channel". Metadata holds what the pixels follow from; no times, so that equal renders
-/// are equal files. The film must outlive the rows.
+/// io/image/spectral_layout.h, XYZ in nits and the standard errors of R, G and B; then the film's
+/// layers as "layer.channel". Metadata holds what the pixels follow from; no times, so that equal
+/// renders are equal files. The film must outlive the rows.
 [[nodiscard]] PictureRows develop(const Film&, const Session&, const RenderJob&, const PathOptions&,
                                   uint32_t end_sample);
 

@@ -14,8 +14,8 @@
 #include "camera/lens/paraxial.h"
 #include "camera/models/exposure.h"
 #include "camera/models/sensor.h"
-#include "io/aperture_file.h"
-#include "io/error.h"
+#include "io/aperture/aperture_file.h"
+#include "io/base/error.h"
 
 namespace petzval {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "camera/models/lens_camera.h"
 #include "io/camera_request.h"
-#include "io/lens_file.h"
+#include "io/lens/lens_file.h"
 
 namespace petzval {
 

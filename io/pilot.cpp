@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/sampling/sampler.h"
-#include "io/image_diff.h"
+#include "io/image/difference.h"
 #include "io/stats_file.h"
 
 namespace petzval {

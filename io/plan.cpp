@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/base/error.h"
+#include "io/base/format.h"
 #include "io/camera_words.h"
-#include "io/error.h"
-#include "io/numbers.h"
 #include "io/parted_rays.h"
 #include "io/plan_comparison.h"
 #include "io/simpler_camera.h"

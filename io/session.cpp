@@ -5,11 +5,11 @@
 
 #include <chrono>
 
+#include "io/base/format.h"
+#include "io/base/read_file.h"
 #include "io/camera_setup.h"
-#include "io/environment.h"
-#include "io/gltf.h"
-#include "io/numbers.h"
-#include "io/read_file.h"
+#include "io/gltf/gltf.h"
+#include "io/image/environment.h"
 
 namespace petzval {
 namespace {

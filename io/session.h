@@ -14,7 +14,7 @@
 #include "core/scene/scene.h"
 #include "core/traversal/bvh.h"
 #include "io/camera_report.h"
-#include "io/gltf.h"
+#include "io/gltf/gltf.h"
 #include "io/spectral_setup.h"
 
 namespace petzval {

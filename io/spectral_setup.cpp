@@ -8,12 +8,12 @@
 #include <stdexcept>
 
 #include "core/spectrum/sensor_fit.h"
-#include "io/error.h"
-#include "io/lower.h"
+#include "io/base/ascii.h"
+#include "io/base/error.h"
+#include "io/base/format.h"
+#include "io/base/read_file.h"
 #include "io/needs_wavelengths.h"
-#include "io/numbers.h"
-#include "io/read_file.h"
-#include "io/spectra.h"
+#include "io/spectra/spectra.h"
 
 namespace petzval {
 namespace {

@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "core/traversal/bvh.h"
-#include "io/atomic_file.h"
-#include "io/error.h"
+#include "io/base/atomic_file.h"
+#include "io/base/error.h"
 #include "io/stability_sweeps.h"
 
 namespace petzval {

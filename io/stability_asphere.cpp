@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "camera/lens/profile.h"
-#include "io/lens_file.h"
+#include "io/lens/lens_file.h"
 #include "io/stability_rays.h"
 #include "io/stability_sweeps.h"
 

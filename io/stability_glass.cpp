@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "core/spectrum/spectrum_table.h"
-#include "io/agf.h"
-#include "io/glasses.h"
+#include "io/glass/agf.h"
+#include "io/glass/catalogue.h"
 #include "io/stability_sweeps.h"
 
 namespace petzval::stability {

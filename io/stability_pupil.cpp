@@ -6,7 +6,7 @@
 
 #include "camera/lens/paraxial.h"
 #include "camera/models/lens_camera.h"
-#include "io/lens_file.h"
+#include "io/lens/lens_file.h"
 #include "io/stability_sweeps.h"
 
 namespace petzval::stability {

@@ -6,7 +6,7 @@
 
 #include "camera/models/aberrated_lens.h"
 #include "camera/models/thin_lens_optics.h"
-#include "io/glasses.h"
+#include "io/glass/catalogue.h"
 #include "io/stability_sweeps.h"
 #include "io/thin_setup.h"
 

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "io/atomic_file.h"
+#include "io/base/atomic_file.h"
 #include "io/develop.h"
 
 namespace petzval {

@@ -11,8 +11,8 @@
 #include "camera/models/exposure.h"
 #include "camera/models/sensor.h"
 #include "camera/models/thin_lens_optics.h"
-#include "io/aperture_file.h"
-#include "io/error.h"
+#include "io/aperture/aperture_file.h"
+#include "io/base/error.h"
 
 namespace petzval {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/aperture_file.h"
+#include "io/aperture/aperture_file.h"
 
 #include <cmath>
 
 #include "camera/iris/iris.h"
-#include "io/svg_path.h"
+#include "io/aperture/svg_path.h"
 #include "tests/support/clip.h"
 #include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/atomic_file.h"
+#include "io/base/atomic_file.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 
 #include <thread>
 
-#include "io/error.h"
+#include "io/base/error.h"
 #include "tests/support/file_size_limit.h"
 #include "tests/support/temporary_folder.h"
 

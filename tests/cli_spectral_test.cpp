@@ -7,8 +7,8 @@
 
 #include "core/spectrum/colorimetry.h"
 #include "core/spectrum/colour.h"
-#include "io/spectra.h"
-#include "io/spectral_layout.h"
+#include "io/image/spectral_layout.h"
+#include "io/spectra/spectra.h"
 #include "tests/support/cli_spectral.h"
 #include "tests/support/statistics.h"
 

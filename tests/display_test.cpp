@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/display.h"
+#include "io/image/display.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "core/spectrum/colour.h"
-#include "io/assets.h"
-#include "io/error.h"
+#include "io/base/assets.h"
+#include "io/base/error.h"
 #include "tests/support/pictures.h"
 
 namespace petzval {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/environment.h"
+#include "io/image/environment.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "io/error.h"
-#include "io/image.h"
+#include "io/base/error.h"
+#include "io/image/picture.h"
 #include "tests/support/pictures.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/flip.h"
+#include "io/image/flip.h"
 
 #include <gtest/gtest.h>
 

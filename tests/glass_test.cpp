@@ -8,8 +8,8 @@
 #include "camera/lens/lens.h"
 #include "core/spectrum/glass.h"
 #include "core/spectrum/spectrum_table.h"
-#include "io/csv.h"
-#include "io/glasses.h"
+#include "io/base/csv.h"
+#include "io/glass/catalogue.h"
 
 namespace petzval {
 namespace {

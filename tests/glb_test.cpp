@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/glb.h"
+#include "io/gltf/validate/glb.h"
 
 #include <gtest/gtest.h>
 

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "io/error.h"
-#include "io/gltf_source.h"
+#include "io/base/error.h"
+#include "io/gltf/validate/source.h"
 
 namespace petzval {
 namespace {

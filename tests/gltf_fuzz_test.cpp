@@ -5,8 +5,8 @@
 
 #include <random>
 
-#include "io/error.h"
-#include "io/gltf_source.h"
+#include "io/base/error.h"
+#include "io/gltf/validate/source.h"
 #include "tests/support/tiny_gltf.h"
 
 namespace petzval {

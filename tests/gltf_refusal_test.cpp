@@ -2,7 +2,7 @@
 // A correct file that uses everything, spoilt in one place at a time: the message names the place.
 #include <gtest/gtest.h>
 
-#include "io/gltf_source.h"
+#include "io/gltf/validate/source.h"
 #include "tests/support/full_gltf.h"
 
 namespace petzval {

@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "io/error.h"
+#include "io/base/error.h"
 #include "tests/support/load_tiny_gltf.h"
 
 namespace petzval {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What read_gltf_source accepts, and what it hands on.
-#include "io/gltf_source.h"
-#include "io/read_file.h"
+#include "io/base/read_file.h"
+#include "io/gltf/validate/source.h"
 
 #include <gtest/gtest.h>
 
-#include "io/gltf_accessor.h"
-#include "io/gltf_files.h"
+#include "io/gltf/validate/accessor.h"
+#include "io/gltf/validate/files.h"
 #include "tests/support/refusal.h"
 #include "tests/support/tiny_gltf.h"
 

@@ -3,9 +3,9 @@
 // follows for a render.
 #include <gtest/gtest.h>
 
-#include "io/glasses.h"
+#include "io/glass/catalogue.h"
 #include "io/needs_wavelengths.h"
-#include "io/spectra.h"
+#include "io/spectra/spectra.h"
 #include "tests/support/load_tiny_gltf.h"
 #include "tests/support/refusal.h"
 #include "tests/support/tiny_png.h"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/image_diff.h"
+#include "io/image/difference.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "io/error.h"
+#include "io/base/error.h"
 #include "tests/support/pictures.h"
 #include "tests/support/temporary_folder.h"
 

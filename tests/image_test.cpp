@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/image.h"
+#include "io/image/picture.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "io/error.h"
-#include "io/image_limits.h"
+#include "io/base/error.h"
+#include "io/image/limits.h"
 #include "tests/support/pictures.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tiny_png.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/json_parse.h"
+#include "io/base/json_parse.h"
 
 #include <gtest/gtest.h>
 
-#include "io/json_cursor.h"
+#include "io/base/json_cursor.h"
 #include "tests/support/refusal.h"
 
 namespace petzval {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "io/csv.h"
+#include "io/base/csv.h"
 #include "tests/support/cli.h"
 #include "tests/support/lens_json.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/lens_file.h"
+#include "io/lens/lens_file.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <random>
 
 #include "camera/lens/paraxial.h"
-#include "io/lens_formats.h"
-#include "io/text_lines.h"
+#include "io/base/text_lines.h"
+#include "io/lens/lens_formats.h"
 #include "tests/support/lens_text.h"
 #include "tests/support/text_mutation.h"
 

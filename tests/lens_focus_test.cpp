@@ -8,7 +8,7 @@
 
 #include "camera/lens/paraxial.h"
 #include "camera/lens/traced_ray.h"
-#include "io/lens_file.h"
+#include "io/lens/lens_file.h"
 
 namespace petzval {
 namespace {

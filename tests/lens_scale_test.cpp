@@ -9,7 +9,7 @@
 
 #include "camera/bench/analysis.h"
 #include "camera/lens/traced_ray.h"
-#include "io/lens_file.h"
+#include "io/lens/lens_file.h"
 
 namespace petzval {
 namespace {

@@ -6,7 +6,7 @@
 #include "core/spectrum/colorimetry.h"
 #include "core/spectrum/colour.h"
 #include "core/spectrum/sensor_fit.h"
-#include "io/spectra.h"
+#include "io/spectra/spectra.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/observers.h"
 #include "tests/support/statistics.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/output.h"
+#include "io/image/output.h"
 
 #include <gtest/gtest.h>
 
-#include "io/error.h"
+#include "io/base/error.h"
 #include "tests/support/pictures.h"
 #include "tests/support/temporary_folder.h"
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "io/image_diff.h"
+#include "io/image/difference.h"
 #include "io/parted_rays.h"
 #include "io/plan_comparison.h"
 #include "tests/support/cli_spectral.h"

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/plot.h"
+#include "io/plot/plot.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdlib>
 
-#include "io/error.h"
-#include "io/image.h"
+#include "io/base/error.h"
+#include "io/image/picture.h"
 #include "tests/support/file_size_limit.h"
 #include "tests/support/temporary_folder.h"
 

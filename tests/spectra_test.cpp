@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/spectra.h"
+#include "io/spectra/spectra.h"
 
 #include <gtest/gtest.h>
 

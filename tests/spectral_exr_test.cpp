@@ -8,9 +8,9 @@
 #include <cfloat>
 #include <map>
 
+#include "io/base/error.h"
 #include "io/develop.h"
-#include "io/error.h"
-#include "io/spectral_layout.h"
+#include "io/image/spectral_layout.h"
 #include "tests/support/file_size_limit.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/uri.h"
+#include "io/base/uri.h"
 
 #include <gtest/gtest.h>
 

@@ -16,7 +16,7 @@
 #include <cstdio>
 
 #include "core/spectrum/colorimetry.h"
-#include "io/spectra.h"
+#include "io/spectra/spectra.h"
 
 namespace petzval {
 namespace {

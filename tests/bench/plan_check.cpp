@@ -12,8 +12,8 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/parse.h"
-#include "io/error.h"
-#include "io/lens_file.h"
+#include "io/base/error.h"
+#include "io/lens/lens_file.h"
 #include "io/plan.h"
 #include "tests/bench/program.h"
 

@@ -16,9 +16,9 @@
 #include <fstream>
 
 #include "camera/lens/ray_aiming.h"
-#include "io/glasses.h"
-#include "io/gltf.h"
-#include "io/lens_file.h"
+#include "io/glass/catalogue.h"
+#include "io/gltf/gltf.h"
+#include "io/lens/lens_file.h"
 #include "io/session.h"
 #include "tests/bench/noise.h"
 

@@ -13,7 +13,7 @@
 
 #include "core/scene/texture.h"
 #include "core/spectrum/colour.h"
-#include "io/spectra.h"
+#include "io/spectra/spectra.h"
 #include "tests/bench/sigmoid.h"
 #include "tests/support/observers.h"
 #include "tests/support/statistics.h"

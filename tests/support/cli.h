@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "io/image.h"
+#include "io/image/picture.h"
 #include "tests/support/process.h"
 #include "tests/support/tiny_gltf.h"
 

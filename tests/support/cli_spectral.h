@@ -7,7 +7,7 @@
 #include "core/spectrum/colorimetry.h"
 #include "core/spectrum/observer.h"
 #include "core/spectrum/spectrum_table.h"
-#include "io/spectra.h"
+#include "io/spectra/spectra.h"
 #include "tests/support/cli.h"
 
 namespace petzval {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "io/gltf_source.h"
+#include "io/gltf/validate/source.h"
 #include "tests/support/refusal.h"
 #include "tests/support/tiny_gltf.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "io/lens_file.h"
+#include "io/lens/lens_file.h"
 #include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 

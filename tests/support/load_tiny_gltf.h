@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "io/gltf.h"
+#include "io/gltf/gltf.h"
 #include "tests/support/tiny_gltf.h"
 
 namespace petzval {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "io/image.h"
+#include "io/image/picture.h"
 
 namespace petzval::test {
 

@@ -5,11 +5,11 @@
 //   peers_chart MANIFEST.json FOLDER
 #include <fmt/format.h>
 
+#include "io/base/json_parse.h"
+#include "io/base/read_file.h"
 #include "io/chart_report.h"
-#include "io/flip.h"
-#include "io/image_diff.h"
-#include "io/json_parse.h"
-#include "io/read_file.h"
+#include "io/image/difference.h"
+#include "io/image/flip.h"
 #include "tests/bench/program.h"
 
 namespace petzval {

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/aperture/aperture_file.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <functional>
+#include <optional>
+#include <stdexcept>
+
+#include "io/base/ascii.h"
+#include "io/base/error.h"
+#include "io/image/picture.h"
+
+namespace petzval {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kPossible =
+    "give circle, square, triangle, rhomboid, frame, star:N, polygon:N[,ROTATION_DEG[,ROUNDNESS]], "
+    "or a file .svg or .png";
+
+// The numbers after the colon; nothing where one of them is none.
+std::optional<std::vector<double>> numbers_of(std::string_view text) {
+    std::vector<double> out;
+    for (;;) {
+        const std::string_view part = text.substr(0, text.find(','));
+        double value = 0;
+        const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+        if (error != std::errc() || end != part.data() + part.size()) return std::nullopt;
+        out.push_back(value);
+        if (part.size() == text.size()) return out;
+        text.remove_prefix(part.size() + 1);
+    }
+}
+
+// A count that the shapes may refuse: what is not whole becomes one they do.
+int count_of(double value) {
+    return value >= 0 && value <= 1e6 && value == std::floor(value) ? static_cast<int>(value) : -1;
+}
+
+std::optional<ApertureShape> built_in(const std::string& text) {
+    if (text == "circle") return Disk();
+    if (text == "square") return square();
+    if (text == "triangle") return regular_polygon(3);
+    if (text == "rhomboid") return rhomboid();
+    if (text == "frame") return frame();
+    const size_t colon = text.find(':');
+    const std::string name = text.substr(0, colon);
+    if (colon == text.npos || (name != "star" && name != "polygon")) return std::nullopt;
+    const auto v = numbers_of(std::string_view(text).substr(colon + 1));
+    if (!v || v->size() > (name == "star" ? 1 : 3)) throw ArgumentError(text, "", kPossible);
+    try {
+        if (name == "star") return star(count_of((*v)[0]));
+        return regular_polygon(count_of((*v)[0]), v->size() > 1 ? (*v)[1] : 0,
+                               v->size() > 2 ? (*v)[2] : 0);
+    } catch (const std::invalid_argument& error) {
+        throw ArgumentError(text, "", error.what());
+    }
+}
+
+}  // namespace
+
+ApertureShape parse_aperture(const std::string& text, const fs::path& folder) {
+    if (auto shape = built_in(text)) return *shape;
+    const fs::path path = folder / text;
+    const std::string ending = lower(path.extension().string());
+    std::error_code none;
+    if (ending.empty() || !fs::exists(path, none))
+        throw ArgumentError(text, "", fmt::format("is neither a file nor a shape; {}", kPossible));
+    if (ending == ".svg") return read_svg_aperture(path);
+    return read_mask_aperture(path);
+}
+
+Mask read_mask_aperture(const fs::path& path) {
+    const Picture picture = read_picture(path);
+    const int red = channel_index(picture, "R"), green = channel_index(picture, "G"),
+              blue = channel_index(picture, "B"), alpha = channel_index(picture, "A");
+    const bool colour = red >= 0 && green >= 0 && blue >= 0;
+    // EXR alone stores colours that are multiplied by alpha already.
+    const bool by_alpha = alpha >= 0 && lower(path.extension().string()) != ".exr";
+    Mask mask{picture.width, picture.height, {}};
+    mask.texels.reserve(static_cast<size_t>(picture.width) * picture.height);
+    for (size_t i = 0; i < picture.pixels.size(); i += picture.channels.size()) {
+        const float* p = &picture.pixels[i];
+        // White must stay 1, which the sum of the weights is not to the last bit.
+        const float grey = !colour || (p[red] == p[green] && p[green] == p[blue])
+                               ? p[colour ? red : 0]
+                               : 0.2126f * p[red] + 0.7152f * p[green] + 0.0722f * p[blue];
+        mask.texels.push_back(by_alpha ? grey * p[alpha] : grey);
+    }
+    if (const auto fault = find_fault(mask))
+        throw InputError(path.string(), "", *fault + "; 0 is opaque and 1 is open");
+    return mask;
+}
+
+}  // namespace petzval

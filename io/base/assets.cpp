@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/base/assets.h"
+
+#include <system_error>
+
+#include "io/base/error.h"
+
+namespace petzval {
+
+std::filesystem::path asset(const std::string& relative) {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    const fs::path program = fs::read_symlink("/proc/self/exe", error);
+    const fs::path installed = program.parent_path() / PETZVAL_ASSETS_FROM_BIN / relative;
+    if (!error && fs::exists(installed, error)) return installed.lexically_normal();
+    const fs::path in_source = fs::path(PETZVAL_SOURCE_ASSETS) / relative;
+    if (fs::exists(in_source, error)) return in_source;
+    throw InputError(installed.lexically_normal().string(), "",
+                     "is missing; install Petzval again with cmake --install");
+}
+
+}  // namespace petzval

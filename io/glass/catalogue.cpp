@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/glass/catalogue.h"
+
+#include <algorithm>
+#include <charconv>
+#include <numeric>
+#include <span>
+#include <string_view>
+#include <tuple>
+
+#include "io/base/ascii.h"
+#include "io/base/assets.h"
+#include "io/base/csv.h"
+#include "io/base/error.h"
+
+namespace petzval {
+namespace {
+
+// Columns of assets/glass/catalog.csv.
+enum Column : size_t { Maker, Name, Formula, Coefficients, First_nm, Last_nm };
+
+std::string full_name(const std::vector<std::string>& row) {
+    return row[Maker] + ":" + row[Name];
+}
+
+// Numbers with one space between; nothing where a text is anything else.
+std::vector<double> numbers(std::string_view text) {
+    std::vector<double> values;
+    const char *at = text.data(), *end = at + text.size();
+    while (true) {
+        const auto [stop, error] = std::from_chars(at, end, values.emplace_back());
+        if (error != std::errc() || (stop != end && *stop != ' ')) return {};
+        if (stop == end) return values;
+        at = stop + 1;
+    }
+}
+
+std::vector<std::array<double, 2>> pairs(std::span<const double> values) {
+    std::vector<std::array<double, 2>> result;
+    for (size_t i = 0; i + 1 < values.size(); i += 2) result.push_back({values[i], values[i + 1]});
+    return result;
+}
+
+Glass parse(const CsvText& catalog, size_t index) {
+    const std::vector<std::string>& row = catalog.rows[index];
+    const std::vector<double> a = numbers(row[Coefficients]), first = numbers(row[First_nm]),
+                              last = numbers(row[Last_nm]);
+    const bool sellmeier = row[Formula] == "sellmeier", power = row[Formula] == "power";
+    if (first.size() != 1 || last.size() != 1 || a.empty() || a.size() % 2 != size_t(power) ||
+        sellmeier == power)
+        throw InputError(catalog.file, catalog.place(index),
+                         "is not a glass; install Petzval again with cmake --install");
+    Glass glass{full_name(row), {}, first[0], last[0]};
+    if (sellmeier) {
+        glass.formula = Sellmeier{pairs(a)};
+    } else {
+        PowerSeries series{pairs(std::span(a).subspan(1))};
+        series.terms.push_back({a[0], 0});
+        glass.formula = std::move(series);
+    }
+    return glass;
+}
+
+CsvText read_catalog() {
+    CsvText catalog = read_csv_text(asset("glass/catalog.csv"));
+    if (catalog.names.size() <= Last_nm)
+        throw InputError(catalog.file, "",
+                         "is not a catalogue; install Petzval again with cmake --install");
+    return catalog;
+}
+
+// Letters to insert, leave out or replace. Levenshtein 1966, "Binary Codes Capable of Correcting
+// Deletions, Insertions, and Reversals".
+size_t edit_distance(std::string_view a, std::string_view b) {
+    std::vector<size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), 0);
+    for (const char letter : a) {
+        size_t diagonal = row[0]++;
+        for (size_t j = 0; j < b.size(); ++j) {
+            const size_t replaced = diagonal + (letter != b[j]);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+        }
+    }
+    return row.back();
+}
+
+}  // namespace
+
+std::optional<Glass> find_glass(const std::string& maker_and_name) {
+    const CsvText catalog = read_catalog();
+    const std::string wanted = lower(maker_and_name);
+    for (size_t i = 0; i < catalog.rows.size(); ++i)
+        if (lower(full_name(catalog.rows[i])) == wanted) return parse(catalog, i);
+    return std::nullopt;
+}
+
+std::vector<Glass> glass_catalog() {
+    const CsvText catalog = read_catalog();
+    std::vector<Glass> glasses;
+    for (size_t i = 0; i < catalog.rows.size(); ++i) glasses.push_back(parse(catalog, i));
+    return glasses;
+}
+
+std::vector<std::string> glasses_near(const std::string& text) {
+    // No name is nearly as long, and the distance takes time in proportion.
+    const std::string wanted = lower(text.substr(0, 64));
+    const size_t colon = wanted.find(':');
+    const std::string maker = colon == wanted.npos ? "" : wanted.substr(0, colon);
+    const std::string name = colon == wanted.npos ? wanted : wanted.substr(colon + 1);
+
+    const CsvText catalog = read_catalog();
+    // Differences, how much longer the name is, the glass.
+    std::vector<std::tuple<size_t, size_t, std::string>> ranked;
+    for (const auto& row : catalog.rows) {
+        const std::string candidate = lower(row[Name]);
+        const bool contained = candidate.find(name) != candidate.npos;
+        // A wrong maker weighs no more than two letters: the name tells more.
+        const size_t makers =
+            maker.empty() ? 0 : std::min<size_t>(2, edit_distance(maker, row[Maker]));
+        const size_t length =
+            std::max(candidate.size(), name.size()) - std::min(candidate.size(), name.size());
+        ranked.emplace_back(makers + (contained ? 0 : edit_distance(name, candidate)), length,
+                            full_name(row));
+    }
+    const size_t count = std::min<size_t>(5, ranked.size());
+    std::partial_sort(ranked.begin(), ranked.begin() + std::ptrdiff_t(count), ranked.end());
+    std::vector<std::string> near;
+    for (size_t i = 0; i < count; ++i) near.push_back(std::move(std::get<2>(ranked[i])));
+    return near;
+}
+
+}  // namespace petzval

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the readers of lens files find glasses.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/spectrum/glass.h"
+#include "io/glass/agf.h"
+
+namespace petzval {
+
+class LensGlasses {
+  public:
+    /// catalogs: looked at before assets/glass; they must outlive this.
+    explicit LensGlasses(std::span<const AgfCatalog> catalogs) : catalogs_(catalogs) {}
+
+    /// "maker:NAME", whatever the case. Nothing where there is none. Throws InputError for a glass
+    /// of a catalogue that cannot be used.
+    [[nodiscard]] std::optional<Glass> find(const std::string& maker_and_name);
+    /// The glasses of that name of all makers.
+    [[nodiscard]] std::vector<Glass> of_any_maker(const std::string& name);
+
+  private:
+    void read_assets();
+
+    std::span<const AgfCatalog> catalogs_;
+    std::map<std::string, Glass> assets_;  ///< by maker:name in lower case; empty until needed
+};
+
+/// A glass of which nd and the Abbe number are known, called "ND/VD".
+[[nodiscard]] Glass model_glass(double nd, double abbe);
+/// A glass without dispersion, called "N".
+[[nodiscard]] Glass constant_glass(double n);
+
+}  // namespace petzval

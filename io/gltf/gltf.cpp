@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/gltf/gltf.h"
+
+#include <tiny_gltf.h>
+
+#include "io/gltf/info.h"
+#include "io/gltf/lights.h"
+#include "io/gltf/place.h"
+
+namespace petzval {
+
+GltfFile load_gltf(const std::filesystem::path& path) {
+    const GltfSource source = read_gltf_source(path);
+    const tinygltf::Model model = parse_model(source);
+    const std::string name = path.string();
+    const GltfModel gltf{source, model, name};
+
+    GltfFile file;
+    GltfTally tally;
+    const GltfNodes nodes = flatten_nodes(gltf);
+    GltfMaterials materials(gltf, file.scene, tally);
+    place_meshes(gltf, nodes, materials, file.scene, tally);
+    read_lights(gltf, nodes, file.scene, tally);
+    file.cameras = read_cameras(gltf, nodes, tally);
+
+    file.hash = source.hash;
+    file.warnings = source.warnings;
+    describe(gltf, tally, file);
+    return file;
+}
+
+}  // namespace petzval

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// A glTF file as a scene.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/scene/scene.h"
+#include "io/gltf/validate/camera_extras.h"
+
+namespace petzval {
+
+/// A camera node of the file.
+struct GltfCamera {
+    std::string name;  ///< of the camera, else of its node; may be empty
+    M44f to_world;     ///< rigid (scale removed): looks along -z, y up
+    bool orthographic = false;
+    float yfov_rad = 0.f;
+    std::optional<float> aspect;       ///< width / height, where the file gives one
+    float xmag_m = 0.f, ymag_m = 0.f;  ///< half width and half height of an orthographic view
+    CameraWishes wishes;
+};
+
+struct GltfFile {
+    Scene scene;                      ///< not yet finished: the sky is still black
+    std::vector<GltfCamera> cameras;  ///< in depth-first order of the node tree
+    std::vector<std::string> warnings;
+    /// For `petzval info`: what the file holds, one "name: value" line each, then what is honoured
+    /// and what is ignored.
+    std::vector<std::string> contents, honoured, ignored;
+    uint64_t hash = 0;
+};
+
+/// Loads the default scene (else the first one, else all root nodes). Throws InputError.
+[[nodiscard]] GltfFile load_gltf(const std::filesystem::path&);
+
+}  // namespace petzval

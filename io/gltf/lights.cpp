@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/gltf/lights.h"
+
+#include <tiny_gltf.h>
+
+#include <algorithm>
+
+#include "io/base/json_cursor.h"
+#include "io/gltf/spectral.h"
+#include "io/gltf/validate/extras.h"
+
+namespace petzval {
+namespace {
+
+/// Where the node's own -z axis points; nothing where a scale of zero leaves none.
+std::optional<V3f> forward(const M44d& to_world) {
+    const V3d z = row(to_world, 2);
+    const double length = std::sqrt(z.dot(z));
+    if (!(length > 0) || !std::isfinite(length)) return {};
+    return V3f(z / -length);
+}
+
+std::optional<Light> make_light(const tinygltf::Light& light, const M44d& to_world) {
+    const V3f position(row(to_world, 3));
+    const auto intensity = static_cast<float>(light.intensity);
+    Rgb colour(1.f);
+    if (light.color.size() == 3)
+        colour = {static_cast<float>(light.color[0]), static_cast<float>(light.color[1]),
+                  static_cast<float>(light.color[2])};
+    colour = colour * intensity;
+
+    if (light.type == "point") return PointLight{position, colour};
+    const std::optional<V3f> direction = forward(to_world);
+    if (!direction) return {};
+    if (light.type == "directional") return SunLight{*direction, colour};
+    if (light.type != "spot") return {};
+    const double outer_rad = light.spot.outerConeAngle;
+    const double inner_rad = std::min(light.spot.innerConeAngle, outer_rad);
+    return SpotLight{position, *direction, colour, static_cast<float>(std::cos(inner_rad)),
+                     static_cast<float>(std::cos(outer_rad))};
+}
+
+void set_illuminant(Light& light, int32_t illuminant) {
+    const auto set = [&](auto& kind) {
+        if constexpr (requires { kind.illuminant; }) kind.illuminant = illuminant;
+    };
+    std::visit(set, light);
+}
+
+bool is_dark(const tinygltf::Light& light) {
+    const auto zero = [](double c) { return c == 0; };
+    return light.intensity == 0 ||
+           (!light.color.empty() && std::all_of(light.color.begin(), light.color.end(), zero));
+}
+
+/// Orthonormal axes with the file's -z and, as nearly as can be, its y. Nothing where a scale of
+/// zero leaves none.
+std::optional<M44f> rigid(const M44d& m) {
+    if (is_singular(m)) return {};
+    const V3d z = row(m, 2).normalized();
+    const V3d x = row(m, 1).cross(z).normalized();
+    const V3d y = z.cross(x), p = row(m, 3);
+    return M44f(M44d(x.x, x.y, x.z, 0, y.x, y.y, y.z, 0, z.x, z.y, z.z, 0, p.x, p.y, p.z, 1));
+}
+
+GltfCamera to_camera(const tinygltf::Camera& from, const M44f& to_world) {
+    GltfCamera camera;
+    camera.to_world = to_world;
+    camera.orthographic = from.type == "orthographic";
+    if (camera.orthographic) {
+        camera.xmag_m = static_cast<float>(std::fabs(from.orthographic.xmag));
+        camera.ymag_m = static_cast<float>(std::fabs(from.orthographic.ymag));
+        return camera;
+    }
+    camera.yfov_rad = static_cast<float>(from.perspective.yfov);
+    if (from.perspective.aspectRatio > 0)
+        camera.aspect = static_cast<float>(from.perspective.aspectRatio);
+    return camera;
+}
+
+/// A field of view from 0 to pi; cameras of unknown type have none.
+bool is_usable(const GltfCamera& camera) {
+    return camera.orthographic || (camera.yfov_rad > 0 && camera.yfov_rad < kPi);
+}
+
+}  // namespace
+
+void read_lights(const GltfModel& gltf, const GltfNodes& nodes, Scene& scene, GltfTally& tally) {
+    const JsonCursor root(gltf.source.json, gltf.file);
+    const auto definitions = root.extension("KHR_lights_punctual");
+    if (!definitions) return;
+    const auto lights = definitions->objects("lights"), json = root.objects("nodes");
+    GltfSpectral spectral(scene, tally);
+    for (int node : nodes.in_scene) {
+        const auto index = static_cast<size_t>(node);
+        const auto extension = json[index].extension("KHR_lights_punctual");
+        if (!extension) continue;
+        const size_t number = extension->required_index("light", lights.size(), "light");
+        const tinygltf::Light& light = gltf.typed.lights.at(number);
+        if (is_dark(light)) continue;
+        if (auto made = make_light(light, nodes.to_world[index])) {
+            tally.ranged_lights += light.range > 0;
+            set_illuminant(*made, spectral.illuminant(lights[number]));
+            scene.lights.push_back(*made);
+        } else {
+            tally.warnings.push_back(json_path("nodes", node) + ": its light is left out");
+        }
+    }
+}
+
+std::vector<GltfCamera> read_cameras(const GltfModel& gltf, const GltfNodes& nodes,
+                                     GltfTally& tally) {
+    std::vector<GltfCamera> cameras;
+    const auto json = JsonCursor(gltf.source.json, gltf.file).objects("cameras");
+    for (int index : nodes.in_scene) {
+        const tinygltf::Node& node = gltf.typed.nodes[static_cast<size_t>(index)];
+        if (node.camera < 0) continue;
+        const auto to_world = rigid(nodes.to_world[static_cast<size_t>(index)]);
+        if (!to_world) {
+            ++tally.singular_nodes;
+            continue;
+        }
+        const auto& from = gltf.typed.cameras.at(static_cast<size_t>(node.camera));
+        GltfCamera camera = to_camera(from, *to_world);
+        camera.name = from.name.empty() ? node.name : from.name;
+        camera.wishes = camera_wishes(json[static_cast<size_t>(node.camera)]);
+        if (camera.orthographic && camera.wishes.any())
+            tally.warnings.push_back(json_path("cameras", node.camera) +
+                                     "/extras/petzval: an orthographic camera has no use for it");
+        if (camera.wishes.lens) tally.honoured.insert("lens " + *camera.wishes.lens);
+        if (is_usable(camera))
+            cameras.push_back(camera);
+        else
+            tally.warnings.push_back(json_path("cameras", node.camera) +
+                                     ": left out, as its view "
+                                     "cannot be drawn");
+    }
+    return cameras;
+}
+
+}  // namespace petzval

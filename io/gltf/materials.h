@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// glTF materials with the extensions that Petzval honours.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/scene/scene.h"
+#include "io/gltf/spectral.h"
+#include "io/gltf/textures.h"
+
+namespace petzval {
+
+/// Converts materials as primitives ask for them, so that what no primitive uses is never read.
+class GltfMaterials {
+  public:
+    GltfMaterials(const GltfModel&, Scene&, GltfTally&);
+
+    /// Place in the scene of the file's material; of glTF's default material for -1.
+    [[nodiscard]] uint32_t use(int material);
+
+  private:
+    [[nodiscard]] Material read(size_t index);
+    void read_surface(const JsonCursor&, Material&);
+    void read_specular(const JsonCursor&, Material&);
+    void read_glass(const JsonCursor&, Material&);
+    void count(const JsonCursor&, const Material&);
+
+    const GltfModel& gltf_;
+    Scene& scene_;
+    GltfTally& tally_;
+    GltfTextures textures_;
+    GltfSpectral spectral_;
+    std::vector<JsonCursor> json_;
+    std::vector<std::optional<uint32_t>> used_;  ///< by material of the file; the default is last
+};
+
+}  // namespace petzval

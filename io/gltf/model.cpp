@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/gltf/model.h"
+
+#include <tiny_gltf.h>
+
+#include "io/base/error.h"
+#include "io/gltf/validate/accessor.h"
+
+namespace petzval {
+namespace {
+
+using nlohmann::json;
+
+// tinygltf refuses buffers without a uri, reads files by itself, and indexes buffers by an image's
+// bufferView unchecked: it is given buffers of one byte and no images.
+void replace_bytes(json& patched, size_t buffer_count) {
+    for (const char* unused : {"images", "animations", "extras"}) patched.erase(unused);
+    const json stand_in = {{"byteLength", 1}, {"uri", "data:application/octet-stream;base64,AA=="}};
+    patched["buffers"] = json::array();
+    for (size_t i = 0; i < buffer_count; ++i) patched["buffers"].push_back(stand_in);
+}
+
+// It also refuses indices without a bufferView (all zero, by the specification), which get one that
+// is told from the others by being the last, and unknown types, which nothing drawn can have.
+void replace_accessors(json& patched) {
+    json& views = patched["bufferViews"];
+    views.push_back({{"buffer", 0}, {"byteLength", 1}});
+    const size_t no_view = views.size() - 1;
+    if (!patched.contains("accessors")) return;
+    for (json& accessor : patched["accessors"]) {
+        if (!accessor.contains("bufferView")) accessor["bufferView"] = no_view;
+        const bool known = component_size(accessor["componentType"].get<int>()) > 0 &&
+                           component_count(accessor["type"].get<std::string>()) > 0;
+        if (!known) accessor.update({{"componentType", 5121}, {"type", "SCALAR"}});
+    }
+}
+
+// And cameras of an unknown type, which are ignored.
+void replace_cameras(json& patched) {
+    if (!patched.contains("cameras")) return;
+    for (json& camera : patched["cameras"])
+        if (camera["type"] != "perspective" && camera["type"] != "orthographic")
+            camera = {{"type", "perspective"}, {"perspective", {{"yfov", 0}, {"znear", 0}}}};
+}
+
+std::string patched_text(const GltfSource& source) {
+    json patched = source.json;
+    replace_bytes(patched, source.buffers.size() + 1);
+    replace_accessors(patched);
+    replace_cameras(patched);
+    return patched.dump();
+}
+
+std::string one_line(std::string text) {
+    while (!text.empty() && (text.back() == '\n' || text.back() == '.')) text.pop_back();
+    for (char& c : text)
+        if (c == '\n') c = ' ';
+    return text;
+}
+
+}  // namespace
+
+tinygltf::Model parse_model(const GltfSource& source) {
+    tinygltf::Model model;
+    std::string error, warning;
+    bool parsed = false;
+    try {
+        const std::string text = patched_text(source);
+        tinygltf::TinyGLTF parser;
+        parsed = parser.LoadASCIIFromString(&model, &error, &warning, text.c_str(),
+                                            static_cast<unsigned>(text.size()), "");
+    } catch (const std::exception& e) {
+        error = e.what();
+    }
+    if (!parsed) throw InputError(source.path.string(), "", "cannot be parsed: " + one_line(error));
+
+    model.bufferViews.pop_back();
+    for (tinygltf::Accessor& accessor : model.accessors)
+        if (accessor.bufferView == static_cast<int>(model.bufferViews.size()))
+            accessor.bufferView = -1;
+    return model;
+}
+
+}  // namespace petzval

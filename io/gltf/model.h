@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// A checked glTF file in tinygltf's types, beside its JSON and its bytes.
+#pragma once
+
+#include <string>
+
+#include "io/gltf/validate/source.h"
+
+namespace tinygltf {
+class Model;
+}
+
+namespace petzval {
+
+/// What the parts of the loader read from. Core properties come from `typed`, extensions and
+/// images from `source.json`, bytes from `source`.
+struct GltfModel {
+    const GltfSource& source;
+    const tinygltf::Model& typed;
+    const std::string& file;  ///< name of the file, for messages
+};
+
+/// Hands the JSON to tinygltf, which sees neither buffers nor images nor the file system: both
+/// arrays of the model hold nothing of the file's. An accessor without a bufferView has -1 there,
+/// a camera of unknown type a yfov of 0.
+/// Throws InputError where tinygltf refuses the JSON.
+[[nodiscard]] tinygltf::Model parse_model(const GltfSource&);
+
+/// A JSON path: json_path("meshes", 3, "primitives", 0) is "/meshes/3/primitives/0".
+template <class... Parts>
+[[nodiscard]] std::string json_path(const Parts&... parts) {
+    std::string path;
+    const auto append = [&path](const auto& part) {
+        path += '/';
+        if constexpr (std::is_integral_v<std::decay_t<decltype(part)>>)
+            path += std::to_string(part);
+        else
+            path += part;
+    };
+    (append(parts), ...);
+    return path;
+}
+
+}  // namespace petzval

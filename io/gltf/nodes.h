@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// The node tree of a glTF file, flattened.
+#pragma once
+
+#include <vector>
+
+#include "core/math/math.h"
+#include "io/gltf/model.h"
+
+namespace tinygltf {
+class Node;
+}
+
+namespace petzval {
+
+struct GltfNodes {
+    std::vector<M44d> to_world;  ///< of every node of the file
+    std::vector<int> in_scene;   ///< nodes of the scene, depth first, in the file's order
+};
+
+/// Places the nodes of the default scene; without one, of the first; without any, of all roots.
+[[nodiscard]] GltfNodes flatten_nodes(const GltfModel&);
+
+/// The node's own transform, for row vectors: its matrix, or scale, rotation and translation.
+[[nodiscard]] M44d node_matrix(const tinygltf::Node&);
+
+/// Determinant of the upper 3x3 part over the product of its rows' lengths: -1 to 1, 0 where the
+/// matrix flattens space.
+[[nodiscard]] double relative_determinant(const M44d&);
+/// Nothing has a thickness after such a matrix.
+[[nodiscard]] inline bool is_singular(const M44d& m) {
+    return !(std::fabs(relative_determinant(m)) > 1e-14);  // what rounding makes of 0
+}
+/// The image of an axis (0 to 2).
+[[nodiscard]] inline V3d row(const M44d& m, int axis) {
+    return {m[axis][0], m[axis][1], m[axis][2]};
+}
+
+}  // namespace petzval

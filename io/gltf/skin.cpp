@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/gltf/skin.h"
+
+#include <fmt/format.h>
+#include <tiny_gltf.h>
+
+#include "io/gltf/arrays.h"
+#include "io/gltf/bake.h"
+#include "io/gltf/primitive.h"
+
+namespace petzval {
+namespace {
+
+std::vector<M44d> joint_matrices(const GltfModel& gltf, const GltfNodes& nodes, int skin_index) {
+    const tinygltf::Skin& skin = gltf.typed.skins.at(static_cast<size_t>(skin_index));
+    std::vector<M44d> matrices(skin.joints.size());
+    if (skin.inverseBindMatrices >= 0) {
+        const auto inverse_bind = read_matrices(gltf, skin.inverseBindMatrices);
+        std::copy_n(inverse_bind.begin(), matrices.size(), matrices.begin());
+    }
+    for (size_t i = 0; i < matrices.size(); ++i)
+        matrices[i] = matrices[i] * nodes.to_world.at(static_cast<size_t>(skin.joints[i]));
+    return matrices;
+}
+
+/// Four joints and their weights for every vertex.
+struct Influences {
+    std::vector<std::array<uint32_t, 4>> joints;
+    std::vector<V4f> weights;
+};
+
+std::vector<Influences> read_influences(const GltfModel& gltf,
+                                        const tinygltf::Primitive& primitive) {
+    std::vector<Influences> sets;
+    for (int set = 0;; ++set) {
+        const int joints = attribute(primitive, fmt::format("JOINTS_{}", set));
+        const int weights = attribute(primitive, fmt::format("WEIGHTS_{}", set));
+        if (joints < 0 || weights < 0) return sets;
+        sets.push_back({read_joints(gltf, joints), read_vec4(gltf, weights)});
+    }
+}
+
+// Weights that do not add up to 1 are scaled; a vertex without any moves with the first joint.
+M44d blend(const std::vector<Influences>& sets, const std::vector<M44d>& matrices, size_t vertex) {
+    M44d sum(0.0);
+    double total = 0;
+    for (const Influences& set : sets)
+        for (int k = 0; k < 4; ++k) {
+            const double weight = set.weights[vertex][k];
+            if (weight == 0) continue;
+            sum += matrices[set.joints[vertex][static_cast<size_t>(k)]] * weight;
+            total += weight;
+        }
+    return total > 0 ? sum * (1 / total) : matrices.front();
+}
+
+}  // namespace
+
+bool pose_by_skin(const GltfModel& gltf, const GltfNodes& nodes, int skin,
+                  const tinygltf::Primitive& primitive, Mesh& mesh) {
+    const std::vector<M44d> matrices = joint_matrices(gltf, nodes, skin);
+    const auto sets = read_influences(gltf, primitive);
+    if (sets.empty()) return false;
+    for (size_t v = 0; v < mesh.positions.size(); ++v)
+        transform_vertex(mesh, v, blend(sets, matrices, v));
+    return true;
+}
+
+}  // namespace petzval

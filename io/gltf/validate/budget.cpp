@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/gltf/validate/budget.h"
+
+#include <fmt/format.h>
+
+namespace petzval {
+namespace {
+
+constexpr uint64_t free_bytes = uint64_t(256) << 20;
+constexpr uint64_t times_owned = 16;
+
+}  // namespace
+
+void GltfBudget::ask(uint64_t bytes, const JsonCursor& place) {
+    const uint64_t limit = free_bytes + times_owned * owned_;
+    if (bytes > limit || asked_ > limit - bytes)
+        place.fail(
+            fmt::format("asks for {} MiB, too much for a file that holds {} MiB; "
+                        "store the data in the file",
+                        (bytes >> 20) + (asked_ >> 20), owned_ >> 20));
+    asked_ += bytes;
+}
+
+}  // namespace petzval

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "io/base/json_cursor.h"
+
+namespace petzval {
+
+/// How much memory a glTF file may ask for: its accessors (zero-filled or over the same bytes again
+/// and again), vertices that thousands of primitives share, one image listed a million times. All
+/// in all 256 MiB and 16 times the bytes that the file and its side files hold: an honest file
+/// asks for about once its own size.
+class GltfBudget {
+  public:
+    /// Counts bytes that the file and its side files really hold.
+    void add_owned(uint64_t bytes) { owned_ += bytes; }
+
+    /// Counts bytes asked for by the object at place; throws InputError there when it is too much.
+    void ask(uint64_t bytes, const JsonCursor& place);
+
+  private:
+    uint64_t owned_ = 0, asked_ = 0;
+};
+
+}  // namespace petzval

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// The checks that a glTF file passes before anybody reads it, grouped by part of the file. Each
+// throws InputError with the JSON path. They run in the order in which they stand here: later ones
+// rely on what earlier ones found.
+//
+// What the specification forbids is refused, except where nothing that Petzval reads depends on it:
+// min and max of accessors, lengths of normals, bufferView.target, empty arrays, the meaning of
+// animations, inverse bind matrices, and the content of extensions that are not supported.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/base/json_cursor.h"
+#include "io/gltf/validate/accessor.h"
+#include "io/gltf/validate/budget.h"
+#include "io/gltf/validate/source.h"
+
+namespace petzval {
+
+/// A file on its way through the checks.
+struct GltfCheck {
+    GltfSource& source;
+    JsonCursor root;
+    GltfBudget& budget;
+    std::vector<GltfAccessor> accessors;  ///< filled by check_accessors
+
+    /// How many things the root array `kind` ("meshes" ...) holds.
+    [[nodiscard]] size_t count(const char* kind) const { return root.length(kind); }
+    void warn(const JsonCursor& at, const std::string& message) {
+        source.warnings.push_back(at.path() + ": " + message);
+    }
+};
+
+/// asset.version 2.x, asset.minVersion at most 2.0.
+void check_asset(const GltfCheck&);
+/// Required extensions are supported, used ones declared and in the right place; a warning for
+/// each that is used but not supported.
+void check_extensions(GltfCheck&);
+/// The root arrays hold objects, and names are strings.
+void check_collections(const GltfCheck&);
+/// byteLength is there. Comes before the buffers are read.
+void check_buffers(const GltfCheck&);
+/// Every bufferView lies in its buffer. Comes before the images are read.
+void check_buffer_views(const GltfCheck&);
+/// Every accessor, sparse or not, lies in its bufferView; zero-filled ones are not absurdly long.
+void check_accessors(GltfCheck&);
+/// Textures, samplers, images and their kind.
+void check_textures(GltfCheck&);
+void check_materials(GltfCheck&);
+/// Attributes, indices, morph targets: references, formats and counts.
+void check_meshes(GltfCheck&);
+void check_cameras(GltfCheck&);
+void check_lights(GltfCheck&);
+void check_skins(const GltfCheck&);
+/// Nodes and scenes: the references, the transforms, and that the nodes form trees.
+void check_nodes(GltfCheck&);
+void check_animations(const GltfCheck&);
+/// Values in the buffers: finite floats, vertex and joint indices in range.
+void check_data(const GltfCheck&);
+
+/// The texture coordinate sets that a material's textures name, of those that Petzval reads;
+/// one more than the greatest, 0 for none.
+[[nodiscard]] uint64_t texcoord_sets_needed(const JsonCursor& material);
+
+}  // namespace petzval

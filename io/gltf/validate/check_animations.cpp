@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Animations are not played: only what they refer to is checked.
+#include "io/gltf/validate/check.h"
+
+namespace petzval {
+namespace {
+
+void check_channel(const JsonCursor& channel, size_t samplers, size_t nodes) {
+    (void)channel.required_index("sampler", samplers, "sampler of the animation");
+    const JsonCursor target = channel.object("target");
+    (void)target.index("node", nodes, "node");
+    (void)target.text("path");
+}
+
+}  // namespace
+
+void check_animations(const GltfCheck& check) {
+    for (const JsonCursor& animation : check.root.objects("animations")) {
+        animation.require("samplers");
+        animation.require("channels");
+        for (const JsonCursor& sampler : animation.objects("samplers")) {
+            (void)sampler.required_index("input", check.accessors.size(), "accessor");
+            (void)sampler.required_index("output", check.accessors.size(), "accessor");
+            (void)sampler.text_or("interpolation", "LINEAR");
+        }
+        for (const JsonCursor& channel : animation.objects("channels"))
+            check_channel(channel, animation.length("samplers"), check.count("nodes"));
+    }
+}
+
+}  // namespace petzval

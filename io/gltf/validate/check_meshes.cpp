@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// Meshes: glTF 2.0, section 3.7.2, and KHR_mesh_quantization.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "io/base/json_parse.h"
+#include "io/gltf/validate/attributes.h"
+#include "io/gltf/validate/check.h"
+
+namespace petzval {
+namespace {
+
+class MeshCheck {
+  public:
+    explicit MeshCheck(GltfCheck& check)
+        : check_(check),
+          accessors_(check.root.objects("accessors")),
+          views_(check.root.objects("bufferViews")) {
+        const auto used = check.root.value().find("extensionsUsed");
+        quantized_ = used != check.root.value().end() &&
+                     std::find(used->begin(), used->end(), "KHR_mesh_quantization") != used->end();
+        for (const JsonCursor& material : check.root.objects("materials"))
+            texcoords_needed_.push_back(texcoord_sets_needed(material));
+    }
+
+    void check_mesh(const JsonCursor& mesh) {
+        mesh.require("primitives");
+        std::optional<size_t> targets;
+        for (const JsonCursor& primitive : mesh.objects("primitives")) {
+            check_primitive(primitive);
+            const size_t count = primitive.length("targets");
+            if (targets.value_or(count) != count)
+                primitive.fail("all primitives of a mesh must have equally many morph targets");
+            targets = count;
+        }
+        if (mesh.has("weights")) (void)mesh.numbers("weights", targets.value_or(0));
+    }
+
+  private:
+    using Attributes = std::map<std::string, size_t>;  ///< accessor by name
+
+    void check_primitive(const JsonCursor& primitive) {
+        const JsonCursor attributes = primitive.object("attributes");
+        const Attributes found = read_attributes(attributes, false);
+        const uint64_t vertices = found.empty() ? 0 : check_.accessors[found.begin()->second].count;
+        check_counts(attributes, found, vertices);
+        check_stored(primitive, found);
+        const uint64_t texcoords = check_sets(attributes, found);
+        if (primitive.has("indices")) check_indices(primitive);
+        ask_for_shared(primitive, found, vertices);
+        if (primitive.integer_or("mode", 4) > 6) check_.warn(primitive, "mode is unknown");
+        const auto material = primitive.index("material", texcoords_needed_.size(), "material");
+        if (material && texcoords_needed_[*material] > texcoords)
+            primitive.fail(
+                fmt::format("material {} has a texture on TEXCOORD_{}, which the "
+                            "primitive lacks",
+                            *material, texcoords_needed_[*material] - 1));
+        for (const JsonCursor& target : primitive.objects("targets"))
+            check_target(target, found, vertices);
+    }
+
+    Attributes read_attributes(const JsonCursor& attributes, bool is_target) {
+        Attributes found;
+        for (const auto& [name, unused] : attributes.value().items()) {
+            const auto semantic = parse_gltf_semantic(name);
+            if (!semantic)
+                attributes.fail(name, "is no attribute of glTF; names of your own begin with _");
+            const size_t index =
+                attributes.required_index(name.c_str(), accessors_.size(), "accessor");
+            const GltfAccessor& accessor = check_.accessors[index];
+            check_format(attributes, name, *semantic, accessor, is_target);
+            check_layout(attributes, name, index);
+            found[name] = index;
+        }
+        return found;
+    }
+
+    void check_format(const JsonCursor& attributes, const std::string& name,
+                      const GltfSemantic& semantic, const GltfAccessor& accessor,
+                      bool is_target) const {
+        if (!is_allowed_format(semantic, accessor, quantized_, is_target))
+            attributes.fail(
+                name, fmt::format("is {} of {}, which {} must not be", printable(accessor.type),
+                                  component_name(accessor), name));
+    }
+
+    /// Starts at a multiple of 4 bytes, and so does every next element; who shares says how far.
+    void check_layout(const JsonCursor& attributes, const std::string& name, size_t index) {
+        const GltfAccessor& accessor = check_.accessors[index];
+        if (!accessor.view) return;
+        if (accessor.offset % 4 != 0 || accessor.stride % 4 != 0)
+            attributes.fail(name, fmt::format("accessor {} has an attribute that is not aligned to "
+                                              "4 bytes",
+                                              index));
+        if (views_[*accessor.view].has("byteStride")) return;
+        const size_t first = users_.try_emplace(*accessor.view, index).first->second;
+        if (first != index)
+            attributes.fail(name, fmt::format("accessors {} and {} share bufferView {}, so it "
+                                              "must have a byteStride",
+                                              first, index, *accessor.view));
+    }
+
+    /// A loader may keep a copy of its vertices for each primitive that shares them with another.
+    void ask_for_shared(const JsonCursor& primitive, const Attributes& found, uint64_t vertices) {
+        bool shared = false;
+        uint64_t size = 0;
+        for (const auto& [unused, index] : found) {
+            const GltfAccessor& accessor = check_.accessors[index];
+            size += element_size(accessor.type, accessor.component_type, true);
+            shared |= !seen_.insert(index).second;
+        }
+        if (!shared) return;
+        const auto indices = primitive.index("indices", accessors_.size(), "accessor");
+        const uint64_t used = indices ? check_.accessors[*indices].count : vertices;
+        check_.budget.ask(std::min(used, vertices) * size, primitive);
+    }
+
+    void check_counts(const JsonCursor& attributes, const Attributes& found, uint64_t vertices) {
+        for (const auto& [name, index] : found)
+            if (check_.accessors[index].count != vertices)
+                attributes.fail(name, fmt::format("accessor {} has {} elements, but another "
+                                                  "attribute has {}",
+                                                  index, check_.accessors[index].count, vertices));
+    }
+
+    /// A compressed primitive may or may not hold its vertices plainly as well.
+    void check_stored(const JsonCursor& primitive, const Attributes& found) const {
+        if (!primitive.extension("KHR_draco_mesh_compression")) return;
+        for (const auto& [unused, index] : found)
+            if (!check_.accessors[index].view)
+                primitive.fail(
+                    "its vertices are only in KHR_draco_mesh_compression, which is not supported; "
+                    "export it without");
+    }
+
+    /// Sets count from 0 without gaps; returns how many TEXCOORD_n there are.
+    static uint64_t check_sets(const JsonCursor& attributes, const Attributes& found) {
+        std::map<std::string, std::set<uint64_t>> sets;
+        for (const auto& [name, unused] : found)
+            if (const auto semantic = parse_gltf_semantic(name); semantic->set)
+                sets[semantic->base].insert(*semantic->set);
+        for (const auto& [base, numbers] : sets)
+            if (*numbers.rbegin() != numbers.size() - 1)
+                attributes.fail(fmt::format("the {}_n must count from 0 without gaps", base));
+        return sets["TEXCOORD"].size();
+    }
+
+    void check_indices(const JsonCursor& primitive) {
+        const size_t index = primitive.required_index("indices", accessors_.size(), "accessor");
+        const GltfAccessor& accessor = check_.accessors[index];
+        const std::string component = component_name(accessor);
+        if (accessor.type != "SCALAR" ||
+            (component != "uint8" && component != "uint16" && component != "uint32"))
+            primitive.fail("indices", fmt::format("accessor {} is {} of {}, not SCALAR of an "
+                                                  "unsigned integer",
+                                                  index, printable(accessor.type), component));
+        if (accessor.view && views_[*accessor.view].has("byteStride"))
+            primitive.fail("indices", "their bufferView must not have a byteStride");
+    }
+
+    void check_target(const JsonCursor& target, const Attributes& base, uint64_t vertices) {
+        const Attributes found = read_attributes(target, true);
+        check_counts(target, found, vertices);
+        for (const auto& [name, unused] : found)
+            if (!base.contains(name)) target.fail(name, "morphs an attribute that is not there");
+    }
+
+    GltfCheck& check_;
+    const std::vector<JsonCursor> accessors_, views_;
+    std::vector<uint64_t> texcoords_needed_;  ///< of each material
+    bool quantized_ = false;
+    std::map<size_t, size_t> users_;  ///< the first accessor in each bufferView without stride
+    std::set<size_t> seen_;           ///< accessors that a primitive has used
+};
+
+}  // namespace
+
+void check_meshes(GltfCheck& check) {
+    MeshCheck meshes(check);
+    for (const JsonCursor& mesh : check.root.objects("meshes")) meshes.check_mesh(mesh);
+}
+
+}  // namespace petzval

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// Nodes, scenes and skins: glTF 2.0, sections 3.5 and 3.7.3.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "io/gltf/validate/check.h"
+
+namespace petzval {
+namespace {
+
+/// So that whoever walks the tree may recurse. Deep rigs have about a hundred levels.
+constexpr int max_tree_depth = 1024;
+
+/// How far a rotation's length may be off 1: eight-bit normalized quaternions are off by up to
+/// sqrt(4) / 2 / 127 = 0.8 %.
+constexpr double unit_tolerance = 0.01;
+
+void check_transform(const JsonCursor& node) {
+    (void)node.numbers("matrix", 16);
+    (void)node.numbers("translation", 3);
+    (void)node.numbers("scale", 3);
+    const auto rotation = node.numbers("rotation", 4);
+    double square = 0;
+    for (double component : rotation) square += component * component;
+    if (!rotation.empty() && std::abs(std::sqrt(square) - 1) > unit_tolerance)
+        node.fail("rotation", fmt::format("must be a unit quaternion, but its length is {:.4g}",
+                                          std::sqrt(square)));
+    if (node.has("matrix") &&
+        (node.has("translation") || node.has("rotation") || node.has("scale")))
+        node.fail("has both a matrix and translation, rotation or scale; it may have either");
+}
+
+size_t target_count(const std::vector<JsonCursor>& meshes, size_t mesh) {
+    const auto primitives = meshes[mesh].objects("primitives");
+    return primitives.empty() ? 0 : primitives[0].length("targets");
+}
+
+class NodeCheck {
+  public:
+    explicit NodeCheck(GltfCheck& check)
+        : check_(check),
+          nodes_(check.root.objects("nodes")),
+          meshes_(check.root.objects("meshes")),
+          parent_(nodes_.size()),
+          children_(nodes_.size()) {
+        for (size_t m = 0; m < meshes_.size(); ++m) targets_.push_back(target_count(meshes_, m));
+        if (const auto lights = check.root.extension("KHR_lights_punctual"))
+            lights_ = lights->length("lights");
+    }
+
+    void run() {
+        for (size_t n = 0; n < nodes_.size(); ++n) check_node(n);
+        check_forest();
+        for (const JsonCursor& scene : check_.root.objects("scenes")) check_scene(scene);
+        (void)check_.root.index("scene", check_.count("scenes"), "scene");
+    }
+
+  private:
+    void check_node(size_t index) {
+        const JsonCursor& node = nodes_[index];
+        check_transform(node);
+        (void)node.index("camera", check_.count("cameras"), "camera");
+        const auto mesh = node.index("mesh", meshes_.size(), "mesh");
+        if (node.index("skin", check_.count("skins"), "skin") && !mesh)
+            node.fail("skin", "has no meaning on a node without a mesh");
+        if (node.has("weights") && !mesh)
+            node.fail("weights", "have no meaning on a node without a mesh");
+        if (mesh) (void)node.numbers("weights", targets_[*mesh]);
+        if (const auto light = node.extension("KHR_lights_punctual"))
+            (void)light->required_index("light", lights_, "light");
+        link_children(index);
+    }
+
+    void link_children(size_t index) {
+        children_[index] = nodes_[index].indices("children", nodes_.size(), "node");
+        for (size_t child : children_[index]) {
+            if (parent_[child])
+                nodes_[index].fail("children", fmt::format("node {} is a child of node {} already",
+                                                           child, *parent_[child]));
+            parent_[child] = index;
+        }
+    }
+
+    /// With at most one parent each, nodes that no root leads to go round in a circle.
+    void check_forest() const {
+        std::vector<int> depth(nodes_.size(), 0);  // 0: not reached
+        std::vector<size_t> open;
+        for (size_t n = 0; n < nodes_.size(); ++n) {
+            if (parent_[n]) continue;
+            depth[n] = 1;
+            open.push_back(n);
+        }
+        while (!open.empty()) {
+            const size_t node = open.back();
+            open.pop_back();
+            if (depth[node] > max_tree_depth)
+                nodes_[node].fail(fmt::format("lies more than {} nodes deep", max_tree_depth));
+            for (size_t child : children_[node]) {
+                depth[child] = depth[node] + 1;
+                open.push_back(child);
+            }
+        }
+        for (size_t n = 0; n < nodes_.size(); ++n)
+            if (depth[n] == 0) nodes_[n].fail("is its own ancestor; the node tree has a cycle");
+    }
+
+    void check_scene(const JsonCursor& scene) const {
+        for (size_t node : scene.indices("nodes", nodes_.size(), "node"))
+            if (parent_[node])
+                scene.fail("nodes", fmt::format("node {} is not a root, but a child of node {}",
+                                                node, *parent_[node]));
+    }
+
+    GltfCheck& check_;
+    const std::vector<JsonCursor> nodes_, meshes_;
+    std::vector<std::optional<size_t>> parent_;
+    std::vector<std::vector<size_t>> children_;
+    std::vector<size_t> targets_;  ///< morph targets of each mesh
+    size_t lights_ = 0;
+};
+
+void check_inverse_bind_matrices(const GltfCheck& check, const JsonCursor& skin, size_t joints) {
+    const auto index = skin.index("inverseBindMatrices", check.accessors.size(), "accessor");
+    if (!index) return;
+    const GltfAccessor& matrices = check.accessors[*index];
+    if (matrices.type != "MAT4" || matrices.component_type != 5126)
+        skin.fail("inverseBindMatrices", "must be MAT4 of floats");
+    if (matrices.count < joints)
+        skin.fail("inverseBindMatrices",
+                  fmt::format("has {} matrices for {} joints", matrices.count, joints));
+}
+
+}  // namespace
+
+void check_skins(const GltfCheck& check) {
+    const size_t nodes = check.count("nodes");
+    for (const JsonCursor& skin : check.root.objects("skins")) {
+        skin.require("joints");
+        const size_t joints = skin.indices("joints", nodes, "node").size();
+        if (joints == 0) skin.fail("joints", "must name at least one node");
+        (void)skin.index("skeleton", nodes, "node");
+        check_inverse_bind_matrices(check, skin, joints);
+    }
+}
+
+void check_nodes(GltfCheck& check) {
+    NodeCheck(check).run();
+}
+
+}  // namespace petzval

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+
+#include "io/base/json_parse.h"
+#include "io/gltf/validate/check.h"
+
+namespace petzval {
+namespace {
+
+/// A RIFF container of the form type WEBP (RFC 9649, section 2.4).
+bool is_webp(const std::vector<uint8_t>& bytes) {
+    constexpr std::array<uint8_t, 4> riff = {'R', 'I', 'F', 'F'}, webp = {'W', 'E', 'B', 'P'};
+    return bytes.size() >= 12 && std::equal(riff.begin(), riff.end(), bytes.begin()) &&
+           std::equal(webp.begin(), webp.end(), bytes.begin() + 8);
+}
+
+bool declares(const JsonCursor& root, const char* extension) {
+    const auto at = root.value().find("extensionsUsed");
+    return at != root.value().end() && std::find(at->begin(), at->end(), extension) != at->end();
+}
+
+void check_images(const GltfCheck& check) {
+    const bool webp_declared = declares(check.root, "EXT_texture_webp");
+    const auto images = check.root.objects("images");
+    for (size_t i = 0; i < images.size(); ++i) {
+        if (images[i].has("mimeType")) (void)images[i].text("mimeType");
+        if (!webp_declared && is_webp(check.source.images[i]))
+            images[i].fail("is a WebP image; glTF has PNG and JPEG only");
+    }
+}
+
+void check_texture(const GltfCheck& check, const JsonCursor& texture) {
+    const size_t images = check.count("images");
+    (void)texture.index("sampler", check.count("samplers"), "sampler");
+    const auto source = texture.index("source", images, "image");
+    if (source && is_webp(check.source.images[*source]))
+        texture.fail("source", "is a WebP image, which only an extension may name here");
+
+    // Extensions that replace the image (WebP, AVIF, KTX2 ...) all call it "source".
+    const auto extensions = texture.find_object("extensions");
+    if (!extensions) return;
+    for (const auto& [name, unused] : extensions->value().items())
+        if (extensions->object(name.c_str()).index("source", images, "image") && !source)
+            texture.fail("its image is only in " + printable(name) +
+                         ", which is not supported; export it with PNG or JPEG");
+}
+
+}  // namespace
+
+void check_textures(GltfCheck& check) {
+    check_images(check);
+    for (const JsonCursor& sampler : check.root.objects("samplers"))
+        for (const char* key : {"magFilter", "minFilter", "wrapS", "wrapT"})
+            if (sampler.has(key)) (void)sampler.integer(key);
+    for (const JsonCursor& texture : check.root.objects("textures")) check_texture(check, texture);
+}
+
+}  // namespace petzval

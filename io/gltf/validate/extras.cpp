@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/gltf/validate/extras.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace petzval {
+namespace {
+
+// As the command line has them: no product of two lengths leaves a float.
+constexpr Range kLength = {1e-6, 1e6};
+
+std::optional<std::string> text_at(const JsonCursor& extras, const char* key) {
+    if (!extras.has(key)) return std::nullopt;
+    std::string text = extras.text(key);
+    if (text.empty()) extras.fail(key, "is empty");
+    return text;
+}
+
+std::optional<float> length_at(const JsonCursor& extras, const char* key) {
+    if (!extras.has(key)) return std::nullopt;
+    return static_cast<float>(extras.number(key, kLength));
+}
+
+// Refuses a key that is not known. what: "material" ...
+void require_known_extras(const JsonCursor& owner, const char* what,
+                          const std::vector<std::string_view>& known) {
+    const auto extras = petzval_extras(owner);
+    if (!extras) return;
+    for (const auto& [key, unused] : extras->value().items())
+        if (std::find(known.begin(), known.end(), key) == known.end())
+            extras->fail(key, fmt::format("is not known; in a {}'s extras.petzval there may be {}",
+                                          what, fmt::join(known, ", ")));
+}
+
+void check_texts(const JsonCursor& owner, const char* what,
+                 const std::vector<std::string_view>& known) {
+    require_known_extras(owner, what, known);
+    if (const auto extras = petzval_extras(owner))
+        for (const auto& [key, unused] : extras->value().items()) (void)extras->text(key.c_str());
+}
+
+}  // namespace
+
+std::optional<JsonCursor> petzval_extras(const JsonCursor& owner) {
+    const auto extras = owner.value().find("extras");
+    if (extras == owner.value().end() || !extras->is_object()) return std::nullopt;
+    return owner.object("extras").find_object("petzval");
+}
+
+void check_material_extras(const JsonCursor& material) {
+    check_texts(material, "material", {"glass", "metal", "illuminant"});
+    const auto extras = petzval_extras(material);
+    if (extras && extras->has("glass") && extras->has("metal"))
+        extras->fail("names a glass and a metal; a material is one of them");
+}
+
+void check_light_extras(const JsonCursor& light) {
+    check_texts(light, "light", {"illuminant"});
+}
+
+CameraWishes camera_wishes(const JsonCursor& camera) {
+    require_known_extras(camera, "camera", {"lens", "fstop", "focus_m", "aperture", "sensor_mm"});
+    CameraWishes wishes;
+    const auto extras = petzval_extras(camera);
+    if (!extras) return wishes;
+    wishes.lens = text_at(*extras, "lens");
+    wishes.aperture = text_at(*extras, "aperture");
+    wishes.fstop = length_at(*extras, "fstop");
+    wishes.focus_m = length_at(*extras, "focus_m");
+    if (const auto sides = extras->numbers("sensor_mm", 2, kLength); !sides.empty())
+        wishes.sensor_mm = V2f(static_cast<float>(sides[0]), static_cast<float>(sides[1]));
+    return wishes;
+}
+
+}  // namespace petzval

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/gltf/validate/files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "io/base/json_cursor.h"
+#include "io/base/json_parse.h"
+#include "io/base/read_file.h"
+#include "io/base/uri.h"
+
+namespace petzval {
+namespace {
+
+using Bytes = std::vector<uint8_t>;
+using MimeTypes = std::vector<std::string_view>;
+
+/// Reads what a "uri" names, and keeps count of it.
+class Fetcher {
+  public:
+    Fetcher(GltfSource& source, GltfBudget& budget) : source_(source), budget_(budget) {}
+
+    /// mime_types: what a data URI may say that it is; empty: anything.
+    Bytes fetch(const JsonCursor& owner, const MimeTypes& mime_types) {
+        const std::string uri = owner.text("uri");
+        return is_data_uri(uri) ? from_data(owner, uri, mime_types) : from_file(owner, uri);
+    }
+
+  private:
+    Bytes from_data(const JsonCursor& owner, const std::string& uri, const MimeTypes& types) {
+        auto data = parse_data_uri(uri);
+        if (!data) owner.fail("uri", "is not a valid data URI; it must hold base64");
+        if (!types.empty() && std::find(types.begin(), types.end(), data->mime_type) == types.end())
+            owner.fail("uri", fmt::format("holds \"{}\" instead of {}", printable(data->mime_type),
+                                          types.front()));
+        return std::move(data->bytes);
+    }
+
+    Bytes from_file(const JsonCursor& owner, const std::string& uri) {
+        const auto path = relative_path(uri);
+        if (!path)
+            owner.fail("uri", fmt::format("\"{}\" is not a relative path to a file; network and "
+                                          "absolute addresses are not read",
+                                          printable(uri)));
+        FileBytes file = read_file(source_.path.parent_path() / *path);
+        if (!file.error.empty())
+            owner.fail("uri", fmt::format("\"{}\": {}", printable(*path), file.error));
+        count(*path, file.bytes, owner);
+        return std::move(file.bytes);
+    }
+
+    void count(const std::string& path, const Bytes& bytes, const JsonCursor& owner) {
+        if (++times_read_[path] > 1) return budget_.ask(bytes.size(), owner);
+        budget_.add_owned(bytes.size());
+        source_.hash = fnv1a(bytes, source_.hash);
+    }
+
+    GltfSource& source_;
+    GltfBudget& budget_;
+    std::map<std::string, int> times_read_;
+};
+
+Bytes read_buffer(const JsonCursor& buffer, Fetcher& fetcher) {
+    Bytes bytes = fetcher.fetch(buffer, {"application/octet-stream", "application/gltf-buffer"});
+    const uint64_t length = buffer.integer("byteLength");
+    if (bytes.size() < length)
+        buffer.fail(fmt::format("byteLength is {}, but there are {} bytes", length, bytes.size()));
+    return bytes;
+}
+
+/// The binary chunk is padded to four bytes, so it may be longer than the buffer.
+Bytes buffer_from_chunk(const JsonCursor& buffer, std::span<const uint8_t> bin) {
+    const uint64_t length = buffer.integer("byteLength");
+    if (bin.size() < length)
+        buffer.fail(
+            fmt::format("byteLength is {}, but the BIN chunk has {} bytes", length, bin.size()));
+    return {bin.begin(), bin.begin() + ptrdiff_t(length)};
+}
+
+Bytes image_from_view(GltfSource& source, const std::vector<JsonCursor>& views,
+                      const JsonCursor& image, GltfBudget& budget) {
+    const JsonCursor& view = views[image.required_index("bufferView", views.size(), "bufferView")];
+    const Bytes& buffer = source.buffers[view.integer("buffer")];
+    if (buffer.empty()) {
+        source.warnings.push_back(image.path() + ": lies in a buffer without data; left empty");
+        return {};
+    }
+    const uint64_t offset = view.integer_or("byteOffset", 0), length = view.integer("byteLength");
+    budget.ask(length, image);
+    return {buffer.begin() + ptrdiff_t(offset), buffer.begin() + ptrdiff_t(offset + length)};
+}
+
+}  // namespace
+
+void read_buffers(GltfSource& source, const GltfContainer& container, GltfBudget& budget) {
+    const std::string file = source.path.string();
+    Fetcher fetcher(source, budget);
+    for (const JsonCursor& buffer : JsonCursor(source.json, file).objects("buffers")) {
+        const bool first = source.buffers.empty();
+        if (buffer.has("uri"))
+            source.buffers.push_back(read_buffer(buffer, fetcher));
+        else if (first && container.bin)
+            source.buffers.push_back(buffer_from_chunk(buffer, *container.bin));
+        else if (first && container.binary)
+            buffer.fail("has no uri, and the file has no BIN chunk; the file is cut short");
+        else {
+            source.buffers.emplace_back();
+            source.warnings.push_back(buffer.path() + ": has no data; reads as zeros");
+        }
+    }
+}
+
+void read_images(GltfSource& source, GltfBudget& budget) {
+    const std::string file = source.path.string();
+    const JsonCursor root(source.json, file);
+    const auto views = root.objects("bufferViews");
+    Fetcher fetcher(source, budget);
+    for (const JsonCursor& image : root.objects("images")) {
+        if (image.has("uri") == image.has("bufferView"))
+            image.fail("must have either a uri or a bufferView");
+        source.images.push_back(image.has("uri") ? fetcher.fetch(image, {})
+                                                 : image_from_view(source, views, image, budget));
+    }
+}
+
+}  // namespace petzval

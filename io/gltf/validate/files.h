@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Brings in the bytes that a glTF file's JSON refers to.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "io/gltf/validate/budget.h"
+#include "io/gltf/validate/source.h"
+
+namespace petzval {
+
+/// What the JSON came in: text, or a .glb with or without a binary chunk.
+struct GltfContainer {
+    bool binary = false;
+    std::optional<std::span<const uint8_t>> bin;
+};
+
+/// Fills source.buffers from data URIs, side files and the binary chunk, and checks their lengths.
+void read_buffers(GltfSource& source, const GltfContainer&, GltfBudget&);
+
+/// Fills source.images from data URIs, side files and bufferViews (which must be checked already),
+/// and checks what kind of image the bytes are.
+void read_images(GltfSource& source, GltfBudget&);
+
+}  // namespace petzval

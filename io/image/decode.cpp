@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// Textures: encoded bytes to RGBA texels.
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <string_view>
+
+#include "io/base/error.h"
+#include "io/image/limits.h"
+#include "io/image/oiio_message.h"
+#include "io/image/picture.h"
+
+namespace petzval {
+namespace {
+
+/// Ending of the format that the first bytes announce; empty for any other.
+std::string_view ending_of(const std::vector<uint8_t>& bytes) {
+    const std::string_view head(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (head.starts_with("\x89PNG\r\n\x1a\n")) return "png";
+    if (head.starts_with("\xff\xd8\xff")) return "jpg";
+    if (head.starts_with("RIFF") &&
+        head.substr(std::min<size_t>(8, head.size())).starts_with("WEBP"))
+        return "webp";
+    return "";
+}
+
+/// Whether the chunks of a PNG fit into it and end with IEND. libpng would find out too, but print
+/// a line of its own, and OpenImageIO would leak its message.
+bool is_whole_png(const std::vector<uint8_t>& bytes) {
+    constexpr size_t kSignature = 8, kAroundData = 12;  // length, type, CRC
+    size_t at = kSignature;
+    while (bytes.size() - at >= kAroundData) {
+        size_t length = 0;
+        for (size_t i = 0; i < 4; ++i) length = length << 8 | bytes[at + i];
+        if (length > bytes.size() - at - kAroundData) return false;
+        if (std::equal(&bytes[at + 4], &bytes[at + 8], "IEND")) return true;
+        at += length + kAroundData;
+    }
+    return false;
+}
+
+/// Spreads 1 (grey), 2 (grey, alpha) or 3 (colour) channels of every texel to RGBA.
+template <class T>
+std::vector<T> to_rgba(std::vector<T> in, int channels, T opaque) {
+    if (channels == 4) return in;
+    const size_t count = in.size() / channels;
+    std::vector<T> out(count * 4);
+    for (size_t i = 0; i < count; ++i) {
+        const T* texel = &in[i * channels];
+        const bool grey = channels < 3;
+        out[i * 4] = texel[0];
+        out[i * 4 + 1] = grey ? texel[0] : texel[1];
+        out[i * 4 + 2] = grey ? texel[0] : texel[2];
+        out[i * 4 + 3] = channels == 2 ? texel[1] : opaque;
+    }
+    return out;
+}
+
+}  // namespace
+
+Image decode_image(const std::vector<uint8_t>& bytes, const std::string& file,
+                   const std::string& place) {
+    const auto refuse = [&](const std::string& why) -> InputError {
+        return {file, place, "the image " + why};
+    };
+    const std::string_view ending = ending_of(bytes);
+    if (ending.empty()) throw refuse("is not a PNG, JPEG or WebP file; convert it to one of these");
+
+    if (ending == "png" && !is_whole_png(bytes)) throw refuse("is a PNG that is cut short");
+
+    OIIO::Filesystem::IOMemReader reader(bytes.data(), bytes.size());
+    OIIO::Filesystem::IOProxy* proxy = &reader;
+    OIIO::ImageSpec config;
+    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    config.attribute("oiio:UnassociatedAlpha", 1);
+    // In two steps: OpenImageIO's open in one would offer broken bytes to all its readers.
+    const auto input = OIIO::ImageInput::create(std::string(ending));
+    if (!input) throw refuse("cannot be decoded: " + first_line(OIIO::geterror()));
+    OIIO::ImageSpec spec;
+    if (!input->open(fmt::format("memory.{}", ending), spec, config))
+        throw refuse("cannot be decoded: " + first_line(input->geterror()));
+    const std::string why =
+        size_complaint(spec.width, spec.height, spec.depth, spec.nchannels, bytes.size());
+    if (!why.empty()) throw refuse(why);
+
+    const size_t count = size_t(spec.width) * spec.height * spec.nchannels;
+    const auto read = [&](OIIO::TypeDesc type, void* to) {
+        const bool success = input->read_image(0, 0, 0, spec.nchannels, type, to);
+        const std::string error = first_line(input->geterror());
+        if (!success || is_cut_short(error)) throw refuse("cannot be decoded: " + error);
+    };
+    Image image{.name = "", .width = spec.width, .height = spec.height, .texels = {}};
+    if (spec.format == OIIO::TypeDesc::UINT8) {
+        std::vector<uint8_t> texels(count);
+        read(OIIO::TypeDesc::UINT8, texels.data());
+        image.texels = to_rgba<uint8_t>(std::move(texels), spec.nchannels, 255);
+    } else {
+        std::vector<float> texels(count);
+        read(OIIO::TypeDesc::FLOAT, texels.data());
+        image.texels = to_rgba<float>(std::move(texels), spec.nchannels, 1.f);
+    }
+    return image;
+}
+
+}  // namespace petzval

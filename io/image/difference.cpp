@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/image/difference.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+#include "io/base/error.h"
+#include "io/image/spectral_layout.h"
+
+namespace petzval {
+namespace {
+
+std::string layer_of(const std::string& channel) {
+    if (channel == "R" || channel == "G" || channel == "B") return "RGB";
+    const size_t point = channel.rfind('.');
+    return point == std::string::npos ? channel : channel.substr(0, point);
+}
+
+/// Sums over the values of one layer.
+struct Sums {
+    LayerDifference found;
+    double squares = 0., relative = 0.;
+
+    void add(double a, double b, int x, int y, const std::string& channel) {
+        if (!std::isfinite(a) || !std::isfinite(b)) {
+            ++found.not_finite;
+            return;
+        }
+        const double difference = std::fabs(a - b);
+        ++found.value_count;
+        squares += difference * difference;
+        relative += difference * difference / (b * b + kRelativeMseEpsilon);
+        found.peak = std::max(found.peak, std::fabs(b));
+        if (difference <= found.max_abs) return;
+        found.max_abs = difference;
+        found.max_channel = channel;
+        found.max_x = x;
+        found.max_y = y;
+    }
+
+    [[nodiscard]] LayerDifference result() && {
+        const double count = std::max<double>(1., static_cast<double>(found.value_count));
+        found.rmse = std::sqrt(squares / count);
+        found.relative_mse = relative / count;
+        found.psnr_db = found.rmse > 0. ? 20. * std::log10(found.peak / found.rmse)
+                                        : std::numeric_limits<double>::infinity();
+        return std::move(found);
+    }
+};
+
+Sums& sums_of(std::vector<Sums>& layers, const std::string& name) {
+    for (Sums& layer : layers)
+        if (layer.found.layer == name) return layer;
+    layers.emplace_back().found.layer = name;
+    return layers.back();
+}
+
+std::vector<std::string> sorted(std::vector<std::string> names) {
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+std::string frame(const Picture& p) {
+    return fmt::format("{}x{} pixels from {},{} of {}x{}", p.width, p.height, p.x, p.y,
+                       p.full_width, p.full_height);
+}
+
+std::string why_not_the_same_wavelengths(const Picture& a, const Picture& b) {
+    const auto in_a = spectral_channels(a), in_b = spectral_channels(b);
+    if (in_a.empty() != in_b.empty())
+        return fmt::format("the {} is spectral, the {} is not", in_a.empty() ? "latter" : "former",
+                           in_a.empty() ? "former" : "latter");
+    for (size_t i = 0; i < std::min(in_a.size(), in_b.size()); ++i)
+        if (in_a[i].nm != in_b[i].nm)
+            return fmt::format("wavelength {} is {:.7g} nm against {:.7g} nm", i + 1, in_a[i].nm,
+                               in_b[i].nm);
+    if (in_a.size() != in_b.size())
+        return fmt::format("{} wavelengths, up to {:.7g} nm, against {}, up to {:.7g} nm",
+                           in_a.size(), in_a.back().nm, in_b.size(), in_b.back().nm);
+    return "";
+}
+
+/// What is in one sorted list and not in the other.
+std::string only_in(const std::vector<std::string>& a, const std::vector<std::string>& b) {
+    std::vector<std::string> rest;
+    std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(rest));
+    return rest.empty() ? "none" : fmt::format("{}", fmt::join(rest, " "));
+}
+
+}  // namespace
+
+std::string why_not_comparable(const Picture& a, const Picture& b) {
+    if (frame(a) != frame(b)) return fmt::format("{} against {}", frame(a), frame(b));
+    std::string why = why_not_the_same_wavelengths(a, b);
+    if (!why.empty()) return why;
+    const auto in_a = sorted(a.channels), in_b = sorted(b.channels);
+    if (in_a != in_b)
+        return fmt::format("channels only in the former: {}; only in the latter: {}",
+                           only_in(in_a, in_b), only_in(in_b, in_a));
+    return "";
+}
+
+std::vector<LayerDifference> compare(const Picture& a, const Picture& b) {
+    std::vector<Sums> layers;
+    for (size_t c = 0; c < b.channels.size(); ++c) {
+        Sums& sums = sums_of(layers, layer_of(b.channels[c]));
+        const auto in_a = static_cast<size_t>(channel_index(a, b.channels[c]));
+        for (int y = 0; y < b.height; ++y)
+            for (int x = 0; x < b.width; ++x) {
+                const size_t pixel = (size_t(y) * b.width + x) * b.channels.size();
+                sums.add(a.pixels[pixel + in_a], b.pixels[pixel + c], b.x + x, b.y + y,
+                         b.channels[c]);
+            }
+    }
+    std::vector<LayerDifference> results;
+    for (Sums& sums : layers) results.push_back(std::move(sums).result());
+    return results;
+}
+
+std::vector<LayerDifference> compare_files(const std::filesystem::path& a,
+                                           const std::filesystem::path& b) {
+    const Picture picture_a = read_picture(a);
+    const Picture picture_b = read_picture(b);
+    const std::string why = why_not_comparable(picture_a, picture_b);
+    if (!why.empty())
+        throw InputError(a.string(), "",
+                         fmt::format("differs in kind from {}: {}", b.string(), why));
+    return compare(picture_a, picture_b);
+}
+
+}  // namespace petzval

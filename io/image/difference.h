@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// How far two pictures are apart.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "io/image/picture.h"
+
+namespace petzval {
+
+/// Added to the square of the reference in relative_mse, so that black does not divide by zero:
+/// Rousselle et al. 2011, "Adaptive Sampling and Reconstruction using Greedy Error Minimization",
+/// section 5.
+inline constexpr double kRelativeMseEpsilon = 0.01;
+
+/// Of one layer: "RGB", "A", or the name before the last point in the names of its channels. Values
+/// that are not finite in either picture are counted and left out of everything else.
+struct LayerDifference {
+    std::string layer;
+    uint64_t value_count = 0;  ///< compared: pixels times channels
+    uint64_t not_finite = 0;   ///< left out
+    double rmse = 0.;          ///< root of the mean of (a - b)^2
+    double relative_mse = 0.;  ///< mean of (a - b)^2 / (b^2 + kRelativeMseEpsilon)
+    double peak = 0.;          ///< largest absolute value of b
+    double psnr_db = 0.;       ///< 20 log10(peak / rmse); infinite where rmse is 0
+    double max_abs = 0.;       ///< largest absolute difference,
+    std::string max_channel;   ///< in this channel ("" where max_abs is 0)
+    int max_x = 0, max_y = 0;  ///< of this pixel of the full frame
+};
+
+/// Why the pictures cannot be compared (size, crop, wavelengths, channels by name), where a is the
+/// former and b the latter; empty where they can.
+[[nodiscard]] std::string why_not_comparable(const Picture& a, const Picture& b);
+/// a against the reference b, layer by layer in b's order. They must be comparable; the order of
+/// the channels may differ.
+[[nodiscard]] std::vector<LayerDifference> compare(const Picture& a, const Picture& b);
+/// The same for two files. Throws InputError where they cannot be read or compared.
+[[nodiscard]] std::vector<LayerDifference> compare_files(const std::filesystem::path& a,
+                                                         const std::filesystem::path& b);
+
+}  // namespace petzval

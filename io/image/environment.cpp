@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/image/environment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "io/base/error.h"
+#include "io/image/picture.h"
+
+namespace petzval {
+namespace {
+
+std::array<int, 3> colour_channels(const Picture& picture, const std::filesystem::path& path) {
+    if (const int grey = channel_index(picture, "Y"); grey >= 0) return {grey, grey, grey};
+    const std::array<int, 3> rgb{channel_index(picture, "R"), channel_index(picture, "G"),
+                                 channel_index(picture, "B")};
+    if (rgb[0] < 0 || rgb[1] < 0 || rgb[2] < 0)
+        throw InputError(path.string(), "", "an environment needs channels R, G and B (or Y)");
+    return rgb;
+}
+
+/// What can be used of the picture's pixels; counts the negative ones it made black.
+std::vector<float> sky_texels(const Picture& picture, const std::filesystem::path& path,
+                              uint64_t& negative_count) {
+    const std::array<int, 3> from = colour_channels(picture, path);
+    std::vector<float> rgb;
+    rgb.reserve(size_t(picture.width) * picture.height * 3);
+    for (size_t i = 0; i < picture.pixels.size(); i += picture.channels.size())
+        for (const int channel : from) {
+            const float value = picture.pixels[i + channel];
+            if (!std::isfinite(value)) {
+                const size_t texel = i / picture.channels.size();
+                throw InputError(path.string(), "",
+                                 fmt::format("texel {},{} of channel {} is {}; repair the picture",
+                                             texel % picture.width, texel / picture.width,
+                                             picture.channels[channel], value));
+            }
+            negative_count += value < 0.f;
+            rgb.push_back(value < 0.f ? 0.f : value);
+        }
+    return rgb;
+}
+
+void check_kind(const std::filesystem::path& path) {
+    const std::string ending = path.extension().string();
+    for (const char* known : {".hdr", ".exr", ".HDR", ".EXR"})
+        if (ending == known) return;
+    throw InputError(path.string(), "",
+                     "an environment must be a Radiance .hdr or an OpenEXR .exr picture");
+}
+
+}  // namespace
+
+Sky load_sky(const std::filesystem::path& path, float rotate_deg, float strength,
+             const std::function<void(const std::string&)>& notice) {
+    check_kind(path);
+    const Picture picture = read_picture(path);
+    if (picture.width != picture.full_width || picture.height != picture.full_height)
+        throw InputError(
+            path.string(), "",
+            fmt::format("holds {}x{} of {}x{} pixels; an environment must be whole", picture.width,
+                        picture.height, picture.full_width, picture.full_height));
+    uint64_t negative_count = 0;
+    std::vector<float> rgb = sky_texels(picture, path, negative_count);
+    constexpr float brightest_nits = 1e20f;  // sums over the sky and the scene stay finite
+    if (!rgb.empty() && *std::max_element(rgb.begin(), rgb.end()) * strength > brightest_nits)
+        throw InputError(
+            path.string(), "",
+            fmt::format("brighter than {:g} nits once it is multiplied by {:g}; give a "
+                        "smaller --env-strength",
+                        brightest_nits, strength));
+    if (negative_count > 0)
+        notice(fmt::format("warning: {}: {} negative values read as 0", path.string(),
+                           negative_count));
+    if (picture.width != 2 * picture.height)
+        notice(fmt::format(
+            "warning: {}: {}x{} pixels are not 2:1; the picture is stretched over the sphere",
+            path.string(), picture.width, picture.height));
+    return Sky::picture(std::move(rgb), picture.width, picture.height, rotate_deg, strength);
+}
+
+}  // namespace petzval

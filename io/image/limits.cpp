@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/image/limits.h"
+
+#include <fmt/format.h>
+
+namespace petzval {
+namespace {
+
+constexpr int kMaxSide = 32768;
+// Deflate packs at most 1032 bytes into one (RFC 1951: 258 bytes in two bits), and each may be the
+// index of four palette values. Files that claim more are broken, or made to fill the memory.
+constexpr uint64_t kMaxValuesPerByte = 4 * 1032;
+// Formats that need next to no bytes for a picture of one colour are let through up to 4096 x 4096.
+constexpr uint64_t kHarmlessValues = uint64_t{4} * 4096 * 4096;
+
+}  // namespace
+
+std::string size_complaint(int width, int height, int depth, int channels, uint64_t byte_count) {
+    if (width <= 0 || height <= 0 || channels <= 0)
+        return fmt::format("is {}x{} pixels with {} channels and holds nothing", width, height,
+                           channels);
+    if (depth > 1) return fmt::format("is a volume {} slices deep; use a flat picture", depth);
+    if (width > kMaxSide || height > kMaxSide)
+        return fmt::format("is {}x{} pixels, more than {} on a side; scale it down", width, height,
+                           kMaxSide);
+    const uint64_t values = uint64_t(width) * height * channels;
+    if (values > kHarmlessValues && values / kMaxValuesPerByte > byte_count)
+        return fmt::format("claims {}x{} pixels with {} channels in {} bytes, which cannot be",
+                           width, height, channels, byte_count);
+    return "";
+}
+
+}  // namespace petzval

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/lens/ray_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "core/spectrum/bands.h"
+#include "io/base/csv.h"
+#include "io/base/error.h"
+
+namespace petzval {
+namespace {
+
+constexpr std::array<const char*, 7> kColumns{"x", "y", "z", "dx", "dy", "dz", "nm"};
+constexpr double kFarthest_mm = 1e9;
+
+const char* status_of(Fate fate) {
+    switch (fate) {
+        case Fate::Passed:
+            return "ok";
+        case Fate::Vignetted:
+            return "vignetted";
+        case Fate::TotallyReflected:
+            return "tir";
+        case Fate::Missed:
+            return "miss";
+    }
+    return "";
+}
+
+std::array<size_t, 7> places_of_columns(const CsvTable& table) {
+    std::array<size_t, 7> places{};
+    for (size_t i = 0; i < kColumns.size(); ++i) {
+        const auto at = std::find(table.names.begin(), table.names.end(), kColumns[i]);
+        if (at == table.names.end() || table.names.size() != kColumns.size())
+            throw InputError(table.file, "",
+                             fmt::format("must have the columns {}; it has {}",
+                                         fmt::join(kColumns, ","), fmt::join(table.names, ",")));
+        places[i] = static_cast<size_t>(at - table.names.begin());
+    }
+    return places;
+}
+
+}  // namespace
+
+std::vector<RayToTrace> read_rays(const std::filesystem::path& path) {
+    const CsvTable table = read_csv(path);
+    const auto places = places_of_columns(table);
+    std::vector<RayToTrace> rays;
+    for (size_t row = 0; row < table.rows.size(); ++row) {
+        const auto cell = [&](size_t i) { return table.rows[row][places[i]]; };
+        const auto refuse = [&](const std::string& message) {
+            return InputError(table.file, table.place(row), message);
+        };
+        const RayToTrace ray{{cell(0), cell(1), cell(2)}, {cell(3), cell(4), cell(5)}, cell(6)};
+        for (size_t i = 0; i < 6; ++i)
+            if (std::abs(cell(i)) > kFarthest_mm)
+                throw refuse(fmt::format("{} is {:g}; it may be {:g} at most", kColumns[i], cell(i),
+                                         kFarthest_mm));
+        if (!(ray.direction.length() > 1e-9))
+            throw refuse("dx,dy,dz has no length; give a direction");
+        if (ray.nm < kFirst_nm || ray.nm > kLast_nm)
+            throw refuse(
+                fmt::format("nm is {:g}; it must be from {} to {}", ray.nm, kFirst_nm, kLast_nm));
+        rays.push_back(ray);
+    }
+    return rays;
+}
+
+std::string ray_table(std::span<const TracedRay> rays, Towards towards, double film_mm) {
+    std::string out = "x,y,z,dx,dy,dz,film_x,film_y,path,status,surface\n";
+    for (const TracedRay& ray : rays) {
+        if (ray.fate != Fate::Passed) {
+            out += fmt::format(",,,,,,,,,{},{}\n", status_of(ray.fate), ray.end_surface);
+            continue;
+        }
+        const auto film = towards == Towards::Film ? ray.at_plane(film_mm) : std::nullopt;
+        out += fmt::format("{},{},{},{},{},{},{},{},ok,\n", ray.point.x, ray.point.y, ray.point.z,
+                           ray.direction.x, ray.direction.y, ray.direction.z,
+                           film ? fmt::format("{},{}", (*film)[0], (*film)[1]) : ",", ray.path_mm);
+    }
+    return out;
+}
+
+}  // namespace petzval

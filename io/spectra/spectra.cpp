@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/spectra/spectra.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <span>
+#include <string_view>
+#include <system_error>
+
+#include "core/spectrum/colorimetry.h"
+#include "core/spectrum/colour.h"
+#include "io/base/ascii.h"
+#include "io/base/assets.h"
+#include "io/base/csv.h"
+#include "io/base/error.h"
+
+namespace petzval {
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::span<const std::string_view>;
+
+constexpr std::array<std::string_view, 3> kIlluminants{"d65", "a", "f11"};
+constexpr std::array<std::string_view, 1> kResponses{"cie1931"};
+constexpr std::array<std::string_view, 4> kMetals{"ag", "al", "au", "cu"};
+
+bool ships(Names names, const std::string& name) {
+    return std::find(names.begin(), names.end(), lower(name)) != names.end();
+}
+
+fs::path shipped(const std::string& name) {
+    return asset("spectra/" + lower(name) + ".csv");
+}
+
+// A name that ships wins over a file of that name; ./d65 is the file.
+fs::path shipped_or_file(Names names, const std::string& name_or_file) {
+    if (ships(names, name_or_file)) return shipped(name_or_file);
+    std::error_code none;
+    if (!fs::exists(name_or_file, none))
+        throw ArgumentError(
+            name_or_file, "",
+            fmt::format("is neither a file nor a name; the names are {}", fmt::join(names, ", ")));
+    return name_or_file;
+}
+
+// columns: what follows the wavelength.
+CsvTable read_spectra(const fs::path& path, size_t columns) {
+    CsvTable table = read_csv(path);
+    if (table.names.size() != 1 + columns)
+        throw InputError(
+            table.file, "",
+            fmt::format("number of columns is {} and must be {}: wavelength in nm, then {}",
+                        table.names.size(), 1 + columns,
+                        columns == 1 ? "one value" : "one value for each curve"));
+    double previous_nm = 0;
+    for (size_t row = 0; row < table.rows.size(); ++row) {
+        const std::vector<double>& values = table.rows[row];
+        const double nm = values[0];
+        if (nm <= previous_nm)
+            throw InputError(table.file, table.place(row),
+                             fmt::format("wavelength {} nm must be above {} nm; sort the rows by "
+                                         "wavelength, each once",
+                                         nm, previous_nm));
+        previous_nm = nm;
+        for (size_t i = 1; i < values.size(); ++i)
+            if (values[i] < 0)
+                throw InputError(
+                    table.file, table.place(row),
+                    fmt::format("{} in column {} must not be below 0", values[i], table.names[i]));
+    }
+    return table;
+}
+
+SpectrumTable tabulate(const CsvTable& table, size_t column, Beyond beyond, double unit = 1) {
+    std::vector<std::pair<float, float>> points;
+    points.reserve(table.rows.size());
+    for (const auto& row : table.rows)
+        points.emplace_back(static_cast<float>(row[0]), static_cast<float>(row[column] / unit));
+    return petzval::tabulate(points, beyond);
+}
+
+template <size_t N>
+std::array<SpectrumTable, N> tabulate(const CsvTable& table, Beyond beyond, double unit = 1) {
+    std::array<SpectrumTable, N> curves;
+    for (size_t i = 0; i < N; ++i) curves[i] = tabulate(table, 1 + i, beyond, unit);
+    return curves;
+}
+
+// Of a column's straight lines between kFirst_nm and kLast_nm, in multiples of a unit.
+double area(const CsvTable& table, size_t column, double unit) {
+    double sum = 0;
+    for (size_t row = 0; row + 1 < table.rows.size(); ++row) {
+        const double x0 = table.rows[row][0], x1 = table.rows[row + 1][0];
+        const double y0 = table.rows[row][column] / unit, y1 = table.rows[row + 1][column] / unit;
+        const double a = std::max(x0, double{kFirst_nm}), b = std::min(x1, double{kLast_nm});
+        if (a >= b) continue;
+        const auto at = [&](double x) { return y0 + (y1 - y0) * ((x - x0) / (x1 - x0)); };
+        sum += (at(a) + at(b)) / 2 * (b - a);
+    }
+    return sum;
+}
+
+// Curves of any unit, brought to a greatest value of 1 before they must fit in floats.
+template <size_t N>
+std::array<SpectrumTable, N> read_relative(const fs::path& path) {
+    const CsvTable table = read_spectra(path, N);
+    const double first_nm = table.rows.front()[0], last_nm = table.rows.back()[0];
+    if (first_nm > kLast_nm || last_nm < kFirst_nm)
+        throw InputError(
+            table.file, table.place(0),
+            fmt::format("wavelengths {} to {} do not reach {} to {} nm; write them in nm", first_nm,
+                        last_nm, kFirst_nm, kLast_nm));
+    double greatest = 0;
+    for (const auto& row : table.rows)
+        greatest = std::max(greatest, *std::max_element(row.begin() + 1, row.end()));
+    const auto curves = tabulate<N>(table, Beyond::Zero, greatest > 0 ? greatest : 1);
+    for (size_t i = 0; i < N; ++i)
+        if (!(integral(curves[i]) > 0))
+            throw InputError(table.file, table.place(0),
+                             fmt::format("column {} is 0 at every whole nm from {} to {}",
+                                         table.names[1 + i], kFirst_nm, kLast_nm));
+    for (size_t i = 0; i < N; ++i) {
+        const double whole = area(table, 1 + i, greatest), kept = integral(curves[i]);
+        if (kept < 0.99 * whole)
+            throw InputError(table.file, "",
+                             fmt::format("column {} has lines too narrow for tables of 1 nm, which "
+                                         "would keep {:.0f} % of it; make them 2 nm wide",
+                                         table.names[1 + i], 100 * kept / whole));
+    }
+    return curves;
+}
+
+V3d white_xyz(const std::array<SpectrumTable, 3>& observer) {
+    return respond(observer, tabulate<1>(read_spectra(shipped("d65"), 1), Beyond::Zero)[0]);
+}
+
+Rgb to_srgb(const V3d& xyz, const V3d& white) {
+    const V3d rgb = srgb_to_xyz(white).inverse() * xyz;
+    return {static_cast<float>(rgb.x), static_cast<float>(rgb.y), static_cast<float>(rgb.z)};
+}
+
+}  // namespace
+
+std::array<SpectrumTable, 3> standard_observer() {
+    return tabulate<3>(read_spectra(shipped("cie1931"), 3), Beyond::Zero);
+}
+
+std::array<SpectrumTable, 3> rgb_basis() {
+    return tabulate<3>(read_spectra(shipped("rgb_basis"), 3), Beyond::Hold);
+}
+
+std::vector<SpectrumTable> training_reflectances() {
+    const auto patches = tabulate<24>(read_spectra(shipped("colorchecker"), 24), Beyond::Hold);
+    return {patches.begin(), patches.end()};
+}
+
+SpectrumTable find_illuminant(const std::string& name_or_file) {
+    return read_relative<1>(shipped_or_file(kIlluminants, name_or_file))[0];
+}
+
+std::array<SpectrumTable, 3> find_response(const std::string& name_or_file) {
+    return read_relative<3>(shipped_or_file(kResponses, name_or_file));
+}
+
+std::optional<Illuminant> find_light_spectrum(const std::string& name) {
+    if (!ships(kIlluminants, name)) return std::nullopt;
+    const auto observer = standard_observer();
+    Illuminant light{lower(name), find_illuminant(name), {}};
+    const double nits =
+        double{kLuminousEfficacy_lm_per_w} * integral_of_product(observer[1], light.per_nit);
+    for (float& value : light.per_nit.value) value = static_cast<float>(value / nits);
+    const V3d white = white_xyz(observer), xyz = respond(observer, light.per_nit);
+    light.rgb = to_srgb(xyz / xyz.y, white / white.y);
+    return light;
+}
+
+std::optional<Metal> find_metal(const std::string& name) {
+    if (!ships(kMetals, name)) return std::nullopt;
+    const auto [n, k] = tabulate<2>(read_spectra(shipped(name), 2), Beyond::Hold);
+    return Metal{lower(name), n, k};
+}
+
+Rgb colour_of(const Metal& metal) {
+    const auto observer = standard_observer();
+    SpectrumTable seen = tabulate<1>(read_spectra(shipped("d65"), 1), Beyond::Zero)[0];
+    const V3d white = respond(observer, seen);
+    // Normal incidence: Born and Wolf 1999, "Principles of Optics", equation 14.2 (17).
+    for (size_t i = 0; i < seen.value.size(); ++i) {
+        const float n = metal.n.value[i], k2 = metal.k.value[i] * metal.k.value[i];
+        seen.value[i] *= ((n - 1) * (n - 1) + k2) / ((n + 1) * (n + 1) + k2);
+    }
+    return to_srgb(respond(observer, seen), white);
+}
+
+std::string illuminant_names() {
+    return fmt::format("{}", fmt::join(kIlluminants, ", "));
+}
+
+std::string metal_names() {
+    return fmt::format("{}", fmt::join(kMetals, ", "));
+}
+
+}  // namespace petzval

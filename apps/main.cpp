@@ -7,15 +7,15 @@
 #include <new>
 #include <string>
 
-#include "apps/chart.h"
-#include "apps/console.h"
-#include "apps/image.h"
-#include "apps/info.h"
-#include "apps/lens.h"
-#include "apps/plan.h"
-#include "apps/render.h"
+#include "apps/cli/console.h"
+#include "apps/commands/chart.h"
+#include "apps/commands/image.h"
+#include "apps/commands/info.h"
+#include "apps/commands/lens.h"
+#include "apps/commands/plan.h"
+#include "apps/commands/render.h"
+#include "apps/setup/develop.h"
 #include "io/base/error.h"
-#include "io/develop.h"
 
 namespace {
 

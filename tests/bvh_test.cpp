@@ -5,9 +5,9 @@
 
 #include <random>
 
+#include "apps/chart/traversal_leaks.h"
 #include "core/light/light_sampling.h"
 #include "core/sampling/warp.h"
-#include "core/seams.h"
 #include "core/shading/surface.h"
 #include "tests/support/scenes.h"
 

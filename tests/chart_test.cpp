@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "apps/chart/chart_report.h"
 #include "io/base/csv.h"
-#include "io/chart_report.h"
 #include "tests/support/cli.h"
 #include "tests/support/statistics.h"
 

@@ -3,8 +3,8 @@
 // follows for a render.
 #include <gtest/gtest.h>
 
+#include "apps/setup/wavelength_reasons.h"
 #include "io/glass/catalogue.h"
-#include "io/needs_wavelengths.h"
 #include "io/spectra/spectra.h"
 #include "tests/support/load_tiny_gltf.h"
 #include "tests/support/refusal.h"

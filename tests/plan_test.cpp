@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a pilot finds, what a plan makes of it, and what petzval plan and render say.
-#include "io/plan.h"
+#include "apps/plan/plan.h"
 
 #include <cmath>
 
+#include "apps/plan/dispersion_spread.h"
+#include "apps/plan/plan_comparison.h"
 #include "io/image/difference.h"
-#include "io/parted_rays.h"
-#include "io/plan_comparison.h"
 #include "tests/support/cli_spectral.h"
 #include "tests/support/statistics.h"
 

@@ -8,8 +8,8 @@
 #include <cfloat>
 #include <map>
 
+#include "apps/setup/develop.h"
 #include "io/base/error.h"
-#include "io/develop.h"
 #include "io/image/spectral_layout.h"
 #include "tests/support/file_size_limit.h"
 #include "tests/support/temporary_folder.h"

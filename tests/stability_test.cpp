@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The map of failures is what the program writes and names tests that there are; and the guards of
 // what no other test holds.
-#include "io/stability.h"
+#include "apps/stability/stability.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

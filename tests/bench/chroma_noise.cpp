@@ -10,8 +10,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "apps/parse.h"
-#include "io/session.h"
+#include "apps/cli/parse.h"
+#include "apps/setup/render_setup.h"
 #include "tests/bench/noise.h"
 #include "tests/bench/program.h"
 

@@ -11,10 +11,10 @@
 
 #include <CLI/CLI.hpp>
 
-#include "apps/parse.h"
+#include "apps/cli/parse.h"
+#include "apps/plan/plan.h"
 #include "io/base/error.h"
 #include "io/lens/lens_file.h"
-#include "io/plan.h"
 #include "tests/bench/program.h"
 
 namespace petzval {

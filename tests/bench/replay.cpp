@@ -9,12 +9,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "apps/parse.h"
+#include "apps/cli/parse.h"
+#include "apps/setup/render_setup.h"
+#include "apps/setup/stats_file.h"
 #include "integrator/executor.h"
 #include "integrator/path_impl.h"
 #include "integrator/render.h"
-#include "io/session.h"
-#include "io/stats_file.h"
 
 namespace petzval {
 namespace {

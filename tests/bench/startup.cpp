@@ -15,11 +15,11 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "apps/setup/render_setup.h"
 #include "camera/lens/ray_aiming.h"
 #include "io/glass/catalogue.h"
 #include "io/gltf/gltf.h"
 #include "io/lens/lens_file.h"
-#include "io/session.h"
 #include "tests/bench/noise.h"
 
 namespace petzval {

@@ -2,7 +2,7 @@
 // Observers as a render would have them.
 #pragma once
 
-#include "io/spectral_setup.h"
+#include "apps/setup/spectral_setup.h"
 
 namespace petzval::test {
 

@@ -5,9 +5,9 @@
 //   peers_chart MANIFEST.json FOLDER
 #include <fmt/format.h>
 
+#include "apps/chart/chart_report.h"
 #include "io/base/json_parse.h"
 #include "io/base/read_file.h"
-#include "io/chart_report.h"
 #include "io/image/difference.h"
 #include "io/image/flip.h"
 #include "tests/bench/program.h"

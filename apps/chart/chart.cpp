@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/chart/chart.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+
+#include "io/base/atomic_file.h"
+#include "io/base/error.h"
+
+namespace petzval {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The report's folder. One that was made here goes again unless something is kept in it.
+class Folder {
+  public:
+    explicit Folder(const fs::path& path) : path_(path) {
+        std::error_code error;
+        if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
+        made_ = fs::create_directory(path, error);
+        if (!fs::is_directory(path))
+            throw InputError(path.string(), "",
+                             "cannot be made a folder for the report: " +
+                                 (error ? error.message() : "there is a file of that name"));
+        check_writable(path / "report.html");
+        made_pictures_ = fs::create_directory(path / "pictures", error);
+    }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+    ~Folder() {
+        std::error_code ignored;
+        if (kept_) return;
+        if (made_)
+            fs::remove_all(path_, ignored);
+        else if (made_pictures_)
+            fs::remove(path_ / "pictures", ignored);
+    }
+    void keep() { kept_ = true; }
+
+  private:
+    fs::path path_;
+    bool made_ = false, made_pictures_ = false, kept_ = false;
+};
+
+// Memory is promised before it is there, so that asking for too much would kill instead of fail.
+void require_memory(const std::vector<ChartCase>& cases, const ChartFrame& frame) {
+    double most = 0;
+    for (const ChartCase& of : cases) {
+        double per_pixel = 0;
+        for (const ChartMethod& method : of.methods) {
+            const auto& bins = method.scene.spectral.bins;
+            per_pixel += frame.seeds * (48 + (bins ? 8. * bins->count + 24 + 12 * kScrambles : 0));
+            per_pixel += 12 * 20;  // pictures of the levels
+        }
+        most = std::max(most, per_pixel);
+    }
+    const double needed = most * frame.crop.width() * frame.crop.height();
+    const double there =
+        static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+    if (needed > there)
+        throw ArgumentError("--size", "",
+                            fmt::format("needs {:.1f} GiB of memory, this machine has {:.1f}; give "
+                                        "a smaller --size, a --crop or fewer --seeds",
+                                        needed * 0x1p-30, there * 0x1p-30));
+}
+
+}  // namespace
+
+ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, RenderMonitor& monitor,
+                       const std::function<void(const std::string&)>& notice,
+                       const std::function<void(const MeasuredCase&)>& finished) {
+    using SteadyClock = std::chrono::steady_clock;
+    const auto start = SteadyClock::now();
+    const auto elapsed_s = [&] {
+        return std::chrono::duration<double>(SteadyClock::now() - start).count();
+    };
+    const double least_s = kLeastChartBudget_s * static_cast<double>(request.axes.size());
+    if (request.budget_s < least_s)
+        throw ArgumentError("--budget", "",
+                            fmt::format("is too small: {} axes need {:g} s at least",
+                                        request.axes.size(), least_s));
+    std::set<std::string> said;  // by one of the sessions
+    const auto once = [&](const std::string& text) {
+        if (said.insert(text).second) notice(text);
+    };
+    ChartFrame frame = request.frame;
+    if (request.reference) {
+        frame.reference = read_reference(*request.reference, frame.size, frame.crop);
+        frame.reference_name = request.reference->filename().string();
+    }
+    Folder folder(request.subject.folder);
+    const Session first =
+        executor.inside([&] { return open_session(request.subject.request, once); });
+    const OpenSession open = [&](const SceneRequest& one) {
+        return executor.inside([&] { return open_session(one, once, &first); });
+    };
+    const std::vector<ChartCase> cases = chart_cases(request.axes, request.subject, open);
+    require_memory(cases, frame);
+    const bool nothing = std::all_of(cases.begin(), cases.end(),
+                                     [](const ChartCase& of) { return of.methods.empty(); });
+    if (nothing) throw ArgumentError("--axis", "", cases.front().remarks.front());
+
+    double weight_left = 0;
+    for (const ChartCase& of : cases) weight_left += of.methods.empty() ? 0 : of.weight;
+    ChartReport report{request.subject, frame, request.budget_s, executor.threads(), {}};
+    ChartOutcome outcome;
+    for (const ChartCase& of : cases) {
+        const double share_s = (request.budget_s - elapsed_s()) * of.weight / weight_left;
+        std::optional<MeasuredCase> measured;
+        try {
+            measured = measure(of, frame, share_s, executor, monitor, open);
+        } catch (const TooSlow& error) {
+            if (cases.size() == 1) throw;
+            measured.emplace().of = of;
+            measured->of.methods.clear();
+            measured->of.remarks.push_back(std::string("Left out: ") + error.what());
+        }
+        if (!measured) {
+            outcome.stopped = true;
+            return outcome;
+        }
+        if (!of.methods.empty()) weight_left -= of.weight;
+        outcome.measured += !measured->methods.empty();
+        report.cases.push_back(*std::move(measured));
+        finished(report.cases.back());
+        if (outcome.measured == 0) continue;
+        folder.keep();
+        write_case(report, report.cases.back());
+        write_report(report);
+    }
+    if (outcome.measured == 0)
+        throw ArgumentError("--budget", "", "is too small for each of the axes");
+    return outcome;
+}
+
+}  // namespace petzval

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// A chart of cost against error, from the request to a folder that holds its report.
+#pragma once
+
+#include "apps/chart/chart_report.h"
+#include "apps/chart/chart_run.h"
+
+namespace petzval {
+
+struct ChartRequest {
+    ChartSubject subject;
+    ChartFrame frame;
+    std::vector<ChartAxis> axes;
+    double budget_s = 600;
+    std::optional<std::filesystem::path> reference;  ///< in place of those that are rendered
+};
+
+struct ChartOutcome {
+    size_t measured = 0;   ///< cases whose files are written
+    bool stopped = false;  ///< the monitor said stop
+};
+
+/// Measures case by case and writes each when it is measured: what lies in the folder is whole at
+/// any time. A case for which the time is too short is left out, with a remark, unless it is the
+/// only one. Ends within 1.2 times the budget. `finished` sees each case. Throws InputError:
+/// faults of scene and files, a folder that cannot be written; ArgumentError: a budget that is too
+/// small, more memory than there is, nothing to compare.
+[[nodiscard]] ChartOutcome run_chart(const ChartRequest&, TbbExecutor&, RenderMonitor&,
+                                     const std::function<void(const std::string&)>& notice,
+                                     const std::function<void(const MeasuredCase&)>& finished);
+
+}  // namespace petzval

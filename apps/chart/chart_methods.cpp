@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/chart/chart_methods.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "apps/chart/traversal_leaks.h"
+#include "apps/setup/equivalent_camera.h"
+#include "apps/setup/option_names.h"
+#include "io/aperture/aperture_file.h"
+#include "io/base/atomic_file.h"
+#include "io/base/error.h"
+#include "io/image/picture.h"
+
+namespace petzval {
+namespace {
+
+/// What a scene and a request turned out to be.
+struct Found {
+    SceneRequest request;  ///< with the wishes of the file's camera
+    CameraReport report;
+    size_t lights = 0;
+};
+
+bool is_prescription(const CameraRequest& camera) {
+    return camera.lens && *camera.lens != "pinhole" && *camera.lens != "thin" &&
+           !camera.lens->starts_with("singlet:");
+}
+
+Found look(const SceneRequest& request, const OpenSession& open) {
+    const Session session = open(request);
+    return {settled(session), session.camera_report, session.scene->lights.size()};
+}
+
+/// Collects the methods of one case.
+class Cases {
+  public:
+    Cases(ChartAxis axis, const RenderJob& job, std::string name, std::string title) : job_(job) {
+        case_.axis = axis;
+        case_.name = std::move(name);
+        case_.title = std::move(title);
+    }
+    using Change = std::function<void(SceneRequest&, RenderJob&)>;
+
+    void remark(std::string text) { case_.remarks.push_back(std::move(text)); }
+    void remark(const std::vector<std::string>& texts) {
+        case_.remarks.insert(case_.remarks.end(), texts.begin(), texts.end());
+    }
+    void add(std::string name, const SceneRequest& base, const Change& change) {
+        case_.methods.push_back(made(std::move(name), base, change));
+    }
+    void reference(std::string name, const SceneRequest& base, const Change& change) {
+        case_.reference = made(std::move(name), base, change);
+    }
+    [[nodiscard]] ChartCase result() && { return std::move(case_); }
+
+  private:
+    [[nodiscard]] ChartMethod made(std::string name, const SceneRequest& base,
+                                   const Change& change) const {
+        ChartMethod method{std::move(name), base, job_};
+        change(method.scene, method.job);
+        return method;
+    }
+
+    RenderJob job_;
+    ChartCase case_;
+};
+
+/// Where wavelengths and rims ask for a real lens: the request's, else kChartLens.
+SceneRequest with_lens(const Found& found, std::vector<std::string>& remarks) {
+    SceneRequest request = found.request;
+    CameraRequest& camera = request.camera;
+    if (is_prescription(camera)) return request;
+    remarks.push_back(
+        fmt::format("No lens with a prescription was asked for: {} was taken", kChartLens));
+    camera.lens = kChartLens;
+    camera.fit = Fit::Lens;
+    camera.fov_deg = camera.focal_length_mm = camera.lens_radius_m = std::nullopt;
+    camera.film_distance_mm = std::nullopt;
+    return request;
+}
+
+ChartCase camera_case(const Found& found, const RenderJob& job, const OpenSession& open) {
+    Cases cases(ChartAxis::Camera, job, "camera",
+                "models of the camera against its lens (a bias is their point)");
+    std::vector<std::string> remarks;
+    SceneRequest lens = with_lens(found, remarks);
+    const Session session = open(lens);
+    const CameraReport& report = session.camera_report;
+    lens.camera.focus = FocusDistance{report.focus_m};
+    const SceneRequest thin = thin_like(lens, session);
+    cases.remark(remarks);
+    cases.remark(
+        fmt::format("Pinhole, thin and singlet stand in the entrance pupil of the lens, "
+                    "see {:.4g} degrees as it does when it is focused, and have its iris",
+                    *thin.camera.fov_deg));
+    cases.add("pinhole", pinhole_like(lens, session), [](SceneRequest&, RenderJob&) {});
+    cases.add("thin", thin, [](SceneRequest&, RenderJob&) {});
+    cases.add("singlet", thin,
+              [](SceneRequest& s, RenderJob&) { s.camera.lens = "singlet:N-BK7"; });
+    cases.add("lens one-ray", lens,
+              [](SceneRequest& s, RenderJob&) { s.camera.chroma = Chroma::Shared; });
+    cases.add("lens", lens, [](SceneRequest& s, RenderJob&) { s.camera.chroma = Chroma::Hero; });
+    cases.reference("the lens, wavelengths always split, rays followed in doubles", lens,
+                    [](SceneRequest& s, RenderJob&) {
+                        s.camera.chroma = Chroma::Split;
+                        s.camera.march = March::Double;
+                    });
+    return std::move(cases).result();
+}
+
+ChartCase chroma_case(const Found& found, const RenderJob& job) {
+    Cases cases(ChartAxis::Chroma, job, "chroma", "ways to carry wavelengths through the lens");
+    std::vector<std::string> remarks;
+    SceneRequest lens = with_lens(found, remarks);
+    lens.spectral.mode = SpectralMode::Hero;
+    cases.remark(remarks);
+    const auto with = [](Chroma chroma) {
+        return [chroma](SceneRequest& s, RenderJob&) { s.camera.chroma = chroma; };
+    };
+    cases.add("split", lens, with(Chroma::Split));
+    cases.add(fmt::format("tolerance {:g} px", lens.camera.chroma_tolerance_px), lens,
+              with(Chroma::Tolerance));
+    cases.add("shared", lens, with(Chroma::Shared));
+    cases.add("single", lens, with(Chroma::Single));
+    cases.add("hero", lens, with(Chroma::Hero));
+    cases.remark("shared is biased: it leaves out the colour errors of the lens");
+    cases.reference("split, rays followed in doubles with the glasses' own formulas", lens,
+                    [](SceneRequest& s, RenderJob&) {
+                        s.camera.chroma = Chroma::Split;
+                        s.camera.march = March::Double;
+                    });
+    return std::move(cases).result();
+}
+
+ChartCase spectral_case(const Found& found, const RenderJob& job) {
+    Cases cases(ChartAxis::Spectral, job, "spectral", "what a path carries");
+    const auto with = [](SpectralMode mode) {
+        return [mode](SceneRequest& s, RenderJob&) { s.spectral.mode = mode; };
+    };
+    cases.add("rgb", found.request, with(SpectralMode::Rgb));
+    cases.add("hero", found.request, with(SpectralMode::Hero));
+    cases.add("hero with bins", found.request, [](SceneRequest& s, RenderJob& j) {
+        s.spectral.mode = SpectralMode::Hero;
+        s.spectral.bins = Bins{380, 10, 35};
+        j.scrambles = kScrambles;
+    });
+    cases.remark("The bins are 35 of 10 nm");
+    cases.remark("rgb is biased where light and reflectance multiply by wavelength");
+    cases.reference("hero, independent points", found.request, [](SceneRequest& s, RenderJob& j) {
+        s.spectral.mode = SpectralMode::Hero;
+        j.sampler = SamplerKind::Independent;
+    });
+    return std::move(cases).result();
+}
+
+/// A rectangle 1000 times as long as it is wide, aslant, so that its bounding box is mostly empty.
+std::string write_sliver(const std::filesystem::path& folder) {
+    const auto path = folder / "iris-sliver.svg";
+    write_file_atomically(
+        path, std::string_view("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-1000 "
+                               "-1000 2000 2000\">\n<rect x=\"-500\" y=\"-0.5\" "
+                               "width=\"1000\" height=\"1\" transform=\"rotate(-30)\"/>\n"
+                               "</svg>\n"));
+    return path.string();
+}
+
+/// A disk that darkens towards its rim, as an apodisation filter does.
+std::string write_mask(const std::filesystem::path& folder) {
+    constexpr int kSide = 64;
+    Picture mask;
+    mask.width = mask.height = mask.full_width = mask.full_height = kSide;
+    mask.channels = {"R", "G", "B"};
+    for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x) {
+            const double r = std::hypot(x - 31.5, y - 31.5) / 32;
+            mask.pixels.insert(mask.pixels.end(), 3, float(std::fmax(0, 1 - r * r)));
+        }
+    const auto path = folder / "iris-mask.png";
+    write_8bit(path, mask);
+    return path.string();
+}
+
+std::vector<ChartCase> iris_cases(const Found& found, const ChartSubject& subject) {
+    std::vector<std::string> remarks;
+    SceneRequest lens = with_lens(found, remarks);
+    lens.camera.chroma = Chroma::Shared;  // the iris is measured, not the glass
+    remarks.emplace_back("One ray for all wavelengths");
+    const std::vector<std::pair<std::string, std::string>> shapes{
+        {"disk", "circle"},
+        {"hexagon", "polygon:6"},
+        {"star", "star:5"},
+        {"sliver", write_sliver(subject.folder)},
+        {"mask", write_mask(subject.folder)}};
+    std::vector<ChartCase> all;
+    for (const auto& [name, aperture] : shapes) {
+        Cases cases(ChartAxis::Iris, subject.job, "iris-" + name,
+                    "ways to draw points of the iris: " + name);
+        lens.camera.aperture = aperture;
+        // A sliver of the round stop's area would reach far beyond the stop's rim.
+        const bool sliver = name == "sliver";
+        lens.camera.aperture_scale = sliver ? ApertureScale::Inscribed : ApertureScale::EqualArea;
+        for (const IrisSampling way : iris_samplings(parse_aperture(aperture)))
+            cases.add(petzval::word_of(way), lens,
+                      [way](SceneRequest& s, RenderJob&) { s.camera.iris_sampling = way; });
+        cases.remark(remarks);
+        if (sliver)
+            cases.remark(
+                "1:1000 and aslant: rejection mostly gives up and falls back on triangles");
+        cases.reference(sliver ? "triangles, independent points" : "rejection, independent points",
+                        lens, [sliver](SceneRequest& s, RenderJob& j) {
+                            s.camera.iris_sampling =
+                                sliver ? IrisSampling::Triangles : IrisSampling::Rejection;
+                            j.sampler = SamplerKind::Independent;
+                        });
+        all.push_back(std::move(cases).result());
+        all.back().weight = 1. / static_cast<double>(shapes.size());
+    }
+    return all;
+}
+
+ChartCase sampler_case(const Found& found, const RenderJob& job) {
+    Cases cases(ChartAxis::Sampler, job, "sampler", "sources of sample points");
+    for (const auto& [name, kind] :
+         {std::pair{"independent", SamplerKind::Independent},
+          std::pair{"sobol", SamplerKind::Sobol}, std::pair{"owen", SamplerKind::Owen}})
+        cases.add(name, found.request,
+                  [way = kind](SceneRequest&, RenderJob& j) { j.sampler = way; });
+    cases.reference("independent points of other seeds", found.request,
+                    [](SceneRequest&, RenderJob& j) { j.sampler = SamplerKind::Independent; });
+    return std::move(cases).result();
+}
+
+ChartCase lights_case(const Found& found, const RenderJob& job) {
+    Cases cases(ChartAxis::Lights, job, "lights", "ways to choose one of the lights");
+    if (found.lights < 2) {
+        cases.remark(fmt::format("Left out: the scene has {} light, and a choice needs two",
+                                 found.lights == 0 ? "no" : "one"));
+        return std::move(cases).result();
+    }
+    cases.remark(fmt::format("The scene has {} lights, emissive triangles counted one by one",
+                             found.lights));
+    const auto with = [](LightChoiceKind kind) {
+        return [kind](SceneRequest& s, RenderJob&) { s.light_choice = kind; };
+    };
+    cases.add("uniform", found.request, with(LightChoiceKind::Uniform));
+    cases.add("power", found.request, with(LightChoiceKind::Power));
+    cases.add("tree", found.request, with(LightChoiceKind::Tree));
+    cases.reference("by power, independent points", found.request,
+                    [](SceneRequest& s, RenderJob& j) {
+                        s.light_choice = LightChoiceKind::Power;
+                        j.sampler = SamplerKind::Independent;
+                    });
+    return std::move(cases).result();
+}
+
+/// A wrong pixel here and there hardly shows in an error, so leaks are counted.
+std::string leak_count(const SceneRequest& request, const OpenSession& open) {
+    constexpr size_t kRays = 20000;
+    std::vector<Ray> rays;
+    const auto through = [&](Traversal traversal) {
+        SceneRequest one = request;
+        one.traversal = traversal;
+        const Session session = open(one);
+        if (rays.empty()) rays = seam_rays(*session.scene, kRays, 0);
+        return leaks(*session.bvh, rays);
+    };
+    const size_t robust = through(Traversal::Robust), fast = through(Traversal::Fast);
+    if (rays.empty()) return "No leaks were counted: the scene has no edges that triangles share";
+    return fmt::format(
+        "Leaks: of {} rays aimed at edges that two triangles share, robust traversal let {} "
+        "through and fast {}",
+        rays.size(), robust, fast);
+}
+
+ChartCase precision_case(const Found& found, const RenderJob& job, const OpenSession& open) {
+    Cases cases(ChartAxis::Precision, job, "precision",
+                "floats and doubles in the lens, robust and fast traversal");
+    std::vector<std::string> remarks;
+    SceneRequest lens = with_lens(found, remarks);
+    lens.camera.chroma = Chroma::Shared;
+    remarks.emplace_back("One ray for all wavelengths");
+    cases.remark(remarks);
+    cases.remark(leak_count(lens, open));
+    const auto with = [](March march, Traversal traversal) {
+        return [=](SceneRequest& s, RenderJob&) {
+            s.camera.march = march;
+            s.traversal = traversal;
+        };
+    };
+    cases.add("float robust", lens, with(March::Float, Traversal::Robust));
+    cases.add("double robust", lens, with(March::Double, Traversal::Robust));
+    cases.add("float fast", lens, with(March::Float, Traversal::Fast));
+    cases.reference("double and robust, independent points", lens,
+                    [](SceneRequest& s, RenderJob& j) {
+                        s.camera.march = March::Double;
+                        s.traversal = Traversal::Robust;
+                        j.sampler = SamplerKind::Independent;
+                    });
+    return std::move(cases).result();
+}
+
+}  // namespace
+
+const std::vector<std::pair<std::string, ChartAxis>>& chart_axes() {
+    static const std::vector<std::pair<std::string, ChartAxis>> axes{
+        {"camera", ChartAxis::Camera},      {"chroma", ChartAxis::Chroma},
+        {"spectral", ChartAxis::Spectral},  {"iris", ChartAxis::Iris},
+        {"sampler", ChartAxis::Sampler},    {"lights", ChartAxis::Lights},
+        {"precision", ChartAxis::Precision}};
+    return axes;
+}
+
+std::string word_of(ChartAxis axis) {
+    for (const auto& [word, one] : chart_axes())
+        if (one == axis) return word;
+    return "peers";
+}
+
+std::vector<ChartCase> chart_cases(const std::vector<ChartAxis>& axes, const ChartSubject& subject,
+                                   const OpenSession& open) {
+    const Found found = look(subject.request, open);
+    std::vector<ChartCase> cases;
+    for (const ChartAxis axis : axes) {
+        const bool needs_lens = axis == ChartAxis::Camera || axis == ChartAxis::Chroma ||
+                                axis == ChartAxis::Iris || axis == ChartAxis::Precision;
+        if (needs_lens && found.report.orthographic)
+            throw ArgumentError(subject.request.scene.string(), "",
+                                fmt::format("axis {} needs a lens, and the camera is orthographic: "
+                                            "give --camera or --look-at",
+                                            word_of(axis)));
+        switch (axis) {
+            case ChartAxis::Peers:
+                break;
+            case ChartAxis::Camera:
+                cases.push_back(camera_case(found, subject.job, open));
+                break;
+            case ChartAxis::Chroma:
+                cases.push_back(chroma_case(found, subject.job));
+                break;
+            case ChartAxis::Spectral:
+                cases.push_back(spectral_case(found, subject.job));
+                break;
+            case ChartAxis::Iris:
+                for (ChartCase& one : iris_cases(found, subject)) cases.push_back(std::move(one));
+                break;
+            case ChartAxis::Sampler:
+                cases.push_back(sampler_case(found, subject.job));
+                break;
+            case ChartAxis::Lights:
+                cases.push_back(lights_case(found, subject.job));
+                break;
+            case ChartAxis::Precision:
+                cases.push_back(precision_case(found, subject.job, open));
+                break;
+        }
+    }
+    return cases;
+}
+
+}  // namespace petzval

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a chart sets against each other: the methods of each axis, as variations of one request, and
+// the one that makes their reference.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/setup/render_setup.h"
+#include "integrator/render.h"
+
+namespace petzval {
+
+/// Peers: other programs, which are not measured from in here.
+enum class ChartAxis : uint8_t {
+    Camera,
+    Chroma,
+    Spectral,
+    Iris,
+    Sampler,
+    Lights,
+    Precision,
+    Peers
+};
+
+/// Every axis with its word, in the order of a report.
+[[nodiscard]] const std::vector<std::pair<std::string, ChartAxis>>& chart_axes();
+[[nodiscard]] std::string word_of(ChartAxis);
+
+struct ChartMethod {
+    std::string name;
+    SceneRequest scene;
+    RenderJob job;
+};
+
+/// Methods that are held against one reference: an axis, or of the iris one shape.
+struct ChartCase {
+    ChartAxis axis;
+    std::string name;   ///< of its files: "sampler", "iris-star"
+    std::string title;  ///< one line
+    std::vector<ChartMethod> methods;
+    ChartMethod reference;             ///< its name says how it differs from the methods
+    std::vector<std::string> remarks;  ///< what was chosen for the user or left out, and why
+    double weight = 1;                 ///< share of the time against other cases
+};
+
+/// The lens of the axes that need one, where the request has none.
+inline constexpr const char* kChartLens = "double-gauss-100mm-f2";
+
+struct ChartSubject {
+    SceneRequest request;
+    RenderJob job;
+    std::filesystem::path folder;  ///< where shapes of irises are written
+};
+
+/// Makes a session of a request: open_session with what it shares and whom it tells.
+using OpenSession = std::function<Session(const SceneRequest&)>;
+
+/// Opens the scene, to see what it allows. A case without methods
+/// only has remarks. Throws InputError for faults of the scene, ArgumentError where an axis that
+/// needs a perspective camera gets none.
+[[nodiscard]] std::vector<ChartCase> chart_cases(const std::vector<ChartAxis>&, const ChartSubject&,
+                                                 const OpenSession&);
+
+}  // namespace petzval

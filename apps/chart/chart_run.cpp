@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/chart/chart_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "apps/setup/stats_file.h"
+#include "io/image/difference.h"
+#include "io/image/flip.h"
+
+namespace petzval {
+namespace {
+
+constexpr double kReferenceShare = 0.4;  ///< at most; counts that grow in steps use 0.25 to 0.4
+constexpr double kMeasuringShare = 0.9;  ///< the rest is for plots and pictures
+
+class Clock {
+  public:
+    [[nodiscard]] double elapsed_s() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+  private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+struct Workplace {
+    const ChartFrame& frame;
+    TbbExecutor& executor;
+    RenderMonitor& monitor;
+};
+
+/// One method's renders of several seeds, all at the same number of samples.
+class Track {
+  public:
+    Track(const ChartMethod& method, Session session, const Workplace& at, uint32_t first_seed,
+          uint32_t seeds)
+        : job_(method.job), session_(std::move(session)), at_(at), first_seed_(first_seed) {
+        job_.observer = session_.observer;
+        PathOptions options;
+        options.backdrop = session_.backdrop;
+        tracer_.emplace(*session_.scene, *session_.bvh, *session_.lights, options);
+        for (uint32_t i = 0; i < seeds; ++i) films_.push_back(new_film());
+        cpu_s_.resize(seeds, 0.);
+    }
+
+    /// Continues one seed's render; false where it was stopped.
+    [[nodiscard]] bool advance(uint32_t seed, uint32_t end_sample) {
+        return render_into(films_[seed], seed, samples_, end_sample, cpu_s_[seed]);
+    }
+    /// After all seeds have been advanced there.
+    void reached(uint32_t samples) { samples_ = samples; }
+    /// One sample of each pixel that counts for nothing: it fills caches and tells the time.
+    [[nodiscard]] bool warm_up() {
+        Film scratch = new_film();
+        double ignored_s = 0;
+        return render_into(scratch, 0, 0, 1, ignored_s);
+    }
+
+    [[nodiscard]] uint32_t samples() const { return samples_; }
+    [[nodiscard]] uint32_t seed_count() const { return static_cast<uint32_t>(films_.size()); }
+    [[nodiscard]] uint32_t seed(uint32_t i) const { return first_seed_ + i; }
+    [[nodiscard]] double cpu_s(uint32_t i) const { return cpu_s_[i]; }
+    [[nodiscard]] Picture picture(uint32_t i) const { return rgb_picture(films_[i]); }
+
+    double spent_s = 0, last_s = 0;  ///< wall time of all turns, and of the last level
+    [[nodiscard]] double next_s() const { return 2.1 * last_s; }
+
+  private:
+    [[nodiscard]] Film new_film() const {
+        return {at_.frame.size, at_.frame.crop, {}, session_.observer.bins()};
+    }
+    bool render_into(Film& film, uint32_t seed, uint32_t first, uint32_t end, double& cpu_s) {
+        RenderJob job = job_;
+        job.seed = first_seed_ + seed;
+        job.first_sample = first;
+        job.end_sample = end;
+        const double start_s = process_cpu_s();
+        const RenderResult result =
+            render(*tracer_, *session_.camera, job, film, at_.executor, at_.monitor);
+        cpu_s += process_cpu_s() - start_s;
+        return !result.stopped;
+    }
+
+    RenderJob job_;
+    Session session_;
+    const Workplace& at_;
+    uint32_t first_seed_, samples_ = 0;
+    std::optional<PathTracer<>> tracer_;
+    std::vector<Film> films_;
+    std::vector<double> cpu_s_;
+};
+
+double relative_mse(const Picture& a, const Picture& b) {
+    return compare(a, b).front().relative_mse;
+}
+
+Picture mean_of(const std::vector<Picture>& parts) {
+    Picture mean = parts.front();
+    for (size_t i = 0; i < mean.pixels.size(); ++i) {
+        double sum = 0;
+        for (const Picture& part : parts) sum += double(part.pixels[i]);
+        mean.pixels[i] = static_cast<float>(sum / static_cast<double>(parts.size()));
+    }
+    return mean;
+}
+
+/// Mean of the variance of the parts' mean, over what relative_mse() divides by.
+double relative_variance(const std::vector<Picture>& parts, const Picture& mean) {
+    const auto n = static_cast<double>(parts.size());
+    double sum = 0;
+    for (size_t i = 0; i < mean.pixels.size(); ++i) {
+        const double m = double(mean.pixels[i]);
+        double squares = 0;
+        for (const Picture& part : parts) squares += std::pow(double(part.pixels[i]) - m, 2);
+        sum += squares / (n - 1) / n / (m * m + kRelativeMseEpsilon);
+    }
+    return sum / static_cast<double>(mean.pixels.size());
+}
+
+/// once_s: what a first look at everything will take.
+void require_time(double once_s, double budget_s, const char* what) {
+    if (once_s <= budget_s) return;
+    throw TooSlow("--budget", "",
+                  fmt::format("is too small: the first samples of {} take {:.0f} s, and "
+                              "{:.0f} s are there for them; give more time or a smaller "
+                              "--size",
+                              what, once_s, std::max(budget_s, 0.)));
+}
+
+std::optional<ChartReference> render_reference(const ChartMethod& method, Session session,
+                                               const Workplace& at, double budget_s) {
+    const Clock clock;
+    Track track(method, std::move(session), at, kFirstReferenceSeed, kReferenceParts);
+    if (!track.warm_up()) return std::nullopt;
+    // A film with scrambles is whole after one sample of each.
+    const uint32_t first = std::max(2u, method.job.scrambles);
+    require_time(clock.elapsed_s() * (1 + first * kReferenceParts), budget_s, "the reference");
+    for (uint32_t end = first; end <= 1u << 20;) {
+        const Clock level;
+        for (uint32_t part = 0; part < kReferenceParts; ++part)
+            if (!track.advance(part, end)) return std::nullopt;
+        track.last_s = level.elapsed_s() * end / (end - track.samples());
+        track.reached(end);
+        const double left_s = budget_s - clock.elapsed_s();
+        if (track.last_s <= left_s)
+            end *= 2;
+        else if (track.last_s / 2 <= left_s)
+            end += end / 2;
+        else
+            break;
+    }
+    std::vector<Picture> parts;
+    double cpu_s = 0;
+    for (uint32_t i = 0; i < kReferenceParts; ++i) {
+        parts.push_back(track.picture(i));
+        cpu_s += track.cpu_s(i);
+    }
+    ChartReference reference = reference_of(parts, at.frame.exposure_ev);
+    reference.samples = track.samples();
+    reference.cpu_s = cpu_s;
+    return reference;
+}
+
+/// The methods of one case on their way.
+class Race {
+  public:
+    Race(const ChartCase& of, const Workplace& at, const ChartReference& reference,
+         const OpenSession& open)
+        : at_(at), reference_(reference), flip_(reference.picture, at.frame.exposure_ev) {
+        for (const ChartMethod& method : of.methods) {
+            tracks_.emplace_back(method, open(method.scene), at, 0, at.frame.seeds);
+            methods_.emplace_back().name = method.name;
+        }
+        pictures_.resize(tracks_.size());
+    }
+
+    /// False where it was stopped.
+    [[nodiscard]] bool run(double budget_s) {
+        const Clock clock;
+        for (Track& track : tracks_)
+            if (!track.warm_up()) return false;
+        require_time(clock.elapsed_s() * (1 + at_.frame.seeds), budget_s, "all methods");
+        const double share_s = budget_s / static_cast<double>(tracks_.size());
+        for (;;) {
+            const auto next = chosen(share_s, budget_s - clock.elapsed_s());
+            if (next.empty()) return true;
+            if (!level(next)) return false;
+        }
+    }
+
+    [[nodiscard]] std::vector<MeasuredMethod> result(std::optional<double>& equal_cpu_s) && {
+        double shared_s = INFINITY;
+        for (const MeasuredMethod& m : methods_)
+            shared_s = std::min(shared_s, m.points.back().cpu_s().mean);
+        for (size_t i = 0; i < methods_.size(); ++i) {
+            MeasuredMethod& m = methods_[i];
+            const auto off = [&](const ChartPoint& p) {
+                return std::fabs(std::log(std::max(p.cpu_s().mean, 1e-9) / shared_s));
+            };
+            const auto nearest =
+                std::min_element(m.points.begin(), m.points.end(),
+                                 [&](const auto& a, const auto& b) { return off(a) < off(b); });
+            m.shown = static_cast<size_t>(nearest - m.points.begin());
+            m.picture = std::move(pictures_[i][m.shown]);
+            m.flip_map = flip_.map(m.picture);
+        }
+        equal_cpu_s = shared_s;
+        return std::move(methods_);
+    }
+
+  private:
+    /// Who goes on: all whose next level fits into their share of the time; when there is none any
+    /// more, those that fit into what is left, the quickest first.
+    [[nodiscard]] std::vector<size_t> chosen(double share_s, double left_s) const {
+        std::vector<size_t> order;
+        for (size_t i = 0; i < tracks_.size(); ++i)
+            if (tracks_[i].samples() < 1u << 20) order.push_back(i);
+        std::sort(order.begin(), order.end(),
+                  [&](size_t a, size_t b) { return tracks_[a].next_s() < tracks_[b].next_s(); });
+        const bool any_in_share = std::any_of(order.begin(), order.end(), [&](size_t i) {
+            return tracks_[i].spent_s + tracks_[i].next_s() <= share_s;
+        });
+        std::vector<size_t> next;
+        for (const size_t i : order) {
+            const Track& track = tracks_[i];
+            if (any_in_share && track.spent_s + track.next_s() > share_s) continue;
+            if (track.next_s() > left_s) break;
+            left_s -= track.next_s();
+            next.push_back(i);
+        }
+        return next;
+    }
+
+    /// Doubles the samples of those, seed by seed in turn, as the machine's speed drifts.
+    [[nodiscard]] bool level(const std::vector<size_t>& next) {
+        for (const size_t i : next) tracks_[i].last_s = 0;
+        for (uint32_t seed = 0; seed < at_.frame.seeds; ++seed)
+            for (size_t k = 0; k < next.size(); ++k) {
+                Track& track = tracks_[next[(k + seed) % next.size()]];
+                const Clock turn;
+                if (!track.advance(seed, doubled(track))) return false;
+                track.last_s += turn.elapsed_s();
+            }
+        for (const size_t i : next) {
+            Track& track = tracks_[i];
+            const Clock looking;
+            track.reached(doubled(track));
+            ChartPoint point{track.samples(), {}};
+            for (uint32_t seed = 0; seed < at_.frame.seeds; ++seed) {
+                Picture picture = track.picture(seed);
+                point.seeds.push_back({track.seed(seed), track.cpu_s(seed),
+                                       relative_mse(picture, reference_.picture),
+                                       flip_.mean(picture)});
+                if (seed == 0) pictures_[i].push_back(std::move(picture));
+            }
+            methods_[i].points.push_back(std::move(point));
+            track.last_s += looking.elapsed_s();
+            track.spent_s += track.last_s;
+        }
+        return true;
+    }
+    [[nodiscard]] static uint32_t doubled(const Track& track) {
+        return std::max(1u, 2 * track.samples());
+    }
+
+    const Workplace& at_;
+    const ChartReference& reference_;
+    Flip flip_;
+    std::vector<Track> tracks_;
+    std::vector<MeasuredMethod> methods_;
+    std::vector<std::vector<Picture>> pictures_;  ///< of the first seed, at each level
+};
+
+}  // namespace
+
+bool MeasuredCase::believed(const ChartPoint& point) const {
+    return !reference.relative_mse || point.relative_mse().mean >= 2 * *reference.relative_mse;
+}
+
+Picture rgb_picture(const Film& film) {
+    const Rect crop = film.crop();
+    Picture picture;
+    picture.width = crop.width();
+    picture.height = crop.height();
+    picture.x = crop.x0;
+    picture.y = crop.y0;
+    picture.full_width = film.full_size().x;
+    picture.full_height = film.full_size().y;
+    picture.channels = {"R", "G", "B"};
+    picture.pixels.reserve(static_cast<size_t>(3 * picture.width) * picture.height);
+    for (int y = crop.y0; y < crop.y1; ++y)
+        for (int x = crop.x0; x < crop.x1; ++x) {
+            const V4f c = film.colour(x, y);
+            picture.pixels.insert(picture.pixels.end(), {c.x, c.y, c.z});
+        }
+    return picture;
+}
+
+ChartReference reference_of(const std::vector<Picture>& parts, float exposure_ev) {
+    ChartReference reference;
+    reference.parts = static_cast<uint32_t>(parts.size());
+    reference.picture = mean_of(parts);
+    reference.relative_mse = relative_variance(parts, reference.picture);
+    const auto middle = parts.begin() + static_cast<long>(parts.size() / 2);
+    reference.flip =
+        Flip(mean_of({parts.begin(), middle}), exposure_ev).mean(mean_of({middle, parts.end()}));
+    return reference;
+}
+
+Picture read_reference(const std::filesystem::path& path, V2i size, Rect crop) {
+    const Picture read = read_picture(path);
+    Picture picture = rgb_picture(Film(size, crop, {}));
+    const std::array<int, 3> from{channel_index(read, "R"), channel_index(read, "G"),
+                                  channel_index(read, "B")};
+    if (*std::min_element(from.begin(), from.end()) < 0)
+        throw InputError(path.string(), "", "has no channels R, G and B; give a rendered EXR");
+    if (read.width != picture.width || read.height != picture.height || read.x != picture.x ||
+        read.y != picture.y || read.full_width != size.x || read.full_height != size.y)
+        throw InputError(
+            path.string(), "",
+            fmt::format("has {}x{} pixels from {},{} of {}x{}, and the chart {}x{} "
+                        "from {},{} of {}x{}; give the same --size and --crop",
+                        read.width, read.height, read.x, read.y, read.full_width, read.full_height,
+                        picture.width, picture.height, picture.x, picture.y, size.x, size.y));
+    for (size_t i = 0; i < picture.pixels.size() / 3; ++i)
+        for (size_t c = 0; c < 3; ++c)
+            picture.pixels[3 * i + c] =
+                read.pixels[i * read.channels.size() + static_cast<size_t>(from[c])];
+    return picture;
+}
+
+std::optional<MeasuredCase> measure(const ChartCase& of, const ChartFrame& frame, double budget_s,
+                                    TbbExecutor& executor, RenderMonitor& monitor,
+                                    const OpenSession& open) {
+    const Clock clock;
+    MeasuredCase out;
+    out.of = of;
+    if (of.methods.empty()) return out;
+    require_time(0, budget_s, "this axis");
+    const Workplace at{frame, executor, monitor};
+    const double measuring_s = kMeasuringShare * budget_s;
+    if (frame.reference) {
+        out.reference.picture = *frame.reference;
+    } else {
+        auto reference = render_reference(of.reference, open(of.reference.scene), at,
+                                          kReferenceShare * budget_s);
+        if (!reference) return std::nullopt;
+        out.reference = *std::move(reference);
+    }
+    Race race(out.of, at, out.reference, open);
+    if (!race.run(measuring_s - clock.elapsed_s())) return std::nullopt;
+    out.methods = std::move(race).result(out.equal_cpu_s);
+    out.wall_s = clock.elapsed_s();
+    return out;
+}
+
+}  // namespace petzval

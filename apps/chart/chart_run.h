@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// Measures methods against a reference: cost and error over growing numbers of samples.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/chart/chart_methods.h"
+#include "apps/chart/chart_points.h"
+#include "integrator/executor.h"
+#include "io/base/error.h"
+#include "io/image/picture.h"
+
+namespace petzval {
+
+inline constexpr uint32_t kChartSeeds = 5;        ///< at least: for an interval of confidence
+inline constexpr double kLeastChartBudget_s = 4;  ///< for each case of weight 1
+inline constexpr uint32_t kReferenceParts = 4;    ///< independent renders
+inline constexpr uint32_t kFirstReferenceSeed = 1'000'000;
+
+/// The budget is too small for a first look at everything.
+class TooSlow : public ArgumentError {
+  public:
+    using ArgumentError::ArgumentError;
+};
+
+/// What is the same for all cases of a chart.
+struct ChartFrame {
+    V2i size{192, 108};
+    Rect crop;
+    uint32_t seeds = kChartSeeds;
+    float exposure_ev = 0;  ///< of pictures, and of what FLIP compares
+    /// In place of references that are rendered; R, G and B of the crop.
+    std::optional<Picture> reference;
+    std::string reference_name;
+};
+
+struct ChartReference {
+    Picture picture;
+    uint32_t parts = 0, samples = 0;  ///< of each part; none for a file
+    double cpu_s = 0;
+    /// Of the picture itself: relative MSE from the variance of its parts, and FLIP between its two
+    /// halves, which is twice as noisy in amplitude and so a bound. Unknown for a file.
+    std::optional<double> relative_mse, flip;
+};
+
+struct MeasuredMethod {
+    std::string name;
+    std::vector<ChartPoint> points;
+    size_t shown = 0;  ///< the point of the pictures
+    Picture picture;   ///< of the first seed there
+    std::vector<float> flip_map;
+};
+
+struct MeasuredCase {
+    ChartCase of;
+    ChartReference reference;
+    std::vector<MeasuredMethod> methods;
+    std::optional<double> equal_cpu_s;  ///< about what each method's picture took
+    double wall_s = 0;
+
+    /// Whether a measured error says something about the method: at least twice the reference's,
+    /// as what is measured is the sum of both.
+    [[nodiscard]] bool believed(const ChartPoint&) const;
+};
+
+/// A film as a plain picture of R, G and B.
+[[nodiscard]] Picture rgb_picture(const Film&);
+/// A reference from independent renders, two or more, with its own error from their spread.
+[[nodiscard]] ChartReference reference_of(const std::vector<Picture>& parts, float exposure_ev);
+/// A reference from a file: R, G and B of the crop. Throws InputError where it has not this frame.
+[[nodiscard]] Picture read_reference(const std::filesystem::path&, V2i size, Rect crop);
+
+/// Renders the reference in about a third of the time, then all methods, turn by turn, at 1, 2, 4,
+/// ... samples, as long as the next number fits: a method's renders with one seed are one render
+/// that is looked at on its way. Ends within the budget but for what one sample of each takes.
+/// Nothing where the monitor said stop. Throws what OpenSession does, and TooSlow.
+[[nodiscard]] std::optional<MeasuredCase> measure(const ChartCase&, const ChartFrame&,
+                                                  double budget_s, TbbExecutor&, RenderMonitor&,
+                                                  const OpenSession&);
+
+}  // namespace petzval

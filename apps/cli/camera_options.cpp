@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/camera_options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "apps/cli/choice.h"
+#include "apps/cli/parse.h"
+#include "apps/setup/option_names.h"
+
+namespace petzval {
+namespace {
+
+// Bounds that keep every product of two lengths a float; no real lens or place comes near.
+constexpr double kLeast = 1e-6, kMost = 1e6;
+constexpr float kFarthest_m = 1e12f, kNearest_m = 1e-12f;
+
+void add_place_options(CLI::App& app, CameraOptions& o) {
+    CameraRequest& r = o.request;
+    const auto length = number_between(kLeast, kMost);
+    const auto add = [&](const char* name, auto& value, const char* help) {
+        return app.add_option(name, value, help)->group("Camera");
+    };
+    add("--camera", r.name, "camera of the file, by name or index");
+    add("--look-at", o.look_at, "ex,ey,ez,tx,ty,tz: eye and target in metres");
+    add("--fov", r.fov_deg, "vertical angle of view in degrees")
+        ->check(number_between(kSmallestFov_deg, kLargestFov_deg));
+    add("--sensor", o.sensor,
+        "WxH in mm, cropped to the picture's aspect (default 36x24, or what a lens covers of it)");
+    add("--focus", o.focus, "sharp plane: metres (1.5 or 1.5m), the pixel x,y, or auto");
+    auto* fstop = add("--fstop", r.fstop, "f-number of the lens: its iris")->check(length);
+    add("--lens-radius", r.lens_radius_m, "of a thin lens, in metres")
+        ->check(length)
+        ->excludes(fstop);
+    add("--focal-length", r.focal_length_mm,
+        "of a thin lens, in mm; without --fov it sets the angle of view too")
+        ->check(length);
+    add("--film-distance", r.film_distance_mm,
+        "from a thin lens, in mm: gives --focus, or with it the focal length")
+        ->check(length);
+}
+
+void add_lens_options(CLI::App& app, CameraOptions& o) {
+    CameraRequest& r = o.request;
+    const auto group = [](CLI::Option* option) { return option->group("Lens"); };
+    group(app.add_option("--lens", r.lens,
+                         "pinhole, thin, singlet:GLASS[,BENDING], singlet:GLASS,R1_MM,R2_MM, a "
+                         "lens that ships (petzval lens list) or FILE.json, .dat, .zmx"));
+    group(app.add_option("--glasses", r.glasses,
+                         "catalogue of glasses, .agf, that goes before those that ship; may be "
+                         "given more than once"))
+        ->allow_extra_args(false);
+    group(add_choice<FocusBy>(app, "--focus-by", r.focus_by, words_of(FocusBy()),
+                              "paraxial (default): rays near the axis; traced: the smallest spot "
+                              "on the axis through the iris that is set"));
+    group(add_choice<Fit>(app, "--fit", r.fit, words_of(Fit()),
+                          "lens (default): the lens gives the angle of view; fov: it is scaled "
+                          "to that of the camera or --fov"));
+    group(app.add_option("--aperture", r.aperture,
+                         "shape of the iris: circle (default), square, triangle, rhomboid, frame, "
+                         "star:N, polygon:N[,ROTATION_DEG[,ROUNDNESS]], FILE.svg, FILE.png"));
+    group(add_choice<ApertureScale>(
+        app, "--aperture-scale", r.aperture_scale, words_of(ApertureScale()),
+        "area (default): the round stop's area; inscribed: inside the round stop"));
+    group(add_choice<IrisSampling>(
+        app, "--iris-sampling", r.iris_sampling, words_of(IrisSampling()),
+        "formula, rejection, triangles, alias (default: the best that the shape has)"));
+    Choices<std::optional<Chroma>> chromas{{"auto", std::nullopt}};
+    for (const auto& [word, chroma] : words_of(Chroma())) chromas.emplace_back(word, chroma);
+    group(add_choice<std::optional<Chroma>>(
+        app, "--chroma", r.chroma, chromas,
+        "wavelengths that leave the lens apart: auto (default: by how far they part, "
+        "docs/plan.md; in charts as tolerance), "
+        "shared, tolerance, split, single, hero"));
+    const auto share_within = [&r](float px) {
+        r.chroma_tolerance_px = px;
+        if (!r.chroma) r.chroma = Chroma::Tolerance;
+    };
+    group(app.add_option_function<float>("--chroma-tolerance", share_within,
+                                         "pixels on the film within which --chroma tolerance, "
+                                         "which this asks for, shares a ray (default 0.1)"))
+        ->check(number_between(0, 1000));
+}
+
+void add_glass_options(CLI::App& app, CameraOptions& o) {
+    CameraRequest& r = o.request;
+    const auto group = [](CLI::Option* option) { return option->group("Lens"); };
+    group(add_choice<Coating>(app, "--coating", r.coating, words_of(Coating()),
+                              "light lost at each surface: ideal (default, none), uncoated, mgf2 "
+                              "(one layer against air)"));
+    group(add_choice<March>(app, "--march", r.march, words_of(March()),
+                            "rays through the lens in float (default) or double"));
+}
+
+void add_exposure_options(CLI::App& app, CameraOptions& o) {
+    CameraRequest& r = o.request;
+    const auto group = [](CLI::Option* option) { return option->group("Lens"); };
+    auto* mode = group(add_choice<ExposureMode>(
+        app, "--exposure-mode", r.exposure, words_of(ExposureMode()),
+        "normalised (default): as bright at every f-number; photographic: by --iso, --shutter and "
+        "the iris"));
+    group(app.add_option("--iso", r.iso, "speed of the film (default 100)"))
+        ->check(number_between(1e-3, 1e9))
+        ->needs(mode);
+    group(app.add_option("--shutter", o.shutter, "seconds: 0.01 or 1/100 (default)"))->needs(mode);
+}
+
+std::array<V3f, 2> parse_look_at(const std::string& text) {
+    const auto v = parse_numbers("--look-at", text, 6);
+    for (const float x : v)
+        if (std::fabs(x) > kFarthest_m)
+            throw CLI::ValidationError("--look-at", fmt::format("{:g} m is too far away", x));
+    const std::array<V3f, 2> aim{V3f(v[0], v[1], v[2]), V3f(v[3], v[4], v[5])};
+    if ((aim[0] - aim[1]).length() < kNearest_m)
+        throw CLI::ValidationError("--look-at", "eye and target are the same point");
+    return aim;
+}
+
+}  // namespace
+
+void add_camera_options(CLI::App& app, CameraOptions& o) {
+    add_place_options(app, o);
+    add_lens_options(app, o);
+    add_glass_options(app, o);
+    add_exposure_options(app, o);
+}
+
+CameraRequest resolve(CameraOptions& o, V2i frame) {
+    CameraRequest& r = o.request;
+    if (!o.look_at.empty()) {
+        r.look_at = parse_look_at(o.look_at);
+        if (r.name) throw CLI::ValidationError("--look-at", "excludes --camera");
+    }
+    if (!o.sensor.empty()) r.sensor_mm = parse_sensor("--sensor", o.sensor, kLeast, kMost);
+    if (!o.focus.empty()) r.focus = parse_focus("--focus", o.focus, frame);
+    if (!o.shutter.empty()) r.shutter_s = parse_shutter_s("--shutter", o.shutter);
+    if (r.exposure != ExposureMode::Photographic &&
+        (!o.shutter.empty() || r.iso != CameraRequest().iso))
+        throw CLI::ValidationError("--exposure-mode",
+                                   "--iso and --shutter have no effect but with photographic");
+    return r;
+}
+
+}  // namespace petzval

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/render_options.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <limits>
+#include <thread>
+
+#include "apps/cli/choice.h"
+#include "apps/cli/output_checks.h"
+#include "apps/cli/parse.h"
+
+namespace petzval {
+namespace {
+
+constexpr uint32_t kDefaultSpp = 64;
+
+constexpr double kMost = 1e6;  ///< keeps every product of two numbers a float
+
+void add_scene_options(CLI::App& app, RenderOptions& o) {
+    app.add_option("scene", o.scene.scene, "glTF scene, .gltf or .glb")->required();
+    app.add_option("--size", o.size, "WIDTHxHEIGHT in pixels (default 1280x720)");
+    app.add_option("--tolerance", o.tolerance,
+                   "error that what is chosen for you may bring: 1% (default) or 0.01");
+    app.add_option("--threads", o.threads, "default: one for each core")
+        ->check(whole_number_between(1, 1024));
+}
+
+void add_frame_options(CLI::App& app, RenderOptions& o) {
+    app.add_option("--crop", o.crop, "x,y,width,height: only these pixels of the full frame");
+    app.add_option("--spp", o.spp, "samples of each pixel (default 64)")
+        ->check(whole_number_between(1, kMostSamples));
+    app.add_option("--time", o.time,
+                   "render for this long: 60s, 10m, 1h; with --spp whichever ends first");
+    app.add_option("--seed", o.job.seed, "another seed, another noise")
+        ->check(whole_number_between(0, std::numeric_limits<uint32_t>::max()));
+}
+
+void add_sampling_options(CLI::App& app, RenderOptions& o) {
+    app.add_option("--max-depth", o.path.max_depth, "scatterings of a path (default 16)")
+        ->check(whole_number_between(0, 10000));
+    add_choice<FilterKind>(app, "--filter", o.filter,
+                           {{"box", FilterKind::Box},
+                            {"gauss", FilterKind::Gauss},
+                            {"blackman-harris", FilterKind::BlackmanHarris}},
+                           "pixel filter: box, gauss, blackman-harris (default)");
+    app.add_option("--filter-radius", o.filter_radius_px,
+                   "pixels (default: box 0.5, the others 1.5)")
+        ->check(number_between(0.01, 16.0));
+    add_choice<SamplerKind>(app, "--sampler", o.job.sampler,
+                            {{"owen", SamplerKind::Owen},
+                             {"sobol", SamplerKind::Sobol},
+                             {"independent", SamplerKind::Independent}},
+                            "owen (default), sobol, independent");
+    add_choice<LightChoiceKind>(
+        app, "--light-choice", o.scene.light_choice,
+        {{"tree", LightChoiceKind::Tree},
+         {"power", LightChoiceKind::Power},
+         {"uniform", LightChoiceKind::Uniform}},
+        "how one of many lights is chosen: tree (default; power, distance and direction), power, "
+        "uniform");
+    add_choice<Traversal>(app, "--traversal", o.scene.traversal,
+                          {{"robust", Traversal::Robust}, {"fast", Traversal::Fast}},
+                          "robust (default): watertight; fast: may leak at edges");
+}
+
+void add_output_options(CLI::App& app, RenderOptions& o) {
+    const auto add = [&](const char* name, auto& value, const char* help) {
+        return app.add_option(name, value, help)->group("Output");
+    };
+    add("-o,--output", o.outputs, "picture to write: .exr, .png, .jpg; may be given more than once")
+        ->required()
+        ->allow_extra_args(false)  // one name each, so that the scene may follow
+        ->check(complaint_about_picture_name);
+    add("--exposure", o.display.exposure_ev, "stops, for PNG and JPEG; EXR is always scene-linear")
+        ->check(number_between(-100, 100));
+    add("--view", o.display.view, "display transform of PNG and JPEG: sRGB (default), ACES, raw")
+        ->check(complaint_about_view);
+    add("--aov", o.aovs, "layers of the EXR: albedo,normal,depth,position,uv,emission,cost");
+    add("--stats", o.stats, "write counts and times to this JSON file");
+    add_choice<ProgressStyle>(app, "--progress", o.progress,
+                              {{"auto", ProgressStyle::Auto},
+                               {"bar", ProgressStyle::Bar},
+                               {"lines", ProgressStyle::Lines},
+                               {"json", ProgressStyle::Json},
+                               {"none", ProgressStyle::None}},
+                              "on stderr: auto (default), bar, lines, json, none");
+    app.add_flag("--quiet", o.quiet, "print nothing but errors");
+}
+
+void resolve_job(RenderOptions& o) {
+    if (!o.time.empty()) o.job.time_limit_s = parse_duration_s("--time", o.time);
+    o.job.end_sample = o.spp.value_or(o.job.time_limit_s ? kMostSamples : kDefaultSpp);
+    if (o.scene.spectral.bins) {
+        o.job.scrambles = kScrambles;
+        if (o.job.end_sample < kScrambles)
+            throw CLI::ValidationError(
+                "--spp", fmt::format("the standard errors of --bins need at least {}", kScrambles));
+    }
+    const float usual_radius_px = o.filter == FilterKind::Box ? 0.5f : 1.5f;
+    o.job.filter = Filter(o.filter, o.filter_radius_px > 0 ? o.filter_radius_px : usual_radius_px);
+    o.job.timing = o.stats.has_value();
+    if (o.threads == 0)
+        o.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+// Memory is promised before it is there, so that asking for too much would kill instead of fail.
+void require_memory(const RenderFrame& frame, const std::optional<Bins>& bins) {
+    const double pixels = static_cast<double>(frame.crop.width()) * frame.crop.height();
+    const double layers = static_cast<double>(frame.aovs.size());
+    const double spectral = bins ? 8. * bins->count + 24 + 12 * kScrambles : 0;
+    const double needed = pixels * (48 + 24 * layers + spectral);
+    const double there =
+        static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+    if (needed > there)
+        throw CLI::ValidationError(
+            "--size", fmt::format("needs {:.1f} GiB of memory, this machine has {:.1f}",
+                                  needed * 0x1p-30, there * 0x1p-30));
+}
+
+}  // namespace
+
+void add_light_options(CLI::App& app, SceneRequest& s, std::string& background) {
+    const auto add = [&](const char* name, auto& value, const char* help) {
+        return app.add_option(name, value, help)->group("Light");
+    };
+    auto* env = add("--env", s.environment, "equirectangular environment picture, .hdr or .exr");
+    add("--env-rotate", s.environment_rotate_deg, "degrees about +y, counter-clockwise from above")
+        ->check(number_between(-kMost, kMost))
+        ->needs(env);
+    add("--env-strength", s.environment_strength, "factor on the environment")
+        ->check(number_between(0, kMost))
+        ->needs(env);
+    add("--background", background,
+        "R,G,B in nits: a uniform environment; with --env only what the camera sees behind");
+}
+
+void resolve_background(const std::string& text, SceneRequest& scene) {
+    if (text.empty()) return;
+    const auto v = parse_numbers("--background", text, 3);
+    if (*std::min_element(v.begin(), v.end()) < 0)
+        throw CLI::ValidationError("--background", "is negative");
+    scene.background = Rgb(v[0], v[1], v[2]);
+}
+
+void add_plan_options(CLI::App& app, RenderOptions& o) {
+    add_scene_options(app, o);
+    add_sampling_options(app, o);
+    add_camera_options(app, o.camera);
+    add_light_options(app, o.scene, o.background);
+    app.add_flag("--transparent", o.path.transparent,
+                 "the sky lights the scene but is not seen: alpha 0")
+        ->group("Light");
+    add_spectral_options(app, o.spectral);
+}
+
+void add_render_options(CLI::App& app, RenderOptions& o) {
+    add_frame_options(app, o);
+    add_plan_options(app, o);
+    add_output_options(app, o);
+}
+
+RenderFrame resolve(RenderOptions& o) {
+    SceneRequest& s = o.scene;
+    s.size = parse_size("--size", o.size);
+    resolve(o.spectral);
+    s.spectral = o.spectral.request;
+    const auto is_exr = [](const auto& path) { return picture_format(path) == PictureFormat::Exr; };
+    if (s.spectral.bins && !o.outputs.empty() &&
+        std::none_of(o.outputs.begin(), o.outputs.end(), is_exr))
+        throw CLI::ValidationError("--bins", "needs an output that keeps them: -o FILE.exr");
+    s.camera = resolve(o.camera, s.size);
+    resolve_job(o);
+    resolve_background(o.background, s);
+    if (o.stats && std::find(o.outputs.begin(), o.outputs.end(), *o.stats) != o.outputs.end())
+        throw CLI::ValidationError("--stats", "would overwrite the picture");
+    RenderFrame frame{{0, 0, s.size.x, s.size.y}, {}, parse_share("--tolerance", o.tolerance)};
+    if (!o.crop.empty()) frame.crop = parse_crop("--crop", o.crop, s.size);
+    if (!o.aovs.empty()) frame.aovs = parse_aovs("--aov", o.aovs);
+    require_memory(frame, s.spectral.bins);
+    return frame;
+}
+
+}  // namespace petzval

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// The options of petzval render.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/cli/camera_options.h"
+#include "apps/cli/progress.h"
+#include "apps/cli/spectral_options.h"
+#include "apps/setup/render_setup.h"
+#include "core/film/film.h"
+#include "integrator/path.h"
+#include "integrator/render.h"
+#include "io/image/output.h"
+
+namespace CLI {
+class App;
+}
+
+namespace petzval {
+
+/// Samples of a pixel that nobody reaches: what --time alone asks for.
+inline constexpr uint32_t kMostSamples = 1u << 30;
+
+/// As given; the texts become values in resolve().
+struct RenderOptions {
+    SceneRequest scene;
+    SpectralOptions spectral;
+    CameraOptions camera;
+    std::vector<std::filesystem::path> outputs;
+    std::optional<std::filesystem::path> stats;
+    std::string size = "1280x720", crop, time, background, aovs, tolerance = "1%";
+    std::optional<uint32_t> spp;
+    int threads = 0;  ///< 0: one for each core
+    RenderJob job;
+    PathOptions path;
+    FilterKind filter = FilterKind::BlackmanHarris;
+    float filter_radius_px = 0;
+    DisplayOptions display;
+    ProgressStyle progress = ProgressStyle::Auto;
+    bool quiet = false;
+};
+
+/// What the texts of RenderOptions say that has no place elsewhere.
+struct RenderFrame {
+    Rect crop;
+    std::vector<Aov> aovs;
+    double tolerance = 0;
+};
+
+/// Declares the options; they write to the struct, which must outlive the parsing.
+void add_render_options(CLI::App&, RenderOptions&);
+
+/// The same for petzval plan: those that a prediction depends on.
+void add_plan_options(CLI::App&, RenderOptions&);
+
+/// Declares the options of a scene's light; they write to the arguments, which must outlive the
+/// parsing. The text becomes a value in resolve_background().
+void add_light_options(CLI::App&, SceneRequest&, std::string& background);
+/// Nothing for an empty text. Throws CLI::ValidationError.
+void resolve_background(const std::string& text, SceneRequest&);
+
+/// Reads the options that depend on each other. Throws CLI::ValidationError.
+[[nodiscard]] RenderFrame resolve(RenderOptions&);
+
+}  // namespace petzval

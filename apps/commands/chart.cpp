@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/commands/chart.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <limits>
+#include <memory>
+#include <thread>
+
+#include "apps/chart/chart.h"
+#include "apps/cli/camera_options.h"
+#include "apps/cli/console.h"
+#include "apps/cli/interrupt.h"
+#include "apps/cli/parse.h"
+#include "apps/cli/render_options.h"
+#include "apps/cli/spectral_options.h"
+#include "apps/stability/stability.h"
+
+namespace petzval {
+namespace {
+
+/// As given; the texts become values in resolve().
+struct ChartOptions {
+    ChartRequest request;
+    SpectralOptions spectral;
+    CameraOptions camera;
+    std::vector<std::string> axes;
+    std::string size = "192x108", crop, budget = "10m", background;
+    int threads = 0;
+    bool quiet = false;
+    bool stability = false;  ///< the axis that needs no scene, and is not among all
+};
+
+constexpr const char* kStability = "stability";
+
+std::string known_axes() {
+    std::string known;
+    for (const auto& [word, axis] : chart_axes()) known += word + ", ";
+    return known + "all or " + kStability;
+}
+
+void add_chart_options(CLI::App& app, ChartOptions& o) {
+    ChartRequest& r = o.request;
+    app.add_option("scene", r.subject.request.scene,
+                   "glTF scene, .gltf or .glb; --axis stability needs none");
+    app.add_option("--axis", o.axes,
+                   known_axes() +
+                       ", the map of failures, which needs no scene; default all; may be "
+                       "given more than once")
+        ->allow_extra_args(false);
+    app.add_option("-o,--output", r.subject.folder,
+                   "folder of the report; made if need be (--axis stability: default .)");
+    app.add_option("--budget", o.budget, "time for all of it: 60s, 10m (default), 1h");
+    app.add_option("--size", o.size, "WIDTHxHEIGHT in pixels (default 192x108)");
+    app.add_option("--crop", o.crop, "x,y,width,height: only these pixels of the full frame");
+    app.add_option("--reference", r.reference,
+                   "EXR of the same frame, in place of references that are rendered");
+    app.add_option("--seeds", r.frame.seeds, "renders of each method (default 5)")
+        ->check(whole_number_between(kChartSeeds, 1000));
+    app.add_option("--exposure", r.frame.exposure_ev, "stops, of pictures and of FLIP")
+        ->check(number_between(-100, 100));
+    app.add_option("--threads", o.threads, "default: one for each core")
+        ->check(whole_number_between(1, 1024));
+    app.add_flag("--quiet", o.quiet, "print nothing but errors");
+    add_camera_options(app, o.camera);
+    add_light_options(app, r.subject.request, o.background);
+    add_spectral_options(app, o.spectral);
+}
+
+std::vector<ChartAxis> parse_axes(const std::vector<std::string>& words) {
+    std::vector<ChartAxis> axes;
+    for (const auto& [word, axis] : chart_axes()) {
+        const auto asked = [&, name = word](const std::string& w) {
+            return w == name || w == "all";
+        };
+        if (words.empty() || std::any_of(words.begin(), words.end(), asked)) axes.push_back(axis);
+    }
+    for (const std::string& word : words) {
+        const auto named = [&](const auto& known) { return known.first == word; };
+        if (word != "all" && std::none_of(chart_axes().begin(), chart_axes().end(), named))
+            throw CLI::ValidationError("--axis",
+                                       fmt::format("\"{}\" is none of {}", word, known_axes()));
+    }
+    return axes;
+}
+
+void resolve(ChartOptions& o) {
+    ChartRequest& r = o.request;
+    SceneRequest& scene = r.subject.request;
+    o.stability = std::erase(o.axes, kStability) > 0;
+    if (o.stability && o.axes.empty()) return;
+    r.axes = parse_axes(o.axes);
+    if (scene.scene.empty()) throw CLI::RequiredError("scene");
+    if (r.subject.folder.empty()) throw CLI::RequiredError("--output");
+    r.budget_s = parse_duration_s("--budget", o.budget);
+    r.frame.size = scene.size = parse_size("--size", o.size);
+    r.frame.crop = {0, 0, scene.size.x, scene.size.y};
+    if (!o.crop.empty()) r.frame.crop = parse_crop("--crop", o.crop, scene.size);
+    if (!o.spectral.bins.empty())
+        throw CLI::ValidationError("--bins", "is for render; a chart's axis spectral has its own");
+    scene.spectral = o.spectral.request;
+    scene.camera = resolve(o.camera, scene.size);
+    resolve_background(o.background, scene);
+    if (o.threads == 0)
+        o.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+void print_case(const MeasuredCase& of) {
+    fmt::print("{}: {}\n", of.of.name, of.of.title);
+    for (const std::string& remark : of.of.remarks) fmt::print("  {}\n", remark);
+    if (of.reference.relative_mse)
+        fmt::print("  reference: {}, {} x {} samples, relative MSE {:.2g}\n", of.of.reference.name,
+                   of.reference.parts, of.reference.samples, *of.reference.relative_mse);
+    for (const EfficiencyRow& row : efficiencies(of))
+        fmt::print(
+            "  {:<20} {:>6} samples {:>8.3g} CPU s  relative MSE {:<8.3g} FLIP {:<6.3g} "
+            "efficiency {:.3g}/s{}\n",
+            row.method, row.point.samples, row.point.cpu_s().mean, row.point.relative_mse().mean,
+            row.point.flip().mean, row.point.efficiency().mean,
+            row.believed ? "" : " (not believed)");
+    std::fflush(stdout);
+}
+
+void chart_stability(const ChartOptions& o) {
+    const std::filesystem::path& folder = o.request.subject.folder;
+    const auto page = write_stability(folder.empty() ? "." : folder);
+    if (!o.quiet) fmt::print("{}\n", page.string());
+}
+
+int chart_command(ChartOptions& o) {
+    RenderMonitor monitor;
+    Interrupt interrupt(monitor);
+    resolve(o);
+    if (o.stability) {
+        chart_stability(o);
+        if (o.request.axes.empty()) return 0;
+    }
+    flush_denormals();
+    TbbExecutor executor(o.threads);
+    const auto notice = [style = o.quiet ? NoticeStyle::None : NoticeStyle::Text](
+                            const std::string& text) { print_notice(style, text); };
+    interrupt.arm();
+    const ChartOutcome outcome =
+        run_chart(o.request, executor, monitor, notice, [&](const MeasuredCase& of) {
+            if (!o.quiet) print_case(of);
+        });
+    const std::string page = (o.request.subject.folder / "report.html").string();
+    if (outcome.stopped) {
+        notice(outcome.measured > 0
+                   ? fmt::format("stopped: what was measured whole is in {}", page)
+                   : "stopped: nothing was measured whole, and no report is written");
+        return 130;
+    }
+    if (!o.quiet) fmt::print("{}\n", page);
+    return 0;
+}
+
+}  // namespace
+
+void add_chart_command(CLI::App& app, int& exit_code) {
+    auto options = std::make_shared<ChartOptions>();
+    CLI::App* command = app.add_subcommand(
+        "chart", "measure ways to render a scene: time against error, as a report");
+    add_chart_options(*command, *options);
+    command->callback([options, &exit_code] { exit_code = chart_command(*options); });
+}
+
+}  // namespace petzval

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/commands/image.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <optional>
+
+#include "apps/cli/output_checks.h"
+#include "apps/cli/parse.h"
+#include "io/base/error.h"
+#include "io/image/difference.h"
+#include "io/image/output.h"
+#include "io/image/spectral_layout.h"
+#include "io/plot/plot.h"
+
+namespace petzval {
+namespace {
+
+struct DiffOptions {
+    std::string a, b;
+    std::optional<double> fail_above;
+};
+
+void print_layer(const LayerDifference& d) {
+    fmt::print("{}: RMSE {:.6g}, relative MSE {:.6g}, PSNR {:.2f} dB (peak {:.6g}), max {:.6g}",
+               d.layer, d.rmse, d.relative_mse, d.psnr_db, d.peak, d.max_abs);
+    if (d.max_abs > 0.) fmt::print(" in {} at {},{}", d.max_channel, d.max_x, d.max_y);
+    if (d.not_finite > 0) fmt::print(", {} values not finite", d.not_finite);
+    fmt::print("\n");
+}
+
+/// Throws where a layer is further from the reference than it may be.
+void require_within(double limit, const DiffOptions& o, const LayerDifference& d) {
+    if (d.not_finite > 0)
+        throw InputError(
+            o.a, "",
+            fmt::format("{}: {} values are not finite in it or in {}", d.layer, d.not_finite, o.b));
+    if (d.rmse > limit)
+        throw InputError(
+            o.a, "",
+            fmt::format("{}: RMSE {:.6g} against {} is above {:g}", d.layer, d.rmse, o.b, limit));
+}
+
+void diff_command(const DiffOptions& o) {
+    const std::vector<LayerDifference> layers = compare_files(o.a, o.b);
+    for (const LayerDifference& layer : layers) print_layer(layer);
+    std::fflush(stdout);  // the result comes before a complaint
+    if (!o.fail_above) return;
+    for (const LayerDifference& layer : layers) require_within(*o.fail_above, o, layer);
+}
+
+void add_diff(CLI::App& image) {
+    auto options = std::make_shared<DiffOptions>();
+    CLI::App* diff = image.add_subcommand("diff", "how far a picture is from a reference");
+    diff->add_option("a", options->a, "picture")->required();
+    diff->add_option("b", options->b, "reference of the same size and channels")->required();
+    diff->add_option("--fail-above", options->fail_above,
+                     "exit with 1 if the RMSE of any layer is above this")
+        ->check(CLI::NonNegativeNumber);
+    diff->footer(
+        fmt::format("relative MSE is the mean of (a - b)^2 / (b^2 + {}); the peak of PSNR "
+                    "is the largest value of b.",
+                    kRelativeMseEpsilon));
+    diff->callback([options] { diff_command(*options); });
+}
+
+void add_view(CLI::App& image) {
+    struct ViewOptions {
+        std::string in, out;
+        DisplayOptions display;
+    };
+    auto options = std::make_shared<ViewOptions>();
+    CLI::App* view = image.add_subcommand("view", "write a linear picture as PNG or JPEG");
+    view->add_option("picture", options->in, "linear picture, as .exr")->required();
+    view->add_option("-o,--output", options->out, "picture to write, .png or .jpg")
+        ->required()
+        ->check(complaint_about_display_name);
+    view->add_option("--exposure", options->display.exposure_ev, "stops of 2, default 0")
+        ->check(CLI::Range(-100.0, 100.0));
+    view->add_option("--view", options->display.view, "display transform, default sRGB")
+        ->check(complaint_about_view);
+    view->callback(
+        [options] { write_output(options->out, read_picture(options->in), options->display); });
+}
+
+struct SpectrumOptions {
+    std::string in, pixel, plot;
+};
+
+void spectrum_command(const SpectrumOptions& o) {
+    const V2i at = parse_pixel("pixel", o.pixel);
+    if (!o.plot.empty()) check_plot(o.plot);
+    const auto spectrum = spectrum_of_pixel(read_picture(o.in), o.in, at.x, at.y);
+    if (!o.plot.empty())
+        write_plot(o.plot, {.title = fmt::format("pixel {},{} of {}", at.x, at.y, o.in),
+                            .x_label = "wavelength (nm)",
+                            .y_label = "spectral radiance (W m⁻² sr⁻¹ nm⁻¹)",
+                            .series = {{spectrum, PlotStyle::Steps, ""}}});
+    for (const auto& [nm, value] : spectrum) fmt::print("{:.7g} {:.9g}\n", nm, value);
+}
+
+void add_spectrum(CLI::App& image) {
+    auto options = std::make_shared<SpectrumOptions>();
+    CLI::App* spectrum =
+        image.add_subcommand("spectrum", "print one pixel of a spectral picture: nm and value");
+    spectrum->add_option("picture", options->in, "spectral .exr, as render --bins writes")
+        ->required();
+    spectrum->add_option("pixel", options->pixel, "x,y in pixels of the full frame")->required();
+    spectrum->add_option("-o,--output", options->plot, "plot to write too, .svg or .png");
+    spectrum->callback([options] { spectrum_command(*options); });
+}
+
+}  // namespace
+
+void add_image_commands(CLI::App& app) {
+    CLI::App* image = app.add_subcommand("image", "compare and show pictures");
+    image->require_subcommand(1);
+    add_diff(*image);
+    add_view(*image);
+    add_spectrum(*image);
+}
+
+}  // namespace petzval

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/commands/lens.h"
+
+#include <algorithm>
+
+#include "apps/cli/console.h"
+#include "apps/commands/lens_request.h"
+#include "io/glass/agf.h"
+#include "io/lens/lens_file.h"
+
+namespace petzval {
+
+void add_lens_request(CLI::App& app, LensRequest& request) {
+    app.add_option("lens", request.lens, "name of a lens (see lens list), or .json, .dat, .zmx")
+        ->required();
+    app.add_option("--glasses", request.catalogs,
+                   "catalogue of glasses, .agf, that goes before those that ship; may be given "
+                   "more than once")
+        ->allow_extra_args(false);
+}
+
+std::shared_ptr<const Lens> open_lens(const LensRequest& request) {
+    std::vector<AgfCatalog> catalogs;
+    for (const std::string& file : request.catalogs) catalogs.emplace_back(file);
+    LensFile file = load_lens(request.lens, catalogs);
+    for (const std::string& warning : file.warnings) print_notice(NoticeStyle::Text, warning);
+    return std::make_shared<const Lens>(std::move(file.lens));
+}
+
+void add_lens_commands(CLI::App& app) {
+    CLI::App* lens = app.add_subcommand("lens", "an optics bench: show, check and trace lenses");
+    lens->require_subcommand(1);
+    add_lens_table_commands(*lens);
+    add_lens_trace_commands(*lens);
+    add_lens_analysis_commands(*lens);
+}
+
+}  // namespace petzval

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: Apache-2.0
+// petzval lens spot, fan, mtf, distortion, vignetting.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "apps/commands/lens_field.h"
+#include "camera/bench/analysis.h"
+#include "camera/bench/spot.h"
+#include "io/base/atomic_file.h"
+#include "io/base/csv.h"
+#include "io/base/error.h"
+#include "io/plot/plot.h"
+
+namespace petzval {
+namespace {
+
+/// What an analysis finds: a diagram, and the numbers in it.
+struct Found {
+    Plot plot;
+    std::vector<std::string> names;
+    std::vector<std::vector<double>> rows;
+};
+
+struct AnalysisOptions {
+    FieldRequest field;
+    std::string plot, csv;
+    double most_cycles = 100, image_circle_mm = 0;
+};
+
+using Analysis = std::function<Found(const AnalysisOptions&)>;
+
+constexpr double kMicrons = 1000;  // in a mm
+
+std::string title_of(const Lens& lens, const std::string& what) {
+    const Prescription& file = lens.prescription();
+    return fmt::format("{}: {}", file.name, what);
+}
+
+std::vector<BeamRay> traced(const Beam& beam, double film_mm, int side) {
+    return beam.trace(beam.grid(side), film_mm);
+}
+
+void append(std::vector<BeamRay>& all, const std::vector<BeamRay>& more) {
+    all.insert(all.end(), more.begin(), more.end());
+}
+
+[[noreturn]] void refuse_dark(const Lens& lens, double field_deg) {
+    throw ArgumentError(
+        lens.prescription().name, "",
+        fmt::format("no light of the field {:g}° reaches the film; give a smaller --field",
+                    field_deg));
+}
+
+void print_spot(double field_deg, const char* line, const SpotSize& size) {
+    // Not -0.000000.
+    const auto shown = [](double mm) { return std::fabs(mm) < 5e-7 ? 0 : mm; };
+    fmt::print("{:>10.4g} {:>6} {:>12.6f} {:>12.6f} {:>12.4f}\n", field_deg, line,
+               shown(size.centroid_mm[0]), shown(size.centroid_mm[1]), kMicrons * size.rms_mm);
+}
+
+Found spot_analysis(const AnalysisOptions& o) {
+    constexpr int side = 300, drawn_side = 28;
+    const FieldSetup setup = set_up(o.field, {0, 0.7, 1});
+    Found out;
+    out.names = {"field_deg", "nm", "x_mm", "y_mm"};
+    std::vector<PlotSeries> series;
+    for (const SpectralLine& line : kSpectralLines)
+        series.push_back({{}, PlotStyle::Dots, line.name});
+    fmt::print("film at {:.6f} mm\n{:>10} {:>6} {:>12} {:>12} {:>12}\n", setup.film_mm, "field (°)",
+               "line", "x (mm)", "y (mm)", "RMS (µm)");
+    std::vector<std::vector<std::vector<BeamRay>>> drawn;  // by field, by line
+    std::vector<SpotSize> sizes;
+    double reach_mm = 1e-6;
+    for (const double deg : setup.fields_deg) {
+        std::vector<BeamRay> all;
+        drawn.emplace_back();
+        for (const SpectralLine& line : kSpectralLines) {
+            const Beam beam = aim(setup, deg, line.nm);
+            const auto rays = traced(beam, setup.film_mm, side);
+            if (rays.empty()) refuse_dark(*setup.lens, deg);
+            print_spot(deg, line.name, spot_size(rays));
+            append(all, rays);
+            drawn.back().push_back(traced(beam, setup.film_mm, drawn_side));
+        }
+        sizes.push_back(spot_size(all));
+        print_spot(deg, "F+d+C", sizes.back());
+        for (const auto& rays : drawn.back())
+            for (const BeamRay& ray : rays)
+                for (size_t k = 0; k < 2; ++k)
+                    reach_mm =
+                        std::max(reach_mm, std::fabs(ray.film_mm[k] - sizes.back().centroid_mm[k]));
+    }
+    std::string fields;
+    for (size_t i = 0; i < drawn.size(); ++i) {
+        fields += fmt::format("{}{:.4g}°", i ? ", " : "", setup.fields_deg[i]);
+        const double aside_mm = 2.4 * reach_mm * static_cast<double>(i);
+        for (size_t line = 0; line < kSpectralLines.size(); ++line)
+            for (const BeamRay& ray : drawn[i][line]) {
+                out.rows.push_back(
+                    {setup.fields_deg[i], kSpectralLines[line].nm, ray.film_mm[0], ray.film_mm[1]});
+                series[line].points.push_back(
+                    {kMicrons * (ray.film_mm[0] - sizes[i].centroid_mm[0] + aside_mm),
+                     kMicrons * (ray.film_mm[1] - sizes[i].centroid_mm[1])});
+            }
+    }
+    out.plot = {.title = title_of(*setup.lens, "spots of the fields " + fields + ", left to right"),
+                .x_label = "x from each centroid (µm)",
+                .y_label = "y from the centroid (µm)",
+                .series = std::move(series),
+                .equal_scale = true};
+    return out;
+}
+
+Found fan_analysis(const AnalysisOptions& o) {
+    const FieldSetup setup = set_up(o.field, {0.7});
+    const Section other = setup.section == Section::X ? Section::Y : Section::X;
+    Found out;
+    out.names = {"field_deg", "nm", "tangential", "stop_radii", "dx_mm", "dy_mm"};
+    for (const double deg : setup.fields_deg) {
+        const Beam main = aim(setup, deg, kLineD_nm);
+        const Launch chief = main.chief();
+        const auto centre = main.trace({&chief, 1}, setup.film_mm, Clip::No);
+        if (centre.empty()) refuse_dark(*setup.lens, deg);
+        for (const Section along : {setup.section, other})
+            for (const SpectralLine& line : kSpectralLines) {
+                const bool tangential = along == setup.section;
+                PlotSeries series{{}, PlotStyle::Lines, {}};
+                series.label = fmt::format("{:.4g}° {} {}", deg, line.name,
+                                           tangential ? "tangential" : "sagittal");
+                const Beam beam = aim(setup, deg, line.nm);
+                for (const FanPoint& point :
+                     ray_fan(*setup.lens, beam, along, setup.film_mm, centre[0].film_mm)) {
+                    series.points.push_back(
+                        {point.stop, kMicrons * point.from_mm[along == Section::X ? 0 : 1]});
+                    out.rows.push_back({deg, line.nm, double(tangential), point.stop,
+                                        point.from_mm[0], point.from_mm[1]});
+                }
+                out.plot.series.push_back(std::move(series));
+            }
+    }
+    out.plot.title = title_of(*setup.lens, "ray fans");
+    out.plot.x_label = "where the ray crosses the stop (radii)";
+    out.plot.y_label = "from the chief ray of line d on the film (µm)";
+    return out;
+}
+
+Found mtf_analysis(const AnalysisOptions& o) {
+    constexpr int side = 100, steps = 50;
+    const FieldSetup setup = set_up(o.field, {0, 0.7, 1});
+    const Section other = setup.section == Section::X ? Section::Y : Section::X;
+    Found out;
+    out.names = {"field_deg", "cycles_per_mm", "tangential", "sagittal"};
+    for (const double deg : setup.fields_deg) {
+        std::vector<BeamRay> rays;
+        for (const SpectralLine& line : kSpectralLines)
+            append(rays, traced(aim(setup, deg, line.nm), setup.film_mm, side));
+        if (rays.empty()) refuse_dark(*setup.lens, deg);
+        PlotSeries tangential{{}, PlotStyle::Lines, fmt::format("{:.4g}° tangential", deg)};
+        PlotSeries sagittal{{}, PlotStyle::Lines, fmt::format("{:.4g}° sagittal", deg)};
+        for (int i = 0; i <= steps; ++i) {
+            const double cycles = o.most_cycles * i / steps;
+            const double t = geometric_mtf(rays, cycles, setup.section);
+            const double s = geometric_mtf(rays, cycles, other);
+            tangential.points.push_back({cycles, t});
+            sagittal.points.push_back({cycles, s});
+            out.rows.push_back({deg, cycles, t, s});
+        }
+        out.plot.series.push_back(std::move(tangential));
+        out.plot.series.push_back(std::move(sagittal));
+    }
+    out.plot.title = title_of(*setup.lens, "geometric MTF (no diffraction), F + d + C");
+    out.plot.x_label = "cycles per mm on the film";
+    out.plot.y_label = "contrast";
+    return out;
+}
+
+Found distortion_analysis(const AnalysisOptions& o) {
+    constexpr double widest_deg = 89;
+    std::vector<double> shares;
+    for (int i = 1; i <= 40; ++i) shares.push_back(i / 40.);
+    const FieldSetup setup = set_up(o.field, shares);
+    Found out;
+    out.names = {"field_deg", "height_mm", "ideal_height_mm", "distortion"};
+    PlotSeries series{{}, PlotStyle::LinesAndPoints, {}};
+    for (const double deg : setup.fields_deg) {
+        if (deg <= 0 || deg > widest_deg) continue;  // f tan(field) ends at 90
+        const auto found =
+            distortion(*setup.lens, deg, setup.film_mm, setup.distance_mm, setup.section);
+        if (!found) continue;
+        out.rows.push_back({deg, found->height_mm, found->ideal_height_mm, found->relative()});
+        series.points.push_back({deg, 100 * found->relative()});
+    }
+    if (out.rows.empty())
+        throw ArgumentError(o.field.request.lens, "",
+                            fmt::format("no field above 0° and up to {:g}° reaches the film; give "
+                                        "other ones by --field",
+                                        widest_deg));
+    out.plot = {.title = title_of(*setup.lens, "distortion at line d"),
+                .x_label = "field (degrees)",
+                .y_label = "height on the film against f tan(field) (%)",
+                .series = {std::move(series)}};
+    return out;
+}
+
+Found vignetting_analysis(const AnalysisOptions& o) {
+    constexpr int steps = 32;
+    const FieldSetup setup = set_up(o.field, {});
+    const double circle_mm =
+        o.image_circle_mm > 0 ? o.image_circle_mm : setup.lens->prescription().image_circle_mm;
+    if (!(circle_mm > 0))
+        throw ArgumentError(o.field.request.lens, "",
+                            "does not state its image circle; give --image-circle");
+    std::vector<double> heights;
+    for (int i = 0; i <= steps; ++i) heights.push_back(circle_mm / 2 * i / steps);
+    const auto light = film_irradiance(setup.lens, setup.film_mm, heights, setup.section);
+    if (!(light[0] > 0))
+        throw ArgumentError(o.field.request.lens, "", "no light reaches the middle of the film");
+    Found out;
+    out.names = {"height_mm", "irradiance", "relative"};
+    PlotSeries series{{}, PlotStyle::LinesAndPoints, {}};
+    for (size_t i = 0; i < heights.size(); ++i) {
+        out.rows.push_back({heights[i], light[i], light[i] / light[0]});
+        series.points.push_back({heights[i], 100 * light[i] / light[0]});
+    }
+    out.plot = {.title = title_of(*setup.lens, "vignetting, wide open, line d"),
+                .x_label = "height on the film (mm)",
+                .y_label = "irradiance against the middle (%)",
+                .series = {std::move(series)}};
+    return out;
+}
+
+std::shared_ptr<AnalysisOptions> add_analysis(CLI::App& lens, const char* name, const char* help,
+                                              bool with_fields, const Analysis& analyse,
+                                              const char* footer) {
+    auto options = std::make_shared<AnalysisOptions>();
+    CLI::App* command = lens.add_subcommand(name, help);
+    add_field_request(*command, options->field, with_fields);
+    command->add_option("-o,--output", options->plot, "plot to write, .svg or .png")->required();
+    command->add_option("--csv", options->csv, "the plot's numbers to write too");
+    command->footer(footer);
+    command->callback([options, analyse] {
+        check_plot(options->plot);
+        if (!options->csv.empty()) check_writable(options->csv);
+        const Found found = analyse(*options);
+        write_plot(options->plot, found.plot);
+        if (!options->csv.empty())
+            write_file_atomically(options->csv, csv_text(found.names, found.rows));
+    });
+    return options;
+}
+
+}  // namespace
+
+void add_lens_analysis_commands(CLI::App& lens) {
+    add_analysis(lens, "spot", "images of points, at the lines F, d, C", true, spot_analysis,
+                 "RMS: root of the mean square distance from the centroid, of rays that fill the "
+                 "entrance pupil evenly and pass all apertures.");
+    add_analysis(lens, "fan", "transverse aberrations across the aperture", true, fan_analysis,
+                 "Tangential: along the field; sagittal: across it.");
+    const auto mtf = add_analysis(
+        lens, "mtf", "geometric modulation transfer", true, mtf_analysis,
+        "Geometric: from rays alone, equal light of F, d and C. Diffraction, which is left out, "
+        "lowers it further. Tangential: contrast of lines that lie across the field.");
+    lens.get_subcommand("mtf")
+        ->add_option("--cycles", mtf->most_cycles, "highest frequency, cycles per mm, default 100")
+        ->check(number_between(1e-3, 1e5));
+    add_analysis(lens, "distortion", "heights on the film against f tan(field)", true,
+                 distortion_analysis,
+                 "Of the ray through the middle of the stop, line d; f is the paraxial focal "
+                 "length. With --focus the paraxial magnification takes its place.");
+    const auto vignetting =
+        add_analysis(lens, "vignetting", "irradiance over the film against its middle", false,
+                     vignetting_analysis,
+                     "Of an even scene, wide open, line d: natural and mechanical vignetting and "
+                     "the aberrations of the pupil together, by the camera that renders.");
+    lens.get_subcommand("vignetting")
+        ->add_option("--image-circle", vignetting->image_circle_mm,
+                     "its diameter in mm (default: what the lens's file states)")
+        ->check(number_between(1e-3, 1e5));
+}
+
+}  // namespace petzval

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the light of an analysis comes from, and where the film stands.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/cli/parse.h"
+#include "apps/commands/lens_request.h"
+#include "camera/bench/ray_bundle.h"
+#include "camera/lens/focus.h"
+
+namespace petzval {
+
+struct SpectralLine {
+    const char* name;
+    double nm;
+    const char* colour;
+};
+inline constexpr std::array<SpectralLine, 3> kSpectralLines{
+    {{"F", kLineF_nm, "#2060d0"}, {"d", kLineD_nm, "#d09000"}, {"C", kLineC_nm, "#c02020"}}};
+
+struct FieldRequest {
+    LensRequest request;
+    std::string fields;  ///< degrees with commas between them
+    std::string focus;   ///< metres
+    std::optional<FocusBy> focus_by;
+    std::string film_shift;  ///< mm, or best
+    std::string section = "y";
+};
+/// The lens, --focus, --focus-by, --film-shift, --section; and --field.
+void add_field_request(CLI::App&, FieldRequest&, bool with_fields = true);
+
+struct FieldSetup {
+    std::shared_ptr<const Lens> lens;  ///< in focus; as filed where the request is silent
+    std::vector<double> fields_deg;
+    double distance_mm = 0;  ///< from the lens's entrance pupil; infinite by default
+    double film_mm = 0;
+    Section section = Section::Y;
+};
+/// Opens the lens. shares: of the half field, where --field does not say. Throws
+/// CLI::ValidationError, or ArgumentError where the lens has no such thing.
+[[nodiscard]] FieldSetup set_up(const FieldRequest&, const std::vector<double>& shares);
+
+/// Throws ArgumentError where no ray of that field passes the middle of the stop.
+[[nodiscard]] Beam aim(const FieldSetup&, double field_deg, double nm);
+
+}  // namespace petzval

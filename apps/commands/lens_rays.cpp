@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// petzval lens draw, trace.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "apps/commands/lens_field.h"
+#include "apps/commands/lens_request.h"
+#include "camera/lens/traced_ray.h"
+#include "io/base/atomic_file.h"
+#include "io/lens/lens_drawing.h"
+#include "io/lens/ray_table.h"
+
+namespace petzval {
+namespace {
+
+struct DrawOptions {
+    FieldRequest field;
+    std::string out;
+    int rays = 5;
+};
+
+// From a little before the first face, or its plane, to the film or to where it ends.
+Outline path_of(const Lens& lens, const Beam& beam, Launch launch, double film_mm, double lead_mm) {
+    const size_t axis = beam.object().section == Section::X ? 0 : 1;
+    const Beam::Line line = beam.line(launch);
+    const TracedRay ray =
+        trace_ray(lens, line.origin_mm, line.direction, beam.nm(), Towards::Film, Clip::Yes);
+    const auto height = [axis](const V3d& p) { return axis == 0 ? p.x : p.y; };
+    const V3d first = ray.points.empty() ? line.origin_mm : ray.points.front();
+    const V3d start = first - line.direction * lead_mm;
+    Outline out{{start.z, height(start)}};
+    for (const V3d& p : ray.points) out.push_back({p.z, height(p)});
+    if (const auto film = ray.at_plane(film_mm)) out.push_back({film_mm, (*film)[axis]});
+    return out;
+}
+
+void draw_command(const DrawOptions& o) {
+    check_drawing(o.out);
+    const FieldSetup setup = set_up(o.field, {0, 0.7});
+    const Lens& lens = *setup.lens;
+    LensDrawing drawing{
+        .section = setup.section, .film_mm = setup.film_mm, .rays = {}, .caption = {}};
+    drawing.film_radius_mm = lens.prescription().image_circle_mm / 2;
+    const double lead_mm = 0.25 * setup.film_mm;
+    const size_t tangential = 1;
+    std::string fields;
+    for (const double deg : setup.fields_deg) {
+        fields += fmt::format("{}{:.4g}°", fields.empty() ? "" : ", ", deg);
+        for (const SpectralLine& line : kSpectralLines) {
+            const Beam beam = aim(setup, deg, line.nm);
+            for (int i = 0; i < o.rays; ++i) {
+                Launch launch = beam.chief();
+                const double least = beam.least()[tangential], most = beam.most()[tangential];
+                if (o.rays > 1) {
+                    // The box has a margin; the outermost rays should pass.
+                    const double at = 0.04 + 0.92 * i / (o.rays - 1);
+                    launch[tangential] = least + (most - least) * at;
+                }
+                drawing.rays.push_back(
+                    {path_of(lens, beam, launch, setup.film_mm, lead_mm), line.colour});
+                if (drawing.rays.back().path.size() == size_t(lens.size()) + 2)
+                    drawing.film_radius_mm = std::max(drawing.film_radius_mm,
+                                                      std::abs(drawing.rays.back().path.back()[1]));
+            }
+        }
+    }
+    const Prescription& file = lens.prescription();
+    drawing.caption = fmt::format("{}: fields {}; rays of F (blue), d (yellow), C (red)",
+                                  file.title.empty() ? file.name : file.title, fields);
+    write_drawing(o.out, lens, drawing);
+}
+
+struct TraceOptions {
+    LensRequest request;
+    std::string rays, out;
+    bool reverse = false, unclipped = false;
+};
+
+void trace_command(const TraceOptions& o) {
+    check_writable(o.out);
+    const auto lens = open_lens(o.request);
+    const Towards towards = o.reverse ? Towards::Scene : Towards::Film;
+    std::vector<TracedRay> traced;
+    for (const RayToTrace& ray : read_rays(o.rays))
+        traced.push_back(trace_ray(*lens, ray.origin_mm, ray.direction, ray.nm, towards,
+                                   o.unclipped ? Clip::No : Clip::Yes));
+    write_file_atomically(o.out, ray_table(traced, towards, lens->film_mm()));
+}
+
+}  // namespace
+
+void add_lens_trace_commands(CLI::App& lens) {
+    auto drawn = std::make_shared<DrawOptions>();
+    CLI::App* draw = lens.add_subcommand("draw", "draw a cross-section with rays");
+    add_field_request(*draw, drawn->field);
+    draw->add_option("-o,--output", drawn->out, "drawing to write, .svg")->required();
+    draw->add_option("--rays", drawn->rays, "of each field and line, default 5")
+        ->check(whole_number_between(1, 101));
+    draw->callback([drawn] { draw_command(*drawn); });
+
+    auto options = std::make_shared<TraceOptions>();
+    CLI::App* trace = lens.add_subcommand("trace", "trace the rays of a table");
+    add_lens_request(*trace, options->request);
+    trace->add_option("--rays", options->rays, "CSV with the columns x,y,z,dx,dy,dz,nm")
+        ->required();
+    trace->add_option("-o,--output", options->out, "CSV to write")->required();
+    trace->add_flag("--reverse", options->reverse, "from the film to the scene");
+    trace->add_flag("--unclipped", options->unclipped, "semi-diameters do not stop rays");
+    trace->footer(
+        "Millimetres; z = 0 at the first vertex, +z towards the film. A ray may begin "
+        "anywhere on its line. Rows come in the order of the rays: where and how each "
+        "leaves the last surface, where it meets the film, its optical path from the "
+        "origin, its status (ok, vignetted, tir, miss) and, if it was blocked, the "
+        "surface where, counted from 0.");
+    trace->callback([options] { trace_command(*options); });
+}
+
+}  // namespace petzval

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/commands/plan.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/cli/console.h"
+#include "apps/cli/render_options.h"
+#include "apps/plan/plan.h"
+#include "io/base/format.h"
+
+namespace petzval {
+namespace {
+
+struct PlanOptions {
+    RenderOptions render;
+    bool json = false;
+};
+
+// As a shell takes it for one word.
+std::string quoted(const std::string& word) {
+    constexpr std::string_view kPlain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./:,=%+@";
+    if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+    std::string out = "'";
+    for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return out + "'";
+}
+
+// The command that renders by the plan: what was given, with what the plan puts in its place.
+std::string command_of(const CLI::App& app, const Plan& plan) {
+    std::map<std::string, std::optional<std::string>> placed(plan.options.begin(),
+                                                             plan.options.end());
+    for (const char* own : {"--tolerance", "--json", "--quiet", "--help"}) placed[own] = {};
+    std::string command = "petzval render";
+    for (const CLI::Option* option : app.get_options()) {
+        const std::string name = option->get_name();
+        if (option->count() == 0 || placed.contains(name)) continue;
+        const bool flag = option->get_expected_max() == 0, positional = option->get_positional();
+        if (flag) command += " " + name;
+        for (const std::string& value : option->results())
+            if (!flag) command += (positional ? "" : " " + name) + " " + quoted(value);
+    }
+    for (const auto& [name, value] : plan.options)
+        if (value) command += " " + name + " " + quoted(*value);
+    return command + " -o out.exr";
+}
+
+std::string duration(double s) {
+    if (s < 100) return fmt::format("{:.2g} s", s);
+    return s < 6000 ? fmt::format("{:.2g} min", s / 60) : fmt::format("{:.2g} h", s / 3600);
+}
+
+void print(const Plan& plan, const std::string& command) {
+    for (const PlanLine& line : plan.lines)
+        fmt::print("{:<9} {}: {}\n", line.choice, line.chosen, line.reason);
+    fmt::print("{:<9} {}: they bring noise from {} to {}\n", "samples", plan.samples,
+               percent(plan.first_noise), percent(plan.noise));
+    fmt::print("{:<9} {}: {} by the model, {} by noise; about {} of CPU time here\n", "error",
+               percent(plan.error()), percent(plan.bias), percent(plan.noise),
+               duration(plan.cpu_s));
+    fmt::print("{}\n", command);
+}
+
+void print_json(const Plan& plan, const std::string& command) {
+    nlohmann::ordered_json out;
+    for (const PlanLine& line : plan.lines) {
+        nlohmann::ordered_json one{{"chosen", line.chosen}, {"reason", line.reason}};
+        one["predicted_error"] = line.error ? nlohmann::ordered_json(*line.error) : nullptr;
+        out[line.choice] = one;
+    }
+    out["samples"] = plan.samples;
+    out["predicted_error"] = plan.error();
+    out["predicted_bias"] = plan.bias;
+    out["predicted_noise"] = plan.noise;
+    out["predicted_cpu_s"] = plan.cpu_s;
+    out["command"] = command;
+    fmt::print("{}\n", out.dump(2));
+}
+
+void plan_command(PlanOptions& o, const CLI::App& app) {
+    RenderOptions& r = o.render;
+    const RenderFrame frame = resolve(r);
+    flush_denormals();
+    TbbExecutor executor(r.threads);
+    const Plan plan = make_plan({r.scene, r.job, r.path, frame.tolerance}, executor,
+                                [&](const std::string& text) {
+                                    if (!r.quiet) print_notice(NoticeStyle::Text, text);
+                                });
+    const std::string command = command_of(app, plan);
+    o.json ? print_json(plan, command) : print(plan, command);
+}
+
+}  // namespace
+
+void add_plan_command(CLI::App& app) {
+    auto options = std::make_shared<PlanOptions>();
+    CLI::App* command = app.add_subcommand(
+        "plan", "print the cheapest way to render a scene within a tolerance, and why");
+    add_plan_options(*command, options->render);
+    command->add_flag("--json", options->json, "print it for programs");
+    command->add_flag("--quiet", options->render.quiet, "nothing but the plan");
+    command->callback([options, command] { plan_command(*options, *command); });
+}
+
+}  // namespace petzval

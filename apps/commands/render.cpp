@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/commands/render.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "apps/cli/console.h"
+#include "apps/cli/interrupt.h"
+#include "apps/cli/render_options.h"
+#include "apps/plan/plan.h"
+#include "apps/setup/develop.h"
+#include "apps/setup/stats_file.h"
+#include "integrator/executor.h"
+
+namespace petzval {
+namespace {
+
+using Notice = std::function<void(const std::string&)>;
+
+Notice notice_to_stderr(const RenderOptions& o) {
+    NoticeStyle style = NoticeStyle::Text;
+    if (o.progress == ProgressStyle::Json) style = NoticeStyle::Json;
+    if (o.quiet) style = NoticeStyle::None;
+    return [style](const std::string& text) { print_notice(style, text); };
+}
+
+void report_bad_samples(const Film& film, const Notice& notice) {
+    const auto first = film.first_bad();
+    if (!first) return;
+    notice(
+        fmt::format("warning: {} samples were not finite and are left out; the first is sample {} "
+                    "of pixel {},{}",
+                    film.bad_count(), first->index, first->x, first->y));
+}
+
+RenderResult render_watched(const RenderOptions& o, const PathTracer<>& tracer,
+                            const Camera& camera, Film& film, TbbExecutor& executor,
+                            RenderMonitor& monitor) {
+    const uint64_t pixels = static_cast<uint64_t>(film.crop().width()) * film.crop().height();
+    const bool counted = o.job.end_sample < kMostSamples;
+    const Progress progress(o.quiet ? ProgressStyle::None : o.progress, monitor,
+                            counted ? std::optional(pixels * o.job.end_sample) : std::nullopt,
+                            o.job.time_limit_s);
+    return render(tracer, camera, o.job, film, executor, monitor);
+}
+
+int render_command(RenderOptions& o) {
+    RenderMonitor monitor;
+    Interrupt interrupt(monitor);
+    const RenderFrame frame = resolve(o);
+    for (const auto& output : o.outputs) check_output(output, o.display);
+    if (o.stats) check_writable(*o.stats);
+
+    flush_denormals();
+    TbbExecutor executor(o.threads);
+    const Notice notice = notice_to_stderr(o);
+    const Session session =
+        open_planned({o.scene, o.job, o.path, frame.tolerance}, executor, notice);
+    o.path.backdrop = session.backdrop;
+    o.job.observer = session.observer;
+    Film film(o.scene.size, frame.crop, frame.aovs, o.scene.spectral.bins);
+    const PathTracer tracer(*session.scene, *session.bvh, *session.lights, o.path);
+
+    interrupt.arm();
+    const auto start = std::chrono::steady_clock::now();
+    const double cpu_start_s = process_cpu_s();
+    const RenderResult result = render_watched(o, tracer, *session.camera, film, executor, monitor);
+    RenderCost cost;
+    cost.render_wall_s =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    cost.render_cpu_s = process_cpu_s() - cpu_start_s;
+    cost.threads = o.threads;
+
+    report_bad_samples(film, notice);
+    const PictureRows picture = develop(film, session, o.job, o.path, result.end_sample);
+    if (result.stopped) {
+        for (const auto& partial : write_partial(o.outputs, picture))
+            notice(fmt::format("stopped: what there is, is in {}", partial.string()));
+        return 130;
+    }
+    for (const auto& output : o.outputs) write_output(output, picture, o.display);
+    if (o.stats) write_stats(*o.stats, session, result, cost, film);
+    return 0;
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app, int& exit_code) {
+    auto options = std::make_shared<RenderOptions>();
+    CLI::App* command = app.add_subcommand("render", "render a glTF scene to EXR, PNG or JPEG");
+    add_render_options(*command, *options);
+    command->callback([options, &exit_code] { exit_code = render_command(*options); });
+}
+
+}  // namespace petzval

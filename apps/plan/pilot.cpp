@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/plan/pilot.h"
+
+#include <cmath>
+
+#include "apps/setup/stats_file.h"
+#include "core/sampling/sampler.h"
+#include "io/image/difference.h"
+
+namespace petzval {
+namespace {
+
+constexpr uint32_t kFirstPilotSeed = 2'000'000;
+
+PathOptions with_backdrop(PathOptions options, const Session& session) {
+    options.backdrop = session.backdrop;
+    return options;
+}
+
+// How many parts a side is cut into.
+int parts(double wanted, int side_px) {
+    return std::clamp(static_cast<int>(std::lround(wanted)), 1, side_px);
+}
+
+// A pixel of one of the cells that a side is cut into.
+int within(int cell, int cells, int side_px, uint32_t random) {
+    const int64_t first = int64_t{cell} * side_px / cells;
+    const int64_t end = int64_t{cell + 1} * side_px / cells;
+    return static_cast<int>(first + ((int64_t{random} * (end - first)) >> 32));
+}
+
+Estimate mean_of(const std::vector<double>& values) {
+    const auto n = static_cast<double>(values.size());
+    double sum = 0, squares = 0;
+    for (const double v : values) sum += v;
+    for (const double v : values) squares += (v - sum / n) * (v - sum / n);
+    return {sum / n, n > 1 ? std::sqrt(squares / (n - 1) / n) : std::fabs(sum)};
+}
+
+}  // namespace
+
+PilotModel::PilotModel(Session session, const RenderJob& job, const PathOptions& options,
+                       size_t pixels)
+    : session_(std::move(session)),
+      tracer_(*session_.scene, *session_.bvh, *session_.lights, with_backdrop(options, session_)),
+      sums_(pixels) {
+    job_.sampler = job.sampler;
+    job_.filter = job.filter;
+    job_.scrambles = job.scrambles;
+    job_.observer = session_.observer;
+}
+
+double PilotModel::rays_per_sample() const {
+    const uint64_t rays = stats_.camera_rays + stats_.bounce_rays + stats_.shadow_rays;
+    const bool glass = stats_.lens_lanes.drawn > 0;
+    return static_cast<double>(rays) / static_cast<double>(stats_.samples) + (glass ? 1 : 0);
+}
+
+Pilot::Pilot(V2i size_px, int wanted, TbbExecutor& executor, uint32_t seed)
+    : size_px_(size_px), seed_(seed), executor_(executor) {
+    const int nx = parts(std::sqrt(double(wanted) * size_px.x / size_px.y), size_px.x);
+    const int ny = parts(double(wanted) / nx, size_px.y);
+    for (int j = 0; j < ny; ++j)
+        for (int i = 0; i < nx; ++i) {
+            const uint32_t cell = hash32(seed, static_cast<uint32_t>(j * nx + i));
+            pixels_.push_back({within(i, nx, size_px.x, hash32(cell, 0)),
+                               within(j, ny, size_px.y, hash32(cell, 1))});
+        }
+}
+
+std::unique_ptr<PilotModel> Pilot::model(Session session, const RenderJob& job,
+                                         const PathOptions& options) const {
+    return std::unique_ptr<PilotModel>(
+        new PilotModel(std::move(session), job, options, pixels_.size()));
+}
+
+void Pilot::look(PilotModel& model, uint32_t samples) const {
+    std::vector<PathStats> stats(static_cast<size_t>(executor_.threads()));
+    const double start_s = process_cpu_s();
+    executor_.run(static_cast<int>(pixels_.size()), [&](int task, int worker) {
+        const auto [x, y] = pixels_[static_cast<size_t>(task)];
+        RenderJob job = model.job_;
+        for (uint32_t k = 0; k < kLooks; ++k) {
+            Film film(size_px_, {x, y, x + 1, y + 1}, {});
+            job.seed = kFirstPilotSeed + kLooks * seed_ + k;
+            for (uint32_t i = model.samples_; i < samples; ++i)
+                render_sample(model.tracer_, *model.session_.camera, job, {x, y, i}, film,
+                              stats[static_cast<size_t>(worker)]);
+            const V4f c = film.colour(x, y);
+            model.sums_[static_cast<size_t>(task)][k] +=
+                V3d(c.x, c.y, c.z) * double(film.sample_count(x, y));
+        }
+    });
+    model.cpu_s_ += process_cpu_s() - start_s;
+    model.samples_ = std::max(model.samples_, samples);
+    for (const PathStats& s : stats) model.stats_ += s;
+    model.variances_.push_back(variances_of(model));
+}
+
+std::vector<V3d> Pilot::weights(const PilotModel& scale) const {
+    std::vector<V3d> out;
+    for (const auto& sums : scale.sums_) {
+        V3d b(0.);
+        for (const V3d& sum : sums) b += sum / double(kLooks * scale.samples_);
+        out.push_back(V3d(1.) / (b * b + V3d(kRelativeMseEpsilon)) / 3.);
+    }
+    return out;
+}
+
+Estimate Pilot::square(const std::vector<PilotTerm>& terms, const PilotModel& scale) const {
+    const std::vector<V3d> weight = weights(scale);
+    std::vector<double> values;
+    for (size_t p = 0; p < pixels_.size(); ++p) {
+        V3d sum(0.), squares(0.);
+        for (size_t k = 0; k < kLooks; ++k) {
+            V3d d(0.);
+            for (const PilotTerm& term : terms)
+                d += term.model->sums_[p][k] * (term.factor / term.model->samples_);
+            sum += d;
+            squares += d * d;
+        }
+        values.push_back((sum * sum - squares).dot(weight[p]) / double(kLooks * (kLooks - 1)));
+    }
+    return mean_of(values);
+}
+
+std::vector<V3d> Pilot::variances_of(const PilotModel& model) const {
+    std::vector<V3d> out;
+    for (const auto& sums : model.sums_) {
+        V3d mean(0.), squares(0.);
+        for (const V3d& sum : sums) mean += sum / double(kLooks * model.samples_);
+        for (const V3d& sum : sums) {
+            const V3d d = sum / double(model.samples_) - mean;
+            squares += d * d;
+        }
+        out.push_back(squares / double(kLooks - 1));
+    }
+    return out;
+}
+
+std::vector<Estimate> Pilot::variances(const PilotModel& model, const PilotModel& scale) const {
+    const std::vector<V3d> weight = weights(scale);
+    std::vector<Estimate> out;
+    for (const std::vector<V3d>& turn : model.variances_) {
+        std::vector<double> values;
+        for (size_t p = 0; p < turn.size(); ++p) values.push_back(turn[p].dot(weight[p]));
+        out.push_back(mean_of(values));
+    }
+    return out;
+}
+
+}  // namespace petzval

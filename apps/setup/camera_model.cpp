@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/setup/camera_model.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+#include "io/base/error.h"
+#include "io/base/json_parse.h"
+#include "io/glass/catalogue.h"
+#include "io/glass/glass_lookup.h"
+
+namespace petzval {
+namespace {
+
+constexpr std::string_view kSinglet = "singlet:";
+
+const GltfCamera& find_camera(const std::string& wanted, const std::string& scene,
+                              const std::vector<GltfCamera>& cameras) {
+    size_t index = 0;
+    const auto [end, error] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), index);
+    for (const GltfCamera& camera : cameras)
+        if (camera.name == wanted) return camera;
+    if (error == std::errc() && end == wanted.data() + wanted.size() && index < cameras.size())
+        return cameras[index];
+    std::string known;
+    for (size_t i = 0; i < cameras.size(); ++i)
+        known += fmt::format("{}{} \"{}\"", i ? ", " : "", i, printable(cameras[i].name));
+    throw ArgumentError(
+        scene, "",
+        fmt::format("no camera \"{}\"; {}", wanted,
+                    known.empty() ? "the file has none, use --look-at" : "it has " + known));
+}
+
+// A file named in a scene lies beside it.
+std::string beside(const std::filesystem::path& scene, const std::string& name) {
+    const auto path = scene.parent_path() / name;
+    const bool is_file = path.has_extension() && std::filesystem::path(name).is_relative() &&
+                         std::filesystem::is_regular_file(path);
+    return is_file ? path.string() : name;
+}
+
+// What the user has not said, the file's camera may.
+void take_wishes(const CameraWishes& file, const std::filesystem::path& scene,
+                 CameraRequest& asked) {
+    if (!asked.lens && file.lens) asked.lens = beside(scene, *file.lens);
+    if (!asked.sensor_mm) asked.sensor_mm = file.sensor_mm;
+    if (asked.lens == "pinhole") return;
+    if (!asked.fstop && !asked.lens_radius_m) asked.fstop = file.fstop;
+    if (!asked.fstop && !asked.lens_radius_m && !asked.lens) return;
+    if (!asked.focus && file.focus_m && !asked.film_distance_mm)
+        asked.focus = FocusDistance{*file.focus_m};
+    if (!asked.aperture && file.aperture) asked.aperture = beside(scene, *file.aperture);
+}
+
+std::vector<AgfCatalog> open_catalogs(const CameraRequest& asked) {
+    std::vector<AgfCatalog> catalogs;
+    for (const auto& file : asked.glasses) catalogs.emplace_back(file);
+    return catalogs;
+}
+
+// A text with or without its maker; `refuse` makes the error of why there is none.
+Glass find_singlet_glass(const std::string& text, LensGlasses& glasses, const auto& refuse) {
+    if (auto glass = glasses.find(text)) return *std::move(glass);
+    std::vector<Glass> found = glasses.of_any_maker(text);
+    if (found.size() == 1) return std::move(found.front());
+    if (found.empty())
+        throw refuse(fmt::format("there is no glass \"{}\", near are {}", text,
+                                 fmt::join(glasses_near(text), ", ")));
+    std::vector<std::string> names;
+    for (const Glass& glass : found) names.push_back(glass.name);
+    throw refuse(fmt::format("glass \"{}\" has several makers: say which of {}", text,
+                             fmt::join(names, ", ")));
+}
+
+SingleLens parse_singlet(const std::string& text, LensGlasses& glasses) {
+    const auto refuse = [&](const std::string& why) {
+        return ArgumentError("--lens", text,
+                             why +
+                                 "; it must read singlet:GLASS[,BENDING] or "
+                                 "singlet:GLASS,R1,R2 with radii in mm (inf: flat)");
+    };
+    if (text.ends_with(',')) throw refuse("nothing follows the last comma");
+    std::istringstream words(text.substr(kSinglet.size()));
+    std::string name, word;
+    std::getline(words, name, ',');
+    std::vector<double> numbers;
+    while (std::getline(words, word, ',')) {
+        double value = 0;
+        const char* const last = word.data() + word.size();
+        const auto [end, error] = std::from_chars(word.data(), last, value);
+        if (error != std::errc() || end != last || std::isnan(value))
+            throw refuse(fmt::format("\"{}\" is no number", word));
+        numbers.push_back(value);
+    }
+    if (numbers.size() > 2) throw refuse("has too many numbers");
+    SingleLens lens;
+    lens.glass = find_singlet_glass(name, glasses, refuse);
+    if (numbers.size() == 1) {
+        if (!std::isfinite(numbers[0])) throw refuse("the bending must be finite");
+        lens.bending = numbers[0];
+    }
+    if (numbers.size() == 2) {
+        if (numbers[0] == 0 || numbers[1] == 0) throw refuse("a radius is 0");
+        lens.radii_mm = {numbers[0], numbers[1]};
+    }
+    return lens;
+}
+
+// The angle of view that a lens is scaled to.
+std::optional<float> fit_yfov_rad(const CameraRequest& asked, const GltfCamera* from) {
+    if (asked.fit != Fit::Fov) return std::nullopt;
+    if (asked.fov_deg) return *asked.fov_deg * kPi / 180.f;
+    if (from) return from->yfov_rad;
+    throw ArgumentError("--fit", "", "no camera gives an angle of view: give --fov too");
+}
+
+Optics optics_of(const CameraRequest& asked, const GltfCamera* from, float aspect) {
+    if (!asked.lens)
+        return asked.fstop || asked.lens_radius_m ? Optics(IdealLens()) : Optics(NoLens());
+    if (*asked.lens == "pinhole") return NoLens();
+    if (*asked.lens == "thin") return IdealLens();
+    const std::vector<AgfCatalog> catalogs = open_catalogs(asked);
+    LensGlasses glasses(catalogs);
+    if (asked.lens->starts_with(kSinglet)) return parse_singlet(*asked.lens, glasses);
+    return load_lens_for_film(*asked.lens, catalogs, asked.sensor_mm, aspect,
+                              fit_yfov_rad(asked, from));
+}
+
+// What only a lens of a prescription can do.
+void check_no_prescription(const CameraRequest& asked, bool has_glass) {
+    const auto refuse = [](const char* option) {
+        throw ArgumentError(option, "",
+                            "needs a lens that is traced surface by surface: give --lens NAME or "
+                            "FILE");
+    };
+    if (asked.fit == Fit::Fov) refuse("--fit");
+    if (asked.coating != Coating::Ideal) refuse("--coating");
+    if (asked.march != March::Float) refuse("--march");
+    if (asked.focus_by != FocusBy::Paraxial) refuse("--focus-by");
+    if (!asked.glasses.empty() && !has_glass) refuse("--glasses");
+}
+
+void check_pinhole(const CameraRequest& asked) {
+    const auto refuse = [](const char* option, const std::string& why) {
+        throw ArgumentError(option, "", why);
+    };
+    if (asked.fstop || asked.lens_radius_m)
+        refuse("--lens", "a pinhole has no iris: leave out --fstop and --lens-radius");
+    if (asked.focus) refuse("--focus", "a pinhole has no focus: give --fstop or --lens-radius too");
+    if (asked.aperture)
+        refuse("--aperture", "a pinhole has no iris: give --fstop, --lens-radius or --lens too");
+    if (asked.aperture_scale != ApertureScale::EqualArea || asked.iris_sampling)
+        refuse(asked.iris_sampling ? "--iris-sampling" : "--aperture-scale",
+               "a pinhole has no iris: give --fstop, --lens-radius or --lens too");
+    if (asked.film_distance_mm)
+        refuse("--film-distance", "a pinhole has no focus: give --fstop or --lens-radius too");
+    if (asked.exposure == ExposureMode::Photographic)
+        refuse("--exposure-mode",
+               "a pinhole has no iris that says how much light there is: give --fstop too");
+}
+
+void check_thin(const CameraPlan& plan) {
+    const CameraRequest& asked = plan.asked;
+    const auto* single = std::get_if<SingleLens>(&plan.optics);
+    if (!asked.fstop && !asked.lens_radius_m)
+        throw ArgumentError("--lens", *asked.lens, "needs --fstop or --lens-radius");
+    const bool focal_given = asked.focal_length_mm || (single && single->radii_mm);
+    if (single && single->radii_mm && asked.focal_length_mm)
+        throw ArgumentError("--focal-length", "", "follows from the radii of the singlet");
+    if (!asked.film_distance_mm) return;
+    if (asked.fov_deg)
+        throw ArgumentError("--fov", "", "follows from --film-distance and the sensor");
+    if (focal_given && asked.focus)
+        throw ArgumentError("--focus", "", "follows from --film-distance and the focal length");
+}
+
+void check_lens(const CameraRequest& asked) {
+    if (asked.focal_length_mm || asked.lens_radius_m || asked.film_distance_mm ||
+        (asked.fov_deg && asked.fit != Fit::Fov))
+        throw ArgumentError("--lens", *asked.lens,
+                            "gives the angle of view and the focal length: leave out --fov, "
+                            "--focal-length, --lens-radius and --film-distance, or say --fit fov");
+}
+
+}  // namespace
+
+std::string CameraPlan::dispersive_name() const {
+    if (asked.chroma == Chroma::Shared) return "";
+    if (const auto* lens = std::get_if<LoadedLens>(&optics))
+        return lens->disperses() ? lens->name() : "";
+    if (const auto* lens = std::get_if<SingleLens>(&optics))
+        return lens->glass.index(kLineF_nm) != lens->glass.index(kLineC_nm) ? *asked.lens : "";
+    return "";
+}
+
+CameraPlan plan_camera(const CameraRequest& request, const std::filesystem::path& scene,
+                       const std::vector<GltfCamera>& cameras, float aspect) {
+    CameraPlan plan;
+    plan.asked = request;
+    if (request.name)
+        plan.from = &find_camera(*request.name, scene.string(), cameras);
+    else if (!request.look_at && !cameras.empty())
+        plan.from = &cameras.front();
+    CameraRequest& asked = plan.asked;
+    if (plan.from && plan.from->orthographic) {
+        if (asked.fstop || asked.lens_radius_m || asked.fov_deg || asked.focal_length_mm ||
+            asked.focus || asked.aperture || asked.film_distance_mm || asked.sensor_mm ||
+            (asked.lens && *asked.lens != "pinhole"))
+            throw ArgumentError(scene.string(), "",
+                                fmt::format("camera \"{}\" is orthographic: it takes neither a "
+                                            "lens, its focus or sensor, nor an angle of view",
+                                            printable(plan.from->name)));
+    } else if (plan.from) {
+        take_wishes(plan.from->wishes, scene, asked);
+    }
+    try {
+        plan.optics = optics_of(asked, plan.from, aspect);
+    } catch (const ArgumentError& error) {
+        if (request.lens || !asked.lens) throw;
+        throw InputError(scene.string(),
+                         fmt::format("extras.petzval of camera \"{}\"", printable(plan.from->name)),
+                         error.what());
+    }
+    if (!std::holds_alternative<LoadedLens>(plan.optics))
+        check_no_prescription(asked, std::holds_alternative<SingleLens>(plan.optics));
+    if (std::holds_alternative<NoLens>(plan.optics))
+        check_pinhole(asked);
+    else if (std::holds_alternative<LoadedLens>(plan.optics))
+        check_lens(asked);
+    else
+        check_thin(plan);
+    return plan;
+}
+
+}  // namespace petzval

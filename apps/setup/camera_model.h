@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which rung of the ladder a camera stands on, decided before the scene is built: from the user's
+// request and what the file's camera says.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "apps/setup/camera_request.h"
+#include "apps/setup/lens_setup.h"
+#include "core/spectrum/glass.h"
+#include "io/gltf/gltf.h"
+
+namespace petzval {
+
+struct NoLens {};     ///< a pinhole
+struct IdealLens {};  ///< thin, without aberrations
+/// A thin lens of one glass with its aberrations.
+struct SingleLens {
+    Glass glass;
+    double bending = 0;
+    std::optional<std::array<double, 2>> radii_mm;  ///< else a focal length decides
+};
+using Optics = std::variant<NoLens, IdealLens, SingleLens, LoadedLens>;
+
+struct CameraPlan {
+    CameraRequest asked;               ///< the user's wishes; the file's where there are none
+    const GltfCamera* from = nullptr;  ///< absent: --look-at, or framed from the scene's bounds
+    Optics optics;
+
+    [[nodiscard]] bool has_iris() const { return !std::holds_alternative<NoLens>(optics); }
+    /// Of a lens that sends wavelengths different ways; else nothing.
+    [[nodiscard]] std::string dispersive_name() const;
+};
+
+/// scene: the file, for errors, and for paths in it. aspect: the picture's. cameras must outlive
+/// the plan. Throws InputError, and ArgumentError where what is asked for does not go together.
+[[nodiscard]] CameraPlan plan_camera(const CameraRequest&, const std::filesystem::path& scene,
+                                     const std::vector<GltfCamera>& cameras, float aspect);
+
+}  // namespace petzval

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/setup/camera_report.h"
+
+#include "apps/setup/option_names.h"
+#include "io/base/format.h"
+
+namespace petzval {
+namespace {
+
+void describe_iris(const CameraReport& c, PictureLayout& layout) {
+    auto& m = layout.metadata;
+    m.emplace_back("petzval:aperture", c.asked.aperture.value_or("circle"));
+    m.emplace_back("petzval:apertureScale", word_of(c.asked.aperture_scale));
+    if (c.asked.iris_sampling)
+        m.emplace_back("petzval:irisSampling", word_of(*c.asked.iris_sampling));
+    m.emplace_back("petzval:exposureMode", word_of(c.asked.exposure));
+    if (c.asked.exposure == ExposureMode::Photographic) {
+        m.emplace_back("petzval:iso", c.asked.iso);
+        m.emplace_back("petzval:shutter_s", c.asked.shutter_s);
+    }
+}
+
+void describe_glass(const CameraReport& c, PictureLayout& layout) {
+    auto& m = layout.metadata;
+    m.emplace_back("petzval:lens", c.lens);
+    m.emplace_back("petzval:film_mm", static_cast<float>(c.film_mm));
+    m.emplace_back("petzval:stopRadius_mm", static_cast<float>(c.stop_radius_mm));
+    m.emplace_back("petzval:focusBy", word_of(c.asked.focus_by));
+    m.emplace_back("petzval:coating", word_of(c.asked.coating));
+    m.emplace_back("petzval:march", word_of(c.asked.march));
+    m.emplace_back("petzval:fit", word_of(c.asked.fit));
+    const Chroma chroma = c.asked.chroma.value_or(Chroma::Tolerance);
+    m.emplace_back("petzval:chroma", word_of(chroma));
+    if (chroma == Chroma::Tolerance)
+        m.emplace_back("petzval:chromaTolerance_px", c.asked.chroma_tolerance_px);
+}
+
+}  // namespace
+
+void describe_camera(const CameraReport& c, PictureLayout& layout) {
+    auto& m = layout.metadata;
+    m.emplace_back("petzval:camera", c.name);
+    m.emplace_back("petzval:cameraEye_m", with_commas(c.eye));
+    m.emplace_back("petzval:cameraTarget_m", with_commas(c.target));
+    if (c.orthographic) return;
+    m.emplace_back("petzval:fov_deg", c.yfov_deg);
+    m.emplace_back("petzval:focalLength_mm", c.focal_length_mm);
+    m.emplace_back("petzval:sensorWidth_mm", c.sensor_mm.x);
+    m.emplace_back("petzval:sensorHeight_mm", c.sensor_mm.y);
+    m.emplace_back("petzval:lensRadius_m", c.lens_radius_m);
+    if (!c.lens.empty()) describe_glass(c, layout);
+    if (c.lens_radius_m <= 0) return;
+    describe_iris(c, layout);
+    m.emplace_back("petzval:fstop", c.focal_length_mm * 1e-3f / (2 * c.lens_radius_m));
+    m.emplace_back("petzval:focus_m", c.focus_m);
+}
+
+}  // namespace petzval

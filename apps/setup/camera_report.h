@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a camera turned out to be.
+#pragma once
+
+#include "apps/setup/camera_request.h"
+#include "io/image/picture.h"
+
+namespace petzval {
+
+struct CameraReport {
+    std::string name;
+    V3f eye, target;  ///< target: one metre ahead, or what --look-at said
+    bool orthographic = false;
+    float yfov_deg = 0, focal_length_mm = 0;
+    V2f sensor_mm{0.f};                    ///< as much of it as the picture uses
+    float lens_radius_m = 0, focus_m = 0;  ///< 0: a pinhole
+    std::string lens;                      ///< of a lens made of glass
+    double film_mm = 0, stop_radius_mm = 0;
+    CameraRequest asked;
+};
+
+/// Adds it to a picture's metadata.
+void describe_camera(const CameraReport&, PictureLayout&);
+
+}  // namespace petzval

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/setup/camera_setup.h"
+
+#include <fmt/format.h>
+
+#include "apps/setup/thin_setup.h"
+#include "integrator/autofocus.h"
+#include "io/base/error.h"
+#include "io/base/format.h"
+
+namespace petzval {
+namespace {
+
+using Notice = std::function<void(const std::string&)>;
+
+constexpr float kDegree = kPi / 180.f;
+// Embree takes coordinates up to about 1e18; the square of a distance must be a float as well.
+constexpr float kFarthest_m = 1e16f;
+
+V3f position(const M44f& m) {
+    return {m[3][0], m[3][1], m[3][2]};
+}
+V3f forward(const M44f& m) {
+    return {-m[2][0], -m[2][1], -m[2][2]};
+}
+// Everything that the steps below look at.
+struct Place {
+    const CameraPlan& plan;
+    const std::string& scene_file;
+    V2i size;
+    const Scene& scene;
+    const Bvh& bvh;
+    const Notice& notice;
+
+    [[nodiscard]] float aspect() const {
+        return static_cast<float>(size.x) / static_cast<float>(size.y);
+    }
+    [[nodiscard]] ArgumentError unfit(const std::string& why) const {
+        return {scene_file, "", why};
+    }
+};
+
+// The bounding sphere just fits the smaller angle of view, seen a little from above and the right.
+std::array<V3f, 2> frame_bounds(const Place& at, float yfov_rad) {
+    const Box3f& bounds = at.scene.bounds;
+    if (bounds.isEmpty()) return {V3f(0, 0, 1), V3f(0, 0, 0)};
+    const V3f centre = bounds.min / 2 + bounds.max / 2;
+    const float radius = std::fmax((bounds.max / 2 - bounds.min / 2).length(), 1e-6f);
+    const float half = std::atan(std::tan(yfov_rad / 2) * std::fmin(1.f, at.aspect()));
+    const float distance_m = radius / std::sin(half);
+    const V3f eye = centre + unit({0.3f, 0.25f, 1.f}) * distance_m;
+    if (!(std::fmax(distance_m, centre.length()) < kFarthest_m) || eye == centre)
+        throw at.unfit("is too large or too far away to be framed; give --look-at");
+    return {eye, centre};
+}
+
+// Where the lens stands and what it looks at. fov_option: what gives the same angle of view again.
+M44f stand(const Place& at, float yfov_rad, const std::string& fov_option, CameraReport& report) {
+    const CameraRequest& asked = at.plan.asked;
+    M44f to_world;
+    if (const GltfCamera* from = at.plan.from) {
+        to_world = from->to_world;
+        report.name = from->name;
+        report.target = position(to_world) + forward(to_world);
+    } else {
+        const auto aim = asked.look_at ? *asked.look_at : frame_bounds(at, yfov_rad);
+        to_world = look_at(aim[0], aim[1]);
+        report.target = aim[1];
+        if (!asked.look_at)
+            at.notice(fmt::format("no camera in the file: --look-at {},{}{}", with_commas(aim[0]),
+                                  with_commas(aim[1]), fov_option));
+    }
+    report.eye = position(to_world);
+    return to_world;
+}
+
+using Finder = std::function<std::unique_ptr<Camera>(std::optional<float> focus_m)>;
+
+float depth_of(const Place& at, const Focus& focus, const M44f& to_world, const Camera& finder) {
+    const V3f eye = position(to_world), axis = forward(to_world);
+    if (const auto* pixel = std::get_if<FocusPixel>(&focus)) {
+        const V2f film = (V2f(pixel->x, pixel->y) + V2f(0.5f)) / V2f(at.size);
+        const auto depth = depth_under(at.scene, at.bvh, finder, eye, axis, film);
+        if (!depth)
+            throw at.unfit(
+                fmt::format("nothing to focus on under pixel {},{}", pixel->x, pixel->y));
+        return *depth;
+    }
+    const auto depth = depth_of_middle(at.scene, at.bvh, finder, eye, axis);
+    if (!depth)
+        throw at.unfit("nothing in the middle of the picture to focus on; give --focus in metres");
+    return *depth;
+}
+
+// finder: makes a camera of narrow iris that shows what the real one will when it is focused there,
+// or far away. What a pixel shows moves with the focus, as the film goes back: it is looked at
+// again until it stays, or jumps to and fro between two things.
+float find_focus(const Place& at, const M44f& to_world, const Finder& finder) {
+    constexpr int kRounds = 8;
+    constexpr float kSettled = 1e-5f;
+    const Focus focus = at.plan.asked.focus.value_or(FocusAuto{});
+    if (const auto* distance = std::get_if<FocusDistance>(&focus)) return distance->m;
+    float depth_m = depth_of(at, focus, to_world, *finder(std::nullopt));
+    for (int i = 0; i < kRounds; ++i) {
+        const float before_m = depth_m;
+        depth_m = depth_of(at, focus, to_world, *finder(before_m));
+        if (std::fabs(depth_m - before_m) <= kSettled * before_m) break;
+    }
+    at.notice(fmt::format("focus: {:.4g} m (--focus {})", depth_m, depth_m));
+    return depth_m;
+}
+
+CameraSetup orthographic(const Place& at, const GltfCamera& from) {
+    CameraSetup setup;
+    // The picture's aspect wins over the file's; the height stays.
+    setup.camera =
+        std::make_unique<OrthographicCamera>(from.to_world, from.ymag_m * at.aspect(), from.ymag_m);
+    setup.report.name = from.name;
+    setup.report.orthographic = true;
+    setup.report.eye = position(from.to_world);
+    setup.report.target = setup.report.eye + forward(from.to_world);
+    return setup;
+}
+
+CameraSetup with_lens(const Place& at, const LoadedLens& loaded) {
+    CameraSetup setup;
+    CameraReport& report = setup.report;
+    report.asked = at.plan.asked;
+    report.yfov_deg = loaded.yfov_rad / kDegree;
+    const M44f to_world = stand(at, loaded.yfov_rad, "", report);
+    report.focus_m = find_focus(at, to_world, [&](std::optional<float> focus_m) {
+        return viewfinder(loaded, to_world, focus_m);
+    });
+    LensSetup lens =
+        set_up_lens(report.asked, loaded, to_world, report.focus_m, at.size.x, at.notice);
+    report.lens = loaded.name();
+    report.focal_length_mm = static_cast<float>(loaded.focal_length_mm);
+    report.sensor_mm = loaded.film_mm;
+    report.film_mm = lens.film_mm;
+    report.stop_radius_mm = lens.stop_radius_mm;
+    report.lens_radius_m = static_cast<float>(loaded.focal_length_mm * 1e-3 / (2 * lens.fnumber));
+    setup.camera = std::move(lens.camera);
+    return setup;
+}
+
+CameraSetup without_prescription(const Place& at) {
+    CameraSetup setup;
+    CameraReport& report = setup.report;
+    report.asked = at.plan.asked;
+    const ThinView view = thin_view(at.plan, at.scene_file, at.aspect());
+    report.sensor_mm = view.sensor_mm;
+    report.yfov_deg = view.yfov_deg;
+    const std::string fov_option =
+        view.angle_by_focal ? "" : fmt::format(" --fov {}", view.yfov_deg);
+    ThinLens pose;
+    pose.aspect = at.aspect();
+    pose.to_world = stand(at, view.yfov_rad, fov_option, report);
+    std::optional<float> focus_m = view.focus_m;
+    if (at.plan.has_iris() && !focus_m)
+        focus_m = find_focus(at, pose.to_world, [&](std::optional<float> focused_m) {
+            ThinLens finder = pose;
+            finder.yfov_rad = yfov_at_rad(view, focused_m);
+            return std::make_unique<ThinLensCamera>(finder);
+        });
+    pose.yfov_rad = yfov_at_rad(view, focus_m);
+    if (pose.yfov_rad != view.yfov_rad) report.yfov_deg = pose.yfov_rad / kDegree;
+    ThinSetup thin = set_up_thin(at.plan, view, pose, focus_m, at.size.x, at.notice);
+    report.focus_m = focus_m.value_or(0);
+    report.focal_length_mm = static_cast<float>(thin.focal_mm);
+    report.lens_radius_m = static_cast<float>(thin.lens_radius_m);
+    if (std::holds_alternative<SingleLens>(at.plan.optics)) {
+        report.lens = *report.asked.lens;
+        report.film_mm = thin.film_mm;
+        report.stop_radius_mm = 1e3 * thin.lens_radius_m;
+    }
+    setup.camera = std::move(thin.camera);
+    return setup;
+}
+
+}  // namespace
+
+CameraSetup set_up_camera(const CameraPlan& plan, const std::string& scene_file, V2i size,
+                          const Scene& scene, const Bvh& bvh, const Notice& notice) {
+    const Place at{plan, scene_file, size, scene, bvh, notice};
+    if (plan.from && plan.from->orthographic) return orthographic(at, *plan.from);
+    if (const auto* lens = std::get_if<LoadedLens>(&plan.optics)) return with_lens(at, *lens);
+    return without_prescription(at);
+}
+
+}  // namespace petzval

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/setup/develop.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "apps/setup/camera_report.h"
+#include "core/spectrum/colour.h"
+#include "io/image/spectral_layout.h"
+
+namespace petzval {
+namespace {
+
+/// Stands for an infinite standard error: what reads EXR may scale and subtract it without getting
+/// what is not a number.
+constexpr float kUnknownError = std::numeric_limits<float>::max();
+
+const char* name_of(SamplerKind kind) {
+    switch (kind) {
+        case SamplerKind::Owen:
+            return "owen";
+        case SamplerKind::Sobol:
+            return "sobol";
+        case SamplerKind::Independent:
+            return "independent";
+    }
+    return "";
+}
+
+const char* name_of(FilterKind kind) {
+    switch (kind) {
+        case FilterKind::Box:
+            return "box";
+        case FilterKind::Gauss:
+            return "gauss";
+        case FilterKind::BlackmanHarris:
+            return "blackman-harris";
+    }
+    return "";
+}
+
+/// Samples whose spread tells a pixel's error: none where one was left out, as it is not known
+/// which scramble it was dealt to.
+uint32_t dealt_samples(const Film& film, int x, int y) {
+    return film.bad_count(x, y) == 0 ? film.sample_count(x, y) : 0;
+}
+
+/// Mean over the pixels with light of the standard error of their luminance, relative to it;
+/// infinite where one has too few samples to tell. Pixels with samples that were left out do not
+/// count.
+float mean_relative_error(const Film& film) {
+    const Rect crop = film.crop();
+    double sum = 0;
+    uint64_t lit = 0;
+    for (int y = crop.y0; y < crop.y1; ++y)
+        for (int x = crop.x0; x < crop.x1; ++x) {
+            const V4f mean = film.colour(x, y);
+            const float light = luminance({mean.x, mean.y, mean.z});
+            if (!(light > 0) || film.bad_count(x, y) > 0) continue;
+            ++lit;
+            sum += double(film.spectral()->luminance_error(film.offset(x, y),
+                                                           dealt_samples(film, x, y))) /
+                   light;
+        }
+    return lit > 0 ? static_cast<float>(sum / double(lit)) : 0.f;
+}
+
+void describe_spectrum(const Film& film, PictureLayout& layout) {
+    const Bins& bins = film.spectral()->bins();
+    auto& m = layout.metadata;
+    m.emplace_back("spectralLayoutVersion", "1.0");
+    m.emplace_back("emissiveUnits", "W.m^-2.sr^-1");
+    m.emplace_back("petzval:bins", fmt::format("{:.9g}:{:.9g}:{:.9g}", bins.first_edge_nm,
+                                               bins.last_edge_nm(), bins.width_nm));
+    m.emplace_back("petzval:binScale", "S0 is the average over the bin in W.m^-2.sr^-1.nm^-1");
+    m.emplace_back("petzval:scrambles", static_cast<int>(kScrambles));
+    m.emplace_back("petzval:stderr",
+                   fmt::format("standard error of the mean; {:.9g} where it is not known: with "
+                               "fewer than {} samples, or one that was not finite",
+                               kUnknownError, kScrambles));
+    if (const float error = mean_relative_error(film); std::isfinite(error))
+        m.emplace_back("petzval:meanRelativeError", error);
+}
+
+std::vector<std::string> channels_of(const Film& film) {
+    std::vector<std::string> names = {"R", "G", "B", "A"};
+    if (film.spectral()) {
+        const Bins& bins = film.spectral()->bins();
+        for (int i = 0; i < bins.count; ++i) names.push_back(spectral_channel(bins.centre_nm(i)));
+        for (const char* name : {"XYZ.X", "XYZ.Y", "XYZ.Z", "stderr.R", "stderr.G", "stderr.B"})
+            names.emplace_back(name);
+    }
+    for (const Aov aov : film.aovs()) {
+        const AovInfo& info = aov_info(aov);
+        for (int i = 0; i < info.channel_count; ++i) names.emplace_back(info.channels[i]);
+    }
+    return names;
+}
+
+/// Writes the values of one pixel in the order of channels_of; where the next pixel's go.
+float* develop_pixel(const Film& film, int x, int y, float* out) {
+    const auto put = [&](const auto& values, int count) {
+        for (int i = 0; i < count; ++i) *out++ = values[i];
+    };
+    put(film.colour(x, y), 4);
+    if (const auto& spectral = film.spectral()) {
+        const size_t at = film.offset(x, y);
+        const uint32_t count = film.sample_count(x, y);
+        spectral->bin_means(at, count, out);
+        out += spectral->bins().count;
+        put(spectral->xyz(at, count), 3);
+        V3f error = spectral->standard_error(at, dealt_samples(film, x, y));
+        for (int i = 0; i < 3; ++i) error[i] = std::min(error[i], kUnknownError);
+        put(error, 3);
+    }
+    for (size_t layer = 0; layer < film.aovs().size(); ++layer)
+        put(film.aov(x, y, layer), aov_info(film.aovs()[layer]).channel_count);
+    return out;
+}
+
+}  // namespace
+
+std::string program_version() {
+    return "petzval " PETZVAL_VERSION;
+}
+
+PictureRows develop(const Film& film, const Session& session, const RenderJob& job,
+                    const PathOptions& options, uint32_t end_sample) {
+    const Rect crop = film.crop();
+    PictureLayout layout{
+        .width = crop.width(),
+        .height = crop.height(),
+        .x = crop.x0,
+        .y = crop.y0,
+        .full_width = film.full_size().x,
+        .full_height = film.full_size().y,
+        .channels = channels_of(film),
+        .metadata = {{"Software", program_version()},
+                     {"petzval:sceneHash", fmt::format("{:016x}", session.scene_hash)},
+                     {"petzval:samples", fmt::format("{}:{}", job.first_sample, end_sample)},
+                     {"petzval:seed", fmt::format("{}", job.seed)},
+                     {"petzval:sampler", name_of(job.sampler)},
+                     {"petzval:filter", name_of(job.filter.kind())},
+                     {"petzval:filterRadius_px", job.filter.radius_px()},
+                     {"petzval:maxDepth", options.max_depth},
+                     {"petzval:scale", session.scale},
+                     {"petzval:transparent", int(options.transparent)},
+                     {"petzval:luminousEfficacy_lm_per_W", kLuminousEfficacy_lm_per_w}}};
+    for (const auto& [name, value] : session.metadata) layout.metadata.emplace_back(name, value);
+    describe_camera(session.camera_report, layout);
+    if (film.spectral()) describe_spectrum(film, layout);
+    return {std::move(layout), [&film, crop](int y, float* row) {
+                for (int x = crop.x0; x < crop.x1; ++x)
+                    row = develop_pixel(film, x, crop.y0 + y, row);
+            }};
+}
+
+}  // namespace petzval

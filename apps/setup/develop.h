@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a film to a picture with its layers and everything needed to make it again.
+#pragma once
+
+#include "apps/setup/render_setup.h"
+#include "core/film/film.h"
+#include "integrator/render.h"
+#include "io/image/picture.h"
+
+namespace petzval {
+
+/// "petzval 0.1.0"
+[[nodiscard]] std::string program_version();
+
+/// R, G, B, A in nits of the white point; of a film with bins the channels S0 of
+/// io/image/spectral_layout.h, XYZ in nits and the standard errors of R, G and B; then the film's
+/// layers as "layer.channel". Metadata holds what the pixels follow from; no times, so that equal
+/// renders are equal files. The film must outlive the rows.
+[[nodiscard]] PictureRows develop(const Film&, const Session&, const RenderJob&, const PathOptions&,
+                                  uint32_t end_sample);
+
+}  // namespace petzval

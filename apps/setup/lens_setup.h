@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a lens's name to a camera: film, iris, focus and exposure.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "apps/setup/camera_request.h"
+#include "camera/models/lens_camera.h"
+#include "io/lens/lens_file.h"
+
+namespace petzval {
+
+/// A lens that is not yet focused.
+struct LoadedLens {
+    Lens lens;  ///< as filed
+    std::vector<std::string> warnings;
+    double focal_length_mm;
+    V2f film_mm;     ///< width and height, of the picture's aspect
+    float yfov_rad;  ///< that a distant scene fills the film's height with, line d
+
+    [[nodiscard]] const std::string& name() const { return lens.prescription().name; }
+    [[nodiscard]] double stop_radius_mm() const;
+    [[nodiscard]] bool disperses() const;
+};
+
+/// sensor_mm: absent for the largest 3:2 rectangle in the image circle, at most 36 x 24. The film
+/// is the largest rectangle of the picture's aspect in it. fit_yfov_rad: the lens is scaled until a
+/// distant scene of that height fills the film. Throws InputError, and ArgumentError for a lens
+/// that does not see so far to the side.
+[[nodiscard]] LoadedLens load_lens_for_film(const std::string& name_or_file,
+                                            std::span<const AgfCatalog> catalogs,
+                                            std::optional<V2f> sensor_mm, float aspect,
+                                            std::optional<float> fit_yfov_rad);
+
+struct LensSetup {
+    std::unique_ptr<LensCamera> camera;
+    double film_mm, stop_radius_mm, fnumber;  ///< fnumber: of the axial ray at the rim
+};
+
+/// focus_m: along the axis from the middle of the entrance pupil. Throws InputError or
+/// ArgumentError: a focus nearer than the lens can, an iris that is none.
+[[nodiscard]] LensSetup set_up_lens(const CameraRequest&, const LoadedLens&, const M44f& to_world,
+                                    float focus_m, int width_px,
+                                    const std::function<void(const std::string&)>& notice);
+
+/// The same lens stopped down so far that nothing is blurred: what a photographer looks through to
+/// choose a focus. focus_m: absent for far away; it decides the scale of the picture.
+[[nodiscard]] std::unique_ptr<LensCamera> viewfinder(const LoadedLens&, const M44f& to_world,
+                                                     std::optional<float> focus_m);
+
+}  // namespace petzval

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a render cost, as JSON.
+#pragma once
+
+#include <filesystem>
+
+#include "apps/setup/render_setup.h"
+#include "core/film/film.h"
+#include "integrator/render.h"
+
+namespace petzval {
+
+struct RenderCost {
+    double render_wall_s = 0, render_cpu_s = 0;
+    int threads = 0;
+};
+
+/// Peak resident memory of this process, MiB.
+[[nodiscard]] double peak_memory_mib();
+/// CPU seconds of this process, all threads, user and system.
+[[nodiscard]] double process_cpu_s();
+
+/// Throws InputError where the file cannot be written.
+void write_stats(const std::filesystem::path&, const Session&, const RenderResult&,
+                 const RenderCost&, const Film&);
+
+}  // namespace petzval

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/setup/thin_setup.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "camera/models/aberrated_lens.h"
+#include "camera/models/exposure.h"
+#include "camera/models/sensor.h"
+#include "camera/models/thin_lens_optics.h"
+#include "io/aperture/aperture_file.h"
+#include "io/base/error.h"
+
+namespace petzval {
+namespace {
+
+constexpr float kDegree = kPi / 180.f;
+constexpr float kDefaultFov_deg = 40.f;
+/// Where the third-order formula is off by more, a warning says so.
+constexpr double kMostFormulaError = 0.1;
+
+/// As good as infinity, and no float overflows.
+constexpr double kFarthestFocus_m = 1e6;
+
+// What the closed forms refuse, they refuse in words for whoever chose the numbers.
+template <class Function>
+auto or_argument_error(const CameraPlan& plan, Function&& function) {
+    try {
+        return function();
+    } catch (const std::invalid_argument& error) {
+        throw ArgumentError(plan.asked.lens.value_or("thin lens"), "", error.what());
+    }
+}
+
+void require_fov(float fov_deg, const std::string& scene, const std::string& why) {
+    if (fov_deg >= kSmallestFov_deg && fov_deg <= kLargestFov_deg) return;
+    throw ArgumentError(scene, "",
+                        fmt::format("{} gives an angle of view of {:g} degrees; it must be {} to "
+                                    "{}",
+                                    why, fov_deg, kSmallestFov_deg, kLargestFov_deg));
+}
+
+Singlet singlet_of(const SingleLens& lens, double focal_mm) {
+    if (lens.radii_mm) return {lens.glass, (*lens.radii_mm)[0], (*lens.radii_mm)[1]};
+    return Singlet::bent(lens.glass, focal_mm, lens.bending);
+}
+
+// Where the request says it, be it by the radii of a lens.
+std::optional<double> asked_focal_length_mm(const CameraPlan& plan) {
+    if (const auto* lens = std::get_if<SingleLens>(&plan.optics); lens && lens->radii_mm)
+        return singlet_of(*lens, 0).at(kLineD_nm).focal_mm;
+    return plan.asked.focal_length_mm;
+}
+
+// Irradiance over radiance: a cone of light of the iris's area.
+double irradiance_of(double radius_mm, double film_mm, double area_mm2) {
+    const double sine = std::sin(std::atan(radius_mm / film_mm));
+    return area_mm2 / (radius_mm * radius_mm) * sine * sine;
+}
+
+void warn_of_formula(const Singlet& singlet, const CameraPlan& plan, double focus_mm,
+                     double radius_mm, const std::function<void(const std::string&)>& notice) {
+    const SingletOptics at = singlet.at(kLineD_nm);
+    const double error = spherical_aberration_error(at, focus_mm, radius_mm);
+    if (!(error > kMostFormulaError)) return;
+    double fits_mm = radius_mm;
+    while (fits_mm > 1e-6 * at.focal_mm &&
+           !(spherical_aberration_error(at, focus_mm, fits_mm) <= kMostFormulaError))
+        fits_mm *= 0.98;
+    notice(
+        fmt::format("warning: {} at f/{:.3g}: the formula of its spherical aberration is {} off "
+                    "at the rim of the iris; it is within {:g} % from f/{:.3g} on",
+                    *plan.asked.lens, at.focal_mm / (2 * radius_mm),
+                    std::isfinite(error) ? fmt::format("{:.0f} %", 100 * error) : "far",
+                    100 * kMostFormulaError, at.focal_mm / (2 * fits_mm)));
+}
+
+}  // namespace
+
+ThinView thin_view(const CameraPlan& plan, const std::string& scene, float aspect) {
+    const CameraRequest& asked = plan.asked;
+    ThinView view{};
+    view.sensor_mm = film_within(asked.sensor_mm.value_or(V2f(36.f, 24.f)), aspect);
+    const float half_mm = view.sensor_mm.y / 2;
+    view.focal_mm = or_argument_error(plan, [&] { return asked_focal_length_mm(plan); });
+    const auto of_half = [&](double distance_mm) {
+        return 2 * std::atan(half_mm / static_cast<float>(distance_mm)) / kDegree;
+    };
+    if (asked.film_distance_mm) {
+        view.yfov_deg = of_half(*asked.film_distance_mm);
+        require_fov(view.yfov_deg, scene, "--film-distance");
+        if (view.focal_mm)
+            view.focus_m = static_cast<float>(or_argument_error(plan, [&] {
+                return std::fmin(
+                    1e-3 * object_distance_mm(*view.focal_mm, double(*asked.film_distance_mm)),
+                    kFarthestFocus_m);
+            }));
+    } else if (plan.from && !asked.fov_deg && !view.focal_mm) {
+        view.yfov_rad = plan.from->yfov_rad;
+        view.yfov_deg = view.yfov_rad / kDegree;
+    } else if (asked.fov_deg || !view.focal_mm) {
+        view.yfov_deg = asked.fov_deg.value_or(kDefaultFov_deg);
+    } else {
+        view.angle_by_focal = true;
+        view.yfov_deg = of_half(*view.focal_mm);
+        require_fov(view.yfov_deg, scene,
+                    fmt::format("a focal length of {:g} mm with a sensor {:g} mm high",
+                                *view.focal_mm, view.sensor_mm.y));
+    }
+    if (view.yfov_rad == 0) view.yfov_rad = view.yfov_deg * kDegree;
+    if (!view.focal_mm && !asked.film_distance_mm)
+        view.focal_mm = half_mm / std::tan(view.yfov_rad / 2);
+    return view;
+}
+
+float yfov_at_rad(const ThinView& view, std::optional<float> focus_m) {
+    const double focus_mm = focus_m ? 1e3 * double(*focus_m) : 0;
+    // Nearer than the focal length nothing is sharp; set_up_thin() will say so.
+    if (!view.angle_by_focal || !(focus_mm > *view.focal_mm)) return view.yfov_rad;
+    const double film_mm = image_distance_mm(*view.focal_mm, focus_mm);
+    return 2 * std::atan(view.sensor_mm.y / 2 / static_cast<float>(film_mm));
+}
+
+ThinSetup set_up_thin(const CameraPlan& plan, const ThinView& view, ThinLens lens,
+                      std::optional<float> focus_m, int width_px,
+                      const std::function<void(const std::string&)>& notice) {
+    const CameraRequest& asked = plan.asked;
+    ThinSetup setup{};
+    if (!focus_m) {
+        setup.focal_mm = view.focal_mm.value_or(0);
+        setup.camera = std::make_unique<ThinLensCamera>(std::move(lens));
+        return setup;
+    }
+    const double focus_mm = 1e3 * double(*focus_m);
+    or_argument_error(plan, [&] {
+        setup.focal_mm = view.focal_mm
+                             ? *view.focal_mm
+                             : focal_length_between_mm(focus_mm, double(*asked.film_distance_mm));
+        setup.film_mm = image_distance_mm(setup.focal_mm, focus_mm);
+        setup.lens_radius_m = asked.lens_radius_m ? double(*asked.lens_radius_m)
+                                                  : setup.focal_mm * 1e-3 / (2 * *asked.fstop);
+        const double radius_mm = 1e3 * setup.lens_radius_m;
+        Iris iris(parse_aperture(asked.aperture.value_or("circle")), radius_mm,
+                  asked.aperture_scale, asked.iris_sampling);
+        lens.focus_m = *focus_m;
+        if (asked.exposure == ExposureMode::Photographic)
+            lens.exposure = static_cast<float>(
+                photographic_gain(irradiance_of(radius_mm, setup.film_mm, iris.area_mm2()),
+                                  double(asked.iso), double(asked.shutter_s)));
+        if (const auto* single = std::get_if<SingleLens>(&plan.optics)) {
+            AberratedLens glass{lens.to_world,   singlet_of(*single, setup.focal_mm),
+                                std::move(iris), double(*focus_m),
+                                lens.yfov_rad,   lens.aspect};
+            glass.chroma = asked.chroma.value_or(Chroma::Tolerance);
+            glass.tolerance_rad = static_cast<float>(
+                asked.chroma_tolerance_px * double(view.sensor_mm.x) / width_px / setup.film_mm);
+            glass.exposure = lens.exposure;
+            warn_of_formula(glass.singlet, plan, focus_mm, glass.iris.bounding_radius_mm(), notice);
+            setup.camera = std::make_unique<AberratedLensCamera>(std::move(glass));
+        } else {
+            lens.iris = std::move(iris);
+            setup.camera = std::make_unique<ThinLensCamera>(std::move(lens));
+        }
+    });
+    return setup;
+}
+
+}  // namespace petzval

@@ -88,7 +88,7 @@ Finding march_at_grazing_incidence() {
     f.instead =
         "Every ray has a defined end: a point or a fate. Grazing rays carry little light, as "
         "Fresnel's reflection goes to 1; `--march double` follows them in doubles.";
-    f.guards = {"RandomLens.EveryRayHasADefinedEnd", "Oracle.RaysInFloats",
+    f.guards = {"RandomLens.EveryRayHasADefinedEnd", "OracleRays.RaysInFloats",
                 "LensCameraMarch.DoublesAgreeWithFloats"};
     return f;
 }
@@ -154,7 +154,7 @@ Finding march_over_long_radii() {
         "Roots are taken from the ray's point nearest to the vertex, in the form in which nothing "
         "cancels. Cameras start their rays at the film, and analyses trace in doubles: no ray in "
         "floats comes from afar.";
-    f.guards = {"March.NearlyFlatIsLikeFlatFromEverywhere", "Oracle.RaysInDoubles"};
+    f.guards = {"March.NearlyFlatIsLikeFlatFromEverywhere", "OracleRays.RaysInDoubles"};
     return f;
 }
 

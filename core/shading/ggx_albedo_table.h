@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Made by tests/bench/make_ggx_albedo.cpp; do not edit.
+// Made by tests/make/make_ggx_albedo.cpp; do not edit.
 #pragma once
 
 namespace petzval {

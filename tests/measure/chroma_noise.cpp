@@ -12,8 +12,8 @@
 
 #include "apps/cli/parse.h"
 #include "apps/setup/render_setup.h"
-#include "tests/bench/noise.h"
-#include "tests/bench/program.h"
+#include "tests/measure/noise.h"
+#include "tests/measure/program.h"
 
 namespace petzval {
 namespace {

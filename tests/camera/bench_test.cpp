@@ -29,18 +29,18 @@ Beam aimed(const Lens& lens, const ObjectPoint& object, double nm = kLineD_nm) {
     return *std::move(beam);
 }
 
-class Oracle : public ::testing::TestWithParam<const char*> {
+class OracleAnalysis : public ::testing::TestWithParam<const char*> {
   protected:
     const nlohmann::json oracle = read_oracle(GetParam());
     const Prescription file = read_lens(GetParam());
     const Lens lens{file};
     const double film_mm = oracle.at("image_plane_z");
 };
-INSTANTIATE_TEST_SUITE_P(Lenses, Oracle, ::testing::ValuesIn(kOracleLenses));
+INSTANTIATE_TEST_SUITE_P(Lenses, OracleAnalysis, ::testing::ValuesIn(kOracleLenses));
 
 // The oracle's rays are those within the ray of line d to the stop's rim, at each wavelength: the
 // outermost rays of a fast lens weigh heavily.
-TEST_P(Oracle, SpotOnTheAxisAndItsBestFocus) {
+TEST_P(OracleAnalysis, SpotOnTheAxisAndItsBestFocus) {
     const bool round = oracle.contains("seidel");
     double rim_mm = INFINITY;
     if (round) {
@@ -62,7 +62,7 @@ TEST_P(Oracle, SpotOnTheAxisAndItsBestFocus) {
     }
 }
 
-TEST_P(Oracle, BeamsFillTheStop) {
+TEST_P(OracleAnalysis, BeamsFillTheStop) {
     const double radius_mm = file.surfaces[size_t(lens.stop())].semi_diameter_mm;
     const double widest = std::string(GetParam()).find("fisheye") == std::string::npos ? 18 : 90;
     for (const Section section : {Section::X, Section::Y})
@@ -87,7 +87,7 @@ TEST_P(Oracle, BeamsFillTheStop) {
         }
 }
 
-TEST_P(Oracle, SagsAreWhereRaysMeetSurfaces) {
+TEST_P(OracleAnalysis, SagsAreWhereRaysMeetSurfaces) {
     int compared = 0;
     for (const double height : {0., 0.3, 1.})
         for (const Section section : {Section::X, Section::Y}) {
@@ -106,7 +106,7 @@ TEST_P(Oracle, SagsAreWhereRaysMeetSurfaces) {
     EXPECT_GE(compared, 5 * lens.size());
 }
 
-TEST_P(Oracle, FocusMovesTheFilmToTheImage) {
+TEST_P(OracleAnalysis, FocusMovesTheFilmToTheImage) {
     // Filed to a nanometre.
     EXPECT_NEAR(Lens(*focused(lens, -INFINITY)).film_mm(), lens.film_mm(), 1e-6);
     for (const auto& row : oracle.at("conjugates_d")) {
@@ -119,7 +119,7 @@ TEST_P(Oracle, FocusMovesTheFilmToTheImage) {
     EXPECT_FALSE(focused(lens, first.entrance_pupil_mm * 0.5));
 }
 
-TEST_P(Oracle, LightOnTheFilm) {
+TEST_P(OracleAnalysis, LightOnTheFilm) {
     std::vector<double> heights, wanted;
     for (const auto& row : oracle.at("irradiance")) {
         heights.push_back(row[0]);
@@ -131,7 +131,7 @@ TEST_P(Oracle, LightOnTheFilm) {
         EXPECT_NEAR(light[i], wanted[i], 0.004 * wanted[i]) << heights[i];
 }
 
-TEST_P(Oracle, DistortionIsSeidelsNearTheAxis) {
+TEST_P(OracleAnalysis, DistortionIsSeidelsNearTheAxis) {
     if (!oracle.contains("seidel")) return;
     for (const double deg : {1., 2.}) {
         const double tangent = std::tan(deg * kDegree);

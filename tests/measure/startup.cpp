@@ -20,7 +20,7 @@
 #include "io/glass/catalogue.h"
 #include "io/gltf/gltf.h"
 #include "io/lens/lens_file.h"
-#include "tests/bench/noise.h"
+#include "tests/measure/noise.h"
 
 namespace petzval {
 namespace {

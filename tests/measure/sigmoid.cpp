@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/bench/sigmoid.h"
+#include "tests/measure/sigmoid.h"
 
 #include <algorithm>
 #include <cstring>

@@ -10,7 +10,7 @@
 #include "io/base/read_file.h"
 #include "io/image/difference.h"
 #include "io/image/flip.h"
-#include "tests/bench/program.h"
+#include "tests/measure/program.h"
 
 namespace petzval {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What each option does, read back from the pictures that the program wrote.
-#include "tests/support/cli.h"
 #include "io/image/difference.h"
+#include "tests/support/cli.h"
 
 namespace petzval {
 namespace {

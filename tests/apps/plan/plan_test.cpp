@@ -147,7 +147,7 @@ TEST_F(Plans, PartingFurtherFindsTheSameErrorWithLessNoise) {
     EXPECT_LT(shared.square_bias.error, plain.error);
 }
 
-// The fixed sample of tests/bench/plan_check: predictions hold on other pixels and seeds.
+// The fixed sample of tests/measure/plan_check: predictions hold on other pixels and seeds.
 TEST_F(Plans, PredictionsHoldAndAreNotThreeTimesTooCareful) {
     constexpr double kTolerance = 0.1;
     SceneRequest scene = tabletop({160, 90}, "cooke-triplet-50mm-f5");

@@ -133,7 +133,7 @@ Worst<V> compare(const Lens& lens, const std::vector<Row>& rows, Towards towards
     return worst;
 }
 
-class Oracle : public ::testing::TestWithParam<const char*> {
+class OracleRays : public ::testing::TestWithParam<const char*> {
   protected:
     const nlohmann::json oracle = read_oracle(GetParam());
     const Lens lens{read_lens(GetParam())};
@@ -157,13 +157,13 @@ class Oracle : public ::testing::TestWithParam<const char*> {
             }
     }
 };
-INSTANTIATE_TEST_SUITE_P(Lenses, Oracle, ::testing::ValuesIn(kOracleLenses));
+INSTANTIATE_TEST_SUITE_P(Lenses, OracleRays, ::testing::ValuesIn(kOracleLenses));
 
-TEST_P(Oracle, RaysInDoubles) {
+TEST_P(OracleRays, RaysInDoubles) {
     compare_all<d4>(1e-9, 1e-11, 1e-9);
 }
 
-TEST_P(Oracle, RaysInFloats) {
+TEST_P(OracleRays, RaysInFloats) {
     compare_all<f4>(1e-4, 1e-5, 1e-3);
 }
 

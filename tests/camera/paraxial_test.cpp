@@ -20,14 +20,14 @@ void expect_relative(double value, double wanted, double tolerance, const std::s
     EXPECT_NEAR(value, wanted, tolerance * std::fabs(wanted)) << what;
 }
 
-class Oracle : public ::testing::TestWithParam<const char*> {
+class OracleFirstOrder : public ::testing::TestWithParam<const char*> {
   protected:
     const nlohmann::json oracle = read_oracle(GetParam());
     const Lens lens{read_lens(GetParam())};
 };
-INSTANTIATE_TEST_SUITE_P(Lenses, Oracle, ::testing::ValuesIn(kOracleLenses));
+INSTANTIATE_TEST_SUITE_P(Lenses, OracleFirstOrder, ::testing::ValuesIn(kOracleLenses));
 
-TEST_P(Oracle, FirstOrderDataInBothSections) {
+TEST_P(OracleFirstOrder, FirstOrderDataInBothSections) {
     int compared = 0;
     for (const auto& [key, wanted] : oracle.at("first_order").items()) {
         const auto section = key.find('x') == std::string::npos ? Section::Y : Section::X;
@@ -49,7 +49,7 @@ TEST_P(Oracle, FirstOrderDataInBothSections) {
     EXPECT_GE(compared, 30);
 }
 
-TEST_P(Oracle, SectionsAreAlikeWithoutCylinders) {
+TEST_P(OracleFirstOrder, SectionsAreAlikeWithoutCylinders) {
     bool cylinders = false;
     for (const auto& surface : lens.prescription().surfaces)
         cylinders = cylinders || surface.profile != Profile::Rotational;
@@ -57,7 +57,7 @@ TEST_P(Oracle, SectionsAreAlikeWithoutCylinders) {
     EXPECT_EQ(x_mm != first_order(lens, kLineD_nm).focal_length_mm, cylinders);
 }
 
-TEST_P(Oracle, Conjugates) {
+TEST_P(OracleFirstOrder, Conjugates) {
     for (const auto& row : oracle.at("conjugates_d")) {
         const ParaxialImage image = image_of(lens, row[0], kLineD_nm);
         expect_relative(image.from_last_vertex_mm, row[1], 1e-11, row.dump());
@@ -65,7 +65,7 @@ TEST_P(Oracle, Conjugates) {
     }
 }
 
-TEST_P(Oracle, SeidelSumsOfEachSurface) {
+TEST_P(OracleFirstOrder, SeidelSumsOfEachSurface) {
     if (!oracle.contains("seidel")) {
         EXPECT_THROW((void)seidel(lens, 0.1), std::invalid_argument);
         return;

@@ -15,7 +15,7 @@
 #include "apps/plan/plan.h"
 #include "io/base/error.h"
 #include "io/lens/lens_file.h"
-#include "tests/bench/program.h"
+#include "tests/measure/program.h"
 
 namespace petzval {
 namespace {

@@ -54,7 +54,7 @@ Albedo integrate(double mu, double alpha) {
 int main() {
     std::printf(
         "// SPDX-License-Identifier: Apache-2.0\n"
-        "// Made by tests/bench/make_ggx_albedo.cpp; do not edit.\n#pragma once\n\n"
+        "// Made by tests/make/make_ggx_albedo.cpp; do not edit.\n#pragma once\n\n"
         "namespace petzval {\n\n"
         "inline constexpr int kGgxAlbedoSize = %d;\n"
         "/// [sqrt(alpha)][sqrt(cosine)], ends included: {single-scatter albedo, its part "

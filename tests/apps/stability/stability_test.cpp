@@ -67,7 +67,8 @@ TEST_F(StabilityCli, OtherAxesNeedASceneAndAFolder) {
 
 TEST(StabilityPage, NamesTestsThatThereAre) {
     std::string tests;
-    for (const auto& entry : std::filesystem::directory_iterator(PETZVAL_ASSETS "/../tests"))
+    for (const auto& entry :
+         std::filesystem::recursive_directory_iterator(PETZVAL_ASSETS "/../tests"))
         if (entry.path().string().ends_with("_test.cpp")) tests += file_bytes(entry.path());
     const std::string page = file_bytes(kPage);
     const std::regex guards("- \\*\\*Guard:\\*\\* (.*)"),

@@ -199,7 +199,7 @@ void run() {
         "# Unit: 1, at wavelengths in nm; straight lines between the rows. They add up to 1; each "
         "is\n"
         "# its own colour under D65 for the CIE 1931 observer, summed at 1 nm.\n"
-        "# Source: made by tests/bench/make_rgb_basis.cpp from cie1931.csv and d65.csv, after\n"
+        "# Source: made by tests/make/make_rgb_basis.cpp from cie1931.csv and d65.csv, after\n"
         "# Mallett and Yuksel 2019.\n"
         "wavelength_nm,red,green,blue\n");
     for (size_t i = 0; i < kKnots; ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares two ways from linear sRGB to reflectances: the linear basis that the renderer has
-// (core/spectrum/bands.h), and sigmoids of polynomials (tests/bench/sigmoid.h). Prints tables.
+// (core/spectrum/bands.h), and sigmoids of polynomials (tests/measure/sigmoid.h). Prints tables.
 //
 //   uplift
 #include <benchmark/benchmark.h>
@@ -14,7 +14,7 @@
 #include "core/scene/texture.h"
 #include "core/spectrum/colour.h"
 #include "io/spectra/spectra.h"
-#include "tests/bench/sigmoid.h"
+#include "tests/measure/sigmoid.h"
 #include "tests/support/observers.h"
 #include "tests/support/statistics.h"
 

@@ -11,22 +11,10 @@
 #include "core/scene/scene.h"
 #include "core/shading/surface.h"
 #include "core/traversal/bvh.h"
+#include "integrator/path_options.h"
 #include "integrator/stats.h"
 
 namespace petzval {
-
-/// Mis: light and BSDF samples, weighted by the power heuristic. The other two are the halves of
-/// it, each complete by itself where it can reach the light at all; tests hold all three together.
-enum class Technique { Mis, LightOnly, BsdfOnly };
-
-struct PathOptions {
-    int max_depth = 16;      ///< scatterings; 0 shows emitters only
-    int roulette_depth = 1;  ///< scatterings before Russian roulette begins
-    Technique technique = Technique::Mis;
-    /// What camera rays see in place of the sky; its light stays.
-    std::optional<Rgb> backdrop;
-    bool transparent = false;  ///< camera rays that miss leave alpha 0 and no light
-};
 
 /// What a path needs of a ray caster; Bvh, or a test's own.
 template <class T>

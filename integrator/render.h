@@ -2,48 +2,17 @@
 // From a job to a film: progressive passes over tiles.
 #pragma once
 
-#include <atomic>
 #include <chrono>
-#include <memory>
-#include <numeric>
-#include <optional>
 #include <vector>
 
 #include "camera/camera.h"
 #include "core/film/film.h"
-#include "core/sampling/filter.h"
-#include "core/sampling/sampler.h"
 #include "core/spectrum/colour.h"
-#include "core/spectrum/observer.h"
 #include "integrator/path.h"
+#include "integrator/render_job.h"
 #include "integrator/tiles.h"
 
 namespace petzval {
-
-struct RenderJob {
-    uint32_t first_sample = 0, end_sample = 64;  ///< sample indices [first, end) of every pixel
-    std::optional<double> time_limit_s;  ///< ends with the pass that reaches it, end_sample or not
-    uint32_t seed = 0;
-    SamplerKind sampler = SamplerKind::Owen;
-    Filter filter{FilterKind::BlackmanHarris, 1.5f};
-    int tile_size_px = 16;
-    Observer observer;       ///< what the lanes carry
-    uint32_t scrambles = 1;  ///< kScrambles for a film with bins
-    bool timing = false;     ///< measure where the time goes, on one sample of sixteen
-};
-
-/// What a render shows of itself while it runs, and how it is told to stop. Any thread may look.
-struct RenderMonitor {
-    std::atomic<bool> stop = false;  ///< set it: tiles under way are finished, no more begun
-    std::atomic<uint64_t> pixel_samples_done = 0;
-};
-
-struct RenderResult {
-    PathStats stats;
-    int workers = 0;          ///< threads that rendered at least one tile
-    uint32_t end_sample = 0;  ///< samples [first, end) are complete in every pixel
-    bool stopped = false;     ///< the monitor said stop before the job was done
-};
 
 /// Seed of one of the scrambles: a hash of the pair.
 [[nodiscard]] inline uint32_t scrambled(uint32_t seed, uint32_t scramble) {

@@ -8,6 +8,8 @@
 #include "apps/chart/traversal_leaks.h"
 #include "apps/setup/equivalent_camera.h"
 #include "apps/setup/option_names.h"
+#include "camera/iris/iris.h"
+#include "core/film/spectral_film.h"
 #include "io/aperture/aperture_file.h"
 #include "io/base/atomic_file.h"
 #include "io/base/error.h"

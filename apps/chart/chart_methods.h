@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "apps/setup/render_setup.h"
-#include "integrator/render.h"
+#include "integrator/render_job.h"
 
 namespace petzval {
 

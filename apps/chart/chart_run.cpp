@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "apps/setup/stats_file.h"
+#include "integrator/render.h"
 #include "io/image/difference.h"
 #include "io/image/flip.h"
 

@@ -8,6 +8,7 @@
 
 #include "apps/chart/chart_methods.h"
 #include "apps/chart/chart_points.h"
+#include "core/film/film.h"
 #include "integrator/executor.h"
 #include "io/base/error.h"
 #include "io/image/picture.h"

@@ -5,7 +5,7 @@
 #include <csignal>
 #include <thread>
 
-#include "integrator/render.h"
+#include "integrator/render_job.h"
 
 namespace petzval {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <thread>
 
-#include "integrator/render.h"
+#include "integrator/render_job.h"
 
 namespace petzval {
 

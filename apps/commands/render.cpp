@@ -13,6 +13,7 @@
 #include "apps/setup/develop.h"
 #include "apps/setup/stats_file.h"
 #include "integrator/executor.h"
+#include "integrator/render.h"
 
 namespace petzval {
 namespace {

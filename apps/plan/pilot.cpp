@@ -5,6 +5,7 @@
 
 #include "apps/setup/stats_file.h"
 #include "core/sampling/sampler.h"
+#include "integrator/render.h"
 #include "io/image/difference.h"
 
 namespace petzval {

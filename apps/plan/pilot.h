@@ -8,7 +8,8 @@
 
 #include "apps/setup/render_setup.h"
 #include "integrator/executor.h"
-#include "integrator/render.h"
+#include "integrator/path.h"
+#include "integrator/render_job.h"
 
 namespace petzval {
 

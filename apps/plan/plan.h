@@ -12,7 +12,8 @@
 #include "apps/plan/pilot.h"
 #include "apps/setup/render_setup.h"
 #include "integrator/executor.h"
-#include "integrator/render.h"
+#include "integrator/path_options.h"
+#include "integrator/render_job.h"
 
 namespace petzval {
 

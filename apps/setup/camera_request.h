@@ -9,8 +9,9 @@
 #include <variant>
 #include <vector>
 
-#include "camera/lens/focus.h"
-#include "camera/models/lens_camera.h"
+#include "camera/dispersion/dispersion_mode.h"
+#include "camera/iris/iris_options.h"
+#include "camera/lens/lens_options.h"
 #include "core/math/math.h"
 
 namespace petzval {

@@ -4,7 +4,8 @@
 
 #include "apps/setup/render_setup.h"
 #include "core/film/film.h"
-#include "integrator/render.h"
+#include "integrator/path_options.h"
+#include "integrator/render_job.h"
 #include "io/image/picture.h"
 
 namespace petzval {

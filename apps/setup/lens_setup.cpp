@@ -13,6 +13,7 @@
 #include "camera/lens/focus.h"
 #include "camera/lens/paraxial.h"
 #include "camera/models/exposure.h"
+#include "camera/models/lens_camera.h"
 #include "camera/models/sensor.h"
 #include "io/aperture/aperture_file.h"
 #include "io/base/error.h"
@@ -153,6 +154,7 @@ LensSetup set_up_lens(const CameraRequest& asked, const LoadedLens& loaded, cons
     setup.fnumber = fnumber_of(loaded.lens, setup.stop_radius_mm);
     Sharp sharp = sharp_at(loaded, focus_m, asked.focus_by, setup.stop_radius_mm);
     const std::string aperture = asked.aperture.value_or("circle");
+    std::unique_ptr<LensCamera> camera;
     try {
         const Iris iris(parse_aperture(aperture), setup.stop_radius_mm, asked.aperture_scale,
                         asked.iris_sampling, loaded.stop_radius_mm());
@@ -172,22 +174,23 @@ LensSetup set_up_lens(const CameraRequest& asked, const LoadedLens& loaded, cons
         const double from_mm = in.lens->vertex_mm(in.lens->last()) + f.rear_principal_mm;
         in.tolerance_rad = static_cast<float>(asked.chroma_tolerance_px * double(loaded.film_mm.x) /
                                               width_px / (in.film_mm - from_mm));
-        setup.camera = std::make_unique<LensCamera>(std::move(in));
+        camera = std::make_unique<LensCamera>(std::move(in));
     } catch (const std::invalid_argument& error) {
         throw ArgumentError(aperture, "", error.what());
     }
-    const double axial = setup.camera->irradiance(V2f(0.f), 1024);
+    const double axial = camera->irradiance(V2f(0.f), 1024);
     if (!(axial > 0))
         throw ArgumentError(loaded.name(), "", "lets no light through to the middle of the film");
     const bool normalised = asked.exposure == ExposureMode::Normalised;
-    setup.camera->set_exposure(
+    camera->set_exposure(
         normalised ? 1 : photographic_gain(axial, double(asked.iso), double(asked.shutter_s)),
         axial);
+    setup.camera = std::move(camera);
     return setup;
 }
 
-std::unique_ptr<LensCamera> viewfinder(const LoadedLens& loaded, const M44f& to_world,
-                                       std::optional<float> focus_m) {
+std::unique_ptr<Camera> viewfinder(const LoadedLens& loaded, const M44f& to_world,
+                                   std::optional<float> focus_m) {
     constexpr double kStoppedDown = 100;
     constexpr float kFar_m = 1e9f;
     Sharp sharp = sharp_at(loaded, focus_m.value_or(kFar_m), FocusBy::Paraxial, 0);

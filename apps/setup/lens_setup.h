@@ -8,7 +8,8 @@
 #include <string>
 
 #include "apps/setup/camera_request.h"
-#include "camera/models/lens_camera.h"
+#include "camera/camera.h"
+#include "camera/lens/lens.h"
 #include "io/lens/lens_file.h"
 
 namespace petzval {
@@ -36,7 +37,7 @@ struct LoadedLens {
                                             std::optional<float> fit_yfov_rad);
 
 struct LensSetup {
-    std::unique_ptr<LensCamera> camera;
+    std::unique_ptr<Camera> camera;
     double film_mm, stop_radius_mm, fnumber;  ///< fnumber: of the axial ray at the rim
 };
 
@@ -48,7 +49,7 @@ struct LensSetup {
 
 /// The same lens stopped down so far that nothing is blurred: what a photographer looks through to
 /// choose a focus. focus_m: absent for far away; it decides the scale of the picture.
-[[nodiscard]] std::unique_ptr<LensCamera> viewfinder(const LoadedLens&, const M44f& to_world,
-                                                     std::optional<float> focus_m);
+[[nodiscard]] std::unique_ptr<Camera> viewfinder(const LoadedLens&, const M44f& to_world,
+                                                 std::optional<float> focus_m);
 
 }  // namespace petzval

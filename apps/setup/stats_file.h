@@ -6,7 +6,7 @@
 
 #include "apps/setup/render_setup.h"
 #include "core/film/film.h"
-#include "integrator/render.h"
+#include "integrator/render_job.h"
 
 namespace petzval {
 

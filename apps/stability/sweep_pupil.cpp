@@ -6,6 +6,7 @@
 
 #include "apps/stability/sweeps.h"
 #include "camera/lens/paraxial.h"
+#include "camera/lens/trace.h"
 #include "camera/models/lens_camera.h"
 #include "io/lens/lens_file.h"
 

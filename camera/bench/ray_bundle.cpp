@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "camera/lens/trace.h"
+
 namespace petzval {
 namespace {
 

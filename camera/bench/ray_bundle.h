@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "camera/lens/lens_ray.h"
 #include "camera/lens/paraxial.h"
-#include "camera/lens/trace.h"
 #include "core/math/math.h"
 
 namespace petzval {

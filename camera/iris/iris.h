@@ -7,20 +7,10 @@
 #include <variant>
 
 #include "camera/iris/iris_mask.h"
+#include "camera/iris/iris_options.h"
 #include "camera/iris/iris_polygon.h"
 
 namespace petzval {
-
-/// EqualArea: the shape has the area of the round stop (a mask: area times transmission), so that
-/// it lets through what the f-number says; it may reach beyond the stop. Inscribed: the largest
-/// scale at which it does not.
-enum class ApertureScale : uint8_t { EqualArea, Inscribed };
-
-/// How points are drawn. All are uniform by area (a mask: in proportion to its transmission).
-/// Formula: in closed form (circle, triangle, parallelogram) or by the inverse of a mask's running
-/// sums. Triangles: one is chosen by the running sum of their areas, then a point of it. Alias: the
-/// same by an alias table. Rejection: points of the bounding box until one is inside.
-enum class IrisSampling : uint8_t { Formula, Triangles, Alias, Rejection };
 
 /// Those that a shape has; the first keeps stratification best. Circle and mask have no triangles,
 /// other polygons no formula.

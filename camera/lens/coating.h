@@ -3,13 +3,9 @@
 #pragma once
 
 #include "camera/lens/lens.h"
+#include "camera/lens/lens_options.h"
 
 namespace petzval {
-
-/// Ideal: nothing is lost. Uncoated: Fresnel's reflection at every change of index. MgF2: one layer
-/// of magnesium fluoride, a quarter wave thick at 550 nm and normal incidence, on every surface
-/// that touches air; cemented ones stay bare.
-enum class Coating : uint8_t { Ideal, Uncoated, MgF2 };
 
 /// Of magnesium fluoride, at all wavelengths: 1.3785 at 550 nm for the ordinary ray of the crystal
 /// (Dodge 1984, Appl. Opt. 23, 1980), rounded, as evaporated films differ by more. Its dispersion

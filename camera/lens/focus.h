@@ -6,13 +6,9 @@
 #include <optional>
 
 #include "camera/lens/lens.h"
+#include "camera/lens/lens_options.h"
 
 namespace petzval {
-
-enum class FocusBy : uint8_t {
-    Paraxial,  ///< line d, rays near the axis
-    Traced  ///< the least mean square radius of the spot on the axis: F, d and C, through the iris
-};
 
 /// The lens with its film, or its focusing group, where an axial point at object_mm (from
 /// the first vertex of what is returned, < 0; -infinity for a distant one) is sharp. The film is

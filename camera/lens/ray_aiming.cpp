@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "camera/lens/trace.h"
+
 namespace petzval {
 namespace {
 

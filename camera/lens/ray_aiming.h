@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "camera/lens/lens.h"
-#include "camera/lens/trace.h"
+#include "camera/lens/lens_ray.h"
 #include "core/math/math.h"
 
 namespace petzval {

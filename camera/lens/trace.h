@@ -5,53 +5,10 @@
 #include <limits>
 
 #include "camera/lens/lens.h"
+#include "camera/lens/lens_ray.h"
 #include "camera/lens/number.h"
 
 namespace petzval {
-
-enum class Towards { Film, Scene };
-/// Whether semi-diameters stop light; the iris has one as well.
-enum class Clip { Yes, No };
-/// What became of a ray. Each surface asks in this order: missed, vignetted, totally reflected.
-enum class Fate : int { Passed, Vignetted, TotallyReflected, Missed };
-
-/// The surfaces to march through, both included, first on the scene's side whatever the direction;
-/// nothing is done where last < first.
-struct SurfaceRange {
-    int first = 0, last = 0;
-};
-
-/// Millimetres; the direction has unit length (in floats within 1e-6, less where light grazes a
-/// surface) and says where light is followed to, z towards the film. z of the origin counts from
-/// the vertex of a surface, so that no digits are lost on the length of the lens: the last one that
-/// was met.
-///
-/// Lanes that are blocked keep their fate, and go on along the axis, where nothing can go wrong.
-template <class N>
-struct LensRay {
-    Vec3<N> origin, direction;
-    int counted_from = 0;     ///< the surface from whose vertex z of the origin counts
-    CodeOf<N> fate_code{};    ///< Fate, as a number
-    CodeOf<N> end_surface{};  ///< where a blocked lane ended
-
-    [[nodiscard]] MaskOf<N> alive() const { return fate_code == 0; }
-    [[nodiscard]] Fate fate(int i) const { return Fate(lane(fate_code, i)); }
-};
-
-/// What an observer is told at each surface, before light is refracted there. Without derivatives.
-template <class V>
-struct LensHit {
-    int surface;
-    Vec3<V> point;      ///< counted from this surface's vertex
-    V distance_mm;      ///< from the point before
-    V cosine;           ///< of incidence, 0 to 1
-    V index;            ///< of the medium on the way
-    MaskOf<V> reached;  ///< lanes for which the above is true: blocked here at most
-};
-
-struct NoObserver {
-    void operator()(const auto&) const {}
-};
 
 namespace lens_march {
 

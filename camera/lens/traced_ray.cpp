@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "camera/lens/traced_ray.h"
 
+#include "camera/lens/trace.h"
+
 namespace petzval {
 namespace {
 

@@ -2,6 +2,7 @@
 #include "camera/models/lens_camera.h"
 
 #include "camera/dispersion/hero.h"
+#include "camera/lens/trace.h"
 #include "core/spectrum/glass.h"
 
 namespace petzval {

@@ -9,15 +9,11 @@
 #include "camera/iris/iris.h"
 #include "camera/lens/coating.h"
 #include "camera/lens/lens.h"
+#include "camera/lens/lens_options.h"
 #include "camera/lens/ray_aiming.h"
 #include "camera/models/thin_lens.h"
 
 namespace petzval {
-
-/// What a drawn ray is marched in. Its direction at the film is solved for in floats either way; in
-/// doubles it is then followed anew, with the glasses' own formulas, and becomes a ray of floats in
-/// the world.
-enum class March : uint8_t { Float, Double };
 
 /// A draw of the iris. V: f4 or d4.
 template <class V>

@@ -12,7 +12,7 @@ namespace {
 
 // Where the rays of points near the middle of the film cross the axis, in metres in front of the
 // camera's node. The middle of a narrow iris's image is the pupil's.
-double pupil_m(const LensCamera& camera) {
+double pupil_m(const Camera& camera) {
     double sum = 0;
     constexpr uint32_t kRays = 4096;
     for (uint32_t i = 0; i < kRays; ++i) {

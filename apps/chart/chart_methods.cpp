@@ -102,35 +102,37 @@ ChartCase camera_case(const Found& found, const RenderJob& job, const OpenSessio
     cases.add("singlet", thin,
               [](SceneRequest& s, RenderJob&) { s.camera.lens = "singlet:N-BK7"; });
     cases.add("lens one-ray", lens,
-              [](SceneRequest& s, RenderJob&) { s.camera.chroma = Chroma::Shared; });
-    cases.add("lens", lens, [](SceneRequest& s, RenderJob&) { s.camera.chroma = Chroma::Hero; });
+              [](SceneRequest& s, RenderJob&) { s.camera.dispersion = DispersionMode::Shared; });
+    cases.add("lens", lens,
+              [](SceneRequest& s, RenderJob&) { s.camera.dispersion = DispersionMode::Hero; });
     cases.reference("the lens, wavelengths always split, rays followed in doubles", lens,
                     [](SceneRequest& s, RenderJob&) {
-                        s.camera.chroma = Chroma::Split;
+                        s.camera.dispersion = DispersionMode::Split;
                         s.camera.march = March::Double;
                     });
     return std::move(cases).result();
 }
 
-ChartCase chroma_case(const Found& found, const RenderJob& job) {
-    Cases cases(ChartAxis::Chroma, job, "chroma", "ways to carry wavelengths through the lens");
+ChartCase dispersion_case(const Found& found, const RenderJob& job) {
+    Cases cases(ChartAxis::Dispersion, job, "dispersion",
+                "ways to carry wavelengths through the lens");
     std::vector<std::string> remarks;
     SceneRequest lens = with_lens(found, remarks);
     lens.spectral.mode = SpectralMode::Hero;
     cases.remark(remarks);
-    const auto with = [](Chroma chroma) {
-        return [chroma](SceneRequest& s, RenderJob&) { s.camera.chroma = chroma; };
+    const auto with = [](DispersionMode dispersion) {
+        return [dispersion](SceneRequest& s, RenderJob&) { s.camera.dispersion = dispersion; };
     };
-    cases.add("split", lens, with(Chroma::Split));
-    cases.add(fmt::format("tolerance {:g} px", lens.camera.chroma_tolerance_px), lens,
-              with(Chroma::Tolerance));
-    cases.add("shared", lens, with(Chroma::Shared));
-    cases.add("single", lens, with(Chroma::Single));
-    cases.add("hero", lens, with(Chroma::Hero));
+    cases.add("split", lens, with(DispersionMode::Split));
+    cases.add(fmt::format("tolerance {:g} px", lens.camera.dispersion_tolerance_px), lens,
+              with(DispersionMode::Tolerance));
+    cases.add("shared", lens, with(DispersionMode::Shared));
+    cases.add("single", lens, with(DispersionMode::Single));
+    cases.add("hero", lens, with(DispersionMode::Hero));
     cases.remark("shared is biased: it leaves out the colour errors of the lens");
     cases.reference("split, rays followed in doubles with the glasses' own formulas", lens,
                     [](SceneRequest& s, RenderJob&) {
-                        s.camera.chroma = Chroma::Split;
+                        s.camera.dispersion = DispersionMode::Split;
                         s.camera.march = March::Double;
                     });
     return std::move(cases).result();
@@ -187,7 +189,7 @@ std::string write_mask(const std::filesystem::path& folder) {
 std::vector<ChartCase> iris_cases(const Found& found, const ChartSubject& subject) {
     std::vector<std::string> remarks;
     SceneRequest lens = with_lens(found, remarks);
-    lens.camera.chroma = Chroma::Shared;  // the iris is measured, not the glass
+    lens.camera.dispersion = DispersionMode::Shared;  // the iris is measured, not the glass
     remarks.emplace_back("One ray for all wavelengths");
     const std::vector<std::pair<std::string, std::string>> shapes{
         {"disk", "circle"},
@@ -281,7 +283,7 @@ ChartCase precision_case(const Found& found, const RenderJob& job, const OpenSes
                 "floats and doubles in the lens, robust and fast traversal");
     std::vector<std::string> remarks;
     SceneRequest lens = with_lens(found, remarks);
-    lens.camera.chroma = Chroma::Shared;
+    lens.camera.dispersion = DispersionMode::Shared;
     remarks.emplace_back("One ray for all wavelengths");
     cases.remark(remarks);
     cases.remark(leak_count(lens, open));
@@ -307,7 +309,7 @@ ChartCase precision_case(const Found& found, const RenderJob& job, const OpenSes
 
 const std::vector<std::pair<std::string, ChartAxis>>& chart_axes() {
     static const std::vector<std::pair<std::string, ChartAxis>> axes{
-        {"camera", ChartAxis::Camera},      {"chroma", ChartAxis::Chroma},
+        {"camera", ChartAxis::Camera},      {"dispersion", ChartAxis::Dispersion},
         {"spectral", ChartAxis::Spectral},  {"iris", ChartAxis::Iris},
         {"sampler", ChartAxis::Sampler},    {"lights", ChartAxis::Lights},
         {"precision", ChartAxis::Precision}};
@@ -325,7 +327,7 @@ std::vector<ChartCase> chart_cases(const std::vector<ChartAxis>& axes, const Cha
     const Found found = look(subject.request, open);
     std::vector<ChartCase> cases;
     for (const ChartAxis axis : axes) {
-        const bool needs_lens = axis == ChartAxis::Camera || axis == ChartAxis::Chroma ||
+        const bool needs_lens = axis == ChartAxis::Camera || axis == ChartAxis::Dispersion ||
                                 axis == ChartAxis::Iris || axis == ChartAxis::Precision;
         if (needs_lens && found.report.orthographic)
             throw ArgumentError(subject.request.scene.string(), "",
@@ -338,8 +340,8 @@ std::vector<ChartCase> chart_cases(const std::vector<ChartAxis>& axes, const Cha
             case ChartAxis::Camera:
                 cases.push_back(camera_case(found, subject.job, open));
                 break;
-            case ChartAxis::Chroma:
-                cases.push_back(chroma_case(found, subject.job));
+            case ChartAxis::Dispersion:
+                cases.push_back(dispersion_case(found, subject.job));
                 break;
             case ChartAxis::Spectral:
                 cases.push_back(spectral_case(found, subject.job));

@@ -17,7 +17,7 @@ namespace petzval {
 /// Peers: other programs, which are not measured from in here.
 enum class ChartAxis : uint8_t {
     Camera,
-    Chroma,
+    Dispersion,
     Spectral,
     Iris,
     Sampler,

@@ -66,19 +66,20 @@ void add_lens_options(CLI::App& app, CameraOptions& o) {
     group(add_choice<IrisSampling>(
         app, "--iris-sampling", r.iris_sampling, words_of(IrisSampling()),
         "formula, rejection, triangles, alias (default: the best that the shape has)"));
-    Choices<std::optional<Chroma>> chromas{{"auto", std::nullopt}};
-    for (const auto& [word, chroma] : words_of(Chroma())) chromas.emplace_back(word, chroma);
-    group(add_choice<std::optional<Chroma>>(
-        app, "--chroma", r.chroma, chromas,
+    Choices<std::optional<DispersionMode>> modes{{"auto", std::nullopt}};
+    for (const auto& [word, dispersion] : words_of(DispersionMode()))
+        modes.emplace_back(word, dispersion);
+    group(add_choice<std::optional<DispersionMode>>(
+        app, "--dispersion", r.dispersion, modes,
         "wavelengths that leave the lens apart: auto (default: by how far they part, "
         "docs/plan.md; in charts as tolerance), "
         "shared, tolerance, split, single, hero"));
     const auto share_within = [&r](float px) {
-        r.chroma_tolerance_px = px;
-        if (!r.chroma) r.chroma = Chroma::Tolerance;
+        r.dispersion_tolerance_px = px;
+        if (!r.dispersion) r.dispersion = DispersionMode::Tolerance;
     };
-    group(app.add_option_function<float>("--chroma-tolerance", share_within,
-                                         "pixels on the film within which --chroma tolerance, "
+    group(app.add_option_function<float>("--dispersion-tolerance", share_within,
+                                         "pixels on the film within which --dispersion tolerance, "
                                          "which this asks for, shares a ray (default 0.1)"))
         ->check(number_between(0, 1000));
 }

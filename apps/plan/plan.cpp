@@ -112,30 +112,31 @@ PlanLine spectral_line(const Look& at) {
     return {"spectral", "hero", (rgb ? off(*rgb) + ", as " : "") + at.depends(), {}};
 }
 
-PlanLine chroma_line(const Look& at) {
-    const auto& asked = at.session.camera_report.asked.chroma;
+PlanLine dispersion_line(const Look& at) {
+    const auto& asked = at.session.camera_report.asked.dispersion;
     if (is_camera(at.chosen.name) || at.session.dispersive_lens.empty())
-        return {"chroma", "shared", "no lens parts wavelengths", {}};
-    if (!at.session.observer.spectral()) return {"chroma", "shared", "RGB goes along one ray", {}};
-    if (!at.open.chroma)
-        return {"chroma",
-                word_of(asked.value_or(Chroma::Tolerance)),
+        return {"dispersion", "shared", "no lens parts wavelengths", {}};
+    if (!at.session.observer.spectral())
+        return {"dispersion", "shared", "RGB goes along one ray", {}};
+    if (!at.open.dispersion)
+        return {"dispersion",
+                word_of(asked.value_or(DispersionMode::Tolerance)),
                 asked ? "it was asked for" : "spectra are asked for",
                 {}};
     const PlanCandidate *shared = find(at.all, "shared"), *tolerance = find(at.all, "tolerance");
     const std::string because = at.spreads() + ": ";
     if (at.chose("hero"))
-        return {"chroma",
+        return {"dispersion",
                 "hero",
                 because + off(*shared) + ", one ray is weighed for each wavelength without a bias",
                 {}};
     if (at.chose("split"))
-        return {"chroma", "split", because + off(*shared) + ", " + off(*tolerance), {}};
+        return {"dispersion", "split", because + off(*shared) + ", " + off(*tolerance), {}};
     if (!at.chose("shared") && !at.chose("rgb"))
-        return {"chroma", at.chosen.name,
+        return {"dispersion", at.chosen.name,
                 fmt::format("{}{}, this {}", because, off(*shared), at_most(at.chosen)),
                 at.chosen.predicted()};
-    return {"chroma", "shared", because + "one ray for all wavelengths, " + at_most(at.chosen),
+    return {"dispersion", "shared", because + "one ray for all wavelengths, " + at_most(at.chosen),
             at.chosen.predicted()};
 }
 
@@ -150,7 +151,7 @@ std::vector<PlanOption> options_of(const Look& at, uint64_t samples) {
     };
     if (is_camera(at.chosen.name)) {
         leave_out({"--fit", "--fstop", "--focal-length", "--film-distance", "--coating", "--march",
-                   "--focus-by", "--glasses", "--chroma", "--chroma-tolerance"});
+                   "--focus-by", "--glasses", "--dispersion", "--dispersion-tolerance"});
         set("--lens", at.chosen.name);
         set("--fov", *camera.fov_deg);
         set("--sensor", fmt::format("{}x{}", camera.sensor_mm->x, camera.sensor_mm->y));
@@ -164,7 +165,7 @@ std::vector<PlanOption> options_of(const Look& at, uint64_t samples) {
         return out;
     }
     if (at.open.any()) set("--spectral", at.chose("rgb") ? "rgb" : "hero");
-    if (at.open.chroma) set("--chroma", word_of(*camera.chroma));
+    if (at.open.dispersion) set("--dispersion", word_of(*camera.dispersion));
     return out;
 }
 
@@ -191,35 +192,36 @@ Session reopened(const SceneRequest& scene, const Session& first, TbbExecutor& e
 struct Parted {
     double spread_px;
     SceneRequest scene;
-    [[nodiscard]] bool hero() const { return scene.camera.chroma == Chroma::Hero; }
+    [[nodiscard]] bool hero() const { return scene.camera.dispersion == DispersionMode::Hero; }
 };
 Parted part_wavelengths(const Session& first, TbbExecutor& executor) {
     SceneRequest scene = settled(first);
     scene.spectral.mode = SpectralMode::Hero;
     if (first.asked.spectral.mode == SpectralMode::Auto)
         scene.spectral.because = fmt::format("{}", fmt::join(first.depends, "; "));
-    const auto with = [&](Chroma chroma) {
-        scene.camera.chroma = chroma;
+    const auto with = [&](DispersionMode dispersion) {
+        scene.camera.dispersion = dispersion;
         return reopened(scene, first, executor);
     };
-    const Session split = with(Chroma::Split), shared = with(Chroma::Shared);
+    const Session split = with(DispersionMode::Split), shared = with(DispersionMode::Shared);
     const double spread = spread_px(split, shared, scene.size);
-    scene.camera.chroma = spread <= kMostHeroSpread_px ? Chroma::Hero : Chroma::Tolerance;
+    scene.camera.dispersion =
+        spread <= kMostHeroSpread_px ? DispersionMode::Hero : DispersionMode::Tolerance;
     return {spread, scene};
 }
 
-// Spectra through a lens: nothing is left out of them, and so chroma is a matter of the spread.
+// Spectra through a lens: nothing is left out of them, and so dispersion is a matter of the spread.
 Plan plan_with_bins(const PlanRequest& request, const Session& first, TbbExecutor& executor,
                     const Notice& notice, double most_samples) {
     const Parted parted = part_wavelengths(first, executor);
     PlanRequest settled = request;
-    settled.scene.camera.chroma = parted.scene.camera.chroma;
+    settled.scene.camera.dispersion = parted.scene.camera.dispersion;
     Plan plan = make_plan(settled, executor, notice, most_samples);
     for (PlanLine& line : plan.lines)
-        if (line.choice == "chroma" && !is_camera(plan.chosen)) {
+        if (line.choice == "dispersion" && !is_camera(plan.chosen)) {
             line.reason = fmt::format("dispersion of {} spreads {:.2g} px", first.dispersive_lens,
                                       parted.spread_px);
-            plan.options.emplace_back("--chroma", line.chosen);
+            plan.options.emplace_back("--dispersion", line.chosen);
         }
     return plan;
 }
@@ -244,7 +246,7 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
                double most_samples) {
     std::vector<std::string> said;
     const Session first = open_first(request, executor, said);
-    if (const PlanOpen open(request.scene, first); open.parted && !open.chroma)
+    if (const PlanOpen open(request.scene, first); open.parted && !open.dispersion)
         return plan_with_bins(request, first, executor, notice, most_samples);
     for (const std::string& text : said)
         if (text != first.spectral_decision) notice(text);
@@ -252,10 +254,10 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
     PlanComparison compared(request, first, open, kPixels, executor);
     compared.add_simpler_cameras();
     if (open.spectral) compared.add_rgb();
-    if (open.chroma) {
+    if (open.dispersion) {
         compared.add_shared();
-        compared.add_unbiased("hero", Chroma::Hero);
-        compared.add_parted("tolerance", Chroma::Tolerance);
+        compared.add_unbiased("hero", DispersionMode::Hero);
+        compared.add_parted("tolerance", DispersionMode::Tolerance);
     }
     compared.look(most_samples, true);
 
@@ -280,7 +282,7 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
     plan.cpu_s = compared.cpu_s_per_sample(best) * static_cast<double>(plan.samples) *
                  request.scene.size.x * request.scene.size.y;
     const Look at{request, first, open, plan.candidates, chosen, compared.spread()};
-    plan.lines = {camera_line(at), spectral_line(at), chroma_line(at)};
+    plan.lines = {camera_line(at), spectral_line(at), dispersion_line(at)};
     plan.options = options_of(at, plan.samples);
     return plan;
 }
@@ -290,17 +292,17 @@ Session open_planned(const PlanRequest& request, TbbExecutor& executor, const No
     Session first = open_first(request, executor, said);
     const std::string decision = first.spectral_decision;
     const PlanOpen open(request.scene, first);
-    std::string why, chroma;
+    std::string why, dispersion;
     std::optional<SceneRequest> other;  // than what was opened
     if (open.parted) {
         const Parted parted = part_wavelengths(first, executor);
         if (parted.hero()) other = parted.scene;
         why = fmt::format("dispersion of {} spreads {:.2g} px", first.dispersive_lens,
                           parted.spread_px);
-        chroma = word_of(*parted.scene.camera.chroma);
+        dispersion = word_of(*parted.scene.camera.dispersion);
     }
     const double most_samples = 0.25 * request.scene.size.x * request.scene.size.y;
-    const int models = (open.spectral ? 1 : 0) + (open.chroma ? 2 : 1);
+    const int models = (open.spectral ? 1 : 0) + (open.dispersion ? 2 : 1);
     const auto fit = [&](int pixels, double samples) {
         return pixels * kLooks * samples * models <= most_samples;
     };
@@ -308,7 +310,7 @@ Session open_planned(const PlanRequest& request, TbbExecutor& executor, const No
         PlanComparison compared(request, first, open,
                                 fit(kPixels, kEnoughSamples) ? kPixels : kFewPixels, executor);
         if (open.spectral) compared.add_rgb();
-        if (open.chroma) compared.add_shared();
+        if (open.dispersion) compared.add_shared();
         compared.look(most_samples, false);
         const Candidates all = compared.candidates();
         const auto& chosen =
@@ -324,16 +326,16 @@ Session open_planned(const PlanRequest& request, TbbExecutor& executor, const No
                     at.chose("rgb") ? fmt::format("it is {}, though {}", found, at.depends())
                                     : at.depends();
         }
-        if (open.chroma) {
+        if (open.dispersion) {
             found = simpler ? "one ray for all wavelengths, " + found : off(*find(all, "shared"));
-            if (simpler) chroma = "shared";
+            if (simpler) dispersion = "shared";
         }
         why = why.empty() ? found : why + ": " + found;
     }
     Session session = other ? reopened(*other, first, executor) : std::move(first);
     for (const std::string& text : said)
         notice(text == decision ? session.spectral_decision : text);
-    if (!chroma.empty()) notice(fmt::format("chroma: {}, as {}", chroma, why));
+    if (!dispersion.empty()) notice(fmt::format("dispersion: {}, as {}", dispersion, why));
     if (!why.empty())
         session.metadata.emplace_back("petzval:plan",
                                       fmt::format("{}: {}", percent(request.tolerance), why));

@@ -76,9 +76,9 @@ struct Plan {
                              const std::function<void(const std::string&)>& notice,
                              double most_samples = 4e6);
 
-/// open_session, with what the request leaves open (spectral mode, chroma) planned: as a look of at
-/// most a quarter of a sample for each pixel of the whole frame finds it, and so not a matter of
-/// samples, seed or crop. Without a look where nothing depends on wavelength, and for frames too
+/// open_session, with what the request leaves open (spectral mode, dispersion) planned: as a look
+/// of at most a quarter of a sample for each pixel of the whole frame finds it, and so not a matter
+/// of samples, seed or crop. Without a look where nothing depends on wavelength, and for frames too
 /// small for one. `notice` and the metadata get the reasons. No camera that was asked for is
 /// replaced.
 [[nodiscard]] Session open_planned(const PlanRequest&, TbbExecutor&,

@@ -22,9 +22,9 @@ PlanOpen::PlanOpen(const SceneRequest& request, const Session& session) {
     if (!session.observer.spectral()) return;
     const bool disperses = !session.dispersive_lens.empty();
     // Spectra are more than a picture: nothing is taken from them.
-    parted = disperses && !session.camera_report.asked.chroma;
-    chroma = parted && !request.spectral.bins;
-    spectral = !asks_for_wavelengths(request.spectral) && (chroma || !disperses);
+    parted = disperses && !session.camera_report.asked.dispersion;
+    dispersion = parted && !request.spectral.bins;
+    spectral = !asks_for_wavelengths(request.spectral) && (dispersion || !disperses);
 }
 
 PlanComparison::PlanComparison(const PlanRequest& request, const Session& first,
@@ -36,7 +36,7 @@ PlanComparison::PlanComparison(const PlanRequest& request, const Session& first,
       executor_(executor),
       pilot_(request.scene.size, pixels, executor) {
     if (first.observer.spectral()) full_scene_.spectral.mode = SpectralMode::Hero;
-    if (open.chroma) {
+    if (open.dispersion) {
         part_wavelengths();
         return;
     }
@@ -48,8 +48,8 @@ PlanComparison::PlanComparison(const PlanRequest& request, const Session& first,
 // What parts wavelengths is told from what does not by a lens that parts them further.
 void PlanComparison::part_wavelengths() {
     shared_scene_ = full_scene_;
-    full_scene_.camera.chroma = Chroma::Split;
-    shared_scene_.camera.chroma = Chroma::Shared;
+    full_scene_.camera.dispersion = DispersionMode::Split;
+    shared_scene_.camera.dispersion = DispersionMode::Shared;
     shared_ = model(shared_scene_);
     spread_px_ = spread_px(open(full_scene_), shared_->session(), request_.scene.size);
     if (spread_px_ > 0)
@@ -96,7 +96,7 @@ void PlanComparison::add_simpler_cameras() {
 void PlanComparison::add_rgb() {
     SceneRequest scene = full_scene_;
     scene.spectral.mode = SpectralMode::Rgb;
-    if (open_.chroma) scene.camera.chroma = Chroma::Shared;
+    if (open_.dispersion) scene.camera.dispersion = DispersionMode::Shared;
     add("rgb", scene);
 }
 
@@ -108,18 +108,18 @@ void PlanComparison::add_shared() {
                         nullptr});
 }
 
-void PlanComparison::add_parted(const std::string& name, Chroma chroma) {
+void PlanComparison::add_parted(const std::string& name, DispersionMode dispersion) {
     SceneRequest scene = full_scene_;
-    scene.camera.chroma = chroma;
+    scene.camera.dispersion = dispersion;
     auto own = further(scene);
     const double share = 1 / double(factor_);
     entries_.push_back(
         {{name, scene}, own.get(), {{own.get(), share}, {full_.get(), -share}}, std::move(own)});
 }
 
-void PlanComparison::add_unbiased(const std::string& name, Chroma chroma) {
+void PlanComparison::add_unbiased(const std::string& name, DispersionMode dispersion) {
     SceneRequest scene = full_scene_;
-    scene.camera.chroma = chroma;
+    scene.camera.dispersion = dispersion;
     auto own = model(scene);
     entries_.push_back({{name, scene}, own.get(), {}, std::move(own)});
 }
@@ -165,7 +165,7 @@ std::vector<PlanCandidate> PlanComparison::candidates() const {
         out.push_back(std::move(found));
     };
     for (const Entry& e : entries_) measured(e.found, *e.model);
-    PlanCandidate full{open_.chroma ? "split" : "full", full_scene_};
+    PlanCandidate full{open_.dispersion ? "split" : "full", full_scene_};
     full.inside = true;
     measured(std::move(full), *full_);
     return out;

@@ -14,12 +14,12 @@ namespace petzval {
 
 /// What a request leaves to the plan.
 struct PlanOpen {
-    bool spectral = false;  ///< RGB or wavelengths
-    bool chroma = false;    ///< whether wavelengths that a lens parts may share a ray
-    bool parted = false;    ///< how they are parted, where nothing is left out
+    bool spectral = false;    ///< RGB or wavelengths
+    bool dispersion = false;  ///< whether wavelengths that a lens parts may share a ray
+    bool parted = false;      ///< how they are parted, where nothing is left out
 
     PlanOpen(const SceneRequest&, const Session&);
-    [[nodiscard]] bool any() const { return spectral || chroma; }
+    [[nodiscard]] bool any() const { return spectral || dispersion; }
 };
 
 /// All must outlive it.
@@ -32,13 +32,13 @@ class PlanComparison {
     /// Cameras without glass, and without an iris, in place of the session's.
     void add_simpler_cameras();
     void add_rgb();
-    /// One ray for all wavelengths. Where chroma is open.
+    /// One ray for all wavelengths. Where dispersion is open.
     void add_shared();
-    /// A way that parts wavelengths. Where chroma is open.
-    void add_parted(const std::string& name, Chroma);
+    /// A way that parts wavelengths. Where dispersion is open.
+    void add_parted(const std::string& name, DispersionMode);
 
     /// One without a bias, whatever wavelengths do: only its cost and noise are looked at.
-    void add_unbiased(const std::string& name, Chroma);
+    void add_unbiased(const std::string& name, DispersionMode);
 
     /// Doubles the samples until it is known which candidates are inside, or where thorough until
     /// the predictions are good figures; never beyond most_samples of all models together.
@@ -47,7 +47,7 @@ class PlanComparison {
     /// As added, and last the fullest model: it has no bias.
     [[nodiscard]] std::vector<PlanCandidate> candidates() const;
     [[nodiscard]] double cpu_s_per_sample(size_t candidate) const;
-    /// How far wavelengths are parted (apps/plan/dispersion_spread.h); 0 unless chroma is open.
+    /// How far wavelengths are parted (apps/plan/dispersion_spread.h); 0 unless dispersion is open.
     [[nodiscard]] double spread() const { return spread_px_; }
 
   private:

@@ -189,7 +189,7 @@ void check_lens(const CameraRequest& asked) {
 }  // namespace
 
 std::string CameraPlan::dispersive_name() const {
-    if (asked.chroma == Chroma::Shared) return "";
+    if (asked.dispersion == DispersionMode::Shared) return "";
     if (const auto* lens = std::get_if<LoadedLens>(&optics))
         return lens->disperses() ? lens->name() : "";
     if (const auto* lens = std::get_if<SingleLens>(&optics))

@@ -29,10 +29,10 @@ void describe_glass(const CameraReport& c, PictureLayout& layout) {
     m.emplace_back("petzval:coating", word_of(c.asked.coating));
     m.emplace_back("petzval:march", word_of(c.asked.march));
     m.emplace_back("petzval:fit", word_of(c.asked.fit));
-    const Chroma chroma = c.asked.chroma.value_or(Chroma::Tolerance);
-    m.emplace_back("petzval:chroma", word_of(chroma));
-    if (chroma == Chroma::Tolerance)
-        m.emplace_back("petzval:chromaTolerance_px", c.asked.chroma_tolerance_px);
+    const DispersionMode dispersion = c.asked.dispersion.value_or(DispersionMode::Tolerance);
+    m.emplace_back("petzval:dispersion", word_of(dispersion));
+    if (dispersion == DispersionMode::Tolerance)
+        m.emplace_back("petzval:dispersionTolerance_px", c.asked.dispersion_tolerance_px);
 }
 
 }  // namespace

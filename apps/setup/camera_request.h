@@ -53,8 +53,9 @@ struct CameraRequest {
     std::optional<std::string> aperture;  ///< as parse_aperture reads it
     ApertureScale aperture_scale = ApertureScale::EqualArea;
     std::optional<IrisSampling> iris_sampling;
-    std::optional<Chroma> chroma;  ///< absent: Tolerance, unless a plan finds what is cheaper
-    float chroma_tolerance_px = 0.1f;
+    std::optional<DispersionMode>
+        dispersion;  ///< absent: Tolerance, unless a plan finds what is cheaper
+    float dispersion_tolerance_px = 0.1f;
     Coating coating = Coating::Ideal;
     March march = March::Float;
     ExposureMode exposure = ExposureMode::Normalised;

@@ -165,15 +165,16 @@ LensSetup set_up_lens(const CameraRequest& asked, const LoadedLens& loaded, cons
                             aperture, 100 * iris.share_cut()));
         LensCameraInput in = input_of(loaded, to_world, std::move(sharp), iris);
         setup.film_mm = in.film_mm;
-        in.chroma = asked.chroma.value_or(Chroma::Tolerance);
+        in.dispersion = asked.dispersion.value_or(DispersionMode::Tolerance);
         in.coating = asked.coating;
         in.march = asked.march;
         in.focus_m = focus_m;
         // Seen from the rear principal point, where the film is a distance in focus away.
         const FirstOrder f = first_order(*in.lens, kLineD_nm);
         const double from_mm = in.lens->vertex_mm(in.lens->last()) + f.rear_principal_mm;
-        in.tolerance_rad = static_cast<float>(asked.chroma_tolerance_px * double(loaded.film_mm.x) /
-                                              width_px / (in.film_mm - from_mm));
+        in.tolerance_rad =
+            static_cast<float>(asked.dispersion_tolerance_px * double(loaded.film_mm.x) / width_px /
+                               (in.film_mm - from_mm));
         camera = std::make_unique<LensCamera>(std::move(in));
     } catch (const std::invalid_argument& error) {
         throw ArgumentError(aperture, "", error.what());

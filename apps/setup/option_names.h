@@ -14,12 +14,12 @@ template <class T>
 using Words = std::vector<std::pair<std::string, T>>;
 
 /// Every word of a choice; the argument only says which choice.
-[[nodiscard]] inline Words<Chroma> words_of(Chroma) {
-    return {{"tolerance", Chroma::Tolerance},
-            {"shared", Chroma::Shared},
-            {"split", Chroma::Split},
-            {"single", Chroma::Single},
-            {"hero", Chroma::Hero}};
+[[nodiscard]] inline Words<DispersionMode> words_of(DispersionMode) {
+    return {{"tolerance", DispersionMode::Tolerance},
+            {"shared", DispersionMode::Shared},
+            {"split", DispersionMode::Split},
+            {"single", DispersionMode::Single},
+            {"hero", DispersionMode::Hero}};
 }
 [[nodiscard]] inline Words<ApertureScale> words_of(ApertureScale) {
     return {{"area", ApertureScale::EqualArea}, {"inscribed", ApertureScale::Inscribed}};

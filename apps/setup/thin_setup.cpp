@@ -154,9 +154,10 @@ ThinSetup set_up_thin(const CameraPlan& plan, const ThinView& view, ThinLens len
             AberratedLens glass{lens.to_world,   singlet_of(*single, setup.focal_mm),
                                 std::move(iris), double(*focus_m),
                                 lens.yfov_rad,   lens.aspect};
-            glass.chroma = asked.chroma.value_or(Chroma::Tolerance);
-            glass.tolerance_rad = static_cast<float>(
-                asked.chroma_tolerance_px * double(view.sensor_mm.x) / width_px / setup.film_mm);
+            glass.dispersion = asked.dispersion.value_or(DispersionMode::Tolerance);
+            glass.tolerance_rad =
+                static_cast<float>(asked.dispersion_tolerance_px * double(view.sensor_mm.x) /
+                                   width_px / setup.film_mm);
             glass.exposure = lens.exposure;
             warn_of_formula(glass.singlet, plan, focus_mm, glass.iris.bounding_radius_mm(), notice);
             setup.camera = std::make_unique<AberratedLensCamera>(std::move(glass));

@@ -114,7 +114,7 @@ Drawn drawn_at(const Subject& of, V2f film_mm) {
     in.film_mm = of.lens->film_mm();
     in.film_width_mm = 2 * double(film_mm.x);
     in.film_height_mm = 2 * double(film_mm.y);
-    in.chroma = Chroma::Shared;
+    in.dispersion = DispersionMode::Shared;
     const LensCamera camera(in);
     Drawn out;
     double passed = 0;

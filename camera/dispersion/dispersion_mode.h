@@ -13,7 +13,7 @@ namespace petzval {
 /// Shared: the ray of line d, as if the lens were achromatic. Split: one for each, always. Single:
 /// one wavelength a path. Hero: the ray of one lane, weighed for each lane by where it would have
 /// reached the film (hero.h).
-enum class Chroma : uint8_t { Tolerance, Shared, Split, Single, Hero };
+enum class DispersionMode : uint8_t { Tolerance, Shared, Split, Single, Hero };
 
 /// One of the lanes that are on, each as likely; u in [0, 1).
 [[nodiscard]] inline int pick_lane(m4 on, float u) {

@@ -43,22 +43,22 @@ AberratedLensCamera::AberratedLensCamera(AberratedLens lens)
 }
 
 CameraSample AberratedLensCamera::sample(const FilmPoint& at, const Bands& bands) const {
-    if (in_.chroma == Chroma::Hero && bands.spectral)
-        return at.pixel.filter ? hero(at, bands) : sample(at, bands, Chroma::Split);
-    return sample(at, bands, in_.chroma);
+    if (in_.dispersion == DispersionMode::Hero && bands.spectral)
+        return at.pixel.filter ? hero(at, bands) : sample(at, bands, DispersionMode::Split);
+    return sample(at, bands, in_.dispersion);
 }
 
 CameraSample AberratedLensCamera::sample(const FilmPoint& at, const Bands& bands,
-                                         Chroma chroma) const {
+                                         DispersionMode dispersion) const {
     const V3f through_centre{(2.f * at.film.x - 1.f) * tan_half_x_,
                              (1.f - 2.f * at.film.y) * tan_half_y_, -1.f};
     const V2f stop = in_.iris.sample(at.sampler.get2(Dim::Lens));
     const V3f point_mm{stop.x, stop.y, 0.f};
     const float h_mm = stop.length();
-    const bool split = bands.spectral && chroma != Chroma::Shared;
+    const bool split = bands.spectral && dispersion != DispersionMode::Shared;
     m4 on = bands.on;
     float weight = in_.exposure;
-    if (split && chroma == Chroma::Single) {
+    if (split && dispersion == DispersionMode::Single) {
         on = only_lane(pick_lane(bands.on, at.sampler.get1(Dim::LensLane)));
         weight *= static_cast<float>(lane_count(bands.on));
     }
@@ -76,7 +76,7 @@ CameraSample AberratedLensCamera::sample(const FilmPoint& at, const Bands& bands
         const auto vergence = static_cast<float>(1 / focal_mm - 1 / film_mm_);
         const auto together = [&](size_t k) {
             return h_mm * std::fabs(vergence - vergence_per_mm[k]) <= in_.tolerance_rad &&
-                   !(split && chroma == Chroma::Split);
+                   !(split && dispersion == DispersionMode::Split);
         };
         size_t k = 0;
         while (k < out.size() && !together(k)) ++k;

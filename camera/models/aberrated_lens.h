@@ -17,7 +17,7 @@ struct AberratedLens {
     double focus_m = 1;     ///< axial distance; may be infinite
     float yfov_rad = 0.7f;  ///< full vertical angle, seen from the lens's centre
     float aspect = 1.5f;    ///< width / height of the film
-    Chroma chroma = Chroma::Tolerance;
+    DispersionMode dispersion = DispersionMode::Tolerance;
     float tolerance_rad = 0;  ///< Tolerance: how far apart directions may be, seen from the lens
     float exposure = 1.f;     ///< factor on every weight
 };
@@ -34,7 +34,7 @@ class AberratedLensCamera final : public Camera {
     [[nodiscard]] double film_distance_mm() const { return film_mm_; }
 
   private:
-    [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&, Chroma) const;
+    [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&, DispersionMode) const;
     [[nodiscard]] CameraSample hero(const FilmPoint&, const Bands&) const;
     [[nodiscard]] double zonal_mm(double n, double h_mm) const;
 

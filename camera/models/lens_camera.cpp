@@ -65,13 +65,13 @@ LensCamera::LensCamera(LensCameraInput in)
 // with the mean density (balance heuristic: Veach 1997, 9.2.3), so that light at the iris's edge is
 // not lost where its image differs between wavelengths.
 template <class V>
-LensDraw<V> LensCamera::draw(const Aim& aim, const Bands& bands, Coating coating, Chroma chroma,
-                             const LensIndices<f4>& in_floats,
+LensDraw<V> LensCamera::draw(const Aim& aim, const Bands& bands, Coating coating,
+                             DispersionMode dispersion, const LensIndices<f4>& in_floats,
                              const LensIndices<V>& indices) const {
     using S = ScalarOf<V>;
     LensDraw<V> out;
     const V2f on_iris = in_.iris.sample(aim.u);
-    const bool single = chroma == Chroma::Single && !one_ray(bands, chroma);
+    const bool single = dispersion == DispersionMode::Single && !one_ray(bands, dispersion);
     const m4 on = single ? only_lane(aim.lane) : bands.on;
     const auto solved = pupil_.solve(aim.film_mm, on_iris, in_floats, aim.lane, aim.nm);
     out.lanes.drawn = static_cast<uint32_t>(lane_count(on));
@@ -111,25 +111,27 @@ LensDraw<V> LensCamera::draw(const Aim& aim, const Bands& bands, Coating coating
 
 template <class V>
 LensDraw<V> LensCamera::draw(V2f film_mm, V2f u, float u_lane, const Bands& bands, Coating coating,
-                             Chroma chroma) const {
+                             DispersionMode dispersion) const {
     const Lens& lens = *in_.lens;
     Aim aim{film_mm, u, pick_lane(bands.on, u_lane), static_cast<float>(kLineD_nm)};
-    if (one_ray(bands, chroma)) {
+    if (one_ray(bands, dispersion)) {
         if constexpr (std::same_as<V, f4>)
-            return draw(aim, bands, coating, chroma, line_d_, line_d_);
+            return draw(aim, bands, coating, dispersion, line_d_, line_d_);
         else
-            return draw(aim, bands, coating, chroma, line_d_, exact_line_d_);
+            return draw(aim, bands, coating, dispersion, line_d_, exact_line_d_);
     }
     aim.nm = bands.nm[aim.lane];
     const LensIndices<f4> indices = lens.indices(bands.nm);
     if constexpr (std::same_as<V, f4>)
-        return draw(aim, bands, coating, chroma, indices, indices);
+        return draw(aim, bands, coating, dispersion, indices, indices);
     else
-        return draw(aim, bands, coating, chroma, indices,
+        return draw(aim, bands, coating, dispersion, indices,
                     lens.exact_indices(lanes_as<d4>(bands.nm)));
 }
-template LensDraw<f4> LensCamera::draw(V2f, V2f, float, const Bands&, Coating, Chroma) const;
-template LensDraw<d4> LensCamera::draw(V2f, V2f, float, const Bands&, Coating, Chroma) const;
+template LensDraw<f4> LensCamera::draw(V2f, V2f, float, const Bands&, Coating,
+                                       DispersionMode) const;
+template LensDraw<d4> LensCamera::draw(V2f, V2f, float, const Bands&, Coating,
+                                       DispersionMode) const;
 
 template <class V>
 f4 LensCamera::transmitted(V2f film_mm, const StopCrossing<V>& c, Coating coating,
@@ -173,9 +175,9 @@ ScalarOf<V> LensCamera::behind_pupil_mm(const LensRay<V>& ray, int lane) const {
 
 // Whether two lanes meet the plane of focus within the tolerance, seen from the lens.
 template <class V>
-bool LensCamera::together(const LensRay<V>& ray, int a, int b, Chroma chroma) const {
+bool LensCamera::together(const LensRay<V>& ray, int a, int b, DispersionMode dispersion) const {
     using S = ScalarOf<V>;
-    if (chroma == Chroma::Split || chroma == Chroma::Hero) return false;
+    if (dispersion == DispersionMode::Split || dispersion == DispersionMode::Hero) return false;
     const float focus_mm = in_.focus_m * 1e3f;
     const auto on_plane = [&](int lane) {
         const S t = (S(focus_mm) + behind_pupil_mm(ray, lane)) / -ray.direction.z[lane];
@@ -188,7 +190,8 @@ bool LensCamera::together(const LensRay<V>& ray, int a, int b, Chroma chroma) co
 }
 
 template <class V>
-CameraSample LensCamera::paths(const LensDraw<V>& drawn, const Bands& bands, Chroma chroma) const {
+CameraSample LensCamera::paths(const LensDraw<V>& drawn, const Bands& bands,
+                               DispersionMode dispersion) const {
     CameraSample out;
     out.lanes = drawn.lanes;
     out.exposure = exposure_;
@@ -200,7 +203,8 @@ CameraSample LensCamera::paths(const LensDraw<V>& drawn, const Bands& bands, Chr
         path.ray = world_ray(drawn.ray, lane);
         path.lanes = left;
         for (int other = lane + 1; other < 4; ++other)
-            if (!one_ray(bands, chroma) && left[other] && !together(drawn.ray, lane, other, chroma))
+            if (!one_ray(bands, dispersion) && left[other] &&
+                !together(drawn.ray, lane, other, dispersion))
                 path.lanes[other] = 0;
         path.weight = zero_off(path.lanes, lanes_as<f4>(drawn.weight));
         left &= ~path.lanes;
@@ -224,7 +228,7 @@ CameraSample LensCamera::hero(const FilmPoint& point, V2f film_mm, const Bands& 
             return lens.exact_indices(lanes_as<d4>(bands.nm));
     }();
     const LensDraw<V> drawn = draw({film_mm, u, lead, bands.nm[lead]}, bands, Coating::Ideal,
-                                   Chroma::Single, in_floats, indices);
+                                   DispersionMode::Single, in_floats, indices);
     CameraSample out;
     out.lanes = drawn.lanes;
     out.exposure = exposure_;
@@ -281,13 +285,14 @@ CameraSample LensCamera::sample(const FilmPoint& point, const Bands& bands) cons
     // The image stands on its head: what is seen on the right falls on the left of the film.
     const V2f film((0.5f - point.film.x) * static_cast<float>(in_.film_width_mm),
                    (point.film.y - 0.5f) * static_cast<float>(in_.film_height_mm));
-    if (in_.chroma == Chroma::Hero && bands.spectral && point.pixel.filter)
+    if (in_.dispersion == DispersionMode::Hero && bands.spectral && point.pixel.filter)
         return in_.march == March::Double ? hero<d4>(point, film, bands)
                                           : hero<f4>(point, film, bands);
     const V2f u = point.sampler.get2(Dim::Lens);
     const float u_lane = point.sampler.get1(Dim::LensLane);
     const auto drawn = [&]<class V>(V) {
-        return paths(draw<V>(film, u, u_lane, bands, in_.coating, in_.chroma), bands, in_.chroma);
+        return paths(draw<V>(film, u, u_lane, bands, in_.coating, in_.dispersion), bands,
+                     in_.dispersion);
     };
     return in_.march == March::Double ? drawn(d4{}) : drawn(f4{});
 }
@@ -298,7 +303,7 @@ double LensCamera::irradiance(V2f film_mm, uint32_t count) const {
     double sum = 0;
     for (uint32_t i = 0; i < count; ++i) {
         const V2f u = Sampler(SamplerKind::Owen, 0, {0, 0, i}).get2(Dim::Lens);
-        sum += hsum(draw<f4>(film_mm, u, 0.f, bands, Coating::Ideal, in_.chroma).weight);
+        sum += hsum(draw<f4>(film_mm, u, 0.f, bands, Coating::Ideal, in_.dispersion).weight);
     }
     return sum / (double(count) * lane_count(bands.on));
 }

@@ -30,7 +30,7 @@ struct LensCameraInput {
     double film_mm = 0;  ///< z of the film, behind the lens
     double film_width_mm = 36, film_height_mm = 24;
     double entrance_pupil_mm = 0;  ///< z of what stands at to_world's origin
-    Chroma chroma = Chroma::Tolerance;
+    DispersionMode dispersion = DispersionMode::Tolerance;
     float focus_m = 1;        ///< where wavelengths are compared, along the axis
     float tolerance_rad = 0;  ///< Tolerance: how far apart directions may be, seen from the lens
     Coating coating = Coating::Ideal;
@@ -60,7 +60,7 @@ class LensCamera final : public Camera {
     /// point of the film. u_lane picks the lane whose ray hits the drawn iris point. V: f4 or d4.
     template <class V = f4>
     [[nodiscard]] LensDraw<V> draw(V2f film_mm, V2f u, float u_lane, const Bands& bands) const {
-        return draw<V>(film_mm, u, u_lane, bands, in_.coating, in_.chroma);
+        return draw<V>(film_mm, u, u_lane, bands, in_.coating, in_.dispersion);
     }
 
   private:
@@ -72,10 +72,10 @@ class LensCamera final : public Camera {
     };
     template <class V>
     [[nodiscard]] LensDraw<V> draw(V2f film_mm, V2f u, float u_lane, const Bands&, Coating,
-                                   Chroma) const;
+                                   DispersionMode) const;
     /// Solved with the indices in floats, marched with the others.
     template <class V>
-    [[nodiscard]] LensDraw<V> draw(const Aim&, const Bands&, Coating, Chroma,
+    [[nodiscard]] LensDraw<V> draw(const Aim&, const Bands&, Coating, DispersionMode,
                                    const LensIndices<f4>&, const LensIndices<V>&) const;
     /// What the surfaces let through of the ray that leaves the film towards the crossing.
     template <class V>
@@ -84,17 +84,17 @@ class LensCamera final : public Camera {
     template <class V>
     [[nodiscard]] CameraSample hero(const FilmPoint&, V2f film_mm, const Bands&) const;
     template <class V>
-    [[nodiscard]] CameraSample paths(const LensDraw<V>&, const Bands&, Chroma) const;
+    [[nodiscard]] CameraSample paths(const LensDraw<V>&, const Bands&, DispersionMode) const;
     template <class V>
     [[nodiscard]] Ray world_ray(const LensRay<V>&, int lane) const;
     /// How far the ray's origin lies behind the middle of the entrance pupil.
     template <class V>
     [[nodiscard]] ScalarOf<V> behind_pupil_mm(const LensRay<V>&, int lane) const;
     template <class V>
-    [[nodiscard]] bool together(const LensRay<V>&, int a, int b, Chroma) const;
+    [[nodiscard]] bool together(const LensRay<V>&, int a, int b, DispersionMode) const;
     /// Whether all lanes have the ray of line d.
-    [[nodiscard]] static bool one_ray(const Bands& bands, Chroma chroma) {
-        return !bands.spectral || chroma == Chroma::Shared;
+    [[nodiscard]] static bool one_ray(const Bands& bands, DispersionMode dispersion) {
+        return !bands.spectral || dispersion == DispersionMode::Shared;
     }
 
     LensCameraInput in_;

@@ -48,7 +48,7 @@ V3d from_opponent(const V3d& ycc) {
     return (V3d(y + ycc.y / 500, y, y - ycc.z / 200) * white()) * to_rgb;
 }
 
-/// CIELAB (CIE 015:2018, 8.2.1), its chroma scaled by lightness for the Hunt effect.
+/// CIELAB (CIE 015:2018, 8.2.1), its dispersion scaled by lightness for the Hunt effect.
 V3d hunt_lab(const V3d& rgb) {
     constexpr double d = 6. / 29;
     const auto f = [](double t) {

@@ -210,11 +210,11 @@ TEST(AberratedLens, WavelengthsPartOnlyWhereTheyDiffer) {
     AberratedLens tolerant = plain(n_sf11(), 0.5, 5, 1);
     tolerant.tolerance_rad = 0.1f;
     EXPECT_EQ(count(AberratedLensCamera(tolerant), wavelengths(kLines)), 1);
-    tolerant.chroma = Chroma::Split;
+    tolerant.dispersion = DispersionMode::Split;
     EXPECT_EQ(count(AberratedLensCamera(tolerant), wavelengths(kLines)), 4);
-    tolerant.chroma = Chroma::Shared;
+    tolerant.dispersion = DispersionMode::Shared;
     EXPECT_EQ(count(AberratedLensCamera(tolerant), wavelengths(kLines)), 1);
-    tolerant.chroma = Chroma::Single;
+    tolerant.dispersion = DispersionMode::Single;
     f4 drawn{};
     for (uint32_t i = 0; i < 4096; ++i) {
         const CameraSample one =

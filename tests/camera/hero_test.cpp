@@ -26,7 +26,7 @@ Bands four_wavelengths(float u) {
 
 /// One lens of 100 mm at f/4 in front of pixels of 0.2 mm. Its stop lies before the glass or
 /// behind it, its rim cuts the beam off the axis.
-LensCameraInput singlet(Chroma chroma, double blue, double red, bool stop_first) {
+LensCameraInput singlet(DispersionMode dispersion, double blue, double red, bool stop_first) {
     Prescription p;
     const auto add = [&p](double curvature, double thickness, double semi_diameter) -> auto& {
         LensSurface s;
@@ -45,18 +45,18 @@ LensCameraInput singlet(Chroma chroma, double blue, double red, bool stop_first)
     in.film_mm = lens->film_mm();
     in.film_width_mm = 9.6;
     in.film_height_mm = 6.4;
-    in.chroma = chroma;
+    in.dispersion = dispersion;
     return in;
 }
 
-AberratedLensCamera thin(Chroma chroma, double blue, double red) {
+AberratedLensCamera thin(DispersionMode dispersion, double blue, double red) {
     const Glass glass{"as given", IndexTable{{{360, blue}, {830, red}}}};
     AberratedLens lens{.to_world = M44f(),
                        .singlet = {glass, 129, -129},
                        .iris = Iris(regular_polygon(5), 12),
                        .focus_m = 1e6,
                        .yfov_rad = 0.064f};
-    lens.chroma = chroma;
+    lens.dispersion = dispersion;
     return AberratedLensCamera(lens);
 }
 
@@ -94,13 +94,13 @@ TEST(Hero, EachLaneHasTheMeanOfSplitPaths) {
         for (const bool stop_first : {true, false})
             for (const Coating coating : {Coating::Ideal, Coating::Uncoated})
                 for (const Filter& filter : filters()) {
-                    const auto camera = [&, b = blue, r = red](Chroma chroma) {
-                        LensCameraInput in = singlet(chroma, b, r, stop_first);
+                    const auto camera = [&, b = blue, r = red](DispersionMode dispersion) {
+                        LensCameraInput in = singlet(dispersion, b, r, stop_first);
                         in.coating = coating;
                         return LensCamera(in);
                     };
-                    EXPECT_GE(least_p(in_pixel(camera(Chroma::Hero), filter, 1),
-                                      in_pixel(camera(Chroma::Split), filter, 2)),
+                    EXPECT_GE(least_p(in_pixel(camera(DispersionMode::Hero), filter, 1),
+                                      in_pixel(camera(DispersionMode::Split), filter, 2)),
                               test::sidak())
                         << blue << ' ' << stop_first << ' ' << int(coating) << ' '
                         << filter.radius_px();
@@ -112,35 +112,35 @@ TEST(Hero, EachLaneHasItsMeanThroughAGreyIris) {
     Mask mask;
     mask.width = mask.height = 16;
     for (int i = 0; i < 256; ++i) mask.texels.push_back(i < 128 ? 1.f : 0.1f);
-    const auto camera = [&](Chroma chroma) {
-        LensCameraInput in = singlet(chroma, 1.68, 1.64, false);
+    const auto camera = [&](DispersionMode dispersion) {
+        LensCameraInput in = singlet(dispersion, 1.68, 1.64, false);
         in.iris = Iris(mask, 6);
         return LensCamera(in);
     };
     const Filter wide(FilterKind::Gauss, 12.f);
-    EXPECT_GE(
-        least_p(in_pixel(camera(Chroma::Hero), wide, 1), in_pixel(camera(Chroma::Split), wide, 2)),
-        test::sidak());
+    EXPECT_GE(least_p(in_pixel(camera(DispersionMode::Hero), wide, 1),
+                      in_pixel(camera(DispersionMode::Split), wide, 2)),
+              test::sidak());
 }
 
 TEST(Hero, SharedRaysHaveAnotherMean) {
-    const auto mean = [](Chroma chroma, uint32_t seed) {
-        return in_pixel(LensCamera(singlet(chroma, 1.70, 1.62, true)), filters()[0], seed);
+    const auto mean = [](DispersionMode dispersion, uint32_t seed) {
+        return in_pixel(LensCamera(singlet(dispersion, 1.70, 1.62, true)), filters()[0], seed);
     };
-    EXPECT_LT(least_p(mean(Chroma::Shared, 1), mean(Chroma::Split, 2)), 1e-12);
+    EXPECT_LT(least_p(mean(DispersionMode::Shared, 1), mean(DispersionMode::Split, 2)), 1e-12);
 }
 
 TEST(Hero, EachLaneOfAThinLensHasTheMeanOfSplitPaths) {
     for (const auto& [blue, red] : {std::pair{1.6605, 1.6595}, {1.70, 1.62}})
         for (const Filter& filter : filters())
-            EXPECT_GE(least_p(in_pixel(thin(Chroma::Hero, blue, red), filter, 1),
-                              in_pixel(thin(Chroma::Split, blue, red), filter, 2)),
+            EXPECT_GE(least_p(in_pixel(thin(DispersionMode::Hero, blue, red), filter, 1),
+                              in_pixel(thin(DispersionMode::Split, blue, red), filter, 2)),
                       test::sidak())
                 << blue << ' ' << filter.radius_px();
 }
 
 TEST(Hero, RaysInDoublesAreThoseInFloats) {
-    LensCameraInput in = singlet(Chroma::Hero, 1.662, 1.658, true);
+    LensCameraInput in = singlet(DispersionMode::Hero, 1.662, 1.658, true);
     const LensCamera floats(in);
     in.march = March::Double;
     const LensCamera doubles(in);
@@ -181,8 +181,8 @@ TEST(Hero, SharesAddUpToTheNumberOfLanes) {
 }
 
 TEST(Hero, WithoutAFilterLanesAreSplit) {
-    const LensCamera hero(singlet(Chroma::Hero, 1.70, 1.62, true)),
-        split(singlet(Chroma::Split, 1.70, 1.62, true));
+    const LensCamera hero(singlet(DispersionMode::Hero, 1.70, 1.62, true)),
+        split(singlet(DispersionMode::Split, 1.70, 1.62, true));
     int parted = 0;
     for (uint32_t i = 0; i < 100; ++i) {
         const FilmPoint at{V2f(0.5f, 0.6f), Sampler(SamplerKind::Owen, 1, {3, 2, i})};

@@ -16,7 +16,7 @@ using namespace test;
 // Where the fisheye's image ends: rims take rays first; beyond a field of 90 degrees rays graze the
 // front surface, then are totally reflected within it, before the film point sees no stop at all.
 TEST(LaneFates, AtTheFisheyesRimRaysGrazeThenAreTotallyReflected) {
-    const LensCameraInput in = input_of(kFisheye, Chroma::Shared);
+    const LensCameraInput in = input_of(kFisheye, DispersionMode::Shared);
     LensCameraInput bare = in;
     bare.coating = Coating::Uncoated;
     const LensCamera camera(in), uncoated(bare);
@@ -81,7 +81,8 @@ LaneFates<uint64_t> fates(const LensCameraInput& in, const Bands& bands) {
         const CameraSample seen = camera.sample(film_point(random.next2(), i), bands);
         uint32_t passed = 0;
         for (size_t k = 0; k < seen.size(); ++k) passed += uint32_t(lane_count(seen[k].lanes));
-        EXPECT_EQ(seen.lanes.drawn, in.chroma == Chroma::Single ? 1 : lane_count(bands.on));
+        EXPECT_EQ(seen.lanes.drawn,
+                  in.dispersion == DispersionMode::Single ? 1 : lane_count(bands.on));
         EXPECT_EQ(passed + seen.lanes.lost(), seen.lanes.drawn);
         out += seen.lanes;
     }
@@ -89,15 +90,16 @@ LaneFates<uint64_t> fates(const LensCameraInput& in, const Bands& bands) {
 }
 
 TEST(LaneFates, AddUpAndTellTheCause) {
-    for (const Chroma chroma : {Chroma::Shared, Chroma::Split, Chroma::Single})
+    for (const DispersionMode dispersion :
+         {DispersionMode::Shared, DispersionMode::Split, DispersionMode::Single})
         for (const March precision : {March::Float, March::Double}) {
-            LensCameraInput in = input_of(kTakumar, chroma);
+            LensCameraInput in = input_of(kTakumar, dispersion);
             in.march = precision;
             const auto open = fates(in, four_wavelengths());
             EXPECT_GT(open.vignetted, open.drawn / 10);  // cat's eyes
             EXPECT_LT(open.vignetted, open.drawn / 2);
             // A small stop lets everything through.
-            LensCameraInput small = input_of(kTakumar, chroma, 0.2);
+            LensCameraInput small = input_of(kTakumar, dispersion, 0.2);
             small.march = precision;
             const auto stopped = fates(small, four_wavelengths());
             EXPECT_LT(stopped.lost(), stopped.drawn / 100);  // edges of the iris, between lanes
@@ -105,7 +107,7 @@ TEST(LaneFates, AddUpAndTellTheCause) {
 }
 
 TEST(LaneFates, AFilmBeyondTheImageCircleIsBlack) {
-    LensCameraInput in = input_of(kGauss, Chroma::Shared);
+    LensCameraInput in = input_of(kGauss, DispersionMode::Shared);
     in.film_width_mm = in.film_height_mm = 300;
     const auto all = fates(in, Bands::rgb());
     EXPECT_GT(all.vignetted, 0u);
@@ -115,9 +117,9 @@ TEST(LaneFates, AFilmBeyondTheImageCircleIsBlack) {
 
 // An iris that is larger than the stop is cut off by its rim; of a wide one, no ray gets anywhere.
 TEST(LaneFates, AWideIrisIsVignettedOrUnreached) {
-    const auto some = fates(input_of(kGauss, Chroma::Shared, 1.5), Bands::rgb());
+    const auto some = fates(input_of(kGauss, DispersionMode::Shared, 1.5), Bands::rgb());
     EXPECT_GT(some.vignetted, some.drawn / 2);
-    const auto most = fates(input_of(kGauss, Chroma::Shared, 20), Bands::rgb());
+    const auto most = fates(input_of(kGauss, DispersionMode::Shared, 20), Bands::rgb());
     EXPECT_GT(most.unreached, most.drawn / 2);
 }
 
@@ -142,7 +144,7 @@ TEST(LaneFates, TotalReflectionAndMissesAreToldApart) {
         LensCameraInput in{.lens = lens, .iris = Iris(Disk{}, 15), .to_world = M44f()};
         in.film_mm = lens->film_mm();
         in.film_width_mm = in.film_height_mm = 2;
-        in.chroma = Chroma::Shared;
+        in.dispersion = DispersionMode::Shared;
         return fates(in, Bands::rgb());
     };
     const auto curved = through(0.1, 1.8);  // light leaves the glass through a ball of 10 mm

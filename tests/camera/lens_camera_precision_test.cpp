@@ -43,7 +43,7 @@ TEST(LensCameraMarch, DoublesAreATracedRays) {
     const Bands bands = four_wavelengths();
     for (const std::string& name : {kTakumar, kFisheye, std::string("canon-14mm-f2.8-asph"),
                                     std::string("schneider-anamorphic-31mm")}) {
-        const LensCameraInput in = input_of(name, Chroma::Split, 0.9);
+        const LensCameraInput in = input_of(name, DispersionMode::Split, 0.9);
         const Lens& lens = *in.lens;
         const LensCamera camera(in);
         test::Random random(2);
@@ -91,7 +91,7 @@ TEST(LensCameraMarch, DoublesAreATracedRays) {
 TEST(LensCameraCoating, LossesMultiplyTheWeight) {
     for (const std::string& name : {kGauss, kFisheye})
         for (const Coating coating : {Coating::Uncoated, Coating::MgF2}) {
-            LensCameraInput in = input_of(name, Chroma::Split, 0.05);
+            LensCameraInput in = input_of(name, DispersionMode::Split, 0.05);
             const LensCamera ideal(in);
             in.coating = coating;
             const LensCamera camera(in);
@@ -111,7 +111,7 @@ TEST(LensCameraCoating, LossesMultiplyTheWeight) {
 
 // Surface by surface, with angles from the points of trace_ray.
 TEST(LensCameraCoating, OffTheAxisEachSurfaceHasItsAngle) {
-    LensCameraInput in = input_of(kGauss, Chroma::Split);
+    LensCameraInput in = input_of(kGauss, DispersionMode::Split);
     const LensCamera ideal(in);
     in.coating = Coating::Uncoated;
     const LensCamera camera(in);

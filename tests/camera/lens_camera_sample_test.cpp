@@ -15,7 +15,7 @@ using namespace test;
 
 // The double Gauss is focused at infinity, where a film point is a direction.
 TEST(LensCameraSample, RaysLeaveThePupilTowardsWhatIsSeenThere) {
-    const LensCameraInput in = input_of(kGauss, Chroma::Shared, 0.3);
+    const LensCameraInput in = input_of(kGauss, DispersionMode::Shared, 0.3);
     const LensCamera camera(in);
     const double focal_mm = first_order(*in.lens, kLineD_nm).focal_length_mm;
     const V3f back(-0.48f, 0.6f, 0.64f), up(0.36f, 0.8f, -0.48f), right = up.cross(back);
@@ -39,9 +39,9 @@ TEST(LensCameraSample, RaysLeaveThePupilTowardsWhatIsSeenThere) {
 TEST(LensCameraSample, LanesOfPathsPartitionThoseThatPass) {
     const Bands bands = four_wavelengths();
     for (const std::string& name : {kTakumar, kFisheye})
-        for (const Chroma chroma :
-             {Chroma::Tolerance, Chroma::Shared, Chroma::Split, Chroma::Single}) {
-            LensCameraInput in = input_of(name, chroma);
+        for (const DispersionMode dispersion : {DispersionMode::Tolerance, DispersionMode::Shared,
+                                                DispersionMode::Split, DispersionMode::Single}) {
+            LensCameraInput in = input_of(name, dispersion);
             in.tolerance_rad = 5e-5f;
             const LensCamera camera(in);
             test::Random random(3);
@@ -65,19 +65,19 @@ TEST(LensCameraSample, LanesOfPathsPartitionThoseThatPass) {
                     ASSERT_EQ(lanes[lane], passed[lane]);
                     ASSERT_EQ(weight[lane], drawn.weight[lane]);
                 }
-                if (chroma == Chroma::Split) {
+                if (dispersion == DispersionMode::Split) {
                     ASSERT_EQ(int(seen.size()), lane_count(passed));
                 }
-                if (chroma == Chroma::Single) {
+                if (dispersion == DispersionMode::Single) {
                     ASSERT_LE(lane_count(lanes), 1);
                 }
             }
             EXPECT_EQ(counts[1] + counts[0] == 2000,
-                      chroma == Chroma::Shared || chroma == Chroma::Single);
-            if (chroma == Chroma::Split) {
+                      dispersion == DispersionMode::Shared || dispersion == DispersionMode::Single);
+            if (dispersion == DispersionMode::Split) {
                 EXPECT_GT(counts[4], 1000) << name;
             }
-            if (chroma == Chroma::Tolerance) {
+            if (dispersion == DispersionMode::Tolerance) {
                 EXPECT_GT(
                     std::min(counts[1] + counts[2] + counts[3], counts[2] + counts[3] + counts[4]),
                     100)
@@ -88,8 +88,8 @@ TEST(LensCameraSample, LanesOfPathsPartitionThoseThatPass) {
 
 TEST(LensCameraSample, OneWavelengthAPathIsAllInTheMean) {
     const Bands bands = four_wavelengths();
-    const auto mean = [&](Chroma chroma) {
-        const LensCamera camera(input_of(kTakumar, chroma, 0.5));
+    const auto mean = [&](DispersionMode dispersion) {
+        const LensCamera camera(input_of(kTakumar, dispersion, 0.5));
         std::array<test::Moments, 4> out;
         for (uint32_t i = 0; i < 1 << 14; ++i) {
             const CameraSample seen = camera.sample(film_point({0.8f, 0.3f}, i), bands);
@@ -99,7 +99,7 @@ TEST(LensCameraSample, OneWavelengthAPathIsAllInTheMean) {
         }
         return out;
     };
-    const auto single = mean(Chroma::Single), split = mean(Chroma::Split);
+    const auto single = mean(DispersionMode::Single), split = mean(DispersionMode::Split);
     // Owen's points are better than independent ones, so that the errors are overestimates.
     for (size_t lane = 0; lane < 4; ++lane) {
         const double error =
@@ -111,7 +111,7 @@ TEST(LensCameraSample, OneWavelengthAPathIsAllInTheMean) {
 }
 
 TEST(LensCameraSample, ExposureIsInTheWeight) {
-    const LensCameraInput in = input_of(kGauss, Chroma::Shared);
+    const LensCameraInput in = input_of(kGauss, DispersionMode::Shared);
     LensCamera camera(in);
     const FilmPoint at = film_point({0.5f, 0.5f}, 1);
     const float before = camera.sample(at, Bands::rgb())[0].weight[0];
@@ -131,7 +131,7 @@ TEST(LensCameraSample, AutoSharesWhatMeetsOnThePlaneOfFocus) {
         in.focus_m = 0.15f;
         in.tolerance_rad = 3e-4f;
         const LensCamera split(in);
-        in.chroma = Chroma::Tolerance;
+        in.dispersion = DispersionMode::Tolerance;
         const LensCamera automatic(in);
         test::Random random(8);
         int shared = 0, parted = 0, backwards = 0;

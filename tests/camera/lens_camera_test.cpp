@@ -30,7 +30,7 @@ constexpr double kTakumarFNumber = 1.2;
 
 struct Setup {
     ApertureShape shape = Disk{};
-    Chroma chroma = Chroma::Shared;
+    DispersionMode dispersion = DispersionMode::Shared;
     double stop_scale = 1;  ///< of the filed radius
 };
 
@@ -41,7 +41,7 @@ LensCameraInput input_of(const std::string& name, const Setup& setup = {}) {
     LensCameraInput in{.lens = lens, .iris = Iris(setup.shape, radius), .to_world = M44f()};
     in.film_mm = read_oracle(name).at("image_plane_z");
     in.entrance_pupil_mm = first_order(*lens, kLineD_nm).entrance_pupil_mm;
-    in.chroma = setup.chroma;
+    in.dispersion = setup.dispersion;
     return in;
 }
 
@@ -228,8 +228,9 @@ TEST(LensCamera, EachWavelengthHasItsOwnIrradiance) {
     for (const std::string& name : {kTakumar, kAnamorphic})
         for (const double scale : {0.5, 0.03})
             for (const ApertureShape& shape : {ApertureShape(Disk{}), ApertureShape(star(5))}) {
-                const LensCameraInput in =
-                    input_of(name, {.shape = shape, .chroma = Chroma::Split, .stop_scale = scale});
+                const LensCameraInput in = input_of(
+                    name,
+                    {.shape = shape, .dispersion = DispersionMode::Split, .stop_scale = scale});
                 const V2f film(3, 11);
                 const Estimate found = irradiance(LensCamera(in), film, bands);
                 for (int lane = 0; lane < 4; ++lane)
@@ -240,11 +241,11 @@ TEST(LensCamera, EachWavelengthHasItsOwnIrradiance) {
 
 TEST(LensCamera, SingleIsSplitInTheMean) {
     const Bands bands = four_wavelengths();
-    const auto found = [&](Chroma chroma) {
-        const LensCamera camera(input_of(kTakumar, {.chroma = chroma, .stop_scale = 0.1}));
+    const auto found = [&](DispersionMode dispersion) {
+        const LensCamera camera(input_of(kTakumar, {.dispersion = dispersion, .stop_scale = 0.1}));
         return irradiance(camera, V2f(3, 11), bands, 128);
     };
-    const Estimate single = found(Chroma::Single), split = found(Chroma::Split);
+    const Estimate single = found(DispersionMode::Single), split = found(DispersionMode::Split);
     for (size_t lane = 0; lane < 4; ++lane)
         EXPECT_TRUE(agree(single[lane], split[lane].mean(), split[lane].standard_error()));
 }
@@ -256,8 +257,9 @@ TEST(LensCamera, AtF4NearlyAllDrawsPassOnTheAxis) {
               ApertureShape(regular_polygon(3)), ApertureShape(rhomboid()),
               ApertureShape(frame())}) {
             const double filed = first_order(Lens(read_lens(name)), kLineD_nm).fnumber;
-            const LensCamera camera(
-                input_of(name, {.shape = shape, .chroma = Chroma::Split, .stop_scale = filed / 4}));
+            const LensCamera camera(input_of(
+                name,
+                {.shape = shape, .dispersion = DispersionMode::Split, .stop_scale = filed / 4}));
             test::Random random(3);
             int passed = 0;
             constexpr int kDraws = 2000;
@@ -283,9 +285,10 @@ TEST(LensCamera, IrradianceGoesAsTheAreaOfASmallStop) {
 TEST(LensCamera, NothingIsNotANumber) {
     for (const std::string& name : {kTakumar, kAnamorphic})
         for (const double scale : {kTakumarFNumber / 64, 1e-7, 1.6, 100.})
-            for (const Chroma chroma : {Chroma::Shared, Chroma::Split, Chroma::Single}) {
-                const LensCamera camera(
-                    input_of(name, {.shape = star(5), .chroma = chroma, .stop_scale = scale}));
+            for (const DispersionMode dispersion :
+                 {DispersionMode::Shared, DispersionMode::Split, DispersionMode::Single}) {
+                const LensCamera camera(input_of(
+                    name, {.shape = star(5), .dispersion = dispersion, .stop_scale = scale}));
                 test::Random random(8);
                 for (const float reach : {1.f, 20.f, 200.f, 1e6f, 1e30f})
                     for (int i = 0; i < 300; ++i) {
@@ -312,7 +315,7 @@ TEST(LensCamera, RaysComeBackToTheFilmPoint) {
     const Bands bands = four_wavelengths();
     const auto doubles = [](f4 a) { return __builtin_convertvector(a, d4); };
     for (const std::string name : test::kOracleLenses) {
-        const LensCameraInput in = input_of(name, {.chroma = Chroma::Split});
+        const LensCameraInput in = input_of(name, {.dispersion = DispersionMode::Split});
         const LensCamera camera(in);
         const Lens& lens = *in.lens;
         const LensIndices<d4> indices = lens.exact_indices(doubles(bands.nm));

@@ -25,7 +25,7 @@ inline const std::string kTakumar = "takumar-50mm-f1.2", kGauss = "double-gauss-
 }
 
 [[nodiscard]] inline LensCameraInput input_of(const std::string& name,
-                                              Chroma chroma = Chroma::Split,
+                                              DispersionMode dispersion = DispersionMode::Split,
                                               double stop_scale = 1) {
     const auto lens = std::make_shared<const Lens>(read_lens(name));
     const double radius =
@@ -33,7 +33,7 @@ inline const std::string kTakumar = "takumar-50mm-f1.2", kGauss = "double-gauss-
     LensCameraInput in{.lens = lens, .iris = Iris(Disk{}, radius), .to_world = posed()};
     in.film_mm = lens->film_mm();
     in.entrance_pupil_mm = first_order(*lens, kLineD_nm).entrance_pupil_mm;
-    in.chroma = chroma;
+    in.dispersion = dispersion;
     return in;
 }
 

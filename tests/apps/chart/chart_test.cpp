@@ -175,7 +175,7 @@ TEST_F(ChartCli, RefusesWhatItCannotDo) {
         const std::string line = error_of(chart_words(words), exit_code);
         EXPECT_NE(line.find(part), std::string::npos) << line;
     };
-    expect({"--axis", "colour", "-o", path("r")}, 2, "is none of camera, chroma");
+    expect({"--axis", "colour", "-o", path("r")}, 2, "is none of camera, dispersion");
     expect({"--budget", "1s", "-o", path("r")}, 2, "--budget");
     expect({"--axis", "sampler", "--seeds", "4", "-o", path("r")}, 2, "--seeds");
     expect({"--axis", "sampler", "-o", scene_}, 1, "cannot be made a folder");

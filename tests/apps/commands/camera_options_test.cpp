@@ -140,14 +140,14 @@ TEST_F(CliCamera, PhotographicExposureFollowsIrisShutterAndSpeed) {
                 3 * std::sqrt(3.) / (4 * M_PI), 1e-4);
     EXPECT_NEAR(green({"--focal-length", "50", "--fstop", "2", "--focus", "1"}), 100, 1e-2);
     const double slow = std::sin(std::atan(50 / 16. / film_mm));
-    EXPECT_NEAR(with({"--lens", "singlet:schott:N-BK7", "--chroma", "shared", "--focal-length",
+    EXPECT_NEAR(with({"--lens", "singlet:schott:N-BK7", "--dispersion", "shared", "--focal-length",
                       "50", "--fstop", "8", "--focus", "1"}) /
                     (expected * sqr(slow / sine)),
                 1, 1e-4);
     // A lens of glass at the same f-number, focused far away: a thin lens without its bellows.
     const double far = M_PI / 16 * 100 / 50 * 200 / 78;
     EXPECT_NEAR(with({"--lens", "double-gauss-100mm-f2", "--fstop", "2.8", "--focus", "1000",
-                      "--chroma", "shared", "--spp", "1024"}) /
+                      "--dispersion", "shared", "--spp", "1024"}) /
                     far,
                 sqr(2 / 2.8), 0.03);
 }
@@ -191,7 +191,7 @@ TEST_F(CliCamera, TheFirstRadiusFacesTheScene) {
     const double radius_mm = 100 * (1.5168 - 1);
     const auto picture = [&](const std::string& lens, Words more) {
         more.insert(more.end(), {"--lens", "singlet:schott:N-BK7," + lens, "--fstop", "5", "--fov",
-                                 "1", "--focus", "1", "--chroma", "shared", "--look-at",
+                                 "1", "--focus", "1", "--dispersion", "shared", "--look-at",
                                  "-0.2,0,0,-0.2,0,-1", "--spp", "64"});
         return picture_of(scene_, more);
     };
@@ -211,11 +211,11 @@ TEST_F(CliCamera, TheFirstRadiusFacesTheScene) {
 }
 
 TEST_F(CliCamera, ASharedRayNeedsNoWavelengths) {
-    const Words lens = {"--lens",  "singlet:schott:N-BK7", "--fstop", "8", "--focus", "2",
-                        "--chroma"};
-    const auto err = [&](const char* chroma) {
+    const Words lens = {"--lens", "singlet:schott:N-BK7", "--fstop", "8", "--focus",
+                        "2",      "--dispersion"};
+    const auto err = [&](const char* dispersion) {
         Words words = lens;
-        words.emplace_back(chroma);
+        words.emplace_back(dispersion);
         const Finished done = finished(scene_, words);
         EXPECT_EQ(done.exit_code, 0) << done.err;
         return done.err;
@@ -227,7 +227,7 @@ TEST_F(CliCamera, ASharedRayNeedsNoWavelengths) {
 // As many rays for twice the pixels and twice the tolerance, and whatever the film's height.
 TEST_F(CliCamera, ChromaToleranceIsInPixelsOfTheFilm) {
     const auto rays = [&](const std::string& lens, const char* size, const char* tolerance,
-                          const char* chroma = "auto") {
+                          const char* dispersion = "auto") {
         Words words = {"--lens",
                        lens,
                        "--fstop",
@@ -238,12 +238,12 @@ TEST_F(CliCamera, ChromaToleranceIsInPixelsOfTheFilm) {
                        "30x20",
                        "--size",
                        size,
-                       "--chroma-tolerance",
+                       "--dispersion-tolerance",
                        tolerance,
                        "--stats",
                        path("s.json"),
-                       "--chroma",
-                       chroma};
+                       "--dispersion",
+                       dispersion};
         if (lens.starts_with("singlet")) words.insert(words.end(), {"--focal-length", "100"});
         const Finished done = finished(scene_, words);
         EXPECT_EQ(done.exit_code, 0) << done.err;

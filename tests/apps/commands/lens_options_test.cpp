@@ -37,8 +37,8 @@ TEST_F(CliLens, MidGreyIsMidGreyThroughEveryLens) {
     for (const Words& words :
          {Words{"--lens", "double-gauss-100mm-f2"},
           Words{"--lens", "double-gauss-100mm-f2", "--fstop", "8", "--aperture", "star:5"},
-          Words{"--lens", "schneider-anamorphic-31mm", "--chroma", "shared"},
-          Words{"--lens", "tessar-100mm-f2.8", "--chroma", "single"}}) {
+          Words{"--lens", "schneider-anamorphic-31mm", "--dispersion", "shared"},
+          Words{"--lens", "tessar-100mm-f2.8", "--dispersion", "single"}}) {
         const Picture p = flat(words);
         for (const char* c : {"R", "G", "B"})
             EXPECT_NEAR(middle(p, c), 1.f, 0.06f) << words[1] << ' ' << c;
@@ -47,7 +47,7 @@ TEST_F(CliLens, MidGreyIsMidGreyThroughEveryLens) {
 }
 
 TEST_F(CliLens, CornersAreDarkerAndOpaque) {
-    const Picture p = flat({"--lens", "takumar-50mm-f1.2", "--chroma", "shared"});
+    const Picture p = flat({"--lens", "takumar-50mm-f1.2", "--dispersion", "shared"});
     EXPECT_LT(value_at(p, 0, 0, "G"), 0.4f);
     EXPECT_GT(value_at(p, 0, 0, "G"), 0.1f);
     EXPECT_EQ(value_at(p, 0, 0, "A"), 1.f);
@@ -55,7 +55,7 @@ TEST_F(CliLens, CornersAreDarkerAndOpaque) {
 
 // What is laid under a transparent picture is darkened as the lens darkens the sky.
 TEST_F(CliLens, AlphaIsWhatTheLensKeepsBack) {
-    const Words lens = {"--lens", "takumar-50mm-f1.2", "--chroma", "shared"};
+    const Words lens = {"--lens", "takumar-50mm-f1.2", "--dispersion", "shared"};
     Words photographic = lens;
     photographic.insert(photographic.end(), {"--exposure-mode", "photographic", "--iso", "400"});
     for (const Words& words : {lens, photographic}) {
@@ -117,7 +117,7 @@ TEST_F(CliLens, FitsTheAngleOfView) {
     };
     const double expected = 96 * 0.2 / std::tan(13 * M_PI / 180);
     EXPECT_NEAR(width_px(picture({"--fov", "26"})), expected, 1.5);
-    const Words lens = {"--lens", "biotar-58mm-f1.4", "--chroma", "shared", "--fstop",
+    const Words lens = {"--lens", "biotar-58mm-f1.4", "--dispersion", "shared", "--fstop",
                         "16",     "--focus",          "1000"};
     Words fitted = lens;
     fitted.insert(fitted.end(), {"--fit", "fov", "--fov", "26"});
@@ -194,11 +194,11 @@ TEST_F(CliLens, AFilmLargerThanTheImageCircleIsSaid) {
 // The picture is not that of a thin lens: a wall's edge is where the fisheye shows it.
 TEST_F(CliLens, FocusIsOnWhatThePixelShows) {
     scene_ = walls().save_gltf(folder_.path / "walls.gltf").string();
-    const Words lens = {"--lens",    "minolta-fisheye-16mm-f2.8",
-                        "--look-at", "0,0,0,0,0,-1",
-                        "--size",    "180x120",
-                        "--crop",    "0,60,180,1",
-                        "--chroma",  "shared",
+    const Words lens = {"--lens",       "minolta-fisheye-16mm-f2.8",
+                        "--look-at",    "0,0,0,0,0,-1",
+                        "--size",       "180x120",
+                        "--crop",       "0,60,180,1",
+                        "--dispersion", "shared",
                         "--focus"};
     Words seen = lens;
     seen.insert(seen.end(), {"1", "--fstop", "22", "--aov", "position", "--spp", "16"});
@@ -235,10 +235,10 @@ TEST_F(CliLens, StatsTellWhatBecameOfTheLanes) {
         return all;
     };
     const std::pair<Words, int> cases[] = {
-        {{"--lens", "takumar-50mm-f1.2", "--chroma", "split"}, 4},
-        {{"--lens", "takumar-50mm-f1.2", "--chroma", "single"}, 1},
-        {{"--lens", "takumar-50mm-f1.2", "--chroma", "shared"}, 3},
-        {{"--lens", "takumar-50mm-f1.2", "--chroma", "split", "--march", "double"}, 4}};
+        {{"--lens", "takumar-50mm-f1.2", "--dispersion", "split"}, 4},
+        {{"--lens", "takumar-50mm-f1.2", "--dispersion", "single"}, 1},
+        {{"--lens", "takumar-50mm-f1.2", "--dispersion", "shared"}, 3},
+        {{"--lens", "takumar-50mm-f1.2", "--dispersion", "split", "--march", "double"}, 4}};
     for (const auto& [words, each] : cases) {
         const nlohmann::json l = lanes(words);
         EXPECT_EQ(l.size(), 6u);
@@ -248,12 +248,12 @@ TEST_F(CliLens, StatsTellWhatBecameOfTheLanes) {
         EXPECT_GT(l.at("passed"), samples * each / 2);
     }
     const nlohmann::json wide =
-        lanes({"--lens", "canon-14mm-f2.8-asph", "--chroma", "shared", "--sensor", "45x30"});
+        lanes({"--lens", "canon-14mm-f2.8-asph", "--dispersion", "shared", "--sensor", "45x30"});
     for (const char* cause : {"vignetted", "totally_reflected", "missed"})
         EXPECT_GT(wide.at(cause), 0) << cause;
     EXPECT_EQ(sum(wide), wide.at("drawn"));
     const nlohmann::json beyond =
-        lanes({"--lens", "double-gauss-100mm-f2", "--chroma", "shared", "--sensor", "300x200"});
+        lanes({"--lens", "double-gauss-100mm-f2", "--dispersion", "shared", "--sensor", "300x200"});
     EXPECT_GT(beyond.at("unreached"), samples);
     EXPECT_TRUE(lanes({"--lens", "thin", "--fstop", "2"}).is_null());
 }

@@ -38,9 +38,9 @@ class Plans : public CliSpectral {
                                                     const SceneRequest& r) const {
         return pilot.model(open_session(r, kSilent), RenderJob(), PathOptions());
     }
-    [[nodiscard]] static SceneRequest with(SceneRequest r, Chroma chroma) {
+    [[nodiscard]] static SceneRequest with(SceneRequest r, DispersionMode dispersion) {
         r.spectral.mode = SpectralMode::Hero;
-        r.camera.chroma = chroma;
+        r.camera.dispersion = dispersion;
         return r;
     }
     /// petzval plan with small settings where the words have none of their own; must succeed.
@@ -109,15 +109,15 @@ TEST_F(Plans, VarianceIsThatOfALook) {
 
 TEST_F(Plans, SpreadIsInPixelsAndGrowsWithTheFactor) {
     const SceneRequest narrow = tabletop({100, 60});
-    const Session split = open_session(with(narrow, Chroma::Split), kSilent);
-    const Session shared = open_session(with(narrow, Chroma::Shared), kSilent, &split);
+    const Session split = open_session(with(narrow, DispersionMode::Split), kSilent);
+    const Session shared = open_session(with(narrow, DispersionMode::Shared), kSilent, &split);
     const double once = spread_px(split, shared, {100, 60});
     EXPECT_NEAR(spread_px(split, shared, {400, 240}), 4 * once, 0.02 * once);
     EXPECT_NEAR(spread_px(shared, shared, {100, 60}), 0, 1e-4 * once);
-    Session further = open_session(with(narrow, Chroma::Split), kSilent, &split);
-    further.camera =
-        parted_further(std::move(further.camera),
-                       open_session(with(narrow, Chroma::Shared), kSilent, &split).camera, 3.f);
+    Session further = open_session(with(narrow, DispersionMode::Split), kSilent, &split);
+    further.camera = parted_further(
+        std::move(further.camera),
+        open_session(with(narrow, DispersionMode::Shared), kSilent, &split).camera, 3.f);
     EXPECT_NEAR(spread_px(further, shared, {100, 60}), 3 * once, 0.02 * once);
 }
 
@@ -136,8 +136,8 @@ TEST_F(Plans, PartingFurtherFindsTheSameErrorWithLessNoise) {
     EXPECT_LT(compared.spread(), 0.1);
 
     const Pilot pilot(scene.size, 512, executor_, 1);
-    const auto one = model(pilot, with(scene, Chroma::Shared)),
-               split = model(pilot, with(scene, Chroma::Split));
+    const auto one = model(pilot, with(scene, DispersionMode::Shared)),
+               split = model(pilot, with(scene, DispersionMode::Split));
     pilot.look(*one, 32);
     pilot.look(*split, 32);
     const Estimate plain = pilot.square({{one.get(), 1}, {split.get(), -1}}, *split);
@@ -195,20 +195,21 @@ TEST_F(Plans, ReasonsAreGivenInALineEach) {
     EXPECT_EQ(plan["camera"]["reason"], "nothing has an iris");
     EXPECT_EQ(plan["spectral"]["chosen"], "rgb");
     EXPECT_EQ(plan["spectral"]["reason"], "nothing depends on wavelength");
-    EXPECT_EQ(plan["chroma"]["reason"], "no lens parts wavelengths");
-    EXPECT_TRUE(plan["chroma"]["predicted_error"].is_null());
+    EXPECT_EQ(plan["dispersion"]["reason"], "no lens parts wavelengths");
+    EXPECT_TRUE(plan["dispersion"]["predicted_error"].is_null());
     plan = planned({"--spectral", "hero"});
     EXPECT_EQ(plan["spectral"]["chosen"], "hero");
     EXPECT_EQ(plan["spectral"]["reason"], "it was asked for");
     plan = planned({"--lens", "double-gauss-100mm-f2", "--focus", "2", "--tolerance", "20%"});
     EXPECT_EQ(plan["camera"]["chosen"], "double-gauss-100mm-f2");
-    const auto chroma = plan["chroma"]["reason"].get<std::string>();
-    EXPECT_TRUE(chroma.starts_with("dispersion of double-gauss-100mm-f2 spreads 0.0")) << chroma;
-    EXPECT_NE(chroma.find(" px: one ray for all wavelengths, off by "), std::string::npos);
-    EXPECT_EQ(plan["chroma"]["chosen"], "shared");
-    plan = planned({"--lens", "double-gauss-100mm-f2", "--focus", "2", "--chroma", "split"});
-    EXPECT_EQ(plan["chroma"]["chosen"], "split");
-    EXPECT_EQ(plan["chroma"]["reason"], "it was asked for");
+    const auto dispersion = plan["dispersion"]["reason"].get<std::string>();
+    EXPECT_TRUE(dispersion.starts_with("dispersion of double-gauss-100mm-f2 spreads 0.0"))
+        << dispersion;
+    EXPECT_NE(dispersion.find(" px: one ray for all wavelengths, off by "), std::string::npos);
+    EXPECT_EQ(plan["dispersion"]["chosen"], "shared");
+    plan = planned({"--lens", "double-gauss-100mm-f2", "--focus", "2", "--dispersion", "split"});
+    EXPECT_EQ(plan["dispersion"]["chosen"], "split");
+    EXPECT_EQ(plan["dispersion"]["reason"], "it was asked for");
 }
 
 TEST_F(Plans, AGemThatDispersesNeedsWavelengths) {
@@ -233,8 +234,8 @@ TEST_F(Plans, TheCommandRenders) {
     for (std::string line; std::getline(lines, line);) all.push_back(line);
     ASSERT_EQ(all.size(), 6u) << run.out;
     for (size_t i = 0; i < 5; ++i)
-        EXPECT_TRUE(
-            all[i].starts_with(Words{"camera ", "spectral ", "chroma ", "samples ", "error "}[i]))
+        EXPECT_TRUE(all[i].starts_with(
+            Words{"camera ", "spectral ", "dispersion ", "samples ", "error "}[i]))
             << all[i];
     std::istringstream command(all.back());
     Words parts;
@@ -264,7 +265,7 @@ TEST_F(Plans, NeedlessOptionsAreLeftOutOfTheCommandAndOddWordsQuoted) {
     for (const char* kept : {" --lens pinhole", " --fov ", " --transparent", " --spp "})
         EXPECT_NE(command.find(kept), std::string::npos) << kept << " in " << command;
     for (const char* gone :
-         {"--fstop", "--focus", "--coating", "--tolerance", "--json", "--chroma"})
+         {"--fstop", "--focus", "--coating", "--tolerance", "--json", "--dispersion"})
         EXPECT_EQ(command.find(gone), std::string::npos) << gone << " in " << command;
 }
 
@@ -275,7 +276,8 @@ TEST_F(Plans, ArgumentsThatAreWrongEndWithTwo) {
         {{"plan", scene_, "--tolerance", "101%"}, "is not a share such as 1% or 0.01"},
         {{"plan", scene_, "--tolerance", "%"}, "is not a share"},
         {{"plan", scene_, "--lens", "no-such-lens"}, "no-such-lens"},
-        {{"plan", scene_, "--chroma", "some"}, "none of auto, tolerance, shared, split, single"},
+        {{"plan", scene_, "--dispersion", "some"},
+         "none of auto, tolerance, shared, split, single"},
         {{"plan", scene_, "--spp", "4"}, "--spp"}};
     for (const auto& [words, part] : cases) {
         const std::string line = error_of(words, 2);
@@ -300,12 +302,12 @@ TEST_F(AutoRender, TakesRgbWhereTheLensDoesNotShow) {
     const std::string text = said(lens({"--tolerance", "5%"}), "auto.exr");
     EXPECT_NE(text.find("spectral: rgb, as it is off by "), std::string::npos) << text;
     EXPECT_NE(text.find("though lens cooke-triplet-50mm-f5 disperses\n"), std::string::npos);
-    EXPECT_NE(text.find("chroma: shared, as dispersion of cooke-triplet-50mm-f5 spreads "),
+    EXPECT_NE(text.find("dispersion: shared, as dispersion of cooke-triplet-50mm-f5 spreads "),
               std::string::npos)
         << text;
     EXPECT_EQ(text.find("hero"), std::string::npos) << text;
     const Picture picture = read_picture(path("auto.exr"));
-    static_cast<void>(said(lens({"--spectral", "rgb", "--chroma", "shared"}), "asked.exr"));
+    static_cast<void>(said(lens({"--spectral", "rgb", "--dispersion", "shared"}), "asked.exr"));
     EXPECT_EQ(picture.pixels, read_picture(path("asked.exr")).pixels);
     EXPECT_NE(file_bytes(path("auto.exr")).find("petzval:plan"), std::string::npos);
     EXPECT_EQ(file_bytes(path("asked.exr")).find("petzval:plan"), std::string::npos);
@@ -314,8 +316,8 @@ TEST_F(AutoRender, TakesRgbWhereTheLensDoesNotShow) {
 TEST_F(AutoRender, KeepsWavelengthsApartWhereTheToleranceIsTight) {
     const std::string text = said(lens({"--tolerance", "0.001%"}), "auto.exr");
     EXPECT_NE(text.find("spectral: hero wavelengths, as lens cooke"), std::string::npos) << text;
-    EXPECT_NE(text.find("chroma: hero, as dispersion of "), std::string::npos) << text;
-    static_cast<void>(said(lens({"--chroma", "hero"}), "asked.exr"));
+    EXPECT_NE(text.find("dispersion: hero, as dispersion of "), std::string::npos) << text;
+    static_cast<void>(said(lens({"--dispersion", "hero"}), "asked.exr"));
     EXPECT_EQ(read_picture(path("auto.exr")).pixels, read_picture(path("asked.exr")).pixels);
 }
 
@@ -341,8 +343,8 @@ TEST_F(AutoRender, LooksOnlyWhereItMust) {
     small[5] = "64x40";
     EXPECT_FALSE(looked(small));
     EXPECT_FALSE(looked(lens({"--spectral", "rgb"})));
-    EXPECT_FALSE(looked(lens({"--chroma", "split"})));
-    EXPECT_FALSE(looked(lens({"--chroma-tolerance", "0.2"})));
+    EXPECT_FALSE(looked(lens({"--dispersion", "split"})));
+    EXPECT_FALSE(looked(lens({"--dispersion-tolerance", "0.2"})));
     EXPECT_FALSE(looked({"--fstop", "2", "--focus", "2", "--size", "500x320", "--spp", "1"}));
 }
 

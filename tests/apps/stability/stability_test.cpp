@@ -171,7 +171,7 @@ TEST(Stability, NoDrawOutweighsAllOthersWhereThePupilFolds) {
     const double radius_mm = lens->prescription().surfaces[size_t(lens->stop())].semi_diameter_mm;
     LensCameraInput in{.lens = lens, .iris = Iris(Disk{}, radius_mm), .to_world = M44f()};
     in.film_mm = lens->film_mm();
-    in.chroma = Chroma::Shared;
+    in.dispersion = DispersionMode::Shared;
     const LensCamera camera(in);
     test::Moments weights;
     double heaviest = 0;

@@ -4,7 +4,7 @@
 // one run on one thread, turn by turn. The reference is rendered with one wavelength a path, other
 // seeds and many samples, and its own variance is taken off what is called bias.
 //
-//   chroma_noise SCENE --lens NAME [--fstop ...] [--focus ...] [--size ...] [--crop ...] [--spp
+//   dispersion_noise SCENE --lens NAME [--fstop ...] [--focus ...] [--size ...] [--crop ...] [--spp
 //   ...]
 #include <fmt/format.h>
 
@@ -22,7 +22,7 @@ constexpr uint32_t kSeeds = 8, kReferenceSeeds = 4, kFirstReferenceSeed = 1000;
 
 struct Strategy {
     std::string name;
-    Chroma chroma;
+    DispersionMode chroma;
     float tolerance_px = 0;
     Session session{};
     std::vector<Film> films{};
@@ -147,15 +147,15 @@ int run(int argc, char** argv) {
     request.spectral.mode = SpectralMode::Hero;
 
     std::vector<Strategy> strategies;
-    strategies.push_back({"shared", Chroma::Shared});
-    strategies.push_back({"split", Chroma::Split});
-    strategies.push_back({"single", Chroma::Single});
-    strategies.push_back({"hero", Chroma::Hero});
+    strategies.push_back({"shared", DispersionMode::Shared});
+    strategies.push_back({"split", DispersionMode::Split});
+    strategies.push_back({"single", DispersionMode::Single});
+    strategies.push_back({"hero", DispersionMode::Hero});
     for (const float px : {0.03f, 0.1f, 0.3f, 1.f})
-        strategies.push_back({fmt::format("tolerance {}", px), Chroma::Tolerance, px});
+        strategies.push_back({fmt::format("tolerance {}", px), DispersionMode::Tolerance, px});
     for (Strategy& s : strategies) {
-        camera.chroma = s.chroma;
-        camera.chroma_tolerance_px = s.tolerance_px;
+        camera.dispersion = s.dispersion;
+        camera.dispersion_tolerance_px = s.tolerance_px;
         s.session = open_session(request, [](const std::string&) {});
     }
     for (uint32_t seed = 0; seed < kSeeds; ++seed) {
@@ -163,8 +163,8 @@ int run(int argc, char** argv) {
         for (size_t i = 0; i < strategies.size(); ++i)  // the machine's speed drifts
             render_into(strategies[(i + seed) % strategies.size()], job, request.size, crop);
     }
-    Strategy reference{"reference", Chroma::Single};
-    camera.chroma = Chroma::Single;
+    Strategy reference{"reference", DispersionMode::Single};
+    camera.dispersion = DispersionMode::Single;
     reference.session = open_session(request, [](const std::string&) {});
     RenderJob long_job = job;
     long_job.end_sample = reference_spp;

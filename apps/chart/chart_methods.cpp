@@ -108,7 +108,7 @@ ChartCase camera_case(const Found& found, const RenderJob& job, const OpenSessio
     cases.reference("the lens, wavelengths always split, rays followed in doubles", lens,
                     [](SceneRequest& s, RenderJob&) {
                         s.camera.dispersion = DispersionMode::Split;
-                        s.camera.march = March::Double;
+                        s.camera.precision = Precision::Double;
                     });
     return std::move(cases).result();
 }
@@ -133,7 +133,7 @@ ChartCase dispersion_case(const Found& found, const RenderJob& job) {
     cases.reference("split, rays followed in doubles with the glasses' own formulas", lens,
                     [](SceneRequest& s, RenderJob&) {
                         s.camera.dispersion = DispersionMode::Split;
-                        s.camera.march = March::Double;
+                        s.camera.precision = Precision::Double;
                     });
     return std::move(cases).result();
 }
@@ -287,18 +287,18 @@ ChartCase precision_case(const Found& found, const RenderJob& job, const OpenSes
     remarks.emplace_back("One ray for all wavelengths");
     cases.remark(remarks);
     cases.remark(leak_count(lens, open));
-    const auto with = [](March march, Traversal traversal) {
+    const auto with = [](Precision precision, Traversal traversal) {
         return [=](SceneRequest& s, RenderJob&) {
-            s.camera.march = march;
+            s.camera.precision = precision;
             s.traversal = traversal;
         };
     };
-    cases.add("float robust", lens, with(March::Float, Traversal::Robust));
-    cases.add("double robust", lens, with(March::Double, Traversal::Robust));
-    cases.add("float fast", lens, with(March::Float, Traversal::Fast));
+    cases.add("float robust", lens, with(Precision::Float, Traversal::Robust));
+    cases.add("double robust", lens, with(Precision::Double, Traversal::Robust));
+    cases.add("float fast", lens, with(Precision::Float, Traversal::Fast));
     cases.reference("double and robust, independent points", lens,
                     [](SceneRequest& s, RenderJob& j) {
-                        s.camera.march = March::Double;
+                        s.camera.precision = Precision::Double;
                         s.traversal = Traversal::Robust;
                         j.sampler = SamplerKind::Independent;
                     });

@@ -90,8 +90,8 @@ void add_glass_options(CLI::App& app, CameraOptions& o) {
     group(add_choice<Coating>(app, "--coating", r.coating, words_of(Coating()),
                               "light lost at each surface: ideal (default, none), uncoated, mgf2 "
                               "(one layer against air)"));
-    group(add_choice<March>(app, "--march", r.march, words_of(March()),
-                            "rays through the lens in float (default) or double"));
+    group(add_choice<Precision>(app, "--lens-precision", r.precision, words_of(Precision()),
+                                "rays through the lens in float (default) or double"));
 }
 
 void add_exposure_options(CLI::App& app, CameraOptions& o) {

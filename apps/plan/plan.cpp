@@ -150,8 +150,9 @@ std::vector<PlanOption> options_of(const Look& at, uint64_t samples) {
         for (const char* name : names) out.emplace_back(name, std::nullopt);
     };
     if (is_camera(at.chosen.name)) {
-        leave_out({"--fit", "--fstop", "--focal-length", "--film-distance", "--coating", "--march",
-                   "--focus-by", "--glasses", "--dispersion", "--dispersion-tolerance"});
+        leave_out({"--fit", "--fstop", "--focal-length", "--film-distance", "--coating",
+                   "--lens-precision", "--focus-by", "--glasses", "--dispersion",
+                   "--dispersion-tolerance"});
         set("--lens", at.chosen.name);
         set("--fov", *camera.fov_deg);
         set("--sensor", fmt::format("{}x{}", camera.sensor_mm->x, camera.sensor_mm->y));

@@ -27,7 +27,7 @@ void describe_glass(const CameraReport& c, PictureLayout& layout) {
     m.emplace_back("petzval:stopRadius_mm", static_cast<float>(c.stop_radius_mm));
     m.emplace_back("petzval:focusBy", word_of(c.asked.focus_by));
     m.emplace_back("petzval:coating", word_of(c.asked.coating));
-    m.emplace_back("petzval:march", word_of(c.asked.march));
+    m.emplace_back("petzval:lensPrecision", word_of(c.asked.precision));
     m.emplace_back("petzval:fit", word_of(c.asked.fit));
     const DispersionMode dispersion = c.asked.dispersion.value_or(DispersionMode::Tolerance);
     m.emplace_back("petzval:dispersion", word_of(dispersion));

@@ -57,7 +57,7 @@ struct CameraRequest {
         dispersion;  ///< absent: Tolerance, unless a plan finds what is cheaper
     float dispersion_tolerance_px = 0.1f;
     Coating coating = Coating::Ideal;
-    March march = March::Float;
+    Precision precision = Precision::Float;
     ExposureMode exposure = ExposureMode::Normalised;
     float iso = 100, shutter_s = 0.01f;
     std::vector<std::filesystem::path> glasses;  ///< catalogues that go before those that ship

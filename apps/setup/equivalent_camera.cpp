@@ -48,7 +48,7 @@ SceneRequest thin_like(SceneRequest request, const Session& session) {
     camera.fstop = camera.focal_length_mm = camera.film_distance_mm = std::nullopt;
     camera.fit = Fit::Lens;
     camera.coating = Coating::Ideal;
-    camera.march = March::Float;
+    camera.precision = Precision::Float;
     camera.focus_by = FocusBy::Paraxial;
     camera.glasses.clear();
     return request;

@@ -167,7 +167,7 @@ LensSetup set_up_lens(const CameraRequest& asked, const LoadedLens& loaded, cons
         setup.film_mm = in.film_mm;
         in.dispersion = asked.dispersion.value_or(DispersionMode::Tolerance);
         in.coating = asked.coating;
-        in.march = asked.march;
+        in.precision = asked.precision;
         in.focus_m = focus_m;
         // Seen from the rear principal point, where the film is a distance in focus away.
         const FirstOrder f = first_order(*in.lens, kLineD_nm);

@@ -33,8 +33,8 @@ using Words = std::vector<std::pair<std::string, T>>;
 [[nodiscard]] inline Words<Coating> words_of(Coating) {
     return {{"ideal", Coating::Ideal}, {"uncoated", Coating::Uncoated}, {"mgf2", Coating::MgF2}};
 }
-[[nodiscard]] inline Words<March> words_of(March) {
-    return {{"float", March::Float}, {"double", March::Double}};
+[[nodiscard]] inline Words<Precision> words_of(Precision) {
+    return {{"float", Precision::Float}, {"double", Precision::Double}};
 }
 [[nodiscard]] inline Words<ExposureMode> words_of(ExposureMode) {
     return {{"normalised", ExposureMode::Normalised}, {"photographic", ExposureMode::Photographic}};

@@ -45,7 +45,7 @@ template <class V>
     return ray;
 }
 
-/// A ray marched in floats and in doubles.
+/// A ray traced in floats and in doubles.
 struct Pair {
     LensRay<f4> in_floats;
     LensRay<d4> in_doubles;
@@ -66,7 +66,7 @@ struct Pair {
 };
 
 /// Both from the same origin and direction, as floats have them.
-[[nodiscard]] inline Pair march_both(const Lens& lens, SurfaceRange range, const V3d& origin_mm,
+[[nodiscard]] inline Pair trace_both(const Lens& lens, SurfaceRange range, const V3d& origin_mm,
                                      const V3d& direction) {
     const LensRay<f4> start = ray_from<f4>(origin_mm, direction);
     const auto lane_0 = [](const Vec3<f4>& a) {
@@ -74,10 +74,10 @@ struct Pair {
     };
     Pair out{start, ray_from<d4>(lane_0(start.origin), lane_0(start.direction))};
     const float nm = static_cast<float>(kLineD_nm);
-    static_cast<void>(march<f4>(lens, lens.exact_indices(splat(nm)), Towards::Film, range,
-                                out.in_floats, Clip::No));
-    static_cast<void>(march<d4>(lens, lens.exact_indices(broadcast<d4>(kLineD_nm)), Towards::Film,
-                                range, out.in_doubles, Clip::No));
+    static_cast<void>(trace_lens<f4>(lens, lens.exact_indices(splat(nm)), Towards::Film, range,
+                                     out.in_floats, Clip::No));
+    static_cast<void>(trace_lens<d4>(lens, lens.exact_indices(broadcast<d4>(kLineD_nm)),
+                                     Towards::Film, range, out.in_doubles, Clip::No));
     return out;
 }
 

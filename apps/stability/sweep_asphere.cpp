@@ -58,7 +58,7 @@ Newton newton_on(const LensSurface& s) {
             }
             if (!root) continue;
             ++rays;
-            const Pair pair = march_both(lens, {0, 0}, aim - d * semi_mm, d);
+            const Pair pair = trace_both(lens, {0, 0}, aim - d * semi_mm, d);
             const auto judge = [&](Fate fate, double y) {
                 out.missed += fate == Fate::Missed;
                 out.other +=

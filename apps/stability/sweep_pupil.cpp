@@ -58,8 +58,8 @@ Counted count_light(const Subject& of, V2f film_mm) {
                 m4 on = c.clear & c.ray.alive() & (l * l + m * m < 1.f);
                 if (!any(on)) continue;
                 LensRay<f4> ray = c.ray;
-                on &=
-                    march<f4>(lens, indices, Towards::Scene, {0, lens.stop() - 1}, ray, Clip::Yes);
+                on &= trace_lens<f4>(lens, indices, Towards::Scene, {0, lens.stop() - 1}, ray,
+                                     Clip::Yes);
                 for (int i = 0; i < 4; ++i) {
                     if (!on[i]) continue;
                     ++passed;
@@ -78,8 +78,8 @@ Counted count_light(const Subject& of, V2f film_mm) {
 
 // Draws of the whole stop from a film point, by the solver of a film that reaches so far.
 struct Solved {
-    double unreached = 0, marches = 0;
-    int most_marches = 0;
+    double unreached = 0, traces = 0;
+    int most_traces = 0;
 };
 
 Solved solved_at(const Subject& of, double height_mm) {
@@ -95,11 +95,11 @@ Solved solved_at(const Subject& of, double height_mm) {
         const auto c = pupil.solve(film_mm, at, indices, 0, static_cast<float>(kLineD_nm));
         if (!c) continue;
         ++found;
-        out.marches += c->marches;
-        out.most_marches = std::max(out.most_marches, c->marches);
+        out.traces += c->traces;
+        out.most_traces = std::max(out.most_traces, c->traces);
     }
     out.unreached = 1 - double(found) / kDraws;
-    out.marches /= std::max(found, 1u);
+    out.traces /= std::max(found, 1u);
     return out;
 }
 
@@ -137,7 +137,7 @@ Finding pupil_at_wide_fields() {
     f.fails = "bias, variance";
     f.sweep =
         "Every lens that ships, wide open, line d, at 0.98 of the rim of its image circle: 1024 "
-        "draws of the stop for which no ray is found; how often the others march through the rear "
+        "draws of the stop for which no ray is found; how often the others trace through the rear "
         "of the lens; the irradiance of 65536 draws against counting directions on a grid of "
         "400 x 400, without the solver, and the share of those directions that meet the stop the "
         "other way round; the weight of the heaviest draw over the mean of those "
@@ -146,8 +146,8 @@ Finding pupil_at_wide_fields() {
     f.table.columns = {"lens",
                        "height (mm)",
                        "no ray",
-                       "marches (mean)",
-                       "marches (most)",
+                       "traces (mean)",
+                       "traces (most)",
                        "irradiance off by",
                        "light beyond a fold",
                        "heaviest draw",
@@ -166,17 +166,17 @@ Finding pupil_at_wide_fields() {
         std::optional<double> first;
         for (int i = 0; i <= 60 && !first; ++i)
             if (solved_at(of, of.half_circle_mm * 0.05 * i).unreached > 0) first = 0.05 * i;
-        f.table.rows.push_back(row(summary.name, r_mm, percent(corner.unreached), corner.marches,
-                                   corner.most_marches, percent(off), percent(counted.folded),
+        f.table.rows.push_back(row(summary.name, r_mm, percent(corner.unreached), corner.traces,
+                                   corner.most_traces, percent(off), percent(counted.folded),
                                    drawn.heaviest, first));
         ++all, clear += corner.unreached == 0;
-        most = std::max(most, corner.most_marches);
+        most = std::max(most, corner.most_traces);
         if (counted.folded > folded) folded = counted.folded, folded_name = summary.name;
         if (drawn.heaviest > heaviest) heaviest = drawn.heaviest, heavy_name = summary.name;
         if (std::fabs(off) > std::fabs(worst_off)) worst_off = off, off_name = summary.name;
     }
     f.where = fmt::format(
-        "{} of {} lenses have a ray for every draw near the rim of their circle, in {} marches at "
+        "{} of {} lenses have a ray for every draw near the rim of their circle, in {} traces at "
         "most. Where the pupil folds, a point of the stop has two rays, of which one is found: the "
         "other side of the fold holds {} of the light of {}. Irradiance {} off at worst ({}); "
         "heaviest draw {} times the mean ({})",
@@ -184,7 +184,7 @@ Finding pupil_at_wide_fields() {
         number(heaviest), heavy_name);
     f.instead =
         "A draw that no ray reaches brings no light and is counted (`unreached` in the statistics "
-        "of `render`); it takes at most 12 marches to give up. At a fold the solver goes on until "
+        "of `render`); it takes at most 12 traces to give up. At a fold the solver goes on until "
         "the ray is known, not only its crossing: a weight there is large, but not without bound. "
         "Light of the second ray is lost.";
     f.guards = {"Pupil.RaysMeetTheStopWhereTheyShould", "LensCamera.IrradianceIsTheOracles",

@@ -88,8 +88,8 @@ class Draws {
 [[nodiscard]] Finding degenerate_polygons();
 [[nodiscard]] Finding choice_by_weight();
 [[nodiscard]] Finding pupil_at_wide_fields();
-[[nodiscard]] Finding march_at_grazing_incidence();
-[[nodiscard]] Finding march_over_long_radii();
+[[nodiscard]] Finding trace_at_grazing_incidence();
+[[nodiscard]] Finding trace_over_long_radii();
 [[nodiscard]] Finding newton_on_strong_aspheres();
 [[nodiscard]] Finding dispersion_out_of_range();
 [[nodiscard]] Finding scene_scale();

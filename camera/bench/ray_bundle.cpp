@@ -53,7 +53,7 @@ LensRay<N> Beam::launched(N sagittal, N tangential) const {
     return ray;
 }
 
-// Newton's method with the march's own derivatives.
+// Newton's method with the trace's own derivatives.
 std::optional<Launch> Beam::solve(std::array<double, 2> stop_mm, Launch guess) const {
     using D = Dual<d4>;
     const double tolerance_mm = kTolerance * stop_radius_mm(*lens_);
@@ -63,7 +63,7 @@ std::optional<Launch> Beam::solve(std::array<double, 2> stop_mm, Launch guess) c
         auto ray = launched<D>({broadcast<d4>(at[0]), broadcast<d4>(1), d4{}},
                                {broadcast<d4>(at[1]), d4{}, broadcast<d4>(1)});
         const auto passed =
-            march<D>(*lens_, indices_, Towards::Film, {0, lens_->stop()}, ray, Clip::No);
+            trace_lens<D>(*lens_, indices_, Towards::Film, {0, lens_->stop()}, ray, Clip::No);
         if (!passed[0]) {  // too far: rays there never reach the stop
             if (++halvings > kMostHalvings) return std::nullopt;
             for (size_t k = 0; k < 2; ++k) at[k] = good[k] + (step[k] *= 0.5);
@@ -153,7 +153,7 @@ std::vector<BeamRay> Beam::trace(std::span<const Launch> launches, double film_m
             stop_y = hit.point.y;
         };
         const auto passed =
-            march<d4>(*lens_, indices_, Towards::Film, {0, lens_->last()}, ray, clip, at_stop);
+            trace_lens<d4>(*lens_, indices_, Towards::Film, {0, lens_->last()}, ray, clip, at_stop);
         for (int i = 0; i < static_cast<int>(count); ++i) {
             if (!passed[i] || !(ray.direction.z[i] > 0)) continue;
             const double slope_x = ray.direction.x[i] / ray.direction.z[i];

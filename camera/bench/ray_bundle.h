@@ -35,7 +35,7 @@ struct BeamRay {
     std::array<double, 2> slope;    ///< dx/dz, dy/dz at the film
 };
 
-/// The lens must outlive it. What is found there is found by the march that renders, in doubles.
+/// The lens must outlive it. What is found there is found by the trace that renders, in doubles.
 class Beam {
   public:
     /// Finds the ray to the middle of the stop, following it from the axis outwards, and then the

@@ -17,7 +17,7 @@ enum class Shape : uint8_t {
     Asphere
 };
 
-/// What the march wants to know of a surface, in half a cache line of floats: the quadric
+/// What the trace wants to know of a surface, in half a cache line of floats: the quadric
 /// curvature_x x^2 + curvature_y y^2 + curvature_z z^2 = 2 z and what is behind it. An asphere
 /// deviates from it.
 template <class S>

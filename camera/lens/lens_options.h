@@ -16,9 +16,9 @@ enum class FocusBy : uint8_t {
     Traced  ///< the least mean square radius of the spot on the axis: F, d and C, through the iris
 };
 
-/// What a drawn ray is marched in. Its direction at the film is solved for in floats either way; in
+/// What a drawn ray is traced in. Its direction at the film is solved for in floats either way; in
 /// doubles it is then followed anew, with the glasses' own formulas, and becomes a ray of floats in
 /// the world.
-enum class March : uint8_t { Float, Double };
+enum class Precision : uint8_t { Float, Double };
 
 }  // namespace petzval

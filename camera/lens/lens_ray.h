@@ -12,7 +12,7 @@ enum class Clip { Yes, No };
 /// What became of a ray. Each surface asks in this order: missed, vignetted, totally reflected.
 enum class Fate : int { Passed, Vignetted, TotallyReflected, Missed };
 
-/// The surfaces to march through, both included, first on the scene's side whatever the direction;
+/// The surfaces to trace through, both included, first on the scene's side whatever the direction;
 /// nothing is done where last < first.
 struct SurfaceRange {
     int first = 0, last = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The numbers that a ray through a lens may be made of: one float, four floats, four doubles, and
-// any of these with two derivatives. One march serves them all.
+// any of these with two derivatives. One trace serves them all.
 #pragma once
 
 #include <cmath>
@@ -86,7 +86,7 @@ template <class Mask, class V>
     return on ? a : b;
 }
 
-/// A number with its derivatives by two parameters; with them the march gives exact Jacobians.
+/// A number with its derivatives by two parameters; with them the trace gives exact Jacobians.
 /// Comparing and choosing look at the value.
 template <class V>
 struct Dual {

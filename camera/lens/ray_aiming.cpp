@@ -88,9 +88,9 @@ StopCrossing<V> Pupil::cross(V2f film_point_mm, V l, V m, const LensIndices<V>& 
         const auto rim2 = facts[static_cast<size_t>(hit.surface)].semi_diameter2_mm2;
         out.clear &= (x * x + y * y <= rim2) | (hit.reached == 0);
     };
-    static_cast<void>(march<D>(lens_, indices, Towards::Scene, {lens_.stop(), lens_.last()}, ray,
-                               Clip::No, clip));
-    out.ray = lens_march::converted<V>(ray);
+    static_cast<void>(trace_lens<D>(lens_, indices, Towards::Scene, {lens_.stop(), lens_.last()},
+                                    ray, Clip::No, clip));
+    out.ray = lens_trace::converted<V>(ray);
     out.x_by_l = ray.origin.x.du;
     out.y_by_l = ray.origin.y.du;
     out.x_by_m = ray.origin.x.dv;
@@ -107,7 +107,7 @@ std::optional<StopCrossing<f4>> Pupil::newton(V2f film_point_mm, V2f stop_point_
     int halvings = 0;
     for (int i = 0; i < kMostSteps; ++i) {
         StopCrossing<f4> c = cross<f4>(film_point_mm, splat(cosines.x), splat(cosines.y), indices);
-        c.marches = i + 1;
+        c.traces = i + 1;
         if (cosines.length2() < 1.f && c.ray.alive()[lane]) {
             const Step by = step_towards(stop_point_mm, c);
             good = cosines;

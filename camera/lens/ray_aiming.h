@@ -19,7 +19,7 @@ struct StopCrossing {
     MaskOf<V> clear;  ///< inside the clear semi-diameters of all that it met, the stop's too
     /// d(x, y) / d(l, m): columns by l and by m.
     V x_by_l, y_by_l, x_by_m, y_by_m;
-    int marches = 1;  ///< that it took to find it
+    int traces = 1;  ///< that it took to find it
 
     [[nodiscard]] V determinant() const { return x_by_l * y_by_m - x_by_m * y_by_l; }
     /// Area on the stop for a unit of dl dm, which is projected solid angle at the film.

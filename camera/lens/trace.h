@@ -10,7 +10,7 @@
 
 namespace petzval {
 
-namespace lens_march {
+namespace lens_trace {
 
 /// Where a ray meets a surface. normal: unit, along the light that crosses the surface. The cosine
 /// of incidence and its square, as the square is there before the root.
@@ -274,7 +274,7 @@ template <class N>
     return ray;
 }
 
-}  // namespace lens_march
+}  // namespace lens_trace
 
 /// Takes a ray through the surfaces of a range, from anywhere on its line: backwards along it to
 /// the first surface is as good as forwards. It ends on the last surface, refracted. Returns the
@@ -286,19 +286,19 @@ template <class N>
 /// Differentials, sec. 3): a third of what Dual's own arithmetic would cost. Any input has a
 /// defined result; NaN misses.
 template <class N, class Observer = NoObserver>
-[[nodiscard]] MaskOf<N> march(const Lens& lens, const LensIndices<ValueOf<N>>& indices,
-                              Towards towards, SurfaceRange range, LensRay<N>& marched, Clip clip,
-                              const Observer& observe = {}) {
-    using namespace lens_march;
+[[nodiscard]] MaskOf<N> trace_lens(const Lens& lens, const LensIndices<ValueOf<N>>& indices,
+                                   Towards towards, SurfaceRange range, LensRay<N>& traced,
+                                   Clip clip, const Observer& observe = {}) {
+    using namespace lens_trace;
     using V = ValueOf<N>;
     using S = ScalarOf<N>;
     const bool to_film = towards == Towards::Film;
     const S sign = to_film ? S(1) : S(-1);
     const SurfaceFacts<S>* const facts = lens.surfaces<S>().data();
     const int begin = to_film ? range.first : range.last;
-    if (range.first > range.last) return marched.alive();
-    LensRay<V> ray = converted<V>(marched);
-    RayChanges<N> changes(marched);
+    if (range.first > range.last) return traced.alive();
+    LensRay<V> ray = converted<V>(traced);
+    RayChanges<N> changes(traced);
     if (ray.counted_from != begin)
         ray.origin.z = ray.origin.z + S(lens.vertex_mm(ray.counted_from) - lens.vertex_mm(begin));
     for (int left = range.last - range.first, i = begin; left >= 0; --left, i += to_film ? 1 : -1) {
@@ -354,9 +354,9 @@ template <class N, class Observer = NoObserver>
             if (!any(ray.alive())) break;
         }
     }
-    marched = converted<N>(ray);
-    changes.put_into(marched);
-    return marched.alive();
+    traced = converted<N>(ray);
+    changes.put_into(traced);
+    return traced.alive();
 }
 
 }  // namespace petzval

@@ -24,7 +24,7 @@ struct TracedRay {
     [[nodiscard]] std::optional<std::array<double, 2>> at_plane(double z_mm) const;
 };
 
-/// The march in doubles with the glasses' own formulas. direction: of any length but 0.
+/// The trace in doubles with the glasses' own formulas. direction: of any length but 0.
 [[nodiscard]] TracedRay trace_ray(const Lens&, const V3d& origin_mm, const V3d& direction,
                                   double nm, Towards, Clip);
 

@@ -96,8 +96,8 @@ LensDraw<V> LensCamera::draw(const Aim& aim, const Bands& bands, Coating coating
     const S density = sum<V>(open * c.stretch_mm2()) / (S(in_.iris.area_mm2()) * lanes);
     out.ray = c.ray;
     if (density > 0 && any(c.clear & (open > 0))) {
-        static_cast<void>(march<V>(*in_.lens, indices, Towards::Scene, {0, in_.lens->stop() - 1},
-                                   out.ray, Clip::Yes));
+        static_cast<void>(trace_lens<V>(*in_.lens, indices, Towards::Scene,
+                                        {0, in_.lens->stop() - 1}, out.ray, Clip::Yes));
         const S gain = S(gain_) * static_cast<S>(lane_count(bands.on)) / lanes;
         out.weight = select(c.clear & out.ray.alive(), V(open * (gain / density)), V{});
     }
@@ -148,7 +148,7 @@ f4 LensCamera::transmitted(V2f film_mm, const StopCrossing<V>& c, Coating coatin
     };
     LensRay<V> ray = pupil_.leave(film_mm, c.l, c.m);
     static_cast<void>(
-        march<V>(lens, indices, Towards::Scene, {0, lens.last()}, ray, Clip::No, lose));
+        trace_lens<V>(lens, indices, Towards::Scene, {0, lens.last()}, ray, Clip::No, lose));
     return out;
 }
 
@@ -250,13 +250,13 @@ CameraSample LensCamera::hero(const FilmPoint& point, V2f film_mm, const Bands& 
     ray.origin = {of_lead(o.x, 1), of_lead(o.y, 1), of_lead(o.z, 1)};
     ray.direction = {of_lead(d.x, -1), of_lead(d.y, -1), of_lead(d.z, -1)};
     static_cast<void>(
-        march<V>(lens, indices, Towards::Film, {0, lens.stop()}, ray, Clip::Yes, lose));
+        trace_lens<V>(lens, indices, Towards::Film, {0, lens.stop()}, ray, Clip::Yes, lose));
     const V2f on_iris = in_.iris.sample(u);
     const V x = ray.origin.x + (S(on_iris.x) - ray.origin.x[lead]);
     const V y = ray.origin.y + (S(on_iris.y) - ray.origin.y[lead]);
     const V iris = petzval::transmitted(in_.iris, x, y);
-    const MaskOf<V> arrived = march<V>(lens, indices, Towards::Film, {lens.stop() + 1, lens.last()},
-                                       ray, Clip::Yes, lose);
+    const MaskOf<V> arrived = trace_lens<V>(lens, indices, Towards::Film,
+                                            {lens.stop() + 1, lens.last()}, ray, Clip::Yes, lose);
     const f4 open = lanes_as<f4>(select(arrived, iris, V{}));
     const V to_film =
         (S(in_.film_mm - lens.vertex_mm(ray.counted_from)) - ray.origin.z) / ray.direction.z;
@@ -286,15 +286,15 @@ CameraSample LensCamera::sample(const FilmPoint& point, const Bands& bands) cons
     const V2f film((0.5f - point.film.x) * static_cast<float>(in_.film_width_mm),
                    (point.film.y - 0.5f) * static_cast<float>(in_.film_height_mm));
     if (in_.dispersion == DispersionMode::Hero && bands.spectral && point.pixel.filter)
-        return in_.march == March::Double ? hero<d4>(point, film, bands)
-                                          : hero<f4>(point, film, bands);
+        return in_.precision == Precision::Double ? hero<d4>(point, film, bands)
+                                                  : hero<f4>(point, film, bands);
     const V2f u = point.sampler.get2(Dim::Lens);
     const float u_lane = point.sampler.get1(Dim::LensLane);
     const auto drawn = [&]<class V>(V) {
         return paths(draw<V>(film, u, u_lane, bands, in_.coating, in_.dispersion), bands,
                      in_.dispersion);
     };
-    return in_.march == March::Double ? drawn(d4{}) : drawn(f4{});
+    return in_.precision == Precision::Double ? drawn(d4{}) : drawn(f4{});
 }
 
 // Smooth but for the edges of the iris and of the rims.

@@ -34,7 +34,7 @@ struct LensCameraInput {
     float focus_m = 1;        ///< where wavelengths are compared, along the axis
     float tolerance_rad = 0;  ///< Tolerance: how far apart directions may be, seen from the lens
     Coating coating = Coating::Ideal;
-    March march = March::Float;  ///< of sample()
+    Precision precision = Precision::Float;  ///< of sample()
 };
 
 class LensCamera final : public Camera {
@@ -73,7 +73,7 @@ class LensCamera final : public Camera {
     template <class V>
     [[nodiscard]] LensDraw<V> draw(V2f film_mm, V2f u, float u_lane, const Bands&, Coating,
                                    DispersionMode) const;
-    /// Solved with the indices in floats, marched with the others.
+    /// Solved with the indices in floats, traced with the others.
     template <class V>
     [[nodiscard]] LensDraw<V> draw(const Aim&, const Bands&, Coating, DispersionMode,
                                    const LensIndices<f4>&, const LensIndices<V>&) const;

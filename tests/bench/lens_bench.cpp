@@ -57,7 +57,8 @@ void film_to_scene(benchmark::State& state, const char* name) {
     size_t i = 0, passed = 0;
     for (auto _ : state) {
         LensRay<N> ray = rays[i++ % kRays];
-        const auto alive = march(lens, indices, Towards::Scene, {0, lens.last()}, ray, Clip::No);
+        const auto alive =
+            trace_lens(lens, indices, Towards::Scene, {0, lens.last()}, ray, Clip::No);
         passed += all(alive);
         benchmark::DoNotOptimize(ray);
     }

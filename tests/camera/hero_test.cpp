@@ -142,7 +142,7 @@ TEST(Hero, EachLaneOfAThinLensHasTheMeanOfSplitPaths) {
 TEST(Hero, RaysInDoublesAreThoseInFloats) {
     LensCameraInput in = singlet(DispersionMode::Hero, 1.662, 1.658, true);
     const LensCamera floats(in);
-    in.march = March::Double;
+    in.precision = Precision::Double;
     const LensCamera doubles(in);
     const Bands bands = four_wavelengths(0.7f);
     int compared = 0;

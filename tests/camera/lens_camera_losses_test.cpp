@@ -92,15 +92,15 @@ LaneFates<uint64_t> fates(const LensCameraInput& in, const Bands& bands) {
 TEST(LaneFates, AddUpAndTellTheCause) {
     for (const DispersionMode dispersion :
          {DispersionMode::Shared, DispersionMode::Split, DispersionMode::Single})
-        for (const March precision : {March::Float, March::Double}) {
+        for (const LensTrace precision : {Precision::Float, Precision::Double}) {
             LensCameraInput in = input_of(kTakumar, dispersion);
-            in.march = precision;
+            in.precision = precision;
             const auto open = fates(in, four_wavelengths());
             EXPECT_GT(open.vignetted, open.drawn / 10);  // cat's eyes
             EXPECT_LT(open.vignetted, open.drawn / 2);
             // A small stop lets everything through.
             LensCameraInput small = input_of(kTakumar, dispersion, 0.2);
-            small.march = precision;
+            small.precision = precision;
             const auto stopped = fates(small, four_wavelengths());
             EXPECT_LT(stopped.lost(), stopped.drawn / 100);  // edges of the iris, between lanes
         }

@@ -13,12 +13,12 @@ namespace {
 
 using namespace test;
 
-TEST(LensCameraMarch, DoublesAgreeWithFloats) {
+TEST(LensCameraPrecision, DoublesAgreeWithFloats) {
     const Bands bands = four_wavelengths();
     for (const std::string& name : {kTakumar, kFisheye, std::string("canon-14mm-f2.8-asph")}) {
         LensCameraInput in = input_of(name);
         const LensCamera floats(in);
-        in.march = March::Double;
+        in.precision = Precision::Double;
         const LensCamera camera(in);
         test::Random random(2);
         int checked = 0;
@@ -39,7 +39,7 @@ TEST(LensCameraMarch, DoublesAgreeWithFloats) {
 
 // Backwards through the whole lens with trace_ray, which gives the direction at the film; from
 // there central differences of trace_ray say how far the iris point moves.
-TEST(LensCameraMarch, DoublesAreATracedRays) {
+TEST(LensCameraPrecision, DoublesAreATracedRays) {
     const Bands bands = four_wavelengths();
     for (const std::string& name : {kTakumar, kFisheye, std::string("canon-14mm-f2.8-asph"),
                                     std::string("schneider-anamorphic-31mm")}) {

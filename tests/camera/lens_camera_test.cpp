@@ -117,8 +117,8 @@ double quadrature(const LensCameraInput& in, V2f film_mm, double nm = kLineD_nm)
                             ? 1
                             : in.iris.transmits({float(hit.point.x[k]), float(hit.point.y[k])});
             };
-            const l4 passed =
-                march<d4>(lens, indices, Towards::Scene, {0, lens.last()}, ray, Clip::Yes, at_stop);
+            const l4 passed = trace_lens<d4>(lens, indices, Towards::Scene, {0, lens.last()}, ray,
+                                             Clip::Yes, at_stop);
             for (int k = 0; k < 4; ++k) {
                 if (!passed[k] || !(open[k] > 0)) continue;
                 sum += open[k] * size_l * size_m / (side * side);
@@ -170,8 +170,8 @@ TEST(LensCamera, IrradianceOnTheAxisIsPiSineSquared) {
             ray.counted_from = lens.last();
             ray.origin.z = d4{} + (in.film_mm - lens.vertex_mm(lens.last()));
             ray.direction = {d4{}, d4{} + sine, d4{} - std::sqrt(1 - sine * sine)};
-            const l4 passed = march<d4>(lens, lens.exact_indices(d4{} + kLineD_nm), Towards::Scene,
-                                        {0, lens.last()}, ray, Clip::Yes);
+            const l4 passed = trace_lens<d4>(lens, lens.exact_indices(d4{} + kLineD_nm),
+                                             Towards::Scene, {0, lens.last()}, ray, Clip::Yes);
             (passed[0] ? passes : fails) = sine;
         }
         const LensCamera camera(in);
@@ -330,7 +330,7 @@ TEST(LensCamera, RaysComeBackToTheFilmPoint) {
             ray.origin = {doubles(o.x), doubles(o.y), doubles(o.z)};
             ray.direction = {-doubles(d.x), -doubles(d.y), -doubles(d.z)};
             static_cast<void>(
-                march<d4>(lens, indices, Towards::Film, {0, lens.last()}, ray, Clip::No));
+                trace_lens<d4>(lens, indices, Towards::Film, {0, lens.last()}, ray, Clip::No));
             const d4 t =
                 (in.film_mm - lens.vertex_mm(lens.last()) - ray.origin.z) / ray.direction.z;
             for (int lane = 0; lane < 4; ++lane) {
@@ -367,8 +367,9 @@ TEST(Pupil, RaysMeetTheStopWhereTheyShould) {
             ray.origin = {d4{} + film.x, d4{} + film.y,
                           d4{} + (in.film_mm - lens.vertex_mm(lens.last()))};
             ray.direction = {d4{} + l, d4{} + m, d4{} - std::sqrt(1 - l * l - m * m)};
-            static_cast<void>(march<d4>(lens, lens.exact_indices(d4{} + nm[lane]), Towards::Scene,
-                                        {lens.stop(), lens.last()}, ray, Clip::No));
+            static_cast<void>(trace_lens<d4>(lens, lens.exact_indices(d4{} + nm[lane]),
+                                             Towards::Scene, {lens.stop(), lens.last()}, ray,
+                                             Clip::No));
             ASSERT_LE(std::hypot(ray.origin.x[0] - aim.x, ray.origin.y[0] - aim.y), 1.1e-4 * radius)
                 << name;
         }

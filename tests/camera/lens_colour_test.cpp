@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where a lens focuses each wavelength: longitudinal colour against the closed forms of thin
-// lenses, by rays that the renderer's march traces.
+// lenses, by rays that the renderer's trace traces.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -73,7 +73,7 @@ struct Worst {
     int passed = 0, blocked = 0;
 };
 
-/// Marches all rows, four at a time, and compares with what they say.
+/// Traces all rows, four at a time, and compares with what they say.
 template <class V>
 Worst<V> compare(const Lens& lens, const std::vector<Row>& rows, Towards towards, Clip clip,
                  double film_mm) {
@@ -98,7 +98,7 @@ Worst<V> compare(const Lens& lens, const std::vector<Row>& rows, Towards towards
         const auto add_path = [&path](const LensHit<V>& hit) {
             path = select(hit.reached, V(path + hit.index * hit.distance_mm), path);
         };
-        const auto passed = march(lens, indices, towards, whole(lens), ray, clip, add_path);
+        const auto passed = trace_lens(lens, indices, towards, whole(lens), ray, clip, add_path);
         for (int i = 0; i < 4 && first + size_t(i) < rows.size(); ++i) {
             const Row& wanted = row(i);
             const End& end_wanted = clip == Clip::Yes ? wanted.clipped : wanted.unclipped;

@@ -36,7 +36,7 @@ struct Outcome {
 Outcome traced(const Lens& lens, Three origin, Three direction, Towards towards = Towards::Film,
                Clip clip = Clip::No) {
     auto ray = ray_of<d4>(origin, direction);
-    (void)march(lens, lens.exact_indices(kD_nm), towards, whole(lens), ray, clip);
+    (void)trace_lens(lens, lens.exact_indices(kD_nm), towards, whole(lens), ray, clip);
     Three point = at_lane(ray.origin, 0);
     point[2] += lens.vertex_mm(ray.counted_from);
     return {point, at_lane(ray.direction, 0), ray.fate(0)};
@@ -46,7 +46,7 @@ void expect_near(Three a, Three b, double tolerance) {
     for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], tolerance) << "coordinate " << i;
 }
 
-TEST(March, APlateMovesARayAside) {
+TEST(LensTrace, APlateMovesARayAside) {
     const Lens plate = lens_of({surface_of(0, 10, 1.5), surface_of(0, 10, 1)});
     for (const double degrees : {0., 30., 60., 89.}) {
         const double sine = std::sin(degrees * kDegree), in_glass = std::asin(sine / 1.5);
@@ -59,7 +59,7 @@ TEST(March, APlateMovesARayAside) {
     }
 }
 
-TEST(March, NearlyFlatIsLikeFlatFromEverywhere) {
+TEST(LensTrace, NearlyFlatIsLikeFlatFromEverywhere) {
     test::Random random(1);
     const auto plate = [](double c, double k) {
         std::vector<LensSurface> surfaces{surface_of(c, 3, 1.6), surface_of(-c, 3, 1)};
@@ -83,7 +83,7 @@ TEST(March, NearlyFlatIsLikeFlatFromEverywhere) {
             }
 }
 
-TEST(March, SurfacesAboutThePointAimedAtBendNothing) {
+TEST(LensTrace, SurfacesAboutThePointAimedAtBendNothing) {
     // A shell about (0, 0, 20); rays to its centre from up to 89 degrees beside the axis.
     const Lens shell = lens_of({surface_of(1. / 20, 8, 1.8), surface_of(1. / 12, 20, 1)});
     for (const double degrees : {0., 45., 80., 89.}) {
@@ -102,7 +102,7 @@ TEST(March, SurfacesAboutThePointAimedAtBendNothing) {
 }
 
 // Light that runs away from the film at more than 90 degrees to the axis still enters the front.
-TEST(March, TakesTheRootOnTheVertexSheet) {
+TEST(LensTrace, TakesTheRootOnTheVertexSheet) {
     const Lens ball = lens_of({surface_of(1. / 10, 5, 1.5)});
     const Three direction = test::unit({0, 1, -0.05});
     const auto out = traced(ball, test::plus({0, -5, 6}, direction, -100), direction);
@@ -115,7 +115,7 @@ TEST(March, TakesTheRootOnTheVertexSheet) {
     EXPECT_EQ(traced(ball, {0, 9.999, -5}, {0, 0, 1}).fate, Fate::Passed);
 }
 
-TEST(March, ReflectsTotallyBeyondTheCriticalAngle) {
+TEST(LensTrace, ReflectsTotallyBeyondTheCriticalAngle) {
     const Lens window = lens_of({surface_of(0, 5, 1.5)});
     const double critical = std::asin(1 / 1.5);
     for (const double beyond : {-0.1, -1e-6, 1e-6, 0.1, 0.8}) {
@@ -131,7 +131,7 @@ TEST(March, ReflectsTotallyBeyondTheCriticalAngle) {
 
 // Descartes: an ellipsoid of k = -1 / n^2 brings parallel light to one point in glass, at
 // n / (n - 1) radii; a hyperboloid of k = -n^2 does so behind glass, at 1 / (n - 1).
-TEST(March, ConicsOfDescartesHaveOneFocus) {
+TEST(LensTrace, ConicsOfDescartesHaveOneFocus) {
     const double n = 1.7, radius = 20;
     auto ellipsoid = surface_of(1 / radius, 5, n);
     ellipsoid.conic = -1 / (n * n);
@@ -160,7 +160,7 @@ TEST(March, ConicsOfDescartesHaveOneFocus) {
         }
 }
 
-TEST(March, AsphereThatIsAParabola) {
+TEST(LensTrace, AsphereThatIsAParabola) {
     // r^2 / 40 written as a conic, as an even asphere and, at r = 8 mm, as an odd one.
     auto conic = surface_of(1. / 20, 5, 1.6), even = surface_of(0, 5, 1.6);
     conic.conic = -1;
@@ -181,7 +181,7 @@ TEST(March, AsphereThatIsAParabola) {
     EXPECT_EQ(traced(lens_of({odd}), {0, 0, -1}, {0, 0, 1}).fate, Fate::Passed) << "its pole";
 }
 
-TEST(March, ALensOfAirDoesNothing) {
+TEST(LensTrace, ALensOfAirDoesNothing) {
     Prescription lens = test::read_lens("double-gauss-100mm-f2");
     for (const double n : {1., 1 + 1e-13, 1 + 1e-9}) {
         for (auto& surface : lens.surfaces)
@@ -198,7 +198,7 @@ TEST(March, ALensOfAirDoesNothing) {
     }
 }
 
-TEST(March, FisheyesRimIsAnEndWithoutAGap) {
+TEST(LensTrace, FisheyesRimIsAnEndWithoutAGap) {
     const Lens lens(test::read_lens("minolta-fisheye-16mm-f2.8"));
     // Light in the plane of the front's rim, 60 to 120 degrees off the axis, aimed at the first
     // vertex and beside it.
@@ -219,7 +219,7 @@ TEST(March, FisheyesRimIsAnEndWithoutAGap) {
     EXPECT_GT(blocked, 100);
 }
 
-TEST(March, ThereAndBackAndThereAgain) {
+TEST(LensTrace, ThereAndBackAndThereAgain) {
     test::Random random(7);
     for (const char* name : kLensKinds) {
         const Lens lens(test::read_lens(name));
@@ -228,11 +228,11 @@ TEST(March, ThereAndBackAndThereAgain) {
             LensRay<V> ray;
             ray.origin = test::vectors_of<V>([&](int i) { return at_lane(start.origin, i); });
             ray.direction = test::vectors_of<V>([&](int i) { return at_lane(start.direction, i); });
-            ASSERT_TRUE(all(march(lens, indices, Towards::Film, whole(lens), ray, Clip::No)))
+            ASSERT_TRUE(all(trace_lens(lens, indices, Towards::Film, whole(lens), ray, Clip::No)))
                 << name;
             const auto there = ray;
             ray.direction = ray.direction * ScalarOf<V>(-1);
-            ASSERT_TRUE(all(march(lens, indices, Towards::Scene, whole(lens), ray, Clip::No)));
+            ASSERT_TRUE(all(trace_lens(lens, indices, Towards::Scene, whole(lens), ray, Clip::No)));
             EXPECT_EQ(ray.counted_from, 0);
             for (int i = 0; i < 4; ++i) {
                 const Three back = at_lane(ray.direction, i), at = at_lane(ray.origin, i);
@@ -241,7 +241,7 @@ TEST(March, ThereAndBackAndThereAgain) {
                 expect_near(test::plus(at, back, t), at_lane(start.origin, i), tolerance);
             }
             ray.direction = ray.direction * ScalarOf<V>(-1);
-            ASSERT_TRUE(all(march(lens, indices, Towards::Film, whole(lens), ray, Clip::No)));
+            ASSERT_TRUE(all(trace_lens(lens, indices, Towards::Film, whole(lens), ray, Clip::No)));
             EXPECT_EQ(ray.counted_from, lens.last());
             for (int i = 0; i < 4; ++i) {
                 expect_near(at_lane(ray.origin, i), at_lane(there.origin, i), tolerance);
@@ -256,7 +256,7 @@ TEST(March, ThereAndBackAndThereAgain) {
     }
 }
 
-TEST(March, InPartsIsLikeInOneGo) {
+TEST(LensTrace, InPartsIsLikeInOneGo) {
     test::Random random(8);
     for (const char* name : kLensKinds) {
         const Lens lens(test::read_lens(name));
@@ -264,11 +264,12 @@ TEST(March, InPartsIsLikeInOneGo) {
         for (int i = 0; i < 50; ++i) {
             auto whole_way = usual_ray(lens, random), parts = whole_way;
             const int stop = lens.stop();
-            (void)march(lens, indices, Towards::Film, whole(lens), whole_way, Clip::Yes);
-            (void)march(lens, indices, Towards::Film, {0, stop - 1}, parts, Clip::Yes);
-            (void)march(lens, indices, Towards::Film, {stop, stop}, parts, Clip::Yes);
-            (void)march(lens, indices, Towards::Film, {stop, stop - 1}, parts, Clip::Yes);
-            (void)march(lens, indices, Towards::Film, {stop + 1, lens.last()}, parts, Clip::Yes);
+            (void)trace_lens(lens, indices, Towards::Film, whole(lens), whole_way, Clip::Yes);
+            (void)trace_lens(lens, indices, Towards::Film, {0, stop - 1}, parts, Clip::Yes);
+            (void)trace_lens(lens, indices, Towards::Film, {stop, stop}, parts, Clip::Yes);
+            (void)trace_lens(lens, indices, Towards::Film, {stop, stop - 1}, parts, Clip::Yes);
+            (void)trace_lens(lens, indices, Towards::Film, {stop + 1, lens.last()}, parts,
+                             Clip::Yes);
             expect_near(at_lane(parts.origin, 0), at_lane(whole_way.origin, 0), 1e-12);
             expect_near(at_lane(parts.direction, 0), at_lane(whole_way.direction, 0), 1e-13);
             EXPECT_EQ(parts.fate(0), whole_way.fate(0));
@@ -276,7 +277,7 @@ TEST(March, InPartsIsLikeInOneGo) {
     }
 }
 
-TEST(March, ABlockedLaneStaysBlocked) {
+TEST(LensTrace, ABlockedLaneStaysBlocked) {
     std::vector<LensSurface> surfaces{surface_of(0.02, 5, 1.5, 10), surface_of(-0.02, 5, 1, 10),
                                       surface_of(0, 5, 1, 2), surface_of(0, 5, 1, 1e3)};
     surfaces[2].stop = true;
@@ -286,8 +287,8 @@ TEST(March, ABlockedLaneStaysBlocked) {
     std::vector<m4> reached;
     const auto look = [&](const LensHit<f4>& hit) { reached.push_back(hit.reached); };
     const auto indices = lens.indices(splat(550));
-    (void)march(lens, indices, Towards::Film, {0, 2}, ray, Clip::Yes, look);
-    const auto passed = march(lens, indices, Towards::Film, {3, 3}, ray, Clip::Yes, look);
+    (void)trace_lens(lens, indices, Towards::Film, {0, 2}, ray, Clip::Yes, look);
+    const auto passed = trace_lens(lens, indices, Towards::Film, {3, 3}, ray, Clip::Yes, look);
     const m4 passed_wanted{-1, 0, 0, -1}, ends{0, 0, 2, 0};
     ASSERT_EQ(reached.size(), 4u);
     const m4 reached_wanted[] = {
@@ -302,7 +303,7 @@ TEST(March, ABlockedLaneStaysBlocked) {
     ray = ray_of<f4>({0, 0, -5}, {0, 0, 1});
     ray.fate_code[1] = int(Fate::TotallyReflected), ray.end_surface[1] = 3;
     ray.origin.x[1] = std::nanf("");
-    (void)march(lens, indices, Towards::Film, whole(lens), ray, Clip::Yes);
+    (void)trace_lens(lens, indices, Towards::Film, whole(lens), ray, Clip::Yes);
     EXPECT_EQ(ray.fate(1), Fate::TotallyReflected);
     EXPECT_EQ(ray.end_surface[1], 3);
     EXPECT_EQ(at_lane(ray.origin, 1), (Three{}));
@@ -310,17 +311,17 @@ TEST(March, ABlockedLaneStaysBlocked) {
     // Once all are blocked, nothing is looked at any more.
     reached.clear();
     ray = ray_of<f4>({0, 11, -5}, {0, 0, 1});
-    (void)march(lens, indices, Towards::Film, whole(lens), ray, Clip::Yes, look);
+    (void)trace_lens(lens, indices, Towards::Film, whole(lens), ray, Clip::Yes, look);
     EXPECT_EQ(reached.size(), 1u);
 }
 
-TEST(March, AnObserverSeesPointsIndicesAndDistances) {
+TEST(LensTrace, AnObserverSeesPointsIndicesAndDistances) {
     const Lens lens = lens_of({surface_of(0, 5, 1.5), surface_of(0, 2, 1), surface_of(0, 9, 1)});
     for (const bool to_film : {true, false}) {
         auto ray = ray_of<d4>({0, 0, -4}, {0, 0.6, to_film ? 0.8 : -0.8});
         std::vector<LensHit<d4>> hits;
-        (void)march(lens, lens.exact_indices(kD_nm), to_film ? Towards::Film : Towards::Scene,
-                    whole(lens), ray, Clip::No, [&](const auto& hit) { hits.push_back(hit); });
+        (void)trace_lens(lens, lens.exact_indices(kD_nm), to_film ? Towards::Film : Towards::Scene,
+                         whole(lens), ray, Clip::No, [&](const auto& hit) { hits.push_back(hit); });
         ASSERT_EQ(hits.size(), 3u);
         const double in_air = 1 / 0.8, in_glass = 1 / std::sqrt(1 - 0.16);
         for (size_t i = 0; i < 3; ++i) {

@@ -117,7 +117,7 @@ class Trial {
     }
 
     void run() {
-        march_all();
+        trace_all();
         first_orders();
         share(0.25f, [&] { trace(); });
         share(0.125f, [&] { outlines(); });
@@ -142,7 +142,7 @@ class Trial {
         return by_chance(random_, 0.5f) ? kLineD_nm : between(random_, 360, 830);
     }
 
-    void march_all() {
+    void trace_all() {
         for (const auto towards : {Towards::Film, Towards::Scene}) {
             const Clip clip = by_chance(random_, 0.5f) ? Clip::Yes : Clip::No;
             std::array<test::Line, 4> lines;
@@ -153,10 +153,10 @@ class Trial {
             auto dual = test::with_derivatives(floats);
             const auto indices = by_chance(random_, 0.5f) ? lens_.exact_indices(splat(float(nm)))
                                                           : lens_.indices(splat(float(nm)));
-            (void)march(lens_, lens_.exact_indices(broadcast<d4>(nm)), towards, test::whole(lens_),
-                        doubles, clip);
-            (void)march(lens_, indices, towards, test::whole(lens_), floats, clip);
-            (void)march(lens_, indices, towards, test::whole(lens_), dual, clip);
+            (void)trace_lens(lens_, lens_.exact_indices(broadcast<d4>(nm)), towards,
+                             test::whole(lens_), doubles, clip);
+            (void)trace_lens(lens_, indices, towards, test::whole(lens_), floats, clip);
+            (void)trace_lens(lens_, indices, towards, test::whole(lens_), dual, clip);
             if (kind_ == Kind::Wild || !has_indices(nm, indices)) continue;
             // Light that grazed a surface comes from so far away that digits are gone.
             defined(doubles, towards, kind_ == Kind::Random ? 1e-9 : 0.01, "doubles");
@@ -181,7 +181,7 @@ class Trial {
     void defined(const LensRay<N>& ray, Towards towards, double tolerance, const char* numbers) {
         const std::string fault = test::fault_of(ray, lens_, towards, tolerance);
         if (!fault.empty())
-            throw Fault{fmt::format("march towards the {} in {}: {}",
+            throw Fault{fmt::format("trace towards the {} in {}: {}",
                                     towards == Towards::Film ? "film" : "scene", numbers, fault)};
     }
 

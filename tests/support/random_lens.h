@@ -91,7 +91,7 @@ template <class V>
     return out;
 }
 
-/// What of that which holds for every ray that has been marched does not hold; empty where all
+/// What of that which holds for every ray that has been traced does not hold; empty where all
 /// does. tolerance: of the direction's length.
 template <class N>
 [[nodiscard]] std::string fault_of(const LensRay<N>& ray, const Lens& lens, Towards towards,

@@ -270,7 +270,7 @@ TEST_F(CliCamera, RefusesWhatHasNoEffect) {
     const Words singlet = {"--lens", "singlet:schott:N-BK7", "--fstop", "8", "--focus", "1"};
     const Words pinhole = {"--lens", "pinhole"};
     const std::pair<const char*, const char*> surfaces[] = {{"--coating", "uncoated"},
-                                                            {"--march", "double"},
+                                                            {"--lens-precision", "double"},
                                                             {"--focus-by", "traced"},
                                                             {"--fit", "fov"}};
     for (const Words& camera : {thin, singlet, pinhole})

@@ -164,10 +164,10 @@ TEST_F(CliLens, GlassReflectsWhereItIsAskedTo) {
 
 TEST_F(CliLens, DoublesAreAskedForAndAgree) {
     const std::string walls_file = walls().save_gltf(folder_.path / "walls.gltf").string();
-    const auto picture = [&](const char* march) {
+    const auto picture = [&](const char* trace) {
         scene_ = walls_file;
-        return render({"--lens", "double-gauss-100mm-f2", "--march", march, "--background", "1,1,1",
-                       "--look-at", "-0.4,0,0,-0.4,0,-1", "--focus", "1", "--spp", "64"});
+        return render({"--lens", "double-gauss-100mm-f2", "--lens-precision", trace, "--background",
+                       "1,1,1", "--look-at", "-0.4,0,0,-0.4,0,-1", "--focus", "1", "--spp", "64"});
     };
     const Picture in_floats = picture("float"), in_doubles = picture("double");
     EXPECT_NE(in_floats.pixels, in_doubles.pixels);
@@ -238,7 +238,8 @@ TEST_F(CliLens, StatsTellWhatBecameOfTheLanes) {
         {{"--lens", "takumar-50mm-f1.2", "--dispersion", "split"}, 4},
         {{"--lens", "takumar-50mm-f1.2", "--dispersion", "single"}, 1},
         {{"--lens", "takumar-50mm-f1.2", "--dispersion", "shared"}, 3},
-        {{"--lens", "takumar-50mm-f1.2", "--dispersion", "split", "--march", "double"}, 4}};
+        {{"--lens", "takumar-50mm-f1.2", "--dispersion", "split", "--lens-precision", "double"},
+         4}};
     for (const auto& [words, each] : cases) {
         const nlohmann::json l = lanes(words);
         EXPECT_EQ(l.size(), 6u);

@@ -35,7 +35,7 @@ Spread into_glass(double cosine) {
     return worst_of(512, [&] {
         const double c = cosine * (1 + 0.1 * double(draws.next()));
         const double h_mm = kRadius_mm * std::sqrt(1 - c * c), at = 2 * M_PI * double(draws.next());
-        return march_both(lens, {0, 0}, {h_mm * std::cos(at), h_mm * std::sin(at), -10}, {0, 0, 1});
+        return trace_both(lens, {0, 0}, {h_mm * std::cos(at), h_mm * std::sin(at), -10}, {0, 0, 1});
     });
 }
 
@@ -47,16 +47,16 @@ Spread out_of_glass(double cosine) {
         const double c = cosine * (1 + 0.1 * double(draws.next()));
         const double sine = std::sqrt(1 - c * c) / kGlassIndex,
                      at = 2 * M_PI * double(draws.next());
-        return march_both(lens, {1, 1}, {0, 0, -3},
+        return trace_both(lens, {1, 1}, {0, 0, -3},
                           {sine * std::cos(at), sine * std::sin(at), std::sqrt(1 - sine * sine)});
     });
 }
 
 }  // namespace
 
-Finding march_at_grazing_incidence() {
+Finding trace_at_grazing_incidence() {
     Finding f;
-    f.method = "March at grazing incidence";
+    f.method = "Rays at grazing incidence";
     f.fails = "bias";
     f.sweep = fmt::format(
         "512 rays in floats and in doubles, from the same origin and direction: parallel to the "
@@ -87,9 +87,9 @@ Finding march_at_grazing_incidence() {
         number(sphere), degrees_off(sphere), number(fates), number(plane), degrees_off(plane));
     f.instead =
         "Every ray has a defined end: a point or a fate. Grazing rays carry little light, as "
-        "Fresnel's reflection goes to 1; `--march double` follows them in doubles.";
+        "Fresnel's reflection goes to 1; `--lens-precision double` follows them in doubles.";
     f.guards = {"RandomLens.EveryRayHasADefinedEnd", "OracleRays.RaysInFloats",
-                "LensCameraMarch.DoublesAgreeWithFloats"};
+                "LensCameraPrecision.DoublesAgreeWithFloats"};
     return f;
 }
 
@@ -104,7 +104,7 @@ double over_radius_mm(double radius_mm) {
                     [&] {
                         const double at = 2 * M_PI * double(draws.next());
                         const double h_mm = 10 * double(draws.next());
-                        return march_both(lens, {0, 1},
+                        return trace_both(lens, {0, 1},
                                           {h_mm * std::cos(at), h_mm * std::sin(at), -10},
                                           {0.34 * double(draws.next()), 0.1, 1});
                     })
@@ -119,16 +119,16 @@ double from_afar_mm(double distance_mm) {
                     [&] {
                         const V3d aim(10 * double(draws.next()), 10 * double(draws.next()), 0);
                         const V3d direction = V3d(0.34 * double(draws.next()), 0.1, 1).normalized();
-                        return march_both(lens, {0, 0}, aim - direction * distance_mm, direction);
+                        return trace_both(lens, {0, 0}, aim - direction * distance_mm, direction);
                     })
         .apart_mm;
 }
 
 }  // namespace
 
-Finding march_over_long_radii() {
+Finding trace_over_long_radii() {
     Finding f;
-    f.method = "March over long radii and from afar";
+    f.method = "Rays over long radii and from afar";
     f.fails = "bias";
     f.sweep = fmt::format(
         "512 rays in floats and in doubles from the same origin and direction: through a plate of "
@@ -154,7 +154,7 @@ Finding march_over_long_radii() {
         "Roots are taken from the ray's point nearest to the vertex, in the form in which nothing "
         "cancels. Cameras start their rays at the film, and analyses trace in doubles: no ray in "
         "floats comes from afar.";
-    f.guards = {"March.NearlyFlatIsLikeFlatFromEverywhere", "OracleRays.RaysInDoubles"};
+    f.guards = {"LensTrace.NearlyFlatIsLikeFlatFromEverywhere", "OracleRays.RaysInDoubles"};
     return f;
 }
 

@@ -40,7 +40,7 @@ struct CameraPath {
 /// What became of the lanes for which a lens was asked; those not named went out. All 0: a camera
 /// that has nothing to lose light at.
 template <class Count>
-struct LaneFates {
+struct LensLosses {
     Count drawn{};
     Count vignetted{};  ///< by a rim, or outside the iris
     Count totally_reflected{};
@@ -51,7 +51,7 @@ struct LaneFates {
         return static_cast<Count>(vignetted + totally_reflected + missed + unreached);
     }
     template <class Other>
-    LaneFates& operator+=(const LaneFates<Other>& o) {
+    LensLosses& operator+=(const LensLosses<Other>& o) {
         drawn += o.drawn;
         vignetted += o.vignetted;
         totally_reflected += o.totally_reflected;
@@ -67,7 +67,7 @@ class CameraSample {
   public:
     static constexpr size_t kMostPaths = 4;
 
-    LaneFates<uint32_t> lanes;
+    LensLosses<uint32_t> lanes;
     float exposure = 1;  ///< what the weights of a lane are on average where nothing is lost
 
     [[nodiscard]] bool empty() const { return size_ == 0; }

@@ -18,7 +18,7 @@ struct PathStats {
     uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0;
     uint64_t vertices = 0;  ///< hits that were shaded
     uint64_t tiles = 0;     ///< tiles that this worker rendered
-    LaneFates<uint64_t> lens_lanes;
+    LensLosses<uint64_t> lens_lanes;
     bool timing = false;  ///< the current sample is one of those that are timed
     uint64_t timed_samples = 0, samples = 0;
     std::array<uint64_t, static_cast<size_t>(TimedSection::Count)> ticks{};

@@ -37,7 +37,7 @@ nlohmann::ordered_json sections(const PathStats& stats, double cpu_s) {
 }
 
 // What the lens did to the lanes that were drawn; nothing for a camera that is none.
-nlohmann::ordered_json lens_lanes(const LaneFates<uint64_t>& lanes) {
+nlohmann::ordered_json lens_lanes(const LensLosses<uint64_t>& lanes) {
     if (lanes.drawn == 0) return nullptr;
     return {{"drawn", lanes.drawn},         {"passed", lanes.drawn - lanes.lost()},
             {"vignetted", lanes.vignetted}, {"totally_reflected", lanes.totally_reflected},

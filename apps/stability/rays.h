@@ -50,9 +50,12 @@ struct Pair {
     LensRay<f4> in_floats;
     LensRay<d4> in_doubles;
 
-    [[nodiscard]] bool fates_differ() const { return in_floats.fate(0) != in_doubles.fate(0); }
+    [[nodiscard]] bool statuses_differ() const {
+        return in_floats.status(0) != in_doubles.status(0);
+    }
     [[nodiscard]] bool passed() const {
-        return in_floats.fate(0) == Fate::Passed && in_doubles.fate(0) == Fate::Passed;
+        return in_floats.status(0) == RayStatus::Passed &&
+               in_doubles.status(0) == RayStatus::Passed;
     }
     /// Of the crossing with a plane so far behind the vertex of the last surface that was met.
     [[nodiscard]] double apart_mm(double behind_mm) const {

@@ -59,13 +59,13 @@ Newton newton_on(const LensSurface& s) {
             if (!root) continue;
             ++rays;
             const Pair pair = trace_both(lens, {0, 0}, aim - d * semi_mm, d);
-            const auto judge = [&](Fate fate, double y) {
-                out.missed += fate == Fate::Missed;
-                out.other +=
-                    fate == Fate::Passed && std::fabs(y - (aim + d * *root).y) > 1e-3 * semi_mm;
+            const auto judge = [&](RayStatus status, double y) {
+                out.missed += status == RayStatus::Missed;
+                out.other += status == RayStatus::Passed &&
+                             std::fabs(y - (aim + d * *root).y) > 1e-3 * semi_mm;
             };
-            judge(pair.in_floats.fate(0), double(pair.in_floats.origin.y[0]));
-            judge(pair.in_doubles.fate(0), pair.in_doubles.origin.y[0]);
+            judge(pair.in_floats.status(0), double(pair.in_floats.origin.y[0]));
+            judge(pair.in_doubles.status(0), pair.in_doubles.origin.y[0]);
         }
     out.missed /= std::max(2 * rays, 1);
     out.other /= std::max(2 * rays, 1);

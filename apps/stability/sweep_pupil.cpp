@@ -188,8 +188,8 @@ Finding pupil_at_wide_fields() {
         "the ray is known, not only its crossing: a weight there is large, but not without bound. "
         "Light of the second ray is lost.";
     f.guards = {"Pupil.RaysMeetTheStopWhereTheyShould", "LensCamera.IrradianceIsTheOracles",
-                "LaneFates.AFilmBeyondTheImageCircleIsBlack",
-                "LaneFates.AtTheFisheyesRimRaysGrazeThenAreTotallyReflected",
+                "LensLosses.AFilmBeyondTheImageCircleIsBlack",
+                "LensLosses.AtTheFisheyesRimRaysGrazeThenAreTotallyReflected",
                 "Stability.NoDrawOutweighsAllOthersWhereThePupilFolds"};
     return f;
 }

@@ -13,7 +13,7 @@ namespace {
 constexpr double kPixel_mm = 0.006;
 
 struct Spread {
-    double apart_mm = 0, fates_differ = 0;
+    double apart_mm = 0, statuses_differ = 0;
 };
 
 template <class Trial>
@@ -22,7 +22,7 @@ Spread worst_of(int trials, const Trial& trial) {
     for (int i = 0; i < trials; ++i) {
         const Pair pair = trial();
         if (pair.passed()) out.apart_mm = std::fmax(out.apart_mm, pair.apart_mm(kBehind_mm));
-        out.fates_differ += double(pair.fates_differ()) / trials;
+        out.statuses_differ += double(pair.statuses_differ()) / trials;
     }
     return out;
 }
@@ -62,19 +62,19 @@ Finding trace_at_grazing_incidence() {
         "512 rays in floats and in doubles, from the same origin and direction: parallel to the "
         "axis onto a sphere of 50 mm of n = {}, and out of that glass through a plane. The cosine, "
         "of incidence or of refraction, comes down from 1. How far apart the two meet a plane "
-        "{:g} mm behind, and the share whose fates (missed, totally reflected, passed) differ.",
+        "{:g} mm behind, and the share whose losses (missed, totally reflected, passed) differ.",
         kGlassIndex, kBehind_mm);
-    f.table.columns = {"cosine", "into a sphere (mm)", "other fate", "out of a plane (mm)",
-                       "other fate there"};
+    f.table.columns = {"cosine", "into a sphere (mm)", "other status", "out of a plane (mm)",
+                       "other status there"};
     for (const double c : {0.9, 0.3, 0.1, 1e-2, 1e-3, 1e-4, 1e-5}) {
         const Spread in = into_glass(c), out = out_of_glass(c);
-        f.table.rows.push_back(
-            row(c, in.apart_mm, percent(in.fates_differ), out.apart_mm, percent(out.fates_differ)));
+        f.table.rows.push_back(row(c, in.apart_mm, percent(in.statuses_differ), out.apart_mm,
+                                   percent(out.statuses_differ)));
     }
     const auto sphere =
         first_failure(0.9, 1e-6, [](double c) { return into_glass(c).apart_mm > kPixel_mm; });
-    const auto fates =
-        first_failure(0.9, 1e-6, [](double c) { return into_glass(c).fates_differ > 0.01; });
+    const auto losses =
+        first_failure(0.9, 1e-6, [](double c) { return into_glass(c).statuses_differ > 0.01; });
     const auto plane =
         first_failure(0.9, 1e-6, [](double c) { return out_of_glass(c).apart_mm > kPixel_mm; });
     const auto degrees_off = [](const std::optional<double>& c) {
@@ -84,9 +84,9 @@ Finding trace_at_grazing_incidence() {
         "Into a sphere floats are a pixel (6 um) off below a cosine of {} ({} degrees from "
         "grazing), and 1 % of the rays hit or miss otherwise below {}. Out of glass they are a "
         "pixel off below a cosine of refraction of {} ({} degrees)",
-        number(sphere), degrees_off(sphere), number(fates), number(plane), degrees_off(plane));
+        number(sphere), degrees_off(sphere), number(losses), number(plane), degrees_off(plane));
     f.instead =
-        "Every ray has a defined end: a point or a fate. Grazing rays carry little light, as "
+        "Every ray has a defined end: a point or a status. Grazing rays carry little light, as "
         "Fresnel's reflection goes to 1; `--lens-precision double` follows them in doubles.";
     f.guards = {"RandomLens.EveryRayHasADefinedEnd", "OracleRays.RaysInFloats",
                 "LensCameraPrecision.DoublesAgreeWithFloats"};

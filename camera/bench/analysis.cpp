@@ -89,7 +89,7 @@ std::optional<double> field_of_height_deg(const Lens& lens, double height_mm, do
         }
         slope_by_mm = slope / from_mm;
     }
-    if (ray.fate != Fate::Passed) return std::nullopt;
+    if (ray.status != RayStatus::Passed) return std::nullopt;
     const double deg = std::acos(-ray.direction.z) / kDegree;
     return deg <= last_deg ? std::optional(deg) : std::nullopt;
 }

@@ -20,7 +20,7 @@ struct Spokes {
         const V3d at = outwards * radius_mm;
         const V3d along = std::isfinite(object_mm) ? at - V3d(0, 0, object_mm) : V3d(0, 0, 1);
         TracedRay ray = trace_ray(lens, at, along, nm, Towards::Film, Clip::Yes);
-        if (ray.fate != Fate::Passed || !(ray.direction.z > 0)) return std::nullopt;
+        if (ray.status != RayStatus::Passed || !(ray.direction.z > 0)) return std::nullopt;
         const V3d& stop = ray.points[static_cast<size_t>(lens.stop())];
         if (std::hypot(stop.x, stop.y) > stop_radius_mm) return std::nullopt;
         return ray;

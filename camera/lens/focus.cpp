@@ -176,7 +176,7 @@ std::optional<double> best_film_shift_mm(const Lens& lens, double film_mm, doubl
 std::optional<AxialRay> axial_ray(const Lens& lens, double height_mm) {
     const TracedRay ray =
         trace_ray(lens, {0, height_mm, -1}, {0, 0, 1}, kLineD_nm, Towards::Film, Clip::No);
-    if (ray.fate != Fate::Passed) return std::nullopt;
+    if (ray.status != RayStatus::Passed) return std::nullopt;
     const auto& surfaces = lens.prescription().surfaces;
     AxialRay out{0, std::hypot(ray.direction.x, ray.direction.y)};
     for (int i = 0; i < lens.size(); ++i) {

@@ -10,7 +10,7 @@ enum class Towards { Film, Scene };
 /// Whether semi-diameters stop light; the iris has one as well.
 enum class Clip { Yes, No };
 /// What became of a ray. Each surface asks in this order: missed, vignetted, totally reflected.
-enum class Fate : int { Passed, Vignetted, TotallyReflected, Missed };
+enum class RayStatus : int { Passed, Vignetted, TotallyReflected, Missed };
 
 /// The surfaces to trace through, both included, first on the scene's side whatever the direction;
 /// nothing is done where last < first.
@@ -23,16 +23,16 @@ struct SurfaceRange {
 /// the vertex of a surface, so that no digits are lost on the length of the lens: the last one that
 /// was met.
 ///
-/// Lanes that are blocked keep their fate, and go on along the axis, where nothing can go wrong.
+/// Lanes that are blocked keep their status, and go on along the axis, where nothing can go wrong.
 template <class N>
 struct LensRay {
     Vec3<N> origin, direction;
     int counted_from = 0;     ///< the surface from whose vertex z of the origin counts
-    CodeOf<N> fate_code{};    ///< Fate, as a number
+    CodeOf<N> status_code{};  ///< RayStatus, as a number
     CodeOf<N> end_surface{};  ///< where a blocked lane ended
 
-    [[nodiscard]] MaskOf<N> alive() const { return fate_code == 0; }
-    [[nodiscard]] Fate fate(int i) const { return Fate(lane(fate_code, i)); }
+    [[nodiscard]] MaskOf<N> alive() const { return status_code == 0; }
+    [[nodiscard]] RayStatus status(int i) const { return RayStatus(lane(status_code, i)); }
 };
 
 /// What an observer is told at each surface, before light is refracted there. Without derivatives.

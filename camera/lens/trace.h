@@ -252,21 +252,22 @@ template <class To, class From>
             else
                 return Vec3<To>{constant<To>(a.x), constant<To>(a.y), constant<To>(a.z)};
         };
-        return {vector(ray.origin), vector(ray.direction), ray.counted_from, ray.fate_code,
+        return {vector(ray.origin), vector(ray.direction), ray.counted_from, ray.status_code,
                 ray.end_surface};
     }
 }
 
-/// Lanes that are blocked just now get their fate; all blocked ones have the axis for a ray.
+/// Lanes that are blocked just now get their status; all blocked ones have the axis for a ray.
 template <class N>
 [[gnu::noinline]] LensRay<N> block(LensRay<N> ray, int surface, ScalarOf<N> sign, MaskOf<N> found,
                                    MaskOf<N> inside, MaskOf<N> refracted) {
     using Code = CodeOf<N>;
     const auto code = [](auto a) { return Code{} + static_cast<int>(a); };
     const MaskOf<N> fresh = ray.alive() & !(found & inside & refracted);
-    const Code fate = select(!found, code(Fate::Missed),
-                             select(!inside, code(Fate::Vignetted), code(Fate::TotallyReflected)));
-    ray.fate_code = select(fresh, fate, ray.fate_code);
+    const Code status =
+        select(!found, code(RayStatus::Missed),
+               select(!inside, code(RayStatus::Vignetted), code(RayStatus::TotallyReflected)));
+    ray.status_code = select(fresh, status, ray.status_code);
     ray.end_surface = select(fresh, code(surface), ray.end_surface);
     const MaskOf<N> on = ray.alive();
     ray.origin = select(on, ray.origin, Vec3<N>{});

@@ -17,7 +17,7 @@ V3d first_lane(const Vec3<d4>& v) {
 }  // namespace
 
 std::optional<std::array<double, 2>> TracedRay::at_plane(double z_mm) const {
-    if (fate != Fate::Passed || direction.z == 0) return std::nullopt;
+    if (status != RayStatus::Passed || direction.z == 0) return std::nullopt;
     const double t = (z_mm - point.z) / direction.z;
     // A film may be moved to before the last glass's rim; a ray that leads away from it is lost.
     if (direction.z < 0 && t < 0) return std::nullopt;
@@ -39,8 +39,8 @@ TracedRay trace_ray(const Lens& lens, const V3d& origin_mm, const V3d& direction
     };
     static_cast<void>(trace_lens(lens, lens.exact_indices(broadcast<d4>(nm)), towards,
                                  SurfaceRange{0, lens.last()}, ray, clip, observe));
-    out.fate = ray.fate(0);
-    if (out.fate != Fate::Passed) {
+    out.status = ray.status(0);
+    if (out.status != RayStatus::Passed) {
         out.end_surface = static_cast<int>(ray.end_surface[0]);
         return out;
     }

@@ -17,7 +17,7 @@ struct TracedRay {
     std::vector<V3d> points;  ///< on each surface that it met, the one that blocked it too
     V3d point, direction;     ///< where and how it leaves; of a ray that passed
     double path_mm = 0;       ///< optical path from the origin to there
-    Fate fate = Fate::Passed;
+    RayStatus status = RayStatus::Passed;
     int end_surface = -1;  ///< where it was blocked
 
     /// Where a ray that passed meets a plane across the axis; nothing where it does not lead there.

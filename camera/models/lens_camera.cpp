@@ -34,18 +34,18 @@ ScalarOf<V> sum(V a) {
 
 // What took each lane that is on and did not pass. A rim comes before what befalls a ray behind it.
 template <class V>
-LaneFates<uint32_t> fates(m4 on, const LensDraw<V>& drawn, MaskOf<V> clear) {
+LensLosses<uint32_t> losses(m4 on, const LensDraw<V>& drawn, MaskOf<V> clear) {
     const auto count = [on](MaskOf<V> lanes) {
         return static_cast<uint32_t>(lane_count(on & lanes_as<m4>(lanes)));
     };
-    LaneFates<uint32_t> out = drawn.lanes;
+    LensLosses<uint32_t> out = drawn.lanes;
     const MaskOf<V> lost = !(drawn.weight > 0);
     if (!any(on & lanes_as<m4>(lost))) return out;
-    const auto ended = [&](Fate fate) {
-        return count(clear & (drawn.ray.fate_code == static_cast<int>(fate)));
+    const auto ended = [&](RayStatus status) {
+        return count(clear & (drawn.ray.status_code == static_cast<int>(status)));
     };
-    out.totally_reflected = ended(Fate::TotallyReflected);
-    out.missed = ended(Fate::Missed);
+    out.totally_reflected = ended(RayStatus::TotallyReflected);
+    out.missed = ended(RayStatus::Missed);
     out.vignetted = count(lost) - out.totally_reflected - out.missed;
     return out;
 }
@@ -101,7 +101,7 @@ LensDraw<V> LensCamera::draw(const Aim& aim, const Bands& bands, Coating coating
         const S gain = S(gain_) * static_cast<S>(lane_count(bands.on)) / lanes;
         out.weight = select(c.clear & out.ray.alive(), V(open * (gain / density)), V{});
     }
-    out.lanes = fates(on, out, c.clear);
+    out.lanes = losses(on, out, c.clear);
     if (coating != Coating::Ideal && any(out.weight > 0)) {
         const f4 nm = bands.spectral ? bands.nm : splat(aim.nm);
         out.weight *= lanes_as<V>(transmitted(aim.film_mm, c, coating, indices, nm));

@@ -20,7 +20,7 @@ template <class V>
 struct LensDraw {
     V weight{};      ///< 0 where the lane is blocked
     LensRay<V> ray;  ///< in front of the lens
-    LaneFates<uint32_t> lanes;
+    LensLosses<uint32_t> lanes;
 };
 
 struct LensCameraInput {

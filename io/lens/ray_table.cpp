@@ -16,15 +16,15 @@ namespace {
 constexpr std::array<const char*, 7> kColumns{"x", "y", "z", "dx", "dy", "dz", "nm"};
 constexpr double kFarthest_mm = 1e9;
 
-const char* status_of(Fate fate) {
-    switch (fate) {
-        case Fate::Passed:
+const char* status_of(RayStatus status) {
+    switch (status) {
+        case RayStatus::Passed:
             return "ok";
-        case Fate::Vignetted:
+        case RayStatus::Vignetted:
             return "vignetted";
-        case Fate::TotallyReflected:
+        case RayStatus::TotallyReflected:
             return "tir";
-        case Fate::Missed:
+        case RayStatus::Missed:
             return "miss";
     }
     return "";
@@ -72,8 +72,8 @@ std::vector<RayToTrace> read_rays(const std::filesystem::path& path) {
 std::string ray_table(std::span<const TracedRay> rays, Towards towards, double film_mm) {
     std::string out = "x,y,z,dx,dy,dz,film_x,film_y,path,status,surface\n";
     for (const TracedRay& ray : rays) {
-        if (ray.fate != Fate::Passed) {
-            out += fmt::format(",,,,,,,,,{},{}\n", status_of(ray.fate), ray.end_surface);
+        if (ray.status != RayStatus::Passed) {
+            out += fmt::format(",,,,,,,,,{},{}\n", status_of(ray.status), ray.end_surface);
             continue;
         }
         const auto film = towards == Towards::Film ? ray.at_plane(film_mm) : std::nullopt;

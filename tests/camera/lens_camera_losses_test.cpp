@@ -15,14 +15,14 @@ using namespace test;
 
 // Where the fisheye's image ends: rims take rays first; beyond a field of 90 degrees rays graze the
 // front surface, then are totally reflected within it, before the film point sees no stop at all.
-TEST(LaneFates, AtTheFisheyesRimRaysGrazeThenAreTotallyReflected) {
+TEST(LensLosses, AtTheFisheyesRimRaysGrazeThenAreTotallyReflected) {
     const LensCameraInput in = input_of(kFisheye, DispersionMode::Shared);
     LensCameraInput bare = in;
     bare.coating = Coating::Uncoated;
     const LensCamera camera(in), uncoated(bare);
     const double radius_mm = 1 / in.lens->prescription().surfaces.front().curvature_1_mm;
     struct Rim {
-        LaneFates<uint64_t> lanes;
+        LensLosses<uint64_t> lanes;
         double least_ahead = 1, least_cosine = 1, least_transmitted = 1;
     };
     const auto at = [&](float height_mm) {
@@ -64,7 +64,7 @@ TEST(LaneFates, AtTheFisheyesRimRaysGrazeThenAreTotallyReflected) {
     EXPECT_GT(last.lanes.totally_reflected, last.lanes.drawn / 10);
     EXPECT_LT(last.lanes.lost(), last.lanes.drawn);
     for (const float height_mm : {24.f, 25.f, 28.f}) {
-        const LaneFates<uint64_t> dark = at(height_mm).lanes;
+        const LensLosses<uint64_t> dark = at(height_mm).lanes;
         EXPECT_EQ(dark.lost(), dark.drawn) << height_mm;
         EXPECT_EQ(dark.totally_reflected > 0, height_mm < 26) << height_mm;
         EXPECT_EQ(dark.unreached > 0, height_mm > 26) << height_mm;
@@ -73,9 +73,9 @@ TEST(LaneFates, AtTheFisheyesRimRaysGrazeThenAreTotallyReflected) {
 }
 
 /// Of many samples over a film. Every sample's lanes must add up.
-LaneFates<uint64_t> fates(const LensCameraInput& in, const Bands& bands) {
+LensLosses<uint64_t> losses(const LensCameraInput& in, const Bands& bands) {
     const LensCamera camera(in);
-    LaneFates<uint64_t> out;
+    LensLosses<uint64_t> out;
     test::Random random(6);
     for (uint32_t i = 0; i < 4000; ++i) {
         const CameraSample seen = camera.sample(film_point(random.next2(), i), bands);
@@ -89,43 +89,43 @@ LaneFates<uint64_t> fates(const LensCameraInput& in, const Bands& bands) {
     return out;
 }
 
-TEST(LaneFates, AddUpAndTellTheCause) {
+TEST(LensLosses, AddUpAndTellTheCause) {
     for (const DispersionMode dispersion :
          {DispersionMode::Shared, DispersionMode::Split, DispersionMode::Single})
         for (const LensTrace precision : {Precision::Float, Precision::Double}) {
             LensCameraInput in = input_of(kTakumar, dispersion);
             in.precision = precision;
-            const auto open = fates(in, four_wavelengths());
+            const auto open = losses(in, four_wavelengths());
             EXPECT_GT(open.vignetted, open.drawn / 10);  // cat's eyes
             EXPECT_LT(open.vignetted, open.drawn / 2);
             // A small stop lets everything through.
             LensCameraInput small = input_of(kTakumar, dispersion, 0.2);
             small.precision = precision;
-            const auto stopped = fates(small, four_wavelengths());
+            const auto stopped = losses(small, four_wavelengths());
             EXPECT_LT(stopped.lost(), stopped.drawn / 100);  // edges of the iris, between lanes
         }
 }
 
-TEST(LaneFates, AFilmBeyondTheImageCircleIsBlack) {
+TEST(LensLosses, AFilmBeyondTheImageCircleIsBlack) {
     LensCameraInput in = input_of(kGauss, DispersionMode::Shared);
     in.film_width_mm = in.film_height_mm = 300;
-    const auto all = fates(in, Bands::rgb());
+    const auto all = losses(in, Bands::rgb());
     EXPECT_GT(all.vignetted, 0u);
     EXPECT_GT(all.unreached, all.drawn / 4);
     EXPECT_GT(all.lost(), all.drawn * 9 / 10);
 }
 
 // An iris that is larger than the stop is cut off by its rim; of a wide one, no ray gets anywhere.
-TEST(LaneFates, AWideIrisIsVignettedOrUnreached) {
-    const auto some = fates(input_of(kGauss, DispersionMode::Shared, 1.5), Bands::rgb());
+TEST(LensLosses, AWideIrisIsVignettedOrUnreached) {
+    const auto some = losses(input_of(kGauss, DispersionMode::Shared, 1.5), Bands::rgb());
     EXPECT_GT(some.vignetted, some.drawn / 2);
-    const auto most = fates(input_of(kGauss, DispersionMode::Shared, 20), Bands::rgb());
+    const auto most = losses(input_of(kGauss, DispersionMode::Shared, 20), Bands::rgb());
     EXPECT_GT(most.unreached, most.drawn / 2);
 }
 
 // Plane glass before the stop, steep rays within: they meet the next plane beyond the critical
 // angle, or a ball that they miss.
-TEST(LaneFates, TotalReflectionAndMissesAreToldApart) {
+TEST(LensLosses, TotalReflectionAndMissesAreToldApart) {
     const auto through = [](double last_curvature, double glass) {
         Prescription p;
         const auto add = [&p](double curvature, double thickness, double index, bool stop) {
@@ -145,7 +145,7 @@ TEST(LaneFates, TotalReflectionAndMissesAreToldApart) {
         in.film_mm = lens->film_mm();
         in.film_width_mm = in.film_height_mm = 2;
         in.dispersion = DispersionMode::Shared;
-        return fates(in, Bands::rgb());
+        return losses(in, Bands::rgb());
     };
     const auto curved = through(0.1, 1.8);  // light leaves the glass through a ball of 10 mm
     EXPECT_GT(curved.missed, 0u);

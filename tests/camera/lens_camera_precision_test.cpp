@@ -63,7 +63,7 @@ TEST(LensCameraPrecision, DoublesAreATracedRays) {
                     vector(drawn.ray.origin) + V3d(0, 0, lens.vertex_mm(drawn.ray.counted_from));
                 const TracedRay back = trace_ray(lens, origin, -vector(drawn.ray.direction), nm,
                                                  Towards::Film, Clip::Yes);
-                ASSERT_EQ(back.fate, Fate::Passed) << name;
+                ASSERT_EQ(back.status, RayStatus::Passed) << name;
                 const auto met = back.at_plane(in.film_mm);
                 ASSERT_TRUE(met);
                 ASSERT_NEAR((*met)[0], film.x, 1e-9) << name;

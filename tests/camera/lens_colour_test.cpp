@@ -50,7 +50,7 @@ double focus_mm(const Lens& lens, double nm) {
     const double height_mm = 1e-3;
     const TracedRay ray =
         trace_ray(lens, {0, height_mm, -1}, {0, 0, 1}, nm, Towards::Film, Clip::Yes);
-    EXPECT_EQ(ray.fate, Fate::Passed);
+    EXPECT_EQ(ray.status, RayStatus::Passed);
     return ray.point.z - ray.point.y * ray.direction.z / ray.direction.y;
 }
 

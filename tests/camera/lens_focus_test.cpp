@@ -32,7 +32,7 @@ class BruteSpot {
                     const V3d along =
                         std::isfinite(object_mm) ? at - V3d(0, 0, object_mm) : V3d(0, 0, 1);
                     TracedRay ray = trace_ray(lens, at, along, nm, Towards::Film, Clip::Yes);
-                    if (ray.fate == Fate::Passed) lines_.back().push_back(std::move(ray));
+                    if (ray.status == RayStatus::Passed) lines_.back().push_back(std::move(ray));
                 }
         }
     }

@@ -58,9 +58,9 @@ std::vector<Row> rows_of(const nlohmann::json& table) {
     return rows;
 }
 
-const char* name_of(Fate fate) {
+const char* name_of(RayStatus status) {
     constexpr const char* names[] = {"ok", "vignetted", "TIR", "miss"};
-    return names[static_cast<int>(fate)];
+    return names[static_cast<int>(status)];
 }
 
 double distance(Three a, Three b) {
@@ -106,7 +106,7 @@ Worst<V> compare(const Lens& lens, const std::vector<Row>& rows, Towards towards
             const auto where = [&] {
                 return ::testing::Message() << "row " << first + size_t(i) << ' ' << wanted.nm;
             };
-            EXPECT_EQ(name_of(ray.fate(i)), end_wanted.status) << where();
+            EXPECT_EQ(name_of(ray.status(i)), end_wanted.status) << where();
             EXPECT_EQ(passed[i] != 0, end_wanted.status == "ok") << where();
             if (end_wanted.status != "ok") {
                 EXPECT_EQ(ray.end_surface[i], end_wanted.surface) << where();

@@ -51,7 +51,7 @@ void expect_snell(const LensSurface& s, Three point, Three before, Three after, 
 
 TEST(RandomLens, EveryRayHasADefinedEnd) {
     Random random(20);
-    int fates[4] = {};
+    int losses[4] = {};
     for (int trial = 0; trial < 10000; ++trial) {
         const Lens lens(test::random_prescription(random));
         const auto towards = trial % 2 ? Towards::Film : Towards::Scene;
@@ -76,20 +76,20 @@ TEST(RandomLens, EveryRayHasADefinedEnd) {
         for (size_t i = 0; i < lens.media().size(); ++i)
             one_index.of_medium[i] = indices.of_medium[i][0];
         for (int i = 0; i < 4; ++i) {
-            ++fates[doubles.fate_code[i]];
+            ++losses[doubles.status_code[i]];
             LensRay<float> one;
             const auto& [origin, direction] = lines[size_t(i)];
             one.origin = {float(origin[0]), float(origin[1]), float(origin[2])};
             one.direction = {float(direction[0]), float(direction[1]), float(direction[2])};
             (void)trace_lens(lens, one_index, towards, whole(lens), one, clip);
-            ASSERT_EQ(one.fate(0), floats.fate(i));
+            ASSERT_EQ(one.status(0), floats.status(i));
             ASSERT_EQ(one.end_surface, floats.end_surface[i]);
             ASSERT_EQ(at_lane(one.origin, 0), at_lane(floats.origin, i));
             ASSERT_EQ(at_lane(one.direction, 0), at_lane(floats.direction, i));
-            ASSERT_EQ(dual.fate(i), floats.fate(i));
+            ASSERT_EQ(dual.status(i), floats.status(i));
         }
     }
-    for (const int count : fates) EXPECT_GT(count, 500);
+    for (const int count : losses) EXPECT_GT(count, 500);
 }
 
 TEST(RandomLens, PointsAreOnTheSurfacesAndSnellsLawHolds) {
@@ -113,7 +113,7 @@ TEST(RandomLens, PointsAreOnTheSurfacesAndSnellsLawHolds) {
                           indices.of_medium[facts.medium_after][0]};
             if (!to_film) std::swap(n[0], n[1]);
             for (int j = 0; j < 4; ++j) {
-                if (ray.fate(j) != Fate::Passed) continue;
+                if (ray.status(j) != RayStatus::Passed) continue;
                 SCOPED_TRACE(::testing::Message() << trial << ", surface " << i);
                 expect_snell(surface, at_lane(ray.origin, j), at_lane(before.direction, j),
                              at_lane(ray.direction, j), n[0], n[1], to_film ? 1 : -1);
@@ -142,7 +142,7 @@ TEST(RandomLens, NumbersThatAreNoneMiss) {
                 const auto alive = trace_lens(lens, lens.exact_indices(splat(550)), towards,
                                               whole(lens), ray, Clip::No);
                 EXPECT_EQ(fault_of(ray, lens, towards, 1e-5), "");
-                EXPECT_EQ(ray.fate(2), Fate::Missed) << place << ' ' << bad;
+                EXPECT_EQ(ray.status(2), RayStatus::Missed) << place << ' ' << bad;
                 for (const int i : {0, 1, 3}) EXPECT_TRUE(alive[i]);
             }
 }

@@ -69,11 +69,11 @@ TEST_P(LensScale, RaysScale) {
                 const auto a = trace_ray(lens, at, along, kLineD_nm, Towards::Film, Clip::Yes);
                 const auto b =
                     trace_ray(small, at * kFactor, along, kLineD_nm, Towards::Film, Clip::Yes);
-                ASSERT_EQ(a.fate, b.fate) << i << ' ' << j;
+                ASSERT_EQ(a.status, b.status) << i << ' ' << j;
                 ASSERT_EQ(a.points.size(), b.points.size());
                 for (size_t k = 0; k < a.points.size(); ++k)
                     EXPECT_LT((b.points[k] - a.points[k] * kFactor).length(), 1e-10 * semi_mm);
-                if (a.fate != Fate::Passed) continue;
+                if (a.status != RayStatus::Passed) continue;
                 ++passed;
                 EXPECT_LT((b.direction - a.direction).length(), 1e-10);
                 EXPECT_NEAR(b.path_mm, kFactor * a.path_mm, 1e-10 * a.path_mm);

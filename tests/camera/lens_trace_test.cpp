@@ -29,7 +29,7 @@ const d4 kD_nm = d4{} + kLineD_nm;
 
 struct Outcome {
     Three point, direction;
-    Fate fate;
+    RayStatus status;
 };
 
 /// In doubles, at line d, from a point that counts from the first vertex.
@@ -39,7 +39,7 @@ Outcome traced(const Lens& lens, Three origin, Three direction, Towards towards 
     (void)trace_lens(lens, lens.exact_indices(kD_nm), towards, whole(lens), ray, clip);
     Three point = at_lane(ray.origin, 0);
     point[2] += lens.vertex_mm(ray.counted_from);
-    return {point, at_lane(ray.direction, 0), ray.fate(0)};
+    return {point, at_lane(ray.direction, 0), ray.status(0)};
 }
 
 void expect_near(Three a, Three b, double tolerance) {
@@ -52,7 +52,7 @@ TEST(LensTrace, APlateMovesARayAside) {
         const double sine = std::sin(degrees * kDegree), in_glass = std::asin(sine / 1.5);
         const Three direction{0.6 * sine, 0.8 * sine, std::cos(degrees * kDegree)};
         const auto out = traced(plate, {0, 0, 0}, direction);
-        EXPECT_EQ(out.fate, Fate::Passed);
+        EXPECT_EQ(out.status, RayStatus::Passed);
         expect_near(out.direction, direction, 1e-13);
         const double aside = 10 * std::tan(in_glass);
         expect_near(out.point, {0.6 * aside, 0.8 * aside, 10}, 1e-12);
@@ -74,12 +74,12 @@ TEST(LensTrace, NearlyFlatIsLikeFlatFromEverywhere) {
                 const Three direction{to.x, to.y, std::fabs(to.z) + 0.1};
                 const auto flat = traced(plate(0, 0), origin, direction);
                 const auto bent = traced(plate(c, conic), origin, direction);
-                EXPECT_EQ(bent.fate, Fate::Passed);
+                EXPECT_EQ(bent.status, RayStatus::Passed);
                 const double sag = std::fabs(c) * test::dot(flat.point, flat.point);
                 expect_near(bent.point, flat.point, 20 * sag + 1e-10);
                 const auto away =
                     traced(plate(c, conic), origin, {to.x, to.y, -0.1}, Towards::Film, Clip::Yes);
-                EXPECT_NE(away.fate, Fate::Passed) << "light that runs the other way";
+                EXPECT_NE(away.status, RayStatus::Passed) << "light that runs the other way";
             }
 }
 
@@ -92,13 +92,13 @@ TEST(LensTrace, SurfacesAboutThePointAimedAtBendNothing) {
         for (const double from : {50., 20., 5., -30.}) {
             SCOPED_TRACE(::testing::Message() << degrees << " degrees from " << from << " mm");
             const auto out = traced(shell, {-from * sine, 0, 20 - from * cosine}, direction);
-            EXPECT_EQ(out.fate, Fate::Passed);
+            EXPECT_EQ(out.status, RayStatus::Passed);
             expect_near(out.direction, direction, 1e-12);
             expect_near(out.point, {-12 * sine, 0, 20 - 12 * cosine}, 1e-12);
         }
     }
     // Beyond 90 degrees it is the far half of the sphere.
-    EXPECT_EQ(traced(shell, {-50, 0, 21}, {50, 0, -1}).fate, Fate::Missed);
+    EXPECT_EQ(traced(shell, {-50, 0, 21}, {50, 0, -1}).status, RayStatus::Missed);
 }
 
 // Light that runs away from the film at more than 90 degrees to the axis still enters the front.
@@ -106,13 +106,13 @@ TEST(LensTrace, TakesTheRootOnTheVertexSheet) {
     const Lens ball = lens_of({surface_of(1. / 10, 5, 1.5)});
     const Three direction = test::unit({0, 1, -0.05});
     const auto out = traced(ball, test::plus({0, -5, 6}, direction, -100), direction);
-    EXPECT_EQ(out.fate, Fate::Passed);
+    EXPECT_EQ(out.status, RayStatus::Passed);
     EXPECT_NEAR(test::length(test::plus(out.point, {0, 0, -10})), 10, 1e-12);
     EXPECT_LT(out.point[1], 0);
     EXPECT_LT(out.point[2], 10);
-    EXPECT_EQ(traced(ball, {0, 0, 5}, {0, 0, -1}).fate, Fate::Missed);
-    EXPECT_EQ(traced(ball, {0, 10.001, -5}, {0, 0, 1}).fate, Fate::Missed);
-    EXPECT_EQ(traced(ball, {0, 9.999, -5}, {0, 0, 1}).fate, Fate::Passed);
+    EXPECT_EQ(traced(ball, {0, 0, 5}, {0, 0, -1}).status, RayStatus::Missed);
+    EXPECT_EQ(traced(ball, {0, 10.001, -5}, {0, 0, 1}).status, RayStatus::Missed);
+    EXPECT_EQ(traced(ball, {0, 9.999, -5}, {0, 0, 1}).status, RayStatus::Passed);
 }
 
 TEST(LensTrace, ReflectsTotallyBeyondTheCriticalAngle) {
@@ -122,7 +122,8 @@ TEST(LensTrace, ReflectsTotallyBeyondTheCriticalAngle) {
         const double angle = critical + beyond;
         const auto out =
             traced(window, {0, 0, 3}, {std::sin(angle), 0, -std::cos(angle)}, Towards::Scene);
-        EXPECT_EQ(out.fate, beyond < 0 ? Fate::Passed : Fate::TotallyReflected) << beyond;
+        EXPECT_EQ(out.status, beyond < 0 ? RayStatus::Passed : RayStatus::TotallyReflected)
+            << beyond;
         if (beyond < 0) {
             EXPECT_NEAR(out.direction[0], 1.5 * std::sin(angle), 1e-14);
         }
@@ -178,7 +179,8 @@ TEST(LensTrace, AsphereThatIsAParabola) {
     // Slope 3 r^2 / 320 = 0.6.
     const double incidence = std::atan(0.6), refraction = std::asin(std::sin(incidence) / 1.6);
     EXPECT_NEAR(out.direction[1], -std::sin(incidence - refraction), 1e-13);
-    EXPECT_EQ(traced(lens_of({odd}), {0, 0, -1}, {0, 0, 1}).fate, Fate::Passed) << "its pole";
+    EXPECT_EQ(traced(lens_of({odd}), {0, 0, -1}, {0, 0, 1}).status, RayStatus::Passed)
+        << "its pole";
 }
 
 TEST(LensTrace, ALensOfAirDoesNothing) {
@@ -189,7 +191,7 @@ TEST(LensTrace, ALensOfAirDoesNothing) {
         for (const auto towards : {Towards::Film, Towards::Scene}) {
             const Three direction = test::unit({0.1, 0.05, towards == Towards::Film ? 1. : -1.});
             const auto out = traced(Lens(lens), {1, 2, 60}, direction, towards);
-            EXPECT_EQ(out.fate, Fate::Passed);
+            EXPECT_EQ(out.status, RayStatus::Passed);
             expect_near(out.direction, direction, 50 * (n - 1) + 1e-14);
             const Three way = test::plus(out.point, {1, 2, 60}, -1);
             EXPECT_NEAR(test::length(test::plus(way, direction, -test::dot(way, direction))), 0,
@@ -211,8 +213,8 @@ TEST(LensTrace, FisheyesRimIsAnEndWithoutAGap) {
                 const auto out = traced(lens, origin, direction, Towards::Film, clip);
                 EXPECT_TRUE(std::isfinite(out.point[0] + out.point[1] + out.point[2]));
                 EXPECT_NEAR(test::length(out.direction), 1, 1e-10);
-                ++(out.fate == Fate::Passed ? passed : blocked);
-                EXPECT_TRUE(out.fate != Fate::Passed || out.direction[2] > 0);
+                ++(out.status == RayStatus::Passed ? passed : blocked);
+                EXPECT_TRUE(out.status != RayStatus::Passed || out.direction[2] > 0);
             }
         }
     EXPECT_GT(passed, 100);
@@ -272,7 +274,7 @@ TEST(LensTrace, InPartsIsLikeInOneGo) {
                              Clip::Yes);
             expect_near(at_lane(parts.origin, 0), at_lane(whole_way.origin, 0), 1e-12);
             expect_near(at_lane(parts.direction, 0), at_lane(whole_way.direction, 0), 1e-13);
-            EXPECT_EQ(parts.fate(0), whole_way.fate(0));
+            EXPECT_EQ(parts.status(0), whole_way.status(0));
         }
     }
 }
@@ -295,19 +297,19 @@ TEST(LensTrace, ABlockedLaneStaysBlocked) {
         {-1, -1, -1, -1}, {-1, 0, -1, -1}, {-1, 0, -1, -1}, {-1, 0, 0, -1}};
     for (int i = 0; i < 4; ++i) {
         EXPECT_EQ(passed[i], passed_wanted[i]);
-        EXPECT_EQ(ray.fate(i), passed_wanted[i] ? Fate::Passed : Fate::Vignetted);
+        EXPECT_EQ(ray.status(i), passed_wanted[i] ? RayStatus::Passed : RayStatus::Vignetted);
         EXPECT_EQ(ray.end_surface[i], ends[i]);
         for (size_t k = 0; k < 4; ++k) EXPECT_EQ(reached[k][i], reached_wanted[k][i]);
     }
     // A lane that was blocked from the start keeps what it was given, wherever its ray runs.
     ray = ray_of<f4>({0, 0, -5}, {0, 0, 1});
-    ray.fate_code[1] = int(Fate::TotallyReflected), ray.end_surface[1] = 3;
+    ray.status_code[1] = int(RayStatus::TotallyReflected), ray.end_surface[1] = 3;
     ray.origin.x[1] = std::nanf("");
     (void)trace_lens(lens, indices, Towards::Film, whole(lens), ray, Clip::Yes);
-    EXPECT_EQ(ray.fate(1), Fate::TotallyReflected);
+    EXPECT_EQ(ray.status(1), RayStatus::TotallyReflected);
     EXPECT_EQ(ray.end_surface[1], 3);
     EXPECT_EQ(at_lane(ray.origin, 1), (Three{}));
-    EXPECT_EQ(ray.fate(0), Fate::Passed);
+    EXPECT_EQ(ray.status(0), RayStatus::Passed);
     // Once all are blocked, nothing is looked at any more.
     reached.clear();
     ray = ray_of<f4>({0, 11, -5}, {0, 0, 1});

@@ -165,8 +165,8 @@ class Trial {
             // Derivatives may change a value's last digit, as a quotient is another product there.
             for (int i = 0; i < 4; ++i) {
                 ++tally_.rays;
-                tally_.passed += doubles.fate(i) == Fate::Passed;
-                tally_.differ += dual.fate(i) != floats.fate(i);
+                tally_.passed += doubles.status(i) == RayStatus::Passed;
+                tally_.differ += dual.status(i) != floats.status(i);
             }
         }
     }
@@ -221,7 +221,7 @@ class Trial {
                 continue;
             for (const V3d& p : ray.points)
                 require(std::isfinite(p.x + p.y + p.z), "a traced point is not finite");
-            if (ray.fate == Fate::Passed) {
+            if (ray.status == RayStatus::Passed) {
                 require(ray.points.size() == size_t(lens_.size()), "a passed ray lacks a point");
                 require(std::isfinite(ray.path_mm), "an optical path is not finite");
                 if (const auto film = ray.at_plane(lens_.film_mm()))
@@ -414,7 +414,7 @@ int run(int argc, char** argv) {
     for (auto& worker : workers) worker.join();
     fmt::print(
         "{} lenses of seed {} from {} in {} s: {} faults; {} std::invalid_argument\n"
-        "{} rays, {} passed, {} have another fate as Duals; {} cameras, {} lit; {} focused; "
+        "{} rays, {} passed, {} have another status as Duals; {} cameras, {} lit; {} focused; "
         "slowest lens {}: {} ms\n",
         tally.lenses, seed, first, now_ms() / 1000, faults, tally.refused, tally.rays, tally.passed,
         tally.differ, tally.cameras, tally.lit, tally.focused, tally.slowest, tally.slowest_ms);

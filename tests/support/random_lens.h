@@ -102,10 +102,10 @@ template <class N>
         if (!std::isfinite(at[0] + at[1] + at[2])) return "a point that is not finite";
         if (!(std::fabs(length(along) - 1) <= tolerance))
             return "a direction of length " + std::to_string(length(along));
-        const int fate = int(lane(ray.fate_code, i)), end = int(lane(ray.end_surface, i));
-        if (fate < 0 || fate > 3) return "no fate";
+        const int status = int(lane(ray.status_code, i)), end = int(lane(ray.end_surface, i));
+        if (status < 0 || status > 3) return "no status";
         if (end < 0 || end >= lens.size()) return "an end on no surface";
-        if (fate == 0) continue;
+        if (status == 0) continue;
         if (at != Three{} || along != Three{0, 0, towards == Towards::Film ? 1. : -1.})
             return "a blocked ray off the axis";
     }

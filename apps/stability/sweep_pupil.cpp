@@ -41,7 +41,7 @@ struct Counted {
 
 Counted count_light(const Subject& of, V2f film_mm) {
     const Lens& lens = *of.lens;
-    const Pupil pupil(lens, lens.film_mm(), film_mm.length());
+    const RayAimer aimer(lens, lens.film_mm(), film_mm.length());
     const LensIndices<f4> indices = of.line_d();
     V2f low(-1.f), high(1.f);
     Counted out;
@@ -54,7 +54,7 @@ Counted count_light(const Subject& of, V2f film_mm) {
             for (int x = 0; x < side; x += 4) {
                 const f4 l = low.x + cell.x * (f4{0.5f, 1.5f, 2.5f, 3.5f} + static_cast<float>(x));
                 const f4 m = splat(low.y + cell.y * (static_cast<float>(y) + 0.5f));
-                const StopCrossing<f4> c = pupil.cross<f4>(film_mm, l, m, indices);
+                const AimedRay<f4> c = pupil.cross<f4>(film_mm, l, m, indices);
                 m4 on = c.clear & c.ray.alive() & (l * l + m * m < 1.f);
                 if (!any(on)) continue;
                 LensRay<f4> ray = c.ray;
@@ -85,14 +85,14 @@ struct Solved {
 Solved solved_at(const Subject& of, double height_mm) {
     constexpr uint32_t kDraws = 1024;
     const V2f film_mm = kAcross * static_cast<float>(height_mm);
-    const Pupil pupil(*of.lens, of.lens->film_mm(), height_mm);
+    const RayAimer aimer(*of.lens, of.lens->film_mm(), height_mm);
     const Iris iris(Disk{}, of.stop_mm);
     const LensIndices<f4> indices = of.line_d();
     Solved out;
     uint32_t found = 0;
     for (uint32_t i = 0; i < kDraws; ++i) {
         const V2f at = iris.sample(Sampler(SamplerKind::Owen, 2, {0, 0, i}).get2(Dim::Lens));
-        const auto c = pupil.solve(film_mm, at, indices, 0, static_cast<float>(kLineD_nm));
+        const auto c = aimer.aim(film_mm, at, indices, 0, static_cast<float>(kLineD_nm));
         if (!c) continue;
         ++found;
         out.traces += c->traces;
@@ -187,7 +187,7 @@ Finding pupil_at_wide_fields() {
         "of `render`); it takes at most 12 traces to give up. At a fold the solver goes on until "
         "the ray is known, not only its crossing: a weight there is large, but not without bound. "
         "Light of the second ray is lost.";
-    f.guards = {"Pupil.RaysMeetTheStopWhereTheyShould", "LensCamera.IrradianceIsTheOracles",
+    f.guards = {"RayAimer.RaysMeetTheStopWhereTheyShould", "LensCamera.IrradianceIsTheOracles",
                 "LensLosses.AFilmBeyondTheImageCircleIsBlack",
                 "LensLosses.AtTheFisheyesRimRaysGrazeThenAreTotallyReflected",
                 "Stability.NoDrawOutweighsAllOthersWhereThePupilFolds"};

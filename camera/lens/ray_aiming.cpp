@@ -45,7 +45,7 @@ Nodes nodes_about(float t, int size) {
 struct Step {
     f4 l, m, left2_mm2;
 };
-Step step_towards(V2f stop_point_mm, const StopCrossing<f4>& c) {
+Step step_towards(V2f stop_point_mm, const AimedRay<f4>& c) {
     const f4 x = stop_point_mm.x - c.ray.origin.x, y = stop_point_mm.y - c.ray.origin.y;
     const f4 by = 1 / c.determinant();
     return {(c.y_by_m * x - c.x_by_m * y) * by, (c.x_by_l * y - c.y_by_l * x) * by, x * x + y * y};
@@ -53,11 +53,11 @@ Step step_towards(V2f stop_point_mm, const StopCrossing<f4>& c) {
 
 }  // namespace
 
-float Pupil::Axis::at(int i) const {
+float RayAimer::Axis::at(int i) const {
     return size == 1 ? first : first + (last - first) * static_cast<float>(i) / float(size - 1);
 }
 
-Pupil::Pupil(const Lens& lens, double film_mm, double film_reach_mm)
+RayAimer::RayAimer(const Lens& lens, double film_mm, double film_reach_mm)
     : lens_(lens),
       film_mm_(film_mm),
       stop_radius_mm_(static_cast<float>(
@@ -74,11 +74,11 @@ Pupil::Pupil(const Lens& lens, double film_mm, double film_reach_mm)
 }
 
 template <class V>
-StopCrossing<V> Pupil::cross(V2f film_point_mm, V l, V m, const LensIndices<V>& indices) const {
+AimedRay<V> RayAimer::cross(V2f film_point_mm, V l, V m, const LensIndices<V>& indices) const {
     using D = Dual<V>;
     const V one = broadcast<V>(1);
     LensRay<D> ray = leave(film_point_mm, D{l, one, V{}}, D{m, V{}, one});
-    StopCrossing<V> out;
+    AimedRay<V> out;
     out.l = l;
     out.m = m;
     out.clear = !MaskOf<V>{};
@@ -97,16 +97,16 @@ StopCrossing<V> Pupil::cross(V2f film_point_mm, V l, V m, const LensIndices<V>& 
     out.y_by_m = ray.origin.y.dv;
     return out;
 }
-template StopCrossing<f4> Pupil::cross(V2f, f4, f4, const LensIndices<f4>&) const;
-template StopCrossing<d4> Pupil::cross(V2f, d4, d4, const LensIndices<d4>&) const;
+template AimedRay<f4> RayAimer::cross(V2f, f4, f4, const LensIndices<f4>&) const;
+template AimedRay<d4> RayAimer::cross(V2f, d4, d4, const LensIndices<d4>&) const;
 
 // Newton's method from a guess: half the step where it leads to where rays never reach the stop.
-std::optional<StopCrossing<f4>> Pupil::newton(V2f film_point_mm, V2f stop_point_mm, V2f cosines,
-                                              const LensIndices<f4>& indices, int lane) const {
+std::optional<AimedRay<f4>> RayAimer::newton(V2f film_point_mm, V2f stop_point_mm, V2f cosines,
+                                             const LensIndices<f4>& indices, int lane) const {
     V2f good = cosines, step(0.f);
     int halvings = 0;
     for (int i = 0; i < kMostSteps; ++i) {
-        StopCrossing<f4> c = cross<f4>(film_point_mm, splat(cosines.x), splat(cosines.y), indices);
+        AimedRay<f4> c = cross<f4>(film_point_mm, splat(cosines.x), splat(cosines.y), indices);
         c.traces = i + 1;
         if (cosines.length2() < 1.f && c.ray.alive()[lane]) {
             const Step by = step_towards(stop_point_mm, c);
@@ -125,12 +125,12 @@ std::optional<StopCrossing<f4>> Pupil::newton(V2f film_point_mm, V2f stop_point_
 }
 
 // The same for each lane by itself, but for one that fails: it keeps the guess.
-Pupil::Node Pupil::settled(V2f film_point_mm, V2f stop_point_mm, const Node& guess,
-                           const LensIndices<f4>& indices) const {
+RayAimer::Node RayAimer::settled(V2f film_point_mm, V2f stop_point_mm, const Node& guess,
+                                 const LensIndices<f4>& indices) const {
     Node at = guess;
     m4 inside{}, close{};
     for (int i = 0; i < kMostSteps && !all(close); ++i) {
-        const StopCrossing<f4> c = cross<f4>(film_point_mm, at.l, at.m, indices);
+        const AimedRay<f4> c = cross<f4>(film_point_mm, at.l, at.m, indices);
         inside = c.ray.alive() & (at.l * at.l + at.m * at.m < 1.f);
         const Step by = step_towards(stop_point_mm, c);
         close = ~inside | (by.left2_mm2 < sqr(kToleranceBeforeStep * stop_radius_mm_));
@@ -141,7 +141,7 @@ Pupil::Node Pupil::settled(V2f film_point_mm, V2f stop_point_mm, const Node& gue
 
 // Outwards from the middle of the stop, each ray guessed from those that are known next to it: as
 // from the film point before, so here.
-void Pupil::solve_table() {
+void RayAimer::solve_table() {
     const LensIndices<f4> indices = lens_.exact_indices(kNodes_nm);
     table_.resize(place(columns_.size, 0, 0, 0));
     const int mid_i = symmetric_ ? 0 : across_.size / 2, mid_j = up_.size / 2;
@@ -173,7 +173,7 @@ void Pupil::solve_table() {
             }
 }
 
-V2f Pupil::between(V2f film_point_mm, V2f stop_point_mm, float nm) const {
+V2f RayAimer::between(V2f film_point_mm, V2f stop_point_mm, float nm) const {
     const auto along = [](const Axis& axis, float at) {
         return nodes_about((at - axis.first) * float(axis.size - 1) / (axis.last - axis.first),
                            axis.size);
@@ -200,9 +200,9 @@ V2f Pupil::between(V2f film_point_mm, V2f stop_point_mm, float nm) const {
     return {hsum(sum.l * weights), hsum(sum.m * weights)};
 }
 
-std::optional<StopCrossing<f4>> Pupil::solve(V2f film_point_mm, V2f stop_point_mm,
-                                             const LensIndices<f4>& indices, int lane,
-                                             float nm) const {
+std::optional<AimedRay<f4>> RayAimer::aim(V2f film_point_mm, V2f stop_point_mm,
+                                          const LensIndices<f4>& indices, int lane,
+                                          float nm) const {
     // Into the part that the table covers, and back.
     V2f p = film_point_mm, q = stop_point_mm;
     V2f turn(1.f, 0.f);

@@ -13,7 +13,7 @@ namespace petzval {
 
 /// Where rays from the film cross the plane of the stop, lane by lane. V: f4 or d4.
 template <class V>
-struct StopCrossing {
+struct AimedRay {
     V l, m;           ///< direction cosines at the film
     LensRay<V> ray;   ///< at the stop, on its way to the scene
     MaskOf<V> clear;  ///< inside the clear semi-diameters of all that it met, the stop's too
@@ -30,22 +30,21 @@ struct StopCrossing {
 };
 
 /// The rear of a lens, film to stop. Millimetres; coordinates as in Prescription.
-class Pupil {
+class RayAimer {
   public:
     /// film_reach_mm: how far film points lie from the axis at most. The lens must outlive it.
-    Pupil(const Lens&, double film_mm, double film_reach_mm);
+    RayAimer(const Lens&, double film_mm, double film_reach_mm);
 
     /// The ray that leaves the film in the same direction in all lanes, and in one of them, whose
     /// wavelength is nm, meets a point of the stop to a ten-thousandth of the stop's radius, and is
     /// within a thousandth of the direction that does. Nothing where no ray gets there.
     /// Semi-diameters do not stop rays: one that glass blocks at one wavelength may have been drawn
     /// for another.
-    [[nodiscard]] std::optional<StopCrossing<f4>> solve(V2f film_point_mm, V2f stop_point_mm,
-                                                        const LensIndices<f4>&, int lane,
-                                                        float nm) const;
+    [[nodiscard]] std::optional<AimedRay<f4>> aim(V2f film_point_mm, V2f stop_point_mm,
+                                                  const LensIndices<f4>&, int lane, float nm) const;
     /// The ray that leaves the film with direction cosines l and m. V: f4 or d4.
     template <class V>
-    [[nodiscard]] StopCrossing<V> cross(V2f film_point_mm, V l, V m, const LensIndices<V>&) const;
+    [[nodiscard]] AimedRay<V> cross(V2f film_point_mm, V l, V m, const LensIndices<V>&) const;
     /// Its beginning. N: V, or V with derivatives.
     template <class N>
     [[nodiscard]] LensRay<N> leave(V2f film_point_mm, const N& l, const N& m) const {
@@ -71,9 +70,9 @@ class Pupil {
     struct Node {
         f4 l{}, m{};
     };
-    [[nodiscard]] std::optional<StopCrossing<f4>> newton(V2f film_point_mm, V2f stop_point_mm,
-                                                         V2f cosines, const LensIndices<f4>&,
-                                                         int lane) const;
+    [[nodiscard]] std::optional<AimedRay<f4>> newton(V2f film_point_mm, V2f stop_point_mm,
+                                                     V2f cosines, const LensIndices<f4>&,
+                                                     int lane) const;
     [[nodiscard]] Node settled(V2f film_point_mm, V2f stop_point_mm, const Node& guess,
                                const LensIndices<f4>&) const;
     [[nodiscard]] V2f between(V2f film_point_mm, V2f stop_point_mm, float nm) const;

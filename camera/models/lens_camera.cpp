@@ -55,7 +55,7 @@ LensLosses<uint32_t> losses(m4 on, const LensDraw<V>& drawn, MaskOf<V> clear) {
 LensCamera::LensCamera(LensCameraInput in)
     : in_(std::move(in)),
       pose_(in_.to_world),
-      pupil_(*in_.lens, in_.film_mm, 0.5 * std::hypot(in_.film_width_mm, in_.film_height_mm)),
+      aimer_(*in_.lens, in_.film_mm, 0.5 * std::hypot(in_.film_width_mm, in_.film_height_mm)),
       line_d_(in_.lens->exact_indices(splat(static_cast<float>(kLineD_nm)))),
       exact_line_d_(in_.lens->exact_indices(broadcast<d4>(kLineD_nm))) {}
 
@@ -73,17 +73,17 @@ LensDraw<V> LensCamera::draw(const Aim& aim, const Bands& bands, Coating coating
     const V2f on_iris = in_.iris.sample(aim.u);
     const bool single = dispersion == DispersionMode::Single && !one_ray(bands, dispersion);
     const m4 on = single ? only_lane(aim.lane) : bands.on;
-    const auto solved = pupil_.solve(aim.film_mm, on_iris, in_floats, aim.lane, aim.nm);
+    const auto solved = aimer_.aim(aim.film_mm, on_iris, in_floats, aim.lane, aim.nm);
     out.lanes.drawn = static_cast<uint32_t>(lane_count(on));
     if (!solved) {
         out.lanes.unreached = out.lanes.drawn;
         return out;
     }
-    const StopCrossing<V>& c = [&]() -> decltype(auto) {
+    const AimedRay<V>& c = [&]() -> decltype(auto) {
         if constexpr (std::same_as<V, f4>)
             return (*solved);
         else
-            return pupil_.cross(aim.film_mm, lanes_as<V>(solved->l), lanes_as<V>(solved->m),
+            return aimer_.cross(aim.film_mm, lanes_as<V>(solved->l), lanes_as<V>(solved->m),
                                 indices);
     }();
     // What the solver leaves is taken off, so that the lane crosses the iris where it was drawn:
@@ -134,7 +134,7 @@ template LensDraw<d4> LensCamera::draw(V2f, V2f, float, const Bands&, Coating,
                                        DispersionMode) const;
 
 template <class V>
-f4 LensCamera::transmitted(V2f film_mm, const StopCrossing<V>& c, Coating coating,
+f4 LensCamera::transmitted(V2f film_mm, const AimedRay<V>& c, Coating coating,
                            const LensIndices<V>& indices, f4 nm) const {
     const Lens& lens = *in_.lens;
     f4 out = splat(1.f);
@@ -146,7 +146,7 @@ f4 LensCamera::transmitted(V2f film_mm, const StopCrossing<V>& c, Coating coatin
                                 lanes_as<f4>(hit.cosine)};
         out *= transmittance(coating, crossing, touches_air(s), nm);
     };
-    LensRay<V> ray = pupil_.leave(film_mm, c.l, c.m);
+    LensRay<V> ray = aimer_.leave(film_mm, c.l, c.m);
     static_cast<void>(
         trace_lens<V>(lens, indices, Towards::Scene, {0, lens.last()}, ray, Clip::No, lose));
     return out;

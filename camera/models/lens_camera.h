@@ -79,8 +79,8 @@ class LensCamera final : public Camera {
                                    const LensIndices<f4>&, const LensIndices<V>&) const;
     /// What the surfaces let through of the ray that leaves the film towards the crossing.
     template <class V>
-    [[nodiscard]] f4 transmitted(V2f film_mm, const StopCrossing<V>&, Coating,
-                                 const LensIndices<V>&, f4 nm) const;
+    [[nodiscard]] f4 transmitted(V2f film_mm, const AimedRay<V>&, Coating, const LensIndices<V>&,
+                                 f4 nm) const;
     template <class V>
     [[nodiscard]] CameraSample hero(const FilmPoint&, V2f film_mm, const Bands&) const;
     template <class V>
@@ -99,7 +99,7 @@ class LensCamera final : public Camera {
 
     LensCameraInput in_;
     Pose pose_;
-    Pupil pupil_;
+    RayAimer aimer_;
     LensIndices<f4> line_d_;
     LensIndices<d4> exact_line_d_;
     float gain_ = 1.f, exposure_ = 1.f;

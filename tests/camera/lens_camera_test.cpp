@@ -344,12 +344,12 @@ TEST(LensCamera, RaysComeBackToTheFilmPoint) {
     }
 }
 
-TEST(Pupil, RaysMeetTheStopWhereTheyShould) {
+TEST(RayAimer, RaysMeetTheStopWhereTheyShould) {
     const f4 nm = four_wavelengths().nm;
     for (const std::string name : test::kOracleLenses) {
         const LensCameraInput in = input_of(name);
         const Lens& lens = *in.lens;
-        const Pupil pupil(lens, in.film_mm, 21.6);
+        const RayAimer aimer(lens, in.film_mm, 21.6);
         const auto radius =
             float(lens.prescription().surfaces[size_t(lens.stop())].semi_diameter_mm);
         test::Random random(4);
@@ -358,7 +358,7 @@ TEST(Pupil, RaysMeetTheStopWhereTheyShould) {
             const V2f film = (random.next2() - V2f(0.5f)) * 24.f;
             const V2f aim = uniform_disk(random.next2()) * radius;
             const int lane = i % 4;
-            const auto c = pupil.solve(film, aim, lens.indices(nm), lane, nm[lane]);
+            const auto c = aimer.aim(film, aim, lens.indices(nm), lane, nm[lane]);
             if (!c) continue;
             ++solved;
             const double l = c->l[lane], m = c->m[lane];

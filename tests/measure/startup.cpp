@@ -119,7 +119,7 @@ double without_lens_ms(SceneRequest request) {
 double table_ms(const std::string& name) {
     const Lens lens(load_lens(name).lens);
     const double reach_mm = std::min(lens.prescription().image_circle_mm / 2, 21.6);
-    return ms_of([&] { static_cast<void>(Pupil(lens, lens.film_mm(), reach_mm)); });
+    return ms_of([&] { static_cast<void>(RayAimer(lens, lens.film_mm(), reach_mm)); });
 }
 
 double tree_ms(const fs::path& scene) {

@@ -39,11 +39,11 @@ std::string title_of(const Lens& lens, const std::string& what) {
     return fmt::format("{}: {}", file.name, what);
 }
 
-std::vector<BeamRay> traced(const Beam& beam, double film_mm, int side) {
-    return beam.trace(beam.grid(side), film_mm);
+std::vector<BundleRay> traced(const RayBundle& bundle, double film_mm, int side) {
+    return bundle.trace(bundle.grid(side), film_mm);
 }
 
-void append(std::vector<BeamRay>& all, const std::vector<BeamRay>& more) {
+void append(std::vector<BundleRay>& all, const std::vector<BundleRay>& more) {
     all.insert(all.end(), more.begin(), more.end());
 }
 
@@ -71,24 +71,24 @@ Found spot_analysis(const AnalysisOptions& o) {
         series.push_back({{}, PlotStyle::Dots, line.name});
     fmt::print("film at {:.6f} mm\n{:>10} {:>6} {:>12} {:>12} {:>12}\n", setup.film_mm, "field (°)",
                "line", "x (mm)", "y (mm)", "RMS (µm)");
-    std::vector<std::vector<std::vector<BeamRay>>> drawn;  // by field, by line
+    std::vector<std::vector<std::vector<BundleRay>>> drawn;  // by field, by line
     std::vector<SpotSize> sizes;
     double reach_mm = 1e-6;
     for (const double deg : setup.fields_deg) {
-        std::vector<BeamRay> all;
+        std::vector<BundleRay> all;
         drawn.emplace_back();
         for (const SpectralLine& line : kSpectralLines) {
-            const Beam beam = aim(setup, deg, line.nm);
-            const auto rays = traced(beam, setup.film_mm, side);
+            const RayBundle bundle = aim(setup, deg, line.nm);
+            const auto rays = traced(bundle, setup.film_mm, side);
             if (rays.empty()) refuse_dark(*setup.lens, deg);
             print_spot(deg, line.name, spot_size(rays));
             append(all, rays);
-            drawn.back().push_back(traced(beam, setup.film_mm, drawn_side));
+            drawn.back().push_back(traced(bundle, setup.film_mm, drawn_side));
         }
         sizes.push_back(spot_size(all));
         print_spot(deg, "F+d+C", sizes.back());
         for (const auto& rays : drawn.back())
-            for (const BeamRay& ray : rays)
+            for (const BundleRay& ray : rays)
                 for (size_t k = 0; k < 2; ++k)
                     reach_mm =
                         std::max(reach_mm, std::fabs(ray.film_mm[k] - sizes.back().centroid_mm[k]));
@@ -98,7 +98,7 @@ Found spot_analysis(const AnalysisOptions& o) {
         fields += fmt::format("{}{:.4g}°", i ? ", " : "", setup.fields_deg[i]);
         const double aside_mm = 2.4 * reach_mm * static_cast<double>(i);
         for (size_t line = 0; line < kSpectralLines.size(); ++line)
-            for (const BeamRay& ray : drawn[i][line]) {
+            for (const BundleRay& ray : drawn[i][line]) {
                 out.rows.push_back(
                     {setup.fields_deg[i], kSpectralLines[line].nm, ray.film_mm[0], ray.film_mm[1]});
                 series[line].points.push_back(
@@ -120,8 +120,8 @@ Found fan_analysis(const AnalysisOptions& o) {
     Found out;
     out.names = {"field_deg", "nm", "tangential", "stop_radii", "dx_mm", "dy_mm"};
     for (const double deg : setup.fields_deg) {
-        const Beam main = aim(setup, deg, kLineD_nm);
-        const Launch chief = main.chief();
+        const RayBundle main = aim(setup, deg, kLineD_nm);
+        const PupilPoint chief = main.chief();
         const auto centre = main.trace({&chief, 1}, setup.film_mm, Clip::No);
         if (centre.empty()) refuse_dark(*setup.lens, deg);
         for (const Section along : {setup.section, other})
@@ -130,9 +130,9 @@ Found fan_analysis(const AnalysisOptions& o) {
                 PlotSeries series{{}, PlotStyle::Lines, {}};
                 series.label = fmt::format("{:.4g}° {} {}", deg, line.name,
                                            tangential ? "tangential" : "sagittal");
-                const Beam beam = aim(setup, deg, line.nm);
+                const RayBundle bundle = aim(setup, deg, line.nm);
                 for (const FanPoint& point :
-                     ray_fan(*setup.lens, beam, along, setup.film_mm, centre[0].film_mm)) {
+                     ray_fan(*setup.lens, bundle, along, setup.film_mm, centre[0].film_mm)) {
                     series.points.push_back(
                         {point.stop, kMicrons * point.from_mm[along == Section::X ? 0 : 1]});
                     out.rows.push_back({deg, line.nm, double(tangential), point.stop,
@@ -154,7 +154,7 @@ Found mtf_analysis(const AnalysisOptions& o) {
     Found out;
     out.names = {"field_deg", "cycles_per_mm", "tangential", "sagittal"};
     for (const double deg : setup.fields_deg) {
-        std::vector<BeamRay> rays;
+        std::vector<BundleRay> rays;
         for (const SpectralLine& line : kSpectralLines)
             append(rays, traced(aim(setup, deg, line.nm), setup.film_mm, side));
         if (rays.empty()) refuse_dark(*setup.lens, deg);

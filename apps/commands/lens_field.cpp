@@ -111,15 +111,15 @@ FieldSetup set_up(const FieldRequest& request, const std::vector<double>& shares
     return out;
 }
 
-Beam aim(const FieldSetup& setup, double field_deg, double nm) {
-    auto beam = Beam::aim(*setup.lens, {field_deg, setup.distance_mm, setup.section}, nm);
-    if (!beam)
+RayBundle aim(const FieldSetup& setup, double field_deg, double nm) {
+    auto bundle = RayBundle::aim(*setup.lens, {field_deg, setup.distance_mm, setup.section}, nm);
+    if (!bundle)
         throw ArgumentError(
             setup.lens->prescription().name, "",
             fmt::format("no ray at {:g}° and {:g} nm reaches the middle of the stop; give a "
                         "smaller --field",
                         field_deg, nm));
-    return *std::move(beam);
+    return *std::move(bundle);
 }
 
 }  // namespace petzval

@@ -46,6 +46,6 @@ struct FieldSetup {
 [[nodiscard]] FieldSetup set_up(const FieldRequest&, const std::vector<double>& shares);
 
 /// Throws ArgumentError where no ray of that field passes the middle of the stop.
-[[nodiscard]] Beam aim(const FieldSetup&, double field_deg, double nm);
+[[nodiscard]] RayBundle aim(const FieldSetup&, double field_deg, double nm);
 
 }  // namespace petzval

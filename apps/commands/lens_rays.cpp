@@ -21,11 +21,12 @@ struct DrawOptions {
 };
 
 // From a little before the first face, or its plane, to the film or to where it ends.
-Outline path_of(const Lens& lens, const Beam& beam, Launch launch, double film_mm, double lead_mm) {
-    const size_t axis = beam.object().section == Section::X ? 0 : 1;
-    const Beam::Line line = beam.line(launch);
+Outline path_of(const Lens& lens, const RayBundle& bundle, PupilPoint pupil_point, double film_mm,
+                double lead_mm) {
+    const size_t axis = bundle.object().section == Section::X ? 0 : 1;
+    const RayBundle::Line line = bundle.line(pupil_point);
     const TracedRay ray =
-        trace_ray(lens, line.origin_mm, line.direction, beam.nm(), Towards::Film, Clip::Yes);
+        trace_ray(lens, line.origin_mm, line.direction, bundle.nm(), Towards::Film, Clip::Yes);
     const auto height = [axis](const V3d& p) { return axis == 0 ? p.x : p.y; };
     const V3d first = ray.points.empty() ? line.origin_mm : ray.points.front();
     const V3d start = first - line.direction * lead_mm;
@@ -48,17 +49,17 @@ void draw_command(const DrawOptions& o) {
     for (const double deg : setup.fields_deg) {
         fields += fmt::format("{}{:.4g}°", fields.empty() ? "" : ", ", deg);
         for (const SpectralLine& line : kSpectralLines) {
-            const Beam beam = aim(setup, deg, line.nm);
+            const RayBundle bundle = aim(setup, deg, line.nm);
             for (int i = 0; i < o.rays; ++i) {
-                Launch launch = beam.chief();
-                const double least = beam.least()[tangential], most = beam.most()[tangential];
+                PupilPoint pupil_point = bundle.chief();
+                const double least = bundle.least()[tangential], most = bundle.most()[tangential];
                 if (o.rays > 1) {
                     // The box has a margin; the outermost rays should pass.
                     const double at = 0.04 + 0.92 * i / (o.rays - 1);
-                    launch[tangential] = least + (most - least) * at;
+                    pupil_point[tangential] = least + (most - least) * at;
                 }
                 drawing.rays.push_back(
-                    {path_of(lens, beam, launch, setup.film_mm, lead_mm), line.colour});
+                    {path_of(lens, bundle, pupil_point, setup.film_mm, lead_mm), line.colour});
                 if (drawing.rays.back().path.size() == size_t(lens.size()) + 2)
                     drawing.film_radius_mm = std::max(drawing.film_radius_mm,
                                                       std::abs(drawing.rays.back().path.back()[1]));

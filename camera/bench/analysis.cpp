@@ -21,10 +21,10 @@ double object_mm(const Lens& lens, double distance_mm, Section section) {
 }  // namespace
 
 std::optional<double> chief_height_mm(const Lens& lens, const ObjectPoint& object, double film_mm) {
-    const auto beam = Beam::aim(lens, object, kLineD_nm);
-    if (!beam) return std::nullopt;
-    const Launch chief = beam->chief();
-    const auto rays = beam->trace({&chief, 1}, film_mm, Clip::No);
+    const auto bundle = RayBundle::aim(lens, object, kLineD_nm);
+    if (!bundle) return std::nullopt;
+    const PupilPoint chief = bundle->chief();
+    const auto rays = bundle->trace({&chief, 1}, film_mm, Clip::No);
     if (rays.empty()) return std::nullopt;
     return rays[0].film_mm[object.section == Section::X ? 0 : 1];
 }

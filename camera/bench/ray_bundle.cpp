@@ -19,7 +19,7 @@ double stop_radius_mm(const Lens& lens) {
 
 }  // namespace
 
-Beam::Beam(const Lens& lens, const ObjectPoint& object, double nm)
+RayBundle::RayBundle(const Lens& lens, const ObjectPoint& object, double nm)
     : lens_(&lens),
       object_(object),
       nm_(nm),
@@ -30,7 +30,7 @@ Beam::Beam(const Lens& lens, const ObjectPoint& object, double nm)
 }
 
 template <class N>
-LensRay<N> Beam::launched(N sagittal, N tangential) const {
+LensRay<N> RayBundle::launched(N sagittal, N tangential) const {
     const double angle = object_.field_deg * std::numbers::pi / 180;
     const double sine = std::sin(angle), cosine = std::cos(angle);
     const auto number = [](double a) { return constant<N>(broadcast<ValueOf<N>>(a)); };
@@ -54,10 +54,10 @@ LensRay<N> Beam::launched(N sagittal, N tangential) const {
 }
 
 // Newton's method with the trace's own derivatives.
-std::optional<Launch> Beam::solve(std::array<double, 2> stop_mm, Launch guess) const {
+std::optional<PupilPoint> RayBundle::solve(std::array<double, 2> stop_mm, PupilPoint guess) const {
     using D = Dual<d4>;
     const double tolerance_mm = kTolerance * stop_radius_mm(*lens_);
-    Launch at = guess, good = guess, step{};
+    PupilPoint at = guess, good = guess, step{};
     int halvings = 0;
     for (int i = 0; i < kMostSteps; ++i) {
         auto ray = launched<D>({broadcast<d4>(at[0]), broadcast<d4>(1), d4{}},
@@ -82,35 +82,35 @@ std::optional<Launch> Beam::solve(std::array<double, 2> stop_mm, Launch guess) c
     return std::nullopt;
 }
 
-std::optional<Beam> Beam::aim(const Lens& lens, const ObjectPoint& object, double nm) {
+std::optional<RayBundle> RayBundle::aim(const Lens& lens, const ObjectPoint& object, double nm) {
     // Entrance pupils of wide-angle lenses wander: each ray begins at one that is near.
     for (const double step_deg : {2., 0.25}) {
         const int steps = std::max(1, static_cast<int>(std::ceil(object.field_deg / step_deg)));
-        std::optional<Launch> chief = Launch{};
-        Beam beam(lens, object, nm);
+        std::optional<PupilPoint> chief = PupilPoint{};
+        RayBundle bundle(lens, object, nm);
         for (int i = 1; i <= steps && chief; ++i) {
-            beam.object_.field_deg = object.field_deg * i / steps;
-            chief = beam.solve({}, *chief);
+            bundle.object_.field_deg = object.field_deg * i / steps;
+            chief = bundle.solve({}, *chief);
         }
         if (!chief) continue;
-        beam.object_ = object;
-        beam.chief_ = *chief;
-        beam.find_box();
-        return beam;
+        bundle.object_ = object;
+        bundle.chief_ = *chief;
+        bundle.find_box();
+        return bundle;
     }
     return std::nullopt;
 }
 
-void Beam::find_box() {
+void RayBundle::find_box() {
     constexpr int directions = 32, steps = 4;
     constexpr double margin = 0.02;  // what the rim may bulge between two directions, and more
     least_ = most_ = chief_;
     for (int i = 0; i < directions; ++i) {
         const double angle = 2 * std::numbers::pi * i / directions;
-        Launch before = chief_, at = chief_;
+        PupilPoint before = chief_, at = chief_;
         for (int k = 1; k <= steps; ++k) {
             const double r = stop_radius_mm(*lens_) * k / steps;
-            const Launch guess{2 * at[0] - before[0], 2 * at[1] - before[1]};
+            const PupilPoint guess{2 * at[0] - before[0], 2 * at[1] - before[1]};
             const auto next = solve({r * std::cos(angle), r * std::sin(angle)}, guess);
             if (!next) break;
             before = at;
@@ -128,23 +128,23 @@ void Beam::find_box() {
     }
 }
 
-Beam::Line Beam::line(Launch launch) const {
-    const auto ray = launched<d4>(broadcast<d4>(launch[0]), broadcast<d4>(launch[1]));
+RayBundle::Line RayBundle::line(PupilPoint pupil_point) const {
+    const auto ray = launched<d4>(broadcast<d4>(pupil_point[0]), broadcast<d4>(pupil_point[1]));
     return {V3d(ray.origin.x[0], ray.origin.y[0], ray.origin.z[0]),
             V3d(ray.direction.x[0], ray.direction.y[0], ray.direction.z[0])};
 }
 
-std::vector<BeamRay> Beam::trace(std::span<const Launch> launches, double film_mm,
-                                 Clip clip) const {
-    std::vector<BeamRay> out;
+std::vector<BundleRay> RayBundle::trace(std::span<const PupilPoint> pupil_points, double film_mm,
+                                        Clip clip) const {
+    std::vector<BundleRay> out;
     const double to_film_mm = film_mm - lens_->vertex_mm(lens_->last());
-    for (size_t first = 0; first < launches.size(); first += 4) {
-        const size_t count = std::min<size_t>(4, launches.size() - first);
+    for (size_t first = 0; first < pupil_points.size(); first += 4) {
+        const size_t count = std::min<size_t>(4, pupil_points.size() - first);
         d4 sagittal{}, tangential{}, stop_x{}, stop_y{};
         for (int i = 0; i < 4; ++i) {
-            const Launch& launch = launches[first + std::min(size_t(i), count - 1)];
-            sagittal[i] = launch[0];
-            tangential[i] = launch[1];
+            const PupilPoint& pupil_point = pupil_points[first + std::min(size_t(i), count - 1)];
+            sagittal[i] = pupil_point[0];
+            tangential[i] = pupil_point[1];
         }
         LensRay<d4> ray = launched<d4>(sagittal, tangential);
         const auto at_stop = [&](const LensHit<d4>& hit) {
@@ -159,7 +159,7 @@ std::vector<BeamRay> Beam::trace(std::span<const Launch> launches, double film_m
             const double slope_x = ray.direction.x[i] / ray.direction.z[i];
             const double slope_y = ray.direction.y[i] / ray.direction.z[i];
             const double dz = to_film_mm - ray.origin.z[i];
-            out.push_back({launches[first + size_t(i)],
+            out.push_back({pupil_points[first + size_t(i)],
                            {stop_x[i], stop_y[i]},
                            {ray.origin.x[i] + slope_x * dz, ray.origin.y[i] + slope_y * dz},
                            {slope_x, slope_y}});
@@ -168,8 +168,8 @@ std::vector<BeamRay> Beam::trace(std::span<const Launch> launches, double film_m
     return out;
 }
 
-std::vector<Launch> Beam::grid(int side) const {
-    std::vector<Launch> out;
+std::vector<PupilPoint> RayBundle::grid(int side) const {
+    std::vector<PupilPoint> out;
     for (int i = 0; i < side; ++i)
         for (int j = 0; j < side; ++j)
             out.push_back({least_[0] + (most_[0] - least_[0]) * (i + 0.5) / side,

@@ -22,56 +22,57 @@ struct ObjectPoint {
     Section section = Section::Y;
 };
 
-/// A ray of a beam: sagittal and tangential coordinates, mm from the middle of the entrance pupil,
-/// in the plane there that is square to the line from the object. Equal areas of it carry equal
-/// light: exactly for a distant object, else to the square of (aperture / distance).
-using Launch = std::array<double, 2>;
+/// A ray of a bundle: sagittal and tangential coordinates, mm from the middle of the entrance
+/// pupil, in the plane there that is square to the line from the object. Equal areas of it carry
+/// equal light: exactly for a distant object, else to the square of (aperture / distance).
+using PupilPoint = std::array<double, 2>;
 
-/// Where a ray of a beam arrives, mm.
-struct BeamRay {
-    Launch launch;
+/// Where a ray of a bundle arrives, mm.
+struct BundleRay {
+    PupilPoint pupil_point;
     std::array<double, 2> stop_mm;  ///< x, y
     std::array<double, 2> film_mm;  ///< x, y
     std::array<double, 2> slope;    ///< dx/dz, dy/dz at the film
 };
 
 /// The lens must outlive it. What is found there is found by the trace that renders, in doubles.
-class Beam {
+class RayBundle {
   public:
     /// Finds the ray to the middle of the stop, following it from the axis outwards, and then the
     /// rays to the stop's rim. Nothing where no ray reaches the middle of the stop.
-    [[nodiscard]] static std::optional<Beam> aim(const Lens&, const ObjectPoint&, double nm);
+    [[nodiscard]] static std::optional<RayBundle> aim(const Lens&, const ObjectPoint&, double nm);
 
     [[nodiscard]] double nm() const { return nm_; }
     [[nodiscard]] const ObjectPoint& object() const { return object_; }
     /// The ray to the middle of the stop.
-    [[nodiscard]] Launch chief() const { return chief_; }
+    [[nodiscard]] PupilPoint chief() const { return chief_; }
     /// A box about all rays that fit through the stop.
-    [[nodiscard]] Launch least() const { return least_; }
-    [[nodiscard]] Launch most() const { return most_; }
+    [[nodiscard]] PupilPoint least() const { return least_; }
+    [[nodiscard]] PupilPoint most() const { return most_; }
 
     struct Line {
         V3d origin_mm, direction;  ///< z from the first vertex; unit
     };
-    [[nodiscard]] Line line(Launch) const;
-    /// The rays that reach the film, in the order of their launches.
-    [[nodiscard]] std::vector<BeamRay> trace(std::span<const Launch>, double film_mm,
-                                             Clip = Clip::Yes) const;
+    [[nodiscard]] Line line(PupilPoint) const;
+    /// The rays that reach the film, in the order of their pupil_points.
+    [[nodiscard]] std::vector<BundleRay> trace(std::span<const PupilPoint>, double film_mm,
+                                               Clip = Clip::Yes) const;
     /// The middles of side x side cells of the box: equal light each.
-    [[nodiscard]] std::vector<Launch> grid(int side) const;
+    [[nodiscard]] std::vector<PupilPoint> grid(int side) const;
 
   private:
-    Beam(const Lens&, const ObjectPoint&, double nm);
+    RayBundle(const Lens&, const ObjectPoint&, double nm);
     template <class N>
     [[nodiscard]] LensRay<N> launched(N sagittal, N tangential) const;
-    [[nodiscard]] std::optional<Launch> solve(std::array<double, 2> stop_mm, Launch guess) const;
+    [[nodiscard]] std::optional<PupilPoint> solve(std::array<double, 2> stop_mm,
+                                                  PupilPoint guess) const;
     void find_box();
 
     const Lens* lens_;
     ObjectPoint object_;
     double nm_, entrance_pupil_mm_;
     LensIndices<d4> indices_;
-    Launch chief_{}, least_{}, most_{};
+    PupilPoint chief_{}, least_{}, most_{};
 };
 
 }  // namespace petzval

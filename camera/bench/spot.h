@@ -15,16 +15,16 @@ struct SpotSize {
     double rms_mm = 0;  ///< root of the mean square distance from the centroid
 };
 /// In a plane shift_mm behind the one that the rays were traced to. At least one ray.
-[[nodiscard]] SpotSize spot_size(std::span<const BeamRay>, double shift_mm = 0);
+[[nodiscard]] SpotSize spot_size(std::span<const BundleRay>, double shift_mm = 0);
 
 /// How far behind that plane the spot is smallest; 0 where all rays are parallel.
-[[nodiscard]] double best_shift_mm(std::span<const BeamRay>);
+[[nodiscard]] double best_shift_mm(std::span<const BundleRay>);
 
 /// Contrast that a spot leaves of a sine grating on the film, its lines across `along`: the modulus
 /// of the spot's Fourier transform. Geometric: without diffraction, which alone would leave about
 /// 1 - 1.27 nm 1e-6 fnumber cycles_per_mm. Williams and Becklund 1989, Introduction to the Optical
 /// Transfer Function, ch. 5. At least one ray.
-[[nodiscard]] double geometric_mtf(std::span<const BeamRay>, double cycles_per_mm, Section along);
+[[nodiscard]] double geometric_mtf(std::span<const BundleRay>, double cycles_per_mm, Section along);
 
 /// Transverse aberrations of a line of rays across the aperture.
 struct FanPoint {
@@ -33,7 +33,8 @@ struct FanPoint {
 };
 /// Rays through the middle of the aperture, `along` the section or across it; from: on the film,
 /// usually where the chief ray of the main wavelength arrives. Those that pass.
-[[nodiscard]] std::vector<FanPoint> ray_fan(const Lens&, const Beam&, Section along, double film_mm,
-                                            std::array<double, 2> from_mm, int count = 65);
+[[nodiscard]] std::vector<FanPoint> ray_fan(const Lens&, const RayBundle&, Section along,
+                                            double film_mm, std::array<double, 2> from_mm,
+                                            int count = 65);
 
 }  // namespace petzval

@@ -23,10 +23,10 @@ using test::read_oracle;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-Beam aimed(const Lens& lens, const ObjectPoint& object, double nm = kLineD_nm) {
-    auto beam = Beam::aim(lens, object, nm);
-    if (!beam) throw std::runtime_error("no chief ray");
-    return *std::move(beam);
+RayBundle aimed(const Lens& lens, const ObjectPoint& object, double nm = kLineD_nm) {
+    auto bundle = RayBundle::aim(lens, object, nm);
+    if (!bundle) throw std::runtime_error("no chief ray");
+    return *std::move(bundle);
 }
 
 class OracleAnalysis : public ::testing::TestWithParam<const char*> {
@@ -44,16 +44,16 @@ TEST_P(OracleAnalysis, SpotOnTheAxisAndItsBestFocus) {
     const bool round = oracle.contains("seidel");
     double rim_mm = INFINITY;
     if (round) {
-        const Beam d = aimed(lens, {});
-        std::vector<Launch> line;
+        const RayBundle d = aimed(lens, {});
+        std::vector<PupilPoint> line;
         for (int i = 0; i < 20000; ++i) line.push_back({0, d.most()[1] * (0.9 + 5e-6 * i)});
-        rim_mm = d.trace(line, film_mm).back().launch[1];
+        rim_mm = d.trace(line, film_mm).back().pupil_point[1];
     }
     for (const auto& [line, wanted] : oracle.at("axial_spot").items()) {
-        const Beam beam = aimed(lens, {}, std::stod(line));
-        auto rays = beam.trace(beam.grid(400), film_mm);
-        std::erase_if(rays, [&](const BeamRay& ray) {
-            return std::hypot(ray.launch[0], ray.launch[1]) > rim_mm;
+        const RayBundle bundle = aimed(lens, {}, std::stod(line));
+        auto rays = bundle.trace(bundle.grid(400), film_mm);
+        std::erase_if(rays, [&](const BundleRay& ray) {
+            return std::hypot(ray.pupil_point[0], ray.pupil_point[1]) > rim_mm;
         });
         const double rms = wanted[0], best = wanted[1], rms_at_best = wanted[2];
         EXPECT_NEAR(spot_size(rays).rms_mm, rms, 0.005 * rms) << line;
@@ -62,14 +62,14 @@ TEST_P(OracleAnalysis, SpotOnTheAxisAndItsBestFocus) {
     }
 }
 
-TEST_P(OracleAnalysis, BeamsFillTheStop) {
+TEST_P(OracleAnalysis, BundlesFillTheStop) {
     const double radius_mm = file.surfaces[size_t(lens.stop())].semi_diameter_mm;
     const double widest = std::string(GetParam()).find("fisheye") == std::string::npos ? 18 : 90;
     for (const Section section : {Section::X, Section::Y})
         for (const double deg : {0., 0.6 * widest, widest}) {
-            const Beam beam = aimed(lens, {.field_deg = deg, .section = section}, kLineF_nm);
-            const Launch chief = beam.chief();
-            const auto middle = beam.trace({&chief, 1}, film_mm, Clip::No);
+            const RayBundle bundle = aimed(lens, {.field_deg = deg, .section = section}, kLineF_nm);
+            const PupilPoint chief = bundle.chief();
+            const auto middle = bundle.trace({&chief, 1}, film_mm, Clip::No);
             ASSERT_EQ(middle.size(), 1u);
             EXPECT_NEAR(std::hypot(middle[0].stop_mm[0], middle[0].stop_mm[1]), 0,
                         1e-8 * radius_mm);
@@ -77,7 +77,7 @@ TEST_P(OracleAnalysis, BeamsFillTheStop) {
             EXPECT_NEAR(middle[0].film_mm[1 - along], 0, 1e-9);
             EXPECT_GE(middle[0].film_mm[along], -1e-9);
             double least = 1, most = 0;
-            for (const BeamRay& ray : beam.trace(beam.grid(60), film_mm, Clip::No)) {
+            for (const BundleRay& ray : bundle.trace(bundle.grid(60), film_mm, Clip::No)) {
                 const double r = std::hypot(ray.stop_mm[0], ray.stop_mm[1]) / radius_mm;
                 least = std::min(least, r);
                 most = std::max(most, r);
@@ -154,10 +154,10 @@ TEST(LensAnalysis, BestFilmShiftHasTheLeastSpot) {
     const Lens lens(read_lens("double-gauss-100mm-f2"));
     const double best = *best_film_shift_mm(lens, lens.film_mm(), -INFINITY);
     const auto rms = [&](double shift_mm) {
-        std::vector<BeamRay> all;
+        std::vector<BundleRay> all;
         for (const double nm : {kLineF_nm, kLineD_nm, kLineC_nm}) {
-            const Beam beam = aimed(lens, {}, nm);
-            const auto rays = beam.trace(beam.grid(101), lens.film_mm() + shift_mm);
+            const RayBundle bundle = aimed(lens, {}, nm);
+            const auto rays = bundle.trace(bundle.grid(101), lens.film_mm() + shift_mm);
             all.insert(all.end(), rays.begin(), rays.end());
         }
         return spot_size(all).rms_mm;
@@ -169,7 +169,7 @@ TEST(LensAnalysis, BestFilmShiftHasTheLeastSpot) {
 
 TEST(LensAnalysis, MtfOfADiskIsBessels) {
     constexpr double radius_mm = 0.02;
-    std::vector<BeamRay> rays;
+    std::vector<BundleRay> rays;
     for (int i = -200; i <= 200; ++i)
         for (int j = -200; j <= 200; ++j)
             if (i * i + j * j <= 200 * 200)
@@ -186,9 +186,9 @@ TEST(LensAnalysis, MtfOfADiskIsBessels) {
 
 TEST(LensAnalysis, FansCrossTheWholeStopAndAgreeWithSymmetry) {
     const Lens lens(read_lens("cooke-triplet-50mm-f5"));
-    const Beam beam = aimed(lens, {});
-    const auto tangential = ray_fan(lens, beam, Section::Y, lens.film_mm(), {});
-    const auto sagittal = ray_fan(lens, beam, Section::X, lens.film_mm(), {});
+    const RayBundle bundle = aimed(lens, {});
+    const auto tangential = ray_fan(lens, bundle, Section::Y, lens.film_mm(), {});
+    const auto sagittal = ray_fan(lens, bundle, Section::X, lens.film_mm(), {});
     ASSERT_EQ(tangential.size(), sagittal.size());
     EXPECT_GT(tangential.back().stop, 0.95);
     for (size_t i = 0; i < tangential.size(); ++i) {
@@ -231,7 +231,7 @@ TEST(LensAnalysis, FieldsOfHeightsAreThoseOfTheirSection) {
 
 TEST(LensAnalysis, SaysWhereNoRayGetsThrough) {
     const Lens lens(read_lens("kodak-petzval-100mm-f2"));
-    EXPECT_FALSE(Beam::aim(lens, {.field_deg = 100}, kLineD_nm));
+    EXPECT_FALSE(RayBundle::aim(lens, {.field_deg = 100}, kLineD_nm));
     EXPECT_FALSE(field_of_height_deg(lens, 500, lens.film_mm()));
     EXPECT_FALSE(distortion(lens, 89, lens.film_mm(), INFINITY));
 }

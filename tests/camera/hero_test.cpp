@@ -25,7 +25,7 @@ Bands four_wavelengths(float u) {
 }
 
 /// One lens of 100 mm at f/4 in front of pixels of 0.2 mm. Its stop lies before the glass or
-/// behind it, its rim cuts the beam off the axis.
+/// behind it, its rim cuts the bundle off the axis.
 LensCameraInput singlet(DispersionMode dispersion, double blue, double red, bool stop_first) {
     Prescription p;
     const auto add = [&p](double curvature, double thickness, double semi_diameter) -> auto& {

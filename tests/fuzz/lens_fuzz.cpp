@@ -122,7 +122,7 @@ class Trial {
         share(0.25f, [&] { trace(); });
         share(0.125f, [&] { outlines(); });
         share(0.06f, [&] { stops(); });
-        share(0.02f, [&] { beams(); });
+        share(0.02f, [&] { bundles(); });
         share(lens_.prescription().focus_group ? 0.01f : 0.25f, [&] { focus(); });
         share(lens_.size() > 50 ? 2e-4f : 5e-3f, [&] { camera(); });
         share(2e-3f, [&] { fields(); });
@@ -257,14 +257,14 @@ class Trial {
                 require(std::isfinite(surface.thickness_mm), "a focused thickness is not finite");
     }
 
-    void beams() {
+    void bundles() {
         const ObjectPoint object{between(random_, 0, 80),
                                  by_chance(random_, 0.5f) ? INFINITY : between(random_, 1, 10000),
                                  by_chance(random_, 0.5f) ? Section::X : Section::Y};
-        const auto beam = Beam::aim(lens_, object, wavelength_nm());
-        if (!beam) return;
-        for (const BeamRay& ray : beam->trace(beam->grid(5), lens_.film_mm()))
-            require(!std::isnan(ray.film_mm[0] + ray.film_mm[1]), "a beam's film point is NaN");
+        const auto bundle = RayBundle::aim(lens_, object, wavelength_nm());
+        if (!bundle) return;
+        for (const BundleRay& ray : bundle->trace(bundle->grid(5), lens_.film_mm()))
+            require(!std::isnan(ray.film_mm[0] + ray.film_mm[1]), "a bundle's film point is NaN");
     }
 
     void fields() {

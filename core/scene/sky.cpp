@@ -46,16 +46,16 @@ Sky Sky::picture(std::vector<float> rgb, int width, int height, float rotate_deg
     sky.width_ = width;
     sky.height_ = height;
     sky.turn_ = rotate_deg / 360.f - std::floor(rotate_deg / 360.f);
-    sky.octets_across_ = (width + Octet::kSize - 1) / Octet::kSize;
+    sky.blocks_across_ = (width + TexelBlock::kSize - 1) / TexelBlock::kSize;
     for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; x += Octet::kSize) {
-            const int count = std::min(Octet::kSize, width - x);
-            std::array<f4, Octet::kSize> texels{};
+        for (int x = 0; x < width; x += TexelBlock::kSize) {
+            const int count = std::min(TexelBlock::kSize, width - x);
+            std::array<f4, TexelBlock::kSize> texels{};
             for (int i = 0; i < count; ++i) {
                 const float* texel = &rgb[3 * (static_cast<size_t>(y) * width + x + i)];
                 texels[i] = f4{texel[0], texel[1], texel[2], 0.f} * strength;
             }
-            sky.octets_.emplace_back(std::span(texels.data(), count));
+            sky.blocks_.emplace_back(std::span(texels.data(), count));
         }
     sky.fill_importance();
     return sky;
@@ -66,13 +66,13 @@ void Sky::fill_importance() {
     std::vector<f4> texels;
     for (int y = 0; y < height_; ++y)
         for (int x = 0; x < width_; ++x)
-            texels.push_back(octets_of(y)[x / Octet::kSize].colour(x % Octet::kSize));
+            texels.push_back(blocks_of(y)[x / TexelBlock::kSize].colour(x % TexelBlock::kSize));
     std::vector<float> weights = cell_luminance(texels, width_, height_);
-    std::vector<float> octet_weights(octets_.size());
-    const auto octet_of = [&](int y, int x) {
-        std::array<float, Octet::kSize> cells{};
+    std::vector<float> block_weights(blocks_.size());
+    const auto block_of = [&](int y, int x) {
+        std::array<float, TexelBlock::kSize> cells{};
         std::copy_n(&weights[static_cast<size_t>(y) * width_ + x],
-                    std::min(Octet::kSize, width_ - x), cells.begin());
+                    std::min(TexelBlock::kSize, width_ - x), cells.begin());
         return cells;
     };
     double sum = 0;
@@ -87,25 +87,25 @@ void Sky::fill_importance() {
         double row_sum = 0;
         for (float& w : row) row_sum += w *= static_cast<float>(solid_angle);
         sum += row_sum;
-        // Four units at least of the row's 2^24: an octet then has one for each of its texels.
+        // Four units at least of the row's 2^24: an block then has one for each of its texels.
         const auto least = static_cast<float>(row_sum * 0x1p-22);
         for (float& w : row)
             if (w > 0) w = std::max(w, least);
-        for (int x = 0; x < width_; x += Octet::kSize) {
-            const auto cells = octet_of(y, x);
-            octet_weights[static_cast<size_t>(y) * octets_across_ + x / Octet::kSize] =
+        for (int x = 0; x < width_; x += TexelBlock::kSize) {
+            const auto cells = block_of(y, x);
+            block_weights[static_cast<size_t>(y) * blocks_across_ + x / TexelBlock::kSize] =
                 std::accumulate(cells.begin(), cells.end(), 0.f);
         }
     }
     rows_.push_back({-1.f, 0.f});
     if (!(sum > 0)) return;
     average_ = static_cast<float>(sum / (4 * static_cast<double>(kPi)));
-    importance_ = Piecewise2D(octet_weights, octets_across_, height_);
+    importance_ = Piecewise2D(block_weights, blocks_across_, height_);
     for (int y = 0; y < height_; ++y) {
         rows_[y].density *= importance_.row_probability(y);
-        for (int i = 0; i < octets_across_; ++i)
-            octets_[static_cast<size_t>(y) * octets_across_ + i].divide(
-                octet_of(y, i * Octet::kSize), importance_.units(i, y));
+        for (int i = 0; i < blocks_across_; ++i)
+            blocks_[static_cast<size_t>(y) * blocks_across_ + i].divide(
+                block_of(y, i * TexelBlock::kSize), importance_.units(i, y));
     }
 }
 
@@ -124,11 +124,11 @@ Rgb Sky::filtered(V2f uv) const {
               below = std::min(static_cast<int>(y), height_);
     const float wx = x - right, wy = y - below;
     const int x0 = right > 0 ? right - 1 : width_ - 1, x1 = right < width_ ? right : 0;
-    const Octet* row0 = octets_of(std::max(below - 1, 0));
-    const Octet* row1 = octets_of(std::min(below, height_ - 1));
-    const auto mixed = [&](const Octet* row) {
-        const f4 a = row[x0 / Octet::kSize].colour(x0 % Octet::kSize);
-        const f4 b = row[x1 / Octet::kSize].colour(x1 % Octet::kSize);
+    const TexelBlock* row0 = blocks_of(std::max(below - 1, 0));
+    const TexelBlock* row1 = blocks_of(std::min(below, height_ - 1));
+    const auto mixed = [&](const TexelBlock* row) {
+        const f4 a = row[x0 / TexelBlock::kSize].colour(x0 % TexelBlock::kSize);
+        const f4 b = row[x1 / TexelBlock::kSize].colour(x1 % TexelBlock::kSize);
         return a + (b - a) * wx;
     };
     const f4 top = mixed(row0), bottom = mixed(row1);
@@ -144,9 +144,9 @@ Sky::Found Sky::find(const V3f& direction) const {
     const V2f uv = to_uv(direction);
     const int column = std::min(static_cast<int>(uv.x * width_), width_ - 1);
     const int row = std::min(static_cast<int>(uv.y * height_), height_ - 1);
-    const int octet = column / Octet::kSize;
-    const uint32_t share = importance_.units(octet, row);
-    const uint32_t units = octets_of(row)[octet].units(column % Octet::kSize, share);
+    const int block = column / TexelBlock::kSize;
+    const uint32_t share = importance_.units(block, row);
+    const uint32_t units = blocks_of(row)[block].units(column % TexelBlock::kSize, share);
     return {filtered(uv), static_cast<float>(units) * rows_[row].density};
 }
 
@@ -154,18 +154,18 @@ Sky::Draw Sky::sample(V2f u) const {
     if (width_ == 0) return {uniform_sphere(u), uniform_sphere_pdf()};
     const Piecewise2D::UnitDraw drawn = importance_.sample_units(u);
     const int row = static_cast<int>(drawn.row);
-    const Octet& octet = octets_of(row)[drawn.column];
+    const TexelBlock& block = blocks_of(row)[drawn.column];
     // The row that the texels are mixed with: its line is on its way while this one is looked at.
     const int beside = drawn.row_offset < 0.5f ? row - 1 : row + 1;
-    __builtin_prefetch(&octets_of(std::clamp(beside, 0, height_ - 1))[drawn.column]);
-    const int texel = octet.find(drawn.unit, drawn.units);
-    const uint32_t begin = octet.begin(texel, drawn.units);
-    const uint32_t units = octet.begin(texel + 1, drawn.units) - begin;
+    __builtin_prefetch(&blocks_of(std::clamp(beside, 0, height_ - 1))[drawn.column]);
+    const int texel = block.find(drawn.unit, drawn.units);
+    const uint32_t begin = block.begin(texel, drawn.units);
+    const uint32_t units = block.begin(texel + 1, drawn.units) - begin;
     const float offset =
         (static_cast<float>(drawn.unit - begin) + drawn.rest) / static_cast<float>(units);
-    const float u_drawn =
-        (static_cast<float>(drawn.column * Octet::kSize + texel) + std::min(offset, kOneMinus)) /
-        width_;
+    const float u_drawn = (static_cast<float>(drawn.column * TexelBlock::kSize + texel) +
+                           std::min(offset, kOneMinus)) /
+                          width_;
     const float y = lerp(rows_[row].top, rows_[row + 1].top, drawn.row_offset);
     const float radius = safe_sqrt((1.f - y) * (1.f + y));
     const SinCos azimuth = sincos_turns(u_drawn - 0.5f - turn_);

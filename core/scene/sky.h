@@ -53,8 +53,8 @@ class Sky {
         float density;  ///< 1/sr for a unit of the row
     };
     void fill_importance();
-    [[nodiscard]] const Octet* octets_of(int y) const {
-        return &octets_[static_cast<size_t>(y) * octets_across_];
+    [[nodiscard]] const TexelBlock* blocks_of(int y) const {
+        return &blocks_[static_cast<size_t>(y) * blocks_across_];
     }
     [[nodiscard]] V2f to_uv(const V3f& direction) const;
     [[nodiscard]] Rgb filtered(V2f uv) const;
@@ -62,11 +62,11 @@ class Sky {
     Rgb colour_{0.f};
     float average_ = 0.f;
     int width_ = 0, height_ = 0;  ///< 0: uniform
-    int octets_across_ = 0;
-    std::vector<Octet> octets_;  ///< row by row
-    Piecewise2D importance_;     ///< of the octets
-    std::vector<Row> rows_;      ///< height_ + 1
-    float turn_ = 0.f;           ///< rotation in turns
+    int blocks_across_ = 0;
+    std::vector<TexelBlock> blocks_;  ///< row by row
+    Piecewise2D importance_;          ///< of the blocks
+    std::vector<Row> rows_;           ///< height_ + 1
+    float turn_ = 0.f;                ///< rotation in turns
 };
 
 }  // namespace petzval

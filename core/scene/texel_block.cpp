@@ -5,7 +5,7 @@
 
 namespace petzval {
 
-Octet::Octet(std::span<const f4> texels) {
+TexelBlock::TexelBlock(std::span<const f4> texels) {
     float most = 0;
     for (const f4 texel : texels)
         for (int c = 0; c < 3; ++c) most = std::max(most, texel[c]);
@@ -22,7 +22,7 @@ Octet::Octet(std::span<const f4> texels) {
     }
 }
 
-void Octet::divide(const std::array<float, kSize>& weights, uint32_t share) {
+void TexelBlock::divide(const std::array<float, kSize>& weights, uint32_t share) {
     double total = 0, running = 0;
     for (const float w : weights) total += w;
     if (!(total > 0)) return;

@@ -17,14 +17,14 @@ namespace petzval {
 
 /// Colours are half floats times a power of two: exact for what Radiance pictures hold. The
 /// texels divide a share of whole units among themselves, so that one is drawn exactly as often as
-/// it says. The share itself is kept by who has the octets.
-class alignas(64) Octet {
+/// it says. The share itself is kept by who has the blocks.
+class alignas(64) TexelBlock {
   public:
     static constexpr int kSize = 8;
 
-    Octet() = default;
+    TexelBlock() = default;
     /// Texels may be fewer than eight; RGB, finite, not negative; lane 3 is ignored.
-    explicit Octet(std::span<const f4> texels);
+    explicit TexelBlock(std::span<const f4> texels);
     /// Weights of the texels, finite, not negative; share: at least a unit for each above 0, below
     /// 2^31. A texel has a share in proportion, none where its weight is 0, and not less than a
     /// unit or 2^-15 of all where it is above.
@@ -64,6 +64,6 @@ class alignas(64) Octet {
     std::array<uint16_t, kSize - 1> start_{};  ///< of the second to the last, in steps
     int16_t exponent_ = 0;
 };
-static_assert(sizeof(Octet) == 64);
+static_assert(sizeof(TexelBlock) == 64);
 
 }  // namespace petzval

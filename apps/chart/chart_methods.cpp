@@ -267,8 +267,8 @@ std::string leak_count(const SceneRequest& request, const OpenSession& open) {
         SceneRequest one = request;
         one.traversal = traversal;
         const Session session = open(one);
-        if (rays.empty()) rays = seam_rays(*session.scene, kRays, 0);
-        return leaks(*session.bvh, rays);
+        if (rays.empty()) rays = shared_edge_rays(*session.scene, kRays, 0);
+        return traversal_leaks(*session.bvh, rays);
     };
     const size_t robust = through(Traversal::Robust), fast = through(Traversal::Fast);
     if (rays.empty()) return "No leaks were counted: the scene has no edges that triangles share";

@@ -28,7 +28,7 @@ bool before(const V3f& a, const V3f& b) {
 }
 
 // Meshes with flat normals repeat their vertices, so edges are shared by position, not by index.
-void add_seams(const Scene& scene, uint32_t instance, std::vector<Seam>& seams) {
+void add_seams(const Scene& scene, uint32_t instance, std::vector<Seam>& shared edges) {
     const Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
     if (scene.materials[mesh.material].cutout()) return;
     std::vector<HalfEdge> edges;
@@ -50,19 +50,19 @@ void add_seams(const Scene& scene, uint32_t instance, std::vector<Seam>& seams) 
     });
     for (size_t i = 0; i + 1 < edges.size(); ++i)
         if (edges[i].ends == edges[i + 1].ends && edges[i].ends[0] != edges[i].ends[1])
-            seams.push_back(
+            shared edges.push_back(
                 {edges[i].ends[0], edges[i].ends[1], {edges[i].corner, edges[i + 1].corner}});
 }
 
 /// Whether a ray of that direction meets the two triangles on different sides of their edge, and
 /// neither of them at a graze: then only rounding can lead it between them.
-bool crosses(const Seam& seam, const V3f& direction) {
+bool crosses(const Seam& shared edge, const V3f& direction) {
     constexpr float kLeastCosine = 0.2f;
-    const V3f edge = seam.b - seam.a, side = edge.cross(direction);
+    const V3f edge = shared edge.b - shared edge.a, side = edge.cross(direction);
     const float scale = kLeastCosine * edge.length();
     std::array<float, 2> off{};
     for (size_t k = 0; k < 2; ++k) {
-        const V3f to_corner = seam.corner[k] - seam.a, normal = edge.cross(to_corner);
+        const V3f to_corner = shared edge.corner[k] - shared edge.a, normal = edge.cross(to_corner);
         const float normal_length = normal.length();
         // A sliver may be thinner than its vertices are exact.
         if (!(normal_length > 1e-3f * edge.dot(edge))) return false;
@@ -74,27 +74,27 @@ bool crosses(const Seam& seam, const V3f& direction) {
 
 }  // namespace
 
-std::vector<Ray> seam_rays(const Scene& scene, size_t count, uint32_t seed) {
-    std::vector<Seam> seams;
+std::vector<Ray> shared_edge_rays(const Scene& scene, size_t count, uint32_t seed) {
+    std::vector<Seam> shared edges;
     std::vector<bool> seen(scene.meshes.size());
     for (uint32_t i = 0; i < scene.instances.size(); ++i) {
         if (seen[scene.instances[i].mesh]) continue;
         seen[scene.instances[i].mesh] = true;
-        add_seams(scene, i, seams);
+        add_seams(scene, i, shared edges);
     }
     std::vector<Ray> rays;
-    if (seams.empty()) return rays;
+    if (shared edges.empty()) return rays;
     uint32_t draws = 0;
     const auto random = [&] { return to_unit_float(hash32(seed, draws++)); };
     for (size_t i = 0; i < count; ++i) {
-        const auto at = static_cast<size_t>(random() * static_cast<float>(seams.size()));
-        const Seam& seam = seams[std::min(at, seams.size() - 1)];
-        const V3f aim = seam.a + (seam.b - seam.a) * random();
+        const auto at = static_cast<size_t>(random() * static_cast<float>(shared edges.size()));
+        const Seam& shared edge = shared edges[std::min(at, shared edges.size() - 1)];
+        const V3f aim = shared edge.a + (shared edge.b - shared edge.a) * random();
         for (int k = 0; k < kTries; ++k) {
             const float turn = random(), height = random();
             const V3f direction = uniform_sphere(V2f(turn, height));
-            if (!crosses(seam, direction)) continue;
-            const float away = (seam.b - seam.a).length();
+            if (!crosses(shared edge, direction)) continue;
+            const float away = (shared edge.b - shared edge.a).length();
             Ray ray;
             ray.origin = aim - direction * away;
             ray.direction = unit(aim - ray.origin);
@@ -106,8 +106,8 @@ std::vector<Ray> seam_rays(const Scene& scene, size_t count, uint32_t seed) {
     return rays;
 }
 
-size_t leaks(const Bvh& bvh, const std::vector<Ray>& seam_rays) {
-    return static_cast<size_t>(std::count_if(seam_rays.begin(), seam_rays.end(),
+size_t traversal_leaks(const Bvh& bvh, const std::vector<Ray>& shared_edge_rays) {
+    return static_cast<size_t>(std::count_if(shared_edge_rays.begin(), shared_edge_rays.end(),
                                              [&](const Ray& r) { return !bvh.intersect(r); }));
 }
 

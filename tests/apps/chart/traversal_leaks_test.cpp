@@ -21,29 +21,29 @@ Scene sphere_with_hole(float radius, bool hole) {
     return scene;
 }
 
-TEST(Seams, RaysMeetAClosedSurfaceAndMissAMissingOne) {
+TEST(TraversalLeaks, RaysMeetAClosedSurfaceAndMissAMissingOne) {
     const Scene whole = sphere_with_hole(1.f, false), half = sphere_with_hole(1.f, true);
-    const std::vector<Ray> rays = seam_rays(whole, 4000, 1);
+    const std::vector<Ray> rays = shared_edge_rays(whole, 4000, 1);
     EXPECT_EQ(rays.size(), 4000u);
-    EXPECT_EQ(leaks(Bvh(whole, Traversal::Robust), rays), 0u);
-    const size_t through = leaks(Bvh(half, Traversal::Robust), rays);
+    EXPECT_EQ(traversal_leaks(Bvh(whole, Traversal::Robust), rays), 0u);
+    const size_t through = traversal_leaks(Bvh(half, Traversal::Robust), rays);
     EXPECT_GT(through, 1600u);  // half of the edges, those of the rim in part
     EXPECT_LT(through, 2400u);
 }
 
-TEST(Seams, RaysEndBehindTheirEdge) {
+TEST(TraversalLeaks, RaysEndBehindTheirEdge) {
     const Scene outer = sphere_with_hole(1.f, false), inner = sphere_with_hole(0.2f, false);
-    const std::vector<Ray> rays = seam_rays(outer, 1000, 2);
-    EXPECT_EQ(leaks(Bvh(inner, Traversal::Robust), rays), 1000u);
+    const std::vector<Ray> rays = shared_edge_rays(outer, 1000, 2);
+    EXPECT_EQ(traversal_leaks(Bvh(inner, Traversal::Robust), rays), 1000u);
 }
 
-TEST(Seams, CutoutsHaveNone) {
+TEST(TraversalLeaks, CutoutsHaveNone) {
     Scene scene;
     Material leaf = diffuse_material(0.5f);
     leaf.alpha_mode = AlphaMode::Mask;
     place(scene, sphere(V3f(0.f), 1.f, 12, false), leaf);
     finish_scene(scene);
-    EXPECT_TRUE(seam_rays(scene, 10, 1).empty());
+    EXPECT_TRUE(shared_edge_rays(scene, 10, 1).empty());
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ std::string beside(const std::filesystem::path& scene, const std::string& name) 
 }
 
 // What the user has not said, the file's camera may.
-void take_wishes(const CameraWishes& file, const std::filesystem::path& scene,
+void take_extras(const CameraExtras& file, const std::filesystem::path& scene,
                  CameraRequest& asked) {
     if (!asked.lens && file.lens) asked.lens = beside(scene, *file.lens);
     if (!asked.sensor_mm) asked.sensor_mm = file.sensor_mm;
@@ -215,7 +215,7 @@ CameraPlan plan_camera(const CameraRequest& request, const std::filesystem::path
                                             "lens, its focus or sensor, nor an angle of view",
                                             printable(plan.from->name)));
     } else if (plan.from) {
-        take_wishes(plan.from->wishes, scene, asked);
+        take_extras(plan.from->wishes, scene, asked);
     }
     try {
         plan.optics = optics_of(asked, plan.from, aspect);

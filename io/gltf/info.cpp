@@ -28,7 +28,7 @@ std::string describe_lights(const Scene& scene) {
     return fmt::format("lights: {} point, {} spot, {} directional", count(0), count(1), count(2));
 }
 
-std::string describe_wishes(const CameraWishes& wishes) {
+std::string describe_extras(const CameraExtras& wishes) {
     std::string text;
     if (wishes.lens) text += ", lens " + printable(*wishes.lens);
     if (wishes.fstop) text += fmt::format(", f/{:g}", *wishes.fstop);
@@ -47,7 +47,7 @@ std::string describe_camera(size_t index, const GltfCamera& camera) {
     const std::string aspect =
         camera.aspect ? fmt::format(", aspect {:.4g}", *camera.aspect) : std::string();
     return head + fmt::format("perspective, {:.4g} deg vertical", camera.yfov_rad * 180 / kPi) +
-           aspect + describe_wishes(camera.wishes);
+           aspect + describe_extras(camera.wishes);
 }
 
 std::string describe_triangles(const Scene& scene) {

@@ -123,7 +123,7 @@ std::vector<GltfCamera> read_cameras(const GltfModel& gltf, const GltfNodes& nod
         const auto& from = gltf.typed.cameras.at(static_cast<size_t>(node.camera));
         GltfCamera camera = to_camera(from, *to_world);
         camera.name = from.name.empty() ? node.name : from.name;
-        camera.wishes = camera_wishes(json[static_cast<size_t>(node.camera)]);
+        camera.wishes = camera_extras(json[static_cast<size_t>(node.camera)]);
         if (camera.orthographic && camera.wishes.any())
             tally.warnings.push_back(json_path("cameras", node.camera) +
                                      "/extras/petzval: an orthographic camera has no use for it");

@@ -10,7 +10,7 @@
 namespace petzval {
 
 /// gltf_extras.h has the keys.
-struct CameraWishes {
+struct CameraExtras {
     std::optional<std::string> lens, aperture;
     std::optional<float> fstop, focus_m;
     std::optional<V2f> sensor_mm;

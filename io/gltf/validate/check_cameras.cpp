@@ -56,7 +56,7 @@ void check_light(GltfCheck& check, const JsonCursor& light) {
 
 void check_cameras(GltfCheck& check) {
     for (const JsonCursor& camera : check.root.objects("cameras")) {
-        (void)camera_wishes(camera);
+        (void)camera_extras(camera);
         const std::string type = camera.text("type");
         if (type == "perspective")
             check_perspective(camera.object("perspective"));

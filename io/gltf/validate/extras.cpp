@@ -61,9 +61,9 @@ void check_light_extras(const JsonCursor& light) {
     check_texts(light, "light", {"illuminant"});
 }
 
-CameraWishes camera_wishes(const JsonCursor& camera) {
+CameraExtras camera_extras(const JsonCursor& camera) {
     require_known_extras(camera, "camera", {"lens", "fstop", "focus_m", "aperture", "sensor_mm"});
-    CameraWishes wishes;
+    CameraExtras wishes;
     const auto extras = petzval_extras(camera);
     if (!extras) return wishes;
     wishes.lens = text_at(*extras, "lens");

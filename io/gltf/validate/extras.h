@@ -20,6 +20,6 @@ void check_light_extras(const JsonCursor& light);
 /// Of a camera: {"lens": "takumar-50mm-f1.2", "fstop": 2, "focus_m": 1.5, "aperture": "polygon:6",
 /// "sensor_mm": [36, 24]}, each of which may be absent. Throws InputError with the JSON path for a
 /// key that is not known and a value that is not as it should be.
-[[nodiscard]] CameraWishes camera_wishes(const JsonCursor& camera);
+[[nodiscard]] CameraExtras camera_extras(const JsonCursor& camera);
 
 }  // namespace petzval

@@ -79,7 +79,7 @@ TEST_F(CliCamera, TheFilesCameraIsEnough) {
         << lost.err;
 }
 
-TEST_F(CliCamera, WishesGiveWayToWhatTheUserFixes) {
+TEST_F(CliCamera, ExtrasGiveWayToWhatTheUserFixes) {
     // A camera that has no iris has no use for its focus, until the user gives it one.
     const std::string focus = scene_with("focus.gltf", {{"focus_m", 2}, {"aperture", "square"}});
     const std::string plain = scene_with("plain.gltf", nlohmann::json::object());
@@ -98,7 +98,7 @@ TEST_F(CliCamera, WishesGiveWayToWhatTheUserFixes) {
                   .pixels);
 }
 
-TEST_F(CliCamera, WishesThatAreNone) {
+TEST_F(CliCamera, ExtrasThatAreNone) {
     const std::pair<nlohmann::json, std::string> cases[] = {
         {{{"lens", 5}}, "/cameras/0/extras/petzval/lens"},
         {{{"fstop", 0}}, "/cameras/0/extras/petzval/fstop"},

@@ -163,7 +163,7 @@ void check_pinhole(const CameraRequest& asked) {
                "a pinhole has no iris that says how much light there is: give --fstop too");
 }
 
-void check_thin(const CameraPlan& plan) {
+void check_thin(const CameraModel& plan) {
     const CameraRequest& asked = plan.asked;
     const auto* single = std::get_if<SingleLens>(&plan.optics);
     if (!asked.fstop && !asked.lens_radius_m)
@@ -188,7 +188,7 @@ void check_lens(const CameraRequest& asked) {
 
 }  // namespace
 
-std::string CameraPlan::dispersive_name() const {
+std::string CameraModel::dispersive_lens() const {
     if (asked.dispersion == DispersionMode::Shared) return "";
     if (const auto* lens = std::get_if<LoadedLens>(&optics))
         return lens->disperses() ? lens->name() : "";
@@ -197,9 +197,9 @@ std::string CameraPlan::dispersive_name() const {
     return "";
 }
 
-CameraPlan plan_camera(const CameraRequest& request, const std::filesystem::path& scene,
-                       const std::vector<GltfCamera>& cameras, float aspect) {
-    CameraPlan plan;
+CameraModel choose_camera_model(const CameraRequest& request, const std::filesystem::path& scene,
+                                const std::vector<GltfCamera>& cameras, float aspect) {
+    CameraModel plan;
     plan.asked = request;
     if (request.name)
         plan.from = &find_camera(*request.name, scene.string(), cameras);

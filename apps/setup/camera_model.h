@@ -26,19 +26,20 @@ struct SingleLens {
 };
 using Optics = std::variant<NoLens, IdealLens, SingleLens, LoadedLens>;
 
-struct CameraPlan {
+struct CameraModel {
     CameraRequest asked;               ///< the user's wishes; the file's where there are none
     const GltfCamera* from = nullptr;  ///< absent: --look-at, or framed from the scene's bounds
     Optics optics;
 
     [[nodiscard]] bool has_iris() const { return !std::holds_alternative<NoLens>(optics); }
     /// Of a lens that sends wavelengths different ways; else nothing.
-    [[nodiscard]] std::string dispersive_name() const;
+    [[nodiscard]] std::string dispersive_lens() const;
 };
 
 /// scene: the file, for errors, and for paths in it. aspect: the picture's. cameras must outlive
 /// the plan. Throws InputError, and ArgumentError where what is asked for does not go together.
-[[nodiscard]] CameraPlan plan_camera(const CameraRequest&, const std::filesystem::path& scene,
-                                     const std::vector<GltfCamera>& cameras, float aspect);
+[[nodiscard]] CameraModel choose_camera_model(const CameraRequest&,
+                                              const std::filesystem::path& scene,
+                                              const std::vector<GltfCamera>& cameras, float aspect);
 
 }  // namespace petzval

@@ -25,7 +25,7 @@ V3f forward(const M44f& m) {
 }
 // Everything that the steps below look at.
 struct Place {
-    const CameraPlan& plan;
+    const CameraModel& plan;
     const std::string& scene_file;
     V2i size;
     const Scene& scene;
@@ -179,7 +179,7 @@ CameraSetup without_prescription(const Place& at) {
 
 }  // namespace
 
-CameraSetup set_up_camera(const CameraPlan& plan, const std::string& scene_file, V2i size,
+CameraSetup set_up_camera(const CameraModel& plan, const std::string& scene_file, V2i size,
                           const Scene& scene, const Bvh& bvh, const Notice& notice) {
     const Place at{plan, scene_file, size, scene, bvh, notice};
     if (plan.from && plan.from->orthographic) return orthographic(at, *plan.from);

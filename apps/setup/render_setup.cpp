@@ -118,10 +118,10 @@ Session open_session(const SceneRequest& asked,
     request.background = session.background;
     if (request.environment) session.backdrop = request.background;
     const Scene& scene = *session.scene;
-    const CameraPlan plan =
-        plan_camera(request.camera, request.scene, *session.cameras,
-                    static_cast<float>(request.size.x) / static_cast<float>(request.size.y));
-    request.spectral.dispersive_lens = plan.dispersive_name();
+    const CameraModel plan = choose_camera_model(
+        request.camera, request.scene, *session.cameras,
+        static_cast<float>(request.size.x) / static_cast<float>(request.size.y));
+    request.spectral.dispersive_lens = plan.dispersive_lens();
     SpectralSetup spectra = set_up_spectra(request.spectral, scene, notice);
     session.observer = std::move(spectra.observer);
     session.scale = std::move(spectra.scale);

@@ -27,7 +27,7 @@ constexpr double kFarthestFocus_m = 1e6;
 
 // What the closed forms refuse, they refuse in words for whoever chose the numbers.
 template <class Function>
-auto or_argument_error(const CameraPlan& plan, Function&& function) {
+auto or_argument_error(const CameraModel& plan, Function&& function) {
     try {
         return function();
     } catch (const std::invalid_argument& error) {
@@ -49,7 +49,7 @@ Singlet singlet_of(const SingleLens& lens, double focal_mm) {
 }
 
 // Where the request says it, be it by the radii of a lens.
-std::optional<double> asked_focal_length_mm(const CameraPlan& plan) {
+std::optional<double> asked_focal_length_mm(const CameraModel& plan) {
     if (const auto* lens = std::get_if<SingleLens>(&plan.optics); lens && lens->radii_mm)
         return singlet_of(*lens, 0).at(kLineD_nm).focal_mm;
     return plan.asked.focal_length_mm;
@@ -61,7 +61,7 @@ double irradiance_of(double radius_mm, double film_mm, double area_mm2) {
     return area_mm2 / (radius_mm * radius_mm) * sine * sine;
 }
 
-void warn_of_formula(const Singlet& singlet, const CameraPlan& plan, double focus_mm,
+void warn_of_formula(const Singlet& singlet, const CameraModel& plan, double focus_mm,
                      double radius_mm, const std::function<void(const std::string&)>& notice) {
     const SingletOptics at = singlet.at(kLineD_nm);
     const double error = spherical_aberration_error(at, focus_mm, radius_mm);
@@ -80,7 +80,7 @@ void warn_of_formula(const Singlet& singlet, const CameraPlan& plan, double focu
 
 }  // namespace
 
-ThinView thin_view(const CameraPlan& plan, const std::string& scene, float aspect) {
+ThinView thin_view(const CameraModel& plan, const std::string& scene, float aspect) {
     const CameraRequest& asked = plan.asked;
     ThinView view{};
     view.sensor_mm = film_within(asked.sensor_mm.value_or(V2f(36.f, 24.f)), aspect);
@@ -124,7 +124,7 @@ float yfov_at_rad(const ThinView& view, std::optional<float> focus_m) {
     return 2 * std::atan(view.sensor_mm.y / 2 / static_cast<float>(film_mm));
 }
 
-ThinSetup set_up_thin(const CameraPlan& plan, const ThinView& view, ThinLens lens,
+ThinSetup set_up_thin(const CameraModel& plan, const ThinView& view, ThinLens lens,
                       std::optional<float> focus_m, int width_px,
                       const std::function<void(const std::string&)>& notice) {
     const CameraRequest& asked = plan.asked;

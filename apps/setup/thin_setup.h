@@ -23,7 +23,7 @@ struct ThinView {
 
 /// aspect: of the picture. scene: the file, for errors. Throws ArgumentError for numbers that no
 /// lens can have together.
-[[nodiscard]] ThinView thin_view(const CameraPlan&, const std::string& scene, float aspect);
+[[nodiscard]] ThinView thin_view(const CameraModel&, const std::string& scene, float aspect);
 
 /// The vertical angle of view of the lens in focus: one that follows from its focal length narrows
 /// as the film goes back. focus_m: absent for far away.
@@ -37,7 +37,7 @@ struct ThinSetup {
 
 /// pose: with the view's angle and aspect. focus_m: absent for a pinhole. Throws ArgumentError for
 /// an object within the focal length, and for an iris that is none.
-[[nodiscard]] ThinSetup set_up_thin(const CameraPlan&, const ThinView&, ThinLens pose,
+[[nodiscard]] ThinSetup set_up_thin(const CameraModel&, const ThinView&, ThinLens pose,
                                     std::optional<float> focus_m, int width_px,
                                     const std::function<void(const std::string&)>& notice);
 

@@ -34,7 +34,7 @@ AberratedLens singlet_camera(const Glass& glass, double bending, double h_mm, do
 
 // What the program says of a singlet at that f-number.
 std::string warning_of(const Glass& glass, float fstop) {
-    CameraPlan plan;
+    CameraModel plan;
     plan.asked.lens = "singlet:" + glass.name;
     plan.asked.focal_length_mm = static_cast<float>(kFocal_mm);
     plan.asked.fstop = fstop;

@@ -32,7 +32,7 @@ bool is_prescription(const CameraRequest& camera) {
 
 Found look(const SceneRequest& request, const OpenSession& open) {
     const Session session = open(request);
-    return {settled(session), session.camera_report, session.scene->lights.size()};
+    return {resolved_request(session), session.camera_report, session.scene->lights.size()};
 }
 
 /// Collects the methods of one case.
@@ -91,13 +91,13 @@ ChartCase camera_case(const Found& found, const RenderJob& job, const OpenSessio
     const Session session = open(lens);
     const CameraReport& report = session.camera_report;
     lens.camera.focus = FocusDistance{report.focus_m};
-    const SceneRequest thin = thin_like(lens, session);
+    const SceneRequest thin = equivalent_thin_lens(lens, session);
     cases.remark(remarks);
     cases.remark(
         fmt::format("Pinhole, thin and singlet stand in the entrance pupil of the lens, "
                     "see {:.4g} degrees as it does when it is focused, and have its iris",
                     *thin.camera.fov_deg));
-    cases.add("pinhole", pinhole_like(lens, session), [](SceneRequest&, RenderJob&) {});
+    cases.add("pinhole", equivalent_pinhole(lens, session), [](SceneRequest&, RenderJob&) {});
     cases.add("thin", thin, [](SceneRequest&, RenderJob&) {});
     cases.add("singlet", thin,
               [](SceneRequest& s, RenderJob&) { s.camera.lens = "singlet:N-BK7"; });

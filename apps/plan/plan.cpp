@@ -196,7 +196,7 @@ struct Parted {
     [[nodiscard]] bool hero() const { return scene.camera.dispersion == DispersionMode::Hero; }
 };
 Parted part_wavelengths(const Session& first, TbbExecutor& executor) {
-    SceneRequest scene = settled(first);
+    SceneRequest scene = resolved_request(first);
     scene.spectral.mode = SpectralMode::Hero;
     if (first.asked.spectral.mode == SpectralMode::Auto)
         scene.spectral.because = fmt::format("{}", fmt::join(first.depends, "; "));

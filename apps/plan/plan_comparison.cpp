@@ -32,7 +32,7 @@ PlanComparison::PlanComparison(const PlanRequest& request, const Session& first,
     : request_(request),
       first_(first),
       open_(open),
-      full_scene_(settled(first)),
+      full_scene_(resolved_request(first)),
       executor_(executor),
       pilot_(request.scene.size, pixels, executor) {
     if (first.observer.spectral()) full_scene_.spectral.mode = SpectralMode::Hero;
@@ -87,10 +87,10 @@ void PlanComparison::add(const std::string& name, const SceneRequest& scene) {
 void PlanComparison::add_simpler_cameras() {
     const CameraReport& report = first_.camera_report;
     if (report.orthographic || !(report.lens_radius_m > 0)) return;
-    const SceneRequest scene = settled(first_);
+    const SceneRequest scene = resolved_request(first_);
     if (scene.camera.exposure != ExposureMode::Photographic)
-        add("pinhole", pinhole_like(scene, first_));
-    if (!report.lens.empty()) add("thin", thin_like(scene, first_));
+        add("pinhole", equivalent_pinhole(scene, first_));
+    if (!report.lens.empty()) add("thin", equivalent_thin_lens(scene, first_));
 }
 
 void PlanComparison::add_rgb() {

@@ -37,7 +37,7 @@ float fov_at_focus_deg(const Session& lens) {
 
 }  // namespace
 
-SceneRequest thin_like(SceneRequest request, const Session& session) {
+SceneRequest equivalent_thin_lens(SceneRequest request, const Session& session) {
     const CameraReport& report = session.camera_report;
     CameraRequest& camera = request.camera;
     camera.lens = "thin";
@@ -54,8 +54,8 @@ SceneRequest thin_like(SceneRequest request, const Session& session) {
     return request;
 }
 
-SceneRequest pinhole_like(SceneRequest request, const Session& session) {
-    request = thin_like(std::move(request), session);
+SceneRequest equivalent_pinhole(SceneRequest request, const Session& session) {
+    request = equivalent_thin_lens(std::move(request), session);
     CameraRequest& camera = request.camera;
     camera.lens = "pinhole";
     camera.lens_radius_m = std::nullopt;
@@ -66,7 +66,7 @@ SceneRequest pinhole_like(SceneRequest request, const Session& session) {
     return request;
 }
 
-SceneRequest settled(const Session& session) {
+SceneRequest resolved_request(const Session& session) {
     SceneRequest request = session.asked;
     const CameraReport& report = session.camera_report;
     if (report.orthographic) return request;

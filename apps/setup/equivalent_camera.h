@@ -9,13 +9,13 @@ namespace petzval {
 /// A thin lens in the entrance pupil of the session's lens: with its iris and focus, its angle of
 /// view at the plane of focus (a lens that is focused near sees less than its focal length says),
 /// and nothing of its glass. The request is the session's, with the wishes of the file's camera.
-[[nodiscard]] SceneRequest thin_like(SceneRequest, const Session&);
+[[nodiscard]] SceneRequest equivalent_thin_lens(SceneRequest, const Session&);
 
 /// A pinhole in the same place. Of a session with a lens of any kind; no photographic exposure.
-[[nodiscard]] SceneRequest pinhole_like(SceneRequest, const Session&);
+[[nodiscard]] SceneRequest equivalent_pinhole(SceneRequest, const Session&);
 
 /// The session's request with all that was chosen for it fixed: wishes of the file's camera, and
 /// the distance in focus.
-[[nodiscard]] SceneRequest settled(const Session&);
+[[nodiscard]] SceneRequest resolved_request(const Session&);
 
 }  // namespace petzval

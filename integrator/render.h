@@ -14,9 +14,9 @@
 
 namespace petzval {
 
-/// Seed of one of the scrambles: a hash of the pair.
-[[nodiscard]] inline uint32_t scrambled(uint32_t seed, uint32_t scramble) {
-    return hash32(seed, scramble + 1);
+/// Seed of one of the replicates: a hash of the pair.
+[[nodiscard]] inline uint32_t replicate_seed(uint32_t seed, uint32_t replicate) {
+    return hash32(seed, replicate + 1);
 }
 
 /// One sample of one pixel: a pure function of its arguments.
@@ -27,10 +27,10 @@ void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& 
     ++stats.samples;
     stats.timed_samples += stats.timing;
     const SectionTimer whole(stats, TimedSection::Sample);
-    const uint32_t scramble = id.index % job.scrambles;
+    const uint32_t replicate = id.index % job.replicates;
     const Sampler sampler(job.sampler,
-                          job.scrambles == 1 ? job.seed : scrambled(job.seed, scramble),
-                          {id.x, id.y, id.index / job.scrambles});
+                          job.replicates == 1 ? job.seed : replicate_seed(job.seed, replicate),
+                          {id.x, id.y, id.index / job.replicates});
     const Bands bands =
         job.observer.spectral() ? job.observer.draw(sampler.get1(Dim::Wavelength)) : Bands::rgb();
     const bool aovs = !film.aovs().empty();
@@ -64,7 +64,7 @@ void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& 
     sample.aov[static_cast<size_t>(Aov::Cost)] =
         V3f(static_cast<float>(stats.vertices - vertices_before), 0, 0);
     if (film.spectral())
-        film.add(id.x, id.y, id.index, sample, {scramble, sum, job.observer.to_xyz(sum, bands)},
+        film.add(id.x, id.y, id.index, sample, {replicate, sum, job.observer.to_xyz(sum, bands)},
                  bands);
     else
         film.add(id.x, id.y, id.index, sample);
@@ -102,7 +102,7 @@ RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob&
             stopped = true;
             break;
         }
-        uint32_t pass = pass_size(done, wanted, job.scrambles);
+        uint32_t pass = pass_size(done, wanted, job.replicates);
         if (job.time_limit_s && done > 0) {
             const double left_s = *job.time_limit_s - elapsed_s();
             const double fits = left_s / (elapsed_s() / done);

@@ -20,9 +20,9 @@ struct RenderJob {
     SamplerKind sampler = SamplerKind::Owen;
     Filter filter{FilterKind::BlackmanHarris, 1.5f};
     int tile_size_px = 16;
-    Observer observer;       ///< what the lanes carry
-    uint32_t scrambles = 1;  ///< kScrambles for a film with bins
-    bool timing = false;     ///< measure where the time goes, on one sample of sixteen
+    Observer observer;        ///< what the lanes carry
+    uint32_t replicates = 1;  ///< kReplicates for a film with bins
+    bool timing = false;      ///< measure where the time goes, on one sample of sixteen
 };
 
 /// What a render shows of itself while it runs, and how it is told to stop. Any thread may look.

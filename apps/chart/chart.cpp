@@ -54,7 +54,7 @@ void require_memory(const std::vector<ChartCase>& cases, const ChartFrame& frame
         double per_pixel = 0;
         for (const ChartMethod& method : of.methods) {
             const auto& bins = method.scene.spectral.bins;
-            per_pixel += frame.seeds * (48 + (bins ? 8. * bins->count + 24 + 12 * kScrambles : 0));
+            per_pixel += frame.seeds * (48 + (bins ? 8. * bins->count + 24 + 12 * kReplicates : 0));
             per_pixel += 12 * 20;  // pictures of the levels
         }
         most = std::max(most, per_pixel);

@@ -148,7 +148,7 @@ ChartCase spectral_case(const Found& found, const RenderJob& job) {
     cases.add("hero with bins", found.request, [](SceneRequest& s, RenderJob& j) {
         s.spectral.mode = SpectralMode::Hero;
         s.spectral.bins = Bins{380, 10, 35};
-        j.scrambles = kScrambles;
+        j.replicates = kReplicates;
     });
     cases.remark("The bins are 35 of 10 nm");
     cases.remark("rgb is biased where light and reflectance multiply by wavelength");

@@ -135,14 +135,14 @@ void require_time(double once_s, double budget_s, const char* what) {
 std::optional<ChartReference> render_reference(const ChartMethod& method, Session session,
                                                const Workplace& at, double budget_s) {
     const Clock clock;
-    Track track(method, std::move(session), at, kFirstReferenceSeed, kReferenceParts);
+    Track track(method, std::move(session), at, kFirstReferenceSeed, kReferenceReplicates);
     if (!track.warm_up()) return std::nullopt;
-    // A film with scrambles is whole after one sample of each.
-    const uint32_t first = std::max(2u, method.job.scrambles);
-    require_time(clock.elapsed_s() * (1 + first * kReferenceParts), budget_s, "the reference");
+    // A film with replicates is whole after one sample of each.
+    const uint32_t first = std::max(2u, method.job.replicates);
+    require_time(clock.elapsed_s() * (1 + first * kReferenceReplicates), budget_s, "the reference");
     for (uint32_t end = first; end <= 1u << 20;) {
         const Clock level;
-        for (uint32_t part = 0; part < kReferenceParts; ++part)
+        for (uint32_t part = 0; part < kReferenceReplicates; ++part)
             if (!track.advance(part, end)) return std::nullopt;
         track.last_s = level.elapsed_s() * end / (end - track.samples());
         track.reached(end);
@@ -156,7 +156,7 @@ std::optional<ChartReference> render_reference(const ChartMethod& method, Sessio
     }
     std::vector<Picture> parts;
     double cpu_s = 0;
-    for (uint32_t i = 0; i < kReferenceParts; ++i) {
+    for (uint32_t i = 0; i < kReferenceReplicates; ++i) {
         parts.push_back(track.picture(i));
         cpu_s += track.cpu_s(i);
     }

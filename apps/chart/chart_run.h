@@ -15,9 +15,9 @@
 
 namespace petzval {
 
-inline constexpr uint32_t kChartSeeds = 5;        ///< at least: for an interval of confidence
-inline constexpr double kLeastChartBudget_s = 4;  ///< for each case of weight 1
-inline constexpr uint32_t kReferenceParts = 4;    ///< independent renders
+inline constexpr uint32_t kChartSeeds = 5;           ///< at least: for an interval of confidence
+inline constexpr double kLeastChartBudget_s = 4;     ///< for each case of weight 1
+inline constexpr uint32_t kReferenceReplicates = 4;  ///< independent renders
 inline constexpr uint32_t kFirstReferenceSeed = 1'000'000;
 
 /// The budget is too small for a first look at everything.

@@ -95,10 +95,11 @@ void resolve_job(RenderOptions& o) {
     if (!o.time.empty()) o.job.time_limit_s = parse_duration_s("--time", o.time);
     o.job.end_sample = o.spp.value_or(o.job.time_limit_s ? kMostSamples : kDefaultSpp);
     if (o.scene.spectral.bins) {
-        o.job.scrambles = kScrambles;
-        if (o.job.end_sample < kScrambles)
+        o.job.replicates = kReplicates;
+        if (o.job.end_sample < kReplicates)
             throw CLI::ValidationError(
-                "--spp", fmt::format("the standard errors of --bins need at least {}", kScrambles));
+                "--spp",
+                fmt::format("the standard errors of --bins need at least {}", kReplicates));
     }
     const float usual_radius_px = o.filter == FilterKind::Box ? 0.5f : 1.5f;
     o.job.filter = Filter(o.filter, o.filter_radius_px > 0 ? o.filter_radius_px : usual_radius_px);
@@ -111,7 +112,7 @@ void resolve_job(RenderOptions& o) {
 void require_memory(const RenderFrame& frame, const std::optional<Bins>& bins) {
     const double pixels = static_cast<double>(frame.crop.width()) * frame.crop.height();
     const double layers = static_cast<double>(frame.aovs.size());
-    const double spectral = bins ? 8. * bins->count + 24 + 12 * kScrambles : 0;
+    const double spectral = bins ? 8. * bins->count + 24 + 12 * kReplicates : 0;
     const double needed = pixels * (48 + 24 * layers + spectral);
     const double there =
         static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));

@@ -47,7 +47,7 @@ PilotModel::PilotModel(Session session, const RenderJob& job, const PathOptions&
       sums_(pixels) {
     job_.sampler = job.sampler;
     job_.filter = job.filter;
-    job_.scrambles = job.scrambles;
+    job_.replicates = job.replicates;
     job_.observer = session_.observer;
 }
 
@@ -81,9 +81,9 @@ void Pilot::look(PilotModel& model, uint32_t samples) const {
     executor_.run(static_cast<int>(pixels_.size()), [&](int task, int worker) {
         const auto [x, y] = pixels_[static_cast<size_t>(task)];
         RenderJob job = model.job_;
-        for (uint32_t k = 0; k < kLooks; ++k) {
+        for (uint32_t k = 0; k < kPilotReplicates; ++k) {
             Film film(size_px_, {x, y, x + 1, y + 1}, {});
-            job.seed = kFirstPilotSeed + kLooks * seed_ + k;
+            job.seed = kFirstPilotSeed + kPilotReplicates * seed_ + k;
             for (uint32_t i = model.samples_; i < samples; ++i)
                 render_sample(model.tracer_, *model.session_.camera, job, {x, y, i}, film,
                               stats[static_cast<size_t>(worker)]);
@@ -102,7 +102,7 @@ std::vector<V3d> Pilot::weights(const PilotModel& scale) const {
     std::vector<V3d> out;
     for (const auto& sums : scale.sums_) {
         V3d b(0.);
-        for (const V3d& sum : sums) b += sum / double(kLooks * scale.samples_);
+        for (const V3d& sum : sums) b += sum / double(kPilotReplicates * scale.samples_);
         out.push_back(V3d(1.) / (b * b + V3d(kRelativeMseEpsilon)) / 3.);
     }
     return out;
@@ -113,14 +113,15 @@ Estimate Pilot::square(const std::vector<PilotTerm>& terms, const PilotModel& sc
     std::vector<double> values;
     for (size_t p = 0; p < pixels_.size(); ++p) {
         V3d sum(0.), squares(0.);
-        for (size_t k = 0; k < kLooks; ++k) {
+        for (size_t k = 0; k < kPilotReplicates; ++k) {
             V3d d(0.);
             for (const PilotTerm& term : terms)
                 d += term.model->sums_[p][k] * (term.factor / term.model->samples_);
             sum += d;
             squares += d * d;
         }
-        values.push_back((sum * sum - squares).dot(weight[p]) / double(kLooks * (kLooks - 1)));
+        values.push_back((sum * sum - squares).dot(weight[p]) /
+                         double(kPilotReplicates * (kPilotReplicates - 1)));
     }
     return mean_of(values);
 }
@@ -129,12 +130,12 @@ std::vector<V3d> Pilot::variances_of(const PilotModel& model) const {
     std::vector<V3d> out;
     for (const auto& sums : model.sums_) {
         V3d mean(0.), squares(0.);
-        for (const V3d& sum : sums) mean += sum / double(kLooks * model.samples_);
+        for (const V3d& sum : sums) mean += sum / double(kPilotReplicates * model.samples_);
         for (const V3d& sum : sums) {
             const V3d d = sum / double(model.samples_) - mean;
             squares += d * d;
         }
-        out.push_back(squares / double(kLooks - 1));
+        out.push_back(squares / double(kPilotReplicates - 1));
     }
     return out;
 }

@@ -13,8 +13,8 @@
 
 namespace petzval {
 
-/// Independent scrambles of the sampler in each pixel: what they have in common is no noise.
-inline constexpr uint32_t kLooks = 4;
+/// Independent replicates of the sampler in each pixel: what they have in common is no noise.
+inline constexpr uint32_t kPilotReplicates = 4;
 
 /// Of a mean over pixels; error: standard, from their spread.
 struct Estimate {
@@ -46,8 +46,8 @@ class PilotModel {
     Session session_;
     RenderJob job_;
     PathTracer<> tracer_;
-    std::vector<std::array<V3d, kLooks>> sums_;  ///< of the samples of each pixel
-    std::vector<std::vector<V3d>> variances_;    ///< of one look at each pixel, by turn
+    std::vector<std::array<V3d, kPilotReplicates>> sums_;  ///< of the samples of each pixel
+    std::vector<std::vector<V3d>> variances_;              ///< of one look at each pixel, by turn
     uint32_t samples_ = 0;
     PathStats stats_;
     double cpu_s_ = 0;

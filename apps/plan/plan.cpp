@@ -275,9 +275,9 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
             "--tolerance", "",
             fmt::format("would take {:.2g} samples of each pixel; give a larger one", samples));
     plan.samples = static_cast<uint64_t>(samples);
-    // Their standard errors come from as many scrambles, each with the same share of the samples.
+    // Their standard errors come from as many replicates, each with the same share of the samples.
     if (request.scene.spectral.bins)
-        plan.samples = (plan.samples + kScrambles - 1) / kScrambles * kScrambles;
+        plan.samples = (plan.samples + kReplicates - 1) / kReplicates * kReplicates;
     plan.noise = std::sqrt(chosen.variance_with(static_cast<double>(plan.samples)));
     plan.first_noise = std::sqrt(chosen.variance_with(1));
     plan.cpu_s = compared.cpu_s_per_sample(best) * static_cast<double>(plan.samples) *
@@ -305,7 +305,7 @@ Session open_planned(const PlanRequest& request, TbbExecutor& executor, const No
     const double most_samples = 0.25 * request.scene.size.x * request.scene.size.y;
     const int models = (open.spectral ? 1 : 0) + (open.dispersion ? 2 : 1);
     const auto fit = [&](int pixels, double samples) {
-        return pixels * kLooks * samples * models <= most_samples;
+        return pixels * kPilotReplicates * samples * models <= most_samples;
     };
     if (open.any() && fit(kFewPixels, kLeastSamples)) {
         PlanComparison compared(request, first, open,

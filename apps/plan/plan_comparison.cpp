@@ -127,7 +127,7 @@ void PlanComparison::add_unbiased(const std::string& name, DispersionMode disper
 void PlanComparison::look(double most_samples, bool thorough) {
     double models = shared_ ? 2 : 1;
     for (const Entry& e : entries_) models += e.own != nullptr;
-    const double once = static_cast<double>(pilot_.pixels()) * kLooks * models;
+    const double once = static_cast<double>(pilot_.pixels()) * kPilotReplicates * models;
     for (uint32_t n = 1;; n *= 2) {
         pilot_.look(*full_, n);
         if (shared_) pilot_.look(*shared_, n);

@@ -43,7 +43,7 @@ const char* name_of(FilterKind kind) {
 }
 
 /// Samples whose spread tells a pixel's error: none where one was left out, as it is not known
-/// which scramble it was dealt to.
+/// which replicate it was dealt to.
 uint32_t dealt_samples(const Film& film, int x, int y) {
     return film.bad_count(x, y) == 0 ? film.sample_count(x, y) : 0;
 }
@@ -76,11 +76,11 @@ void describe_spectrum(const Film& film, PictureLayout& layout) {
     m.emplace_back("petzval:bins", fmt::format("{:.9g}:{:.9g}:{:.9g}", bins.first_edge_nm,
                                                bins.last_edge_nm(), bins.width_nm));
     m.emplace_back("petzval:binScale", "S0 is the average over the bin in W.m^-2.sr^-1.nm^-1");
-    m.emplace_back("petzval:scrambles", static_cast<int>(kScrambles));
+    m.emplace_back("petzval:replicates", static_cast<int>(kReplicates));
     m.emplace_back("petzval:stderr",
                    fmt::format("standard error of the mean; {:.9g} where it is not known: with "
                                "fewer than {} samples, or one that was not finite",
-                               kUnknownError, kScrambles));
+                               kUnknownError, kReplicates));
     if (const float error = mean_relative_error(film); std::isfinite(error))
         m.emplace_back("petzval:meanRelativeError", error);
 }

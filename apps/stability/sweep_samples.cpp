@@ -119,25 +119,25 @@ Finding film_sums() {
         "One pixel of a spectral film that gets n samples of 1 plus an even random number from "
         "-0.1 to "
         "0.1: error of its mean against exact sums, and the standard error that it states, from "
-        "its eight scrambles, over the one of exact sums.";
+        "its eight replicates, over the one of exact sums.";
     f.table.columns = {"n", "error of the mean", "stated / exact standard error"};
     Film film({1, 1}, kOnePixel, {}, Bins{380, 50, 7});
     Bands bands = Bands::rgb();
     bands.nm = f4{450, 550, 650, 700};
-    std::array<double, kScrambles> exact{};
+    std::array<double, kReplicates> exact{};
     double worst_mean = 0, worst_error = 1;
     std::string worst_at = "none";
     Draws draws(23);
     uint32_t next = 256;
     for (uint32_t i = 0; i < 1u << 24; ++i) {
         const float a = 0.9f + 0.2f * draws.next();
-        film.add(0, 0, i, grey(a), {i % kScrambles, splat(a), V3f(a)}, bands);
-        exact[i % kScrambles] += double(a);
+        film.add(0, 0, i, grey(a), {i % kReplicates, splat(a), V3f(a)}, bands);
+        exact[i % kReplicates] += double(a);
         if (i + 1 != next) continue;
         double sum = 0, squares = 0;
         for (const double s : exact) sum += s;
-        for (const double s : exact) squares += std::pow(s / (next / kScrambles) - sum / next, 2);
-        const double error = std::sqrt(squares / (kScrambles * (kScrambles - 1)));
+        for (const double s : exact) squares += std::pow(s / (next / kReplicates) - sum / next, 2);
+        const double error = std::sqrt(squares / (kReplicates * (kReplicates - 1)));
         const double off = std::fabs(double(film.colour(0, 0).x) - sum / next);
         const double ratio = double(film.spectral()->standard_error(0, next).x) / error;
         f.table.rows.push_back(row(fmt::format("2^{}", std::lround(std::log2(next))), off, ratio));
@@ -153,7 +153,7 @@ Finding film_sums() {
         "the exact one, at n = {}",
         number(worst_mean), number(worst_error), worst_at);
     f.instead =
-        "Sums of the picture are doubles. Those of the scrambles, from which the standard "
+        "Sums of the picture are doubles. Those of the replicates, from which the standard "
         "error comes, are floats: their rounding adds to it.";
     f.guards = {"Film.SmallSamplesAreNotLostInALargeSum",
                 "SpectralFilm.StandardErrorOfAKnownVariance"};

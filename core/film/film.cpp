@@ -51,7 +51,7 @@ void Film::add(int x, int y, uint32_t index, const FilmSample& sample,
     const size_t at = offset(x, y);
     // A lane that is not finite shows in the colour, which every lane adds to.
     if (accept(at, index, sample, not_finite(spectral.xyz)))
-        spectral_->add(at, spectral.scramble, sample.colour, spectral.xyz, spectral.radiance,
+        spectral_->add(at, spectral.replicate, sample.colour, spectral.xyz, spectral.radiance,
                        bands);
 }
 

@@ -54,7 +54,7 @@ class Film {
 
     /// What a spectral film keeps of a sample beside FilmSample.
     struct SpectralSample {
-        uint32_t scramble;  ///< < kScrambles
+        uint32_t replicate;  ///< < kReplicates
         f4 radiance;
         V3f xyz;
     };

@@ -9,9 +9,9 @@ SpectralFilm::SpectralFilm(size_t pixels, const Bins& bins)
     : bins_(bins),
       bin_sums_(pixels * static_cast<size_t>(bins.count)),
       xyz_sums_(pixels),
-      scramble_sums_(pixels) {}
+      replicate_sums_(pixels) {}
 
-void SpectralFilm::add(size_t pixel, uint32_t scramble, Rgb colour, const V3f& xyz, f4 radiance,
+void SpectralFilm::add(size_t pixel, uint32_t replicate, Rgb colour, const V3f& xyz, f4 radiance,
                        const Bands& bands) {
     double* bins = bin_sums_.data() + pixel * static_cast<size_t>(bins_.count);
     const int lanes = lane_count(bands.on);
@@ -20,7 +20,7 @@ void SpectralFilm::add(size_t pixel, uint32_t scramble, Rgb colour, const V3f& x
         if (bin >= 0) bins[bin] += radiance[i] / (bands.pdf[i] * lanes * bins_.width_nm);
     }
     for (int i = 0; i < 3; ++i) xyz_sums_[pixel][static_cast<size_t>(i)] += xyz[i];
-    auto& sums = scramble_sums_[pixel][scramble];
+    auto& sums = replicate_sums_[pixel][replicate];
     for (int i = 0; i < 3; ++i) sums[static_cast<size_t>(i)] += colour[i];
 }
 
@@ -36,21 +36,23 @@ V3f SpectralFilm::xyz(size_t pixel, uint32_t count) const {
     return V3f(Imath::V3d(sum[0], sum[1], sum[2]) / double(count));
 }
 
-// Standard error of the mean of all samples from the scrambles' means, each as heavy as it has
-// samples: the first (count mod kScrambles) have one more. The sum of n_k (m_k - m)^2 over
-// the scrambles is K - 1 variances of one sample, so that the squared error is unbiased.
+// Standard error of the mean of all samples from the replicates' means, each as heavy as it has
+// samples: the first (count mod kReplicates) have one more. The sum of n_k (m_k - m)^2 over
+// the replicates is K - 1 variances of one sample, so that the squared error is unbiased.
 template <class Number>
 float SpectralFilm::error_of(size_t pixel, uint32_t count, const Number& number) const {
-    if (count < kScrambles) return std::numeric_limits<float>::infinity();
-    const auto samples = [count](uint32_t k) { return (count - k + kScrambles - 1) / kScrambles; };
-    const auto& sums = scramble_sums_[pixel];
+    if (count < kReplicates) return std::numeric_limits<float>::infinity();
+    const auto samples = [count](uint32_t k) {
+        return (count - k + kReplicates - 1) / kReplicates;
+    };
+    const auto& sums = replicate_sums_[pixel];
     double centre = 0, squares = 0;
-    for (uint32_t k = 0; k < kScrambles; ++k) centre += number(sums[k]) / count;
-    for (uint32_t k = 0; k < kScrambles; ++k) {
+    for (uint32_t k = 0; k < kReplicates; ++k) centre += number(sums[k]) / count;
+    for (uint32_t k = 0; k < kReplicates; ++k) {
         const double off = number(sums[k]) / samples(k) - centre;
         squares += samples(k) * off * off;
     }
-    const double error = std::sqrt(squares / (count * (kScrambles - 1.)));
+    const double error = std::sqrt(squares / (count * (kReplicates - 1.)));
     // The sums are floats, and overflow where the picture does not.
     return std::isfinite(error) ? static_cast<float>(error)
                                 : std::numeric_limits<float>::infinity();

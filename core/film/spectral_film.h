@@ -12,38 +12,38 @@
 
 namespace petzval {
 
-/// Independent scrambles of the sample sequence: the spread of their means tells the error of the
+/// Independent replicates of the sample sequence: the spread of their means tells the error of the
 /// whole, which one scrambled sequence cannot tell of itself (Owen 1997).
-inline constexpr uint32_t kScrambles = 8;
+inline constexpr uint32_t kReplicates = 8;
 
 /// Sums over the samples of each pixel; pixels are numbered by whoever owns it.
 class SpectralFilm {
   public:
     SpectralFilm(size_t pixels, const Bins&);
 
-    /// scramble < kScrambles. colour and xyz are the sample's estimates; radiance its lanes.
-    void add(size_t pixel, uint32_t scramble, Rgb colour, const V3f& xyz, f4 radiance,
+    /// replicate < kReplicates. colour and xyz are the sample's estimates; radiance its lanes.
+    void add(size_t pixel, uint32_t replicate, Rgb colour, const V3f& xyz, f4 radiance,
              const Bands&);
 
     [[nodiscard]] const Bins& bins() const { return bins_; }
     /// Mean over `count` samples: band averages, W/(m2 sr nm), bins().count of them.
     void bin_means(size_t pixel, uint32_t count, float* out) const;
     [[nodiscard]] V3f xyz(size_t pixel, uint32_t count) const;  ///< nits
-    /// Standard error of the mean of R, G and B over `count` samples, dealt to the scrambles in
-    /// turn; infinite where fewer than kScrambles samples are there.
+    /// Standard error of the mean of R, G and B over `count` samples, dealt to the replicates in
+    /// turn; infinite where fewer than kReplicates samples are there.
     [[nodiscard]] V3f standard_error(size_t pixel, uint32_t count) const;
     /// The same of their luminance.
     [[nodiscard]] float luminance_error(size_t pixel, uint32_t count) const;
 
   private:
-    using ScrambleSums = std::array<std::array<float, 3>, kScrambles>;
+    using ReplicateSums = std::array<std::array<float, 3>, kReplicates>;
     template <class Number>
     [[nodiscard]] float error_of(size_t pixel, uint32_t count, const Number&) const;
 
     Bins bins_;
     std::vector<double> bin_sums_;  ///< pixel-major
     std::vector<std::array<double, 3>> xyz_sums_;
-    std::vector<ScrambleSums> scramble_sums_;
+    std::vector<ReplicateSums> replicate_sums_;
 };
 
 }  // namespace petzval

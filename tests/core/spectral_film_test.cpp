@@ -31,7 +31,7 @@ std::vector<float> means(const SpectralFilm& film, size_t pixel, uint32_t count)
 }
 
 void add_colour(SpectralFilm& film, size_t pixel, uint32_t index, const V3f& c) {
-    film.add(pixel, index % kScrambles, Rgb(c.x, c.y, c.z), V3f(0.f), f4{}, Bands::rgb());
+    film.add(pixel, index % kReplicates, Rgb(c.x, c.y, c.z), V3f(0.f), f4{}, Bands::rgb());
 }
 
 TEST(SpectralFilm, ALaneGoesToItsBinAlone) {
@@ -71,7 +71,7 @@ TEST(SpectralFilm, AFlatSpectrumIsTheSameInEveryBin) {
                 pdf[lane] = static_cast<float>(2 * std::sqrt(u) / 470);
             }
             const m4 on = lanes == 1 ? m4{-1, 0, 0, 0} : m4{-1, -1, -1, -1};
-            film.add(0, i % kScrambles, Rgb(0.f), V3f(0.f), splat(3.f), bands_at(nm, pdf, on));
+            film.add(0, i % kReplicates, Rgb(0.f), V3f(0.f), splat(3.f), bands_at(nm, pdf, on));
         }
         // The first bin has the fewest of the evenly spread samples, 148 of each lane; its edges
         // take or leave one of them at most.
@@ -116,16 +116,16 @@ TEST(SpectralFilm, StandardErrorOfAKnownVariance) {
     }
 }
 
-TEST(SpectralFilm, FewerSamplesThanScramblesTellNoError) {
+TEST(SpectralFilm, FewerSamplesThanReplicatesTellNoError) {
     constexpr float unknown = std::numeric_limits<float>::infinity();
     SpectralFilm film(1, kBins);
-    for (uint32_t n = 0; n < kScrambles; ++n) {
+    for (uint32_t n = 0; n < kReplicates; ++n) {
         EXPECT_EQ(film.standard_error(0, n), V3f(unknown)) << n;
         EXPECT_EQ(film.luminance_error(0, n), unknown) << n;
         add_colour(film, 0, n, V3f(1, 2, 3));
     }
-    EXPECT_EQ(film.standard_error(0, kScrambles), V3f(0.f));
-    EXPECT_EQ(film.luminance_error(0, kScrambles), 0.f);
+    EXPECT_EQ(film.standard_error(0, kReplicates), V3f(0.f));
+    EXPECT_EQ(film.luminance_error(0, kReplicates), 0.f);
 }
 
 TEST(SpectralFilm, WhatIsNotFiniteIsLeftOutOfEverySum) {
@@ -135,7 +135,7 @@ TEST(SpectralFilm, WhatIsNotFiniteIsLeftOutOfEverySum) {
         FilmSample sample;
         sample.colour = Rgb(i == 8 ? INFINITY : 1.f);
         const f4 radiance = splat(i == 8 ? INFINITY : 1.f);
-        film.add(0, 0, i, sample, {i % kScrambles, radiance, V3f(radiance[0])}, bands);
+        film.add(0, 0, i, sample, {i % kReplicates, radiance, V3f(radiance[0])}, bands);
     }
     ASSERT_EQ(film.sample_count(0, 0), 8u);
     EXPECT_EQ(film.bad_count(), 1u);

@@ -20,31 +20,31 @@ struct Estimate {
     double mean = 0, error = 0;  ///< standard error of the mean
 };
 
-// Mean red radiance over a bundle of rays; the error comes from 12 independent scrambles, as the
-// points of one scramble are not independent.
+// Mean red radiance over a bundle of rays; the error comes from 12 independent replicates, as the
+// points of one replicate are not independent.
 template <class MakeRay>
 Estimate estimate(const World& world, const PathOptions& options, uint32_t samples,
                   const MakeRay& make_ray, float* alpha = nullptr) {
-    constexpr int scrambles = 12;
+    constexpr int replicates = 12;
     const PathTracer tracer(world.scene, *world.bvh, *world.lights, options);
     PathStats stats;
     double sum = 0, sum2 = 0;
-    for (uint32_t seed = 0; seed < scrambles; ++seed) {
+    for (uint32_t seed = 0; seed < replicates; ++seed) {
         double mean = 0;
         for (uint32_t i = 0; i < samples; ++i) {
             const Sampler sampler(SamplerKind::Owen, seed, {3, 5, i});
             FilmSample out;
             mean += tracer.radiance(make_ray(sampler.get2(Dim::Film)), Bands::rgb(), sampler, false,
                                     out, stats)[0];
-            if (alpha) *alpha += out.alpha / static_cast<float>(samples * scrambles);
+            if (alpha) *alpha += out.alpha / static_cast<float>(samples * replicates);
         }
         mean /= samples;
         sum += mean;
         sum2 += mean * mean;
     }
     Estimate e;
-    e.mean = sum / scrambles;
-    e.error = std::sqrt(std::max(0.0, sum2 / scrambles - e.mean * e.mean) / (scrambles - 1));
+    e.mean = sum / replicates;
+    e.error = std::sqrt(std::max(0.0, sum2 / replicates - e.mean * e.mean) / (replicates - 1));
     return e;
 }
 

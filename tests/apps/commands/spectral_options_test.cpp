@@ -263,8 +263,8 @@ TEST_F(CliSpectral, StandardErrorsAreHonest) {
             far += std::fabs(d) > 3 * e;
         }
         EXPECT_TRUE(test::z_test(excess.mean(), excess.standard_error(), 0)) << c;
-        // Two errors from 8 scrambles each: Student's t with 14 degrees of freedom, which is within
-        // 1 for 0.666 and beyond 3 for 0.0096 of the pixels, if they are near to normal.
+        // Two errors from 8 replicates each: Student's t with 14 degrees of freedom, which is
+        // within 1 for 0.666 and beyond 3 for 0.0096 of the pixels, if they are near to normal.
         EXPECT_NEAR(near / 1600., 0.666, 0.06) << c;
         EXPECT_LT(far, 1600 * 3 / 100) << c;
     }
@@ -279,7 +279,7 @@ TEST_F(CliSpectral, TheFileSaysHowItWasMade) {
                                                             {"petzval:illuminant", "f11"},
                                                             {"petzval:response", "cie1931"},
                                                             {"petzval:whiteBalance", "illuminant"},
-                                                            {"petzval:scrambles", "8"},
+                                                            {"petzval:replicates", "8"},
                                                             {"petzval:samples", "0:64"},
                                                             {"spectralLayoutVersion", "1.0"},
                                                             {"emissiveUnits", "W.m^-2.sr^-1"}};

@@ -46,7 +46,7 @@ void add_sample(Film& film, int x, int y, uint32_t index, const Light& light) {
     sample.alpha = 0.5f;
     sample.hit = true;
     sample.aov[static_cast<size_t>(Aov::Depth)] = V3f(float(100 + x), 0, 0);
-    film.add(x, y, index, sample, {index % kScrambles, radiance, light.xyz}, bands);
+    film.add(x, y, index, sample, {index % kReplicates, radiance, light.xyz}, bands);
 }
 
 Film filled(Rect crop, uint32_t samples) {
@@ -134,7 +134,7 @@ TEST(SpectralExr, SaysWhatTheNumbersMean) {
     EXPECT_EQ(text("emissiveUnits"), "W.m^-2.sr^-1");
     EXPECT_EQ(text("petzval:bins"), "380:730:10");
     EXPECT_NE(text("petzval:binScale").find("W.m^-2.sr^-1.nm^-1"), std::string::npos);
-    EXPECT_EQ(input->spec().get_int_attribute("petzval:scrambles"), 8);
+    EXPECT_EQ(input->spec().get_int_attribute("petzval:replicates"), 8);
     double sum = 0;  // of red's share in luminance times its error
     for (const int x : {1, 2}) {
         const Light l = light_of(x, 0);

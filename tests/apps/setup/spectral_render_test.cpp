@@ -51,7 +51,7 @@ RenderJob job_of(const Observer& observer, uint32_t spp) {
     job.observer = observer;
     job.end_sample = spp;
     job.filter = Filter(FilterKind::Box, 0.5f);
-    if (observer.bins()) job.scrambles = kScrambles;
+    if (observer.bins()) job.replicates = kReplicates;
     return job;
 }
 
@@ -166,8 +166,8 @@ Material glass_material(const char* name, float roughness) {
 // Mean of every lane's radiance over that of the white sky, in four parts of the spectrum.
 std::array<test::Moments, 4> furnace(const World& world, const Observer& observer) {
     std::array<test::Moments, 4> part;
-    constexpr uint32_t scrambles = 16, samples = 512;
-    for (uint32_t seed = 0; seed < scrambles; ++seed) {
+    constexpr uint32_t replicates = 16, samples = 512;
+    for (uint32_t seed = 0; seed < replicates; ++seed) {
         std::array<double, 4> sum{}, count{};
         for (uint32_t i = 0; i < samples; ++i) {
             const Sampler sampler(SamplerKind::Owen, seed, {0, 0, i});
@@ -354,11 +354,11 @@ TEST(SpectralRender, HeroAgreesWithOneWavelengthAPath) {
     lens.yfov_rad = 0.8f;
     const ThinLensCamera camera(lens);
     constexpr int side = 5;
-    constexpr uint32_t scrambles = 16, hero_samples = 512, single_samples = 2048;
+    constexpr uint32_t replicates = 16, hero_samples = 512, single_samples = 2048;
     const auto estimate = [&](uint32_t samples, uint32_t seed0, const auto& bands_of) {
         std::array<std::array<test::Moments, 3>, side * side> pixels;
         for (int p = 0; p < side * side; ++p)
-            for (uint32_t seed = 0; seed < scrambles; ++seed) {
+            for (uint32_t seed = 0; seed < replicates; ++seed) {
                 std::array<double, 3> sum{};
                 for (uint32_t i = 0; i < samples; ++i) {
                     const Sampler sampler(SamplerKind::Owen, seed0 + seed, {p, 0, i});

@@ -116,7 +116,7 @@ f4 PathTracer<Caster>::direct_light(const Surface& s, const Frame& frame, const 
         shadow.direction = light.target - shadow.origin;
         shadow.t_max = kOneMinus;  // the target stands clear of the light
     }
-    if (caster_.has_cutouts()) shadow.coin = sampler.get_bits(Dim::Coverage, 2 * depth + 1);
+    if (caster_.has_cutouts()) shadow.alpha_seed = sampler.get_bits(Dim::Coverage, 2 * depth + 1);
     ++stats.shadow_rays;
     {
         const SectionTimer timer(stats, TimedSection::Traversal);
@@ -161,7 +161,7 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
     bool seen = false;  // the camera ray has found a surface that shows itself
 
     for (uint32_t depth = 0;;) {
-        if (caster_.has_cutouts()) ray.coin = sampler.get_bits(Dim::Coverage, 2 * depth);
+        if (caster_.has_cutouts()) ray.alpha_seed = sampler.get_bits(Dim::Coverage, 2 * depth);
         ++(depth == 0 ? stats.camera_rays : stats.bounce_rays);
         const std::optional<Hit> hit = [&] {
             const SectionTimer timer(stats, TimedSection::Traversal);

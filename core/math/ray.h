@@ -10,7 +10,8 @@ struct Ray {
     V3f origin;
     V3f direction;  ///< unit length for rays that measure distance; t counts in its length
     float t_max = kInfinity;
-    uint32_t coin = 0;  ///< decides BLEND coverage: the same coin and triangle, the same answer
+    uint32_t alpha_seed =
+        0;  ///< decides BLEND coverage: the same alpha_seed and triangle, the same answer
 };
 
 /// A triangle hit, as the traversal reports it. 24 bytes; Surface (core/shading/surface.h) has the

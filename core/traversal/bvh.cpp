@@ -14,20 +14,20 @@ namespace {
 
 struct Context {
     RTCIntersectContext embree;  // first: Embree hands back a pointer to it
-    uint32_t coin;
+    uint32_t alpha_seed;
 };
 
 uint32_t instance_of(uint32_t inst_id, uint32_t geom_id) {
     return inst_id != RTC_INVALID_GEOMETRY_ID ? inst_id : geom_id;
 }
 
-// A ray passes where a coin that belongs to it and to the triangle says so. A pure function of its
-// arguments: Embree may ask twice for one triangle (spatial splits), and the second answer must be
-// the first one.
-bool lets_pass(const Scene& scene, const RTCHit& hit, uint32_t coin) {
+// A ray passes where a alpha_seed that belongs to it and to the triangle says so. A pure function
+// of its arguments: Embree may ask twice for one triangle (spatial splits), and the second answer
+// must be the first one.
+bool lets_pass(const Scene& scene, const RTCHit& hit, uint32_t alpha_seed) {
     const uint32_t instance = instance_of(hit.instID[0], hit.geomID);
     const float covered = coverage(scene, instance, hit.primID, {hit.u, hit.v});
-    return to_unit_float(hash32(hash32(coin, instance), hit.primID)) >= covered;
+    return to_unit_float(hash32(hash32(alpha_seed, instance), hit.primID)) >= covered;
 }
 
 // Embree fixes the signature; the packet has one ray, as only the single-ray calls are used.
@@ -35,7 +35,7 @@ void filter(const RTCFilterFunctionNArguments* args) {
     if (args->valid[0] != -1) return;
     const auto& scene = *static_cast<const Scene*>(args->geometryUserPtr);
     const auto& context = *reinterpret_cast<const Context*>(args->context);
-    if (lets_pass(scene, *reinterpret_cast<const RTCHit*>(args->hit), context.coin))
+    if (lets_pass(scene, *reinterpret_cast<const RTCHit*>(args->hit), context.alpha_seed))
         args->valid[0] = 0;
 }
 
@@ -152,7 +152,7 @@ std::optional<Hit> Bvh::intersect(const Ray& r) const {
     if (!traceable(r)) return std::nullopt;
     Context context;
     rtcInitIntersectContext(&context.embree);
-    context.coin = r.coin;
+    context.alpha_seed = r.alpha_seed;
     RTCRayHit query;
     query.ray = to_embree(r);
     query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
@@ -168,7 +168,7 @@ bool Bvh::occluded(const Ray& r) const {
     if (!traceable(r)) return false;
     Context context;
     rtcInitIntersectContext(&context.embree);
-    context.coin = r.coin;
+    context.alpha_seed = r.alpha_seed;
     RTCRay ray = to_embree(r);
     rtcOccluded1(impl_->top, &context.embree, &ray);
     return ray.tfar < 0.f;

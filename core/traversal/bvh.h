@@ -29,7 +29,7 @@ class Bvh {
     [[nodiscard]] std::optional<Hit> intersect(const Ray&) const;
     /// Whether anything lies in (0, t_max).
     [[nodiscard]] bool occluded(const Ray&) const;
-    /// Some material is MASK or BLEND: rays need their coin.
+    /// Some material is MASK or BLEND: rays need their alpha_seed.
     [[nodiscard]] bool has_cutouts() const;
     /// The library's own scene, for measuring what bare traversal costs.
     [[nodiscard]] RTCSceneTy* native() const;

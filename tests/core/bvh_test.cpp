@@ -213,7 +213,7 @@ TEST(Bvh, CutoutsAnswerTheSameHoweverOftenTheyAreAsked) {
             Ray ray;
             ray.origin = V3f(8 * random() - 4, 8 * random() - 4, 9);
             ray.direction = unit(V3f(0.2f * random() - 0.1f, 0.2f * random() - 0.1f, -1));
-            ray.coin = hash32(static_cast<uint32_t>(i));
+            ray.alpha_seed = hash32(static_cast<uint32_t>(i));
             const auto a = robust.intersect(ray), b = fast.intersect(ray);
             hits += a.has_value();
             differ += a.has_value() != b.has_value() || (a && a->instance != b->instance);
@@ -238,7 +238,7 @@ TEST(Bvh, BlendPassesItsShareOfRays) {
         Ray ray;
         ray.origin = V3f(0.1f, 0.2f, 1);
         ray.direction = V3f(0, 0, -1);
-        ray.coin = hash32(static_cast<uint32_t>(i));
+        ray.alpha_seed = hash32(static_cast<uint32_t>(i));
         hits += bvh.intersect(ray).has_value();
     }
     EXPECT_NEAR(hits / double(n), 0.3, 3.3 * std::sqrt(0.3 * 0.7 / n));  // two-sided, 0.1 %

@@ -42,12 +42,12 @@ RTCRay bare(const Ray& r) {
     return ray;
 }
 
-// Seconds to trace what was recorded, in the order of the render. Rays through cutouts have no coin
-// here, which scenes without BLEND do not notice.
+// Seconds to trace what was recorded, in the order of the render. Rays through cutouts have no
+// alpha_seed here, which scenes without BLEND do not notice.
 double retrace_s(RTCScene scene, const std::vector<Ray>& nearest, const std::vector<Ray>& shadow) {
     struct {
         RTCIntersectContext embree;
-        uint32_t coin = 0;
+        uint32_t alpha_seed = 0;
     } context;
     rtcInitIntersectContext(&context.embree);
     const double start_s = process_cpu_s();

@@ -41,7 +41,7 @@ class PathTracer {
   private:
     struct Vertex;
     struct DrawnLight;
-    [[nodiscard]] f4 backdrop(const Ray&, const Bands&, FilmSample&) const;
+    [[nodiscard]] f4 visible_background(const Ray&, const Bands&, FilmSample&) const;
     [[nodiscard]] f4 escaped(const Ray&, const Bands&, const Vertex& last) const;
     [[nodiscard]] f4 emitted(const Surface&, Rgb, const Bands&, const Vertex& last) const;
     [[nodiscard]] std::optional<DrawnLight> draw_light(const LightReceiver&,

@@ -41,10 +41,11 @@ struct PathTracer<Caster>::DrawnLight {
 }
 
 template <RayCaster Caster>
-f4 PathTracer<Caster>::backdrop(const Ray& ray, const Bands& bands, FilmSample& out) const {
+f4 PathTracer<Caster>::visible_background(const Ray& ray, const Bands& bands,
+                                          FilmSample& out) const {
     if (options_.transparent) return f4{};
     out.alpha = 1.f;
-    if (options_.backdrop) return uplift_radiance(*options_.backdrop, bands);
+    if (options_.visible_background) return uplift_radiance(*options_.visible_background, bands);
     return uplift_radiance(scene_.sky.radiance(ray.direction), bands);
 }
 
@@ -168,7 +169,8 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
             return caster_.intersect(ray);
         }();
         if (!hit) {
-            sum += throughput * (seen ? escaped(ray, bands, last) : backdrop(ray, bands, out));
+            sum += throughput *
+                   (seen ? escaped(ray, bands, last) : visible_background(ray, bands, out));
             break;
         }
         const Surface s = make_surface(scene_, ray.direction, *hit);

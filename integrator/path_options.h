@@ -17,7 +17,7 @@ struct PathOptions {
     int roulette_depth = 1;  ///< scatterings before Russian roulette begins
     Technique technique = Technique::Mis;
     /// What camera rays see in place of the sky; its light stays.
-    std::optional<Rgb> backdrop;
+    std::optional<Rgb> visible_background;
     bool transparent = false;  ///< camera rays that miss leave alpha 0 and no light
 };
 

@@ -42,7 +42,7 @@ class Track {
         : job_(method.job), session_(std::move(session)), at_(at), first_seed_(first_seed) {
         job_.observer = session_.observer;
         PathOptions options;
-        options.backdrop = session_.backdrop;
+        options.visible_background = session_.visible_background;
         tracer_.emplace(*session_.scene, *session_.bvh, *session_.lights, options);
         for (uint32_t i = 0; i < seeds; ++i) films_.push_back(new_film());
         cpu_s_.resize(seeds, 0.);

@@ -59,7 +59,7 @@ int render_command(RenderOptions& o) {
     const Notice notice = notice_to_stderr(o);
     const Session session =
         open_planned({o.scene, o.job, o.path, frame.tolerance}, executor, notice);
-    o.path.backdrop = session.backdrop;
+    o.path.visible_background = session.visible_background;
     o.job.observer = session.observer;
     Film film(o.scene.size, frame.crop, frame.aovs, o.scene.spectral.bins);
     const PathTracer tracer(*session.scene, *session.bvh, *session.lights, o.path);

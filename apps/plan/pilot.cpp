@@ -14,7 +14,7 @@ namespace {
 constexpr uint32_t kFirstPilotSeed = 2'000'000;
 
 PathOptions with_backdrop(PathOptions options, const Session& session) {
-    options.backdrop = session.backdrop;
+    options.visible_background = session.visible_background;
     return options;
 }
 

@@ -116,7 +116,7 @@ Session open_session(const SceneRequest& asked,
     }
     SceneRequest request = asked;
     request.background = session.background;
-    if (request.environment) session.backdrop = request.background;
+    if (request.environment) session.visible_background = request.background;
     const Scene& scene = *session.scene;
     const CameraModel plan = choose_camera_model(
         request.camera, request.scene, *session.cameras,

@@ -42,8 +42,8 @@ struct Session {
     std::unique_ptr<Camera> camera;
     CameraReport camera_report;
     Observer observer;
-    std::optional<Rgb> background;  ///< as asked, or what a dark scene gets
-    std::optional<Rgb> backdrop;    ///< shown behind the scene in place of the environment
+    std::optional<Rgb> background;          ///< as asked, or what a dark scene gets
+    std::optional<Rgb> visible_background;  ///< shown behind the scene in place of the environment
     uint64_t scene_hash = 0;
     std::string scale;                 ///< what RGB 1 means
     std::string dispersive_lens;       ///< name of one that sends wavelengths different ways

@@ -325,7 +325,7 @@ TEST(Path, BackdropIsSeenAndTheEnvironmentLights) {
     world.scene.sky = Sky::uniform(Rgb(2.f));
     world.finish();
     PathOptions options;
-    options.backdrop = Rgb(7.f);
+    options.visible_background = Rgb(7.f);
     EXPECT_NEAR(
         estimate(world, options, 16, [](V2f) { return ray_to(V3f(0, 0, 4), V3f(9, 9, 4)); }).mean,
         7.0, 1e-5);

@@ -90,7 +90,7 @@ Finding scene_scale() {
         number(small), number(large), number(away));
     f.instead =
         "Rays leave a surface outside of the bound on the rounding of the point, not by a fixed "
-        "distance: from 1e-4 to 1e6 m nothing leaks. Beyond the limits above nothing is done.";
+        "distance: from 1e-4 to 1e6 m nothing leaks. Extrapolate the limits above nothing is done.";
     f.guards = {"Bvh.RaysLeaveSurfacesAtEveryScaleAndPlace", "Bvh.RaysLeaveInstancedSurfaces"};
     return f;
 }

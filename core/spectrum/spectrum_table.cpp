@@ -13,7 +13,7 @@ float SpectrumTable::at(float nm) const {
     return at[0] * (1.f - t) + at[1] * t;
 }
 
-SpectrumTable tabulate(std::span<const std::pair<float, float>> points, Beyond beyond) {
+SpectrumTable tabulate(std::span<const std::pair<float, float>> points, Extrapolate beyond) {
     SpectrumTable table;
     const auto later = [](float nm, const auto& point) { return nm < point.first; };
     for (int nm = kFirst_nm; nm <= kLast_nm; ++nm) {
@@ -21,10 +21,10 @@ SpectrumTable tabulate(std::span<const std::pair<float, float>> points, Beyond b
         const auto next = std::upper_bound(points.begin(), points.end(), wanted, later);
         float& value = table.at_nm(nm);
         if (next == points.begin()) {
-            value = beyond == Beyond::Hold ? points.front().second : 0.f;
+            value = beyond == Extrapolate::Hold ? points.front().second : 0.f;
         } else if (next == points.end()) {
             const bool last = wanted == points.back().first;
-            value = last || beyond == Beyond::Hold ? points.back().second : 0.f;
+            value = last || beyond == Extrapolate::Hold ? points.back().second : 0.f;
         } else {
             const auto& [nm0, value0] = next[-1];
             const float t = (wanted - nm0) / (next->first - nm0);

@@ -26,10 +26,10 @@ struct SpectrumTable {
 };
 
 /// What a table says beyond the wavelengths that were measured.
-enum class Beyond { Zero, Hold };
+enum class Extrapolate { Zero, Hold };
 
 /// (nm, value) points in rising order of nm, at least one, joined by straight lines.
-[[nodiscard]] SpectrumTable tabulate(std::span<const std::pair<float, float>> points, Beyond);
+[[nodiscard]] SpectrumTable tabulate(std::span<const std::pair<float, float>> points, Extrapolate);
 
 /// Integral over nm of the straight lines, and of the product of two tables' straight lines: what
 /// a render finds, and CIE 015:2018's summation at 1 nm but for curves that bend within 1 nm.

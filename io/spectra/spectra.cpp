@@ -73,7 +73,7 @@ CsvTable read_spectra(const fs::path& path, size_t columns) {
     return table;
 }
 
-SpectrumTable tabulate(const CsvTable& table, size_t column, Beyond beyond, double unit = 1) {
+SpectrumTable tabulate(const CsvTable& table, size_t column, Extrapolate beyond, double unit = 1) {
     std::vector<std::pair<float, float>> points;
     points.reserve(table.rows.size());
     for (const auto& row : table.rows)
@@ -82,7 +82,7 @@ SpectrumTable tabulate(const CsvTable& table, size_t column, Beyond beyond, doub
 }
 
 template <size_t N>
-std::array<SpectrumTable, N> tabulate(const CsvTable& table, Beyond beyond, double unit = 1) {
+std::array<SpectrumTable, N> tabulate(const CsvTable& table, Extrapolate beyond, double unit = 1) {
     std::array<SpectrumTable, N> curves;
     for (size_t i = 0; i < N; ++i) curves[i] = tabulate(table, 1 + i, beyond, unit);
     return curves;
@@ -115,7 +115,7 @@ std::array<SpectrumTable, N> read_relative(const fs::path& path) {
     double greatest = 0;
     for (const auto& row : table.rows)
         greatest = std::max(greatest, *std::max_element(row.begin() + 1, row.end()));
-    const auto curves = tabulate<N>(table, Beyond::Zero, greatest > 0 ? greatest : 1);
+    const auto curves = tabulate<N>(table, Extrapolate::Zero, greatest > 0 ? greatest : 1);
     for (size_t i = 0; i < N; ++i)
         if (!(integral(curves[i]) > 0))
             throw InputError(table.file, table.place(0),
@@ -133,7 +133,7 @@ std::array<SpectrumTable, N> read_relative(const fs::path& path) {
 }
 
 V3d white_xyz(const std::array<SpectrumTable, 3>& observer) {
-    return respond(observer, tabulate<1>(read_spectra(shipped("d65"), 1), Beyond::Zero)[0]);
+    return respond(observer, tabulate<1>(read_spectra(shipped("d65"), 1), Extrapolate::Zero)[0]);
 }
 
 Rgb to_srgb(const V3d& xyz, const V3d& white) {
@@ -144,15 +144,15 @@ Rgb to_srgb(const V3d& xyz, const V3d& white) {
 }  // namespace
 
 std::array<SpectrumTable, 3> standard_observer() {
-    return tabulate<3>(read_spectra(shipped("cie1931"), 3), Beyond::Zero);
+    return tabulate<3>(read_spectra(shipped("cie1931"), 3), Extrapolate::Zero);
 }
 
 std::array<SpectrumTable, 3> rgb_basis() {
-    return tabulate<3>(read_spectra(shipped("rgb_basis"), 3), Beyond::Hold);
+    return tabulate<3>(read_spectra(shipped("rgb_basis"), 3), Extrapolate::Hold);
 }
 
 std::vector<SpectrumTable> training_reflectances() {
-    const auto patches = tabulate<24>(read_spectra(shipped("colorchecker"), 24), Beyond::Hold);
+    const auto patches = tabulate<24>(read_spectra(shipped("colorchecker"), 24), Extrapolate::Hold);
     return {patches.begin(), patches.end()};
 }
 
@@ -178,13 +178,13 @@ std::optional<Illuminant> find_light_spectrum(const std::string& name) {
 
 std::optional<Metal> find_metal(const std::string& name) {
     if (!ships(kMetals, name)) return std::nullopt;
-    const auto [n, k] = tabulate<2>(read_spectra(shipped(name), 2), Beyond::Hold);
+    const auto [n, k] = tabulate<2>(read_spectra(shipped(name), 2), Extrapolate::Hold);
     return Metal{lower(name), n, k};
 }
 
 Rgb colour_of(const Metal& metal) {
     const auto observer = standard_observer();
-    SpectrumTable seen = tabulate<1>(read_spectra(shipped("d65"), 1), Beyond::Zero)[0];
+    SpectrumTable seen = tabulate<1>(read_spectra(shipped("d65"), 1), Extrapolate::Zero)[0];
     const V3d white = respond(observer, seen);
     // Normal incidence: Born and Wolf 1999, "Principles of Optics", equation 14.2 (17).
     for (size_t i = 0; i < seen.value.size(); ++i) {

@@ -37,8 +37,8 @@ TEST(SpectrumTable, LanesAreLookedUpOneByOne) {
 
 TEST(Tabulate, ZeroOrHoldBeyondTheEnds) {
     const Points points{{400, 2}, {410, 4}, {430, 0.5f}};
-    const SpectrumTable zero = tabulate(points, Beyond::Zero);
-    const SpectrumTable hold = tabulate(points, Beyond::Hold);
+    const SpectrumTable zero = tabulate(points, Extrapolate::Zero);
+    const SpectrumTable hold = tabulate(points, Extrapolate::Hold);
     for (const SpectrumTable* table : {&zero, &hold}) {
         EXPECT_EQ(table->at_nm(400), 2);
         EXPECT_FLOAT_EQ(table->at_nm(405), 3);
@@ -52,20 +52,20 @@ TEST(Tabulate, ZeroOrHoldBeyondTheEnds) {
 }
 
 TEST(Tabulate, PointsBeyondTheRangeAndBetweenNanometres) {
-    const SpectrumTable wide = tabulate(Points{{300, 0}, {900, 600}}, Beyond::Zero);
+    const SpectrumTable wide = tabulate(Points{{300, 0}, {900, 600}}, Extrapolate::Zero);
     EXPECT_FLOAT_EQ(wide.at_nm(kFirst_nm), 60);
     EXPECT_FLOAT_EQ(wide.at_nm(kLast_nm), 530);
-    const SpectrumTable odd = tabulate(Points{{499.5f, 0}, {500.5f, 2}}, Beyond::Zero);
+    const SpectrumTable odd = tabulate(Points{{499.5f, 0}, {500.5f, 2}}, Extrapolate::Zero);
     EXPECT_FLOAT_EQ(odd.at_nm(500), 1);
     EXPECT_EQ(odd.at_nm(499), 0);
     EXPECT_EQ(odd.at_nm(501), 0);
 }
 
 TEST(Tabulate, OnePointIsALineOrAConstant) {
-    const SpectrumTable line = tabulate(Points{{550, 3}}, Beyond::Zero);
+    const SpectrumTable line = tabulate(Points{{550, 3}}, Extrapolate::Zero);
     EXPECT_EQ(line.at_nm(550), 3);
     EXPECT_EQ(integral(line), 3);
-    EXPECT_EQ(integral(tabulate(Points{{550, 3}}, Beyond::Hold)), 3 * (kLast_nm - kFirst_nm));
+    EXPECT_EQ(integral(tabulate(Points{{550, 3}}, Extrapolate::Hold)), 3 * (kLast_nm - kFirst_nm));
 }
 
 TEST(Integral, IsExactForStraightLines) {

@@ -118,7 +118,7 @@ ChartCase dispersion_case(const Found& found, const RenderJob& job) {
                 "ways to carry wavelengths through the lens");
     std::vector<std::string> remarks;
     SceneRequest lens = with_lens(found, remarks);
-    lens.spectral.mode = SpectralMode::Hero;
+    lens.spectral.mode = SpectralMode::Wavelengths;
     cases.remark(remarks);
     const auto with = [](DispersionMode dispersion) {
         return [dispersion](SceneRequest& s, RenderJob&) { s.camera.dispersion = dispersion; };
@@ -144,16 +144,16 @@ ChartCase spectral_case(const Found& found, const RenderJob& job) {
         return [mode](SceneRequest& s, RenderJob&) { s.spectral.mode = mode; };
     };
     cases.add("rgb", found.request, with(SpectralMode::Rgb));
-    cases.add("hero", found.request, with(SpectralMode::Hero));
+    cases.add("hero", found.request, with(SpectralMode::Wavelengths));
     cases.add("hero with bins", found.request, [](SceneRequest& s, RenderJob& j) {
-        s.spectral.mode = SpectralMode::Hero;
+        s.spectral.mode = SpectralMode::Wavelengths;
         s.spectral.bins = Bins{380, 10, 35};
         j.replicates = kReplicates;
     });
     cases.remark("The bins are 35 of 10 nm");
     cases.remark("rgb is biased where light and reflectance multiply by wavelength");
     cases.reference("hero, independent points", found.request, [](SceneRequest& s, RenderJob& j) {
-        s.spectral.mode = SpectralMode::Hero;
+        s.spectral.mode = SpectralMode::Wavelengths;
         j.sampler = SamplerKind::Independent;
     });
     return std::move(cases).result();

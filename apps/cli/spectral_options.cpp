@@ -14,7 +14,7 @@ void add_spectral_options(CLI::App& app, SpectralOptions& o) {
     };
     group(add_choice<SpectralMode>(
         app, "--spectral", s.mode,
-        {{"auto", SpectralMode::Auto}, {"rgb", SpectralMode::Rgb}, {"hero", SpectralMode::Hero}},
+        {{"auto", SpectralMode::Auto}, {"rgb", SpectralMode::Rgb}, {"hero", SpectralMode::Wavelengths}},
         "what a path carries: rgb, four wavelengths (hero), or auto "
         "(default): wavelengths where something depends on them and rgb is not surely within "
         "--tolerance"));

@@ -197,7 +197,7 @@ struct Parted {
 };
 Parted part_wavelengths(const Session& first, TbbExecutor& executor) {
     SceneRequest scene = resolved_request(first);
-    scene.spectral.mode = SpectralMode::Hero;
+    scene.spectral.mode = SpectralMode::Wavelengths;
     if (first.asked.spectral.mode == SpectralMode::Auto)
         scene.spectral.because = fmt::format("{}", fmt::join(first.depends, "; "));
     const auto with = [&](DispersionMode dispersion) {

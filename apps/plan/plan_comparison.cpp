@@ -35,7 +35,7 @@ PlanComparison::PlanComparison(const PlanRequest& request, const Session& first,
       full_scene_(resolved_request(first)),
       executor_(executor),
       pilot_(request.scene.size, pixels, executor) {
-    if (first.observer.spectral()) full_scene_.spectral.mode = SpectralMode::Hero;
+    if (first.observer.spectral()) full_scene_.spectral.mode = SpectralMode::Wavelengths;
     if (open.dispersion) {
         part_wavelengths();
         return;

@@ -50,7 +50,7 @@ bool decide(const SpectralRequest& request, const Scene& scene, const Notice& no
             SpectralSetup& setup) {
     setup.depends = reasons(request, scene);
     const bool depends = !setup.depends.empty(), chosen = request.mode == SpectralMode::Auto;
-    const bool hero = chosen ? depends : request.mode == SpectralMode::Hero;
+    const bool hero = chosen ? depends : request.mode == SpectralMode::Wavelengths;
     const std::string what = fmt::format("{}", fmt::join(setup.depends, "; "));
     std::string because = request.because.empty() ? "--spectral says" : request.because;
     if (chosen) because = depends ? what : "nothing here depends on wavelength";
@@ -104,7 +104,7 @@ Matrix3 fitted(const SpectralRequest& request, const ObserverInput& in, const Ma
 }  // namespace
 
 bool asks_for_wavelengths(const SpectralRequest& request) {
-    return request.mode == SpectralMode::Hero || !wishes(request).empty();
+    return request.mode == SpectralMode::Wavelengths || !wishes(request).empty();
 }
 
 SpectralSetup set_up_spectra(const SpectralRequest& request, const Scene& scene,

@@ -13,7 +13,7 @@
 
 namespace petzval {
 
-enum class SpectralMode { Auto, Rgb, Hero };
+enum class SpectralMode { Auto, Rgb, Wavelengths };
 enum class WhiteBalance { None, Illuminant };
 
 struct SpectralRequest {

@@ -54,7 +54,7 @@ class RayBundle {
         V3d origin_mm, direction;  ///< z from the first vertex; unit
     };
     [[nodiscard]] Line line(PupilPoint) const;
-    /// The rays that reach the film, in the order of their pupil_points.
+    /// The rays that reach the film, in the order of their pupil points.
     [[nodiscard]] std::vector<BundleRay> trace(std::span<const PupilPoint>, double film_mm,
                                                Clip = Clip::Yes) const;
     /// The middles of side x side cells of the box: equal light each.

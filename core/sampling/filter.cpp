@@ -47,7 +47,7 @@ Filter::Filter(FilterKind kind, float radius_px) : kind_(kind), radius_px_(radiu
     }
 }
 
-// No branch: the two halves are a alpha_seed toss that a processor cannot foretell.
+// No branch: the two halves are a coin toss that a processor cannot foretell.
 float Filter::sample1(float u) const {
     const float half = u - 0.5f;
     const float position = std::sqrt(1.f - 2.f * std::fabs(half)) * float{kSteps};

@@ -62,7 +62,7 @@ uint32_t Sampler::dimension_key(Dim dim, uint32_t vertex) const {
 }
 
 // Padding as in Burley 2020, "Practical Hash-based Owen Scrambling": the index is shuffled by a
-// replicate of its own in each dimension, which keeps every power-of-two block together.
+// scramble of its own in each dimension, which keeps every power-of-two block together.
 template <class Word>
 std::pair<Word, Word> Sampler::bits(Word key) const {
     if (kind_ == SamplerKind::Independent) {

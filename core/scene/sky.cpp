@@ -87,7 +87,7 @@ void Sky::fill_importance() {
         double row_sum = 0;
         for (float& w : row) row_sum += w *= static_cast<float>(solid_angle);
         sum += row_sum;
-        // Four units at least of the row's 2^24: an block then has one for each of its texels.
+        // Four units at least of the row's 2^24: a block then has one for each of its texels.
         const auto least = static_cast<float>(row_sum * 0x1p-22);
         for (float& w : row)
             if (w > 0) w = std::max(w, least);

@@ -21,7 +21,7 @@ uint32_t instance_of(uint32_t inst_id, uint32_t geom_id) {
     return inst_id != RTC_INVALID_GEOMETRY_ID ? inst_id : geom_id;
 }
 
-// A ray passes where a alpha_seed that belongs to it and to the triangle says so. A pure function
+// A ray passes where an alpha_seed that belongs to it and to the triangle says so. A pure function
 // of its arguments: Embree may ask twice for one triangle (spatial splits), and the second answer
 // must be the first one.
 bool lets_pass(const Scene& scene, const RTCHit& hit, uint32_t alpha_seed) {

@@ -14,7 +14,7 @@ namespace petzval {
 inline constexpr double kFlipPixelsPerDegree = 67;
 
 /// A reference that pictures are held against. Pictures are scene-linear with channels R, G and B;
-/// they are shown as sRGB shows them: times 2^exposure_ev, cut to [0, 1]. Extrapolate its edge a
+/// they are shown as sRGB shows them: times 2^exposure_ev, cut to [0, 1]. Beyond its edge a
 /// picture goes on as it ends.
 class Flip {
   public:

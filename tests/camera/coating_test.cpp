@@ -128,7 +128,7 @@ TEST(Coating, NothingPassesAtGrazingIncidence) {
             EXPECT_LE(t[0], std::fmin(before, 12 * cosine));
             before = t[0];
         }
-        // Extrapolate the critical angle, and exactly along the surface from within.
+        // Beyond the critical angle, and exactly along the surface from within.
         for (const float cosine : {0.1f, 0.f})
             EXPECT_EQ(
                 transmittance(coating, {splat(1.5f), splat(1), splat(cosine)}, true, splat(550))[0],

@@ -92,7 +92,7 @@ LensLosses<uint64_t> losses(const LensCameraInput& in, const Bands& bands) {
 TEST(LensLosses, AddUpAndTellTheCause) {
     for (const DispersionMode dispersion :
          {DispersionMode::Shared, DispersionMode::Split, DispersionMode::Single})
-        for (const LensTrace precision : {Precision::Float, Precision::Double}) {
+        for (const Precision precision : {Precision::Float, Precision::Double}) {
             LensCameraInput in = input_of(kTakumar, dispersion);
             in.precision = precision;
             const auto open = losses(in, four_wavelengths());

@@ -144,7 +144,7 @@ int run(int argc, char** argv) {
     const Rect crop = crop_text.empty() ? Rect{0, 0, request.size.x, request.size.y}
                                         : parse_crop("--crop", crop_text, request.size);
     flush_denormals();
-    request.spectral.mode = SpectralMode::Hero;
+    request.spectral.mode = SpectralMode::Wavelengths;
 
     std::vector<Strategy> strategies;
     strategies.push_back({"shared", DispersionMode::Shared});

@@ -8,7 +8,7 @@ namespace petzval::bench {
 namespace {
 
 constexpr double kRange_nm = kLast_nm - kFirst_nm;
-// Extrapolate this the sigmoid is flat to 1e-5, and differences of coefficients mean nothing.
+// Beyond this the sigmoid is flat to 1e-5, and differences of coefficients mean nothing.
 constexpr double kLargest = 200;
 
 double square(double x) {

@@ -37,7 +37,7 @@ int run(int argc, char** argv) {
         request.camera.look_at = {V3f(v[0], v[1], v[2]), V3f(v[3], v[4], v[5])};
     }
     flush_denormals();
-    request.spectral.mode = SpectralMode::Hero;
+    request.spectral.mode = SpectralMode::Wavelengths;
     const Session session = open_session(request, [](const std::string&) {});
     const PathTracer<Bvh> tracer(*session.scene, *session.bvh, *session.lights, PathOptions());
 

@@ -111,7 +111,7 @@ double first_ray_ms(const SceneRequest& request, double (*now_ms)() = thread_cpu
 // f-number, table and irradiance.
 double without_lens_ms(SceneRequest request) {
     request.camera.lens.reset();
-    request.spectral.mode = SpectralMode::Hero;
+    request.spectral.mode = SpectralMode::Wavelengths;
     request.camera.fstop = 2;
     return first_ray_ms(request);
 }
@@ -131,7 +131,7 @@ double tree_ms(const fs::path& scene) {
 double spectra_ms(const fs::path& scene) {
     GltfFile file = load_gltf(scene);
     SpectralRequest request;
-    request.mode = SpectralMode::Hero;
+    request.mode = SpectralMode::Wavelengths;
     return ms_of([&] { static_cast<void>(set_up_spectra(request, file.scene, kSilent)); });
 }
 

@@ -39,7 +39,7 @@ class Plans : public CliSpectral {
         return pilot.model(open_session(r, kSilent), RenderJob(), PathOptions());
     }
     [[nodiscard]] static SceneRequest with(SceneRequest r, DispersionMode dispersion) {
-        r.spectral.mode = SpectralMode::Hero;
+        r.spectral.mode = SpectralMode::Wavelengths;
         r.camera.dispersion = dispersion;
         return r;
     }
@@ -79,7 +79,7 @@ TEST_F(Plans, APilotFindsADifferenceThatIsKnown) {
 TEST_F(Plans, NoiseIsNoBias) {
     use(lamp());
     SceneRequest rgb = request(scene_, {64, 36}), hero = rgb;
-    hero.spectral.mode = SpectralMode::Hero;
+    hero.spectral.mode = SpectralMode::Wavelengths;
     const Pilot pilot({64, 36}, 600, executor_);
     const auto a = model(pilot, hero), b = model(pilot, rgb);
     pilot.look(*a, 4);

@@ -13,7 +13,7 @@ constexpr size_t kMostTriangles = 1u << 18;  // of a mesh
 constexpr int kTries = 16;                   // of a direction, for each ray
 
 /// Both triangles at an edge: its ends, and the corner on either side.
-struct Seam {
+struct SharedEdge {
     V3f a, b;
     std::array<V3f, 2> corner;
 };
@@ -28,7 +28,7 @@ bool before(const V3f& a, const V3f& b) {
 }
 
 // Meshes with flat normals repeat their vertices, so edges are shared by position, not by index.
-void add_seams(const Scene& scene, uint32_t instance, std::vector<Seam>& shared edges) {
+void add_shared_edges(const Scene& scene, uint32_t instance, std::vector<SharedEdge>& shared) {
     const Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
     if (scene.materials[mesh.material].cutout()) return;
     std::vector<HalfEdge> edges;
@@ -50,19 +50,19 @@ void add_seams(const Scene& scene, uint32_t instance, std::vector<Seam>& shared 
     });
     for (size_t i = 0; i + 1 < edges.size(); ++i)
         if (edges[i].ends == edges[i + 1].ends && edges[i].ends[0] != edges[i].ends[1])
-            shared edges.push_back(
+            shared.push_back(
                 {edges[i].ends[0], edges[i].ends[1], {edges[i].corner, edges[i + 1].corner}});
 }
 
 /// Whether a ray of that direction meets the two triangles on different sides of their edge, and
 /// neither of them at a graze: then only rounding can lead it between them.
-bool crosses(const Seam& shared edge, const V3f& direction) {
+bool crosses(const SharedEdge& one, const V3f& direction) {
     constexpr float kLeastCosine = 0.2f;
-    const V3f edge = shared edge.b - shared edge.a, side = edge.cross(direction);
+    const V3f edge = one.b - one.a, side = edge.cross(direction);
     const float scale = kLeastCosine * edge.length();
     std::array<float, 2> off{};
     for (size_t k = 0; k < 2; ++k) {
-        const V3f to_corner = shared edge.corner[k] - shared edge.a, normal = edge.cross(to_corner);
+        const V3f to_corner = one.corner[k] - one.a, normal = edge.cross(to_corner);
         const float normal_length = normal.length();
         // A sliver may be thinner than its vertices are exact.
         if (!(normal_length > 1e-3f * edge.dot(edge))) return false;
@@ -75,26 +75,26 @@ bool crosses(const Seam& shared edge, const V3f& direction) {
 }  // namespace
 
 std::vector<Ray> shared_edge_rays(const Scene& scene, size_t count, uint32_t seed) {
-    std::vector<Seam> shared edges;
+    std::vector<SharedEdge> shared;
     std::vector<bool> seen(scene.meshes.size());
     for (uint32_t i = 0; i < scene.instances.size(); ++i) {
         if (seen[scene.instances[i].mesh]) continue;
         seen[scene.instances[i].mesh] = true;
-        add_seams(scene, i, shared edges);
+        add_shared_edges(scene, i, shared);
     }
     std::vector<Ray> rays;
-    if (shared edges.empty()) return rays;
+    if (shared.empty()) return rays;
     uint32_t draws = 0;
     const auto random = [&] { return to_unit_float(hash32(seed, draws++)); };
     for (size_t i = 0; i < count; ++i) {
-        const auto at = static_cast<size_t>(random() * static_cast<float>(shared edges.size()));
-        const Seam& shared edge = shared edges[std::min(at, shared edges.size() - 1)];
-        const V3f aim = shared edge.a + (shared edge.b - shared edge.a) * random();
+        const auto at = static_cast<size_t>(random() * static_cast<float>(shared.size()));
+        const SharedEdge& one = shared[std::min(at, shared.size() - 1)];
+        const V3f aim = one.a + (one.b - one.a) * random();
         for (int k = 0; k < kTries; ++k) {
             const float turn = random(), height = random();
             const V3f direction = uniform_sphere(V2f(turn, height));
-            if (!crosses(shared edge, direction)) continue;
-            const float away = (shared edge.b - shared edge.a).length();
+            if (!crosses(one, direction)) continue;
+            const float away = (one.b - one.a).length();
             Ray ray;
             ray.origin = aim - direction * away;
             ray.direction = unit(aim - ray.origin);

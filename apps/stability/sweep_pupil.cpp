@@ -54,7 +54,7 @@ Counted count_light(const Subject& of, V2f film_mm) {
             for (int x = 0; x < side; x += 4) {
                 const f4 l = low.x + cell.x * (f4{0.5f, 1.5f, 2.5f, 3.5f} + static_cast<float>(x));
                 const f4 m = splat(low.y + cell.y * (static_cast<float>(y) + 0.5f));
-                const AimedRay<f4> c = pupil.cross<f4>(film_mm, l, m, indices);
+                const AimedRay<f4> c = aimer.cross<f4>(film_mm, l, m, indices);
                 m4 on = c.clear & c.ray.alive() & (l * l + m * m < 1.f);
                 if (!any(on)) continue;
                 LensRay<f4> ray = c.ray;

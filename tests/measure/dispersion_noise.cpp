@@ -22,7 +22,7 @@ constexpr uint32_t kSeeds = 8, kReferenceSeeds = 4, kFirstReferenceSeed = 1000;
 
 struct Strategy {
     std::string name;
-    DispersionMode chroma;
+    DispersionMode mode;
     float tolerance_px = 0;
     Session session{};
     std::vector<Film> films{};
@@ -154,7 +154,7 @@ int run(int argc, char** argv) {
     for (const float px : {0.03f, 0.1f, 0.3f, 1.f})
         strategies.push_back({fmt::format("tolerance {}", px), DispersionMode::Tolerance, px});
     for (Strategy& s : strategies) {
-        camera.dispersion = s.dispersion;
+        camera.dispersion = s.mode;
         camera.dispersion_tolerance_px = s.tolerance_px;
         s.session = open_session(request, [](const std::string&) {});
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tangents for normal maps: direction, sign, shared edges, and agreement with those of a real file.
+// Tangents for normal maps: direction, sign, seams, and agreement with those of a real file.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,15 +1,15 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Renders the pictures of docs/gallery.md: all, or those that are named.
+# Renders the pictures of docs/guide/gallery.md: all, or those that are named.
 #
-#   assets/gallery.sh [NAME...]
+#   tests/make/gallery.sh [NAME...]
 #
 # GALLERY_SPP   samples of each pixel (256)
 # GALLERY_OUT   where NAME.exr, .png and .jpg go (out/gallery)
 # GALLERY_DOCS  where the JPEGs are copied to as well; nowhere unless set
 # PETZVAL       the program (build/bin/petzval)
 set -euo pipefail
-cd "$(dirname "$0")/.."
+cd "$(dirname "$0")/../.."
 out=${GALLERY_OUT:-out/gallery}
 spp=${GALLERY_SPP:-256}
 petzval=${PETZVAL:-build/bin/petzval}

@@ -14,7 +14,7 @@ render: build
 
 # About half an hour of CPU time; GALLERY_SPP=16 for a first look.
 gallery: build
-	GALLERY_DOCS=docs/gallery assets/gallery.sh
+	GALLERY_DOCS=docs/pictures/gallery tests/make/gallery.sh
 
 test: build
 	ctest --preset release --parallel $$(nproc)

@@ -92,12 +92,12 @@ std::vector<Finding> stability_findings() {
 
 std::string stability_markdown(const std::vector<Finding>& findings) {
     std::string out =
-        "# The map of failures\n\n"
-        "    petzval chart --axis stability -o docs\n\n"
-        "wrote this page: for each method the region where it fails, found by sweeping its "
-        "parameters\nuntil it does. Seeds are fixed, so that the same program writes the same "
-        "page, and a test holds it\nagainst the program. The numbers of all tables are in "
-        "`stability.csv` beside it.\n\n" +
+        "# Where methods fail\n\n"
+        "    petzval chart --axis stability -o OUT\n\n"
+        "This command wrote the page. For each method it sweeps the parameters until the method "
+        "fails.\nSeeds are fixed, so the same program writes the same page, and a test holds the "
+        "page against the program.\nThe command also writes `stability.csv`, with the numbers of "
+        "all tables.\n\n" +
         table_head({"method", "what fails", "where"});
     for (const Finding& f : findings)
         out += table_row({fmt::format("[{}](#{})", f.method, anchor(f.method)), f.fails, f.where});

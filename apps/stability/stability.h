@@ -30,7 +30,7 @@ struct Finding {
 /// rendering does. Throws InputError where assets are missing.
 [[nodiscard]] std::vector<Finding> stability_findings();
 
-/// docs/stability.md: a table of all findings, then a section for each.
+/// docs/measured/stability.md: a table of all findings, then a section for each.
 [[nodiscard]] std::string stability_markdown(const std::vector<Finding>&);
 /// All tables in one: a row for each cell.
 [[nodiscard]] std::string stability_csv(const std::vector<Finding>&);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lenses: those that ship in assets/lenses, and a user's own. docs/lenses.md describes the formats.
+// Lenses: those that ship in assets/lenses, and a user's own. docs/guide/lenses.md describes the
+// formats.
 #pragma once
 
 #include <span>

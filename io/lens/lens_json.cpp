@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Petzval's own format of a lens: docs/lenses.md.
+// Petzval's own format of a lens: docs/guide/lenses.md.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -23,11 +23,11 @@
 namespace petzval {
 namespace {
 
-const std::string kPage = PETZVAL_ASSETS "/../docs/stability.md";
+const std::string kPage = PETZVAL_ASSETS "/../docs/measured/stability.md";
 
 constexpr const char* kIfMeant =
     "if what changed is meant: build/bin/petzval chart --axis stability -o OUT, and copy "
-    "OUT/stability.md to docs";
+    "OUT/stability.md to docs/measured";
 
 std::vector<std::string> lines_of(const std::string& file) {
     std::istringstream text(file_bytes(file));

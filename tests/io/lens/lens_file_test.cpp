@@ -147,7 +147,7 @@ TEST_F(LensText, OurJsonIsRead) {
 }
 
 TEST_F(LensText, TheExampleOfTheDocsIsALens) {
-    const std::string docs = text_of_file(PETZVAL_ASSETS "/../docs/lenses.md");
+    const std::string docs = text_of_file(PETZVAL_ASSETS "/../docs/guide/lenses.md");
     const size_t begin = docs.find("```json\n") + 8;
     const Prescription lens =
         read("a.json", docs.substr(begin, docs.find("```", begin) - begin)).lens;

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Makes the scene of dispersion, cut stones and a prism: python3 gem.py out.glb
+"""Makes the scene of dispersion, cut stones and a prism: python3 gem.py ../gem.glb
 
 Metres, y up, the plinth's top at y = 0; RGB 1 is 1 nit. All light comes from meshes: a path finds them through glass,
 as it cannot find a point.

@@ -1,15 +1,15 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Renders the pictures of docs/gallery.md: all, or those that are named.
+# Renders the pictures of docs/guide/gallery.md: all, or those that are named.
 #
-#   assets/gallery.sh [NAME...]
+#   tests/make/gallery.sh [NAME...]
 #
 # GALLERY_SPP   samples of each pixel (256)
 # GALLERY_OUT   where NAME.exr, .png and .jpg go (out/gallery)
 # GALLERY_DOCS  where the JPEGs are copied to as well; nowhere unless set
 # PETZVAL       the program (build/bin/petzval)
 set -euo pipefail
-cd "$(dirname "$0")/.."
+cd "$(dirname "$0")/../.."
 out=${GALLERY_OUT:-out/gallery}
 spp=${GALLERY_SPP:-256}
 petzval=${PETZVAL:-build/bin/petzval}
@@ -50,8 +50,8 @@ picture() {
 }
 
 # What is sharp, and how deep: ornaments at 1 m and 2 m through a thin lens that is 2 cm or 10 cm
-# wide. The report's apertures, 0.1 and 0.5, are radii in the units of its scene; these keep their
-# ratio of five.
+# wide. Names say radii of 0.1 and 0.5, as in the units of another scene; these keep their ratio of
+# five.
 picture focus_1_aperture_0.1 480x320 $ornaments --lens-radius 0.01 --focus 1m
 picture focus_2_aperture_0.1 480x320 $ornaments --lens-radius 0.01 --focus 2m
 picture focus_2_aperture_0.5 480x320 $ornaments --lens-radius 0.05 --focus 2m
@@ -81,7 +81,7 @@ if is_wanted spherical_aberration; then
         esac
         for lens in thin singlet:schott:N-BK7,0; do
             panels+=("$out/spherical_${row}_${lens%%:*}.png")
-            render "spherical_${row}_${lens%%:*}" 360x240 $ornaments --lens $lens --chroma shared \
+            render "spherical_${row}_${lens%%:*}" 360x240 $ornaments --lens $lens --dispersion shared \
                 "${view[@]}"
         done
     done

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Makes the built-in scene, a tabletop at dusk: python3 first_light.py out.glb
+"""Makes the built-in scene, a tabletop at dusk: python3 first_light.py ../first_light.glb
 
 Metres, y up. The camera "table" stands over the origin and looks along -z; RGB 1 is 1 nit. Everything is
 procedural and from fixed seeds, so that equal versions of Python and zlib give equal files.

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Makes the scene of sharp and blurred, ornaments before far lamps: python3 ornaments.py out.glb
+"""Makes the scene of sharp and blurred, ornaments before far lamps: python3 ornaments.py ../ornaments.glb
 
 Metres, y up; the camera "front" stands at the origin and looks along -z; RGB 1 is 1 nit. What is at 1 m is seen on the
 left, what is at 2 m on the right, twice as large, so that both look alike; lamps fill the whole 3:2 frame 6 m away.

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "core/math/lanes.h"
+#include "core/spectrum/bands.h"
 
 namespace petzval {
 
@@ -14,6 +15,11 @@ namespace petzval {
 /// one wavelength a path. Hero: the ray of one lane, weighed for each lane by where it would have
 /// reached the film (hero.h).
 enum class DispersionMode : uint8_t { Tolerance, Shared, Split, Single, Hero };
+
+/// Whether all lanes go along the ray of line d.
+[[nodiscard]] inline bool one_ray(const Bands& bands, DispersionMode mode) {
+    return !bands.spectral || mode == DispersionMode::Shared;
+}
 
 /// One of the lanes that are on, each as likely; u in [0, 1).
 [[nodiscard]] inline int pick_lane(m4 on, float u) {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "camera/dispersion/hero.h"
+#include "camera/dispersion/strategies.h"
 #include "core/spectrum/spectrum_table.h"
 
 namespace petzval {
@@ -42,90 +42,80 @@ AberratedLensCamera::AberratedLensCamera(AberratedLens lens)
     require_stop(in_.singlet, in_.iris.bounding_radius_mm(), focus_mm_);
 }
 
-CameraSample AberratedLensCamera::sample(const FilmPoint& at, const Bands& bands) const {
-    if (in_.dispersion == DispersionMode::Hero && bands.spectral)
-        return at.pixel.filter ? hero(at, bands) : sample(at, bands, DispersionMode::Split);
-    return sample(at, bands, in_.dispersion);
-}
+class AberratedLensCamera::Point {
+  public:
+    /// Rays through one point of the lens, which the wavelengths leave with vergences of their own.
+    struct Rays {
+        f4 weight{}, vergence_per_mm{};  ///< 1/S: finite even if the ray crosses no axis ahead
+        V2f stop_mm;
+        LensLosses<uint32_t> losses;
+        [[nodiscard]] f4 weight_of_lanes() const { return weight; }
+    };
 
-CameraSample AberratedLensCamera::sample(const FilmPoint& at, const Bands& bands,
-                                         DispersionMode dispersion) const {
-    const V3f through_centre{(2.f * at.film.x - 1.f) * tan_half_x_,
-                             (1.f - 2.f * at.film.y) * tan_half_y_, -1.f};
-    const V2f stop = in_.iris.sample(at.sampler.get2(Dim::Lens));
-    const V3f point_mm{stop.x, stop.y, 0.f};
-    const float h_mm = stop.length();
-    const bool split = bands.spectral && dispersion != DispersionMode::Shared;
-    m4 on = bands.on;
-    float weight = in_.exposure;
-    if (split && dispersion == DispersionMode::Single) {
-        on = only_lane(pick_lane(bands.on, at.sampler.get1(Dim::LensLane)));
-        weight *= static_cast<float>(lane_count(bands.on));
+    /// All must outlive it.
+    Point(const AberratedLensCamera& camera, const FilmPoint& at, const Bands& bands)
+        : c_(camera), at_(at), bands_(bands), achromatic_(one_ray(bands, camera.in_.dispersion)) {}
+
+    [[nodiscard]] Rays rays(const LaneRequest& request) const {
+        Rays out;
+        out.stop_mm = c_.in_.iris.sample(request.u);
+        const float share = static_cast<float>(lane_count(bands_.on)) /
+                            static_cast<float>(lane_count(request.lanes));
+        find_vergences(request.lanes, splat(c_.in_.exposure * share), out);
+        return out;
     }
+    [[nodiscard]] Ray ray(const Rays& rays, int lane) const {
+        const V3f through_centre{(2.f * at_.film.x - 1.f) * c_.tan_half_x_,
+                                 (1.f - 2.f * at_.film.y) * c_.tan_half_y_, -1.f};
+        const V3f point_mm{rays.stop_mm.x, rays.stop_mm.y, 0.f};
+        Ray out;
+        out.origin = c_.pose_.origin + c_.pose_.to_world(point_mm * 1e-3f);
+        out.direction =
+            unit(c_.pose_.to_world(through_centre - point_mm * rays.vergence_per_mm[lane]));
+        return out;
+    }
+    [[nodiscard]] bool together(const Rays& rays, int a, int b) const {
+        return rays.stop_mm.length() *
+                   std::fabs(rays.vergence_per_mm[b] - rays.vergence_per_mm[a]) <=
+               c_.in_.tolerance_rad;
+    }
+    /// Through a point of the lens, the same ray of the scene belongs to film points that differ by
+    /// the vergences of the lanes.
+    [[nodiscard]] FilmLanding landing(const Rays& rays, const LaneRequest& request) const {
+        Rays all;
+        all.stop_mm = rays.stop_mm;
+        find_vergences(bands_.on, splat(1.f), all);
+        const f4 off = all.vergence_per_mm - splat(all.vergence_per_mm[request.lead]);
+        const V2f px = 0.5f * at_.pixel.frame_px / V2f(c_.tan_half_x_, c_.tan_half_y_);
+        return {off * (rays.stop_mm.x * px.x), off * (-rays.stop_mm.y * px.y), all.weight,
+                splat(1.f)};
+    }
+    [[nodiscard]] float exposure() const { return c_.in_.exposure; }
 
-    CameraSample out;
-    out.exposure = in_.exposure;
-    // 1/S for each path's ray. Unlike S it stays finite when the ray crosses no axis ahead.
-    std::array<float, 4> vergence_per_mm{};
-    for (int lane = 0; lane < 4; ++lane) {
-        if (!on[lane]) continue;
-        const double n = split ? in_.singlet.glass.index(double(bands.nm[lane])) : at_d_.n;
-        const double focal_mm = zonal_mm(n, double(h_mm));
-        // Only what holds between the wavelengths that the constructor tried can fail here.
-        if (!(focal_mm > kLeastZone / 2 * at_d_.focal_mm)) continue;
-        const auto vergence = static_cast<float>(1 / focal_mm - 1 / film_mm_);
-        const auto together = [&](size_t k) {
-            return h_mm * std::fabs(vergence - vergence_per_mm[k]) <= in_.tolerance_rad &&
-                   !(split && dispersion == DispersionMode::Split);
-        };
-        size_t k = 0;
-        while (k < out.size() && !together(k)) ++k;
-        const bool is_new = k == out.size();
-        CameraPath& path = is_new ? out.add() : out[k];
-        if (is_new) {
-            vergence_per_mm[k] = vergence;
-            path.ray.origin = pose_.origin + pose_.to_world(point_mm * 1e-3f);
-            path.ray.direction = unit(pose_.to_world(through_centre - point_mm * vergence));
-            path.lanes = m4{};
+  private:
+    /// Of the lanes whose closed form means something; the others get no weight. Only what holds
+    /// between the wavelengths that the camera's constructor tried can fail here.
+    void find_vergences(m4 lanes, f4 weight, Rays& out) const {
+        const auto h_mm = double(out.stop_mm.length());
+        for (int lane = 0; lane < 4; ++lane) {
+            if (!lanes[lane]) continue;
+            const double n =
+                achromatic_ ? c_.at_d_.n : c_.in_.singlet.glass.index(double(bands_.nm[lane]));
+            const double focal_mm = c_.zonal_mm(n, h_mm);
+            if (!(focal_mm > kLeastZone / 2 * c_.at_d_.focal_mm)) continue;
+            out.vergence_per_mm[lane] = static_cast<float>(1 / focal_mm - 1 / c_.film_mm_);
+            out.weight[lane] = weight[lane];
         }
-        path.lanes[lane] = -1;
     }
-    for (CameraPath& path : out) path.weight = zero_off(path.lanes, splat(weight));
-    return out;
-}
 
-// Through a point of the lens, the same ray of the scene belongs to film points that differ by the
-// vergences of the lanes.
-CameraSample AberratedLensCamera::hero(const FilmPoint& at, const Bands& bands) const {
-    const V2f stop = in_.iris.sample(at.sampler.get2(Dim::Lens));
-    const int lead = pick_lane(bands.on, at.sampler.get1(Dim::LensLane));
-    f4 vergence_per_mm{};
-    f4 open = zero_off(bands.on, splat(1.f));
-    for (int lane = 0; lane < 4; ++lane) {
-        if (!bands.on[lane]) continue;
-        const double n = in_.singlet.glass.index(double(bands.nm[lane]));
-        const double focal_mm = zonal_mm(n, double(stop.length()));
-        if (!(focal_mm > kLeastZone / 2 * at_d_.focal_mm)) open[lane] = 0;
-        vergence_per_mm[lane] = static_cast<float>(1 / focal_mm - 1 / film_mm_);
-    }
-    CameraSample out;
-    out.exposure = in_.exposure;
-    if (!(open[lead] > 0)) return out;
-    const f4 off = vergence_per_mm - splat(vergence_per_mm[lead]);
-    const V2f px = 0.5f * at.pixel.frame_px / V2f(tan_half_x_, tan_half_y_);
-    const f4 shares =
-        hero_shares(at.pixel, off * (stop.x * px.x), off * (-stop.y * px.y), bands.on, open);
-    const V3f through_centre{(2.f * at.film.x - 1.f) * tan_half_x_,
-                             (1.f - 2.f * at.film.y) * tan_half_y_, -1.f};
-    const V3f point_mm{stop.x, stop.y, 0.f};
-    const m4 reached = shares > 0;
-    if (lane_count(reached) == 0) return out;
-    CameraPath& path = out.add();
-    path.ray.origin = pose_.origin + pose_.to_world(point_mm * 1e-3f);
-    path.ray.direction = unit(pose_.to_world(through_centre - point_mm * vergence_per_mm[lead]));
-    path.weight = shares * in_.exposure;
-    path.lanes = reached;
-    return out;
+    const AberratedLensCamera& c_;
+    const FilmPoint& at_;
+    const Bands& bands_;
+    bool achromatic_;
+};
+
+CameraSample AberratedLensCamera::sample(const FilmPoint& at, const Bands& bands) const {
+    return sample_lens(Point(*this, at, bands), in_.dispersion, at, bands);
 }
 
 double AberratedLensCamera::zonal_mm(double n, double h_mm) const {

@@ -34,8 +34,8 @@ class AberratedLensCamera final : public Camera {
     [[nodiscard]] double film_distance_mm() const { return film_mm_; }
 
   private:
-    [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&, DispersionMode) const;
-    [[nodiscard]] CameraSample hero(const FilmPoint&, const Bands&) const;
+    /// A film point's rays: what camera/dispersion's strategies are made of.
+    class Point;
     [[nodiscard]] double zonal_mm(double n, double h_mm) const;
 
     AberratedLens in_;

@@ -6,6 +6,7 @@
 
 #include "camera/camera.h"
 #include "camera/dispersion/dispersion_mode.h"
+#include "camera/dispersion/lens_point.h"
 #include "camera/iris/iris.h"
 #include "camera/lens/coating.h"
 #include "camera/lens/lens.h"
@@ -20,7 +21,14 @@ template <class V>
 struct LensDraw {
     V weight{};      ///< 0 where the lane is blocked
     LensRay<V> ray;  ///< in front of the lens
-    LensLosses<uint32_t> lanes;
+    LensLosses<uint32_t> losses;
+
+    [[nodiscard]] f4 weight_of_lanes() const {
+        if constexpr (std::same_as<V, f4>)
+            return weight;
+        else
+            return __builtin_convertvector(weight, f4);
+    }
 };
 
 struct LensCameraInput {
@@ -59,43 +67,15 @@ class LensCamera final : public Camera {
     /// the same radiance everywhere is its mean. Lanes of the bands; u in [0, 1)^2. film_mm: a
     /// point of the film. u_lane picks the lane whose ray hits the drawn iris point. V: f4 or d4.
     template <class V = f4>
-    [[nodiscard]] LensDraw<V> draw(V2f film_mm, V2f u, float u_lane, const Bands& bands) const {
-        return draw<V>(film_mm, u, u_lane, bands, in_.coating, in_.dispersion);
-    }
+    [[nodiscard]] LensDraw<V> draw(V2f film_mm, V2f u, float u_lane, const Bands&) const;
 
   private:
-    /// A draw's film point, number, lane that is solved for, and wavelength.
-    struct Aim {
-        V2f film_mm, u;
-        int lane;
-        float nm;
-    };
+    /// A film point's rays, in lanes of V: what camera/dispersion's strategies are made of.
     template <class V>
-    [[nodiscard]] LensDraw<V> draw(V2f film_mm, V2f u, float u_lane, const Bands&, Coating,
-                                   DispersionMode) const;
-    /// Solved with the indices in floats, traced with the others.
-    template <class V>
-    [[nodiscard]] LensDraw<V> draw(const Aim&, const Bands&, Coating, DispersionMode,
-                                   const LensIndices<f4>&, const LensIndices<V>&) const;
-    /// What the surfaces let through of the ray that leaves the film towards the crossing.
-    template <class V>
-    [[nodiscard]] f4 transmitted(V2f film_mm, const AimedRay<V>&, Coating, const LensIndices<V>&,
-                                 f4 nm) const;
-    template <class V>
-    [[nodiscard]] CameraSample hero(const FilmPoint&, V2f film_mm, const Bands&) const;
-    template <class V>
-    [[nodiscard]] CameraSample paths(const LensDraw<V>&, const Bands&, DispersionMode) const;
-    template <class V>
-    [[nodiscard]] Ray world_ray(const LensRay<V>&, int lane) const;
+    class Point;
     /// How far the ray's origin lies behind the middle of the entrance pupil.
     template <class V>
     [[nodiscard]] ScalarOf<V> behind_pupil_mm(const LensRay<V>&, int lane) const;
-    template <class V>
-    [[nodiscard]] bool together(const LensRay<V>&, int a, int b, DispersionMode) const;
-    /// Whether all lanes have the ray of line d.
-    [[nodiscard]] static bool one_ray(const Bands& bands, DispersionMode dispersion) {
-        return !bands.spectral || dispersion == DispersionMode::Shared;
-    }
 
     LensCameraInput in_;
     Pose pose_;

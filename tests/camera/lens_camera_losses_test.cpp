@@ -32,9 +32,9 @@ TEST(LensLosses, AtTheFisheyesRimRaysGrazeThenAreTotallyReflected) {
             const V2f u = random.next2(), film(0, height_mm);
             const auto drawn = camera.draw<f4>(film, u, 0, Bands::rgb());
             const auto lossy = uncoated.draw<f4>(film, u, 0, Bands::rgb());
-            rim.lanes += drawn.lanes;
+            rim.lanes += drawn.losses;
             const double weight = double(drawn.weight[0]);
-            EXPECT_EQ(weight > 0, drawn.lanes.lost() == 0);
+            EXPECT_EQ(weight > 0, drawn.losses.lost() == 0);
             if (!(weight > 0)) continue;
             const auto &o = drawn.ray.origin, &d = drawn.ray.direction;
             const V3d from_centre(o.x[0], o.y[0], double(o.z[0]) - radius_mm);

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a camera with a lens gives to the strategies that carry wavelengths through it.
+#pragma once
+
+#include <concepts>
+
+#include "camera/camera.h"
+
+namespace petzval {
+
+/// Asks for rays of some lanes from a film point through one point of the stop.
+struct LaneRequest {
+    V2f u;        ///< [0, 1)^2, draws the point of the stop
+    m4 lanes;     ///< whose rays are wanted
+    int lead;     ///< the lane whose ray meets the drawn point
+    bool coated;  ///< weights count what the surfaces reflect
+};
+
+/// Where one lane's ray of the scene would reach the film if it were light of each lane.
+struct FilmLanding {
+    f4 dx_px, dy_px;  ///< from the film point that the ray was drawn for, y down
+    f4 open;          ///< [0, 1]: what iris and rims let through
+    f4 transmitted;   ///< [0, 1]: what the surfaces do not reflect
+};
+
+/// A film point of a camera, with its two primitives: rays() and landing(). A strategy composes
+/// them (strategies.h); a camera that has them has every strategy.
+///
+/// rays(): a LaneRays with `weight` (convertible lanes; 0: lost; counts for all lanes of the bands,
+/// however few were asked for) and `losses`.
+/// ray(rays, lane): a lane's ray in the world, unit direction.
+/// together(rays, a, b): whether two lanes' rays are within the camera's tolerance.
+/// landing(rays, request): of the ray of request.lead.
+template <class P>
+concept LensPoint = requires(const P p, const LaneRequest& request,
+                             const decltype(p.rays(request))& rays, int lane) {
+    { rays.weight_of_lanes() } -> std::same_as<f4>;
+    { rays.losses } -> std::convertible_to<LensLosses<uint32_t>>;
+    { p.ray(rays, lane) } -> std::same_as<Ray>;
+    { p.together(rays, lane, lane) } -> std::same_as<bool>;
+    { p.landing(rays, request) } -> std::same_as<FilmLanding>;
+    { p.exposure() } -> std::same_as<float>;
+};
+
+}  // namespace petzval

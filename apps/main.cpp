@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // petzval: photographs glTF scenes.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -8,6 +9,7 @@
 #include <string>
 
 #include "apps/cli/console.h"
+#include "apps/cli/old_spellings.h"
 #include "apps/commands/chart.h"
 #include "apps/commands/image.h"
 #include "apps/commands/info.h"
@@ -34,7 +36,10 @@ int stop_parsing(const CLI::App& app, const CLI::ParseError& e) {
 
 int run(CLI::App& app, int argc, char** argv, const int& exit_code) {
     try {
-        app.parse(argc, argv);
+        // CLI11 takes the words from the end of a vector.
+        auto words = petzval::with_current_spellings(argc, argv);
+        std::reverse(words.begin(), words.end());
+        app.parse(std::move(words));
     } catch (const CLI::ParseError& e) {
         return stop_parsing(app, e);
     } catch (const petzval::ArgumentError& e) {

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <set>
 
+#include "apps/setup/spectral_wording.h"
 #include "io/base/atomic_file.h"
 #include "io/base/error.h"
 
@@ -72,7 +73,7 @@ void require_memory(const std::vector<ChartCase>& cases, const ChartFrame& frame
 }  // namespace
 
 ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, RenderMonitor& monitor,
-                       const std::function<void(const std::string&)>& notice,
+                       const Notice& notice,
                        const std::function<void(const MeasuredCase&)>& finished) {
     using SteadyClock = std::chrono::steady_clock;
     const auto start = SteadyClock::now();
@@ -84,7 +85,7 @@ ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, Rende
         throw ArgumentError("--budget", "",
                             fmt::format("is too small: {} axes need {:g} s at least",
                                         request.axes.size(), least_s));
-    std::set<std::string> said;  // by one of the sessions
+    std::set<std::string> said;  // by one of the views
     const auto once = [&](const std::string& text) {
         if (said.insert(text).second) notice(text);
     };
@@ -94,10 +95,11 @@ ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, Rende
         frame.reference_name = request.reference->filename().string();
     }
     Folder folder(request.subject.folder);
-    const Session first =
-        executor.inside([&] { return open_session(request.subject.request, once); });
-    const OpenSession open = [&](const SceneRequest& one) {
-        return executor.inside([&] { return open_session(one, once, &first); });
+    const RenderSetup first =
+        executor.inside([&] { return set_up_render(request.subject.request, once); });
+    for (const std::string& line : lines_of(first.from.spectral)) notice(line);
+    const SetUpView open = [&](const SceneRequest& one) {
+        return executor.inside([&] { return set_up_view(first, one, once); });
     };
     const std::vector<ChartCase> cases = chart_cases(request.axes, request.subject, open);
     require_memory(cases, frame);

@@ -26,7 +26,7 @@ struct ChartOutcome {
 /// faults of scene and files, a folder that cannot be written; ArgumentError: a budget that is too
 /// small, more memory than there is, nothing to compare.
 [[nodiscard]] ChartOutcome run_chart(const ChartRequest&, TbbExecutor&, RenderMonitor&,
-                                     const std::function<void(const std::string&)>& notice,
+                                     const Notice& notice,
                                      const std::function<void(const MeasuredCase&)>& finished);
 
 }  // namespace petzval

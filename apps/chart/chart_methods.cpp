@@ -30,9 +30,9 @@ bool is_prescription(const CameraRequest& camera) {
            !camera.lens->starts_with("singlet:");
 }
 
-Found look(const SceneRequest& request, const OpenSession& open) {
-    const Session session = open(request);
-    return {resolved_request(session), session.camera_report, session.scene->lights.size()};
+Found look(const SceneRequest& request, const SetUpView& open) {
+    const RenderSetup setup = open(request);
+    return {resolved_request(setup), setup.from.camera, setup.prepared.scene->lights.size()};
 }
 
 /// Collects the methods of one case.
@@ -83,21 +83,21 @@ SceneRequest with_lens(const Found& found, std::vector<std::string>& remarks) {
     return request;
 }
 
-ChartCase camera_case(const Found& found, const RenderJob& job, const OpenSession& open) {
+ChartCase camera_case(const Found& found, const RenderJob& job, const SetUpView& open) {
     Cases cases(ChartAxis::Camera, job, "camera",
                 "models of the camera against its lens (a bias is their point)");
     std::vector<std::string> remarks;
     SceneRequest lens = with_lens(found, remarks);
-    const Session session = open(lens);
-    const CameraReport& report = session.camera_report;
+    const RenderSetup setup = open(lens);
+    const CameraReport& report = setup.from.camera;
     lens.camera.focus = FocusDistance{report.focus_m};
-    const SceneRequest thin = equivalent_thin_lens(lens, session);
+    const SceneRequest thin = equivalent_thin_lens(lens, setup);
     cases.remark(remarks);
     cases.remark(
         fmt::format("Pinhole, thin and singlet stand in the entrance pupil of the lens, "
                     "see {:.4g} degrees as it does when it is focused, and have its iris",
                     *thin.camera.fov_deg));
-    cases.add("pinhole", equivalent_pinhole(lens, session), [](SceneRequest&, RenderJob&) {});
+    cases.add("pinhole", equivalent_pinhole(lens, setup), [](SceneRequest&, RenderJob&) {});
     cases.add("thin", thin, [](SceneRequest&, RenderJob&) {});
     cases.add("singlet", thin,
               [](SceneRequest& s, RenderJob&) { s.camera.lens = "singlet:N-BK7"; });
@@ -206,7 +206,7 @@ std::vector<ChartCase> iris_cases(const Found& found, const ChartSubject& subjec
         const bool sliver = name == "sliver";
         lens.camera.aperture_scale = sliver ? ApertureScale::Inscribed : ApertureScale::EqualArea;
         for (const IrisSampling way : iris_samplings(parse_aperture(aperture)))
-            cases.add(petzval::word_of(way), lens,
+            cases.add(petzval::name_of(way), lens,
                       [way](SceneRequest& s, RenderJob&) { s.camera.iris_sampling = way; });
         cases.remark(remarks);
         if (sliver)
@@ -260,15 +260,15 @@ ChartCase lights_case(const Found& found, const RenderJob& job) {
 }
 
 /// A wrong pixel here and there hardly shows in an error, so leaks are counted.
-std::string leak_count(const SceneRequest& request, const OpenSession& open) {
+std::string leak_count(const SceneRequest& request, const SetUpView& open) {
     constexpr size_t kRays = 20000;
     std::vector<Ray> rays;
     const auto through = [&](Traversal traversal) {
         SceneRequest one = request;
         one.traversal = traversal;
-        const Session session = open(one);
-        if (rays.empty()) rays = shared_edge_rays(*session.scene, kRays, 0);
-        return traversal_leaks(*session.bvh, rays);
+        const RenderSetup setup = open(one);
+        if (rays.empty()) rays = shared_edge_rays(*setup.prepared.scene, kRays, 0);
+        return traversal_leaks(*setup.prepared.bvh, rays);
     };
     const size_t robust = through(Traversal::Robust), fast = through(Traversal::Fast);
     if (rays.empty()) return "No leaks were counted: the scene has no edges that triangles share";
@@ -278,7 +278,7 @@ std::string leak_count(const SceneRequest& request, const OpenSession& open) {
         rays.size(), robust, fast);
 }
 
-ChartCase precision_case(const Found& found, const RenderJob& job, const OpenSession& open) {
+ChartCase precision_case(const Found& found, const RenderJob& job, const SetUpView& open) {
     Cases cases(ChartAxis::Precision, job, "precision",
                 "floats and doubles in the lens, robust and fast traversal");
     std::vector<std::string> remarks;
@@ -316,14 +316,14 @@ const std::vector<std::pair<std::string, ChartAxis>>& chart_axes() {
     return axes;
 }
 
-std::string word_of(ChartAxis axis) {
+std::string name_of(ChartAxis axis) {
     for (const auto& [word, one] : chart_axes())
         if (one == axis) return word;
     return "peers";
 }
 
 std::vector<ChartCase> chart_cases(const std::vector<ChartAxis>& axes, const ChartSubject& subject,
-                                   const OpenSession& open) {
+                                   const SetUpView& open) {
     const Found found = look(subject.request, open);
     std::vector<ChartCase> cases;
     for (const ChartAxis axis : axes) {
@@ -333,7 +333,7 @@ std::vector<ChartCase> chart_cases(const std::vector<ChartAxis>& axes, const Cha
             throw ArgumentError(subject.request.scene.string(), "",
                                 fmt::format("axis {} needs a lens, and the camera is orthographic: "
                                             "give --camera or --look-at",
-                                            word_of(axis)));
+                                            name_of(axis)));
         switch (axis) {
             case ChartAxis::Peers:
                 break;

@@ -28,7 +28,7 @@ enum class ChartAxis : uint8_t {
 
 /// Every axis with its word, in the order of a report.
 [[nodiscard]] const std::vector<std::pair<std::string, ChartAxis>>& chart_axes();
-[[nodiscard]] std::string word_of(ChartAxis);
+[[nodiscard]] std::string name_of(ChartAxis);
 
 struct ChartMethod {
     std::string name;
@@ -56,13 +56,13 @@ struct ChartSubject {
     std::filesystem::path folder;  ///< where shapes of irises are written
 };
 
-/// Makes a session of a request: open_session with what it shares and whom it tells.
-using OpenSession = std::function<Session(const SceneRequest&)>;
+/// Sets up another view of the scene: set_up_view with what it shares and whom it tells.
+using SetUpView = std::function<RenderSetup(const SceneRequest&)>;
 
 /// Opens the scene, to see what it allows. A case without methods
 /// only has remarks. Throws InputError for faults of the scene, ArgumentError where an axis that
 /// needs a perspective camera gets none.
 [[nodiscard]] std::vector<ChartCase> chart_cases(const std::vector<ChartAxis>&, const ChartSubject&,
-                                                 const OpenSession&);
+                                                 const SetUpView&);
 
 }  // namespace petzval

@@ -132,7 +132,7 @@ Json json_of(const MeasuredCase& of, const ChartFrame& frame) {
                      {"cpu_s", r.cpu_s},
                      {"relative_mse", or_null(r.relative_mse)},
                      {"flip_at_most", or_null(r.flip)}};
-    return {{"axis", word_of(of.of.axis)}, {"name", of.of.name},
+    return {{"axis", name_of(of.of.axis)}, {"name", of.of.name},
             {"remarks", of.of.remarks},    {"reference", std::move(reference)},
             {"wall_s", of.wall_s},         {"methods", std::move(methods)}};
 }
@@ -144,7 +144,7 @@ std::string csv_of(const ChartReport& report) {
             for (const ChartPoint& point : method.points)
                 for (const ChartSeed& s : point.seeds)
                     text +=
-                        fmt::format("{},{},{},{},{},{:.9g},{:.9g},{:.9g},{}\n", word_of(of.of.axis),
+                        fmt::format("{},{},{},{},{},{:.9g},{:.9g},{:.9g},{}\n", name_of(of.of.axis),
                                     of.of.name, method.name, point.samples, s.seed, s.cpu_s,
                                     s.relative_mse, s.flip, of.believed(point) ? 1 : 0);
     return text;

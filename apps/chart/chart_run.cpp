@@ -7,8 +7,8 @@
 #include <chrono>
 #include <cmath>
 
-#include "apps/setup/stats_file.h"
 #include "integrator/render.h"
+#include "io/base/clock.h"
 #include "io/image/difference.h"
 #include "io/image/flip.h"
 
@@ -37,13 +37,14 @@ struct Workplace {
 /// One method's renders of several seeds, all at the same number of samples.
 class Track {
   public:
-    Track(const ChartMethod& method, Session session, const Workplace& at, uint32_t first_seed,
+    Track(const ChartMethod& method, RenderSetup setup, const Workplace& at, uint32_t first_seed,
           uint32_t seeds)
-        : job_(method.job), session_(std::move(session)), at_(at), first_seed_(first_seed) {
-        job_.observer = session_.observer;
+        : job_(method.job), setup_(std::move(setup)), at_(at), first_seed_(first_seed) {
+        job_.observer = setup_.view.observer;
         PathOptions options;
-        options.visible_background = session_.visible_background;
-        tracer_.emplace(*session_.scene, *session_.bvh, *session_.lights, options);
+        options.visible_background = setup_.view.visible_background;
+        const PreparedScene& prepared = setup_.prepared;
+        tracer_.emplace(*prepared.scene, *prepared.bvh, *prepared.lights, options);
         for (uint32_t i = 0; i < seeds; ++i) films_.push_back(new_film());
         cpu_s_.resize(seeds, 0.);
     }
@@ -72,7 +73,7 @@ class Track {
 
   private:
     [[nodiscard]] Film new_film() const {
-        return {at_.frame.size, at_.frame.crop, {}, session_.observer.bins()};
+        return {at_.frame.size, at_.frame.crop, {}, setup_.view.observer.bins()};
     }
     bool render_into(Film& film, uint32_t seed, uint32_t first, uint32_t end, double& cpu_s) {
         RenderJob job = job_;
@@ -81,13 +82,13 @@ class Track {
         job.end_sample = end;
         const double start_s = process_cpu_s();
         const RenderResult result =
-            render(*tracer_, *session_.camera, job, film, at_.executor, at_.monitor);
+            render(*tracer_, *setup_.view.camera, job, film, at_.executor, at_.monitor);
         cpu_s += process_cpu_s() - start_s;
         return !result.stopped;
     }
 
     RenderJob job_;
-    Session session_;
+    RenderSetup setup_;
     const Workplace& at_;
     uint32_t first_seed_, samples_ = 0;
     std::optional<PathTracer<>> tracer_;
@@ -132,10 +133,10 @@ void require_time(double once_s, double budget_s, const char* what) {
                               what, once_s, std::max(budget_s, 0.)));
 }
 
-std::optional<ChartReference> render_reference(const ChartMethod& method, Session session,
+std::optional<ChartReference> render_reference(const ChartMethod& method, RenderSetup setup,
                                                const Workplace& at, double budget_s) {
     const Clock clock;
-    Track track(method, std::move(session), at, kFirstReferenceSeed, kReferenceReplicates);
+    Track track(method, std::move(setup), at, kFirstReferenceSeed, kReferenceReplicates);
     if (!track.warm_up()) return std::nullopt;
     // A film with replicates is whole after one sample of each.
     const uint32_t first = std::max(2u, method.job.replicates);
@@ -170,7 +171,7 @@ std::optional<ChartReference> render_reference(const ChartMethod& method, Sessio
 class Race {
   public:
     Race(const ChartCase& of, const Workplace& at, const ChartReference& reference,
-         const OpenSession& open)
+         const SetUpView& open)
         : at_(at), reference_(reference), flip_(reference.picture, at.frame.exposure_ev) {
         for (const ChartMethod& method : of.methods) {
             tracks_.emplace_back(method, open(method.scene), at, 0, at.frame.seeds);
@@ -336,7 +337,7 @@ Picture read_reference(const std::filesystem::path& path, V2i size, Rect crop) {
 
 std::optional<MeasuredCase> measure(const ChartCase& of, const ChartFrame& frame, double budget_s,
                                     TbbExecutor& executor, RenderMonitor& monitor,
-                                    const OpenSession& open) {
+                                    const SetUpView& open) {
     const Clock clock;
     MeasuredCase out;
     out.of = of;

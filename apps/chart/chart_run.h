@@ -76,9 +76,9 @@ struct MeasuredCase {
 /// Renders the reference in about a third of the time, then all methods, turn by turn, at 1, 2, 4,
 /// ... samples, as long as the next number fits: a method's renders with one seed are one render
 /// that is looked at on its way. Ends within the budget but for what one sample of each takes.
-/// Nothing where the monitor said stop. Throws what OpenSession does, and TooSlow.
+/// Nothing where the monitor said stop. Throws what SetUpView does, and TooSlow.
 [[nodiscard]] std::optional<MeasuredCase> measure(const ChartCase&, const ChartFrame&,
                                                   double budget_s, TbbExecutor&, RenderMonitor&,
-                                                  const OpenSession&);
+                                                  const SetUpView&);
 
 }  // namespace petzval

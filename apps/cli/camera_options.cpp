@@ -28,7 +28,9 @@ void add_place_options(CLI::App& app, CameraOptions& o) {
         ->check(number_between(kSmallestFov_deg, kLargestFov_deg));
     add("--sensor", o.sensor,
         "WxH in mm, cropped to the picture's aspect (default 36x24, or what a lens covers of it)");
-    add("--focus", o.focus, "sharp plane: metres (1.5 or 1.5m), the pixel x,y, or auto");
+    add("--focus", o.focus,
+        "sharp plane: metres from the entrance pupil (1.5 or 1.5m), infinity, the pixel x,y, or "
+        "auto");
     auto* fstop = add("--fstop", r.fstop, "f-number of the lens: its iris")->check(length);
     add("--lens-radius", r.lens_radius_m, "of a thin lens, in metres")
         ->check(length)
@@ -51,28 +53,27 @@ void add_lens_options(CLI::App& app, CameraOptions& o) {
                          "catalogue of glasses, .agf, that goes before those that ship; may be "
                          "given more than once"))
         ->allow_extra_args(false);
-    group(add_choice<FocusBy>(app, "--focus-by", r.focus_by, words_of(FocusBy()),
+    group(add_choice<FocusBy>(app, "--focus-by", r.focus_by,
                               "paraxial (default): rays near the axis; traced: the smallest spot "
                               "on the axis through the iris that is set"));
-    group(add_choice<Fit>(app, "--fit", r.fit, words_of(Fit()),
+    group(add_choice<Fit>(app, "--fit", r.fit,
                           "lens (default): the lens gives the angle of view; fov: it is scaled "
                           "to that of the camera or --fov"));
     group(app.add_option("--aperture", r.aperture,
                          "shape of the iris: circle (default), square, triangle, rhomboid, frame, "
                          "star:N, polygon:N[,ROTATION_DEG[,ROUNDNESS]], FILE.svg, FILE.png"));
     group(add_choice<ApertureScale>(
-        app, "--aperture-scale", r.aperture_scale, words_of(ApertureScale()),
+        app, "--aperture-scale", r.aperture_scale,
         "area (default): the round stop's area; inscribed: inside the round stop"));
     group(add_choice<IrisSampling>(
-        app, "--iris-sampling", r.iris_sampling, words_of(IrisSampling()),
+        app, "--iris-sampling", r.iris_sampling,
         "formula, rejection, triangles, alias (default: the best that the shape has)"));
     Choices<std::optional<DispersionMode>> modes{{"auto", std::nullopt}};
-    for (const auto& [word, dispersion] : words_of(DispersionMode()))
-        modes.emplace_back(word, dispersion);
+    for (const auto& [name, mode] : kOptionNames<DispersionMode>) modes.emplace_back(name, mode);
     group(add_choice<std::optional<DispersionMode>>(
         app, "--dispersion", r.dispersion, modes,
         "wavelengths that leave the lens apart: auto (default: by how far they part, "
-        "docs/plan.md; in charts as tolerance), "
+        "docs/guide/plan.md; in charts as tolerance), "
         "shared, tolerance, split, single, hero"));
     const auto share_within = [&r](float px) {
         r.dispersion_tolerance_px = px;
@@ -87,10 +88,10 @@ void add_lens_options(CLI::App& app, CameraOptions& o) {
 void add_glass_options(CLI::App& app, CameraOptions& o) {
     CameraRequest& r = o.request;
     const auto group = [](CLI::Option* option) { return option->group("Lens"); };
-    group(add_choice<Coating>(app, "--coating", r.coating, words_of(Coating()),
+    group(add_choice<Coating>(app, "--coating", r.coating,
                               "light lost at each surface: ideal (default, none), uncoated, mgf2 "
                               "(one layer against air)"));
-    group(add_choice<Precision>(app, "--lens-precision", r.precision, words_of(Precision()),
+    group(add_choice<Precision>(app, "--lens-precision", r.precision,
                                 "rays through the lens in float (default) or double"));
 }
 
@@ -98,7 +99,7 @@ void add_exposure_options(CLI::App& app, CameraOptions& o) {
     CameraRequest& r = o.request;
     const auto group = [](CLI::Option* option) { return option->group("Lens"); };
     auto* mode = group(add_choice<ExposureMode>(
-        app, "--exposure-mode", r.exposure, words_of(ExposureMode()),
+        app, "--exposure-mode", r.exposure,
         "normalised (default): as bright at every f-number; photographic: by --iso, --shutter and "
         "the iris"));
     group(app.add_option("--iso", r.iso, "speed of the film (default 100)"))

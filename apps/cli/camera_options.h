@@ -2,7 +2,7 @@
 // The options of petzval render that are about the camera and its lens.
 #pragma once
 
-#include "apps/setup/camera_request.h"
+#include "apps/setup/request.h"
 
 namespace CLI {
 class App;

@@ -9,10 +9,20 @@
 #include <utility>
 #include <vector>
 
+#include "apps/setup/option_names.h"
+
 namespace petzval {
 
 template <class T>
 using Choices = std::vector<std::pair<std::string, T>>;
+
+/// Every name of a choice that option_names.h has.
+template <class T>
+[[nodiscard]] Choices<T> choices_of() {
+    Choices<T> choices;
+    for (const auto& [name, value] : kOptionNames<T>) choices.emplace_back(name, value);
+    return choices;
+}
 
 /// Any other word ends with exit code 2 and the list of the known ones. value, a T or something
 /// that one can be assigned to, must outlive parsing.
@@ -31,6 +41,13 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, Value& value,
         throw CLI::ValidationError(name, fmt::format("\"{}\" is none of {}", text, known));
     };
     return app.add_option_function<std::string>(name, read, help);
+}
+
+/// The same with the names that option_names.h has for the choice.
+template <class T, class Value>
+CLI::Option* add_choice(CLI::App& app, const std::string& name, Value& value,
+                        const std::string& help) {
+    return add_choice<T>(app, name, value, choices_of<T>(), help);
 }
 
 }  // namespace petzval

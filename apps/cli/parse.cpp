@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <limits>
 #include <string_view>
 
 namespace petzval {
@@ -129,6 +130,29 @@ float parse_shutter_s(const std::string& option, const std::string& text) {
     refuse(option, text, "seconds above 0, as 0.01 or 1/100");
 }
 
+namespace {
+
+std::optional<float> focus_distance_m(std::string_view text) {
+    if (text == "infinity") return std::numeric_limits<float>::infinity();
+    if (!text.empty() && text.back() == 'm') text.remove_suffix(1);
+    const auto value = number<float>(text);
+    if (!value || *value < kNearestFocus_m || *value > kFarthestFocus_m) return std::nullopt;
+    return value;
+}
+
+std::string focus_distances() {
+    return fmt::format("a distance of {:g} to {:g} metres, infinity", kNearestFocus_m,
+                       kFarthestFocus_m);
+}
+
+}  // namespace
+
+float parse_focus_distance_m(const std::string& option, const std::string& text) {
+    const auto distance_m = focus_distance_m(text);
+    if (!distance_m) refuse(option, text, focus_distances());
+    return *distance_m;
+}
+
 Focus parse_focus(const std::string& option, const std::string& text, V2i frame) {
     if (text == "auto") return FocusAuto{};
     if (const auto parts = split(text, ','); parts.size() == 2) {
@@ -136,14 +160,9 @@ Focus parse_focus(const std::string& option, const std::string& text, V2i frame)
         if (x && y && *x >= 0 && *y >= 0 && *x < frame.x && *y < frame.y) return FocusPixel{*x, *y};
         refuse(option, text, fmt::format("a pixel x,y of the {}x{} frame", frame.x, frame.y));
     }
-    std::string_view digits = text;
-    if (!digits.empty() && digits.back() == 'm') digits.remove_suffix(1);
-    const auto value = number<float>(digits);
-    if (!value || *value < kNearestFocus_m || *value > kFarthestFocus_m)
-        refuse(option, text,
-               fmt::format("a distance of {:g} to {:g} metres, a pixel x,y or auto",
-                           kNearestFocus_m, kFarthestFocus_m));
-    return FocusDistance{*value};
+    const auto distance_m = focus_distance_m(text);
+    if (!distance_m) refuse(option, text, focus_distances() + ", a pixel x,y or auto");
+    return FocusDistance{*distance_m};
 }
 
 Bins parse_bins(const std::string& option, const std::string& text) {

@@ -33,7 +33,9 @@ namespace petzval {
 [[nodiscard]] double parse_share(const std::string& option, const std::string& text);
 /// "0.01" or "1/100": seconds above 0.
 [[nodiscard]] float parse_shutter_s(const std::string& option, const std::string& text);
-/// "auto", "1.5", "1.5m" (metres above 0) or "x,y" (a pixel of the frame).
+/// "1.5", "1.5m" (metres above 0) or "infinity"; metres.
+[[nodiscard]] float parse_focus_distance_m(const std::string& option, const std::string& text);
+/// The same, or "auto", or "x,y" (a pixel of the frame).
 [[nodiscard]] Focus parse_focus(const std::string& option, const std::string& text, V2i frame);
 /// "380:730:10": edges of equal bins in nm, inside the wavelengths that paths carry.
 [[nodiscard]] Bins parse_bins(const std::string& option, const std::string& text);

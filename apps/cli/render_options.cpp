@@ -43,27 +43,16 @@ void add_sampling_options(CLI::App& app, RenderOptions& o) {
     app.add_option("--max-depth", o.path.max_depth, "scatterings of a path (default 16)")
         ->check(whole_number_between(0, 10000));
     add_choice<FilterKind>(app, "--filter", o.filter,
-                           {{"box", FilterKind::Box},
-                            {"gauss", FilterKind::Gauss},
-                            {"blackman-harris", FilterKind::BlackmanHarris}},
                            "pixel filter: box, gauss, blackman-harris (default)");
     app.add_option("--filter-radius", o.filter_radius_px,
                    "pixels (default: box 0.5, the others 1.5)")
         ->check(number_between(0.01, 16.0));
-    add_choice<SamplerKind>(app, "--sampler", o.job.sampler,
-                            {{"owen", SamplerKind::Owen},
-                             {"sobol", SamplerKind::Sobol},
-                             {"independent", SamplerKind::Independent}},
-                            "owen (default), sobol, independent");
+    add_choice<SamplerKind>(app, "--sampler", o.job.sampler, "owen (default), sobol, independent");
     add_choice<LightChoiceKind>(
         app, "--light-choice", o.scene.light_choice,
-        {{"tree", LightChoiceKind::Tree},
-         {"power", LightChoiceKind::Power},
-         {"uniform", LightChoiceKind::Uniform}},
         "how one of many lights is chosen: tree (default; power, distance and direction), power, "
         "uniform");
     add_choice<Traversal>(app, "--traversal", o.scene.traversal,
-                          {{"robust", Traversal::Robust}, {"fast", Traversal::Fast}},
                           "robust (default): watertight; fast: may leak at edges");
 }
 

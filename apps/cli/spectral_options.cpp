@@ -14,8 +14,7 @@ void add_spectral_options(CLI::App& app, SpectralOptions& o) {
     };
     group(add_choice<SpectralMode>(
         app, "--spectral", s.mode,
-        {{"auto", SpectralMode::Auto}, {"rgb", SpectralMode::Rgb}, {"hero", SpectralMode::Wavelengths}},
-        "what a path carries: rgb, four wavelengths (hero), or auto "
+        "what a path carries: rgb, wavelengths (four), or auto "
         "(default): wavelengths where something depends on them and rgb is not surely within "
         "--tolerance"));
     group(app.add_option("--bins", o.bins,
@@ -28,10 +27,8 @@ void add_spectral_options(CLI::App& app, SpectralOptions& o) {
     group(app.add_option("--response", s.response,
                          "sensitivities of R, G and B: cie1931 (default), FILE.csv"))
         ->check(not_empty);
-    group(add_choice<WhiteBalance>(
-        app, "--white-balance", s.white_balance,
-        {{"none", WhiteBalance::None}, {"illuminant", WhiteBalance::Illuminant}},
-        "none (default); illuminant: the illuminant looks white"));
+    group(add_choice<WhiteBalance>(app, "--white-balance", s.white_balance,
+                                   "none (default); illuminant: the illuminant looks white"));
 }
 
 void resolve(SpectralOptions& o) {

@@ -8,12 +8,13 @@
 
 #include "apps/cli/choice.h"
 #include "camera/bench/analysis.h"
+#include "camera/setup/focused_lens.h"
 #include "io/base/error.h"
 
 namespace petzval {
 namespace {
 
-constexpr double kWidest_deg = 120, kWidestNear_deg = 85, kFarthest_m = 1e9, kNearest_m = 1e-3;
+constexpr double kWidest_deg = 120, kWidestNear_deg = 85;
 
 double number_of(const std::string& option, const std::string& text, double least, double most) {
     if (const std::string wrong = number_between(least, most)(text); !wrong.empty())
@@ -28,22 +29,12 @@ std::vector<double> parse_fields(const std::string& text, double widest_deg) {
     return out;
 }
 
-double distance_mm(std::string focus) {
-    if (focus.empty() || focus == "infinity") return std::numeric_limits<double>::infinity();
-    if (focus.ends_with('m')) focus.pop_back();
-    return 1000 * number_of("--focus", focus, kNearest_m, kFarthest_m);
-}
-
-double pupil_mm(const Lens& lens) {
-    return first_order(lens, kLineD_nm).entrance_pupil_mm;
-}
-
 std::shared_ptr<const Lens> in_focus(const Lens& lens, const FieldRequest& request,
-                                     double object_mm) {
-    const auto by = request.focus_by.value_or(FocusBy::Paraxial);
-    auto sharp = focused(lens, object_mm, by);
-    if (sharp) return std::make_shared<const Lens>(*std::move(sharp));
-    if (!std::isfinite(object_mm))
+                                     double distance_mm) {
+    auto sharp =
+        focused_from_pupil(lens, distance_mm, request.focus_by.value_or(FocusBy::Paraxial));
+    if (sharp) return std::make_shared<const Lens>(std::move(sharp->lens));
+    if (!std::isfinite(distance_mm))
         throw ArgumentError(request.request.lens, "",
                             "forms no image of a distant object; give --focus a distance");
     throw ArgumentError(
@@ -61,12 +52,13 @@ void add_field_request(CLI::App& app, FieldRequest& request, bool with_fields) {
                        "angles from the axis in degrees, as 0,10,14 (default: parts of the lens's "
                        "half field)");
     app.add_option("--focus", request.focus,
-                   "metres (1.5 or 1.5m) from the entrance pupil to the plane of focus, where the "
-                   "object lies, or infinity; the whole lens moves, or the group that its file "
-                   "names (default: a distant object, and the lens as filed)");
+                   "metres (1.5 or 1.5m) from the entrance pupil of the lens in focus to the plane "
+                   "of focus, where the object lies, or infinity; the whole lens moves, or the "
+                   "group that its file names (default: a distant object, and the lens as filed)");
     add_choice<std::optional<FocusBy>>(
         app, "--focus-by", request.focus_by,
-        {{"paraxial", FocusBy::Paraxial}, {"traced", FocusBy::Traced}},
+        Choices<std::optional<FocusBy>>{{"paraxial", FocusBy::Paraxial},
+                                        {"traced", FocusBy::Traced}},
         "paraxial (default): line d near the axis; traced: the spot on the axis with the least "
         "RMS radius for F, d and C together");
     app.add_option("--film-shift", request.film_shift,
@@ -79,7 +71,9 @@ void add_field_request(CLI::App& app, FieldRequest& request, bool with_fields) {
 FieldSetup set_up(const FieldRequest& request, const std::vector<double>& shares) {
     FieldSetup out;
     out.section = request.section == "x" ? Section::X : Section::Y;
-    out.distance_mm = distance_mm(request.focus);
+    out.distance_mm = request.focus.empty()
+                          ? std::numeric_limits<double>::infinity()
+                          : 1e3 * double(parse_focus_distance_m("--focus", request.focus));
     const bool near = std::isfinite(out.distance_mm);
     out.lens = open_lens(request.request);
     const double widest_deg = near ? kWidestNear_deg : kWidest_deg;
@@ -93,15 +87,12 @@ FieldSetup set_up(const FieldRequest& request, const std::vector<double>& shares
         for (const double share : shares)
             out.fields_deg.push_back(std::min(share * *half, widest_deg));
     }
-    const double object_mm = near ? pupil_mm(*out.lens) - out.distance_mm : -out.distance_mm;
-    if (!request.focus.empty() || request.focus_by) {
-        out.lens = in_focus(*out.lens, request, object_mm);
-        // A group in front of the stop takes the pupil along; the object stays.
-        if (near) out.distance_mm = pupil_mm(*out.lens) - object_mm;
-    }
+    if (!request.focus.empty() || request.focus_by)
+        out.lens = in_focus(*out.lens, request, out.distance_mm);
     out.film_mm = out.lens->film_mm();
     if (request.film_shift == "best") {
-        const auto shift = best_film_shift_mm(*out.lens, out.film_mm, object_mm);
+        const double pupil_mm = first_order(*out.lens, kLineD_nm).entrance_pupil_mm;
+        const auto shift = best_film_shift_mm(*out.lens, out.film_mm, pupil_mm - out.distance_mm);
         if (!shift)
             throw ArgumentError(request.request.lens, "",
                                 "no ray along the axis reaches the film; give --film-shift in mm");

@@ -11,6 +11,7 @@
 #include "apps/cli/console.h"
 #include "apps/cli/render_options.h"
 #include "apps/plan/plan.h"
+#include "apps/plan/plan_wording.h"
 #include "io/base/format.h"
 
 namespace petzval {
@@ -33,8 +34,8 @@ std::string quoted(const std::string& word) {
 
 // The command that renders by the plan: what was given, with what the plan puts in its place.
 std::string command_of(const CLI::App& app, const Plan& plan) {
-    std::map<std::string, std::optional<std::string>> placed(plan.options.begin(),
-                                                             plan.options.end());
+    const std::vector<PlanOption> options = options_of(plan);
+    std::map<std::string, std::optional<std::string>> placed(options.begin(), options.end());
     for (const char* own : {"--tolerance", "--json", "--quiet", "--help"}) placed[own] = {};
     std::string command = "petzval render";
     for (const CLI::Option* option : app.get_options()) {
@@ -45,7 +46,7 @@ std::string command_of(const CLI::App& app, const Plan& plan) {
         for (const std::string& value : option->results())
             if (!flag) command += (positional ? "" : " " + name) + " " + quoted(value);
     }
-    for (const auto& [name, value] : plan.options)
+    for (const auto& [name, value] : options)
         if (value) command += " " + name + " " + quoted(*value);
     return command + " -o out.exr";
 }
@@ -56,11 +57,11 @@ std::string duration(double s) {
 }
 
 void print(const Plan& plan, const std::string& command) {
-    for (const PlanLine& line : plan.lines)
-        fmt::print("{:<9} {}: {}\n", line.choice, line.chosen, line.reason);
-    fmt::print("{:<9} {}: they bring noise from {} to {}\n", "samples", plan.samples,
+    for (const PlanLine& line : lines_of(plan))
+        fmt::print("{:<10} {}: {}\n", line.choice, line.chosen, line.reason);
+    fmt::print("{:<10} {}: they bring noise from {} to {}\n", "samples", plan.samples,
                percent(plan.first_noise), percent(plan.noise));
-    fmt::print("{:<9} {}: {} by the model, {} by noise; about {} of CPU time here\n", "error",
+    fmt::print("{:<10} {}: {} by the model, {} by noise; about {} of CPU time here\n", "error",
                percent(plan.error()), percent(plan.bias), percent(plan.noise),
                duration(plan.cpu_s));
     fmt::print("{}\n", command);
@@ -68,7 +69,7 @@ void print(const Plan& plan, const std::string& command) {
 
 void print_json(const Plan& plan, const std::string& command) {
     nlohmann::ordered_json out;
-    for (const PlanLine& line : plan.lines) {
+    for (const PlanLine& line : lines_of(plan)) {
         nlohmann::ordered_json one{{"chosen", line.chosen}, {"reason", line.reason}};
         one["predicted_error"] = line.error ? nlohmann::ordered_json(*line.error) : nullptr;
         out[line.choice] = one;

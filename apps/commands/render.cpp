@@ -10,15 +10,17 @@
 #include "apps/cli/interrupt.h"
 #include "apps/cli/render_options.h"
 #include "apps/plan/plan.h"
+#include "apps/plan/plan_wording.h"
 #include "apps/setup/develop.h"
+#include "apps/setup/spectral_wording.h"
 #include "apps/setup/stats_file.h"
 #include "integrator/executor.h"
 #include "integrator/render.h"
+#include "io/base/clock.h"
+#include "io/base/format.h"
 
 namespace petzval {
 namespace {
-
-using Notice = std::function<void(const std::string&)>;
 
 Notice notice_to_stderr(const RenderOptions& o) {
     NoticeStyle style = NoticeStyle::Text;
@@ -47,6 +49,18 @@ RenderResult render_watched(const RenderOptions& o, const PathTracer<>& tracer,
     return render(tracer, camera, o.job, film, executor, monitor);
 }
 
+// What is left open is chosen, told, and kept for the metadata.
+RenderSetup set_up(const RenderOptions& o, double tolerance, TbbExecutor& executor,
+                   const Notice& notice) {
+    AutoSetup found = set_up_planned({o.scene, o.job, o.path, tolerance}, executor, notice);
+    for (const std::string& line : lines_of(found.setup.from.spectral)) notice(line);
+    if (const auto line = line_of(found.choice)) notice(*line);
+    if (const std::string reason = reason_of(found.choice); !reason.empty())
+        found.setup.from.metadata.emplace_back("petzval:plan",
+                                               fmt::format("{}: {}", percent(tolerance), reason));
+    return std::move(found.setup);
+}
+
 int render_command(RenderOptions& o) {
     RenderMonitor monitor;
     Interrupt interrupt(monitor);
@@ -57,17 +71,18 @@ int render_command(RenderOptions& o) {
     flush_denormals();
     TbbExecutor executor(o.threads);
     const Notice notice = notice_to_stderr(o);
-    const Session session =
-        open_planned({o.scene, o.job, o.path, frame.tolerance}, executor, notice);
-    o.path.visible_background = session.visible_background;
-    o.job.observer = session.observer;
+    const RenderSetup setup = set_up(o, frame.tolerance, executor, notice);
+    const PreparedScene& prepared = setup.prepared;
+    o.path.visible_background = setup.view.visible_background;
+    o.job.observer = setup.view.observer;
     Film film(o.scene.size, frame.crop, frame.aovs, o.scene.spectral.bins);
-    const PathTracer tracer(*session.scene, *session.bvh, *session.lights, o.path);
+    const PathTracer tracer(*prepared.scene, *prepared.bvh, *prepared.lights, o.path);
 
     interrupt.arm();
     const auto start = std::chrono::steady_clock::now();
     const double cpu_start_s = process_cpu_s();
-    const RenderResult result = render_watched(o, tracer, *session.camera, film, executor, monitor);
+    const RenderResult result =
+        render_watched(o, tracer, *setup.view.camera, film, executor, monitor);
     RenderCost cost;
     cost.render_wall_s =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -75,14 +90,14 @@ int render_command(RenderOptions& o) {
     cost.threads = o.threads;
 
     report_bad_samples(film, notice);
-    const PictureRows picture = develop(film, session, o.job, o.path, result.end_sample);
+    const PictureRows picture = develop(film, setup, o.job, o.path, result.end_sample);
     if (result.stopped) {
         for (const auto& partial : write_partial(o.outputs, picture))
             notice(fmt::format("stopped: what there is, is in {}", partial.string()));
         return 130;
     }
     for (const auto& output : o.outputs) write_output(output, picture, o.display);
-    if (o.stats) write_stats(*o.stats, session, result, cost, film);
+    if (o.stats) write_stats(*o.stats, setup, result, cost, film);
     return 0;
 }
 

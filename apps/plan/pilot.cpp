@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "apps/setup/stats_file.h"
 #include "core/sampling/sampler.h"
 #include "integrator/render.h"
+#include "io/base/clock.h"
 #include "io/image/difference.h"
 
 namespace petzval {
@@ -13,8 +13,8 @@ namespace {
 
 constexpr uint32_t kFirstPilotSeed = 2'000'000;
 
-PathOptions with_backdrop(PathOptions options, const Session& session) {
-    options.visible_background = session.visible_background;
+PathOptions with_background(PathOptions options, const View& view) {
+    options.visible_background = view.visible_background;
     return options;
 }
 
@@ -40,15 +40,16 @@ Estimate mean_of(const std::vector<double>& values) {
 
 }  // namespace
 
-PilotModel::PilotModel(Session session, const RenderJob& job, const PathOptions& options,
+PilotModel::PilotModel(RenderSetup setup, const RenderJob& job, const PathOptions& options,
                        size_t pixels)
-    : session_(std::move(session)),
-      tracer_(*session_.scene, *session_.bvh, *session_.lights, with_backdrop(options, session_)),
+    : setup_(std::move(setup)),
+      tracer_(*setup_.prepared.scene, *setup_.prepared.bvh, *setup_.prepared.lights,
+              with_background(options, setup_.view)),
       sums_(pixels) {
     job_.sampler = job.sampler;
     job_.filter = job.filter;
     job_.replicates = job.replicates;
-    job_.observer = session_.observer;
+    job_.observer = setup_.view.observer;
 }
 
 double PilotModel::rays_per_sample() const {
@@ -69,10 +70,10 @@ Pilot::Pilot(V2i size_px, int wanted, TbbExecutor& executor, uint32_t seed)
         }
 }
 
-std::unique_ptr<PilotModel> Pilot::model(Session session, const RenderJob& job,
+std::unique_ptr<PilotModel> Pilot::model(RenderSetup setup, const RenderJob& job,
                                          const PathOptions& options) const {
     return std::unique_ptr<PilotModel>(
-        new PilotModel(std::move(session), job, options, pixels_.size()));
+        new PilotModel(std::move(setup), job, options, pixels_.size()));
 }
 
 void Pilot::look(PilotModel& model, uint32_t samples) const {
@@ -85,7 +86,7 @@ void Pilot::look(PilotModel& model, uint32_t samples) const {
             Film film(size_px_, {x, y, x + 1, y + 1}, {});
             job.seed = kFirstPilotSeed + kPilotReplicates * seed_ + k;
             for (uint32_t i = model.samples_; i < samples; ++i)
-                render_sample(model.tracer_, *model.session_.camera, job, {x, y, i}, film,
+                render_sample(model.tracer_, *model.setup_.view.camera, job, {x, y, i}, film,
                               stats[static_cast<size_t>(worker)]);
             const V4f c = film.colour(x, y);
             model.sums_[static_cast<size_t>(task)][k] +=

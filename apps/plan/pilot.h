@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A look at a few pixels of a render through several models of it, all with the same random
+// A pilot renders a few pixels of a picture through several models, all with the same random
 // numbers: what each costs, how noisy it is, and how far it is off.
 #pragma once
 
 #include <array>
 #include <vector>
 
+#include "apps/plan/estimate.h"
 #include "apps/setup/render_setup.h"
 #include "integrator/executor.h"
 #include "integrator/path.h"
@@ -16,21 +17,10 @@ namespace petzval {
 /// Independent replicates of the sampler in each pixel: what they have in common is no noise.
 inline constexpr uint32_t kPilotReplicates = 4;
 
-/// Of a mean over pixels; error: standard, from their spread.
-struct Estimate {
-    double mean = 0, error = 0;
-
-    /// Standard errors from the mean to a bound: more than the 1.645 of 95 %, as pixels have long
-    /// tails and a few of them hide the worst.
-    static constexpr double kSure = 2;
-    [[nodiscard]] double high() const { return std::max(mean, 0.) + kSure * error; }
-    [[nodiscard]] double low() const { return std::max(mean - kSure * error, 0.); }
-};
-
 /// One model of the render.
 class PilotModel {
   public:
-    [[nodiscard]] const Session& session() const { return session_; }
+    [[nodiscard]] const RenderSetup& setup() const { return setup_; }
     [[nodiscard]] uint32_t samples() const { return samples_; }  ///< of each look at a pixel
     /// What a sample costs, the same on every machine: rays that are cast, and one more for a way
     /// through glass. After the first look.
@@ -41,9 +31,9 @@ class PilotModel {
 
   private:
     friend class Pilot;
-    PilotModel(Session, const RenderJob&, const PathOptions&, size_t pixels);
+    PilotModel(RenderSetup, const RenderJob&, const PathOptions&, size_t pixels);
 
-    Session session_;
+    RenderSetup setup_;
     RenderJob job_;
     PathTracer<> tracer_;
     std::vector<std::array<V3d, kPilotReplicates>> sums_;  ///< of the samples of each pixel
@@ -66,8 +56,8 @@ class Pilot {
     Pilot(V2i size_px, int wanted, TbbExecutor&, uint32_t seed = 0);
 
     [[nodiscard]] size_t pixels() const { return pixels_.size(); }
-    /// Of job only sampler and filter count.
-    [[nodiscard]] std::unique_ptr<PilotModel> model(Session, const RenderJob&,
+    /// Uses job.sampler, job.filter and job.replicates; ignores the rest.
+    [[nodiscard]] std::unique_ptr<PilotModel> model(RenderSetup, const RenderJob&,
                                                     const PathOptions&) const;
     /// Goes on until each look has so many samples.
     void look(PilotModel&, uint32_t samples) const;

@@ -4,30 +4,45 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/plan/dispersion_spread.h"
 #include "apps/setup/equivalent_camera.h"
+#include "camera/setup/lateral_dispersion.h"
 
 namespace petzval {
 namespace {
 
-// Wavelengths are parted so far that they stand out of the noise, but stay within a pixel: there
-// the error grows in proportion.
-constexpr double kParted_px = 0.35, kMostFactor = 64;
+// Dispersion is amplified so far that its effect stands out of the noise, but stays within a pixel:
+// there the error grows in proportion.
+constexpr double kAmplified_px = 0.35, kMostFactor = 64;
 constexpr uint32_t kLeastSamples = 4, kThoroughSamples = 32;
-constexpr double kSmallShare = 0.25;  // of the tolerance: smaller errors are told no finer
+constexpr double kSmallShare =
+    0.25;  // of the tolerance: smaller errors are not measured more finely
 
 }  // namespace
 
-PlanOpen::PlanOpen(const SceneRequest& request, const Session& session) {
-    if (!session.observer.spectral()) return;
-    const bool disperses = !session.dispersive_lens.empty();
+double PlanCandidate::variance_with(double samples) const {
+    size_t turn = 0;
+    while (turn + 1 < variances.size() && samples >= std::exp2(turn + 1)) ++turn;
+    return variances[turn].high() * std::exp2(turn) / samples;
+}
+
+double PlanCandidate::samples_for(double tolerance) const {
+    const double left = tolerance * tolerance - square_bias.high();
+    for (size_t turn = 0;; ++turn) {
+        const double samples = std::exp2(turn) * std::max(1., variances[turn].high() / left);
+        if (turn + 1 == variances.size() || samples <= std::exp2(turn + 1)) return samples;
+    }
+}
+
+PlanOpen::PlanOpen(const SceneRequest& request, const RenderSetup& setup) {
+    if (!setup.from.spectral.wavelengths) return;
+    const bool disperses = !setup.from.camera.dispersive_lens.empty();
     // Spectra are more than a picture: nothing is taken from them.
-    parted = disperses && !session.camera_report.asked.dispersion;
-    dispersion = parted && !request.spectral.bins;
+    dispersion_mode = disperses && !setup.from.camera.asked.dispersion;
+    dispersion = dispersion_mode && !request.spectral.bins;
     spectral = !asks_for_wavelengths(request.spectral) && (dispersion || !disperses);
 }
 
-PlanComparison::PlanComparison(const PlanRequest& request, const Session& first,
+PlanComparison::PlanComparison(const PlanRequest& request, const RenderSetup& first,
                                const PlanOpen& open, int pixels, TbbExecutor& executor)
     : request_(request),
       first_(first),
@@ -35,9 +50,9 @@ PlanComparison::PlanComparison(const PlanRequest& request, const Session& first,
       full_scene_(resolved_request(first)),
       executor_(executor),
       pilot_(request.scene.size, pixels, executor) {
-    if (first.observer.spectral()) full_scene_.spectral.mode = SpectralMode::Wavelengths;
+    if (first.from.spectral.wavelengths) full_scene_.spectral.mode = SpectralMode::Wavelengths;
     if (open.dispersion) {
-        part_wavelengths();
+        amplify_dispersion();
         return;
     }
     full_ = model(full_scene_);
@@ -45,83 +60,85 @@ PlanComparison::PlanComparison(const PlanRequest& request, const Session& first,
     scale_ = full_.get();
 }
 
-// What parts wavelengths is told from what does not by a lens that parts them further.
-void PlanComparison::part_wavelengths() {
+// Dispersion is amplified, so that its effect stands out of the noise; the error is divided by the
+// factor afterwards.
+void PlanComparison::amplify_dispersion() {
     shared_scene_ = full_scene_;
     full_scene_.camera.dispersion = DispersionMode::Split;
     shared_scene_.camera.dispersion = DispersionMode::Shared;
     shared_ = model(shared_scene_);
-    spread_px_ = spread_px(open(full_scene_), shared_->session(), request_.scene.size);
-    if (spread_px_ > 0)
-        factor_ = static_cast<float>(std::clamp(kParted_px / spread_px_, 1., kMostFactor));
-    full_ = further(full_scene_);
+    const RenderSetup split = open(full_scene_);
+    dispersion_px_ = lateral_dispersion_px(*split.view.camera, *shared_->setup().view.camera,
+                                           split.view.observer, split.from.camera.focus_plane(),
+                                           request_.scene.size);
+    if (dispersion_px_ > 0)
+        factor_ = static_cast<float>(std::clamp(kAmplified_px / dispersion_px_, 1., kMostFactor));
+    full_ = amplified(full_scene_);
     const double share = 1 / double(factor_);
     minus_full_ = {{shared_.get(), share - 1}, {full_.get(), -share}};
     scale_ = shared_.get();
 }
 
-Session PlanComparison::open(const SceneRequest& scene) const {
-    return executor_.inside([&] {
-        return open_session(
-            scene, [](const std::string&) {}, &first_);
-    });
+RenderSetup PlanComparison::open(const SceneRequest& scene) const {
+    return executor_.inside([&] { return set_up_view(first_, scene, [](const std::string&) {}); });
 }
 
 std::unique_ptr<PilotModel> PlanComparison::model(const SceneRequest& scene) const {
     return pilot_.model(open(scene), request_.job, request_.path);
 }
 
-std::unique_ptr<PilotModel> PlanComparison::further(const SceneRequest& scene) const {
-    Session session = open(scene);
-    session.camera = parted_further(std::move(session.camera), open(shared_scene_).camera, factor_);
-    return pilot_.model(std::move(session), request_.job, request_.path);
+std::unique_ptr<PilotModel> PlanComparison::amplified(const SceneRequest& scene) const {
+    RenderSetup setup = open(scene);
+    setup.view.camera = amplified_dispersion(std::move(setup.view.camera),
+                                             open(shared_scene_).view.camera, factor_);
+    return pilot_.model(std::move(setup), request_.job, request_.path);
 }
 
-void PlanComparison::add(const std::string& name, const SceneRequest& scene) {
+void PlanComparison::add(PlanModel kind, const SceneRequest& scene) {
     auto own = model(scene);
     std::vector<PilotTerm> difference = minus_full_;
     difference.push_back({own.get(), 1});
-    entries_.push_back({{name, scene}, own.get(), std::move(difference), std::move(own)});
+    entries_.push_back({{kind, scene}, own.get(), std::move(difference), std::move(own)});
 }
 
 void PlanComparison::add_simpler_cameras() {
-    const CameraReport& report = first_.camera_report;
+    const CameraReport& report = first_.from.camera;
     if (report.orthographic || !(report.lens_radius_m > 0)) return;
     const SceneRequest scene = resolved_request(first_);
     if (scene.camera.exposure != ExposureMode::Photographic)
-        add("pinhole", equivalent_pinhole(scene, first_));
-    if (!report.lens.empty()) add("thin", equivalent_thin_lens(scene, first_));
+        add(PlanModel::Pinhole, equivalent_pinhole(scene, first_));
+    if (!report.lens.empty()) add(PlanModel::Thin, equivalent_thin_lens(scene, first_));
 }
 
 void PlanComparison::add_rgb() {
     SceneRequest scene = full_scene_;
     scene.spectral.mode = SpectralMode::Rgb;
     if (open_.dispersion) scene.camera.dispersion = DispersionMode::Shared;
-    add("rgb", scene);
+    add(PlanModel::Rgb, scene);
 }
 
 void PlanComparison::add_shared() {
     const double share = 1 / double(factor_);
-    entries_.push_back({{"shared", shared_scene_},
+    entries_.push_back({{PlanModel::Shared, shared_scene_},
                         shared_.get(),
                         {{shared_.get(), share}, {full_.get(), -share}},
                         nullptr});
 }
 
-void PlanComparison::add_parted(const std::string& name, DispersionMode dispersion) {
+void PlanComparison::add_biased(PlanModel kind, DispersionMode dispersion) {
     SceneRequest scene = full_scene_;
     scene.camera.dispersion = dispersion;
-    auto own = further(scene);
+    auto own = amplified(scene);
     const double share = 1 / double(factor_);
     entries_.push_back(
-        {{name, scene}, own.get(), {{own.get(), share}, {full_.get(), -share}}, std::move(own)});
+        {{kind, scene}, own.get(), {{own.get(), share}, {full_.get(), -share}}, std::move(own)});
 }
 
-void PlanComparison::add_unbiased(const std::string& name, DispersionMode dispersion) {
+void PlanComparison::add_unbiased(PlanModel kind, DispersionMode dispersion) {
     SceneRequest scene = full_scene_;
     scene.camera.dispersion = dispersion;
     auto own = model(scene);
-    entries_.push_back({{name, scene}, own.get(), {}, std::move(own)});
+    entries_.push_back({{kind, scene}, own.get(), {}, std::move(own)});
 }
 
 void PlanComparison::look(double most_samples, bool thorough) {
@@ -135,7 +152,7 @@ void PlanComparison::look(double most_samples, bool thorough) {
             if (e.own) pilot_.look(*e.own, n);
         evaluate();
         if (once * 2 * n > most_samples) return;
-        if (n >= (thorough ? kThoroughSamples : kLeastSamples) && settled_all(thorough)) return;
+        if (n >= (thorough ? kThoroughSamples : kLeastSamples) && all_known(thorough)) return;
     }
 }
 
@@ -148,7 +165,7 @@ void PlanComparison::evaluate() {
     }
 }
 
-bool PlanComparison::settled_all(bool thorough) const {
+bool PlanComparison::all_known(bool thorough) const {
     const double small = std::pow(kSmallShare * request_.tolerance, 2);
     return std::all_of(entries_.begin(), entries_.end(), [&](const Entry& e) {
         const Estimate& bias = e.found.square_bias;
@@ -165,7 +182,7 @@ std::vector<PlanCandidate> PlanComparison::candidates() const {
         out.push_back(std::move(found));
     };
     for (const Entry& e : entries_) measured(e.found, *e.model);
-    PlanCandidate full{open_.dispersion ? "split" : "full", full_scene_};
+    PlanCandidate full{open_.dispersion ? PlanModel::Split : PlanModel::Full, full_scene_};
     full.inside = true;
     measured(std::move(full), *full_);
     return out;

@@ -163,9 +163,9 @@ void check_pinhole(const CameraRequest& asked) {
                "a pinhole has no iris that says how much light there is: give --fstop too");
 }
 
-void check_thin(const CameraModel& plan) {
-    const CameraRequest& asked = plan.asked;
-    const auto* single = std::get_if<SingleLens>(&plan.optics);
+void check_thin(const CameraModel& model) {
+    const CameraRequest& asked = model.asked;
+    const auto* single = std::get_if<SingleLens>(&model.optics);
     if (!asked.fstop && !asked.lens_radius_m)
         throw ArgumentError("--lens", *asked.lens, "needs --fstop or --lens-radius");
     const bool focal_given = asked.focal_length_mm || (single && single->radii_mm);
@@ -199,41 +199,42 @@ std::string CameraModel::dispersive_lens() const {
 
 CameraModel choose_camera_model(const CameraRequest& request, const std::filesystem::path& scene,
                                 const std::vector<GltfCamera>& cameras, float aspect) {
-    CameraModel plan;
-    plan.asked = request;
+    CameraModel model;
+    model.asked = request;
     if (request.name)
-        plan.from = &find_camera(*request.name, scene.string(), cameras);
+        model.from = &find_camera(*request.name, scene.string(), cameras);
     else if (!request.look_at && !cameras.empty())
-        plan.from = &cameras.front();
-    CameraRequest& asked = plan.asked;
-    if (plan.from && plan.from->orthographic) {
+        model.from = &cameras.front();
+    CameraRequest& asked = model.asked;
+    if (model.from && model.from->orthographic) {
         if (asked.fstop || asked.lens_radius_m || asked.fov_deg || asked.focal_length_mm ||
             asked.focus || asked.aperture || asked.film_distance_mm || asked.sensor_mm ||
             (asked.lens && *asked.lens != "pinhole"))
             throw ArgumentError(scene.string(), "",
                                 fmt::format("camera \"{}\" is orthographic: it takes neither a "
                                             "lens, its focus or sensor, nor an angle of view",
-                                            printable(plan.from->name)));
-    } else if (plan.from) {
-        take_extras(plan.from->wishes, scene, asked);
+                                            printable(model.from->name)));
+    } else if (model.from) {
+        take_extras(model.from->wishes, scene, asked);
     }
     try {
-        plan.optics = optics_of(asked, plan.from, aspect);
+        model.optics = optics_of(asked, model.from, aspect);
     } catch (const ArgumentError& error) {
         if (request.lens || !asked.lens) throw;
-        throw InputError(scene.string(),
-                         fmt::format("extras.petzval of camera \"{}\"", printable(plan.from->name)),
-                         error.what());
+        throw InputError(
+            scene.string(),
+            fmt::format("extras.petzval of camera \"{}\"", printable(model.from->name)),
+            error.what());
     }
-    if (!std::holds_alternative<LoadedLens>(plan.optics))
-        check_no_prescription(asked, std::holds_alternative<SingleLens>(plan.optics));
-    if (std::holds_alternative<NoLens>(plan.optics))
+    if (!std::holds_alternative<LoadedLens>(model.optics))
+        check_no_prescription(asked, std::holds_alternative<SingleLens>(model.optics));
+    if (std::holds_alternative<NoLens>(model.optics))
         check_pinhole(asked);
-    else if (std::holds_alternative<LoadedLens>(plan.optics))
+    else if (std::holds_alternative<LoadedLens>(model.optics))
         check_lens(asked);
     else
-        check_thin(plan);
-    return plan;
+        check_thin(model);
+    return model;
 }
 
 }  // namespace petzval

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which rung of the ladder a camera stands on, decided before the scene is built: from the user's
-// request and what the file's camera says.
+// Which camera model a request needs: pinhole, thin lens, singlet or a lens file. Decided before
+// the scene is loaded, from the user's request and what the file's camera says.
 #pragma once
 
 #include <array>
@@ -9,8 +9,8 @@
 #include <variant>
 #include <vector>
 
-#include "apps/setup/camera_request.h"
 #include "apps/setup/lens_setup.h"
+#include "apps/setup/request.h"
 #include "core/spectrum/glass.h"
 #include "io/gltf/gltf.h"
 
@@ -27,7 +27,7 @@ struct SingleLens {
 using Optics = std::variant<NoLens, IdealLens, SingleLens, LoadedLens>;
 
 struct CameraModel {
-    CameraRequest asked;               ///< the user's wishes; the file's where there are none
+    CameraRequest asked;               ///< the user's request, and the file's where that is silent
     const GltfCamera* from = nullptr;  ///< absent: --look-at, or framed from the scene's bounds
     Optics optics;
 
@@ -37,7 +37,7 @@ struct CameraModel {
 };
 
 /// scene: the file, for errors, and for paths in it. aspect: the picture's. cameras must outlive
-/// the plan. Throws InputError, and ArgumentError where what is asked for does not go together.
+/// the model. Throws InputError, and ArgumentError where what is asked for does not go together.
 [[nodiscard]] CameraModel choose_camera_model(const CameraRequest&,
                                               const std::filesystem::path& scene,
                                               const std::vector<GltfCamera>& cameras, float aspect);

@@ -10,10 +10,10 @@ namespace {
 void describe_iris(const CameraReport& c, PictureLayout& layout) {
     auto& m = layout.metadata;
     m.emplace_back("petzval:aperture", c.asked.aperture.value_or("circle"));
-    m.emplace_back("petzval:apertureScale", word_of(c.asked.aperture_scale));
+    m.emplace_back("petzval:apertureScale", name_of(c.asked.aperture_scale));
     if (c.asked.iris_sampling)
-        m.emplace_back("petzval:irisSampling", word_of(*c.asked.iris_sampling));
-    m.emplace_back("petzval:exposureMode", word_of(c.asked.exposure));
+        m.emplace_back("petzval:irisSampling", name_of(*c.asked.iris_sampling));
+    m.emplace_back("petzval:exposureMode", name_of(c.asked.exposure));
     if (c.asked.exposure == ExposureMode::Photographic) {
         m.emplace_back("petzval:iso", c.asked.iso);
         m.emplace_back("petzval:shutter_s", c.asked.shutter_s);
@@ -25,12 +25,12 @@ void describe_glass(const CameraReport& c, PictureLayout& layout) {
     m.emplace_back("petzval:lens", c.lens);
     m.emplace_back("petzval:film_mm", static_cast<float>(c.film_mm));
     m.emplace_back("petzval:stopRadius_mm", static_cast<float>(c.stop_radius_mm));
-    m.emplace_back("petzval:focusBy", word_of(c.asked.focus_by));
-    m.emplace_back("petzval:coating", word_of(c.asked.coating));
-    m.emplace_back("petzval:lensPrecision", word_of(c.asked.precision));
-    m.emplace_back("petzval:fit", word_of(c.asked.fit));
+    m.emplace_back("petzval:focusBy", name_of(c.asked.focus_by));
+    m.emplace_back("petzval:coating", name_of(c.asked.coating));
+    m.emplace_back("petzval:lensPrecision", name_of(c.asked.precision));
+    m.emplace_back("petzval:fit", name_of(c.asked.fit));
     const DispersionMode dispersion = c.asked.dispersion.value_or(DispersionMode::Tolerance);
-    m.emplace_back("petzval:dispersion", word_of(dispersion));
+    m.emplace_back("petzval:dispersion", name_of(dispersion));
     if (dispersion == DispersionMode::Tolerance)
         m.emplace_back("petzval:dispersionTolerance_px", c.asked.dispersion_tolerance_px);
 }

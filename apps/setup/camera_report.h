@@ -2,7 +2,8 @@
 // What a camera turned out to be.
 #pragma once
 
-#include "apps/setup/camera_request.h"
+#include "apps/setup/request.h"
+#include "camera/setup/focus_plane.h"
 #include "io/image/picture.h"
 
 namespace petzval {
@@ -16,7 +17,12 @@ struct CameraReport {
     float lens_radius_m = 0, focus_m = 0;  ///< 0: a pinhole
     std::string lens;                      ///< of a lens made of glass
     double film_mm = 0, stop_radius_mm = 0;
-    CameraRequest asked;
+    std::string dispersive_lens;  ///< its name, where its glass sends wavelengths different ways
+    CameraRequest asked;          ///< the user's request, and the file's where that is silent
+
+    [[nodiscard]] FocusPlane focus_plane() const {
+        return {eye, (target - eye).normalized(), focus_m};
+    }
 };
 
 /// Adds it to a picture's metadata.

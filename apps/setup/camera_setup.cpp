@@ -11,8 +11,6 @@
 namespace petzval {
 namespace {
 
-using Notice = std::function<void(const std::string&)>;
-
 constexpr float kDegree = kPi / 180.f;
 // Embree takes coordinates up to about 1e18; the square of a distance must be a float as well.
 constexpr float kFarthest_m = 1e16f;
@@ -25,7 +23,7 @@ V3f forward(const M44f& m) {
 }
 // Everything that the steps below look at.
 struct Place {
-    const CameraModel& plan;
+    const CameraModel& model;
     const std::string& scene_file;
     V2i size;
     const Scene& scene;
@@ -56,9 +54,9 @@ std::array<V3f, 2> frame_bounds(const Place& at, float yfov_rad) {
 
 // Where the lens stands and what it looks at. fov_option: what gives the same angle of view again.
 M44f stand(const Place& at, float yfov_rad, const std::string& fov_option, CameraReport& report) {
-    const CameraRequest& asked = at.plan.asked;
+    const CameraRequest& asked = at.model.asked;
     M44f to_world;
-    if (const GltfCamera* from = at.plan.from) {
+    if (const GltfCamera* from = at.model.from) {
         to_world = from->to_world;
         report.name = from->name;
         report.target = position(to_world) + forward(to_world);
@@ -98,7 +96,7 @@ float depth_of(const Place& at, const Focus& focus, const M44f& to_world, const 
 float find_focus(const Place& at, const M44f& to_world, const Finder& finder) {
     constexpr int kRounds = 8;
     constexpr float kSettled = 1e-5f;
-    const Focus focus = at.plan.asked.focus.value_or(FocusAuto{});
+    const Focus focus = at.model.asked.focus.value_or(FocusAuto{});
     if (const auto* distance = std::get_if<FocusDistance>(&focus)) return distance->m;
     float depth_m = depth_of(at, focus, to_world, *finder(std::nullopt));
     for (int i = 0; i < kRounds; ++i) {
@@ -125,7 +123,8 @@ CameraSetup orthographic(const Place& at, const GltfCamera& from) {
 CameraSetup with_lens(const Place& at, const LoadedLens& loaded) {
     CameraSetup setup;
     CameraReport& report = setup.report;
-    report.asked = at.plan.asked;
+    report.asked = at.model.asked;
+    report.dispersive_lens = at.model.dispersive_lens();
     report.yfov_deg = loaded.yfov_rad / kDegree;
     const M44f to_world = stand(at, loaded.yfov_rad, "", report);
     report.focus_m = find_focus(at, to_world, [&](std::optional<float> focus_m) {
@@ -146,8 +145,9 @@ CameraSetup with_lens(const Place& at, const LoadedLens& loaded) {
 CameraSetup without_prescription(const Place& at) {
     CameraSetup setup;
     CameraReport& report = setup.report;
-    report.asked = at.plan.asked;
-    const ThinView view = thin_view(at.plan, at.scene_file, at.aspect());
+    report.asked = at.model.asked;
+    report.dispersive_lens = at.model.dispersive_lens();
+    const ThinView view = thin_view(at.model, at.scene_file, at.aspect());
     report.sensor_mm = view.sensor_mm;
     report.yfov_deg = view.yfov_deg;
     const std::string fov_option =
@@ -156,7 +156,7 @@ CameraSetup without_prescription(const Place& at) {
     pose.aspect = at.aspect();
     pose.to_world = stand(at, view.yfov_rad, fov_option, report);
     std::optional<float> focus_m = view.focus_m;
-    if (at.plan.has_iris() && !focus_m)
+    if (at.model.has_iris() && !focus_m)
         focus_m = find_focus(at, pose.to_world, [&](std::optional<float> focused_m) {
             ThinLens finder = pose;
             finder.yfov_rad = yfov_at_rad(view, focused_m);
@@ -164,11 +164,11 @@ CameraSetup without_prescription(const Place& at) {
         });
     pose.yfov_rad = yfov_at_rad(view, focus_m);
     if (pose.yfov_rad != view.yfov_rad) report.yfov_deg = pose.yfov_rad / kDegree;
-    ThinSetup thin = set_up_thin(at.plan, view, pose, focus_m, at.size.x, at.notice);
+    ThinSetup thin = set_up_thin(at.model, view, pose, focus_m, at.size.x, at.notice);
     report.focus_m = focus_m.value_or(0);
     report.focal_length_mm = static_cast<float>(thin.focal_mm);
     report.lens_radius_m = static_cast<float>(thin.lens_radius_m);
-    if (std::holds_alternative<SingleLens>(at.plan.optics)) {
+    if (std::holds_alternative<SingleLens>(at.model.optics)) {
         report.lens = *report.asked.lens;
         report.film_mm = thin.film_mm;
         report.stop_radius_mm = 1e3 * thin.lens_radius_m;
@@ -179,11 +179,11 @@ CameraSetup without_prescription(const Place& at) {
 
 }  // namespace
 
-CameraSetup set_up_camera(const CameraModel& plan, const std::string& scene_file, V2i size,
+CameraSetup set_up_camera(const CameraModel& model, const std::string& scene_file, V2i size,
                           const Scene& scene, const Bvh& bvh, const Notice& notice) {
-    const Place at{plan, scene_file, size, scene, bvh, notice};
-    if (plan.from && plan.from->orthographic) return orthographic(at, *plan.from);
-    if (const auto* lens = std::get_if<LoadedLens>(&plan.optics)) return with_lens(at, *lens);
+    const Place at{model, scene_file, size, scene, bvh, notice};
+    if (model.from && model.from->orthographic) return orthographic(at, *model.from);
+    if (const auto* lens = std::get_if<LoadedLens>(&model.optics)) return with_lens(at, *lens);
     return without_prescription(at);
 }
 

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a plan and a scene to a camera: where it stands, what it is focused on, and its exposure.
+// From a camera model and a scene to a camera: where it stands, what it is focused on, and its
+// exposure.
 #pragma once
 
 #include "apps/setup/camera_model.h"
 #include "apps/setup/camera_report.h"
 #include "core/scene/scene.h"
 #include "core/traversal/bvh.h"
+#include "io/base/notice.h"
 
 namespace petzval {
 
@@ -18,7 +20,6 @@ struct CameraSetup {
 /// in the form of options gives the same camera when it is passed back. Throws ArgumentError for a
 /// lens that cannot do what is asked, and where there is nothing to focus on.
 [[nodiscard]] CameraSetup set_up_camera(const CameraModel&, const std::string& scene_file, V2i size,
-                                        const Scene&, const Bvh&,
-                                        const std::function<void(const std::string&)>& notice);
+                                        const Scene&, const Bvh&, const Notice& notice);
 
 }  // namespace petzval

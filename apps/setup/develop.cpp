@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "apps/setup/camera_report.h"
+#include "apps/setup/option_names.h"
 #include "core/spectrum/colour.h"
 #include "io/image/spectral_layout.h"
 
@@ -17,30 +18,6 @@ namespace {
 /// Stands for an infinite standard error: what reads EXR may scale and subtract it without getting
 /// what is not a number.
 constexpr float kUnknownError = std::numeric_limits<float>::max();
-
-const char* name_of(SamplerKind kind) {
-    switch (kind) {
-        case SamplerKind::Owen:
-            return "owen";
-        case SamplerKind::Sobol:
-            return "sobol";
-        case SamplerKind::Independent:
-            return "independent";
-    }
-    return "";
-}
-
-const char* name_of(FilterKind kind) {
-    switch (kind) {
-        case FilterKind::Box:
-            return "box";
-        case FilterKind::Gauss:
-            return "gauss";
-        case FilterKind::BlackmanHarris:
-            return "blackman-harris";
-    }
-    return "";
-}
 
 /// Samples whose spread tells a pixel's error: none where one was left out, as it is not known
 /// which replicate it was dealt to.
@@ -127,7 +104,7 @@ std::string program_version() {
     return "petzval " PETZVAL_VERSION;
 }
 
-PictureRows develop(const Film& film, const Session& session, const RenderJob& job,
+PictureRows develop(const Film& film, const RenderSetup& setup, const RenderJob& job,
                     const PathOptions& options, uint32_t end_sample) {
     const Rect crop = film.crop();
     PictureLayout layout{
@@ -139,18 +116,18 @@ PictureRows develop(const Film& film, const Session& session, const RenderJob& j
         .full_height = film.full_size().y,
         .channels = channels_of(film),
         .metadata = {{"Software", program_version()},
-                     {"petzval:sceneHash", fmt::format("{:016x}", session.scene_hash)},
+                     {"petzval:sceneHash", fmt::format("{:016x}", setup.prepared.hash)},
                      {"petzval:samples", fmt::format("{}:{}", job.first_sample, end_sample)},
                      {"petzval:seed", fmt::format("{}", job.seed)},
                      {"petzval:sampler", name_of(job.sampler)},
                      {"petzval:filter", name_of(job.filter.kind())},
                      {"petzval:filterRadius_px", job.filter.radius_px()},
                      {"petzval:maxDepth", options.max_depth},
-                     {"petzval:scale", session.scale},
+                     {"petzval:scale", setup.from.scale},
                      {"petzval:transparent", int(options.transparent)},
                      {"petzval:luminousEfficacy_lm_per_W", kLuminousEfficacy_lm_per_w}}};
-    for (const auto& [name, value] : session.metadata) layout.metadata.emplace_back(name, value);
-    describe_camera(session.camera_report, layout);
+    for (const auto& [name, value] : setup.from.metadata) layout.metadata.emplace_back(name, value);
+    describe_camera(setup.from.camera, layout);
     if (film.spectral()) describe_spectrum(film, layout);
     return {std::move(layout), [&film, crop](int y, float* row) {
                 for (int x = crop.x0; x < crop.x1; ++x)

@@ -17,7 +17,7 @@ namespace petzval {
 /// io/image/spectral_layout.h, XYZ in nits and the standard errors of R, G and B; then the film's
 /// layers as "layer.channel". Metadata holds what the pixels follow from; no times, so that equal
 /// renders are equal files. The film must outlive the rows.
-[[nodiscard]] PictureRows develop(const Film&, const Session&, const RenderJob&, const PathOptions&,
-                                  uint32_t end_sample);
+[[nodiscard]] PictureRows develop(const Film&, const RenderSetup&, const RenderJob&,
+                                  const PathOptions&, uint32_t end_sample);
 
 }  // namespace petzval

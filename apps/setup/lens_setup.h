@@ -2,14 +2,14 @@
 // From a lens's name to a camera: film, iris, focus and exposure.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 
-#include "apps/setup/camera_request.h"
+#include "apps/setup/request.h"
 #include "camera/camera.h"
 #include "camera/lens/lens.h"
+#include "io/base/notice.h"
 #include "io/lens/lens_file.h"
 
 namespace petzval {
@@ -44,8 +44,7 @@ struct LensSetup {
 /// focus_m: along the axis from the middle of the entrance pupil. Throws InputError or
 /// ArgumentError: a focus nearer than the lens can, an iris that is none.
 [[nodiscard]] LensSetup set_up_lens(const CameraRequest&, const LoadedLens&, const M44f& to_world,
-                                    float focus_m, int width_px,
-                                    const std::function<void(const std::string&)>& notice);
+                                    float focus_m, int width_px, const Notice& notice);
 
 /// The same lens stopped down so far that nothing is blurred: what a photographer looks through to
 /// choose a focus. focus_m: absent for far away; it decides the scale of the picture.

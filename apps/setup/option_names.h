@@ -1,55 +1,105 @@
 // SPDX-License-Identifier: Apache-2.0
-// The words that options and metadata have for the choices of a camera.
+// The one name of each choice: options, metadata and reports all take it from here.
 #pragma once
 
-#include <string>
-#include <utility>
-#include <vector>
+#include <fmt/format.h>
 
-#include "apps/setup/camera_request.h"
+#include <array>
+#include <cmath>
+#include <string>
+#include <string_view>
+
+#include "apps/setup/request.h"
+#include "core/sampling/filter.h"
+#include "core/sampling/sampler.h"
 
 namespace petzval {
 
 template <class T>
-using Words = std::vector<std::pair<std::string, T>>;
+struct OptionName {
+    std::string_view name;
+    T value;
+};
 
-/// Every word of a choice; the argument only says which choice.
-[[nodiscard]] inline Words<DispersionMode> words_of(DispersionMode) {
-    return {{"tolerance", DispersionMode::Tolerance},
-            {"shared", DispersionMode::Shared},
-            {"split", DispersionMode::Split},
-            {"single", DispersionMode::Single},
-            {"hero", DispersionMode::Hero}};
-}
-[[nodiscard]] inline Words<ApertureScale> words_of(ApertureScale) {
-    return {{"area", ApertureScale::EqualArea}, {"inscribed", ApertureScale::Inscribed}};
-}
-[[nodiscard]] inline Words<IrisSampling> words_of(IrisSampling) {
-    return {{"formula", IrisSampling::Formula},
-            {"rejection", IrisSampling::Rejection},
-            {"triangles", IrisSampling::Triangles},
-            {"alias", IrisSampling::Alias}};
-}
-[[nodiscard]] inline Words<Coating> words_of(Coating) {
-    return {{"ideal", Coating::Ideal}, {"uncoated", Coating::Uncoated}, {"mgf2", Coating::MgF2}};
-}
-[[nodiscard]] inline Words<Precision> words_of(Precision) {
-    return {{"float", Precision::Float}, {"double", Precision::Double}};
-}
-[[nodiscard]] inline Words<ExposureMode> words_of(ExposureMode) {
-    return {{"normalised", ExposureMode::Normalised}, {"photographic", ExposureMode::Photographic}};
-}
-[[nodiscard]] inline Words<FocusBy> words_of(FocusBy) {
-    return {{"paraxial", FocusBy::Paraxial}, {"traced", FocusBy::Traced}};
-}
-[[nodiscard]] inline Words<Fit> words_of(Fit) {
-    return {{"lens", Fit::Lens}, {"fov", Fit::Fov}};
-}
-
+/// Every name of a choice, an array of OptionName<T>.
 template <class T>
-[[nodiscard]] std::string word_of(T value) {
-    for (const auto& [word, choice] : words_of(value))
-        if (choice == value) return word;
+inline constexpr int kOptionNames = 0;
+
+template <>
+inline constexpr std::array kOptionNames<DispersionMode>{
+    OptionName<DispersionMode>{"tolerance", DispersionMode::Tolerance},
+    OptionName<DispersionMode>{"shared", DispersionMode::Shared},
+    OptionName<DispersionMode>{"split", DispersionMode::Split},
+    OptionName<DispersionMode>{"single", DispersionMode::Single},
+    OptionName<DispersionMode>{"hero", DispersionMode::Hero}};
+template <>
+inline constexpr std::array kOptionNames<ApertureScale>{
+    OptionName<ApertureScale>{"area", ApertureScale::EqualArea},
+    OptionName<ApertureScale>{"inscribed", ApertureScale::Inscribed}};
+template <>
+inline constexpr std::array kOptionNames<IrisSampling>{
+    OptionName<IrisSampling>{"formula", IrisSampling::Formula},
+    OptionName<IrisSampling>{"rejection", IrisSampling::Rejection},
+    OptionName<IrisSampling>{"triangles", IrisSampling::Triangles},
+    OptionName<IrisSampling>{"alias", IrisSampling::Alias}};
+template <>
+inline constexpr std::array kOptionNames<Coating>{
+    OptionName<Coating>{"ideal", Coating::Ideal},
+    OptionName<Coating>{"uncoated", Coating::Uncoated}, OptionName<Coating>{"mgf2", Coating::MgF2}};
+template <>
+inline constexpr std::array kOptionNames<Precision>{
+    OptionName<Precision>{"float", Precision::Float},
+    OptionName<Precision>{"double", Precision::Double}};
+template <>
+inline constexpr std::array kOptionNames<ExposureMode>{
+    OptionName<ExposureMode>{"normalised", ExposureMode::Normalised},
+    OptionName<ExposureMode>{"photographic", ExposureMode::Photographic}};
+template <>
+inline constexpr std::array kOptionNames<FocusBy>{
+    OptionName<FocusBy>{"paraxial", FocusBy::Paraxial},
+    OptionName<FocusBy>{"traced", FocusBy::Traced}};
+template <>
+inline constexpr std::array kOptionNames<Fit>{OptionName<Fit>{"lens", Fit::Lens},
+                                              OptionName<Fit>{"fov", Fit::Fov}};
+template <>
+inline constexpr std::array kOptionNames<SpectralMode>{
+    OptionName<SpectralMode>{"auto", SpectralMode::Auto},
+    OptionName<SpectralMode>{"rgb", SpectralMode::Rgb},
+    OptionName<SpectralMode>{"wavelengths", SpectralMode::Wavelengths}};
+template <>
+inline constexpr std::array kOptionNames<WhiteBalance>{
+    OptionName<WhiteBalance>{"none", WhiteBalance::None},
+    OptionName<WhiteBalance>{"illuminant", WhiteBalance::Illuminant}};
+template <>
+inline constexpr std::array kOptionNames<SamplerKind>{
+    OptionName<SamplerKind>{"owen", SamplerKind::Owen},
+    OptionName<SamplerKind>{"sobol", SamplerKind::Sobol},
+    OptionName<SamplerKind>{"independent", SamplerKind::Independent}};
+template <>
+inline constexpr std::array kOptionNames<FilterKind>{
+    OptionName<FilterKind>{"box", FilterKind::Box},
+    OptionName<FilterKind>{"gauss", FilterKind::Gauss},
+    OptionName<FilterKind>{"blackman-harris", FilterKind::BlackmanHarris}};
+template <>
+inline constexpr std::array kOptionNames<LightChoiceKind>{
+    OptionName<LightChoiceKind>{"tree", LightChoiceKind::Tree},
+    OptionName<LightChoiceKind>{"power", LightChoiceKind::Power},
+    OptionName<LightChoiceKind>{"uniform", LightChoiceKind::Uniform}};
+template <>
+inline constexpr std::array kOptionNames<Traversal>{
+    OptionName<Traversal>{"robust", Traversal::Robust},
+    OptionName<Traversal>{"fast", Traversal::Fast}};
+
+/// A distance as --focus takes it.
+[[nodiscard]] inline std::string focus_text(FocusDistance distance) {
+    return std::isinf(distance.m) ? "infinity" : fmt::format("{}", distance.m);
+}
+
+/// The name of a choice.
+template <class T>
+[[nodiscard]] std::string name_of(T value) {
+    for (const auto& [name, choice] : kOptionNames<T>)
+        if (choice == value) return std::string(name);
     return "";
 }
 

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "apps/setup/camera_setup.h"
+#include "apps/setup/option_names.h"
 #include "io/base/format.h"
 #include "io/base/read_file.h"
 #include "io/gltf/gltf.h"
@@ -31,23 +32,11 @@ bool is_dark(const Scene& scene) {
     return !lit && !all_unlit;
 }
 
-Sky sky_of(const SceneRequest& request, const std::function<void(const std::string&)>& notice) {
+Sky sky_of(const SceneRequest& request, const Notice& notice) {
     if (request.environment)
         return load_sky(*request.environment, request.environment_rotate_deg,
                         request.environment_strength, notice);
     return request.background ? Sky::uniform(*request.background) : Sky();
-}
-
-std::string word_of(LightChoiceKind kind) {
-    switch (kind) {
-        case LightChoiceKind::Power:
-            return "power";
-        case LightChoiceKind::Uniform:
-            return "uniform";
-        case LightChoiceKind::Tree:
-            break;
-    }
-    return "tree";
 }
 
 std::vector<std::pair<std::string, std::string>> describe(const SceneRequest& request) {
@@ -61,8 +50,8 @@ std::vector<std::pair<std::string, std::string>> describe(const SceneRequest& re
                        fmt::format("{:.9g}", request.environment_strength));
     }
     if (const auto& b = request.background) m.emplace_back("petzval:background", with_commas(*b));
-    m.emplace_back("petzval:lightChoice", word_of(request.light_choice));
-    m.emplace_back("petzval:traversal", request.traversal == Traversal::Robust ? "robust" : "fast");
+    m.emplace_back("petzval:lightChoice", name_of(request.light_choice));
+    m.emplace_back("petzval:traversal", name_of(request.traversal));
     return m;
 }
 
@@ -77,76 +66,75 @@ bool same_scene(const SceneRequest& a, const SceneRequest& b) {
            a.environment_strength == b.environment_strength && same(a.background, b.background);
 }
 
-void load(SceneRequest request, Session& session,
-          const std::function<void(const std::string&)>& notice) {
+// The scene with its sky, not yet its BVH and lights.
+PreparedScene load(SceneRequest request, const Notice& notice) {
+    PreparedScene out;
     GltfFile file = load_gltf(request.scene);
     for (const std::string& warning : file.warnings) notice("warning: " + warning);
     auto scene = std::make_shared<Scene>(std::move(file.scene));
-    session.scene_hash = file.hash;
-    session.cameras = std::make_shared<std::vector<GltfCamera>>(std::move(file.cameras));
+    out.hash = file.hash;
+    out.cameras = std::make_shared<std::vector<GltfCamera>>(std::move(file.cameras));
     if (!request.environment && !request.background && is_dark(*scene)) {
         request.background = Rgb(1.f);
         notice(
             "no light in the file: a uniform white environment of 1 nit is used (--background "
             "1,1,1)");
     }
-    session.background = request.background;
+    out.background = request.background;
     scene->sky = sky_of(request, notice);
     finish_scene(*scene);
     if (scene->instances.empty())
         notice("warning: the scene is empty: only its background is rendered");
-    session.scene = std::move(scene);
+    out.scene = std::move(scene);
+    return out;
+}
+
+RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const RenderSetup* like) {
+    RenderSetup setup;
+    PreparedScene& prepared = setup.prepared;
+    Provenance& from = setup.from;
+    from.asked = asked;
+    const auto load_start = Clock::now();
+    const bool shares = like != nullptr && same_scene(asked, like->from.asked);
+    prepared = shares ? like->prepared : load(asked, notice);
+    const Scene& scene = *prepared.scene;
+    SceneRequest request = asked;
+    request.background = prepared.background;
+    if (request.environment) setup.view.visible_background = request.background;
+    const CameraModel model = choose_camera_model(
+        request.camera, request.scene, *prepared.cameras,
+        static_cast<float>(request.size.x) / static_cast<float>(request.size.y));
+    SpectralSetup spectra =
+        set_up_spectra(request.spectral, scene, model.dispersive_lens(), notice);
+    setup.view.observer = std::move(spectra.observer);
+    from.scale = std::move(spectra.scale);
+    from.spectral = std::move(spectra.decision);
+    from.metadata = describe(request);
+    from.metadata.insert(from.metadata.end(), spectra.metadata.begin(), spectra.metadata.end());
+    from.load_s = seconds_since(load_start);
+
+    const auto bvh_start = Clock::now();
+    if (!shares || asked.traversal != like->from.asked.traversal)
+        prepared.bvh = std::make_shared<const Bvh>(scene, request.traversal);
+    if (!shares || asked.light_choice != like->from.asked.light_choice)
+        prepared.lights = std::make_shared<const LightChoice>(scene, request.light_choice);
+    from.bvh_s = seconds_since(bvh_start);
+
+    CameraSetup camera =
+        set_up_camera(model, request.scene.string(), request.size, scene, *prepared.bvh, notice);
+    setup.view.camera = std::move(camera.camera);
+    from.camera = std::move(camera.report);
+    return setup;
 }
 
 }  // namespace
 
-Session open_session(const SceneRequest& asked,
-                     const std::function<void(const std::string&)>& notice, const Session* like) {
-    Session session;
-    session.asked = asked;
-    const auto load_start = Clock::now();
-    const bool shares = like != nullptr && same_scene(asked, like->asked);
-    if (shares) {
-        session.cameras = like->cameras;
-        session.scene = like->scene;
-        session.background = like->background;
-        session.scene_hash = like->scene_hash;
-    } else {
-        load(asked, session, notice);
-    }
-    SceneRequest request = asked;
-    request.background = session.background;
-    if (request.environment) session.visible_background = request.background;
-    const Scene& scene = *session.scene;
-    const CameraModel plan = choose_camera_model(
-        request.camera, request.scene, *session.cameras,
-        static_cast<float>(request.size.x) / static_cast<float>(request.size.y));
-    request.spectral.dispersive_lens = plan.dispersive_lens();
-    SpectralSetup spectra = set_up_spectra(request.spectral, scene, notice);
-    session.observer = std::move(spectra.observer);
-    session.scale = std::move(spectra.scale);
-    session.dispersive_lens = request.spectral.dispersive_lens;
-    session.depends = std::move(spectra.depends);
-    session.spectral_decision = std::move(spectra.decision);
-    session.metadata = describe(request);
-    session.metadata.insert(session.metadata.end(), spectra.metadata.begin(),
-                            spectra.metadata.end());
-    session.load_s = seconds_since(load_start);
+RenderSetup set_up_render(const SceneRequest& asked, const Notice& notice) {
+    return set_up(asked, notice, nullptr);
+}
 
-    const auto bvh_start = Clock::now();
-    session.bvh = shares && asked.traversal == like->asked.traversal
-                      ? like->bvh
-                      : std::make_shared<const Bvh>(scene, request.traversal);
-    session.lights = shares && asked.light_choice == like->asked.light_choice
-                         ? like->lights
-                         : std::make_shared<const LightChoice>(scene, request.light_choice);
-    session.bvh_s = seconds_since(bvh_start);
-
-    CameraSetup setup =
-        set_up_camera(plan, request.scene.string(), request.size, scene, *session.bvh, notice);
-    session.camera = std::move(setup.camera);
-    session.camera_report = std::move(setup.report);
-    return session;
+RenderSetup set_up_view(const RenderSetup& like, const SceneRequest& asked, const Notice& notice) {
+    return set_up(asked, notice, &like);
 }
 
 }  // namespace petzval

@@ -1,24 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a user, or a camera of the file, asks of the camera.
+// What a user asks for: of the scene, of its camera, of wavelengths. Numbers and names only; what
+// becomes of them is decided by the other files of this room.
 #pragma once
 
 #include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
 #include "camera/dispersion/dispersion_mode.h"
 #include "camera/iris/iris_options.h"
 #include "camera/lens/lens_options.h"
+#include "core/light/light_options.h"
 #include "core/math/math.h"
+#include "core/spectrum/bands.h"
+#include "core/spectrum/bins.h"
+#include "core/traversal/traversal_options.h"
 
 namespace petzval {
 
 struct FocusAuto {};
 struct FocusDistance {
-    float m;
+    float m;  ///< from the entrance pupil of the lens in focus; may be infinite
 };
 struct FocusPixel {
     int x, y;  ///< of the full frame; its centre is meant
@@ -61,6 +67,33 @@ struct CameraRequest {
     ExposureMode exposure = ExposureMode::Normalised;
     float iso = 100, shutter_s = 0.01f;
     std::vector<std::filesystem::path> glasses;  ///< catalogues that go before those that ship
+};
+
+enum class SpectralMode : uint8_t { Auto, Rgb, Wavelengths };
+enum class WhiteBalance : uint8_t { None, Illuminant };
+
+/// The illuminant and the response of a picture that needs no wavelengths.
+inline constexpr std::string_view kUsualIlluminant = "d65", kUsualResponse = "cie1931";
+
+struct SpectralRequest {
+    SpectralMode mode = SpectralMode::Auto;
+    std::optional<Bins> bins;
+    /// Names, or CSV files.
+    std::string illuminant{kUsualIlluminant}, response{kUsualResponse};
+    WhiteBalance white_balance = WhiteBalance::None;
+};
+
+/// Everything absent means: as the file has it, else a sensible choice that is reported.
+struct SceneRequest {
+    std::filesystem::path scene;
+    V2i size{1280, 720};
+    CameraRequest camera;
+    std::optional<std::filesystem::path> environment;
+    float environment_rotate_deg = 0, environment_strength = 1;
+    std::optional<Rgb> background;
+    LightChoiceKind light_choice = LightChoiceKind::Tree;
+    Traversal traversal = Traversal::Robust;
+    SpectralRequest spectral;
 };
 
 }  // namespace petzval

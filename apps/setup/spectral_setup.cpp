@@ -2,11 +2,11 @@
 #include "apps/setup/spectral_setup.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <filesystem>
 #include <stdexcept>
 
+#include "apps/setup/option_names.h"
 #include "apps/setup/wavelength_reasons.h"
 #include "core/spectrum/sensor_fit.h"
 #include "io/base/ascii.h"
@@ -18,47 +18,24 @@
 namespace petzval {
 namespace {
 
-using Notice = std::function<void(const std::string&)>;
-
-constexpr std::string_view kUsualIlluminant = "d65", kUsualResponse = "cie1931";
-
 bool is(const std::string& name, std::string_view usual) {
     return lower(name) == usual;
 }
 
-std::vector<std::string> wishes(const SpectralRequest& request) {
-    std::vector<std::string> found;
-    if (request.bins) found.emplace_back("--bins asks for spectra");
-    if (!is(request.illuminant, kUsualIlluminant))
-        found.push_back(fmt::format("--illuminant is {}", request.illuminant));
-    if (!is(request.response, kUsualResponse))
-        found.push_back(fmt::format("--response is {}", request.response));
-    return found;
-}
-
-// What of request and scene only wavelengths can show.
-std::vector<std::string> reasons(const SpectralRequest& request, const Scene& scene) {
-    std::vector<std::string> found = wishes(request);
-    if (!request.dispersive_lens.empty())
-        found.push_back(fmt::format("lens {} disperses", request.dispersive_lens));
-    for (std::string& reason : reasons_for_wavelengths(scene)) found.push_back(std::move(reason));
-    return found;
-}
-
-// Whether paths carry wavelengths; fills in the setup's decision and its grounds.
-bool decide(const SpectralRequest& request, const Scene& scene, const Notice& notice,
-            SpectralSetup& setup) {
-    setup.depends = reasons(request, scene);
-    const bool depends = !setup.depends.empty(), chosen = request.mode == SpectralMode::Auto;
-    const bool hero = chosen ? depends : request.mode == SpectralMode::Wavelengths;
-    const std::string what = fmt::format("{}", fmt::join(setup.depends, "; "));
-    std::string because = request.because.empty() ? "--spectral says" : request.because;
-    if (chosen) because = depends ? what : "nothing here depends on wavelength";
-    setup.decision = fmt::format("spectral: {}, as {}", hero ? "hero wavelengths" : "rgb", because);
-    notice(setup.decision);
-    if (!hero && depends && request.because.empty())
-        notice("warning: --spectral rgb cannot show that " + what);
-    return hero;
+SpectralDecision decide(const SpectralRequest& request, const Scene& scene,
+                        const std::string& dispersive_lens) {
+    SpectralDecision out;
+    out.reasons = explicit_requests(request);
+    if (!dispersive_lens.empty())
+        out.reasons.push_back({WavelengthReason::Kind::Lens, dispersive_lens, ""});
+    for (WavelengthReason& reason : scene_reasons(scene)) out.reasons.push_back(std::move(reason));
+    if (request.mode == SpectralMode::Auto) {
+        out.wavelengths = !out.reasons.empty();
+    } else {
+        out.by = DecidedBy::User;
+        out.wavelengths = request.mode == SpectralMode::Wavelengths;
+    }
+    return out;
 }
 
 void warn_of_glasses(const SpectralRequest& request, const Scene& scene, const Notice& notice) {
@@ -103,18 +80,15 @@ Matrix3 fitted(const SpectralRequest& request, const ObserverInput& in, const Ma
 
 }  // namespace
 
-bool asks_for_wavelengths(const SpectralRequest& request) {
-    return request.mode == SpectralMode::Wavelengths || !wishes(request).empty();
-}
-
 SpectralSetup set_up_spectra(const SpectralRequest& request, const Scene& scene,
-                             const Notice& notice) {
+                             const std::string& dispersive_lens, const Notice& notice) {
     SpectralSetup setup;
     setup.scale = "RGB 1 = 1 nit of D65 white";
     // Names and files are looked at in any mode: a slip of the pen must not pass for a choice.
     const SpectrumTable white = find_illuminant(request.illuminant);
     const auto response = find_response(request.response);
-    if (!decide(request, scene, notice, setup)) {
+    setup.decision = decide(request, scene, dispersive_lens);
+    if (!setup.decision.wavelengths) {
         setup.metadata = {{"petzval:spectral", "rgb"}};
         return setup;
     }
@@ -131,11 +105,10 @@ SpectralSetup set_up_spectra(const SpectralRequest& request, const Scene& scene,
 
     if (request.white_balance == WhiteBalance::Illuminant)
         setup.scale = "RGB 1 = 1 nit of the illuminant";
-    setup.metadata = {{"petzval:spectral", "hero"},
+    setup.metadata = {{"petzval:spectral", "wavelengths"},
                       {"petzval:illuminant", name_and_hash(request.illuminant)},
                       {"petzval:response", name_and_hash(request.response)},
-                      {"petzval:whiteBalance",
-                       request.white_balance == WhiteBalance::None ? "none" : "illuminant"},
+                      {"petzval:whiteBalance", name_of(request.white_balance)},
                       {"petzval:responseToSrgb",
                        fmt::format("{};{};{}", with_commas(in.matrix[0]), with_commas(in.matrix[1]),
                                    with_commas(in.matrix[2]))}};

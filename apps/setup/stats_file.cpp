@@ -11,16 +11,6 @@
 namespace petzval {
 namespace {
 
-double seconds(const timeval& t) {
-    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-}
-
-rusage usage() {
-    rusage self{};
-    getrusage(RUSAGE_SELF, &self);
-    return self;
-}
-
 // CPU seconds of the render by section: shares of the timed samples, applied to the whole.
 nlohmann::ordered_json sections(const PathStats& stats, double cpu_s) {
     const auto ticks = [&](TimedSection s) {
@@ -47,15 +37,12 @@ nlohmann::ordered_json lens_lanes(const LensLosses<uint64_t>& lanes) {
 }  // namespace
 
 double peak_memory_mib() {
-    return static_cast<double>(usage().ru_maxrss) / 1024;
+    rusage self{};
+    getrusage(RUSAGE_SELF, &self);
+    return static_cast<double>(self.ru_maxrss) / 1024;
 }
 
-double process_cpu_s() {
-    const rusage self = usage();
-    return seconds(self.ru_utime) + seconds(self.ru_stime);
-}
-
-void write_stats(const std::filesystem::path& path, const Session& session,
+void write_stats(const std::filesystem::path& path, const RenderSetup& setup,
                  const RenderResult& result, const RenderCost& cost, const Film& film) {
     const PathStats& s = result.stats;
     const uint64_t rays = s.camera_rays + s.bounce_rays + s.shadow_rays;
@@ -66,8 +53,8 @@ void write_stats(const std::filesystem::path& path, const Session& session,
     out["pixel_samples"] = s.samples;
     out["threads"] = cost.threads;
     out["threads_that_worked"] = result.workers;
-    out["load_s"] = session.load_s;
-    out["bvh_build_s"] = session.bvh_s;
+    out["load_s"] = setup.from.load_s;
+    out["bvh_build_s"] = setup.from.bvh_s;
     out["render_wall_s"] = cost.render_wall_s;
     out["render_cpu_s"] = cost.render_cpu_s;
     out["rays"] = {{"camera", s.camera_rays},

@@ -17,11 +17,9 @@ struct RenderCost {
 
 /// Peak resident memory of this process, MiB.
 [[nodiscard]] double peak_memory_mib();
-/// CPU seconds of this process, all threads, user and system.
-[[nodiscard]] double process_cpu_s();
 
 /// Throws InputError where the file cannot be written.
-void write_stats(const std::filesystem::path&, const Session&, const RenderResult&,
+void write_stats(const std::filesystem::path&, const RenderSetup&, const RenderResult&,
                  const RenderCost&, const Film&);
 
 }  // namespace petzval

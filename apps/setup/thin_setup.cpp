@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "camera/models/aberrated_lens.h"
-#include "camera/models/exposure.h"
-#include "camera/models/sensor.h"
 #include "camera/models/thin_lens_optics.h"
+#include "camera/setup/exposure.h"
+#include "camera/setup/sensor.h"
 #include "io/aperture/aperture_file.h"
 #include "io/base/error.h"
 
@@ -27,11 +27,11 @@ constexpr double kFarthestFocus_m = 1e6;
 
 // What the closed forms refuse, they refuse in words for whoever chose the numbers.
 template <class Function>
-auto or_argument_error(const CameraModel& plan, Function&& function) {
+auto or_argument_error(const CameraModel& model, Function&& function) {
     try {
         return function();
     } catch (const std::invalid_argument& error) {
-        throw ArgumentError(plan.asked.lens.value_or("thin lens"), "", error.what());
+        throw ArgumentError(model.asked.lens.value_or("thin lens"), "", error.what());
     }
 }
 
@@ -49,43 +49,34 @@ Singlet singlet_of(const SingleLens& lens, double focal_mm) {
 }
 
 // Where the request says it, be it by the radii of a lens.
-std::optional<double> asked_focal_length_mm(const CameraModel& plan) {
-    if (const auto* lens = std::get_if<SingleLens>(&plan.optics); lens && lens->radii_mm)
+std::optional<double> asked_focal_length_mm(const CameraModel& model) {
+    if (const auto* lens = std::get_if<SingleLens>(&model.optics); lens && lens->radii_mm)
         return singlet_of(*lens, 0).at(kLineD_nm).focal_mm;
-    return plan.asked.focal_length_mm;
+    return model.asked.focal_length_mm;
 }
 
-// Irradiance over radiance: a cone of light of the iris's area.
-double irradiance_of(double radius_mm, double film_mm, double area_mm2) {
-    const double sine = std::sin(std::atan(radius_mm / film_mm));
-    return area_mm2 / (radius_mm * radius_mm) * sine * sine;
-}
-
-void warn_of_formula(const Singlet& singlet, const CameraModel& plan, double focus_mm,
-                     double radius_mm, const std::function<void(const std::string&)>& notice) {
+void warn_of_formula(const Singlet& singlet, const CameraModel& model, double focus_mm,
+                     double radius_mm, const Notice& notice) {
     const SingletOptics at = singlet.at(kLineD_nm);
     const double error = spherical_aberration_error(at, focus_mm, radius_mm);
     if (!(error > kMostFormulaError)) return;
-    double fits_mm = radius_mm;
-    while (fits_mm > 1e-6 * at.focal_mm &&
-           !(spherical_aberration_error(at, focus_mm, fits_mm) <= kMostFormulaError))
-        fits_mm *= 0.98;
+    const double fits_mm = radius_within_error(at, focus_mm, radius_mm, kMostFormulaError);
     notice(
         fmt::format("warning: {} at f/{:.3g}: the formula of its spherical aberration is {} off "
                     "at the rim of the iris; it is within {:g} % from f/{:.3g} on",
-                    *plan.asked.lens, at.focal_mm / (2 * radius_mm),
+                    *model.asked.lens, at.focal_mm / (2 * radius_mm),
                     std::isfinite(error) ? fmt::format("{:.0f} %", 100 * error) : "far",
                     100 * kMostFormulaError, at.focal_mm / (2 * fits_mm)));
 }
 
 }  // namespace
 
-ThinView thin_view(const CameraModel& plan, const std::string& scene, float aspect) {
-    const CameraRequest& asked = plan.asked;
+ThinView thin_view(const CameraModel& model, const std::string& scene, float aspect) {
+    const CameraRequest& asked = model.asked;
     ThinView view{};
     view.sensor_mm = film_within(asked.sensor_mm.value_or(V2f(36.f, 24.f)), aspect);
     const float half_mm = view.sensor_mm.y / 2;
-    view.focal_mm = or_argument_error(plan, [&] { return asked_focal_length_mm(plan); });
+    view.focal_mm = or_argument_error(model, [&] { return asked_focal_length_mm(model); });
     const auto of_half = [&](double distance_mm) {
         return 2 * std::atan(half_mm / static_cast<float>(distance_mm)) / kDegree;
     };
@@ -93,13 +84,13 @@ ThinView thin_view(const CameraModel& plan, const std::string& scene, float aspe
         view.yfov_deg = of_half(*asked.film_distance_mm);
         require_fov(view.yfov_deg, scene, "--film-distance");
         if (view.focal_mm)
-            view.focus_m = static_cast<float>(or_argument_error(plan, [&] {
+            view.focus_m = static_cast<float>(or_argument_error(model, [&] {
                 return std::fmin(
                     1e-3 * object_distance_mm(*view.focal_mm, double(*asked.film_distance_mm)),
                     kFarthestFocus_m);
             }));
-    } else if (plan.from && !asked.fov_deg && !view.focal_mm) {
-        view.yfov_rad = plan.from->yfov_rad;
+    } else if (model.from && !asked.fov_deg && !view.focal_mm) {
+        view.yfov_rad = model.from->yfov_rad;
         view.yfov_deg = view.yfov_rad / kDegree;
     } else if (asked.fov_deg || !view.focal_mm) {
         view.yfov_deg = asked.fov_deg.value_or(kDefaultFov_deg);
@@ -124,10 +115,9 @@ float yfov_at_rad(const ThinView& view, std::optional<float> focus_m) {
     return 2 * std::atan(view.sensor_mm.y / 2 / static_cast<float>(film_mm));
 }
 
-ThinSetup set_up_thin(const CameraModel& plan, const ThinView& view, ThinLens lens,
-                      std::optional<float> focus_m, int width_px,
-                      const std::function<void(const std::string&)>& notice) {
-    const CameraRequest& asked = plan.asked;
+ThinSetup set_up_thin(const CameraModel& model, const ThinView& view, ThinLens lens,
+                      std::optional<float> focus_m, int width_px, const Notice& notice) {
+    const CameraRequest& asked = model.asked;
     ThinSetup setup{};
     if (!focus_m) {
         setup.focal_mm = view.focal_mm.value_or(0);
@@ -135,7 +125,7 @@ ThinSetup set_up_thin(const CameraModel& plan, const ThinView& view, ThinLens le
         return setup;
     }
     const double focus_mm = 1e3 * double(*focus_m);
-    or_argument_error(plan, [&] {
+    or_argument_error(model, [&] {
         setup.focal_mm = view.focal_mm
                              ? *view.focal_mm
                              : focal_length_between_mm(focus_mm, double(*asked.film_distance_mm));
@@ -148,9 +138,9 @@ ThinSetup set_up_thin(const CameraModel& plan, const ThinView& view, ThinLens le
         lens.focus_m = *focus_m;
         if (asked.exposure == ExposureMode::Photographic)
             lens.exposure = static_cast<float>(
-                photographic_gain(irradiance_of(radius_mm, setup.film_mm, iris.area_mm2()),
+                photographic_gain(thin_lens_irradiance(radius_mm, setup.film_mm, iris.area_mm2()),
                                   double(asked.iso), double(asked.shutter_s)));
-        if (const auto* single = std::get_if<SingleLens>(&plan.optics)) {
+        if (const auto* single = std::get_if<SingleLens>(&model.optics)) {
             AberratedLens glass{lens.to_world,   singlet_of(*single, setup.focal_mm),
                                 std::move(iris), double(*focus_m),
                                 lens.yfov_rad,   lens.aspect};
@@ -159,7 +149,8 @@ ThinSetup set_up_thin(const CameraModel& plan, const ThinView& view, ThinLens le
                 static_cast<float>(asked.dispersion_tolerance_px * double(view.sensor_mm.x) /
                                    width_px / setup.film_mm);
             glass.exposure = lens.exposure;
-            warn_of_formula(glass.singlet, plan, focus_mm, glass.iris.bounding_radius_mm(), notice);
+            warn_of_formula(glass.singlet, model, focus_mm, glass.iris.bounding_radius_mm(),
+                            notice);
             setup.camera = std::make_unique<AberratedLensCamera>(std::move(glass));
         } else {
             lens.iris = std::move(iris);

@@ -2,13 +2,13 @@
 // From numbers to a camera without a prescription: pinhole, thin lens, single lens by formula.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 
 #include "apps/setup/camera_model.h"
 #include "camera/camera.h"
 #include "camera/models/thin_lens.h"
+#include "io/base/notice.h"
 
 namespace petzval {
 
@@ -39,6 +39,6 @@ struct ThinSetup {
 /// an object within the focal length, and for an iris that is none.
 [[nodiscard]] ThinSetup set_up_thin(const CameraModel&, const ThinView&, ThinLens pose,
                                     std::optional<float> focus_m, int width_px,
-                                    const std::function<void(const std::string&)>& notice);
+                                    const Notice& notice);
 
 }  // namespace petzval

@@ -3,32 +3,37 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
+
+#include "io/base/ascii.h"
 
 namespace petzval {
 namespace {
 
-/// Things of one kind: the first of them in words, and how many there are.
-class Kind {
+using Kind = WavelengthReason::Kind;
+
+/// Keeps the first thing of each kind and counts the others.
+class Reasons {
   public:
-    template <class Describe>
-    void add(const Describe& describe) {
-        if (count_++ == 0) first_ = describe();
+    void add(Kind kind, const std::string& what, const std::string& material = "") {
+        for (WavelengthReason& known : found_)
+            if (known.kind == kind) {
+                ++known.others;
+                return;
+            }
+        found_.push_back({kind, what, material});
     }
-    void append_to(std::vector<std::string>& reasons) const {
-        if (count_ > 1) reasons.push_back(fmt::format("{}, and {} more", first_, count_ - 1));
-        if (count_ == 1) reasons.push_back(first_);
+    /// In the order of the kinds.
+    [[nodiscard]] std::vector<WavelengthReason> take() && {
+        std::sort(found_.begin(), found_.end(),
+                  [](const auto& a, const auto& b) { return a.kind < b.kind; });
+        return std::move(found_);
     }
 
   private:
-    std::string first_;
-    size_t count_ = 0;
+    std::vector<WavelengthReason> found_;
 };
-
-std::string named(const Material& material) {
-    return material.name.empty() ? "a material without a name"
-                                 : fmt::format("material \"{}\"", material.name);
-}
 
 bool disperses(const Material& m) {
     return m.glass && m.refracts();
@@ -53,34 +58,41 @@ std::string range_of(const Glass& glass) {
 
 }  // namespace
 
-std::vector<std::string> reasons_for_wavelengths(const Scene& scene) {
-    Kind glasses, metals, emitters, lights;
+std::vector<WavelengthReason> explicit_requests(const SpectralRequest& request) {
+    std::vector<WavelengthReason> out;
+    if (request.bins) out.push_back({Kind::Bins, "", ""});
+    if (lower(request.illuminant) != kUsualIlluminant)
+        out.push_back({Kind::Illuminant, request.illuminant, ""});
+    if (lower(request.response) != kUsualResponse)
+        out.push_back({Kind::Response, request.response, ""});
+    return out;
+}
+
+bool asks_for_wavelengths(const SpectralRequest& request) {
+    return request.mode == SpectralMode::Wavelengths || !explicit_requests(request).empty();
+}
+
+std::vector<WavelengthReason> scene_reasons(const Scene& scene) {
+    Reasons reasons;
     for (const Material& m : scene.materials) {
-        if (disperses(m))
-            glasses.add([&] { return fmt::format("{} disperses ({})", named(m), m.glass->name); });
+        if (disperses(m)) reasons.add(Kind::Glass, m.glass->name, m.name);
         if (m.metal >= 0 && m.metallic > 0)
-            metals.add([&] {
-                return fmt::format("{} is a measured metal ({})", named(m),
-                                   scene.metals[static_cast<size_t>(m.metal)].name);
-            });
+            reasons.add(Kind::Metal, scene.metals[static_cast<size_t>(m.metal)].name, m.name);
         if (const Illuminant* white = scene.illuminant(m.illuminant); white && m.emits())
-            emitters.add(
-                [&] { return fmt::format("{} shines as illuminant {}", named(m), white->name); });
+            reasons.add(Kind::Emitter, white->name, m.name);
     }
     for (const Light& light : scene.lights)
         if (const Illuminant* white = scene.illuminant(illuminant_of(light)))
-            lights.add([&] { return fmt::format("a light shines as illuminant {}", white->name); });
-    std::vector<std::string> reasons;
-    for (const Kind* kind : {&glasses, &metals, &emitters, &lights}) kind->append_to(reasons);
-    return reasons;
+            reasons.add(Kind::Lamp, white->name);
+    return std::move(reasons).take();
 }
 
 std::vector<std::string> glass_range_warnings(const Scene& scene) {
     std::vector<std::string> warnings;
-    std::set<std::string> seen;
+    std::set<std::string> named;
     for (const Material& m : scene.materials)
         if (disperses(m) && !is_known(*m.glass, kFirst_nm, kLast_nm) &&
-            seen.insert(m.glass->name).second)
+            named.insert(m.glass->name).second)
             warnings.push_back(range_of(*m.glass) + ": the value at the end is held outside");
     return warnings;
 }

@@ -1,20 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
-// What in a scene RGB cannot tell, and how far its glasses are known.
+// What RGB cannot show of a request and a scene, and how far the scene's glasses are known.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/setup/request.h"
 #include "core/scene/scene.h"
 
 namespace petzval {
 
-/// One phrase for each kind of thing in the scene that depends on wavelength, with the first of
-/// that kind and how many more there are: "material "prism" disperses (schott:N-SF11), and 3 more".
-/// Kinds: glass that disperses, measured metal, material that shines as an illuminant, light that
-/// does. Empty where RGB tells all.
-[[nodiscard]] std::vector<std::string> reasons_for_wavelengths(const Scene&);
+/// Something that depends on wavelength.
+struct WavelengthReason {
+    enum class Kind {
+        Bins,        ///< spectra are asked for
+        Illuminant,  ///< another white is asked for
+        Response,    ///< another sensor is asked for
+        Lens,        ///< its glass disperses
+        Glass,       ///< of a material, disperses
+        Metal,       ///< measured, of a material
+        Emitter,     ///< a material that shines as an illuminant
+        Lamp         ///< a punctual light that does
+    };
+    Kind kind;
+    std::string what;      ///< the illuminant, response, lens, glass or metal
+    std::string material;  ///< that has it; empty where it has no name or there is none
+    size_t others = 0;     ///< further things of this kind
+
+    [[nodiscard]] bool operator==(const WavelengthReason&) const = default;
+};
+
+/// What the request itself asks for that RGB cannot show, whatever the scene.
+[[nodiscard]] std::vector<WavelengthReason> explicit_requests(const SpectralRequest&);
+
+/// Whether the request itself, whatever the scene, asks for more than RGB.
+[[nodiscard]] bool asks_for_wavelengths(const SpectralRequest&);
+
+/// What of the scene depends on wavelength: the first thing of each kind, and how many more there
+/// are. Empty where RGB shows all.
+[[nodiscard]] std::vector<WavelengthReason> scene_reasons(const Scene&);
 
 /// A line for each different glass whose formula does not cover kFirst_nm to kLast_nm.
 [[nodiscard]] std::vector<std::string> glass_range_warnings(const Scene&);

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "camera/models/thin_lens.h"
 
+#include <cmath>
 #include <utility>
 
 namespace petzval {
 namespace {
+
+// From here on a lens radius is below the last digit of a float: as good as infinity.
+constexpr float kFarthest_m = 1e9f;
 
 // A camera ray from a point and a direction of the camera's own space.
 CameraSample one_path(const Pose& pose, const V3f& origin, const V3f& direction, const Bands& bands,
@@ -30,7 +34,7 @@ Pose::Pose(const M44f& m)
 ThinLensCamera::ThinLensCamera(ThinLens lens)
     : pose_(lens.to_world),
       iris_(std::move(lens.iris)),
-      focus_m_(lens.focus_m),
+      focus_m_(std::fmin(lens.focus_m, kFarthest_m)),
       exposure_(lens.exposure),
       tan_half_x_(std::tan(lens.yfov_rad / 2) * lens.aspect),
       tan_half_y_(std::tan(lens.yfov_rad / 2)) {}

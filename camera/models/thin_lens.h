@@ -16,7 +16,7 @@ struct ThinLens {
     float yfov_rad = 0.7f;  ///< full vertical angle, seen from the lens's centre
     float aspect = 1.5f;    ///< width / height of the film
     std::optional<Iris> iris;
-    float focus_m = 1.f;   ///< axial distance
+    float focus_m = 1.f;   ///< axial distance; may be infinite
     float exposure = 1.f;  ///< factor on every weight
 };
 

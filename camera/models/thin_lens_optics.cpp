@@ -175,4 +175,12 @@ double spherical_aberration_error(const SingletOptics& lens, double object_mm, d
     return formula == *traced ? 0 : std::fabs(formula / *traced - 1);
 }
 
+double radius_within_error(const SingletOptics& at, double focus_mm, double radius_mm,
+                           double most_error) {
+    while (radius_mm > 1e-6 * at.focal_mm &&
+           !(spherical_aberration_error(at, focus_mm, radius_mm) <= most_error))
+        radius_mm *= 0.98;
+    return radius_mm;
+}
+
 }  // namespace petzval

@@ -72,4 +72,9 @@ struct Singlet {
 [[nodiscard]] double spherical_aberration_error(const SingletOptics&, double object_mm,
                                                 double h_mm);
 
+/// The greatest radius of the stop, at most radius_mm and 2 % too small, whose
+/// spherical_aberration_error is within most_error; a millionth of the focal length where none is.
+[[nodiscard]] double radius_within_error(const SingletOptics&, double focus_mm, double radius_mm,
+                                         double most_error);
+
 }  // namespace petzval

@@ -4,17 +4,12 @@
 
 #include <optional>
 
+#include "core/light/light_options.h"
 #include "core/light/light_tree.h"
 #include "core/sampling/distribution.h"
 #include "core/scene/scene.h"
 
 namespace petzval {
-
-/// Power: in proportion to light_power. Uniform: the same for every light that has power. Tree: in
-/// proportion to what light could do at the receiver, by a LightTree over the lights that stand
-/// somewhere; sky and suns share its first choice by their illuminance, and are chosen among by
-/// power.
-enum class LightChoiceKind { Power, Uniform, Tree };
 
 class LightChoice {
   public:

@@ -7,14 +7,11 @@
 
 #include "core/math/ray.h"
 #include "core/scene/scene.h"
+#include "core/traversal/traversal_options.h"
 
 struct RTCSceneTy;
 
 namespace petzval {
-
-/// Robust: no ray passes between neighbouring triangles. Fast: spatial splits and cheaper edge
-/// tests, which may leak at edges and build longer.
-enum class Traversal { Robust, Fast };
 
 class Bvh {
   public:

@@ -15,7 +15,7 @@ using nlohmann::json;
 // bufferView unchecked: it is given buffers of one byte and no images.
 void replace_bytes(json& patched, size_t buffer_count) {
     for (const char* unused : {"images", "animations", "extras"}) patched.erase(unused);
-    const json stand_in = {{"byteLength", 1}, {"uri", "data:application/block-stream;base64,AA=="}};
+    const json stand_in = {{"byteLength", 1}, {"uri", "data:application/octet-stream;base64,AA=="}};
     patched["buffers"] = json::array();
     for (size_t i = 0; i < buffer_count; ++i) patched["buffers"].push_back(stand_in);
 }

@@ -55,7 +55,7 @@ void check_kind(const std::filesystem::path& path) {
 }  // namespace
 
 Sky load_sky(const std::filesystem::path& path, float rotate_deg, float strength,
-             const std::function<void(const std::string&)>& notice) {
+             const Notice& notice) {
     check_kind(path);
     const Picture picture = read_picture(path);
     if (picture.width != picture.full_width || picture.height != picture.full_height)

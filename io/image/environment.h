@@ -3,10 +3,10 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <string>
 
 #include "core/scene/sky.h"
+#include "io/base/notice.h"
 
 namespace petzval {
 
@@ -15,6 +15,6 @@ namespace petzval {
 /// below zero become 0, a picture not twice as wide as high is stretched; notice gets one line for
 /// each. Throws InputError for any other file and for a texel that is not finite, which it names.
 [[nodiscard]] Sky load_sky(const std::filesystem::path&, float rotate_deg, float strength,
-                           const std::function<void(const std::string&)>& notice);
+                           const Notice& notice);
 
 }  // namespace petzval

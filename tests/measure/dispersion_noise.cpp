@@ -24,23 +24,23 @@ struct Strategy {
     std::string name;
     DispersionMode mode;
     float tolerance_px = 0;
-    Session session{};
+    RenderSetup setup{};
     std::vector<Film> films{};
     std::vector<double> cpu_s{};
 };
 
 // How far apart, in pixels, rays of 450 and 650 nm from the middle of the crop meet the plane of
 // focus that started in one direction: root of the mean square over the iris.
-double parted_px(const Session& split, const RenderJob& job, V2i size, Rect crop) {
-    const CameraReport& report = split.camera_report;
+double parted_px(const RenderSetup& split, const RenderJob& job, V2i size, Rect crop) {
+    const CameraReport& report = split.from.camera;
     const V3f axis = (report.target - report.eye).normalized();
-    const Bands bands = split.observer.at(f4{450, 650, 550, 550}, splat(1e-3f), m4{-1, -1, 0, 0});
+    const Bands bands = split.view.observer.at(f4{450, 650, 550, 550}, splat(1e-3f), m4{-1, -1, 0, 0});
     const V2f middle(0.5f * float(crop.x0 + crop.x1), 0.5f * float(crop.y0 + crop.y1));
     double sum = 0;
     int count = 0;
     for (uint32_t i = 0; i < 4096; ++i) {
         const Sampler sampler(job.sampler, job.seed, {crop.x0, crop.y0, i});
-        const CameraSample seen = split.camera->sample({middle / V2f(size), sampler}, bands);
+        const CameraSample seen = split.view.camera->sample({middle / V2f(size), sampler}, bands);
         if (seen.size() != 2) continue;
         const auto on_plane = [&](const Ray& ray) {
             const float t =
@@ -56,11 +56,11 @@ double parted_px(const Session& split, const RenderJob& job, V2i size, Rect crop
 }
 
 void render_into(Strategy& strategy, RenderJob job, V2i size, Rect crop) {
-    job.observer = strategy.session.observer;
-    const PathTracer<Bvh> tracer(*strategy.session.scene, *strategy.session.bvh,
-                                 *strategy.session.lights, PathOptions());
+    job.observer = strategy.setup.view.observer;
+    const PathTracer<Bvh> tracer(*strategy.setup.prepared.scene, *strategy.setup.prepared.bvh,
+                                 *strategy.setup.prepared.lights, PathOptions());
     Film film(size, crop, {});
-    strategy.cpu_s.push_back(timed_s(tracer, *strategy.session.camera, job, film));
+    strategy.cpu_s.push_back(timed_s(tracer, *strategy.setup.view.camera, job, film));
     strategy.films.push_back(std::move(film));
 }
 
@@ -156,7 +156,7 @@ int run(int argc, char** argv) {
     for (Strategy& s : strategies) {
         camera.dispersion = s.mode;
         camera.dispersion_tolerance_px = s.tolerance_px;
-        s.session = open_session(request, [](const std::string&) {});
+        s.setup = set_up_render(request, [](const std::string&) {});
     }
     for (uint32_t seed = 0; seed < kSeeds; ++seed) {
         job.seed = seed;
@@ -165,7 +165,7 @@ int run(int argc, char** argv) {
     }
     Strategy reference{"reference", DispersionMode::Single};
     camera.dispersion = DispersionMode::Single;
-    reference.session = open_session(request, [](const std::string&) {});
+    reference.setup = set_up_render(request, [](const std::string&) {});
     RenderJob long_job = job;
     long_job.end_sample = reference_spp;
     for (uint32_t i = 0; i < kReferenceSeeds; ++i) {
@@ -176,7 +176,7 @@ int run(int argc, char** argv) {
     const LumaChroma noise = noise_of(truth);
     fmt::print("{} f/{:g}, {} pixels of {}: 450 and 650 nm part by {:.2g} px\n", *camera.lens,
                camera.fstop.value_or(0), crop.width() * crop.height(), size,
-               parted_px(strategies[1].session, job, request.size, crop));
+               parted_px(strategies[1].setup, job, request.size, crop));
     fmt::print("{} samples, {} seeds; error of the reference: Y {:.2f} %, chroma {:.2f} %\n\n",
                job.end_sample, kSeeds, 100 * std::sqrt(noise.luminance / kReferenceSeeds),
                100 * std::sqrt(noise.chroma / kReferenceSeeds));

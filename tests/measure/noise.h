@@ -9,11 +9,11 @@
 #include <cmath>
 #include <vector>
 
-#include "apps/setup/stats_file.h"
 #include "core/film/film.h"
 #include "core/spectrum/colour.h"
 #include "integrator/executor.h"
 #include "integrator/render.h"
+#include "io/base/clock.h"
 
 namespace petzval {
 

@@ -12,7 +12,9 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/cli/parse.h"
+#include "apps/plan/pilot.h"
 #include "apps/plan/plan.h"
+#include "apps/plan/plan_wording.h"
 #include "io/base/error.h"
 #include "io/lens/lens_file.h"
 #include "tests/measure/program.h"
@@ -74,14 +76,14 @@ void check(const std::string& scene, const std::string& lens, const Settings& se
     request.scene.camera.focus = FocusDistance{focus_m};
     request.tolerance = parse_share("--tolerance", settings.tolerance);
     const Plan plan = make_plan(request, executor, silent, settings.plan_samples);
-    const Session first = open_session(request.scene, silent);
+    const RenderSetup first = set_up_render(request.scene, silent);
     const Pilot pilot(request.scene.size, settings.pixels, executor, kSeed);
     std::vector<std::unique_ptr<PilotModel>> models;
     const auto samples =
         static_cast<uint32_t>(std::min<uint64_t>(plan.samples, settings.most_samples));
     for (const PlanCandidate& c : plan.candidates) {
         models.push_back(
-            pilot.model(open_session(c.scene, silent, &first), request.job, request.path));
+            pilot.model(set_up_view(first, c.scene, silent), request.job, request.path));
         pilot.look(*models.back(), std::max(samples, 64u));
     }
     const PilotModel& full = *models.back();
@@ -89,15 +91,15 @@ void check(const std::string& scene, const std::string& lens, const Settings& se
         fmt::format("{} | {}", std::filesystem::path(scene).stem().string(), lens);
     for (size_t i = 0; i < models.size(); ++i) {
         const PlanCandidate& c = plan.candidates[i];
-        const bool chosen = c.name == plan.chosen, fullest = i + 1 == models.size();
+        const bool chosen = c.model == plan.chosen, fullest = i + 1 == models.size();
         Estimate square;
         if (!fullest) {
             square = pilot.square({{models[i].get(), 1}, {&full, -1}}, full);
-            judge(where, c.name, c.predicted(), square, request.tolerance, chosen, tally);
+            judge(where, name_of(c.model), c.predicted(), square, request.tolerance, chosen, tally);
         }
         if (!chosen) continue;
         const auto chosen_model =
-            pilot.model(open_session(c.scene, silent, &first), request.job, request.path);
+            pilot.model(set_up_view(first, c.scene, silent), request.job, request.path);
         pilot.look(*chosen_model, samples);
         const Estimate noise = pilot.variance(*chosen_model, full);
         const double scale = double(samples) / double(plan.samples);

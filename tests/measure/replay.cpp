@@ -11,10 +11,10 @@
 
 #include "apps/cli/parse.h"
 #include "apps/setup/render_setup.h"
-#include "apps/setup/stats_file.h"
 #include "integrator/executor.h"
 #include "integrator/path_impl.h"
 #include "integrator/render.h"
+#include "io/base/clock.h"
 
 namespace petzval {
 namespace {
@@ -65,13 +65,13 @@ double retrace_s(RTCScene scene, const std::vector<Ray>& nearest, const std::vec
 }
 
 template <class Tracer>
-std::pair<double, PathStats> timed(const Tracer& tracer, const Session& session,
+std::pair<double, PathStats> timed(const Tracer& tracer, const RenderSetup& setup,
                                    const RenderJob& job, V2i size) {
     Film film(size, {0, 0, size.x, size.y}, {});
     RenderMonitor monitor;
     ThreadExecutor executor(1);
     const double start_s = process_cpu_s();
-    const RenderResult result = render(tracer, *session.camera, job, film, executor, monitor);
+    const RenderResult result = render(tracer, *setup.view.camera, job, film, executor, monitor);
     return {process_cpu_s() - start_s, result.stats};
 }
 
@@ -97,18 +97,21 @@ int run(int argc, char** argv) {
         request.camera.look_at = {V3f(v[0], v[1], v[2]), V3f(v[3], v[4], v[5])};
     }
     flush_denormals();
-    const Session session = open_session(request, [](const std::string&) {});
+    const RenderSetup setup = set_up_render(request, [](const std::string&) {});
     const PathOptions options;
-    const PathTracer<Bvh> tracer(*session.scene, *session.bvh, *session.lights, options);
-    const Recorder recorder{*session.bvh, {}, {}};
-    const PathTracer<Recorder> recording(*session.scene, recorder, *session.lights, options);
-    (void)timed(recording, session, job, request.size);
+    const PathTracer<Bvh> tracer(*setup.prepared.scene, *setup.prepared.bvh, *setup.prepared.lights,
+                                 options);
+    const Recorder recorder{*setup.prepared.bvh, {}, {}};
+    const PathTracer<Recorder> recording(*setup.prepared.scene, recorder, *setup.prepared.lights,
+                                         options);
+    (void)timed(recording, setup, job, request.size);
 
     // Pairs, as the machine's speed drifts; the medians are printed.
     std::vector<double> ratios, surface_ns, vertex_ns, floors_ns;
     for (int i = 0; i < 5; ++i) {
-        const auto [render_s, stats] = timed(tracer, session, job, request.size);
-        const double floor_s = retrace_s(session.bvh->native(), recorder.nearest, recorder.shadow);
+        const auto [render_s, stats] = timed(tracer, setup, job, request.size);
+        const double floor_s =
+            retrace_s(setup.prepared.bvh->native(), recorder.nearest, recorder.shadow);
         const double rays = static_cast<double>(recorder.nearest.size() + recorder.shadow.size());
         ratios.push_back(floor_s / render_s);
         const double outside_ns = 1e9 * (render_s - floor_s);

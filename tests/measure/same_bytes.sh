@@ -69,7 +69,7 @@ for lens in $takumar canon-14mm-f2.8-asph nikkor-400mm-f2.8-fl; do
     says show_$lens lens show $lens
     says check_$lens lens check $lens
     for analysis in spot fan mtf distortion vignetting; do
-        says ${analysis}_$lens lens $analysis $lens --focus 3 --film-shift 0.1 "${plot[@]}"
+        says ${analysis}_$lens lens $analysis $lens --focus 10 --film-shift 0.1 "${plot[@]}"
         mv "$out/text/plot.csv" "$out/text/${analysis}_$lens.csv"
     done
 done

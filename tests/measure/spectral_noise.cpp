@@ -38,11 +38,12 @@ int run(int argc, char** argv) {
     }
     flush_denormals();
     request.spectral.mode = SpectralMode::Wavelengths;
-    const Session session = open_session(request, [](const std::string&) {});
-    const PathTracer<Bvh> tracer(*session.scene, *session.bvh, *session.lights, PathOptions());
+    const RenderSetup setup = set_up_render(request, [](const std::string&) {});
+    const PathTracer<Bvh> tracer(*setup.prepared.scene, *setup.prepared.bvh, *setup.prepared.lights,
+                                 PathOptions());
 
     std::array<RenderJob, 2> jobs{job, job};
-    jobs[1].observer = session.observer;
+    jobs[1].observer = setup.view.observer;
     std::array<std::vector<Film>, 2> films;
     std::vector<double> ratios;
     for (uint32_t seed = 0; seed < kSeeds; ++seed) {
@@ -51,7 +52,7 @@ int run(int argc, char** argv) {
             const size_t which = (i + seed) % 2;  // the machine's speed drifts
             jobs[which].seed = seed;
             Film film(request.size, {0, 0, request.size.x, request.size.y}, {});
-            cpu_s[which] = timed_s(tracer, *session.camera, jobs[which], film);
+            cpu_s[which] = timed_s(tracer, *setup.view.camera, jobs[which], film);
             films[which].push_back(std::move(film));
         }
         ratios.push_back(cpu_s[1] / cpu_s[0]);

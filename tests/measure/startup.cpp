@@ -33,7 +33,7 @@ constexpr const char* kTriangle = R"({"asset":{"version":"2.0"},"scenes":[{"node
 "nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
 "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",
 "min":[0,0,0],"max":[1,1,0]}],"bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{
-"byteLength":36,"uri":"data:application/block-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
+"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
 
 double thread_cpu_ms() {
     timespec t{};
@@ -98,11 +98,11 @@ const auto kSilent = [](const std::string&) {};
 double first_ray_ms(const SceneRequest& request, double (*now_ms)() = thread_cpu_ms) {
     return ms_of(
         [&] {
-            const Session session = open_session(request, kSilent);
+            const RenderSetup setup = set_up_render(request, kSilent);
             const Sampler sampler(SamplerKind::Owen, 0, {0, 0, 0});
-            const Bands bands = session.observer.draw(0.5f);
-            const CameraSample seen = session.camera->sample({V2f(0.5f, 0.5f), sampler}, bands);
-            if (seen.size() > 0) static_cast<void>(session.bvh->intersect(seen[0].ray));
+            const Bands bands = setup.view.observer.draw(0.5f);
+            const CameraSample seen = setup.view.camera->sample({V2f(0.5f, 0.5f), sampler}, bands);
+            if (seen.size() > 0) static_cast<void>(setup.prepared.bvh->intersect(seen[0].ray));
         },
         now_ms);
 }
@@ -132,7 +132,7 @@ double spectra_ms(const fs::path& scene) {
     GltfFile file = load_gltf(scene);
     SpectralRequest request;
     request.mode = SpectralMode::Wavelengths;
-    return ms_of([&] { static_cast<void>(set_up_spectra(request, file.scene, kSilent)); });
+    return ms_of([&] { static_cast<void>(set_up_spectra(request, file.scene, "", kSilent)); });
 }
 
 int run(int runs) {

@@ -152,7 +152,7 @@ struct TinyGltf {
         nlohmann::json out = json;
         if (!bin.empty() && !out.contains("buffers"))
             out["buffers"] = {{{"byteLength", bin.size()},
-                               {"uri", "data:application/block-stream;base64," + base64(bin)}}};
+                               {"uri", "data:application/octet-stream;base64," + base64(bin)}}};
         const std::string text = out.dump();
         return write_bytes(path, {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
     }

@@ -63,7 +63,7 @@ class Fetcher {
 };
 
 Bytes read_buffer(const JsonCursor& buffer, Fetcher& fetcher) {
-    Bytes bytes = fetcher.fetch(buffer, {"application/block-stream", "application/gltf-buffer"});
+    Bytes bytes = fetcher.fetch(buffer, {"application/octet-stream", "application/gltf-buffer"});
     const uint64_t length = buffer.integer("byteLength");
     if (bytes.size() < length)
         buffer.fail(fmt::format("byteLength is {}, but there are {} bytes", length, bytes.size()));

@@ -32,18 +32,18 @@ TEST_F(CliSpectral, SaysWhatItDecidesAndWhy) {
     json bulb = extras("illuminant", "f11"), gold = metal("au");
     for (json* m : {&bulb, &gold}) (*m)["emissiveFactor"] = {1, 1, 1};
     const json plain = {{"emissiveFactor", {1, 1, 1}}};
-    const std::string rgb = "spectral: rgb, as ", hero = "spectral: hero wavelengths, as ",
+    const std::string rgb = "spectral: rgb, as ", wavelengths = "spectral: wavelengths, as ",
                       glass_range = "warning: glass schott:N-BK7 is known from 300 to 2500 nm: ";
     const std::vector<Decision> cases = {
         {plain, {}, rgb + "nothing here depends on wavelength\n"},
         {plain, {"--illuminant", "D65", "--response", "cie1931"}, rgb + "nothing here depends"},
-        {dispersive, {}, hero + "material \"prism\" disperses (KHR_materials_dispersion)\n"},
-        {named, {}, hero + "material \"prism\" disperses (schott:N-BK7)\n"},
-        {gold, {}, hero + "a material without a name is a measured metal (au)\n"},
-        {bulb, {}, hero + "a material without a name shines as illuminant f11\n"},
-        {plain, {"--bins", "380:730:10", "--spp", "8"}, hero + "--bins asks for spectra\n"},
-        {plain, {"--illuminant", "a"}, hero + "--illuminant is a\n"},
-        {plain, {"--spectral", "hero"}, hero + "--spectral says\n"},
+        {dispersive, {}, wavelengths + "material \"prism\" disperses (KHR_materials_dispersion)\n"},
+        {named, {}, wavelengths + "material \"prism\" disperses (schott:N-BK7)\n"},
+        {gold, {}, wavelengths + "a material without a name is a measured metal (au)\n"},
+        {bulb, {}, wavelengths + "a material without a name shines as illuminant f11\n"},
+        {plain, {"--bins", "380:730:10", "--spp", "8"}, wavelengths + "--bins asks for spectra\n"},
+        {plain, {"--illuminant", "a"}, wavelengths + "--illuminant is a\n"},
+        {plain, {"--spectral", "wavelengths"}, wavelengths + "--spectral says\n"},
         {plain, {"--spectral", "rgb"}, rgb + "--spectral says\n"},
         {gold,
          {"--spectral", "rgb", "--illuminant", "a"},
@@ -62,8 +62,8 @@ TEST_F(CliSpectral, SaysWhatItDecidesAndWhy) {
         EXPECT_EQ(run.exit_code, 0);
         EXPECT_TRUE(run.err.starts_with("petzval: " + cases[i].expected)) << run.err;
         const Picture p = read_picture(path(std::to_string(i) + ".exr"));
-        const bool is_hero = cases[i].expected.starts_with(hero);
-        EXPECT_EQ(metadata_of(p, "petzval:spectral"), is_hero ? "hero" : "rgb") << i;
+        const bool spectral = cases[i].expected.starts_with(wavelengths);
+        EXPECT_EQ(metadata_of(p, "petzval:spectral"), spectral ? "wavelengths" : "rgb") << i;
     }
 }
 
@@ -73,12 +73,12 @@ TEST_F(CliSpectral, LightsAndResponsesAreReasonsToo) {
         {{"type", "point"}, {"extras", {{"petzval", {{"illuminant", "a"}}}}}}};
     file.add_root({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
     use(file);
-    EXPECT_EQ(said({}), "petzval: spectral: hero wavelengths, as a light shines as illuminant a\n");
+    EXPECT_EQ(said({}), "petzval: spectral: wavelengths, as a light shines as illuminant a\n");
     use(lamp());
     const std::string eye = mixed_eye();
     EXPECT_EQ(said({"--response", eye}),
-              "petzval: spectral: hero wavelengths, as --response is " + eye +
-                  "\npetzval: response " + eye +
+              "petzval: spectral: wavelengths, as --response is " + eye + "\npetzval: response " +
+                  eye +
                   ": matrix fitted to 24 reflectances, residual CIEDE2000 0.00 mean, 0.00 "
                   "worst\n");
 }
@@ -95,7 +95,7 @@ TEST_F(CliSpectral, AnEmitterOfOneReadsBackOne) {
         words.insert(words.end(), more.begin(), more.end());
         return words;
     };
-    for (const Words& words : std::vector<Words>{{"--spectral", "hero"},
+    for (const Words& words : std::vector<Words>{{"--spectral", "wavelengths"},
                                                  with(balanced, {"a"}),
                                                  with(balanced, {uneven}),
                                                  {"--response", eye},
@@ -275,7 +275,7 @@ TEST_F(CliSpectral, TheFileSaysHowItWasMade) {
     const Picture p = render({"--bins", "380:730:10", "--spp", "64", "--white-balance",
                               "illuminant", "--illuminant", "f11"});
     const std::pair<const char*, const char*> expected[] = {{"petzval:bins", "380:730:10"},
-                                                            {"petzval:spectral", "hero"},
+                                                            {"petzval:spectral", "wavelengths"},
                                                             {"petzval:illuminant", "f11"},
                                                             {"petzval:response", "cie1931"},
                                                             {"petzval:whiteBalance", "illuminant"},

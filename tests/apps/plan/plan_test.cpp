@@ -4,8 +4,9 @@
 
 #include <cmath>
 
-#include "apps/plan/dispersion_spread.h"
 #include "apps/plan/plan_comparison.h"
+#include "apps/plan/plan_wording.h"
+#include "camera/setup/lateral_dispersion.h"
 #include "io/image/difference.h"
 #include "tests/support/cli_spectral.h"
 #include "tests/support/statistics.h"
@@ -36,7 +37,7 @@ class Plans : public CliSpectral {
     }
     [[nodiscard]] std::unique_ptr<PilotModel> model(const Pilot& pilot,
                                                     const SceneRequest& r) const {
-        return pilot.model(open_session(r, kSilent), RenderJob(), PathOptions());
+        return pilot.model(set_up_render(r, kSilent), RenderJob(), PathOptions());
     }
     [[nodiscard]] static SceneRequest with(SceneRequest r, DispersionMode dispersion) {
         r.spectral.mode = SpectralMode::Wavelengths;
@@ -97,7 +98,7 @@ TEST_F(Plans, VarianceIsThatOfALook) {
     RenderJob job;
     job.sampler = SamplerKind::Independent;
     const auto a =
-        pilot.model(open_session(request(scene_, {64, 36}), kSilent), job, PathOptions());
+        pilot.model(set_up_render(request(scene_, {64, 36}), kSilent), job, PathOptions());
     pilot.look(*a, 8);
     const Estimate eight = pilot.variance(*a, *a);
     pilot.look(*a, 32);
@@ -107,33 +108,38 @@ TEST_F(Plans, VarianceIsThatOfALook) {
     EXPECT_GT(eight.mean, 3 * eight.error) << "and there is some";
 }
 
-TEST_F(Plans, SpreadIsInPixelsAndGrowsWithTheFactor) {
+TEST_F(Plans, LateralDispersionIsInPixelsAndGrowsWithTheFactor) {
     const SceneRequest narrow = tabletop({100, 60});
-    const Session split = open_session(with(narrow, DispersionMode::Split), kSilent);
-    const Session shared = open_session(with(narrow, DispersionMode::Shared), kSilent, &split);
-    const double once = spread_px(split, shared, {100, 60});
-    EXPECT_NEAR(spread_px(split, shared, {400, 240}), 4 * once, 0.02 * once);
-    EXPECT_NEAR(spread_px(shared, shared, {100, 60}), 0, 1e-4 * once);
-    Session further = open_session(with(narrow, DispersionMode::Split), kSilent, &split);
-    further.camera = parted_further(
-        std::move(further.camera),
-        open_session(with(narrow, DispersionMode::Shared), kSilent, &split).camera, 3.f);
-    EXPECT_NEAR(spread_px(further, shared, {100, 60}), 3 * once, 0.02 * once);
+    const RenderSetup split = set_up_render(with(narrow, DispersionMode::Split), kSilent);
+    const auto view = [&](DispersionMode mode) {
+        return set_up_view(split, with(narrow, mode), kSilent).view.camera;
+    };
+    const auto shared = view(DispersionMode::Shared);
+    const auto dispersion_px = [&](const Camera& camera, V2i size) {
+        return lateral_dispersion_px(camera, *shared, split.view.observer,
+                                     split.from.camera.focus_plane(), size);
+    };
+    const double once = dispersion_px(*split.view.camera, {100, 60});
+    EXPECT_NEAR(dispersion_px(*split.view.camera, {400, 240}), 4 * once, 0.02 * once);
+    EXPECT_NEAR(dispersion_px(*shared, {100, 60}), 0, 1e-4 * once);
+    const auto amplified =
+        amplified_dispersion(view(DispersionMode::Split), view(DispersionMode::Shared), 3.f);
+    EXPECT_NEAR(dispersion_px(*amplified, {100, 60}), 3 * once, 0.02 * once);
 }
 
-// Parting wavelengths by half a pixel and dividing what comes of it, against the lens as it is on
+// Amplifying dispersion to half a pixel and dividing what comes of it, against the lens as it is on
 // other pixels with other seeds and many samples: both estimates agree.
-TEST_F(Plans, PartingFurtherFindsTheSameErrorWithLessNoise) {
+TEST_F(Plans, AmplifiedDispersionFindsTheSameErrorWithLessNoise) {
     SceneRequest scene = tabletop({160, 90});
     scene.scene = kOrnaments;
     const PlanRequest request{scene, {}, {}, 0.05};
-    const Session first = open_session(scene, kSilent);
+    const RenderSetup first = set_up_render(scene, kSilent);
     PlanComparison compared(request, first, PlanOpen(scene, first), 512, executor_);
     compared.add_shared();
     compared.look(150'000, true);
     const PlanCandidate shared = compared.candidates().front();
-    EXPECT_GT(compared.spread(), 0.02);
-    EXPECT_LT(compared.spread(), 0.1);
+    EXPECT_GT(compared.dispersion_px(), 0.02);
+    EXPECT_LT(compared.dispersion_px(), 0.1);
 
     const Pilot pilot(scene.size, 512, executor_, 1);
     const auto one = model(pilot, with(scene, DispersionMode::Shared)),
@@ -153,7 +159,7 @@ TEST_F(Plans, PredictionsHoldAndAreNotThreeTimesTooCareful) {
     SceneRequest scene = tabletop({160, 90}, "cooke-triplet-50mm-f5");
     scene.scene = kOrnaments;
     const Plan plan = make_plan({scene, {}, {}, kTolerance}, executor_, kSilent, 1e6);
-    const Session first = open_session(scene, kSilent);
+    const RenderSetup first = set_up_render(scene, kSilent);
     const Pilot pilot(scene.size, 512, executor_, 1);
     const auto full = model(pilot, plan.candidates.back().scene);
     const auto samples = static_cast<uint32_t>(plan.samples);
@@ -165,13 +171,13 @@ TEST_F(Plans, PredictionsHoldAndAreNotThreeTimesTooCareful) {
                (predicted <= kTolerance / 4 || square <= 9 * (std::max(mean, 0.) + 1.645 * error));
     };
     for (const PlanCandidate& c : plan.candidates) {
-        if (c.name == "split" || c.name == "tolerance") continue;
+        if (c.model == PlanModel::Split || c.model == PlanModel::Tolerance) continue;
         const auto simpler = model(pilot, c.scene);
         pilot.look(*simpler, samples);
         const Estimate bias = pilot.square({{simpler.get(), 1}, {full.get(), -1}}, *full);
         EXPECT_TRUE(holds(c.predicted(), bias.mean, bias.error))
-            << c.name << ' ' << c.predicted() << ' ' << bias.mean << ' ' << bias.error;
-        if (c.name != plan.chosen) continue;
+            << name_of(c.model) << ' ' << c.predicted() << ' ' << bias.mean << ' ' << bias.error;
+        if (c.model != plan.chosen) continue;
         const Estimate noise = pilot.variance(*simpler, *full);
         EXPECT_TRUE(
             holds(plan.error(), bias.mean + noise.mean, std::hypot(bias.error, noise.error)))
@@ -197,8 +203,8 @@ TEST_F(Plans, ReasonsAreGivenInALineEach) {
     EXPECT_EQ(plan["spectral"]["reason"], "nothing depends on wavelength");
     EXPECT_EQ(plan["dispersion"]["reason"], "no lens parts wavelengths");
     EXPECT_TRUE(plan["dispersion"]["predicted_error"].is_null());
-    plan = planned({"--spectral", "hero"});
-    EXPECT_EQ(plan["spectral"]["chosen"], "hero");
+    plan = planned({"--spectral", "wavelengths"});
+    EXPECT_EQ(plan["spectral"]["chosen"], "wavelengths");
     EXPECT_EQ(plan["spectral"]["reason"], "it was asked for");
     plan = planned({"--lens", "double-gauss-100mm-f2", "--focus", "2", "--tolerance", "20%"});
     EXPECT_EQ(plan["camera"]["chosen"], "double-gauss-100mm-f2");
@@ -215,7 +221,7 @@ TEST_F(Plans, ReasonsAreGivenInALineEach) {
 TEST_F(Plans, AGemThatDispersesNeedsWavelengths) {
     scene_ = PETZVAL_ASSETS "/scenes/gem.glb";
     const json plan = planned({"--tolerance", "20%"});
-    EXPECT_EQ(plan["spectral"]["chosen"], "hero");
+    EXPECT_EQ(plan["spectral"]["chosen"], "wavelengths");
     EXPECT_NE(plan["spectral"]["reason"].get<std::string>().find("rgb would be off by"),
               std::string::npos)
         << plan;
@@ -305,7 +311,7 @@ TEST_F(AutoRender, TakesRgbWhereTheLensDoesNotShow) {
     EXPECT_NE(text.find("dispersion: shared, as dispersion of cooke-triplet-50mm-f5 spreads "),
               std::string::npos)
         << text;
-    EXPECT_EQ(text.find("hero"), std::string::npos) << text;
+    EXPECT_EQ(text.find("spectral: wavelengths"), std::string::npos) << text;
     const Picture picture = read_picture(path("auto.exr"));
     static_cast<void>(said(lens({"--spectral", "rgb", "--dispersion", "shared"}), "asked.exr"));
     EXPECT_EQ(picture.pixels, read_picture(path("asked.exr")).pixels);

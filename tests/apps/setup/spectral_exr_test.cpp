@@ -58,7 +58,7 @@ Film filled(Rect crop, uint32_t samples) {
 }
 
 PictureRows developed(const Film& film, uint32_t samples) {
-    return develop(film, Session{}, RenderJob{}, PathOptions{}, samples);
+    return develop(film, RenderSetup{}, RenderJob{}, PathOptions{}, samples);
 }
 
 /// One channel of a file by name, through an OpenImageIO reader of its own.

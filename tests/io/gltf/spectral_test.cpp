@@ -3,6 +3,7 @@
 // follows for a render.
 #include <gtest/gtest.h>
 
+#include "apps/setup/spectral_wording.h"
 #include "apps/setup/wavelength_reasons.h"
 #include "io/glass/catalogue.h"
 #include "io/spectra/spectra.h"
@@ -175,7 +176,7 @@ TEST(GltfExtras, GlassThatRefractsNothingIsWarnedOf) {
     EXPECT_NEAR(loaded.scene.materials[0].ior, 1.5168, 5e-6);
     EXPECT_TRUE(contains_line(loaded.warnings, "extras/petzval/glass: disperses nothing"));
     EXPECT_FALSE(contains_line(loaded.honoured, "dispersion of light"));
-    EXPECT_TRUE(reasons_for_wavelengths(loaded.scene).empty());
+    EXPECT_TRUE(scene_reasons(loaded.scene).empty());
 }
 
 TEST(GltfExtras, MeasuredMetal) {
@@ -215,7 +216,7 @@ TEST(GltfExtras, MetalThatIsNotSeenIsWarnedOf) {
     dull["pbrMetallicRoughness"]["metallicFactor"] = 0;
     const GltfFile loaded = load(file_with({dull}));
     EXPECT_TRUE(contains_line(loaded.warnings, "/materials/0/extras/petzval/metal: is not seen"));
-    EXPECT_TRUE(reasons_for_wavelengths(loaded.scene).empty());
+    EXPECT_TRUE(scene_reasons(loaded.scene).empty());
 }
 
 TEST(GltfExtras, IlluminantOfAMaterial) {
@@ -329,7 +330,7 @@ TEST(NeedsWavelengths, NothingInAnOrdinaryScene) {
     TinyGltf file = file_with({prism(), json::object()});
     file.json["materials"][1]["emissiveFactor"] = {1, 1, 1};
     const GltfFile loaded = load(file);
-    EXPECT_TRUE(reasons_for_wavelengths(loaded.scene).empty());
+    EXPECT_TRUE(scene_reasons(loaded.scene).empty());
     EXPECT_TRUE(glass_range_warnings(loaded.scene).empty());
     EXPECT_FALSE(glass_beyond(loaded.scene, 100, 5000));
 }
@@ -342,14 +343,19 @@ TEST(NeedsWavelengths, OneReasonForEachKind) {
                                   bulb, nameless, prism(dispersing(2)), bulb}))
                       .scene;
     scene.lights = {PointLight{V3f(0.f), Rgb(1.f), 0}, PointLight{V3f(0.f), Rgb(1.f)}};
-    EXPECT_EQ(reasons_for_wavelengths(scene),
-              (std::vector<std::string>{"material \"prism\" disperses (schott:N-SF11), and 2 more",
-                                        "material \"thing\" is a measured metal (au)",
-                                        "material \"thing\" shines as illuminant a, and 1 more",
-                                        "a light shines as illuminant a"}));
-    EXPECT_EQ(reasons_for_wavelengths(load(file_with({nameless})).scene),
-              (std::vector<std::string>{
-                  "a material without a name disperses (KHR_materials_dispersion)"}));
+    using Kind = WavelengthReason::Kind;
+    const std::vector<WavelengthReason> reasons = scene_reasons(scene);
+    EXPECT_EQ(reasons, (std::vector<WavelengthReason>{{Kind::Glass, "schott:N-SF11", "prism", 2},
+                                                      {Kind::Metal, "au", "thing"},
+                                                      {Kind::Emitter, "a", "thing", 1},
+                                                      {Kind::Lamp, "a", ""}}));
+    EXPECT_EQ(text_of(reasons),
+              "material \"prism\" disperses (schott:N-SF11), and 2 more; "
+              "material \"thing\" is a measured metal (au); "
+              "material \"thing\" shines as illuminant a, and 1 more; "
+              "a light shines as illuminant a");
+    EXPECT_EQ(text_of(scene_reasons(load(file_with({nameless})).scene)),
+              "a material without a name disperses (KHR_materials_dispersion)");
 }
 
 TEST(NeedsWavelengths, GlassThatIsNotKnownEverywhere) {

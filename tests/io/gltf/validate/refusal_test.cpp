@@ -75,7 +75,7 @@ TEST(GltfRefusal, Buffers) {
          "/buffers/0: byteLength is 100000, but the BIN"},
         {"/buffers", R"([{}])", "/buffers/0: has no \"byteLength\""},
         {"/buffers", R"([{"byteLength": 0}])", "/buffers/0/byteLength: must be at least 1"},
-        {"/buffers", R"([{"byteLength": 4, "uri": "data:application/block-stream;base64,AA=="}])",
+        {"/buffers", R"([{"byteLength": 4, "uri": "data:application/octet-stream;base64,AA=="}])",
          "/buffers/0: byteLength is 4, but there are 1 bytes"},
         {"/buffers", R"([{"byteLength": 1, "uri": "data:text/html;base64,AA=="}])",
          "/buffers/0/uri: holds \"text/html\""},

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+
+namespace petzval {
+
+/// A mean over pixels, and its standard error from their spread.
+struct Estimate {
+    double mean = 0, error = 0;
+
+    /// Standard errors from the mean to a bound: more than the 1.645 of 95 %, as pixels have long
+    /// tails and a few of them hide the worst.
+    static constexpr double kSure = 2;
+    [[nodiscard]] double high() const { return std::max(mean, 0.) + kSure * error; }
+    [[nodiscard]] double low() const { return std::max(mean - kSure * error, 0.); }
+};
+
+}  // namespace petzval

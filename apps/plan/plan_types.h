@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a plan is asked, what it may choose, and what it measures of each choice.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "apps/plan/estimate.h"
+#include "apps/setup/render_setup.h"
+#include "integrator/path_options.h"
+#include "integrator/render_job.h"
+
+namespace petzval {
+
+inline constexpr double kUsualTolerance = 0.01;
+/// Share of the squared tolerance that a simpler model may err; the rest is for noise.
+inline constexpr double kBiasShare = 0.5;
+
+struct PlanRequest {
+    SceneRequest scene;
+    RenderJob job;  ///< sampler and filter count: samples and seed do not, nor does a crop
+    PathOptions path;
+    double tolerance = kUsualTolerance;  ///< above 0
+};
+
+/// Ways to render a scene, simplest first. Shared to Split carry wavelengths through a lens.
+enum class PlanModel : uint8_t { Pinhole, Thin, Rgb, Shared, Hero, Tolerance, Split, Full };
+
+/// Whether the model replaces the camera that was asked for.
+[[nodiscard]] constexpr bool replaces_camera(PlanModel model) {
+    return model == PlanModel::Pinhole || model == PlanModel::Thin;
+}
+
+/// What a request leaves to the plan.
+struct PlanOpen {
+    bool spectral = false;         ///< RGB or wavelengths
+    bool dispersion = false;       ///< whether wavelengths may share a ray through the lens
+    bool dispersion_mode = false;  ///< how they are carried, even where nothing may be left out
+
+    PlanOpen(const SceneRequest&, const RenderSetup&);
+    [[nodiscard]] bool any() const { return spectral || dispersion; }
+};
+
+/// A model, how far it is off from the fullest one, and what it costs.
+struct PlanCandidate {
+    PlanModel model;
+    SceneRequest scene;  ///< nothing in it is left open
+    Estimate square_bias{};
+    bool inside = false;   ///< surely within its share of the tolerance
+    bool outside = false;  ///< surely beyond it
+    double rays = 0;       ///< of a sample, as PilotModel counts them
+    /// Variances of the mean of 1, 2, 4, ... samples: well spread points make them fall faster than
+    /// in proportion.
+    std::vector<Estimate> variances{};
+
+    /// A bound that the error without noise keeps.
+    [[nodiscard]] double predicted() const { return std::sqrt(square_bias.high()); }
+    /// The same of the variance with so many samples, 1 at least.
+    [[nodiscard]] double variance_with(double samples) const;
+    /// Samples until noise and bias are inside the tolerance together; bias alone must be.
+    [[nodiscard]] double samples_for(double tolerance) const;
+};
+
+}  // namespace petzval

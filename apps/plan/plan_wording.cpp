@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/plan/plan_wording.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+#include "apps/setup/option_names.h"
+#include "apps/setup/spectral_wording.h"
+#include "io/base/format.h"
+
+namespace petzval {
+namespace {
+
+// How a candidate is spoken of that was not taken.
+std::string off(const PlanCandidate& c) {
+    if (c.outside)
+        return fmt::format("{} would be off by {}", name_of(c.model),
+                           percent(std::sqrt(c.square_bias.mean)));
+    return c.inside ? fmt::format("{} would need more samples", name_of(c.model))
+                    : fmt::format("{} may be off by {}", name_of(c.model), percent(c.predicted()));
+}
+
+std::string at_most(double predicted) {
+    return fmt::format("off by {} at most", percent(predicted));
+}
+
+std::string dispersion_text(const std::string& lens, double px) {
+    return fmt::format("dispersion of {} spreads {:.2g} px", lens, px);
+}
+
+// What depends on wavelength, but for the lens where it is not the camera any more.
+std::string dependence(const Plan& plan) {
+    std::vector<WavelengthReason> reasons = plan.requested.spectral.reasons;
+    if (replaces_camera(plan.chosen))
+        std::erase_if(reasons, [](const WavelengthReason& reason) {
+            return reason.kind == WavelengthReason::Kind::Lens;
+        });
+    return text_of(reasons);
+}
+
+PlanLine camera_line(const Plan& plan) {
+    const CameraReport& report = plan.requested.camera;
+    if (report.orthographic) return {"camera", "orthographic", "the file has it", {}};
+    if (!(report.lens_radius_m > 0)) return {"camera", "pinhole", "nothing has an iris", {}};
+    if (replaces_camera(plan.chosen))
+        return {"camera", name_of(plan.chosen), at_most(plan.bias), plan.bias};
+    std::vector<std::string> why;
+    for (const PlanCandidate& c : plan.candidates)
+        if (replaces_camera(c.model)) why.push_back(off(c));
+    return {"camera",
+            report.lens.empty() ? "thin" : report.lens,
+            why.empty() ? "it was asked for" : fmt::format("{}", fmt::join(why, ", ")),
+            {}};
+}
+
+PlanLine spectral_line(const Plan& plan) {
+    const std::string depends = dependence(plan);
+    if (plan.chosen == PlanModel::Rgb)
+        return {"spectral", "rgb", fmt::format("{}, though {}", at_most(plan.bias), depends),
+                plan.bias};
+    if (plan.requested.asked.spectral.mode != SpectralMode::Auto)
+        return {"spectral",
+                plan.requested.spectral.wavelengths ? "wavelengths" : "rgb",
+                "it was asked for",
+                {}};
+    if (depends.empty()) return {"spectral", "rgb", "nothing depends on wavelength", {}};
+    const PlanCandidate* rgb = plan.find(PlanModel::Rgb);
+    return {"spectral", "wavelengths", (rgb ? off(*rgb) + ", as " : "") + depends, {}};
+}
+
+PlanLine dispersion_line(const Plan& plan) {
+    const CameraReport& report = plan.requested.camera;
+    const auto& asked = report.asked.dispersion;
+    if (replaces_camera(plan.chosen) || report.dispersive_lens.empty())
+        return {"dispersion", "shared", "no lens sends wavelengths apart", {}};
+    if (!plan.requested.spectral.wavelengths)
+        return {"dispersion", "shared", "RGB goes along one ray", {}};
+    if (plan.mode_by_dispersion)
+        return {"dispersion",
+                name_of(*plan.mode_by_dispersion),
+                dispersion_text(report.dispersive_lens, *plan.dispersion_px),
+                {}};
+    if (!plan.dispersion_open)
+        return {"dispersion",
+                name_of(asked.value_or(DispersionMode::Tolerance)),
+                asked ? "it was asked for" : "spectra are asked for",
+                {}};
+    const PlanCandidate *shared = plan.find(PlanModel::Shared),
+                        *tolerance = plan.find(PlanModel::Tolerance);
+    const std::string because = dispersion_text(report.dispersive_lens, *plan.dispersion_px) + ": ";
+    switch (plan.chosen) {
+        case PlanModel::Hero:
+            return {
+                "dispersion",
+                "hero",
+                because + off(*shared) + ", one ray is weighed for each wavelength without a bias",
+                {}};
+        case PlanModel::Split:
+            return {"dispersion", "split", because + off(*shared) + ", " + off(*tolerance), {}};
+        case PlanModel::Tolerance:
+            return {"dispersion", "tolerance",
+                    fmt::format("{}{}, this {}", because, off(*shared), at_most(plan.bias)),
+                    plan.bias};
+        default:
+            return {"dispersion", "shared",
+                    because + "one ray for all wavelengths, " + at_most(plan.bias), plan.bias};
+    }
+}
+
+}  // namespace
+
+std::string name_of(PlanModel model) {
+    switch (model) {
+        case PlanModel::Pinhole:
+            return "pinhole";
+        case PlanModel::Thin:
+            return "thin";
+        case PlanModel::Rgb:
+            return "rgb";
+        case PlanModel::Shared:
+            return "shared";
+        case PlanModel::Hero:
+            return "hero";
+        case PlanModel::Tolerance:
+            return "tolerance";
+        case PlanModel::Split:
+            return "split";
+        case PlanModel::Full:
+            break;
+    }
+    return "full";
+}
+
+std::vector<PlanLine> lines_of(const Plan& plan) {
+    return {camera_line(plan), spectral_line(plan), dispersion_line(plan)};
+}
+
+std::vector<PlanOption> options_of(const Plan& plan) {
+    std::vector<PlanOption> out{{"--spp", std::to_string(plan.samples)}};
+    const CameraRequest& camera = plan.scene.camera;
+    const auto set = [&](const char* name, const auto& value) {
+        out.emplace_back(name, fmt::format("{}", value));
+    };
+    const auto leave_out = [&](std::initializer_list<const char*> names) {
+        for (const char* name : names) out.emplace_back(name, std::nullopt);
+    };
+    if (replaces_camera(plan.chosen)) {
+        leave_out({"--fit", "--fstop", "--focal-length", "--film-distance", "--coating",
+                   "--lens-precision", "--focus-by", "--glasses", "--dispersion",
+                   "--dispersion-tolerance"});
+        set("--lens", name_of(plan.chosen));
+        set("--fov", *camera.fov_deg);
+        set("--sensor", fmt::format("{}x{}", camera.sensor_mm->x, camera.sensor_mm->y));
+        if (plan.chosen == PlanModel::Pinhole) {
+            leave_out(
+                {"--focus", "--aperture", "--aperture-scale", "--iris-sampling", "--lens-radius"});
+        } else {
+            set("--lens-radius", *camera.lens_radius_m);
+            set("--focus", focus_text(std::get<FocusDistance>(*camera.focus)));
+        }
+        return out;
+    }
+    if (plan.anything_open)
+        set("--spectral", plan.chosen == PlanModel::Rgb ? "rgb" : "wavelengths");
+    if (plan.dispersion_open) set("--dispersion", name_of(*camera.dispersion));
+    if (plan.mode_by_dispersion) set("--dispersion", name_of(*plan.mode_by_dispersion));
+    return out;
+}
+
+std::string reason_of(const AutoChoice& choice) {
+    std::string why;
+    if (choice.dispersion) why = dispersion_text(choice.dispersive_lens, choice.dispersion_px);
+    if (choice.candidates.empty()) return why;
+    const auto refused = [&] {
+        // Shared rays are the last but the fullest model where they were compared at all.
+        const size_t last_simpler = choice.candidates.size() - 2;
+        return off(choice.candidates[choice.dispersion_compared ? last_simpler : 0]);
+    };
+    std::string found =
+        choice.taken ? at_most(choice.candidates[*choice.taken].predicted()) : refused();
+    if (choice.taken && choice.dispersion_compared) found = "one ray for all wavelengths, " + found;
+    return why.empty() ? found : why + ": " + found;
+}
+
+std::optional<std::string> line_of(const AutoChoice& choice) {
+    if (!choice.dispersion) return std::nullopt;
+    return fmt::format("dispersion: {}, as {}", name_of(*choice.dispersion), reason_of(choice));
+}
+
+}  // namespace petzval

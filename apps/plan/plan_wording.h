@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// The sentences in which a plan is told, and the options that carry it out. Nothing is decided
+// here.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/plan/plan.h"
+
+namespace petzval {
+
+/// "pinhole", "thin", "rgb", "shared", "hero", "tolerance", "split" or "full".
+[[nodiscard]] std::string name_of(PlanModel);
+
+struct PlanLine {
+    std::string choice, chosen, reason;
+    std::optional<double> error;  ///< predicted, of what was chosen; absent: nothing is lost
+};
+/// A line for each choice: camera, spectral, dispersion.
+[[nodiscard]] std::vector<PlanLine> lines_of(const Plan&);
+
+/// An option of petzval render with its value; left out where there is none.
+using PlanOption = std::pair<std::string, std::optional<std::string>>;
+/// The options that lead to the plan, in place of those that were given.
+[[nodiscard]] std::vector<PlanOption> options_of(const Plan&);
+
+/// The reason of what `auto` chose for a render; empty where nothing was open.
+[[nodiscard]] std::string reason_of(const AutoChoice&);
+/// The line that tells the dispersion mode with its reason; nothing where it was not open.
+[[nodiscard]] std::optional<std::string> line_of(const AutoChoice&);
+
+}  // namespace petzval

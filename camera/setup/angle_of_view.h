@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// The angle of view of a lens on its film.
+#pragma once
+
+#include <optional>
+
+#include "camera/lens/lens.h"
+#include "core/math/math.h"
+
+namespace petzval {
+
+/// The vertical angle that a distant scene fills the film's height with, radians: by the ray of
+/// line d through the middle of the stop; the paraxial angle for a lens that sends none there.
+[[nodiscard]] float angle_of_view_rad(const Lens&, float film_height_mm, double focal_length_mm);
+
+/// The lens scaled until a distant scene yfov_rad high fills the film's height. Nothing where it
+/// does not see so far to the side.
+[[nodiscard]] std::optional<Lens> scaled_to_view(const Lens&, float film_height_mm, float yfov_rad);
+
+/// The angle between directions, in radians, that is `pixels` wide on the film, seen from the rear
+/// principal point: there the film is a distance in focus away. The lens is in focus.
+[[nodiscard]] double pixel_angle_rad(const Lens&, double pixels, double film_width_mm,
+                                     int width_px);
+
+}  // namespace petzval

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// How rays are traced through a scene, without the code that traces them.
+#pragma once
+
+#include <cstdint>
+
+namespace petzval {
+
+/// Robust: no ray passes between neighbouring triangles. Fast: spatial splits and cheaper edge
+/// tests, which may leak at edges and build longer.
+enum class Traversal : uint8_t { Robust, Fast };
+
+}  // namespace petzval

@@ -1,30 +1,36 @@
 # SPDX-License-Identifier: Apache-2.0
 # Two commands for a fresh Debian 12: make render, make test. Everything else is CMake's.
-PACKAGES = cmake ninja-build ccache mold libembree-dev libtbb-dev libimath-dev \
-    libopenimageio-dev openimageio-tools libopencolorio-dev libtinygltf-dev nlohmann-json3-dev \
-    libfmt-dev libcli11-dev libpugixml-dev gnuplot-nox libgtest-dev libgmock-dev libbenchmark-dev
+PACKAGES = cmake ninja-build ccache mold libembree-dev libtbb-dev libimath-dev libopenimageio-dev \
+    openimageio-tools libopencolorio-dev libtinygltf-dev nlohmann-json3-dev libfmt-dev \
+    libcli11-dev libpugixml-dev gnuplot-nox
+TEST_PACKAGES = libgtest-dev libgmock-dev libbenchmark-dev
 SOURCES = git ls-files '*.h' '*.cpp'
 
-.PHONY: render gallery test build deps format format-check
+.PHONY: render gallery test program build format format-check
 
-render: build
+render: program
 	mkdir -p out
 	build/bin/petzval render assets/scenes/first_light.glb --fstop 2 --focus 1m --size 960x540 --spp 256 \
 	    -o out/first_light.exr -o out/first_light.png
 
 # About half an hour of CPU time; GALLERY_SPP=16 for a first look.
-gallery: build
+gallery: program
 	GALLERY_DOCS=docs/pictures/gallery tests/make/gallery.sh
 
 test: build
 	ctest --preset release --parallel $$(nproc)
 
-build: deps
+# The program alone, without tests and benchmarks.
+program:
+	@.ci/install_packages $(PACKAGES)
+	cmake --preset program
+	cmake --build --preset program
+
+# Everything: the program, the tests, the measuring programs.
+build:
+	@.ci/install_packages $(PACKAGES) $(TEST_PACKAGES)
 	cmake --preset release
 	cmake --build --preset release
-
-deps:
-	@.ci/install_packages $(PACKAGES)
 
 format:
 	@.ci/install_packages clang-format

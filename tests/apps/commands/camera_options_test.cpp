@@ -220,7 +220,7 @@ TEST_F(CliCamera, ASharedRayNeedsNoWavelengths) {
         EXPECT_EQ(done.exit_code, 0) << done.err;
         return done.err;
     };
-    EXPECT_NE(err("auto").find("hero wavelengths"), std::string::npos);
+    EXPECT_NE(err("auto").find("spectral: wavelengths"), std::string::npos);
     EXPECT_NE(err("shared").find("spectral: rgb"), std::string::npos);
 }
 

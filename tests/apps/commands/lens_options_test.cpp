@@ -46,6 +46,71 @@ TEST_F(CliLens, MidGreyIsMidGreyThroughEveryLens) {
     }
 }
 
+// The same words mean the same place, also where a group that focuses moves the entrance pupil.
+TEST_F(CliLens, FocusMeansTheSameForRenderAndForTheBench) {
+    const std::pair<const char*, const char*> cases[] = {
+        {"nikkor-400mm-f2.8-fl", "8"},        {"nikkor-400mm-f2.8-fl", "infinity"},
+        {"takumar-50mm-f1.2", "0.8m"},        {"takumar-50mm-f1.2", "infinity"},
+        {"nikkor-retrofocus-28mm-f2.8", "1"}, {"double-gauss-100mm-f2", "2.5m"}};
+    for (const auto& [lens, focus] : cases)
+        for (const std::string by : {"paraxial", "traced"}) {
+            if (by == "traced" && std::string(focus) != "infinity") continue;
+            const Picture p =
+                render({"--lens", lens, "--focus", focus, "--focus-by", by, "--background", "1,1,1",
+                        "--look-at", "0,0,0,0,0,-1", "--spp", "1", "--spectral", "rgb"});
+            const Finished bench = run_petzval(
+                {"lens", "spot", lens, "--focus", focus, "--focus-by", by, "-o", path("spot.svg")});
+            ASSERT_EQ(bench.exit_code, 0) << bench.err;
+            // "film at 86.347998 mm"
+            const double film_mm = std::stod(bench.out.substr(std::string("film at ").size()));
+            EXPECT_NEAR(std::stod(metadata_of(p, "petzval:film_mm")), film_mm, 2e-5 * film_mm)
+                << lens << ' ' << focus << ' ' << by;
+        }
+    // Neither focuses nearer than the lens can, nor takes other words.
+    for (const auto& [lens, focus] : std::initializer_list<std::pair<const char*, const char*>>{
+             {"nikkor-400mm-f2.8-fl", "3"},
+             {"takumar-50mm-f1.2", "infinite"},
+             {"takumar-50mm-f1.2", "0"},
+             {"takumar-50mm-f1.2", "1mm"}}) {
+        EXPECT_EQ(run({"--lens", lens, "--focus", focus}).exit_code, 2) << focus;
+        static_cast<void>(
+            error_of({"lens", "spot", lens, "--focus", focus, "-o", path("a.svg")}, 2));
+    }
+}
+
+// A thin lens at infinity sees distant things as a pinhole does.
+TEST_F(CliLens, AThinLensFocusesAtInfinity) {
+    const Words at = {"--look-at", "0,0,0,0,0,-1", "--background", "1,1,1"};
+    for (const char* lens : {"thin", "singlet:schott:N-BK7"}) {
+        Words words = {"--lens", lens, "--fstop", "8", "--focus", "infinity"};
+        words.insert(words.end(), at.begin(), at.end());
+        const Picture p = render(words);
+        EXPECT_EQ(metadata_of(p, "petzval:focus_m"), "inf") << lens;
+        for (const float v : p.pixels) ASSERT_TRUE(std::isfinite(v)) << lens;
+    }
+}
+
+// Old names of options still work, and are not told.
+TEST_F(CliLens, OldSpellingsMeanTheSame) {
+    const Words lens = {"--lens", "takumar-50mm-f1.2", "--focus", "1", "--spp", "2"};
+    const std::pair<Words, Words> pairs[] = {
+        {{"--chroma", "split"}, {"--dispersion", "split"}},
+        {{"--chroma=single"}, {"--dispersion", "single"}},
+        {{"--chroma-tolerance", "0.3"}, {"--dispersion-tolerance", "0.3"}},
+        {{"--march", "double"}, {"--lens-precision", "double"}},
+        {{"--spectral", "hero"}, {"--spectral", "wavelengths"}},
+        {{"--spectral=hero"}, {"--spectral", "wavelengths"}}};
+    for (const auto& [before, now] : pairs) {
+        Words a = lens, b = lens;
+        a.insert(a.end(), before.begin(), before.end());
+        b.insert(b.end(), now.begin(), now.end());
+        EXPECT_EQ(render_bytes(a, "a.exr"), render_bytes(b, "b.exr")) << before.front();
+    }
+    const Finished help = run_petzval({"render", "--help"});
+    EXPECT_EQ(help.out.find("--chroma"), std::string::npos);
+    EXPECT_EQ(help.out.find("--march"), std::string::npos);
+}
+
 TEST_F(CliLens, CornersAreDarkerAndOpaque) {
     const Picture p = flat({"--lens", "takumar-50mm-f1.2", "--dispersion", "shared"});
     EXPECT_LT(value_at(p, 0, 0, "G"), 0.4f);

@@ -77,10 +77,10 @@ TEST_F(CliSpectral, LightsAndResponsesAreReasonsToo) {
     use(lamp());
     const std::string eye = mixed_eye();
     EXPECT_EQ(said({"--response", eye}),
-              "petzval: spectral: wavelengths, as --response is " + eye + "\npetzval: response " +
-                  eye +
+              "petzval: response " + eye +
                   ": matrix fitted to 24 reflectances, residual CIEDE2000 0.00 mean, 0.00 "
-                  "worst\n");
+                  "worst\npetzval: spectral: wavelengths, as --response is " +
+                  eye + "\n");
 }
 
 TEST_F(CliSpectral, AnEmitterOfOneReadsBackOne) {

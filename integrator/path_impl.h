@@ -55,7 +55,7 @@ f4 PathTracer<Caster>::escaped(const Ray& ray, const Bands& bands, const Vertex&
     const Sky::Found found = scene_.sky.find(ray.direction);
     const f4 radiance = uplift_radiance(found.radiance, bands);
     if (!last.light_sampled) return radiance;
-    const uint32_t sky_light = static_cast<uint32_t>(scene_.lights.size()) - 1;
+    const auto sky_light = static_cast<uint32_t>(scene_.sky_light);
     const float light_pdf = lights_.probability(sky_light, last.receiver) * found.pdf;
     if (options_.technique == Technique::LightOnly && light_pdf > 0.f) return f4{};
     return radiance * power_heuristic(last.pdf, light_pdf);

@@ -2,12 +2,12 @@
 #include "apps/chart/chart.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <set>
 
+#include "apps/setup/memory.h"
 #include "apps/setup/spectral_wording.h"
 #include "io/base/atomic_file.h"
 #include "io/base/error.h"
@@ -48,26 +48,21 @@ class Folder {
     bool made_ = false, made_pictures_ = false, kept_ = false;
 };
 
-// Memory is promised before it is there, so that asking for too much would kill instead of fail.
 void require_memory(const std::vector<ChartCase>& cases, const ChartFrame& frame) {
     double most = 0;
     for (const ChartCase& of : cases) {
         double per_pixel = 0;
         for (const ChartMethod& method : of.methods) {
             const auto& bins = method.scene.spectral.bins;
-            per_pixel += frame.seeds * (48 + (bins ? 8. * bins->count + 24 + 12 * kReplicates : 0));
+            per_pixel += double(frame.seeds * Film::bytes_per_pixel(0, bins));
             per_pixel += 12 * 20;  // pictures of the levels
         }
         most = std::max(most, per_pixel);
     }
     const double needed = most * frame.crop.width() * frame.crop.height();
-    const double there =
-        static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-    if (needed > there)
+    if (const auto shortage = memory_shortage(needed))
         throw ArgumentError("--size", "",
-                            fmt::format("needs {:.1f} GiB of memory, this machine has {:.1f}; give "
-                                        "a smaller --size, a --crop or fewer --seeds",
-                                        needed * 0x1p-30, there * 0x1p-30));
+                            *shortage + "; give a smaller --size, a --crop or fewer --seeds");
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include "apps/cli/render_options.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include "apps/cli/choice.h"
 #include "apps/cli/output_checks.h"
 #include "apps/cli/parse.h"
+#include "apps/setup/memory.h"
 
 namespace petzval {
 namespace {
@@ -97,18 +97,11 @@ void resolve_job(RenderOptions& o) {
         o.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-// Memory is promised before it is there, so that asking for too much would kill instead of fail.
 void require_memory(const RenderFrame& frame, const std::optional<Bins>& bins) {
     const double pixels = static_cast<double>(frame.crop.width()) * frame.crop.height();
-    const double layers = static_cast<double>(frame.aovs.size());
-    const double spectral = bins ? 8. * bins->count + 24 + 12 * kReplicates : 0;
-    const double needed = pixels * (48 + 24 * layers + spectral);
-    const double there =
-        static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-    if (needed > there)
-        throw CLI::ValidationError(
-            "--size", fmt::format("needs {:.1f} GiB of memory, this machine has {:.1f}",
-                                  needed * 0x1p-30, there * 0x1p-30));
+    if (const auto shortage =
+            memory_shortage(pixels * double(Film::bytes_per_pixel(frame.aovs.size(), bins))))
+        throw CLI::ValidationError("--size", *shortage);
 }
 
 }  // namespace

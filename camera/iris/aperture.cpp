@@ -2,6 +2,7 @@
 #include "camera/iris/aperture.h"
 
 #include <algorithm>
+#include <numbers>
 #include <stdexcept>
 
 namespace petzval {
@@ -45,8 +46,8 @@ Polygon regular_polygon(int blades, double rotation_deg, double roundness) {
         throw std::invalid_argument("rotation must be a finite number of degrees");
     if (!(roundness >= 0 && roundness <= 1))
         throw std::invalid_argument("roundness must be from 0 (straight) to 1 (a circle)");
-    const double first = (90 + std::remainder(rotation_deg, 360.0)) * M_PI / 180;
-    const double half = M_PI / blades;
+    const double first = (90 + std::remainder(rotation_deg, 360.0)) * std::numbers::pi / 180;
+    const double half = std::numbers::pi / blades;
     std::vector<V2d> contour;
     for (int i = 0; i < blades; ++i) {
         const double angle = first + 2 * half * i;
@@ -69,7 +70,8 @@ Polygon star(int tips) {
     const double inner = (3 - std::sqrt(5.0)) / 2;
     std::vector<V2d> contour;
     for (int i = 0; i < 2 * tips; ++i)
-        contour.push_back(on_circle(i % 2 ? inner : 1, M_PI / 2 + i * M_PI / tips));
+        contour.push_back(
+            on_circle(i % 2 ? inner : 1, std::numbers::pi / 2 + i * std::numbers::pi / tips));
     return {{contour}};
 }
 

@@ -2,6 +2,7 @@
 #include "camera/iris/iris.h"
 
 #include <algorithm>
+#include <numbers>
 #include <numeric>
 #include <stdexcept>
 
@@ -15,7 +16,7 @@ struct Overloaded : Functions... {
 
 // Area and farthest point in a shape's own units; a mask's are texels.
 double area_of(const Disk&) {
-    return M_PI;
+    return std::numbers::pi;
 }
 double area_of(const Polygon& polygon) {
     double area = 0;
@@ -123,7 +124,8 @@ Iris::Iris(const ApertureShape& shape, double stop_radius_mm, ApertureScale scal
     const double reach = std::visit([](const auto& s) { return reach_of(s); }, shape);
     if (!(area > 0)) throw std::invalid_argument("the shape encloses no area");
     const double mm =
-        stop_radius_mm * (scale == ApertureScale::Inscribed ? 1 / reach : std::sqrt(M_PI / area));
+        stop_radius_mm *
+        (scale == ApertureScale::Inscribed ? 1 / reach : std::sqrt(std::numbers::pi / area));
     shape_ = scaled(shape, mm, way);
     reach_ = mm * reach;
     area_ = std::visit([](const auto& s) { return s.area_mm2(); }, shape_);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <variant>
 
@@ -62,8 +63,8 @@ class Iris {
         [[nodiscard]] float peak() const { return 1.f; }
         [[nodiscard]] V2f lower() const { return V2f(-radius); }
         [[nodiscard]] V2f size() const { return V2f(2 * radius); }
-        [[nodiscard]] double area_mm2() const { return M_PI * radius_mm * radius_mm; }
-        [[nodiscard]] double area_within_mm2(double r) const { return M_PI * r * r; }
+        [[nodiscard]] double area_mm2() const { return std::numbers::pi * radius_mm * radius_mm; }
+        [[nodiscard]] double area_within_mm2(double r) const { return std::numbers::pi * r * r; }
     };
     using Shape = std::variant<Round, PolygonIris, MaskIris>;
 

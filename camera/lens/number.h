@@ -12,11 +12,6 @@
 
 namespace petzval {
 
-// Explicit typedefs: g++ 12 drops vector_size from a dependent alias template.
-typedef double d4 __attribute__((vector_size(32)));
-/// All bits of a lane set (-1): on. All clear (0): off.
-typedef int64_t l4 __attribute__((vector_size(32)));
-
 /// Scalar: what constants are made of. Value: the number without derivatives. Mask: what comparing
 /// gives. Code: an integer for each lane.
 template <class N>

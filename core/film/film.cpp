@@ -42,6 +42,11 @@ Film::Film(V2i full_size, Rect crop, std::vector<Aov> aovs, std::optional<Bins> 
     if (bins) spectral_.emplace(pixels_.size(), *bins);
 }
 
+size_t Film::bytes_per_pixel(size_t layers, const std::optional<Bins>& bins) {
+    return sizeof(Pixel) + layers * sizeof(std::array<double, 3>) +
+           (bins ? SpectralFilm::bytes_per_pixel(*bins) : 0);
+}
+
 void Film::add(int x, int y, uint32_t index, const FilmSample& sample) {
     static_cast<void>(accept(offset(x, y), index, sample, 0.f));
 }
@@ -56,7 +61,6 @@ void Film::add(int x, int y, uint32_t index, const FilmSample& sample,
 }
 
 bool Film::accept(size_t at, uint32_t index, const FilmSample& sample, float fault) {
-    typedef double d4 __attribute__((vector_size(32)));
     Pixel& pixel = pixels_[at];
     f4 rgba = sample.colour.v;
     rgba[3] = sample.alpha;

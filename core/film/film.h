@@ -49,6 +49,9 @@ class Film {
     /// bins: keep a spectral film beside RGB.
     Film(V2i full_size, Rect crop, std::vector<Aov> aovs, std::optional<Bins> bins = {});
 
+    /// Memory that a film takes for each pixel of its crop.
+    [[nodiscard]] static size_t bytes_per_pixel(size_t layers, const std::optional<Bins>&);
+
     /// A sample that is not finite is counted, the first is remembered, and nothing is added.
     void add(int x, int y, uint32_t index, const FilmSample&);
 

@@ -19,6 +19,11 @@ inline constexpr uint32_t kReplicates = 8;
 /// Sums over the samples of each pixel; pixels are numbered by whoever owns it.
 class SpectralFilm {
   public:
+    /// Memory that it takes for each pixel.
+    [[nodiscard]] static size_t bytes_per_pixel(const Bins& bins) {
+        return sizeof(double) * static_cast<size_t>(bins.count) + sizeof(std::array<double, 3>) +
+               sizeof(ReplicateSums);
+    }
     SpectralFilm(size_t pixels, const Bins&);
 
     /// replicate < kReplicates. colour and xyz are the sample's estimates; radiance its lanes.

@@ -189,29 +189,15 @@ size_t LightTree::split(std::span<Item> items) {
 
 namespace {
 
-inline f8 all(float a) {
-    return f8{a, a, a, a, a, a, a, a};
-}
-inline f8 larger(f8 a, f8 b) {
-    return a > b ? a : b;
-}
-inline f8 magnitude(f8 a) {
-    return (f8)((m8)a & 0x7fffffff);
-}
-inline f8 root(f8 a) {
-    f8 r;
-    for (int i = 0; i < 8; ++i) r[i] = std::sqrt(a[i]);
-    return r;
-}
 inline f8 sine_of(f8 cosine) {
-    return root(larger(1.f - cosine * cosine, f8{}));
+    return sqrt(max(1.f - cosine * cosine, f8{}));
 }
 // Of a normal with the directions to a sphere, those behind it counted as 0: near enough where that
 // is known (a point: the cosine; all around: 1/4; a hemisphere across the normal: 1/4).
 inline f8 mean_cosine(f8 cos_normal, f8 cos_sphere) {
     const f8 length = 0.5f + 0.5f * cos_sphere, mean = cos_normal * length;
     const f8 variance = 0.25f * (1.f - length * length) + kSlack * kSlack;
-    return 0.5f * (mean + root(mean * mean + variance));
+    return 0.5f * (mean + sqrt(mean * mean + variance));
 }
 
 }  // namespace
@@ -224,45 +210,36 @@ f8 LightTree::weigh(const Node& n, const LightReceiver& r) {
     const f8 centre2 = x * x + y * y + z * z, radius2 = n.radius * n.radius;
     const m8 inside = centre2 <= radius2;
     // No nearer than the radius: within the sphere a light may be anywhere.
-    f8 distance2 = larger(larger(centre2, radius2), all(1e-24f));
-    distance2 = distance2 < 1e30f ? distance2 : all(1e30f);
-    const f8 scale = 1.f / root(distance2);
+    f8 distance2 = max(max(centre2, radius2), splat8(1e-24f));
+    distance2 = distance2 < 1e30f ? distance2 : splat8(1e30f);
+    const f8 scale = 1.f / sqrt(distance2);
     const f8 sin_sphere = n.radius * scale;
-    const f8 cos_sphere = inside ? all(-1.f) : sine_of(sin_sphere);
+    const f8 cos_sphere = inside ? splat8(-1.f) : sine_of(sin_sphere);
 
     const f8 along = (n.axis_x * x + n.axis_y * y + n.axis_z * z) * scale;
-    const f8 cos_axis = n.two_sided ? magnitude(along) : -along;
+    const f8 cos_axis = n.two_sided ? abs(along) : -along;
     const f8 sin_axis = sine_of(cos_axis);
     const m8 in_spread = cos_axis > n.cos_spread;
-    const f8 cos_off = in_spread ? all(1.f) : cos_axis * n.cos_spread + sin_axis * n.sin_spread;
+    const f8 cos_off = in_spread ? splat8(1.f) : cos_axis * n.cos_spread + sin_axis * n.sin_spread;
     const f8 sin_off = in_spread ? f8{} : sin_axis * n.cos_spread - cos_axis * n.sin_spread;
     const f8 cos_light = cos_off * cos_sphere + sin_off * sin_sphere;
     const m8 shines = (cos_off > cos_sphere) | (cos_light > n.cos_reach - kSlack);
-    const f8 emitted = cos_off > cos_sphere ? all(1.f) : larger(cos_light, all(kSlack));
+    const f8 emitted = cos_off > cos_sphere ? splat8(1.f) : max(cos_light, splat8(kSlack));
 
     const f8 facing = (x * r.normal.x + y * r.normal.y + z * r.normal.z) * scale;
-    const f8 cos_normal = r.both_sides ? magnitude(facing) : facing;
+    const f8 cos_normal = r.both_sides ? abs(facing) : facing;
     const f8 cos_receiver = cos_normal * cos_sphere + sine_of(cos_normal) * sin_sphere;
     const m8 arrives = (cos_normal > cos_sphere) | (cos_receiver > -kSlack);
     const f8 weight = n.intensity * emitted * mean_cosine(cos_normal, cos_sphere) * (scale * scale);
     return shines & arrives ? weight : f8{};
 }
 
-namespace {
-
-// One order of summation for what is drawn and what is said to be drawn.
-inline float sum_of(f8 a) {
-    return ((a[0] + a[4]) + (a[2] + a[6])) + ((a[1] + a[5]) + (a[3] + a[7]));
-}
-
-}  // namespace
-
 std::optional<LightTree::Pick> LightTree::pick(float u, const LightReceiver& receiver) const {
     float probability = 1.f, outside = outside_;
     for (uint32_t node = 0;;) {
         const Node& n = nodes_[node];
         const f8 weight = weigh(n, receiver);
-        const float sum = outside + sum_of(weight);
+        const float sum = outside + hsum(weight);
         float left = u * sum;
         if (left < outside) return Pick{kOutside, outside / sum, left / outside};
         left -= outside;
@@ -284,13 +261,13 @@ std::optional<LightTree::Pick> LightTree::pick(float u, const LightReceiver& rec
 
 float LightTree::probability(uint32_t light, const LightReceiver& receiver) const {
     if (light == kOutside) {
-        const float sum = outside_ + sum_of(weigh(nodes_[0], receiver));
+        const float sum = outside_ + hsum(weigh(nodes_[0], receiver));
         return sum > 0.f ? outside_ / sum : 0.f;
     }
     float probability = 1.f;
     for (uint32_t at = place_[light]; at != kOutside; at = parent_[at / 8]) {
         const f8 weight = weigh(nodes_[at / 8], receiver);
-        const float sum = (at < 8 ? outside_ : 0.f) + sum_of(weight);
+        const float sum = (at < 8 ? outside_ : 0.f) + hsum(weight);
         const float chosen = weight[at % 8];
         if (!(chosen > 0.f)) return 0.f;
         probability *= chosen / sum;

@@ -10,13 +10,10 @@
 #include <span>
 #include <vector>
 
+#include "core/math/lanes.h"
 #include "core/math/math.h"
 
 namespace petzval {
-
-// Explicit typedefs: see core/math/lanes.h.
-typedef float f8 __attribute__((vector_size(32)));
-typedef int32_t m8 __attribute__((vector_size(32)));
 
 /// A point that light is chosen for.
 struct LightReceiver {

@@ -11,6 +11,13 @@ namespace petzval {
 typedef float f4 __attribute__((vector_size(16)));
 /// All bits of a lane set (-1): on. All clear (0): off.
 typedef int32_t m4 __attribute__((vector_size(16)));
+/// Four doubles, and a mask over them.
+typedef double d4 __attribute__((vector_size(32)));
+typedef int64_t l4 __attribute__((vector_size(32)));
+/// Eight floats, a mask over them, and eight words.
+typedef float f8 __attribute__((vector_size(32)));
+typedef int32_t m8 __attribute__((vector_size(32)));
+typedef uint32_t u32x8 __attribute__((vector_size(32)));
 
 [[nodiscard]] inline f4 splat(float a) {
     return f4{a, a, a, a};
@@ -32,6 +39,23 @@ typedef int32_t m4 __attribute__((vector_size(16)));
 }
 [[nodiscard]] inline float hsum(f4 a) {
     return (a[0] + a[1]) + (a[2] + a[3]);
+}
+[[nodiscard]] inline f8 splat8(float a) {
+    return f8{a, a, a, a, a, a, a, a};
+}
+[[nodiscard]] inline f8 max(f8 a, f8 b) {
+    return a > b ? a : b;
+}
+[[nodiscard]] inline f8 abs(f8 a) {
+    return (f8)((m8)a & 0x7fffffff);
+}
+[[nodiscard]] inline f8 sqrt(f8 a) {
+    f8 root;
+    for (int i = 0; i < 8; ++i) root[i] = std::sqrt(a[i]);
+    return root;
+}
+[[nodiscard]] inline float hsum(f8 a) {
+    return ((a[0] + a[4]) + (a[2] + a[6])) + ((a[1] + a[5]) + (a[3] + a[7]));
 }
 /// Of the lanes that are numbers; not a number where none is.
 [[nodiscard]] inline float hmax(f4 a) {

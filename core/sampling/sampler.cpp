@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/sampling/sampler.h"
 
+#include "core/math/lanes.h"
+
 namespace petzval {
 namespace {
-
-// Eight words side by side.
-typedef uint32_t u32x8 __attribute__((vector_size(32)));
-typedef int32_t i32x8 __attribute__((vector_size(32)));
-typedef float f8 __attribute__((vector_size(32)));
 
 u32x8 reverse_bits(u32x8 a) {
     typedef uint8_t u8x32 __attribute__((vector_size(32)));
@@ -20,7 +17,7 @@ u32x8 reverse_bits(u32x8 a) {
 }
 
 f8 to_unit_floats(u32x8 bits) {
-    return __builtin_convertvector((i32x8)(bits >> 8), f8) * 0x1p-24f;
+    return __builtin_convertvector((m8)(bits >> 8), f8) * 0x1p-24f;
 }
 
 // Nested uniform scrambling (Owen 1995) of a bit-reversed word: each bit is flipped by a hash of

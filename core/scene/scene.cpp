@@ -51,7 +51,9 @@ void finish_scene(Scene& scene) {
         for (uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle)
             scene.lights.push_back(TriangleLight{i, triangle});
     }
-    if (!scene.sky.black()) scene.lights.push_back(SkyLight{});
+    if (scene.sky.black()) return;
+    scene.sky_light = static_cast<int32_t>(scene.lights.size());
+    scene.lights.push_back(SkyLight{});
 }
 
 std::array<V3f, 3> triangle_corners(const Scene& scene, uint32_t instance, uint32_t triangle) {

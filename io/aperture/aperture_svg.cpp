@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 #include <optional>
 #include <pugixml.hpp>
 
@@ -46,11 +47,11 @@ class SvgFile {
 
     [[nodiscard]] Polygon polygon() const {
         const pugi::xml_node shape = find_shape();
-        Outline outline = outline_of(shape);
+        svg::Outline outline = outline_of(shape);
         const Imath::M33d matrix = matrix_of(shape);
-        for (Subpath& subpath : outline) {
+        for (svg::Subpath& subpath : outline) {
             subpath.start *= matrix;
-            for (Cubic& curve : subpath.curves)
+            for (svg::Cubic& curve : subpath.curves)
                 curve.a *= matrix, curve.b *= matrix, curve.end *= matrix;
         }
         Polygon polygon{flatten(outline), is_even_odd(shape)};
@@ -146,7 +147,7 @@ class SvgFile {
         return value;
     }
 
-    [[nodiscard]] Outline outline_of(const pugi::xml_node& node) const {
+    [[nodiscard]] svg::Outline outline_of(const pugi::xml_node& node) const {
         const std::string_view name = name_of(node);
         if (name == "path") return read_svg_path(node.attribute("d").value(), place(node, "d"));
         if (name == "polygon")
@@ -155,13 +156,13 @@ class SvgFile {
         const bool circle = name == "circle";
         const V2d radii(positive(node, circle ? "r" : "rx"), positive(node, circle ? "r" : "ry"));
         const V2d centre(length(node, "cx", 0), length(node, "cy", 0));
-        Subpath round{centre + V2d(radii.x, 0), {}};
-        add_ellipse_arc(round, centre, radii, 0, 0, 2 * M_PI);
+        svg::Subpath round{centre + V2d(radii.x, 0), {}};
+        add_ellipse_arc(round, centre, radii, 0, 0, 2 * std::numbers::pi);
         round.curves.back().end = round.start;
         return {round};
     }
 
-    [[nodiscard]] Outline rectangle(const pugi::xml_node& node) const {
+    [[nodiscard]] svg::Outline rectangle(const pugi::xml_node& node) const {
         const V2d low(length(node, "x", 0), length(node, "y", 0));
         const V2d size(positive(node, "width"), positive(node, "height"));
         double rx = length(node, "rx", -1), ry = length(node, "ry", -1);
@@ -171,12 +172,13 @@ class SvgFile {
         const V2d inner_low = low + V2d(rx, ry), inner_high = low + size - V2d(rx, ry);
         const std::array<V2d, 4> centres = {V2d(inner_high.x, inner_low.y), inner_high,
                                             V2d(inner_low.x, inner_high.y), inner_low};
-        Subpath out{{inner_low.x, low.y}, {}};
+        svg::Subpath out{{inner_low.x, low.y}, {}};
         for (int i = 0; i < 4; ++i) {
-            const double from = (i - 1) * M_PI / 2;
+            const double from = (i - 1) * std::numbers::pi / 2;
             const V2d start = centres[i] + V2d(rx * std::cos(from), ry * std::sin(from));
             out.curves.push_back({start, start, start, true});
-            if (rx > 0 && ry > 0) add_ellipse_arc(out, centres[i], {rx, ry}, 0, from, M_PI / 2);
+            if (rx > 0 && ry > 0)
+                add_ellipse_arc(out, centres[i], {rx, ry}, 0, from, std::numbers::pi / 2);
         }
         return {out};
     }

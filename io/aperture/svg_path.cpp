@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <numbers>
 
 #include "io/base/error.h"
 
@@ -76,7 +77,7 @@ double angle_between(const V2d& a, const V2d& b) {
 }
 
 // Endpoints to centre: SVG 2, appendix B.2.4 and B.2.5.
-void add_svg_arc(Subpath& to, V2d from, V2d radii, double turn_rad, bool large, bool sweep,
+void add_svg_arc(svg::Subpath& to, V2d from, V2d radii, double turn_rad, bool large, bool sweep,
                  V2d end) {
     if (from == end) return;
     radii = {std::fabs(radii.x), std::fabs(radii.y)};
@@ -93,8 +94,8 @@ void add_svg_arc(Subpath& to, V2d from, V2d radii, double turn_rad, bool large, 
         (from + end) / 2;
     const V2d first = (p - centre_turned) / radii, last = (-p - centre_turned) / radii;
     double by = angle_between(first, last);
-    if (sweep && by < 0) by += 2 * M_PI;
-    if (!sweep && by > 0) by -= 2 * M_PI;
+    if (sweep && by < 0) by += 2 * std::numbers::pi;
+    if (!sweep && by > 0) by -= 2 * std::numbers::pi;
     add_ellipse_arc(to, centre, radii, turn_rad, std::atan2(first.y, first.x), by);
     to.curves.back().end = end;
 }
@@ -103,7 +104,7 @@ class PathReader {
   public:
     PathReader(std::string_view data, const TextPlace& place) : in_(data, place) {}
 
-    Outline read() {
+    svg::Outline read() {
         while (!in_.done()) {
             if (!in_.number_follows() && in_.peek() != ',')
                 command_ = in_.take();
@@ -113,7 +114,7 @@ class PathReader {
                 in_.refuse("a command is missing");
             step();
         }
-        std::erase_if(out_, [](const Subpath& s) { return s.curves.empty(); });
+        std::erase_if(out_, [](const svg::Subpath& s) { return s.curves.empty(); });
         return std::move(out_);
     }
 
@@ -122,7 +123,7 @@ class PathReader {
         const double x = in_.number();
         return base_ + V2d(x, in_.number());
     }
-    Subpath& subpath() {
+    svg::Subpath& subpath() {
         if (out_.empty()) in_.refuse("a path must begin with M");
         if (closed_) out_.push_back({at_, {}}), closed_ = false;
         return out_.back();
@@ -187,7 +188,7 @@ class PathReader {
                 break;
             case 'A': {
                 const double rx = in_.number(), ry = in_.number();
-                const double turn = in_.number() * M_PI / 180;
+                const double turn = in_.number() * std::numbers::pi / 180;
                 const bool large = in_.flag(), sweep = in_.flag();
                 const V2d end = point();
                 add_svg_arc(subpath(), at_, {rx, ry}, turn, large, sweep, end);
@@ -210,7 +211,7 @@ class PathReader {
     }
 
     Reader in_;
-    Outline out_;
+    svg::Outline out_;
     V2d at_{0, 0}, base_{0, 0}, control_{0, 0};
     char command_ = 0, previous_ = ' ';
     bool closed_ = false;
@@ -218,13 +219,13 @@ class PathReader {
 
 }  // namespace
 
-Outline read_svg_path(std::string_view data, const TextPlace& place) {
+svg::Outline read_svg_path(std::string_view data, const TextPlace& place) {
     return PathReader(data, place).read();
 }
 
-Outline read_svg_points(std::string_view points, const TextPlace& place) {
+svg::Outline read_svg_points(std::string_view points, const TextPlace& place) {
     Reader in(points, place);
-    Outline out;
+    svg::Outline out;
     while (!in.done()) {
         const double x = in.number();
         const V2d p(x, in.number());
@@ -259,7 +260,7 @@ Imath::M33d read_svg_transform(std::string_view text, const TextPlace& place) {
             return name == kind &&
                    std::find(counts.begin(), counts.end(), v.size()) != counts.end();
         };
-        const double angle = v.empty() ? 0 : v[0] * M_PI / 180;
+        const double angle = v.empty() ? 0 : v[0] * std::numbers::pi / 180;
         const double c = std::cos(angle), s = std::sin(angle), t = std::tan(angle);
         Imath::M33d one;
         if (has("matrix", {6}))
@@ -288,14 +289,15 @@ Imath::M33d read_svg_transform(std::string_view text, const TextPlace& place) {
     return all;
 }
 
-void add_ellipse_arc(Subpath& to, V2d centre, V2d radii, double turn_rad, double from_rad,
+void add_ellipse_arc(svg::Subpath& to, V2d centre, V2d radii, double turn_rad, double from_rad,
                      double by_rad) {
     const double c = std::cos(turn_rad), s = std::sin(turn_rad);
     const auto placed = [&](const V2d& unit) {
         const V2d p = unit * radii;
         return centre + V2d(c * p.x - s * p.y, s * p.x + c * p.y);
     };
-    const int pieces = std::max(1, static_cast<int>(std::ceil(std::fabs(by_rad) / (M_PI / 4))));
+    const int pieces =
+        std::max(1, static_cast<int>(std::ceil(std::fabs(by_rad) / (std::numbers::pi / 4))));
     const double step = by_rad / pieces, handle = 4.0 / 3 * std::tan(step / 4);
     for (int i = 0; i < pieces; ++i) {
         const double a = from_rad + i * step, b = a + step;
@@ -305,28 +307,28 @@ void add_ellipse_arc(Subpath& to, V2d centre, V2d radii, double turn_rad, double
     }
 }
 
-std::vector<std::vector<V2d>> flatten(const Outline& outline) {
+std::vector<std::vector<V2d>> flatten(const svg::Outline& outline) {
     V2d low(HUGE_VAL), high(-HUGE_VAL);
     const auto extend = [&](const V2d& p) {
         low = {std::min(low.x, p.x), std::min(low.y, p.y)};
         high = {std::max(high.x, p.x), std::max(high.y, p.y)};
     };
-    for (const Subpath& subpath : outline) {
+    for (const svg::Subpath& subpath : outline) {
         extend(subpath.start);
-        for (const Cubic& curve : subpath.curves)
+        for (const svg::Cubic& curve : subpath.curves)
             extend(curve.a), extend(curve.b), extend(curve.end);
     }
     const double extent = std::max(high.x - low.x, high.y - low.y) / 2;
     std::vector<std::vector<V2d>> contours;
     size_t vertices = 0;
-    for (const Subpath& subpath : outline) {
+    for (const svg::Subpath& subpath : outline) {
         if (vertices > kMaxPolygonVertices) break;
         std::vector<V2d> contour{subpath.start};
         const auto add = [&](const V2d& p) {
             if ((p - contour.back()).length() > 1e-9 * extent) contour.push_back(p);
         };
         V2d p = subpath.start;
-        for (const Cubic& q : subpath.curves) {
+        for (const svg::Cubic& q : subpath.curves) {
             if (contour.size() > kMaxPolygonVertices) break;
             // Wang 1984: sqrt(d (d - 1) / 8 * largest second difference / tolerance), d = 3.
             const double bend =

@@ -13,6 +13,9 @@
 
 namespace petzval {
 
+/// A path as SVG has it.
+namespace svg {
+
 struct Cubic {
     V2d a, b, end;  ///< the control points after the start, which is where the last one ended
     bool straight = false;
@@ -23,6 +26,8 @@ struct Subpath {
 };
 using Outline = std::vector<Subpath>;
 
+}  // namespace svg
+
 /// Where text stands, for errors.
 struct TextPlace {
     std::string file, place;
@@ -30,9 +35,9 @@ struct TextPlace {
 
 /// The d attribute of a path: M L H V C S Q T A Z in both cases (SVG 2, chapter 9). Throws
 /// InputError with the character at which it goes wrong.
-[[nodiscard]] Outline read_svg_path(std::string_view data, const TextPlace&);
+[[nodiscard]] svg::Outline read_svg_path(std::string_view data, const TextPlace&);
 /// The points attribute of a polygon. Throws InputError.
-[[nodiscard]] Outline read_svg_points(std::string_view points, const TextPlace&);
+[[nodiscard]] svg::Outline read_svg_points(std::string_view points, const TextPlace&);
 /// The transform attribute: matrix, translate, scale, rotate, skewX, skewY. Throws InputError.
 [[nodiscard]] Imath::M33d read_svg_transform(std::string_view text, const TextPlace&);
 /// Numbers that commas and spaces separate. Throws InputError unless there are exactly n.
@@ -41,11 +46,11 @@ struct TextPlace {
 
 /// Part of an ellipse whose axes are turned by turn_rad, in pieces of at most 45 degrees, each
 /// within 5e-6 of the radius (Goldapp 1991, "Approximation of circular arcs by cubic polynomials").
-void add_ellipse_arc(Subpath&, V2d centre, V2d radii, double turn_rad, double from_rad,
+void add_ellipse_arc(svg::Subpath&, V2d centre, V2d radii, double turn_rad, double from_rad,
                      double by_rad);
 
 /// Contours within 1e-4 of half the outline's larger extent. Points that fall on the one before
 /// them are left out. Stops soon after kMaxPolygonVertices, for find_fault() to say so.
-[[nodiscard]] std::vector<std::vector<V2d>> flatten(const Outline&);
+[[nodiscard]] std::vector<std::vector<V2d>> flatten(const svg::Outline&);
 
 }  // namespace petzval

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <stdexcept>
 
@@ -130,7 +131,8 @@ Flip::Plane Flip::convolve(const Plane& in, const std::vector<double>& across,
 Flip::Plane Flip::contrast_filtered(const Plane& in, size_t channel) const {
     // Each Gaussian is separable, their sum is not.
     const int radius = static_cast<int>(
-        std::ceil(3 * std::sqrt(kWidestGaussian / (2 * M_PI * M_PI)) * pixels_per_degree_));
+        std::ceil(3 * std::sqrt(kWidestGaussian / (2 * std::numbers::pi * std::numbers::pi)) *
+                  pixels_per_degree_));
     const Sensitivity& s = kSensitivity[channel];
     Plane out{std::vector<float>(in.v.size(), 0.f)};
     double total = 0;
@@ -138,10 +140,10 @@ Flip::Plane Flip::contrast_filtered(const Plane& in, size_t channel) const {
         if (a == 0) continue;
         const auto weights = kernel(radius, [&, width = b](double x) {
             const double deg = x / pixels_per_degree_;
-            return std::exp(-M_PI * M_PI * deg * deg / width);
+            return std::exp(-std::numbers::pi * std::numbers::pi * deg * deg / width);
         });
         const double sum = std::accumulate(weights.begin(), weights.end(), 0.);
-        const double height = a * std::sqrt(M_PI / b);
+        const double height = a * std::sqrt(std::numbers::pi / b);
         const Plane part = convolve(in, weights, weights);
         for (size_t i = 0; i < out.v.size(); ++i) out.v[i] += float(height * double(part.v[i]));
         total += height * sum * sum;

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -20,9 +21,16 @@
 
 namespace petzval {
 
+/// Seconds of a clock that never goes back.
+[[nodiscard]] inline double steady_s() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
 struct RenderJob {
     uint32_t first_sample = 0, end_sample = 64;  ///< sample indices [first, end) of every pixel
     std::optional<double> time_limit_s;  ///< ends with the pass that reaches it, end_sample or not
+    std::function<double()> wall_s = steady_s;  ///< clock of the time limit; tests step their own
     uint32_t seed = 0;
     SamplerKind sampler = SamplerKind::Owen;
     Filter filter{FilterKind::BlackmanHarris, 1.5f};
@@ -113,11 +121,7 @@ void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& 
 template <class Executor, class Tracer>
 RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob& job, Film& film,
                     Executor& executor, RenderMonitor& monitor) {
-    using Clock = std::chrono::steady_clock;
-    const auto start = Clock::now();
-    const auto elapsed_s = [&] {
-        return std::chrono::duration<double>(Clock::now() - start).count();
-    };
+    const double start_s = job.wall_s();
     const std::vector<Rect> tiles = tiles_of(film.crop(), job.tile_size_px);
     struct alignas(128) Worker {  // a cache-line pair each, so that counting does not contend
         PathStats stats;
@@ -135,8 +139,8 @@ RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob&
         }
         uint32_t pass = pass_size(done, wanted, job.scrambles);
         if (job.time_limit_s && done > 0) {
-            const double left_s = *job.time_limit_s - elapsed_s();
-            const double fits = left_s / (elapsed_s() / done);
+            const double elapsed_s = job.wall_s() - start_s;
+            const double fits = (*job.time_limit_s - elapsed_s) / (elapsed_s / done);
             if (fits < 1) break;
             if (fits < pass) pass = static_cast<uint32_t>(fits);  // fits may be beyond uint32_t
         }

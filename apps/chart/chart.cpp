@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <set>
 
 #include "io/base/atomic_file.h"
@@ -73,12 +72,10 @@ void require_memory(const std::vector<ChartCase>& cases, const ChartFrame& frame
 
 ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, RenderMonitor& monitor,
                        const std::function<void(const std::string&)>& notice,
-                       const std::function<void(const MeasuredCase&)>& finished) {
-    using SteadyClock = std::chrono::steady_clock;
-    const auto start = SteadyClock::now();
-    const auto elapsed_s = [&] {
-        return std::chrono::duration<double>(SteadyClock::now() - start).count();
-    };
+                       const std::function<void(const MeasuredCase&)>& finished,
+                       const ChartClock& clock) {
+    const double start_s = clock.wall_s();
+    const auto elapsed_s = [&] { return clock.wall_s() - start_s; };
     const double least_s = kLeastChartBudget_s * static_cast<double>(request.axes.size());
     if (request.budget_s < least_s)
         throw ArgumentError("--budget", "",
@@ -113,7 +110,7 @@ ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, Rende
         const double share_s = (request.budget_s - elapsed_s()) * of.weight / weight_left;
         std::optional<MeasuredCase> measured;
         try {
-            measured = measure(of, frame, share_s, executor, monitor, open);
+            measured = measure(of, frame, share_s, executor, monitor, open, clock);
         } catch (const TooSlow& error) {
             if (cases.size() == 1) throw;
             measured.emplace().of = of;

@@ -12,8 +12,8 @@
 #include "io/glass/catalogue.h"
 #include "io/spectra/spectra.h"
 #include "tests/support/observers.h"
-#include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
+#include "tests/support/traced_world.h"
 
 namespace petzval {
 namespace {
@@ -24,17 +24,7 @@ using test::observer_of;
 using test::place;
 using test::quad;
 using test::sphere;
-
-struct World : test::World {
-    std::unique_ptr<PathTracer<>> tracer;
-
-    void finish(int max_depth = 16) {
-        test::World::finish();
-        PathOptions options;
-        options.max_depth = max_depth;
-        tracer = std::make_unique<PathTracer<>>(scene, *bvh, *lights, options);
-    }
-};
+using World = test::TracedWorld;
 
 Film render_film(const World& world, const Camera& camera, V2i size, const RenderJob& job,
                  int threads = 2) {

@@ -171,8 +171,7 @@ TEST(Iris, RejectionEndsWithAFreshPoint) {
         on_diagonal.add(std::fabs(along - across) < 1 / length);
     }
     const double share = 2 / length - 1 / (length * length);
-    EXPECT_TRUE(test::z_test(on_diagonal.mean(), on_diagonal.standard_error(), share))
-        << on_diagonal.mean() << ", not " << share;
+    EXPECT_TRUE(test::agrees(on_diagonal, share)) << on_diagonal.mean() << ", not " << share;
 }
 
 TEST(Iris, LetsThroughWhatTheFNumberSays) {
@@ -186,7 +185,7 @@ TEST(Iris, LetsThroughWhatTheFNumberSays) {
         for (int i = 0; i < 200000; ++i)
             passed.add(iris.transmits((random.next2() * 2.f - V2f(1)) * reach));
         const double box = 4.0 * reach * reach;
-        EXPECT_TRUE(test::z_test(passed.mean() * box, passed.standard_error() * box, round))
+        EXPECT_TRUE(test::agrees(passed, round / box))
             << name << ": " << passed.mean() * box << " mm2, not " << round;
     }
 }
@@ -346,8 +345,7 @@ TEST(Iris, ShareBeyondACircle) {
             if (beyond.variance() == 0)
                 EXPECT_NEAR(iris.share_beyond(radius), beyond.mean(), 1e-4) << name;
             else
-                EXPECT_TRUE(
-                    test::z_test(beyond.mean(), beyond.standard_error(), iris.share_beyond(radius)))
+                EXPECT_TRUE(test::agrees(beyond, iris.share_beyond(radius)))
                     << name << ": " << beyond.mean() << ", not " << iris.share_beyond(radius);
         }
     }
@@ -398,7 +396,7 @@ TEST(Iris, ARimCutsWhatLiesBeyond) {
                 ASSERT_LE(p.length(), rim * (1 + 1e-6)) << name;
                 inside.add(p.length() <= inner);
             }
-            EXPECT_TRUE(test::z_test(inside.mean(), inside.standard_error(), expected))
+            EXPECT_TRUE(test::agrees(inside, expected))
                 << name << ", way " << int(way) << ": " << inside.mean() << ", not " << expected;
             EXPECT_EQ(cut.transmits({float(rim) * 1.01f, 0}), 0.f);
         }

@@ -151,7 +151,7 @@ TEST(TriangleLight, EstimatesLambertsIrradiance) {
             moments.add(s ? s->radiance[1] * s->direction.dot(n) / s->pdf : 0);
         }
         const double expected = 2 * lambert_irradiance(corners(*scene, light), V3d(p), V3d(n));
-        EXPECT_TRUE(test::z_test(moments.mean(), moments.standard_error(), expected))
+        EXPECT_TRUE(test::agrees(moments, expected))
             << moments.mean() << " +- " << moments.standard_error() << ", not " << expected;
     }
 }

@@ -148,7 +148,7 @@ TEST(Sky, EstimatesTheLightThatArrives) {
         moments.add(luminance(sky.radiance(drawn.direction)) * std::max(drawn.direction.y, 0.f) /
                     drawn.pdf);
     }
-    EXPECT_TRUE(test::z_test(moments.mean(), moments.standard_error(), expected))
+    EXPECT_TRUE(test::agrees(moments, expected))
         << moments.mean() << " +- " << moments.standard_error() << ", not " << expected;
 }
 

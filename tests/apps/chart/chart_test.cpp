@@ -21,6 +21,9 @@ TEST(ChartPoints, QuantilesOfStudentsT) {
     EXPECT_NEAR(student_t_975(9), 2.262, 1e-3);
     EXPECT_NEAR(student_t_975(30), 2.042, 1e-3);
     EXPECT_NEAR(student_t_975(1e9), 1.960, 1e-3);
+    for (const double degrees : {4., 7., 11., 30., 1000.})
+        EXPECT_NEAR(test::two_sided_t_p(student_t_975(degrees), degrees), 0.05, 1e-4) << degrees;
+    EXPECT_NEAR(test::two_sided_t_p(8.610, 4), 0.001, 1e-6);
 }
 
 TEST(ChartPoints, IntervalOfFiveNumbers) {
@@ -44,7 +47,7 @@ TEST(ChartPoints, IntervalsHoldTheMeanAsOftenAsTheySay) {
         const Interval i = confidence_95(v);
         held += i.low <= 3 && 3 <= i.high;
     }
-    EXPECT_TRUE(test::z_test(held, std::sqrt(2000 * 0.95 * 0.05), 1900)) << held;
+    EXPECT_TRUE(test::agrees({double(held), std::sqrt(2000 * 0.95 * 0.05)}, 1900)) << held;
 }
 
 ChartPoint point(uint32_t samples, double cpu_s, double mse) {

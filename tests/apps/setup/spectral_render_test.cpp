@@ -11,7 +11,7 @@
 #include "integrator/render.h"
 #include "io/glass/catalogue.h"
 #include "io/spectra/spectra.h"
-#include "tests/support/observers.h"
+#include "tests/support/set_up_observer.h"
 #include "tests/support/statistics.h"
 #include "tests/support/traced_world.h"
 

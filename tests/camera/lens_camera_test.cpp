@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "camera/lens/paraxial.h"
 #include "camera/lens/trace.h"
@@ -136,13 +137,15 @@ double quadrature(const LensCameraInput& in, V2f film_mm, double nm = kLineD_nm)
 }
 
 Polygon rotated(Polygon polygon, double degrees) {
-    const double c = std::cos(degrees * M_PI / 180), s = std::sin(degrees * M_PI / 180);
+    const double c = std::cos(degrees * std::numbers::pi / 180),
+                 s = std::sin(degrees * std::numbers::pi / 180);
     for (auto& contour : polygon.contours)
         for (V2d& p : contour) p = {p.x * c - p.y * s, p.x * s + p.y * c};
     return polygon;
 }
 V2f at_azimuth(double mm, double degrees) {
-    return {float(mm * std::cos(degrees * M_PI / 180)), float(mm * std::sin(degrees * M_PI / 180))};
+    return {float(mm * std::cos(degrees * std::numbers::pi / 180)),
+            float(mm * std::sin(degrees * std::numbers::pi / 180))};
 }
 
 TEST(LensCamera, IrradianceIsTheOracles) {
@@ -177,7 +180,7 @@ TEST(LensCamera, IrradianceOnTheAxisIsPiSineSquared) {
             (passed[0] ? passes : fails) = sine;
         }
         const LensCamera camera(in);
-        const double expected = M_PI * passes * passes;
+        const double expected = std::numbers::pi * passes * passes;
         EXPECT_TRUE(agree(irradiance(camera, V2f(0.f))[0], expected)) << name;
         EXPECT_NEAR(camera.irradiance(V2f(0.f), 1024), expected, kTolerance * expected) << name;
         if (name == kTakumar) {

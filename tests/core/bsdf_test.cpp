@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <complex>
+#include <numbers>
 #include <random>
 
 #include "core/shading/microfacet.h"
@@ -174,7 +175,7 @@ TEST(Microfacet, AlbedoTableMatchesDirectIntegration) {
             for (int i = 0; i < side; ++i)
                 for (int j = 0; j < side; ++j) {
                     const double r = std::sqrt((i + unit_u(random)) / side);
-                    const double phi = 2 * M_PI * (j + unit_u(random)) / side;
+                    const double phi = 2 * std::numbers::pi * (j + unit_u(random)) / side;
                     const V3f wi(static_cast<float>(r * std::cos(phi)),
                                  static_cast<float>(r * std::sin(phi)),
                                  static_cast<float>(std::sqrt(std::max(1e-12, 1 - r * r))));
@@ -234,7 +235,7 @@ TEST_P(BsdfSampling, WeightsIntegrateTheValue) {
     test::Random random(5);
     test::Moments value, weight;
     for (int i = 0; i < n; ++i) {
-        value.add(4 * M_PI * double(bsdf.eval(random.direction()).f_cos[lane]));
+        value.add(4 * std::numbers::pi * double(bsdf.eval(random.direction()).f_cos[lane]));
         const float u_lobe = random.next();
         const auto s = bsdf.sample(u_lobe, random.next2());
         weight.add(s ? double(s->weight[lane]) : 0);

@@ -2,6 +2,7 @@
 #include "core/light/light_tree.h"
 
 #include <algorithm>
+#include <numbers>
 #include <set>
 
 #include "core/light/light_choice.h"
@@ -196,7 +197,7 @@ TEST(LightTree, SingleLightsAreWeighedByWhatTheyGive) {
         given.push_back(std::max(0.f, drawn->direction.y) * drawn->radiance[1] / drawn->pdf);
     }
     // A spot light counts for its mean over its cone, wherever in it the receiver stands.
-    given[4] *= light_power(scene, scene.lights[4]) / (2 * M_PI * (1 - 0.9) * 2);
+    given[4] *= light_power(scene, scene.lights[4]) / (2 * std::numbers::pi * (1 - 0.9) * 2);
     const double sum = std::accumulate(given.begin(), given.end(), 0.0);
     for (uint32_t i = 0; i < scene.lights.size(); ++i)
         EXPECT_NEAR(choice.probability(i, receiver), given[i] / sum, 0.02 * given[i] / sum) << i;

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "core/spectrum/colour.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
@@ -174,7 +176,7 @@ World floor_under(Light light) {
 
 TEST(Path, PunctualLightsGiveTheirIlluminance) {
     const auto centre = [](V2f) { return ray_to(V3f(0, 0, 4), V3f(0.f)); };
-    const double albedo_over_pi = 0.5 / M_PI;
+    const double albedo_over_pi = 0.5 / std::numbers::pi;
     const World point = floor_under(PointLight{V3f(0, 3, 4), Rgb(100.f)});
     expect_agrees(estimate(point, PathOptions(), 16, centre), albedo_over_pi * 100 / 25 * 0.8,
                   "point");
@@ -194,7 +196,7 @@ TEST(Path, SquareEmitterMatchesItsConfigurationFactor) {
     place(world.scene, quad(V3f(-1, -1, 2), V3f(0, 2, 0), V3f(2, 0, 0)), light);
     world.finish();
     const double a = 0.5, b = 0.5;  // half sides over the distance
-    const double corner = 1 / (2 * M_PI) *
+    const double corner = 1 / (2 * std::numbers::pi) *
                           (a / std::sqrt(1 + a * a) * std::atan(b / std::sqrt(1 + a * a)) +
                            b / std::sqrt(1 + b * b) * std::atan(a / std::sqrt(1 + b * b)));
     const double truth = 0.5 * 3 * 4 * corner;

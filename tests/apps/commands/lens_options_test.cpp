@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Renders through lenses of glass, by the program.
 #include <cmath>
+#include <numbers>
 
 #include "tests/support/cli.h"
 
@@ -115,7 +116,7 @@ TEST_F(CliLens, FitsTheAngleOfView) {
         for (int x = 16; x < 128; ++x) width += at(x) > half;
         return width;
     };
-    const double expected = 96 * 0.2 / std::tan(13 * M_PI / 180);
+    const double expected = 96 * 0.2 / std::tan(13 * std::numbers::pi / 180);
     EXPECT_NEAR(width_px(picture({"--fov", "26"})), expected, 1.5);
     const Words lens = {"--lens", "biotar-58mm-f1.4", "--chroma", "shared", "--fstop",
                         "16",     "--focus",          "1000"};
@@ -155,7 +156,7 @@ TEST_F(CliLens, GlassReflectsWhereItIsAskedTo) {
     EXPECT_NEAR(ideal, 1, 2e-3);
     EXPECT_NEAR(grey("uncoated") / ideal, sqr(1 - 0.04), 2e-4);
     // At line d a quarter wave of 550 nm is a little thin.
-    const double phase = M_PI * 550 / 587.5618, a = -0.38 / 2.38, b = -0.12 / 2.88;
+    const double phase = std::numbers::pi * 550 / 587.5618, a = -0.38 / 2.38, b = -0.12 / 2.88;
     const double both = 2 * a * b * std::cos(phase);
     const double reflected = (a * a + b * b + both) / (1 + sqr(a * b) + both);
     EXPECT_GT(reflected, film);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <numbers>
 
 #include "camera/models/thin_lens.h"
 #include "core/spectrum/colorimetry.h"
@@ -232,9 +233,10 @@ TEST(SpectralRender, PrismBendsEachWavelengthAsSnellSays) {
     place(world.scene, prism, glass_material("schott:N-SF11", 0.f));
     world.finish();
     const Observer observer = observer_of({});
-    const double incidence = 60. / 180 * M_PI, apex = 60. / 180 * M_PI;
+    const double incidence = 60. / 180 * std::numbers::pi, apex = 60. / 180 * std::numbers::pi;
     // Into the left face, whose outward normal points 150 degrees from +x.
-    const V3d normal_in(std::cos(150. / 180 * M_PI), std::sin(150. / 180 * M_PI), 0);
+    const V3d normal_in(std::cos(150. / 180 * std::numbers::pi),
+                        std::sin(150. / 180 * std::numbers::pi), 0);
     const double heading = std::atan2(-normal_in.y, -normal_in.x) + incidence;
     for (const double nm : {400., 486.1327, 587.5618, 656.2725, 780.}) {
         // N-SF11: Schott's Sellmeier coefficients.

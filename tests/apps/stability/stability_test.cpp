@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <numbers>
 #include <regex>
 #include <sstream>
 
@@ -255,7 +256,7 @@ TEST(Stability, ADefocusedHighlightVariesAsItsShareOfTheBlur) {
         FilmSample out;
         light.add(double(tracer.radiance(ray, Bands::rgb(), sampler, false, out, stats)[0]));
     }
-    const double share = double(side_m * side_m) / (M_PI / 4 * 0.225 * 0.225);
+    const double share = double(side_m * side_m) / (std::numbers::pi / 4 * 0.225 * 0.225);
     EXPECT_TRUE(test::agrees(light, share)) << light.mean();
     EXPECT_NEAR(light.variance() / (light.mean() * light.mean()), 1 / light.mean() - 1, 0.01);
 }

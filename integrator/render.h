@@ -82,11 +82,7 @@ void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& 
 template <class Executor, class Tracer>
 RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob& job, Film& film,
                     Executor& executor, RenderMonitor& monitor) {
-    using Clock = std::chrono::steady_clock;
-    const auto start = Clock::now();
-    const auto elapsed_s = [&] {
-        return std::chrono::duration<double>(Clock::now() - start).count();
-    };
+    const double start_s = job.wall_s();
     const std::vector<Rect> tiles = tiles_of(film.crop(), job.tile_size_px);
     struct alignas(128) Worker {  // a cache-line pair each, so that counting does not contend
         PathStats stats;
@@ -104,8 +100,8 @@ RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob&
         }
         uint32_t pass = pass_size(done, wanted, job.replicates);
         if (job.time_limit_s && done > 0) {
-            const double left_s = *job.time_limit_s - elapsed_s();
-            const double fits = left_s / (elapsed_s() / done);
+            const double elapsed_s = job.wall_s() - start_s;
+            const double fits = (*job.time_limit_s - elapsed_s) / (elapsed_s / done);
             if (fits < 1) break;
             if (fits < pass) pass = static_cast<uint32_t>(fits);  // fits may be beyond uint32_t
         }

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "core/sampling/filter.h"
@@ -13,9 +15,16 @@
 
 namespace petzval {
 
+/// Seconds of a clock that never goes back.
+[[nodiscard]] inline double steady_s() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
 struct RenderJob {
     uint32_t first_sample = 0, end_sample = 64;  ///< sample indices [first, end) of every pixel
     std::optional<double> time_limit_s;  ///< ends with the pass that reaches it, end_sample or not
+    std::function<double()> wall_s = steady_s;  ///< clock of the time limit; tests step their own
     uint32_t seed = 0;
     SamplerKind sampler = SamplerKind::Owen;
     Filter filter{FilterKind::BlackmanHarris, 1.5f};

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <set>
 
 #include "apps/setup/memory.h"
@@ -69,12 +68,10 @@ void require_memory(const std::vector<ChartCase>& cases, const ChartFrame& frame
 
 ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, RenderMonitor& monitor,
                        const Notice& notice,
-                       const std::function<void(const MeasuredCase&)>& finished) {
-    using SteadyClock = std::chrono::steady_clock;
-    const auto start = SteadyClock::now();
-    const auto elapsed_s = [&] {
-        return std::chrono::duration<double>(SteadyClock::now() - start).count();
-    };
+                       const std::function<void(const MeasuredCase&)>& finished,
+                       const ChartClock& clock) {
+    const double start_s = clock.wall_s();
+    const auto elapsed_s = [&] { return clock.wall_s() - start_s; };
     const double least_s = kLeastChartBudget_s * static_cast<double>(request.axes.size());
     if (request.budget_s < least_s)
         throw ArgumentError("--budget", "",
@@ -110,7 +107,7 @@ ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, Rende
         const double share_s = (request.budget_s - elapsed_s()) * of.weight / weight_left;
         std::optional<MeasuredCase> measured;
         try {
-            measured = measure(of, frame, share_s, executor, monitor, open);
+            measured = measure(of, frame, share_s, executor, monitor, open, clock);
         } catch (const TooSlow& error) {
             if (cases.size() == 1) throw;
             measured.emplace().of = of;

@@ -27,6 +27,7 @@ struct ChartOutcome {
 /// small, more memory than there is, nothing to compare.
 [[nodiscard]] ChartOutcome run_chart(const ChartRequest&, TbbExecutor&, RenderMonitor&,
                                      const Notice& notice,
-                                     const std::function<void(const MeasuredCase&)>& finished);
+                                     const std::function<void(const MeasuredCase&)>& finished,
+                                     const ChartClock&);
 
 }  // namespace petzval

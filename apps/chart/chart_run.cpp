@@ -4,11 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "integrator/render.h"
-#include "io/base/clock.h"
 #include "io/image/difference.h"
 #include "io/image/flip.h"
 
@@ -18,20 +16,22 @@ namespace {
 constexpr double kReferenceShare = 0.4;  ///< at most; counts that grow in steps use 0.25 to 0.4
 constexpr double kMeasuringShare = 0.9;  ///< the rest is for plots and pictures
 
-class Clock {
+/// Wall time since it was made.
+class Stopwatch {
   public:
-    [[nodiscard]] double elapsed_s() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    }
+    explicit Stopwatch(const ChartClock& clock) : clock_(clock), start_s_(clock.wall_s()) {}
+    [[nodiscard]] double elapsed_s() const { return clock_.wall_s() - start_s_; }
 
   private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    const ChartClock& clock_;
+    double start_s_;
 };
 
 struct Workplace {
     const ChartFrame& frame;
     TbbExecutor& executor;
     RenderMonitor& monitor;
+    const ChartClock& clock;
 };
 
 /// One method's renders of several seeds, all at the same number of samples.
@@ -80,10 +80,10 @@ class Track {
         job.seed = first_seed_ + seed;
         job.first_sample = first;
         job.end_sample = end;
-        const double start_s = process_cpu_s();
+        const double start_s = at_.clock.cpu_s();
         const RenderResult result =
             render(*tracer_, *setup_.view.camera, job, film, at_.executor, at_.monitor);
-        cpu_s += process_cpu_s() - start_s;
+        cpu_s += at_.clock.cpu_s() - start_s;
         return !result.stopped;
     }
 
@@ -135,14 +135,14 @@ void require_time(double once_s, double budget_s, const char* what) {
 
 std::optional<ChartReference> render_reference(const ChartMethod& method, RenderSetup setup,
                                                const Workplace& at, double budget_s) {
-    const Clock clock;
+    const Stopwatch clock(at.clock);
     Track track(method, std::move(setup), at, kFirstReferenceSeed, kReferenceReplicates);
     if (!track.warm_up()) return std::nullopt;
     // A film with replicates is whole after one sample of each.
     const uint32_t first = std::max(2u, method.job.replicates);
     require_time(clock.elapsed_s() * (1 + first * kReferenceReplicates), budget_s, "the reference");
     for (uint32_t end = first; end <= 1u << 20;) {
-        const Clock level;
+        const Stopwatch level(at.clock);
         for (uint32_t part = 0; part < kReferenceReplicates; ++part)
             if (!track.advance(part, end)) return std::nullopt;
         track.last_s = level.elapsed_s() * end / (end - track.samples());
@@ -182,7 +182,7 @@ class Race {
 
     /// False where it was stopped.
     [[nodiscard]] bool run(double budget_s) {
-        const Clock clock;
+        const Stopwatch clock(at_.clock);
         for (Track& track : tracks_)
             if (!track.warm_up()) return false;
         require_time(clock.elapsed_s() * (1 + at_.frame.seeds), budget_s, "all methods");
@@ -243,13 +243,13 @@ class Race {
         for (uint32_t seed = 0; seed < at_.frame.seeds; ++seed)
             for (size_t k = 0; k < next.size(); ++k) {
                 Track& track = tracks_[next[(k + seed) % next.size()]];
-                const Clock turn;
+                const Stopwatch turn(at_.clock);
                 if (!track.advance(seed, doubled(track))) return false;
                 track.last_s += turn.elapsed_s();
             }
         for (const size_t i : next) {
             Track& track = tracks_[i];
-            const Clock looking;
+            const Stopwatch looking(at_.clock);
             track.reached(doubled(track));
             ChartPoint point{track.samples(), {}};
             for (uint32_t seed = 0; seed < at_.frame.seeds; ++seed) {
@@ -337,13 +337,13 @@ Picture read_reference(const std::filesystem::path& path, V2i size, Rect crop) {
 
 std::optional<MeasuredCase> measure(const ChartCase& of, const ChartFrame& frame, double budget_s,
                                     TbbExecutor& executor, RenderMonitor& monitor,
-                                    const SetUpView& open) {
-    const Clock clock;
+                                    const SetUpView& open, const ChartClock& times) {
+    const Stopwatch clock(times);
     MeasuredCase out;
     out.of = of;
     if (of.methods.empty()) return out;
     require_time(0, budget_s, "this axis");
-    const Workplace at{frame, executor, monitor};
+    const Workplace at{frame, executor, monitor, times};
     const double measuring_s = kMeasuringShare * budget_s;
     if (frame.reference) {
         out.reference.picture = *frame.reference;

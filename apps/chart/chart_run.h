@@ -2,6 +2,7 @@
 // Measures methods against a reference: cost and error over growing numbers of samples.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "apps/chart/chart_points.h"
 #include "core/film/film.h"
 #include "integrator/executor.h"
+#include "io/base/clock.h"
 #include "io/base/error.h"
 #include "io/image/picture.h"
 
@@ -19,6 +21,12 @@ inline constexpr uint32_t kChartSeeds = 5;           ///< at least: for an inter
 inline constexpr double kLeastChartBudget_s = 4;     ///< for each case of weight 1
 inline constexpr uint32_t kReferenceReplicates = 4;  ///< independent renders
 inline constexpr uint32_t kFirstReferenceSeed = 1'000'000;
+
+/// Clocks of a chart, in seconds; tests step their own.
+struct ChartClock {
+    std::function<double()> wall_s = steady_s;      ///< budgets are of this one
+    std::function<double()> cpu_s = process_cpu_s;  ///< costs are of this one
+};
 
 /// The budget is too small for a first look at everything.
 class TooSlow : public ArgumentError {
@@ -79,6 +87,6 @@ struct MeasuredCase {
 /// Nothing where the monitor said stop. Throws what SetUpView does, and TooSlow.
 [[nodiscard]] std::optional<MeasuredCase> measure(const ChartCase&, const ChartFrame&,
                                                   double budget_s, TbbExecutor&, RenderMonitor&,
-                                                  const SetUpView&);
+                                                  const SetUpView&, const ChartClock&);
 
 }  // namespace petzval

@@ -141,10 +141,11 @@ int chart_command(ChartOptions& o) {
     const auto notice = [style = o.quiet ? NoticeStyle::None : NoticeStyle::Text](
                             const std::string& text) { print_notice(style, text); };
     interrupt.arm();
+    const auto finished = [&](const MeasuredCase& of) {
+        if (!o.quiet) print_case(of);
+    };
     const ChartOutcome outcome =
-        run_chart(o.request, executor, monitor, notice, [&](const MeasuredCase& of) {
-            if (!o.quiet) print_case(of);
-        });
+        run_chart(o.request, executor, monitor, notice, finished, ChartClock());
     const std::string page = (o.request.subject.folder / "report.html").string();
     if (outcome.stopped) {
         notice(outcome.measured > 0

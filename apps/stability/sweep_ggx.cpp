@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "apps/stability/sweeps.h"
 #include "core/shading/bsdf.h"
@@ -132,7 +133,7 @@ Density density_of(double roughness, double cosine) {
         const V2f v = sampler.get2(Dim::LightPoint);
         const double tan2 = double(alpha * alpha) * double(v.x) / (1 - double(v.x));
         const double c = 1 / std::sqrt(1 + tan2), s = std::sqrt(tan2) * c;
-        const double phi = 2 * M_PI * double(v.y);
+        const double phi = 2 * std::numbers::pi * double(v.y);
         const V3f m(static_cast<float>(s * std::cos(phi)), static_cast<float>(s * std::sin(phi)),
                     static_cast<float>(c));
         const float wo_m = wo.dot(m);

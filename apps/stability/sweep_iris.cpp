@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "apps/stability/sweeps.h"
 #include "camera/iris/iris.h"
@@ -24,7 +25,7 @@ Polygon turned(Polygon polygon, double rad) {
 // A rectangle 1 long along the diagonal, where its bounding box is emptiest.
 Polygon sliver(double ratio) {
     const double x = 0.5, y = 0.5 / ratio;
-    return turned({{{{-x, -y}, {x, -y}, {x, y}, {-x, y}}}}, M_PI / 4);
+    return turned({{{{-x, -y}, {x, -y}, {x, y}, {-x, y}}}}, std::numbers::pi / 4);
 }
 
 struct Rejection {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "apps/stability/sweeps.h"
 #include "apps/stability/world.h"
@@ -46,7 +47,8 @@ World under_sun(int width) {
     const int height = width / 2, x = width / 3, y = height / 5;
     std::vector<float> rgb(3 * static_cast<size_t>(width) * height);
     const double solid_angle =
-        2 * M_PI / width * (std::cos(M_PI * y / height) - std::cos(M_PI * (y + 1) / height));
+        2 * std::numbers::pi / width *
+        (std::cos(std::numbers::pi * y / height) - std::cos(std::numbers::pi * (y + 1) / height));
     for (int i = 0; i < 3; ++i)
         rgb[3 * (static_cast<size_t>(y) * width + x) + size_t(i)] =
             static_cast<float>(100 / solid_angle);
@@ -233,9 +235,10 @@ Finding defocused_highlights() {
             const double there_m = confusion_m(fstop);
             const double blur_px = there_m / kBehind_m * film_mm / kFilm_px_mm;
             const double v = h.all.relative_variance;
-            f.table.rows.push_back(row(
-                side, fstop, blur_px, there_m, side * side / (M_PI / 4 * there_m * there_m), v,
-                v / 0.01, h.all.found * 32768 > 100 && h.all.found < 1 ? number(h.owen_gain) : ""));
+            f.table.rows.push_back(
+                row(side, fstop, blur_px, there_m,
+                    side * side / (std::numbers::pi / 4 * there_m * there_m), v, v / 0.01,
+                    h.all.found * 32768 > 100 && h.all.found < 1 ? number(h.owen_gain) : ""));
         }
     const auto below = [](double fstop, double most) {
         return first_failure(0.2, 1e-4, [=](double side) {

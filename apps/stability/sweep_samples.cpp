@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 
 #include "apps/stability/sweeps.h"
 #include "core/film/film.h"
@@ -28,7 +29,7 @@ std::vector<double> errors_of(SamplerKind kind) {
             inside += u.x * u.x + u.y * u.y < 1.f;
             if (i + 1 != next) continue;
             if (squares.size() <= at) squares.push_back(0);
-            squares[at++] += std::pow(double(inside) / next - M_PI / 4, 2) / kSeeds;
+            squares[at++] += std::pow(double(inside) / next - std::numbers::pi / 4, 2) / kSeeds;
             next *= 4;
         }
     }

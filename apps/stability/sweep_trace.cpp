@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "apps/stability/rays.h"
 #include "apps/stability/sweeps.h"
@@ -34,7 +35,8 @@ Spread into_glass(double cosine) {
     Draws draws(11);
     return worst_of(512, [&] {
         const double c = cosine * (1 + 0.1 * double(draws.next()));
-        const double h_mm = kRadius_mm * std::sqrt(1 - c * c), at = 2 * M_PI * double(draws.next());
+        const double h_mm = kRadius_mm * std::sqrt(1 - c * c),
+                     at = 2 * std::numbers::pi * double(draws.next());
         return trace_both(lens, {0, 0}, {h_mm * std::cos(at), h_mm * std::sin(at), -10}, {0, 0, 1});
     });
 }
@@ -46,7 +48,7 @@ Spread out_of_glass(double cosine) {
     return worst_of(512, [&] {
         const double c = cosine * (1 + 0.1 * double(draws.next()));
         const double sine = std::sqrt(1 - c * c) / kGlassIndex,
-                     at = 2 * M_PI * double(draws.next());
+                     at = 2 * std::numbers::pi * double(draws.next());
         return trace_both(lens, {1, 1}, {0, 0, -3},
                           {sine * std::cos(at), sine * std::sin(at), std::sqrt(1 - sine * sine)});
     });
@@ -78,7 +80,7 @@ Finding trace_at_grazing_incidence() {
     const auto plane =
         first_failure(0.9, 1e-6, [](double c) { return out_of_glass(c).apart_mm > kPixel_mm; });
     const auto degrees_off = [](const std::optional<double>& c) {
-        return number(c ? std::optional(std::asin(*c) * 180 / M_PI) : std::nullopt);
+        return number(c ? std::optional(std::asin(*c) * 180 / std::numbers::pi) : std::nullopt);
     };
     f.where = fmt::format(
         "Into a sphere floats are a pixel (6 um) off below a cosine of {} ({} degrees from "
@@ -102,7 +104,7 @@ double over_radius_mm(double radius_mm) {
     Draws draws(13);
     return worst_of(512,
                     [&] {
-                        const double at = 2 * M_PI * double(draws.next());
+                        const double at = 2 * std::numbers::pi * double(draws.next());
                         const double h_mm = 10 * double(draws.next());
                         return trace_both(lens, {0, 1},
                                           {h_mm * std::cos(at), h_mm * std::sin(at), -10},

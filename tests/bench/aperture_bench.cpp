@@ -3,6 +3,8 @@
 // passes; seconds of making an iris matter little, but not nothing, so they are here too.
 #include <benchmark/benchmark.h>
 
+#include <numbers>
+
 #include "camera/iris/iris.h"
 #include "tests/support/statistics.h"
 
@@ -24,10 +26,12 @@ Mask vignette(int size) {
 Polygon gear() {
     Polygon out{{{}}};
     const auto at = [](double r, double turn) {
-        return V2d(std::cos(2 * M_PI * turn), std::sin(2 * M_PI * turn)) * r;
+        return V2d(std::cos(2 * std::numbers::pi * turn), std::sin(2 * std::numbers::pi * turn)) *
+               r;
     };
     for (int i = 0; i < 5000; ++i)
-        out.contours[0].push_back(at(1 + 0.1 * std::sin(i * 2 * M_PI / 100), i / 5000.0));
+        out.contours[0].push_back(
+            at(1 + 0.1 * std::sin(i * 2 * std::numbers::pi / 100), i / 5000.0));
     for (int k = 0; k < 8; ++k) {
         out.contours.emplace_back();
         for (int i = 0; i < 40; ++i)

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 
@@ -141,11 +142,11 @@ TEST(AberratedLens, IrisShapesTheBundle) {
             highest = V2f(std::fmax(highest.x, mm.x), std::fmax(highest.y, mm.y));
         }
         // Tips at 110, 230 and 350 degrees; of the area of a disk of 8 mm.
-        const double r = 8 * std::sqrt(M_PI * 4 / (3 * std::sqrt(3.)));
-        EXPECT_NEAR(highest.y, r * std::sin(110 * M_PI / 180), 0.3);
-        EXPECT_NEAR(lowest.y, r * std::sin(230 * M_PI / 180), 0.3);
-        EXPECT_NEAR(highest.x, r * std::cos(350 * M_PI / 180), 0.3);
-        EXPECT_NEAR(lowest.x, r * std::cos(230 * M_PI / 180), 0.3);
+        const double r = 8 * std::sqrt(std::numbers::pi * 4 / (3 * std::sqrt(3.)));
+        EXPECT_NEAR(highest.y, r * std::sin(110 * std::numbers::pi / 180), 0.3);
+        EXPECT_NEAR(lowest.y, r * std::sin(230 * std::numbers::pi / 180), 0.3);
+        EXPECT_NEAR(highest.x, r * std::cos(350 * std::numbers::pi / 180), 0.3);
+        EXPECT_NEAR(lowest.x, r * std::cos(230 * std::numbers::pi / 180), 0.3);
     };
     expect_shape(aberrated);
     expect_shape(ideal);

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <numbers>
+
 #include "camera/iris/iris.h"
 #include "tests/support/complaint.h"
 
@@ -24,12 +26,12 @@ TEST(Aperture, RoundnessOfOneIsTheCircle) {
 
 // The middle of a blade's edge stands where an arc of that curvature has it.
 TEST(Aperture, RoundnessIsTheCurvatureOfTheBlades) {
-    const double half = M_PI / 5, r = 1 / 0.4;
+    const double half = std::numbers::pi / 5, r = 1 / 0.4;
     const double sagitta = r - std::sqrt(r * r - std::pow(std::sin(half), 2));
     double nearest = HUGE_VAL;
     const Polygon polygon = regular_polygon(5, 0, 0.4);
     for (const V2d& p : polygon.contours[0])
-        if (std::fabs(std::atan2(p.y, p.x) - M_PI / 2 - half) < 0.03)
+        if (std::fabs(std::atan2(p.y, p.x) - std::numbers::pi / 2 - half) < 0.03)
             nearest = std::min(nearest, std::fabs(p.length() - std::cos(half) - sagitta));
     EXPECT_LT(nearest, 5e-4);
 }

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <complex>
+#include <numbers>
 
 #include "tests/support/lens_json.h"
 #include "tests/support/statistics.h"
@@ -15,7 +16,8 @@ namespace {
 constexpr float kRound = 2e-6f;
 
 Crossing crossing(float from, float into, double incidence_deg) {
-    return {splat(from), splat(into), splat(float(std::cos(incidence_deg * M_PI / 180)))};
+    return {splat(from), splat(into),
+            splat(float(std::cos(incidence_deg * std::numbers::pi / 180)))};
 }
 Crossing backwards(const Crossing& c) {
     const f4 ratio = c.index_from / c.index_into;
@@ -34,7 +36,7 @@ TEST(Coating, BareGlassReflectsFourPercentAtNormalIncidence) {
 }
 
 TEST(Coating, NothingOfPIsReflectedAtBrewstersAngle) {
-    const double brewster_deg = std::atan(1.5) * 180 / M_PI;
+    const double brewster_deg = std::atan(1.5) * 180 / std::numbers::pi;
     const Reflectance r = fresnel_reflectance(crossing(1, 1.5f, brewster_deg));
     EXPECT_NEAR(r.p[0], 0, 1e-10);
     // There the two rays are perpendicular: r_s = cos 2 theta.
@@ -64,7 +66,7 @@ double by_matrix(double n0, double n2, double cosine0, double nm, bool s) {
     const double c1 = cosine_in(n1), c2 = cosine_in(n2);
     const auto admittance = [s](double n, double c) { return s ? n * c : n / c; };
     const double y0 = admittance(n0, cosine0), y1 = admittance(n1, c1), y2 = admittance(n2, c2);
-    const double beta = M_PI / 2 * kQuarterWave_nm / nm * c1;
+    const double beta = std::numbers::pi / 2 * kQuarterWave_nm / nm * c1;
     const C b = std::cos(beta) + C(0, 1) * std::sin(beta) * y2 / y1;
     const C c = y2 * std::cos(beta) + C(0, 1) * y1 * std::sin(beta);
     return std::norm((y0 * b - c) / (y0 * b + c));

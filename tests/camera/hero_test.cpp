@@ -20,7 +20,7 @@ using test::least_p;
 const V2f kFrame_px(48, 32);
 
 Bands four_wavelengths(float u) {
-    static const Observer observer = test::observer_of({});
+    static const Observer observer = test::plain_observer();
     return observer.draw(u);
 }
 

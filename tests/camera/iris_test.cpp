@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <map>
+#include <numbers>
 
 #include "core/sampling/sampler.h"
 #include "tests/support/chi_square.h"
@@ -72,7 +73,7 @@ double area_of(const Polygon& polygon) {
 // Counts in a grid over the polygon's box against the polygon clipped to each cell.
 testing::AssertionResult uniform_over(const Polygon& polygon, const Iris& iris, uint32_t seed,
                                       int samples = 200000, int cells = 24) {
-    const Polygon mm = scaled(polygon, std::sqrt(M_PI / area_of(polygon)) * kStop_mm);
+    const Polygon mm = scaled(polygon, std::sqrt(std::numbers::pi / area_of(polygon)) * kStop_mm);
     V2d low(1e9), high(-1e9);
     for (const auto& contour : mm.contours)
         for (const V2d& p : contour) {
@@ -123,7 +124,7 @@ TEST(Iris, DrawsMasksInProportionToTheirGrey) {
     const double sum = std::accumulate(mask.texels.begin(), mask.texels.end(), 0.0);
     for (const IrisSampling way : {Formula, Rejection}) {
         const Iris iris(mask, kStop_mm, ApertureScale::EqualArea, way);
-        const double texel = kStop_mm * std::sqrt(M_PI / sum);
+        const double texel = kStop_mm * std::sqrt(std::numbers::pi / sum);
         const auto density = [&](double x, double y) {  // row 0 at the top
             return mask.texels[(3 - static_cast<int>(y)) * 6 + static_cast<int>(x)] / sum;
         };
@@ -141,7 +142,7 @@ TEST(Iris, DrawsMasksInProportionToTheirGrey) {
 
 // Along the sliver every point is as likely, and across it too: 25 squares a side hide that.
 TEST(Iris, DrawsTheSliverUniformlyAcross) {
-    const double unit_mm = kStop_mm * std::sqrt(M_PI / 1000);
+    const double unit_mm = kStop_mm * std::sqrt(std::numbers::pi / 1000);
     for (const IrisSampling way : {Formula, Triangles, Rejection}) {
         const Iris iris(sliver(), kStop_mm, ApertureScale::EqualArea, way);
         const auto place = [&](Random& random) -> std::optional<V2f> {
@@ -160,7 +161,7 @@ TEST(Iris, DrawsTheSliverUniformlyAcross) {
 // the formula lays on the sliver's own diagonal: drawing u again at the end would leave it thin.
 TEST(Iris, RejectionEndsWithAFreshPoint) {
     constexpr double length = 500, mm = 1;
-    const double unit_mm = std::sqrt(M_PI / length) * mm;
+    const double unit_mm = std::sqrt(std::numbers::pi / length) * mm;
     const Iris iris(sliver(length), mm, ApertureScale::EqualArea, Rejection);
     Random random(75);
     test::Moments on_diagonal;
@@ -171,22 +172,21 @@ TEST(Iris, RejectionEndsWithAFreshPoint) {
         on_diagonal.add(std::fabs(along - across) < 1 / length);
     }
     const double share = 2 / length - 1 / (length * length);
-    EXPECT_TRUE(test::z_test(on_diagonal.mean(), on_diagonal.standard_error(), share))
-        << on_diagonal.mean() << ", not " << share;
+    EXPECT_TRUE(test::agrees(on_diagonal, share)) << on_diagonal.mean() << ", not " << share;
 }
 
 TEST(Iris, LetsThroughWhatTheFNumberSays) {
     Random random(80);
     for (const auto& [name, shape] : shapes()) {
         const Iris iris(shape, kStop_mm);
-        const double round = M_PI * kStop_mm * kStop_mm;
+        const double round = std::numbers::pi * kStop_mm * kStop_mm;
         EXPECT_NEAR(iris.area_mm2(), round, 1e-9 * round) << name;
         test::Moments passed;
         const float reach = iris.bounding_radius_mm();
         for (int i = 0; i < 200000; ++i)
             passed.add(iris.transmits((random.next2() * 2.f - V2f(1)) * reach));
         const double box = 4.0 * reach * reach;
-        EXPECT_TRUE(test::z_test(passed.mean() * box, passed.standard_error() * box, round))
+        EXPECT_TRUE(test::agrees(passed, round / box))
             << name << ": " << passed.mean() * box << " mm2, not " << round;
     }
 }
@@ -214,12 +214,13 @@ TEST(Iris, AreasInClosedForm) {
     EXPECT_NEAR(area(regular_polygon(3)), 3 * std::sqrt(3.0) / 4, 1e-12);
     EXPECT_NEAR(area(sliver()), 1000 / (500 * 500 + 0.25), 1e-12);
     for (const int n : {3, 5, 8, 100})
-        EXPECT_NEAR(area(star(n)), n * kGolden * std::sin(M_PI / n), 1e-12) << n;
+        EXPECT_NEAR(area(star(n)), n * kGolden * std::sin(std::numbers::pi / n), 1e-12) << n;
     for (const int n : {3, 4, 7, 11, 100})
         for (const double roundness : {0.0, 0.01, 0.3, 0.8, 1.0}) {
-            double exact = n * std::sin(2 * M_PI / n) / 2;
+            double exact = n * std::sin(2 * std::numbers::pi / n) / 2;
             if (roundness > 0) {  // a circular segment on each edge
-                const double r = 1 / roundness, half = std::asin(std::sin(M_PI / n) / r);
+                const double r = 1 / roundness,
+                             half = std::asin(std::sin(std::numbers::pi / n) / r);
                 exact += n * r * r * (half - std::sin(half) * std::cos(half));
             }
             // The polyline reaches a little beyond the arcs, which its scale takes back.
@@ -240,7 +241,8 @@ TEST(Iris, TipsOfAStarReachBeyondTheStop) {
 TEST(Iris, TellsInsideFromOutside) {
     for (const auto& [name, polygon] : polygons()) {
         const Iris iris(polygon, kStop_mm);
-        const Polygon mm = scaled(polygon, std::sqrt(M_PI / area_of(polygon)) * kStop_mm);
+        const Polygon mm =
+            scaled(polygon, std::sqrt(std::numbers::pi / area_of(polygon)) * kStop_mm);
         const float reach = iris.bounding_radius_mm();
         Random random(90);
         const auto check = [&](V2f p) {
@@ -326,12 +328,12 @@ TEST(Iris, KeepsStratification) {
 
 TEST(Iris, ShareBeyondACircle) {
     // A square and a circle of one area: what one has outside the other, the other has outside it.
-    const double half = std::sqrt(M_PI) / 2;
+    const double half = std::sqrt(std::numbers::pi) / 2;
     const double segment = std::acos(half) - half * std::sqrt(1 - half * half);
     const Iris equal(square(), kStop_mm);
-    EXPECT_NEAR(equal.share_beyond(kStop_mm), 4 * segment / M_PI, 1e-9);
+    EXPECT_NEAR(equal.share_beyond(kStop_mm), 4 * segment / std::numbers::pi, 1e-9);
     EXPECT_NEAR(Iris(square(), 1, ApertureScale::Inscribed).share_beyond(std::sqrt(0.5)),
-                1 - M_PI / 4, 1e-9);
+                1 - std::numbers::pi / 4, 1e-9);
     EXPECT_NEAR(Iris(Disk(), 4).share_beyond(3), 1 - 9.0 / 16, 1e-12);
     EXPECT_NEAR(Iris(frame(), 1, ApertureScale::Inscribed).share_beyond(0.3), 1, 1e-9);
     EXPECT_EQ(equal.share_beyond(0), 1);
@@ -346,8 +348,7 @@ TEST(Iris, ShareBeyondACircle) {
             if (beyond.variance() == 0)
                 EXPECT_NEAR(iris.share_beyond(radius), beyond.mean(), 1e-4) << name;
             else
-                EXPECT_TRUE(
-                    test::z_test(beyond.mean(), beyond.standard_error(), iris.share_beyond(radius)))
+                EXPECT_TRUE(test::agrees(beyond, iris.share_beyond(radius)))
                     << name << ": " << beyond.mean() << ", not " << iris.share_beyond(radius);
         }
     }
@@ -355,16 +356,19 @@ TEST(Iris, ShareBeyondACircle) {
 
 // The pentagram's tips beyond the stop hold 24 % of its light.
 TEST(Iris, ShareOfAStarBeyondItsStop) {
-    const double reach = std::sqrt(M_PI / (5 * kGolden * std::sin(M_PI / 5)));
+    const double reach =
+        std::sqrt(std::numbers::pi / (5 * kGolden * std::sin(std::numbers::pi / 5)));
     // Half a tip: from the circle outwards between its axis and the edge, which runs at 18 degrees.
     double half_tip = 0;
     constexpr int steps = 200000;
     for (int i = 0; i < steps; ++i) {
         const double radius = 1 + (reach - 1) * (i + 0.5) / steps;
-        const double edge = std::asin(reach * std::sin(M_PI / 10) / radius) - M_PI / 10;
+        const double edge =
+            std::asin(reach * std::sin(std::numbers::pi / 10) / radius) - std::numbers::pi / 10;
         half_tip += radius * edge * (reach - 1) / steps;
     }
-    EXPECT_NEAR(Iris(star(5), kStop_mm).share_beyond(kStop_mm), 10 * half_tip / M_PI, 1e-8);
+    EXPECT_NEAR(Iris(star(5), kStop_mm).share_beyond(kStop_mm), 10 * half_tip / std::numbers::pi,
+                1e-8);
 }
 
 TEST(Iris, RulesForContoursInContours) {
@@ -398,7 +402,7 @@ TEST(Iris, ARimCutsWhatLiesBeyond) {
                 ASSERT_LE(p.length(), rim * (1 + 1e-6)) << name;
                 inside.add(p.length() <= inner);
             }
-            EXPECT_TRUE(test::z_test(inside.mean(), inside.standard_error(), expected))
+            EXPECT_TRUE(test::agrees(inside, expected))
                 << name << ", way " << int(way) << ": " << inside.mean() << ", not " << expected;
             EXPECT_EQ(cut.transmits({float(rim) * 1.01f, 0}), 0.f);
         }

@@ -8,13 +8,13 @@
 
 #include "camera/lens/paraxial.h"
 #include "camera/lens/traced_ray.h"
-#include "io/lens/lens_file.h"
+#include "tests/support/lens_json.h"
 
 namespace petzval {
 namespace {
 
 Lens shipped(const char* name) {
-    return Lens(load_lens(name).lens);
+    return Lens(test::read_any_lens(name));
 }
 
 /// Rays from an axial point on a square grid over the plane of the first vertex: nothing in common

@@ -9,7 +9,7 @@
 
 #include "camera/bench/analysis.h"
 #include "camera/lens/traced_ray.h"
-#include "io/lens/lens_file.h"
+#include "tests/support/lens_json.h"
 
 namespace petzval {
 namespace {
@@ -20,7 +20,7 @@ const char* const kNames[] = {"takumar-50mm-f1.2", "canon-14mm-f2.8-asph", "phon
 
 class LensScale : public ::testing::TestWithParam<const char*> {
   protected:
-    const Prescription file = load_lens(GetParam()).lens;
+    const Prescription file = test::read_any_lens(GetParam());
     const Prescription file_scaled = scaled(file, kFactor);
     const Lens lens{file}, small{file_scaled};
 };
@@ -109,7 +109,7 @@ TEST(LensScaleForField, TheScaledLensHasThatField) {
                  {"minolta-fisheye-16mm-f2.8", 10, 90.5},
                  {"phone-f3.5-asph", 12, 30}};
     for (const auto& c : cases) {
-        const Lens lens(load_lens(c.lens).lens);
+        const Lens lens(test::read_any_lens(c.lens));
         const auto factor =
             scale_for_field(lens, c.half_height_mm, c.half_field_deg, lens.film_mm());
         ASSERT_TRUE(factor) << c.lens;
@@ -125,13 +125,13 @@ TEST(LensScaleForField, NothingWhereTheLensDoesNotSee) {
     for (const auto& [name, deg] :
          {std::pair{"takumar-50mm-f1.2", 28.}, std::pair{"takumar-50mm-f1.2", 60.},
           std::pair{"kodak-petzval-100mm-f2", 80.}, std::pair{"minolta-fisheye-16mm-f2.8", 115.}}) {
-        const Lens lens(load_lens(name).lens);
+        const Lens lens(test::read_any_lens(name));
         EXPECT_FALSE(scale_for_field(lens, 12, deg, lens.film_mm())) << name;
     }
 }
 
 TEST(LensScaleFactor, MustBeAboveZero) {
-    const Prescription lens = load_lens("takumar-50mm-f1.2").lens;
+    const Prescription lens = test::read_any_lens("takumar-50mm-f1.2");
     for (const double factor : {0., -1., double(NAN), double(INFINITY)})
         EXPECT_THROW((void)scaled(lens, factor), std::invalid_argument);
 }

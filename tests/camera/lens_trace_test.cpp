@@ -97,7 +97,7 @@ TEST(LensTrace, SurfacesAboutThePointAimedAtBendNothing) {
             expect_near(out.point, {-12 * sine, 0, 20 - 12 * cosine}, 1e-12);
         }
     }
-    // Beyond 90 degrees it is the far half of the sphere.
+    // Extrapolate 90 degrees it is the far half of the sphere.
     EXPECT_EQ(traced(shell, {-50, 0, 21}, {50, 0, -1}).status, RayStatus::Missed);
 }
 

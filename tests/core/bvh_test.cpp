@@ -9,6 +9,7 @@
 #include "core/sampling/warp.h"
 #include "core/shading/surface.h"
 #include "tests/support/scenes.h"
+#include "tests/support/statistics.h"
 
 namespace petzval {
 namespace {
@@ -241,7 +242,7 @@ TEST(Bvh, BlendPassesItsShareOfRays) {
         ray.alpha_seed = hash32(static_cast<uint32_t>(i));
         hits += bvh.intersect(ray).has_value();
     }
-    EXPECT_NEAR(hits / double(n), 0.3, 3.3 * std::sqrt(0.3 * 0.7 / n));  // two-sided, 0.1 %
+    EXPECT_TRUE(test::agrees({hits / double(n), std::sqrt(0.3 * 0.7 / n)}, 0.3)) << hits;
 }
 
 TEST(Bvh, EmptySceneHasNothingToHit) {

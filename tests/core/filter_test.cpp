@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/sampling/filter.h"
 
+#include <numbers>
+
 #include "tests/support/chi_square.h"
 
 namespace petzval {
@@ -13,7 +15,7 @@ double gauss(double x) {
     return std::exp(-0.5 * std::pow(3 * x, 2));
 }
 double blackman_harris(double x) {
-    const double a = M_PI * (x + 1);  // 0 to 2 pi over the window
+    const double a = std::numbers::pi * (x + 1);  // 0 to 2 pi over the window
     return 0.35875 - 0.48829 * std::cos(a) + 0.14128 * std::cos(2 * a) - 0.01168 * std::cos(3 * a);
 }
 double box(double) {

@@ -112,7 +112,7 @@ TEST_P(Kinds, IsUniformInTheUnitSquare) {
         mean.add(sampler.get1(Dim::Roulette, 3));
     }
     EXPECT_TRUE(test::chi_square(observed, expected));
-    EXPECT_TRUE(test::z_test(mean.mean(), mean.standard_error(), 0.5)) << mean.mean();
+    EXPECT_TRUE(test::agrees(mean, 0.5)) << mean.mean();
     EXPECT_NEAR(mean.variance(), 1.0 / 12, 0.002);
 }
 
@@ -122,7 +122,7 @@ bool uncorrelated(const std::vector<float>& a, const std::vector<float>& b) {
     double sum = 0;
     for (size_t i = 0; i < a.size(); ++i) sum += (a[i] - 0.5) * (b[i] - 0.5);
     const auto n = static_cast<double>(a.size());
-    return test::z_test(sum / n, 1 / (12 * std::sqrt(n)), 0);
+    return test::agrees({sum / n, 1 / (12 * std::sqrt(n))}, 0);
 }
 
 TEST_P(Kinds, DimensionsVerticesAndPixelsAreIndependent) {

@@ -109,7 +109,7 @@ TEST(SpectralFilm, StandardErrorOfAKnownVariance) {
                                              sigma.z * sigma.z, r * r + g * g + b * b};
         for (size_t c = 0; c < 4; ++c) {
             const test::Moments& m = squares[c];
-            EXPECT_TRUE(test::z_test(m.mean(), m.standard_error(), variance[c] / n))
+            EXPECT_TRUE(test::agrees(m, variance[c] / n))
                 << n << " samples, number " << c << ": " << m.mean() * n / variance[c];
             EXPECT_LT(m.standard_error(), 0.02 * m.mean());  // so that the test has teeth
         }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/sampling/warp.h"
 
+#include <numbers>
+
 #include "tests/support/chi_square.h"
 #include "tests/support/jacobian.h"
 
@@ -17,7 +19,7 @@ TEST(Trig, SincosOfTurns) {
     for (int i = -3000; i <= 3000; ++i) {
         const float turns = static_cast<float>(i) / 1000;
         const SinCos got = sincos_turns(turns);
-        const double angle = 2 * M_PI * turns;
+        const double angle = 2 * std::numbers::pi * turns;
         ASSERT_NEAR(got.sine, std::sin(angle), 2e-7 * std::max(1.0, std::fabs(angle))) << turns;
         ASSERT_NEAR(got.cosine, std::cos(angle), 2e-7 * std::max(1.0, std::fabs(angle))) << turns;
     }
@@ -27,7 +29,8 @@ TEST(Trig, Atan2OfTurns) {
     Random random(1);
     for (int i = 0; i < 20000; ++i) {
         const float y = 2 * random.next() - 1, x = 2 * random.next() - 1;
-        ASSERT_NEAR(atan2_turns(y, x), std::atan2(double{y}, double{x}) / (2 * M_PI), 1e-7);
+        ASSERT_NEAR(atan2_turns(y, x), std::atan2(double{y}, double{x}) / (2 * std::numbers::pi),
+                    1e-7);
     }
     EXPECT_EQ(atan2_turns(0.f, 0.f), 0.f);
     EXPECT_EQ(atan2_turns(0.f, 1.f), 0.f);
@@ -44,12 +47,13 @@ TEST(Warp, DiskIsUniform) {
     // In polar coordinates, so that no cell is cut by the rim.
     const auto polar = [&](double radius, double turn) {
         return radius *
-               density(radius * std::cos(2 * M_PI * turn), radius * std::sin(2 * M_PI * turn)) * 2 *
-               M_PI;
+               density(radius * std::cos(2 * std::numbers::pi * turn),
+                       radius * std::sin(2 * std::numbers::pi * turn)) *
+               2 * std::numbers::pi;
     };
     const auto place = [](Random& random) -> std::optional<V2f> {
         const V2f p = uniform_disk(random.next2());
-        const double turn = std::atan2(p.y, p.x) / (2 * M_PI);
+        const double turn = std::atan2(p.y, p.x) / (2 * std::numbers::pi);
         return V2f(p.length(), static_cast<float>(turn < 0 ? turn + 1 : turn));
     };
     EXPECT_TRUE(test::chi_square_grid({0, 1, 0, 1, 20, 40}, polar, place, 200000, 2));

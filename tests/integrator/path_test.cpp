@@ -3,32 +3,32 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "core/spectrum/colour.h"
 #include "tests/support/scenes.h"
+#include "tests/support/statistics.h"
 
 namespace petzval {
 namespace {
 
 using test::diffuse_material;
 using test::emitter_material;
+using test::Mean;
 using test::place;
 using test::quad;
 using test::sphere;
 using test::World;
 
-struct Estimate {
-    double mean = 0, error = 0;  ///< standard error of the mean
-};
-
-// Mean red radiance over a bundle of rays; the error comes from 12 independent replicates, as the
+// Mean red radiance over a bundle of rays; the error comes from 32 independent replicates, as the
 // points of one replicate are not independent.
 template <class MakeRay>
-Estimate estimate(const World& world, const PathOptions& options, uint32_t samples,
-                  const MakeRay& make_ray, float* alpha = nullptr) {
-    constexpr int replicates = 12;
+Mean estimate(const World& world, const PathOptions& options, uint32_t samples,
+              const MakeRay& make_ray, float* alpha = nullptr) {
+    constexpr int replicates = 32;
     const PathTracer tracer(world.scene, *world.bvh, *world.lights, options);
     PathStats stats;
-    double sum = 0, sum2 = 0;
+    test::Moments means;
     for (uint32_t seed = 0; seed < replicates; ++seed) {
         double mean = 0;
         for (uint32_t i = 0; i < samples; ++i) {
@@ -38,14 +38,9 @@ Estimate estimate(const World& world, const PathOptions& options, uint32_t sampl
                                     out, stats)[0];
             if (alpha) *alpha += out.alpha / static_cast<float>(samples * replicates);
         }
-        mean /= samples;
-        sum += mean;
-        sum2 += mean * mean;
+        means.add(mean / samples);
     }
-    Estimate e;
-    e.mean = sum / replicates;
-    e.error = std::sqrt(std::max(0.0, sum2 / replicates - e.mean * e.mean) / (replicates - 1));
-    return e;
+    return means;
 }
 
 Ray ray_to(V3f origin, V3f target) {
@@ -60,8 +55,10 @@ Ray bundle(V2f u) {
     return ray_to(V3f(0, 0, 4), V3f(u.x - 0.5f, u.y - 0.5f, 0));
 }
 
-void expect_within_3_sigma(const Estimate& e, double truth, const char* what) {
-    EXPECT_NEAR(e.mean, truth, 3 * e.error + 1e-5 * truth) << what << " sigma " << e.error;
+// Sums of floats allow 1e-5 beside chance; chance is small, so that the test has teeth.
+void expect_agrees(const Mean& e, double truth, const char* what) {
+    EXPECT_TRUE(test::agrees(e, truth, 1e-5 * truth)) << what << ": " << e << ", not " << truth;
+    EXPECT_LT(e.error, 0.005 * truth) << what;
 }
 
 // Inside a closed diffuse emitter radiance is emission / (1 - albedo), whatever its shape.
@@ -74,10 +71,10 @@ TEST(Path, ClosedSphereHasItsKnownRadiance) {
     options.max_depth = 1000;
     for (const Technique technique : {Technique::Mis, Technique::BsdfOnly, Technique::LightOnly}) {
         options.technique = technique;
-        const Estimate e = estimate(world, options, 1024, [](V2f u) {
+        const Mean e = estimate(world, options, 1024, [](V2f u) {
             return ray_to(V3f(0.3f, 0.2f, -0.1f), V3f(u.x * 6 - 3, u.y * 6 - 3, 1));
         });
-        expect_within_3_sigma(e, 0.7 / (1 - 0.6), "closed sphere");
+        expect_agrees(e, 0.7 / (1 - 0.6), "closed sphere");
     }
 }
 
@@ -93,8 +90,9 @@ TEST(Path, WhiteObjectsVanishInAWhiteSky) {
             world.finish();
             PathOptions options;
             options.max_depth = 64;
-            const Estimate e = estimate(world, options, 2048, bundle);
-            EXPECT_NEAR(e.mean, 1.0, 0.005 + 3 * e.error) << metallic << ' ' << roughness;
+            const Mean e = estimate(world, options, 2048, bundle);
+            EXPECT_TRUE(test::agrees(e, 1, 0.005)) << metallic << ' ' << roughness << ": " << e;
+            EXPECT_LT(e.error, 0.002) << metallic << ' ' << roughness;
         }
 }
 
@@ -111,8 +109,10 @@ TEST(Path, ClearGlassVanishesInAWhiteSky) {
     world.finish();
     PathOptions options;
     options.max_depth = 200;
-    const Estimate e = estimate(world, options, 2048, bundle);
-    EXPECT_NEAR(e.mean, 1.0, 0.01 + 3 * e.error);  // facets and smooth normals disagree at the rim
+    const Mean e = estimate(world, options, 2048, bundle);
+    // Facets and smooth normals disagree at the rim.
+    EXPECT_TRUE(test::agrees(e, 1, 0.01)) << e;
+    EXPECT_LT(e.error, 0.002);
 }
 
 TEST(Path, AbsorptionFollowsBeerAndLambert) {
@@ -129,9 +129,9 @@ TEST(Path, AbsorptionFollowsBeerAndLambert) {
     place(world.scene, quad(V3f(-2, -2, -1), V3f(0, 4, 0), V3f(4, 0, 0)), m);
     world.scene.sky = Sky::uniform(Rgb(1.f));
     world.finish();
-    const Estimate e =
+    const Mean e =
         estimate(world, PathOptions(), 64, [](V2f) { return ray_to(V3f(0, 0, 3), V3f(0.f)); });
-    EXPECT_NEAR(e.mean, std::pow(0.25, 1.0 / 0.5), 1e-4);
+    EXPECT_NEAR(e.value, std::pow(0.25, 1.0 / 0.5), 1e-4);
 }
 
 // Light on its way through a volume is absorbed whichever technique finds it.
@@ -153,14 +153,16 @@ TEST(Path, TechniquesAgreeInsideAVolume) {
     world.finish();
     PathOptions options;
     options.max_depth = 6;
-    std::array<Estimate, 3> e;
-    for (size_t i = 0; i < 3; ++i) {
-        options.technique = static_cast<Technique>(i);
-        e[i] = estimate(world, options, 16384, bundle);
+    const auto by = [&](Technique technique) {
+        options.technique = technique;
+        return estimate(world, options, 8192, bundle);
+    };
+    const Mean both = by(Technique::Mis);
+    for (const Technique technique : {Technique::LightOnly, Technique::BsdfOnly}) {
+        const Mean one = by(technique);
+        EXPECT_TRUE(test::agrees(both - one, 0)) << both << " and " << one;
+        EXPECT_LT(one.error, 0.03 * one.value);
     }
-    EXPECT_NEAR(e[0].mean, e[1].mean, 3 * std::hypot(e[0].error, e[1].error));
-    EXPECT_NEAR(e[0].mean, e[2].mean, 3 * std::hypot(e[0].error, e[2].error));
-    EXPECT_LT(e[2].error, 0.05 * e[2].mean);
 }
 
 World floor_under(Light light) {
@@ -174,16 +176,14 @@ World floor_under(Light light) {
 
 TEST(Path, PunctualLightsGiveTheirIlluminance) {
     const auto centre = [](V2f) { return ray_to(V3f(0, 0, 4), V3f(0.f)); };
-    const double albedo_over_pi = 0.5 / M_PI;
+    const double albedo_over_pi = 0.5 / std::numbers::pi;
     const World point = floor_under(PointLight{V3f(0, 3, 4), Rgb(100.f)});
-    expect_within_3_sigma(estimate(point, PathOptions(), 16, centre),
-                          albedo_over_pi * 100 / 25 * 0.8, "point");
+    expect_agrees(estimate(point, PathOptions(), 16, centre), albedo_over_pi * 100 / 25 * 0.8,
+                  "point");
     const World sun = floor_under(SunLight{unit(V3f(0, -3, -4)), Rgb(10.f)});
-    expect_within_3_sigma(estimate(sun, PathOptions(), 16, centre), albedo_over_pi * 10 * 0.8,
-                          "sun");
+    expect_agrees(estimate(sun, PathOptions(), 16, centre), albedo_over_pi * 10 * 0.8, "sun");
     const World spot = floor_under(SpotLight{V3f(0, 0, 2), V3f(0, 0, -1), Rgb(8.f), 0.9f, 0.8f});
-    expect_within_3_sigma(estimate(spot, PathOptions(), 16, centre), albedo_over_pi * 8 / 4,
-                          "spot");
+    expect_agrees(estimate(spot, PathOptions(), 16, centre), albedo_over_pi * 8 / 4, "spot");
 }
 
 // A disk's worth of closed form: a square emitter seen from below its centre. Configuration factor
@@ -196,7 +196,7 @@ TEST(Path, SquareEmitterMatchesItsConfigurationFactor) {
     place(world.scene, quad(V3f(-1, -1, 2), V3f(0, 2, 0), V3f(2, 0, 0)), light);
     world.finish();
     const double a = 0.5, b = 0.5;  // half sides over the distance
-    const double corner = 1 / (2 * M_PI) *
+    const double corner = 1 / (2 * std::numbers::pi) *
                           (a / std::sqrt(1 + a * a) * std::atan(b / std::sqrt(1 + a * a)) +
                            b / std::sqrt(1 + b * b) * std::atan(a / std::sqrt(1 + b * b)));
     const double truth = 0.5 * 3 * 4 * corner;
@@ -204,10 +204,9 @@ TEST(Path, SquareEmitterMatchesItsConfigurationFactor) {
     options.max_depth = 1;
     for (const Technique technique : {Technique::Mis, Technique::LightOnly, Technique::BsdfOnly}) {
         options.technique = technique;
-        const Estimate e =
+        const Mean e =
             estimate(world, options, 4096, [](V2f) { return ray_to(V3f(3, 0, 1.9f), V3f(0.f)); });
-        expect_within_3_sigma(e, truth, "square");
-        EXPECT_LT(e.error, 0.02 * truth);
+        expect_agrees(e, truth, "square");
     }
 }
 
@@ -229,18 +228,18 @@ TEST(Path, TechniquesAgree) {
     world.finish();
     PathOptions options;
     options.max_depth = 4;
-    std::array<Estimate, 3> e;
-    for (int i = 0; i < 3; ++i) {
-        options.technique = static_cast<Technique>(i);
-        e[static_cast<size_t>(i)] = estimate(world, options, 4096, [](V2f u) {
+    const auto by = [&](Technique technique) {
+        options.technique = technique;
+        return estimate(world, options, 4096, [](V2f u) {
             return ray_to(V3f(0, 0.5f, 4), V3f(2 * u.x - 1, 2 * u.y - 1, -0.5f));
         });
-    }
-    for (int i = 1; i < 3; ++i) {
-        const Estimate& other = e[static_cast<size_t>(i)];
-        EXPECT_NEAR(e[0].mean, other.mean, 3 * std::hypot(e[0].error, other.error)) << i;
-        EXPECT_LT(other.error, 0.02 * other.mean);
-        EXPECT_LE(e[0].error, other.error);  // what combining the two is for
+    };
+    const Mean both = by(Technique::Mis);
+    for (const Technique technique : {Technique::LightOnly, Technique::BsdfOnly}) {
+        const Mean one = by(technique);
+        EXPECT_TRUE(test::agrees(both - one, 0)) << both << " and " << one;
+        EXPECT_LT(one.error, 0.01 * one.value);
+        EXPECT_LE(both.error, one.error);  // what combining the two is for
     }
 }
 
@@ -273,12 +272,12 @@ TEST(Path, TechniquesAgreeWithTheLightTree) {
             return ray_to(V3f(0, -0.5f, 4), V3f(2 * u.x - 1, 2 * u.y - 1, -0.5f));
         });
     };
-    const Estimate mis = measure(Technique::Mis, LightChoiceKind::Tree);
-    for (const Estimate& other : {measure(Technique::LightOnly, LightChoiceKind::Tree),
-                                  measure(Technique::BsdfOnly, LightChoiceKind::Tree),
-                                  measure(Technique::Mis, LightChoiceKind::Power)}) {
-        EXPECT_NEAR(mis.mean, other.mean, 3 * std::hypot(mis.error, other.error));
-        EXPECT_LT(other.error, 0.02 * other.mean);
+    const Mean mis = measure(Technique::Mis, LightChoiceKind::Tree);
+    for (const Mean& other : {measure(Technique::LightOnly, LightChoiceKind::Tree),
+                              measure(Technique::BsdfOnly, LightChoiceKind::Tree),
+                              measure(Technique::Mis, LightChoiceKind::Power)}) {
+        EXPECT_TRUE(test::agrees(mis - other, 0)) << mis << " and " << other;
+        EXPECT_LT(other.error, 0.01 * other.value);
     }
 }
 
@@ -290,12 +289,12 @@ TEST(Path, CoverageMixesSurfaceAndSky) {
     place(world.scene, quad(V3f(-2, -2, 0), V3f(4, 0, 0), V3f(0, 4, 0)), m);
     world.scene.sky = Sky::uniform(Rgb(2.f));
     world.finish();
-    expect_within_3_sigma(estimate(world, PathOptions(), 4096, bundle), 0.75 * 2, "blend");
+    expect_agrees(estimate(world, PathOptions(), 4096, bundle), 0.75 * 2, "blend");
     PathOptions options;
     options.transparent = true;
     float alpha = 0;
-    const Estimate e = estimate(world, options, 4096, bundle, &alpha);
-    EXPECT_EQ(e.mean, 0.0);
+    const Mean e = estimate(world, options, 4096, bundle, &alpha);
+    EXPECT_EQ(e.value, 0.0);
     EXPECT_NEAR(alpha, 0.25f, 0.01f);
 }
 
@@ -306,7 +305,7 @@ TEST(Path, BacksOfSingleSidedSurfacesAreCulledFromViewButCastShadows) {
     place(world.scene, quad(V3f(-2, -2, 0), V3f(0, 4, 0), V3f(4, 0, 0)), m);  // front away from us
     world.scene.sky = Sky::uniform(Rgb(1.f));
     world.finish();
-    EXPECT_NEAR(estimate(world, PathOptions(), 16, bundle).mean, 1.0, 1e-5);
+    EXPECT_NEAR(estimate(world, PathOptions(), 16, bundle).value, 1.0, 1e-5);
 
     World shaded;
     place(shaded.scene, quad(V3f(-50, -50, -1), V3f(100, 0, 0), V3f(0, 100, 0)),
@@ -316,7 +315,7 @@ TEST(Path, BacksOfSingleSidedSurfacesAreCulledFromViewButCastShadows) {
     shaded.finish();
     PathOptions direct;
     direct.max_depth = 1;
-    EXPECT_EQ(estimate(shaded, direct, 16, bundle).mean, 0.0);
+    EXPECT_EQ(estimate(shaded, direct, 16, bundle).value, 0.0);
 }
 
 TEST(Path, BackdropIsSeenAndTheEnvironmentLights) {
@@ -327,10 +326,9 @@ TEST(Path, BackdropIsSeenAndTheEnvironmentLights) {
     PathOptions options;
     options.visible_background = Rgb(7.f);
     EXPECT_NEAR(
-        estimate(world, options, 16, [](V2f) { return ray_to(V3f(0, 0, 4), V3f(9, 9, 4)); }).mean,
+        estimate(world, options, 16, [](V2f) { return ray_to(V3f(0, 0, 4), V3f(9, 9, 4)); }).value,
         7.0, 1e-5);
-    expect_within_3_sigma(estimate(world, options, 1024, bundle), 0.5 * 2,
-                          "lit by the environment");
+    expect_agrees(estimate(world, options, 1024, bundle), 0.5 * 2, "lit by the environment");
 }
 
 TEST(Path, UnlitShowsItsColour) {
@@ -339,7 +337,7 @@ TEST(Path, UnlitShowsItsColour) {
     m.unlit = true;
     place(world.scene, quad(V3f(-2, -2, 0), V3f(4, 0, 0), V3f(0, 4, 0)), m);
     world.finish();
-    EXPECT_NEAR(estimate(world, PathOptions(), 16, bundle).mean, 0.4, 1e-6);
+    EXPECT_NEAR(estimate(world, PathOptions(), 16, bundle).value, 0.4, 1e-6);
 }
 
 }  // namespace

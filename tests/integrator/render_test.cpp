@@ -10,16 +10,12 @@
 
 #include "camera/models/thin_lens.h"
 #include "integrator/executor.h"
-#include "tests/support/scenes.h"
+#include "tests/support/traced_world.h"
 
 namespace petzval {
 namespace {
 
-struct Studio {
-    Scene scene;
-    std::unique_ptr<Bvh> bvh;
-    std::unique_ptr<LightChoice> lights;
-    std::unique_ptr<PathTracer<>> tracer;
+struct Studio : test::TracedWorld {
     std::unique_ptr<Camera> camera;
 
     explicit Studio(V2i size) {
@@ -30,10 +26,7 @@ struct Studio {
         place(scene, sphere(V3f(0, 0, 0), 0.6f, 24, true), metal);
         place(scene, quad(V3f(-1, 1.5f, 1), V3f(2, 0, 0), V3f(0, 1, 0.5f)), emitter_material(5.f));
         scene.sky = Sky::uniform(Rgb(0.1f, 0.2f, 0.4f));
-        finish_scene(scene);
-        bvh = std::make_unique<Bvh>(scene, Traversal::Robust);
-        lights = std::make_unique<LightChoice>(scene, LightChoiceKind::Power);
-        tracer = std::make_unique<PathTracer<>>(scene, *bvh, *lights, PathOptions());
+        finish();
         ThinLens lens;
         lens.to_world = look_at(V3f(0.5f, 0.7f, 4), V3f(0.f));
         lens.aspect = static_cast<float>(size.x) / static_cast<float>(size.y);
@@ -209,15 +202,39 @@ TEST(Render, StopsWhenTold) {
     EXPECT_EQ(result.end_sample, 0u);
 }
 
-TEST(Render, ATimeLimitEndsAWholePass) {
-    RenderJob job = job_of(1u << 30);
-    job.time_limit_s = 0.05;
-    RenderResult result;
-    const Film film = picture(ThreadExecutor(2), job, kWhole, &result);
+// As any number of samples is rendered by a machine that takes a second for one of every pixel, or
+// another time that it is given: the samples at which a time limit ends it.
+uint32_t samples_within(double limit_s, uint32_t spp, double (*time_of_s)(double samples)) {
+    static const Studio studio(kSize);
+    Film film(kSize, kWhole, {});
+    RenderMonitor monitor;
+    RenderJob job = job_of(spp);
+    job.time_limit_s = limit_s;
+    job.wall_s = [&] {
+        const double samples = double(monitor.pixel_samples_done) / (kSize.x * kSize.y);
+        return 1e6 + time_of_s(samples);  // a clock starts anywhere
+    };
+    ThreadExecutor executor(2);
+    const RenderResult result =
+        render(*studio.tracer, *studio.camera, job, film, executor, monitor);
     EXPECT_FALSE(result.stopped);
-    EXPECT_GE(result.end_sample, 1u);
     for (int y = 0; y < kSize.y; ++y)
         for (int x = 0; x < kSize.x; ++x) EXPECT_EQ(film.sample_count(x, y), result.end_sample);
+    return result.end_sample;
+}
+
+TEST(Render, ATimeLimitEndsAWholePass) {
+    const auto even = [](double samples) { return samples; };
+    EXPECT_EQ(samples_within(10, 1u << 30, even), 10u) << "passes of 1, 1, 2, 4, and what is left";
+    EXPECT_EQ(samples_within(10.9, 1u << 30, even), 10u) << "a sample that does not fit is left";
+    EXPECT_EQ(samples_within(40, 1u << 30, even), 40u) << "passes of 16 at most";
+    EXPECT_EQ(samples_within(0.1, 1u << 30, even), 1u) << "the first is rendered in any case";
+    EXPECT_EQ(samples_within(1e9, 7, even), 7u) << "the samples are there before the time is over";
+    // It slows down: 1, 2, 4, 8, 12 samples are there after 1, 4, 16, 64, 144 seconds.
+    const auto slowing = [](double samples) { return samples * samples; };
+    EXPECT_EQ(samples_within(100, 1u << 30, slowing), 12u) << "36 s left, 8 s for each so far: 4";
+    const auto at_once = [](double) { return 0.; };
+    EXPECT_EQ(samples_within(1, 40, at_once), 40u) << "a clock that stands still";
 }
 
 // Not a number for one half of the picture.

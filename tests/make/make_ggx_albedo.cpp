@@ -3,12 +3,12 @@
 // quadrature over the visible normals. Run it as: make_ggx_albedo > core/shading/ggx_albedo_table.h
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 namespace {
 
 constexpr int kSize = 32;
 constexpr int kSteps = 512;
-const double kPi = std::acos(-1.0);
 
 struct Albedo {
     double total = 0, schlick = 0;
@@ -30,7 +30,8 @@ Albedo integrate(double mu, double alpha) {
         const double z = 1 - (i + 0.5) / kSteps * (1 + sz);
         const double sin_theta = std::sqrt(std::fmax(0, 1 - z * z));
         for (int j = 0; j < kSteps; ++j) {
-            const double phi = kPi * (j + 0.5) / kSteps;  // the other half mirrors this one
+            const double phi =
+                std::numbers::pi * (j + 0.5) / kSteps;  // the other half mirrors this one
             double mx = (sin_theta * std::cos(phi) + sx) * alpha;
             double my = sin_theta * std::sin(phi) * alpha;
             double mz = std::fmax(z + sz, 1e-300);

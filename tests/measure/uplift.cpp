@@ -15,7 +15,7 @@
 #include "core/spectrum/colour.h"
 #include "io/spectra/spectra.h"
 #include "tests/measure/sigmoid.h"
-#include "tests/support/observers.h"
+#include "tests/support/set_up_observer.h"
 #include "tests/support/statistics.h"
 
 namespace petzval::bench {

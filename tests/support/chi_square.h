@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <numbers>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -127,7 +128,7 @@ struct Grid {
     const std::function<std::optional<V3f>(Random&)>& draw,
     const std::function<double(const V3f&)>& pdf, uint32_t seed, int samples = 200000,
     int least_depth = 0) {
-    const double pi = 3.14159265358979323846;
+    const double pi = std::numbers::pi;
     const auto density = [&](double azimuth, double polar) {
         const double s = std::sin(polar);
         return s * pdf(V3f(static_cast<float>(s * std::cos(azimuth)),

@@ -164,6 +164,15 @@ class CliTest : public ::testing::Test {
     }
 };
 
+/// Waits until a render with --progress json tells of more samples of pixels than these.
+inline bool wait_for_samples(Process& render, double more_than) {
+    return render.wait_for_stderr([more_than](const std::string& err) {
+        const std::string key = "\"pixel_samples\":";
+        const size_t last = err.rfind(key);
+        return last != std::string::npos && std::stod(err.substr(last + key.size())) > more_than;
+    });
+}
+
 inline float value_at(const Picture& p, int x, int y, const std::string& channel) {
     const int c = channel_index(p, channel);
     EXPECT_GE(c, 0) << channel;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <numbers>
 #include <vector>
 
 #include "camera/iris/aperture.h"
@@ -52,7 +53,7 @@ namespace petzval::test {
             const V2d a = contour[i] - p, b = contour[(i + 1) % contour.size()] - p;
             angle += std::atan2(a.cross(b), a.dot(b));
         }
-    return static_cast<int>(std::lround(angle / (2 * M_PI)));
+    return static_cast<int>(std::lround(angle / (2 * std::numbers::pi)));
 }
 
 [[nodiscard]] inline double distance_to_edge(const Polygon& polygon, V2d p) {

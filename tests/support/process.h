@@ -17,6 +17,7 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -68,12 +69,17 @@ class Process {
     [[nodiscard]] pid_t id() const { return id_; }
     void signal(int number) const { kill(id_, number); }
 
-    /// Collects output until stderr holds a text; false where it ends or two minutes pass before.
-    bool wait_for_stderr(const std::string& text) {
+    /// Collects output until stderr is as wanted; false where it ends or two minutes pass before.
+    bool wait_for_stderr(const std::function<bool(const std::string&)>& wanted) {
         const auto deadline = Clock::now() + std::chrono::minutes(2);
-        while (done_.err.find(text) == std::string::npos)
+        while (!wanted(done_.err))
             if (Clock::now() > deadline || !collect(100)) return false;
         return true;
+    }
+    /// The same, until it holds a text.
+    bool wait_for_stderr(const std::string& text) {
+        return wait_for_stderr(
+            [&](const std::string& err) { return err.find(text) != std::string::npos; });
     }
 
     /// Collects output until the process ends; kills it after two minutes.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is made of measurements, and a small chart from the command line.
-#include <chrono>
+// What is made of measurements, and small charts: on a stepped clock, and from the command line.
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
-#include <thread>
+#include <numbers>
 
-#include "apps/chart/chart_report.h"
+#include "apps/chart/chart.h"
 #include "io/base/csv.h"
 #include "tests/support/cli.h"
 #include "tests/support/statistics.h"
@@ -21,6 +21,9 @@ TEST(ChartPoints, QuantilesOfStudentsT) {
     EXPECT_NEAR(student_t_975(9), 2.262, 1e-3);
     EXPECT_NEAR(student_t_975(30), 2.042, 1e-3);
     EXPECT_NEAR(student_t_975(1e9), 1.960, 1e-3);
+    for (const double degrees : {4., 7., 11., 30., 1000.})
+        EXPECT_NEAR(test::two_sided_t_p(student_t_975(degrees), degrees), 0.05, 1e-4) << degrees;
+    EXPECT_NEAR(test::two_sided_t_p(8.610, 4), 0.001, 1e-6);
 }
 
 TEST(ChartPoints, IntervalOfFiveNumbers) {
@@ -40,11 +43,11 @@ TEST(ChartPoints, IntervalsHoldTheMeanAsOftenAsTheySay) {
         std::vector<double> v;
         for (int i = 0; i < 5; ++i)
             v.push_back(3 + std::sqrt(-2 * std::log(1 - double(random.next()))) *
-                                std::cos(2 * M_PI * double(random.next())));
+                                std::cos(2 * std::numbers::pi * double(random.next())));
         const Interval i = confidence_95(v);
         held += i.low <= 3 && 3 <= i.high;
     }
-    EXPECT_TRUE(test::z_test(held, std::sqrt(2000 * 0.95 * 0.05), 1900)) << held;
+    EXPECT_TRUE(test::agrees({double(held), std::sqrt(2000 * 0.95 * 0.05)}, 1900)) << held;
 }
 
 ChartPoint point(uint32_t samples, double cpu_s, double mse) {
@@ -90,55 +93,106 @@ TEST(ChartReport, EfficiencyIsOfTheLastPointThatIsBelieved) {
     EXPECT_EQ(efficiencies(of)[0].point.samples, 4u) << "no floor is known";
 }
 
-class ChartCli : public CliTest {
+/// Runs charts on a machine of known speed: only samples take time, each equally long.
+class ChartRun : public CliTest {
   protected:
-    [[nodiscard]] Words chart_words(const Words& more) const {
-        Words all{"chart", scene_, "--threads", "2", "--quiet"};
-        if (std::find(more.begin(), more.end(), "--size") == more.end())
-            all.insert(all.end(), {"--size", "16x16"});
-        all.insert(all.end(), more.begin(), more.end());
-        return all;
+    static constexpr int kPixels = 16 * 16;
+
+    /// 5 s for each axis, of which one sample of every pixel takes 5 ms.
+    [[nodiscard]] ChartRequest request(const std::vector<ChartAxis>& axes) const {
+        ChartRequest r;
+        r.subject.request.scene = scene_;
+        r.subject.request.size = r.frame.size = {16, 16};
+        r.frame.crop = {0, 0, 16, 16};
+        r.subject.folder = folder_.path / "report";
+        r.axes = axes;
+        r.budget_s = 5 * double(axes.size());
+        return r;
     }
-    [[nodiscard]] json points(const std::string& folder) const {
-        return json::parse(file_bytes(path(folder + "/points.json")));
+    void take(double seconds_a_sample) {
+        before_s_ = elapsed_s();
+        samples_before_ = monitor_.pixel_samples_done;
+        sample_s_ = seconds_a_sample / kPixels;
     }
+    [[nodiscard]] double elapsed_s() const {
+        return before_s_ + sample_s_ * double(monitor_.pixel_samples_done - samples_before_);
+    }
+    ChartOutcome run(const ChartRequest& request) {
+        const ChartClock clock{[this] {
+                                   if (elapsed_s() >= stop_at_s_) monitor_.stop = true;
+                                   return 1e6 + elapsed_s();  // a clock starts anywhere
+                               },
+                               [this] { return 3 * elapsed_s(); }};
+        return run_chart(
+            request, executor_, monitor_, [](const std::string&) {},
+            [this](const MeasuredCase& of) {
+                cases_.push_back(of);
+                if (after_first_case) after_first_case();
+            },
+            clock);
+    }
+    /// What it says of a request that it refuses, once nothing is left in the folder.
+    std::string refused(const ChartRequest& r) {
+        try {
+            static_cast<void>(run(r));
+        } catch (const ArgumentError& error) {
+            EXPECT_EQ(listing(), (std::set<std::string>{"studio.glb"}));
+            return error.what();
+        }
+        return "accepted";
+    }
+    [[nodiscard]] json points() const {
+        return json::parse(file_bytes(path("report/points.json")));
+    }
+
+    double stop_at_s_ = HUGE_VAL;
+    std::function<void()> after_first_case;
+    std::vector<MeasuredCase> cases_;
+
+  private:
+    TbbExecutor executor_{2};
+    RenderMonitor monitor_;
+    double sample_s_ = 5e-3 / kPixels, before_s_ = 0;
+    uint64_t samples_before_ = 0;
 };
 
-TEST_F(ChartCli, WritesAReport) {
-    const Finished run =
-        run_petzval(chart_words({"--axis", "lights", "--budget", "5s", "-o", path("report")}));
-    ASSERT_EQ(run.exit_code, 0) << run.err;
-    EXPECT_EQ(run.out + run.err, "");
+TEST_F(ChartRun, WritesAReport) {
+    const ChartOutcome outcome = run(request({ChartAxis::Lights}));
+    EXPECT_EQ(outcome.measured, 1u);
+    EXPECT_FALSE(outcome.stopped);
     for (const char* name :
          {"lights.svg", "lights.png", "lights-flip.svg", "lights-flip.png", "points.csv",
           "points.json", "report.html", "pictures/lights-reference.png",
           "pictures/lights-power.png", "pictures/lights-power-flip.png"})
         EXPECT_FALSE(file_bytes(path(std::string("report/") + name)).empty()) << name;
 
-    const json all = points("report");
+    const json all = points();
     ASSERT_EQ(all["cases"].size(), 1u);
     const json& of = all["cases"][0];
     EXPECT_EQ(of["axis"], "lights");
-    EXPECT_GE(of["reference"]["parts"], 2);
+    EXPECT_EQ(of["reference"]["parts"], kReferenceReplicates);
     EXPECT_GT(of["reference"]["relative_mse"], 0.);
     ASSERT_EQ(of["methods"].size(), 3u);  // uniform, power, tree
     size_t renders = 0;
     for (const json& method : of["methods"]) {
         const json& first = method["points"].front();
         const json& last = method["points"].back();
-        EXPECT_EQ(first["samples"], 1);
+        uint32_t samples = 1;
+        for (const json& p : method["points"]) {
+            EXPECT_EQ(p["samples"], samples);
+            // Costs are those of the other clock, and of nothing but this render's samples.
+            EXPECT_NEAR(p["cpu_s"]["mean"], 3 * 5e-3 * samples, 1e-9);
+            EXPECT_EQ(p["seeds"].size(), kChartSeeds);
+            EXPECT_NE(p["seeds"][0]["relative_mse"], p["seeds"][1]["relative_mse"]);
+            renders += p["seeds"].size();
+            samples *= 2;
+        }
         EXPECT_GE(last["samples"], 16);
         // Two lamps are drawn in proportion to 1 : 10 or 1 : 1, the walls are diffuse: the
         // variance falls at least as 1 / n, in 16 times the samples below an eighth.
         EXPECT_LT(last["relative_mse"]["mean"].get<double>(),
                   first["relative_mse"]["mean"].get<double>() / 8);
         EXPECT_LT(last["flip"]["mean"], first["flip"]["mean"]);
-        EXPECT_GT(last["cpu_s"]["mean"], first["cpu_s"]["mean"]);
-        for (const json& p : method["points"]) {
-            EXPECT_GE(p["seeds"].size(), 5u);
-            EXPECT_NE(p["seeds"][0]["relative_mse"], p["seeds"][1]["relative_mse"]);
-            renders += p["seeds"].size();
-        }
     }
     EXPECT_EQ(read_csv_text(path("report/points.csv")).rows.size(), renders);
 
@@ -151,23 +205,108 @@ TEST_F(ChartCli, WritesAReport) {
     EXPECT_TRUE(page.ends_with("</html>\n"));
 }
 
-TEST_F(ChartCli, TakesAReferenceFromAFile) {
+// A tenth of the time is for plots and pictures. Samples double while the next number fits, so that
+// less than half of the rest is left over.
+TEST_F(ChartRun, UsesTheTimeThatItHasAndNoMore) {
+    for (const double budget_s : {4., 5., 6., 7.}) {
+        const double start_s = elapsed_s();
+        ChartRequest r = request({ChartAxis::Lights});
+        r.budget_s = budget_s;
+        EXPECT_EQ(run(r).measured, 1u);
+        const MeasuredCase& of = cases_.back();
+        EXPECT_NEAR(of.wall_s, elapsed_s() - start_s, 1e-6);
+        EXPECT_LE(of.wall_s, 0.9 * budget_s);
+        EXPECT_GE(of.wall_s, 0.45 * budget_s);
+        const double reference_s = of.reference.samples * kReferenceReplicates * 5e-3;
+        EXPECT_NEAR(of.reference.cpu_s, 3 * reference_s, 1e-9);
+        EXPECT_GE(reference_s, 0.2 * budget_s);
+        EXPECT_LE(reference_s, 0.4 * budget_s);
+    }
+    // What one axis leaves over is the other's.
+    const double start_s = elapsed_s();
+    EXPECT_EQ(run(request({ChartAxis::Lights, ChartAxis::Sampler})).measured, 2u);
+    EXPECT_LE(elapsed_s() - start_s, 0.95 * 10);
+    EXPECT_GE(elapsed_s() - start_s, 0.45 * 10);
+}
+
+TEST_F(ChartRun, TakesAReferenceFromAFile) {
     static_cast<void>(render_bytes({"--spp", "256", "--seed", "9"}, "reference.exr"));
-    const Finished run =
-        run_petzval(chart_words({"--axis", "sampler", "--budget", "5s", "--reference",
-                                 path("reference.exr"), "-o", path("report")}));
-    ASSERT_EQ(run.exit_code, 0) << run.err;
-    const json of = points("report")["cases"][0];
+    ChartRequest r = request({ChartAxis::Sampler});
+    r.reference = path("reference.exr");
+    EXPECT_EQ(run(r).measured, 1u);
+    const json of = points()["cases"][0];
     EXPECT_EQ(of["reference"]["by"], "reference.exr");
     EXPECT_TRUE(of["reference"]["relative_mse"].is_null());
     for (const json& p : of["methods"][0]["points"]) EXPECT_TRUE(p["believed"]);
     EXPECT_NE(file_bytes(path("report/report.html")).find("its own error is not known"),
               std::string::npos);
-    EXPECT_NE(error_of(chart_words({"--reference", path("reference.exr"), "--size", "16x8", "-o",
-                                    path("other")}),
-                       1)
-                  .find("give the same --size and --crop"),
+}
+
+TEST_F(ChartRun, RefusesATimeThatIsTooShortForAFirstLook) {
+    take(1);  // nine samples of the reference alone: its part of 5 s is 2 s
+    EXPECT_NE(refused(request({ChartAxis::Sampler})).find("give more time or a smaller --size"),
               std::string::npos);
+    EXPECT_NE(refused(request({ChartAxis::Sampler, ChartAxis::Lights}))
+                  .find("is too small for each of the axes"),
+              std::string::npos);
+}
+
+TEST_F(ChartRun, LeavesOutAnAxisForWhichTheTimeIsTooShort) {
+    after_first_case = [this] { take(1); };
+    const ChartOutcome outcome = run(request({ChartAxis::Sampler, ChartAxis::Lights}));
+    EXPECT_EQ(outcome.measured, 1u);
+    ASSERT_EQ(cases_.size(), 2u);
+    EXPECT_FALSE(cases_[0].methods.empty());
+    EXPECT_TRUE(cases_[1].methods.empty());
+    ASSERT_FALSE(cases_[1].of.remarks.empty());
+    EXPECT_TRUE(cases_[1].of.remarks.back().starts_with("Left out: --budget"))
+        << cases_[1].of.remarks.back();
+}
+
+TEST_F(ChartRun, StopsAndKeepsOnlyWhatIsWhole) {
+    for (const double at_s : {0.01, 1., 4.}) {  // in the reference's warm-up, in it, in the race
+        stop_at_s_ = elapsed_s() + at_s;
+        const ChartOutcome outcome = run(request({ChartAxis::Sampler}));
+        EXPECT_TRUE(outcome.stopped) << at_s;
+        EXPECT_EQ(outcome.measured, 0u) << at_s;
+        EXPECT_TRUE(cases_.empty()) << at_s;
+        EXPECT_EQ(listing(), (std::set<std::string>{"studio.glb"})) << at_s;
+    }
+}
+
+TEST_F(ChartRun, StoppedInTheSecondAxisKeepsTheFirst) {
+    after_first_case = [this] { stop_at_s_ = elapsed_s() + 1; };
+    const ChartOutcome outcome = run(request({ChartAxis::Sampler, ChartAxis::Lights}));
+    EXPECT_TRUE(outcome.stopped);
+    EXPECT_EQ(outcome.measured, 1u);
+    ASSERT_EQ(points()["cases"].size(), 1u);
+    EXPECT_EQ(points()["cases"][0]["axis"], "sampler");
+}
+
+class ChartCli : public CliTest {
+  protected:
+    [[nodiscard]] Words chart_words(const Words& more) const {
+        Words all{"chart", scene_, "--threads", "2", "--quiet"};
+        if (std::find(more.begin(), more.end(), "--size") == more.end())
+            all.insert(all.end(), {"--size", "16x16"});
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+    }
+};
+
+// Whether the time is enough is the machine's; one of the two holds on any.
+TEST_F(ChartCli, WritesAReportOrSaysThatTheTimeIsTooShort) {
+    const Finished run = run_petzval(
+        chart_words({"--axis", "lights", "--size", "8x8", "--budget", "4s", "-o", path("report")}));
+    if (run.exit_code == 0) {
+        EXPECT_EQ(run.out + run.err, "");
+        EXPECT_TRUE(file_bytes(path("report/report.html")).ends_with("</html>\n"));
+        const json all = json::parse(file_bytes(path("report/points.json")));
+        EXPECT_EQ(all["cases"][0]["axis"], "lights");
+    } else {
+        EXPECT_NE(only_line(run, 2).find("give more time"), std::string::npos) << run.err;
+        EXPECT_EQ(listing(), (std::set<std::string>{"studio.glb"}));
+    }
 }
 
 TEST_F(ChartCli, RefusesWhatItCannotDo) {
@@ -179,19 +318,20 @@ TEST_F(ChartCli, RefusesWhatItCannotDo) {
     expect({"--budget", "1s", "-o", path("r")}, 2, "--budget");
     expect({"--axis", "sampler", "--seeds", "4", "-o", path("r")}, 2, "--seeds");
     expect({"--axis", "sampler", "-o", scene_}, 1, "cannot be made a folder");
-    expect({"--axis", "sampler", "-o", "/proc/none"}, 1, "/proc/none");
+    expect({"--axis", "sampler", "-o", scene_ + "/none"}, 1, "studio.glb/none");
     expect({"--axis", "camera", "--camera", "plan", "-o", path("r")}, 2, "orthographic");
     expect({"--axis", "sampler", "--camera", "none", "-o", path("r")}, 2, "no camera \"none\"");
-    expect({"--axis", "sampler", "--size", "2000x2000", "--budget", "4s", "-o", path("r")}, 2,
-           "give more time or a smaller --size");
+    static_cast<void>(render_bytes({}, "reference.exr"));
+    expect({"--reference", path("reference.exr"), "--size", "16x8", "-o", path("r")}, 1,
+           "give the same --size and --crop");
 }
 
 TEST_F(ChartCli, StopsAndSaysWhatThereIs) {
     Words words{"chart",  scene_,     "--size",   "16x16", "--axis", "sampler",
-                "--axis", "spectral", "--budget", "120s",  "-o",     path("report")};
+                "--axis", "spectral", "--budget", "24h",   "-o",     path("report")};
     Process run(words);
+    // The first word of a scene that is open: by then signals ask the chart to stop.
     ASSERT_TRUE(run.wait_for_stderr("spectral: "));
-    std::this_thread::sleep_for(std::chrono::milliseconds(500));
     run.signal(SIGINT);
     const Finished stopped = run.wait();
     EXPECT_EQ(stopped.exit_code, 130);

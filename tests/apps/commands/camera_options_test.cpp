@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "camera/models/thin_lens_optics.h"
 #include "tests/support/cli.h"
@@ -127,7 +128,7 @@ TEST_F(CliCamera, PhotographicExposureFollowsIrisShutterAndSpeed) {
     };
     const double film_mm = image_distance_mm(50, 1000), radius_mm = 50 / 4.;
     const double sine = std::sin(std::atan(radius_mm / film_mm));
-    const double expected = M_PI * sine * sine * 100 / 50 * 200 / 78;
+    const double expected = std::numbers::pi * sine * sine * 100 / 50 * 200 / 78;
     EXPECT_NEAR(with({"--focal-length", "50", "--fstop", "2", "--focus", "1"}) / expected, 1, 1e-4);
     EXPECT_NEAR(
         with({"--focal-length", "50", "--fstop", "2", "--focus", "1", "--aperture", "triangle"}) /
@@ -137,7 +138,7 @@ TEST_F(CliCamera, PhotographicExposureFollowsIrisShutterAndSpeed) {
     EXPECT_NEAR(with({"--focal-length", "50", "--fstop", "2", "--focus", "1", "--aperture",
                       "triangle", "--aperture-scale", "inscribed"}) /
                     expected,
-                3 * std::sqrt(3.) / (4 * M_PI), 1e-4);
+                3 * std::sqrt(3.) / (4 * std::numbers::pi), 1e-4);
     EXPECT_NEAR(green({"--focal-length", "50", "--fstop", "2", "--focus", "1"}), 100, 1e-2);
     const double slow = std::sin(std::atan(50 / 16. / film_mm));
     EXPECT_NEAR(with({"--lens", "singlet:schott:N-BK7", "--dispersion", "shared", "--focal-length",
@@ -145,7 +146,7 @@ TEST_F(CliCamera, PhotographicExposureFollowsIrisShutterAndSpeed) {
                     (expected * sqr(slow / sine)),
                 1, 1e-4);
     // A lens of glass at the same f-number, focused far away: a thin lens without its bellows.
-    const double far = M_PI / 16 * 100 / 50 * 200 / 78;
+    const double far = std::numbers::pi / 16 * 100 / 50 * 200 / 78;
     EXPECT_NEAR(with({"--lens", "double-gauss-100mm-f2", "--fstop", "2.8", "--focus", "1000",
                       "--dispersion", "shared", "--spp", "1024"}) /
                     far,

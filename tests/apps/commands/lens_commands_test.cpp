@@ -2,6 +2,7 @@
 // petzval lens.
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "io/base/csv.h"
 #include "tests/support/cli.h"
@@ -274,7 +275,7 @@ TEST_F(LensCli, PlotsEachAnalysis) {
     const CsvTable distortion = plotted("distortion", {});
     EXPECT_EQ(distortion.rows.size(), 40u);
     EXPECT_EQ(distortion.rows.back()[0], 14);
-    EXPECT_NEAR(distortion.rows.back()[2], 100.00372 * std::tan(14 * M_PI / 180), 1e-4);
+    EXPECT_NEAR(distortion.rows.back()[2], 100.00372 * std::tan(14 * std::numbers::pi / 180), 1e-4);
 
     // The oracle's irradiance at 17.465 mm.
     const CsvTable light = plotted("vignetting", {"--image-circle", "34.93"});

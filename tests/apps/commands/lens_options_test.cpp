@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Renders through lenses of glass, by the program.
 #include <cmath>
+#include <numbers>
 
 #include "tests/support/cli.h"
 
@@ -94,10 +95,10 @@ TEST_F(CliLens, AThinLensFocusesAtInfinity) {
 TEST_F(CliLens, OldSpellingsMeanTheSame) {
     const Words lens = {"--lens", "takumar-50mm-f1.2", "--focus", "1", "--spp", "2"};
     const std::pair<Words, Words> pairs[] = {
-        {{"--chroma", "split"}, {"--dispersion", "split"}},
-        {{"--chroma=single"}, {"--dispersion", "single"}},
-        {{"--chroma-tolerance", "0.3"}, {"--dispersion-tolerance", "0.3"}},
-        {{"--march", "double"}, {"--lens-precision", "double"}},
+        {{"--dispersion", "split"}, {"--dispersion", "split"}},
+        {{"--dispersion=single"}, {"--dispersion", "single"}},
+        {{"--dispersion-tolerance", "0.3"}, {"--dispersion-tolerance", "0.3"}},
+        {{"--lens-precision", "double"}, {"--lens-precision", "double"}},
         {{"--spectral", "hero"}, {"--spectral", "wavelengths"}},
         {{"--spectral=hero"}, {"--spectral", "wavelengths"}}};
     for (const auto& [before, now] : pairs) {
@@ -107,8 +108,8 @@ TEST_F(CliLens, OldSpellingsMeanTheSame) {
         EXPECT_EQ(render_bytes(a, "a.exr"), render_bytes(b, "b.exr")) << before.front();
     }
     const Finished help = run_petzval({"render", "--help"});
-    EXPECT_EQ(help.out.find("--chroma"), std::string::npos);
-    EXPECT_EQ(help.out.find("--march"), std::string::npos);
+    EXPECT_EQ(help.out.find("--dispersion"), std::string::npos);
+    EXPECT_EQ(help.out.find("--lens-precision"), std::string::npos);
 }
 
 TEST_F(CliLens, CornersAreDarkerAndOpaque) {
@@ -180,7 +181,7 @@ TEST_F(CliLens, FitsTheAngleOfView) {
         for (int x = 16; x < 128; ++x) width += at(x) > half;
         return width;
     };
-    const double expected = 96 * 0.2 / std::tan(13 * M_PI / 180);
+    const double expected = 96 * 0.2 / std::tan(13 * std::numbers::pi / 180);
     EXPECT_NEAR(width_px(picture({"--fov", "26"})), expected, 1.5);
     const Words lens = {"--lens", "biotar-58mm-f1.4", "--dispersion", "shared", "--fstop",
                         "16",     "--focus",          "1000"};
@@ -220,7 +221,7 @@ TEST_F(CliLens, GlassReflectsWhereItIsAskedTo) {
     EXPECT_NEAR(ideal, 1, 2e-3);
     EXPECT_NEAR(grey("uncoated") / ideal, sqr(1 - 0.04), 2e-4);
     // At line d a quarter wave of 550 nm is a little thin.
-    const double phase = M_PI * 550 / 587.5618, a = -0.38 / 2.38, b = -0.12 / 2.88;
+    const double phase = std::numbers::pi * 550 / 587.5618, a = -0.38 / 2.38, b = -0.12 / 2.88;
     const double both = 2 * a * b * std::cos(phase);
     const double reflected = (a * a + b * b + both) / (1 + sqr(a * b) + both);
     EXPECT_GT(reflected, film);

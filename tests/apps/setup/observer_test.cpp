@@ -8,7 +8,7 @@
 #include "core/spectrum/sensor_fit.h"
 #include "io/spectra/spectra.h"
 #include "tests/support/chi_square.h"
-#include "tests/support/observers.h"
+#include "tests/support/set_up_observer.h"
 #include "tests/support/statistics.h"
 
 namespace petzval {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <numbers>
 
 #include "camera/models/thin_lens.h"
 #include "core/spectrum/colorimetry.h"
@@ -11,9 +12,9 @@
 #include "integrator/render.h"
 #include "io/glass/catalogue.h"
 #include "io/spectra/spectra.h"
-#include "tests/support/observers.h"
-#include "tests/support/scenes.h"
+#include "tests/support/set_up_observer.h"
 #include "tests/support/statistics.h"
+#include "tests/support/traced_world.h"
 
 namespace petzval {
 namespace {
@@ -24,17 +25,7 @@ using test::observer_of;
 using test::place;
 using test::quad;
 using test::sphere;
-
-struct World : test::World {
-    std::unique_ptr<PathTracer<>> tracer;
-
-    void finish(int max_depth = 16) {
-        test::World::finish();
-        PathOptions options;
-        options.max_depth = max_depth;
-        tracer = std::make_unique<PathTracer<>>(scene, *bvh, *lights, options);
-    }
-};
+using World = test::TracedWorld;
 
 Film render_film(const World& world, const Camera& camera, V2i size, const RenderJob& job,
                  int threads = 2) {
@@ -164,9 +155,10 @@ Material glass_material(const char* name, float roughness) {
 }
 
 // Mean of every lane's radiance over that of the white sky, in four parts of the spectrum.
-std::array<test::Moments, 4> furnace(const World& world, const Observer& observer) {
+std::array<test::Moments, 4> furnace(const World& world, const Observer& observer,
+                                     uint32_t samples = 512) {
     std::array<test::Moments, 4> part;
-    constexpr uint32_t replicates = 16, samples = 512;
+    constexpr uint32_t replicates = 16;
     for (uint32_t seed = 0; seed < replicates; ++seed) {
         std::array<double, 4> sum{}, count{};
         for (uint32_t i = 0; i < samples; ++i) {
@@ -200,8 +192,7 @@ TEST(SpectralRender, FurnaceAtEveryWavelength) {
         world.finish(200);
         const auto part = furnace(world, observer);
         for (size_t k = 0; k < 4; ++k)
-            EXPECT_TRUE(test::z_test(part[k].mean(), part[k].standard_error() + 1e-5, 1.))
-                << k << ": " << part[k].mean() << " +- " << part[k].standard_error();
+            EXPECT_TRUE(test::agrees(part[k], 1., 5e-5)) << k << ": " << test::Mean(part[k]);
     }
 }
 
@@ -216,11 +207,12 @@ TEST(SpectralRender, RoughDispersionNeitherGainsNorLoses) {
         place(world.scene, sphere(V3f(0.f), 1.f, 32, true), m);
         world.scene.sky = Sky::uniform(Rgb(1.f));
         world.finish(200);
-        part[disperses] = furnace(world, observer);
+        part[disperses] = furnace(world, observer, 8192);
     }
     for (size_t k = 0; k < 4; ++k) {
-        const double error = std::hypot(part[0][k].standard_error(), part[1][k].standard_error());
-        EXPECT_NEAR(part[1][k].mean(), part[0][k].mean(), 4.5 * error + 1e-3) << k;
+        const test::Mean off = test::Mean(part[1][k]) - test::Mean(part[0][k]);
+        EXPECT_TRUE(test::agrees(off, 0, 1e-3)) << k << ": " << off;
+        EXPECT_LT(off.error, 0.0025) << k;
         EXPECT_LE(part[1][k].mean(), 1.001);
     }
 }
@@ -241,9 +233,10 @@ TEST(SpectralRender, PrismBendsEachWavelengthAsSnellSays) {
     place(world.scene, prism, glass_material("schott:N-SF11", 0.f));
     world.finish();
     const Observer observer = observer_of({});
-    const double incidence = 60. / 180 * M_PI, apex = 60. / 180 * M_PI;
+    const double incidence = 60. / 180 * std::numbers::pi, apex = 60. / 180 * std::numbers::pi;
     // Into the left face, whose outward normal points 150 degrees from +x.
-    const V3d normal_in(std::cos(150. / 180 * M_PI), std::sin(150. / 180 * M_PI), 0);
+    const V3d normal_in(std::cos(150. / 180 * std::numbers::pi),
+                        std::sin(150. / 180 * std::numbers::pi), 0);
     const double heading = std::atan2(-normal_in.y, -normal_in.x) + incidence;
     for (const double nm : {400., 486.1327, 587.5618, 656.2725, 780.}) {
         // N-SF11: Schott's Sellmeier coefficients.
@@ -384,13 +377,12 @@ TEST(SpectralRender, HeroAgreesWithOneWavelengthAPath) {
     double squares = 0;
     for (size_t p = 0; p < hero.size(); ++p)
         for (size_t c = 0; c < 3; ++c) {
-            const double error =
-                std::hypot(hero[p][c].standard_error(), single[p][c].standard_error());
-            const double z = (hero[p][c].mean() - single[p][c].mean()) / error;
-            squares += z * z;
-            EXPECT_GE(test::two_sided_p(z), test::sidak())
+            const test::Mean off = test::Mean(hero[p][c]) - test::Mean(single[p][c]);
+            const double t = off.value / off.error;
+            squares += t * t;
+            EXPECT_TRUE(test::agrees(off, 0))
                 << "pixel " << p << " channel " << c << ": " << hero[p][c].mean() << " and "
-                << single[p][c].mean() << ", z " << z;
+                << single[p][c].mean() << ", t " << t;
         }
     // 75 numbers of Student's t with 15 + 15 degrees of freedom: their variance is 30 / 28.
     EXPECT_GE(test::chi_square_p(squares / (30. / 28), 75), test::sidak()) << squares;

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <numbers>
 #include <regex>
 #include <sstream>
 
@@ -255,8 +256,8 @@ TEST(Stability, ADefocusedHighlightVariesAsItsShareOfTheBlur) {
         FilmSample out;
         light.add(double(tracer.radiance(ray, Bands::rgb(), sampler, false, out, stats)[0]));
     }
-    const double share = double(side_m * side_m) / (M_PI / 4 * 0.225 * 0.225);
-    EXPECT_TRUE(test::z_test(light.mean(), light.standard_error(), share)) << light.mean();
+    const double share = double(side_m * side_m) / (std::numbers::pi / 4 * 0.225 * 0.225);
+    EXPECT_TRUE(test::agrees(light, share)) << light.mean();
     EXPECT_NEAR(light.variance() / (light.mean() * light.mean()), 1 / light.mean() - 1, 0.01);
 }
 
@@ -295,7 +296,7 @@ TEST(Stability, PanesLoseWhatTheDepthCutsOff) {
     };
     for (const int panes : {1, 4}) {
         const test::Moments whole = mean(panes, 500);
-        EXPECT_TRUE(test::z_test(whole.mean(), whole.standard_error(), 1)) << panes;
+        EXPECT_TRUE(test::agrees(whole, 1)) << panes;
     }
     // Two scatterings a pane: straight through eight of them are 16, and reflected ways are cut.
     const double cut = mean(8, 16).mean();

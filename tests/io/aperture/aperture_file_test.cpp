@@ -61,7 +61,7 @@ TEST(SvgAperture, Subpaths) {
     EXPECT_NEAR(area(two), 64 - 4 + 16, 1e-12);
     EXPECT_FALSE(two.even_odd);
     // After Z a path goes on from where it began.
-    const Outline outline = read_svg_path("M5 6 h2 v2 z l-2 0 l0 -2 z", {"file", "d"});
+    const svg::Outline outline = read_svg_path("M5 6 h2 v2 z l-2 0 l0 -2 z", {"file", "d"});
     ASSERT_EQ(outline.size(), 2u);
     EXPECT_EQ(outline[1].start, V2d(5, 6));
     EXPECT_EQ(outline[1].curves[1].end, V2d(3, 4));

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// Observers as a render would have them.
+#pragma once
+
+#include "apps/setup/spectral_setup.h"
+
+namespace petzval::test {
+
+/// Wavelengths whatever the scene; what is noticed is not told.
+inline Observer observer_of(SpectralRequest request, const Scene& scene = Scene()) {
+    request.mode = SpectralMode::Wavelengths;
+    return set_up_spectra(request, scene, "", [](const std::string&) {}).observer;
+}
+
+}  // namespace petzval::test

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene made of code with the path tracer that looks at it.
+#pragma once
+
+#include <memory>
+
+#include "integrator/path.h"
+#include "tests/support/scenes.h"
+
+namespace petzval::test {
+
+struct TracedWorld : World {
+    std::unique_ptr<PathTracer<>> tracer;
+
+    void finish(int max_depth = PathOptions().max_depth) {
+        World::finish();
+        PathOptions options;
+        options.max_depth = max_depth;
+        tracer = std::make_unique<PathTracer<>>(scene, *bvh, *lights, options);
+    }
+};
+
+}  // namespace petzval::test

@@ -97,7 +97,8 @@ void resolve_job(RenderOptions& o) {
         o.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-// Memory is promised before it is there, so that asking for too much would kill instead of fail.
+// Throws where a render needs more memory than the machine has. Memory is promised before it is
+// there, so that asking for too much would kill instead of fail.
 void require_memory(const RenderFrame& frame, const std::optional<Bins>& bins) {
     const double pixels = static_cast<double>(frame.crop.width()) * frame.crop.height();
     const double layers = static_cast<double>(frame.aovs.size());

@@ -3,9 +3,9 @@
 // throws InputError with the JSON path. They run in the order in which they stand here: later ones
 // rely on what earlier ones found.
 //
-// What the specification forbids is refused, except where nothing that Petzval reads depends on it:
-// min and max of accessors, lengths of normals, bufferView.target, empty arrays, the meaning of
-// animations, inverse bind matrices, and the content of extensions that are not supported.
+// The checks refuse what the specification forbids, except where nothing that Petzval reads depends
+// on it: min and max of accessors, lengths of normals, bufferView.target, empty arrays, the meaning
+// of animations, inverse bind matrices, and the content of extensions that are not supported.
 #pragma once
 
 #include <string>

@@ -28,7 +28,7 @@ int fail(int exit_code, const std::string& what) {
     return exit_code;
 }
 
-// Help and the version are "errors" to CLI11 as well.
+// Exit code where parsing stopped. Help and the version are "errors" to CLI11 as well.
 int stop_parsing(const CLI::App& app, const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);
     return fail(kBadArguments, std::string(e.what()) + " (--help says more)");

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The report's folder. One that was made here goes again unless something is kept in it.
+/// The report's folder. One that was made here is removed again unless keep() was called.
 class Folder {
   public:
     explicit Folder(const fs::path& path) : path_(path) {
@@ -77,7 +77,7 @@ ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, Rende
         throw ArgumentError("--budget", "",
                             fmt::format("is too small: {} axes need {:g} s at least",
                                         request.axes.size(), least_s));
-    std::set<std::string> said;  // by one of the views
+    std::set<std::string> said;  // notices that one of the views gave
     const auto once = [&](const std::string& text) {
         if (said.insert(text).second) notice(text);
     };

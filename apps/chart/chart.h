@@ -20,11 +20,11 @@ struct ChartOutcome {
     bool stopped = false;  ///< the monitor said stop
 };
 
-/// Measures case by case and writes each when it is measured: what lies in the folder is whole at
-/// any time. A case for which the time is too short is left out, with a remark, unless it is the
-/// only one. Ends within 1.2 times the budget. `finished` sees each case. Throws InputError:
-/// faults of scene and files, a folder that cannot be written; ArgumentError: a budget that is too
-/// small, more memory than there is, nothing to compare.
+/// Measures case by case and writes each when it is measured: the folder is whole at any time. A
+/// case for which the time is too short is left out, with a remark, unless it is the only one. Ends
+/// within 1.2 times the budget. `finished` sees each case. Throws InputError: faults of scene and
+/// files, a folder that cannot be written; ArgumentError: a budget that is too small, more memory
+/// than there is, nothing to compare.
 [[nodiscard]] ChartOutcome run_chart(const ChartRequest&, TbbExecutor&, RenderMonitor&,
                                      const Notice& notice,
                                      const std::function<void(const MeasuredCase&)>& finished,

@@ -54,7 +54,7 @@ std::vector<uint8_t> bytes_of(const fs::path& path) {
     return std::move(file.bytes);
 }
 
-/// A drawing without what comes before its first element: that belongs at the head of a file.
+/// SVG from its first element on: what comes before belongs at the head of a file.
 std::string drawing(const fs::path& path) {
     const std::vector<uint8_t> bytes = bytes_of(path);
     const std::string text(bytes.begin(), bytes.end());

@@ -18,9 +18,9 @@
 namespace petzval {
 namespace {
 
-/// What a scene and a request turned out to be.
+/// Resolved request and camera of a scene, and its number of lights.
 struct Found {
-    SceneRequest request;  ///< with the wishes of the file's camera
+    SceneRequest request;  ///< with the settings of the file's camera
     CameraReport report;
     size_t lights = 0;
 };
@@ -69,7 +69,7 @@ class Cases {
     ChartCase case_;
 };
 
-/// Where wavelengths and rims ask for a real lens: the request's, else kChartLens.
+/// Request with a real lens, where wavelengths and rims ask for one: its own, else kChartLens.
 SceneRequest with_lens(const Found& found, std::vector<std::string>& remarks) {
     SceneRequest request = found.request;
     CameraRequest& camera = request.camera;
@@ -159,7 +159,8 @@ ChartCase spectral_case(const Found& found, const RenderJob& job) {
     return std::move(cases).result();
 }
 
-/// A rectangle 1000 times as long as it is wide, aslant, so that its bounding box is mostly empty.
+/// Writes an iris: a rectangle 1000 times as long as it is wide, aslant, so that its bounding box
+/// is mostly empty.
 std::string write_sliver(const std::filesystem::path& folder) {
     const auto path = folder / "iris-sliver.svg";
     write_file_atomically(
@@ -170,7 +171,7 @@ std::string write_sliver(const std::filesystem::path& folder) {
     return path.string();
 }
 
-/// A disk that darkens towards its rim, as an apodisation filter does.
+/// Writes an iris: a disk that darkens towards its rim, as an apodisation filter does.
 std::string write_mask(const std::filesystem::path& folder) {
     constexpr int kSide = 64;
     Picture mask;
@@ -259,7 +260,7 @@ ChartCase lights_case(const Found& found, const RenderJob& job) {
     return std::move(cases).result();
 }
 
-/// A wrong pixel here and there hardly shows in an error, so leaks are counted.
+/// Remark that counts traversal leaks: a wrong pixel here and there hardly shows in an error.
 std::string leak_count(const SceneRequest& request, const SetUpView& open) {
     constexpr size_t kRays = 20000;
     std::vector<Ray> rays;

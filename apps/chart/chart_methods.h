@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a chart sets against each other: the methods of each axis, as variations of one request, and
-// the one that makes their reference.
+// Methods that a chart compares: those of each axis, as variations of one request, and the one that
+// makes their reference.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +14,7 @@
 
 namespace petzval {
 
-/// Peers: other programs, which are not measured from in here.
+/// Axes of a chart. Peers: other programs, which are not measured from in here.
 enum class ChartAxis : uint8_t {
     Camera,
     Dispersion,
@@ -36,7 +36,7 @@ struct ChartMethod {
     RenderJob job;
 };
 
-/// Methods that are held against one reference: an axis, or of the iris one shape.
+/// Methods compared with one reference: those of an axis, or for the iris those of one shape.
 struct ChartCase {
     ChartAxis axis;
     std::string name;   ///< of its files: "sampler", "iris-star"
@@ -56,12 +56,12 @@ struct ChartSubject {
     std::filesystem::path folder;  ///< where shapes of irises are written
 };
 
-/// Sets up another view of the scene: set_up_view with what it shares and whom it tells.
+/// Function that sets up another view of the scene: set_up_view with its setup and notice given.
 using SetUpView = std::function<RenderSetup(const SceneRequest&)>;
 
-/// Opens the scene, to see what it allows. A case without methods
-/// only has remarks. Throws InputError for faults of the scene, ArgumentError where an axis that
-/// needs a perspective camera gets none.
+/// Cases of the axes. Opens the scene, to see what it allows. A case without methods only has
+/// remarks. Throws InputError for faults of the scene, ArgumentError where an axis that needs a
+/// perspective camera gets none.
 [[nodiscard]] std::vector<ChartCase> chart_cases(const std::vector<ChartAxis>&, const ChartSubject&,
                                                  const SetUpView&);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is made of measurements of cost and error: intervals, efficiency, the Pareto front.
+// Statistics of cost and error: intervals, efficiency, the Pareto front.
 #pragma once
 
 #include <array>
@@ -20,13 +20,13 @@ struct Interval {
 /// Mean and its 95 % confidence interval under Student's t. At least 5 values.
 [[nodiscard]] Interval confidence_95(std::span<const double> values);
 
-/// One render.
+/// Cost and error of one render.
 struct ChartSeed {
     uint32_t seed = 0;
     double cpu_s = 0, relative_mse = 0, flip = 0;
 };
 
-/// One method at one number of samples.
+/// Measurements of one method at one number of samples.
 struct ChartPoint {
     uint32_t samples = 0;  ///< of each pixel
     std::vector<ChartSeed> seeds;
@@ -34,8 +34,8 @@ struct ChartPoint {
     [[nodiscard]] Interval cpu_s() const;
     [[nodiscard]] Interval relative_mse() const;
     [[nodiscard]] Interval flip() const;
-    /// 1 / (relative MSE * CPU s), 1/s: of the mean of the product over the seeds. `high` is
-    /// infinite where the interval of the product reaches 0.
+    /// Efficiency 1 / (relative MSE * CPU s), 1/s, from the mean of the product over the seeds.
+    /// `high` is infinite where the interval of the product reaches 0.
     [[nodiscard]] Interval efficiency() const;
 };
 

@@ -20,7 +20,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Measure = Interval (ChartPoint::*)() const;
 
-/// Letters, digits and dashes.
+/// Name as part of a file's name: letters, digits, points and dashes.
 std::string file_word(const std::string& name) {
     std::string out;
     for (const char c : name) {
@@ -31,7 +31,8 @@ std::string file_word(const std::string& name) {
     return out;
 }
 
-/// Black, blue, red, yellow, white: darker to lighter, so that it reads in grey on paper too.
+/// Heat map of errors. Black, blue, red, yellow, white: darker to lighter, so that it reads in grey
+/// on paper too.
 Picture heat(const std::vector<float>& errors, const Picture& like) {
     constexpr std::array<std::array<float, 3>, 5> kStops{
         {{0, 0, 0}, {0.2f, 0.05f, 0.5f}, {0.8f, 0.2f, 0.3f}, {1, 0.7f, 0.2f}, {1, 1, 1}}};
@@ -46,7 +47,7 @@ Picture heat(const std::vector<float>& errors, const Picture& like) {
     return out;
 }
 
-/// The points of all methods that are believed and that no other beats.
+/// Pareto front: points of all methods that are believed and that no other beats.
 PlotSeries front_of(const MeasuredCase& of, Measure error) {
     std::vector<std::array<double, 2>> points;
     for (const MeasuredMethod& method : of.methods)

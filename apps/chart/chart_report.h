@@ -17,7 +17,7 @@ struct ChartReport {
     std::vector<MeasuredCase> cases;
 };
 
-/// A line of the table of efficiencies: the last point of a method that is believed, else its last.
+/// Row of the table of efficiencies: the last point of a method that is believed, else its last.
 struct EfficiencyRow {
     std::string method;
     ChartPoint point;
@@ -30,15 +30,16 @@ struct EfficiencyRow {
 /// out.
 [[nodiscard]] std::vector<std::string> head_of(const ChartReport&, const MeasuredCase&);
 
-/// NAME.svg and NAME.png over relative MSE, NAME-flip.* over FLIP, and each method's picture and
-/// map of FLIP in pictures/. Nothing for a case without methods. Throws InputError.
+/// Writes the files of a case: NAME.svg and NAME.png over relative MSE, NAME-flip.* over FLIP, and
+/// each method's picture and map of FLIP in pictures/. Nothing for a case without methods. Throws
+/// InputError.
 void write_case(const ChartReport&, const MeasuredCase&);
 
-/// points.csv (a row for each render), points.json and report.html, of the cases so far; the plots
-/// of write_case() must be there. Throws InputError.
+/// Writes points.csv (a row for each render), points.json and report.html of the cases so far; the
+/// plots of write_case() must be there. Throws InputError.
 void write_report(const ChartReport&);
 
-/// The page by itself: write_report() writes it. Throws InputError where a plot is not there.
+/// HTML of report.html, which write_report() writes. Throws InputError where a plot is not there.
 [[nodiscard]] std::string report_html(const ChartReport&);
 
 /// Names of a method's pictures in the report's folder.

@@ -12,7 +12,7 @@ namespace {
 constexpr size_t kMostTriangles = 1u << 18;  // of a mesh
 constexpr int kTries = 16;                   // of a direction, for each ray
 
-/// Both triangles at an edge: its ends, and the corner on either side.
+/// Edge that two triangles share: its ends, and the corner on either side.
 struct SharedEdge {
     V3f a, b;
     std::array<V3f, 2> corner;
@@ -27,7 +27,8 @@ bool before(const V3f& a, const V3f& b) {
     return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
 }
 
-// Meshes with flat normals repeat their vertices, so edges are shared by position, not by index.
+// Adds the edges that two triangles share, by position, not by index: meshes with flat normals
+// repeat their vertices.
 void add_shared_edges(const Scene& scene, uint32_t instance, std::vector<SharedEdge>& shared) {
     const Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
     if (scene.materials[mesh.material].cutout()) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The options of petzval render that are about the camera and its lens.
+// Camera and lens options of petzval render.
 #pragma once
 
 #include "apps/setup/request.h"
@@ -10,7 +10,7 @@ class App;
 
 namespace petzval {
 
-/// As given; resolve() reads the texts.
+/// Camera options as given; resolve() reads the texts.
 struct CameraOptions {
     CameraRequest request;
     std::string look_at, sensor, focus, shutter;
@@ -19,7 +19,8 @@ struct CameraOptions {
 /// Declares the options; they write to the struct, which must outlive the parsing.
 void add_camera_options(CLI::App&, CameraOptions&);
 
-/// frame: the picture, in pixels. Throws CLI::ValidationError.
+/// Camera request with its texts read. frame: size of the picture in pixels. Throws
+/// CLI::ValidationError.
 [[nodiscard]] CameraRequest resolve(CameraOptions&, V2i frame);
 
 }  // namespace petzval

@@ -16,7 +16,7 @@ namespace petzval {
 template <class T>
 using Choices = std::vector<std::pair<std::string, T>>;
 
-/// Every name of a choice that option_names.h has.
+/// Names and values of a choice, from option_names.h.
 template <class T>
 [[nodiscard]] Choices<T> choices_of() {
     Choices<T> choices;
@@ -24,8 +24,9 @@ template <class T>
     return choices;
 }
 
-/// Any other word ends with exit code 2 and the list of the known ones. value, a T or something
-/// that one can be assigned to, must outlive parsing.
+/// Adds an option whose value is one of the choices. Any other word ends with exit code 2 and the
+/// list of the known ones. value, a T or something that one can be assigned to, must outlive
+/// parsing.
 template <class T, class Value>
 CLI::Option* add_choice(CLI::App& app, const std::string& name, Value& value,
                         const Choices<T>& choices, const std::string& help) {
@@ -43,7 +44,7 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, Value& value,
     return app.add_option_function<std::string>(name, read, help);
 }
 
-/// The same with the names that option_names.h has for the choice.
+/// Adds an option with the names that option_names.h has for the choice.
 template <class T, class Value>
 CLI::Option* add_choice(CLI::App& app, const std::string& name, Value& value,
                         const std::string& help) {

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines for a person, or for a program, that watches stderr.
+// Lines on stderr, for a person or a program that watches it.
 #pragma once
 
 #include <string>
 
 namespace petzval {
 
-/// One line on stderr: control characters, which names of files may hold, become '?'. Never throws:
-/// where stderr cannot be written there is nobody to tell.
+/// Prints one line on stderr: control characters, which names of files may hold, become '?'. Never
+/// throws: where stderr cannot be written there is nobody to tell.
 void print_error_line(std::string line) noexcept;
 
 enum class NoticeStyle { Text, Json, None };
 
-/// "petzval: TEXT", or {"notice": "TEXT"}, or nothing.
+/// Prints a notice: "petzval: TEXT", or {"notice": "TEXT"}, or nothing.
 void print_notice(NoticeStyle, const std::string& text);
 
 }  // namespace petzval

@@ -15,7 +15,7 @@ Interrupt::Interrupt(RenderMonitor& monitor) : monitor_(monitor) {
 
 Interrupt::~Interrupt() {
     thread_.request_stop();
-    pthread_kill(thread_.native_handle(), SIGTERM);  // wakes it, and nobody else
+    pthread_kill(thread_.native_handle(), SIGTERM);  // wakes that thread only
     thread_.join();
     pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);
 }

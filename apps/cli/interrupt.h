@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ctrl-C and termination as a request, not a blow.
+// Ctrl-C and termination as a request to stop a render.
 #pragma once
 
 #include <csignal>
@@ -9,10 +9,10 @@
 
 namespace petzval {
 
-/// While it lives, SIGINT and SIGTERM are waited for by a thread of its own instead of being
-/// delivered, so there is no handler and no shared state. Create it before any other thread: they
-/// inherit the blocked signals. The first signal while a render is armed sets its stop flag; a
-/// second one, or one at any other time, ends the process at once with 130.
+/// Handling of SIGINT and SIGTERM: while it lives, a thread of its own waits for them instead of
+/// their being delivered, so there is no handler and no shared state. Create it before any other
+/// thread: they inherit the blocked signals. The first signal while a render is armed sets its stop
+/// flag; a second one, or one at any other time, ends the process at once with 130.
 class Interrupt {
   public:
     explicit Interrupt(RenderMonitor&);

@@ -7,11 +7,11 @@
 
 namespace petzval {
 
-/// Of the name of a picture to write.
+/// Complaint about the name of a picture to write.
 [[nodiscard]] std::string complaint_about_picture_name(const std::string&);
-/// The same where it must be one for a display.
+/// Complaint about the name of a picture to write for a display: no EXR.
 [[nodiscard]] std::string complaint_about_display_name(const std::string&);
-/// Of the name of a display view.
+/// Complaint about the name of a display view.
 [[nodiscard]] std::string complaint_about_view(const std::string&);
 
 }  // namespace petzval

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Words of the command line as values. Each throws CLI::ValidationError, which ends with exit
-// code 2.
+// Values from words of the command line. Each function throws CLI::ValidationError, which ends with
+// exit code 2.
 #pragma once
 
 #include <cstdint>
@@ -15,35 +15,35 @@
 
 namespace petzval {
 
-/// "a,b,c": exactly n finite numbers.
+/// Numbers from "a,b,c": exactly n, finite.
 [[nodiscard]] std::vector<float> parse_numbers(const std::string& option, const std::string& text,
                                                size_t n);
-/// "1280x720": whole numbers from 1 to 65536.
+/// Size from "1280x720": whole numbers from 1 to 65536.
 [[nodiscard]] V2i parse_size(const std::string& option, const std::string& text);
-/// "36x24": two numbers from least to most, millimetres.
+/// Sensor size in millimetres from "36x24": two numbers from least to most.
 [[nodiscard]] V2f parse_sensor(const std::string& option, const std::string& text, double least,
                                double most);
-/// "x,y,w,h" in pixels of a frame; must lie inside it and hold a pixel.
+/// Crop from "x,y,w,h" in pixels of a frame; must lie inside it and hold a pixel.
 [[nodiscard]] Rect parse_crop(const std::string& option, const std::string& text, V2i frame);
-/// "x,y": two whole numbers.
+/// Pixel from "x,y": two whole numbers.
 [[nodiscard]] V2i parse_pixel(const std::string& option, const std::string& text);
-/// "90", "90s", "1.5m", "2h": seconds above 0.
+/// Duration from "90", "90s", "1.5m" or "2h": seconds above 0.
 [[nodiscard]] double parse_duration_s(const std::string& option, const std::string& text);
-/// "1%" or "0.01": a share above 0, 1 at most.
+/// Share from "1%" or "0.01": above 0, 1 at most.
 [[nodiscard]] double parse_share(const std::string& option, const std::string& text);
-/// "0.01" or "1/100": seconds above 0.
+/// Shutter time from "0.01" or "1/100": seconds above 0.
 [[nodiscard]] float parse_shutter_s(const std::string& option, const std::string& text);
-/// "1.5", "1.5m" (metres above 0) or "infinity"; metres.
+/// Focus distance in metres from "1.5", "1.5m" (above 0) or "infinity".
 [[nodiscard]] float parse_focus_distance_m(const std::string& option, const std::string& text);
-/// The same, or "auto", or "x,y" (a pixel of the frame).
+/// Focus from a focus distance, "auto", or "x,y" (a pixel of the frame).
 [[nodiscard]] Focus parse_focus(const std::string& option, const std::string& text, V2i frame);
-/// "380:730:10": edges of equal bins in nm, inside the wavelengths that paths carry.
+/// Bins from "380:730:10": edges of equal bins in nm, inside the wavelengths that paths carry.
 [[nodiscard]] Bins parse_bins(const std::string& option, const std::string& text);
-/// "albedo,normal": names of layers.
+/// Layers from their names, "albedo,normal".
 [[nodiscard]] std::vector<Aov> parse_aovs(const std::string& option, const std::string& text);
 
-/// Checks of one number, for CLI11: what is wrong with a text, or nothing. Unlike CLI11's own they
-/// refuse what is not finite.
+/// Check of one number, for CLI11: returns what is wrong with a text, or nothing. Unlike CLI11's
+/// own it refuses what is not finite.
 using Check = std::function<std::string(const std::string&)>;
 [[nodiscard]] Check number_between(double least, double most);
 [[nodiscard]] Check whole_number_between(uint64_t least, uint64_t most);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a render shows on stderr while it runs.
+// Progress of a render on stderr.
 #pragma once
 
 #include <chrono>
@@ -14,10 +14,10 @@ namespace petzval {
 
 enum class ProgressStyle { Auto, Bar, Lines, Json, None };
 
-/// Watches a render from a thread of its own until it is destroyed.
+/// Shows the progress of a render from a thread of its own until it is destroyed.
 class Progress {
   public:
-    /// total: pixel samples of the whole job; of a job bounded by time only, none.
+    /// total: pixel samples of the whole job; absent where only time bounds it.
     Progress(ProgressStyle, const RenderMonitor&, std::optional<uint64_t> total,
              std::optional<double> time_limit_s);
     ~Progress();

@@ -23,10 +23,10 @@ class App;
 
 namespace petzval {
 
-/// Samples of a pixel that nobody reaches: what --time alone asks for.
+/// Number of samples that no render reaches: what --time alone asks for.
 inline constexpr uint32_t kMostSamples = 1u << 30;
 
-/// As given; the texts become values in resolve().
+/// Render options as given; the texts become values in resolve().
 struct RenderOptions {
     SceneRequest scene;
     SpectralOptions spectral;
@@ -45,7 +45,7 @@ struct RenderOptions {
     bool quiet = false;
 };
 
-/// What the texts of RenderOptions say that has no place elsewhere.
+/// Values from the texts of RenderOptions that have no place elsewhere.
 struct RenderFrame {
     Rect crop;
     std::vector<Aov> aovs;
@@ -55,13 +55,13 @@ struct RenderFrame {
 /// Declares the options; they write to the struct, which must outlive the parsing.
 void add_render_options(CLI::App&, RenderOptions&);
 
-/// The same for petzval plan: those that a prediction depends on.
+/// Declares the options of petzval plan: those that a prediction depends on.
 void add_plan_options(CLI::App&, RenderOptions&);
 
 /// Declares the options of a scene's light; they write to the arguments, which must outlive the
 /// parsing. The text becomes a value in resolve_background().
 void add_light_options(CLI::App&, SceneRequest&, std::string& background);
-/// Nothing for an empty text. Throws CLI::ValidationError.
+/// Sets the background from its text; an empty one changes nothing. Throws CLI::ValidationError.
 void resolve_background(const std::string& text, SceneRequest&);
 
 /// Reads the options that depend on each other. Throws CLI::ValidationError.

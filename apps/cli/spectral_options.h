@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The options of petzval render that are about wavelengths.
+// Wavelength options of petzval render.
 #pragma once
 
 #include <string>

@@ -20,7 +20,7 @@
 namespace petzval {
 namespace {
 
-/// As given; the texts become values in resolve().
+/// Chart options as given; the texts become values in resolve().
 struct ChartOptions {
     ChartRequest request;
     SpectralOptions spectral;

@@ -7,7 +7,7 @@ class App;
 
 namespace petzval {
 
-/// petzval lens: the optics bench.
+/// Adds petzval lens, the optics bench.
 void add_lens_commands(CLI::App&);
 
 }  // namespace petzval

@@ -17,7 +17,7 @@
 namespace petzval {
 namespace {
 
-/// What an analysis finds: a diagram, and the numbers in it.
+/// Result of an analysis: a diagram, and the numbers in it.
 struct Found {
     Plot plot;
     std::vector<std::string> names;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the light of an analysis comes from, and where the film stands.
+// Field and focus of an analysis: where its light comes from, and where the film stands.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -31,7 +31,7 @@ struct FieldRequest {
     std::string film_shift;  ///< mm, or best
     std::string section = "y";
 };
-/// The lens, --focus, --focus-by, --film-shift, --section; and --field.
+/// Adds the options of a lens request, --focus, --focus-by, --film-shift, --section; and --field.
 void add_field_request(CLI::App&, FieldRequest&, bool with_fields = true);
 
 struct FieldSetup {
@@ -41,11 +41,12 @@ struct FieldSetup {
     double film_mm = 0;
     Section section = Section::Y;
 };
-/// Opens the lens. shares: of the half field, where --field does not say. Throws
+/// Opens the lens. shares: fields as shares of the half field, where --field does not say. Throws
 /// CLI::ValidationError, or ArgumentError where the lens has no such thing.
 [[nodiscard]] FieldSetup set_up(const FieldRequest&, const std::vector<double>& shares);
 
-/// Throws ArgumentError where no ray of that field passes the middle of the stop.
+/// Ray bundle of a field at a wavelength. Throws ArgumentError where no ray of that field passes
+/// the middle of the stop.
 [[nodiscard]] RayBundle aim(const FieldSetup&, double field_deg, double nm);
 
 }  // namespace petzval

@@ -20,7 +20,7 @@ struct DrawOptions {
     int rays = 5;
 };
 
-// From a little before the first face, or its plane, to the film or to where it ends.
+// Path of a ray from a little before the first face, or its plane, to the film or to where it ends.
 Outline path_of(const Lens& lens, const RayBundle& bundle, PupilPoint pupil_point, double film_mm,
                 double lead_mm) {
     const size_t axis = bundle.object().section == Section::X ? 0 : 1;

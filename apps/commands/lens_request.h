@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which lens a subcommand of `petzval lens` is about.
+// The lens that a subcommand of `petzval lens` is about.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -15,7 +15,7 @@ struct LensRequest {
     std::string lens;                   ///< name or file
     std::vector<std::string> catalogs;  ///< files of glasses
 };
-/// The argument `lens` and --glasses.
+/// Adds the argument `lens` and --glasses.
 void add_lens_request(CLI::App&, LensRequest&);
 
 /// The lens, made ready; its file's warnings go to stderr.

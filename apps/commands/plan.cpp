@@ -22,7 +22,7 @@ struct PlanOptions {
     bool json = false;
 };
 
-// As a shell takes it for one word.
+// Word quoted for a shell, where it needs it.
 std::string quoted(const std::string& word) {
     constexpr std::string_view kPlain =
         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./:,=%+@";
@@ -32,7 +32,7 @@ std::string quoted(const std::string& word) {
     return out + "'";
 }
 
-// The command that renders by the plan: what was given, with what the plan puts in its place.
+// Command that renders by the plan: the options given, with those of the plan in their place.
 std::string command_of(const CLI::App& app, const Plan& plan) {
     const std::vector<PlanOption> options = options_of(plan);
     std::map<std::string, std::optional<std::string>> placed(options.begin(), options.end());

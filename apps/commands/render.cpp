@@ -49,7 +49,7 @@ RenderResult render_watched(const RenderOptions& o, const PathTracer<>& tracer,
     return render(tracer, camera, o.job, film, executor, monitor);
 }
 
-// What is left open is chosen, told, and kept for the metadata.
+// Render setup whose open choices are made, told, and kept for the metadata.
 RenderSetup set_up(const RenderOptions& o, double tolerance, TbbExecutor& executor,
                    const Notice& notice) {
     AutoSetup found = set_up_planned({o.scene, o.job, o.path, tolerance}, executor, notice);

@@ -18,12 +18,12 @@ PathOptions with_background(PathOptions options, const View& view) {
     return options;
 }
 
-// How many parts a side is cut into.
+// Number of cells that a side is cut into.
 int parts(double wanted, int side_px) {
     return std::clamp(static_cast<int>(std::lround(wanted)), 1, side_px);
 }
 
-// A pixel of one of the cells that a side is cut into.
+// Random pixel in one of the cells that a side is cut into.
 int within(int cell, int cells, int side_px, uint32_t random) {
     const int64_t first = int64_t{cell} * side_px / cells;
     const int64_t end = int64_t{cell + 1} * side_px / cells;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A pilot renders a few pixels of a picture through several models, all with the same random
-// numbers: what each costs, how noisy it is, and how far it is off.
+// numbers, to measure what each costs, how noisy it is, and how far it is off.
 #pragma once
 
 #include <array>
@@ -21,9 +21,9 @@ inline constexpr uint32_t kPilotReplicates = 4;
 class PilotModel {
   public:
     [[nodiscard]] const RenderSetup& setup() const { return setup_; }
-    [[nodiscard]] uint32_t samples() const { return samples_; }  ///< of each look at a pixel
-    /// What a sample costs, the same on every machine: rays that are cast, and one more for a way
-    /// through glass. After the first look.
+    [[nodiscard]] uint32_t samples() const { return samples_; }  ///< of each replicate of a pixel
+    /// Cost of a sample, the same on every machine: rays that are cast, and one more for a way
+    /// through glass. Only after look().
     [[nodiscard]] double rays_per_sample() const;
     [[nodiscard]] double cpu_s_per_sample() const {
         return cpu_s_ / static_cast<double>(stats_.samples);
@@ -36,8 +36,8 @@ class PilotModel {
     RenderSetup setup_;
     RenderJob job_;
     PathTracer<> tracer_;
-    std::vector<std::array<V3d, kPilotReplicates>> sums_;  ///< of the samples of each pixel
-    std::vector<std::vector<V3d>> variances_;              ///< of one look at each pixel, by turn
+    std::vector<std::array<V3d, kPilotReplicates>> sums_;  ///< by pixel and replicate
+    std::vector<std::vector<V3d>> variances_;              ///< of one replicate, by turn and pixel
     uint32_t samples_ = 0;
     PathStats stats_;
     double cpu_s_ = 0;
@@ -49,7 +49,8 @@ struct PilotTerm {
     double factor;
 };
 
-/// The pixels. They, and all that is found but times, follow from size and seed alone.
+/// Pixels that a pilot renders. They, and all that is measured but times, follow from size and seed
+/// alone.
 class Pilot {
   public:
     /// wanted: about so many pixels, one in each cell of an even grid.
@@ -59,14 +60,15 @@ class Pilot {
     /// Uses job.sampler, job.filter and job.replicates; ignores the rest.
     [[nodiscard]] std::unique_ptr<PilotModel> model(RenderSetup, const RenderJob&,
                                                     const PathOptions&) const;
-    /// Goes on until each look has so many samples.
+    /// Renders on until each replicate of a pixel has so many samples.
     void look(PilotModel&, uint32_t samples) const;
 
-    /// Mean over pixels and channels of the square, over b^2 + kRelativeMseEpsilon, of what the
-    /// terms add up to with endless samples; b: what `scale` shows. Not biased, so it may be
-    /// negative: only products of different looks count. All have as many samples.
+    /// Squared relative error: mean over pixels and channels of the square of what the terms add up
+    /// to with endless samples, over b^2 + kRelativeMseEpsilon; b: what `scale` shows. Unbiased, so
+    /// it may be negative: only products of different replicates count. All must have as many
+    /// samples.
     [[nodiscard]] Estimate square(const std::vector<PilotTerm>&, const PilotModel& scale) const;
-    /// The same mean of the variance of one look, as it was after each turn of look().
+    /// Relative variance of one replicate, the same mean as in square(), after each turn of look().
     [[nodiscard]] std::vector<Estimate> variances(const PilotModel&, const PilotModel& scale) const;
     [[nodiscard]] Estimate variance(const PilotModel& model, const PilotModel& scale) const {
         return variances(model, scale).back();

@@ -15,15 +15,16 @@ namespace petzval {
 namespace {
 
 constexpr int kPixels = 1024, kFewPixels = 256;
-// Of each replicate. Many samples of few pixels are better than few of many: what wavelengths and
-// edges do in a pixel evens out faster than in proportion.
+// Pilot samples of each replicate. Many samples of few pixels are better than few of many: what
+// wavelengths and edges do in a pixel evens out faster than in proportion.
 constexpr double kLeastSamples = 4, kEnoughSamples = 16;
 
 constexpr double kMostPlannedSamples = 1 << 30;
-// Costs are known no better, and the simpler one is taken.
+// Factor within which costs count as equal: they are known no better, and the simpler model is
+// taken.
 constexpr double kAsCheap = 1.05;
-/// Up to here a hero ray has less variance for its cost than split ones, in luminance and in
-/// colour: docs/measured/dispersion.md.
+/// Greatest dispersion at which a hero ray has less variance for its cost than split ones, in
+/// luminance and in colour: docs/measured/dispersion.md.
 constexpr double kMostHeroDispersion_px = 0.2;
 
 size_t cheapest(const std::vector<PlanCandidate>& all, double tolerance) {
@@ -40,7 +41,7 @@ RenderSetup view_of(const RenderSetup& first, const SceneRequest& scene, TbbExec
     return executor.inside([&] { return set_up_view(first, scene, [](const std::string&) {}); });
 }
 
-/// How a lens's dispersion is best carried where nothing is left out of it.
+/// Dispersion mode that suits a lens's dispersion best where nothing is left out of it.
 struct ByDispersion {
     double dispersion_px;
     SceneRequest scene;
@@ -63,7 +64,8 @@ ByDispersion choose_by_dispersion(const RenderSetup& first, TbbExecutor& executo
     return {px, scene};
 }
 
-// Spectra through a lens: nothing is left out of them, and the dispersion alone chooses the mode.
+// Plan for spectra through a lens: nothing is left out of them, and the dispersion alone chooses
+// the mode.
 Plan plan_with_bins(const PlanRequest& request, const RenderSetup& first, TbbExecutor& executor,
                     const Notice& notice, double most_samples) {
     const ByDispersion found = choose_by_dispersion(first, executor);
@@ -75,7 +77,7 @@ Plan plan_with_bins(const PlanRequest& request, const RenderSetup& first, TbbExe
     return plan;
 }
 
-// Another view that stands for the first: its times count, and a plan decided.
+// Setup in place of the first: the times of both count, and a plan decided.
 RenderSetup replaced(const RenderSetup& first, const SceneRequest& scene, TbbExecutor& executor) {
     RenderSetup setup = view_of(first, scene, executor);
     setup.from.load_s += first.from.load_s;
@@ -131,7 +133,8 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
             "--tolerance", "",
             fmt::format("would take {:.2g} samples of each pixel; give a larger one", samples));
     plan.samples = static_cast<uint64_t>(samples);
-    // Their standard errors come from as many replicates, each with the same share of the samples.
+    // Standard errors of spectra come from as many replicates, each with the same share of the
+    // samples.
     if (request.scene.spectral.bins)
         plan.samples = (plan.samples + kReplicates - 1) / kReplicates * kReplicates;
     plan.noise = std::sqrt(chosen.variance_with(static_cast<double>(plan.samples)));
@@ -146,7 +149,7 @@ AutoSetup set_up_planned(const PlanRequest& request, TbbExecutor& executor, cons
     RenderSetup first = executor.inside([&] { return set_up_render(request.scene, notice); });
     const PlanOpen open(request.scene, first);
     AutoChoice& choice = out.choice;
-    std::optional<SceneRequest> other;  // than what was set up
+    std::optional<SceneRequest> other;  // a request other than what was set up
     if (open.dispersion_mode) {
         const ByDispersion found = choose_by_dispersion(first, executor);
         if (found.mode() == DispersionMode::Hero) other = found.scene;
@@ -170,7 +173,7 @@ AutoSetup set_up_planned(const PlanRequest& request, TbbExecutor& executor, cons
         choice.dispersion_compared = open.dispersion;
         const auto chosen = std::find_if(choice.candidates.begin(), choice.candidates.end(),
                                          [](const PlanCandidate& c) { return c.inside; });
-        // What the pilot does not clear stays as it is.
+        // A choice that the pilot does not clear stays as it is.
         if (chosen + 1 != choice.candidates.end()) {
             choice.taken = static_cast<size_t>(chosen - choice.candidates.begin());
             other = chosen->scene;

@@ -13,7 +13,7 @@
 
 namespace petzval {
 
-/// What was chosen, and every figure that led to it. plan_wording.h puts it into sentences.
+/// Choice of a plan, and every figure that led to it. plan_wording.h puts it into sentences.
 struct Plan {
     SceneRequest scene;  ///< that the choice renders
     PlanModel chosen = PlanModel::Full;
@@ -28,27 +28,27 @@ struct Plan {
     double bias = 0, noise = 0;  ///< predicted, of what was chosen with `samples`
     double first_noise = 0;      ///< with one sample
     uint64_t samples = 0;        ///< of each pixel
-    double cpu_s = 0;            ///< about what they take here
+    double cpu_s = 0;            ///< about what the samples take here
 
     [[nodiscard]] double error() const { return std::hypot(bias, noise); }
     /// The candidate of a model; nullptr where it was none.
     [[nodiscard]] const PlanCandidate* find(PlanModel) const;
 };
 
-/// Measures the scene through all models; takes up to most_samples in all, some seconds. Throws as
-/// set_up_render does.
+/// Plan of a scene, from measuring it through all models; takes up to most_samples in all, some
+/// seconds. Throws as set_up_render does.
 [[nodiscard]] Plan make_plan(const PlanRequest&, TbbExecutor&, const Notice& notice,
                              double most_samples = 4e6);
 
-/// What `auto` chose for a render, and on what grounds.
+/// Choice that `auto` made for a render, and its grounds.
 struct AutoChoice {
-    /// Absent where the dispersion mode was not open.
+    /// Dispersion mode; absent where it was not open.
     std::optional<DispersionMode> dispersion;
     double dispersion_px = 0;
     std::string dispersive_lens;
-    bool dispersion_compared = false;       ///< candidates: sharing one ray among wavelengths
+    bool dispersion_compared = false;       ///< sharing one ray is a candidate
     std::vector<PlanCandidate> candidates;  ///< empty where nothing was measured
-    /// Place among the candidates of the simpler model that was taken; absent where none was.
+    /// Index among the candidates of the simpler model that was taken; absent where none was.
     std::optional<size_t> taken;
 };
 
@@ -57,10 +57,10 @@ struct AutoSetup {
     AutoChoice choice;
 };
 
-/// set_up_render, with what the request leaves open (RGB or wavelengths, dispersion mode) chosen by
-/// a pilot of at most a quarter of a sample for each pixel of the whole frame: samples, seed and
-/// crop do not matter. Without a pilot where nothing depends on wavelength, and for frames too
-/// small for one. No camera that was asked for is replaced.
+/// Setup as set_up_render gives it, with what the request leaves open (RGB or wavelengths,
+/// dispersion mode) chosen by a pilot of at most a quarter of a sample for each pixel of the whole
+/// frame: samples, seed and crop do not matter. Without a pilot where nothing depends on
+/// wavelength, and for frames too small for one. No camera that was asked for is replaced.
 [[nodiscard]] AutoSetup set_up_planned(const PlanRequest&, TbbExecutor&, const Notice& notice);
 
 }  // namespace petzval

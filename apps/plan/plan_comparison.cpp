@@ -10,12 +10,12 @@
 namespace petzval {
 namespace {
 
-// Dispersion is amplified so far that its effect stands out of the noise, but stays within a pixel:
-// there the error grows in proportion.
+// Amplified dispersion: its effect stands out of the noise, but stays within a pixel, where the
+// error grows in proportion.
 constexpr double kAmplified_px = 0.35, kMostFactor = 64;
 constexpr uint32_t kLeastSamples = 4, kThoroughSamples = 32;
-constexpr double kSmallShare =
-    0.25;  // of the tolerance: smaller errors are not measured more finely
+// Share of the tolerance below which errors are not measured more finely.
+constexpr double kSmallShare = 0.25;
 
 }  // namespace
 
@@ -36,7 +36,7 @@ double PlanCandidate::samples_for(double tolerance) const {
 PlanOpen::PlanOpen(const SceneRequest& request, const RenderSetup& setup) {
     if (!setup.from.spectral.wavelengths) return;
     const bool disperses = !setup.from.camera.dispersive_lens.empty();
-    // Spectra are more than a picture: nothing is taken from them.
+    // Spectra are more than a picture: nothing may be left out of them.
     dispersion_mode = disperses && !setup.from.camera.asked.dispersion;
     dispersion = dispersion_mode && !request.spectral.bins;
     spectral = !asks_for_wavelengths(request.spectral) && (dispersion || !disperses);
@@ -60,7 +60,7 @@ PlanComparison::PlanComparison(const PlanRequest& request, const RenderSetup& fi
     scale_ = full_.get();
 }
 
-// Dispersion is amplified, so that its effect stands out of the noise; the error is divided by the
+// Amplifies dispersion, so that its effect stands out of the noise; the error is divided by the
 // factor afterwards.
 void PlanComparison::amplify_dispersion() {
     shared_scene_ = full_scene_;

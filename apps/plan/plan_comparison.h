@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Simpler models of a render next to the fullest one, looked at until they are told apart.
+// Simpler models of a render compared with the fullest one, until they are told apart.
 #pragma once
 
 #include <memory>
@@ -10,30 +10,31 @@
 
 namespace petzval {
 
-/// All must outlive it.
+/// Comparison of models by a pilot. What the constructor takes must outlive it.
 class PlanComparison {
   public:
-    /// The fullest model is what the setup shows with one ray for each wavelength; pixels: about
-    /// so many are looked at.
+    /// The fullest model is what the setup shows with one ray for each wavelength; pixels: about so
+    /// many are rendered.
     PlanComparison(const PlanRequest&, const RenderSetup&, const PlanOpen&, int pixels,
                    TbbExecutor&);
 
-    /// Cameras without glass, and without an iris, in place of the setup's.
+    /// Adds cameras without glass, and without an iris, in place of the setup's.
     void add_simpler_cameras();
     void add_rgb();
-    /// One ray for all wavelengths. Where dispersion is open.
+    /// Adds one ray for all wavelengths. Where dispersion is open.
     void add_shared();
-    /// A way to carry wavelengths that has an error. Where dispersion is open.
+    /// Adds a dispersion mode that has an error. Where dispersion is open.
     void add_biased(PlanModel, DispersionMode);
 
-    /// One without an error, whatever wavelengths do: only its cost and noise are measured.
+    /// Adds a dispersion mode without an error, whatever wavelengths do: only its cost and noise
+    /// are measured.
     void add_unbiased(PlanModel, DispersionMode);
 
     /// Doubles the samples until it is known which candidates are inside, or where thorough until
     /// the predictions are good figures; never beyond most_samples of all models together.
     void look(double most_samples, bool thorough);
 
-    /// As added, and last the fullest model: it has no bias.
+    /// Candidates as added, and last the fullest model: it has no bias.
     [[nodiscard]] std::vector<PlanCandidate> candidates() const;
     [[nodiscard]] double cpu_s_per_sample(size_t candidate) const;
     /// RMS lateral dispersion in pixels; 0 unless dispersion is open.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a plan is asked, what it may choose, and what it measures of each choice.
+// Values of a plan: its request, the models, and what is measured of each.
 #pragma once
 
 #include <cmath>
@@ -32,7 +32,7 @@ enum class PlanModel : uint8_t { Pinhole, Thin, Rgb, Shared, Hero, Tolerance, Sp
     return model == PlanModel::Pinhole || model == PlanModel::Thin;
 }
 
-/// What a request leaves to the plan.
+/// Choices that a request leaves to the plan.
 struct PlanOpen {
     bool spectral = false;         ///< RGB or wavelengths
     bool dispersion = false;       ///< whether wavelengths may share a ray through the lens
@@ -54,9 +54,9 @@ struct PlanCandidate {
     /// in proportion.
     std::vector<Estimate> variances{};
 
-    /// A bound that the error without noise keeps.
+    /// Upper bound of the error without noise.
     [[nodiscard]] double predicted() const { return std::sqrt(square_bias.high()); }
-    /// The same of the variance with so many samples, 1 at least.
+    /// Upper bound of the variance with so many samples, 1 at least.
     [[nodiscard]] double variance_with(double samples) const;
     /// Samples until noise and bias are inside the tolerance together; bias alone must be.
     [[nodiscard]] double samples_for(double tolerance) const;

@@ -13,7 +13,7 @@
 namespace petzval {
 namespace {
 
-// How a candidate is spoken of that was not taken.
+// Words for a candidate that was not taken.
 std::string off(const PlanCandidate& c) {
     if (c.outside)
         return fmt::format("{} would be off by {}", name_of(c.model),
@@ -30,7 +30,7 @@ std::string dispersion_text(const std::string& lens, double px) {
     return fmt::format("dispersion of {} spreads {:.2g} px", lens, px);
 }
 
-// What depends on wavelength, but for the lens where it is not the camera any more.
+// Text of what depends on wavelength, without the lens where the plan replaces it.
 std::string dependence(const Plan& plan) {
     std::vector<WavelengthReason> reasons = plan.requested.spectral.reasons;
     if (replaces_camera(plan.chosen))

@@ -12,7 +12,7 @@
 
 namespace petzval {
 
-/// "pinhole", "thin", "rgb", "shared", "hero", "tolerance", "split" or "full".
+/// Name of a model: "pinhole", "thin", "rgb", "shared", "hero", "tolerance", "split" or "full".
 [[nodiscard]] std::string name_of(PlanModel);
 
 struct PlanLine {
@@ -22,7 +22,7 @@ struct PlanLine {
 /// A line for each choice: camera, spectral, dispersion.
 [[nodiscard]] std::vector<PlanLine> lines_of(const Plan&);
 
-/// An option of petzval render with its value; left out where there is none.
+/// An option of petzval render with its value; without one the option is left out.
 using PlanOption = std::pair<std::string, std::optional<std::string>>;
 /// The options that lead to the plan, in place of those that were given.
 [[nodiscard]] std::vector<PlanOption> options_of(const Plan&);

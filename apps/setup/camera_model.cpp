@@ -35,7 +35,7 @@ const GltfCamera& find_camera(const std::string& wanted, const std::string& scen
                     known.empty() ? "the file has none, use --look-at" : "it has " + known));
 }
 
-// A file named in a scene lies beside it.
+// Path of a file that a scene names: it lies beside the scene.
 std::string beside(const std::filesystem::path& scene, const std::string& name) {
     const auto path = scene.parent_path() / name;
     const bool is_file = path.has_extension() && std::filesystem::path(name).is_relative() &&
@@ -43,7 +43,7 @@ std::string beside(const std::filesystem::path& scene, const std::string& name) 
     return is_file ? path.string() : name;
 }
 
-// What the user has not said, the file's camera may.
+// Takes from the file's camera what the user has not said.
 void take_extras(const CameraExtras& file, const std::filesystem::path& scene,
                  CameraRequest& asked) {
     if (!asked.lens && file.lens) asked.lens = beside(scene, *file.lens);
@@ -62,7 +62,7 @@ std::vector<AgfCatalog> open_catalogs(const CameraRequest& asked) {
     return catalogs;
 }
 
-// A text with or without its maker; `refuse` makes the error of why there is none.
+// Glass of a name with or without its maker; `refuse` makes the error of why there is none.
 Glass find_singlet_glass(const std::string& text, LensGlasses& glasses, const auto& refuse) {
     if (auto glass = glasses.find(text)) return *std::move(glass);
     std::vector<Glass> found = glasses.of_any_maker(text);
@@ -130,7 +130,7 @@ Optics optics_of(const CameraRequest& asked, const GltfCamera* from, float aspec
                               fit_yfov_rad(asked, from));
 }
 
-// What only a lens of a prescription can do.
+// Refuses what only a lens of a prescription can do.
 void check_no_prescription(const CameraRequest& asked, bool has_glass) {
     const auto refuse = [](const char* option) {
         throw ArgumentError(option, "",

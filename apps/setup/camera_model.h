@@ -32,12 +32,13 @@ struct CameraModel {
     Optics optics;
 
     [[nodiscard]] bool has_iris() const { return !std::holds_alternative<NoLens>(optics); }
-    /// Of a lens that sends wavelengths different ways; else nothing.
+    /// Name of the lens if it sends wavelengths apart; else empty.
     [[nodiscard]] std::string dispersive_lens() const;
 };
 
-/// scene: the file, for errors, and for paths in it. aspect: the picture's. cameras must outlive
-/// the model. Throws InputError, and ArgumentError where what is asked for does not go together.
+/// Camera model that a request needs. scene: the file, for errors, and for paths in it. aspect: the
+/// picture's. cameras must outlive the model. Throws InputError, and ArgumentError where what is
+/// asked for does not go together.
 [[nodiscard]] CameraModel choose_camera_model(const CameraRequest&,
                                               const std::filesystem::path& scene,
                                               const std::vector<GltfCamera>& cameras, float aspect);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a camera turned out to be.
+// Facts of a camera that was set up.
 #pragma once
 
 #include "apps/setup/request.h"
@@ -15,9 +15,9 @@ struct CameraReport {
     float yfov_deg = 0, focal_length_mm = 0;
     V2f sensor_mm{0.f};                    ///< as much of it as the picture uses
     float lens_radius_m = 0, focus_m = 0;  ///< 0: a pinhole
-    std::string lens;                      ///< of a lens made of glass
+    std::string lens;                      ///< name of a lens made of glass
     double film_mm = 0, stop_radius_mm = 0;
-    std::string dispersive_lens;  ///< its name, where its glass sends wavelengths different ways
+    std::string dispersive_lens;  ///< its name, where its glass sends wavelengths apart
     CameraRequest asked;          ///< the user's request, and the file's where that is silent
 
     [[nodiscard]] FocusPlane focus_plane() const {
@@ -25,7 +25,7 @@ struct CameraReport {
     }
 };
 
-/// Adds it to a picture's metadata.
+/// Adds a report to a picture's metadata.
 void describe_camera(const CameraReport&, PictureLayout&);
 
 }  // namespace petzval

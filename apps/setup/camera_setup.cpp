@@ -21,7 +21,7 @@ V3f position(const M44f& m) {
 V3f forward(const M44f& m) {
     return {-m[2][0], -m[2][1], -m[2][2]};
 }
-// Everything that the steps below look at.
+// Input of the steps below.
 struct Place {
     const CameraModel& model;
     const std::string& scene_file;
@@ -38,7 +38,8 @@ struct Place {
     }
 };
 
-// The bounding sphere just fits the smaller angle of view, seen a little from above and the right.
+// Eye and target that frame the scene: its bounding sphere just fits the smaller angle of view,
+// seen a little from above and the right.
 std::array<V3f, 2> frame_bounds(const Place& at, float yfov_rad) {
     const Box3f& bounds = at.scene.bounds;
     if (bounds.isEmpty()) return {V3f(0, 0, 1), V3f(0, 0, 0)};
@@ -52,7 +53,8 @@ std::array<V3f, 2> frame_bounds(const Place& at, float yfov_rad) {
     return {eye, centre};
 }
 
-// Where the lens stands and what it looks at. fov_option: what gives the same angle of view again.
+// Pose of the camera, also noted in the report. fov_option: what gives the same angle of view
+// again.
 M44f stand(const Place& at, float yfov_rad, const std::string& fov_option, CameraReport& report) {
     const CameraRequest& asked = at.model.asked;
     M44f to_world;
@@ -90,9 +92,9 @@ float depth_of(const Place& at, const Focus& focus, const M44f& to_world, const 
     return *depth;
 }
 
-// finder: makes a camera of narrow iris that shows what the real one will when it is focused there,
-// or far away. What a pixel shows moves with the focus, as the film goes back: it is looked at
-// again until it stays, or jumps to and fro between two things.
+// Distance in focus. finder: makes a camera of narrow iris that shows what the real one will when
+// it is focused there, or far away. What a pixel shows moves with the focus, as the film goes back:
+// the depth is measured again until it stays, or jumps to and fro between two things.
 float find_focus(const Place& at, const M44f& to_world, const Finder& finder) {
     constexpr int kRounds = 8;
     constexpr float kSettled = 1e-5f;

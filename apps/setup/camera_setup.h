@@ -16,9 +16,10 @@ struct CameraSetup {
     CameraReport report;
 };
 
-/// The scene is finished and in bvh; scene_file is its name, for errors. Whatever `notice` is told
-/// in the form of options gives the same camera when it is passed back. Throws ArgumentError for a
-/// lens that cannot do what is asked, and where there is nothing to focus on.
+/// Camera of a model in a scene, which must be finished and in bvh; scene_file is its name, for
+/// errors. Whatever `notice` is told in the form of options gives the same camera when it is passed
+/// back. Throws ArgumentError for a lens that cannot do what is asked, and where there is nothing
+/// to focus on.
 [[nodiscard]] CameraSetup set_up_camera(const CameraModel&, const std::string& scene_file, V2i size,
                                         const Scene&, const Bvh&, const Notice& notice);
 

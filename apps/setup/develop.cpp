@@ -15,12 +15,12 @@
 namespace petzval {
 namespace {
 
-/// Stands for an infinite standard error: what reads EXR may scale and subtract it without getting
-/// what is not a number.
+/// Value for an infinite standard error: what reads EXR may scale and subtract it without getting
+/// NaN.
 constexpr float kUnknownError = std::numeric_limits<float>::max();
 
-/// Samples whose spread tells a pixel's error: none where one was left out, as it is not known
-/// which replicate it was dealt to.
+/// Number of samples whose spread tells a pixel's error: 0 where one was left out, as it is not
+/// known which replicate it was dealt to.
 uint32_t dealt_samples(const Film& film, int x, int y) {
     return film.bad_count(x, y) == 0 ? film.sample_count(x, y) : 0;
 }
@@ -77,7 +77,7 @@ std::vector<std::string> channels_of(const Film& film) {
     return names;
 }
 
-/// Writes the values of one pixel in the order of channels_of; where the next pixel's go.
+/// Writes the values of one pixel in the order of channels_of; returns where the next pixel's go.
 float* develop_pixel(const Film& film, int x, int y, float* out) {
     const auto put = [&](const auto& values, int count) {
         for (int i = 0; i < count; ++i) *out++ = values[i];

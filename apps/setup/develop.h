@@ -10,10 +10,10 @@
 
 namespace petzval {
 
-/// "petzval 0.1.0"
+/// Name and version of the program, "petzval 0.1.0" say.
 [[nodiscard]] std::string program_version();
 
-/// R, G, B, A in nits of the white point; of a film with bins the channels S0 of
+/// Picture of a film: R, G, B, A in nits of the white point; with bins the channels S0 of
 /// io/image/spectral_layout.h, XYZ in nits and the standard errors of R, G and B; then the film's
 /// layers as "layer.channel". Metadata holds what the pixels follow from; no times, so that equal
 /// renders are equal files. The film must outlive the rows.

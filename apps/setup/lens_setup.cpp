@@ -29,7 +29,7 @@ FocusedLens focused_at(const LoadedLens& loaded, float focus_m, FocusBy by, doub
     return *std::move(sharp);
 }
 
-// All of a camera but its exposure.
+// Input of a lens camera: lens, iris, pose and film.
 LensCameraInput input_of(const LoadedLens& loaded, const M44f& to_world, FocusedLens sharp,
                          Iris iris) {
     LensCameraInput in{.lens = std::make_shared<const Lens>(std::move(sharp.lens)),
@@ -42,7 +42,7 @@ LensCameraInput input_of(const LoadedLens& loaded, const M44f& to_world, Focused
     return in;
 }
 
-// What --fstop asks for, as far as the lens opens.
+// Stop radius for --fstop, as far as the lens opens.
 double stop_radius_of(const LoadedLens& loaded, std::optional<float> fstop, const Notice& notice) {
     const double filed_mm = loaded.stop_radius_mm();
     if (!fstop) return filed_mm;

@@ -27,10 +27,10 @@ struct LoadedLens {
     [[nodiscard]] bool disperses() const;
 };
 
-/// sensor_mm: absent for the largest 3:2 rectangle in the image circle, at most 36 x 24. The film
-/// is the largest rectangle of the picture's aspect in it. fit_yfov_rad: the lens is scaled until a
-/// distant scene of that height fills the film. Throws InputError, and ArgumentError for a lens
-/// that does not see so far to the side.
+/// Lens from its name or file, with its film. sensor_mm: absent for the largest 3:2 rectangle in
+/// the image circle, at most 36 x 24. The film is the largest rectangle of the picture's aspect in
+/// it. fit_yfov_rad: the lens is scaled until a distant scene of that height fills the film. Throws
+/// InputError, and ArgumentError for a lens that does not see so far to the side.
 [[nodiscard]] LoadedLens load_lens_for_film(const std::string& name_or_file,
                                             std::span<const AgfCatalog> catalogs,
                                             std::optional<V2f> sensor_mm, float aspect,
@@ -41,13 +41,13 @@ struct LensSetup {
     double film_mm, stop_radius_mm, fnumber;  ///< fnumber: of the axial ray at the rim
 };
 
-/// focus_m: along the axis from the middle of the entrance pupil. Throws InputError or
-/// ArgumentError: a focus nearer than the lens can, an iris that is none.
+/// Camera with the lens in focus. focus_m: along the axis from the middle of the entrance pupil.
+/// Throws InputError or ArgumentError: a focus nearer than the lens can, an iris that is none.
 [[nodiscard]] LensSetup set_up_lens(const CameraRequest&, const LoadedLens&, const M44f& to_world,
                                     float focus_m, int width_px, const Notice& notice);
 
-/// The same lens stopped down so far that nothing is blurred: what a photographer looks through to
-/// choose a focus. focus_m: absent for far away; it decides the scale of the picture.
+/// Camera with the lens stopped down so far that nothing is blurred, to choose a focus by. focus_m:
+/// absent for far away; it decides the scale of the picture.
 [[nodiscard]] std::unique_ptr<Camera> viewfinder(const LoadedLens&, const M44f& to_world,
                                                  std::optional<float> focus_m);
 

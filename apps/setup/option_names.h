@@ -90,7 +90,7 @@ inline constexpr std::array kOptionNames<Traversal>{
     OptionName<Traversal>{"robust", Traversal::Robust},
     OptionName<Traversal>{"fast", Traversal::Fast}};
 
-/// A distance as --focus takes it.
+/// Text of a distance as --focus takes it.
 [[nodiscard]] inline std::string focus_text(FocusDistance distance) {
     return std::isinf(distance.m) ? "infinity" : fmt::format("{}", distance.m);
 }

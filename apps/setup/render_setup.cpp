@@ -21,7 +21,7 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// Whether a scene would be black by itself. What is unlit needs no light.
+// Whether a scene would be black by itself. Unlit materials need no light.
 bool is_dark(const Scene& scene) {
     bool lit = !scene.lights.empty(), all_unlit = !scene.instances.empty();
     for (const Instance& instance : scene.instances) {

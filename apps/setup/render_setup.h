@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From what a user asks for to something that can be rendered.
+// Render setup: all that a render needs, from what a user asks for.
 #pragma once
 
 #include <memory>
@@ -30,20 +30,20 @@ struct PreparedScene {
     uint64_t hash = 0;              ///< of the file
 };
 
-/// What looks at a prepared scene.
+/// Camera and observer of a prepared scene.
 struct View {
     std::unique_ptr<Camera> camera;
     Observer observer;
     std::optional<Rgb> visible_background;  ///< shown behind the scene in place of the environment
 };
 
-/// What a render was asked for, what was chosen for it, and what that took.
+/// Origin of a render: what was asked, what was chosen for it, and the time that took.
 struct Provenance {
     SceneRequest asked;
     CameraReport camera;
     SpectralDecision spectral;
     std::string scale;  ///< what RGB 1 means
-    /// What else the pixels follow from, for the picture's metadata.
+    /// Other inputs that the pixels follow from, for the picture's metadata.
     std::vector<std::pair<std::string, std::string>> metadata;
     double load_s = 0, bvh_s = 0;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a user asks for: of the scene, of its camera, of wavelengths. Numbers and names only; what
-// becomes of them is decided by the other files of this room.
+// Requests of a user: scene, camera, wavelengths. Numbers and names only; what becomes of them is
+// decided by the other files of this room.
 #pragma once
 
 #include <array>
@@ -31,18 +31,20 @@ struct FocusPixel {
 };
 using Focus = std::variant<FocusAuto, FocusDistance, FocusPixel>;
 
-/// Normalised: an even scene is as bright as it is through a pinhole, whatever the iris.
-/// Photographic: 78 / ISO lx s on the film become 1 (saturation: ISO 12232:2019, 6.2).
+/// Exposure of the picture. Normalised: an even scene is as bright as it is through a pinhole,
+/// whatever the iris. Photographic: 78 / ISO lx s on the film become 1 (saturation: ISO 12232:2019,
+/// 6.2).
 enum class ExposureMode : uint8_t { Normalised, Photographic };
 
-/// What gives the angle of view: a lens's own focal length, or the camera's, to which the lens is
+/// Source of the angle of view: a lens's own focal length, or the camera's, to which the lens is
 /// scaled.
 enum class Fit : uint8_t { Lens, Fov };
 
 /// Vertical angles of view that a perspective camera may be asked for.
 inline constexpr float kSmallestFov_deg = 0.001f, kLargestFov_deg = 179.f;
 
-/// Everything absent means: as the file has it, else a sensible choice that is reported.
+/// Request for a camera. Everything absent means: as the file has it, else a sensible choice that
+/// is reported.
 struct CameraRequest {
     std::optional<std::string> name;            ///< of the file's cameras, or its index
     std::optional<std::array<V3f, 2>> look_at;  ///< eye and target
@@ -59,8 +61,7 @@ struct CameraRequest {
     std::optional<std::string> aperture;  ///< as parse_aperture reads it
     ApertureScale aperture_scale = ApertureScale::EqualArea;
     std::optional<IrisSampling> iris_sampling;
-    std::optional<DispersionMode>
-        dispersion;  ///< absent: Tolerance, unless a plan finds what is cheaper
+    std::optional<DispersionMode> dispersion;  ///< absent: Tolerance, or cheaper by a plan
     float dispersion_tolerance_px = 0.1f;
     Coating coating = Coating::Ideal;
     Precision precision = Precision::Float;
@@ -83,7 +84,8 @@ struct SpectralRequest {
     WhiteBalance white_balance = WhiteBalance::None;
 };
 
-/// Everything absent means: as the file has it, else a sensible choice that is reported.
+/// Request for a scene. Everything absent means: as the file has it, else a sensible choice that is
+/// reported.
 struct SceneRequest {
     std::filesystem::path scene;
     V2i size{1280, 720};

@@ -50,7 +50,8 @@ std::array<V3f, 3> rows(const Matrix3& m) {
     return {V3f(m.row[0]), V3f(m.row[1]), V3f(m.row[2])};
 }
 
-// XYZ to the film's linear sRGB: D65 is its white, or whatever the illuminant is after adaptation.
+// Matrix from XYZ to the film's linear sRGB: D65 is its white, or whatever the illuminant is after
+// adaptation.
 Matrix3 to_srgb(const SpectralRequest& request, const ObserverInput& in) {
     const auto white_of = [&](const SpectrumTable& light) {
         const V3d xyz = respond(in.xyz_bar, light);
@@ -84,7 +85,7 @@ SpectralSetup set_up_spectra(const SpectralRequest& request, const Scene& scene,
                              const std::string& dispersive_lens, const Notice& notice) {
     SpectralSetup setup;
     setup.scale = "RGB 1 = 1 nit of D65 white";
-    // Names and files are looked at in any mode: a slip of the pen must not pass for a choice.
+    // Names and files are checked in any mode: a typing error must not pass unnoticed.
     const SpectrumTable white = find_illuminant(request.illuminant);
     const auto response = find_response(request.response);
     setup.decision = decide(request, scene, dispersive_lens);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a render carries wavelengths, and how they become a picture.
+// Spectral setup: whether a render carries wavelengths, and how they become a picture.
 #pragma once
 
 #include <string>
@@ -20,7 +20,7 @@ enum class DecidedBy {
     Plan      ///< a measured prediction of the error
 };
 
-/// Whether paths carry wavelengths or RGB, and why.
+/// Choice of wavelengths or RGB for paths, and its reasons.
 struct SpectralDecision {
     bool wavelengths = false;
     DecidedBy by = DecidedBy::Request;
@@ -32,7 +32,7 @@ struct SpectralSetup {
     Observer observer;
     std::string scale;  ///< what RGB 1 means
     SpectralDecision decision;
-    /// What the pixels follow from, for the picture's metadata.
+    /// Inputs that the pixels follow from, for the picture's metadata.
     std::vector<std::pair<std::string, std::string>> metadata;
 };
 

@@ -26,7 +26,7 @@ nlohmann::ordered_json sections(const PathStats& stats, double cpu_s) {
             {"shading_s", cpu_s * (whole - camera - traversal - texture) / whole}};
 }
 
-// What the lens did to the lanes that were drawn; nothing for a camera that is none.
+// Lens losses of the lanes that were drawn; null for a camera without a lens.
 nlohmann::ordered_json lens_lanes(const LensLosses<uint64_t>& lanes) {
     if (lanes.drawn == 0) return nullptr;
     return {{"drawn", lanes.drawn},         {"passed", lanes.drawn - lanes.lost()},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a render cost, as JSON.
+// Cost of a render, as JSON.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +18,7 @@ struct RenderCost {
 /// Peak resident memory of this process, MiB.
 [[nodiscard]] double peak_memory_mib();
 
-/// Throws InputError where the file cannot be written.
+/// Writes the statistics of a render as JSON. Throws InputError where the file cannot be written.
 void write_stats(const std::filesystem::path&, const RenderSetup&, const RenderResult&,
                  const RenderCost&, const Film&);
 

@@ -19,13 +19,13 @@ namespace {
 
 constexpr float kDegree = kPi / 180.f;
 constexpr float kDefaultFov_deg = 40.f;
-/// Where the third-order formula is off by more, a warning says so.
+/// Greatest error of the third-order formula without a warning.
 constexpr double kMostFormulaError = 0.1;
 
-/// As good as infinity, and no float overflows.
+/// Farthest focus: as good as infinity, and no float overflows.
 constexpr double kFarthestFocus_m = 1e6;
 
-// What the closed forms refuse, they refuse in words for whoever chose the numbers.
+// Result of a closed form. What it refuses becomes an error in words for whoever chose the numbers.
 template <class Function>
 auto or_argument_error(const CameraModel& model, Function&& function) {
     try {
@@ -48,7 +48,7 @@ Singlet singlet_of(const SingleLens& lens, double focal_mm) {
     return Singlet::bent(lens.glass, focal_mm, lens.bending);
 }
 
-// Where the request says it, be it by the radii of a lens.
+// Focal length that the request says, be it by the radii of a lens; nothing where it does not.
 std::optional<double> asked_focal_length_mm(const CameraModel& model) {
     if (const auto* lens = std::get_if<SingleLens>(&model.optics); lens && lens->radii_mm)
         return singlet_of(*lens, 0).at(kLineD_nm).focal_mm;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From numbers to a camera without a prescription: pinhole, thin lens, single lens by formula.
+// Camera without a prescription from numbers: pinhole, thin lens, single lens by formula.
 #pragma once
 
 #include <memory>
@@ -12,17 +12,17 @@
 
 namespace petzval {
 
-/// What follows from a request before anything of the scene is known.
+/// View of a camera as far as the request decides it, before anything of the scene is known.
 struct ThinView {
     float yfov_rad, yfov_deg;  ///< both, so that an angle that is printed is the same angle
     bool angle_by_focal;  ///< the angle follows from the focal length: it is that of a far focus
     V2f sensor_mm;        ///< as much as the picture uses
     std::optional<double> focal_mm;  ///< absent: follows from the distance in focus
-    std::optional<float> focus_m;    ///< where the place of the film decides
+    std::optional<float> focus_m;    ///< where the place of the film decides it
 };
 
-/// aspect: of the picture. scene: the file, for errors. Throws ArgumentError for numbers that no
-/// lens can have together.
+/// View of a camera model. aspect: of the picture. scene: the file, for errors. Throws
+/// ArgumentError for numbers that no lens can have together.
 [[nodiscard]] ThinView thin_view(const CameraModel&, const std::string& scene, float aspect);
 
 /// The vertical angle of view of the lens in focus: one that follows from its focal length narrows
@@ -35,8 +35,8 @@ struct ThinSetup {
     double film_mm = 0;                  ///< where the film stands behind a lens in focus
 };
 
-/// pose: with the view's angle and aspect. focus_m: absent for a pinhole. Throws ArgumentError for
-/// an object within the focal length, and for an iris that is none.
+/// Camera of a model. pose: with the view's angle and aspect. focus_m: absent for a pinhole. Throws
+/// ArgumentError for an object within the focal length, and for an iris that is none.
 [[nodiscard]] ThinSetup set_up_thin(const CameraModel&, const ThinView&, ThinLens pose,
                                     std::optional<float> focus_m, int width_px,
                                     const Notice& notice);

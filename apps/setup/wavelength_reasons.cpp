@@ -24,7 +24,7 @@ class Reasons {
             }
         found_.push_back({kind, what, material});
     }
-    /// In the order of the kinds.
+    /// Reasons in the order of the kinds.
     [[nodiscard]] std::vector<WavelengthReason> take() && {
         std::sort(found_.begin(), found_.end(),
                   [](const auto& a, const auto& b) { return a.kind < b.kind; });

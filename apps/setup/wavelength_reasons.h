@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What RGB cannot show of a request and a scene, and how far the scene's glasses are known.
+// Reasons to carry wavelengths: what RGB cannot show of a request and a scene. Also how far the
+// scene's glasses are known.
 #pragma once
 
 #include <optional>
@@ -11,15 +12,15 @@
 
 namespace petzval {
 
-/// Something that depends on wavelength.
+/// Reason to carry wavelengths: something depends on them.
 struct WavelengthReason {
     enum class Kind {
         Bins,        ///< spectra are asked for
         Illuminant,  ///< another white is asked for
         Response,    ///< another sensor is asked for
         Lens,        ///< its glass disperses
-        Glass,       ///< of a material, disperses
-        Metal,       ///< measured, of a material
+        Glass,       ///< a material's glass disperses
+        Metal,       ///< a material's metal is a measured one
         Emitter,     ///< a material that shines as an illuminant
         Lamp         ///< a punctual light that does
     };
@@ -31,21 +32,21 @@ struct WavelengthReason {
     [[nodiscard]] bool operator==(const WavelengthReason&) const = default;
 };
 
-/// What the request itself asks for that RGB cannot show, whatever the scene.
+/// Reasons in the request itself, whatever the scene.
 [[nodiscard]] std::vector<WavelengthReason> explicit_requests(const SpectralRequest&);
 
 /// Whether the request itself, whatever the scene, asks for more than RGB.
 [[nodiscard]] bool asks_for_wavelengths(const SpectralRequest&);
 
-/// What of the scene depends on wavelength: the first thing of each kind, and how many more there
-/// are. Empty where RGB shows all.
+/// Reasons in the scene: the first thing of each kind that depends on wavelength, and how many more
+/// there are. Empty where RGB shows all.
 [[nodiscard]] std::vector<WavelengthReason> scene_reasons(const Scene&);
 
-/// A line for each different glass whose formula does not cover kFirst_nm to kLast_nm.
+/// Warnings, a line for each different glass whose formula does not cover kFirst_nm to kLast_nm.
 [[nodiscard]] std::vector<std::string> glass_range_warnings(const Scene&);
 
-/// What is wrong with asking for the light from first_nm to last_nm: the first glass that is not
-/// known so far. Nothing where all are.
+/// Fault in asking for the light from first_nm to last_nm: the first glass that is not known so
+/// far. Nothing where all are.
 [[nodiscard]] std::optional<std::string> glass_beyond(const Scene&, double first_nm,
                                                       double last_nm);
 

@@ -34,7 +34,7 @@ std::optional<std::vector<double>> numbers_of(std::string_view text) {
     }
 }
 
-// A count that the shapes may refuse: what is not whole becomes one they do.
+// Count as the shapes take it; -1, which they refuse, for a number that is not whole.
 int count_of(double value) {
     return value >= 0 && value <= 1e6 && value == std::floor(value) ? static_cast<int>(value) : -1;
 }

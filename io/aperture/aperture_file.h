@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shapes of an iris by name and from files.
+// Iris shapes by name and from files.
 #pragma once
 
 #include <filesystem>
@@ -9,23 +9,23 @@
 
 namespace petzval {
 
-/// circle, square, triangle, rhomboid, frame, star:N, polygon:N[,ROTATION_DEG[,ROUNDNESS]], or the
-/// name of a file: .svg, or any picture that read_picture() reads. A relative name starts at
-/// `folder`, or where the program runs. Throws ArgumentError, which lists what is possible, and
-/// InputError for a file that is not as it must be.
+/// Iris shape by name: circle, square, triangle, rhomboid, frame, star:N,
+/// polygon:N[,ROTATION_DEG[,ROUNDNESS]], or a file: .svg, or any picture that read_picture() reads.
+/// A relative file name starts at `folder`, or where the program runs. Throws ArgumentError, which
+/// lists what is possible, and InputError for a file that is not as it must be.
 [[nodiscard]] ApertureShape parse_aperture(const std::string& text,
                                            const std::filesystem::path& folder = {});
 
-/// The one shape of an SVG file: path, polygon, circle, ellipse or rect, with the transforms of its
-/// own and of its groups. Its fill counts, not its stroke; fill-rule is nonzero where not given.
-/// The middle of the viewBox lies on the optical axis; where there is none, that of the shape's
-/// bounding box. Throws InputError where there is no shape or more than one, and for what cannot
-/// be filled.
+/// Polygon of the one shape in an SVG file: path, polygon, circle, ellipse or rect, with the
+/// transforms of its own and of its groups. Its fill counts, not its stroke; fill-rule is nonzero
+/// where not given. The middle of the viewBox lies on the optical axis; where there is none, that
+/// of the shape's bounding box. Throws InputError where there is no shape or more than one, and for
+/// what cannot be filled.
 [[nodiscard]] Polygon read_svg_aperture(const std::filesystem::path&);
 
-/// A picture as a mask: the luminance (weights of Rec. 709) of the values as they are stored,
-/// without decoding, times alpha: a grey of 50 % lets 50 % through. Its middle lies on the optical
-/// axis. Throws InputError where it is black everywhere or leaves [0, 1].
+/// Transmission mask from a picture: the luminance (weights of Rec. 709) of the values as they are
+/// stored, without decoding, times alpha: a grey of 50 % lets 50 % through. Its middle lies on the
+/// optical axis. Throws InputError where it is black everywhere or leaves [0, 1].
 [[nodiscard]] Mask read_mask_aperture(const std::filesystem::path&);
 
 }  // namespace petzval

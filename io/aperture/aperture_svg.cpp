@@ -108,7 +108,8 @@ class SvgFile {
         return shape;
     }
 
-    // From the style attribute, else the attribute of that name, else the element around it.
+    // Property of a node: from the style attribute, else the attribute of that name, else the
+    // element around it.
     [[nodiscard]] static std::string property(pugi::xml_node node, std::string_view name) {
         for (; node; node = node.parent()) {
             std::string value = node.attribute(std::string(name).c_str()).value();

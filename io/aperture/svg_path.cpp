@@ -76,7 +76,7 @@ double angle_between(const V2d& a, const V2d& b) {
     return std::atan2(a.cross(b), a.dot(b));
 }
 
-// Endpoints to centre: SVG 2, appendix B.2.4 and B.2.5.
+// Adds an arc; endpoints to centre: SVG 2, appendix B.2.4 and B.2.5.
 void add_svg_arc(svg::Subpath& to, V2d from, V2d radii, double turn_rad, bool large, bool sweep,
                  V2d end) {
     if (from == end) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Outlines as SVG writes them, as cubic Bezier curves: a transform of its control points is one of
-// the curve, which it is not of an arc's radii.
+// SVG outlines as cubic Bezier curves: transforming the control points transforms the curve, which
+// is not so for an arc's radii.
 #pragma once
 
 #include <Imath/ImathMatrix.h>
@@ -28,29 +28,30 @@ using Outline = std::vector<Subpath>;
 
 }  // namespace svg
 
-/// Where text stands, for errors.
+/// Place of a text in its file, for errors.
 struct TextPlace {
     std::string file, place;
 };
 
-/// The d attribute of a path: M L H V C S Q T A Z in both cases (SVG 2, chapter 9). Throws
-/// InputError with the character at which it goes wrong.
+/// Outline from the d attribute of a path: M L H V C S Q T A Z in both cases (SVG 2, chapter 9).
+/// Throws InputError with the character at which it goes wrong.
 [[nodiscard]] svg::Outline read_svg_path(std::string_view data, const TextPlace&);
-/// The points attribute of a polygon. Throws InputError.
+/// Outline from the points attribute of a polygon. Throws InputError.
 [[nodiscard]] svg::Outline read_svg_points(std::string_view points, const TextPlace&);
-/// The transform attribute: matrix, translate, scale, rotate, skewX, skewY. Throws InputError.
+/// Matrix of a transform attribute: matrix, translate, scale, rotate, skewX, skewY. Throws
+/// InputError.
 [[nodiscard]] Imath::M33d read_svg_transform(std::string_view text, const TextPlace&);
 /// Numbers that commas and spaces separate. Throws InputError unless there are exactly n.
 [[nodiscard]] std::vector<double> read_svg_numbers(std::string_view text, size_t n,
                                                    const TextPlace&);
 
-/// Part of an ellipse whose axes are turned by turn_rad, in pieces of at most 45 degrees, each
+/// Adds part of an ellipse whose axes are turned by turn_rad, in pieces of at most 45 degrees, each
 /// within 5e-6 of the radius (Goldapp 1991, "Approximation of circular arcs by cubic polynomials").
 void add_ellipse_arc(svg::Subpath&, V2d centre, V2d radii, double turn_rad, double from_rad,
                      double by_rad);
 
-/// Contours within 1e-4 of half the outline's larger extent. Points that fall on the one before
-/// them are left out. Stops soon after kMaxPolygonVertices, for find_fault() to say so.
+/// Polygon contours within 1e-4 of half the outline's larger extent. Points that fall on the one
+/// before them are left out. Stops soon after kMaxPolygonVertices; find_fault() reports that.
 [[nodiscard]] std::vector<std::vector<V2d>> flatten(const svg::Outline&);
 
 }  // namespace petzval

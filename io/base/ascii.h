@@ -5,7 +5,7 @@
 
 namespace petzval {
 
-/// ASCII letters in lower case, whatever the locale; other bytes as they are.
+/// Text with its ASCII letters in lower case, whatever the locale; other bytes as they are.
 [[nodiscard]] inline std::string lower(std::string text) {
     for (char& c : text)
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');

@@ -7,7 +7,7 @@
 
 namespace petzval {
 
-/// Where the asset lies: relative to the running program if that is an installed one, else in the
+/// Path of an asset: relative to the running program if that is an installed one, else in the
 /// source tree it was built from. relative: "color/config.ocio". Throws InputError if in neither.
 [[nodiscard]] std::filesystem::path asset(const std::string& relative);
 

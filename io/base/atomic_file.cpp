@@ -38,14 +38,15 @@ class Descriptor {
         if (fd_ >= 0) ::close(fd_);
     }
     [[nodiscard]] int get() const { return fd_; }
-    /// Error number of the last chance of some file systems to report one; 0 for none.
+    /// Closes the file, the last chance of some file systems to report an error. Error number, 0
+    /// for none.
     [[nodiscard]] int close() { return ::close(std::exchange(fd_, -1)) == 0 ? 0 : errno; }
 
   private:
     int fd_;
 };
 
-/// Error number of writing at a place; 0 for none.
+/// Writes all bytes from an offset on. Error number, 0 for none.
 int write_at(int fd, std::span<const uint8_t> bytes, uint64_t offset) {
     while (!bytes.empty()) {
         const ssize_t written =
@@ -75,7 +76,7 @@ int copy_all(int from, int to) {
     }
 }
 
-/// Error number, 0 for none; file systems that cannot sync are no error.
+/// Syncs a file. Error number, 0 for none; a file system that cannot sync is no error.
 int sync(int fd) {
     if (::fsync(fd) == 0 || errno == EINVAL || errno == ENOTSUP) return 0;
     return errno;
@@ -97,7 +98,7 @@ class TemporaryFile {
         if (!path_.empty()) ::unlink(path_.c_str());
     }
     [[nodiscard]] Descriptor& file() { return *file_; }
-    /// Error number, 0 for none.
+    /// Gives the file a name in its folder. Error number, 0 for none.
     [[nodiscard]] int name_it() {
         if (!path_.empty()) return 0;
         const std::string unnamed = fmt::format("/proc/self/fd/{}", file_->get());
@@ -107,7 +108,7 @@ class TemporaryFile {
         path_ = path;
         return 0;
     }
-    /// Error number, 0 for none.
+    /// Moves the file to its target. Error number, 0 for none.
     [[nodiscard]] int rename_to(const fs::path& target) {
         if (::rename(path_.c_str(), target.c_str()) != 0) return errno;
         path_.clear();
@@ -121,7 +122,7 @@ class TemporaryFile {
 
 TemporaryFile::TemporaryFile(const fs::path& folder, const fs::path& for_message)
     : folder_(folder) {
-    // Without /proc it could not get a name.
+    // Without /proc an unnamed file could not get a name.
     if (::access("/proc/self/fd", X_OK) == 0) {
         const int fd = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
         if (fd >= 0) {
@@ -143,7 +144,7 @@ TemporaryFile::TemporaryFile(const fs::path& folder, const fs::path& for_message
     }
 }
 
-/// What a stream waits in, open for reading too.
+/// Temporary file for the output of a stream, open for reading too.
 Descriptor spool(const fs::path& for_message) {
     std::FILE* file = std::tmpfile();
     if (!file) throw system_refusal(for_message, errno);
@@ -153,7 +154,7 @@ Descriptor spool(const fs::path& for_message) {
     return descriptor;
 }
 
-/// What the path leads to, through any number of links up to Linux's own limit; it may not exist.
+/// Target of a path through any number of links up to Linux's own limit; it may not exist.
 fs::path follow_links(fs::path path) {
     constexpr int kMaxLinks = 40;
     std::error_code error;
@@ -164,7 +165,8 @@ fs::path follow_links(fs::path path) {
     throw system_refusal(path, ELOOP);
 }
 
-/// Pipes, terminals and devices, and standard output whatever it is: nothing to rename over.
+/// Whether a path is a stream, with nothing to rename over: pipes, terminals and devices, and
+/// standard output whatever it is.
 bool is_stream(const fs::path& path, const std::optional<struct stat>& status) {
     if (status && !S_ISREG(status->st_mode)) return true;
     const std::string name = path.string();
@@ -172,7 +174,7 @@ bool is_stream(const fs::path& path, const std::optional<struct stat>& status) {
            name.starts_with("/proc/");
 }
 
-/// Nothing where there is no such file yet; throws where there can be none.
+/// Status of a file; nothing where there is none yet. Throws where there can be none.
 std::optional<struct stat> status_of(const fs::path& path) {
     if (!path.has_filename()) throw refusal(path, "it names no file");
     struct stat status {};
@@ -200,13 +202,15 @@ Descriptor open_stream(const fs::path& path) {
     return file;
 }
 
-/// Owner (where that is allowed) and permissions of the file that is replaced.
+/// Takes over owner (where that is allowed) and permissions of the file that is replaced. Error
+/// number, 0 for none.
 int keep_rights(int fd, const struct stat& status) {
     [[maybe_unused]] const int owner = ::fchown(fd, status.st_uid, status.st_gid);
     return ::fchmod(fd, status.st_mode & 07777) == 0 ? 0 : errno;
 }
 
-/// So that the new name outlives a power cut. The file itself is safe: no reason to fail.
+/// Syncs a folder, so that a new name in it outlives a power cut. The file itself is safe: no
+/// reason to fail.
 void sync_folder(const fs::path& folder) {
     const Descriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (opened.get() >= 0) sync(opened.get());
@@ -233,8 +237,8 @@ struct AtomicFile::State {
     fs::path path;
     std::optional<struct stat> status;
     fs::path real_path;
-    std::optional<Descriptor> spooled;    ///< of a stream,
-    std::optional<TemporaryFile> beside;  ///< or of a file
+    std::optional<Descriptor> spooled;    ///< for a stream,
+    std::optional<TemporaryFile> beside;  ///< or for a file
     int error = 0;
 };
 

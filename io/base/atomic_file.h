@@ -13,7 +13,7 @@ namespace petzval {
 /// A file that takes the place of its target, with the permissions of a file that was there, once
 /// it is committed; before, the target is as it was. Where the file system can, it has no name
 /// until then, so that nothing is left behind even by a process that is killed. A link is followed.
-/// What is meant for pipes and devices (/dev/stdout, /dev/null) waits in a file in /tmp.
+/// Output for pipes and devices (/dev/stdout, /dev/null) waits in a file in /tmp.
 class AtomicFile {
   public:
     /// Throws InputError, with the system's reason, where the file could not be put in place.
@@ -34,12 +34,13 @@ class AtomicFile {
     std::unique_ptr<State> state_;
 };
 
-/// The same for bytes that are there already. Throws InputError with the system's reason.
+/// Writes a whole file through AtomicFile. Throws InputError with the system's reason.
 void write_file_atomically(const std::filesystem::path&, std::span<const uint8_t> bytes);
 void write_file_atomically(const std::filesystem::path&, std::string_view text);
 
-/// Throws what AtomicFile would throw for a missing or locked folder, a folder in the place of the
-/// file, or a file that must not be changed: to be asked before hours of work.
+/// Checks early, before hours of work, that a file can be written. Throws what AtomicFile would
+/// throw for a missing or locked folder, a folder in the place of the file, or a file that must not
+/// be changed.
 void check_writable(const std::filesystem::path&);
 
 }  // namespace petzval

@@ -15,7 +15,7 @@
 namespace petzval {
 namespace {
 
-// Some fifty times the largest of measured spectra.
+// Largest size of a file: some fifty times that of measured spectra.
 constexpr uintmax_t kMaxBytes = 4 << 20;
 
 std::string read_text(const std::filesystem::path& path) {

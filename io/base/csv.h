@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tables as text: one line of names, then rows, separated by commas. Lines that begin with # and
-// empty lines are comments.
+// CSV tables: one line of names, then rows, separated by commas. Lines that begin with # and empty
+// lines are comments.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace petzval {
 
-/// What a table's cells are: text without the spaces around it, or finite numbers.
+/// Table whose cells are text without the spaces around it, or finite numbers.
 template <class Cell>
 struct Table {
     std::string file;
@@ -25,14 +25,16 @@ struct Table {
 using CsvText = Table<std::string>;
 using CsvTable = Table<double>;
 
-/// Throws InputError with the line: a row too short or too long, no row, a file over 4 MiB, one
-/// that cannot be read or is not text.
+/// Reads a table of texts. Throws InputError with the line: a row too short or too long, no row, a
+/// file over 4 MiB, one that cannot be read or is not text.
 [[nodiscard]] CsvText read_csv_text(const std::filesystem::path&);
 
-/// As read_csv_text; and a missing or broken number, one that is not finite, no line of names.
+/// Reads a table of numbers. Throws as read_csv_text does, and for a missing or broken number, one
+/// that is not finite, or no line of names.
 [[nodiscard]] CsvTable read_csv(const std::filesystem::path&);
 
-/// Names without commas, then rows; a number that is not finite is an empty cell.
+/// CSV text of names, which must have no commas, and rows. A number that is not finite is an empty
+/// cell.
 [[nodiscard]] std::string csv_text(const std::vector<std::string>& names,
                                    const std::vector<std::vector<double>>& rows);
 

@@ -7,16 +7,16 @@
 
 namespace petzval {
 
-/// what() reads "FILE: PLACE: MESSAGE", or "FILE: MESSAGE" where the place is the whole file.
-/// place: a JSON path such as /accessors/3/byteOffset, or a line. message: what is wrong and what
-/// to do about it, one line, no full stop.
+/// Fault in what the user gave. what() reads "FILE: PLACE: MESSAGE", or "FILE: MESSAGE" where the
+/// place is the whole file. place: a JSON path such as /accessors/3/byteOffset, or a line. message:
+/// what is wrong and what to do about it, one line, no full stop.
 class InputError : public std::runtime_error {
   public:
     InputError(const std::string& file, const std::string& place, const std::string& message)
         : std::runtime_error(file + ": " + (place.empty() ? "" : place + ": ") + message) {}
 };
 
-/// The file is as it should be, but has not what was asked of it: a camera of that name, say.
+/// Request that a sound file cannot meet: a camera name that it does not have, say.
 class ArgumentError : public InputError {
   public:
     using InputError::InputError;

@@ -7,13 +7,13 @@
 
 namespace petzval {
 
-/// Three numbers of a V3f or an Rgb as options take them: as few digits as give the same when they
-/// are read again.
+/// Text "x,y,z" of a V3f or an Rgb, as options take it: with the fewest digits that read back the
+/// same.
 [[nodiscard]] std::string with_commas(const auto& v) {
     return fmt::format("{},{},{}", v[0], v[1], v[2]);
 }
 
-/// A share as a person reads it: "0.43 %", "62 %".
+/// Percentage for a person to read: "0.43 %", "62 %".
 [[nodiscard]] inline std::string percent(double share) {
     return share < 0.1 ? fmt::format("{:.2g} %", 100 * share)
                        : fmt::format("{:.0f} %", 100 * share);

@@ -43,7 +43,7 @@ class JsonCursor {
     [[nodiscard]] std::optional<JsonCursor> extension(const char* name) const;
     /// The objects in the array at key; none where it is absent.
     [[nodiscard]] std::vector<JsonCursor> objects(const char* key) const;
-    /// How many elements the array at key has; 0 where it is absent.
+    /// Number of elements in the array at key; 0 where it is absent.
     [[nodiscard]] size_t length(const char* key) const;
 
     /// A whole number from 0 to 2^53.
@@ -52,17 +52,18 @@ class JsonCursor {
     /// A number that a float can hold, within range.
     [[nodiscard]] double number(const char* key, Range = {}) const;
     [[nodiscard]] double number_or(const char* key, double otherwise, Range = {}) const;
-    /// An array of exactly `count` such numbers; empty where it is absent.
+    /// Numbers in the array at key, exactly `count`, each within range; empty where it is absent.
     [[nodiscard]] std::vector<double> numbers(const char* key, size_t count, Range = {}) const;
     [[nodiscard]] std::string text(const char* key) const;
     [[nodiscard]] std::string text_or(const char* key, const char* otherwise) const;
     void check_bool(const char* key) const;
 
-    /// The index at key, if present, of something of which there are `count`. what: "accessor" ...
+    /// Index at key, if present; must be below `count`. what: the kind of thing counted, "accessor"
+    /// say.
     [[nodiscard]] std::optional<size_t> index(const char* key, size_t count,
                                               const char* what) const;
     [[nodiscard]] size_t required_index(const char* key, size_t count, const char* what) const;
-    /// The array of different indices at key; none where it is absent.
+    /// Indices in the array at key, all different; none where it is absent.
     [[nodiscard]] std::vector<size_t> indices(const char* key, size_t count,
                                               const char* what) const;
 

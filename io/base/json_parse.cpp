@@ -53,7 +53,7 @@ class Watch {
     std::vector<std::set<std::string>> keys_;  ///< of each open object
 };
 
-/// byte: of the text, counted from 0.
+/// Line and column of a byte of the text, which is counted from 0.
 std::string place_of(std::string_view text, size_t byte) {
     const std::string_view before = text.substr(0, byte);
     const size_t line_start = before.rfind('\n') + 1;  // npos + 1 is 0
@@ -61,7 +61,7 @@ std::string place_of(std::string_view text, size_t byte) {
                        1 + before.size() - line_start);
 }
 
-/// The number that overflowed, which the parser's message quotes; its first occurrence is the one.
+/// Offset of the number that overflowed: the first occurrence of what the parser's message quotes.
 size_t find_quoted(std::string_view text, std::string_view message) {
     const size_t first = message.find('\'') + 1, last = message.rfind('\'');
     const size_t at = last > first ? text.find(message.substr(first, last - first)) : 0;

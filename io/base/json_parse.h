@@ -7,7 +7,8 @@
 
 namespace petzval {
 
-/// Containers may be nested this deep. Far more than any scene needs, far less than a stack holds.
+/// Greatest nesting depth of containers: far more than any scene needs, far less than a stack
+/// holds.
 inline constexpr int max_json_depth = 128;
 
 /// Parses UTF-8 JSON (RFC 8259) from a file that may be hostile: depth is limited before anything

@@ -6,7 +6,7 @@
 
 namespace petzval {
 
-/// Receives one line of text for the user: what was chosen for him, or what is odd.
+/// Receives one line of text for the user: a choice made without being asked, or something odd.
 using Notice = std::function<void(const std::string&)>;
 
 }  // namespace petzval

@@ -18,12 +18,12 @@ struct FileBytes {
 /// Reads a whole file. Pipes and devices are refused: they may never end.
 [[nodiscard]] FileBytes read_file(const std::filesystem::path&);
 
-/// FNV-1a, 64 bits, continued from hash (Fowler, Noll, Vo 1991; constants of RFC 9923).
+/// FNV-1a hash of 64 bits, continued from `hash` (Fowler, Noll, Vo 1991; constants of RFC 9923).
 [[nodiscard]] uint64_t fnv1a(std::span<const uint8_t> bytes, uint64_t hash = 0xCBF29CE484222325u);
 
-/// What metadata says of a file that a picture follows from: its name without folders, as equal
-/// renders in other folders are equal files, and the FNV-1a of its bytes. The path itself where
-/// there is no such file.
+/// Metadata text of a file that a picture follows from: its name without folders, as equal renders
+/// in other folders are equal files, and the FNV-1a of its bytes. The path itself where there is no
+/// such file.
 [[nodiscard]] std::string name_and_hash(const std::filesystem::path&);
 
 }  // namespace petzval

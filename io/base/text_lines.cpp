@@ -15,7 +15,7 @@ namespace {
 
 constexpr uintmax_t kMaxBytes = 16 << 20;
 
-// Halves of surrogate pairs become '?': no name that matters has any.
+// Appends a UTF-16 unit. Halves of surrogate pairs become '?': no name that matters has any.
 void append_utf8(std::string& out, unsigned unit) {
     if (unit >= 0xD800 && unit < 0xE000) unit = '?';
     if (unit < 0x80) {

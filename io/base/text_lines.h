@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of lines and words, as programs of lens design write them.
+// Text files of lines and words, as programs of lens design write them.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +18,7 @@ struct TextLine {
     [[nodiscard]] std::string place() const { return "line " + std::to_string(number); }
 };
 
-/// A whole file, at most 16 MiB. Throws InputError where it cannot be read.
+/// Text of a whole file, at most 16 MiB. Throws InputError where it cannot be read.
 [[nodiscard]] std::string text_of_file(const std::filesystem::path&);
 
 /// The lines of a text: LF or CR LF; UTF-16 with a byte order mark becomes UTF-8, and what is not
@@ -26,7 +26,7 @@ struct TextLine {
 /// where there is a zero byte: that is no text.
 [[nodiscard]] std::vector<TextLine> text_lines(std::string_view text, const std::string& file);
 
-/// What stands between spaces and tabs.
+/// Words of a line, separated by spaces and tabs.
 [[nodiscard]] std::vector<std::string> words(std::string_view line);
 
 /// A finite number and nothing else, whatever the locale; a leading + is allowed.

@@ -19,7 +19,7 @@ struct DataUri {
 
 [[nodiscard]] bool is_data_uri(std::string_view uri);
 
-/// Takes a data URI apart; nothing when it is not base64 or the base64 is broken.
+/// Content of a data URI; nothing when it is not base64 or the base64 is broken.
 [[nodiscard]] std::optional<DataUri> parse_data_uri(std::string_view uri);
 
 /// Decodes base64 (RFC 4648, section 4), with or without padding; nothing when a character is

@@ -16,8 +16,9 @@
 namespace petzval {
 namespace {
 
-// Zemax's numbers of its formulas, from 1, and how many coefficients each has; 0: not taken. Of
-// Sellmeier 2 the descriptions differ (w^2 or 1 in its last numerator), and no glass in use has it.
+// Dispersion formulas by Zemax's number, from 1, and how many coefficients each has; 0: not
+// supported. Descriptions of Sellmeier 2 differ (w^2 or 1 in its last numerator), and no glass in
+// use has it.
 struct Formula {
     const char* name;
     size_t coefficients;
@@ -95,7 +96,7 @@ AgfCatalog::AgfCatalog(std::string_view text, const std::filesystem::path& file)
             entries_.push_back({word[1], line.number, number_or_nan(word[2]), {}});
         if (entries_.empty()) continue;
         Entry& entry = entries_.back();
-        // Some catalogues break the line of coefficients; what goes on begins with a number.
+        // Some catalogues break the line of coefficients; the continuation begins with a number.
         if (in_coefficients && finite_number(word[0])) {
             append_numbers(entry.coefficients, word, 0);
             continue;

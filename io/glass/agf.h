@@ -15,18 +15,18 @@ namespace petzval {
 /// One catalogue. Its glasses are those of a maker whose name is the file's, without the ending.
 class AgfCatalog {
   public:
-    /// Throws InputError where the file cannot be read, is no text or has no glass.
+    /// Reads the file. Throws InputError where it cannot be read, is no text or has no glass.
     explicit AgfCatalog(const std::filesystem::path&);
-    /// The same from the text of a file of that name.
+    /// Reads the text of a file of that name. Throws likewise.
     AgfCatalog(std::string_view text, const std::filesystem::path& file);
 
     [[nodiscard]] const std::string& maker() const { return maker_; }  ///< lower case
     [[nodiscard]] size_t size() const { return entries_.size(); }
     [[nodiscard]] const std::string& name_of(size_t i) const { return entries_[i].name; }
 
-    /// A glass by its name, whatever the case, called "maker:NAME". Nothing where there is none.
-    /// Throws InputError with its line where its formula is one that Petzval does not have, or is
-    /// not whole, or does not give an index from 1 to 5 from 360 to 830 nm.
+    /// Glass of that name, whatever the case; the result is called "maker:NAME". Nothing where
+    /// there is none. Throws InputError with its line where its formula is one that Petzval does
+    /// not have, or is not whole, or does not give an index from 1 to 5 from 360 to 830 nm.
     [[nodiscard]] std::optional<Glass> find(const std::string& name) const;
 
   private:
@@ -34,7 +34,7 @@ class AgfCatalog {
         std::string name;
         int line = 0;
         double formula = 0;
-        std::vector<double> coefficients;  ///< NaN where there stands something else
+        std::vector<double> coefficients;  ///< NaN where the file has something else
         double first_um = 0, last_um = 0;
     };
     [[nodiscard]] Glass glass_of(const Entry&) const;

@@ -69,8 +69,8 @@ CsvText read_catalog() {
     return catalog;
 }
 
-// Letters to insert, leave out or replace. Levenshtein 1966, "Binary Codes Capable of Correcting
-// Deletions, Insertions, and Reversals".
+// Edit distance: letters to insert, leave out or replace. Levenshtein 1966, "Binary Codes Capable
+// of Correcting Deletions, Insertions, and Reversals".
 size_t edit_distance(std::string_view a, std::string_view b) {
     std::vector<size_t> row(b.size() + 1);
     std::iota(row.begin(), row.end(), 0);
@@ -103,14 +103,14 @@ std::vector<Glass> glass_catalog() {
 }
 
 std::vector<std::string> glasses_near(const std::string& text) {
-    // No name is nearly as long, and the distance takes time in proportion.
+    // Text cut to 64 letters: no name is nearly as long, and the distance takes time in proportion.
     const std::string wanted = lower(text.substr(0, 64));
     const size_t colon = wanted.find(':');
     const std::string maker = colon == wanted.npos ? "" : wanted.substr(0, colon);
     const std::string name = colon == wanted.npos ? wanted : wanted.substr(colon + 1);
 
     const CsvText catalog = read_catalog();
-    // Differences, how much longer the name is, the glass.
+    // Rank of each glass: edit distance, difference in length, name.
     std::vector<std::tuple<size_t, size_t, std::string>> ranked;
     for (const auto& row : catalog.rows) {
         const std::string candidate = lower(row[Name]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the readers of lens files find glasses.
+// Glass lookup for the readers of lens files.
 #pragma once
 
 #include <map>
@@ -15,11 +15,11 @@ namespace petzval {
 
 class LensGlasses {
   public:
-    /// catalogs: looked at before assets/glass; they must outlive this.
+    /// catalogs: searched before assets/glass; they must outlive this.
     explicit LensGlasses(std::span<const AgfCatalog> catalogs) : catalogs_(catalogs) {}
 
-    /// "maker:NAME", whatever the case. Nothing where there is none. Throws InputError for a glass
-    /// of a catalogue that cannot be used.
+    /// Glass called "maker:NAME", whatever the case. Nothing where there is none. Throws InputError
+    /// for a glass of a catalogue that cannot be used.
     [[nodiscard]] std::optional<Glass> find(const std::string& maker_and_name);
     /// The glasses of that name of all makers.
     [[nodiscard]] std::vector<Glass> of_any_maker(const std::string& name);
@@ -31,7 +31,7 @@ class LensGlasses {
     std::map<std::string, Glass> assets_;  ///< by maker:name in lower case; empty until needed
 };
 
-/// A glass of which nd and the Abbe number are known, called "ND/VD".
+/// Model glass from nd and the Abbe number, called "ND/VD".
 [[nodiscard]] Glass model_glass(double nd, double abbe);
 /// A glass without dispersion, called "N".
 [[nodiscard]] Glass constant_glass(double n);

@@ -12,7 +12,7 @@
 namespace petzval {
 namespace {
 
-/// Where elements lie in a buffer.
+/// Elements in a buffer: first address, stride in bytes, count.
 struct Elements {
     const uint8_t* first = nullptr;
     size_t stride = 0, count = 0;
@@ -80,7 +80,7 @@ class Reader {
     [[nodiscard]] size_t count() const { return accessor_.count; }
     [[nodiscard]] int width() const { return width_; }
 
-    /// Fills rows of `row` numbers, which must hold what an undefined element reads as.
+    /// Fills rows of `row` numbers each. They must hold what an undefined element reads as.
     template <class Number>
     void read(Number* to, int row) const {
         if (accessor_.bufferView >= 0) {
@@ -123,7 +123,7 @@ class Reader {
         decode_as(values, to, row, [&](size_t i) { return slots[i]; });
     }
 
-    /// None where the buffer is undefined. stride 0: tightly packed.
+    /// Elements in a bufferView; none where its buffer is undefined. stride 0: tightly packed.
     [[nodiscard]] Elements elements(int view_index, size_t offset, size_t count, size_t size,
                                     size_t stride) const {
         const auto& view = gltf_.typed.bufferViews[static_cast<size_t>(view_index)];

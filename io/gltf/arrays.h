@@ -15,13 +15,13 @@ namespace petzval {
 /// in place. That the accessor has the shape asked for was checked when the file was read.
 [[nodiscard]] std::vector<V2f> read_vec2(const GltfModel&, int accessor);
 [[nodiscard]] std::vector<V3f> read_vec3(const GltfModel&, int accessor);
-/// VEC4, or VEC3 with a fourth component of 1.
+/// Reads VEC4, or VEC3 with a fourth component of 1.
 [[nodiscard]] std::vector<V4f> read_vec4(const GltfModel&, int accessor);
-/// MAT4 of floats, in Imath's convention of row vectors.
+/// Reads MAT4 of floats, in Imath's convention of row vectors.
 [[nodiscard]] std::vector<M44d> read_matrices(const GltfModel&, int accessor);
-/// Unsigned integer SCALAR: vertex numbers.
+/// Reads SCALAR of an unsigned integer: vertex numbers.
 [[nodiscard]] std::vector<uint32_t> read_indices(const GltfModel&, int accessor);
-/// Unsigned integer VEC4: joints of a skin.
+/// Reads VEC4 of unsigned integers: joints of a skin.
 [[nodiscard]] std::vector<std::array<uint32_t, 4>> read_joints(const GltfModel&, int accessor);
 
 }  // namespace petzval

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a glTF file holds, in words.
+// Contents of a glTF file, in words.
 #pragma once
 
 #include "io/gltf/gltf.h"

@@ -12,7 +12,7 @@
 namespace petzval {
 namespace {
 
-/// Where the node's own -z axis points; nothing where a scale of zero leaves none.
+/// Direction of the node's own -z axis; nothing where a scale of zero leaves none.
 std::optional<V3f> forward(const M44d& to_world) {
     const V3d z = row(to_world, 2);
     const double length = std::sqrt(z.dot(z));
@@ -53,8 +53,8 @@ bool is_dark(const tinygltf::Light& light) {
            (!light.color.empty() && std::all_of(light.color.begin(), light.color.end(), zero));
 }
 
-/// Orthonormal axes with the file's -z and, as nearly as can be, its y. Nothing where a scale of
-/// zero leaves none.
+/// Rigid matrix: orthonormal axes with the file's -z and, as nearly as can be, its y. Nothing where
+/// a scale of zero leaves none.
 std::optional<M44f> rigid(const M44d& m) {
     if (is_singular(m)) return {};
     const V3d z = row(m, 2).normalized();
@@ -78,7 +78,8 @@ GltfCamera to_camera(const tinygltf::Camera& from, const M44f& to_world) {
     return camera;
 }
 
-/// A field of view from 0 to pi; cameras of unknown type have none.
+/// Whether a camera has a field of view, which lies from 0 to pi; cameras of unknown type have
+/// none.
 bool is_usable(const GltfCamera& camera) {
     return camera.orthographic || (camera.yfov_rad > 0 && camera.yfov_rad < kPi);
 }

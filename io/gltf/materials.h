@@ -16,7 +16,7 @@ class GltfMaterials {
   public:
     GltfMaterials(const GltfModel&, Scene&, GltfTally&);
 
-    /// Place in the scene of the file's material; of glTF's default material for -1.
+    /// Index in the scene of a material of the file; of glTF's default material for -1.
     [[nodiscard]] uint32_t use(int material);
 
   private:

@@ -11,8 +11,8 @@ namespace {
 
 using nlohmann::json;
 
-// tinygltf refuses buffers without a uri, reads files by itself, and indexes buffers by an image's
-// bufferView unchecked: it is given buffers of one byte and no images.
+// Replaces buffers by one byte each and removes images: tinygltf refuses buffers without a uri,
+// reads files by itself, and indexes buffers by an image's bufferView unchecked.
 void replace_bytes(json& patched, size_t buffer_count) {
     for (const char* unused : {"images", "animations", "extras"}) patched.erase(unused);
     const json stand_in = {{"byteLength", 1}, {"uri", "data:application/octet-stream;base64,AA=="}};
@@ -20,8 +20,9 @@ void replace_bytes(json& patched, size_t buffer_count) {
     for (size_t i = 0; i < buffer_count; ++i) patched["buffers"].push_back(stand_in);
 }
 
-// It also refuses indices without a bufferView (all zero, by the specification), which get one that
-// is told from the others by being the last, and unknown types, which nothing drawn can have.
+// Gives accessors without a bufferView one that is told from the others by being the last: tinygltf
+// refuses such indices (all zero, by the specification). Replaces unknown types, which it also
+// refuses; nothing drawn can have them.
 void replace_accessors(json& patched) {
     json& views = patched["bufferViews"];
     views.push_back({{"buffer", 0}, {"byteLength", 1}});
@@ -35,7 +36,7 @@ void replace_accessors(json& patched) {
     }
 }
 
-// And cameras of an unknown type, which are ignored.
+// Replaces cameras of an unknown type, which tinygltf also refuses; they are ignored.
 void replace_cameras(json& patched) {
     if (!patched.contains("cameras")) return;
     for (json& camera : patched["cameras"])

@@ -12,18 +12,17 @@ class Model;
 
 namespace petzval {
 
-/// What the parts of the loader read from. Core properties come from `typed`, extensions and
-/// images from `source.json`, bytes from `source`.
+/// Input of the loader's parts. Core properties come from `typed`, extensions and images from
+/// `source.json`, bytes from `source`.
 struct GltfModel {
     const GltfSource& source;
     const tinygltf::Model& typed;
     const std::string& file;  ///< name of the file, for messages
 };
 
-/// Hands the JSON to tinygltf, which sees neither buffers nor images nor the file system: both
-/// arrays of the model hold nothing of the file's. An accessor without a bufferView has -1 there,
-/// a camera of unknown type a yfov of 0.
-/// Throws InputError where tinygltf refuses the JSON.
+/// Parses the JSON with tinygltf, which sees neither buffers nor images nor the file system: both
+/// arrays of the model hold nothing of the file's. An accessor without a bufferView has -1 there, a
+/// camera of unknown type a yfov of 0. Throws InputError where tinygltf refuses the JSON.
 [[nodiscard]] tinygltf::Model parse_model(const GltfSource&);
 
 /// A JSON path: json_path("meshes", 3, "primitives", 0) is "/meshes/3/primitives/0".

@@ -6,7 +6,7 @@
 namespace petzval {
 namespace {
 
-// Rows are the images of the axes under a unit quaternion (x, y, z, w).
+// Rotation by a unit quaternion (x, y, z, w); rows are the images of the axes.
 M44d rotation_matrix(const std::vector<double>& q) {
     const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     if (norm == 0) return {};
@@ -39,7 +39,8 @@ std::vector<int> all_roots(const tinygltf::Model& model) {
     return roots;
 }
 
-// With a stack of our own: a file may nest its nodes deeper than the program's stack goes.
+// Visits nodes depth first with a stack of its own: a file may nest its nodes deeper than the
+// program's stack goes.
 template <class Visit>
 void depth_first(const tinygltf::Model& model, const std::vector<int>& roots, Visit&& visit) {
     std::vector<int> stack(roots.rbegin(), roots.rend());

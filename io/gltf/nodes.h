@@ -18,7 +18,8 @@ struct GltfNodes {
     std::vector<int> in_scene;   ///< nodes of the scene, depth first, in the file's order
 };
 
-/// Places the nodes of the default scene; without one, of the first; without any, of all roots.
+/// World matrices of all nodes, and the nodes of the default scene; without one, of the first;
+/// without any, of all roots.
 [[nodiscard]] GltfNodes flatten_nodes(const GltfModel&);
 
 /// The node's own transform, for row vectors: its matrix, or scale, rotation and translation.
@@ -27,11 +28,11 @@ struct GltfNodes {
 /// Determinant of the upper 3x3 part over the product of its rows' lengths: -1 to 1, 0 where the
 /// matrix flattens space.
 [[nodiscard]] double relative_determinant(const M44d&);
-/// Nothing has a thickness after such a matrix.
+/// Whether a matrix flattens space.
 [[nodiscard]] inline bool is_singular(const M44d& m) {
-    return !(std::fabs(relative_determinant(m)) > 1e-14);  // what rounding makes of 0
+    return !(std::fabs(relative_determinant(m)) > 1e-14);  // a 0 that is rounded
 }
-/// The image of an axis (0 to 2).
+/// Row of a matrix: the image of an axis (0 to 2), or of the origin (3).
 [[nodiscard]] inline V3d row(const M44d& m, int axis) {
     return {m[axis][0], m[axis][1], m[axis][2]};
 }

@@ -25,7 +25,8 @@ struct Placement {
     std::vector<int> nodes;
 };
 
-// Nodes whose matrix flattens space show nothing, except where a skin places the mesh instead.
+// Placements of the meshes. Nodes whose matrix flattens space show nothing, except where a skin
+// places the mesh instead.
 std::vector<Placement> group_nodes(const GltfModel& gltf, const GltfNodes& nodes,
                                    GltfTally& tally) {
     std::vector<Placement> placements;

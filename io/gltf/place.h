@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The meshes of a glTF scene, placed.
+// Meshes of a glTF scene, and their instances.
 #pragma once
 
 #include "core/scene/scene.h"

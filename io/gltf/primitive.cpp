@@ -74,7 +74,8 @@ class PrimitiveReader {
         return TriangleMode::List;
     }
 
-    // A target's tangents have no w; a target may change an attribute only where there is one.
+    // Adds an attribute of a morph target. Its tangents have no w; it may change an attribute only
+    // where there is one.
     void add_target(Mesh& mesh, const std::string& name, int accessor, float weight) const {
         if (name == "POSITION") add(mesh.positions, read_vec3(gltf_, accessor), weight);
         if (name == "NORMAL") add(mesh.normals, read_vec3(gltf_, accessor), weight);

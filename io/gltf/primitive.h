@@ -14,8 +14,8 @@ struct Primitive;
 
 namespace petzval {
 
-/// False for points, lines and primitives without positions, which are counted, and for modes that
-/// glTF does not have.
+/// Whether a primitive is drawn. Not drawn are points, lines and primitives without positions,
+/// which are counted, and modes that glTF does not have.
 [[nodiscard]] bool is_drawn(const tinygltf::Primitive&, GltfTally&);
 
 /// Reads attributes and triangles of a primitive that is drawn, and applies the morph targets with
@@ -25,7 +25,7 @@ namespace petzval {
                                   const std::vector<double>& morph_weights, bool with_tangents,
                                   GltfTally&);
 
-/// Index of the accessor, -1 where the primitive has no such attribute.
+/// Accessor index of an attribute; -1 where the primitive has none of that name.
 [[nodiscard]] int attribute(const tinygltf::Primitive&, const std::string& name);
 
 }  // namespace petzval

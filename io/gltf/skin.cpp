@@ -40,7 +40,8 @@ std::vector<Influences> read_influences(const GltfModel& gltf,
     }
 }
 
-// Weights that do not add up to 1 are scaled; a vertex without any moves with the first joint.
+// Weighted mean of the joint matrices. Weights that do not add up to 1 are scaled; a vertex without
+// any moves with the first joint.
 M44d blend(const std::vector<Influences>& sets, const std::vector<M44d>& matrices, size_t vertex) {
     M44d sum(0.0);
     double total = 0;

@@ -14,11 +14,11 @@
 namespace petzval {
 namespace {
 
-/// Keeps the square of an index, and what is computed with it, far from a float's end.
+/// Greatest index: its square, and what is computed with it, stays far from a float's end.
 constexpr double kGreatestIndex = 1e3;
 
-/// KHR_materials_dispersion: Cauchy's formula, but never an index below 1. Only dispersion above
-/// 26 gets there, so that all others keep the formula, which is faster than a table.
+/// Glass of KHR_materials_dispersion: Cauchy's formula, but never an index below 1. Only dispersion
+/// above 26 gets there, so that all others keep the formula, which is faster than a table.
 Glass khronos_glass(double nd, double dispersion) {
     Glass glass{"KHR_materials_dispersion", cauchy_through(nd, 20 / dispersion)};
     if (glass.index(kLast_nm) >= 1) return glass;
@@ -29,8 +29,8 @@ Glass khronos_glass(double nd, double dispersion) {
     return glass;
 }
 
-/// Place of the thing of this name, which is looked up and added where it is not yet there;
-/// nothing where there is none.
+/// Index of the thing of this name, which is looked up and added where it is not yet there; nothing
+/// where there is none.
 template <class Thing>
 std::optional<int32_t> place_of(std::vector<Thing>& things, const std::string& name,
                                 std::optional<Thing> look_up(const std::string&)) {

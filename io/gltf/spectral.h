@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a glTF file says about wavelengths: KHR_materials_dispersion, and Petzval's own extras,
+// Wavelength data of a glTF file: KHR_materials_dispersion, and Petzval's own extras,
 //     "extras": {"petzval": {"glass": "schott:N-SF11"}}
 // A material may name a glass or a metal, and an illuminant; a punctual light an illuminant.
 #pragma once
@@ -22,7 +22,7 @@ class GltfSpectral {
     /// Sets a material's glass, metal and illuminant, and what follows from them (index, base
     /// colour), once everything else in it is set.
     void apply(const JsonCursor& json, Material&);
-    /// Place in the scene of the illuminant that extras.petzval names; -1 where it names none.
+    /// Index in the scene of the illuminant that extras.petzval names; -1 where it names none.
     [[nodiscard]] int32_t illuminant(const JsonCursor& owner);
 
   private:
@@ -33,7 +33,7 @@ class GltfSpectral {
 
     Scene& scene_;
     GltfTally& tally_;
-    // Reading a table takes a millisecond, and materials may be many.
+    // Caches: reading a table takes a millisecond, and materials may be many.
     std::map<std::string, Glass> glasses_;  ///< by name as the file has it
     std::map<int32_t, Rgb> metal_colours_;  ///< by place in the scene
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the loader met on its way: the source of warnings and of what `petzval info` prints.
+// Counts of what the loader met: the source of warnings and of what `petzval info` prints.
 #pragma once
 
 #include <cstdint>

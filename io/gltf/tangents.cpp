@@ -90,7 +90,8 @@ class TangentBuilder {
                      : V3d(mesh_.normals[t[static_cast<size_t>(corner)]]);
     }
 
-    // Files without indices repeat vertices; their tangents must still be those of one surface.
+    // Files without indices repeat vertices; the tangents of equal ones must still be those of one
+    // surface.
     void find_equal_vertices() {
         equal_.resize(mesh_.positions.size());
         std::iota(equal_.begin(), equal_.end(), 0u);

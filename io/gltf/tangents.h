@@ -7,12 +7,12 @@
 
 namespace petzval {
 
-/// Makes normals unit. One without a length (or not finite) becomes the mean of the faces around
-/// it, weighted by area; returns how many there were.
+/// Scales normals to unit length. One without a length (or not finite) becomes the mean of the
+/// faces around it, weighted by area; returns how many there were.
 size_t repair_normals(Mesh&);
 
-/// Makes tangents unit and w +-1, in a mesh that has normals if it has tangents. One that is
-/// useless is replaced by some direction across the normal.
+/// Scales tangents to unit length, makes w +-1, in a mesh that has normals if it has tangents. One
+/// that is useless is replaced by some direction across the normal.
 void repair_tangents(Mesh&);
 
 /// Computes tangents for a normal map from the texture coordinates that it is read with: along

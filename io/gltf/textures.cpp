@@ -18,8 +18,9 @@ Wrap to_wrap(int mode) {
     return Wrap::Repeat;
 }
 
-// offset * rotation * scale of KHR_texture_transform. It turns coordinates counter-clockwise as the
-// image is seen, with v down: so its text says and so its example works out, not the GLSL in it.
+// Matrix offset * rotation * scale of KHR_texture_transform. It turns coordinates counter-clockwise
+// as the image is seen, with v down: so its text says and so its example works out, not the GLSL in
+// it.
 void set_transform(TextureSlot& slot, const JsonCursor& transform) {
     const auto offset = transform.numbers("offset", 2), scale = transform.numbers("scale", 2);
     const double angle_rad = transform.number_or("rotation", 0);

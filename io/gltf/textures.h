@@ -16,8 +16,8 @@ class GltfTextures {
   public:
     GltfTextures(const GltfModel&, std::vector<Image>& images, GltfTally&);
 
-    /// The textureInfo object at `key`, with KHR_texture_transform; a slot without a texture where
-    /// there is none. Throws InputError where the image cannot be decoded.
+    /// Texture slot from the textureInfo object at `key`, with KHR_texture_transform; a slot
+    /// without a texture where there is none. Throws InputError where the image cannot be decoded.
     [[nodiscard]] TextureSlot slot(const JsonCursor& parent, const char* key, Encoding);
 
   private:

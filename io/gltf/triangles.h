@@ -17,8 +17,8 @@ enum class TriangleMode { List, Strip, Fan };
 [[nodiscard]] std::vector<std::array<uint32_t, 3>> to_triangles(TriangleMode,
                                                                 const std::vector<uint32_t>&);
 
-/// Takes out triangles without an area (a repeated vertex, or corners on a line: their normal
-/// cannot be told in float); returns how many there were.
+/// Removes triangles without area (a repeated vertex, or corners on a line: their normal cannot be
+/// told in float); returns how many there were.
 size_t remove_zero_area(Mesh&);
 
 }  // namespace petzval

@@ -86,7 +86,7 @@ std::string why_not_the_same_wavelengths(const Picture& a, const Picture& b) {
     return "";
 }
 
-/// What is in one sorted list and not in the other.
+/// Words of one sorted list that are not in the other.
 std::string only_in(const std::vector<std::string>& a, const std::vector<std::string>& b) {
     std::vector<std::string> rest;
     std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(rest));

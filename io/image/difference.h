@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far two pictures are apart.
+// Differences between two pictures: RMSE, relative MSE, PSNR, layer by layer.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,9 @@ namespace petzval {
 /// section 5.
 inline constexpr double kRelativeMseEpsilon = 0.01;
 
-/// Of one layer: "RGB", "A", or the name before the last point in the names of its channels. Values
-/// that are not finite in either picture are counted and left out of everything else.
+/// Differences in one layer: "RGB", "A", or the name before the last point in the names of its
+/// channels. Values that are not finite in either picture are counted and left out of everything
+/// else.
 struct LayerDifference {
     std::string layer;
     uint64_t value_count = 0;  ///< compared: pixels times channels
@@ -31,13 +32,13 @@ struct LayerDifference {
     int max_x = 0, max_y = 0;  ///< of this pixel of the full frame
 };
 
-/// Why the pictures cannot be compared (size, crop, wavelengths, channels by name), where a is the
-/// former and b the latter; empty where they can.
+/// Reason why two pictures cannot be compared (size, crop, wavelengths, channels by name), where a
+/// is called the former, b the latter; empty where they can.
 [[nodiscard]] std::string why_not_comparable(const Picture& a, const Picture& b);
-/// a against the reference b, layer by layer in b's order. They must be comparable; the order of
-/// the channels may differ.
+/// Differences of a from the reference b, layer by layer in b's order. The pictures must be
+/// comparable; the order of the channels may differ.
 [[nodiscard]] std::vector<LayerDifference> compare(const Picture& a, const Picture& b);
-/// The same for two files. Throws InputError where they cannot be read or compared.
+/// Differences between two picture files. Throws InputError where they cannot be read or compared.
 [[nodiscard]] std::vector<LayerDifference> compare_files(const std::filesystem::path& a,
                                                          const std::filesystem::path& b);
 

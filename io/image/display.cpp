@@ -44,7 +44,7 @@ std::vector<std::string> views_of(const Config& loaded) {
     return views;
 }
 
-/// The config, which must have that view.
+/// Colour config, which must have that view.
 Config load_config_with(const std::string& view) {
     Config loaded = load_config();
     const std::vector<std::string> views = views_of(loaded);
@@ -55,8 +55,8 @@ Config load_config_with(const std::string& view) {
     return loaded;
 }
 
-/// What sends pixels through the view. Lossless: OpenColorIO's fast powers are off by more than a
-/// 16-bit step.
+/// Processor that applies a view to pixels. Lossless: OpenColorIO's fast powers are off by more
+/// than a 16-bit step.
 ocio::ConstCPUProcessorRcPtr view_processor(const std::string& view) {
     const Config loaded = load_config_with(view);
     try {
@@ -69,7 +69,7 @@ ocio::ConstCPUProcessorRcPtr view_processor(const std::string& view) {
     }
 }
 
-/// Where R, G and B are among the channels.
+/// Indices of R, G and B among the channels.
 std::array<int, 3> colour_channels(const PictureLayout& picture) {
     if (const int grey = channel_index(picture, "Y"); grey >= 0) return {grey, grey, grey};
     return {channel_index(picture, "R"), channel_index(picture, "G"), channel_index(picture, "B")};

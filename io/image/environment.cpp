@@ -22,7 +22,7 @@ std::array<int, 3> colour_channels(const Picture& picture, const std::filesystem
     return rgb;
 }
 
-/// What can be used of the picture's pixels; counts the negative ones it made black.
+/// Sky texels of a picture; values below 0 become 0 and are counted.
 std::vector<float> sky_texels(const Picture& picture, const std::filesystem::path& path,
                               uint64_t& negative_count) {
     const std::array<int, 3> from = colour_channels(picture, path);

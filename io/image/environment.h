@@ -10,10 +10,11 @@
 
 namespace petzval {
 
-/// Equirectangular Radiance (.hdr) or OpenEXR (.exr) picture, linear sRGB in nits or grey (Y).
-/// rotate_deg turns it about +y, counter-clockwise seen from above; strength multiplies it. Values
-/// below zero become 0, a picture not twice as wide as high is stretched; notice gets one line for
-/// each. Throws InputError for any other file and for a texel that is not finite, which it names.
+/// Sky from an equirectangular Radiance (.hdr) or OpenEXR (.exr) picture, linear sRGB in nits or
+/// grey (Y). rotate_deg turns it about +y, counter-clockwise seen from above; strength multiplies
+/// it. Values below zero become 0, a picture not twice as wide as high is stretched; notice gets
+/// one line for each. Throws InputError for any other file and for a texel that is not finite,
+/// which it names.
 [[nodiscard]] Sky load_sky(const std::filesystem::path&, float rotate_deg, float strength,
                            const Notice& notice);
 

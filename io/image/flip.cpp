@@ -49,7 +49,7 @@ V3d from_opponent(const V3d& ycc) {
     return (V3d(y + ycc.y / 500, y, y - ycc.z / 200) * white()) * to_rgb;
 }
 
-/// CIELAB (CIE 015:2018, 8.2.1), its dispersion scaled by lightness for the Hunt effect.
+/// CIELAB (CIE 015:2018, 8.2.1), its chroma scaled by lightness for the Hunt effect.
 V3d hunt_lab(const V3d& rgb) {
     constexpr double d = 6. / 29;
     const auto f = [](double t) {
@@ -60,7 +60,7 @@ V3d hunt_lab(const V3d& rgb) {
     return {lightness, 0.01 * lightness * 500 * (x - y), 0.01 * lightness * 200 * (y - z)};
 }
 
-/// HyAB, for large differences: Abasi, Amani Tehran and Fairchild 2019.
+/// HyAB colour distance, for large differences: Abasi, Amani Tehran and Fairchild 2019.
 double hyab(const V3d& a, const V3d& b) {
     return std::fabs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z);
 }
@@ -86,7 +86,7 @@ std::vector<double> kernel(int radius, const F& weight) {
     return out;
 }
 
-/// Positive weights add up to 1, negative ones to -1.
+/// Weights scaled so that the positive ones add up to 1, the negative ones to -1.
 std::vector<double> balanced(std::vector<double> weights) {
     double up = 0, down = 0;
     for (const double w : weights) (w > 0 ? up : down) += std::fabs(w);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// LDR-FLIP: how different two pictures look when one flips between them (Andersson, Nilsson,
-// Akenine-Möller, Oskarsson, Åström and Fairchild 2020, "FLIP: A Difference Evaluator for
+// LDR-FLIP: perceived difference between two pictures when one flips between them (Andersson,
+// Nilsson, Akenine-Möller, Oskarsson, Åström and Fairchild 2020, "FLIP: A Difference Evaluator for
 // Alternating Images", Proceedings of the ACM on Computer Graphics 3(2), article 15).
 #pragma once
 
@@ -10,30 +10,30 @@
 
 namespace petzval {
 
-/// Of a monitor 0.7 m wide with 3840 pixels, seen from 0.7 m: the paper's choice.
+/// Pixels per degree of a monitor 0.7 m wide with 3840 pixels, seen from 0.7 m: the paper's choice.
 inline constexpr double kFlipPixelsPerDegree = 67;
 
-/// A reference that pictures are held against. Pictures are scene-linear with channels R, G and B;
-/// they are shown as sRGB shows them: times 2^exposure_ev, cut to [0, 1]. Beyond its edge a
-/// picture goes on as it ends.
+/// FLIP of pictures against a reference. Pictures are scene-linear with channels R, G and B; they
+/// are shown as sRGB shows them: times 2^exposure_ev, cut to [0, 1]. Beyond its edge a picture
+/// repeats its last pixels.
 class Flip {
   public:
-    /// Throws std::invalid_argument where the picture has no R, G and B or no pixel, or where
-    /// pixels_per_degree is not positive.
+    /// Prepares the reference. Throws std::invalid_argument where the picture has no R, G and B or
+    /// no pixel, or where pixels_per_degree is not positive.
     explicit Flip(const Picture& reference, float exposure_ev = 0,
                   double pixels_per_degree = kFlipPixelsPerDegree);
 
     /// Error of each pixel, [0, 1], row by row. Throws std::invalid_argument where the size is not
     /// the reference's.
     [[nodiscard]] std::vector<float> map(const Picture& test) const;
-    /// Its mean.
+    /// Mean of map().
     [[nodiscard]] double mean(const Picture& test) const;
 
   private:
     struct Plane {
         std::vector<float> v;  ///< width x height
     };
-    /// A picture as the eye has it.
+    /// Perceived picture: its colours, edges and points.
     struct Seen {
         std::vector<V3f> lab;  ///< after the contrast sensitivity and the Hunt effect
         std::vector<float> edge, point;

@@ -7,10 +7,12 @@ namespace petzval {
 namespace {
 
 constexpr int kMaxSide = 32768;
-// Deflate packs at most 1032 bytes into one (RFC 1951: 258 bytes in two bits), and each may be the
-// index of four palette values. Files that claim more are broken, or made to fill the memory.
+// Most values that a byte of a file may stand for: Deflate packs at most 1032 bytes into one (RFC
+// 1951: 258 bytes in two bits), and each may be the index of four palette values. Files that claim
+// more are broken, or made to fill the memory.
 constexpr uint64_t kMaxValuesPerByte = 4 * 1032;
-// Formats that need next to no bytes for a picture of one colour are let through up to 4096 x 4096.
+// Values that a file of any size may claim, 4096 x 4096 pixels: some formats need next to no bytes
+// for a picture of one colour.
 constexpr uint64_t kHarmlessValues = uint64_t{4} * 4096 * 4096;
 
 }  // namespace

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What OpenImageIO says of a picture, in one line.
+// Messages of OpenImageIO, in one line.
 #pragma once
 
 #include <string>
 
 namespace petzval {
 
-/// text up to its first line break.
+/// Text up to its first line break.
 [[nodiscard]] inline std::string first_line(const std::string& text) {
     return text.substr(0, text.find_first_of("\r\n"));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pictures that a command writes: which format, which view, and never half of one.
+// Output pictures of a command: format by file name, display view, never half a file.
 #pragma once
 
 #include <filesystem>
@@ -12,21 +12,21 @@
 
 namespace petzval {
 
-/// How PNG and JPEG show a linear picture; EXR is always scene-linear.
+/// Display settings of PNG and JPEG; EXR is always scene-linear.
 struct DisplayOptions {
     float exposure_ev = 0.f;
     std::string view = kDefaultView;
 };
 
-/// Throws what write_output would throw for this name, folder and view: to be asked before hours of
-/// work.
+/// Checks early, before hours of work, that write_output() can do its work. Throws what it would
+/// throw for this name, folder and view.
 void check_output(const std::filesystem::path&, const DisplayOptions&);
 
 /// Writes a linear picture in the format that the path's ending names. Throws InputError.
 void write_output(const std::filesystem::path&, const PictureRows& linear, const DisplayOptions&);
 
 /// Writes an unfinished picture to NAME.partial.exr beside each output NAME.*, once for each name,
-/// and says where. Throws InputError.
+/// and returns their names. Throws InputError.
 std::vector<std::filesystem::path> write_partial(const std::vector<std::filesystem::path>& outputs,
                                                  const PictureRows& linear);
 

@@ -15,7 +15,7 @@
 
 namespace petzval {
 
-/// A picture but for its pixels.
+/// Layout of a picture: size, place, channels and metadata, without the pixels.
 struct PictureLayout {
     int width = 0, height = 0;            ///< of the pixels held (a crop)
     int x = 0, y = 0;                     ///< where they lie in the full frame
@@ -24,7 +24,7 @@ struct PictureLayout {
     std::vector<std::pair<std::string, std::variant<int, float, std::string>>> metadata;
 };
 
-/// With float pixels, row 0 at the top, channels interleaved, linear.
+/// Picture with float pixels, row 0 at the top, channels interleaved, linear.
 struct Picture : PictureLayout {
     std::vector<float> pixels;
 };
@@ -43,24 +43,26 @@ struct PictureRows {
     PictureRows(const Picture&);
 };
 
-/// Every channel as floats, nothing converted but integers to [0, 1]. Throws InputError.
+/// Reads every channel as floats; converts nothing but integers, to [0, 1]. Throws InputError.
 [[nodiscard]] Picture read_picture(const std::filesystem::path&);
 /// Decodes an image of a scene from its encoded bytes; name is for messages. Throws InputError.
 [[nodiscard]] Image decode_image(const std::vector<uint8_t>& bytes, const std::string& file,
                                  const std::string& place);
 
-/// Pictures that can be written. Only Exr holds scene-linear values, only Jpeg holds no alpha.
+/// Formats of pictures that can be written. Only Exr holds scene-linear values, only Jpeg holds no
+/// alpha.
 enum class PictureFormat : uint8_t { Exr, Png, Jpeg };
-/// By the ending of the name (.exr, .png, .jpg, .jpeg). Throws InputError for any other.
+/// Picture format by the ending of the name (.exr, .png, .jpg, .jpeg). Throws InputError for any
+/// other.
 [[nodiscard]] PictureFormat picture_format(const std::filesystem::path&);
-/// 32-bit float EXR, every channel and all metadata. Equal pictures give equal files: there is no
-/// date in them. Throws InputError where it cannot be written.
+/// Writes a 32-bit float EXR with every channel and all metadata. Equal pictures give equal files:
+/// there is no date in them. Throws InputError where it cannot be written.
 void write_exr(const std::filesystem::path&, const PictureRows&);
-/// 8-bit PNG or JPEG of display-encoded R, G, B in [0, 1] (and, in PNG, unassociated A if there is
-/// one); of a crop just the crop. Throws InputError where it cannot be written.
+/// Writes an 8-bit PNG or JPEG of display-encoded R, G, B in [0, 1] (and, in PNG, unassociated A if
+/// there is one); of a crop just the crop. Throws InputError where it cannot be written.
 void write_8bit(const std::filesystem::path&, const PictureRows& encoded);
 
-/// Place of the channel of that name among a picture's channels; -1 where there is none.
+/// Index of the channel of that name among a picture's channels; -1 where there is none.
 [[nodiscard]] int channel_index(const PictureLayout&, std::string_view name);
 
 }  // namespace petzval

@@ -35,7 +35,7 @@ constexpr std::array<std::pair<std::string_view, int>, 17> kPowers{{{"", 0},
                                                                     {"n", -9},
                                                                     {"p", -12}}};
 
-/// Cuts the end off a text that has it.
+/// Removes an ending from a text; false where it has another.
 bool cut(std::string_view& text, std::string_view end) {
     if (!text.ends_with(end)) return false;
     text.remove_suffix(end.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How spectral pictures name their channels: Fichet, Pacanowski and Wilkie 2021, "An OpenEXR Layout
-// for Spectral Images", Journal of Computer Graphics Techniques 10 (3), section 3.
+// Channel names of spectral pictures: Fichet, Pacanowski and Wilkie 2021, "An OpenEXR Layout for
+// Spectral Images", Journal of Computer Graphics Techniques 10 (3), section 3.
 #pragma once
 
 #include <array>
@@ -14,14 +14,15 @@
 
 namespace petzval {
 
-/// "S0.385,0nm": unpolarised light at a wavelength, rounded to picometres, always with a comma.
+/// Channel name of unpolarised light at a wavelength, "S0.385,0nm": rounded to picometres, always
+/// with a comma.
 [[nodiscard]] std::string spectral_channel(double nm);
 /// The wavelength in nm of a channel S0 of any writer: digits with a decimal comma, an exponent,
 /// and metres or hertz with or without a prefix, as S0.3,85e-7m or S0.780THz. Nothing for other
 /// names.
 [[nodiscard]] std::optional<double> spectral_channel_nm(std::string_view name);
 
-/// Where a wavelength is among a picture's channels.
+/// Spectral channel: its wavelength, and its index among a picture's channels.
 struct SpectralChannel {
     double nm;
     size_t index;
@@ -29,9 +30,9 @@ struct SpectralChannel {
 /// The channels S0 from short waves to long; none in a picture that is not spectral.
 [[nodiscard]] std::vector<SpectralChannel> spectral_channels(const PictureLayout&);
 
-/// Wavelength in nm and value, from short waves to long, of one pixel x, y of the full frame.
-/// Throws ArgumentError, which names the file, for a picture that is not spectral and for a pixel
-/// that it does not hold.
+/// Spectrum of one pixel x, y of the full frame: wavelength in nm and value, from short waves to
+/// long. Throws ArgumentError, which names the file, for a picture that is not spectral and for a
+/// pixel that it does not hold.
 [[nodiscard]] std::vector<std::array<double, 2>> spectrum_of_pixel(
     const Picture&, const std::filesystem::path& file, int x, int y);
 

@@ -14,8 +14,8 @@
 namespace petzval {
 namespace {
 
-/// Where OpenImageIO's writers put their bytes. None of them hears of a write that failed: on a
-/// full disk its JPEG writer would end the program, its PNG and EXR writers report success.
+/// Output of OpenImageIO's writers into an AtomicFile. None of them hears of a write that failed:
+/// on a full disk its JPEG writer would end the program, its PNG and EXR writers report success.
 class FileProxy : public OIIO::Filesystem::IOProxy {
   public:
     explicit FileProxy(AtomicFile& file) : IOProxy("", Write), file_(file) {}

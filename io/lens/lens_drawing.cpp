@@ -13,7 +13,7 @@ namespace petzval {
 namespace {
 
 struct Bounds {
-    double left = 0, right = 0, top = 0;  // as high as deep
+    double left = 0, right = 0, top = 0;  // as far below the axis as above
 
     void add(double z, double height) {
         left = std::min(left, z);
@@ -37,7 +37,7 @@ std::string escaped(const std::string& text) {
     return out;
 }
 
-// SVG's y points down. 0 - h: no -0.0000.
+// Path data of an outline; SVG's y points down. 0 - h: no -0.0000.
 std::string path_data(const Outline& points, bool closed) {
     std::string out;
     for (const auto& [z, height] : points)
@@ -56,7 +56,7 @@ Bounds bounds_of(const Lens& lens, const LensDrawing& drawing) {
     for (int i = 0; i < lens.size(); ++i)
         for (const auto& [z, height] : surface_outline(lens, i, drawing.section))
             out.add(z, height);
-    // Rays may come from far to the side: as much of them as is on the lens's own height.
+    // Rays may come from far to the side: only points within 1.5 times the lens's height count.
     const double most = 1.5 * out.top;
     for (const DrawnRay& ray : drawing.rays)
         for (const auto& [z, height] : ray.path)

@@ -19,18 +19,20 @@ struct DrawnRay {
 struct LensDrawing {
     Section section = Section::Y;
     double film_mm = 0;         ///< from the first vertex
-    double film_radius_mm = 0;  ///< half of what is drawn of it
+    double film_radius_mm = 0;  ///< half of the height that is drawn
     std::vector<DrawnRay> rays;
     std::string caption;  ///< one line below
 };
 
-/// Glass, stop, film, axis and rays, z to the right, in the same scale both ways; a millimetre is a
-/// unit of the SVG's viewBox. Every face, the stop and the film have an id: face0, stop, film.
+/// SVG of a lens's cross-section: glass, stop, film, axis and rays, z to the right, in the same
+/// scale both ways; a millimetre is a unit of the SVG's viewBox. Every face, the stop and the film
+/// have an id: face0, stop, film.
 [[nodiscard]] std::string lens_svg(const Lens&, const LensDrawing&);
 
-/// Throws InputError where the name does not end in .svg or cannot be written.
+/// Checks early that a drawing can be written. Throws InputError where the name does not end in
+/// .svg or cannot be written.
 void check_drawing(const std::filesystem::path&);
-/// Throws InputError where the file cannot be written.
+/// Writes the SVG of lens_svg(). Throws InputError where the file cannot be written.
 void write_drawing(const std::filesystem::path&, const Lens&, const LensDrawing&);
 
 }  // namespace petzval

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// By name.
+// Files of the lenses that ship, by name.
 std::vector<fs::path> shipped() {
     std::vector<fs::path> files;
     for (const auto& entry : fs::directory_iterator(asset("lenses")))
@@ -51,7 +51,7 @@ LensFile read(const fs::path& path, LensGlasses& glasses) {
     throw ArgumentError(file, "", "is not a lens by its ending, which must be .json, .dat or .zmx");
 }
 
-// The bounds that all formats share.
+// Checks the bounds that all formats share.
 void check_size(const Prescription& lens, const std::string& file) {
     std::vector<Glass> different;
     for (const LensSurface& surface : lens.surfaces)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lenses: those that ship in assets/lenses, and a user's own. docs/guide/lenses.md describes the
-// formats.
+// Lens prescriptions: those that ship in assets/lenses, and a user's own. docs/guide/lenses.md
+// describes the formats.
 #pragma once
 
 #include <span>
@@ -17,17 +17,17 @@ struct LensFile {
     std::vector<std::string> warnings;  ///< one line each: what the file does not say as needed
 };
 
-/// A lens that ships, by its name in any case, or else a file: our JSON (.json), pbrt's lens
-/// description (.dat) or Zemax's sequential lens (.zmx). catalogs: glasses that go before those of
-/// assets/glass. What it returns fits Lens: one stop, a plane in one medium; at most kMaxSurfaces
-/// surfaces and kMaxMedia - 1 glasses. Throws InputError with the line or the JSON path; for a name
-/// that is neither, an ArgumentError that lists the names there are.
+/// Reads a lens: one that ships, by its name in any case, or else a file: our JSON (.json), pbrt's
+/// lens description (.dat) or Zemax's sequential lens (.zmx). catalogs: glasses that go before
+/// those of assets/glass. The result fits Lens: one stop, a plane in one medium; at most
+/// kMaxSurfaces surfaces and kMaxMedia - 1 glasses. Throws InputError with the line or the JSON
+/// path; for a name that is neither, an ArgumentError that lists the names there are.
 [[nodiscard]] LensFile load_lens(const std::string& name_or_file,
                                  std::span<const AgfCatalog> catalogs = {});
 
 inline constexpr size_t kMaxSurfaces = 250;
 
-/// What a list of lenses shows.
+/// Facts of a lens for a list of lenses.
 struct LensSummary {
     std::string name, title, patent, grade;
     double focal_length_mm = 0, fnumber = 0, field_half_deg = 0;

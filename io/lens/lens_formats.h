@@ -11,15 +11,15 @@
 
 namespace petzval {
 
-/// Largest numbers of a lens file, so that nothing overflows: a plane is a better name for a
-/// larger radius, and no lens is wider.
+/// Largest numbers of a lens file, so that nothing overflows: a larger radius should be a plane,
+/// and no lens is wider.
 inline constexpr double kMaxRadius_mm = 1e9, kMaxThickness_mm = 1e5, kMaxSemiDiameter_mm = 1e4;
 inline constexpr double kMaxConic = 1e9;
-/// Less is an error in the unit.
+/// Smallest length of a lens file; less is an error in the unit.
 inline constexpr double kMinLength_mm = 1e-4;
 
-/// Each reads text from a file of that name and throws InputError. name: of the lens, unless the
-/// file says it.
+/// Readers of each format: they read text from a file of that name and throw InputError. name: of
+/// the lens, unless the file says it.
 [[nodiscard]] LensFile read_lens_json(std::string_view text, const std::string& file,
                                       const std::string& name, LensGlasses&);
 [[nodiscard]] LensFile read_lens_dat(std::string_view text, const std::string& file,
@@ -27,10 +27,10 @@ inline constexpr double kMinLength_mm = 1e-4;
 [[nodiscard]] LensFile read_lens_zmx(std::string_view text, const std::string& file,
                                      const std::string& name, LensGlasses&);
 
-/// What is wrong with the lengths of a surface, beginning with "has"; nothing where all is well.
+/// Fault in the lengths of a surface, a text that begins with "has"; nothing where all is well.
 [[nodiscard]] std::optional<std::string> fault_of(const LensSurface&);
 
-/// The facts of a lens in our JSON, without its surfaces.
+/// Summary of a lens in our JSON, without its surfaces.
 [[nodiscard]] LensSummary read_lens_summary(std::string_view text, const std::string& file);
 
 }  // namespace petzval

@@ -25,7 +25,7 @@ void allow(const JsonCursor& at, std::initializer_list<const char*> keys) {
                                             fmt::join(keys, ", ")));
 }
 
-// Text that is shown: in one line, as it is.
+// Text to be shown: one line without control characters, otherwise as it is.
 std::string shown(const JsonCursor& at, const char* key, const std::string& otherwise = "") {
     const std::string text = at.text_or(key, otherwise.c_str());
     if (std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < ' ' || c == 127; }))

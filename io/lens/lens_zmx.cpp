@@ -26,9 +26,10 @@ bool any_of(const std::array<const char*, N>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// Shapes of the aperture and bodies in it.
+// Keys that are refused: shapes of the aperture and bodies in it.
 constexpr std::array kRefused{"SQAP", "SQOB", "ELAP", "ELOB", "OBSC", "SPID", "UDAD", "USAP"};
-// Notes, coatings, mechanics, drawing and solves, whose results stand in the file.
+// Keys that are ignored: notes, coatings, mechanics, drawing and solves, whose results stand in the
+// file.
 constexpr std::array kHarmless{"COMM", "COAT", "HIDE", "MIRR", "SLAB", "POPS", "PZUP",
                                "PKUP", "MAZH", "MEMA", "OEMA", "FIMP", "PPAR", "VPAR",
                                "LANG", "SCOL", "BLNK", "VDSZ", "FLAP"};
@@ -228,7 +229,7 @@ Glass Reader::find_glass(const Surface& surface) {
         return model(surface, nd, abbe);
     }
     for (const std::string& maker : makers_) {
-        // What Nikon's glass works are called now.
+        // Hikari is what Nikon's glass works are called now.
         const std::string now = maker == "nikon" || maker == "nikon-hikari" ? "hikari" : maker;
         for (const std::string& each : {maker, now})
             if (auto glass = glasses_.find(fmt::format("{}:{}", each, name)))
@@ -252,7 +253,8 @@ Glass Reader::find_glass(const Surface& surface) {
                      printable(name), fmt::join(glasses_near(name), ", ")));
 }
 
-// A stop that is a surface of glass becomes a plane through its vertex, on its side in air.
+// Adds the stop. One that is a surface of glass becomes a plane through its vertex, on its side in
+// air.
 void Reader::add_stop(const Surface& from, LensSurface surface) {
     auto& surfaces = out_.lens.surfaces;
     const auto before = surfaces.empty() ? std::nullopt : surfaces.back().glass;
@@ -292,7 +294,8 @@ void Reader::add(const Surface& from) {
     if (!(std::abs(surface.thickness_mm) <= kMaxThickness_mm))
         fail(at.at, fmt::format("has a distance of more than {} mm", kMaxThickness_mm));
     if (nothing) {
-        // Where only coordinates change. Before the lens they are part of the object's distance.
+        // A surface that changes coordinates only. Before the lens it is part of the object's
+        // distance.
         if (!surfaces.empty()) surfaces.back().thickness_mm += surface.thickness_mm;
         return;
     }

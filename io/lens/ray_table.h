@@ -17,13 +17,14 @@ struct RayToTrace {
     double nm;      ///< 360 to 830
 };
 
-/// A CSV with the columns x,y,z,dx,dy,dz,nm in any order; no others. Throws InputError with the
-/// line.
+/// Reads rays from a CSV with the columns x,y,z,dx,dy,dz,nm in any order; no others. Throws
+/// InputError with the line.
 [[nodiscard]] std::vector<RayToTrace> read_rays(const std::filesystem::path&);
 
-/// Columns x,y,z,dx,dy,dz: where and how the ray leaves; film_x,film_y: where it meets the film;
-/// path: its optical path from the origin to x,y,z; status: ok, vignetted, tir or miss; surface:
-/// where it was blocked, from 0. Cells without a value are empty. Digits as many as a double needs.
+/// CSV of traced rays. Columns x,y,z,dx,dy,dz: where and how the ray leaves; film_x,film_y: where
+/// it meets the film; path: its optical path from the origin to x,y,z; status: ok, vignetted, tir
+/// or miss; surface: where it was blocked, from 0. Cells without a value are empty. Digits as many
+/// as a double needs.
 [[nodiscard]] std::string ray_table(std::span<const TracedRay>, Towards, double film_mm);
 
 }  // namespace petzval

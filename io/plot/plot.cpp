@@ -26,7 +26,7 @@ InputError refusal(const fs::path& path, const std::string& why) {
     return {path.string(), "", "cannot be plotted: " + why};
 }
 
-/// gnuplot's name for what draws that kind of file.
+/// gnuplot's terminal for that kind of file.
 const char* terminal(const fs::path& path) {
     const std::string ending = lower(path.extension().string());
     if (ending == ".svg") return "svg";
@@ -34,7 +34,7 @@ const char* terminal(const fs::path& path) {
     throw InputError(path.string(), "", "a plot's name must end in .svg or .png");
 }
 
-/// A string of gnuplot's between single quotes, where only these mean something.
+/// gnuplot string in single quotes, where only these characters mean something.
 std::string quoted(const std::string& text) {
     std::string out = "'";
     for (const char c : text) {
@@ -63,8 +63,8 @@ const char* style_name(PlotStyle style) {
 
 using Points = std::vector<std::array<double, 2>>;
 
-/// Both ends of the level around each point. gnuplot's own steps leave out the outer halves of the
-/// first and the last.
+/// Steps: both ends of the level around each point. gnuplot's own steps leave out the outer halves
+/// of the first and the last.
 Points steps(const Points& points) {
     Points ends;
     const size_t count = points.size();
@@ -138,14 +138,14 @@ std::string read_all(std::FILE* file) {
     return text;
 }
 
-/// gnuplot ends its complaints with the reason.
+/// Last line of gnuplot's complaints, which gives the reason.
 std::string last_line(std::string text) {
     text.resize(text.find_last_not_of(" \n") + 1);
     const size_t start = text.find_first_not_of(' ', text.rfind('\n') + 1);
     return start == std::string::npos ? "it says nothing" : text.substr(start);
 }
 
-/// Starts gnuplot between two files and a pipe; its process.
+/// Starts gnuplot between two files and a pipe; returns its process.
 pid_t start_gnuplot(const fs::path& path, int in, int out, int err) {
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
@@ -164,8 +164,8 @@ pid_t start_gnuplot(const fs::path& path, int in, int out, int err) {
     return process;
 }
 
-/// What gnuplot prints when it is given that script. The script and its complaints are files, so
-/// that neither side waits for the other; the plot is a pipe, as gnuplot ignores a full disk.
+/// gnuplot's output for a script. The script and its complaints are files, so that neither side
+/// waits for the other; the plot is a pipe, as gnuplot ignores a full disk.
 std::string run_gnuplot(const fs::path& path, const std::string& text) {
     const File script_file = temporary_file(path), complaints = temporary_file(path);
     if (std::fwrite(text.data(), 1, text.size(), script_file.get()) != text.size() ||

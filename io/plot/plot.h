@@ -25,10 +25,10 @@ struct PlotSeries {
     std::string label;  ///< in the key; none where it is empty
     /// Ends of an error bar in y at each point, drawn with lines and marks; none where it is empty.
     std::vector<std::array<double, 2>> y_bounds{};
-    bool grey = false;  ///< what the others are read against
+    bool grey = false;  ///< a reference for the others
 };
 
-/// Texts are shown as they are, letter by letter; UTF-8.
+/// Diagram of at least one series. Texts are shown as they are, letter by letter; UTF-8.
 struct Plot {
     std::string title, x_label, y_label;  ///< labels with units
     std::vector<PlotSeries> series;       ///< at least one
@@ -37,7 +37,8 @@ struct Plot {
                                ///< of a bar is drawn at a tenth of its point
 };
 
-/// Throws InputError where the name ends in neither .svg nor .png or cannot be written.
+/// Checks early that a plot can be written. Throws InputError where the name ends in neither .svg
+/// nor .png or cannot be written.
 void check_plot(const std::filesystem::path&);
 /// Writes an SVG or PNG of 960 x 600 pixels, as its name ends. Throws InputError where it cannot be
 /// written, gnuplot is not there, or it fails, as with series that hold nothing finite.

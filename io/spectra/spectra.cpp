@@ -34,7 +34,7 @@ fs::path shipped(const std::string& name) {
     return asset("spectra/" + lower(name) + ".csv");
 }
 
-// A name that ships wins over a file of that name; ./d65 is the file.
+// File of a name: one that ships wins over a file of that name; ./d65 is the file.
 fs::path shipped_or_file(Names names, const std::string& name_or_file) {
     if (ships(names, name_or_file)) return shipped(name_or_file);
     std::error_code none;
@@ -45,7 +45,7 @@ fs::path shipped_or_file(Names names, const std::string& name_or_file) {
     return name_or_file;
 }
 
-// columns: what follows the wavelength.
+// Reads a table of spectra. columns: those after the wavelength.
 CsvTable read_spectra(const fs::path& path, size_t columns) {
     CsvTable table = read_csv(path);
     if (table.names.size() != 1 + columns)
@@ -88,7 +88,7 @@ std::array<SpectrumTable, N> tabulate(const CsvTable& table, Extrapolate beyond,
     return curves;
 }
 
-// Of a column's straight lines between kFirst_nm and kLast_nm, in multiples of a unit.
+// Area under a column's straight lines between kFirst_nm and kLast_nm, in multiples of a unit.
 double area(const CsvTable& table, size_t column, double unit) {
     double sum = 0;
     for (size_t row = 0; row + 1 < table.rows.size(); ++row) {
@@ -102,7 +102,7 @@ double area(const CsvTable& table, size_t column, double unit) {
     return sum;
 }
 
-// Curves of any unit, brought to a greatest value of 1 before they must fit in floats.
+// Reads curves of any unit, scaled to a greatest value of 1 before they must fit in floats.
 template <size_t N>
 std::array<SpectrumTable, N> read_relative(const fs::path& path) {
     const CsvTable table = read_spectra(path, N);

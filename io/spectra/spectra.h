@@ -16,19 +16,19 @@
 
 namespace petzval {
 
-/// CIE 1931 2 degrees: xbar, ybar, zbar.
+/// Colour matching functions of CIE 1931, 2 degrees: xbar, ybar, zbar.
 [[nodiscard]] std::array<SpectrumTable, 3> standard_observer();
 /// Reflectances of linear sRGB's red, green and blue.
 [[nodiscard]] std::array<SpectrumTable, 3> rgb_basis();
-/// The reflectances that sensors are fitted to: 24 measured patches of a colour chart.
+/// Training reflectances for sensor fits: 24 measured patches of a colour chart.
 [[nodiscard]] std::vector<SpectrumTable> training_reflectances();
 
-/// "d65", "a", "f11", or a CSV file of one column, whatever it is called: relative power, at most
-/// 1, 0 beyond its ends, somewhere above 0. Throws InputError; for a name that is neither it is an
-/// ArgumentError that lists the names there are.
+/// Illuminant "d65", "a", "f11", or a CSV file of one column, whatever it is called: relative
+/// power, at most 1, 0 beyond its ends, somewhere above 0. Throws InputError; for a name that is
+/// neither it is an ArgumentError that lists the names there are.
 [[nodiscard]] SpectrumTable find_illuminant(const std::string& name_or_file);
-/// "cie1931" or a CSV file of three columns: sensitivities of R, G and B up to one factor, at most
-/// 1, 0 beyond their ends; each somewhere above 0. Throws as find_illuminant does.
+/// Sensor response "cie1931" or a CSV file of three columns: sensitivities of R, G and B up to one
+/// factor, at most 1, 0 beyond their ends; each somewhere above 0. Throws as find_illuminant does.
 [[nodiscard]] std::array<SpectrumTable, 3> find_response(const std::string& name_or_file);
 
 /// An illuminant that ships, by name, for a light of the scene. Nothing where there is none.
@@ -39,7 +39,7 @@ namespace petzval {
 /// Linear sRGB of a metal's reflectance at normal incidence under D65; may lie outside [0, 1].
 [[nodiscard]] Rgb colour_of(const Metal&);
 
-/// Names that ship, for messages: "d65, a, f11" and "ag, al, au, cu".
+/// Names of the illuminants and metals that ship, for messages: "d65, a, f11" and "ag, al, au, cu".
 [[nodiscard]] std::string illuminant_names();
 [[nodiscard]] std::string metal_names();
 

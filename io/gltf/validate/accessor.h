@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an accessor says about its data (glTF 2.0, section 3.6.2), in checked numbers.
+// Layout of an accessor's data (glTF 2.0, section 3.6.2), in checked numbers.
 #pragma once
 
 #include <cstdint>

@@ -9,7 +9,7 @@
 namespace petzval {
 namespace {
 
-/// Words are separated by blanks.
+/// Formats that an attribute may have; words are separated by blanks.
 struct Formats {
     std::string_view base;
     bool numbered;
@@ -40,7 +40,7 @@ bool lists(std::string_view words, std::string_view wanted) {
     return false;
 }
 
-/// A decimal number without leading zeros.
+/// Set number: decimal, without leading zeros.
 std::optional<uint64_t> parse_set(std::string_view digits) {
     if (digits.empty() || (digits.size() > 1 && digits[0] == '0')) return std::nullopt;
     uint64_t set = 0;

@@ -7,10 +7,10 @@
 
 namespace petzval {
 
-/// How much memory a glTF file may ask for: its accessors (zero-filled or over the same bytes again
-/// and again), vertices that thousands of primitives share, one image listed a million times. All
-/// in all 256 MiB and 16 times the bytes that the file and its side files hold: an honest file
-/// asks for about once its own size.
+/// Limit of the memory that a glTF file may ask for: its accessors (zero-filled or over the same
+/// bytes again and again), vertices that thousands of primitives share, one image listed a million
+/// times. The limit is 256 MiB plus 16 times the bytes that the file and its side files hold: an
+/// honest file asks for about once its own size.
 class GltfBudget {
   public:
     /// Counts bytes that the file and its side files really hold.

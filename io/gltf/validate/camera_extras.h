@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What extras.petzval of a camera asks for.
+// Camera settings in extras.petzval of a camera.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace petzval {
 
-/// gltf_extras.h has the keys.
+/// Settings that a camera of the file asks for; io/gltf/validate/extras.h has the keys.
 struct CameraExtras {
     std::optional<std::string> lens, aperture;
     std::optional<float> fstop, focus_m;

@@ -3,9 +3,9 @@
 // throws InputError with the JSON path. They run in the order in which they stand here: later ones
 // rely on what earlier ones found.
 //
-// What the specification forbids is refused, except where nothing that Petzval reads depends on it:
-// min and max of accessors, lengths of normals, bufferView.target, empty arrays, the meaning of
-// animations, inverse bind matrices, and the content of extensions that are not supported.
+// The checks refuse what the specification forbids, except where nothing that Petzval reads depends
+// on it: min and max of accessors, lengths of normals, bufferView.target, empty arrays, the meaning
+// of animations, inverse bind matrices, and the content of extensions that are not supported.
 #pragma once
 
 #include <string>
@@ -25,42 +25,43 @@ struct GltfCheck {
     GltfBudget& budget;
     std::vector<GltfAccessor> accessors;  ///< filled by check_accessors
 
-    /// How many things the root array `kind` ("meshes" ...) holds.
+    /// Number of things in the root array `kind` ("meshes" ...).
     [[nodiscard]] size_t count(const char* kind) const { return root.length(kind); }
     void warn(const JsonCursor& at, const std::string& message) {
         source.warnings.push_back(at.path() + ": " + message);
     }
 };
 
-/// asset.version 2.x, asset.minVersion at most 2.0.
+/// Checks that asset.version is 2.x and asset.minVersion at most 2.0.
 void check_asset(const GltfCheck&);
-/// Required extensions are supported, used ones declared and in the right place; a warning for
-/// each that is used but not supported.
+/// Checks that required extensions are supported, and used ones declared and in the right place;
+/// warns of each that is used but not supported.
 void check_extensions(GltfCheck&);
-/// The root arrays hold objects, and names are strings.
+/// Checks that the root arrays hold objects, and that names are strings.
 void check_collections(const GltfCheck&);
-/// byteLength is there. Comes before the buffers are read.
+/// Checks that every buffer has a byteLength above 0. Comes before the buffers are read.
 void check_buffers(const GltfCheck&);
-/// Every bufferView lies in its buffer. Comes before the images are read.
+/// Checks that every bufferView lies in its buffer. Comes before the images are read.
 void check_buffer_views(const GltfCheck&);
-/// Every accessor, sparse or not, lies in its bufferView; zero-filled ones are not absurdly long.
+/// Checks that every accessor, sparse or not, lies in its bufferView, and that zero-filled ones are
+/// not absurdly long.
 void check_accessors(GltfCheck&);
-/// Textures, samplers, images and their kind.
+/// Checks textures, samplers, images and their kind.
 void check_textures(GltfCheck&);
 void check_materials(GltfCheck&);
-/// Attributes, indices, morph targets: references, formats and counts.
+/// Checks attributes, indices and morph targets: references, formats and counts.
 void check_meshes(GltfCheck&);
 void check_cameras(GltfCheck&);
 void check_lights(GltfCheck&);
 void check_skins(const GltfCheck&);
-/// Nodes and scenes: the references, the transforms, and that the nodes form trees.
+/// Checks nodes and scenes: the references, the transforms, and that the nodes form trees.
 void check_nodes(GltfCheck&);
 void check_animations(const GltfCheck&);
-/// Values in the buffers: finite floats, vertex and joint indices in range.
+/// Checks values in the buffers: finite floats, vertex and joint indices in range.
 void check_data(const GltfCheck&);
 
-/// The texture coordinate sets that a material's textures name, of those that Petzval reads;
-/// one more than the greatest, 0 for none.
+/// Number of texture coordinate sets that a material's textures need, of those that Petzval reads:
+/// one more than the greatest set named, 0 for none.
 [[nodiscard]] uint64_t texcoord_sets_needed(const JsonCursor& material);
 
 }  // namespace petzval

@@ -45,8 +45,8 @@ void check_buffer_view(const GltfCheck& check, const JsonCursor& view,
     if (view.has("target")) (void)view.integer("target");
 }
 
-/// count elements of which the last needs `last` bytes, offset bytes into the view; returns their
-/// bytes. unit: the component size, of which offsets must be multiples.
+/// Bytes of `count` elements from byte `offset` of the view on; the last one needs `last` bytes.
+/// unit: the component size, of which offsets must be multiples.
 std::span<const uint8_t> place_in_view(const GltfCheck& check, const JsonCursor& user,
                                        const JsonCursor& view, uint64_t offset, uint64_t count,
                                        uint64_t stride, uint64_t last, uint64_t unit) {
@@ -145,7 +145,7 @@ class AccessorCheck {
                              size, size, unit);
     }
 
-    /// Sparse indices must increase strictly and stay below the accessor's count.
+    /// Checks that sparse indices increase strictly and stay below the accessor's count.
     static void check_order(const JsonCursor& json, const GltfSparse& sparse, uint64_t limit) {
         if (sparse.indices.empty()) return;
         GltfAccessor list;
@@ -165,7 +165,7 @@ class AccessorCheck {
         }
     }
 
-    /// Both factors come from the file; a count may reach 2^53.
+    /// Product, at most 2^56: both factors come from the file, and a count may reach 2^53.
     static uint64_t saturating(uint64_t count, size_t size) {
         return count > (uint64_t(1) << 56) / size ? uint64_t(1) << 56 : count * size;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What lies in the buffers: the values that would lead a loader astray.
+// Values in the buffers that would lead a loader astray.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace petzval {
 namespace {
 
-/// The greatest component of an accessor of unsigned integers, and where it stands first.
+/// The greatest component of an accessor of unsigned integers, and its first index.
 struct Greatest {
     uint64_t value = 0, at = 0;
 };

@@ -14,9 +14,10 @@ namespace {
 using nlohmann::json;
 using Names = std::set<std::string>;
 
-/// Where an extension's object may stand: the key that leads to the object, or to the array of
-/// objects, that has it; "" is the root, "*Texture" any key with that ending. From the extensions'
-/// own texts in Khronos' registry. A name that ends in '_' stands for all that begin so.
+/// Place where an extension's object may stand: the key that leads to the object, or to the array
+/// of objects, that has it; "" is the root, "*Texture" any key with that ending. From the
+/// extensions' own texts in Khronos' registry. A name that ends in '_' stands for all that begin
+/// so.
 struct Home {
     std::string_view extension;
     std::vector<std::string_view> keys;

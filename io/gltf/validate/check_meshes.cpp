@@ -87,7 +87,8 @@ class MeshCheck {
                                   component_name(accessor), name));
     }
 
-    /// Starts at a multiple of 4 bytes, and so does every next element; who shares says how far.
+    /// Checks that an attribute and each of its elements start at a multiple of 4 bytes, and that a
+    /// bufferView which accessors share has a byteStride.
     void check_layout(const JsonCursor& attributes, const std::string& name, size_t index) {
         const GltfAccessor& accessor = check_.accessors[index];
         if (!accessor.view) return;
@@ -103,7 +104,8 @@ class MeshCheck {
                                               first, index, *accessor.view));
     }
 
-    /// A loader may keep a copy of its vertices for each primitive that shares them with another.
+    /// Counts shared vertices against the budget: a loader may keep a copy of them for each
+    /// primitive that shares them.
     void ask_for_shared(const JsonCursor& primitive, const Attributes& found, uint64_t vertices) {
         bool shared = false;
         uint64_t size = 0;
@@ -126,7 +128,7 @@ class MeshCheck {
                                                   index, check_.accessors[index].count, vertices));
     }
 
-    /// A compressed primitive may or may not hold its vertices plainly as well.
+    /// Checks that a compressed primitive holds its vertices plainly as well.
     void check_stored(const JsonCursor& primitive, const Attributes& found) const {
         if (!primitive.extension("KHR_draco_mesh_compression")) return;
         for (const auto& [unused, index] : found)
@@ -136,7 +138,7 @@ class MeshCheck {
                     "export it without");
     }
 
-    /// Sets count from 0 without gaps; returns how many TEXCOORD_n there are.
+    /// Checks that sets count from 0 without gaps; returns how many TEXCOORD_n there are.
     static uint64_t check_sets(const JsonCursor& attributes, const Attributes& found) {
         std::map<std::string, std::set<uint64_t>> sets;
         for (const auto& [name, unused] : found)

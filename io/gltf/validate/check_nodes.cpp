@@ -9,10 +9,11 @@
 namespace petzval {
 namespace {
 
-/// So that whoever walks the tree may recurse. Deep rigs have about a hundred levels.
+/// Greatest depth of the node tree, so that code may recurse. Deep rigs have about a hundred
+/// levels.
 constexpr int max_tree_depth = 1024;
 
-/// How far a rotation's length may be off 1: eight-bit normalized quaternions are off by up to
+/// Tolerance of a rotation's length around 1: eight-bit normalized quaternions are off by up to
 /// sqrt(4) / 2 / 127 = 0.8 %.
 constexpr double unit_tolerance = 0.01;
 
@@ -82,7 +83,8 @@ class NodeCheck {
         }
     }
 
-    /// With at most one parent each, nodes that no root leads to go round in a circle.
+    /// Checks depth and that nodes form trees: with at most one parent each, nodes that no root
+    /// leads to go round in a circle.
     void check_forest() const {
         std::vector<int> depth(nodes_.size(), 0);  // 0: not reached
         std::vector<size_t> open;

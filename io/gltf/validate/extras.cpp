@@ -9,7 +9,7 @@
 namespace petzval {
 namespace {
 
-// As the command line has them: no product of two lengths leaves a float.
+// Range of a length, as on the command line: no product of two leaves a float.
 constexpr Range kLength = {1e-6, 1e6};
 
 std::optional<std::string> text_at(const JsonCursor& extras, const char* key) {

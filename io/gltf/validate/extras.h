@@ -9,17 +9,18 @@
 
 namespace petzval {
 
-/// extras.petzval of an object. Other people's extras may be of any type: they are none of ours.
+/// extras.petzval of an object. Other people's extras may be of any type: they are ignored.
 [[nodiscard]] std::optional<JsonCursor> petzval_extras(const JsonCursor& owner);
 
-/// Keys and types of a material's extras.petzval. Throws InputError with the JSON path.
+/// Checks keys and types of a material's extras.petzval. Throws InputError with the JSON path.
 void check_material_extras(const JsonCursor& material);
-/// The same for an entry of KHR_lights_punctual's lights.
+/// Checks an entry of KHR_lights_punctual's lights likewise.
 void check_light_extras(const JsonCursor& light);
 
-/// Of a camera: {"lens": "takumar-50mm-f1.2", "fstop": 2, "focus_m": 1.5, "aperture": "polygon:6",
-/// "sensor_mm": [36, 24]}, each of which may be absent. Throws InputError with the JSON path for a
-/// key that is not known and a value that is not as it should be.
+/// Camera settings in extras.petzval of a camera: {"lens": "takumar-50mm-f1.2", "fstop": 2,
+/// "focus_m": 1.5, "aperture": "polygon:6", "sensor_mm": [36, 24]}, each of which may be absent.
+/// Throws InputError with the JSON path for a key that is not known and a value that is not as it
+/// should be.
 [[nodiscard]] CameraExtras camera_extras(const JsonCursor& camera);
 
 }  // namespace petzval

@@ -17,12 +17,12 @@ namespace {
 using Bytes = std::vector<uint8_t>;
 using MimeTypes = std::vector<std::string_view>;
 
-/// Reads what a "uri" names, and keeps count of it.
+/// Reads the bytes that a "uri" names, and counts them in the budget.
 class Fetcher {
   public:
     Fetcher(GltfSource& source, GltfBudget& budget) : source_(source), budget_(budget) {}
 
-    /// mime_types: what a data URI may say that it is; empty: anything.
+    /// Bytes behind the "uri" of owner. mime_types: those that a data URI may declare; empty: any.
     Bytes fetch(const JsonCursor& owner, const MimeTypes& mime_types) {
         const std::string uri = owner.text("uri");
         return is_data_uri(uri) ? from_data(owner, uri, mime_types) : from_file(owner, uri);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Brings in the bytes that a glTF file's JSON refers to.
+// Reads the bytes that a glTF file's JSON refers to.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace petzval {
 
-/// What the JSON came in: text, or a .glb with or without a binary chunk.
+/// Container of the JSON: text, or a .glb with or without a binary chunk.
 struct GltfContainer {
     bool binary = false;
     std::optional<std::span<const uint8_t>> bin;

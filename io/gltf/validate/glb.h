@@ -11,7 +11,7 @@
 
 namespace petzval {
 
-/// Views into the container's bytes.
+/// Chunks of a .glb, views into the container's bytes.
 struct GlbChunks {
     std::string_view json;
     std::optional<std::span<const uint8_t>> bin;
@@ -20,8 +20,8 @@ struct GlbChunks {
 /// Whether the bytes begin as a .glb does.
 [[nodiscard]] bool is_glb(std::span<const uint8_t> bytes);
 
-/// Takes a container apart. file: its name, for InputError; warnings: unknown chunks and trailing
-/// bytes, which are skipped, are reported there.
+/// Splits a container into its chunks. file: its name, for InputError; warnings: unknown chunks and
+/// trailing bytes, which are skipped, are reported there.
 [[nodiscard]] GlbChunks split_glb(std::span<const uint8_t> bytes, const std::string& file,
                                   std::vector<std::string>& warnings);
 

@@ -12,7 +12,7 @@
 namespace petzval {
 namespace {
 
-/// Everything that consists of references and numbers only.
+/// Checks everything that consists of references and numbers only.
 void check_scene_graph(GltfCheck& check) {
     check_textures(check);
     check_materials(check);

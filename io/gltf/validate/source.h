@@ -24,7 +24,7 @@ struct GltfSource {
     uint64_t hash = 0;                  ///< FNV-1a of the scene file and of every file it names
 };
 
-/// Reads a .gltf or .glb with everything it refers to, and checks it before anything else looks:
+/// Reads a .gltf or .glb with everything it refers to, and checks it before anything else uses it:
 /// container, JSON (and its depth), version, required extensions, every index, every byte range,
 /// the node tree, counts against the sizes of the buffers. Throws InputError with file and JSON
 /// path.

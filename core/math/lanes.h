@@ -9,7 +9,7 @@ namespace petzval {
 
 // Explicit typedefs: g++ 12 drops vector_size from a dependent alias template.
 typedef float f4 __attribute__((vector_size(16)));
-/// All bits of a lane set (-1): on. All clear (0): off.
+/// Lane mask. All bits of a lane set (-1): on; all clear (0): off.
 typedef int32_t m4 __attribute__((vector_size(16)));
 
 [[nodiscard]] inline f4 splat(float a) {
@@ -33,7 +33,7 @@ typedef int32_t m4 __attribute__((vector_size(16)));
 [[nodiscard]] inline float hsum(f4 a) {
     return (a[0] + a[1]) + (a[2] + a[3]);
 }
-/// Of the lanes that are numbers; not a number where none is.
+/// Largest lane, NaN lanes ignored; NaN if all are.
 [[nodiscard]] inline float hmax(f4 a) {
     constexpr float least = -__builtin_inff();
     a = a == a ? a : splat(least);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The numbers that a ray through a lens may be made of: one float, four floats, four doubles, and
-// any of these with two derivatives. One trace serves them all.
+// Number types of a ray through a lens: one float, four floats, four doubles, and any of these with
+// two derivatives. One trace serves them all.
 #pragma once
 
 #include <cmath>
@@ -14,11 +14,11 @@ namespace petzval {
 
 // Explicit typedefs: g++ 12 drops vector_size from a dependent alias template.
 typedef double d4 __attribute__((vector_size(32)));
-/// All bits of a lane set (-1): on. All clear (0): off.
+/// Lane mask. All bits of a lane set (-1): on; all clear (0): off.
 typedef int64_t l4 __attribute__((vector_size(32)));
 
-/// Scalar: what constants are made of. Value: the number without derivatives. Mask: what comparing
-/// gives. Code: an integer for each lane.
+/// Types that go with a number. Scalar: of constants. Value: the number without derivatives. Mask:
+/// the result of comparing. Code: an integer for each lane.
 template <class N>
 struct NumberTraits;
 template <class S, class V, class M, class C, int n>
@@ -44,7 +44,7 @@ using MaskOf = typename NumberTraits<N>::Mask;
 template <class N>
 using CodeOf = typename NumberTraits<N>::Code;
 
-/// The same in all lanes.
+/// One number in all lanes.
 template <class V>
 [[nodiscard]] V broadcast(ScalarOf<V> a) {
     return V{} + a;
@@ -86,7 +86,7 @@ template <class Mask, class V>
     return on ? a : b;
 }
 
-/// A number with its derivatives by two parameters; with them the trace gives exact Jacobians.
+/// Number with its derivatives by two parameters; with them the trace gives exact Jacobians.
 /// Comparing and choosing look at the value.
 template <class V>
 struct Dual {
@@ -105,11 +105,11 @@ struct Dual {
     }
 };
 
-/// What has no derivative: V, or a constant for all lanes.
+/// Operand without a derivative: V, or a constant for all lanes.
 template <class C, class V>
 concept ConstantFor = std::same_as<C, V> || std::is_arithmetic_v<C>;
 
-/// A constant as V's operators want it.
+/// Constant in the type that V's operators take.
 template <class V, ConstantFor<V> C>
 [[nodiscard]] auto fit(C c) {
     if constexpr (std::same_as<C, V>)
@@ -153,7 +153,7 @@ template <class V, ConstantFor<V> C>
     return {quotient, -quotient * by * a.du, -quotient * by * a.dv};
 }
 
-/// The derivative of the root of 0, infinite, is given as 0.
+/// Square root; its derivative at 0, infinite, is given as 0.
 template <class V>
 [[nodiscard]] Dual<V> sqrt(Dual<V> a) {
     const V root = sqrt(a.value);
@@ -176,7 +176,7 @@ template <class V>
 [[nodiscard]] V value_of(Dual<V> a) {
     return a.value;
 }
-/// Without derivatives.
+/// A constant as an N: its derivatives are 0.
 template <class N>
 [[nodiscard]] N constant(ValueOf<N> a) {
     if constexpr (std::same_as<N, ValueOf<N>>)
@@ -185,7 +185,7 @@ template <class N>
         return {a};
 }
 
-/// Three of them: Imath's vectors want numbers that compare to a bool.
+/// Vector of three numbers. Imath's vectors want numbers that compare to a bool.
 template <class N>
 struct Vec3 {
     N x{}, y{}, z{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the integrator knows of a camera: a point on the film in, weighted rays out.
+// Camera interface: a point on the film in, weighted rays out.
 #pragma once
 
 #include <array>
@@ -19,10 +19,10 @@ struct PixelFilter {
     V2f frame_px{1.f};   ///< width and height of the full frame
 };
 
-/// Where on the film, and the numbers from which a camera draws the rest (Dim::Lens).
+/// Point on the film, and the random numbers from which a camera draws the rest (Dim::Lens).
 struct FilmPoint {
-    /// [0, 1)^2 over the full frame, (0, 0) at the top left as the picture is seen; a pixel filter
-    /// reaches a little beyond.
+    /// Position in [0, 1)^2 over the full frame, (0, 0) at the top left as the picture is seen; a
+    /// pixel filter reaches a little beyond.
     V2f film;
     Sampler sampler;
     PixelFilter pixel{};
@@ -37,14 +37,14 @@ struct CameraPath {
     bool fills_layers = true;
 };
 
-/// What became of the lanes for which a lens was asked; those not named went out. All 0: a camera
-/// that has nothing to lose light at.
+/// Counts of the wavelength lanes that a lens was asked for, by why it lost them; drawn - lost()
+/// passed. All 0: a camera that has nothing to lose light at.
 template <class Count>
 struct LensLosses {
     Count drawn{};
     Count vignetted{};  ///< by a rim, or outside the iris
     Count totally_reflected{};
-    Count missed{};     ///< a surface
+    Count missed{};     ///< no meeting with a surface
     Count unreached{};  ///< no ray leads from the film point to the iris point
 
     [[nodiscard]] Count lost() const {
@@ -61,14 +61,14 @@ struct LensLosses {
     }
 };
 
-/// The paths that one film point begins. None: vignetted. 1: shared by all lanes. 2 to 4: split by
+/// Camera paths of one film point. None: vignetted. 1: shared by all lanes. 2 to 4: split by
 /// dispersion.
 class CameraSample {
   public:
     static constexpr size_t kMostPaths = 4;
 
     LensLosses<uint32_t> lanes;
-    float exposure = 1;  ///< what the weights of a lane are on average where nothing is lost
+    float exposure = 1;  ///< mean weight of a lane where nothing is lost
 
     [[nodiscard]] bool empty() const { return size_ == 0; }
     [[nodiscard]] size_t size() const { return size_; }
@@ -78,7 +78,7 @@ class CameraSample {
     [[nodiscard]] CameraPath* end() { return paths_.data() + size_; }
     [[nodiscard]] const CameraPath* begin() const { return paths_.data(); }
     [[nodiscard]] const CameraPath* end() const { return paths_.data() + size_; }
-    /// Appends a path, to be filled in. Of at most kMostPaths.
+    /// Appends a path, to be filled in; at most kMostPaths may be added.
     CameraPath& add() { return paths_[size_++]; }
 
   private:

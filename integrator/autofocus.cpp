@@ -14,7 +14,7 @@ std::optional<float> depth_under(const Scene& scene, const Bvh& bvh, const Camer
         pinhole.sample({film, Sampler(SamplerKind::Owen, 0, {0, 0, 0})}, Bands::rgb());
     if (seen.empty()) return std::nullopt;
     Ray ray = seen[0].ray;
-    // What is culled from view is no place to focus on.
+    // Surfaces that are culled from view are no place to focus on.
     while (const std::optional<Hit> hit = bvh.intersect(ray)) {
         const Surface s = make_surface(scene, ray.direction, *hit);
         if (!culled_from_view(s)) return (s.p - eye).dot(axis);

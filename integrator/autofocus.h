@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Focus by looking: how far a scene is under a point of the film.
+// Autofocus: depth of the scene under a point of the film.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace petzval {
 
-/// Distance along `axis` (unit, the camera's viewing direction) from `eye` to what a point of the
-/// film shows, metres; nothing where the ray of the film's point meets nothing.
+/// Depth, metres: distance along `axis` (unit, the camera's viewing direction) from `eye` to what a
+/// point of the film shows; nothing where the ray of the film's point meets nothing.
 [[nodiscard]] std::optional<float> depth_under(const Scene&, const Bvh&, const Camera& pinhole,
                                                const V3f& eye, const V3f& axis, V2f film);
 

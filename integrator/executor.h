@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who runs the tiles. The tile loop takes either; the second exists because thread sanitizers do
-// not see into oneTBB's library.
+// Executors of tiles. The tile loop takes either; ThreadExecutor exists because thread sanitizers
+// do not see into oneTBB's library.
 #pragma once
 
 #include <oneapi/tbb/global_control.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The path tracer: light that arrives along a ray.
+// Path tracer: estimates the radiance that arrives along a ray.
 #pragma once
 
 #include <concepts>
@@ -16,7 +16,7 @@
 
 namespace petzval {
 
-/// What a path needs of a ray caster; Bvh, or a test's own.
+/// Ray caster for paths: Bvh, or a test's own.
 template <class T>
 concept RayCaster = requires(const T t, const Ray& r) {
     { t.intersect(r) } -> std::same_as<std::optional<Hit>>;
@@ -27,7 +27,7 @@ concept RayCaster = requires(const T t, const Ray& r) {
 template <RayCaster Caster = Bvh>
 class PathTracer {
   public:
-    /// All three must outlive the tracer.
+    /// Scene, caster and lights must outlive the tracer.
     PathTracer(const Scene& scene, const Caster& caster, const LightChoice& lights,
                const PathOptions& options)
         : scene_(scene), caster_(caster), lights_(lights), options_(options) {}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Definitions of PathTracer, for who instantiates it with a ray caster of its own.
+// Definitions of PathTracer, for code that instantiates it with a ray caster of its own.
 #pragma once
 
 #include "core/light/light_sampling.h"
@@ -9,7 +9,7 @@
 
 namespace petzval {
 
-/// What the last scattering left behind: the ray's origin, and how likely light sampling was.
+/// Last scattering of a path: the ray's origin, and the densities that weigh what the ray finds.
 template <RayCaster Caster>
 struct PathTracer<Caster>::Vertex {
     V3f p;
@@ -18,13 +18,13 @@ struct PathTracer<Caster>::Vertex {
     LightReceiver receiver{};
 };
 
-/// What a choice among lights may count on before a surface's textures are read: reflected light
-/// lies on the triangle's own side, whatever the shading normal.
+/// The light sampler's view of a hit, without textures: position, geometric normal, whether it
+/// transmits. Reflected light lies on the triangle's own side, whatever the shading normal.
 [[nodiscard]] inline LightReceiver receiver_at(const Surface& s) {
     return {s.p, s.front ? s.ng : -s.ng, s.material->transmission > 0};
 }
 
-/// A light sample, and how likely its light was picked.
+/// Light sample, and how likely its light was picked.
 template <RayCaster Caster>
 struct PathTracer<Caster>::DrawnLight {
     LightSample sample;
@@ -136,7 +136,7 @@ f4 PathTracer<Caster>::direct_light(const Surface& s, const Frame& frame, const 
     return value.f_cos * radiance * (weight / light_pdf);
 }
 
-/// The layers of a sample's first surface.
+/// Fills the layers of a sample from its first surface.
 inline void record_layers(const Surface& s, const ShadingInput& shading, Rgb emission,
                           const V3f& camera, const V3f& wo, const Bands& bands, FilmSample& out) {
     const auto layer = [&](Aov aov) -> V3f& { return out.aov[static_cast<size_t>(aov)]; };
@@ -162,20 +162,22 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
     bool seen = false;  // the camera ray has found a surface that shows itself
 
     for (uint32_t depth = 0;;) {
+        // Intersect the ray with the scene.
         if (caster_.has_cutouts()) ray.alpha_seed = sampler.get_bits(Dim::Coverage, 2 * depth);
         ++(depth == 0 ? stats.camera_rays : stats.bounce_rays);
         const std::optional<Hit> hit = [&] {
             const SectionTimer timer(stats, TimedSection::Traversal);
             return caster_.intersect(ray);
         }();
+        // Add light from behind the scene where the ray leaves it.
         if (!hit) {
             sum += throughput *
                    (seen ? escaped(ray, bands, last) : visible_background(ray, bands, out));
             break;
         }
         const Surface s = make_surface(scene_, ray.direction, *hit);
-        // glTF culls the backs of single-sided surfaces from view. Light must not pass them, so
-        // only camera rays do; the inside of a volume is never culled.
+        // Skip backs of single-sided surfaces, which glTF culls from view. Light must not pass
+        // them, so only camera rays do; the inside of a volume is never culled.
         if (!seen && culled_from_view(s)) {
             ray.origin = offset_origin(s.p, s.p_error, s.ng, ray.direction);
             continue;
@@ -187,7 +189,8 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
             const SectionTimer timer(stats, TimedSection::Texture);
             return locate_material(scene_, s);
         }();
-        // Before the textures are read, so that the wait for them and for the sky's tables is one.
+        // Sample one light, before the textures are read, so that the wait for them and for the
+        // sky's tables is one.
         const Sampler::VertexNumbers u = sampler.at_vertex(depth);
         const LightReceiver receiver = receiver_at(s);
         std::optional<DrawnLight> light;
@@ -196,6 +199,7 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
             const SectionTimer timer(stats, TimedSection::Texture);
             return read_material(scene_, s, lookups, wo, bands);
         }();
+        // Add light that the ray finds.
         out.alpha = 1.f;
         const bool shows = s.front || s.material->double_sided;
         f4 glow = emitted(s, shading.emitted, bands, last);
@@ -208,7 +212,7 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         seen = true;
         if (s.material->unlit || static_cast<int>(depth) >= options_.max_depth) break;
 
-        // Volumes and black surfaces leave nothing to go on with.
+        // Add direct light, unless volumes or black surfaces left nothing to go on with.
         if (!(hmax(throughput) >= std::numeric_limits<float>::min())) break;
         const Bsdf bsdf(shading.bsdf, bands, shading.frame.to_local(wo), throughput);
         const bool light_sampled =
@@ -217,6 +221,7 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
             sum += throughput * direct_light(s, shading.frame, bsdf, *light, bands, sampler, depth,
                                              medium, stats);
 
+        // Sample the BSDF for the next direction.
         const auto next = bsdf.sample(u.bsdf_lobe, u.bsdf);
         if (!next) break;
         const V3f direction = shading.frame.to_world(next->wi);
@@ -228,12 +233,14 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         throughput *= next->weight;
         if (crosses && s.material->has_volume) medium = s.front ? s.material : nullptr;
 
+        // Russian roulette.
         ++depth;
         if (static_cast<int>(depth) > options_.roulette_depth) {
             const float most = hmax(throughput), survival = most < 0.95f ? most : 0.95f;
             if (u.roulette_after >= survival) break;
             throughput *= 1.f / survival;
         }
+        // Continue the path.
         last = {s.p, next->pdf, light_sampled && !next->delta, receiver};
         ray.origin = offset_origin(s.p, s.p_error, s.ng, direction);
         ray.direction = unit(direction);

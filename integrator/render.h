@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a job to a film: progressive passes over tiles.
+// Rendering of a job to a film: progressive passes over tiles.
 #pragma once
 
 #include <chrono>
@@ -19,7 +19,7 @@ namespace petzval {
     return hash32(seed, replicate + 1);
 }
 
-/// One sample of one pixel: a pure function of its arguments.
+/// Renders one sample of one pixel: a pure function of its arguments.
 template <class Tracer>
 void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& job, SampleId id,
                    Film& film, PathStats& stats) {
@@ -46,8 +46,8 @@ void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& 
     stats.lens_lanes += seen.lanes;
     FilmSample sample;
     f4 sum{};
-    float behind = 0.f;  // light of what stands behind the scene, where all of it would be 1
-    bool layers = aovs;  // still to be filled in
+    float behind = 0.f;  // weight of the rays that left the scene, over all lanes
+    bool layers = aovs;  // layers are still to be filled in
     for (const CameraPath& path : seen) {
         FilmSample other;
         FilmSample& of_path = path.fills_layers ? sample : other;
@@ -58,7 +58,7 @@ void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& 
         layers = false;
         behind += hsum(zero_off(path.lanes, path.weight)) * (1.f - sample.alpha);
     }
-    // What a lens keeps from the film is black, not transparent.
+    // Light that a lens keeps from the film is black, not transparent.
     sample.alpha = 1.f - behind / (seen.exposure * static_cast<float>(lane_count(bands.on)));
     sample.colour = to_rgb(sum, bands);
     sample.aov[static_cast<size_t>(Aov::Cost)] =
@@ -70,8 +70,8 @@ void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& 
         film.add(id.x, id.y, id.index, sample);
 }
 
-/// Samples of the next pass: they grow so that a first picture comes early and passes stay short.
-/// Never fewer than `least`, but for the last.
+/// Number of samples of the next pass: it grows so that a first picture comes early, and passes
+/// stay short. Never fewer than `least`, but for the last.
 [[nodiscard]] inline uint32_t pass_size(uint32_t done, uint32_t wanted, uint32_t least = 1) {
     const uint32_t grown = std::max(done == 0 ? 1 : std::min(done, 16u), least);
     return std::min(grown, wanted - done);

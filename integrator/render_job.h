@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is to be rendered, how it is watched, and what came of it.
+// Render job, the monitor of its progress, and its result.
 #pragma once
 
 #include <atomic>
@@ -29,12 +29,12 @@ struct RenderJob {
     SamplerKind sampler = SamplerKind::Owen;
     Filter filter{FilterKind::BlackmanHarris, 1.5f};
     int tile_size_px = 16;
-    Observer observer;        ///< what the lanes carry
+    Observer observer;        ///< draws what the lanes carry
     uint32_t replicates = 1;  ///< kReplicates for a film with bins
     bool timing = false;      ///< measure where the time goes, on one sample of sixteen
 };
 
-/// What a render shows of itself while it runs, and how it is told to stop. Any thread may look.
+/// Progress of a running render, and the flag that stops it. Any thread may use it.
 struct RenderMonitor {
     std::atomic<bool> stop = false;  ///< set it: tiles under way are finished, no more begun
     std::atomic<uint64_t> pixel_samples_done = 0;

@@ -11,7 +11,7 @@
 
 namespace petzval {
 
-/// Sample is the whole; what the others leave of it is shading.
+/// Timed sections. Sample is the whole; what the others leave of it is shading.
 enum class TimedSection : uint8_t { Sample, Camera, Traversal, Texture, Count };
 
 struct PathStats {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The order in which a picture is rendered.
+// Tiles of a picture, in the order in which they are rendered.
 #pragma once
 
 #include <vector>

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-/// Of the object's plane, from the first vertex.
+/// Position of the object's plane, from the first vertex.
 double object_mm(const Lens& lens, double distance_mm, Section section) {
     return first_order(lens, kLineD_nm, section).entrance_pupil_mm - distance_mm;
 }
@@ -51,7 +51,7 @@ std::optional<Distortion> distortion(const Lens& lens, double field_deg, double 
     return Distortion{field_deg, *height, scale_mm * tangent};
 }
 
-// From the film backwards: of a film point's rays the secant method finds the one through the
+// Traced from the film backwards: the secant method finds the ray of a film point through the
 // middle of the stop. It begins near the axis with the paraxial one and follows it outwards, as
 // aspheres lead it far from there.
 std::optional<double> field_of_height_deg(const Lens& lens, double height_mm, double film_mm,

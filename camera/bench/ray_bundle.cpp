@@ -25,7 +25,8 @@ RayBundle::RayBundle(const Lens& lens, const ObjectPoint& object, double nm)
       nm_(nm),
       entrance_pupil_mm_(first_order(lens, kLineD_nm, object.section).entrance_pupil_mm),
       indices_(lens.exact_indices(broadcast<d4>(nm))) {
-    // Of a lens that is telecentric on the side of the scene: any plane does.
+    // A lens that is telecentric on the side of the scene has its pupil at infinity: any plane
+    // does.
     if (!(std::fabs(entrance_pupil_mm_) < 1e6)) entrance_pupil_mm_ = 0;
 }
 
@@ -34,7 +35,7 @@ LensRay<N> RayBundle::launched(N sagittal, N tangential) const {
     const double angle = object_.field_deg * std::numbers::pi / 180;
     const double sine = std::sin(angle), cosine = std::cos(angle);
     const auto number = [](double a) { return constant<N>(broadcast<ValueOf<N>>(a)); };
-    // As if the section were y-z: along it, and down the axis.
+    // Coordinates as if the section were y-z: along it, and down the axis.
     const N along = tangential * cosine;
     const N z = tangential * -sine;
     LensRay<N> ray;
@@ -83,7 +84,8 @@ std::optional<PupilPoint> RayBundle::solve(std::array<double, 2> stop_mm, PupilP
 }
 
 std::optional<RayBundle> RayBundle::aim(const Lens& lens, const ObjectPoint& object, double nm) {
-    // Entrance pupils of wide-angle lenses wander: each ray begins at one that is near.
+    // Entrance pupils of wide-angle lenses move with the field: each ray begins at one that is
+    // near.
     for (const double step_deg : {2., 0.25}) {
         const int steps = std::max(1, static_cast<int>(std::ceil(object.field_deg / step_deg)));
         std::optional<PupilPoint> chief = PupilPoint{};
@@ -103,7 +105,7 @@ std::optional<RayBundle> RayBundle::aim(const Lens& lens, const ObjectPoint& obj
 
 void RayBundle::find_box() {
     constexpr int directions = 32, steps = 4;
-    constexpr double margin = 0.02;  // what the rim may bulge between two directions, and more
+    constexpr double margin = 0.02;  // more than the rim may bulge between two directions
     least_ = most_ = chief_;
     for (int i = 0; i < directions; ++i) {
         const double angle = 2 * std::numbers::pi * i / directions;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The light that one point of the scene sends through a lens, at one wavelength.
+// Ray bundle: the rays of one point of the scene through a lens, at one wavelength.
 #pragma once
 
 #include <array>
@@ -14,20 +14,21 @@
 
 namespace petzval {
 
-/// Its image lies on the side of +y, or +x in Section::X.
+/// Point of the scene whose image lies on the side of +y, or +x in Section::X.
 struct ObjectPoint {
     double field_deg = 0;  ///< between the axis and the line to the entrance pupil's middle
-    /// Of its plane from the entrance pupil, in front of the lens; the angle is then below 90.
+    /// Distance of its plane from the entrance pupil, in front of the lens; where it is finite,
+    /// field_deg is below 90.
     double distance_mm = std::numeric_limits<double>::infinity();
     Section section = Section::Y;
 };
 
-/// A ray of a bundle: sagittal and tangential coordinates, mm from the middle of the entrance
-/// pupil, in the plane there that is square to the line from the object. Equal areas of it carry
-/// equal light: exactly for a distant object, else to the square of (aperture / distance).
+/// Ray of a bundle: sagittal and tangential coordinates, mm from the middle of the entrance pupil,
+/// in the plane there that is square to the line from the object. Equal areas of it carry equal
+/// light: exactly for a distant object, else to the square of (aperture / distance).
 using PupilPoint = std::array<double, 2>;
 
-/// Where a ray of a bundle arrives, mm.
+/// Arrival of a bundle's ray, mm.
 struct BundleRay {
     PupilPoint pupil_point;
     std::array<double, 2> stop_mm;  ///< x, y
@@ -35,7 +36,7 @@ struct BundleRay {
     std::array<double, 2> slope;    ///< dx/dz, dy/dz at the film
 };
 
-/// The lens must outlive it. What is found there is found by the trace that renders, in doubles.
+/// Rays of an object point, traced as for rendering, in doubles. The lens must outlive it.
 class RayBundle {
   public:
     /// Finds the ray to the middle of the stop, following it from the axis outwards, and then the
@@ -44,9 +45,9 @@ class RayBundle {
 
     [[nodiscard]] double nm() const { return nm_; }
     [[nodiscard]] const ObjectPoint& object() const { return object_; }
-    /// The ray to the middle of the stop.
+    /// Chief ray: to the middle of the stop.
     [[nodiscard]] PupilPoint chief() const { return chief_; }
-    /// A box about all rays that fit through the stop.
+    /// Corners of a box about all rays that fit through the stop.
     [[nodiscard]] PupilPoint least() const { return least_; }
     [[nodiscard]] PupilPoint most() const { return most_; }
 
@@ -54,10 +55,10 @@ class RayBundle {
         V3d origin_mm, direction;  ///< z from the first vertex; unit
     };
     [[nodiscard]] Line line(PupilPoint) const;
-    /// The rays that reach the film, in the order of their pupil points.
+    /// Arrivals of the rays that reach the film, in the order of their pupil points.
     [[nodiscard]] std::vector<BundleRay> trace(std::span<const PupilPoint>, double film_mm,
                                                Clip = Clip::Yes) const;
-    /// The middles of side x side cells of the box: equal light each.
+    /// Pupil points: the middles of side x side cells of the box, equal light each.
     [[nodiscard]] std::vector<PupilPoint> grid(int side) const;
 
   private:

@@ -29,7 +29,7 @@ SpotSize spot_size(std::span<const BundleRay> rays, double shift_mm) {
     return out;
 }
 
-// The mean square is a parabola in the shift: its vertex.
+// Vertex of a parabola: the mean square as a function of the shift.
 double best_shift_mm(std::span<const BundleRay> rays) {
     const auto count = static_cast<double>(rays.size());
     double square = 0, product = 0;

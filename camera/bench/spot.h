@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images of points: their size, and how much contrast they leave.
+// Spots, the images of points: their size, and the contrast (MTF) that they leave.
 #pragma once
 
 #include <array>
@@ -14,10 +14,10 @@ struct SpotSize {
     std::array<double, 2> centroid_mm{};
     double rms_mm = 0;  ///< root of the mean square distance from the centroid
 };
-/// In a plane shift_mm behind the one that the rays were traced to. At least one ray.
+/// Spot size in a plane shift_mm behind the one that the rays were traced to. At least one ray.
 [[nodiscard]] SpotSize spot_size(std::span<const BundleRay>, double shift_mm = 0);
 
-/// How far behind that plane the spot is smallest; 0 where all rays are parallel.
+/// Best focus: shift to the plane of the smallest spot; 0 where all rays are parallel.
 [[nodiscard]] double best_shift_mm(std::span<const BundleRay>);
 
 /// Contrast that a spot leaves of a sine grating on the film, its lines across `along`: the modulus
@@ -26,13 +26,14 @@ struct SpotSize {
 /// Transfer Function, ch. 5. At least one ray.
 [[nodiscard]] double geometric_mtf(std::span<const BundleRay>, double cycles_per_mm, Section along);
 
-/// Transverse aberrations of a line of rays across the aperture.
+/// Transverse aberration of one ray of a line across the aperture.
 struct FanPoint {
-    double stop;                    ///< where the ray crosses the stop, in its radii
+    double stop;                    ///< position of the ray in the stop, in its radii
     std::array<double, 2> from_mm;  ///< x, y on the film from a point
 };
-/// Rays through the middle of the aperture, `along` the section or across it; from: on the film,
-/// usually where the chief ray of the main wavelength arrives. Those that pass.
+/// Ray fan: rays on a line through the middle of the aperture, `along` the section or across it;
+/// only those that pass. from_mm: on the film, usually where the chief ray of the main wavelength
+/// arrives.
 [[nodiscard]] std::vector<FanPoint> ray_fan(const Lens&, const RayBundle&, Section along,
                                             double film_mm, std::array<double, 2> from_mm,
                                             int count = 65);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a camera does with wavelengths that its lens sends different ways.
+// Dispersion mode: how a camera carries wavelengths that its lens sends different ways.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ enum class DispersionMode : uint8_t { Tolerance, Shared, Split, Single, Hero };
     return !bands.spectral || mode == DispersionMode::Shared;
 }
 
-/// One of the lanes that are on, each as likely; u in [0, 1).
+/// Picks one of the lanes that are on, all equally likely; u in [0, 1).
 [[nodiscard]] inline int pick_lane(m4 on, float u) {
     const int count = lane_count(on);
     int wanted = std::min(static_cast<int>(u * static_cast<float>(count)), count - 1), lane = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One ray for all lanes of a lens that disperses, without a bias.
+// Hero ray: one ray for all lanes of a lens that disperses, without a bias.
 #pragma once
 
 #include "camera/camera.h"
@@ -14,8 +14,8 @@ namespace petzval {
 /// itself (balance heuristic: Veach 1997, 9.2.3; for wavelengths, Wilkie et al. 2014, "Hero
 /// Wavelength Spectral Sampling", equation 12). The shares add up to the number of lanes that are
 /// on, so that no weight is larger than that. dx_px, dy_px: from the drawn point to where the lane
-/// reaches the film, pixels, y down. open: [0, 1], what iris and rims let through of the lane; as
-/// iris points are drawn in proportion to it, it is a part of the density.
+/// reaches the film, pixels, y down. open: [0, 1], the lane's share that iris and rims let through;
+/// as iris points are drawn in proportion to it, it is a part of the density.
 [[nodiscard]] inline f4 hero_shares(const PixelFilter& pixel, f4 dx_px, f4 dy_px, m4 on, f4 open) {
     f4 value{};
     for (int i = 0; i < 4; ++i)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a camera with a lens gives to the strategies that carry wavelengths through it.
+// LensPoint: the interface of a camera with a lens to the dispersion strategies.
 #pragma once
 
 #include <concepts>
@@ -8,29 +8,30 @@
 
 namespace petzval {
 
-/// Asks for rays of some lanes from a film point through one point of the stop.
+/// Request for rays of some lanes from a film point through one point of the stop.
 struct LaneRequest {
     V2f u;        ///< [0, 1)^2, draws the point of the stop
-    m4 lanes;     ///< whose rays are wanted
-    int lead;     ///< the lane whose ray meets the drawn point
+    m4 lanes;     ///< lanes whose rays are wanted
+    int lead;     ///< lane whose ray meets the drawn point
     bool coated;  ///< weights count what the surfaces reflect
 };
 
-/// Where one lane's ray of the scene would reach the film if it were light of each lane.
+/// Landing on the film of one lane's ray of the scene, if it were light of each lane.
 struct FilmLanding {
     f4 dx_px, dy_px;  ///< from the film point that the ray was drawn for, y down
-    f4 open;          ///< [0, 1]: what iris and rims let through
-    f4 transmitted;   ///< [0, 1]: what the surfaces do not reflect
+    f4 open;          ///< [0, 1]: share that iris and rims let through
+    f4 transmitted;   ///< [0, 1]: share that the surfaces do not reflect
 };
 
 /// A film point of a camera, with its two primitives: rays() and landing(). A strategy composes
 /// them (strategies.h); a camera that has them has every strategy.
 ///
-/// rays(): a LaneRays with `weight` (convertible lanes; 0: lost; counts for all lanes of the bands,
-/// however few were asked for) and `losses`.
+/// rays(request): rays with weight_of_lanes() (0: lost; counts for all lanes of the bands, however
+/// few were asked for) and `losses`.
 /// ray(rays, lane): a lane's ray in the world, unit direction.
 /// together(rays, a, b): whether two lanes' rays are within the camera's tolerance.
-/// landing(rays, request): of the ray of request.lead.
+/// landing(rays, request): landing of the ray of request.lead.
+/// exposure(): mean weight of a lane where nothing is lost.
 template <class P>
 concept LensPoint = requires(const P p, const LaneRequest& request,
                              const decltype(p.rays(request))& rays, int lane) {

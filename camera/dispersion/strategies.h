@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ways to carry wavelengths through a lens that disperses, written once for every camera.
+// Dispersion strategies: ways to carry wavelengths through a lens that disperses, written once for
+// every camera.
 #pragma once
 
 #include "camera/dispersion/dispersion_mode.h"

@@ -19,7 +19,7 @@ using V2d = Imath::V2d;
 /// The round stop itself.
 struct Disk {};
 
-/// What closed contours enclose. Either rule is SVG's of that name; they differ only where a
+/// Area that closed contours enclose. Either rule is SVG's of that name; they differ only where a
 /// contour lies within another that runs the same way.
 struct Polygon {
     std::vector<std::vector<V2d>> contours;  ///< the last vertex is joined to the first
@@ -35,7 +35,7 @@ struct Mask {
 using ApertureShape = std::variant<Disk, Polygon, Mask>;
 
 inline constexpr int kMinBlades = 3, kMaxBlades = 100;
-/// Of all contours of a polygon together.
+/// Most vertices of a polygon, all contours together.
 inline constexpr size_t kMaxPolygonVertices = 10000;
 /// Largest magnitude of a coordinate.
 inline constexpr double kMaxPolygonCoordinate = 1e9;
@@ -59,7 +59,7 @@ inline constexpr double kMaxPolygonCoordinate = 1e9;
 /// square() less a square hole of half its side.
 [[nodiscard]] Polygon frame();
 
-/// Why a polygon cannot be used, and where; contour and vertex count from 0.
+/// Fault that makes a polygon unusable, and its place; contour and vertex count from 0.
 struct PolygonFault {
     size_t contour = 0, vertex = 0;
     std::string message;  ///< "contour 1, vertex 3 at (2, 0.5): ...", counted from 1
@@ -67,7 +67,7 @@ struct PolygonFault {
 /// The first fault of a polygon: too few or too many vertices, one that is not finite or stands on
 /// the next, an edge that runs back along the one before it or meets another edge.
 [[nodiscard]] std::optional<PolygonFault> find_fault(const Polygon&);
-/// The same for a mask: its size, a texel outside of [0, 1], or all of them black.
+/// Fault of a mask: its size, a texel outside of [0, 1], or all of them black.
 [[nodiscard]] std::optional<std::string> find_fault(const Mask&);
 
 }  // namespace petzval

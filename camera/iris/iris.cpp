@@ -49,7 +49,7 @@ double reach_of(const Mask& mask) {
     return reach;
 }
 
-// Points within a rim are found by trying: not where it leaves next to nothing.
+// Largest share of a shape that a rim may cut off: points within it are found by trying.
 constexpr double kMostCut = 0.9;
 
 void require_whole(const ApertureShape& shape) {
@@ -59,8 +59,8 @@ void require_whole(const ApertureShape& shape) {
         if (const auto fault = find_fault(*mask)) throw std::invalid_argument(*fault);
 }
 
-// The first point is u itself: what is accepted of a stratified set stays stratified. The last is
-// a hash too, because a u that was refused says where it is not, and is no longer uniform.
+// Points to try. The first is u itself: what is accepted of a stratified set stays stratified. The
+// last is a hash too, because a u that was refused says where it is not, and is no longer uniform.
 class Candidates {
   public:
     explicit Candidates(V2f u)

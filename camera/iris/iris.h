@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The iris of a camera: a shape, scaled to its stop, that is drawn from and looked through.
+// Iris of a camera: a shape, scaled to its stop, that is sampled and asked for its transmission.
 #pragma once
 
 #include <limits>
@@ -13,11 +13,11 @@
 
 namespace petzval {
 
-/// Those that a shape has; the first keeps stratification best. Circle and mask have no triangles,
-/// other polygons no formula.
+/// Sampling methods that a shape has; the first keeps stratification best. Circle and mask have no
+/// triangles, other polygons no formula.
 [[nodiscard]] std::vector<IrisSampling> iris_samplings(const ApertureShape&);
 
-/// Coordinates as in aperture.h, in millimetres in the plane of the stop.
+/// Iris in the plane of the stop. Coordinates as in aperture.h, in millimetres.
 class Iris {
   public:
     /// Samples by the first of iris_samplings() where none is named. Throws std::invalid_argument
@@ -29,19 +29,18 @@ class Iris {
          std::optional<IrisSampling> = {},
          double rim_radius_mm = std::numeric_limits<double>::infinity());
 
-    /// A point of the shape within the rim; a pure function of u in [0, 1)^2. Its place is
+    /// Draws a point of the shape within the rim; a pure function of u in [0, 1)^2. Its place is
     /// rounded, so that one at the very edge may not be inside. Rejection takes u first and then up
     /// to kTries - 1 hashes of it; when none is inside, a further hash is drawn by the other ways.
     [[nodiscard]] V2f sample(V2f u) const;
-    /// Share of the light that passes at a point: 0 or 1, for a mask what its texel says; 0 for
-    /// NaN.
+    /// Transmission at a point: 0 or 1, for a mask what its texel says; 0 for NaN.
     [[nodiscard]] float transmits(V2f point_mm) const {
         if (cut_ && !within_rim(point_mm)) return 0.f;
         return std::visit([&](const auto& shape) { return shape.transmits(point_mm); }, shape_);
     }
     /// Integral of transmits() over the plane.
     [[nodiscard]] double area_mm2() const { return area_; }
-    /// Farthest point of the shape from the axis.
+    /// Distance of the shape's farthest point from the axis.
     [[nodiscard]] float bounding_radius_mm() const { return static_cast<float>(reach_); }
     /// Share of area_mm2() that lies farther than this from the axis. In closed form, error below
     /// 1e-9.
@@ -50,7 +49,7 @@ class Iris {
     [[nodiscard]] double share_cut() const { return share_cut_; }
 
     static constexpr int kTries = 256;
-    /// So that areas are floats above 0.
+    /// Range of stop radii, so that areas are floats above 0.
     static constexpr double kMinStopRadius_mm = 1e-9;
     static constexpr double kMaxStopRadius_mm = 1e6;
 

@@ -9,7 +9,7 @@ namespace petzval {
 
 class MaskIris {
   public:
-    /// A mask without fault.
+    /// The mask must be without fault.
     MaskIris(const Mask&, double texel_mm);
 
     [[nodiscard]] V2f draw(V2f u) const {

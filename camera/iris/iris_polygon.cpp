@@ -27,12 +27,13 @@ PolygonRaster::PolygonRaster(const Polygon& polygon, std::span<const Trapezoid> 
     const V2d scale = V2d(kCells) / (high - low);
     cells_per_mm_ = rounded(scale);
 
-    // Cells a little too large, for the rounding of points to floats.
+    // Slack of cells, for the rounding of points to floats.
     constexpr double slack = 1e-3;
     const auto cell_of = [](double position) {
         return static_cast<int>(std::clamp(std::floor(position), 0.0, kCells - 1.0));
     };
-    // f(row, t0, t1) for each row that a span of y touches, and which part of the span it is.
+    // Calls f(row, t0, t1) for each row that a span of y touches; t0 to t1 is the part of the span
+    // in it.
     const auto for_rows = [&](double y0, double y1, auto f) {
         const double a = (y0 - low.y) * scale.y, b = (y1 - low.y) * scale.y;
         for (int row = cell_of(a - slack); row <= cell_of(b + slack); ++row)

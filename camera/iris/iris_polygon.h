@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A polygon in millimetres that is drawn from and asked for its inside.
+// Polygon iris in millimetres: sampling, and a test for which points are inside.
 #pragma once
 
 #include <span>
@@ -11,7 +11,7 @@
 
 namespace petzval {
 
-/// Which points are inside: a raster of cells that are inside, outside, or cut by an edge and then
+/// Point-in-polygon test: a raster of cells that are inside, outside, or cut by an edge and then
 /// know the trapezoids in them.
 class PolygonRaster {
   public:
@@ -22,7 +22,7 @@ class PolygonRaster {
     [[nodiscard]] V2f size() const { return size_; }
 
   private:
-    /// Trapezoid with floats: low + t * (change) at t of its height.
+    /// Trapezoid in floats. A side is at low + t * (change), t the share of its height.
     struct Piece {
         float bottom, top, per_height, left, left_change, right, right_change;
         [[nodiscard]] bool holds(V2f p) const {
@@ -36,20 +36,20 @@ class PolygonRaster {
 
     V2f lower_, size_, cells_per_mm_;
     std::vector<uint32_t> cells_;      ///< row by row; from kFirstList on, the number of a list
-    std::vector<uint32_t> list_ends_;  ///< list i is from [i] to [i + 1]
-    std::vector<uint32_t> lists_;      ///< pieces
+    std::vector<uint32_t> list_ends_;  ///< list i goes from [i] to [i + 1]
+    std::vector<uint32_t> lists_;      ///< indices of pieces
     std::vector<Piece> pieces_;
 };
 
-/// How points of a polygon are drawn: in closed form, or from triangles, of which one is chosen by
-/// the running sum of their areas or by an alias table.
+/// Methods to draw points of a polygon: in closed form, or from triangles, of which one is chosen
+/// by the running sum of their areas or by an alias table.
 enum class PolygonDraw : uint8_t { Formula, RunningSum, Alias };
 
 class PolygonIris {
   public:
-    /// A polygon without fault, in millimetres. Formula needs has_formula().
+    /// The polygon must be without fault, in millimetres. Formula needs has_formula().
     PolygonIris(const Polygon&, PolygonDraw);
-    /// Triangles and parallelograms.
+    /// Whether there is a closed form: for triangles and parallelograms.
     [[nodiscard]] static bool has_formula(const Polygon&);
 
     [[nodiscard]] V2f draw(V2f u) const {
@@ -84,8 +84,8 @@ class PolygonIris {
         }
         return corner_ + sides_[0] * u.x + sides_[1] * u.y;
     }
-    // By the running sum u.x rises with the triangles and within each, u.y runs across them:
-    // neighbours stay such.
+    // Point of a triangle. By the running sum u.x rises with the triangles and within each, u.y
+    // runs across them: neighbours stay such.
     [[nodiscard]] V2f in_triangle(size_t which, float along, float across) const {
         const Triangle& t = triangles_[which];
         const float root = std::sqrt(across);

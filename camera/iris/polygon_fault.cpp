@@ -15,7 +15,7 @@ std::string text_of(double value) {
 
 struct Edge {
     V2d a, b;
-    size_t contour, vertex;  ///< that a is
+    size_t contour, vertex;  ///< indices of a
     [[nodiscard]] auto place() const { return std::tie(contour, vertex); }
 };
 

@@ -38,7 +38,8 @@ std::vector<double> levels_of(const std::vector<Side>& sides) {
     return levels;
 }
 
-// Half of the square of the radius, times the angle from a to b about the origin.
+// Signed area of a sector: half of the square of the radius, times the angle from a to b about the
+// origin.
 double sector(const V2d& a, const V2d& b, double radius) {
     return radius * radius / 2 * std::atan2(a.cross(b), a.dot(b));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A polygon as trapezoids between level lines: its area, what of it lies in a circle, and the
-// pieces that are drawn from.
+// Trapezoids between level lines that tile a polygon: for its area, the part of it in a circle, and
+// the pieces that are sampled.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace petzval {
 
-/// Level bottom and top; x of the left and right side at each.
+/// Trapezoid of level bottom and top; x of the left and right side at each.
 struct Trapezoid {
     double bottom, top;
     double left[2], right[2];  ///< at the bottom, at the top
@@ -17,7 +17,7 @@ struct Trapezoid {
     [[nodiscard]] double area() const {
         return (right[0] - left[0] + right[1] - left[1]) * (top - bottom) / 2;
     }
-    /// Counter-clockwise from the lower left.
+    /// Corner i, counter-clockwise from the lower left.
     [[nodiscard]] V2d corner(int i) const {
         return {i == 0   ? left[0]
                 : i == 1 ? right[0]

@@ -25,7 +25,8 @@ struct Spokes {
         if (std::hypot(stop.x, stop.y) > stop_radius_mm) return std::nullopt;
         return ray;
     }
-    /// The farthest that pass. To the last digits, so that spots change smoothly with the lens.
+    /// Radius of the farthest ray that passes, to the last digits, so that spots change smoothly
+    /// with the lens.
     [[nodiscard]] double rim_mm() const {
         double low = 0, high = 2 * lens.prescription().surfaces.front().semi_diameter_mm;
         for (int i = 0; i < 48; ++i) {
@@ -56,7 +57,7 @@ std::optional<AxialSpot> axial_spot(const Lens& lens, double object_mm, double f
         AxialSpot line;
         double area = 0;
         for (int i = 0; i < azimuths; ++i) {
-            // A quarter of the pupil is like the others.
+            // One quarter of the pupil is like the others.
             const double azimuth = std::numbers::pi / 2 * (i + 0.5) / azimuths;
             const Spokes spokes{lens, object_mm, stop_radius_mm, nm,
                                 V3d(std::cos(azimuth), std::sin(azimuth), 0)};

@@ -6,7 +6,7 @@
 namespace petzval {
 namespace {
 
-/// Shares of the amplitude that a bare boundary reflects.
+/// Reflected shares of the amplitude at a bare boundary.
 struct Amplitude {
     f4 s, p;
 };
@@ -24,7 +24,7 @@ f4 share(f4 a) {
     return min(max(a, f4{}), splat(1.f));
 }
 
-// Where the far medium has no ray, or light only grazes, everything is reflected.
+// Reflectance 1 where the far medium has no ray, or light only grazes.
 Reflectance all_where(m4 total, Reflectance r) {
     return {total ? splat(1.f) : share(r.s), total ? splat(1.f) : share(r.p)};
 }
@@ -43,7 +43,7 @@ Reflectance coated_reflectance(const Crossing& c, f4 nm) {
     const f4 in_film = sqrt(max(film2, f4{}));
     const Amplitude first = bare(c.index_from, c.cosine, film, in_film);
     const Amplitude second = bare(film, in_film, c.index_into, sqrt(max(cosine2, f4{})));
-    // There and back: twice a quarter wave at normal incidence.
+    // Phase of the way there and back: twice a quarter wave at normal incidence.
     const f4 phase = std::numbers::pi_v<float> * kQuarterWave_nm / nm * in_film;
     f4 twice_cosine;
     for (int i = 0; i < 4; ++i) twice_cosine[i] = 2 * std::cos(phase[i]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the surfaces of a lens reflect: unpolarised light, nothing absorbed.
+// Reflection at the surfaces of a lens: unpolarised light, nothing absorbed.
 #pragma once
 
 #include "camera/lens/lens.h"
@@ -7,9 +7,9 @@
 
 namespace petzval {
 
-/// Of magnesium fluoride, at all wavelengths: 1.3785 at 550 nm for the ordinary ray of the crystal
-/// (Dodge 1984, Appl. Opt. 23, 1980), rounded, as evaporated films differ by more. Its dispersion
-/// over the visible, 0.004, moves reflectances by a hundredth of themselves.
+/// Index of magnesium fluoride, at all wavelengths: 1.3785 at 550 nm for the ordinary ray of the
+/// crystal (Dodge 1984, Appl. Opt. 23, 1980), rounded, as evaporated films differ by more. Its
+/// dispersion over the visible, 0.004, moves reflectances by a hundredth of themselves.
 inline constexpr float kMgF2Index = 1.38f;
 inline constexpr float kQuarterWave_nm = 550.f;
 
@@ -18,21 +18,22 @@ struct Crossing {
     f4 index_from, index_into, cosine;
 };
 
-/// Shares of the power, 0 to 1: electric field across the plane of incidence (s) and in it (p).
+/// Reflected shares of the power, 0 to 1: electric field across the plane of incidence (s) and in
+/// it (p).
 struct Reflectance {
     f4 s, p;
     [[nodiscard]] f4 mean() const { return 0.5f * (s + p); }
 };
 
-/// Fresnel's equations (Born and Wolf 1999, Principles of Optics, 1.5.2); 1 where light is totally
-/// reflected.
+/// Reflectance by Fresnel's equations (Born and Wolf 1999, Principles of Optics, 1.5.2); 1 where
+/// light is totally reflected.
 [[nodiscard]] Reflectance fresnel_reflectance(const Crossing&);
 
-/// Of a layer of MgF2 between the two, by Airy's sum of all reflections within it (Born and Wolf
-/// 1999, 1.6.4). nm: in air.
+/// Reflectance of a layer of MgF2 between the two, by Airy's sum of all reflections within it (Born
+/// and Wolf 1999, 1.6.4). nm: in air.
 [[nodiscard]] Reflectance coated_reflectance(const Crossing&, f4 nm);
 
-/// Share of light that a surface lets through. touches_air: air is on one side and not on both.
+/// Transmittance of a surface, a share of light. touches_air: air is on one side and not on both.
 [[nodiscard]] f4 transmittance(Coating, const Crossing&, bool touches_air, f4 nm);
 
 /// Whether air, which is medium 0, is on one side of a surface and not on both.
@@ -41,7 +42,7 @@ template <class S>
     return (s.medium_before == 0) != (s.medium_after == 0);
 }
 
-/// Share of light that a lens lets through along its axis, nm in air.
+/// Transmittance of a lens along its axis, a share of light; nm in air.
 [[nodiscard]] float axial_transmittance(const Lens&, Coating, float nm);
 
 }  // namespace petzval

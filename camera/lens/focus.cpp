@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kInfinity_mm = 1e15;
 
-// From the last vertex; nothing where the image is not real and behind the lens.
+// Paraxial image distance from the last vertex; nothing where the image is not real and behind the
+// lens.
 std::optional<double> image_distance_mm(const Lens& lens, double object_mm) {
     const FirstOrder first = first_order(lens, kLineD_nm);
     if (!(object_mm < std::min(first.front_focus_mm, 0.))) return std::nullopt;
@@ -31,7 +32,7 @@ double thickness_mm(const Lens& lens, int surface) {
     return lens.prescription().surfaces[static_cast<size_t>(surface)].thickness_mm;
 }
 
-// A lens whose group stands somewhere else.
+// Lens whose focusing group is moved.
 class GroupMove {
   public:
     GroupMove(const Lens& lens, const Group& group)
@@ -40,13 +41,13 @@ class GroupMove {
           before_mm_(thickness_mm(lens, group[0] > 0 ? group[0] - 1 : lens.last())),
           behind_mm_(thickness_mm(lens, group[1])) {}
 
-    /// The group has moved towards the film by that much, from where it was at first.
+    /// Moves the group towards the film by that much, from where it was at first.
     const Lens& to(double by_mm) {
         if (group_[0] > 0) lens_.set_thickness(group_[0] - 1, before_mm_ + by_mm);
         lens_.set_thickness(group_[1], behind_mm_ - by_mm);
         return lens_;
     }
-    /// How far it can move towards the scene (below 0) and towards the film.
+    /// Range of the move, towards the scene (below 0) and towards the film.
     [[nodiscard]] double least_mm() const { return -before_mm_; }
     [[nodiscard]] double most_mm() const { return behind_mm_; }
 
@@ -77,7 +78,7 @@ std::optional<Lens> group_focused(const Lens& filed, const Group& group, double 
     const auto at_rest = miss(0);
     if (!at_rest) return std::nullopt;
     if (std::fabs(*at_rest) < 1e-9) return base;
-    // A root on either side, as groups of both signs are used.
+    // Search for a root on either side, as groups of both signs are used.
     for (int side = 0; side < 2 && b == 0; ++side) {
         const double reach = side == 0 ? move.most_mm() : move.least_mm();
         for (int i = 1; i <= 64; ++i) {
@@ -101,8 +102,8 @@ std::optional<Lens> group_focused(const Lens& filed, const Group& group, double 
     return move.to((a + b) / 2);
 }
 
-// Downhill in growing steps from a minimum's neighbourhood, then the golden section (Kiefer 1953,
-// Proc. Amer. Math. Soc. 4, 502) to a ten-thousandth of the bracket.
+// Minimum of f near 0: downhill in growing steps, then the golden section (Kiefer 1953, Proc. Amer.
+// Math. Soc. 4, 502) to a ten-thousandth of the bracket.
 double least_near(const auto& f, double step) {
     constexpr int kRounds = 20;
     double middle = 0, at_middle = f(0.);
@@ -136,7 +137,7 @@ double least_near(const auto& f, double step) {
     return (low + high) / 2;
 }
 
-// From where it is sharp paraxially.
+// Lens with its group at the least spot, searched from where it is sharp paraxially.
 std::optional<Lens> group_at_best_spot(const Lens& sharp, const Group& group, double object_mm,
                                        double stop_radius_mm) {
     const auto shift = best_film_shift_mm(sharp, sharp.film_mm(), object_mm, stop_radius_mm);

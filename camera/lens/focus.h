@@ -20,25 +20,25 @@ namespace petzval {
     const Lens&, double object_mm, FocusBy = FocusBy::Paraxial,
     double stop_radius_mm = std::numeric_limits<double>::infinity());
 
-/// How far the film must move from film_mm (from the first vertex) for the least mean square
-/// radius of the axial spot, as FocusBy::Traced has it. Nothing where no ray passes.
+/// Shift of the film from film_mm (from the first vertex) to the least mean square radius of the
+/// axial spot, as FocusBy::Traced has it. Nothing where no ray passes.
 [[nodiscard]] std::optional<double> best_film_shift_mm(
     const Lens&, double film_mm, double object_mm,
     double stop_radius_mm = std::numeric_limits<double>::infinity());
 
-/// Real rays of line d from a distant axial point.
+/// Real ray of line d from a distant axial point.
 struct AxialRay {
     double stop_height_mm;
     double sine;  ///< of its angle with the axis behind the lens
 };
-/// The ray that enters parallel to the axis at this height; nothing where it does not come through
-/// the clear semi-diameters, the stop's left out.
+/// Axial ray that enters parallel to the axis at this height; nothing where it does not come
+/// through the clear semi-diameters, the stop's left out.
 [[nodiscard]] std::optional<AxialRay> axial_ray(const Lens&, double height_mm);
 
 /// Stop radius that gives an f-number 1 / (2 sin u') for a distant axial point; nothing where the
 /// glass does not let such a ray through, or no ray has that angle.
 [[nodiscard]] std::optional<double> stop_radius_for(const Lens&, double fnumber);
-/// The f-number of a stop radius, by the same measure; infinite where no ray gets there.
+/// F-number of a stop radius, by the same measure; infinite where no ray gets there.
 [[nodiscard]] double fnumber_of(const Lens&, double stop_radius_mm);
 
 }  // namespace petzval

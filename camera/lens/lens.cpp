@@ -151,7 +151,7 @@ LensIndices<f4> Lens::exact_indices(f4 nm) const {
 }
 
 LensIndices<f4> Lens::indices(f4 nm) const {
-    // As SpectrumTable::at, but the place in the tables is looked for once.
+    // Interpolation as in SpectrumTable::at, but the place in the tables is looked for once.
     const f4 place = min(max(nm - float(kFirst_nm), f4{}), splat(kSpectrumSize - 1));
     const m4 i = __builtin_convertvector(min(place, splat(kSpectrumSize - 2)), m4);
     const f4 t = place - __builtin_convertvector(i, f4);

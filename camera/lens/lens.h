@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A prescription made ready for rays.
+// Lens: a prescription made ready for rays.
 #pragma once
 
 #include <vector>
@@ -10,16 +10,15 @@
 
 namespace petzval {
 
-/// The shapes that cost differently.
+/// Shapes of surfaces that cost differently.
 enum class Shape : uint8_t {
     Sphere,   ///< planes as well
     Quadric,  ///< conics and cylinders
     Asphere
 };
 
-/// What the trace wants to know of a surface, in half a cache line of floats: the quadric
-/// curvature_x x^2 + curvature_y y^2 + curvature_z z^2 = 2 z and what is behind it. An asphere
-/// deviates from it.
+/// Surface data for the trace, in half a cache line of floats: the quadric curvature_x x^2 +
+/// curvature_y y^2 + curvature_z z^2 = 2 z and what is behind it. An asphere deviates from it.
 template <class S>
 struct SurfaceFacts {
     S curvature_x = 0, curvature_y = 0;  ///< 1/mm; 0 along the axis of a cylinder
@@ -31,8 +30,8 @@ struct SurfaceFacts {
     uint16_t asphere = 0;                         ///< in Lens::aspheres
 };
 
-/// An asphere, r^2 = across_x x^2 + across_y y^2: sag = c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)) +
-/// sum of even[i] r^(2 + 2 i) + sum of odd[i] r^(3 + 2 i).
+/// Asphere, r^2 = across_x x^2 + across_y y^2: sag = c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)) + sum
+/// of even[i] r^(2 + 2 i) + sum of odd[i] r^(3 + 2 i).
 template <class S>
 struct Asphere {
     S curvature = 0, one_plus_k = 1;
@@ -40,7 +39,8 @@ struct Asphere {
     std::vector<S> even, odd;
 };
 
-/// More different media than any lens has, air among them: an index table is a plain array.
+/// Most different media of a lens, air among them, so that an index table is a plain array. No lens
+/// has so many.
 inline constexpr int kMaxMedia = 64;
 /// Highest power of r in an asphere.
 inline constexpr int kMaxAspherePower = 40;
@@ -51,12 +51,13 @@ struct LensIndices {
     V of_medium[kMaxMedia];
 };
 
-/// Surfaces are counted from 0 at the scene's side. The vertex of the first is at z = 0.
+/// Lens for tracing. Surfaces are counted from 0 at the scene's side; the vertex of the first is at
+/// z = 0.
 class Lens {
   public:
-    /// std::invalid_argument where there is no surface, not one stop, more than kMaxMedia - 1
-    /// glasses, a number that is not finite, or a power of an asphere that is not an integer from
-    /// 2 to kMaxAspherePower.
+    /// Throws std::invalid_argument where there is no surface, not one stop, kMaxMedia glasses or
+    /// more, a number that is not finite, or a power of an asphere that is not an integer from 2 to
+    /// kMaxAspherePower.
     explicit Lens(Prescription);
 
     [[nodiscard]] const Prescription& prescription() const { return prescription_; }
@@ -64,30 +65,30 @@ class Lens {
     [[nodiscard]] int last() const { return size() - 1; }
     [[nodiscard]] int stop() const { return stop_; }
     [[nodiscard]] double vertex_mm(int surface) const { return vertices_mm_[size_t(surface)]; }
-    /// Where the prescription has the film: behind the last thickness.
+    /// Film position of the prescription: behind the last thickness.
     [[nodiscard]] double film_mm() const;
     /// Moves what lies behind a surface to this distance from it; what is known of the glasses
-    /// stays. std::invalid_argument where it is not finite.
+    /// stays. Throws std::invalid_argument where it is not finite.
     void set_thickness(int surface, double mm);
-    /// Whether it is the same at every azimuth: no cylinder.
+    /// Whether the lens is the same at every azimuth: no cylinder.
     [[nodiscard]] bool of_revolution() const;
-    /// Air, then each glass once.
+    /// Media: air, then each glass once.
     [[nodiscard]] const std::vector<Glass>& media() const { return media_; }
 
-    /// S: float or double.
+    /// Surfaces and aspheres for the trace. S: float or double.
     template <class S>
     [[nodiscard]] const std::vector<SurfaceFacts<S>>& surfaces() const;
     template <class S>
     [[nodiscard]] const std::vector<Asphere<S>>& aspheres() const;
 
-    /// Glasses' own formulas, for analyses.
+    /// Indices by the glasses' own formulas, for analyses.
     [[nodiscard]] LensIndices<d4> exact_indices(d4 nm) const;
-    /// The same in floats.
+    /// The same indices in floats.
     [[nodiscard]] LensIndices<f4> exact_indices(f4 nm) const;
-    /// From tables of 1 nm that are linear in between, for rendering. For catalogue glasses they
-    /// are within 3.5e-6 of the formula from 400 nm up, float's rounding included, and 1.2e-5 from
-    /// 360; in the nanometre where a glass's range begins within 2.1e-4, as the index has a kink
-    /// there.
+    /// Indices from tables of 1 nm that are linear in between, for rendering. For catalogue glasses
+    /// they are within 3.5e-6 of the formula from 400 nm up, float's rounding included, and 1.2e-5
+    /// from 360; in the nanometre where a glass's range begins within 2.1e-4, as the index has a
+    /// kink there.
     [[nodiscard]] LensIndices<f4> indices(f4 nm) const;
 
   private:

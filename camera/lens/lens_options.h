@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The choices that a photographer has of a lens, without the machinery that carries them out.
+// Options of a lens, without the machinery that carries them out.
 #pragma once
 
 #include <cstdint>
 
 namespace petzval {
 
-/// Ideal: nothing is lost. Uncoated: Fresnel's reflection at every change of index. MgF2: one layer
-/// of magnesium fluoride, a quarter wave thick at 550 nm and normal incidence, on every surface
-/// that touches air; cemented ones stay bare.
+/// Coating of surfaces. Ideal: nothing is lost. Uncoated: Fresnel's reflection at every change of
+/// index. MgF2: one layer of magnesium fluoride, a quarter wave thick at 550 nm and normal
+/// incidence, on every surface that touches air; cemented ones stay bare.
 enum class Coating : uint8_t { Ideal, Uncoated, MgF2 };
 
 enum class FocusBy : uint8_t {
@@ -16,9 +16,9 @@ enum class FocusBy : uint8_t {
     Traced  ///< the least mean square radius of the spot on the axis: F, d and C, through the iris
 };
 
-/// What a drawn ray is traced in. Its direction at the film is solved for in floats either way; in
-/// doubles it is then followed anew, with the glasses' own formulas, and becomes a ray of floats in
-/// the world.
+/// Number type in which a drawn ray is traced. Its direction at the film is solved for in floats
+/// either way; in doubles it is then followed anew, with the glasses' own formulas, and becomes a
+/// ray of floats in the world.
 enum class Precision : uint8_t { Float, Double };
 
 }  // namespace petzval

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The numbers that a ray through a lens may be made of: one float, four floats, four doubles, and
-// any of these with two derivatives. One trace serves them all.
+// Number types of a ray through a lens: one float, four floats, four doubles, and any of these with
+// two derivatives. One trace serves them all.
 #pragma once
 
 #include <cmath>
@@ -12,8 +12,8 @@
 
 namespace petzval {
 
-/// Scalar: what constants are made of. Value: the number without derivatives. Mask: what comparing
-/// gives. Code: an integer for each lane.
+/// Types that go with a number. Scalar: of constants. Value: the number without derivatives. Mask:
+/// the result of comparing. Code: an integer for each lane.
 template <class N>
 struct NumberTraits;
 template <class S, class V, class M, class C, int n>
@@ -39,7 +39,7 @@ using MaskOf = typename NumberTraits<N>::Mask;
 template <class N>
 using CodeOf = typename NumberTraits<N>::Code;
 
-/// The same in all lanes.
+/// One number in all lanes.
 template <class V>
 [[nodiscard]] V broadcast(ScalarOf<V> a) {
     return V{} + a;
@@ -81,7 +81,7 @@ template <class Mask, class V>
     return on ? a : b;
 }
 
-/// A number with its derivatives by two parameters; with them the trace gives exact Jacobians.
+/// Number with its derivatives by two parameters; with them the trace gives exact Jacobians.
 /// Comparing and choosing look at the value.
 template <class V>
 struct Dual {
@@ -100,11 +100,11 @@ struct Dual {
     }
 };
 
-/// What has no derivative: V, or a constant for all lanes.
+/// Operand without a derivative: V, or a constant for all lanes.
 template <class C, class V>
 concept ConstantFor = std::same_as<C, V> || std::is_arithmetic_v<C>;
 
-/// A constant as V's operators want it.
+/// Constant in the type that V's operators take.
 template <class V, ConstantFor<V> C>
 [[nodiscard]] auto fit(C c) {
     if constexpr (std::same_as<C, V>)
@@ -148,7 +148,7 @@ template <class V, ConstantFor<V> C>
     return {quotient, -quotient * by * a.du, -quotient * by * a.dv};
 }
 
-/// The derivative of the root of 0, infinite, is given as 0.
+/// Square root; its derivative at 0, infinite, is given as 0.
 template <class V>
 [[nodiscard]] Dual<V> sqrt(Dual<V> a) {
     const V root = sqrt(a.value);
@@ -171,7 +171,7 @@ template <class V>
 [[nodiscard]] V value_of(Dual<V> a) {
     return a.value;
 }
-/// Without derivatives.
+/// A constant as an N: its derivatives are 0.
 template <class N>
 [[nodiscard]] N constant(ValueOf<N> a) {
     if constexpr (std::same_as<N, ValueOf<N>>)
@@ -180,7 +180,7 @@ template <class N>
         return {a};
 }
 
-/// Three of them: Imath's vectors want numbers that compare to a bool.
+/// Vector of three numbers. Imath's vectors want numbers that compare to a bool.
 template <class N>
 struct Vec3 {
     N x{}, y{}, z{};

@@ -7,7 +7,8 @@
 namespace petzval {
 namespace {
 
-/// Height, and index times angle: what refraction at a plane leaves alone. Welford 1986, ch. 3.
+/// Paraxial ray: height, and index times angle, which refraction at a plane leaves alone. Welford
+/// 1986, ch. 3.
 struct ParaxialRay {
     double height, reduced_angle;
 };
@@ -21,7 +22,7 @@ double curvature_at_vertex(const LensSurface& surface, Section section) {
     return curvature;
 }
 
-/// A lens in one section at one wavelength.
+/// Paraxial lens in one section at one wavelength.
 class ParaxialLens {
   public:
     ParaxialLens(const Lens& lens, double nm, Section section) : lens_(lens) {
@@ -44,7 +45,7 @@ class ParaxialLens {
         ray.height +=
             ray.reduced_angle / after(i) * lens_.prescription().surfaces[size_t(i)].thickness_mm;
     }
-    /// From before surface `first` to behind surface `last`.
+    /// Ray followed from before surface `first` to behind surface `last`.
     [[nodiscard]] ParaxialRay follow(ParaxialRay ray, int first, int last) const {
         for (int i = first; i <= last; ++i) {
             if (i != first) go_to_next(ray, i - 1);

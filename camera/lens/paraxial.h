@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a lens does near its axis, and its third-order aberrations.
+// Paraxial optics of a lens, and its third-order (Seidel) aberrations.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace petzval {
 
-/// The plane in which paraxial rays are followed: it matters where there are cylinders.
+/// Plane in which paraxial rays are followed: it matters where there are cylinders.
 enum class Section : uint8_t { X, Y };
 
 /// First-order data at a wavelength. Millimetres along the axis; infinite where there is none, as
@@ -31,7 +31,7 @@ struct ParaxialImage {
     double from_last_vertex_mm;
     double magnification;  ///< height of the image over that of the object
 };
-/// Where an object at object_mm (from the first vertex, < 0 before the lens) is imaged.
+/// Paraxial image of an object at object_mm (from the first vertex, < 0 before the lens).
 [[nodiscard]] ParaxialImage image_of(const Lens&, double object_mm, double nm,
                                      Section = Section::Y);
 
@@ -44,8 +44,8 @@ struct Seidel {
     std::vector<SeidelSums> of_surface;
     SeidelSums total{};
 };
-/// For a distant object at field_tan = tan(angle from the axis) and the full aperture, at line d.
-/// std::invalid_argument where the lens has cylinders.
+/// Seidel sums for a distant object at field_tan = tan(angle from the axis) and the full aperture,
+/// at line d. Throws std::invalid_argument where the lens has cylinders.
 [[nodiscard]] Seidel seidel(const Lens&, double field_tan);
 
 }  // namespace petzval

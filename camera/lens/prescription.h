@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A lens as its designer wrote it down.
+// Prescription: a lens as its designer wrote it down.
 #pragma once
 
 #include <array>
@@ -17,7 +17,8 @@ enum class Profile : uint8_t {
     CylinderY   ///< axis along y: power in the x-z section
 };
 
-/// Sag c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)) + sum A r^n; r is |y| or |x| for a cylinder.
+/// Surface of sag c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)) + sum A r^n; r is |y| or |x| for a
+/// cylinder.
 struct LensSurface {
     double curvature_1_mm = 0;  ///< > 0: the centre lies on the sensor's side; 0: plane
     double conic = 0;           ///< k
@@ -26,10 +27,11 @@ struct LensSurface {
     double thickness_mm = 0;  ///< to the next vertex; of the last surface: to the film
     double semi_diameter_mm = 0;
     bool stop = false;           ///< the plane of the iris; glass does not change there
-    std::optional<Glass> glass;  ///< what follows the surface; air where there is none
+    std::optional<Glass> glass;  ///< medium behind the surface; air where there is none
 };
 
-/// Millimetres. Light travels towards +z, from the scene to the sensor; z = 0 at the first vertex.
+/// Lens in millimetres. Light travels towards +z, from the scene to the sensor; z = 0 at the first
+/// vertex.
 struct Prescription {
     std::string name, title, source;
     std::vector<LensSurface> surfaces;  ///< at least one; exactly one is the stop

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The outlines of a lens in a plane through its axis.
+// Outlines of a lens in a plane through its axis.
 #pragma once
 
 #include <array>
@@ -10,16 +10,17 @@
 
 namespace petzval {
 
-/// z from the surface's own vertex at a height in a section, mm; NaN beyond the conic's reach.
+/// Sag, z from the surface's own vertex, at a height in a section, mm; NaN beyond the conic's
+/// reach.
 [[nodiscard]] double sag_mm(const LensSurface&, double height_mm, Section);
 
 using Outline = std::vector<std::array<double, 2>>;  ///< {z, height}, mm; z from the first vertex
 
-/// A surface from edge to edge, bottom first; as far as it reaches.
+/// Outline of a surface from edge to edge, bottom first; as far as it reaches.
 [[nodiscard]] Outline surface_outline(const Lens&, int surface, Section);
 
-/// A closed outline of the glass behind a surface: both its faces and a rim at the larger of the
-/// two heights. Empty where air follows.
+/// Closed outline of the glass behind a surface: both its faces and a rim at the larger of the two
+/// heights. Empty where air follows.
 [[nodiscard]] Outline element_outline(const Lens&, int surface, Section);
 
 }  // namespace petzval

@@ -9,10 +9,11 @@
 namespace petzval {
 namespace {
 
-// Of the stop's radius; Newton's next step squares the latter.
+// Tolerances in radii of the stop; Newton's next step squares the latter.
 constexpr float kTolerance = 1e-4f, kToleranceBeforeStep = 3e-3f;
-// Of a direction cosine. Where the pupil folds, directions far apart meet the stop at nearly one
-// point: a ray that is near it there may have any stretch, and with it any weight.
+// Largest Newton step left, in direction cosines. Where the pupil folds, directions far apart meet
+// the stop at nearly one point: a ray that is near it there may have any stretch, and with it any
+// weight.
 constexpr float kMostStepLeft = 1e-3f;
 constexpr int kMostSteps = 12, kMostHalvings = 6;
 
@@ -23,7 +24,7 @@ V2f turned(V2f p, V2f cosine_sine) {
     return {p.x * cosine_sine.x - p.y * cosine_sine.y, p.x * cosine_sine.y + p.y * cosine_sine.x};
 }
 
-// Lagrange's cubic through the nodes 0, 1, 2, 3: their weights at t.
+// Weights at t of the nodes 0, 1, 2, 3 by Lagrange's cubic.
 f4 cubic(float t) {
     const float a = t - 1, b = t - 2, c = t - 3;
     return f4{a * b * c, t * b * c, t * a * c, t * a * b} * f4{-1 / 6.f, 0.5f, -0.5f, 1 / 6.f};
@@ -64,8 +65,8 @@ RayAimer::RayAimer(const Lens& lens, double film_mm, double film_reach_mm)
           lens.prescription().surfaces[static_cast<size_t>(lens.stop())].semi_diameter_mm)),
       symmetric_(lens.of_revolution()) {
     const float reach = static_cast<float>(film_reach_mm), radius = stop_radius_mm_;
-    // So fine that a guess is a solution for nearly all rays, so coarse that a lens is set up in
-    // milliseconds: lens_camera_bench.
+    // Table size: so fine that a guess is a solution for nearly all rays, so coarse that a lens is
+    // set up in milliseconds (lens_camera_bench).
     columns_ = symmetric_ ? Axis{0, 0, 1} : Axis{0, reach, 6};
     rows_ = {0, reach, symmetric_ ? 12 : 6};
     across_ = symmetric_ ? Axis{0, radius, 8} : Axis{-radius, radius, 13};
@@ -100,7 +101,8 @@ AimedRay<V> RayAimer::cross(V2f film_point_mm, V l, V m, const LensIndices<V>& i
 template AimedRay<f4> RayAimer::cross(V2f, f4, f4, const LensIndices<f4>&) const;
 template AimedRay<d4> RayAimer::cross(V2f, d4, d4, const LensIndices<d4>&) const;
 
-// Newton's method from a guess: half the step where it leads to where rays never reach the stop.
+// Ray by Newton's method from a guess: half the step where it leads to where rays never reach the
+// stop.
 std::optional<AimedRay<f4>> RayAimer::newton(V2f film_point_mm, V2f stop_point_mm, V2f cosines,
                                              const LensIndices<f4>& indices, int lane) const {
     V2f good = cosines, step(0.f);
@@ -124,7 +126,7 @@ std::optional<AimedRay<f4>> RayAimer::newton(V2f film_point_mm, V2f stop_point_m
     return std::nullopt;
 }
 
-// The same for each lane by itself, but for one that fails: it keeps the guess.
+// Direction cosines by Newton's method for each lane by itself; a lane that fails keeps the guess.
 RayAimer::Node RayAimer::settled(V2f film_point_mm, V2f stop_point_mm, const Node& guess,
                                  const LensIndices<f4>& indices) const {
     Node at = guess;
@@ -139,8 +141,8 @@ RayAimer::Node RayAimer::settled(V2f film_point_mm, V2f stop_point_mm, const Nod
     return {inside & close ? at.l : guess.l, inside & close ? at.m : guess.m};
 }
 
-// Outwards from the middle of the stop, each ray guessed from those that are known next to it: as
-// from the film point before, so here.
+// Solves the table outwards from the middle of the stop. Each ray is guessed from its neighbour
+// nearer to the middle, plus the step between the same two at the film point before.
 void RayAimer::solve_table() {
     const LensIndices<f4> indices = lens_.exact_indices(kNodes_nm);
     table_.resize(place(columns_.size, 0, 0, 0));
@@ -203,7 +205,7 @@ V2f RayAimer::between(V2f film_point_mm, V2f stop_point_mm, float nm) const {
 std::optional<AimedRay<f4>> RayAimer::aim(V2f film_point_mm, V2f stop_point_mm,
                                           const LensIndices<f4>& indices, int lane,
                                           float nm) const {
-    // Into the part that the table covers, and back.
+    // Symmetry: turn and mirror into the part that the table covers, and back.
     V2f p = film_point_mm, q = stop_point_mm;
     V2f turn(1.f, 0.f);
     if (symmetric_) {

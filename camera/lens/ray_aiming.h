@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a point of the film to a point of the stop: which way does the ray leave the film?
+// Ray aiming: finds the direction in which a ray must leave a film point to meet a point of the
+// stop.
 #pragma once
 
 #include <optional>
@@ -11,15 +12,15 @@
 
 namespace petzval {
 
-/// Where rays from the film cross the plane of the stop, lane by lane. V: f4 or d4.
+/// Rays from the film at the plane of the stop, lane by lane. V: f4 or d4.
 template <class V>
 struct AimedRay {
     V l, m;           ///< direction cosines at the film
     LensRay<V> ray;   ///< at the stop, on its way to the scene
     MaskOf<V> clear;  ///< inside the clear semi-diameters of all that it met, the stop's too
-    /// d(x, y) / d(l, m): columns by l and by m.
+    /// Jacobian d(x, y) / d(l, m): columns by l and by m.
     V x_by_l, y_by_l, x_by_m, y_by_m;
-    int traces = 1;  ///< that it took to find it
+    int traces = 1;  ///< needed to find the ray
 
     [[nodiscard]] V determinant() const { return x_by_l * y_by_m - x_by_m * y_by_l; }
     /// Area on the stop for a unit of dl dm, which is projected solid angle at the film.
@@ -29,10 +30,11 @@ struct AimedRay {
     }
 };
 
-/// The rear of a lens, film to stop. Millimetres; coordinates as in Prescription.
+/// Ray aiming through the rear of a lens, film to stop. Millimetres; coordinates as in
+/// Prescription.
 class RayAimer {
   public:
-    /// film_reach_mm: how far film points lie from the axis at most. The lens must outlive it.
+    /// film_reach_mm: greatest distance of film points from the axis. The lens must outlive it.
     RayAimer(const Lens&, double film_mm, double film_reach_mm);
 
     /// The ray that leaves the film in the same direction in all lanes, and in one of them, whose
@@ -45,7 +47,7 @@ class RayAimer {
     /// The ray that leaves the film with direction cosines l and m. V: f4 or d4.
     template <class V>
     [[nodiscard]] AimedRay<V> cross(V2f film_point_mm, V l, V m, const LensIndices<V>&) const;
-    /// Its beginning. N: V, or V with derivatives.
+    /// Ray of cross() where it leaves the film. N: V, or V with derivatives.
     template <class N>
     [[nodiscard]] LensRay<N> leave(V2f film_point_mm, const N& l, const N& m) const {
         const auto number = [](double a) {
@@ -60,7 +62,7 @@ class RayAimer {
     }
 
   private:
-    /// Equal steps over [first, last].
+    /// Axis of the table: equal steps over [first, last].
     struct Axis {
         float first, last;
         int size;
@@ -84,7 +86,7 @@ class RayAimer {
     const Lens& lens_;
     double film_mm_;
     float stop_radius_mm_;
-    bool symmetric_;       ///< about the axis: film points on the +y axis say it all
+    bool symmetric_;       ///< about the axis: film points on the +y axis suffice
     Axis columns_, rows_;  ///< x and y of film points, >= 0
     Axis across_, up_;     ///< x and y of stop points
     std::vector<Node> table_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays through a lens, in either direction, four wavelengths at once.
+// Ray tracing through a lens, in either direction, four wavelengths at once.
 #pragma once
 
 #include <limits>
@@ -12,8 +12,8 @@ namespace petzval {
 
 namespace lens_trace {
 
-/// Where a ray meets a surface. normal: unit, along the light that crosses the surface. The cosine
-/// of incidence and its square, as the square is there before the root.
+/// Intersection of a ray with a surface. normal: unit, along the light that crosses the surface.
+/// The cosine of incidence and its square, as the square is there before the root.
 template <class V>
 struct Meeting {
     V distance;
@@ -27,7 +27,8 @@ template <class N>
 [[nodiscard]] N or_zero(N a) {
     return select(value_of(a) > 0, a, N{});
 }
-/// What grows beyond all bounds, derivatives where light grazes, is given as 0.
+/// Inverse of a, or 0 where a is not above 0: for derivatives, which grow beyond all bounds where
+/// light grazes.
 template <class V>
 [[nodiscard]] V inverse_or_zero(V a) {
     return select(a > 0, V(1 / a), V{});
@@ -42,10 +43,11 @@ template <class V>
     return select(same_sign, c, V(-b - root)) / select(same_sign, V(root - b), a);
 }
 
-/// `foot` is the ray's point that is nearest to the vertex: from there the root has no large terms
-/// that cancel, wherever the ray came from, and B is -direction.z (Feder 1951, J. Opt. Soc. Am. 41,
-/// 630); it halves what floats err, for the same time. The root is the one on the sheet that has
-/// the vertex, crossed in the light's direction. A call would cost a tenth of a draw.
+/// Intersects a sphere. `foot` is the ray's point that is nearest to the vertex: from there the
+/// root has no large terms that cancel, wherever the ray came from, and B is -direction.z (Feder
+/// 1951, J. Opt. Soc. Am. 41, 630); it halves what floats err, for the same time. The root is the
+/// one on the sheet that has the vertex, crossed in the light's direction. Inlined, as a call would
+/// cost a tenth of a draw.
 template <class V>
 [[nodiscard, gnu::always_inline]] inline Meeting<V> meet_sphere(ScalarOf<V> c, ScalarOf<V> sign,
                                                                 const Vec3<V>& foot,
@@ -63,8 +65,8 @@ template <class V>
     return hit;
 }
 
-/// The same for curvature_x x^2 + curvature_y y^2 + curvature_z z^2 = 2 z, whose gradient is not
-/// of unit length.
+/// Intersects the quadric curvature_x x^2 + curvature_y y^2 + curvature_z z^2 = 2 z, whose gradient
+/// is not of unit length.
 template <class V>
 [[nodiscard]] Meeting<V> meet_quadric(const SurfaceFacts<ScalarOf<V>>& s, ScalarOf<V> sign,
                                       const Vec3<V>& foot, const Vec3<V>& direction) {
@@ -117,14 +119,15 @@ template <class N>
     return {s.curvature * r2 / (1 + root) + even * r2, s.curvature / root + even_slope};
 }
 
-/// x^2 and y^2, as far as the asphere goes by them.
+/// r^2 of a point for an asphere: x^2 and y^2, as far as the asphere goes by them.
 template <class V>
 [[nodiscard]] V r2_of(const Asphere<ScalarOf<V>>& s, const Vec3<V>& p) {
     return p.x * p.x * s.across_x + p.y * p.y * s.across_y;
 }
 
-/// Newton's method from the quadric's point. Each lane stops when it has converged, so that what
-/// it finds does not depend on its neighbours. One more step squares what error is left.
+/// Intersects an asphere by Newton's method from the quadric's point. Each lane stops when it has
+/// converged, so that what it finds does not depend on its neighbours. One more step squares what
+/// error is left.
 template <class V>
 [[nodiscard]] Meeting<V> meet_asphere(const SurfaceFacts<ScalarOf<V>>& facts,
                                       const Asphere<ScalarOf<V>>& s, ScalarOf<V> sign,
@@ -158,12 +161,12 @@ template <class V>
     hit.normal = ahead * (sign * hit.per_gradient);
     hit.cosine = dot(hit.normal, direction);
     hit.cosine2 = hit.cosine * hit.cosine;
-    // An infinite slope makes no number of the cosine, one whose square is infinite makes it 0.
+    // An infinite slope makes the cosine NaN; one whose square is infinite makes it 0.
     hit.found = converged & (hit.cosine > 0);
     return hit;
 }
 
-/// How the unit normal turns where the point moves along the surface.
+/// Change of the unit normal as the point moves along the surface.
 template <class V>
 class NormalChange {
     using S = ScalarOf<V>;
@@ -202,12 +205,12 @@ class NormalChange {
     V slope_by_r_{}, by_r2_{};
 };
 
-/// How a ray changes by one parameter.
+/// Derivative of a ray by one parameter.
 template <class V>
 struct RayChange {
     Vec3<V> origin, direction;
 };
-/// Those that a number carries.
+/// Derivatives that a ray of numbers N carries; none without a Dual.
 template <class N>
 struct RayChanges {
     static constexpr bool kAny = false;
@@ -240,7 +243,7 @@ struct RayChanges<Dual<V>> {
     }
 };
 
-/// The values of a ray, or values put back into one that has derivatives.
+/// Ray in another number type: its values, or values put into one that has derivatives.
 template <class To, class From>
 [[nodiscard]] LensRay<To> converted(const LensRay<From>& ray) {
     if constexpr (std::same_as<To, From>)
@@ -257,7 +260,7 @@ template <class To, class From>
     }
 }
 
-/// Lanes that are blocked just now get their status; all blocked ones have the axis for a ray.
+/// Gives a status to lanes that are blocked just now, and the axis for a ray to all blocked ones.
 template <class N>
 [[gnu::noinline]] LensRay<N> block(LensRay<N> ray, int surface, ScalarOf<N> sign, MaskOf<N> found,
                                    MaskOf<N> inside, MaskOf<N> refracted) {
@@ -277,7 +280,7 @@ template <class N>
 
 }  // namespace lens_trace
 
-/// Takes a ray through the surfaces of a range, from anywhere on its line: backwards along it to
+/// Traces a ray through the surfaces of a range, from anywhere on its line: backwards along it to
 /// the first surface is as good as forwards. It ends on the last surface, refracted. Returns the
 /// lanes that passed. N: float, f4, d4, Dual<f4> or Dual<d4>; the observer is called with a
 /// LensHit<ValueOf<N>>.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One ray through a lens, with all that can be told of it.
+// Traced ray: one ray through a lens, with its points, direction and optical path.
 #pragma once
 
 #include <array>
@@ -12,19 +12,20 @@
 
 namespace petzval {
 
-/// Millimetres; z = 0 at the first vertex, +z towards the film.
+/// Ray through a lens, millimetres; z = 0 at the first vertex, +z towards the film.
 struct TracedRay {
     std::vector<V3d> points;  ///< on each surface that it met, the one that blocked it too
-    V3d point, direction;     ///< where and how it leaves; of a ray that passed
-    double path_mm = 0;       ///< optical path from the origin to there
+    V3d point, direction;     ///< at which it leaves; only of a ray that passed
+    double path_mm = 0;       ///< optical path from the origin to `point`
     RayStatus status = RayStatus::Passed;
-    int end_surface = -1;  ///< where it was blocked
+    int end_surface = -1;  ///< surface that blocked it
 
-    /// Where a ray that passed meets a plane across the axis; nothing where it does not lead there.
+    /// Point (x, y) at which a ray that passed meets a plane across the axis; nothing where it does
+    /// not lead there.
     [[nodiscard]] std::optional<std::array<double, 2>> at_plane(double z_mm) const;
 };
 
-/// The trace in doubles with the glasses' own formulas. direction: of any length but 0.
+/// Traces a ray in doubles with the glasses' own formulas. direction: of any length but 0.
 [[nodiscard]] TracedRay trace_ray(const Lens&, const V3d& origin_mm, const V3d& direction,
                                   double nm, Towards, Clip);
 

@@ -11,7 +11,7 @@
 namespace petzval {
 namespace {
 
-// f(h) below this share of f: so far out that the closed form means nothing.
+// Least f(h) in units of f: below it the ray is so far out that the closed form means nothing.
 constexpr double kLeastZone = 0.5;
 
 void require_stop(const Singlet& lens, double radius_mm, double focus_mm) {
@@ -52,7 +52,7 @@ class AberratedLensCamera::Point {
         [[nodiscard]] f4 weight_of_lanes() const { return weight; }
     };
 
-    /// All must outlive it.
+    /// Camera, film point and bands must outlive it.
     Point(const AberratedLensCamera& camera, const FilmPoint& at, const Bands& bands)
         : c_(camera), at_(at), bands_(bands), achromatic_(one_ray(bands, camera.in_.dispersion)) {}
 
@@ -79,8 +79,8 @@ class AberratedLensCamera::Point {
                    std::fabs(rays.vergence_per_mm[b] - rays.vergence_per_mm[a]) <=
                c_.in_.tolerance_rad;
     }
-    /// Through a point of the lens, the same ray of the scene belongs to film points that differ by
-    /// the vergences of the lanes.
+    /// Landing by vergences: through a point of the lens, the same ray of the scene belongs to film
+    /// points that differ by the vergences of the lanes.
     [[nodiscard]] FilmLanding landing(const Rays& rays, const LaneRequest& request) const {
         Rays all;
         all.stop_mm = rays.stop_mm;
@@ -93,8 +93,8 @@ class AberratedLensCamera::Point {
     [[nodiscard]] float exposure() const { return c_.in_.exposure; }
 
   private:
-    /// Of the lanes whose closed form means something; the others get no weight. Only what holds
-    /// between the wavelengths that the camera's constructor tried can fail here.
+    /// Vergences of the lanes whose closed form means something; the others get no weight. Only
+    /// what holds between the wavelengths that the camera's constructor tried can fail here.
     void find_vergences(m4 lanes, f4 weight, Rays& out) const {
         const auto h_mm = double(out.stop_mm.length());
         for (int lane = 0; lane < 4; ++lane) {

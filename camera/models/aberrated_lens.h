@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The thin lens with the two aberrations that its closed forms know: spherical and chromatic.
+// Thin lens with the two aberrations that have closed forms: spherical and chromatic.
 #pragma once
 
 #include "camera/dispersion/dispersion_mode.h"
@@ -8,7 +8,7 @@
 
 namespace petzval {
 
-/// A single lens that stands as ThinLens does. The film is where the plane at focus_m is sharp for
+/// Single lens that stands as ThinLens does. The film is where the plane at focus_m is sharp for
 /// rays near the axis at the d line.
 struct AberratedLens {
     M44f to_world;  ///< rigid; metres
@@ -18,23 +18,23 @@ struct AberratedLens {
     float yfov_rad = 0.7f;  ///< full vertical angle, seen from the lens's centre
     float aspect = 1.5f;    ///< width / height of the film
     DispersionMode dispersion = DispersionMode::Tolerance;
-    float tolerance_rad = 0;  ///< Tolerance: how far apart directions may be, seen from the lens
+    float tolerance_rad = 0;  ///< Tolerance: most angle between directions, seen from the lens
     float exposure = 1.f;     ///< factor on every weight
 };
 
-/// A ray that meets the lens h off the axis is bent as by an ideal lens of focal length f(h,
-/// wavelength): zonal_focal_length_mm for the distance in focus. Coma, astigmatism and curvature of
-/// field are left out: a film point images as the film's centre does.
+/// Camera with an aberrated lens. A ray that meets the lens h off the axis is bent as by an ideal
+/// lens of focal length f(h, wavelength): zonal_focal_length_mm for the distance in focus. Coma,
+/// astigmatism and curvature of field are left out: a film point images as the film's centre does.
 class AberratedLensCamera final : public Camera {
   public:
-    /// Error (std::invalid_argument): focus within the focal length, a lens that does not gather
+    /// Throws std::invalid_argument for focus within the focal length, a lens that does not gather
     /// light at all of 360 to 830 nm, or an iris wider than its surfaces or than f(h) > f/2 allows.
     explicit AberratedLensCamera(AberratedLens);
     [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
     [[nodiscard]] double film_distance_mm() const { return film_mm_; }
 
   private:
-    /// A film point's rays: what camera/dispersion's strategies are made of.
+    /// A film point's rays, for the strategies of camera/dispersion.
     class Point;
     [[nodiscard]] double zonal_mm(double n, double h_mm) const;
 

@@ -8,10 +8,10 @@
 namespace petzval {
 namespace {
 
-// Where wavelengths are compared for a lens that is focused at infinity.
+// Distance at which wavelengths are compared for a lens that is focused at infinity.
 constexpr float kFarthest_m = 1e9f;
 
-// What the iris lets through at a point of each lane.
+// Transmission of the iris at a point of each lane.
 template <class V>
 V iris_transmission(const Iris& iris, V x, V y) {
     const auto at = [&](int i) {
@@ -36,7 +36,8 @@ ScalarOf<V> sum(V a) {
     return (a[0] + a[1]) + (a[2] + a[3]);
 }
 
-// What took each lane that is on and did not pass. A rim comes before what befalls a ray behind it.
+// Loss reason per lane that is on and did not pass. A ray that a rim clips first counts as
+// vignetted, whatever happens after.
 template <class V>
 LensLosses<uint32_t> losses(m4 on, const LensDraw<V>& drawn, MaskOf<V> clear) {
     const auto count = [on](MaskOf<V> lanes) {
@@ -54,7 +55,7 @@ LensLosses<uint32_t> losses(m4 on, const LensDraw<V>& drawn, MaskOf<V> clear) {
     return out;
 }
 
-// What a surface does not reflect of the light that was traced to it, lane by lane.
+// Transmittance of a surface for the light that was traced to it, lane by lane.
 template <class V>
 f4 surface_transmission(const Lens& lens, Coating coating, const LensIndices<V>& indices,
                         const LensHit<V>& hit, Towards towards, f4 nm) {
@@ -86,7 +87,7 @@ class LensCamera::Point {
     using S = ScalarOf<V>;
 
   public:
-    /// Both must outlive it. achromatic: all lanes have the indices of line d.
+    /// Camera and bands must outlive it. achromatic: all lanes have the indices of line d.
     Point(const LensCamera& camera, V2f film_mm, const Bands& bands, bool achromatic,
           const PixelFilter& pixel = {})
         : c_(camera), film_mm_(film_mm), bands_(bands), pixel_(pixel), achromatic_(achromatic) {
@@ -106,7 +107,7 @@ class LensCamera::Point {
 
   private:
     [[nodiscard]] const Lens& lens() const { return *c_.in_.lens; }
-    /// The stop's ray is solved for in floats; the rest is traced in V.
+    /// Indices in floats: the stop's ray is solved for in them; the rest is traced in V.
     [[nodiscard]] const LensIndices<f4>& in_floats() const {
         return achromatic_ ? c_.line_d_ : own_;
     }
@@ -116,7 +117,7 @@ class LensCamera::Point {
         else
             return achromatic_ ? c_.exact_line_d_ : own_exact_;
     }
-    /// What the surfaces let through of the ray that leaves the film towards the crossing.
+    /// Transmittance of the surfaces for the ray that leaves the film towards the crossing.
     [[nodiscard]] f4 transmitted(const AimedRay<V>&) const;
 
     struct Nothing {};
@@ -130,11 +131,11 @@ class LensCamera::Point {
         own_exact_;
 };
 
-// Irradiance is the integral of radiance dL dM, L and M the direction cosines at the film: the
-// cosine is in it. A point drawn evenly on the iris and solved for one lane has the density
-// stretch / area in (L, M); other lanes might have drawn the same direction, and all are weighed
-// with the mean density (balance heuristic: Veach 1997, 9.2.3), so that light at the iris's edge is
-// not lost where its image differs between wavelengths.
+// Weights of a draw. Irradiance is the integral of radiance dL dM, L and M the direction cosines at
+// the film: the cosine is in it. A point drawn evenly on the iris and solved for one lane has the
+// density stretch / area in (L, M); other lanes might have drawn the same direction, and all are
+// weighed with the mean density (balance heuristic: Veach 1997, 9.2.3), so that light at the iris's
+// edge is not lost where its image differs between wavelengths.
 template <class V>
 LensDraw<V> LensCamera::Point<V>::rays(const LaneRequest& request) const {
     const LensCameraInput& in = c_.in_;
@@ -154,8 +155,8 @@ LensDraw<V> LensCamera::Point<V>::rays(const LaneRequest& request) const {
             return c_.aimer_.cross(film_mm_, lanes_as<V>(solved->l), lanes_as<V>(solved->m),
                                    indices());
     }();
-    // What the solver leaves is taken off, so that the lane crosses the iris where it was drawn:
-    // an iris may be smaller than the tolerance.
+    // The solver's residual is taken off, so that the lane crosses the iris where it was drawn: an
+    // iris may be smaller than the tolerance.
     const V x = aimed.ray.origin.x + (S(on_iris.x) - aimed.ray.origin.x[request.lead]);
     const V y = aimed.ray.origin.y + (S(on_iris.y) - aimed.ray.origin.y[request.lead]);
     const V open = select(lanes_as<MaskOf<V>>(request.lanes) & aimed.ray.alive(),
@@ -217,8 +218,8 @@ bool LensCamera::Point<V>::together(const LensDraw<V>& rays, int a, int b) const
     return (on_plane(a) - on_plane(b)).length() <= c_.in_.tolerance_rad * focus_mm;
 }
 
-// The lead's ray goes back through the lens in all lanes. What rounding and the solver leave shows
-// in the lead, whose way is known, and is taken off all of them.
+// Landing: the lead's ray goes back through the lens in all lanes. What rounding and the solver
+// leave shows in the lead, whose way is known, and is taken off all of them.
 template <class V>
 FilmLanding LensCamera::Point<V>::landing(const LensDraw<V>& rays,
                                           const LaneRequest& request) const {
@@ -279,7 +280,7 @@ CameraSample LensCamera::sample(const FilmPoint& point, const Bands& bands) cons
                        point, bands);
 }
 
-// Smooth but for the edges of the iris and of the rims.
+// Mean of quasi-random draws: the integrand is smooth but for the edges of iris and rims.
 double LensCamera::irradiance(V2f film_mm, uint32_t count) const {
     const Bands bands = Bands::rgb();
     const Point<f4> film_point(*this, film_mm, bands, true);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The camera that is a lens: rays leave the film, cross the iris, and go out through the glass.
+// Camera with a real lens: rays leave the film, cross the iris, and go out through the glass.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,7 @@
 
 namespace petzval {
 
-/// A draw of the iris. V: f4 or d4.
+/// One draw of the iris, lane by lane. V: f4 or d4.
 template <class V>
 struct LensDraw {
     V weight{};      ///< 0 where the lane is blocked
@@ -34,13 +34,13 @@ struct LensDraw {
 struct LensCameraInput {
     std::shared_ptr<const Lens> lens;
     Iris iris;
-    M44f to_world;       ///< the middle of the entrance pupil, looking along -z, y up
+    M44f to_world;       ///< from the middle of the entrance pupil, looking along -z, y up
     double film_mm = 0;  ///< z of the film, behind the lens
     double film_width_mm = 36, film_height_mm = 24;
-    double entrance_pupil_mm = 0;  ///< z of what stands at to_world's origin
+    double entrance_pupil_mm = 0;  ///< its z, at to_world's origin
     DispersionMode dispersion = DispersionMode::Tolerance;
-    float focus_m = 1;        ///< where wavelengths are compared, along the axis
-    float tolerance_rad = 0;  ///< Tolerance: how far apart directions may be, seen from the lens
+    float focus_m = 1;        ///< axial distance at which wavelengths are compared
+    float tolerance_rad = 0;  ///< Tolerance: most angle between directions, seen from the lens
     Coating coating = Coating::Ideal;
     Precision precision = Precision::Float;  ///< of sample()
 };
@@ -51,8 +51,8 @@ class LensCamera final : public Camera {
 
     [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
 
-    /// From here on weights average to the exposure in the middle of the film, where they averaged
-    /// to its irradiance(). axial: that irradiance, before the first call.
+    /// Scales the weights from here on: they average to the exposure in the middle of the film,
+    /// where they averaged to its irradiance(). axial: that irradiance, before the first call.
     void set_exposure(double exposure, double axial) {
         exposure_ = static_cast<float>(exposure);
         gain_ = static_cast<float>(exposure / axial);
@@ -63,17 +63,18 @@ class LensCamera final : public Camera {
     /// where a rim just touches the bundle.
     [[nodiscard]] double irradiance(V2f film_mm, uint32_t count) const;
 
-    /// What one draw of the iris brings: a film point's irradiance over the radiance of a scene of
-    /// the same radiance everywhere is its mean. Lanes of the bands; u in [0, 1)^2. film_mm: a
-    /// point of the film. u_lane picks the lane whose ray hits the drawn iris point. V: f4 or d4.
+    /// One draw of the iris: the mean of its weights is the film point's irradiance over the
+    /// radiance of a scene of the same radiance everywhere. Lanes of the bands; u in [0, 1)^2.
+    /// film_mm: a point of the film. u_lane picks the lane whose ray hits the drawn iris point. V:
+    /// f4 or d4.
     template <class V = f4>
     [[nodiscard]] LensDraw<V> draw(V2f film_mm, V2f u, float u_lane, const Bands&) const;
 
   private:
-    /// A film point's rays, in lanes of V: what camera/dispersion's strategies are made of.
+    /// A film point's rays, in lanes of V, for the strategies of camera/dispersion.
     template <class V>
     class Point;
-    /// How far the ray's origin lies behind the middle of the entrance pupil.
+    /// Distance of the ray's origin behind the middle of the entrance pupil.
     template <class V>
     [[nodiscard]] ScalarOf<V> behind_pupil_mm(const LensRay<V>&, int lane) const;
 

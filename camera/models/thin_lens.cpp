@@ -7,7 +7,7 @@
 namespace petzval {
 namespace {
 
-// From here on a lens radius is below the last digit of a float: as good as infinity.
+// Distance from which a lens radius is below the last digit of a float: as good as infinity.
 constexpr float kFarthest_m = 1e9f;
 
 // A camera ray from a point and a direction of the camera's own space.

@@ -9,8 +9,8 @@
 
 namespace petzval {
 
-/// A thin lens of no aberration; without an iris it is a pinhole. It stands at the origin of its
-/// own space, looks along -z with y up, and images the plane at focus_m sharply.
+/// Thin lens of no aberration; without an iris it is a pinhole. It stands at the origin of its own
+/// space, looks along -z with y up, and images the plane at focus_m sharply.
 struct ThinLens {
     M44f to_world;
     float yfov_rad = 0.7f;  ///< full vertical angle, seen from the lens's centre
@@ -20,7 +20,7 @@ struct ThinLens {
     float exposure = 1.f;  ///< factor on every weight
 };
 
-/// Where a camera stands and its axes in world space, unit: what its matrix says, unpacked.
+/// Position of a camera and its axes in world space, unit, as its matrix says.
 struct Pose {
     V3f origin, right, up, back;
     explicit Pose(const M44f& matrix);

@@ -23,7 +23,7 @@ std::string mm(double a) {
     throw std::invalid_argument(message);
 }
 
-// Written so that NaN is refused too.
+// Refuses what is not above 0, NaN too.
 void require_positive(double a, const char* what) {
     if (!(a > 0)) refuse(std::string(what) + " must be above 0");
 }
@@ -39,12 +39,13 @@ void require_lens(const SingletOptics& lens) {
     if (!std::isfinite(lens.bending)) refuse("bending of a lens must be finite");
 }
 
-// A ray of the plane through the axis; light travels towards +z.
+// Ray in the plane through the axis; light travels towards +z.
 struct MeridionalRay {
     double y, z, dy, dz;
 };
 
-// Through a sphere of that curvature with its vertex at the origin; eta: index before / behind.
+// Refracts a ray at a sphere of that curvature with its vertex at the origin; eta: index before /
+// behind.
 bool refract(MeridionalRay& ray, double curvature, double eta) {
     const double a = ray.dz - curvature * (ray.y * ray.dy + ray.z * ray.dz);
     const double b = curvature * (ray.y * ray.y + ray.z * ray.z) - 2 * ray.z;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Closed forms of a thin lens in air: imaging, blur, spherical and chromatic aberration.
-// Distances are in mm, positive and along the axis: object to lens, lens to film; infinity is a
-// distance like any other. Errors: std::invalid_argument, in words for whoever chose the numbers.
+// Closed forms of a thin lens in air: imaging, blur, spherical and chromatic aberration. Distances
+// are in mm, positive and along the axis: object to lens, lens to film; infinity is a distance like
+// any other. Errors: std::invalid_argument, in words for the user who chose the numbers.
 #pragma once
 
 #include <optional>
@@ -21,7 +21,7 @@ namespace petzval {
 
 /// Radius of the stop of a lens of that f-number, f / diameter.
 [[nodiscard]] double stop_radius_mm(double focal_mm, double f_number);
-/// Full angle that a side of the sensor takes in, seen from the lens's centre.
+/// Full angle of view of a side of the sensor, seen from the lens's centre.
 [[nodiscard]] double field_of_view_rad(double sensor_side_mm, double film_mm);
 
 /// Diameter on the film of the blur of a point at z_mm, for a stop of that diameter and a lens
@@ -30,49 +30,51 @@ namespace petzval {
 [[nodiscard]] double blur_diameter_mm(double focal_mm, double stop_diameter_mm, double object_mm,
                                       double z_mm);
 
-/// A lens at one wavelength.
+/// Thin lens at one wavelength.
 struct SingletOptics {
     double n;         ///< index, above 1
     double focal_mm;  ///< of rays near the axis, above 0
     double bending;   ///< q = (r2 + r1) / (r2 - r1): 0 equiconvex, 1 flat towards the film
 };
 
-/// A lens of one glass. A radius is positive where its centre lies on the film's side; infinity is
-/// a flat surface. r1 faces the scene.
+/// Lens of one glass. A radius is positive where its centre lies on the film's side; infinity is a
+/// flat surface. r1 faces the scene.
 struct Singlet {
     Glass glass;
     double r1_mm, r2_mm;
 
-    /// Of that focal length at the d line, and that bending q.
+    /// Singlet of that focal length at the d line, and that bending q.
     [[nodiscard]] static Singlet bent(Glass, double focal_mm, double bending);
-    /// 1/f = (n - 1) (1/r1 - 1/r2), the lensmaker's equation. Error: no glass, or not a lens that
-    /// gathers light.
+    /// Lens at an index, by the lensmaker's equation 1/f = (n - 1) (1/r1 - 1/r2). Error: no glass,
+    /// or not a lens that gathers light.
     [[nodiscard]] SingletOptics at_index(double n) const;
-    /// In light of that wavelength.
+    /// Lens in light of that wavelength.
     [[nodiscard]] SingletOptics at(double nm) const;
 };
 
-/// K of f0 - f(h) = K h^2 / 2, 1/mm, for the object distance S: Jenkins and White 1976,
-/// "Fundamentals of Optics", 9.5, with q as above and p = (S' - S) / (S' + S), -1 at infinity.
+/// Spherical coefficient K of f0 - f(h) = K h^2 / 2, 1/mm, for the object distance S: Jenkins and
+/// White 1976, "Fundamentals of Optics", 9.5, with q as above and p = (S' - S) / (S' + S), -1 at
+/// infinity.
 [[nodiscard]] double spherical_coefficient_per_mm(const SingletOptics&, double object_mm);
-/// f(h), what the lens does to a ray that meets it h_mm off the axis and comes from S on the axis.
-/// Not positive where h is far out of the formula's domain.
+/// Zonal focal length f(h), for a ray that meets the lens h_mm off the axis and comes from S on the
+/// axis. Not positive where h is far out of the formula's domain.
 [[nodiscard]] double zonal_focal_length_mm(const SingletOptics&, double object_mm, double h_mm);
-/// By how much such a ray meets the axis before S': S' minus the image distance for f(h). To first
-/// order that is (S'/f)^2 K h^2 / 2, and K h^2 / 2 itself only for an object at infinity.
-/// For n from 1.5 to 1.8, |q| <= 2 and S >= 1.5 f it is within 1 % of exact traces up to h = f/16
-/// and within 10 % up to h = f/5.
+/// Longitudinal spherical aberration: how far before S' such a ray meets the axis, S' minus the
+/// image distance for f(h). To first order that is (S'/f)^2 K h^2 / 2, and K h^2 / 2 itself only
+/// for an object at infinity. For n from 1.5 to 1.8, |q| <= 2 and S >= 1.5 f it is within 1 % of
+/// exact traces up to h = f/16 and within 10 % up to h = f/5.
 [[nodiscard]] double spherical_aberration_mm(const SingletOptics&, double object_mm, double h_mm);
-/// The same by Snell's law at two spheres that touch at the lens's centre; h_mm is where the
-/// incoming ray crosses the plane through it. Nothing where the ray misses or is reflected within.
+/// Longitudinal spherical aberration by Snell's law at two spheres that touch at the lens's centre;
+/// h_mm is where the incoming ray crosses the plane through it. Nothing where the ray misses or is
+/// reflected within.
 [[nodiscard]] std::optional<double> traced_spherical_aberration_mm(const SingletOptics&,
                                                                    double object_mm, double h_mm);
-/// |formula / trace - 1| for the ray at h_mm; infinite where no such ray comes through. At the
-/// stop's radius it says how far the formula may be trusted: a program should warn above 0.1.
+/// Error |formula / trace - 1| for the ray at h_mm; infinite where no such ray comes through. At
+/// the stop's radius it says how far the formula may be trusted: a program should warn above 0.1.
 [[nodiscard]] double spherical_aberration_error(const SingletOptics&, double object_mm,
                                                 double h_mm);
 
-/// The greatest radius of the stop, at most radius_mm and 2 % too small, whose
+/// Greatest radius of the stop, at most radius_mm and 2 % too small, whose
 /// spherical_aberration_error is within most_error; a millionth of the focal length where none is.
 [[nodiscard]] double radius_within_error(const SingletOptics&, double focus_mm, double radius_mm,
                                          double most_error);

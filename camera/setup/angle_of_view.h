@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The angle of view of a lens on its film.
+// Angle of view of a lens on its film.
 #pragma once
 
 #include <optional>
@@ -9,15 +9,15 @@
 
 namespace petzval {
 
-/// The vertical angle that a distant scene fills the film's height with, radians: by the ray of
-/// line d through the middle of the stop; the paraxial angle for a lens that sends none there.
+/// Vertical angle of view, radians, with a distant scene in focus: by the ray of line d through the
+/// middle of the stop; the paraxial angle for a lens that sends none there.
 [[nodiscard]] float angle_of_view_rad(const Lens&, float film_height_mm, double focal_length_mm);
 
 /// The lens scaled until a distant scene yfov_rad high fills the film's height. Nothing where it
 /// does not see so far to the side.
 [[nodiscard]] std::optional<Lens> scaled_to_view(const Lens&, float film_height_mm, float yfov_rad);
 
-/// The angle between directions, in radians, that is `pixels` wide on the film, seen from the rear
+/// Angle in radians between directions that are `pixels` apart on the film, seen from the rear
 /// principal point: there the film is a distance in focus away. The lens is in focus.
 [[nodiscard]] double pixel_angle_rad(const Lens&, double pixels, double film_width_mm,
                                      int width_px);

@@ -7,7 +7,7 @@
 namespace petzval {
 namespace {
 
-// The mean point of the plane that a film point in the middle column shows, by the rays' weights.
+// Mean point of the plane that a film point in the middle column shows, by the rays' weights.
 V3d mean_on_plane(const Camera& camera, const FocusPlane& plane, float film_y) {
     constexpr uint32_t kRays = 1024;
     V3d sum(0);

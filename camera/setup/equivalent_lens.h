@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The simple camera that comes nearest to a lens.
+// Equivalent pinhole: the simple camera that comes nearest to a lens.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace petzval {
 
-/// The vertical angle of view, degrees, at which a pinhole in the entrance pupil sees the plane of
+/// Vertical angle of view, degrees, at which a pinhole in the entrance pupil sees the plane of
 /// focus as the lens does at half the height of the film. From 2,048 rays. Nothing where the lens
 /// leaves that dark.
 [[nodiscard]] std::optional<float> equivalent_fov_deg(const Camera&, const FocusPlane&);

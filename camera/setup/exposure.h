@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How bright a picture is for the light on its film.
+// Photographic exposure: the brightness of a picture for the light on its film.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A lens focused at a distance that counts from its entrance pupil, as all of Petzval's do.
+// Lens focused at a distance that counts from its entrance pupil, as all of Petzval's do.
 #pragma once
 
 #include <limits>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far a lens sends wavelengths apart, and the same lens sending them further apart.
+// Lateral dispersion of a lens in pixels, and a camera with that dispersion amplified.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,7 @@ namespace petzval {
 [[nodiscard]] double lateral_dispersion_px(const Camera& split, const Camera& shared,
                                            const Observer&, const FocusPlane&, V2i size_px);
 
-/// A camera whose rays leave those of line d `factor` times as far as `split`'s do. An error that
+/// Camera whose rays leave those of line d `factor` times as far as `split`'s do. An error that
 /// grows in proportion to the dispersion stands out of the noise by it: an edge of the scene lies
 /// between two rays by chance, and the chance grows by the same factor. Both cameras are of one
 /// lens; shared: dispersion shared.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The part of a sensor that a picture uses, and the sensor that a lens is made for.
+// Film size: the part of a sensor that a picture uses, and the sensor that a lens is made for.
 #pragma once
 
 #include <algorithm>

@@ -16,7 +16,7 @@ constexpr std::array<AovInfo, static_cast<size_t>(Aov::Count)> kAovs{{
     {"cost", {"cost.N", "", ""}, 1},
 }};
 
-// 0 where every number is finite, else not a number.
+// Fault of a sample: 0 where every number is finite, else NaN.
 float not_finite(const V3f& a) {
     return (a.x - a.x) + (a.y - a.y) + (a.z - a.z);
 }

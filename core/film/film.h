@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where samples add up. Double sums: a pixel's value does not depend on how its samples are grouped
-// beyond rounding far below float's.
+// Film: sums of the samples of each pixel, in doubles, so that its value does not depend on how the
+// samples are grouped beyond rounding far below float's.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace petzval {
 
-/// Layers beside the picture: what the camera sees first at each sample.
+/// Layers beside the picture (AOVs): values at the first surface that a sample sees.
 enum class Aov : uint8_t { Albedo, Normal, Depth, Position, Uv, Emission, Cost, Count };
 
 /// Name and channels of a layer, as they stand in files and on the command line.
@@ -52,40 +52,40 @@ class Film {
     /// Memory that a film takes for each pixel of its crop.
     [[nodiscard]] static size_t bytes_per_pixel(size_t layers, const std::optional<Bins>&);
 
-    /// A sample that is not finite is counted, the first is remembered, and nothing is added.
+    /// Adds a sample. One that is not finite is only counted, and the first such is remembered.
     void add(int x, int y, uint32_t index, const FilmSample&);
 
-    /// What a spectral film keeps of a sample beside FilmSample.
+    /// Values of a sample that a spectral film keeps beside FilmSample.
     struct SpectralSample {
         uint32_t replicate;  ///< < kReplicates
         f4 radiance;
         V3f xyz;
     };
-    /// The same for a film with bins.
+    /// Adds a sample to a film with bins.
     void add(int x, int y, uint32_t index, const FilmSample&, const SpectralSample&, const Bands&);
 
     [[nodiscard]] V2i full_size() const { return full_size_; }
     [[nodiscard]] Rect crop() const { return crop_; }
     [[nodiscard]] const std::vector<Aov>& aovs() const { return aovs_; }
-    /// Bins, XYZ and errors; nothing unless the film was made with bins.
+    /// Spectral sums: bins, XYZ and errors; nothing unless the film was made with bins.
     [[nodiscard]] const std::optional<SpectralFilm>& spectral() const { return spectral_; }
-    /// Index of a pixel of the crop among spectral()'s.
+    /// Index in spectral() of a pixel of the crop.
     [[nodiscard]] size_t offset(int x, int y) const {
         return static_cast<size_t>(y - crop_.y0) * crop_.width() + (x - crop_.x0);
     }
     [[nodiscard]] uint32_t sample_count(int x, int y) const { return pixel(x, y).count; }
-    /// Samples of a pixel that were not finite.
+    /// Number of samples of a pixel that were not finite.
     [[nodiscard]] uint32_t bad_count(int x, int y) const { return pixel(x, y).bad; }
     /// Mean linear RGB in nits, and alpha; zero where there is no sample.
     [[nodiscard]] V4f colour(int x, int y) const;
-    /// Mean over the samples that hit something; zero where none did.
+    /// Mean of a layer over the samples that hit something; zero where none did.
     [[nodiscard]] V3f aov(int x, int y, size_t layer) const;
 
     struct BadSample {
         int x, y;
         uint32_t index;
     };
-    /// Samples that were not finite, and the first in scan order.
+    /// Number of samples that were not finite, and the first of them in scan order.
     [[nodiscard]] uint64_t bad_count() const;
     [[nodiscard]] std::optional<BadSample> first_bad() const;
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a film keeps beside RGB in a spectral reference: bins of wavelength, XYZ, standard errors.
+// Spectral film: what a film keeps beside RGB for a reference, wavelength bins, XYZ and standard
+// errors.
 #pragma once
 
 #include <array>
@@ -12,11 +13,11 @@
 
 namespace petzval {
 
-/// Independent replicates of the sample sequence: the spread of their means tells the error of the
-/// whole, which one scrambled sequence cannot tell of itself (Owen 1997).
+/// Number of independent replicates of the sample sequence. The spread of their means tells the
+/// error of the whole, which one scrambled sequence cannot tell of itself (Owen 1997).
 inline constexpr uint32_t kReplicates = 8;
 
-/// Sums over the samples of each pixel; pixels are numbered by whoever owns it.
+/// Sums over the samples of each pixel; the owner numbers the pixels.
 class SpectralFilm {
   public:
     /// Memory that it takes for each pixel.
@@ -26,18 +27,18 @@ class SpectralFilm {
     }
     SpectralFilm(size_t pixels, const Bins&);
 
-    /// replicate < kReplicates. colour and xyz are the sample's estimates; radiance its lanes.
+    /// Adds a sample's estimates: colour, XYZ, and lanes of radiance; replicate < kReplicates.
     void add(size_t pixel, uint32_t replicate, Rgb colour, const V3f& xyz, f4 radiance,
              const Bands&);
 
     [[nodiscard]] const Bins& bins() const { return bins_; }
-    /// Mean over `count` samples: band averages, W/(m2 sr nm), bins().count of them.
+    /// Band averages, W/(m2 sr nm), bins().count of them: means over `count` samples.
     void bin_means(size_t pixel, uint32_t count, float* out) const;
     [[nodiscard]] V3f xyz(size_t pixel, uint32_t count) const;  ///< nits
     /// Standard error of the mean of R, G and B over `count` samples, dealt to the replicates in
     /// turn; infinite where fewer than kReplicates samples are there.
     [[nodiscard]] V3f standard_error(size_t pixel, uint32_t count) const;
-    /// The same of their luminance.
+    /// Standard error of the mean luminance, likewise.
     [[nodiscard]] float luminance_error(size_t pixel, uint32_t count) const;
 
   private:

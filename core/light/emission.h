@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a point of a triangle gives off: the same answer for a ray that hits it and for a light
-// sample that picks it.
+// Emitted radiance at a point of a triangle: the same for a ray that hits it and for a light sample
+// that picks it.
 #pragma once
 
 #include "core/math/math.h"
@@ -11,13 +11,13 @@ namespace petzval {
 struct Scene;
 struct Illuminant;
 
-/// Nits towards every direction on the front side, and on the back side where the material is
-/// double-sided. barycentric: weights of the second and third vertex. Materials with
-/// KHR_materials_unlit emit nothing here.
+/// Emitted radiance, nits, towards every direction on the front side, and on the back side where
+/// the material is double-sided. barycentric: weights of the second and third vertex. Materials
+/// with KHR_materials_unlit emit nothing here.
 [[nodiscard]] Rgb emitted_radiance(const Scene&, uint32_t instance, uint32_t triangle,
                                    V2f barycentric, bool front);
 
-/// The white of what an instance emits; nullptr: the scene's own.
+/// White point of an instance's emission; nullptr: the scene's own.
 [[nodiscard]] const Illuminant* white_of(const Scene&, uint32_t instance);
 
 }  // namespace petzval

@@ -9,7 +9,8 @@
 namespace petzval {
 namespace {
 
-// The sum of all must stay finite, however bright the file says a lamp is.
+// Power of a light, bounded so that the sum of all stays finite however bright the file says a lamp
+// is.
 float finite(const Scene& scene, float power) {
     const float most = std::numeric_limits<float>::max() / static_cast<float>(scene.lights.size());
     return power <= most ? power : most;
@@ -40,7 +41,7 @@ struct BoundsOf {
     std::optional<LightBounds> operator()(const SkyLight&) const { return std::nullopt; }
 };
 
-// Lux on a surface that faces a light outside the tree.
+// Illuminance, lux, on a surface that faces a light outside the tree.
 float illuminance(const Scene& scene, const Light& light) {
     if (const auto* sun = std::get_if<SunLight>(&light)) return luminance(sun->illuminance_lx);
     return kPi * scene.sky.average_luminance();
@@ -60,7 +61,7 @@ LightChoice::LightChoice(const Scene& scene, LightChoiceKind kind) {
         choice_ = Piecewise1D(weights);
 }
 
-// Lights that stand somewhere go from the weights into the tree.
+// Moves the lights that have a position from the weights into the tree.
 void LightChoice::plant(const Scene& scene, std::span<float> power) {
     std::vector<std::optional<LightBounds>> bounds(power.size());
     float outside = 0;

@@ -56,8 +56,8 @@ std::optional<LightSample> sample(const Scene& scene, const SunLight& light, con
     return LightSample{-light.direction, {}, true, irradiance, 1.f, true};
 }
 
-// How far from the triangle's plane a point of it may seem to lie: the roundings of its own
-// coordinates (interpolation, placement), and those of the ray's, which grow with the distance.
+// Bound on how far rounding moves a point of a triangle off its plane: by the roundings of its own
+// coordinates (interpolation, placement), and of the ray's, which grow with the distance.
 V3f plane_error(const Scene& scene, const TriangleLight& light, const V3f& target,
                 const V3f& to_light, const std::array<V3f, 3>& corner) {
     const V3f corners = abs(corner[0]) + abs(corner[1]) + abs(corner[2]) + abs(target);
@@ -107,8 +107,8 @@ float triangle_area(const Scene& scene, const TriangleLight& light) {
     return 0.5f * (corner[1] - corner[0]).cross(corner[2] - corner[0]).length();
 }
 
-// Area of the scene's silhouette from afar, bounded by its sphere; of a unit sphere where the scene
-// has no extent, so that its lights keep their proportions.
+// Area of the scene's silhouette from afar, bounded by its sphere; that of a unit sphere where the
+// scene has no extent, so that its lights keep their proportions.
 float silhouette_m2(const Scene& scene) {
     const float radius2 = scene.bounds.isEmpty() ? 0.f : 0.25f * scene.bounds.size().length2();
     return kPi * (radius2 > 0.f ? radius2 : 1.f);
@@ -135,7 +135,8 @@ float power(const Scene&, const PointLight& light) {
     return 4 * kPi * luminance(light.intensity_cd);
 }
 
-// The integral of the falloff over the sphere; the narrowest cones saturate beyond the axis.
+// Power of a spot: the integral of its falloff over the sphere. The narrowest cones saturate beyond
+// the axis.
 float power(const Scene&, const SpotLight& light) {
     const float width = spot_width(light), reach = 1.f - light.cos_outer;
     const float ramp = std::min(reach, width);

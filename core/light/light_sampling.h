@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples each kind of light from a point, and tells the density it does so with.
+// Samples each kind of light from a point, with the density of the sample.
 #pragma once
 
 #include <optional>
@@ -15,14 +15,14 @@ struct Scene;
 /// Light that arrives at a point, before anything in between is known.
 struct LightSample {
     V3f direction;  ///< unit, from the point to the light
-    V3f target;     ///< where a shadow ray ends, clear of the light; meaningless when at_infinity
+    V3f target;     ///< end of a shadow ray, clear of the light; meaningless when at_infinity
     bool at_infinity;
     f4 radiance;  ///< for a delta light: the irradiance on a surface that faces it
     float pdf;    ///< 1/sr; 1 for a delta light
     bool delta;   ///< a BSDF sample can never find this light
 };
 
-/// Draws a direction from p to the light. u in [0, 1)^2. Nothing where no light can arrive.
+/// Draws a direction from p to the light; u in [0, 1)^2. Nothing where no light can arrive.
 [[nodiscard]] std::optional<LightSample> sample_light(const Scene&, const Light&, const V3f& p,
                                                       V2f u, const Bands&);
 /// Density, 1/sr, with which sample_light draws the direction from p to a point of a triangle light

@@ -6,16 +6,16 @@
 namespace petzval {
 namespace {
 
-// Sines come from cosines near 1 with an error of up to sqrt(2^-23) = 3.5e-4. What is nearer to a
-// bound than this may be inside it, and has this cosine at least.
+// Slack of angular bounds: sines come from cosines near 1 with an error of up to sqrt(2^-23) =
+// 3.5e-4. What is nearer to a bound than this may be inside it, and has this cosine at least.
 constexpr float kSlack = 1e-3f;
 
 // Share of the brightest light that each light has at least, or its weight would underflow.
 constexpr float kFaintest = 1e-12f;
 
-// Lights outside the tree count that much more: clusters are weighed as if nothing stood before
-// them. On lowpoly-village, a landscape with lamps under a sky, 1 to 4 give a relative MSE of 2.1,
-// 1.97 and 1.91e-3.
+// Factor on lights outside the tree, as clusters are weighed as if nothing stood before them. On
+// lowpoly-village, a landscape with lamps under a sky, 1 to 4 give a relative MSE of 2.1, 1.97 and
+// 1.91e-3.
 constexpr float kUnshadowed = 2;
 
 float diagonal2(const Box3f& box) {
@@ -34,8 +34,8 @@ float directions(const LightBounds& b) {
     return std::clamp(b.two_sided ? 2 * one : one, 1e-6f, 4 * kPi);
 }
 
-// What a cluster contributes to the cost of a split. The sphere's size, not the box's: it is the
-// sphere that the lights are weighed by.
+// Cost of a cluster in a split. By the sphere's size, not the box's: it is the sphere that the
+// lights are weighed by.
 float cost(const LightBounds& b) {
     return b.power * diagonal2(b.box) * directions(b);
 }
@@ -141,8 +141,8 @@ void LightTree::build(std::span<Item> items, uint32_t node) {
     }
 }
 
-// Size of the first part. The surface area orientation heuristic of Conty Estevez and Kulla 2018,
-// equation 1, over bins of the boxes' centres.
+// Size of the first part, by the surface area orientation heuristic of Conty Estevez and Kulla
+// 2018, equation 1, over bins of the boxes' centres.
 size_t LightTree::split(std::span<Item> items) {
     if (items.size() == 2) return 1;
     constexpr int bins = 8;
@@ -192,8 +192,9 @@ namespace {
 inline f8 sine_of(f8 cosine) {
     return sqrt(max(1.f - cosine * cosine, f8{}));
 }
-// Of a normal with the directions to a sphere, those behind it counted as 0: near enough where that
-// is known (a point: the cosine; all around: 1/4; a hemisphere across the normal: 1/4).
+// Mean cosine of a normal with the directions to a sphere, those behind it counted as 0: near
+// enough where that is known (a point: the cosine; all around: 1/4; a hemisphere across the normal:
+// 1/4).
 inline f8 mean_cosine(f8 cos_normal, f8 cos_sphere) {
     const f8 length = 0.5f + 0.5f * cos_sphere, mean = cos_normal * length;
     const f8 variance = 0.25f * (1.f - length * length) + kSlack * kSlack;
@@ -202,9 +203,10 @@ inline f8 mean_cosine(f8 cos_normal, f8 cos_sphere) {
 
 }  // namespace
 
-// After Conty Estevez and Kulla 2018, equation 3: intensity times the cosines at both ends over the
-// squared distance, 0 where the least angles over sphere and cone leave nothing. The receiver's
-// cosine is the mean over the sphere, not the greatest: clusters all around would count four times.
+// Importance of a node's children, after Conty Estevez and Kulla 2018, equation 3: intensity times
+// the cosines at both ends over the squared distance, 0 where the least angles over sphere and cone
+// leave nothing. The receiver's cosine is the mean over the sphere, not the greatest: clusters all
+// around would count four times.
 f8 LightTree::weigh(const Node& n, const LightReceiver& r) {
     const f8 x = n.x - r.p.x, y = n.y - r.p.y, z = n.z - r.p.z;
     const f8 centre2 = x * x + y * y + z * z, radius2 = n.radius * n.radius;

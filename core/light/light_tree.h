@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hierarchy over the lights that stand somewhere, to choose those that matter at a point. Conty
-// Estevez and Kulla 2018, "Importance Sampling of Many Lights with Adaptive Tree Splitting",
-// without the splitting, and with eight children a node, which are weighed together.
+// Light tree: a hierarchy over the lights that have a position, to choose those that matter at a
+// point. Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with Adaptive Tree
+// Splitting", without the splitting, and with eight children a node, which are weighed together.
 #pragma once
 
 #include <array>
@@ -15,21 +15,21 @@
 
 namespace petzval {
 
-/// A point that light is chosen for.
+/// Surface point for which a light is chosen.
 struct LightReceiver {
     V3f p;
-    V3f normal;       ///< unit, of the triangle, on the side that is looked at
+    V3f normal;       ///< unit, of the triangle, on the path's side
     bool both_sides;  ///< light from behind counts too: the surface transmits
 };
 
-/// Where a light, or a cluster of them, is and which way it shines: every light of it lies in the
-/// box and has its axis within `spread` of the axis; it shines up to `reach` away from its own.
+/// Bounds of the position and direction of a light or a cluster: every light of it lies in the box
+/// and has its axis within `spread` of the axis; it shines up to `reach` away from its own.
 struct LightBounds {
     Box3f box;
     V3f axis{0, 0, 1};            ///< unit
     float spread = 0, reach = 0;  ///< rad; spread up to pi, reach up to pi / 2
     bool two_sided = false;       ///< the opposite of an axis is an axis as well
-    /// Lumen, up to a common factor; above 0 and finite, in a sum too.
+    /// Power in lumen, up to a common factor; above 0 and finite, in a sum too.
     float power = 0;
 
     /// Bounds of both together.
@@ -38,8 +38,8 @@ struct LightBounds {
 
 class LightTree {
   public:
-    /// A light for each element, if it has bounds. outside: illuminance, in the unit of
-    /// the powers per square metre, of lights that stand nowhere and share the choice.
+    /// Tree of the lights that have bounds. outside: illuminance, in the unit of the powers per
+    /// square metre, of the lights at infinity, which share the choice.
     LightTree(std::span<const std::optional<LightBounds>> lights, float outside);
 
     static constexpr uint32_t kOutside = ~0u;
@@ -48,9 +48,11 @@ class LightTree {
         float probability;
         float u;  ///< position within the light's share of u, [0, 1): may be used again
     };
-    /// u in [0, 1). Nothing where the lights that were drawn cannot reach the receiver.
+    /// Picks a light; u in [0, 1). Nothing where the lights that were drawn cannot reach the
+    /// receiver.
     [[nodiscard]] std::optional<Pick> pick(float u, const LightReceiver&) const;
-    /// Of picking the light, or kOutside. 0 only for lights that cannot reach the receiver.
+    /// Probability of picking a light, or kOutside; 0 only for lights that cannot reach the
+    /// receiver.
     [[nodiscard]] float probability(uint32_t light, const LightReceiver&) const;
 
   private:
@@ -72,8 +74,8 @@ class LightTree {
     [[nodiscard]] static f8 weigh(const Node&, const LightReceiver&);
 
     std::vector<Node> nodes_;       ///< 0 is the root
-    std::vector<uint32_t> parent_;  ///< of each node: 8 * node + child
-    std::vector<uint32_t> place_;   ///< of each light, as parent_; kOutside: not in the tree
+    std::vector<uint32_t> parent_;  ///< slot of each node in its parent: 8 * node + child
+    std::vector<uint32_t> place_;   ///< slot of each light, as parent_; kOutside: not in the tree
     float outside_ = 0;
 };
 

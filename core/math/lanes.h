@@ -9,7 +9,7 @@ namespace petzval {
 
 // Explicit typedefs: g++ 12 drops vector_size from a dependent alias template.
 typedef float f4 __attribute__((vector_size(16)));
-/// All bits of a lane set (-1): on. All clear (0): off.
+/// Lane mask. All bits of a lane set (-1): on; all clear (0): off.
 typedef int32_t m4 __attribute__((vector_size(16)));
 /// Four doubles, and a mask over them.
 typedef double d4 __attribute__((vector_size(32)));
@@ -54,10 +54,11 @@ typedef uint32_t u32x8 __attribute__((vector_size(32)));
     for (int i = 0; i < 8; ++i) root[i] = std::sqrt(a[i]);
     return root;
 }
+/// Sum of the lanes, always in this order.
 [[nodiscard]] inline float hsum(f8 a) {
     return ((a[0] + a[4]) + (a[2] + a[6])) + ((a[1] + a[5]) + (a[3] + a[7]));
 }
-/// Of the lanes that are numbers; not a number where none is.
+/// Largest lane, NaN lanes ignored; NaN if all are.
 [[nodiscard]] inline float hmax(f4 a) {
     constexpr float least = -__builtin_inff();
     a = a == a ? a : splat(least);

@@ -86,7 +86,7 @@ struct Frame {
                                          : bits + outwards);
 }
 
-/// Where a ray that leaves p towards w must start: outside the box of half-widths p_error about p,
+/// Origin of a ray that leaves p towards w: outside the box of half-widths p_error about p,
 /// measured along the geometric normal. Pharr et al. 2023, "Physically Based Rendering", 6.8.6.
 [[nodiscard]] inline V3f offset_origin(const V3f& p, const V3f& p_error, const V3f& normal,
                                        const V3f& w) {

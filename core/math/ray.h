@@ -10,8 +10,8 @@ struct Ray {
     V3f origin;
     V3f direction;  ///< unit length for rays that measure distance; t counts in its length
     float t_max = kInfinity;
-    uint32_t alpha_seed =
-        0;  ///< decides BLEND coverage: the same seed and triangle, the same answer
+    /// Seed of BLEND coverage: the same seed and triangle give the same answer.
+    uint32_t alpha_seed = 0;
 };
 
 /// A triangle hit, as the traversal reports it. 24 bytes; Surface (core/shading/surface.h) has the

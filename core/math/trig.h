@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Angles in turns (1 = 360 degrees): short polynomials in place of the C library's functions, for
-// speed and so that pixels do not depend on the library's version.
+// Sine, cosine and arctangent of angles in turns (1 = 360 degrees): short polynomials in place of
+// the C library's functions, for speed and so that pixels do not depend on the library's version.
 #pragma once
 
 #include "core/math/lanes.h"

@@ -26,7 +26,7 @@ AliasTable::AliasTable(std::span<const float> weights) : slots_(weights.size()) 
             small.push_back(giver);
         }
     }
-    // What rounding leaves over is full.
+    // Slots that rounding leaves over are full.
     for (const uint32_t i : large) slots_[i] = {1, i};
     for (const uint32_t i : small) slots_[i] = {1, i};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One of many by weight, in constant time.
+// Alias table: draws one of many by weight, in constant time.
 #pragma once
 
 #include <cstdint>
@@ -14,20 +14,20 @@ namespace petzval {
 class AliasTable {
   public:
     AliasTable() = default;
-    /// Weights: not negative, finite, at least one above 0.
+    /// Weights must be finite and not negative, at least one above 0.
     explicit AliasTable(std::span<const float> weights);
 
     struct Draw {
         uint32_t cell;
         float offset;  ///< uniform in [0, 1) whatever the cell
     };
-    /// u in [0, 1).
+    /// Draws a cell; u in [0, 1).
     [[nodiscard]] Draw sample(float u) const;
 
   private:
     struct Slot {
         float own;       ///< share of the slot that is its own cell's
-        uint32_t other;  ///< whose the rest is
+        uint32_t other;  ///< cell that has the rest
     };
     std::vector<Slot> slots_;
 };

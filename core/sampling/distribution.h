@@ -15,8 +15,8 @@
 
 namespace petzval {
 
-/// Probabilities are whole multiples of 2^-24, the grain of the sampler's numbers: what is drawn
-/// and what is said to be drawn then agree to the last bit.
+/// Units that make up a probability of 1. Probabilities are whole multiples of 2^-24, the grain of
+/// the sampler's numbers: what is drawn and what is said to be drawn then agree to the last bit.
 inline constexpr uint32_t kDistributionUnits = 1u << 24;
 
 /// Density over [0, 1) in equal cells. Inversion by a guide table (Chen and Asau 1974), so that a
@@ -33,7 +33,7 @@ class Piecewise1D {
         float offset;       ///< position within the cell, [0, 1): may be used again
         float probability;  ///< of the cell
     };
-    /// u in [0, 1]. The cell does not decrease as u grows.
+    /// Draws a cell; u in [0, 1]. The cell does not decrease as u grows.
     [[nodiscard]] inline Draw sample(float u) const;
     [[nodiscard]] float probability(uint32_t cell) const {
         return static_cast<float>(cdf_[cell + 1] - cdf_[cell]) / kDistributionUnits;
@@ -51,12 +51,12 @@ class Piecewise1D {
 
     std::vector<uint32_t> cdf_;    ///< size + 1 values from 0 to kDistributionUnits
     std::vector<uint32_t> guide_;  ///< first cell that a u of k/size can fall in
-    uint32_t widest_ = 0;          ///< looked at first: one light often has most of the power
+    uint32_t widest_ = 0;  ///< cell that is tried first: one light often has most of the power
     double sum_ = 0;
 };
 
-/// Running sums of rows of numbers, searched without a branch: a row is a line or two of every
-/// eighth sum, and the sums in eights.
+/// Running sums of rows of numbers, searched without a branch: each row keeps every eighth sum, a
+/// cache line or two, and then the sums in eights.
 class RunningSums {
   public:
     RunningSums() = default;
@@ -65,12 +65,12 @@ class RunningSums {
           tops_in_row_((width / kEight + kEight - 1) / kEight * kEight),
           sums_(size_t{sums_in_row_} * rows, kDistributionUnits),
           tops_(size_t{tops_in_row_} * rows, kDistributionUnits) {}
-    /// width + 1 sums of a row, which do not decrease, from 0 to kDistributionUnits; index_row
-    /// when they stand.
+    /// The width + 1 sums of a row, which do not decrease, from 0 to kDistributionUnits. index_row
+    /// must follow when they are filled in.
     [[nodiscard]] uint32_t* row(size_t i) { return &sums_[i * sums_in_row_]; }
     [[nodiscard]] const uint32_t* row(size_t i) const { return &sums_[i * sums_in_row_]; }
     void index_row(size_t i);
-    /// The last sum of a row that is not above unit < kDistributionUnits.
+    /// Index of the last sum of a row that is not above unit < kDistributionUnits.
     [[nodiscard]] uint32_t find(size_t i, uint32_t unit) const {
         const uint32_t* tops = tops_.data() + i * tops_in_row_;
         uint32_t eights = 0;
@@ -91,7 +91,7 @@ class RunningSums {
 
     uint32_t sums_in_row_ = 0, tops_in_row_ = 0;
     std::vector<uint32_t> sums_;
-    std::vector<uint32_t> tops_;  ///< of a row: its 8th, 16th ... sum
+    std::vector<uint32_t> tops_;  ///< 8th, 16th ... sum of each row
 };
 
 /// Density over [0, 1)^2 in width x height cells, row by row.
@@ -106,19 +106,19 @@ class Piecewise2D {
         V2f offset;         ///< position within the cell, [0, 1)^2
         float probability;  ///< of the cell; its density by area is this * width * height
     };
-    /// u in [0, 1]^2; u.y draws the row, u.x the cell in it.
+    /// Draws a cell; u in [0, 1]^2: u.y draws the row, u.x the cell in it.
     [[nodiscard]] Draw sample(V2f u) const;
     [[nodiscard]] float probability(uint32_t column, uint32_t row) const;
 
-    /// The same draw in whole numbers, for who divides the cells further.
+    /// Draw of a cell in whole units, for a caller that divides cells further.
     struct UnitDraw {
         uint32_t column, row;
         float row_offset;      ///< position within the row, [0, 1)
         uint32_t units, unit;  ///< the cell's share of its row, and which of them was drawn
-        float rest;            ///< what u.x goes beyond that unit, [0, 1]
+        float rest;            ///< excess of u.x over that unit, [0, 1]
     };
     [[nodiscard]] inline UnitDraw sample_units(V2f u) const;
-    /// A cell's share of its row, of kDistributionUnits.
+    /// Share of a cell in its row, in units of 1 / kDistributionUnits.
     [[nodiscard]] uint32_t units(uint32_t column, uint32_t row) const {
         const uint32_t* sums = rows_.row(row) + column;
         return sums[1] - sums[0];
@@ -134,8 +134,8 @@ class Piecewise2D {
 
   private:
     uint32_t width_ = 0, height_ = 0;
-    RunningSums rows_;      ///< of the rows that have weight; the others' are all 0
-    RunningSums marginal_;  ///< one row: of the rows
+    RunningSums rows_;      ///< sums of the rows that have weight; the others are all 0
+    RunningSums marginal_;  ///< one row: sums over the rows
     double sum_ = 0;
 };
 

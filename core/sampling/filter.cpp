@@ -6,7 +6,7 @@
 namespace petzval {
 namespace {
 
-// Of the table, on one side: 4 KB.
+// Steps of the table on one side: 4 KB.
 constexpr uint32_t kSteps = 1 << 10;
 
 // Value at x in [-1, 1], up to a factor.
@@ -47,7 +47,7 @@ Filter::Filter(FilterKind kind, float radius_px) : kind_(kind), radius_px_(radiu
     }
 }
 
-// No branch: the two halves are a coin toss that a processor cannot foretell.
+// Branchless: which half it is cannot be predicted.
 float Filter::sample1(float u) const {
     const float half = u - 0.5f;
     const float position = std::sqrt(1.f - 2.f * std::fabs(half)) * float{kSteps};

@@ -9,9 +9,9 @@
 
 namespace petzval {
 
-/// Separable, not negative, 0 beyond the radius. Gauss has its standard deviation at a third of the
-/// radius; BlackmanHarris is the minimum 4-term window (Harris 1978, "On the Use of Windows for
-/// Harmonic Analysis", table 1: -92 dB).
+/// Separable filters, not negative, 0 beyond the radius. Gauss has its standard deviation at a
+/// third of the radius; BlackmanHarris is the minimum 4-term window (Harris 1978, "On the Use of
+/// Windows for Harmonic Analysis", table 1: -92 dB).
 enum class FilterKind { Box, Gauss, BlackmanHarris };
 
 class Filter {
@@ -20,8 +20,7 @@ class Filter {
     Filter(FilterKind, float radius_px);
     /// Offset from the pixel's centre, in pixels, distributed as the filter. u in [0, 1)^2.
     [[nodiscard]] V2f sample(V2f u) const;
-    /// What the density of sample() is there, up to a factor: 1 at the centre, 0 beyond the radius.
-    /// Any offset.
+    /// Density of sample() at any offset, up to a factor: 1 at the centre, 0 beyond the radius.
     [[nodiscard]] float value(V2f offset_px) const {
         return value1(offset_px.x) * value1(offset_px.y);
     }
@@ -35,7 +34,7 @@ class Filter {
 
     FilterKind kind_;
     float radius_px_;
-    std::vector<float> values_;     ///< along half an axis, at equal steps from the centre
+    std::vector<float> values_;     ///< profile on half an axis, at equal steps from the centre
     std::vector<float> quantiles_;  ///< of the left half, in pixels; see the constructor
 };
 

@@ -12,7 +12,7 @@ namespace petzval {
 /// Independent: a hash. Every kind pads: each dimension has a shuffled 2-D sequence of its own.
 enum class SamplerKind { Owen, Sobol, Independent };
 
-/// Every use of a random number has a name, so that adding one leaves the others as they were.
+/// Named uses of random numbers, so that adding one leaves the others as they were.
 enum class Dim : uint32_t {
     Film,
     Lens,
@@ -32,7 +32,7 @@ struct SampleId {
     uint32_t index;  ///< 0 is the first sample; a shorter render is a prefix of a longer one
 };
 
-/// The bits of a word, lowest first.
+/// The word with its bits in reverse order.
 [[nodiscard]] constexpr uint32_t reverse_bits(uint32_t a) {
     a = __builtin_bswap32(a);
     a = ((a >> 4) & 0x0f0f0f0fu) | ((a & 0x0f0f0f0fu) << 4);
@@ -54,8 +54,8 @@ class Sampler {
     [[nodiscard]] float get1(Dim dim, uint32_t vertex = 0) const;
     /// A point of [0, 1)^2, stratified in both coordinates together.
     [[nodiscard]] V2f get2(Dim dim, uint32_t vertex = 0) const;
-    /// What a path asks at a vertex, in one go: the numbers that get1 and get2 give for BsdfLobe,
-    /// Bsdf, LightPick and LightPoint at this vertex, and for Roulette at the next.
+    /// Numbers for a path vertex in one call: those that get1 and get2 give for BsdfLobe, Bsdf,
+    /// LightPick and LightPoint at this vertex, and for Roulette at the next.
     struct VertexNumbers {
         float bsdf_lobe, light_pick, roulette_after;
         V2f bsdf, light_point;
@@ -66,7 +66,7 @@ class Sampler {
 
   private:
     [[nodiscard]] uint32_t dimension_key(Dim dim, uint32_t vertex) const;
-    /// Both coordinates for a dimension's key; Word may be several keys side by side.
+    /// Both coordinates of a point for a dimension's key; Word may be several keys side by side.
     template <class Word>
     [[nodiscard]] std::pair<Word, Word> bits(Word key) const;
 

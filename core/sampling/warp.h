@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the unit square to the shapes that are sampled, each with its density beside it. u is in
-// [0, 1)^2 throughout; neighbours stay neighbours, so that stratified points stay stratified.
+// Maps from the unit square to the shapes that are sampled, each with its density. u is in [0, 1)^2
+// throughout; neighbours stay neighbours, so that stratified points stay stratified.
 #pragma once
 
 #include "core/math/math.h"
@@ -27,7 +27,7 @@ namespace petzval {
     const V2f disk = uniform_disk(u);
     return {disk.x, disk.y, safe_sqrt(1.f - disk.dot(disk))};
 }
-/// 1/sr.
+/// Density, 1/sr.
 [[nodiscard]] constexpr float cosine_hemisphere_pdf(float cosine) {
     return cosine > 0.f ? cosine * kInvPi : 0.f;
 }
@@ -39,7 +39,7 @@ namespace petzval {
     const SinCos azimuth = sincos_turns(u.x);
     return {radius * azimuth.cosine, radius * azimuth.sine, z};
 }
-/// 1/sr.
+/// Density, 1/sr.
 [[nodiscard]] constexpr float uniform_sphere_pdf() {
     return 0.25f * kInvPi;
 }

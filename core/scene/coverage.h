@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much of a surface is there: glTF's alpha modes.
+// Coverage of a surface at a point: glTF's alpha modes.
 #pragma once
 
 #include <cstdint>

@@ -14,7 +14,7 @@ namespace petzval {
 struct PointLight {
     V3f position;
     Rgb intensity_cd;
-    int32_t illuminant = -1;  ///< its white, of Scene::illuminants; -1: the scene's
+    int32_t illuminant = -1;  ///< white, index into Scene::illuminants; -1: the scene's
 };
 /// KHR_lights_punctual "spot": intensity falls off between the two cones as its specification says.
 struct SpotLight {

@@ -31,9 +31,9 @@ struct Material {
     bool unlit = false;  ///< KHR_materials_unlit: shows its base colour, as nits
 
     float ior = 1.5f;              ///< KHR_materials_ior; 0 means a specular weight of 1
-    std::optional<Glass> glass;    ///< where the index depends on wavelength; ior is its nd
-    int32_t metal = -1;            ///< measured, of Scene::metals: in place of the base colour
-    int32_t illuminant = -1;       ///< of Scene::illuminants: the white of what it emits
+    std::optional<Glass> glass;    ///< set where the index depends on wavelength; ior is its nd
+    int32_t metal = -1;            ///< measured, index into Scene::metals: replaces the base colour
+    int32_t illuminant = -1;       ///< white of its emission, index into Scene::illuminants
     float specular = 1.f;          ///< KHR_materials_specular
     TextureSlot specular_texture;  ///< a
     Rgb specular_color{1.f};
@@ -45,12 +45,12 @@ struct Material {
     Rgb attenuation_color{1.f};
     float attenuation_distance_m = kInfinity;
 
-    /// Coverage has to be asked for at each hit.
+    /// Whether coverage must be asked for at each hit.
     [[nodiscard]] bool cutout() const { return alpha_mode != AlphaMode::Opaque; }
     [[nodiscard]] bool emits() const {
         return emissive[0] > 0 || emissive[1] > 0 || emissive[2] > 0;
     }
-    /// Some of the light that meets it is refracted into it.
+    /// Whether some of the light that meets it is refracted into it.
     [[nodiscard]] bool refracts() const { return has_volume && transmission > 0 && metallic < 1; }
 };
 

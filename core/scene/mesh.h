@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles as arrays, and where copies of them stand.
+// Triangle meshes as arrays, and their placed copies (instances).
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// All that can be seen: immutable arrays that name each other by index.
+// Scene: all that can be seen, as immutable arrays that name each other by index.
 #pragma once
 
 #include <vector>
@@ -14,7 +14,7 @@
 
 namespace petzval {
 
-/// Metres, y up, right-handed, as in glTF. io fills the arrays down to `sky`, then calls
+/// Scene in metres, y up, right-handed, as in glTF. io fills the arrays down to `sky`, then calls
 /// finish_scene once; nothing changes afterwards.
 struct Scene {
     std::vector<Image> images;
@@ -29,14 +29,14 @@ struct Scene {
 
     Box3f bounds;  ///< of all instances, in world space; empty where there are none
 
-    /// nullptr for -1, which means the scene's own white.
+    /// Illuminant of an index; nullptr for -1, which means the scene's own white.
     [[nodiscard]] const Illuminant* illuminant(int32_t index) const {
         return index < 0 ? nullptr : &illuminants[static_cast<size_t>(index)];
     }
 };
 
-/// Computes the bounds, says which texture slots share their place, and appends a light for every
-/// triangle of an emissive instance and for the sky where it is not black.
+/// Computes the bounds, marks the texture slots that share their place, and appends a light for
+/// every triangle of an emissive instance and for the sky where it is not black.
 void finish_scene(Scene&);
 
 /// Three world-space corners of a triangle.

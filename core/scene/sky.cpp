@@ -61,7 +61,7 @@ Sky Sky::picture(std::vector<float> rgb, int width, int height, float rotate_deg
     return sky;
 }
 
-// What is drawn is what lookups find: the importance comes from the texels as they are kept.
+// Importance from the texels as they are kept, so that what is drawn is what lookups find.
 void Sky::fill_importance() {
     std::vector<f4> texels;
     for (int y = 0; y < height_; ++y)
@@ -155,7 +155,7 @@ Sky::Draw Sky::sample(V2f u) const {
     const Piecewise2D::UnitDraw drawn = importance_.sample_units(u);
     const int row = static_cast<int>(drawn.row);
     const TexelBlock& block = blocks_of(row)[drawn.column];
-    // The row that the texels are mixed with: its line is on its way while this one is looked at.
+    // Prefetch the row that the texels are mixed with while this one is searched.
     const int beside = drawn.row_offset < 0.5f ? row - 1 : row + 1;
     __builtin_prefetch(&blocks_of(std::clamp(beside, 0, height_ - 1))[drawn.column]);
     const int texel = block.find(drawn.unit, drawn.units);

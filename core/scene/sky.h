@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light from infinitely far: an equirectangular picture or one colour, and its importance sampling.
+// Sky: light from infinitely far, an equirectangular picture or one colour, and its importance
+// sampling.
 #pragma once
 
 #include <vector>
@@ -11,17 +12,17 @@
 
 namespace petzval {
 
-/// Directions are world space. u = 0.5 + atan2(z, x) / 2 pi, v = acos(y) / pi from the top, before
-/// the rotation about +y (counter-clockwise seen from above).
+/// Radiance by world-space direction. u = 0.5 + atan2(z, x) / 2 pi, v = acos(y) / pi from the top,
+/// before the rotation about +y (counter-clockwise seen from above).
 class Sky {
   public:
     /// A black sky.
     Sky() = default;
-    /// The same radiance, in nits, from everywhere.
+    /// A sky of the same radiance, in nits, from everywhere.
     static Sky uniform(Rgb radiance);
-    /// RGB texels in nits, row 0 at the zenith; strength multiplies them. Texels must be finite and
-    /// not negative; width and height at least 1. They are kept as half floats
-    /// beside a common power of two for each eight (core/scene/texel_block.h).
+    /// A sky from RGB texels in nits, row 0 at the zenith; strength multiplies them. Texels must be
+    /// finite and not negative; width and height at least 1. They are kept as half floats beside a
+    /// common power of two for each eight (core/scene/texel_block.h).
     static Sky picture(std::vector<float> rgb, int width, int height, float rotate_deg,
                        float strength);
 
@@ -29,10 +30,10 @@ class Sky {
     /// Mean luminance over the sphere, nits.
     [[nodiscard]] float average_luminance() const { return average_; }
 
-    /// What a ray that leaves the scene finds.
+    /// Radiance and density in the direction of a ray that leaves the scene.
     struct Found {
         Rgb radiance;  ///< bilinear between texel centres: around in u, clamped in v
-        float pdf;     ///< of `sample` for the direction, 1/sr; 0 for a black sky
+        float pdf;     ///< density of `sample` there, 1/sr; 0 for a black sky
     };
     [[nodiscard]] Found find(const V3f& direction) const;
     [[nodiscard]] Rgb radiance(const V3f& direction) const;
@@ -43,14 +44,13 @@ class Sky {
         float pdf;      ///< 1/sr
     };
     /// Draws a direction: a texel in proportion to the light that comes from it, uniform by solid
-    /// angle within. The sky must not be black. What radiance(direction) reads is on its way to
-    /// the cache then.
+    /// angle within. The sky must not be black. Prefetches what radiance(direction) reads.
     [[nodiscard]] Draw sample(V2f u) const;
 
   private:
     struct Row {
         float top;      ///< cosine at the upper edge
-        float density;  ///< 1/sr for a unit of the row
+        float density;  ///< density for a unit of the row, 1/sr
     };
     void fill_importance();
     [[nodiscard]] const TexelBlock* blocks_of(int y) const {

@@ -33,7 +33,7 @@ void TexelBlock::divide(const std::array<float, kSize>& weights, uint32_t share)
         edge[i + 1] = std::max(static_cast<uint32_t>(steps * (running / total) + 0.5),
                                edge[i] + (weights[i] > 0));
     }
-    edge[kSize] = steps;  // what was lifted above it comes down
+    edge[kSize] = steps;  // edges that were lifted above it come down
     for (int i = kSize - 1; i > 0; --i) {
         edge[i] = std::min(edge[i], edge[i + 1] - (weights[i] > 0));
         start_[i - 1] = static_cast<uint16_t>(edge[i]);

@@ -15,28 +15,28 @@
 
 namespace petzval {
 
-/// Colours are half floats times a power of two: exact for what Radiance pictures hold. The
-/// texels divide a share of whole units among themselves, so that one is drawn exactly as often as
-/// it says. The share itself is kept by who has the blocks.
+/// Eight texels. Colours are half floats times a power of two: exact for what Radiance pictures
+/// hold. The block splits an integer sampling weight, its share, over its texels, so that each is
+/// drawn exactly as often as it says. The share itself is stored by the caller (Sky), not here.
 class alignas(64) TexelBlock {
   public:
     static constexpr int kSize = 8;
 
     TexelBlock() = default;
-    /// Texels may be fewer than eight; RGB, finite, not negative; lane 3 is ignored.
+    /// Texels: RGB, finite, not negative, at most eight; lane 3 is ignored.
     explicit TexelBlock(std::span<const f4> texels);
-    /// Weights of the texels, finite, not negative; share: at least a unit for each above 0, below
-    /// 2^31. A texel has a share in proportion, none where its weight is 0, and not less than a
-    /// unit or 2^-15 of all where it is above.
+    /// Divides the share in proportion to the texels' weights, which are finite and not negative:
+    /// none where a weight is 0, and not less than a unit or 2^-15 of all where it is above. share:
+    /// at least a unit for each weight above 0, below 2^31.
     void divide(const std::array<float, kSize>& weights, uint32_t share);
 
     /// RGB in lanes 0 to 2; lane 3 means nothing.
     [[nodiscard]] f4 colour(int texel) const {
-        __m128i halves;  // four, the last of them a stranger
+        __m128i halves;  // four: the fourth belongs to the next texel
         std::memcpy(&halves, reinterpret_cast<const char*>(this) + sizeof(rgb_[0]) * texel, 8);
         return _mm_cvtph_ps(halves) * std::bit_cast<float>((exponent_ + 127) << 23);
     }
-    /// Units before a texel, 0 to 8.
+    /// Number of units before a texel, 0 to 8.
     [[nodiscard]] uint32_t begin(int texel, uint32_t share) const {
         if (texel == 0) return 0;
         return texel < kSize ? start(texel, share) : share;
@@ -61,7 +61,7 @@ class alignas(64) TexelBlock {
     }
 
     std::array<std::array<uint16_t, 3>, kSize> rgb_{};
-    std::array<uint16_t, kSize - 1> start_{};  ///< of the second to the last, in steps
+    std::array<uint16_t, kSize - 1> start_{};  ///< begin of the second to the last texel, in steps
     int16_t exponent_ = 0;
 };
 static_assert(sizeof(TexelBlock) == 64);

@@ -21,7 +21,7 @@ struct FloatReader {
     }
 };
 
-struct ByteReader {  // codes, 255 times the number
+struct ByteReader {  // gives codes, 255 times the number
     const uint8_t* texels;
     f4 operator()(size_t i) const {
         u8x4 texel;
@@ -80,7 +80,7 @@ float wrapped_position(float coordinate, Wrap wrap, int size) {
 
 struct Pair {
     int first, second;
-    float weight;  // of the second
+    float weight;  // of the second texel
 };
 
 // The two texels whose centres lie about a position.
@@ -107,7 +107,7 @@ f4 filtered(const Reader& read, const TextureLookup& at) {
     return upper + (lower - upper) * at.lower;
 }
 
-// What is read there, and how; the texels are on their way from here on.
+// Sets the address and format of the texels, and prefetches them.
 void fetch(const Image& image, const TextureSlot& slot, TextureLookup& at) {
     using Format = TextureLookup::Format;
     const auto* bytes = std::get_if<std::vector<uint8_t>>(&image.texels);

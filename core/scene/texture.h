@@ -16,7 +16,7 @@ namespace petzval {
 struct Image {
     std::string name;
     int width = 0, height = 0;
-    /// 4 numbers a texel: 8 bits as in the file, or floats where it has more.
+    /// Four numbers a texel: 8 bits as in the file, or floats where it has more.
     std::variant<std::vector<uint8_t>, std::vector<float>> texels;
 };
 
@@ -30,8 +30,8 @@ struct TextureSlot {
     bool nearest = false;
     Encoding encoding = Encoding::Linear;
     uint8_t uv_set = 0;
-    /// Slots of a material with the same number above 0 find their texels at the same places of
-    /// pictures of one size; finish_scene says which.
+    /// Place number: slots of a material with the same one above 0 find their texels at the same
+    /// places of pictures of one size. finish_scene sets it.
     uint8_t place = 0;
     /// KHR_texture_transform: (u, v, 1) times these two rows.
     std::array<float, 3> u_row{1, 0, 0}, v_row{0, 1, 0};
@@ -39,7 +39,7 @@ struct TextureSlot {
     [[nodiscard]] bool present() const { return image >= 0; }
 };
 
-/// Where a slot's value lies in memory: the four texels about uv (the same one four times where the
+/// Memory location of a slot's value: the four texels about uv (the same one four times where the
 /// slot asks for the nearest). Locating several slots before reading the first lets their cache
 /// misses overlap.
 struct TextureLookup {
@@ -52,13 +52,14 @@ struct TextureLookup {
 /// Finds the texels and asks the processor to fetch them. Defined for any finite uv.
 [[nodiscard]] TextureLookup locate_texture(const std::vector<Image>& images,
                                            const TextureSlot& slot, V2f uv);
-/// The same where another slot of the same `place` has been located already.
+/// Finds and fetches the texels likewise, from another slot of the same `place` that is located
+/// already.
 [[nodiscard]] TextureLookup locate_beside(const std::vector<Image>& images, const TextureSlot& slot,
                                           const TextureLookup& located);
-/// RGBA, decoded to linear, then filtered; 1 where the slot has no texture.
+/// Value of a slot: RGBA, decoded to linear, then filtered; 1 where the slot has no texture.
 [[nodiscard]] f4 read_texture(const TextureLookup&);
 
-/// Both steps at once.
+/// Value of a slot at uv: both steps at once.
 [[nodiscard]] inline f4 sample_texture(const std::vector<Image>& images, const TextureSlot& slot,
                                        V2f uv) {
     return read_texture(locate_texture(images, slot, uv));

@@ -92,7 +92,7 @@ Bsdf::Bsdf(const BsdfInput& in, const Bands& bands, const V3f& wo, f4 throughput
 f4 Bsdf::albedo() const {
     f4 albedo = spec0_ * albedo_f0_ + spec90_ * albedo_f90_ + diffuse_ + thin_ +
                 zero_off(on_, splat(glass_share_));
-    // As if every facet met the light at wo's angle.
+    // Approximation: every facet meets the light at wo's angle.
     if (measured_metal_)
         albedo +=
             metal_ * fresnel_conductor(wo_.z, metal_n_, metal_k_) * (albedo_f0_ + albedo_f90_);
@@ -111,8 +111,9 @@ f4 Bsdf::specular_reflectance(float wo_m) const {
     return reflectance + metal_ * fresnel_conductor(wo_m, metal_n_, metal_k_);
 }
 
-// Reflection goes the same way for all lanes, so it is drawn by the lanes' mean. Else: the lane
-// whose way the light goes through, in proportion to what of it is not reflected.
+// Drawn lane, -1 for reflection. All lanes reflect the same way, so reflection is drawn by their
+// mean; else a lane is drawn in proportion to what of it is not reflected, and the light takes its
+// way.
 int Bsdf::draw_lane(f4 reflectance, float u) const {
     const float reflected = hsum(share_ * reflectance);
     if (u < reflected) return -1;
@@ -173,7 +174,7 @@ BsdfValue Bsdf::eval(const V3f& wi) const {
 // turns radiance into basic radiance; separable masking and shadowing, equation 23.
 void Bsdf::add_glass(const V3f& wi, BsdfValue& value) const {
     const float shadowing = 1.f / (1.f + ggx_lambda(wi, alpha_));
-    f4 density{};  // with which each lane would draw wi
+    f4 density{};  // of wi, as each lane would draw it
     for (int i = 0; i < (disperses_ ? 4 : 1); ++i) {
         const float eta = eta_[i];
         V3f m = wo_ + wi * eta;
@@ -206,7 +207,7 @@ std::optional<BsdfSample> Bsdf::sample_delta(float u) const {
     const float share = glass_share_ / p_glass_;
     const int lane = draw_lane(r, u);
     if (lane < 0) {
-        // The same for all lanes of one index: no rounding, so that nothing is gained or lost.
+        // Weight 1 for lanes of one index: no rounding, so that nothing is gained or lost.
         const f4 weight = disperses_ ? r / hsum(share_ * r) : zero_off(on_, splat(1.f));
         return BsdfSample{mirrored, weight * share, 0.f, true, false};
     }

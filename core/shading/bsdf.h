@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a glTF surface scatters light: one GGX reflection over a diffuse, thin or glass body.
+// BSDF of a glTF surface: one GGX reflection over a diffuse, thin or glass body.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace petzval {
 
-/// The numbers of a material at a point, textures applied. Shares of light are per lane.
+/// Parameters of a material at a point, textures applied. Shares of light are per lane.
 struct BsdfInput {
     f4 base_color{};
     float metallic = 0, roughness = 1;
@@ -19,12 +19,12 @@ struct BsdfInput {
     f4 eta = splat(1.5f);    ///< index on the far side over index on wo's side
     bool disperses = false;  ///< eta differs from lane to lane
     bool thin = true;        ///< transmission without a volume: nothing bends
-    /// The metallic part is of the index metal_n + i metal_k instead of base_color.
+    /// Whether the metallic part has the index metal_n + i metal_k instead of base_color.
     bool measured_metal = false;
     f4 metal_n{}, metal_k{};
 };
 
-/// f cos and density together; both 0 where only a delta lobe could answer.
+/// Value f cos and its density; both 0 where only a delta lobe could answer.
 struct BsdfValue {
     f4 f_cos{};
     float pdf = 0;  ///< 1/sr
@@ -38,23 +38,23 @@ struct BsdfSample {
     bool transmitted;  ///< wi lies on the other side
 };
 
-/// Directions point away from the surface, in the shading frame turned to wo's side (wo.z > 0).
-/// Paths carry basic radiance L / n^2 (Nicodemus 1963), so refraction scales nothing and no
-/// weight's mean exceeds 1.
+/// BSDF for one wo. Directions point away from the surface, in the shading frame turned to wo's
+/// side (wo.z > 0). Paths carry basic radiance L / n^2 (Nicodemus 1963), so refraction scales
+/// nothing and no weight's mean exceeds 1.
 ///
-/// Where wavelengths go different ways, the way of one lane is drawn, in proportion to what the
-/// lane carries, and the density is the mean over the lanes by the same proportion: single-sample
-/// MIS with the balance heuristic (Veach 1997, 9.2.3; Wilkie et al. 2014, section 3.2). A delta
-/// lobe leaves the drawn lane alone.
+/// A dispersive lobe draws the direction of one lane, in proportion to what the lane carries, and
+/// the density is the mean over the lanes by the same proportion: single-sample MIS with the
+/// balance heuristic (Veach 1997, 9.2.3; Wilkie et al. 2014, section 3.2). A delta lobe leaves the
+/// drawn lane alone.
 class Bsdf {
   public:
     /// throughput: what each lane of the path carries, not all 0; it steers what is drawn.
     Bsdf(const BsdfInput&, const Bands&, const V3f& wo, f4 throughput = splat(1.f));
 
     [[nodiscard]] BsdfValue eval(const V3f& wi) const;
-    /// u_lobe picks the lobe, u the direction. Nothing where the drawn direction is absorbed.
+    /// Draws a direction: u_lobe picks the lobe, u the direction. Nothing where that is absorbed.
     [[nodiscard]] std::optional<BsdfSample> sample(float u_lobe, V2f u) const;
-    /// Some lobe is wide enough for light sampling to help.
+    /// Whether some lobe is wide enough for light sampling to help.
     [[nodiscard]] bool has_wide_lobe() const { return p_diffuse_ > 0 || !delta_; }
     /// Share of light that is scattered, all lobes together (glass: as if it lost nothing).
     [[nodiscard]] f4 albedo() const;
@@ -70,15 +70,15 @@ class Bsdf {
 
     V3f wo_;
     float alpha_;
-    f4 eta_, share_;  ///< share_: of the lanes in what the path carries
+    f4 eta_, share_;  ///< share_: each lane's part of what the path carries
     bool disperses_, delta_;
     float lambda_o_;
     // Reflection: single-scatter GGX times spec0 (1 - s) + spec90 s, multiple scattering included.
     f4 spec0_, spec90_;
     bool measured_metal_;
     f4 metal_n_, metal_k_;
-    f4 metal_;                      ///< on what a measured metal reflects
-    float albedo_f0_, albedo_f90_;  ///< GGX's own, for wo
+    f4 metal_;                      ///< factor on what a measured metal reflects
+    float albedo_f0_, albedo_f90_;  ///< of GGX alone, for wo
     f4 diffuse_;                    ///< albedo
     f4 thin_;                       ///< albedo of straight transmission
     f4 glass_;                      ///< tint of refracted light; its untinted share is glass_share_

@@ -9,7 +9,7 @@
 
 namespace petzval {
 
-/// Below this GGX width a lobe is a mirror: floats no longer resolve it.
+/// Smallest GGX width: below it a lobe is a mirror, as floats no longer resolve it.
 inline constexpr float kSmallestAlpha = 1e-3f;
 
 /// Normal density, 1/sr. Walter et al. 2007, "Microfacet Models for Refraction", equation 33.
@@ -55,8 +55,8 @@ inline constexpr float kSmallestAlpha = 1e-3f;
     return cos2_behind > 0.f ? share : splat(1.f);
 }
 
-/// The same for a metal of index n + ik over the index in front. Born and Wolf 1999, 14.2, with the
-/// complex cosine behind written as a + ib.
+/// Unpolarised reflectance of a metal of index n + ik over the index in front. Born and Wolf 1999,
+/// 14.2, with the complex cosine behind written as a + ib.
 [[nodiscard]] inline f4 fresnel_conductor(float cosine, f4 n, f4 k) {
     const float cos2 = sqr(cosine), sin2 = 1.f - cos2;
     const f4 p = n * n - k * k - sin2, nk = n * k;
@@ -75,7 +75,8 @@ struct GgxAlbedo {
     float f0, f90;
     [[nodiscard]] float total() const { return f0 + f90; }
 };
-/// From a table, bilinear in sqrt(cosine) and sqrt(alpha); relative error of total() < 0.3 %.
+/// Directional albedo from a table, bilinear in sqrt(cosine) and sqrt(alpha); relative error of
+/// total() < 0.3 %.
 [[nodiscard]] GgxAlbedo ggx_albedo(float cosine, float alpha);
 
 }  // namespace petzval

@@ -14,7 +14,7 @@ V3f abs_transform(const V3f& p, const M44f& m) {
     return sum;
 }
 
-// Normals go by the inverse transpose; to_local is the inverse.
+// Unnormalised normal in world space, by the inverse transpose; to_local is the inverse.
 V3f transform_normal(const V3f& n, const M44f& to_local) {
     return {n.x * to_local[0][0] + n.y * to_local[0][1] + n.z * to_local[0][2],
             n.x * to_local[1][0] + n.y * to_local[1][1] + n.z * to_local[1][2],
@@ -53,8 +53,8 @@ V3f mapped_normal(const Surface& s, const TextureLookup& map) {
     return n.dot(n) > 1e-12f ? unit(n) : s.ns;
 }
 
-// A shading normal that wo sees from behind would reflect into the surface: it is tilted until wo
-// grazes it.
+// Shading normal that wo sees from the front. One seen from behind would reflect into the surface:
+// it is tilted until wo grazes it.
 V3f face_towards(const V3f& n, const V3f& wo) {
     constexpr float least_cosine = 1e-3f;
     const float cosine = n.dot(wo);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A point on a triangle with what shading needs of it, and how a material answers there.
+// Surface point on a triangle with what shading needs of it, and the material there.
 #pragma once
 
 #include "core/math/math.h"
@@ -24,24 +24,25 @@ struct Surface {
 
 /// Geometry of a hit of a ray that travels along `direction`.
 [[nodiscard]] Surface make_surface(const Scene&, const V3f& direction, const Hit&);
-/// The back of a single-sided surface, which glTF culls from view; the inside of a volume is seen.
+/// Whether the hit is on the back of a single-sided surface, which glTF culls from view; the inside
+/// of a volume is seen.
 [[nodiscard]] inline bool culled_from_view(const Surface& s) {
     return !s.front && !s.material->double_sided && !s.material->has_volume;
 }
 /// COLOR_0 at the hit as linear RGBA; 1 where the mesh has none.
 [[nodiscard]] f4 vertex_colour(const Surface&);
-/// The material at the hit, textures read: what the Bsdf is made from, and what glows.
+/// Material at the hit, textures read: parameters of the Bsdf, and emission.
 struct ShadingInput {
     BsdfInput bsdf;
     Rgb unlit{0.f};    ///< KHR_materials_unlit: shown as it is, nits
-    Rgb emitted{0.f};  ///< as emitted_radiance says, core/light/emission.h
+    Rgb emitted{0.f};  ///< emitted_radiance(), core/light/emission.h, nits
     Frame frame;       ///< shading frame on wo's side, the normal map applied
 };
-/// Where the textures lie that nearly every material has. Time between locating and reading is not
-/// lost: they are on their way.
+/// Locations of the textures that nearly every material has. Locating them prefetches them, so that
+/// time until they are read is not lost.
 struct MaterialLookups {
     TextureLookup base_color, metallic_roughness, normal, emissive;
-    bool emits;  ///< on the side that is seen
+    bool emits;  ///< the side that is seen emits
 };
 [[nodiscard]] MaterialLookups locate_material(const Scene&, const Surface&);
 [[nodiscard]] ShadingInput read_material(const Scene&, const Surface&, const MaterialLookups&,
@@ -51,8 +52,8 @@ struct MaterialLookups {
     return read_material(scene, s, locate_material(scene, s), wo, bands);
 }
 
-/// Share of light that is left after a way through a volume: Beer and Lambert's law, with the
-/// coefficient that KHR_materials_volume defines, -ln(attenuationColor) / attenuationDistance.
+/// Transmittance of a way through a volume: Beer and Lambert's law, with the coefficient that
+/// KHR_materials_volume defines, -ln(attenuationColor) / attenuationDistance.
 [[nodiscard]] f4 transmittance(const Material&, float distance_m, const Bands&);
 
 }  // namespace petzval

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the four lanes of a sample mean, and how RGB numbers of a scene reach them.
+// Bands: the meaning of a sample's four lanes, and the maps from RGB numbers of a scene to them.
 #pragma once
 
 #include "core/math/lanes.h"
@@ -27,20 +27,20 @@ struct Rgb {
 }
 
 /// Meaning of the lanes of one sample: linear R, G, B in lanes 0 to 2, or a sampled wavelength in
-/// each. Numbers of the scene come in, and the film's go out, by linear maps that do not ask which.
-/// Whoever scatters, adds or weighs light does not look inside; only those do who turn a function
-/// of wavelength into lanes, or lanes into bins (core/colour, illuminant, observer, spectral_film,
-/// surface).
+/// each. Numbers of the scene come in, and the film's go out, by linear maps that are the same for
+/// both. Code that scatters, adds or weighs light must not look inside; only code that turns a
+/// function of wavelength into lanes, or lanes into bins, does (colour, illuminant, observer,
+/// spectral_film, surface).
 struct Bands {
     f4 nm{};                    ///< wavelengths in air; 0 while the lanes carry linear RGB
     f4 pdf{};                   ///< density of each wavelength, 1/nm; 1 for RGB
     m4 on{};                    ///< lanes in use
-    f4 red{}, green{}, blue{};  ///< reflectance of what is 1 in R, in G, in B
+    f4 red{}, green{}, blue{};  ///< reflectance that is 1 in R, in G, in B
     f4 white{};                 ///< radiance of the white light at 1 nit, W/(m2 sr nm); 1 for RGB
-    f4 to_r{}, to_g{}, to_b{};  ///< what a unit of each lane adds to the film's R, G, B
+    f4 to_r{}, to_g{}, to_b{};  ///< film's R, G, B for a unit of each lane
     bool spectral = false;      ///< nm holds wavelengths
 
-    /// Lanes 0 to 2 carry linear R, G and B.
+    /// Bands whose lanes 0 to 2 carry linear R, G and B.
     [[nodiscard]] static Bands rgb() {
         const f4 r{1, 0, 0, 0}, g{0, 1, 0, 0}, b{0, 0, 1, 0};
         return {f4{}, f4{1, 1, 1, 1}, m4{-1, -1, -1, 0}, r, g, b, f4{1, 1, 1, 0}, r, g, b, false};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bands of wavelength of equal width, side by side.
+// Wavelength bins of equal width, side by side.
 #pragma once
 
 #include <cmath>

@@ -15,7 +15,7 @@ double hue_deg(double a, double b) {
     return hue < 0 ? hue + 360 : hue;
 }
 
-// CIE 015:2018, equations 8.6 and 8.7.
+// Function f of L*a*b*: CIE 015:2018, equations 8.6 and 8.7.
 double lab_curve(double ratio) {
     constexpr double edge = 24. / 116;
     return ratio > edge * edge * edge ? std::cbrt(ratio) : 841. / 108 * ratio + 16. / 116;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers for colours: what tells sRGB, whites and differences apart.
+// Colorimetry: sRGB and XYZ, chromatic adaptation, colour differences.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace petzval {
 
-/// Rows; applied to columns.
+/// 3 x 3 matrix by rows; applied to columns.
 struct Matrix3 {
     std::array<V3d, 3> row;
 
@@ -20,16 +20,16 @@ struct Matrix3 {
     [[nodiscard]] Matrix3 inverse() const;  ///< the matrix must not be singular
 };
 
-/// Sum over wavelengths of a spectrum under three curves.
+/// Three responses: sums over wavelengths of a spectrum under three curves.
 [[nodiscard]] V3d respond(const std::array<SpectrumTable, 3>& curves, const SpectrumTable&);
 
-/// Linear sRGB to XYZ for the chromaticities of ITU-R BT.709-6, scaled so that RGB (1, 1, 1) is
-/// `white`. With the white of summed tables, which differ from D65's rounded chromaticity in the
-/// fifth digit, white stays exactly white.
+/// Matrix from linear sRGB to XYZ for the chromaticities of ITU-R BT.709-6, scaled so that RGB (1,
+/// 1, 1) is `white`. With the white of summed tables, which differ from D65's rounded chromaticity
+/// in the fifth digit, white stays exactly white.
 [[nodiscard]] Matrix3 srgb_to_xyz(const V3d& white);
 
-/// XYZ under one white as they look under another. Lam 1985, "Metamerism and colour constancy";
-/// matrix as in ICC.1:2022, annex E.
+/// Chromatic adaptation by Bradford: matrix from XYZ under one white to XYZ that look the same
+/// under another. Lam 1985, "Metamerism and colour constancy"; matrix as in ICC.1:2022, annex E.
 [[nodiscard]] Matrix3 bradford(const V3d& from_white, const V3d& to_white);
 
 /// CIE 1976 L*a*b*: CIE 015:2018, 8.2.1.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the lanes of a finished sample to the film's linear sRGB, and the scale of light.
+// Conversion of a finished sample's lanes to the film's linear sRGB, and the luminous efficacy.
 #pragma once
 
 #include "core/spectrum/bands.h"
@@ -15,7 +15,7 @@ inline constexpr float kLuminousEfficacy_lm_per_w = 683.002f;
 [[nodiscard]] inline Rgb to_rgb(f4 radiance, const Bands& bands) {
     return {hsum(radiance * bands.to_r), hsum(radiance * bands.to_g), hsum(radiance * bands.to_b)};
 }
-/// Linear sRGB estimate of a reflectance: as it looks under the white light.
+/// Linear sRGB estimate of a reflectance under the white light.
 [[nodiscard]] inline Rgb reflectance_to_rgb(f4 reflectance, const Bands& bands) {
     return to_rgb(reflectance * bands.white, bands);
 }

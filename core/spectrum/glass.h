@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the refractive index of a glass depends on wavelength: for scenes and for lenses alike.
+// Refractive index of glasses by wavelength, for scenes and for lenses alike.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ struct Sellmeier {
     double constant = 0;
     bool operator==(const Sellmeier&) const = default;
 };
-/// n^2 = sum a w^p, w in um, p even: Schott's of before 1992 has p = 0, 2, -2, -4, -6, -8.
+/// n^2 = sum a w^p, w in um, p even: Schott's formula before 1992 has p = 0, 2, -2, -4, -6, -8.
 struct PowerSeries {
     std::vector<std::array<double, 2>> terms;  ///< {a, p}
     bool operator==(const PowerSeries&) const = default;
@@ -47,16 +47,17 @@ struct Glass {
 
     [[nodiscard]] double index(double nm) const;
     [[nodiscard]] f4 index(f4 nm) const;
-    /// (nd - 1) / (nF - nC); infinite where nothing disperses.
+    /// Abbe number (nd - 1) / (nF - nC); infinite where nothing disperses.
     [[nodiscard]] double abbe() const;
     bool operator==(const Glass&) const = default;
 };
 
-/// n = a + b / w^2 through nd with nF - nC = (nd - 1) / abbe. KHR_materials_dispersion's formula.
+/// Cauchy formula n = a + b / w^2 through nd with nF - nC = (nd - 1) / abbe: that of
+/// KHR_materials_dispersion.
 [[nodiscard]] IndexSeries cauchy_through(double nd, double abbe);
 
-/// What a glass is like of which only nd and the Abbe number are known: n = a + b w^-1.5 +
-/// c w^-4.5 through nd, nF - nC and the partial dispersion (ng - nF) / (nF - nC) = 0.505549 -
+/// Index of a typical glass of which only nd and the Abbe number are known: n = a + b w^-1.5 + c
+/// w^-4.5 through nd, nF - nC and the partial dispersion (ng - nF) / (nF - nC) = 0.505549 -
 /// 0.000142809 abbe + 2.8816 / abbe that catalogue glasses have on average. The greatest error from
 /// 400 to 700 nm is 1.7e-4 for half of them, at worst 1.8e-3. No dispersion where abbe is infinite.
 [[nodiscard]] IndexSeries glass_like(double nd, double abbe);

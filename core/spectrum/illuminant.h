@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lights whose colour is measured: what an RGB of 1 means on a lamp that is not the scene's white.
+// Illuminants: measured spectra of light, the meaning of an RGB of 1 on a lamp that is not the
+// scene's white.
 #pragma once
 
 #include <string>
@@ -12,7 +13,7 @@ namespace petzval {
 struct Illuminant {
     std::string name;
     SpectrumTable per_nit;  ///< W/(m2 sr nm) at 1 nit
-    Rgb rgb;                ///< of 1 nit, for lanes of RGB; may have negative channels
+    Rgb rgb;                ///< colour of 1 nit, for lanes of RGB; may have negative channels
 };
 
 /// Radiance of a source whose white is `illuminant`; the scene's own white for nullptr.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A measured metal.
+// Measured metals: complex index of refraction by wavelength.
 #pragma once
 
 #include <string>

@@ -8,7 +8,7 @@
 namespace petzval {
 namespace {
 
-// W/(m2 sr nm) of a light at 1 nit, over its power in whatever unit.
+// Spectral radiance, W/(m2 sr nm), of a light at 1 nit, over its power in whatever unit.
 double per_nit(const SpectrumTable& light, const SpectrumTable& y_bar) {
     return 1. / (kLuminousEfficacy_lm_per_w * integral_of_product(light, y_bar));
 }
@@ -17,10 +17,10 @@ f4 mix(f4 a, f4 b, float t) {
     return a * (1.f - t) + b * t;
 }
 
-// Where wavelengths are worth drawing, a weight for each cell of 1 nm. For a grey scene under one
-// light the summed variance of R, G and B is least in proportion to the light times the length of
-// the sensor's response; a twentieth is kept for light of any other spectrum. Half of that goes
-// where the eye sees: a sensor may be blind there, and XYZ is not.
+// Sampling weights of wavelengths, one for each cell of 1 nm. For a grey scene under one light the
+// summed variance of R, G and B is least in proportion to the light times the length of the
+// sensor's response; a twentieth is kept for light of any other spectrum. Half of that goes where
+// the eye sees: a sensor may be blind there, and XYZ is not.
 std::vector<float> sensor_weights(const ObserverInput& in, const std::vector<f4>& response,
                                   const std::vector<f4>& eye) {
     std::vector<const SpectrumTable*> lights{&in.white};
@@ -44,7 +44,7 @@ std::vector<float> sensor_weights(const ObserverInput& in, const std::vector<f4>
     return {sum.begin(), sum.end()};
 }
 
-// The other half, where there are bins: even over them.
+// Mixes in a weight that is even over the bins, as one half of the whole.
 void mix_in(const Bins& bins, std::vector<float>& weights) {
     double total = 0;
     for (const float w : weights) total += w;

@@ -13,8 +13,8 @@ struct SensorFit {
     double mean_delta_e = 0, worst_delta_e = 0;  ///< CIEDE2000 over the reflectances
 };
 
-/// Least squares over reflectances under a light, with the white of that light exact.
-/// xyz_to_rgb: what the eye's XYZ of the same reflectance is meant to become. Throws
+/// Fit of the matrix by least squares over reflectances under a light, with the white of that light
+/// exact. xyz_to_rgb: gives the target, from the eye's XYZ of the same reflectance. Throws
 /// std::invalid_argument where the three curves do not tell three colours apart.
 [[nodiscard]] SensorFit fit_sensor(const std::array<SpectrumTable, 3>& response,
                                    const std::array<SpectrumTable, 3>& xyz_bar,

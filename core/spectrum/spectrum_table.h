@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A quantity at every nanometre that the renderer looks at.
+// Spectrum table: a quantity at every nanometre of the renderer's range.
 #pragma once
 
 #include <array>
@@ -18,17 +18,17 @@ inline constexpr int kSpectrumSize = kLast_nm - kFirst_nm + 1;
 struct SpectrumTable {
     std::array<float, kSpectrumSize> value{};
 
-    /// The end's value beyond an end.
+    /// Value at a wavelength; beyond an end, the end's.
     [[nodiscard]] float at(float nm) const;
     [[nodiscard]] f4 at(f4 nm) const { return f4{at(nm[0]), at(nm[1]), at(nm[2]), at(nm[3])}; }
     [[nodiscard]] float& at_nm(int nm) { return value[static_cast<size_t>(nm - kFirst_nm)]; }
     [[nodiscard]] float at_nm(int nm) const { return value[static_cast<size_t>(nm - kFirst_nm)]; }
 };
 
-/// What a table says beyond the wavelengths that were measured.
+/// Values of a table beyond the wavelengths that were measured.
 enum class Extrapolate { Zero, Hold };
 
-/// (nm, value) points in rising order of nm, at least one, joined by straight lines.
+/// Table of (nm, value) points in rising order of nm, at least one, joined by straight lines.
 [[nodiscard]] SpectrumTable tabulate(std::span<const std::pair<float, float>> points, Extrapolate);
 
 /// Integral over nm of the straight lines, and of the product of two tables' straight lines: what

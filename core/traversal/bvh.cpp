@@ -21,16 +21,16 @@ uint32_t instance_of(uint32_t inst_id, uint32_t geom_id) {
     return inst_id != RTC_INVALID_GEOMETRY_ID ? inst_id : geom_id;
 }
 
-// A ray passes where an alpha_seed that belongs to it and to the triangle says so. A pure function
-// of its arguments: Embree may ask twice for one triangle (spatial splits), and the second answer
-// must be the first one.
+// Whether a ray passes a triangle by its coverage and the ray's alpha_seed. A pure function of its
+// arguments: Embree may ask twice for one triangle (spatial splits), and the second answer must be
+// the first one.
 bool lets_pass(const Scene& scene, const RTCHit& hit, uint32_t alpha_seed) {
     const uint32_t instance = instance_of(hit.instID[0], hit.geomID);
     const float covered = coverage(scene, instance, hit.primID, {hit.u, hit.v});
     return to_unit_float(hash32(hash32(alpha_seed, instance), hit.primID)) >= covered;
 }
 
-// Embree fixes the signature; the packet has one ray, as only the single-ray calls are used.
+// Embree's filter callback; its packet has one ray, as only the single-ray calls are used.
 void filter(const RTCFilterFunctionNArguments* args) {
     if (args->valid[0] != -1) return;
     const auto& scene = *static_cast<const Scene*>(args->geometryUserPtr);
@@ -43,14 +43,15 @@ RTCRay to_embree(const Ray& r) {
     RTCRay ray;
     ray.org_x = r.origin.x, ray.org_y = r.origin.y, ray.org_z = r.origin.z;
     ray.dir_x = r.direction.x, ray.dir_y = r.direction.y, ray.dir_z = r.direction.z;
-    // Above 0: in a plane through the origin of an axis nothing rounds, so that no offset moves a
-    // ray off it, and it would meet at 0 what it leaves.
+    // tnear above 0: in a plane through the origin of an axis nothing rounds, so that no offset
+    // moves a ray off it, and it would meet at 0 what it leaves.
     ray.tnear = std::numeric_limits<float>::min(), ray.tfar = r.t_max;
     ray.time = 0.f, ray.mask = ~0u, ray.id = 0, ray.flags = 0;
     return ray;
 }
 
-// Debian's Embree ends the program on other rays: its bound is 1.844e18 for every coordinate.
+// Whether Embree can trace a ray: Debian's ends the program on others, with a bound of 1.844e18 for
+// every coordinate.
 bool traceable(const Ray& r) {
     constexpr float bound = 1.8e18f;
     const auto beyond = [](const V3f& v) {  // no branches: nearly every ray is within

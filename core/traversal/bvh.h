@@ -15,8 +15,8 @@ namespace petzval {
 
 class Bvh {
   public:
-    /// Shares the scene's vertex and index buffers: the scene must outlive the Bvh, unchanged.
-    /// Throws std::runtime_error where Embree fails (out of memory).
+    /// Builds the hierarchy. It shares the scene's vertex and index buffers: the scene must outlive
+    /// the Bvh, unchanged. Throws std::runtime_error where Embree fails (out of memory).
     Bvh(const Scene&, Traversal);
     ~Bvh();
     Bvh(const Bvh&) = delete;
@@ -26,9 +26,9 @@ class Bvh {
     [[nodiscard]] std::optional<Hit> intersect(const Ray&) const;
     /// Whether anything lies in (0, t_max).
     [[nodiscard]] bool occluded(const Ray&) const;
-    /// Some material is MASK or BLEND: rays need their alpha_seed.
+    /// Whether some material is MASK or BLEND, so that rays need their alpha_seed.
     [[nodiscard]] bool has_cutouts() const;
-    /// The library's own scene, for measuring what bare traversal costs.
+    /// Embree's own scene, for measuring what bare traversal costs.
     [[nodiscard]] RTCSceneTy* native() const;
 
   private:
@@ -36,8 +36,8 @@ class Bvh {
     std::unique_ptr<Impl> impl_;
 };
 
-/// Denormals count as zero on the calling thread, as Embree wants it. Threads started afterwards
-/// inherit it, so call it before the first use of a task library.
+/// Makes denormals count as zero on the calling thread, as Embree wants it. Threads started
+/// afterwards inherit it, so call it before the first use of a task library.
 void flush_denormals();
 
 }  // namespace petzval

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How rays are traced through a scene, without the code that traces them.
+// Options of ray traversal, without the code that traverses.
 #pragma once
 
 #include <cstdint>

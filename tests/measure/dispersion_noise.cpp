@@ -34,7 +34,8 @@ struct Strategy {
 double parted_px(const RenderSetup& split, const RenderJob& job, V2i size, Rect crop) {
     const CameraReport& report = split.from.camera;
     const V3f axis = (report.target - report.eye).normalized();
-    const Bands bands = split.view.observer.at(f4{450, 650, 550, 550}, splat(1e-3f), m4{-1, -1, 0, 0});
+    const Bands bands =
+        split.view.observer.at(f4{450, 650, 550, 550}, splat(1e-3f), m4{-1, -1, 0, 0});
     const V2f middle(0.5f * float(crop.x0 + crop.x1), 0.5f * float(crop.y0 + crop.y1));
     double sum = 0;
     int count = 0;

@@ -36,18 +36,12 @@ std::string table_head(const std::vector<std::string>& columns) {
     return table_row(columns) + rule + "\n";
 }
 
-std::string guards_of(const Finding& f) {
-    std::vector<std::string> code;
-    for (const std::string& guard : f.guards) code.push_back(fmt::format("`{}`", guard));
-    return fmt::format("{}", fmt::join(code, ", "));
-}
-
 std::string section(const Finding& f) {
     std::string out =
         fmt::format("## {}\n{}\n\n{}", f.method, f.sweep, table_head(f.table.columns));
     for (const auto& cells : f.table.rows) out += table_row(cells);
-    return out + fmt::format("\n- **Fails:** {}. {}\n- **There:** {}\n- **Guard:** {}\n", f.fails,
-                             f.where, f.instead, guards_of(f));
+    return out +
+           fmt::format("\n- **Fails:** {}. {}\n- **There:** {}\n", f.fails, f.where, f.instead);
 }
 
 }  // namespace
@@ -95,9 +89,10 @@ std::string stability_markdown(const std::vector<Finding>& findings) {
         "# Where methods fail\n\n"
         "    petzval chart --axis stability -o OUT\n\n"
         "This command wrote the page. For each method it sweeps the parameters until the method "
-        "fails.\nSeeds are fixed, so the same program writes the same page, and a test holds the "
-        "page against the program.\nThe command also writes `stability.csv`, with the numbers of "
-        "all tables.\n\n" +
+        "fails.\nSeeds are fixed: the same program finds the same on the same machine, and nearly "
+        "the "
+        "same on another.\nThe command also writes `stability.csv`, with the numbers of all "
+        "tables.\n\n" +
         table_head({"method", "what fails", "where"});
     for (const Finding& f : findings)
         out += table_row({fmt::format("[{}](#{})", f.method, anchor(f.method)), f.fails, f.where});
@@ -106,11 +101,11 @@ std::string stability_markdown(const std::vector<Finding>& findings) {
 }
 
 std::string stability_csv(const std::vector<Finding>& findings) {
-    std::string out = "method,row,quantity,value\n";
+    std::string out = "finding,method,row,quantity,value\n";
     for (const Finding& f : findings)
         for (size_t i = 0; i < f.table.rows.size(); ++i)
             for (size_t k = 0; k < f.table.columns.size(); ++k)
-                out += fmt::format("{},{},{},{}\n", f.method, i + 1, f.table.columns[k],
+                out += fmt::format("{},{},{},{},{}\n", f.id, f.method, i + 1, f.table.columns[k],
                                    f.table.rows[i][k]);
     return out;
 }

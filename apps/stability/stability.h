@@ -16,12 +16,12 @@ struct SweepTable {
 
 /// One method and where it ends.
 struct Finding {
+    std::string id;       ///< words with hyphens, which stay when its section gets another name
     std::string method;   ///< a few words: the name of its section
     std::string fails;    ///< bias, variance, NaN, no answer; "nothing" within the range swept
     std::string where;    ///< with the numbers that the sweep found and their units
     std::string instead;  ///< what the program does there; messages are those that it gave
-    std::vector<std::string> guards;  ///< tests, Suite.Name
-    std::string sweep;                ///< what was varied over which range, and what is measured
+    std::string sweep;    ///< what was varied over which range, and what is measured
     SweepTable table;
 };
 
@@ -30,7 +30,7 @@ struct Finding {
 /// rendering does. Throws InputError where assets are missing.
 [[nodiscard]] std::vector<Finding> stability_findings();
 
-/// docs/measured/stability.md: a table of all findings, then a section for each.
+/// The page stability.md: a table of all findings, then a section for each.
 [[nodiscard]] std::string stability_markdown(const std::vector<Finding>&);
 /// All tables in one: a row for each cell.
 [[nodiscard]] std::string stability_csv(const std::vector<Finding>&);

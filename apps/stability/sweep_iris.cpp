@@ -69,6 +69,7 @@ Iris iris_of(const Polygon& polygon, IrisSampling way = IrisSampling::Triangles)
 
 Finding rejection_of_slivers() {
     Finding f;
+    f.id = "rejection-of-slivers";
     f.method = "Rejection from slivers";
     f.fails = "time, then bias";
     f.sweep = fmt::format(
@@ -99,8 +100,6 @@ Finding rejection_of_slivers() {
     f.instead =
         "A draw that gives up takes a fresh number and the triangles, so that points stay uniform. "
         "Rejection is never chosen unless it is asked for. Light that rounding loses is lost.";
-    f.guards = {"Iris.RejectionEndsWithAFreshPoint", "Iris.DrawsTheSliverUniformlyAcross",
-                "Stability.ASliverOfAThousandthLosesNothing"};
     return f;
 }
 
@@ -200,6 +199,7 @@ Quality quality_of(const Polygon& polygon) {
 
 Finding degenerate_polygons() {
     Finding f;
+    f.id = "degenerate-polygons";
     f.method = "Triangles of nearly degenerate polygons";
     f.fails = "bias, then no answer";
     f.sweep = fmt::format(
@@ -241,13 +241,12 @@ Finding degenerate_polygons() {
         "Areas and triangles are made in doubles. What touches or encloses nothing is refused "
         "(\"{}\").",
         fault ? fault->message : "accepted");
-    f.guards = {"PolygonFault.NamesTheVertex", "Iris.SamplesAreInside",
-                "Stability.NearlyDegeneratePolygonsKeepTheirArea"};
     return f;
 }
 
 Finding choice_by_weight() {
     Finding f;
+    f.id = "choice-by-weight";
     f.method = "Choice by weight";
     f.fails = "bias";
     f.sweep =
@@ -279,9 +278,6 @@ Finding choice_by_weight() {
         "Lights and skies divide by the probability that was used, so that only variance is paid. "
         "An iris does not: triangles and texels of a mask that hold less than 2^-24 of all are "
         "brightened to that.";
-    f.guards = {"Piecewise1D.TinyWeightsKeepAChance",
-                "Piecewise1D.ProbabilityIsExactlyTheShareOfAllNumbers",
-                "AliasTable.DrawsByWeightAndLeavesAUniformNumber"};
     return f;
 }
 

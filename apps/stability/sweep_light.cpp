@@ -78,6 +78,7 @@ World under_lamp(double side_m, bool pane) {
 
 Finding tiny_sun() {
     Finding f;
+    f.id = "tiny-sun";
     f.method = "A sun of one texel";
     f.fails = "variance";
     f.sweep = fmt::format(
@@ -107,13 +108,12 @@ Finding tiny_sun() {
     f.instead =
         "Light samples and surface samples are weighed against each other by the power "
         "heuristic; the sky is drawn from by its texels.";
-    f.guards = {"Sky.SamplesFollowTheDensity", "Sky.EstimatesTheLightThatArrives",
-                "Path.TechniquesAgree"};
     return f;
 }
 
 Finding tiny_lamp() {
     Finding f;
+    f.id = "tiny-lamp";
     f.method = "Lamps of millimetres";
     f.fails = "variance; no answer for punctual lights behind glass";
     f.sweep = fmt::format(
@@ -159,8 +159,6 @@ Finding tiny_lamp() {
         "Lamps are drawn from by light samples, which glass blocks: through glass only "
         "paths that happen to meet the lamp bring its light. Punctual lights and the sun "
         "of a glTF file, which no path can meet, do not shine through glass at all.";
-    f.guards = {"Path.TechniquesAgree", "Path.SquareEmitterMatchesItsConfigurationFactor",
-                "TriangleLight.EstimatesLambertsIrradiance"};
     return f;
 }
 
@@ -217,6 +215,7 @@ double confusion_m(double fstop) {
 
 Finding defocused_highlights() {
     Finding f;
+    f.id = "defocused-highlights";
     f.method = "Highlights out of focus";
     f.fails = "variance";
     f.sweep = fmt::format(
@@ -255,8 +254,6 @@ Finding defocused_highlights() {
     f.instead =
         "Nothing: no light sample passes a lens. Noise falls with the samples, the sooner "
         "for scrambled points; `--spp` is all there is.";
-    f.guards = {"Stability.ADefocusedHighlightVariesAsItsShareOfTheBlur",
-                "AberratedLens.BlurIsTheCircleOfConfusion"};
     return f;
 }
 

@@ -133,6 +133,7 @@ Drawn drawn_at(const Subject& of, V2f film_mm) {
 
 Finding pupil_at_wide_fields() {
     Finding f;
+    f.id = "pupil-at-wide-fields";
     f.method = "Aiming through the pupil";
     f.fails = "bias, variance";
     f.sweep =
@@ -187,10 +188,6 @@ Finding pupil_at_wide_fields() {
         "of `render`); it takes at most 12 traces to give up. At a fold the solver goes on until "
         "the ray is known, not only its crossing: a weight there is large, but not without bound. "
         "Light of the second ray is lost.";
-    f.guards = {"RayAimer.RaysMeetTheStopWhereTheyShould", "LensCamera.IrradianceIsTheOracles",
-                "LensLosses.AFilmBeyondTheImageCircleIsBlack",
-                "LensLosses.AtTheFisheyesRimRaysGrazeThenAreTotallyReflected",
-                "Stability.NoDrawOutweighsAllOthersWhereThePupilFolds"};
     return f;
 }
 

@@ -51,6 +51,7 @@ uint32_t empty_cells(SamplerKind kind, uint32_t first) {
 
 Finding many_samples() {
     Finding f;
+    f.id = "many-samples";
     f.method = "Sample counts";
     f.sweep = fmt::format(
         "Root mean square error of a quarter disk's area, 0.785, over {} seeds, from 2^8 to 2^22 "
@@ -95,8 +96,6 @@ Finding many_samples() {
     f.instead =
         "Indices are 32 bits, and so are the points before they become floats of 24: from "
         "2^24 samples on a dimension repeats its numbers, to 6e-8.";
-    f.guards = {"Stratified.EveryBlockIsANet", "Sampler.StratifiedPointsIntegrateBetter",
-                "Stability.BlocksAreNetsUpToTheLastIndex"};
     return f;
 }
 
@@ -115,6 +114,7 @@ FilmSample grey(float a) {
 
 Finding film_sums() {
     Finding f;
+    f.id = "film-sums";
     f.method = "Sums of films";
     f.sweep =
         "One pixel of a spectral film that gets n samples of 1 plus an even random number from "
@@ -156,8 +156,6 @@ Finding film_sums() {
     f.instead =
         "Sums of the picture are doubles. Those of the replicates, from which the standard "
         "error comes, are floats: their rounding adds to it.";
-    f.guards = {"Film.SmallSamplesAreNotLostInALargeSum",
-                "SpectralFilm.StandardErrorOfAKnownVariance"};
     return f;
 }
 

@@ -58,6 +58,7 @@ Spread out_of_glass(double cosine) {
 
 Finding trace_at_grazing_incidence() {
     Finding f;
+    f.id = "rays-at-grazing-incidence";
     f.method = "Rays at grazing incidence";
     f.fails = "bias";
     f.sweep = fmt::format(
@@ -90,8 +91,6 @@ Finding trace_at_grazing_incidence() {
     f.instead =
         "Every ray has a defined end: a point or a status. Grazing rays carry little light, as "
         "Fresnel's reflection goes to 1; `--lens-precision double` follows them in doubles.";
-    f.guards = {"RandomLens.EveryRayHasADefinedEnd", "OracleRays.RaysInFloats",
-                "LensCameraPrecision.DoublesAgreeWithFloats"};
     return f;
 }
 
@@ -130,6 +129,7 @@ double from_afar_mm(double distance_mm) {
 
 Finding trace_over_long_radii() {
     Finding f;
+    f.id = "rays-over-long-radii";
     f.method = "Rays over long radii and from afar";
     f.fails = "bias";
     f.sweep = fmt::format(
@@ -156,7 +156,6 @@ Finding trace_over_long_radii() {
         "Roots are taken from the ray's point nearest to the vertex, in the form in which nothing "
         "cancels. Cameras start their rays at the film, and analyses trace in doubles: no ray in "
         "floats comes from afar.";
-    f.guards = {"LensTrace.NearlyFlatIsLikeFlatFromEverywhere", "OracleRays.RaysInDoubles"};
     return f;
 }
 

@@ -48,6 +48,7 @@ double lost(const World& world, int max_depth) {
 
 Finding chains_of_glass() {
     Finding f;
+    f.id = "chains-of-glass";
     f.method = "Chains of glass";
     f.fails = "bias, variance";
     f.sweep =
@@ -77,12 +78,12 @@ Finding chains_of_glass() {
         first([&](const World& w) { return lost(w, usual) > 0.5; }),
         first([&](const World& w) { return through(w, 1000, roulette).relative_variance > 1; }));
     f.instead = "A path that is at its depth ends, dark. `--max-depth` raises it.";
-    f.guards = {"Path.ClearGlassVanishesInAWhiteSky", "Stability.PanesLoseWhatTheDepthCutsOff"};
     return f;
 }
 
 Finding nested_volumes() {
     Finding f;
+    f.id = "nested-volumes";
     f.method = "Volumes in volumes";
     f.fails = "bias";
     f.sweep =
@@ -113,7 +114,6 @@ Finding nested_volumes() {
     f.instead =
         "A path remembers one volume: when it leaves the inner one it is in none. Nested "
         "volumes have to be modelled with a gap or as shells.";
-    f.guards = {"Path.AbsorptionFollowsBeerAndLambert", "Path.TechniquesAgreeInsideAVolume"};
     return f;
 }
 

@@ -184,7 +184,7 @@ TEST_F(Findings, PupilAtWideFields) {
     take(pupil_at_wide_fields());
     EXPECT_EQ(rows(), list_lenses().size());
     struct Row {
-        std::string lens, no_ray, marches, most, off, folded, heaviest, first;
+        std::string lens, no_ray, traces, most, off, folded, heaviest, first;
     };
     const Row expected[] = {
         {"angenieux-50mm-f1.1", "45", "1.62", "5", "1.52", "0", "1.02", "0.65"},
@@ -214,8 +214,8 @@ TEST_F(Findings, PupilAtWideFields) {
         };
         // Of 1024 fixed draws, roundings move those at the rim of what has a ray.
         expect("no ray", e.no_ray, {.absolute = 0.5});
-        expect("marches (mean)", e.marches, {.relative = 0.02});
-        expect("marches (most)", e.most, {.absolute = 1});
+        expect("traces (mean)", e.traces, {.relative = 0.02});
+        expect("traces (most)", e.most, {.absolute = 1});
         // 65536 draws and 400 x 400 directions are evenly spread: each is good to 0.1 %.
         expect("irradiance off by", e.off, {.absolute = 0.1});
         expect("light beyond a fold", e.folded, {.absolute = 0.1});
@@ -232,18 +232,18 @@ TEST_F(Findings, PupilAtWideFields) {
 }
 
 TEST_F(Findings, MarchAtGrazingIncidence) {
-    take(march_at_grazing_incidence());
+    take(trace_at_grazing_incidence());
     expect_column("into a sphere (mm)", "1.56e-6 4.72e-6 2.92e-5 0.000417 0.00426 0.0185 0.0185",
                   kSizeOfRounding);
     // Of 512 rays; from 1e-4 on chance decides.
-    expect_column("other fate", "0 0 0 0 0 42.2 39.5", {.absolute = 10});
+    expect_column("other status", "0 0 0 0 0 42.2 39.5", {.absolute = 10});
     expect_column("out of a plane (mm)", "2.49e-6 0.000135 0.00348 3.57 4670 * *", kSizeOfRounding);
-    expect_column("other fate there", "0 0 0 0 0 0.195 3.91", {.absolute = 2.5});
+    expect_column("other status there", "0 0 0 0 0 0.195 3.91", {.absolute = 2.5});
     expect_where("6 0.000727 0.0417 1 0.000365 0.0857 4.92", kSizeOfRounding);
 }
 
 TEST_F(Findings, MarchOverLongRadii) {
-    take(march_over_long_radii());
+    take(trace_over_long_radii());
     expect_column("radius R (mm)", "6.44e-6 5.11e-6 6.5e-6 5.97e-6 4.86e-6 6.34e-6 4.72e-6 3.76e-6",
                   kSizeOfRounding);
     expect_column("distance D (mm)", "2.51e-6 1.47e-5 0.000175 0.00135 0.0147 0.224 1.34 15.9",

@@ -144,15 +144,15 @@ ChartCase spectral_case(const Found& found, const RenderJob& job) {
         return [mode](SceneRequest& s, RenderJob&) { s.spectral.mode = mode; };
     };
     cases.add("rgb", found.request, with(SpectralMode::Rgb));
-    cases.add("hero", found.request, with(SpectralMode::Wavelengths));
-    cases.add("hero with bins", found.request, [](SceneRequest& s, RenderJob& j) {
+    cases.add("wavelengths", found.request, with(SpectralMode::Wavelengths));
+    cases.add("wavelengths with bins", found.request, [](SceneRequest& s, RenderJob& j) {
         s.spectral.mode = SpectralMode::Wavelengths;
         s.spectral.bins = Bins{380, 10, 35};
         j.replicates = kReplicates;
     });
     cases.remark("The bins are 35 of 10 nm");
     cases.remark("rgb is biased where light and reflectance multiply by wavelength");
-    cases.reference("hero, independent points", found.request, [](SceneRequest& s, RenderJob& j) {
+    cases.reference("wavelengths, independent points", found.request, [](SceneRequest& s, RenderJob& j) {
         s.spectral.mode = SpectralMode::Wavelengths;
         j.sampler = SamplerKind::Independent;
     });

@@ -95,10 +95,10 @@ TEST_F(CliLens, AThinLensFocusesAtInfinity) {
 TEST_F(CliLens, OldSpellingsMeanTheSame) {
     const Words lens = {"--lens", "takumar-50mm-f1.2", "--focus", "1", "--spp", "2"};
     const std::pair<Words, Words> pairs[] = {
-        {{"--dispersion", "split"}, {"--dispersion", "split"}},
-        {{"--dispersion=single"}, {"--dispersion", "single"}},
-        {{"--dispersion-tolerance", "0.3"}, {"--dispersion-tolerance", "0.3"}},
-        {{"--lens-precision", "double"}, {"--lens-precision", "double"}},
+        {{"--chroma", "split"}, {"--dispersion", "split"}},
+        {{"--chroma=single"}, {"--dispersion", "single"}},
+        {{"--chroma-tolerance", "0.3"}, {"--dispersion-tolerance", "0.3"}},
+        {{"--march", "double"}, {"--lens-precision", "double"}},
         {{"--spectral", "hero"}, {"--spectral", "wavelengths"}},
         {{"--spectral=hero"}, {"--spectral", "wavelengths"}}};
     for (const auto& [before, now] : pairs) {
@@ -108,8 +108,8 @@ TEST_F(CliLens, OldSpellingsMeanTheSame) {
         EXPECT_EQ(render_bytes(a, "a.exr"), render_bytes(b, "b.exr")) << before.front();
     }
     const Finished help = run_petzval({"render", "--help"});
-    EXPECT_EQ(help.out.find("--dispersion"), std::string::npos);
-    EXPECT_EQ(help.out.find("--lens-precision"), std::string::npos);
+    EXPECT_EQ(help.out.find("--chroma"), std::string::npos);
+    EXPECT_EQ(help.out.find("--march"), std::string::npos);
 }
 
 TEST_F(CliLens, CornersAreDarkerAndOpaque) {

@@ -2,6 +2,7 @@
 #include "io/aperture/aperture_file.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "camera/iris/iris.h"
 #include "io/aperture/svg_path.h"
@@ -86,7 +87,7 @@ TEST(SvgAperture, Curves) {
 }
 
 TEST(SvgAperture, Arcs) {
-    const double pi = M_PI;
+    const double pi = std::numbers::pi;
     EXPECT_NEAR(area(path("M0 10 A10 10 0 0 1 20 10Z")), 50 * pi, 0.02);
     EXPECT_NEAR(area(path("M0 10 a10 10 0 0120 0z")), 50 * pi, 0.02) << "packed flags";
     EXPECT_NEAR(area(path("M0 10 A1 1 0 0 1 20 10Z")), 50 * pi, 0.02) << "radius too small";
@@ -121,14 +122,14 @@ TEST(SvgAperture, Transforms) {
                         "<path transform=\"translate(0 2)\" d=\"M0 0H4V3.5H0Z\"/></g></g>"),
                    box);
     // Curves go with them, arcs too.
-    EXPECT_NEAR(area(read("<circle r=\"3\" transform=\"scale(2 1) rotate(30)\"/>")), 18 * M_PI,
-                0.01);
+    EXPECT_NEAR(area(read("<circle r=\"3\" transform=\"scale(2 1) rotate(30)\"/>")),
+                18 * std::numbers::pi, 0.01);
 }
 
 TEST(SvgAperture, WhatIsNotDrawnIsNoShape) {
     EXPECT_NEAR(area(read("<!-- c --><title>x</title><defs><path d=\"M0 0H9V9Z\"/></defs>\n<g>"
                           "<circle r=\"1\"/></g><metadata><rect/></metadata>")),
-                M_PI, 1e-3);
+                std::numbers::pi, 1e-3);
 }
 
 TEST(SvgAperture, Refuses) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "core/spectrum/colour.h"
@@ -97,7 +98,7 @@ TEST(Flip, CountsPointsForMore) {
     const double sigma = 0.5 * 0.082 * 67;
     double contrast = 0, smooth = 0, negative = 0;
     for (int x = -10; x <= 10; ++x)
-        contrast += std::exp(-M_PI * M_PI * x * x / (67. * 67 * 0.0047));
+        contrast += std::exp(-std::numbers::pi * std::numbers::pi * x * x / (67. * 67 * 0.0047));
     for (int x = -9; x <= 9; ++x) {
         const double g = std::exp(-x * x / (2 * sigma * sigma));
         smooth += g;

@@ -65,7 +65,8 @@ Finding trace_at_grazing_incidence() {
         "512 rays in floats and in doubles, from the same origin and direction: parallel to the "
         "axis onto a sphere of 50 mm of n = {}, and out of that glass through a plane. The cosine, "
         "of incidence or of refraction, comes down from 1. How far apart the two meet a plane "
-        "{:g} mm behind, and the share whose status (missed, totally reflected, passed) differ.",
+        "{:g} mm behind, and the share of rays whose status (missed, totally reflected, passed) "
+        "differs.",
         kGlassIndex, kBehind_mm);
     f.table.columns = {"cosine", "into a sphere (mm)", "other status", "out of a plane (mm)",
                        "other status there"};

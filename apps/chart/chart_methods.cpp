@@ -19,7 +19,7 @@ namespace petzval {
 namespace {
 
 /// Resolved request and camera of a scene, and its number of lights.
-struct Found {
+struct ResolvedScene {
     SceneRequest request;  ///< with the settings of the file's camera
     CameraReport report;
     size_t lights = 0;
@@ -30,7 +30,7 @@ bool is_prescription(const CameraRequest& camera) {
            !camera.lens->starts_with("singlet:");
 }
 
-Found look(const SceneRequest& request, const SetUpView& open) {
+ResolvedScene resolved(const SceneRequest& request, const SetUpView& open) {
     const RenderSetup setup = open(request);
     return {resolved_request(setup), setup.from.camera, setup.prepared.scene->lights.size()};
 }
@@ -70,7 +70,7 @@ class Cases {
 };
 
 /// Request with a real lens, where wavelengths and rims ask for one: its own, else kChartLens.
-SceneRequest with_lens(const Found& found, std::vector<std::string>& remarks) {
+SceneRequest with_lens(const ResolvedScene& found, std::vector<std::string>& remarks) {
     SceneRequest request = found.request;
     CameraRequest& camera = request.camera;
     if (is_prescription(camera)) return request;
@@ -83,7 +83,7 @@ SceneRequest with_lens(const Found& found, std::vector<std::string>& remarks) {
     return request;
 }
 
-ChartCase camera_case(const Found& found, const RenderJob& job, const SetUpView& open) {
+ChartCase camera_case(const ResolvedScene& found, const RenderJob& job, const SetUpView& open) {
     Cases cases(ChartAxis::Camera, job, "camera",
                 "models of the camera against its lens (a bias is their point)");
     std::vector<std::string> remarks;
@@ -113,7 +113,7 @@ ChartCase camera_case(const Found& found, const RenderJob& job, const SetUpView&
     return std::move(cases).result();
 }
 
-ChartCase dispersion_case(const Found& found, const RenderJob& job) {
+ChartCase dispersion_case(const ResolvedScene& found, const RenderJob& job) {
     Cases cases(ChartAxis::Dispersion, job, "dispersion",
                 "ways to carry wavelengths through the lens");
     std::vector<std::string> remarks;
@@ -138,7 +138,7 @@ ChartCase dispersion_case(const Found& found, const RenderJob& job) {
     return std::move(cases).result();
 }
 
-ChartCase spectral_case(const Found& found, const RenderJob& job) {
+ChartCase spectral_case(const ResolvedScene& found, const RenderJob& job) {
     Cases cases(ChartAxis::Spectral, job, "spectral", "what a path carries");
     const auto with = [](SpectralMode mode) {
         return [mode](SceneRequest& s, RenderJob&) { s.spectral.mode = mode; };
@@ -152,10 +152,11 @@ ChartCase spectral_case(const Found& found, const RenderJob& job) {
     });
     cases.remark("The bins are 35 of 10 nm");
     cases.remark("rgb is biased where light and reflectance multiply by wavelength");
-    cases.reference("wavelengths, independent points", found.request, [](SceneRequest& s, RenderJob& j) {
-        s.spectral.mode = SpectralMode::Wavelengths;
-        j.sampler = SamplerKind::Independent;
-    });
+    cases.reference("wavelengths, independent points", found.request,
+                    [](SceneRequest& s, RenderJob& j) {
+                        s.spectral.mode = SpectralMode::Wavelengths;
+                        j.sampler = SamplerKind::Independent;
+                    });
     return std::move(cases).result();
 }
 
@@ -187,7 +188,7 @@ std::string write_mask(const std::filesystem::path& folder) {
     return path.string();
 }
 
-std::vector<ChartCase> iris_cases(const Found& found, const ChartSubject& subject) {
+std::vector<ChartCase> iris_cases(const ResolvedScene& found, const ChartSubject& subject) {
     std::vector<std::string> remarks;
     SceneRequest lens = with_lens(found, remarks);
     lens.camera.dispersion = DispersionMode::Shared;  // the iris is measured, not the glass
@@ -225,7 +226,7 @@ std::vector<ChartCase> iris_cases(const Found& found, const ChartSubject& subjec
     return all;
 }
 
-ChartCase sampler_case(const Found& found, const RenderJob& job) {
+ChartCase sampler_case(const ResolvedScene& found, const RenderJob& job) {
     Cases cases(ChartAxis::Sampler, job, "sampler", "sources of sample points");
     for (const auto& [name, kind] :
          {std::pair{"independent", SamplerKind::Independent},
@@ -237,7 +238,7 @@ ChartCase sampler_case(const Found& found, const RenderJob& job) {
     return std::move(cases).result();
 }
 
-ChartCase lights_case(const Found& found, const RenderJob& job) {
+ChartCase lights_case(const ResolvedScene& found, const RenderJob& job) {
     Cases cases(ChartAxis::Lights, job, "lights", "ways to choose one of the lights");
     if (found.lights < 2) {
         cases.remark(fmt::format("Left out: the scene has {} light, and a choice needs two",
@@ -279,7 +280,7 @@ std::string leak_count(const SceneRequest& request, const SetUpView& open) {
         rays.size(), robust, fast);
 }
 
-ChartCase precision_case(const Found& found, const RenderJob& job, const SetUpView& open) {
+ChartCase precision_case(const ResolvedScene& found, const RenderJob& job, const SetUpView& open) {
     Cases cases(ChartAxis::Precision, job, "precision",
                 "floats and doubles in the lens, robust and fast traversal");
     std::vector<std::string> remarks;
@@ -325,7 +326,7 @@ std::string name_of(ChartAxis axis) {
 
 std::vector<ChartCase> chart_cases(const std::vector<ChartAxis>& axes, const ChartSubject& subject,
                                    const SetUpView& open) {
-    const Found found = look(subject.request, open);
+    const ResolvedScene found = resolved(subject.request, open);
     std::vector<ChartCase> cases;
     for (const ChartAxis axis : axes) {
         const bool needs_lens = axis == ChartAxis::Camera || axis == ChartAxis::Dispersion ||

@@ -123,7 +123,7 @@ double relative_variance(const std::vector<Picture>& parts, const Picture& mean)
     return sum / static_cast<double>(mean.pixels.size());
 }
 
-/// once_s: what a first look at everything will take.
+/// once_s: what one sample of everything will take.
 void require_time(double once_s, double budget_s, const char* what) {
     if (once_s <= budget_s) return;
     throw TooSlow("--budget", "",
@@ -249,7 +249,7 @@ class Race {
             }
         for (const size_t i : next) {
             Track& track = tracks_[i];
-            const Stopwatch looking(at_.clock);
+            const Stopwatch turn(at_.clock);
             track.reached(doubled(track));
             ChartPoint point{track.samples(), {}};
             for (uint32_t seed = 0; seed < at_.frame.seeds; ++seed) {
@@ -260,7 +260,7 @@ class Race {
                 if (seed == 0) pictures_[i].push_back(std::move(picture));
             }
             methods_[i].points.push_back(std::move(point));
-            track.last_s += looking.elapsed_s();
+            track.last_s += turn.elapsed_s();
             track.spent_s += track.last_s;
         }
         return true;

@@ -28,7 +28,7 @@ struct ChartClock {
     std::function<double()> cpu_s = process_cpu_s;  ///< costs are of this one
 };
 
-/// The budget is too small for a first look at everything.
+/// The budget is too small for one sample of everything.
 class TooSlow : public ArgumentError {
   public:
     using ArgumentError::ArgumentError;
@@ -83,7 +83,7 @@ struct MeasuredCase {
 
 /// Renders the reference in about a third of the time, then all methods, turn by turn, at 1, 2, 4,
 /// ... samples, as long as the next number fits: a method's renders with one seed are one render
-/// that is looked at on its way. Ends within the budget but for what one sample of each takes.
+/// that is measured on its way. Ends within the budget but for what one sample of each takes.
 /// Nothing where the monitor said stop. Throws what SetUpView does, and TooSlow.
 [[nodiscard]] std::optional<MeasuredCase> measure(const ChartCase&, const ChartFrame&,
                                                   double budget_s, TbbExecutor&, RenderMonitor&,

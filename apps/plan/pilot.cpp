@@ -76,7 +76,7 @@ std::unique_ptr<PilotModel> Pilot::model(RenderSetup setup, const RenderJob& job
         new PilotModel(std::move(setup), job, options, pixels_.size()));
 }
 
-void Pilot::look(PilotModel& model, uint32_t samples) const {
+void Pilot::sample(PilotModel& model, uint32_t samples) const {
     std::vector<PathStats> stats(static_cast<size_t>(executor_.threads()));
     const double start_s = process_cpu_s();
     executor_.run(static_cast<int>(pixels_.size()), [&](int task, int worker) {

@@ -23,7 +23,7 @@ class PilotModel {
     [[nodiscard]] const RenderSetup& setup() const { return setup_; }
     [[nodiscard]] uint32_t samples() const { return samples_; }  ///< of each replicate of a pixel
     /// Cost of a sample, the same on every machine: rays that are cast, and one more for a way
-    /// through glass. Only after look().
+    /// through glass. Only after sample().
     [[nodiscard]] double rays_per_sample() const;
     [[nodiscard]] double cpu_s_per_sample() const {
         return cpu_s_ / static_cast<double>(stats_.samples);
@@ -61,14 +61,15 @@ class Pilot {
     [[nodiscard]] std::unique_ptr<PilotModel> model(RenderSetup, const RenderJob&,
                                                     const PathOptions&) const;
     /// Renders on until each replicate of a pixel has so many samples.
-    void look(PilotModel&, uint32_t samples) const;
+    void sample(PilotModel&, uint32_t samples) const;
 
     /// Squared relative error: mean over pixels and channels of the square of what the terms add up
     /// to with endless samples, over b^2 + kRelativeMseEpsilon; b: what `scale` shows. Unbiased, so
     /// it may be negative: only products of different replicates count. All must have as many
     /// samples.
     [[nodiscard]] Estimate square(const std::vector<PilotTerm>&, const PilotModel& scale) const;
-    /// Relative variance of one replicate, the same mean as in square(), after each turn of look().
+    /// Relative variance of one replicate, the same mean as in square(), after each turn of
+    /// sample().
     [[nodiscard]] std::vector<Estimate> variances(const PilotModel&, const PilotModel& scale) const;
     [[nodiscard]] Estimate variance(const PilotModel& model, const PilotModel& scale) const {
         return variances(model, scale).back();

@@ -114,7 +114,7 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
         compared.add_unbiased(PlanModel::Hero, DispersionMode::Hero);
         compared.add_biased(PlanModel::Tolerance, DispersionMode::Tolerance);
     }
-    compared.look(most_samples, true);
+    compared.measure(most_samples, true);
 
     Plan plan;
     plan.requested = first.from;
@@ -168,7 +168,7 @@ AutoSetup set_up_planned(const PlanRequest& request, TbbExecutor& executor, cons
                                 fit(kPixels, kEnoughSamples) ? kPixels : kFewPixels, executor);
         if (open.spectral) compared.add_rgb();
         if (open.dispersion) compared.add_shared();
-        compared.look(most_samples, false);
+        compared.measure(most_samples, false);
         choice.candidates = compared.candidates();
         choice.dispersion_compared = open.dispersion;
         const auto chosen = std::find_if(choice.candidates.begin(), choice.candidates.end(),

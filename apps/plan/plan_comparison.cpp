@@ -141,15 +141,15 @@ void PlanComparison::add_unbiased(PlanModel kind, DispersionMode dispersion) {
     entries_.push_back({{kind, scene}, own.get(), {}, std::move(own)});
 }
 
-void PlanComparison::look(double most_samples, bool thorough) {
+void PlanComparison::measure(double most_samples, bool thorough) {
     double models = shared_ ? 2 : 1;
     for (const Entry& e : entries_) models += e.own != nullptr;
     const double once = static_cast<double>(pilot_.pixels()) * kPilotReplicates * models;
     for (uint32_t n = 1;; n *= 2) {
-        pilot_.look(*full_, n);
-        if (shared_) pilot_.look(*shared_, n);
+        pilot_.sample(*full_, n);
+        if (shared_) pilot_.sample(*shared_, n);
         for (const Entry& e : entries_)
-            if (e.own) pilot_.look(*e.own, n);
+            if (e.own) pilot_.sample(*e.own, n);
         evaluate();
         if (once * 2 * n > most_samples) return;
         if (n >= (thorough ? kThoroughSamples : kLeastSamples) && all_known(thorough)) return;

@@ -32,7 +32,7 @@ class PlanComparison {
 
     /// Doubles the samples until it is known which candidates are inside, or where thorough until
     /// the predictions are good figures; never beyond most_samples of all models together.
-    void look(double most_samples, bool thorough);
+    void measure(double most_samples, bool thorough);
 
     /// Candidates as added, and last the fullest model: it has no bias.
     [[nodiscard]] std::vector<PlanCandidate> candidates() const;

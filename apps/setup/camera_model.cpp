@@ -215,7 +215,7 @@ CameraModel choose_camera_model(const CameraRequest& request, const std::filesys
                                             "lens, its focus or sensor, nor an angle of view",
                                             printable(model.from->name)));
     } else if (model.from) {
-        take_extras(model.from->wishes, scene, asked);
+        take_extras(model.from->extras, scene, asked);
     }
     try {
         model.optics = optics_of(asked, model.from, aspect);

@@ -22,7 +22,7 @@ V3f forward(const M44f& m) {
     return {-m[2][0], -m[2][1], -m[2][2]};
 }
 // Input of the steps below.
-struct Place {
+struct CameraContext {
     const CameraModel& model;
     const std::string& scene_file;
     V2i size;
@@ -40,7 +40,7 @@ struct Place {
 
 // Eye and target that frame the scene: its bounding sphere just fits the smaller angle of view,
 // seen a little from above and the right.
-std::array<V3f, 2> frame_bounds(const Place& at, float yfov_rad) {
+std::array<V3f, 2> frame_bounds(const CameraContext& at, float yfov_rad) {
     const Box3f& bounds = at.scene.bounds;
     if (bounds.isEmpty()) return {V3f(0, 0, 1), V3f(0, 0, 0)};
     const V3f centre = bounds.min / 2 + bounds.max / 2;
@@ -55,7 +55,8 @@ std::array<V3f, 2> frame_bounds(const Place& at, float yfov_rad) {
 
 // Pose of the camera, also noted in the report. fov_option: what gives the same angle of view
 // again.
-M44f stand(const Place& at, float yfov_rad, const std::string& fov_option, CameraReport& report) {
+M44f stand(const CameraContext& at, float yfov_rad, const std::string& fov_option,
+           CameraReport& report) {
     const CameraRequest& asked = at.model.asked;
     M44f to_world;
     if (const GltfCamera* from = at.model.from) {
@@ -76,7 +77,8 @@ M44f stand(const Place& at, float yfov_rad, const std::string& fov_option, Camer
 
 using Finder = std::function<std::unique_ptr<Camera>(std::optional<float> focus_m)>;
 
-float depth_of(const Place& at, const Focus& focus, const M44f& to_world, const Camera& finder) {
+float depth_of(const CameraContext& at, const Focus& focus, const M44f& to_world,
+               const Camera& finder) {
     const V3f eye = position(to_world), axis = forward(to_world);
     if (const auto* pixel = std::get_if<FocusPixel>(&focus)) {
         const V2f film = (V2f(pixel->x, pixel->y) + V2f(0.5f)) / V2f(at.size);
@@ -95,7 +97,7 @@ float depth_of(const Place& at, const Focus& focus, const M44f& to_world, const 
 // Distance in focus. finder: makes a camera of narrow iris that shows what the real one will when
 // it is focused there, or far away. What a pixel shows moves with the focus, as the film goes back:
 // the depth is measured again until it stays, or jumps to and fro between two things.
-float find_focus(const Place& at, const M44f& to_world, const Finder& finder) {
+float find_focus(const CameraContext& at, const M44f& to_world, const Finder& finder) {
     constexpr int kRounds = 8;
     constexpr float kSettled = 1e-5f;
     const Focus focus = at.model.asked.focus.value_or(FocusAuto{});
@@ -110,7 +112,7 @@ float find_focus(const Place& at, const M44f& to_world, const Finder& finder) {
     return depth_m;
 }
 
-CameraSetup orthographic(const Place& at, const GltfCamera& from) {
+CameraSetup orthographic(const CameraContext& at, const GltfCamera& from) {
     CameraSetup setup;
     // The picture's aspect wins over the file's; the height stays.
     setup.camera =
@@ -122,7 +124,7 @@ CameraSetup orthographic(const Place& at, const GltfCamera& from) {
     return setup;
 }
 
-CameraSetup with_lens(const Place& at, const LoadedLens& loaded) {
+CameraSetup with_lens(const CameraContext& at, const LoadedLens& loaded) {
     CameraSetup setup;
     CameraReport& report = setup.report;
     report.asked = at.model.asked;
@@ -144,7 +146,7 @@ CameraSetup with_lens(const Place& at, const LoadedLens& loaded) {
     return setup;
 }
 
-CameraSetup without_prescription(const Place& at) {
+CameraSetup without_prescription(const CameraContext& at) {
     CameraSetup setup;
     CameraReport& report = setup.report;
     report.asked = at.model.asked;
@@ -183,7 +185,7 @@ CameraSetup without_prescription(const Place& at) {
 
 CameraSetup set_up_camera(const CameraModel& model, const std::string& scene_file, V2i size,
                           const Scene& scene, const Bvh& bvh, const Notice& notice) {
-    const Place at{model, scene_file, size, scene, bvh, notice};
+    const CameraContext at{model, scene_file, size, scene, bvh, notice};
     if (model.from && model.from->orthographic) return orthographic(at, *model.from);
     if (const auto* lens = std::get_if<LoadedLens>(&model.optics)) return with_lens(at, *lens);
     return without_prescription(at);

@@ -28,14 +28,14 @@ std::string describe_lights(const Scene& scene) {
     return fmt::format("lights: {} point, {} spot, {} directional", count(0), count(1), count(2));
 }
 
-std::string describe_extras(const CameraExtras& wishes) {
+std::string describe_extras(const CameraExtras& extras) {
     std::string text;
-    if (wishes.lens) text += ", lens " + printable(*wishes.lens);
-    if (wishes.fstop) text += fmt::format(", f/{:g}", *wishes.fstop);
-    if (wishes.focus_m) text += fmt::format(", focus {:g} m", *wishes.focus_m);
-    if (wishes.aperture) text += ", iris " + printable(*wishes.aperture);
-    if (wishes.sensor_mm)
-        text += fmt::format(", sensor {:g} x {:g} mm", wishes.sensor_mm->x, wishes.sensor_mm->y);
+    if (extras.lens) text += ", lens " + printable(*extras.lens);
+    if (extras.fstop) text += fmt::format(", f/{:g}", *extras.fstop);
+    if (extras.focus_m) text += fmt::format(", focus {:g} m", *extras.focus_m);
+    if (extras.aperture) text += ", iris " + printable(*extras.aperture);
+    if (extras.sensor_mm)
+        text += fmt::format(", sensor {:g} x {:g} mm", extras.sensor_mm->x, extras.sensor_mm->y);
     return text;
 }
 
@@ -47,7 +47,7 @@ std::string describe_camera(size_t index, const GltfCamera& camera) {
     const std::string aspect =
         camera.aspect ? fmt::format(", aspect {:.4g}", *camera.aspect) : std::string();
     return head + fmt::format("perspective, {:.4g} deg vertical", camera.yfov_rad * 180 / kPi) +
-           aspect + describe_extras(camera.wishes);
+           aspect + describe_extras(camera.extras);
 }
 
 std::string describe_triangles(const Scene& scene) {

@@ -124,11 +124,11 @@ std::vector<GltfCamera> read_cameras(const GltfModel& gltf, const GltfNodes& nod
         const auto& from = gltf.typed.cameras.at(static_cast<size_t>(node.camera));
         GltfCamera camera = to_camera(from, *to_world);
         camera.name = from.name.empty() ? node.name : from.name;
-        camera.wishes = camera_extras(json[static_cast<size_t>(node.camera)]);
-        if (camera.orthographic && camera.wishes.any())
+        camera.extras = camera_extras(json[static_cast<size_t>(node.camera)]);
+        if (camera.orthographic && camera.extras.any())
             tally.warnings.push_back(json_path("cameras", node.camera) +
                                      "/extras/petzval: an orthographic camera has no use for it");
-        if (camera.wishes.lens) tally.honoured.insert("lens " + *camera.wishes.lens);
+        if (camera.extras.lens) tally.honoured.insert("lens " + *camera.extras.lens);
         if (is_usable(camera))
             cameras.push_back(camera);
         else

@@ -3,7 +3,7 @@
 // scenes that are named. What is measured comes from other pixels, other seeds and more samples, of
 // the lens as it is: nothing is parted further. A prediction is too low where it lies below the
 // measured error's lower bound of 95 %, and too careful where it is over three times the upper one
-// and over a quarter of the tolerance: the plan does not look closer than that. The row "all" is
+// and over a quarter of the tolerance: the plan measures no closer than that. The row "all" is
 // the error with the samples that the plan asks for, noise included.
 //
 //   plan_check SCENE... [--lens NAME ...] [--size ...] [--tolerance ...]
@@ -84,7 +84,7 @@ void check(const std::string& scene, const std::string& lens, const Settings& se
     for (const PlanCandidate& c : plan.candidates) {
         models.push_back(
             pilot.model(set_up_view(first, c.scene, silent), request.job, request.path));
-        pilot.look(*models.back(), std::max(samples, 64u));
+        pilot.sample(*models.back(), std::max(samples, 64u));
     }
     const PilotModel& full = *models.back();
     const std::string where =
@@ -100,7 +100,7 @@ void check(const std::string& scene, const std::string& lens, const Settings& se
         if (!chosen) continue;
         const auto chosen_model =
             pilot.model(set_up_view(first, c.scene, silent), request.job, request.path);
-        pilot.look(*chosen_model, samples);
+        pilot.sample(*chosen_model, samples);
         const Estimate noise = pilot.variance(*chosen_model, full);
         const double scale = double(samples) / double(plan.samples);
         judge(where, fmt::format("all, {} samples", plan.samples), plan.error(),
@@ -118,7 +118,8 @@ int run(int argc, char** argv) {
     app.add_option("--tolerance", s.tolerance);
     app.add_option("--focus", s.focus_m, "metres");
     app.add_option("--pixels", s.pixels, "that are measured");
-    app.add_option("--samples", s.most_samples, "of four looks at a pixel, each, when measuring");
+    app.add_option("--samples", s.most_samples,
+                   "of each of four replicates of a pixel, when measuring");
     app.add_option("--plan-samples", s.plan_samples, "that a plan may take");
     CLI11_PARSE(app, argc, argv);
     flush_denormals();

@@ -63,16 +63,16 @@ void check_light_extras(const JsonCursor& light) {
 
 CameraExtras camera_extras(const JsonCursor& camera) {
     require_known_extras(camera, "camera", {"lens", "fstop", "focus_m", "aperture", "sensor_mm"});
-    CameraExtras wishes;
+    CameraExtras asked;
     const auto extras = petzval_extras(camera);
-    if (!extras) return wishes;
-    wishes.lens = text_at(*extras, "lens");
-    wishes.aperture = text_at(*extras, "aperture");
-    wishes.fstop = length_at(*extras, "fstop");
-    wishes.focus_m = length_at(*extras, "focus_m");
+    if (!extras) return asked;
+    asked.lens = text_at(*extras, "lens");
+    asked.aperture = text_at(*extras, "aperture");
+    asked.fstop = length_at(*extras, "fstop");
+    asked.focus_m = length_at(*extras, "focus_m");
     if (const auto sides = extras->numbers("sensor_mm", 2, kLength); !sides.empty())
-        wishes.sensor_mm = V2f(static_cast<float>(sides[0]), static_cast<float>(sides[1]));
-    return wishes;
+        asked.sensor_mm = V2f(static_cast<float>(sides[0]), static_cast<float>(sides[1]));
+    return asked;
 }
 
 }  // namespace petzval

@@ -69,8 +69,8 @@ TEST_F(Plans, APilotFindsADifferenceThatIsKnown) {
     const Pilot pilot({64, 36}, 100, executor_);
     EXPECT_NEAR(double(pilot.pixels()), 100, 10);
     const auto a = model(pilot, more), b = model(pilot, one);
-    pilot.look(*a, 4);
-    pilot.look(*b, 4);
+    pilot.sample(*a, 4);
+    pilot.sample(*b, 4);
     const Estimate found = pilot.square({{a.get(), 1}, {b.get(), -1}}, *b);
     EXPECT_NEAR(found.mean, 0.02 * 0.02 / 1.01 / 3, 1e-9);
     EXPECT_NEAR(found.error, 0, 1e-9);
@@ -85,8 +85,8 @@ TEST_F(Plans, NoiseIsNoBias) {
     hero.spectral.mode = SpectralMode::Wavelengths;
     const Pilot pilot({64, 36}, 600, executor_);
     const auto a = model(pilot, hero), b = model(pilot, rgb);
-    pilot.look(*a, 4);
-    pilot.look(*b, 4);
+    pilot.sample(*a, 4);
+    pilot.sample(*b, 4);
     const Estimate found = pilot.square({{a.get(), 1}, {b.get(), -1}}, *b);
     EXPECT_TRUE(test::agrees({found.mean, found.error}, 0)) << found.mean << ' ' << found.error;
     EXPECT_GT(pilot.variance(*a, *b).mean, 10 * found.error);
@@ -101,9 +101,9 @@ TEST_F(Plans, VarianceIsThatOfALook) {
     job.sampler = SamplerKind::Independent;
     const auto a =
         pilot.model(set_up_render(request(scene_, {64, 36}), kSilent), job, PathOptions());
-    pilot.look(*a, 8);
+    pilot.sample(*a, 8);
     const Estimate eight = pilot.variance(*a, *a);
-    pilot.look(*a, 32);
+    pilot.sample(*a, 32);
     const Estimate all = pilot.variance(*a, *a);
     EXPECT_TRUE(test::agrees(Mean(eight.mean, eight.error) - Mean(4 * all.mean, 4 * all.error), 0))
         << eight.mean << ' ' << all.mean;
@@ -138,7 +138,7 @@ TEST_F(Plans, AmplifiedDispersionFindsTheSameErrorWithLessNoise) {
     const RenderSetup first = set_up_render(scene, kSilent);
     PlanComparison compared(request, first, PlanOpen(scene, first), 512, executor_);
     compared.add_shared();
-    compared.look(150'000, true);
+    compared.measure(150'000, true);
     const PlanCandidate shared = compared.candidates().front();
     EXPECT_GT(compared.dispersion_px(), 0.02);
     EXPECT_LT(compared.dispersion_px(), 0.1);
@@ -146,8 +146,8 @@ TEST_F(Plans, AmplifiedDispersionFindsTheSameErrorWithLessNoise) {
     const Pilot pilot(scene.size, 512, executor_, 1);
     const auto one = model(pilot, with(scene, DispersionMode::Shared)),
                split = model(pilot, with(scene, DispersionMode::Split));
-    pilot.look(*one, 32);
-    pilot.look(*split, 32);
+    pilot.sample(*one, 32);
+    pilot.sample(*split, 32);
     const Estimate plain = pilot.square({{one.get(), 1}, {split.get(), -1}}, *split);
     EXPECT_TRUE(test::agrees(
         Mean(shared.square_bias.mean, shared.square_bias.error) - Mean(plain.mean, plain.error), 0))
@@ -166,7 +166,7 @@ TEST_F(Plans, PredictionsHoldAndAreNotThreeTimesTooCareful) {
     const auto full = model(pilot, plan.candidates.back().scene);
     const auto samples = static_cast<uint32_t>(plan.samples);
     ASSERT_LT(samples, 400u);
-    pilot.look(*full, samples);
+    pilot.sample(*full, samples);
     // Is the mean between a ninth of the prediction's square and all of it, but for chance? Small
     // predictions may be as careful as they like.
     const auto holds = [&](double predicted, const Mean& mean) {
@@ -178,7 +178,7 @@ TEST_F(Plans, PredictionsHoldAndAreNotThreeTimesTooCareful) {
     for (const PlanCandidate& c : plan.candidates) {
         if (c.model == PlanModel::Split || c.model == PlanModel::Tolerance) continue;
         const auto simpler = model(pilot, c.scene);
-        pilot.look(*simpler, samples);
+        pilot.sample(*simpler, samples);
         const Estimate bias = pilot.square({{simpler.get(), 1}, {full.get(), -1}}, *full);
         EXPECT_TRUE(holds(c.predicted(), {bias.mean, bias.error}))
             << name_of(c.model) << ' ' << c.predicted() << ' ' << bias.mean << ' ' << bias.error;
@@ -297,7 +297,7 @@ TEST_F(Plans, ArgumentsThatAreWrongEndWithTwo) {
     EXPECT_NE(error_of({"plan", path("none.glb")}, 1).find("none.glb"), std::string::npos);
 }
 
-/// Renders that choose for themselves, of a frame that is large enough for a look.
+/// Renders that choose for themselves, of a frame that is large enough for a pilot.
 class AutoRender : public Plans {
   protected:
     AutoRender() { use(lamp()); }
@@ -343,20 +343,20 @@ TEST_F(AutoRender, DecidesTheSameForEveryPartOfTheFrame) {
     EXPECT_EQ(read_picture(path("part.exr")).pixels, read_picture(path("whole.exr")).pixels);
 }
 
-// No look where there is nothing to decide, for a thumbnail, or where all was asked for.
+// No pilot where there is nothing to decide, for a thumbnail, or where all was asked for.
 TEST_F(AutoRender, LooksOnlyWhereItMust) {
-    const auto looked = [&](const Words& words) {
+    const auto piloted = [&](const Words& words) {
         static_cast<void>(said(words));
         return file_bytes(path("out.exr")).find("off by") != std::string::npos;
     };
-    EXPECT_TRUE(looked(lens()));
+    EXPECT_TRUE(piloted(lens()));
     Words small = lens();
     small[5] = "64x40";
-    EXPECT_FALSE(looked(small));
-    EXPECT_FALSE(looked(lens({"--spectral", "rgb"})));
-    EXPECT_FALSE(looked(lens({"--dispersion", "split"})));
-    EXPECT_FALSE(looked(lens({"--dispersion-tolerance", "0.2"})));
-    EXPECT_FALSE(looked({"--fstop", "2", "--focus", "2", "--size", "500x320", "--spp", "1"}));
+    EXPECT_FALSE(piloted(small));
+    EXPECT_FALSE(piloted(lens({"--spectral", "rgb"})));
+    EXPECT_FALSE(piloted(lens({"--dispersion", "split"})));
+    EXPECT_FALSE(piloted(lens({"--dispersion-tolerance", "0.2"})));
+    EXPECT_FALSE(piloted({"--fstop", "2", "--focus", "2", "--size", "500x320", "--spp", "1"}));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "camera/setup/equivalent_lens.h"
 
 namespace petzval {
+
 SceneRequest equivalent_thin_lens(SceneRequest request, const RenderSetup& setup) {
     const CameraReport& report = setup.from.camera;
     CameraRequest& camera = request.camera;

@@ -88,9 +88,14 @@ class LensCamera::Point {
 
   public:
     /// Camera and bands must outlive it. achromatic: all lanes have the indices of line d.
+    /// frame_px: width and height of the full frame, in which landing() counts.
     Point(const LensCamera& camera, V2f film_mm, const Bands& bands, bool achromatic,
-          const PixelFilter& pixel = {})
-        : c_(camera), film_mm_(film_mm), bands_(bands), pixel_(pixel), achromatic_(achromatic) {
+          V2f frame_px = V2f(1.f))
+        : c_(camera),
+          film_mm_(film_mm),
+          bands_(bands),
+          frame_px_(frame_px),
+          achromatic_(achromatic) {
         if (achromatic) return;
         own_ = lens().indices(bands.nm);
         if constexpr (std::same_as<V, d4>)
@@ -124,7 +129,7 @@ class LensCamera::Point {
     const LensCamera& c_;
     V2f film_mm_;
     const Bands& bands_;
-    const PixelFilter& pixel_;
+    V2f frame_px_;
     bool achromatic_;
     LensIndices<f4> own_;
     [[no_unique_address]] std::conditional_t<std::same_as<V, d4>, LensIndices<d4>, Nothing>
@@ -252,8 +257,8 @@ FilmLanding LensCamera::Point<V>::landing(const LensDraw<V>& rays,
     const V film_x = ray.origin.x + to_film * ray.direction.x;
     const V film_y = ray.origin.y + to_film * ray.direction.y;
     // The image stands on its head.
-    out.dx_px = lanes_as<f4>(V((film_x[lead] - film_x) / S(in.film_width_mm))) * pixel_.frame_px.x;
-    out.dy_px = lanes_as<f4>(V((film_y - film_y[lead]) / S(in.film_height_mm))) * pixel_.frame_px.y;
+    out.dx_px = lanes_as<f4>(V((film_x[lead] - film_x) / S(in.film_width_mm))) * frame_px_.x;
+    out.dy_px = lanes_as<f4>(V((film_y - film_y[lead]) / S(in.film_height_mm))) * frame_px_.y;
     return out;
 }
 
@@ -274,10 +279,10 @@ CameraSample LensCamera::sample(const FilmPoint& point, const Bands& bands) cons
                    (point.film.y - 0.5f) * static_cast<float>(in_.film_height_mm));
     const bool achromatic = one_ray(bands, in_.dispersion);
     if (in_.precision == Precision::Double)
-        return sample_lens(Point<d4>(*this, film, bands, achromatic, point.pixel), in_.dispersion,
-                           point, bands);
-    return sample_lens(Point<f4>(*this, film, bands, achromatic, point.pixel), in_.dispersion,
-                       point, bands);
+        return sample_lens(Point<d4>(*this, film, bands, achromatic, point.pixel.frame_px),
+                           in_.dispersion, point, bands);
+    return sample_lens(Point<f4>(*this, film, bands, achromatic, point.pixel.frame_px),
+                       in_.dispersion, point, bands);
 }
 
 // Mean of quasi-random draws: the integrand is smooth but for the edges of iris and rims.

@@ -6,7 +6,6 @@
 
 #include "camera/camera.h"
 #include "camera/dispersion/dispersion_mode.h"
-#include "camera/dispersion/lens_point.h"
 #include "camera/iris/iris.h"
 #include "camera/lens/coating.h"
 #include "camera/lens/lens.h"

@@ -26,69 +26,62 @@ template <class T>
 inline constexpr int kOptionNames = 0;
 
 template <>
-inline constexpr std::array kOptionNames<DispersionMode>{
-    OptionName<DispersionMode>{"tolerance", DispersionMode::Tolerance},
-    OptionName<DispersionMode>{"shared", DispersionMode::Shared},
-    OptionName<DispersionMode>{"split", DispersionMode::Split},
-    OptionName<DispersionMode>{"single", DispersionMode::Single},
-    OptionName<DispersionMode>{"hero", DispersionMode::Hero}};
+inline constexpr auto kOptionNames<DispersionMode> =
+    std::to_array<OptionName<DispersionMode>>({{"tolerance", DispersionMode::Tolerance},
+                                               {"shared", DispersionMode::Shared},
+                                               {"split", DispersionMode::Split},
+                                               {"single", DispersionMode::Single},
+                                               {"hero", DispersionMode::Hero}});
 template <>
-inline constexpr std::array kOptionNames<ApertureScale>{
-    OptionName<ApertureScale>{"area", ApertureScale::EqualArea},
-    OptionName<ApertureScale>{"inscribed", ApertureScale::Inscribed}};
+inline constexpr auto kOptionNames<ApertureScale> = std::to_array<OptionName<ApertureScale>>(
+    {{"area", ApertureScale::EqualArea}, {"inscribed", ApertureScale::Inscribed}});
 template <>
-inline constexpr std::array kOptionNames<IrisSampling>{
-    OptionName<IrisSampling>{"formula", IrisSampling::Formula},
-    OptionName<IrisSampling>{"rejection", IrisSampling::Rejection},
-    OptionName<IrisSampling>{"triangles", IrisSampling::Triangles},
-    OptionName<IrisSampling>{"alias", IrisSampling::Alias}};
+inline constexpr auto kOptionNames<IrisSampling> =
+    std::to_array<OptionName<IrisSampling>>({{"formula", IrisSampling::Formula},
+                                             {"rejection", IrisSampling::Rejection},
+                                             {"triangles", IrisSampling::Triangles},
+                                             {"alias", IrisSampling::Alias}});
 template <>
-inline constexpr std::array kOptionNames<Coating>{
-    OptionName<Coating>{"ideal", Coating::Ideal},
-    OptionName<Coating>{"uncoated", Coating::Uncoated}, OptionName<Coating>{"mgf2", Coating::MgF2}};
+inline constexpr auto kOptionNames<Coating> = std::to_array<OptionName<Coating>>(
+    {{"ideal", Coating::Ideal}, {"uncoated", Coating::Uncoated}, {"mgf2", Coating::MgF2}});
 template <>
-inline constexpr std::array kOptionNames<Precision>{
-    OptionName<Precision>{"float", Precision::Float},
-    OptionName<Precision>{"double", Precision::Double}};
+inline constexpr auto kOptionNames<Precision> = std::to_array<OptionName<Precision>>(
+    {{"float", Precision::Float}, {"double", Precision::Double}});
 template <>
-inline constexpr std::array kOptionNames<ExposureMode>{
-    OptionName<ExposureMode>{"normalised", ExposureMode::Normalised},
-    OptionName<ExposureMode>{"photographic", ExposureMode::Photographic}};
+inline constexpr auto kOptionNames<ExposureMode> = std::to_array<OptionName<ExposureMode>>(
+    {{"normalised", ExposureMode::Normalised}, {"photographic", ExposureMode::Photographic}});
 template <>
-inline constexpr std::array kOptionNames<FocusBy>{
-    OptionName<FocusBy>{"paraxial", FocusBy::Paraxial},
-    OptionName<FocusBy>{"traced", FocusBy::Traced}};
+inline constexpr auto kOptionNames<FocusBy> = std::to_array<OptionName<FocusBy>>(
+    {{"paraxial", FocusBy::Paraxial}, {"traced", FocusBy::Traced}});
 template <>
-inline constexpr std::array kOptionNames<Fit>{OptionName<Fit>{"lens", Fit::Lens},
-                                              OptionName<Fit>{"fov", Fit::Fov}};
+inline constexpr auto kOptionNames<Fit> = std::to_array<OptionName<Fit>>({{"lens", Fit::Lens},
+                                                                          {"fov", Fit::Fov}});
 template <>
-inline constexpr std::array kOptionNames<SpectralMode>{
-    OptionName<SpectralMode>{"auto", SpectralMode::Auto},
-    OptionName<SpectralMode>{"rgb", SpectralMode::Rgb},
-    OptionName<SpectralMode>{"wavelengths", SpectralMode::Wavelengths}};
+inline constexpr auto kOptionNames<SpectralMode> =
+    std::to_array<OptionName<SpectralMode>>({{"auto", SpectralMode::Auto},
+                                             {"rgb", SpectralMode::Rgb},
+                                             {"wavelengths", SpectralMode::Wavelengths}});
 template <>
-inline constexpr std::array kOptionNames<WhiteBalance>{
-    OptionName<WhiteBalance>{"none", WhiteBalance::None},
-    OptionName<WhiteBalance>{"illuminant", WhiteBalance::Illuminant}};
+inline constexpr auto kOptionNames<WhiteBalance> = std::to_array<OptionName<WhiteBalance>>(
+    {{"none", WhiteBalance::None}, {"illuminant", WhiteBalance::Illuminant}});
 template <>
-inline constexpr std::array kOptionNames<SamplerKind>{
-    OptionName<SamplerKind>{"owen", SamplerKind::Owen},
-    OptionName<SamplerKind>{"sobol", SamplerKind::Sobol},
-    OptionName<SamplerKind>{"independent", SamplerKind::Independent}};
+inline constexpr auto kOptionNames<SamplerKind> =
+    std::to_array<OptionName<SamplerKind>>({{"owen", SamplerKind::Owen},
+                                            {"sobol", SamplerKind::Sobol},
+                                            {"independent", SamplerKind::Independent}});
 template <>
-inline constexpr std::array kOptionNames<FilterKind>{
-    OptionName<FilterKind>{"box", FilterKind::Box},
-    OptionName<FilterKind>{"gauss", FilterKind::Gauss},
-    OptionName<FilterKind>{"blackman-harris", FilterKind::BlackmanHarris}};
+inline constexpr auto kOptionNames<FilterKind> =
+    std::to_array<OptionName<FilterKind>>({{"box", FilterKind::Box},
+                                           {"gauss", FilterKind::Gauss},
+                                           {"blackman-harris", FilterKind::BlackmanHarris}});
 template <>
-inline constexpr std::array kOptionNames<LightChoiceKind>{
-    OptionName<LightChoiceKind>{"tree", LightChoiceKind::Tree},
-    OptionName<LightChoiceKind>{"power", LightChoiceKind::Power},
-    OptionName<LightChoiceKind>{"uniform", LightChoiceKind::Uniform}};
+inline constexpr auto kOptionNames<LightChoiceKind> =
+    std::to_array<OptionName<LightChoiceKind>>({{"tree", LightChoiceKind::Tree},
+                                                {"power", LightChoiceKind::Power},
+                                                {"uniform", LightChoiceKind::Uniform}});
 template <>
-inline constexpr std::array kOptionNames<Traversal>{
-    OptionName<Traversal>{"robust", Traversal::Robust},
-    OptionName<Traversal>{"fast", Traversal::Fast}};
+inline constexpr auto kOptionNames<Traversal> = std::to_array<OptionName<Traversal>>(
+    {{"robust", Traversal::Robust}, {"fast", Traversal::Fast}});
 
 /// Text of a distance as --focus takes it.
 [[nodiscard]] inline std::string focus_text(FocusDistance distance) {

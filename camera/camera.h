@@ -86,9 +86,12 @@ class CameraSample {
     std::array<CameraPath, kMostPaths> paths_;
 };
 
+/// A camera: pinhole, thin lens, singlet or real lens.
 class Camera {
   public:
     virtual ~Camera() = default;
+    /// Weighted rays of one point of the film, drawn by its sampler: none where the lens lets
+    /// nothing through, one that all bands share, or up to four. Thread-safe.
     [[nodiscard]] virtual CameraSample sample(const FilmPoint&, const Bands&) const = 0;
 };
 

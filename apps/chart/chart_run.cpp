@@ -27,7 +27,8 @@ class Stopwatch {
     double start_s_;
 };
 
-struct Workplace {
+/// What all renders of a chart share.
+struct ChartContext {
     const ChartFrame& frame;
     TbbExecutor& executor;
     RenderMonitor& monitor;
@@ -35,10 +36,10 @@ struct Workplace {
 };
 
 /// One method's renders of several seeds, all at the same number of samples.
-class Track {
+class MethodRenders {
   public:
-    Track(const ChartMethod& method, RenderSetup setup, const Workplace& at, uint32_t first_seed,
-          uint32_t seeds)
+    MethodRenders(const ChartMethod& method, RenderSetup setup, const ChartContext& at,
+                  uint32_t first_seed, uint32_t seeds)
         : job_(method.job), setup_(std::move(setup)), at_(at), first_seed_(first_seed) {
         job_.observer = setup_.view.observer;
         PathOptions options;
@@ -89,7 +90,7 @@ class Track {
 
     RenderJob job_;
     RenderSetup setup_;
-    const Workplace& at_;
+    const ChartContext& at_;
     uint32_t first_seed_, samples_ = 0;
     std::optional<PathTracer<>> tracer_;
     std::vector<Film> films_;
@@ -134,23 +135,23 @@ void require_time(double once_s, double budget_s, const char* what) {
 }
 
 std::optional<ChartReference> render_reference(const ChartMethod& method, RenderSetup setup,
-                                               const Workplace& at, double budget_s) {
+                                               const ChartContext& at, double budget_s) {
     const Stopwatch clock(at.clock);
-    Track track(method, std::move(setup), at, kFirstReferenceSeed, kReferenceReplicates);
-    if (!track.warm_up()) return std::nullopt;
+    MethodRenders renders(method, std::move(setup), at, kFirstReferenceSeed, kReferenceReplicates);
+    if (!renders.warm_up()) return std::nullopt;
     // A film with replicates is whole after one sample of each.
     const uint32_t first = std::max(2u, method.job.replicates);
     require_time(clock.elapsed_s() * (1 + first * kReferenceReplicates), budget_s, "the reference");
     for (uint32_t end = first; end <= 1u << 20;) {
         const Stopwatch level(at.clock);
         for (uint32_t part = 0; part < kReferenceReplicates; ++part)
-            if (!track.advance(part, end)) return std::nullopt;
-        track.last_s = level.elapsed_s() * end / (end - track.samples());
-        track.reached(end);
+            if (!renders.advance(part, end)) return std::nullopt;
+        renders.last_s = level.elapsed_s() * end / (end - renders.samples());
+        renders.reached(end);
         const double left_s = budget_s - clock.elapsed_s();
-        if (track.last_s <= left_s)
+        if (renders.last_s <= left_s)
             end *= 2;
-        else if (track.last_s / 2 <= left_s)
+        else if (renders.last_s / 2 <= left_s)
             end += end / 2;
         else
             break;
@@ -158,35 +159,35 @@ std::optional<ChartReference> render_reference(const ChartMethod& method, Render
     std::vector<Picture> parts;
     double cpu_s = 0;
     for (uint32_t i = 0; i < kReferenceReplicates; ++i) {
-        parts.push_back(track.picture(i));
-        cpu_s += track.cpu_s(i);
+        parts.push_back(renders.picture(i));
+        cpu_s += renders.cpu_s(i);
     }
     ChartReference reference = reference_of(parts, at.frame.exposure_ev);
-    reference.samples = track.samples();
+    reference.samples = renders.samples();
     reference.cpu_s = cpu_s;
     return reference;
 }
 
-/// The methods of one case on their way.
-class Race {
+/// Renders and errors of the methods of one case, which take turns until their time is up.
+class CaseMeasurement {
   public:
-    Race(const ChartCase& of, const Workplace& at, const ChartReference& reference,
-         const SetUpView& open)
+    CaseMeasurement(const ChartCase& of, const ChartContext& at, const ChartReference& reference,
+                    const SetUpView& open)
         : at_(at), reference_(reference), flip_(reference.picture, at.frame.exposure_ev) {
         for (const ChartMethod& method : of.methods) {
-            tracks_.emplace_back(method, open(method.scene), at, 0, at.frame.seeds);
+            renders_.emplace_back(method, open(method.scene), at, 0, at.frame.seeds);
             methods_.emplace_back().name = method.name;
         }
-        pictures_.resize(tracks_.size());
+        pictures_.resize(renders_.size());
     }
 
     /// False where it was stopped.
     [[nodiscard]] bool run(double budget_s) {
         const Stopwatch clock(at_.clock);
-        for (Track& track : tracks_)
-            if (!track.warm_up()) return false;
+        for (MethodRenders& renders : renders_)
+            if (!renders.warm_up()) return false;
         require_time(clock.elapsed_s() * (1 + at_.frame.seeds), budget_s, "all methods");
-        const double share_s = budget_s / static_cast<double>(tracks_.size());
+        const double share_s = budget_s / static_cast<double>(renders_.size());
         for (;;) {
             const auto next = chosen(share_s, budget_s - clock.elapsed_s());
             if (next.empty()) return true;
@@ -219,19 +220,19 @@ class Race {
     /// more, those that fit into what is left, the quickest first.
     [[nodiscard]] std::vector<size_t> chosen(double share_s, double left_s) const {
         std::vector<size_t> order;
-        for (size_t i = 0; i < tracks_.size(); ++i)
-            if (tracks_[i].samples() < 1u << 20) order.push_back(i);
+        for (size_t i = 0; i < renders_.size(); ++i)
+            if (renders_[i].samples() < 1u << 20) order.push_back(i);
         std::sort(order.begin(), order.end(),
-                  [&](size_t a, size_t b) { return tracks_[a].next_s() < tracks_[b].next_s(); });
+                  [&](size_t a, size_t b) { return renders_[a].next_s() < renders_[b].next_s(); });
         const bool any_in_share = std::any_of(order.begin(), order.end(), [&](size_t i) {
-            return tracks_[i].spent_s + tracks_[i].next_s() <= share_s;
+            return renders_[i].spent_s + renders_[i].next_s() <= share_s;
         });
         std::vector<size_t> next;
         for (const size_t i : order) {
-            const Track& track = tracks_[i];
-            if (any_in_share && track.spent_s + track.next_s() > share_s) continue;
-            if (track.next_s() > left_s) break;
-            left_s -= track.next_s();
+            const MethodRenders& renders = renders_[i];
+            if (any_in_share && renders.spent_s + renders.next_s() > share_s) continue;
+            if (renders.next_s() > left_s) break;
+            left_s -= renders.next_s();
             next.push_back(i);
         }
         return next;
@@ -239,40 +240,40 @@ class Race {
 
     /// Doubles the samples of those, seed by seed in turn, as the machine's speed drifts.
     [[nodiscard]] bool level(const std::vector<size_t>& next) {
-        for (const size_t i : next) tracks_[i].last_s = 0;
+        for (const size_t i : next) renders_[i].last_s = 0;
         for (uint32_t seed = 0; seed < at_.frame.seeds; ++seed)
             for (size_t k = 0; k < next.size(); ++k) {
-                Track& track = tracks_[next[(k + seed) % next.size()]];
+                MethodRenders& renders = renders_[next[(k + seed) % next.size()]];
                 const Stopwatch turn(at_.clock);
-                if (!track.advance(seed, doubled(track))) return false;
-                track.last_s += turn.elapsed_s();
+                if (!renders.advance(seed, doubled(renders))) return false;
+                renders.last_s += turn.elapsed_s();
             }
         for (const size_t i : next) {
-            Track& track = tracks_[i];
+            MethodRenders& renders = renders_[i];
             const Stopwatch turn(at_.clock);
-            track.reached(doubled(track));
-            ChartPoint point{track.samples(), {}};
+            renders.reached(doubled(renders));
+            ChartPoint point{renders.samples(), {}};
             for (uint32_t seed = 0; seed < at_.frame.seeds; ++seed) {
-                Picture picture = track.picture(seed);
-                point.seeds.push_back({track.seed(seed), track.cpu_s(seed),
+                Picture picture = renders.picture(seed);
+                point.seeds.push_back({renders.seed(seed), renders.cpu_s(seed),
                                        relative_mse(picture, reference_.picture),
                                        flip_.mean(picture)});
                 if (seed == 0) pictures_[i].push_back(std::move(picture));
             }
             methods_[i].points.push_back(std::move(point));
-            track.last_s += turn.elapsed_s();
-            track.spent_s += track.last_s;
+            renders.last_s += turn.elapsed_s();
+            renders.spent_s += renders.last_s;
         }
         return true;
     }
-    [[nodiscard]] static uint32_t doubled(const Track& track) {
-        return std::max(1u, 2 * track.samples());
+    [[nodiscard]] static uint32_t doubled(const MethodRenders& renders) {
+        return std::max(1u, 2 * renders.samples());
     }
 
-    const Workplace& at_;
+    const ChartContext& at_;
     const ChartReference& reference_;
     Flip flip_;
-    std::vector<Track> tracks_;
+    std::vector<MethodRenders> renders_;
     std::vector<MeasuredMethod> methods_;
     std::vector<std::vector<Picture>> pictures_;  ///< of the first seed, at each level
 };
@@ -343,7 +344,7 @@ std::optional<MeasuredCase> measure(const ChartCase& of, const ChartFrame& frame
     out.of = of;
     if (of.methods.empty()) return out;
     require_time(0, budget_s, "this axis");
-    const Workplace at{frame, executor, monitor, times};
+    const ChartContext at{frame, executor, monitor, times};
     const double measuring_s = kMeasuringShare * budget_s;
     if (frame.reference) {
         out.reference.picture = *frame.reference;
@@ -353,9 +354,9 @@ std::optional<MeasuredCase> measure(const ChartCase& of, const ChartFrame& frame
         if (!reference) return std::nullopt;
         out.reference = *std::move(reference);
     }
-    Race race(out.of, at, out.reference, open);
-    if (!race.run(measuring_s - clock.elapsed_s())) return std::nullopt;
-    out.methods = std::move(race).result(out.equal_cpu_s);
+    CaseMeasurement measurement(out.of, at, out.reference, open);
+    if (!measurement.run(measuring_s - clock.elapsed_s())) return std::nullopt;
+    out.methods = std::move(measurement).result(out.equal_cpu_s);
     out.wall_s = clock.elapsed_s();
     return out;
 }

@@ -45,7 +45,7 @@ def cycles(a, samples, seed, output):
     wanted = {"scene": a.scene, "output": output, "width": width, "height": height, "samples": samples,
               "seed": seed % 2**31, "threads": a.threads, "bounces": a.bounces, "fov_deg": a.fov,
               "look_at": [float(x) for x in a.look_at.split(",")], "environment": a.env,
-              "lens_radius_m": a.lens_radius, "focus_m": a.focus}
+              "lens_radius_m": a.lens_radius, "focus_m": a.focus, "pattern": a.pattern}
     # Blender takes Python's modules from beside the first python3 in the path.
     text = subprocess.run(["blender", "-b", "--factory-startup", "-noaudio", "-P", os.path.join(HERE, "cycles.py"),
                            "--", json.dumps(wanted)], env=dict(os.environ, PATH="/usr/bin:/bin"), text=True,
@@ -81,6 +81,16 @@ def measure(a, folder):
     return methods
 
 
+def summary(points):
+    """One line: speed, error and efficiency of Petzval over those of Cycles at the most samples."""
+    case = points["cases"][0]
+    ours, theirs = ({key: method["points"][-1][key]["mean"] for key in ("cpu_s", "relative_mse", "efficiency_per_s")}
+                    for method in case["methods"])
+    return "%s: speed %.2f, error of Cycles over ours %.2f, efficiency %.2f" % (
+        case["name"], theirs["cpu_s"] / ours["cpu_s"], theirs["relative_mse"] / ours["relative_mse"],
+        ours["efficiency_per_s"] / theirs["efficiency_per_s"])
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("scene")
@@ -97,6 +107,8 @@ def main():
     parser.add_argument("--most", type=int, default=64)
     parser.add_argument("--step", type=int, default=2, help="levels are 2^step apart")
     parser.add_argument("--reference-samples", type=int, default=2048)
+    parser.add_argument("--pattern", choices=("SOBOL", "PROGRESSIVE_MULTI_JITTER"), default="SOBOL",
+                        help="Cycles' points: Sobol scrambled after Owen (Burley 2020), or its default")
     parser.add_argument("-o", "--output", required=True)
     a = parser.parse_args()
     if not shutil.which("blender"):
@@ -111,12 +123,15 @@ def main():
                     "width": width, "height": height, "threads": a.threads, "seeds": a.seeds,
                     "remarks": ["Each program is held against its own converged picture: their surface models differ",
                                 "CPU time of the samples only, from a long less a short render",
-                                "%d bounces, box filter, both with Sobol points scrambled after Owen" % a.bounces],
+                                "%d bounces, box filter; Petzval: Sobol points scrambled after Owen; Cycles: %s" %
+                                (a.bounces, a.pattern)],
                     "methods": measure(a, folder)}
         path = os.path.join(folder, "manifest.json")
         with open(path, "w") as file:
             json.dump(manifest, file)
         subprocess.run([os.path.join(BIN, "peers_chart"), path, a.output], check=True)
+    with open(os.path.join(a.output, "points.json")) as file:
+        print(summary(json.load(file)))
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Renders a glTF file with Blender's Cycles to a linear EXR, with nothing on that biases it.
+"""Renders a glTF file with Blender's Cycles to a linear EXR: its own settings, less what biases it.
 
     blender -b --factory-startup -noaudio -P cycles.py -- '{"scene": "a.glb", "output": "a.exr", ...}'
 
@@ -90,15 +90,15 @@ def set_lights(scene):
     background, out = nodes.new("ShaderNodeBackground"), nodes.new("ShaderNodeOutputWorld")
     links.new(background.outputs[0], out.inputs["Surface"])
     background.inputs["Color"].default_value = (0, 0, 0, 1)
-    world.cycles.sampling_method = "NONE"
+    # A picture of the sky keeps Cycles' own importance map ("AUTOMATIC", 4096 x 2048).
     world.cycles.max_bounces = 1024
     if wanted["environment"]:
         image = nodes.new("ShaderNodeTexEnvironment")
         image.image = bpy.data.images.load(os.path.abspath(wanted["environment"]))
         image.image.colorspace_settings.name = "Linear"
         links.new(image.outputs[0], background.inputs["Color"])
-        world.cycles.sampling_method = "MANUAL"  # else a map of 4096 x 2048, whatever the picture
-        world.cycles.sample_map_resolution = image.image.size[0]
+    else:
+        world.cycles.sampling_method = "NONE"
 
 
 def set_render(scene):
@@ -113,6 +113,7 @@ def set_render(scene):
     settings = render.image_settings
     settings.file_format, settings.color_mode, settings.color_depth = "OPEN_EXR", "RGB", "32"
     cycles.device = "CPU"
+    cycles.sampling_pattern = wanted["pattern"]
     cycles.samples, cycles.seed = wanted["samples"], wanted["seed"]
     cycles.use_adaptive_sampling = cycles.use_denoising = cycles.use_fast_gi = False
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0

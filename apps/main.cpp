@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // petzval: photographs glTF scenes.
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
 #include <string>
+#include <vector>
 
+#include "apps/cli/command_line.h"
 #include "apps/cli/console.h"
-#include "apps/cli/old_spellings.h"
 #include "apps/commands/chart.h"
 #include "apps/commands/image.h"
 #include "apps/commands/info.h"
@@ -29,19 +29,19 @@ int fail(int exit_code, const std::string& what) {
 }
 
 // Exit code where parsing stopped. Help and the version are "errors" to CLI11 as well.
-int stop_parsing(const CLI::App& app, const CLI::ParseError& e) {
+int stop_parsing(const CLI::App& app, const CLI::ParseError& e, const petzval::Spelling& line) {
     if (e.get_exit_code() == 0) return app.exit(e);
-    return fail(kBadArguments, std::string(e.what()) + " (--help says more)");
+    return fail(kBadArguments, petzval::explanation(app, e, line) + " (--help says more)");
 }
 
 int run(CLI::App& app, int argc, char** argv, const int& exit_code) {
+    petzval::Spelling line = petzval::with_current_spellings(argc, argv);
     try {
+        petzval::resolve_help(app, line);
         // CLI11 takes the words from the end of a vector.
-        auto words = petzval::with_current_spellings(argc, argv);
-        std::reverse(words.begin(), words.end());
-        app.parse(std::move(words));
+        app.parse(std::vector<std::string>(line.words.rbegin(), line.words.rend()));
     } catch (const CLI::ParseError& e) {
-        return stop_parsing(app, e);
+        return stop_parsing(app, e, line);
     } catch (const petzval::ArgumentError& e) {
         return fail(kBadArguments, e.what());
     } catch (const std::bad_alloc&) {
@@ -57,8 +57,9 @@ int run(CLI::App& app, int argc, char** argv, const int& exit_code) {
 int main(int argc, char** argv) {
     // A limit on the size of files then fails a write, as a full disk does, instead of killing.
     std::signal(SIGXFSZ, SIG_IGN);
-    CLI::App app("A path tracer whose camera is a lens. Every subcommand has --help.");
+    CLI::App app("A path tracer whose camera is a lens. Every command has --help.");
     app.name("petzval");
+    app.option_defaults()->take_last();  // of an option that is given twice
     app.set_version_flag("--version", petzval::program_version());
     app.require_subcommand(1);
     int exit_code = 0;
@@ -68,6 +69,7 @@ int main(int argc, char** argv) {
     petzval::add_info_command(app);
     petzval::add_image_commands(app);
     petzval::add_lens_commands(app);
+    app.footer("petzval help COMMAND prints what a command takes.");
     const int result = run(app, argc, argv, exit_code);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
         return fail(kFailure, "standard output cannot be written");

@@ -316,6 +316,9 @@ ChartReference reference_of(const std::vector<Picture>& parts, float exposure_ev
 
 Picture read_reference(const std::filesystem::path& path, V2i size, Rect crop) {
     const Picture read = read_picture(path);
+    if (read.for_display)
+        throw InputError(path.string(), "",
+                         "holds values for a display, not light; give a rendered EXR");
     Picture picture = rgb_picture(Film(size, crop, {}));
     const std::array<int, 3> from{channel_index(read, "R"), channel_index(read, "G"),
                                   channel_index(read, "B")};

@@ -8,6 +8,7 @@
 #include "apps/cli/choice.h"
 #include "apps/cli/parse.h"
 #include "apps/setup/option_names.h"
+#include "io/base/ascii.h"
 
 namespace petzval {
 namespace {
@@ -18,29 +19,30 @@ constexpr float kFarthest_m = 1e12f, kNearest_m = 1e-12f;
 
 void add_place_options(CLI::App& app, CameraOptions& o) {
     CameraRequest& r = o.request;
-    const auto length = number_between(kLeast, kMost);
+    const auto length_mm = number_between(kLeast, kMost, kMillimetres);
     const auto add = [&](const char* name, auto& value, const char* help) {
         return app.add_option(name, value, help)->group("Camera");
     };
     add("--camera", r.name, "camera of the file, by name or index");
     add("--look-at", o.look_at, "ex,ey,ez,tx,ty,tz: eye and target in metres");
     add("--fov", r.fov_deg, "vertical angle of view in degrees")
-        ->check(number_between(kSmallestFov_deg, kLargestFov_deg));
+        ->transform(number_between(kSmallestFov_deg, kLargestFov_deg, kDegrees));
     add("--sensor", o.sensor,
         "WxH in mm, cropped to the picture's aspect (default 36x24, or what a lens covers of it)");
     add("--focus", o.focus,
-        "sharp plane: metres from the entrance pupil (1.5 or 1.5m), infinity, the pixel x,y, or "
-        "auto");
-    auto* fstop = add("--fstop", r.fstop, "f-number of the lens: its iris")->check(length);
+        "sharp plane: its distance from the entrance pupil (1.5m, 30cm, 5ft; 1.5 is metres), "
+        "infinity, the pixel x,y, or auto");
+    auto* fstop = add("--fstop", r.fstop, "f-number of the lens: its iris, as 2 or f/2")
+                      ->transform(fnumber_between(kLeast, kMost));
     add("--lens-radius", r.lens_radius_m, "of a thin lens, in metres")
-        ->check(length)
+        ->transform(number_between(kLeast, kMost, kMetres))
         ->excludes(fstop);
     add("--focal-length", r.focal_length_mm,
         "of a thin lens, in mm; without --fov it sets the angle of view too")
-        ->check(length);
+        ->transform(length_mm);
     add("--film-distance", r.film_distance_mm,
         "from a thin lens, in mm: gives --focus, or with it the focal length")
-        ->check(length);
+        ->transform(length_mm);
 }
 
 void add_lens_options(CLI::App& app, CameraOptions& o) {
@@ -82,7 +84,7 @@ void add_lens_options(CLI::App& app, CameraOptions& o) {
     group(app.add_option_function<float>("--dispersion-tolerance", share_within,
                                          "pixels on the film within which --dispersion tolerance, "
                                          "which this asks for, shares a ray (default 0.1)"))
-        ->check(number_between(0, 1000));
+        ->transform(number_between(0, 1000, kPixels));
 }
 
 void add_glass_options(CLI::App& app, CameraOptions& o) {
@@ -103,13 +105,13 @@ void add_exposure_options(CLI::App& app, CameraOptions& o) {
         "normalised (default): as bright at every f-number; photographic: by --iso, --shutter and "
         "the iris"));
     group(app.add_option("--iso", r.iso, "speed of the film (default 100)"))
-        ->check(number_between(1e-3, 1e9))
+        ->transform(number_between(1e-3, 1e9))
         ->needs(mode);
     group(app.add_option("--shutter", o.shutter, "seconds: 0.01 or 1/100 (default)"))->needs(mode);
 }
 
 std::array<V3f, 2> parse_look_at(const std::string& text) {
-    const auto v = parse_numbers("--look-at", text, 6);
+    const auto v = parse_lengths_m("--look-at", text, 6);
     for (const float x : v)
         if (std::fabs(x) > kFarthest_m)
             throw CLI::ValidationError("--look-at", fmt::format("{:g} m is too far away", x));
@@ -130,6 +132,8 @@ void add_camera_options(CLI::App& app, CameraOptions& o) {
 
 CameraRequest resolve(CameraOptions& o, V2i frame) {
     CameraRequest& r = o.request;
+    for (const char* word : {"pinhole", "thin"})
+        if (r.lens && lower(*r.lens) == word) r.lens = word;
     if (!o.look_at.empty()) {
         r.look_at = parse_look_at(o.look_at);
         if (r.name) throw CLI::ValidationError("--look-at", "excludes --camera");

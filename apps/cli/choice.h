@@ -3,6 +3,7 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <string>
@@ -10,6 +11,8 @@
 #include <vector>
 
 #include "apps/setup/option_names.h"
+#include "io/base/ascii.h"
+#include "io/base/nearest.h"
 
 namespace petzval {
 
@@ -24,22 +27,24 @@ template <class T>
     return choices;
 }
 
-/// Adds an option whose value is one of the choices. Any other word ends with exit code 2 and the
-/// list of the known ones. value, a T or something that one can be assigned to, must outlive
-/// parsing.
+/// Adds an option whose value is one of the choices, whatever the case. Any other word ends with
+/// exit code 2 and the list of the known ones. value, a T or something that one can be assigned to,
+/// must outlive parsing.
 template <class T, class Value>
 CLI::Option* add_choice(CLI::App& app, const std::string& name, Value& value,
                         const Choices<T>& choices, const std::string& help) {
     const auto read = [=, &value](const std::string& text) {
-        std::string known;
+        std::vector<std::string> known;
         for (const auto& [word, choice] : choices) {
-            if (word == text) {
+            if (word == lower(text)) {
                 value = choice;
                 return;
             }
-            known += (known.empty() ? "" : ", ") + word;
+            known.push_back(word);
         }
-        throw CLI::ValidationError(name, fmt::format("\"{}\" is none of {}", text, known));
+        throw CLI::ValidationError(
+            name, fmt::format("\"{}\" is none of {}{}", text, fmt::join(known, ", "),
+                              did_you_mean(text, known)));
     };
     return app.add_option_function<std::string>(name, read, help);
 }

@@ -27,24 +27,28 @@ std::string current_value(std::string_view option, std::string_view value) {
 
 }  // namespace
 
-std::vector<std::string> with_current_spellings(int argc, const char* const* argv) {
-    std::vector<std::string> out;
+Spelling with_current_spellings(int argc, const char* const* argv) {
+    Spelling out;
     std::string last_option;
     for (int i = 1; i < argc; ++i) {
         const std::string_view word(argv[i]);
         if (!word.starts_with("--")) {
-            out.push_back(current_value(last_option, word));
+            out.words.push_back(current_value(last_option, word));
             last_option.clear();
             continue;
         }
         const size_t equals = word.find('=');
         last_option = word.substr(0, equals);
-        for (const Renamed& one : kOptions)
-            if (one.before == last_option) last_option = one.now;
+        for (const Renamed& one : kOptions) {
+            if (one.before != last_option) continue;
+            out.renamed.emplace_back(one.before, one.now);
+            last_option = one.now;
+        }
         if (equals == std::string_view::npos)
-            out.push_back(last_option);
+            out.words.push_back(last_option);
         else
-            out.push_back(last_option + "=" + current_value(last_option, word.substr(equals + 1)));
+            out.words.push_back(last_option + "=" +
+                                current_value(last_option, word.substr(equals + 1)));
     }
     return out;
 }

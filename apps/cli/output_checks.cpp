@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/output_checks.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include <algorithm>
-
 #include "io/base/error.h"
-#include "io/image/display.h"
+#include "io/image/picture.h"
 
 namespace petzval {
 
@@ -25,12 +20,6 @@ std::string complaint_about_display_name(const std::string& name) {
     if (complaint.empty() && picture_format(name) == PictureFormat::Exr)
         return name + ": a view is written as .png, .jpg or .jpeg";
     return complaint;
-}
-
-std::string complaint_about_view(const std::string& name) {
-    const std::vector<std::string> views = display_views();
-    if (std::find(views.begin(), views.end(), name) != views.end()) return "";
-    return fmt::format("there is no view \"{}\"; there are {}", name, fmt::join(views, ", "));
 }
 
 }  // namespace petzval

@@ -11,7 +11,5 @@ namespace petzval {
 [[nodiscard]] std::string complaint_about_picture_name(const std::string&);
 /// Complaint about the name of a picture to write for a display: no EXR.
 [[nodiscard]] std::string complaint_about_display_name(const std::string&);
-/// Complaint about the name of a display view.
-[[nodiscard]] std::string complaint_about_view(const std::string&);
 
 }  // namespace petzval

@@ -2,12 +2,15 @@
 #include "apps/cli/parse.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <limits>
 #include <string_view>
+
+#include "io/base/ascii.h"
+#include "io/base/nearest.h"
 
 namespace petzval {
 namespace {
@@ -20,42 +23,40 @@ constexpr float kNearestFocus_m = 1e-6f, kFarthestFocus_m = 1e9f;
     throw CLI::ValidationError(option, fmt::format("\"{}\" is not {}", text, want));
 }
 
-std::vector<std::string_view> split(std::string_view text, char at) {
-    std::vector<std::string_view> parts;
-    for (;;) {
-        const size_t end = text.find(at);
-        parts.push_back(text.substr(0, end));
-        if (end == std::string_view::npos) return parts;
-        text.remove_prefix(end + 1);
-    }
+// Two sides from "WIDTHxHEIGHT", whatever stands for times.
+std::vector<std::string> sides(std::string text) {
+    constexpr std::string_view times = "×";
+    if (const size_t at = text.find(times); at != std::string::npos)
+        text.replace(at, times.size(), "x");
+    std::vector<std::string> out;
+    for (const std::string_view side : split(lower(std::move(text)), 'x'))
+        out.emplace_back(trimmed(side));
+    return out;
 }
 
-template <class T>
-std::optional<T> number(std::string_view text) {
-    if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
-    T value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || text.empty())
-        return std::nullopt;
-    if constexpr (std::is_floating_point_v<T>)
-        if (!std::isfinite(value)) return std::nullopt;
-    return value;
+std::vector<float> parse_all(const std::string& option, const std::string& text, size_t n,
+                             std::span<const Unit> units, const char* what) {
+    std::vector<float> values;
+    for (const std::string_view part : split(text, ','))
+        if (const auto value = quantity(part, units); value && std::isfinite(float(*value)))
+            values.push_back(static_cast<float>(*value));
+    if (values.size() != n || split(text, ',').size() != n)
+        refuse(option, text, fmt::format("{} {} with commas between them", n, what));
+    return values;
 }
 
 }  // namespace
 
 std::vector<float> parse_numbers(const std::string& option, const std::string& text, size_t n) {
-    std::vector<float> values;
-    for (const std::string_view part : split(text, ','))
-        if (const auto value = number<float>(part)) values.push_back(*value);
-    if (values.size() != n || split(text, ',').size() != n)
-        refuse(option, text, fmt::format("{} numbers with commas between them", n));
-    return values;
+    return parse_all(option, text, n, {}, "numbers");
+}
+
+std::vector<float> parse_lengths_m(const std::string& option, const std::string& text, size_t n) {
+    return parse_all(option, text, n, kMetres, "lengths");
 }
 
 V2i parse_size(const std::string& option, const std::string& text) {
-    const auto parts = split(text, 'x');
-    if (parts.size() == 2) {
+    if (const auto parts = sides(text); parts.size() == 2) {
         const auto w = number<int>(parts[0]), h = number<int>(parts[1]);
         const auto fits = [](int side) { return side >= 1 && side <= kLargestSide_px; };
         if (w && h && fits(*w) && fits(*h)) return {*w, *h};
@@ -64,11 +65,10 @@ V2i parse_size(const std::string& option, const std::string& text) {
 }
 
 V2f parse_sensor(const std::string& option, const std::string& text, double least, double most) {
-    const auto parts = split(text, 'x');
-    if (parts.size() == 2) {
-        const auto w = number<float>(parts[0]), h = number<float>(parts[1]);
-        const auto fits = [&](float side) { return side >= least && side <= most; };
-        if (w && h && fits(*w) && fits(*h)) return {*w, *h};
+    if (const auto parts = sides(text); parts.size() == 2) {
+        const auto w = quantity(parts[0], kMillimetres), h = quantity(parts[1], kMillimetres);
+        const auto fits = [&](double side) { return side >= least && side <= most; };
+        if (w && h && fits(*w) && fits(*h)) return {static_cast<float>(*w), static_cast<float>(*h)};
     }
     refuse(option, text, fmt::format("WIDTHxHEIGHT in millimetres, {:g} to {:g}", least, most));
 }
@@ -96,24 +96,63 @@ V2i parse_pixel(const std::string& option, const std::string& text) {
     refuse(option, text, "a pixel x,y");
 }
 
-double parse_duration_s(const std::string& option, const std::string& text) {
-    double unit_s = 1;
-    std::string_view digits = text;
-    if (!digits.empty()) {
-        const char last = digits.back();
-        if (last == 's' || last == 'm' || last == 'h') {
-            unit_s = last == 'h' ? 3600 : last == 'm' ? 60 : 1;
-            digits.remove_suffix(1);
-        }
+namespace {
+
+/// Units of a duration, the longest first.
+struct DurationUnit {
+    std::string_view name;
+    double s;
+};
+constexpr std::array<DurationUnit, 5> kDurations{
+    {{"h", 3600}, {"min", 60}, {"m", 60}, {"s", 1}, {"ms", 1e-3}}};
+
+// Seconds from "1:30" and "1:02:30", as the progress line writes them.
+std::optional<double> clock_s(std::string_view text) {
+    const auto parts = split(text, ':');
+    if (parts.size() < 2 || parts.size() > 3) return std::nullopt;
+    double sum_s = 0;
+    for (size_t i = 0; i < parts.size(); ++i) {
+        const auto value = number<uint32_t>(parts[i]);
+        if (!value || (i > 0 && (*value >= 60 || parts[i].size() != 2))) return std::nullopt;
+        sum_s = sum_s * 60 + *value;
     }
-    const auto value = number<double>(digits);
-    if (!value || *value <= 0) refuse(option, text, "a time such as 90s, 1.5m or 2h");
-    return *value * unit_s;
+    return sum_s;
+}
+
+// Seconds from numbers with units, each unit once and the longest first: "1h 30m".
+std::optional<double> with_units_s(std::string_view text) {
+    double sum_s = 0, shortest_s = std::numeric_limits<double>::infinity();
+    for (text = trimmed(text); !text.empty(); text = trimmed(text)) {
+        const size_t digits = std::min(text.find_first_not_of("0123456789."), text.size());
+        const auto value = number<double>(text.substr(0, digits));
+        text = trimmed(text.substr(digits));
+        const std::string_view word = text.substr(0, text.find_first_of("0123456789. "));
+        text.remove_prefix(word.size());
+        const auto unit = std::find_if(kDurations.begin(), kDurations.end(),
+                                       [&](const DurationUnit& one) { return one.name == word; });
+        if (!value || unit == kDurations.end() || unit->s >= shortest_s) return std::nullopt;
+        shortest_s = unit->s;
+        sum_s += *value * unit->s;
+    }
+    return sum_s;
+}
+
+}  // namespace
+
+double parse_duration_s(const std::string& option, const std::string& text) {
+    constexpr double longest_s = 1e9;
+    std::optional<double> s = number<double>(text);
+    if (!s) s = clock_s(text);
+    if (!s) s = with_units_s(lower(text));
+    if (!s || !(*s > 0 && *s <= longest_s))
+        refuse(option, text, "a time such as 90s, 1.5m, 1h30m or 1:30");
+    return *s;
 }
 
 double parse_share(const std::string& option, const std::string& text) {
     const bool per_cent = text.ends_with('%');
-    const auto value = number<double>(std::string_view(text).substr(0, text.size() - per_cent));
+    const auto value =
+        number<double>(trimmed(std::string_view(text).substr(0, text.size() - per_cent)));
     const double share = value.value_or(0) / (per_cent ? 100 : 1);
     if (!(share > 0 && share <= 1))
         refuse(option, text, "a share such as 1% or 0.01, 100% at most");
@@ -122,27 +161,34 @@ double parse_share(const std::string& option, const std::string& text) {
 
 float parse_shutter_s(const std::string& option, const std::string& text) {
     constexpr float shortest_s = 1e-9f, longest_s = 1e9f;
-    const auto parts = split(text, '/');
+    std::string_view digits = text;
+    const float per_s = digits.ends_with("ms") ? 1000 : 1;
+    if (digits.ends_with('s')) digits.remove_suffix(per_s == 1 ? 1 : 2);
+    const auto parts = split(trimmed(digits), '/');
     const auto above = number<float>(parts[0]);
     const auto below = parts.size() == 2 ? number<float>(parts[1]) : std::optional(1.f);
     if (parts.size() <= 2 && above && below)
-        if (const float s = *above / *below; s >= shortest_s && s <= longest_s) return s;
-    refuse(option, text, "seconds above 0, as 0.01 or 1/100");
+        if (const float s = *above / *below / per_s; s >= shortest_s && s <= longest_s) return s;
+    refuse(option, text, "seconds above 0, as 0.01, 1/100 or 10ms");
 }
 
 namespace {
 
 std::optional<float> focus_distance_m(std::string_view text) {
-    if (text == "infinity") return std::numeric_limits<float>::infinity();
-    if (!text.empty() && text.back() == 'm') text.remove_suffix(1);
-    const auto value = number<float>(text);
-    if (!value || *value < kNearestFocus_m || *value > kFarthestFocus_m) return std::nullopt;
-    return value;
+    const std::string word = lower(std::string(trimmed(text)));
+    if (word == "infinity" || word == "inf" || word == "∞")
+        return std::numeric_limits<float>::infinity();
+    const auto value = quantity(text, kMetres);
+    if (!value) return std::nullopt;
+    const auto distance_m = static_cast<float>(*value);
+    if (distance_m < kNearestFocus_m || distance_m > kFarthestFocus_m) return std::nullopt;
+    return distance_m;
 }
 
 std::string focus_distances() {
-    return fmt::format("a distance of {:g} to {:g} metres, infinity", kNearestFocus_m,
-                       kFarthestFocus_m);
+    return fmt::format(
+        "a distance of {:g} to {:g} metres, one with a unit (30cm, 2mm, 5ft), infinity",
+        kNearestFocus_m, kFarthestFocus_m);
 }
 
 }  // namespace
@@ -154,7 +200,7 @@ float parse_focus_distance_m(const std::string& option, const std::string& text)
 }
 
 Focus parse_focus(const std::string& option, const std::string& text, V2i frame) {
-    if (text == "auto") return FocusAuto{};
+    if (lower(text) == "auto") return FocusAuto{};
     if (const auto parts = split(text, ','); parts.size() == 2) {
         const auto x = number<int>(parts[0]), y = number<int>(parts[1]);
         if (x && y && *x >= 0 && *y >= 0 && *x < frame.x && *y < frame.y) return FocusPixel{*x, *y};
@@ -172,7 +218,7 @@ Bins parse_bins(const std::string& option, const std::string& text) {
     const auto parts = split(text, ':');
     std::vector<double> v;
     for (const std::string_view part : parts)
-        if (const auto value = number<double>(part)) v.push_back(*value);
+        if (const auto value = quantity(part, kNanometres)) v.push_back(*value);
     if (v.size() != 3 || parts.size() != 3)
         refuse(option, text, "FIRST:LAST:WIDTH in nm, as 380:730:10");
     const double range_nm = v[1] - v[0];
@@ -188,35 +234,22 @@ Bins parse_bins(const std::string& option, const std::string& text) {
     return {v[0], v[2], static_cast<int>(std::lround(count))};
 }
 
-std::vector<Aov> parse_aovs(const std::string& option, const std::string& text) {
+std::vector<Aov> parse_aovs(const std::string& option, const std::vector<std::string>& lists) {
+    std::vector<std::string> known;
+    for (int i = 0; i < static_cast<int>(Aov::Count); ++i)
+        known.emplace_back(aov_info(static_cast<Aov>(i)).name);
     std::vector<Aov> aovs;
-    for (const std::string_view name : split(text, ',')) {
-        const auto aov = aov_from_name(name);
-        if (!aov) {
-            std::string known;
-            for (int i = 0; i < static_cast<int>(Aov::Count); ++i)
-                known += fmt::format("{}{}", i ? ", " : "", aov_info(static_cast<Aov>(i)).name);
-            refuse(option, std::string(name), "a layer; there are " + known);
+    for (const std::string& list : lists)
+        for (const std::string_view part : split(list, ',')) {
+            const std::string name = lower(std::string(trimmed(part)));
+            const auto aov = aov_from_name(name);
+            if (!aov)
+                refuse(option, name,
+                       fmt::format("a layer; there are {}{}", fmt::join(known, ", "),
+                                   did_you_mean(name, known)));
+            if (std::find(aovs.begin(), aovs.end(), *aov) == aovs.end()) aovs.push_back(*aov);
         }
-        if (std::find(aovs.begin(), aovs.end(), *aov) == aovs.end()) aovs.push_back(*aov);
-    }
     return aovs;
-}
-
-Check number_between(double least, double most) {
-    return [=](const std::string& text) -> std::string {
-        const auto value = number<double>(text);
-        if (value && *value >= least && *value <= most) return "";
-        return fmt::format("\"{}\" is not a number from {:g} to {:g}", text, least, most);
-    };
-}
-
-Check whole_number_between(uint64_t least, uint64_t most) {
-    return [=](const std::string& text) -> std::string {
-        const auto value = number<uint64_t>(text);
-        if (value && *value >= least && *value <= most) return "";
-        return fmt::format("\"{}\" is not a whole number from {} to {}", text, least, most);
-    };
 }
 
 }  // namespace petzval

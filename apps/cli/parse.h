@@ -3,12 +3,10 @@
 // exit code 2.
 #pragma once
 
-#include <cstdint>
-#include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/cli/quantity.h"
 #include "apps/setup/render_setup.h"
 #include "core/film/film.h"
 #include "core/spectrum/bins.h"
@@ -18,34 +16,34 @@ namespace petzval {
 /// Numbers from "a,b,c": exactly n, finite.
 [[nodiscard]] std::vector<float> parse_numbers(const std::string& option, const std::string& text,
                                                size_t n);
-/// Size from "1280x720": whole numbers from 1 to 65536.
+/// Lengths in metres from "0,1.5,2m,0,0,30cm": exactly n, finite.
+[[nodiscard]] std::vector<float> parse_lengths_m(const std::string& option, const std::string& text,
+                                                 size_t n);
+/// Size from "1280x720", also with X or ×: whole numbers from 1 to 65536.
 [[nodiscard]] V2i parse_size(const std::string& option, const std::string& text);
-/// Sensor size in millimetres from "36x24": two numbers from least to most.
+/// Sensor size in millimetres from "36x24" or "36x24mm": two numbers from least to most.
 [[nodiscard]] V2f parse_sensor(const std::string& option, const std::string& text, double least,
                                double most);
 /// Crop from "x,y,w,h" in pixels of a frame; must lie inside it and hold a pixel.
 [[nodiscard]] Rect parse_crop(const std::string& option, const std::string& text, V2i frame);
 /// Pixel from "x,y": two whole numbers.
 [[nodiscard]] V2i parse_pixel(const std::string& option, const std::string& text);
-/// Duration from "90", "90s", "1.5m" or "2h": seconds above 0.
+/// Duration from "90", "90s", "1.5m", "1h30m", or as a clock shows it, "1:30" and "1:30:00":
+/// seconds above 0.
 [[nodiscard]] double parse_duration_s(const std::string& option, const std::string& text);
 /// Share from "1%" or "0.01": above 0, 1 at most.
 [[nodiscard]] double parse_share(const std::string& option, const std::string& text);
-/// Shutter time from "0.01" or "1/100": seconds above 0.
+/// Shutter time from "0.01", "1/100", "1/100s" or "10ms": seconds above 0.
 [[nodiscard]] float parse_shutter_s(const std::string& option, const std::string& text);
-/// Focus distance in metres from "1.5", "1.5m" (above 0) or "infinity".
+/// Focus distance in metres from "1.5", "30cm", "5ft" (above 0), "infinity", "inf" or "∞".
 [[nodiscard]] float parse_focus_distance_m(const std::string& option, const std::string& text);
 /// Focus from a focus distance, "auto", or "x,y" (a pixel of the frame).
 [[nodiscard]] Focus parse_focus(const std::string& option, const std::string& text, V2i frame);
-/// Bins from "380:730:10": edges of equal bins in nm, inside the wavelengths that paths carry.
+/// Bins from "380:730:10", also with nm: edges of equal bins in nm, inside the wavelengths that
+/// paths carry.
 [[nodiscard]] Bins parse_bins(const std::string& option, const std::string& text);
-/// Layers from their names, "albedo,normal".
-[[nodiscard]] std::vector<Aov> parse_aovs(const std::string& option, const std::string& text);
-
-/// Check of one number, for CLI11: returns what is wrong with a text, or nothing. Unlike CLI11's
-/// own it refuses what is not finite.
-using Check = std::function<std::string(const std::string&)>;
-[[nodiscard]] Check number_between(double least, double most);
-[[nodiscard]] Check whole_number_between(uint64_t least, uint64_t most);
+/// Layers from lists of their names, "albedo,normal".
+[[nodiscard]] std::vector<Aov> parse_aovs(const std::string& option,
+                                          const std::vector<std::string>& lists);
 
 }  // namespace petzval

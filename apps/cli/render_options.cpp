@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "apps/cli/choice.h"
+#include "apps/cli/display_options.h"
 #include "apps/cli/output_checks.h"
 #include "apps/cli/parse.h"
 #include "apps/setup/memory.h"
@@ -26,27 +27,27 @@ void add_scene_options(CLI::App& app, RenderOptions& o) {
     app.add_option("--tolerance", o.tolerance,
                    "error that what is chosen for you may bring: 1% (default) or 0.01");
     app.add_option("--threads", o.threads, "default: one for each core")
-        ->check(whole_number_between(1, 1024));
+        ->transform(whole_number_between(1, 1024));
 }
 
 void add_frame_options(CLI::App& app, RenderOptions& o) {
     app.add_option("--crop", o.crop, "x,y,width,height: only these pixels of the full frame");
     app.add_option("--spp", o.spp, "samples of each pixel (default 64)")
-        ->check(whole_number_between(1, kMostSamples));
+        ->transform(whole_number_between(1, kMostSamples));
     app.add_option("--time", o.time,
-                   "render for this long: 60s, 10m, 1h; with --spp whichever ends first");
+                   "render for this long: 60s, 10m, 1h30m, 1:30; with --spp whichever ends first");
     app.add_option("--seed", o.job.seed, "another seed, another noise")
-        ->check(whole_number_between(0, std::numeric_limits<uint32_t>::max()));
+        ->transform(whole_number_between(0, std::numeric_limits<uint32_t>::max()));
 }
 
 void add_sampling_options(CLI::App& app, RenderOptions& o) {
     app.add_option("--max-depth", o.path.max_depth, "scatterings of a path (default 16)")
-        ->check(whole_number_between(0, 10000));
+        ->transform(whole_number_between(0, 10000));
     add_choice<FilterKind>(app, "--filter", o.filter,
                            "pixel filter: box, gauss, blackman-harris (default)");
     app.add_option("--filter-radius", o.filter_radius_px,
                    "pixels (default: box 0.5, the others 1.5)")
-        ->check(number_between(0.01, 16.0));
+        ->transform(number_between(0.01, 16.0, kPixels));
     add_choice<SamplerKind>(app, "--sampler", o.job.sampler, "owen (default), sobol, independent");
     add_choice<LightChoiceKind>(
         app, "--light-choice", o.scene.light_choice,
@@ -64,11 +65,15 @@ void add_output_options(CLI::App& app, RenderOptions& o) {
         ->required()
         ->allow_extra_args(false)  // one name each, so that the scene may follow
         ->check(complaint_about_picture_name);
-    add("--exposure", o.display.exposure_ev, "stops, for PNG and JPEG; EXR is always scene-linear")
-        ->check(number_between(-100, 100));
-    add("--view", o.display.view, "display transform of PNG and JPEG: sRGB (default), ACES, raw")
-        ->check(complaint_about_view);
-    add("--aov", o.aovs, "layers of the EXR: albedo,normal,depth,position,uv,emission,cost");
+    o.display_only = {add("--exposure", o.display.exposure_ev,
+                          "stops, for PNG and JPEG; EXR is always scene-linear")
+                          ->transform(number_between(-100, 100))};
+    for (CLI::Option* option : add_display_options(app, o.display))
+        o.display_only.push_back(option->group("Output"));
+    add("--aov", o.aovs,
+        "layers of the EXR: albedo,normal,depth,position,uv,emission,cost; may be given more than "
+        "once")
+        ->allow_extra_args(false);
     add("--stats", o.stats, "write counts and times to this JSON file");
     add_choice<ProgressStyle>(app, "--progress", o.progress,
                               {{"auto", ProgressStyle::Auto},
@@ -78,6 +83,31 @@ void add_output_options(CLI::App& app, RenderOptions& o) {
                                {"none", ProgressStyle::None}},
                               "on stderr: auto (default), bar, lines, json, none");
     app.add_flag("--quiet", o.quiet, "print nothing but errors");
+}
+
+// Checks that what was asked for has an output that takes it. Returns what to tell about it.
+std::vector<std::string> resolve_outputs(RenderOptions& o) {
+    if (o.outputs.empty()) return {};  // of a plan
+    const auto is_exr = [](const auto& path) { return picture_format(path) == PictureFormat::Exr; };
+    const bool any_exr = std::any_of(o.outputs.begin(), o.outputs.end(), is_exr);
+    const bool all_exr = std::all_of(o.outputs.begin(), o.outputs.end(), is_exr);
+    if (o.scene.spectral.bins && !any_exr)
+        throw CLI::ValidationError("--bins", "needs an output that keeps them: -o FILE.exr");
+    if (!o.aovs.empty() && !any_exr)
+        throw CLI::ValidationError("--aov", "needs an output that keeps layers: -o FILE.exr");
+    std::string idle;
+    for (const CLI::Option* option : o.display_only)
+        if (all_exr && option->count() > 0) idle += (idle.empty() ? "" : ", ") + option->get_name();
+    std::vector<std::string> remarks;
+    if (!idle.empty())
+        remarks.push_back(fmt::format(
+            "warning: {}: without effect, as EXR keeps the light; add -o FILE.png, or show the "
+            "EXR later by petzval image view",
+            idle));
+    if (!all_exr || !idle.empty())
+        if (const std::string told = resolve_display(o.display); !told.empty())
+            remarks.push_back(told);
+    return remarks;
 }
 
 void resolve_job(RenderOptions& o) {
@@ -112,10 +142,10 @@ void add_light_options(CLI::App& app, SceneRequest& s, std::string& background) 
     };
     auto* env = add("--env", s.environment, "equirectangular environment picture, .hdr or .exr");
     add("--env-rotate", s.environment_rotate_deg, "degrees about +y, counter-clockwise from above")
-        ->check(number_between(-kMost, kMost))
+        ->transform(number_between(-kMost, kMost, kDegrees))
         ->needs(env);
     add("--env-strength", s.environment_strength, "factor on the environment")
-        ->check(number_between(0, kMost))
+        ->transform(number_between(0, kMost))
         ->needs(env);
     add("--background", background,
         "R,G,B in nits: a uniform environment; with --env only what the camera sees behind");
@@ -151,18 +181,15 @@ RenderFrame resolve(RenderOptions& o) {
     s.size = parse_size("--size", o.size);
     resolve(o.spectral);
     s.spectral = o.spectral.request;
-    const auto is_exr = [](const auto& path) { return picture_format(path) == PictureFormat::Exr; };
-    if (s.spectral.bins && !o.outputs.empty() &&
-        std::none_of(o.outputs.begin(), o.outputs.end(), is_exr))
-        throw CLI::ValidationError("--bins", "needs an output that keeps them: -o FILE.exr");
     s.camera = resolve(o.camera, s.size);
     resolve_job(o);
     resolve_background(o.background, s);
     if (o.stats && std::find(o.outputs.begin(), o.outputs.end(), *o.stats) != o.outputs.end())
         throw CLI::ValidationError("--stats", "would overwrite the picture");
-    RenderFrame frame{{0, 0, s.size.x, s.size.y}, {}, parse_share("--tolerance", o.tolerance)};
+    RenderFrame frame{{0, 0, s.size.x, s.size.y}, {}, parse_share("--tolerance", o.tolerance), {}};
     if (!o.crop.empty()) frame.crop = parse_crop("--crop", o.crop, s.size);
     if (!o.aovs.empty()) frame.aovs = parse_aovs("--aov", o.aovs);
+    frame.remarks = resolve_outputs(o);
     require_memory(frame, s.spectral.bins);
     return frame;
 }

@@ -19,7 +19,8 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace petzval {
 
@@ -33,7 +34,8 @@ struct RenderOptions {
     CameraOptions camera;
     std::vector<std::filesystem::path> outputs;
     std::optional<std::filesystem::path> stats;
-    std::string size = "1280x720", crop, time, background, aovs, tolerance = "1%";
+    std::string size = "1280x720", crop, time, background, tolerance = "1%";
+    std::vector<std::string> aovs;  ///< lists of names
     std::optional<uint32_t> spp;
     int threads = 0;  ///< 0: one for each core
     RenderJob job;
@@ -41,6 +43,7 @@ struct RenderOptions {
     FilterKind filter = FilterKind::BlackmanHarris;
     float filter_radius_px = 0;
     DisplayOptions display;
+    std::vector<const CLI::Option*> display_only;  ///< options that an EXR takes no notice of
     ProgressStyle progress = ProgressStyle::Auto;
     bool quiet = false;
 };
@@ -50,6 +53,7 @@ struct RenderFrame {
     Rect crop;
     std::vector<Aov> aovs;
     double tolerance = 0;
+    std::vector<std::string> remarks;  ///< to be told
 };
 
 /// Declares the options; they write to the struct, which must outlive the parsing.

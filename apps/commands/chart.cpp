@@ -2,6 +2,7 @@
 #include "apps/commands/chart.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <limits>
@@ -16,6 +17,7 @@
 #include "apps/cli/render_options.h"
 #include "apps/cli/spectral_options.h"
 #include "apps/stability/stability.h"
+#include "io/base/nearest.h"
 
 namespace petzval {
 namespace {
@@ -34,10 +36,15 @@ struct ChartOptions {
 
 constexpr const char* kStability = "stability";
 
+std::vector<std::string> axis_words() {
+    std::vector<std::string> words;
+    for (const auto& [word, axis] : chart_axes()) words.push_back(word);
+    words.insert(words.end(), {"all", kStability});
+    return words;
+}
+
 std::string known_axes() {
-    std::string known;
-    for (const auto& [word, axis] : chart_axes()) known += word + ", ";
-    return known + "all or " + kStability;
+    return fmt::format("{}", fmt::join(axis_words(), ", "));
 }
 
 void add_chart_options(CLI::App& app, ChartOptions& o) {
@@ -51,17 +58,17 @@ void add_chart_options(CLI::App& app, ChartOptions& o) {
         ->allow_extra_args(false);
     app.add_option("-o,--output", r.subject.folder,
                    "folder of the report; made if need be (--axis stability: default .)");
-    app.add_option("--budget", o.budget, "time for all of it: 60s, 10m (default), 1h");
+    app.add_option("--budget", o.budget, "time for all of it: 60s, 10m (default), 1h30m");
     app.add_option("--size", o.size, "WIDTHxHEIGHT in pixels (default 192x108)");
     app.add_option("--crop", o.crop, "x,y,width,height: only these pixels of the full frame");
     app.add_option("--reference", r.reference,
                    "EXR of the same frame, in place of references that are rendered");
     app.add_option("--seeds", r.frame.seeds, "renders of each method (default 5)")
-        ->check(whole_number_between(kChartSeeds, 1000));
+        ->transform(whole_number_between(kChartSeeds, 1000));
     app.add_option("--exposure", r.frame.exposure_ev, "stops, of pictures and of FLIP")
-        ->check(number_between(-100, 100));
+        ->transform(number_between(-100, 100));
     app.add_option("--threads", o.threads, "default: one for each core")
-        ->check(whole_number_between(1, 1024));
+        ->transform(whole_number_between(1, 1024));
     app.add_flag("--quiet", o.quiet, "print nothing but errors");
     add_camera_options(app, o.camera);
     add_light_options(app, r.subject.request, o.background);
@@ -80,7 +87,8 @@ std::vector<ChartAxis> parse_axes(const std::vector<std::string>& words) {
         const auto named = [&](const auto& known) { return known.first == word; };
         if (word != "all" && std::none_of(chart_axes().begin(), chart_axes().end(), named))
             throw CLI::ValidationError("--axis",
-                                       fmt::format("\"{}\" is none of {}", word, known_axes()));
+                                       fmt::format("\"{}\" is none of {}{}", word, known_axes(),
+                                                   did_you_mean(word, axis_words())));
     }
     return axes;
 }

@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <limits>
 #include <memory>
 #include <optional>
 
+#include "apps/cli/console.h"
+#include "apps/cli/display_options.h"
 #include "apps/cli/output_checks.h"
 #include "apps/cli/parse.h"
 #include "io/base/error.h"
@@ -58,7 +61,7 @@ void add_diff(CLI::App& image) {
     diff->add_option("b", options->b, "reference of the same size and channels")->required();
     diff->add_option("--fail-above", options->fail_above,
                      "exit with 1 if the RMSE of any layer is above this")
-        ->check(CLI::NonNegativeNumber);
+        ->transform(number_between(0, std::numeric_limits<float>::max()));
     diff->footer(
         fmt::format("relative MSE is the mean of (a - b)^2 / (b^2 + {}); the peak of PSNR "
                     "is the largest value of b.",
@@ -78,11 +81,19 @@ void add_view(CLI::App& image) {
         ->required()
         ->check(complaint_about_display_name);
     view->add_option("--exposure", options->display.exposure_ev, "stops of 2, default 0")
-        ->check(CLI::Range(-100.0, 100.0));
-    view->add_option("--view", options->display.view, "display transform, default sRGB")
-        ->check(complaint_about_view);
-    view->callback(
-        [options] { write_output(options->out, read_picture(options->in), options->display); });
+        ->transform(number_between(-100, 100));
+    add_display_options(*view, options->display);
+    view->callback([options] {
+        if (const std::string told = resolve_display(options->display); !told.empty())
+            print_notice(NoticeStyle::Text, told);
+        const Picture picture = read_picture(options->in);
+        if (picture.for_display)
+            print_notice(NoticeStyle::Text,
+                         fmt::format("warning: {} holds values for a display already, and goes "
+                                     "through the view as if they were light",
+                                     options->in));
+        write_output(options->out, picture, options->display);
+    });
 }
 
 struct SpectrumOptions {

@@ -266,7 +266,7 @@ void add_lens_analysis_commands(CLI::App& lens) {
         "lowers it further. Tangential: contrast of lines that lie across the field.");
     lens.get_subcommand("mtf")
         ->add_option("--cycles", mtf->most_cycles, "highest frequency, cycles per mm, default 100")
-        ->check(number_between(1e-3, 1e5));
+        ->transform(number_between(1e-3, 1e5));
     add_analysis(lens, "distortion", "heights on the film against f tan(field)", true,
                  distortion_analysis,
                  "Of the ray through the middle of the stop, line d; f is the paraxial focal "
@@ -279,7 +279,7 @@ void add_lens_analysis_commands(CLI::App& lens) {
     lens.get_subcommand("vignetting")
         ->add_option("--image-circle", vignetting->image_circle_mm,
                      "its diameter in mm (default: what the lens's file states)")
-        ->check(number_between(1e-3, 1e5));
+        ->transform(number_between(1e-3, 1e5, kMillimetres));
 }
 
 }  // namespace petzval

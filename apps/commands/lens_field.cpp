@@ -16,16 +16,10 @@ namespace {
 
 constexpr double kWidest_deg = 120, kWidestNear_deg = 85;
 
-double number_of(const std::string& option, const std::string& text, double least, double most) {
-    if (const std::string wrong = number_between(least, most)(text); !wrong.empty())
-        throw CLI::ValidationError(option, wrong);
-    return std::stod(text);
-}
-
 std::vector<double> parse_fields(const std::string& text, double widest_deg) {
     std::vector<double> out;
-    for (const std::string& part : CLI::detail::split(text, ','))
-        out.push_back(number_of("--field", part, 0, widest_deg));
+    for (const std::string_view part : split(text, ','))
+        out.push_back(parse_number("--field", std::string(part), 0, widest_deg, kDegrees));
     return out;
 }
 
@@ -52,8 +46,9 @@ void add_field_request(CLI::App& app, FieldRequest& request, bool with_fields) {
                        "angles from the axis in degrees, as 0,10,14 (default: parts of the lens's "
                        "half field)");
     app.add_option("--focus", request.focus,
-                   "metres (1.5 or 1.5m) from the entrance pupil of the lens in focus to the plane "
-                   "of focus, where the object lies, or infinity; the whole lens moves, or the "
+                   "distance (1.5m, 30cm, 5ft; 1.5 is metres) from the entrance pupil of the lens "
+                   "in focus to the plane of focus, where the object lies, or infinity; the whole "
+                   "lens moves, or the "
                    "group that its file names (default: a distant object, and the lens as filed)");
     add_choice<std::optional<FocusBy>>(
         app, "--focus-by", request.focus_by,
@@ -98,7 +93,7 @@ FieldSetup set_up(const FieldRequest& request, const std::vector<double>& shares
                                 "no ray along the axis reaches the film; give --film-shift in mm");
         out.film_mm += *shift;
     } else if (!request.film_shift.empty())
-        out.film_mm += number_of("--film-shift", request.film_shift, -1e4, 1e4);
+        out.film_mm += parse_number("--film-shift", request.film_shift, -1e4, 1e4, kMillimetres);
     return out;
 }
 

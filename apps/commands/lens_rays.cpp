@@ -97,7 +97,7 @@ void add_lens_trace_commands(CLI::App& lens) {
     add_field_request(*draw, drawn->field);
     draw->add_option("-o,--output", drawn->out, "drawing to write, .svg")->required();
     draw->add_option("--rays", drawn->rays, "of each field and line, default 5")
-        ->check(whole_number_between(1, 101));
+        ->transform(whole_number_between(1, 101));
     draw->callback([drawn] { draw_command(*drawn); });
 
     auto options = std::make_shared<TraceOptions>();

@@ -216,7 +216,7 @@ void add_lens_table_commands(CLI::App& lens) {
     check
         ->add_option("--fail-above", options->fail_above_percent,
                      "exit with 1 if a stated figure is further off than this, in per cent")
-        ->check(number_between(0, 1e6));
+        ->transform(number_between(0, 1e6));
     check->footer(
         "Pupils and foci count from the vertex on their side of the lens. Seidel sums "
         "are Welford's, for a distant object and half fields of 60° at most.");

@@ -43,7 +43,7 @@ std::string command_of(const CLI::App& app, const Plan& plan) {
         if (option->count() == 0 || placed.contains(name)) continue;
         const bool flag = option->get_expected_max() == 0, positional = option->get_positional();
         if (flag) command += " " + name;
-        for (const std::string& value : option->results())
+        for (const std::string& value : option->reduced_results())
             if (!flag) command += (positional ? "" : " " + name) + " " + quoted(value);
     }
     for (const auto& [name, value] : options)

@@ -71,6 +71,7 @@ int render_command(RenderOptions& o) {
     flush_denormals();
     TbbExecutor executor(o.threads);
     const Notice notice = notice_to_stderr(o);
+    for (const std::string& remark : frame.remarks) notice(remark);
     const RenderSetup setup = set_up(o, frame.tolerance, executor, notice);
     const PreparedScene& prepared = setup.prepared;
     o.path.visible_background = setup.view.visible_background;

@@ -10,6 +10,7 @@
 
 #include "io/base/error.h"
 #include "io/base/json_parse.h"
+#include "io/base/nearest.h"
 #include "io/glass/catalogue.h"
 #include "io/glass/glass_lookup.h"
 
@@ -26,13 +27,19 @@ const GltfCamera& find_camera(const std::string& wanted, const std::string& scen
         if (camera.name == wanted) return camera;
     if (error == std::errc() && end == wanted.data() + wanted.size() && index < cameras.size())
         return cameras[index];
+    constexpr size_t most = 20;  // fit one message
     std::string known;
-    for (size_t i = 0; i < cameras.size(); ++i)
-        known += fmt::format("{}{} \"{}\"", i ? ", " : "", i, printable(cameras[i].name));
+    std::vector<std::string> names;
+    for (size_t i = 0; i < cameras.size(); ++i) {
+        names.push_back(printable(cameras[i].name));
+        if (i < most) known += fmt::format("{}{} \"{}\"", i ? ", " : "", i, names.back());
+    }
+    if (cameras.size() > most) known += fmt::format(" and {} more", cameras.size() - most);
     throw ArgumentError(
         scene, "",
-        fmt::format("no camera \"{}\"; {}", wanted,
-                    known.empty() ? "the file has none, use --look-at" : "it has " + known));
+        fmt::format("no camera \"{}\"; {}{}", wanted,
+                    known.empty() ? "the file has none, use --look-at" : "it has " + known,
+                    did_you_mean(wanted, names)));
 }
 
 // Path of a file that a scene names: it lies beside the scene.

@@ -10,6 +10,7 @@
 
 #include "io/base/ascii.h"
 #include "io/base/error.h"
+#include "io/base/nearest.h"
 #include "io/image/picture.h"
 
 namespace petzval {
@@ -39,7 +40,8 @@ int count_of(double value) {
     return value >= 0 && value <= 1e6 && value == std::floor(value) ? static_cast<int>(value) : -1;
 }
 
-std::optional<ApertureShape> built_in(const std::string& text) {
+std::optional<ApertureShape> built_in(const std::string& as_typed) {
+    const std::string text = lower(as_typed);
     if (text == "circle") return Disk();
     if (text == "square") return square();
     if (text == "triangle") return regular_polygon(3);
@@ -67,7 +69,11 @@ ApertureShape parse_aperture(const std::string& text, const fs::path& folder) {
     const std::string ending = lower(path.extension().string());
     std::error_code none;
     if (ending.empty() || !fs::exists(path, none))
-        throw ArgumentError(text, "", fmt::format("is neither a file nor a shape; {}", kPossible));
+        throw ArgumentError(text, "",
+                            fmt::format("is neither a file nor a shape; {}{}", kPossible,
+                                        did_you_mean(text.substr(0, text.find(':')),
+                                                     {"circle", "square", "triangle", "rhomboid",
+                                                      "frame", "star", "polygon"})));
     if (ending == ".svg") return read_svg_aperture(path);
     return read_mask_aperture(path);
 }

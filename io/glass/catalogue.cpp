@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <numeric>
 #include <span>
 #include <string_view>
 #include <tuple>
@@ -12,6 +11,7 @@
 #include "io/base/assets.h"
 #include "io/base/csv.h"
 #include "io/base/error.h"
+#include "io/base/nearest.h"
 
 namespace petzval {
 namespace {
@@ -67,22 +67,6 @@ CsvText read_catalog() {
         throw InputError(catalog.file, "",
                          "is not a catalogue; install Petzval again with cmake --install");
     return catalog;
-}
-
-// Edit distance: letters to insert, leave out or replace. Levenshtein 1966, "Binary Codes Capable
-// of Correcting Deletions, Insertions, and Reversals".
-size_t edit_distance(std::string_view a, std::string_view b) {
-    std::vector<size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), 0);
-    for (const char letter : a) {
-        size_t diagonal = row[0]++;
-        for (size_t j = 0; j < b.size(); ++j) {
-            const size_t replaced = diagonal + (letter != b[j]);
-            diagonal = row[j + 1];
-            row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
-        }
-    }
-    return row.back();
 }
 
 }  // namespace

@@ -97,6 +97,12 @@ std::string only_in(const std::vector<std::string>& a, const std::vector<std::st
 
 std::string why_not_comparable(const Picture& a, const Picture& b) {
     if (frame(a) != frame(b)) return fmt::format("{} against {}", frame(a), frame(b));
+    if (a.for_display != b.for_display)
+        return fmt::format(
+            "the {0} holds values for a display, the {1} light; make a picture for a display of "
+            "the "
+            "{1} too, by petzval image view",
+            a.for_display ? "former" : "latter", a.for_display ? "latter" : "former");
     std::string why = why_not_the_same_wavelengths(a, b);
     if (!why.empty()) return why;
     const auto in_a = sorted(a.channels), in_b = sorted(b.channels);

@@ -32,7 +32,8 @@ struct LayerDifference {
     int max_x = 0, max_y = 0;  ///< of this pixel of the full frame
 };
 
-/// Reason why two pictures cannot be compared (size, crop, wavelengths, channels by name), where a
+/// Reason why two pictures cannot be compared (size, crop, light or display values, wavelengths,
+/// channels by name), where a
 /// is called the former, b the latter; empty where they can.
 [[nodiscard]] std::string why_not_comparable(const Picture& a, const Picture& b);
 /// Differences of a from the reference b, layer by layer in b's order. The pictures must be

@@ -8,7 +8,8 @@
 namespace petzval {
 
 void check_output(const std::filesystem::path& path, const DisplayOptions& display) {
-    if (picture_format(path) != PictureFormat::Exr) check_view(display.view);
+    if (picture_format(path) != PictureFormat::Exr)
+        static_cast<void>(find_view(display.view, display.config));
     check_writable(path);
 }
 
@@ -17,7 +18,9 @@ void write_output(const std::filesystem::path& path, const PictureRows& linear,
     const PictureFormat format = picture_format(path);
     if (format == PictureFormat::Exr) return write_exr(path, linear);
     const AlphaUse use = format == PictureFormat::Png ? AlphaUse::Keep : AlphaUse::OnBlack;
-    write_8bit(path, to_display(linear, display.exposure_ev, display.view, use));
+    // What display a view of another configuration is for is not known.
+    write_8bit(path, to_display(linear, display.exposure_ev, display.view, use, display.config),
+               display.config.empty());
 }
 
 std::vector<std::filesystem::path> write_partial(const std::vector<std::filesystem::path>& outputs,

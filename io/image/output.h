@@ -15,7 +15,8 @@ namespace petzval {
 /// Display settings of PNG and JPEG; EXR is always scene-linear.
 struct DisplayOptions {
     float exposure_ev = 0.f;
-    std::string view = kDefaultView;
+    std::string view = {};              ///< empty: the default one of the configuration
+    std::filesystem::path config = {};  ///< of OpenColorIO; empty: Petzval's own
 };
 
 /// Checks early, before hours of work, that write_output() can do its work. Throws what it would

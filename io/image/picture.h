@@ -27,6 +27,8 @@ struct PictureLayout {
 /// Picture with float pixels, row 0 at the top, channels interleaved, linear.
 struct Picture : PictureLayout {
     std::vector<float> pixels;
+    /// Whether a file held whole numbers, as PNG and JPEG do: values for a display, not light.
+    bool for_display = false;
 };
 
 /// A picture whose rows are made when they are asked for: those of a spectral film would not fit
@@ -55,12 +57,14 @@ enum class PictureFormat : uint8_t { Exr, Png, Jpeg };
 /// Picture format by the ending of the name (.exr, .png, .jpg, .jpeg). Throws InputError for any
 /// other.
 [[nodiscard]] PictureFormat picture_format(const std::filesystem::path&);
-/// Writes a 32-bit float EXR with every channel and all metadata. Equal pictures give equal files:
-/// there is no date in them. Throws InputError where it cannot be written.
+/// Writes a 32-bit float EXR with every channel, all metadata, and the chromaticities of R, G and
+/// B, which are those of Rec. 709 with a D65 white in every picture of this program. Equal pictures
+/// give equal files: there is no date in them. Throws InputError where it cannot be written.
 void write_exr(const std::filesystem::path&, const PictureRows&);
 /// Writes an 8-bit PNG or JPEG of display-encoded R, G, B in [0, 1] (and, in PNG, unassociated A if
-/// there is one); of a crop just the crop. Throws InputError where it cannot be written.
-void write_8bit(const std::filesystem::path&, const PictureRows& encoded);
+/// there is one); of a crop just the crop. srgb: the file says that its values are for an sRGB
+/// display. Throws InputError where it cannot be written.
+void write_8bit(const std::filesystem::path&, const PictureRows& encoded, bool srgb = true);
 
 /// Index of the channel of that name among a picture's channels; -1 where there is none.
 [[nodiscard]] int channel_index(const PictureLayout&, std::string_view name);

@@ -76,6 +76,8 @@ Picture read_picture(const std::filesystem::path& path) {
                      .channels = spec.channelnames,
                      .metadata = metadata_of(spec)},
                     {}};
+    picture.for_display =
+        !spec.format.is_floating_point() && input->format_name() != std::string_view("openexr");
     picture.pixels.resize(size_t(spec.width) * spec.height * spec.nchannels);
     const bool success =
         input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, picture.pixels.data());

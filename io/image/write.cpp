@@ -3,6 +3,7 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 
 #include "io/base/ascii.h"
@@ -32,6 +33,9 @@ class FileProxy : public OIIO::Filesystem::IOProxy {
   private:
     AtomicFile& file_;
 };
+
+/// Chromaticities x, y of red, green, blue and white: ITU-R BT.709-6, items 1.3 and 1.4.
+constexpr std::array<float, 8> kRec709{0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
 
 /// Rows that OpenEXR gets at once, to compress them by as many threads as there are.
 constexpr int kBandRows = 32;
@@ -75,6 +79,7 @@ OIIO::ImageSpec exr_spec(const PictureLayout& picture) {
     spec.full_width = picture.full_width;
     spec.full_height = picture.full_height;
     spec.channelnames = picture.channels;
+    spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), kRec709.data());
     spec.attribute("DateTime", "");  // else the time of writing goes in
     for (const auto& [name, value] : picture.metadata)
         std::visit([&, &key = name](const auto& v) { spec.attribute(key, v); }, value);
@@ -118,7 +123,7 @@ void write_exr(const std::filesystem::path& path, const PictureRows& picture) {
     encode<float>(path, "exr", exr_spec(picture.layout), picture.row);
 }
 
-void write_8bit(const std::filesystem::path& path, const PictureRows& encoded) {
+void write_8bit(const std::filesystem::path& path, const PictureRows& encoded, bool srgb) {
     const PictureLayout& layout = encoded.layout;
     check_shape(layout);
     const bool png = picture_format(path) == PictureFormat::Png;
@@ -129,7 +134,7 @@ void write_8bit(const std::filesystem::path& path, const PictureRows& encoded) {
     if (const int alpha = channel_index(layout, "A"); png && alpha >= 0) from.push_back(alpha);
 
     OIIO::ImageSpec spec(layout.width, layout.height, int(from.size()), OIIO::TypeDesc::UINT8);
-    spec.attribute("oiio:ColorSpace", "sRGB");
+    if (srgb) spec.attribute("oiio:ColorSpace", "sRGB");
     spec.attribute("oiio:UnassociatedAlpha", 1);
     spec.attribute("CompressionQuality", 95);
     spec.attribute("jpeg:subsampling", "4:4:4");  // small coloured lights keep their colour

@@ -11,6 +11,7 @@
 #include "io/base/ascii.h"
 #include "io/base/assets.h"
 #include "io/base/error.h"
+#include "io/base/nearest.h"
 #include "io/base/text_lines.h"
 #include "io/lens/lens_formats.h"
 
@@ -36,9 +37,9 @@ fs::path find_file(const std::string& name_or_file) {
     }
     std::error_code none;
     if (!fs::exists(name_or_file, none))
-        throw ArgumentError(
-            name_or_file, "",
-            fmt::format("is neither a file nor a lens; the lenses are {}", fmt::join(names, ", ")));
+        throw ArgumentError(name_or_file, "",
+                            "is neither a file nor a lens" +
+                                did_you_mean_or("the lenses are", name_or_file, names));
     return name_or_file;
 }
 

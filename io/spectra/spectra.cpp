@@ -15,6 +15,7 @@
 #include "io/base/assets.h"
 #include "io/base/csv.h"
 #include "io/base/error.h"
+#include "io/base/nearest.h"
 
 namespace petzval {
 namespace {
@@ -41,7 +42,8 @@ fs::path shipped_or_file(Names names, const std::string& name_or_file) {
     if (!fs::exists(name_or_file, none))
         throw ArgumentError(
             name_or_file, "",
-            fmt::format("is neither a file nor a name; the names are {}", fmt::join(names, ", ")));
+            fmt::format("is neither a file nor a name; the names are {}{}", fmt::join(names, ", "),
+                        did_you_mean(name_or_file, {names.begin(), names.end()})));
     return name_or_file;
 }
 

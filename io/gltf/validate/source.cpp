@@ -7,6 +7,7 @@
 #include "io/gltf/validate/budget.h"
 #include "io/gltf/validate/check.h"
 #include "io/gltf/validate/files.h"
+#include "io/gltf/validate/foreign.h"
 #include "io/gltf/validate/glb.h"
 
 namespace petzval {
@@ -28,6 +29,8 @@ void check_scene_graph(GltfCheck& check) {
 
 GltfSource read_gltf_source(const std::filesystem::path& path) {
     const std::string name = path.string();
+    const std::string foreign = foreign_scene_advice(path);
+    if (!foreign.empty()) throw InputError(name, "", foreign);
     const FileBytes file = read_file(path);
     if (!file.error.empty()) throw InputError(name, "", file.error);
 

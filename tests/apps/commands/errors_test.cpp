@@ -21,7 +21,7 @@ TEST_F(CliErrors, NumbersThatAreNone) {
                        {{"--fstop", "nan"}, "--fstop: \"nan\""},
                        {{"--lens-radius", "inf"}, "--lens-radius: \"inf\""},
                        {{"--focal-length", "-50"}, "--focal-length: \"-50\""},
-                       {{"--filter-radius", "1px"}, "--filter-radius: \"1px\""},
+                       {{"--filter-radius", "1mm"}, "--filter-radius: \"1mm\""},
                        {{"--exposure", "nan"}, "--exposure: \"nan\""},
                        {{"--time", "0"}, "--time: \"0\""},
                        {{"--time", "10d"}, "--time: \"10d\""}});
@@ -64,9 +64,9 @@ TEST_F(CliErrors, OptionsThatDoNotGoTogether) {
 }
 
 TEST_F(CliErrors, CommandLinesThatSayTooLittle) {
-    EXPECT_NE(error_of({}, 2).find("subcommand"), std::string::npos);
-    EXPECT_NE(error_of({"paint"}, 2).find("subcommand"), std::string::npos);
-    EXPECT_NE(error_of({"image"}, 2).find("subcommand"), std::string::npos);
+    EXPECT_NE(error_of({}, 2).find("needs a command"), std::string::npos);
+    EXPECT_NE(error_of({"paint"}, 2).find("no command"), std::string::npos);
+    EXPECT_NE(error_of({"image"}, 2).find("needs a command"), std::string::npos);
     EXPECT_NE(error_of({"info"}, 2).find("scene"), std::string::npos);
     EXPECT_NE(error_of({"render", scene_}, 2).find("--output"), std::string::npos);
     EXPECT_NE(error_of({"render", "-o", path("out.exr")}, 2).find("scene"), std::string::npos);

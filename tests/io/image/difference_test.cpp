@@ -80,5 +80,31 @@ TEST(ImageDiff, RefusesPicturesOfAnotherKind) {
     EXPECT_EQ(compare_files(folder / "a.exr", folder / "a.exr").at(0).rmse, 0.);
 }
 
+TEST(ImageDiff, DisplayValuesAreNotComparedWithLight) {
+    const Picture p = noise(4, 3, {"R", "G", "B"});
+    const test::TemporaryFolder folder;
+    write_exr(folder / "light.exr", p);
+    write_8bit(folder / "shown.png", p);
+    write_8bit(folder / "shown.jpg", p);
+    const auto complaint = [&](const char* a, const char* b) -> std::string {
+        try {
+            static_cast<void>(compare_files(folder / a, folder / b));
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    for (const char* shown : {"shown.png", "shown.jpg"}) {
+        EXPECT_NE(complaint(shown, "light.exr")
+                      .find("the former holds values for a display, the latter light; make a "
+                            "picture for a display of the latter too, by petzval image view"),
+                  std::string::npos)
+            << complaint(shown, "light.exr");
+        EXPECT_NE(complaint("light.exr", shown).find("the latter holds values for a display"),
+                  std::string::npos);
+    }
+    EXPECT_EQ(complaint("shown.png", "shown.jpg"), "");
+}
+
 }  // namespace
 }  // namespace petzval

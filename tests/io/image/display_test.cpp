@@ -4,12 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <fstream>
 
 #include "core/spectrum/colour.h"
 #include "io/base/assets.h"
 #include "io/base/error.h"
+#include "tests/support/ocio_config.h"
 #include "tests/support/pictures.h"
+#include "tests/support/temporary_folder.h"
 
 namespace petzval {
 namespace {
@@ -42,8 +46,9 @@ TEST(Display, NamesTheViewsWhereOneIsUnknown) {
                   std::string::npos)
             << error.what();
     }
-    EXPECT_THROW(check_view(""), InputError);
-    EXPECT_NO_THROW(check_view("ACES"));
+    EXPECT_EQ(find_view(""), kDefaultView);
+    EXPECT_EQ(find_view("aces"), "ACES");
+    EXPECT_EQ(find_view("srgb display/RAW"), "raw");
 }
 
 // OpenColorIO makes the line and the power meet without a kink, the standard's rounded 12.92 does
@@ -119,6 +124,75 @@ TEST(Display, ShowsGreyAndRefusesWhatHasNoColour) {
     EXPECT_EQ(grey.pixels, (std::vector<float>{0.3f, 0.3f, 0.3f}));
     EXPECT_THROW((void)to_display(picture(1, 1, {"depth.Z"}), 0.f, "raw", AlphaUse::Keep),
                  InputError);
+}
+
+class ForeignConfig : public ::testing::Test {
+  protected:
+    test::TemporaryFolder folder_;
+    std::filesystem::path config(const std::string& text, const char* name = "config.ocio") const {
+        std::ofstream(folder_ / name) << text;
+        return folder_ / name;
+    }
+    static std::vector<float> red(const std::string& view, const std::filesystem::path& by) {
+        const Picture p = picture(1, 1, {"R", "G", "B"}, {2.f, 0.f, 0.f});
+        return held(to_display(p, -1.f, view, AlphaUse::Keep, by)).pixels;
+    }
+    static std::string complaint(const std::string& view, const std::filesystem::path& by) {
+        try {
+            static_cast<void>(find_view(view, by));
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "";
+    }
+};
+
+TEST_F(ForeignConfig, ListsAndFindsItsViews) {
+    const auto aces = config(test::aces_config());
+    EXPECT_EQ(display_views(aces),
+              (std::vector<std::string>{"Rec709", "Working", "Numbers", "Cinema/Half"}));
+    EXPECT_EQ(find_view("", aces), "Rec709");
+    EXPECT_EQ(find_view("working", aces), "Working");
+    EXPECT_EQ(find_view("Monitor/Working", aces), "Working");
+    EXPECT_EQ(find_view("half", aces), "Cinema/Half");
+    EXPECT_NE(complaint("Numbres", aces)
+                  .find("there are Rec709, Working, Numbers, Cinema/Half; did you mean Numbers?"),
+              std::string::npos)
+        << complaint("Numbres", aces);
+}
+
+// Columns of the matrix from Rec. 709 to ACEScg as ACES publishes it: the light is converted into
+// the configuration's own space, and not taken for it.
+TEST_F(ForeignConfig, LightIsConvertedFromRec709) {
+    const std::array<float, 3> red_in_acescg{0.613097f, 0.070194f, 0.020616f};
+    const std::string own =
+        "  - !<ColorSpace>\n    name: Own\n    to_scene_reference: !<GroupTransform>\n      "
+        "children:\n"
+        "        - !<BuiltinTransform> {style: UTILITY - ACES-AP1_to_LINEAR-REC709_BFD, direction: "
+        "inverse}\n        - !<BuiltinTransform> {style: ACEScg_to_ACES2065-1}\n";
+    for (const auto& by : {config(test::aces_config(), "interchange.ocio"),
+                           config(test::aces_config("", test::kNamedRec709), "alias.ocio"),
+                           config(test::aces_config("  lin_rec709: Own\n", own), "role.ocio")}) {
+        const auto working = red("Working", by), back = red("Rec709", by), half = red("Half", by);
+        for (size_t i = 0; i < 3; ++i) {
+            EXPECT_NEAR(working[i], red_in_acescg[i], 1e-4f) << i;
+            EXPECT_NEAR(back[i], i == 0 ? 1.f : 0.f, 1e-4f) << i;
+        }
+        EXPECT_NEAR(half[0], 0.439633f / 2, 1e-4f);
+        EXPECT_EQ(red("Numbers", by), (std::vector<float>{1, 0, 0})) << "data are not converted";
+    }
+}
+
+TEST_F(ForeignConfig, RefusesWhatDoesNotSayWhereItsColoursAre) {
+    const std::string why = complaint("", config(test::aces_config("")));
+    EXPECT_NE(why.find("config.ocio: does not say which of its colour spaces is linear Rec. 709"),
+              std::string::npos)
+        << why;
+    EXPECT_NE(why.find("lin_rec709"), std::string::npos) << why;
+    EXPECT_NE(complaint("", config("nonsense")).find("config.ocio: cannot be used: "),
+              std::string::npos);
+    EXPECT_NE(complaint("", folder_ / "none.ocio").find("none.ocio: cannot be used: "),
+              std::string::npos);
 }
 
 TEST(Assets, AreFoundInTheSourceTreeOrNamed) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -209,6 +210,22 @@ TEST(Exr, EqualPicturesAreEqualFilesWithoutADate) {
     for (const auto& [name, value] : read_picture(folder / "a.exr").metadata) {
         EXPECT_NE(name, "HostComputer");
         EXPECT_TRUE(name != "DateTime" || std::get<std::string>(value).empty());
+    }
+}
+
+// The attribute as OpenEXR's file layout has it: name, type, size, then x and y of red, green, blue
+// and white.
+TEST(Exr, EveryPictureSaysWhichColoursItsNumbersAre) {
+    const TemporaryFolder folder;
+    const std::array<float, 8> rec709{0.64f, 0.33f, 0.3f, 0.6f, 0.15f, 0.06f, 0.3127f, 0.329f};
+    std::string wanted("chromaticities\0chromaticities\0\x20\0\0\0", 34);
+    wanted.append(reinterpret_cast<const char*>(rec709.data()), sizeof rec709);
+    for (const Picture& p : {layered_crop(), noise(2, 2, {"R", "G", "B", "S0.385,0nm"}),
+                             noise(2, 2, {"Y"}), noise(2, 2, {"depth.Z"})}) {
+        write_exr(folder / "a.exr", p);
+        const Bytes bytes = read_bytes(folder / "a.exr");
+        EXPECT_NE(std::string(bytes.begin(), bytes.end()).find(wanted), std::string::npos)
+            << p.channels.front();
     }
 }
 

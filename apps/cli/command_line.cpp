@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/command_line.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+
+#include "apps/cli/output_checks.h"
+#include "io/base/ascii.h"
+#include "io/base/nearest.h"
+#include "io/gltf/validate/foreign.h"
+
+namespace petzval {
+namespace {
+
+using Words = std::vector<std::string>;
+
+bool is(const CLI::ParseError& error, CLI::ExitCodes code) {
+    return error.get_exit_code() == static_cast<int>(code);
+}
+
+std::vector<const CLI::App*> commands_of(const CLI::App& app) {
+    return app.get_subcommands(std::function<bool(const CLI::App*)>());
+}
+
+// "petzval lens spot".
+std::string full_name(const CLI::App& app) {
+    return (app.get_parent() ? full_name(*app.get_parent()) + " " : "") + app.get_name();
+}
+
+bool is_option(const std::string& word) {
+    return word.size() > 1 && word[0] == '-' && word != "--";
+}
+
+std::string without_value(const std::string& option) {
+    return option.substr(0, option.find('='));
+}
+
+Words option_names(const CLI::App& app) {
+    Words names;
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    return names;
+}
+
+// Commands, anywhere below one, that take an option.
+Words takers(const CLI::App& app, const std::string& option) {
+    Words found;
+    for (const CLI::App* command : commands_of(app)) {
+        if (command->get_option_no_throw(option)) found.push_back(full_name(*command));
+        const Words below = takers(*command, option);
+        found.insert(found.end(), below.begin(), below.end());
+    }
+    return found;
+}
+
+const CLI::App& root_of(const CLI::App& app) {
+    return app.get_parent() ? root_of(*app.get_parent()) : app;
+}
+
+std::string unknown_option(const CLI::App& app, const std::string& option, const Spelling& line) {
+    std::string typed = option;
+    for (const auto& [before, now] : line.renamed)
+        if (now == option) typed = before;
+    const std::string what = fmt::format("{} is no option of {}", typed, full_name(app));
+    // One dash too few, as in -spp, is a slip as well.
+    const std::string dashed = option.starts_with("--") ? option : "-" + option;
+    const std::string near = did_you_mean(dashed, option_names(app));
+    if (!near.empty()) return what + near;
+    const Words elsewhere = takers(root_of(app), option);
+    return elsewhere.empty() ? what : fmt::format("{}; {} has it", what, elsewhere.front());
+}
+
+std::string unknown_command(const CLI::App& app, const std::string& word) {
+    Words names;
+    for (const CLI::App* command : commands_of(app)) names.push_back(command->get_name());
+    const std::filesystem::path file(word);
+    const std::string ending = lower(file.extension().string());
+    if (!app.get_parent() && (ending == ".glb" || ending == ".gltf"))
+        return fmt::format(
+            "\"{0}\" is no command; to render it type {1} render {0} -o {2}.png, to see what is in "
+            "it {1} info {0}",
+            word, app.get_name(), file.stem().string());
+    const std::string foreign = foreign_scene_advice(file);
+    if (!app.get_parent() && !foreign.empty()) return word + ": " + foreign;
+    return fmt::format("\"{}\" is no command{}", word,
+                       did_you_mean_or("there are " + full_name(app), word, names));
+}
+
+std::string missing_command(const CLI::App& app) {
+    Words names;
+    for (const CLI::App* command : commands_of(app)) names.push_back(command->get_name());
+    return fmt::format("{} needs a command: {}", full_name(app), fmt::join(names, ", "));
+}
+
+// What is wrong at the last command, by the word that it did not take.
+std::string about_word(const CLI::App& command, const CLI::ParseError& error,
+                       const std::string& word) {
+    if (is(error, CLI::ExitCodes::RequiredError) && command.get_option_no_throw("--output") &&
+        complaint_about_picture_name(word).empty())
+        return fmt::format("{}; did you mean -o {}?", error.what(), word);
+    if (is(error, CLI::ExitCodes::ExtrasError))
+        return fmt::format("{} has no place for \"{}\"", full_name(command), word);
+    return "";
+}
+
+// What is wrong by the words that nothing took; empty where they do not explain it.
+std::string by_words_left(const CLI::App& app, const CLI::ParseError& error, const Spelling& line) {
+    const auto below = app.get_subcommands();
+    const Words left = app.remaining();
+    const auto plain = std::find_if_not(left.begin(), left.end(), is_option);
+    const bool wants_command = below.empty() && !commands_of(app).empty();
+    if (wants_command && plain != left.end()) return unknown_command(app, *plain);
+    for (const std::string& word : left)
+        if (is_option(word)) return unknown_option(app, without_value(word), line);
+    if (wants_command) return missing_command(app);
+    if (!below.empty()) return by_words_left(*below.front(), error, line);
+    return plain == left.end() ? "" : about_word(app, error, *plain);
+}
+
+// What was typed, where an error speaks of an option by today's name.
+std::string renamed_note(const std::string& what, const Spelling& line) {
+    std::string note;
+    for (const auto& [before, now] : line.renamed)
+        if (what.find(now) != std::string::npos && what.find(before) == std::string::npos)
+            note = fmt::format(" ({} is called {} now)", before, now);
+    return note;
+}
+
+}  // namespace
+
+void resolve_help(const CLI::App& app, Spelling& line) {
+    const CLI::App* at = &app;
+    bool asked = false;
+    for (auto word = line.words.begin(); word != line.words.end();) {
+        if (*word == "help" && !asked && !commands_of(*at).empty()) {
+            asked = true;
+            word = line.words.erase(word);
+            continue;
+        }
+        if (is_option(*word)) break;
+        const auto commands = commands_of(*at);
+        const auto named = [&](const CLI::App* command) { return command->get_name() == *word; };
+        const auto found = std::find_if(commands.begin(), commands.end(), named);
+        if (found == commands.end()) {
+            if (asked && !commands.empty())
+                throw CLI::ParseError(unknown_command(*at, *word), CLI::ExitCodes::InvalidError);
+            break;
+        }
+        at = *found;
+        ++word;
+    }
+    if (asked) line.words.emplace_back("--help");
+}
+
+std::string explanation(const CLI::App& app, const CLI::ParseError& error, const Spelling& line) {
+    if (is(error, CLI::ExitCodes::InvalidError)) return error.what();  // of resolve_help()
+    std::string what = by_words_left(app, error, line);
+    if (what.empty()) what = error.what();
+    if (is(error, CLI::ExitCodes::ArgumentMismatch))
+        what = what.substr(0, what.find(':')) + " needs a value";
+    return what + renamed_note(what, line);
+}
+
+}  // namespace petzval

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command line as a whole: help in words, and what to say where it is not understood.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "apps/cli/old_spellings.h"
+
+namespace petzval {
+
+/// Writes "petzval help render" and "petzval lens help spot" as the --help that they mean. Throws
+/// CLI::ParseError where help is wanted about what is no command.
+void resolve_help(const CLI::App&, Spelling&);
+
+/// Explanation of why words were not parsed, with what was typed and what may have been meant.
+[[nodiscard]] std::string explanation(const CLI::App&, const CLI::ParseError&, const Spelling&);
+
+}  // namespace petzval

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/quantity.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "io/base/ascii.h"
+
+namespace petzval {
+namespace {
+
+// "m (or mm, cm)", or nothing.
+std::string names_of(std::span<const Unit> units) {
+    if (units.empty()) return "";
+    std::string others;
+    for (const Unit& unit : units.subspan(1))
+        others += fmt::format("{}{}", others.empty() ? "" : ", ", unit.name);
+    return fmt::format(" {}{}", units[0].name, others.empty() ? "" : " (or " + others + ")");
+}
+
+std::string complaint(std::string_view text, double least, double most,
+                      std::span<const Unit> units) {
+    return fmt::format("\"{}\" is not a number from {:g} to {:g}{}", text, least, most,
+                       names_of(units));
+}
+
+// Digits of an f-number: f/2, F2, f:2, ƒ/2, and 1:2 as it is engraved on lenses.
+std::string_view without_f(std::string_view text) {
+    for (const std::string_view f : {"f", "F", "ƒ"}) {
+        if (!text.starts_with(f)) continue;
+        text.remove_prefix(f.size());
+        if (text.starts_with('/') || text.starts_with(':')) text.remove_prefix(1);
+        return text;
+    }
+    if (text.starts_with("1:")) text.remove_prefix(2);
+    return text;
+}
+
+}  // namespace
+
+std::string_view trimmed(std::string_view text) {
+    while (text.starts_with(' ')) text.remove_prefix(1);
+    while (text.ends_with(' ')) text.remove_suffix(1);
+    return text;
+}
+
+std::vector<std::string_view> split(std::string_view text, char at) {
+    std::vector<std::string_view> parts;
+    for (;;) {
+        const size_t end = text.find(at);
+        parts.push_back(text.substr(0, end));
+        if (end == std::string_view::npos) return parts;
+        text.remove_prefix(end + 1);
+    }
+}
+
+std::optional<double> quantity(std::string_view text, std::span<const Unit> units) {
+    text = trimmed(text);
+    if (const auto plain = number<double>(text)) return plain;
+    const std::string lowered = lower(std::string(text));
+    for (const Unit& unit : units) {
+        if (!lowered.ends_with(unit.name)) continue;
+        const auto value = number<double>(trimmed(text.substr(0, text.size() - unit.name.size())));
+        if (value) return *value * unit.times / unit.over;
+    }
+    return std::nullopt;
+}
+
+CLI::Validator number_between(double least, double most, std::span<const Unit> units) {
+    return {[=](std::string& text) -> std::string {
+                const auto value = quantity(text, units);
+                if (!value || *value < least || *value > most)
+                    return complaint(text, least, most, units);
+                if (!number<double>(text)) text = fmt::format("{}", *value);
+                return "";
+            },
+            ""};
+}
+
+CLI::Validator fnumber_between(double least, double most) {
+    return {[=](std::string& text) -> std::string {
+                const std::string_view digits = without_f(trimmed(text));
+                const auto value = number<double>(digits);
+                if (!value || *value < least || *value > most)
+                    return complaint(text, least, most, {}) + ", as 2 or f/2";
+                text = std::string(digits);
+                return "";
+            },
+            ""};
+}
+
+CLI::Validator whole_number_between(uint64_t least, uint64_t most) {
+    return {[=](std::string& text) -> std::string {
+                const auto value = number<uint64_t>(text);
+                if (!value || *value < least || *value > most)
+                    return fmt::format("\"{}\" is not a whole number from {} to {}", text, least,
+                                       most);
+                text = fmt::format("{}", *value);
+                return "";
+            },
+            ""};
+}
+
+double parse_number(const std::string& option, const std::string& text, double least, double most,
+                    std::span<const Unit> units) {
+    const auto value = quantity(text, units);
+    if (!value || *value < least || *value > most)
+        throw CLI::ValidationError(option, complaint(text, least, most, units));
+    return *value;
+}
+
+}  // namespace petzval

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// Spellings of values.
+#include "apps/cli/parse.h"
+
+#include <gtest/gtest.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+
+namespace petzval {
+namespace {
+
+float focus_m(const std::string& text) {
+    const Focus focus = parse_focus("--focus", text, {100, 80});
+    return std::get<FocusDistance>(focus).m;
+}
+
+TEST(Parse, FocusTakesUnitsAndInfinity) {
+    const std::pair<const char*, float> cases[] = {
+        {"1.5", 1.5f},   {"1.5m", 1.5f},    {"2mm", 0.002f},  {"30cm", 0.3f}, {"2km", 2000.f},
+        {"5ft", 1.524f}, {"12in", 0.3048f}, {"+1.5 m", 1.5f}, {"30CM", 0.3f}, {"1e3mm", 1.f}};
+    for (const auto& [text, m] : cases) EXPECT_EQ(focus_m(text), m) << text;
+    for (const char* text : {"infinity", "Infinity", "inf", "INF", "∞"})
+        EXPECT_TRUE(std::isinf(focus_m(text))) << text;
+    EXPECT_TRUE(std::holds_alternative<FocusAuto>(parse_focus("--focus", "Auto", {100, 80})));
+    const Focus pixel = parse_focus("--focus", "10,79", {100, 80});
+    EXPECT_EQ(std::get<FocusPixel>(pixel).y, 79);
+    for (const char* text :
+         {"", "m", "0", "-1m", "1.5 x", "1,5m", "10,80", "nan", "infinite", "1e-9", "1e9km"})
+        EXPECT_THROW((void)parse_focus("--focus", text, {100, 80}), CLI::ValidationError) << text;
+}
+
+TEST(Parse, DurationsAddUp) {
+    const std::pair<const char*, double> cases[] = {
+        {"90", 90},   {"90s", 90},       {"1.5m", 90},       {"1m30s", 90},     {"1h", 3600},
+        {"2h", 7200}, {"1h30m", 5400},   {"1h 30min", 5400}, {"1H30M5S", 5405}, {"500ms", 0.5},
+        {"1:30", 90}, {"1:02:03", 3723}, {"90:00", 5400},    {"1e3", 1000}};
+    for (const auto& [text, s] : cases) EXPECT_EQ(parse_duration_s("--time", text), s) << text;
+    for (const char* text : {"", "0", "0s", "-5", "10d", "s", "1h30", "30s1m", "1m2m", "1:60",
+                             "1:5", "1:2:3:4", "1:", "1e300", "1e300h", "inf", "1.2.3s"})
+        EXPECT_THROW((void)parse_duration_s("--time", text), CLI::ValidationError) << text;
+}
+
+TEST(Parse, SizesTakeWhateverStandsForTimes) {
+    for (const char* text : {"1920x1080", "1920X1080", "1920×1080", "1920 x 1080"})
+        EXPECT_EQ(parse_size("--size", text), V2i(1920, 1080)) << text;
+    for (const char* text : {"36x24", "36x24mm", "36mmx24mm", "3.6cmx2.4cm", "36×24"})
+        EXPECT_EQ(parse_sensor("--sensor", text, 1, 100), V2f(36, 24)) << text;
+    for (const char* text : {"1920", "0x10", "10x", "10x10x10", "1.5x2", "65537x1"})
+        EXPECT_THROW((void)parse_size("--size", text), CLI::ValidationError) << text;
+}
+
+TEST(Parse, OtherValuesTakeTheirUnits) {
+    EXPECT_EQ(parse_lengths_m("--look-at", "0,1.5m,30cm,-2mm,0,1ft", 6),
+              (std::vector<float>{0, 1.5f, 0.3f, -0.002f, 0, 0.3048f}));
+    EXPECT_THROW((void)parse_numbers("--background", "1m,1,1", 3), CLI::ValidationError);
+    for (const char* text : {"0.01", "1/100", "1/100s", "10ms", "10 ms"})
+        EXPECT_FLOAT_EQ(parse_shutter_s("--shutter", text), 0.01f) << text;
+    EXPECT_EQ(parse_share("--tolerance", "1 %"), 0.01);
+    const Bins bins = parse_bins("--bins", "380nm:730nm:10nm");
+    EXPECT_EQ(bins.count, 35);
+    EXPECT_EQ(parse_number("--film-shift", "-0.1cm", -10, 10, kMillimetres), -1);
+    EXPECT_EQ(parse_number("--field", "10°", 0, 90, kDegrees), 10);
+    EXPECT_EQ(parse_aovs("--aov", {"depth,Albedo", "depth"}),
+              (std::vector<Aov>{*aov_from_name("depth"), *aov_from_name("albedo")}));
+}
+
+// The text that a reader leaves in place of one; "refused" where it complains.
+std::string read(const CLI::Validator& reader, std::string text) {
+    return reader(text).empty() ? text : "refused";
+}
+
+TEST(Parse, ReadersLeavePlainNumbers) {
+    const CLI::Validator fnumber = fnumber_between(0.1, 100);
+    for (const char* text : {"2", "f/2", "F/2", "f2", "F2", "f:2", "ƒ/2", "1:2"})
+        EXPECT_EQ(read(fnumber, text), "2") << text;
+    for (const char* text : {"", "f", "f/", "2f", "f/0", "nan", "1:1:2"})
+        EXPECT_EQ(read(fnumber, text), "refused") << text;
+    const CLI::Validator mm = number_between(0, 1e4, kMillimetres);
+    EXPECT_EQ(read(mm, "50"), "50");
+    EXPECT_EQ(read(mm, "50mm"), "50");
+    EXPECT_EQ(read(mm, "3.5 cm"), "35");
+    EXPECT_EQ(read(mm, "2in"), "50.8");
+    EXPECT_EQ(read(mm, "11m"), "refused");
+    EXPECT_EQ(read(number_between(-360, 360, kDegrees), "-90°"), "-90");
+    // CLI11 would take a leading zero for octal.
+    EXPECT_EQ(read(whole_number_between(1, 100), "010"), "10");
+    EXPECT_EQ(read(whole_number_between(1, 100), "+7"), "7");
+    for (const char* text : {"0x10", "1e1", "1.0", "-1", "101", ""})
+        EXPECT_EQ(read(whole_number_between(1, 100), text), "refused") << text;
+}
+
+}  // namespace
+}  // namespace petzval

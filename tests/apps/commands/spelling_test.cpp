@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is typed nearly right: spellings of values, options given twice, words that nothing knows.
+#include "tests/support/cli.h"
+
+namespace petzval {
+namespace {
+
+class CliSpelling : public CliTest {
+  protected:
+    /// The error of words that are refused, without what every such line has.
+    std::string refused(const Words& words) {
+        const std::string line = error_of(words, 2),
+                          begin = "petzval: error: ", end = " (--help says more)";
+        EXPECT_TRUE(line.ends_with(end)) << line;
+        return line.substr(begin.size(), line.size() - begin.size() - end.size());
+    }
+    std::string refused_render(Words words) {
+        words.insert(words.begin(), {"render", scene_, "-o", path("out.exr")});
+        return refused(words);
+    }
+};
+
+TEST_F(CliSpelling, ValuesMeanTheSameHoweverTheyAreSpelt) {
+    const std::pair<Words, Words> pairs[] = {
+        {{"--fstop", "f/2", "--focus", "150cm"}, {"--fstop", "2", "--focus", "1.5"}},
+        {{"--fstop", "F2", "--focus", "∞"}, {"--fstop", "2", "--focus", "infinity"}},
+        {{"--lens", "Thin", "--lens-radius", "2cm", "--focal-length", "5cm", "--focus", "1"},
+         {"--lens", "thin", "--lens-radius", "0.02", "--focal-length", "50", "--focus", "1"}},
+        {{"--fov", "40°", "--size", "16X16", "--filter", "Box", "--spp", "010"},
+         {"--fov", "40", "--size", "16x16", "--filter", "box", "--spp", "10"}}};
+    for (const auto& [as_typed, usual] : pairs)
+        EXPECT_EQ(render_bytes(as_typed, "a.exr"), render_bytes(usual, "b.exr")) << as_typed[1];
+}
+
+TEST_F(CliSpelling, OfAnOptionGivenTwiceTheLastHolds) {
+    EXPECT_EQ(render_bytes({"--seed", "3", "--view", "ACES", "--spp", "2", "--seed", "1", "--spp",
+                            "4", "--filter", "gauss", "--filter", "box", "--quiet"},
+                           "a.exr"),
+              render_bytes({"--seed", "1", "--spp", "4", "--filter", "box"}, "b.exr"));
+    EXPECT_EQ(
+        render_bytes({"--chroma", "split", "--lens", "takumar-50mm-f1.2", "--focus", "1",
+                      "--dispersion", "shared"},
+                     "a.exr"),
+        render_bytes({"--lens", "takumar-50mm-f1.2", "--focus", "1", "--dispersion", "shared"},
+                     "b.exr"));
+    // What adds up still does.
+    const Picture p = render({"--aov", "depth", "--aov", "albedo,depth"});
+    EXPECT_GE(channel_index(p, "depth.Z"), 0);
+    EXPECT_GE(channel_index(p, "albedo.R"), 0);
+    // A plan's command has what holds, and only that.
+    const Finished plan = run_petzval({"plan", scene_, "--size", "8x8", "--max-depth", "3",
+                                       "--max-depth", "05", "--tolerance", "50%"});
+    EXPECT_EQ(plan.exit_code, 0) << plan.err;
+    EXPECT_NE(plan.out.find("--max-depth 5"), std::string::npos) << plan.out;
+    EXPECT_EQ(plan.out.find("--max-depth 3"), std::string::npos) << plan.out;
+}
+
+TEST_F(CliSpelling, UnknownOptionsAreNamedAsTypedAndByWhatWasMeant) {
+    EXPECT_EQ(refused_render({"--fokus", "1m"}),
+              "--fokus is no option of petzval render; did you mean --focus?");
+    EXPECT_EQ(refused_render({"--fokus=1m"}),
+              "--fokus is no option of petzval render; did you mean --focus?");
+    EXPECT_EQ(refused_render({"-spp", "4"}),
+              "-spp is no option of petzval render; did you mean --spp?");
+    EXPECT_EQ(refused_render({"--max_depth", "4"}),
+              "--max_depth is no option of petzval render; did you mean --max-depth?");
+    EXPECT_EQ(refused_render({"--xyzzy"}), "--xyzzy is no option of petzval render");
+    // Before what is missing, and before its value is taken for a scene.
+    EXPECT_EQ(refused({"render", "--fokus", "1m", scene_}),
+              "--fokus is no option of petzval render; did you mean --focus?");
+    EXPECT_EQ(refused({"info", scene_, "--spp", "4"}),
+              "--spp is no option of petzval info; petzval render has it");
+    EXPECT_EQ(refused({"--versoin"}), "--versoin is no option of petzval; did you mean --version?");
+}
+
+TEST_F(CliSpelling, OldNamesAreNamedAsTyped) {
+    EXPECT_EQ(refused({"info", scene_, "--chroma", "split"}),
+              "--chroma is no option of petzval info; petzval render has it");
+    const std::string wrong = refused_render({"--chroma", "splitt"});
+    EXPECT_NE(wrong.find("did you mean split?"), std::string::npos) << wrong;
+    EXPECT_NE(wrong.find("(--chroma is called --dispersion now)"), std::string::npos) << wrong;
+}
+
+TEST_F(CliSpelling, MisspeltCommandsAreFound) {
+    EXPECT_EQ(refused({"rende"}), "\"rende\" is no command; did you mean render?");
+    EXPECT_EQ(refused({"rende", scene_, "-o", path("a.png")}),
+              "\"rende\" is no command; did you mean render?");
+    EXPECT_EQ(refused({"lens", "shwo"}), "\"shwo\" is no command; did you mean show?");
+    EXPECT_EQ(refused({"image", "blur"}),
+              "\"blur\" is no command; there are petzval image diff, view, spectrum");
+    EXPECT_EQ(refused({}), "petzval needs a command: render, plan, chart, info, image, lens");
+    EXPECT_EQ(refused({"image"}), "petzval image needs a command: diff, view, spectrum");
+    EXPECT_EQ(refused({"studio.glb"}),
+              "\"studio.glb\" is no command; to render it type petzval render studio.glb -o "
+              "studio.png, to see what is in it petzval info studio.glb");
+    EXPECT_NE(refused({"my scene.GLTF", "-o", "a.png"}).find("to render it type"),
+              std::string::npos);
+}
+
+TEST_F(CliSpelling, WordsWithoutAPlace) {
+    EXPECT_EQ(refused({"render", scene_, path("out.png")}),
+              "--output is required; did you mean -o " + path("out.png") + "?");
+    EXPECT_EQ(refused({"info", scene_, "more"}), "petzval info has no place for \"more\"");
+    EXPECT_EQ(refused({"render", scene_, "-o", path("out.exr"), "--spp"}), "--spp needs a value");
+}
+
+TEST_F(CliSpelling, HelpIsAWordToo) {
+    const auto help = [&](const Words& words) {
+        const Finished run = run_petzval(words);
+        EXPECT_EQ(run.exit_code, 0) << run.err;
+        EXPECT_EQ(run.err, "");
+        return run.out;
+    };
+    EXPECT_EQ(help({"help"}), help({"--help"}));
+    EXPECT_EQ(help({"help"}), help({"-h"}));
+    EXPECT_NE(help({"help"}).find("render a glTF scene"), std::string::npos);
+    EXPECT_EQ(help({"help", "render"}), help({"render", "--help"}));
+    EXPECT_EQ(help({"help", "lens", "spot"}), help({"lens", "spot", "--help"}));
+    EXPECT_EQ(help({"lens", "help", "spot"}), help({"lens", "spot", "--help"}));
+    EXPECT_EQ(help({"lens", "help"}), help({"lens", "--help"}));
+    EXPECT_NE(help({"--version"}).find("petzval 0"), std::string::npos);
+    EXPECT_EQ(refused({"help", "rendr"}), "\"rendr\" is no command; did you mean render?");
+}
+
+TEST_F(CliSpelling, NearestNamesAreListed) {
+    const std::pair<Words, std::string> cases[] = {
+        {{"--lens", "takumar", "--focus", "1"},
+         "takumar: is neither a file nor a lens; did you mean takumar-50mm-f1.2?"},
+        {{"--camera", "wied"}, "did you mean wide?"},
+        {{"--view", "ACSE"}, "there are sRGB, ACES, raw; did you mean ACES?"},
+        {{"--filter", "blackman"}, "did you mean blackman-harris?"},
+        {{"--aov", "albdeo"}, "did you mean albedo?"},
+        {{"--fstop", "2", "--focus", "1", "--aperture", "squar"}, "did you mean square?"},
+        {{"--illuminant", "d56"}, "the names are d65, a, f11; did you mean d65?"},
+        {{"--lens", "singlet:schott:N-BK77", "--fstop", "4"}, "schott:N-BK7"},
+        {{"--exposure-mode", "normalized"}, "did you mean normalised?"}};
+    std::vector<Case> refusals;
+    for (const auto& [words, part] : cases) refusals.push_back({words, part});
+    expect_refused(2, refusals);
+    const std::string unknown = error_of({"lens", "show", "summicron"}, 2);
+    EXPECT_NE(unknown.find("the lenses are"), std::string::npos) << unknown;
+}
+
+TEST_F(CliSpelling, OtherFormatsOfScenesAreToldWhatIsRead) {
+    for (const char* name : {"a.usd", "b.USDZ", "c.obj", "d.fbx", "e.blend", "f.stl"}) {
+        const std::string file = text_file(name, "# something");
+        const std::string line = error_of({"render", file, "-o", path("out.exr")}, 1);
+        EXPECT_TRUE(line.starts_with("petzval: error: " + file + ": is a file of ")) << line;
+        EXPECT_NE(line.find("scenes are read as glTF 2.0"), std::string::npos) << line;
+        EXPECT_NE(line.find("File > Export"), std::string::npos) << line;
+    }
+    EXPECT_NE(error_of({"info", text_file("a.max", "x")}, 1).find("3ds Max"), std::string::npos);
+    EXPECT_NE(refused({"model.fbx"}).find("model.fbx: is a file of FBX"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace petzval

@@ -10,6 +10,7 @@
 #include "apps/setup/camera_report.h"
 #include "apps/setup/option_names.h"
 #include "core/spectrum/colour.h"
+#include "io/base/printable.h"
 #include "io/image/spectral_layout.h"
 
 namespace petzval {
@@ -129,6 +130,8 @@ PictureRows develop(const Film& film, const RenderSetup& setup, const RenderJob&
     for (const auto& [name, value] : setup.from.metadata) layout.metadata.emplace_back(name, value);
     describe_camera(setup.from.camera, layout);
     if (film.spectral()) describe_spectrum(film, layout);
+    for (auto& [name, value] : layout.metadata)
+        if (auto* text = std::get_if<std::string>(&value)) *text = visible(*text);
     return {std::move(layout), [&film, crop](int y, float* row) {
                 for (int x = crop.x0; x < crop.x1; ++x)
                     row = develop_pixel(film, x, crop.y0 + y, row);

@@ -33,7 +33,7 @@ struct RenderOptions {
     CameraOptions camera;
     std::vector<std::filesystem::path> outputs;
     std::optional<std::filesystem::path> stats;
-    std::string size = "1280x720", crop, time, background, aovs, tolerance = "1%";
+    std::string size = "1280x720", crop, time, background, aovs, tolerance = "1%", exposure = "0";
     std::optional<uint32_t> spp;
     int threads = 0;  ///< 0: one for each core
     RenderJob job;
@@ -41,6 +41,7 @@ struct RenderOptions {
     FilterKind filter = FilterKind::BlackmanHarris;
     float filter_radius_px = 0;
     DisplayOptions display;
+    bool auto_exposure = false;
     ProgressStyle progress = ProgressStyle::Auto;
     bool quiet = false;
 };

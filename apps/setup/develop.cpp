@@ -128,6 +128,8 @@ PictureRows develop(const Film& film, const RenderSetup& setup, const RenderJob&
                      {"petzval:transparent", int(options.transparent)},
                      {"petzval:luminousEfficacy_lm_per_W", kLuminousEfficacy_lm_per_w}}};
     for (const auto& [name, value] : setup.from.metadata) layout.metadata.emplace_back(name, value);
+    if (setup.from.exposure_is_auto)
+        layout.metadata.emplace_back("petzval:exposure_ev", setup.from.exposure_ev);
     describe_camera(setup.from.camera, layout);
     if (film.spectral()) describe_spectrum(film, layout);
     for (auto& [name, value] : layout.metadata)

@@ -4,6 +4,7 @@
 #include "apps/chart/chart_report.h"
 #include "apps/setup/develop.h"
 #include "io/base/error.h"
+#include "io/base/printable.h"
 #include "io/base/read_file.h"
 #include "io/base/uri.h"
 
@@ -32,7 +33,7 @@ figcaption { font-size: .85em }
 
 std::string escaped(const std::string& text) {
     std::string out;
-    for (const char c : text) {
+    for (const char c : visible(text)) {
         if (c == '&') {
             out += "&amp;";
         } else if (c == '<') {

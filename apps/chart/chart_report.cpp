@@ -237,7 +237,7 @@ void write_report(const ChartReport& report) {
                    {"budget_s", report.budget_s},
                    {"cases", std::move(cases)}};
     // Names of files need not be UTF-8.
-    const std::string json = all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    const std::string json = all.dump(2, ' ', true, Json::error_handler_t::replace) + "\n";
     write_file_atomically(folder / "points.csv", std::string_view(csv_of(report)));
     write_file_atomically(folder / "points.json", std::string_view(json));
     write_file_atomically(folder / "report.html", std::string_view(report_html(report)));

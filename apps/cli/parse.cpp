@@ -16,6 +16,7 @@ namespace petzval {
 namespace {
 
 constexpr int kLargestSide_px = 65536;
+constexpr float kMostExposure_ev = 100;
 constexpr float kNearestFocus_m = 1e-6f, kFarthestFocus_m = 1e9f;
 
 [[noreturn]] void refuse(const std::string& option, const std::string& text,
@@ -147,6 +148,16 @@ double parse_duration_s(const std::string& option, const std::string& text) {
     if (!s || !(*s > 0 && *s <= longest_s))
         refuse(option, text, "a time such as 90s, 1.5m, 1h30m or 1:30");
     return *s;
+}
+
+std::optional<float> parse_exposure_ev(const std::string& option, const std::string& text) {
+    if (text == "auto") return std::nullopt;
+    const auto value = number<float>(text);
+    if (!value || std::fabs(*value) > kMostExposure_ev)
+        refuse(option, text,
+               fmt::format("auto or a number from {0:g} to {1:g}", -kMostExposure_ev,
+                           kMostExposure_ev));
+    return value;
 }
 
 double parse_share(const std::string& option, const std::string& text) {

@@ -31,6 +31,9 @@ namespace petzval {
 /// Duration from "90", "90s", "1.5m", "1h30m", or as a clock shows it, "1:30" and "1:30:00":
 /// seconds above 0.
 [[nodiscard]] double parse_duration_s(const std::string& option, const std::string& text);
+/// Exposure in EV from "6.5": -100 to 100; nothing for "auto".
+[[nodiscard]] std::optional<float> parse_exposure_ev(const std::string& option,
+                                                     const std::string& text);
 /// Share from "1%" or "0.01": above 0, 1 at most.
 [[nodiscard]] double parse_share(const std::string& option, const std::string& text);
 /// Shutter time from "0.01", "1/100", "1/100s" or "10ms": seconds above 0.

@@ -65,9 +65,9 @@ void add_output_options(CLI::App& app, RenderOptions& o) {
         ->required()
         ->allow_extra_args(false)  // one name each, so that the scene may follow
         ->check(complaint_about_picture_name);
-    o.display_only = {add("--exposure", o.display.exposure_ev,
-                          "stops, for PNG and JPEG; EXR is always scene-linear")
-                          ->transform(number_between(-100, 100))};
+    o.display_only = {
+        add("--exposure", o.exposure,
+            "stops, for PNG and JPEG, or auto; EXR is always scene-linear (default 0)")};
     for (CLI::Option* option : add_display_options(app, o.display))
         o.display_only.push_back(option->group("Output"));
     add("--aov", o.aovs,
@@ -140,7 +140,10 @@ void add_light_options(CLI::App& app, SceneRequest& s, std::string& background) 
     const auto add = [&](const char* name, auto& value, const char* help) {
         return app.add_option(name, value, help)->group("Light");
     };
-    auto* env = add("--env", s.environment, "equirectangular environment picture, .hdr or .exr");
+    auto* env =
+        add("--env", s.environment,
+            "equirectangular environment picture, .hdr or .exr, or studio: the light that is "
+            "built in");
     add("--env-rotate", s.environment_rotate_deg, "degrees about +y, counter-clockwise from above")
         ->transform(number_between(-kMost, kMost, kDegrees))
         ->needs(env);
@@ -184,6 +187,9 @@ RenderFrame resolve(RenderOptions& o) {
     s.camera = resolve(o.camera, s.size);
     resolve_job(o);
     resolve_background(o.background, s);
+    const auto exposure_ev = parse_exposure_ev("--exposure", o.exposure);
+    o.display.exposure_ev = exposure_ev.value_or(0.f);
+    o.auto_exposure = !exposure_ev;
     if (o.stats && std::find(o.outputs.begin(), o.outputs.end(), *o.stats) != o.outputs.end())
         throw CLI::ValidationError("--stats", "would overwrite the picture");
     RenderFrame frame{{0, 0, s.size.x, s.size.y}, {}, parse_share("--tolerance", o.tolerance), {}};

@@ -34,7 +34,7 @@ struct RenderOptions {
     CameraOptions camera;
     std::vector<std::filesystem::path> outputs;
     std::optional<std::filesystem::path> stats;
-    std::string size = "1280x720", crop, time, background, tolerance = "1%";
+    std::string size = "1280x720", crop, time, background, tolerance = "1%", exposure = "0";
     std::vector<std::string> aovs;  ///< lists of names
     std::optional<uint32_t> spp;
     int threads = 0;  ///< 0: one for each core
@@ -44,6 +44,7 @@ struct RenderOptions {
     float filter_radius_px = 0;
     DisplayOptions display;
     std::vector<const CLI::Option*> display_only;  ///< options that an EXR takes no notice of
+    bool auto_exposure = false;
     ProgressStyle progress = ProgressStyle::Auto;
     bool quiet = false;
 };

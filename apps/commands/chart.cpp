@@ -115,8 +115,8 @@ void resolve(ChartOptions& o) {
 }
 
 void print_case(const MeasuredCase& of) {
-    fmt::print("{}: {}\n", of.of.name, of.of.title);
-    for (const std::string& remark : of.of.remarks) fmt::print("  {}\n", remark);
+    print_line(of.of.name + ": " + of.of.title);
+    for (const std::string& remark : of.of.remarks) print_line("  " + remark);
     if (of.reference.relative_mse)
         fmt::print("  reference: {}, {} x {} samples, relative MSE {:.2g}\n", of.of.reference.name,
                    of.reference.parts, of.reference.samples, *of.reference.relative_mse);
@@ -133,7 +133,7 @@ void print_case(const MeasuredCase& of) {
 void chart_stability(const ChartOptions& o) {
     const std::filesystem::path& folder = o.request.subject.folder;
     const auto page = write_stability(folder.empty() ? "." : folder);
-    if (!o.quiet) fmt::print("{}\n", page.string());
+    if (!o.quiet) print_line(page.string());
 }
 
 int chart_command(ChartOptions& o) {
@@ -161,7 +161,7 @@ int chart_command(ChartOptions& o) {
                    : "stopped: nothing was measured whole, and no report is written");
         return 130;
     }
-    if (!o.quiet) fmt::print("{}\n", page);
+    if (!o.quiet) print_line(page);
     return 0;
 }
 

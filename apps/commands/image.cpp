@@ -27,11 +27,12 @@ struct DiffOptions {
 };
 
 void print_layer(const LayerDifference& d) {
-    fmt::print("{}: RMSE {:.6g}, relative MSE {:.6g}, PSNR {:.2f} dB (peak {:.6g}), max {:.6g}",
-               d.layer, d.rmse, d.relative_mse, d.psnr_db, d.peak, d.max_abs);
-    if (d.max_abs > 0.) fmt::print(" in {} at {},{}", d.max_channel, d.max_x, d.max_y);
-    if (d.not_finite > 0) fmt::print(", {} values not finite", d.not_finite);
-    fmt::print("\n");
+    std::string line = fmt::format(
+        "{}: RMSE {:.6g}, relative MSE {:.6g}, PSNR {:.2f} dB (peak {:.6g}), max {:.6g}", d.layer,
+        d.rmse, d.relative_mse, d.psnr_db, d.peak, d.max_abs);
+    if (d.max_abs > 0.) line += fmt::format(" in {} at {},{}", d.max_channel, d.max_x, d.max_y);
+    if (d.not_finite > 0) line += fmt::format(", {} values not finite", d.not_finite);
+    print_line(line);
 }
 
 /// Throws where a layer is further from the reference than it may be.

@@ -9,11 +9,13 @@
 #include <numbers>
 #include <optional>
 
+#include "apps/cli/console.h"
 #include "apps/cli/parse.h"
 #include "apps/commands/lens_request.h"
 #include "camera/bench/analysis.h"
 #include "camera/lens/focus.h"
 #include "io/base/error.h"
+#include "io/base/printable.h"
 #include "io/lens/lens_file.h"
 
 namespace petzval {
@@ -22,10 +24,13 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 void list_command() {
+    fmt::print("{:<33} {:>6} {:>9} {:>8}  {}\n{:<33} {:>6} {:>9} {:>8}\n", "lens", "focal",
+               "f-number", "angle", "design (patent)", "", "mm", "", "degrees");
     for (const LensSummary& lens : list_lenses())
-        fmt::print("{:<33} {:>6g} mm  f/{:<5g} {:>5.4g}°  {}{}\n", lens.name, lens.focal_length_mm,
-                   lens.fnumber, 2 * lens.field_half_deg, lens.title,
-                   lens.patent.empty() ? "" : " (" + lens.patent + ")");
+        print_line(fmt::format("{:<33} {:>6g} {:>9} {:>8.4g}  {}{}", lens.name,
+                               lens.focal_length_mm, fmt::format("f/{:g}", lens.fnumber),
+                               2 * lens.field_half_deg, lens.title,
+                               lens.patent.empty() ? "" : " (" + lens.patent + ")"));
 }
 
 std::string shape_of(const LensSurface& s) {
@@ -42,8 +47,8 @@ std::string shape_of(const LensSurface& s) {
 void show_command(const LensRequest& request) {
     const auto lens = open_lens(request);
     const Prescription& file = lens->prescription();
-    fmt::print("{}{}{}\n", file.name, file.title.empty() ? "" : ": ", file.title);
-    if (!file.source.empty()) fmt::print("source: {}\n", file.source);
+    print_line(file.name + (file.title.empty() ? "" : ": ") + file.title);
+    if (!file.source.empty()) print_line("source: " + file.source);
     const auto print_if = [](const char* format, std::optional<double> value) {
         if (value) fmt::print(fmt::runtime(format), *value);
     };
@@ -60,9 +65,10 @@ void show_command(const LensRequest& request) {
         const LensSurface& s = file.surfaces[i];
         const std::string radius =
             s.curvature_1_mm == 0 ? "plane" : fmt::format("{:.8g}", 1 / s.curvature_1_mm);
-        const std::string glass = s.glass ? fmt::format("{:<20} {:>8.6f} {:>6.2f}", s.glass->name,
-                                                        s.glass->index(kLineD_nm), s.glass->abbe())
-                                          : fmt::format("{:<36}", "");
+        const std::string glass =
+            s.glass ? fmt::format("{:<20} {:>8.6f} {:>6.2f}", visible(s.glass->name),
+                                  s.glass->index(kLineD_nm), s.glass->abbe())
+                    : fmt::format("{:<36}", "");
         fmt::print("{:>2} {:>12} {:>12.8g} {:>10.6g}  {}{}\n", i, radius, s.thickness_mm,
                    s.semi_diameter_mm, glass, shape_of(s));
     }
@@ -117,7 +123,8 @@ constexpr std::array<Figure, 10> kFigures{
 constexpr std::array<const char*, 7> kSums{"S1", "S2", "S3", "S4", "S5", "C1", "C2"};
 
 void print_check(const Lens& lens, const Check& c) {
-    fmt::print("{}\n\n{:<28}", lens.prescription().name, "");
+    print_line(lens.prescription().name);
+    fmt::print("\n{:<28}", "");
     for (const auto& [line, data] : c.first_order) fmt::print(" {:>16}", line);
     fmt::print("\n");
     for (const auto& [name, member] : kFigures) {
@@ -182,7 +189,8 @@ void check_command(const CheckOptions& o) {
     const auto lens = open_lens(o.request);
     const Check result = check(*lens);
     if (o.json)
-        fmt::print("{}\n", json_of(*lens, result).dump(2));
+        fmt::print("{}\n",
+                   json_of(*lens, result).dump(2, ' ', true, Json::error_handler_t::replace));
     else
         print_check(*lens, result);
     std::fflush(stdout);  // the result comes before a complaint

@@ -13,6 +13,7 @@
 #include "apps/plan/plan.h"
 #include "apps/plan/plan_wording.h"
 #include "io/base/format.h"
+#include "io/base/printable.h"
 
 namespace petzval {
 namespace {
@@ -22,11 +23,18 @@ struct PlanOptions {
     bool json = false;
 };
 
-// Word quoted for a shell, where it needs it.
+// Word quoted for a shell, where it needs it. What is hidden is written as escapes, which bash, ksh
+// and zsh read back between $' and '.
 std::string quoted(const std::string& word) {
     constexpr std::string_view kPlain =
         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./:,=%+@";
     if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+    if (visible(word) != word) {
+        std::string escaped;
+        for (const char c : word)
+            escaped += c == '\\' || c == '\'' ? std::string("\\") + c : std::string(1, c);
+        return "$'" + visible(escaped) + "'";
+    }
     std::string out = "'";
     for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
     return out + "'";
@@ -58,7 +66,7 @@ std::string duration(double s) {
 
 void print(const Plan& plan, const std::string& command) {
     for (const PlanLine& line : lines_of(plan))
-        fmt::print("{:<10} {}: {}\n", line.choice, line.chosen, line.reason);
+        print_line(fmt::format("{:<10} {}: {}", line.choice, line.chosen, line.reason));
     fmt::print("{:<10} {}: they bring noise from {} to {}\n", "samples", plan.samples,
                percent(plan.first_noise), percent(plan.noise));
     fmt::print("{:<10} {}: {} by the model, {} by noise; about {} of CPU time here\n", "error",
@@ -80,7 +88,8 @@ void print_json(const Plan& plan, const std::string& command) {
     out["predicted_noise"] = plan.noise;
     out["predicted_cpu_s"] = plan.cpu_s;
     out["command"] = command;
-    fmt::print("{}\n", out.dump(2));
+    // Names of files need not be UTF-8.
+    fmt::print("{}\n", out.dump(2, ' ', true, nlohmann::json::error_handler_t::replace));
 }
 
 void plan_command(PlanOptions& o, const CLI::App& app) {

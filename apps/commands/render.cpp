@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 
 #include "apps/cli/console.h"
@@ -12,6 +13,7 @@
 #include "apps/plan/plan.h"
 #include "apps/plan/plan_wording.h"
 #include "apps/setup/develop.h"
+#include "apps/setup/exposure.h"
 #include "apps/setup/spectral_wording.h"
 #include "apps/setup/stats_file.h"
 #include "integrator/executor.h"
@@ -61,6 +63,33 @@ RenderSetup set_up(const RenderOptions& o, double tolerance, TbbExecutor& execut
     return std::move(found.setup);
 }
 
+// Finds the exposure where it is asked for, and tells it.
+void choose_exposure(RenderOptions& o, RenderSetup& setup, TbbExecutor& executor,
+                     const Notice& notice) {
+    if (o.auto_exposure) {
+        const FoundExposure found = find_exposure(setup, o.job, o.path, executor);
+        o.display.exposure_ev = found.ev;
+        notice(fmt::format("exposure: {0} EV (--exposure {0}){1}", found.ev,
+                           found.log_average > 0 ? "" : ", as no light was found"));
+    }
+    setup.from.exposure_ev = o.display.exposure_ev;
+    setup.from.exposure_is_auto = o.auto_exposure;
+}
+
+// Tells what to type where PNG and JPEG show nothing.
+void advise_exposure(const RenderOptions& o, const RenderSetup& setup, const Film& film,
+                     TbbExecutor& executor, const Notice& notice) {
+    const auto displayed = [](const auto& path) {
+        return picture_format(path) != PictureFormat::Exr;
+    };
+    if (std::none_of(o.outputs.begin(), o.outputs.end(), displayed)) return;
+    const Brightness brightness = brightness_of(film, o.display.exposure_ev);
+    if (brightness == Brightness::Normal) return;
+    const FoundExposure found = find_exposure(setup, o.job, o.path, executor);
+    if (const auto advice = exposure_advice(brightness, found, o.display.exposure_ev))
+        notice(*advice);
+}
+
 int render_command(RenderOptions& o) {
     RenderMonitor monitor;
     Interrupt interrupt(monitor);
@@ -72,7 +101,8 @@ int render_command(RenderOptions& o) {
     TbbExecutor executor(o.threads);
     const Notice notice = notice_to_stderr(o);
     for (const std::string& remark : frame.remarks) notice(remark);
-    const RenderSetup setup = set_up(o, frame.tolerance, executor, notice);
+    RenderSetup setup = set_up(o, frame.tolerance, executor, notice);
+    choose_exposure(o, setup, executor, notice);
     const PreparedScene& prepared = setup.prepared;
     o.path.visible_background = setup.view.visible_background;
     o.job.observer = setup.view.observer;
@@ -97,6 +127,7 @@ int render_command(RenderOptions& o) {
             notice(fmt::format("stopped: what there is, is in {}", partial.string()));
         return 130;
     }
+    advise_exposure(o, setup, film, executor, notice);
     for (const auto& output : o.outputs) write_output(output, picture, o.display);
     if (o.stats) write_stats(*o.stats, setup, result, cost, film);
     return 0;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "apps/setup/pilot_pixels.h"
 #include "core/sampling/sampler.h"
 #include "integrator/render.h"
 #include "io/base/clock.h"
@@ -16,18 +17,6 @@ constexpr uint32_t kFirstPilotSeed = 2'000'000;
 PathOptions with_background(PathOptions options, const View& view) {
     options.visible_background = view.visible_background;
     return options;
-}
-
-// Number of cells that a side is cut into.
-int parts(double wanted, int side_px) {
-    return std::clamp(static_cast<int>(std::lround(wanted)), 1, side_px);
-}
-
-// Random pixel in one of the cells that a side is cut into.
-int within(int cell, int cells, int side_px, uint32_t random) {
-    const int64_t first = int64_t{cell} * side_px / cells;
-    const int64_t end = int64_t{cell + 1} * side_px / cells;
-    return static_cast<int>(first + ((int64_t{random} * (end - first)) >> 32));
 }
 
 Estimate mean_of(const std::vector<double>& values) {
@@ -59,16 +48,10 @@ double PilotModel::rays_per_sample() const {
 }
 
 Pilot::Pilot(V2i size_px, int wanted, TbbExecutor& executor, uint32_t seed)
-    : size_px_(size_px), seed_(seed), executor_(executor) {
-    const int nx = parts(std::sqrt(double(wanted) * size_px.x / size_px.y), size_px.x);
-    const int ny = parts(double(wanted) / nx, size_px.y);
-    for (int j = 0; j < ny; ++j)
-        for (int i = 0; i < nx; ++i) {
-            const uint32_t cell = hash32(seed, static_cast<uint32_t>(j * nx + i));
-            pixels_.push_back({within(i, nx, size_px.x, hash32(cell, 0)),
-                               within(j, ny, size_px.y, hash32(cell, 1))});
-        }
-}
+    : size_px_(size_px),
+      seed_(seed),
+      pixels_(pilot_pixels(size_px, wanted, seed)),
+      executor_(executor) {}
 
 std::unique_ptr<PilotModel> Pilot::model(RenderSetup setup, const RenderJob& job,
                                          const PathOptions& options) const {

@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "io/base/error.h"
-#include "io/base/json_parse.h"
 #include "io/base/nearest.h"
+#include "io/base/printable.h"
 #include "io/glass/catalogue.h"
 #include "io/glass/glass_lookup.h"
 
@@ -24,7 +24,7 @@ const GltfCamera& find_camera(const std::string& wanted, const std::string& scen
     size_t index = 0;
     const auto [end, error] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), index);
     for (const GltfCamera& camera : cameras)
-        if (camera.name == wanted) return camera;
+        if (camera.name == wanted || visible(camera.name) == wanted) return camera;
     if (error == std::errc() && end == wanted.data() + wanted.size() && index < cameras.size())
         return cameras[index];
     constexpr size_t most = 20;  // fit one message

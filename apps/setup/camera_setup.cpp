@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/setup/framing.h"
 #include "apps/setup/thin_setup.h"
 #include "integrator/autofocus.h"
 #include "io/base/error.h"
@@ -12,8 +13,6 @@ namespace petzval {
 namespace {
 
 constexpr float kDegree = kPi / 180.f;
-// Embree takes coordinates up to about 1e18; the square of a distance must be a float as well.
-constexpr float kFarthest_m = 1e16f;
 
 V3f position(const M44f& m) {
     return {m[3][0], m[3][1], m[3][2]};
@@ -38,25 +37,24 @@ struct CameraContext {
     }
 };
 
-// Eye and target that frame the scene: its bounding sphere just fits the smaller angle of view,
-// seen a little from above and the right.
-std::array<V3f, 2> frame_bounds(const CameraContext& at, float yfov_rad) {
-    const Box3f& bounds = at.scene.bounds;
-    if (bounds.isEmpty()) return {V3f(0, 0, 1), V3f(0, 0, 0)};
-    const V3f centre = bounds.min / 2 + bounds.max / 2;
-    const float radius = std::fmax((bounds.max / 2 - bounds.min / 2).length(), 1e-6f);
-    const float half = std::atan(std::tan(yfov_rad / 2) * std::fmin(1.f, at.aspect()));
-    const float distance_m = radius / std::sin(half);
-    const V3f eye = centre + unit({0.3f, 0.25f, 1.f}) * distance_m;
-    if (!(std::fmax(distance_m, centre.length()) < kFarthest_m) || eye == centre)
-        throw at.unfit("is too large or too far away to be framed; give --look-at");
-    return {eye, centre};
+// The view of a camera that is still to be placed.
+struct UnplacedView {
+    float yfov_rad;          ///< when it is focused far away
+    double stand_back_m;     ///< what its focal length takes from the angle of view when it is near
+    std::string fov_option;  ///< what gives the same angle of view again
+};
+
+// Eye and target that frame the scene.
+std::array<V3f, 2> framed(const CameraContext& at, const UnplacedView& view) {
+    const auto aim = frame_scene(at.scene, view.yfov_rad, at.aspect(), view.stand_back_m);
+    if (!aim) throw at.unfit("is too large or too far away to be framed; give --look-at");
+    at.notice(fmt::format("no camera in the file: --look-at {},{}{}", with_commas((*aim)[0]),
+                          with_commas((*aim)[1]), view.fov_option));
+    return *aim;
 }
 
-// Pose of the camera, also noted in the report. fov_option: what gives the same angle of view
-// again.
-M44f stand(const CameraContext& at, float yfov_rad, const std::string& fov_option,
-           CameraReport& report) {
+// Pose of the camera, also noted in the report.
+M44f stand(const CameraContext& at, const UnplacedView& view, CameraReport& report) {
     const CameraRequest& asked = at.model.asked;
     M44f to_world;
     if (const GltfCamera* from = at.model.from) {
@@ -64,12 +62,9 @@ M44f stand(const CameraContext& at, float yfov_rad, const std::string& fov_optio
         report.name = from->name;
         report.target = position(to_world) + forward(to_world);
     } else {
-        const auto aim = asked.look_at ? *asked.look_at : frame_bounds(at, yfov_rad);
+        const auto aim = asked.look_at ? *asked.look_at : framed(at, view);
         to_world = look_at(aim[0], aim[1]);
         report.target = aim[1];
-        if (!asked.look_at)
-            at.notice(fmt::format("no camera in the file: --look-at {},{}{}", with_commas(aim[0]),
-                                  with_commas(aim[1]), fov_option));
     }
     report.eye = position(to_world);
     return to_world;
@@ -130,7 +125,7 @@ CameraSetup with_lens(const CameraContext& at, const LoadedLens& loaded) {
     report.asked = at.model.asked;
     report.dispersive_lens = at.model.dispersive_lens();
     report.yfov_deg = loaded.yfov_rad / kDegree;
-    const M44f to_world = stand(at, loaded.yfov_rad, "", report);
+    const M44f to_world = stand(at, {loaded.yfov_rad, 1e-3 * loaded.focal_length_mm, ""}, report);
     report.focus_m = find_focus(at, to_world, [&](std::optional<float> focus_m) {
         return viewfinder(loaded, to_world, focus_m);
     });
@@ -154,11 +149,13 @@ CameraSetup without_prescription(const CameraContext& at) {
     const ThinView view = thin_view(at.model, at.scene_file, at.aspect());
     report.sensor_mm = view.sensor_mm;
     report.yfov_deg = view.yfov_deg;
-    const std::string fov_option =
-        view.angle_by_focal ? "" : fmt::format(" --fov {}", view.yfov_deg);
+    const UnplacedView unplaced =
+        view.angle_by_focal
+            ? UnplacedView{view.yfov_rad, at.model.has_iris() ? 1e-3 * *view.focal_mm : 0, ""}
+            : UnplacedView{view.yfov_rad, 0, fmt::format(" --fov {}", view.yfov_deg)};
     ThinLens pose;
     pose.aspect = at.aspect();
-    pose.to_world = stand(at, view.yfov_rad, fov_option, report);
+    pose.to_world = stand(at, unplaced, report);
     std::optional<float> focus_m = view.focus_m;
     if (at.model.has_iris() && !focus_m)
         focus_m = find_focus(at, pose.to_world, [&](std::optional<float> focused_m) {

@@ -10,6 +10,7 @@
 #include "apps/setup/camera_report.h"
 #include "apps/setup/option_names.h"
 #include "core/spectrum/colour.h"
+#include "io/base/printable.h"
 #include "io/image/spectral_layout.h"
 
 namespace petzval {
@@ -127,8 +128,12 @@ PictureRows develop(const Film& film, const RenderSetup& setup, const RenderJob&
                      {"petzval:transparent", int(options.transparent)},
                      {"petzval:luminousEfficacy_lm_per_W", kLuminousEfficacy_lm_per_w}}};
     for (const auto& [name, value] : setup.from.metadata) layout.metadata.emplace_back(name, value);
+    if (setup.from.exposure_is_auto)
+        layout.metadata.emplace_back("petzval:exposure_ev", setup.from.exposure_ev);
     describe_camera(setup.from.camera, layout);
     if (film.spectral()) describe_spectrum(film, layout);
+    for (auto& [name, value] : layout.metadata)
+        if (auto* text = std::get_if<std::string>(&value)) *text = visible(*text);
     return {std::move(layout), [&film, crop](int y, float* row) {
                 for (int x = crop.x0; x < crop.x1; ++x)
                     row = develop_pixel(film, x, crop.y0 + y, row);

@@ -7,6 +7,7 @@
 
 #include "apps/setup/camera_setup.h"
 #include "apps/setup/option_names.h"
+#include "core/scene/studio.h"
 #include "io/base/format.h"
 #include "io/base/read_file.h"
 #include "io/gltf/gltf.h"
@@ -33,6 +34,8 @@ bool is_dark(const Scene& scene) {
 }
 
 Sky sky_of(const SceneRequest& request, const Notice& notice) {
+    if (request.environment == kStudioLight)
+        return studio_sky(request.environment_rotate_deg, request.environment_strength);
     if (request.environment)
         return load_sky(*request.environment, request.environment_rotate_deg,
                         request.environment_strength, notice);
@@ -43,7 +46,9 @@ std::vector<std::pair<std::string, std::string>> describe(const SceneRequest& re
     std::vector<std::pair<std::string, std::string>> m;
     m.emplace_back("petzval:scene", request.scene.filename().string());
     if (request.environment) {
-        m.emplace_back("petzval:environment", name_and_hash(*request.environment));
+        m.emplace_back("petzval:environment", request.environment == kStudioLight
+                                                  ? kStudioLight
+                                                  : name_and_hash(*request.environment));
         m.emplace_back("petzval:environmentRotate_deg",
                        fmt::format("{:.9g}", request.environment_rotate_deg));
         m.emplace_back("petzval:environmentStrength",
@@ -75,12 +80,13 @@ PreparedScene load(SceneRequest request, const Notice& notice) {
     out.hash = file.hash;
     out.cameras = std::make_shared<std::vector<GltfCamera>>(std::move(file.cameras));
     if (!request.environment && !request.background && is_dark(*scene)) {
-        request.background = Rgb(1.f);
+        request.environment = kStudioLight;
         notice(
-            "no light in the file: a uniform white environment of 1 nit is used (--background "
-            "1,1,1)");
+            fmt::format("nothing lights this scene, so the built-in studio light is used (--env "
+                        "{}); give --env FILE or --background R,G,B for another",
+                        kStudioLight));
     }
-    out.background = request.background;
+    out.environment = request.environment;
     scene->sky = sky_of(request, notice);
     finish_scene(*scene);
     if (scene->instances.empty())
@@ -99,7 +105,7 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const Render
     prepared = shares ? like->prepared : load(asked, notice);
     const Scene& scene = *prepared.scene;
     SceneRequest request = asked;
-    request.background = prepared.background;
+    request.environment = prepared.environment;
     if (request.environment) setup.view.visible_background = request.background;
     const CameraModel model = choose_camera_model(
         request.camera, request.scene, *prepared.cameras,

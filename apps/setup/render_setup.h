@@ -26,8 +26,9 @@ struct PreparedScene {
     std::shared_ptr<const Bvh> bvh;
     std::shared_ptr<const LightChoice> lights;
     std::shared_ptr<const std::vector<GltfCamera>> cameras;  ///< of the file
-    std::optional<Rgb> background;  ///< as asked, or what a dark scene gets
-    uint64_t hash = 0;              ///< of the file
+    /// As asked, or what a dark scene gets.
+    std::optional<std::filesystem::path> environment;
+    uint64_t hash = 0;  ///< of the file
 };
 
 /// Camera and observer of a prepared scene.
@@ -45,6 +46,8 @@ struct Provenance {
     std::string scale;  ///< what RGB 1 means
     /// Other inputs that the pixels follow from, for the picture's metadata.
     std::vector<std::pair<std::string, std::string>> metadata;
+    float exposure_ev = 0;          ///< of PNG and JPEG
+    bool exposure_is_auto = false;  ///< a pilot found it
     double load_s = 0, bvh_s = 0;
 };
 

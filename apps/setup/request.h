@@ -84,13 +84,16 @@ struct SpectralRequest {
     WhiteBalance white_balance = WhiteBalance::None;
 };
 
+/// Name of the built-in environment: what a scene gets that nothing lights.
+inline constexpr const char* kStudioLight = "studio";
+
 /// Request for a scene. Everything absent means: as the file has it, else a sensible choice that is
 /// reported.
 struct SceneRequest {
     std::filesystem::path scene;
     V2i size{1280, 720};
     CameraRequest camera;
-    std::optional<std::filesystem::path> environment;
+    std::optional<std::filesystem::path> environment;  ///< a picture, or kStudioLight
     float environment_rotate_deg = 0, environment_strength = 1;
     std::optional<Rgb> background;
     LightChoiceKind light_choice = LightChoiceKind::Tree;

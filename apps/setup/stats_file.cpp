@@ -51,6 +51,7 @@ void write_stats(const std::filesystem::path& path, const RenderSetup& setup,
     out["size_px"] = {film.full_size().x, film.full_size().y};
     out["samples_per_pixel"] = result.end_sample;
     out["pixel_samples"] = s.samples;
+    out["exposure_ev"] = setup.from.exposure_ev;
     out["threads"] = cost.threads;
     out["threads_that_worked"] = result.workers;
     out["load_s"] = setup.from.load_s;

@@ -8,13 +8,6 @@ V3f placed(const Instance& instance, const V3f& position) {
     return instance.identity ? position : position * instance.to_world;
 }
 
-bool emissive(const Scene& scene, const Instance& instance) {
-    const Mesh& mesh = scene.meshes[instance.mesh];
-    if (mesh.triangles.empty()) return false;
-    const Material& material = scene.materials[mesh.material];
-    return material.emits() && !material.unlit;
-}
-
 bool same_place(const Scene& scene, const TextureSlot& a, const TextureSlot& b) {
     if (!a.present() || !b.present()) return false;
     const Image &one = scene.images[a.image], &other = scene.images[b.image];
@@ -46,7 +39,7 @@ void finish_scene(Scene& scene) {
         for (const auto& triangle : mesh.triangles)
             for (const uint32_t corner : triangle)
                 scene.bounds.extendBy(placed(instance, mesh.positions[corner]));
-        if (!emissive(scene, instance)) continue;
+        if (!emits(scene, instance)) continue;
         instance.first_light = static_cast<int32_t>(scene.lights.size());
         for (uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle)
             scene.lights.push_back(TriangleLight{i, triangle});
@@ -54,6 +47,13 @@ void finish_scene(Scene& scene) {
     if (scene.sky.black()) return;
     scene.sky_light = static_cast<int32_t>(scene.lights.size());
     scene.lights.push_back(SkyLight{});
+}
+
+bool emits(const Scene& scene, const Instance& instance) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    if (mesh.triangles.empty()) return false;
+    const Material& material = scene.materials[mesh.material];
+    return material.emits() && !material.unlit;
 }
 
 std::array<V3f, 3> triangle_corners(const Scene& scene, uint32_t instance, uint32_t triangle) {

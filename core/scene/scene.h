@@ -39,6 +39,9 @@ struct Scene {
 /// every triangle of an emissive instance and for the sky where it is not black.
 void finish_scene(Scene&);
 
+/// Whether an instance lights the scene: its material emits, and is not one that only shows itself.
+[[nodiscard]] bool emits(const Scene&, const Instance&);
+
 /// Three world-space corners of a triangle.
 [[nodiscard]] std::array<V3f, 3> triangle_corners(const Scene&, uint32_t instance,
                                                   uint32_t triangle);

@@ -70,13 +70,6 @@ size_t find_quoted(std::string_view text, std::string_view message) {
 
 }  // namespace
 
-std::string printable(std::string_view text) {
-    std::string out(text.substr(0, 80));
-    for (char& c : out)
-        if (uint8_t(c) < 0x20 || c == 0x7F) c = '?';
-    return text.size() > 80 ? out + "..." : out;
-}
-
 json parse_json(std::string_view text, const std::string& file) {
     if (text.starts_with("\xEF\xBB\xBF"))
         throw InputError(file, "line 1",

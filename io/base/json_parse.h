@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "io/base/printable.h"
+
 namespace petzval {
 
 /// Greatest nesting depth of containers: far more than any scene needs, far less than a stack
@@ -16,9 +18,5 @@ inline constexpr int max_json_depth = 128;
 /// and so is a number beyond the range of a double. Whole numbers written as 3.0 become integers,
 /// so that no reader has to know both ways. file: its name, for the InputError.
 [[nodiscard]] nlohmann::json parse_json(std::string_view text, const std::string& file);
-
-/// Text from a file made fit for a message of one line: control characters become '?', and what
-/// is longer than 80 bytes is cut.
-[[nodiscard]] std::string printable(std::string_view text);
 
 }  // namespace petzval

@@ -12,8 +12,12 @@
 namespace petzval {
 namespace {
 
+std::string plural(uint64_t count, std::string_view one, std::string_view more) {
+    return fmt::format("{} {}", count, count == 1 ? one : more);
+}
+
 std::string plural(uint64_t count, std::string_view what) {
-    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+    return plural(count, what, fmt::format("{}s", what));
 }
 
 std::string named(const std::string& name) {
@@ -25,7 +29,15 @@ std::string describe_lights(const Scene& scene) {
         return std::count_if(scene.lights.begin(), scene.lights.end(),
                              [&](const Light& light) { return light.index() == kind; });
     };
-    return fmt::format("lights: {} point, {} spot, {} directional", count(0), count(1), count(2));
+    uint64_t meshes = 0, triangles = 0;
+    for (const Instance& instance : scene.instances) {
+        if (!emits(scene, instance)) continue;
+        ++meshes;
+        triangles += scene.meshes[instance.mesh].triangles.size();
+    }
+    return fmt::format("lights: {} point, {} spot, {} directional, {}{}", count(0), count(1),
+                       count(2), plural(meshes, "emissive mesh", "emissive meshes"),
+                       meshes > 0 ? fmt::format(" ({})", plural(triangles, "triangle")) : "");
 }
 
 std::string describe_extras(const CameraExtras& extras) {

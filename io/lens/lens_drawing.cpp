@@ -8,6 +8,7 @@
 #include "io/base/ascii.h"
 #include "io/base/atomic_file.h"
 #include "io/base/error.h"
+#include "io/base/printable.h"
 
 namespace petzval {
 namespace {
@@ -24,7 +25,7 @@ struct Bounds {
 
 std::string escaped(const std::string& text) {
     std::string out;
-    for (const char c : text) {
+    for (const char c : visible(text)) {
         if (c == '&')
             out += "&amp;";
         else if (c == '<')
@@ -32,7 +33,7 @@ std::string escaped(const std::string& text) {
         else if (c == '>')
             out += "&gt;";
         else
-            out += static_cast<unsigned char>(c) < ' ' ? '?' : c;
+            out += c;
     }
     return out;
 }

@@ -16,6 +16,7 @@
 #include "io/base/ascii.h"
 #include "io/base/atomic_file.h"
 #include "io/base/error.h"
+#include "io/base/printable.h"
 
 namespace petzval {
 namespace {
@@ -37,9 +38,9 @@ const char* terminal(const fs::path& path) {
 /// gnuplot string in single quotes, where only these characters mean something.
 std::string quoted(const std::string& text) {
     std::string out = "'";
-    for (const char c : text) {
+    for (const char c : visible(text)) {
         if (c == '\'') out += '\'';
-        out += static_cast<unsigned char>(c) < 0x20 || c == 0x7F ? '?' : c;
+        out += c;
     }
     return out + "'";
 }

@@ -96,7 +96,7 @@ TEST_F(CliErrors, FilesThatCannotBeRead) {
     };
     EXPECT_EQ(render(path("none.glb")), "petzval: error: " + path("none.glb") + ": no such file");
     EXPECT_EQ(render(path("two\nlines.glb")),
-              "petzval: error: " + path("two?lines.glb") + ": no such file");
+              "petzval: error: " + path("two\\u000alines.glb") + ": no such file");
     EXPECT_EQ(render(folder_.path.string()),
               "petzval: error: " + folder_.path.string() + ": is a folder");
     EXPECT_NE(render(broken("cut.glb", file_bytes(scene_).substr(0, 100))).find("cut.glb: "),

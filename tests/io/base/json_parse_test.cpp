@@ -56,11 +56,6 @@ TEST(JsonParse, MakesWholeNumbersIntegers) {
     EXPECT_TRUE(json[4].is_number_float());
 }
 
-TEST(JsonParse, MakesTextPrintable) {
-    EXPECT_EQ(printable("a\nb\x1B[0m"), "a?b?[0m");
-    EXPECT_EQ(printable(std::string(100, 'x')).size(), 83u);
-}
-
 class Cursor : public testing::Test {
   protected:
     const nlohmann::json json = nlohmann::json::parse(R"({

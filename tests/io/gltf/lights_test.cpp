@@ -73,7 +73,8 @@ TEST(GltfLights, DarkOnesAreLeftOut) {
 
 TEST(GltfLights, AreListed) {
     const GltfFile loaded = load(lit({{"type", "point"}, {"range", 5}}));
-    EXPECT_TRUE(contains_line(loaded.contents, "lights: 1 point, 0 spot, 0 directional"));
+    EXPECT_TRUE(contains_line(loaded.contents,
+                              "lights: 1 point, 0 spot, 0 directional, 0 emissive meshes"));
     EXPECT_TRUE(contains_line(loaded.ignored, "1 light range"));
     EXPECT_TRUE(contains_line(loaded.honoured, "KHR_lights_punctual"));
 }

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/setup/exposure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "apps/setup/pilot_pixels.h"
+#include "integrator/path.h"
+#include "integrator/render.h"
+
+namespace petzval {
+namespace {
+
+constexpr double kMidGrey = 0.18;
+/// Shares of the pixels: what is brighter may be brighter than white, or is left out of what is
+/// nearly the brightest.
+constexpr double kMayClip = 0.1, kBrightest = 0.05;
+constexpr double kDarkest = 0.01;  ///< of the nearly brightest
+constexpr double kMostEv = 100;    ///< as far as --exposure goes
+
+/// A turn of the pilot: many pixels with few samples find small things.
+struct PilotTurn {
+    int pixels;
+    uint32_t samples;
+};
+constexpr std::array<PilotTurn, 4> kTurns{{{2048, 32}, {16384, 4}, {131072, 1}, {1 << 20, 1}}};
+constexpr size_t kEnoughPixels = 16;
+constexpr uint32_t kPilotSeed = 0x65787073;  ///< so that no sample is one of the picture
+
+/// Luminance below which a pixel is as good as black on a display: level 25 of 255 in sRGB.
+constexpr double kBlack = 0.01;
+/// Shares of the pixels with light from which a picture is almost black, or almost white.
+constexpr double kLeastDark = 0.9, kLeastWhite = 0.9;
+
+/// Luminance of a pixel as a picture shows it: what is partly transparent is not darker for it.
+double shown_luminance(const V4f& c) {
+    const double light = double(luminance({c.x, c.y, c.z}));
+    return c.w > 0 ? light / double(c.w) : light;
+}
+
+/// What a turn of the pilot saw: luminances above 0.
+struct Seen {
+    std::vector<double> scene, all;
+    /// Those of pixels that show something of the scene, or of all where hardly any do.
+    [[nodiscard]] const std::vector<double>& of_interest() const {
+        return scene.size() >= kEnoughPixels || all.size() < kEnoughPixels ? scene : all;
+    }
+};
+
+Seen look(const RenderSetup& setup, const RenderJob& job, const PathTracer<>& tracer,
+          const PilotTurn& turn, TbbExecutor& executor) {
+    const V2i size = setup.from.asked.size;
+    const auto pixels = pilot_pixels(size, turn.pixels, job.seed);
+    struct Pixel {
+        double luminance;
+        bool scene;
+    };
+    std::vector<Pixel> found(pixels.size());
+    std::vector<PathStats> stats(static_cast<size_t>(executor.threads()));
+    executor.run(static_cast<int>(pixels.size()), [&](int task, int worker) {
+        const auto [x, y] = pixels[static_cast<size_t>(task)];
+        Film film(size, {x, y, x + 1, y + 1}, {Aov::Depth});
+        for (uint32_t i = 0; i < turn.samples; ++i)
+            render_sample(tracer, *setup.view.camera, job, {x, y, i}, film,
+                          stats[static_cast<size_t>(worker)]);
+        found[static_cast<size_t>(task)] = {shown_luminance(film.colour(x, y)),
+                                            film.aov(x, y, 0).x > 0};
+    });
+    Seen seen;
+    for (const Pixel& pixel : found) {
+        if (!(pixel.luminance > 0)) continue;
+        seen.all.push_back(pixel.luminance);
+        if (pixel.scene) seen.scene.push_back(pixel.luminance);
+    }
+    return seen;
+}
+
+/// Value that a share of sorted values is above.
+double above(const std::vector<double>& sorted, double share) {
+    const auto last = static_cast<double>(sorted.size() - 1);
+    return sorted[static_cast<size_t>(std::floor(last * (1 - share)))];
+}
+
+}  // namespace
+
+FoundExposure exposure_for(std::vector<double> luminances) {
+    if (luminances.empty()) return {};
+    std::sort(luminances.begin(), luminances.end());
+    const double least = kDarkest * above(luminances, kBrightest);
+    double logs = 0;
+    for (const double l : luminances) logs += std::log(std::max(l, least));
+    const double average = std::exp(logs / static_cast<double>(luminances.size()));
+    const double gain = std::min(kMidGrey / average, 1 / above(luminances, kMayClip));
+    const double tenths = std::round(10 * std::clamp(std::log2(gain), -kMostEv, kMostEv));
+    return {static_cast<float>((tenths + 0.0) / 10), average};
+}
+
+FoundExposure find_exposure(const RenderSetup& setup, const RenderJob& job,
+                            const PathOptions& options, TbbExecutor& executor) {
+    PathOptions with_background = options;
+    with_background.visible_background = setup.view.visible_background;
+    const PathTracer<> tracer(*setup.prepared.scene, *setup.prepared.bvh, *setup.prepared.lights,
+                              with_background);
+    RenderJob pilot;
+    pilot.sampler = job.sampler;
+    pilot.filter = job.filter;
+    pilot.observer = setup.view.observer;
+    pilot.seed = hash32(job.seed, kPilotSeed);
+    Seen seen;
+    for (const PilotTurn& turn : kTurns) {
+        seen = look(setup, pilot, tracer, turn, executor);
+        if (seen.of_interest().size() >= kEnoughPixels) break;
+    }
+    return exposure_for(seen.of_interest());
+}
+
+Brightness brightness_of(const Film& film, float exposure_ev) {
+    const double gain = std::exp2(double(exposure_ev));
+    const Rect crop = film.crop();
+    uint64_t lit = 0, dark = 0, white = 0;
+    for (int y = crop.y0; y < crop.y1; ++y)
+        for (int x = crop.x0; x < crop.x1; ++x) {
+            const double light = gain * shown_luminance(film.colour(x, y));
+            lit += light > 0;
+            dark += light > 0 && light < kBlack;
+            white += light > 1;
+        }
+    if (lit == 0) return Brightness::Black;
+    const auto share = [lit](uint64_t n) {
+        return static_cast<double>(n) / static_cast<double>(lit);
+    };
+    if (share(dark) >= kLeastDark) return Brightness::AlmostBlack;
+    return share(white) >= kLeastWhite ? Brightness::AlmostWhite : Brightness::Normal;
+}
+
+std::optional<std::string> exposure_advice(Brightness brightness, const FoundExposure& found,
+                                           float exposure_ev) {
+    if (brightness == Brightness::Normal) return std::nullopt;
+    if (!(found.log_average > 0))
+        return "the picture is black, and no --exposure can help: no light was found (petzval info "
+               "tells whether the file has lights)";
+    if (std::fabs(found.ev - exposure_ev) < 1) return std::nullopt;
+    const double above_ev = std::log2(found.log_average / kMidGrey) + double(exposure_ev);
+    return fmt::format(
+        "the picture is almost {}: its log-average is {:.1f} EV {} mid-grey; try --exposure {} or "
+        "--exposure auto",
+        brightness == Brightness::AlmostWhite ? "white" : "black", std::fabs(above_ev),
+        above_ev < 0 ? "below" : "above", found.ev);
+}
+
+}  // namespace petzval

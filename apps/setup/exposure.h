@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// The exposure that suits a picture, and whether a picture shows anything with the one that it has.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/setup/render_setup.h"
+#include "core/film/film.h"
+#include "integrator/executor.h"
+#include "integrator/path_options.h"
+#include "integrator/render_job.h"
+
+namespace petzval {
+
+/// Exposure for a picture, from what a pilot saw.
+struct FoundExposure {
+    float ev = 0;            ///< a multiple of 0.1, so that it can be typed
+    double log_average = 0;  ///< luminance, in units of the film; 0: no light was seen
+};
+
+/// Exposure that shows luminances well, ones above 0: their log-average becomes 0.18, the grey in
+/// the middle between black and white (Reinhard et al. 2002, "Photographic tone reproduction for
+/// digital images", equations 1 and 2), or less where more than a tenth would be brighter than
+/// white. What is darker than a hundredth of nearly the brightest counts as that.
+[[nodiscard]] FoundExposure exposure_for(std::vector<double> luminances);
+
+/// Exposure for the full frame of a setup. It follows from scene, camera, frame and seed alone: not
+/// from crop, samples or threads. Pixels count that show something of the scene; the background
+/// counts where hardly any do. What a pilot of 2048 pixels does not meet is looked for in up to
+/// 2^20. Uses job.seed, job.sampler and job.filter.
+[[nodiscard]] FoundExposure find_exposure(const RenderSetup&, const RenderJob&, const PathOptions&,
+                                          TbbExecutor&);
+
+/// Brightness of a picture as PNG and JPEG show it.
+enum class Brightness : uint8_t { Normal, Black, AlmostBlack, AlmostWhite };
+
+/// Brightness of a film with an exposure. Pixels without light do not count.
+[[nodiscard]] Brightness brightness_of(const Film&, float exposure_ev);
+
+/// Line for a picture that shows nothing: what to type. Nothing where the picture is normal, and
+/// where the exposure that was found would hardly change it.
+[[nodiscard]] std::optional<std::string> exposure_advice(Brightness, const FoundExposure&,
+                                                         float exposure_ev);
+
+}  // namespace petzval

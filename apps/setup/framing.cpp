@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/setup/framing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace petzval {
+namespace {
+
+// Embree takes coordinates up to about 1e18; the square of a distance must be a float as well.
+constexpr double kFarthest_m = 1e16;
+constexpr double kNearest_m = 1e-6;
+constexpr double kMargin = 0.06;         ///< of half the picture, on each side
+constexpr double kWidestHalf_rad = 0.8;  ///< a wider view gets wider margins: its rim is stretched
+constexpr double kFlat = 0.2;            ///< thickness over the next larger side
+
+// Direction from a scene of that size to the eye, not of unit length.
+V3d view_direction(const V3d& size) {
+    if (size.x < kFlat * std::min(size.y, size.z)) return {1, 0.25, 0.3};
+    if (size.y < kFlat * std::min(size.x, size.z)) return {0.3, 0.8, 1};
+    return {0.3, 0.25, 1};
+}
+
+/// Axes of an upright view: right, up, and back towards the eye.
+struct ViewAxes {
+    V3d right, up, back;
+
+    explicit ViewAxes(const V3d& to_eye)
+        : right(V3d(0, 1, 0).cross(to_eye).normalized()),
+          up(to_eye.cross(right).normalized()),
+          back(to_eye.normalized()) {}
+    [[nodiscard]] V3d to_view(const V3d& p) const { return {p.dot(right), p.dot(up), p.dot(back)}; }
+    [[nodiscard]] V3d to_world(const V3d& v) const { return right * v.x + up * v.y + back * v.z; }
+};
+
+/// The four planes through the sides of a picture, moved in from far away until they touch the
+/// scene. One of them holds the points where coordinate + slope * z is a constant: the largest that
+/// a point of the scene has.
+class Frustum {
+  public:
+    explicit Frustum(const std::array<double, 2>& slope) : slope_(slope) {}
+    void add(const V3d& p) {
+        for (int i = 0; i < 2; ++i) {
+            const double depth = slope_[i] * p.z;
+            most_[i] = {std::max(most_[i][0], depth - p[i]), std::max(most_[i][1], depth + p[i])};
+        }
+        nearest_ = std::max(nearest_, p.z);
+    }
+    /// The nearest point from which all is seen. Opposite planes meet in a line; the eye stands on
+    /// the one further back, midway between the other two planes.
+    [[nodiscard]] V3d eye() const {
+        V3d eye(0, 0, nearest_ + kNearest_m);
+        for (int i = 0; i < 2; ++i) {
+            eye[i] = (most_[i][1] - most_[i][0]) / 2;
+            eye.z = std::max(eye.z, (most_[i][0] + most_[i][1]) / (2 * slope_[i]));
+        }
+        return eye;
+    }
+
+  private:
+    static constexpr double kNone = -std::numeric_limits<double>::infinity();
+    std::array<double, 2> slope_;  ///< tangents of half the angles of view, across and upright
+    std::array<std::array<double, 2>, 2> most_{{{kNone, kNone}, {kNone, kNone}}};
+    double nearest_ = kNone;
+};
+
+}  // namespace
+
+std::optional<std::array<V3f, 2>> frame_scene(const Scene& scene, float yfov_rad, float aspect,
+                                              double stand_back_m) {
+    if (scene.bounds.isEmpty()) return std::array{V3f(0, 0, 1), V3f(0, 0, 0)};
+    const V3d low(scene.bounds.min), high(scene.bounds.max), centre = low / 2 + high / 2;
+    const ViewAxes axes(view_direction(high - low));
+    const double slope = std::tan(std::min(double(yfov_rad) / 2, kWidestHalf_rad)) * (1 - kMargin);
+    Frustum frustum({slope * double(aspect), slope});
+    for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+        const auto count =
+            static_cast<uint32_t>(scene.meshes[scene.instances[i].mesh].triangles.size());
+        for (uint32_t triangle = 0; triangle < count; ++triangle)
+            for (const V3f& corner : triangle_corners(scene, i, triangle))
+                frustum.add(axes.to_view(V3d(corner) - centre));
+    }
+    V3d eye = frustum.eye();
+    eye.z += stand_back_m;
+    const std::array placed{V3f(centre + axes.to_world(eye)),
+                            V3f(centre + axes.to_world({eye.x, eye.y, 0}))};
+    if (!(std::max(eye.length(), centre.length()) < kFarthest_m) || placed[0] == placed[1])
+        return std::nullopt;
+    return placed;
+}
+
+}  // namespace petzval

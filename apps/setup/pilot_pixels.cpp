@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/setup/pilot_pixels.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace petzval {
+namespace {
+
+// Number of cells that a side is cut into.
+int parts(double wanted, int side_px) {
+    return std::clamp(static_cast<int>(std::lround(wanted)), 1, side_px);
+}
+
+// Random pixel in one of the cells that a side is cut into.
+int within(int cell, int cells, int side_px, uint32_t random) {
+    const int64_t first = int64_t{cell} * side_px / cells;
+    const int64_t end = int64_t{cell + 1} * side_px / cells;
+    return static_cast<int>(first + ((int64_t{random} * (end - first)) >> 32));
+}
+
+}  // namespace
+
+std::vector<std::array<int, 2>> pilot_pixels(V2i size_px, int wanted, uint32_t seed) {
+    const int nx = parts(std::sqrt(double(wanted) * size_px.x / size_px.y), size_px.x);
+    const int ny = parts(double(wanted) / nx, size_px.y);
+    std::vector<std::array<int, 2>> pixels;
+    for (int j = 0; j < ny; ++j)
+        for (int i = 0; i < nx; ++i) {
+            const uint32_t cell = hash32(seed, static_cast<uint32_t>(j * nx + i));
+            pixels.push_back({within(i, nx, size_px.x, hash32(cell, 0)),
+                              within(j, ny, size_px.y, hash32(cell, 1))});
+        }
+    return pixels;
+}
+
+}  // namespace petzval

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Text of files and names, made fit to be shown.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace petzval {
+
+/// Text in which every character shows. Control characters, marks of direction and characters
+/// without width become escapes such as \u202e; bytes that are not UTF-8 become \xff. What a
+/// terminal obeys or hides can then neither act nor deceive (Boucher and Anderson 2021, "Trojan
+/// Source: Invisible Vulnerabilities").
+[[nodiscard]] std::string visible(std::string_view text);
+
+/// Text from a file made fit for a message of one line: visible(), and cut after about 80 bytes.
+[[nodiscard]] std::string printable(std::string_view text);
+
+}  // namespace petzval

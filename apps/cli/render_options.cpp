@@ -158,8 +158,6 @@ RenderFrame resolve(RenderOptions& o) {
     s.camera = resolve(o.camera, s.size);
     resolve_job(o);
     resolve_background(o.background, s);
-    if (o.stats && std::find(o.outputs.begin(), o.outputs.end(), *o.stats) != o.outputs.end())
-        throw CLI::ValidationError("--stats", "would overwrite the picture");
     RenderFrame frame{{0, 0, s.size.x, s.size.y}, {}, parse_share("--tolerance", o.tolerance)};
     if (!o.crop.empty()) frame.crop = parse_crop("--crop", o.crop, s.size);
     if (!o.aovs.empty()) frame.aovs = parse_aovs("--aov", o.aovs);

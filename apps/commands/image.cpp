@@ -9,7 +9,9 @@
 
 #include "apps/cli/output_checks.h"
 #include "apps/cli/parse.h"
+#include "apps/setup/input_files.h"
 #include "io/base/error.h"
+#include "io/base/overwrite.h"
 #include "io/image/difference.h"
 #include "io/image/output.h"
 #include "io/image/spectral_layout.h"
@@ -81,8 +83,12 @@ void add_view(CLI::App& image) {
         ->check(CLI::Range(-100.0, 100.0));
     view->add_option("--view", options->display.view, "display transform, default sRGB")
         ->check(complaint_about_view);
-    view->callback(
-        [options] { write_output(options->out, read_picture(options->in), options->display); });
+    view->callback([options] {
+        std::vector<NamedFile> read = own_files();
+        read.push_back({"the picture to show", options->in});
+        refuse_overwriting({{"-o", options->out}}, read);
+        write_output(options->out, read_picture(options->in), options->display);
+    });
 }
 
 struct SpectrumOptions {
@@ -91,7 +97,10 @@ struct SpectrumOptions {
 
 void spectrum_command(const SpectrumOptions& o) {
     const V2i at = parse_pixel("pixel", o.pixel);
-    if (!o.plot.empty()) check_plot(o.plot);
+    if (!o.plot.empty()) {
+        refuse_overwriting({{"-o", o.plot}}, {{"the picture to read", o.in}});
+        check_plot(o.plot);
+    }
     const auto spectrum = spectrum_of_pixel(read_picture(o.in), o.in, at.x, at.y);
     if (!o.plot.empty())
         write_plot(o.plot, {.title = fmt::format("pixel {},{} of {}", at.x, at.y, o.in),

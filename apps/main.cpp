@@ -1,77 +1,107 @@
 // SPDX-License-Identifier: Apache-2.0
 // petzval: photographs glTF scenes.
+#include <poll.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "apps/cli/command_line.h"
-#include "apps/cli/console.h"
 #include "apps/commands/chart.h"
 #include "apps/commands/image.h"
 #include "apps/commands/info.h"
 #include "apps/commands/lens.h"
 #include "apps/commands/plan.h"
 #include "apps/commands/render.h"
+#include "apps/commands/session.h"
 #include "apps/setup/develop.h"
 #include "io/base/error.h"
 
 namespace {
 
-constexpr int kFailure = 1, kBadArguments = 2;
+using petzval::Session;
 
-int fail(int exit_code, const std::string& what) {
-    petzval::print_error_line("petzval: error: " + what);
+int fail(Session& session, int exit_code, const std::string& what) {
+    session.console.error(what);
     return exit_code;
 }
 
 // Exit code where parsing stopped. Help and the version are "errors" to CLI11 as well.
-int stop_parsing(const CLI::App& app, const CLI::ParseError& e, const petzval::Spelling& line) {
+int stop_parsing(Session& session, const CLI::App& app, const CLI::ParseError& e,
+                 const petzval::Spelling& line) {
     if (e.get_exit_code() == 0) return app.exit(e);
-    return fail(kBadArguments, petzval::explanation(app, e, line) + " (--help says more)");
+    return fail(session, petzval::kUsage,
+                petzval::explanation(app, e, line) + " (--help says more)");
 }
 
-int run(CLI::App& app, int argc, char** argv, const int& exit_code) {
-    petzval::Spelling line = petzval::with_current_spellings(argc, argv);
+int run(CLI::App& app, petzval::Spelling line, Session& session) {
     try {
         petzval::resolve_help(app, line);
         // CLI11 takes the words from the end of a vector.
         app.parse(std::vector<std::string>(line.words.rbegin(), line.words.rend()));
     } catch (const CLI::ParseError& e) {
-        return stop_parsing(app, e, line);
+        return stop_parsing(session, app, e, line);
     } catch (const petzval::ArgumentError& e) {
-        return fail(kBadArguments, e.what());
-    } catch (const std::bad_alloc&) {
-        return fail(kFailure, "out of memory");
+        return fail(session, petzval::kUsage, e.what());
+    } catch (const petzval::OutputError& e) {
+        return fail(session, petzval::kOutputFailed, e.what());
+    } catch (const std::bad_alloc& e) {
+        const std::string what = e.what();
+        return fail(session, petzval::kOutOfMemory,
+                    what == "std::bad_alloc" ? "out of memory" : what);
+    } catch (const std::length_error&) {  // of a container: more than any memory
+        return fail(session, petzval::kOutOfMemory, "out of memory");
+    } catch (const std::system_error& e) {
+        // fmt throws one where standard output cannot be written, which finish_stdout() tells.
+        if (std::ferror(stdout) == 0) return fail(session, petzval::kFailure, e.what());
     } catch (const std::exception& e) {
-        return fail(kFailure, e.what());
+        return fail(session, petzval::kFailure, e.what());
     }
-    return exit_code;
+    return session.exit_code;
+}
+
+// Whether nobody reads standard output any more, as after head: it has what it wanted.
+bool stdout_reader_has_gone() {
+    pollfd out{STDOUT_FILENO, POLLOUT, 0};
+    return ::poll(&out, 1, 0) == 1 && (out.revents & (POLLERR | POLLHUP)) != 0;
+}
+
+// Exit code once what is left of standard output is written.
+int finish_stdout(Session& session, int exit_code) {
+    const bool flushed = std::fflush(stdout) == 0;
+    if ((flushed && std::ferror(stdout) == 0) || stdout_reader_has_gone()) return exit_code;
+    return fail(session, petzval::kOutputFailed, "standard output cannot be written");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    // A limit on the size of files then fails a write, as a full disk does, instead of killing.
+    // A limit on the size of files then fails a write, as a full disk does, and so does a pipe
+    // whose reader has gone, instead of killing.
     std::signal(SIGXFSZ, SIG_IGN);
+    std::signal(SIGPIPE, SIG_IGN);
+    petzval::Spelling line = petzval::with_current_spellings(argc, argv);
+    Session session(petzval::console_style_of(line.words), petzval::is_quiet(line.words));
     CLI::App app("A path tracer whose camera is a lens. Every command has --help.");
     app.name("petzval");
     app.option_defaults()->take_last();  // of an option that is given twice
     app.set_version_flag("--version", petzval::program_version());
     app.require_subcommand(1);
-    int exit_code = 0;
-    petzval::add_render_command(app, exit_code);
+    petzval::add_render_command(app, session);
     petzval::add_plan_command(app);
-    petzval::add_chart_command(app, exit_code);
+    petzval::add_chart_command(app, session);
     petzval::add_info_command(app);
     petzval::add_image_commands(app);
     petzval::add_lens_commands(app);
     app.footer("petzval help COMMAND prints what a command takes.");
-    const int result = run(app, argc, argv, exit_code);
-    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-        return fail(kFailure, "standard output cannot be written");
-    return result;
+    const int exit_code = finish_stdout(session, run(app, std::move(line), session));
+    session.console.end(exit_code);
+    return exit_code;
 }

@@ -4,12 +4,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <set>
+#include <string_view>
 
+#include "apps/setup/input_files.h"
 #include "apps/setup/memory.h"
 #include "apps/setup/spectral_wording.h"
 #include "io/base/atomic_file.h"
 #include "io/base/error.h"
+#include "io/base/rescue.h"
 
 namespace petzval {
 namespace {
@@ -24,9 +28,9 @@ class Folder {
         if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
         made_ = fs::create_directory(path, error);
         if (!fs::is_directory(path))
-            throw InputError(path.string(), "",
-                             "cannot be made a folder for the report: " +
-                                 (error ? error.message() : "there is a file of that name"));
+            throw OutputError(path.string(), "",
+                              "cannot be made a folder for the report: " +
+                                  (error ? error.message() : "there is a file of that name"));
         check_writable(path / "report.html");
         made_pictures_ = fs::create_directory(path / "pictures", error);
     }
@@ -46,6 +50,19 @@ class Folder {
     fs::path path_;
     bool made_ = false, made_pictures_ = false, kept_ = false;
 };
+
+/// Refuses a folder whose files, which may be written anew, are among those that are read.
+void refuse_overwriting_in(const fs::path& folder, const std::vector<NamedFile>& inputs) {
+    constexpr std::array<std::string_view, 5> kWritten{".csv", ".html", ".json", ".png", ".svg"};
+    std::vector<NamedFile> there;
+    std::error_code error;
+    for (const fs::path& of : {folder, folder / "pictures"})
+        for (const auto& entry : fs::directory_iterator(of, error))
+            if (std::find(kWritten.begin(), kWritten.end(), entry.path().extension().string()) !=
+                kWritten.end())
+                there.push_back({"the report", entry.path()});
+    for (const NamedFile& one : there) refuse_overwriting({one}, inputs);
+}
 
 void require_memory(const std::vector<ChartCase>& cases, const ChartFrame& frame) {
     double most = 0;
@@ -86,9 +103,13 @@ ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, Rende
         frame.reference = read_reference(*request.reference, frame.size, frame.crop);
         frame.reference_name = request.reference->filename().string();
     }
+    std::vector<NamedFile> inputs = input_files(request.subject.request);
+    if (request.reference) inputs.push_back({"the file of --reference", *request.reference});
+    refuse_overwriting_in(request.subject.folder, inputs);
     Folder folder(request.subject.folder);
     const RenderSetup first =
         executor.inside([&] { return set_up_render(request.subject.request, once); });
+    refuse_overwriting_in(request.subject.folder, first.prepared.files);
     for (const std::string& line : lines_of(first.from.spectral)) notice(line);
     const SetUpView open = [&](const SceneRequest& one) {
         return executor.inside([&] { return set_up_view(first, one, once); });
@@ -103,6 +124,7 @@ ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, Rende
     for (const ChartCase& of : cases) weight_left += of.methods.empty() ? 0 : of.weight;
     ChartReport report{request.subject, frame, request.budget_s, executor.threads(), {}};
     ChartOutcome outcome;
+    std::string unwritten;  // why files of the report could not be written
     for (const ChartCase& of : cases) {
         const double share_s = (request.budget_s - elapsed_s()) * of.weight / weight_left;
         std::optional<MeasuredCase> measured;
@@ -116,7 +138,7 @@ ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, Rende
         }
         if (!measured) {
             outcome.stopped = true;
-            return outcome;
+            break;
         }
         if (!of.methods.empty()) weight_left -= of.weight;
         outcome.measured += !measured->methods.empty();
@@ -124,10 +146,21 @@ ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, Rende
         finished(report.cases.back());
         if (outcome.measured == 0) continue;
         folder.keep();
-        write_case(report, report.cases.back());
-        write_report(report);
+        try {
+            attempt_all(
+                {[&] { write_case(report, report.cases.back()); }, [&] { write_report(report); }});
+        } catch (const InputError& error) {
+            notice(std::string("warning: ") + error.what() + "; measuring goes on");
+            unwritten = error.what();
+        }
     }
-    if (outcome.measured == 0)
+    if (!unwritten.empty()) {
+        const WriteOutcome points =
+            write_or_rescue(request.subject.folder / "points.csv",
+                            [&](const fs::path& to) { write_points(report, to); });
+        throw OutputError(points.written() ? unwritten : points.message());
+    }
+    if (outcome.measured == 0 && !outcome.stopped)
         throw ArgumentError("--budget", "", "is too small for each of the axes");
     return outcome;
 }

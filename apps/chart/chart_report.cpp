@@ -6,10 +6,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "apps/setup/develop.h"
 #include "io/base/atomic_file.h"
+#include "io/base/rescue.h"
 #include "io/image/flip.h"
 #include "io/image/output.h"
 #include "io/plot/plot.h"
@@ -213,17 +215,29 @@ std::filesystem::path reference_picture_name(const MeasuredCase& of) {
 void write_case(const ChartReport& report, const MeasuredCase& of) {
     if (of.methods.empty()) return;
     const auto& folder = report.subject.folder;
-    write_plots(folder, of.of.name,
-                plot_of(of, &ChartPoint::relative_mse, "relative MSE", of.reference.relative_mse));
-    write_plots(folder, of.of.name + "-flip",
-                plot_of(of, &ChartPoint::flip, "FLIP", of.reference.flip));
     const DisplayOptions display{.exposure_ev = report.frame.exposure_ev};
-    write_output(folder / reference_picture_name(of), of.reference.picture, display);
-    for (const MeasuredMethod& method : of.methods) {
-        const PictureNames names = picture_names(of, method);
-        write_output(folder / names.picture, method.picture, display);
-        write_8bit(folder / names.error, heat(method.flip_map, method.picture));
-    }
+    std::vector<std::function<void()>> writes{
+        [&] {
+            write_plots(
+                folder, of.of.name,
+                plot_of(of, &ChartPoint::relative_mse, "relative MSE", of.reference.relative_mse));
+        },
+        [&] {
+            write_plots(folder, of.of.name + "-flip",
+                        plot_of(of, &ChartPoint::flip, "FLIP", of.reference.flip));
+        },
+        [&] { write_output(folder / reference_picture_name(of), of.reference.picture, display); }};
+    for (const MeasuredMethod& method : of.methods)
+        writes.emplace_back([&] {
+            const PictureNames names = picture_names(of, method);
+            write_output(folder / names.picture, method.picture, display);
+            write_8bit(folder / names.error, heat(method.flip_map, method.picture));
+        });
+    attempt_all(writes);
+}
+
+void write_points(const ChartReport& report, const std::filesystem::path& csv) {
+    write_file_atomically(csv, std::string_view(csv_of(report)));
 }
 
 void write_report(const ChartReport& report) {
@@ -238,9 +252,12 @@ void write_report(const ChartReport& report) {
                    {"cases", std::move(cases)}};
     // Names of files need not be UTF-8.
     const std::string json = all.dump(2, ' ', true, Json::error_handler_t::replace) + "\n";
-    write_file_atomically(folder / "points.csv", std::string_view(csv_of(report)));
-    write_file_atomically(folder / "points.json", std::string_view(json));
-    write_file_atomically(folder / "report.html", std::string_view(report_html(report)));
+    attempt_all({[&] { write_points(report, folder / "points.csv"); },
+                 [&] { write_file_atomically(folder / "points.json", std::string_view(json)); },
+                 [&] {
+                     write_file_atomically(folder / "report.html",
+                                           std::string_view(report_html(report)));
+                 }});
 }
 
 }  // namespace petzval

@@ -31,9 +31,12 @@ struct EfficiencyRow {
 [[nodiscard]] std::vector<std::string> head_of(const ChartReport&, const MeasuredCase&);
 
 /// Writes the files of a case: NAME.svg and NAME.png over relative MSE, NAME-flip.* over FLIP, and
-/// each method's picture and map of FLIP in pictures/. Nothing for a case without methods. Throws
-/// InputError.
+/// each method's picture and map of FLIP in pictures/. Nothing for a case without methods. Each
+/// is tried, whichever of them fail. Throws InputError.
 void write_case(const ChartReport&, const MeasuredCase&);
+
+/// Writes the table of points.csv, a row for each render, under that name. Throws OutputError.
+void write_points(const ChartReport&, const std::filesystem::path& csv);
 
 /// Writes points.csv (a row for each render), points.json and report.html of the cases so far; the
 /// plots of write_case() must be there. Throws InputError.

@@ -2,14 +2,48 @@
 #include "apps/cli/console.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <exception>
-#include <nlohmann/json.hpp>
 
 #include "io/base/printable.h"
 
 namespace petzval {
+namespace {
+
+constexpr std::string_view kWarning = "warning: ";
+
+/// Writes all of a line; where that fails there is nobody to tell.
+void write_all(int descriptor, std::string_view text) {
+    while (!text.empty()) {
+        const ssize_t n = ::write(descriptor, text.data(), text.size());
+        if (n < 0 && errno != EINTR) return;
+        if (n > 0) text.remove_prefix(static_cast<size_t>(n));
+    }
+}
+
+}  // namespace
+
+ConsoleStyle console_style_of(const std::vector<std::string>& words) {
+    auto style = ConsoleStyle::Text;
+    const auto take = [&](std::string_view value) {
+        style = value == "json" ? ConsoleStyle::Json : ConsoleStyle::Text;
+    };
+    if (words.empty() || words.front() != "render") return style;
+    constexpr std::string_view kOption = "--progress", kWithValue = "--progress=";
+    for (size_t i = 0; i < words.size(); ++i) {
+        if (words[i].starts_with(kWithValue)) take(words[i].substr(kWithValue.size()));
+        if (words[i] == kOption && i + 1 < words.size()) take(words[i + 1]);
+    }
+    return style;
+}
+
+bool is_quiet(const std::vector<std::string>& words) {
+    return std::find(words.begin(), words.end(), "--quiet") != words.end();
+}
 
 void print_error_line(std::string line) noexcept {
     try {
@@ -28,11 +62,84 @@ void print_line(const std::string& line) {
 }
 
 void print_notice(NoticeStyle style, const std::string& text) {
-    using nlohmann::json;
     if (style == NoticeStyle::Text) print_error_line("petzval: " + text);
-    if (style == NoticeStyle::Json)  // names of files need not be UTF-8
-        print_error_line(
-            json{{"notice", text}}.dump(-1, ' ', true, json::error_handler_t::replace));
+}
+
+Console::Console(ConsoleStyle style, bool quiet) : style_(style), quiet_(quiet) {
+    if (style_ != ConsoleStyle::Json) return;
+    const std::lock_guard lock(mutex_);
+    capture_.emplace([this](std::string printed) {
+        const std::lock_guard one(mutex_);
+        if (!quiet_) put_event("library", {{"text", std::move(printed)}});
+    });
+    if (capture_->before() >= 0) to_ = capture_->before();
+}
+
+void Console::notice(const std::string& text) {
+    const std::lock_guard lock(mutex_);
+    const bool warning = text.starts_with(kWarning);
+    if (warning)
+        messages_.warnings.push_back(text.substr(kWarning.size()));
+    else
+        messages_.notices.push_back(text);
+    if (quiet_) return;
+    if (style_ == ConsoleStyle::Json)
+        put_event(warning ? "warning" : "notice", {{"notice", text}});
+    else
+        put("petzval: " + text);
+}
+
+void Console::error(const std::string& text) {
+    const std::lock_guard lock(mutex_);
+    messages_.errors.push_back(text);
+    if (style_ == ConsoleStyle::Json)
+        put_event("error", {{"error", text}});
+    else
+        put("petzval: error: " + text);
+}
+
+void Console::line(const std::string& text) {
+    const std::lock_guard lock(mutex_);
+    put(text);
+}
+
+void Console::live_line(const std::string& text) {
+    const std::lock_guard lock(mutex_);
+    if (text.empty()) return clear_live_line();
+    std::fputs(("\r" + text + "\033[K").c_str(), stderr);
+    live_ = true;
+}
+
+void Console::event(const char* name, const Json& fields) {
+    const std::lock_guard lock(mutex_);
+    put_event(name, fields);
+}
+
+void Console::end(int exit_code) {
+    if (style_ == ConsoleStyle::Json && !quiet_) event("end", {{"exit_code", exit_code}});
+}
+
+Messages Console::messages() const {
+    const std::lock_guard lock(mutex_);
+    return messages_;
+}
+
+void Console::put(const std::string& text) {
+    clear_live_line();
+    print_error_line(text);
+}
+
+void Console::put_event(const char* name, const Json& fields) {
+    Json all{{"schema", "petzval.progress"}, {"version", 1}, {"event", name}};
+    all.update(fields);
+    // Names of files need not be UTF-8.
+    const std::string line = all.dump(-1, ' ', true, Json::error_handler_t::replace) + "\n";
+    write_all(to_, line);
+}
+
+void Console::clear_live_line() {
+    if (live_) std::fputs("\r\033[K", stderr);
+    live_ = false;
 }
 
 }  // namespace petzval

@@ -3,7 +3,14 @@
 // names in files, may hold anything: no character of a line is hidden, and none acts on a terminal.
 #pragma once
 
+#include <cstdint>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <vector>
+
+#include "apps/cli/stderr_capture.h"
 
 namespace petzval {
 
@@ -14,9 +21,60 @@ void print_error_line(std::string line) noexcept;
 /// Prints one line on stdout, every character visible().
 void print_line(const std::string& line);
 
-enum class NoticeStyle { Text, Json, None };
+enum class NoticeStyle { Text, None };
 
-/// Prints a notice: "petzval: TEXT", or {"notice": "TEXT"}, or nothing.
+/// Prints a notice: "petzval: TEXT", or nothing.
 void print_notice(NoticeStyle, const std::string& text);
+
+/// What was said during a command.
+struct Messages {
+    std::vector<std::string> notices, warnings, errors;  ///< warnings without "warning: "
+};
+
+enum class ConsoleStyle : uint8_t { Text, Json };
+
+/// Style that the words of a command line ask for; known before they are parsed, for their errors.
+[[nodiscard]] ConsoleStyle console_style_of(const std::vector<std::string>& words);
+/// Whether they ask for errors only.
+[[nodiscard]] bool is_quiet(const std::vector<std::string>& words);
+
+/// Stderr of a command, as text or as one JSON object for each line; docs/guide/render.md has the
+/// schema. Any thread may use it. As JSON it takes in what libraries print, so that nothing else
+/// reaches stderr.
+class Console {
+  public:
+    using Json = nlohmann::ordered_json;
+
+    /// quiet: print nothing but errors.
+    Console(ConsoleStyle, bool quiet);
+    Console(const Console&) = delete;
+    Console& operator=(const Console&) = delete;
+
+    [[nodiscard]] ConsoleStyle style() const { return style_; }
+    /// Says what was chosen, or, after "warning: ", what is odd.
+    void notice(const std::string& text);
+    void error(const std::string& text);
+    /// Prints a line as it is, as text.
+    void line(const std::string& text);
+    /// Shows a line that the next one replaces; an empty text clears it.
+    void live_line(const std::string& text);
+    /// Prints an event, as JSON.
+    void event(const char* name, const Json& fields);
+    /// Prints the last event.
+    void end(int exit_code);
+    [[nodiscard]] Messages messages() const;
+
+  private:
+    void put(const std::string& line);
+    void put_event(const char* name, const Json& fields);
+    void clear_live_line();
+
+    ConsoleStyle style_;
+    bool quiet_, live_ = false;
+    int to_ = 2;  ///< descriptor that JSON goes to
+    mutable std::mutex mutex_;
+    Messages messages_;
+    std::optional<StderrCapture> capture_;  // last: its thread uses the rest
+};
 
 }  // namespace petzval

@@ -1,44 +1,48 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/progress.h"
 
-#include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <condition_variable>
-#include <cstdio>
-#include <mutex>
+#include <cmath>
 
 namespace petzval {
 namespace {
 
-std::string clock_text(double seconds) {
-    const long s = std::lround(seconds);
-    return s < 3600 ? fmt::format("{}:{:02}", s / 60, s % 60)
-                    : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
+constexpr int kUsualColumns = 40;  ///< of a line for nobody knows what
+
+/// Columns that a live line may take: one fewer than the terminal has, or it would wrap.
+int terminal_columns() {
+    winsize size{};
+    return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col - 1
+                                                                             : kUsualColumns;
 }
 
-std::string rate_text(double per_s) {
-    return per_s < 1e6 ? fmt::format("{:.0f} k samples/s", per_s / 1e3)
-                       : fmt::format("{:.2f} M samples/s", per_s / 1e6);
+/// Milliseconds are enough, and 1e-5 of a whole is.
+double to_1e3(double value) {
+    return std::round(value * 1e3) / 1e3;
+}
+double to_1e5(double value) {
+    return std::round(value * 1e5) / 1e5;
 }
 
-std::string bar(double fraction) {
-    constexpr int width = 30;
-    const int full = static_cast<int>(fraction * width);
-    return std::string(static_cast<size_t>(full), '#') +
-           std::string(static_cast<size_t>(width - full), '.');
+Console::Json json_of(const ProgressFigures& f) {
+    Console::Json out{{"phase", kPhaseNames[static_cast<size_t>(Phase::Rendering)]}};
+    out["fraction"] = to_1e5(f.fraction);
+    out["pixel_samples"] = f.pixel_samples;
+    out["samples_per_s"] = std::round(f.samples_per_s);
+    out["elapsed_s"] = to_1e3(f.elapsed_s);
+    out["remaining_s"] = nullptr;
+    if (f.left_s) out["remaining_s"] = to_1e3(*f.left_s);
+    return out;
 }
 
 }  // namespace
 
-Progress::Progress(ProgressStyle style, const RenderMonitor& monitor, std::optional<uint64_t> total,
-                   std::optional<double> time_limit_s)
-    : style_(style),
-      monitor_(monitor),
-      total_(total),
-      time_limit_s_(time_limit_s),
-      start_(std::chrono::steady_clock::now()) {
+Progress::Progress(ProgressStyle style, Console& console, const RenderMonitor& monitor,
+                   const ProgressGoal& goal)
+    : style_(style), console_(console), monitor_(monitor), goal_(goal) {
     if (style_ == ProgressStyle::Auto)
         style_ = isatty(STDERR_FILENO) ? ProgressStyle::Bar : ProgressStyle::Lines;
     if (style_ == ProgressStyle::None) return;
@@ -46,50 +50,87 @@ Progress::Progress(ProgressStyle style, const RenderMonitor& monitor, std::optio
 }
 
 Progress::~Progress() {
-    if (!thread_.joinable()) return;
-    thread_.request_stop();
-    thread_.join();
-    show(true);
+    if (thread_.joinable()) {
+        thread_.request_stop();
+        thread_.join();
+    }
+    const std::lock_guard lock(mutex_);
+    end_phase();
+    if (style_ == ProgressStyle::Bar) console_.live_line("");
+}
+
+void Progress::begin(Phase phase) {
+    const std::lock_guard lock(mutex_);
+    if (phase == phase_) return;
+    end_phase();
+    phase_ = phase;
+    phase_start_s_ = steady_s();
+    if (style_ == ProgressStyle::Json || style_ == ProgressStyle::Bar) show_now();
+}
+
+void Progress::end_rendering(bool whole) {
+    const std::lock_guard lock(mutex_);
+    const uint64_t done = monitor_.pixel_samples_done;
+    const ProgressFigures figures =
+        whole ? figures_at_end(done, phase_s()) : figures_under_way(goal_, done, phase_s());
+    rendered_ = true;
+    if (style_ == ProgressStyle::Json) console_.event("progress", json_of(figures));
+    if (style_ == ProgressStyle::Bar)
+        console_.line(progress_line(figures, terminal_columns(), ProgressBar::Yes));
+    if (style_ == ProgressStyle::Lines)
+        console_.line(progress_line(figures, kUsualColumns, ProgressBar::No));
+}
+
+PhaseTimes Progress::times() const {
+    const std::lock_guard lock(mutex_);
+    PhaseTimes out = times_;
+    if (phase_ != Phase::Count) out[static_cast<size_t>(phase_)] += phase_s();
+    return out;
+}
+
+double Progress::phase_s() const {
+    return steady_s() - phase_start_s_;
+}
+
+void Progress::end_phase() {
+    if (phase_ == Phase::Count) return;
+    double& total_s = times_[static_cast<size_t>(phase_)];
+    total_s += phase_s();
+    if (style_ == ProgressStyle::Json)
+        console_.event("phase", {{"phase", kPhaseNames[static_cast<size_t>(phase_)]},
+                                 {"elapsed_s", to_1e3(total_s)},
+                                 {"ended", true}});
+    phase_ = Phase::Count;
 }
 
 void Progress::watch(const std::stop_token& stop) {
     using namespace std::chrono_literals;
     const auto every = style_ == ProgressStyle::Bar ? 200ms : 2000ms;
-    std::mutex mutex;
     std::condition_variable_any wake;
-    std::unique_lock lock(mutex);
-    while (!wake.wait_for(lock, stop, every, [&] { return stop.stop_requested(); })) show(false);
+    std::unique_lock lock(mutex_);
+    while (!wake.wait_for(lock, stop, every, [&] { return stop.stop_requested(); }))
+        if (phase_ != Phase::Count) show_now();
 }
 
-void Progress::show(bool last) {
-    const double elapsed_s =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    const uint64_t done = monitor_.pixel_samples_done;
-    const double rate = static_cast<double>(done) / std::max(elapsed_s, 1e-9);
-    double fraction = 0;
-    if (total_) fraction = static_cast<double>(done) / static_cast<double>(*total_);
-    if (time_limit_s_ && !(last && total_ && done == *total_))
-        fraction = std::max(fraction, elapsed_s / *time_limit_s_);
-    fraction = std::clamp(fraction, 0.0, 1.0);
-    const double left_s = fraction > 0 ? elapsed_s * (1 - fraction) / fraction : 0;
-
-    std::string text;
-    if (style_ == ProgressStyle::Json) {
-        text = fmt::format(
-            R"({{"fraction":{:.5f},"pixel_samples":{},"samples_per_s":{:.0f},"elapsed_s":{:.3f},"remaining_s":{:.3f}}})",
-            fraction, done, rate, elapsed_s, left_s);
-        text += '\n';
-    } else {
-        const std::string figures =
-            fmt::format("{:5.1f} %  {}  {} elapsed, {} left", 100 * fraction, rate_text(rate),
-                        clock_text(elapsed_s), clock_text(left_s));
-        if (style_ == ProgressStyle::Bar)
-            text = fmt::format("\r[{}] {}\033[K{}", bar(fraction), figures, last ? "\n" : "");
-        else
-            text = figures + '\n';
-    }
-    std::fputs(text.c_str(), stderr);
-    std::fflush(stderr);
+void Progress::show_now() {
+    const bool rendering = phase_ == Phase::Rendering;
+    if (rendering && rendered_) return;
+    const ProgressFigures figures =
+        figures_under_way(goal_, monitor_.pixel_samples_done, phase_s());
+    const auto line = [&](int columns, ProgressBar bar) {
+        return rendering ? progress_line(figures, columns, bar)
+                         : phase_line(phase_, phase_s(), columns);
+    };
+    if (style_ == ProgressStyle::Bar)
+        console_.live_line(line(terminal_columns(), ProgressBar::Yes));
+    if (style_ == ProgressStyle::Lines) console_.line(line(kUsualColumns, ProgressBar::No));
+    if (style_ != ProgressStyle::Json) return;
+    if (rendering)
+        console_.event("progress", json_of(figures));
+    else
+        console_.event("phase", {{"phase", kPhaseNames[static_cast<size_t>(phase_)]},
+                                 {"elapsed_s", to_1e3(phase_s())},
+                                 {"ended", false}});
 }
 
 }  // namespace petzval

@@ -2,37 +2,53 @@
 // Progress of a render on stderr.
 #pragma once
 
-#include <chrono>
+#include <array>
+#include <condition_variable>
 #include <cstdint>
-#include <optional>
-#include <string>
+#include <mutex>
 #include <thread>
 
+#include "apps/cli/console.h"
+#include "apps/cli/progress_text.h"
 #include "integrator/render_job.h"
 
 namespace petzval {
 
 enum class ProgressStyle { Auto, Bar, Lines, Json, None };
 
-/// Shows the progress of a render from a thread of its own until it is destroyed.
+/// Wall time of each phase, in seconds.
+using PhaseTimes = std::array<double, static_cast<size_t>(Phase::Count)>;
+
+/// Shows the phases of a render and its progress from a thread of its own until it is destroyed.
 class Progress {
   public:
-    /// total: pixel samples of the whole job; absent where only time bounds it.
-    Progress(ProgressStyle, const RenderMonitor&, std::optional<uint64_t> total,
-             std::optional<double> time_limit_s);
+    Progress(ProgressStyle, Console&, const RenderMonitor&, const ProgressGoal&);
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
+    /// Begins a phase, which ends the one before. Any thread may call it.
+    void begin(Phase);
+    /// Shows the last of rendering. whole: it ended by its samples or its time, by no signal.
+    void end_rendering(bool whole);
+    /// Times of the phases so far.
+    [[nodiscard]] PhaseTimes times() const;
+
   private:
     void watch(const std::stop_token&);
-    void show(bool last);
+    void show_now();
+    void end_phase();
+    [[nodiscard]] double phase_s() const;
 
     ProgressStyle style_;
+    Console& console_;
     const RenderMonitor& monitor_;
-    std::optional<uint64_t> total_;
-    std::optional<double> time_limit_s_;
-    std::chrono::steady_clock::time_point start_;
+    ProgressGoal goal_;
+    mutable std::mutex mutex_;
+    Phase phase_ = Phase::Count;  ///< none yet
+    double phase_start_s_ = 0;
+    bool rendered_ = false;
+    PhaseTimes times_{};
     std::jthread thread_;
 };
 

@@ -190,8 +190,6 @@ RenderFrame resolve(RenderOptions& o) {
     const auto exposure_ev = parse_exposure_ev("--exposure", o.exposure);
     o.display.exposure_ev = exposure_ev.value_or(0.f);
     o.auto_exposure = !exposure_ev;
-    if (o.stats && std::find(o.outputs.begin(), o.outputs.end(), *o.stats) != o.outputs.end())
-        throw CLI::ValidationError("--stats", "would overwrite the picture");
     RenderFrame frame{{0, 0, s.size.x, s.size.y}, {}, parse_share("--tolerance", o.tolerance), {}};
     if (!o.crop.empty()) frame.crop = parse_crop("--crop", o.crop, s.size);
     if (!o.aovs.empty()) frame.aovs = parse_aovs("--aov", o.aovs);

@@ -7,15 +7,15 @@
 #include <CLI/CLI.hpp>
 #include <limits>
 #include <memory>
+#include <system_error>
 #include <thread>
 
 #include "apps/chart/chart.h"
 #include "apps/cli/camera_options.h"
-#include "apps/cli/console.h"
-#include "apps/cli/interrupt.h"
 #include "apps/cli/parse.h"
 #include "apps/cli/render_options.h"
 #include "apps/cli/spectral_options.h"
+#include "apps/commands/session.h"
 #include "apps/stability/stability.h"
 #include "io/base/nearest.h"
 
@@ -136,9 +136,7 @@ void chart_stability(const ChartOptions& o) {
     if (!o.quiet) print_line(page.string());
 }
 
-int chart_command(ChartOptions& o) {
-    RenderMonitor monitor;
-    Interrupt interrupt(monitor);
+int chart_command(ChartOptions& o, Interrupt& interrupt) {
     resolve(o);
     if (o.stability) {
         chart_stability(o);
@@ -150,16 +148,20 @@ int chart_command(ChartOptions& o) {
                             const std::string& text) { print_notice(style, text); };
     interrupt.arm();
     const auto finished = [&](const MeasuredCase& of) {
-        if (!o.quiet) print_case(of);
+        if (o.quiet) return;
+        try {
+            print_case(of);
+        } catch (const std::system_error&) {  // the report matters more than what is printed
+        }
     };
     const ChartOutcome outcome =
-        run_chart(o.request, executor, monitor, notice, finished, ChartClock());
+        run_chart(o.request, executor, interrupt.monitor(), notice, finished, ChartClock());
     const std::string page = (o.request.subject.folder / "report.html").string();
     if (outcome.stopped) {
         notice(outcome.measured > 0
                    ? fmt::format("stopped: what was measured whole is in {}", page)
                    : "stopped: nothing was measured whole, and no report is written");
-        return 130;
+        return kStopped;
     }
     if (!o.quiet) print_line(page);
     return 0;
@@ -167,12 +169,13 @@ int chart_command(ChartOptions& o) {
 
 }  // namespace
 
-void add_chart_command(CLI::App& app, int& exit_code) {
+void add_chart_command(CLI::App& app, Session& session) {
     auto options = std::make_shared<ChartOptions>();
     CLI::App* command = app.add_subcommand(
         "chart", "measure ways to render a scene: time against error, as a report");
     add_chart_options(*command, *options);
-    command->callback([options, &exit_code] { exit_code = chart_command(*options); });
+    command->callback(
+        [options, &session] { session.exit_code = chart_command(*options, session.interrupt); });
 }
 
 }  // namespace petzval

@@ -8,7 +8,10 @@ class App;
 
 namespace petzval {
 
-/// Adds the subcommand; its callback measures. exit_code becomes 130 where a signal ended it.
-void add_chart_command(CLI::App&, int& exit_code);
+struct Session;
+
+/// Adds the subcommand; its callback measures. the session's exit code tells how it
+/// ended.
+void add_chart_command(CLI::App&, Session&);
 
 }  // namespace petzval

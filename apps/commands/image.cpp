@@ -12,7 +12,9 @@
 #include "apps/cli/display_options.h"
 #include "apps/cli/output_checks.h"
 #include "apps/cli/parse.h"
+#include "apps/setup/input_files.h"
 #include "io/base/error.h"
+#include "io/base/overwrite.h"
 #include "io/image/difference.h"
 #include "io/image/output.h"
 #include "io/image/spectral_layout.h"
@@ -87,6 +89,11 @@ void add_view(CLI::App& image) {
     view->callback([options] {
         if (const std::string told = resolve_display(options->display); !told.empty())
             print_notice(NoticeStyle::Text, told);
+        std::vector<NamedFile> read = own_files();
+        read.push_back({"the picture to show", options->in});
+        if (!options->display.config.empty())
+            read.push_back({"the OpenColorIO configuration", options->display.config});
+        refuse_overwriting({{"-o", options->out}}, read);
         const Picture picture = read_picture(options->in);
         if (picture.for_display)
             print_notice(NoticeStyle::Text,
@@ -103,7 +110,10 @@ struct SpectrumOptions {
 
 void spectrum_command(const SpectrumOptions& o) {
     const V2i at = parse_pixel("pixel", o.pixel);
-    if (!o.plot.empty()) check_plot(o.plot);
+    if (!o.plot.empty()) {
+        refuse_overwriting({{"-o", o.plot}}, {{"the picture to read", o.in}});
+        check_plot(o.plot);
+    }
     const auto spectrum = spectrum_of_pixel(read_picture(o.in), o.in, at.x, at.y);
     if (!o.plot.empty())
         write_plot(o.plot, {.title = fmt::format("pixel {},{} of {}", at.x, at.y, o.in),

@@ -5,6 +5,7 @@
 
 #include "apps/cli/console.h"
 #include "apps/commands/lens_request.h"
+#include "apps/setup/input_files.h"
 #include "io/glass/agf.h"
 #include "io/lens/lens_file.h"
 
@@ -17,6 +18,15 @@ void add_lens_request(CLI::App& app, LensRequest& request) {
                    "catalogue of glasses, .agf, that goes before those that ship; may be given "
                    "more than once")
         ->allow_extra_args(false);
+}
+
+void refuse_overwriting(const std::vector<NamedFile>& outputs, const LensRequest& request,
+                        std::vector<NamedFile> inputs) {
+    inputs.push_back({"the lens", request.lens});
+    for (const std::string& file : request.catalogs)
+        inputs.push_back({"the file of --glasses", file});
+    for (NamedFile& own : own_files()) inputs.push_back(std::move(own));
+    refuse_overwriting(outputs, inputs);
 }
 
 std::shared_ptr<const Lens> open_lens(const LensRequest& request) {

@@ -12,6 +12,7 @@
 #include "io/base/atomic_file.h"
 #include "io/base/csv.h"
 #include "io/base/error.h"
+#include "io/base/rescue.h"
 #include "io/plot/plot.h"
 
 namespace petzval {
@@ -242,12 +243,18 @@ std::shared_ptr<AnalysisOptions> add_analysis(CLI::App& lens, const char* name, 
     command->add_option("--csv", options->csv, "the plot's numbers to write too");
     command->footer(footer);
     command->callback([options, analyse] {
+        const bool with_csv = !options->csv.empty();
+        std::vector<NamedFile> outputs{{"-o", options->plot}};
+        if (with_csv) outputs.push_back({"--csv", options->csv});
+        refuse_overwriting(outputs, options->field.request);
         check_plot(options->plot);
-        if (!options->csv.empty()) check_writable(options->csv);
+        if (with_csv) check_writable(options->csv);
         const Found found = analyse(*options);
-        write_plot(options->plot, found.plot);
-        if (!options->csv.empty())
-            write_file_atomically(options->csv, csv_text(found.names, found.rows));
+        attempt_all({[&] {
+                         if (with_csv)
+                             write_file_atomically(options->csv, csv_text(found.names, found.rows));
+                     },
+                     [&] { write_plot(options->plot, found.plot); }});
     });
     return options;
 }

@@ -37,6 +37,7 @@ Outline path_of(const Lens& lens, const RayBundle& bundle, PupilPoint pupil_poin
 }
 
 void draw_command(const DrawOptions& o) {
+    refuse_overwriting({{"-o", o.out}}, o.field.request);
     check_drawing(o.out);
     const FieldSetup setup = set_up(o.field, {0, 0.7});
     const Lens& lens = *setup.lens;
@@ -79,6 +80,7 @@ struct TraceOptions {
 };
 
 void trace_command(const TraceOptions& o) {
+    refuse_overwriting({{"-o", o.out}}, o.request, {{"the file of --rays", o.rays}});
     check_writable(o.out);
     const auto lens = open_lens(o.request);
     const Towards towards = o.reverse ? Towards::Scene : Towards::Film;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "camera/lens/lens.h"
+#include "io/base/overwrite.h"
 
 namespace petzval {
 
@@ -17,6 +18,10 @@ struct LensRequest {
 };
 /// Adds the argument `lens` and --glasses.
 void add_lens_request(CLI::App&, LensRequest&);
+
+/// Refuses outputs that would destroy a file of the request, an input besides, or each other.
+void refuse_overwriting(const std::vector<NamedFile>& outputs, const LensRequest&,
+                        std::vector<NamedFile> inputs = {});
 
 /// The lens, made ready; its file's warnings go to stderr.
 [[nodiscard]] std::shared_ptr<const Lens> open_lens(const LensRequest&);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -12,6 +13,7 @@
 #include "apps/cli/render_options.h"
 #include "apps/plan/plan.h"
 #include "apps/plan/plan_wording.h"
+#include "apps/setup/input_files.h"
 #include "io/base/format.h"
 #include "io/base/printable.h"
 
@@ -56,7 +58,12 @@ std::string command_of(const CLI::App& app, const Plan& plan) {
     }
     for (const auto& [name, value] : options)
         if (value) command += " " + name + " " + quoted(*value);
-    return command + " -o out.exr";
+    const auto is_read = [&](const char* name) {
+        const std::vector<NamedFile> inputs = input_files(plan.scene);
+        return std::any_of(inputs.begin(), inputs.end(),
+                           [&](const NamedFile& one) { return same_file(one.path, name); });
+    };
+    return command + (is_read("out.exr") ? " -o picture.exr" : " -o out.exr");
 }
 
 std::string duration(double s) {

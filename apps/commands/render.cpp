@@ -7,28 +7,45 @@
 #include <algorithm>
 #include <memory>
 
-#include "apps/cli/console.h"
-#include "apps/cli/interrupt.h"
 #include "apps/cli/render_options.h"
+#include "apps/commands/session.h"
 #include "apps/plan/plan.h"
 #include "apps/plan/plan_wording.h"
 #include "apps/setup/develop.h"
 #include "apps/setup/exposure.h"
+#include "apps/setup/input_files.h"
 #include "apps/setup/spectral_wording.h"
 #include "apps/setup/stats_file.h"
 #include "integrator/executor.h"
 #include "integrator/render.h"
 #include "io/base/clock.h"
 #include "io/base/format.h"
+#include "io/base/rescue.h"
 
 namespace petzval {
 namespace {
 
-Notice notice_to_stderr(const RenderOptions& o) {
-    NoticeStyle style = NoticeStyle::Text;
-    if (o.progress == ProgressStyle::Json) style = NoticeStyle::Json;
-    if (o.quiet) style = NoticeStyle::None;
-    return [style](const std::string& text) { print_notice(style, text); };
+/// Refuses what could not be written after hours, and what would destroy a file that is read.
+void check_outputs(RenderOptions& o, const Rect& crop) {
+    std::vector<NamedFile>& outputs = o.scene.outputs;
+    std::vector<std::filesystem::path> partials;
+    for (const auto& output : o.outputs) {
+        outputs.push_back({"-o", output});
+        const auto partial = partial_name(output);  // which the formats of a name share
+        const auto same = [&](const auto& other) { return same_file(other, partial); };
+        if (std::none_of(partials.begin(), partials.end(), same)) partials.push_back(partial);
+    }
+    if (o.stats) outputs.push_back({"--stats", *o.stats});
+    for (const auto& partial : partials)
+        outputs.push_back({"the picture of a render that is stopped", partial});
+    std::vector<NamedFile> read = input_files(o.scene);
+    if (!o.display.config.empty())
+        read.push_back({"the OpenColorIO configuration", o.display.config});
+    refuse_overwriting(outputs, read);
+    refuse_overwriting(outputs, own_files());
+    for (const auto& output : o.outputs)
+        check_output(output, o.display, crop.width(), crop.height());
+    if (o.stats) check_writable(*o.stats);
 }
 
 void report_bad_samples(const Film& film, const Notice& notice) {
@@ -40,21 +57,18 @@ void report_bad_samples(const Film& film, const Notice& notice) {
                     film.bad_count(), first->index, first->x, first->y));
 }
 
-RenderResult render_watched(const RenderOptions& o, const PathTracer<>& tracer,
-                            const Camera& camera, Film& film, TbbExecutor& executor,
-                            RenderMonitor& monitor) {
-    const uint64_t pixels = static_cast<uint64_t>(film.crop().width()) * film.crop().height();
-    const bool counted = o.job.end_sample < kMostSamples;
-    const Progress progress(o.quiet ? ProgressStyle::None : o.progress, monitor,
-                            counted ? std::optional(pixels * o.job.end_sample) : std::nullopt,
-                            o.job.time_limit_s);
-    return render(tracer, camera, o.job, film, executor, monitor);
+ProgressGoal goal_of(const RenderJob& job, const Rect& crop) {
+    const uint64_t pixels = static_cast<uint64_t>(crop.width()) * crop.height();
+    ProgressGoal goal{pixels * job.replicates, {}, job.time_limit_s};
+    if (job.end_sample < kMostSamples || !job.time_limit_s) goal.total = pixels * job.end_sample;
+    return goal;
 }
 
 // Render setup whose open choices are made, told, and kept for the metadata.
 RenderSetup set_up(const RenderOptions& o, double tolerance, TbbExecutor& executor,
-                   const Notice& notice) {
-    AutoSetup found = set_up_planned({o.scene, o.job, o.path, tolerance}, executor, notice);
+                   const Notice& notice, Progress& progress) {
+    AutoSetup found = set_up_planned({o.scene, o.job, o.path, tolerance}, executor, notice,
+                                     [&](Phase phase) { progress.begin(phase); });
     for (const std::string& line : lines_of(found.setup.from.spectral)) notice(line);
     if (const auto line = line_of(found.choice)) notice(*line);
     if (const std::string reason = reason_of(found.choice); !reason.empty())
@@ -90,56 +104,111 @@ void advise_exposure(const RenderOptions& o, const RenderSetup& setup, const Fil
         notice(*advice);
 }
 
-int render_command(RenderOptions& o) {
-    RenderMonitor monitor;
-    Interrupt interrupt(monitor);
+/// Writes all pictures, whichever of them fail; each failure is told.
+std::vector<WriteOutcome> write_pictures(const RenderOptions& o, const PictureRows& picture,
+                                         bool stopped, Console& console) {
+    std::vector<WriteOutcome> outcomes;
+    if (stopped)
+        outcomes = write_partial(o.outputs, picture);
+    else
+        for (const auto& output : o.outputs)
+            outcomes.push_back(write_or_rescue(output, [&](const std::filesystem::path& to) {
+                write_output(to, picture, o.display);
+            }));
+    for (const WriteOutcome& one : outcomes) {
+        if (!one.written())
+            console.error(one.message());
+        else if (stopped)
+            console.notice(fmt::format("stopped: what there is, is in {}", one.wanted.string()));
+    }
+    return outcomes;
+}
+
+RunReport report_of(const Session& session, const Progress& progress,
+                    std::vector<WriteOutcome> outputs, bool stopped) {
+    RunReport report;
+    if (stopped) report.stopped_by = session.interrupt.signal_name();
+    const PhaseTimes times = progress.times();
+    for (size_t i = 0; i < times.size(); ++i) report.phase_s.emplace_back(kPhaseNames[i], times[i]);
+    report.outputs = std::move(outputs);
+    Messages said = session.console.messages();
+    report.notices = std::move(said.notices);
+    report.warnings = std::move(said.warnings);
+    report.errors = std::move(said.errors);
+    return report;
+}
+
+struct Rendered {
+    RenderResult result;
+    RenderCost cost;
+};
+
+Rendered render_watched(const RenderOptions& o, const RenderSetup& setup, Film& film,
+                        TbbExecutor& executor, Session& session, Progress& progress) {
+    const PreparedScene& prepared = setup.prepared;
+    const PathTracer tracer(*prepared.scene, *prepared.bvh, *prepared.lights, o.path);
+    session.interrupt.arm();
+    progress.begin(Phase::Rendering);
+    const double start_s = steady_s(), cpu_start_s = process_cpu_s();
+    Rendered out;
+    out.result =
+        render(tracer, *setup.view.camera, o.job, film, executor, session.interrupt.monitor());
+    out.cost = {steady_s() - start_s, process_cpu_s() - cpu_start_s, o.threads};
+    progress.end_rendering(!out.result.stopped);
+    return out;
+}
+
+/// Writes pictures and statistics of what was rendered; the exit code.
+int write_all(const RenderOptions& o, const RenderSetup& setup, const Film& film,
+              const Rendered& rendered, Session& session, Progress& progress) {
+    const bool stopped = rendered.result.stopped;
+    progress.begin(Phase::Writing);
+    const PictureRows picture = develop(film, setup, o.job, o.path, rendered.result.end_sample);
+    std::vector<WriteOutcome> outcomes = write_pictures(o, picture, stopped, session.console);
+    bool written = std::all_of(outcomes.begin(), outcomes.end(),
+                               [](const WriteOutcome& one) { return one.written(); });
+    if (o.stats) {
+        const RunReport report = report_of(session, progress, std::move(outcomes), stopped);
+        const WriteOutcome stats = write_or_rescue(*o.stats, [&](const std::filesystem::path& to) {
+            write_stats(to, setup, rendered.result, rendered.cost, report, film);
+        });
+        if (!stats.written()) session.console.error(stats.message());
+        written = written && stats.written();
+    }
+    if (!written) return kOutputFailed;
+    return stopped ? kStopped : kSuccess;
+}
+
+int render_command(RenderOptions& o, Session& session) {
     const RenderFrame frame = resolve(o);
-    for (const auto& output : o.outputs) check_output(output, o.display);
-    if (o.stats) check_writable(*o.stats);
+    check_outputs(o, frame.crop);
 
     flush_denormals();
     TbbExecutor executor(o.threads);
-    const Notice notice = notice_to_stderr(o);
+    const Notice notice = [&](const std::string& text) { session.console.notice(text); };
     for (const std::string& remark : frame.remarks) notice(remark);
-    RenderSetup setup = set_up(o, frame.tolerance, executor, notice);
+    Progress progress(o.quiet ? ProgressStyle::None : o.progress, session.console,
+                      session.interrupt.monitor(), goal_of(o.job, frame.crop));
+    RenderSetup setup = set_up(o, frame.tolerance, executor, notice, progress);
     choose_exposure(o, setup, executor, notice);
-    const PreparedScene& prepared = setup.prepared;
     o.path.visible_background = setup.view.visible_background;
     o.job.observer = setup.view.observer;
     Film film(o.scene.size, frame.crop, frame.aovs, o.scene.spectral.bins);
-    const PathTracer tracer(*prepared.scene, *prepared.bvh, *prepared.lights, o.path);
-
-    interrupt.arm();
-    const auto start = std::chrono::steady_clock::now();
-    const double cpu_start_s = process_cpu_s();
-    const RenderResult result =
-        render_watched(o, tracer, *setup.view.camera, film, executor, monitor);
-    RenderCost cost;
-    cost.render_wall_s =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    cost.render_cpu_s = process_cpu_s() - cpu_start_s;
-    cost.threads = o.threads;
-
+    const Rendered rendered = render_watched(o, setup, film, executor, session, progress);
     report_bad_samples(film, notice);
-    const PictureRows picture = develop(film, setup, o.job, o.path, result.end_sample);
-    if (result.stopped) {
-        for (const auto& partial : write_partial(o.outputs, picture))
-            notice(fmt::format("stopped: what there is, is in {}", partial.string()));
-        return 130;
-    }
-    advise_exposure(o, setup, film, executor, notice);
-    for (const auto& output : o.outputs) write_output(output, picture, o.display);
-    if (o.stats) write_stats(*o.stats, setup, result, cost, film);
-    return 0;
+    const int exit_code = write_all(o, setup, film, rendered, session, progress);
+    if (!rendered.result.stopped) advise_exposure(o, setup, film, executor, notice);
+    return exit_code;
 }
 
 }  // namespace
 
-void add_render_command(CLI::App& app, int& exit_code) {
+void add_render_command(CLI::App& app, Session& session) {
     auto options = std::make_shared<RenderOptions>();
     CLI::App* command = app.add_subcommand("render", "render a glTF scene to EXR, PNG or JPEG");
     add_render_options(*command, *options);
-    command->callback([options, &exit_code] { exit_code = render_command(*options); });
+    command->callback(
+        [options, &session] { session.exit_code = render_command(*options, session); });
 }
 
 }  // namespace petzval

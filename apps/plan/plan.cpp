@@ -144,9 +144,11 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
     return plan;
 }
 
-AutoSetup set_up_planned(const PlanRequest& request, TbbExecutor& executor, const Notice& notice) {
+AutoSetup set_up_planned(const PlanRequest& request, TbbExecutor& executor, const Notice& notice,
+                         const PhaseSink& begins) {
     AutoSetup out;
-    RenderSetup first = executor.inside([&] { return set_up_render(request.scene, notice); });
+    RenderSetup first =
+        executor.inside([&] { return set_up_render(request.scene, notice, begins); });
     const PlanOpen open(request.scene, first);
     AutoChoice& choice = out.choice;
     std::optional<SceneRequest> other;  // a request other than what was set up

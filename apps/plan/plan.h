@@ -61,6 +61,7 @@ struct AutoSetup {
 /// dispersion mode) chosen by a pilot of at most a quarter of a sample for each pixel of the whole
 /// frame: samples, seed and crop do not matter. Without a pilot where nothing depends on
 /// wavelength, and for frames too small for one. No camera that was asked for is replaced.
-[[nodiscard]] AutoSetup set_up_planned(const PlanRequest&, TbbExecutor&, const Notice& notice);
+[[nodiscard]] AutoSetup set_up_planned(const PlanRequest&, TbbExecutor&, const Notice& notice,
+                                       const PhaseSink& begins = {});
 
 }  // namespace petzval

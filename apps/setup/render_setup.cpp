@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "apps/setup/camera_setup.h"
+#include "apps/setup/input_files.h"
 #include "apps/setup/option_names.h"
 #include "core/scene/studio.h"
 #include "io/base/format.h"
@@ -75,6 +76,8 @@ bool same_scene(const SceneRequest& a, const SceneRequest& b) {
 PreparedScene load(SceneRequest request, const Notice& notice) {
     PreparedScene out;
     GltfFile file = load_gltf(request.scene);
+    out.files = input_files(file, request.scene);
+    refuse_overwriting(request.outputs, out.files);
     for (const std::string& warning : file.warnings) notice("warning: " + warning);
     auto scene = std::make_shared<Scene>(std::move(file.scene));
     out.hash = file.hash;
@@ -95,7 +98,12 @@ PreparedScene load(SceneRequest request, const Notice& notice) {
     return out;
 }
 
-RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const RenderSetup* like) {
+RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseSink& begins,
+                   const RenderSetup* like) {
+    const auto begin = [&](Phase phase) {
+        if (begins) begins(phase);
+    };
+    begin(Phase::Loading);
     RenderSetup setup;
     PreparedScene& prepared = setup.prepared;
     Provenance& from = setup.from;
@@ -119,12 +127,14 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const Render
     from.metadata.insert(from.metadata.end(), spectra.metadata.begin(), spectra.metadata.end());
     from.load_s = seconds_since(load_start);
 
+    begin(Phase::Bvh);
     const auto bvh_start = Clock::now();
     if (!shares || asked.traversal != like->from.asked.traversal)
         prepared.bvh = std::make_shared<const Bvh>(scene, request.traversal);
     if (!shares || asked.light_choice != like->from.asked.light_choice)
         prepared.lights = std::make_shared<const LightChoice>(scene, request.light_choice);
     from.bvh_s = seconds_since(bvh_start);
+    begin(Phase::Planning);
 
     CameraSetup camera =
         set_up_camera(model, request.scene.string(), request.size, scene, *prepared.bvh, notice);
@@ -135,12 +145,13 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const Render
 
 }  // namespace
 
-RenderSetup set_up_render(const SceneRequest& asked, const Notice& notice) {
-    return set_up(asked, notice, nullptr);
+RenderSetup set_up_render(const SceneRequest& asked, const Notice& notice,
+                          const PhaseSink& begins) {
+    return set_up(asked, notice, begins, nullptr);
 }
 
 RenderSetup set_up_view(const RenderSetup& like, const SceneRequest& asked, const Notice& notice) {
-    return set_up(asked, notice, &like);
+    return set_up(asked, notice, {}, &like);
 }
 
 }  // namespace petzval

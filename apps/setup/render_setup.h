@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "apps/setup/camera_report.h"
+#include "apps/setup/phase.h"
 #include "apps/setup/request.h"
 #include "apps/setup/spectral_setup.h"
 #include "camera/camera.h"
@@ -28,7 +29,8 @@ struct PreparedScene {
     std::shared_ptr<const std::vector<GltfCamera>> cameras;  ///< of the file
     /// As asked, or what a dark scene gets.
     std::optional<std::filesystem::path> environment;
-    uint64_t hash = 0;  ///< of the file
+    uint64_t hash = 0;             ///< of the file
+    std::vector<NamedFile> files;  ///< that the scene names
 };
 
 /// Camera and observer of a prepared scene.
@@ -59,8 +61,10 @@ struct RenderSetup {
 
 /// Loads the file, its sky and its camera. `notice` gets one line for everything that was chosen
 /// for the user or is odd in the file, but for the spectral decision: spectral_wording.h words it.
-/// Throws InputError, of which ArgumentError where the request does not fit the file.
-[[nodiscard]] RenderSetup set_up_render(const SceneRequest&, const Notice& notice);
+/// `begins` gets Loading, Bvh and Planning. Throws InputError, of which ArgumentError where the
+/// request does not fit the file.
+[[nodiscard]] RenderSetup set_up_render(const SceneRequest&, const Notice& notice,
+                                        const PhaseSink& begins = {});
 
 /// Another view of a scene that is set up already. What the request asks for in the same way is
 /// shared, and notices about it are not repeated; the rest is loaded anew.

@@ -19,6 +19,7 @@
 #include "core/spectrum/bands.h"
 #include "core/spectrum/bins.h"
 #include "core/traversal/traversal_options.h"
+#include "io/base/overwrite.h"
 
 namespace petzval {
 
@@ -99,6 +100,7 @@ struct SceneRequest {
     LightChoiceKind light_choice = LightChoiceKind::Tree;
     Traversal traversal = Traversal::Robust;
     SpectralRequest spectral;
+    std::vector<NamedFile> outputs;  ///< files to be written: a scene that reads one is refused
 };
 
 }  // namespace petzval

@@ -4,6 +4,7 @@
 #include <embree3/rtcore.h>
 #include <pmmintrin.h>
 
+#include <new>
 #include <stdexcept>
 #include <string>
 
@@ -61,6 +62,12 @@ bool traceable(const Ray& r) {
     return (beyond(r.origin) | beyond(r.direction) | int{!(r.t_max >= 0.f)}) == 0;
 }
 
+struct BvhOutOfMemory : std::bad_alloc {
+    [[nodiscard]] const char* what() const noexcept override {
+        return "out of memory while building the acceleration structure";
+    }
+};
+
 }  // namespace
 
 struct Bvh::Impl {
@@ -79,8 +86,7 @@ struct Bvh::Impl {
     void check() const {
         const RTCError error = rtcGetDeviceError(device);
         if (error == RTC_ERROR_NONE) return;
-        if (error == RTC_ERROR_OUT_OF_MEMORY)
-            throw std::runtime_error("out of memory while building the acceleration structure");
+        if (error == RTC_ERROR_OUT_OF_MEMORY) throw BvhOutOfMemory();
         throw std::runtime_error("Embree failed with error " + std::to_string(error));
     }
 

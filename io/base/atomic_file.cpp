@@ -21,10 +21,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-InputError refusal(const fs::path& path, const std::string& why) {
+OutputError refusal(const fs::path& path, const std::string& why) {
     return {path.string(), "", "cannot be written: " + why};
 }
-InputError system_refusal(const fs::path& path, int error) {
+OutputError system_refusal(const fs::path& path, int error) {
     return refusal(path, std::strerror(error));
 }
 
@@ -281,6 +281,12 @@ void write_file_atomically(const fs::path& path, std::span<const uint8_t> bytes)
 void write_file_atomically(const fs::path& path, std::string_view text) {
     write_file_atomically(path,
                           std::span(reinterpret_cast<const uint8_t*>(text.data()), text.size()));
+}
+
+bool is_stream(const fs::path& path) {
+    struct stat status {};
+    if (::stat(path.c_str(), &status) != 0) return is_stream(path, std::nullopt);
+    return !S_ISDIR(status.st_mode) && is_stream(path, status);
 }
 
 void check_writable(const fs::path& path) {

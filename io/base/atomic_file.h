@@ -16,7 +16,7 @@ namespace petzval {
 /// Output for pipes and devices (/dev/stdout, /dev/null) waits in a file in /tmp.
 class AtomicFile {
   public:
-    /// Throws InputError, with the system's reason, where the file could not be put in place.
+    /// Throws OutputError, with the system's reason, where the file could not be put in place.
     explicit AtomicFile(const std::filesystem::path& target);
     AtomicFile(const AtomicFile&) = delete;
     AtomicFile& operator=(const AtomicFile&) = delete;
@@ -25,7 +25,7 @@ class AtomicFile {
     /// Writes at any place, in any order. The first failure is kept for commit(), and nothing is
     /// written after it: libraries that encode pictures do not get along with failing writes.
     void write(std::span<const uint8_t> bytes, uint64_t offset) noexcept;
-    /// Syncs and puts the file in place. Throws InputError with the system's reason, also for a
+    /// Syncs and puts the file in place. Throws OutputError with the system's reason, also for a
     /// failed write.
     void commit();
 
@@ -34,9 +34,12 @@ class AtomicFile {
     std::unique_ptr<State> state_;
 };
 
-/// Writes a whole file through AtomicFile. Throws InputError with the system's reason.
+/// Writes a whole file through AtomicFile. Throws OutputError with the system's reason.
 void write_file_atomically(const std::filesystem::path&, std::span<const uint8_t> bytes);
 void write_file_atomically(const std::filesystem::path&, std::string_view text);
+
+/// Whether a path is a pipe, a terminal, a device or a standard stream: nothing is renamed over it.
+[[nodiscard]] bool is_stream(const std::filesystem::path&);
 
 /// Checks early, before hours of work, that a file can be written. Throws what AtomicFile would
 /// throw for a missing or locked folder, a folder in the place of the file, or a file that must not

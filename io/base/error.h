@@ -14,6 +14,17 @@ class InputError : public std::runtime_error {
   public:
     InputError(const std::string& file, const std::string& place, const std::string& message)
         : std::runtime_error(file + ": " + (place.empty() ? "" : place + ": ") + message) {}
+
+  protected:
+    explicit InputError(const std::string& message) : std::runtime_error(message) {}
+};
+
+/// File that cannot be written: a full disk, a folder that is not there.
+class OutputError : public InputError {
+  public:
+    using InputError::InputError;
+    /// Several files: the message names them.
+    explicit OutputError(const std::string& message) : InputError(message) {}
 };
 
 /// Request that a sound file cannot meet: a camera name that it does not have, say.

@@ -24,6 +24,7 @@ GltfFile load_gltf(const std::filesystem::path& path) {
     file.cameras = read_cameras(gltf, nodes, tally);
 
     file.hash = source.hash;
+    file.files = source.files;
     file.warnings = source.warnings;
     describe(gltf, tally, file);
     return file;

@@ -30,6 +30,7 @@ struct GltfFile {
     /// For `petzval info`: what the file holds, one "name: value" line each, then what is honoured
     /// and what is ignored.
     std::vector<std::string> contents, honoured, ignored;
+    std::vector<std::filesystem::path> files;  ///< those that were read; the first is the file
     uint64_t hash = 0;
 };
 

@@ -1,15 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/image/output.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
-#include "io/base/atomic_file.h"
+#include "io/base/error.h"
 
 namespace petzval {
 
-void check_output(const std::filesystem::path& path, const DisplayOptions& display) {
-    if (picture_format(path) != PictureFormat::Exr)
-        static_cast<void>(find_view(display.view, display.config));
+void check_output(const std::filesystem::path& path, const DisplayOptions& display, int width,
+                  int height) {
+    const PictureFormat format = picture_format(path);
+    if (format != PictureFormat::Exr) static_cast<void>(find_view(display.view, display.config));
+    constexpr int kLargestJpegSide_px = 65500;  // JPEG_MAX_DIMENSION of libjpeg
+    if (format == PictureFormat::Jpeg && std::max(width, height) > kLargestJpegSide_px)
+        throw OutputError(path.string(), "",
+                          fmt::format("a JPEG has {} pixels on a side at most; write .png or .exr",
+                                      kLargestJpegSide_px));
     check_writable(path);
 }
 
@@ -23,14 +31,19 @@ void write_output(const std::filesystem::path& path, const PictureRows& linear,
                display.config.empty());
 }
 
-std::vector<std::filesystem::path> write_partial(const std::vector<std::filesystem::path>& outputs,
-                                                 const PictureRows& linear) {
-    std::vector<std::filesystem::path> written;
-    for (std::filesystem::path path : outputs) {
-        path.replace_extension(".partial.exr");
-        if (std::find(written.begin(), written.end(), path) != written.end()) continue;
-        write_exr(path, linear);
-        written.push_back(path);
+std::filesystem::path partial_name(std::filesystem::path output) {
+    return output.replace_extension(".partial.exr");
+}
+
+std::vector<WriteOutcome> write_partial(const std::vector<std::filesystem::path>& outputs,
+                                        const PictureRows& linear) {
+    std::vector<WriteOutcome> written;
+    for (const std::filesystem::path& output : outputs) {
+        const std::filesystem::path path = partial_name(output);
+        const auto done = [&](const WriteOutcome& one) { return one.wanted == path; };
+        if (std::none_of(written.begin(), written.end(), done))
+            written.push_back(write_or_rescue(
+                path, [&](const std::filesystem::path& to) { write_exr(to, linear); }));
     }
     return written;
 }

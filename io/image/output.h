@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "io/base/atomic_file.h"  // check_writable, for what is no picture
+#include "io/base/rescue.h"
 #include "io/image/display.h"
 #include "io/image/picture.h"
 
@@ -20,15 +21,19 @@ struct DisplayOptions {
 };
 
 /// Checks early, before hours of work, that write_output() can do its work. Throws what it would
-/// throw for this name, folder and view.
-void check_output(const std::filesystem::path&, const DisplayOptions&);
+/// throw for this name, folder, view and size in pixels.
+void check_output(const std::filesystem::path&, const DisplayOptions&, int width = 1,
+                  int height = 1);
 
 /// Writes a linear picture in the format that the path's ending names. Throws InputError.
 void write_output(const std::filesystem::path&, const PictureRows& linear, const DisplayOptions&);
 
+/// Name of an unfinished picture beside an output: NAME.partial.exr.
+[[nodiscard]] std::filesystem::path partial_name(std::filesystem::path output);
+
 /// Writes an unfinished picture to NAME.partial.exr beside each output NAME.*, once for each name,
-/// and returns their names. Throws InputError.
-std::vector<std::filesystem::path> write_partial(const std::vector<std::filesystem::path>& outputs,
-                                                 const PictureRows& linear);
+/// or a copy of it somewhere else. Throws nothing itself.
+[[nodiscard]] std::vector<WriteOutcome> write_partial(
+    const std::vector<std::filesystem::path>& outputs, const PictureRows& linear);
 
 }  // namespace petzval

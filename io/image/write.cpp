@@ -49,7 +49,7 @@ void encode(const std::filesystem::path& path, const std::string& ending, OIIO::
     OIIO::Filesystem::IOProxy* proxy = &to_file;
     spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
     const auto output = OIIO::ImageOutput::create(ending);
-    const auto refuse = [&](const std::string& why) -> InputError {
+    const auto refuse = [&](const std::string& why) -> OutputError {
         return {path.string(), "", "cannot be encoded: " + first_line(why)};
     };
     if (!output) throw refuse(OIIO::geterror());

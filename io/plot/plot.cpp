@@ -9,6 +9,7 @@
 
 #include <cerrno>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -23,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-InputError refusal(const fs::path& path, const std::string& why) {
+OutputError refusal(const fs::path& path, const std::string& why) {
     return {path.string(), "", "cannot be plotted: " + why};
 }
 
@@ -155,9 +156,20 @@ pid_t start_gnuplot(const fs::path& path, int in, int out, int err) {
     posix_spawn_file_actions_adddup2(&actions, err, STDERR_FILENO);
     std::string program = "gnuplot", option = "--default-settings";  // no ~/.gnuplot
     const std::array<char*, 3> arguments{program.data(), option.data(), nullptr};
+    // Signals as usual, whatever this process blocks or ignores.
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    sigset_t none, usual;
+    sigemptyset(&none);
+    sigemptyset(&usual);
+    for (const int signal : {SIGPIPE, SIGXFSZ}) sigaddset(&usual, signal);
+    posix_spawnattr_setsigmask(&attributes, &none);
+    posix_spawnattr_setsigdefault(&attributes, &usual);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
     pid_t process = 0;
     const int error =
-        ::posix_spawnp(&process, program.c_str(), &actions, nullptr, arguments.data(), environ);
+        ::posix_spawnp(&process, program.c_str(), &actions, &attributes, arguments.data(), environ);
+    posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
     if (error == ENOENT)
         throw refusal(path, "gnuplot is not installed; install the package gnuplot-nox");

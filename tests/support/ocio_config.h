@@ -11,7 +11,9 @@ namespace petzval::test {
 /// "Half". roles and more: lines of the roles, and further colour spaces.
 [[nodiscard]] inline std::string aces_config(
     const std::string& roles = "  aces_interchange: ACES2065-1\n", const std::string& more = "") {
-    return "ocio_profile_version: 2\nsearch_path: \"\"\nroles:\n  scene_linear: ACEScg\n  default: Raw\n" + roles +
+    return "ocio_profile_version: 2\nsearch_path: \"\"\nroles:\n  scene_linear: ACEScg\n  default: "
+           "Raw\n" +
+           roles +
            R"(displays:
   Cinema:
     - !<View> {name: Half, colorspace: Halves}

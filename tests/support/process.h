@@ -34,6 +34,8 @@ struct Finished {
 /// What a process gets beside its arguments.
 struct ProcessOptions {
     std::optional<rlim_t> file_size_limit_bytes;
+    std::optional<rlim_t> address_space_limit_bytes;
+    std::vector<int> ignored_signals;
     std::optional<std::filesystem::path> folder;    ///< to run in
     std::optional<std::filesystem::path> out, err;  ///< in place of what is captured
 };
@@ -106,10 +108,13 @@ class Process {
         };
         redirect(options.out, pipes_[0][1], STDOUT_FILENO);
         redirect(options.err, pipes_[1][1], STDERR_FILENO);
-        if (options.file_size_limit_bytes) {
-            const rlimit limit{*options.file_size_limit_bytes, *options.file_size_limit_bytes};
-            setrlimit(RLIMIT_FSIZE, &limit);
-        }
+        const auto limit = [](auto resource, const std::optional<rlim_t>& bytes) {
+            const rlimit both{bytes.value_or(0), bytes.value_or(0)};
+            if (bytes) setrlimit(resource, &both);
+        };
+        limit(RLIMIT_FSIZE, options.file_size_limit_bytes);
+        limit(RLIMIT_AS, options.address_space_limit_bytes);
+        for (const int number : options.ignored_signals) ::signal(number, SIG_IGN);
         if (!options.folder || chdir(options.folder->c_str()) == 0)
             execv(program.c_str(), words.data());
         _exit(127);

@@ -44,9 +44,11 @@ class Fetcher {
             owner.fail("uri", fmt::format("\"{}\" is not a relative path to a file; network and "
                                           "absolute addresses are not read",
                                           printable(uri)));
-        FileBytes file = read_file(source_.path.parent_path() / *path);
+        const std::filesystem::path file_path = source_.path.parent_path() / *path;
+        FileBytes file = read_file(file_path);
         if (!file.error.empty())
             owner.fail("uri", fmt::format("\"{}\": {}", printable(*path), file.error));
+        if (!times_read_.contains(*path)) source_.files.push_back(file_path);
         count(*path, file.bytes, owner);
         return std::move(file.bytes);
     }

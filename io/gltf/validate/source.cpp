@@ -36,6 +36,7 @@ GltfSource read_gltf_source(const std::filesystem::path& path) {
 
     GltfSource source;
     source.path = path;
+    source.files.push_back(path);
     source.hash = fnv1a(file.bytes);
     GltfBudget budget;
     budget.add_owned(file.bytes.size());

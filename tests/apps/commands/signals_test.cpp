@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ctrl-C and termination, while a scene loads and while it renders.
+// Signals that end a program, while a scene loads, while it renders, and while files are written.
+#include <sys/stat.h>
+
+#include <nlohmann/json.hpp>
 #include <random>
+#include <thread>
 
 #include "tests/support/cli.h"
 #include "tests/support/open_watch.h"
@@ -8,7 +12,22 @@
 namespace petzval {
 namespace {
 
-class CliSignals : public CliTest, public ::testing::WithParamInterface<int> {};
+class CliSignals : public CliTest, public ::testing::WithParamInterface<int> {
+  protected:
+    static std::string name_of(int signal) { return std::string("SIG") + sigabbrev_np(signal); }
+};
+
+class CliSignalPairs : public CliTest {
+  protected:
+    /// Words of a render without end, whose statistics wait for somebody to read them.
+    Words endless(const Words& more) {
+        mkfifo(path("pipe").c_str(), 0600);
+        Words words = {"-o",         path("out.exr"), "--spp",   "100000000",
+                       "--progress", "json",          "--stats", path("pipe")};
+        words.insert(words.end(), more.begin(), more.end());
+        return render_words(words, scene_);
+    }
+};
 
 // Triangles that have nothing in common, so that loading takes a while.
 TinyGltf crowd(size_t triangles) {
@@ -37,12 +56,18 @@ TEST_P(CliSignals, StopARenderAndKeepWhatThereIs) {
               std::string::npos);
     EXPECT_EQ(file_bytes(path("out.exr")), "the old one");
     EXPECT_EQ(file_bytes(path("out.png")), "the old one");
-    EXPECT_EQ(listing(),
-              (std::set<std::string>{"out.exr", "out.png", "out.partial.exr", "studio.glb"}));
+    EXPECT_EQ(listing(), (std::set<std::string>{"out.exr", "out.png", "out.partial.exr", "s.json",
+                                                "studio.glb"}));
     const Picture partial = read_picture(path("out.partial.exr"));
     EXPECT_EQ(partial.width, 16);
     EXPECT_GT(value_at(partial, 8, 8, "B"), 0.f);
     EXPECT_GT(mean_of(partial, "A"), 0.99);
+    const auto stats = nlohmann::json::parse(file_bytes(path("s.json")));
+    EXPECT_EQ(stats.at("stopped_by"), name_of(GetParam()));
+    EXPECT_GE(stats.at("samples_per_pixel"), 1);
+    EXPECT_EQ(stats.at("outputs"),
+              nlohmann::json::array(
+                  {{{"file", path("out.partial.exr")}, {"error", nullptr}, {"rescue", nullptr}}}));
 }
 
 // The first notice is of a scene that is loaded. Where it is there before the signal, a larger
@@ -67,7 +92,72 @@ TEST_P(CliSignals, WhileLoadingLeaveNothing) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Signal, CliSignals, ::testing::Values(SIGINT, SIGTERM));
+INSTANTIATE_TEST_SUITE_P(Signal, CliSignals,
+                         ::testing::Values(SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGUSR1, SIGUSR2));
+
+// timeout(1) sends its signal twice, systemd SIGHUP after SIGTERM, a limit of CPU time SIGXCPU each
+// second: none of that is somebody who waits no longer.
+TEST_F(CliSignalPairs, OfOneWishCountOnce) {
+    Process render(endless({}));
+    ASSERT_TRUE(wait_for_samples(render, 16 * 16));
+    render.signal(SIGSTOP);  // what comes now comes at once
+    render.signal(SIGTERM);
+    render.signal(SIGHUP);
+    render.signal(SIGCONT);
+    ASSERT_TRUE(render.wait_for_stderr("stopped: what there is, is in"));
+    for (int i = 0; i < 5; ++i) {
+        render.signal(SIGXCPU);
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    const std::string stats = file_bytes(path("pipe"));
+    EXPECT_EQ(render.wait().exit_code, 130);
+    EXPECT_TRUE(nlohmann::json::parse(stats).contains("stopped_by"));
+}
+
+TEST_F(CliSignalPairs, TheSecondEndsAtOnce) {
+    Process render(endless({}));
+    ASSERT_TRUE(wait_for_samples(render, 16 * 16));
+    render.signal(SIGINT);
+    ASSERT_TRUE(render.wait_for_stderr("stopped: what there is, is in"));
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    render.signal(SIGTERM);  // the statistics have no reader: it would wait for ever
+    const Finished run = render.wait();
+    EXPECT_EQ(run.exit_code, 130);
+    EXPECT_FALSE(run.timed_out);
+}
+
+TEST_F(CliSignalPairs, ThoseIgnoredBeforeStayIgnored) {
+    ProcessOptions options;
+    options.ignored_signals = {SIGHUP, SIGINT};  // nohup, and a job in the background of a script
+    Process render(render_words({"-o", path("out.exr"), "--spp", "100000000", "--progress", "json",
+                                 "--stats", path("s.json")},
+                                scene_),
+                   options);
+    ASSERT_TRUE(wait_for_samples(render, 16 * 16));
+    render.signal(SIGHUP);
+    render.signal(SIGINT);
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    render.signal(SIGTERM);
+    EXPECT_EQ(render.wait().exit_code, 130);
+    EXPECT_EQ(nlohmann::json::parse(file_bytes(path("s.json"))).at("stopped_by"), "SIGTERM");
+}
+
+TEST_F(CliSignalPairs, AReaderThatHasGoneStopsNothing) {
+    const auto exit_code_before_true = [&](const Words& words) {
+        std::string command = "exec 3>&1; { \"$0\"";
+        for (const std::string& word : words) command += " '" + word + "'";
+        command += "; echo $? >&3; } 2>&1 | true";
+        const Finished run = Process({"-c", command, PETZVAL_PROGRAM}, {}, "/bin/sh").wait();
+        EXPECT_EQ(run.err, "");
+        return run.out;
+    };
+    EXPECT_EQ(
+        exit_code_before_true(render_words({"-o", path("out.exr"), "--progress", "lines"}, scene_)),
+        "0\n");
+    EXPECT_EQ(read_picture(path("out.exr")).width, 16);
+    EXPECT_EQ(exit_code_before_true({"lens", "list"}), "0\n");
+    EXPECT_EQ(exit_code_before_true({"image", "diff", path("none.exr"), path("none.exr")}), "1\n");
+}
 
 }  // namespace
 }  // namespace petzval

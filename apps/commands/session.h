@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "apps/cli/console.h"
+#include "apps/cli/exit_code.h"
+#include "apps/cli/interrupt.h"
+
+namespace petzval {
+
+/// What the program hands to its commands: where they talk to, what stops them, and the exit code
+/// of one that ends without an exception.
+struct Session {
+    Interrupt interrupt;  ///< first: the threads of the others inherit its blocked signals
+    Console console;
+    int exit_code = kSuccess;
+
+    Session(ConsoleStyle style, bool quiet) : console(style, quiet) {}
+};
+
+}  // namespace petzval

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/setup/input_files.h"
+
+#include "io/base/assets.h"
+#include "io/base/error.h"
+
+namespace petzval {
+
+namespace fs = std::filesystem;
+
+std::vector<NamedFile> input_files(const SceneRequest& r) {
+    std::vector<NamedFile> files{{"the scene", r.scene}};
+    const auto add = [&](const char* role, const auto& path) {
+        if (path && !path->empty()) files.push_back({role, *path});
+    };
+    add("the file of --env", r.environment);
+    add("the file of --lens", r.camera.lens);
+    add("the file of --aperture", r.camera.aperture);
+    for (const fs::path& file : r.camera.glasses) files.push_back({"the file of --glasses", file});
+    files.push_back({"the file of --illuminant", r.spectral.illuminant});
+    files.push_back({"the file of --response", r.spectral.response});
+    return files;
+}
+
+std::vector<NamedFile> input_files(const GltfFile& file, const fs::path& scene) {
+    std::vector<NamedFile> files;
+    for (const fs::path& one : file.files) files.push_back({"a file of the scene", one});
+    for (const GltfCamera& camera : file.cameras)
+        for (const auto& name : {camera.extras.lens, camera.extras.aperture})
+            if (name)
+                files.push_back({"a file of the scene's camera", scene.parent_path() / *name});
+    return files;
+}
+
+std::vector<NamedFile> own_files() {
+    std::vector<NamedFile> files;
+    for (const char* folder : {"color", "glass", "lenses", "spectra"}) try {
+            for (const auto& entry : fs::directory_iterator(asset(folder)))
+                files.push_back({"a file of Petzval itself", entry.path()});
+        } catch (const InputError&) {  // not installed: whoever needs it will say so
+        }
+    return files;
+}
+
+}  // namespace petzval

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files that a render reads: none of them may be written.
+#pragma once
+
+#include <vector>
+
+#include "apps/setup/request.h"
+#include "io/base/overwrite.h"
+#include "io/gltf/gltf.h"
+
+namespace petzval {
+
+/// Files that the options of a request name, whether or not they are there.
+[[nodiscard]] std::vector<NamedFile> input_files(const SceneRequest&);
+/// Files that a scene file names: buffers, images, and what its cameras ask for.
+[[nodiscard]] std::vector<NamedFile> input_files(const GltfFile&,
+                                                 const std::filesystem::path& scene);
+/// Files that come with the program and that commands read: colours, glasses, lenses, spectra.
+[[nodiscard]] std::vector<NamedFile> own_files();
+
+}  // namespace petzval

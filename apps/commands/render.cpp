@@ -126,9 +126,9 @@ int render_command(RenderOptions& o) {
             notice(fmt::format("stopped: what there is, is in {}", partial.string()));
         return 130;
     }
-    advise_exposure(o, setup, film, executor, notice);
     for (const auto& output : o.outputs) write_output(output, picture, o.display);
     if (o.stats) write_stats(*o.stats, setup, result, cost, film);
+    advise_exposure(o, setup, film, executor, notice);
     return 0;
 }
 

@@ -15,11 +15,11 @@ constexpr double kMargin = 0.06;         ///< of half the picture, on each side
 constexpr double kWidestHalf_rad = 0.8;  ///< a wider view gets wider margins: its rim is stretched
 constexpr double kFlat = 0.2;            ///< thickness over the next larger side
 
-// Direction from a scene of that size to the eye, not of unit length.
+// Direction from a scene of that size to the eye, not of unit length: three sides of a cube show.
 V3d view_direction(const V3d& size) {
-    if (size.x < kFlat * std::min(size.y, size.z)) return {1, 0.25, 0.3};
-    if (size.y < kFlat * std::min(size.x, size.z)) return {0.3, 0.8, 1};
-    return {0.3, 0.25, 1};
+    if (size.x < kFlat * std::min(size.y, size.z)) return {1, 0.45, 0.55};
+    if (size.y < kFlat * std::min(size.x, size.z)) return {0.55, 0.9, 1};
+    return {0.55, 0.45, 1};
 }
 
 /// Axes of an upright view: right, up, and back towards the eye.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/setup/stats_file.h"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 
 #include <nlohmann/json.hpp>
@@ -71,7 +72,8 @@ void write_stats(const std::filesystem::path& path, const RenderSetup& setup,
     out["size_px"] = {film.full_size().x, film.full_size().y};
     out["samples_per_pixel"] = result.end_sample;
     out["pixel_samples"] = s.samples;
-    out["exposure_ev"] = setup.from.exposure_ev;
+    // The digits that were typed or printed, not those of the float.
+    out["exposure_ev"] = nlohmann::ordered_json::parse(fmt::format("{}", setup.from.exposure_ev));
     out["threads"] = cost.threads;
     out["threads_that_worked"] = result.workers;
     out["stopped_by"] = nullptr;

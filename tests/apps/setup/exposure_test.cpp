@@ -69,15 +69,10 @@ TEST(BrightnessOf, TellsFilmsThatShowNothing) {
 class FindExposure : public testing::Test {
   protected:
     TempFolder folder_;
-    TbbExecutor executor_{2};
 
     FoundExposure find(const TinyGltf& file, const std::function<void(SceneRequest&)>& change = {},
-                       const PathOptions& options = {}, uint32_t seed = 0) {
-        return find_with(executor_, file, change, options, seed);
-    }
-    FoundExposure find_with(TbbExecutor& executor, const TinyGltf& file,
-                            const std::function<void(SceneRequest&)>& change = {},
-                            const PathOptions& options = {}, uint32_t seed = 0) {
+                       const PathOptions& options = {}, uint32_t seed = 0, int threads = 2) {
+        TbbExecutor executor(threads);
         SceneRequest request;
         request.scene = file.save_glb(folder_.path / "scene.glb");
         request.size = {160, 90};
@@ -156,9 +151,8 @@ TEST_F(FindExposure, GoesThroughTheCameraThatIsAskedFor) {
 TEST_F(FindExposure, FollowsFromTheFrameAndTheSeedAlone) {
     const auto sky = [](SceneRequest& r) { r.background = Rgb(0.3f); };
     const FoundExposure two = find(glow(1, 0), sky);
-    TbbExecutor one(1), five(5);
-    EXPECT_EQ(find_with(one, glow(1, 0), sky).log_average, two.log_average);
-    EXPECT_EQ(find_with(five, glow(1, 0), sky).log_average, two.log_average);
+    EXPECT_EQ(find(glow(1, 0), sky, {}, 0, 1).log_average, two.log_average);
+    EXPECT_EQ(find(glow(1, 0), sky, {}, 0, 5).log_average, two.log_average);
     EXPECT_EQ(find(glow(1, 0), sky).log_average, two.log_average);
     EXPECT_NE(find(glow(1, 0), sky, {}, 1).log_average, two.log_average);
 }

@@ -127,7 +127,9 @@ TEST_F(CliSpelling, NearestNamesAreListed) {
         {{"--lens", "takumar", "--focus", "1"},
          "takumar: is neither a file nor a lens; did you mean takumar-50mm-f1.2?"},
         {{"--camera", "wied"}, "did you mean wide?"},
-        {{"--view", "ACSE"}, "there are sRGB, ACES, raw; did you mean ACES?"},
+        {{"--view", "ACSE"},
+         "--view: Petzval's configuration: there is no view \"ACSE\"; there are sRGB, ACES, raw; "
+         "did you mean ACES?"},
         {{"--filter", "blackman"}, "did you mean blackman-harris?"},
         {{"--aov", "albdeo"}, "did you mean albedo?"},
         {{"--fstop", "2", "--focus", "1", "--aperture", "squar"}, "did you mean square?"},

@@ -111,13 +111,12 @@ TEST_F(CliSpelling, HelpIsAWordToo) {
         EXPECT_EQ(run.err, "");
         return run.out;
     };
-    EXPECT_EQ(help({"help"}), help({"--help"}));
-    EXPECT_EQ(help({"help"}), help({"-h"}));
-    EXPECT_NE(help({"help"}).find("render a glTF scene"), std::string::npos);
-    EXPECT_EQ(help({"help", "render"}), help({"render", "--help"}));
-    EXPECT_EQ(help({"help", "lens", "spot"}), help({"lens", "spot", "--help"}));
-    EXPECT_EQ(help({"lens", "help", "spot"}), help({"lens", "spot", "--help"}));
-    EXPECT_EQ(help({"lens", "help"}), help({"lens", "--help"}));
+    const std::string all = help({"help"}), spot = help({"help", "lens", "spot"});
+    EXPECT_NE(all.find("render a glTF scene"), std::string::npos);
+    EXPECT_EQ(all, help({"--help"}));
+    EXPECT_EQ(spot, help({"lens", "spot", "--help"}));
+    EXPECT_EQ(spot, help({"lens", "help", "spot"}));
+    EXPECT_EQ(help({"lens", "help"}), help({"lens", "-h"}));
     EXPECT_NE(help({"--version"}).find("petzval 0"), std::string::npos);
     EXPECT_EQ(refused({"help", "rendr"}), "\"rendr\" is no command; did you mean render?");
 }

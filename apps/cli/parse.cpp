@@ -78,7 +78,7 @@ Rect parse_crop(const std::string& option, const std::string& text, V2i frame) {
     const auto parts = split(text, ',');
     std::vector<int> v;
     for (const std::string_view part : parts)
-        if (const auto value = number<int>(part)) v.push_back(*value);
+        if (const auto value = number<int>(trimmed(part))) v.push_back(*value);
     if (v.size() == 4 && parts.size() == 4) {
         const auto inside = [](int at, int size, int whole) {
             return at >= 0 && at < whole && size >= 1 && size <= whole - at;
@@ -91,7 +91,7 @@ Rect parse_crop(const std::string& option, const std::string& text, V2i frame) {
 
 V2i parse_pixel(const std::string& option, const std::string& text) {
     if (const auto parts = split(text, ','); parts.size() == 2) {
-        const auto x = number<int>(parts[0]), y = number<int>(parts[1]);
+        const auto x = number<int>(trimmed(parts[0])), y = number<int>(trimmed(parts[1]));
         if (x && y) return {*x, *y};
     }
     refuse(option, text, "a pixel x,y");
@@ -213,7 +213,7 @@ float parse_focus_distance_m(const std::string& option, const std::string& text)
 Focus parse_focus(const std::string& option, const std::string& text, V2i frame) {
     if (lower(text) == "auto") return FocusAuto{};
     if (const auto parts = split(text, ','); parts.size() == 2) {
-        const auto x = number<int>(parts[0]), y = number<int>(parts[1]);
+        const auto x = number<int>(trimmed(parts[0])), y = number<int>(trimmed(parts[1]));
         if (x && y && *x >= 0 && *y >= 0 && *x < frame.x && *y < frame.y) return FocusPixel{*x, *y};
         refuse(option, text, fmt::format("a pixel x,y of the {}x{} frame", frame.x, frame.y));
     }

@@ -97,7 +97,7 @@ View view_of(const Config& loaded, const std::string& text) {
             wanted == lower(view.display + "/" + view.view))
             return view;
     const std::vector<std::string> names = names_of(views);
-    throw InputError(loaded.path, "",
+    throw InputError(loaded.own ? "Petzval's configuration" : loaded.path, "",
                      fmt::format("there is no view \"{}\"; there are {}{}", text,
                                  fmt::join(names, ", "), did_you_mean(text, names)));
 }

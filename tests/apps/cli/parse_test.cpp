@@ -25,6 +25,8 @@ TEST(Parse, FocusTakesUnitsAndInfinity) {
     EXPECT_TRUE(std::holds_alternative<FocusAuto>(parse_focus("--focus", "Auto", {100, 80})));
     const Focus pixel = parse_focus("--focus", "10,79", {100, 80});
     EXPECT_EQ(std::get<FocusPixel>(pixel).y, 79);
+    EXPECT_EQ(parse_pixel("pixel", "10, 79"), V2i(10, 79));
+    EXPECT_EQ(parse_crop("--crop", "1, 2, 3, 4", {100, 80}).x1, 4);
     for (const char* text :
          {"", "m", "0", "-1m", "1.5 x", "1,5m", "10,80", "nan", "infinite", "1e-9", "1e9km"})
         EXPECT_THROW((void)parse_focus("--focus", text, {100, 80}), CLI::ValidationError) << text;

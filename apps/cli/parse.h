@@ -29,6 +29,8 @@ namespace petzval {
 [[nodiscard]] V2i parse_pixel(const std::string& option, const std::string& text);
 /// Duration from "90", "90s", "1.5m" or "2h": seconds above 0.
 [[nodiscard]] double parse_duration_s(const std::string& option, const std::string& text);
+/// Bytes from "512MB" (10^6), "8GB" or "8GiB" (2^30): above 0.
+[[nodiscard]] uint64_t parse_memory_bytes(const std::string& option, const std::string& text);
 /// Share from "1%" or "0.01": above 0, 1 at most.
 [[nodiscard]] double parse_share(const std::string& option, const std::string& text);
 /// Shutter time from "0.01" or "1/100": seconds above 0.

@@ -9,10 +9,12 @@
 
 #include "apps/cli/output_checks.h"
 #include "apps/cli/parse.h"
+#include "apps/cli/reading_options.h"
 #include "io/base/error.h"
 #include "io/image/difference.h"
 #include "io/image/output.h"
 #include "io/image/spectral_layout.h"
+#include "io/image/threads.h"
 #include "io/plot/plot.h"
 
 namespace petzval {
@@ -21,6 +23,7 @@ namespace {
 struct DiffOptions {
     std::string a, b;
     std::optional<double> fail_above;
+    ReadingOptions reading;
 };
 
 void print_layer(const LayerDifference& d) {
@@ -44,7 +47,8 @@ void require_within(double limit, const DiffOptions& o, const LayerDifference& d
 }
 
 void diff_command(const DiffOptions& o) {
-    const std::vector<LayerDifference> layers = compare_files(o.a, o.b);
+    limit_picture_threads(usual_threads());
+    const std::vector<LayerDifference> layers = compare_files(o.a, o.b, o.reading.pictures());
     for (const LayerDifference& layer : layers) print_layer(layer);
     std::fflush(stdout);  // the result comes before a complaint
     if (!o.fail_above) return;
@@ -59,6 +63,7 @@ void add_diff(CLI::App& image) {
     diff->add_option("--fail-above", options->fail_above,
                      "exit with 1 if the RMSE of any layer is above this")
         ->check(CLI::NonNegativeNumber);
+    add_memory_option(*diff, options->reading);
     diff->footer(
         fmt::format("relative MSE is the mean of (a - b)^2 / (b^2 + {}); the peak of PSNR "
                     "is the largest value of b.",
@@ -70,6 +75,7 @@ void add_view(CLI::App& image) {
     struct ViewOptions {
         std::string in, out;
         DisplayOptions display;
+        ReadingOptions reading;
     };
     auto options = std::make_shared<ViewOptions>();
     CLI::App* view = image.add_subcommand("view", "write a linear picture as PNG or JPEG");
@@ -81,18 +87,25 @@ void add_view(CLI::App& image) {
         ->check(CLI::Range(-100.0, 100.0));
     view->add_option("--view", options->display.view, "display transform, default sRGB")
         ->check(complaint_about_view);
-    view->callback(
-        [options] { write_output(options->out, read_picture(options->in), options->display); });
+    add_memory_option(*view, options->reading);
+    view->callback([options] {
+        limit_picture_threads(usual_threads());
+        PictureBudget pictures = options->reading.pictures();
+        write_output(options->out, read_picture(options->in, pictures), options->display);
+    });
 }
 
 struct SpectrumOptions {
     std::string in, pixel, plot;
+    ReadingOptions reading;
 };
 
 void spectrum_command(const SpectrumOptions& o) {
     const V2i at = parse_pixel("pixel", o.pixel);
     if (!o.plot.empty()) check_plot(o.plot);
-    const auto spectrum = spectrum_of_pixel(read_picture(o.in), o.in, at.x, at.y);
+    limit_picture_threads(usual_threads());
+    PictureBudget pictures = o.reading.pictures();
+    const auto spectrum = spectrum_of_pixel(read_picture(o.in, pictures), o.in, at.x, at.y);
     if (!o.plot.empty())
         write_plot(o.plot, {.title = fmt::format("pixel {},{} of {}", at.x, at.y, o.in),
                             .x_label = "wavelength (nm)",
@@ -109,6 +122,7 @@ void add_spectrum(CLI::App& image) {
         ->required();
     spectrum->add_option("pixel", options->pixel, "x,y in pixels of the full frame")->required();
     spectrum->add_option("-o,--output", options->plot, "plot to write too, .svg or .png");
+    add_memory_option(*spectrum, options->reading);
     spectrum->callback([options] { spectrum_command(*options); });
 }
 

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "apps/cli/reading_options.h"
 #include "io/gltf/gltf.h"
 
 namespace petzval {
@@ -19,12 +20,18 @@ void print_list(const char* title, const std::vector<std::string>& lines) {
 }  // namespace
 
 void add_info_command(CLI::App& app) {
-    auto path = std::make_shared<std::filesystem::path>();
+    struct InfoOptions {
+        std::filesystem::path scene;
+        ReadingOptions reading;
+    };
+    auto options = std::make_shared<InfoOptions>();
     CLI::App* command =
         app.add_subcommand("info", "print what a glTF file holds and what of it is honoured");
-    command->add_option("scene", *path, "glTF scene, .gltf or .glb")->required();
-    command->callback([path] {
-        const GltfFile file = load_gltf(*path);
+    command->add_option("scene", options->scene, "glTF scene, .gltf or .glb")->required();
+    add_reading_options(*command, options->reading);
+    command->callback([options] {
+        PictureBudget pictures = options->reading.pictures();
+        const GltfFile file = load_gltf(options->scene, options->reading.scope(), pictures);
         print_list("holds", file.contents);
         print_list("honoured", file.honoured);
         print_list("ignored", file.ignored);

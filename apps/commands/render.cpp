@@ -18,6 +18,7 @@
 #include "integrator/render.h"
 #include "io/base/clock.h"
 #include "io/base/format.h"
+#include "io/image/threads.h"
 
 namespace petzval {
 namespace {
@@ -70,6 +71,7 @@ int render_command(RenderOptions& o) {
 
     flush_denormals();
     TbbExecutor executor(o.threads);
+    limit_picture_threads(o.threads);
     const Notice notice = notice_to_stderr(o);
     const RenderSetup setup = set_up(o, frame.tolerance, executor, notice);
     const PreparedScene& prepared = setup.prepared;

@@ -28,6 +28,7 @@ struct PreparedScene {
     std::shared_ptr<const std::vector<GltfCamera>> cameras;  ///< of the file
     std::optional<Rgb> background;  ///< as asked, or what a dark scene gets
     uint64_t hash = 0;              ///< of the file
+    PictureBudget pictures;         ///< what the scene and its sky left of it
 };
 
 /// Camera and observer of a prepared scene.

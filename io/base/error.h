@@ -2,6 +2,7 @@
 // The exceptions that io throws: something outside the program is not as it must be.
 #pragma once
 
+#include <new>
 #include <stdexcept>
 #include <string>
 
@@ -15,6 +16,16 @@ class InputError : public std::runtime_error {
     InputError(const std::string& file, const std::string& place, const std::string& message)
         : std::runtime_error(file + ": " + (place.empty() ? "" : place + ": ") + message) {}
 };
+
+/// Calls f; where memory runs out in it, the InputError names the file that it was for.
+template <class F>
+decltype(auto) naming_file(const std::string& file, const F& f) {
+    try {
+        return f();
+    } catch (const std::bad_alloc&) {
+        throw InputError(file, "", "out of memory; it asks for more than there is");
+    }
+}
 
 /// Request that a sound file cannot meet: a camera name that it does not have, say.
 class ArgumentError : public InputError {

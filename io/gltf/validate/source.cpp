@@ -26,13 +26,14 @@ void check_scene_graph(GltfCheck& check) {
 
 }  // namespace
 
-GltfSource read_gltf_source(const std::filesystem::path& path) {
+GltfSource read_gltf_source(const std::filesystem::path& path, FileScope scope) {
     const std::string name = path.string();
     const FileBytes file = read_file(path);
     if (!file.error.empty()) throw InputError(name, "", file.error);
 
     GltfSource source;
     source.path = path;
+    source.scope = scope;
     source.hash = fnv1a(file.bytes);
     GltfBudget budget;
     budget.add_owned(file.bytes.size());

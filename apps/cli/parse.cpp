@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <string_view>
 
@@ -158,6 +159,25 @@ std::optional<float> parse_exposure_ev(const std::string& option, const std::str
                fmt::format("auto or a number from {0:g} to {1:g}", -kMostExposure_ev,
                            kMostExposure_ev));
     return value;
+}
+
+uint64_t parse_memory_bytes(const std::string& option, const std::string& text) {
+    constexpr std::array<std::pair<std::string_view, double>, 8> units{{{"kB", 1e3},
+                                                                        {"MB", 1e6},
+                                                                        {"GB", 1e9},
+                                                                        {"TB", 1e12},
+                                                                        {"KiB", 0x1p10},
+                                                                        {"MiB", 0x1p20},
+                                                                        {"GiB", 0x1p30},
+                                                                        {"TiB", 0x1p40}}};
+    for (const auto& [unit, bytes] : units) {
+        if (!text.ends_with(unit)) continue;
+        const auto count =
+            number<double>(std::string_view(text).substr(0, text.size() - unit.size()));
+        if (count && *count * bytes >= 1 && *count * bytes < 0x1p62)
+            return static_cast<uint64_t>(*count * bytes);
+    }
+    refuse(option, text, "an amount of memory such as 512MB, 8GB or 8GiB");
 }
 
 double parse_share(const std::string& option, const std::string& text) {

@@ -34,6 +34,8 @@ namespace petzval {
 /// Exposure in EV from "6.5": -100 to 100; nothing for "auto".
 [[nodiscard]] std::optional<float> parse_exposure_ev(const std::string& option,
                                                      const std::string& text);
+/// Bytes from "512MB" (10^6), "8GB" or "8GiB" (2^30): above 0.
+[[nodiscard]] uint64_t parse_memory_bytes(const std::string& option, const std::string& text);
 /// Share from "1%" or "0.01": above 0, 1 at most.
 [[nodiscard]] double parse_share(const std::string& option, const std::string& text);
 /// Shutter time from "0.01", "1/100", "1/100s" or "10ms": seconds above 0.

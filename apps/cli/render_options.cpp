@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <limits>
-#include <thread>
 
 #include "apps/cli/choice.h"
 #include "apps/cli/display_options.h"
@@ -26,8 +25,9 @@ void add_scene_options(CLI::App& app, RenderOptions& o) {
     app.add_option("--size", o.size, "WIDTHxHEIGHT in pixels (default 1280x720)");
     app.add_option("--tolerance", o.tolerance,
                    "error that what is chosen for you may bring: 1% (default) or 0.01");
-    app.add_option("--threads", o.threads, "default: one for each core")
-        ->transform(whole_number_between(1, 1024));
+    app.add_option("--threads", o.threads, "default: one for each core that can be had")
+        ->transform(whole_number_between(1, kMostThreads));
+    add_reading_options(app, o.reading);
 }
 
 void add_frame_options(CLI::App& app, RenderOptions& o) {
@@ -123,14 +123,16 @@ void resolve_job(RenderOptions& o) {
     const float usual_radius_px = o.filter == FilterKind::Box ? 0.5f : 1.5f;
     o.job.filter = Filter(o.filter, o.filter_radius_px > 0 ? o.filter_radius_px : usual_radius_px);
     o.job.timing = o.stats.has_value();
-    if (o.threads == 0)
-        o.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    if (o.threads == 0) o.threads = usual_threads();
 }
 
-void require_memory(const RenderFrame& frame, const std::optional<Bins>& bins) {
+void require_memory(const RenderFrame& frame, const SceneRequest& scene) {
     const double pixels = static_cast<double>(frame.crop.width()) * frame.crop.height();
-    if (const auto shortage =
-            memory_shortage(pixels * double(Film::bytes_per_pixel(frame.aovs.size(), bins))))
+    const uint64_t there_bytes =
+        std::min(usable_memory_bytes(), scene.picture_memory_bytes.value_or(UINT64_MAX));
+    const auto pixel_bytes =
+        static_cast<double>(Film::bytes_per_pixel(frame.aovs.size(), scene.spectral.bins));
+    if (const auto shortage = memory_shortage(pixels * pixel_bytes, there_bytes))
         throw CLI::ValidationError("--size", *shortage);
 }
 
@@ -182,6 +184,8 @@ void add_render_options(CLI::App& app, RenderOptions& o) {
 RenderFrame resolve(RenderOptions& o) {
     SceneRequest& s = o.scene;
     s.size = parse_size("--size", o.size);
+    s.picture_memory_bytes = o.reading.memory_bytes();
+    s.scope = o.reading.scope();
     resolve(o.spectral);
     s.spectral = o.spectral.request;
     s.camera = resolve(o.camera, s.size);
@@ -194,7 +198,7 @@ RenderFrame resolve(RenderOptions& o) {
     if (!o.crop.empty()) frame.crop = parse_crop("--crop", o.crop, s.size);
     if (!o.aovs.empty()) frame.aovs = parse_aovs("--aov", o.aovs);
     frame.remarks = resolve_outputs(o);
-    require_memory(frame, s.spectral.bins);
+    require_memory(frame, s);
     return frame;
 }
 

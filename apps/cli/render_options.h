@@ -9,6 +9,7 @@
 
 #include "apps/cli/camera_options.h"
 #include "apps/cli/progress.h"
+#include "apps/cli/reading_options.h"
 #include "apps/cli/spectral_options.h"
 #include "apps/setup/render_setup.h"
 #include "core/film/film.h"
@@ -32,12 +33,13 @@ struct RenderOptions {
     SceneRequest scene;
     SpectralOptions spectral;
     CameraOptions camera;
+    ReadingOptions reading;
     std::vector<std::filesystem::path> outputs;
     std::optional<std::filesystem::path> stats;
     std::string size = "1280x720", crop, time, background, tolerance = "1%", exposure = "0";
     std::vector<std::string> aovs;  ///< lists of names
     std::optional<uint32_t> spp;
-    int threads = 0;  ///< 0: one for each core
+    int threads = 0;  ///< 0: as many as can be had
     RenderJob job;
     PathOptions path;
     FilterKind filter = FilterKind::BlackmanHarris;

@@ -8,16 +8,17 @@
 #include <limits>
 #include <memory>
 #include <system_error>
-#include <thread>
 
 #include "apps/chart/chart.h"
 #include "apps/cli/camera_options.h"
 #include "apps/cli/parse.h"
+#include "apps/cli/reading_options.h"
 #include "apps/cli/render_options.h"
 #include "apps/cli/spectral_options.h"
 #include "apps/commands/session.h"
 #include "apps/stability/stability.h"
 #include "io/base/nearest.h"
+#include "io/image/threads.h"
 
 namespace petzval {
 namespace {
@@ -27,6 +28,7 @@ struct ChartOptions {
     ChartRequest request;
     SpectralOptions spectral;
     CameraOptions camera;
+    ReadingOptions reading;
     std::vector<std::string> axes;
     std::string size = "192x108", crop, budget = "10m", background;
     int threads = 0;
@@ -67,8 +69,9 @@ void add_chart_options(CLI::App& app, ChartOptions& o) {
         ->transform(whole_number_between(kChartSeeds, 1000));
     app.add_option("--exposure", r.frame.exposure_ev, "stops, of pictures and of FLIP")
         ->transform(number_between(-100, 100));
-    app.add_option("--threads", o.threads, "default: one for each core")
-        ->transform(whole_number_between(1, 1024));
+    app.add_option("--threads", o.threads, "default: one for each core that can be had")
+        ->transform(whole_number_between(1, kMostThreads));
+    add_reading_options(app, o.reading);
     app.add_flag("--quiet", o.quiet, "print nothing but errors");
     add_camera_options(app, o.camera);
     add_light_options(app, r.subject.request, o.background);
@@ -110,8 +113,9 @@ void resolve(ChartOptions& o) {
     scene.spectral = o.spectral.request;
     scene.camera = resolve(o.camera, scene.size);
     resolve_background(o.background, scene);
-    if (o.threads == 0)
-        o.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    scene.picture_memory_bytes = o.reading.memory_bytes();
+    scene.scope = o.reading.scope();
+    if (o.threads == 0) o.threads = usual_threads();
 }
 
 void print_case(const MeasuredCase& of) {
@@ -144,6 +148,7 @@ int chart_command(ChartOptions& o, Interrupt& interrupt) {
     }
     flush_denormals();
     TbbExecutor executor(o.threads);
+    limit_picture_threads(o.threads);
     const auto notice = [style = o.quiet ? NoticeStyle::None : NoticeStyle::Text](
                             const std::string& text) { print_notice(style, text); };
     interrupt.arm();

@@ -12,12 +12,14 @@
 #include "apps/cli/display_options.h"
 #include "apps/cli/output_checks.h"
 #include "apps/cli/parse.h"
+#include "apps/cli/reading_options.h"
 #include "apps/setup/input_files.h"
 #include "io/base/error.h"
 #include "io/base/overwrite.h"
 #include "io/image/difference.h"
 #include "io/image/output.h"
 #include "io/image/spectral_layout.h"
+#include "io/image/threads.h"
 #include "io/plot/plot.h"
 
 namespace petzval {
@@ -26,6 +28,7 @@ namespace {
 struct DiffOptions {
     std::string a, b;
     std::optional<double> fail_above;
+    ReadingOptions reading;
 };
 
 void print_layer(const LayerDifference& d) {
@@ -50,7 +53,8 @@ void require_within(double limit, const DiffOptions& o, const LayerDifference& d
 }
 
 void diff_command(const DiffOptions& o) {
-    const std::vector<LayerDifference> layers = compare_files(o.a, o.b);
+    limit_picture_threads(usual_threads());
+    const std::vector<LayerDifference> layers = compare_files(o.a, o.b, o.reading.pictures());
     for (const LayerDifference& layer : layers) print_layer(layer);
     std::fflush(stdout);  // the result comes before a complaint
     if (!o.fail_above) return;
@@ -65,6 +69,7 @@ void add_diff(CLI::App& image) {
     diff->add_option("--fail-above", options->fail_above,
                      "exit with 1 if the RMSE of any layer is above this")
         ->transform(number_between(0, std::numeric_limits<float>::max()));
+    add_memory_option(*diff, options->reading);
     diff->footer(
         fmt::format("relative MSE is the mean of (a - b)^2 / (b^2 + {}); the peak of PSNR "
                     "is the largest value of b.",
@@ -76,6 +81,7 @@ void add_view(CLI::App& image) {
     struct ViewOptions {
         std::string in, out;
         DisplayOptions display;
+        ReadingOptions reading;
     };
     auto options = std::make_shared<ViewOptions>();
     CLI::App* view = image.add_subcommand("view", "write a linear picture as PNG or JPEG");
@@ -86,6 +92,7 @@ void add_view(CLI::App& image) {
     view->add_option("--exposure", options->display.exposure_ev, "stops of 2, default 0")
         ->transform(number_between(-100, 100));
     add_display_options(*view, options->display);
+    add_memory_option(*view, options->reading);
     view->callback([options] {
         if (const std::string told = resolve_display(options->display); !told.empty())
             print_notice(NoticeStyle::Text, told);
@@ -94,7 +101,9 @@ void add_view(CLI::App& image) {
         if (!options->display.config.empty())
             read.push_back({"the OpenColorIO configuration", options->display.config});
         refuse_overwriting({{"-o", options->out}}, read);
-        const Picture picture = read_picture(options->in);
+        limit_picture_threads(usual_threads());
+        PictureBudget pictures = options->reading.pictures();
+        const Picture picture = read_picture(options->in, pictures);
         if (picture.for_display)
             print_notice(NoticeStyle::Text,
                          fmt::format("warning: {} holds values for a display already, and goes "
@@ -106,6 +115,7 @@ void add_view(CLI::App& image) {
 
 struct SpectrumOptions {
     std::string in, pixel, plot;
+    ReadingOptions reading;
 };
 
 void spectrum_command(const SpectrumOptions& o) {
@@ -114,7 +124,9 @@ void spectrum_command(const SpectrumOptions& o) {
         refuse_overwriting({{"-o", o.plot}}, {{"the picture to read", o.in}});
         check_plot(o.plot);
     }
-    const auto spectrum = spectrum_of_pixel(read_picture(o.in), o.in, at.x, at.y);
+    limit_picture_threads(usual_threads());
+    PictureBudget pictures = o.reading.pictures();
+    const auto spectrum = spectrum_of_pixel(read_picture(o.in, pictures), o.in, at.x, at.y);
     if (!o.plot.empty())
         write_plot(o.plot, {.title = fmt::format("pixel {},{} of {}", at.x, at.y, o.in),
                             .x_label = "wavelength (nm)",
@@ -131,6 +143,7 @@ void add_spectrum(CLI::App& image) {
         ->required();
     spectrum->add_option("pixel", options->pixel, "x,y in pixels of the full frame")->required();
     spectrum->add_option("-o,--output", options->plot, "plot to write too, .svg or .png");
+    add_memory_option(*spectrum, options->reading);
     spectrum->callback([options] { spectrum_command(*options); });
 }
 

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/cli/console.h"
+#include "apps/cli/reading_options.h"
 #include "apps/setup/auto_focus.h"
 #include "io/gltf/gltf.h"
 
@@ -53,13 +54,19 @@ void append_placement(const std::string& path, GltfFile& file) {
 }  // namespace
 
 void add_info_command(CLI::App& app) {
-    auto path = std::make_shared<std::filesystem::path>();
+    struct InfoOptions {
+        std::filesystem::path scene;
+        ReadingOptions reading;
+    };
+    auto options = std::make_shared<InfoOptions>();
     CLI::App* command =
         app.add_subcommand("info", "print what a glTF file holds and what of it is honoured");
-    command->add_option("scene", *path, "glTF scene, .gltf or .glb")->required();
-    command->callback([path] {
-        GltfFile file = load_gltf(*path);
-        append_placement(path->string(), file);
+    command->add_option("scene", options->scene, "glTF scene, .gltf or .glb")->required();
+    add_reading_options(*command, options->reading);
+    command->callback([options] {
+        PictureBudget pictures = options->reading.pictures();
+        GltfFile file = load_gltf(options->scene, options->reading.scope(), pictures);
+        append_placement(options->scene.string(), file);
         print_list("holds", file.contents);
         print_list("honoured", file.honoured);
         print_list("ignored", file.ignored);

@@ -16,6 +16,7 @@
 #include "apps/setup/input_files.h"
 #include "io/base/format.h"
 #include "io/base/printable.h"
+#include "io/image/threads.h"
 
 namespace petzval {
 namespace {
@@ -104,6 +105,7 @@ void plan_command(PlanOptions& o, const CLI::App& app) {
     const RenderFrame frame = resolve(r);
     flush_denormals();
     TbbExecutor executor(r.threads);
+    limit_picture_threads(r.threads);
     const Plan plan = make_plan({r.scene, r.job, r.path, frame.tolerance}, executor,
                                 [&](const std::string& text) {
                                     if (!r.quiet) print_notice(NoticeStyle::Text, text);

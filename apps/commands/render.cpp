@@ -21,6 +21,7 @@
 #include "io/base/clock.h"
 #include "io/base/format.h"
 #include "io/base/rescue.h"
+#include "io/image/threads.h"
 
 namespace petzval {
 namespace {
@@ -185,6 +186,7 @@ int render_command(RenderOptions& o, Session& session) {
 
     flush_denormals();
     TbbExecutor executor(o.threads);
+    limit_picture_threads(o.threads);
     const Notice notice = [&](const std::string& text) { session.console.notice(text); };
     for (const std::string& remark : frame.remarks) notice(remark);
     Progress progress(o.quiet ? ProgressStyle::None : o.progress, session.console,

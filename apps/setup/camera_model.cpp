@@ -11,6 +11,7 @@
 #include "io/base/error.h"
 #include "io/base/nearest.h"
 #include "io/base/printable.h"
+#include "io/base/read_file.h"
 #include "io/glass/catalogue.h"
 #include "io/glass/glass_lookup.h"
 
@@ -42,25 +43,40 @@ const GltfCamera& find_camera(const std::string& wanted, const std::string& scen
                     did_you_mean(wanted, names)));
 }
 
-// Path of a file that a scene names: it lies beside the scene.
-std::string beside(const std::filesystem::path& scene, const std::string& name) {
-    const auto path = scene.parent_path() / name;
-    const bool is_file = path.has_extension() && std::filesystem::path(name).is_relative() &&
-                         std::filesystem::is_regular_file(path);
-    return is_file ? path.string() : name;
+std::string extras_of(const GltfCamera& camera) {
+    return fmt::format("extras.petzval of camera \"{}\"", printable(camera.name));
+}
+
+// Path of a file that a camera of a scene names: it lies beside the scene.
+std::string beside(const std::filesystem::path& scene, FileScope scope, const GltfCamera& camera,
+                   const std::string& name) {
+    namespace fs = std::filesystem;
+    const fs::path folder = scene.parent_path(), path = folder / name;
+    std::error_code none;
+    const bool is_file =
+        path.has_extension() && fs::path(name).is_relative() && fs::is_regular_file(path, none);
+    const fs::path meant = is_file ? path : fs::path(name);
+    if (scope == FileScope::Confined && fs::exists(meant, none) && !lies_within(meant, folder))
+        throw InputError(scene.string(), extras_of(camera),
+                         fmt::format("\"{}\" lies outside the folder of the scene, and --confine "
+                                     "allows no file there",
+                                     printable(name)));
+    return meant.string();
 }
 
 // Takes from the file's camera what the user has not said.
-void take_extras(const CameraExtras& file, const std::filesystem::path& scene,
+void take_extras(const GltfCamera& camera, const std::filesystem::path& scene, FileScope scope,
                  CameraRequest& asked) {
-    if (!asked.lens && file.lens) asked.lens = beside(scene, *file.lens);
+    const CameraExtras& file = camera.extras;
+    if (!asked.lens && file.lens) asked.lens = beside(scene, scope, camera, *file.lens);
     if (!asked.sensor_mm) asked.sensor_mm = file.sensor_mm;
     if (asked.lens == "pinhole") return;
     if (!asked.fstop && !asked.lens_radius_m) asked.fstop = file.fstop;
     if (!asked.fstop && !asked.lens_radius_m && !asked.lens) return;
     if (!asked.focus && file.focus_m && !asked.film_distance_mm)
         asked.focus = FocusDistance{*file.focus_m};
-    if (!asked.aperture && file.aperture) asked.aperture = beside(scene, *file.aperture);
+    if (!asked.aperture && file.aperture)
+        asked.aperture = beside(scene, scope, camera, *file.aperture);
 }
 
 std::vector<AgfCatalog> open_catalogs(const CameraRequest& asked) {
@@ -205,7 +221,8 @@ std::string CameraModel::dispersive_lens() const {
 }
 
 CameraModel choose_camera_model(const CameraRequest& request, const std::filesystem::path& scene,
-                                const std::vector<GltfCamera>& cameras, float aspect) {
+                                FileScope scope, const std::vector<GltfCamera>& cameras,
+                                float aspect) {
     CameraModel model;
     model.asked = request;
     if (request.name)
@@ -222,16 +239,13 @@ CameraModel choose_camera_model(const CameraRequest& request, const std::filesys
                                             "lens, its focus or sensor, nor an angle of view",
                                             printable(model.from->name)));
     } else if (model.from) {
-        take_extras(model.from->extras, scene, asked);
+        take_extras(*model.from, scene, scope, asked);
     }
     try {
         model.optics = optics_of(asked, model.from, aspect);
     } catch (const ArgumentError& error) {
         if (request.lens || !asked.lens) throw;
-        throw InputError(
-            scene.string(),
-            fmt::format("extras.petzval of camera \"{}\"", printable(model.from->name)),
-            error.what());
+        throw InputError(scene.string(), extras_of(*model.from), error.what());
     }
     if (!std::holds_alternative<LoadedLens>(model.optics))
         check_no_prescription(asked, std::holds_alternative<SingleLens>(model.optics));

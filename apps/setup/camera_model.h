@@ -40,7 +40,7 @@ struct CameraModel {
 /// picture's. cameras must outlive the model. Throws InputError, and ArgumentError where what is
 /// asked for does not go together.
 [[nodiscard]] CameraModel choose_camera_model(const CameraRequest&,
-                                              const std::filesystem::path& scene,
+                                              const std::filesystem::path& scene, FileScope,
                                               const std::vector<GltfCamera>& cameras, float aspect);
 
 }  // namespace petzval

@@ -107,8 +107,9 @@ LensSetup set_up_lens(const CameraRequest& asked, const LoadedLens& loaded, cons
     const std::string aperture = asked.aperture.value_or("circle");
     std::unique_ptr<LensCamera> camera;
     try {
-        const Iris iris(parse_aperture(aperture), setup.stop_radius_mm, asked.aperture_scale,
-                        asked.iris_sampling, loaded.stop_radius_mm());
+        const Iris iris(parse_aperture(aperture, {}, asked.iris_pictures.value_or(PictureBudget())),
+                        setup.stop_radius_mm, asked.aperture_scale, asked.iris_sampling,
+                        loaded.stop_radius_mm());
         if (iris.share_cut() > 5e-4)
             notice(
                 fmt::format("aperture {}: {:.1f} % of it lies beyond the stop's rim and is cut "

@@ -2,16 +2,14 @@
 #include "apps/setup/memory.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 namespace petzval {
 
-std::optional<std::string> memory_shortage(double needed_bytes) {
-    const double there =
-        static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+std::optional<std::string> memory_shortage(double needed_bytes, uint64_t there_bytes) {
+    const auto there = static_cast<double>(there_bytes);
     if (needed_bytes <= there) return std::nullopt;
-    return fmt::format("needs {:.1f} GiB of memory, this machine has {:.1f}",
-                       needed_bytes * 0x1p-30, there * 0x1p-30);
+    return fmt::format("needs {:.1f} GiB of memory, and {:.1f} can be had", needed_bytes * 0x1p-30,
+                       there * 0x1p-30);
 }
 
 }  // namespace petzval

@@ -9,6 +9,7 @@
 #include "apps/setup/input_files.h"
 #include "apps/setup/option_names.h"
 #include "core/scene/studio.h"
+#include "io/base/error.h"
 #include "io/base/format.h"
 #include "io/base/read_file.h"
 #include "io/gltf/gltf.h"
@@ -34,12 +35,12 @@ bool is_dark(const Scene& scene) {
     return !lit && !all_unlit;
 }
 
-Sky sky_of(const SceneRequest& request, const Notice& notice) {
+Sky sky_of(const SceneRequest& request, const Notice& notice, PictureBudget& pictures) {
     if (request.environment == kStudioLight)
         return studio_sky(request.environment_rotate_deg, request.environment_strength);
     if (request.environment)
         return load_sky(*request.environment, request.environment_rotate_deg,
-                        request.environment_strength, notice);
+                        request.environment_strength, notice, pictures);
     return request.background ? Sky::uniform(*request.background) : Sky();
 }
 
@@ -75,7 +76,8 @@ bool same_scene(const SceneRequest& a, const SceneRequest& b) {
 // The scene with its sky, not yet its BVH and lights.
 PreparedScene load(SceneRequest request, const Notice& notice) {
     PreparedScene out;
-    GltfFile file = load_gltf(request.scene);
+    if (request.picture_memory_bytes) out.pictures = PictureBudget(*request.picture_memory_bytes);
+    GltfFile file = load_gltf(request.scene, request.scope, out.pictures);
     out.files = input_files(file, request.scene);
     refuse_overwriting(request.outputs, out.files);
     for (const std::string& warning : file.warnings) notice("warning: " + warning);
@@ -90,7 +92,7 @@ PreparedScene load(SceneRequest request, const Notice& notice) {
                         kStudioLight));
     }
     out.environment = request.environment;
-    scene->sky = sky_of(request, notice);
+    scene->sky = sky_of(request, notice, out.pictures);
     finish_scene(*scene);
     if (scene->instances.empty())
         notice("warning: the scene is empty: only its background is rendered");
@@ -114,9 +116,10 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
     const Scene& scene = *prepared.scene;
     SceneRequest request = asked;
     request.environment = prepared.environment;
+    request.camera.iris_pictures = prepared.pictures;
     if (request.environment) setup.view.visible_background = request.background;
     const CameraModel model = choose_camera_model(
-        request.camera, request.scene, *prepared.cameras,
+        request.camera, request.scene, request.scope, *prepared.cameras,
         static_cast<float>(request.size.x) / static_cast<float>(request.size.y));
     SpectralSetup spectra =
         set_up_spectra(request.spectral, scene, model.dispersive_lens(), notice);
@@ -147,11 +150,12 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
 
 RenderSetup set_up_render(const SceneRequest& asked, const Notice& notice,
                           const PhaseSink& begins) {
-    return set_up(asked, notice, begins, nullptr);
+    return naming_file(asked.scene.string(),
+                       [&] { return set_up(asked, notice, begins, nullptr); });
 }
 
 RenderSetup set_up_view(const RenderSetup& like, const SceneRequest& asked, const Notice& notice) {
-    return set_up(asked, notice, {}, &like);
+    return naming_file(asked.scene.string(), [&] { return set_up(asked, notice, {}, &like); });
 }
 
 }  // namespace petzval

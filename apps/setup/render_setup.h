@@ -31,6 +31,7 @@ struct PreparedScene {
     std::optional<std::filesystem::path> environment;
     uint64_t hash = 0;             ///< of the file
     std::vector<NamedFile> files;  ///< that the scene names
+    PictureBudget pictures;        ///< what the scene and its sky left of it
 };
 
 /// Camera and observer of a prepared scene.

@@ -20,6 +20,8 @@
 #include "core/spectrum/bins.h"
 #include "core/traversal/traversal_options.h"
 #include "io/base/overwrite.h"
+#include "io/gltf/validate/source.h"
+#include "io/image/picture_budget.h"
 
 namespace petzval {
 
@@ -68,6 +70,7 @@ struct CameraRequest {
     Precision precision = Precision::Float;
     ExposureMode exposure = ExposureMode::Normalised;
     float iso = 100, shutter_s = 0.01f;
+    std::optional<PictureBudget> iris_pictures;  ///< what those of the scene leave; absent: usual
     std::vector<std::filesystem::path> glasses;  ///< catalogues that go before those that ship
 };
 
@@ -101,6 +104,9 @@ struct SceneRequest {
     Traversal traversal = Traversal::Robust;
     SpectralRequest spectral;
     std::vector<NamedFile> outputs;  ///< files to be written: a scene that reads one is refused
+    /// Memory for decoded pictures; absent: half of what can be had.
+    std::optional<uint64_t> picture_memory_bytes;
+    FileScope scope = FileScope::Anywhere;  ///< of files that the scene names
 };
 
 }  // namespace petzval

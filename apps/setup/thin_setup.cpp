@@ -133,8 +133,9 @@ ThinSetup set_up_thin(const CameraModel& model, const ThinView& view, ThinLens l
         setup.lens_radius_m = asked.lens_radius_m ? double(*asked.lens_radius_m)
                                                   : setup.focal_mm * 1e-3 / (2 * *asked.fstop);
         const double radius_mm = 1e3 * setup.lens_radius_m;
-        Iris iris(parse_aperture(asked.aperture.value_or("circle")), radius_mm,
-                  asked.aperture_scale, asked.iris_sampling);
+        Iris iris(parse_aperture(asked.aperture.value_or("circle"), {},
+                                 asked.iris_pictures.value_or(PictureBudget())),
+                  radius_mm, asked.aperture_scale, asked.iris_sampling);
         lens.focus_m = *focus_m;
         if (asked.exposure == ExposureMode::Photographic)
             lens.exposure = static_cast<float>(

@@ -14,10 +14,8 @@ struct Ray {
     uint32_t alpha_seed = 0;
 };
 
-/// A triangle hit, as the traversal reports it. 24 bytes; Surface (core/shading/surface.h) has the
-/// rest.
+/// A triangle hit, as the traversal reports it; Surface (core/shading/surface.h) has the rest.
 struct Hit {
-    float t;
     V2f barycentric;  ///< weights of the second and third vertex
     uint32_t instance, triangle;
 };

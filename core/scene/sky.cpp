@@ -47,6 +47,7 @@ Sky Sky::picture(std::vector<float> rgb, int width, int height, float rotate_deg
     sky.height_ = height;
     sky.turn_ = rotate_deg / 360.f - std::floor(rotate_deg / 360.f);
     sky.blocks_across_ = (width + TexelBlock::kSize - 1) / TexelBlock::kSize;
+    sky.blocks_.reserve(static_cast<size_t>(sky.blocks_across_) * height);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; x += TexelBlock::kSize) {
             const int count = std::min(TexelBlock::kSize, width - x);
@@ -57,6 +58,7 @@ Sky Sky::picture(std::vector<float> rgb, int width, int height, float rotate_deg
             }
             sky.blocks_.emplace_back(std::span(texels.data(), count));
         }
+    rgb = std::vector<float>();  // "= {}" would keep its memory
     sky.fill_importance();
     return sky;
 }
@@ -64,6 +66,7 @@ Sky Sky::picture(std::vector<float> rgb, int width, int height, float rotate_deg
 // Importance from the texels as they are kept, so that what is drawn is what lookups find.
 void Sky::fill_importance() {
     std::vector<f4> texels;
+    texels.reserve(static_cast<size_t>(width_) * height_);
     for (int y = 0; y < height_; ++y)
         for (int x = 0; x < width_; ++x)
             texels.push_back(blocks_of(y)[x / TexelBlock::kSize].colour(x % TexelBlock::kSize));

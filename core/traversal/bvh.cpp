@@ -9,13 +9,14 @@
 #include <string>
 
 #include "core/scene/coverage.h"
+#include "core/traversal/barycentric.h"
 
 namespace petzval {
 namespace {
 
 struct Context {
     RTCIntersectContext embree;  // first: Embree hands back a pointer to it
-    uint32_t alpha_seed;
+    const Ray* ray;              // in world space; Embree's own is in that of the instance
 };
 
 uint32_t instance_of(uint32_t inst_id, uint32_t geom_id) {
@@ -25,10 +26,11 @@ uint32_t instance_of(uint32_t inst_id, uint32_t geom_id) {
 // Whether a ray passes a triangle by its coverage and the ray's alpha_seed. A pure function of its
 // arguments: Embree may ask twice for one triangle (spatial splits), and the second answer must be
 // the first one.
-bool lets_pass(const Scene& scene, const RTCHit& hit, uint32_t alpha_seed) {
+bool lets_pass(const Scene& scene, const RTCHit& hit, const Ray& ray) {
     const uint32_t instance = instance_of(hit.instID[0], hit.geomID);
-    const float covered = coverage(scene, instance, hit.primID, {hit.u, hit.v});
-    return to_unit_float(hash32(hash32(alpha_seed, instance), hit.primID)) >= covered;
+    const float covered =
+        coverage(scene, instance, hit.primID, barycentric(scene, instance, hit.primID, ray));
+    return to_unit_float(hash32(hash32(ray.alpha_seed, instance), hit.primID)) >= covered;
 }
 
 // Embree's filter callback; its packet has one ray, as only the single-ray calls are used.
@@ -36,7 +38,7 @@ void filter(const RTCFilterFunctionNArguments* args) {
     if (args->valid[0] != -1) return;
     const auto& scene = *static_cast<const Scene*>(args->geometryUserPtr);
     const auto& context = *reinterpret_cast<const Context*>(args->context);
-    if (lets_pass(scene, *reinterpret_cast<const RTCHit*>(args->hit), context.alpha_seed))
+    if (lets_pass(scene, *reinterpret_cast<const RTCHit*>(args->hit), *context.ray))
         args->valid[0] = 0;
 }
 
@@ -62,20 +64,20 @@ bool traceable(const Ray& r) {
     return (beyond(r.origin) | beyond(r.direction) | int{!(r.t_max >= 0.f)}) == 0;
 }
 
-struct BvhOutOfMemory : std::bad_alloc {
-    [[nodiscard]] const char* what() const noexcept override {
-        return "out of memory while building the acceleration structure";
-    }
-};
-
 }  // namespace
 
+// Embree takes the widest instructions it finds. Each set rounds otherwise, so it gets the one that
+// every processor has that this program runs on.
+constexpr const char* kDeviceConfig = "isa=avx2";
+
 struct Bvh::Impl {
+    const Scene& scene;
     RTCDevice device = nullptr;
     RTCScene top = nullptr;
     std::vector<RTCScene> shared;  // one for each mesh that instances share, else null
     bool has_cutouts = false;
 
+    explicit Impl(const Scene& s) : scene(s) {}
     ~Impl() {
         for (RTCScene s : shared)
             if (s) rtcReleaseScene(s);
@@ -86,7 +88,7 @@ struct Bvh::Impl {
     void check() const {
         const RTCError error = rtcGetDeviceError(device);
         if (error == RTC_ERROR_NONE) return;
-        if (error == RTC_ERROR_OUT_OF_MEMORY) throw BvhOutOfMemory();
+        if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
         throw std::runtime_error("Embree failed with error " + std::to_string(error));
     }
 
@@ -98,7 +100,7 @@ struct Bvh::Impl {
         return scene;
     }
 
-    RTCGeometry triangles(const Scene& scene, uint32_t mesh_id) {
+    RTCGeometry triangles(uint32_t mesh_id) {
         const Mesh& mesh = scene.meshes[mesh_id];
         RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
@@ -118,9 +120,9 @@ struct Bvh::Impl {
     }
 };
 
-Bvh::Bvh(const Scene& scene, Traversal traversal) : impl_(std::make_unique<Impl>()) {
+Bvh::Bvh(const Scene& scene, Traversal traversal) : impl_(std::make_unique<Impl>(scene)) {
     Impl& d = *impl_;
-    d.device = rtcNewDevice(nullptr);
+    d.device = rtcNewDevice(kDeviceConfig);
     if (!d.device) d.check();
     d.top = d.new_scene(traversal);
     d.shared.resize(scene.meshes.size(), nullptr);
@@ -129,12 +131,12 @@ Bvh::Bvh(const Scene& scene, Traversal traversal) : impl_(std::make_unique<Impl>
         const Instance& instance = scene.instances[i];
         RTCGeometry geometry = nullptr;
         if (instance.identity) {
-            geometry = d.triangles(scene, instance.mesh);
+            geometry = d.triangles(instance.mesh);
         } else {
             RTCScene& part = d.shared[instance.mesh];
             if (!part) {
                 part = d.new_scene(traversal);
-                RTCGeometry mesh = d.triangles(scene, instance.mesh);
+                RTCGeometry mesh = d.triangles(instance.mesh);
                 rtcAttachGeometry(part, mesh);
                 rtcReleaseGeometry(mesh);
                 rtcCommitScene(part);
@@ -159,23 +161,24 @@ std::optional<Hit> Bvh::intersect(const Ray& r) const {
     if (!traceable(r)) return std::nullopt;
     Context context;
     rtcInitIntersectContext(&context.embree);
-    context.alpha_seed = r.alpha_seed;
+    context.ray = &r;
     RTCRayHit query;
     query.ray = to_embree(r);
     query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(impl_->top, &context.embree, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-    return Hit{query.ray.tfar,
-               {query.hit.u, query.hit.v},
-               instance_of(query.hit.instID[0], query.hit.geomID),
-               query.hit.primID};
+    // Not Embree's own coordinates: they come from an approximate reciprocal, of which processors
+    // of different makers have different ones.
+    const uint32_t instance = instance_of(query.hit.instID[0], query.hit.geomID);
+    const uint32_t triangle = query.hit.primID;
+    return Hit{barycentric(impl_->scene, instance, triangle, r), instance, triangle};
 }
 
 bool Bvh::occluded(const Ray& r) const {
     if (!traceable(r)) return false;
     Context context;
     rtcInitIntersectContext(&context.embree);
-    context.alpha_seed = r.alpha_seed;
+    context.ray = &r;
     RTCRay ray = to_embree(r);
     rtcOccluded1(impl_->top, &context.embree, &ray);
     return ray.tfar < 0.f;

@@ -16,8 +16,8 @@ namespace petzval {
 class Bvh {
   public:
     /// Builds the hierarchy. It shares the scene's vertex and index buffers: the scene must outlive
-    /// the Bvh, unchanged. Throws std::bad_alloc where
-    /// memory runs out, std::runtime_error where Embree fails otherwise.
+    /// the Bvh, unchanged. Throws std::bad_alloc where memory is short, and std::runtime_error
+    /// where Embree fails otherwise.
     Bvh(const Scene&, Traversal);
     ~Bvh();
     Bvh(const Bvh&) = delete;

@@ -63,7 +63,8 @@ std::optional<ApertureShape> built_in(const std::string& as_typed) {
 
 }  // namespace
 
-ApertureShape parse_aperture(const std::string& text, const fs::path& folder) {
+ApertureShape parse_aperture(const std::string& text, const fs::path& folder,
+                             PictureBudget pictures) {
     if (auto shape = built_in(text)) return *shape;
     const fs::path path = folder / text;
     const std::string ending = lower(path.extension().string());
@@ -75,11 +76,12 @@ ApertureShape parse_aperture(const std::string& text, const fs::path& folder) {
                                                      {"circle", "square", "triangle", "rhomboid",
                                                       "frame", "star", "polygon"})));
     if (ending == ".svg") return read_svg_aperture(path);
-    return read_mask_aperture(path);
+    return read_mask_aperture(path, pictures);
 }
 
-Mask read_mask_aperture(const fs::path& path) {
-    const Picture picture = read_picture(path);
+Mask read_mask_aperture(const fs::path& path, PictureBudget pictures) {
+    constexpr uint64_t mask_bytes_per_texel = 20;  // its texels and the table that draws points
+    const Picture picture = read_picture(path, pictures, mask_bytes_per_texel);
     const int red = channel_index(picture, "R"), green = channel_index(picture, "G"),
               blue = channel_index(picture, "B"), alpha = channel_index(picture, "A");
     const bool colour = red >= 0 && green >= 0 && blue >= 0;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "camera/iris/aperture.h"
+#include "io/image/picture_budget.h"
 
 namespace petzval {
 
@@ -14,7 +15,8 @@ namespace petzval {
 /// A relative file name starts at `folder`, or where the program runs. Throws ArgumentError, which
 /// lists what is possible, and InputError for a file that is not as it must be.
 [[nodiscard]] ApertureShape parse_aperture(const std::string& text,
-                                           const std::filesystem::path& folder = {});
+                                           const std::filesystem::path& folder = {},
+                                           PictureBudget pictures = PictureBudget());
 
 /// Polygon of the one shape in an SVG file: path, polygon, circle, ellipse or rect, with the
 /// transforms of its own and of its groups. Its fill counts, not its stroke; fill-rule is nonzero
@@ -26,6 +28,6 @@ namespace petzval {
 /// Transmission mask from a picture: the luminance (weights of Rec. 709) of the values as they are
 /// stored, without decoding, times alpha: a grey of 50 % lets 50 % through. Its middle lies on the
 /// optical axis. Throws InputError where it is black everywhere or leaves [0, 1].
-[[nodiscard]] Mask read_mask_aperture(const std::filesystem::path&);
+[[nodiscard]] Mask read_mask_aperture(const std::filesystem::path&, PictureBudget pictures);
 
 }  // namespace petzval

@@ -51,10 +51,6 @@ bool is_text(std::string_view line) {
     return true;
 }
 
-std::string shortened(const std::string& cell) {
-    return cell.size() <= 40 ? cell : cell.substr(0, 40) + "...";
-}
-
 }  // namespace
 
 CsvText read_csv_text(const std::filesystem::path& path) {
@@ -106,9 +102,9 @@ CsvTable read_csv(const std::filesystem::path& path) {
             const std::optional<double> value = finite_number(cell);
             if (!value)
                 throw InputError(table.file, table.place(row),
-                                 fmt::format("\"{}\" in column {} is not a finite number; write it "
-                                             "as 0.25 or 2.5e-1",
-                                             shortened(cell), shortened(table.names[column])));
+                                 fmt::format("column {} is not a finite number; write it as 0.25 "
+                                             "or 2.5e-1",
+                                             column + 1));
             values.push_back(*value);
         }
     }

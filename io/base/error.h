@@ -2,6 +2,7 @@
 // The exceptions that io throws: something outside the program is not as it must be.
 #pragma once
 
+#include <new>
 #include <stdexcept>
 #include <string>
 
@@ -26,6 +27,29 @@ class OutputError : public InputError {
     /// Several files: the message names them.
     explicit OutputError(const std::string& message) : InputError(message) {}
 };
+
+/// Memory that ran out over a file. what() reads "FILE: out of memory; ...".
+class OutOfMemory : public std::bad_alloc {
+  public:
+    explicit OutOfMemory(const std::string& file)
+        : message_(file + ": out of memory; it asks for more than there is") {}
+    [[nodiscard]] const char* what() const noexcept override { return message_.what(); }
+
+  private:
+    std::runtime_error message_;  // copies without an exception, as a string might not
+};
+
+/// Calls f; where memory runs out in it, the OutOfMemory names the file that it was for.
+template <class F>
+decltype(auto) naming_file(const std::string& file, const F& f) {
+    try {
+        return f();
+    } catch (const OutOfMemory&) {
+        throw;  // it has a name
+    } catch (const std::bad_alloc&) {
+        throw OutOfMemory(file);
+    }
+}
 
 /// Request that a sound file cannot meet: a camera name that it does not have, say.
 class ArgumentError : public InputError {

@@ -38,6 +38,10 @@ std::string JsonCursor::path_of(std::string_view key) const {
     return path_ + "/" + escaped(key);
 }
 
+std::string JsonCursor::element_path(std::string_view key, size_t i) const {
+    return fmt::format("{}/{}", path_of(key), i);
+}
+
 void JsonCursor::fail(const std::string& message) const {
     throw InputError(*file_, path_, message);
 }
@@ -88,37 +92,40 @@ size_t JsonCursor::length(const char* key) const {
     return array ? array->size() : 0;
 }
 
-uint64_t JsonCursor::as_integer(const json& value, const std::string& place) const {
-    if (!value.is_number()) fail_type(*file_, place, "a whole number", value);
+template <class Place>
+uint64_t JsonCursor::as_integer(const json& value, const Place& place) const {
+    if (!value.is_number()) fail_type(*file_, place(), "a whole number", value);
     const double number = value.get<double>();
     if (!value.is_number_integer() || number < 0 || number > 0x1p53)
-        throw InputError(*file_, place,
+        throw InputError(*file_, place(),
                          fmt::format("must be a whole number from 0 to 2^53, but is {}", number));
     return value.get<uint64_t>();
 }
 
 uint64_t JsonCursor::integer(const char* key) const {
     require(key);
-    return as_integer(*find(key), path_of(key));
+    return as_integer(*find(key), [&] { return path_of(key); });
 }
 
 uint64_t JsonCursor::integer_or(const char* key, uint64_t otherwise) const {
     return find(key) ? integer(key) : otherwise;
 }
 
-double JsonCursor::as_number(const json& value, const std::string& place, Range range) const {
-    if (!value.is_number()) fail_type(*file_, place, "a number", value);
+template <class Place>
+double JsonCursor::as_number(const json& value, const Place& place, Range range) const {
+    if (!value.is_number()) fail_type(*file_, place(), "a number", value);
     const double number = value.get<double>();
     if (!(number >= range.low && number <= range.high))
         throw InputError(
-            *file_, place,
+            *file_, place(),
             fmt::format("must be from {} to {}, but is {}", range.low, range.high, number));
     return number;
 }
 
 double JsonCursor::number(const char* key, Range range) const {
     require(key);
-    return as_number(*find(key), path_of(key), range);
+    return as_number(
+        *find(key), [&] { return path_of(key); }, range);
 }
 
 double JsonCursor::number_or(const char* key, double otherwise, Range range) const {
@@ -131,8 +138,9 @@ std::vector<double> JsonCursor::numbers(const char* key, size_t count, Range ran
     if (array->size() != count)
         fail(key, fmt::format("must hold {} numbers, but holds {}", count, array->size()));
     std::vector<double> out;
+    out.reserve(count);
     for (size_t i = 0; i < count; ++i)
-        out.push_back(as_number((*array)[i], fmt::format("{}/{}", path_of(key), i), range));
+        out.push_back(as_number((*array)[i], [&] { return element_path(key, i); }, range));
     return out;
 }
 
@@ -152,11 +160,12 @@ void JsonCursor::check_bool(const char* key) const {
     if (value && !value->is_boolean()) fail_type(*file_, path_of(key), "true or false", *value);
 }
 
-size_t JsonCursor::as_index(const json& value, const std::string& place, size_t count,
+template <class Place>
+size_t JsonCursor::as_index(const json& value, const Place& place, size_t count,
                             const char* what) const {
     const uint64_t index = as_integer(value, place);
     if (index >= count)
-        throw InputError(*file_, place,
+        throw InputError(*file_, place(),
                          fmt::format("there is no {} {}; the file has {}", what, index, count));
     return index;
 }
@@ -167,7 +176,8 @@ std::optional<size_t> JsonCursor::index(const char* key, size_t count, const cha
 
 size_t JsonCursor::required_index(const char* key, size_t count, const char* what) const {
     require(key);
-    return as_index(*find(key), path_of(key), count, what);
+    return as_index(
+        *find(key), [&] { return path_of(key); }, count, what);
 }
 
 std::vector<size_t> JsonCursor::indices(const char* key, size_t count, const char* what) const {
@@ -176,10 +186,10 @@ std::vector<size_t> JsonCursor::indices(const char* key, size_t count, const cha
     std::vector<size_t> out;
     std::set<size_t> seen;
     for (size_t i = 0; i < array->size(); ++i) {
-        const std::string place = fmt::format("{}/{}", path_of(key), i);
+        const auto place = [&] { return element_path(key, i); };
         out.push_back(as_index((*array)[i], place, count, what));
         if (!seen.insert(out.back()).second)
-            throw InputError(*file_, place, fmt::format("names {} {} again", what, out.back()));
+            throw InputError(*file_, place(), fmt::format("names {} {} again", what, out.back()));
     }
     return out;
 }

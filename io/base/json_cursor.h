@@ -70,9 +70,14 @@ class JsonCursor {
   private:
     [[nodiscard]] const nlohmann::json* find(const char* key) const;
     [[nodiscard]] const nlohmann::json* find_array(const char* key) const;
-    [[nodiscard]] uint64_t as_integer(const nlohmann::json&, const std::string& place) const;
-    [[nodiscard]] double as_number(const nlohmann::json&, const std::string& place, Range) const;
-    [[nodiscard]] size_t as_index(const nlohmann::json&, const std::string& place, size_t count,
+    [[nodiscard]] std::string element_path(std::string_view key, size_t i) const;
+    // place() makes the text of a place: most values are right and need none.
+    template <class Place>
+    [[nodiscard]] uint64_t as_integer(const nlohmann::json&, const Place& place) const;
+    template <class Place>
+    [[nodiscard]] double as_number(const nlohmann::json&, const Place& place, Range) const;
+    template <class Place>
+    [[nodiscard]] size_t as_index(const nlohmann::json&, const Place& place, size_t count,
                                   const char* what) const;
 
     const nlohmann::json* value_;

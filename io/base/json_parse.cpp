@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <iterator>
 #include <vector>
 
 #include "io/base/error.h"
@@ -15,44 +15,6 @@ namespace {
 
 using nlohmann::json;
 
-/// Watches the parser, which itself does not recurse, while it builds the document.
-class Watch {
-  public:
-    explicit Watch(const std::string& file) : file_(file) {}
-
-    bool operator()(int depth, json::parse_event_t event, json& parsed) {
-        using Event = json::parse_event_t;
-        if (event == Event::object_start || event == Event::array_start) enter(depth);
-        if (event == Event::object_start) keys_.emplace_back();
-        if (event == Event::object_end) keys_.pop_back();
-        if (event == Event::key) add_key(parsed.get_ref<const std::string&>());
-        if (event == Event::value && parsed.is_number_float()) make_integer(parsed);
-        return true;
-    }
-
-  private:
-    void enter(int depth) const {
-        if (depth >= max_json_depth)
-            throw InputError(
-                file_, "",
-                fmt::format("JSON is nested more than {} levels deep; flatten it", max_json_depth));
-    }
-
-    void add_key(const std::string& key) {
-        if (!keys_.back().insert(key).second)
-            throw InputError(file_, "",
-                             fmt::format("a JSON object has the key \"{}\" twice", printable(key)));
-    }
-
-    static void make_integer(json& number) {
-        const double value = number.get<double>();
-        if (std::abs(value) <= 0x1p53 && value == std::floor(value)) number = int64_t(value);
-    }
-
-    const std::string& file_;
-    std::vector<std::set<std::string>> keys_;  ///< of each open object
-};
-
 /// Line and column of a byte of the text, which is counted from 0.
 std::string place_of(std::string_view text, size_t byte) {
     const std::string_view before = text.substr(0, byte);
@@ -61,12 +23,108 @@ std::string place_of(std::string_view text, size_t byte) {
                        1 + before.size() - line_start);
 }
 
-/// Offset of the number that overflowed: the first occurrence of what the parser's message quotes.
-size_t find_quoted(std::string_view text, std::string_view message) {
-    const size_t first = message.find('\'') + 1, last = message.rfind('\'');
-    const size_t at = last > first ? text.find(message.substr(first, last - first)) : 0;
-    return at == std::string_view::npos ? 0 : at;
-}
+/// Reads the text for the parser and keeps where it is. The parser holds copies, so that the place
+/// is kept outside.
+class Reader {
+  public:
+    using iterator_category = std::input_iterator_tag;
+    using value_type = char;
+    using difference_type = ptrdiff_t;
+    using pointer = const char*;
+    using reference = const char&;
+
+    Reader(const char* at, const char*& furthest) : at_(at), furthest_(&furthest) {}
+    reference operator*() const { return *at_; }
+    Reader& operator++() {
+        *furthest_ = ++at_;
+        return *this;
+    }
+    bool operator==(const Reader& other) const { return at_ == other.at_; }
+
+  private:
+    const char* at_;
+    const char** furthest_;
+};
+
+/// Builds the document from the events of the parser, which itself does not recurse. The parser's
+/// own callback looks through all elements of an array whenever one ends: a million take minutes.
+class Builder {
+  public:
+    Builder(std::string_view text, const std::string& file) : text_(text), file_(file) {}
+
+    [[nodiscard]] json parse() {
+        const char* const end = text_.data() + text_.size();
+        json::sax_parse(Reader(text_.data(), furthest_), Reader(end, furthest_), this);
+        return std::move(root_);
+    }
+
+    bool null() { return put(nullptr); }
+    bool boolean(bool value) { return put(value); }
+    bool number_integer(int64_t value) { return put(value); }
+    bool number_unsigned(uint64_t value) { return put(value); }
+    bool number_float(double value, const std::string&) {
+        if (std::abs(value) <= 0x1p53 && value == std::floor(value)) return put(int64_t(value));
+        return put(value);
+    }
+    bool string(std::string& value) { return put(std::move(value)); }
+    bool binary(json::binary_t&) { return false; }  // not in a text
+
+    bool start_object(size_t) { return open(json::object()); }
+    bool start_array(size_t) { return open(json::array()); }
+    bool end_object() { return close(); }
+    bool end_array() { return close(); }
+
+    bool key(std::string& key) {
+        auto& members = open_.back()->get_ref<json::object_t&>();
+        const auto [member, is_new] = members.try_emplace(key);
+        if (!is_new)
+            throw InputError(file_, place_of(text_, size_t(furthest_ - text_.data()) - 1),
+                             "the key that ends here stands in its object already");
+        member_ = &member->second;
+        return true;
+    }
+
+    [[noreturn]] bool parse_error(size_t byte, const std::string& token,
+                                  const json::exception& error) const {
+        constexpr int number_overflow = 406;
+        if (error.id == number_overflow)
+            throw InputError(file_, place_of(text_, byte - std::min(byte, token.size())),
+                             "the number is beyond the range of a double");
+        throw InputError(file_, place_of(text_, std::max<size_t>(byte, 1) - 1),
+                         "is not valid JSON from here on");
+    }
+
+  private:
+    json* place(json value) {
+        if (open_.empty()) return &(root_ = std::move(value));
+        if (!open_.back()->is_array()) return &(*member_ = std::move(value));
+        open_.back()->push_back(std::move(value));
+        return &open_.back()->back();
+    }
+    bool put(json value) {
+        place(std::move(value));
+        return true;
+    }
+    bool open(json container) {
+        if (open_.size() >= max_json_depth)
+            throw InputError(
+                file_, "",
+                fmt::format("JSON is nested more than {} levels deep; flatten it", max_json_depth));
+        open_.push_back(place(std::move(container)));
+        return true;
+    }
+    bool close() {
+        open_.pop_back();
+        return true;
+    }
+
+    std::string_view text_;
+    const std::string& file_;
+    const char* furthest_ = text_.data();  ///< behind what is read of the text
+    json root_;
+    std::vector<json*> open_;  ///< objects and arrays that have not ended, the innermost last
+    json* member_ = nullptr;   ///< value of the last key
+};
 
 }  // namespace
 
@@ -74,16 +132,7 @@ json parse_json(std::string_view text, const std::string& file) {
     if (text.starts_with("\xEF\xBB\xBF"))
         throw InputError(file, "line 1",
                          "JSON begins with a byte order mark; save it as UTF-8 without one");
-    Watch watch(file);
-    try {
-        return json::parse(text, std::ref(watch));
-    } catch (const json::parse_error& error) {
-        throw InputError(file, place_of(text, std::max<size_t>(error.byte, 1) - 1),
-                         "is not valid JSON from here on");
-    } catch (const json::out_of_range& error) {
-        throw InputError(file, place_of(text, find_quoted(text, error.what())),
-                         "the number is beyond the range of a double");
-    }
+    return Builder(text, file).parse();
 }
 
 }  // namespace petzval

@@ -3,9 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 
+#include "io/base/machine.h"
+
 namespace petzval {
+
+/// Size of file for which nobody need be asked whether there is memory.
+constexpr uintmax_t kSurelyThere_bytes = 64 << 20;
 
 FileBytes read_file(const std::filesystem::path& path) {
     namespace fs = std::filesystem;
@@ -18,6 +24,8 @@ FileBytes read_file(const std::filesystem::path& path) {
 
     const uintmax_t size = fs::file_size(path, code);
     if (code) return {{}, code.message()};
+    if (size > kSurelyThere_bytes && size > usable_memory_bytes())
+        return {{}, fmt::format("has {} MiB, more than the memory that can be had", size >> 20)};
     std::ifstream in(path, std::ios::binary);
     if (!in) return {{}, "cannot be opened"};
     FileBytes file;
@@ -25,6 +33,17 @@ FileBytes read_file(const std::filesystem::path& path) {
     in.read(reinterpret_cast<char*>(file.bytes.data()), std::streamsize(size));
     if (uintmax_t(in.gcount()) != size) return {{}, "cannot be read to its end"};
     return file;
+}
+
+bool lies_within(const std::filesystem::path& file, const std::filesystem::path& folder) {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    const fs::path top = fs::canonical(folder.empty() ? "." : folder, error);
+    if (error) return false;
+    // Absolute first: what does not exist at all would stay relative.
+    const fs::path real = fs::weakly_canonical(fs::absolute(file, error), error);
+    if (error) return false;
+    return std::mismatch(top.begin(), top.end(), real.begin(), real.end()).first == top.end();
 }
 
 uint64_t fnv1a(std::span<const uint8_t> bytes, uint64_t hash) {

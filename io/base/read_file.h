@@ -18,6 +18,11 @@ struct FileBytes {
 /// Reads a whole file. Pipes and devices are refused: they may never end.
 [[nodiscard]] FileBytes read_file(const std::filesystem::path&);
 
+/// Whether a file lies in a folder or below it, all links followed; one that does not exist counts
+/// by where it would be.
+[[nodiscard]] bool lies_within(const std::filesystem::path& file,
+                               const std::filesystem::path& folder);
+
 /// FNV-1a hash of 64 bits, continued from `hash` (Fowler, Noll, Vo 1991; constants of RFC 9923).
 [[nodiscard]] uint64_t fnv1a(std::span<const uint8_t> bytes, uint64_t hash = 0xCBF29CE484222325u);
 

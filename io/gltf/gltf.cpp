@@ -3,14 +3,17 @@
 
 #include <tiny_gltf.h>
 
+#include "io/base/error.h"
 #include "io/gltf/info.h"
 #include "io/gltf/lights.h"
 #include "io/gltf/place.h"
 
 namespace petzval {
 
-GltfFile load_gltf(const std::filesystem::path& path) {
-    const GltfSource source = read_gltf_source(path);
+namespace {
+
+GltfFile load(const std::filesystem::path& path, FileScope scope, PictureBudget& pictures) {
+    const GltfSource source = read_gltf_source(path, scope);
     const tinygltf::Model model = parse_model(source);
     const std::string name = path.string();
     const GltfModel gltf{source, model, name};
@@ -18,7 +21,7 @@ GltfFile load_gltf(const std::filesystem::path& path) {
     GltfFile file;
     GltfTally tally;
     const GltfNodes nodes = flatten_nodes(gltf);
-    GltfMaterials materials(gltf, file.scene, tally);
+    GltfMaterials materials(gltf, file.scene, tally, pictures);
     place_meshes(gltf, nodes, materials, file.scene, tally);
     read_lights(gltf, nodes, file.scene, tally);
     file.cameras = read_cameras(gltf, nodes, tally);
@@ -28,6 +31,17 @@ GltfFile load_gltf(const std::filesystem::path& path) {
     file.warnings = source.warnings;
     describe(gltf, tally, file);
     return file;
+}
+
+}  // namespace
+
+GltfFile load_gltf(const std::filesystem::path& path, FileScope scope, PictureBudget& pictures) {
+    return naming_file(path.string(), [&] { return load(path, scope, pictures); });
+}
+
+GltfFile load_gltf(const std::filesystem::path& path) {
+    PictureBudget pictures;
+    return load_gltf(path, FileScope::Anywhere, pictures);
 }
 
 }  // namespace petzval

@@ -9,6 +9,8 @@
 
 #include "core/scene/scene.h"
 #include "io/gltf/validate/camera_extras.h"
+#include "io/gltf/validate/source.h"
+#include "io/image/picture_budget.h"
 
 namespace petzval {
 
@@ -34,7 +36,10 @@ struct GltfFile {
     uint64_t hash = 0;
 };
 
-/// Loads the default scene (else the first one, else all root nodes). Throws InputError.
+/// Loads the default scene (else the first one, else all root nodes). Throws InputError, also where
+/// the budget is too small for the pictures of the scene.
+[[nodiscard]] GltfFile load_gltf(const std::filesystem::path&, FileScope, PictureBudget&);
+/// Loads a scene that may name any file, with the usual budget.
 [[nodiscard]] GltfFile load_gltf(const std::filesystem::path&);
 
 }  // namespace petzval

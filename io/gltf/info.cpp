@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "io/base/json_cursor.h"
 #include "io/base/json_parse.h"
 #include "io/gltf/validate/extensions.h"
 
@@ -75,7 +76,8 @@ void describe_contents(const GltfModel& gltf, GltfFile& file) {
     auto& lines = file.contents;
     if (!gltf.typed.asset.generator.empty())
         lines.push_back("generator: " + printable(gltf.typed.asset.generator));
-    lines.push_back(fmt::format("nodes: {}", gltf.typed.nodes.size()));
+    lines.push_back(
+        fmt::format("nodes: {}", JsonCursor(gltf.source.json, gltf.file).length("nodes")));
     lines.push_back(
         fmt::format("meshes: {}, placed {} times", scene.meshes.size(), scene.instances.size()));
     lines.push_back(describe_triangles(scene));

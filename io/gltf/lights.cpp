@@ -112,9 +112,10 @@ void read_lights(const GltfModel& gltf, const GltfNodes& nodes, Scene& scene, Gl
 std::vector<GltfCamera> read_cameras(const GltfModel& gltf, const GltfNodes& nodes,
                                      GltfTally& tally) {
     std::vector<GltfCamera> cameras;
-    const auto json = JsonCursor(gltf.source.json, gltf.file).objects("cameras");
+    const JsonCursor root(gltf.source.json, gltf.file);
+    const auto json = root.objects("cameras");
     for (int index : nodes.in_scene) {
-        const tinygltf::Node& node = gltf.typed.nodes[static_cast<size_t>(index)];
+        const GltfNode& node = nodes.node[static_cast<size_t>(index)];
         if (node.camera < 0) continue;
         const auto to_world = rigid(nodes.to_world[static_cast<size_t>(index)]);
         if (!to_world) {
@@ -123,7 +124,11 @@ std::vector<GltfCamera> read_cameras(const GltfModel& gltf, const GltfNodes& nod
         }
         const auto& from = gltf.typed.cameras.at(static_cast<size_t>(node.camera));
         GltfCamera camera = to_camera(from, *to_world);
-        camera.name = from.name.empty() ? node.name : from.name;
+        camera.name = from.name.empty()
+                          ? JsonCursor(root.value()["nodes"][static_cast<size_t>(index)], gltf.file,
+                                       json_path("nodes", index))
+                                .text_or("name", "")
+                          : from.name;
         camera.extras = camera_extras(json[static_cast<size_t>(node.camera)]);
         if (camera.orthographic && camera.extras.any())
             tally.warnings.push_back(json_path("cameras", node.camera) +

@@ -45,11 +45,12 @@ Material core_factors(const tinygltf::Material& from) {
 
 }  // namespace
 
-GltfMaterials::GltfMaterials(const GltfModel& gltf, Scene& scene, GltfTally& tally)
+GltfMaterials::GltfMaterials(const GltfModel& gltf, Scene& scene, GltfTally& tally,
+                             PictureBudget& pictures)
     : gltf_(gltf),
       scene_(scene),
       tally_(tally),
-      textures_(gltf, scene.images, tally),
+      textures_(gltf, scene.images, tally, pictures),
       spectral_(scene, tally),
       json_(JsonCursor(gltf.source.json, gltf.file).objects("materials")),
       used_(gltf.typed.materials.size() + 1) {}

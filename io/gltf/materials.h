@@ -14,7 +14,7 @@ namespace petzval {
 /// Converts materials as primitives ask for them, so that what no primitive uses is never read.
 class GltfMaterials {
   public:
-    GltfMaterials(const GltfModel&, Scene&, GltfTally&);
+    GltfMaterials(const GltfModel&, Scene&, GltfTally&, PictureBudget&);
 
     /// Index in the scene of a material of the file; of glTF's default material for -1.
     [[nodiscard]] uint32_t use(int material);

@@ -3,6 +3,9 @@
 
 #include <tiny_gltf.h>
 
+#include <algorithm>
+#include <array>
+
 #include "io/base/error.h"
 #include "io/gltf/validate/accessor.h"
 
@@ -11,10 +14,9 @@ namespace {
 
 using nlohmann::json;
 
-// Replaces buffers by one byte each and removes images: tinygltf refuses buffers without a uri,
-// reads files by itself, and indexes buffers by an image's bufferView unchecked.
+// Replaces buffers by one byte each: tinygltf refuses buffers without a uri and reads files by
+// itself.
 void replace_bytes(json& patched, size_t buffer_count) {
-    for (const char* unused : {"images", "animations", "extras"}) patched.erase(unused);
     const json stand_in = {{"byteLength", 1}, {"uri", "data:application/octet-stream;base64,AA=="}};
     patched["buffers"] = json::array();
     for (size_t i = 0; i < buffer_count; ++i) patched["buffers"].push_back(stand_in);
@@ -45,7 +47,14 @@ void replace_cameras(json& patched) {
 }
 
 std::string patched_text(const GltfSource& source) {
-    json patched = source.json;
+    // Images: tinygltf indexes buffers by their bufferView unchecked. Nodes: there may be millions,
+    // and it takes a kilobyte for each.
+    constexpr std::array<std::string_view, 4> left_out = {"images", "nodes", "animations",
+                                                          "extras"};
+    json patched = json::object();
+    for (const auto& [key, value] : source.json.items())
+        if (std::find(left_out.begin(), left_out.end(), key) == left_out.end())
+            patched[key] = value;
     replace_bytes(patched, source.buffers.size() + 1);
     replace_accessors(patched);
     replace_cameras(patched);

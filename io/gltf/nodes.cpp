@@ -3,6 +3,8 @@
 
 #include <tiny_gltf.h>
 
+#include "io/base/json_cursor.h"
+
 namespace petzval {
 namespace {
 
@@ -29,9 +31,42 @@ M44d rotation_matrix(const std::vector<double>& q) {
             1};
 }
 
-std::vector<int> all_roots(const tinygltf::Model& model) {
-    std::vector<bool> is_child(model.nodes.size(), false);
-    for (const tinygltf::Node& node : model.nodes)
+int index_or_none(const JsonCursor& node, const char* key) {
+    return node.has(key) ? static_cast<int>(node.integer(key)) : -1;
+}
+
+std::vector<double> numbers(const JsonCursor& node, const char* key) {
+    return node.numbers(key, node.length(key));
+}
+
+GltfNode read_node(const JsonCursor& json) {
+    GltfNode node{.mesh = index_or_none(json, "mesh"),
+                  .skin = index_or_none(json, "skin"),
+                  .camera = index_or_none(json, "camera"),
+                  .weights = numbers(json, "weights"),
+                  .children = {}};
+    for (const double child : numbers(json, "children"))
+        node.children.push_back(static_cast<int>(child));
+    return node;
+}
+
+// The node's own transform, for row vectors: its matrix, or scale, rotation and translation.
+M44d node_matrix(const JsonCursor& json) {
+    if (const auto m = json.numbers("matrix", 16); !m.empty())
+        return {m[0], m[1], m[2],  m[3],  m[4],  m[5],  m[6],  m[7],
+                m[8], m[9], m[10], m[11], m[12], m[13], m[14], m[15]};
+    M44d matrix;
+    if (const auto s = json.numbers("scale", 3); !s.empty()) matrix.setScale(V3d(s[0], s[1], s[2]));
+    if (const auto q = json.numbers("rotation", 4); !q.empty())
+        matrix = matrix * rotation_matrix(q);
+    if (const auto t = json.numbers("translation", 3); !t.empty())
+        for (int axis = 0; axis < 3; ++axis) matrix[3][axis] = t[static_cast<size_t>(axis)];
+    return matrix;
+}
+
+std::vector<int> all_roots(const std::vector<GltfNode>& nodes) {
+    std::vector<bool> is_child(nodes.size(), false);
+    for (const GltfNode& node : nodes)
         for (int child : node.children) is_child.at(static_cast<size_t>(child)) = true;
     std::vector<int> roots;
     for (size_t i = 0; i < is_child.size(); ++i)
@@ -42,12 +77,12 @@ std::vector<int> all_roots(const tinygltf::Model& model) {
 // Visits nodes depth first with a stack of its own: a file may nest its nodes deeper than the
 // program's stack goes.
 template <class Visit>
-void depth_first(const tinygltf::Model& model, const std::vector<int>& roots, Visit&& visit) {
+void depth_first(const std::vector<GltfNode>& nodes, const std::vector<int>& roots, Visit&& visit) {
     std::vector<int> stack(roots.rbegin(), roots.rend());
     while (!stack.empty()) {
         const int index = stack.back();
         stack.pop_back();
-        const tinygltf::Node& node = model.nodes.at(static_cast<size_t>(index));
+        const GltfNode& node = nodes.at(static_cast<size_t>(index));
         visit(index, node);
         stack.insert(stack.end(), node.children.rbegin(), node.children.rend());
     }
@@ -55,26 +90,19 @@ void depth_first(const tinygltf::Model& model, const std::vector<int>& roots, Vi
 
 }  // namespace
 
-M44d node_matrix(const tinygltf::Node& node) {
-    if (const auto& m = node.matrix; m.size() == 16)
-        return {m[0], m[1], m[2],  m[3],  m[4],  m[5],  m[6],  m[7],
-                m[8], m[9], m[10], m[11], m[12], m[13], m[14], m[15]};
-    M44d matrix;
-    if (const auto& s = node.scale; s.size() == 3) matrix.setScale(V3d(s[0], s[1], s[2]));
-    if (node.rotation.size() == 4) matrix = matrix * rotation_matrix(node.rotation);
-    if (const auto& t = node.translation; t.size() == 3)
-        for (int axis = 0; axis < 3; ++axis) matrix[3][axis] = t[static_cast<size_t>(axis)];
-    return matrix;
-}
-
 GltfNodes flatten_nodes(const GltfModel& gltf) {
     const tinygltf::Model& model = gltf.typed;
+    const JsonCursor root(gltf.source.json, gltf.file);
     GltfNodes nodes;
-    nodes.to_world.resize(model.nodes.size());
-    for (size_t i = 0; i < model.nodes.size(); ++i) nodes.to_world[i] = node_matrix(model.nodes[i]);
+    nodes.node.reserve(root.length("nodes"));
+    nodes.to_world.reserve(root.length("nodes"));
+    for (const JsonCursor& json : root.objects("nodes")) {
+        nodes.node.push_back(read_node(json));
+        nodes.to_world.push_back(node_matrix(json));
+    }
     // Skins may name joints anywhere in the file, so every node gets its place.
-    const std::vector<int> roots = all_roots(model);
-    depth_first(model, roots, [&](int index, const tinygltf::Node& node) {
+    const std::vector<int> roots = all_roots(nodes.node);
+    depth_first(nodes.node, roots, [&](int index, const GltfNode& node) {
         const M44d& parent = nodes.to_world[static_cast<size_t>(index)];
         for (int child : node.children) {
             M44d& matrix = nodes.to_world[static_cast<size_t>(child)];
@@ -85,8 +113,8 @@ GltfNodes flatten_nodes(const GltfModel& gltf) {
     const std::vector<int>* drawn = &roots;
     if (!model.scenes.empty())
         drawn = &model.scenes.at(static_cast<size_t>(std::max(model.defaultScene, 0))).nodes;
-    depth_first(model, *drawn,
-                [&](int index, const tinygltf::Node&) { nodes.in_scene.push_back(index); });
+    depth_first(nodes.node, *drawn,
+                [&](int index, const GltfNode&) { nodes.in_scene.push_back(index); });
     return nodes;
 }
 

@@ -7,23 +7,25 @@
 #include "core/math/math.h"
 #include "io/gltf/model.h"
 
-namespace tinygltf {
-class Node;
-}
-
 namespace petzval {
 
+/// What a node holds, as indices; -1 for nothing.
+struct GltfNode {
+    int mesh = -1, skin = -1, camera = -1;
+    std::vector<double> weights;  ///< of morph targets; empty: those of the mesh
+    std::vector<int> children;
+};
+
 struct GltfNodes {
+    std::vector<GltfNode> node;  ///< every node of the file
     std::vector<M44d> to_world;  ///< of every node of the file
     std::vector<int> in_scene;   ///< nodes of the scene, depth first, in the file's order
 };
 
 /// World matrices of all nodes, and the nodes of the default scene; without one, of the first;
-/// without any, of all roots.
+/// without any, of all roots. Nodes are read from the JSON: tinygltf would take a kilobyte for
+/// each.
 [[nodiscard]] GltfNodes flatten_nodes(const GltfModel&);
-
-/// The node's own transform, for row vectors: its matrix, or scale, rotation and translation.
-[[nodiscard]] M44d node_matrix(const tinygltf::Node&);
 
 /// Determinant of the upper 3x3 part over the product of its rows' lengths: -1 to 1, 0 where the
 /// matrix flattens space.

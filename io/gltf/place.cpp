@@ -32,7 +32,7 @@ std::vector<Placement> group_nodes(const GltfModel& gltf, const GltfNodes& nodes
     std::vector<Placement> placements;
     std::map<std::pair<int, std::vector<double>>, size_t> known;
     for (int index : nodes.in_scene) {
-        const tinygltf::Node& node = gltf.typed.nodes[static_cast<size_t>(index)];
+        const GltfNode& node = nodes.node[static_cast<size_t>(index)];
         if (node.mesh < 0) continue;
         if (node.skin < 0 && is_singular(nodes.to_world[static_cast<size_t>(index)])) {
             ++tally.singular_nodes;

@@ -36,8 +36,13 @@ void set_transform(TextureSlot& slot, const JsonCursor& transform) {
 
 }  // namespace
 
-GltfTextures::GltfTextures(const GltfModel& gltf, std::vector<Image>& images, GltfTally& tally)
-    : gltf_(gltf), images_(images), tally_(tally), used_(gltf.source.images.size(), -1) {}
+GltfTextures::GltfTextures(const GltfModel& gltf, std::vector<Image>& images, GltfTally& tally,
+                           PictureBudget& pictures)
+    : gltf_(gltf),
+      images_(images),
+      tally_(tally),
+      pictures_(pictures),
+      used_(gltf.source.images.size(), -1) {}
 
 TextureSlot GltfTextures::slot(const JsonCursor& parent, const char* key, Encoding encoding) {
     const auto info = parent.find_object(key);
@@ -79,7 +84,7 @@ int32_t GltfTextures::use_image(size_t image) {
     int32_t& used = used_.at(image);
     if (used >= 0) return used;
     const std::string place = json_path("images", image);
-    images_.push_back(decode_image(gltf_.source.images[image], gltf_.file, place));
+    images_.push_back(decode_image(gltf_.source.images[image], gltf_.file, place, pictures_));
     const JsonCursor json(gltf_.source.json["images"][image], gltf_.file, place);
     const std::string uri = json.text_or("uri", "");
     images_.back().name = json.text_or("name", uri.starts_with("data:") ? "" : uri.c_str());

@@ -42,6 +42,11 @@ bool is_whole_png(const std::vector<uint8_t>& bytes) {
     return false;
 }
 
+/// "of 4096x4096 pixels with 3 channels ", for messages.
+std::string described(int width, int height, int channels) {
+    return fmt::format("of {}x{} pixels with {} channels ", width, height, channels);
+}
+
 /// Spreads 1 (grey), 2 (grey, alpha) or 3 (colour) channels of every texel to RGBA.
 template <class T>
 std::vector<T> to_rgba(std::vector<T> in, int channels, T opaque) {
@@ -62,7 +67,7 @@ std::vector<T> to_rgba(std::vector<T> in, int channels, T opaque) {
 }  // namespace
 
 Image decode_image(const std::vector<uint8_t>& bytes, const std::string& file,
-                   const std::string& place) {
+                   const std::string& place, PictureBudget& budget) {
     const auto refuse = [&](const std::string& why) -> InputError {
         return {file, place, "the image " + why};
     };
@@ -70,6 +75,13 @@ Image decode_image(const std::vector<uint8_t>& bytes, const std::string& file,
     if (ending.empty()) throw refuse("is not a PNG, JPEG or WebP file; convert it to one of these");
 
     if (ending == "png" && !is_whole_png(bytes)) throw refuse("is a PNG that is cut short");
+
+    if (const auto size = webp_size(bytes)) {
+        const uint64_t decoded_bytes = uint64_t{4} * (*size)[0] * (*size)[1];
+        PictureBudget spent = budget;
+        const std::string shortage = spent.take(decoded_bytes, decoded_bytes);
+        if (!shortage.empty()) throw refuse(described((*size)[0], (*size)[1], 4) + shortage);
+    }
 
     OIIO::Filesystem::IOMemReader reader(bytes.data(), bytes.size());
     OIIO::Filesystem::IOProxy* proxy = &reader;
@@ -86,14 +98,19 @@ Image decode_image(const std::vector<uint8_t>& bytes, const std::string& file,
         size_complaint(spec.width, spec.height, spec.depth, spec.nchannels, bytes.size());
     if (!why.empty()) throw refuse(why);
 
-    const size_t count = size_t(spec.width) * spec.height * spec.nchannels;
+    const size_t pixels = size_t(spec.width) * spec.height, count = pixels * spec.nchannels;
+    const bool bytewise = spec.format == OIIO::TypeDesc::UINT8;
+    const uint64_t value_bytes = bytewise ? sizeof(uint8_t) : sizeof(float);
+    const std::string shortage = budget.take(4 * pixels * value_bytes, count * value_bytes);
+    if (!shortage.empty())
+        throw refuse(described(spec.width, spec.height, spec.nchannels) + shortage);
     const auto read = [&](OIIO::TypeDesc type, void* to) {
         const bool success = input->read_image(0, 0, 0, spec.nchannels, type, to);
         const std::string error = first_line(input->geterror());
         if (!success || is_cut_short(error)) throw refuse("cannot be decoded: " + error);
     };
     Image image{.name = "", .width = spec.width, .height = spec.height, .texels = {}};
-    if (spec.format == OIIO::TypeDesc::UINT8) {
+    if (bytewise) {
         std::vector<uint8_t> texels(count);
         read(OIIO::TypeDesc::UINT8, texels.data());
         image.texels = to_rgba<uint8_t>(std::move(texels), spec.nchannels, 255);

@@ -130,9 +130,9 @@ std::vector<LayerDifference> compare(const Picture& a, const Picture& b) {
 }
 
 std::vector<LayerDifference> compare_files(const std::filesystem::path& a,
-                                           const std::filesystem::path& b) {
-    const Picture picture_a = read_picture(a);
-    const Picture picture_b = read_picture(b);
+                                           const std::filesystem::path& b, PictureBudget budget) {
+    const Picture picture_a = read_picture(a, budget);
+    const Picture picture_b = read_picture(b, budget);
     const std::string why = why_not_comparable(picture_a, picture_b);
     if (!why.empty())
         throw InputError(a.string(), "",

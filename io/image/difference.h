@@ -41,6 +41,7 @@ struct LayerDifference {
 [[nodiscard]] std::vector<LayerDifference> compare(const Picture& a, const Picture& b);
 /// Differences between two picture files. Throws InputError where they cannot be read or compared.
 [[nodiscard]] std::vector<LayerDifference> compare_files(const std::filesystem::path& a,
-                                                         const std::filesystem::path& b);
+                                                         const std::filesystem::path& b,
+                                                         PictureBudget = PictureBudget());
 
 }  // namespace petzval

@@ -52,12 +52,11 @@ void check_kind(const std::filesystem::path& path) {
                      "an environment must be a Radiance .hdr or an OpenEXR .exr picture");
 }
 
-}  // namespace
-
-Sky load_sky(const std::filesystem::path& path, float rotate_deg, float strength,
-             const Notice& notice) {
+Sky decode(const std::filesystem::path& path, float rotate_deg, float strength,
+           const Notice& notice, PictureBudget& budget) {
     check_kind(path);
-    const Picture picture = read_picture(path);
+    constexpr uint64_t sky_bytes_per_texel = 28;  // the most while Sky::picture works
+    Picture picture = read_picture(path, budget, sky_bytes_per_texel);
     if (picture.width != picture.full_width || picture.height != picture.full_height)
         throw InputError(
             path.string(), "",
@@ -65,6 +64,7 @@ Sky load_sky(const std::filesystem::path& path, float rotate_deg, float strength
                         picture.height, picture.full_width, picture.full_height));
     uint64_t negative_count = 0;
     std::vector<float> rgb = sky_texels(picture, path, negative_count);
+    picture.pixels = std::vector<float>();   // "= {}" would keep its memory
     constexpr float brightest_nits = 1e20f;  // sums over the sky and the scene stay finite
     if (!rgb.empty() && *std::max_element(rgb.begin(), rgb.end()) * strength > brightest_nits)
         throw InputError(
@@ -80,6 +80,14 @@ Sky load_sky(const std::filesystem::path& path, float rotate_deg, float strength
             "warning: {}: {}x{} pixels are not 2:1; the picture is stretched over the sphere",
             path.string(), picture.width, picture.height));
     return Sky::picture(std::move(rgb), picture.width, picture.height, rotate_deg, strength);
+}
+
+}  // namespace
+
+Sky load_sky(const std::filesystem::path& path, float rotate_deg, float strength,
+             const Notice& notice, PictureBudget& budget) {
+    return naming_file(path.string(),
+                       [&] { return decode(path, rotate_deg, strength, notice, budget); });
 }
 
 }  // namespace petzval

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <string_view>
+
 namespace petzval {
 namespace {
 
@@ -16,6 +18,23 @@ constexpr uint64_t kMaxValuesPerByte = 4 * 1032;
 constexpr uint64_t kHarmlessValues = uint64_t{4} * 4096 * 4096;
 
 }  // namespace
+
+std::optional<std::array<int, 2>> webp_size(std::span<const uint8_t> file) {
+    constexpr size_t needed = 30;
+    if (file.size() < needed) return std::nullopt;
+    const std::string_view text(reinterpret_cast<const char*>(file.data()), needed);
+    if (!text.starts_with("RIFF") || text.substr(8, 4) != "WEBP") return std::nullopt;
+    const auto word = [&](size_t at, int bytes) {
+        int value = 0;
+        for (int i = bytes; i-- > 0;) value = value << 8 | file[at + size_t(i)];
+        return value;
+    };
+    const std::string_view chunk = text.substr(12, 4);
+    if (chunk == "VP8X") return std::array{word(24, 3) + 1, word(27, 3) + 1};
+    if (chunk == "VP8 ") return std::array{word(26, 2) & 0x3FFF, word(28, 2) & 0x3FFF};
+    if (chunk != "VP8L") return std::nullopt;
+    return std::array{(word(21, 2) & 0x3FFF) + 1, (word(22, 3) >> 6 & 0x3FFF) + 1};
+}
 
 std::string size_complaint(int width, int height, int depth, int channels, uint64_t byte_count) {
     if (width <= 0 || height <= 0 || channels <= 0)

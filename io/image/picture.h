@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "core/scene/texture.h"
+#include "io/image/picture_budget.h"
 
 namespace petzval {
 
@@ -45,11 +47,17 @@ struct PictureRows {
     PictureRows(const Picture&);
 };
 
-/// Reads every channel as floats; converts nothing but integers, to [0, 1]. Throws InputError.
+/// Reads every channel as floats; converts nothing but integers, to [0, 1]. kept_per_pixel: bytes
+/// that the caller keeps of each pixel beside the floats, which it then drops; absent where it
+/// keeps the floats. Throws InputError, also where the budget is too small.
+[[nodiscard]] Picture read_picture(const std::filesystem::path&, PictureBudget&,
+                                   std::optional<uint64_t> kept_per_pixel = {});
+/// Reads a picture that shares its budget, the usual one, with no other.
 [[nodiscard]] Picture read_picture(const std::filesystem::path&);
-/// Decodes an image of a scene from its encoded bytes; name is for messages. Throws InputError.
+/// Decodes an image of a scene from its encoded bytes; file and place are for messages. Throws
+/// InputError, also where the budget is too small.
 [[nodiscard]] Image decode_image(const std::vector<uint8_t>& bytes, const std::string& file,
-                                 const std::string& place);
+                                 const std::string& place, PictureBudget&);
 
 /// Formats of pictures that can be written. Only Exr holds scene-linear values, only Jpeg holds no
 /// alpha.

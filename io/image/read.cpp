@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
 
 #include <array>
 #include <fstream>
@@ -39,20 +40,34 @@ uint64_t size_on_disk(const std::filesystem::path& path) {
     return size;
 }
 
+using Head = std::array<uint8_t, 30>;
+
+/// First bytes of a file, zeros behind its end.
+Head head_of(const std::filesystem::path& path) {
+    Head head{};
+    std::ifstream(path, std::ios::binary).read(reinterpret_cast<char*>(head.data()), head.size());
+    return head;
+}
+
 /// Whether the file begins as Ward's Radiance pictures do, which OpenImageIO does not ask for.
-bool has_radiance_magic(const std::filesystem::path& path) {
-    std::array<char, 2> head{};
-    std::ifstream(path, std::ios::binary).read(head.data(), head.size());
+bool has_radiance_magic(const Head& head) {
     return head[0] == '#' && head[1] == '?';
 }
 
-}  // namespace
-
-Picture read_picture(const std::filesystem::path& path) {
+Picture decode(const std::filesystem::path& path, PictureBudget& budget,
+               std::optional<uint64_t> kept_per_pixel) {
     const auto refuse = [&](const std::string& why) -> InputError {
         return {path.string(), "", "the picture " + why};
     };
     const uint64_t byte_count = size_on_disk(path);
+    const Head head = head_of(path);
+    if (const auto size = webp_size(head)) {
+        const uint64_t decoded_bytes = uint64_t{4} * (*size)[0] * (*size)[1];
+        PictureBudget spent = budget;
+        const std::string shortage = spent.take(4 * decoded_bytes, decoded_bytes);
+        if (!shortage.empty())
+            throw refuse(fmt::format("of {}x{} pixels {}", (*size)[0], (*size)[1], shortage));
+    }
     OIIO::ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1);
     // In two steps: OpenImageIO's open in one would offer a broken file to all its readers.
@@ -61,11 +76,18 @@ Picture read_picture(const std::filesystem::path& path) {
     OIIO::ImageSpec spec;
     if (!input->open(path.string(), spec, config))
         throw refuse("cannot be read: " + first_line(input->geterror()));
-    if (input->format_name() == std::string_view("hdr") && !has_radiance_magic(path))
+    if (input->format_name() == std::string_view("hdr") && !has_radiance_magic(head))
         throw refuse("cannot be read: it does not begin with #? as Radiance files do");
     const std::string why =
         size_complaint(spec.width, spec.height, spec.depth, spec.nchannels, byte_count);
     if (!why.empty()) throw refuse(why);
+    const uint64_t pixels = uint64_t(spec.width) * spec.height;
+    const uint64_t float_bytes = pixels * spec.nchannels * sizeof(float);
+    const std::string shortage = kept_per_pixel ? budget.take(pixels * *kept_per_pixel, float_bytes)
+                                                : budget.take(float_bytes, 0);
+    if (!shortage.empty())
+        throw refuse(fmt::format("of {}x{} pixels with {} channels {}", spec.width, spec.height,
+                                 spec.nchannels, shortage));
 
     Picture picture{{.width = spec.width,
                      .height = spec.height,
@@ -84,6 +106,18 @@ Picture read_picture(const std::filesystem::path& path) {
     const std::string error = first_line(input->geterror());
     if (!success || is_cut_short(error)) throw refuse("cannot be read: " + error);
     return picture;
+}
+
+}  // namespace
+
+Picture read_picture(const std::filesystem::path& path, PictureBudget& budget,
+                     std::optional<uint64_t> kept_per_pixel) {
+    return naming_file(path.string(), [&] { return decode(path, budget, kept_per_pixel); });
+}
+
+Picture read_picture(const std::filesystem::path& path) {
+    PictureBudget budget;
+    return read_picture(path, budget);
 }
 
 }  // namespace petzval

@@ -7,7 +7,6 @@
 #include <array>
 
 #include "io/base/error.h"
-#include "io/base/json_parse.h"
 #include "io/base/text_lines.h"
 #include "io/lens/lens_formats.h"
 
@@ -27,7 +26,7 @@ std::array<double, 4> columns(const TextLine& line, const std::vector<std::strin
         const auto value = finite_number(word[i]);
         if (!value)
             throw InputError(file, line.place(),
-                             fmt::format("\"{}\" is not a finite number", printable(word[i])));
+                             fmt::format("column {} is not a finite number", i + 1));
         values[i] = *value;
     }
     return values;

@@ -152,6 +152,7 @@ LensFile read_lens_json(std::string_view text, const std::string& file, const st
                         LensGlasses& glasses) {
     const nlohmann::json json = parse_json(text, file);
     const JsonCursor at(json, file);
+    at.require("surfaces");  // before anything of what may be no lens is shown
     allow(at, {"name", "title", "year", "patent", "source", "grade", "notes", "focal_length",
                "fnumber", "field_half_angle_deg", "image_circle", "focus_group", "surfaces"});
     Prescription lens;

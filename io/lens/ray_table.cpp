@@ -35,9 +35,9 @@ std::array<size_t, 7> places_of_columns(const CsvTable& table) {
     for (size_t i = 0; i < kColumns.size(); ++i) {
         const auto at = std::find(table.names.begin(), table.names.end(), kColumns[i]);
         if (at == table.names.end() || table.names.size() != kColumns.size())
-            throw InputError(table.file, "",
-                             fmt::format("must have the columns {}; it has {}",
-                                         fmt::join(kColumns, ","), fmt::join(table.names, ",")));
+            throw InputError(
+                table.file, "",
+                fmt::format("must have the columns {}, and no others", fmt::join(kColumns, ",")));
         places[i] = static_cast<size_t>(at - table.names.begin());
     }
     return places;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/traversal/bvh.h"
 
+#include <embree3/rtcore.h>
 #include <gtest/gtest.h>
 
 #include <random>
@@ -96,6 +97,78 @@ TEST(Bvh, RaysLeaveSurfacesAtEveryScaleAndPlace) {
             EXPECT_EQ(count.leaks, 0) << "radius " << radius << " away " << away;
             EXPECT_EQ(count.hits, 20000);
         }
+}
+
+// Embree by itself takes AVX-512 where there is some, which rounds otherwise than AVX2.
+TEST(Bvh, TracesWithInstructionsThatEveryProcessorHas) {
+    Scene scene;
+    place(scene, sphere(V3f(0.f), 1.f, 4, false), diffuse_material(0.5f));
+    finish_scene(scene);
+    const Bvh bvh(scene, Traversal::Robust);
+    RTCDevice device = rtcGetSceneDevice(bvh.native());
+    EXPECT_EQ(rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED), 0);
+    EXPECT_EQ(rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED), 1);
+    rtcReleaseDevice(device);
+}
+
+// Barycentric coordinates by Cramer's rule in long double.
+V2f cramer(const std::array<V3f, 3>& corner, const Ray& ray) {
+    using V3 = Imath::Vec3<long double>;
+    const V3 a(corner[0]), d(ray.direction), e1 = V3(corner[1]) - a, e2 = V3(corner[2]) - a;
+    const V3 s = V3(ray.origin) - a, p = d.cross(e2), q = s.cross(e1);
+    const long double determinant = e1.dot(p);
+    return {static_cast<float>(s.dot(p) / determinant), static_cast<float>(d.dot(q) / determinant)};
+}
+
+// Embree's own coordinates come from an approximate reciprocal, which is another number on
+// processors of another maker. Those of a hit must have nothing but the rounding to float.
+TEST(Bvh, CoordinatesOfAHitFollowFromRayAndTriangleAlone) {
+    for (const bool instanced : {false, true}) {
+        Scene scene;
+        place(scene, sphere(V3f(0.f), 1.f, 24, false), diffuse_material(0.5f));
+        Instance& instance = scene.instances[0];
+        instance.identity = !instanced;
+        instance.to_world.setScale(V3f(2.f, 4.f, 0.5f));  // exact, and so is its inverse
+        instance.to_local.setScale(V3f(0.5f, 0.25f, 2.f));
+        finish_scene(scene);
+        const Bvh bvh(scene, Traversal::Robust);
+        Random random(23);
+        int differing = 0;
+        for (int i = 0; i < 20000; ++i) {
+            Ray ray;
+            ray.origin = random.direction() * (0.4f * random());
+            ray.direction = random.direction();
+            const auto hit = bvh.intersect(ray);
+            ASSERT_TRUE(hit);
+            const V2f b = cramer(triangle_corners(scene, hit->instance, hit->triangle), ray);
+            for (int k = 0; k < 2; ++k)
+                differing += b[k] > 1e-3f && neighbour(b[k], true) != hit->barycentric[k] &&
+                             neighbour(b[k], false) != hit->barycentric[k] &&
+                             b[k] != hit->barycentric[k];
+        }
+        EXPECT_EQ(differing, 0) << instanced;
+    }
+}
+
+TEST(Bvh, CoordinatesStayInsideTheTriangle) {
+    Scene scene;
+    place(scene, sphere(V3f(0.f), 1.f, 24, false), diffuse_material(0.5f));
+    finish_scene(scene);
+    const Bvh bvh(scene, Traversal::Robust);
+    const Mesh& mesh = scene.meshes[0];
+    size_t met = 0;
+    for (const V3f& corner : mesh.positions)  // along edges too, where a rounding decides
+        for (const V3f& other : mesh.positions) {
+            Ray ray;
+            ray.direction = corner + (other - corner) * 0.25f;
+            if (ray.direction.length() < 0.1f) continue;
+            const auto hit = bvh.intersect(ray);
+            if (!hit) continue;  // the sphere's seam has vertices of its own on either side
+            ++met;
+            const V2f b = hit->barycentric;
+            ASSERT_TRUE(b.x >= 0.f && b.y >= 0.f && b.x + b.y <= 1.f + 1e-7f) << b.x << ' ' << b.y;
+        }
+    EXPECT_GT(met, mesh.positions.size() * mesh.positions.size() / 2);
 }
 
 TEST(Bvh, RaysLeaveInstancedSurfaces) {

@@ -220,7 +220,7 @@ TEST(TriangleLight, ASurfaceEmitsWhatLightSamplesSay) {
             for (int i = 0; i < 400; ++i) {
                 const V2f b = random.next2() * 0.5f;
                 const V3f along = random.direction();
-                const Surface s = make_surface(scene, along, Hit{1.f, b, 0, 0});
+                const Surface s = make_surface(scene, along, Hit{b, 0, 0});
                 const Rgb found = read_material(scene, s, -along, kRgb).emitted;
                 const Rgb expected = emitted_radiance(scene, 0, 0, b, s.front);
                 for (int k = 0; k < 3; ++k) ASSERT_EQ(found[k], expected[k]);

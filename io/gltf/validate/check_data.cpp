@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values in the buffers that would lead a loader astray.
+// Values in the buffers that would lead a loader astray. Messages do not show them: a buffer may be
+// any file of the machine.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,8 +37,8 @@ void check_floats(const GltfCheck& check) {
         const auto bad = std::find_if(values.begin(), values.end(),
                                       [](float value) { return !std::isfinite(value); });
         if (bad != values.end())
-            cursors[i].fail(fmt::format("element {} is {}, not a finite number",
-                                        (bad - values.begin()) / accessor.components, *bad));
+            cursors[i].fail(fmt::format("element {} is not a finite number",
+                                        (bad - values.begin()) / accessor.components));
     }
 }
 
@@ -55,13 +56,14 @@ class IndexCheck {
         const Greatest found = greatest(index);
         const uint64_t restart = (uint64_t(1) << 8 * component_size(accessor.component_type)) - 1;
         if (found.value == restart)
-            primitive.fail("indices", fmt::format("index {} of accessor {} is {}, which would "
-                                                  "restart the primitive and is not allowed",
-                                                  found.at, index, found.value));
+            primitive.fail("indices",
+                           fmt::format("index {} of accessor {} has all bits set, which would "
+                                       "restart the primitive and is not allowed",
+                                       found.at, index));
         if (found.value >= vertices)
-            primitive.fail("indices", fmt::format("index {} of accessor {} is {}, but there are {} "
-                                                  "vertices",
-                                                  found.at, index, found.value, vertices));
+            primitive.fail("indices",
+                           fmt::format("index {} of accessor {} is beyond the {} vertices",
+                                       found.at, index, vertices));
     }
 
     /// The greatest joint that the vertices of a mesh name; nothing where they name none.
@@ -91,8 +93,8 @@ void check_joints(const GltfCheck& check, const std::vector<std::optional<uint64
         if (!node.has("skin")) continue;
         const size_t skin = node.integer("skin"), mesh = node.integer("mesh");
         if (greatest[mesh] && *greatest[mesh] >= skins[skin].length("joints"))
-            node.fail("skin", fmt::format("mesh {} names joint {}, but skin {} has {}", mesh,
-                                          *greatest[mesh], skin, skins[skin].length("joints")));
+            node.fail("skin", fmt::format("mesh {} names a joint beyond the {} of skin {}", mesh,
+                                          skins[skin].length("joints"), skin));
     }
 }
 

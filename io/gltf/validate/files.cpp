@@ -44,11 +44,15 @@ class Fetcher {
             owner.fail("uri", fmt::format("\"{}\" is not a relative path to a file; network and "
                                           "absolute addresses are not read",
                                           printable(uri)));
-        const std::filesystem::path file_path = source_.path.parent_path() / *path;
-        FileBytes file = read_file(file_path);
+        const std::filesystem::path folder = source_.path.parent_path(), full = folder / *path;
+        if (source_.scope == FileScope::Confined && !lies_within(full, folder))
+            owner.fail("uri", fmt::format("\"{}\" lies outside the folder of the scene, and "
+                                          "--confine allows no file there",
+                                          printable(*path)));
+        FileBytes file = read_file(full);
         if (!file.error.empty())
             owner.fail("uri", fmt::format("\"{}\": {}", printable(*path), file.error));
-        if (!times_read_.contains(*path)) source_.files.push_back(file_path);
+        if (!times_read_.contains(*path)) source_.files.push_back(full);
         count(*path, file.bytes, owner);
         return std::move(file.bytes);
     }

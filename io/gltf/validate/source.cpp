@@ -27,7 +27,7 @@ void check_scene_graph(GltfCheck& check) {
 
 }  // namespace
 
-GltfSource read_gltf_source(const std::filesystem::path& path) {
+GltfSource read_gltf_source(const std::filesystem::path& path, FileScope scope) {
     const std::string name = path.string();
     const std::string foreign = foreign_scene_advice(path);
     if (!foreign.empty()) throw InputError(name, "", foreign);
@@ -37,6 +37,7 @@ GltfSource read_gltf_source(const std::filesystem::path& path) {
     GltfSource source;
     source.path = path;
     source.files.push_back(path);
+    source.scope = scope;
     source.hash = fnv1a(file.bytes);
     GltfBudget budget;
     budget.add_owned(file.bytes.size());

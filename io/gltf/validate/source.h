@@ -10,9 +10,14 @@
 
 namespace petzval {
 
+/// Folders in which the files may lie that a scene names. Confined: that of the scene and those
+/// below it, all links followed.
+enum class FileScope : uint8_t { Anywhere, Confined };
+
 /// JSON that passed every check of check_gltf, with the bytes it refers to.
 struct GltfSource {
     std::filesystem::path path;
+    FileScope scope = FileScope::Anywhere;
     nlohmann::json json;
     /// Bytes of each buffer, read from its file, its data URI or the binary chunk; at least
     /// byteLength long. Empty for a buffer that the file leaves undefined.
@@ -29,6 +34,7 @@ struct GltfSource {
 /// container, JSON (and its depth), version, required extensions, every index, every byte range,
 /// the node tree, counts against the sizes of the buffers. Throws InputError with file and JSON
 /// path.
-[[nodiscard]] GltfSource read_gltf_source(const std::filesystem::path&);
+[[nodiscard]] GltfSource read_gltf_source(const std::filesystem::path&,
+                                          FileScope = FileScope::Anywhere);
 
 }  // namespace petzval

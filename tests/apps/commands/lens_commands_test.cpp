@@ -179,7 +179,7 @@ TEST_F(LensCli, RefusesRaysThatAreNone) {
     refused("x,y,z,dx,dy,dz\n0,0,0,0,0,1\n", "must have the columns x,y,z,dx,dy,dz,nm");
     refused(names + "0,0,0,0,0,1,550\n0,0,0,0,0,0,550\n", "line 3: dx,dy,dz has no length");
     refused(names + "0,0,0,0,0,1,5500\n", "line 2: nm is 5500; it must be from 360 to 830");
-    refused(names + "0,0,nan,0,0,1,550\n", "line 2: \"nan\" in column z");
+    refused(names + "0,0,nan,0,0,1,550\n", "line 2: column 3 is not a finite number");
     refused(names + "0,0,1e300,0,0,1,550\n", "line 2: z is 1e+300");
     expect_error({"trace", kLens, "--rays", path("none.csv"), "-o", path("out.csv")}, 1,
                  "none.csv");

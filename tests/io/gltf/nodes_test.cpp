@@ -150,6 +150,24 @@ TEST(GltfNodes, DeepTrees) {
     EXPECT_EQ(load_mesh(file).positions[0], V3f(depth - 1, 0, 0));
 }
 
+// What looks at each node for each node takes minutes for these.
+TEST(GltfNodes, ManyNodesShowOneMesh) {
+    constexpr size_t count = 100'000;
+    TinyGltf file = one_triangle();
+    auto& nodes = file.json["nodes"] = nlohmann::json::array();
+    for (size_t i = 0; i < count; ++i)
+        nodes.push_back({{"mesh", 0}, {"translation", {i % 100, i / 100 % 100, i / 10000}}});
+    for (size_t i = 0; i < count; ++i) nodes.push_back(nlohmann::json::object());
+    auto& roots = file.json["scenes"][0]["nodes"] = nlohmann::json::array();
+    for (size_t i = 0; i < 2 * count; ++i) roots.push_back(i);
+    const Scene scene = load(file).scene;
+    EXPECT_EQ(scene.meshes.size(), 1u);
+    ASSERT_EQ(scene.instances.size(), count);
+    EXPECT_EQ(scene.instances[12345].to_world[3][0], 45);
+    EXPECT_EQ(scene.instances[12345].to_world[3][1], 23);
+    EXPECT_EQ(scene.instances[12345].to_world[3][2], 1);
+}
+
 TEST(GltfNodes, AnEmptyFileIsAnEmptyScene) {
     const GltfFile loaded = load(TinyGltf{});
     EXPECT_TRUE(loaded.scene.meshes.empty());

@@ -22,8 +22,9 @@ struct Loaded {
 };
 Loaded load(const std::filesystem::path& path) {
     Loaded loaded;
-    loaded.sky =
-        load_sky(path, 0.f, 2.f, [&](const std::string& line) { loaded.notices.push_back(line); });
+    PictureBudget budget;
+    loaded.sky = load_sky(
+        path, 0.f, 2.f, [&](const std::string& line) { loaded.notices.push_back(line); }, budget);
     return loaded;
 }
 

@@ -167,7 +167,7 @@ TEST_F(LensText, RefusesJsonThatIsNoLens) {
          {"\"fnumber\": 5", "\"fnumber\": \"5\"", "/fnumber: must be a number"},
          {"[0, 2]", "[2, 0]", "/focus_group: must be [first, last]"},
          {"[0, 2]", "[0, 4]", "/focus_group/1: there is no surface 4; the file has 4"},
-         {"\"surfaces\"", "\"notes2\"", "/notes2: is not a key"},
+         {"\"surfaces\"", "\"notes2\"", "a.json: has no \"surfaces\""},
          {"\"radius\": 50, ", "", "/surfaces/0: has no \"radius\""},
          {"\"radius\": 50", "\"radius\": 0", "/surfaces/0/radius: must not be 0; a plane"},
          {"\"radius\": 50", "\"radius\": 1e999", "beyond the range"},

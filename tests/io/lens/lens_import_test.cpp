@@ -189,8 +189,8 @@ TEST_F(LensText, RefusesPbrtsDescriptionsThatAreWrong) {
         "a.dat", kDat,
         {{"50 4 1.5 20", "50 4 1.5", "a.dat: line 2: has 3 columns; each surface has 4"},
          {"50 4 1.5 20", "50 4 1.5 20 1", "line 2: has 5 columns"},
-         {"50 4 1.5 20", "50 4 1,5 20", "line 2: \"1,5\" is not a finite number"},
-         {"50 4 1.5 20", "50 4 inf 20", "line 2: \"inf\" is not a finite number"},
+         {"50 4 1.5 20", "50 4 1,5 20", "line 2: column 3 is not a finite number"},
+         {"50 4 1.5 20", "50 4 inf 20", "line 2: column 3 is not a finite number"},
          {"50 4 1.5 20", "50 4 0.5 20", "line 2: has the index 0.5; it must be 0 for air"},
          {"50 4 1.5 20", "50 4 1.5 -20", "line 2: has an aperture of -20 mm"},
          {"50 4 1.5 20", "50 1e9 1.5 20", "line 2: has a thickness of"},
@@ -198,6 +198,19 @@ TEST_F(LensText, RefusesPbrtsDescriptionsThatAreWrong) {
          {"60 4 1.6", "0 4 0", "line 5: is a second stop (radius 0 in air); that at line 4"},
          {"\n0 3", "\n70 3", "a.dat: has no stop"},
          {kDat, "", "a.dat: has no stop"}});
+}
+
+// A scene may name any file of the machine as its lens.
+TEST_F(LensText, ShowsNothingOfAFileThatIsNoLens) {
+    for (const auto& [name, text] :
+         std::vector<std::pair<std::string, std::string>>{{"a.json", R"({"hunter2": "hunter2"})"},
+                                                          {"a.json", "hunter2"},
+                                                          {"a.dat", "hunter2:x:0\n"},
+                                                          {"a.dat", "hunter2 1 2 3\n"},
+                                                          {"a.zmx", "hunter2 = 1\nhunter2\n"}}) {
+        EXPECT_TRUE(has(refused(name, text), name)) << text;
+        EXPECT_FALSE(has(refused(name, text), "hunter2")) << refused(name, text);
+    }
 }
 
 }  // namespace

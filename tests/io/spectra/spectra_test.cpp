@@ -188,7 +188,7 @@ TEST(UserSpectra, ErrorsNameFileAndLine) {
         std::string text, place, message;
     };
     const Case cases[] = {
-        {false, "nm,v\n400,1\n,1\n", "line 3", "\"\" in column nm is not a finite number"},
+        {false, "nm,v\n400,1\n,1\n", "line 3", "column 1 is not a finite number"},
         {false, "nm,v\n400,1\n500,1\n450,1\n", "line 4", "450 nm must be above 500 nm"},
         {false, "nm,v\n400,1\n400,1\n", "line 3", "400 nm must be above 400 nm"},
         {false, "nm,v\n0,1\n400,1\n", "line 2", "0 nm must be above 0 nm"},

@@ -32,7 +32,7 @@ TEST(GltfLimits, AnAttributeOf32BitIntegers) {
 }
 
 TEST(GltfLimits, IndicesBeyondTheVertices) {
-    for (const auto& [index, expected] : {std::pair<uint16_t, const char*>{3, "there are 3 vert"},
+    for (const auto& [index, expected] : {std::pair<uint16_t, const char*>{3, "beyond the 3 vert"},
                                           {0xFFFF, "would restart the primitive"}}) {
         TinyGltf file;
         const int positions = file.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
@@ -56,7 +56,8 @@ TEST(GltfLimits, JointsBeyondTheSkin) {
     TinyGltf file = full_gltf();
     const size_t at = file.json["bufferViews"][3]["byteOffset"];
     file.bin[at + 5] = 1;
-    EXPECT_TRUE(has(refused_glb(file), "/nodes/1/skin: mesh 0 names joint 1, but skin 0 has 1"));
+    EXPECT_TRUE(
+        has(refused_glb(file), "/nodes/1/skin: mesh 0 names a joint beyond the 1 of skin 0"));
 }
 
 TEST(GltfLimits, QuantizedPositionsWithoutTheExtension) {

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/reading_options.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "apps/cli/parse.h"
+#include "io/base/machine.h"
+
+namespace petzval {
+
+std::optional<uint64_t> ReadingOptions::memory_bytes() const {
+    if (max_memory.empty()) return std::nullopt;
+    return parse_memory_bytes("--max-memory", max_memory);
+}
+
+PictureBudget ReadingOptions::pictures() const {
+    const auto bytes = memory_bytes();
+    return bytes ? PictureBudget(*bytes) : PictureBudget();
+}
+
+void add_memory_option(CLI::App& app, ReadingOptions& o) {
+    app.add_option("--max-memory", o.max_memory,
+                   "memory for decoded pictures, as 512MB or 8GB (default: half of what the "
+                   "machine or its control group has)");
+}
+
+void add_reading_options(CLI::App& app, ReadingOptions& o) {
+    add_memory_option(app, o);
+    app.add_flag("--confine", o.confine,
+                 "refuse files that the scene names outside its own folder");
+}
+
+int usual_threads() {
+    return std::min(usable_threads(), kMostThreads);
+}
+
+}  // namespace petzval

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the program may read and how much of the machine it takes.
+#include <sched.h>
+
+#include "tests/support/cli.h"
+#include "tests/support/tiny_png.h"
+
+namespace petzval {
+namespace {
+
+class ReadingOptions : public CliTest {
+  protected:
+    /// A wall with a texture of side * side texels, in the file or beside it.
+    TinyGltf textured(uint32_t side) {
+        TinyGltf file;
+        const std::vector<uint8_t> texels(size_t{4} * side * side, 200);
+        const int image = file.add_image(tiny_png(side, side, texels));
+        const int texture = file.add("textures", {{"source", image}});
+        const int material = file.add(
+            "materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}}}}}});
+        const int mesh = file.add_triangle({{"material", material}});
+        const int uv = file.add_accessor<float>("VEC2", {0, 0, 1, 0, 0, 1});
+        file.json["meshes"][size_t(mesh)]["primitives"][0]["attributes"]["TEXCOORD_0"] = uv;
+        file.add_root({{"mesh", mesh}});
+        return file;
+    }
+};
+
+TEST_F(ReadingOptions, MaxMemoryHoldsForAllPicturesOfAScene) {
+    const std::string scene = textured(100).save_glb(folder_.path / "t.glb").string();
+    const Words info = {"info", scene};
+    EXPECT_EQ(run_petzval({"info", scene, "--max-memory", "80kB"}).exit_code, 0);
+    const std::string line = error_of({"info", scene, "--max-memory", "79kB"}, 1);
+    EXPECT_NE(line.find("t.glb: /images/0: the image of 100x100 pixels"), line.npos) << line;
+    EXPECT_NE(line.find("--max-memory"), line.npos) << line;
+
+    // The environment comes on top of the texture, and an iris on top of both.
+    Picture sky{{.width = 64,
+                 .height = 32,
+                 .full_width = 64,
+                 .full_height = 32,
+                 .channels = {"R", "G", "B"},
+                 .metadata = {}},
+                std::vector<float>(64 * 32 * 3, 1.f)};
+    write_exr(path("sky.exr"), sky);
+    Picture iris = sky;
+    write_8bit(path("iris.png"), iris);
+    const Words all = {"render",     scene,
+                       "--size",     "8x8",
+                       "--spp",      "1",
+                       "--env",      path("sky.exr"),
+                       "--fstop",    "2",
+                       "--focus",    "1",
+                       "--look-at",  "0,0,3,0,0,0",
+                       "--aperture", path("iris.png"),
+                       "-o",         path("out.exr")};
+    const auto with = [&](const std::string& memory) {
+        Words words = all;
+        words.insert(words.end(), {"--max-memory", memory});
+        return words;
+    };
+    EXPECT_NE(error_of(with("100kB"), 1).find("sky.exr: the picture of 64x32"), std::string::npos);
+    EXPECT_NE(error_of(with("130kB"), 1).find("iris.png: the picture of 64x32"), std::string::npos);
+    const Finished enough = run_petzval(with("1MiB"));
+    EXPECT_EQ(enough.exit_code, 0) << enough.err;
+}
+
+TEST_F(ReadingOptions, MaxMemoryHoldsForPicturesByThemselves) {
+    const Picture picture{{.width = 64,
+                           .height = 32,
+                           .full_width = 64,
+                           .full_height = 32,
+                           .channels = {"R", "G", "B"},
+                           .metadata = {}},
+                          std::vector<float>(64 * 32 * 3, 1.f)};
+    write_exr(path("a.exr"), picture);
+    for (const Words& words : {Words{"image", "diff", path("a.exr"), path("a.exr")},
+                               Words{"image", "view", path("a.exr"), "-o", path("a.png")},
+                               Words{"image", "spectrum", path("a.exr"), "0,0"}}) {
+        Words little = words;
+        little.insert(little.end(), {"--max-memory", "24kB"});
+        EXPECT_NE(error_of(little, 1).find("a.exr: the picture of 64x32"), std::string::npos);
+    }
+    EXPECT_EQ(run_petzval({"image", "diff", path("a.exr"), path("a.exr"), "--max-memory", "50kB"})
+                  .exit_code,
+              0);
+}
+
+TEST_F(ReadingOptions, MaxMemoryIsAnAmountAndHoldsForTheRenderToo) {
+    expect_refused(2, {{{"--max-memory", "8"}, "\"8\" is not an amount of memory such as 512MB"},
+                       {{"--max-memory", "0GB"}, "\"0GB\""},
+                       {{"--max-memory", "-1GB"}, "\"-1GB\""},
+                       {{"--max-memory", "nanGB"}, "\"nanGB\""},
+                       {{"--max-memory", "8gigs"}, "\"8gigs\""},
+                       {{"--max-memory", "10MB", "--size", "2000x2000"}, "--size: needs"}});
+}
+
+// A scene that a stranger sent names what it likes.
+TEST_F(ReadingOptions, ConfineKeepsToTheFolderOfTheScene) {
+    std::filesystem::create_directories(path("scene"));
+    TinyGltf file = studio();
+    const std::string scene = file.save_gltf(folder_.path / "scene/s.gltf").string();
+    EXPECT_EQ(run_petzval({"info", scene, "--confine"}).exit_code, 0);
+    file.json["images"] = {{{"uri", "../secret.png"}}};
+    (void)file.save_gltf(folder_.path / "scene/s.gltf");
+    text_file("secret.png", "hunter2");
+    const Words render = {"render", scene, "--size", "8x8", "--spp", "1", "-o", path("o.exr")};
+    const auto confined = [](Words words) {
+        words.emplace_back("--confine");
+        return words;
+    };
+    for (const Words& words : {Words{"info", scene}, render, Words{"plan", scene},
+                               Words{"chart", scene, "-o", path("chart")}}) {
+        const std::string line = error_of(confined(words), 1);
+        EXPECT_NE(line.find("s.gltf: /images/0/uri: \"../secret.png\" lies outside"), line.npos)
+            << line;
+    }
+    EXPECT_EQ(run_petzval({"info", scene}).exit_code, 0) << "no material uses it";
+}
+
+TEST_F(ReadingOptions, ConfineHoldsForLensAndIrisOfACamera) {
+    std::filesystem::create_directories(path("scene"));
+    for (const char* place : {"", "scene/"}) {
+        std::filesystem::copy_file(
+            std::filesystem::path(PETZVAL_ASSETS) / "lenses/tessar-100mm-f2.8.json",
+            path(std::string(place) + "lens.json"));
+        text_file(std::string(place) + "iris.svg", R"(<svg><rect width="2" height="1"/></svg>)");
+    }
+    const auto run = [&](const std::string& lens, const std::string& aperture) {
+        TinyGltf file = studio();
+        file.json["cameras"][0]["extras"]["petzval"] = {{"lens", lens}, {"aperture", aperture}};
+        const std::string scene = file.save_gltf(folder_.path / "scene/s.gltf").string();
+        return run_petzval({"render", scene, "--size", "8x8", "--spp", "1", "--focus", "3",
+                            "--confine", "--quiet", "-o", path("o.exr")});
+    };
+    EXPECT_EQ(run("lens.json", "iris.svg").err, "");
+    EXPECT_EQ(run("tessar-100mm-f2.8", "star:5").err, "") << "what ships is no file of the scene";
+    for (const auto& [lens, aperture] :
+         std::vector<std::pair<std::string, std::string>>{{"../lens.json", "circle"},
+                                                          {path("lens.json"), "circle"},
+                                                          {"lens.json", "../iris.svg"},
+                                                          {"lens.json", path("iris.svg")}}) {
+        const Finished refused = run(lens, aperture);
+        EXPECT_EQ(refused.exit_code, 1) << lens << ' ' << aperture;
+        EXPECT_NE(refused.err.find("camera \"wide\": \""), std::string::npos) << refused.err;
+        EXPECT_NE(refused.err.find("lies outside the folder"), std::string::npos) << refused.err;
+    }
+}
+
+TEST_F(ReadingOptions, ThreadsFollowTheAffinityMask) {
+    cpu_set_t before, one;
+    ASSERT_EQ(sched_getaffinity(0, sizeof before, &before), 0);
+    CPU_ZERO(&one);
+    for (int i = 0; i < CPU_SETSIZE && CPU_COUNT(&one) == 0; ++i)
+        if (CPU_ISSET(i, &before)) CPU_SET(i, &one);
+    ASSERT_EQ(sched_setaffinity(0, sizeof one, &one), 0);
+    const Finished run = run_petzval({"render", scene_, "--size", "8x8", "--spp", "1", "--quiet",
+                                      "-o", path("o.exr"), "--stats", path("s.json")});
+    ASSERT_EQ(sched_setaffinity(0, sizeof before, &before), 0);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(nlohmann::json::parse(file_bytes(path("s.json")))["threads"], 1);
+}
+
+}  // namespace
+}  // namespace petzval

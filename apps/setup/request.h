@@ -67,6 +67,8 @@ struct CameraRequest {
     Precision precision = Precision::Float;
     ExposureMode exposure = ExposureMode::Normalised;
     float iso = 100, shutter_s = 0.01f;
+    /// Fall-off to the corners of lenses that are not traced; absent: with photographic exposure.
+    std::optional<bool> natural_vignetting;
     std::vector<std::filesystem::path> glasses;  ///< catalogues that go before those that ship
 };
 

@@ -50,6 +50,9 @@ class PathTracer {
     [[nodiscard]] f4 direct_light(const Surface&, const Frame&, const Bsdf&, const DrawnLight&,
                                   const Bands&, const Sampler&, uint32_t depth,
                                   const Material* medium, PathStats&) const;
+    [[nodiscard]] f4 light_along(const Surface&, const Frame&, const Bsdf&, const DrawnLight&,
+                                 const Bands&, const Sampler&, uint32_t depth,
+                                 const Material* medium, PathStats&) const;
 
     const Scene& scene_;
     const Caster& caster_;

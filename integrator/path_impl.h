@@ -18,10 +18,10 @@ struct PathTracer<Caster>::Vertex {
     LightReceiver receiver{};
 };
 
-/// The light sampler's view of a hit, without textures: position, geometric normal, whether it
-/// transmits. Reflected light lies on the triangle's own side, whatever the shading normal.
+/// The light sampler's view of a hit, without textures: position, normal, whether it transmits.
+/// Reflected light lies on the surface's own side, whatever the normal map.
 [[nodiscard]] inline LightReceiver receiver_at(const Surface& s) {
-    return {s.p, s.front ? s.ng : -s.ng, s.material->transmission > 0};
+    return {s.p, s.side, s.material->transmission > 0};
 }
 
 /// Light sample, and how likely its light was picked.
@@ -29,7 +29,11 @@ template <RayCaster Caster>
 struct PathTracer<Caster>::DrawnLight {
     LightSample sample;
     float pick_probability;
-    bool of_sky;  ///< its radiance is not looked up yet: many draws point the wrong way
+    uint32_t light;
+    V2f u;  ///< what drew the point on the light
+    [[nodiscard]] bool of_sky(const Scene& scene) const {
+        return static_cast<int32_t>(light) == scene.sky_light;
+    }
 };
 
 /// Weight of a sample drawn with density a where b might have drawn it too. Veach 1997, "Robust
@@ -88,29 +92,52 @@ auto PathTracer<Caster>::draw_light(const LightReceiver& receiver, const Sampler
     if (std::holds_alternative<SkyLight>(light)) {
         if (scene_.sky.black()) return std::nullopt;
         const Sky::Draw drawn = scene_.sky.sample(u.light_point);
-        return DrawnLight{
-            {drawn.direction, {}, true, f4{}, drawn.pdf, false}, pick->probability, true};
+        // Its radiance is not looked up yet: many draws point the wrong way.
+        return DrawnLight{{drawn.direction, {}, true, f4{}, drawn.pdf, false},
+                          pick->probability,
+                          pick->light,
+                          u.light_point};
     }
     const auto sample = sample_light(scene_, light, receiver.p, u.light_point, bands);
     if (!sample) return std::nullopt;
-    return DrawnLight{*sample, pick->probability, false};
+    return DrawnLight{*sample, pick->probability, pick->light, u.light_point};
 }
 
+// Light from a point of a lamp on a smooth surface. Seen from the triangle, the point may lie
+// before it, and seen from the smooth surface, behind the triangle: rays to the one side leave the
+// one point, those to the other side the other, and a point near the triangle's plane is met by
+// both.
 template <RayCaster Caster>
 f4 PathTracer<Caster>::direct_light(const Surface& s, const Frame& frame, const Bsdf& bsdf,
                                     const DrawnLight& drawn, const Bands& bands,
                                     const Sampler& sampler, uint32_t depth, const Material* medium,
                                     PathStats& stats) const {
+    if (!s.lifted() || drawn.sample.at_infinity)
+        return light_along(s, frame, bsdf, drawn, bands, sampler, depth, medium, stats);
+    const V3f facing = s.facing();
+    f4 sum{};
+    if (drawn.sample.direction.dot(facing) > 0.f)
+        sum += light_along(s, frame, bsdf, drawn, bands, sampler, depth, medium, stats);
+    const V3f smooth = s.p + s.lift, to_light = drawn.sample.target - smooth;
+    if (!(to_light.dot(facing) < 0.f && to_light.dot(s.side) > 0.f)) return sum;
+    const auto again = sample_light(scene_, scene_.lights[drawn.light], smooth, drawn.u, bands);
+    if (!again || !(again->direction.dot(facing) < 0.f)) return sum;
+    const DrawnLight from_smooth{*again, drawn.pick_probability, drawn.light, drawn.u};
+    return sum + light_along(s, frame, bsdf, from_smooth, bands, sampler, depth, medium, stats);
+}
+
+template <RayCaster Caster>
+f4 PathTracer<Caster>::light_along(const Surface& s, const Frame& frame, const Bsdf& bsdf,
+                                   const DrawnLight& drawn, const Bands& bands,
+                                   const Sampler& sampler, uint32_t depth, const Material* medium,
+                                   PathStats& stats) const {
     const LightSample& light = drawn.sample;
-    const V3f wi = frame.to_local(light.direction);
-    // Shading and geometric normal must agree on the side, or light would leak through.
-    const bool front_side = light.direction.dot(s.ng) > 0.f;
-    if ((wi.z > 0.f) != (front_side == s.front)) return f4{};
-    const BsdfValue value = bsdf.eval(wi);
+    const BsdfValue value = bsdf.eval(frame.to_local(light.direction));
     if (value.pdf <= 0.f) return f4{};
 
+    const bool crosses = !(light.direction.dot(s.side) > 0.f);
     Ray shadow;
-    shadow.origin = offset_origin(s.p, s.p_error, s.ng, light.direction);
+    shadow.origin = leave_surface(s, light.direction, crosses);
     if (light.at_infinity) {
         shadow.direction = light.direction;
     } else {
@@ -123,10 +150,11 @@ f4 PathTracer<Caster>::direct_light(const Surface& s, const Frame& frame, const 
         const SectionTimer timer(stats, TimedSection::Traversal);
         if (caster_.occluded(shadow)) return f4{};
     }
-    f4 radiance = drawn.of_sky ? uplift_radiance(scene_.sky.radiance(light.direction), bands)
-                               : light.radiance;
+    f4 radiance = drawn.of_sky(scene_)
+                      ? uplift_radiance(scene_.sky.radiance(light.direction), bands)
+                      : light.radiance;
     const Material* behind = s.material->has_volume ? (s.front ? s.material : nullptr) : medium;
-    const Material* through = wi.z > 0.f ? medium : behind;
+    const Material* through = crosses ? behind : medium;
     if (through && !light.at_infinity)
         radiance *= transmittance(*through, (light.target - s.p).length(), bands);
     const float light_pdf = drawn.pick_probability * light.pdf;
@@ -183,6 +211,9 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
             continue;
         }
         ++stats.vertices;
+        // A segment that ends on the back of a volume's surface lay in that volume, whatever the
+        // path knows: it may have begun inside, as the camera's does.
+        if (!s.front && s.material->has_volume && s.material->transmission > 0) medium = s.material;
         if (medium) throughput *= transmittance(*medium, (s.p - last.p).length(), bands);
         const V3f wo = -ray.direction;
         const MaterialLookups lookups = [&] {
@@ -214,7 +245,7 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
 
         // Add direct light, unless volumes or black surfaces left nothing to go on with.
         if (!(hmax(throughput) >= std::numeric_limits<float>::min())) break;
-        const Bsdf bsdf(shading.bsdf, bands, shading.frame.to_local(wo), throughput);
+        const Bsdf bsdf(shading.bsdf, bands, shading.frame.to_local(wo), throughput, shading.up);
         const bool light_sampled =
             options_.technique != Technique::BsdfOnly && bsdf.has_wide_lobe();
         if (light_sampled && light)
@@ -228,10 +259,8 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         // No ray that is not a number goes on: the film counts the sample and names its pixel.
         if (!std::isfinite(direction.x + direction.y + direction.z))
             return splat(std::numeric_limits<float>::quiet_NaN());
-        const bool crosses = (direction.dot(s.ng) > 0.f) != s.front;
-        if (crosses != next->transmitted) break;
         throughput *= next->weight;
-        if (crosses && s.material->has_volume) medium = s.front ? s.material : nullptr;
+        if (next->transmitted && s.material->has_volume) medium = s.front ? s.material : nullptr;
 
         // Russian roulette.
         ++depth;
@@ -241,8 +270,8 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
             throughput *= 1.f / survival;
         }
         // Continue the path.
-        last = {s.p, next->pdf, light_sampled && !next->delta, receiver};
-        ray.origin = offset_origin(s.p, s.p_error, s.ng, direction);
+        last = {s.leaving_point(direction), next->pdf, light_sampled && !next->delta, receiver};
+        ray.origin = leave_surface(s, direction, next->transmitted);
         ray.direction = unit(direction);
     }
     return sum;

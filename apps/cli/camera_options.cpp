@@ -104,6 +104,12 @@ void add_exposure_options(CLI::App& app, CameraOptions& o) {
         app, "--exposure-mode", r.exposure,
         "normalised (default): as bright at every f-number; photographic: by --iso, --shutter and "
         "the iris"));
+    group(add_choice<std::optional<bool>>(
+        app, "--natural-vignetting", r.natural_vignetting,
+        Choices<std::optional<bool>>{{"auto", std::nullopt}, {"on", true}, {"off", false}},
+        "light falls towards the corners of a pinhole, thin lens or singlet by cos^4 of its angle "
+        "on the film: auto (default: with photographic exposure), on, off; a traced lens has its "
+        "own"));
     group(app.add_option("--iso", r.iso, "speed of the film (default 100)"))
         ->transform(number_between(1e-3, 1e9))
         ->needs(mode);

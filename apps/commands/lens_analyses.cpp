@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "apps/cli/console.h"
 #include "apps/commands/lens_field.h"
 #include "camera/bench/analysis.h"
 #include "camera/bench/spot.h"
@@ -40,6 +41,12 @@ std::string title_of(const Lens& lens, const std::string& what) {
     return fmt::format("{}: {}", file.name, what);
 }
 
+FieldSetup set_up_lit(const FieldRequest& request, const std::vector<double>& shares) {
+    FieldSetup setup = set_up(request, shares);
+    require_light(*setup.lens);
+    return setup;
+}
+
 std::vector<BundleRay> traced(const RayBundle& bundle, double film_mm, int side) {
     return bundle.trace(bundle.grid(side), film_mm);
 }
@@ -64,7 +71,7 @@ void print_spot(double field_deg, const char* line, const SpotSize& size) {
 
 Found spot_analysis(const AnalysisOptions& o) {
     constexpr int side = 300, drawn_side = 28;
-    const FieldSetup setup = set_up(o.field, {0, 0.7, 1});
+    const FieldSetup setup = set_up_lit(o.field, {0, 0.7, 1});
     Found out;
     out.names = {"field_deg", "nm", "x_mm", "y_mm"};
     std::vector<PlotSeries> series;
@@ -116,7 +123,7 @@ Found spot_analysis(const AnalysisOptions& o) {
 }
 
 Found fan_analysis(const AnalysisOptions& o) {
-    const FieldSetup setup = set_up(o.field, {0.7});
+    const FieldSetup setup = set_up_lit(o.field, {0.7});
     const Section other = setup.section == Section::X ? Section::Y : Section::X;
     Found out;
     out.names = {"field_deg", "nm", "tangential", "stop_radii", "dx_mm", "dy_mm"};
@@ -132,8 +139,10 @@ Found fan_analysis(const AnalysisOptions& o) {
                 series.label = fmt::format("{:.4g}° {} {}", deg, line.name,
                                            tangential ? "tangential" : "sagittal");
                 const RayBundle bundle = aim(setup, deg, line.nm);
-                for (const FanPoint& point :
-                     ray_fan(*setup.lens, bundle, along, setup.film_mm, centre[0].film_mm)) {
+                const auto fan =
+                    ray_fan(*setup.lens, bundle, along, setup.film_mm, centre[0].film_mm);
+                if (fan.empty()) refuse_dark(*setup.lens, deg);
+                for (const FanPoint& point : fan) {
                     series.points.push_back(
                         {point.stop, kMicrons * point.from_mm[along == Section::X ? 0 : 1]});
                     out.rows.push_back({deg, line.nm, double(tangential), point.stop,
@@ -150,15 +159,17 @@ Found fan_analysis(const AnalysisOptions& o) {
 
 Found mtf_analysis(const AnalysisOptions& o) {
     constexpr int side = 100, steps = 50;
-    const FieldSetup setup = set_up(o.field, {0, 0.7, 1});
+    const FieldSetup setup = set_up_lit(o.field, {0, 0.7, 1});
     const Section other = setup.section == Section::X ? Section::Y : Section::X;
     Found out;
     out.names = {"field_deg", "cycles_per_mm", "tangential", "sagittal"};
     for (const double deg : setup.fields_deg) {
         std::vector<BundleRay> rays;
-        for (const SpectralLine& line : kSpectralLines)
-            append(rays, traced(aim(setup, deg, line.nm), setup.film_mm, side));
-        if (rays.empty()) refuse_dark(*setup.lens, deg);
+        for (const SpectralLine& line : kSpectralLines) {
+            const auto of_line = traced(aim(setup, deg, line.nm), setup.film_mm, side);
+            if (of_line.empty()) refuse_dark(*setup.lens, deg);
+            append(rays, of_line);
+        }
         PlotSeries tangential{{}, PlotStyle::Lines, fmt::format("{:.4g}° tangential", deg)};
         PlotSeries sagittal{{}, PlotStyle::Lines, fmt::format("{:.4g}° sagittal", deg)};
         for (int i = 0; i <= steps; ++i) {
@@ -178,22 +189,46 @@ Found mtf_analysis(const AnalysisOptions& o) {
     return out;
 }
 
+// Says which fields are not in the plot. Those of a default, in steps, are named by their ends.
+void say_left_out(const std::vector<double>& fields_deg, const std::string& why) {
+    constexpr size_t most_named = 6;
+    if (fields_deg.empty()) return;
+    const std::string which =
+        fields_deg.size() > most_named
+            ? fmt::format("{:.4g}° to {:.4g}° ({} fields)", fields_deg.front(), fields_deg.back(),
+                          fields_deg.size())
+            : fmt::format("{:.4g}°", fmt::join(fields_deg, "°, "));
+    print_notice(NoticeStyle::Text, fmt::format("warning: left out: {}: {}", which, why));
+}
+
 Found distortion_analysis(const AnalysisOptions& o) {
     constexpr double widest_deg = 89;
     std::vector<double> shares;
     for (int i = 1; i <= 40; ++i) shares.push_back(i / 40.);
-    const FieldSetup setup = set_up(o.field, shares);
+    const FieldSetup setup = set_up_lit(o.field, shares);
     Found out;
     out.names = {"field_deg", "height_mm", "ideal_height_mm", "distortion"};
     PlotSeries series{{}, PlotStyle::LinesAndPoints, {}};
+    std::vector<double> on_axis, too_wide, dark;
     for (const double deg : setup.fields_deg) {
-        if (deg <= 0 || deg > widest_deg) continue;  // f tan(field) ends at 90
+        if (deg <= 0 || deg > widest_deg) {
+            (deg <= 0 ? on_axis : too_wide).push_back(deg);
+            continue;
+        }
         const auto found =
             distortion(*setup.lens, deg, setup.film_mm, setup.distance_mm, setup.section);
-        if (!found) continue;
+        if (!found) {
+            dark.push_back(deg);
+            continue;
+        }
         out.rows.push_back({deg, found->height_mm, found->ideal_height_mm, found->relative()});
         series.points.push_back({deg, 100 * found->relative()});
     }
+    say_left_out(on_axis, "the ideal height is 0 there");
+    say_left_out(too_wide, fmt::format("f tan(field) grows without bounds towards 90°, and ends "
+                                       "here at {:g}°",
+                                       widest_deg));
+    say_left_out(dark, "no ray through the middle of the stop reaches the film");
     if (out.rows.empty())
         throw ArgumentError(o.field.request.lens, "",
                             fmt::format("no field above 0° and up to {:g}° reaches the film; give "
@@ -208,7 +243,7 @@ Found distortion_analysis(const AnalysisOptions& o) {
 
 Found vignetting_analysis(const AnalysisOptions& o) {
     constexpr int steps = 32;
-    const FieldSetup setup = set_up(o.field, {});
+    const FieldSetup setup = set_up_lit(o.field, {});
     const double circle_mm =
         o.image_circle_mm > 0 ? o.image_circle_mm : setup.lens->prescription().image_circle_mm;
     if (!(circle_mm > 0))
@@ -250,6 +285,10 @@ std::shared_ptr<AnalysisOptions> add_analysis(CLI::App& lens, const char* name, 
         check_plot(options->plot);
         if (with_csv) check_writable(options->csv);
         const Found found = analyse(*options);
+        const auto& all = found.plot.series;
+        if (std::all_of(all.begin(), all.end(), [](const auto& s) { return s.points.empty(); }))
+            throw ArgumentError(options->field.request.lens, "",
+                                "too few rays reach the film for a plot");
         attempt_all({[&] {
                          if (with_csv)
                              write_file_atomically(options->csv, csv_text(found.names, found.rows));

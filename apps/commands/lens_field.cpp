@@ -8,6 +8,7 @@
 
 #include "apps/cli/choice.h"
 #include "camera/bench/analysis.h"
+#include "camera/lens/blockage.h"
 #include "camera/setup/focused_lens.h"
 #include "io/base/error.h"
 
@@ -95,6 +96,12 @@ FieldSetup set_up(const FieldRequest& request, const std::vector<double>& shares
     } else if (!request.film_shift.empty())
         out.film_mm += parse_number("--film-shift", request.film_shift, -1e4, 1e4, kMillimetres);
     return out;
+}
+
+void require_light(const Lens& lens) {
+    if (const auto blockage = find_blockage(lens))
+        throw ArgumentError(lens.prescription().name, "",
+                            "lets no light through to the middle of the film: " + blockage->text());
 }
 
 RayBundle aim(const FieldSetup& setup, double field_deg, double nm) {

@@ -45,6 +45,10 @@ struct FieldSetup {
 /// CLI::ValidationError, or ArgumentError where the lens has no such thing.
 [[nodiscard]] FieldSetup set_up(const FieldRequest&, const std::vector<double>& shares);
 
+/// Throws ArgumentError, which says why, for a lens that lets next to no light through to the
+/// middle of the film.
+void require_light(const Lens&);
+
 /// Ray bundle of a field at a wavelength. Throws ArgumentError where no ray of that field passes
 /// the middle of the stop.
 [[nodiscard]] RayBundle aim(const FieldSetup&, double field_deg, double nm);

@@ -13,6 +13,7 @@
 #include "apps/cli/parse.h"
 #include "apps/commands/lens_request.h"
 #include "camera/bench/analysis.h"
+#include "camera/lens/blockage.h"
 #include "camera/lens/focus.h"
 #include "io/base/error.h"
 #include "io/base/printable.h"
@@ -188,6 +189,10 @@ struct CheckOptions {
 void check_command(const CheckOptions& o) {
     const auto lens = open_lens(o.request);
     const Check result = check(*lens);
+    if (const auto blockage = find_blockage(*lens))
+        print_notice(
+            NoticeStyle::Text,
+            "warning: it lets no light through to the middle of the film: " + blockage->text());
     if (o.json)
         fmt::print("{}\n",
                    json_of(*lens, result).dump(2, ' ', true, Json::error_handler_t::replace));

@@ -202,6 +202,9 @@ void check_thin(const CameraModel& model) {
 }
 
 void check_lens(const CameraRequest& asked) {
+    if (asked.natural_vignetting)
+        throw ArgumentError("--natural-vignetting", "",
+                            "a traced lens always has its own: leave it out");
     if (asked.focal_length_mm || asked.lens_radius_m || asked.film_distance_mm ||
         (asked.fov_deg && asked.fit != Fit::Fov))
         throw ArgumentError("--lens", *asked.lens,
@@ -233,10 +236,11 @@ CameraModel choose_camera_model(const CameraRequest& request, const std::filesys
     if (model.from && model.from->orthographic) {
         if (asked.fstop || asked.lens_radius_m || asked.fov_deg || asked.focal_length_mm ||
             asked.focus || asked.aperture || asked.film_distance_mm || asked.sensor_mm ||
-            (asked.lens && *asked.lens != "pinhole"))
+            asked.natural_vignetting || (asked.lens && *asked.lens != "pinhole"))
             throw ArgumentError(scene.string(), "",
                                 fmt::format("camera \"{}\" is orthographic: it takes neither a "
-                                            "lens, its focus or sensor, nor an angle of view",
+                                            "lens, its focus, sensor or vignetting, nor an angle "
+                                            "of view",
                                             printable(model.from->name)));
     } else if (model.from) {
         take_extras(*model.from, scene, scope, asked);

@@ -48,6 +48,8 @@ void describe_camera(const CameraReport& c, PictureLayout& layout) {
     m.emplace_back("petzval:sensorWidth_mm", c.sensor_mm.x);
     m.emplace_back("petzval:sensorHeight_mm", c.sensor_mm.y);
     m.emplace_back("petzval:lensRadius_m", c.lens_radius_m);
+    if (c.natural_vignetting)
+        m.emplace_back("petzval:naturalVignetting", *c.natural_vignetting ? "on" : "off");
     if (!c.lens.empty()) describe_glass(c, layout);
     if (c.lens_radius_m <= 0) return;
     describe_iris(c, layout);

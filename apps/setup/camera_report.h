@@ -17,8 +17,9 @@ struct CameraReport {
     float lens_radius_m = 0, focus_m = 0;  ///< 0: a pinhole
     std::string lens;                      ///< name of a lens made of glass
     double film_mm = 0, stop_radius_mm = 0;
-    std::string dispersive_lens;  ///< its name, where its glass sends wavelengths apart
-    CameraRequest asked;          ///< the user's request, and the file's where that is silent
+    std::string dispersive_lens;             ///< its name, where its glass sends wavelengths apart
+    std::optional<bool> natural_vignetting;  ///< where asked for, or photographic exposure decides
+    CameraRequest asked;  ///< the user's request, and the file's where that is silent
 
     [[nodiscard]] FocusPlane focus_plane() const {
         return {eye, (target - eye).normalized(), focus_m};

@@ -169,6 +169,8 @@ CameraSetup without_prescription(const CameraContext& at) {
     report.focus_m = focus_m.value_or(0);
     report.focal_length_mm = static_cast<float>(thin.focal_mm);
     report.lens_radius_m = static_cast<float>(thin.lens_radius_m);
+    if (report.asked.natural_vignetting || report.asked.exposure == ExposureMode::Photographic)
+        report.natural_vignetting = thin.natural_vignetting;
     if (std::holds_alternative<SingleLens>(at.model.optics)) {
         report.lens = *report.asked.lens;
         report.film_mm = thin.film_mm;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "camera/lens/blockage.h"
 #include "camera/lens/focus.h"
 #include "camera/lens/paraxial.h"
 #include "camera/models/lens_camera.h"
@@ -51,6 +52,16 @@ double stop_radius_of(const LoadedLens& loaded, std::optional<float> fstop, cons
     notice(fmt::format("warning: {} opens to f/{:.3g} at most, not to f/{:g}", loaded.name(),
                        fnumber_of(loaded.lens, filed_mm), *fstop));
     return filed_mm;
+}
+
+// Refuses a lens that passes next to nothing of what its pupil promises.
+void require_light(const std::string& name, const Lens& lens, double axial, double promised) {
+    constexpr double kLeastShare = 0.01;
+    const auto blockage = find_blockage(lens);
+    if (axial > 0 && !(blockage && axial < kLeastShare * promised)) return;
+    throw ArgumentError(name, "",
+                        "lets no light through to the middle of the film" +
+                            (blockage ? ": " + blockage->text() : std::string()));
 }
 
 }  // namespace
@@ -106,6 +117,8 @@ LensSetup set_up_lens(const CameraRequest& asked, const LoadedLens& loaded, cons
     FocusedLens sharp = focused_at(loaded, focus_m, asked.focus_by, setup.stop_radius_mm);
     const std::string aperture = asked.aperture.value_or("circle");
     std::unique_ptr<LensCamera> camera;
+    std::shared_ptr<const Lens> lens;
+    double promised = 0;
     try {
         const Iris iris(parse_aperture(aperture, {}, asked.iris_pictures.value_or(PictureBudget())),
                         setup.stop_radius_mm, asked.aperture_scale, asked.iris_sampling,
@@ -117,6 +130,8 @@ LensSetup set_up_lens(const CameraRequest& asked, const LoadedLens& loaded, cons
                             aperture, 100 * iris.share_cut()));
         LensCameraInput in = input_of(loaded, to_world, std::move(sharp), iris);
         setup.film_mm = in.film_mm;
+        lens = in.lens;
+        promised = paraxial_irradiance(*lens, iris.area_mm2());
         in.dispersion = asked.dispersion.value_or(DispersionMode::Tolerance);
         in.coating = asked.coating;
         in.precision = asked.precision;
@@ -128,8 +143,7 @@ LensSetup set_up_lens(const CameraRequest& asked, const LoadedLens& loaded, cons
         throw ArgumentError(aperture, "", error.what());
     }
     const double axial = camera->irradiance(V2f(0.f), 1024);
-    if (!(axial > 0))
-        throw ArgumentError(loaded.name(), "", "lets no light through to the middle of the film");
+    require_light(loaded.name(), *lens, axial, promised);
     const bool normalised = asked.exposure == ExposureMode::Normalised;
     camera->set_exposure(
         normalised ? 1 : photographic_gain(axial, double(asked.iso), double(asked.shutter_s)),

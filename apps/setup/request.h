@@ -71,6 +71,8 @@ struct CameraRequest {
     ExposureMode exposure = ExposureMode::Normalised;
     float iso = 100, shutter_s = 0.01f;
     std::optional<PictureBudget> iris_pictures;  ///< what those of the scene leave; absent: usual
+    /// Fall-off to the corners of lenses that are not traced; absent: with photographic exposure.
+    std::optional<bool> natural_vignetting;
     std::vector<std::filesystem::path> glasses;  ///< catalogues that go before those that ship
 };
 

@@ -118,17 +118,24 @@ float yfov_at_rad(const ThinView& view, std::optional<float> focus_m) {
 ThinSetup set_up_thin(const CameraModel& model, const ThinView& view, ThinLens lens,
                       std::optional<float> focus_m, int width_px, const Notice& notice) {
     const CameraRequest& asked = model.asked;
+    const bool photographic = asked.exposure == ExposureMode::Photographic;
+    const bool vignettes = asked.natural_vignetting.value_or(photographic);
     ThinSetup setup{};
+    setup.natural_vignetting = vignettes;
     if (!focus_m) {
         setup.focal_mm = view.focal_mm.value_or(0);
+        if (vignettes) lens.vignetting = NaturalVignetting();
         setup.camera = std::make_unique<ThinLensCamera>(std::move(lens));
         return setup;
     }
-    const double focus_mm = 1e3 * double(*focus_m);
+    double focus_mm = 1e3 * double(*focus_m);
     or_argument_error(model, [&] {
         setup.focal_mm = view.focal_mm
                              ? *view.focal_mm
                              : focal_length_between_mm(focus_mm, double(*asked.film_distance_mm));
+        // Both come as floats: what is the same in their digits is the same.
+        if (focus_mm <= setup.focal_mm * (1 + 4 * double(rounding_bound(1))))
+            focus_mm = std::fmin(focus_mm, setup.focal_mm);
         setup.film_mm = image_distance_mm(setup.focal_mm, focus_mm);
         setup.lens_radius_m = asked.lens_radius_m ? double(*asked.lens_radius_m)
                                                   : setup.focal_mm * 1e-3 / (2 * *asked.fstop);
@@ -137,10 +144,17 @@ ThinSetup set_up_thin(const CameraModel& model, const ThinView& view, ThinLens l
                                  asked.iris_pictures.value_or(PictureBudget())),
                   radius_mm, asked.aperture_scale, asked.iris_sampling);
         lens.focus_m = *focus_m;
-        if (asked.exposure == ExposureMode::Photographic)
+        if (photographic)
             lens.exposure = static_cast<float>(
                 photographic_gain(thin_lens_irradiance(radius_mm, setup.film_mm, iris.area_mm2()),
                                   double(asked.iso), double(asked.shutter_s)));
+        // In photographic exposure the factors average to what the iris lets through in truth, as
+        // thin_lens_irradiance() has the mean of a round stop for any shape.
+        if (vignettes)
+            lens.vignetting = NaturalVignetting(
+                setup.film_mm, photographic
+                                   ? NaturalVignetting::axial_mean(radius_mm, setup.film_mm)
+                                   : NaturalVignetting::axial_mean(iris, setup.film_mm));
         if (const auto* single = std::get_if<SingleLens>(&model.optics)) {
             AberratedLens glass{lens.to_world,   singlet_of(*single, setup.focal_mm),
                                 std::move(iris), double(*focus_m),
@@ -150,6 +164,7 @@ ThinSetup set_up_thin(const CameraModel& model, const ThinView& view, ThinLens l
                 static_cast<float>(asked.dispersion_tolerance_px * double(view.sensor_mm.x) /
                                    width_px / setup.film_mm);
             glass.exposure = lens.exposure;
+            glass.vignetting = lens.vignetting;
             warn_of_formula(glass.singlet, model, focus_mm, glass.iris.bounding_radius_mm(),
                             notice);
             setup.camera = std::make_unique<AberratedLensCamera>(std::move(glass));

@@ -33,6 +33,7 @@ struct ThinSetup {
     std::unique_ptr<Camera> camera;
     double focal_mm, lens_radius_m = 0;  ///< radius 0: a pinhole
     double film_mm = 0;                  ///< where the film stands behind a lens in focus
+    bool natural_vignetting = false;
 };
 
 /// Camera of a model. pose: with the view's angle and aspect. focus_m: absent for a pinhole. Throws

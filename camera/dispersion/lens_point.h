@@ -20,7 +20,9 @@ struct LaneRequest {
 struct FilmLanding {
     f4 dx_px, dy_px;  ///< from the film point that the ray was drawn for, y down
     f4 open;          ///< [0, 1]: share that iris and rims let through
-    f4 transmitted;   ///< [0, 1]: share that the surfaces do not reflect
+    /// Share that the surfaces do not reflect, and the film's fall-off there over that at the film
+    /// point.
+    f4 transmitted;
 };
 
 /// A film point of a camera, with its two primitives: rays() and landing(). A strategy composes

@@ -13,6 +13,7 @@ namespace petzval {
 namespace {
 
 constexpr double kInfinity_mm = 1e15;
+constexpr double kFarthestFilm = 1e6;  // in focal lengths
 
 // Paraxial image distance from the last vertex; nothing where the image is not real and behind the
 // lens.
@@ -22,7 +23,8 @@ std::optional<double> image_distance_mm(const Lens& lens, double object_mm) {
     const double mm = std::isfinite(object_mm)
                           ? image_of(lens, object_mm, kLineD_nm).from_last_vertex_mm
                           : first.back_focus_mm;
-    if (!(mm > 0 && mm < kInfinity_mm)) return std::nullopt;
+    // An object at the front focus to the last digits is sharp on no film that anyone could build.
+    if (!(mm > 0 && mm < kFarthestFilm * std::fabs(first.focal_length_mm))) return std::nullopt;
     return mm;
 }
 

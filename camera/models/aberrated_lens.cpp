@@ -61,12 +61,13 @@ class AberratedLensCamera::Point {
         out.stop_mm = c_.in_.iris.sample(request.u);
         const float share = static_cast<float>(lane_count(bands_.on)) /
                             static_cast<float>(lane_count(request.lanes));
-        find_vergences(request.lanes, splat(c_.in_.exposure * share), out);
+        float weight = c_.in_.exposure * share;
+        if (c_.in_.vignetting) weight *= c_.in_.vignetting->factor(tangents(), out.stop_mm);
+        find_vergences(request.lanes, splat(weight), out);
         return out;
     }
     [[nodiscard]] Ray ray(const Rays& rays, int lane) const {
-        const V3f through_centre{(2.f * at_.film.x - 1.f) * c_.tan_half_x_,
-                                 (1.f - 2.f * at_.film.y) * c_.tan_half_y_, -1.f};
+        const V3f through_centre{tangents().x, tangents().y, -1.f};
         const V3f point_mm{rays.stop_mm.x, rays.stop_mm.y, 0.f};
         Ray out;
         out.origin = c_.pose_.origin + c_.pose_.to_world(point_mm * 1e-3f);
@@ -88,11 +89,25 @@ class AberratedLensCamera::Point {
         const f4 off = all.vergence_per_mm - splat(all.vergence_per_mm[request.lead]);
         const V2f px = 0.5f * at_.pixel.frame_px / V2f(c_.tan_half_x_, c_.tan_half_y_);
         return {off * (rays.stop_mm.x * px.x), off * (-rays.stop_mm.y * px.y), all.weight,
-                splat(1.f)};
+                vignetting_where(off, rays.stop_mm)};
     }
     [[nodiscard]] float exposure() const { return c_.in_.exposure; }
 
   private:
+    /// Tangents of the angles at which the film point sees the lens's middle, right and up.
+    [[nodiscard]] V2f tangents() const {
+        return {(2.f * at_.film.x - 1.f) * c_.tan_half_x_,
+                (1.f - 2.f * at_.film.y) * c_.tan_half_y_};
+    }
+    /// Natural vignetting where each lane lands, over that of the film point.
+    [[nodiscard]] f4 vignetting_where(f4 off, V2f stop_mm) const {
+        f4 out = splat(1.f);
+        if (!c_.in_.vignetting) return out;
+        const float here = c_.in_.vignetting->factor(tangents(), stop_mm);
+        for (int lane = 0; lane < 4; ++lane)
+            out[lane] = c_.in_.vignetting->factor(tangents() + stop_mm * off[lane], stop_mm) / here;
+        return out;
+    }
     /// Vergences of the lanes whose closed form means something; the others get no weight. Only
     /// what holds between the wavelengths that the camera's constructor tried can fail here.
     void find_vergences(m4 lanes, f4 weight, Rays& out) const {

@@ -20,6 +20,7 @@ struct AberratedLens {
     DispersionMode dispersion = DispersionMode::Tolerance;
     float tolerance_rad = 0;  ///< Tolerance: most angle between directions, seen from the lens
     float exposure = 1.f;     ///< factor on every weight
+    std::optional<NaturalVignetting> vignetting{};  ///< absent: the film is evenly lit
 };
 
 /// Camera with an aberrated lens. A ray that meets the lens h off the axis is bent as by an ideal

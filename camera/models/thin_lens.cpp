@@ -12,13 +12,13 @@ constexpr float kFarthest_m = 1e9f;
 
 // A camera ray from a point and a direction of the camera's own space.
 CameraSample one_path(const Pose& pose, const V3f& origin, const V3f& direction, const Bands& bands,
-                      float exposure) {
+                      float exposure, float weight) {
     CameraSample out;
     out.exposure = exposure;
     CameraPath& path = out.add();
     path.ray.origin = pose.origin + pose.to_world(origin);
     path.ray.direction = unit(pose.to_world(direction));
-    path.weight = uniform(exposure, bands);
+    path.weight = uniform(weight, bands);
     path.lanes = bands.on;
     return out;
 }
@@ -34,6 +34,7 @@ Pose::Pose(const M44f& m)
 ThinLensCamera::ThinLensCamera(ThinLens lens)
     : pose_(lens.to_world),
       iris_(std::move(lens.iris)),
+      vignetting_(lens.vignetting),
       focus_m_(std::fmin(lens.focus_m, kFarthest_m)),
       exposure_(lens.exposure),
       tan_half_x_(std::tan(lens.yfov_rad / 2) * lens.aspect),
@@ -42,10 +43,15 @@ ThinLensCamera::ThinLensCamera(ThinLens lens)
 CameraSample ThinLensCamera::sample(const FilmPoint& at, const Bands& bands) const {
     const V3f direction{(2.f * at.film.x - 1.f) * tan_half_x_,
                         (1.f - 2.f * at.film.y) * tan_half_y_, -1.f};
-    if (!iris_) return one_path(pose_, V3f(0.f), direction, bands, exposure_);
-    const V2f stop = iris_->sample(at.sampler.get2(Dim::Lens)) * 1e-3f;
+    const auto weight = [&](V2f stop_mm) {
+        return vignetting_ ? exposure_ * vignetting_->factor({direction.x, direction.y}, stop_mm)
+                           : exposure_;
+    };
+    if (!iris_) return one_path(pose_, V3f(0.f), direction, bands, exposure_, weight(V2f(0.f)));
+    const V2f stop_mm = iris_->sample(at.sampler.get2(Dim::Lens)), stop = stop_mm * 1e-3f;
     const V3f origin{stop.x, stop.y, 0.f};
-    return one_path(pose_, origin, direction * focus_m_ - origin, bands, exposure_);
+    return one_path(pose_, origin, direction * focus_m_ - origin, bands, exposure_,
+                    weight(stop_mm));
 }
 
 OrthographicCamera::OrthographicCamera(const M44f& to_world, float half_width_m,
@@ -55,7 +61,7 @@ OrthographicCamera::OrthographicCamera(const M44f& to_world, float half_width_m,
 CameraSample OrthographicCamera::sample(const FilmPoint& at, const Bands& bands) const {
     const V3f origin{(2.f * at.film.x - 1.f) * half_width_m_,
                      (1.f - 2.f * at.film.y) * half_height_m_, 0.f};
-    return one_path(pose_, origin, V3f(0, 0, -1), bands, 1.f);
+    return one_path(pose_, origin, V3f(0, 0, -1), bands, 1.f, 1.f);
 }
 
 M44f look_at(const V3f& eye, const V3f& target) {

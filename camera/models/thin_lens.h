@@ -6,6 +6,7 @@
 
 #include "camera/camera.h"
 #include "camera/iris/iris.h"
+#include "camera/models/natural_vignetting.h"
 
 namespace petzval {
 
@@ -16,8 +17,9 @@ struct ThinLens {
     float yfov_rad = 0.7f;  ///< full vertical angle, seen from the lens's centre
     float aspect = 1.5f;    ///< width / height of the film
     std::optional<Iris> iris;
-    float focus_m = 1.f;   ///< axial distance; may be infinite
-    float exposure = 1.f;  ///< factor on every weight
+    float focus_m = 1.f;                            ///< axial distance; may be infinite
+    float exposure = 1.f;                           ///< factor on every weight
+    std::optional<NaturalVignetting> vignetting{};  ///< absent: the film is evenly lit
 };
 
 /// Position of a camera and its axes in world space, unit, as its matrix says.
@@ -35,6 +37,7 @@ class ThinLensCamera final : public Camera {
   private:
     Pose pose_;
     std::optional<Iris> iris_;
+    std::optional<NaturalVignetting> vignetting_;
     float focus_m_, exposure_, tan_half_x_, tan_half_y_;
 };
 

@@ -30,8 +30,10 @@ V3f mirror_below(const V3f& w) {
 // body. Energy lost by single scattering comes back by Turquin 2019, "Practical multiple scattering
 // compensation for microfacet models", equation 16, for each of the two; the body gets what the
 // coat leaves.
-Bsdf::Bsdf(const BsdfInput& in, const Bands& bands, const V3f& wo, f4 throughput)
+Bsdf::Bsdf(const BsdfInput& in, const Bands& bands, const V3f& wo, f4 throughput, const V3f& up)
     : wo_(wo),
+      up_(up),
+      tilted_(up != V3f(0, 0, 1)),
       alpha_(sqr(in.roughness)),
       eta_(in.eta),
       share_(zero_off(bands.on, throughput)),
@@ -136,6 +138,21 @@ float Bsdf::pdf_of_normal(float wo_m, float d) const {
 }
 
 BsdfValue Bsdf::eval(const V3f& wi) const {
+    if (!tilted_) return eval_lobes(wi);
+    // Light leaves towards wi on either of two ways that end on the same side.
+    const V3f mirrored = mirrored_at_surface(wi);
+    const bool above = wi.dot(up_) > 0.f;
+    BsdfValue value;
+    if ((wi.z > 0.f) == above) value = eval_lobes(wi);
+    if ((mirrored.z > 0.f) == above) {
+        const BsdfValue other = eval_lobes(mirrored);
+        value.f_cos += other.f_cos;
+        value.pdf += other.pdf;
+    }
+    return value;
+}
+
+BsdfValue Bsdf::eval_lobes(const V3f& wi) const {
     BsdfValue value;
     if (wi.z > 0.f && p_diffuse_ > 0.f) {
         value.f_cos = diffuse_ * (wi.z * kInvPi);
@@ -235,6 +252,18 @@ std::optional<V3f> Bsdf::draw(float u_lobe, V2f u) const {
 }
 
 std::optional<BsdfSample> Bsdf::sample(float u_lobe, V2f u) const {
+    std::optional<BsdfSample> drawn = sample_lobes(u_lobe, u);
+    if (!tilted_ || !drawn) return drawn;
+    if (!on_its_side(drawn->wi)) drawn->wi = mirrored_at_surface(drawn->wi);
+    if (drawn->delta) return drawn;
+    const BsdfValue value = eval(drawn->wi);
+    if (!(value.pdf > 0.f)) return std::nullopt;
+    drawn->weight = value.f_cos * (1.f / value.pdf);
+    drawn->pdf = value.pdf;
+    return drawn;
+}
+
+std::optional<BsdfSample> Bsdf::sample_lobes(float u_lobe, V2f u) const {
     V3f wi;
     if (u_lobe < p_diffuse_) {
         wi = cosine_hemisphere(u);
@@ -246,7 +275,7 @@ std::optional<BsdfSample> Bsdf::sample(float u_lobe, V2f u) const {
         if (!drawn) return std::nullopt;
         wi = unit(*drawn);
     }
-    const BsdfValue value = eval(wi);
+    const BsdfValue value = eval_lobes(wi);
     if (!(value.pdf > 0.f)) return std::nullopt;
     return BsdfSample{wi, value.f_cos * (1.f / value.pdf), value.pdf, false, wi.z < 0.f};
 }

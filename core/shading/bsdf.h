@@ -46,10 +46,19 @@ struct BsdfSample {
 /// the density is the mean over the lanes by the same proportion: single-sample MIS with the
 /// balance heuristic (Veach 1997, 9.2.3; Wilkie et al. 2014, section 3.2). A delta lobe leaves the
 /// drawn lane alone.
+///
+/// The surface proper may have another normal, `up`, than the shading frame. A direction that the
+/// lobes put on the wrong side of it is mirrored at its plane, in value, density and samples alike:
+/// the surface is a microsurface, whose neighbouring slopes send on what the shaded one sends into
+/// them. The second, mirroring facet is the idea of Schuessler et al. 2017, "Microfacet-based
+/// Normal Mapping for Robust Monte Carlo Path Tracing"; here it lies in the surface, as mirroring
+/// keeps solid angles, so that no light is lost or gained at any tilt.
 class Bsdf {
   public:
-    /// throughput: what each lane of the path carries, not all 0; it steers what is drawn.
-    Bsdf(const BsdfInput&, const Bands&, const V3f& wo, f4 throughput = splat(1.f));
+    /// throughput: what each lane of the path carries, not all 0; it steers what is drawn. up: unit
+    /// normal of the surface in the shading frame, on wo's side; z where both are the same.
+    Bsdf(const BsdfInput&, const Bands&, const V3f& wo, f4 throughput = splat(1.f),
+         const V3f& up = V3f(0, 0, 1));
 
     [[nodiscard]] BsdfValue eval(const V3f& wi) const;
     /// Draws a direction: u_lobe picks the lobe, u the direction. Nothing where that is absorbed.
@@ -60,6 +69,10 @@ class Bsdf {
     [[nodiscard]] f4 albedo() const;
 
   private:
+    [[nodiscard]] V3f mirrored_at_surface(const V3f& w) const { return w - up_ * (2 * w.dot(up_)); }
+    [[nodiscard]] bool on_its_side(const V3f& w) const { return (w.z > 0.f) == (w.dot(up_) > 0.f); }
+    [[nodiscard]] BsdfValue eval_lobes(const V3f& wi) const;
+    [[nodiscard]] std::optional<BsdfSample> sample_lobes(float u_lobe, V2f u) const;
     [[nodiscard]] float pdf_of_normal(float wo_m, float d) const;
     void add_glass(const V3f& wi, BsdfValue&) const;
     [[nodiscard]] f4 glass_reflectance(float wo_m) const;
@@ -68,7 +81,8 @@ class Bsdf {
     [[nodiscard]] std::optional<BsdfSample> sample_delta(float u_lobe) const;
     [[nodiscard]] std::optional<V3f> draw(float u_lobe, V2f u) const;
 
-    V3f wo_;
+    V3f wo_, up_;
+    bool tilted_;  ///< up is not z
     float alpha_;
     f4 eta_, share_;  ///< share_: each lane's part of what the path carries
     bool disperses_, delta_;

@@ -6,6 +6,9 @@
 namespace petzval {
 namespace {
 
+// Cosine between normals that are the same but for rounding, or for the eye.
+constexpr float kSameNormal = 1.f - 1e-6f;
+
 V3f abs_transform(const V3f& p, const M44f& m) {
     V3f sum;
     for (int j = 0; j < 3; ++j)
@@ -61,6 +64,27 @@ V3f face_towards(const V3f& n, const V3f& wo) {
     return cosine >= least_cosine ? n : unit(n + wo * (least_cosine - cosine));
 }
 
+// Way from a point of a triangle to the smooth surface that its corners' normals mean, in the
+// mesh's own space: the mean of the point's projections on the tangent planes of the corners, where
+// those lie above it. Hanika 2021, "Hacking the Shadow Terminator", Ray Tracing Gems II, chapter 4.
+// Normals far from the triangle's are those of a hard edge that was smoothed by mistake, and mean
+// no surface. n: the triangle's, any length.
+V3f way_to_smooth(const Mesh& mesh, const std::array<uint32_t, 3>& corner, V2f u, const V3f& p,
+                  const V3f& n, bool front) {
+    constexpr float all = 0.766f, none = 0.643f;  // cosines of 40 and 50 degrees
+    const float weight[3] = {1.f - u.x - u.y, u.x, u.y};
+    const V3f triangle = n * (1.f / std::sqrt(n.dot(n)));
+    V3f sum(0.f);
+    for (size_t i = 0; i < 3; ++i) {
+        const V3f& normal = mesh.normals[corner[i]];
+        const float above = (p - mesh.positions[corner[i]]).dot(normal);
+        if (front ? !(above < 0.f) : !(above > 0.f)) continue;
+        const float share = clamp_unit((normal.dot(triangle) - none) / (all - none));
+        sum -= normal * (above * weight[i] * share);
+    }
+    return sum;
+}
+
 // Reflectance at normal incidence: KHR_materials_ior and KHR_materials_specular.
 Rgb dielectric_f0(const Material& m, Rgb specular_color, float specular) {
     const float root = m.ior == 0.f ? 1.f : (m.ior - 1.f) / (m.ior + 1.f);
@@ -86,6 +110,7 @@ Surface make_surface(const Scene& scene, const V3f& direction, const Hit& hit) {
     // Seven roundings from the corners to p; Embree's own coordinates add as many again.
     s.p_error = (abs(a) * std::fabs(w) + abs(b) * u.x + abs(c) * u.y) * rounding_bound(14);
     V3f n = (b - a).cross(c - a);
+    const V3f p_of_mesh = s.p, n_of_mesh = n;
     const bool smooth = !s.mesh->normals.empty();
     V3f ns = smooth ? interpolate(s.mesh->normals, corner, u) : n;
     if (!s.instance->identity) {
@@ -105,6 +130,17 @@ Surface make_surface(const Scene& scene, const V3f& direction, const Hit& hit) {
     s.ns = length2 > 0.f ? ns * (1.f / std::sqrt(length2)) : s.ng;
     if (s.ns.dot(s.ng) < 0.f) s.ns = -s.ns;
     s.front = direction.dot(s.ng) < 0.f;
+    s.side = s.facing();
+    s.lift = V3f(0.f);
+    if (smooth && s.material->transmission == 0.f && s.ns.dot(s.ng) < kSameNormal) {
+        const V3f towards = s.front ? s.ns : -s.ns;
+        if (direction.dot(towards) < 0.f)
+            s.lift = way_to_smooth(*s.mesh, corner, u, p_of_mesh, n_of_mesh, s.front);
+        if (s.lifted()) {
+            s.side = towards;
+            if (!s.instance->identity) s.lift = transform_direction(s.lift, s.instance->to_world);
+        }
+    }
     for (int i = 0; i < 2; ++i)
         if (!s.mesh->uv[i].empty()) s.uv[i] = interpolate(s.mesh->uv[i], corner, u);
     return s;
@@ -145,6 +181,7 @@ ShadingInput read_material(const Scene& scene, const Surface& s, const MaterialL
     if (m.normal_texture.present() && !s.mesh->tangents.empty())
         n = mapped_normal(s, lookups.normal);
     out.frame = Frame::about(face_towards(s.front ? n : -n, wo));
+    if (out.frame.z.dot(s.side) < kSameNormal) out.up = out.frame.to_local(s.side);
     if (lookups.emits) {
         f4 texel = read_texture(lookups.emissive);
         texel[3] = 0.f;

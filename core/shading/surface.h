@@ -15,15 +15,33 @@ struct Surface {
     V3f ng;       ///< unit geometric normal, on the front side
     V3f ns;       ///< unit interpolated normal, on the front side
     bool front;   ///< the ray came from the front side
+    V3f side;     ///< unit, where the ray came from: reflected light leaves into its hemisphere
+    V3f lift;     ///< from p to the smooth surface; 0 where `side` is the triangle's normal
     std::array<V2f, 2> uv{V2f(0.f), V2f(0.f)};  ///< (0, 0) where the mesh has none
     const Instance* instance;
     const Mesh* mesh;
     const Material* material;
     Hit hit;
+
+    /// Unit geometric normal on the side where the ray came from.
+    [[nodiscard]] V3f facing() const { return front ? ng : -ng; }
+    /// Whether light leaves the smooth surface where it would meet the triangle.
+    [[nodiscard]] bool lifted() const { return lift != V3f(0.f); }
+    /// Point from which light leaves towards w, on the side where the ray came from: p, or the
+    /// smooth surface where w leads behind the triangle.
+    [[nodiscard]] V3f leaving_point(const V3f& w) const {
+        return lifted() && w.dot(facing()) <= 0.f ? p + lift : p;
+    }
 };
 
 /// Geometry of a hit of a ray that travels along `direction`.
 [[nodiscard]] Surface make_surface(const Scene&, const V3f& direction, const Hit&);
+/// Origin of a ray that leaves the surface towards w: to where the ray came from, or through it.
+[[nodiscard]] inline V3f leave_surface(const Surface& s, const V3f& w, bool transmitted) {
+    const V3f facing = s.facing();
+    if (transmitted) return offset_origin(s.p, s.p_error, s.ng, -facing);
+    return offset_origin(s.leaving_point(w), s.p_error, s.ng, facing);
+}
 /// Whether the hit is on the back of a single-sided surface, which glTF culls from view; the inside
 /// of a volume is seen.
 [[nodiscard]] inline bool culled_from_view(const Surface& s) {
@@ -37,6 +55,7 @@ struct ShadingInput {
     Rgb unlit{0.f};    ///< KHR_materials_unlit: shown as it is, nits
     Rgb emitted{0.f};  ///< emitted_radiance(), core/light/emission.h, nits
     Frame frame;       ///< shading frame on wo's side, the normal map applied
+    V3f up{0, 0, 1};   ///< Surface::side in the frame
 };
 /// Locations of the textures that nearly every material has. Locating them prefetches them, so that
 /// time until they are read is not lost.

@@ -209,5 +209,15 @@ TEST(LensFocus, NothingWhereNoRayPassesOrThePointIsTooNear) {
     }
 }
 
+// At the front focus to the last digits of a float the image would lie kilometres behind the lens.
+TEST(LensFocus, TheFrontFocusIsTooNear) {
+    for (const char* name : {"double-gauss-100mm-f2", "takumar-50mm-f1.2"}) {
+        const Lens lens = shipped(name);
+        const FirstOrder first = first_order(lens, kLineD_nm);
+        EXPECT_FALSE(focused(lens, first.front_focus_mm - 1e-8 * first.focal_length_mm)) << name;
+        EXPECT_TRUE(focused(lens, first.front_focus_mm - 0.1 * first.focal_length_mm)) << name;
+    }
+}
+
 }  // namespace
 }  // namespace petzval

@@ -68,9 +68,9 @@ BsdfInput thin_glass(float roughness) {
 }
 
 // Mean weight over a jittered grid: lobes along one axis, directions along the two others.
-float albedo_of(const BsdfInput& in, float cosine) {
-    const Bsdf bsdf(in, Bands::rgb(), from_cosine(cosine));
-    constexpr int lobes = 24, side = 96;
+float albedo_of(const BsdfInput& in, const V3f& wo, const V3f& up, int side) {
+    const Bsdf bsdf(in, Bands::rgb(), wo, splat(1.f), up);
+    constexpr int lobes = 24;
     std::mt19937 random(7);
     std::uniform_real_distribution<float> jitter;
     double sum = 0;
@@ -85,6 +85,18 @@ float albedo_of(const BsdfInput& in, float cosine) {
     return static_cast<float>(sum / (lobes * side * side));
 }
 
+float albedo_of(const BsdfInput& in, float cosine) {
+    return albedo_of(in, from_cosine(cosine), V3f(0, 0, 1), 96);
+}
+
+// Normal of a surface in the frame of a shading normal that is tilted off it, with wo above both:
+// nothing where there is no such.
+std::optional<V3f> up_of(const V3f& wo, float tilt_deg, float azimuth) {
+    const V3f up = from_cosine(std::cos(tilt_deg * kPi / 180), azimuth);
+    return wo.dot(up) > 1e-3f ? std::optional(up) : std::nullopt;
+}
+constexpr float kTilts_deg[] = {20.f, 50.f, 75.f, 85.f};
+
 constexpr float kCosines[] = {0.05f, 0.1f, 0.25f, 0.5f, 0.8f, 1.f};
 constexpr float kRoughnesses[] = {0.f, 0.05f, 0.15f, 0.3f, 0.5f, 0.7f, 0.85f, 1.f};
 
@@ -98,6 +110,59 @@ TEST(Bsdf, OpaqueWhiteReflectsEverythingAtEveryRoughness) {
                     << "metallic " << metallic << " roughness " << roughness << " cosine "
                     << cosine;
             }
+}
+
+// What a normal map tilts keeps its light: no direction is lost behind the surface.
+TEST(Bsdf, OpaqueWhiteReflectsEverythingAtEveryTilt) {
+    for (const float tilt_deg : kTilts_deg)
+        for (const float azimuth : {0.f, 2.f, kPi})
+            for (const float cosine : {0.1f, 0.6f, 1.f})
+                for (const float roughness : {0.f, 0.15f, 0.5f, 1.f})
+                    for (const float metallic : {0.f, 1.f}) {
+                        const V3f wo = from_cosine(cosine);
+                        const auto up = up_of(wo, tilt_deg, azimuth);
+                        if (!up) continue;
+                        BsdfInput in = dielectric(roughness);
+                        in.metallic = metallic;
+                        EXPECT_NEAR(albedo_of(in, wo, *up, 16), 1.f, 0.01f)
+                            << "tilt " << tilt_deg << " azimuth " << azimuth << " cosine " << cosine
+                            << " roughness " << roughness << " metallic " << metallic;
+                    }
+}
+
+TEST(Bsdf, TiltedTransmissionKeepsWhatAnUntiltedOneKeeps) {
+    for (const float tilt_deg : kTilts_deg)
+        for (const float azimuth : {0.f, 2.f})
+            for (const float cosine : {0.3f, 0.9f})
+                for (const float roughness : {0.f, 0.4f, 1.f})
+                    for (const BsdfInput& in : {thin_glass(roughness), glass(roughness, 1.5f),
+                                                glass(roughness, 1 / 1.5f)}) {
+                        const V3f wo = from_cosine(cosine);
+                        const auto up = up_of(wo, tilt_deg, azimuth);
+                        if (!up) continue;
+                        EXPECT_NEAR(albedo_of(in, wo, *up, 16), albedo_of(in, wo, V3f(0, 0, 1), 16),
+                                    0.01f)
+                            << tilt_deg << ' ' << azimuth << ' ' << cosine << ' ' << roughness;
+                    }
+}
+
+// Nothing that is reflected leaves behind the surface, nothing that is transmitted before it.
+TEST(Bsdf, TiltedSamplesLieOnTheirSide) {
+    const V3f wo = from_cosine(0.6f, 0.7f);
+    const V3f up = from_cosine(0.5f, 2.2f);
+    for (const float roughness : {0.f, 0.5f})
+        for (const BsdfInput& in : {dielectric(roughness), metal(roughness), thin_glass(roughness),
+                                    glass(roughness, 1.5f), dispersing(roughness, true)}) {
+            const Bsdf bsdf(in, Bands::rgb(), wo, splat(1.f), up);
+            test::Random random(4);
+            for (int i = 0; i < 2000; ++i) {
+                const float u_lobe = random.next();
+                const auto s = bsdf.sample(u_lobe, random.next2());
+                if (s) {
+                    EXPECT_EQ(s->wi.dot(up) < 0.f, s->transmitted);
+                }
+            }
+        }
 }
 
 TEST(Bsdf, SpecularWeightsKeepWhiteWhite) {
@@ -209,13 +274,17 @@ struct Case {
     float cosine;
     int lane = 1;
     f4 throughput = splat(1.f);
+    V3f up{0, 0, 1};
 };
+
+/// 60 degrees off the shading normal.
+const V3f kTilted = from_cosine(0.5f, 2.2f);
 
 class BsdfSampling : public testing::TestWithParam<Case> {};
 
 TEST_P(BsdfSampling, DirectionsFollowTheDensity) {
     const Bsdf bsdf(GetParam().in, Bands::rgb(), from_cosine(GetParam().cosine, 0.7f),
-                    GetParam().throughput);
+                    GetParam().throughput, GetParam().up);
     const auto draw = [&](test::Random& random) -> std::optional<V3f> {
         const float u_lobe = random.next();
         const auto s = bsdf.sample(u_lobe, random.next2());
@@ -229,7 +298,7 @@ TEST_P(BsdfSampling, DirectionsFollowTheDensity) {
 // mean weight of the sampler's own.
 TEST_P(BsdfSampling, WeightsIntegrateTheValue) {
     const Bsdf bsdf(GetParam().in, Bands::rgb(), from_cosine(GetParam().cosine, 0.7f),
-                    GetParam().throughput);
+                    GetParam().throughput, GetParam().up);
     const int lane = GetParam().lane;
     constexpr int n = 400000;
     test::Random random(5);
@@ -254,7 +323,13 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"dispersing in", dispersing(0.5f, false), 0.7f, 0},
                     Case{"dispersing out", dispersing(0.5f, true), 0.8f, 2},
                     Case{"one lane left", dispersing(0.5f, true), 0.8f, 2, f4{0, 0, 1, 0}},
-                    Case{"unequal lanes", dispersing(0.4f, false), 0.6f, 1, f4{1, 0.2f, 3, 0}}),
+                    Case{"unequal lanes", dispersing(0.4f, false), 0.6f, 1, f4{1, 0.2f, 3, 0}},
+                    Case{"tilted diffuse", dielectric(1.f), 0.7f, 1, splat(1.f), kTilted},
+                    Case{"tilted metal", metal(0.4f), 0.6f, 1, splat(1.f), kTilted},
+                    Case{"tilted thin", thin_glass(0.5f), 0.5f, 1, splat(1.f), kTilted},
+                    Case{"tilted glass", glass(0.5f, 1.5f), 0.7f, 1, splat(1.f), kTilted},
+                    Case{"tilted dispersing", dispersing(0.5f, true), 0.8f, 2, splat(1.f),
+                         kTilted}),
     [](const auto& case_info) {
         std::string name = case_info.param.name;
         for (char& c : name) c = c == ' ' ? '_' : c;

@@ -122,8 +122,12 @@ TEST_F(CliCamera, PhotographicExposureFollowsIrisShutterAndSpeed) {
         return double(value_at(picture_of(scene_, words), 3, 2, "G"));
     };
     const Words exposed = {"--exposure-mode", "photographic", "--shutter", "1/50", "--iso", "200"};
+    // Pixels beside the middle are a little darker through real lenses: that is measured apart.
+    const Words even = {"--natural-vignetting", "off"};
     const auto with = [&](Words more) {
         more.insert(more.end(), exposed.begin(), exposed.end());
+        if (std::find(more.begin(), more.end(), "double-gauss-100mm-f2") == more.end())
+            more.insert(more.end(), even.begin(), even.end());
         return green(more);
     };
     const double film_mm = image_distance_mm(50, 1000), radius_mm = 50 / 4.;
@@ -151,6 +155,64 @@ TEST_F(CliCamera, PhotographicExposureFollowsIrisShutterAndSpeed) {
                       "--dispersion", "shared", "--spp", "1024"}) /
                     far,
                 sqr(2 / 2.8), 0.03);
+}
+
+// Corners against the middle, in an even scene: cos^4 for a pinhole, Foote's closed form behind a
+// round stop. On by itself in photographic exposure only.
+TEST_F(CliCamera, CornersDarkenAsTheyDoBehindAStop) {
+    const auto corner_over_middle = [&](Words words) {
+        words.insert(words.end(), {"--look-at", "0,0,5,0,0,6", "--background", "100,100,100",
+                                   "--size", "33x21", "--spp", "64"});
+        const Picture p = picture_of(scene_, words);
+        return double(value_at(p, 0, 0, "G")) / double(value_at(p, 16, 10, "G"));
+    };
+    const auto foote = [](double radius_mm, double distance_mm, double off_mm) {
+        const double h2 = distance_mm * distance_mm, r2 = off_mm * off_mm;
+        const double a2 = radius_mm * radius_mm, sum = h2 + r2 + a2;
+        return 0.5 * (1 - (h2 + r2 - a2) / std::sqrt(sum * sum - 4 * r2 * a2));
+    };
+    // The corner pixel's middle on a film 36 mm wide.
+    const double off_mm = 36. / 33 * std::hypot(16., 10.);
+    const double film_mm = image_distance_mm(28, 1000);
+    const Words photographic = {"--exposure-mode", "photographic"};
+    for (const std::string lens : {"thin", "singlet:schott:N-BK7"})
+        for (const double fstop : {4., 8.}) {
+            const Words words = {
+                "--lens", lens,      "--focal-length",         "28",           "--focus",
+                "1",      "--fstop", fmt::format("{}", fstop), "--dispersion", "shared"};
+            const double radius_mm = 28 / (2 * fstop);
+            const double expected =
+                foote(radius_mm, film_mm, off_mm) / foote(radius_mm, film_mm, 0);
+            ASSERT_LT(expected, 0.6);
+            const auto with = [&](const Words& more) {
+                Words all = words;
+                all.insert(all.end(), more.begin(), more.end());
+                return corner_over_middle(all);
+            };
+            EXPECT_NEAR(with(photographic) / expected, 1, 0.005) << lens << fstop;
+            EXPECT_NEAR(with({"--natural-vignetting", "on"}) / expected, 1, 0.005);
+            EXPECT_NEAR(with({"--exposure-mode", "photographic", "--natural-vignetting", "off"}), 1,
+                        1e-5);
+            EXPECT_NEAR(with({}), 1, 1e-5);
+        }
+    const double half = std::tan(30 * std::numbers::pi / 180);  // --fov 60
+    const double tangent = half * 2 / 21 * std::hypot(16., 10.);
+    EXPECT_NEAR(corner_over_middle({"--fov", "60", "--natural-vignetting", "on"}) *
+                    sqr(1 + tangent * tangent),
+                1, 0.01);
+    EXPECT_NEAR(corner_over_middle({"--fov", "60"}), 1, 1e-6);
+}
+
+// An object in the focal plane has no image, in whatever digits it is said.
+TEST_F(CliCamera, TheFocalLengthIsTooNear) {
+    for (const auto& [focal, focus] :
+         {std::pair{"50", "0.05"}, {"35.1", "0.0351"}, {"85", "0.085"}, {"24.3", "0.0243"}})
+        for (const char* lens : {"thin", "singlet:schott:N-BK7"})
+            EXPECT_NE(
+                refusal({"--lens", lens, "--fstop", "8", "--focal-length", focal, "--focus", focus})
+                    .find("within the focal length"),
+                std::string::npos)
+                << lens << ' ' << focal;
 }
 
 // Of film distance, distance in focus and focal length any two give the third.
@@ -288,6 +350,8 @@ TEST_F(CliCamera, RefusesWhatHasNoEffect) {
         {{"--aperture-scale", "inscribed"}, "--aperture-scale: a pinhole has no iris"},
         {{"--exposure-mode", "normalised", "--iso", "400"}, "but with photographic"},
         {{"--exposure-mode", "normalised", "--shutter", "1/50"}, "but with photographic"},
+        {{"--lens", "tessar-100mm-f2.8", "--natural-vignetting", "on"}, "always has its own"},
+        {{"--camera", "plan", "--natural-vignetting", "on"}, "is orthographic"},
         {{"--camera", "plan", "--focus", "2"}, "is orthographic"},
         {{"--camera", "plan", "--aperture", "square"}, "is orthographic"},
         {{"--camera", "plan", "--film-distance", "50"}, "is orthographic"},

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // petzval lens.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -285,6 +287,50 @@ TEST_F(LensCli, PlotsEachAnalysis) {
     const CsvTable light = plotted("vignetting", {"--image-circle", "34.93"});
     EXPECT_EQ(light.rows.front()[2], 1);
     EXPECT_NEAR(light.rows.back()[1], 0.15314484, 0.0006);
+}
+
+TEST_F(LensCli, DistortionSaysWhatItLeavesOut) {
+    const auto said = [&](const Words& more) {
+        Words words{"lens",  "distortion", "minolta-fisheye-16mm-f2.8", "-o", path("a.svg"),
+                    "--csv", path("a.csv")};
+        words.insert(words.end(), more.begin(), more.end());
+        const Finished run = run_petzval(words);
+        EXPECT_EQ(run.exit_code, 0) << run.err;
+        return run.err;
+    };
+    const std::string err = said({"--field", "0,60,90,95"});
+    EXPECT_TRUE(holds(err, "left out: 90°, 95°: f tan(field)")) << err;
+    EXPECT_TRUE(holds(err, "left out: 0°: the ideal height is 0")) << err;
+    EXPECT_EQ(read_csv(path("a.csv")).rows.size(), 1u);
+    EXPECT_TRUE(holds(said({"--field", "60,88.9"}), "left out: 88.9°: no ray")) << err;
+    EXPECT_EQ(said({"--field", "10,60"}), "");
+    EXPECT_TRUE(holds(said({}), "left out: 90°: f tan(field)"));
+}
+
+// A lens whose asphere scatters all light: each analysis says which surface, and why.
+TEST_F(LensCli, ALensThatPassesNoLightIsAnError) {
+    const auto lens_with = [&](size_t surface, const char* power) {
+        json lens = read_json(std::string(PETZVAL_ASSETS) + "/lenses/cooke-triplet-50mm-f5.json");
+        lens["surfaces"][surface]["asphere"] = {{power, 1e30}};
+        return text_file("nasty.json", lens.dump());
+    };
+    const std::string out = path("a.svg");
+    for (const auto& [surface, power] :
+         {std::pair<size_t, const char*>{5, "4"}, {6, "40"}, {0, "4"}, {2, "6"}}) {
+        const std::string lens = lens_with(surface, power);
+        const std::string why = fmt::format("end at surface {} (the first is 0)", surface);
+        for (const char* analysis : {"spot", "fan", "mtf", "distortion", "vignetting"}) {
+            const Finished run = run_petzval({"lens", analysis, lens, "-o", out});
+            EXPECT_EQ(run.exit_code, 2) << analysis;
+            EXPECT_TRUE(holds(run.err, why)) << analysis << surface << ": " << run.err;
+            EXPECT_TRUE(holds(run.err, "asphere")) << run.err;
+        }
+        EXPECT_TRUE(holds(run_petzval({"lens", "check", lens}).err, why));
+        const Finished render = run_petzval(
+            render_words({"--lens", lens, "--focus", "1", "-o", path("a.exr")}, scene_));
+        EXPECT_EQ(render.exit_code, 2);
+        EXPECT_TRUE(holds(render.err, why)) << render.err;
+    }
 }
 
 TEST_F(LensCli, RefusesBadRequests) {

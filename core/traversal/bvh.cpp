@@ -93,11 +93,11 @@ struct Bvh::Impl {
     }
 
     RTCScene new_scene(Traversal traversal) const {
-        RTCScene scene = rtcNewScene(device);
+        RTCScene made = rtcNewScene(device);
         rtcSetSceneFlags(
-            scene, traversal == Traversal::Robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
-        rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
-        return scene;
+            made, traversal == Traversal::Robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+        rtcSetSceneBuildQuality(made, RTC_BUILD_QUALITY_HIGH);
+        return made;
     }
 
     RTCGeometry triangles(uint32_t mesh_id) {

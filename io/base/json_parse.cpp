@@ -46,11 +46,25 @@ class Reader {
     const char** furthest_;
 };
 
+/// Empties a value from its leaves. The library's own destructor asks for memory, and ends the
+/// program where there is none.
+void release(json& value) {
+    if (auto* array = value.get_ptr<json::array_t*>())
+        for (; !array->empty(); array->pop_back()) release(array->back());
+    if (auto* members = value.get_ptr<json::object_t*>())
+        for (; !members->empty(); members->erase(members->begin()))
+            release(members->begin()->second);
+}
+
 /// Builds the document from the events of the parser, which itself does not recurse. The parser's
 /// own callback looks through all elements of an array whenever one ends: a million take minutes.
 class Builder {
   public:
     Builder(std::string_view text, const std::string& file) : text_(text), file_(file) {}
+
+    ~Builder() { release(root_); }
+    Builder(const Builder&) = delete;
+    Builder& operator=(const Builder&) = delete;
 
     [[nodiscard]] json parse() {
         const char* const end = text_.data() + text_.size();

@@ -42,22 +42,23 @@ RTCRay bare(const Ray& r) {
     return ray;
 }
 
-// Seconds to trace what was recorded, in the order of the render. Rays through cutouts have no
-// alpha_seed here, which scenes without BLEND do not notice.
+// Seconds to trace what was recorded, in the order of the render.
 double retrace_s(RTCScene scene, const std::vector<Ray>& nearest, const std::vector<Ray>& shadow) {
-    struct {
+    struct {  // as in core/traversal/bvh.cpp: its filter reads the ray
         RTCIntersectContext embree;
-        uint32_t alpha_seed = 0;
+        const Ray* ray = nullptr;
     } context;
     rtcInitIntersectContext(&context.embree);
     const double start_s = process_cpu_s();
     for (const Ray& r : nearest) {
+        context.ray = &r;
         RTCRayHit query;
         query.ray = bare(r);
         query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
         rtcIntersect1(scene, &context.embree, &query);
     }
     for (const Ray& r : shadow) {
+        context.ray = &r;
         RTCRay query = bare(r);
         rtcOccluded1(scene, &context.embree, &query);
     }

@@ -85,15 +85,13 @@ TEST_F(CliProgressJson, ATimeLimitEndsAtOne) {
 TEST_F(CliProgressJson, WhatLibrariesPrintIsInItToo) {
     auto png = tiny_png(2, 2, std::vector<uint8_t>(16, 200));
     png[png.size() - 20] ^= 0x55;  // in the data
-    TinyGltf file = studio();
-    file.add_image(png);
-    file.json["textures"] = {{{"source", 0}}};
-    file.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
-    const std::string scene = file.save_glb(folder_.path / "odd.glb").string();
-    const Finished plain =
-        run_petzval(render_words({"-o", path("out.exr"), "--progress", "none"}, scene));
+    write_bytes(folder_.path / "iris.png", png);
+    const Words iris = {"--lens", "tessar-100mm-f2.8", "--aperture", path("iris.png")};
+    Words words = {"-o", path("out.exr"), "--progress", "none"};
+    words.insert(words.end(), iris.begin(), iris.end());
+    const Finished plain = run_petzval(render_words(words, scene_));
     ASSERT_NE(plain.err.find("libpng error"), std::string::npos) << plain.err;
-    const auto all = render_events({}, scene, 1);
+    const auto all = render_events(iris, scene_, 1);
     ASSERT_EQ(of_kind(all, "library").size(), 1u);
     EXPECT_NE(of_kind(all, "library")[0].at("text").get<std::string>().find("libpng error"),
               std::string::npos);

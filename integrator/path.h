@@ -47,12 +47,12 @@ class PathTracer {
     [[nodiscard]] std::optional<DrawnLight> draw_light(const LightReceiver&,
                                                        const Sampler::VertexNumbers&,
                                                        const Bands&) const;
+    [[nodiscard]] f4 light_on_smooth(const Surface&, const Frame&, const Bsdf&, const DrawnLight&,
+                                     const Bands&, const Sampler&, uint32_t depth,
+                                     const Material* medium, PathStats&) const;
     [[nodiscard]] f4 direct_light(const Surface&, const Frame&, const Bsdf&, const DrawnLight&,
                                   const Bands&, const Sampler&, uint32_t depth,
                                   const Material* medium, PathStats&) const;
-    [[nodiscard]] f4 light_along(const Surface&, const Frame&, const Bsdf&, const DrawnLight&,
-                                 const Bands&, const Sampler&, uint32_t depth,
-                                 const Material* medium, PathStats&) const;
 
     const Scene& scene_;
     const Caster& caster_;

@@ -108,29 +108,27 @@ auto PathTracer<Caster>::draw_light(const LightReceiver& receiver, const Sampler
 // one point, those to the other side the other, and a point near the triangle's plane is met by
 // both.
 template <RayCaster Caster>
-f4 PathTracer<Caster>::direct_light(const Surface& s, const Frame& frame, const Bsdf& bsdf,
-                                    const DrawnLight& drawn, const Bands& bands,
-                                    const Sampler& sampler, uint32_t depth, const Material* medium,
-                                    PathStats& stats) const {
-    if (!s.lifted() || drawn.sample.at_infinity)
-        return light_along(s, frame, bsdf, drawn, bands, sampler, depth, medium, stats);
+f4 PathTracer<Caster>::light_on_smooth(const Surface& s, const Frame& frame, const Bsdf& bsdf,
+                                       const DrawnLight& drawn, const Bands& bands,
+                                       const Sampler& sampler, uint32_t depth,
+                                       const Material* medium, PathStats& stats) const {
     const V3f facing = s.facing();
     f4 sum{};
     if (drawn.sample.direction.dot(facing) > 0.f)
-        sum += light_along(s, frame, bsdf, drawn, bands, sampler, depth, medium, stats);
+        sum += direct_light(s, frame, bsdf, drawn, bands, sampler, depth, medium, stats);
     const V3f smooth = s.p + s.lift, to_light = drawn.sample.target - smooth;
     if (!(to_light.dot(facing) < 0.f && to_light.dot(s.side) > 0.f)) return sum;
     const auto again = sample_light(scene_, scene_.lights[drawn.light], smooth, drawn.u, bands);
     if (!again || !(again->direction.dot(facing) < 0.f)) return sum;
     const DrawnLight from_smooth{*again, drawn.pick_probability, drawn.light, drawn.u};
-    return sum + light_along(s, frame, bsdf, from_smooth, bands, sampler, depth, medium, stats);
+    return sum + direct_light(s, frame, bsdf, from_smooth, bands, sampler, depth, medium, stats);
 }
 
 template <RayCaster Caster>
-f4 PathTracer<Caster>::light_along(const Surface& s, const Frame& frame, const Bsdf& bsdf,
-                                   const DrawnLight& drawn, const Bands& bands,
-                                   const Sampler& sampler, uint32_t depth, const Material* medium,
-                                   PathStats& stats) const {
+f4 PathTracer<Caster>::direct_light(const Surface& s, const Frame& frame, const Bsdf& bsdf,
+                                    const DrawnLight& drawn, const Bands& bands,
+                                    const Sampler& sampler, uint32_t depth, const Material* medium,
+                                    PathStats& stats) const {
     const LightSample& light = drawn.sample;
     const BsdfValue value = bsdf.eval(frame.to_local(light.direction));
     if (value.pdf <= 0.f) return f4{};
@@ -249,8 +247,11 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         const bool light_sampled =
             options_.technique != Technique::BsdfOnly && bsdf.has_wide_lobe();
         if (light_sampled && light)
-            sum += throughput * direct_light(s, shading.frame, bsdf, *light, bands, sampler, depth,
-                                             medium, stats);
+            sum += throughput * (s.lifted() && !light->sample.at_infinity
+                                     ? light_on_smooth(s, shading.frame, bsdf, *light, bands,
+                                                       sampler, depth, medium, stats)
+                                     : direct_light(s, shading.frame, bsdf, *light, bands, sampler,
+                                                    depth, medium, stats));
 
         // Sample the BSDF for the next direction.
         const auto next = bsdf.sample(u.bsdf_lobe, u.bsdf);

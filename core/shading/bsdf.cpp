@@ -137,8 +137,7 @@ float Bsdf::pdf_of_normal(float wo_m, float d) const {
     return d * wo_m / ((1.f + lambda_o_) * wo_.z);
 }
 
-BsdfValue Bsdf::eval(const V3f& wi) const {
-    if (!tilted_) return eval_lobes(wi);
+BsdfValue Bsdf::eval_tilted(const V3f& wi) const {
     // Light leaves towards wi on either of two ways that end on the same side.
     const V3f mirrored = mirrored_at_surface(wi);
     const bool above = wi.dot(up_) > 0.f;
@@ -251,9 +250,9 @@ std::optional<V3f> Bsdf::draw(float u_lobe, V2f u) const {
     return wi.z < 0.f ? std::optional(wi) : std::nullopt;
 }
 
-std::optional<BsdfSample> Bsdf::sample(float u_lobe, V2f u) const {
+std::optional<BsdfSample> Bsdf::sample_tilted(float u_lobe, V2f u) const {
     std::optional<BsdfSample> drawn = sample_lobes(u_lobe, u);
-    if (!tilted_ || !drawn) return drawn;
+    if (!drawn) return drawn;
     if (!on_its_side(drawn->wi)) drawn->wi = mirrored_at_surface(drawn->wi);
     if (drawn->delta) return drawn;
     const BsdfValue value = eval(drawn->wi);

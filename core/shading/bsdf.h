@@ -60,9 +60,13 @@ class Bsdf {
     Bsdf(const BsdfInput&, const Bands&, const V3f& wo, f4 throughput = splat(1.f),
          const V3f& up = V3f(0, 0, 1));
 
-    [[nodiscard]] BsdfValue eval(const V3f& wi) const;
+    [[nodiscard]] BsdfValue eval(const V3f& wi) const {
+        return tilted_ ? eval_tilted(wi) : eval_lobes(wi);
+    }
     /// Draws a direction: u_lobe picks the lobe, u the direction. Nothing where that is absorbed.
-    [[nodiscard]] std::optional<BsdfSample> sample(float u_lobe, V2f u) const;
+    [[nodiscard]] std::optional<BsdfSample> sample(float u_lobe, V2f u) const {
+        return tilted_ ? sample_tilted(u_lobe, u) : sample_lobes(u_lobe, u);
+    }
     /// Whether some lobe is wide enough for light sampling to help.
     [[nodiscard]] bool has_wide_lobe() const { return p_diffuse_ > 0 || !delta_; }
     /// Share of light that is scattered, all lobes together (glass: as if it lost nothing).
@@ -72,7 +76,9 @@ class Bsdf {
     [[nodiscard]] V3f mirrored_at_surface(const V3f& w) const { return w - up_ * (2 * w.dot(up_)); }
     [[nodiscard]] bool on_its_side(const V3f& w) const { return (w.z > 0.f) == (w.dot(up_) > 0.f); }
     [[nodiscard]] BsdfValue eval_lobes(const V3f& wi) const;
+    [[nodiscard]] BsdfValue eval_tilted(const V3f& wi) const;
     [[nodiscard]] std::optional<BsdfSample> sample_lobes(float u_lobe, V2f u) const;
+    [[nodiscard]] std::optional<BsdfSample> sample_tilted(float u_lobe, V2f u) const;
     [[nodiscard]] float pdf_of_normal(float wo_m, float d) const;
     void add_glass(const V3f& wi, BsdfValue&) const;
     [[nodiscard]] f4 glass_reflectance(float wo_m) const;

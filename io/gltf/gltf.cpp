@@ -24,7 +24,7 @@ GltfFile load_gltf(const std::filesystem::path& path) {
     file.cameras = read_cameras(gltf, nodes, tally);
 
     file.hash = source.hash;
-    file.warnings = source.warnings;
+    file.warnings = source.warnings.lines();
     describe(gltf, tally, file);
     return file;
 }

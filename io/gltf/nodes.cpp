@@ -85,8 +85,11 @@ GltfNodes flatten_nodes(const GltfModel& gltf) {
     const std::vector<int>* drawn = &roots;
     if (!model.scenes.empty())
         drawn = &model.scenes.at(static_cast<size_t>(std::max(model.defaultScene, 0))).nodes;
-    depth_first(model, *drawn,
-                [&](int index, const tinygltf::Node&) { nodes.in_scene.push_back(index); });
+    std::vector<bool> seen(model.nodes.size(), false);  // a scene may list a child beside its root
+    depth_first(model, *drawn, [&](int index, const tinygltf::Node&) {
+        if (!seen[static_cast<size_t>(index)]) nodes.in_scene.push_back(index);
+        seen[static_cast<size_t>(index)] = true;
+    });
     return nodes;
 }
 

@@ -8,6 +8,7 @@
 #include "io/gltf/validate/check.h"
 #include "io/gltf/validate/files.h"
 #include "io/gltf/validate/glb.h"
+#include "io/gltf/validate/mend.h"
 
 namespace petzval {
 namespace {
@@ -42,15 +43,16 @@ GltfSource read_gltf_source(const std::filesystem::path& path) {
     if (binary) chunks = split_glb(file.bytes, name, source.warnings);
     source.json = parse_json(chunks.json, name);
 
-    GltfCheck check{source, JsonCursor(source.json, name), budget, {}};
+    mend_gltf(source.json, source.warnings);
+
+    GltfCheck check{source, JsonCursor(source.json, name), budget, {}, find_used(source.json)};
     check_asset(check);
     check_extensions(check);
     check_collections(check);
-    check_buffers(check);
     read_buffers(source, {binary, chunks.bin}, budget);
     check_buffer_views(check);
     check_accessors(check);
-    read_images(source, budget);
+    read_images(source, check.use, budget);
     check_scene_graph(check);
     check_data(check);
     return source;

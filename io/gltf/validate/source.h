@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "io/base/warning_log.h"
+
 namespace petzval {
 
 /// JSON that passed every check of check_gltf, with the bytes it refers to.
@@ -20,8 +22,8 @@ struct GltfSource {
     /// Encoded bytes of each image (PNG, JPEG ...), whatever way the file stores them. Not yet
     /// decoded: they may be no image. Empty for an image in an undefined buffer.
     std::vector<std::vector<uint8_t>> images;
-    std::vector<std::string> warnings;  ///< one line each: odd, but no reason to refuse
-    uint64_t hash = 0;                  ///< FNV-1a of the scene file and of every file it names
+    WarningLog warnings;  ///< one line each: odd, but no reason to refuse
+    uint64_t hash = 0;    ///< FNV-1a of the scene file and of every file it names
 };
 
 /// Reads a .gltf or .glb with everything it refers to, and checks it before anything else uses it:

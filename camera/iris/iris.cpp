@@ -13,6 +13,8 @@ template <class... Functions>
 struct Overloaded : Functions... {
     using Functions::operator()...;
 };
+template <class... Functions>
+Overloaded(Functions...) -> Overloaded<Functions...>;  // clang 14 does not find it by itself
 
 // Area and farthest point in a shape's own units; a mask's are texels.
 double area_of(const Disk&) {

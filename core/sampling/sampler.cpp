@@ -8,9 +8,10 @@ namespace {
 
 u32x8 reverse_bits(u32x8 a) {
     typedef uint8_t u8x32 __attribute__((vector_size(32)));
-    constexpr u8x32 swapped{3,  2,  1,  0,  7,  6,  5,  4,  11, 10, 9,  8,  15, 14, 13, 12,
-                            19, 18, 17, 16, 23, 22, 21, 20, 27, 26, 25, 24, 31, 30, 29, 28};
-    a = (u32x8)__builtin_shuffle((u8x32)a, swapped);
+    const u8x32 bytes = (u8x32)a;
+    a = (u32x8)__builtin_shufflevector(bytes, bytes, 3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14,
+                                       13, 12, 19, 18, 17, 16, 23, 22, 21, 20, 27, 26, 25, 24, 31,
+                                       30, 29, 28);
     a = ((a >> 4) & 0x0f0f0f0fu) | ((a & 0x0f0f0f0fu) << 4);
     a = ((a >> 2) & 0x33333333u) | ((a & 0x33333333u) << 2);
     return ((a >> 1) & 0x55555555u) | ((a & 0x55555555u) << 1);

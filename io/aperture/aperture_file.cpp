@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <stdexcept>
@@ -20,6 +22,9 @@ namespace {
 constexpr const char* kPossible =
     "give circle, square, triangle, rhomboid, frame, star:N, polygon:N[,ROTATION_DEG[,ROUNDNESS]], "
     "or a file .svg or .png";
+
+// Distance from [0, 1] that is a drawing program's rounding.
+constexpr float kRounding = 0.002f;
 
 // The numbers after the colon; nothing where one of them is none.
 std::optional<std::vector<double>> numbers_of(std::string_view text) {
@@ -95,7 +100,9 @@ Mask read_mask_aperture(const fs::path& path, PictureBudget pictures) {
         const float grey = !colour || (p[red] == p[green] && p[green] == p[blue])
                                ? p[colour ? red : 0]
                                : 0.2126f * p[red] + 0.7152f * p[green] + 0.0722f * p[blue];
-        mask.texels.push_back(by_alpha ? grey * p[alpha] : grey);
+        const float open = by_alpha ? grey * p[alpha] : grey;
+        const float clamped = std::clamp(open, 0.f, 1.f);  // keeps what is no number
+        mask.texels.push_back(std::fabs(open - clamped) <= kRounding ? clamped : open);
     }
     if (const auto fault = find_fault(mask))
         throw InputError(path.string(), "", *fault + "; 0 is opaque and 1 is open");

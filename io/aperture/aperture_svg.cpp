@@ -17,6 +17,9 @@ namespace {
 
 constexpr size_t kMaxBytes = 4 << 20;
 
+constexpr std::array<std::pair<std::string_view, double>, 6> kUnits = {
+    {{"px", 1}, {"mm", 96 / 25.4}, {"cm", 96 / 2.54}, {"in", 96}, {"pt", 96 / 72.}, {"pc", 16}}};
+
 bool is_one_of(std::string_view name, std::initializer_list<std::string_view> names) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
@@ -134,13 +137,19 @@ class SvgFile {
         return property(shape, "fill-rule") == "evenodd";
     }
 
-    // A length in user units; px is one.
+    // A length in user units, which are CSS's px: 96 to an inch (CSS Values and Units 4, 6.2).
     [[nodiscard]] double length(const pugi::xml_node& node, const char* name,
                                 std::optional<double> otherwise = {}) const {
         std::string_view text = trimmed(node.attribute(name).value());
         if (text.empty() && otherwise) return *otherwise;
-        if (text.ends_with("px")) text.remove_suffix(2);
-        return read_svg_numbers(text, 1, place(node, name))[0];
+        double unit_px = 1;
+        for (const auto& [ending, px] : kUnits) {
+            if (!text.ends_with(ending)) continue;
+            text.remove_suffix(ending.size());
+            unit_px = px;
+            break;
+        }
+        return unit_px * read_svg_numbers(text, 1, place(node, name))[0];
     }
     [[nodiscard]] double positive(const pugi::xml_node& node, const char* name) const {
         const double value = length(node, name);

@@ -143,9 +143,7 @@ class Builder {
 }  // namespace
 
 json parse_json(std::string_view text, const std::string& file) {
-    if (text.starts_with("\xEF\xBB\xBF"))
-        throw InputError(file, "line 1",
-                         "JSON begins with a byte order mark; save it as UTF-8 without one");
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // a byte order mark
     return Builder(text, file).parse();
 }
 

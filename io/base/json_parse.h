@@ -14,9 +14,10 @@ namespace petzval {
 inline constexpr int max_json_depth = 128;
 
 /// Parses UTF-8 JSON (RFC 8259) from a file that may be hostile: depth is limited before anything
-/// recurses, a byte order mark and a repeated key are refused (as glTF 2.0, section 2.7, demands),
-/// and so is a number beyond the range of a double. Whole numbers written as 3.0 become integers,
-/// so that no reader has to know both ways. file: its name, for the InputError.
+/// recurses, a repeated key is refused (as glTF 2.0, section 2.7, demands), and so is a number
+/// beyond the range of a double. A byte order mark is skipped, as RFC 8259, section 8.1, allows.
+/// Whole numbers written as 3.0 become integers, so that no reader has to know both ways. file: its
+/// name, for the InputError.
 [[nodiscard]] nlohmann::json parse_json(std::string_view text, const std::string& file);
 
 }  // namespace petzval

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/base/uri.h"
 
+#include <algorithm>
+
 #include "io/base/ascii.h"
 
 namespace petzval {
@@ -10,7 +12,7 @@ int base64_digit(char c) {
     if (c >= 'A' && c <= 'Z') return c - 'A';
     if (c >= 'a' && c <= 'z') return c - 'a' + 26;
     if (c >= '0' && c <= '9') return c - '0' + 52;
-    return c == '+' ? 62 : c == '/' ? 63 : -1;
+    return c == '+' || c == '-' ? 62 : c == '/' || c == '_' ? 63 : -1;
 }
 
 int hex_digit(char c) {
@@ -19,18 +21,16 @@ int hex_digit(char c) {
     return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
 }
 
-std::optional<std::string> decode_percent(std::string_view text) {
+// An escape that is broken is taken as it stands: exporters forget to write % as %25.
+std::string decode_percent(std::string_view text) {
     std::string out;
     for (size_t i = 0; i < text.size(); ++i) {
-        if (text[i] != '%') {
-            out += text[i];
-            continue;
-        }
-        if (i + 2 >= text.size()) return std::nullopt;
-        const int high = hex_digit(text[i + 1]), low = hex_digit(text[i + 2]);
-        if (high < 0 || low < 0) return std::nullopt;
-        out += char(high * 16 + low);
-        i += 2;
+        const bool follows = text[i] == '%' && i + 2 < text.size();
+        const int high = follows ? hex_digit(text[i + 1]) : -1;
+        const int low = follows ? hex_digit(text[i + 2]) : -1;
+        const bool escape = high >= 0 && low >= 0;
+        out += escape ? char(high * 16 + low) : text[i];
+        if (escape) i += 2;
     }
     return out;
 }
@@ -38,21 +38,25 @@ std::optional<std::string> decode_percent(std::string_view text) {
 }  // namespace
 
 std::optional<std::vector<uint8_t>> decode_base64(std::string_view text) {
-    for (int i = 0; i < 2 && text.ends_with('='); ++i) text.remove_suffix(1);
-    if (text.size() % 4 == 1) return std::nullopt;
     std::vector<uint8_t> out;
     out.reserve(text.size() / 4 * 3 + 2);
     uint32_t word = 0;
+    size_t digits = 0, padding = 0;
     int bits = 0;
     for (char c : text) {
+        if (c == ' ' || c == '\t' || c == '\r' || c == '\n') continue;
+        padding += c == '=';
+        if (c == '=') continue;
         const int digit = base64_digit(c);
-        if (digit < 0) return std::nullopt;
+        if (digit < 0 || padding > 0) return std::nullopt;
+        ++digits;
         word = word << 6 | uint32_t(digit);
         bits += 6;
         if (bits < 8) continue;
         bits -= 8;
         out.push_back(uint8_t(word >> bits));
     }
+    if (padding > 2 || digits % 4 == 1) return std::nullopt;
     return out;
 }
 
@@ -87,9 +91,10 @@ std::optional<std::string> relative_path(std::string_view uri) {
     const size_t colon = uri.find(':');
     const bool has_scheme = colon != std::string_view::npos && colon < uri.find('/');
     if (has_scheme || uri.starts_with('/')) return std::nullopt;
-    const auto path = decode_percent(uri);
-    if (!path || path->empty() || path->starts_with('/')) return std::nullopt;
-    if (path->find('\0') != std::string::npos) return std::nullopt;
+    std::string path = decode_percent(uri);
+    std::replace(path.begin(), path.end(), '\\', '/');  // as Windows writes
+    if (path.empty() || path.starts_with('/')) return std::nullopt;
+    if (path.find('\0') != std::string::npos) return std::nullopt;
     return path;
 }
 

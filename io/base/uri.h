@@ -22,15 +22,15 @@ struct DataUri {
 /// Content of a data URI; nothing when it is not base64 or the base64 is broken.
 [[nodiscard]] std::optional<DataUri> parse_data_uri(std::string_view uri);
 
-/// Decodes base64 (RFC 4648, section 4), with or without padding; nothing when a character is
-/// foreign or the length impossible.
+/// Decodes base64 (RFC 4648, sections 4 and 5), with or without padding and line breaks; nothing
+/// when a character is foreign or the length impossible.
 [[nodiscard]] std::optional<std::vector<uint8_t>> decode_base64(std::string_view text);
 
 /// Base64 with padding (RFC 4648, section 4).
 [[nodiscard]] std::string encode_base64(std::span<const uint8_t> bytes);
 
-/// The path that a relative URI reference names, percent-escapes decoded (RFC 3986); nothing when
-/// it has a scheme or a host, is absolute or empty, or an escape is broken or hides a zero byte.
+/// The path that a relative URI reference names, percent-escapes decoded (RFC 3986) and \ made /;
+/// nothing when it has a scheme or a host, is absolute or empty, or an escape hides a zero byte.
 [[nodiscard]] std::optional<std::string> relative_path(std::string_view uri);
 
 }  // namespace petzval

@@ -28,7 +28,7 @@ GltfFile load(const std::filesystem::path& path, FileScope scope, PictureBudget&
 
     file.hash = source.hash;
     file.files = source.files;
-    file.warnings = source.warnings;
+    file.warnings = source.warnings.lines();
     describe(gltf, tally, file);
     return file;
 }

@@ -111,7 +111,8 @@ void describe_support(const GltfModel& gltf, const GltfTally& tally, GltfFile& f
 }
 
 void append_warnings(const GltfTally& tally, std::vector<std::string>& warnings) {
-    warnings.insert(warnings.end(), tally.warnings.begin(), tally.warnings.end());
+    const auto lines = tally.warnings.lines();
+    warnings.insert(warnings.end(), lines.begin(), lines.end());
     const auto warn = [&](uint64_t count, const char* what, const char* outcome) {
         if (count > 0) warnings.push_back(plural(count, what) + " " + outcome);
     };
@@ -120,6 +121,11 @@ void append_warnings(const GltfTally& tally, std::vector<std::string>& warnings)
     warn(tally.primitives_without_positions, "primitive", "without positions skipped");
     warn(tally.incomplete_primitives, "primitive",
          "with vertices left over after the last whole triangle");
+    warn(tally.broken_triangles, "triangle", "with a corner that is not a finite number skipped");
+    warn(tally.broken_values, "texture coordinate or colour",
+         "that is not a finite number replaced by 0 or 1");
+    warn(tally.unmapped_primitives, "primitive",
+         "without texture coordinates for its textures; 0,0 is taken");
     warn(tally.singular_nodes, "node", "scaled to nothing skipped");
     warn(tally.replaced_normals, "normal", "without a length replaced by those of the faces");
 }

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "io/base/error.h"
+#include "io/base/json_cursor.h"
 #include "io/gltf/validate/accessor.h"
 
 namespace petzval {
@@ -22,13 +23,14 @@ void replace_bytes(json& patched, size_t buffer_count) {
     for (size_t i = 0; i < buffer_count; ++i) patched["buffers"].push_back(stand_in);
 }
 
-// Gives accessors without a bufferView one that is told from the others by being the last: tinygltf
-// refuses such indices (all zero, by the specification). Replaces unknown types, which it also
-// refuses; nothing drawn can have them.
+// Replaces bufferViews, as tinygltf refuses strides that do no harm; take_views() brings back their
+// numbers. Gives accessors without a bufferView one that is told from the others by being the last:
+// tinygltf refuses such indices (all zero, by the specification). Replaces unknown types, which it
+// also refuses; nothing drawn can have them.
 void replace_accessors(json& patched) {
-    json& views = patched["bufferViews"];
-    views.push_back({{"buffer", 0}, {"byteLength", 1}});
-    const size_t no_view = views.size() - 1;
+    const size_t no_view = patched.value("bufferViews", json::array()).size();
+    json& views = patched["bufferViews"] = json::array();
+    while (views.size() <= no_view) views.push_back({{"buffer", 0}, {"byteLength", 1}});
     if (!patched.contains("accessors")) return;
     for (json& accessor : patched["accessors"]) {
         if (!accessor.contains("bufferView")) accessor["bufferView"] = no_view;
@@ -61,6 +63,18 @@ std::string patched_text(const GltfSource& source) {
     return patched.dump();
 }
 
+void take_views(const GltfSource& source, tinygltf::Model& model) {
+    const std::string file = source.path.string();
+    const auto views = JsonCursor(source.json, file).objects("bufferViews");
+    for (size_t i = 0; i < views.size(); ++i) {
+        tinygltf::BufferView& view = model.bufferViews[i];
+        view.buffer = static_cast<int>(views[i].integer("buffer"));
+        view.byteOffset = views[i].integer_or("byteOffset", 0);
+        view.byteLength = views[i].integer("byteLength");
+        view.byteStride = views[i].integer_or("byteStride", 0);
+    }
+}
+
 std::string one_line(std::string text) {
     while (!text.empty() && (text.back() == '\n' || text.back() == '.')) text.pop_back();
     for (char& c : text)
@@ -85,6 +99,7 @@ tinygltf::Model parse_model(const GltfSource& source) {
     if (!parsed) throw InputError(source.path.string(), "", "cannot be parsed: " + one_line(error));
 
     model.bufferViews.pop_back();
+    take_views(source, model);
     for (tinygltf::Accessor& accessor : model.accessors)
         if (accessor.bufferView == static_cast<int>(model.bufferViews.size()))
             accessor.bufferView = -1;

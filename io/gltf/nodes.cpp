@@ -113,8 +113,11 @@ GltfNodes flatten_nodes(const GltfModel& gltf) {
     const std::vector<int>* drawn = &roots;
     if (!model.scenes.empty())
         drawn = &model.scenes.at(static_cast<size_t>(std::max(model.defaultScene, 0))).nodes;
-    depth_first(nodes.node, *drawn,
-                [&](int index, const GltfNode&) { nodes.in_scene.push_back(index); });
+    std::vector<bool> seen(nodes.node.size(), false);  // a scene may list a child beside its root
+    depth_first(nodes.node, *drawn, [&](int index, const GltfNode&) {
+        if (!seen[static_cast<size_t>(index)]) nodes.in_scene.push_back(index);
+        seen[static_cast<size_t>(index)] = true;
+    });
     return nodes;
 }
 

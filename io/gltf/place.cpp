@@ -11,6 +11,7 @@
 #include "io/base/error.h"
 #include "io/gltf/bake.h"
 #include "io/gltf/primitive.h"
+#include "io/gltf/repair.h"
 #include "io/gltf/skin.h"
 #include "io/gltf/tangents.h"
 #include "io/gltf/triangles.h"
@@ -78,6 +79,7 @@ class Placer {
         const uint32_t material = materials_.use(primitive.material);
         Mesh mesh = read_shaded(placement, primitive, scene_.materials[material]);
         mesh.material = material;
+        if (mesh.triangles.empty()) return;
 
         const bool posed =
             placement.skin >= 0 && pose_by_skin(gltf_, nodes_, placement.skin, primitive, mesh);
@@ -106,6 +108,8 @@ class Placer {
         const bool normal_mapped = material.normal_texture.present();
         Mesh mesh =
             read_primitive(gltf_, primitive, placement.morph_weights, normal_mapped, tally_);
+        repair_values(mesh, tally_);
+        tally_.unmapped_primitives += add_missing_uv(mesh, material);
         tally_.replaced_normals += repair_normals(mesh);
         repair_tangents(mesh);
         if (normal_mapped && mesh.tangents.empty()) {

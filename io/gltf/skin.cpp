@@ -48,7 +48,7 @@ M44d blend(const std::vector<Influences>& sets, const std::vector<M44d>& matrice
     for (const Influences& set : sets)
         for (int k = 0; k < 4; ++k) {
             const double weight = set.weights[vertex][k];
-            if (weight == 0) continue;
+            if (!(std::fabs(weight) > 0)) continue;  // not a number: none
             sum += matrices[set.joints[vertex][static_cast<size_t>(k)]] * weight;
             total += weight;
         }

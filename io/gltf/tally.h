@@ -5,7 +5,8 @@
 #include <cstdint>
 #include <set>
 #include <string>
-#include <vector>
+
+#include "io/base/warning_log.h"
 
 namespace petzval {
 
@@ -14,12 +15,15 @@ struct GltfTally {
     uint64_t point_primitives = 0, line_primitives = 0;
     uint64_t primitives_without_positions = 0;
     uint64_t incomplete_primitives = 0;  ///< vertices left over after the last triangle
+    uint64_t broken_triangles = 0;       ///< with a corner that is not finite
+    uint64_t broken_values = 0;          ///< texture coordinates and colours likewise
+    uint64_t unmapped_primitives = 0;    ///< textured, but without texture coordinates
     uint64_t singular_nodes = 0;         ///< whose matrix flattens space
     uint64_t replaced_normals = 0;       ///< of no length
     uint64_t occlusion_textures = 0, ranged_lights = 0;
-    uint64_t idle_dispersions = 0;      ///< of materials that refract nothing
-    std::set<std::string> honoured;     ///< features that the scene uses, in words
-    std::vector<std::string> warnings;  ///< one line each
+    uint64_t idle_dispersions = 0;   ///< of materials that refract nothing
+    std::set<std::string> honoured;  ///< features that the scene uses, in words
+    WarningLog warnings;             ///< one line each
 };
 
 }  // namespace petzval

@@ -49,7 +49,9 @@ TextureSlot GltfTextures::slot(const JsonCursor& parent, const char* key, Encodi
     if (!info) return {};
     const tinygltf::Texture& texture = gltf_.typed.textures.at(
         info->required_index("index", gltf_.typed.textures.size(), "texture"));
-    if (texture.source < 0) {
+    const bool missing =
+        texture.source < 0 || gltf_.source.images[static_cast<size_t>(texture.source)].empty();
+    if (missing) {
         tally_.warnings.push_back(info->path() +
                                   ": its texture has no image that can be read; "
                                   "the slot is left without");

@@ -12,19 +12,16 @@
 #include "io/image/limits.h"
 #include "io/image/oiio_message.h"
 #include "io/image/picture.h"
+#include "io/image/picture_kind.h"
 
 namespace petzval {
 namespace {
 
-/// Ending of the format that the first bytes announce; empty for any other.
+/// Ending of the format, where it is one that glTF has; else empty.
 std::string_view ending_of(const std::vector<uint8_t>& bytes) {
     const std::string_view head(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    if (head.starts_with("\x89PNG\r\n\x1a\n")) return "png";
-    if (head.starts_with("\xff\xd8\xff")) return "jpg";
-    if (head.starts_with("RIFF") &&
-        head.substr(std::min<size_t>(8, head.size())).starts_with("WEBP"))
-        return "webp";
-    return "";
+    const std::string_view kind = picture_kind(head.substr(0, kPictureKindBytes));
+    return kind == "png" || kind == "jpg" || kind == "webp" ? kind : "";
 }
 
 /// Whether the chunks of a PNG fit into it and end with IEND. libpng would find out too, but print

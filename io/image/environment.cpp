@@ -22,26 +22,42 @@ std::array<int, 3> colour_channels(const Picture& picture, const std::filesystem
     return rgb;
 }
 
-/// Sky texels of a picture; values below 0 become 0 and are counted.
+/// Values of a sky that cannot be light, counted.
+struct Mended {
+    uint64_t negative = 0, infinite = 0, not_numbers = 0;
+};
+
+/// Sky texels of a picture. Values below 0 and those that are no number become 0. Infinite ones,
+/// which a sun is in files of 16 bits, become the greatest that is finite.
 std::vector<float> sky_texels(const Picture& picture, const std::filesystem::path& path,
-                              uint64_t& negative_count) {
+                              Mended& mended) {
     const std::array<int, 3> from = colour_channels(picture, path);
     std::vector<float> rgb;
     rgb.reserve(size_t(picture.width) * picture.height * 3);
+    float greatest = 0.f;
     for (size_t i = 0; i < picture.pixels.size(); i += picture.channels.size())
         for (const int channel : from) {
             const float value = picture.pixels[i + channel];
-            if (!std::isfinite(value)) {
-                const size_t texel = i / picture.channels.size();
-                throw InputError(path.string(), "",
-                                 fmt::format("texel {},{} of channel {} is {}; repair the picture",
-                                             texel % picture.width, texel / picture.width,
-                                             picture.channels[channel], value));
-            }
-            negative_count += value < 0.f;
-            rgb.push_back(value < 0.f ? 0.f : value);
+            mended.not_numbers += std::isnan(value);
+            mended.negative += value < 0.f;
+            rgb.push_back(value > 0.f ? value : 0.f);
+            if (std::isfinite(value)) greatest = std::max(greatest, value);
         }
+    for (float& value : rgb) {
+        if (!std::isinf(value)) continue;
+        value = greatest;
+        ++mended.infinite;
+    }
     return rgb;
+}
+
+void report(const Mended& mended, const std::string& file, const Notice& notice) {
+    const auto say = [&](uint64_t count, const char* what) {
+        if (count > 0) notice(fmt::format("warning: {}: {} {}", file, count, what));
+    };
+    say(mended.negative, "negative values read as 0");
+    say(mended.not_numbers, "values that are no number read as 0");
+    say(mended.infinite, "infinite values read as the greatest finite one");
 }
 
 void check_kind(const std::filesystem::path& path) {
@@ -62,8 +78,8 @@ Sky decode(const std::filesystem::path& path, float rotate_deg, float strength,
             path.string(), "",
             fmt::format("holds {}x{} of {}x{} pixels; an environment must be whole", picture.width,
                         picture.height, picture.full_width, picture.full_height));
-    uint64_t negative_count = 0;
-    std::vector<float> rgb = sky_texels(picture, path, negative_count);
+    Mended mended;
+    std::vector<float> rgb = sky_texels(picture, path, mended);
     picture.pixels = std::vector<float>();   // "= {}" would keep its memory
     constexpr float brightest_nits = 1e20f;  // sums over the sky and the scene stay finite
     if (!rgb.empty() && *std::max_element(rgb.begin(), rgb.end()) * strength > brightest_nits)
@@ -72,9 +88,7 @@ Sky decode(const std::filesystem::path& path, float rotate_deg, float strength,
             fmt::format("brighter than {:g} nits once it is multiplied by {:g}; give a "
                         "smaller --env-strength",
                         brightest_nits, strength));
-    if (negative_count > 0)
-        notice(fmt::format("warning: {}: {} negative values read as 0", path.string(),
-                           negative_count));
+    report(mended, path.string(), notice);
     if (picture.width != 2 * picture.height)
         notice(fmt::format(
             "warning: {}: {}x{} pixels are not 2:1; the picture is stretched over the sphere",

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures on disk: any format that OpenImageIO reads; EXR, PNG and JPEG out.
+// Pictures on disk: EXR, Radiance, PNG, JPEG and WebP in (io/image/picture_kind.h), EXR, PNG and
+// JPEG out.
 #pragma once
 
 #include <cstdint>

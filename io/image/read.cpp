@@ -7,9 +7,11 @@
 #include <system_error>
 
 #include "io/base/error.h"
+#include "io/image/exr_header.h"
 #include "io/image/limits.h"
 #include "io/image/oiio_message.h"
 #include "io/image/picture.h"
+#include "io/image/picture_kind.h"
 
 namespace petzval {
 namespace {
@@ -49,9 +51,10 @@ Head head_of(const std::filesystem::path& path) {
     return head;
 }
 
-/// Whether the file begins as Ward's Radiance pictures do, which OpenImageIO does not ask for.
-bool has_radiance_magic(const Head& head) {
-    return head[0] == '#' && head[1] == '?';
+std::string_view kind_of(const std::filesystem::path& path) {
+    std::array<char, kPictureKindBytes> head{};
+    std::ifstream(path, std::ios::binary).read(head.data(), head.size());
+    return picture_kind({head.data(), head.size()});
 }
 
 Picture decode(const std::filesystem::path& path, PictureBudget& budget,
@@ -70,14 +73,19 @@ Picture decode(const std::filesystem::path& path, PictureBudget& budget,
     }
     OIIO::ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1);
+    const std::string_view kind = kind_of(path);
+    if (kind.empty())
+        throw refuse(
+            "cannot be read: it is no OpenEXR, Radiance, PNG, JPEG or WebP file; convert it "
+            "to one of these");
+    if (const std::string why = kind == "exr" ? exr_header_complaint(path) : ""; !why.empty())
+        throw refuse(why);
     // In two steps: OpenImageIO's open in one would offer a broken file to all its readers.
-    const auto input = OIIO::ImageInput::create(path.string());
+    const auto input = OIIO::ImageInput::create(std::string(kind));
     if (!input) throw refuse("cannot be read: " + first_line(OIIO::geterror()));
     OIIO::ImageSpec spec;
     if (!input->open(path.string(), spec, config))
         throw refuse("cannot be read: " + first_line(input->geterror()));
-    if (input->format_name() == std::string_view("hdr") && !has_radiance_magic(head))
-        throw refuse("cannot be read: it does not begin with #? as Radiance files do");
     const std::string why =
         size_complaint(spec.width, spec.height, spec.depth, spec.nchannels, byte_count);
     if (!why.empty()) throw refuse(why);

@@ -45,7 +45,8 @@ LensFile read_lens_dat(std::string_view text, const std::string& file, const std
         const auto fail = [&](const std::string& message) {
             return InputError(file, line.place(), message);
         };
-        const auto [radius_mm, thickness_mm, index, diameter_mm] = columns(line, word, file);
+        const auto [radius_mm, thickness_mm, stated_index, diameter_mm] = columns(line, word, file);
+        const double index = stated_index < 1 && stated_index > 0.998 ? 1 : stated_index;  // air
         LensSurface surface;
         surface.curvature_1_mm = radius_mm == 0 ? 0 : 1 / radius_mm;
         surface.thickness_mm = thickness_mm;

@@ -84,6 +84,13 @@ class Reader {
         if (!value) fail(line, fmt::format("has no finite number after {}", printable(word[0])));
         return *value;
     }
+    // A figure that is only stated: the light does not follow from it.
+    std::optional<double> stated(const TextLine& line, const Words& word, size_t i) {
+        const auto value = i < word.size() ? finite_number(word[i]) : std::nullopt;
+        if (!value)
+            warn(line, fmt::format("{} has no finite number and is left out", printable(word[0])));
+        return value;
+    }
     double number_or_0(const Words& word, size_t i) const {
         return i < word.size() ? finite_number(word[i]).value_or(0) : 0;
     }
@@ -139,13 +146,13 @@ void Reader::read_system(const TextLine& line, const Words& word) {
     } else if (key == "GCAT") {
         for (size_t i = 1; i < word.size(); ++i) makers_.push_back(lower(word[i]));
     } else if (key == "FNUM") {
-        if (const double fnumber = number(line, word, 1); fnumber > 0)
+        if (const auto fnumber = stated(line, word, 1); fnumber && *fnumber > 0)
             out_.lens.stated_fnumber = fnumber;
     } else if (key == "FTYP") {
-        fields_are_angles_ = number(line, word, 1) == 0;
+        fields_are_angles_ = stated(line, word, 1) == 0.;
     } else if (key == "XFLN" || key == "YFLN") {
         for (size_t i = 1; i < word.size(); ++i)
-            field_deg_ = std::max(field_deg_, std::abs(number(line, word, i)));
+            field_deg_ = std::max(field_deg_, std::abs(stated(line, word, i).value_or(0)));
     }
 }
 

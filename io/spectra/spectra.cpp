@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <numeric>
 #include <span>
 #include <string_view>
 #include <system_error>
@@ -47,6 +48,39 @@ fs::path shipped_or_file(Names names, const std::string& name_or_file) {
     return name_or_file;
 }
 
+// Share of a column's greatest value below which a negative one is an instrument's noise.
+constexpr double kNoise = 0.002;
+
+// Sorts the rows by wavelength: instruments write them from red to blue too.
+void sort_rows(CsvTable& table) {
+    std::vector<size_t> order(table.rows.size());
+    std::iota(order.begin(), order.end(), size_t(0));
+    std::stable_sort(order.begin(), order.end(),
+                     [&](size_t a, size_t b) { return table.rows[a][0] < table.rows[b][0]; });
+    CsvTable sorted{table.file, table.names, {}, {}};
+    for (const size_t row : order) {
+        sorted.rows.push_back(std::move(table.rows[row]));
+        sorted.line_of_row.push_back(table.line_of_row[row]);
+    }
+    table = std::move(sorted);
+}
+
+// Sets values below 0 by noise to 0, and refuses others.
+void mend_negative(CsvTable& table) {
+    for (size_t i = 1; i < table.names.size(); ++i) {
+        double greatest = 0;
+        for (const auto& row : table.rows) greatest = std::max(greatest, row[i]);
+        for (size_t row = 0; row < table.rows.size(); ++row) {
+            double& value = table.rows[row][i];
+            if (value < -kNoise * greatest)
+                throw InputError(
+                    table.file, table.place(row),
+                    fmt::format("{} in column {} must not be below 0", value, table.names[i]));
+            value = std::max(value, 0.);
+        }
+    }
+}
+
 // Reads a table of spectra. columns: those after the wavelength.
 CsvTable read_spectra(const fs::path& path, size_t columns) {
     CsvTable table = read_csv(path);
@@ -56,22 +90,18 @@ CsvTable read_spectra(const fs::path& path, size_t columns) {
             fmt::format("number of columns is {} and must be {}: wavelength in nm, then {}",
                         table.names.size(), 1 + columns,
                         columns == 1 ? "one value" : "one value for each curve"));
+    sort_rows(table);
     double previous_nm = 0;
     for (size_t row = 0; row < table.rows.size(); ++row) {
-        const std::vector<double>& values = table.rows[row];
-        const double nm = values[0];
+        const double nm = table.rows[row][0];
         if (nm <= previous_nm)
-            throw InputError(table.file, table.place(row),
-                             fmt::format("wavelength {} nm must be above {} nm; sort the rows by "
-                                         "wavelength, each once",
-                                         nm, previous_nm));
+            throw InputError(
+                table.file, table.place(row),
+                fmt::format("wavelength {} nm must be above {} nm; write each once, in nm", nm,
+                            previous_nm));
         previous_nm = nm;
-        for (size_t i = 1; i < values.size(); ++i)
-            if (values[i] < 0)
-                throw InputError(
-                    table.file, table.place(row),
-                    fmt::format("{} in column {} must not be below 0", values[i], table.names[i]));
     }
+    mend_negative(table);
     return table;
 }
 

@@ -55,11 +55,12 @@ inline TinyGltf full_gltf() {
     primitive["targets"] = {{{"POSITION", 0}}};
     file.json["meshes"][0]["weights"] = {0.5};
     file.json["skins"] = {{{"joints", {0}}, {"inverseBindMatrices", 5}}};
-    const int at = file.add_view_of<uint16_t>({1, 3});
+    primitive["attributes"]["_SPARSE"] = 7;
+    const int at = file.add_view_of<uint16_t>({0, 2});
     const int values = file.add_view_of<float>({5, 6});
     file.add("accessors", {{"componentType", 5126},
                            {"type", "SCALAR"},
-                           {"count", 4},
+                           {"count", 3},
                            {"sparse",
                             {{"count", 2},
                              {"indices", {{"bufferView", at}, {"componentType", 5123}}},

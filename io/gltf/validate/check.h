@@ -3,9 +3,10 @@
 // throws InputError with the JSON path. They run in the order in which they stand here: later ones
 // rely on what earlier ones found.
 //
-// The checks refuse what the specification forbids, except where nothing that Petzval reads depends
-// on it: min and max of accessors, lengths of normals, bufferView.target, empty arrays, the meaning
-// of animations, inverse bind matrices, and the content of extensions that are not supported.
+// What has one plain meaning although the specification forbids it was put right before
+// (io/gltf/mend/mend.h), or is accepted here with a warning: docs/design/refusals.md has every
+// rule. The checks refuse what would be read out of bounds, would not end, or would show something
+// meaningless.
 #pragma once
 
 #include <string>
@@ -15,6 +16,7 @@
 #include "io/gltf/validate/accessor.h"
 #include "io/gltf/validate/budget.h"
 #include "io/gltf/validate/source.h"
+#include "io/gltf/validate/use.h"
 
 namespace petzval {
 
@@ -24,6 +26,7 @@ struct GltfCheck {
     JsonCursor root;
     GltfBudget& budget;
     std::vector<GltfAccessor> accessors;  ///< filled by check_accessors
+    GltfUse use;
 
     /// Number of things in the root array `kind` ("meshes" ...).
     [[nodiscard]] size_t count(const char* kind) const { return root.length(kind); }
@@ -39,10 +42,8 @@ void check_asset(const GltfCheck&);
 void check_extensions(GltfCheck&);
 /// Checks that the root arrays hold objects, and that names are strings.
 void check_collections(const GltfCheck&);
-/// Checks that every buffer has a byteLength above 0. Comes before the buffers are read.
-void check_buffers(const GltfCheck&);
 /// Checks that every bufferView lies in its buffer. Comes before the images are read.
-void check_buffer_views(const GltfCheck&);
+void check_buffer_views(GltfCheck&);
 /// Checks that every accessor, sparse or not, lies in its bufferView, and that zero-filled ones are
 /// not absurdly long.
 void check_accessors(GltfCheck&);
@@ -56,12 +57,9 @@ void check_lights(GltfCheck&);
 void check_skins(const GltfCheck&);
 /// Checks nodes and scenes: the references, the transforms, and that the nodes form trees.
 void check_nodes(GltfCheck&);
-void check_animations(const GltfCheck&);
-/// Checks values in the buffers: finite floats, vertex and joint indices in range.
+/// Warns of animations that are broken: they are not played.
+void check_animations(GltfCheck&);
+/// Checks values in the buffers: vertex and joint indices in range.
 void check_data(const GltfCheck&);
-
-/// Number of texture coordinate sets that a material's textures need, of those that Petzval reads:
-/// one more than the greatest set named, 0 for none.
-[[nodiscard]] uint64_t texcoord_sets_needed(const JsonCursor& material);
 
 }  // namespace petzval

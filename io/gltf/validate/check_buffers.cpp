@@ -2,12 +2,13 @@
 // Buffers, bufferViews and accessors: every byte range lies in what it is a range of.
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "io/base/error.h"
 #include "io/gltf/validate/check.h"
 
 namespace petzval {
 namespace {
-
-constexpr uint64_t index_buffer_target = 34963;  // ELEMENT_ARRAY_BUFFER
 
 /// The data of a checked bufferView; empty where its buffer has none.
 std::span<const uint8_t> view_bytes(const GltfCheck& check, const JsonCursor& view) {
@@ -16,43 +17,35 @@ std::span<const uint8_t> view_bytes(const GltfCheck& check, const JsonCursor& vi
     return {buffer.data() + view.integer_or("byteOffset", 0), view.integer("byteLength")};
 }
 
-void check_stride(const JsonCursor& view, uint64_t length) {
-    if (!view.has("byteStride")) return;
-    const uint64_t stride = view.integer("byteStride");
-    if (stride < 4 || stride > 252 || stride % 4 != 0)
-        view.fail("byteStride",
-                  fmt::format("must be a multiple of 4 from 4 to 252, but is {}", stride));
-    if (stride > length)
-        view.fail("byteStride", fmt::format("is {}, more than the byteLength {}", stride, length));
-    if (view.integer_or("target", 0) == index_buffer_target)
-        view.fail("byteStride", "does not go with the target of an index buffer");
+/// Ends a bufferView where its buffer ends: exporters round lengths up. What does not lie in it is
+/// missed by those that need it.
+void fit(GltfCheck& check, size_t index, const JsonCursor& view, uint64_t size) {
+    const uint64_t offset = view.integer_or("byteOffset", 0), length = view.integer("byteLength");
+    if (offset <= size && length <= size - offset) return;
+    const uint64_t start = std::min(offset, size);
+    check.warn(view, fmt::format("ends at byte {}, beyond the {} bytes of buffer {}; it ends there",
+                                 offset + length, size, view.integer("buffer")));
+    check.source.json["bufferViews"][index]["byteOffset"] = start;
+    check.source.json["bufferViews"][index]["byteLength"] = size - start;
 }
 
-void check_buffer_view(const GltfCheck& check, const JsonCursor& view,
+void check_buffer_view(GltfCheck& check, size_t index, const JsonCursor& view,
                        const std::vector<JsonCursor>& buffers) {
     const size_t buffer = view.required_index("buffer", buffers.size(), "buffer");
-    const uint64_t offset = view.integer_or("byteOffset", 0), length = view.integer("byteLength");
-    const uint64_t size = buffers[buffer].integer("byteLength");
-    if (length == 0) view.fail("byteLength", "must be at least 1");
-    if (offset > size || length > size - offset)
-        view.fail(fmt::format("ends at byte {}, beyond the {} bytes of buffer {}", offset + length,
-                              size, buffer));
+    fit(check, index, view, buffers[buffer].integer("byteLength"));
     if (check.source.buffers[buffer].empty() && view.extension("EXT_meshopt_compression"))
         view.fail(
             "its data is only in EXT_meshopt_compression, which is not supported; export it "
             "without");
-    check_stride(view, length);
-    if (view.has("target")) (void)view.integer("target");
+    (void)view.integer_or("byteStride", 4);
 }
 
 /// Bytes of `count` elements from byte `offset` of the view on; the last one needs `last` bytes.
-/// unit: the component size, of which offsets must be multiples.
+/// They need not be aligned: that is for graphics cards.
 std::span<const uint8_t> place_in_view(const GltfCheck& check, const JsonCursor& user,
                                        const JsonCursor& view, uint64_t offset, uint64_t count,
-                                       uint64_t stride, uint64_t last, uint64_t unit) {
+                                       uint64_t stride, uint64_t last) {
     const uint64_t length = view.integer("byteLength");
-    if ((view.integer_or("byteOffset", 0) + offset) % unit != 0 || offset % unit != 0)
-        user.fail("byteOffset", fmt::format("its data must start at a multiple of {} bytes", unit));
     const bool fits = offset <= length && last <= length - offset &&
                       (count - 1) <= (length - offset - last) / stride;
     if (!fits)
@@ -89,18 +82,12 @@ class AccessorCheck {
             check_.warn(json, "is of an unknown type");
             return accessor;
         }
-        check_bounds(json, size_t(accessor.components));
         find_data(json, accessor);
         if (json.has("sparse")) accessor.sparse = read_sparse(json.object("sparse"), accessor);
         return accessor;
     }
 
   private:
-    static void check_bounds(const JsonCursor& json, size_t components) {
-        const double huge = std::numeric_limits<double>::max();
-        for (const char* key : {"min", "max"}) (void)json.numbers(key, components, {-huge, huge});
-    }
-
     void find_data(const JsonCursor& json, GltfAccessor& accessor) {
         const size_t size = element_size(accessor.type, accessor.component_type, true);
         accessor.stride = size;
@@ -112,8 +99,7 @@ class AccessorCheck {
                                       size, view.path(), accessor.stride));
             accessor.bytes =
                 place_in_view(check_, json, view, accessor.offset, accessor.count, accessor.stride,
-                              element_size(accessor.type, accessor.component_type, false),
-                              component_size(accessor.component_type));
+                              element_size(accessor.type, accessor.component_type, false));
         }
         check_.budget.ask(saturating(accessor.count, size), json);
     }
@@ -129,24 +115,22 @@ class AccessorCheck {
         if (type != 5121 && type != 5123 && type != 5125)
             indices.fail("componentType", "must be 5121, 5123 or 5125");
         sparse.index_component_type = int(type);
-        const size_t index_size = component_size(sparse.index_component_type);
-        sparse.indices = packed(indices, sparse.count, index_size, index_size);
+        sparse.indices = packed(indices, sparse.count, component_size(sparse.index_component_type));
         sparse.values = packed(json.object("values"), sparse.count,
-                               element_size(accessor.type, accessor.component_type, true),
-                               component_size(accessor.component_type));
-        check_order(indices, sparse, accessor.count);
+                               element_size(accessor.type, accessor.component_type, true));
+        check_indices(indices, sparse, accessor.count);
         return sparse;
     }
 
-    std::span<const uint8_t> packed(const JsonCursor& json, uint64_t count, size_t size,
-                                    size_t unit) const {
+    std::span<const uint8_t> packed(const JsonCursor& json, uint64_t count, size_t size) const {
         const size_t view = json.required_index("bufferView", views_.size(), "bufferView");
         return place_in_view(check_, json, views_[view], json.integer_or("byteOffset", 0), count,
-                             size, size, unit);
+                             size, size);
     }
 
-    /// Checks that sparse indices increase strictly and stay below the accessor's count.
-    static void check_order(const JsonCursor& json, const GltfSparse& sparse, uint64_t limit) {
+    /// Checks that sparse indices stay below the accessor's count. Those that do not increase are
+    /// read all the same: the last one holds.
+    static void check_indices(const JsonCursor& json, const GltfSparse& sparse, uint64_t limit) {
         if (sparse.indices.empty()) return;
         GltfAccessor list;
         list.component_type = sparse.index_component_type;
@@ -155,13 +139,10 @@ class AccessorCheck {
         list.stride = component_size(sparse.index_component_type);
         list.bytes = sparse.indices;
         const std::vector<uint32_t> values = read_unsigned(list);
-        for (size_t i = 0; i < values.size(); ++i) {
+        for (size_t i = 0; i < values.size(); ++i)
             if (values[i] >= limit)
                 json.fail(
                     fmt::format("index {} is beyond the {} elements of the accessor", i, limit));
-            if (i > 0 && values[i] <= values[i - 1])
-                json.fail(fmt::format("index {} is not more than the one before", i));
-        }
     }
 
     /// Product, at most 2^56: both factors come from the file, and a count may reach 2^53.
@@ -175,21 +156,30 @@ class AccessorCheck {
 
 }  // namespace
 
-void check_buffers(const GltfCheck& check) {
-    for (const JsonCursor& buffer : check.root.objects("buffers"))
-        if (buffer.integer("byteLength") == 0) buffer.fail("byteLength", "must be at least 1");
-}
-
-void check_buffer_views(const GltfCheck& check) {
-    const auto buffers = check.root.objects("buffers");
-    for (const JsonCursor& view : check.root.objects("bufferViews"))
-        check_buffer_view(check, view, buffers);
+// Objects that nothing needs are replaced where they are broken.
+void check_buffer_views(GltfCheck& check) {
+    const auto views = check.root.objects("bufferViews"), buffers = check.root.objects("buffers");
+    for (size_t i = 0; i < views.size(); ++i) try {
+            check_buffer_view(check, i, views[i], buffers);
+        } catch (const InputError&) {
+            if (check.use.views[i]) throw;
+            check.warn(views[i], "is broken, but nothing needs it");
+            check.source.json["bufferViews"][i] = {{"buffer", 0}, {"byteLength", 0}};
+        }
 }
 
 void check_accessors(GltfCheck& check) {
     AccessorCheck accessors(check);
-    for (const JsonCursor& accessor : check.root.objects("accessors"))
-        check.accessors.push_back(accessors.read(accessor));
+    const auto cursors = check.root.objects("accessors");
+    for (size_t i = 0; i < cursors.size(); ++i) try {
+            check.accessors.push_back(accessors.read(cursors[i]));
+        } catch (const InputError&) {
+            if (check.use.accessors[i]) throw;
+            check.warn(cursors[i], "is broken, but nothing needs it");
+            check.source.json["accessors"][i] = {
+                {"componentType", 5121}, {"type", "SCALAR"}, {"count", 1}};
+            check.accessors.emplace_back();
+        }
 }
 
 }  // namespace petzval

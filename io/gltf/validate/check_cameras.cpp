@@ -41,14 +41,14 @@ void check_spot(const JsonCursor& spot) {
 
 void check_light(GltfCheck& check, const JsonCursor& light) {
     (void)light.text_or("name", "");
-    (void)light.numbers("color", 3, {0, 1});
+    (void)light.numbers("color", 3, not_negative);
     (void)light.number_or("intensity", 1, not_negative);
     if (light.has("range")) (void)positive(light, "range");
     check_light_extras(light);
     const std::string type = light.text("type");
     if (type == "spot")
         check_spot(light.object("spot"));
-    else if (type != "point" && type != "directional")
+    else if (!type.empty() && type != "point" && type != "directional")
         check.warn(light, "is of the unknown type \"" + printable(type) + "\"");
 }
 
@@ -62,7 +62,7 @@ void check_cameras(GltfCheck& check) {
             check_perspective(camera.object("perspective"));
         else if (type == "orthographic")
             check_orthographic(camera.object("orthographic"));
-        else
+        else if (!type.empty())
             check.warn(camera, "is of the unknown type \"" + printable(type) + "\"");
     }
 }

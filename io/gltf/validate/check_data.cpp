@@ -4,12 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <map>
 
 #include "io/gltf/validate/check.h"
 
 namespace petzval {
 namespace {
+
+using nlohmann::json;
 
 /// The greatest component of an accessor of unsigned integers, and its first index.
 struct Greatest {
@@ -26,22 +28,6 @@ bool has_data(const GltfAccessor& accessor) {
     return accessor.components > 0 && (!accessor.bytes.empty() || accessor.sparse);
 }
 
-void check_floats(const GltfCheck& check) {
-    const auto cursors = check.root.objects("accessors");
-    for (size_t i = 0; i < cursors.size(); ++i) {
-        const GltfAccessor& accessor = check.accessors[i];
-        if (accessor.component_type != 5126 || !has_data(accessor) ||
-            accessor.type.starts_with("MAT"))
-            continue;
-        const std::vector<float> values = read_floats(accessor);
-        const auto bad = std::find_if(values.begin(), values.end(),
-                                      [](float value) { return !std::isfinite(value); });
-        if (bad != values.end())
-            cursors[i].fail(fmt::format("element {} is not a finite number",
-                                        (bad - values.begin()) / accessor.components));
-    }
-}
-
 class IndexCheck {
   public:
     explicit IndexCheck(const GltfCheck& check)
@@ -51,14 +37,17 @@ class IndexCheck {
         const auto& attributes = primitive.value()["attributes"];
         if (!primitive.has("indices") || attributes.empty()) return;
         const size_t index = primitive.integer("indices");
-        const GltfAccessor& accessor = check_.accessors[index];
-        const uint64_t vertices = check_.accessors[attributes.front().get<size_t>()].count;
+        const auto positions = attributes.find("POSITION");
+        const json& first = positions == attributes.end() ? attributes.front() : *positions;
+        const uint64_t vertices = check_.accessors[first.get<size_t>()].count;
         const Greatest found = greatest(index);
-        const uint64_t restart = (uint64_t(1) << 8 * component_size(accessor.component_type)) - 1;
+        const uint64_t restart =
+            (uint64_t(1) << 8 * component_size(check_.accessors[index].component_type)) - 1;
         if (found.value == restart)
             primitive.fail("indices",
-                           fmt::format("index {} of accessor {} has all bits set, which would "
-                                       "restart the primitive and is not allowed",
+                           fmt::format("index {} of accessor {} has all bits set, which restarts "
+                                       "the primitive in other programs; use larger integers, or "
+                                       "leave the index out",
                                        found.at, index));
         if (found.value >= vertices)
             primitive.fail("indices",
@@ -66,17 +55,48 @@ class IndexCheck {
                                        found.at, index, vertices));
     }
 
-    /// The greatest joint that the vertices of a mesh name; nothing where they name none.
+    /// The greatest joint that has a weight at a vertex of the mesh; nothing where there is none.
+    /// Joints without a weight may be any number: exporters leave rubbish there.
     std::optional<uint64_t> greatest_joint(const JsonCursor& mesh) {
         std::optional<uint64_t> joint;
-        for (const JsonCursor& primitive : mesh.objects("primitives"))
-            for (const auto& [name, index] : primitive.value()["attributes"].items())
+        for (const JsonCursor& primitive : mesh.objects("primitives")) {
+            const json& attributes = primitive.value()["attributes"];
+            for (const auto& [name, index] : attributes.items())
                 if (name.starts_with("JOINTS_"))
-                    joint = std::max(joint.value_or(0), greatest(index.get<size_t>()).value);
+                    if (const auto found = weighted(attributes, name, index.get<size_t>()))
+                        joint = std::max(joint.value_or(0), *found);
+        }
         return joint;
     }
 
   private:
+    std::optional<uint64_t> weighted(const json& attributes, const std::string& name,
+                                     size_t joints_index) {
+        const GltfAccessor& joints = check_.accessors[joints_index];
+        if (!has_data(joints)) return std::nullopt;
+        const auto at = attributes.find("WEIGHTS_" + name.substr(name.find('_') + 1));
+        if (at == attributes.end()) return std::nullopt;  // never read
+        const auto weights_index = at->get<size_t>();
+        const auto [known, is_new] = weighted_.try_emplace({joints_index, weights_index});
+        if (!is_new) return known->second;
+        const std::vector<bool> weighs = not_zero(check_.accessors[weights_index]);
+        const std::vector<uint32_t> values = read_unsigned(joints);
+        for (size_t i = 0; i < std::min(values.size(), weighs.size()); ++i)
+            if (weighs[i]) known->second = std::max<uint64_t>(known->second.value_or(0), values[i]);
+        return known->second;
+    }
+
+    static std::vector<bool> not_zero(const GltfAccessor& accessor) {
+        const auto flags = [](const auto& values) {
+            std::vector<bool> out;
+            for (const auto value : values) out.push_back(value != 0);
+            return out;
+        };
+        if (!has_data(accessor)) return {};
+        return accessor.component_type == 5126 ? flags(read_floats(accessor))
+                                               : flags(read_unsigned(accessor));
+    }
+
     Greatest greatest(size_t accessor) {
         if (!has_data(check_.accessors[accessor])) return {};
         if (!greatest_[accessor]) greatest_[accessor] = greatest_of(check_.accessors[accessor]);
@@ -85,6 +105,8 @@ class IndexCheck {
 
     const GltfCheck& check_;
     std::vector<std::optional<Greatest>> greatest_;  ///< of each accessor, once asked for
+    /// The greatest joint with a weight, by accessors of joints and weights.
+    std::map<std::pair<size_t, size_t>, std::optional<uint64_t>> weighted_;
 };
 
 void check_joints(const GltfCheck& check, const std::vector<std::optional<uint64_t>>& greatest) {
@@ -101,7 +123,6 @@ void check_joints(const GltfCheck& check, const std::vector<std::optional<uint64
 }  // namespace
 
 void check_data(const GltfCheck& check) {
-    check_floats(check);
     IndexCheck indices(check);
     std::vector<std::optional<uint64_t>> joints;
     for (const JsonCursor& mesh : check.root.objects("meshes")) {

@@ -56,8 +56,7 @@ Names read_names(const JsonCursor& root, const char* key) {
     if (!array.is_array()) root.fail(key, "must be an array of strings");
     for (const json& name : array) {
         if (!name.is_string()) root.fail(key, "must be an array of strings");
-        if (!names.insert(name.get<std::string>()).second)
-            root.fail(key, fmt::format("names \"{}\" twice", printable(name.get<std::string>())));
+        names.insert(name.get<std::string>());
     }
     return names;
 }
@@ -66,7 +65,7 @@ Names read_names(const JsonCursor& root, const char* key) {
 /// limited, so recursion is safe.
 class Walk {
   public:
-    Walk(const std::string& file, const Names& used) : file_(file), used_(used) {}
+    Walk(const std::string& file, WarningLog& warnings) : file_(file), warnings_(warnings) {}
 
     void visit(const json& value, std::string_view key, const std::string& path) const {
         if (value.is_object()) check(value, key, path);
@@ -90,8 +89,8 @@ class Walk {
         for (const auto& [name, content] : at->items()) {
             const std::string where = child_path(place, name);
             if (!content.is_object()) fail(where, "must be an object");
-            if (!used_.contains(name)) fail(where, "is not declared; list it in /extensionsUsed");
-            if (!is_at_home(name, key)) fail(where, "stands where this extension has no meaning");
+            if (!is_at_home(name, key))
+                warnings_.push_back(where + ": stands where this extension has no meaning");
         }
     }
 
@@ -100,7 +99,7 @@ class Walk {
     }
 
     const std::string& file_;
-    const Names& used_;
+    WarningLog& warnings_;
 };
 
 }  // namespace
@@ -114,16 +113,13 @@ void check_extensions(GltfCheck& check) {
                             fmt::format("the file requires the extension {}, which is not "
                                         "supported; export it without",
                                         printable(name)));
-        if (!used.contains(name))
-            check.root.fail("extensionsRequired",
-                            printable(name) + " is not listed in /extensionsUsed too");
     }
     for (const std::string& name : used)
         if (!is_supported_gltf_extension(name))
             check.source.warnings.push_back("/extensionsUsed: " + printable(name) +
                                             " is not supported and is ignored");
     const std::string file = check.source.path.string();
-    Walk(file, used).visit(check.root.value(), "", "");
+    Walk(file, check.source.warnings).visit(check.root.value(), "", "");
 }
 
 }  // namespace petzval

@@ -3,10 +3,7 @@
 // extensions.
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "io/gltf/validate/check.h"
-#include "io/gltf/validate/extensions.h"
 #include "io/gltf/validate/extras.h"
 
 namespace petzval {
@@ -46,7 +43,7 @@ void check_core(const JsonCursor& material) {
         (void)normal->number_or("scale", 1);
     if (const auto occlusion = material.find_object("occlusionTexture"))
         (void)occlusion->number_or("strength", 1, unit);
-    (void)material.numbers("emissiveFactor", 3, unit);
+    (void)material.numbers("emissiveFactor", 3, not_negative);
     (void)material.text_or("alphaMode", "OPAQUE");
     (void)material.number_or("alphaCutoff", 0.5, not_negative);
     material.check_bool("doubleSided");
@@ -79,21 +76,14 @@ void check_material_extensions(const JsonCursor& material) {
 }
 
 /// The objects of a material that have texture slots: itself, the core model, its extensions.
-std::vector<JsonCursor> texture_owners(const JsonCursor& material, bool supported_only) {
+std::vector<JsonCursor> texture_owners(const JsonCursor& material) {
     std::vector<JsonCursor> owners = {material};
     if (const auto pbr = material.find_object("pbrMetallicRoughness")) owners.push_back(*pbr);
     const auto extensions = material.find_object("extensions");
     if (!extensions) return owners;
     for (const auto& [name, unused] : extensions->value().items())
-        if (!supported_only || is_supported_gltf_extension(name))
-            owners.push_back(extensions->object(name.c_str()));
+        owners.push_back(extensions->object(name.c_str()));
     return owners;
-}
-
-uint64_t texcoord_of(const JsonCursor& info) {
-    const uint64_t set = info.integer_or("texCoord", 0);
-    const auto transform = info.extension("KHR_texture_transform");
-    return transform ? transform->integer_or("texCoord", set) : set;
 }
 
 }  // namespace
@@ -104,17 +94,9 @@ void check_materials(GltfCheck& check) {
         check_core(material);
         check_material_extensions(material);
         check_material_extras(material);
-        for (const JsonCursor& owner : texture_owners(material, false))
+        for (const JsonCursor& owner : texture_owners(material))
             for (const JsonCursor& info : texture_infos(owner)) check_texture_info(info, textures);
     }
-}
-
-uint64_t texcoord_sets_needed(const JsonCursor& material) {
-    uint64_t needed = 0;
-    for (const JsonCursor& owner : texture_owners(material, true))
-        for (const JsonCursor& info : texture_infos(owner))
-            needed = std::max(needed, texcoord_of(info) + 1);
-    return needed;
 }
 
 }  // namespace petzval

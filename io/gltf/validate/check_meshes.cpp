@@ -18,12 +18,11 @@ class MeshCheck {
     explicit MeshCheck(GltfCheck& check)
         : check_(check),
           accessors_(check.root.objects("accessors")),
-          views_(check.root.objects("bufferViews")) {
+          views_(check.root.objects("bufferViews")),
+          materials_(check.count("materials")) {
         const auto used = check.root.value().find("extensionsUsed");
         quantized_ = used != check.root.value().end() &&
                      std::find(used->begin(), used->end(), "KHR_mesh_quantization") != used->end();
-        for (const JsonCursor& material : check.root.objects("materials"))
-            texcoords_needed_.push_back(texcoord_sets_needed(material));
     }
 
     void check_mesh(const JsonCursor& mesh) {
@@ -33,8 +32,8 @@ class MeshCheck {
             check_primitive(primitive);
             const size_t count = primitive.length("targets");
             if (targets.value_or(count) != count)
-                primitive.fail("all primitives of a mesh must have equally many morph targets");
-            targets = count;
+                check_.warn(primitive, "has another number of morph targets than the mesh's first");
+            targets = std::max(targets.value_or(0), count);
         }
         if (mesh.has("weights")) (void)mesh.numbers("weights", targets.value_or(0));
     }
@@ -45,21 +44,22 @@ class MeshCheck {
     void check_primitive(const JsonCursor& primitive) {
         const JsonCursor attributes = primitive.object("attributes");
         const Attributes found = read_attributes(attributes, false);
-        const uint64_t vertices = found.empty() ? 0 : check_.accessors[found.begin()->second].count;
+        const uint64_t vertices = vertex_count(found);
         check_counts(attributes, found, vertices);
         check_stored(primitive, found);
-        const uint64_t texcoords = check_sets(attributes, found);
         if (primitive.has("indices")) check_indices(primitive);
         ask_for_shared(primitive, found, vertices);
         if (primitive.integer_or("mode", 4) > 6) check_.warn(primitive, "mode is unknown");
-        const auto material = primitive.index("material", texcoords_needed_.size(), "material");
-        if (material && texcoords_needed_[*material] > texcoords)
-            primitive.fail(
-                fmt::format("material {} has a texture on TEXCOORD_{}, which the "
-                            "primitive lacks",
-                            *material, texcoords_needed_[*material] - 1));
+        (void)primitive.index("material", materials_, "material");
         for (const JsonCursor& target : primitive.objects("targets"))
             check_target(target, found, vertices);
+    }
+
+    uint64_t vertex_count(const Attributes& found) const {
+        if (found.empty()) return 0;
+        const auto positions = found.find("POSITION");
+        return check_.accessors[(positions == found.end() ? found.begin() : positions)->second]
+            .count;
     }
 
     Attributes read_attributes(const JsonCursor& attributes, bool is_target) {
@@ -72,7 +72,6 @@ class MeshCheck {
                 attributes.required_index(name.c_str(), accessors_.size(), "accessor");
             const GltfAccessor& accessor = check_.accessors[index];
             check_format(attributes, name, *semantic, accessor, is_target);
-            check_layout(attributes, name, index);
             found[name] = index;
         }
         return found;
@@ -85,23 +84,6 @@ class MeshCheck {
             attributes.fail(
                 name, fmt::format("is {} of {}, which {} must not be", printable(accessor.type),
                                   component_name(accessor), name));
-    }
-
-    /// Checks that an attribute and each of its elements start at a multiple of 4 bytes, and that a
-    /// bufferView which accessors share has a byteStride.
-    void check_layout(const JsonCursor& attributes, const std::string& name, size_t index) {
-        const GltfAccessor& accessor = check_.accessors[index];
-        if (!accessor.view) return;
-        if (accessor.offset % 4 != 0 || accessor.stride % 4 != 0)
-            attributes.fail(name, fmt::format("accessor {} has an attribute that is not aligned to "
-                                              "4 bytes",
-                                              index));
-        if (views_[*accessor.view].has("byteStride")) return;
-        const size_t first = users_.try_emplace(*accessor.view, index).first->second;
-        if (first != index)
-            attributes.fail(name, fmt::format("accessors {} and {} share bufferView {}, so it "
-                                              "must have a byteStride",
-                                              first, index, *accessor.view));
     }
 
     /// Counts shared vertices against the budget: a loader may keep a copy of them for each
@@ -138,18 +120,6 @@ class MeshCheck {
                     "export it without");
     }
 
-    /// Checks that sets count from 0 without gaps; returns how many TEXCOORD_n there are.
-    static uint64_t check_sets(const JsonCursor& attributes, const Attributes& found) {
-        std::map<std::string, std::set<uint64_t>> sets;
-        for (const auto& [name, unused] : found)
-            if (const auto semantic = parse_gltf_semantic(name); semantic->set)
-                sets[semantic->base].insert(*semantic->set);
-        for (const auto& [base, numbers] : sets)
-            if (*numbers.rbegin() != numbers.size() - 1)
-                attributes.fail(fmt::format("the {}_n must count from 0 without gaps", base));
-        return sets["TEXCOORD"].size();
-    }
-
     void check_indices(const JsonCursor& primitive) {
         const size_t index = primitive.required_index("indices", accessors_.size(), "accessor");
         const GltfAccessor& accessor = check_.accessors[index];
@@ -159,7 +129,7 @@ class MeshCheck {
             primitive.fail("indices", fmt::format("accessor {} is {} of {}, not SCALAR of an "
                                                   "unsigned integer",
                                                   index, printable(accessor.type), component));
-        if (accessor.view && views_[*accessor.view].has("byteStride"))
+        if (accessor.stride != component_size(accessor.component_type))
             primitive.fail("indices", "their bufferView must not have a byteStride");
     }
 
@@ -172,10 +142,9 @@ class MeshCheck {
 
     GltfCheck& check_;
     const std::vector<JsonCursor> accessors_, views_;
-    std::vector<uint64_t> texcoords_needed_;  ///< of each material
+    const size_t materials_;  ///< how many there are
     bool quantized_ = false;
-    std::map<size_t, size_t> users_;  ///< the first accessor in each bufferView without stride
-    std::set<size_t> seen_;           ///< accessors that a primitive has used
+    std::set<size_t> seen_;  ///< accessors that a primitive has used
 };
 
 }  // namespace

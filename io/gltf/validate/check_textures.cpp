@@ -20,30 +20,27 @@ bool declares(const JsonCursor& root, const char* extension) {
     return at != root.value().end() && std::find(at->begin(), at->end(), extension) != at->end();
 }
 
-void check_images(const GltfCheck& check) {
-    const bool webp_declared = declares(check.root, "EXT_texture_webp");
+void check_images(GltfCheck& check) {
+    if (declares(check.root, "EXT_texture_webp")) return;
     const auto images = check.root.objects("images");
-    for (size_t i = 0; i < images.size(); ++i) {
-        if (images[i].has("mimeType")) (void)images[i].text("mimeType");
-        if (!webp_declared && is_webp(check.source.images[i]))
-            images[i].fail("is a WebP image; glTF has PNG and JPEG only");
-    }
+    for (size_t i = 0; i < images.size(); ++i)
+        if (is_webp(check.source.images[i]))
+            check.warn(images[i],
+                       "is a WebP image, and EXT_texture_webp is not declared; it is "
+                       "read all the same");
 }
 
 void check_texture(const GltfCheck& check, const JsonCursor& texture) {
     const size_t images = check.count("images");
     (void)texture.index("sampler", check.count("samplers"), "sampler");
     const auto source = texture.index("source", images, "image");
-    if (source && is_webp(check.source.images[*source]))
-        texture.fail("source", "is a WebP image, which only an extension may name here");
-
     // Extensions that replace the image (WebP, AVIF, KTX2 ...) all call it "source".
     const auto extensions = texture.find_object("extensions");
     if (!extensions) return;
     for (const auto& [name, unused] : extensions->value().items())
         if (extensions->object(name.c_str()).index("source", images, "image") && !source)
             texture.fail("its image is only in " + printable(name) +
-                         ", which is not supported; export it with PNG or JPEG");
+                         ", which is not supported; export it with PNG, JPEG or WebP");
 }
 
 }  // namespace

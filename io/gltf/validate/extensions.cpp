@@ -7,10 +7,12 @@
 namespace petzval {
 namespace {
 
-constexpr std::array<std::string_view, 10> supported = {
-    "KHR_lights_punctual",  "KHR_materials_dispersion", "KHR_materials_emissive_strength",
-    "KHR_materials_ior",    "KHR_materials_specular",   "KHR_materials_transmission",
-    "KHR_materials_unlit",  "KHR_materials_volume",     "KHR_mesh_quantization",
+constexpr std::array<std::string_view, 11> supported = {
+    "EXT_texture_webp",           "KHR_lights_punctual",
+    "KHR_materials_dispersion",   "KHR_materials_emissive_strength",
+    "KHR_materials_ior",          "KHR_materials_specular",
+    "KHR_materials_transmission", "KHR_materials_unlit",
+    "KHR_materials_volume",       "KHR_mesh_quantization",
     "KHR_texture_transform"};
 
 }  // namespace

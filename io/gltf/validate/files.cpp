@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 
+#include "io/base/error.h"
 #include "io/base/json_cursor.h"
 #include "io/base/json_parse.h"
 #include "io/base/read_file.h"
@@ -28,18 +29,33 @@ class Fetcher {
         return is_data_uri(uri) ? from_data(owner, uri, mime_types) : from_file(owner, uri);
     }
 
+    /// Bytes of an image likewise; none, and a warning, where its file does not exist: models are
+    /// passed on without their textures.
+    Bytes fetch_image(const JsonCursor& image) {
+        const std::string uri = image.text("uri");
+        return is_data_uri(uri) ? from_data(image, uri, {}) : from_file(image, uri, true);
+    }
+
   private:
     Bytes from_data(const JsonCursor& owner, const std::string& uri, const MimeTypes& types) {
         auto data = parse_data_uri(uri);
         if (!data) owner.fail("uri", "is not a valid data URI; it must hold base64");
         if (!types.empty() && std::find(types.begin(), types.end(), data->mime_type) == types.end())
-            owner.fail("uri", fmt::format("holds \"{}\" instead of {}", printable(data->mime_type),
-                                          types.front()));
+            source_.warnings.push_back(
+                fmt::format("{}: holds \"{}\" instead of {}; it is read "
+                            "all the same",
+                            owner.path_of("uri"), printable(data->mime_type), types.front()));
         return std::move(data->bytes);
     }
 
-    Bytes from_file(const JsonCursor& owner, const std::string& uri) {
+    Bytes from_file(const JsonCursor& owner, const std::string& uri, bool may_be_missing = false) {
         const auto path = relative_path(uri);
+        if (!path && may_be_missing) {
+            source_.warnings.push_back(
+                fmt::format("{}: \"{}\" is not a relative path to a file; the texture is left out",
+                            owner.path_of("uri"), printable(uri)));
+            return {};
+        }
         if (!path)
             owner.fail("uri", fmt::format("\"{}\" is not a relative path to a file; network and "
                                           "absolute addresses are not read",
@@ -50,6 +66,12 @@ class Fetcher {
                                           "--confine allows no file there",
                                           printable(*path)));
         FileBytes file = read_file(full);
+        if (may_be_missing && file.error == "no such file") {
+            source_.warnings.push_back(
+                fmt::format("{}: there is no file \"{}\"; the texture is left out",
+                            owner.path_of("uri"), printable(*path)));
+            return {};
+        }
         if (!file.error.empty())
             owner.fail("uri", fmt::format("\"{}\": {}", printable(*path), file.error));
         if (!times_read_.contains(*path)) source_.files.push_back(full);
@@ -68,21 +90,24 @@ class Fetcher {
     std::map<std::string, int> times_read_;
 };
 
-Bytes read_buffer(const JsonCursor& buffer, Fetcher& fetcher) {
-    Bytes bytes = fetcher.fetch(buffer, {"application/octet-stream", "application/gltf-buffer"});
-    const uint64_t length = buffer.integer("byteLength");
-    if (bytes.size() < length)
-        buffer.fail(fmt::format("byteLength is {}, but there are {} bytes", length, bytes.size()));
-    return bytes;
-}
-
 /// The binary chunk is padded to four bytes, so it may be longer than the buffer.
 Bytes buffer_from_chunk(const JsonCursor& buffer, std::span<const uint8_t> bin) {
-    const uint64_t length = buffer.integer("byteLength");
-    if (bin.size() < length)
-        buffer.fail(
-            fmt::format("byteLength is {}, but the BIN chunk has {} bytes", length, bin.size()));
+    const uint64_t length =
+        std::min<uint64_t>(buffer.integer_or("byteLength", bin.size()), bin.size());
     return {bin.begin(), bin.begin() + ptrdiff_t(length)};
+}
+
+/// Sets a byteLength that is absent or too great to what is there: bufferViews that lie beyond it
+/// are found later.
+void mend_length(GltfSource& source, size_t index, const JsonCursor& buffer, size_t size) {
+    const uint64_t length = buffer.integer_or("byteLength", size);
+    if (buffer.has("byteLength") && length <= size) return;
+    source.warnings.push_back(
+        buffer.has("byteLength")
+            ? fmt::format("{}: byteLength is {}, but there are {} bytes", buffer.path(), length,
+                          size)
+            : fmt::format("{}: has no byteLength; there are {} bytes", buffer.path(), size));
+    source.json["buffers"][index]["byteLength"] = size;
 }
 
 Bytes image_from_view(GltfSource& source, const std::vector<JsonCursor>& views,
@@ -106,7 +131,8 @@ void read_buffers(GltfSource& source, const GltfContainer& container, GltfBudget
     for (const JsonCursor& buffer : JsonCursor(source.json, file).objects("buffers")) {
         const bool first = source.buffers.empty();
         if (buffer.has("uri"))
-            source.buffers.push_back(read_buffer(buffer, fetcher));
+            source.buffers.push_back(
+                fetcher.fetch(buffer, {"application/octet-stream", "application/gltf-buffer"}));
         else if (first && container.bin)
             source.buffers.push_back(buffer_from_chunk(buffer, *container.bin));
         else if (first && container.binary)
@@ -114,20 +140,32 @@ void read_buffers(GltfSource& source, const GltfContainer& container, GltfBudget
         else {
             source.buffers.emplace_back();
             source.warnings.push_back(buffer.path() + ": has no data; reads as zeros");
+            (void)buffer.integer("byteLength");
+            continue;
         }
+        mend_length(source, source.buffers.size() - 1, buffer, source.buffers.back().size());
     }
 }
 
-void read_images(GltfSource& source, GltfBudget& budget) {
+void read_images(GltfSource& source, const GltfUse& use, GltfBudget& budget) {
     const std::string file = source.path.string();
     const JsonCursor root(source.json, file);
     const auto views = root.objects("bufferViews");
     Fetcher fetcher(source, budget);
     for (const JsonCursor& image : root.objects("images")) {
-        if (image.has("uri") == image.has("bufferView"))
-            image.fail("must have either a uri or a bufferView");
-        source.images.push_back(image.has("uri") ? fetcher.fetch(image, {})
-                                                 : image_from_view(source, views, image, budget));
+        const bool used = use.images[source.images.size()];
+        source.images.emplace_back();
+        if (!image.has("uri") && !image.has("bufferView")) {
+            source.warnings.push_back(image.path() + ": has neither a uri nor a bufferView");
+            continue;
+        }
+        try {
+            source.images.back() = image.has("uri") ? fetcher.fetch_image(image)
+                                                    : image_from_view(source, views, image, budget);
+        } catch (const InputError&) {
+            if (used) throw;
+            source.warnings.push_back(image.path() + ": is broken, but nothing needs it");
+        }
     }
 }
 

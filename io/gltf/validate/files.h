@@ -7,6 +7,7 @@
 
 #include "io/gltf/validate/budget.h"
 #include "io/gltf/validate/source.h"
+#include "io/gltf/validate/use.h"
 
 namespace petzval {
 
@@ -20,7 +21,7 @@ struct GltfContainer {
 void read_buffers(GltfSource& source, const GltfContainer&, GltfBudget&);
 
 /// Fills source.images from data URIs, side files and bufferViews (which must be checked already),
-/// and checks what kind of image the bytes are.
-void read_images(GltfSource& source, GltfBudget&);
+/// one that is not there, or is broken and not used, stays empty.
+void read_images(GltfSource& source, const GltfUse&, GltfBudget&);
 
 }  // namespace petzval

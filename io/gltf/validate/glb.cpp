@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "io/base/error.h"
 
 namespace petzval {
@@ -21,8 +23,7 @@ uint32_t word_at(std::span<const uint8_t> bytes, size_t at) {
 
 class Splitter {
   public:
-    Splitter(std::span<const uint8_t> bytes, const std::string& file,
-             std::vector<std::string>& warnings)
+    Splitter(std::span<const uint8_t> bytes, const std::string& file, WarningLog& warnings)
         : bytes_(bytes), file_(file), warnings_(warnings) {}
 
     GlbChunks split() {
@@ -62,13 +63,25 @@ class Splitter {
             fail(start, fmt::format("a chunk header needs {} bytes, {} are left", chunk_header_size,
                                     left));
         const uint32_t length = word_at(bytes_, start), type = word_at(bytes_, start + 4);
-        if (length % 4 != 0)
-            fail(start, fmt::format("a chunk's length must be a multiple of 4, but is {}", length));
         if (length > left - chunk_header_size)
             fail(start, fmt::format("a chunk promises {} bytes, {} are left", length,
                                     left - chunk_header_size));
         take(type, bytes_.subspan(start + chunk_header_size, length));
         at_ = start + chunk_header_size + length;
+        if (length % 4 != 0) skip_padding(start, length);
+    }
+
+    /// A chunk's length should be a multiple of 4. Exporters that forget it write the next chunk
+    /// either at once or at the next such place.
+    void skip_padding(size_t start, uint32_t length) {
+        warnings_.push_back(fmt::format(
+            "byte {}: a chunk's length is {} and must be a multiple of 4; it is read all the same",
+            start, length));
+        const auto is_chunk = [&](size_t at) {
+            return bytes_.size() - at >= chunk_header_size &&
+                   (word_at(bytes_, at + 4) == bin_chunk || word_at(bytes_, at + 4) == json_chunk);
+        };
+        if (!is_chunk(at_)) at_ = std::min((at_ + 3) / 4 * 4, bytes_.size());
     }
 
     void take(uint32_t type, std::span<const uint8_t> data) {
@@ -76,25 +89,26 @@ class Splitter {
         if (type == json_chunk) {
             if (has_json_) fail(at_, "there is a second JSON chunk");
             if (data.empty()) fail(at_, "the JSON chunk is empty");
+            while (!data.empty() && data.back() == 0)
+                data = data.first(data.size() - 1);  // padding
             chunks_.json = {reinterpret_cast<const char*>(data.data()), data.size()};
             has_json_ = true;
         } else if (type == bin_chunk) {
-            if (chunks_.bin) fail(at_, "there is a second BIN chunk");
-            if (count_ != 1) fail(at_, "the BIN chunk must be the second one");
-            chunks_.bin = data;
+            if (chunks_.bin)
+                warnings_.push_back(fmt::format("byte {}: a second BIN chunk is skipped", at_));
+            else
+                chunks_.bin = data;
         } else {
             warnings_.push_back(
                 fmt::format("byte {}: a chunk of unknown type {:#010x} is skipped", at_, type));
         }
-        ++count_;
     }
 
     std::span<const uint8_t> bytes_;
     const std::string& file_;
-    std::vector<std::string>& warnings_;
+    WarningLog& warnings_;
     GlbChunks chunks_;
     size_t at_ = 0;
-    int count_ = 0;  ///< chunks taken so far
     bool has_json_ = false;
 };
 
@@ -104,8 +118,7 @@ bool is_glb(std::span<const uint8_t> bytes) {
     return bytes.size() >= 4 && word_at(bytes, 0) == magic;
 }
 
-GlbChunks split_glb(std::span<const uint8_t> bytes, const std::string& file,
-                    std::vector<std::string>& warnings) {
+GlbChunks split_glb(std::span<const uint8_t> bytes, const std::string& file, WarningLog& warnings) {
     return Splitter(bytes, file, warnings).split();
 }
 

@@ -7,7 +7,8 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
+
+#include "io/base/warning_log.h"
 
 namespace petzval {
 
@@ -23,6 +24,6 @@ struct GlbChunks {
 /// Splits a container into its chunks. file: its name, for InputError; warnings: unknown chunks and
 /// trailing bytes, which are skipped, are reported there.
 [[nodiscard]] GlbChunks split_glb(std::span<const uint8_t> bytes, const std::string& file,
-                                  std::vector<std::string>& warnings);
+                                  WarningLog& warnings);
 
 }  // namespace petzval

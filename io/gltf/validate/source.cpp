@@ -4,6 +4,7 @@
 #include "io/base/error.h"
 #include "io/base/json_parse.h"
 #include "io/base/read_file.h"
+#include "io/gltf/mend/mend.h"
 #include "io/gltf/validate/budget.h"
 #include "io/gltf/validate/check.h"
 #include "io/gltf/validate/files.h"
@@ -47,15 +48,16 @@ GltfSource read_gltf_source(const std::filesystem::path& path, FileScope scope) 
     if (binary) chunks = split_glb(file.bytes, name, source.warnings);
     source.json = parse_json(chunks.json, name);
 
-    GltfCheck check{source, JsonCursor(source.json, name), budget, {}};
+    mend_gltf(source.json, source.warnings);
+
+    GltfCheck check{source, JsonCursor(source.json, name), budget, {}, find_used(source.json)};
     check_asset(check);
     check_extensions(check);
     check_collections(check);
-    check_buffers(check);
     read_buffers(source, {binary, chunks.bin}, budget);
     check_buffer_views(check);
     check_accessors(check);
-    read_images(source, budget);
+    read_images(source, check.use, budget);
     check_scene_graph(check);
     check_data(check);
     return source;

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "io/base/warning_log.h"
+
 namespace petzval {
 
 /// Folders in which the files may lie that a scene names. Confined: that of the scene and those
@@ -25,7 +27,7 @@ struct GltfSource {
     /// Encoded bytes of each image (PNG, JPEG ...), whatever way the file stores them. Not yet
     /// decoded: they may be no image. Empty for an image in an undefined buffer.
     std::vector<std::vector<uint8_t>> images;
-    std::vector<std::string> warnings;         ///< one line each: odd, but no reason to refuse
+    WarningLog warnings;                       ///< one line each: odd, but no reason to refuse
     std::vector<std::filesystem::path> files;  ///< every file that was read, `path` first
     uint64_t hash = 0;  ///< FNV-1a of the scene file and of every file it names
 };

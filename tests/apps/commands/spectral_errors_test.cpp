@@ -66,7 +66,7 @@ TEST_F(CliSpectralErrors, FilesThatAreNotAsTheyShouldBe) {
     };
     expect_refused(
         1, {light("empty.csv", "", "line 1: ends without a row"),
-            light("unsorted.csv", "nm,v\n500,1\n490,1\n", "line 3: wavelength 490 nm must be"),
+            light("unsorted.csv", "nm,v\n500,1\n500,1\n", "line 3: wavelength 500 nm must be"),
             light("missing.csv", "nm,v\n500\n", "line 2: number of columns is 1, and 2"),
             light("dark.csv", "nm,v\n400,0\n700,0\n", "line 2: column v is 0 at every"),
             {{"--illuminant", folder_.path.string()}, "is a folder"},

@@ -6,6 +6,7 @@
 
 #include "camera/iris/iris.h"
 #include "io/aperture/svg_path.h"
+#include "io/image/picture.h"
 #include "tests/support/clip.h"
 #include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
@@ -105,6 +106,14 @@ TEST(SvgAperture, Arcs) {
     for (const V2d& p : round.contours[0]) EXPECT_NEAR(p.length(), 7, 1e-4 * 7);
 }
 
+TEST(SvgAperture, LengthsInUnits) {
+    const double pi = std::numbers::pi, mm_px = 96 / 25.4;
+    EXPECT_NEAR(area(read("<circle r=\"2mm\"/>")), 4 * mm_px * mm_px * pi, 0.05);
+    EXPECT_NEAR(area(read("<circle r=\"3pt\"/>")), 16 * pi, 0.05);
+    EXPECT_NEAR(area(read("<circle r=\"0.25pc\"/>")), 16 * pi, 0.05);
+    EXPECT_NEAR(area(read("<rect width=\"1in\" height=\"2.54cm\"/>")), 96 * 96, 1e-6);
+}
+
 TEST(SvgAperture, Transforms) {
     const std::vector<V2d> box = {{-6, 6}, {2, 6}, {2, -1}, {-6, -1}};
     const auto with = [](const std::string& transform) {
@@ -195,6 +204,25 @@ TEST(SvgAperture, CutShort) {
     }
     EXPECT_EQ(read_svg_path(whole, {"cut", "d"}).size(), 1u);
     EXPECT_EQ(read_svg_path("M0 0 1 1 2 0ZZZ", {"cut", "d"}).size(), 1u);
+}
+
+TEST(MaskAperture, RoundingIsNoFault) {
+    const TemporaryFolder folder;
+    const auto read = [&](float open) {
+        Picture p{{.width = 2,
+                   .height = 1,
+                   .full_width = 2,
+                   .full_height = 1,
+                   .channels = {"Y"},
+                   .metadata = {}},
+                  {open, 0.5f}};
+        write_exr(folder / "mask.exr", p);
+        return read_mask_aperture(folder / "mask.exr").texels[0];
+    };
+    EXPECT_EQ(read(1.00000012f), 1.f);
+    EXPECT_EQ(read(-0.001f), 0.f);
+    EXPECT_TRUE(has(refusal([&] { (void)read(1.1f); }), "0 is opaque and 1 is open"));
+    EXPECT_TRUE(has(refusal([&] { (void)read(std::nanf("")); }), "0 is opaque and 1 is open"));
 }
 
 TEST(MaskAperture, LuminanceTimesAlpha) {

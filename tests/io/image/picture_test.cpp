@@ -11,6 +11,7 @@
 #include "io/base/error.h"
 #include "io/image/limits.h"
 #include "tests/support/pictures.h"
+#include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tiny_png.h"
 
@@ -156,6 +157,39 @@ TEST(ReadPicture, RefusesRadianceWithoutItsMagic) {
     file[0] = 'X';
     write_bytes(folder / "a.hdr", file);
     EXPECT_THROW((void)read_picture(folder / "a.hdr"), InputError);
+}
+
+TEST(ReadPicture, GoesByTheBytesAndNotByTheEnding) {
+    const TemporaryFolder folder;
+    write_8bit(folder / "a.png", picture(3, 2, {"R", "G", "B"}));
+    std::filesystem::rename(folder / "a.png", folder / "a.exr");
+    EXPECT_EQ(read_picture(folder / "a.exr").width, 3);
+}
+
+// Decoders that nothing needs are not reached: OpenImageIO would read this by its ending.
+TEST(ReadPicture, RefusesFormatsThatItDoesNotNeed) {
+    const TemporaryFolder folder;
+    const std::string ppm = "P6 1 1 255\nabc";
+    for (const char* name : {"a.ppm", "a.png", "a.exr"}) {
+        write_bytes(folder / name, {ppm.begin(), ppm.end()});
+        EXPECT_THROW((void)read_picture(folder / name), InputError) << name;
+    }
+}
+
+// OpenEXR would take the memory that the attribute asks for.
+TEST(ReadPicture, RefusesExrHeadersThatAskForMoreThanTheFile) {
+    const TemporaryFolder folder;
+    write_exr(folder / "a.exr", picture(3, 2, {"R", "G", "B"}));
+    Bytes file = test::read_bytes(folder / "a.exr");
+    const std::string type("chlist\0", 7);
+    *(std::search(file.begin(), file.end(), type.begin(), type.end()) + 10) = 0x7f;  // its length
+    write_bytes(folder / "b.exr", file);
+    EXPECT_TRUE(has(refusal([&] { (void)read_picture(folder / "b.exr"); }),
+                    "the picture has an attribute of "));
+    write_bytes(folder / "c.exr", {file.begin(), file.begin() + 20});
+    EXPECT_TRUE(
+        has(refusal([&] { (void)read_picture(folder / "c.exr"); }), "damaged or cut short"));
+    EXPECT_EQ(read_picture(folder / "a.exr").width, 3);
 }
 
 TEST(ReadPicture, RefusesWhatIsNotThere) {

@@ -176,6 +176,12 @@ TEST_F(LensText, RefusesZemaxsLensesThatItCannotFollow) {
          {kZmx, "SURF 0\nSURF 1\n", "a.zmx: has no lens"}});
     const auto warnings = read("a.zmx", with(kZmx, "COMM a", "ABCD a")).warnings;
     EXPECT_TRUE(has(warnings.at(0), "line 20: ABCD is not known and left out"));
+    // What is only stated changes no light.
+    const std::string stated = "GCAT SCHOTT\nFNUM x 0\nFTYP\nYFLN 0 a";
+    const auto lens = read("a.zmx", with(kZmx, "GCAT SCHOTT", stated));
+    ASSERT_EQ(lens.warnings.size(), 4u);  // the last: its stop is a curved surface
+    EXPECT_TRUE(has(lens.warnings[0], "line 4: FNUM has no finite number and is left out"));
+    EXPECT_FALSE(lens.lens.stated_fnumber);
 }
 
 TEST_F(LensText, RefusesPbrtsDescriptionsThatAreWrong) {
@@ -183,6 +189,8 @@ TEST_F(LensText, RefusesPbrtsDescriptionsThatAreWrong) {
     ASSERT_EQ(surfaces.size(), 5u);
     EXPECT_TRUE(surfaces[2].stop);
     EXPECT_FALSE(surfaces[1].glass) << "index 1";
+    const auto rounded = read("a.dat", with(kDat, "-50 2 1 20", "-50 2 0.9999 20")).lens.surfaces;
+    EXPECT_FALSE(rounded[1].glass) << "air, rounded";
     const auto plane = read("a.dat", with(kDat, "\n60 ", "\n0 ")).lens.surfaces;
     EXPECT_FALSE(plane[3].stop) << "a plane of glass";
     expect_refused(

@@ -182,6 +182,24 @@ TEST(UserSpectra, AResponseThatShipsIsScaledLikeTheOthers) {
     EXPECT_FLOAT_EQ(find_response("cie1931")[2].at_nm(446), 1);
 }
 
+TEST(UserSpectra, RowsMayStandInAnyOrder) {
+    const test::TemporaryFolder folder;
+    const auto read = [&](const std::string& text) {
+        test::write_text(folder / "a.csv", text);
+        return find_illuminant((folder / "a.csv").string()).value;
+    };
+    const auto sorted = read("nm,v\n400,1\n500,2\n600,4\n");
+    EXPECT_EQ(read("nm,v\n600,4\n500,2\n400,1\n"), sorted);
+    EXPECT_EQ(read("nm,v\n500,2\n600,4\n400,1\n"), sorted);
+}
+
+TEST(UserSpectra, NoiseBelowZeroIsZero) {
+    const test::TemporaryFolder folder;
+    test::write_text(folder / "a.csv", "nm,v\n400,-0.001\n500,1\n600,-0.002\n");
+    const auto values = find_illuminant((folder / "a.csv").string()).value;
+    EXPECT_EQ(*std::min_element(values.begin(), values.end()), 0.f);
+}
+
 TEST(UserSpectra, ErrorsNameFileAndLine) {
     struct Case {
         bool response;
@@ -189,7 +207,7 @@ TEST(UserSpectra, ErrorsNameFileAndLine) {
     };
     const Case cases[] = {
         {false, "nm,v\n400,1\n,1\n", "line 3", "column 1 is not a finite number"},
-        {false, "nm,v\n400,1\n500,1\n450,1\n", "line 4", "450 nm must be above 500 nm"},
+        {false, "nm,v\n400,1\n500,1\n400,1\n", "line 4", "400 nm must be above 400 nm"},
         {false, "nm,v\n400,1\n400,1\n", "line 3", "400 nm must be above 400 nm"},
         {false, "nm,v\n0,1\n400,1\n", "line 2", "0 nm must be above 0 nm"},
         {false, "nm,v\n-5,1\n", "line 2", "-5 nm must be above 0 nm"},

@@ -38,23 +38,60 @@ const std::set<std::string> beyond_petzval = {
     "unsupported/BoxDraco/BoxDraco.gltf", "unsupported/BoxMeshopt/BoxMeshopt.glb",
     "validator/asset/min_version_valid.gltf"};  // it wants glTF 2.1
 
-/// Errors that are no reason to refuse a file.
+/// Errors that are no reason to refuse a file: docs/design/refusals.md.
 const std::set<std::string> tolerated = {
-    // min and max are not used: bounds come from the data.
+    // What nothing depends on: bounds come from the data, directions are scaled, alignment is for
+    // graphics cards, animations are not played.
     "ACCESSOR_MIN_MISMATCH", "ACCESSOR_MAX_MISMATCH", "ACCESSOR_ELEMENT_OUT_OF_MIN_BOUND",
     "ACCESSOR_ELEMENT_OUT_OF_MAX_BOUND", "MESH_PRIMITIVE_POSITION_ACCESSOR_WITHOUT_BOUNDS",
-    // Normals and tangents give directions; whoever reads them scales them.
-    "ACCESSOR_VECTOR3_NON_UNIT", "ACCESSOR_INVALID_SIGN",
-    // An empty array asks for nothing, and exporters write them.
-    "EMPTY_ENTITY",
-    // A hint for graphics cards.
-    "BUFFER_VIEW_TARGET_OVERRIDE",
-    // Animations are not played, skins not deformed; what they refer to is checked all the same.
-    "ANIMATION_DUPLICATE_TARGETS", "ANIMATION_CHANNEL_TARGET_NODE_WEIGHTS_NO_MORPHS",
-    "ANIMATION_SAMPLER_ACCESSOR_WITH_BYTESTRIDE", "ANIMATION_SAMPLER_OUTPUT_ACCESSOR_INVALID_COUNT",
+    "ARRAY_LENGTH_NOT_IN_LIST", "ACCESSOR_VECTOR3_NON_UNIT", "ACCESSOR_INVALID_SIGN",
+    "EMPTY_ENTITY", "BUFFER_VIEW_TARGET_OVERRIDE", "ANIMATION_DUPLICATE_TARGETS",
+    "ANIMATION_CHANNEL_TARGET_NODE_WEIGHTS_NO_MORPHS", "ANIMATION_SAMPLER_ACCESSOR_WITH_BYTESTRIDE",
+    "ANIMATION_SAMPLER_OUTPUT_ACCESSOR_INVALID_COUNT",
     "ANIMATION_SAMPLER_OUTPUT_ACCESSOR_INVALID_FORMAT", "ACCESSOR_ANIMATION_INPUT_NEGATIVE",
     "ACCESSOR_ANIMATION_INPUT_NON_INCREASING",
-    "ACCESSOR_ANIMATION_SAMPLER_OUTPUT_NON_NORMALIZED_QUATERNION", "ACCESSOR_INVALID_IBM"};
+    "ACCESSOR_ANIMATION_SAMPLER_OUTPUT_NON_NORMALIZED_QUATERNION", "ACCESSOR_INVALID_IBM",
+    "MESH_PRIMITIVE_ACCESSOR_UNALIGNED", "MESH_PRIMITIVE_ACCESSOR_WITHOUT_BYTESTRIDE",
+    "BUFFER_VIEW_TOO_BIG_BYTE_STRIDE", "BUFFER_VIEW_INVALID_BYTE_STRIDE",
+    // Put right, or left out, with a warning.
+    "ACCESSOR_NORMALIZED_INVALID", "ACCESSOR_INVALID_FLOAT", "BUFFER_DATA_URI_MIME_TYPE_INVALID",
+    "CAMERA_ZFAR_LEQUAL_ZNEAR", "IMAGE_NON_ENABLED_MIME_TYPE", "IMAGE_MIME_TYPE_INVALID",
+    "TEXTURE_INVALID_IMAGE_MIME_TYPE", "UNDECLARED_EXTENSION", "UNEXPECTED_EXTENSION_OBJECT",
+    "UNUSED_EXTENSION_REQUIRED", "MESH_PRIMITIVE_TOO_FEW_TEXCOORDS",
+    "MESH_PRIMITIVE_MORPH_TARGET_NO_BASE_ACCESSOR", "MESH_PRIMITIVES_UNEQUAL_TARGETS_COUNT",
+    "MESH_INVALID_WEIGHTS_COUNT", "MESH_PRIMITIVE_INVALID_ATTRIBUTE",
+    "MESH_PRIMITIVE_INDEXED_SEMANTIC_CONTINUITY", "ACCESSOR_WEIGHTS_NEGATIVE",
+    "ACCESSOR_WEIGHTS_NON_NORMALIZED", "ACCESSOR_JOINTS_INDEX_DUPLICATE", "ROTATION_NON_UNIT",
+    "SCENE_NON_ROOT_NODE"};
+
+/// Files whose fault nothing shown depends on, or that has one plain meaning: animations, objects
+/// that nothing refers to, absent lengths and types.
+const std::set<std::string> kindly_read = {
+    "assimp/badNumber/badNumber.gltf",  // in a texture slot without a texture
+    "assimp/badString/badString.gltf",  // a name
+    "tinygltf/invalid-buffer-index/invalid-buffer-index.gltf",
+    "validator/accessor/small_stride.gltf",
+    "validator/animation/empty_objects.gltf",
+    "validator/animation/unresolved_channel_target.gltf",
+    "validator/animation/unresolved_sampler_input.gltf",
+    "validator/animation/unresolved_sampler_output.gltf",
+    "validator/buffer/invalid_uri_data_bytelength.gltf",
+    "validator/buffer/wrong_bytelength.glb",
+    "validator/buffer/zero_bytelength.gltf",
+    "validator/buffer_view/unresolved_buffer.gltf",
+    "validator/buffer_view/zero_bytelength.gltf",
+    "validator/camera/empty_objects.gltf",
+    "validator/ext/KHR_lights_punctual/light/empty_light_object.gltf",
+    "validator/ext/KHR_lights_punctual/light/spot_light_without_spot_object.gltf",
+    "validator/ext/KHR_materials_dispersion/material/out_of_range.gltf",
+    "validator/glb/bom.glb",
+    "validator/glb/json_and_two_buffers.glb",
+    "validator/image/invalid_data_uri.gltf",
+    "validator/image/unresolved_buffer_view.gltf",
+    "validator/mesh/accessor_attribute_uint32.gltf",
+    "validator/node/unresolved_skin.gltf",
+    "validator/node/weights_with_no_mesh.gltf",
+    "validator/root/invalid_collection_type.gltf"};
 
 /// Files whose only fault lies inside an extension that is not supported and not read.
 const std::set<std::string> fault_in_ignored_extension = {
@@ -72,6 +109,7 @@ const std::string empty_joints = "validator/skin/empty_joints_array.gltf";
 
 bool must_be_refused(const std::string& file, const json& codes) {
     if (beyond_petzval.contains(file) || file == empty_joints) return true;
+    if (kindly_read.contains(file)) return false;
     const std::string prefix = "validator/ext/";
     if (file.starts_with(prefix) && fault_in_ignored_extension.contains(file.substr(prefix.size())))
         return false;
@@ -92,8 +130,8 @@ TEST(GltfCorpus, OddFilesAreAcceptedAndWrongOnesRefused) {
         EXPECT_EQ(!error.empty(), must_be_refused(file, codes)) << file << codes << '\n' << error;
         EXPECT_EQ(error.find('\n'), std::string::npos) << error;
     }
-    EXPECT_GE(refused, 100u);
-    EXPECT_GE(accepted, 70u);
+    EXPECT_GE(refused, 45u);
+    EXPECT_GE(accepted, 140u);
 }
 
 TEST(GltfCorpus, RealScenesAreAccepted) {

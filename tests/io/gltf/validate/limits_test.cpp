@@ -2,7 +2,7 @@
 // What only shows when several parts of a file, or the bytes behind it, are looked at together.
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <algorithm>
 
 #include "tests/support/full_gltf.h"
 
@@ -24,16 +24,9 @@ TEST(GltfLimits, NodeTreeDeeperThanAnyRig) {
     EXPECT_TRUE(has(refused_glb(chain(1025)), "/nodes/1024: lies more than 1024 nodes deep"));
 }
 
-TEST(GltfLimits, AnAttributeOf32BitIntegers) {
-    TinyGltf file;
-    const int mine = file.add_accessor<uint32_t>("SCALAR", {1, 2, 3});
-    file.add_mesh({{"attributes", {{"_MINE", mine}}}});
-    EXPECT_TRUE(has(refused_glb(file), "/attributes/_MINE: is SCALAR of uint32"));
-}
-
 TEST(GltfLimits, IndicesBeyondTheVertices) {
     for (const auto& [index, expected] : {std::pair<uint16_t, const char*>{3, "beyond the 3 vert"},
-                                          {0xFFFF, "would restart the primitive"}}) {
+                                          {0xFFFF, "restarts the primitive"}}) {
         TinyGltf file;
         const int positions = file.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
         const int indices = file.add_accessor<uint16_t>("SCALAR", {0, index, 2});
@@ -44,30 +37,15 @@ TEST(GltfLimits, IndicesBeyondTheVertices) {
     }
 }
 
-TEST(GltfLimits, ValuesThatAreNotFinite) {
-    for (const float bad : {NAN, INFINITY, -INFINITY}) {
-        TinyGltf file;
-        file.add_accessor<float>("VEC3", {0, 0, 0, 1, bad, 0});
-        EXPECT_TRUE(has(refused_glb(file), "/accessors/0: element 1 is "));
-    }
-}
-
 TEST(GltfLimits, JointsBeyondTheSkin) {
     TinyGltf file = full_gltf();
     const size_t at = file.json["bufferViews"][3]["byteOffset"];
     file.bin[at + 5] = 1;
     EXPECT_TRUE(
         has(refused_glb(file), "/nodes/1/skin: mesh 0 names a joint beyond the 1 of skin 0"));
-}
-
-TEST(GltfLimits, QuantizedPositionsWithoutTheExtension) {
-    TinyGltf file;
-    const int positions = file.add_accessor<int16_t>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0});
-    file.json["bufferViews"][0]["byteStride"] = 8;
-    file.json["accessors"][0]["count"] = 3;
-    file.add_mesh({{"attributes", {{"POSITION", positions}}}});
-    EXPECT_TRUE(has(refused_glb(file), "POSITION: is VEC3 of int16"));
-    file.json["extensionsUsed"] = file.json["extensionsRequired"] = {"KHR_mesh_quantization"};
+    // Exporters leave rubbish where the weight is 0.
+    const size_t weights = file.json["bufferViews"][4]["byteOffset"];
+    std::fill_n(file.bin.begin() + ptrdiff_t(weights + 5 * sizeof(float)), sizeof(float), 0);
     const TempFolder folder;
     EXPECT_NO_THROW((void)read_gltf_source(file.save_glb(folder.path / "a.glb")));
 }
@@ -83,6 +61,7 @@ TEST(GltfLimits, StridedIndices) {
 TEST(GltfLimits, DataThatOnlyAnUnsupportedExtensionHas) {
     TinyGltf draco = full_gltf();
     draco.json["extensionsUsed"].push_back("KHR_draco_mesh_compression");
+    draco.json["meshes"][0]["primitives"][0]["attributes"].erase("_SPARSE");
     draco.json["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] =
         json::object();
     const TempFolder folder;
@@ -93,6 +72,8 @@ TEST(GltfLimits, DataThatOnlyAnUnsupportedExtensionHas) {
 
     TinyGltf meshopt;
     meshopt.bin = {1};
+    meshopt.json["images"] = R"([{"bufferView": 0}])"_json;
+    meshopt.json["textures"] = R"([{"source": 0}])"_json;
     meshopt.json["extensionsUsed"] = {"EXT_meshopt_compression"};
     meshopt.json["buffers"] = R"([{"byteLength": 1}, {"byteLength": 9}])"_json;
     meshopt.json["bufferViews"] = R"([{"buffer": 1, "byteLength": 9,
@@ -102,31 +83,21 @@ TEST(GltfLimits, DataThatOnlyAnUnsupportedExtensionHas) {
     TinyGltf webp = full_gltf();
     webp.json["extensionsUsed"].push_back("EXT_texture_webp");
     webp.json["textures"][0] = R"({"extensions": {"EXT_texture_webp": {"source": 0}}})"_json;
-    EXPECT_TRUE(has(refused_glb(webp), "/textures/0: its image is only in EXT_texture_webp"));
-}
-
-TEST(GltfLimits, AttributesThatDoNotLieInOrder) {
-    TinyGltf file;
-    const int bytes = file.add_view(std::vector<uint8_t>(64, 0));
-    const auto floats = [&](int offset) {
-        return file.add("accessors", {{"bufferView", bytes},
-                                      {"byteOffset", offset},
-                                      {"componentType", 5126},
-                                      {"type", "VEC3"},
-                                      {"count", 2}});
-    };
-    const int first = floats(0), second = floats(24);
-    file.add_mesh({{"attributes", {{"POSITION", first}, {"NORMAL", second}}}});
-    EXPECT_TRUE(has(refused_glb(file), "share bufferView 0, so it must have a byteStride"));
-    file.json["accessors"][0]["componentType"] = 5123;
-    file.json["accessors"][0]["byteOffset"] = 2;
-    file.json["meshes"][0]["primitives"][0]["attributes"] = {{"_MINE", 0}};
-    EXPECT_TRUE(has(refused_glb(file), "_MINE: accessor 0 has an attribute that is not aligned"));
+    const GltfSource read = read_gltf_source(webp.save_glb(folder.path / "webp.glb"));
+    EXPECT_EQ(read.json["textures"][0]["source"], 0);
+    EXPECT_TRUE(read.warnings.empty());
+    TinyGltf basis = full_gltf();
+    basis.json["extensionsUsed"].push_back("KHR_texture_basisu");
+    basis.json["textures"][0] = R"({"extensions": {"KHR_texture_basisu": {"source": 0}}})"_json;
+    EXPECT_TRUE(has(refused_glb(basis),
+                    "/textures/0: its image is only in KHR_texture_basisu, "
+                    "which is not supported; export it with PNG, JPEG or Web"));
 }
 
 TEST(GltfLimits, SmallFilesThatAskForGigabytes) {
     TinyGltf zeros;
     zeros.add("accessors", {{"componentType", 5126}, {"type", "VEC3"}, {"count", 1'000'000'000}});
+    zeros.add_mesh({{"attributes", {{"POSITION", 0}}}});
     EXPECT_TRUE(has(refused_glb(zeros), "/accessors/0: asks for 11444 MiB"));
     zeros.json["accessors"][0]["count"] = uint64_t(1) << 53;
     EXPECT_TRUE(has(refused_glb(zeros), "/accessors/0: asks for "));
@@ -139,6 +110,7 @@ TEST(GltfLimits, SmallFilesThatAskForGigabytes) {
                                 {"componentType", 5126},
                                 {"type", "SCALAR"},
                                 {"count", uint64_t(1) << 38}});
+    undefined.add_mesh({{"attributes", {{"_MINE", 0}}}});
     EXPECT_TRUE(has(refused_glb(undefined), "/accessors/0: asks for 1048576 MiB"));
 
     TinyGltf shared;
@@ -148,7 +120,10 @@ TEST(GltfLimits, SmallFilesThatAskForGigabytes) {
 
     TinyGltf images;
     const int view = images.add_view(std::vector<uint8_t>(1'000'000, 1));
-    for (int i = 0; i < 1000; ++i) images.add("images", {{"bufferView", view}});
+    for (int i = 0; i < 1000; ++i) {
+        images.add("images", {{"bufferView", view}});
+        images.add("textures", {{"source", i}});
+    }
     EXPECT_TRUE(has(refused_glb(images), ": asks for "));
 }
 

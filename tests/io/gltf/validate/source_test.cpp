@@ -65,8 +65,12 @@ TEST_F(Source, ReadsSideFilesBesideTheScene) {
 
 TEST_F(Source, NamesAMissingSideFile) {
     file.json["images"] = {{{"uri", "absent%20.png"}}};
-    EXPECT_EQ(refused(file),
-              (folder.path / "a.gltf").string() + ": /images/0/uri: \"absent .png\": no such file");
+    EXPECT_EQ(read(file).warnings.lines(),
+              std::vector<std::string>{"/images/0/uri: there is no file \"absent .png\"; the "
+                                       "texture is left out"});
+    file.json["buffers"] = {{{"uri", "absent%20.bin"}, {"byteLength", 1}}};
+    EXPECT_EQ(refused(file), (folder.path / "a.gltf").string() +
+                                 ": /buffers/0/uri: \"absent .bin\": no such file");
     file.json = {{"asset", {{"version", "2.0"}}}, {"buffers", {{{"uri", "."}, {"byteLength", 1}}}}};
     EXPECT_TRUE(has(refused(file), "/buffers/0/uri: \".\": is a folder"));
     EXPECT_TRUE(has(refusal([&] { (void)read_gltf_source(folder.path / "none.glb"); }),
@@ -96,8 +100,8 @@ TEST_F(Source, UndefinedBufferIsEmptyAndSaysSo) {
     const auto source = read(file);
     EXPECT_TRUE(source.buffers[0].empty());
     EXPECT_TRUE(source.images[0].empty());
-    ASSERT_EQ(source.warnings.size(), 2u);
-    EXPECT_EQ(source.warnings[0], "/buffers/0: has no data; reads as zeros");
+    ASSERT_EQ(source.warnings.lines().size(), 2u);
+    EXPECT_EQ(source.warnings.lines()[0], "/buffers/0: has no data; reads as zeros");
 }
 
 TEST_F(Source, BinaryChunkBelongsToTheFirstBufferOnly) {
@@ -134,8 +138,8 @@ TEST_F(Source, IndicesWithoutABufferViewAreZeros) {
 TEST_F(Source, WarnsOncePerExtensionThatIsNotSupported) {
     file.json["extensionsUsed"] = {"KHR_materials_sheen", "KHR_materials_ior", "X_y"};
     const auto source = read(file);
-    ASSERT_EQ(source.warnings.size(), 2u);
-    EXPECT_EQ(source.warnings[0],
+    ASSERT_EQ(source.warnings.lines().size(), 2u);
+    EXPECT_EQ(source.warnings.lines()[0],
               "/extensionsUsed: KHR_materials_sheen is not supported and is ignored");
 }
 

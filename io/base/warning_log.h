@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace petzval {
+
+/// Warnings of a reader, one line each. Lines that differ in their numbers and quoted words only
+/// are one warning: the first is kept, the others are counted. So a file with a million faults of
+/// one kind gives one line and takes no memory for the others.
+class WarningLog {
+  public:
+    void push_back(std::string line);
+    [[nodiscard]] bool empty() const { return first_.empty(); }
+    /// The warnings in order; one that was met again ends with how often.
+    [[nodiscard]] std::vector<std::string> lines() const;
+
+  private:
+    std::vector<std::string> first_;
+    std::vector<uint64_t> more_;              ///< how many others were like it
+    std::map<std::string, size_t> by_shape_;  ///< place in first_
+};
+
+}  // namespace petzval

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// What exporters get wrong in the JSON of a glTF file and what has one plain meaning all the same
+// is put right before the checks see it: in silence where it is rounding, else with a warning that
+// names place, value and what was done. docs/design/refusals.md has the list. What has no plain
+// meaning stays as it is, and the checks refuse it.
+#pragma once
+
+#include "io/gltf/mend/json_editor.h"
+
+namespace petzval {
+
+/// Mends the whole document, part by part as below.
+void mend_gltf(nlohmann::json& root, WarningLog&);
+
+/// Takes away null members, references of -1, empty arrays for objects and names that are no text.
+void mend_members(const JsonEditor& root);
+/// Mends asset.version, and the lists of extensions: what is used but not declared is declared.
+void mend_header(const JsonEditor& root);
+void mend_materials(const JsonEditor& root);
+/// Mends images, samplers and textures; a texture's source becomes that of EXT_texture_webp.
+void mend_textures(const JsonEditor& root);
+void mend_cameras(const JsonEditor& root);
+void mend_lights(const JsonEditor& root);
+/// Mends nodes and the lists of scenes.
+void mend_nodes(const JsonEditor& root);
+/// Mends bufferViews and accessors.
+void mend_accessors(const JsonEditor& root);
+void mend_meshes(const JsonEditor& root);
+
+}  // namespace petzval

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/gltf/validate/use.h"
+
+namespace petzval {
+namespace {
+
+using nlohmann::json;
+
+const json& member(const json& owner, const char* key) {
+    static const json none;
+    if (!owner.is_object()) return none;
+    const auto at = owner.find(key);
+    return at == owner.end() ? none : *at;
+}
+
+template <class Visit>
+void each(const json& owner, const char* key, Visit visit) {
+    if (const json& items = member(owner, key); items.is_array())
+        for (const json& item : items) visit(item);
+}
+
+size_t count(const json& root, const char* kind) {
+    const json& items = member(root, kind);
+    return items.is_array() ? items.size() : 0;
+}
+
+void mark(std::vector<bool>& used, const json& index) {
+    if (!index.is_number_integer() || index.get<double>() < 0) return;
+    if (const auto at = index.get<uint64_t>(); at < used.size()) used[at] = true;
+}
+
+void mark_all(std::vector<bool>& used, const json& attributes) {
+    if (attributes.is_object())
+        for (const json& index : attributes) mark(used, index);
+}
+
+void mark_images(const json& root, GltfUse& use) {
+    each(root, "textures", [&](const json& texture) {
+        mark(use.images, member(texture, "source"));
+        if (const json& extensions = member(texture, "extensions"); extensions.is_object())
+            for (const json& extension : extensions) mark(use.images, member(extension, "source"));
+    });
+}
+
+void mark_accessors(const json& root, GltfUse& use) {
+    each(root, "meshes", [&](const json& mesh) {
+        each(mesh, "primitives", [&](const json& primitive) {
+            mark(use.accessors, member(primitive, "indices"));
+            mark_all(use.accessors, member(primitive, "attributes"));
+            each(primitive, "targets",
+                 [&](const json& target) { mark_all(use.accessors, target); });
+        });
+    });
+    each(root, "skins",
+         [&](const json& skin) { mark(use.accessors, member(skin, "inverseBindMatrices")); });
+}
+
+void mark_views(const json& root, GltfUse& use) {
+    const auto of_used = [&](const char* kind, const std::vector<bool>& used, auto mark_views_of) {
+        size_t i = 0;
+        each(root, kind, [&](const json& object) {
+            if (used[i++]) mark_views_of(object);
+        });
+    };
+    of_used("images", use.images,
+            [&](const json& image) { mark(use.views, member(image, "bufferView")); });
+    of_used("accessors", use.accessors, [&](const json& accessor) {
+        mark(use.views, member(accessor, "bufferView"));
+        for (const char* part : {"indices", "values"})
+            mark(use.views, member(member(member(accessor, "sparse"), part), "bufferView"));
+    });
+}
+
+}  // namespace
+
+GltfUse find_used(const json& root) {
+    GltfUse use{std::vector<bool>(count(root, "accessors")),
+                std::vector<bool>(count(root, "bufferViews")),
+                std::vector<bool>(count(root, "images"))};
+    mark_images(root, use);
+    mark_accessors(root, use);
+    mark_views(root, use);
+    return use;
+}
+
+}  // namespace petzval

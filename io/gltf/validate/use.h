@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+namespace petzval {
+
+/// Which objects of a glTF file something refers to that is shown: a broken one that nothing needs
+/// is no reason to refuse the file. Meshes and skins need accessors (animations do not: they are
+/// not played), accessors and images need bufferViews, textures need images.
+struct GltfUse {
+    std::vector<bool> accessors, views, images;
+};
+
+/// Finds them in a file that is not yet checked: what is no reference is passed over.
+[[nodiscard]] GltfUse find_used(const nlohmann::json& root);
+
+}  // namespace petzval

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// The readers of files that strangers make, each by a word: what the fuzzer feeds, and what replays
+// its corpus.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/aperture/aperture_file.h"
+#include "io/base/error.h"
+#include "io/glass/agf.h"
+#include "io/gltf/gltf.h"
+#include "io/image/environment.h"
+#include "io/image/picture.h"
+#include "io/lens/lens_file.h"
+#include "io/spectra/spectra.h"
+
+namespace petzval::test {
+
+/// A reader, and the ending that a file must have for it.
+struct Decoder {
+    std::string ending;
+    std::function<void(const std::filesystem::path&)> read;
+};
+
+/// Every reader, by the name of its folder in tests/data/corpus.
+[[nodiscard]] inline const std::map<std::string, Decoder>& decoders() {
+    namespace fs = std::filesystem;
+    const auto bytes_of = [](const fs::path& path) {
+        std::ifstream in(path, std::ios::binary);
+        return std::vector<uint8_t>(std::istreambuf_iterator<char>(in), {});
+    };
+    const auto lens = [](const fs::path& path) { (void)load_lens(path.string()); };
+    const auto picture = [](const fs::path& path) { (void)read_picture(path); };
+    static const std::map<std::string, Decoder> all = {
+        {"gltf", {".gltf", [](const fs::path& path) { (void)load_gltf(path); }}},
+        {"glb", {".glb", [](const fs::path& path) { (void)load_gltf(path); }}},
+        {"texture",
+         {".bin",
+          [bytes_of](const fs::path& path) {
+              (void)decode_image(bytes_of(path), path.string(), "/images/0");
+          }}},
+        {"exr", {".exr", picture}},
+        {"hdr", {".hdr", [](const fs::path& path) { (void)load_sky(path, 0, 1, [](auto&) {}); }}},
+        {"png", {".png", [](const fs::path& path) { (void)read_mask_aperture(path); }}},
+        {"jpg", {".jpg", picture}},
+        {"svg", {".svg", [](const fs::path& path) { (void)read_svg_aperture(path); }}},
+        {"lens_json", {".json", lens}},
+        {"lens_dat", {".dat", lens}},
+        {"lens_zmx", {".zmx", lens}},
+        {"agf",
+         {".agf",
+          [](const fs::path& path) {
+              const AgfCatalog catalog(path);
+              for (const char* name : {"A", "B", "C", "D", "N-BK7"}) (void)catalog.find(name);
+          }}},
+        {"spectrum", {".csv", [](const fs::path& path) { (void)find_illuminant(path.string()); }}},
+        {"response", {".csv", [](const fs::path& path) { (void)find_response(path.string()); }}},
+    };
+    return all;
+}
+
+/// Whether the bytes, as a file in that folder, are accepted. Lets any exception but InputError
+/// escape.
+inline bool is_accepted(const Decoder& decoder, std::span<const uint8_t> bytes,
+                        const std::filesystem::path& folder) {
+    const auto path = folder / ("file" + decoder.ending);
+    {
+        std::ofstream out(path, std::ios::binary);
+        out.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+    }
+    try {
+        decoder.read(path);
+        return true;
+    } catch (const InputError&) {
+        return false;
+    }
+}
+
+}  // namespace petzval::test

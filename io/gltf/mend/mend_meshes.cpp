@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "io/base/json_parse.h"
+#include "io/gltf/mend/attributes.h"
 #include "io/gltf/mend/mend.h"
-#include "io/gltf/mend/semantic.h"
 
 namespace petzval {
 namespace {
@@ -142,8 +142,8 @@ class MeshMender {
     }
 
     /// What tells an accessor's format.
-    static GltfAccessor summary_of(const json& list) {
-        GltfAccessor out;
+    static GltfFormat summary_of(const json& list) {
+        GltfFormat out;
         if (const auto type = list.find("componentType");
             type != list.end() && type->is_number_integer())
             out.component_type = int(std::clamp(type->get<double>(), 0., 9999.));
@@ -154,7 +154,7 @@ class MeshMender {
     }
 
     void mend_format(const GltfSemantic& semantic, json& list, const json& index, bool is_target) {
-        GltfAccessor summary = summary_of(list);
+        GltfFormat summary = summary_of(list);
         if (semantic.base == "JOINTS" && summary.normalized) {
             drop_normalized(list, index);
             summary.normalized = false;

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "io/gltf/mend/attributes.h"
+
 namespace petzval {
 
 /// The elements that a sparse accessor replaces.
@@ -30,6 +32,11 @@ struct GltfAccessor {
     std::span<const uint8_t> bytes;  ///< from the first element on; empty reads as zeros
     std::optional<GltfSparse> sparse;
 };
+
+/// Format of an accessor's elements.
+[[nodiscard]] inline GltfFormat format_of(const GltfAccessor& accessor) {
+    return {accessor.component_type, accessor.type, accessor.normalized};
+}
 
 /// Bytes of a component; 0 for an unknown type.
 [[nodiscard]] size_t component_size(int component_type);

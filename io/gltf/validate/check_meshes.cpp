@@ -7,7 +7,7 @@
 #include <set>
 
 #include "io/base/json_parse.h"
-#include "io/gltf/validate/attributes.h"
+#include "io/gltf/mend/attributes.h"
 #include "io/gltf/validate/check.h"
 
 namespace petzval {
@@ -80,10 +80,10 @@ class MeshCheck {
     void check_format(const JsonCursor& attributes, const std::string& name,
                       const GltfSemantic& semantic, const GltfAccessor& accessor,
                       bool is_target) const {
-        if (!is_allowed_format(semantic, accessor, quantized_, is_target))
+        if (!is_allowed_format(semantic, format_of(accessor), quantized_, is_target))
             attributes.fail(
                 name, fmt::format("is {} of {}, which {} must not be", printable(accessor.type),
-                                  component_name(accessor), name));
+                                  component_name(format_of(accessor)), name));
     }
 
     /// Counts shared vertices against the budget: a loader may keep a copy of them for each
@@ -123,7 +123,7 @@ class MeshCheck {
     void check_indices(const JsonCursor& primitive) {
         const size_t index = primitive.required_index("indices", accessors_.size(), "accessor");
         const GltfAccessor& accessor = check_.accessors[index];
-        const std::string component = component_name(accessor);
+        const std::string component = component_name(format_of(accessor));
         if (accessor.type != "SCALAR" ||
             (component != "uint8" && component != "uint16" && component != "uint32"))
             primitive.fail("indices", fmt::format("accessor {} is {} of {}, not SCALAR of an "

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/gltf/validate/attributes.h"
+#include "io/gltf/mend/attributes.h"
 
 #include <algorithm>
 #include <array>
@@ -39,9 +39,9 @@ bool lists(std::string_view words, std::string_view wanted) {
 
 }  // namespace
 
-std::string component_name(const GltfAccessor& accessor) {
-    const auto name = [&accessor] {
-        switch (accessor.component_type) {
+std::string component_name(const GltfFormat& format) {
+    const auto name = [&format] {
+        switch (format.component_type) {
             case 5120:
                 return "int8";
             case 5121:
@@ -58,18 +58,17 @@ std::string component_name(const GltfAccessor& accessor) {
                 return "unknown";
         }
     };
-    return std::string(name()) + (accessor.normalized ? "n" : "");
+    return std::string(name()) + (format.normalized ? "n" : "");
 }
 
-bool is_allowed_format(const GltfSemantic& semantic, const GltfAccessor& accessor, bool quantized,
+bool is_allowed_format(const GltfSemantic& semantic, const GltfFormat& format, bool quantized,
                        bool is_target) {
-    if (semantic.custom) return accessor.component_type != 5125;
+    if (semantic.custom) return format.component_type != 5125;
     const Formats& row = formats_of(semantic.base);
     // The sign of a tangent's fourth component cannot be morphed.
     const bool short_tangent = is_target && row.base == "TANGENT";
-    const bool type_fits =
-        short_tangent ? accessor.type == "VEC3" : lists(row.types, accessor.type);
-    const std::string component = component_name(accessor);
+    const bool type_fits = short_tangent ? format.type == "VEC3" : lists(row.types, format.type);
+    const std::string component = component_name(format);
     return type_fits &&
            (lists(row.components, component) || (quantized && lists(row.quantized, component)));
 }

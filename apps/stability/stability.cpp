@@ -11,6 +11,7 @@
 #include "core/traversal/bvh.h"
 #include "io/base/atomic_file.h"
 #include "io/base/error.h"
+#include "io/base/rescue.h"
 
 namespace petzval {
 namespace {
@@ -114,13 +115,13 @@ std::filesystem::path write_stability(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error)
-        throw InputError(folder.string(), "",
-                         fmt::format("cannot be made a folder: {}", error.message()));
+        throw OutputError(folder.string(), "",
+                          fmt::format("cannot be made a folder: {}", error.message()));
     const std::filesystem::path page = folder / "stability.md";
     check_writable(page);
     const std::vector<Finding> findings = stability_findings();
-    write_file_atomically(folder / "stability.csv", stability_csv(findings));
-    write_file_atomically(page, stability_markdown(findings));
+    attempt_all({[&] { write_file_atomically(folder / "stability.csv", stability_csv(findings)); },
+                 [&] { write_file_atomically(page, stability_markdown(findings)); }});
     return page;
 }
 

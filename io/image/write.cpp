@@ -115,7 +115,8 @@ PictureFormat picture_format(const std::filesystem::path& path) {
     if (ending == ".exr") return PictureFormat::Exr;
     if (ending == ".png") return PictureFormat::Png;
     if (ending == ".jpg" || ending == ".jpeg") return PictureFormat::Jpeg;
-    throw InputError(path.string(), "", "a picture's name must end in .exr, .png, .jpg or .jpeg");
+    throw ArgumentError(path.string(), "",
+                        "a picture's name must end in .exr, .png, .jpg or .jpeg");
 }
 
 void write_exr(const std::filesystem::path& path, const PictureRows& picture) {

@@ -120,7 +120,7 @@ std::string lens_svg(const Lens& lens, const LensDrawing& drawing) {
 
 void check_drawing(const std::filesystem::path& path) {
     if (lower(path.extension().string()) != ".svg")
-        throw InputError(path.string(), "", "a drawing's name must end in .svg");
+        throw ArgumentError(path.string(), "", "a drawing's name must end in .svg");
     check_writable(path);
 }
 

@@ -33,7 +33,7 @@ const char* terminal(const fs::path& path) {
     const std::string ending = lower(path.extension().string());
     if (ending == ".svg") return "svg";
     if (ending == ".png") return "pngcairo";
-    throw InputError(path.string(), "", "a plot's name must end in .svg or .png");
+    throw ArgumentError(path.string(), "", "a plot's name must end in .svg or .png");
 }
 
 /// gnuplot string in single quotes, where only these characters mean something.

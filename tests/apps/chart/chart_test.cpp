@@ -317,8 +317,8 @@ TEST_F(ChartCli, RefusesWhatItCannotDo) {
     expect({"--axis", "colour", "-o", path("r")}, 2, "is none of camera, dispersion");
     expect({"--budget", "1s", "-o", path("r")}, 2, "--budget");
     expect({"--axis", "sampler", "--seeds", "4", "-o", path("r")}, 2, "--seeds");
-    expect({"--axis", "sampler", "-o", scene_}, 1, "cannot be made a folder");
-    expect({"--axis", "sampler", "-o", scene_ + "/none"}, 1, "studio.glb/none");
+    expect({"--axis", "sampler", "-o", scene_}, 3, "cannot be made a folder");
+    expect({"--axis", "sampler", "-o", scene_ + "/none"}, 3, "studio.glb/none");
     expect({"--axis", "camera", "--camera", "plan", "-o", path("r")}, 2, "orthographic");
     expect({"--axis", "sampler", "--camera", "none", "-o", path("r")}, 2, "no camera \"none\"");
     static_cast<void>(render_bytes({}, "reference.exr"));

@@ -64,7 +64,7 @@ TEST_F(CliSpectrum, RefusesWhatIsNotThere) {
     for (const char* at : {"4", "4,5,6", "4.5,5", "a,b"})
         EXPECT_NE(spectrum(file, at).find("a pixel x,y"), std::string::npos);
     EXPECT_NE(spectrum(path("none.exr"), "4,5", {}, 1).find("none.exr"), std::string::npos);
-    EXPECT_NE(spectrum(file, "4,5", {"-o", path("a.pdf")}, 1).find(".svg or .png"),
+    EXPECT_NE(spectrum(file, "4,5", {"-o", path("a.pdf")}, 2).find(".svg or .png"),
               std::string::npos);
     EXPECT_NE(spectrum(file, "4,5", {"-o", path("none/a.svg")}, 3).find("none/a.svg"),
               std::string::npos);

@@ -204,7 +204,7 @@ TEST_F(LensCli, DrawsEachFaceAndRay) {
     EXPECT_TRUE(svg.ends_with("</svg>\n"));
 
     (void)output_of({"draw", "minolta-fisheye-16mm-f2.8", "-o", path("b.svg"), "--field", "0,90"});
-    expect_error({"draw", kLens, "-o", path("a.png")}, 1, "must end in .svg");
+    expect_error({"draw", kLens, "-o", path("a.png")}, 2, "must end in .svg");
     expect_error({"draw", kLens, "-o", path("a.svg"), "--rays", "0"}, 2, "--rays");
     expect_error({"draw", "kodak-petzval-100mm-f2", "-o", path("c.svg"), "--field", "80"}, 2,
                  "no ray at 80°");
@@ -338,7 +338,7 @@ TEST_F(LensCli, RefusesBadRequests) {
     expect_error({"show", "no-such-lens"}, 2, "cooke-triplet-50mm-f5");
     expect_error({"check", scene_}, 2, "must be .json, .dat or .zmx");
     expect_error({"spot", kLens}, 2, "--output");
-    expect_error({"spot", kLens, "-o", path("a.pdf")}, 1, ".svg or .png");
+    expect_error({"spot", kLens, "-o", path("a.pdf")}, 2, ".svg or .png");
     expect_error({"spot", kLens, "-o", out, "--field", "0,x"}, 2, "\"x\" is not a number");
     expect_error({"spot", kLens, "-o", out, "--field", "-3"}, 2, "--field");
     expect_error({"spot", kLens, "-o", out, "--focus", "0.05"}, 2, "too near");

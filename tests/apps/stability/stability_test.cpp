@@ -60,7 +60,7 @@ TEST_F(StabilityCli, OtherAxesNeedASceneAndAFolder) {
                   .find("--output is required"),
               std::string::npos);
     EXPECT_NE(
-        error_of({"chart", "--axis", "stability", "-o", scene_}, 1).find("cannot be made a folder"),
+        error_of({"chart", "--axis", "stability", "-o", scene_}, 3).find("cannot be made a folder"),
         std::string::npos);
 }
 

@@ -36,7 +36,7 @@ std::string percent_text(double fraction) {
 
 std::string bar(double fraction, size_t width) {
     const auto full = static_cast<size_t>(fraction * static_cast<double>(width));
-    return "[" + std::string(full, '#') + std::string(width - full, '.') + "]";
+    return fmt::format("[{:#<{}}{:.<{}}]", "", full, "", width - full);
 }
 
 std::string cut(const std::string& text, int columns) {

@@ -35,7 +35,7 @@ std::string focus_line(const std::string& camera, const FoundFocus& found) {
 }
 
 // What of a file shows only in its finished scene: where it lies, and what cameras would focus on.
-void append_placement(const std::string& path, GltfFile& file) {
+void append_placement(const std::string& path, FileScope scope, GltfFile& file) {
     Scene& scene = file.scene;
     if (scene.instances.empty()) return;
     flush_denormals();
@@ -46,9 +46,9 @@ void append_placement(const std::string& path, GltfFile& file) {
         if (!file.cameras[i].orthographic)
             file.contents.push_back(
                 focus_line(fmt::format(", camera {}", i),
-                           find_auto_focus(&file.cameras[i], path, scene, bvh)));
+                           find_auto_focus(&file.cameras[i], path, scope, scene, bvh)));
     if (file.cameras.empty())
-        file.contents.push_back(focus_line("", find_auto_focus(nullptr, path, scene, bvh)));
+        file.contents.push_back(focus_line("", find_auto_focus(nullptr, path, scope, scene, bvh)));
 }
 
 }  // namespace
@@ -66,7 +66,7 @@ void add_info_command(CLI::App& app) {
     command->callback([options] {
         PictureBudget pictures = options->reading.pictures();
         GltfFile file = load_gltf(options->scene, options->reading.scope(), pictures);
-        append_placement(options->scene.string(), file);
+        append_placement(options->scene.string(), options->reading.scope(), file);
         print_list("holds", file.contents);
         print_list("honoured", file.honoured);
         print_list("ignored", file.ignored);

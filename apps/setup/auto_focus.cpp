@@ -6,7 +6,7 @@
 
 namespace petzval {
 
-FoundFocus find_auto_focus(const GltfCamera* camera, const std::string& scene_file,
+FoundFocus find_auto_focus(const GltfCamera* camera, const std::string& scene_file, FileScope scope,
                            const Scene& scene, const Bvh& bvh) {
     SceneRequest request;
     CameraRequest& asked = request.camera;
@@ -19,7 +19,7 @@ FoundFocus find_auto_focus(const GltfCamera* camera, const std::string& scene_fi
     try {
         const float aspect =
             static_cast<float>(request.size.x) / static_cast<float>(request.size.y);
-        const CameraModel model = choose_camera_model(asked, scene_file, cameras, aspect);
+        const CameraModel model = choose_camera_model(asked, scene_file, scope, cameras, aspect);
         const CameraSetup found =
             set_up_camera(model, scene_file, request.size, scene, bvh, [](const std::string&) {});
         return {found.report.focus_m, ""};

@@ -20,8 +20,8 @@ struct FoundFocus {
 /// Distance in focus of a camera of the file, with its own lens where the file gives one, else with
 /// a thin lens of its angle of view, in a picture of the default size. camera: nullptr for the one
 /// that frames a scene without cameras. The scene must be finished and in bvh; scene_file is its
-/// name.
+/// name, scope where the files may lie that the camera names.
 [[nodiscard]] FoundFocus find_auto_focus(const GltfCamera* camera, const std::string& scene_file,
-                                         const Scene&, const Bvh&);
+                                         FileScope scope, const Scene&, const Bvh&);
 
 }  // namespace petzval

@@ -59,7 +59,7 @@ TEST(NaturalVignetting, OfAPinholeIsCosToTheFourth) {
     EXPECT_EQ(plain, 1.);
     pinhole.vignetting = NaturalVignetting();
     const ThinLensCamera camera(pinhole);
-    for (const V2f film : kFilms)
+    for (const V2f& film : kFilms)
         EXPECT_NEAR(mean_weight(camera, film),
                     std::pow(std::cos(std::atan(height_mm(film) / kFilm_mm)), 4), 1e-5);
 }
@@ -88,7 +88,7 @@ TEST(NaturalVignetting, OfThinLensAndSingletIsFootes) {
         }
         const double axial = foote(radius_mm, kFilm_mm, 0);
         for (const auto& camera : cameras)
-            for (const V2f film : kFilms) {
+            for (const V2f& film : kFilms) {
                 const double expected = 3 * foote(radius_mm, kFilm_mm, height_mm(film)) / axial;
                 EXPECT_NEAR(mean_weight(*camera, film) / expected, 1, 3e-4)
                     << "f/" << fnumber << " at " << height_mm(film) << " mm";

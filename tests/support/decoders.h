@@ -43,11 +43,19 @@ struct Decoder {
         {"texture",
          {".bin",
           [bytes_of](const fs::path& path) {
-              (void)decode_image(bytes_of(path), path.string(), "/images/0");
+              PictureBudget budget;
+              (void)decode_image(bytes_of(path), path.string(), "/images/0", budget);
           }}},
         {"exr", {".exr", picture}},
-        {"hdr", {".hdr", [](const fs::path& path) { (void)load_sky(path, 0, 1, [](auto&) {}); }}},
-        {"png", {".png", [](const fs::path& path) { (void)read_mask_aperture(path); }}},
+        {"hdr",
+         {".hdr",
+          [](const fs::path& path) {
+              PictureBudget budget;
+              (void)load_sky(
+                  path, 0, 1, [](auto&) {}, budget);
+          }}},
+        {"png",
+         {".png", [](const fs::path& path) { (void)read_mask_aperture(path, PictureBudget()); }}},
         {"jpg", {".jpg", picture}},
         {"svg", {".svg", [](const fs::path& path) { (void)read_svg_aperture(path); }}},
         {"lens_json", {".json", lens}},

@@ -217,7 +217,7 @@ TEST(MaskAperture, RoundingIsNoFault) {
                    .metadata = {}},
                   {open, 0.5f}};
         write_exr(folder / "mask.exr", p);
-        return read_mask_aperture(folder / "mask.exr").texels[0];
+        return read_mask_aperture(folder / "mask.exr", PictureBudget()).texels[0];
     };
     EXPECT_EQ(read(1.00000012f), 1.f);
     EXPECT_EQ(read(-0.001f), 0.f);

@@ -11,21 +11,27 @@
 
 namespace petzval::test {
 
-const PathTracer tracer(world.scene, *world.bvh, *world.lights, options);
-PathStats stats;
-Moments means;
-for (uint32_t seed = 0; seed < replicates; ++seed) {
-    double mean = 0;
-    for (uint32_t i = 0; i < samples; ++i) {
-        const Sampler sampler(SamplerKind::Owen, seed, {3, 5, i});
-        FilmSample out;
-        mean += tracer.radiance(make_ray(sampler.get2(Dim::Film)), Bands::rgb(), sampler, false,
-                                out, stats)[0];
-        if (alpha) *alpha += out.alpha / static_cast<float>(samples * replicates);
+// Mean red radiance over a bundle of rays; the error comes from 32 independent replicates, as the
+// points of one replicate are not independent.
+template <class MakeRay>
+Mean estimate(const World& world, const PathOptions& options, uint32_t samples,
+              const MakeRay& make_ray, float* alpha = nullptr) {
+    constexpr int replicates = 32;
+    const PathTracer tracer(world.scene, *world.bvh, *world.lights, options);
+    PathStats stats;
+    Moments means;
+    for (uint32_t seed = 0; seed < replicates; ++seed) {
+        double mean = 0;
+        for (uint32_t i = 0; i < samples; ++i) {
+            const Sampler sampler(SamplerKind::Owen, seed, {3, 5, i});
+            FilmSample out;
+            mean += tracer.radiance(make_ray(sampler.get2(Dim::Film)), Bands::rgb(), sampler, false,
+                                    out, stats)[0];
+            if (alpha) *alpha += out.alpha / static_cast<float>(samples * replicates);
+        }
+        means.add(mean / samples);
     }
-    means.add(mean / samples);
-}
-return means;
+    return means;
 }
 
 inline Ray ray_to(V3f origin, V3f target) {

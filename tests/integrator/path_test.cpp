@@ -55,6 +55,15 @@ TEST(Path, WhiteObjectsVanishInAWhiteSky) {
         }
 }
 
+World floor_under(Light light) {
+    World world;
+    place(world.scene, quad(V3f(-50, -50, 0), V3f(100, 0, 0), V3f(0, 100, 0)),
+          diffuse_material(0.5f));
+    world.scene.lights.push_back(light);
+    world.finish();
+    return world;
+}
+
 TEST(Path, PunctualLightsGiveTheirIlluminance) {
     const auto centre = [](V2f) { return ray_to(V3f(0, 0, 4), V3f(0.f)); };
     const double albedo_over_pi = 0.5 / std::numbers::pi;

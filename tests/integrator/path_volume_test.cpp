@@ -139,14 +139,5 @@ TEST(Path, TechniquesAgreeInsideAVolume) {
     }
 }
 
-World floor_under(Light light) {
-    World world;
-    place(world.scene, quad(V3f(-50, -50, 0), V3f(100, 0, 0), V3f(0, 100, 0)),
-          diffuse_material(0.5f));
-    world.scene.lights.push_back(light);
-    world.finish();
-    return world;
-}
-
 }  // namespace
 }  // namespace petzval

@@ -12,6 +12,7 @@
 #include "apps/cli/output_checks.h"
 #include "apps/cli/parse.h"
 #include "apps/setup/memory.h"
+#include "io/base/error.h"
 
 namespace petzval {
 namespace {
@@ -133,7 +134,7 @@ void require_memory(const RenderFrame& frame, const SceneRequest& scene) {
     const auto pixel_bytes =
         static_cast<double>(Film::bytes_per_pixel(frame.aovs.size(), scene.spectral.bins));
     if (const auto shortage = memory_shortage(pixels * pixel_bytes, there_bytes))
-        throw CLI::ValidationError("--size", *shortage);
+        throw OutOfMemory("--size: " + *shortage);
 }
 
 }  // namespace

@@ -28,11 +28,11 @@ class OutputError : public InputError {
     explicit OutputError(const std::string& message) : InputError(message) {}
 };
 
-/// Memory that ran out over a file. what() reads "FILE: out of memory; ...".
+/// Memory that ran out, or would. what(): the message, which names the file or option that asks for
+/// more than there is.
 class OutOfMemory : public std::bad_alloc {
   public:
-    explicit OutOfMemory(const std::string& file)
-        : message_(file + ": out of memory; it asks for more than there is") {}
+    explicit OutOfMemory(const std::string& message) : message_(message) {}
     [[nodiscard]] const char* what() const noexcept override { return message_.what(); }
 
   private:
@@ -47,7 +47,7 @@ decltype(auto) naming_file(const std::string& file, const F& f) {
     } catch (const OutOfMemory&) {
         throw;  // it has a name
     } catch (const std::bad_alloc&) {
-        throw OutOfMemory(file);
+        throw OutOfMemory(file + ": out of memory; it asks for more than there is");
     }
 }
 

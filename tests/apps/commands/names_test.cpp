@@ -61,7 +61,8 @@ TEST_F(CliNames, ErrorsShowThemEscaped) {
     for (const char* key : {"type", kEvil.c_str()})
         EXPECT_EQ(run({"info", evil_scene([&](TinyGltf& file) {
                            file.json["accessors"][0][key] = kEvil;
-                           file.json["meshes"][0]["primitives"][0]["attributes"][kEvil] = 7777;
+                           file.json["meshes"][0]["primitives"][0]["attributes"]["_" + kEvil] =
+                               7777;
                        })})
                       .exit_code,
                   1);

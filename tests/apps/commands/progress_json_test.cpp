@@ -64,7 +64,7 @@ TEST_F(CliProgressJson, PhasesNoticesAndTheEnd) {
     EXPECT_EQ(begun.size(), 4u) << "rendering begins with progress";
     const auto notices = of_kind(all, "notice"), warnings = of_kind(all, "warning");
     ASSERT_FALSE(notices.empty());
-    EXPECT_NE(notices[0].at("notice").get<std::string>().find("no light"), std::string::npos);
+    EXPECT_NE(notices[0].at("notice").get<std::string>().find("nothing lights"), std::string::npos);
     ASSERT_FALSE(warnings.empty());
     EXPECT_TRUE(warnings[0].at("notice").get<std::string>().starts_with("warning: "));
     const json last = of_kind(all, "progress").back();

@@ -250,7 +250,7 @@ TEST_F(Cli, StatsOfARunHaveASchema) {
         EXPECT_GT(s.at("phase_s").at(phase), 0) << phase;
     EXPECT_EQ(s.at("phase_s").size(), 5u);
     EXPECT_EQ(s.at("outputs").size(), 1u);
-    EXPECT_NE(s.at("notices").dump().find("no light in the file"), std::string::npos);
+    EXPECT_NE(s.at("notices").dump().find("nothing lights this scene"), std::string::npos);
     EXPECT_NE(s.at("warnings").dump().find("opens to f/2.89 at most"), std::string::npos)
         << s.at("warnings");
     EXPECT_EQ(s.at("errors"), json::array());

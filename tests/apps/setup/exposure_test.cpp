@@ -136,6 +136,7 @@ TEST_F(FindExposure, GoesThroughTheCameraThatIsAskedFor) {
             r.camera.lens = name;
             r.camera.fstop = 4;
             r.camera.exposure = mode;
+            if (r.camera.lens == "thin") r.camera.natural_vignetting = false;
         };
     };
     for (const char* name : {"thin", "double-gauss-100mm-f2"}) {

@@ -304,7 +304,7 @@ TEST(GltfExtras, WrongOnesOfMaterialsAreRefused) {
         {R"({"metal": "gold"})"_json, "/metal: there is no metal \"gold\"; there are ag, al, au, "},
         {R"({"glass": "shott:N-SF11"})"_json,
          "/glass: there is no glass \"shott:N-SF11\"; near it are schott:N-SF11, "},
-        {R"({"glass": "\u0007"})"_json, "/glass: there is no glass \"?\""},
+        {R"({"glass": "\u0007"})"_json, "/glass: there is no glass \"\\u0007\""},
         {R"({"illuminant": "b"})"_json,
          "/illuminant: there is no illuminant \"b\"; there are d65, a, f11"},
     };

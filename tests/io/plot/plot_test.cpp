@@ -126,7 +126,7 @@ TEST(Plot, ShowsTextsLetterByLetter) {
     for (size_t at = 0; (at = svg.find("$(ls) \\n a_b^c {d}", at)) != std::string::npos; ++at)
         ++found;
     EXPECT_EQ(found, 3u);
-    EXPECT_NE(svg.find("{d}?set output 'x'?|"), std::string::npos);
+    EXPECT_NE(svg.find("{d}\\u000aset output 'x'\\u0009|"), std::string::npos);
     EXPECT_EQ(folder.count(), 1u);
 }
 

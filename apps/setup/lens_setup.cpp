@@ -54,11 +54,14 @@ double stop_radius_of(const LoadedLens& loaded, std::optional<float> fstop, cons
     return filed_mm;
 }
 
-// Refuses a lens that passes next to nothing of what its pupil promises.
-void require_light(const std::string& name, const Lens& lens, double axial, double promised) {
+// Refuses a lens that passes next to nothing of what its pupil promises, or no ray from afar: then
+// its f-number is infinite.
+void require_light(const std::string& name, const Lens& lens, double axial, double promised,
+                   double fnumber) {
     constexpr double kLeastShare = 0.01;
     const auto blockage = find_blockage(lens);
-    if (axial > 0 && !(blockage && axial < kLeastShare * promised)) return;
+    const bool is_dim = blockage && axial < kLeastShare * promised;
+    if (axial > 0 && !is_dim && std::isfinite(fnumber)) return;
     throw ArgumentError(name, "",
                         "lets no light through to the middle of the film" +
                             (blockage ? ": " + blockage->text() : std::string()));
@@ -143,7 +146,7 @@ LensSetup set_up_lens(const CameraRequest& asked, const LoadedLens& loaded, cons
         throw ArgumentError(aperture, "", error.what());
     }
     const double axial = camera->irradiance(V2f(0.f), 1024);
-    require_light(loaded.name(), *lens, axial, promised);
+    require_light(loaded.name(), *lens, axial, promised, setup.fnumber);
     const bool normalised = asked.exposure == ExposureMode::Normalised;
     camera->set_exposure(
         normalised ? 1 : photographic_gain(axial, double(asked.iso), double(asked.shutter_s)),

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <map>
 
 #include "io/base/error.h"
@@ -26,6 +27,12 @@ struct Placement {
     std::vector<int> nodes;
 };
 
+bool fits_floats(const M44d& m) {
+    constexpr double greatest = std::numeric_limits<float>::max();
+    const double* const first = m.getValue();
+    return std::all_of(first, first + 16, [](double x) { return std::fabs(x) <= greatest; });
+}
+
 // Placements of the meshes. Nodes whose matrix flattens space show nothing, except where a skin
 // places the mesh instead.
 std::vector<Placement> group_nodes(const GltfModel& gltf, const GltfNodes& nodes,
@@ -35,7 +42,11 @@ std::vector<Placement> group_nodes(const GltfModel& gltf, const GltfNodes& nodes
     for (int index : nodes.in_scene) {
         const GltfNode& node = nodes.node[static_cast<size_t>(index)];
         if (node.mesh < 0) continue;
-        if (node.skin < 0 && is_singular(nodes.to_world[static_cast<size_t>(index)])) {
+        const M44d& to_world = nodes.to_world[static_cast<size_t>(index)];
+        if (!fits_floats(to_world))
+            throw InputError(gltf.file, json_path("nodes", index),
+                             "places its mesh beyond the range of a float");
+        if (node.skin < 0 && is_singular(to_world)) {
             ++tally.singular_nodes;
             continue;
         }

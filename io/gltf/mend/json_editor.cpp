@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "io/base/json_parse.h"
 
@@ -93,7 +94,10 @@ void JsonEditor::clamp(json& number, const std::string& key, Range range) const 
     const double value = number.get<double>(), bound = std::clamp(value, range.low, range.high);
     if (value == bound) return;
     if (std::abs(value - bound) > kRounding * std::max(1.0, std::abs(bound)))
-        warn(key, fmt::format("is {} and must {}; {} is taken", value, words_of(range), bound));
+        warn(key,
+             std::abs(value) > std::numeric_limits<float>::max()
+                 ? fmt::format("is {}, beyond the range of a float; {} is taken", value, bound)
+                 : fmt::format("is {} and must {}; {} is taken", value, words_of(range), bound));
     number = bound;
 }
 

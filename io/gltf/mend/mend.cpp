@@ -19,8 +19,22 @@ constexpr std::array<std::string_view, 11> kReferences = {
     "material",   "mesh",   "sampler", "scene",
     "skeleton",   "skin",   "source"};
 
-/// Members that are objects: some languages write an empty list for an empty object.
-constexpr std::array<std::string_view, 2> kObjects = {"attributes", "extensions"};
+/// Members that are objects, and lists: some languages write an empty one as the other.
+constexpr std::array<std::string_view, 14> kObjects = {"attributes",
+                                                       "baseColorTexture",
+                                                       "emissiveTexture",
+                                                       "extensions",
+                                                       "metallicRoughnessTexture",
+                                                       "normalTexture",
+                                                       "occlusionTexture",
+                                                       "orthographic",
+                                                       "pbrMetallicRoughness",
+                                                       "perspective",
+                                                       "sparse",
+                                                       "spot",
+                                                       "specularTexture",
+                                                       "specularColorTexture"};
+constexpr std::array<std::string_view, 4> kLists = {"children", "primitives", "targets", "weights"};
 
 template <size_t N>
 bool is_one_of(const std::array<std::string_view, N>& names, std::string_view name) {
@@ -34,22 +48,34 @@ class Walk {
 
     void visit(json& value) {
         if (value.is_object()) mend(value);
+        const size_t length = place_.size();
         if (value.is_array()) {
-            for (json& child : value)
-                if (child.is_structured()) visit(child);
+            for (size_t i = 0; i < value.size(); ++i)
+                if (value[i].is_structured()) {
+                    place_ += '/' + std::to_string(i);
+                    visit(value[i]);
+                    place_.resize(length);
+                }
             return;
         }
-        for (auto& [key, child] : value.items())
-            if (child.is_structured() && key != "extras") visit(child);
+        for (auto& [key, child] : value.items()) {
+            if (!child.is_structured() || key == "extras") continue;
+            place_ += '/' + printable(key);
+            in_attributes_ = key == "attributes";
+            visit(child);
+            in_attributes_ = false;
+            place_.resize(length);
+        }
     }
 
   private:
     void mend(json& object) {
         for (auto at = object.begin(); at != object.end();) {
-            const char* const fault = fault_of(at.key(), at.value());
+            const char* const fault =
+                in_attributes_ && at.value() == -1 ? "is -1" : fault_of(at.key(), at.value());
             if (fault)
-                root_.warn(fmt::format("a member \"{}\" {}; it is taken as absent",
-                                       printable(at.key()), fault));
+                root_.warn(fmt::format("{}: a member \"{}\" {}; it is taken as absent",
+                                       place_.empty() ? "/" : place_, printable(at.key()), fault));
             at = fault ? object.erase(at) : std::next(at);
         }
     }
@@ -60,11 +86,15 @@ class Walk {
         if (value.is_number_integer() && value == -1 && is_one_of(kReferences, key)) return "is -1";
         if (value.is_array() && value.empty() && is_one_of(kObjects, key))
             return "is an empty list instead of an object";
+        if (value.is_object() && value.empty() && is_one_of(kLists, key))
+            return "is an empty object instead of a list";
         if (key == "name" && !value.is_string()) return "is no text";
         return nullptr;
     }
 
     const JsonEditor& root_;
+    std::string place_;           ///< JSON path of what is visited
+    bool in_attributes_ = false;  ///< it is a list of vertex attributes by name
 };
 
 }  // namespace

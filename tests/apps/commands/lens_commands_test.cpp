@@ -331,6 +331,14 @@ TEST_F(LensCli, ALensThatPassesNoLightIsAnError) {
         EXPECT_EQ(render.exit_code, 2);
         EXPECT_TRUE(holds(render.err, why)) << render.err;
     }
+    // So short a focal length that only the ray on the axis passes.
+    json lens = read_json(std::string(PETZVAL_ASSETS) + "/lenses/cooke-triplet-50mm-f5.json");
+    lens["surfaces"].back()["asphere"] = {{"2", -1e30}};
+    const Finished render = run_petzval(render_words(
+        {"--lens", text_file("short.json", lens.dump()), "--focus", "2", "-o", path("a.exr")},
+        scene_));
+    EXPECT_EQ(render.exit_code, 2);
+    EXPECT_TRUE(holds(render.err, "lets no light through")) << render.err;
 }
 
 TEST_F(LensCli, RefusesBadRequests) {

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "io/base/ascii.h"
 #include "io/base/printable.h"
 
 namespace petzval {
@@ -30,7 +31,7 @@ void write_all(int descriptor, std::string_view text) {
 ConsoleStyle console_style_of(const std::vector<std::string>& words) {
     auto style = ConsoleStyle::Text;
     const auto take = [&](std::string_view value) {
-        style = value == "json" ? ConsoleStyle::Json : ConsoleStyle::Text;
+        style = lower(std::string(value)) == "json" ? ConsoleStyle::Json : ConsoleStyle::Text;
     };
     if (words.empty() || words.front() != "render") return style;
     constexpr std::string_view kOption = "--progress", kWithValue = "--progress=";
@@ -116,7 +117,10 @@ void Console::event(const char* name, const Json& fields) {
 }
 
 void Console::end(int exit_code) {
-    if (style_ == ConsoleStyle::Json && !quiet_) event("end", {{"exit_code", exit_code}});
+    if (style_ != ConsoleStyle::Json) return;
+    capture_.reset();  // what libraries printed comes before the end
+    to_ = STDERR_FILENO;
+    if (!quiet_) event("end", {{"exit_code", exit_code}});
 }
 
 Messages Console::messages() const {

@@ -152,8 +152,11 @@ double parse_duration_s(const std::string& option, const std::string& text) {
 }
 
 std::optional<float> parse_exposure_ev(const std::string& option, const std::string& text) {
-    if (text == "auto") return std::nullopt;
-    const auto value = number<float>(text);
+    std::string_view digits = trimmed(text);
+    if (lower(std::string(digits)) == "auto") return std::nullopt;
+    if (lower(std::string(digits)).ends_with("ev"))
+        digits = trimmed(digits.substr(0, digits.size() - 2));
+    const auto value = number<float>(digits);
     if (!value || std::fabs(*value) > kMostExposure_ev)
         refuse(option, text,
                fmt::format("auto or a number from {0:g} to {1:g}", -kMostExposure_ev,

@@ -87,6 +87,7 @@ void add_view(CLI::App& image) {
     CLI::App* view = image.add_subcommand("view", "write a linear picture as PNG or JPEG");
     view->add_option("picture", options->in, "linear picture, as .exr")->required();
     view->add_option("-o,--output", options->out, "picture to write, .png or .jpg")
+        ->multi_option_policy(CLI::MultiOptionPolicy::Throw)  // neither may be lost
         ->required()
         ->check(complaint_about_display_name);
     view->add_option("--exposure", options->display.exposure_ev, "stops of 2, default 0")

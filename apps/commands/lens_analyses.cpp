@@ -274,7 +274,9 @@ std::shared_ptr<AnalysisOptions> add_analysis(CLI::App& lens, const char* name, 
     auto options = std::make_shared<AnalysisOptions>();
     CLI::App* command = lens.add_subcommand(name, help);
     add_field_request(*command, options->field, with_fields);
-    command->add_option("-o,--output", options->plot, "plot to write, .svg or .png")->required();
+    command->add_option("-o,--output", options->plot, "plot to write, .svg or .png")
+        ->multi_option_policy(CLI::MultiOptionPolicy::Throw)  // neither may be lost
+        ->required();
     command->add_option("--csv", options->csv, "the plot's numbers to write too");
     command->footer(footer);
     command->callback([options, analyse] {

@@ -8,10 +8,12 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <optional>
 #include <random>
+#include <thread>
 #include <utility>
 
 #include "io/base/error.h"
@@ -196,10 +198,21 @@ fs::path folder_of(const fs::path& target, const fs::path& for_message) {
     return folder;
 }
 
+// Waits for the reader of a pipe, but not for ever: one that has gone would hold the program after
+// hours of work.
 Descriptor open_stream(const fs::path& path) {
-    Descriptor file(::open(path.c_str(), O_WRONLY | O_APPEND | O_NOCTTY | O_CLOEXEC));
-    if (file.get() < 0) throw system_refusal(path, errno);
-    return file;
+    constexpr int flags = O_WRONLY | O_APPEND | O_NOCTTY | O_CLOEXEC;
+    constexpr std::chrono::milliseconds pause(50), patience(3000);
+    for (auto waited = std::chrono::milliseconds(0);; waited += pause) {
+        Descriptor file(::open(path.c_str(), flags | O_NONBLOCK));
+        if (file.get() >= 0) {
+            if (::fcntl(file.get(), F_SETFL, flags) != 0) throw system_refusal(path, errno);
+            return file;
+        }
+        if (errno != ENXIO) throw system_refusal(path, errno);
+        if (waited >= patience) throw refusal(path, "nobody reads this pipe");
+        std::this_thread::sleep_for(pause);
+    }
 }
 
 /// Takes over owner (where that is allowed) and permissions of the file that is replaced. Error

@@ -107,8 +107,8 @@ TEST_F(CliProgressJson, ErrorsAreInItToo) {
     EXPECT_EQ(error(render_events({}, path("none\n.glb"), 1)),
               path("none\n.glb") + ": no such file");
     EXPECT_NE(error(render_events({"--spp", "x"}, scene_, 2)).find("--spp"), std::string::npos);
-    EXPECT_NE(error(events({"render", "--progress=json", "--frob"}, 2)).find("--help"),
-              std::string::npos);
+    for (const char* style : {"--progress=json", "--progress=JSON"})
+        EXPECT_NE(error(events({"render", style, "--frob"}, 2)).find("--help"), std::string::npos);
     EXPECT_NE(error(render_events({"--stats", path("none/s.json")}, scene_, 3)).find("s.json"),
               std::string::npos);
     const Finished quiet = run_petzval(

@@ -125,6 +125,13 @@ TEST(AtomicFile, WritesMoreThanAPipeTakesAtOnce) {
     EXPECT_TRUE(fs::is_fifo(pipe));
 }
 
+TEST(AtomicFile, APipeThatNobodyReadsIsAnError) {
+    const TemporaryFolder folder;
+    const fs::path pipe = folder / "pipe";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    EXPECT_NE(complaint(pipe, "x").find("nobody reads this pipe"), std::string::npos);
+}
+
 TEST(AtomicFile, WritesToDevices) {
     write_file_atomically("/dev/null", "gone");
     EXPECT_TRUE(fs::is_character_file("/dev/null"));

@@ -30,8 +30,9 @@ std::vector<std::string> sides(std::string text) {
     constexpr std::string_view times = "×";
     if (const size_t at = text.find(times); at != std::string::npos)
         text.replace(at, times.size(), "x");
+    text = lower(std::move(text));
     std::vector<std::string> out;
-    for (const std::string_view side : split(lower(std::move(text)), 'x'))
+    for (const std::string_view side : split(text, 'x'))
         out.emplace_back(trimmed(side));
     return out;
 }

@@ -32,8 +32,7 @@ std::vector<std::string> sides(std::string text) {
         text.replace(at, times.size(), "x");
     text = lower(std::move(text));
     std::vector<std::string> out;
-    for (const std::string_view side : split(text, 'x'))
-        out.emplace_back(trimmed(side));
+    for (const std::string_view side : split(text, 'x')) out.emplace_back(trimmed(side));
     return out;
 }
 

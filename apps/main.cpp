@@ -100,6 +100,7 @@ int main(int argc, char** argv) {
     petzval::add_info_command(app);
     petzval::add_image_commands(app);
     petzval::add_lens_commands(app);
+    petzval::resolve_repeats(app);
     app.footer("petzval help COMMAND prints what a command takes.");
     const int exit_code = finish_stdout(session, run(app, std::move(line), session));
     session.console.end(exit_code);

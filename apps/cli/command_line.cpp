@@ -132,6 +132,14 @@ std::string renamed_note(const std::string& what, const Spelling& line) {
 
 }  // namespace
 
+void resolve_repeats(CLI::App& app) {
+    CLI::Option* const output = app.get_option_no_throw("--output");
+    if (output && output->get_expected_max() == 1)
+        output->multi_option_policy(CLI::MultiOptionPolicy::Throw);
+    for (CLI::App* command : app.get_subcommands(std::function<bool(CLI::App*)>()))
+        resolve_repeats(*command);
+}
+
 void resolve_help(const CLI::App& app, Spelling& line) {
     const CLI::App* at = &app;
     bool asked = false;
@@ -161,7 +169,9 @@ std::string explanation(const CLI::App& app, const CLI::ParseError& error, const
     std::string what = by_words_left(app, error, line);
     if (what.empty()) what = error.what();
     if (is(error, CLI::ExitCodes::ArgumentMismatch))
-        what = what.substr(0, what.find(':')) + " needs a value";
+        what = what.substr(0, what.find(':')) + (what.find("At Most") == std::string::npos
+                                                     ? " needs a value"
+                                                     : " is given twice, and one file is written");
     return what + renamed_note(what, line);
 }
 

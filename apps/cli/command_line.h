@@ -9,6 +9,10 @@
 
 namespace petzval {
 
+/// Makes every command that writes one file refuse two outputs, of which one would be lost. Of
+/// other options that are given twice the last holds.
+void resolve_repeats(CLI::App&);
+
 /// Writes "petzval help render" and "petzval lens help spot" as the --help that they mean. Throws
 /// CLI::ParseError where help is wanted about what is no command.
 void resolve_help(const CLI::App&, Spelling&);

@@ -62,8 +62,8 @@ void print_line(const std::string& line) {
     fmt::print("{}\n", visible(line));
 }
 
-void print_notice(NoticeStyle style, const std::string& text) {
-    if (style == NoticeStyle::Text) print_error_line("petzval: " + text);
+void print_notice(const std::string& text) {
+    print_error_line("petzval: " + text);
 }
 
 Console::Console(ConsoleStyle style, bool quiet) : style_(style), quiet_(quiet) {

@@ -21,10 +21,8 @@ void print_error_line(std::string line) noexcept;
 /// Prints one line on stdout, every character visible().
 void print_line(const std::string& line);
 
-enum class NoticeStyle { Text, None };
-
-/// Prints a notice: "petzval: TEXT", or nothing.
-void print_notice(NoticeStyle, const std::string& text);
+/// Prints a notice: "petzval: TEXT".
+void print_notice(const std::string& text);
 
 /// What was said during a command.
 struct Messages {

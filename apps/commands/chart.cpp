@@ -149,8 +149,9 @@ int chart_command(ChartOptions& o, Interrupt& interrupt) {
     flush_denormals();
     TbbExecutor executor(o.threads);
     limit_picture_threads(o.threads);
-    const auto notice = [style = o.quiet ? NoticeStyle::None : NoticeStyle::Text](
-                            const std::string& text) { print_notice(style, text); };
+    const auto notice = [quiet = o.quiet](const std::string& text) {
+        if (!quiet) print_notice(text);
+    };
     interrupt.arm();
     const auto finished = [&](const MeasuredCase& of) {
         if (o.quiet) return;

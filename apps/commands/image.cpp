@@ -87,7 +87,6 @@ void add_view(CLI::App& image) {
     CLI::App* view = image.add_subcommand("view", "write a linear picture as PNG or JPEG");
     view->add_option("picture", options->in, "linear picture, as .exr")->required();
     view->add_option("-o,--output", options->out, "picture to write, .png or .jpg")
-        ->multi_option_policy(CLI::MultiOptionPolicy::Throw)  // neither may be lost
         ->required()
         ->check(complaint_about_display_name);
     view->add_option("--exposure", options->display.exposure_ev, "stops of 2, default 0")
@@ -96,7 +95,7 @@ void add_view(CLI::App& image) {
     add_memory_option(*view, options->reading);
     view->callback([options] {
         if (const std::string told = resolve_display(options->display); !told.empty())
-            print_notice(NoticeStyle::Text, told);
+            print_notice(told);
         std::vector<NamedFile> read = own_files();
         read.push_back({"the picture to show", options->in});
         if (!options->display.config.empty())
@@ -106,10 +105,10 @@ void add_view(CLI::App& image) {
         PictureBudget pictures = options->reading.pictures();
         const Picture picture = read_picture(options->in, pictures);
         if (picture.for_display)
-            print_notice(NoticeStyle::Text,
-                         fmt::format("warning: {} holds values for a display already, and goes "
-                                     "through the view as if they were light",
-                                     options->in));
+            print_notice(
+                fmt::format("warning: {} holds values for a display already, and goes "
+                            "through the view as if they were light",
+                            options->in));
         write_output(options->out, picture, options->display);
     });
 }

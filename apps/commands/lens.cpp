@@ -33,7 +33,7 @@ std::shared_ptr<const Lens> open_lens(const LensRequest& request) {
     std::vector<AgfCatalog> catalogs;
     for (const std::string& file : request.catalogs) catalogs.emplace_back(file);
     LensFile file = load_lens(request.lens, catalogs);
-    for (const std::string& warning : file.warnings) print_notice(NoticeStyle::Text, warning);
+    for (const std::string& warning : file.warnings) print_notice(warning);
     return std::make_shared<const Lens>(std::move(file.lens));
 }
 

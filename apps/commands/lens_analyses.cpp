@@ -198,7 +198,7 @@ void say_left_out(const std::vector<double>& fields_deg, const std::string& why)
             ? fmt::format("{:.4g}° to {:.4g}° ({} fields)", fields_deg.front(), fields_deg.back(),
                           fields_deg.size())
             : fmt::format("{:.4g}°", fmt::join(fields_deg, "°, "));
-    print_notice(NoticeStyle::Text, fmt::format("warning: left out: {}: {}", which, why));
+    print_notice(fmt::format("warning: left out: {}: {}", which, why));
 }
 
 Found distortion_analysis(const AnalysisOptions& o) {
@@ -274,9 +274,7 @@ std::shared_ptr<AnalysisOptions> add_analysis(CLI::App& lens, const char* name, 
     auto options = std::make_shared<AnalysisOptions>();
     CLI::App* command = lens.add_subcommand(name, help);
     add_field_request(*command, options->field, with_fields);
-    command->add_option("-o,--output", options->plot, "plot to write, .svg or .png")
-        ->multi_option_policy(CLI::MultiOptionPolicy::Throw)  // neither may be lost
-        ->required();
+    command->add_option("-o,--output", options->plot, "plot to write, .svg or .png")->required();
     command->add_option("--csv", options->csv, "the plot's numbers to write too");
     command->footer(footer);
     command->callback([options, analyse] {

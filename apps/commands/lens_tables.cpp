@@ -190,9 +190,8 @@ void check_command(const CheckOptions& o) {
     const auto lens = open_lens(o.request);
     const Check result = check(*lens);
     if (const auto blockage = find_blockage(*lens))
-        print_notice(
-            NoticeStyle::Text,
-            "warning: it lets no light through to the middle of the film: " + blockage->text());
+        print_notice("warning: it lets no light through to the middle of the film: " +
+                     blockage->text());
     if (o.json)
         fmt::print("{}\n",
                    json_of(*lens, result).dump(2, ' ', true, Json::error_handler_t::replace));

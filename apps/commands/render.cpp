@@ -161,13 +161,15 @@ Rendered render_watched(const RenderOptions& o, const RenderSetup& setup, Film& 
 
 /// Writes pictures and statistics of what was rendered; the exit code.
 int write_all(const RenderOptions& o, const RenderSetup& setup, const Film& film,
-              const Rendered& rendered, Session& session, Progress& progress) {
+              const Rendered& rendered, TbbExecutor& executor, const Notice& notice,
+              Session& session, Progress& progress) {
     const bool stopped = rendered.result.stopped;
     progress.begin(Phase::Writing);
     const PictureRows picture = develop(film, setup, o.job, o.path, rendered.result.end_sample);
     std::vector<WriteOutcome> outcomes = write_pictures(o, picture, stopped, session.console);
     bool written = std::all_of(outcomes.begin(), outcomes.end(),
                                [](const WriteOutcome& one) { return one.written(); });
+    if (!stopped) advise_exposure(o, setup, film, executor, notice);
     if (o.stats) {
         const RunReport report = report_of(session, progress, std::move(outcomes), stopped);
         const WriteOutcome stats = write_or_rescue(*o.stats, [&](const std::filesystem::path& to) {
@@ -198,9 +200,7 @@ int render_command(RenderOptions& o, Session& session) {
     Film film(o.scene.size, frame.crop, frame.aovs, o.scene.spectral.bins);
     const Rendered rendered = render_watched(o, setup, film, executor, session, progress);
     report_bad_samples(film, notice);
-    const int exit_code = write_all(o, setup, film, rendered, session, progress);
-    if (!rendered.result.stopped) advise_exposure(o, setup, film, executor, notice);
-    return exit_code;
+    return write_all(o, setup, film, rendered, executor, notice, session, progress);
 }
 
 }  // namespace

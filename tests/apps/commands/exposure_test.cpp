@@ -35,7 +35,8 @@ class CliExposure : public CliTest {
 
 TEST_F(CliExposure, APictureThatIsAlmostBlackSaysWhatToType) {
     const std::string scene = lit_by("point", 1e-3);
-    const Finished dark = run(scene, {"-o", path("a.png")});
+    const Finished dark = run(scene, {"-o", path("a.png"), "--stats", path("s.json")});
+    EXPECT_NE(file_bytes(path("s.json")).find("the picture is almost black"), std::string::npos);
     EXPECT_NE(dark.err.find("petzval: the picture is almost black: its log-average is "),
               std::string::npos)
         << dark.err;

@@ -154,5 +154,15 @@ TEST_F(CliSpelling, OtherFormatsOfScenesAreToldWhatIsRead) {
     EXPECT_NE(refused({"model.fbx"}).find("model.fbx: is a file of FBX"), std::string::npos);
 }
 
+// The last holds of most options, but an output that is left out would be lost without a word.
+TEST_F(CliSpelling, NoOutputIsLostWhereTwoAreGiven) {
+    const Words words[] = {
+        {"image", "view", path("a.exr"), "-o", path("b.png"), "-o", path("c.png")},
+        {"lens", "spot", "tessar-100mm-f2.8", "-o", path("b.svg"), "-o", path("c.svg")},
+        {"lens", "draw", "tessar-100mm-f2.8", "-o", path("b.svg"), "-o", path("c.svg")}};
+    for (const Words& one : words)
+        EXPECT_NE(error_of(one, 2).find("--output is given twice"), std::string::npos) << one[1];
+}
+
 }  // namespace
 }  // namespace petzval

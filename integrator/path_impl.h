@@ -31,9 +31,9 @@ struct PathTracer<Caster>::DrawnLight {
     float pick_probability;
     uint32_t light;
     V2f u;  ///< what drew the point on the light
-    [[nodiscard]] bool of_sky(const Scene& scene) const {
-        return static_cast<int32_t>(light) == scene.sky_light;
-    }
+    /// Where on the sky, whose radiance and density are looked up when they are needed: many draws
+    /// point the wrong way, or are shadowed. Nothing for another light.
+    std::optional<Sky::Place> sky;
 };
 
 /// Weight of a sample drawn with density a where b might have drawn it too. Veach 1997, "Robust
@@ -92,15 +92,15 @@ auto PathTracer<Caster>::draw_light(const LightReceiver& receiver, const Sampler
     if (std::holds_alternative<SkyLight>(light)) {
         if (scene_.sky.black()) return std::nullopt;
         const Sky::Draw drawn = scene_.sky.sample(u.light_point);
-        // Its radiance is not looked up yet: many draws point the wrong way.
-        return DrawnLight{{drawn.direction, {}, true, f4{}, drawn.pdf, false},
+        return DrawnLight{{drawn.direction, {}, true, f4{}, 0.f, false},
                           pick->probability,
                           pick->light,
-                          u.light_point};
+                          u.light_point,
+                          drawn.place};
     }
     const auto sample = sample_light(scene_, light, receiver.p, u.light_point, bands);
     if (!sample) return std::nullopt;
-    return DrawnLight{*sample, pick->probability, pick->light, u.light_point};
+    return DrawnLight{*sample, pick->probability, pick->light, u.light_point, {}};
 }
 
 // Light from a point of a lamp on a smooth surface. Seen from the triangle, the point may lie
@@ -120,7 +120,7 @@ f4 PathTracer<Caster>::light_on_smooth(const Surface& s, const Frame& frame, con
     if (!(to_light.dot(facing) < 0.f && to_light.dot(s.side) > 0.f)) return sum;
     const auto again = sample_light(scene_, scene_.lights[drawn.light], smooth, drawn.u, bands);
     if (!again || !(again->direction.dot(facing) < 0.f)) return sum;
-    const DrawnLight from_smooth{*again, drawn.pick_probability, drawn.light, drawn.u};
+    const DrawnLight from_smooth{*again, drawn.pick_probability, drawn.light, drawn.u, {}};
     return sum + direct_light(s, frame, bsdf, from_smooth, bands, sampler, depth, medium, stats);
 }
 
@@ -129,7 +129,7 @@ f4 PathTracer<Caster>::direct_light(const Surface& s, const Frame& frame, const 
                                     const DrawnLight& drawn, const Bands& bands,
                                     const Sampler& sampler, uint32_t depth, const Material* medium,
                                     PathStats& stats) const {
-    const LightSample& light = drawn.sample;
+    LightSample light = drawn.sample;
     const BsdfValue value = bsdf.eval(frame.to_local(light.direction));
     if (value.pdf <= 0.f) return f4{};
 
@@ -148,18 +148,21 @@ f4 PathTracer<Caster>::direct_light(const Surface& s, const Frame& frame, const 
         const SectionTimer timer(stats, TimedSection::Traversal);
         if (caster_.occluded(shadow)) return f4{};
     }
-    f4 radiance = drawn.of_sky(scene_)
-                      ? uplift_radiance(scene_.sky.radiance(light.direction), bands)
-                      : light.radiance;
+    if (drawn.sky) {
+        const Sky::Found found = scene_.sky.find(*drawn.sky);
+        if (!(found.pdf > 0.f)) return f4{};  // drawn at the very rim of a texel's tent
+        light.radiance = uplift_radiance(found.radiance, bands);
+        light.pdf = found.pdf;
+    }
     const Material* behind = s.material->has_volume ? (s.front ? s.material : nullptr) : medium;
     const Material* through = crosses ? behind : medium;
     if (through && !light.at_infinity)
-        radiance *= transmittance(*through, (light.target - s.p).length(), bands);
+        light.radiance *= transmittance(*through, (light.target - s.p).length(), bands);
     const float light_pdf = drawn.pick_probability * light.pdf;
     const float weight = light.delta || options_.technique == Technique::LightOnly
                              ? 1.f
                              : power_heuristic(light_pdf, value.pdf);
-    return value.f_cos * radiance * (weight / light_pdf);
+    return value.f_cos * light.radiance * (weight / light_pdf);
 }
 
 /// Fills the layers of a sample from its first surface.

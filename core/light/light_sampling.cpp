@@ -97,9 +97,10 @@ std::optional<LightSample> sample(const Scene& scene, const SkyLight&, const V3f
                                   const Bands& bands) {
     if (scene.sky.black()) return std::nullopt;
     const Sky::Draw drawn = scene.sky.sample(u);
-    return LightSample{
-        drawn.direction, {},   true, uplift_radiance(scene.sky.radiance(drawn.direction), bands),
-        drawn.pdf,       false};
+    const Sky::Found found = scene.sky.find(drawn.place);
+    if (!(found.pdf > 0.f)) return std::nullopt;  // drawn at the very rim of a texel's tent
+    return LightSample{drawn.direction, {},   true, uplift_radiance(found.radiance, bands),
+                       found.pdf,       false};
 }
 
 float triangle_area(const Scene& scene, const TriangleLight& light) {

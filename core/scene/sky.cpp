@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 #include <numeric>
 
 #include "core/sampling/warp.h"
@@ -10,26 +11,25 @@
 namespace petzval {
 namespace {
 
-// Mean of the bilinear interpolant over the cell of a texel, along one axis: the cell covers half
-// of the linear piece on either side of its centre, which gives the neighbours 1/8 each.
-float footprint(float before, float centre, float after) {
-    return 0.75f * centre + 0.125f * (before + after);
+// Least sine of a polar angle in a density: its inverse stays finite at the poles.
+constexpr float kLeastSine = 1e-6f;
+
+// Integral of the light of rows of the sky over the polar angle, for a radiance of 1 at a row's
+// centres: of its tent between the neighbours' centres, times the sine. The first and the last row
+// also reach to the poles.
+std::vector<double> row_weights(int height) {
+    if (height == 1) return {2};
+    const double step = std::numbers::pi / height;
+    std::vector<double> weights;
+    for (int y = 0; y < height; ++y)
+        weights.push_back(2 * std::sin((y + 0.5) * step) * (1 - std::cos(step)) / step);
+    weights.front() = weights.back() = 1 - (std::sin(1.5 * step) - std::sin(0.5 * step)) / step;
+    return weights;
 }
 
-// Mean luminance of what a lookup finds within each texel's cell.
-std::vector<float> cell_luminance(const std::vector<f4>& texels, int width, int height) {
-    std::vector<float> across(texels.size()), both(texels.size());
-    const auto at = [width](int x, int y) { return static_cast<size_t>(y) * width + x; };
-    const auto lum = [&](int x, int y) { return luminance(Rgb(texels[at(x, y)])); };
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x)
-            across[at(x, y)] = footprint(lum(x > 0 ? x - 1 : width - 1, y), lum(x, y),
-                                         lum(x + 1 < width ? x + 1 : 0, y));
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x)
-            both[at(x, y)] = footprint(across[at(x, std::max(y - 1, 0))], across[at(x, y)],
-                                       across[at(x, std::min(y + 1, height - 1))]);
-    return both;
+// Inverse of the cumulative distribution of a tent over (-1, 1).
+float sample_tent(float u) {
+    return u < 0.5f ? std::sqrt(2.f * u) - 1.f : 1.f - std::sqrt(2.f * (1.f - u));
 }
 
 }  // namespace
@@ -65,12 +65,12 @@ Sky Sky::picture(std::vector<float> rgb, int width, int height, float rotate_deg
 
 // Importance from the texels as they are kept, so that what is drawn is what lookups find.
 void Sky::fill_importance() {
-    std::vector<f4> texels;
-    texels.reserve(static_cast<size_t>(width_) * height_);
+    std::vector<float> weights;
+    weights.reserve(static_cast<size_t>(width_) * height_);
     for (int y = 0; y < height_; ++y)
         for (int x = 0; x < width_; ++x)
-            texels.push_back(blocks_of(y)[x / TexelBlock::kSize].colour(x % TexelBlock::kSize));
-    std::vector<float> weights = cell_luminance(texels, width_, height_);
+            weights.push_back(
+                luminance(Rgb(blocks_of(y)[x / TexelBlock::kSize].colour(x % TexelBlock::kSize))));
     std::vector<float> block_weights(blocks_.size());
     const auto block_of = [&](int y, int x) {
         std::array<float, TexelBlock::kSize> cells{};
@@ -78,17 +78,13 @@ void Sky::fill_importance() {
                     std::min(TexelBlock::kSize, width_ - x), cells.begin());
         return cells;
     };
+    const std::vector<double> row_weight = row_weights(height_);
     double sum = 0;
     for (int y = 0; y < height_; ++y) {
-        // cos a - cos b, written so that nothing cancels at the poles.
-        const double half = 0.5 * static_cast<double>(kPi) / height_;
-        const double solid_angle =
-            4 * static_cast<double>(kPi) / width_ * std::sin(half * (2 * y + 1)) * std::sin(half);
-        rows_.push_back({static_cast<float>(std::cos(2 * half * y)),
-                         static_cast<float>(1 / (solid_angle * kDistributionUnits))});
+        const auto solid_angle = static_cast<float>(2 * std::numbers::pi / width_ * row_weight[y]);
         const std::span row(&weights[static_cast<size_t>(y) * width_], width_);
         double row_sum = 0;
-        for (float& w : row) row_sum += w *= static_cast<float>(solid_angle);
+        for (float& w : row) row_sum += w *= solid_angle;
         sum += row_sum;
         // Four units at least of the row's 2^24: a block then has one for each of its texels.
         const auto least = static_cast<float>(row_sum * 0x1p-22);
@@ -100,12 +96,14 @@ void Sky::fill_importance() {
                 std::accumulate(cells.begin(), cells.end(), 0.f);
         }
     }
-    rows_.push_back({-1.f, 0.f});
     if (!(sum > 0)) return;
     average_ = static_cast<float>(sum / (4 * static_cast<double>(kPi)));
     importance_ = Piecewise2D(block_weights, blocks_across_, height_);
+    // A texel is 2 pi^2 sine / (width height) steradians.
+    const double per_texel =
+        static_cast<double>(width_) * height_ / (2 * sqr(std::numbers::pi) * kDistributionUnits);
     for (int y = 0; y < height_; ++y) {
-        rows_[y].density *= importance_.row_probability(y);
+        row_density_.push_back(static_cast<float>(per_texel * importance_.row_probability(y)));
         for (int i = 0; i < blocks_across_; ++i)
             blocks_[static_cast<size_t>(y) * blocks_across_ + i].divide(
                 block_of(y, i * TexelBlock::kSize), importance_.units(i, y));
@@ -113,67 +111,88 @@ void Sky::fill_importance() {
 }
 
 // The polar angle comes from both coordinates, so that it is as exact at the poles as elsewhere.
-V2f Sky::to_uv(const V3f& direction) const {
+Sky::Place Sky::place_of(const V3f& direction) const {
     const float radius = std::sqrt(sqr(direction.x) + sqr(direction.z));
     const f4 turns =
         atan2_turns(f4{direction.z, radius, 0.f, 0.f}, f4{direction.x, direction.y, 1.f, 1.f});
     const float u = 0.5f + turns[0] + turn_;
-    return {u - std::floor(u), 2.f * turns[1]};
+    return {{(u - std::floor(u)) * width_, 2.f * turns[1] * height_}, radius};
 }
 
-Rgb Sky::filtered(V2f uv) const {
-    const float x = uv.x * width_ + 0.5f, y = uv.y * height_ + 0.5f;
+Sky::Corners Sky::corners_of(V2f texel) const {
+    const float x = texel.x + 0.5f, y = texel.y + 0.5f;
     const int right = std::min(static_cast<int>(x), width_),
               below = std::min(static_cast<int>(y), height_);
-    const float wx = x - right, wy = y - below;
-    const int x0 = right > 0 ? right - 1 : width_ - 1, x1 = right < width_ ? right : 0;
-    const TexelBlock* row0 = blocks_of(std::max(below - 1, 0));
-    const TexelBlock* row1 = blocks_of(std::min(below, height_ - 1));
-    const auto mixed = [&](const TexelBlock* row) {
-        const f4 a = row[x0 / TexelBlock::kSize].colour(x0 % TexelBlock::kSize);
-        const f4 b = row[x1 / TexelBlock::kSize].colour(x1 % TexelBlock::kSize);
-        return a + (b - a) * wx;
+    return {{right > 0 ? right - 1 : width_ - 1, right < width_ ? right : 0},
+            {std::max(below - 1, 0), std::min(below, height_ - 1)},
+            {x - right, y - below}};
+}
+
+Rgb Sky::radiance_at(const Corners& c) const {
+    const auto mixed = [&](int y) {
+        const TexelBlock* row = blocks_of(y);
+        const f4 a = row[c.column[0] / TexelBlock::kSize].colour(c.column[0] % TexelBlock::kSize);
+        const f4 b = row[c.column[1] / TexelBlock::kSize].colour(c.column[1] % TexelBlock::kSize);
+        return a + (b - a) * c.weight.x;
     };
-    const f4 top = mixed(row0), bottom = mixed(row1);
-    return Rgb(zero_off(m4{-1, -1, -1, 0}, top + (bottom - top) * wy));
+    const f4 top = mixed(c.row[0]), bottom = mixed(c.row[1]);
+    return Rgb(zero_off(m4{-1, -1, -1, 0}, top + (bottom - top) * c.weight.y));
+}
+
+// In units as they are drawn, not by luminance: what is drawn and what is said to be drawn agree.
+float Sky::density_at(const Corners& c) const {
+    const auto units = [&](int x, int y) {
+        const int block = x / TexelBlock::kSize;
+        return static_cast<float>(
+            blocks_of(y)[block].units(x % TexelBlock::kSize, importance_.units(block, y)));
+    };
+    const auto mixed = [&](int y) {
+        return lerp(units(c.column[0], y), units(c.column[1], y), c.weight.x) * row_density_[y];
+    };
+    return lerp(mixed(c.row[0]), mixed(c.row[1]), c.weight.y);
 }
 
 Rgb Sky::radiance(const V3f& direction) const {
-    return width_ == 0 ? colour_ : filtered(to_uv(direction));
+    return width_ == 0 ? colour_ : radiance_at(corners_of(place_of(direction).texel));
+}
+
+Sky::Found Sky::find(const Place& place) const {
+    if (width_ == 0 || black()) return {colour_, black() ? 0.f : uniform_sphere_pdf()};
+    const Corners corners = corners_of(place.texel);
+    return {radiance_at(corners), density_at(corners) / std::max(place.sine, kLeastSine)};
 }
 
 Sky::Found Sky::find(const V3f& direction) const {
-    if (width_ == 0 || black()) return {colour_, black() ? 0.f : uniform_sphere_pdf()};
-    const V2f uv = to_uv(direction);
-    const int column = std::min(static_cast<int>(uv.x * width_), width_ - 1);
-    const int row = std::min(static_cast<int>(uv.y * height_), height_ - 1);
-    const int block = column / TexelBlock::kSize;
-    const uint32_t share = importance_.units(block, row);
-    const uint32_t units = blocks_of(row)[block].units(column % TexelBlock::kSize, share);
-    return {filtered(uv), static_cast<float>(units) * rows_[row].density};
+    return find(width_ == 0 ? Place{} : place_of(direction));
 }
 
 Sky::Draw Sky::sample(V2f u) const {
-    if (width_ == 0) return {uniform_sphere(u), uniform_sphere_pdf()};
+    if (width_ == 0) return {uniform_sphere(u), {}};
     const Piecewise2D::UnitDraw drawn = importance_.sample_units(u);
     const int row = static_cast<int>(drawn.row);
+    // Read what the texel is mixed with while its block is searched.
+    const float off_centre = sample_tent(drawn.row_offset);
+    const int beside = std::clamp(off_centre < 0.f ? row - 1 : row + 1, 0, height_ - 1);
     const TexelBlock& block = blocks_of(row)[drawn.column];
-    // Prefetch the row that the texels are mixed with while this one is searched.
-    const int beside = drawn.row_offset < 0.5f ? row - 1 : row + 1;
-    __builtin_prefetch(&blocks_of(std::clamp(beside, 0, height_ - 1))[drawn.column]);
+    __builtin_prefetch(&blocks_of(beside)[drawn.column]);
+    importance_.prefetch(drawn.column, beside);
     const int texel = block.find(drawn.unit, drawn.units);
     const uint32_t begin = block.begin(texel, drawn.units);
     const uint32_t units = block.begin(texel + 1, drawn.units) - begin;
     const float offset =
         (static_cast<float>(drawn.unit - begin) + drawn.rest) / static_cast<float>(units);
-    const float u_drawn = (static_cast<float>(drawn.column * TexelBlock::kSize + texel) +
-                           std::min(offset, kOneMinus)) /
-                          width_;
-    const float y = lerp(rows_[row].top, rows_[row + 1].top, drawn.row_offset);
-    const float radius = safe_sqrt((1.f - y) * (1.f + y));
-    const SinCos azimuth = sincos_turns(u_drawn - 0.5f - turn_);
-    return {{radius * azimuth.cosine, y, radius * azimuth.sine},
-            static_cast<float>(units) * rows_[row].density};
+    float x = static_cast<float>(drawn.column * TexelBlock::kSize + texel) + 0.5f +
+              sample_tent(std::min(offset, 1.f));
+    if (x < 0.f) x += width_;
+    if (x > width_) x -= width_;
+    // Beyond a pole the tent is folded back: with what is before it, it makes the clamped row.
+    float y = static_cast<float>(row) + 0.5f + off_centre;
+    if (y < 0.f) y = -y;
+    if (y > height_) y = 2 * height_ - y;
+    const SinCos azimuth = sincos_turns(x / width_ - 0.5f - turn_);
+    const SinCos polar = sincos_turns(0.5f * y / height_);
+    const float sine = std::max(polar.sine, 0.f);
+    return {{sine * azimuth.cosine, polar.cosine, sine * azimuth.sine}, {{x, y}, sine}};
 }
 
 }  // namespace petzval

@@ -3,6 +3,7 @@
 // sampling.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "core/math/math.h"
@@ -13,7 +14,8 @@
 namespace petzval {
 
 /// Radiance by world-space direction. u = 0.5 + atan2(z, x) / 2 pi, v = acos(y) / pi from the top,
-/// before the rotation about +y (counter-clockwise seen from above).
+/// before the rotation about +y (counter-clockwise seen from above). Lookups are bilinear between
+/// texel centres, around in u, clamped in v; directions are drawn in proportion to just that.
 class Sky {
   public:
     /// A black sky.
@@ -30,34 +32,45 @@ class Sky {
     /// Mean luminance over the sphere, nits.
     [[nodiscard]] float average_luminance() const { return average_; }
 
-    /// Radiance and density in the direction of a ray that leaves the scene.
-    struct Found {
-        Rgb radiance;  ///< bilinear between texel centres: around in u, clamped in v
-        float pdf;     ///< density of `sample` there, 1/sr; 0 for a black sky
+    /// Position on the picture.
+    struct Place {
+        V2f texel;   ///< [0, width] x [0, height]
+        float sine;  ///< of the polar angle
     };
+    struct Draw {
+        V3f direction;  ///< unit
+        Place place;
+    };
+    /// Draws a direction: a texel in proportion to the light that comes from it, then a distance
+    /// from its centre in proportion to the texel's part in a lookup. A sum of such tents is what
+    /// lookups find, so that radiance over density hardly varies. The sky must not be black.
+    /// Prefetches what find(place) reads.
+    [[nodiscard]] Draw sample(V2f u) const;
+
+    /// Radiance and density in a direction.
+    struct Found {
+        Rgb radiance;
+        float pdf;  ///< density of `sample` there, 1/sr; 0 for a black sky
+    };
+    [[nodiscard]] Found find(const Place&) const;
     [[nodiscard]] Found find(const V3f& direction) const;
     [[nodiscard]] Rgb radiance(const V3f& direction) const;
     [[nodiscard]] float pdf(const V3f& direction) const { return find(direction).pdf; }
 
-    struct Draw {
-        V3f direction;  ///< unit
-        float pdf;      ///< 1/sr
-    };
-    /// Draws a direction: a texel in proportion to the light that comes from it, uniform by solid
-    /// angle within. The sky must not be black. Prefetches what radiance(direction) reads.
-    [[nodiscard]] Draw sample(V2f u) const;
-
   private:
-    struct Row {
-        float top;      ///< cosine at the upper edge
-        float density;  ///< density for a unit of the row, 1/sr
+    /// The four texels of a lookup, and its weights.
+    struct Corners {
+        std::array<int, 2> column, row;
+        V2f weight;  ///< of the second column and the second row
     };
     void fill_importance();
+    [[nodiscard]] Place place_of(const V3f& direction) const;
+    [[nodiscard]] Corners corners_of(V2f texel) const;
     [[nodiscard]] const TexelBlock* blocks_of(int y) const {
         return &blocks_[static_cast<size_t>(y) * blocks_across_];
     }
-    [[nodiscard]] V2f to_uv(const V3f& direction) const;
-    [[nodiscard]] Rgb filtered(V2f uv) const;
+    [[nodiscard]] Rgb radiance_at(const Corners&) const;
+    [[nodiscard]] float density_at(const Corners&) const;
 
     Rgb colour_{0.f};
     float average_ = 0.f;
@@ -65,7 +78,7 @@ class Sky {
     int blocks_across_ = 0;
     std::vector<TexelBlock> blocks_;  ///< row by row
     Piecewise2D importance_;          ///< of the blocks
-    std::vector<Row> rows_;           ///< height_ + 1
+    std::vector<float> row_density_;  ///< of a unit of the row, per steradian times the sine
     float turn_ = 0.f;                ///< rotation in turns
 };
 

@@ -269,7 +269,7 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         // Russian roulette.
         ++depth;
         if (static_cast<int>(depth) > options_.roulette_depth) {
-            const float most = hmax(throughput), survival = most < 0.95f ? most : 0.95f;
+            const float most = std::sqrt(hmax(throughput)), survival = most < 1.f ? most : 1.f;
             if (u.roulette_after >= survival) break;
             throughput *= 1.f / survival;
         }

@@ -58,7 +58,7 @@ f4 PathTracer<Caster>::escaped(const Ray& ray, const Bands& bands, const Vertex&
     if (scene_.sky.black()) return f4{};
     const Sky::Found found = scene_.sky.find(ray.direction);
     const f4 radiance = uplift_radiance(found.radiance, bands);
-    if (!last.light_sampled) return radiance;
+    if (!last.light_sampled || scene_.sky_light < 0) return radiance;
     const auto sky_light = static_cast<uint32_t>(scene_.sky_light);
     const float light_pdf = lights_.probability(sky_light, last.receiver) * found.pdf;
     if (options_.technique == Technique::LightOnly && light_pdf > 0.f) return f4{};
@@ -90,7 +90,6 @@ auto PathTracer<Caster>::draw_light(const LightReceiver& receiver, const Sampler
     if (!pick) return std::nullopt;
     const Light& light = scene_.lights[pick->light];
     if (std::holds_alternative<SkyLight>(light)) {
-        if (scene_.sky.black()) return std::nullopt;
         const Sky::Draw drawn = scene_.sky.sample(u.light_point);
         return DrawnLight{{drawn.direction, {}, true, f4{}, 0.f, false},
                           pick->probability,

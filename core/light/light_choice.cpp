@@ -44,7 +44,7 @@ struct BoundsOf {
 // Illuminance, lux, on a surface that faces a light outside the tree.
 float illuminance(const Scene& scene, const Light& light) {
     if (const auto* sun = std::get_if<SunLight>(&light)) return luminance(sun->illuminance_lx);
-    return kPi * scene.sky.average_luminance();
+    return kPi * scene.sky.drawn_luminance();
 }
 
 }  // namespace

@@ -95,7 +95,7 @@ std::optional<LightSample> sample(const Scene& scene, const TriangleLight& light
 
 std::optional<LightSample> sample(const Scene& scene, const SkyLight&, const V3f&, V2f u,
                                   const Bands& bands) {
-    if (scene.sky.black()) return std::nullopt;
+    if (scene.sky.even()) return std::nullopt;
     const Sky::Draw drawn = scene.sky.sample(u);
     const Sky::Found found = scene.sky.find(drawn.place);
     if (!(found.pdf > 0.f)) return std::nullopt;  // drawn at the very rim of a texel's tent
@@ -158,7 +158,7 @@ float power(const Scene& scene, const TriangleLight& light) {
 }
 
 float power(const Scene& scene, const SkyLight&) {
-    return 4 * kPi * scene.sky.average_luminance() * silhouette_m2(scene);
+    return 4 * kPi * scene.sky.drawn_luminance() * silhouette_m2(scene);
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ void finish_scene(Scene& scene) {
         for (uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle)
             scene.lights.push_back(TriangleLight{i, triangle});
     }
-    if (scene.sky.black()) return;
+    if (scene.sky.even()) return;
     scene.sky_light = static_cast<int32_t>(scene.lights.size());
     scene.lights.push_back(SkyLight{});
 }

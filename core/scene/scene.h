@@ -24,7 +24,7 @@ struct Scene {
     std::vector<Mesh> meshes;
     std::vector<Instance> instances;
     std::vector<Light> lights;  ///< punctual lights of the file; finish_scene adds the others
-    int32_t sky_light = -1;     ///< the sky's among them, by finish_scene; -1: black
+    int32_t sky_light = -1;     ///< the sky's among them, by finish_scene; -1: even or black
     Sky sky;
 
     Box3f bounds;  ///< of all instances, in world space; empty where there are none

@@ -15,7 +15,8 @@ namespace petzval {
 
 /// Radiance by world-space direction. u = 0.5 + atan2(z, x) / 2 pi, v = acos(y) / pi from the top,
 /// before the rotation about +y (counter-clockwise seen from above). Lookups are bilinear between
-/// texel centres, around in u, clamped in v; directions are drawn in proportion to just that.
+/// texel centres, around in u, clamped in v; directions are drawn in
+/// proportion to what of that is above the mean.
 class Sky {
   public:
     /// A black sky.
@@ -31,6 +32,10 @@ class Sky {
     [[nodiscard]] bool black() const { return average_ <= 0.f; }
     /// Mean luminance over the sphere, nits.
     [[nodiscard]] float average_luminance() const { return average_; }
+    /// Hardly any part of the sky is brighter than its mean: nothing is worth drawing.
+    [[nodiscard]] bool even() const { return drawn_ <= 0.f; }
+    /// Mean over the sphere of the luminance above the mean, nits: of what `sample` draws.
+    [[nodiscard]] float drawn_luminance() const { return drawn_; }
 
     /// Position on the picture.
     struct Place {
@@ -41,16 +46,16 @@ class Sky {
         V3f direction;  ///< unit
         Place place;
     };
-    /// Draws a direction: a texel in proportion to the light that comes from it, then a distance
-    /// from its centre in proportion to the texel's part in a lookup. A sum of such tents is what
-    /// lookups find, so that radiance over density hardly varies. The sky must not be black.
+    /// Draws a direction: a texel in proportion to its light above the mean, then a distance from
+    /// its centre in proportion to the texel's part in a lookup. A sum of such tents is what
+    /// lookups find, so that density follows radiance within texels too. The sky must not be even.
     /// Prefetches what find(place) reads.
     [[nodiscard]] Draw sample(V2f u) const;
 
     /// Radiance and density in a direction.
     struct Found {
         Rgb radiance;
-        float pdf;  ///< density of `sample` there, 1/sr; 0 for a black sky
+        float pdf;  ///< density of `sample` there, 1/sr; 0 where none are drawn
     };
     [[nodiscard]] Found find(const Place&) const;
     [[nodiscard]] Found find(const V3f& direction) const;
@@ -73,7 +78,7 @@ class Sky {
     [[nodiscard]] float density_at(const Corners&) const;
 
     Rgb colour_{0.f};
-    float average_ = 0.f;
+    float average_ = 0.f, drawn_ = 0.f;
     int width_ = 0, height_ = 0;  ///< 0: uniform
     int blocks_across_ = 0;
     std::vector<TexelBlock> blocks_;  ///< row by row

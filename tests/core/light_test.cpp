@@ -334,20 +334,25 @@ TEST(TriangleLight, BlackTexelsStillLeaveAChance) {
 
 TEST(SkyLight, IsTheSky) {
     Scene scene = test::lamp_scene();
-    scene.sky = Sky::uniform(Rgb(3.f, 2.f, 1.f));
+    // The upper half shines, the lower is black.
+    std::vector<float> rgb;
+    for (int i = 0; i < 32 * 16; ++i)
+        for (const float c : {3.f, 2.f, 1.f}) rgb.push_back(i < 32 * 8 ? c : 0.f);
+    scene.sky = Sky::picture(rgb, 32, 16, 0.f, 1.f);
     finish_scene(scene);
-    const auto s = sample_light(scene, scene.lights.back(), V3f(0.f), V2f(0.2f, 0.6f), kRgb);
+    const auto s = sample_light(scene, scene.lights.back(), V3f(0.f), V2f(0.2f, 0.3f), kRgb);
     ASSERT_TRUE(s);
     EXPECT_TRUE(s->at_infinity);
     EXPECT_FALSE(s->delta);
-    EXPECT_EQ(s->radiance[0], 3.f);
-    EXPECT_EQ(s->pdf, scene.sky.pdf(s->direction));
+    EXPECT_NEAR(s->radiance[0], 3.f, 1e-3);
+    EXPECT_NEAR(s->pdf, scene.sky.pdf(s->direction), 1e-4 * s->pdf);
     EXPECT_FALSE(sample_light(Scene(), SkyLight{}, V3f(0.f), V2f(0.5f), kRgb));
-    // Flux through the sphere about the scene: pi L through each part of its surface.
+    // Flux through the sphere about the scene: pi L through each part of its surface, of what is
+    // brighter than the mean.
     const double radius = scene.bounds.size().length() / 2;
     EXPECT_NEAR(
         light_power(scene, SkyLight{}),
-        std::numbers::pi * scene.sky.average_luminance() * 4 * std::numbers::pi * radius * radius,
+        std::numbers::pi * scene.sky.drawn_luminance() * 4 * std::numbers::pi * radius * radius,
         1e-2);
 }
 
@@ -368,7 +373,7 @@ TEST(Scene, FinishingAddsLightsAndBounds) {
     scene.instances = {test::placed(2, M44f()), test::placed(1, matrix), test::placed(3, M44f()),
                        test::placed(4, M44f()), Instance{}};
     scene.lights = {PointLight{V3f(0.f), Rgb(1.f)}};
-    scene.sky = Sky::uniform(Rgb(1.f));
+    scene.sky = Sky::picture({0, 0, 0, 9, 9, 9}, 2, 1, 0.f, 1.f);
     finish_scene(scene);
 
     ASSERT_EQ(scene.lights.size(), 1u + 2 + 1 + 1);
@@ -385,7 +390,9 @@ TEST(Scene, FinishingAddsLightsAndBounds) {
     EXPECT_FLOAT_EQ(triangle_corners(scene, 1, 0)[1].x, 11.1f);
 
     Scene nothing;
+    nothing.sky = Sky::uniform(Rgb(1.f));  // found by BSDF samples alone
     finish_scene(nothing);
+    EXPECT_EQ(nothing.sky_light, -1);
     EXPECT_TRUE(nothing.bounds.isEmpty());
     EXPECT_TRUE(nothing.lights.empty());
 }

@@ -12,11 +12,16 @@ using test::Random;
 
 const LightReceiver kAnywhere{V3f(0.3f, -1, 0.5f), V3f(0, 1, 0), true};
 
+// Half of it shines: a sky that is the same all around is no light to pick.
+Sky half_sky() {
+    return Sky::picture({0, 0, 0, 0.2f, 0.2f, 0.2f}, 2, 1, 0.f, 1.f);
+}
+
 Scene mixed_scene() {
     Scene scene = test::lamp_scene();
     scene.lights = {PointLight{V3f(0.f), Rgb(2.f)}, PointLight{V3f(0.f), Rgb(0.f)},
                     SunLight{V3f(0, -1, 0), Rgb(0.5f)}};
-    scene.sky = Sky::uniform(Rgb(0.1f));
+    scene.sky = half_sky();
     finish_scene(scene);
     return scene;
 }
@@ -86,7 +91,7 @@ TEST(LightChoice, TreeSharesWithSkyAndSun) {
 
     Scene open;
     open.lights = {SunLight{V3f(0, -1, 0), Rgb(0.5f)}};
-    open.sky = Sky::uniform(Rgb(0.1f));
+    open.sky = half_sky();
     finish_scene(open);
     weights = {light_power(open, open.lights[0]), light_power(open, open.lights[1])};
     expect_consistent(open, LightChoice(open, LightChoiceKind::Tree), weights, 4);

@@ -90,17 +90,16 @@ void add_view(CLI::App& image) {
         ->required()
         ->check(complaint_about_display_name);
     view->add_option("--exposure", options->display.exposure_ev, "stops of 2, default 0")
-        ->transform(number_between(-100, 100));
+        ->transform(number_between(-100, 100, kStops));
     add_display_options(*view, options->display);
     add_memory_option(*view, options->reading);
     view->callback([options] {
         if (const std::string told = resolve_display(options->display); !told.empty())
             print_notice(told);
-        std::vector<NamedFile> read = own_files();
-        read.push_back({"the picture to show", options->in});
-        if (!options->display.config.empty())
-            read.push_back({"the OpenColorIO configuration", options->display.config});
-        refuse_overwriting({{"-o", options->out}}, read);
+        const std::vector<NamedFile> output{{"-o", options->out}};
+        refuse_overwriting(output, {{"the picture to show", options->in}});
+        refuse_overwriting(output, input_files(options->display));
+        refuse_overwriting(output, own_files());
         limit_picture_threads(usual_threads());
         PictureBudget pictures = options->reading.pictures();
         const Picture picture = read_picture(options->in, pictures);

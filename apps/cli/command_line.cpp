@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <functional>
 
@@ -74,6 +75,18 @@ std::string unknown_option(const CLI::App& app, const std::string& option, const
     return elsewhere.empty() ? what : fmt::format("{}; {} has it", what, elsewhere.front());
 }
 
+// Word as one of a command line, between quotes where a shell would divide or change it.
+std::string for_shell(const std::string& word) {
+    const auto is_plain = [](unsigned char c) {
+        return c >= 0x80 || std::isalnum(c) ||
+               std::string_view("%+,-./:=@_").find(char(c)) != std::string_view::npos;
+    };
+    if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
+    std::string quoted = "'";
+    for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+    return quoted + "'";
+}
+
 std::string unknown_command(const CLI::App& app, const std::string& word) {
     Words names;
     for (const CLI::App* command : commands_of(app)) names.push_back(command->get_name());
@@ -81,9 +94,9 @@ std::string unknown_command(const CLI::App& app, const std::string& word) {
     const std::string ending = lower(file.extension().string());
     if (!app.get_parent() && (ending == ".glb" || ending == ".gltf"))
         return fmt::format(
-            "\"{0}\" is no command; to render it type {1} render {0} -o {2}.png, to see what is in "
-            "it {1} info {0}",
-            word, app.get_name(), file.stem().string());
+            "\"{0}\" is no command; to render it type {1} render {2} -o {3}, to see what is in it "
+            "{1} info {2}",
+            word, app.get_name(), for_shell(word), for_shell(file.stem().string() + ".png"));
     const std::string foreign = foreign_scene_advice(file);
     if (!app.get_parent() && !foreign.empty()) return word + ": " + foreign;
     return fmt::format("\"{}\" is no command{}", word,
@@ -101,7 +114,7 @@ std::string about_word(const CLI::App& command, const CLI::ParseError& error,
                        const std::string& word) {
     if (is(error, CLI::ExitCodes::RequiredError) && command.get_option_no_throw("--output") &&
         complaint_about_picture_name(word).empty())
-        return fmt::format("{}; did you mean -o {}?", error.what(), word);
+        return fmt::format("{}; did you mean -o {}?", error.what(), for_shell(word));
     if (is(error, CLI::ExitCodes::ExtrasError))
         return fmt::format("{} has no place for \"{}\"", full_name(command), word);
     return "";

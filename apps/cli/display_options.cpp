@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "io/base/error.h"
+#include "io/image/display_files.h"
 
 namespace petzval {
 
@@ -42,6 +43,19 @@ std::string resolve_display(DisplayOptions& o) {
     if (!foreign) return "";
     return fmt::format("display: view {} of {}{}", o.view, o.config.string(),
                        from_environment ? ", which $OCIO names" : "");
+}
+
+std::vector<NamedFile> input_files(const DisplayOptions& o) {
+    const char* from_environment = std::getenv("OCIO");
+    std::filesystem::path config = o.config;
+    if (config.empty() && from_environment) config = from_environment;
+    std::vector<NamedFile> files;
+    if (config.empty()) return files;
+    for (const auto& file : display_files(config))
+        files.push_back({files.empty() ? "the OpenColorIO configuration"
+                                       : "a table of the OpenColorIO configuration",
+                         file});
+    return files;
 }
 
 }  // namespace petzval

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "io/base/overwrite.h"
 #include "io/image/output.h"
 
 namespace CLI {
@@ -21,5 +22,9 @@ std::vector<CLI::Option*> add_display_options(CLI::App&, DisplayOptions&);
 /// Settles configuration and view: without --ocio the one that the environment variable OCIO names
 /// is taken. Returns what to tell about it, or nothing. Throws CLI::ValidationError.
 [[nodiscard]] std::string resolve_display(DisplayOptions&);
+
+/// Files of the configuration that is asked for, or that $OCIO names whether or not it is used:
+/// none of them may be written.
+[[nodiscard]] std::vector<NamedFile> input_files(const DisplayOptions&);
 
 }  // namespace petzval

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kLargestSide_px = 65536;
 constexpr float kMostExposure_ev = 100;
-constexpr float kNearestFocus_m = 1e-6f, kFarthestFocus_m = 1e9f;
+constexpr float kNearestFocus_m = 1e-6f;
 
 [[noreturn]] void refuse(const std::string& option, const std::string& text,
                          const std::string& want) {
@@ -165,21 +165,17 @@ std::optional<float> parse_exposure_ev(const std::string& option, const std::str
 }
 
 uint64_t parse_memory_bytes(const std::string& option, const std::string& text) {
-    constexpr std::array<std::pair<std::string_view, double>, 8> units{{{"kB", 1e3},
-                                                                        {"MB", 1e6},
-                                                                        {"GB", 1e9},
-                                                                        {"TB", 1e12},
-                                                                        {"KiB", 0x1p10},
-                                                                        {"MiB", 0x1p20},
-                                                                        {"GiB", 0x1p30},
-                                                                        {"TiB", 0x1p40}}};
-    for (const auto& [unit, bytes] : units) {
-        if (!text.ends_with(unit)) continue;
-        const auto count =
-            number<double>(std::string_view(text).substr(0, text.size() - unit.size()));
-        if (count && *count * bytes >= 1 && *count * bytes < 0x1p62)
-            return static_cast<uint64_t>(*count * bytes);
-    }
+    constexpr std::array<Unit, 8> units{{{"kB", 1e3},
+                                         {"MB", 1e6},
+                                         {"GB", 1e9},
+                                         {"TB", 1e12},
+                                         {"KiB", 0x1p10},
+                                         {"MiB", 0x1p20},
+                                         {"GiB", 0x1p30},
+                                         {"TiB", 0x1p40}}};
+    const auto bytes = quantity(text, units);
+    if (bytes && !number<double>(trimmed(text)) && *bytes >= 1 && *bytes < 0x1p62)
+        return static_cast<uint64_t>(*bytes);
     refuse(option, text, "an amount of memory such as 512MB, 8GB or 8GiB");
 }
 

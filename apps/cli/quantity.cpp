@@ -60,7 +60,7 @@ std::optional<double> quantity(std::string_view text, std::span<const Unit> unit
     if (const auto plain = number<double>(text)) return plain;
     const std::string lowered = lower(std::string(text));
     for (const Unit& unit : units) {
-        if (!lowered.ends_with(unit.name)) continue;
+        if (!lowered.ends_with(lower(std::string(unit.name)))) continue;
         const auto value = number<double>(trimmed(text.substr(0, text.size() - unit.name.size())));
         if (value) return *value * unit.times / unit.over;
     }

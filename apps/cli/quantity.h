@@ -40,6 +40,7 @@ inline constexpr std::array<Unit, 5> kMillimetres{
 inline constexpr std::array<Unit, 4> kDegrees{{{"deg"}, {"°"}, {"degrees"}, {"degree"}}};
 inline constexpr std::array<Unit, 1> kPixels{{{"px"}}};
 inline constexpr std::array<Unit, 1> kNanometres{{{"nm"}}};
+inline constexpr std::array<Unit, 1> kStops{{{"EV"}}};
 
 /// Text without the spaces at its ends.
 [[nodiscard]] std::string_view trimmed(std::string_view);

@@ -68,7 +68,7 @@ void add_chart_options(CLI::App& app, ChartOptions& o) {
     app.add_option("--seeds", r.frame.seeds, "renders of each method (default 5)")
         ->transform(whole_number_between(kChartSeeds, 1000));
     app.add_option("--exposure", r.frame.exposure_ev, "stops, of pictures and of FLIP")
-        ->transform(number_between(-100, 100));
+        ->transform(number_between(-100, 100, kStops));
     app.add_option("--threads", o.threads, "default: one for each core that can be had")
         ->transform(whole_number_between(1, kMostThreads));
     add_reading_options(app, o.reading);

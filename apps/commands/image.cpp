@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -13,6 +16,7 @@
 #include "apps/cli/output_checks.h"
 #include "apps/cli/parse.h"
 #include "apps/cli/reading_options.h"
+#include "apps/setup/exposure.h"
 #include "apps/setup/input_files.h"
 #include "io/base/error.h"
 #include "io/base/overwrite.h"
@@ -77,9 +81,25 @@ void add_diff(CLI::App& image) {
     diff->callback([options] { diff_command(*options); });
 }
 
+// Luminances of the pixels that show something, for exposure_for().
+std::vector<double> luminances_of(const Picture& p) {
+    const int grey = channel_index(p, "Y"), alpha = channel_index(p, "A");
+    const auto from = [&](const char* name) { return grey < 0 ? channel_index(p, name) : grey; };
+    const std::array<int, 3> at{from("R"), from("G"), from("B")};
+    std::vector<double> out;
+    if (*std::min_element(at.begin(), at.end()) < 0) return out;
+    for (auto pixel = p.pixels.begin(); pixel != p.pixels.end(); pixel += p.channels.size()) {
+        const double light = double(luminance(Rgb(pixel[at[0]], pixel[at[1]], pixel[at[2]])));
+        const double opaque = alpha < 0 ? 1 : double(pixel[alpha]);
+        if (const double shown = light / opaque; opaque > 0 && shown > 0 && std::isfinite(shown))
+            out.push_back(shown);
+    }
+    return out;
+}
+
 void add_view(CLI::App& image) {
     struct ViewOptions {
-        std::string in, out;
+        std::string in, out, exposure = "0";
         DisplayOptions display;
         ReadingOptions reading;
     };
@@ -89,18 +109,17 @@ void add_view(CLI::App& image) {
     view->add_option("-o,--output", options->out, "picture to write, .png or .jpg")
         ->required()
         ->check(complaint_about_display_name);
-    view->add_option("--exposure", options->display.exposure_ev, "stops of 2, default 0")
-        ->transform(number_between(-100, 100));
+    view->add_option("--exposure", options->exposure, "stops of 2, or auto; default 0");
     add_display_options(*view, options->display);
     add_memory_option(*view, options->reading);
     view->callback([options] {
+        const auto exposure_ev = parse_exposure_ev("--exposure", options->exposure);
         if (const std::string told = resolve_display(options->display); !told.empty())
             print_notice(told);
-        std::vector<NamedFile> read = own_files();
-        read.push_back({"the picture to show", options->in});
-        if (!options->display.config.empty())
-            read.push_back({"the OpenColorIO configuration", options->display.config});
-        refuse_overwriting({{"-o", options->out}}, read);
+        const std::vector<NamedFile> output{{"-o", options->out}};
+        refuse_overwriting(output, {{"the picture to show", options->in}});
+        refuse_overwriting(output, input_files(options->display));
+        refuse_overwriting(output, own_files());
         limit_picture_threads(usual_threads());
         PictureBudget pictures = options->reading.pictures();
         const Picture picture = read_picture(options->in, pictures);
@@ -109,6 +128,12 @@ void add_view(CLI::App& image) {
                 fmt::format("warning: {} holds values for a display already, and goes "
                             "through the view as if they were light",
                             options->in));
+        options->display.exposure_ev = exposure_ev.value_or(0.f);
+        if (!exposure_ev) {
+            options->display.exposure_ev = exposure_for(luminances_of(picture)).ev;
+            print_notice(
+                fmt::format("exposure: {0} EV (--exposure {0})", options->display.exposure_ev));
+        }
         write_output(options->out, picture, options->display);
     });
 }

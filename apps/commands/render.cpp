@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "apps/cli/display_options.h"
 #include "apps/cli/render_options.h"
 #include "apps/commands/session.h"
 #include "apps/plan/plan.h"
@@ -39,10 +40,8 @@ void check_outputs(RenderOptions& o, const Rect& crop) {
     if (o.stats) outputs.push_back({"--stats", *o.stats});
     for (const auto& partial : partials)
         outputs.push_back({"the picture of a render that is stopped", partial});
-    std::vector<NamedFile> read = input_files(o.scene);
-    if (!o.display.config.empty())
-        read.push_back({"the OpenColorIO configuration", o.display.config});
-    refuse_overwriting(outputs, read);
+    refuse_overwriting(outputs, input_files(o.scene));
+    refuse_overwriting(outputs, input_files(o.display));
     refuse_overwriting(outputs, own_files());
     for (const auto& output : o.outputs)
         check_output(output, o.display, crop.width(), crop.height());

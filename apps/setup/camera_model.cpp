@@ -111,9 +111,12 @@ SingleLens parse_singlet(const std::string& text, LensGlasses& glasses) {
     std::string name, word;
     std::getline(words, name, ',');
     std::vector<double> numbers;
+    bool has_unit = false;
     while (std::getline(words, word, ',')) {
         double value = 0;
-        const char* const last = word.data() + word.size();
+        const bool in_mm = word.ends_with("mm");
+        has_unit = has_unit || in_mm;
+        const char* const last = word.data() + word.size() - (in_mm ? 2 : 0);
         const auto [end, error] = std::from_chars(word.data(), last, value);
         if (error != std::errc() || end != last || std::isnan(value))
             throw refuse(fmt::format("\"{}\" is no number", word));
@@ -123,6 +126,7 @@ SingleLens parse_singlet(const std::string& text, LensGlasses& glasses) {
     SingleLens lens;
     lens.glass = find_singlet_glass(name, glasses, refuse);
     if (numbers.size() == 1) {
+        if (has_unit) throw refuse("the bending has no unit");
         if (!std::isfinite(numbers[0])) throw refuse("the bending must be finite");
         lens.bending = numbers[0];
     }

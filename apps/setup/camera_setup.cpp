@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <limits>
+
 #include "apps/setup/framing.h"
 #include "apps/setup/thin_setup.h"
 #include "integrator/autofocus.h"
@@ -102,6 +104,10 @@ float find_focus(const CameraContext& at, const M44f& to_world, const Finder& fi
         const float before_m = depth_m;
         depth_m = depth_of(at, focus, to_world, *finder(before_m));
         if (std::fabs(depth_m - before_m) <= kSettled * before_m) break;
+    }
+    if (depth_m > kFarthestFocus_m) {
+        at.notice("focus: infinity (--focus infinity)");
+        return std::numeric_limits<float>::infinity();
     }
     at.notice(fmt::format("focus: {:.4g} m (--focus {})", depth_m, depth_m));
     return depth_m;

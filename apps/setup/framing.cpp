@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/setup/framing.h"
 
+#include <Imath/ImathMatrixAlgo.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,11 +17,48 @@ constexpr double kMargin = 0.06;         ///< of half the picture, on each side
 constexpr double kWidestHalf_rad = 0.8;  ///< a wider view gets wider margins: its rim is stretched
 constexpr double kFlat = 0.2;            ///< thickness over the next larger side
 
+template <class Visit>
+void each_triangle(const Scene& scene, Visit visit) {
+    for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+        const auto count =
+            static_cast<uint32_t>(scene.meshes[scene.instances[i].mesh].triangles.size());
+        for (uint32_t triangle = 0; triangle < count; ++triangle)
+            visit(triangle_corners(scene, i, triangle));
+    }
+}
+
+// Normal of a scene that is flat, but along no axis: the direction that the normals of most of its
+// area have or are opposite to, by the greatest eigenvector of their covariance.
+std::optional<V3d> slanting_normal(const Scene& scene) {
+    Imath::M33d covariance(0.0), axes;
+    each_triangle(scene, [&](const std::array<V3f, 3>& corner) {
+        const V3d a(corner[0]), twice_area = (V3d(corner[1]) - a).cross(V3d(corner[2]) - a);
+        const double length = twice_area.length();
+        if (!(length > 0)) return;
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) covariance[i][j] += twice_area[i] * twice_area[j] / length;
+    });
+    V3d area;
+    Imath::jacobiEigenSolver(covariance, area, axes);  // axes: in the columns
+    Imath::Box3d along;
+    each_triangle(scene, [&](const std::array<V3f, 3>& corner) {
+        for (const V3f& p : corner) along.extendBy(V3d(p) * axes);
+    });
+    const V3d size = along.size();
+    const int n = area.x > std::max(area.y, area.z) ? 0 : area.y > area.z ? 1 : 2;
+    if (!(size[n] < kFlat * std::min(size[(n + 1) % 3], size[(n + 2) % 3]))) return std::nullopt;
+    return V3d(axes[0][n], axes[1][n], axes[2][n]);
+}
+
 // Direction from a scene of that size to the eye, not of unit length: three sides of a cube show.
-V3d view_direction(const V3d& size) {
+V3d view_direction(const Scene& scene, const V3d& size) {
+    const V3d usual(0.55, 0.45, 1);
     if (size.x < kFlat * std::min(size.y, size.z)) return {1, 0.45, 0.55};
     if (size.y < kFlat * std::min(size.x, size.z)) return {0.55, 0.9, 1};
-    return {0.55, 0.45, 1};
+    if (size.z < kFlat * std::min(size.x, size.y)) return usual;
+    const auto normal = slanting_normal(scene);
+    if (!normal) return usual;
+    return *normal * (normal->dot(usual) < 0 ? -1 : 1) + usual.normalized() / 2;
 }
 
 /// Axes of an upright view: right, up, and back towards the eye.
@@ -71,16 +110,12 @@ std::optional<std::array<V3f, 2>> frame_scene(const Scene& scene, float yfov_rad
                                               double stand_back_m) {
     if (scene.bounds.isEmpty()) return std::array{V3f(0, 0, 1), V3f(0, 0, 0)};
     const V3d low(scene.bounds.min), high(scene.bounds.max), centre = low / 2 + high / 2;
-    const ViewAxes axes(view_direction(high - low));
+    const ViewAxes axes(view_direction(scene, high - low));
     const double slope = std::tan(std::min(double(yfov_rad) / 2, kWidestHalf_rad)) * (1 - kMargin);
     Frustum frustum({slope * double(aspect), slope});
-    for (uint32_t i = 0; i < scene.instances.size(); ++i) {
-        const auto count =
-            static_cast<uint32_t>(scene.meshes[scene.instances[i].mesh].triangles.size());
-        for (uint32_t triangle = 0; triangle < count; ++triangle)
-            for (const V3f& corner : triangle_corners(scene, i, triangle))
-                frustum.add(axes.to_view(V3d(corner) - centre));
-    }
+    each_triangle(scene, [&](const std::array<V3f, 3>& corner) {
+        for (const V3f& p : corner) frustum.add(axes.to_view(V3d(p) - centre));
+    });
     V3d eye = frustum.eye();
     eye.z += stand_back_m;
     const std::array placed{V3f(centre + axes.to_world(eye)),

@@ -67,6 +67,25 @@ void require_light(const std::string& name, const Lens& lens, double axial, doub
                             (blockage ? ": " + blockage->text() : std::string()));
 }
 
+// Tells where a lens lights next to nothing of the film: its picture would be black without a word.
+void tell_dark_film(const std::string& name, const LensCamera& camera, V2f film_mm,
+                    const Notice& notice) {
+    constexpr int kAcross = 8;
+    constexpr double kLeastLit = 0.1;
+    int lit = 0;
+    for (int i = 0; i < kAcross * kAcross; ++i) {
+        const V2f cell(static_cast<float>(i % kAcross), static_cast<float>(i / kAcross));
+        const V2f at = (cell + V2f(0.5f)) / float(kAcross) - V2f(0.5f);
+        lit += camera.irradiance(at * film_mm, 4) > 0;
+    }
+    const double share = double(lit) / (kAcross * kAcross);
+    if (share < kLeastLit)
+        notice(fmt::format(
+            "warning: {} lights {} of the film, which is {:.4g} x {:.4g} mm; give a "
+            "smaller --sensor",
+            name, lit ? fmt::format("{:.0f} %", 100 * share) : "hardly any", film_mm.x, film_mm.y));
+}
+
 }  // namespace
 
 double LoadedLens::stop_radius_mm() const {
@@ -147,6 +166,7 @@ LensSetup set_up_lens(const CameraRequest& asked, const LoadedLens& loaded, cons
     }
     const double axial = camera->irradiance(V2f(0.f), 1024);
     require_light(loaded.name(), *lens, axial, promised, setup.fnumber);
+    tell_dark_film(loaded.name(), *camera, loaded.film_mm, notice);
     const bool normalised = asked.exposure == ExposureMode::Normalised;
     camera->set_exposure(
         normalised ? 1 : photographic_gain(axial, double(asked.iso), double(asked.shutter_s)),
@@ -158,8 +178,8 @@ LensSetup set_up_lens(const CameraRequest& asked, const LoadedLens& loaded, cons
 std::unique_ptr<Camera> viewfinder(const LoadedLens& loaded, const M44f& to_world,
                                    std::optional<float> focus_m) {
     constexpr double kStoppedDown = 100;
-    constexpr float kFar_m = 1e9f;
-    FocusedLens sharp = focused_at(loaded, focus_m.value_or(kFar_m), FocusBy::Paraxial, 0);
+    FocusedLens sharp =
+        focused_at(loaded, focus_m.value_or(kFarthestFocus_m), FocusBy::Paraxial, 0);
     return std::make_unique<LensCamera>(input_of(
         loaded, to_world, std::move(sharp), Iris(Disk{}, loaded.stop_radius_mm() / kStoppedDown)));
 }

@@ -8,6 +8,7 @@
 #include "apps/setup/camera_setup.h"
 #include "apps/setup/input_files.h"
 #include "apps/setup/option_names.h"
+#include "core/light/own_light.h"
 #include "core/scene/studio.h"
 #include "io/base/error.h"
 #include "io/base/format.h"
@@ -24,15 +25,23 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// Whether a scene would be black by itself. Unlit materials need no light.
-bool is_dark(const Scene& scene) {
-    bool lit = !scene.lights.empty(), all_unlit = !scene.instances.empty();
-    for (const Instance& instance : scene.instances) {
-        const Material& material = scene.materials[scene.meshes[instance.mesh].material];
-        lit = lit || material.emits();
-        all_unlit = all_unlit && material.unlit;
-    }
-    return !lit && !all_unlit;
+// Lights a scene by the studio where nobody asked for light and the file has none, or too little.
+void add_missing_light(SceneRequest& request, const Scene& scene, const Notice& notice) {
+    if (request.environment || request.background) return;
+    const OwnLight own = own_light(scene);
+    if (own == OwnLight::Enough) return;
+    request.environment = kStudioLight;
+    if (own == OwnLight::None)
+        notice(
+            fmt::format("nothing lights this scene, so the built-in studio light is used (--env "
+                        "{}); give --env FILE or --background R,G,B for another",
+                        kStudioLight));
+    else
+        notice(
+            fmt::format("what glows in this scene hardly lights it, so the built-in studio light "
+                        "is used too (--env {}); give --env FILE or --background R,G,B for "
+                        "another, --background 0,0,0 for none",
+                        kStudioLight));
 }
 
 Sky sky_of(const SceneRequest& request, const Notice& notice, PictureBudget& pictures) {
@@ -84,13 +93,7 @@ PreparedScene load(SceneRequest request, const Notice& notice) {
     auto scene = std::make_shared<Scene>(std::move(file.scene));
     out.hash = file.hash;
     out.cameras = std::make_shared<std::vector<GltfCamera>>(std::move(file.cameras));
-    if (!request.environment && !request.background && is_dark(*scene)) {
-        request.environment = kStudioLight;
-        notice(
-            fmt::format("nothing lights this scene, so the built-in studio light is used (--env "
-                        "{}); give --env FILE or --background R,G,B for another",
-                        kStudioLight));
-    }
+    add_missing_light(request, *scene, notice);
     out.environment = request.environment;
     scene->sky = sky_of(request, notice, out.pictures);
     finish_scene(*scene);

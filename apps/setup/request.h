@@ -25,6 +25,9 @@
 
 namespace petzval {
 
+/// Greatest distance that is not called infinity.
+inline constexpr float kFarthestFocus_m = 1e9f;
+
 struct FocusAuto {};
 struct FocusDistance {
     float m;  ///< from the entrance pupil of the lens in focus; may be infinite

@@ -22,8 +22,8 @@ constexpr float kDefaultFov_deg = 40.f;
 /// Greatest error of the third-order formula without a warning.
 constexpr double kMostFormulaError = 0.1;
 
-/// Farthest focus: as good as infinity, and no float overflows.
-constexpr double kFarthestFocus_m = 1e6;
+/// Farthest distance that differs from infinity, and no float overflows.
+constexpr double kAsFarAsInfinity_m = 1e6;
 
 // Result of a closed form. What it refuses becomes an error in words for whoever chose the numbers.
 template <class Function>
@@ -87,7 +87,7 @@ ThinView thin_view(const CameraModel& model, const std::string& scene, float asp
             view.focus_m = static_cast<float>(or_argument_error(model, [&] {
                 return std::fmin(
                     1e-3 * object_distance_mm(*view.focal_mm, double(*asked.film_distance_mm)),
-                    kFarthestFocus_m);
+                    kAsFarAsInfinity_m);
             }));
     } else if (model.from && !asked.fov_deg && !view.focal_mm) {
         view.yfov_rad = model.from->yfov_rad;

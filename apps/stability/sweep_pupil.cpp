@@ -43,6 +43,7 @@ Counted count_light(const Subject& of, V2f film_mm) {
     const Lens& lens = *of.lens;
     const RayAimer aimer(lens, lens.film_mm(), film_mm.length());
     const LensIndices<f4> indices = of.line_d();
+    const auto stop2_mm2 = static_cast<float>(sqr(of.stop_mm));
     V2f low(-1.f), high(1.f);
     Counted out;
     // The first look finds the box that the second one looks into.
@@ -55,7 +56,9 @@ Counted count_light(const Subject& of, V2f film_mm) {
                 const f4 l = low.x + cell.x * (f4{0.5f, 1.5f, 2.5f, 3.5f} + static_cast<float>(x));
                 const f4 m = splat(low.y + cell.y * (static_cast<float>(y) + 0.5f));
                 const AimedRay<f4> c = aimer.cross<f4>(film_mm, l, m, indices);
-                m4 on = c.clear & c.ray.alive() & (l * l + m * m < 1.f);
+                const f4 stop_x = c.ray.origin.x, stop_y = c.ray.origin.y;
+                m4 on = c.clear & c.ray.alive() & (l * l + m * m < 1.f) &
+                        (stop_x * stop_x + stop_y * stop_y <= stop2_mm2);
                 if (!any(on)) continue;
                 LensRay<f4> ray = c.ray;
                 on &= trace_lens<f4>(lens, indices, Towards::Scene, {0, lens.stop() - 1}, ray,

@@ -15,6 +15,9 @@ constexpr float kTolerance = 1e-4f, kToleranceBeforeStep = 3e-3f;
 // the stop at nearly one point: a ray that is near it there may have any stretch, and with it any
 // weight.
 constexpr float kMostStepLeft = 1e-3f;
+// Newton step that floats hardly resolve: the rays to a stop far smaller than the lens come no
+// nearer.
+constexpr float kLeastStep = 1e-6f;
 constexpr int kMostSteps = 12, kMostHalvings = 6;
 
 // Wavelengths at which the table is solved: evenly in 1 / nm, over what is visible.
@@ -85,6 +88,7 @@ AimedRay<V> RayAimer::cross(V2f film_point_mm, V l, V m, const LensIndices<V>& i
     out.clear = !MaskOf<V>{};
     const auto& facts = lens_.surfaces<ScalarOf<V>>();
     const auto clip = [&](const LensHit<V>& hit) {
+        if (hit.surface == lens_.stop()) return;
         const V x = hit.point.x, y = hit.point.y;
         const auto rim2 = facts[static_cast<size_t>(hit.surface)].semi_diameter2_mm2;
         out.clear &= (x * x + y * y <= rim2) | (hit.reached == 0);
@@ -114,9 +118,8 @@ std::optional<AimedRay<f4>> RayAimer::newton(V2f film_point_mm, V2f stop_point_m
             const Step by = step_towards(stop_point_mm, c);
             good = cosines;
             step = {by.l[lane], by.m[lane]};
-            if (by.left2_mm2[lane] < sqr(kTolerance * stop_radius_mm_) &&
-                step.length2() < sqr(kMostStepLeft))
-                return c;
+            const bool there = by.left2_mm2[lane] < sqr(kTolerance * stop_radius_mm_);
+            if (step.length2() < sqr(there ? kMostStepLeft : kLeastStep)) return c;
         } else {
             if (i == 0 || ++halvings > kMostHalvings) break;
             step *= 0.5f;
@@ -135,7 +138,8 @@ RayAimer::Node RayAimer::settled(V2f film_point_mm, V2f stop_point_mm, const Nod
         const AimedRay<f4> c = cross<f4>(film_point_mm, at.l, at.m, indices);
         inside = c.ray.alive() & (at.l * at.l + at.m * at.m < 1.f);
         const Step by = step_towards(stop_point_mm, c);
-        close = ~inside | (by.left2_mm2 < sqr(kToleranceBeforeStep * stop_radius_mm_));
+        close = ~inside | (by.left2_mm2 < sqr(kToleranceBeforeStep * stop_radius_mm_)) |
+                (by.l * by.l + by.m * by.m < sqr(kLeastStep));
         at = {inside ? at.l + by.l : guess.l, inside ? at.m + by.m : guess.m};
     }
     return {inside & close ? at.l : guess.l, inside & close ? at.m : guess.m};

@@ -17,7 +17,7 @@ template <class V>
 struct AimedRay {
     V l, m;           ///< direction cosines at the film
     LensRay<V> ray;   ///< at the stop, on its way to the scene
-    MaskOf<V> clear;  ///< inside the clear semi-diameters of all that it met, the stop's too
+    MaskOf<V> clear;  ///< inside the clear semi-diameters of all that it met before the stop
     /// Jacobian d(x, y) / d(l, m): columns by l and by m.
     V x_by_l, y_by_l, x_by_m, y_by_m;
     int traces = 1;  ///< needed to find the ray
@@ -38,10 +38,10 @@ class RayAimer {
     RayAimer(const Lens&, double film_mm, double film_reach_mm);
 
     /// The ray that leaves the film in the same direction in all lanes, and in one of them, whose
-    /// wavelength is nm, meets a point of the stop to a ten-thousandth of the stop's radius, and is
-    /// within a thousandth of the direction that does. Nothing where no ray gets there.
-    /// Semi-diameters do not stop rays: one that glass blocks at one wavelength may have been drawn
-    /// for another.
+    /// wavelength is nm, meets a point of the stop to a ten-thousandth of the stop's radius, or as
+    /// near as floats can, and is within a thousandth of the direction that does. Nothing where no
+    /// ray gets there. Semi-diameters do not stop rays: one that glass blocks at one wavelength may
+    /// have been drawn for another.
     [[nodiscard]] std::optional<AimedRay<f4>> aim(V2f film_point_mm, V2f stop_point_mm,
                                                   const LensIndices<f4>&, int lane, float nm) const;
     /// The ray that leaves the film with direction cosines l and m. V: f4 or d4.

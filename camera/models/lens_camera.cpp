@@ -11,16 +11,18 @@ namespace {
 // Distance at which wavelengths are compared for a lens that is focused at infinity.
 constexpr float kFarthest_m = 1e9f;
 
-// Transmission of the iris at a point of each lane.
+// Transmission of the stop at a point of each lane: that of the iris inside the rim.
 template <class V>
-V iris_transmission(const Iris& iris, V x, V y) {
+V stop_transmission(const Iris& iris, const Lens& lens, V x, V y) {
     const auto at = [&](int i) {
         return iris.transmits({static_cast<float>(x[i]), static_cast<float>(y[i])});
     };
     V out = broadcast<V>(at(0));
     for (int i = 1; i < 4; ++i)
         if (x[i] != x[0] || y[i] != y[0]) out[i] = at(i);
-    return out;
+    const auto stop = static_cast<size_t>(lens.stop());
+    const auto rim2_mm2 = lens.surfaces<ScalarOf<V>>()[stop].semi_diameter2_mm2;
+    return select(x * x + y * y <= rim2_mm2, out, V{});
 }
 
 template <class To, class From>
@@ -165,7 +167,7 @@ LensDraw<V> LensCamera::Point<V>::rays(const LaneRequest& request) const {
     const V x = aimed.ray.origin.x + (S(on_iris.x) - aimed.ray.origin.x[request.lead]);
     const V y = aimed.ray.origin.y + (S(on_iris.y) - aimed.ray.origin.y[request.lead]);
     const V open = select(lanes_as<MaskOf<V>>(request.lanes) & aimed.ray.alive(),
-                          iris_transmission(in.iris, x, y), V{});
+                          stop_transmission(in.iris, lens(), x, y), V{});
     const auto lanes = static_cast<S>(out.losses.drawn);
     const S density = sum<V>(open * aimed.stretch_mm2()) / (S(in.iris.area_mm2()) * lanes);
     out.ray = aimed.ray;
@@ -243,14 +245,16 @@ FilmLanding LensCamera::Point<V>::landing(const LensDraw<V>& rays,
     const auto &o = rays.ray.origin, &d = rays.ray.direction;
     ray.origin = {of_lead(o.x, 1), of_lead(o.y, 1), of_lead(o.z, 1)};
     ray.direction = {of_lead(d.x, -1), of_lead(d.y, -1), of_lead(d.z, -1)};
+    const int stop = lens().stop();
     static_cast<void>(
-        trace_lens<V>(lens(), indices(), Towards::Film, {0, lens().stop()}, ray, Clip::Yes, lose));
+        trace_lens<V>(lens(), indices(), Towards::Film, {0, stop - 1}, ray, Clip::Yes, lose));
+    static_cast<void>(trace_lens<V>(lens(), indices(), Towards::Film, {stop, stop}, ray, Clip::No));
     const V2f on_iris = in.iris.sample(request.u);
     const V x = ray.origin.x + (S(on_iris.x) - ray.origin.x[lead]);
     const V y = ray.origin.y + (S(on_iris.y) - ray.origin.y[lead]);
-    const V iris = iris_transmission(in.iris, x, y);
-    const MaskOf<V> arrived = trace_lens<V>(
-        lens(), indices(), Towards::Film, {lens().stop() + 1, lens().last()}, ray, Clip::Yes, lose);
+    const V iris = stop_transmission(in.iris, lens(), x, y);
+    const MaskOf<V> arrived = trace_lens<V>(lens(), indices(), Towards::Film,
+                                            {stop + 1, lens().last()}, ray, Clip::Yes, lose);
     out.open = lanes_as<f4>(select(arrived, iris, V{}));
     const V to_film =
         (S(in.film_mm - lens().vertex_mm(ray.counted_from)) - ray.origin.z) / ray.direction.z;

@@ -71,6 +71,25 @@ void mend_transform(const JsonEditor& node) {
     if (moves) node.warn("has a matrix and translation, rotation or scale; the matrix is taken");
 }
 
+/// Leaves out what is -1 in a list of indices: some exporters write it for what they skipped.
+void mend_absent(const JsonEditor& owner, const char* key) {
+    json* list = owner.array(key);
+    if (!list) return;
+    const auto kept = std::remove(list->begin(), list->end(), json(-1));
+    if (kept == list->end()) return;
+    owner.warn(key, "names node -1, which is none; it is left out");
+    list->erase(kept, list->end());
+}
+
+/// Takes the light -1 of a node as none.
+void mend_light_index(const JsonEditor& node) {
+    constexpr const char* kLights = "KHR_lights_punctual";
+    const auto light = node.extension(kLights);
+    if (!light || !light->find("light") || *light->find("light") != -1) return;
+    light->warn("light", "is -1; the node is taken as one without a light");
+    node.find("extensions")->erase(kLights);
+}
+
 /// Leaves each number of a list once.
 void mend_repeats(const JsonEditor& owner, const char* key, const char* what) {
     json* list = owner.array(key);
@@ -89,7 +108,9 @@ void mend_repeats(const JsonEditor& owner, const char* key, const char* what) {
 void mend_node(const JsonEditor& node) {
     if (node.value().empty()) return;
     mend_transform(node);
+    mend_absent(node, "children");
     mend_repeats(node, "children", "node");
+    mend_light_index(node);
     if (node.find("mesh")) return;
     for (const char* key : {"skin", "weights"})
         node.drop(key, "has no meaning on a node without a mesh; it is ignored");
@@ -99,7 +120,10 @@ void mend_node(const JsonEditor& node) {
 
 void mend_nodes(const JsonEditor& root) {
     root.each("nodes", mend_node);
-    root.each("scenes", [](const JsonEditor& scene) { mend_repeats(scene, "nodes", "node"); });
+    root.each("scenes", [](const JsonEditor& scene) {
+        mend_absent(scene, "nodes");
+        mend_repeats(scene, "nodes", "node");
+    });
 }
 
 }  // namespace petzval

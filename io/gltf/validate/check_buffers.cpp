@@ -154,6 +154,12 @@ class AccessorCheck {
     const std::vector<JsonCursor> views_;
 };
 
+/// Whether an accessor is that of an empty mesh, as exporters write them.
+bool is_empty(const JsonCursor& accessor) {
+    const auto count = accessor.value().find("count");
+    return count != accessor.value().end() && *count == 0;
+}
+
 }  // namespace
 
 // Objects that nothing needs are replaced where they are broken.
@@ -175,7 +181,9 @@ void check_accessors(GltfCheck& check) {
             check.accessors.push_back(accessors.read(cursors[i]));
         } catch (const InputError&) {
             if (check.use.accessors[i]) throw;
-            check.warn(cursors[i], "is broken, but nothing needs it");
+            check.warn(cursors[i], is_empty(cursors[i])
+                                       ? "holds no elements; what names it shows nothing"
+                                       : "is broken, but nothing needs it");
             check.source.json["accessors"][i] = {
                 {"componentType", 5121}, {"type", "SCALAR"}, {"count", 1}};
             check.accessors.emplace_back();

@@ -18,6 +18,12 @@ namespace {
 using Bytes = std::vector<uint8_t>;
 using MimeTypes = std::vector<std::string_view>;
 
+bool is_link_loop(const std::filesystem::path& path) {
+    std::error_code error;
+    static_cast<void>(std::filesystem::status(path, error));
+    return error == std::errc::too_many_symbolic_link_levels;
+}
+
 /// Reads the bytes that a "uri" names, and counts them in the budget.
 class Fetcher {
   public:
@@ -62,9 +68,11 @@ class Fetcher {
                                           printable(uri)));
         const std::filesystem::path folder = source_.path.parent_path(), full = folder / *path;
         if (source_.scope == FileScope::Confined && !lies_within(full, folder))
-            owner.fail("uri", fmt::format("\"{}\" lies outside the folder of the scene, and "
-                                          "--confine allows no file there",
-                                          printable(*path)));
+            owner.fail("uri",
+                       fmt::format("\"{}\" {}", printable(*path),
+                                   is_link_loop(full) ? "is a link that leads back to itself"
+                                                      : "lies outside the folder of the scene, and "
+                                                        "--confine allows no file there"));
         FileBytes file = read_file(full);
         if (may_be_missing && file.error == "no such file") {
             source_.warnings.push_back(

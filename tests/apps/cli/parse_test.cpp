@@ -59,6 +59,11 @@ TEST(Parse, OtherValuesTakeTheirUnits) {
     for (const char* text : {"0.01", "1/100", "1/100s", "10ms", "10 ms"})
         EXPECT_FLOAT_EQ(parse_shutter_s("--shutter", text), 0.01f) << text;
     EXPECT_EQ(parse_share("--tolerance", "1 %"), 0.01);
+    for (const char* text : {"8GB", "8gb", "8 GB", "8000mb"})
+        EXPECT_EQ(parse_memory_bytes("--max-memory", text), 8'000'000'000u) << text;
+    EXPECT_EQ(parse_memory_bytes("--max-memory", "1kib"), 1024u);
+    for (const char* text : {"8", "GB", "-1GB", "8G", "1e30TB"})
+        EXPECT_THROW((void)parse_memory_bytes("--max-memory", text), CLI::ValidationError) << text;
     const Bins bins = parse_bins("--bins", "380nm:730nm:10nm");
     EXPECT_EQ(bins.count, 35);
     EXPECT_EQ(parse_number("--film-shift", "-0.1cm", -10, 10, kMillimetres), -1);
@@ -85,6 +90,8 @@ TEST(Parse, ReadersLeavePlainNumbers) {
     EXPECT_EQ(read(mm, "2in"), "50.8");
     EXPECT_EQ(read(mm, "11m"), "refused");
     EXPECT_EQ(read(number_between(-360, 360, kDegrees), "-90°"), "-90");
+    for (const char* text : {"1.5EV", "+1.5 ev", "1.5"})
+        EXPECT_EQ(read(number_between(-9, 9, kStops), text), "1.5") << text;
     // CLI11 would take a leading zero for octal.
     EXPECT_EQ(read(whole_number_between(1, 100), "010"), "10");
     EXPECT_EQ(read(whole_number_between(1, 100), "+7"), "7");

@@ -372,6 +372,8 @@ TEST_F(CliCamera, RefusesWhatDoesNotGoTogether) {
         {{"--lens", "singlet:schott:N-BK", "--fstop", "4"}, "near are schott:N-BK7"},
         {{"--lens", "singlet:schott:N-BK7,x", "--fstop", "4"}, "\"x\" is no number"},
         {{"--lens", "singlet:schott:N-BK7,0,5", "--fstop", "4"}, "a radius is 0"},
+        {{"--lens", "singlet:schott:N-BK7,0mm,-5mm", "--fstop", "4"}, "a radius is 0"},
+        {{"--lens", "singlet:schott:N-BK7,1mm", "--fstop", "4"}, "the bending has no unit"},
         {{"--lens", "singlet:schott:N-BK7,1,2,3", "--fstop", "4"}, "too many numbers"},
         {{"--lens", "singlet:schott:N-BK7,50,", "--fstop", "4"}, "nothing follows the last comma"},
         {{"--lens", "singlet:F2", "--fstop", "4"}, "several makers: say which of cdgm:F2"},

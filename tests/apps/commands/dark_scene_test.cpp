@@ -9,17 +9,18 @@ class CliDarkScene : public CliTest {
   protected:
     CliDarkScene() { scene_ = box(1); }
 
-    /// A white box of that size about (0, 1, 0), in metres.
-    std::string box(float side_m) {
+    /// A white box of that size about (0, 1, 0), in metres. more: of its material.
+    std::string box(float side_m, const nlohmann::json& more = {}) {
         TinyGltf file;
         const float r = side_m / 2;
         std::vector<float> xyz;
         for (int i = 0; i < 8; ++i)
             for (int k = 0; k < 3; ++k) xyz.push_back((i >> k & 1 ? r : -r) + (k == 1 ? 1.f : 0.f));
         nlohmann::json primitive;
-        primitive["material"] =
-            file.add("materials",
-                     {{"doubleSided", true}, {"pbrMetallicRoughness", {{"metallicFactor", 0}}}});
+        nlohmann::json material = {{"doubleSided", true},
+                                   {"pbrMetallicRoughness", {{"metallicFactor", 0}}}};
+        if (!more.is_null()) material.update(more);
+        primitive["material"] = file.add("materials", material);
         primitive["attributes"]["POSITION"] = file.add_positions(xyz);
         primitive["indices"] = file.add_accessor<uint16_t>(
             "SCALAR", {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
@@ -71,6 +72,36 @@ TEST_F(CliDarkScene, IsLitByTheStudio) {
     Words asked = small;
     asked.insert(asked.end(), {"--env", "studio"});
     EXPECT_TRUE(render_bytes(asked, "asked.exr") == file_bytes(path("seen.exr")));
+}
+
+// What glows too little to be seen by is lit as well; a lamp is left alone.
+TEST_F(CliDarkScene, IsLitByTheStudioWhereSomethingOnlyGlows) {
+    const auto told = [&](const nlohmann::json& emission, const Words& more = {}) {
+        scene_ = box(1, emission);
+        Words words = render_words({"-o", path("a.exr"), "--size", "24x16"}, scene_);
+        words.insert(words.end(), more.begin(), more.end());
+        const Finished run = run_petzval(words);
+        EXPECT_EQ(run.exit_code, 0) << run.err;
+        return run.err.find("studio light is used too (--env studio)") != std::string::npos;
+    };
+    const nlohmann::json faint = {{"emissiveFactor", {0.009, 0.009, 0.009}}};
+    EXPECT_TRUE(told(faint));
+    EXPECT_GT(value_at(read_picture(path("a.exr")), 12, 8, "G"), 0.1f);
+    EXPECT_FALSE(told(faint, {"--background", "0,0,0"}));
+    EXPECT_LT(value_at(read_picture(path("a.exr")), 12, 8, "G"), 0.02f);
+    EXPECT_FALSE(told({{"emissiveFactor", {0.2, 0.2, 0.2}}}));
+    nlohmann::json lamp = {{"emissiveFactor", {1, 1, 1}}};
+    lamp["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = 2;
+    EXPECT_FALSE(told(lamp));
+}
+
+// Farther away than --focus takes: the option that is told must be one.
+TEST_F(CliDarkScene, AFocusBeyondAllIsCalledInfinity) {
+    scene_ = box(4e9f);
+    const Words words = {"-o", path("a.exr"), "--size", "24x16", "--spp", "1", "--fstop", "2"};
+    const Finished run = run_petzval(render_words(words, scene_));
+    EXPECT_EQ(run.exit_code, 0);
+    EXPECT_NE(run.err.find("focus: infinity (--focus infinity)"), std::string::npos) << run.err;
 }
 
 TEST_F(CliDarkScene, KeepsTheLightThatIsAskedFor) {

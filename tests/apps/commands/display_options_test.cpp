@@ -88,6 +88,31 @@ TEST_F(CliDisplay, RendersShowByItAndSayWhichItIs) {
             "--ocio: is empty"));
 }
 
+// Where the check failed, the file would be lost: its bytes are compared.
+TEST_F(CliDisplay, FilesOfTheConfigurationAreNotOverwritten) {
+    const std::string table = text_file(
+        "half.spi1d", "Version 1\nFrom 0.0 1.0\nLength 2\nComponents 1\n{\n 0.0\n 0.5\n}\n");
+    const std::string by = text_file(
+        "studio.ocio",
+        test::aces_config("  aces_interchange: ACES2065-1\n",
+                          "  - !<ColorSpace>\n    name: Tabled\n    to_scene_reference: "
+                          "!<GroupTransform>\n      children:\n        - !<FileTransform> {src: "
+                          "half.spi1d}\n"));
+    const auto refused = [&](const Words& words, const std::string& file) {
+        const auto before = file_bytes(file);
+        const std::string why = error_of(render_words(words, scene_), 2);
+        EXPECT_TRUE(file_bytes(file) == before) << file;
+        return why;
+    };
+    const std::string png = path("a.png"), exr = path("a.exr");
+    EXPECT_TRUE(has(refused({"-o", png, "--ocio", by, "--stats", table}, table),
+                    "--stats would overwrite a table of the OpenColorIO configuration"));
+    setenv("OCIO", by.c_str(), 1);
+    EXPECT_TRUE(has(refused({"-o", exr, "--stats", table}, table), "would overwrite a table"));
+    EXPECT_TRUE(has(refused({"-o", exr, "--stats", by}, by),
+                    "--stats would overwrite the OpenColorIO configuration"));
+}
+
 TEST_F(CliDisplay, DisplayValuesAreNotLight) {
     const std::string exr = path("a.exr"), png = path("a.png");
     ASSERT_FALSE(told({"-o", exr, "-o", png}).empty());

@@ -117,5 +117,21 @@ TEST_F(CliExposure, AutoDoesNotDependOnCropSamplesAndThreads) {
     EXPECT_EQ(typed(run_petzval(one).err), ev);
 }
 
+TEST_F(CliExposure, APictureIsShownWithAnExposureThatIsFoundInIt) {
+    static_cast<void>(run(lit_by("directional", 1e5), {"-o", path("a.exr")}));
+    const auto shown = [&](const std::string& exposure) {
+        const Finished done = run_petzval(
+            {"image", "view", path("a.exr"), "-o", path("b.png"), "--exposure", exposure});
+        EXPECT_EQ(done.exit_code, 0) << done.err;
+        return done.err;
+    };
+    const std::string ev = typed(shown("auto"));
+    ASSERT_FALSE(ev.empty());
+    EXPECT_LT(std::stod(ev), -10);
+    const auto found = file_bytes(path("b.png"));
+    static_cast<void>(shown(ev + " EV"));
+    EXPECT_TRUE(file_bytes(path("b.png")) == found);
+}
+
 }  // namespace
 }  // namespace petzval

@@ -341,6 +341,26 @@ TEST_F(LensCli, ALensThatPassesNoLightIsAnError) {
     EXPECT_TRUE(holds(render.err, "lets no light through")) << render.err;
 }
 
+// A lens of a focal length of about 1 mm before a film of 36 mm.
+TEST_F(LensCli, ALensThatLightsHardlyAnyOfTheFilmIsAWarning) {
+    const std::string lens = text_file("tiny.json",
+                                       R"({"surfaces": [
+        {"radius": null, "thickness": 1, "medium": null, "semi_diameter": 0.1, "stop": true},
+        {"radius": 20, "thickness": 3, "medium": {"n": 1.5}, "semi_diameter": 6},
+        {"radius": -20, "thickness": 20, "medium": null, "semi_diameter": 6,
+         "asphere": {"2": -1}}]})");
+    const auto said = [&](const Words& more) {
+        Words words = {"--lens", lens, "--focus", "2", "-o", path("a.exr")};
+        words.insert(words.end(), more.begin(), more.end());
+        const Finished run = run_petzval(render_words(words, scene_));
+        EXPECT_EQ(run.exit_code, 0) << run.err;
+        return run.err;
+    };
+    const std::string part = "tiny lights hardly any of the film, which is 24 x 24 mm";
+    EXPECT_TRUE(holds(said({}), part)) << said({});
+    EXPECT_FALSE(holds(said({"--sensor", "0.36x0.24"}), " of the film"));
+}
+
 TEST_F(LensCli, RefusesBadRequests) {
     const std::string out = path("a.svg");
     expect_error({"show", "no-such-lens"}, 2, "cooke-triplet-50mm-f5");

@@ -93,8 +93,11 @@ TEST_F(CliSpelling, MisspeltCommandsAreFound) {
     EXPECT_EQ(refused({"studio.glb"}),
               "\"studio.glb\" is no command; to render it type petzval render studio.glb -o "
               "studio.png, to see what is in it petzval info studio.glb");
-    EXPECT_NE(refused({"my scene.GLTF", "-o", "a.png"}).find("to render it type"),
+    EXPECT_NE(refused({"my scene.GLTF", "-o", "a.png"})
+                  .find("petzval render 'my scene.GLTF' -o 'my scene.png', to see what is in it "
+                        "petzval info 'my scene.GLTF'"),
               std::string::npos);
+    EXPECT_NE(refused({"it's.glb"}).find("render 'it'\\''s.glb' -o"), std::string::npos);
 }
 
 TEST_F(CliSpelling, WordsWithoutAPlace) {

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "camera/models/thin_lens.h"
+#include "core/sampling/warp.h"
 #include "tests/support/scenes.h"
+#include "tests/support/statistics.h"
 
 namespace petzval {
 namespace {
@@ -89,6 +91,22 @@ TEST(Framing, ShowsTheBroadSideOfWhatIsFlat) {
     EXPECT_GT(area({-1, -1, 0}, {1, 1, 0}), 0.6f);
     EXPECT_GT(area({0, -1, -1}, {0, 1, 1}), 0.6f);
     EXPECT_GT(area({-1, 0, -1}, {1, 0, 1}), 0.4f);
+}
+
+// A board that leans any way is seen from where it is broad, though its bounds are those of a cube.
+TEST(Framing, ShowsTheBroadSideOfWhatLeans) {
+    test::Random random(4);
+    for (int i = 0; i < 200; ++i) {
+        const V3f normal = uniform_sphere(random.next2());
+        const V3f a = normal.cross(V3f(0.6f, 0.8f, 0)).normalized();
+        Scene scene;
+        place(scene, quad(-a, a * 2, normal.cross(a) * 3), diffuse_material(0.5f));
+        place(scene, quad(-a + normal * 0.1f, normal.cross(a), a), diffuse_material(0.5f));
+        finish_scene(scene);
+        const auto aim = frame_scene(scene, 0.7f, 1, 0);
+        ASSERT_TRUE(aim);
+        EXPECT_GT(std::fabs(((*aim)[0] - (*aim)[1]).normalized().dot(normal)), 0.4f) << normal;
+    }
 }
 
 TEST(Framing, WidestViewsAndPoints) {

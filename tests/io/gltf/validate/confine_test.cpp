@@ -62,6 +62,8 @@ TEST_F(Confine, FollowsLinks) {
     EXPECT_EQ(refused("in.bin", FileScope::Confined), "");
     EXPECT_EQ(refused("up/scene/inside.bin", FileScope::Confined), "");
     EXPECT_EQ(refused("out.bin", FileScope::Anywhere), "");
+    fs::create_symlink("loop.bin", folder_.path / "scene/loop.bin");
+    EXPECT_TRUE(has(refused("loop.bin", FileScope::Confined), "leads back to itself"));
 }
 
 // A folder whose name begins as the scene's does is another one.

@@ -98,7 +98,7 @@ TEST(GltfMend, BuffersAndAccessors) {
         {"/accessors/0/normalized", "0", "", "false"},
         {"/accessors/0/min", "[0, 0]", "", ""},
         {"/accessors/0/max/1", "\"a\"", ""},
-        {"/accessors/6/count", "0", "/accessors/6: is broken, but nothing needs it", "1"},
+        {"/accessors/6/count", "0", "/accessors/6: holds no elements; what names it", "1"},
         {"/accessors/6/bufferView", "99", "/accessors/6: is broken, but nothing needs it", ""},
         {"/accessors/6/byteOffset", "1", "/accessors/6: is broken, but nothing needs it", ""},
         {"/bufferViews/10", R"({"buffer": 7, "byteLength": 1})", "/bufferViews/10: is broken, but"},
@@ -252,6 +252,10 @@ TEST(GltfMend, Nodes) {
         {"/nodes/0", R"({"children": [1, 2], "matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0, 5,0,0,0.9]})",
          "/nodes/0/matrix: has a last row other than"},
         {"/nodes/0/children", "[1, 2, 2]", "/nodes/0/children: names a node twice", "[1, 2]"},
+        {"/nodes/0/children", "[1, -1, 2, -1]", "/nodes/0/children: names node -1", "[1, 2]"},
+        {"/scenes/0/nodes", "[-1, 0]", "/scenes/0/nodes: names node -1, which is none", "[0]"},
+        {"/nodes/2/extensions/KHR_lights_punctual/light", "-1",
+         "/nodes/2/extensions/KHR_lights_punctual/light: is -1; the node is taken", ""},
         {"/scenes/0/nodes", "[0, 0]", "/scenes/0/nodes: names a node twice", "[0]"},
         {"/scenes/0/nodes", "[0, 1]", "/scenes/0/nodes: node 1 is not a root, but a child of"},
         {"/nodes/2/weights", "[1]", "/nodes/2/weights: has no meaning on a node without a mesh",
@@ -280,6 +284,9 @@ TEST(GltfMend, EmptyMeshesAndWrongCounts) {
     const TempFolder folder;
     const auto source = read_gltf_source(file.save_gltf(folder.path / "a.gltf"));
     EXPECT_TRUE(source.json["meshes"][0]["primitives"][0]["attributes"].empty());
+    const auto warnings = source.warnings.lines();
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_EQ(warnings[0], "/accessors/0: holds no elements; what names it shows nothing");
 }
 
 TEST(GltfMend, FormatsThatAreNotDeclared) {

@@ -248,12 +248,17 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         const Bsdf bsdf(shading.bsdf, bands, shading.frame.to_local(wo), throughput, shading.up);
         const bool light_sampled =
             options_.technique != Technique::BsdfOnly && bsdf.has_wide_lobe();
+        f4 direct{};
         if (light_sampled && light)
-            sum += throughput * (s.lifted() && !light->sample.at_infinity
-                                     ? light_on_smooth(s, shading.frame, bsdf, *light, bands,
-                                                       sampler, depth, medium, stats)
-                                     : direct_light(s, shading.frame, bsdf, *light, bands, sampler,
-                                                    depth, medium, stats));
+            direct = throughput * (s.lifted() && !light->sample.at_infinity
+                                       ? light_on_smooth(s, shading.frame, bsdf, *light, bands,
+                                                         sampler, depth, medium, stats)
+                                       : direct_light(s, shading.frame, bsdf, *light, bands,
+                                                      sampler, depth, medium, stats));
+        sum += direct;
+        if (light_sampled && stats.light_records)
+            stats.light_records->push_back(lights_.record(
+                light ? std::optional(light->light) : std::nullopt, receiver, hsum(direct)));
 
         // Sample the BSDF for the next direction.
         const auto next = bsdf.sample(u.bsdf_lobe, u.bsdf);

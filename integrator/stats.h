@@ -6,8 +6,10 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "camera/camera.h"
+#include "core/light/light_shares.h"
 
 namespace petzval {
 
@@ -22,6 +24,7 @@ struct PathStats {
     bool timing = false;  ///< the current sample is one of those that are timed
     uint64_t timed_samples = 0, samples = 0;
     std::array<uint64_t, static_cast<size_t>(TimedSection::Count)> ticks{};
+    std::vector<LightRecord>* light_records = nullptr;  ///< where a pilot wants them
 
     PathStats& operator+=(const PathStats& o) {
         camera_rays += o.camera_rays;

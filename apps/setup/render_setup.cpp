@@ -10,6 +10,7 @@
 #include "apps/setup/option_names.h"
 #include "core/light/own_light.h"
 #include "core/scene/studio.h"
+#include "integrator/light_pilot.h"
 #include "io/base/error.h"
 #include "io/base/format.h"
 #include "io/base/read_file.h"
@@ -145,6 +146,9 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
     CameraSetup camera =
         set_up_camera(model, request.scene.string(), request.size, scene, *prepared.bvh, notice);
     setup.view.camera = std::move(camera.camera);
+    prepared.lights = std::make_shared<const LightChoice>(
+        taught_by_pilot(*prepared.lights, scene, *prepared.bvh, *setup.view.camera,
+                        setup.view.observer, request.size));
     from.camera = std::move(camera.report);
     return setup;
 }

@@ -16,6 +16,10 @@ float finite(const Scene& scene, float power) {
     return power <= most ? power : most;
 }
 
+// Share that each of two groups of lights has at least, whatever a pilot found: what it missed has
+// a weight of 20 at most.
+constexpr float kLeastShare = 0.05f;
+
 struct BoundsOf {
     const Scene& scene;
     float power;  ///< light_power, above 0
@@ -74,13 +78,13 @@ void LightChoice::plant(const Scene& scene, std::span<float> power) {
         return;
     for (size_t i = 0; i < power.size(); ++i)
         if (bounds[i]) power[i] = 0.f;
-    tree_.emplace(bounds, outside);
+    tree_ = std::make_shared<const LightTree>(bounds, outside);
 }
 
 std::optional<LightChoice::Pick> LightChoice::pick(float u, const LightReceiver& receiver) const {
     float probability = 1.f;
     if (tree_) {
-        const auto pick = tree_->pick(u, receiver);
+        const auto pick = tree_->pick(u, receiver, share_at(receiver));
         if (!pick) return std::nullopt;
         if (pick->light != LightTree::kOutside) return Pick{pick->light, pick->probability};
         u = pick->u;
@@ -94,8 +98,30 @@ std::optional<LightChoice::Pick> LightChoice::pick(float u, const LightReceiver&
 float LightChoice::probability(uint32_t light, const LightReceiver& receiver) const {
     const float among = choice_.size() == 0 ? 0.f : choice_.probability(light);
     if (!tree_) return among;
-    return among > 0.f ? tree_->probability(LightTree::kOutside, receiver) * among
-                       : tree_->probability(light, receiver);
+    const LightTree::OutsideShare share = share_at(receiver);
+    return among > 0.f ? tree_->probability(LightTree::kOutside, receiver, share) * among
+                       : tree_->probability(light, receiver, share);
+}
+
+LightChoice LightChoice::for_pilot() const {
+    LightChoice even = *this;
+    even.least_share_ = 0.5f;
+    return even;
+}
+
+LightChoice LightChoice::taught(std::span<const LightRecord> records) const {
+    LightChoice taught = *this;
+    taught.shares_ = LightShares(records);
+    taught.least_share_ = kLeastShare;
+    return taught;
+}
+
+LightRecord LightChoice::record(const std::optional<uint32_t>& light, const LightReceiver& receiver,
+                                float found) const {
+    const LightTree::Strength strength = tree_->strength(receiver);
+    const bool outside = light && choice_.probability(*light) > 0.f;
+    return {receiver.p, outside ? LightGroup::Outside : LightGroup::Inside,
+            outside ? strength.outside : strength.inside, found};
 }
 
 }  // namespace petzval

@@ -2,9 +2,12 @@
 // Choice of the light to sample at a path vertex.
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <span>
 
 #include "core/light/light_options.h"
+#include "core/light/light_shares.h"
 #include "core/light/light_tree.h"
 #include "core/sampling/distribution.h"
 #include "core/scene/scene.h"
@@ -27,11 +30,27 @@ class LightChoice {
     /// Probability of picking a light; 0 for one without power, or that cannot reach the receiver.
     [[nodiscard]] float probability(uint32_t light, const LightReceiver&) const;
 
+    /// Whether lights at infinity and lights that have a position share the choice, so that a pilot
+    /// can teach it.
+    [[nodiscard]] bool divides() const { return tree_ != nullptr && choice_.size() > 0; }
+    /// The same choice with even shares for the pilot: both groups are picked equally often.
+    [[nodiscard]] LightChoice for_pilot() const;
+    /// The same choice, with what a pilot has found.
+    [[nodiscard]] LightChoice taught(std::span<const LightRecord>) const;
+    /// Record of a light sample: a pick, nullopt where there was none, and its contribution.
+    [[nodiscard]] LightRecord record(const std::optional<uint32_t>& light, const LightReceiver&,
+                                     float found) const;
+
   private:
     void plant(const Scene&, std::span<float> power);
 
     Piecewise1D choice_;  ///< choice among all lights; with a tree, among those outside it
-    std::optional<LightTree> tree_;
+    std::shared_ptr<const LightTree> tree_;  ///< copies of a choice share it
+    LightShares shares_;
+    float least_share_ = 0;
+    [[nodiscard]] LightTree::OutsideShare share_at(const LightReceiver& r) const {
+        return {shares_.factor(r.p), least_share_};
+    }
 };
 
 }  // namespace petzval

@@ -236,12 +236,26 @@ f8 LightTree::weigh(const Node& n, const LightReceiver& r) {
     return shines & arrives ? weight : f8{};
 }
 
-std::optional<LightTree::Pick> LightTree::pick(float u, const LightReceiver& receiver) const {
-    float probability = 1.f, outside = outside_;
+float LightTree::outside_beside(float inside, const OutsideShare& known) const {
+    const float outside = known.factor * outside_;
+    if (!(outside > 0.f && inside > 0.f)) return outside_ > 0.f && !(inside > 0.f) ? 1.f : outside;
+    const float share = known.least + (1.f - 2.f * known.least) * (outside / (outside + inside));
+    return inside * (share / (1.f - share));
+}
+
+LightTree::Strength LightTree::strength(const LightReceiver& receiver) const {
+    return {hsum(weigh(nodes_[0], receiver)), outside_};
+}
+
+std::optional<LightTree::Pick> LightTree::pick(float u, const LightReceiver& receiver,
+                                               const OutsideShare& known) const {
+    float probability = 1.f, outside = 0.f;
     for (uint32_t node = 0;;) {
         const Node& n = nodes_[node];
         const f8 weight = weigh(n, receiver);
-        const float sum = outside + hsum(weight);
+        const float inside = hsum(weight);
+        outside = node == 0 ? outside_beside(inside, known) : 0.f;
+        const float sum = outside + inside;
         float left = u * sum;
         if (left < outside) return Pick{kOutside, outside / sum, left / outside};
         left -= outside;
@@ -257,19 +271,21 @@ std::optional<LightTree::Pick> LightTree::pick(float u, const LightReceiver& rec
         u = std::clamp(left / weight[child], 0.f, kOneMinus);
         if (n.is_light >> child & 1) return Pick{n.child[child], probability, u};
         node = n.child[child];
-        outside = 0.f;
     }
 }
 
-float LightTree::probability(uint32_t light, const LightReceiver& receiver) const {
+float LightTree::probability(uint32_t light, const LightReceiver& receiver,
+                             const OutsideShare& known) const {
     if (light == kOutside) {
-        const float sum = outside_ + hsum(weigh(nodes_[0], receiver));
-        return sum > 0.f ? outside_ / sum : 0.f;
+        const float inside = hsum(weigh(nodes_[0], receiver));
+        const float outside = outside_beside(inside, known), sum = outside + inside;
+        return sum > 0.f ? outside / sum : 0.f;
     }
     float probability = 1.f;
     for (uint32_t at = place_[light]; at != kOutside; at = parent_[at / 8]) {
         const f8 weight = weigh(nodes_[at / 8], receiver);
-        const float sum = (at < 8 ? outside_ : 0.f) + hsum(weight);
+        const float inside = hsum(weight);
+        const float sum = inside + (at < 8 ? outside_beside(inside, known) : 0.f);
         const float chosen = weight[at % 8];
         if (!(chosen > 0.f)) return 0.f;
         probability *= chosen / sum;

@@ -43,6 +43,19 @@ class LightTree {
     LightTree(std::span<const std::optional<LightBounds>> lights, float outside);
 
     static constexpr uint32_t kOutside = ~0u;
+    /// What is known of the share of the lights at infinity at a receiver.
+    struct OutsideShare {
+        float factor = 1;  ///< on their illuminance
+        /// Probability that they have at least, and that they leave, where both kinds of light can
+        /// reach the receiver; up to 1/2.
+        float least = 0;
+    };
+    /// Illuminance, in a unit of their own, that the lights of the tree and those outside would
+    /// bring if nothing stood in between.
+    struct Strength {
+        float inside, outside;
+    };
+    [[nodiscard]] Strength strength(const LightReceiver&) const;
     struct Pick {
         uint32_t light;  ///< index into the lights, or kOutside
         float probability;
@@ -50,10 +63,12 @@ class LightTree {
     };
     /// Picks a light; u in [0, 1). Nothing where the lights that were drawn cannot reach the
     /// receiver.
-    [[nodiscard]] std::optional<Pick> pick(float u, const LightReceiver&) const;
+    [[nodiscard]] std::optional<Pick> pick(float u, const LightReceiver&,
+                                           const OutsideShare&) const;
     /// Probability of picking a light, or kOutside; 0 only for lights that cannot reach the
     /// receiver.
-    [[nodiscard]] float probability(uint32_t light, const LightReceiver&) const;
+    [[nodiscard]] float probability(uint32_t light, const LightReceiver&,
+                                    const OutsideShare&) const;
 
   private:
     struct Node {
@@ -71,6 +86,8 @@ class LightTree {
     };
     void build(std::span<Item>, uint32_t node);
     [[nodiscard]] static std::size_t split(std::span<Item>);
+    /// Weight of the lights outside beside a sum of weights of lights inside.
+    [[nodiscard]] float outside_beside(float inside, const OutsideShare&) const;
     [[nodiscard]] static f8 weigh(const Node&, const LightReceiver&);
 
     std::vector<Node> nodes_;       ///< 0 is the root

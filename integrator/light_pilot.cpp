@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "integrator/light_pilot.h"
+
+#include "core/film/film.h"
+#include "integrator/render.h"
+
+namespace petzval {
+namespace {
+
+constexpr uint32_t kPaths = 8192;
+constexpr uint32_t kSeed = 0x6c696768;  ///< so that no sample is one of the picture
+
+}  // namespace
+
+LightChoice taught_by_pilot(const LightChoice& choice, const Scene& scene, const Bvh& bvh,
+                            const Camera& camera, const Observer& observer, V2i frame_px) {
+    if (!choice.divides()) return choice;
+    const LightChoice even = choice.for_pilot();
+    const PathTracer<> tracer(scene, bvh, even, {});
+    RenderJob job;
+    job.seed = kSeed;
+    job.observer = observer;
+    std::vector<LightRecord> records;
+    PathStats stats;
+    stats.light_records = &records;
+    const auto at = [](uint32_t random, int side) {
+        return static_cast<int>((uint64_t{random} * static_cast<uint64_t>(side)) >> 32);
+    };
+    for (uint32_t i = 0; i < kPaths; ++i) {
+        const int x = at(hash32(i, 1), frame_px.x), y = at(hash32(i, 2), frame_px.y);
+        Film film(frame_px, {x, y, x + 1, y + 1}, {});
+        render_sample(tracer, camera, job, {x, y, i}, film, stats);
+    }
+    return choice.taught(records);
+}
+
+}  // namespace petzval

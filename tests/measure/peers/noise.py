@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Noise of pictures from their variance over seeds, with intervals, for bench.py."""
+import math
+
+import numpy
+
+DARK_SHARE, TRIMMED_SHARE = .01, .001
+# 97.5 % points of Student's t by degrees of freedom.
+STUDENT = (12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131)
+MEASURES = ("plain", "trimmed", "typical")
+
+
+def pixel_errors(pictures):
+    """Relative variance of each pixel: the unbiased variance over seeds of r, g, b, summed, over the squared mean
+    over seeds, summed, plus a hundredth of the picture's squared mean. `pictures` is (seeds, pixels, 3)."""
+    mean = pictures.mean(0, dtype=float)
+    dark = DARK_SHARE * (mean.mean(0) ** 2).sum()
+    return pictures.var(0, ddof=1, dtype=float).sum(-1) / ((mean ** 2).sum(-1) + dark)
+
+
+def summaries(errors):
+    """Mean of the pixels' errors; the same without the largest 0.1 %; and the median pixel."""
+    ordered = numpy.sort(errors)
+    kept = ordered[:len(ordered) - math.ceil(TRIMMED_SHARE * len(ordered))]
+    return {"plain": ordered.mean(), "trimmed": kept.mean(), "typical": numpy.median(ordered)}
+
+
+def noise(pictures):
+    """Errors of one program: of all seeds, and with each seed left out."""
+    pictures = numpy.asarray(pictures)
+    out = {"all": summaries(pixel_errors(pictures)), "without": []}
+    if len(pictures) > 2:
+        out["without"] = [summaries(pixel_errors(numpy.delete(pictures, i, 0))) for i in range(len(pictures))]
+    return out
+
+
+def error_against(pictures, reference):
+    """Mean over seeds of the relative squared error against a converged picture; weights as in pixel_errors()."""
+    dark = DARK_SHARE * (reference.mean(0) ** 2).sum()
+    squares = ((numpy.asarray(pictures, float) - reference) ** 2).mean(0).sum(-1)
+    return summaries(squares / ((reference ** 2).sum(-1) + dark))
+
+
+def jackknife(value, without):
+    """A ratio with its 95 % interval: the jackknife of its logarithm (Efron and Stein 1981), Student's t."""
+    out = {"ratio": value, "low": None, "high": None, "log_error": None}
+    if len(without) > 2:
+        logs, n = numpy.log(without), len(without)
+        error = math.sqrt((n - 1) / n * ((logs - logs.mean()) ** 2).sum())
+        reach = math.exp(STUDENT[min(n - 1, len(STUDENT)) - 1] * error)
+        out.update(low=value / reach, high=value * reach, log_error=error)
+    return out
+
+
+def geometric_mean(ratios):
+    """The geometric mean of jackknife() results of independent rows, with its 95 % interval."""
+    value = math.exp(sum(math.log(r["ratio"]) for r in ratios) / len(ratios))
+    if any(r["log_error"] is None for r in ratios):
+        return {"ratio": value, "low": None, "high": None}
+    reach = math.exp(1.96 * math.sqrt(sum(r["log_error"] ** 2 for r in ratios)) / len(ratios))
+    return {"ratio": value, "low": value / reach, "high": value * reach}

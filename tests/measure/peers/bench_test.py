@@ -49,6 +49,11 @@ class Noise(unittest.TestCase):
         self.assertGreater(found["plain"], .015)
         self.assertLess(found["trimmed"], .0102)
 
+    def test_the_typical_pixel_is_none_of_mere_sky(self):
+        pictures = numpy.concatenate((noisy(.1), noisy(1e-4, pixels=30000)), 1)
+        self.assertEqual(noise.summaries(noise.pixel_errors(pictures))["typical"],
+                         numpy.median(noise.pixel_errors(pictures)[:20000]))
+
     def test_agrees_with_the_error_against_the_truth(self):
         pictures = noisy(.1)
         self.assertAlmostEqual(noise.error_against(pictures, numpy.ones(pictures.shape[1:]))["plain"],

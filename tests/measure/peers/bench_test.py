@@ -76,6 +76,14 @@ class Table(unittest.TestCase):
             held += ratio["low"] < 1 < ratio["high"]
         self.assertGreater(held, 84)
 
+    def test_a_mean_of_one_row_is_that_row_and_many_rows_settle_it(self):
+        one = noise.jackknife(2., [1.9, 2.2, 2.05, 1.8])
+        for key, value in noise.geometric_mean([one]).items():
+            self.assertAlmostEqual(value, one[key])
+        many = noise.geometric_mean([one] * 16)
+        self.assertAlmostEqual(many["ratio"], 2)
+        self.assertLess(math.log(many["high"] / 2), math.log(one["high"] / 2) / 4)
+
     def test_the_worst_row_comes_first_and_last(self):
         done = {"good": {"a": program(.1, 1), "b": program(.2, 1)}, "bad": {"a": program(.2, 1), "b": program(.1, 1)}}
         lines = table.markdown(done, ["a", "b"]).strip().splitlines()

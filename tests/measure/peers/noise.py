@@ -43,21 +43,33 @@ def error_against(pictures, reference):
     return summaries(squares / ((reference ** 2).sum(-1) + dark))
 
 
+def student(freedom):
+    """The 97.5 % point of Student's t; beyond the table, its last value."""
+    return STUDENT[min(max(int(freedom), 1), len(STUDENT)) - 1]
+
+
+def interval(value, error, freedom):
+    """The ratio with its 95 % interval, from the standard error of its logarithm."""
+    reach = math.exp(student(freedom) * error)
+    return {"ratio": value, "low": value / reach, "high": value * reach, "log_error": error, "freedom": freedom}
+
+
 def jackknife(value, without):
-    """A ratio with its 95 % interval: the jackknife of its logarithm (Efron and Stein 1981), Student's t."""
-    out = {"ratio": value, "low": None, "high": None, "log_error": None}
-    if len(without) > 2:
-        logs, n = numpy.log(without), len(without)
-        error = math.sqrt((n - 1) / n * ((logs - logs.mean()) ** 2).sum())
-        reach = math.exp(STUDENT[min(n - 1, len(STUDENT)) - 1] * error)
-        out.update(low=value / reach, high=value * reach, log_error=error)
-    return out
+    """The ratio with its 95 % interval: the jackknife of its logarithm (Efron and Stein 1981), Student's t."""
+    n = len(without)
+    if n < 3:
+        return {"ratio": value, "low": None, "high": None, "log_error": None}
+    logs = numpy.log(without)
+    return interval(value, math.sqrt((n - 1) / n * ((logs - logs.mean()) ** 2).sum()), n - 1)
 
 
 def geometric_mean(ratios):
-    """The geometric mean of jackknife() results of independent rows, with its 95 % interval."""
+    """The geometric mean of jackknife() results of independent rows, with its 95 % interval.
+
+    Degrees of freedom of a sum of variances: Welch 1947, Satterthwaite 1946."""
     value = math.exp(sum(math.log(r["ratio"]) for r in ratios) / len(ratios))
-    if any(r["log_error"] is None for r in ratios):
-        return {"ratio": value, "low": None, "high": None}
-    reach = math.exp(1.96 * math.sqrt(sum(r["log_error"] ** 2 for r in ratios)) / len(ratios))
-    return {"ratio": value, "low": value / reach, "high": value * reach}
+    if any(not r["log_error"] for r in ratios):
+        return {"ratio": value, "low": None, "high": None, "log_error": None}
+    squares = [r["log_error"] ** 2 for r in ratios]
+    freedom = sum(squares) ** 2 / sum(s ** 2 / r["freedom"] for s, r in zip(squares, ratios))
+    return interval(value, math.sqrt(sum(squares)) / len(ratios), freedom)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The programs that bench.py compares: how each is started, and what CPU time it takes."""
+import hashlib
 import json
 import os
 import shutil
@@ -31,9 +32,11 @@ class Petzval:
 
     def __init__(self, path):
         self.path = os.path.abspath(path)
-        self.name = self.version = "petzval"
+        self.name = "petzval"
         if not os.path.exists(self.path):
             sys.exit("no %s: build it, or say --petzval PATH" % self.path)
+        with open(self.path, "rb") as file:  # two builds of one version are not the same
+            self.version = "sha256 " + hashlib.sha256(file.read()).hexdigest()[:16]
 
     def render(self, a, row, scene, samples, seed, output):
         """Renders to the file; returns the CPU time from start to end, s."""
@@ -42,7 +45,6 @@ class Petzval:
                    # Cycles counts what comes after the first surface.
                    "--max-depth", str(a.bounces + 1), "--fov", str(row.vfov_deg),
                    "--look-at=" + ",".join(map(str, [*row.eye, *row.target])), *row.petzval]
-        # Without a sky the scene is in the dark; a sky of its own keeps the studio light away.
         command += ["--env", row.sky] if row.sky else []
         if row.lens_radius:
             command += ["--lens", "thin", "--lens-radius", str(row.lens_radius), "--focus", "%gm" % row.focus]

@@ -84,7 +84,8 @@ def arguments():
     parser.add_argument("--scenes", metavar="DIR", help="folder of scenes that are not part of the project")
     parser.add_argument("--rows", help="names of rows, with commas (default: all)")
     parser.add_argument("--seeds", type=int, default=8)
-    parser.add_argument("--timed-seeds", type=int, help="seeds that are rendered short too, for the cost (default: all)")
+    parser.add_argument("--timed-seeds", type=int,
+                        help="seeds that are rendered short too, for the cost (default: all)")
     parser.add_argument("--size", default="320x240")
     parser.add_argument("--samples", type=int, default=64)
     parser.add_argument("--short-samples", type=int, default=4)

@@ -83,14 +83,16 @@ class Model:
             nonlocal data
             views.append({"buffer": 0, "byteOffset": len(data), "byteLength": array.nbytes, "target": target})
             data += array.tobytes()
-            accessors.append({"bufferView": len(views) - 1, "componentType": component, "count": len(array), "type": kind})
+            accessors.append({"bufferView": len(views) - 1, "componentType": component, "count": len(array),
+                              "type": kind})
             return len(accessors) - 1
 
         names = sorted(self.parts)
         for i, name in enumerate(names):
             positions, normals, triangles = (numpy.concatenate(p) for p in self.parts[name])
-            position = put(positions.astype("<f4"), "VEC3", 5126, 34962)
-            accessors[-1].update(min=positions.astype("<f4").min(0).tolist(), max=positions.astype("<f4").max(0).tolist())
+            positions = positions.astype("<f4")
+            position = put(positions, "VEC3", 5126, 34962)
+            accessors[-1].update(min=positions.min(0).tolist(), max=positions.max(0).tolist())
             primitives.append({"material": i, "attributes": {
                 "POSITION": position, "NORMAL": put(normals.astype("<f4"), "VEC3", 5126, 34962)},
                 "indices": put(triangles.astype("<u4").ravel(), "SCALAR", 5125, 34963)})
@@ -174,7 +176,8 @@ def street(m):
         while z > -50:
             deep, high = dice.uniform(4, 8), dice.uniform(7, 14)
             near, far = side * 5, side * 13
-            m.box(dice.choice(("wall", "red", "grey", "green")), (min(near, far), 0, z - deep), (max(near, far), high, z))
+            m.box(dice.choice(("wall", "red", "grey", "green")),
+                  (min(near, far), 0, z - deep), (max(near, far), high, z))
             for floor in range(int(high / 3)):
                 for at in numpy.arange(z - deep + 1, z - 1, 1.8):
                     x = side * 4.98
@@ -185,7 +188,8 @@ def street(m):
         m.box("steel", (x - .05, 0, z - .05), (x + .05, 4, z + .05))
         m.sphere("lamp", (x, 4.15, z), .18, 8)
     for i in range(6):
-        m.box(("red", "blue", "steel")[i % 3], ((-1) ** i * 2.2 - .8, .2, -4 - 6 * i), ((-1) ** i * 2.2 + .8, 1.4, -8 - 6 * i + .6))
+        x, z = (-1) ** i * 2.2, -6 * i
+        m.box(("red", "blue", "steel")[i % 3], (x - .8, .2, z - 7.4), (x + .8, 1.4, z - 4))
 
 
 def hall(m):
@@ -201,7 +205,8 @@ def hall(m):
             m.box("grey", (x - .35, 0, -4.35 - 5 * i), (x + .35, 6, -3.65 - 5 * i))
     for i in range(120):
         x, y, z, half = dice.uniform(-9.5, 9.5), dice.uniform(3, 5.6), dice.uniform(-23, 4), dice.uniform(.02, .06)
-        m.box(dice.choice(("lamp", "lamp", "blue lamp")), (x - half, y - half, z - half), (x + half, y + half, z + half))
+        m.box(dice.choice(("lamp", "lamp", "blue lamp")), (x - half, y - half, z - half),
+              (x + half, y + half, z + half))
     for i in range(24):
         x, z, r = dice.uniform(-8, 8), dice.uniform(-20, -2), dice.uniform(.2, .7)
         m.sphere(dice.choice(("gold", "wall", "red", "blue")), (x, r, z), r, 16)
@@ -241,7 +246,8 @@ def write_skies(folder):
     up = numpy.sin(elevation)
     # A sun of 3 degrees at 35 degrees above the horizon, with a haze around it.
     sun = up * math.sin(math.radians(35)) + numpy.cos(elevation) * math.cos(math.radians(35)) * numpy.cos(azimuth - .3)
-    sky = numpy.where(up[..., None] > 0, numpy.array((1., 1.6, 3.)) + (1 - up[..., None]) ** 4 * numpy.array((3., 2.6, 2.)),
+    up = up[..., None]
+    sky = numpy.where(up > 0, numpy.array((1., 1.6, 3.)) + (1 - up) ** 4 * numpy.array((3., 2.6, 2.)),
                       numpy.array((.5, .45, .4)))
     sky = sky + (8 * numpy.exp(12 * (sun - 1)))[..., None]
     sky = sky + (sun > math.cos(math.radians(1.5)))[..., None] * numpy.array((3000., 2700., 2200.))

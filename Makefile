@@ -3,7 +3,7 @@
 PACKAGES = cmake ninja-build ccache mold libembree-dev libtbb-dev libimath-dev libopenimageio-dev \
     openimageio-tools libopencolorio-dev libtinygltf-dev nlohmann-json3-dev libfmt-dev \
     libcli11-dev libpugixml-dev gnuplot-nox
-TEST_PACKAGES = libgtest-dev libgmock-dev libbenchmark-dev
+TEST_PACKAGES = libgtest-dev libgmock-dev libbenchmark-dev python3-numpy
 SOURCES = git ls-files '*.h' '*.cpp'
 
 .PHONY: render gallery test program build format format-check

@@ -321,7 +321,7 @@ const std::vector<std::pair<std::string, ChartAxis>>& chart_axes() {
 std::string name_of(ChartAxis axis) {
     for (const auto& [word, one] : chart_axes())
         if (one == axis) return word;
-    return "peers";
+    return {};
 }
 
 std::vector<ChartCase> chart_cases(const std::vector<ChartAxis>& axes, const ChartSubject& subject,
@@ -337,8 +337,6 @@ std::vector<ChartCase> chart_cases(const std::vector<ChartAxis>& axes, const Cha
                                             "give --camera or --look-at",
                                             name_of(axis)));
         switch (axis) {
-            case ChartAxis::Peers:
-                break;
             case ChartAxis::Camera:
                 cases.push_back(camera_case(found, subject.job, open));
                 break;

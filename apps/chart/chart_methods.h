@@ -14,17 +14,8 @@
 
 namespace petzval {
 
-/// Axes of a chart. Peers: other programs, which are not measured from in here.
-enum class ChartAxis : uint8_t {
-    Camera,
-    Dispersion,
-    Spectral,
-    Iris,
-    Sampler,
-    Lights,
-    Precision,
-    Peers
-};
+/// Axes of a chart.
+enum class ChartAxis : uint8_t { Camera, Dispersion, Spectral, Iris, Sampler, Lights, Precision };
 
 /// Every axis with its word, in the order of a report.
 [[nodiscard]] const std::vector<std::pair<std::string, ChartAxis>>& chart_axes();

@@ -3,8 +3,8 @@
 
     blender -b --factory-startup -noaudio -P cycles.py -- '{"scene": "a.glb", "output": "a.exr", ...}'
 
-Run by compare.py, which says what the JSON holds. Prints "CYCLES render_cpu_s=..." for the process's
-CPU time within the render: Cycles' own scene and BVH are in it, import and Python are not.
+Run by bench.py; programs.py says what the JSON holds. For Blender 3.4 and 5.2, whose names for the
+same things differ. Prints "CYCLES done" at its end, as Blender's exit status tells nothing of scripts.
 """
 import json
 import math
@@ -16,8 +16,22 @@ import numpy
 from mathutils import Matrix, Vector
 
 wanted = json.loads(sys.argv[sys.argv.index("--") + 1])
+# Sobol points scrambled after Owen in both; in 5.2 from tables, the better of its two patterns for
+# the error of a pixel (against_cycles.md has the numbers).
+PATTERNS = ("SOBOL", "TABULATED_SOBOL")
 # glTF has y up, Blender z: (x, y, z) -> (x, -z, y).
 TURN = Matrix(((1, 0, 0, 0), (0, 0, -1, 0), (0, 1, 0, 0), (0, 0, 0, 1)))
+
+
+def set_first(thing, name, values):
+    """Sets the property to the first of the values that this Blender knows."""
+    for value in values:
+        try:
+            setattr(thing, name, value)
+            return
+        except TypeError:
+            pass
+    raise SystemExit("this Blender knows none of %s for %s" % (values, name))
 
 
 def load(path):
@@ -29,12 +43,27 @@ def load(path):
     import addon_utils
     addon_utils.enable("cycles")
     addon_utils.enable("io_scene_gltf2")
-    bpy.ops.import_scene.gltf(filepath=os.path.abspath(path), convert_lighting_mode="COMPAT")
+    options = bpy.ops.import_scene.gltf.get_rna_type().properties.keys()
+    units = next(name for name in options if name.endswith("convert_lighting_mode"))
+    bpy.ops.import_scene.gltf(filepath=os.path.abspath(path), **{units: "COMPAT"})
+
+
+def mend_volume(tree, node):
+    """Gives the volume the absorption of KHR_materials_volume, -ln(colour) / distance; the importer's
+    is (1 - colour) / distance. One that absorbs nothing is taken out: Cycles would march through it."""
+    colour, density = node.inputs["Color"], node.inputs["Density"]
+    sigma = [-math.log(max(c, 1e-6)) * density.default_value for c in colour.default_value[:3]]
+    most = max(sigma)
+    if most > 0:
+        density.default_value = most
+        colour.default_value = [1 - s / most for s in sigma] + [1]
+    else:
+        tree.nodes.remove(node)
 
 
 def mend_materials():
-    """The importer links the hidden output of its colour mixers, which Cycles then drops, texture
-    and all; and Cycles does not know alpha cutoffs."""
+    """The importer of 3.4 links the hidden output of its colour mixers, which Cycles then drops,
+    texture and all, and leaves out alpha cutoffs."""
     for material in bpy.data.materials:
         if not material.use_nodes:
             continue
@@ -43,7 +72,9 @@ def mend_materials():
             node = link.from_node
             if node.bl_idname == "ShaderNodeMix" and node.data_type == "RGBA" and not link.from_socket.enabled:
                 tree.links.new(node.outputs[2], link.to_socket)
-        if material.blend_method != "CLIP":
+        for node in [n for n in tree.nodes if n.bl_idname == "ShaderNodeVolumeAbsorption"]:
+            mend_volume(tree, node)
+        if bpy.app.version >= (4, 2) or material.blend_method != "CLIP":
             continue
         for node in [n for n in tree.nodes if n.bl_idname == "ShaderNodeBsdfPrincipled"]:
             alpha = node.inputs["Alpha"]
@@ -95,7 +126,7 @@ def set_lights(scene):
     if wanted["environment"]:
         image = nodes.new("ShaderNodeTexEnvironment")
         image.image = bpy.data.images.load(os.path.abspath(wanted["environment"]))
-        image.image.colorspace_settings.name = "Linear"
+        set_first(image.image.colorspace_settings, "name", ("Linear", "Linear Rec.709"))
         links.new(image.outputs[0], background.inputs["Color"])
     else:
         world.cycles.sampling_method = "NONE"
@@ -113,7 +144,7 @@ def set_render(scene):
     settings = render.image_settings
     settings.file_format, settings.color_mode, settings.color_depth = "OPEN_EXR", "RGB", "32"
     cycles.device = "CPU"
-    cycles.sampling_pattern = wanted["pattern"]
+    set_first(cycles, "sampling_pattern", [wanted["pattern"]] if wanted["pattern"] else PATTERNS)
     cycles.samples, cycles.seed = wanted["samples"], wanted["seed"]
     cycles.use_adaptive_sampling = cycles.use_denoising = cycles.use_fast_gi = False
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
@@ -126,7 +157,8 @@ def set_render(scene):
     cycles.use_auto_tile = False
     for thing in scene.collection.all_objects:
         if thing.type == "MESH":
-            thing.cycles.shadow_terminator_geometry_offset = 0
+            owner = thing if hasattr(thing, "shadow_terminator_geometry_offset") else thing.cycles
+            owner.shadow_terminator_geometry_offset = 0
 
 
 load(wanted["scene"])
@@ -136,7 +168,5 @@ set_camera(scene)
 set_lights(scene)
 set_render(scene)
 scene.render.filepath = os.path.abspath(wanted["output"])
-before = os.times()
 bpy.ops.render.render(write_still=True)
-after = os.times()
-print("CYCLES render_cpu_s=%.6f" % (after.user + after.system - before.user - before.system))
+print("CYCLES done")

@@ -1,0 +1,130 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""Tests of what bench.py computes, on pictures whose noise is known."""
+import json
+import math
+import os
+import struct
+import sys
+import tempfile
+import unittest
+
+try:
+    import numpy
+except ImportError:  # in the form of a skipped test of GoogleTest, which .ci/skipped reads
+    print("bench_test.py: Skipped\nnumpy is missing (apt-get install python3-numpy)\n[  SKIPPED ] Bench (0 ms)")
+    sys.exit(77)
+
+sys.dont_write_bytecode = True
+import noise
+import rooms
+import scenes
+import table
+
+
+def noisy(sigma, seeds=8, pixels=20000):
+    """Pictures of mean 1 with Gaussian noise."""
+    return numpy.random.default_rng(1).normal(1, sigma, (seeds, pixels, 3))
+
+
+def program(sigma, cpu_s):
+    return {"sample_cpu_s": [cpu_s] * 8, "whole_cpu_s": [100 * cpu_s] * 8, "mean": 1., **noise.noise(noisy(sigma))}
+
+
+class Noise(unittest.TestCase):
+    def test_is_the_relative_variance(self):
+        found = noise.summaries(noise.pixel_errors(noisy(.1)))
+        self.assertAlmostEqual(found["plain"], .01 / 1.01, delta=1e-4)
+        self.assertAlmostEqual(found["trimmed"], found["plain"], delta=1e-4)
+        self.assertLess(found["typical"], found["plain"])
+
+    def test_does_not_depend_on_the_number_of_seeds_nor_on_brightness(self):
+        few, many = (noise.summaries(noise.pixel_errors(s * noisy(.1, n)))["plain"] for s, n in ((1, 2), (7, 16)))
+        self.assertAlmostEqual(few / many, 1, delta=.03)
+
+    def test_trimming_leaves_the_brightest_errors_out(self):
+        pictures = noisy(.1)
+        pictures[3, :20] = 1000
+        found = noise.summaries(noise.pixel_errors(pictures))
+        self.assertGreater(found["plain"], .015)
+        self.assertLess(found["trimmed"], .0102)
+
+    def test_the_typical_pixel_is_none_of_mere_sky(self):
+        pictures = numpy.concatenate((noisy(.1), noisy(1e-4, pixels=30000)), 1)
+        self.assertEqual(noise.summaries(noise.pixel_errors(pictures))["typical"],
+                         numpy.median(noise.pixel_errors(pictures)[:20000]))
+
+    def test_agrees_with_the_error_against_the_truth(self):
+        pictures = noisy(.1)
+        self.assertAlmostEqual(noise.error_against(pictures, numpy.ones(pictures.shape[1:]))["plain"],
+                               noise.summaries(noise.pixel_errors(pictures))["plain"], delta=1e-4)
+
+
+class Table(unittest.TestCase):
+    def test_ratios_are_above_one_where_petzval_is_better(self):
+        found = table.ratios(program(.1, 1), program(.2, 3))
+        self.assertAlmostEqual(found["speed"], 3)
+        self.assertAlmostEqual(found["error plain"], 4, delta=.05)
+        self.assertAlmostEqual(found["efficiency trimmed"]["ratio"], 12, delta=.15)
+
+    def test_the_interval_holds_the_true_ratio(self):
+        dice, held = numpy.random.default_rng(2), 0
+        for _ in range(100):
+            one, other = (noise.noise(dice.normal(1, s, (8, 2, 3))) for s in (.1, .1))
+            ratio = noise.jackknife(other["all"]["plain"] / one["all"]["plain"], [
+                b["plain"] / a["plain"] for a, b in zip(one["without"], other["without"])])
+            held += ratio["low"] < 1 < ratio["high"]
+        self.assertGreater(held, 84)
+
+    def test_a_mean_of_one_row_is_that_row_and_many_rows_settle_it(self):
+        one = noise.jackknife(2., [1.9, 2.2, 2.05, 1.8])
+        for key, value in noise.geometric_mean([one]).items():
+            self.assertAlmostEqual(value, one[key])
+        many = noise.geometric_mean([one] * 16)
+        self.assertAlmostEqual(many["ratio"], 2)
+        self.assertLess(math.log(many["high"] / 2), math.log(one["high"] / 2) / 4)
+
+    def test_the_worst_row_comes_first_and_last(self):
+        done = {"good": {"a": program(.1, 1), "b": program(.2, 1)}, "bad": {"a": program(.2, 1), "b": program(.1, 1)}}
+        lines = table.markdown(done, ["a", "b"]).strip().splitlines()
+        self.assertTrue(lines[4].startswith("| bad"))
+        self.assertTrue(lines[-1].startswith("| worst row: bad"))
+        self.assertIn("| 1 |", lines[-2])
+
+
+class Scenes(unittest.TestCase):
+    def test_rooms_are_whole_files_whose_faces_look_outwards(self):
+        m = rooms.Model()
+        m.box("wall", (-1, -1, -1), (1, 1, 1), 30)
+        m.sphere("gold", (0, 0, 0), 1)
+        for positions, normals, triangles in m.parts.values():
+            p, n, t = (numpy.concatenate(x) for x in (positions, normals, triangles))
+            a, b, c = (p[t[:, i]] for i in range(3))
+            self.assertGreater((numpy.cross(b - a, c - a) * n[t[:, 0]]).sum(-1).min(), 0)
+
+    def test_a_sun_points_where_it_should(self):
+        for d in ((1, -.75, -.25), (0, -1, 0), (0, 0, -1)):
+            x, y, z, w = rooms.turn_from_minus_z(d)
+            turned = (-2 * (x * z + w * y), -2 * (y * z - w * x), -1 + 2 * (x * x + y * y))
+            numpy.testing.assert_allclose(turned, numpy.array(d) / math.hypot(*d), atol=1e-12)
+
+    def test_all_materials_are_two_sided_and_the_rest_stays(self):
+        with tempfile.TemporaryDirectory() as folder:
+            m = rooms.Model()
+            m.box("wall", (0, 0, 0), (1, 1, 1))
+            source = os.path.join(folder, "in.glb")
+            m.write(source)
+            with open(source, "rb") as file:
+                before = file.read()
+            with open(source, "wb") as file:
+                file.write(before.replace(b'"doubleSided": true', b'"doubleSided":false'))
+            with open(scenes.prepare(scenes.Row("x", source, [], [], 40), folder), "rb") as file:
+                after = file.read()
+        length, = struct.unpack_from("<I", after, 12)
+        self.assertEqual(struct.unpack_from("<I", after, 8)[0], len(after))
+        self.assertTrue(json.loads(after[20:20 + length])["materials"][0]["doubleSided"])
+        self.assertTrue(before.endswith(after[20 + length:]))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Noise of pictures from their variance over seeds, with intervals, for bench.py."""
+import math
+
+import numpy
+
+DARK_SHARE, TRIMMED_SHARE = .01, .001
+SKY_ERROR = 1e-5  # what is noisier than 0.3 % shows the scene: pixels of mere sky are at 1e-6 and below
+# 97.5 % points of Student's t by degrees of freedom.
+STUDENT = (12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131)
+MEASURES = ("plain", "trimmed", "typical")
+
+
+def pixel_errors(pictures):
+    """Relative variance of each pixel: the unbiased variance over seeds of r, g, b, summed, over the squared mean
+    over seeds, summed, plus a hundredth of the picture's squared mean. `pictures` is (seeds, pixels, 3)."""
+    mean = pictures.mean(0, dtype=float)
+    dark = DARK_SHARE * (mean.mean(0) ** 2).sum()
+    return pictures.var(0, ddof=1, dtype=float).sum(-1) / ((mean ** 2).sum(-1) + dark)
+
+
+def summaries(errors):
+    """Mean of the pixels' errors; the same without the largest 0.1 %; and the median of those above SKY_ERROR."""
+    ordered = numpy.sort(errors)
+    kept = ordered[:len(ordered) - math.ceil(TRIMMED_SHARE * len(ordered))]
+    shown = ordered[numpy.searchsorted(ordered, SKY_ERROR):]
+    return {"plain": ordered.mean(), "trimmed": kept.mean(), "typical": numpy.median(shown if len(shown) else ordered)}
+
+
+def noise(pictures):
+    """Errors of one program: of all seeds, and with each seed left out."""
+    pictures = numpy.asarray(pictures)
+    out = {"all": summaries(pixel_errors(pictures)), "without": []}
+    if len(pictures) > 2:
+        out["without"] = [summaries(pixel_errors(numpy.delete(pictures, i, 0))) for i in range(len(pictures))]
+    return out
+
+
+def error_against(pictures, reference):
+    """Mean over seeds of the relative squared error against a converged picture; weights as in pixel_errors()."""
+    dark = DARK_SHARE * (reference.mean(0) ** 2).sum()
+    squares = ((numpy.asarray(pictures, float) - reference) ** 2).mean(0).sum(-1)
+    return summaries(squares / ((reference ** 2).sum(-1) + dark))
+
+
+def student(freedom):
+    """The 97.5 % point of Student's t; beyond the table, its last value."""
+    return STUDENT[min(max(int(freedom), 1), len(STUDENT)) - 1]
+
+
+def interval(value, error, freedom):
+    """The ratio with its 95 % interval, from the standard error of its logarithm."""
+    reach = math.exp(student(freedom) * error)
+    return {"ratio": value, "low": value / reach, "high": value * reach, "log_error": error, "freedom": freedom}
+
+
+def jackknife(value, without):
+    """The ratio with its 95 % interval: the jackknife of its logarithm (Efron and Stein 1981), Student's t."""
+    n = len(without)
+    if n < 3:
+        return {"ratio": value, "low": None, "high": None, "log_error": None}
+    logs = numpy.log(without)
+    return interval(value, math.sqrt((n - 1) / n * ((logs - logs.mean()) ** 2).sum()), n - 1)
+
+
+def geometric_mean(ratios):
+    """The geometric mean of jackknife() results of independent rows, with its 95 % interval.
+
+    Degrees of freedom of a sum of variances: Welch 1947, Satterthwaite 1946."""
+    value = math.exp(sum(math.log(r["ratio"]) for r in ratios) / len(ratios))
+    if any(not r["log_error"] for r in ratios):
+        return {"ratio": value, "low": None, "high": None, "log_error": None}
+    squares = [r["log_error"] ** 2 for r in ratios]
+    freedom = sum(squares) ** 2 / sum(s ** 2 / r["freedom"] for s, r in zip(squares, ratios))
+    return interval(value, math.sqrt(sum(squares)) / len(ratios), freedom)

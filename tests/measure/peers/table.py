@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The table of bench.py: Petzval over each peer, the worst row first."""
+import noise
+
+HEAD = ("scene", "speed", "error", "efficiency", "error, trimmed", "efficiency, trimmed", "error, typical pixel",
+        "efficiency from start to file", "brightness")
+
+
+def average(values):
+    return sum(values) / len(values)
+
+
+def efficiency(ours, theirs, cost, measure):
+    """Efficiency of ours over theirs, 1 / (error x CPU time), with the interval that leaving seeds out gives."""
+    def of_seed(i):
+        def one(p):
+            # Seeds without a cost of their own keep the average of all.
+            spent = p[cost] if i is None or i >= len(p[cost]) or len(p[cost]) == 1 else p[cost][:i] + p[cost][i + 1:]
+            return average(spent) * (p["all"] if i is None else p["without"][i])[measure]
+        return one(theirs) / one(ours)
+    return noise.jackknife(of_seed(None), [of_seed(i) for i in range(len(ours["without"]))])
+
+
+def ratios(ours, theirs):
+    """All ratios of one row; above 1 Petzval is better."""
+    out = {"speed": average(theirs["sample_cpu_s"]) / average(ours["sample_cpu_s"]),
+           "brightness": ours["mean"] / theirs["mean"]}
+    for measure in noise.MEASURES:
+        out["error " + measure] = theirs["all"][measure] / ours["all"][measure]
+        out["efficiency " + measure] = efficiency(ours, theirs, "sample_cpu_s", measure)
+    out["efficiency whole"] = efficiency(ours, theirs, "whole_cpu_s", "plain")
+    return out
+
+
+def shown(ratio):
+    if ratio["low"] is None:
+        return "%.3g" % ratio["ratio"]
+    return "%.3g (%.3g to %.3g)" % (ratio["ratio"], ratio["low"], ratio["high"])
+
+
+def line(name, r):
+    return "| %s |" % " | ".join((
+        name, "%.3g" % r["speed"], "%.3g" % r["error plain"], shown(r["efficiency plain"]), "%.3g" % r["error trimmed"],
+        shown(r["efficiency trimmed"]), "%.3g" % r["error typical"], shown(r["efficiency whole"]),
+        "%.3f" % r["brightness"] if "brightness" in r else ""))
+
+
+def mean_of(rows):
+    """The geometric mean of every column over the rows; brightness has none."""
+    out = {}
+    for key, value in rows[0].items():
+        if isinstance(value, dict):
+            out[key] = noise.geometric_mean([r[key] for r in rows])
+        elif key != "brightness":
+            out[key] = noise.geometric_mean([{"ratio": r[key], "log_error": None} for r in rows])["ratio"]
+    return out
+
+
+def converged(done, name):
+    """Errors by variance over errors against the program's own converged picture, where that was rendered."""
+    found = ["%s %.2f" % (row, programs[name]["all"]["trimmed"] / programs[name]["against_reference"]["trimmed"])
+             for row, programs in done.items() if "against_reference" in programs[name]]
+    return "Trimmed error by variance over that against its converged picture, %s: %s\n" % (
+        name, ", ".join(found)) if found else ""
+
+
+def markdown(done, names):
+    """One table for each peer."""
+    ours, peers = names[0], names[1:]
+    text = ""
+    for peer in peers:
+        rows = {name: ratios(p[ours], p[peer]) for name, p in done.items()}
+        order = sorted(rows, key=lambda name: rows[name]["efficiency plain"]["ratio"])
+        text += "Petzval over %s\n\n| %s |\n|%s\n" % (peer, " | ".join(HEAD), "---|" * len(HEAD))
+        text += "".join(line(name, rows[name]) + "\n" for name in order)
+        text += line("geometric mean", mean_of(list(rows.values()))) + "\n"
+        text += line("worst row: " + order[0], rows[order[0]]) + "\n\n"
+    return text + "".join(converged(done, name) for name in names)

@@ -151,7 +151,9 @@ TEST(Path, TechniquesAgreeWithTheLightTree) {
     place(world.scene, quad(V3f(-1.5f, -1, -0.6f), V3f(0, 0.4f, 0), V3f(0, 0, 0.4f)),
           emitter_material(8.f, 0.5f));
     place(world.scene, sphere(V3f(1, -0.5f, -0.5f), 0.2f, 8, false), emitter_material(3.f, 0.2f));
-    world.scene.sky = Sky::uniform(Rgb(0.05f));
+    std::vector<float> sky(3 * 32 * 16, 0.03f);
+    std::fill_n(&sky[3 * (3 * 32 + 5)], 30, 1.f);
+    world.scene.sky = Sky::picture(sky, 32, 16, 0.f, 1.f);
     world.finish();
     PathOptions options;
     options.max_depth = 4;

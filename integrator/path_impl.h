@@ -91,7 +91,7 @@ auto PathTracer<Caster>::draw_light(const LightReceiver& receiver, const Sampler
     const Light& light = scene_.lights[pick->light];
     if (std::holds_alternative<SkyLight>(light)) {
         const Sky::Draw drawn = scene_.sky.sample(u.light_point);
-        return DrawnLight{{drawn.direction, {}, true, f4{}, 0.f, false},
+        return DrawnLight{{drawn.direction, V3f(0.f), true, f4{}, 0.f, false},
                           pick->probability,
                           pick->light,
                           u.light_point,

@@ -107,7 +107,7 @@ Finding tiny_sun() {
         number(kMost), number(blind), number(worst_both));
     f.instead =
         "Light samples and surface samples are weighed against each other by the power "
-        "heuristic; the sky is drawn from by its texels.";
+        "heuristic; the sky is drawn from as it is looked up, between its texels too.";
     return f;
 }
 

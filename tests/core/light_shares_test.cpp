@@ -32,10 +32,10 @@ TEST(LightShares, FactorsFollowWhatWasFound) {
     Random random(2);
     for (int i = 0; i < 1000; ++i) {
         const V3f p(random.next(), random.next(), random.next());
-        if (std::fabs(p.x - 0.5f) < 0.15f) continue;  // a leaf may lie across
+        if (p.x > 0.2f && p.x < 0.55f) continue;  // its leaf may reach across the middle
         const float factor = shares.factor(p);
         if (p.x < 0.5f)
-            EXPECT_LT(factor, 0.6f) << p;  // a little of what is true on average remains
+            EXPECT_LT(factor, 0.4f) << p;  // a little of what is true on average remains
         else
             EXPECT_NEAR(factor, 2.f, 0.3f) << p;
     }
@@ -95,10 +95,16 @@ TEST(LightShares, NoGroupIsEverGivenUp) {
         const float sun = taught.probability(1, kBelow);
         EXPECT_GE(sun, 0.0499f);
         EXPECT_LE(sun, 0.9501f);
-        if (sun_seen == 0.f) EXPECT_LT(sun, 0.051f);
-        if (sun_seen == 1e6f) EXPECT_GT(sun, 0.949f);
+        if (sun_seen == 0.f) {
+            EXPECT_LT(sun, 0.051f);
+        }
+        if (sun_seen == 1e6f) {
+            EXPECT_GT(sun, 0.949f);
+        }
         // The same light by either way: shares in proportion to the root mean squares.
-        if (sun_seen == 1.f) EXPECT_NEAR(sun, 0.5f, 1e-3f);
+        if (sun_seen == 1.f) {
+            EXPECT_NEAR(sun, 0.5f, 1e-3f);
+        }
         double all = 0;
         for (uint32_t i = 0; i < scene.lights.size(); ++i) all += taught.probability(i, kBelow);
         EXPECT_NEAR(all, 1, 1e-6);

@@ -6,6 +6,7 @@
 #include "camera/models/thin_lens.h"
 #include "integrator/executor.h"
 #include "integrator/render.h"
+#include "tests/support/statistics.h"
 #include "tests/support/traced_world.h"
 
 namespace petzval {
@@ -48,12 +49,16 @@ struct ClosedRoom : World {
     }
 };
 
-// Mean and variance over seeds of the mean luminance of a picture.
-std::pair<double, double> picture(const ClosedRoom& room, const LightChoice& choice) {
+struct Statistics {
+    double mean = 0, standard_error = 0;  ///< of the picture's mean
+    double variance = 0;                  ///< over seeds, of all pixels together
+};
+
+Statistics picture(const ClosedRoom& room, const LightChoice& choice) {
     const PathTracer<> tracer(room.scene, *room.bvh, choice, {});
-    constexpr int seeds = 16;
-    std::vector<double> mean;
-    double variance = 0;
+    constexpr int seeds = 32;
+    test::Moments means;
+    Statistics found;
     std::vector<std::vector<double>> pixels;
     for (int seed = 0; seed < seeds; ++seed) {
         RenderJob job;
@@ -70,16 +75,16 @@ std::pair<double, double> picture(const ClosedRoom& room, const LightChoice& cho
                 pixels.back().push_back(double(film.colour(x, y)[1]));
                 sum += pixels.back().back();
             }
-        mean.push_back(sum / static_cast<double>(pixels.back().size()));
+        means.add(sum / static_cast<double>(pixels.back().size()));
     }
-    double all = 0;
-    for (const double m : mean) all += m / seeds;
     for (size_t i = 0; i < pixels[0].size(); ++i) {
         double at = 0;
         for (const auto& p : pixels) at += p[i] / seeds;
-        for (const auto& p : pixels) variance += (p[i] - at) * (p[i] - at) / (seeds - 1);
+        for (const auto& p : pixels) found.variance += (p[i] - at) * (p[i] - at) / (seeds - 1);
     }
-    return {all, variance};
+    found.mean = means.mean();
+    found.standard_error = means.standard_error();
+    return found;
 }
 
 TEST(LightPilot, ASkyThatNobodySeesHardlyCounts) {
@@ -92,8 +97,10 @@ TEST(LightPilot, ASkyThatNobodySeesHardlyCounts) {
     EXPECT_GT(taught.probability(sky, floor), 0.04f);
     // The same picture with less noise: light of the lamp is found 20 times as often.
     const auto before = picture(room, *room.lights), after = picture(room, taught);
-    EXPECT_NEAR(after.first, before.first, 0.03 * before.first);
-    EXPECT_LT(after.second, before.second / 3);
+    EXPECT_NEAR(after.mean, before.mean,
+                4 * std::hypot(after.standard_error, before.standard_error));
+    EXPECT_LT(after.standard_error, 0.02 * after.mean);
+    EXPECT_LT(after.variance, before.variance / 3);
 }
 
 TEST(LightPilot, IsAFunctionOfSceneAndFrame) {

@@ -8,7 +8,7 @@
 namespace petzval {
 namespace {
 
-constexpr size_t kLeaf = 128;      ///< records that a leaf has at least
+constexpr size_t kLeaf = 128;     ///< records that a leaf has at least
 constexpr double kFromAbove = 4;  ///< records that what is known from above counts for
 constexpr float kLeast = 1e-6f, kMost = 1e6f;
 

@@ -146,9 +146,10 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
     CameraSetup camera =
         set_up_camera(model, request.scene.string(), request.size, scene, *prepared.bvh, notice);
     setup.view.camera = std::move(camera.camera);
-    prepared.lights = std::make_shared<const LightChoice>(
-        taught_by_pilot(*prepared.lights, scene, *prepared.bvh, *setup.view.camera,
-                        setup.view.observer, request.size));
+    if (prepared.lights->divides())
+        prepared.lights = std::make_shared<const LightChoice>(
+            taught_by_pilot(*prepared.lights, scene, *prepared.bvh, *setup.view.camera,
+                            setup.view.observer, request.size));
     from.camera = std::move(camera.report);
     return setup;
 }

@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 
 namespace petzval {
 namespace {
 
 constexpr size_t kLeaf = 128;     ///< records that a leaf has at least
 constexpr double kFromAbove = 4;  ///< records that what is known from above counts for
-constexpr float kLeast = 1e-6f, kMost = 1e6f;
+constexpr float kLeast = 1e-30f, kMost = 1e30f;
 
 int longest_side(std::span<const LightRecord> records) {
     Box3f box;
@@ -27,12 +28,14 @@ double strength(double found2, double expected2) {
 }  // namespace
 
 LightShares::LightShares(std::span<const LightRecord> records) {
-    if (records.empty()) return;
-    levels_ = std::bit_width(records.size() / kLeaf);
-    levels_ = std::max(levels_ - 1, 0);
+    // The film leaves out samples that are no numbers, and so does what is learned.
+    std::vector<LightRecord> sorted;
+    std::copy_if(records.begin(), records.end(), std::back_inserter(sorted),
+                 [](const LightRecord& r) { return std::isfinite(r.found); });
+    if (sorted.empty()) return;
+    levels_ = std::max(static_cast<int>(std::bit_width(sorted.size() / kLeaf)) - 1, 0);
     cuts_.resize(size_t{1} << levels_);
     factors_.resize(size_t{1} << levels_);
-    std::vector<LightRecord> sorted(records.begin(), records.end());
     fill(sorted, 1, 0, {});
 }
 
@@ -46,13 +49,17 @@ void LightShares::fill(std::span<LightRecord> records, size_t node, int level,
         sums[group].found2 += sqr(double(r.found));
         ++count[group];
     }
-    // As means, so that those from above can be mixed in as so many records.
-    const double prior = level == 0 ? 0 : kFromAbove;
-    for (size_t g = 0; g < 2; ++g) {
-        const double n = count[g] + prior;
-        if (!(n > 0)) continue;
-        sums[g].expected2 = (sums[g].expected2 + prior * above[g].expected2) / n;
-        sums[g].found2 = (sums[g].found2 + prior * above[g].found2) / n;
+    // What is known from above counts as so many records that expected what those here do: a leaf
+    // in the dark takes from it how much was found of what was expected, not how much light.
+    for (size_t g = 0; g < 2 && level > 0; ++g) {
+        if (count[g] == 0) {
+            sums[g] = above[g];
+            continue;
+        }
+        const double expected2 = kFromAbove * sums[g].expected2 / count[g];
+        sums[g].expected2 += expected2;
+        if (above[g].expected2 > 0)
+            sums[g].found2 += expected2 * (above[g].found2 / above[g].expected2);
     }
     if (level == levels_) {
         const double outside = strength(sums[0].found2, sums[0].expected2);

@@ -19,7 +19,7 @@ struct LightRecord {
     V3f p;             ///< of the receiver
     LightGroup group;  ///< that was picked
     float expected;    ///< of the group at the receiver, as if nothing stood before it; any unit
-    float found;       ///< contribution to the picture, with shadows; any unit
+    float found;       ///< light that it brought to the camera ray, with shadows; any unit
 };
 
 /// Map of factors on the expected light from outside. A k-d tree cuts the records' places at their

@@ -11,8 +11,9 @@
 namespace petzval {
 namespace {
 
-// Least part of the light above the mean for which it is worth drawing directions.
-constexpr float kLeastDrawn = 1e-3f;
+// Standard deviation over the sphere of the light above the mean, relative to the mean, from which
+// it is worth drawing directions: a BSDF that finds all of it has about that noise.
+constexpr double kLeastContrast = 0.03;
 
 // Least sine of a polar angle in a density: its inverse stays finite at the poles.
 constexpr float kLeastSine = 1e-6f;
@@ -93,11 +94,11 @@ void Sky::fill_importance() {
     };
     average_ = mean();
     for (float& w : weights) w = std::max(w - average_, 0.f);
+    double square = 0;
+    for (size_t i = 0; i < weights.size(); ++i)
+        square += share[i / width_] * sqr(double(weights[i]));
+    if (!(std::sqrt(square) > kLeastContrast * double(average_))) return;
     drawn_ = mean();
-    if (!(drawn_ > kLeastDrawn * average_)) {
-        drawn_ = 0.f;
-        return;
-    }
     for (int y = 0; y < height_; ++y) {
         const std::span row(&weights[static_cast<size_t>(y) * width_], width_);
         double row_sum = 0;
@@ -193,10 +194,12 @@ Sky::Draw Sky::sample(V2f u) const {
     const int texel = block.find(drawn.unit, drawn.units);
     const uint32_t begin = block.begin(texel, drawn.units);
     const uint32_t units = block.begin(texel + 1, drawn.units) - begin;
+    // The middle of the unit, the grain of random numbers: its edge may be the very rim of the
+    // tent.
     const float offset =
-        (static_cast<float>(drawn.unit - begin) + drawn.rest) / static_cast<float>(units);
-    float x = static_cast<float>(drawn.column * TexelBlock::kSize + texel) + 0.5f +
-              sample_tent(std::min(offset, 1.f));
+        (static_cast<float>(drawn.unit - begin) + 0.5f) / static_cast<float>(units);
+    float x =
+        static_cast<float>(drawn.column * TexelBlock::kSize + texel) + 0.5f + sample_tent(offset);
     if (x < 0.f) x += width_;
     if (x > width_) x -= width_;
     // Beyond a pole the tent is folded back: with what is before it, it makes the clamped row.

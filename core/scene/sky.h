@@ -32,7 +32,7 @@ class Sky {
     [[nodiscard]] bool black() const { return average_ <= 0.f; }
     /// Mean luminance over the sphere, nits.
     [[nodiscard]] float average_luminance() const { return average_; }
-    /// Hardly any part of the sky is brighter than its mean: nothing is worth drawing.
+    /// Radiance hardly varies over the sky: nothing is worth drawing.
     [[nodiscard]] bool even() const { return drawn_ <= 0.f; }
     /// Mean over the sphere of the luminance above the mean, nits: of what `sample` draws.
     [[nodiscard]] float drawn_luminance() const { return drawn_; }

@@ -56,6 +56,13 @@ TEST(LightShares, OddRecords) {
     EXPECT_GT(LightShares(records).factor(V3f(0.f)), 0.f);
     for (LightRecord& r : records) r.group = LightGroup::Outside;
     EXPECT_GT(LightShares(records).factor(V3f(0.f)), 1.f);
+    // The film leaves out what is no number; so does what is learned.
+    const float factor = LightShares(records).factor(V3f(0.f));
+    for (const float odd : {kInfinity, std::numeric_limits<float>::quiet_NaN()}) {
+        records.push_back({V3f(0.f), LightGroup::Inside, 1.f, odd});
+        EXPECT_EQ(LightShares(records).factor(V3f(0.f)), factor);
+        records.pop_back();
+    }
     for (LightRecord& r : records) r.found = 0;
     EXPECT_GT(LightShares(records).factor(V3f(0.f)), 0.f);
     EXPECT_LT(LightShares(records).factor(V3f(0.f)), kInfinity);
@@ -118,6 +125,37 @@ TEST(LightShares, NoGroupIsEverGivenUp) {
             suns += pick->light == 1;
         }
         EXPECT_NEAR(suns, 10000 * sun, 5 * std::sqrt(10000 * sun * (1 - sun)));
+    }
+}
+
+// The sun beside a candle: without a pilot, and with one that found it shaded.
+TEST(LightShares, LightsOfVeryUnequalPower) {
+    for (const float candle : {1e-2f, 1e-6f, 1e6f}) {
+        Scene scene = test::lamp_scene();
+        scene.lights = {PointLight{V3f(0.f), Rgb(candle)}, SunLight{V3f(0, -1, 0), Rgb(1e5f)}};
+        finish_scene(scene);
+        const LightChoice choice(scene, LightChoiceKind::Tree), even = choice.for_pilot();
+        std::vector<LightRecord> records;
+        for (int i = 0; i < 500; ++i)
+            for (const uint32_t light : {0u, 1u})
+                records.push_back(even.record(light, kBelow, light == 1 ? 0.f : candle));
+        for (const LightChoice& one : {choice, even, choice.taught(records)}) {
+            double all = 0;
+            for (uint32_t i = 0; i < scene.lights.size(); ++i) {
+                const float p = one.probability(i, kBelow);
+                EXPECT_TRUE(std::isfinite(p));
+                all += p;
+            }
+            EXPECT_NEAR(all, 1, 1e-6);
+            for (const float u : {0.f, 0.03f, 0.5f, kOneMinus}) {
+                const auto pick = one.pick(u, kBelow);
+                ASSERT_TRUE(pick);
+                EXPECT_GT(pick->probability, 0.f);
+                EXPECT_NEAR(pick->probability, one.probability(pick->light, kBelow),
+                            1e-5f * pick->probability);
+            }
+        }
+        EXPECT_NEAR(choice.taught(records).probability(1, kBelow), 0.05f, 1e-3f);
     }
 }
 

@@ -32,17 +32,23 @@ class Cli : public CliTest {
 };
 
 TEST_F(Cli, FrameAndSamples) {
-    const Picture whole = render({"--size", "24x12", "--spp", "3"}, "whole.exr");
-    EXPECT_EQ(V2i(whole.width, whole.height), V2i(24, 12));
-    EXPECT_EQ(metadata_of(whole, "petzval:samples"), "0:3");
-    const Picture part = render({"--size", "24x12", "--spp", "3", "--crop", "10,3,9,7"});
-    ASSERT_EQ(V2i(part.width, part.height), V2i(9, 7));
-    EXPECT_EQ(V2i(part.x, part.y), V2i(10, 3));
-    EXPECT_EQ(V2i(part.full_width, part.full_height), V2i(24, 12));
-    for (int y = 0; y < 7; ++y)
-        for (int x = 0; x < 9; ++x)
-            for (const char* c : {"R", "G", "B", "A"})
-                ASSERT_EQ(value_at(part, x, y, c), value_at(whole, x + 10, y + 3, c));
+    // With lamps alone; and under a sky, whose share a pilot of the whole frame learns.
+    for (const Words& light : {Words{}, Words{"--env", red_and_blue()}}) {
+        Words words = {"--size", "24x12", "--spp", "3"};
+        words.insert(words.end(), light.begin(), light.end());
+        const Picture whole = render(words, "whole.exr");
+        EXPECT_EQ(V2i(whole.width, whole.height), V2i(24, 12));
+        EXPECT_EQ(metadata_of(whole, "petzval:samples"), "0:3");
+        words.insert(words.end(), {"--crop", "10,3,9,7"});
+        const Picture part = render(words);
+        ASSERT_EQ(V2i(part.width, part.height), V2i(9, 7));
+        EXPECT_EQ(V2i(part.x, part.y), V2i(10, 3));
+        EXPECT_EQ(V2i(part.full_width, part.full_height), V2i(24, 12));
+        for (int y = 0; y < 7; ++y)
+            for (int x = 0; x < 9; ++x)
+                for (const char* c : {"R", "G", "B", "A"})
+                    ASSERT_EQ(value_at(part, x, y, c), value_at(whole, x + 10, y + 3, c));
+    }
 
     const Picture timed = render({"--time", "0.1s"});
     EXPECT_GE(std::stoi(metadata_of(timed, "petzval:samples").substr(2)), 1) << "it ends at all";

@@ -12,7 +12,8 @@ out=$(mktemp -d)
 trap 'rm -r "$out"' EXIT
 no_avx512=glibc.cpu.hwcaps=-AVX512F,-AVX512VL,-AVX512BW,-AVX512DQ,-AVX512CD
 
-# Glass, wavelengths, a lens, and lamps under a sky, whose shares a pilot learns; a sky through alpha-tested leaves has no scene that ships.
+# Glass, wavelengths, a lens, and lamps under a sky, whose shares a pilot learns; a sky through
+# alpha-tested leaves has no scene that ships.
 renders=("gem.glb --size 32x18 --spp 2"
     "ornaments.glb --size 24x16 --spp 2 --lens takumar-50mm-f1.2 --focus 1m"
     "first_light.glb --size 24x16 --spp 1 --env studio --lens pinhole")
@@ -34,7 +35,9 @@ failed=0
 compare here "$program"
 GLIBC_TUNABLES=$no_avx512 compare no-avx512 "$program"
 compare threads bash -c '"$0" "$@" --threads 5' "$program"
-if command -v qemu-x86_64 > /dev/null; then
+if ldd "$program" | grep -q libasan; then
+    echo "qemu-user does not run the address sanitizer: no other processors"
+elif command -v qemu-x86_64 > /dev/null; then
     for cpu in Haswell EPYC; do compare "$cpu" qemu-x86_64 -cpu "$cpu" "$program" 2> /dev/null; done
 else
     echo "qemu-user is not installed: no other processors"

@@ -141,6 +141,9 @@ TEST_F(CliErrors, ADiskThatIsFullLeavesTheOldPicture) {
 }
 
 TEST_F(CliErrors, MemoryThatRunsOut) {
+#ifdef __SANITIZE_ADDRESS__
+    GTEST_SKIP() << "the address sanitizer needs more address space than the test leaves";
+#endif
     ProcessOptions options;
     options.address_space_limit_bytes = rlim_t{3} << 30;
     const std::string line = error_of(

@@ -160,6 +160,7 @@ TEST(Bvh, CoordinatesStayInsideTheTriangle) {
     for (const V3f& corner : mesh.positions)  // along edges too, where a rounding decides
         for (const V3f& other : mesh.positions) {
             Ray ray;
+            ray.origin = V3f(0.f);
             ray.direction = corner + (other - corner) * 0.25f;
             if (ray.direction.length() < 0.1f) continue;
             const auto hit = bvh.intersect(ray);

@@ -172,7 +172,7 @@ void expect_all_threads_work(int threads) {
     Executor executor(threads);
     const RenderResult result = render(tracer, camera, job_of(5), film, executor, monitor);
     EXPECT_EQ(result.workers, threads);
-    EXPECT_EQ(tracer.arrived(), threads);
+    EXPECT_GE(tracer.arrived(), threads);  // threads of a later pass may have other names
     EXPECT_EQ(result.end_sample, 5u);
     EXPECT_EQ(result.stats.samples, 5u * kSize.x * kSize.y);
     EXPECT_EQ(monitor.pixel_samples_done, result.stats.samples);

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "core/sampling/warp.h"
+#include "core/math/trig.h"
 
 namespace petzval {
 namespace {

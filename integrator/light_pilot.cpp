@@ -2,6 +2,7 @@
 #include "integrator/light_pilot.h"
 
 #include "core/film/film.h"
+#include "integrator/pilot_pixels.h"
 #include "integrator/render.h"
 
 namespace petzval {
@@ -23,11 +24,9 @@ LightChoice taught_by_pilot(const LightChoice& choice, const Scene& scene, const
     std::vector<LightRecord> records;
     PathStats stats;
     stats.light_records = &records;
-    const auto at = [](uint32_t random, int side) {
-        return static_cast<int>((uint64_t{random} * static_cast<uint64_t>(side)) >> 32);
-    };
+    const auto pixels = pilot_pixels(frame_px, kPaths, kSeed);
     for (uint32_t i = 0; i < kPaths; ++i) {
-        const int x = at(hash32(i, 1), frame_px.x), y = at(hash32(i, 2), frame_px.y);
+        const auto [x, y] = pixels[i % pixels.size()];
         Film film(frame_px, {x, y, x + 1, y + 1}, {});
         render_sample(tracer, camera, job, {x, y, i}, film, stats);
     }

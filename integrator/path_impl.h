@@ -58,7 +58,7 @@ f4 PathTracer<Caster>::escaped(const Ray& ray, const Bands& bands, const Vertex&
     if (scene_.sky.black()) return f4{};
     const Sky::Found found = scene_.sky.find(ray.direction);
     const f4 radiance = uplift_radiance(found.radiance, bands);
-    if (!last.light_sampled || scene_.sky_light < 0) return radiance;
+    if (!last.light_sampled || !(found.pdf > 0.f)) return radiance;
     const auto sky_light = static_cast<uint32_t>(scene_.sky_light);
     const float light_pdf = lights_.probability(sky_light, last.receiver) * found.pdf;
     if (options_.technique == Technique::LightOnly && light_pdf > 0.f) return f4{};

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "apps/setup/pilot_pixels.h"
 #include "core/sampling/sampler.h"
+#include "integrator/pilot_pixels.h"
 #include "integrator/render.h"
 #include "io/base/clock.h"
 #include "io/image/difference.h"

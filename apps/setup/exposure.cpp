@@ -8,8 +8,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "apps/setup/pilot_pixels.h"
 #include "integrator/path.h"
+#include "integrator/pilot_pixels.h"
 #include "integrator/render.h"
 
 namespace petzval {

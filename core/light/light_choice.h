@@ -37,7 +37,8 @@ class LightChoice {
     [[nodiscard]] LightChoice for_pilot() const;
     /// The same choice, with what a pilot has found.
     [[nodiscard]] LightChoice taught(std::span<const LightRecord>) const;
-    /// Record of a light sample: a pick, nullopt where there was none, and its contribution.
+    /// Record of a light sample of a choice that divides(): the light, nullopt where none was
+    /// picked, and what it brought.
     [[nodiscard]] LightRecord record(const std::optional<uint32_t>& light, const LightReceiver&,
                                      float found) const;
 

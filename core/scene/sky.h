@@ -15,8 +15,8 @@ namespace petzval {
 
 /// Radiance by world-space direction. u = 0.5 + atan2(z, x) / 2 pi, v = acos(y) / pi from the top,
 /// before the rotation about +y (counter-clockwise seen from above). Lookups are bilinear between
-/// texel centres, around in u, clamped in v; directions are drawn in
-/// proportion to what of that is above the mean.
+/// texel centres, around in u, clamped in v. Directions are drawn in proportion to what of that is
+/// above the mean.
 class Sky {
   public:
     /// A black sky.

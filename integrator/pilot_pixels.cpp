@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/setup/pilot_pixels.h"
+#include "integrator/pilot_pixels.h"
 
 #include <algorithm>
 #include <cmath>

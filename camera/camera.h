@@ -33,6 +33,8 @@ struct CameraPath {
     Ray ray;
     f4 weight;  ///< radiance along the ray times this is the film's estimate
     m4 lanes;   ///< bands that share this ray
+    /// The ray depends on which lane leads (Bands::lead), which must then decide nothing else.
+    bool led = false;
     /// Fills the sample's alpha; the first path that does fills its layers too.
     bool fills_layers = true;
 };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/light/light_sampling.h"
+#include "core/sampling/warp.h"
 #include "core/shading/surface.h"
 #include "core/spectrum/colour.h"
 #include "integrator/path.h"
@@ -77,7 +78,7 @@ f4 PathTracer<Caster>::emitted(const Surface& s, Rgb rgb, const Bands& bands,
     const float distance_squared = along.dot(along);
     const float cosine = s.ng.dot(along) / std::sqrt(distance_squared);
     const float light_pdf = lights_.probability(light, last.receiver) *
-                            triangle_light_pdf(scene_, {s.hit.instance, s.hit.triangle},
+                            triangle_light_pdf(scene_, {s.hit.instance, s.hit.triangle}, last.p,
                                                distance_squared, std::fabs(cosine));
     if (options_.technique == Technique::LightOnly && light_pdf > 0.f) return f4{};
     return radiance * power_heuristic(last.pdf, light_pdf);
@@ -86,20 +87,21 @@ f4 PathTracer<Caster>::emitted(const Surface& s, Rgb rgb, const Bands& bands,
 template <RayCaster Caster>
 auto PathTracer<Caster>::draw_light(const LightReceiver& receiver, const Sampler::VertexNumbers& u,
                                     const Bands& bands) const -> std::optional<DrawnLight> {
-    const auto pick = lights_.pick(u.light_pick, receiver);
+    const auto pick = lights_.pick(u.light_point.x, receiver);
     if (!pick) return std::nullopt;
+    const V2f u_on_light(left_of_unit(pick->u, pick->probability, u.light_rest), u.light_point.y);
     const Light& light = scene_.lights[pick->light];
     if (std::holds_alternative<SkyLight>(light)) {
-        const Sky::Draw drawn = scene_.sky.sample(u.light_point);
+        const Sky::Draw drawn = scene_.sky.sample(u_on_light);
         return DrawnLight{{drawn.direction, V3f(0.f), true, f4{}, 0.f, false},
                           pick->probability,
                           pick->light,
-                          u.light_point,
+                          u_on_light,
                           drawn.place};
     }
-    const auto sample = sample_light(scene_, light, receiver.p, u.light_point, bands);
+    const auto sample = sample_light(scene_, light, receiver.p, u_on_light, bands);
     if (!sample) return std::nullopt;
-    return DrawnLight{*sample, pick->probability, pick->light, u.light_point, {}};
+    return DrawnLight{*sample, pick->probability, pick->light, u_on_light, {}};
 }
 
 // Light from a point of a lamp on a smooth surface. Seen from the triangle, the point may lie
@@ -115,10 +117,10 @@ f4 PathTracer<Caster>::light_on_smooth(const Surface& s, const Frame& frame, con
     f4 sum{};
     if (drawn.sample.direction.dot(facing) > 0.f)
         sum += direct_light(s, frame, bsdf, drawn, bands, sampler, depth, medium, stats);
-    const V3f smooth = s.p + s.lift, to_light = drawn.sample.target - smooth;
-    if (!(to_light.dot(facing) < 0.f && to_light.dot(s.side) > 0.f)) return sum;
+    const V3f smooth = s.p + s.lift;
     const auto again = sample_light(scene_, scene_.lights[drawn.light], smooth, drawn.u, bands);
-    if (!again || !(again->direction.dot(facing) < 0.f)) return sum;
+    if (!again || !(again->direction.dot(facing) < 0.f && again->direction.dot(s.side) > 0.f))
+        return sum;
     const DrawnLight from_smooth{*again, drawn.pick_probability, drawn.light, drawn.u, {}};
     return sum + direct_light(s, frame, bsdf, from_smooth, bands, sampler, depth, medium, stats);
 }
@@ -182,7 +184,8 @@ inline void record_layers(const Surface& s, const ShadingInput& shading, Rgb emi
 
 template <RayCaster Caster>
 f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const Sampler& sampler,
-                                bool aovs, FilmSample& out, PathStats& stats, m4 lanes) const {
+                                bool aovs, FilmSample& out, PathStats& stats, m4 lanes,
+                                bool led) const {
     f4 sum{}, throughput = zero_off(lanes, uniform(1.f, bands));
     Ray ray = camera_ray;
     Vertex last{camera_ray.origin};
@@ -261,13 +264,14 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
                 light ? std::optional(light->light) : std::nullopt, receiver, hsum(direct)));
 
         // Sample the BSDF for the next direction.
-        const auto next = bsdf.sample(u.bsdf_lobe, u.bsdf);
+        const auto next = bsdf.sample(u.bsdf_lobe, u.bsdf, led);
         if (!next) break;
         const V3f direction = shading.frame.to_world(next->wi);
         // No ray that is not a number goes on: the film counts the sample and names its pixel.
         if (!std::isfinite(direction.x + direction.y + direction.z))
             return splat(std::numeric_limits<float>::quiet_NaN());
         throughput *= next->weight;
+        led |= next->transmitted && shading.bsdf.disperses;
         if (next->transmitted && s.material->has_volume) medium = s.front ? s.material : nullptr;
 
         // Russian roulette.

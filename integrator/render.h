@@ -53,7 +53,7 @@ void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& 
         FilmSample& of_path = path.fills_layers ? sample : other;
         of_path.alpha = 0.f;
         sum += path.weight * tracer.radiance(path.ray, bands, sampler, layers && path.fills_layers,
-                                             of_path, stats, path.lanes);
+                                             of_path, stats, path.lanes, path.led);
         if (!path.fills_layers) continue;
         layers = false;
         behind += hsum(zero_off(path.lanes, path.weight)) * (1.f - sample.alpha);

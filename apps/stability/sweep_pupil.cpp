@@ -123,7 +123,7 @@ Drawn drawn_at(const Subject& of, V2f film_mm) {
     double passed = 0;
     for (uint32_t i = 0; i < kDraws; ++i) {
         const V2f u = Sampler(SamplerKind::Owen, 2, {0, 0, i}).get2(Dim::Lens);
-        const double weight = double(camera.draw<f4>(film_mm, u, 0, Bands::rgb()).weight[0]);
+        const double weight = double(camera.draw<f4>(film_mm, u, Bands::rgb()).weight[0]);
         out.irradiance += weight / kDraws;
         out.heaviest = std::fmax(out.heaviest, weight);
         passed += double(weight > 0) / kDraws;

@@ -2,7 +2,6 @@
 // Dispersion mode: how a camera carries wavelengths that its lens sends different ways.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 
 #include "core/math/lanes.h"
@@ -19,18 +18,6 @@ enum class DispersionMode : uint8_t { Tolerance, Shared, Split, Single, Hero };
 /// Whether all lanes go along the ray of line d.
 [[nodiscard]] inline bool one_ray(const Bands& bands, DispersionMode mode) {
     return !bands.spectral || mode == DispersionMode::Shared;
-}
-
-/// Picks one of the lanes that are on, all equally likely; u in [0, 1).
-[[nodiscard]] inline int pick_lane(m4 on, float u) {
-    const int count = lane_count(on);
-    int wanted = std::min(static_cast<int>(u * static_cast<float>(count)), count - 1), lane = 0;
-    for (int i = 0; i < 4; ++i) {
-        if (!on[i]) continue;
-        lane = i;
-        if (wanted-- == 0) break;
-    }
-    return lane;
 }
 
 [[nodiscard]] inline m4 only_lane(int lane) {

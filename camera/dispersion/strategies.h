@@ -20,6 +20,7 @@ template <LensPoint P, class Rays, class Share>
     for (int lane = 0; lane < 4; ++lane) {
         if (!left[lane]) continue;
         CameraPath& path = out.add();
+        path.led = true;
         path.ray = lens.ray(rays, lane);
         path.lanes = left;
         for (int other = lane + 1; other < 4; ++other)
@@ -34,7 +35,9 @@ template <LensPoint P, class Rays, class Share>
 template <LensPoint P>
 [[nodiscard]] CameraSample share_ray(const P& lens, V2f u, int lead, m4 on) {
     const auto rays = lens.rays({u, on, lead, true});
-    return group_lanes(lens, rays, [](int, int) { return true; });
+    CameraSample out = group_lanes(lens, rays, [](int, int) { return true; });
+    for (CameraPath& path : out) path.led = false;
+    return out;
 }
 
 /// One ray for each lane.
@@ -76,6 +79,7 @@ template <LensPoint P>
     const m4 reached = weight > 0;
     if (lane_count(reached) == 0) return out;
     CameraPath& path = out.add();
+    path.led = true;
     path.ray = lens.ray(rays, lead);
     path.weight = weight;
     path.lanes = reached;
@@ -88,7 +92,7 @@ template <LensPoint P>
 [[nodiscard]] CameraSample sample_lens(const P& lens, DispersionMode mode, const FilmPoint& at,
                                        const Bands& bands) {
     const V2f u = at.sampler.get2(Dim::Lens);
-    const int lead = pick_lane(bands.on, at.sampler.get1(Dim::LensLane));
+    const int lead = bands.lead;
     if (one_ray(bands, mode)) return share_ray(lens, u, lead, bands.on);
     switch (mode) {
         case DispersionMode::Tolerance:

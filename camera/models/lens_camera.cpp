@@ -267,15 +267,15 @@ FilmLanding LensCamera::Point<V>::landing(const LensDraw<V>& rays,
 }
 
 template <class V>
-LensDraw<V> LensCamera::draw(V2f film_mm, V2f u, float u_lane, const Bands& bands) const {
+LensDraw<V> LensCamera::draw(V2f film_mm, V2f u, const Bands& bands) const {
     const bool achromatic = one_ray(bands, in_.dispersion);
-    const int lead = pick_lane(bands.on, u_lane);
+    const int lead = bands.lead;
     const bool single = in_.dispersion == DispersionMode::Single && !achromatic;
     return Point<V>(*this, film_mm, bands, achromatic)
         .rays({u, single ? only_lane(lead) : bands.on, lead, true});
 }
-template LensDraw<f4> LensCamera::draw(V2f, V2f, float, const Bands&) const;
-template LensDraw<d4> LensCamera::draw(V2f, V2f, float, const Bands&) const;
+template LensDraw<f4> LensCamera::draw(V2f, V2f, const Bands&) const;
+template LensDraw<d4> LensCamera::draw(V2f, V2f, const Bands&) const;
 
 CameraSample LensCamera::sample(const FilmPoint& point, const Bands& bands) const {
     // The image stands on its head: what is seen on the right falls on the left of the film.
@@ -293,11 +293,10 @@ CameraSample LensCamera::sample(const FilmPoint& point, const Bands& bands) cons
 double LensCamera::irradiance(V2f film_mm, uint32_t count) const {
     const Bands bands = Bands::rgb();
     const Point<f4> film_point(*this, film_mm, bands, true);
-    const int lead = pick_lane(bands.on, 0.f);
     double sum = 0;
     for (uint32_t i = 0; i < count; ++i) {
         const V2f u = Sampler(SamplerKind::Owen, 0, {0, 0, i}).get2(Dim::Lens);
-        sum += hsum(film_point.rays({u, bands.on, lead, false}).weight);
+        sum += hsum(film_point.rays({u, bands.on, bands.lead, false}).weight);
     }
     return sum / (double(count) * lane_count(bands.on));
 }

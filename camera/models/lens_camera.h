@@ -64,10 +64,10 @@ class LensCamera final : public Camera {
 
     /// One draw of the iris: the mean of its weights is the film point's irradiance over the
     /// radiance of a scene of the same radiance everywhere. Lanes of the bands; u in [0, 1)^2.
-    /// film_mm: a point of the film. u_lane picks the lane whose ray hits the drawn iris point. V:
+    /// film_mm: a point of the film. The ray of the lane that leads hits the drawn iris point. V:
     /// f4 or d4.
     template <class V = f4>
-    [[nodiscard]] LensDraw<V> draw(V2f film_mm, V2f u, float u_lane, const Bands&) const;
+    [[nodiscard]] LensDraw<V> draw(V2f film_mm, V2f u, const Bands&) const;
 
   private:
     /// A film point's rays, in lanes of V, for the strategies of camera/dispersion.

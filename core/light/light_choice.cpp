@@ -86,13 +86,14 @@ std::optional<LightChoice::Pick> LightChoice::pick(float u, const LightReceiver&
     if (tree_) {
         const auto pick = tree_->pick(u, receiver, share_at(receiver));
         if (!pick) return std::nullopt;
-        if (pick->light != LightTree::kOutside) return Pick{pick->light, pick->probability};
+        if (pick->light != LightTree::kOutside)
+            return Pick{pick->light, pick->probability, pick->u};
         u = pick->u;
         probability = pick->probability;
     }
     if (choice_.size() == 0) return std::nullopt;
     const Piecewise1D::Draw drawn = choice_.sample(u);
-    return Pick{drawn.cell, probability * drawn.probability};
+    return Pick{drawn.cell, probability * drawn.probability, drawn.offset};
 }
 
 float LightChoice::probability(uint32_t light, const LightReceiver& receiver) const {

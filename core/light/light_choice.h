@@ -23,6 +23,7 @@ class LightChoice {
     struct Pick {
         uint32_t light;  ///< index into the scene's lights
         float probability;
+        float u;  ///< position within the light's share of u, [0, 1]
     };
     /// Picks a light; u in [0, 1). Nothing where the scene has no light, or no light that was drawn
     /// can reach the receiver.

@@ -4,12 +4,18 @@
 #include <algorithm>
 
 #include "core/light/emission.h"
+#include "core/light/spherical_triangle.h"
 #include "core/sampling/warp.h"
 #include "core/scene/coverage.h"
 #include "core/scene/scene.h"
 
 namespace petzval {
 namespace {
+
+// Longest edge of a triangle over its distance, squared, from which on it is drawn by solid angle.
+// From 1/4 on, the error is no smaller, and rooms take 5 to 8 % more time.
+constexpr float kWideRatio = 1.f;
+constexpr float kLeastSolidAngle = 1e-4f;  // sr
 
 // Angular attenuation: KHR_lights_punctual, "Inner and Outer Cone Angles".
 float spot_width(const SpotLight& light) {
@@ -67,18 +73,48 @@ V3f plane_error(const Scene& scene, const TriangleLight& light, const V3f& targe
     return error + abs(V3f(m[3][0], m[3][1], m[3][2])) * rounding_bound(8);
 }
 
+// The triangle as p sees it, where its directions are drawn by solid angle: where it is wide, as
+// points that are uniform by area are then far from uniform, and not nearly edge-on, where its
+// solid angle is lost to rounding.
+std::optional<SphericalTriangle> if_wide(const V3f& p, const std::array<V3f, 3>& corner) {
+    const V3f to_middle = (corner[0] + corner[1] + corner[2]) / 3.f - p;
+    float edge2 = 0.f;
+    for (size_t i = 0; i < 3; ++i) {
+        const V3f edge = corner[(i + 1) % 3] - corner[i];
+        edge2 = std::max(edge2, edge.dot(edge));
+    }
+    if (!(edge2 > kWideRatio * to_middle.dot(to_middle))) return std::nullopt;
+    const SphericalTriangle seen(p, corner);
+    if (!(seen.solid_angle() > kLeastSolidAngle)) return std::nullopt;
+    return seen;
+}
+
+// Weights of the second and third corner of the point where a direction from p meets the triangle;
+// what rounding puts beyond its edges is brought back. In double precision, as squares of an area
+// may leave the range of floats.
+V2f where_met(const V3f& p, const V3f& direction, const std::array<V3f, 3>& corner) {
+    const V3d edge1 = V3d(corner[1]) - V3d(corner[0]), edge2 = V3d(corner[2]) - V3d(corner[0]);
+    const V3d cross = edge1.cross(edge2), from = V3d(p) - V3d(corner[0]), along(direction);
+    const V3d at = from - along * (from.dot(cross) / along.dot(cross));
+    const double scale = 1. / cross.dot(cross);
+    const double b = std::clamp(at.cross(edge2).dot(cross) * scale, 0., 1.);
+    const double c = std::clamp(edge1.cross(at).dot(cross) * scale, 0., 1. - b);
+    return {static_cast<float>(b), static_cast<float>(c)};
+}
+
 std::optional<LightSample> sample(const Scene& scene, const TriangleLight& light, const V3f& p,
                                   V2f u, const Bands& bands) {
     const auto corner = triangle_corners(scene, light.instance, light.triangle);
     const V3f edge1 = corner[1] - corner[0], edge2 = corner[2] - corner[0];
     const V3f cross = edge1.cross(edge2);  // twice the area long
-    const V2f b = uniform_triangle(u);
+    const auto wide = if_wide(p, corner);
+    const V2f b = wide ? where_met(p, wide->direction(u), corner) : uniform_triangle(u);
     const V3f target = corner[0] + edge1 * b.x + edge2 * b.y;
     const V3f to_light = target - p;
     const float distance2 = to_light.dot(to_light), facing = -cross.dot(to_light);
     const float distance = std::sqrt(distance2);
-    const float pdf = 2.f * distance2 * distance / std::fabs(facing);
-    if (!(pdf > 0.f && pdf < kInfinity)) return std::nullopt;
+    const float by_area = 2.f * distance2 * distance / std::fabs(facing);
+    if (!(by_area > 0.f && by_area < kInfinity)) return std::nullopt;
 
     const bool front = (facing > 0.f) != scene.instances[light.instance].flips;
     const Rgb emitted = emitted_radiance(scene, light.instance, light.triangle, b, front) *
@@ -89,7 +125,7 @@ std::optional<LightSample> sample(const Scene& scene, const TriangleLight& light
                        offset_origin(target, error, unit(cross), -to_light),
                        false,
                        uplift_radiance(emitted, bands, white_of(scene, light.instance)),
-                       pdf,
+                       wide ? 1.f / wide->solid_angle() : by_area,
                        false};
 }
 
@@ -168,8 +204,10 @@ std::optional<LightSample> sample_light(const Scene& scene, const Light& light, 
     return std::visit([&](const auto& kind) { return sample(scene, kind, p, u, bands); }, light);
 }
 
-float triangle_light_pdf(const Scene& scene, const TriangleLight& light, float distance_squared,
-                         float cosine) {
+float triangle_light_pdf(const Scene& scene, const TriangleLight& light, const V3f& p,
+                         float distance_squared, float cosine) {
+    const auto corner = triangle_corners(scene, light.instance, light.triangle);
+    if (const auto wide = if_wide(p, corner)) return 1.f / wide->solid_angle();
     return distance_squared / (std::fabs(cosine) * triangle_area(scene, light));
 }
 

@@ -26,9 +26,10 @@ struct LightSample {
 [[nodiscard]] std::optional<LightSample> sample_light(const Scene&, const Light&, const V3f& p,
                                                       V2f u, const Bands&);
 /// Density, 1/sr, with which sample_light draws the direction from p to a point of a triangle light
-/// that was hit: the squared distance, and the cosine at the light (its absolute value counts).
-[[nodiscard]] float triangle_light_pdf(const Scene&, const TriangleLight&, float distance_squared,
-                                       float cosine);
+/// that was hit: the squared distance, and the cosine at the light (its absolute value counts). It
+/// is uniform in solid angle where the triangle is wide as p sees it, and by area elsewhere.
+[[nodiscard]] float triangle_light_pdf(const Scene&, const TriangleLight&, const V3f& p,
+                                       float distance_squared, float cosine);
 /// Power for choosing among lights, in lumen up to a common factor.
 [[nodiscard]] float light_power(const Scene&, const Light&);
 

@@ -86,7 +86,7 @@ float Sampler::get1(Dim dim, uint32_t vertex) const {
 
 Sampler::VertexNumbers Sampler::at_vertex(uint32_t vertex) const {
     constexpr auto number = [](Dim dim) { return static_cast<uint32_t>(dim); };
-    constexpr u32x8 dims{number(Dim::BsdfLobe), number(Dim::Bsdf), number(Dim::LightPick),
+    constexpr u32x8 dims{number(Dim::BsdfLobe), number(Dim::Bsdf), number(Dim::LightRest),
                          number(Dim::LightPoint), number(Dim::Count) + number(Dim::Roulette)};
     const auto [bits_x, bits_y] = bits(hash_words(dims + (key_ + vertex * number(Dim::Count))));
     const f8 x = to_unit_floats(bits_x), y = to_unit_floats(bits_y);

@@ -20,10 +20,9 @@ enum class Dim : uint32_t {
     Coverage,
     BsdfLobe,
     Bsdf,
-    LightPick,
-    LightPoint,
+    LightPoint,  ///< the light and the point on it together
+    LightRest,   ///< what picking the light has used up of LightPoint
     Roulette,
-    LensLane,
     Count
 };
 
@@ -55,9 +54,9 @@ class Sampler {
     /// A point of [0, 1)^2, stratified in both coordinates together.
     [[nodiscard]] V2f get2(Dim dim, uint32_t vertex = 0) const;
     /// Numbers for a path vertex in one call: those that get1 and get2 give for BsdfLobe, Bsdf,
-    /// LightPick and LightPoint at this vertex, and for Roulette at the next.
+    /// LightPoint and LightRest at this vertex, and for Roulette at the next.
     struct VertexNumbers {
-        float bsdf_lobe, light_pick, roulette_after;
+        float bsdf_lobe, light_rest, roulette_after;
         V2f bsdf, light_point;
     };
     [[nodiscard]] VertexNumbers at_vertex(uint32_t vertex) const;

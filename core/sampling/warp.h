@@ -3,10 +3,22 @@
 // throughout; neighbours stay neighbours, so that stratified points stay stratified.
 #pragma once
 
+#include <algorithm>
+
 #include "core/math/math.h"
 #include "core/math/trig.h"
 
 namespace petzval {
+
+/// Number in [0, 1) that is left of a sampler's number after a choice: `left`, its position within
+/// the chosen share. A number has 24 bits, of which the choice took some: an independent number
+/// fills in the last ones, or stands for all of them where fewer than ten are left. One pair of
+/// numbers then chooses and places, and is stratified in both (Shirley 1996, "Monte Carlo
+/// Techniques for Direct Lighting Calculations", section 4).
+[[nodiscard]] inline float left_of_unit(float left, float share, float independent) {
+    const float step = 0x1p-24f / share;
+    return step < 0x1p-10f ? std::min(left + independent * step, kOneMinus) : independent;
+}
 
 /// Point of the unit disk, uniform by area. Shirley and Chiu 1997, "A Low Distortion Map Between
 /// Disk and Square".

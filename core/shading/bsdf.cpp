@@ -42,8 +42,11 @@ Bsdf::Bsdf(const BsdfInput& in, const Bands& bands, const V3f& wo, f4 throughput
       metal_n_(in.metal_n),
       metal_k_(in.metal_k),
       metal_(),
-      on_(bands.on) {
+      on_(bands.on),
+      lead_(bands.lead) {
     share_ *= 1.f / hsum(share_);
+    if (disperses_)
+        for (int i = 0; i < 4; ++i) rank_of_lead_ += bands.nm[i] < bands.nm[bands.lead];
     delta_ = alpha_ < kSmallestAlpha;
     const float schlick = schlick_weight(wo.z);
     const GgxAlbedo ggx = delta_ ? GgxAlbedo{1.f - schlick, schlick} : ggx_albedo(wo.z, alpha_);
@@ -115,14 +118,21 @@ f4 Bsdf::specular_reflectance(float wo_m) const {
 
 // Drawn lane, -1 for reflection. All lanes reflect the same way, so reflection is drawn by their
 // mean; else a lane is drawn in proportion to what of it is not reflected, and the light takes its
-// way.
-int Bsdf::draw_lane(f4 reflectance, float u) const {
+// way. Lanes follow each other in the circle of their wavelengths' quantiles. The rank of the lane
+// that leads is a digit of a random number, and u gives the rest of it.
+int Bsdf::draw_lane(f4 reflectance, float u, bool led) const {
     const float reflected = hsum(share_ * reflectance);
     if (u < reflected) return -1;
     if (!disperses_) return 0;
     float left = u - reflected;
+    int first = 0;
+    if (!led && lane_count(on_) == 4) {
+        first = lead_ - rank_of_lead_;
+        left = 0.25f * (static_cast<float>(rank_of_lead_) * (1.f - reflected) + left);
+    }
     int lane = 3;
-    for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < 4; ++j) {
+        const int i = (first + j) & 3;
         const float chance = share_[i] * (1.f - reflectance[i]);
         if (!(chance > 0.f)) continue;
         lane = i;
@@ -209,7 +219,7 @@ void Bsdf::add_glass(const V3f& wi, BsdfValue& value) const {
     value.pdf += p_glass_ * hsum(share_ * density);
 }
 
-std::optional<BsdfSample> Bsdf::sample_delta(float u) const {
+std::optional<BsdfSample> Bsdf::sample_delta(float u, bool led) const {
     const V3f mirrored{-wo_.x, -wo_.y, wo_.z};
     if (u < p_spec_) {
         const f4 reflectance = specular_reflectance(wo_.z);
@@ -221,7 +231,7 @@ std::optional<BsdfSample> Bsdf::sample_delta(float u) const {
     u = (u - p_thin_) / p_glass_;
     const f4 r = zero_off(on_, glass_reflectance(wo_.z));
     const float share = glass_share_ / p_glass_;
-    const int lane = draw_lane(r, u);
+    const int lane = draw_lane(r, u, led);
     if (lane < 0) {
         // Weight 1 for lanes of one index: no rounding, so that nothing is gained or lost.
         const f4 weight = disperses_ ? r / hsum(share_ * r) : zero_off(on_, splat(1.f));
@@ -233,7 +243,7 @@ std::optional<BsdfSample> Bsdf::sample_delta(float u) const {
     return BsdfSample{wi, weight, 0.f, true, true};
 }
 
-std::optional<V3f> Bsdf::draw(float u_lobe, V2f u) const {
+std::optional<V3f> Bsdf::draw(float u_lobe, V2f u, bool led) const {
     const V3f m = ggx_sample_visible(wo_, alpha_, u);
     const float wo_m = wo_.dot(m);
     if (wo_m <= 0.f) return std::nullopt;
@@ -244,14 +254,14 @@ std::optional<V3f> Bsdf::draw(float u_lobe, V2f u) const {
         return mirrored.z > 0.f ? std::optional(mirror_below(mirrored)) : std::nullopt;
     if (p_glass_ <= 0.f) return std::nullopt;
     const int lane =
-        draw_lane(zero_off(on_, glass_reflectance(wo_m)), (u_lobe - p_thin_) / p_glass_);
+        draw_lane(zero_off(on_, glass_reflectance(wo_m)), (u_lobe - p_thin_) / p_glass_, led);
     if (lane < 0) return mirrored.z > 0.f ? std::optional(mirrored) : std::nullopt;
     const V3f wi = refract(wo_, m, wo_m, eta_[lane]);
     return wi.z < 0.f ? std::optional(wi) : std::nullopt;
 }
 
-std::optional<BsdfSample> Bsdf::sample_tilted(float u_lobe, V2f u) const {
-    std::optional<BsdfSample> drawn = sample_lobes(u_lobe, u);
+std::optional<BsdfSample> Bsdf::sample_tilted(float u_lobe, V2f u, bool led) const {
+    std::optional<BsdfSample> drawn = sample_lobes(u_lobe, u, led);
     if (!drawn) return drawn;
     if (!on_its_side(drawn->wi)) drawn->wi = mirrored_at_surface(drawn->wi);
     if (drawn->delta) return drawn;
@@ -262,15 +272,15 @@ std::optional<BsdfSample> Bsdf::sample_tilted(float u_lobe, V2f u) const {
     return drawn;
 }
 
-std::optional<BsdfSample> Bsdf::sample_lobes(float u_lobe, V2f u) const {
+std::optional<BsdfSample> Bsdf::sample_lobes(float u_lobe, V2f u, bool led) const {
     V3f wi;
     if (u_lobe < p_diffuse_) {
         wi = cosine_hemisphere(u);
     } else {
         u_lobe -= p_diffuse_;
         if (p_spec_ + p_thin_ + p_glass_ <= 0.f) return std::nullopt;
-        if (delta_) return sample_delta(u_lobe);
-        const std::optional<V3f> drawn = draw(u_lobe, u);
+        if (delta_) return sample_delta(u_lobe, led);
+        const std::optional<V3f> drawn = draw(u_lobe, u, led);
         if (!drawn) return std::nullopt;
         wi = unit(*drawn);
     }

@@ -63,9 +63,11 @@ class Bsdf {
     [[nodiscard]] BsdfValue eval(const V3f& wi) const {
         return tilted_ ? eval_tilted(wi) : eval_lobes(wi);
     }
-    /// Draws a direction: u_lobe picks the lobe, u the direction. Nothing where that is absorbed.
-    [[nodiscard]] std::optional<BsdfSample> sample(float u_lobe, V2f u) const {
-        return tilted_ ? sample_tilted(u_lobe, u) : sample_lobes(u_lobe, u);
+    /// Draws a direction: u_lobe picks the lobe and the lane, u the direction. Nothing where that
+    /// is absorbed. led: which lane leads (Bands::lead) has decided something already; otherwise it
+    /// picks the lane, which then is the one that leads wherever all carry the same.
+    [[nodiscard]] std::optional<BsdfSample> sample(float u_lobe, V2f u, bool led = true) const {
+        return tilted_ ? sample_tilted(u_lobe, u, led) : sample_lobes(u_lobe, u, led);
     }
     /// Whether some lobe is wide enough for light sampling to help.
     [[nodiscard]] bool has_wide_lobe() const { return p_diffuse_ > 0 || !delta_; }
@@ -77,15 +79,15 @@ class Bsdf {
     [[nodiscard]] bool on_its_side(const V3f& w) const { return (w.z > 0.f) == (w.dot(up_) > 0.f); }
     [[nodiscard]] BsdfValue eval_lobes(const V3f& wi) const;
     [[nodiscard]] BsdfValue eval_tilted(const V3f& wi) const;
-    [[nodiscard]] std::optional<BsdfSample> sample_lobes(float u_lobe, V2f u) const;
-    [[nodiscard]] std::optional<BsdfSample> sample_tilted(float u_lobe, V2f u) const;
+    [[nodiscard]] std::optional<BsdfSample> sample_lobes(float u_lobe, V2f u, bool led) const;
+    [[nodiscard]] std::optional<BsdfSample> sample_tilted(float u_lobe, V2f u, bool led) const;
     [[nodiscard]] float pdf_of_normal(float wo_m, float d) const;
     void add_glass(const V3f& wi, BsdfValue&) const;
     [[nodiscard]] f4 glass_reflectance(float wo_m) const;
     [[nodiscard]] f4 specular_reflectance(float wo_m) const;
-    [[nodiscard]] int draw_lane(f4 reflectance, float u) const;
-    [[nodiscard]] std::optional<BsdfSample> sample_delta(float u_lobe) const;
-    [[nodiscard]] std::optional<V3f> draw(float u_lobe, V2f u) const;
+    [[nodiscard]] int draw_lane(f4 reflectance, float u, bool led) const;
+    [[nodiscard]] std::optional<BsdfSample> sample_delta(float u_lobe, bool led) const;
+    [[nodiscard]] std::optional<V3f> draw(float u_lobe, V2f u, bool led) const;
 
     V3f wo_, up_;
     bool tilted_;  ///< up is not z
@@ -105,6 +107,7 @@ class Bsdf {
     float glass_share_, glass_specular_;
     float p_spec_, p_diffuse_, p_thin_, p_glass_;
     m4 on_;
+    int lead_, rank_of_lead_ = 0;  ///< rank: number of wavelengths below the one that leads
 };
 
 }  // namespace petzval

@@ -39,11 +39,15 @@ struct Bands {
     f4 white{};                 ///< radiance of the white light at 1 nit, W/(m2 sr nm); 1 for RGB
     f4 to_r{}, to_g{}, to_b{};  ///< film's R, G, B for a unit of each lane
     bool spectral = false;      ///< nm holds wavelengths
+    /// Lane that goes its way where the lanes must part and one is kept: given the wavelengths,
+    /// each is as likely to lead, and the wavelength that leads is stratified over a pixel's
+    /// samples.
+    int lead = 0;
 
     /// Bands whose lanes 0 to 2 carry linear R, G and B.
     [[nodiscard]] static Bands rgb() {
         const f4 r{1, 0, 0, 0}, g{0, 1, 0, 0}, b{0, 0, 1, 0};
-        return {f4{}, f4{1, 1, 1, 1}, m4{-1, -1, -1, 0}, r, g, b, f4{1, 1, 1, 0}, r, g, b, false};
+        return {f4{}, f4{1, 1, 1, 1}, m4{-1, -1, -1, 0}, r, g, b, f4{1, 1, 1, 0}, r, g, b};
     }
 };
 

@@ -107,6 +107,7 @@ Bands Observer::at(f4 nm, f4 pdf, m4 on) const {
     bands.pdf = pdf;
     bands.on = on;
     bands.spectral = true;
+    while (bands.lead < 3 && !on[bands.lead]) ++bands.lead;
     const auto lanes = static_cast<float>(lane_count(on));
     for (int i = 0; i < 4; ++i) {
         if (!on[i]) continue;

@@ -40,7 +40,7 @@ class Observer {
 
     /// Bands of four wavelengths from one number in [0, 1): its place among the quantiles, and the
     /// three that lie 1/4, 2/4 and 3/4 further on (Wilkie et al. 2014, "Hero Wavelength Spectral
-    /// Sampling", section 3.1, in the quantiles instead of the range).
+    /// Sampling", section 3.1, in the quantiles instead of the range). The first leads.
     [[nodiscard]] Bands draw(float u) const;
     /// Bands of these wavelengths, kFirst_nm to kLast_nm, that were drawn with these densities
     /// (1/nm); the mean of the estimates of those that are on goes to the film.

@@ -49,7 +49,6 @@ void draw(benchmark::State& state, const char* name, double fnumber, bool spectr
     constexpr size_t kDraws = 4096;
     struct Numbers {
         V2f film, u;
-        float lane;
         Bands bands;
     };
     std::vector<Numbers> numbers(kDraws);
@@ -57,13 +56,13 @@ void draw(benchmark::State& state, const char* name, double fnumber, bool spectr
         n.film =
             (random.next2() - V2f(0.5f)) * V2f(float(in.film_width_mm), float(in.film_height_mm));
         n.u = random.next2();
-        n.lane = random.next();
         n.bands = spectral ? four_wavelengths(random.next()) : Bands::rgb();
+        n.bands.lead = int(random.next() * float(lane_count(n.bands.on)));
     }
     size_t i = 0, passed = 0;
     for (auto _ : state) {
         const Numbers& n = numbers[i++ % kDraws];
-        const auto drawn = camera.draw(n.film, n.u, n.lane, n.bands);
+        const auto drawn = camera.draw(n.film, n.u, n.bands);
         passed += any(drawn.weight > 0.f);
         benchmark::DoNotOptimize(drawn);
     }

@@ -64,9 +64,10 @@ AberratedLensCamera thin(DispersionMode dispersion, double blue, double red) {
 /// what it sees, at infinity.
 std::array<test::Moments, 4> in_pixel(const Camera& camera, const Filter& filter, uint32_t seed) {
     const V2f centre(34.5f, 24.5f);
-    const Bands bands = four_wavelengths(0.3f);
+    Bands bands = four_wavelengths(0.3f);
     std::array<test::Moments, 4> out;
     for (uint32_t i = 0; i < 1 << 16; ++i) {
+        bands.lead = int(hash32(i) % 4);
         const Sampler sampler(SamplerKind::Independent, seed, {0, 0, i});
         const V2f offset = filter.sample(sampler.get2(Dim::Film));
         const CameraSample seen = camera.sample(

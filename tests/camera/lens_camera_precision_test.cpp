@@ -50,7 +50,7 @@ TEST(LensCameraPrecision, DoublesAreATracedRays) {
         int checked = 0;
         for (uint32_t i = 0; i < 200; ++i) {
             const V2f film = (random.next2() - V2f(0.5f)) * 16.f, u = random.next2();
-            const auto drawn = camera.draw<d4>(film, u, random.next(), bands);
+            const auto drawn = camera.draw<d4>(film, u, led_by(bands, random.next()));
             if (!all(drawn.weight > 0)) continue;
             ++checked;
             double stretches = 0;

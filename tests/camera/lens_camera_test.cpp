@@ -20,6 +20,7 @@ namespace petzval {
 namespace {
 
 using test::four_wavelengths;
+using test::led_by;
 using test::Mean;
 using test::Moments;
 using test::read_lens;
@@ -62,7 +63,7 @@ Estimate irradiance(const LensCamera& camera, V2f film_mm, const Bands& bands = 
         for (int i = 0; i < side; ++i)
             for (int j = 0; j < side; ++j) {
                 const float x = stratum(i), y = stratum(j);
-                const auto drawn = camera.draw(film_mm, V2f(x, y), random.next(), bands);
+                const auto drawn = camera.draw(film_mm, V2f(x, y), led_by(bands, random.next()));
                 for (int lane = 0; lane < 4; ++lane) sum[lane] += drawn.weight[lane];
             }
         for (int lane = 0; lane < 4; ++lane) out[size_t(lane)].add(sum[lane] / (side * side));
@@ -270,7 +271,8 @@ TEST(LensCamera, AtF4NearlyAllDrawsPassOnTheAxis) {
             for (int i = 0; i < kDraws; ++i) {
                 const V2f u = random.next2();
                 passed +=
-                    all(camera.draw(V2f(0.f), u, random.next(), four_wavelengths()).weight > 0.f);
+                    all(camera.draw(V2f(0.f), u, led_by(four_wavelengths(), random.next())).weight >
+                        0.f);
             }
             EXPECT_GE(passed, 0.9 * kDraws) << name;
         }
@@ -314,7 +316,8 @@ TEST(LensCamera, NothingIsNotANumber) {
                         const V2f film = (random.next2() - V2f(0.5f)) * reach;
                         V2f u = random.next2();
                         if (i % 2) u = V2f(u.x < 0.5f ? 0 : kOneMinus, u.y < 0.5f ? 0 : kOneMinus);
-                        const auto drawn = camera.draw(film, u, random.next(), four_wavelengths());
+                        const auto drawn =
+                            camera.draw(film, u, led_by(four_wavelengths(), random.next()));
                         for (int lane = 0; lane < 4; ++lane) {
                             ASSERT_TRUE(drawn.weight[lane] >= 0 && drawn.weight[lane] < 1e30f);
                             if (!(drawn.weight[lane] > 0)) continue;
@@ -342,7 +345,7 @@ TEST(LensCamera, RaysComeBackToTheFilmPoint) {
         int checked = 0;
         for (int i = 0; i < 1000; ++i) {
             const V2f film = (random.next2() - V2f(0.5f)) * 16.f, u = random.next2();
-            const auto drawn = camera.draw(film, u, random.next(), bands);
+            const auto drawn = camera.draw(film, u, led_by(bands, random.next()));
             LensRay<d4> ray;
             ray.counted_from = drawn.ray.counted_from;
             const auto &o = drawn.ray.origin, &d = drawn.ray.direction;

@@ -336,6 +336,43 @@ INSTANTIATE_TEST_SUITE_P(
         return name;
     });
 
+// The lane that leads is one of four, all equally likely. Drawn by it, each lane keeps its mean,
+// whatever the lanes carry; where all carry the same, the one that leads is kept.
+TEST(Bsdf, TheLaneThatLeadsPicksTheRefractedOne) {
+    Bands bands = Bands::rgb();
+    bands.spectral = true;
+    bands.on = m4{-1, -1, -1, -1};
+    bands.nm = f4{550, 640, 430, 480};
+    BsdfInput in = dispersing(0.f, false);
+    in.base_color = splat(1.f);
+    in.eta = f4{1.3f, 1.5f, 1.9f, 1.6f};
+    const float cosine = 0.66f;
+    const f4 kept = 1.f - fresnel_dielectric(cosine, in.eta);
+    for (const f4& throughput : {splat(1.f), f4{1.f, 0.3f, 2.f, 0.4f}, f4{0, 1, 0, 2}}) {
+        f4 refracted{};
+        int drawn = 0, led = 0;
+        constexpr int n = 1 << 14;
+        for (bands.lead = 0; bands.lead < 4; ++bands.lead) {
+            const Bsdf bsdf(in, bands, from_cosine(cosine), throughput);
+            for (int i = 0; i < n; ++i) {
+                const auto s = bsdf.sample((float(i) + 0.5f) / n, {0.5f, 0.5f}, false);
+                if (!s || !s->transmitted) continue;
+                refracted += s->weight * (1.f / (4 * n));
+                ++drawn;
+                led += s->weight[bands.lead] > 0.f;
+            }
+        }
+        for (int lane = 0; lane < 4; ++lane)
+            if (throughput[lane] > 0.f) {
+                EXPECT_NEAR(refracted[lane], kept[lane], 1e-3) << lane;
+            }
+        // The lanes lose up to 10 % to reflection, which shifts their bounds.
+        if (throughput[0] == throughput[2] && throughput[0] == throughput[1]) {
+            EXPECT_GT(led, 0.9 * drawn);
+        }
+    }
+}
+
 // The mean over what is drawn is the same for each lane, though each refracts another way.
 TEST(Bsdf, SmoothDispersingGlassLosesNothingInAnyLane) {
     const f4 throughput{1.f, 0.3f, 2.f, 0.f};

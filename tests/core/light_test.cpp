@@ -98,30 +98,51 @@ TEST(SunLight, ShinesFromInfinity) {
     EXPECT_EQ(s->radiance[1], 900.f);
 }
 
+// From afar by area, from nearby by solid angle.
 TEST(TriangleLight, SamplesFollowTheDensity) {
     Scene scene = test::lamp_scene();
     finish_scene(scene);
     const TriangleLight light{0, 0};
-    const V3f p(0.2f, 0.1f, -0.3f);
     const auto c = corners(scene, light);
     const V3d normal = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
-    const auto pdf = [&](const V3f& w) -> double {
-        const auto t = meet(c, V3d(p), V3d(w));
-        if (!t) return 0;
-        return triangle_light_pdf(scene, light, static_cast<float>(*t * *t),
-                                  static_cast<float>(normal.dot(V3d(w))));
-    };
-    const auto draw = [&](V2f u) -> std::optional<V3f> {
-        const auto s = sample_light(scene, light, p, u, kRgb);
-        if (!s) return std::nullopt;
-        EXPECT_NEAR(s->pdf, pdf(s->direction) > 0 ? pdf(s->direction) : s->pdf, 1e-3 * s->pdf);
-        return s->direction;
-    };
-    const auto turned = [](const V3f& w) { return V3f(w.x, -w.z, w.y); };  // y to z
-    EXPECT_TRUE(test::chi_square_sphere(
-        [&](Random& random) { return turned(*draw(random.next2())); },
-        [&](const V3f& w) { return pdf(V3f(w.x, w.z, -w.y)); }, 1, 100000, 3));
-    EXPECT_TRUE(test::jacobian_matches(draw, pdf, 2));
+    for (const V3f& p : {V3f(0.2f, 0.1f, -0.3f), V3f(0.2f, 1.5f, -0.3f), V3f(0.3f, 1.9f, 0.3f)}) {
+        const auto pdf = [&](const V3f& w) -> double {
+            const auto t = meet(c, V3d(p), V3d(w));
+            if (!t) return 0;
+            return triangle_light_pdf(scene, light, p, static_cast<float>(*t * *t),
+                                      static_cast<float>(normal.dot(V3d(w))));
+        };
+        const auto draw = [&](V2f u) -> std::optional<V3f> {
+            const auto s = sample_light(scene, light, p, u, kRgb);
+            if (!s) return std::nullopt;
+            EXPECT_NEAR(s->pdf, pdf(s->direction) > 0 ? pdf(s->direction) : s->pdf, 1e-3 * s->pdf);
+            return s->direction;
+        };
+        const auto turned = [](const V3f& w) { return V3f(w.x, -w.z, w.y); };  // y to z
+        EXPECT_TRUE(test::chi_square_sphere(
+            [&](Random& random) { return turned(*draw(random.next2())); },
+            [&](const V3f& w) { return pdf(V3f(w.x, w.z, -w.y)); }, 1, 100000, 3))
+            << p;
+        EXPECT_TRUE(test::jacobian_matches(draw, pdf, 2)) << p;
+    }
+}
+
+// A point on the lamp itself, on its rim, at its corners and in its plane.
+TEST(TriangleLight, SendsNothingAlongItself) {
+    Scene scene = test::lamp_scene(Rgb(1.f), true);
+    finish_scene(scene);
+    const TriangleLight light{0, 0};
+    const auto c = triangle_corners(scene, 0, 0);
+    for (const V3f& p : {c[0], c[1], (c[0] + c[1]) * 0.5f, (c[0] + c[1] + c[2]) / 3.f,
+                         c[0] * 2.f - c[1], c[0] * 1.1f - c[1] * 0.05f - c[2] * 0.05f}) {
+        Random random(4);
+        for (int i = 0; i < 1000; ++i) {
+            const auto s = sample_light(scene, light, p, random.next2(), kRgb);
+            if (!s) continue;  // rounding may leave p a little before the plane
+            ASSERT_TRUE(s->pdf > 0 && std::isfinite(s->pdf)) << p;
+            ASSERT_NEAR(s->direction.length(), 1, 1e-3) << p;
+        }
+    }
 }
 
 // Irradiance from a polygon of constant radiance: Lambert 1760; Baum et al. 1989, equation 2.

@@ -61,7 +61,7 @@ TEST_P(Stratified, OneDimensionHasOnePointInEachInterval) {
         std::set<uint32_t> cells;
         for (uint32_t i = 0; i < 1u << m; ++i)
             cells.insert(static_cast<uint32_t>(
-                Sampler(GetParam(), 3, {2, 9, (5u << m) + i}).get1(Dim::LightPick, 1) * (1 << m)));
+                Sampler(GetParam(), 3, {2, 9, (5u << m) + i}).get1(Dim::LightRest, 1) * (1 << m)));
         ASSERT_EQ(cells.size(), size_t{1} << m);
     }
 }
@@ -93,7 +93,7 @@ TEST_P(Kinds, NumbersOfAVertexAreThoseOfItsDimensions) {
         const auto numbers = sampler.at_vertex(i % 17);
         ASSERT_EQ(numbers.bsdf_lobe, sampler.get1(Dim::BsdfLobe, i % 17));
         ASSERT_EQ(numbers.bsdf, sampler.get2(Dim::Bsdf, i % 17));
-        ASSERT_EQ(numbers.light_pick, sampler.get1(Dim::LightPick, i % 17));
+        ASSERT_EQ(numbers.light_rest, sampler.get1(Dim::LightRest, i % 17));
         ASSERT_EQ(numbers.light_point, sampler.get2(Dim::LightPoint, i % 17));
         ASSERT_EQ(numbers.roulette_after, sampler.get1(Dim::Roulette, i % 17 + 1));
     }

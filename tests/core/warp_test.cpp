@@ -40,6 +40,29 @@ TEST(Trig, Atan2OfTurns) {
     EXPECT_EQ(atan2_turns(-0.f, -1.f), -0.5f);
 }
 
+// Whatever the share and where it lies, even one that few of a sampler's numbers fall into.
+TEST(Warp, WhatAChoiceLeavesIsUniform) {
+    for (const float share : {1.f, 0.7f, 0.01f, 1e-4f, 1e-5f, 3e-7f}) {
+        Random random(5);
+        constexpr int kDraws = 100000, kCells = 64;
+        std::array<double, kCells> found{};
+        for (int i = 0; i < kDraws; ++i) {
+            // A number of 24 bits that lies in the share, which begins anywhere.
+            const double units = double(share) * 0x1p24, first = random.next() * 0x1p24 - units;
+            const double count = std::max(1., std::floor(first + units) - std::floor(first));
+            const double unit = std::floor(first) + 1 + std::floor(random.next() * count);
+            const auto left = static_cast<float>(std::clamp((unit - first) / units, 0., 1.));
+            const float u = left_of_unit(std::min(left, kOneMinus), share, random.next());
+            ASSERT_TRUE(u >= 0 && u < 1);
+            found[size_t(u * kCells)] += 1;
+        }
+        double squares = 0;
+        for (const double n : found) squares += sqr(n - double(kDraws) / kCells);
+        EXPECT_GE(test::chi_square_p(squares * kCells / kDraws, kCells - 1), test::sidak())
+            << share;
+    }
+}
+
 TEST(Warp, DiskIsUniform) {
     const auto density = [](double x, double y) {
         return x * x + y * y < 1 ? uniform_disk_pdf() : 0.f;

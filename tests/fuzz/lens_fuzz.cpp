@@ -296,10 +296,11 @@ class Trial {
         bands.on = m4{-1, -1, -1, -1};
         for (int i = 0; i < 32; ++i) {
             const V2f film = random_.next2() * 40.f - V2f(20.f);
-            const Bands of_sample = i % 2 ? bands : Bands::rgb();
+            Bands of_sample = i % 2 ? bands : Bands::rgb();
+            of_sample.lead = i / 2 % lane_count(of_sample.on);
             for (int k = 0; k < 4; ++k) bands.nm[k] = float(between(random_, 360, 830));
             const V2f u = random_.next2();
-            const auto drawn = made.draw(film, u, random_.next(), of_sample);
+            const auto drawn = made.draw(film, u, of_sample);
             require(all(drawn.weight >= 0.f) && all(drawn.weight < INFINITY), "a bad weight");
             check(made.sample({random_.next2(), Sampler(SamplerKind::Owen, 1, {i, i, 0})},
                               of_sample));

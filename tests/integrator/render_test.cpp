@@ -144,7 +144,8 @@ class CountingTracer {
   public:
     explicit CountingTracer(int threads) : threads_(threads) {}
 
-    f4 radiance(const Ray&, const Bands&, const Sampler&, bool, FilmSample&, PathStats&, m4) const {
+    f4 radiance(const Ray&, const Bands&, const Sampler&, bool, FilmSample&, PathStats&, m4,
+                bool) const {
         std::unique_lock lock(mutex_);
         if (arrived_.insert(std::this_thread::get_id()).second) {
             all_.notify_all();
@@ -241,8 +242,8 @@ TEST(Render, ATimeLimitEndsAWholePass) {
 // Not a number for one half of the picture.
 class BadTracer {
   public:
-    f4 radiance(const Ray& ray, const Bands&, const Sampler&, bool, FilmSample&, PathStats&,
-                m4) const {
+    f4 radiance(const Ray& ray, const Bands&, const Sampler&, bool, FilmSample&, PathStats&, m4,
+                bool) const {
         return splat(ray.direction.x > 0 ? std::numeric_limits<float>::quiet_NaN() : 2.f);
     }
 };

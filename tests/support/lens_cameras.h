@@ -52,6 +52,15 @@ inline const std::string kTakumar = "takumar-50mm-f1.2", kGauss = "double-gauss-
     return lane;
 }
 
+/// The bands with another lane in the lead, each equally likely for u in [0, 1).
+[[nodiscard]] inline Bands led_by(Bands bands, float u) {
+    std::vector<int> lanes;
+    for (int i = 0; i < 4; ++i)
+        if (bands.on[i]) lanes.push_back(i);
+    bands.lead = lanes[size_t(u * float(lanes.size()))];
+    return bands;
+}
+
 [[nodiscard]] inline FilmPoint film_point(V2f film, uint32_t index) {
     return {film, Sampler(SamplerKind::Owen, 7, {0, 0, index})};
 }
@@ -62,8 +71,7 @@ inline const std::string kTakumar = "takumar-50mm-f1.2", kGauss = "double-gauss-
 template <class V = f4>
 LensDraw<V> draw_of(const LensCamera& camera, const LensCameraInput& in, const FilmPoint& at,
                     const Bands& bands) {
-    return camera.draw<V>(millimetres(in, at.film), at.sampler.get2(Dim::Lens),
-                          at.sampler.get1(Dim::LensLane), bands);
+    return camera.draw<V>(millimetres(in, at.film), at.sampler.get2(Dim::Lens), bands);
 }
 
 }  // namespace petzval::test

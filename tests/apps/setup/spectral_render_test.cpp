@@ -360,8 +360,8 @@ TEST(SpectralRender, HeroAgreesWithOneWavelengthAPath) {
                     const CameraSample seen = camera.sample({at, sampler}, bands);
                     FilmSample out;
                     PathStats stats;
-                    const f4 radiance =
-                        world.tracer->radiance(seen[0].ray, bands, sampler, false, out, stats);
+                    const f4 radiance = world.tracer->radiance(
+                        seen[0].ray, bands, sampler, false, out, stats, m4{-1, -1, -1, -1}, false);
                     const Rgb colour = to_rgb(seen[0].weight * radiance, bands);
                     for (int c = 0; c < 3; ++c) sum[size_t(c)] += colour[c] / samples;
                 }

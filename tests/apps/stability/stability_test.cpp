@@ -156,7 +156,7 @@ TEST(Stability, NoDrawOutweighsAllOthersWhereThePupilFolds) {
     double heaviest = 0;
     test::Random random(4);
     for (int i = 0; i < 400000; ++i) {
-        const auto drawn = camera.draw<f4>({17, 12}, random.next2(), 0, Bands::rgb());
+        const auto drawn = camera.draw<f4>({17, 12}, random.next2(), Bands::rgb());
         weights.add(double(drawn.weight[0]));
         heaviest = std::max(heaviest, double(drawn.weight[0]));
     }

@@ -28,7 +28,8 @@ struct PathTracer<Caster>::Vertex {
 /// Light sample, and how likely its light was picked.
 template <RayCaster Caster>
 struct PathTracer<Caster>::DrawnLight {
-    LightSample sample;
+    LightSample sample;  ///< meaningless where dark
+    bool dark;           ///< the point that was drawn sends nothing
     float pick_probability;
     uint32_t light;
     V2f u;  ///< what drew the point on the light
@@ -94,14 +95,15 @@ auto PathTracer<Caster>::draw_light(const LightReceiver& receiver, const Sampler
     if (std::holds_alternative<SkyLight>(light)) {
         const Sky::Draw drawn = scene_.sky.sample(u_on_light);
         return DrawnLight{{drawn.direction, V3f(0.f), true, f4{}, 0.f, false},
+                          false,
                           pick->probability,
                           pick->light,
                           u_on_light,
                           drawn.place};
     }
     const auto sample = sample_light(scene_, light, receiver.p, u_on_light, bands);
-    if (!sample) return std::nullopt;
-    return DrawnLight{*sample, pick->probability, pick->light, u_on_light, {}};
+    return DrawnLight{
+        sample.value_or(LightSample{}), !sample, pick->probability, pick->light, u_on_light, {}};
 }
 
 // Light from a point of a lamp on a smooth surface. Seen from the triangle, the point may lie
@@ -115,13 +117,13 @@ f4 PathTracer<Caster>::light_on_smooth(const Surface& s, const Frame& frame, con
                                        const Material* medium, PathStats& stats) const {
     const V3f facing = s.facing();
     f4 sum{};
-    if (drawn.sample.direction.dot(facing) > 0.f)
+    if (!drawn.dark && drawn.sample.direction.dot(facing) > 0.f)
         sum += direct_light(s, frame, bsdf, drawn, bands, sampler, depth, medium, stats);
     const V3f smooth = s.p + s.lift;
     const auto again = sample_light(scene_, scene_.lights[drawn.light], smooth, drawn.u, bands);
     if (!again || !(again->direction.dot(facing) < 0.f && again->direction.dot(s.side) > 0.f))
         return sum;
-    const DrawnLight from_smooth{*again, drawn.pick_probability, drawn.light, drawn.u, {}};
+    const DrawnLight from_smooth{*again, false, drawn.pick_probability, drawn.light, drawn.u, {}};
     return sum + direct_light(s, frame, bsdf, from_smooth, bands, sampler, depth, medium, stats);
 }
 
@@ -130,6 +132,7 @@ f4 PathTracer<Caster>::direct_light(const Surface& s, const Frame& frame, const 
                                     const DrawnLight& drawn, const Bands& bands,
                                     const Sampler& sampler, uint32_t depth, const Material* medium,
                                     PathStats& stats) const {
+    if (drawn.dark) return f4{};
     LightSample light = drawn.sample;
     const BsdfValue value = bsdf.eval(frame.to_local(light.direction));
     if (value.pdf <= 0.f) return f4{};

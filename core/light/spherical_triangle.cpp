@@ -29,17 +29,17 @@ SphericalTriangle::SphericalTriangle(const V3f& p, const std::array<V3f, 3>& cor
     excess_turns_ = atan2_turns(static_cast<float>(determinant_), static_cast<float>(cosines));
 }
 
-// All sines and cosines of the drawn area come from the sine of its half: an error of that is one
-// of u only.
+// All sines and cosines of the drawn area come from one pair of unit length, which the polynomials
+// give to 1e-7: its error is one of u only.
 V3f SphericalTriangle::direction(V2f u) const {
     const double ab = a_.dot(b_), gap = 0.5 * (a_ - b_).dot(a_ - b_);  // 1 - ab
     const double alpha_x = b_.dot(c_) - ab * a_.dot(c_);
     const double scale = 1. / std::sqrt(alpha_x * alpha_x + determinant_ * determinant_);
     const double cos_alpha = alpha_x * scale, sin_alpha = determinant_ * scale;
 
-    const SinCos of_half = sincos_turns(u.x * excess_turns_);
-    const double half = of_half.sine,
-                 cos_half = std::copysign(std::sqrt(1. - half * half), double(of_half.cosine));
+    const SinCos drawn = sincos_turns(u.x * excess_turns_);
+    const Imath::V2d unit_half = Imath::V2d(drawn.cosine, drawn.sine).normalized();
+    const double half = unit_half.y, cos_half = unit_half.x;
     const double sine = 2. * half * cos_half, versine = 2. * half * half;
     const double s = sine * cos_alpha - (1. - versine) * sin_alpha;
     const double t = (1. - versine) * cos_alpha + sine * sin_alpha;

@@ -12,7 +12,7 @@ namespace petzval {
 
 /// Number in [0, 1) that is left of a sampler's number after a choice: `left`, its position within
 /// the chosen share. A number has 24 bits, of which the choice took some: an independent number
-/// fills in the last ones, or stands for all of them where fewer than ten are left. One pair of
+/// fills in the last ones, or stands for all of them where no more than ten are left. One pair of
 /// numbers then chooses and places, and is stratified in both (Shirley 1996, "Monte Carlo
 /// Techniques for Direct Lighting Calculations", section 4).
 [[nodiscard]] inline float left_of_unit(float left, float share, float independent) {

@@ -39,9 +39,10 @@ struct Bands {
     f4 white{};                 ///< radiance of the white light at 1 nit, W/(m2 sr nm); 1 for RGB
     f4 to_r{}, to_g{}, to_b{};  ///< film's R, G, B for a unit of each lane
     bool spectral = false;      ///< nm holds wavelengths
-    /// Lane that goes its way where the lanes must part and one is kept: given the wavelengths,
-    /// each is as likely to lead, and the wavelength that leads is stratified over a pixel's
-    /// samples.
+    /// Lane whose way is taken where the lanes must part, and that picks one where they carry
+    /// unlike shares. Given the wavelengths, each is as likely to lead, and the lanes follow each
+    /// other in the circle of quantiles (both by Observer::draw). The wavelength that leads is
+    /// stratified over a pixel's samples.
     int lead = 0;
 
     /// Bands whose lanes 0 to 2 carry linear R, G and B.

@@ -78,7 +78,7 @@ LensLosses<uint64_t> losses(const LensCameraInput& in, Bands bands) {
     LensLosses<uint64_t> out;
     test::Random random(6);
     for (uint32_t i = 0; i < 4000; ++i) {
-        bands.lead = int(i % 4);
+        bands = led_by(bands, float(i % 4) / 4);
         const CameraSample seen = camera.sample(film_point(random.next2(), i), bands);
         uint32_t passed = 0;
         for (size_t k = 0; k < seen.size(); ++k) passed += uint32_t(lane_count(seen[k].lanes));

@@ -133,6 +133,34 @@ TEST(Path, TechniquesAgree) {
     }
 }
 
+// A lamp that is half transparent, so that a shadow ray may pass it: rounding leaves its own points
+// a little beside its plane, from where it would fill half of what they see.
+TEST(Path, AFlatLampDoesNotLightItself) {
+    for (const V3f& moved : {V3f(0.f), V3f(10, 20, 30)}) {
+        World world;
+        Material lamp = emitter_material(1.f);
+        lamp.base_color = Rgb(0.8f);
+        lamp.double_sided = true;
+        lamp.alpha_mode = AlphaMode::Blend;
+        lamp.alpha = 0.5f;
+        place(world.scene, quad(V3f(-2, -2, -0.3f) + moved, V3f(4, 0, 0.7f), V3f(0.3f, 4, 1)),
+              lamp);
+        world.finish();
+        PathOptions options;
+        options.max_depth = 1;
+        const auto by = [&](Technique technique) {
+            options.technique = technique;
+            return estimate(world, options, 4096, [&](V2f u) {
+                return ray_to(V3f(0.2f, 0.1f, 4) + moved, V3f(2 * u.x - 1, 2 * u.y - 1, 0) + moved);
+            });
+        };
+        const Mean found = by(Technique::BsdfOnly);
+        EXPECT_NEAR(found.value, 0.5, 0.01);
+        EXPECT_NEAR(by(Technique::LightOnly).value, found.value, 1e-5);
+        EXPECT_NEAR(by(Technique::Mis).value, found.value, 1e-5);
+    }
+}
+
 // The same by the light tree, whose probabilities depend on the vertex: emitters of one side and of
 // two, a bulb and a sky, a glossy floor below and a pane that transmits.
 TEST(Path, TechniquesAgreeWithTheLightTree) {

@@ -361,7 +361,7 @@ TEST(SpectralRender, HeroAgreesWithOneWavelengthAPath) {
                     FilmSample out;
                     PathStats stats;
                     const f4 radiance = world.tracer->radiance(
-                        seen[0].ray, bands, sampler, false, out, stats, m4{-1, -1, -1, -1}, false);
+                        seen[0].ray, bands, sampler, false, out, stats, seen[0].lanes, seen[0].led);
                     const Rgb colour = to_rgb(seen[0].weight * radiance, bands);
                     for (int c = 0; c < 3; ++c) sum[size_t(c)] += colour[c] / samples;
                 }

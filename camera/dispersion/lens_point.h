@@ -20,6 +20,7 @@ struct LaneRequest {
 struct FilmLanding {
     f4 dx_px, dy_px;  ///< from the film point that the ray was drawn for, y down
     f4 open;          ///< [0, 1]: share that iris and rims let through
+    f4 drawn;         ///< density with which the lane draws the ray from there, in any unit
     /// Share that the surfaces do not reflect, and the film's fall-off there over that at the film
     /// point.
     f4 transmitted;

@@ -73,7 +73,7 @@ template <LensPoint P>
     const float of_lead = rays.weight_of_lanes()[lead];
     if (!(of_lead > 0)) return out;
     const FilmLanding landing = lens.landing(rays, request);
-    const f4 shares = hero_shares(pixel, landing.dx_px, landing.dy_px, on, landing.open);
+    const f4 shares = hero_shares(pixel, landing, lead, on);
     // One lane's weight counts for all that are on.
     const f4 weight = shares * landing.transmitted * (of_lead / static_cast<float>(lane_count(on)));
     const m4 reached = weight > 0;

@@ -89,7 +89,7 @@ class AberratedLensCamera::Point {
         const f4 off = all.vergence_per_mm - splat(all.vergence_per_mm[request.lead]);
         const V2f px = 0.5f * at_.pixel.frame_px / V2f(c_.tan_half_x_, c_.tan_half_y_);
         return {off * (rays.stop_mm.x * px.x), off * (-rays.stop_mm.y * px.y), all.weight,
-                vignetting_where(off, rays.stop_mm)};
+                all.weight, vignetting_where(off, rays.stop_mm)};
     }
     [[nodiscard]] float exposure() const { return c_.in_.exposure; }
 

@@ -76,7 +76,25 @@ LensCamera::LensCamera(LensCameraInput in)
       pose_(in_.to_world),
       aimer_(*in_.lens, in_.film_mm, 0.5 * std::hypot(in_.film_width_mm, in_.film_height_mm)),
       line_d_(in_.lens->exact_indices(splat(static_cast<float>(kLineD_nm)))),
-      exact_line_d_(in_.lens->exact_indices(broadcast<d4>(kLineD_nm))) {}
+      exact_line_d_(in_.lens->exact_indices(broadcast<d4>(kLineD_nm))) {
+    const Lens& lens = *in_.lens;
+    if (!lens.of_revolution()) return;
+    const auto passes = [&](float height_mm, V2f stop_mm) {
+        auto aimed =
+            aimer_.aim({0.f, height_mm}, stop_mm, line_d_, 0, static_cast<float>(kLineD_nm));
+        if (!aimed || !aimed->clear[0]) return false;
+        static_cast<void>(trace_lens<f4>(lens, line_d_, Towards::Scene, {0, lens.stop() - 1},
+                                         aimed->ray, Clip::Yes));
+        return aimed->ray.alive()[0] != 0;
+    };
+    const auto rim_mm = static_cast<float>(
+        lens.prescription().surfaces[static_cast<size_t>(lens.stop())].semi_diameter_mm);
+    // A pixel's filter reaches a little beyond the film.
+    const double reach_mm = 0.51 * std::hypot(in_.film_width_mm, in_.film_height_mm);
+    bounds_ =
+        StopBoundsByHeight(passes, static_cast<float>(reach_mm),
+                           std::min(rim_mm, in_.iris.bounding_radius_mm()), in_.iris.area_mm2());
+}
 
 template <class V>
 ScalarOf<V> LensCamera::behind_pupil_mm(const LensRay<V>& ray, int lane) const {
@@ -97,6 +115,7 @@ class LensCamera::Point {
           film_mm_(film_mm),
           bands_(bands),
           frame_px_(frame_px),
+          stop_(camera.stop_at(film_mm)),
           achromatic_(achromatic) {
         if (achromatic) return;
         own_ = lens().indices(bands.nm);
@@ -132,6 +151,7 @@ class LensCamera::Point {
     V2f film_mm_;
     const Bands& bands_;
     V2f frame_px_;
+    StopDraw stop_;
     bool achromatic_;
     LensIndices<f4> own_;
     [[no_unique_address]] std::conditional_t<std::same_as<V, d4>, LensIndices<d4>, Nothing>
@@ -139,15 +159,15 @@ class LensCamera::Point {
 };
 
 // Weights of a draw. Irradiance is the integral of radiance dL dM, L and M the direction cosines at
-// the film: the cosine is in it. A point drawn evenly on the iris and solved for one lane has the
-// density stretch / area in (L, M); other lanes might have drawn the same direction, and all are
-// weighed with the mean density (balance heuristic: Veach 1997, 9.2.3), so that light at the iris's
+// the film: the cosine is in it. A point drawn on the stop and solved for one lane has its density
+// times stretch in (L, M); other lanes might have drawn the same direction, and all are weighed
+// with the mean density (balance heuristic: Veach 1997, 9.2.3), so that light at the iris's
 // edge is not lost where its image differs between wavelengths.
 template <class V>
 LensDraw<V> LensCamera::Point<V>::rays(const LaneRequest& request) const {
     const LensCameraInput& in = c_.in_;
     LensDraw<V> out;
-    const V2f on_iris = in.iris.sample(request.u);
+    const V2f on_iris = stop_.sample(request.u);
     const float nm = achromatic_ ? static_cast<float>(kLineD_nm) : bands_.nm[request.lead];
     const auto solved = c_.aimer_.aim(film_mm_, on_iris, in_floats(), request.lead, nm);
     out.losses.drawn = static_cast<uint32_t>(lane_count(request.lanes));
@@ -169,7 +189,12 @@ LensDraw<V> LensCamera::Point<V>::rays(const LaneRequest& request) const {
     const V open = select(lanes_as<MaskOf<V>>(request.lanes) & aimed.ray.alive(),
                           stop_transmission(in.iris, lens(), x, y), V{});
     const auto lanes = static_cast<S>(out.losses.drawn);
-    const S density = sum<V>(open * aimed.stretch_mm2()) / (S(in.iris.area_mm2()) * lanes);
+    V of_point{};
+    for (int i = 0; i < 4; ++i)
+        if (open[i] > 0)
+            of_point[i] = stop_.density({static_cast<float>(x[i]), static_cast<float>(y[i])},
+                                        static_cast<float>(open[i]));
+    const S density = sum<V>(of_point * aimed.stretch_mm2()) / lanes;
     out.ray = aimed.ray;
     if (density > 0 && any(aimed.clear & (open > 0))) {
         static_cast<void>(trace_lens<V>(lens(), indices(), Towards::Scene, {0, lens().stop() - 1},
@@ -249,7 +274,7 @@ FilmLanding LensCamera::Point<V>::landing(const LensDraw<V>& rays,
     static_cast<void>(
         trace_lens<V>(lens(), indices(), Towards::Film, {0, stop - 1}, ray, Clip::Yes, lose));
     static_cast<void>(trace_lens<V>(lens(), indices(), Towards::Film, {stop, stop}, ray, Clip::No));
-    const V2f on_iris = in.iris.sample(request.u);
+    const V2f on_iris = stop_.sample(request.u);
     const V x = ray.origin.x + (S(on_iris.x) - ray.origin.x[lead]);
     const V y = ray.origin.y + (S(on_iris.y) - ray.origin.y[lead]);
     const V iris = stop_transmission(in.iris, lens(), x, y);
@@ -260,6 +285,12 @@ FilmLanding LensCamera::Point<V>::landing(const LensDraw<V>& rays,
         (S(in.film_mm - lens().vertex_mm(ray.counted_from)) - ray.origin.z) / ray.direction.z;
     const V film_x = ray.origin.x + to_film * ray.direction.x;
     const V film_y = ray.origin.y + to_film * ray.direction.y;
+    for (int i = 0; i < 4; ++i) {
+        const V2f shift(static_cast<float>(film_x[i] - film_x[lead]),
+                        static_cast<float>(film_y[i] - film_y[lead]));
+        const V2f stop_mm(static_cast<float>(x[i]), static_cast<float>(y[i]));
+        out.drawn[i] = c_.stop_at(film_mm_ + shift).density(stop_mm, out.open[i]);
+    }
     // The image stands on its head.
     out.dx_px = lanes_as<f4>(V((film_x[lead] - film_x) / S(in.film_width_mm))) * frame_px_.x;
     out.dy_px = lanes_as<f4>(V((film_y - film_y[lead]) / S(in.film_height_mm))) * frame_px_.y;

@@ -11,6 +11,8 @@
 #include "camera/lens/lens.h"
 #include "camera/lens/lens_options.h"
 #include "camera/lens/ray_aiming.h"
+#include "camera/lens/stop_bounds.h"
+#include "camera/models/stop_draw.h"
 #include "camera/models/thin_lens.h"
 
 namespace petzval {
@@ -73,6 +75,9 @@ class LensCamera final : public Camera {
     /// A film point's rays, in lanes of V, for the strategies of camera/dispersion.
     template <class V>
     class Point;
+    [[nodiscard]] StopDraw stop_at(V2f film_mm) const {
+        return {in_.iris, bounds_.at(film_mm.length()), film_mm};
+    }
     /// Distance of the ray's origin behind the middle of the entrance pupil.
     template <class V>
     [[nodiscard]] ScalarOf<V> behind_pupil_mm(const LensRay<V>&, int lane) const;
@@ -82,6 +87,7 @@ class LensCamera final : public Camera {
     RayAimer aimer_;
     LensIndices<f4> line_d_;
     LensIndices<d4> exact_line_d_;
+    StopBoundsByHeight bounds_;
     float gain_ = 1.f, exposure_ = 1.f;
 };
 

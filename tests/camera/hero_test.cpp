@@ -162,23 +162,28 @@ TEST(Hero, RaysInDoublesAreThoseInFloats) {
 }
 
 // The lanes' weights of a ray that all of them let through add up to what they are without
-// dispersion.
+// dispersion, where the stop is drawn in proportion to what it lets through.
 TEST(Hero, SharesAddUpToTheNumberOfLanes) {
     const PixelFilter pixel{&filters()[0], V2f(0.3f, -0.2f), kFrame_px};
     const m4 all{-1, -1, -1, -1}, three{-1, 0, -1, -1};
-    const f4 same = hero_shares(pixel, f4{}, f4{}, all, splat(1));
+    const auto shares = [&](f4 dx_px, f4 dy_px, m4 on, f4 open) {
+        return hero_shares(pixel, {dx_px, dy_px, open, open, splat(1)}, 0, on);
+    };
+    const f4 same = shares(f4{}, f4{}, all, splat(1));
     for (int i = 0; i < 4; ++i) EXPECT_FLOAT_EQ(same[i], 1);
-    const f4 apart =
-        hero_shares(pixel, f4{0, 0.5f, -0.4f, 9}, f4{0, 0.1f, 0.2f, 0}, three, splat(1));
+    const f4 apart = shares(f4{0, 0.5f, -0.4f, 9}, f4{0, 0.1f, 0.2f, 0}, three, splat(1));
     EXPECT_FLOAT_EQ(hsum(apart), 3);
     EXPECT_EQ(apart[1], 0) << "is off";
     EXPECT_EQ(apart[3], 0) << "lands beyond the filter";
     const auto value = [](float x, float y) { return filters()[0].value({x, y}); };
     EXPECT_NEAR(apart[2] / apart[0], value(-0.1f, 0) / value(0.3f, -0.2f), 1e-5);
-    const f4 blocked = hero_shares(pixel, f4{}, f4{}, all, f4{1, 0, 1, 1});
+    const f4 blocked = shares(f4{}, f4{}, all, f4{1, 0, 1, 1});
     EXPECT_EQ(blocked[1], 0);
     EXPECT_FLOAT_EQ(blocked[0], 4.f / 3);
-    EXPECT_EQ(hsum(hero_shares(pixel, splat(9), f4{}, all, splat(1))), 0);
+    EXPECT_EQ(hsum(shares(splat(9), f4{}, all, splat(1))), 0);
+    // A lane that draws the ray twice as often counts twice among those that might have drawn it.
+    const f4 drawn = hero_shares(pixel, {f4{}, f4{}, splat(1), f4{2, 1, 1, 0}, splat(1)}, 0, all);
+    for (int i = 0; i < 4; ++i) EXPECT_FLOAT_EQ(drawn[i], 2);
 }
 
 TEST(Hero, WithoutAFilterLanesAreSplit) {

@@ -14,12 +14,12 @@ struct Scene;
 
 /// Light that arrives at a point, before anything in between is known.
 struct LightSample {
-    V3f direction;  ///< unit, from the point to the light
-    V3f target;     ///< end of a shadow ray, clear of the light; meaningless when at_infinity
-    bool at_infinity;
-    f4 radiance;  ///< for a delta light: the irradiance on a surface that faces it
-    float pdf;    ///< 1/sr; 1 for a delta light
-    bool delta;   ///< a BSDF sample can never find this light
+    V3f direction{0.f};  ///< unit, from the point to the light
+    V3f target{0.f};     ///< end of a shadow ray, clear of the light; meaningless when at_infinity
+    bool at_infinity = false;
+    f4 radiance{};       ///< for a delta light: the irradiance on a surface that faces it
+    float pdf = 0;       ///< 1/sr; 1 for a delta light
+    bool delta = false;  ///< a BSDF sample can never find this light
 };
 
 /// Draws a direction from p to the light; u in [0, 1)^2. Nothing where no light can arrive.

@@ -63,6 +63,10 @@ def measure(a, row, programs, folder):
             cost[p.name]["whole_cpu_s"].append(long_s)
             if seed <= a.timed_seeds:
                 short_s = p.render(a, row, scene, a.short_samples, seed, output)
+                if short_s >= long_s:
+                    sys.exit("%s: %s took no less CPU time for %d samples than for %d, so this machine is too busy to "
+                             "tell. The rows before are kept: run the same command again." %
+                             (row.name, p.name, a.short_samples, a.samples))
                 cost[p.name]["sample_cpu_s"].append((long_s - short_s) / (a.samples - a.short_samples))
     numbers = {}
     for p in programs:

@@ -116,8 +116,8 @@ TEST(LensLosses, AFilmBeyondTheImageCircleIsBlack) {
     EXPECT_GT(all.lost(), all.drawn * 9 / 10);
 }
 
-// An iris that is larger than the stop is cut off by its rim; of a wide one, most points are reached
-// by no ray. Few are drawn there: what the camera keeps for them is a 32nd.
+// An iris that is larger than the stop is cut off by its rim; of a wide one, most points are
+// reached by no ray. Few are drawn there: what the camera keeps for them is a 32nd.
 TEST(LensLosses, AWideIrisIsVignettedOrUnreached) {
     const auto some = losses(input_of(kGauss, DispersionMode::Shared, 1.5), Bands::rgb());
     EXPECT_GT(some.vignetted, some.drawn / 64);

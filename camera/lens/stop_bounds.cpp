@@ -96,8 +96,9 @@ StopBoundsByHeight::StopBoundsByHeight(const Passes& passes, float film_reach_mm
 
 const StopBounds* StopBoundsByHeight::at(float height_mm) const {
     if (rings_.empty()) return nullptr;
-    const auto ring = static_cast<size_t>(height_mm * rings_per_mm_);
-    const auto& bounds = rings_[std::min(ring, rings_.size() - 1)];
+    // Written so that a height that is not a number takes the first ring.
+    const float last = static_cast<float>(rings_.size() - 1), ring = height_mm * rings_per_mm_;
+    const auto& bounds = rings_[static_cast<size_t>(ring > 0.f ? std::min(ring, last) : 0.f)];
     return bounds ? &*bounds : nullptr;
 }
 

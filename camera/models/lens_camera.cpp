@@ -186,12 +186,13 @@ LensDraw<V> LensCamera::Point<V>::rays(const LaneRequest& request) const {
     // iris may be smaller than the tolerance.
     const V x = aimed.ray.origin.x + (S(on_iris.x) - aimed.ray.origin.x[request.lead]);
     const V y = aimed.ray.origin.y + (S(on_iris.y) - aimed.ray.origin.y[request.lead]);
-    const V open = select(lanes_as<MaskOf<V>>(request.lanes) & aimed.ray.alive(),
-                          stop_transmission(in.iris, lens(), x, y), V{});
+    const MaskOf<V> there = lanes_as<MaskOf<V>>(request.lanes) & aimed.ray.alive();
+    const V open = select(there, stop_transmission(in.iris, lens(), x, y), V{});
     const auto lanes = static_cast<S>(out.losses.drawn);
+    // Also of lanes for which the iris is shut there: bounds overhang it.
     V of_point{};
     for (int i = 0; i < 4; ++i)
-        if (open[i] > 0)
+        if (there[i])
             of_point[i] = stop_.density({static_cast<float>(x[i]), static_cast<float>(y[i])},
                                         static_cast<float>(open[i]));
     const S density = sum<V>(of_point * aimed.stretch_mm2()) / lanes;

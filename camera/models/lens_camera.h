@@ -60,8 +60,8 @@ class LensCamera final : public Camera {
     }
     /// Irradiance at a film point over the radiance of an even scene, at line d, the gain included,
     /// but not what surfaces reflect; on the axis pi sin^2 u' for a round iris. From `count` draws,
-    /// best a power of two: with 1024 the error is below 1e-4 for the lenses that ship, and 0.2 %
-    /// where a rim just touches the bundle.
+    /// best a power of two: with 1024 the error is below 1e-4 for the lenses that ship, and 0.4 %
+    /// where rims cut the bundle.
     [[nodiscard]] double irradiance(V2f film_mm, uint32_t count) const;
 
     /// One draw of the iris: the mean of its weights is the film point's irradiance over the

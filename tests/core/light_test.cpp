@@ -179,6 +179,43 @@ TEST(TriangleLight, EstimatesLambertsIrradiance) {
     }
 }
 
+// A point so near to a large lamp that rounding moves the points of the lamp aside.
+TEST(TriangleLight, EstimatesLambertsIrradianceNearALargeLamp) {
+    for (const float size : {1e2f, 1e4f}) {
+        Scene scene;
+        scene.materials = {test::glowing(Rgb(1.f), true)};
+        scene.meshes = {test::one_triangle(V3f(-3.1f, 0.1f, -2) * size, V3f(3, 0.2f, -2.2f) * size,
+                                           V3f(0.1f, 0.3f, 4) * size)};
+        scene.instances.resize(1);
+        finish_scene(scene);
+        const TriangleLight light{0, 0};
+        const auto c = corners(scene, light);
+        const V3d normal = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
+        const V3d on_lamp = c[0] * 0.3 + c[1] * 0.4 + c[2] * 0.3;
+        const V3f p(on_lamp + normal * (normal.y > 0 ? -1e-5 : 1e-5) * double(size));
+        const V3f wall = unit(V3f(1, 0.2f, 0.1f));
+        Random random(7);
+        test::Moments moments;
+        for (int i = 0; i < 100000; ++i) {
+            const auto s = sample_light(scene, light, p, random.next2(), kRgb);
+            const float cosine = s ? s->direction.dot(wall) : 0;
+            moments.add(cosine > 0 ? double(s->radiance[1] * cosine / s->pdf) : 0);
+        }
+        // By a grid of directions: those that meet the lamp.
+        double expected = 0;
+        constexpr int kSide = 2000;
+        for (int i = 0; i < kSide; ++i)
+            for (int j = 0; j < kSide; ++j) {
+                const float z = 1 - 2 * (float(j) + 0.5f) / kSide;
+                const float r = std::sqrt(1 - z * z), a = 2 * kPi * (float(i) + 0.5f) / kSide;
+                const V3f w(r * std::cos(a), z, r * std::sin(a));
+                if (w.dot(wall) > 0 && meet(c, V3d(p), V3d(w)))
+                    expected += double(w.dot(wall)) * 4 * std::numbers::pi / (kSide * kSide);
+            }
+        EXPECT_NEAR(moments.mean(), expected, 0.01 * expected) << size;
+    }
+}
+
 TEST(TriangleLight, ShinesOnTheSideThatItsMaterialSays) {
     const V3f below(0.2f, 0, 0.2f), above(0.2f, 5, 0.2f);
     M44f mirror;

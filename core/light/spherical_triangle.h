@@ -15,13 +15,12 @@ class SphericalTriangle {
 
     /// Solid angle, sr; 0 to 2 pi. Van Oosterom and Strackee 1983, "The Solid Angle of a Plane
     /// Triangle", equation 8.
-    [[nodiscard]] float solid_angle() const { return 2 * turns_to_rad_ * excess_turns_; }
+    [[nodiscard]] float solid_angle() const { return 4 * kPi * excess_turns_; }
     /// Unit direction from p, uniform in the solid angle, which must be above 0; u in [0, 1)^2.
     /// Arvo 1995, "Stratified Sampling of Spherical Triangles".
     [[nodiscard]] V3f direction(V2f u) const;
 
   private:
-    static constexpr float turns_to_rad_ = 2 * kPi;
     V3d a_, b_, c_;  ///< unit, towards the corners
     double determinant_;
     float excess_turns_;  ///< half of the spherical excess

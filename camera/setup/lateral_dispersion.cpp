@@ -46,7 +46,10 @@ double lateral_dispersion_px(const Camera& split, const Camera& shared, const Ob
         const Sampler sampler(SamplerKind::Owen, 0, {0, 0, i});
         const Bands bands = observer.draw(sampler.get1(Dim::Wavelength));
         const V2f film = sampler.get2(Dim::Film);
-        const V2f beside(film.x + 1.f / static_cast<float>(size_px.x), film.y);
+        // Around the middle of the film, at the same height: both see the stop through the same
+        // bounds, and draw nearly the same point of it.
+        const V2f size(size_px), out = (film - V2f(0.5f)) * size;
+        const V2f beside = film + V2f(-out.y, out.x).normalized() / size;
         const CameraSample middle = shared.sample({film, sampler}, bands);
         const CameraSample next = shared.sample({beside, sampler}, bands);
         if (middle.empty() || next.empty()) continue;

@@ -107,7 +107,7 @@ TEST(StopDraw, WhatBoundsLeaveOutIsStillDrawn) {
     std::array<float, StopBounds::kRows> half_width{};
     for (size_t j = 20; j < 26; ++j) half_width[j] = 2.5f;
     const StopBounds bounds(3, half_width);
-    for (const V2f film : {V2f(0, 5), V2f(-3, 4), V2f(2, -8)}) {
+    for (const V2f& film : {V2f(0, 5), V2f(-3, 4), V2f(2, -8)}) {
         const StopDraw draw(iris, &bounds, film);
         Random random(4);
         test::Moments area, above;

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/light/light_sampling.h"
 
+#include <gtest/gtest.h>
+
 #include <numbers>
 
 #include "core/scene/scene.h"
-#include "tests/support/chi_square.h"
 #include "tests/support/lamp.h"
 
 namespace petzval {
 namespace {
-
-using test::Random;
 
 const Bands kRgb = Bands::rgb();
 

@@ -13,7 +13,7 @@
 #include "io/aperture/aperture_file.h"
 #include "io/base/atomic_file.h"
 #include "io/base/error.h"
-#include "io/image/picture.h"
+#include "io/image/picture_files.h"
 
 namespace petzval {
 namespace {

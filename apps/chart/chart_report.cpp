@@ -14,6 +14,7 @@
 #include "io/base/rescue.h"
 #include "io/image/flip.h"
 #include "io/image/output.h"
+#include "io/image/picture_files.h"
 #include "io/plot/plot.h"
 
 namespace petzval {

@@ -9,6 +9,7 @@
 #include "integrator/render.h"
 #include "io/image/difference.h"
 #include "io/image/flip.h"
+#include "io/image/picture_files.h"
 
 namespace petzval {
 namespace {

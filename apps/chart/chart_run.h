@@ -13,7 +13,7 @@
 #include "integrator/executor.h"
 #include "io/base/clock.h"
 #include "io/base/error.h"
-#include "io/image/picture.h"
+#include "io/picture/picture.h"
 
 namespace petzval {
 

@@ -2,7 +2,7 @@
 #include "apps/cli/output_checks.h"
 
 #include "io/base/error.h"
-#include "io/image/picture.h"
+#include "io/image/picture_files.h"
 
 namespace petzval {
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "io/gltf/validate/source.h"
-#include "io/image/picture_budget.h"
+#include "io/picture/picture_budget.h"
 
 namespace CLI {
 class App;

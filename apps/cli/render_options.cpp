@@ -13,6 +13,7 @@
 #include "apps/cli/parse.h"
 #include "apps/setup/memory.h"
 #include "io/base/error.h"
+#include "io/picture/picture_kind.h"
 
 namespace petzval {
 namespace {

@@ -18,7 +18,7 @@
 #include "apps/commands/session.h"
 #include "apps/stability/stability.h"
 #include "io/base/nearest.h"
-#include "io/image/threads.h"
+#include "io/image/picture_files.h"
 
 namespace petzval {
 namespace {

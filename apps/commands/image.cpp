@@ -22,8 +22,8 @@
 #include "io/base/overwrite.h"
 #include "io/image/difference.h"
 #include "io/image/output.h"
+#include "io/image/picture_files.h"
 #include "io/image/spectral_layout.h"
-#include "io/image/threads.h"
 #include "io/plot/plot.h"
 
 namespace petzval {
@@ -57,7 +57,6 @@ void require_within(double limit, const DiffOptions& o, const LayerDifference& d
 }
 
 void diff_command(const DiffOptions& o) {
-    limit_picture_threads(usual_threads());
     const std::vector<LayerDifference> layers = compare_files(o.a, o.b, o.reading.pictures());
     for (const LayerDifference& layer : layers) print_layer(layer);
     std::fflush(stdout);  // the result comes before a complaint
@@ -120,7 +119,6 @@ void add_view(CLI::App& image) {
         refuse_overwriting(output, {{"the picture to show", options->in}});
         refuse_overwriting(output, input_files(options->display));
         refuse_overwriting(output, own_files());
-        limit_picture_threads(usual_threads());
         PictureBudget pictures = options->reading.pictures();
         const Picture picture = read_picture(options->in, pictures);
         if (picture.for_display)
@@ -149,7 +147,6 @@ void spectrum_command(const SpectrumOptions& o) {
         refuse_overwriting({{"-o", o.plot}}, {{"the picture to read", o.in}});
         check_plot(o.plot);
     }
-    limit_picture_threads(usual_threads());
     PictureBudget pictures = o.reading.pictures();
     const auto spectrum = spectrum_of_pixel(read_picture(o.in, pictures), o.in, at.x, at.y);
     if (!o.plot.empty())

@@ -16,7 +16,7 @@
 #include "apps/setup/input_files.h"
 #include "io/base/format.h"
 #include "io/base/printable.h"
-#include "io/image/threads.h"
+#include "io/image/picture_files.h"
 
 namespace petzval {
 namespace {

@@ -22,7 +22,7 @@
 #include "io/base/clock.h"
 #include "io/base/format.h"
 #include "io/base/rescue.h"
-#include "io/image/threads.h"
+#include "io/image/picture_files.h"
 
 namespace petzval {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "apps/setup/request.h"
 #include "camera/setup/focus_plane.h"
-#include "io/image/picture.h"
+#include "io/picture/picture.h"
 
 namespace petzval {
 

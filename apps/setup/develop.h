@@ -6,7 +6,7 @@
 #include "core/film/film.h"
 #include "integrator/path_options.h"
 #include "integrator/render_job.h"
-#include "io/image/picture.h"
+#include "io/picture/picture.h"
 
 namespace petzval {
 

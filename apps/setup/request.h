@@ -21,7 +21,7 @@
 #include "core/traversal/traversal_options.h"
 #include "io/base/overwrite.h"
 #include "io/gltf/validate/source.h"
-#include "io/image/picture_budget.h"
+#include "io/picture/picture_budget.h"
 
 namespace petzval {
 

@@ -9,9 +9,12 @@ namespace {
 // Steps of the table on one side: 4 KB.
 constexpr uint32_t kSteps = 1 << 10;
 
+constexpr double kPi_d = static_cast<double>(kPi);
+// a0 to a3 of the window: Harris 1978, table 1.
+constexpr double kA0 = 0.35875, kA1 = 0.48829, kA2 = 0.14128, kA3 = 0.01168;
+
 // Value at x in [-1, 1], up to a factor.
 double profile(FilterKind kind, double x) {
-    const double pi = static_cast<double>(kPi);
     switch (kind) {
         case FilterKind::Box:
             return 1;
@@ -20,30 +23,56 @@ double profile(FilterKind kind, double x) {
         case FilterKind::BlackmanHarris:
             break;
     }
-    return 0.35875 + 0.48829 * std::cos(pi * x) + 0.14128 * std::cos(2 * pi * x) +
-           0.01168 * std::cos(3 * pi * x);
+    return kA0 + kA1 * std::cos(kPi_d * x) + kA2 * std::cos(2 * kPi_d * x) +
+           kA3 * std::cos(3 * kPi_d * x);
+}
+
+// Integral of the profile from -1 to x.
+double integral(FilterKind kind, double x) {
+    switch (kind) {
+        case FilterKind::Box:
+            return x + 1;
+        case FilterKind::Gauss: {
+            const double root = std::sqrt(4.5);
+            return std::sqrt(kPi_d) / (2 * root) * (std::erf(root * x) + std::erf(root));
+        }
+        case FilterKind::BlackmanHarris:
+            break;
+    }
+    return kA0 * (x + 1) + (kA1 * std::sin(kPi_d * x) + kA2 / 2 * std::sin(2 * kPi_d * x) +
+                            kA3 / 3 * std::sin(3 * kPi_d * x)) /
+                               kPi_d;
+}
+
+// Place below which the integral is `wanted`, at `least` or right of it. Newton's iteration: the
+// profile rises up to 0, so that after one step it comes from the right and never jumps back.
+double quantile(FilterKind kind, double wanted, double least) {
+    constexpr int kMostSteps = 50;
+    double x = least;
+    for (int i = 0; i < kMostSteps; ++i) {
+        const double step = (integral(kind, x) - wanted) / profile(kind, x);
+        x = std::clamp(x - step, least, 0.);
+        if (std::fabs(step) < 1e-10) break;
+    }
+    return x;
 }
 
 }  // namespace
 
-// The profile is integrated on a fine grid and its quantiles are read off, with straight lines
-// between them: a lookup without a search, as every camera ray makes two. One half is enough, at
-// equal steps of the root of the probability, which are fine where the tail is thin.
+// The quantiles are read off at few places, with straight lines between them: a lookup without a
+// search, as every camera ray makes two. One half is enough, at equal steps of the root of the
+// probability, which are fine where the tail is thin.
 Filter::Filter(FilterKind kind, float radius_px) : kind_(kind), radius_px_(radius_px) {
-    constexpr int cells = 1 << 17, values = 1 << 9;
+    constexpr int values = 1 << 9;
     for (int i = 0; i <= values; ++i)
         values_.push_back(
             static_cast<float>(profile(kind, i / static_cast<double>(values)) / profile(kind, 0)));
-    std::vector<double> cdf(cells + 1, 0.0);
-    for (int i = 0; i < cells; ++i)
-        cdf[i + 1] = cdf[i] + profile(kind, (2 * i + 1) / static_cast<double>(cells) - 1);
-    int cell = 0;
+    const double half = integral(kind, 0);
+    double x = -1;
     for (uint32_t k = 0; k <= kSteps; ++k) {
-        const double root = static_cast<double>(k) / kSteps, wanted = cdf[cells] * root * root / 2;
-        while (cell + 1 < cells && cdf[cell + 1] <= wanted) ++cell;
-        const double within = (wanted - cdf[cell]) / (cdf[cell + 1] - cdf[cell]);
-        const double x = 2 * (cell + std::clamp(within, 0.0, 1.0)) / cells - 1;
-        quantiles_.push_back(static_cast<float>(radius_px * std::min(x, 0.)));
+        const double root = static_cast<double>(k) / kSteps;
+        x = quantile(kind, half * root * root, x);
+        quantiles_.push_back(static_cast<float>(radius_px * x));
     }
 }
 

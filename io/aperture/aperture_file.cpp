@@ -13,7 +13,7 @@
 #include "io/base/ascii.h"
 #include "io/base/error.h"
 #include "io/base/nearest.h"
-#include "io/image/picture.h"
+#include "io/image/picture_files.h"
 
 namespace petzval {
 namespace fs = std::filesystem;

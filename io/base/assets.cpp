@@ -4,18 +4,18 @@
 #include <system_error>
 
 #include "io/base/error.h"
+#include "io/base/program_file.h"
 
 namespace petzval {
 
 std::filesystem::path asset(const std::string& relative) {
     namespace fs = std::filesystem;
     std::error_code error;
-    const fs::path program = fs::read_symlink("/proc/self/exe", error);
-    const fs::path installed = program.parent_path() / PETZVAL_ASSETS_FROM_BIN / relative;
-    if (!error && fs::exists(installed, error)) return installed.lexically_normal();
+    const fs::path installed = file_beside_program(fs::path(PETZVAL_ASSETS_FROM_BIN) / relative);
+    if (fs::exists(installed, error)) return installed;
     const fs::path in_source = fs::path(PETZVAL_SOURCE_ASSETS) / relative;
     if (fs::exists(in_source, error)) return in_source;
-    throw InputError(installed.lexically_normal().string(), "",
+    throw InputError(installed.string(), "",
                      "is missing; install Petzval again with cmake --install");
 }
 

@@ -26,6 +26,11 @@ struct TextLine {
 /// where there is a zero byte: that is no text.
 [[nodiscard]] std::vector<TextLine> text_lines(std::string_view text, const std::string& file);
 
+/// Text up to its first line break.
+[[nodiscard]] inline std::string first_line(const std::string& text) {
+    return text.substr(0, text.find_first_of("\r\n"));
+}
+
 /// Words of a line, separated by spaces and tabs.
 [[nodiscard]] std::vector<std::string> words(std::string_view line);
 

@@ -10,7 +10,7 @@
 #include "core/scene/scene.h"
 #include "io/gltf/validate/camera_extras.h"
 #include "io/gltf/validate/source.h"
-#include "io/image/picture_budget.h"
+#include "io/picture/picture_budget.h"
 
 namespace petzval {
 

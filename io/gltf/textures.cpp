@@ -5,7 +5,7 @@
 #include <tiny_gltf.h>
 
 #include "io/base/json_parse.h"
-#include "io/image/picture.h"
+#include "io/image/picture_files.h"
 
 namespace petzval {
 namespace {

@@ -8,7 +8,7 @@
 #include "io/base/json_cursor.h"
 #include "io/gltf/model.h"
 #include "io/gltf/tally.h"
-#include "io/image/picture_budget.h"
+#include "io/picture/picture_budget.h"
 
 namespace petzval {
 

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "io/base/error.h"
+#include "io/image/picture_files.h"
 #include "io/image/spectral_layout.h"
 
 namespace petzval {

@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "io/image/picture.h"
+#include "io/picture/picture.h"
+#include "io/picture/picture_budget.h"
 
 namespace petzval {
 

@@ -14,7 +14,7 @@
 #include "io/base/assets.h"
 #include "io/base/error.h"
 #include "io/base/nearest.h"
-#include "io/image/oiio_message.h"
+#include "io/base/text_lines.h"
 
 namespace petzval {
 namespace {

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "io/base/error.h"
-#include "io/image/picture.h"
+#include "io/image/picture_files.h"
 
 namespace petzval {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "core/scene/sky.h"
 #include "io/base/notice.h"
-#include "io/image/picture_budget.h"
+#include "io/picture/picture_budget.h"
 
 namespace petzval {
 

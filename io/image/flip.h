@@ -6,7 +6,8 @@
 
 #include <vector>
 
-#include "io/image/picture.h"
+#include "core/math/math.h"
+#include "io/picture/picture.h"
 
 namespace petzval {
 

@@ -9,7 +9,7 @@
 #include "io/base/atomic_file.h"  // check_writable, for what is no picture
 #include "io/base/rescue.h"
 #include "io/image/display.h"
-#include "io/image/picture.h"
+#include "io/picture/picture.h"
 
 namespace petzval {
 

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/image/picture.h"
+#include "io/picture/picture.h"
 
 namespace petzval {
 

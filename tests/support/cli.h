@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "io/image/picture.h"
+#include "io/image/picture_files.h"
 #include "tests/support/process.h"
 #include "tests/support/tiny_gltf.h"
 

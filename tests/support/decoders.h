@@ -16,7 +16,7 @@
 #include "io/glass/agf.h"
 #include "io/gltf/gltf.h"
 #include "io/image/environment.h"
-#include "io/image/picture.h"
+#include "io/image/picture_files.h"
 #include "io/lens/lens_file.h"
 #include "io/spectra/spectra.h"
 

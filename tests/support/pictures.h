@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "io/image/picture.h"
+#include "io/picture/picture.h"
 
 namespace petzval::test {
 

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "camera/models/thin_lens_optics.h"
+#include "io/image/picture_files.h"
 #include "tests/support/cli.h"
 
 namespace petzval {

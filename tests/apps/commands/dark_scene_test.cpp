@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a file without lights and cameras gets: the studio light, and a camera that shows all of it.
+#include "io/image/picture_files.h"
 #include "tests/support/cli.h"
 
 namespace petzval {

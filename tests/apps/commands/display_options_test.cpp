@@ -2,6 +2,7 @@
 // --exposure, --view, --ocio and --aov: what takes them, and what is said where nothing does.
 #include <cstdlib>
 
+#include "io/image/picture_files.h"
 #include "tests/support/cli.h"
 #include "tests/support/ocio_config.h"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is told of pictures that show nothing, and --exposure auto.
+#include "io/image/picture_files.h"
 #include "tests/support/cli.h"
 
 namespace petzval {

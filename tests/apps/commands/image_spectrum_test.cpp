@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // petzval image with spectral pictures.
+#include "io/image/picture_files.h"
 #include "io/image/spectral_layout.h"
 #include "tests/support/cli.h"
 #include "tests/support/pictures.h"

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "io/image/picture_files.h"
 #include "tests/support/cli.h"
 
 namespace petzval {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Names that would act on a terminal or deceive who reads them: nowhere are they shown as they are.
 #include "io/base/printable.h"
+#include "io/image/picture_files.h"
 #include "tests/support/cli.h"
 
 namespace petzval {

@@ -2,6 +2,7 @@
 // Outputs: all are tried, none is an input, and what took hours is not lost.
 #include <nlohmann/json.hpp>
 
+#include "io/image/picture_files.h"
 #include "tests/support/cli.h"
 #include "tests/support/open_watch.h"
 #include "tests/support/tiny_png.h"

@@ -2,6 +2,7 @@
 // What the program may read and how much of the machine it takes.
 #include <sched.h>
 
+#include "io/image/picture_files.h"
 #include "tests/support/cli.h"
 #include "tests/support/tiny_png.h"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What each option does, read back from the pictures that the program wrote.
 #include "io/image/difference.h"
+#include "io/image/picture_files.h"
 #include "tests/support/cli.h"
 
 namespace petzval {

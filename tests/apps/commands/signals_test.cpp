@@ -6,6 +6,7 @@
 #include <random>
 #include <thread>
 
+#include "io/image/picture_files.h"
 #include "tests/support/cli.h"
 #include "tests/support/open_watch.h"
 

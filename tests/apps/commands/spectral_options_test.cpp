@@ -7,6 +7,7 @@
 
 #include "core/spectrum/colorimetry.h"
 #include "core/spectrum/colour.h"
+#include "io/image/picture_files.h"
 #include "io/image/spectral_layout.h"
 #include "io/spectra/spectra.h"
 #include "tests/support/cli_spectral.h"

@@ -8,6 +8,7 @@
 #include "apps/plan/plan_wording.h"
 #include "camera/setup/lateral_dispersion.h"
 #include "io/image/difference.h"
+#include "io/image/picture_files.h"
 #include "tests/support/cli_spectral.h"
 #include "tests/support/statistics.h"
 

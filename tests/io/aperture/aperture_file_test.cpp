@@ -6,7 +6,7 @@
 
 #include "camera/iris/iris.h"
 #include "io/aperture/svg_path.h"
-#include "io/image/picture.h"
+#include "io/image/picture_files.h"
 #include "tests/support/clip.h"
 #include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "io/base/error.h"
+#include "io/image/picture_files.h"
 #include "tests/support/pictures.h"
 #include "tests/support/temporary_folder.h"
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "io/base/error.h"
+#include "io/image/picture_files.h"
 #include "tests/support/pictures.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/image/picture_budget.h"
+#include "io/picture/picture_budget.h"
 
 #include <gtest/gtest.h>
 
 #include "io/image/environment.h"
-#include "io/image/picture.h"
+#include "io/image/picture_files.h"
 #include "tests/support/pictures.h"
 #include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"

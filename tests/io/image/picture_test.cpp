@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/image/picture.h"
+#include "io/image/picture_files.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "io/base/error.h"
-#include "io/image/limits.h"
+#include "io/picture/limits.h"
 #include "tests/support/pictures.h"
 #include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"

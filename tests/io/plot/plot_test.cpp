@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 #include "io/base/error.h"
-#include "io/image/picture.h"
+#include "io/image/picture_files.h"
 #include "tests/support/file_size_limit.h"
 #include "tests/support/temporary_folder.h"
 

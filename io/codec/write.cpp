@@ -6,13 +6,13 @@
 #include <array>
 #include <stdexcept>
 
-#include "io/base/ascii.h"
 #include "io/base/atomic_file.h"
 #include "io/base/error.h"
-#include "io/image/oiio_message.h"
-#include "io/image/picture.h"
+#include "io/base/text_lines.h"
+#include "io/codec/codec.h"
+#include "io/picture/picture_kind.h"
 
-namespace petzval {
+namespace petzval::codec {
 namespace {
 
 /// Output of OpenImageIO's writers into an AtomicFile. None of them hears of a write that failed:
@@ -96,29 +96,6 @@ uint8_t to_8bit(float value) {
 
 }  // namespace
 
-PictureRows::PictureRows(const Picture& picture) : layout(picture) {
-    const size_t row_size = size_t(picture.width) * picture.channels.size();
-    if (picture.pixels.size() != row_size * size_t(picture.height))
-        throw std::invalid_argument("a picture's pixels do not match its size and channels");
-    row = [&picture, row_size](int y, float* out) {
-        std::copy_n(picture.pixels.data() + size_t(y) * row_size, row_size, out);
-    };
-}
-
-int channel_index(const PictureLayout& picture, std::string_view name) {
-    const auto found = std::find(picture.channels.begin(), picture.channels.end(), name);
-    return found == picture.channels.end() ? -1 : int(found - picture.channels.begin());
-}
-
-PictureFormat picture_format(const std::filesystem::path& path) {
-    const std::string ending = lower(path.extension().string());
-    if (ending == ".exr") return PictureFormat::Exr;
-    if (ending == ".png") return PictureFormat::Png;
-    if (ending == ".jpg" || ending == ".jpeg") return PictureFormat::Jpeg;
-    throw ArgumentError(path.string(), "",
-                        "a picture's name must end in .exr, .png, .jpg or .jpeg");
-}
-
 void write_exr(const std::filesystem::path& path, const PictureRows& picture) {
     check_shape(picture.layout);
     encode<float>(path, "exr", exr_spec(picture.layout), picture.row);
@@ -147,4 +124,4 @@ void write_8bit(const std::filesystem::path& path, const PictureRows& encoded, b
     });
 }
 
-}  // namespace petzval
+}  // namespace petzval::codec

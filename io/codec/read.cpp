@@ -7,13 +7,13 @@
 #include <system_error>
 
 #include "io/base/error.h"
-#include "io/image/exr_header.h"
-#include "io/image/limits.h"
-#include "io/image/oiio_message.h"
-#include "io/image/picture.h"
-#include "io/image/picture_kind.h"
+#include "io/base/text_lines.h"
+#include "io/codec/codec.h"
+#include "io/picture/exr_header.h"
+#include "io/picture/limits.h"
+#include "io/picture/picture_kind.h"
 
-namespace petzval {
+namespace petzval::codec {
 namespace {
 
 using Metadata = decltype(Picture::metadata);
@@ -123,9 +123,4 @@ Picture read_picture(const std::filesystem::path& path, PictureBudget& budget,
     return naming_file(path.string(), [&] { return decode(path, budget, kept_per_pixel); });
 }
 
-Picture read_picture(const std::filesystem::path& path) {
-    PictureBudget budget;
-    return read_picture(path, budget);
-}
-
-}  // namespace petzval
+}  // namespace petzval::codec

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/image/limits.h"
+#include "io/picture/limits.h"
 
 #include <fmt/format.h>
 

@@ -9,12 +9,12 @@
 #include <string_view>
 
 #include "io/base/error.h"
-#include "io/image/limits.h"
-#include "io/image/oiio_message.h"
-#include "io/image/picture.h"
-#include "io/image/picture_kind.h"
+#include "io/base/text_lines.h"
+#include "io/codec/codec.h"
+#include "io/picture/limits.h"
+#include "io/picture/picture_kind.h"
 
-namespace petzval {
+namespace petzval::codec {
 namespace {
 
 /// Ending of the format, where it is one that glTF has; else empty.
@@ -119,4 +119,4 @@ Image decode_image(const std::vector<uint8_t>& bytes, const std::string& file,
     return image;
 }
 
-}  // namespace petzval
+}  // namespace petzval::codec

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Layout: "OpenEXR File Layout", openexr.com: a magic number, a version with flags, then a list of
 // attributes for each part, each list ended by an empty name.
-#include "io/image/exr_header.h"
+#include "io/picture/exr_header.h"
 
 #include <fmt/format.h>
 

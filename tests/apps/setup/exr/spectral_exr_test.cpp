@@ -10,6 +10,7 @@
 
 #include "apps/setup/develop.h"
 #include "io/base/error.h"
+#include "io/image/picture_files.h"
 #include "io/image/spectral_layout.h"
 #include "tests/support/file_size_limit.h"
 #include "tests/support/temporary_folder.h"

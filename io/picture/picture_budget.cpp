@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/image/picture_budget.h"
+#include "io/picture/picture_budget.h"
 
 #include <fmt/format.h>
 

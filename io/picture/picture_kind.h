@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+// Formats of picture files.
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <string_view>
 
 namespace petzval {
@@ -12,5 +15,12 @@ namespace petzval {
 
 /// As many first bytes as picture_kind() looks at.
 inline constexpr size_t kPictureKindBytes = 12;
+
+/// Formats of pictures that can be written. Only Exr holds scene-linear values, only Jpeg holds no
+/// alpha.
+enum class PictureFormat : uint8_t { Exr, Png, Jpeg };
+/// Picture format by the ending of the name (.exr, .png, .jpg, .jpeg). Throws InputError for any
+/// other.
+[[nodiscard]] PictureFormat picture_format(const std::filesystem::path&);
 
 }  // namespace petzval

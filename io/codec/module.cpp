@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the module offers to whoever loads it.
+#include <OpenImageIO/imageio.h>
+
+#include "io/base/machine.h"
+#include "io/codec/codec.h"
+#include "io/picture/image_codec.h"
+
+namespace petzval::codec {
+namespace {
+
+void limit_threads(int threads) {
+    // Not "threads": OpenImageIO starts its own pool, which nothing here uses, to set its size.
+    OIIO::attribute("exr_threads", threads);
+}
+
+/// The table is made when the module is loaded, which also sets the usual limit.
+ImageCodec made_at_load() {
+    limit_threads(usable_threads());
+    return {read_picture, decode_image, write_exr, write_8bit, limit_threads};
+}
+
+const ImageCodec kCodec = made_at_load();
+
+}  // namespace
+}  // namespace petzval::codec
+
+extern "C" const petzval::ImageCodec* petzval_image_codec() {
+    return &petzval::codec::kCodec;
+}

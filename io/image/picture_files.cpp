@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/image/picture_files.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <system_error>
+
+#include "io/base/error.h"
+#include "io/base/machine.h"
+#include "io/base/program_file.h"
+#include "io/picture/image_codec.h"
+
+namespace petzval {
+namespace {
+
+std::filesystem::path module_path() {
+    return file_beside_program(PETZVAL_IMAGE_CODEC_FROM_BIN);
+}
+
+/// The module's functions. The linker loads it once, and never unloads it.
+const ImageCodec& image_codec() {
+    const std::string path = module_path().string();
+    const auto refuse = [&]() -> InputError {
+        const char* reason = ::dlerror();
+        return {path, "",
+                fmt::format("cannot be loaded ({}); install Petzval again with cmake --install",
+                            reason ? reason : "no reason given")};
+    };
+    void* const module = ::dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL);
+    if (!module) throw refuse();
+    void* const symbol = ::dlsym(module, kImageCodecSymbol);
+    if (!symbol) throw refuse();
+    return *reinterpret_cast<const ImageCodec* (*)()>(symbol)();
+}
+
+}  // namespace
+
+Picture read_picture(const std::filesystem::path& path, PictureBudget& budget,
+                     std::optional<uint64_t> kept_per_pixel) {
+    return image_codec().read_picture(path, budget, kept_per_pixel);
+}
+
+Picture read_picture(const std::filesystem::path& path) {
+    PictureBudget budget;
+    return read_picture(path, budget);
+}
+
+Image decode_image(const std::vector<uint8_t>& bytes, const std::string& file,
+                   const std::string& place, PictureBudget& budget) {
+    return image_codec().decode_image(bytes, file, place, budget);
+}
+
+void write_exr(const std::filesystem::path& path, const PictureRows& picture) {
+    image_codec().write_exr(path, picture);
+}
+
+void write_8bit(const std::filesystem::path& path, const PictureRows& encoded, bool srgb) {
+    image_codec().write_8bit(path, encoded, srgb);
+}
+
+void check_image_codec() {
+    std::error_code error;
+    if (!std::filesystem::exists(module_path(), error)) static_cast<void>(image_codec());
+}
+
+void limit_picture_threads(int threads) {
+    // The module, which takes its time to load, begins with this limit.
+    if (threads < usable_threads()) image_codec().limit_threads(threads);
+}
+
+}  // namespace petzval

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures on disk: EXR, Radiance, PNG, JPEG and WebP in (io/picture/picture_kind.h), EXR, PNG and
+// JPEG out. The module of io/codec does the work; it is loaded at the first call.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/scene/texture.h"
+#include "io/picture/picture.h"
+#include "io/picture/picture_budget.h"
+#include "io/picture/picture_kind.h"
+
+namespace petzval {
+
+/// Reads every channel as floats; converts nothing but integers, to [0, 1]. kept_per_pixel: bytes
+/// that the caller keeps of each pixel beside the floats, which it then drops; absent where it
+/// keeps the floats. Throws InputError, also where the budget is too small.
+[[nodiscard]] Picture read_picture(const std::filesystem::path&, PictureBudget&,
+                                   std::optional<uint64_t> kept_per_pixel = {});
+/// Reads a picture that shares its budget, the usual one, with no other.
+[[nodiscard]] Picture read_picture(const std::filesystem::path&);
+/// Decodes an image of a scene from its encoded bytes; file and place are for messages. Throws
+/// InputError, also where the budget is too small.
+[[nodiscard]] Image decode_image(const std::vector<uint8_t>& bytes, const std::string& file,
+                                 const std::string& place, PictureBudget&);
+
+/// Writes a 32-bit float EXR with every channel, all metadata, and the chromaticities of R, G and
+/// B, which are those of Rec. 709 with a D65 white in every picture of this program. Equal pictures
+/// give equal files: there is no date in them. Throws InputError where it cannot be written.
+void write_exr(const std::filesystem::path&, const PictureRows&);
+/// Writes an 8-bit PNG or JPEG of display-encoded R, G, B in [0, 1] (and, in PNG, unassociated A if
+/// there is one); of a crop just the crop. srgb: the file says that its values are for an sRGB
+/// display. Throws InputError where it cannot be written.
+void write_8bit(const std::filesystem::path&, const PictureRows& encoded, bool srgb = true);
+
+/// Checks early, before hours of work, that the module is there, without loading it. Throws
+/// InputError.
+void check_image_codec();
+
+/// Limits the threads that OpenEXR starts, which otherwise are as many as this process can run at
+/// once (usable_threads). They do not change a byte.
+void limit_picture_threads(int threads);
+
+}  // namespace petzval

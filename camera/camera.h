@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "core/math/ray.h"
 #include "core/sampling/filter.h"
@@ -23,8 +24,8 @@ struct PixelFilter {
 struct FilmPoint {
     /// Position in [0, 1)^2 over the full frame, (0, 0) at the top left as the picture is seen; a
     /// pixel filter reaches a little beyond.
-    V2f film;
-    Sampler sampler;
+    V2f film{0.f};
+    Sampler sampler{};
     PixelFilter pixel{};
 };
 
@@ -88,6 +89,9 @@ class CameraSample {
     std::array<CameraPath, kMostPaths> paths_;
 };
 
+/// Most film points that a camera takes at once.
+inline constexpr size_t kMostFilmPoints = 8;
+
 /// A camera: pinhole, thin lens, singlet or real lens.
 class Camera {
   public:
@@ -95,6 +99,12 @@ class Camera {
     /// Weighted rays of one point of the film, drawn by its sampler: none where the lens lets
     /// nothing through, one that all bands share, or up to four. Thread-safe.
     [[nodiscard]] virtual CameraSample sample(const FilmPoint&, const Bands&) const = 0;
+    /// What sample() gives for each of up to kMostFilmPoints film points, to the bit, which a
+    /// camera may find faster for all at once. The bands are all spectral or none of them is.
+    virtual void sample_all(std::span<const FilmPoint> points, std::span<const Bands> bands,
+                            std::span<CameraSample> out) const {
+        for (size_t i = 0; i < points.size(); ++i) out[i] = sample(points[i], bands[i]);
+    }
 };
 
 }  // namespace petzval

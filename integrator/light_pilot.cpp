@@ -28,7 +28,7 @@ LightChoice taught_by_pilot(const LightChoice& choice, const Scene& scene, const
     for (uint32_t i = 0; i < kPaths; ++i) {
         const auto [x, y] = pixels[i % pixels.size()];
         Film film(frame_px, {x, y, x + 1, y + 1}, {});
-        render_sample(tracer, camera, job, {x, y, i}, film, stats);
+        render_samples(tracer, camera, job, {x, y}, i, i + 1, film, stats);
     }
     return choice.taught(records);
 }

@@ -2,6 +2,7 @@
 // Rendering of a job to a film: progressive passes over tiles.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <vector>
 
@@ -19,41 +20,92 @@ namespace petzval {
     return hash32(seed, replicate + 1);
 }
 
-/// Renders one sample of one pixel: a pure function of its arguments.
+/// Samples whose camera rays are found together: what the film gets of each is a pure function of
+/// the job and its id. Holds as many as a camera takes at once; `render` must be called for those
+/// that are left.
 template <class Tracer>
-void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& job, SampleId id,
-                   Film& film, PathStats& stats) {
-    stats.timing = job.timing && (id.index + static_cast<uint32_t>(id.x + 3 * id.y)) % 16 == 0;
-    ++stats.samples;
-    stats.timed_samples += stats.timing;
-    const SectionTimer whole(stats, TimedSection::Sample);
-    const uint32_t replicate = id.index % job.replicates;
-    const Sampler sampler(job.sampler,
-                          job.replicates == 1 ? job.seed : replicate_seed(job.seed, replicate),
-                          {id.x, id.y, id.index / job.replicates});
-    const Bands bands =
-        job.observer.spectral() ? job.observer.draw(sampler.get1(Dim::Wavelength)) : Bands::rgb();
-    const bool aovs = !film.aovs().empty();
-    const uint64_t vertices_before = stats.vertices;
+class SampleBatch {
+  public:
+    /// All must outlive it.
+    SampleBatch(const Tracer& tracer, const Camera& camera, const RenderJob& job, Film& film,
+                PathStats& stats)
+        : tracer_(tracer), camera_(camera), job_(job), film_(film), stats_(stats) {}
 
-    const CameraSample seen = [&] {
-        const SectionTimer timer(stats, TimedSection::Camera);
-        const V2f offset = job.filter.sample(sampler.get2(Dim::Film));
-        const V2f size(film.full_size());
+    void add(SampleId id) {
+        ids_[size_++] = id;
+        if (size_ == kMostFilmPoints) render();
+    }
+    /// Renders the samples that are there.
+    void render() {
+        if (size_ == 0) return;
+        stats_.timing = job_.timing && is_timed(ids_[0]);
+        stats_.samples += size_;
+        if (stats_.timing) stats_.timed_samples += size_;
+        const SectionTimer whole(stats_, TimedSection::Sample);
+        find_camera_rays();
+        for (size_t i = 0; i < size_; ++i) trace(i);
+        size_ = 0;
+    }
+
+  private:
+    /// One in sixteen, spread over pixels and samples.
+    [[nodiscard]] static bool is_timed(SampleId id) {
+        const uint32_t batch = id.index / kMostFilmPoints;
+        return (batch + static_cast<uint32_t>(id.x + 3 * id.y)) % 16 == 0;
+    }
+    void find_camera_rays();
+    void trace(size_t i);
+
+    const Tracer& tracer_;
+    const Camera& camera_;
+    const RenderJob& job_;
+    Film& film_;
+    PathStats& stats_;
+    size_t size_ = 0;
+    std::array<SampleId, kMostFilmPoints> ids_;
+    std::array<FilmPoint, kMostFilmPoints> points_;
+    std::array<Bands, kMostFilmPoints> bands_;
+    std::array<CameraSample, kMostFilmPoints> seen_;
+};
+
+template <class Tracer>
+void SampleBatch<Tracer>::find_camera_rays() {
+    const SectionTimer timer(stats_, TimedSection::Camera);
+    const V2f size(film_.full_size());
+    for (size_t i = 0; i < size_; ++i) {
+        const SampleId id = ids_[i];
+        const uint32_t replicate = id.index % job_.replicates;
+        const Sampler sampler(
+            job_.sampler, job_.replicates == 1 ? job_.seed : replicate_seed(job_.seed, replicate),
+            {id.x, id.y, id.index / job_.replicates});
+        bands_[i] = job_.observer.spectral() ? job_.observer.draw(sampler.get1(Dim::Wavelength))
+                                             : Bands::rgb();
+        const V2f offset = job_.filter.sample(sampler.get2(Dim::Film));
         const V2f at = V2f(id.x + 0.5f, id.y + 0.5f) + offset;
-        return camera.sample({at / size, sampler, {&job.filter, offset, size}}, bands);
-    }();
-    stats.lens_lanes += seen.lanes;
+        points_[i] = {at / size, sampler, {&job_.filter, offset, size}};
+        seen_[i] = {};
+    }
+    camera_.sample_all({points_.data(), size_}, {bands_.data(), size_}, {seen_.data(), size_});
+}
+
+template <class Tracer>
+void SampleBatch<Tracer>::trace(size_t i) {
+    const SampleId id = ids_[i];
+    const Bands& bands = bands_[i];
+    const CameraSample& seen = seen_[i];
+    const uint64_t vertices_before = stats_.vertices;
+    stats_.lens_lanes += seen.lanes;
     FilmSample sample;
     f4 sum{};
-    float behind = 0.f;  // weight of the rays that left the scene, over all lanes
-    bool layers = aovs;  // layers are still to be filled in
+    float behind = 0.f;                   // weight of the rays that left the scene, over all lanes
+    bool layers = !film_.aovs().empty();  // layers are still to be filled in
     for (const CameraPath& path : seen) {
         FilmSample other;
         FilmSample& of_path = path.fills_layers ? sample : other;
         of_path.alpha = 0.f;
-        sum += path.weight * tracer.radiance(path.ray, bands, sampler, layers && path.fills_layers,
-                                             of_path, stats, path.lanes, path.led);
+        sum += path.weight * tracer_.radiance(path.ray, bands, points_[i].sampler,
+                                              layers && path.fills_layers, of_path, stats_,
+                                              path.lanes, path.led);
         if (!path.fills_layers) continue;
         layers = false;
         behind += hsum(zero_off(path.lanes, path.weight)) * (1.f - sample.alpha);
@@ -62,12 +114,21 @@ void render_sample(const Tracer& tracer, const Camera& camera, const RenderJob& 
     sample.alpha = 1.f - behind / (seen.exposure * static_cast<float>(lane_count(bands.on)));
     sample.colour = to_rgb(sum, bands);
     sample.aov[static_cast<size_t>(Aov::Cost)] =
-        V3f(static_cast<float>(stats.vertices - vertices_before), 0, 0);
-    if (film.spectral())
-        film.add(id.x, id.y, id.index, sample, {replicate, sum, job.observer.to_xyz(sum, bands)},
-                 bands);
+        V3f(static_cast<float>(stats_.vertices - vertices_before), 0, 0);
+    if (film_.spectral())
+        film_.add(id.x, id.y, id.index, sample,
+                  {id.index % job_.replicates, sum, job_.observer.to_xyz(sum, bands)}, bands);
     else
-        film.add(id.x, id.y, id.index, sample);
+        film_.add(id.x, id.y, id.index, sample);
+}
+
+/// Renders the samples [first, end) of one pixel: each a pure function of job, pixel and index.
+template <class Tracer>
+void render_samples(const Tracer& tracer, const Camera& camera, const RenderJob& job, V2i pixel,
+                    uint32_t first, uint32_t end, Film& film, PathStats& stats) {
+    SampleBatch<Tracer> batch(tracer, camera, job, film, stats);
+    for (uint32_t i = first; i < end; ++i) batch.add({pixel.x, pixel.y, i});
+    batch.render();
 }
 
 /// Number of samples of the next pass: it grows so that a first picture comes early, and passes
@@ -110,10 +171,11 @@ RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob&
             PathStats& stats = workers[static_cast<size_t>(worker)].stats;
             const Rect& tile = tiles[static_cast<size_t>(task)];
             const uint32_t first = job.first_sample + done;
+            SampleBatch<Tracer> batch(tracer, camera, job, film, stats);
             for (int y = tile.y0; y < tile.y1; ++y)
                 for (int x = tile.x0; x < tile.x1; ++x)
-                    for (uint32_t i = first; i < first + pass; ++i)
-                        render_sample(tracer, camera, job, {x, y, i}, film, stats);
+                    for (uint32_t i = first; i < first + pass; ++i) batch.add({x, y, i});
+            batch.render();
             ++stats.tiles;
             monitor.pixel_samples_done +=
                 static_cast<uint64_t>(tile.width()) * tile.height() * pass;

@@ -68,9 +68,8 @@ void Pilot::sample(PilotModel& model, uint32_t samples) const {
         for (uint32_t k = 0; k < kPilotReplicates; ++k) {
             Film film(size_px_, {x, y, x + 1, y + 1}, {});
             job.seed = kFirstPilotSeed + kPilotReplicates * seed_ + k;
-            for (uint32_t i = model.samples_; i < samples; ++i)
-                render_sample(model.tracer_, *model.setup_.view.camera, job, {x, y, i}, film,
-                              stats[static_cast<size_t>(worker)]);
+            render_samples(model.tracer_, *model.setup_.view.camera, job, {x, y}, model.samples_,
+                           samples, film, stats[static_cast<size_t>(worker)]);
             const V4f c = film.colour(x, y);
             model.sums_[static_cast<size_t>(task)][k] +=
                 V3d(c.x, c.y, c.z) * double(film.sample_count(x, y));

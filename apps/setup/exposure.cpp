@@ -64,9 +64,8 @@ Seen look(const RenderSetup& setup, const RenderJob& job, const PathTracer<>& tr
     executor.run(static_cast<int>(pixels.size()), [&](int task, int worker) {
         const auto [x, y] = pixels[static_cast<size_t>(task)];
         Film film(size, {x, y, x + 1, y + 1}, {Aov::Depth});
-        for (uint32_t i = 0; i < turn.samples; ++i)
-            render_sample(tracer, *setup.view.camera, job, {x, y, i}, film,
-                          stats[static_cast<size_t>(worker)]);
+        render_samples(tracer, *setup.view.camera, job, {x, y}, 0, turn.samples, film,
+                       stats[static_cast<size_t>(worker)]);
         found[static_cast<size_t>(task)] = {shown_luminance(film.colour(x, y)),
                                             film.aov(x, y, 0).x > 0};
     });

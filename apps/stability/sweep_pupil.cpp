@@ -55,7 +55,7 @@ Counted count_light(const Subject& of, V2f film_mm) {
             for (int x = 0; x < side; x += 4) {
                 const f4 l = low.x + cell.x * (f4{0.5f, 1.5f, 2.5f, 3.5f} + static_cast<float>(x));
                 const f4 m = splat(low.y + cell.y * (static_cast<float>(y) + 0.5f));
-                const AimedRay<f4> c = aimer.cross<f4>(film_mm, l, m, indices);
+                const AimedRay<f4> c = aimer.cross<f4>(PlanePoint<f4>(film_mm), l, m, indices);
                 const f4 stop_x = c.ray.origin.x, stop_y = c.ray.origin.y;
                 m4 on = c.clear & c.ray.alive() & (l * l + m * m < 1.f) &
                         (stop_x * stop_x + stop_y * stop_y <= stop2_mm2);
@@ -90,16 +90,24 @@ Solved solved_at(const Subject& of, double height_mm) {
     const V2f film_mm = kAcross * static_cast<float>(height_mm);
     const RayAimer aimer(*of.lens, of.lens->film_mm(), height_mm);
     const Iris iris(Disk{}, of.stop_mm);
-    const LensIndices<f4> indices = of.line_d();
+    const f8 nm = splat8(static_cast<float>(kLineD_nm));
+    const LensIndices<f8> indices = of.lens->exact_indices(nm);
     Solved out;
     uint32_t found = 0;
-    for (uint32_t i = 0; i < kDraws; ++i) {
-        const V2f at = iris.sample(Sampler(SamplerKind::Owen, 2, {0, 0, i}).get2(Dim::Lens));
-        const auto c = aimer.aim(film_mm, at, indices, 0, static_cast<float>(kLineD_nm));
-        if (!c) continue;
-        ++found;
-        out.traces += c->traces;
-        out.most_traces = std::max(out.most_traces, c->traces);
+    for (uint32_t first = 0; first < kDraws; first += 8) {
+        PlanePoint<f8> at(f8{}, f8{});
+        for (uint32_t i = 0; i < 8; ++i) {
+            const V2f p =
+                iris.sample(Sampler(SamplerKind::Owen, 2, {0, 0, first + i}).get2(Dim::Lens));
+            at.x[i] = p.x, at.y[i] = p.y;
+        }
+        const FoundRays c = aimer.aim(PlanePoint<f8>(film_mm), at, indices, nm);
+        for (int i = 0; i < 8; ++i) {
+            if (!c.found[i]) continue;
+            ++found;
+            out.traces += c.traces[i];
+            out.most_traces = std::max(out.most_traces, int(c.traces[i]));
+        }
     }
     out.unreached = 1 - double(found) / kDraws;
     out.traces /= std::max(found, 1u);

@@ -8,9 +8,8 @@
 
 namespace petzval {
 
-/// Request for rays of some lanes from a film point through one point of the stop.
+/// Request for rays of some lanes.
 struct LaneRequest {
-    V2f u;        ///< [0, 1)^2, draws the point of the stop
     m4 lanes;     ///< lanes whose rays are wanted
     int lead;     ///< lane whose ray meets the drawn point
     bool coated;  ///< weights count what the surfaces reflect
@@ -26,8 +25,8 @@ struct FilmLanding {
     f4 transmitted;
 };
 
-/// A film point of a camera, with its two primitives: rays() and landing(). A strategy composes
-/// them (strategies.h); a camera that has them has every strategy.
+/// A film point of a camera and a drawn point of its stop, with the two primitives rays() and
+/// landing(). A strategy composes them (strategies.h); a camera that has them has every strategy.
 ///
 /// rays(request): rays with weight_of_lanes() (0: lost; counts for all lanes of the bands, however
 /// few were asked for) and `losses`.

@@ -33,8 +33,8 @@ template <LensPoint P, class Rays, class Share>
 
 /// One ray for all lanes; `lens` gives them all the same.
 template <LensPoint P>
-[[nodiscard]] CameraSample share_ray(const P& lens, V2f u, int lead, m4 on) {
-    const auto rays = lens.rays({u, on, lead, true});
+[[nodiscard]] CameraSample share_ray(const P& lens, int lead, m4 on) {
+    const auto rays = lens.rays({on, lead, true});
     CameraSample out = group_lanes(lens, rays, [](int, int) { return true; });
     for (CameraPath& path : out) path.led = false;
     return out;
@@ -42,30 +42,29 @@ template <LensPoint P>
 
 /// One ray for each lane.
 template <LensPoint P>
-[[nodiscard]] CameraSample split_rays(const P& lens, V2f u, int lead, m4 on) {
-    const auto rays = lens.rays({u, on, lead, true});
+[[nodiscard]] CameraSample split_rays(const P& lens, int lead, m4 on) {
+    const auto rays = lens.rays({on, lead, true});
     return group_lanes(lens, rays, [](int, int) { return false; });
 }
 
 /// One ray for lanes that stay within the camera's tolerance, else one for each.
 template <LensPoint P>
-[[nodiscard]] CameraSample share_within_tolerance(const P& lens, V2f u, int lead, m4 on) {
-    const auto rays = lens.rays({u, on, lead, true});
+[[nodiscard]] CameraSample share_within_tolerance(const P& lens, int lead, m4 on) {
+    const auto rays = lens.rays({on, lead, true});
     return group_lanes(lens, rays, [&](int a, int b) { return lens.together(rays, a, b); });
 }
 
 /// The ray of one lane, which stands for all.
 template <LensPoint P>
-[[nodiscard]] CameraSample single_ray(const P& lens, V2f u, int lead) {
-    const auto rays = lens.rays({u, only_lane(lead), lead, true});
+[[nodiscard]] CameraSample single_ray(const P& lens, int lead) {
+    const auto rays = lens.rays({only_lane(lead), lead, true});
     return group_lanes(lens, rays, [](int, int) { return true; });
 }
 
 /// The ray of one lane, weighed for each lane by where it would have reached the film (hero.h).
 template <LensPoint P>
-[[nodiscard]] CameraSample hero_ray(const P& lens, V2f u, int lead, m4 on,
-                                    const PixelFilter& pixel) {
-    const LaneRequest request{u, only_lane(lead), lead, false};
+[[nodiscard]] CameraSample hero_ray(const P& lens, int lead, m4 on, const PixelFilter& pixel) {
+    const LaneRequest request{only_lane(lead), lead, false};
     const auto rays = lens.rays(request);
     CameraSample out;
     out.lanes = rays.losses;
@@ -89,24 +88,23 @@ template <LensPoint P>
 /// The paths of a film point through a lens. A hero ray needs the pixel's filter; without one,
 /// lanes are split.
 template <LensPoint P>
-[[nodiscard]] CameraSample sample_lens(const P& lens, DispersionMode mode, const FilmPoint& at,
+[[nodiscard]] CameraSample sample_lens(const P& lens, DispersionMode mode, const PixelFilter& pixel,
                                        const Bands& bands) {
-    const V2f u = at.sampler.get2(Dim::Lens);
     const int lead = bands.lead;
-    if (one_ray(bands, mode)) return share_ray(lens, u, lead, bands.on);
+    if (one_ray(bands, mode)) return share_ray(lens, lead, bands.on);
     switch (mode) {
         case DispersionMode::Tolerance:
-            return share_within_tolerance(lens, u, lead, bands.on);
+            return share_within_tolerance(lens, lead, bands.on);
         case DispersionMode::Single:
-            return single_ray(lens, u, lead);
+            return single_ray(lens, lead);
         case DispersionMode::Hero:
-            if (at.pixel.filter) return hero_ray(lens, u, lead, bands.on, at.pixel);
+            if (pixel.filter) return hero_ray(lens, lead, bands.on, pixel);
             break;
         case DispersionMode::Shared:
         case DispersionMode::Split:
             break;
     }
-    return split_rays(lens, u, lead, bands.on);
+    return split_rays(lens, lead, bands.on);
 }
 
 }  // namespace petzval

@@ -150,19 +150,42 @@ LensIndices<f4> Lens::exact_indices(f4 nm) const {
     return out;
 }
 
-LensIndices<f4> Lens::indices(f4 nm) const {
+LensIndices<f8> Lens::exact_indices(f8 nm) const {
+    const LensIndices<f4> low = exact_indices(__builtin_shufflevector(nm, nm, 0, 1, 2, 3)),
+                          high = exact_indices(__builtin_shufflevector(nm, nm, 4, 5, 6, 7));
+    LensIndices<f8> out;
+    for (size_t i = 0; i < media_.size(); ++i)
+        out.of_medium[i] = joined(low.of_medium[i], high.of_medium[i]);
+    return out;
+}
+
+template <class V>
+LensIndices<V> Lens::from_tables(V nm) const {
     // Interpolation as in SpectrumTable::at, but the place in the tables is looked for once.
-    const f4 place = min(max(nm - float(kFirst_nm), f4{}), splat(kSpectrumSize - 1));
-    const m4 i = __builtin_convertvector(min(place, splat(kSpectrumSize - 2)), m4);
-    const f4 t = place - __builtin_convertvector(i, f4);
-    LensIndices<f4> out;
+    const V last = broadcast<V>(kSpectrumSize - 1), least = nm - float(kFirst_nm);
+    const V place = select(least > 0, select(least < last, least, last), V{});
+    const MaskOf<V> i =
+        __builtin_convertvector(select(place < last - 1, place, V(last - 1)), MaskOf<V>);
+    const V t = place - __builtin_convertvector(i, V);
+    LensIndices<V> out;
     for (size_t k = 0; k < tables_.size(); ++k) {
         const float* at = tables_[k].value.data();
-        const f4 below{at[i[0]], at[i[1]], at[i[2]], at[i[3]]};
-        const f4 above{at[i[0] + 1], at[i[1] + 1], at[i[2] + 1], at[i[3] + 1]};
+        V below, above;
+        for (int lane = 0; lane < NumberTraits<V>::lanes; ++lane) {
+            below[lane] = at[i[lane]];
+            above[lane] = at[i[lane] + 1];
+        }
         out.of_medium[k] = below * (1 - t) + above * t;
     }
     return out;
+}
+
+LensIndices<f4> Lens::indices(f4 nm) const {
+    return from_tables(nm);
+}
+
+LensIndices<f8> Lens::indices(f8 nm) const {
+    return from_tables(nm);
 }
 
 }  // namespace petzval

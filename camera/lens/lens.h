@@ -85,13 +85,18 @@ class Lens {
     [[nodiscard]] LensIndices<d4> exact_indices(d4 nm) const;
     /// The same indices in floats.
     [[nodiscard]] LensIndices<f4> exact_indices(f4 nm) const;
+    [[nodiscard]] LensIndices<f8> exact_indices(f8 nm) const;
     /// Indices from tables of 1 nm that are linear in between, for rendering. For catalogue glasses
     /// they are within 3.5e-6 of the formula from 400 nm up, float's rounding included, and 1.2e-5
     /// from 360; in the nanometre where a glass's range begins within 2.1e-4, as the index has a
     /// kink there.
     [[nodiscard]] LensIndices<f4> indices(f4 nm) const;
+    [[nodiscard]] LensIndices<f8> indices(f8 nm) const;
 
   private:
+    template <class V>
+    [[nodiscard]] LensIndices<V> from_tables(V nm) const;
+
     Prescription prescription_;
     int stop_ = 0;
     std::vector<double> vertices_mm_;

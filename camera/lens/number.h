@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Number types of a ray through a lens: one float, four floats, four doubles, and any of these with
-// two derivatives. One trace serves them all.
+// Number types of a ray through a lens: one float, four or eight floats, four doubles, and any of
+// these with two derivatives. One trace serves them all.
 #pragma once
 
 #include <cmath>
@@ -28,6 +28,8 @@ template <>
 struct NumberTraits<float> : TraitsOf<float, float, bool, int32_t, 1> {};
 template <>
 struct NumberTraits<f4> : TraitsOf<float, f4, m4, m4, 4> {};
+template <>
+struct NumberTraits<f8> : TraitsOf<float, f8, m8, m8, 8> {};
 template <>
 struct NumberTraits<d4> : TraitsOf<double, d4, l4, l4, 4> {};
 template <class N>
@@ -58,6 +60,9 @@ template <std::floating_point S>
 }
 [[nodiscard]] inline bool all(m4 on) {
     return __builtin_ia32_movmskps((f4)on) == 15;
+}
+[[nodiscard]] inline bool all(m8 on) {
+    return __builtin_ia32_movmskps256((f8)on) == 255;
 }
 [[nodiscard]] inline bool all(l4 on) {
     return __builtin_ia32_movmskpd256((d4)on) == 15;

@@ -46,13 +46,28 @@ Nodes nodes_about(float t, int size) {
     return {first, 4, cubic(t - static_cast<float>(first))};
 }
 
+template <class V>
 struct Step {
-    f4 l, m, left2_mm2;
+    V l, m, left2_mm2;
 };
-Step step_towards(V2f stop_point_mm, const AimedRay<f4>& c) {
-    const f4 x = stop_point_mm.x - c.ray.origin.x, y = stop_point_mm.y - c.ray.origin.y;
-    const f4 by = 1 / c.determinant();
+template <class V>
+Step<V> step_towards(const PlanePoint<V>& stop_mm, const AimedRay<V>& c) {
+    const V x = stop_mm.x - c.ray.origin.x, y = stop_mm.y - c.ray.origin.y;
+    const V by = 1 / c.determinant();
     return {(c.y_by_m * x - c.x_by_m * y) * by, (c.x_by_l * y - c.y_by_l * x) * by, x * x + y * y};
+}
+
+// Takes over the lanes of a mask.
+void take(m8 on, const AimedRay<f8>& from, FoundRays& to) {
+    const auto take_one = [on](auto& a, const auto& b) { a = select(on, b, a); };
+    take_one(to.l, from.l), take_one(to.m, from.m);
+    take_one(to.ray.origin, from.ray.origin), take_one(to.ray.direction, from.ray.direction);
+    take_one(to.ray.status_code, from.ray.status_code);
+    take_one(to.ray.end_surface, from.ray.end_surface);
+    to.ray.counted_from = from.ray.counted_from;
+    take_one(to.clear, from.clear);
+    take_one(to.x_by_l, from.x_by_l), take_one(to.y_by_l, from.y_by_l);
+    take_one(to.x_by_m, from.x_by_m), take_one(to.y_by_m, from.y_by_m);
 }
 
 }  // namespace
@@ -78,10 +93,11 @@ RayAimer::RayAimer(const Lens& lens, double film_mm, double film_reach_mm)
 }
 
 template <class V>
-AimedRay<V> RayAimer::cross(V2f film_point_mm, V l, V m, const LensIndices<V>& indices) const {
+AimedRay<V> RayAimer::cross(const PlanePoint<V>& film_mm, V l, V m,
+                            const LensIndices<V>& indices) const {
     using D = Dual<V>;
     const V one = broadcast<V>(1);
-    LensRay<D> ray = leave(film_point_mm, D{l, one, V{}}, D{m, V{}, one});
+    LensRay<D> ray = leave(film_mm, D{l, one, V{}}, D{m, V{}, one});
     AimedRay<V> out;
     out.l = l;
     out.m = m;
@@ -102,42 +118,50 @@ AimedRay<V> RayAimer::cross(V2f film_point_mm, V l, V m, const LensIndices<V>& i
     out.y_by_m = ray.origin.y.dv;
     return out;
 }
-template AimedRay<f4> RayAimer::cross(V2f, f4, f4, const LensIndices<f4>&) const;
-template AimedRay<d4> RayAimer::cross(V2f, d4, d4, const LensIndices<d4>&) const;
+template AimedRay<f4> RayAimer::cross(const PlanePoint<f4>&, f4, f4, const LensIndices<f4>&) const;
+template AimedRay<f8> RayAimer::cross(const PlanePoint<f8>&, f8, f8, const LensIndices<f8>&) const;
+template AimedRay<d4> RayAimer::cross(const PlanePoint<d4>&, d4, d4, const LensIndices<d4>&) const;
 
-// Ray by Newton's method from a guess: half the step where it leads to where rays never reach the
+// Rays by Newton's method from a guess: half the step where it leads to where rays never reach the
 // stop.
-std::optional<AimedRay<f4>> RayAimer::newton(V2f film_point_mm, V2f stop_point_mm, V2f cosines,
-                                             const LensIndices<f4>& indices, int lane) const {
-    V2f good = cosines, step(0.f);
-    int halvings = 0;
+FoundRays RayAimer::newton(const PlanePoint<f8>& film_mm, const PlanePoint<f8>& stop_mm,
+                           const PlanePoint<f8>& guess, const LensIndices<f8>& indices) const {
+    FoundRays out;
+    f8 l = guess.x, m = guess.y, good_l = l, good_m = m, step_l{}, step_m{};
+    m8 left = ~m8{}, halvings{};
     for (int i = 0; i < kMostSteps; ++i) {
-        AimedRay<f4> c = cross<f4>(film_point_mm, splat(cosines.x), splat(cosines.y), indices);
-        c.traces = i + 1;
-        if (cosines.length2() < 1.f && c.ray.alive()[lane]) {
-            const Step by = step_towards(stop_point_mm, c);
-            good = cosines;
-            step = {by.l[lane], by.m[lane]};
-            const bool there = by.left2_mm2[lane] < sqr(kTolerance * stop_radius_mm_);
-            if (step.length2() < sqr(there ? kMostStepLeft : kLeastStep)) return c;
-        } else {
-            if (i == 0 || ++halvings > kMostHalvings) break;
-            step *= 0.5f;
-        }
-        cosines = good + step;
+        const AimedRay<f8> c = cross<f8>(film_mm, l, m, indices);
+        const Step<f8> by = step_towards(stop_mm, c);
+        const m8 reached = (l * l + m * m < 1.f) & c.ray.alive();
+        good_l = reached ? l : good_l, good_m = reached ? m : good_m;
+        step_l = reached ? by.l : 0.5f * step_l, step_m = reached ? by.m : 0.5f * step_m;
+        const m8 there = by.left2_mm2 < sqr(kTolerance * stop_radius_mm_);
+        const f8 most = there ? splat8(kMostStepLeft) : splat8(kLeastStep);
+        const m8 done = left & reached & (step_l * step_l + step_m * step_m < most * most);
+        out.found |= done;
+        out.traces = done ? m8{} + (i + 1) : out.traces;
+        if (all(done))
+            static_cast<AimedRay<f8>&>(out) = c;
+        else if (any(done))
+            take(done, c, out);
+        halvings -= ~reached;
+        left &= ~done & (reached | (i > 0 ? halvings <= kMostHalvings : m8{}));
+        if (!any(left)) break;
+        l = left ? good_l + step_l : l, m = left ? good_m + step_m : m;
     }
-    return std::nullopt;
+    return out;
 }
 
 // Direction cosines by Newton's method for each lane by itself; a lane that fails keeps the guess.
 RayAimer::Node RayAimer::settled(V2f film_point_mm, V2f stop_point_mm, const Node& guess,
                                  const LensIndices<f4>& indices) const {
+    const PlanePoint<f4> film_mm(film_point_mm), stop_mm(stop_point_mm);
     Node at = guess;
     m4 inside{}, close{};
     for (int i = 0; i < kMostSteps && !all(close); ++i) {
-        const AimedRay<f4> c = cross<f4>(film_point_mm, at.l, at.m, indices);
+        const AimedRay<f4> c = cross<f4>(film_mm, at.l, at.m, indices);
         inside = c.ray.alive() & (at.l * at.l + at.m * at.m < 1.f);
-        const Step by = step_towards(stop_point_mm, c);
+        const Step<f4> by = step_towards(stop_mm, c);
         close = ~inside | (by.left2_mm2 < sqr(kToleranceBeforeStep * stop_radius_mm_)) |
                 (by.l * by.l + by.m * by.m < sqr(kLeastStep));
         at = {inside ? at.l + by.l : guess.l, inside ? at.m + by.m : guess.m};
@@ -206,10 +230,9 @@ V2f RayAimer::between(V2f film_point_mm, V2f stop_point_mm, float nm) const {
     return {hsum(sum.l * weights), hsum(sum.m * weights)};
 }
 
-std::optional<AimedRay<f4>> RayAimer::aim(V2f film_point_mm, V2f stop_point_mm,
-                                          const LensIndices<f4>& indices, int lane,
-                                          float nm) const {
-    // Symmetry: turn and mirror into the part that the table covers, and back.
+// Direction cosines from the table. Symmetry: turn and mirror into the part that it covers, and
+// back.
+V2f RayAimer::guess(V2f film_point_mm, V2f stop_point_mm, float nm) const {
     V2f p = film_point_mm, q = stop_point_mm;
     V2f turn(1.f, 0.f);
     if (symmetric_) {
@@ -219,8 +242,17 @@ std::optional<AimedRay<f4>> RayAimer::aim(V2f film_point_mm, V2f stop_point_mm,
         q = turned(q, turn);
     }
     const V2f mirror((symmetric_ ? q.x : p.x) < 0.f ? -1.f : 1.f, p.y < 0.f ? -1.f : 1.f);
-    const V2f guess = turned(between(p * mirror, q * mirror, nm) * mirror, V2f(turn.x, -turn.y));
-    return newton(film_point_mm, stop_point_mm, guess, indices, lane);
+    return turned(between(p * mirror, q * mirror, nm) * mirror, V2f(turn.x, -turn.y));
+}
+
+FoundRays RayAimer::aim(const PlanePoint<f8>& film_mm, const PlanePoint<f8>& stop_mm,
+                        const LensIndices<f8>& indices, f8 nm) const {
+    PlanePoint<f8> cosines(f8{}, f8{});
+    for (int i = 0; i < 8; ++i) {
+        const V2f lm = guess(film_mm[i], stop_mm[i], nm[i]);
+        cosines.x[i] = lm.x, cosines.y[i] = lm.y;
+    }
+    return newton(film_mm, stop_mm, cosines, indices);
 }
 
 }  // namespace petzval

@@ -282,7 +282,7 @@ template <class N>
 
 /// Traces a ray through the surfaces of a range, from anywhere on its line: backwards along it to
 /// the first surface is as good as forwards. It ends on the last surface, refracted. Returns the
-/// lanes that passed. N: float, f4, d4, Dual<f4> or Dual<d4>; the observer is called with a
+/// lanes that passed. N: float, f4, f8, d4, or Dual of one of the last three; the observer is called with a
 /// LensHit<ValueOf<N>>.
 ///
 /// Refraction in vector form (Welford 1986, Aberrations of Optical Systems, ch. 4). Derivatives go

@@ -54,11 +54,15 @@ class AberratedLensCamera::Point {
 
     /// Camera, film point and bands must outlive it.
     Point(const AberratedLensCamera& camera, const FilmPoint& at, const Bands& bands)
-        : c_(camera), at_(at), bands_(bands), achromatic_(one_ray(bands, camera.in_.dispersion)) {}
+        : c_(camera),
+          at_(at),
+          bands_(bands),
+          stop_mm_(camera.in_.iris.sample(at.sampler.get2(Dim::Lens))),
+          achromatic_(one_ray(bands, camera.in_.dispersion)) {}
 
     [[nodiscard]] Rays rays(const LaneRequest& request) const {
         Rays out;
-        out.stop_mm = c_.in_.iris.sample(request.u);
+        out.stop_mm = stop_mm_;
         const float share = static_cast<float>(lane_count(bands_.on)) /
                             static_cast<float>(lane_count(request.lanes));
         float weight = c_.in_.exposure * share;
@@ -126,11 +130,12 @@ class AberratedLensCamera::Point {
     const AberratedLensCamera& c_;
     const FilmPoint& at_;
     const Bands& bands_;
+    V2f stop_mm_;
     bool achromatic_;
 };
 
 CameraSample AberratedLensCamera::sample(const FilmPoint& at, const Bands& bands) const {
-    return sample_lens(Point(*this, at, bands), in_.dispersion, at, bands);
+    return sample_lens(Point(*this, at, bands), in_.dispersion, at.pixel, bands);
 }
 
 double AberratedLensCamera::zonal_mm(double n, double h_mm) const {

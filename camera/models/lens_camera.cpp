@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "camera/models/lens_camera.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "camera/dispersion/strategies.h"
 #include "camera/lens/trace.h"
 #include "core/spectrum/glass.h"
@@ -10,19 +13,15 @@ namespace {
 
 // Distance at which wavelengths are compared for a lens that is focused at infinity.
 constexpr float kFarthest_m = 1e9f;
+constexpr auto kLineD = static_cast<float>(kLineD_nm);
 
-// Transmission of the stop at a point of each lane: that of the iris inside the rim.
+// Transmission of the stop at a point of each lane.
 template <class V>
-V stop_transmission(const Iris& iris, const Lens& lens, V x, V y) {
-    const auto at = [&](int i) {
-        return iris.transmits({static_cast<float>(x[i]), static_cast<float>(y[i])});
-    };
-    V out = broadcast<V>(at(0));
+V stop_transmission(const LensOptics& optics, const PlanePoint<V>& p) {
+    V out = broadcast<V>(ScalarOf<V>(optics.transmits(p[0])));
     for (int i = 1; i < 4; ++i)
-        if (x[i] != x[0] || y[i] != y[0]) out[i] = at(i);
-    const auto stop = static_cast<size_t>(lens.stop());
-    const auto rim2_mm2 = lens.surfaces<ScalarOf<V>>()[stop].semi_diameter2_mm2;
-    return select(x * x + y * y <= rim2_mm2, out, V{});
+        if (p.x[i] != p.x[0] || p.y[i] != p.y[0]) out[i] = optics.transmits(p[i]);
+    return out;
 }
 
 template <class To, class From>
@@ -57,105 +56,95 @@ LensLosses<uint32_t> losses(m4 on, const LensDraw<V>& drawn, MaskOf<V> clear) {
     return out;
 }
 
-// Transmittance of a surface for the light that was traced to it, lane by lane.
+// One lane of a ray.
 template <class V>
-f4 surface_transmission(const Lens& lens, Coating coating, const LensIndices<V>& indices,
-                        const LensHit<V>& hit, Towards towards, f4 nm) {
-    const auto& s = lens.surfaces<ScalarOf<V>>()[static_cast<size_t>(hit.surface)];
-    if (s.medium_before == s.medium_after) return splat(1.f);
-    const int into = towards == Towards::Film ? s.medium_after : s.medium_before;
-    const Crossing crossing{lanes_as<f4>(hit.index), lanes_as<f4>(indices.of_medium[into]),
-                            lanes_as<f4>(hit.cosine)};
-    return transmittance(coating, crossing, touches_air(s), nm);
+DrawnRay<ScalarOf<V>> lane_of(const LensRay<V>& ray, int i) {
+    const auto at = [i](const Vec3<V>& a) { return Vec3<ScalarOf<V>>{a.x[i], a.y[i], a.z[i]}; };
+    return {at(ray.origin), at(ray.direction), ray.counted_from, 0, V2f(0.f), V2f(0.f), f4{}};
 }
 
 }  // namespace
 
+f4 LensCamera::Place::coating_nm() const {
+    return bands.spectral ? bands.nm : splat(kLineD);
+}
+
 LensCamera::LensCamera(LensCameraInput in)
     : in_(std::move(in)),
       pose_(in_.to_world),
-      aimer_(*in_.lens, in_.film_mm, 0.5 * std::hypot(in_.film_width_mm, in_.film_height_mm)),
-      line_d_(in_.lens->exact_indices(splat(static_cast<float>(kLineD_nm)))),
-      exact_line_d_(in_.lens->exact_indices(broadcast<d4>(kLineD_nm))) {
-    const Lens& lens = *in_.lens;
-    if (!lens.of_revolution()) return;
-    const auto passes = [&](float height_mm, V2f stop_mm) {
-        auto aimed =
-            aimer_.aim({0.f, height_mm}, stop_mm, line_d_, 0, static_cast<float>(kLineD_nm));
-        if (!aimed || !aimed->clear[0]) return false;
-        static_cast<void>(trace_lens<f4>(lens, line_d_, Towards::Scene, {0, lens.stop() - 1},
-                                         aimed->ray, Clip::Yes));
-        return aimed->ray.alive()[0] != 0;
-    };
-    const auto rim_mm = static_cast<float>(
-        lens.prescription().surfaces[static_cast<size_t>(lens.stop())].semi_diameter_mm);
-    // A pixel's filter reaches a little beyond the film.
-    const double reach_mm = 0.51 * std::hypot(in_.film_width_mm, in_.film_height_mm);
-    bounds_ =
-        StopBoundsByHeight(passes, static_cast<float>(reach_mm),
-                           std::min(rim_mm, in_.iris.bounding_radius_mm()), in_.iris.area_mm2());
+      optics_(in_.lens, in_.iris, in_.coating, in_.film_mm,
+              0.5 * std::hypot(in_.film_width_mm, in_.film_height_mm)),
+      line_d_(in_.lens->exact_indices(splat(kLineD))),
+      line_d_of_all_(in_.lens->exact_indices(splat8(kLineD))),
+      exact_line_d_(in_.lens->exact_indices(broadcast<d4>(kLineD_nm))) {}
+
+template <class S>
+S LensCamera::behind_pupil_mm(const DrawnRay<S>& ray) const {
+    return static_cast<S>(ray.origin.z + in_.lens->vertex_mm(ray.counted_from) -
+                          in_.entrance_pupil_mm);
 }
 
-template <class V>
-ScalarOf<V> LensCamera::behind_pupil_mm(const LensRay<V>& ray, int lane) const {
-    return static_cast<ScalarOf<V>>(ray.origin.z[lane] + in_.lens->vertex_mm(ray.counted_from) -
-                                    in_.entrance_pupil_mm);
+template <class S>
+Ray LensCamera::in_world(const DrawnRay<S>& ray) const {
+    const auto point_m =
+        V3f(static_cast<float>(ray.origin.x * S(1e-3)), static_cast<float>(ray.origin.y * S(1e-3)),
+            static_cast<float>(behind_pupil_mm(ray) * S(1e-3)));
+    const V3f direction(static_cast<float>(ray.direction.x), static_cast<float>(ray.direction.y),
+                        static_cast<float>(ray.direction.z));
+    Ray out;
+    out.origin = pose_.origin + pose_.to_world(point_m);
+    out.direction = unit(pose_.to_world(direction));
+    return out;
 }
 
+// The image stands on its head.
+FilmLanding LensCamera::in_pixels(const LensLanding& at, V2f frame_px) const {
+    return {at.shift_x_mm / -static_cast<float>(in_.film_width_mm) * frame_px.x,
+            at.shift_y_mm / static_cast<float>(in_.film_height_mm) * frame_px.y, at.open, at.drawn,
+            at.transmitted};
+}
+
+/// Film point with a ray for each lane.
 template <class V>
 class LensCamera::Point {
     using S = ScalarOf<V>;
 
   public:
-    /// Camera and bands must outlive it. achromatic: all lanes have the indices of line d.
-    /// frame_px: width and height of the full frame, in which landing() counts.
-    Point(const LensCamera& camera, V2f film_mm, const Bands& bands, bool achromatic,
-          V2f frame_px = V2f(1.f))
-        : c_(camera),
-          film_mm_(film_mm),
-          bands_(bands),
-          frame_px_(frame_px),
-          stop_(camera.stop_at(film_mm)),
-          achromatic_(achromatic) {
-        if (achromatic) return;
-        own_ = lens().indices(bands.nm);
+    /// Camera, place and rays must outlive it; lane: that of the film point among the rays.
+    Point(const LensCamera& camera, const Place& place, const LeadRays& rays, int lane)
+        : c_(camera), at_(place), lead_(rays), lane_(lane) {
+        if (at_.achromatic) return;
         if constexpr (std::same_as<V, d4>)
-            own_exact_ = lens().exact_indices(lanes_as<d4>(bands.nm));
+            own_ = lens().exact_indices(lanes_as<d4>(at_.bands.nm));
+        else
+            own_ = lens().indices(at_.bands.nm);
     }
     Point(const Point&) = delete;
     Point& operator=(const Point&) = delete;
 
     [[nodiscard]] LensDraw<V> rays(const LaneRequest&) const;
-    [[nodiscard]] Ray ray(const LensDraw<V>&, int lane) const;
+    [[nodiscard]] Ray ray(const LensDraw<V>& rays, int lane) const {
+        return c_.in_world(lane_of(rays.ray, lane));
+    }
     [[nodiscard]] bool together(const LensDraw<V>&, int a, int b) const;
     [[nodiscard]] FilmLanding landing(const LensDraw<V>&, const LaneRequest&) const;
     [[nodiscard]] float exposure() const { return c_.exposure_; }
 
   private:
     [[nodiscard]] const Lens& lens() const { return *c_.in_.lens; }
-    /// Indices in floats: the stop's ray is solved for in them; the rest is traced in V.
-    [[nodiscard]] const LensIndices<f4>& in_floats() const {
-        return achromatic_ ? c_.line_d_ : own_;
-    }
     [[nodiscard]] const LensIndices<V>& indices() const {
-        if constexpr (std::same_as<V, f4>)
-            return in_floats();
+        if (!at_.achromatic) return own_;
+        if constexpr (std::same_as<V, d4>)
+            return c_.exact_line_d_;
         else
-            return achromatic_ ? c_.exact_line_d_ : own_exact_;
+            return c_.line_d_;
     }
-    /// Transmittance of the surfaces for the ray that leaves the film towards the crossing.
-    [[nodiscard]] f4 transmitted(const AimedRay<V>&) const;
 
-    struct Nothing {};
     const LensCamera& c_;
-    V2f film_mm_;
-    const Bands& bands_;
-    V2f frame_px_;
-    StopDraw stop_;
-    bool achromatic_;
-    LensIndices<f4> own_;
-    [[no_unique_address]] std::conditional_t<std::same_as<V, d4>, LensIndices<d4>, Nothing>
-        own_exact_;
+    const Place& at_;
+    const LeadRays& lead_;
+    int lane_;
+    LensIndices<V> own_;
 };
 
 // Weights of a draw. Irradiance is the integral of radiance dL dM, L and M the direction cosines at
@@ -165,172 +154,240 @@ class LensCamera::Point {
 // edge is not lost where its image differs between wavelengths.
 template <class V>
 LensDraw<V> LensCamera::Point<V>::rays(const LaneRequest& request) const {
-    const LensCameraInput& in = c_.in_;
     LensDraw<V> out;
-    const V2f on_iris = stop_.sample(request.u);
-    const float nm = achromatic_ ? static_cast<float>(kLineD_nm) : bands_.nm[request.lead];
-    const auto solved = c_.aimer_.aim(film_mm_, on_iris, in_floats(), request.lead, nm);
     out.losses.drawn = static_cast<uint32_t>(lane_count(request.lanes));
-    if (!solved) {
+    if (!lead_.aimed.found[lane_]) {
         out.losses.unreached = out.losses.drawn;
         return out;
     }
-    const AimedRay<V>& aimed = [&]() -> decltype(auto) {
-        if constexpr (std::same_as<V, f4>)
-            return (*solved);
-        else
-            return c_.aimer_.cross(film_mm_, lanes_as<V>(solved->l), lanes_as<V>(solved->m),
-                                   indices());
-    }();
+    const AimedRay<V> aimed =
+        c_.optics_.aimer().cross(PlanePoint<V>(at_.film_mm), broadcast<V>(S(lead_.aimed.l[lane_])),
+                                 broadcast<V>(S(lead_.aimed.m[lane_])), indices());
     // The solver's residual is taken off, so that the lane crosses the iris where it was drawn: an
     // iris may be smaller than the tolerance.
-    const V x = aimed.ray.origin.x + (S(on_iris.x) - aimed.ray.origin.x[request.lead]);
-    const V y = aimed.ray.origin.y + (S(on_iris.y) - aimed.ray.origin.y[request.lead]);
+    const PlanePoint<V> at_stop(
+        aimed.ray.origin.x + (S(at_.stop_mm.x) - aimed.ray.origin.x[request.lead]),
+        aimed.ray.origin.y + (S(at_.stop_mm.y) - aimed.ray.origin.y[request.lead]));
     const MaskOf<V> there = lanes_as<MaskOf<V>>(request.lanes) & aimed.ray.alive();
-    const V open = select(there, stop_transmission(in.iris, lens(), x, y), V{});
+    const V open = select(there, stop_transmission(c_.optics_, at_stop), V{});
     const auto lanes = static_cast<S>(out.losses.drawn);
     // Also of lanes for which the iris is shut there: bounds overhang it.
+    const StopDraw draw = c_.optics_.stop_at(at_.film_mm);
     V of_point{};
     for (int i = 0; i < 4; ++i)
-        if (there[i])
-            of_point[i] = stop_.density({static_cast<float>(x[i]), static_cast<float>(y[i])},
-                                        static_cast<float>(open[i]));
+        if (there[i]) of_point[i] = draw.density(at_stop[i], static_cast<float>(open[i]));
     const S density = sum<V>(of_point * aimed.stretch_mm2()) / lanes;
     out.ray = aimed.ray;
     if (density > 0 && any(aimed.clear & (open > 0))) {
         static_cast<void>(trace_lens<V>(lens(), indices(), Towards::Scene, {0, lens().stop() - 1},
                                         out.ray, Clip::Yes));
-        const S gain = S(c_.gain_) * static_cast<S>(lane_count(bands_.on)) / lanes;
+        const S gain = S(c_.gain_) * static_cast<S>(lane_count(at_.bands.on)) / lanes;
         out.weight = select(aimed.clear & out.ray.alive(), V(open * (gain / density)), V{});
     }
     out.losses = losses(request.lanes, out, aimed.clear);
-    if (request.coated && in.coating != Coating::Ideal && any(out.weight > 0))
-        out.weight *= lanes_as<V>(transmitted(aimed));
-    return out;
-}
-
-template <class V>
-f4 LensCamera::Point<V>::transmitted(const AimedRay<V>& aimed) const {
-    const f4 nm = bands_.spectral ? bands_.nm : splat(static_cast<float>(kLineD_nm));
-    f4 out = splat(1.f);
-    const auto lose = [&](const LensHit<V>& hit) {
-        out *= surface_transmission(lens(), c_.in_.coating, indices(), hit, Towards::Scene, nm);
-    };
-    LensRay<V> ray = c_.aimer_.leave(film_mm_, aimed.l, aimed.m);
-    static_cast<void>(
-        trace_lens<V>(lens(), indices(), Towards::Scene, {0, lens().last()}, ray, Clip::No, lose));
-    return out;
-}
-
-template <class V>
-Ray LensCamera::Point<V>::ray(const LensDraw<V>& rays, int lane) const {
-    const auto &o = rays.ray.origin, &d = rays.ray.direction;
-    const V3f point_m(static_cast<float>(o.x[lane] * S(1e-3)),
-                      static_cast<float>(o.y[lane] * S(1e-3)),
-                      static_cast<float>(c_.behind_pupil_mm(rays.ray, lane) * S(1e-3)));
-    const V3f direction(static_cast<float>(d.x[lane]), static_cast<float>(d.y[lane]),
-                        static_cast<float>(d.z[lane]));
-    Ray out;
-    out.origin = c_.pose_.origin + c_.pose_.to_world(point_m);
-    out.direction = unit(c_.pose_.to_world(direction));
+    if (request.coated && any(out.weight > 0))
+        out.weight *= lanes_as<V>(
+            c_.optics_.transmitted(at_.film_mm, aimed.l, aimed.m, indices(), at_.coating_nm()));
     return out;
 }
 
 // Whether two lanes meet the plane of focus within the tolerance, seen from the lens.
 template <class V>
 bool LensCamera::Point<V>::together(const LensDraw<V>& rays, int a, int b) const {
-    const LensRay<V>& ray = rays.ray;
     const float focus_mm = std::fmin(c_.in_.focus_m, kFarthest_m) * 1e3f;
-    const auto on_plane = [&](int lane) {
-        const S t = (S(focus_mm) + c_.behind_pupil_mm(ray, lane)) / -ray.direction.z[lane];
-        return V2f(static_cast<float>(ray.origin.x[lane] + t * ray.direction.x[lane]),
-                   static_cast<float>(ray.origin.y[lane] + t * ray.direction.y[lane]));
+    const auto on_plane = [&](const DrawnRay<S>& ray) {
+        const S t = (S(focus_mm) + c_.behind_pupil_mm(ray)) / -ray.direction.z;
+        return V2f(static_cast<float>(ray.origin.x + t * ray.direction.x),
+                   static_cast<float>(ray.origin.y + t * ray.direction.y));
     };
+    const DrawnRay<S> one = lane_of(rays.ray, a), other = lane_of(rays.ray, b);
     // A fisheye's rays that lead backwards never meet the plane: no guess is made about them.
-    if (!(ray.direction.z[a] < 0 && ray.direction.z[b] < 0)) return false;
-    return (on_plane(a) - on_plane(b)).length() <= c_.in_.tolerance_rad * focus_mm;
+    if (!(one.direction.z < 0 && other.direction.z < 0)) return false;
+    return (on_plane(one) - on_plane(other)).length() <= c_.in_.tolerance_rad * focus_mm;
 }
 
-// Landing: the lead's ray goes back through the lens in all lanes. What rounding and the solver
-// leave shows in the lead, whose way is known, and is taken off all of them.
 template <class V>
 FilmLanding LensCamera::Point<V>::landing(const LensDraw<V>& rays,
                                           const LaneRequest& request) const {
-    const LensCameraInput& in = c_.in_;
-    const int lead = request.lead;
-    FilmLanding out;
-    out.transmitted = splat(1.f);
-    const auto lose = [&](const LensHit<V>& hit) {
-        if (in.coating != Coating::Ideal)
-            out.transmitted *=
-                surface_transmission(lens(), in.coating, indices(), hit, Towards::Film, bands_.nm);
+    const std::array drawn{at_.drawn(lane_of(rays.ray, request.lead))};
+    std::array<LensLanding, 1> out;
+    c_.optics_.land<V>(drawn, indices(), out);
+    return c_.in_pixels(out[0], at_.frame_px);
+}
+
+/// Film point with the ray of the lane that leads, and none but that.
+class LensCamera::LeadPoint {
+  public:
+    struct Rays {
+        f4 weight{};
+        LensLosses<uint32_t> losses;
+        [[nodiscard]] f4 weight_of_lanes() const { return weight; }
     };
-    const auto of_lead = [&](V a, S sign) { return broadcast<V>(sign * a[lead]); };
-    LensRay<V> ray;
-    ray.counted_from = rays.ray.counted_from;
-    const auto &o = rays.ray.origin, &d = rays.ray.direction;
-    ray.origin = {of_lead(o.x, 1), of_lead(o.y, 1), of_lead(o.z, 1)};
-    ray.direction = {of_lead(d.x, -1), of_lead(d.y, -1), of_lead(d.z, -1)};
-    const int stop = lens().stop();
-    static_cast<void>(
-        trace_lens<V>(lens(), indices(), Towards::Film, {0, stop - 1}, ray, Clip::Yes, lose));
-    static_cast<void>(trace_lens<V>(lens(), indices(), Towards::Film, {stop, stop}, ray, Clip::No));
-    const V2f on_iris = stop_.sample(request.u);
-    const V x = ray.origin.x + (S(on_iris.x) - ray.origin.x[lead]);
-    const V y = ray.origin.y + (S(on_iris.y) - ray.origin.y[lead]);
-    const V iris = stop_transmission(in.iris, lens(), x, y);
-    const MaskOf<V> arrived = trace_lens<V>(lens(), indices(), Towards::Film,
-                                            {stop + 1, lens().last()}, ray, Clip::Yes, lose);
-    out.open = lanes_as<f4>(select(arrived, iris, V{}));
-    const V to_film =
-        (S(in.film_mm - lens().vertex_mm(ray.counted_from)) - ray.origin.z) / ray.direction.z;
-    const V film_x = ray.origin.x + to_film * ray.direction.x;
-    const V film_y = ray.origin.y + to_film * ray.direction.y;
-    for (int i = 0; i < 4; ++i) {
-        const V2f shift(static_cast<float>(film_x[i] - film_x[lead]),
-                        static_cast<float>(film_y[i] - film_y[lead]));
-        const V2f stop_mm(static_cast<float>(x[i]), static_cast<float>(y[i]));
-        out.drawn[i] = c_.stop_at(film_mm_ + shift).density(stop_mm, out.open[i]);
+
+    /// Camera, place and rays must outlive it; lane: that of the film point among the rays.
+    LeadPoint(const LensCamera& camera, const Place& place, const LeadRays& rays, int lane,
+              const LensLanding& landing)
+        : c_(camera), at_(place), rays_(rays), lane_(lane), landing_(landing) {}
+
+    [[nodiscard]] Rays rays(const LaneRequest&) const;
+    [[nodiscard]] Ray ray(const Rays&, int) const { return c_.in_world(lane_of(rays_.ray, lane_)); }
+    [[nodiscard]] bool together(const Rays&, int, int) const { return true; }
+    [[nodiscard]] FilmLanding landing(const Rays&, const LaneRequest&) const {
+        return c_.in_pixels(landing_, at_.frame_px);
     }
-    // The image stands on its head.
-    out.dx_px = lanes_as<f4>(V((film_x[lead] - film_x) / S(in.film_width_mm))) * frame_px_.x;
-    out.dy_px = lanes_as<f4>(V((film_y - film_y[lead]) / S(in.film_height_mm))) * frame_px_.y;
+    [[nodiscard]] float exposure() const { return c_.exposure_; }
+
+  private:
+    [[nodiscard]] LensLosses<uint32_t> losses(uint32_t lanes) const;
+
+    const LensCamera& c_;
+    const Place& at_;
+    const LeadRays& rays_;
+    int lane_;
+    const LensLanding& landing_;
+};
+
+// As Point::rays(), where one lane's ray is the only one.
+LensCamera::LeadPoint::Rays LensCamera::LeadPoint::rays(const LaneRequest& request) const {
+    Rays out;
+    const int lanes = lane_count(request.lanes);
+    out.losses = losses(static_cast<uint32_t>(lanes));
+    if (!rays_.passed[lane_]) return out;
+    const float gain =
+        c_.gain_ * static_cast<float>(lane_count(at_.bands.on)) / static_cast<float>(lanes);
+    out.weight = zero_off(request.lanes, splat(rays_.open[lane_] * (gain / rays_.density[lane_])));
+    if (request.coated && c_.in_.coating != Coating::Ideal)
+        out.weight *= c_.optics_.transmitted(
+            at_.film_mm, splat(rays_.aimed.l[lane_]), splat(rays_.aimed.m[lane_]),
+            at_.achromatic ? c_.line_d_ : c_.in_.lens->indices(at_.bands.nm), at_.coating_nm());
+    return out;
+}
+
+LensLosses<uint32_t> LensCamera::LeadPoint::losses(uint32_t lanes) const {
+    LensLosses<uint32_t> out;
+    out.drawn = lanes;
+    if (rays_.passed[lane_]) return out;
+    const RayStatus status = rays_.ray.status(lane_);
+    if (!rays_.aimed.found[lane_])
+        out.unreached = lanes;
+    else if (!rays_.aimed.clear[lane_] || !(rays_.open[lane_] > 0))
+        out.vignetted = lanes;
+    else if (status == RayStatus::TotallyReflected)
+        out.totally_reflected = lanes;
+    else if (status == RayStatus::Missed)
+        out.missed = lanes;
+    else
+        out.vignetted = lanes;
     return out;
 }
 
 template <class V>
 LensDraw<V> LensCamera::draw(V2f film_mm, V2f u, const Bands& bands) const {
     const bool achromatic = one_ray(bands, in_.dispersion);
-    const int lead = bands.lead;
     const bool single = in_.dispersion == DispersionMode::Single && !achromatic;
-    return Point<V>(*this, film_mm, bands, achromatic)
-        .rays({u, single ? only_lane(lead) : bands.on, lead, true});
+    LeadPoints points;
+    points.film_mm.fill(film_mm);
+    points.u.fill(u);
+    points.nm = splat8(achromatic ? kLineD : bands.nm[bands.lead]);
+    const LeadRays rays = optics_.aim(points, indices_of(points, achromatic));
+    const Place place{film_mm, rays.stop_mm[0], bands, achromatic, V2f(1.f)};
+    return Point<V>(*this, place, rays, 0)
+        .rays({single ? only_lane(bands.lead) : bands.on, bands.lead, true});
 }
 template LensDraw<f4> LensCamera::draw(V2f, V2f, const Bands&) const;
 template LensDraw<d4> LensCamera::draw(V2f, V2f, const Bands&) const;
 
+LensIndices<f8> LensCamera::indices_of(const LeadPoints& points, bool achromatic) const {
+    return achromatic ? line_d_of_all_ : in_.lens->indices(points.nm);
+}
+
 CameraSample LensCamera::sample(const FilmPoint& point, const Bands& bands) const {
-    // The image stands on its head: what is seen on the right falls on the left of the film.
-    const V2f film((0.5f - point.film.x) * static_cast<float>(in_.film_width_mm),
-                   (point.film.y - 0.5f) * static_cast<float>(in_.film_height_mm));
-    const bool achromatic = one_ray(bands, in_.dispersion);
-    if (in_.precision == Precision::Double)
-        return sample_lens(Point<d4>(*this, film, bands, achromatic, point.pixel.frame_px),
-                           in_.dispersion, point, bands);
-    return sample_lens(Point<f4>(*this, film, bands, achromatic, point.pixel.frame_px),
-                       in_.dispersion, point, bands);
+    CameraSample out;
+    sample_all({&point, 1}, {&bands, 1}, {&out, 1});
+    return out;
+}
+
+void LensCamera::sample_all(std::span<const FilmPoint> points, std::span<const Bands> bands,
+                            std::span<CameraSample> out) const {
+    const bool achromatic = one_ray(bands[0], in_.dispersion);
+    LeadPoints at;
+    for (size_t i = 0; i < kMostFilmPoints; ++i) {
+        if (i >= points.size()) {
+            at.film_mm[i] = at.film_mm[0], at.u[i] = at.u[0], at.nm[i] = at.nm[0];
+            continue;
+        }
+        // The image stands on its head: what is seen on the right falls on the left of the film.
+        at.film_mm[i] = {(0.5f - points[i].film.x) * static_cast<float>(in_.film_width_mm),
+                         (points[i].film.y - 0.5f) * static_cast<float>(in_.film_height_mm)};
+        at.u[i] = points[i].sampler.get2(Dim::Lens);
+        at.nm[i] = achromatic ? kLineD : bands[i].nm[bands[i].lead];
+    }
+    const LensIndices<f8> indices = indices_of(at, achromatic);
+    LeadRays rays = optics_.aim(at, indices);
+    const auto place = [&](size_t i) {
+        return Place{at.film_mm[i], rays.stop_mm[static_cast<int>(i)], bands[i], achromatic,
+                     points[i].pixel.frame_px};
+    };
+    const auto each = [&]<class P>(const auto&... more) {
+        for (size_t i = 0; i < points.size(); ++i) {
+            const Place here = place(i);
+            out[i] = sample_lens(P(*this, here, rays, static_cast<int>(i), more[i]...),
+                                 in_.dispersion, points[i].pixel, bands[i]);
+        }
+    };
+    const bool hero = in_.dispersion == DispersionMode::Hero && !achromatic;
+    const bool one = achromatic || in_.dispersion == DispersionMode::Single ||
+                     (hero && std::all_of(points.begin(), points.end(), [](const FilmPoint& p) {
+                          return p.pixel.filter != nullptr;
+                      }));
+    if (in_.precision == Precision::Double) return each.template operator()<Point<d4>>();
+    if (!one) return each.template operator()<Point<f4>>();
+    optics_.trace(at, indices, rays);
+    std::array<LensLanding, kMostFilmPoints> landings;
+    if (hero) land(points.size(), bands, at, rays, landings);
+    each.template operator()<LeadPoint>(landings);
+}
+
+// Two film points at a time, so that eight lanes are full.
+void LensCamera::land(size_t count, std::span<const Bands> bands, const LeadPoints& at,
+                      const LeadRays& rays,
+                      std::array<LensLanding, kMostFilmPoints>& landings) const {
+    std::array<size_t, kMostFilmPoints + 1> passed;
+    size_t n = 0;
+    for (size_t i = 0; i < count; ++i)
+        if (rays.passed[static_cast<int>(i)]) passed[n++] = i;
+    if (n == 0) return;
+    passed[n] = passed[n - 1];
+    for (size_t k = 0; k < n; k += 2) {
+        const size_t a = passed[k], b = passed[k + 1];
+        const auto drawn = [&](size_t i) {
+            const auto lane = static_cast<int>(i);
+            return Place{at.film_mm[i], rays.stop_mm[lane], bands[i], false, V2f(1.f)}.drawn(
+                lane_of(rays.ray, lane));
+        };
+        const std::array both{drawn(a), drawn(b)};
+        std::array<LensLanding, 2> out;
+        optics_.land<f8>(both, in_.lens->indices(joined(bands[a].nm, bands[b].nm)), out);
+        landings[a] = out[0], landings[b] = out[1];
+    }
 }
 
 // Mean of quasi-random draws: the integrand is smooth but for the edges of iris and rims.
 double LensCamera::irradiance(V2f film_mm, uint32_t count) const {
-    const Bands bands = Bands::rgb();
-    const Point<f4> film_point(*this, film_mm, bands, true);
+    LeadPoints at;
+    at.film_mm.fill(film_mm);
+    at.nm = splat8(kLineD);
     double sum = 0;
-    for (uint32_t i = 0; i < count; ++i) {
-        const V2f u = Sampler(SamplerKind::Owen, 0, {0, 0, i}).get2(Dim::Lens);
-        sum += hsum(film_point.rays({u, bands.on, bands.lead, false}).weight);
+    for (uint32_t first = 0; first < count; first += kMostFilmPoints) {
+        for (uint32_t i = 0; i < kMostFilmPoints; ++i)
+            at.u[i] = Sampler(SamplerKind::Owen, 0, {0, 0, first + i}).get2(Dim::Lens);
+        LeadRays rays = optics_.aim(at, line_d_of_all_);
+        optics_.trace(at, line_d_of_all_, rays);
+        for (uint32_t i = 0; i < kMostFilmPoints && first + i < count; ++i)
+            if (const int lane = int(i); rays.passed[lane])
+                sum += double(gain_ * rays.open[lane] / rays.density[lane]);
     }
-    return sum / (double(count) * lane_count(bands.on));
+    return sum / double(count);
 }
 
 }  // namespace petzval

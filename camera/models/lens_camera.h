@@ -10,9 +10,7 @@
 #include "camera/lens/coating.h"
 #include "camera/lens/lens.h"
 #include "camera/lens/lens_options.h"
-#include "camera/lens/ray_aiming.h"
-#include "camera/lens/stop_bounds.h"
-#include "camera/models/stop_draw.h"
+#include "camera/models/lens_optics.h"
 #include "camera/models/thin_lens.h"
 
 namespace petzval {
@@ -51,6 +49,8 @@ class LensCamera final : public Camera {
     explicit LensCamera(LensCameraInput);
 
     [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
+    void sample_all(std::span<const FilmPoint>, std::span<const Bands>,
+                    std::span<CameraSample>) const override;
 
     /// Scales the weights from here on: they average to the exposure in the middle of the film,
     /// where they averaged to its irradiance(). axial: that irradiance, before the first call.
@@ -72,22 +72,45 @@ class LensCamera final : public Camera {
     [[nodiscard]] LensDraw<V> draw(V2f film_mm, V2f u, const Bands&) const;
 
   private:
-    /// A film point's rays, in lanes of V, for the strategies of camera/dispersion.
+    /// Film point, the drawn point of its stop, and its bands.
+    struct Place {
+        V2f film_mm, stop_mm;
+        const Bands& bands;
+        bool achromatic;  ///< all lanes have the indices of line d
+        V2f frame_px;     ///< width and height of the full frame, in which landings count
+
+        /// Wavelengths at which coatings count.
+        [[nodiscard]] f4 coating_nm() const;
+        /// Ray that was drawn for the lane that leads.
+        template <class S>
+        [[nodiscard]] DrawnRay<S> drawn(DrawnRay<S> ray) const {
+            ray.lead = bands.lead;
+            ray.film_mm = film_mm, ray.stop_mm = stop_mm;
+            ray.nm = bands.nm;
+            return ray;
+        }
+    };
+    /// Rays of a film point, for the strategies of camera/dispersion.
     template <class V>
     class Point;
-    [[nodiscard]] StopDraw stop_at(V2f film_mm) const {
-        return {in_.iris, bounds_.at(film_mm.length()), film_mm};
-    }
+    class LeadPoint;
+
     /// Distance of the ray's origin behind the middle of the entrance pupil.
-    template <class V>
-    [[nodiscard]] ScalarOf<V> behind_pupil_mm(const LensRay<V>&, int lane) const;
+    template <class S>
+    [[nodiscard]] S behind_pupil_mm(const DrawnRay<S>&) const;
+    template <class S>
+    [[nodiscard]] Ray in_world(const DrawnRay<S>&) const;
+    [[nodiscard]] FilmLanding in_pixels(const LensLanding&, V2f frame_px) const;
+    [[nodiscard]] LensIndices<f8> indices_of(const LeadPoints&, bool achromatic) const;
+    void land(size_t count, std::span<const Bands>, const LeadPoints&, const LeadRays&,
+              std::array<LensLanding, kMostFilmPoints>&) const;
 
     LensCameraInput in_;
     Pose pose_;
-    RayAimer aimer_;
+    LensOptics optics_;
     LensIndices<f4> line_d_;
+    LensIndices<f8> line_d_of_all_;
     LensIndices<d4> exact_line_d_;
-    StopBoundsByHeight bounds_;
     float gain_ = 1.f, exposure_ = 1.f;
 };
 

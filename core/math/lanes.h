@@ -40,6 +40,10 @@ typedef uint32_t u32x8 __attribute__((vector_size(32)));
 [[nodiscard]] inline float hsum(f4 a) {
     return (a[0] + a[1]) + (a[2] + a[3]);
 }
+/// Four lanes and four more.
+[[nodiscard]] inline f8 joined(f4 low, f4 high) {
+    return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+}
 [[nodiscard]] inline f8 splat8(float a) {
     return f8{a, a, a, a, a, a, a, a};
 }

@@ -41,6 +41,8 @@ struct SampleId {
 
 class Sampler {
   public:
+    /// Takes the place of one that is to come.
+    Sampler() = default;
     Sampler(SamplerKind kind, uint32_t seed, SampleId id)
         : kind_(kind),
           key_(hash32(hash32(hash32(static_cast<uint32_t>(id.x)) +
@@ -69,8 +71,8 @@ class Sampler {
     template <class Word>
     [[nodiscard]] std::pair<Word, Word> bits(Word key) const;
 
-    SamplerKind kind_;
-    uint32_t key_, index_, reversed_;  ///< reversed_: index_, lowest bit first
+    SamplerKind kind_ = SamplerKind::Owen;
+    uint32_t key_ = 0, index_ = 0, reversed_ = 0;  ///< reversed_: index_, lowest bit first
 };
 
 /// First two dimensions of Sobol's sequence (Sobol 1967), 32 bits: the radical inverse in base 2,

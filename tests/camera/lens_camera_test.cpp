@@ -380,10 +380,12 @@ TEST(RayAimer, RaysMeetTheStopWhereTheyShould) {
             const V2f film = (random.next2() - V2f(0.5f)) * 24.f;
             const V2f aim = uniform_disk(random.next2()) * radius;
             const int lane = i % 4;
-            const auto c = aimer.aim(film, aim, lens.indices(nm), lane, nm[lane]);
-            if (!c) continue;
+            const f8 led = splat8(nm[lane]);
+            const FoundRays c =
+                aimer.aim(PlanePoint<f8>(film), PlanePoint<f8>(aim), lens.indices(led), led);
+            if (!c.found[0]) continue;
             ++solved;
-            const double l = c->l[lane], m = c->m[lane];
+            const double l = c.l[0], m = c.m[0];
             LensRay<d4> ray;
             ray.counted_from = lens.last();
             ray.origin = {d4{} + film.x, d4{} + film.y,

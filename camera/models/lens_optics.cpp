@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "camera/models/lens_optics.h"
+
+#include <algorithm>
+
+#include "camera/lens/trace.h"
+#include "core/spectrum/glass.h"
+
+namespace petzval {
+namespace {
+
+template <class V>
+constexpr int kLanes = NumberTraits<V>::lanes;
+
+// Four lanes from the first one on.
+template <class V>
+f4 four(const V& a, int first = 0) {
+    f4 out;
+    for (int i = 0; i < 4; ++i) out[i] = static_cast<float>(a[first + i]);
+    return out;
+}
+
+// Transmittance of a surface for the light that was traced to it, of four lanes from the first one.
+template <class V>
+f4 surface_transmission(const Lens& lens, Coating coating, const LensIndices<V>& indices,
+                        const LensHit<V>& hit, Towards towards, f4 nm, int first = 0) {
+    const auto& s = lens.surfaces<ScalarOf<V>>()[static_cast<size_t>(hit.surface)];
+    if (s.medium_before == s.medium_after) return splat(1.f);
+    const int into = towards == Towards::Film ? s.medium_after : s.medium_before;
+    const Crossing crossing{four(hit.index, first), four(indices.of_medium[into], first),
+                            four(hit.cosine, first)};
+    return transmittance(coating, crossing, touches_air(s), nm);
+}
+
+}  // namespace
+
+LensOptics::LensOptics(std::shared_ptr<const Lens> lens, Iris iris, Coating coating, double film_mm,
+                       double film_reach_mm)
+    : lens_(std::move(lens)),
+      iris_(std::move(iris)),
+      coating_(coating),
+      film_mm_(film_mm),
+      stop_rim2_mm2_(lens_->surfaces<float>()[size_t(lens_->stop())].semi_diameter2_mm2),
+      aimer_(*lens_, film_mm, film_reach_mm) {
+    if (!lens_->of_revolution()) return;
+    const auto line_d_nm = splat8(static_cast<float>(kLineD_nm));
+    const LensIndices<f8> line_d = lens_->exact_indices(line_d_nm);
+    const auto passes = [&](float height_mm, V2f stop_mm) {
+        const FoundRays aimed = aimer_.aim(PlanePoint<f8>(V2f(0.f, height_mm)),
+                                           PlanePoint<f8>(stop_mm), line_d, line_d_nm);
+        if (!(aimed.found[0] && aimed.clear[0])) return false;
+        LensRay<f8> ray = aimed.ray;
+        return trace_lens<f8>(*lens_, line_d, Towards::Scene, {0, lens_->stop() - 1}, ray,
+                              Clip::Yes)[0] != 0;
+    };
+    const auto rim_mm = static_cast<float>(
+        lens_->prescription().surfaces[static_cast<size_t>(lens_->stop())].semi_diameter_mm);
+    // A pixel's filter reaches a little beyond the film.
+    constexpr double kBeyondFilm = 1.02;
+    bounds_ = StopBoundsByHeight(passes, static_cast<float>(kBeyondFilm * film_reach_mm),
+                                 std::min(rim_mm, iris_.bounding_radius_mm()), iris_.area_mm2());
+}
+
+LeadRays LensOptics::aim(const LeadPoints& at, const LensIndices<f8>& indices) const {
+    LeadRays out;
+    PlanePoint<f8> film_mm(f8{}, f8{});
+    for (size_t i = 0; i < 8; ++i) {
+        const V2f stop = stop_at(at.film_mm[i]).sample(at.u[i]);
+        out.stop_mm.x[i] = stop.x, out.stop_mm.y[i] = stop.y;
+        film_mm.x[i] = at.film_mm[i].x, film_mm.y[i] = at.film_mm[i].y;
+    }
+    out.aimed = aimer_.aim(film_mm, out.stop_mm, indices, at.nm);
+    return out;
+}
+
+// The solver's residual counts for nothing: the ray crosses the iris where it was drawn, as an iris
+// may be smaller than the tolerance.
+void LensOptics::trace(const LeadPoints& at, const LensIndices<f8>& indices, LeadRays& rays) const {
+    for (int i = 0; i < 8; ++i) {
+        rays.open[i] = transmits(rays.stop_mm[i]);
+        rays.density[i] =
+            stop_at(at.film_mm[static_cast<size_t>(i)]).density(rays.stop_mm[i], rays.open[i]);
+    }
+    rays.density *= rays.aimed.stretch_mm2();
+    rays.ray = rays.aimed.ray;
+    rays.passed = rays.aimed.found & rays.aimed.clear & (rays.open > 0.f) & (rays.density > 0.f);
+    if (!any(rays.passed)) return;
+    rays.passed &= trace_lens<f8>(*lens_, indices, Towards::Scene, {0, lens_->stop() - 1}, rays.ray,
+                                  Clip::Yes);
+}
+
+// The ray goes back through the lens in all lanes. What rounding and the solver leave shows in the
+// lane that it was drawn for, whose way is known, and is taken off all of them.
+template <class V>
+void LensOptics::land(std::span<const DrawnRay<ScalarOf<V>>, kRaysOf<V>> drawn,
+                      const LensIndices<V>& indices, std::span<LensLanding, kRaysOf<V>> out) const {
+    using S = ScalarOf<V>;
+    const auto each = [&](const auto& value) {
+        V all;
+        for (int i = 0; i < kLanes<V>; ++i) all[i] = static_cast<S>(value(drawn[size_t(i / 4)]));
+        return all;
+    };
+    // The same number of the lane that leads, for all four.
+    const auto of_lead = [&](const V& a) {
+        V all;
+        for (int i = 0; i < kLanes<V>; ++i) all[i] = a[i / 4 * 4 + drawn[size_t(i / 4)].lead];
+        return all;
+    };
+    using Drawn = DrawnRay<S>;
+    LensRay<V> ray;
+    ray.counted_from = drawn[0].counted_from;
+    ray.origin = {each([](const Drawn& r) { return r.origin.x; }),
+                  each([](const Drawn& r) { return r.origin.y; }),
+                  each([](const Drawn& r) { return r.origin.z; })};
+    ray.direction = {each([](const Drawn& r) { return -r.direction.x; }),
+                     each([](const Drawn& r) { return -r.direction.y; }),
+                     each([](const Drawn& r) { return -r.direction.z; })};
+    for (LensLanding& one : out) one.transmitted = splat(1.f);
+    const auto lose = [&](const LensHit<V>& hit) {
+        if (coating_ == Coating::Ideal) return;
+        for (size_t k = 0; k < out.size(); ++k)
+            out[k].transmitted *= surface_transmission(*lens_, coating_, indices, hit,
+                                                       Towards::Film, drawn[k].nm, int(4 * k));
+    };
+    const int stop = lens_->stop();
+    static_cast<void>(
+        trace_lens<V>(*lens_, indices, Towards::Film, {0, stop - 1}, ray, Clip::Yes, lose));
+    static_cast<void>(trace_lens<V>(*lens_, indices, Towards::Film, {stop, stop}, ray, Clip::No));
+    const PlanePoint<V> at_stop(
+        ray.origin.x + (each([](const Drawn& r) { return r.stop_mm.x; }) - of_lead(ray.origin.x)),
+        ray.origin.y + (each([](const Drawn& r) { return r.stop_mm.y; }) - of_lead(ray.origin.y)));
+    const MaskOf<V> arrived = trace_lens<V>(*lens_, indices, Towards::Film,
+                                            {stop + 1, lens_->last()}, ray, Clip::Yes, lose);
+    const V to_film =
+        (S(film_mm_ - lens_->vertex_mm(ray.counted_from)) - ray.origin.z) / ray.direction.z;
+    const V film_x = ray.origin.x + to_film * ray.direction.x;
+    const V film_y = ray.origin.y + to_film * ray.direction.y;
+    const V shift_x = film_x - of_lead(film_x), shift_y = film_y - of_lead(film_y);
+    for (int i = 0; i < kLanes<V>; ++i) {
+        LensLanding& one = out[size_t(i / 4)];
+        const V2f shift(static_cast<float>(shift_x[i]), static_cast<float>(shift_y[i]));
+        const float open = arrived[i] ? transmits(at_stop[i]) : 0.f;
+        one.shift_x_mm[i % 4] = shift.x, one.shift_y_mm[i % 4] = shift.y;
+        one.open[i % 4] = open;
+        one.drawn[i % 4] = stop_at(drawn[size_t(i / 4)].film_mm + shift).density(at_stop[i], open);
+    }
+}
+template void LensOptics::land<f4>(std::span<const DrawnRay<float>, 1>, const LensIndices<f4>&,
+                                   std::span<LensLanding, 1>) const;
+template void LensOptics::land<f8>(std::span<const DrawnRay<float>, 2>, const LensIndices<f8>&,
+                                   std::span<LensLanding, 2>) const;
+template void LensOptics::land<d4>(std::span<const DrawnRay<double>, 1>, const LensIndices<d4>&,
+                                   std::span<LensLanding, 1>) const;
+
+template <class V>
+f4 LensOptics::transmitted(V2f film_mm, V l, V m, const LensIndices<V>& indices, f4 nm) const {
+    f4 out = splat(1.f);
+    if (coating_ == Coating::Ideal) return out;
+    const auto lose = [&](const LensHit<V>& hit) {
+        out *= surface_transmission(*lens_, coating_, indices, hit, Towards::Scene, nm);
+    };
+    LensRay<V> ray = aimer_.leave<V>(PlanePoint<V>(film_mm), l, m);
+    static_cast<void>(
+        trace_lens<V>(*lens_, indices, Towards::Scene, {0, lens_->last()}, ray, Clip::No, lose));
+    return out;
+}
+template f4 LensOptics::transmitted(V2f, f4, f4, const LensIndices<f4>&, f4) const;
+template f4 LensOptics::transmitted(V2f, d4, d4, const LensIndices<d4>&, f4) const;
+
+}  // namespace petzval

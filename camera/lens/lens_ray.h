@@ -47,7 +47,7 @@ struct LensHit {
 };
 
 struct NoObserver {
-    void operator()(const auto&) const {}
+    void operator()(const auto&...) const {}
 };
 
 }  // namespace petzval

@@ -57,19 +57,6 @@ Step<V> step_towards(const PlanePoint<V>& stop_mm, const AimedRay<V>& c) {
     return {(c.y_by_m * x - c.x_by_m * y) * by, (c.x_by_l * y - c.y_by_l * x) * by, x * x + y * y};
 }
 
-// Takes over the lanes of a mask.
-void take(m8 on, const AimedRay<f8>& from, FoundRays& to) {
-    const auto take_one = [on](auto& a, const auto& b) { a = select(on, b, a); };
-    take_one(to.l, from.l), take_one(to.m, from.m);
-    take_one(to.ray.origin, from.ray.origin), take_one(to.ray.direction, from.ray.direction);
-    take_one(to.ray.status_code, from.ray.status_code);
-    take_one(to.ray.end_surface, from.ray.end_surface);
-    to.ray.counted_from = from.ray.counted_from;
-    take_one(to.clear, from.clear);
-    take_one(to.x_by_l, from.x_by_l), take_one(to.y_by_l, from.y_by_l);
-    take_one(to.x_by_m, from.x_by_m), take_one(to.y_by_m, from.y_by_m);
-}
-
 }  // namespace
 
 float RayAimer::Axis::at(int i) const {
@@ -140,10 +127,8 @@ FoundRays RayAimer::newton(const PlanePoint<f8>& film_mm, const PlanePoint<f8>& 
         const m8 done = left & reached & (step_l * step_l + step_m * step_m < most * most);
         out.found |= done;
         out.traces = done ? m8{} + (i + 1) : out.traces;
-        if (all(done))
-            static_cast<AimedRay<f8>&>(out) = c;
-        else if (any(done))
-            take(done, c, out);
+        // Lanes that are done stay where they are, and so does what is found there.
+        static_cast<AimedRay<f8>&>(out) = c;
         halvings -= ~reached;
         left &= ~done & (reached | (i > 0 ? halvings <= kMostHalvings : m8{}));
         if (!any(left)) break;

@@ -2,6 +2,7 @@
 // Ray tracing through a lens, in either direction, four wavelengths at once.
 #pragma once
 
+#include <array>
 #include <limits>
 
 #include "camera/lens/lens.h"
@@ -278,12 +279,93 @@ template <class N>
     return ray;
 }
 
+/// A ray on its way through a lens, with the derivatives that it may carry.
+template <class N>
+struct OnTheWay {
+    LensRay<ValueOf<N>> ray;
+    RayChanges<N> changes;
+    /// From where it is to the vertex of the first surface that it is traced to.
+    OnTheWay(const Lens& lens, const LensRay<N>& from, int begin)
+        : ray(converted<ValueOf<N>>(from)), changes(from) {
+        if (ray.counted_from == begin) return;
+        ray.origin.z =
+            ray.origin.z + ScalarOf<N>(lens.vertex_mm(ray.counted_from) - lens.vertex_mm(begin));
+    }
+    void put_into(LensRay<N>& traced) const {
+        traced = converted<N>(ray);
+        changes.put_into(traced);
+    }
+};
+
+/// Follows a ray to surface i and through it. begin: the first surface.
+template <class N, class Observer>
+[[gnu::always_inline]] inline void cross_surface(const Lens& lens,
+                                                 const LensIndices<ValueOf<N>>& indices,
+                                                 bool to_film, int begin, int i, Clip clip,
+                                                 const Observer& observe, OnTheWay<N>& on_the_way) {
+    using V = ValueOf<N>;
+    using S = ScalarOf<N>;
+    const S sign = to_film ? S(1) : S(-1);
+    const SurfaceFacts<S>* const facts = lens.surfaces<S>().data();
+    const SurfaceFacts<S>& s = facts[i];
+    LensRay<V>& ray = on_the_way.ray;
+    RayChanges<N>& changes = on_the_way.changes;
+    ray.counted_from = i;
+    if (i != begin) ray.origin.z = ray.origin.z - (to_film ? facts[i - 1].gap_mm : -s.gap_mm);
+    const V to_foot = -dot(ray.origin, ray.direction);
+    const Vec3<V> foot = ray.origin + ray.direction * to_foot;
+    const Asphere<S>* const asphere =
+        s.shape == Shape::Asphere ? &lens.aspheres<S>()[s.asphere] : nullptr;
+    const Meeting<V> hit = s.shape == Shape::Sphere
+                               ? meet_sphere<V>(s.curvature_y, sign, foot, ray.direction)
+                           : asphere ? meet_asphere<V>(s, *asphere, sign, foot, ray.direction)
+                                     : meet_quadric<V>(s, sign, foot, ray.direction);
+    const V distance = hit.distance + to_foot;
+    ray.origin = hit.point;
+    const V x = hit.point.x, y = hit.point.y;
+    const MaskOf<V> inside =
+        x * x + y * y <=
+        (clip == Clip::Yes ? s.semi_diameter2_mm2 : std::numeric_limits<S>::infinity());
+    const int from = to_film ? s.medium_before : s.medium_after;
+    const int into = to_film ? s.medium_after : s.medium_before;
+    observe(LensHit<V>{i, hit.point, distance, hit.cosine, indices.of_medium[from],
+                       MaskOf<V>(ray.alive() & hit.found)});
+    if constexpr (RayChanges<N>::kAny) {
+        const V per_cosine = inverse_or_zero(hit.cosine);
+        for (auto& c : changes.by) {
+            c.origin = c.origin + c.direction * distance;
+            c.origin = c.origin + ray.direction * (-dot(hit.normal, c.origin) * per_cosine);
+        }
+    }
+    MaskOf<V> refracted = !MaskOf<V>{};
+    if (from != into) {
+        const V ratio = indices.of_medium[from] / indices.of_medium[into];
+        const V cosine2 = 1 - ratio * ratio * (1 - hit.cosine2);
+        refracted = cosine2 >= 0;
+        const V cosine = sqrt(or_zero(cosine2)), bend = cosine - hit.cosine * ratio;
+        if constexpr (RayChanges<N>::kAny) {
+            const NormalChange<V> turned(s, asphere, sign, hit);
+            const V by_cosine = ratio * (ratio * hit.cosine * inverse_or_zero(cosine) - 1);
+            for (auto& c : changes.by) {
+                const Vec3<V> turn = turned(c.origin);
+                const V change = dot(c.direction, hit.normal) + dot(ray.direction, turn);
+                c.direction = c.direction * ratio + turn * bend + hit.normal * (change * by_cosine);
+            }
+        }
+        ray.direction = ray.direction * ratio + hit.normal * bend;
+    }
+    if (!all(hit.found & inside & refracted)) [[unlikely]] {
+        ray = block(ray, i, sign, hit.found, inside, refracted);
+        changes.keep(ray.alive());
+    }
+}
+
 }  // namespace lens_trace
 
 /// Traces a ray through the surfaces of a range, from anywhere on its line: backwards along it to
 /// the first surface is as good as forwards. It ends on the last surface, refracted. Returns the
-/// lanes that passed. N: float, f4, f8, d4, or Dual of one of the last three; the observer is called with a
-/// LensHit<ValueOf<N>>.
+/// lanes that passed. N: float, f4, f8, d4, or Dual of one of the last three; the observer is
+/// called with a LensHit<ValueOf<N>>.
 ///
 /// Refraction in vector form (Welford 1986, Aberrations of Optical Systems, ch. 4). Derivatives go
 /// from surface to surface as those of points, normals and directions (Igehy 1999, Tracing Ray
@@ -293,74 +375,39 @@ template <class N, class Observer = NoObserver>
 [[nodiscard]] MaskOf<N> trace_lens(const Lens& lens, const LensIndices<ValueOf<N>>& indices,
                                    Towards towards, SurfaceRange range, LensRay<N>& traced,
                                    Clip clip, const Observer& observe = {}) {
-    using namespace lens_trace;
-    using V = ValueOf<N>;
-    using S = ScalarOf<N>;
-    const bool to_film = towards == Towards::Film;
-    const S sign = to_film ? S(1) : S(-1);
-    const SurfaceFacts<S>* const facts = lens.surfaces<S>().data();
-    const int begin = to_film ? range.first : range.last;
     if (range.first > range.last) return traced.alive();
-    LensRay<V> ray = converted<V>(traced);
-    RayChanges<N> changes(traced);
-    if (ray.counted_from != begin)
-        ray.origin.z = ray.origin.z + S(lens.vertex_mm(ray.counted_from) - lens.vertex_mm(begin));
+    const bool to_film = towards == Towards::Film;
+    const int begin = to_film ? range.first : range.last;
+    lens_trace::OnTheWay<N> one(lens, traced, begin);
     for (int left = range.last - range.first, i = begin; left >= 0; --left, i += to_film ? 1 : -1) {
-        const SurfaceFacts<S>& s = facts[i];
-        ray.counted_from = i;
-        if (i != begin) ray.origin.z = ray.origin.z - (to_film ? facts[i - 1].gap_mm : -s.gap_mm);
-        const V to_foot = -dot(ray.origin, ray.direction);
-        const Vec3<V> foot = ray.origin + ray.direction * to_foot;
-        const Asphere<S>* const asphere =
-            s.shape == Shape::Asphere ? &lens.aspheres<S>()[s.asphere] : nullptr;
-        const Meeting<V> hit = s.shape == Shape::Sphere
-                                   ? meet_sphere<V>(s.curvature_y, sign, foot, ray.direction)
-                               : asphere ? meet_asphere<V>(s, *asphere, sign, foot, ray.direction)
-                                         : meet_quadric<V>(s, sign, foot, ray.direction);
-        const V distance = hit.distance + to_foot;
-        ray.origin = hit.point;
-        const V x = hit.point.x, y = hit.point.y;
-        const MaskOf<V> inside =
-            x * x + y * y <=
-            (clip == Clip::Yes ? s.semi_diameter2_mm2 : std::numeric_limits<S>::infinity());
-        const int from = to_film ? s.medium_before : s.medium_after;
-        const int into = to_film ? s.medium_after : s.medium_before;
-        observe(LensHit<V>{i, hit.point, distance, hit.cosine, indices.of_medium[from],
-                           MaskOf<V>(ray.alive() & hit.found)});
-        if constexpr (RayChanges<N>::kAny) {
-            const V per_cosine = inverse_or_zero(hit.cosine);
-            for (auto& c : changes.by) {
-                c.origin = c.origin + c.direction * distance;
-                c.origin = c.origin + ray.direction * (-dot(hit.normal, c.origin) * per_cosine);
-            }
-        }
-        MaskOf<V> refracted = !MaskOf<V>{};
-        if (from != into) {
-            const V ratio = indices.of_medium[from] / indices.of_medium[into];
-            const V cosine2 = 1 - ratio * ratio * (1 - hit.cosine2);
-            refracted = cosine2 >= 0;
-            const V cosine = sqrt(or_zero(cosine2)), bend = cosine - hit.cosine * ratio;
-            if constexpr (RayChanges<N>::kAny) {
-                const NormalChange<V> turned(s, asphere, sign, hit);
-                const V by_cosine = ratio * (ratio * hit.cosine * inverse_or_zero(cosine) - 1);
-                for (auto& c : changes.by) {
-                    const Vec3<V> turn = turned(c.origin);
-                    const V change = dot(c.direction, hit.normal) + dot(ray.direction, turn);
-                    c.direction =
-                        c.direction * ratio + turn * bend + hit.normal * (change * by_cosine);
-                }
-            }
-            ray.direction = ray.direction * ratio + hit.normal * bend;
-        }
-        if (!all(hit.found & inside & refracted)) [[unlikely]] {
-            ray = block(ray, i, sign, hit.found, inside, refracted);
-            changes.keep(ray.alive());
-            if (!any(ray.alive())) break;
-        }
+        lens_trace::cross_surface(lens, indices, to_film, begin, i, clip, observe, one);
+        if (!any(one.ray.alive())) [[unlikely]]
+            break;
     }
-    traced = converted<N>(ray);
-    changes.put_into(traced);
+    one.put_into(traced);
     return traced.alive();
+}
+
+/// Traces two rays side by side, as trace_lens() does each by itself. A ray is a chain in which all
+/// waits for what is before: the second one costs little. The observer gets 0 or 1 first.
+template <class N, class Observer = NoObserver>
+void trace_two(const Lens& lens, const std::array<LensIndices<ValueOf<N>>, 2>& indices,
+               Towards towards, SurfaceRange range, std::array<LensRay<N>, 2>& traced, Clip clip,
+               const Observer& observe = {}) {
+    if (range.first > range.last) return;
+    const bool to_film = towards == Towards::Film;
+    const int begin = to_film ? range.first : range.last;
+    lens_trace::OnTheWay<N> one(lens, traced[0], begin), other(lens, traced[1], begin);
+    const auto of_one = [&](const auto& hit) { observe(0, hit); };
+    const auto of_other = [&](const auto& hit) { observe(1, hit); };
+    for (int left = range.last - range.first, i = begin; left >= 0; --left, i += to_film ? 1 : -1) {
+        lens_trace::cross_surface(lens, indices[0], to_film, begin, i, clip, of_one, one);
+        lens_trace::cross_surface(lens, indices[1], to_film, begin, i, clip, of_other, other);
+        if (!any(one.ray.alive() | other.ray.alive())) [[unlikely]]
+            break;
+    }
+    one.put_into(traced[0]);
+    other.put_into(traced[1]);
 }
 
 }  // namespace petzval

@@ -209,10 +209,9 @@ bool LensCamera::Point<V>::together(const LensDraw<V>& rays, int a, int b) const
 template <class V>
 FilmLanding LensCamera::Point<V>::landing(const LensDraw<V>& rays,
                                           const LaneRequest& request) const {
-    const std::array drawn{at_.drawn(lane_of(rays.ray, request.lead))};
-    std::array<LensLanding, 1> out;
-    c_.optics_.land<V>(drawn, indices(), out);
-    return c_.in_pixels(out[0], at_.frame_px);
+    const std::array landed = c_.optics_.template land<V, 1>(
+        std::array{at_.drawn(lane_of(rays.ray, request.lead))}, std::array{indices()});
+    return c_.in_pixels(landed[0], at_.frame_px);
 }
 
 /// Film point with the ray of the lane that leads, and none but that.
@@ -348,27 +347,29 @@ void LensCamera::sample_all(std::span<const FilmPoint> points, std::span<const B
     each.template operator()<LeadPoint>(landings);
 }
 
-// Two film points at a time, so that eight lanes are full.
+// Four film points at a time, so that two groups of eight lanes are full.
 void LensCamera::land(size_t count, std::span<const Bands> bands, const LeadPoints& at,
                       const LeadRays& rays,
                       std::array<LensLanding, kMostFilmPoints>& landings) const {
-    std::array<size_t, kMostFilmPoints + 1> passed;
+    std::array<size_t, kMostFilmPoints + 3> passed;
     size_t n = 0;
     for (size_t i = 0; i < count; ++i)
         if (rays.passed[static_cast<int>(i)]) passed[n++] = i;
     if (n == 0) return;
-    passed[n] = passed[n - 1];
-    for (size_t k = 0; k < n; k += 2) {
-        const size_t a = passed[k], b = passed[k + 1];
+    std::fill_n(passed.begin() + static_cast<ptrdiff_t>(n), 3, passed[0]);
+    for (size_t k = 0; k < n; k += 4) {
         const auto drawn = [&](size_t i) {
             const auto lane = static_cast<int>(i);
             return Place{at.film_mm[i], rays.stop_mm[lane], bands[i], false, V2f(1.f)}.drawn(
                 lane_of(rays.ray, lane));
         };
-        const std::array both{drawn(a), drawn(b)};
-        std::array<LensLanding, 2> out;
-        optics_.land<f8>(both, in_.lens->indices(joined(bands[a].nm, bands[b].nm)), out);
-        landings[a] = out[0], landings[b] = out[1];
+        const auto indices = [&](size_t a, size_t b) {
+            return in_.lens->indices(joined(bands[a].nm, bands[b].nm));
+        };
+        const size_t a = passed[k], b = passed[k + 1], c = passed[k + 2], d = passed[k + 3];
+        const auto landed = optics_.land<f8, 2>({drawn(a), drawn(b), drawn(c), drawn(d)},
+                                                {indices(a, b), indices(c, d)});
+        for (size_t m = 0; m < 4 && k + m < n; ++m) landings[passed[k + m]] = landed[m];
     }
 }
 

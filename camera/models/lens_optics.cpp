@@ -89,68 +89,119 @@ void LensOptics::trace(const LeadPoints& at, const LensIndices<f8>& indices, Lea
                                   Clip::Yes);
 }
 
-// The ray goes back through the lens in all lanes. What rounding and the solver leave shows in the
-// lane that it was drawn for, whose way is known, and is taken off all of them.
-template <class V>
-void LensOptics::land(std::span<const DrawnRay<ScalarOf<V>>, kRaysOf<V>> drawn,
-                      const LensIndices<V>& indices, std::span<LensLanding, kRaysOf<V>> out) const {
-    using S = ScalarOf<V>;
-    const auto each = [&](const auto& value) {
-        V all;
-        for (int i = 0; i < kLanes<V>; ++i) all[i] = static_cast<S>(value(drawn[size_t(i / 4)]));
-        return all;
-    };
-    // The same number of the lane that leads, for all four.
-    const auto of_lead = [&](const V& a) {
-        V all;
-        for (int i = 0; i < kLanes<V>; ++i) all[i] = a[i / 4 * 4 + drawn[size_t(i / 4)].lead];
-        return all;
-    };
-    using Drawn = DrawnRay<S>;
-    LensRay<V> ray;
-    ray.counted_from = drawn[0].counted_from;
-    ray.origin = {each([](const Drawn& r) { return r.origin.x; }),
-                  each([](const Drawn& r) { return r.origin.y; }),
-                  each([](const Drawn& r) { return r.origin.z; })};
-    ray.direction = {each([](const Drawn& r) { return -r.direction.x; }),
-                     each([](const Drawn& r) { return -r.direction.y; }),
-                     each([](const Drawn& r) { return -r.direction.z; })};
-    for (LensLanding& one : out) one.transmitted = splat(1.f);
-    const auto lose = [&](const LensHit<V>& hit) {
-        if (coating_ == Coating::Ideal) return;
-        for (size_t k = 0; k < out.size(); ++k)
-            out[k].transmitted *= surface_transmission(*lens_, coating_, indices, hit,
-                                                       Towards::Film, drawn[k].nm, int(4 * k));
-    };
-    const int stop = lens_->stop();
-    static_cast<void>(
-        trace_lens<V>(*lens_, indices, Towards::Film, {0, stop - 1}, ray, Clip::Yes, lose));
-    static_cast<void>(trace_lens<V>(*lens_, indices, Towards::Film, {stop, stop}, ray, Clip::No));
-    const PlanePoint<V> at_stop(
-        ray.origin.x + (each([](const Drawn& r) { return r.stop_mm.x; }) - of_lead(ray.origin.x)),
-        ray.origin.y + (each([](const Drawn& r) { return r.stop_mm.y; }) - of_lead(ray.origin.y)));
-    const MaskOf<V> arrived = trace_lens<V>(*lens_, indices, Towards::Film,
-                                            {stop + 1, lens_->last()}, ray, Clip::Yes, lose);
-    const V to_film =
-        (S(film_mm_ - lens_->vertex_mm(ray.counted_from)) - ray.origin.z) / ray.direction.z;
-    const V film_x = ray.origin.x + to_film * ray.direction.x;
-    const V film_y = ray.origin.y + to_film * ray.direction.y;
-    const V shift_x = film_x - of_lead(film_x), shift_y = film_y - of_lead(film_y);
-    for (int i = 0; i < kLanes<V>; ++i) {
-        LensLanding& one = out[size_t(i / 4)];
-        const V2f shift(static_cast<float>(shift_x[i]), static_cast<float>(shift_y[i]));
-        const float open = arrived[i] ? transmits(at_stop[i]) : 0.f;
-        one.shift_x_mm[i % 4] = shift.x, one.shift_y_mm[i % 4] = shift.y;
-        one.open[i % 4] = open;
-        one.drawn[i % 4] = stop_at(drawn[size_t(i / 4)].film_mm + shift).density(at_stop[i], open);
-    }
+namespace {
+
+// Traces one group of rays, or two side by side. The observer gets the group's index first.
+template <class V, size_t groups, class Observer = NoObserver>
+void trace_groups(const Lens& lens, const std::array<LensIndices<V>, groups>& indices,
+                  SurfaceRange range, std::array<LensRay<V>, groups>& rays, Clip clip,
+                  const Observer& observe = {}) {
+    if constexpr (groups == 2)
+        trace_two<V>(lens, indices, Towards::Film, range, rays, clip, observe);
+    else
+        static_cast<void>(trace_lens<V>(lens, indices[0], Towards::Film, range, rays[0], clip,
+                                        [&](const auto& hit) { observe(0, hit); }));
 }
-template void LensOptics::land<f4>(std::span<const DrawnRay<float>, 1>, const LensIndices<f4>&,
-                                   std::span<LensLanding, 1>) const;
-template void LensOptics::land<f8>(std::span<const DrawnRay<float>, 2>, const LensIndices<f8>&,
-                                   std::span<LensLanding, 2>) const;
-template void LensOptics::land<d4>(std::span<const DrawnRay<double>, 1>, const LensIndices<d4>&,
-                                   std::span<LensLanding, 1>) const;
+
+// Four lanes for each of some rays of the scene.
+template <class V>
+class RayGroup {
+    using S = ScalarOf<V>;
+    using Drawn = DrawnRay<S>;
+
+  public:
+    explicit RayGroup(const Drawn* drawn) : drawn_(drawn) {}
+
+    [[nodiscard]] const Drawn& drawn(int lane) const { return drawn_[lane / 4]; }
+    /// A number of each ray, for all its lanes.
+    template <class Value>
+    [[nodiscard]] V each(const Value& value) const {
+        V all;
+        for (int i = 0; i < kLanes<V>; ++i) all[i] = static_cast<S>(value(drawn(i)));
+        return all;
+    }
+    /// That of the lane that leads, for all lanes of its ray.
+    [[nodiscard]] V of_lead(const V& a) const {
+        V all;
+        for (int i = 0; i < kLanes<V>; ++i) all[i] = a[i / 4 * 4 + drawn(i).lead];
+        return all;
+    }
+    /// The rays, back towards the lens.
+    [[nodiscard]] LensRay<V> rays() const {
+        LensRay<V> ray;
+        ray.counted_from = drawn_[0].counted_from;
+        ray.origin = {each([](const Drawn& r) { return r.origin.x; }),
+                      each([](const Drawn& r) { return r.origin.y; }),
+                      each([](const Drawn& r) { return r.origin.z; })};
+        ray.direction = {each([](const Drawn& r) { return -r.direction.x; }),
+                         each([](const Drawn& r) { return -r.direction.y; }),
+                         each([](const Drawn& r) { return -r.direction.z; })};
+        return ray;
+    }
+    /// Where they meet the stop. What rounding and the solver leave shows in the lane that leads,
+    /// whose way is known, and is taken off all of them.
+    [[nodiscard]] PlanePoint<V> at_stop(const LensRay<V>& ray) const {
+        const V x = ray.origin.x, y = ray.origin.y;
+        return {x + (each([](const Drawn& r) { return r.stop_mm.x; }) - of_lead(x)),
+                y + (each([](const Drawn& r) { return r.stop_mm.y; }) - of_lead(y))};
+    }
+
+  private:
+    const Drawn* drawn_;
+};
+
+}  // namespace
+
+template <class V, size_t groups>
+std::array<LensLanding, kRaysAtOnce<V, groups>> LensOptics::land(
+    const std::array<DrawnRay<ScalarOf<V>>, kRaysAtOnce<V, groups>>& drawn,
+    const std::array<LensIndices<V>, groups>& indices) const {
+    using S = ScalarOf<V>;
+    constexpr size_t kEach = kLanes<V> / 4;
+    std::array<LensLanding, kRaysAtOnce<V, groups>> out;
+    for (LensLanding& one : out) one.transmitted = splat(1.f);
+    const auto lose = [&](size_t group, const LensHit<V>& hit) {
+        if (coating_ == Coating::Ideal) return;
+        for (size_t k = 0; k < kEach; ++k)
+            out[group * kEach + k].transmitted *=
+                surface_transmission(*lens_, coating_, indices[group], hit, Towards::Film,
+                                     drawn[group * kEach + k].nm, int(4 * k));
+    };
+    const auto group_at = [&](size_t k) { return RayGroup<V>(&drawn[k * kEach]); };
+    std::array<LensRay<V>, groups> rays;
+    for (size_t k = 0; k < groups; ++k) rays[k] = group_at(k).rays();
+    const int stop = lens_->stop();
+    trace_groups<V>(*lens_, indices, {0, stop - 1}, rays, Clip::Yes, lose);
+    trace_groups<V>(*lens_, indices, {stop, stop}, rays, Clip::No);
+    const std::array<LensRay<V>, groups> at_stop = rays;
+    trace_groups<V>(*lens_, indices, {stop + 1, lens_->last()}, rays, Clip::Yes, lose);
+    for (size_t k = 0; k < groups; ++k) {
+        const RayGroup<V> group = group_at(k);
+        const LensRay<V>& ray = rays[k];
+        const PlanePoint<V> stop_mm = group.at_stop(at_stop[k]);
+        const MaskOf<V> arrived = ray.alive();
+        const V to_film =
+            (S(film_mm_ - lens_->vertex_mm(ray.counted_from)) - ray.origin.z) / ray.direction.z;
+        const V film_x = ray.origin.x + to_film * ray.direction.x;
+        const V film_y = ray.origin.y + to_film * ray.direction.y;
+        const V shift_x = film_x - group.of_lead(film_x), shift_y = film_y - group.of_lead(film_y);
+        for (int i = 0; i < kLanes<V>; ++i) {
+            LensLanding& one = out[k * kEach + size_t(i / 4)];
+            const V2f shift(static_cast<float>(shift_x[i]), static_cast<float>(shift_y[i]));
+            const float open = arrived[i] ? transmits(stop_mm[i]) : 0.f;
+            one.shift_x_mm[i % 4] = shift.x, one.shift_y_mm[i % 4] = shift.y;
+            one.open[i % 4] = open;
+            one.drawn[i % 4] = stop_at(group.drawn(i).film_mm + shift).density(stop_mm[i], open);
+        }
+    }
+    return out;
+}
+template std::array<LensLanding, 1> LensOptics::land(const std::array<DrawnRay<float>, 1>&,
+                                                     const std::array<LensIndices<f4>, 1>&) const;
+template std::array<LensLanding, 1> LensOptics::land(const std::array<DrawnRay<double>, 1>&,
+                                                     const std::array<LensIndices<d4>, 1>&) const;
+template std::array<LensLanding, 4> LensOptics::land(const std::array<DrawnRay<float>, 4>&,
+                                                     const std::array<LensIndices<f8>, 2>&) const;
 
 template <class V>
 f4 LensOptics::transmitted(V2f film_mm, V l, V m, const LensIndices<V>& indices, f4 nm) const {

@@ -58,9 +58,9 @@ struct LensLanding {
     f4 open, drawn, transmitted;  ///< as in FilmLanding
 };
 
-/// Rays of the scene that go through the lens at once.
-template <class V>
-inline constexpr size_t kRaysOf = NumberTraits<V>::lanes / 4;
+/// Rays of the scene that go through the lens at once, four lanes for each.
+template <class V, size_t groups>
+inline constexpr size_t kRaysAtOnce = groups* NumberTraits<V>::lanes / 4;
 
 class LensOptics {
   public:
@@ -85,10 +85,12 @@ class LensOptics {
     /// Traces aimed rays to the scene; the rest is filled in.
     void trace(const LeadPoints&, const LensIndices<f8>&, LeadRays&) const;
 
-    /// Landings of rays of the scene, four lanes of V for each. V: f4, f8 or d4.
-    template <class V>
-    void land(std::span<const DrawnRay<ScalarOf<V>>, kRaysOf<V>>, const LensIndices<V>&,
-              std::span<LensLanding, kRaysOf<V>> out) const;
+    /// Landings of rays of the scene, in one or two groups of lanes with their indices. V: f4, f8
+    /// or d4.
+    template <class V, size_t groups>
+    [[nodiscard]] std::array<LensLanding, kRaysAtOnce<V, groups>> land(
+        const std::array<DrawnRay<ScalarOf<V>>, kRaysAtOnce<V, groups>>&,
+        const std::array<LensIndices<V>, groups>&) const;
 
     /// Share of the light that the surfaces do not reflect on the way from a film point with
     /// direction cosines l and m, lane by lane; nm in air. V: f4 or d4.

@@ -141,17 +141,17 @@ FoundRays RayAimer::newton(const PlanePoint<f8>& film_mm, const PlanePoint<f8>& 
 RayAimer::Node RayAimer::settled(V2f film_point_mm, V2f stop_point_mm, const Node& guess,
                                  const LensIndices<f4>& indices) const {
     const PlanePoint<f4> film_mm(film_point_mm), stop_mm(stop_point_mm);
-    Node at = guess;
+    f4 l = guess.l(), m = guess.m();
     m4 inside{}, close{};
     for (int i = 0; i < kMostSteps && !all(close); ++i) {
-        const AimedRay<f4> c = cross<f4>(film_mm, at.l, at.m, indices);
-        inside = c.ray.alive() & (at.l * at.l + at.m * at.m < 1.f);
+        const AimedRay<f4> c = cross<f4>(film_mm, l, m, indices);
+        inside = c.ray.alive() & (l * l + m * m < 1.f);
         const Step<f4> by = step_towards(stop_mm, c);
         close = ~inside | (by.left2_mm2 < sqr(kToleranceBeforeStep * stop_radius_mm_)) |
                 (by.l * by.l + by.m * by.m < sqr(kLeastStep));
-        at = {inside ? at.l + by.l : guess.l, inside ? at.m + by.m : guess.m};
+        l = inside ? l + by.l : guess.l(), m = inside ? m + by.m : guess.m();
     }
-    return {inside & close ? at.l : guess.l, inside & close ? at.m : guess.m};
+    return {inside & close ? l : guess.l(), inside & close ? m : guess.m()};
 }
 
 // Solves the table outwards from the middle of the stop. Each ray is guessed from its neighbour
@@ -178,10 +178,8 @@ void RayAimer::solve_table() {
                 const Node inner = table_[place(column, row, inner_i, inner_j)];
                 const Node before = table_[place(before_c, before_r, i, j)];
                 const Node other = table_[place(before_c, before_r, inner_i, inner_j)];
-                const bool middle = i == mid_i && j == mid_j;
-                const Node guess =
-                    middle ? before
-                           : Node{inner.l + before.l - other.l, inner.m + before.m - other.m};
+                Node guess = before;
+                if (i != mid_i || j != mid_j) guess.lm += inner.lm - other.lm;
                 table_[place(column, row, i, j)] =
                     settled({columns_.at(column), rows_.at(row)}, {across_.at(i), up_.at(j)}, guess,
                             indices);
@@ -195,24 +193,21 @@ V2f RayAimer::between(V2f film_point_mm, V2f stop_point_mm, float nm) const {
     };
     const Nodes column = along(columns_, film_point_mm.x), row = along(rows_, film_point_mm.y);
     const Nodes across = along(across_, stop_point_mm.x), up = along(up_, stop_point_mm.y);
-    Node sum;
+    f8 lm{};
     for (int a = 0; a < column.count; ++a)
         for (int b = 0; b < row.count; ++b)
             for (int c = 0; c < 4; ++c) {
                 const Node* node =
                     &table_[place(column.first + a, row.first + b, across.first + c, up.first)];
-                Node line;
-                for (int d = 0; d < 4; ++d) {
-                    line.l += node[d].l * up.weight[d];
-                    line.m += node[d].m * up.weight[d];
-                }
-                const float weight = column.weight[a] * row.weight[b] * across.weight[c];
-                sum.l += line.l * weight;
-                sum.m += line.m * weight;
+                const f8 line = (node[0].lm * up.weight[0] + node[1].lm * up.weight[1]) +
+                                (node[2].lm * up.weight[2] + node[3].lm * up.weight[3]);
+                lm += line * (column.weight[a] * row.weight[b] * across.weight[c]);
             }
     const f4 weights =
         cubic(3 * (1 / kNodes_nm[0] - 1 / nm) / (1 / kNodes_nm[0] - 1 / kNodes_nm[3]));
-    return {hsum(sum.l * weights), hsum(sum.m * weights)};
+    const f8 weighted = lm * joined(weights, weights);
+    return {(weighted[0] + weighted[1]) + (weighted[2] + weighted[3]),
+            (weighted[4] + weighted[5]) + (weighted[6] + weighted[7])};
 }
 
 // Direction cosines from the table. Symmetry: turn and mirror into the part that it covers, and

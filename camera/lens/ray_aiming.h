@@ -85,9 +85,13 @@ class RayAimer {
         int size;
         [[nodiscard]] float at(int i) const;
     };
-    /// Direction cosines at kNodes_nm.
+    /// Direction cosines at kNodes_nm: l in the first four lanes, m in the others.
     struct Node {
-        f4 l{}, m{};
+        f8 lm{};
+        Node() = default;
+        Node(f4 l, f4 m) : lm(joined(l, m)) {}
+        [[nodiscard]] f4 l() const { return __builtin_shufflevector(lm, lm, 0, 1, 2, 3); }
+        [[nodiscard]] f4 m() const { return __builtin_shufflevector(lm, lm, 4, 5, 6, 7); }
     };
     [[nodiscard]] FoundRays newton(const PlanePoint<f8>& film_mm, const PlanePoint<f8>& stop_mm,
                                    const PlanePoint<f8>& cosines, const LensIndices<f8>&) const;

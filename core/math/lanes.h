@@ -2,6 +2,7 @@
 // Four floats side by side, and a mask over them: what a sample carries through the scene.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -39,6 +40,17 @@ typedef uint32_t u32x8 __attribute__((vector_size(32)));
 }
 [[nodiscard]] inline float hsum(f4 a) {
     return (a[0] + a[1]) + (a[2] + a[3]);
+}
+/// Lane k of each as number k, and the other way round.
+[[nodiscard]] inline std::array<f4, 4> transposed(const std::array<f4, 4>& a) {
+    const f4 low = __builtin_shufflevector(a[0], a[1], 0, 4, 1, 5),
+             low_too = __builtin_shufflevector(a[2], a[3], 0, 4, 1, 5),
+             high = __builtin_shufflevector(a[0], a[1], 2, 6, 3, 7),
+             high_too = __builtin_shufflevector(a[2], a[3], 2, 6, 3, 7);
+    return {__builtin_shufflevector(low, low_too, 0, 1, 4, 5),
+            __builtin_shufflevector(low, low_too, 2, 3, 6, 7),
+            __builtin_shufflevector(high, high_too, 0, 1, 4, 5),
+            __builtin_shufflevector(high, high_too, 2, 3, 6, 7)};
 }
 /// Four lanes and four more.
 [[nodiscard]] inline f8 joined(f4 low, f4 high) {

@@ -2,6 +2,7 @@
 #include "core/spectrum/observer.h"
 
 #include <algorithm>
+#include <array>
 
 #include "core/spectrum/colour.h"
 
@@ -109,18 +110,16 @@ Bands Observer::at(f4 nm, f4 pdf, m4 on) const {
     bands.spectral = true;
     while (bands.lead < 3 && !on[bands.lead]) ++bands.lead;
     const auto lanes = static_cast<float>(lane_count(on));
+    std::array<f4, 4> basis{}, out{};
     for (int i = 0; i < 4; ++i) {
         if (!on[i]) continue;
         const Row row = at(nm[i]);
-        const f4 out = row.to_rgb / (pdf[i] * lanes);
-        bands.red[i] = row.basis_white[0];
-        bands.green[i] = row.basis_white[1];
-        bands.blue[i] = row.basis_white[2];
-        bands.white[i] = row.basis_white[3];
-        bands.to_r[i] = out[0];
-        bands.to_g[i] = out[1];
-        bands.to_b[i] = out[2];
+        basis[size_t(i)] = row.basis_white;
+        out[size_t(i)] = row.to_rgb / (pdf[i] * lanes);
     }
+    basis = transposed(basis), out = transposed(out);
+    bands.red = basis[0], bands.green = basis[1], bands.blue = basis[2], bands.white = basis[3];
+    bands.to_r = out[0], bands.to_g = out[1], bands.to_b = out[2];
     return bands;
 }
 

@@ -100,7 +100,8 @@ class Camera {
     /// nothing through, one that all bands share, or up to four. Thread-safe.
     [[nodiscard]] virtual CameraSample sample(const FilmPoint&, const Bands&) const = 0;
     /// What sample() gives for each of up to kMostFilmPoints film points, to the bit, which a
-    /// camera may find faster for all at once. The bands are all spectral or none of them is.
+    /// camera may find faster for all at once. All or none of the bands are spectral, and of the
+    /// points have a pixel filter.
     virtual void sample_all(std::span<const FilmPoint> points, std::span<const Bands> bands,
                             std::span<CameraSample> out) const {
         for (size_t i = 0; i < points.size(); ++i) out[i] = sample(points[i], bands[i]);

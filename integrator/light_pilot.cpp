@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrator/light_pilot.h"
 
-#include "core/film/film.h"
 #include "integrator/pilot_pixels.h"
 #include "integrator/render.h"
 
@@ -25,11 +24,12 @@ LightChoice taught_by_pilot(const LightChoice& choice, const Scene& scene, const
     PathStats stats;
     stats.light_records = &records;
     const auto pixels = pilot_pixels(frame_px, kPaths, kSeed);
+    SampleBatch batch(tracer, camera, job, frame_px, nullptr, stats);
     for (uint32_t i = 0; i < kPaths; ++i) {
         const auto [x, y] = pixels[i % pixels.size()];
-        Film film(frame_px, {x, y, x + 1, y + 1}, {});
-        render_samples(tracer, camera, job, {x, y}, i, i + 1, film, stats);
+        batch.add({x, y, i});
     }
+    batch.render();
     return choice.taught(records);
 }
 

@@ -26,10 +26,15 @@ namespace petzval {
 template <class Tracer>
 class SampleBatch {
   public:
-    /// All must outlive it.
-    SampleBatch(const Tracer& tracer, const Camera& camera, const RenderJob& job, Film& film,
-                PathStats& stats)
-        : tracer_(tracer), camera_(camera), job_(job), film_(film), stats_(stats) {}
+    /// All must outlive it. film: nullptr where only the paths' counts and records are wanted.
+    SampleBatch(const Tracer& tracer, const Camera& camera, const RenderJob& job, V2i frame_px,
+                Film* film, PathStats& stats)
+        : tracer_(tracer),
+          camera_(camera),
+          job_(job),
+          frame_px_(frame_px),
+          film_(film),
+          stats_(stats) {}
 
     void add(SampleId id) {
         ids_[size_++] = id;
@@ -48,10 +53,11 @@ class SampleBatch {
     }
 
   private:
-    /// One in sixteen, spread over pixels and samples.
-    [[nodiscard]] static bool is_timed(SampleId id) {
-        const uint32_t batch = id.index / kMostFilmPoints;
-        return (batch + static_cast<uint32_t>(id.x + 3 * id.y)) % 16 == 0;
+    /// One batch in sixteen, spread over pixels and samples.
+    [[nodiscard]] static bool is_timed(SampleId first) {
+        const uint32_t pixel =
+            static_cast<uint32_t>(first.x) + 0x9e3779b9u * static_cast<uint32_t>(first.y);
+        return hash32(hash32(pixel), first.index) % 16 == 0;
     }
     void find_camera_rays();
     void trace(size_t i);
@@ -59,7 +65,8 @@ class SampleBatch {
     const Tracer& tracer_;
     const Camera& camera_;
     const RenderJob& job_;
-    Film& film_;
+    V2i frame_px_;
+    Film* film_;
     PathStats& stats_;
     size_t size_ = 0;
     std::array<SampleId, kMostFilmPoints> ids_;
@@ -71,7 +78,7 @@ class SampleBatch {
 template <class Tracer>
 void SampleBatch<Tracer>::find_camera_rays() {
     const SectionTimer timer(stats_, TimedSection::Camera);
-    const V2f size(film_.full_size());
+    const V2f size(frame_px_);
     for (size_t i = 0; i < size_; ++i) {
         const SampleId id = ids_[i];
         const uint32_t replicate = id.index % job_.replicates;
@@ -83,7 +90,6 @@ void SampleBatch<Tracer>::find_camera_rays() {
         const V2f offset = job_.filter.sample(sampler.get2(Dim::Film));
         const V2f at = V2f(id.x + 0.5f, id.y + 0.5f) + offset;
         points_[i] = {at / size, sampler, {&job_.filter, offset, size}};
-        seen_[i] = {};
     }
     camera_.sample_all({points_.data(), size_}, {bands_.data(), size_}, {seen_.data(), size_});
 }
@@ -97,8 +103,8 @@ void SampleBatch<Tracer>::trace(size_t i) {
     stats_.lens_lanes += seen.lanes;
     FilmSample sample;
     f4 sum{};
-    float behind = 0.f;                   // weight of the rays that left the scene, over all lanes
-    bool layers = !film_.aovs().empty();  // layers are still to be filled in
+    float behind = 0.f;  // weight of the rays that left the scene, over all lanes
+    bool layers = film_ && !film_->aovs().empty();  // layers are still to be filled in
     for (const CameraPath& path : seen) {
         FilmSample other;
         FilmSample& of_path = path.fills_layers ? sample : other;
@@ -110,23 +116,24 @@ void SampleBatch<Tracer>::trace(size_t i) {
         layers = false;
         behind += hsum(zero_off(path.lanes, path.weight)) * (1.f - sample.alpha);
     }
+    if (!film_) return;
     // Light that a lens keeps from the film is black, not transparent.
     sample.alpha = 1.f - behind / (seen.exposure * static_cast<float>(lane_count(bands.on)));
     sample.colour = to_rgb(sum, bands);
     sample.aov[static_cast<size_t>(Aov::Cost)] =
         V3f(static_cast<float>(stats_.vertices - vertices_before), 0, 0);
-    if (film_.spectral())
-        film_.add(id.x, id.y, id.index, sample,
-                  {id.index % job_.replicates, sum, job_.observer.to_xyz(sum, bands)}, bands);
+    if (film_->spectral())
+        film_->add(id.x, id.y, id.index, sample,
+                   {id.index % job_.replicates, sum, job_.observer.to_xyz(sum, bands)}, bands);
     else
-        film_.add(id.x, id.y, id.index, sample);
+        film_->add(id.x, id.y, id.index, sample);
 }
 
 /// Renders the samples [first, end) of one pixel: each a pure function of job, pixel and index.
 template <class Tracer>
 void render_samples(const Tracer& tracer, const Camera& camera, const RenderJob& job, V2i pixel,
                     uint32_t first, uint32_t end, Film& film, PathStats& stats) {
-    SampleBatch<Tracer> batch(tracer, camera, job, film, stats);
+    SampleBatch<Tracer> batch(tracer, camera, job, film.full_size(), &film, stats);
     for (uint32_t i = first; i < end; ++i) batch.add({pixel.x, pixel.y, i});
     batch.render();
 }
@@ -171,7 +178,7 @@ RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob&
             PathStats& stats = workers[static_cast<size_t>(worker)].stats;
             const Rect& tile = tiles[static_cast<size_t>(task)];
             const uint32_t first = job.first_sample + done;
-            SampleBatch<Tracer> batch(tracer, camera, job, film, stats);
+            SampleBatch<Tracer> batch(tracer, camera, job, film.full_size(), &film, stats);
             for (int y = tile.y0; y < tile.y1; ++y)
                 for (int x = tile.x0; x < tile.x1; ++x)
                     for (uint32_t i = first; i < first + pass; ++i) batch.add({x, y, i});

@@ -31,7 +31,7 @@ struct RenderJob {
     int tile_size_px = 16;
     Observer observer;        ///< draws what the lanes carry
     uint32_t replicates = 1;  ///< kReplicates for a film with bins
-    bool timing = false;      ///< measure where the time goes, on one sample of sixteen
+    bool timing = false;      ///< measure where the time goes, on a sixteenth of the samples
 };
 
 /// Progress of a running render, and the flag that stops it. Any thread may use it.

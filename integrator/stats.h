@@ -21,7 +21,7 @@ struct PathStats {
     uint64_t vertices = 0;  ///< hits that were shaded
     uint64_t tiles = 0;     ///< tiles that this worker rendered
     LensLosses<uint64_t> lens_lanes;
-    bool timing = false;  ///< the current sample is one of those that are timed
+    bool timing = false;  ///< the samples under way are among those that are timed
     uint64_t timed_samples = 0, samples = 0;
     std::array<uint64_t, static_cast<size_t>(TimedSection::Count)> ticks{};
     std::vector<LightRecord>* light_records = nullptr;  ///< where a pilot wants them
@@ -40,7 +40,7 @@ struct PathStats {
     }
 };
 
-/// Adds the time of its scope to a section, where the current sample is timed.
+/// Adds the time of its scope to a section, where the samples under way are timed.
 class SectionTimer {
   public:
     SectionTimer(PathStats& stats, TimedSection section)

@@ -152,6 +152,7 @@ int chart_command(ChartOptions& o, Interrupt& interrupt) {
     const auto notice = [quiet = o.quiet](const std::string& text) {
         if (!quiet) print_notice(text);
     };
+    load_image_codec();  // before minutes of work: pictures will be written
     interrupt.arm();
     const auto finished = [&](const MeasuredCase& of) {
         if (o.quiet) return;

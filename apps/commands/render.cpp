@@ -193,6 +193,7 @@ int render_command(RenderOptions& o, Session& session) {
     Progress progress(o.quiet ? ProgressStyle::None : o.progress, session.console,
                       session.interrupt.monitor(), goal_of(o.job, frame.crop));
     RenderSetup setup = set_up(o, frame.tolerance, executor, notice, progress);
+    load_image_codec();  // before hours of work: a picture will be written
     choose_exposure(o, setup, executor, notice);
     o.path.visible_background = setup.view.visible_background;
     o.job.observer = setup.view.observer;

@@ -20,19 +20,25 @@ float chord(float reach, float y) {
     return std::sqrt(std::max(0.f, reach * reach - y * y));
 }
 
-// Half widths of what passes along the edges of the rows, rounded up.
+// Half widths of what passes along the edges of the rows, rounded up; eight edges at a time.
 Edges open_along_edges(const StopBoundsByHeight::Passes& passes, float height, float reach) {
     Edges out{};
-    for (int j = 0; j <= kRows; ++j) {
-        const float y = reach * (2.f * static_cast<float>(j) / kRows - 1.f);
-        if (!passes(height, V2f(0.f, y))) continue;
-        float open = 0.f, closed = chord(reach, y);
-        if (passes(height, V2f(closed, y))) open = closed;
-        for (int i = 0; i < kHalvings && open < closed; ++i) {
-            const float middle = 0.5f * (open + closed);
-            (passes(height, V2f(middle, y)) ? open : closed) = middle;
+    for (int first = 0; first <= kRows; first += 8) {
+        f8 y, closed;
+        for (int k = 0; k < 8; ++k) {
+            y[k] = reach * (2.f * static_cast<float>(std::min(first + k, kRows)) / kRows - 1.f);
+            closed[k] = chord(reach, y[k]);
         }
-        out[static_cast<size_t>(j)] = std::max(closed, kMargin * reach);
+        const m8 any_open = passes(height, f8{}, y);
+        f8 open = passes(height, closed, y) ? closed : f8{};
+        for (int i = 0; i < kHalvings; ++i) {
+            const f8 middle = 0.5f * (open + closed);
+            const m8 on = passes(height, middle, y);
+            open = on ? middle : open, closed = on ? closed : middle;
+        }
+        for (int k = 0; k < 8 && first + k <= kRows; ++k)
+            if (any_open[k])
+                out[static_cast<size_t>(first + k)] = std::max(closed[k], kMargin * reach);
     }
     return out;
 }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/math/lanes.h"
 #include "core/math/math.h"
 
 namespace petzval {
@@ -35,9 +36,9 @@ class StopBounds {
 /// Bounds by height on the film, for a lens that is symmetric about its axis.
 class StopBoundsByHeight {
   public:
-    /// Whether the rays from a film point at this height (mm, on the +y axis) through this point of
-    /// the stop pass all rims.
-    using Passes = std::function<bool(float height_mm, V2f stop_point_mm)>;
+    /// Whether the rays from a film point at this height (mm, on the +y axis) through points of the
+    /// stop pass all rims, lane by lane.
+    using Passes = std::function<m8(float height_mm, f8 stop_x_mm, f8 stop_y_mm)>;
 
     /// No bounds at any height.
     StopBoundsByHeight() = default;

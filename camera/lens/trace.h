@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ray tracing through a lens, in either direction, four wavelengths at once.
+// Ray tracing through a lens, in either direction, four or eight rays at once.
 #pragma once
 
 #include <array>

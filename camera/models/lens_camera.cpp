@@ -58,9 +58,9 @@ LensLosses<uint32_t> losses(m4 on, const LensDraw<V>& drawn, MaskOf<V> clear) {
 
 // One lane of a ray.
 template <class V>
-DrawnRay<ScalarOf<V>> lane_of(const LensRay<V>& ray, int i) {
+SceneRay<ScalarOf<V>> lane_of(const LensRay<V>& ray, int i) {
     const auto at = [i](const Vec3<V>& a) { return Vec3<ScalarOf<V>>{a.x[i], a.y[i], a.z[i]}; };
-    return {at(ray.origin), at(ray.direction), ray.counted_from, 0, V2f(0.f), V2f(0.f), f4{}};
+    return {at(ray.origin), at(ray.direction), ray.counted_from};
 }
 
 }  // namespace
@@ -79,13 +79,13 @@ LensCamera::LensCamera(LensCameraInput in)
       exact_line_d_(in_.lens->exact_indices(broadcast<d4>(kLineD_nm))) {}
 
 template <class S>
-S LensCamera::behind_pupil_mm(const DrawnRay<S>& ray) const {
+S LensCamera::behind_pupil_mm(const SceneRay<S>& ray) const {
     return static_cast<S>(ray.origin.z + in_.lens->vertex_mm(ray.counted_from) -
                           in_.entrance_pupil_mm);
 }
 
 template <class S>
-Ray LensCamera::in_world(const DrawnRay<S>& ray) const {
+Ray LensCamera::in_world(const SceneRay<S>& ray) const {
     const auto point_m =
         V3f(static_cast<float>(ray.origin.x * S(1e-3)), static_cast<float>(ray.origin.y * S(1e-3)),
             static_cast<float>(behind_pupil_mm(ray) * S(1e-3)));
@@ -195,12 +195,12 @@ LensDraw<V> LensCamera::Point<V>::rays(const LaneRequest& request) const {
 template <class V>
 bool LensCamera::Point<V>::together(const LensDraw<V>& rays, int a, int b) const {
     const float focus_mm = std::fmin(c_.in_.focus_m, kFarthest_m) * 1e3f;
-    const auto on_plane = [&](const DrawnRay<S>& ray) {
+    const auto on_plane = [&](const SceneRay<S>& ray) {
         const S t = (S(focus_mm) + c_.behind_pupil_mm(ray)) / -ray.direction.z;
         return V2f(static_cast<float>(ray.origin.x + t * ray.direction.x),
                    static_cast<float>(ray.origin.y + t * ray.direction.y));
     };
-    const DrawnRay<S> one = lane_of(rays.ray, a), other = lane_of(rays.ray, b);
+    const SceneRay<S> one = lane_of(rays.ray, a), other = lane_of(rays.ray, b);
     // A fisheye's rays that lead backwards never meet the plane: no guess is made about them.
     if (!(one.direction.z < 0 && other.direction.z < 0)) return false;
     return (on_plane(one) - on_plane(other)).length() <= c_.in_.tolerance_rad * focus_mm;
@@ -210,7 +210,9 @@ template <class V>
 FilmLanding LensCamera::Point<V>::landing(const LensDraw<V>& rays,
                                           const LaneRequest& request) const {
     const std::array landed = c_.optics_.template land<V, 1>(
-        std::array{at_.drawn(lane_of(rays.ray, request.lead))}, std::array{indices()});
+        std::array{DrawnRay<S>{lane_of(rays.ray, request.lead), request.lead, at_.film_mm,
+                               at_.stop_mm, at_.bands.nm}},
+        std::array{indices()});
     return c_.in_pixels(landed[0], at_.frame_px);
 }
 
@@ -269,7 +271,7 @@ LensLosses<uint32_t> LensCamera::LeadPoint::losses(uint32_t lanes) const {
     const RayStatus status = rays_.ray.status(lane_);
     if (!rays_.aimed.found[lane_])
         out.unreached = lanes;
-    else if (!rays_.aimed.clear[lane_] || !(rays_.open[lane_] > 0))
+    else if (!rays_.aimed.clear[lane_] || !(rays_.open[lane_] > 0 && rays_.density[lane_] > 0))
         out.vignetted = lanes;
     else if (status == RayStatus::TotallyReflected)
         out.totally_reflected = lanes;
@@ -347,7 +349,7 @@ void LensCamera::sample_all(std::span<const FilmPoint> points, std::span<const B
     each.template operator()<LeadPoint>(landings);
 }
 
-// Four film points at a time, so that two groups of eight lanes are full.
+// Four film points at a time, so that two groups of eight lanes are full, or the last two in one.
 void LensCamera::land(size_t count, std::span<const Bands> bands, const LeadPoints& at,
                       const LeadRays& rays,
                       std::array<LensLanding, kMostFilmPoints>& landings) const {
@@ -357,19 +359,24 @@ void LensCamera::land(size_t count, std::span<const Bands> bands, const LeadPoin
         if (rays.passed[static_cast<int>(i)]) passed[n++] = i;
     if (n == 0) return;
     std::fill_n(passed.begin() + static_cast<ptrdiff_t>(n), 3, passed[0]);
+    const auto drawn = [&](size_t k) {
+        const size_t i = passed[k];
+        const auto lane = static_cast<int>(i);
+        return DrawnRay<float>{lane_of(rays.ray, lane), bands[i].lead, at.film_mm[i],
+                               rays.stop_mm[lane], bands[i].nm};
+    };
+    const auto indices = [&](size_t k) {
+        return in_.lens->indices(joined(bands[passed[k]].nm, bands[passed[k + 1]].nm));
+    };
+    const auto keep = [&](size_t k, const auto& landed) {
+        for (size_t m = 0; m < landed.size() && k + m < n; ++m) landings[passed[k + m]] = landed[m];
+    };
     for (size_t k = 0; k < n; k += 4) {
-        const auto drawn = [&](size_t i) {
-            const auto lane = static_cast<int>(i);
-            return Place{at.film_mm[i], rays.stop_mm[lane], bands[i], false, V2f(1.f)}.drawn(
-                lane_of(rays.ray, lane));
-        };
-        const auto indices = [&](size_t a, size_t b) {
-            return in_.lens->indices(joined(bands[a].nm, bands[b].nm));
-        };
-        const size_t a = passed[k], b = passed[k + 1], c = passed[k + 2], d = passed[k + 3];
-        const auto landed = optics_.land<f8, 2>({drawn(a), drawn(b), drawn(c), drawn(d)},
-                                                {indices(a, b), indices(c, d)});
-        for (size_t m = 0; m < 4 && k + m < n; ++m) landings[passed[k + m]] = landed[m];
+        if (n - k <= 2)
+            keep(k, optics_.land<f8, 1>({drawn(k), drawn(k + 1)}, {indices(k)}));
+        else
+            keep(k, optics_.land<f8, 2>({drawn(k), drawn(k + 1), drawn(k + 2), drawn(k + 3)},
+                                        {indices(k), indices(k + 2)}));
     }
 }
 

@@ -81,14 +81,6 @@ class LensCamera final : public Camera {
 
         /// Wavelengths at which coatings count.
         [[nodiscard]] f4 coating_nm() const;
-        /// Ray that was drawn for the lane that leads.
-        template <class S>
-        [[nodiscard]] DrawnRay<S> drawn(DrawnRay<S> ray) const {
-            ray.lead = bands.lead;
-            ray.film_mm = film_mm, ray.stop_mm = stop_mm;
-            ray.nm = bands.nm;
-            return ray;
-        }
     };
     /// Rays of a film point, for the strategies of camera/dispersion.
     template <class V>
@@ -97,9 +89,9 @@ class LensCamera final : public Camera {
 
     /// Distance of the ray's origin behind the middle of the entrance pupil.
     template <class S>
-    [[nodiscard]] S behind_pupil_mm(const DrawnRay<S>&) const;
+    [[nodiscard]] S behind_pupil_mm(const SceneRay<S>&) const;
     template <class S>
-    [[nodiscard]] Ray in_world(const DrawnRay<S>&) const;
+    [[nodiscard]] Ray in_world(const SceneRay<S>&) const;
     [[nodiscard]] FilmLanding in_pixels(const LensLanding&, V2f frame_px) const;
     [[nodiscard]] LensIndices<f8> indices_of(const LeadPoints&, bool achromatic) const;
     void land(size_t count, std::span<const Bands>, const LeadPoints&, const LeadRays&,

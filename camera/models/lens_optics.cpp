@@ -45,13 +45,13 @@ LensOptics::LensOptics(std::shared_ptr<const Lens> lens, Iris iris, Coating coat
     if (!lens_->of_revolution()) return;
     const auto line_d_nm = splat8(static_cast<float>(kLineD_nm));
     const LensIndices<f8> line_d = lens_->exact_indices(line_d_nm);
-    const auto passes = [&](float height_mm, V2f stop_mm) {
+    const auto passes = [&](float height_mm, f8 x, f8 y) {
         const FoundRays aimed = aimer_.aim(PlanePoint<f8>(V2f(0.f, height_mm)),
-                                           PlanePoint<f8>(stop_mm), line_d, line_d_nm);
-        if (!(aimed.found[0] && aimed.clear[0])) return false;
+                                           PlanePoint<f8>(x, y), line_d, line_d_nm);
         LensRay<f8> ray = aimed.ray;
-        return trace_lens<f8>(*lens_, line_d, Towards::Scene, {0, lens_->stop() - 1}, ray,
-                              Clip::Yes)[0] != 0;
+        return m8(
+            aimed.found & aimed.clear &
+            trace_lens<f8>(*lens_, line_d, Towards::Scene, {0, lens_->stop() - 1}, ray, Clip::Yes));
     };
     const auto rim_mm = static_cast<float>(
         lens_->prescription().surfaces[static_cast<size_t>(lens_->stop())].semi_diameter_mm);
@@ -129,13 +129,13 @@ class RayGroup {
     /// The rays, back towards the lens.
     [[nodiscard]] LensRay<V> rays() const {
         LensRay<V> ray;
-        ray.counted_from = drawn_[0].counted_from;
-        ray.origin = {each([](const Drawn& r) { return r.origin.x; }),
-                      each([](const Drawn& r) { return r.origin.y; }),
-                      each([](const Drawn& r) { return r.origin.z; })};
-        ray.direction = {each([](const Drawn& r) { return -r.direction.x; }),
-                         each([](const Drawn& r) { return -r.direction.y; }),
-                         each([](const Drawn& r) { return -r.direction.z; })};
+        ray.counted_from = drawn_[0].ray.counted_from;
+        ray.origin = {each([](const Drawn& r) { return r.ray.origin.x; }),
+                      each([](const Drawn& r) { return r.ray.origin.y; }),
+                      each([](const Drawn& r) { return r.ray.origin.z; })};
+        ray.direction = {each([](const Drawn& r) { return -r.ray.direction.x; }),
+                         each([](const Drawn& r) { return -r.ray.direction.y; }),
+                         each([](const Drawn& r) { return -r.ray.direction.z; })};
         return ray;
     }
     /// Where they meet the stop. What rounding and the solver leave shows in the lane that leads,
@@ -200,6 +200,8 @@ template std::array<LensLanding, 1> LensOptics::land(const std::array<DrawnRay<f
                                                      const std::array<LensIndices<f4>, 1>&) const;
 template std::array<LensLanding, 1> LensOptics::land(const std::array<DrawnRay<double>, 1>&,
                                                      const std::array<LensIndices<d4>, 1>&) const;
+template std::array<LensLanding, 2> LensOptics::land(const std::array<DrawnRay<float>, 2>&,
+                                                     const std::array<LensIndices<f8>, 1>&) const;
 template std::array<LensLanding, 4> LensOptics::land(const std::array<DrawnRay<float>, 4>&,
                                                      const std::array<LensIndices<f8>, 2>&) const;
 

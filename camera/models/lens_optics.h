@@ -21,6 +21,7 @@ namespace petzval {
 /// Film points of up to eight samples, each with a wavelength; lanes that are left over repeat one
 /// of them.
 struct LeadPoints {
+    static_assert(kMostFilmPoints == NumberTraits<f8>::lanes);
     std::array<V2f, 8> film_mm;
     std::array<V2f, 8> u;  ///< [0, 1)^2, draws the point of the stop
     f8 nm{};
@@ -42,20 +43,26 @@ struct LeadRays {
     m8 passed{};  ///< lanes that neither iris nor rims block
 };
 
-/// Ray of the scene that was drawn for one lane of a film point, as it leaves the lens.
+/// Ray as it leaves the lens for the scene.
+template <class S>
+struct SceneRay {
+    Vec3<S> origin, direction;
+    int counted_from = 0;
+};
+
+/// Ray of the scene that was drawn for one lane of a film point.
 template <class S>
 struct DrawnRay {
-    Vec3<S> origin, direction;
-    int counted_from;
-    int lead;  ///< lane that it was drawn for
-    V2f film_mm, stop_mm;
-    f4 nm;  ///< of all lanes
+    SceneRay<S> ray;
+    int lead = 0;  ///< lane that it was drawn for
+    V2f film_mm{0.f}, stop_mm{0.f};
+    f4 nm{};  ///< of all lanes
 };
 
 /// Landing of a ray of the scene on the film, lane by lane.
 struct LensLanding {
-    f4 shift_x_mm, shift_y_mm;    ///< from the film point that the ray was drawn for
-    f4 open, drawn, transmitted;  ///< as in FilmLanding
+    f4 shift_x_mm{}, shift_y_mm{};      ///< from the film point that the ray was drawn for
+    f4 open{}, drawn{}, transmitted{};  ///< as in FilmLanding
 };
 
 /// Rays of the scene that go through the lens at once, four lanes for each.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Four floats side by side, and a mask over them: what a sample carries through the scene.
+// Four floats side by side, and a mask over them: what a sample carries through the scene. Eight
+// of them, and four doubles, for what is traced through a lens.
 #pragma once
 
 #include <array>

@@ -2,6 +2,8 @@
 #include "core/sampling/filter.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace petzval {
 namespace {
@@ -9,7 +11,7 @@ namespace {
 // Steps of the table on one side: 4 KB.
 constexpr uint32_t kSteps = 1 << 10;
 
-constexpr double kPi_d = static_cast<double>(kPi);
+constexpr double kPi_d = std::numbers::pi;
 // a0 to a3 of the window: Harris 1978, table 1.
 constexpr double kA0 = 0.35875, kA1 = 0.48829, kA2 = 0.14128, kA3 = 0.01168;
 

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "camera/iris/aperture.h"
-#include "io/image/picture_files.h"
 #include "io/picture/picture_budget.h"
 
 namespace petzval {

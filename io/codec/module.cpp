@@ -17,7 +17,7 @@ void limit_threads(int threads) {
 /// The table is made when the module is loaded, which also sets the usual limit.
 ImageCodec made_at_load() {
     limit_threads(usable_threads());
-    return {read_picture, decode_image, write_exr, write_8bit, limit_threads};
+    return {PETZVAL_VERSION, read_picture, decode_image, write_exr, write_8bit, limit_threads};
 }
 
 const ImageCodec kCodec = made_at_load();
@@ -25,6 +25,6 @@ const ImageCodec kCodec = made_at_load();
 }  // namespace
 }  // namespace petzval::codec
 
-extern "C" const petzval::ImageCodec* petzval_image_codec() {
+extern "C" [[gnu::visibility("default")]] const petzval::ImageCodec* petzval_image_codec() {
     return &petzval::codec::kCodec;
 }

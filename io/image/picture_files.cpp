@@ -8,6 +8,7 @@
 
 #include "io/base/error.h"
 #include "io/base/machine.h"
+#include "io/base/printable.h"
 #include "io/base/program_file.h"
 #include "io/picture/image_codec.h"
 
@@ -15,23 +16,36 @@ namespace petzval {
 namespace {
 
 std::filesystem::path module_path() {
-    return file_beside_program(PETZVAL_IMAGE_CODEC_FROM_BIN);
+    const std::filesystem::path path = file_beside_program(PETZVAL_IMAGE_CODEC_FROM_BIN);
+    if (path.empty())
+        throw InputError("/proc/self/exe", "",
+                         "cannot be read, and with it not found what is "
+                         "installed beside the program; mount /proc");
+    return path;
+}
+
+InputError cannot_load(const std::filesystem::path& path, const std::string& why) {
+    return {path.string(), "",
+            fmt::format("cannot be loaded ({}); install Petzval again with cmake --install", why)};
 }
 
 /// The module's functions. The linker loads it once, and never unloads it.
 const ImageCodec& image_codec() {
-    const std::string path = module_path().string();
-    const auto refuse = [&]() -> InputError {
-        const char* reason = ::dlerror();
-        return {path, "",
-                fmt::format("cannot be loaded ({}); install Petzval again with cmake --install",
-                            reason ? reason : "no reason given")};
+    const std::filesystem::path path = module_path();
+    const auto reason = [] {
+        const char* text = ::dlerror();
+        return std::string(text ? text : "no reason given");
     };
-    void* const module = ::dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL);
-    if (!module) throw refuse();
+    // All at once: a function that is missing must not end the program in the middle of a write.
+    void* const module = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (!module) throw cannot_load(path, reason());
     void* const symbol = ::dlsym(module, kImageCodecSymbol);
-    if (!symbol) throw refuse();
-    return *reinterpret_cast<const ImageCodec* (*)()>(symbol)();
+    if (!symbol) throw cannot_load(path, reason());
+    const ImageCodec& codec = *reinterpret_cast<const ImageCodec* (*)()>(symbol)();
+    if (std::string_view(codec.version) != PETZVAL_VERSION)
+        throw cannot_load(path, fmt::format("it is of version {}, and the program of {}",
+                                            printable(codec.version), PETZVAL_VERSION));
+    return codec;
 }
 
 }  // namespace
@@ -60,8 +74,13 @@ void write_8bit(const std::filesystem::path& path, const PictureRows& encoded, b
 }
 
 void check_image_codec() {
+    const std::filesystem::path path = module_path();
     std::error_code error;
-    if (!std::filesystem::exists(module_path(), error)) static_cast<void>(image_codec());
+    if (!std::filesystem::exists(path, error)) throw cannot_load(path, "it is not there");
+}
+
+void load_image_codec() {
+    static_cast<void>(image_codec());
 }
 
 void limit_picture_threads(int threads) {

@@ -16,6 +16,7 @@ namespace petzval {
 
 /// Functions of the module: those of the same names in io/image/picture_files.h.
 struct ImageCodec {
+    const char* version;  ///< of the program that it was built with: of that alone it is a part
     Picture (*read_picture)(const std::filesystem::path&, PictureBudget&,
                             std::optional<uint64_t> kept_per_pixel);
     Image (*decode_image)(const std::vector<uint8_t>& bytes, const std::string& file,

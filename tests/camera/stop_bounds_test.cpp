@@ -22,7 +22,12 @@ bool cats_eye(float height_mm, V2f p) {
     return (p - V2f(0, 0.6f * height_mm)).length() <= 8;
 }
 StopBoundsByHeight cats_eyes(double area_mm2 = 49 * std::numbers::pi) {
-    return {cats_eye, kFilmReach_mm, kStopReach_mm, area_mm2};
+    const auto passes = [](float height_mm, f8 x, f8 y) {
+        m8 out;
+        for (int i = 0; i < 8; ++i) out[i] = cats_eye(height_mm, {x[i], y[i]}) ? -1 : 0;
+        return out;
+    };
+    return {passes, kFilmReach_mm, kStopReach_mm, area_mm2};
 }
 V2f anywhere(Random& random) {
     return uniform_disk(random.next2()) * kStopReach_mm;
@@ -62,7 +67,7 @@ TEST(StopBounds, AreLeftOutWhereTheyDoNotHelp) {
     EXPECT_NE(cats_eyes().at(19.f), nullptr);
     EXPECT_NE(cats_eyes().at(25.f), nullptr);  // a filter reaches beyond the film
     EXPECT_EQ(StopBoundsByHeight().at(19.f), nullptr);
-    const auto nothing = [](float, V2f) { return false; };
+    const auto nothing = [](float, f8, f8) { return m8{}; };
     EXPECT_EQ(StopBoundsByHeight(nothing, 20, 7, 100).at(10), nullptr);
 }
 

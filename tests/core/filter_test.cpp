@@ -59,6 +59,23 @@ TEST_P(Filters, AreSymmetricAndMonotone) {
     EXPECT_LE(filter.sample({kOneMinus, kOneMinus}).x, 2.f);
 }
 
+// Where straight lines meet: the tail is the integral of the profile there, by the midpoint rule.
+TEST_P(Filters, TailsHoldWhatTheProfileHas) {
+    const Filter filter(GetParam().kind, 1.f);
+    const auto integral_to = [&](double x) {
+        constexpr int kSteps = 200000;
+        double sum = 0;
+        for (int i = 0; i < kSteps; ++i)
+            sum += GetParam().profile(-1 + (x + 1) * (i + 0.5) / kSteps);
+        return sum * (x + 1) / kSteps;
+    };
+    for (const int k : {1, 2, 5, 20, 100, 400}) {
+        const double u = (k / 1024.) * (k / 1024.) / 2;
+        const double x = double(filter.sample({static_cast<float>(u), 0.5f}).x);
+        EXPECT_NEAR(integral_to(x) / integral_to(1), u, 2e-3 * u) << k;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Filters,
                          ::testing::Values(Case{FilterKind::Box, box},
                                            Case{FilterKind::Gauss, gauss},

@@ -22,8 +22,8 @@ class PilotModel {
   public:
     [[nodiscard]] const RenderSetup& setup() const { return setup_; }
     [[nodiscard]] uint32_t samples() const { return samples_; }  ///< of each replicate of a pixel
-    /// Cost of a sample, the same on every machine: rays that are cast, and one more for a way
-    /// through glass. Only after sample().
+    /// Cost of a sample, the same on every machine: rays that are cast, and up to three more for
+    /// the way through glass. Only after sample().
     [[nodiscard]] double rays_per_sample() const;
     [[nodiscard]] double cpu_s_per_sample() const {
         return cpu_s_ / static_cast<double>(stats_.samples);
@@ -32,6 +32,7 @@ class PilotModel {
   private:
     friend class Pilot;
     PilotModel(RenderSetup, const RenderJob&, const PathOptions&, size_t pixels);
+    [[nodiscard]] double lens_rays() const;
 
     RenderSetup setup_;
     RenderJob job_;

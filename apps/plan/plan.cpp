@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "apps/plan/mode_choice.h"
 #include "apps/plan/plan_comparison.h"
 #include "apps/setup/equivalent_camera.h"
-#include "camera/setup/lateral_dispersion.h"
 #include "io/base/error.h"
 
 namespace petzval {
@@ -23,9 +23,6 @@ constexpr double kMostPlannedSamples = 1 << 30;
 // Factor within which costs count as equal: they are known no better, and the simpler model is
 // taken.
 constexpr double kAsCheap = 1.05;
-/// Greatest dispersion at which a hero ray has less variance for its cost than split ones, in
-/// luminance and in colour: docs/measured/dispersion.md.
-constexpr double kMostHeroDispersion_px = 0.2;
 
 size_t cheapest(const std::vector<PlanCandidate>& all, double tolerance) {
     const auto cost = [&](const PlanCandidate& c) { return c.samples_for(tolerance) * c.rays; };
@@ -41,39 +38,15 @@ RenderSetup view_of(const RenderSetup& first, const SceneRequest& scene, TbbExec
     return executor.inside([&] { return set_up_view(first, scene, [](const std::string&) {}); });
 }
 
-/// Dispersion mode that suits a lens's dispersion best where nothing is left out of it.
-struct ByDispersion {
-    double dispersion_px;
-    SceneRequest scene;
-
-    [[nodiscard]] DispersionMode mode() const { return *scene.camera.dispersion; }
-};
-ByDispersion choose_by_dispersion(const RenderSetup& first, TbbExecutor& executor) {
-    SceneRequest scene = resolved_request(first);
-    scene.spectral.mode = SpectralMode::Wavelengths;
-    const auto with = [&](DispersionMode mode) {
-        scene.camera.dispersion = mode;
-        return view_of(first, scene, executor);
-    };
-    const RenderSetup split = with(DispersionMode::Split), shared = with(DispersionMode::Shared);
-    const double px =
-        lateral_dispersion_px(*split.view.camera, *shared.view.camera, split.view.observer,
-                              split.from.camera.focus_plane(), scene.size);
-    scene.camera.dispersion =
-        px <= kMostHeroDispersion_px ? DispersionMode::Hero : DispersionMode::Tolerance;
-    return {px, scene};
-}
-
-// Plan for spectra through a lens: nothing is left out of them, and the dispersion alone chooses
-// the mode.
+// Plan for spectra through a lens: nothing is left out of them, and only the mode is chosen.
 Plan plan_with_bins(const PlanRequest& request, const RenderSetup& first, TbbExecutor& executor,
                     const Notice& notice, double most_samples) {
-    const ByDispersion found = choose_by_dispersion(first, executor);
+    const ModeChoice found = choose_mode(request, first, executor);
     PlanRequest resolved = request;
     resolved.scene.camera.dispersion = found.mode();
     Plan plan = make_plan(resolved, executor, notice, most_samples);
     plan.dispersion_px = found.dispersion_px;
-    plan.mode_by_dispersion = found.mode();
+    plan.measured_mode = found.mode();
     return plan;
 }
 
@@ -152,13 +125,6 @@ AutoSetup set_up_planned(const PlanRequest& request, TbbExecutor& executor, cons
     const PlanOpen open(request.scene, first);
     AutoChoice& choice = out.choice;
     std::optional<SceneRequest> other;  // a request other than what was set up
-    if (open.dispersion_mode) {
-        const ByDispersion found = choose_by_dispersion(first, executor);
-        if (found.mode() == DispersionMode::Hero) other = found.scene;
-        choice.dispersion = found.mode();
-        choice.dispersion_px = found.dispersion_px;
-        choice.dispersive_lens = first.from.camera.dispersive_lens;
-    }
     const double most_samples = 0.25 * request.scene.size.x * request.scene.size.y;
     const int models = (open.spectral ? 1 : 0) + (open.dispersion ? 2 : 1);
     const auto fit = [&](int pixels, double samples) {
@@ -181,7 +147,17 @@ AutoSetup set_up_planned(const PlanRequest& request, TbbExecutor& executor, cons
             other = chosen->scene;
             predicted_error = chosen->predicted();
             if (open.dispersion) choice.dispersion = DispersionMode::Shared;
+            choice.dispersion_px = compared.dispersion_px();
         }
+    }
+    if (open.dispersion_mode) choice.dispersive_lens = first.from.camera.dispersive_lens;
+    if (open.dispersion_mode && !other) {
+        const ModeChoice found = choose_mode(request, first, executor);
+        other = found.scene;
+        choice.dispersion = found.mode();
+        choice.dispersion_px = found.dispersion_px;
+        choice.effort_of_next = found.by_effort[1].effort / found.by_effort[0].effort;
+        choice.next = found.by_effort[1].mode;
     }
     out.setup = other ? replaced(first, *other, executor) : std::move(first);
     out.setup.from.spectral.predicted_error = predicted_error;

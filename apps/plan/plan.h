@@ -23,8 +23,8 @@ struct Plan {
     bool anything_open = false;
     /// RMS lateral dispersion in pixels, where it was measured.
     std::optional<double> dispersion_px;
-    /// Set where spectra are asked for: the mode that the dispersion alone decided.
-    std::optional<DispersionMode> mode_by_dispersion;
+    /// Set where spectra are asked for: the mode that choose_mode() found.
+    std::optional<DispersionMode> measured_mode;
     double bias = 0, noise = 0;  ///< predicted, of what was chosen with `samples`
     double first_noise = 0;      ///< with one sample
     uint64_t samples = 0;        ///< of each pixel
@@ -46,6 +46,10 @@ struct AutoChoice {
     std::optional<DispersionMode> dispersion;
     double dispersion_px = 0;
     std::string dispersive_lens;
+    /// Time to the same noise by the next best mode, over that by the one taken, where they were
+    /// measured.
+    std::optional<double> effort_of_next;
+    DispersionMode next = DispersionMode::Split;
     bool dispersion_compared = false;       ///< sharing one ray is a candidate
     std::vector<PlanCandidate> candidates;  ///< empty where nothing was measured
     /// Index among the candidates of the simpler model that was taken; absent where none was.
@@ -59,8 +63,9 @@ struct AutoSetup {
 
 /// Setup as set_up_render gives it, with what the request leaves open (RGB or wavelengths,
 /// dispersion mode) chosen by a pilot of at most a quarter of a sample for each pixel of the whole
-/// frame: samples, seed and crop do not matter. Without a pilot where nothing depends on
-/// wavelength, and for frames too small for one. No camera that was asked for is replaced.
+/// frame, and one of at most 8,192 samples (choose_mode): samples, seed and crop do not matter.
+/// Without a pilot where nothing depends on wavelength, and without the first for frames too small
+/// for it. No camera that was asked for is replaced.
 [[nodiscard]] AutoSetup set_up_planned(const PlanRequest&, TbbExecutor&, const Notice& notice,
                                        const PhaseSink& begins = {});
 

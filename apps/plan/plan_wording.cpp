@@ -77,9 +77,9 @@ PlanLine dispersion_line(const Plan& plan) {
         return {"dispersion", "shared", "no lens sends wavelengths apart", {}};
     if (!plan.requested.spectral.wavelengths)
         return {"dispersion", "shared", "RGB goes along one ray", {}};
-    if (plan.mode_by_dispersion)
+    if (plan.measured_mode)
         return {"dispersion",
-                name_of(*plan.mode_by_dispersion),
+                name_of(*plan.measured_mode),
                 dispersion_text(report.dispersive_lens, *plan.dispersion_px),
                 {}};
     if (!plan.dispersion_open)
@@ -165,14 +165,25 @@ std::vector<PlanOption> options_of(const Plan& plan) {
     if (plan.anything_open)
         set("--spectral", plan.chosen == PlanModel::Rgb ? "rgb" : "wavelengths");
     if (plan.dispersion_open) set("--dispersion", name_of(*camera.dispersion));
-    if (plan.mode_by_dispersion) set("--dispersion", name_of(*plan.mode_by_dispersion));
+    if (plan.measured_mode) set("--dispersion", name_of(*plan.measured_mode));
     return out;
 }
+
+namespace {
+
+// What the mode that was not taken would take.
+std::string effort_text(const AutoChoice& choice) {
+    if (!choice.effort_of_next) return "";
+    return fmt::format("; to the same noise {} would take {:.2g} times as long",
+                       name_of(choice.next), *choice.effort_of_next);
+}
+
+}  // namespace
 
 std::string reason_of(const AutoChoice& choice) {
     std::string why;
     if (choice.dispersion) why = dispersion_text(choice.dispersive_lens, choice.dispersion_px);
-    if (choice.candidates.empty()) return why;
+    if (choice.candidates.empty()) return why + effort_text(choice);
     const auto refused = [&] {
         // Shared rays are the last but the fullest model where they were compared at all.
         const size_t last_simpler = choice.candidates.size() - 2;
@@ -181,7 +192,7 @@ std::string reason_of(const AutoChoice& choice) {
     std::string found =
         choice.taken ? at_most(choice.candidates[*choice.taken].predicted()) : refused();
     if (choice.taken && choice.dispersion_compared) found = "one ray for all wavelengths, " + found;
-    return why.empty() ? found : why + ": " + found;
+    return (why.empty() ? found : why + ": " + found) + effort_text(choice);
 }
 
 std::optional<std::string> line_of(const AutoChoice& choice) {

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Choice of the dispersion mode where nothing may be left out: by noise and cost, as measured.
+#pragma once
+
+#include <array>
+
+#include "apps/plan/plan_types.h"
+#include "integrator/executor.h"
+
+namespace petzval {
+
+/// Dispersion mode without a bias, and how much it takes to bring the noise down.
+struct ModeCost {
+    DispersionMode mode;
+    /// Relative variance of a sample times its cost in rays (PilotModel::rays_per_sample): in
+    /// proportion to the time that a given noise takes.
+    double effort;
+};
+
+struct ModeChoice {
+    double dispersion_px;               ///< RMS lateral dispersion
+    std::array<ModeCost, 2> by_effort;  ///< the least first
+    SceneRequest scene;                 ///< the request with the first of them
+
+    [[nodiscard]] DispersionMode mode() const { return by_effort[0].mode; }
+};
+
+/// Mode for a setup through a lens that disperses, by a pilot of at most 8,192 samples in all. It
+/// follows from scene, camera and frame alone: neither samples nor seed nor crop matter.
+[[nodiscard]] ModeChoice choose_mode(const PlanRequest&, const RenderSetup& first, TbbExecutor&);
+
+}  // namespace petzval

@@ -124,10 +124,7 @@ ChartCase dispersion_case(const ResolvedScene& found, const RenderJob& job) {
         return [dispersion](SceneRequest& s, RenderJob&) { s.camera.dispersion = dispersion; };
     };
     cases.add("split", lens, with(DispersionMode::Split));
-    cases.add(fmt::format("tolerance {:g} px", lens.camera.dispersion_tolerance_px), lens,
-              with(DispersionMode::Tolerance));
     cases.add("shared", lens, with(DispersionMode::Shared));
-    cases.add("single", lens, with(DispersionMode::Single));
     cases.add("hero", lens, with(DispersionMode::Hero));
     cases.remark("shared is biased: it leaves out the colour errors of the lens");
     cases.reference("split, rays followed in doubles with the glasses' own formulas", lens,

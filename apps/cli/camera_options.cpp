@@ -74,17 +74,8 @@ void add_lens_options(CLI::App& app, CameraOptions& o) {
     for (const auto& [name, mode] : kOptionNames<DispersionMode>) modes.emplace_back(name, mode);
     group(add_choice<std::optional<DispersionMode>>(
         app, "--dispersion", r.dispersion, modes,
-        "wavelengths that leave the lens apart: auto (default: by how far they part, "
-        "docs/guide/plan.md; in charts as tolerance), "
-        "shared, tolerance, split, single, hero"));
-    const auto share_within = [&r](float px) {
-        r.dispersion_tolerance_px = px;
-        if (!r.dispersion) r.dispersion = DispersionMode::Tolerance;
-    };
-    group(app.add_option_function<float>("--dispersion-tolerance", share_within,
-                                         "pixels on the film within which --dispersion tolerance, "
-                                         "which this asks for, shares a ray (default 0.1)"))
-        ->transform(number_between(0, 1000, kPixels));
+        "wavelengths that leave the lens apart: auto (default: as a test render finds, "
+        "docs/guide/plan.md; in charts as hero), shared, hero, split"));
 }
 
 void add_glass_options(CLI::App& app, CameraOptions& o) {

@@ -10,9 +10,8 @@ namespace {
 struct Renamed {
     std::string_view before, now;
 };
-constexpr std::array<Renamed, 3> kOptions{{{"--chroma", "--dispersion"},
-                                           {"--chroma-tolerance", "--dispersion-tolerance"},
-                                           {"--march", "--lens-precision"}}};
+constexpr std::array<Renamed, 2> kOptions{
+    {{"--chroma", "--dispersion"}, {"--march", "--lens-precision"}}};
 struct RenamedValue {
     std::string_view option, before, now;
 };

@@ -25,8 +25,9 @@ struct ModeChoice {
     [[nodiscard]] DispersionMode mode() const { return by_effort[0].mode; }
 };
 
-/// Mode for a setup through a lens that disperses, by a pilot of at most 8,192 samples in all. It
-/// follows from scene, camera and frame alone: neither samples nor seed nor crop matter.
+/// Mode for a setup through a lens that disperses, by a pilot of a quarter of a sample for
+/// each pixel of the frame, but 16,384 samples at least and 65,536 at most. It follows from scene,
+/// camera and frame alone: neither samples nor seed nor crop matter.
 [[nodiscard]] ModeChoice choose_mode(const PlanRequest&, const RenderSetup& first, TbbExecutor&);
 
 }  // namespace petzval

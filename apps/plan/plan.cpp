@@ -85,7 +85,6 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
     if (open.dispersion) {
         compared.add_shared();
         compared.add_unbiased(PlanModel::Hero, DispersionMode::Hero);
-        compared.add_biased(PlanModel::Tolerance, DispersionMode::Tolerance);
     }
     compared.measure(most_samples, true);
 

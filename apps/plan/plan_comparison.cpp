@@ -125,15 +125,6 @@ void PlanComparison::add_shared() {
                         nullptr});
 }
 
-void PlanComparison::add_biased(PlanModel kind, DispersionMode dispersion) {
-    SceneRequest scene = full_scene_;
-    scene.camera.dispersion = dispersion;
-    auto own = amplified(scene);
-    const double share = 1 / double(factor_);
-    entries_.push_back(
-        {{kind, scene}, own.get(), {{own.get(), share}, {full_.get(), -share}}, std::move(own)});
-}
-
 void PlanComparison::add_unbiased(PlanModel kind, DispersionMode dispersion) {
     SceneRequest scene = full_scene_;
     scene.camera.dispersion = dispersion;

@@ -23,9 +23,6 @@ class PlanComparison {
     void add_rgb();
     /// Adds one ray for all wavelengths. Where dispersion is open.
     void add_shared();
-    /// Adds a dispersion mode that has an error. Where dispersion is open.
-    void add_biased(PlanModel, DispersionMode);
-
     /// Adds a dispersion mode without an error, whatever wavelengths do: only its cost and noise
     /// are measured.
     void add_unbiased(PlanModel, DispersionMode);

@@ -25,7 +25,7 @@ struct PlanRequest {
 };
 
 /// Ways to render a scene, simplest first. Shared to Split carry wavelengths through a lens.
-enum class PlanModel : uint8_t { Pinhole, Thin, Rgb, Shared, Hero, Tolerance, Split, Full };
+enum class PlanModel : uint8_t { Pinhole, Thin, Rgb, Shared, Hero, Split, Full };
 
 /// Whether the model replaces the camera that was asked for.
 [[nodiscard]] constexpr bool replaces_camera(PlanModel model) {

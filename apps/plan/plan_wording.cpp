@@ -84,11 +84,10 @@ PlanLine dispersion_line(const Plan& plan) {
                 {}};
     if (!plan.dispersion_open)
         return {"dispersion",
-                name_of(asked.value_or(DispersionMode::Tolerance)),
+                name_of(asked.value_or(DispersionMode::Hero)),
                 asked ? "it was asked for" : "spectra are asked for",
                 {}};
-    const PlanCandidate *shared = plan.find(PlanModel::Shared),
-                        *tolerance = plan.find(PlanModel::Tolerance);
+    const PlanCandidate *shared = plan.find(PlanModel::Shared), *hero = plan.find(PlanModel::Hero);
     const std::string because = dispersion_text(report.dispersive_lens, *plan.dispersion_px) + ": ";
     switch (plan.chosen) {
         case PlanModel::Hero:
@@ -98,11 +97,7 @@ PlanLine dispersion_line(const Plan& plan) {
                 because + off(*shared) + ", one ray is weighed for each wavelength without a bias",
                 {}};
         case PlanModel::Split:
-            return {"dispersion", "split", because + off(*shared) + ", " + off(*tolerance), {}};
-        case PlanModel::Tolerance:
-            return {"dispersion", "tolerance",
-                    fmt::format("{}{}, this {}", because, off(*shared), at_most(plan.bias)),
-                    plan.bias};
+            return {"dispersion", "split", because + off(*shared) + ", " + off(*hero), {}};
         default:
             return {"dispersion", "shared",
                     because + "one ray for all wavelengths, " + at_most(plan.bias), plan.bias};
@@ -123,8 +118,6 @@ std::string name_of(PlanModel model) {
             return "shared";
         case PlanModel::Hero:
             return "hero";
-        case PlanModel::Tolerance:
-            return "tolerance";
         case PlanModel::Split:
             return "split";
         case PlanModel::Full:
@@ -148,8 +141,7 @@ std::vector<PlanOption> options_of(const Plan& plan) {
     };
     if (replaces_camera(plan.chosen)) {
         leave_out({"--fit", "--fstop", "--focal-length", "--film-distance", "--coating",
-                   "--lens-precision", "--focus-by", "--glasses", "--dispersion",
-                   "--dispersion-tolerance"});
+                   "--lens-precision", "--focus-by", "--glasses", "--dispersion"});
         set("--lens", name_of(plan.chosen));
         set("--fov", *camera.fov_deg);
         set("--sensor", fmt::format("{}x{}", camera.sensor_mm->x, camera.sensor_mm->y));

@@ -12,7 +12,7 @@
 
 namespace petzval {
 
-/// Name of a model: "pinhole", "thin", "rgb", "shared", "hero", "tolerance", "split" or "full".
+/// Name of a model: "pinhole", "thin", "rgb", "shared", "hero", "split" or "full".
 [[nodiscard]] std::string name_of(PlanModel);
 
 struct PlanLine {

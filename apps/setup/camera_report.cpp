@@ -29,10 +29,8 @@ void describe_glass(const CameraReport& c, PictureLayout& layout) {
     m.emplace_back("petzval:coating", name_of(c.asked.coating));
     m.emplace_back("petzval:lensPrecision", name_of(c.asked.precision));
     m.emplace_back("petzval:fit", name_of(c.asked.fit));
-    const DispersionMode dispersion = c.asked.dispersion.value_or(DispersionMode::Tolerance);
-    m.emplace_back("petzval:dispersion", name_of(dispersion));
-    if (dispersion == DispersionMode::Tolerance)
-        m.emplace_back("petzval:dispersionTolerance_px", c.asked.dispersion_tolerance_px);
+    m.emplace_back("petzval:dispersion",
+                   name_of(c.asked.dispersion.value_or(DispersionMode::Hero)));
 }
 
 }  // namespace

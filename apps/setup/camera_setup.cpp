@@ -135,8 +135,7 @@ CameraSetup with_lens(const CameraContext& at, const LoadedLens& loaded) {
     report.focus_m = find_focus(at, to_world, [&](std::optional<float> focus_m) {
         return viewfinder(loaded, to_world, focus_m);
     });
-    LensSetup lens =
-        set_up_lens(report.asked, loaded, to_world, report.focus_m, at.size.x, at.notice);
+    LensSetup lens = set_up_lens(report.asked, loaded, to_world, report.focus_m, at.notice);
     report.lens = loaded.name();
     report.focal_length_mm = static_cast<float>(loaded.focal_length_mm);
     report.sensor_mm = loaded.film_mm;
@@ -171,7 +170,7 @@ CameraSetup without_prescription(const CameraContext& at) {
         });
     pose.yfov_rad = yfov_at_rad(view, focus_m);
     if (pose.yfov_rad != view.yfov_rad) report.yfov_deg = pose.yfov_rad / kDegree;
-    ThinSetup thin = set_up_thin(at.model, view, pose, focus_m, at.size.x, at.notice);
+    ThinSetup thin = set_up_thin(at.model, view, pose, focus_m, at.notice);
     report.focus_m = focus_m.value_or(0);
     report.focal_length_mm = static_cast<float>(thin.focal_mm);
     report.lens_radius_m = static_cast<float>(thin.lens_radius_m);

@@ -131,7 +131,7 @@ LoadedLens load_lens_for_film(const std::string& name_or_file, std::span<const A
 }
 
 LensSetup set_up_lens(const CameraRequest& asked, const LoadedLens& loaded, const M44f& to_world,
-                      float focus_m, int width_px, const Notice& notice) {
+                      float focus_m, const Notice& notice) {
     for (const std::string& warning : loaded.warnings) notice("warning: " + warning);
     LensSetup setup;
     setup.stop_radius_mm = stop_radius_of(loaded, asked.fstop, notice);
@@ -154,12 +154,9 @@ LensSetup set_up_lens(const CameraRequest& asked, const LoadedLens& loaded, cons
         setup.film_mm = in.film_mm;
         lens = in.lens;
         promised = paraxial_irradiance(*lens, iris.area_mm2());
-        in.dispersion = asked.dispersion.value_or(DispersionMode::Tolerance);
+        in.dispersion = asked.dispersion.value_or(DispersionMode::Hero);
         in.coating = asked.coating;
         in.precision = asked.precision;
-        in.focus_m = focus_m;
-        in.tolerance_rad = static_cast<float>(pixel_angle_rad(
-            *in.lens, double(asked.dispersion_tolerance_px), double(loaded.film_mm.x), width_px));
         camera = std::make_unique<LensCamera>(std::move(in));
     } catch (const std::invalid_argument& error) {
         throw ArgumentError(aperture, "", error.what());

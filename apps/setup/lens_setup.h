@@ -44,7 +44,7 @@ struct LensSetup {
 /// Camera with the lens in focus. focus_m: along the axis from the middle of the entrance pupil.
 /// Throws InputError or ArgumentError: a focus nearer than the lens can, an iris that is none.
 [[nodiscard]] LensSetup set_up_lens(const CameraRequest&, const LoadedLens&, const M44f& to_world,
-                                    float focus_m, int width_px, const Notice& notice);
+                                    float focus_m, const Notice& notice);
 
 /// Camera with the lens stopped down so far that nothing is blurred, to choose a focus by. focus_m:
 /// absent for far away; it decides the scale of the picture.

@@ -27,11 +27,9 @@ inline constexpr int kOptionNames = 0;
 
 template <>
 inline constexpr auto kOptionNames<DispersionMode> =
-    std::to_array<OptionName<DispersionMode>>({{"tolerance", DispersionMode::Tolerance},
-                                               {"shared", DispersionMode::Shared},
-                                               {"split", DispersionMode::Split},
-                                               {"single", DispersionMode::Single},
-                                               {"hero", DispersionMode::Hero}});
+    std::to_array<OptionName<DispersionMode>>({{"shared", DispersionMode::Shared},
+                                               {"hero", DispersionMode::Hero},
+                                               {"split", DispersionMode::Split}});
 template <>
 inline constexpr auto kOptionNames<ApertureScale> = std::to_array<OptionName<ApertureScale>>(
     {{"area", ApertureScale::EqualArea}, {"inscribed", ApertureScale::Inscribed}});

@@ -67,8 +67,7 @@ struct CameraRequest {
     std::optional<std::string> aperture;  ///< as parse_aperture reads it
     ApertureScale aperture_scale = ApertureScale::EqualArea;
     std::optional<IrisSampling> iris_sampling;
-    std::optional<DispersionMode> dispersion;  ///< absent: Tolerance, or cheaper by a plan
-    float dispersion_tolerance_px = 0.1f;
+    std::optional<DispersionMode> dispersion;  ///< absent: Hero, or as a plan finds
     Coating coating = Coating::Ideal;
     Precision precision = Precision::Float;
     ExposureMode exposure = ExposureMode::Normalised;

@@ -116,7 +116,7 @@ float yfov_at_rad(const ThinView& view, std::optional<float> focus_m) {
 }
 
 ThinSetup set_up_thin(const CameraModel& model, const ThinView& view, ThinLens lens,
-                      std::optional<float> focus_m, int width_px, const Notice& notice) {
+                      std::optional<float> focus_m, const Notice& notice) {
     const CameraRequest& asked = model.asked;
     const bool photographic = asked.exposure == ExposureMode::Photographic;
     const bool vignettes = asked.natural_vignetting.value_or(photographic);
@@ -159,10 +159,7 @@ ThinSetup set_up_thin(const CameraModel& model, const ThinView& view, ThinLens l
             AberratedLens glass{lens.to_world,   singlet_of(*single, setup.focal_mm),
                                 std::move(iris), double(*focus_m),
                                 lens.yfov_rad,   lens.aspect};
-            glass.dispersion = asked.dispersion.value_or(DispersionMode::Tolerance);
-            glass.tolerance_rad =
-                static_cast<float>(asked.dispersion_tolerance_px * double(view.sensor_mm.x) /
-                                   width_px / setup.film_mm);
+            glass.dispersion = asked.dispersion.value_or(DispersionMode::Hero);
             glass.exposure = lens.exposure;
             glass.vignetting = lens.vignetting;
             warn_of_formula(glass.singlet, model, focus_mm, glass.iris.bounding_radius_mm(),

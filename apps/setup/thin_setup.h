@@ -39,7 +39,6 @@ struct ThinSetup {
 /// Camera of a model. pose: with the view's angle and aspect. focus_m: absent for a pinhole. Throws
 /// ArgumentError for an object within the focal length, and for an iris that is none.
 [[nodiscard]] ThinSetup set_up_thin(const CameraModel&, const ThinView&, ThinLens pose,
-                                    std::optional<float> focus_m, int width_px,
-                                    const Notice& notice);
+                                    std::optional<float> focus_m, const Notice& notice);
 
 }  // namespace petzval

@@ -41,8 +41,8 @@ std::string warning_of(const Glass& glass, float fstop) {
     plan.optics = SingleLens{glass, 0, {}};
     std::string said;
     const ThinView view = thin_view(plan, "", 1.5f);
-    static_cast<void>(set_up_thin(plan, view, ThinLens{}, 1e6f, 6000,
-                                  [&](const std::string& text) { said += text; }));
+    static_cast<void>(
+        set_up_thin(plan, view, ThinLens{}, 1e6f, [&](const std::string& text) { said += text; }));
     return said;
 }
 

@@ -9,11 +9,9 @@
 
 namespace petzval {
 
-/// Tolerance: one ray for all lanes where they would land within a tolerance, else one for each.
-/// Shared: the ray of line d, as if the lens were achromatic. Split: one for each, always. Single:
-/// one wavelength a path. Hero: the ray of one lane, weighed for each lane by where it would have
-/// reached the film (hero.h).
-enum class DispersionMode : uint8_t { Tolerance, Shared, Split, Single, Hero };
+/// Shared: the ray of line d, as if the lens were achromatic. Split: one ray for each lane. Hero:
+/// the ray of one lane, weighed for each lane by where it would have reached the film (hero.h).
+enum class DispersionMode : uint8_t { Shared, Split, Hero };
 
 /// Whether all lanes go along the ray of line d.
 [[nodiscard]] inline bool one_ray(const Bands& bands, DispersionMode mode) {

@@ -9,34 +9,22 @@
 
 namespace petzval {
 
-/// Paths of the lanes that passed. Lanes for which share(a, b) holds have the ray of the first.
-template <LensPoint P, class Rays, class Share>
-[[nodiscard]] CameraSample group_lanes(const P& lens, const Rays& rays, const Share& share) {
-    CameraSample out;
-    out.lanes = rays.losses;
-    out.exposure = lens.exposure();
-    const f4 weight = rays.weight_of_lanes();
-    m4 left = weight > 0;
-    for (int lane = 0; lane < 4; ++lane) {
-        if (!left[lane]) continue;
-        CameraPath& path = out.add();
-        path.led = true;
-        path.ray = lens.ray(rays, lane);
-        path.lanes = left;
-        for (int other = lane + 1; other < 4; ++other)
-            if (left[other] && !share(lane, other)) path.lanes[other] = 0;
-        path.weight = zero_off(path.lanes, weight);
-        left &= ~path.lanes;
-    }
-    return out;
-}
-
 /// One ray for all lanes; `lens` gives them all the same.
 template <LensPoint P>
 [[nodiscard]] CameraSample share_ray(const P& lens, int lead, m4 on) {
     const auto rays = lens.rays({on, lead, true});
-    CameraSample out = group_lanes(lens, rays, [](int, int) { return true; });
-    for (CameraPath& path : out) path.led = false;
+    CameraSample out;
+    out.lanes = rays.losses;
+    out.exposure = lens.exposure();
+    const f4 weight = rays.weight_of_lanes();
+    const m4 passed = weight > 0;
+    int first = 0;
+    while (first < 4 && !passed[first]) ++first;
+    if (first == 4) return out;
+    CameraPath& path = out.add();
+    path.ray = lens.ray(rays, first);
+    path.lanes = passed;
+    path.weight = zero_off(passed, weight);
     return out;
 }
 
@@ -44,21 +32,19 @@ template <LensPoint P>
 template <LensPoint P>
 [[nodiscard]] CameraSample split_rays(const P& lens, int lead, m4 on) {
     const auto rays = lens.rays({on, lead, true});
-    return group_lanes(lens, rays, [](int, int) { return false; });
-}
-
-/// One ray for lanes that stay within the camera's tolerance, else one for each.
-template <LensPoint P>
-[[nodiscard]] CameraSample share_within_tolerance(const P& lens, int lead, m4 on) {
-    const auto rays = lens.rays({on, lead, true});
-    return group_lanes(lens, rays, [&](int a, int b) { return lens.together(rays, a, b); });
-}
-
-/// The ray of one lane, which stands for all.
-template <LensPoint P>
-[[nodiscard]] CameraSample single_ray(const P& lens, int lead) {
-    const auto rays = lens.rays({only_lane(lead), lead, true});
-    return group_lanes(lens, rays, [](int, int) { return true; });
+    CameraSample out;
+    out.lanes = rays.losses;
+    out.exposure = lens.exposure();
+    const f4 weight = rays.weight_of_lanes();
+    for (int lane = 0; lane < 4; ++lane) {
+        if (!(weight[lane] > 0)) continue;
+        CameraPath& path = out.add();
+        path.led = true;
+        path.ray = lens.ray(rays, lane);
+        path.lanes = only_lane(lane);
+        path.weight = zero_off(path.lanes, weight);
+    }
+    return out;
 }
 
 /// The ray of one lane, weighed for each lane by where it would have reached the film (hero.h).
@@ -92,18 +78,7 @@ template <LensPoint P>
                                        const Bands& bands) {
     const int lead = bands.lead;
     if (one_ray(bands, mode)) return share_ray(lens, lead, bands.on);
-    switch (mode) {
-        case DispersionMode::Tolerance:
-            return share_within_tolerance(lens, lead, bands.on);
-        case DispersionMode::Single:
-            return single_ray(lens, lead);
-        case DispersionMode::Hero:
-            if (pixel.filter) return hero_ray(lens, lead, bands.on, pixel);
-            break;
-        case DispersionMode::Shared:
-        case DispersionMode::Split:
-            break;
-    }
+    if (mode == DispersionMode::Hero && pixel.filter) return hero_ray(lens, lead, bands.on, pixel);
     return split_rays(lens, lead, bands.on);
 }
 

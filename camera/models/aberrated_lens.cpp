@@ -79,11 +79,6 @@ class AberratedLensCamera::Point {
             unit(c_.pose_.to_world(through_centre - point_mm * rays.vergence_per_mm[lane]));
         return out;
     }
-    [[nodiscard]] bool together(const Rays& rays, int a, int b) const {
-        return rays.stop_mm.length() *
-                   std::fabs(rays.vergence_per_mm[b] - rays.vergence_per_mm[a]) <=
-               c_.in_.tolerance_rad;
-    }
     /// Landing by vergences: through a point of the lens, the same ray of the scene belongs to film
     /// points that differ by the vergences of the lanes.
     [[nodiscard]] FilmLanding landing(const Rays& rays, const LaneRequest& request) const {

@@ -17,9 +17,8 @@ struct AberratedLens {
     double focus_m = 1;     ///< axial distance; may be infinite
     float yfov_rad = 0.7f;  ///< full vertical angle, seen from the lens's centre
     float aspect = 1.5f;    ///< width / height of the film
-    DispersionMode dispersion = DispersionMode::Tolerance;
-    float tolerance_rad = 0;  ///< Tolerance: most angle between directions, seen from the lens
-    float exposure = 1.f;     ///< factor on every weight
+    DispersionMode dispersion = DispersionMode::Split;
+    float exposure = 1.f;                           ///< factor on every weight
     std::optional<NaturalVignetting> vignetting{};  ///< absent: the film is evenly lit
 };
 

@@ -11,8 +11,6 @@
 namespace petzval {
 namespace {
 
-// Distance at which wavelengths are compared for a lens that is focused at infinity.
-constexpr float kFarthest_m = 1e9f;
 constexpr auto kLineD = static_cast<float>(kLineD_nm);
 
 // Transmission of the stop at a point of each lane.
@@ -126,7 +124,6 @@ class LensCamera::Point {
     [[nodiscard]] Ray ray(const LensDraw<V>& rays, int lane) const {
         return c_.in_world(lane_of(rays.ray, lane));
     }
-    [[nodiscard]] bool together(const LensDraw<V>&, int a, int b) const;
     [[nodiscard]] FilmLanding landing(const LensDraw<V>&, const LaneRequest&) const;
     [[nodiscard]] float exposure() const { return c_.exposure_; }
 
@@ -191,21 +188,6 @@ LensDraw<V> LensCamera::Point<V>::rays(const LaneRequest& request) const {
     return out;
 }
 
-// Whether two lanes meet the plane of focus within the tolerance, seen from the lens.
-template <class V>
-bool LensCamera::Point<V>::together(const LensDraw<V>& rays, int a, int b) const {
-    const float focus_mm = std::fmin(c_.in_.focus_m, kFarthest_m) * 1e3f;
-    const auto on_plane = [&](const SceneRay<S>& ray) {
-        const S t = (S(focus_mm) + c_.behind_pupil_mm(ray)) / -ray.direction.z;
-        return V2f(static_cast<float>(ray.origin.x + t * ray.direction.x),
-                   static_cast<float>(ray.origin.y + t * ray.direction.y));
-    };
-    const SceneRay<S> one = lane_of(rays.ray, a), other = lane_of(rays.ray, b);
-    // A fisheye's rays that lead backwards never meet the plane: no guess is made about them.
-    if (!(one.direction.z < 0 && other.direction.z < 0)) return false;
-    return (on_plane(one) - on_plane(other)).length() <= c_.in_.tolerance_rad * focus_mm;
-}
-
 template <class V>
 FilmLanding LensCamera::Point<V>::landing(const LensDraw<V>& rays,
                                           const LaneRequest& request) const {
@@ -232,7 +214,6 @@ class LensCamera::LeadPoint {
 
     [[nodiscard]] Rays rays(const LaneRequest&) const;
     [[nodiscard]] Ray ray(const Rays&, int) const { return c_.in_world(lane_of(rays_.ray, lane_)); }
-    [[nodiscard]] bool together(const Rays&, int, int) const { return true; }
     [[nodiscard]] FilmLanding landing(const Rays&, const LaneRequest&) const {
         return c_.in_pixels(landing_, at_.frame_px);
     }
@@ -285,15 +266,13 @@ LensLosses<uint32_t> LensCamera::LeadPoint::losses(uint32_t lanes) const {
 template <class V>
 LensDraw<V> LensCamera::draw(V2f film_mm, V2f u, const Bands& bands) const {
     const bool achromatic = one_ray(bands, in_.dispersion);
-    const bool single = in_.dispersion == DispersionMode::Single && !achromatic;
     LeadPoints points;
     points.film_mm.fill(film_mm);
     points.u.fill(u);
     points.nm = splat8(achromatic ? kLineD : bands.nm[bands.lead]);
     const LeadRays rays = optics_.aim(points, indices_of(points, achromatic));
     const Place place{film_mm, rays.stop_mm[0], bands, achromatic, V2f(1.f)};
-    return Point<V>(*this, place, rays, 0)
-        .rays({single ? only_lane(bands.lead) : bands.on, bands.lead, true});
+    return Point<V>(*this, place, rays, 0).rays({bands.on, bands.lead, true});
 }
 template LensDraw<f4> LensCamera::draw(V2f, V2f, const Bands&) const;
 template LensDraw<d4> LensCamera::draw(V2f, V2f, const Bands&) const;
@@ -337,10 +316,10 @@ void LensCamera::sample_all(std::span<const FilmPoint> points, std::span<const B
         }
     };
     const bool hero = in_.dispersion == DispersionMode::Hero && !achromatic;
-    const bool one = achromatic || in_.dispersion == DispersionMode::Single ||
-                     (hero && std::all_of(points.begin(), points.end(), [](const FilmPoint& p) {
-                          return p.pixel.filter != nullptr;
-                      }));
+    const bool one =
+        achromatic || (hero && std::all_of(points.begin(), points.end(), [](const FilmPoint& p) {
+                           return p.pixel.filter != nullptr;
+                       }));
     if (in_.precision == Precision::Double) return each.template operator()<Point<d4>>();
     if (!one) return each.template operator()<Point<f4>>();
     optics_.trace(at, indices, rays);

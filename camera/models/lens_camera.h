@@ -37,9 +37,7 @@ struct LensCameraInput {
     double film_mm = 0;  ///< z of the film, behind the lens
     double film_width_mm = 36, film_height_mm = 24;
     double entrance_pupil_mm = 0;  ///< its z, at to_world's origin
-    DispersionMode dispersion = DispersionMode::Tolerance;
-    float focus_m = 1;        ///< axial distance at which wavelengths are compared
-    float tolerance_rad = 0;  ///< Tolerance: most angle between directions, seen from the lens
+    DispersionMode dispersion = DispersionMode::Split;
     Coating coating = Coating::Ideal;
     Precision precision = Precision::Float;  ///< of sample()
 };

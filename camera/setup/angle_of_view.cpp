@@ -35,10 +35,4 @@ std::optional<Lens> scaled_to_view(const Lens& lens, float film_height_mm, float
     return Lens(scaled(lens.prescription(), *factor));
 }
 
-double pixel_angle_rad(const Lens& lens, double pixels, double film_width_mm, int width_px) {
-    const double rear_principal_mm =
-        lens.vertex_mm(lens.last()) + first_order(lens, kLineD_nm).rear_principal_mm;
-    return pixels * film_width_mm / width_px / (lens.film_mm() - rear_principal_mm);
-}
-
 }  // namespace petzval

@@ -17,9 +17,4 @@ namespace petzval {
 /// does not see so far to the side.
 [[nodiscard]] std::optional<Lens> scaled_to_view(const Lens&, float film_height_mm, float yfov_rad);
 
-/// Angle in radians between directions that are `pixels` apart on the film, seen from the rear
-/// principal point: there the film is a distance in focus away. The lens is in focus.
-[[nodiscard]] double pixel_angle_rad(const Lens&, double pixels, double film_width_mm,
-                                     int width_px);
-
 }  // namespace petzval

@@ -30,7 +30,7 @@ LensCameraInput input_of(const std::string& name, double fnumber) {
     in.film_width_mm = lens->prescription().image_circle_mm * 0.83;
     in.film_height_mm = in.film_width_mm * 2 / 3;
     in.entrance_pupil_mm = first.entrance_pupil_mm;
-    in.dispersion = DispersionMode::Tolerance;
+    in.dispersion = DispersionMode::Hero;
     return in;
 }
 

@@ -57,13 +57,11 @@ TEST(FilmPoints, TogetherGiveTheBytesOfEachAlone) {
     const Points rgb(false), spectral(true), unfiltered(true, false);
     for (const std::string& name : kLenses)
         for (const DispersionMode mode :
-             {DispersionMode::Shared, DispersionMode::Hero, DispersionMode::Single,
-              DispersionMode::Tolerance, DispersionMode::Split})
+             {DispersionMode::Shared, DispersionMode::Hero, DispersionMode::Split})
             for (const Coating coating : {Coating::Ideal, Coating::MgF2})
                 for (const Points* of : {&rgb, &spectral, &unfiltered}) {
                     LensCameraInput in = input_of(name, mode);
                     in.coating = coating;
-                    in.tolerance_rad = 2e-5f;
                     const LensCamera camera(in);
                     size_t passed = 0;
                     for (size_t first = 0, count = 1; first + count <= of->points.size();

@@ -82,8 +82,7 @@ LensLosses<uint64_t> losses(const LensCameraInput& in, Bands bands) {
         const CameraSample seen = camera.sample(film_point(random.next2(), i), bands);
         uint32_t passed = 0;
         for (size_t k = 0; k < seen.size(); ++k) passed += uint32_t(lane_count(seen[k].lanes));
-        EXPECT_EQ(seen.lanes.drawn,
-                  in.dispersion == DispersionMode::Single ? 1 : lane_count(bands.on));
+        EXPECT_EQ(seen.lanes.drawn, lane_count(bands.on));
         EXPECT_EQ(passed + seen.lanes.lost(), seen.lanes.drawn);
         out += seen.lanes;
     }
@@ -91,8 +90,7 @@ LensLosses<uint64_t> losses(const LensCameraInput& in, Bands bands) {
 }
 
 TEST(LensLosses, AddUpAndTellTheCause) {
-    for (const DispersionMode dispersion :
-         {DispersionMode::Shared, DispersionMode::Split, DispersionMode::Single})
+    for (const DispersionMode dispersion : {DispersionMode::Shared, DispersionMode::Split})
         for (const Precision precision : {Precision::Float, Precision::Double}) {
             LensCameraInput in = input_of(kTakumar, dispersion);
             in.precision = precision;

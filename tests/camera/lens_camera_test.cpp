@@ -245,16 +245,6 @@ TEST(LensCamera, EachWavelengthHasItsOwnIrradiance) {
             }
 }
 
-TEST(LensCamera, SingleIsSplitInTheMean) {
-    const Bands bands = four_wavelengths();
-    const auto found = [&](DispersionMode dispersion) {
-        const LensCamera camera(input_of(kTakumar, {.dispersion = dispersion, .stop_scale = 0.1}));
-        return irradiance(camera, V2f(3, 11), bands, 128);
-    };
-    const Estimate single = found(DispersionMode::Single), split = found(DispersionMode::Split);
-    for (size_t lane = 0; lane < 4; ++lane) EXPECT_TRUE(agree(single[lane], split[lane]));
-}
-
 TEST(LensCamera, AtF4NearlyAllDrawsPassOnTheAxis) {
     for (const std::string& name : {kTakumar, std::string("double-gauss-100mm-f2")})
         for (const ApertureShape& shape :
@@ -307,7 +297,7 @@ TEST(LensCamera, NothingIsNotANumber) {
     for (const std::string& name : {kTakumar, kAnamorphic})
         for (const double scale : {kTakumarFNumber / 64, 1e-7, 1.6, 100.})
             for (const DispersionMode dispersion :
-                 {DispersionMode::Shared, DispersionMode::Split, DispersionMode::Single}) {
+                 {DispersionMode::Shared, DispersionMode::Split}) {
                 const LensCamera camera(input_of(
                     name, {.shape = star(5), .dispersion = dispersion, .stop_scale = scale}));
                 test::Random random(8);

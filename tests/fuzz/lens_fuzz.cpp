@@ -285,10 +285,9 @@ class Trial {
         in.film_mm = lens_.vertex_mm(lens_.last()) +
                      (film_behind_mm > 0 ? film_behind_mm : between(random_, 1, 100));
         in.entrance_pupil_mm = entrance_pupil_mm_;
-        const DispersionMode modes[] = {DispersionMode::Tolerance, DispersionMode::Shared,
-                                        DispersionMode::Split, DispersionMode::Single};
-        in.dispersion = modes[int(random_.next() * 4)];
-        in.tolerance_rad = by_chance(random_, 0.5f) ? 0.f : 1e-4f;
+        const DispersionMode modes[] = {DispersionMode::Shared, DispersionMode::Split,
+                                        DispersionMode::Hero};
+        in.dispersion = modes[int(random_.next() * 3)];
         const LensCamera made(std::move(in));
         ++tally_.cameras;
         Bands bands = Bands::rgb();

@@ -23,7 +23,6 @@ constexpr uint32_t kSeeds = 8, kReferenceSeeds = 4, kFirstReferenceSeed = 1000;
 struct Strategy {
     std::string name;
     DispersionMode mode;
-    float tolerance_px = 0;
     RenderSetup setup{};
     std::vector<Film> films{};
     std::vector<double> cpu_s{};
@@ -150,13 +149,9 @@ int run(int argc, char** argv) {
     std::vector<Strategy> strategies;
     strategies.push_back({"shared", DispersionMode::Shared});
     strategies.push_back({"split", DispersionMode::Split});
-    strategies.push_back({"single", DispersionMode::Single});
     strategies.push_back({"hero", DispersionMode::Hero});
-    for (const float px : {0.03f, 0.1f, 0.3f, 1.f})
-        strategies.push_back({fmt::format("tolerance {}", px), DispersionMode::Tolerance, px});
     for (Strategy& s : strategies) {
         camera.dispersion = s.mode;
-        camera.dispersion_tolerance_px = s.tolerance_px;
         s.setup = set_up_render(request, [](const std::string&) {});
     }
     for (uint32_t seed = 0; seed < kSeeds; ++seed) {
@@ -164,8 +159,8 @@ int run(int argc, char** argv) {
         for (size_t i = 0; i < strategies.size(); ++i)  // the machine's speed drifts
             render_into(strategies[(i + seed) % strategies.size()], job, request.size, crop);
     }
-    Strategy reference{"reference", DispersionMode::Single};
-    camera.dispersion = DispersionMode::Single;
+    Strategy reference{"reference", DispersionMode::Split};
+    camera.dispersion = DispersionMode::Split;
     reference.setup = set_up_render(request, [](const std::string&) {});
     RenderJob long_job = job;
     long_job.end_sample = reference_spp;

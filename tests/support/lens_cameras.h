@@ -61,6 +61,13 @@ inline const std::string kTakumar = "takumar-50mm-f1.2", kGauss = "double-gauss-
     return bands;
 }
 
+/// The lane that leads, and no other.
+[[nodiscard]] inline Bands alone(Bands bands) {
+    bands.on = m4{};
+    bands.on[bands.lead] = -1;
+    return bands;
+}
+
 [[nodiscard]] inline FilmPoint film_point(V2f film, uint32_t index) {
     return {film, Sampler(SamplerKind::Owen, 7, {0, 0, index})};
 }

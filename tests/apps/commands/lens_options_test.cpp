@@ -40,7 +40,7 @@ TEST_F(CliLens, MidGreyIsMidGreyThroughEveryLens) {
          {Words{"--lens", "double-gauss-100mm-f2"},
           Words{"--lens", "double-gauss-100mm-f2", "--fstop", "8", "--aperture", "star:5"},
           Words{"--lens", "schneider-anamorphic-31mm", "--dispersion", "shared"},
-          Words{"--lens", "tessar-100mm-f2.8", "--dispersion", "single"}}) {
+          Words{"--lens", "tessar-100mm-f2.8", "--dispersion", "hero"}}) {
         const Picture p = flat(words);
         for (const char* c : {"R", "G", "B"})
             EXPECT_NEAR(middle(p, c), 1.f, 0.06f) << words[1] << ' ' << c;
@@ -97,8 +97,7 @@ TEST_F(CliLens, OldSpellingsMeanTheSame) {
     const Words lens = {"--lens", "takumar-50mm-f1.2", "--focus", "1", "--spp", "2"};
     const std::pair<Words, Words> pairs[] = {
         {{"--chroma", "split"}, {"--dispersion", "split"}},
-        {{"--chroma=single"}, {"--dispersion", "single"}},
-        {{"--chroma-tolerance", "0.3"}, {"--dispersion-tolerance", "0.3"}},
+        {{"--chroma=hero"}, {"--dispersion", "hero"}},
         {{"--march", "double"}, {"--lens-precision", "double"}},
         {{"--spectral", "hero"}, {"--spectral", "wavelengths"}},
         {{"--spectral=hero"}, {"--spectral", "wavelengths"}}};
@@ -303,7 +302,7 @@ TEST_F(CliLens, StatsTellWhatBecameOfTheLanes) {
     };
     const std::pair<Words, int> cases[] = {
         {{"--lens", "takumar-50mm-f1.2", "--dispersion", "split"}, 4},
-        {{"--lens", "takumar-50mm-f1.2", "--dispersion", "single"}, 1},
+        {{"--lens", "takumar-50mm-f1.2", "--dispersion", "hero"}, 1},
         {{"--lens", "takumar-50mm-f1.2", "--dispersion", "shared"}, 3},
         {{"--lens", "takumar-50mm-f1.2", "--dispersion", "split", "--lens-precision", "double"},
          4}};

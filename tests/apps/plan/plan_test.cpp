@@ -177,7 +177,7 @@ TEST_F(Plans, PredictionsHoldAndAreNotThreeTimesTooCareful) {
                                  : mean.value >= least || test::agrees(mean, least);
     };
     for (const PlanCandidate& c : plan.candidates) {
-        if (c.model == PlanModel::Split || c.model == PlanModel::Tolerance) continue;
+        if (c.model == PlanModel::Split) continue;
         const auto simpler = model(pilot, c.scene);
         pilot.sample(*simpler, samples);
         const Estimate bias = pilot.square({{simpler.get(), 1}, {full.get(), -1}}, *full);
@@ -289,7 +289,7 @@ TEST_F(Plans, ArgumentsThatAreWrongEndWithTwo) {
         {{"plan", scene_, "--tolerance", "%"}, "is not a share"},
         {{"plan", scene_, "--lens", "no-such-lens"}, "no-such-lens"},
         {{"plan", scene_, "--dispersion", "some"},
-         "none of auto, tolerance, shared, split, single"},
+         "none of auto, shared, hero, split"},
         {{"plan", scene_, "--spp", "4"}, "--spp"}};
     for (const auto& [words, part] : cases) {
         const std::string line = error_of(words, 2);
@@ -356,7 +356,6 @@ TEST_F(AutoRender, LooksOnlyWhereItMust) {
     EXPECT_FALSE(piloted(small));
     EXPECT_FALSE(piloted(lens({"--spectral", "rgb"})));
     EXPECT_FALSE(piloted(lens({"--dispersion", "split"})));
-    EXPECT_FALSE(piloted(lens({"--dispersion-tolerance", "0.2"})));
     EXPECT_FALSE(piloted({"--fstop", "2", "--focus", "2", "--size", "500x320", "--spp", "1"}));
 }
 

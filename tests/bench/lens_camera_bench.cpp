@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a draw of the lens camera costs, which share of the draws gets through the lens, and how
-// long a lens takes to set up: at the filed stop and at f/4, in RGB and with four wavelengths.
+// What a sample of the lens camera costs, alone and among eight, which share of them gets through
+// the lens, and how long a lens takes to set up: at the filed stop and at f/4, in each dispersion
+// mode.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -42,31 +43,35 @@ Bands four_wavelengths(float shift) {
     return bands;
 }
 
-void draw(benchmark::State& state, const char* name, double fnumber, bool spectral) {
-    const LensCamera camera(input_of(name, fnumber));
-    const LensCameraInput in = input_of(name, fnumber);
+/// What a render does: samples of `together` film points at once. Time is of one sample.
+void sample(benchmark::State& state, const char* name, double fnumber, DispersionMode mode,
+            size_t together) {
+    LensCameraInput in = input_of(name, fnumber);
+    in.dispersion = mode;
+    const LensCamera camera(in);
+    const Filter filter(FilterKind::BlackmanHarris, 1.5f);
     test::Random random(1);
-    constexpr size_t kDraws = 4096;
-    struct Numbers {
-        V2f film, u;
-        Bands bands;
-    };
-    std::vector<Numbers> numbers(kDraws);
-    for (auto& n : numbers) {
-        n.film =
-            (random.next2() - V2f(0.5f)) * V2f(float(in.film_width_mm), float(in.film_height_mm));
-        n.u = random.next2();
-        n.bands = spectral ? four_wavelengths(random.next()) : Bands::rgb();
-        n.bands.lead = int(random.next() * float(lane_count(n.bands.on)));
+    constexpr size_t kSamples = 4096;
+    std::vector<FilmPoint> points(kSamples);
+    std::vector<Bands> bands(kSamples);
+    for (uint32_t i = 0; i < kSamples; ++i) {
+        const V2f offset = filter.sample(random.next2());
+        points[i] = {random.next2(),
+                     Sampler(SamplerKind::Owen, 0, {0, 0, i}),
+                     {&filter, offset, {480, 320}}};
+        bands[i] = four_wavelengths(random.next());
+        bands[i].lead = int(random.next() * 4);
     }
-    size_t i = 0, passed = 0;
+    std::array<CameraSample, kMostFilmPoints> out;
+    size_t at = 0, passed = 0, all = 0;
     for (auto _ : state) {
-        const Numbers& n = numbers[i++ % kDraws];
-        const auto drawn = camera.draw(n.film, n.u, n.bands);
-        passed += any(drawn.weight > 0.f);
-        benchmark::DoNotOptimize(drawn);
+        camera.sample_all({&points[at], together}, {&bands[at], together}, {out.data(), together});
+        for (size_t i = 0; i < together; ++i) passed += !out[i].empty();
+        all += together;
+        at = (at + together) % kSamples;
     }
-    state.counters["passed"] = double(passed) / double(i);
+    state.SetItemsProcessed(int64_t(all));
+    state.counters["passed"] = double(passed) / double(all);
 }
 
 void set_up(benchmark::State& state, const std::string& name) {
@@ -78,12 +83,15 @@ const bool registered = [] {
     for (const char* name : {"takumar-50mm-f1.2", "double-gauss-100mm-f2", "canon-14mm-f2.8-asph",
                              "schneider-anamorphic-31mm", "minolta-fisheye-16mm-f2.8"})
         for (const double fnumber : {kFiled, 4.})
-            for (const bool spectral : {false, true})
-                benchmark::RegisterBenchmark(
-                    (std::string("draw/") + name + (fnumber > 0 ? "/f4" : "/filed") +
-                     (spectral ? "/spectral" : "/rgb"))
-                        .c_str(),
-                    draw, name, fnumber, spectral);
+            for (const auto& [mode, label] : {std::pair{DispersionMode::Shared, "/shared"},
+                                              {DispersionMode::Hero, "/hero"},
+                                              {DispersionMode::Split, "/split"}})
+                for (const size_t together : {size_t{1}, kMostFilmPoints})
+                    benchmark::RegisterBenchmark(
+                        (std::string("sample/") + name + (fnumber > 0 ? "/f4" : "/filed") + label +
+                         "/" + std::to_string(together))
+                            .c_str(),
+                        sample, name, fnumber, mode, together);
     for (const LensSummary& lens : list_lenses())
         benchmark::RegisterBenchmark(("set_up/" + lens.name).c_str(), set_up, lens.name)
             ->Unit(benchmark::kMillisecond);

@@ -288,8 +288,7 @@ TEST_F(Plans, ArgumentsThatAreWrongEndWithTwo) {
         {{"plan", scene_, "--tolerance", "101%"}, "is not a share such as 1% or 0.01"},
         {{"plan", scene_, "--tolerance", "%"}, "is not a share"},
         {{"plan", scene_, "--lens", "no-such-lens"}, "no-such-lens"},
-        {{"plan", scene_, "--dispersion", "some"},
-         "none of auto, shared, hero, split"},
+        {{"plan", scene_, "--dispersion", "some"}, "none of auto, shared, hero, split"},
         {{"plan", scene_, "--spp", "4"}, "--spp"}};
     for (const auto& [words, part] : cases) {
         const std::string line = error_of(words, 2);

@@ -34,8 +34,10 @@ ModeChoice choose_mode(const PlanRequest& request, const RenderSetup& first,
     const Pilot pilot(request.scene.size,
                       static_cast<int>(std::clamp<double>(pixels, kFewestPixels, kMostPixels)),
                       executor);
+    RenderJob job = request.job;
+    job.replicates = 1;  // those of spectra would leave two samples to each
     const auto sampled = [&](DispersionMode mode) {
-        auto model = pilot.model(with(mode), request.job, request.path);
+        auto model = pilot.model(with(mode), job, request.path);
         pilot.sample(*model, kSamples);
         return model;
     };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "apps/plan/plan_types.h"
 #include "integrator/executor.h"
@@ -23,11 +24,17 @@ struct ModeChoice {
     SceneRequest scene;                 ///< the request with the first of them
 
     [[nodiscard]] DispersionMode mode() const { return by_effort[0].mode; }
+    /// Effort of the other over that; nothing where no noise was seen.
+    [[nodiscard]] std::optional<double> effort_of_next() const {
+        if (!(by_effort[0].effort > 0)) return std::nullopt;
+        return by_effort[1].effort / by_effort[0].effort;
+    }
 };
 
-/// Mode for a setup through a lens that disperses, by a pilot of a quarter of a sample for
-/// each pixel of the frame, but 16,384 samples at least and 65,536 at most. It follows from scene,
-/// camera and frame alone: neither samples nor seed nor crop matter.
+/// Mode for a setup through a lens that disperses, by a pilot of about a quarter of a sample for
+/// each pixel of the frame, within 16,384 to 65,536 samples where there are pixels enough. It
+/// follows from the scene and how its frame is rendered: neither the number of samples nor seed nor
+/// crop matter.
 [[nodiscard]] ModeChoice choose_mode(const PlanRequest&, const RenderSetup& first, TbbExecutor&);
 
 }  // namespace petzval

@@ -51,7 +51,7 @@ double PilotModel::rays_per_sample() const {
 double PilotModel::lens_rays() const {
     if (stats_.lens_lanes.drawn == 0) return 0;
     if (!setup_.view.observer.spectral()) return 1;
-    switch (setup_.from.camera.asked.dispersion.value_or(DispersionMode::Split)) {
+    switch (setup_.from.camera.dispersion()) {
         case DispersionMode::Shared:
             return 1;
         case DispersionMode::Hero:

@@ -47,6 +47,8 @@ Plan plan_with_bins(const PlanRequest& request, const RenderSetup& first, TbbExe
     Plan plan = make_plan(resolved, executor, notice, most_samples);
     plan.dispersion_px = found.dispersion_px;
     plan.measured_mode = found.mode();
+    plan.next_mode = found.by_effort[1].mode;
+    plan.effort_of_next = found.effort_of_next();
     return plan;
 }
 
@@ -155,7 +157,7 @@ AutoSetup set_up_planned(const PlanRequest& request, TbbExecutor& executor, cons
         other = found.scene;
         choice.dispersion = found.mode();
         choice.dispersion_px = found.dispersion_px;
-        choice.effort_of_next = found.by_effort[1].effort / found.by_effort[0].effort;
+        choice.effort_of_next = found.effort_of_next();
         choice.next = found.by_effort[1].mode;
     }
     out.setup = other ? replaced(first, *other, executor) : std::move(first);

@@ -25,10 +25,12 @@ struct Plan {
     std::optional<double> dispersion_px;
     /// Set where spectra are asked for: the mode that choose_mode() found.
     std::optional<DispersionMode> measured_mode;
-    double bias = 0, noise = 0;  ///< predicted, of what was chosen with `samples`
-    double first_noise = 0;      ///< with one sample
-    uint64_t samples = 0;        ///< of each pixel
-    double cpu_s = 0;            ///< about what the samples take here
+    DispersionMode next_mode = DispersionMode::Split;  ///< the other one
+    std::optional<double> effort_of_next;  ///< its time to the same noise, over that of the first
+    double bias = 0, noise = 0;            ///< predicted, of what was chosen with `samples`
+    double first_noise = 0;                ///< with one sample
+    uint64_t samples = 0;                  ///< of each pixel
+    double cpu_s = 0;                      ///< about what the samples take here
 
     [[nodiscard]] double error() const { return std::hypot(bias, noise); }
     /// The candidate of a model; nullptr where it was none.

@@ -30,6 +30,15 @@ std::string dispersion_text(const std::string& lens, double px) {
     return fmt::format("dispersion of {} spreads {:.2g} px", lens, px);
 }
 
+// What the mode that was not taken would take.
+std::string effort_text(DispersionMode next, const std::optional<double>& effort_of_next) {
+    if (!effort_of_next) return "";
+    constexpr double kMost = 100;
+    return fmt::format(
+        "; to the same noise {} would take {} times as long", name_of(next),
+        *effort_of_next < kMost ? fmt::format("about {:.2g}", *effort_of_next) : "over 100");
+}
+
 // Text of what depends on wavelength, without the lens where the plan replaces it.
 std::string dependence(const Plan& plan) {
     std::vector<WavelengthReason> reasons = plan.requested.spectral.reasons;
@@ -80,11 +89,12 @@ PlanLine dispersion_line(const Plan& plan) {
     if (plan.measured_mode)
         return {"dispersion",
                 name_of(*plan.measured_mode),
-                dispersion_text(report.dispersive_lens, *plan.dispersion_px),
+                dispersion_text(report.dispersive_lens, *plan.dispersion_px) +
+                    effort_text(plan.next_mode, plan.effort_of_next),
                 {}};
     if (!plan.dispersion_open)
         return {"dispersion",
-                name_of(asked.value_or(DispersionMode::Hero)),
+                name_of(report.dispersion()),
                 asked ? "it was asked for" : "spectra are asked for",
                 {}};
     const PlanCandidate *shared = plan.find(PlanModel::Shared), *hero = plan.find(PlanModel::Hero);
@@ -161,21 +171,10 @@ std::vector<PlanOption> options_of(const Plan& plan) {
     return out;
 }
 
-namespace {
-
-// What the mode that was not taken would take.
-std::string effort_text(const AutoChoice& choice) {
-    if (!choice.effort_of_next) return "";
-    return fmt::format("; to the same noise {} would take {:.2g} times as long",
-                       name_of(choice.next), *choice.effort_of_next);
-}
-
-}  // namespace
-
 std::string reason_of(const AutoChoice& choice) {
     std::string why;
     if (choice.dispersion) why = dispersion_text(choice.dispersive_lens, choice.dispersion_px);
-    if (choice.candidates.empty()) return why + effort_text(choice);
+    if (choice.candidates.empty()) return why + effort_text(choice.next, choice.effort_of_next);
     const auto refused = [&] {
         // Shared rays are the last but the fullest model where they were compared at all.
         const size_t last_simpler = choice.candidates.size() - 2;
@@ -184,7 +183,8 @@ std::string reason_of(const AutoChoice& choice) {
     std::string found =
         choice.taken ? at_most(choice.candidates[*choice.taken].predicted()) : refused();
     if (choice.taken && choice.dispersion_compared) found = "one ray for all wavelengths, " + found;
-    return (why.empty() ? found : why + ": " + found) + effort_text(choice);
+    return (why.empty() ? found : why + ": " + found) +
+           effort_text(choice.next, choice.effort_of_next);
 }
 
 std::optional<std::string> line_of(const AutoChoice& choice) {

@@ -29,8 +29,7 @@ void describe_glass(const CameraReport& c, PictureLayout& layout) {
     m.emplace_back("petzval:coating", name_of(c.asked.coating));
     m.emplace_back("petzval:lensPrecision", name_of(c.asked.precision));
     m.emplace_back("petzval:fit", name_of(c.asked.fit));
-    m.emplace_back("petzval:dispersion",
-                   name_of(c.asked.dispersion.value_or(DispersionMode::Hero)));
+    m.emplace_back("petzval:dispersion", name_of(c.dispersion()));
 }
 
 }  // namespace

@@ -154,7 +154,8 @@ LensSetup set_up_lens(const CameraRequest& asked, const LoadedLens& loaded, cons
         setup.film_mm = in.film_mm;
         lens = in.lens;
         promised = paraxial_irradiance(*lens, iris.area_mm2());
-        in.dispersion = asked.dispersion.value_or(DispersionMode::Hero);
+        in.dispersion = asked.dispersion.value_or(loaded.disperses() ? DispersionMode::Hero
+                                                                     : DispersionMode::Shared);
         in.coating = asked.coating;
         in.precision = asked.precision;
         camera = std::make_unique<LensCamera>(std::move(in));

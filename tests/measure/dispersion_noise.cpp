@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the ways to carry wavelengths through a lens cost and bring, as a table: CPU time a sample,
 // noise, bias, and efficiency 1 / (mean square error * CPU time) at the samples asked for. All in
-// one run on one thread, turn by turn. The reference is rendered with one wavelength a path, other
-// seeds and many samples, and its own variance is taken off what is called bias.
+// one run on one thread, turn by turn. The reference is rendered with split rays, other seeds and
+// many samples, and its own variance is taken off what is called bias.
 //
 //   dispersion_noise SCENE --lens NAME [--fstop ...] [--focus ...] [--size ...] [--crop ...] [--spp
 //   ...]

@@ -332,6 +332,26 @@ TEST_F(AutoRender, KeepsWavelengthsApartWhereTheToleranceIsTight) {
     EXPECT_EQ(read_picture(path("auto.exr")).pixels, read_picture(path("asked.exr")).pixels);
 }
 
+// An even sky has no noise but that of the weights: a hero ray's are uneven.
+TEST_F(AutoRender, SplitsRaysWhereAHeroRayIsNoisier) {
+    const Words sky = {
+        "--lens",      "takumar-50mm-f1.2", "--focus",    "10",          "--background", "1,1,1",
+        "--look-at",   "0,0,0,0,9,0.1",     "--size",     "600x400",     "--spp",        "1",
+        "--tolerance", "0.0001%",           "--spectral", "wavelengths", "--crop",       "0,0,2,2"};
+    const std::string text = said(sky);
+    EXPECT_NE(text.find("dispersion: split, as dispersion of takumar"), std::string::npos) << text;
+    EXPECT_NE(text.find("; to the same noise hero would take about "), std::string::npos) << text;
+}
+
+TEST_F(AutoRender, SaysNothingOfNoiseWhereAllIsBlack) {
+    Words dark = lens({"--look-at", "0,0,0,0,9,0.1", "--spectral", "wavelengths", "--tolerance",
+                       "0.0001%", "--crop", "0,0,2,2"});
+    dark[5] = "64x40";
+    const std::string text = said(dark);
+    EXPECT_NE(text.find("dispersion: hero, as dispersion of cooke"), std::string::npos) << text;
+    EXPECT_EQ(text.find("noise"), std::string::npos) << text;
+}
+
 // What is decided is a matter of the frame, not of the samples, the seed, the threads or the crop.
 TEST_F(AutoRender, DecidesTheSameForEveryPartOfTheFrame) {
     const std::string whole = said(lens(), "whole.exr");
@@ -343,7 +363,8 @@ TEST_F(AutoRender, DecidesTheSameForEveryPartOfTheFrame) {
     EXPECT_EQ(read_picture(path("part.exr")).pixels, read_picture(path("whole.exr")).pixels);
 }
 
-// No pilot where there is nothing to decide, for a thumbnail, or where all was asked for.
+// No test of simpler models where there is nothing to decide, for a thumbnail, or where all was
+// asked for.
 TEST_F(AutoRender, LooksOnlyWhereItMust) {
     const auto piloted = [&](const Words& words) {
         static_cast<void>(said(words));

@@ -14,8 +14,8 @@ struct Spelling {
 };
 
 /// The arguments of the command line with today's names in place of those that options had until
-/// November 2026: --chroma, --march, --spectral hero, --axis chroma. They stay
-/// for one release and are not in --help.
+/// November 2026: --chroma, --march, --spectral hero, --axis chroma. They stay for one
+/// release and are not in --help.
 [[nodiscard]] Spelling with_current_spellings(int argc, const char* const* argv);
 
 }  // namespace petzval

@@ -25,8 +25,7 @@ ModeChoice choose_mode(const PlanRequest& request, const RenderSetup& first,
     out.scene.spectral.mode = SpectralMode::Wavelengths;
     const auto with = [&](DispersionMode mode) {
         out.scene.camera.dispersion = mode;
-        return executor.inside(
-            [&] { return set_up_view(first, out.scene, [](const std::string&) {}); });
+        return view_of(first, out.scene, executor);
     };
     // A quarter of a sample for each pixel of the frame, within bounds.
     const double pixels =

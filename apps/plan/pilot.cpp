@@ -29,6 +29,10 @@ Estimate mean_of(const std::vector<double>& values) {
 
 }  // namespace
 
+RenderSetup view_of(const RenderSetup& first, const SceneRequest& scene, TbbExecutor& executor) {
+    return executor.inside([&] { return set_up_view(first, scene, [](const std::string&) {}); });
+}
+
 PilotModel::PilotModel(RenderSetup setup, const RenderJob& job, const PathOptions& options,
                        size_t pixels)
     : setup_(std::move(setup)),

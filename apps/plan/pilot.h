@@ -14,6 +14,9 @@
 
 namespace petzval {
 
+/// Another view of a scene that is set up, without notices.
+[[nodiscard]] RenderSetup view_of(const RenderSetup& first, const SceneRequest&, TbbExecutor&);
+
 /// Independent replicates of the sampler in each pixel: what they have in common is no noise.
 inline constexpr uint32_t kPilotReplicates = 4;
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "apps/plan/mode_choice.h"
+#include "apps/plan/pilot.h"
 #include "apps/plan/plan_comparison.h"
 #include "apps/setup/equivalent_camera.h"
 #include "io/base/error.h"
@@ -34,21 +34,15 @@ size_t cheapest(const std::vector<PlanCandidate>& all, double tolerance) {
     return best;
 }
 
-RenderSetup view_of(const RenderSetup& first, const SceneRequest& scene, TbbExecutor& executor) {
-    return executor.inside([&] { return set_up_view(first, scene, [](const std::string&) {}); });
-}
-
 // Plan for spectra through a lens: nothing is left out of them, and only the mode is chosen.
 Plan plan_with_bins(const PlanRequest& request, const RenderSetup& first, TbbExecutor& executor,
                     const Notice& notice, double most_samples) {
-    const ModeChoice found = choose_mode(request, first, executor);
+    ModeChoice found = choose_mode(request, first, executor);
     PlanRequest resolved = request;
     resolved.scene.camera.dispersion = found.mode();
     Plan plan = make_plan(resolved, executor, notice, most_samples);
     plan.dispersion_px = found.dispersion_px;
-    plan.measured_mode = found.mode();
-    plan.next_mode = found.by_effort[1].mode;
-    plan.effort_of_next = found.effort_of_next();
+    plan.measured_mode = std::move(found);
     return plan;
 }
 
@@ -153,12 +147,10 @@ AutoSetup set_up_planned(const PlanRequest& request, TbbExecutor& executor, cons
     }
     if (open.dispersion_mode) choice.dispersive_lens = first.from.camera.dispersive_lens;
     if (open.dispersion_mode && !other) {
-        const ModeChoice found = choose_mode(request, first, executor);
-        other = found.scene;
-        choice.dispersion = found.mode();
-        choice.dispersion_px = found.dispersion_px;
-        choice.effort_of_next = found.effort_of_next();
-        choice.next = found.by_effort[1].mode;
+        choice.measured_mode = choose_mode(request, first, executor);
+        other = choice.measured_mode->scene;
+        choice.dispersion = choice.measured_mode->mode();
+        choice.dispersion_px = choice.measured_mode->dispersion_px;
     }
     out.setup = other ? replaced(first, *other, executor) : std::move(first);
     out.setup.from.spectral.predicted_error = predicted_error;

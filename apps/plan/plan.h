@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "apps/plan/mode_choice.h"
 #include "apps/plan/plan_types.h"
 #include "integrator/executor.h"
 
@@ -24,13 +25,11 @@ struct Plan {
     /// RMS lateral dispersion in pixels, where it was measured.
     std::optional<double> dispersion_px;
     /// Set where spectra are asked for: the mode that choose_mode() found.
-    std::optional<DispersionMode> measured_mode;
-    DispersionMode next_mode = DispersionMode::Split;  ///< the other one
-    std::optional<double> effort_of_next;  ///< its time to the same noise, over that of the first
-    double bias = 0, noise = 0;            ///< predicted, of what was chosen with `samples`
-    double first_noise = 0;                ///< with one sample
-    uint64_t samples = 0;                  ///< of each pixel
-    double cpu_s = 0;                      ///< about what the samples take here
+    std::optional<ModeChoice> measured_mode;
+    double bias = 0, noise = 0;  ///< predicted, of what was chosen with `samples`
+    double first_noise = 0;      ///< with one sample
+    uint64_t samples = 0;        ///< of each pixel
+    double cpu_s = 0;            ///< about what the samples take here
 
     [[nodiscard]] double error() const { return std::hypot(bias, noise); }
     /// The candidate of a model; nullptr where it was none.
@@ -48,12 +47,9 @@ struct AutoChoice {
     std::optional<DispersionMode> dispersion;
     double dispersion_px = 0;
     std::string dispersive_lens;
-    /// Time to the same noise by the next best mode, over that by the one taken, where they were
-    /// measured.
-    std::optional<double> effort_of_next;
-    DispersionMode next = DispersionMode::Split;
-    bool dispersion_compared = false;       ///< sharing one ray is a candidate
-    std::vector<PlanCandidate> candidates;  ///< empty where nothing was measured
+    std::optional<ModeChoice> measured_mode;  ///< where choose_mode() was asked
+    bool dispersion_compared = false;         ///< sharing one ray is a candidate
+    std::vector<PlanCandidate> candidates;    ///< empty where nothing was measured
     /// Index among the candidates of the simpler model that was taken; absent where none was.
     std::optional<size_t> taken;
 };

@@ -80,7 +80,7 @@ void PlanComparison::amplify_dispersion() {
 }
 
 RenderSetup PlanComparison::open(const SceneRequest& scene) const {
-    return executor_.inside([&] { return set_up_view(first_, scene, [](const std::string&) {}); });
+    return view_of(first_, scene, executor_);
 }
 
 std::unique_ptr<PilotModel> PlanComparison::model(const SceneRequest& scene) const {

@@ -31,12 +31,13 @@ std::string dispersion_text(const std::string& lens, double px) {
 }
 
 // What the mode that was not taken would take.
-std::string effort_text(DispersionMode next, const std::optional<double>& effort_of_next) {
-    if (!effort_of_next) return "";
+std::string effort_text(const std::optional<ModeChoice>& found) {
+    const auto effort = found ? found->effort_of_next() : std::nullopt;
+    if (!effort) return "";
     constexpr double kMost = 100;
-    return fmt::format(
-        "; to the same noise {} would take {} times as long", name_of(next),
-        *effort_of_next < kMost ? fmt::format("about {:.2g}", *effort_of_next) : "over 100");
+    return fmt::format("; to the same noise {} would take {} times as long",
+                       name_of(found->by_effort[1].mode),
+                       *effort < kMost ? fmt::format("about {:.2g}", *effort) : "over 100");
 }
 
 // Text of what depends on wavelength, without the lens where the plan replaces it.
@@ -88,9 +89,9 @@ PlanLine dispersion_line(const Plan& plan) {
         return {"dispersion", "shared", "RGB goes along one ray", {}};
     if (plan.measured_mode)
         return {"dispersion",
-                name_of(*plan.measured_mode),
+                name_of(plan.measured_mode->mode()),
                 dispersion_text(report.dispersive_lens, *plan.dispersion_px) +
-                    effort_text(plan.next_mode, plan.effort_of_next),
+                    effort_text(plan.measured_mode),
                 {}};
     if (!plan.dispersion_open)
         return {"dispersion",
@@ -167,14 +168,14 @@ std::vector<PlanOption> options_of(const Plan& plan) {
     if (plan.anything_open)
         set("--spectral", plan.chosen == PlanModel::Rgb ? "rgb" : "wavelengths");
     if (plan.dispersion_open) set("--dispersion", name_of(*camera.dispersion));
-    if (plan.measured_mode) set("--dispersion", name_of(*plan.measured_mode));
+    if (plan.measured_mode) set("--dispersion", name_of(plan.measured_mode->mode()));
     return out;
 }
 
 std::string reason_of(const AutoChoice& choice) {
     std::string why;
     if (choice.dispersion) why = dispersion_text(choice.dispersive_lens, choice.dispersion_px);
-    if (choice.candidates.empty()) return why + effort_text(choice.next, choice.effort_of_next);
+    if (choice.candidates.empty()) return why + effort_text(choice.measured_mode);
     const auto refused = [&] {
         // Shared rays are the last but the fullest model where they were compared at all.
         const size_t last_simpler = choice.candidates.size() - 2;
@@ -183,8 +184,7 @@ std::string reason_of(const AutoChoice& choice) {
     std::string found =
         choice.taken ? at_most(choice.candidates[*choice.taken].predicted()) : refused();
     if (choice.taken && choice.dispersion_compared) found = "one ray for all wavelengths, " + found;
-    return (why.empty() ? found : why + ": " + found) +
-           effort_text(choice.next, choice.effort_of_next);
+    return (why.empty() ? found : why + ": " + found) + effort_text(choice.measured_mode);
 }
 
 std::optional<std::string> line_of(const AutoChoice& choice) {

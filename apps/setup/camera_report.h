@@ -21,11 +21,8 @@ struct CameraReport {
     std::optional<bool> natural_vignetting;  ///< where asked for, or photographic exposure decides
     CameraRequest asked;  ///< the user's request, and the file's where that is silent
 
-    /// How wavelengths pass through the lens where nothing chose it: along one ray if its glass
-    /// does not disperse.
     [[nodiscard]] DispersionMode dispersion() const {
-        return asked.dispersion.value_or(dispersive_lens.empty() ? DispersionMode::Shared
-                                                                 : DispersionMode::Hero);
+        return asked.dispersion_by(!dispersive_lens.empty());
     }
     [[nodiscard]] FocusPlane focus_plane() const {
         return {eye, (target - eye).normalized(), focus_m};

@@ -154,8 +154,7 @@ LensSetup set_up_lens(const CameraRequest& asked, const LoadedLens& loaded, cons
         setup.film_mm = in.film_mm;
         lens = in.lens;
         promised = paraxial_irradiance(*lens, iris.area_mm2());
-        in.dispersion = asked.dispersion.value_or(loaded.disperses() ? DispersionMode::Hero
-                                                                     : DispersionMode::Shared);
+        in.dispersion = asked.dispersion_by(loaded.disperses());
         in.coating = asked.coating;
         in.precision = asked.precision;
         camera = std::make_unique<LensCamera>(std::move(in));

@@ -67,7 +67,7 @@ struct CameraRequest {
     std::optional<std::string> aperture;  ///< as parse_aperture reads it
     ApertureScale aperture_scale = ApertureScale::EqualArea;
     std::optional<IrisSampling> iris_sampling;
-    std::optional<DispersionMode> dispersion;  ///< absent: Hero, or as a plan finds
+    std::optional<DispersionMode> dispersion;  ///< absent: as a plan finds, or dispersion_by()
     Coating coating = Coating::Ideal;
     Precision precision = Precision::Float;
     ExposureMode exposure = ExposureMode::Normalised;
@@ -76,6 +76,12 @@ struct CameraRequest {
     /// Fall-off to the corners of lenses that are not traced; absent: with photographic exposure.
     std::optional<bool> natural_vignetting;
     std::vector<std::filesystem::path> glasses;  ///< catalogues that go before those that ship
+
+    /// How wavelengths pass through the lens where no plan chooses: along one ray if its glass does
+    /// not disperse.
+    [[nodiscard]] DispersionMode dispersion_by(bool glass_disperses) const {
+        return dispersion.value_or(glass_disperses ? DispersionMode::Hero : DispersionMode::Shared);
+    }
 };
 
 enum class SpectralMode : uint8_t { Auto, Rgb, Wavelengths };

@@ -159,8 +159,7 @@ ThinSetup set_up_thin(const CameraModel& model, const ThinView& view, ThinLens l
             AberratedLens glass{lens.to_world,   singlet_of(*single, setup.focal_mm),
                                 std::move(iris), double(*focus_m),
                                 lens.yfov_rad,   lens.aspect};
-            glass.dispersion = asked.dispersion.value_or(
-                model.dispersive_lens().empty() ? DispersionMode::Shared : DispersionMode::Hero);
+            glass.dispersion = asked.dispersion_by(!model.dispersive_lens().empty());
             glass.exposure = lens.exposure;
             glass.vignetting = lens.vignetting;
             warn_of_formula(glass.singlet, model, focus_mm, glass.iris.bounding_radius_mm(),

@@ -9,13 +9,20 @@
 
 namespace petzval {
 
+/// A sample without paths yet: what the rays lost, and the exposure.
+template <LensPoint P, class Rays>
+[[nodiscard]] CameraSample begun_sample(const P& lens, const Rays& rays) {
+    CameraSample out;
+    out.lanes = rays.losses;
+    out.exposure = lens.exposure();
+    return out;
+}
+
 /// One ray for all lanes; `lens` gives them all the same.
 template <LensPoint P>
 [[nodiscard]] CameraSample share_ray(const P& lens, int lead, m4 on) {
     const auto rays = lens.rays({on, lead, true});
-    CameraSample out;
-    out.lanes = rays.losses;
-    out.exposure = lens.exposure();
+    CameraSample out = begun_sample(lens, rays);
     const f4 weight = rays.weight_of_lanes();
     const m4 passed = weight > 0;
     int first = 0;
@@ -32,9 +39,7 @@ template <LensPoint P>
 template <LensPoint P>
 [[nodiscard]] CameraSample split_rays(const P& lens, int lead, m4 on) {
     const auto rays = lens.rays({on, lead, true});
-    CameraSample out;
-    out.lanes = rays.losses;
-    out.exposure = lens.exposure();
+    CameraSample out = begun_sample(lens, rays);
     const f4 weight = rays.weight_of_lanes();
     for (int lane = 0; lane < 4; ++lane) {
         if (!(weight[lane] > 0)) continue;
@@ -52,9 +57,7 @@ template <LensPoint P>
 [[nodiscard]] CameraSample hero_ray(const P& lens, int lead, m4 on, const PixelFilter& pixel) {
     const LaneRequest request{only_lane(lead), lead, false};
     const auto rays = lens.rays(request);
-    CameraSample out;
-    out.lanes = rays.losses;
-    out.exposure = lens.exposure();
+    CameraSample out = begun_sample(lens, rays);
     const float of_lead = rays.weight_of_lanes()[lead];
     if (!(of_lead > 0)) return out;
     const FilmLanding landing = lens.landing(rays, request);

@@ -74,10 +74,7 @@ class LensOptics {
     /// film_mm: its z, behind the lens. Film points are within film_reach_mm of the axis.
     LensOptics(std::shared_ptr<const Lens>, Iris, Coating, double film_mm, double film_reach_mm);
 
-    [[nodiscard]] const Lens& lens() const { return *lens_; }
-    [[nodiscard]] const Iris& iris() const { return iris_; }
     [[nodiscard]] const RayAimer& aimer() const { return aimer_; }
-    [[nodiscard]] Coating coating() const { return coating_; }
     [[nodiscard]] StopDraw stop_at(V2f film_mm) const {
         return {iris_, bounds_.at(film_mm.length()), film_mm};
     }

@@ -19,7 +19,6 @@ void check_output(const std::filesystem::path& path, const DisplayOptions& displ
         throw OutputError(path.string(), "",
                           fmt::format("a JPEG has {} pixels on a side at most; write .png or .exr",
                                       kLargestJpegSide_px));
-    check_image_codec();
     check_writable(path);
 }
 

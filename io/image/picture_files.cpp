@@ -4,8 +4,6 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
-#include <system_error>
-
 #include "io/base/error.h"
 #include "io/base/machine.h"
 #include "io/base/printable.h"
@@ -71,12 +69,6 @@ void write_exr(const std::filesystem::path& path, const PictureRows& picture) {
 
 void write_8bit(const std::filesystem::path& path, const PictureRows& encoded, bool srgb) {
     image_codec().write_8bit(path, encoded, srgb);
-}
-
-void check_image_codec() {
-    const std::filesystem::path path = module_path();
-    std::error_code error;
-    if (!std::filesystem::exists(path, error)) throw cannot_load(path, "it is not there");
 }
 
 void load_image_codec() {

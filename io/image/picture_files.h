@@ -37,10 +37,8 @@ void write_exr(const std::filesystem::path&, const PictureRows&);
 /// display. Throws InputError where it cannot be written.
 void write_8bit(const std::filesystem::path&, const PictureRows& encoded, bool srgb = true);
 
-/// Checks early, before hours of work, that the module is there, without loading it. Throws
-/// InputError.
-void check_image_codec();
-/// Loads the module, a sixth of a second of CPU time. Throws InputError where it cannot be loaded.
+/// Loads the module, a sixth of a second of CPU time: early, before hours of work, to learn whether
+/// it can be loaded. Throws InputError where it cannot.
 void load_image_codec();
 
 /// Limits the threads that OpenEXR starts, which otherwise are as many as this process can run at

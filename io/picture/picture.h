@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures on disk: EXR, Radiance, PNG, JPEG and WebP in (io/picture/picture_kind.h), EXR, PNG and
-// JPEG out.
+// Pictures in memory.
 #pragma once
 
 #include <functional>

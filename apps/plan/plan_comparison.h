@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "apps/plan/pilot.h"
@@ -13,9 +14,9 @@ namespace petzval {
 /// Comparison of models by a pilot. What the constructor takes must outlive it.
 class PlanComparison {
   public:
-    /// The fullest model is what the setup shows with one ray for each wavelength; pixels: about so
-    /// many are rendered.
-    PlanComparison(const PlanRequest&, const RenderSetup&, const PlanOpen&, int pixels,
+    /// The fullest model is what the setup shows with one ray for each wavelength; looks: about so
+    /// many pixels are rendered, where things that a few pixels hold have looks of their own.
+    PlanComparison(const PlanRequest&, const RenderSetup&, const PlanOpen&, int looks,
                    TbbExecutor&);
 
     /// Adds cameras without glass, and without an iris, in place of the setup's.
@@ -42,15 +43,21 @@ class PlanComparison {
         PlanCandidate found;
         const PilotModel* model;
         std::vector<PilotTerm> difference;  ///< from the fullest
+        double unseen;                      ///< Looks::unseen()
         std::unique_ptr<PilotModel> own;    ///< the model, unless it is one of the others'
     };
 
     [[nodiscard]] RenderSetup open(const SceneRequest&) const;
     [[nodiscard]] std::unique_ptr<PilotModel> model(const SceneRequest&) const;
     [[nodiscard]] std::unique_ptr<PilotModel> amplified(const SceneRequest&) const;
+    void choose_looks(int wanted);
     void amplify_dispersion();
-    void add(PlanModel, const SceneRequest&);
+    void add(PlanModel, const SceneRequest&, const FilmMap& most);
+    void add_camera(PlanModel, const SceneRequest&);
     void evaluate();
+    [[nodiscard]] PilotScale scale_of(const PilotModel&, double floor) const;
+    /// What may be missed beside what pixels that were not looked at hold.
+    [[nodiscard]] double missed(PlanModel, const RareLight&) const;
     [[nodiscard]] bool all_known(bool thorough) const;
 
     const PlanRequest& request_;
@@ -58,13 +65,18 @@ class PlanComparison {
     PlanOpen open_;
     SceneRequest full_scene_, shared_scene_;
     TbbExecutor& executor_;
-    Pilot pilot_;
+    std::vector<Thing> things_;
+    std::vector<FilmRegion> regions_;
+    std::vector<SeenLamp> lamps_;
+    FilmMap dispersed_;  ///< most error of rays that do not disperse
+    std::optional<Pilot> pilot_;
     std::unique_ptr<PilotModel> full_, shared_;
     const PilotModel* scale_ = nullptr;  ///< what errors are relative to
     std::vector<PilotTerm> minus_full_;
     std::vector<Entry> entries_;
     double dispersion_px_ = 0;
-    float factor_ = 1;  ///< by which full_ disperses more than the fullest model
+    bool glass_disperses_ = false;  ///< of a material
+    float factor_ = 1;              ///< by which full_ disperses more than the fullest model
 };
 
 }  // namespace petzval

@@ -16,8 +16,7 @@ namespace {
 // Words for a candidate that was not taken.
 std::string off(const PlanCandidate& c) {
     if (c.outside)
-        return fmt::format("{} would be off by {}", name_of(c.model),
-                           percent(std::sqrt(c.square_bias.mean)));
+        return fmt::format("{} would be off by {}", name_of(c.model), percent(c.found()));
     return c.inside ? fmt::format("{} would need more samples", name_of(c.model))
                     : fmt::format("{} may be off by {}", name_of(c.model), percent(c.predicted()));
 }
@@ -135,6 +134,18 @@ std::string name_of(PlanModel model) {
             break;
     }
     return "full";
+}
+
+std::string rare_text(const Plan& plan) {
+    if (!plan.noise_at_least) return "";
+    const RareLight& rare = plan.rare;
+    if (rare.noise > 0)
+        return fmt::format("{} of {:.2g} mm at most: few paths find {}",
+                           rare.lamps == 1 ? "a lamp" : fmt::format("{} lamps", rare.lamps),
+                           1e3 * rare.largest_lamp_m, rare.lamps == 1 ? "it" : "them");
+    if (rare.caustic) return "surfaces lit by lamps through glass or mirrors: few paths find them";
+    if (rare.mirrored) return "lamps seen through glass or mirrors: few paths find them";
+    return "few paths hold most of the noise";
 }
 
 std::vector<PlanLine> lines_of(const Plan& plan) {

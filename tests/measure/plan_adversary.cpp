@@ -31,7 +31,7 @@ using test::PlanScene;
 struct Settings {
     uint32_t first = 0, count = 300;
     int threads = 2;
-    double truth_samples = 2.5e6;  ///< of bias and of noise each
+    double truth_samples = 5e6;  ///< of bias and of noise each
     double plan_samples = 4e6;
     std::string csv, save;
 };
@@ -244,7 +244,10 @@ void save(const Settings& s) {
         const auto folder = std::filesystem::path(s.save) / fmt::format("{}_{}", i, scene.kind);
         std::filesystem::create_directories(folder);
         static_cast<void>(scene.save(folder));
-        fmt::print("{} {}\n", (folder / "scene.gltf").string(), scene.options());
+        const std::vector<TruthPixel> pixels = truth_pixels(scene);
+        fmt::print("{} {}  # {} pixels matter\n", (folder / "scene.gltf").string(), scene.options(),
+                   std::count_if(pixels.begin(), pixels.end(),
+                                 [](const TruthPixel& p) { return p.matters; }));
     }
 }
 

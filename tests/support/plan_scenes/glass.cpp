@@ -7,12 +7,12 @@ namespace {
 
 constexpr float kTiny = 0.001f;  ///< dispersion of decoys
 
-/// A glass that sends colours far apart, or hardly.
+/// A glass that sends colours far apart, or hardly where a decoy shows it.
 struct PlanGlass {
     float ior, dispersion;
-    explicit PlanGlass(PlanWorld& w)
+    PlanGlass(PlanWorld& w, V2f px)
         : ior(w.dice.between(1.4f, 1.8f)),
-          dispersion(w.decoy() ? kTiny : w.dice.log_between(2, 10)) {}
+          dispersion(w.decoy() && px.x > 0 ? kTiny : w.dice.log_between(2, 10)) {}
     /// Difference of its indices at the lines F and C: KHR_materials_dispersion is 20 / V.
     [[nodiscard]] float spread() const { return (ior - 1) * std::max(dispersion, 1.f) / 20; }
 };
@@ -29,7 +29,7 @@ Directions directions(V3f at, float turn) {
 /// A wedge that deviates rays to the right of its directions, and bright bars where they go.
 void add_wedge(PlanWorld& w, V2f px, float size_px) {
     constexpr float kDistance_m = 4;
-    const PlanGlass of(w);
+    const PlanGlass of(w, px);
     const V3f middle = w.view.at(px, kDistance_m);
     const auto [forward, right, up] = directions(middle, w.dice.between(0, 2 * kPi));
     const float half = size_px / 2 * w.view.pixel_m(kDistance_m);
@@ -67,7 +67,7 @@ void add_wedge(PlanWorld& w, V2f px, float size_px) {
 /// A cut stone, and small lamps about it that its facets show.
 void add_gem(PlanWorld& w, V2f px, float size_px) {
     constexpr float kDistance_m = 4;
-    const PlanGlass of(w);
+    const PlanGlass of(w, px);
     const V3f middle = w.view.at(px, kDistance_m);
     const auto [forward, right, up] = directions(middle, w.dice.between(0, 2 * kPi));
     const float radius = size_px / 2 * w.view.pixel_m(kDistance_m);
@@ -85,7 +85,7 @@ void add_gem(PlanWorld& w, V2f px, float size_px) {
         for (const int tip : {0, 1}) faces.push_back({tip, 2 + i, 2 + (i + 1) % sides});
     w.body(corners, faces, w.material(glass(of.ior, of.dispersion)));
     w.covers(middle, 0.6f * size_px);
-    const int count = w.dice.whole(3, 16);
+    const int count = w.dice.whole(6, 30);
     for (int i = 0; i < count; ++i) {  // most of them behind it, where facets look
         const V3f way = w.dice.anywhere();
         const V3f away =
@@ -115,9 +115,10 @@ void add_prisms(PlanWorld& w) {
         w.even_wall(w.dice.log_between(0.02f, 1));
     const int count = w.dice.whole(1, w.large ? 2 : 3);
     for (int i = 0; i < count; ++i) {
-        const float size_px = w.dice.log_between(2, w.large ? 30.f : 14.f);
-        const V2f px{float(w.view.size.x) * w.dice.between(0.1f, 0.9f),
-                     float(w.view.size.y) * w.dice.between(0.15f, 0.85f)};
+        const float size_px = w.large ? w.dice.log_between(6, 30) : w.dice.log_between(2, 14);
+        V2f px{float(w.view.size.x) * w.dice.between(0.1f, 0.9f),
+               float(w.view.size.y) * w.dice.between(0.15f, 0.85f)};
+        if (w.decoy() && w.dice.chance(0.5f)) px.x = -3 * size_px;  // out of the frame
         if (w.dice.chance(0.65f))
             add_wedge(w, px, size_px);
         else
@@ -126,7 +127,7 @@ void add_prisms(PlanWorld& w) {
 }
 
 void add_caustics(PlanWorld& w) {
-    w.maybe_large(0.2f, 400);
+    w.maybe_large(0.2f, 320, 400);
     const float fov = w.large ? w.dice.between(80, 100) : w.dice.between(25, 35);
     constexpr float kDistance_m = 2.5f;
     if (w.dice.chance(0.6f))
@@ -134,7 +135,7 @@ void add_caustics(PlanWorld& w) {
     else
         w.thin_lens(fov, w.dice.log_between(0.002f, 0.02f), kDistance_m);
     // A floor that leans to the camera, and glass before its middle.
-    const float half = w.large ? 0.25f : 1.2f;
+    const float half = w.large ? 0.5f : 1.2f;
     const V3f middle(0, 0, -kDistance_m);
     const V3f back = V3f{0, 1, -w.dice.between(0.3f, 2)}.normalized(), across(1, 0, 0);
     const V3f above = across.cross(back);

@@ -74,7 +74,7 @@ void add_box(PlanWorld& w) {
 }  // namespace
 
 void add_lamps(PlanWorld& w) {
-    w.maybe_large(0.25f, 400);
+    w.maybe_large(0.25f, 320, 400);
     const auto [diameter, focus_m] = [&] {
         const V2f lens = set_fast_lens(w, 2);
         return std::array{lens.x, lens.y};
@@ -84,11 +84,13 @@ void add_lamps(PlanWorld& w) {
     if (w.decoy()) w.soft_stage();
     const int count =
         w.large ? w.dice.whole(1, 3) : static_cast<int>(std::lround(w.dice.log_between(1, 60)));
-    const float size_m = w.decoy() ? 0.2f : w.dice.log_between(0.0005f, 0.02f);
     const float depth = w.decoy() ? focus_m : w.dice.log_between(3, 15);
-    // Each becomes a disc, so many times as bright as what lies behind.
-    const float disc_m = std::max(diameter * (depth - focus_m) / focus_m, size_m);
-    const float nits = w.dice.log_between(0.5f, 50) * std::max(even, 0.1f) *
+    // Each becomes a disc, so many times as bright as what lies behind. A ray to the disc meets the
+    // lamp once in 30 to 3000 times.
+    const float disc_m = diameter * (depth - focus_m) / focus_m;
+    const float hit = w.dice.log_between(3e-4f, 3e-2f);
+    const float size_m = w.decoy() ? 0.2f : std::clamp(disc_m * std::sqrt(hit), 0.0005f, 0.02f);
+    const float nits = w.dice.log_between(2, 100) * std::max(even, 0.1f) *
                        std::max(0.785f * disc_m * disc_m / (size_m * size_m), 1.f);
     for (int i = 0; i < count; ++i) {
         const V2f px{float(w.view.size.x) * w.dice.between(0.05f, 0.95f),

@@ -22,7 +22,8 @@ constexpr std::array<Lens, 5> kWide{{{"minolta-fisheye-16mm-f2.8", 16, 1},
                                      {"biotar-58mm-f1.4", 58, 1.5f},
                                      {"petzval-portrait-100mm-f3.6", 100, 2}}};
 
-constexpr float kSharp = 1.6f;  ///< a lens's own distortion, as a factor on margins
+/// Most that distortion moves a thing near the rim, as a share of the picture's width.
+constexpr float kDistortion = 0.03f;
 
 /// A lens of one glass, on a film 36 mm wide.
 void singlet(PlanWorld& w, float focal_mm, float fstop, float focus_m) {
@@ -50,15 +51,15 @@ V3f near_rim(const PlanWorld& w, float turn, float share, float depth, bool fish
 }  // namespace
 
 void add_barcode(PlanWorld& w) {
-    w.maybe_large(0.5f);
+    w.maybe_large(0.5f, 400);
     const Lens& lens = w.dice.pick(kLateral);
     const float depth = lens.nearest_m * w.dice.between(1, 2);
     w.real_lens(lens.name, lens.focal_mm, depth);
-    if (w.dice.chance(0.4f)) w.scene.request.camera.fstop = w.dice.between(4, 8);
+    if (w.dice.chance(0.2f)) w.scene.request.camera.fstop = w.dice.between(4, 8);
     if (w.decoy()) return w.soft_stage();
     if (!w.large && w.dice.chance(0.5f)) w.even_wall(w.dice.log_between(0.02f, 0.5f));
     const V2f size(w.view.size);
-    const float side_px = w.large ? w.dice.between(10, 36) : w.dice.between(8, 16);
+    const float side_px = w.large ? w.dice.between(16, 48) : w.dice.between(8, 16);
     const V2f corner{w.dice.sign(), w.dice.sign()};
     const V2f px{
         0.5f * size.x + corner.x * (0.5f * size.x * w.dice.between(0.75f, 0.97f) - 0.6f * side_px),
@@ -74,11 +75,11 @@ void add_barcode(PlanWorld& w) {
         w.quad(middle + across * at - along * half, across * width, along * (2 * half), bar);
         at += width + unit * thinnest_px * float(w.dice.whole(1, 3));
     }
-    w.covers(middle, 0.75f * side_px + 0.03f * size.x + 3);
+    w.covers(middle, 0.7f * side_px + 0.015f * size.x + 1);
 }
 
 void add_textures(PlanWorld& w) {
-    w.maybe_large(0.25f, 400);
+    w.maybe_large(0.25f, 320, 400);
     const float depth = w.dice.between(2, 3);
     const float focus = depth * (w.dice.chance(0.5f) ? 1.f : w.dice.between(0.9f, 1.15f));
     const int camera = w.dice.whole(0, 3);
@@ -125,7 +126,7 @@ void add_textures(PlanWorld& w) {
 }
 
 void add_rim(PlanWorld& w) {
-    w.maybe_large(0.4f);
+    w.maybe_large(0.4f, 320, 352);
     bool fisheye = false;
     float depth = 2;
     if (w.dice.chance(0.25f)) {
@@ -139,13 +140,13 @@ void add_rim(PlanWorld& w) {
     }
     if (w.decoy()) return w.soft_stage();
     if (!w.large && w.dice.chance(0.4f)) w.even_wall(w.dice.log_between(0.01f, 0.1f));
-    const int count = w.large ? w.dice.whole(2, 5) : w.dice.whole(3, 20);
+    const int count = w.large ? w.dice.whole(3, 8) : w.dice.whole(3, 20);
     for (int i = 0; i < count; ++i) {
         const float turn = w.dice.between(0, 2 * kPi), share = w.dice.between(0.7f, 0.97f);
         const V3f at = near_rim(w, turn, share, depth, fisheye);
-        const float half_px = w.dice.log_between(0.15f, 1.5f);
+        const float half_px = w.dice.log_between(0.15f, w.large ? 3.f : 1.5f);
         w.card(at, half_px * w.view.pixel_m(-at.z), w.material(random_glow(w.dice, 0.5f, 30)));
-        w.covers(at, kSharp * (half_px + 0.02f * float(w.view.size.x)));
+        w.covers(at, half_px + kDistortion * float(w.view.size.x) + 3);
     }
 }
 

@@ -78,10 +78,10 @@ PlanWorld::PlanWorld(uint32_t index, const char* kind) : dice(hash32(0x9a7f00d, 
     scene.request.background = Rgb(0.f);
 }
 
-void PlanWorld::maybe_large(float share, int widest) {
+void PlanWorld::maybe_large(float share, int narrowest, int widest) {
     large = dice.chance(share) && !decoy();
     if (!large) return;
-    const int width = std::min(widest, 16 * dice.whole(20, 40));
+    const int width = 16 * dice.whole(narrowest / 16, widest / 16);
     view.size = {width, width * 9 / 16};
 }
 

@@ -86,7 +86,7 @@ class PlanWorld {
 
     [[nodiscard]] bool decoy() const { return scene.decoy; }
     /// Takes a large frame, but for decoys, which matter everywhere.
-    void maybe_large(float share, int widest = 640);
+    void maybe_large(float share, int narrowest = 320, int widest = 640);
 
     void pinhole(float fov_deg);
     void thin_lens(float fov_deg, float radius_m, float focus_m);

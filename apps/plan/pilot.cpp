@@ -38,8 +38,8 @@ PilotModel::PilotModel(RenderSetup setup, const RenderJob& job, const PathOption
     job_.observer = setup_.view.observer;
 }
 
-Replicates PilotModel::means(size_t look) const {
-    Replicates out = sums_[look];
+PilotValues PilotModel::means(size_t look) const {
+    PilotValues out = sums_[look];
     for (V3d& v : out) v /= double(samples_);
     return out;
 }
@@ -110,7 +110,7 @@ void Pilot::sample(PilotModel& model, uint32_t samples) const {
     model.cpu_s_ += process_cpu_s() - start_s;
     model.samples_ = std::max(model.samples_, samples);
     for (const PathStats& s : stats) model.stats_ += s;
-    std::vector<Replicates> turn;
+    std::vector<PilotValues> turn;
     for (size_t p = 0; p < pixels(); ++p) turn.push_back(model.means(p));
     model.turns_.push_back(std::move(turn));
 }

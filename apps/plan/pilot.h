@@ -22,7 +22,7 @@ namespace petzval {
 /// Independent replicates of the sampler in each pixel: what they have in common is no noise.
 inline constexpr uint32_t kPilotReplicates = 4;
 /// Values of a pixel, one of each replicate.
-using Replicates = std::array<V3d, kPilotReplicates>;
+using PilotValues = std::array<V3d, kPilotReplicates>;
 
 /// One model of the render.
 class PilotModel {
@@ -31,9 +31,9 @@ class PilotModel {
     [[nodiscard]] uint32_t samples() const { return samples_; }  ///< of each replicate of a pixel
     [[nodiscard]] const PathStats& stats() const { return stats_; }
     /// Mean of each replicate of a look's pixel.
-    [[nodiscard]] Replicates means(size_t look) const;
+    [[nodiscard]] PilotValues means(size_t look) const;
     /// Means after each turn of Pilot::sample(), by turn and look.
-    [[nodiscard]] const std::vector<std::vector<Replicates>>& turns() const { return turns_; }
+    [[nodiscard]] const std::vector<std::vector<PilotValues>>& turns() const { return turns_; }
     /// Cost of a sample, the same on every machine: rays that are cast, and up to three more for
     /// the way through glass. Only after sample().
     [[nodiscard]] double rays_per_sample() const;
@@ -49,8 +49,8 @@ class PilotModel {
     RenderJob job_;
     PathTracer<> tracer_;
     std::vector<double> weights_;  ///< of the looks
-    std::vector<Replicates> sums_;
-    std::vector<std::vector<Replicates>> turns_;
+    std::vector<PilotValues> sums_;
+    std::vector<std::vector<PilotValues>> turns_;
     std::vector<double> look_s_;  ///< time that each look took, as the thread saw it
     uint32_t samples_ = 0;
     PathStats stats_;

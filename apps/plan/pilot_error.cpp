@@ -29,7 +29,7 @@ double least_of(const PilotScale& scale, size_t look, size_t channel) {
 
 /// 1 / (mean square of the two pictures + floor^2) in a pixel, from two replicates. Noise makes the
 /// mean of squares too large, and the mean of its inverse larger still: both to second order.
-double inverse_scale(const Replicates& a, const Replicates& b, const Pair& pair, size_t channel,
+double inverse_scale(const PilotValues& a, const PilotValues& b, const Pair& pair, size_t channel,
                      double least, double floor) {
     const double ak = component(a[pair.k], channel), al = component(a[pair.l], channel);
     const double bk = component(b[pair.k], channel), bl = component(b[pair.l], channel);
@@ -101,31 +101,29 @@ Estimate mean_of(const std::vector<Value>& values, const std::vector<Look>& look
 }  // namespace
 
 double pilot_floor(const Pilot& pilot, const PilotModel& model) {
-    // Each look counts as often as it stands for parts of the frame.
-    std::vector<double> luminances;
-    constexpr double kGrain = 16384;
+    SymmetricFloor floor;
     for (size_t p = 0; p < pilot.pixels(); ++p) {
         V3d mean(0.);
         for (const V3d& v : model.means(p)) mean += v / double(kPilotReplicates);
-        const double light = double(luminance(Rgb(
-            static_cast<float>(mean.x), static_cast<float>(mean.y), static_cast<float>(mean.z))));
-        const auto times = static_cast<size_t>(std::lround(pilot.looks().looks[p].weight * kGrain));
-        luminances.insert(luminances.end(), std::max<size_t>(times, 1), light);
+        floor.add(double(luminance(
+                      Rgb(static_cast<float>(mean.x), static_cast<float>(mean.y),
+                          static_cast<float>(mean.z)))),
+                  pilot.looks().looks[p].weight);
     }
-    return floor_of_symmetric_mse(tone_of(std::move(luminances)));
+    return floor.floor();
 }
 
 Estimate square_error(const Pilot& pilot, const std::vector<PilotTerm>& terms,
                       const PilotScale& scale) {
     std::vector<Value> values;
     for (size_t p = 0; p < pilot.pixels(); ++p) {
-        Replicates d;
+        PilotValues d;
         d.fill(V3d(0.));
         for (const PilotTerm& term : terms) {
-            const Replicates means = term.model->means(p);
+            const PilotValues means = term.model->means(p);
             for (size_t k = 0; k < kPilotReplicates; ++k) d[k] += means[k] * term.factor;
         }
-        const Replicates a = scale.a->means(p), b = scale.b->means(p);
+        const PilotValues a = scale.a->means(p), b = scale.b->means(p);
         std::array<double, kPairs.size()> squares{};
         for (size_t n = 0; n < kPairs.size(); ++n)
             for (size_t c = 0; c < kChannels; ++c)
@@ -143,11 +141,11 @@ Estimate square_error(const Pilot& pilot, const std::vector<PilotTerm>& terms,
 PilotNoise noise_of(const Pilot& pilot, const PilotModel& model, const PilotScale& scale) {
     PilotNoise out;
     const std::vector<V3d> around = neighbourhoods(pilot, *scale.b);
-    for (const std::vector<Replicates>& turn : model.turns()) {
+    for (const std::vector<PilotValues>& turn : model.turns()) {
         std::vector<Value> values;
         double sum = 0, squares = 0;
         for (size_t p = 0; p < pilot.pixels(); ++p) {
-            const Replicates a = scale.a->means(p), b = scale.b->means(p);
+            const PilotValues a = scale.a->means(p), b = scale.b->means(p);
             std::array<double, kPairs.size()> parts{};
             for (size_t n = 0; n < kPairs.size(); ++n)
                 for (size_t c = 0; c < kChannels; ++c) {

@@ -36,11 +36,6 @@ struct Settings {
     std::string csv, save;
 };
 
-/// Whether a plan says that its noise is no upper bound.
-bool noise_is_at_least(const Plan&) {
-    return false;  // plans have no such field yet
-}
-
 struct Row {
     std::string model;
     double predicted = 0;
@@ -144,7 +139,7 @@ Verdict judge(uint32_t index, const Settings& s, TbbExecutor& executor) {
         out.plan_cpu_s = process_cpu_s() - start_s;
         out.samples = plan.samples;
         out.noise_predicted = plan.noise;
-        out.at_least = noise_is_at_least(plan);
+        out.at_least = plan.noise_at_least;
         measure(plan, scene, request, s, executor, out);
         out.truth_cpu_s = process_cpu_s() - start_s - out.plan_cpu_s;
     } catch (const ArgumentError& e) {

@@ -176,13 +176,12 @@ Replicates render_replicates(const RenderSetup& setup, const PlanRequest& reques
 double floor_of(const Replicates& of, const std::vector<TruthPixel>& pixels) {
     Chosen all;
     all.fill(true);
-    std::vector<double> luminances;
+    SymmetricFloor floor;
     for (size_t p = 0; p < pixels.size(); ++p) {
         const V3f mean(mean_of(of[p], all));
-        const double l = luminance(Rgb(mean.x, mean.y, mean.z));
-        luminances.insert(luminances.end(), size_t(std::lround(pixels[p].stands_for)), l);
+        floor.add(double(luminance(Rgb(mean.x, mean.y, mean.z))), pixels[p].stands_for);
     }
-    return floor_of_symmetric_mse(tone_of(std::move(luminances)));
+    return floor.floor();
 }
 
 Bounded square_bias(const Replicates& a, const Replicates& b, const std::vector<TruthPixel>& pixels,

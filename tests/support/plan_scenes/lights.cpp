@@ -54,6 +54,7 @@ void add_box(PlanWorld& w) {
     const V3f corner = m - V3f(half, half, 0);
     const V3f main_colour = w.dice.pick(kSaturated);
     const auto wall = [&] {
+        if (w.decoy()) return w.material(matt(V3f(0.5f, 0.5f, 0.55f)));
         return w.material(matt(w.dice.chance(0.5f) ? main_colour : w.dice.pick(kSaturated)));
     };
     w.quad(corner, x, z, wall());

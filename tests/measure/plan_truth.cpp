@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "integrator/path.h"
@@ -82,29 +83,102 @@ double pixel_bias(const PixelReplicates& a, const PixelReplicates& b, const Chos
     return sum / 2;
 }
 
-Sum bias_of(const Replicates& a, const Replicates& b, const std::vector<TruthPixel>& pixels,
-            double floor, bool matters, bool crossed) {
+/// Bias of a pixel, and the variance of that.
+Sum pixel_bias(const PixelReplicates& a, const PixelReplicates& b, double floor, bool crossed) {
     Chosen all;
     all.fill(true);
+    double sum = 0, squares = 0;
+    for (size_t k = 0; k < kTruthReplicates; ++k) {
+        Chosen left = all;
+        left[k] = false;
+        const double v = pixel_bias(a, b, left, floor, crossed);
+        sum += v;
+        squares += v * v;
+    }
+    constexpr double kCount = kTruthReplicates;
+    const double spread = std::max(squares - sum * sum / kCount, 0.);
+    return {pixel_bias(a, b, all, floor, crossed), spread * (kCount - 1) / kCount};
+}
+
+Sum bias_of(const TruthPictures& of, size_t model, bool matters, bool crossed) {
     Sum out;
     double frame = 0;
-    for (size_t p = 0; p < pixels.size(); ++p) {
-        frame += pixels[p].stands_for;
-        if (pixels[p].matters != matters) continue;
-        out.mean += pixels[p].stands_for * pixel_bias(a[p], b[p], all, floor, crossed);
-        double sum = 0, squares = 0;
-        for (size_t k = 0; k < kTruthReplicates; ++k) {
-            Chosen left = all;
-            left[k] = false;
-            const double v = pixel_bias(a[p], b[p], left, floor, crossed);
-            sum += v;
-            squares += v * v;
-        }
-        constexpr double kCount = kTruthReplicates;
-        const double spread = std::max(squares - sum * sum / kCount, 0.);
-        out.variance += std::pow(pixels[p].stands_for, 2) * spread * (kCount - 1) / kCount;
+    for (size_t p = 0; p < of.pixels.size(); ++p) {
+        const double weight = of.pixels[p].stands_for;
+        frame += weight;
+        if (of.pixels[p].matters != matters) continue;
+        const Sum one = pixel_bias(of.shown[model][p], of.shown.back()[p], of.floor, crossed);
+        out.mean += weight * one.mean;
+        out.variance += weight * weight * one.variance;
     }
     return {out.mean / frame, out.variance / (frame * frame)};
+}
+
+double floor_of(const Replicates& of, const std::vector<TruthPixel>& pixels) {
+    Chosen all;
+    all.fill(true);
+    SymmetricFloor floor;
+    for (size_t p = 0; p < pixels.size(); ++p) {
+        const V3f mean(mean_of(of[p], all));
+        floor.add(double(luminance(Rgb(mean.x, mean.y, mean.z))), pixels[p].stands_for);
+    }
+    return floor.floor();
+}
+
+uint32_t power_of_two_below(double samples) {
+    return uint32_t(std::exp2(std::floor(std::log2(std::clamp(samples, 1., 65536.)))));
+}
+
+/// Mean of the values of the pixels about each. own: with its own value.
+std::vector<double> smooth(const std::vector<double>& values, const std::vector<TruthPixel>& pixels,
+                           bool own) {
+    constexpr int kRadius = 3;
+    std::map<std::array<int, 2>, size_t> index;
+    for (size_t p = 0; p < pixels.size(); ++p) index[{pixels[p].x, pixels[p].y}] = p;
+    std::vector<double> out;
+    for (size_t p = 0; p < pixels.size(); ++p) {
+        double sum = 0;
+        int count = 0;
+        for (int dy = -kRadius; dy <= kRadius; ++dy) {
+            for (int dx = -kRadius; dx <= kRadius; ++dx) {
+                if (!own && dx == 0 && dy == 0) continue;
+                const auto found = index.find({pixels[p].x + dx, pixels[p].y + dy});
+                if (found == index.end() || pixels[found->second].matters != pixels[p].matters)
+                    continue;
+                sum += values[found->second];
+                ++count;
+            }
+        }
+        out.push_back(count > 0 ? sum / count : own ? values[p] : 0);
+    }
+    return out;
+}
+
+/// Samples for the second half of the budget, by pixel: in proportion to the standard error that
+/// the pixels about it add to the models; 0 where that is not twice what it had. A pixel's own
+/// value has no say: else those that were lucky would keep it.
+std::vector<uint32_t> samples_by_noise(const TruthPictures& of, double budget) {
+    const size_t models = of.shown.size() - 1;
+    std::vector<double> noise(of.pixels.size(), 0);
+    for (size_t m = 0; m < models; ++m) {
+        std::vector<double> own;
+        double sum = 0;
+        for (size_t p = 0; p < of.pixels.size(); ++p) {
+            const Sum one = pixel_bias(of.shown[m][p], of.shown.back()[p], of.floor, true);
+            own.push_back(of.pixels[p].matters ? one.variance : 0);
+        }
+        own = smooth(own, of.pixels, false);
+        for (double& v : own) sum += v = std::sqrt(v);
+        for (size_t p = 0; p < own.size(); ++p)
+            if (sum > 0) noise[p] += own[p] / (sum * double(models));
+    }
+    std::vector<uint32_t> out;
+    for (size_t p = 0; p < noise.size(); ++p) {
+        const uint32_t samples =
+            power_of_two_below(budget * noise[p] / double(of.shown.size() * kTruthReplicates));
+        out.push_back(samples >= 2 * of.samples[p] ? samples : 0);
+    }
+    return out;
 }
 
 /// Error of each replicate of a pixel against all that is known but itself, as a mean; reference:
@@ -149,68 +223,89 @@ std::vector<TruthPixel> truth_pixels(const test::PlanScene& scene) {
     return out;
 }
 
-Replicates render_replicates(const RenderSetup& setup, const PlanRequest& request,
-                             const std::vector<TruthPixel>& pixels, uint32_t samples, uint32_t turn,
-                             TbbExecutor& executor) {
+void render_replicates(const RenderSetup& setup, const PlanRequest& request,
+                       const std::vector<TruthPixel>& pixels, const std::vector<uint32_t>& samples,
+                       uint32_t turn, TbbExecutor& executor, Replicates& into) {
     PathOptions options = request.path;
     options.visible_background = setup.view.visible_background;
     const PathTracer<Bvh> tracer(*setup.prepared.scene, *setup.prepared.bvh, *setup.prepared.lights,
                                  options);
-    Replicates out(pixels.size());
+    into.resize(pixels.size());
     executor.run(static_cast<int>(pixels.size()), [&](int task, int) {
-        const TruthPixel& at = pixels[static_cast<size_t>(task)];
+        const auto p = static_cast<size_t>(task);
+        if (samples[p] == 0) return;
+        const TruthPixel& at = pixels[p];
         RenderJob job = request.job;
         job.observer = setup.view.observer;
         PathStats stats;
         for (uint32_t k = 0; k < kTruthReplicates; ++k) {
             job.seed = hash32(kFirstSeed + turn, k);
             Film film(request.scene.size, {at.x, at.y, at.x + 1, at.y + 1}, {});
-            render_samples(tracer, *setup.view.camera, job, {at.x, at.y}, 0, samples, film, stats);
+            render_samples(tracer, *setup.view.camera, job, {at.x, at.y}, 0, samples[p], film,
+                           stats);
             const V4f c = film.colour(at.x, at.y);
-            out[static_cast<size_t>(task)][k] = V3d(c.x, c.y, c.z);
+            into[p][k] = V3d(c.x, c.y, c.z);
         }
     });
+}
+
+TruthPictures truth_pictures(const test::PlanScene& scene, const PlanRequest& request,
+                             const std::vector<const RenderSetup*>& models, double budget,
+                             TbbExecutor& executor) {
+    constexpr uint32_t kFirstTurn = 0, kSecondTurn = 1;
+    TruthPictures out;
+    out.pixels = truth_pixels(scene);
+    const double all = double(models.size() * out.pixels.size() * kTruthReplicates);
+    out.samples.assign(out.pixels.size(), std::max(power_of_two_below(budget / 2 / all), 4u));
+    out.shown.resize(models.size());
+    for (size_t m = 0; m < models.size(); ++m)
+        render_replicates(*models[m], request, out.pixels, out.samples, kFirstTurn, executor,
+                          out.shown[m]);
+    out.floor = floor_of(out.shown.back(), out.pixels);
+    if (models.size() < 2) return out;
+    const std::vector<uint32_t> more = samples_by_noise(out, budget / 2);
+    for (size_t m = 0; m < models.size(); ++m)
+        render_replicates(*models[m], request, out.pixels, more, kSecondTurn, executor,
+                          out.shown[m]);
+    for (size_t p = 0; p < more.size(); ++p)
+        if (more[p] > 0) out.samples[p] = more[p];
+    out.floor = floor_of(out.shown.back(), out.pixels);
     return out;
 }
 
-double floor_of(const Replicates& of, const std::vector<TruthPixel>& pixels) {
-    Chosen all;
-    all.fill(true);
-    SymmetricFloor floor;
-    for (size_t p = 0; p < pixels.size(); ++p) {
-        const V3f mean(mean_of(of[p], all));
-        floor.add(double(luminance(Rgb(mean.x, mean.y, mean.z))), pixels[p].stands_for);
-    }
-    return floor.floor();
+Bounded square_bias(const TruthPictures& of, size_t model, bool matters) {
+    const Sum crossed = bias_of(of, model, matters, true);
+    const Sum all = bias_of(of, model, matters, false);
+    const auto possible = [](double v) { return std::clamp(v, 0., kMostSymmetricMse); };
+    return {possible((crossed.mean + all.mean) / 2), possible(std::min(crossed.low(), all.low())),
+            possible(std::max(crossed.high(), all.high()))};
 }
 
-Bounded square_bias(const Replicates& a, const Replicates& b, const std::vector<TruthPixel>& pixels,
-                    double floor, bool matters) {
-    const Sum crossed = bias_of(a, b, pixels, floor, matters, true);
-    const Sum all = bias_of(a, b, pixels, floor, matters, false);
-    return {std::max(crossed.mean, 0.), std::max(std::min(crossed.low(), all.low()), 0.),
-            std::max({crossed.high(), all.high(), 0.})};
-}
-
-Bounded square_noise(const RenderSetup& setup, const PlanRequest& request,
-                     const std::vector<TruthPixel>& pixels, const Replicates& seen,
-                     uint32_t seen_samples, uint64_t samples, double floor, double most,
+Bounded square_noise(const TruthPictures& of, size_t model, const RenderSetup& setup,
+                     const PlanRequest& request, uint64_t samples, double budget,
                      TbbExecutor& executor) {
+    constexpr uint32_t kThirdTurn = 2;
+    const std::vector<TruthPixel>& pixels = of.pixels;
+    const Replicates& seen = of.shown[model];
     const auto measured = uint32_t(std::min(samples, kMostNoiseSamples));
     // Where noise is, by the replicates that are there.
-    std::vector<double> share;
+    std::vector<double> share, each;
     double frame = 0, total = 0;
     for (size_t p = 0; p < pixels.size(); ++p) {
         frame += pixels[p].stands_for;
-        share.push_back(pixels[p].stands_for *
-                        pixel_noise(seen[p], seen_samples, V3d(0.), 0, floor).mean);
+        each.push_back(of.samples[p] *
+                       pixel_noise(seen[p], of.samples[p], V3d(0.), 0, of.floor).mean);
+    }
+    each = smooth(each, pixels, true);
+    for (size_t p = 0; p < pixels.size(); ++p) {
+        share.push_back(pixels[p].stands_for * each[p]);
         total += share.back();
     }
     for (size_t p = 0; p < pixels.size(); ++p) {  // a tenth of the draws goes anywhere
         const double even = pixels[p].stands_for / frame;
         share[p] = total > 0 ? 0.9 * share[p] / total + 0.1 * even : even;
     }
-    const auto affordable = size_t(most / (double(measured) * kTruthReplicates));
+    const auto affordable = size_t(budget / (double(measured) * kTruthReplicates));
     const bool whole = affordable >= pixels.size();
     std::vector<size_t> drawn;  // with replacement, at even steps: systematic sampling
     if (whole) {
@@ -227,15 +322,17 @@ Bounded square_noise(const RenderSetup& setup, const PlanRequest& request,
     }
     std::vector<TruthPixel> some;
     for (const size_t p : drawn) some.push_back(pixels[p]);
-    const Replicates rendered = render_replicates(setup, request, some, measured, 1, executor);
+    Replicates rendered;
+    render_replicates(setup, request, some, std::vector<uint32_t>(some.size(), measured),
+                      kThirdTurn, executor, rendered);
     Sum out;
     double squares = 0;
     for (size_t i = 0; i < drawn.size(); ++i) {
         const size_t p = drawn[i];
         V3d elsewhere(0.);
-        for (const V3d& r : seen[p]) elsewhere += r * double(seen_samples);
+        for (const V3d& r : seen[p]) elsewhere += r * double(of.samples[p]);
         const Sum v = pixel_noise(rendered[i], measured, elsewhere,
-                                  double(seen_samples) * kTruthReplicates, floor);
+                                  double(of.samples[p]) * kTruthReplicates, of.floor);
         const double weight = pixels[p].stands_for / frame;
         if (whole) {
             out.mean += weight * v.mean;

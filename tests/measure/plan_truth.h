@@ -30,33 +30,42 @@ struct TruthPixel {
 /// Means of independent replicates, by pixel.
 using Replicates = std::vector<std::array<V3d, kTruthReplicates>>;
 
-/// Renders pixels with seeds of its own; turn: another one has other seeds.
-[[nodiscard]] Replicates render_replicates(const RenderSetup&, const PlanRequest&,
-                                           const std::vector<TruthPixel>&, uint32_t samples,
-                                           uint32_t turn, TbbExecutor&);
+/// Renders pixels, each replicate with as many samples as `samples` says for its pixel; where that
+/// is 0, `into` stays as it is. turn: another one has other seeds.
+void render_replicates(const RenderSetup&, const PlanRequest&, const std::vector<TruthPixel>&,
+                       const std::vector<uint32_t>& samples, uint32_t turn, TbbExecutor&,
+                       Replicates& into);
 
-/// Floor of the symmetric MSE for a picture.
-[[nodiscard]] double floor_of(const Replicates&, const std::vector<TruthPixel>&);
+/// Pictures of models through the same pixels, with the same seeds.
+struct TruthPictures {
+    std::vector<TruthPixel> pixels;
+    std::vector<uint32_t> samples;  ///< of a replicate of each pixel
+    std::vector<Replicates> shown;  ///< by model
+    double floor = 0;               ///< of the symmetric MSE, from the last
+};
+/// Pictures of models, the last of them the fullest, with about so many samples in all. Half of
+/// them is spread evenly. The other half goes to pixels about which the first found noise in the
+/// differences. They are rendered anew: what they had before is dropped.
+[[nodiscard]] TruthPictures truth_pictures(const test::PlanScene&, const PlanRequest&,
+                                           const std::vector<const RenderSetup*>& models,
+                                           double budget, TbbExecutor&);
 
 /// Symmetric MSE of two models without noise. Of where models may differ, or of the other pixels:
 /// what these add must be nothing.
 ///
-/// Numerators are products of differences of different replicates. `value` takes denominators from
-/// the other half of the replicates, so that it has no share in their noise; where light is rare it
-/// is too high all the same. Denominators from all replicates give too little there. The bounds
-/// hold both: the lower is the lower one of either, the upper likewise. Each lies 1.645 standard
-/// errors away, from a jackknife over the replicates of each pixel: pixels have random numbers of
-/// their own.
-[[nodiscard]] Bounded square_bias(const Replicates& a, const Replicates& b,
-                                  const std::vector<TruthPixel>&, double floor, bool matters);
+/// Numerators are products of differences of different replicates. Denominators are taken from the
+/// other half of the replicates, which gives too much where light is rare, and from all of them,
+/// which gives too little there. The value is the mean of the two; the lower bound is the lower one
+/// of either, the upper likewise. Each lies 1.645 standard errors away, from a jackknife over the
+/// replicates of each pixel: pixels have random numbers of their own. What no sample has met is
+/// missing from all of them.
+[[nodiscard]] Bounded square_bias(const TruthPictures&, size_t model, bool matters);
 
 /// Symmetric MSE by noise of a picture with so many samples, against many samples of the same
-/// model; seen: replicates of it with `seen_samples`, which tell where noise is. With `most`
-/// samples of all pixels together it measures only as many of them as that pays, drawn by their
-/// share of the noise.
-[[nodiscard]] Bounded square_noise(const RenderSetup&, const PlanRequest&,
-                                   const std::vector<TruthPixel>&, const Replicates& seen,
-                                   uint32_t seen_samples, uint64_t samples, double floor,
-                                   double most, TbbExecutor&);
+/// model. With `budget` samples of all pixels together it measures only as many of them as that
+/// pays, drawn by their share of the noise. Beyond 2048 samples it falls in proportion.
+[[nodiscard]] Bounded square_noise(const TruthPictures&, size_t model, const RenderSetup&,
+                                   const PlanRequest&, uint64_t samples, double budget,
+                                   TbbExecutor&);
 
 }  // namespace petzval

@@ -167,6 +167,7 @@ void add_caustics(PlanWorld& w) {
     w.quad(high - across * lamp - back * lamp, across * (2 * lamp), back * (2 * lamp),
            w.material(glowing(nits)));
     w.covers(middle, 1.5f * half / w.view.pixel_m(kDistance_m));
+    w.covers(high, 1.5f * lamp / w.view.pixel_m(-high.z) + 2);
     w.covers(at, 1.5f * radius / w.view.pixel_m(-at.z));
 }
 

@@ -54,6 +54,7 @@ void add_box(PlanWorld& w) {
     const V3f corner = m - V3f(half, half, 0);
     const V3f main_colour = w.dice.pick(kSaturated);
     const auto wall = [&] {
+        if (w.decoy()) return w.material(matt(V3f(0.5f, 0.5f, 0.55f)));
         return w.material(matt(w.dice.chance(0.5f) ? main_colour : w.dice.pick(kSaturated)));
     };
     w.quad(corner, x, z, wall());
@@ -136,6 +137,7 @@ void add_glints(PlanWorld& w) {
     if (way == 0) return w.lamp(at, {}, 4 * strength);
     if (way == 1) return w.lamp(at, -from, strength);
     const float half = w.dice.log_between(0.001f, 0.01f);
+    w.covers(at, 20);
     const V3f x = from.cross(V3f(0.1f, 0, 1)).normalized(), y = x.cross(from);
     w.quad(at - x * half - y * half, x * (2 * half), y * (2 * half),
            w.material(glowing(strength / (half * half))));

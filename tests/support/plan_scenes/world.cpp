@@ -222,6 +222,7 @@ void PlanWorld::soft_stage() {
 }
 
 void PlanWorld::covers(V3f at, float radius_px) {
+    if (!(at.z < 0)) return;  // behind the camera
     const V2f middle = view.pixel_of(at);
     constexpr float kFilter_px = 3;  // an edge's light reaches so far
     const float r = radius_px + kFilter_px;

@@ -23,10 +23,6 @@ double component(const V3d& v, size_t channel) {
     return v[static_cast<int>(channel)];
 }
 
-double least_of(const PilotScale& scale, size_t look, size_t channel) {
-    return scale.least.empty() ? 0 : component(scale.least[look], channel);
-}
-
 /// 1 / (mean square of the two pictures + floor^2) in a pixel, from two replicates. Noise makes the
 /// mean of squares too large, and the mean of its inverse larger still: both to second order.
 double inverse_scale(const PilotValues& a, const PilotValues& b, const Pair& pair, size_t channel,
@@ -70,6 +66,36 @@ std::vector<V3d> neighbourhoods(const Pilot& pilot, const PilotModel& model) {
     return out;
 }
 
+/// What squares are divided by, for each look.
+class Scales {
+  public:
+    Scales(const Pilot& pilot, const PilotScale& scale)
+        : scale_(scale), around_(neighbourhoods(pilot, *scale.b)) {
+        for (size_t p = 0; p < pilot.pixels(); ++p) {
+            a_.push_back(scale.a->means(p));
+            b_.push_back(scale.b->means(p));
+            if (!scale.least.empty())
+                for (int c = 0; c < 3; ++c)
+                    around_[p][c] = std::max(around_[p][c], scale.least[p][c]);
+        }
+    }
+
+    /// The square over the pixel's own brightness, or where that is doubtful over no less than what
+    /// is around it.
+    [[nodiscard]] double over(double square, size_t look, const Pair& pair, size_t channel) const {
+        const auto with = [&](double least) {
+            return square * inverse_scale(a_[look], b_[look], pair, channel, least, scale_.floor);
+        };
+        const double own = with(0);
+        return std::fabs(own) < kDoubtful ? own : with(component(around_[look], channel));
+    }
+
+  private:
+    const PilotScale& scale_;
+    std::vector<V3d> around_;
+    std::vector<PilotValues> a_, b_;
+};
+
 /// Weighted mean over the looks. halves: two independent estimates of each value, which tell the
 /// noise of those that were not drawn.
 struct Value {
@@ -105,9 +131,8 @@ double pilot_floor(const Pilot& pilot, const PilotModel& model) {
     for (size_t p = 0; p < pilot.pixels(); ++p) {
         V3d mean(0.);
         for (const V3d& v : model.means(p)) mean += v / double(kPilotReplicates);
-        floor.add(double(luminance(
-                      Rgb(static_cast<float>(mean.x), static_cast<float>(mean.y),
-                          static_cast<float>(mean.z)))),
+        floor.add(double(luminance(Rgb(static_cast<float>(mean.x), static_cast<float>(mean.y),
+                                       static_cast<float>(mean.z)))),
                   pilot.looks().looks[p].weight);
     }
     return floor.floor();
@@ -115,6 +140,7 @@ double pilot_floor(const Pilot& pilot, const PilotModel& model) {
 
 Estimate square_error(const Pilot& pilot, const std::vector<PilotTerm>& terms,
                       const PilotScale& scale) {
+    const Scales scales(pilot, scale);
     std::vector<Value> values;
     for (size_t p = 0; p < pilot.pixels(); ++p) {
         PilotValues d;
@@ -123,13 +149,12 @@ Estimate square_error(const Pilot& pilot, const std::vector<PilotTerm>& terms,
             const PilotValues means = term.model->means(p);
             for (size_t k = 0; k < kPilotReplicates; ++k) d[k] += means[k] * term.factor;
         }
-        const PilotValues a = scale.a->means(p), b = scale.b->means(p);
         std::array<double, kPairs.size()> squares{};
         for (size_t n = 0; n < kPairs.size(); ++n)
             for (size_t c = 0; c < kChannels; ++c)
                 squares[n] +=
-                    component(d[kPairs[n].i], c) * component(d[kPairs[n].j], c) *
-                    inverse_scale(a, b, kPairs[n], c, least_of(scale, p, c), scale.floor) /
+                    scales.over(component(d[kPairs[n].i], c) * component(d[kPairs[n].j], c), p,
+                                kPairs[n], c) /
                     kChannels;
         double sum = 0;
         for (const double s : squares) sum += s / static_cast<double>(kPairs.size());
@@ -140,25 +165,17 @@ Estimate square_error(const Pilot& pilot, const std::vector<PilotTerm>& terms,
 
 PilotNoise noise_of(const Pilot& pilot, const PilotModel& model, const PilotScale& scale) {
     PilotNoise out;
-    const std::vector<V3d> around = neighbourhoods(pilot, *scale.b);
+    const Scales scales(pilot, scale);
     for (const std::vector<PilotValues>& turn : model.turns()) {
         std::vector<Value> values;
         double sum = 0, squares = 0;
         for (size_t p = 0; p < pilot.pixels(); ++p) {
-            const PilotValues a = scale.a->means(p), b = scale.b->means(p);
             std::array<double, kPairs.size()> parts{};
             for (size_t n = 0; n < kPairs.size(); ++n)
                 for (size_t c = 0; c < kChannels; ++c) {
                     const double off =
                         component(turn[p][kPairs[n].i], c) - component(turn[p][kPairs[n].j], c);
-                    const auto square = [&](double least) {
-                        return off * off / 2 *
-                               inverse_scale(a, b, kPairs[n], c, least, scale.floor);
-                    };
-                    const double least = least_of(scale, p, c), own = square(least);
-                    parts[n] +=
-                        (own < kDoubtful ? own : square(std::max(least, component(around[p], c)))) /
-                        kChannels;
+                    parts[n] += scales.over(off * off / 2, p, kPairs[n], c) / kChannels;
                 }
             double mean = 0;
             for (const double part : parts) mean += part / static_cast<double>(kPairs.size());

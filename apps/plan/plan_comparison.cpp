@@ -13,8 +13,8 @@
 namespace petzval {
 namespace {
 
-// Amplified dispersion: its effect stands out of the noise, but stays within a pixel, where the
-// error grows in proportion.
+// Amplified dispersion, where it is largest: its effect stands out of the noise, but stays within a
+// pixel, where the error grows in proportion.
 constexpr double kAmplified_px = 0.35, kMostFactor = 64;
 constexpr uint32_t kLeastSamples = 4, kThoroughSamples = 32;
 // Share of the tolerance below which errors are not measured more finely.
@@ -143,8 +143,9 @@ void PlanComparison::amplify_dispersion() {
     dispersion_px_ = lateral_dispersion_px(*split.view.camera, *shared_->setup().view.camera,
                                            split.view.observer, split.from.camera.focus_plane(),
                                            request_.scene.size);
-    if (dispersion_px_ > 0)
-        factor_ = static_cast<float>(std::clamp(kAmplified_px / dispersion_px_, 1., kMostFactor));
+    if (most_dispersion_px_ > 0)
+        factor_ =
+            static_cast<float>(std::clamp(kAmplified_px / most_dispersion_px_, 1., kMostFactor));
     full_ = amplified(full_scene_);
     const double share = 1 / double(factor_);
     minus_full_ = {{shared_.get(), share - 1}, {full_.get(), -share}};

@@ -74,7 +74,7 @@ class PlanComparison {
     const PilotModel* scale_ = nullptr;  ///< what errors are relative to
     std::vector<PilotTerm> minus_full_;
     std::vector<Entry> entries_;
-    double dispersion_px_ = 0;
+    double dispersion_px_ = 0, most_dispersion_px_ = 0;
     bool glass_disperses_ = false;  ///< of a material
     float factor_ = 1;              ///< by which full_ disperses more than the fullest model
 };

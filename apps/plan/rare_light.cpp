@@ -85,7 +85,7 @@ std::vector<V3d> least_means(const Pilot& pilot, const PilotModel& model,
                              const std::vector<SeenLamp>& lamps) {
     std::vector<V3d> out(pilot.pixels(), V3d(0.));
     for (const SeenLamp& lamp : lamps) {
-        if (model.samples() * lamp.probability >= kEnoughPaths) continue;
+        if (model.samples() * lamp.probability >= 1) continue;
         std::vector<size_t> on_disc;
         V3d sum(0.);
         for (size_t p = 0; p < pilot.pixels(); ++p) {

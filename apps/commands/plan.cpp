@@ -111,10 +111,11 @@ void plan_command(PlanOptions& o, const CLI::App& app) {
     flush_denormals();
     TbbExecutor executor(r.threads);
     limit_picture_threads(r.threads);
-    const Plan plan = make_plan({r.scene, r.job, r.path, frame.tolerance}, executor,
-                                [&](const std::string& text) {
-                                    if (!r.quiet) print_notice(text);
-                                });
+    const Plan plan =
+        make_plan({r.scene, r.job, r.path, frame.tolerance, app.count("--light-choice") == 0},
+                  executor, [&](const std::string& text) {
+                      if (!r.quiet) print_notice(text);
+                  });
     const std::string command = command_of(app, plan);
     o.json ? print_json(plan, command) : print(plan, command);
 }

@@ -96,6 +96,17 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
     plan.scene = chosen.scene;
     plan.chosen = chosen.model;
     plan.bias = chosen.predicted();
+    if (!replaces_camera(chosen.model)) {
+        plan.precision = find_precision(request, first, chosen.scene, executor);
+        if (plan.precision) {
+            plan.scene.camera.precision = plan.precision->precision;
+            if (plan.precision->precision == Precision::Float)
+                plan.bias = std::hypot(plan.bias, std::sqrt(plan.precision->square));
+        }
+    }
+    plan.lights_asked = !request.light_choice_open;
+    if (!plan.lights_asked) plan.lights = find_lights(compared, first, chosen.scene, best);
+    if (plan.lights) plan.scene.light_choice = plan.lights->kind;
     const double samples = std::ceil(chosen.samples_for(request.tolerance));
     if (!(samples <= kMostPlannedSamples))
         throw ArgumentError(
@@ -110,6 +121,7 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
     plan.first_noise = std::sqrt(chosen.variance_with(1));
     plan.noise_at_least = chosen.noise_at_least();
     plan.rare = chosen.rare;
+    plan.threads = executor.threads();
     plan.cpu_s = compared.cpu_s_per_sample(best) * static_cast<double>(plan.samples) *
                  request.scene.size.x * request.scene.size.y;
     return plan;

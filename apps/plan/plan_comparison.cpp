@@ -295,9 +295,26 @@ std::vector<PlanCandidate> PlanComparison::candidates() const {
     return out;
 }
 
+const PilotModel& PlanComparison::model_of(size_t candidate) const {
+    return candidate < entries_.size() ? *entries_[candidate].model : *full_;
+}
+
 double PlanComparison::cpu_s_per_sample(size_t candidate) const {
-    return candidate < entries_.size() ? entries_[candidate].model->cpu_s_per_sample()
-                                       : full_->cpu_s_per_sample();
+    return model_of(candidate).cpu_s_per_sample();
+}
+
+std::optional<double> PlanComparison::effort_of(const SceneRequest& scene, size_t candidate) const {
+    const PilotModel& own = model_of(candidate);
+    const auto other = model(scene);
+    pilot_->sample(*other, own.samples());
+    const double floor = pilot_floor(*pilot_, *scale_);
+    const auto effort = [&](const PilotModel& m) {
+        return noise_of(*pilot_, m, scale_of(own, floor)).variances.back().mean *
+               m.rays_per_sample();
+    };
+    const double of_own = effort(own);
+    if (!(of_own > 0)) return std::nullopt;
+    return effort(*other) / of_own;
 }
 
 }  // namespace petzval

@@ -35,6 +35,9 @@ class PlanComparison {
     /// Candidates as added, and last the fullest model: it has no bias.
     [[nodiscard]] std::vector<PlanCandidate> candidates() const;
     [[nodiscard]] double cpu_s_per_sample(size_t candidate) const;
+    /// Noise times cost in rays of a candidate's scene in another request, over the candidate's
+    /// own: in proportion to the time that a given noise takes. Nothing where no noise was seen.
+    [[nodiscard]] std::optional<double> effort_of(const SceneRequest&, size_t candidate) const;
     /// RMS lateral dispersion in pixels; 0 unless dispersion is open.
     [[nodiscard]] double dispersion_px() const { return dispersion_px_; }
 
@@ -47,6 +50,7 @@ class PlanComparison {
         std::unique_ptr<PilotModel> own;    ///< the model, unless it is one of the others'
     };
 
+    [[nodiscard]] const PilotModel& model_of(size_t candidate) const;
     [[nodiscard]] RenderSetup open(const SceneRequest&) const;
     [[nodiscard]] std::unique_ptr<PilotModel> model(const SceneRequest&) const;
     [[nodiscard]] std::unique_ptr<PilotModel> amplified(const SceneRequest&) const;

@@ -25,6 +25,7 @@ struct PlanRequest {
     RenderJob job;  ///< sampler and filter count: samples and seed do not, nor does a crop
     PathOptions path;
     double tolerance = kUsualTolerance;  ///< above 0
+    bool light_choice_open = true;       ///< scene.light_choice is no wish of the user's
 };
 
 /// Ways to render a scene, simplest first. Shared to Split carry wavelengths through a lens.

@@ -12,15 +12,16 @@ namespace petzval {
 /// darkest tone that shows texture (zone III: Adams 1981, "The Negative", chapter 4).
 inline constexpr double kSymmetricFloorShare = 0.25;
 
-/// Squared relative difference of two values, (a - b)^2 / ((a^2 + b^2) / 2 + floor^2): 0 to 2, the
-/// same for light that is lost and light that is added. The symmetric MSE of two pictures is its
-/// mean over pixels and R, G and B. floor: floor_of_symmetric_mse().
+/// Squared relative difference of two values, (a - b)^2 / ((a^2 + b^2) / 2 + floor^2): 0 to 2 where
+/// neither is negative, the same for light that is lost and light that is added. The symmetric MSE
+/// of two pictures is its mean over pixels and R, G and B. floor: floor_of_symmetric_mse().
 [[nodiscard]] inline double symmetric_square(double a, double b, double floor) {
     const double d = a - b, scale = (a * a + b * b) / 2 + floor * floor;
     return scale > 0 ? d * d / scale : 0;
 }
 
-/// Most that the symmetric MSE can be.
+/// Most that the symmetric MSE of light can be. Colours beyond sRGB have negative values, whose own
+/// square can reach twice that.
 inline constexpr double kMostSymmetricMse = 2;
 
 /// What is known of how bright a picture is.

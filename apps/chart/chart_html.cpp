@@ -7,6 +7,8 @@
 #include "io/base/printable.h"
 #include "io/base/read_file.h"
 #include "io/base/uri.h"
+#include "io/image/difference.h"
+#include "io/image/symmetric_mse.h"
 
 namespace petzval {
 namespace {
@@ -17,6 +19,7 @@ constexpr const char* kStyle = R"(
 body { font: 15px/1.45 sans-serif; max-width: 64em; margin: 2em auto; padding: 0 1em; color: #111 }
 h1 { font-size: 1.5em } h2 { font-size: 1.2em; margin-top: 2.5em; border-top: 1px solid #999 }
 svg { width: 100%; height: auto; max-width: 46em; display: block }
+.pair { display: flex; flex-wrap: wrap; gap: 1em } .pair svg { flex: 1 1 26em; min-width: 0 }
 table { border-collapse: collapse; margin: 1em 0 }
 th, td { padding: .2em .8em; text-align: right; border-bottom: 1px solid #ccc }
 th:first-child, td:first-child { text-align: left }
@@ -75,17 +78,20 @@ std::string with_bounds(const Interval& v) {
 
 std::string table(const MeasuredCase& of) {
     std::string text =
-        "<table><tr><th>method</th><th>samples</th><th>CPU s</th><th>relative MSE</th>"
-        "<th>FLIP</th><th>efficiency, 1/s</th><th>95 %</th><th>to the first</th></tr>\n";
+        "<table><tr><th>method</th><th>samples</th><th>CPU s</th><th>symmetric MSE</th>"
+        "<th>relative MSE</th><th>FLIP</th><th>efficiency, 1/s</th><th>95 %</th><th>to the "
+        "first</th></tr>\n";
     for (const EfficiencyRow& row : efficiencies(of)) {
         const Interval e = row.point.efficiency();
         text += fmt::format(
-            "<tr{}><td>{}</td><td>{}</td><td>{:.3g}</td><td>{}</td><td>{}</td><td>{:.3g}</td>"
+            "<tr{}><td>{}</td><td>{}</td><td>{:.3g}</td><td>{}</td><td>{}</td><td>{}</"
+            "td><td>{:.3g}</td>"
             "<td>{:.3g} to {:.3g}</td><td>{:.2f}</td></tr>\n",
             row.believed ? "" : " class=\"doubt\"",
             escaped(row.method) + (row.believed ? "" : " (not believed)"), row.point.samples,
-            row.point.cpu_s().mean, with_bounds(row.point.relative_mse()),
-            with_bounds(row.point.flip()), e.mean, e.low, e.high, row.to_first);
+            row.point.cpu_s().mean, with_bounds(row.point.symmetric_mse()),
+            with_bounds(row.point.relative_mse()), with_bounds(row.point.flip()), e.mean, e.low,
+            e.high, row.to_first);
     }
     return text + "</table>\n";
 }
@@ -118,7 +124,10 @@ std::string section(const ChartReport& report, const MeasuredCase& of) {
     text += "</p>\n";
     if (of.methods.empty()) return text;
     text += drawing(folder / (of.of.name + ".svg"));
+    text += "<div class=\"pair\">\n";
+    text += drawing(folder / (of.of.name + "-relative.svg"));
     text += drawing(folder / (of.of.name + "-flip.svg"));
+    text += "</div>\n";
     return text + table(of) + pictures(folder, of);
 }
 
@@ -132,11 +141,16 @@ std::string report_html(const ChartReport& report) {
         "<h1>Speed against accuracy: {0}</h1>\n"
         "<p>Each line is a method over growing numbers of samples: to the left is quicker, below "
         "is better. Bars are 95 % intervals of confidence of the mean over the seeds (Student's "
-        "t). CPU time is that of all threads. Relative MSE is the mean of (a - b)² / (b² + 0.01) "
-        "against the reference b; FLIP (Andersson et al. 2020) is what an eye sees, at 67 pixels "
-        "per degree. Efficiency is 1 / (relative MSE × CPU time), at the last point that is "
-        "believed. {2}.</p>\n",
-        escaped(report.subject.request.scene.filename().string()), kStyle, program_version());
+        "t). CPU time is that of all threads. The measure of error is the symmetric MSE against "
+        "the "
+        "reference b, the mean of (a - b)² / ((a² + b²) / 2 + f²), where f is {3:g} times the "
+        "reference's mid-grey: 0 to {4:g}, and the same for light that is lost and light that is "
+        "added. Efficiency is 1 / (symmetric MSE × CPU time), at the last point that is believed. "
+        "The smaller plots show relative MSE, the mean of (a - b)² / (b² + {5:g}), in which light "
+        "that is lost costs little and light that is added much, and FLIP (Andersson et al. 2020), "
+        "which is what an eye sees at 67 pixels per degree. {2}.</p>\n",
+        escaped(report.subject.request.scene.filename().string()), kStyle, program_version(),
+        kSymmetricFloorShare, kMostSymmetricMse, kRelativeMseEpsilon);
     for (const MeasuredCase& of : report.cases) text += section(report, of);
     return text + "</body></html>\n";
 }

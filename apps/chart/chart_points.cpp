@@ -40,6 +40,9 @@ Interval confidence_95(std::span<const double> values) {
 Interval ChartPoint::cpu_s() const {
     return over_seeds(*this, [](const ChartSeed& s) { return s.cpu_s; });
 }
+Interval ChartPoint::symmetric_mse() const {
+    return over_seeds(*this, [](const ChartSeed& s) { return s.symmetric_mse; });
+}
 Interval ChartPoint::relative_mse() const {
     return over_seeds(*this, [](const ChartSeed& s) { return s.relative_mse; });
 }
@@ -48,7 +51,7 @@ Interval ChartPoint::flip() const {
 }
 Interval ChartPoint::efficiency() const {
     const Interval product =
-        over_seeds(*this, [](const ChartSeed& s) { return s.relative_mse * s.cpu_s; });
+        over_seeds(*this, [](const ChartSeed& s) { return s.symmetric_mse * s.cpu_s; });
     return {1 / product.mean, 1 / product.high,
             product.low > 0 ? 1 / product.low : std::numeric_limits<double>::infinity()};
 }

@@ -20,10 +20,10 @@ struct Interval {
 /// Mean and its 95 % confidence interval under Student's t. At least 5 values.
 [[nodiscard]] Interval confidence_95(std::span<const double> values);
 
-/// Cost and error of one render.
+/// Cost and errors of one render.
 struct ChartSeed {
     uint32_t seed = 0;
-    double cpu_s = 0, relative_mse = 0, flip = 0;
+    double cpu_s = 0, symmetric_mse = 0, relative_mse = 0, flip = 0;
 };
 
 /// Measurements of one method at one number of samples.
@@ -32,9 +32,10 @@ struct ChartPoint {
     std::vector<ChartSeed> seeds;
 
     [[nodiscard]] Interval cpu_s() const;
+    [[nodiscard]] Interval symmetric_mse() const;
     [[nodiscard]] Interval relative_mse() const;
     [[nodiscard]] Interval flip() const;
-    /// Efficiency 1 / (relative MSE * CPU s), 1/s, from the mean of the product over the seeds.
+    /// Efficiency 1 / (symmetric MSE * CPU s), 1/s, from the mean of the product over the seeds.
     /// `high` is infinite where the interval of the product reaches 0.
     [[nodiscard]] Interval efficiency() const;
 };

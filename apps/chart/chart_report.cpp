@@ -108,10 +108,12 @@ Json json_of(const MeasuredCase& of, const ChartPoint& point) {
     for (const ChartSeed& s : point.seeds)
         seeds.push_back({{"seed", s.seed},
                          {"cpu_s", s.cpu_s},
+                         {"symmetric_mse", s.symmetric_mse},
                          {"relative_mse", s.relative_mse},
                          {"flip", s.flip}});
     return {{"samples", point.samples},
             {"cpu_s", json_of(point.cpu_s())},
+            {"symmetric_mse", json_of(point.symmetric_mse())},
             {"relative_mse", json_of(point.relative_mse())},
             {"flip", json_of(point.flip())},
             {"efficiency_per_s", json_of(point.efficiency())},
@@ -134,6 +136,7 @@ Json json_of(const MeasuredCase& of, const ChartFrame& frame) {
                      {"parts", r.parts},
                      {"samples_of_a_part", r.samples},
                      {"cpu_s", r.cpu_s},
+                     {"symmetric_mse", or_null(r.symmetric_mse)},
                      {"relative_mse", or_null(r.relative_mse)},
                      {"flip_at_most", or_null(r.flip)}};
     return {{"axis", name_of(of.of.axis)}, {"name", of.of.name},
@@ -142,15 +145,16 @@ Json json_of(const MeasuredCase& of, const ChartFrame& frame) {
 }
 
 std::string csv_of(const ChartReport& report) {
-    std::string text = "axis,case,method,samples,seed,cpu_s,relative_mse,flip,believed\n";
+    std::string text =
+        "axis,case,method,samples,seed,cpu_s,symmetric_mse,relative_mse,flip,believed\n";
     for (const MeasuredCase& of : report.cases)
         for (const MeasuredMethod& method : of.methods)
             for (const ChartPoint& point : method.points)
                 for (const ChartSeed& s : point.seeds)
-                    text +=
-                        fmt::format("{},{},{},{},{},{:.9g},{:.9g},{:.9g},{}\n", name_of(of.of.axis),
-                                    of.of.name, method.name, point.samples, s.seed, s.cpu_s,
-                                    s.relative_mse, s.flip, of.believed(point) ? 1 : 0);
+                    text += fmt::format("{},{},{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{}\n",
+                                        name_of(of.of.axis), of.of.name, method.name, point.samples,
+                                        s.seed, s.cpu_s, s.symmetric_mse, s.relative_mse, s.flip,
+                                        of.believed(point) ? 1 : 0);
     return text;
 }
 
@@ -194,12 +198,12 @@ std::vector<std::string> head_of(const ChartReport& report, const MeasuredCase& 
             fmt::format("Reference: {}; its own error is not known, so that there is no "
                         "floor and every point is taken as it is.",
                         report.frame.reference_name));
-    } else if (r.relative_mse) {
+    } else if (r.symmetric_mse) {
         head.push_back(fmt::format(
-            "Reference: {}; {} parts of {} samples, {:.3g} CPU s. Its own relative MSE is {:.2g}, "
-            "its FLIP at most {:.2g}; a point of less than twice that relative MSE is not "
+            "Reference: {}; {} parts of {} samples, {:.3g} CPU s. Its own symmetric MSE is {:.2g}, "
+            "its FLIP at most {:.2g}; a point of less than twice that symmetric MSE is not "
             "believed.",
-            of.of.reference.name, r.parts, r.samples, r.cpu_s, *r.relative_mse, *r.flip));
+            of.of.reference.name, r.parts, r.samples, r.cpu_s, *r.symmetric_mse, *r.flip));
     }
     for (const std::string& remark : of.of.remarks) head.push_back(remark + ".");
     return head;
@@ -219,8 +223,13 @@ void write_case(const ChartReport& report, const MeasuredCase& of) {
     const DisplayOptions display{.exposure_ev = report.frame.exposure_ev};
     std::vector<std::function<void()>> writes{
         [&] {
+            write_plots(folder, of.of.name,
+                        plot_of(of, &ChartPoint::symmetric_mse, "symmetric MSE",
+                                of.reference.symmetric_mse));
+        },
+        [&] {
             write_plots(
-                folder, of.of.name,
+                folder, of.of.name + "-relative",
                 plot_of(of, &ChartPoint::relative_mse, "relative MSE", of.reference.relative_mse));
         },
         [&] {

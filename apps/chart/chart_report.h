@@ -30,9 +30,9 @@ struct EfficiencyRow {
 /// out.
 [[nodiscard]] std::vector<std::string> head_of(const ChartReport&, const MeasuredCase&);
 
-/// Writes the files of a case: NAME.svg and NAME.png over relative MSE, NAME-flip.* over FLIP, and
-/// each method's picture and map of FLIP in pictures/. Nothing for a case without methods. Each
-/// is tried, whichever of them fail. Throws InputError.
+/// Writes the files of a case: NAME.svg and NAME.png over symmetric MSE, NAME-relative.* over
+/// relative MSE, NAME-flip.* over FLIP, and each method's picture and map of FLIP in pictures/.
+/// Nothing for a case without methods. Each is tried, whichever of them fail. Throws InputError.
 void write_case(const ChartReport&, const MeasuredCase&);
 
 /// Writes the table of points.csv, a row for each render, under that name. Throws OutputError.

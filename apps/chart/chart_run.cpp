@@ -8,8 +8,8 @@
 
 #include "integrator/render.h"
 #include "io/image/difference.h"
-#include "io/image/flip.h"
 #include "io/image/picture_files.h"
+#include "io/image/symmetric_mse.h"
 
 namespace petzval {
 namespace {
@@ -98,10 +98,6 @@ class MethodRenders {
     std::vector<double> cpu_s_;
 };
 
-double relative_mse(const Picture& a, const Picture& b) {
-    return compare(a, b).front().relative_mse;
-}
-
 Picture mean_of(const std::vector<Picture>& parts) {
     Picture mean = parts.front();
     for (size_t i = 0; i < mean.pixels.size(); ++i) {
@@ -112,7 +108,29 @@ Picture mean_of(const std::vector<Picture>& parts) {
     return mean;
 }
 
-/// Mean of the variance of the parts' mean, over what relative_mse() divides by.
+/// Mean of the variance of the parts' mean, over what the symmetric MSE divides by.
+double symmetric_variance(const std::vector<Picture>& parts, double floor) {
+    const auto n = static_cast<double>(parts.size());
+    double total = 0;
+    for (size_t i = 0; i < parts.front().pixels.size(); ++i) {
+        const auto value = [i](const Picture& part) { return double(part.pixels[i]); };
+        double sum = 0, variance = 0;
+        for (const Picture& part : parts) sum += value(part);
+        // From each two parts, over the mean of the others: a part that is too bright by chance
+        // would hide its own error where it were in both.
+        for (auto j = parts.begin(); j != parts.end(); ++j)
+            for (auto k = std::next(j); k != parts.end(); ++k) {
+                const double difference = value(*j) - value(*k);
+                const double others = (sum - value(*j) - value(*k)) / (n - 2);
+                const double scale = others * others + floor * floor;
+                if (scale > 0) variance += difference * difference / scale / (n * (n - 1)) / n;
+            }
+        total += std::min(variance, kMostSymmetricMse);  // no pixel adds more to what is measured
+    }
+    return total / static_cast<double>(parts.front().pixels.size());
+}
+
+/// Mean of the variance of the parts' mean, over what the relative MSE divides by.
 double relative_variance(const std::vector<Picture>& parts, const Picture& mean) {
     const auto n = static_cast<double>(parts.size());
     double sum = 0;
@@ -256,9 +274,10 @@ class CaseMeasurement {
             ChartPoint point{renders.samples(), {}};
             for (uint32_t seed = 0; seed < at_.frame.seeds; ++seed) {
                 Picture picture = renders.picture(seed);
-                point.seeds.push_back({renders.seed(seed), renders.cpu_s(seed),
-                                       relative_mse(picture, reference_.picture),
-                                       flip_.mean(picture)});
+                ChartSeed& measured =
+                    point.seeds.emplace_back(errors_of(picture, reference_.picture, flip_));
+                measured.seed = renders.seed(seed);
+                measured.cpu_s = renders.cpu_s(seed);
                 if (seed == 0) pictures_[i].push_back(std::move(picture));
             }
             methods_[i].points.push_back(std::move(point));
@@ -282,7 +301,7 @@ class CaseMeasurement {
 }  // namespace
 
 bool MeasuredCase::believed(const ChartPoint& point) const {
-    return !reference.relative_mse || point.relative_mse().mean >= 2 * *reference.relative_mse;
+    return !reference.symmetric_mse || point.symmetric_mse().mean >= 2 * *reference.symmetric_mse;
 }
 
 Picture rgb_picture(const Film& film) {
@@ -304,10 +323,18 @@ Picture rgb_picture(const Film& film) {
     return picture;
 }
 
+ChartSeed errors_of(const Picture& picture, const Picture& reference, const Flip& flip) {
+    const LayerDifference rgb = compare(picture, reference).front();
+    return {.symmetric_mse = rgb.symmetric_mse.value(),
+            .relative_mse = rgb.relative_mse,
+            .flip = flip.mean(picture)};
+}
+
 ChartReference reference_of(const std::vector<Picture>& parts, float exposure_ev) {
     ChartReference reference;
     reference.parts = static_cast<uint32_t>(parts.size());
     reference.picture = mean_of(parts);
+    reference.symmetric_mse = symmetric_variance(parts, floor_against(reference.picture).value());
     reference.relative_mse = relative_variance(parts, reference.picture);
     const auto middle = parts.begin() + static_cast<long>(parts.size() / 2);
     reference.flip =

@@ -13,6 +13,7 @@
 #include "integrator/executor.h"
 #include "io/base/clock.h"
 #include "io/base/error.h"
+#include "io/image/flip.h"
 #include "io/picture/picture.h"
 
 namespace petzval {
@@ -49,9 +50,9 @@ struct ChartReference {
     Picture picture;
     uint32_t parts = 0, samples = 0;  ///< of each part; none for a file
     double cpu_s = 0;
-    /// Of the picture itself: relative MSE from the variance of its parts, and FLIP between its two
+    /// Of the picture itself: the two MSE from the variance of its parts, and FLIP between its two
     /// halves, which is twice as noisy in amplitude and so a bound. Unknown for a file.
-    std::optional<double> relative_mse, flip;
+    std::optional<double> symmetric_mse, relative_mse, flip;
 };
 
 struct MeasuredMethod {
@@ -69,14 +70,16 @@ struct MeasuredCase {
     std::optional<double> equal_cpu_s;  ///< about what each method's picture took
     double wall_s = 0;
 
-    /// Whether a measured error says something about the method: at least twice the reference's,
-    /// as what is measured is the sum of both.
+    /// Whether a measured symmetric MSE says something about the method: at least twice the
+    /// reference's, as what is measured is the sum of both.
     [[nodiscard]] bool believed(const ChartPoint&) const;
 };
 
 /// A film as a plain picture of R, G and B.
 [[nodiscard]] Picture rgb_picture(const Film&);
-/// A reference from independent renders, two or more, with its own error from their spread.
+/// Errors of a picture from the reference, which `flip` holds too; seed and cost are left at 0.
+[[nodiscard]] ChartSeed errors_of(const Picture&, const Picture& reference, const Flip& flip);
+/// A reference from independent renders, three or more, with its own error from their spread.
 [[nodiscard]] ChartReference reference_of(const std::vector<Picture>& parts, float exposure_ev);
 /// A reference from a file: R, G and B of the crop. Throws InputError where it has not this frame.
 [[nodiscard]] Picture read_reference(const std::filesystem::path&, V2i size, Rect crop);

@@ -121,14 +121,14 @@ void resolve(ChartOptions& o) {
 void print_case(const MeasuredCase& of) {
     print_line(of.of.name + ": " + of.of.title);
     for (const std::string& remark : of.of.remarks) print_line("  " + remark);
-    if (of.reference.relative_mse)
-        fmt::print("  reference: {}, {} x {} samples, relative MSE {:.2g}\n", of.of.reference.name,
-                   of.reference.parts, of.reference.samples, *of.reference.relative_mse);
+    if (of.reference.symmetric_mse)
+        fmt::print("  reference: {}, {} x {} samples, symmetric MSE {:.2g}\n", of.of.reference.name,
+                   of.reference.parts, of.reference.samples, *of.reference.symmetric_mse);
     for (const EfficiencyRow& row : efficiencies(of))
         fmt::print(
-            "  {:<20} {:>6} samples {:>8.3g} CPU s  relative MSE {:<8.3g} FLIP {:<6.3g} "
+            "  {:<20} {:>6} samples {:>8.3g} CPU s  symmetric MSE {:<8.3g} FLIP {:<6.3g} "
             "efficiency {:.3g}/s{}\n",
-            row.method, row.point.samples, row.point.cpu_s().mean, row.point.relative_mse().mean,
+            row.method, row.point.samples, row.point.cpu_s().mean, row.point.symmetric_mse().mean,
             row.point.flip().mean, row.point.efficiency().mean,
             row.believed ? "" : " (not believed)");
     std::fflush(stdout);

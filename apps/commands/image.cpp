@@ -24,6 +24,7 @@
 #include "io/image/output.h"
 #include "io/image/picture_files.h"
 #include "io/image/spectral_layout.h"
+#include "io/image/symmetric_mse.h"
 #include "io/plot/plot.h"
 
 namespace petzval {
@@ -36,9 +37,11 @@ struct DiffOptions {
 };
 
 void print_layer(const LayerDifference& d) {
-    std::string line = fmt::format(
-        "{}: RMSE {:.6g}, relative MSE {:.6g}, PSNR {:.2f} dB (peak {:.6g}), max {:.6g}", d.layer,
-        d.rmse, d.relative_mse, d.psnr_db, d.peak, d.max_abs);
+    std::string line = d.layer + ": ";
+    if (d.symmetric_mse) line += fmt::format("symmetric MSE {:.6g}, ", *d.symmetric_mse);
+    line +=
+        fmt::format("RMSE {:.6g}, relative MSE {:.6g}, PSNR {:.2f} dB (peak {:.6g}), max {:.6g}",
+                    d.rmse, d.relative_mse, d.psnr_db, d.peak, d.max_abs);
     if (d.max_abs > 0.) line += fmt::format(" in {} at {},{}", d.max_channel, d.max_x, d.max_y);
     if (d.not_finite > 0) line += fmt::format(", {} values not finite", d.not_finite);
     print_line(line);
@@ -73,10 +76,12 @@ void add_diff(CLI::App& image) {
                      "exit with 1 if the RMSE of any layer is above this")
         ->transform(number_between(0, std::numeric_limits<float>::max()));
     add_memory_option(*diff, options->reading);
-    diff->footer(
-        fmt::format("relative MSE is the mean of (a - b)^2 / (b^2 + {}); the peak of PSNR "
-                    "is the largest value of b.",
-                    kRelativeMseEpsilon));
+    diff->footer(fmt::format(
+        "symmetric MSE is the mean of (a - b)^2 / ((a^2 + b^2) / 2 + f^2), where f is {} times the "
+        "reference's mid-grey: 0 for equal pictures, {:g} at most, and the same for light that is "
+        "lost and light that is added. It is for light: the layers RGB and Y of an .exr. relative "
+        "MSE is the mean of (a - b)^2 / (b^2 + {}); the peak of PSNR is the largest value of b.",
+        kSymmetricFloorShare, kMostSymmetricMse, kRelativeMseEpsilon));
     diff->callback([options] { diff_command(*options); });
 }
 

@@ -19,6 +19,8 @@ constexpr double kAmplified_px = 0.35, kMostFactor = 64;
 constexpr uint32_t kLeastSamples = 4, kThoroughSamples = 32;
 // Share of the tolerance below which errors are not measured more finely.
 constexpr double kSmallShare = 0.25;
+/// Share of the samples of a plan that may go to noise alone.
+constexpr double kNoiseShare = 0.25;
 /// Rays of a cell that two cameras are compared by.
 constexpr uint32_t kDispersionRays = 64, kCameraRays = 256;
 /// Share of the noise that may come from light that was hardly met.
@@ -239,7 +241,9 @@ void PlanComparison::measure(double most_samples, bool thorough) {
             if (e.own) pilot_->sample(*e.own, n);
         evaluate();
         if (once * 2 * n > most_samples) return;
-        if (n >= (thorough ? kThoroughSamples : kLeastSamples) && all_known(thorough)) return;
+        if (n < (thorough ? kThoroughSamples : kLeastSamples) || !all_known(thorough)) continue;
+        // Noise falls faster than in proportion: more turns tell how fast.
+        if (!thorough || once * 2 * n > kNoiseShare * most_samples) return;
     }
 }
 

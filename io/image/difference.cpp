@@ -5,14 +5,17 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
 #include <utility>
 
+#include "core/spectrum/bands.h"
 #include "io/base/error.h"
 #include "io/image/picture_files.h"
 #include "io/image/spectral_layout.h"
+#include "io/image/symmetric_mse.h"
 
 namespace petzval {
 namespace {
@@ -23,10 +26,16 @@ std::string layer_of(const std::string& channel) {
     return point == std::string::npos ? channel : channel.substr(0, point);
 }
 
+/// Whether a layer is the light that luminances are made of.
+bool is_light(const std::string& layer) {
+    return layer == "RGB" || layer == "Y";
+}
+
 /// Sums over the values of one layer.
 struct Sums {
     LayerDifference found;
-    double squares = 0., relative = 0.;
+    std::optional<double> floor;  ///< of the symmetric MSE, where the layer has one
+    double symmetric = 0., squares = 0., relative = 0.;
 
     void add(double a, double b, int x, int y, const std::string& channel) {
         if (!std::isfinite(a) || !std::isfinite(b)) {
@@ -35,6 +44,7 @@ struct Sums {
         }
         const double difference = std::fabs(a - b);
         ++found.value_count;
+        if (floor) symmetric += symmetric_square(a, b, *floor);
         squares += difference * difference;
         relative += difference * difference / (b * b + kRelativeMseEpsilon);
         found.peak = std::max(found.peak, std::fabs(b));
@@ -47,6 +57,7 @@ struct Sums {
 
     [[nodiscard]] LayerDifference result() && {
         const double count = std::max<double>(1., static_cast<double>(found.value_count));
+        if (floor) found.symmetric_mse = symmetric / count;
         found.rmse = std::sqrt(squares / count);
         found.relative_mse = relative / count;
         found.psnr_db = found.rmse > 0. ? 20. * std::log10(found.peak / found.rmse)
@@ -55,11 +66,13 @@ struct Sums {
     }
 };
 
-Sums& sums_of(std::vector<Sums>& layers, const std::string& name) {
+Sums& sums_of(std::vector<Sums>& layers, const std::string& name, std::optional<double> floor) {
     for (Sums& layer : layers)
         if (layer.found.layer == name) return layer;
-    layers.emplace_back().found.layer = name;
-    return layers.back();
+    Sums& layer = layers.emplace_back();
+    layer.found.layer = name;
+    if (is_light(name)) layer.floor = floor;
+    return layer;
 }
 
 std::vector<std::string> sorted(std::vector<std::string> names) {
@@ -96,6 +109,20 @@ std::string only_in(const std::vector<std::string>& a, const std::vector<std::st
 
 }  // namespace
 
+std::optional<double> floor_against(const Picture& reference) {
+    const int grey = channel_index(reference, "Y");
+    const auto from = [&](const char* name) { return channel_index(reference, name); };
+    std::array<int, 3> at{from("R"), from("G"), from("B")};
+    if (*std::min_element(at.begin(), at.end()) < 0) at = {grey, grey, grey};
+    if (at[0] < 0 || reference.for_display) return std::nullopt;
+    SymmetricFloor floor;
+    for (size_t i = 0; i < reference.pixels.size(); i += reference.channels.size()) {
+        const auto value = [&](int c) { return reference.pixels[i + static_cast<size_t>(c)]; };
+        floor.add(double(luminance(Rgb(value(at[0]), value(at[1]), value(at[2])))));
+    }
+    return floor.floor();
+}
+
 std::string why_not_comparable(const Picture& a, const Picture& b) {
     if (frame(a) != frame(b)) return fmt::format("{} against {}", frame(a), frame(b));
     if (a.for_display != b.for_display)
@@ -114,9 +141,10 @@ std::string why_not_comparable(const Picture& a, const Picture& b) {
 }
 
 std::vector<LayerDifference> compare(const Picture& a, const Picture& b) {
+    const std::optional<double> floor = floor_against(b);
     std::vector<Sums> layers;
     for (size_t c = 0; c < b.channels.size(); ++c) {
-        Sums& sums = sums_of(layers, layer_of(b.channels[c]));
+        Sums& sums = sums_of(layers, layer_of(b.channels[c]), floor);
         const auto in_a = static_cast<size_t>(channel_index(a, b.channels[c]));
         for (int y = 0; y < b.height; ++y)
             for (int x = 0; x < b.width; ++x) {

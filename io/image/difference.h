@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Differences between two pictures: RMSE, relative MSE, PSNR, layer by layer.
+// Differences between two pictures: symmetric MSE, RMSE, relative MSE, PSNR, layer by layer.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,8 @@ struct LayerDifference {
     std::string layer;
     uint64_t value_count = 0;  ///< compared: pixels times channels
     uint64_t not_finite = 0;   ///< left out
+    /// Mean of symmetric_square() with floor_against(b); nothing for layers without such a floor.
+    std::optional<double> symmetric_mse;
     double rmse = 0.;          ///< root of the mean of (a - b)^2
     double relative_mse = 0.;  ///< mean of (a - b)^2 / (b^2 + kRelativeMseEpsilon)
     double peak = 0.;          ///< largest absolute value of b
@@ -32,6 +35,10 @@ struct LayerDifference {
     std::string max_channel;   ///< in this channel ("" where max_abs is 0)
     int max_x = 0, max_y = 0;  ///< of this pixel of the full frame
 };
+
+/// Floor of the symmetric MSE against a reference, from the luminances of its finite pixels.
+/// Nothing where it has neither R, G and B nor Y, or holds values for a display.
+[[nodiscard]] std::optional<double> floor_against(const Picture& reference);
 
 /// Reason why two pictures cannot be compared (size, crop, light or display values, wavelengths,
 /// channels by name), where a

@@ -6,15 +6,17 @@
 
 namespace petzval {
 
-/// Squared relative difference of two values, (a - b)^2 / ((a^2 + b^2) / 2 + floor^2): 0 to 2, the
-/// same for light that is lost and light that is added. The symmetric MSE of two pictures is its
-/// mean over pixels and R, G and B. floor: SymmetricFloor's, of the reference.
+/// Squared relative difference of two values, (a - b)^2 / ((a^2 + b^2) / 2 + floor^2): 0 to 2 where
+/// neither is negative, the same for light that is lost and light that is added. The symmetric MSE
+/// of two pictures is its mean over pixels and R, G and B. floor: SymmetricFloor's, of the
+/// reference.
 [[nodiscard]] inline double symmetric_square(double a, double b, double floor) {
     const double d = a - b, scale = (a * a + b * b) / 2 + floor * floor;
     return scale > 0 ? d * d / scale : 0;
 }
 
-/// Most that the symmetric MSE can be.
+/// Most that the symmetric MSE of light can be. Colours beyond sRGB have negative values, whose own
+/// square can reach twice that.
 inline constexpr double kMostSymmetricMse = 2;
 
 /// Floor of the symmetric MSE as a share of a picture's mid-grey: two stops below it lies the

@@ -7,6 +7,7 @@
 
 #include "apps/chart/chart.h"
 #include "io/base/csv.h"
+#include "io/image/symmetric_mse.h"
 #include "tests/support/cli.h"
 #include "tests/support/statistics.h"
 
@@ -50,10 +51,12 @@ TEST(ChartPoints, IntervalsHoldTheMeanAsOftenAsTheySay) {
     EXPECT_TRUE(test::agrees({double(held), std::sqrt(2000 * 0.95 * 0.05)}, 1900)) << held;
 }
 
+/// A point with that symmetric MSE; its relative MSE and FLIP say the opposite.
 ChartPoint point(uint32_t samples, double cpu_s, double mse) {
     ChartPoint p{samples, {}};
     for (uint32_t i = 0; i < 5; ++i)
-        p.seeds.push_back({i, cpu_s * (1 + 0.01 * (i - 2.)), mse * (1 - 0.02 * (i - 2.)), mse});
+        p.seeds.push_back({i, cpu_s * (1 + 0.01 * (i - 2.)), mse * (1 - 0.02 * (i - 2.)),
+                           1e-3 / mse, 1e-3 / mse});
     return p;
 }
 
@@ -64,7 +67,7 @@ TEST(ChartPoints, EfficiencyIsOneOverErrorTimesTime) {
     EXPECT_LT(p.efficiency().low, p.efficiency().mean);
     EXPECT_GT(p.efficiency().high, p.efficiency().mean);
     ChartPoint wild = p;
-    wild.seeds[0].relative_mse = 100;
+    wild.seeds[0].symmetric_mse = 100;
     EXPECT_TRUE(std::isinf(wild.efficiency().high));
 }
 
@@ -80,7 +83,7 @@ TEST(ChartPoints, ParetoFrontHoldsWhatNothingBeats) {
 
 TEST(ChartReport, EfficiencyIsOfTheLastPointThatIsBelieved) {
     MeasuredCase of;
-    of.reference.relative_mse = 0.01;
+    of.reference.symmetric_mse = 0.01;
     of.methods.resize(2);
     of.methods[0].points = {point(1, 1, 0.1), point(2, 2, 0.05), point(4, 4, 0.015)};
     of.methods[1].points = {point(1, 1, 0.018)};
@@ -89,7 +92,7 @@ TEST(ChartReport, EfficiencyIsOfTheLastPointThatIsBelieved) {
     EXPECT_EQ(rows[0].point.samples, 2u) << "0.015 is less than twice 0.01";
     EXPECT_FALSE(rows[1].believed);
     EXPECT_NEAR(rows[1].to_first, 0.1 / 0.018, 1e-3);
-    of.reference.relative_mse.reset();
+    of.reference.symmetric_mse.reset();
     EXPECT_EQ(efficiencies(of)[0].point.samples, 4u) << "no floor is known";
 }
 
@@ -161,9 +164,10 @@ TEST_F(ChartRun, WritesAReport) {
     EXPECT_EQ(outcome.measured, 1u);
     EXPECT_FALSE(outcome.stopped);
     for (const char* name :
-         {"lights.svg", "lights.png", "lights-flip.svg", "lights-flip.png", "points.csv",
-          "points.json", "report.html", "pictures/lights-reference.png",
-          "pictures/lights-power.png", "pictures/lights-power-flip.png"})
+         {"lights.svg", "lights.png", "lights-relative.svg", "lights-relative.png",
+          "lights-flip.svg", "lights-flip.png", "points.csv", "points.json", "report.html",
+          "pictures/lights-reference.png", "pictures/lights-power.png",
+          "pictures/lights-power-flip.png"})
         EXPECT_FALSE(file_bytes(path(std::string("report/") + name)).empty()) << name;
 
     const json all = points();
@@ -171,7 +175,8 @@ TEST_F(ChartRun, WritesAReport) {
     const json& of = all["cases"][0];
     EXPECT_EQ(of["axis"], "lights");
     EXPECT_EQ(of["reference"]["parts"], kReferenceReplicates);
-    EXPECT_GT(of["reference"]["relative_mse"], 0.);
+    for (const char* error : {"symmetric_mse", "relative_mse", "flip_at_most"})
+        EXPECT_GT(of["reference"][error], 0.) << error;
     ASSERT_EQ(of["methods"].size(), 3u);  // uniform, power, tree
     size_t renders = 0;
     for (const json& method : of["methods"]) {
@@ -183,22 +188,34 @@ TEST_F(ChartRun, WritesAReport) {
             // Costs are those of the other clock, and of nothing but this render's samples.
             EXPECT_NEAR(p["cpu_s"]["mean"], 3 * 5e-3 * samples, 1e-9);
             EXPECT_EQ(p["seeds"].size(), kChartSeeds);
-            EXPECT_NE(p["seeds"][0]["relative_mse"], p["seeds"][1]["relative_mse"]);
+            for (const char* error : {"symmetric_mse", "relative_mse", "flip"})
+                EXPECT_NE(p["seeds"][0][error], p["seeds"][1][error]) << error;
+            EXPECT_LE(p["symmetric_mse"]["mean"], kMostSymmetricMse);
             renders += p["seeds"].size();
             samples *= 2;
         }
         EXPECT_GE(last["samples"], 16);
         // Two lamps are drawn in proportion to 1 : 10 or 1 : 1, the walls are diffuse: the
         // variance falls at least as 1 / n, in 16 times the samples below an eighth.
-        EXPECT_LT(last["relative_mse"]["mean"].get<double>(),
-                  first["relative_mse"]["mean"].get<double>() / 8);
+        for (const char* error : {"symmetric_mse", "relative_mse"})
+            EXPECT_LT(last[error]["mean"].get<double>(), first[error]["mean"].get<double>() / 8)
+                << error;
         EXPECT_LT(last["flip"]["mean"], first["flip"]["mean"]);
     }
+    const std::string csv = file_bytes(path("report/points.csv"));
     EXPECT_EQ(read_csv_text(path("report/points.csv")).rows.size(), renders);
+    EXPECT_TRUE(csv.starts_with(
+        "axis,case,method,samples,seed,cpu_s,symmetric_mse,relative_mse,flip,believed\n"));
+    for (const auto& [file, label] : {std::pair{"lights.svg", ">symmetric MSE<"},
+                                      {"lights-relative.svg", ">relative MSE<"},
+                                      {"lights-flip.svg", ">FLIP<"}})
+        EXPECT_NE(file_bytes(path(std::string("report/") + file)).find(label), std::string::npos)
+            << file;
 
     const std::string page = file_bytes(path("report/report.html"));
     EXPECT_NE(page.find("data:image/png;base64,iVBOR"), std::string::npos);
-    EXPECT_NE(page.find("<svg"), std::string::npos);
+    for (const char* label : {">symmetric MSE</text>", ">relative MSE</text>", ">FLIP</text>"})
+        EXPECT_NE(page.find(label), std::string::npos) << label;
     EXPECT_EQ(page.find("<?xml"), std::string::npos);
     EXPECT_EQ(page.find("src=\"pictures"), std::string::npos) << "it holds all that it shows";
     EXPECT_EQ(page.find("href=\"http"), std::string::npos);
@@ -236,7 +253,7 @@ TEST_F(ChartRun, TakesAReferenceFromAFile) {
     EXPECT_EQ(run(r).measured, 1u);
     const json of = points()["cases"][0];
     EXPECT_EQ(of["reference"]["by"], "reference.exr");
-    EXPECT_TRUE(of["reference"]["relative_mse"].is_null());
+    EXPECT_TRUE(of["reference"]["symmetric_mse"].is_null());
     for (const json& p : of["methods"][0]["points"]) EXPECT_TRUE(p["believed"]);
     EXPECT_NE(file_bytes(path("report/report.html")).find("its own error is not known"),
               std::string::npos);

@@ -81,7 +81,7 @@ TEST_F(CliSpectrum, DiffComparesTheBinsAsOneLayer) {
     write_exr(b, p);
     const Finished run = run_petzval({"image", "diff", a, b});
     EXPECT_EQ(run.exit_code, 0) << run.err;
-    EXPECT_NE(run.out.find("RGB: RMSE 0,"), std::string::npos) << run.out;
+    EXPECT_NE(run.out.find("RGB: symmetric MSE 0, RMSE 0,"), std::string::npos) << run.out;
     EXPECT_NE(run.out.find("\nS0: RMSE 0.707107,"), std::string::npos) << run.out;  // sqrt(9 / 18)
     EXPECT_NE(run.out.find("max 2 in S0.395,0nm at 6,6\n"), std::string::npos) << run.out;
     EXPECT_EQ(std::count(run.out.begin(), run.out.end(), '\n'), 2) << run.out;

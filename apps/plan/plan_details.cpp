@@ -21,7 +21,7 @@ constexpr double kWorthIt = 0.95;
 
 std::optional<PrecisionFound> find_precision(const PlanRequest& request, const RenderSetup& first,
                                              const SceneRequest& chosen, TbbExecutor& executor) {
-    if (first.from.camera.film_mm <= 0 || chosen.camera.precision == Precision::Double)
+    if (!first.from.camera.traced || chosen.camera.precision == Precision::Double)
         return std::nullopt;
     SceneRequest floats = chosen, doubles = chosen;
     // One ray for all wavelengths: what they are apart is no matter of precision.

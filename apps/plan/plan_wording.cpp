@@ -115,8 +115,8 @@ PlanLine dispersion_line(const Plan& plan) {
 }
 
 PlanLine precision_line(const Plan& plan) {
-    if (replaces_camera(plan.chosen) || plan.requested.camera.film_mm <= 0)
-        return {"precision", "float", "no ray passes through glass", {}};
+    if (replaces_camera(plan.chosen) || !plan.requested.camera.traced)
+        return {"precision", "float", "no lens is traced", {}};
     if (!plan.precision) return {"precision", "double", "it was asked for", {}};
     return {
         "precision",

@@ -16,6 +16,7 @@ struct CameraReport {
     V2f sensor_mm{0.f};                    ///< as much of it as the picture uses
     float lens_radius_m = 0, focus_m = 0;  ///< 0: a pinhole
     std::string lens;                      ///< name of a lens made of glass
+    bool traced = false;                   ///< that lens: surface by surface, by a prescription
     double film_mm = 0, stop_radius_mm = 0;
     std::string dispersive_lens;             ///< its name, where its glass sends wavelengths apart
     std::optional<bool> natural_vignetting;  ///< where asked for, or photographic exposure decides

@@ -137,6 +137,7 @@ CameraSetup with_lens(const CameraContext& at, const LoadedLens& loaded) {
     });
     LensSetup lens = set_up_lens(report.asked, loaded, to_world, report.focus_m, at.notice);
     report.lens = loaded.name();
+    report.traced = true;
     report.focal_length_mm = static_cast<float>(loaded.focal_length_mm);
     report.sensor_mm = loaded.film_mm;
     report.film_mm = lens.film_mm;

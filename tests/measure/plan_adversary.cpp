@@ -19,7 +19,7 @@
 #include "apps/plan/plan_wording.h"
 #include "io/base/clock.h"
 #include "io/base/error.h"
-#include "tests/measure/plan_truth.h"
+#include "tests/measure/plan_verdict.h"
 #include "tests/measure/program.h"
 #include "tests/support/tiny_gltf.h"
 
@@ -28,134 +28,12 @@ namespace {
 
 using test::PlanScene;
 
-constexpr double kDarkFrames = 4;  ///< times as many samples as usual
-
 struct Settings {
     uint32_t first = 0, count = 300;
     int threads = 2;
-    double truth_samples = 5e6;  ///< of bias and of noise each
-    double plan_samples = 4e6;
+    JudgeBudget budget;
     std::string csv, save;
 };
-
-struct Row {
-    std::string model;
-    double predicted = 0;
-    Bounded bias;  ///< roots
-    bool chosen = false;
-    [[nodiscard]] bool broken() const { return bias.low > predicted; }
-    [[nodiscard]] bool broken_twice() const { return bias.low > 2 * predicted; }
-};
-
-/// Plan of a scene, and the truth about it.
-struct Verdict {
-    uint32_t index = 0;
-    std::string kind;
-    bool decoy = false, refused = false, at_least = false, needless = false;
-    double tolerance = 0, plan_cpu_s = 0, truth_cpu_s = 0, noise_predicted = 0;
-    uint64_t samples = 0;
-    Bounded noise;  ///< roots
-    std::vector<Row> rows;
-
-    [[nodiscard]] const Row* chosen() const {
-        const auto found =
-            std::find_if(rows.begin(), rows.end(), [](const Row& r) { return r.chosen; });
-        return found == rows.end() ? nullptr : &*found;
-    }
-    [[nodiscard]] bool noise_exceeded(double times = 1) const {
-        return !refused && !at_least && noise.low > times * noise_predicted;
-    }
-    [[nodiscard]] bool beyond_tolerance() const {
-        return chosen() && std::hypot(chosen()->bias.low, noise.low) > tolerance && !at_least;
-    }
-};
-
-Bounded roots(const Bounded& squares) {
-    return {std::sqrt(squares.value), std::sqrt(squares.low), std::sqrt(squares.high)};
-}
-
-/// Whether a model has no error of its own but sends wavelengths through a lens in another way.
-bool is_unbiased(PlanModel model) {
-    return model == PlanModel::Hero || model == PlanModel::Split || model == PlanModel::Full;
-}
-
-void measure(const Plan& plan, const PlanScene& scene, const PlanRequest& request,
-             const Settings& s, TbbExecutor& executor, Verdict& out) {
-    const auto silent = [](const std::string&) {};
-    const RenderSetup first = executor.inside([&] { return set_up_render(request.scene, silent); });
-    std::vector<RenderSetup> setups;
-    std::vector<const PlanCandidate*> candidates;  // with a bias
-    const auto add = [&](const SceneRequest& asked) {
-        setups.push_back(executor.inside([&] { return set_up_view(first, asked, silent); }));
-    };
-    std::optional<size_t> chosen;
-    for (const PlanCandidate& c : plan.candidates) {
-        if (is_unbiased(c.model)) continue;
-        if (c.model == plan.chosen) chosen = candidates.size();
-        candidates.push_back(&c);
-        add(c.scene);
-    }
-    add(plan.candidates.back().scene);
-    std::vector<const RenderSetup*> models;
-    for (const RenderSetup& setup : setups) models.push_back(&setup);
-    // Most of a large frame is dark, and costs little.
-    const bool large =
-        scene.matters.front() != Rect{0, 0, scene.request.size.x, scene.request.size.y};
-    const double budget = s.truth_samples * (large ? kDarkFrames : 1);
-    TruthPictures pictures = truth_pictures(scene, request, models, budget, executor);
-    for (size_t i = 0; i < candidates.size(); ++i) {
-        const PlanCandidate& c = *candidates[i];
-        const Bounded bias = roots(square_bias(pictures, i, true));
-        const Bounded outside = roots(square_bias(pictures, i, false));
-        if (outside.low > 0.05 * bias.high)
-            fmt::print("  {}: {:.2f} % of error outside of what matters\n", name_of(c.model),
-                       100 * outside.low);
-        out.rows.push_back({name_of(c.model), c.predicted(), bias, i == chosen});
-        if (c.model < plan.chosen && bias.high < scene.tolerance / 3) out.needless = true;
-    }
-    if (!chosen) {  // of no bias; the fullest tells where its noise is
-        out.rows.push_back({name_of(plan.chosen), plan.bias, {}, true});
-        chosen = candidates.size();
-        if (plan.scene.camera.dispersion != plan.candidates.back().scene.camera.dispersion) {
-            add(plan.scene);
-            pictures.shown.push_back({});
-            render_replicates(setups.back(), request, pictures.pixels, pictures.samples, 0,
-                              executor, pictures.shown.back());
-            ++*chosen;
-        }
-    }
-    out.noise = roots(
-        square_noise(pictures, *chosen, setups[*chosen], request, plan.samples, budget, executor));
-}
-
-Verdict judge(uint32_t index, const Settings& s, TbbExecutor& executor) {
-    const PlanScene scene = test::plan_scene(index);
-    const TempFolder folder;
-    PlanRequest request;
-    request.scene = scene.save(folder.path);
-    request.tolerance = scene.tolerance;
-    Verdict out;
-    out.index = index;
-    out.kind = scene.kind;
-    out.decoy = scene.decoy;
-    out.tolerance = scene.tolerance;
-    const double start_s = process_cpu_s();
-    try {
-        const Plan plan = make_plan(
-            request, executor, [](const std::string&) {}, s.plan_samples);
-        out.plan_cpu_s = process_cpu_s() - start_s;
-        out.samples = plan.samples;
-        out.noise_predicted = plan.noise;
-        out.at_least = plan.noise_at_least;
-        measure(plan, scene, request, s, executor, out);
-        out.truth_cpu_s = process_cpu_s() - start_s - out.plan_cpu_s;
-    } catch (const ArgumentError& e) {
-        if (std::string(e.what()).find("would take") == std::string::npos) throw;
-        out.refused = true;
-        out.plan_cpu_s = process_cpu_s() - start_s;
-    }
-    return out;
-}
 
 // ---- What is written -----------------------------------------------------------------------
 
@@ -265,8 +143,8 @@ int run(int argc, char** argv) {
     app.add_option("--count", s.count, "of scenes");
     app.add_option("--threads", s.threads)->check(CLI::PositiveNumber);
     app.add_option("--csv", s.csv, "file that rows are added to");
-    app.add_option("--truth-samples", s.truth_samples, "that measure a scene's truth, about");
-    app.add_option("--plan-samples", s.plan_samples, "that a plan may take");
+    app.add_option("--truth-samples", s.budget.truth_samples, "that measure a scene's truth, about");
+    app.add_option("--plan-samples", s.budget.plan_samples, "that a plan may take");
     app.add_option("--save", s.save, "folder that scenes are written to; prints options of each");
     CLI11_PARSE(app, argc, argv);
     flush_denormals();
@@ -288,7 +166,7 @@ int run(int argc, char** argv) {
         "|\n"
         "|---|---|---|---|---|---|---|---|---|---|\n");
     for (uint32_t i = s.first; i < s.first + s.count; ++i) {
-        const Verdict v = judge(i, s, executor);
+        const Verdict v = judge(i, s.budget, executor);
         print(v);
         if (csv.is_open()) write_csv(v, csv);
         kinds[v.kind].add(v);

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// Looks of a pilot: they stand for the frame without a bias, and what they say of the rest holds.
+#include "apps/plan/looks.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <set>
+
+#include "tests/support/statistics.h"
+
+namespace petzval {
+namespace {
+
+constexpr V2i kSize{160, 90};
+const FilmMap kCorner{{4, 3}, {8, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1}};
+
+std::vector<FilmRegion> regions() {
+    const auto of = [](std::vector<Rect> rects) { return FilmRegion{std::move(rects)}; };
+    return {of({{20, 10, 40, 20}}), of({{30, 15, 50, 30}, {100, 50, 102, 51}}),
+            of({{5, 80, 8, 83}})};
+}
+
+double share_of(const Looks& looks, const Rect& r) {
+    double sum = 0;
+    for (const Look& look : looks.looks)
+        if (look.pixel[0] >= r.x0 && look.pixel[0] < r.x1 && look.pixel[1] >= r.y0 &&
+            look.pixel[1] < r.y1)
+            sum += look.weight;
+    return sum;
+}
+
+// The share of a part of the frame, as a mean over seeds: five parts, one of them within two
+// regions, one within a region that is looked at wholly, one in the corner that is emphasized.
+TEST(Looks, StandForTheFrameWithoutABias) {
+    for (const Rect part : {Rect{32, 16, 36, 19}, Rect{5, 80, 8, 83}, Rect{0, 0, 30, 20},
+                            Rect{90, 40, 140, 80}, Rect{0, 0, 160, 90}}) {
+        test::Moments share;
+        for (uint32_t seed = 0; seed < 200; ++seed)
+            share.add(share_of(choose_looks(kSize, 400, regions(), kCorner, seed), part));
+        const double truth = double(part.width()) * part.height() / (160. * 90);
+        EXPECT_TRUE(test::agrees(share, truth, 1e-9))
+            << part.x0 << ' ' << part.y0 << ": " << share.mean() << ' ' << truth;
+    }
+}
+
+TEST(Looks, RegionsAndEmphasisGetTheirOwn) {
+    const Looks looks = choose_looks(kSize, 400, regions(), kCorner, 0);
+    const auto count = [&](const Rect& r) {
+        int n = 0;
+        for (const Look& look : looks.looks)
+            n += look.pixel[0] >= r.x0 && look.pixel[0] < r.x1 && look.pixel[1] >= r.y0 &&
+                 look.pixel[1] < r.y1;
+        return n;
+    };
+    EXPECT_GE(count({20, 10, 40, 20}), 25) << "33 of its own, less those drawn twice";
+    EXPECT_EQ(count({5, 80, 8, 83}), 9) << "all of a small region";
+    EXPECT_GT(count({0, 0, 40, 30}), 2 * count({120, 60, 160, 90}));
+    std::set<std::array<int, 2>> pixels;
+    for (const Look& look : looks.looks) pixels.insert(look.pixel);
+    EXPECT_EQ(pixels.size(), looks.looks.size()) << "none twice";
+}
+
+TEST(Looks, SmallFramesAreLookedAtWholly) {
+    const Looks looks = choose_looks({20, 10}, 200, {}, kCorner, 3);
+    EXPECT_EQ(looks.looks.size(), 200u);
+    EXPECT_TRUE(looks.all_certain);
+    EXPECT_NEAR(share_of(looks, {0, 0, 20, 10}), 1, 1e-12);
+    EXPECT_EQ(looks.unseen({20, 10}, kCorner), 0);
+}
+
+// An error that only a part of the frame has, which may be anywhere: as large as it can be while
+// the bound does not cover it, in at most 5 % of the cases no look falls on it.
+TEST(Looks, WhatIsUnseenIsSeldomMoreThanItsBound) {
+    const FilmMap even;
+    int missed = 0;
+    constexpr int kCases = 2000;
+    for (int i = 0; i < kCases; ++i) {
+        const auto seed = static_cast<uint32_t>(i);
+        const Looks looks = choose_looks(kSize, 300, {}, kCorner, seed);
+        const double share = looks.unseen(kSize, even);
+        // Scattered pixels: stratified looks would meet what lies together more surely.
+        bool met = false;
+        for (const Look& look : looks.looks)
+            met = met || hash32(hash32(seed, static_cast<uint32_t>(look.pixel[0])),
+                                static_cast<uint32_t>(look.pixel[1])) < share * 0x1p32;
+        missed += !met;
+    }
+    const double allowed = 0.05 * kCases;
+    EXPECT_LE(missed, allowed + 2.58 * std::sqrt(allowed)) << "99 %";
+    EXPECT_GT(missed, 0) << "the bound is not far away";
+}
+
+TEST(Looks, UnseenIsLessWhereMoreIsLookedAt) {
+    const FilmMap even;
+    const double few = choose_looks(kSize, 300, {}, even, 0).unseen(kSize, even),
+                 many = choose_looks(kSize, 3000, {}, even, 0).unseen(kSize, even);
+    EXPECT_NEAR(few, 3 / 300., 0.1 * few);
+    EXPECT_NEAR(many, 3 / 3000., 0.1 * many);
+    // Errors that can only be in the corner, where half of the looks go by emphasis.
+    FilmMap corner{{4, 3}, std::vector<double>(12, 0.)};
+    corner.values[0] = 1;
+    EXPECT_LT(choose_looks(kSize, 300, {}, corner, 0).unseen(kSize, corner), few / 2);
+}
+
+}  // namespace
+}  // namespace petzval

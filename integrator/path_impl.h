@@ -194,6 +194,7 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
     Vertex last{camera_ray.origin};
     const Material* medium = nullptr;
     bool seen = false;  // the camera ray has found a surface that shows itself
+    ChanceFinds* by_chance = &stats.mirrored;
 
     for (uint32_t depth = 0;;) {
         // Intersect the ray with the scene.
@@ -244,6 +245,7 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
             glow +=
                 uplift_radiance(shading.unlit, bands, scene_.illuminant(s.material->illuminant));
         sum += throughput * glow;
+        by_chance->lamps += depth > 0 && !last.light_sampled && s.instance->first_light >= 0;
         if (!seen && aovs)
             record_layers(s, shading, to_rgb(glow, bands), camera_ray.origin, wo, bands, out);
         seen = true;
@@ -273,6 +275,10 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         // No ray that is not a number goes on: the film counts the sample and names its pixel.
         if (!std::isfinite(direction.x + direction.y + direction.z))
             return splat(std::numeric_limits<float>::quiet_NaN());
+        if (next->delta)
+            ++by_chance->bounces;
+        else
+            by_chance = &stats.caustic;
         throughput *= next->weight;
         led |= next->transmitted && shading.bsdf.disperses;
         if (next->transmitted && s.material->has_volume) medium = s.front ? s.material : nullptr;

@@ -16,12 +16,26 @@ namespace petzval {
 /// Timed sections. Sample is the whole; what the others leave of it is shading.
 enum class TimedSection : uint8_t { Sample, Camera, Traversal, Texture, Count };
 
+/// What paths met behind smooth surfaces, where no light is sampled: lamps are found by chance.
+struct ChanceFinds {
+    uint64_t bounces = 0;  ///< off smooth surfaces, or through them
+    uint64_t lamps = 0;    ///< that emissive surfaces were met right after one
+
+    ChanceFinds& operator+=(const ChanceFinds& o) {
+        bounces += o.bounces;
+        lamps += o.lamps;
+        return *this;
+    }
+};
+
 struct PathStats {
     uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0;
     uint64_t vertices = 0;  ///< hits that were shaded
     uint64_t tiles = 0;     ///< tiles that this worker rendered
     LensLosses<uint64_t> lens_lanes;
-    bool timing = false;  ///< the samples under way are among those that are timed
+    ChanceFinds mirrored;  ///< of paths that met smooth surfaces only
+    ChanceFinds caustic;   ///< of paths that met a rough one before
+    bool timing = false;   ///< the samples under way are among those that are timed
     uint64_t timed_samples = 0, samples = 0;
     std::array<uint64_t, static_cast<size_t>(TimedSection::Count)> ticks{};
     std::vector<LightRecord>* light_records = nullptr;  ///< where a pilot wants them
@@ -33,6 +47,8 @@ struct PathStats {
         vertices += o.vertices;
         tiles += o.tiles;
         lens_lanes += o.lens_lanes;
+        mirrored += o.mirrored;
+        caustic += o.caustic;
         timed_samples += o.timed_samples;
         samples += o.samples;
         for (size_t i = 0; i < ticks.size(); ++i) ticks[i] += o.ticks[i];

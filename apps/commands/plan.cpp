@@ -75,10 +75,13 @@ std::string duration(double s) {
 void print(const Plan& plan, const std::string& command) {
     for (const PlanLine& line : lines_of(plan))
         print_line(fmt::format("{:<10} {}: {}", line.choice, line.chosen, line.reason));
-    fmt::print("{:<10} {}: they bring noise from {} to {}\n", "samples", plan.samples,
-               percent(plan.first_noise), percent(plan.noise));
-    fmt::print("{:<10} {}: {} by the model, {} by noise; about {} of CPU time here\n", "error",
-               percent(plan.error()), percent(plan.bias), percent(plan.noise),
+    const std::string rare = rare_text(plan);
+    const std::string at_least = rare.empty() ? "" : "at least ";
+    fmt::print("{:<10} {}: they bring noise from {} to {}{}\n", "samples", plan.samples,
+               percent(plan.first_noise), at_least, percent(plan.noise));
+    if (!rare.empty()) fmt::print("{:<10} {}\n", "rare light", rare);
+    fmt::print("{:<10} {}{}: {} by the model, {}{} by noise; about {} of CPU time here\n", "error",
+               at_least, percent(plan.error()), percent(plan.bias), at_least, percent(plan.noise),
                duration(plan.cpu_s));
     fmt::print("{}\n", command);
 }
@@ -94,6 +97,8 @@ void print_json(const Plan& plan, const std::string& command) {
     out["predicted_error"] = plan.error();
     out["predicted_bias"] = plan.bias;
     out["predicted_noise"] = plan.noise;
+    out["noise_at_least"] = plan.noise_at_least;
+    if (plan.noise_at_least) out["noise_at_least_because"] = rare_text(plan);
     out["predicted_cpu_s"] = plan.cpu_s;
     out["command"] = command;
     // Names of files need not be UTF-8.
@@ -106,10 +111,11 @@ void plan_command(PlanOptions& o, const CLI::App& app) {
     flush_denormals();
     TbbExecutor executor(r.threads);
     limit_picture_threads(r.threads);
-    const Plan plan = make_plan({r.scene, r.job, r.path, frame.tolerance}, executor,
-                                [&](const std::string& text) {
-                                    if (!r.quiet) print_notice(text);
-                                });
+    const Plan plan =
+        make_plan({r.scene, r.job, r.path, frame.tolerance, app.count("--light-choice") == 0},
+                  executor, [&](const std::string& text) {
+                      if (!r.quiet) print_notice(text);
+                  });
     const std::string command = command_of(app, plan);
     o.json ? print_json(plan, command) : print(plan, command);
 }

@@ -5,7 +5,7 @@
 #include <memory>
 #include <utility>
 
-#include "apps/plan/pilot.h"
+#include "apps/plan/pilot_error.h"
 #include "apps/setup/equivalent_camera.h"
 #include "camera/setup/lateral_dispersion.h"
 
@@ -41,8 +41,10 @@ ModeChoice choose_mode(const PlanRequest& request, const RenderSetup& first,
         return model;
     };
     const auto split = sampled(DispersionMode::Split), hero = sampled(DispersionMode::Hero);
+    const double floor = pilot_floor(pilot, *split);
     const auto effort = [&](const PilotModel& model) {
-        return pilot.variance(model, *split).mean * model.rays_per_sample();
+        return noise_of(pilot, model, {split.get(), split.get(), floor}).variances.back().mean *
+               model.rays_per_sample();
     };
     out.by_effort = {ModeCost{DispersionMode::Hero, effort(*hero)},
                      ModeCost{DispersionMode::Split, effort(*split)}};

@@ -14,10 +14,11 @@
 namespace petzval {
 namespace {
 
-constexpr int kPixels = 1024, kFewPixels = 256;
-// Pilot samples of each replicate. Many samples of few pixels are better than few of many: what
-// wavelengths and edges do in a pixel evens out faster than in proportion.
-constexpr double kLeastSamples = 4, kEnoughSamples = 16;
+/// Looks of a plan, and bounds of those of a render that chooses for itself.
+constexpr int kLooks = 4096, kFewestLooks = 256, kMostLooks = 8192;
+/// Pilot samples of each replicate, for a render: many looks with few samples see more of the
+/// frame.
+constexpr double kLookSamples = 4;
 
 constexpr double kMostPlannedSamples = 1 << 30;
 // Factor within which costs count as equal: they are known no better, and the simpler model is
@@ -75,7 +76,7 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
     if (open.dispersion_mode && !open.dispersion)
         return plan_with_bins(request, first, executor, notice, most_samples);
     for (const std::string& text : notices) notice(text);
-    PlanComparison compared(request, first, open, kPixels, executor);
+    PlanComparison compared(request, first, open, kLooks, executor);
     compared.add_simpler_cameras();
     if (open.spectral) compared.add_rgb();
     if (open.dispersion) {
@@ -95,6 +96,17 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
     plan.scene = chosen.scene;
     plan.chosen = chosen.model;
     plan.bias = chosen.predicted();
+    if (!replaces_camera(chosen.model)) {
+        plan.precision = find_precision(request, first, chosen.scene, executor);
+        if (plan.precision) {
+            plan.scene.camera.precision = plan.precision->precision;
+            if (plan.precision->precision == Precision::Float)
+                plan.bias = std::hypot(plan.bias, std::sqrt(plan.precision->square));
+        }
+    }
+    plan.lights_asked = !request.light_choice_open;
+    if (!plan.lights_asked) plan.lights = find_lights(compared, first, chosen.scene, best);
+    if (plan.lights) plan.scene.light_choice = plan.lights->kind;
     const double samples = std::ceil(chosen.samples_for(request.tolerance));
     if (!(samples <= kMostPlannedSamples))
         throw ArgumentError(
@@ -107,6 +119,9 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
         plan.samples = (plan.samples + kReplicates - 1) / kReplicates * kReplicates;
     plan.noise = std::sqrt(chosen.variance_with(static_cast<double>(plan.samples)));
     plan.first_noise = std::sqrt(chosen.variance_with(1));
+    plan.noise_at_least = chosen.noise_at_least();
+    plan.rare = chosen.rare;
+    plan.threads = executor.threads();
     plan.cpu_s = compared.cpu_s_per_sample(best) * static_cast<double>(plan.samples) *
                  request.scene.size.x * request.scene.size.y;
     return plan;
@@ -122,13 +137,11 @@ AutoSetup set_up_planned(const PlanRequest& request, TbbExecutor& executor, cons
     std::optional<SceneRequest> other;  // a request other than what was set up
     const double most_samples = 0.25 * request.scene.size.x * request.scene.size.y;
     const int models = (open.spectral ? 1 : 0) + (open.dispersion ? 2 : 1);
-    const auto fit = [&](int pixels, double samples) {
-        return pixels * kPilotReplicates * samples * models <= most_samples;
-    };
+    const double looks = most_samples / (kPilotReplicates * kLookSamples * models);
     double predicted_error = 0;
-    if (open.any() && fit(kFewPixels, kLeastSamples)) {
+    if (open.any() && looks >= kFewestLooks) {
         PlanComparison compared(request, first, open,
-                                fit(kPixels, kEnoughSamples) ? kPixels : kFewPixels, executor);
+                                static_cast<int>(std::min<double>(looks, kMostLooks)), executor);
         if (open.spectral) compared.add_rgb();
         if (open.dispersion) compared.add_shared();
         compared.measure(most_samples, false);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The cheapest way to render a scene that stays within a tolerance, and on what grounds. Errors are
-// roots of the relative MSE of R, G and B, mean of (a - b)^2 / (b^2 + 0.01), against the fullest
-// model: wavelengths, one ray for each.
+// roots of the symmetric MSE (io/image/symmetric_mse.h) against the fullest model: wavelengths, one
+// ray for each.
 #pragma once
 
 #include <cmath>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "apps/plan/mode_choice.h"
+#include "apps/plan/plan_details.h"
 #include "apps/plan/plan_types.h"
 #include "integrator/executor.h"
 
@@ -26,10 +27,16 @@ struct Plan {
     std::optional<double> dispersion_px;
     /// Set where spectra are asked for: the mode that choose_mode() found.
     std::optional<ModeChoice> measured_mode;
-    double bias = 0, noise = 0;  ///< predicted, of what was chosen with `samples`
-    double first_noise = 0;      ///< with one sample
-    uint64_t samples = 0;        ///< of each pixel
-    double cpu_s = 0;            ///< about what the samples take here
+    std::optional<PrecisionFound> precision;  ///< where a lens is traced
+    bool lights_asked = false;                ///< the request fixes how lights are chosen
+    std::optional<LightsFound> lights;        ///< where there are several to choose from
+    double bias = 0, noise = 0;               ///< predicted, of what was chosen with `samples`
+    double first_noise = 0;                   ///< with one sample
+    bool noise_at_least = false;              ///< rare light may add to the noise
+    RareLight rare;                           ///< what light that is
+    uint64_t samples = 0;                     ///< of each pixel
+    double cpu_s = 0;                         ///< about what the samples take here
+    int threads = 1;                          ///< that share it
 
     [[nodiscard]] double error() const { return std::hypot(bias, noise); }
     /// The candidate of a model; nullptr where it was none.

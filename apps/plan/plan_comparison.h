@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "apps/plan/pilot.h"
@@ -13,9 +14,9 @@ namespace petzval {
 /// Comparison of models by a pilot. What the constructor takes must outlive it.
 class PlanComparison {
   public:
-    /// The fullest model is what the setup shows with one ray for each wavelength; pixels: about so
-    /// many are rendered.
-    PlanComparison(const PlanRequest&, const RenderSetup&, const PlanOpen&, int pixels,
+    /// The fullest model is what the setup shows with one ray for each wavelength; looks: about so
+    /// many pixels are rendered, where things that a few pixels hold have looks of their own.
+    PlanComparison(const PlanRequest&, const RenderSetup&, const PlanOpen&, int looks,
                    TbbExecutor&);
 
     /// Adds cameras without glass, and without an iris, in place of the setup's.
@@ -34,6 +35,9 @@ class PlanComparison {
     /// Candidates as added, and last the fullest model: it has no bias.
     [[nodiscard]] std::vector<PlanCandidate> candidates() const;
     [[nodiscard]] double cpu_s_per_sample(size_t candidate) const;
+    /// Noise times cost in rays of a candidate's scene in another request, over the candidate's
+    /// own: in proportion to the time that a given noise takes. Nothing where no noise was seen.
+    [[nodiscard]] std::optional<double> effort_of(const SceneRequest&, size_t candidate) const;
     /// RMS lateral dispersion in pixels; 0 unless dispersion is open.
     [[nodiscard]] double dispersion_px() const { return dispersion_px_; }
 
@@ -42,15 +46,22 @@ class PlanComparison {
         PlanCandidate found;
         const PilotModel* model;
         std::vector<PilotTerm> difference;  ///< from the fullest
+        double unseen;                      ///< Looks::unseen()
         std::unique_ptr<PilotModel> own;    ///< the model, unless it is one of the others'
     };
 
+    [[nodiscard]] const PilotModel& model_of(size_t candidate) const;
     [[nodiscard]] RenderSetup open(const SceneRequest&) const;
     [[nodiscard]] std::unique_ptr<PilotModel> model(const SceneRequest&) const;
     [[nodiscard]] std::unique_ptr<PilotModel> amplified(const SceneRequest&) const;
+    void choose_looks(int wanted);
     void amplify_dispersion();
-    void add(PlanModel, const SceneRequest&);
+    void add(PlanModel, const SceneRequest&, const FilmMap& most);
+    void add_camera(PlanModel, const SceneRequest&);
     void evaluate();
+    [[nodiscard]] PilotScale scale_of(const PilotModel&, double floor) const;
+    /// What may be missed beside what pixels that were not looked at hold.
+    [[nodiscard]] double missed(PlanModel, const RareLight&) const;
     [[nodiscard]] bool all_known(bool thorough) const;
 
     const PlanRequest& request_;
@@ -58,13 +69,18 @@ class PlanComparison {
     PlanOpen open_;
     SceneRequest full_scene_, shared_scene_;
     TbbExecutor& executor_;
-    Pilot pilot_;
+    std::vector<Thing> things_;
+    std::vector<FilmRegion> regions_;
+    std::vector<SeenLamp> lamps_;
+    FilmMap dispersed_;  ///< most error of rays that do not disperse
+    std::optional<Pilot> pilot_;
     std::unique_ptr<PilotModel> full_, shared_;
     const PilotModel* scale_ = nullptr;  ///< what errors are relative to
     std::vector<PilotTerm> minus_full_;
     std::vector<Entry> entries_;
-    double dispersion_px_ = 0;
-    float factor_ = 1;  ///< by which full_ disperses more than the fullest model
+    double dispersion_px_ = 0, most_dispersion_px_ = 0;
+    bool glass_disperses_ = false;  ///< of a material
+    float factor_ = 1;              ///< by which full_ disperses more than the fullest model
 };
 
 }  // namespace petzval

@@ -2,14 +2,17 @@
 // Values of a plan: its request, the models, and what is measured of each.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
 
-#include "apps/plan/estimate.h"
+#include "apps/plan/pilot_error.h"
+#include "apps/plan/rare_light.h"
 #include "apps/setup/render_setup.h"
 #include "integrator/path_options.h"
 #include "integrator/render_job.h"
+#include "io/image/symmetric_mse.h"
 
 namespace petzval {
 
@@ -22,6 +25,7 @@ struct PlanRequest {
     RenderJob job;  ///< sampler and filter count: samples and seed do not, nor does a crop
     PathOptions path;
     double tolerance = kUsualTolerance;  ///< above 0
+    bool light_choice_open = true;       ///< scene.light_choice is no wish of the user's
 };
 
 /// Ways to render a scene, simplest first. Shared to Split carry wavelengths through a lens.
@@ -50,14 +54,23 @@ struct PlanCandidate {
     bool inside = false;   ///< surely within its share of the tolerance
     bool outside = false;  ///< surely beyond it
     double rays = 0;       ///< of a sample, as PilotModel counts them
-    /// Variances of the mean of 1, 2, 4, ... samples: well spread points make them fall faster than
-    /// in proportion.
-    std::vector<Estimate> variances{};
+    PilotNoise noise{};
+    RareLight rare{};
 
     /// Upper bound of the error without noise.
-    [[nodiscard]] double predicted() const { return std::sqrt(square_bias.high()); }
-    /// Upper bound of the variance with so many samples, 1 at least.
+    [[nodiscard]] double predicted() const {
+        return std::sqrt(std::min(square_bias.high(), kMostSymmetricMse));
+    }
+    /// What was measured of it.
+    [[nodiscard]] double found() const {
+        return std::sqrt(std::clamp(square_bias.mean, 0., kMostSymmetricMse));
+    }
+    /// Upper bound of the variance with so many samples, 1 at least, with what light that was
+    /// hardly met may add: of the symmetric MSE by noise where noise is small, and never more than
+    /// kMostSymmetricMse.
     [[nodiscard]] double variance_with(double samples) const;
+    /// Whether the noise may be larger: paths that were hardly met, or not at all, hold some of it.
+    [[nodiscard]] bool noise_at_least() const;
     /// Samples until noise and bias are inside the tolerance together; bias alone must be.
     [[nodiscard]] double samples_for(double tolerance) const;
 };

@@ -16,8 +16,7 @@ namespace {
 // Words for a candidate that was not taken.
 std::string off(const PlanCandidate& c) {
     if (c.outside)
-        return fmt::format("{} would be off by {}", name_of(c.model),
-                           percent(std::sqrt(c.square_bias.mean)));
+        return fmt::format("{} would be off by {}", name_of(c.model), percent(c.found()));
     return c.inside ? fmt::format("{} would need more samples", name_of(c.model))
                     : fmt::format("{} may be off by {}", name_of(c.model), percent(c.predicted()));
 }
@@ -115,6 +114,32 @@ PlanLine dispersion_line(const Plan& plan) {
     }
 }
 
+PlanLine precision_line(const Plan& plan) {
+    if (replaces_camera(plan.chosen) || plan.requested.camera.film_mm <= 0)
+        return {"precision", "float", "no ray passes through glass", {}};
+    if (!plan.precision) return {"precision", "double", "it was asked for", {}};
+    return {
+        "precision",
+        name_of(plan.precision->precision),
+        fmt::format("rays in floats and in doubles part by {:.1g} px", plan.precision->apart_px),
+        {}};
+}
+
+PlanLine lights_line(const Plan& plan) {
+    if (plan.lights_asked)
+        return {"lights", name_of(plan.scene.light_choice), "it was asked for", {}};
+    if (!plan.lights)
+        return {"lights", name_of(plan.scene.light_choice), "there is nothing to choose from", {}};
+    const auto kind = plan.lights->kind;
+    const auto other =
+        kind == LightChoiceKind::Tree ? LightChoiceKind::Power : LightChoiceKind::Tree;
+    return {"lights",
+            name_of(kind),
+            fmt::format("to the same noise {} would take about {:.2g} times as long",
+                        name_of(other), plan.lights->effort_of_other),
+            {}};
+}
+
 }  // namespace
 
 std::string name_of(PlanModel model) {
@@ -137,8 +162,21 @@ std::string name_of(PlanModel model) {
     return "full";
 }
 
+std::string rare_text(const Plan& plan) {
+    if (!plan.noise_at_least) return "";
+    const RareLight& rare = plan.rare;
+    if (rare.noise > 0)
+        return fmt::format("{} of {:.2g} mm at most: few paths find {}",
+                           rare.lamps == 1 ? "a lamp" : fmt::format("{} lamps", rare.lamps),
+                           1e3 * rare.largest_lamp_m, rare.lamps == 1 ? "it" : "them");
+    if (rare.caustic) return "surfaces lit by lamps through glass or mirrors: few paths find them";
+    if (rare.mirrored) return "lamps seen through glass or mirrors: few paths find them";
+    return "few paths hold most of the noise";
+}
+
 std::vector<PlanLine> lines_of(const Plan& plan) {
-    return {camera_line(plan), spectral_line(plan), dispersion_line(plan)};
+    return {camera_line(plan), spectral_line(plan), dispersion_line(plan), precision_line(plan),
+            lights_line(plan)};
 }
 
 std::vector<PlanOption> options_of(const Plan& plan) {
@@ -150,6 +188,8 @@ std::vector<PlanOption> options_of(const Plan& plan) {
     const auto leave_out = [&](std::initializer_list<const char*> names) {
         for (const char* name : names) out.emplace_back(name, std::nullopt);
     };
+    if (plan.lights && plan.lights->kind != LightChoiceKind::Tree)
+        set("--light-choice", name_of(plan.lights->kind));
     if (replaces_camera(plan.chosen)) {
         leave_out({"--fit", "--fstop", "--focal-length", "--film-distance", "--coating",
                    "--lens-precision", "--focus-by", "--glasses", "--dispersion"});
@@ -165,6 +205,8 @@ std::vector<PlanOption> options_of(const Plan& plan) {
         }
         return out;
     }
+    if (plan.precision && plan.precision->precision == Precision::Double)
+        set("--lens-precision", name_of(plan.precision->precision));
     if (plan.anything_open)
         set("--spectral", plan.chosen == PlanModel::Rgb ? "rgb" : "wavelengths");
     if (plan.dispersion_open) set("--dispersion", name_of(*camera.dispersion));

@@ -15,6 +15,9 @@ namespace petzval {
 /// Name of a model: "pinhole", "thin", "rgb", "shared", "hero", "split" or "full".
 [[nodiscard]] std::string name_of(PlanModel);
 
+/// Reason why the noise may be larger than a plan says; empty where it is known.
+[[nodiscard]] std::string rare_text(const Plan&);
+
 struct PlanLine {
     std::string choice, chosen, reason;
     std::optional<double> error;  ///< predicted, of what was chosen; absent: nothing is lost

@@ -6,17 +6,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
+#include <numeric>
 
 #include "integrator/path.h"
 #include "integrator/pilot_pixels.h"
 #include "integrator/render.h"
-#include "io/image/symmetric_mse.h"
 
 namespace petzval {
 namespace {
 
 constexpr double kMidGrey = 0.18;
+/// Shares of the pixels: what is brighter may be brighter than white, or is left out of what is
+/// nearly the brightest.
+constexpr double kMayClip = 0.1, kBrightest = 0.05;
+constexpr double kDarkest = 0.01;  ///< of the nearly brightest
 constexpr double kMostEv = 100;    ///< as far as --exposure goes
 
 /// A turn of the pilot: many pixels with few samples find small things.
@@ -75,14 +78,24 @@ Seen look(const RenderSetup& setup, const RenderJob& job, const PathTracer<>& tr
     return seen;
 }
 
+/// Value that a share of sorted values is above.
+double above(const std::vector<double>& sorted, double share) {
+    const auto last = static_cast<double>(sorted.size() - 1);
+    return sorted[static_cast<size_t>(std::floor(last * (1 - share)))];
+}
+
 }  // namespace
 
 FoundExposure exposure_for(std::vector<double> luminances) {
-    const Tone tone = tone_of(std::move(luminances));
-    if (!(tone.mid_grey > 0)) return {};
-    const double ev = std::log2(kMidGrey / tone.mid_grey);
-    const double tenths = std::round(10 * std::clamp(ev, -kMostEv, kMostEv));
-    return {static_cast<float>((tenths + 0.0) / 10), tone.log_average};
+    if (luminances.empty()) return {};
+    std::sort(luminances.begin(), luminances.end());
+    const double least = kDarkest * above(luminances, kBrightest);
+    double logs = 0;
+    for (const double l : luminances) logs += std::log(std::max(l, least));
+    const double average = std::exp(logs / static_cast<double>(luminances.size()));
+    const double gain = std::min(kMidGrey / average, 1 / above(luminances, kMayClip));
+    const double tenths = std::round(10 * std::clamp(std::log2(gain), -kMostEv, kMostEv));
+    return {static_cast<float>((tenths + 0.0) / 10), average};
 }
 
 FoundExposure find_exposure(const RenderSetup& setup, const RenderJob& job,

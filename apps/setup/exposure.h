@@ -20,7 +20,10 @@ struct FoundExposure {
     double log_average = 0;  ///< luminance, in units of the film; 0: no light was seen
 };
 
-/// Exposure that shows luminances well: mid-grey (tone_of) becomes 0.18.
+/// Exposure that shows luminances well, ones above 0: their log-average becomes 0.18, the grey in
+/// the middle between black and white (Reinhard et al. 2002, "Photographic tone reproduction for
+/// digital images", equations 1 and 2), or less where more than a tenth would be brighter than
+/// white. What is darker than a hundredth of nearly the brightest counts as that.
 [[nodiscard]] FoundExposure exposure_for(std::vector<double> luminances);
 
 /// Exposure for the full frame of a setup. It follows from scene, camera, frame and seed alone: not

@@ -115,13 +115,12 @@ std::optional<double> floor_against(const Picture& reference) {
     std::array<int, 3> at{from("R"), from("G"), from("B")};
     if (*std::min_element(at.begin(), at.end()) < 0) at = {grey, grey, grey};
     if (at[0] < 0 || reference.for_display) return std::nullopt;
-    std::vector<double> luminances;
+    SymmetricFloor floor;
     for (size_t i = 0; i < reference.pixels.size(); i += reference.channels.size()) {
         const auto value = [&](int c) { return reference.pixels[i + static_cast<size_t>(c)]; };
-        const double l = double(luminance(Rgb(value(at[0]), value(at[1]), value(at[2]))));
-        if (std::isfinite(l)) luminances.push_back(l);
+        floor.add(double(luminance(Rgb(value(at[0]), value(at[1]), value(at[2])))));
     }
-    return floor_of_symmetric_mse(tone_of(std::move(luminances)));
+    return floor.floor();
 }
 
 std::string why_not_comparable(const Picture& a, const Picture& b) {

@@ -12,7 +12,7 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/cli/parse.h"
-#include "apps/plan/pilot.h"
+#include "apps/plan/pilot_error.h"
 #include "apps/plan/plan.h"
 #include "apps/plan/plan_wording.h"
 #include "io/base/error.h"
@@ -87,6 +87,7 @@ void check(const std::string& scene, const std::string& lens, const Settings& se
         pilot.sample(*models.back(), std::max(samples, 64u));
     }
     const PilotModel& full = *models.back();
+    const double floor = pilot_floor(pilot, full);
     const std::string where =
         fmt::format("{} | {}", std::filesystem::path(scene).stem().string(), lens);
     for (size_t i = 0; i < models.size(); ++i) {
@@ -94,14 +95,16 @@ void check(const std::string& scene, const std::string& lens, const Settings& se
         const bool chosen = c.model == plan.chosen, fullest = i + 1 == models.size();
         Estimate square;
         if (!fullest) {
-            square = pilot.square({{models[i].get(), 1}, {&full, -1}}, full);
+            square = square_error(pilot, {{models[i].get(), 1}, {&full, -1}},
+                                  {models[i].get(), &full, floor});
             judge(where, name_of(c.model), c.predicted(), square, request.tolerance, chosen, tally);
         }
         if (!chosen) continue;
         const auto chosen_model =
             pilot.model(set_up_view(first, c.scene, silent), request.job, request.path);
         pilot.sample(*chosen_model, samples);
-        const Estimate noise = pilot.variance(*chosen_model, full);
+        const Estimate noise =
+            noise_of(pilot, *chosen_model, {chosen_model.get(), &full, floor}).variances.back();
         const double scale = double(samples) / double(plan.samples);
         judge(where, fmt::format("all, {} samples", plan.samples), plan.error(),
               {square.mean + noise.mean * scale, std::hypot(square.error, noise.error * scale)},

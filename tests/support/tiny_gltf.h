@@ -147,14 +147,20 @@ struct TinyGltf {
         return index;
     }
 
-    /// Saves as text with the buffer in a data URI. A "buffers" that the test has set itself stays.
-    std::filesystem::path save_gltf(const std::filesystem::path& path) const {
+    /// The file as text with the buffer in a data URI. A "buffers" that the test has set itself
+    /// stays.
+    std::string text() const {
         nlohmann::json out = json;
         if (!bin.empty() && !out.contains("buffers"))
             out["buffers"] = {{{"byteLength", bin.size()},
                                {"uri", "data:application/octet-stream;base64," + base64(bin)}}};
-        const std::string text = out.dump();
-        return write_bytes(path, {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
+        return out.dump();
+    }
+
+    /// Saves text().
+    std::filesystem::path save_gltf(const std::filesystem::path& path) const {
+        const std::string out = text();
+        return write_bytes(path, {reinterpret_cast<const uint8_t*>(out.data()), out.size()});
     }
 
     /// Saves as a binary container, the buffer in its BIN chunk.

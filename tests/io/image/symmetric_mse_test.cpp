@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <initializer_list>
 #include <limits>
+#include <utility>
 
 namespace petzval {
 namespace {
@@ -28,30 +31,31 @@ TEST(SymmetricMse, TakesLostAndAddedLightAlikeAndIsBounded) {
     EXPECT_DOUBLE_EQ(symmetric_square(0, 1, 0), kMostSymmetricMse);
 }
 
-TEST(SymmetricMse, ToneOfEvenGreyIsTheGrey) {
-    const Tone tone = tone_of(std::vector<double>(100, 0.3));
-    EXPECT_NEAR(tone.log_average, 0.3, 1e-12);
-    EXPECT_NEAR(tone.mid_grey, 0.3, 1e-12);
-    EXPECT_NEAR(floor_of_symmetric_mse(tone), 0.075, 1e-12);
+double floor_of(std::initializer_list<std::pair<double, double>> luminances_and_weights) {
+    SymmetricFloor floor;
+    for (const auto& [luminance, weight] : luminances_and_weights) floor.add(luminance, weight);
+    return floor.floor();
 }
 
-TEST(SymmetricMse, ToneIsTheLogAverageOfWhatShows) {
-    // Black and what is no number do not count.
+TEST(SymmetricMse, FloorIsAQuarterOfMidGrey) {
+    EXPECT_NEAR(floor_of({{0.3, 1}}), 0.075, 1e-12);
+    EXPECT_NEAR(floor_of({{0.3, 1}, {0.3, 50}}), 0.075, 1e-12);
+    // Lightness 1 and 2: the brighter one counts twice.
+    EXPECT_NEAR(floor_of({{1, 1}, {8, 1}}), 0.25 * std::pow(8, 2 / 3.), 1e-12);
+    EXPECT_NEAR(floor_of({{1, 2}, {8, 1}}), 0.25 * std::pow(8, 0.5), 1e-12);
+}
+
+TEST(SymmetricMse, BlackAndWhatIsNoNumberDoNotCount) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_NEAR(tone_of({0.1, 0.4, 0, -1, nan}).mid_grey, 0.2, 1e-12);
-    EXPECT_EQ(tone_of({0, 0}).mid_grey, 0);
-    EXPECT_EQ(tone_of({}).mid_grey, 0);
+    EXPECT_EQ(floor_of({}), 0);
+    EXPECT_EQ(floor_of({{0, 5}, {-1, 5}}), 0);
+    EXPECT_NEAR(floor_of({{0.3, 1}, {0, 1000}, {-2, 3}, {nan, 1}}), 0.075, 1e-12);
+    // Traces of light, which more samples find in black pixels, hardly do.
+    EXPECT_NEAR(floor_of({{0.3, 1}, {1e-9, 10}}), 0.075, 0.075 * 0.3);
 }
 
-TEST(SymmetricMse, NoMoreThanATenthIsBrighterThanWhite) {
-    // A fifth of the pixels is a thousand times brighter: 0.18 of them is the mid-grey.
-    std::vector<double> luminances(80, 1.);
-    luminances.resize(100, 1000.);
-    EXPECT_NEAR(tone_of(luminances).mid_grey, 180, 1e-9);
-    // A twentieth may clip.
-    std::vector<double> few(95, 1.);
-    few.resize(100, 1000.);
-    EXPECT_LT(tone_of(few).mid_grey, 2);
+TEST(SymmetricMse, FloorFollowsTheScaleOfThePicture) {
+    EXPECT_NEAR(floor_of({{100, 3}, {2000, 1}}), 1000 * floor_of({{0.1, 3}, {2, 1}}), 1e-9);
 }
 
 }  // namespace

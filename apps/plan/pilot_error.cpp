@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/plan/pilot_error.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/spectrum/bands.h"
+#include "io/image/symmetric_mse.h"
+
+namespace petzval {
+namespace {
+
+constexpr size_t kChannels = 3;
+
+/// Pair of replicates, and the two that are left for the scale.
+struct Pair {
+    size_t i, j, k, l;
+};
+constexpr std::array<Pair, 6> kPairs{
+    {{0, 1, 2, 3}, {2, 3, 0, 1}, {0, 2, 1, 3}, {1, 3, 0, 2}, {0, 3, 1, 2}, {1, 2, 0, 3}}};
+
+double component(const V3d& v, size_t channel) {
+    return v[static_cast<int>(channel)];
+}
+
+/// 1 / (mean square of the two pictures + floor^2) in a pixel, from two replicates. Noise makes the
+/// mean of squares too large, and the mean of its inverse larger still: both to second order.
+double inverse_scale(const PilotValues& a, const PilotValues& b, const Pair& pair, size_t channel,
+                     double least, double floor) {
+    const double ak = component(a[pair.k], channel), al = component(a[pair.l], channel);
+    const double bk = component(b[pair.k], channel), bl = component(b[pair.l], channel);
+    double mean_a = (ak + al) / 2, mean_b = (bk + bl) / 2;
+    double off_a = (ak - al) / 2, off_b = (bk - bl) / 2;
+    if (mean_a < least) mean_a = least, off_a = 0;
+    if (mean_b < least) mean_b = least, off_b = 0;
+    const double scale = (mean_a * mean_a + mean_b * mean_b) / 2 + floor * floor;
+    if (!(scale > 0)) return 0;
+    const double too_large = (off_a * off_a + off_b * off_b) / 2;
+    const double slope = mean_a * off_a + mean_b * off_b;
+    return 1 / std::max(scale + slope * slope / scale - too_large, scale / 2);
+}
+
+/// Symmetric square from which on a pixel's own brightness is doubted: light that few replicates
+/// met makes the others look dark.
+constexpr double kDoubtful = 64;
+
+/// Mean of each look's neighbourhood: the looks in the same cell of a grid.
+std::vector<V3d> neighbourhoods(const Pilot& pilot, const PilotModel& model) {
+    const V2i size = pilot.size_px();
+    const FilmMap grid{{std::min(32, size.x), std::min(18, size.y)}, {}};
+    const auto cell_of = [&](size_t look) {
+        const auto [x, y] = pilot.looks().looks[look].pixel;
+        return grid.cell_at(size, x, y);
+    };
+    const size_t cells = static_cast<size_t>(grid.cells.x) * static_cast<size_t>(grid.cells.y);
+    std::vector<V3d> sums(cells, V3d(0.));
+    std::vector<double> weights(cells, 0.);
+    for (size_t p = 0; p < pilot.pixels(); ++p) {
+        const double weight = pilot.looks().looks[p].weight;
+        for (const V3d& v : model.means(p)) sums[cell_of(p)] += v * (weight / kPilotReplicates);
+        weights[cell_of(p)] += weight;
+    }
+    std::vector<V3d> out;
+    for (size_t p = 0; p < pilot.pixels(); ++p)
+        out.push_back(sums[cell_of(p)] / weights[cell_of(p)]);
+    return out;
+}
+
+/// What squares are divided by, for each look.
+class Scales {
+  public:
+    Scales(const Pilot& pilot, const PilotScale& scale)
+        : scale_(scale), around_(neighbourhoods(pilot, *scale.b)) {
+        for (size_t p = 0; p < pilot.pixels(); ++p) {
+            a_.push_back(scale.a->means(p));
+            b_.push_back(scale.b->means(p));
+            if (!scale.least.empty())
+                for (int c = 0; c < 3; ++c)
+                    around_[p][c] = std::max(around_[p][c], scale.least[p][c]);
+        }
+    }
+
+    /// The square over the pixel's own brightness, or where that is doubtful over no less than what
+    /// is around it.
+    [[nodiscard]] double over(double square, size_t look, const Pair& pair, size_t channel) const {
+        const auto with = [&](double least) {
+            return square * inverse_scale(a_[look], b_[look], pair, channel, least, scale_.floor);
+        };
+        const double own = with(0);
+        return std::fabs(own) < kDoubtful ? own : with(component(around_[look], channel));
+    }
+
+  private:
+    const PilotScale& scale_;
+    std::vector<V3d> around_;
+    std::vector<PilotValues> a_, b_;
+};
+
+/// Weighted mean over the looks. halves: two independent estimates of each value, which tell the
+/// noise of those that were not drawn.
+struct Value {
+    double mean;
+    std::array<double, 2> halves;
+};
+Estimate mean_of(const std::vector<Value>& values, const std::vector<Look>& looks) {
+    double sum = 0, drawn_sum = 0, drawn_squares = 0, noise = 0, drawn = 0;
+    for (size_t p = 0; p < values.size(); ++p) {
+        const double v = looks[p].weight * values[p].mean;
+        sum += v;
+        if (looks[p].certain) {
+            const auto& [a, b] = values[p].halves;
+            noise += std::pow(looks[p].weight * (a - b) / 2, 2);
+        } else {
+            drawn_sum += v;
+            drawn_squares += v * v;
+            ++drawn;
+        }
+    }
+    double variance = noise;
+    if (drawn > 1)
+        variance += (drawn_squares - drawn_sum * drawn_sum / drawn) * drawn / (drawn - 1);
+    else
+        variance += drawn_squares;
+    return {sum, std::sqrt(std::max(variance, 0.))};
+}
+
+}  // namespace
+
+double pilot_floor(const Pilot& pilot, const PilotModel& model) {
+    SymmetricFloor floor;
+    for (size_t p = 0; p < pilot.pixels(); ++p) {
+        V3d mean(0.);
+        for (const V3d& v : model.means(p)) mean += v / double(kPilotReplicates);
+        floor.add(double(luminance(Rgb(static_cast<float>(mean.x), static_cast<float>(mean.y),
+                                       static_cast<float>(mean.z)))),
+                  pilot.looks().looks[p].weight);
+    }
+    return floor.floor();
+}
+
+Estimate square_error(const Pilot& pilot, const std::vector<PilotTerm>& terms,
+                      const PilotScale& scale) {
+    const Scales scales(pilot, scale);
+    std::vector<Value> values;
+    for (size_t p = 0; p < pilot.pixels(); ++p) {
+        PilotValues d;
+        d.fill(V3d(0.));
+        for (const PilotTerm& term : terms) {
+            const PilotValues means = term.model->means(p);
+            for (size_t k = 0; k < kPilotReplicates; ++k) d[k] += means[k] * term.factor;
+        }
+        std::array<double, kPairs.size()> squares{};
+        for (size_t n = 0; n < kPairs.size(); ++n)
+            for (size_t c = 0; c < kChannels; ++c)
+                squares[n] +=
+                    scales.over(component(d[kPairs[n].i], c) * component(d[kPairs[n].j], c), p,
+                                kPairs[n], c) /
+                    kChannels;
+        double sum = 0;
+        for (const double s : squares) sum += s / static_cast<double>(kPairs.size());
+        values.push_back({sum, {squares[0], squares[1]}});
+    }
+    return mean_of(values, pilot.looks().looks);
+}
+
+PilotNoise noise_of(const Pilot& pilot, const PilotModel& model, const PilotScale& scale) {
+    PilotNoise out;
+    const Scales scales(pilot, scale);
+    for (const std::vector<PilotValues>& turn : model.turns()) {
+        std::vector<Value> values;
+        double sum = 0, squares = 0;
+        for (size_t p = 0; p < pilot.pixels(); ++p) {
+            std::array<double, kPairs.size()> parts{};
+            for (size_t n = 0; n < kPairs.size(); ++n)
+                for (size_t c = 0; c < kChannels; ++c) {
+                    const double off =
+                        component(turn[p][kPairs[n].i], c) - component(turn[p][kPairs[n].j], c);
+                    parts[n] += scales.over(off * off / 2, p, kPairs[n], c) / kChannels;
+                }
+            double mean = 0;
+            for (const double part : parts) mean += part / static_cast<double>(kPairs.size());
+            values.push_back({mean, {parts[0], parts[1]}});
+            const double v = pilot.looks().looks[p].weight * mean;
+            sum += v;
+            squares += v * v;
+        }
+        out.variances.push_back(mean_of(values, pilot.looks().looks));
+        out.parts = squares > 0 ? sum * sum / squares : 0;
+    }
+    return out;
+}
+
+}  // namespace petzval

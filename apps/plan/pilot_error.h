@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Errors of models that a pilot has rendered, as symmetric MSE (io/image/symmetric_mse.h): how far
+// a model is off without noise, and how noisy it is.
+#pragma once
+
+#include <vector>
+
+#include "apps/plan/pilot.h"
+
+namespace petzval {
+
+/// A model that counts `factor` times in a difference.
+struct PilotTerm {
+    const PilotModel* model;
+    double factor;
+};
+
+/// The two pictures whose mean square scales an error.
+struct PilotScale {
+    const PilotModel *a, *b;
+    double floor;
+    /// Least mean of each look, where it is known from others that the samples of one pixel are too
+    /// few to find its light; empty: none is.
+    std::vector<V3d> least{};
+};
+
+/// Floor of the symmetric MSE, from what the pilot sees of a picture.
+[[nodiscard]] double pilot_floor(const Pilot&, const PilotModel&);
+
+/// Symmetric MSE of what the terms add up to with endless samples. Unbiased but for third orders of
+/// the noise, so it may be negative: only products of different replicates count, and the others
+/// give the scale. All must have as many samples.
+[[nodiscard]] Estimate square_error(const Pilot&, const std::vector<PilotTerm>&, const PilotScale&);
+
+/// Symmetric variance of a model.
+struct PilotNoise {
+    /// Of the mean of 1, 2, 4, ... samples: well spread points make them fall faster than in
+    /// proportion.
+    std::vector<Estimate> variances;
+    /// Number of equal parts that would spread the last of them as unevenly: replicates of pixels
+    /// that hold it. (sum of v)^2 / sum of v^2: Kish 1965, "Survey Sampling", section 11.7.
+    double parts = 0;
+};
+[[nodiscard]] PilotNoise noise_of(const Pilot&, const PilotModel&, const PilotScale&);
+
+}  // namespace petzval

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Choices of a plan that change little, each by what it was found to change.
+#pragma once
+
+#include <optional>
+
+#include "apps/plan/plan_comparison.h"
+
+namespace petzval {
+
+/// Whether rays through the lens need doubles.
+struct PrecisionFound {
+    Precision precision;
+    double apart_px;  ///< most that rays in floats and in doubles part, RMS over a part of the film
+    double square;    ///< upper bound of the symmetric MSE of floats, by where the rays go
+};
+/// Precision for the lens of a request; nothing where there is no glass, or doubles were asked for.
+[[nodiscard]] std::optional<PrecisionFound> find_precision(const PlanRequest&,
+                                                           const RenderSetup& first,
+                                                           const SceneRequest& chosen,
+                                                           TbbExecutor&);
+
+/// How lights are chosen at a path's vertices.
+struct LightsFound {
+    LightChoiceKind kind;
+    double effort_of_other;  ///< of Tree or Power, over that of `kind`
+};
+/// Light choice for a candidate of a comparison, Tree or Power; nothing where there are less than
+/// two lights, or no noise was seen.
+[[nodiscard]] std::optional<LightsFound> find_lights(const PlanComparison&,
+                                                     const RenderSetup& first,
+                                                     const SceneRequest& chosen, size_t candidate);
+
+}  // namespace petzval

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/plan/rare_light.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/spectrum/bands.h"
+#include "io/image/symmetric_mse.h"
+
+namespace petzval {
+namespace {
+
+constexpr uint32_t kRays = 256;
+/// The density of rays at a lamp is that of this many nearest ones.
+constexpr size_t kNearest = 16;
+
+/// Ray of a random film point in a region; nothing where the lens lets none through.
+std::optional<Ray> ray_in(const RenderSetup& setup, V2i size_px, const FilmRegion& region,
+                          uint32_t i) {
+    const Sampler sampler(SamplerKind::Owen, 1, {0, 0, i});
+    const V2f within = sampler.get2(Dim::Film);
+    const auto area = static_cast<double>(region.area_px());
+    const auto [x, y] =
+        region.pixel(std::min(static_cast<int64_t>(double(within.x) * area), region.area_px() - 1));
+    const float rest = static_cast<float>(double(within.x) * area);
+    const V2f film((float(x) + rest - std::floor(rest)) / float(size_px.x),
+                   (float(y) + within.y) / float(size_px.y));
+    const Observer& observer = setup.view.observer;
+    const Bands bands =
+        observer.spectral() ? observer.draw(sampler.get1(Dim::Wavelength)) : Bands::rgb();
+    const CameraSample seen = setup.view.camera->sample({film, sampler}, bands);
+    if (seen.empty()) return std::nullopt;
+    return seen[0].ray;
+}
+
+/// Squared distance at which a ray passes a lamp, in metres, or radians at infinity.
+double square_distance(const Ray& ray, const Thing& lamp) {
+    if (lamp.at_infinity) return double((ray.direction - lamp.centre).length2());
+    const V3f to = lamp.centre - ray.origin;
+    const float along = to.dot(ray.direction);
+    return along > 0 ? double((to - along * ray.direction).length2()) : INFINITY;
+}
+
+bool is_hidden(const Bvh& bvh, const Ray& ray, const Thing& lamp) {
+    Ray shadow;
+    shadow.origin = ray.origin;
+    if (lamp.at_infinity) {
+        shadow.direction = lamp.centre;
+    } else {
+        shadow.direction = lamp.centre - ray.origin;
+        const float distance = shadow.direction.length();
+        shadow.t_max = std::max(0.f, 0.999f - lamp.radius_m / distance);
+    }
+    return bvh.occluded(shadow);
+}
+
+}  // namespace
+
+std::vector<SeenLamp> seen_lamps(const RenderSetup& setup, V2i size_px,
+                                 const std::vector<Thing>& things,
+                                 const std::vector<FilmRegion>& regions) {
+    std::vector<SeenLamp> out;
+    for (size_t n = 0; n < things.size(); ++n) {
+        const Thing& lamp = things[n];
+        if (!lamp.is_lamp() || regions[n].rects.empty()) continue;
+        std::vector<double> squares;
+        bool visible = false;
+        for (uint32_t i = 0; i < kRays; ++i) {
+            const auto ray = ray_in(setup, size_px, regions[n], i);
+            squares.push_back(ray ? square_distance(*ray, lamp) : INFINITY);
+            visible |= ray && i % 8 == 0 && !is_hidden(*setup.prepared.bvh, *ray, lamp);
+        }
+        if (!visible) continue;
+        std::nth_element(squares.begin(), squares.begin() + kNearest - 1, squares.end());
+        const double disk = double(kPi) * squares[kNearest - 1];
+        // A lamp that is larger than the disk is met by all rays within it.
+        const double shown = disk > 0 ? std::min(1., lamp.area_m2 / disk) : 1;
+        out.push_back({regions[n].area_px(), shown * kNearest / kRays, lamp.radiance,
+                       2 * lamp.radius_m, &regions[n]});
+    }
+    return out;
+}
+
+std::vector<V3d> least_means(const Pilot& pilot, const PilotModel& model,
+                             const std::vector<SeenLamp>& lamps) {
+    std::vector<V3d> out(pilot.pixels(), V3d(0.));
+    for (const SeenLamp& lamp : lamps) {
+        if (model.samples() * lamp.probability >= 1) continue;
+        std::vector<size_t> on_disc;
+        V3d sum(0.);
+        for (size_t p = 0; p < pilot.pixels(); ++p) {
+            const auto [x, y] = pilot.looks().looks[p].pixel;
+            if (!lamp.region->contains(x, y)) continue;
+            on_disc.push_back(p);
+            for (const V3d& v : model.means(p)) sum += v / double(kPilotReplicates);
+        }
+        for (const size_t p : on_disc)
+            for (int c = 0; c < 3; ++c)
+                out[p][c] = std::max({out[p][c], sum[c] / static_cast<double>(on_disc.size()),
+                                      lamp.radiance * lamp.probability});
+    }
+    return out;
+}
+
+RareLight rare_light(const Pilot& pilot, const PilotModel& model,
+                     const std::vector<SeenLamp>& lamps, bool has_lamps, double floor) {
+    RareLight out;
+    const V2i size = pilot.size_px();
+    const double pixels = double(size.x) * double(size.y);
+    for (const SeenLamp& lamp : lamps) {
+        double looks = 0, light = 0;
+        for (size_t p = 0; p < pilot.pixels(); ++p) {
+            const auto [x, y] = pilot.looks().looks[p].pixel;
+            if (!lamp.region->contains(x, y)) continue;
+            ++looks;
+            for (const V3d& v : model.means(p))
+                light +=
+                    double(luminance(Rgb(float(v.x), float(v.y), float(v.z)))) / kPilotReplicates;
+        }
+        if (looks * kPilotReplicates * model.samples() * lamp.probability >= kEnoughPaths) continue;
+        const double behind = looks > 0 ? light / looks : 0;
+        const double with = behind + lamp.radiance * lamp.probability;
+        const double share = static_cast<double>(lamp.area_px) / pixels;
+        ++out.lamps;
+        out.largest_lamp_m = std::max(out.largest_lamp_m, double(lamp.size_m));
+        if (with > 0)
+            out.noise += share * lamp.radiance * lamp.radiance * lamp.probability /
+                         (with * with + floor * floor);
+        out.lost += share * symmetric_square(behind, with, floor);
+    }
+    const auto seldom = [&](const ChanceFinds& found) {
+        return has_lamps && found.bounces > 0 && double(found.lamps) < kEnoughPaths;
+    };
+    out.mirrored = seldom(model.stats().mirrored);
+    out.caustic = seldom(model.stats().caustic);
+    return out;
+}
+
+}  // namespace petzval

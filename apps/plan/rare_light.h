@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light that a pilot met too seldom to know it: lamps so small that few camera rays meet them, and
+// lamps behind mirrors and glass, which paths find by chance.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "apps/plan/film_region.h"
+#include "apps/plan/pilot_error.h"
+#include "apps/plan/things.h"
+
+namespace petzval {
+
+/// Paths from which on noise counts as known.
+inline constexpr double kEnoughPaths = 16;
+
+/// A lamp that the film sees through the camera itself.
+struct SeenLamp {
+    int64_t area_px;     ///< of the film that its light falls on
+    double probability;  ///< that a camera ray of this area meets it
+    double radiance;     ///< nits
+    float size_m;        ///< across
+    const FilmRegion* region;
+};
+
+/// Lamps among the things that no surface hides from the camera, each with its region.
+[[nodiscard]] std::vector<SeenLamp> seen_lamps(const RenderSetup&, V2i size_px,
+                                               const std::vector<Thing>&,
+                                               const std::vector<FilmRegion>&);
+
+/// Least means of a pilot's looks, as PilotScale wants them: where lamps are met by so few samples
+/// of a pixel that most of its replicates miss them, the mean over all looks at their discs, or
+/// what the lamp is expected to bring. Lamps count as white.
+[[nodiscard]] std::vector<V3d> least_means(const Pilot&, const PilotModel&,
+                                           const std::vector<SeenLamp>&);
+
+/// What a pilot does not know of a model.
+struct RareLight {
+    size_t lamps = 0;           ///< seen ones that fewer than kEnoughPaths paths will have met
+    double largest_lamp_m = 0;  ///< of them
+    double noise = 0;           ///< symmetric variance of one sample that they would add
+    double lost = 0;            ///< symmetric MSE of a picture without them
+    /// Smooth surfaces were met, and behind them fewer than kEnoughPaths paths met a lamp.
+    bool mirrored = false, caustic = false;
+
+    [[nodiscard]] bool by_chance() const { return mirrored || caustic; }
+};
+[[nodiscard]] RareLight rare_light(const Pilot&, const PilotModel&, const std::vector<SeenLamp>&,
+                                   bool has_lamps, double floor);
+
+}  // namespace petzval

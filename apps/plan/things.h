@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Things of a scene that a few pixels may hold and a plan must not miss: what depends on
+// wavelength, and what shines.
+#pragma once
+
+#include <vector>
+
+#include "core/scene/scene.h"
+
+namespace petzval {
+
+/// A part of a scene, by the sphere around it.
+struct Thing {
+    enum class Kind : uint8_t {
+        Wavelength,  ///< refracts, reflects or emits by wavelength
+        Lamp         ///< emits, or is a bright spot of the sky
+    };
+    Kind kind;
+    V3f centre;                ///< metres; a unit direction for what lies at infinity
+    float radius_m = 0;        ///< at infinity: radians
+    bool at_infinity = false;  ///< a spot of the sky
+    double area_m2 = 0;        ///< of a lamp: half its surface; at infinity: sr
+    double radiance = 0;       ///< of a lamp: mean luminance, nits
+
+    /// Whether the things of this kind are lamps.
+    [[nodiscard]] bool is_lamp() const { return kind == Kind::Lamp; }
+};
+
+/// Things of a scene, at most about a hundred: an object whose parts lie apart counts as several,
+/// and so do bright parts of emissive textures and of the sky. Those found in textures come from
+/// up to 2^18 points. A pure function of the scene.
+[[nodiscard]] std::vector<Thing> things_of(const Scene&);
+
+}  // namespace petzval

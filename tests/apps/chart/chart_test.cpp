@@ -203,9 +203,15 @@ TEST_F(ChartRun, WritesAReport) {
         EXPECT_LT(last["flip"]["mean"], first["flip"]["mean"]);
     }
     const std::string csv = file_bytes(path("report/points.csv"));
-    EXPECT_EQ(read_csv_text(path("report/points.csv")).rows.size(), renders);
     EXPECT_TRUE(csv.starts_with(
         "axis,case,method,samples,seed,cpu_s,symmetric_mse,relative_mse,flip,believed\n"));
+    const json& first_render = of["methods"][0]["points"][0]["seeds"][0];
+    const CsvText table = read_csv_text(path("report/points.csv"));
+    EXPECT_EQ(table.rows.size(), renders);
+    for (size_t column = 5; column < 9; ++column) {  // cpu_s, and the errors
+        const double value = first_render[table.names[column]];
+        EXPECT_NEAR(std::stod(table.rows[0][column]), value, 1e-6 * value) << table.names[column];
+    }
     for (const auto& [file, label] : {std::pair{"lights.svg", ">symmetric MSE<"},
                                       {"lights-relative.svg", ">relative MSE<"},
                                       {"lights-flip.svg", ">FLIP<"}})

@@ -14,4 +14,7 @@ namespace petzval {
 /// follow from size, number and seed alone.
 [[nodiscard]] std::vector<std::array<int, 2>> pilot_pixels(V2i size_px, int wanted, uint32_t seed);
 
+/// Pixels of the grid's cell that a pixel lies in: cells differ by a row and a column.
+[[nodiscard]] int64_t pilot_cell_area_px(V2i size_px, int wanted, std::array<int, 2> pixel);
+
 }  // namespace petzval

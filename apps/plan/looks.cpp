@@ -92,8 +92,11 @@ Looks even_looks(V2i size_px, int wanted, uint32_t seed) {
     Looks out;
     const auto pixels = pilot_pixels(size_px, wanted, seed);
     const auto count = static_cast<double>(pixels.size());
-    for (const auto& pixel : pixels) out.looks.push_back({pixel, 1 / count});
-    out.density.values = {count / (double(size_px.x) * double(size_px.y))};
+    const double frame = double(size_px.x) * double(size_px.y);
+    for (const auto& pixel : pixels)
+        out.looks.push_back(
+            {pixel, static_cast<double>(pilot_cell_area_px(size_px, wanted, pixel)) / frame});
+    out.density.values = {count / frame};
     return out;
 }
 
@@ -109,8 +112,8 @@ Looks choose_looks(V2i size_px, int wanted, std::vector<FilmRegion> regions,
     const auto each = regions.empty() ? 0 : int64_t(kRegionShare * wanted / double(regions.size()));
     const Emphasis emphasized = emphasis_of(size_px, emphasis);
     const auto of_emphasis = static_cast<uint32_t>(kEmphasisShare * wanted);
-    const auto even =
-        pilot_pixels(size_px, wanted - int(of_emphasis) - int(each) * int(regions.size()), seed);
+    const int evenly = wanted - int(of_emphasis) - int(each) * int(regions.size());
+    const auto even = pilot_pixels(size_px, evenly, seed);
 
     std::set<std::array<int, 2>> certain;
     std::map<std::array<int, 2>, int> times;
@@ -146,7 +149,9 @@ Looks choose_looks(V2i size_px, int wanted, std::vector<FilmRegion> regions,
     for (const auto& pixel : certain) out.looks.push_back({pixel, 1 / pixels, true});
     for (const auto& [pixel, count] : times) {
         if (certain.contains(pixel)) continue;
-        double density = out.density.at(size_px, pixel[0], pixel[1]);
+        double density =
+            emphasized.density[emphasis.cell_at(size_px, pixel[0], pixel[1])] * of_emphasis +
+            1 / static_cast<double>(pilot_cell_area_px(size_px, evenly, pixel));
         for (const FilmRegion* region : sampled)
             if (region->contains(pixel[0], pixel[1]))
                 density += static_cast<double>(each) / static_cast<double>(region->area_px());

@@ -103,25 +103,27 @@ struct Value {
     std::array<double, 2> halves;
 };
 Estimate mean_of(const std::vector<Value>& values, const std::vector<Look>& looks) {
-    double sum = 0, drawn_sum = 0, drawn_squares = 0, noise = 0, drawn = 0;
+    double certain = 0, variance = 0, sum = 0, weights = 0, drawn = 0;
     for (size_t p = 0; p < values.size(); ++p) {
-        const double v = looks[p].weight * values[p].mean;
-        sum += v;
+        const double weight = looks[p].weight;
         if (looks[p].certain) {
             const auto& [a, b] = values[p].halves;
-            noise += std::pow(looks[p].weight * (a - b) / 2, 2);
+            certain += weight * values[p].mean;
+            variance += std::pow(weight * (a - b) / 2, 2);
         } else {
-            drawn_sum += v;
-            drawn_squares += v * v;
+            sum += weight * values[p].mean;
+            weights += weight;
             ++drawn;
         }
     }
-    double variance = noise;
-    if (drawn > 1)
-        variance += (drawn_squares - drawn_sum * drawn_sum / drawn) * drawn / (drawn - 1);
-    else
-        variance += drawn_squares;
-    return {sum, std::sqrt(std::max(variance, 0.))};
+    // The weights of those that were drawn hardly vary in sum: what deviates from their mean does.
+    const double scale = drawn > 1 ? drawn / (drawn - 1) : 1;
+    for (size_t p = 0; p < values.size() && drawn > 0; ++p)
+        if (!looks[p].certain)
+            variance +=
+                scale *
+                std::pow(looks[p].weight * (values[p].mean - (drawn > 1 ? sum / weights : 0)), 2);
+    return {certain + sum, std::sqrt(variance)};
 }
 
 }  // namespace

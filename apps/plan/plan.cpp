@@ -20,7 +20,6 @@ constexpr int kLooks = 4096, kFewestLooks = 256, kMostLooks = 8192;
 /// frame.
 constexpr double kLookSamples = 4;
 
-constexpr double kMostPlannedSamples = 1 << 30;
 // Factor within which costs count as equal: they are known no better, and the simpler model is
 // taken.
 constexpr double kAsCheap = 1.05;
@@ -117,7 +116,7 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
     // samples.
     if (request.scene.spectral.bins)
         plan.samples = (plan.samples + kReplicates - 1) / kReplicates * kReplicates;
-    plan.noise = std::sqrt(chosen.variance_with(static_cast<double>(plan.samples)));
+    plan.noise = std::sqrt(chosen.variance_with(plan.samples));
     plan.first_noise = std::sqrt(chosen.variance_with(1));
     plan.noise_at_least = chosen.noise_at_least();
     plan.rare = chosen.rare;

@@ -57,11 +57,19 @@ bool has_lamps(const std::vector<Thing>& things) {
 
 }  // namespace
 
-double PlanCandidate::variance_with(double samples) const {
-    size_t turn = 0;
-    while (turn + 1 < noise.variances.size() && samples >= std::exp2(turn + 1)) ++turn;
-    const double first = noise.variances[turn].high() * std::exp2(turn) + rare.noise;
-    return std::min(first / samples, kMostSymmetricMse);
+// A number of samples that is no power of 2 is a sum of blocks that are: each is as well spread as
+// the first of its size, and they hardly know of each other.
+double PlanCandidate::variance_with(uint64_t samples) const {
+    const auto n = static_cast<double>(samples);
+    const size_t last = noise.variances.size() - 1;
+    double sum = rare.noise / n;
+    for (size_t digit = 0; samples >> digit > 0; ++digit) {
+        if ((samples >> digit & 1) == 0) continue;
+        const double block = std::exp2(digit), known = std::exp2(std::min(digit, last));
+        const double variance = noise.variances[std::min(digit, last)].high() * known / block;
+        sum += variance * block * block / (n * n);
+    }
+    return std::min(sum, kMostSymmetricMse);
 }
 
 bool PlanCandidate::noise_at_least() const {
@@ -71,11 +79,16 @@ bool PlanCandidate::noise_at_least() const {
 
 double PlanCandidate::samples_for(double tolerance) const {
     const double left = tolerance * tolerance - square_bias.high();
-    for (size_t turn = 0;; ++turn) {
-        const double first = noise.variances[turn].high() * std::exp2(turn) + rare.noise;
-        const double samples = std::max(std::exp2(turn), first / left);
-        if (turn + 1 == noise.variances.size() || samples <= std::exp2(turn + 1)) return samples;
-    }
+    if (!(left > 0)) return INFINITY;
+    const double most = noise.variances.back().high() * std::exp2(noise.variances.size() - 1);
+    if (!((most + rare.noise) / left < kMostPlannedSamples)) return INFINITY;
+    uint64_t samples = 1;
+    while (variance_with(samples) > left) samples *= 2;
+    // Between two powers of 2 it may go up and down: by steps of about a hundredth.
+    uint64_t fewer = samples / 2 + 1;
+    while (fewer < samples && variance_with(fewer) > left)
+        fewer += std::max<uint64_t>(1, fewer / 128);
+    return static_cast<double>(std::min(fewer, samples));
 }
 
 PlanOpen::PlanOpen(const SceneRequest& request, const RenderSetup& setup) {

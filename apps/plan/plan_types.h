@@ -20,6 +20,8 @@ inline constexpr double kUsualTolerance = 0.01;
 /// Share of the squared tolerance that a simpler model may err; the rest is for noise.
 inline constexpr double kBiasShare = 0.5;
 
+inline constexpr double kMostPlannedSamples = 1 << 30;
+
 struct PlanRequest {
     SceneRequest scene;
     RenderJob job;  ///< sampler and filter count: samples and seed do not, nor does a crop
@@ -68,10 +70,11 @@ struct PlanCandidate {
     /// Upper bound of the variance with so many samples, 1 at least, with what light that was
     /// hardly met may add: of the symmetric MSE by noise where noise is small, and never more than
     /// kMostSymmetricMse.
-    [[nodiscard]] double variance_with(double samples) const;
+    [[nodiscard]] double variance_with(uint64_t samples) const;
     /// Whether the noise may be larger: paths that were hardly met, or not at all, hold some of it.
     [[nodiscard]] bool noise_at_least() const;
-    /// Samples until noise and bias are inside the tolerance together; bias alone must be.
+    /// Samples until noise and bias are inside the tolerance together; infinite where bias alone is
+    /// not, or where they would be more than kMostPlannedSamples.
     [[nodiscard]] double samples_for(double tolerance) const;
 };
 

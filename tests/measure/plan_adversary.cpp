@@ -5,9 +5,10 @@
 //   plan_adversary [--first N] [--count N] [--csv FILE] [--save FOLDER]
 //
 // A promise is broken where the true error's lower bound of 95 % lies above the prediction. Noise
-// is judged alike, unless the plan says "at least". A choice is needless where a simpler model's
-// upper bound is below a third of the tolerance. The table goes to standard output, line by line;
-// rows are added to the file of --csv, so a run that was cut short goes on with --first.
+// is judged alike, unless the plan says "at least". A choice is needless where a simpler model was
+// turned down whose upper bound is below a third of the tolerance. The table goes to standard
+// output, line by line; rows are added to the file of --csv, so a run that was cut short goes on
+// with --first.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -143,7 +144,8 @@ int run(int argc, char** argv) {
     app.add_option("--count", s.count, "of scenes");
     app.add_option("--threads", s.threads)->check(CLI::PositiveNumber);
     app.add_option("--csv", s.csv, "file that rows are added to");
-    app.add_option("--truth-samples", s.budget.truth_samples, "that measure a scene's truth, about");
+    app.add_option("--truth-samples", s.budget.truth_samples,
+                   "that measure a scene's truth, about");
     app.add_option("--plan-samples", s.budget.plan_samples, "that a plan may take");
     app.add_option("--save", s.save, "folder that scenes are written to; prints options of each");
     CLI11_PARSE(app, argc, argv);

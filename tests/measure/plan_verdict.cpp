@@ -58,7 +58,8 @@ void measure(const Plan& plan, const PlanScene& scene, const PlanRequest& reques
             fmt::print("  {}: {:.2f} % of error outside of what matters\n", name_of(c.model),
                        100 * outside.low);
         out.rows.push_back({name_of(c.model), c.predicted(), bias, i == chosen});
-        if (c.model < plan.chosen && bias.high < scene.tolerance / 3) out.needless = true;
+        if (c.model < plan.chosen && !c.inside && bias.high < scene.tolerance / 3)
+            out.needless = true;
     }
     if (!chosen) {  // of no bias; the fullest tells where its noise is
         out.rows.push_back({name_of(plan.chosen), plan.bias, {}, true});

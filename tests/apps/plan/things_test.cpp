@@ -117,17 +117,15 @@ TEST(FilmRegions, HoldTheLightOfALampInFocusAndOutOfFocus) {
                 for (uint32_t i = 0; i < 2000 && !met; ++i) {
                     const Sampler sampler(SamplerKind::Owen, 0, {x, y, i});
                     const V2f at = V2f(float(x), float(y)) + sampler.get2(Dim::Film);
-                    const CameraSample rays =
-                        seen.sample({at / V2f(kSize), sampler}, Bands::rgb());
+                    const CameraSample rays = seen.sample({at / V2f(kSize), sampler}, Bands::rgb());
                     // All pixels far from the lamp would take long.
                     const V3f d = rays[0].ray.direction, o = rays[0].ray.origin;
                     const V3f on_plane = o + d * ((centre.z - o.z) / d.z);
                     if (i == 0 && (on_plane - centre).length() > 0.12f) break;
                     met = bvh.intersect(rays[0].ray).has_value();
                 }
-                const bool inside = std::any_of(regions.begin(), regions.end(), [&](const auto& r) {
-                    return r.contains(x, y);
-                });
+                const bool inside = std::any_of(regions.begin(), regions.end(),
+                                                [&](const auto& r) { return r.contains(x, y); });
                 lit += met;
                 outside += met && !inside;
             }
@@ -166,14 +164,13 @@ TEST(Displacement, IsTheCircleOfConfusion) {
     const Bvh bvh(scene, Traversal::Robust);
     const ThinLensCamera lens = camera(0.02f, 2), pinhole = camera(0, 2);
     const Observer rgb;
-    const Displacement found =
-        displacement_of({pinhole, rgb}, {lens, rgb}, scene, bvh, {V3f(0.f), V3f(0, 0, -1), 2},
-                        kSize, 256, false);
+    const Displacement found = displacement_of({pinhole, rgb}, {lens, rgb}, scene, bvh,
+                                               {V3f(0.f), V3f(0, 0, -1), 2}, kSize, 256, false);
     const double pixel = 2 * std::tan(0.3) / 180;
     const double radius_px = 0.02 * (1 / 2. - 1 / 4.) / pixel;
     const auto& squares = found.square_px.values;
-    const double mean = std::accumulate(squares.begin(), squares.end(), 0.) /
-                        static_cast<double>(squares.size());
+    const double mean =
+        std::accumulate(squares.begin(), squares.end(), 0.) / static_cast<double>(squares.size());
     EXPECT_NEAR(mean, radius_px * radius_px / 2, 0.1 * radius_px * radius_px / 2);
     for (const double b : found.brightness.values) EXPECT_NEAR(b, 0, 1e-6);
     // In focus they agree, and no error remains.
@@ -181,10 +178,9 @@ TEST(Displacement, IsTheCircleOfConfusion) {
     place(sharp, square({0, 0, -2}, 20.f), diffuse_material(0.5f));
     finish_scene(sharp);
     const Bvh sharp_bvh(sharp, Traversal::Robust);
-    const FilmMap most =
-        most_error(displacement_of({pinhole, rgb}, {lens, rgb}, sharp, sharp_bvh,
-                                   {V3f(0.f), V3f(0, 0, -1), 2}, kSize, 64, false),
-                   0);
+    const FilmMap most = most_error(displacement_of({pinhole, rgb}, {lens, rgb}, sharp, sharp_bvh,
+                                                    {V3f(0.f), V3f(0, 0, -1), 2}, kSize, 64, false),
+                                    0);
     for (const double m : most.values) EXPECT_LT(m, 1e-3);
 }
 

@@ -69,7 +69,8 @@ std::string command_of(const CLI::App& app, const Plan& plan) {
 
 std::string duration(double s) {
     if (s < 100) return fmt::format("{:.2g} s", s);
-    return s < 6000 ? fmt::format("{:.2g} min", s / 60) : fmt::format("{:.2g} h", s / 3600);
+    if (s < 6000) return fmt::format("{:.2g} min", s / 60);
+    return s < 360000 ? fmt::format("{:.2g} h", s / 3600) : fmt::format("{:.0f} days", s / 86400);
 }
 
 void print(const Plan& plan, const std::string& command) {
@@ -80,8 +81,12 @@ void print(const Plan& plan, const std::string& command) {
     fmt::print("{:<10} {}: they bring noise from {} to {}{}\n", "samples", plan.samples,
                percent(plan.first_noise), at_least, percent(plan.noise));
     if (!rare.empty()) fmt::print("{:<10} {}\n", "rare light", rare);
-    fmt::print("{:<10} {}{}: {} by the model, {}{} by noise; about {} of CPU time here\n", "error",
-               at_least, percent(plan.error()), percent(plan.bias), at_least, percent(plan.noise),
+    fmt::print("{:<10} {}{}: {} by the model, {}{} by noise\n", "error", at_least,
+               percent(plan.error()), percent(plan.bias), at_least, percent(plan.noise));
+    fmt::print("{:<10} {}: from {} to {} on {} here, {} of CPU time\n", "time",
+               duration(plan.wall_s()), duration(Plan::kLeastTime * plan.wall_s()),
+               duration(Plan::kMostTime * plan.wall_s()),
+               plan.threads == 1 ? "a thread" : fmt::format("{} threads", plan.threads),
                duration(plan.cpu_s));
     fmt::print("{}\n", command);
 }
@@ -100,6 +105,8 @@ void print_json(const Plan& plan, const std::string& command) {
     out["noise_at_least"] = plan.noise_at_least;
     if (plan.noise_at_least) out["noise_at_least_because"] = rare_text(plan);
     out["predicted_cpu_s"] = plan.cpu_s;
+    out["predicted_wall_s"] = {Plan::kLeastTime * plan.wall_s(), plan.wall_s(),
+                               Plan::kMostTime * plan.wall_s()};
     out["command"] = command;
     // Names of files need not be UTF-8.
     fmt::print("{}\n", out.dump(2, ' ', true, nlohmann::json::error_handler_t::replace));

@@ -121,6 +121,7 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
     plan.noise_at_least = chosen.noise_at_least();
     plan.rare = chosen.rare;
     plan.threads = executor.threads();
+    plan.load_s = first.from.load_s + first.from.bvh_s;
     plan.cpu_s = compared.cpu_s_per_sample(best) * static_cast<double>(plan.samples) *
                  request.scene.size.x * request.scene.size.y;
     return plan;

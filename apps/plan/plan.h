@@ -36,9 +36,14 @@ struct Plan {
     RareLight rare;                           ///< what light that is
     uint64_t samples = 0;                     ///< of each pixel
     double cpu_s = 0;                         ///< about what the samples take here
+    double load_s = 0;                        ///< until the first sample
     int threads = 1;                          ///< that share it
 
     [[nodiscard]] double error() const { return std::hypot(bias, noise); }
+    /// Wall time of the render, s, where nothing else runs here.
+    [[nodiscard]] double wall_s() const { return load_s + cpu_s / threads; }
+    /// Interval of wall_s() that holds in nine of ten renders: docs/measured/plan.md.
+    static constexpr double kLeastTime = 0.75, kMostTime = 1.3;
     /// The candidate of a model; nullptr where it was none.
     [[nodiscard]] const PlanCandidate* find(PlanModel) const;
 };
@@ -46,7 +51,7 @@ struct Plan {
 /// Plan of a scene, from measuring it through all models; takes up to most_samples in all, some
 /// seconds. Throws as set_up_render does.
 [[nodiscard]] Plan make_plan(const PlanRequest&, TbbExecutor&, const Notice& notice,
-                             double most_samples = 4e6);
+                             double most_samples = 5e6);
 
 /// Choice that `auto` made for a render, and its grounds.
 struct AutoChoice {

@@ -15,7 +15,7 @@ namespace {
 
 // Amplified dispersion, where it is largest: its effect stands out of the noise, but stays within a
 // pixel, where the error grows in proportion.
-constexpr double kAmplified_px = 0.35, kMostFactor = 64;
+constexpr double kAmplified_px = 0.5, kMostFactor = 64;
 constexpr uint32_t kLeastSamples = 4, kThoroughSamples = 32;
 // Share of the tolerance below which errors are not measured more finely.
 constexpr double kSmallShare = 0.25;
@@ -244,19 +244,27 @@ void PlanComparison::add_unbiased(PlanModel kind, DispersionMode dispersion) {
 }
 
 void PlanComparison::measure(double most_samples, bool thorough) {
-    double models = shared_ ? 2 : 1;
-    for (const Entry& e : entries_) models += e.own != nullptr;
-    const double once = static_cast<double>(pilot_->pixels()) * kPilotReplicates * models;
+    double spent = 0;
+    const auto sample = [&](PilotModel& model, uint32_t n) {
+        spent +=
+            static_cast<double>(pilot_->pixels() * kPilotReplicates) * double(n - model.samples());
+        pilot_->sample(model, n);
+    };
     for (uint32_t n = 1;; n *= 2) {
-        pilot_->sample(*full_, n);
-        if (shared_) pilot_->sample(*shared_, n);
-        for (const Entry& e : entries_)
-            if (e.own) pilot_->sample(*e.own, n);
+        const double before = spent;
+        sample(*full_, n);
+        if (shared_) sample(*shared_, n);
+        for (Entry& e : entries_) {
+            // What is far beyond the tolerance stays as it was found: others need the samples.
+            e.settled = e.settled || (n > kLeastSamples && e.found.outside);
+            if (e.own && !e.settled) sample(*e.own, n);
+        }
         evaluate();
-        if (once * 2 * n > most_samples) return;
+        const double next = 2 * (spent - before);
+        if (spent + next > most_samples) return;
         if (n < (thorough ? kThoroughSamples : kLeastSamples) || !all_known(thorough)) continue;
         // Noise falls faster than in proportion: more turns tell how fast.
-        if (!thorough || once * 2 * n > kNoiseShare * most_samples) return;
+        if (!thorough || spent + next > kNoiseShare * most_samples) return;
     }
 }
 
@@ -274,7 +282,7 @@ void PlanComparison::evaluate() {
     const double floor = pilot_floor(*pilot_, *scale_);
     const RareLight rare = rare_light(*pilot_, *scale_, lamps_, has_lamps(things_), floor);
     for (Entry& e : entries_) {
-        if (e.difference.empty()) continue;
+        if (e.difference.empty() || e.settled) continue;
         e.found.square_bias = square_error(*pilot_, e.difference, scale_of(*e.model, floor));
         e.found.square_bias.unseen = e.unseen + missed(e.found.model, rare);
         e.found.inside = e.found.square_bias.high() <= most;
@@ -286,6 +294,7 @@ bool PlanComparison::all_known(bool thorough) const {
     const double small = std::pow(kSmallShare * request_.tolerance, 2);
     const double most = kBiasShare * request_.tolerance * request_.tolerance;
     return std::all_of(entries_.begin(), entries_.end(), [&](const Entry& e) {
+        if (e.settled) return true;
         const Estimate& bias = e.found.square_bias;
         // More samples do not tell what other pixels hold.
         const double measured = bias.high() - bias.unseen;

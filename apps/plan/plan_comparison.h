@@ -48,6 +48,7 @@ class PlanComparison {
         std::vector<PilotTerm> difference;  ///< from the fullest
         double unseen;                      ///< Looks::unseen()
         std::unique_ptr<PilotModel> own;    ///< the model, unless it is one of the others'
+        bool settled = false;               ///< beyond the tolerance: sampled no more
     };
 
     [[nodiscard]] const PilotModel& model_of(size_t candidate) const;

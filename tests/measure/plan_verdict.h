@@ -14,7 +14,7 @@ namespace petzval {
 /// Samples of all pixels together.
 struct JudgeBudget {
     double truth_samples = 5e6;  ///< of bias and of noise each
-    double plan_samples = 4e6;   ///< that a plan may take
+    double plan_samples = 5e6;   ///< that a plan may take
 };
 
 /// What a plan says of a model, and what is true.

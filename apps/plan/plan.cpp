@@ -16,6 +16,9 @@ namespace {
 
 /// Looks of a plan, and bounds of those of a render that chooses for itself.
 constexpr int kLooks = 4096, kFewestLooks = 256, kMostLooks = 8192;
+/// Samples for each pixel of the frame that a render may spend on choosing its model: with the
+/// choice of the mode they stay below a hundredth of 64.
+constexpr double kPilotShare = 0.2;
 /// Pilot samples of each replicate, for a render: many looks with few samples see more of the
 /// frame.
 constexpr double kLookSamples = 4;
@@ -135,7 +138,7 @@ AutoSetup set_up_planned(const PlanRequest& request, TbbExecutor& executor, cons
     const PlanOpen open(request.scene, first);
     AutoChoice& choice = out.choice;
     std::optional<SceneRequest> other;  // a request other than what was set up
-    const double most_samples = 0.25 * request.scene.size.x * request.scene.size.y;
+    const double most_samples = kPilotShare * request.scene.size.x * request.scene.size.y;
     const int models = (open.spectral ? 1 : 0) + (open.dispersion ? 2 : 1);
     const double looks = most_samples / (kPilotReplicates * kLookSamples * models);
     double predicted_error = 0;

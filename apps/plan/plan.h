@@ -72,7 +72,7 @@ struct AutoSetup {
 };
 
 /// Setup as set_up_render gives it, with what the request leaves open (RGB or wavelengths,
-/// dispersion mode) chosen by a pilot of at most a quarter of a sample for each pixel of the whole
+/// dispersion mode) chosen by a pilot of at most a fifth of a sample for each pixel of the whole
 /// frame, and that of choose_mode(): samples, seed and crop do not matter.
 /// Without a pilot where nothing depends on wavelength, and without the first for frames too small
 /// for it. No camera that was asked for is replaced.

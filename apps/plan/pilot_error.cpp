@@ -42,27 +42,36 @@ double inverse_scale(const PilotValues& a, const PilotValues& b, const Pair& pai
 
 /// Symmetric square from which on a pixel's own brightness is doubted: light that few replicates
 /// met makes the others look dark.
-constexpr double kDoubtful = 64;
+constexpr double kDoubtful = 8;
+/// Looks of a neighbourhood, on average.
+constexpr double kNeighbours = 64;
 
-/// Mean of each look's neighbourhood: the looks in the same cell of a grid.
+/// Mean of each look's neighbourhood: the other looks in the same cell of a grid. Its own would
+/// hide that the others are dark.
 std::vector<V3d> neighbourhoods(const Pilot& pilot, const PilotModel& model) {
     const V2i size = pilot.size_px();
-    const FilmMap grid{{std::min(32, size.x), std::min(18, size.y)}, {}};
-    const auto cell_of = [&](size_t look) {
-        const auto [x, y] = pilot.looks().looks[look].pixel;
-        return grid.cell_at(size, x, y);
-    };
-    const size_t cells = static_cast<size_t>(grid.cells.x) * static_cast<size_t>(grid.cells.y);
-    std::vector<V3d> sums(cells, V3d(0.));
-    std::vector<double> weights(cells, 0.);
+    const double cells = static_cast<double>(pilot.pixels()) / kNeighbours;
+    const auto across = static_cast<int>(std::sqrt(cells * size.x / size.y));
+    FilmMap grid{{std::clamp(across, 1, size.x), 1}, {}};
+    grid.cells.y = std::clamp(static_cast<int>(cells / grid.cells.x), 1, size.y);
+    std::vector<V3d> own;
+    std::vector<size_t> cell_of;
+    const size_t count = static_cast<size_t>(grid.cells.x) * static_cast<size_t>(grid.cells.y);
+    std::vector<V3d> sums(count, V3d(0.));
+    std::vector<double> weights(count, 0.);
     for (size_t p = 0; p < pilot.pixels(); ++p) {
-        const double weight = pilot.looks().looks[p].weight;
-        for (const V3d& v : model.means(p)) sums[cell_of(p)] += v * (weight / kPilotReplicates);
-        weights[cell_of(p)] += weight;
+        const Look& look = pilot.looks().looks[p];
+        cell_of.push_back(grid.cell_at(size, look.pixel[0], look.pixel[1]));
+        own.emplace_back(0.);
+        for (const V3d& v : model.means(p)) own.back() += v * (look.weight / kPilotReplicates);
+        sums[cell_of[p]] += own[p];
+        weights[cell_of[p]] += look.weight;
     }
     std::vector<V3d> out;
-    for (size_t p = 0; p < pilot.pixels(); ++p)
-        out.push_back(sums[cell_of(p)] / weights[cell_of(p)]);
+    for (size_t p = 0; p < pilot.pixels(); ++p) {
+        const double weight = weights[cell_of[p]] - pilot.looks().looks[p].weight;
+        out.push_back(weight > 0 ? (sums[cell_of[p]] - own[p]) / weight : V3d(0.));
+    }
     return out;
 }
 
@@ -80,17 +89,32 @@ class Scales {
         }
     }
 
-    /// The square over the pixel's own brightness, or where that is doubtful over no less than what
-    /// is around it.
+    /// A squared deviation over the pixel's own brightness, or where that is doubtful over no less
+    /// than what is around it.
     [[nodiscard]] double over(double square, size_t look, const Pair& pair, size_t channel) const {
-        const auto with = [&](double least) {
-            return square * inverse_scale(a_[look], b_[look], pair, channel, least, scale_.floor);
-        };
-        const double own = with(0);
-        return std::fabs(own) < kDoubtful ? own : with(component(around_[look], channel));
+        return scaled(square, look, pair, channel, component(around_[look], channel));
+    }
+    /// The same of a product of two replicates' differences. Where that is doubtful, what all
+    /// replicates show of the pixel counts too: no difference is larger than both pictures.
+    [[nodiscard]] double product_over(double product, size_t look, const Pair& pair,
+                                      size_t channel) const {
+        double shown = 0;
+        for (const V3d& v : b_[look]) shown += component(v, channel) / kPilotReplicates;
+        return scaled(product, look, pair, channel,
+                      std::max(shown, component(around_[look], channel)));
     }
 
   private:
+    [[nodiscard]] double scaled(double square, size_t look, const Pair& pair, size_t channel,
+                                double least) const {
+        const auto with = [&](double at_least) {
+            return square *
+                   inverse_scale(a_[look], b_[look], pair, channel, at_least, scale_.floor);
+        };
+        const double own = with(0);
+        return std::fabs(own) < kDoubtful ? own : with(least);
+    }
+
     const PilotScale& scale_;
     std::vector<V3d> around_;
     std::vector<PilotValues> a_, b_;
@@ -128,11 +152,12 @@ Estimate mean_of(const std::vector<Value>& values, const std::vector<Look>& look
 
 }  // namespace
 
-double pilot_floor(const Pilot& pilot, const PilotModel& model) {
+double pilot_floor(const Pilot& pilot, const PilotModel& model, const std::vector<V3d>& least) {
     SymmetricFloor floor;
     for (size_t p = 0; p < pilot.pixels(); ++p) {
         V3d mean(0.);
         for (const V3d& v : model.means(p)) mean += v / double(kPilotReplicates);
+        if (!least.empty() && least[p].length2() > 0) mean = least[p];
         floor.add(double(luminance(Rgb(static_cast<float>(mean.x), static_cast<float>(mean.y),
                                        static_cast<float>(mean.z)))),
                   pilot.looks().looks[p].weight);

@@ -24,8 +24,10 @@ struct PilotScale {
     std::vector<V3d> least{};
 };
 
-/// Floor of the symmetric MSE, from what the pilot sees of a picture.
-[[nodiscard]] double pilot_floor(const Pilot&, const PilotModel&);
+/// Floor of the symmetric MSE, from what the pilot sees of a picture. least: as in PilotScale; what
+/// a look shows by chance does not count where it is above 0.
+[[nodiscard]] double pilot_floor(const Pilot&, const PilotModel&,
+                                 const std::vector<V3d>& least = {});
 
 /// Symmetric MSE of what the terms add up to with endless samples. Unbiased but for third orders of
 /// the noise, so it may be negative: only products of different replicates count, and the others

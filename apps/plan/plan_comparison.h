@@ -73,7 +73,8 @@ class PlanComparison {
     std::vector<Thing> things_;
     std::vector<FilmRegion> regions_;
     std::vector<SeenLamp> lamps_;
-    FilmMap dispersed_;  ///< most error of rays that do not disperse
+    std::vector<V3d> least_;  ///< least_means() of the looks
+    FilmMap dispersed_;       ///< most error of rays that do not disperse
     std::optional<Pilot> pilot_;
     std::unique_ptr<PilotModel> full_, shared_;
     const PilotModel* scale_ = nullptr;  ///< what errors are relative to

@@ -14,6 +14,9 @@ constexpr uint32_t kRays = 256;
 /// The density of rays at a lamp is that of this many nearest ones.
 constexpr size_t kNearest = 16;
 
+/// Share of the light on its disc from which on a lamp decides how bright that is.
+constexpr double kMostOfTheLight = 0.5;
+
 /// Ray of a random film point in a region; nothing where the lens lets none through.
 std::optional<Ray> ray_in(const RenderSetup& setup, V2i size_px, const FilmRegion& region,
                           uint32_t i) {
@@ -85,7 +88,7 @@ std::vector<V3d> least_means(const Pilot& pilot, const PilotModel& model,
                              const std::vector<SeenLamp>& lamps) {
     std::vector<V3d> out(pilot.pixels(), V3d(0.));
     for (const SeenLamp& lamp : lamps) {
-        if (model.samples() * lamp.probability >= 1) continue;
+        if (kPilotReplicates * model.samples() * lamp.probability >= 1) continue;
         std::vector<size_t> on_disc;
         V3d sum(0.);
         for (size_t p = 0; p < pilot.pixels(); ++p) {
@@ -94,10 +97,14 @@ std::vector<V3d> least_means(const Pilot& pilot, const PilotModel& model,
             on_disc.push_back(p);
             for (const V3d& v : model.means(p)) sum += v / double(kPilotReplicates);
         }
+        if (on_disc.empty()) continue;
+        sum /= static_cast<double>(on_disc.size());
+        const double expected = lamp.radiance * lamp.probability;
+        const double seen = double(luminance(Rgb(float(sum.x), float(sum.y), float(sum.z))));
+        // Other light is better known, and uneven.
+        if (expected < kMostOfTheLight * seen) continue;
         for (const size_t p : on_disc)
-            for (int c = 0; c < 3; ++c)
-                out[p][c] = std::max({out[p][c], sum[c] / static_cast<double>(on_disc.size()),
-                                      lamp.radiance * lamp.probability});
+            for (int c = 0; c < 3; ++c) out[p][c] = std::max({out[p][c], sum[c], expected});
     }
     return out;
 }

@@ -29,9 +29,9 @@ struct SeenLamp {
                                                const std::vector<Thing>&,
                                                const std::vector<FilmRegion>&);
 
-/// Least means of a pilot's looks, as PilotScale wants them: where lamps are met by so few samples
-/// of a pixel that most of its replicates miss them, the mean over all looks at their discs, or
-/// what the lamp is expected to bring. Lamps count as white.
+/// Least means of a pilot's looks, as PilotScale wants them: where a lamp is met by less than one
+/// sample of a look, the mean over all looks at its disc, or what the lamp is expected to bring;
+/// 0 elsewhere. Lamps count as white.
 [[nodiscard]] std::vector<V3d> least_means(const Pilot&, const PilotModel&,
                                            const std::vector<SeenLamp>&);
 

@@ -79,6 +79,7 @@ std::vector<Finding> stability_findings() {
             tiny_sun(),
             tiny_lamp(),
             defocused_highlights(),
+            planned_noise(),
             chains_of_glass(),
             nested_volumes(),
             many_samples(),

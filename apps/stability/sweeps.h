@@ -99,6 +99,7 @@ class Draws {
 [[nodiscard]] Finding tiny_sun();
 [[nodiscard]] Finding tiny_lamp();
 [[nodiscard]] Finding defocused_highlights();
+[[nodiscard]] Finding planned_noise();
 [[nodiscard]] Finding chains_of_glass();
 [[nodiscard]] Finding nested_volumes();
 [[nodiscard]] Finding many_samples();

@@ -313,7 +313,7 @@ class AutoRender : public Plans {
     AutoRender() { use(lamp()); }
     [[nodiscard]] static Words lens(Words more = {}) {
         Words words = {
-            "--lens", "cooke-triplet-50mm-f5", "--focus", "2", "--size", "500x320", "--spp", "1"};
+            "--lens", "cooke-triplet-50mm-f5", "--focus", "2", "--size", "560x360", "--spp", "1"};
         words.insert(words.end(), more.begin(), more.end());
         return words;
     }

@@ -130,6 +130,26 @@ TEST_F(Findings, DefocusedHighlights) {
     expect_where("1 1 1.4 0.321 99 0.0285 999 0.00907 2.82", {.relative = 0.08});
 }
 
+TEST_F(Findings, PlannedNoise) {
+    take(planned_noise());
+    for (size_t i = 0; i < rows(); ++i) {
+        const double side = value(i, "side (m)"), there = 0.05 / 1.4 * 9;
+        const double share = side * side / (std::numbers::pi / 4 * there * there);
+        const double paths = 64 * 36 * 4 * 32 * share;
+        EXPECT_TRUE(near(value(i, "share"), share, kAsPrinted)) << i;
+        EXPECT_TRUE(near(value(i, "expected"), paths, kAsPrinted)) << i;
+        EXPECT_TRUE(near(value(i, "variance"), 1 / share - 1, kAsPrinted)) << i;
+        // 4.4 standard errors of a number of hits.
+        EXPECT_NEAR(value(i, "met"), paths, 4.4 * std::sqrt(paths) + 0.01 * paths) << i;
+        // A lamp is found by few of the samples that scale its noise: to a factor, down to none.
+        const double planned = value(i, "planned") * share;
+        EXPECT_GT(planned, 0.4) << i;
+        EXPECT_LT(planned, 2.5) << i;
+        if (paths > 64) EXPECT_EQ(cell(i, "says"), "about") << i;
+        if (paths < 4) EXPECT_EQ(cell(i, "says"), "at least") << i;
+    }
+}
+
 TEST_F(Findings, ChainsOfGlass) {
     take(chains_of_glass());
     // 8192 fixed samples: roundings change few of their choices.

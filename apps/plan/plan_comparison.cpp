@@ -73,8 +73,9 @@ double PlanCandidate::variance_with(uint64_t samples) const {
 }
 
 bool PlanCandidate::noise_at_least() const {
-    return noise.parts < kEnoughPaths || rare.by_chance() ||
-           rare.noise > kKnownShare * noise.variances.front().mean;
+    const double first = noise.variances.front().mean;
+    return (first > 0 && noise.parts < kEnoughPaths) || rare.by_chance() ||
+           rare.noise > kKnownShare * first;
 }
 
 double PlanCandidate::samples_for(double tolerance) const {

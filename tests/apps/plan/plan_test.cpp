@@ -244,6 +244,34 @@ TEST_F(Plans, AGemThatDispersesNeedsWavelengths) {
         << plan;
 }
 
+// A picture without noise is known, however few paths it took; a frame of one pixel is planned.
+TEST_F(Plans, NothingIsAtLeastWhereThereIsNoNoise) {
+    for (const char* background : {"0,0,0", "1,1,1"})
+        for (const char* size : {"1x1", "32x18"}) {
+            const json plan =
+                planned({"--look-at", "0,0,0,0,9,0.1", "--background", background, "--size", size});
+            EXPECT_EQ(plan["noise_at_least"], false) << background << plan;
+            EXPECT_EQ(plan["samples"], 1) << plan;
+            EXPECT_EQ(plan["predicted_noise"], 0.) << plan;
+        }
+}
+
+// Lamps of a millimetre far out of focus: paths hardly find them, and the plan says so.
+TEST_F(Plans, NoiseOfLampsThatFewPathsFindIsAtLeast) {
+    json strong;
+    strong["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = 1e9;
+    TinyGltf tiny = lamp(strong);
+    for (auto& node : tiny.json["nodes"])
+        if (node.contains("mesh")) node["scale"] = {1e-6, 1e-6, 1e-6};
+    use(tiny);
+    const json plan = planned({"--fstop", "1.4", "--focus", "0.3", "--tolerance", "100%",
+                               "--background", "0.01,0.01,0.01"});
+    EXPECT_EQ(plan["noise_at_least"], true) << plan;
+    EXPECT_NE(plan["noise_at_least_because"].get<std::string>().find("few paths find"),
+              std::string::npos)
+        << plan;
+}
+
 // The last line is a command; what it writes is about the tolerance off a long one.
 TEST_F(Plans, TheCommandRenders) {
     const Words options = {"--fstop", "2", "--focus", "1.5", "--size", "32x18"};

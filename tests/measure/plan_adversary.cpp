@@ -4,7 +4,8 @@
 //
 //   plan_adversary [--first N] [--count N] [--csv FILE] [--save FOLDER]
 //
-// A promise is broken where the true error's lower bound of 95 % lies above the prediction. Noise
+// A promise is broken where the true error's lower bound of 95 % lies above the prediction; models
+// that the plan turns down as surely beyond the tolerance have none. Noise
 // is judged alike, unless the plan says "at least". A choice is needless where a simpler model was
 // turned down whose upper bound is below a third of the tolerance. The table goes to standard
 // output, line by line; rows are added to the file of --csv, so a run that was cut short goes on
@@ -75,7 +76,8 @@ void write_csv(const Verdict& v, std::ostream& out) {
                                v.noise.low, int(v.at_least));
         else
             out << ",,,";
-        out << fmt::format(",{:.2f},{},{}\n", v.plan_cpu_s, int(v.decoy), int(v.needless));
+        out << fmt::format(",{:.2f},{},{},{}\n", v.plan_cpu_s, int(v.decoy), int(v.needless),
+                           int(r.outside));
     };
     if (v.refused) line("refused", {});
     for (const Row& r : v.rows) line(r.model, r);
@@ -157,7 +159,8 @@ int run(int argc, char** argv) {
         if (!csv) throw OutputError(s.csv, "", "cannot be written");
         if (csv.tellp() == 0)
             csv << "scene,kind,tolerance,model,predicted,true,low,high,chosen,samples,"
-                   "noise_predicted,noise_true,noise_low,at_least,plan_cpu_s,decoy,needless\n";
+                   "noise_predicted,noise_true,noise_low,at_least,plan_cpu_s,decoy,needless,"
+                   "outside\n";
     }
     TbbExecutor executor(s.threads);
     std::map<std::string, Tally> kinds;

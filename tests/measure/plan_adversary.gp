@@ -1,11 +1,11 @@
-#SPDX - License - Identifier : Apache - 2.0
-#Predicted against true errors of models, from the file that plan_adversary-- csv writes:
+# SPDX-License-Identifier: Apache-2.0
+# Predicted against true errors of models, from the file that plan_adversary --csv writes:
 #
-#gnuplot - e "csv='rows.csv'; svg='plan_adversary.svg'" tests / measure / plan_adversary.gp
+#   gnuplot -e "csv='rows.csv'; svg='plan_adversary.svg'" tests/measure/plan_adversary.gp
 #
-#A mark for each model whose error was predicted, its bounds of 95 % as a bar; larger where the
-#plan chose that model.Above the line the truth is worse than the promise.Errors below `least`
-#are drawn there.
+# A mark for each model whose error was predicted, its bounds of 95 % as a bar; larger where the
+# plan chose that model. Above the line the truth is worse than the promise. Errors below `least`
+# are drawn there.
 if (!exists("csv")) csv = 'plan_adversary.csv'
 if (!exists("svg")) svg = 'plan_adversary.svg'
 least = 0.02   # %

@@ -57,7 +57,7 @@ void measure(const Plan& plan, const PlanScene& scene, const PlanRequest& reques
         if (outside.low > 0.05 * bias.high)
             fmt::print("  {}: {:.2f} % of error outside of what matters\n", name_of(c.model),
                        100 * outside.low);
-        out.rows.push_back({name_of(c.model), c.predicted(), bias, i == chosen});
+        out.rows.push_back({name_of(c.model), c.predicted(), bias, i == chosen, c.outside});
         if (c.model < plan.chosen && !c.inside && bias.high < scene.tolerance / 3)
             out.needless = true;
     }

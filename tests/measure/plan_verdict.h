@@ -23,8 +23,9 @@ struct Row {
     double predicted = 0;
     Bounded bias;  ///< roots
     bool chosen = false;
-    [[nodiscard]] bool broken() const { return bias.low > predicted; }
-    [[nodiscard]] bool broken_twice() const { return bias.low > 2 * predicted; }
+    bool outside = false;  ///< the plan says that it is surely beyond the tolerance: no promise
+    [[nodiscard]] bool broken() const { return !outside && bias.low > predicted; }
+    [[nodiscard]] bool broken_twice() const { return !outside && bias.low > 2 * predicted; }
 };
 
 /// Plan of a scene, and the truth about it.

@@ -42,7 +42,8 @@ class PathTracer {
     struct Vertex;
     struct DrawnLight;
     [[nodiscard]] f4 visible_background(const Ray&, const Bands&, FilmSample&) const;
-    [[nodiscard]] f4 escaped(const Ray&, const Bands&, const Vertex& last) const;
+    [[nodiscard]] f4 escaped(const Ray&, const Bands&, const Vertex& last,
+                             ChanceFinds& by_chance) const;
     [[nodiscard]] f4 emitted(const Surface&, Rgb, const Bands&, const Vertex& last) const;
     [[nodiscard]] std::optional<DrawnLight> draw_light(const LightReceiver&,
                                                        const Sampler::VertexNumbers&,

@@ -56,10 +56,12 @@ f4 PathTracer<Caster>::visible_background(const Ray& ray, const Bands& bands,
 }
 
 template <RayCaster Caster>
-f4 PathTracer<Caster>::escaped(const Ray& ray, const Bands& bands, const Vertex& last) const {
+f4 PathTracer<Caster>::escaped(const Ray& ray, const Bands& bands, const Vertex& last,
+                               ChanceFinds& by_chance) const {
     if (scene_.sky.black()) return f4{};
     const Sky::Found found = scene_.sky.find(ray.direction);
     const f4 radiance = uplift_radiance(found.radiance, bands);
+    by_chance.lamps += !last.light_sampled && scene_.sky.is_sun(found.radiance);
     if (!last.light_sampled || !(found.pdf > 0.f)) return radiance;
     const auto sky_light = static_cast<uint32_t>(scene_.sky_light);
     const float light_pdf = lights_.probability(sky_light, last.receiver) * found.pdf;
@@ -206,8 +208,8 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         }();
         // Add light from behind the scene where the ray leaves it.
         if (!hit) {
-            sum += throughput *
-                   (seen ? escaped(ray, bands, last) : visible_background(ray, bands, out));
+            sum += throughput * (seen ? escaped(ray, bands, last, *by_chance)
+                                      : visible_background(ray, bands, out));
             break;
         }
         const Surface s = make_surface(scene_, ray.direction, *hit);

@@ -19,7 +19,7 @@ enum class TimedSection : uint8_t { Sample, Camera, Traversal, Texture, Count };
 /// What paths met behind smooth surfaces, where no light is sampled: lamps are found by chance.
 struct ChanceFinds {
     uint64_t bounces = 0;  ///< off smooth surfaces, or through them
-    uint64_t lamps = 0;    ///< that emissive surfaces were met right after one
+    uint64_t lamps = 0;    ///< that emissive surfaces or suns of the sky were met right after one
 
     ChanceFinds& operator+=(const ChanceFinds& o) {
         bounces += o.bounces;

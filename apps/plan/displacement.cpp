@@ -90,6 +90,8 @@ Displacement displacement_of(const AskedCamera& other, const AskedCamera& base, 
                     double most = at(met_m);
                     if (at_focus)
                         most = std::max({most, at(std::min(plane.distance_m, kFar_m)), at(kFar_m)});
+                    // Beyond the frame nothing is farther; rays that turn back have no distance.
+                    most = std::min(most, double(size.length2()));
                     const double share = lane_count(path.lanes);
                     sum += share * most;
                     count += share;

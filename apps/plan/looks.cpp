@@ -31,6 +31,15 @@ std::array<int, 2> bounds(int cell, int cells, int side_px) {
             static_cast<int>((int64_t{cell + 1} * side_px + cells - 1) / cells)};
 }
 
+/// First pixels of the cells of two grids along one side.
+std::set<int> starts(int cells, int other_cells, int side_px) {
+    std::set<int> out;
+    for (const int count : {cells, other_cells})
+        for (int i = 0; i < count; ++i)
+            if (const auto [from, to] = bounds(i, count, side_px); from < to) out.insert(from);
+    return out;
+}
+
 /// Area and share of the emphasis of each cell.
 struct Emphasis {
     std::vector<double> chance;  ///< of a cell
@@ -74,16 +83,10 @@ double Looks::unseen(V2i size_px, const FilmMap& most) const {
     if (all_certain) return 0;
     const double pixels = double(size_px.x) * double(size_px.y);
     double worst = 0;
-    // Both maps are constant within a cell of the finer grid.
-    const V2i fine(std::max(density.cells.x, most.cells.x),
-                   std::max(density.cells.y, most.cells.y));
-    for (int j = 0; j < fine.y; ++j)
-        for (int i = 0; i < fine.x; ++i) {
-            const auto [x0, x1] = bounds(i, fine.x, size_px.x);
-            const auto [y0, y1] = bounds(j, fine.y, size_px.y);
-            if (x1 <= x0 || y1 <= y0) continue;
-            worst = std::max(worst, most.at(size_px, x0, y0) / density.at(size_px, x0, y0));
-        }
+    // Both maps are constant between the bounds of the cells of both.
+    for (const int y : starts(density.cells.y, most.cells.y, size_px.y))
+        for (const int x : starts(density.cells.x, most.cells.x, size_px.x))
+            worst = std::max(worst, most.at(size_px, x, y) / density.at(size_px, x, y));
     constexpr double kNoneMet = 3;  // -log(0.05)
     return kNoneMet * worst / pixels;
 }
@@ -108,8 +111,14 @@ Looks choose_looks(V2i size_px, int wanted, std::vector<FilmRegion> regions,
         const auto area = static_cast<double>(r.area_px());
         return !(area > 0) || area > kLargeRegion * pixels;
     });
+    // Where there are more regions than looks for them, the small ones need them most.
+    const auto of_regions = static_cast<size_t>(std::max(1., kRegionShare * wanted));
+    std::stable_sort(regions.begin(), regions.end(), [](const FilmRegion& a, const FilmRegion& b) {
+        return a.area_px() < b.area_px();
+    });
+    if (regions.size() > of_regions) regions.resize(of_regions);
     Looks out;
-    const auto each = regions.empty() ? 0 : int64_t(kRegionShare * wanted / double(regions.size()));
+    const auto each = regions.empty() ? 0 : static_cast<int64_t>(of_regions / regions.size());
     const Emphasis emphasized = emphasis_of(size_px, emphasis);
     const auto of_emphasis = static_cast<uint32_t>(kEmphasisShare * wanted);
     const int evenly = wanted - int(of_emphasis) - int(each) * int(regions.size());

@@ -53,8 +53,8 @@ struct Looks {
 
 /// About `wanted` looks: half evenly, a quarter in the regions, to equal parts, and a quarter in
 /// proportion to `emphasis`, which must be above 0 somewhere. All pixels, where the frame has no
-/// more. Regions that have no more pixels than their part are looked at wholly. They follow from
-/// the arguments alone.
+/// more. Regions that have no more pixels than their part are looked at wholly; where there are
+/// more regions than looks for them, the largest get none. They follow from the arguments alone.
 [[nodiscard]] Looks choose_looks(V2i size_px, int wanted, std::vector<FilmRegion> regions,
                                  const FilmMap& emphasis, uint32_t seed);
 

@@ -92,29 +92,15 @@ class Scales {
     /// A squared deviation over the pixel's own brightness, or where that is doubtful over no less
     /// than what is around it.
     [[nodiscard]] double over(double square, size_t look, const Pair& pair, size_t channel) const {
-        return scaled(square, look, pair, channel, component(around_[look], channel));
-    }
-    /// The same of a product of two replicates' differences. Where that is doubtful, what all
-    /// replicates show of the pixel counts too: no difference is larger than both pictures.
-    [[nodiscard]] double product_over(double product, size_t look, const Pair& pair,
-                                      size_t channel) const {
-        double shown = 0;
-        for (const V3d& v : b_[look]) shown += component(v, channel) / kPilotReplicates;
-        return scaled(product, look, pair, channel,
-                      std::max(shown, component(around_[look], channel)));
-    }
-
-  private:
-    [[nodiscard]] double scaled(double square, size_t look, const Pair& pair, size_t channel,
-                                double least) const {
         const auto with = [&](double at_least) {
             return square *
                    inverse_scale(a_[look], b_[look], pair, channel, at_least, scale_.floor);
         };
         const double own = with(0);
-        return std::fabs(own) < kDoubtful ? own : with(least);
+        return std::fabs(own) < kDoubtful ? own : with(component(around_[look], channel));
     }
 
+  private:
     const PilotScale& scale_;
     std::vector<V3d> around_;
     std::vector<PilotValues> a_, b_;

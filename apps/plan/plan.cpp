@@ -98,22 +98,26 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
     plan.scene = chosen.scene;
     plan.chosen = chosen.model;
     plan.bias = chosen.predicted();
+    double tolerance = request.tolerance;  // that is left for the model and its noise
     if (!replaces_camera(chosen.model)) {
         plan.precision = find_precision(request, first, chosen.scene, executor);
         if (plan.precision) {
             plan.scene.camera.precision = plan.precision->precision;
-            if (plan.precision->precision == Precision::Float)
+            if (plan.precision->precision == Precision::Float) {
                 plan.bias = std::hypot(plan.bias, std::sqrt(plan.precision->square));
+                tolerance = std::sqrt(tolerance * tolerance - plan.precision->square);
+            }
         }
     }
     plan.lights_asked = !request.light_choice_open;
     if (!plan.lights_asked) plan.lights = find_lights(compared, first, chosen.scene, best);
     if (plan.lights) plan.scene.light_choice = plan.lights->kind;
-    const double samples = std::ceil(chosen.samples_for(request.tolerance));
+    const double samples = std::ceil(chosen.samples_for(tolerance));
     if (!(samples <= kMostPlannedSamples))
         throw ArgumentError(
             "--tolerance", "",
-            fmt::format("would take {:.2g} samples of each pixel; give a larger one", samples));
+            fmt::format("would take more than {:.2g} samples of each pixel; give a larger one",
+                        kMostPlannedSamples));
     plan.samples = static_cast<uint64_t>(samples);
     // Standard errors of spectra come from as many replicates, each with the same share of the
     // samples.
@@ -147,13 +151,15 @@ AutoSetup set_up_planned(const PlanRequest& request, TbbExecutor& executor, cons
                                 static_cast<int>(std::min<double>(looks, kMostLooks)), executor);
         if (open.spectral) compared.add_rgb();
         if (open.dispersion) compared.add_shared();
-        compared.measure(most_samples, false);
-        choice.candidates = compared.candidates();
-        choice.dispersion_compared = open.dispersion;
+        if (compared.may_find_one()) {
+            compared.measure(most_samples, false);
+            choice.candidates = compared.candidates();
+            choice.dispersion_compared = open.dispersion;
+        }
         const auto chosen = std::find_if(choice.candidates.begin(), choice.candidates.end(),
                                          [](const PlanCandidate& c) { return c.inside; });
         // A choice that the pilot does not clear stays as it is.
-        if (chosen + 1 != choice.candidates.end()) {
+        if (!choice.candidates.empty() && chosen + 1 != choice.candidates.end()) {
             choice.taken = static_cast<size_t>(chosen - choice.candidates.begin());
             other = chosen->scene;
             predicted_error = chosen->predicted();

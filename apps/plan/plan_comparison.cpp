@@ -51,8 +51,7 @@ FilmMap with_edges(FilmMap map) {
 }
 
 bool has_lamps(const std::vector<Thing>& things) {
-    return std::any_of(things.begin(), things.end(),
-                       [](const Thing& t) { return t.is_lamp() && !t.at_infinity; });
+    return std::any_of(things.begin(), things.end(), [](const Thing& t) { return t.is_lamp(); });
 }
 
 }  // namespace
@@ -134,12 +133,12 @@ void PlanComparison::choose_looks(int wanted) {
         apart.camera.dispersion = DispersionMode::Split;
         together.camera.dispersion = DispersionMode::Shared;
         const RenderSetup split = open(apart), shared = open(together);
-        dispersed_ =
-            most_error(displacement_of({*split.view.camera, split.view.observer},
-                                       {*shared.view.camera, shared.view.observer}, scene,
-                                       *first_.prepared.bvh, first_.from.camera.focus_plane(), size,
-                                       kDispersionRays, true),
-                       0);
+        const Displacement apart_by = displacement_of(
+            {*split.view.camera, split.view.observer}, {*shared.view.camera, shared.view.observer},
+            scene, *first_.prepared.bvh, first_.from.camera.focus_plane(), size, kDispersionRays,
+            true);
+        most_dispersion_px_ = std::sqrt(std::ranges::max(apart_by.square_px.values));
+        dispersed_ = most_error(apart_by, 0);
     }
     pilot_.emplace(
         size,
@@ -242,6 +241,12 @@ void PlanComparison::add_unbiased(PlanModel kind, DispersionMode dispersion) {
     auto own = model(scene);
     entries_.push_back({{kind, scene}, own.get(), {}, 0, std::move(own)});
     entries_.back().found.inside = true;
+}
+
+bool PlanComparison::may_find_one() const {
+    const double most = kBiasShare * request_.tolerance * request_.tolerance;
+    return std::any_of(entries_.begin(), entries_.end(),
+                       [&](const Entry& e) { return e.unseen <= most; });
 }
 
 void PlanComparison::measure(double most_samples, bool thorough) {

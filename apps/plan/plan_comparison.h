@@ -28,6 +28,9 @@ class PlanComparison {
     /// are measured.
     void add_unbiased(PlanModel, DispersionMode);
 
+    /// Whether a candidate can be found to be inside: what pixels that are not looked at may hold
+    /// is not too much for all of them.
+    [[nodiscard]] bool may_find_one() const;
     /// Doubles the samples until it is known which candidates are inside, or where thorough until
     /// the predictions are good figures; never beyond most_samples of all models together.
     void measure(double most_samples, bool thorough);
@@ -38,6 +41,8 @@ class PlanComparison {
     /// Noise times cost in rays of a candidate's scene in another request, over the candidate's
     /// own: in proportion to the time that a given noise takes. Nothing where no noise was seen.
     [[nodiscard]] std::optional<double> effort_of(const SceneRequest&, size_t candidate) const;
+    /// Factor by which the fullest model's dispersion is enlarged while it is measured, from 1.
+    [[nodiscard]] float dispersion_factor() const { return factor_; }
     /// RMS lateral dispersion in pixels; 0 unless dispersion is open.
     [[nodiscard]] double dispersion_px() const { return dispersion_px_; }
 

@@ -165,10 +165,21 @@ std::string name_of(PlanModel model) {
 std::string rare_text(const Plan& plan) {
     if (!plan.noise_at_least) return "";
     const RareLight& rare = plan.rare;
+    const auto some = [](size_t count, const char* one, const char* more) {
+        return count == 1 ? one : fmt::format(fmt::runtime(more), count);
+    };
+    std::vector<std::string> small;
+    if (rare.lamps > 0)
+        small.push_back(fmt::format("{} of {:.2g} mm at most",
+                                    some(rare.lamps, "a lamp", "{} lamps"),
+                                    1e3 * rare.largest_lamp_m));
+    if (rare.spots > 0)
+        small.push_back(fmt::format("{} of {:.2g}° at most",
+                                    some(rare.spots, "a spot of the sky", "{} spots of the sky"),
+                                    rare.largest_spot_rad * 180 / double(kPi)));
     if (rare.noise > 0)
-        return fmt::format("{} of {:.2g} mm at most: few paths find {}",
-                           rare.lamps == 1 ? "a lamp" : fmt::format("{} lamps", rare.lamps),
-                           1e3 * rare.largest_lamp_m, rare.lamps == 1 ? "it" : "them");
+        return fmt::format("{}: few paths find {}", fmt::join(small, " and "),
+                           rare.lamps + rare.spots == 1 ? "it" : "them");
     if (rare.caustic) return "surfaces lit by lamps through glass or mirrors: few paths find them";
     if (rare.mirrored) return "lamps seen through glass or mirrors: few paths find them";
     return "few paths hold most of the noise";

@@ -79,7 +79,7 @@ std::vector<SeenLamp> seen_lamps(const RenderSetup& setup, V2i size_px,
         // A lamp that is larger than the disk is met by all rays within it.
         const double shown = disk > 0 ? std::min(1., lamp.area_m2 / disk) : 1;
         out.push_back({regions[n].area_px(), shown * kNearest / kRays, lamp.radiance,
-                       2 * lamp.radius_m, &regions[n]});
+                       lamp.at_infinity, 2 * lamp.radius_m, &regions[n]});
     }
     return out;
 }
@@ -128,8 +128,9 @@ RareLight rare_light(const Pilot& pilot, const PilotModel& model,
         const double behind = looks > 0 ? light / looks : 0;
         const double with = behind + lamp.radiance * lamp.probability;
         const double share = static_cast<double>(lamp.area_px) / pixels;
-        ++out.lamps;
-        out.largest_lamp_m = std::max(out.largest_lamp_m, double(lamp.size_m));
+        ++(lamp.at_infinity ? out.spots : out.lamps);
+        double& largest = lamp.at_infinity ? out.largest_spot_rad : out.largest_lamp_m;
+        largest = std::max(largest, double(lamp.size));
         if (with > 0)
             out.noise += share * lamp.radiance * lamp.radiance * lamp.probability /
                          (with * with + floor * floor);

@@ -20,7 +20,8 @@ struct SeenLamp {
     int64_t area_px;     ///< of the film that its light falls on
     double probability;  ///< that a camera ray of this area meets it
     double radiance;     ///< nits
-    float size_m;        ///< across
+    bool at_infinity;    ///< a spot of the sky
+    float size;          ///< across: metres, at infinity radians
     const FilmRegion* region;
 };
 
@@ -37,10 +38,11 @@ struct SeenLamp {
 
 /// What a pilot does not know of a model.
 struct RareLight {
-    size_t lamps = 0;           ///< seen ones that fewer than kEnoughPaths paths will have met
-    double largest_lamp_m = 0;  ///< of them
-    double noise = 0;           ///< symmetric variance of one sample that they would add
-    double lost = 0;            ///< symmetric MSE of a picture without them
+    /// Seen ones that fewer than kEnoughPaths paths will have met, and spots of the sky likewise.
+    size_t lamps = 0, spots = 0;
+    double largest_lamp_m = 0, largest_spot_rad = 0;  ///< of them
+    double noise = 0;  ///< symmetric variance of one sample that they would add
+    double lost = 0;   ///< symmetric MSE of a picture without them
     /// Smooth surfaces were met, and behind them fewer than kEnoughPaths paths met a lamp.
     bool mirrored = false, caustic = false;
 

@@ -13,17 +13,27 @@
 namespace petzval {
 namespace {
 
-constexpr size_t kMostClusters = 32;  ///< of each kind
+constexpr size_t kMostClusters = 32;  ///< of each kind, and of each class of brightness
 constexpr size_t kMostTriangles = 1 << 18;
 constexpr int kTexturePoints = 1 << 18, kSkyDirections = 4096;
-/// Times the mean from which a part of a picture is a light of its own.
+/// Times the mean from which a part of a texture is a light of its own.
 constexpr double kBright = 16;
-constexpr double kDim = 0.01;  ///< times the brightest lamp: what is not looked for
+/// Lamps of a class shine at most so many times as bright as each other; the last class has all
+/// that are darker. A bright lamp that nobody sees must not hide those that are seen.
+constexpr double kClassRatio = 100;
+constexpr size_t kClasses = 4;
+/// Share of its box's surface from which on a body is one thing, however many triangles it has: a
+/// ball has half.
+constexpr double kCompact = 0.4;
+/// Times the mean up to which the brightness of a body counts as even.
+constexpr double kEven = 4;
 
-/// A triangle, or a bright point of one.
+/// A triangle, a body, or a bright point.
 struct Part {
     Box3f box;
     double area_m2 = 0, flux = 0;  ///< flux: luminance times area
+
+    [[nodiscard]] double light() const { return area_m2 > 0 ? flux / area_m2 : 0; }
 };
 
 Box3f box_of(const std::vector<Part>& parts) {
@@ -45,6 +55,26 @@ std::array<std::vector<Part>, 2> halved(const std::vector<Part>& parts) {
     std::array<std::vector<Part>, 2> out;
     for (const Part& part : parts) out[part.box.center()[axis] > middle].push_back(part);
     return out;
+}
+
+/// All parts as one.
+Part sum_of(const std::vector<Part>& parts) {
+    Part out{box_of(parts)};
+    for (const Part& part : parts) {
+        out.area_m2 += part.area_m2;
+        out.flux += part.flux;
+    }
+    return out;
+}
+
+/// Whether parts fill the surface of their box, each about as bright as the others.
+bool is_compact(const std::vector<Part>& parts) {
+    const Part all = sum_of(parts);
+    const V3f size = all.box.size();
+    const double surface = 2 * double(size.x * size.y + size.y * size.z + size.z * size.x);
+    return all.area_m2 >= kCompact * surface &&
+           std::all_of(parts.begin(), parts.end(),
+                       [&](const Part& p) { return p.light() <= kEven * all.light(); });
 }
 
 /// Clusters of parts: the largest is halved until there are enough.
@@ -69,27 +99,25 @@ std::vector<std::vector<Part>> clusters_of(std::vector<Part> parts) {
     return clusters;
 }
 
-/// Parts without those that are dim beside the brightest.
-std::vector<Part> bright_ones(std::vector<Part> parts) {
-    const auto light = [](const Part& p) { return p.area_m2 > 0 ? p.flux / p.area_m2 : 0; };
-    double most = 0;
-    for (const Part& part : parts) most = std::max(most, light(part));
-    std::erase_if(parts, [&](const Part& part) { return light(part) < kDim * most; });
-    return parts;
-}
-
 void add_things(std::vector<Thing>& out, Thing::Kind kind, std::vector<Part> parts) {
     for (const std::vector<Part>& cluster : clusters_of(std::move(parts))) {
-        const Box3f box = box_of(cluster);
-        Thing thing{kind, box.center(), box.size().length() / 2};
-        double flux = 0;
-        for (const Part& part : cluster) {
-            thing.area_m2 += part.area_m2 / 2;
-            flux += part.flux / 2;
-        }
-        if (thing.area_m2 > 0) thing.radiance = flux / thing.area_m2;
-        out.push_back(thing);
+        const Part all = sum_of(cluster);
+        out.push_back({kind, all.box.center(), all.box.size().length() / 2, false, all.area_m2 / 2,
+                       all.light()});
     }
+}
+
+/// Parts that shine, apart by how bright they are.
+std::array<std::vector<Part>, kClasses> classes_of(const std::vector<Part>& parts) {
+    double most = 0;
+    for (const Part& part : parts) most = std::max(most, part.light());
+    std::array<std::vector<Part>, kClasses> classes;
+    for (const Part& part : parts) {
+        if (!(part.light() > 0)) continue;
+        const double darker = std::log(most / part.light()) / std::log(kClassRatio);
+        classes[static_cast<size_t>(std::min(darker, double(kClasses - 1)))].push_back(part);
+    }
+    return classes;
 }
 
 const Material& material_of(const Scene& scene, const Instance& instance) {
@@ -116,9 +144,10 @@ double luminance_at(const Scene& scene, uint32_t instance, uint32_t triangle, V2
                     double(luminance(emitted_radiance(scene, instance, triangle, b, false))));
 }
 
-/// Bright points of a textured triangle, each as a part of the area that it stands for.
-void add_bright_points(const Scene& scene, uint32_t instance, uint32_t triangle, const Part& whole,
-                       int points, std::vector<Part>& bright) {
+/// Mean luminance of a textured triangle, nits. Adds its bright points, each as a part of the area
+/// that it stands for.
+double add_bright_points(const Scene& scene, uint32_t instance, uint32_t triangle,
+                         const Part& whole, int points, std::vector<Part>& bright) {
     const int side = std::max(2, static_cast<int>(std::sqrt(double(points))));
     const auto corners = triangle_corners(scene, instance, triangle);
     struct Point {
@@ -142,7 +171,29 @@ void add_bright_points(const Scene& scene, uint32_t instance, uint32_t triangle,
             bright.push_back({Box3f(point.at - V3f(cell_m), point.at + V3f(cell_m)), area_m2,
                               point.light * area_m2});
         }
+    return sum / count;
 }
+
+/// Adds the parts of a body: as one, where they are compact.
+void add_body(std::vector<Part>& out, const std::vector<Part>& parts) {
+    if (!parts.empty() && is_compact(parts))
+        out.push_back(sum_of(parts));
+    else
+        out.insert(out.end(), parts.begin(), parts.end());
+}
+
+/// Every n-th of the triangles of a scene, so that at most kMostTriangles are taken.
+class Stride {
+  public:
+    explicit Stride(size_t count) : step_(1 + count / kMostTriangles) {}
+    /// Whether the next triangle is taken.
+    [[nodiscard]] bool next() { return next_++ % step_ == 0; }
+    /// Triangles that a taken one stands for.
+    [[nodiscard]] double step() const { return static_cast<double>(step_); }
+
+  private:
+    size_t step_, next_ = 0;
+};
 
 void add_surfaces(const Scene& scene, std::vector<Thing>& out) {
     size_t emissive = 0, textured = 0, other = 0;
@@ -155,31 +206,35 @@ void add_surfaces(const Scene& scene, std::vector<Thing>& out) {
         if (depends_on_wavelength(scene, i)) other += triangles(i);
     }
     std::vector<Part> lamps, bright, wavelength;
-    const auto stride = [](size_t count) {
-        return static_cast<uint32_t>(1 + count / kMostTriangles);
-    };
+    Stride of_lamps(emissive + textured), of_others(other);
     const int points =
         kTexturePoints / static_cast<int>(std::clamp<size_t>(textured, 1, kTexturePoints));
     for (uint32_t k = 0; k < scene.instances.size(); ++k) {
         const Instance& i = scene.instances[k];
         const bool lamp = emits(scene, i), spectral = depends_on_wavelength(scene, i);
         if (!lamp && !spectral) continue;
-        const uint32_t step = stride(lamp ? emissive + textured : other);
-        for (uint32_t t = 0; t < triangles(i); t += step) {
+        std::vector<Part> glowing, dispersing;
+        for (uint32_t t = 0; t < triangles(i); ++t) {
+            if (spectral && of_others.next()) {
+                dispersing.push_back(part_of(scene, k, t));
+                dispersing.back().area_m2 *= of_others.step();
+            }
+            if (!lamp || !of_lamps.next()) continue;
             Part part = part_of(scene, k, t);
-            part.area_m2 *= step;
-            if (spectral) wavelength.push_back(part);
-            if (!lamp) continue;
-            part.flux = part.area_m2 * luminance_at(scene, k, t, V2f(1.f / 3));
-            if (has_picture(i))
-                add_bright_points(scene, k, t, part, points, bright);
-            else
-                lamps.push_back(part);
+            part.area_m2 *= of_lamps.step();
+            const double light = has_picture(i)
+                                     ? add_bright_points(scene, k, t, part, points, bright)
+                                     : luminance_at(scene, k, t, V2f(1.f / 3));
+            part.flux = part.area_m2 * light;
+            if (light > 0) glowing.push_back(part);
         }
+        add_body(lamps, glowing);
+        add_body(wavelength, dispersing);
     }
     add_things(out, Thing::Kind::Wavelength, std::move(wavelength));
-    add_things(out, Thing::Kind::Lamp, bright_ones(std::move(lamps)));
-    add_things(out, Thing::Kind::Lamp, std::move(bright));
+    for (const std::vector<Part>& found : {lamps, bright})
+        for (std::vector<Part>& of_class : classes_of(found))
+            add_things(out, Thing::Kind::Lamp, std::move(of_class));
 }
 
 // The sky's sampler draws in proportion to what is above the mean: what is drawn and far above it
@@ -193,13 +248,17 @@ void add_sky(const Scene& scene, std::vector<Thing>& out) {
         const V2f u(float(sobol_0(index) >> 8) * 0x1p-24f, float(sobol_1(index) >> 8) * 0x1p-24f);
         const Sky::Draw drawn = sky.sample(u);
         const Sky::Found found = sky.find(drawn.place);
-        const double light = double(luminance(found.radiance));
-        if (!(found.pdf > 0) || light < kBright * double(sky.average_luminance())) continue;
+        if (!(found.pdf > 0) || !sky.is_sun(found.radiance)) continue;
         const double sr = 1 / (double(found.pdf) * kSkyDirections);
-        bright.push_back({Box3f(drawn.direction, drawn.direction), 2 * sr, light * 2 * sr});
+        bright.push_back({Box3f(drawn.direction, drawn.direction), 2 * sr,
+                          double(luminance(found.radiance)) * 2 * sr});
     }
     const size_t first = out.size();
-    add_things(out, Thing::Kind::Lamp, std::move(bright));
+    for (const std::vector<Part>& of_class : classes_of(bright)) {
+        std::vector<Part> parts;
+        add_body(parts, of_class);
+        add_things(out, Thing::Kind::Lamp, std::move(parts));
+    }
     for (size_t i = first; i < out.size(); ++i) {
         out[i].at_infinity = true;
         out[i].centre = unit(out[i].centre);

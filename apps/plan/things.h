@@ -26,9 +26,11 @@ struct Thing {
     [[nodiscard]] bool is_lamp() const { return kind == Kind::Lamp; }
 };
 
-/// Things of a scene, at most about a hundred: an object whose parts lie apart counts as several,
-/// and so do bright parts of emissive textures and of the sky. Those found in textures come from
-/// up to 2^18 points. A pure function of the scene.
+/// Things of a scene, seldom more than a hundred: an object whose parts lie apart counts as
+/// several, and so do bright parts of emissive textures and of the sky. At most 32 are made of the
+/// lamps of one class of brightness, of which there are four, each a hundred times as dark as the
+/// one before. What is found in textures comes from up to 2^18 points. A pure function of the
+/// scene.
 [[nodiscard]] std::vector<Thing> things_of(const Scene&);
 
 }  // namespace petzval

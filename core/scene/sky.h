@@ -34,6 +34,10 @@ class Sky {
     [[nodiscard]] float average_luminance() const { return average_; }
     /// Radiance hardly varies over the sky: nothing is worth drawing.
     [[nodiscard]] bool even() const { return drawn_ <= 0.f; }
+    /// Whether a radiance of this sky is a light of its own: at least 16 times the mean.
+    [[nodiscard]] bool is_sun(const Rgb& radiance) const {
+        return luminance(radiance) >= 16 * average_;
+    }
     /// Mean over the sphere of the luminance above the mean, nits: of what `sample` draws.
     [[nodiscard]] float drawn_luminance() const { return drawn_; }
 

@@ -91,6 +91,33 @@ TEST(Looks, WhatIsUnseenIsSeldomMoreThanItsBound) {
     EXPECT_GT(missed, 0) << "the bound is not far away";
 }
 
+// Grids whose cells do not nest, against every pixel.
+TEST(Looks, UnseenIsTheWorstPixels) {
+    const Looks looks = choose_looks(kSize, 400, {}, kCorner, 0);
+    FilmMap most{{3, 5}, {}};
+    for (uint32_t i = 0; i < 15; ++i) most.values.push_back(to_unit_float(hash32(7, i)));
+    double worst = 0;
+    for (int y = 0; y < kSize.y; ++y)
+        for (int x = 0; x < kSize.x; ++x)
+            worst = std::max(worst, most.at(kSize, x, y) / looks.density.at(kSize, x, y));
+    EXPECT_NEAR(looks.unseen(kSize, most), 3 * worst / (160. * 90), 1e-12);
+}
+
+TEST(Looks, MoreRegionsThanLooksForThemLeaveTheEvenOnes) {
+    std::vector<FilmRegion> many;
+    for (int i = 0; i < 200; ++i)
+        many.push_back({{{i % 40 * 4, i / 40 * 10, i % 40 * 4 + 4, i / 40 * 10 + 5}}});
+    test::Moments share;
+    for (uint32_t seed = 0; seed < 100; ++seed) {
+        const Looks looks = choose_looks(kSize, 256, many, kCorner, seed);
+        EXPECT_LE(looks.looks.size(), 300u);
+        share.add(share_of(looks, {0, 0, 100, 60}));
+    }
+    EXPECT_TRUE(test::agrees(share, 100. * 60 / (160. * 90), 1e-9)) << share.mean();
+    const Looks looks = choose_looks(kSize, 256, many, kCorner, 0);
+    EXPECT_EQ(looks.regions.size(), 64u);
+}
+
 TEST(Looks, UnseenIsLessWhereMoreIsLookedAt) {
     const FilmMap even;
     const double few = choose_looks(kSize, 300, {}, even, 0).unseen(kSize, even),

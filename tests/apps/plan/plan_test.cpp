@@ -144,7 +144,7 @@ TEST_F(Plans, LateralDispersionIsInPixelsAndGrowsWithTheFactor) {
 // Amplifying dispersion to half a pixel and dividing what comes of it, against the lens as it is on
 // other pixels with other seeds and many samples: both estimates agree.
 TEST_F(Plans, AmplifiedDispersionFindsTheSameErrorWithLessNoise) {
-    SceneRequest scene = tabletop({160, 90});
+    SceneRequest scene = tabletop({160, 90}, "cooke-triplet-50mm-f5");
     scene.scene = kOrnaments;
     const PlanRequest request{scene, {}, {}, 0.05};
     const RenderSetup first = set_up_render(scene, kSilent);
@@ -152,8 +152,9 @@ TEST_F(Plans, AmplifiedDispersionFindsTheSameErrorWithLessNoise) {
     compared.add_shared();
     compared.measure(150'000, true);
     const PlanCandidate shared = compared.candidates().front();
-    EXPECT_GT(compared.dispersion_px(), 0.02);
+    EXPECT_GT(compared.dispersion_px(), 0.002);
     EXPECT_LT(compared.dispersion_px(), 0.1);
+    EXPECT_GT(compared.dispersion_factor(), 5);
 
     const Pilot pilot(scene.size, 512, executor_, 1);
     const auto one = model(pilot, with(scene, DispersionMode::Shared)),
@@ -164,7 +165,7 @@ TEST_F(Plans, AmplifiedDispersionFindsTheSameErrorWithLessNoise) {
     EXPECT_TRUE(test::agrees(
         Mean(shared.square_bias.mean, shared.square_bias.error) - Mean(plain.mean, plain.error), 0))
         << shared.square_bias.mean << ' ' << plain.mean << ' ' << plain.error;
-    EXPECT_LT(shared.square_bias.error, plain.error);
+    EXPECT_LT(shared.square_bias.error, plain.error / 2);
 }
 
 // The fixed sample of tests/measure/plan_check: predictions hold on other pixels and seeds.
@@ -390,6 +391,17 @@ TEST_F(AutoRender, SaysNothingOfNoiseWhereAllIsBlack) {
     EXPECT_EQ(text.find("noise"), std::string::npos) << text;
 }
 
+// So few looks cannot promise so much: nothing is rendered to learn that.
+TEST_F(AutoRender, DoesNotLookWhereLooksCannotTell) {
+    SceneRequest scene = tabletop({560, 360}, "cooke-triplet-50mm-f5");
+    const AutoSetup loose = set_up_planned({scene, {}, {}, 0.1}, executor_, kSilent, {}),
+                    tight = set_up_planned({scene, {}, {}, 1e-4}, executor_, kSilent, {});
+    EXPECT_FALSE(loose.choice.candidates.empty());
+    EXPECT_TRUE(tight.choice.candidates.empty());
+    EXPECT_TRUE(tight.choice.measured_mode);
+    EXPECT_TRUE(tight.setup.from.spectral.wavelengths);
+}
+
 // What is decided is a matter of the frame, not of the samples, the seed, the threads or the crop.
 TEST_F(AutoRender, DecidesTheSameForEveryPartOfTheFrame) {
     const std::string whole = said(lens(), "whole.exr");
@@ -408,8 +420,8 @@ TEST_F(AutoRender, LooksOnlyWhereItMust) {
         static_cast<void>(said(words));
         return file_bytes(path("out.exr")).find("off by") != std::string::npos;
     };
-    EXPECT_TRUE(piloted(lens()));
-    Words small = lens();
+    EXPECT_TRUE(piloted(lens({"--tolerance", "5%"})));
+    Words small = lens({"--tolerance", "5%"});
     small[5] = "64x40";
     EXPECT_FALSE(piloted(small));
     EXPECT_FALSE(piloted(lens({"--spectral", "rgb"})));

@@ -57,13 +57,85 @@ TEST(Things, LampsThatLieApartAreSeveral) {
     EXPECT_NEAR(area, 3 * 0.01 * 0.01 / 2, 1e-8);
 }
 
-TEST(Things, DimLampsBesideBrightOnesAndWhatDependsOnNothingAreNone) {
+TEST(Things, WhatNeitherShinesNorDependsOnWavelengthIsNone) {
     Scene scene;
-    place(scene, square({0, 0, -2}, 0.01f), emitter_material(1000.f));
-    place(scene, square({0, 0, -3}, 1.f), emitter_material(1.f));
     place(scene, square({0, 0, -4}, 4.f), diffuse_material(0.5f));
     finish_scene(scene);
-    for (const Thing& t : things_of(scene)) EXPECT_NEAR(double(t.centre.z), -2, 1e-3);
+    EXPECT_TRUE(things_of(scene).empty());
+}
+
+// A lamp that nobody sees, be it as bright as it likes, does not hide others; nor do big dim ones.
+TEST(Things, LampsAreFoundBesideMuchBrighterAndMuchDarkerOnes) {
+    std::vector<V3f> centres;
+    for (int i = 0; i < 30; ++i)
+        centres.emplace_back(-1.2f + 0.5f * float(i / 5), -0.6f + 0.3f * float(i % 5), -4.f);
+    Scene scene;
+    for (const V3f& centre : centres) place(scene, square(centre, 0.001f), emitter_material(100.f));
+    place(scene, square({0, 0, 3}, 0.5f), emitter_material(1e6f));
+    place(scene, test::sphere({0, 0, -20}, 15, 16, false), emitter_material(0.1f));
+    finish_scene(scene);
+    const std::vector<Thing> things = things_of(scene);
+    for (const V3f& centre : centres)
+        EXPECT_TRUE(std::any_of(things.begin(), things.end(),
+                                [&](const Thing& t) {
+                                    return (t.centre - centre).length() < 0.01f &&
+                                           t.radius_m < 0.01f;
+                                }))
+            << centre.x << ' ' << centre.y;
+}
+
+TEST(Things, AFinelyTessellatedLampIsOne) {
+    for (const int rows : {8, 60}) {
+        Scene scene;
+        place(scene, test::sphere({0.2f, 0.1f, -2}, 0.05f, rows, true), emitter_material(10.f));
+        finish_scene(scene);
+        const std::vector<Thing> things = things_of(scene);
+        ASSERT_EQ(things.size(), 1u) << rows;
+        EXPECT_NEAR(things[0].area_m2, 2 * 3.14159 * 0.05 * 0.05, 0.1 * 0.0157);
+        EXPECT_NEAR(things[0].radiance, 10, 1e-3);
+    }
+}
+
+// One triangle of two is taken: many small lamps are not counted twice.
+TEST(Things, ManyLampsKeepTheirArea) {
+    constexpr int kLamps = 300'000;
+    Scene scene;
+    Mesh mesh;
+    mesh.positions = {V3f(0.f), V3f(0.01f, 0, 0), V3f(0, 0.01f, 0)};
+    mesh.triangles = {{0, 1, 2}};
+    place(scene, mesh, emitter_material(1.f));
+    scene.instances.resize(kLamps, scene.instances[0]);
+    finish_scene(scene);
+    double area = 0;
+    for (const Thing& t : things_of(scene)) area += t.area_m2;
+    const double truth = kLamps * 0.01 * 0.01 / 4;
+    EXPECT_NEAR(area, truth, 0.01 * truth);
+}
+
+// Textures: an even one shines like a colour; bright texels of another count by themselves too.
+TEST(Things, TexturesThatGlowAreLamps) {
+    for (const bool spot : {false, true}) {
+        Scene scene;
+        constexpr uint32_t kSide = 64;
+        std::vector<float> texels(size_t{kSide} * kSide * 4, spot ? 0.01f : 1.f);
+        if (spot) std::fill_n(&texels[4 * (10 * kSide + 20)], 4, 1.f);
+        scene.images = {{"picture", kSide, kSide, texels}};
+        place(scene, square({0, 0, -2}, 1.f), emitter_material(100.f));
+        scene.materials[0].emissive_texture.image = 0;
+        finish_scene(scene);
+        const std::vector<Thing> things = things_of(scene);
+        ASSERT_FALSE(things.empty());
+        const auto& smallest = *std::min_element(
+            things.begin(), things.end(),
+            [](const Thing& a, const Thing& b) { return a.radius_m < b.radius_m; });
+        if (spot) {
+            EXPECT_LT(smallest.radius_m, 0.05f);
+            EXPECT_NEAR(double(smallest.centre.x), (20.5 / kSide - 0.5), 0.03);
+        } else {
+            EXPECT_NEAR(smallest.radiance, 100, 1);
+            EXPECT_NEAR(smallest.area_m2, 0.5, 0.01);
+        }
+    }
 }
 
 TEST(Things, GlassThatDispersesIsOne) {

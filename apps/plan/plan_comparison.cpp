@@ -56,23 +56,38 @@ bool has_lamps(const std::vector<Thing>& things) {
 
 }  // namespace
 
+double PlanCandidate::variance_of_one() const {
+    double most = 0;
+    for (size_t d = 0; d < noise.variances.size(); ++d)
+        most = std::max(most, noise.variances[d].mean * std::exp2(d));
+    return most;
+}
+
+double PlanCandidate::block_variance(size_t digit) const {
+    const size_t last = noise.variances.size() - 1, known = std::min(digit, last);
+    double variance = noise.variances[known].high();
+    // A few samples may have met nothing of what holds the noise. More of them are spread no worse:
+    // their variance falls at least in proportion.
+    for (size_t d = known + 1; d <= last; ++d)
+        variance = std::max(variance, noise.variances[d].mean * std::exp2(d - known));
+    return variance * std::exp2(known) / std::exp2(digit);
+}
+
 // A number of samples that is no power of 2 is a sum of blocks that are: each is as well spread as
 // the first of its size, and they hardly know of each other.
 double PlanCandidate::variance_with(uint64_t samples) const {
     const auto n = static_cast<double>(samples);
-    const size_t last = noise.variances.size() - 1;
     double sum = rare.noise / n;
     for (size_t digit = 0; samples >> digit > 0; ++digit) {
         if ((samples >> digit & 1) == 0) continue;
-        const double block = std::exp2(digit), known = std::exp2(std::min(digit, last));
-        const double variance = noise.variances[std::min(digit, last)].high() * known / block;
-        sum += variance * block * block / (n * n);
+        const double block = std::exp2(digit);
+        sum += block_variance(digit) * block * block / (n * n);
     }
     return std::min(sum, kMostSymmetricMse);
 }
 
 bool PlanCandidate::noise_at_least() const {
-    const double first = noise.variances.front().mean;
+    const double first = variance_of_one();
     return (first > 0 && noise.parts < kEnoughPaths) || rare.by_chance() ||
            rare.noise > kKnownShare * first;
 }

@@ -71,6 +71,10 @@ struct PlanCandidate {
     /// hardly met may add: of the symmetric MSE by noise where noise is small, and never more than
     /// kMostSymmetricMse.
     [[nodiscard]] double variance_with(uint64_t samples) const;
+    /// Variance of one sample, without what light that was hardly met may add.
+    [[nodiscard]] double variance_of_one() const;
+    /// Upper bound of the variance of 2^digit samples, without the same.
+    [[nodiscard]] double block_variance(size_t digit) const;
     /// Whether the noise may be larger: paths that were hardly met, or not at all, hold some of it.
     [[nodiscard]] bool noise_at_least() const;
     /// Samples until noise and bias are inside the tolerance together; infinite where bias alone is

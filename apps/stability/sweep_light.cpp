@@ -173,12 +173,7 @@ struct Highlight {
 
 // The middle pixel of a picture of a square lamp out of focus; every path finds it or does not.
 Highlight highlight(double side_m, double fstop) {
-    World world;
-    const auto a = static_cast<float>(side_m);
-    Material lamp = diffuse(0);
-    lamp.emissive = Rgb(1.f);
-    world.place(quad(V3f(-a / 2, -a / 2, -float(kBehind_m)), V3f(a, 0, 0), V3f(0, a, 0)), lamp);
-    world.finish();
+    const World world = lamp_ahead(side_m, kBehind_m);
     const ThinLensCamera camera(
         {M44f(), 0.47f, 1.5f, Iris(Disk{}, kFocal_mm / (2 * fstop)), float(kFocus_m)});
     const V2f pixel(0.5f + 0.0007f, 0.5f + 0.0004f);

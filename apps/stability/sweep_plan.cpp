@@ -26,12 +26,7 @@ struct Planned {
 // A frame within the circle of confusion of a square lamp: any of its pixels meets the lamp with
 // the same chance.
 Planned planned(double side_m) {
-    World world;
-    const auto a = static_cast<float>(side_m);
-    Material lamp = diffuse(0);
-    lamp.emissive = Rgb(1.f);
-    world.place(quad(V3f(-a / 2, -a / 2, -float(kBehind_m)), V3f(a, 0, 0), V3f(0, a, 0)), lamp);
-    world.finish();
+    const World world = lamp_ahead(side_m, kBehind_m);
     RenderSetup setup;
     const auto borrowed = [](const auto& owned) {
         return std::shared_ptr<std::remove_reference_t<decltype(owned)>>(std::shared_ptr<void>(),

@@ -67,4 +67,14 @@ void World::finish() {
     lights = std::make_unique<LightChoice>(scene, LightChoiceKind::Power);
 }
 
+World lamp_ahead(double side_m, double distance_m) {
+    World world;
+    const auto a = static_cast<float>(side_m);
+    Material lamp = diffuse(0);
+    lamp.emissive = Rgb(1.f);
+    world.place(quad(V3f(-a / 2, -a / 2, -float(distance_m)), V3f(a, 0, 0), V3f(0, a, 0)), lamp);
+    world.finish();
+    return world;
+}
+
 }  // namespace petzval::stability

@@ -32,6 +32,9 @@ struct World {
     void finish();
 };
 
+/// A square lamp of 1 nit across the view of a camera at the origin that looks along -z.
+[[nodiscard]] World lamp_ahead(double side_m, double distance_m);
+
 /// Of the red radiance along rays: mean, variance of one sample over the mean squared, and the
 /// share of samples that brought any light.
 struct Measured {

@@ -260,5 +260,40 @@ TEST(Path, UnlitShowsItsColour) {
     EXPECT_NEAR(estimate(world, PathOptions(), 16, bundle).value, 0.4, 1e-6);
 }
 
+// A mirror shows a lamp above it, or the sun of a sky; under an even sky there is nothing to find.
+TEST(Path, CountsLampsThatMirrorsShow) {
+    enum class Shown { Nothing, Lamp, Sun };
+    for (const Shown shown : {Shown::Nothing, Shown::Lamp, Shown::Sun}) {
+        World world;
+        Material mirror;
+        mirror.metallic = 1;
+        mirror.roughness = 0;
+        place(world.scene, quad(V3f(-1, -1, 0), V3f(2, 0, 0), V3f(0, 2, 0)), mirror);
+        if (shown == Shown::Lamp)
+            place(world.scene, quad(V3f(-3, -3, 5), V3f(6, 0, 0), V3f(0, 6, 0)),
+                  emitter_material(1.f));
+        world.scene.sky = Sky::uniform(Rgb(1.f));
+        if (shown == Shown::Sun) {  // a texel of 32 x 16 on the horizon, at +z
+            std::vector<float> rgb(size_t{3} * 32 * 16, 0.1f);
+            for (size_t c = 0; c < 3; ++c) rgb[3 * (8 * 32 + 24) + c] = 1e4f;
+            world.scene.sky = Sky::picture(rgb, 32, 16, 0, 1);
+        }
+        world.finish();
+        const PathTracer tracer(world.scene, *world.bvh, *world.lights, PathOptions());
+        PathStats stats;
+        for (uint32_t i = 0; i < 1000; ++i) {
+            const Sampler sampler(SamplerKind::Owen, 0, {0, 0, i});
+            FilmSample out;
+            tracer.radiance(bundle(sampler.get2(Dim::Film)), Bands::rgb(), sampler, false, out,
+                            stats);
+        }
+        EXPECT_EQ(stats.mirrored.bounces, 1000u);
+        if (shown == Shown::Nothing)
+            EXPECT_EQ(stats.mirrored.lamps, 0u);
+        else
+            EXPECT_GT(stats.mirrored.lamps, 500u);
+    }
+}
+
 }  // namespace
 }  // namespace petzval

@@ -30,7 +30,7 @@ TEST(Adversary, DoesNotFoolPlans) {
     }
     EXPECT_LE(above, 1);
     EXPECT_LE(noisy, 1);
-    EXPECT_GE(figures, 8) << "not everything is called \"at least\"";
+    EXPECT_GE(figures, 5) << "half of 300 are; not everything is called \"at least\"";
 }
 
 }  // namespace

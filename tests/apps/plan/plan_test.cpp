@@ -257,6 +257,19 @@ TEST_F(Plans, NothingIsAtLeastWhereThereIsNoNoise) {
         }
 }
 
+// The first samples of a pilot met no light, those that followed did: one sample is not enough.
+TEST_F(Plans, NoiseThatTheFirstSamplesMissedCounts) {
+    PlanCandidate c{PlanModel::Full, {}};
+    c.noise.variances = {{0, 0}, {0, 0}, {0.25, 0.01}};
+    c.noise.parts = 100;
+    EXPECT_NEAR(c.variance_with(1), 1, 1e-12);
+    EXPECT_NEAR(c.variance_with(2), 0.5, 1e-12);
+    EXPECT_GT(c.samples_for(0.1), 100);
+    EXPECT_FALSE(c.noise_at_least());
+    c.noise.parts = 10;
+    EXPECT_TRUE(c.noise_at_least());
+}
+
 // Lamps of a millimetre far out of focus: paths hardly find them, and the plan says so.
 TEST_F(Plans, NoiseOfLampsThatFewPathsFindIsAtLeast) {
     json strong;

@@ -93,12 +93,20 @@ void add_lamps(PlanWorld& w) {
     const float size_m = w.decoy() ? 0.2f : std::clamp(disc_m * std::sqrt(hit), 0.0005f, 0.02f);
     const float nits = w.dice.log_between(2, 100) * std::max(even, 0.1f) *
                        std::max(0.785f * disc_m * disc_m / (size_m * size_m), 1.f);
+    // A far brighter lamp that nobody sees must not hide them; nor an even texture.
+    const bool decoyed = w.dice.chance(0.3f), textured = w.dice.chance(0.3f);
+    if (decoyed)
+        w.quad({-0.1f, 2, 1}, {0.2f, 0, 0}, {0, 0, 0.2f},
+               w.material(glowing(nits * w.dice.log_between(100, 1e5f))));
+    const int white = textured ? w.texture(2, 2, std::vector<V3f>(4, V3f(1.f))) : -1;
     for (int i = 0; i < count; ++i) {
         const V2f px{float(w.view.size.x) * w.dice.between(0.05f, 0.95f),
                      float(w.view.size.y) * w.dice.between(0.05f, 0.95f)};
         const float far = depth * w.dice.between(0.9f, 1.1f);
         const V3f at = w.view.at(px, far);
-        w.card(at, size_m / 2, w.material(glowing(nits, w.dice.colour())));
+        nlohmann::json glow = glowing(nits, w.dice.colour());
+        if (textured) glow["emissiveTexture"]["index"] = white;
+        w.card(at, size_m / 2, w.material(glow));
         w.covers(at, 0.7f * disc_m / w.view.pixel_m(far) + 4);
     }
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <span>
 
+#include "camera/target.h"
 #include "core/math/ray.h"
 #include "core/sampling/filter.h"
 #include "core/sampling/sampler.h"
@@ -27,13 +28,18 @@ struct FilmPoint {
     V2f film{0.f};
     Sampler sampler{};
     PixelFilter pixel{};
+    /// Targets of the film point's pixel: a function of the frame, never of the sample.
+    std::span<const ListedTarget> targets{};
 };
 
 /// A world-space ray; direction has unit length.
 struct CameraPath {
     Ray ray;
     f4 weight;  ///< radiance along the ray times this is the film's estimate
-    m4 lanes;   ///< bands that share this ray
+    /// Share of the weight that counts for light: rays that are aimed at targets bring the rest.
+    /// Coverage and layers take the whole weight.
+    float share = 1;
+    m4 lanes;  ///< bands that share this ray
     /// The ray depends on which lane leads (Bands::lead), which must then decide nothing else.
     bool led = false;
     /// Fills the sample's alpha; the first path that does fills its layers too.
@@ -99,6 +105,11 @@ class Camera {
     /// Weighted rays of one point of the film, drawn by its sampler: none where the lens lets
     /// nothing through, one that all bands share, or up to four. Thread-safe.
     [[nodiscard]] virtual CameraSample sample(const FilmPoint&, const Bands&) const = 0;
+    /// Paths of the same film point that are aimed at one of its targets: together with those of
+    /// sample(), by their shares, an estimate without a bias (balance heuristic, Veach and Guibas
+    /// 1995). None where the film point has no targets, the ray is blocked, or the camera aims
+    /// none.
+    [[nodiscard]] virtual CameraSample aimed(const FilmPoint&, const Bands&) const { return {}; }
     /// What sample() gives for each of up to kMostFilmPoints film points, to the bit, which a
     /// camera may find faster for all at once. All or none of the bands are spectral, and of the
     /// points have a pixel filter.

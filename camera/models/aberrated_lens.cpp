@@ -42,6 +42,12 @@ AberratedLensCamera::AberratedLensCamera(AberratedLens lens)
     require_stop(in_.singlet, in_.iris.bounding_radius_mm(), focus_mm_);
 }
 
+struct AberratedLensCamera::Pencils {
+    std::array<StopPencil, 4> of_lanes{};
+    size_t count = 0;
+    [[nodiscard]] std::span<const StopPencil> span() const { return {of_lanes.data(), count}; }
+};
+
 class AberratedLensCamera::Point {
   public:
     /// Rays through one point of the lens, which the wavelengths leave with vergences of their own.
@@ -53,12 +59,8 @@ class AberratedLensCamera::Point {
     };
 
     /// Camera, film point and bands must outlive it.
-    Point(const AberratedLensCamera& camera, const FilmPoint& at, const Bands& bands)
-        : c_(camera),
-          at_(at),
-          bands_(bands),
-          stop_mm_(camera.in_.iris.sample(at.sampler.get2(Dim::Lens))),
-          achromatic_(one_ray(bands, camera.in_.dispersion)) {}
+    Point(const AberratedLensCamera& camera, const FilmPoint& at, V2f stop_mm, const Bands& bands)
+        : c_(camera), at_(at), bands_(bands), stop_mm_(stop_mm) {}
 
     [[nodiscard]] Rays rays(const LaneRequest& request) const {
         Rays out;
@@ -94,10 +96,7 @@ class AberratedLensCamera::Point {
 
   private:
     /// Tangents of the angles at which the film point sees the lens's middle, right and up.
-    [[nodiscard]] V2f tangents() const {
-        return {(2.f * at_.film.x - 1.f) * c_.tan_half_x_,
-                (1.f - 2.f * at_.film.y) * c_.tan_half_y_};
-    }
+    [[nodiscard]] V2f tangents() const { return c_.tangents(at_); }
     /// Natural vignetting where each lane lands, over that of the film point.
     [[nodiscard]] f4 vignetting_where(f4 off, V2f stop_mm) const {
         f4 out = splat(1.f);
@@ -113,9 +112,7 @@ class AberratedLensCamera::Point {
         const auto h_mm = double(out.stop_mm.length());
         for (int lane = 0; lane < 4; ++lane) {
             if (!lanes[lane]) continue;
-            const double n =
-                achromatic_ ? c_.at_d_.n : c_.in_.singlet.glass.index(double(bands_.nm[lane]));
-            const double focal_mm = c_.zonal_mm(n, h_mm);
+            const double focal_mm = c_.zonal_mm(c_.index_of(bands_, lane), h_mm);
             if (!(focal_mm > kLeastZone / 2 * c_.at_d_.focal_mm)) continue;
             out.vergence_per_mm[lane] = static_cast<float>(1 / focal_mm - 1 / c_.film_mm_);
             out.weight[lane] = weight[lane];
@@ -126,17 +123,65 @@ class AberratedLensCamera::Point {
     const FilmPoint& at_;
     const Bands& bands_;
     V2f stop_mm_;
-    bool achromatic_;
 };
 
 CameraSample AberratedLensCamera::sample(const FilmPoint& at, const Bands& bands) const {
-    return sample_lens(Point(*this, at, bands), in_.dispersion, at.pixel, bands);
+    const V2f stop_mm = in_.iris.sample(at.sampler.get2(Dim::Lens));
+    CameraSample out =
+        sample_lens(Point(*this, at, stop_mm, bands), in_.dispersion, at.pixel, bands);
+    if (at.targets.empty()) return out;
+    const Pencils rays = pencils(at, bands);
+    const float share = TargetedStop{in_.iris, pose_, rays.span()}.share(stop_mm, at.targets);
+    for (CameraPath& path : out) path.share = share;
+    return out;
+}
+
+CameraSample AberratedLensCamera::aimed(const FilmPoint& at, const Bands& bands) const {
+    if (at.targets.empty()) return {};
+    const Pencils rays = pencils(at, bands);
+    const auto found = TargetedStop{in_.iris, pose_, rays.span()}.aim_at_one(at);
+    if (!found) return {};
+    CameraSample out =
+        sample_lens(Point(*this, at, found->stop_mm, bands), in_.dispersion, at.pixel, bands);
+    for (CameraPath& path : out) {
+        path.share = found->share;
+        path.fills_layers = false;
+    }
+    return out;
+}
+
+// Lanes that part share the point of the stop, so each may have drawn it; a hero ray is its lead's.
+AberratedLensCamera::Pencils AberratedLensCamera::pencils(const FilmPoint& at,
+                                                          const Bands& bands) const {
+    Pencils out;
+    const bool led = one_ray(bands, in_.dispersion) ||
+                     (in_.dispersion == DispersionMode::Hero && at.pixel.filter);
+    for (int lane = 0; lane < 4; ++lane) {
+        if (led ? lane != bands.lead : !bands.on[lane]) continue;
+        const SingletOptics optics = optics_at(index_of(bands, lane));
+        out.of_lanes[out.count++] = {V2d(tangents(at)), 1e-3 * optics.focal_mm,
+                                     1e3 * spherical_coefficient_per_mm(optics, focus_mm_) / 2,
+                                     1e3 / film_mm_, 1e-3 * double(in_.iris.bounding_radius_mm())};
+    }
+    return out;
+}
+
+V2f AberratedLensCamera::tangents(const FilmPoint& at) const {
+    return {(2.f * at.film.x - 1.f) * tan_half_x_, (1.f - 2.f * at.film.y) * tan_half_y_};
+}
+
+double AberratedLensCamera::index_of(const Bands& bands, int lane) const {
+    return one_ray(bands, in_.dispersion) ? at_d_.n
+                                          : in_.singlet.glass.index(double(bands.nm[lane]));
+}
+
+SingletOptics AberratedLensCamera::optics_at(double n) const {
+    return {n, at_d_.focal_mm * (at_d_.n - 1) / (n - 1), at_d_.bending};
 }
 
 double AberratedLensCamera::zonal_mm(double n, double h_mm) const {
     if (!(n > 1)) return 0;
-    const double focal_mm = at_d_.focal_mm * (at_d_.n - 1) / (n - 1);
-    return zonal_focal_length_mm({n, focal_mm, at_d_.bending}, focus_mm_, h_mm);
+    return zonal_focal_length_mm(optics_at(n), focus_mm_, h_mm);
 }
 
 }  // namespace petzval

@@ -31,11 +31,18 @@ class AberratedLensCamera final : public Camera {
     /// light at all of 360 to 830 nm, or an iris wider than its surfaces or than f(h) > f/2 allows.
     explicit AberratedLensCamera(AberratedLens);
     [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
+    [[nodiscard]] CameraSample aimed(const FilmPoint&, const Bands&) const override;
     [[nodiscard]] double film_distance_mm() const { return film_mm_; }
 
   private:
     /// A film point's rays, for the strategies of camera/dispersion.
     class Point;
+    /// Pencils of the lanes by whose rays points of the stop are drawn.
+    struct Pencils;
+    [[nodiscard]] Pencils pencils(const FilmPoint&, const Bands&) const;
+    [[nodiscard]] V2f tangents(const FilmPoint&) const;
+    [[nodiscard]] double index_of(const Bands&, int lane) const;
+    [[nodiscard]] SingletOptics optics_at(double n) const;
     [[nodiscard]] double zonal_mm(double n, double h_mm) const;
 
     AberratedLens in_;

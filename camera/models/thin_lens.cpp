@@ -25,12 +25,6 @@ CameraSample one_path(const Pose& pose, const V3f& origin, const V3f& direction,
 
 }  // namespace
 
-Pose::Pose(const M44f& m)
-    : origin(m[3][0], m[3][1], m[3][2]),
-      right(unit({m[0][0], m[0][1], m[0][2]})),
-      up(unit({m[1][0], m[1][1], m[1][2]})),
-      back(unit({m[2][0], m[2][1], m[2][2]})) {}
-
 ThinLensCamera::ThinLensCamera(ThinLens lens)
     : pose_(lens.to_world),
       iris_(std::move(lens.iris)),
@@ -40,18 +34,42 @@ ThinLensCamera::ThinLensCamera(ThinLens lens)
       tan_half_x_(std::tan(lens.yfov_rad / 2) * lens.aspect),
       tan_half_y_(std::tan(lens.yfov_rad / 2)) {}
 
+V2f ThinLensCamera::tangents(const FilmPoint& at) const {
+    return {(2.f * at.film.x - 1.f) * tan_half_x_, (1.f - 2.f * at.film.y) * tan_half_y_};
+}
+
+CameraSample ThinLensCamera::through(const FilmPoint& at, V2f stop_mm, const Bands& bands) const {
+    const V2f slope = tangents(at), stop = stop_mm * 1e-3f;
+    const V3f origin{stop.x, stop.y, 0.f}, direction{slope.x, slope.y, -1.f};
+    const float weight = vignetting_ ? exposure_ * vignetting_->factor(slope, stop_mm) : exposure_;
+    return one_path(pose_, origin, iris_ ? direction * focus_m_ - origin : direction, bands,
+                    exposure_, weight);
+}
+
+StopPencil ThinLensCamera::pencil(const FilmPoint& at) const {
+    return {V2d(tangents(at)), double(focus_m_), 0, 0, 1e-3 * double(iris_->bounding_radius_mm())};
+}
+
 CameraSample ThinLensCamera::sample(const FilmPoint& at, const Bands& bands) const {
-    const V3f direction{(2.f * at.film.x - 1.f) * tan_half_x_,
-                        (1.f - 2.f * at.film.y) * tan_half_y_, -1.f};
-    const auto weight = [&](V2f stop_mm) {
-        return vignetting_ ? exposure_ * vignetting_->factor({direction.x, direction.y}, stop_mm)
-                           : exposure_;
-    };
-    if (!iris_) return one_path(pose_, V3f(0.f), direction, bands, exposure_, weight(V2f(0.f)));
-    const V2f stop_mm = iris_->sample(at.sampler.get2(Dim::Lens)), stop = stop_mm * 1e-3f;
-    const V3f origin{stop.x, stop.y, 0.f};
-    return one_path(pose_, origin, direction * focus_m_ - origin, bands, exposure_,
-                    weight(stop_mm));
+    if (!iris_) return through(at, V2f(0.f), bands);
+    const V2f stop_mm = iris_->sample(at.sampler.get2(Dim::Lens));
+    CameraSample out = through(at, stop_mm, bands);
+    if (!at.targets.empty()) {
+        const StopPencil rays = pencil(at);
+        out[0].share = TargetedStop{*iris_, pose_, {&rays, 1}}.share(stop_mm, at.targets);
+    }
+    return out;
+}
+
+CameraSample ThinLensCamera::aimed(const FilmPoint& at, const Bands& bands) const {
+    if (at.targets.empty() || !iris_) return {};
+    const StopPencil rays = pencil(at);
+    const auto found = TargetedStop{*iris_, pose_, {&rays, 1}}.aim_at_one(at);
+    if (!found) return {};
+    CameraSample out = through(at, found->stop_mm, bands);
+    out[0].share = found->share;
+    out[0].fills_layers = false;
+    return out;
 }
 
 OrthographicCamera::OrthographicCamera(const M44f& to_world, float half_width_m,

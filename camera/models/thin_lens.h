@@ -7,6 +7,7 @@
 #include "camera/camera.h"
 #include "camera/iris/iris.h"
 #include "camera/models/natural_vignetting.h"
+#include "camera/models/stop_pencil.h"
 
 namespace petzval {
 
@@ -22,19 +23,17 @@ struct ThinLens {
     std::optional<NaturalVignetting> vignetting{};  ///< absent: the film is evenly lit
 };
 
-/// Position of a camera and its axes in world space, unit, as its matrix says.
-struct Pose {
-    V3f origin, right, up, back;
-    explicit Pose(const M44f& matrix);
-    [[nodiscard]] V3f to_world(const V3f& v) const { return right * v.x + up * v.y + back * v.z; }
-};
-
 class ThinLensCamera final : public Camera {
   public:
     explicit ThinLensCamera(ThinLens);
     [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
+    [[nodiscard]] CameraSample aimed(const FilmPoint&, const Bands&) const override;
 
   private:
+    [[nodiscard]] V2f tangents(const FilmPoint&) const;
+    [[nodiscard]] StopPencil pencil(const FilmPoint&) const;
+    [[nodiscard]] CameraSample through(const FilmPoint&, V2f stop_mm, const Bands&) const;
+
     Pose pose_;
     std::optional<Iris> iris_;
     std::optional<NaturalVignetting> vignetting_;

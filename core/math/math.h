@@ -16,6 +16,7 @@ namespace petzval {
 using V2f = Imath::V2f;
 using V3f = Imath::V3f;
 using V4f = Imath::V4f;
+using V2d = Imath::V2d;
 using V3d = Imath::V3d;
 using V2i = Imath::V2i;
 /// Imath's convention: row vectors, point * matrix; the translation is the last row.

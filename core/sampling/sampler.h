@@ -23,7 +23,10 @@ enum class Dim : uint32_t {
     LightPoint,  ///< the light and the point on it together
     LightRest,   ///< what picking the light has used up of LightPoint
     Roulette,
-    Count
+    Count,
+    // Apart from those of paths, so that pictures without targets keep their numbers.
+    TargetPoint = 1u << 30,  ///< on a target's disc
+    TargetPick               ///< the target, and how it is reached
 };
 
 struct SampleId {

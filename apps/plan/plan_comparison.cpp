@@ -13,9 +13,6 @@
 namespace petzval {
 namespace {
 
-// Amplified dispersion, where it is largest: its effect stands out of the noise, but stays within a
-// pixel, where the error grows in proportion.
-constexpr double kAmplified_px = 0.5, kMostFactor = 64;
 constexpr uint32_t kLeastSamples = 4, kThoroughSamples = 32;
 // Share of the tolerance below which errors are not measured more finely.
 constexpr double kSmallShare = 0.25;
@@ -125,12 +122,17 @@ PlanComparison::PlanComparison(const PlanRequest& request, const RenderSetup& fi
     if (first.from.spectral.wavelengths) full_scene_.spectral.mode = SpectralMode::Wavelengths;
     choose_looks(looks);
     if (open.dispersion) {
-        amplify_dispersion();
-        return;
+        shared_scene_ = full_scene_;
+        full_scene_.camera.dispersion = DispersionMode::Split;
+        shared_scene_.camera.dispersion = DispersionMode::Shared;
+        shared_ = model(shared_scene_);
     }
     full_ = model(full_scene_);
-    minus_full_ = {{full_.get(), -1}};
-    scale_ = full_.get();
+    if (shared_)
+        dispersion_px_ =
+            lateral_dispersion_px(*full_->setup().view.camera, *shared_->setup().view.camera,
+                                  full_->setup().view.observer,
+                                  full_->setup().from.camera.focus_plane(), request.scene.size);
 }
 
 // Things that shine or depend on wavelength get looks where their light lands, and so does what a
@@ -148,38 +150,18 @@ void PlanComparison::choose_looks(int wanted) {
         apart.camera.dispersion = DispersionMode::Split;
         together.camera.dispersion = DispersionMode::Shared;
         const RenderSetup split = open(apart), shared = open(together);
-        const Displacement apart_by = displacement_of(
-            {*split.view.camera, split.view.observer}, {*shared.view.camera, shared.view.observer},
-            scene, *first_.prepared.bvh, first_.from.camera.focus_plane(), size, kDispersionRays,
-            true);
-        most_dispersion_px_ = std::sqrt(std::ranges::max(apart_by.square_px.values));
-        dispersed_ = most_error(apart_by, 0);
+        dispersed_ =
+            most_error(displacement_of({*split.view.camera, split.view.observer},
+                                       {*shared.view.camera, shared.view.observer}, scene,
+                                       *first_.prepared.bvh, first_.from.camera.focus_plane(), size,
+                                       kDispersionRays, true),
+                       0);
     }
     pilot_.emplace(
         size,
         petzval::choose_looks(size, wanted, regions_,
                               with_edges(open_.dispersion ? dispersed_ : even_map(size)), 0),
         executor_);
-}
-
-// Amplifies dispersion, so that its effect stands out of the noise; the error is divided by the
-// factor afterwards.
-void PlanComparison::amplify_dispersion() {
-    shared_scene_ = full_scene_;
-    full_scene_.camera.dispersion = DispersionMode::Split;
-    shared_scene_.camera.dispersion = DispersionMode::Shared;
-    shared_ = model(shared_scene_);
-    const RenderSetup split = open(full_scene_);
-    dispersion_px_ = lateral_dispersion_px(*split.view.camera, *shared_->setup().view.camera,
-                                           split.view.observer, split.from.camera.focus_plane(),
-                                           request_.scene.size);
-    if (most_dispersion_px_ > 0)
-        factor_ =
-            static_cast<float>(std::clamp(kAmplified_px / most_dispersion_px_, 1., kMostFactor));
-    full_ = amplified(full_scene_);
-    const double share = 1 / double(factor_);
-    minus_full_ = {{shared_.get(), share - 1}, {full_.get(), -share}};
-    scale_ = shared_.get();
 }
 
 RenderSetup PlanComparison::open(const SceneRequest& scene) const {
@@ -190,20 +172,11 @@ std::unique_ptr<PilotModel> PlanComparison::model(const SceneRequest& scene) con
     return pilot_->model(open(scene), request_.job, request_.path);
 }
 
-std::unique_ptr<PilotModel> PlanComparison::amplified(const SceneRequest& scene) const {
-    RenderSetup setup = open(scene);
-    setup.view.camera = amplified_dispersion(std::move(setup.view.camera),
-                                             open(shared_scene_).view.camera, factor_);
-    return pilot_->model(std::move(setup), request_.job, request_.path);
-}
-
 void PlanComparison::add(PlanModel kind, const SceneRequest& scene, const FilmMap& most) {
     auto own = model(scene);
-    std::vector<PilotTerm> difference = minus_full_;
-    difference.push_back({own.get(), 1});
     entries_.push_back({{kind, scene},
                         own.get(),
-                        std::move(difference),
+                        {{own.get(), 1}, {full_.get(), -1}},
                         pilot_->looks().unseen(request_.scene.size, most),
                         std::move(own)});
 }
@@ -242,10 +215,9 @@ void PlanComparison::add_rgb() {
 }
 
 void PlanComparison::add_shared() {
-    const double share = 1 / double(factor_);
     entries_.push_back({{PlanModel::Shared, shared_scene_},
                         shared_.get(),
-                        {{shared_.get(), share}, {full_.get(), -share}},
+                        {{shared_.get(), 1}, {full_.get(), -1}},
                         pilot_->looks().unseen(request_.scene.size, dispersed_),
                         nullptr});
 }
@@ -290,7 +262,7 @@ void PlanComparison::measure(double most_samples, bool thorough) {
 }
 
 PilotScale PlanComparison::scale_of(const PilotModel& model, double floor) const {
-    return {&model, scale_, floor, least_};
+    return {&model, full_.get(), floor, least_};
 }
 
 double PlanComparison::missed(PlanModel kind, const RareLight& rare) const {
@@ -300,9 +272,9 @@ double PlanComparison::missed(PlanModel kind, const RareLight& rare) const {
 
 void PlanComparison::evaluate() {
     const double most = kBiasShare * request_.tolerance * request_.tolerance;
-    least_ = least_means(*pilot_, *scale_, lamps_);
-    const double floor = pilot_floor(*pilot_, *scale_, least_);
-    const RareLight rare = rare_light(*pilot_, *scale_, lamps_, has_lamps(things_), floor);
+    least_ = least_means(*pilot_, *full_, lamps_);
+    const double floor = pilot_floor(*pilot_, *full_, least_);
+    const RareLight rare = rare_light(*pilot_, *full_, lamps_, has_lamps(things_), floor);
     for (Entry& e : entries_) {
         if (e.difference.empty() || e.settled) continue;
         e.found.square_bias = square_error(*pilot_, e.difference, scale_of(*e.model, floor));
@@ -327,7 +299,7 @@ bool PlanComparison::all_known(bool thorough) const {
 
 std::vector<PlanCandidate> PlanComparison::candidates() const {
     std::vector<PlanCandidate> out;
-    const double floor = pilot_floor(*pilot_, *scale_, least_);
+    const double floor = pilot_floor(*pilot_, *full_, least_);
     const auto measured = [&](PlanCandidate found, const PilotModel& model) {
         found.noise = noise_of(*pilot_, model, scale_of(model, floor));
         // Through another camera lamps fall on other places: those of the pinhole are not blurred.
@@ -355,7 +327,7 @@ std::optional<double> PlanComparison::effort_of(const SceneRequest& scene, size_
     const PilotModel& own = model_of(candidate);
     const auto other = model(scene);
     pilot_->sample(*other, own.samples());
-    const double floor = pilot_floor(*pilot_, *scale_, least_);
+    const double floor = pilot_floor(*pilot_, *full_, least_);
     const auto effort = [&](const PilotModel& m) {
         return noise_of(*pilot_, m, scale_of(own, floor)).variances.back().mean *
                m.rays_per_sample();

@@ -41,8 +41,6 @@ class PlanComparison {
     /// Noise times cost in rays of a candidate's scene in another request, over the candidate's
     /// own: in proportion to the time that a given noise takes. Nothing where no noise was seen.
     [[nodiscard]] std::optional<double> effort_of(const SceneRequest&, size_t candidate) const;
-    /// Factor by which the fullest model's dispersion is enlarged while it is measured, from 1.
-    [[nodiscard]] float dispersion_factor() const { return factor_; }
     /// RMS lateral dispersion in pixels; 0 unless dispersion is open.
     [[nodiscard]] double dispersion_px() const { return dispersion_px_; }
 
@@ -59,9 +57,7 @@ class PlanComparison {
     [[nodiscard]] const PilotModel& model_of(size_t candidate) const;
     [[nodiscard]] RenderSetup open(const SceneRequest&) const;
     [[nodiscard]] std::unique_ptr<PilotModel> model(const SceneRequest&) const;
-    [[nodiscard]] std::unique_ptr<PilotModel> amplified(const SceneRequest&) const;
     void choose_looks(int wanted);
-    void amplify_dispersion();
     void add(PlanModel, const SceneRequest&, const FilmMap& most);
     void add_camera(PlanModel, const SceneRequest&);
     void evaluate();
@@ -82,12 +78,9 @@ class PlanComparison {
     FilmMap dispersed_;       ///< most error of rays that do not disperse
     std::optional<Pilot> pilot_;
     std::unique_ptr<PilotModel> full_, shared_;
-    const PilotModel* scale_ = nullptr;  ///< what errors are relative to
-    std::vector<PilotTerm> minus_full_;
     std::vector<Entry> entries_;
-    double dispersion_px_ = 0, most_dispersion_px_ = 0;
+    double dispersion_px_ = 0;
     bool glass_disperses_ = false;  ///< of a material
-    float factor_ = 1;              ///< by which full_ disperses more than the fullest model
 };
 
 }  // namespace petzval

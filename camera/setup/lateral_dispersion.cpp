@@ -2,42 +2,13 @@
 #include "camera/setup/lateral_dispersion.h"
 
 #include <cmath>
-#include <utility>
 
 namespace petzval {
 namespace {
 
 constexpr uint32_t kRays = 1024;
 
-class AmplifiedDispersion final : public Camera {
-  public:
-    AmplifiedDispersion(std::unique_ptr<Camera> split, std::unique_ptr<Camera> shared, float factor)
-        : split_(std::move(split)), shared_(std::move(shared)), factor_(factor) {}
-
-    [[nodiscard]] CameraSample sample(const FilmPoint& point, const Bands& bands) const override {
-        CameraSample out = split_->sample(point, bands);
-        const CameraSample middle = shared_->sample(point, bands);
-        if (middle.empty()) return out;
-        const Ray& d = middle[0].ray;
-        for (CameraPath& path : out) {
-            Ray& ray = path.ray;
-            ray.origin = d.origin + factor_ * (ray.origin - d.origin);
-            ray.direction = unit(d.direction + factor_ * (ray.direction - d.direction));
-        }
-        return out;
-    }
-
-  private:
-    std::unique_ptr<Camera> split_, shared_;
-    float factor_;
-};
-
 }  // namespace
-
-std::unique_ptr<Camera> amplified_dispersion(std::unique_ptr<Camera> split,
-                                             std::unique_ptr<Camera> shared, float factor) {
-    return std::make_unique<AmplifiedDispersion>(std::move(split), std::move(shared), factor);
-}
 
 double lateral_dispersion_px(const Camera& split, const Camera& shared, const Observer& observer,
                              const FocusPlane& plane, V2i size_px) {

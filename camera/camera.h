@@ -3,7 +3,9 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <span>
+#include <utility>
 
 #include "camera/target.h"
 #include "core/math/ray.h"
@@ -28,8 +30,6 @@ struct FilmPoint {
     V2f film{0.f};
     Sampler sampler{};
     PixelFilter pixel{};
-    /// Targets of the film point's pixel: a function of the frame, never of the sample.
-    std::span<const ListedTarget> targets{};
 };
 
 /// A world-space ray; direction has unit length.
@@ -105,11 +105,18 @@ class Camera {
     /// Weighted rays of one point of the film, drawn by its sampler: none where the lens lets
     /// nothing through, one that all bands share, or up to four. Thread-safe.
     [[nodiscard]] virtual CameraSample sample(const FilmPoint&, const Bands&) const = 0;
-    /// Paths of the same film point that are aimed at one of its targets: together with those of
+    /// Paths of the same film point that are aimed at one of some targets: together with those of
     /// sample(), by their shares, an estimate without a bias (balance heuristic, Veach and Guibas
-    /// 1995). None where the film point has no targets, the ray is blocked, or the camera aims
-    /// none.
-    [[nodiscard]] virtual CameraSample aimed(const FilmPoint&, const Bands&) const { return {}; }
+    /// 1995). None where the film point has no targets, or the ray is blocked.
+    [[nodiscard]] virtual CameraSample aimed(const FilmPoint&, const Bands&,
+                                             std::span<const ListedTarget>) const {
+        return {};
+    }
+    /// Whether the camera can aim rays at targets.
+    [[nodiscard]] virtual bool aims() const { return false; }
+    /// Targets from here on, where the camera aims; nullptr: none.
+    void set_targets(std::shared_ptr<const TargetGrid> targets) { targets_ = std::move(targets); }
+    [[nodiscard]] const TargetGrid* targets() const { return targets_.get(); }
     /// What sample() gives for each of up to kMostFilmPoints film points, to the bit, which a
     /// camera may find faster for all at once. All or none of the bands are spectral, and of the
     /// points have a pixel filter.
@@ -117,6 +124,14 @@ class Camera {
                             std::span<CameraSample> out) const {
         for (size_t i = 0; i < points.size(); ++i) out[i] = sample(points[i], bands[i]);
     }
+
+  protected:
+    [[nodiscard]] std::span<const ListedTarget> targets_at(const FilmPoint& at) const {
+        return targets_ ? targets_->at(at.film) : std::span<const ListedTarget>();
+    }
+
+  private:
+    std::shared_ptr<const TargetGrid> targets_;
 };
 
 }  // namespace petzval

@@ -2,7 +2,9 @@
 // Targets: small bright things that a camera aims rays at, beside those that it draws anyway.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/math/math.h"
@@ -18,22 +20,27 @@ struct Target {
     bool at_infinity = false;  ///< a spot of the sky
 };
 
+/// Whether camera rays are aimed at targets. Auto: where they pay.
+enum class TargetUse : uint8_t { Auto, Off };
+
 /// A target, and the chance that a ray is aimed at it.
 struct ListedTarget {
     Target target;
     float chance;  ///< those of a list add up to 1
 };
 
-/// Targets of each part of a frame, by square cells of its pixels.
+/// Targets of each part of a frame, by a grid of cells.
 struct TargetGrid {
-    static constexpr int kCell_px = 16;
     V2i cells{0, 0};
     std::vector<std::vector<ListedTarget>> lists;  ///< row by row
 
-    /// List of a pixel's cell, of the full frame.
-    [[nodiscard]] const std::vector<ListedTarget>& at(int x, int y) const {
-        return lists[static_cast<size_t>(y / kCell_px) * static_cast<size_t>(cells.x) +
-                     static_cast<size_t>(x / kCell_px)];
+    /// List of the cell of a film point, as FilmPoint has it; beyond the frame, of the nearest.
+    [[nodiscard]] std::span<const ListedTarget> at(V2f film) const {
+        const auto cell = [](float share, int count) {
+            return static_cast<size_t>(
+                std::clamp(static_cast<int>(share * static_cast<float>(count)), 0, count - 1));
+        };
+        return lists[cell(film.y, cells.y) * static_cast<size_t>(cells.x) + cell(film.x, cells.x)];
     }
 };
 

@@ -61,6 +61,7 @@ class SampleBatch {
     }
     void find_camera_rays();
     void trace(size_t i);
+    [[nodiscard]] f4 aimed(size_t i);
 
     const Tracer& tracer_;
     const Camera& camera_;
@@ -109,13 +110,14 @@ void SampleBatch<Tracer>::trace(size_t i) {
         FilmSample other;
         FilmSample& of_path = path.fills_layers ? sample : other;
         of_path.alpha = 0.f;
-        sum += path.weight * tracer_.radiance(path.ray, bands, points_[i].sampler,
-                                              layers && path.fills_layers, of_path, stats_,
-                                              path.lanes, path.led);
+        sum += path.weight * path.share *
+               tracer_.radiance(path.ray, bands, points_[i].sampler, layers && path.fills_layers,
+                                of_path, stats_, path.lanes, path.led);
         if (!path.fills_layers) continue;
         layers = false;
         behind += hsum(zero_off(path.lanes, path.weight)) * (1.f - sample.alpha);
     }
+    if (camera_.targets()) sum += aimed(i);
     if (!film_) return;
     // Light that a lens keeps from the film is black, not transparent.
     sample.alpha = 1.f - behind / (seen.exposure * static_cast<float>(lane_count(bands.on)));
@@ -127,6 +129,23 @@ void SampleBatch<Tracer>::trace(size_t i) {
                    {id.index % job_.replicates, sum, job_.observer.to_xyz(sum, bands)}, bands);
     else
         film_->add(id.x, id.y, id.index, sample);
+}
+
+template <class Tracer>
+f4 SampleBatch<Tracer>::aimed(size_t i) {
+    const CameraSample paths = [&] {
+        const SectionTimer timer(stats_, TimedSection::Camera);
+        return camera_.aimed(points_[i], bands_[i], camera_.targets()->at(points_[i].film));
+    }();
+    f4 sum{};
+    for (const CameraPath& path : paths) {
+        FilmSample other;
+        ++stats_.aimed_rays;
+        sum += path.weight * path.share *
+               tracer_.radiance(path.ray, bands_[i], points_[i].sampler, false, other, stats_,
+                                path.lanes, path.led);
+    }
+    return sum;
 }
 
 /// Renders the samples [first, end) of one pixel: each a pure function of job, pixel and index.

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "apps/plan/film_region.h"
+#include "camera/setup/film_region.h"
 
 namespace petzval {
 

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "apps/plan/film_region.h"
 #include "apps/plan/pilot_error.h"
-#include "apps/plan/things.h"
+#include "camera/setup/film_region.h"
+#include "core/light/things.h"
 
 namespace petzval {
 

@@ -78,6 +78,9 @@ inline constexpr auto kOptionNames<LightChoiceKind> =
                                                 {"power", LightChoiceKind::Power},
                                                 {"uniform", LightChoiceKind::Uniform}});
 template <>
+inline constexpr auto kOptionNames<TargetUse> =
+    std::to_array<OptionName<TargetUse>>({{"auto", TargetUse::Auto}, {"off", TargetUse::Off}});
+template <>
 inline constexpr auto kOptionNames<Traversal> = std::to_array<OptionName<Traversal>>(
     {{"robust", Traversal::Robust}, {"fast", Traversal::Fast}});
 

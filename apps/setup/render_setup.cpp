@@ -8,6 +8,7 @@
 #include "apps/setup/camera_setup.h"
 #include "apps/setup/input_files.h"
 #include "apps/setup/option_names.h"
+#include "camera/setup/target_grid.h"
 #include "core/light/own_light.h"
 #include "core/scene/studio.h"
 #include "integrator/light_pilot.h"
@@ -21,6 +22,9 @@ namespace petzval {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+/// Clusters of the lamps of a class of brightness that may be targets.
+constexpr size_t kMostTargets = 1024;
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -68,6 +72,7 @@ std::vector<std::pair<std::string, std::string>> describe(const SceneRequest& re
     }
     if (const auto& b = request.background) m.emplace_back("petzval:background", with_commas(*b));
     m.emplace_back("petzval:lightChoice", name_of(request.light_choice));
+    m.emplace_back("petzval:targets", name_of(request.targets));
     m.emplace_back("petzval:traversal", name_of(request.traversal));
     return m;
 }
@@ -150,6 +155,9 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
         prepared.lights = std::make_shared<const LightChoice>(
             taught_by_pilot(*prepared.lights, scene, *prepared.bvh, *setup.view.camera,
                             setup.view.observer, request.size));
+    if (asked.targets == TargetUse::Auto && setup.view.camera->aims())
+        setup.view.camera->set_targets(
+            find_targets(*setup.view.camera, request.size, things_of(scene, kMostTargets)));
     from.camera = std::move(camera.report);
     return setup;
 }

@@ -14,6 +14,7 @@
 #include "camera/dispersion/dispersion_mode.h"
 #include "camera/iris/iris_options.h"
 #include "camera/lens/lens_options.h"
+#include "camera/target.h"
 #include "core/light/light_options.h"
 #include "core/math/math.h"
 #include "core/spectrum/bands.h"
@@ -112,6 +113,7 @@ struct SceneRequest {
     std::optional<Rgb> background;
     LightChoiceKind light_choice = LightChoiceKind::Tree;
     Traversal traversal = Traversal::Robust;
+    TargetUse targets = TargetUse::Auto;  ///< whether camera rays are aimed at small lamps
     SpectralRequest spectral;
     std::vector<NamedFile> outputs;  ///< files to be written: a scene that reads one is refused
     /// Memory for decoded pictures; absent: half of what can be had.

@@ -129,17 +129,19 @@ CameraSample AberratedLensCamera::sample(const FilmPoint& at, const Bands& bands
     const V2f stop_mm = in_.iris.sample(at.sampler.get2(Dim::Lens));
     CameraSample out =
         sample_lens(Point(*this, at, stop_mm, bands), in_.dispersion, at.pixel, bands);
-    if (at.targets.empty()) return out;
+    const auto targets = targets_at(at);
+    if (targets.empty()) return out;
     const Pencils rays = pencils(at, bands);
-    const float share = TargetedStop{in_.iris, pose_, rays.span()}.share(stop_mm, at.targets);
+    const float share = TargetedStop{in_.iris, pose_, rays.span()}.share(stop_mm, targets);
     for (CameraPath& path : out) path.share = share;
     return out;
 }
 
-CameraSample AberratedLensCamera::aimed(const FilmPoint& at, const Bands& bands) const {
-    if (at.targets.empty()) return {};
+CameraSample AberratedLensCamera::aimed(const FilmPoint& at, const Bands& bands,
+                                        std::span<const ListedTarget> targets) const {
+    if (targets.empty()) return {};
     const Pencils rays = pencils(at, bands);
-    const auto found = TargetedStop{in_.iris, pose_, rays.span()}.aim_at_one(at);
+    const auto found = TargetedStop{in_.iris, pose_, rays.span()}.aim_at_one(at, targets);
     if (!found) return {};
     CameraSample out =
         sample_lens(Point(*this, at, found->stop_mm, bands), in_.dispersion, at.pixel, bands);

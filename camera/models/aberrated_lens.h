@@ -31,7 +31,9 @@ class AberratedLensCamera final : public Camera {
     /// light at all of 360 to 830 nm, or an iris wider than its surfaces or than f(h) > f/2 allows.
     explicit AberratedLensCamera(AberratedLens);
     [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
-    [[nodiscard]] CameraSample aimed(const FilmPoint&, const Bands&) const override;
+    [[nodiscard]] CameraSample aimed(const FilmPoint&, const Bands&,
+                                     std::span<const ListedTarget>) const override;
+    [[nodiscard]] bool aims() const override { return true; }
     [[nodiscard]] double film_distance_mm() const { return film_mm_; }
 
   private:

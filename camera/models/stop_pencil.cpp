@@ -35,19 +35,21 @@ Heights heights(const StopPencil& pencil, const Depth& depth, double y) {
                  c0 = -y * pencil.focal_m;
     const auto cubic = [&](double h) { return ((c3 * h + c2) * h + c1) * h + c0; };
     const auto slope = [&](double h) { return (3 * c3 * h + 2 * c2) * h + c1; };
+    if (k == 0) {
+        const double h = -c0 / c1;
+        return std::fabs(h) <= pencil.reach_m ? Heights{{h}, 1} : Heights();
+    }
     std::array<double, 4> ends{-pencil.reach_m, pencil.reach_m, pencil.reach_m, pencil.reach_m};
     size_t parts = 1;
-    if (k != 0) {
-        const double discriminant = c2 * c2 - 3 * c3 * c1;
-        if (discriminant > 0) {
-            const double root = std::sqrt(discriminant);
-            // The stable form of both zeros: no difference of nearly equal numbers.
-            const double q = -(c2 + std::copysign(root, c2));
-            for (const double zero : {c3 != 0 ? q / (3 * c3) : INFINITY, q != 0 ? c1 / q : INFINITY})
-                if (std::fabs(zero) < pencil.reach_m) ends[parts++] = zero;
-            ends[parts] = pencil.reach_m;
-            std::sort(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(parts) + 1);
-        }
+    const double discriminant = c2 * c2 - 3 * c3 * c1;
+    if (discriminant > 0) {
+        const double root = std::sqrt(discriminant);
+        // The stable form of both zeros: no difference of nearly equal numbers.
+        const double q = -(c2 + std::copysign(root, c2));
+        for (const double zero : {c3 != 0 ? q / (3 * c3) : INFINITY, q != 0 ? c1 / q : INFINITY})
+            if (std::fabs(zero) < pencil.reach_m) ends[parts++] = zero;
+        ends[parts] = pencil.reach_m;
+        std::sort(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(parts) + 1);
     }
     Heights out;
     for (size_t i = 0; i < parts; ++i) {
@@ -60,7 +62,7 @@ Heights heights(const StopPencil& pencil, const Depth& depth, double y) {
             const double value = sign * cubic(h);
             (value > 0 ? high : low) = h;
             const double next = h - value / (sign * slope(h));
-            const double better = next > low && next < high ? next : (low + high) / 2;
+            const double better = next >= low && next <= high ? next : (low + high) / 2;
             if (std::fabs(better - h) <= 1e-14 * pencil.reach_m) break;
             h = better;
         }
@@ -83,8 +85,8 @@ StopPoints through(const StopPencil& pencil, const LocalTarget& target, const V3
     StopPoints out;
     if (!(point.z < 0)) return out;
     const V2d where(point.x, point.y);
-    const V2d off = target.at_infinity ? where / -point.z - pencil.tangents
-                                       : where + pencil.tangents * point.z;
+    const V2d off =
+        target.at_infinity ? where / -point.z - pencil.tangents : where + pencil.tangents * point.z;
     const double y = off.length();
     const V2d along = y > 0 ? off / y : V2d(1, 0);
     const Heights found = heights(pencil, depth_of(target, point), y);
@@ -169,13 +171,13 @@ std::optional<V2d> aim(const StopPencil& pencil, const LocalTarget& target, V2f 
     const V3d axis = std::fabs(target.normal.x) < 0.5 ? V3d(1, 0, 0) : V3d(0, 1, 0);
     const V3d side = axis.cross(target.normal).normalized();
     const V2f on = uniform_disk(point);
-    const V3d at = target.centre + (side * double(on.x) +
-                                    target.normal.cross(side) * double(on.y)) *
-                                       target.radius_m;
+    const V3d at =
+        target.centre +
+        (side * double(on.x) + target.normal.cross(side) * double(on.y)) * target.radius_m;
     const StopPoints found = through(pencil, target, at);
     if (found.count == 0) return std::nullopt;
-    return found.s[std::min(static_cast<size_t>(pick * static_cast<float>(found.count)),
-                            found.count - 1)];
+    return found
+        .s[std::min(static_cast<size_t>(pick * static_cast<float>(found.count)), found.count - 1)];
 }
 
 float TargetedStop::share(V2f stop_mm, std::span<const ListedTarget> targets) const {
@@ -184,12 +186,13 @@ float TargetedStop::share(V2f stop_mm, std::span<const ListedTarget> targets) co
     return open > 0 ? static_cast<float>(open / (open + aimed)) : 1;
 }
 
-std::optional<TargetedStop::Aimed> TargetedStop::aim_at_one(const FilmPoint& at) const {
+std::optional<TargetedStop::Aimed> TargetedStop::aim_at_one(
+    const FilmPoint& at, std::span<const ListedTarget> targets) const {
     const V2f pick = at.sampler.get2(Dim::TargetPick);
     size_t i = 0;
     float left = pick.x;
-    while (i + 1 < at.targets.size() && left >= at.targets[i].chance) left -= at.targets[i++].chance;
-    const LocalTarget target(at.targets[i].target, pose);
+    while (i + 1 < targets.size() && left >= targets[i].chance) left -= targets[i++].chance;
+    const LocalTarget target(targets[i].target, pose);
     const float lane = pick.y * static_cast<float>(pencils.size());
     const size_t chosen = std::min(static_cast<size_t>(lane), pencils.size() - 1);
     const auto s = aim(pencils[chosen], target, at.sampler.get2(Dim::TargetPoint),
@@ -198,7 +201,7 @@ std::optional<TargetedStop::Aimed> TargetedStop::aim_at_one(const FilmPoint& at)
     const V2f stop_mm(*s * 1e3);
     // Rounding may carry it off the target's rim, where its density would be too low.
     if (!(aimed_density(pencils[chosen], target, V2d(stop_mm) * 1e-3) > 0)) return std::nullopt;
-    const auto [open, aimed] = density_of(*this, stop_mm, at.targets);
+    const auto [open, aimed] = density_of(*this, stop_mm, targets);
     if (!(open > 0)) return std::nullopt;
     return Aimed{stop_mm, static_cast<float>(open / (open + aimed))};
 }

@@ -61,13 +61,14 @@ struct TargetedStop {
     /// draw over the sum of it and of those of rays that are aimed (balance heuristic, Veach and
     /// Guibas 1995, "Optimally combining sampling techniques for Monte Carlo rendering").
     [[nodiscard]] float share(V2f stop_mm, std::span<const ListedTarget>) const;
-    /// Point of the stop from which a ray passes one of the targets, and its share, above 0; nothing
-    /// where there is none, or the iris is closed there.
+    /// Point of the stop from which a ray passes one of the targets, and its share, above 0;
+    /// nothing where there is none, or the iris is closed there.
     struct Aimed {
         V2f stop_mm;
         float share;
     };
-    [[nodiscard]] std::optional<Aimed> aim_at_one(const FilmPoint&) const;
+    [[nodiscard]] std::optional<Aimed> aim_at_one(const FilmPoint&,
+                                                  std::span<const ListedTarget>) const;
 };
 
 }  // namespace petzval

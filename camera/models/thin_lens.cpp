@@ -54,17 +54,18 @@ CameraSample ThinLensCamera::sample(const FilmPoint& at, const Bands& bands) con
     if (!iris_) return through(at, V2f(0.f), bands);
     const V2f stop_mm = iris_->sample(at.sampler.get2(Dim::Lens));
     CameraSample out = through(at, stop_mm, bands);
-    if (!at.targets.empty()) {
+    if (const auto targets = targets_at(at); !targets.empty()) {
         const StopPencil rays = pencil(at);
-        out[0].share = TargetedStop{*iris_, pose_, {&rays, 1}}.share(stop_mm, at.targets);
+        out[0].share = TargetedStop{*iris_, pose_, {&rays, 1}}.share(stop_mm, targets);
     }
     return out;
 }
 
-CameraSample ThinLensCamera::aimed(const FilmPoint& at, const Bands& bands) const {
-    if (at.targets.empty() || !iris_) return {};
+CameraSample ThinLensCamera::aimed(const FilmPoint& at, const Bands& bands,
+                                   std::span<const ListedTarget> targets) const {
+    if (targets.empty() || !iris_) return {};
     const StopPencil rays = pencil(at);
-    const auto found = TargetedStop{*iris_, pose_, {&rays, 1}}.aim_at_one(at);
+    const auto found = TargetedStop{*iris_, pose_, {&rays, 1}}.aim_at_one(at, targets);
     if (!found) return {};
     CameraSample out = through(at, found->stop_mm, bands);
     out[0].share = found->share;

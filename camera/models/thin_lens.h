@@ -27,7 +27,9 @@ class ThinLensCamera final : public Camera {
   public:
     explicit ThinLensCamera(ThinLens);
     [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
-    [[nodiscard]] CameraSample aimed(const FilmPoint&, const Bands&) const override;
+    [[nodiscard]] CameraSample aimed(const FilmPoint&, const Bands&,
+                                     std::span<const ListedTarget>) const override;
+    [[nodiscard]] bool aims() const override { return iris_.has_value(); }
 
   private:
     [[nodiscard]] V2f tangents(const FilmPoint&) const;

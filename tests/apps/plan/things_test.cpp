@@ -7,8 +7,8 @@
 #include <numeric>
 
 #include "apps/plan/displacement.h"
-#include "apps/plan/film_region.h"
 #include "camera/models/thin_lens.h"
+#include "camera/setup/film_region.h"
 #include "tests/support/scenes.h"
 
 namespace petzval {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/plan/things.h"
+#include "core/light/things.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,6 @@
 namespace petzval {
 namespace {
 
-constexpr size_t kMostClusters = 32;  ///< of each kind, and of each class of brightness
 constexpr size_t kMostTriangles = 1 << 18;
 constexpr int kTexturePoints = 1 << 18, kSkyDirections = 4096;
 /// Times the mean from which a part of a texture is a light of its own.
@@ -32,6 +31,7 @@ constexpr double kEven = 4;
 struct Part {
     Box3f box;
     double area_m2 = 0, flux = 0;  ///< flux: luminance times area
+    float reach_m = 0;             ///< from the box's centre to the farthest point
 
     [[nodiscard]] double light() const { return area_m2 > 0 ? flux / area_m2 : 0; }
 };
@@ -63,6 +63,8 @@ Part sum_of(const std::vector<Part>& parts) {
     for (const Part& part : parts) {
         out.area_m2 += part.area_m2;
         out.flux += part.flux;
+        const float apart_m = (part.box.center() - out.box.center()).length();
+        out.reach_m = std::max(out.reach_m, apart_m + part.reach_m);
     }
     return out;
 }
@@ -78,10 +80,10 @@ bool is_compact(const std::vector<Part>& parts) {
 }
 
 /// Clusters of parts: the largest is halved until there are enough.
-std::vector<std::vector<Part>> clusters_of(std::vector<Part> parts) {
+std::vector<std::vector<Part>> clusters_of(std::vector<Part> parts, size_t most) {
     std::vector<std::vector<Part>> clusters, whole;
     if (!parts.empty()) clusters.push_back(std::move(parts));
-    while (!clusters.empty() && clusters.size() + whole.size() < kMostClusters) {
+    while (!clusters.empty() && clusters.size() + whole.size() < most) {
         const auto largest = std::max_element(
             clusters.begin(), clusters.end(),
             [](const auto& a, const auto& b) { return longest(box_of(a)) < longest(box_of(b)); });
@@ -99,11 +101,11 @@ std::vector<std::vector<Part>> clusters_of(std::vector<Part> parts) {
     return clusters;
 }
 
-void add_things(std::vector<Thing>& out, Thing::Kind kind, std::vector<Part> parts) {
-    for (const std::vector<Part>& cluster : clusters_of(std::move(parts))) {
+void add_things(std::vector<Thing>& out, Thing::Kind kind, std::vector<Part> parts, size_t most) {
+    for (const std::vector<Part>& cluster : clusters_of(std::move(parts), most)) {
         const Part all = sum_of(cluster);
-        out.push_back({kind, all.box.center(), all.box.size().length() / 2, false, all.area_m2 / 2,
-                       all.light()});
+        out.push_back({kind, all.box.center(), all.box.size().length() / 2, all.reach_m, false,
+                       all.area_m2 / 2, all.light()});
     }
 }
 
@@ -136,6 +138,8 @@ Part part_of(const Scene& scene, uint32_t instance, uint32_t triangle) {
     for (const V3f& corner : corners) part.box.extendBy(corner);
     const V3f cross = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
     part.area_m2 = double(cross.length()) / 2;
+    for (const V3f& corner : corners)
+        part.reach_m = std::max(part.reach_m, (corner - part.box.center()).length());
     return part;
 }
 
@@ -169,7 +173,7 @@ double add_bright_points(const Scene& scene, uint32_t instance, uint32_t triangl
         if (point.light > kBright * sum / count) {
             const double area_m2 = whole.area_m2 / count;
             bright.push_back({Box3f(point.at - V3f(cell_m), point.at + V3f(cell_m)), area_m2,
-                              point.light * area_m2});
+                              point.light * area_m2, 1.5f * cell_m});
         }
     return sum / count;
 }
@@ -195,7 +199,7 @@ class Stride {
     size_t step_, next_ = 0;
 };
 
-void add_surfaces(const Scene& scene, std::vector<Thing>& out) {
+void add_surfaces(const Scene& scene, std::vector<Thing>& out, size_t most) {
     size_t emissive = 0, textured = 0, other = 0;
     const auto triangles = [&](const Instance& i) { return scene.meshes[i.mesh].triangles.size(); };
     const auto has_picture = [&](const Instance& i) {
@@ -231,15 +235,15 @@ void add_surfaces(const Scene& scene, std::vector<Thing>& out) {
         add_body(lamps, glowing);
         add_body(wavelength, dispersing);
     }
-    add_things(out, Thing::Kind::Wavelength, std::move(wavelength));
+    add_things(out, Thing::Kind::Wavelength, std::move(wavelength), most);
     for (const std::vector<Part>& found : {lamps, bright})
         for (std::vector<Part>& of_class : classes_of(found))
-            add_things(out, Thing::Kind::Lamp, std::move(of_class));
+            add_things(out, Thing::Kind::Lamp, std::move(of_class), most);
 }
 
 // The sky's sampler draws in proportion to what is above the mean: what is drawn and far above it
 // is a sun.
-void add_sky(const Scene& scene, std::vector<Thing>& out) {
+void add_sky(const Scene& scene, std::vector<Thing>& out, size_t most) {
     const Sky& sky = scene.sky;
     if (sky.black() || sky.even()) return;
     std::vector<Part> bright;
@@ -257,21 +261,22 @@ void add_sky(const Scene& scene, std::vector<Thing>& out) {
     for (const std::vector<Part>& of_class : classes_of(bright)) {
         std::vector<Part> parts;
         add_body(parts, of_class);
-        add_things(out, Thing::Kind::Lamp, std::move(parts));
+        add_things(out, Thing::Kind::Lamp, std::move(parts), most);
     }
     for (size_t i = first; i < out.size(); ++i) {
         out[i].at_infinity = true;
         out[i].centre = unit(out[i].centre);
+        out[i].reach_m += static_cast<float>(std::sqrt(out[i].area_m2 / double(kPi)));
         out[i].radius_m += static_cast<float>(std::sqrt(out[i].area_m2 / double(kPi)));
     }
 }
 
 }  // namespace
 
-std::vector<Thing> things_of(const Scene& scene) {
+std::vector<Thing> things_of(const Scene& scene, size_t most_of_class) {
     std::vector<Thing> out;
-    add_surfaces(scene, out);
-    add_sky(scene, out);
+    add_surfaces(scene, out, most_of_class);
+    add_sky(scene, out, most_of_class);
     return out;
 }
 

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "apps/plan/things.h"
 #include "camera/camera.h"
 #include "core/film/film.h"
+#include "core/light/things.h"
 
 namespace petzval {
 
@@ -20,6 +20,16 @@ struct FilmRegion {
     /// Pixel number i of the region, row by row within each rectangle; i < area_px().
     [[nodiscard]] std::array<int, 2> pixel(int64_t i) const;
 };
+
+/// Rays of some film points of a rectangle.
+struct RayBundle {
+    std::vector<Ray> rays;
+    V3f direction{0.f};  ///< mean, unit; 0 where there is no ray
+};
+[[nodiscard]] RayBundle bundle_of(const Camera&, V2i size_px, const Rect&);
+/// Whether rays of the bundle's rectangle pass a thing, as seen in the plane through it across
+/// their mean direction. Margins make up for rays that the bundle does not have.
+[[nodiscard]] bool passes(const RayBundle&, const Thing&);
 
 /// For each thing, the region of the frame whose camera rays pass it, as coarse as a few dozen
 /// rectangles; empty where none does. What stands between, mirrors and glass are not regarded. Rays

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/plan/film_region.h"
+#include "camera/setup/film_region.h"
 
 #include <algorithm>
 #include <array>
@@ -14,49 +14,6 @@ constexpr size_t kMostRects = 32;
 /// What the rays of a cell span is enlarged by this share on each side: those between and beyond
 /// them, through the rim of the iris, pass a little outside.
 constexpr float kMargin = 0.6f;
-
-struct Bundle {
-    std::vector<Ray> rays;
-    V3f direction{0.f};  ///< mean, unit; 0 where there is no ray
-};
-
-Bundle bundle_of(const Camera& camera, V2i size_px, const Rect& cell) {
-    Bundle out;
-    const V2f size(size_px);
-    for (uint32_t i = 0; i < kRays; ++i) {
-        const Sampler sampler(SamplerKind::Owen, 0, {cell.x0, cell.y0, i});
-        const V2f within = i < 4 ? V2f(float(i & 1), float(i >> 1)) : sampler.get2(Dim::Film);
-        const V2f at(float(cell.x0) + within.x * float(cell.width()),
-                     float(cell.y0) + within.y * float(cell.height()));
-        const CameraSample seen = camera.sample({at / size, sampler}, Bands::rgb());
-        if (seen.empty()) continue;
-        out.rays.push_back(seen[0].ray);
-        out.direction += seen[0].ray.direction;
-    }
-    const float length = out.direction.length();
-    out.direction = length > 0 ? out.direction / length : V3f(0.f);
-    return out;
-}
-
-/// Whether the rays pass a thing, as seen in the plane through it across their mean direction.
-bool passes(const Bundle& bundle, const Thing& thing) {
-    const V3f w = bundle.direction;
-    if (!(w.length2() > 0)) return false;
-    const Frame frame = Frame::about(w);
-    Imath::Box2f span;
-    for (const Ray& ray : bundle.rays) {
-        const V3f to = thing.at_infinity ? thing.centre : thing.centre - ray.origin;
-        if (!thing.at_infinity && to.length2() <= thing.radius_m * thing.radius_m) return true;
-        const float forward = ray.direction.dot(w), t = to.dot(w) / forward;
-        if (!(forward > 0) || !(t > 0)) continue;
-        const V3f beside = t * ray.direction - to;
-        span.extendBy(V2f(beside.dot(frame.x), beside.dot(frame.y)));
-    }
-    if (span.isEmpty()) return false;
-    const V2f middle = span.center(), half = span.size() / 2;
-    return std::fabs(middle.x) <= half.x * (1 + kMargin) + thing.radius_m &&
-           std::fabs(middle.y) <= half.y * (1 + kMargin) + thing.radius_m;
-}
 
 std::vector<Rect> first_cells(V2i size) {
     const auto side =
@@ -92,6 +49,43 @@ FilmRegion refined(const Camera& camera, V2i size_px, const Thing& thing, std::v
 
 }  // namespace
 
+RayBundle bundle_of(const Camera& camera, V2i size_px, const Rect& cell) {
+    RayBundle out;
+    const V2f size(size_px);
+    for (uint32_t i = 0; i < kRays; ++i) {
+        const Sampler sampler(SamplerKind::Owen, 0, {cell.x0, cell.y0, i});
+        const V2f within = i < 4 ? V2f(float(i & 1), float(i >> 1)) : sampler.get2(Dim::Film);
+        const V2f at(float(cell.x0) + within.x * float(cell.width()),
+                     float(cell.y0) + within.y * float(cell.height()));
+        const CameraSample seen = camera.sample({at / size, sampler}, Bands::rgb());
+        if (seen.empty()) continue;
+        out.rays.push_back(seen[0].ray);
+        out.direction += seen[0].ray.direction;
+    }
+    const float length = out.direction.length();
+    out.direction = length > 0 ? out.direction / length : V3f(0.f);
+    return out;
+}
+
+bool passes(const RayBundle& bundle, const Thing& thing) {
+    const V3f w = bundle.direction;
+    if (!(w.length2() > 0)) return false;
+    const Frame frame = Frame::about(w);
+    Imath::Box2f span;
+    for (const Ray& ray : bundle.rays) {
+        const V3f to = thing.at_infinity ? thing.centre : thing.centre - ray.origin;
+        if (!thing.at_infinity && to.length2() <= thing.radius_m * thing.radius_m) return true;
+        const float forward = ray.direction.dot(w), t = to.dot(w) / forward;
+        if (!(forward > 0) || !(t > 0)) continue;
+        const V3f beside = t * ray.direction - to;
+        span.extendBy(V2f(beside.dot(frame.x), beside.dot(frame.y)));
+    }
+    if (span.isEmpty()) return false;
+    const V2f middle = span.center(), half = span.size() / 2;
+    return std::fabs(middle.x) <= half.x * (1 + kMargin) + thing.radius_m &&
+           std::fabs(middle.y) <= half.y * (1 + kMargin) + thing.radius_m;
+}
+
 int64_t FilmRegion::area_px() const {
     int64_t sum = 0;
     for (const Rect& r : rects) sum += int64_t{r.width()} * r.height();
@@ -119,7 +113,7 @@ std::vector<FilmRegion> film_regions(const Camera& camera, V2i size_px,
     std::vector<FilmRegion> out;
     if (things.empty()) return out;
     const std::vector<Rect> cells = first_cells(size_px);
-    std::vector<Bundle> bundles;
+    std::vector<RayBundle> bundles;
     for (const Rect& cell : cells) bundles.push_back(bundle_of(camera, size_px, cell));
     for (const Thing& thing : things) {
         std::vector<Rect> met;

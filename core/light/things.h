@@ -17,7 +17,8 @@ struct Thing {
     };
     Kind kind;
     V3f centre;                ///< metres; a unit direction for what lies at infinity
-    float radius_m = 0;        ///< at infinity: radians
+    float radius_m = 0;        ///< of a sphere around its box; at infinity: radians
+    float reach_m = 0;         ///< from its centre to its farthest point, tighter; likewise
     bool at_infinity = false;  ///< a spot of the sky
     double area_m2 = 0;        ///< of a lamp: half its surface; at infinity: sr
     double radiance = 0;       ///< of a lamp: mean luminance, nits
@@ -27,10 +28,10 @@ struct Thing {
 };
 
 /// Things of a scene, seldom more than a hundred: an object whose parts lie apart counts as
-/// several, and so do bright parts of emissive textures and of the sky. At most 32 are made of the
-/// lamps of one class of brightness, of which there are four, each a hundred times as dark as the
-/// one before. What is found in textures comes from up to 2^18 points. A pure function of the
+/// several, and so do bright parts of emissive textures and of the sky. At most so many are made of
+/// the lamps of one class of brightness, of which there are four, each a hundred times as dark as
+/// the one before. What is found in textures comes from up to 2^18 points. A pure function of the
 /// scene.
-[[nodiscard]] std::vector<Thing> things_of(const Scene&);
+[[nodiscard]] std::vector<Thing> things_of(const Scene&, size_t most_of_class = 32);
 
 }  // namespace petzval

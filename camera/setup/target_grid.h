@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Targets of a frame: which small bright things each part of it aims camera rays at.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "camera/camera.h"
+#include "core/light/things.h"
+
+namespace petzval {
+
+/// Targets for the lamps among some things: of each cell of about 16 x 16 pixels those that its
+/// rays pass, but few of them, by what each is expected to add to a pixel. nullptr where there are
+/// none, or the camera does not aim. A function of the arguments alone; at most a quarter of a
+/// camera ray is drawn for each pixel, and none is cast into the scene.
+[[nodiscard]] std::shared_ptr<const TargetGrid> find_targets(const Camera&, V2i size_px,
+                                                             std::span<const Thing>);
+
+}  // namespace petzval

@@ -262,7 +262,7 @@ void PlanComparison::measure(double most_samples, bool thorough) {
 }
 
 PilotScale PlanComparison::scale_of(const PilotModel& model, double floor) const {
-    return {&model, full_.get(), floor, least_};
+    return {&model, &scale(), floor, least_};
 }
 
 double PlanComparison::missed(PlanModel kind, const RareLight& rare) const {
@@ -272,9 +272,9 @@ double PlanComparison::missed(PlanModel kind, const RareLight& rare) const {
 
 void PlanComparison::evaluate() {
     const double most = kBiasShare * request_.tolerance * request_.tolerance;
-    least_ = least_means(*pilot_, *full_, lamps_);
-    const double floor = pilot_floor(*pilot_, *full_, least_);
-    const RareLight rare = rare_light(*pilot_, *full_, lamps_, has_lamps(things_), floor);
+    least_ = least_means(*pilot_, scale(), lamps_);
+    const double floor = pilot_floor(*pilot_, scale(), least_);
+    const RareLight rare = rare_light(*pilot_, scale(), lamps_, has_lamps(things_), floor);
     for (Entry& e : entries_) {
         if (e.difference.empty() || e.settled) continue;
         e.found.square_bias = square_error(*pilot_, e.difference, scale_of(*e.model, floor));
@@ -299,7 +299,7 @@ bool PlanComparison::all_known(bool thorough) const {
 
 std::vector<PlanCandidate> PlanComparison::candidates() const {
     std::vector<PlanCandidate> out;
-    const double floor = pilot_floor(*pilot_, *full_, least_);
+    const double floor = pilot_floor(*pilot_, scale(), least_);
     const auto measured = [&](PlanCandidate found, const PilotModel& model) {
         found.noise = noise_of(*pilot_, model, scale_of(model, floor));
         // Through another camera lamps fall on other places: those of the pinhole are not blurred.
@@ -327,7 +327,7 @@ std::optional<double> PlanComparison::effort_of(const SceneRequest& scene, size_
     const PilotModel& own = model_of(candidate);
     const auto other = model(scene);
     pilot_->sample(*other, own.samples());
-    const double floor = pilot_floor(*pilot_, *full_, least_);
+    const double floor = pilot_floor(*pilot_, scale(), least_);
     const auto effort = [&](const PilotModel& m) {
         return noise_of(*pilot_, m, scale_of(own, floor)).variances.back().mean *
                m.rays_per_sample();

@@ -61,6 +61,9 @@ class PlanComparison {
     void add(PlanModel, const SceneRequest&, const FilmMap& most);
     void add_camera(PlanModel, const SceneRequest&);
     void evaluate();
+    /// What errors are relative to: of the models whose picture is hardly another, the one with the
+    /// least noise.
+    [[nodiscard]] const PilotModel& scale() const { return shared_ ? *shared_ : *full_; }
     [[nodiscard]] PilotScale scale_of(const PilotModel&, double floor) const;
     /// What may be missed beside what pixels that were not looked at hold.
     [[nodiscard]] double missed(PlanModel, const RareLight&) const;

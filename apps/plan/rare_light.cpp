@@ -17,6 +17,11 @@ constexpr size_t kNearest = 16;
 /// Share of the light on its disc from which on a lamp decides how bright that is.
 constexpr double kMostOfTheLight = 0.5;
 
+/// Share of the disc around a cluster of lamps that one lamp fills at least: a square has 0.3.
+constexpr double kFilled = 0.1;
+/// Share of the frame that a lamp's disc has at most.
+constexpr double kSmallDisc = 0.125;
+
 /// Ray of a random film point in a region; nothing where the lens lets none through.
 std::optional<Ray> ray_in(const RenderSetup& setup, V2i size_px, const FilmRegion& region,
                           uint32_t i) {
@@ -42,6 +47,14 @@ double square_distance(const Ray& ray, const Thing& lamp) {
     const V3f to = lamp.centre - ray.origin;
     const float along = to.dot(ray.direction);
     return along > 0 ? double((to - along * ray.direction).length2()) : INFINITY;
+}
+
+/// Whether a thing is one lamp, not several far apart, whose disc is a small part of the frame.
+bool is_alone(const Thing& lamp, const FilmRegion& region, V2i size_px) {
+    const double across = double(kPi) * double(lamp.radius_m) * double(lamp.radius_m);
+    return lamp.area_m2 >= kFilled * across &&
+           static_cast<double>(region.area_px()) <=
+               kSmallDisc * double(size_px.x) * double(size_px.y);
 }
 
 bool is_hidden(const Bvh& bvh, const Ray& ray, const Thing& lamp) {
@@ -79,7 +92,8 @@ std::vector<SeenLamp> seen_lamps(const RenderSetup& setup, V2i size_px,
         // A lamp that is larger than the disk is met by all rays within it.
         const double shown = disk > 0 ? std::min(1., lamp.area_m2 / disk) : 1;
         out.push_back({regions[n].area_px(), shown * kNearest / kRays, lamp.radiance,
-                       lamp.at_infinity, 2 * lamp.radius_m, &regions[n]});
+                       lamp.at_infinity, 2 * lamp.radius_m, is_alone(lamp, regions[n], size_px),
+                       &regions[n]});
     }
     return out;
 }
@@ -88,7 +102,7 @@ std::vector<V3d> least_means(const Pilot& pilot, const PilotModel& model,
                              const std::vector<SeenLamp>& lamps) {
     std::vector<V3d> out(pilot.pixels(), V3d(0.));
     for (const SeenLamp& lamp : lamps) {
-        if (kPilotReplicates * model.samples() * lamp.probability >= 1) continue;
+        if (!lamp.alone || kPilotReplicates * model.samples() * lamp.probability >= 1) continue;
         std::vector<size_t> on_disc;
         V3d sum(0.);
         for (size_t p = 0; p < pilot.pixels(); ++p) {

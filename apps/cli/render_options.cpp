@@ -56,7 +56,7 @@ void add_sampling_options(CLI::App& app, RenderOptions& o) {
         "how one of many lights is chosen: tree (default; power, distance and direction), power, "
         "uniform");
     add_choice<TargetUse>(app, "--targets", o.scene.targets,
-                          "camera rays to small lamps out of focus: auto (default), off");
+                          "camera rays to small lamps out of focus, of thin lenses and singlets: auto, off (default)");
     add_choice<Traversal>(app, "--traversal", o.scene.traversal,
                           "robust (default): watertight; fast: may leak at edges");
 }

@@ -34,6 +34,7 @@ TEST_F(CliErrors, WordsThatAreNone) {
                        {{"--sampler", "dice"}, "owen, sobol, independent"},
                        {{"--light-choice", "best"}, "tree, power, uniform"},
                        {{"--traversal", "slow"}, "robust, fast"},
+                       {{"--targets", "some"}, "auto, off"},
                        {{"--progress", "loud"}, "auto, bar, lines, json, none"},
                        {{"--frob"}, "--frob"},
                        {{"-o", path("out.tga")}, "must end in .exr, .png, .jpg or .jpeg"},

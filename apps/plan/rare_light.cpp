@@ -19,6 +19,7 @@ constexpr double kMostOfTheLight = 0.5;
 
 /// Share of the disc around a cluster of lamps that one lamp fills at least: a square has 0.3.
 constexpr double kFilled = 0.1;
+
 /// Ray of a random film point in a region; nothing where the lens lets none through.
 std::optional<Ray> ray_in(const RenderSetup& setup, V2i size_px, const FilmRegion& region,
                           uint32_t i) {

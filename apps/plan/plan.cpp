@@ -158,9 +158,10 @@ AutoSetup set_up_planned(const PlanRequest& request, TbbExecutor& executor, cons
         }
         const auto chosen = std::find_if(choice.candidates.begin(), choice.candidates.end(),
                                          [](const PlanCandidate& c) { return c.inside; });
-        // A choice that the pilot does not clear stays as it is.
-        if (!choice.candidates.empty() && chosen + 1 != choice.candidates.end()) {
-            choice.taken = static_cast<size_t>(chosen - choice.candidates.begin());
+        const auto index = static_cast<size_t>(chosen - choice.candidates.begin());
+        // The last is the fullest model. A choice that the pilot does not clear stays as it is.
+        if (index + 1 < choice.candidates.size()) {
+            choice.taken = index;
             other = chosen->scene;
             predicted_error = chosen->predicted();
             if (open.dispersion) choice.dispersion = DispersionMode::Shared;

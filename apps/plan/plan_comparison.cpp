@@ -120,19 +120,30 @@ PlanComparison::PlanComparison(const PlanRequest& request, const RenderSetup& fi
       full_scene_(resolved_request(first)),
       executor_(executor) {
     if (first.from.spectral.wavelengths) full_scene_.spectral.mode = SpectralMode::Wavelengths;
-    choose_looks(looks);
+    std::optional<RenderSetup> shared;
     if (open.dispersion) {
         shared_scene_ = full_scene_;
         full_scene_.camera.dispersion = DispersionMode::Split;
         shared_scene_.camera.dispersion = DispersionMode::Shared;
-        shared_ = model(shared_scene_);
+        shared = this->open(shared_scene_);
     }
-    full_ = model(full_scene_);
-    if (shared_)
-        dispersion_px_ =
-            lateral_dispersion_px(*full_->setup().view.camera, *shared_->setup().view.camera,
-                                  full_->setup().view.observer,
-                                  full_->setup().from.camera.focus_plane(), request.scene.size);
+    RenderSetup full = this->open(full_scene_);
+    if (shared) compare_dispersion(full, *shared);
+    choose_looks(looks);
+    if (shared) shared_ = model(*std::move(shared));
+    full_ = model(std::move(full));
+}
+
+void PlanComparison::compare_dispersion(const RenderSetup& split, const RenderSetup& shared) {
+    const V2i size = request_.scene.size;
+    const FocusPlane focus = first_.from.camera.focus_plane();
+    dispersion_px_ = lateral_dispersion_px(*split.view.camera, *shared.view.camera,
+                                           split.view.observer, focus, size);
+    dispersed_ = most_error(
+        displacement_of({*split.view.camera, split.view.observer},
+                        {*shared.view.camera, shared.view.observer}, *first_.prepared.scene,
+                        *first_.prepared.bvh, focus, size, kDispersionRays, true),
+        0);
 }
 
 // Things that shine or depend on wavelength get looks where their light lands, and so does what a
@@ -145,18 +156,6 @@ void PlanComparison::choose_looks(int wanted) {
                                    [](const Material& m) { return m.glass && m.refracts(); });
     regions_ = film_regions(*first_.view.camera, size, things_);
     lamps_ = seen_lamps(first_, size, things_, regions_);
-    if (open_.dispersion) {
-        SceneRequest apart = full_scene_, together = full_scene_;
-        apart.camera.dispersion = DispersionMode::Split;
-        together.camera.dispersion = DispersionMode::Shared;
-        const RenderSetup split = open(apart), shared = open(together);
-        dispersed_ =
-            most_error(displacement_of({*split.view.camera, split.view.observer},
-                                       {*shared.view.camera, shared.view.observer}, scene,
-                                       *first_.prepared.bvh, first_.from.camera.focus_plane(), size,
-                                       kDispersionRays, true),
-                       0);
-    }
     pilot_.emplace(
         size,
         petzval::choose_looks(size, wanted, regions_,
@@ -168,12 +167,12 @@ RenderSetup PlanComparison::open(const SceneRequest& scene) const {
     return view_of(first_, scene, executor_);
 }
 
-std::unique_ptr<PilotModel> PlanComparison::model(const SceneRequest& scene) const {
-    return pilot_->model(open(scene), request_.job, request_.path);
+std::unique_ptr<PilotModel> PlanComparison::model(RenderSetup setup) const {
+    return pilot_->model(std::move(setup), request_.job, request_.path);
 }
 
 void PlanComparison::add(PlanModel kind, const SceneRequest& scene, const FilmMap& most) {
-    auto own = model(scene);
+    auto own = model(open(scene));
     entries_.push_back({{kind, scene},
                         own.get(),
                         {{own.get(), 1}, {full_.get(), -1}},
@@ -225,7 +224,7 @@ void PlanComparison::add_shared() {
 void PlanComparison::add_unbiased(PlanModel kind, DispersionMode dispersion) {
     SceneRequest scene = full_scene_;
     scene.camera.dispersion = dispersion;
-    auto own = model(scene);
+    auto own = model(open(scene));
     entries_.push_back({{kind, scene}, own.get(), {}, 0, std::move(own)});
     entries_.back().found.inside = true;
 }
@@ -325,7 +324,7 @@ double PlanComparison::cpu_s_per_sample(size_t candidate) const {
 
 std::optional<double> PlanComparison::effort_of(const SceneRequest& scene, size_t candidate) const {
     const PilotModel& own = model_of(candidate);
-    const auto other = model(scene);
+    const auto other = model(open(scene));
     pilot_->sample(*other, own.samples());
     const double floor = pilot_floor(*pilot_, scale(), least_);
     const auto effort = [&](const PilotModel& m) {

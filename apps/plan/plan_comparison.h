@@ -56,7 +56,9 @@ class PlanComparison {
 
     [[nodiscard]] const PilotModel& model_of(size_t candidate) const;
     [[nodiscard]] RenderSetup open(const SceneRequest&) const;
-    [[nodiscard]] std::unique_ptr<PilotModel> model(const SceneRequest&) const;
+    [[nodiscard]] std::unique_ptr<PilotModel> model(RenderSetup) const;
+    /// The setups of one ray for each wavelength and of one for all.
+    void compare_dispersion(const RenderSetup& split, const RenderSetup& shared);
     void choose_looks(int wanted);
     void add(PlanModel, const SceneRequest&, const FilmMap& most);
     void add_camera(PlanModel, const SceneRequest&);

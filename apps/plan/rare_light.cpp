@@ -19,8 +19,6 @@ constexpr double kMostOfTheLight = 0.5;
 
 /// Share of the disc around a cluster of lamps that one lamp fills at least: a square has 0.3.
 constexpr double kFilled = 0.1;
-/// Share of the frame that a lamp's disc has at most.
-constexpr double kSmallDisc = 0.125;
 
 /// Ray of a random film point in a region; nothing where the lens lets none through.
 std::optional<Ray> ray_in(const RenderSetup& setup, V2i size_px, const FilmRegion& region,
@@ -49,12 +47,10 @@ double square_distance(const Ray& ray, const Thing& lamp) {
     return along > 0 ? double((to - along * ray.direction).length2()) : INFINITY;
 }
 
-/// Whether a thing is one lamp, not several far apart, whose disc is a small part of the frame.
-bool is_alone(const Thing& lamp, const FilmRegion& region, V2i size_px) {
+/// Whether a thing is one lamp, not several far apart.
+bool is_alone(const Thing& lamp) {
     const double across = double(kPi) * double(lamp.radius_m) * double(lamp.radius_m);
-    return lamp.area_m2 >= kFilled * across &&
-           static_cast<double>(region.area_px()) <=
-               kSmallDisc * double(size_px.x) * double(size_px.y);
+    return lamp.area_m2 >= kFilled * across;
 }
 
 bool is_hidden(const Bvh& bvh, const Ray& ray, const Thing& lamp) {
@@ -92,8 +88,7 @@ std::vector<SeenLamp> seen_lamps(const RenderSetup& setup, V2i size_px,
         // A lamp that is larger than the disk is met by all rays within it.
         const double shown = disk > 0 ? std::min(1., lamp.area_m2 / disk) : 1;
         out.push_back({regions[n].area_px(), shown * kNearest / kRays, lamp.radiance,
-                       lamp.at_infinity, 2 * lamp.radius_m, is_alone(lamp, regions[n], size_px),
-                       &regions[n]});
+                       lamp.at_infinity, 2 * lamp.radius_m, is_alone(lamp), &regions[n]});
     }
     return out;
 }

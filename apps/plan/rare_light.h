@@ -22,7 +22,7 @@ struct SeenLamp {
     double radiance;     ///< nits
     bool at_infinity;    ///< a spot of the sky
     float size;          ///< across: metres, at infinity radians
-    bool alone;          ///< its light is even over the area: one lamp, and a small area
+    bool alone;          ///< its light is even over the area: one lamp, not several far apart
     const FilmRegion* region;
 };
 

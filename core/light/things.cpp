@@ -117,7 +117,7 @@ std::array<std::vector<Part>, kClasses> classes_of(const std::vector<Part>& part
     for (const Part& part : parts) {
         if (!(part.light() > 0)) continue;
         const double darker = std::log(most / part.light()) / std::log(kClassRatio);
-        classes[static_cast<size_t>(std::min(darker, double(kClasses - 1)))].push_back(part);
+        classes[static_cast<size_t>(std::min(double(kClasses - 1), darker))].push_back(part);
     }
     return classes;
 }

@@ -266,6 +266,20 @@ TEST_F(Plans, NoiseOfLampsThatFewPathsFindIsAtLeast) {
         << plan;
 }
 
+TEST(PlanWords, LampsAreInMillimetresAndSpotsOfTheSkyInDegrees) {
+    Plan plan;
+    plan.rare = {.lamps = 30, .spots = 1, .noise = 1};
+    plan.rare.largest_lamp_m = 2e-3;
+    plan.rare.largest_spot_rad = double(kPi) / 360;
+    EXPECT_EQ(rare_text(plan), "") << "the noise is known";
+    plan.noise_at_least = true;
+    EXPECT_EQ(
+        rare_text(plan),
+        "30 lamps of 2 mm at most and a spot of the sky of 0.5° at most: few paths find them");
+    plan.rare.lamps = 0;
+    EXPECT_EQ(rare_text(plan), "a spot of the sky of 0.5° at most: few paths find it");
+}
+
 // The last line is a command; what it writes is about the tolerance off a long one.
 TEST_F(Plans, TheCommandRenders) {
     const Words options = {"--fstop", "2", "--focus", "1.5", "--size", "32x18"};
@@ -321,6 +335,8 @@ TEST_F(Plans, ArgumentsThatAreWrongEndWithTwo) {
         {{"plan", scene_, "--tolerance", "%"}, "is not a share"},
         {{"plan", scene_, "--lens", "no-such-lens"}, "no-such-lens"},
         {{"plan", scene_, "--dispersion", "some"}, "none of auto, shared, hero, split"},
+        {{"plan", kOrnaments, "--tolerance", "1e-7%", "--size", "8x8"},
+         "--tolerance: would take more than 1.1e+09 samples of each pixel; give a larger one"},
         {{"plan", scene_, "--spp", "4"}, "--spp"}};
     for (const auto& [words, part] : cases) {
         const std::string line = error_of(words, 2);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -36,7 +37,7 @@ struct FilmPoint {
 struct CameraPath {
     Ray ray;
     f4 weight;  ///< radiance along the ray times this is the film's estimate
-    /// Share of the weight that counts for light: rays that are aimed at targets bring the rest.
+    /// Share of the weight that counts for light: rays to targets bring the rest.
     /// Coverage and layers take the whole weight.
     float share = 1;
     m4 lanes;  ///< bands that share this ray
@@ -89,6 +90,11 @@ class CameraSample {
     [[nodiscard]] const CameraPath* end() const { return paths_.data() + size_; }
     /// Appends a path, to be filled in; at most kMostPaths may be added.
     CameraPath& add() { return paths_[size_++]; }
+    /// Makes this a sample of rays to targets: they fill no layers, and no losses are counted.
+    void leave_layers() {
+        lanes = {};
+        for (CameraPath& path : *this) path.fills_layers = false;
+    }
 
   private:
     size_t size_ = 0;
@@ -105,18 +111,6 @@ class Camera {
     /// Weighted rays of one point of the film, drawn by its sampler: none where the lens lets
     /// nothing through, one that all bands share, or up to four. Thread-safe.
     [[nodiscard]] virtual CameraSample sample(const FilmPoint&, const Bands&) const = 0;
-    /// Paths of the same film point that are aimed at one of some targets: together with those of
-    /// sample(), by their shares, an estimate without a bias (balance heuristic, Veach and Guibas
-    /// 1995). None where the film point has no targets, or the ray is blocked.
-    [[nodiscard]] virtual CameraSample aimed(const FilmPoint&, const Bands&,
-                                             std::span<const ListedTarget>) const {
-        return {};
-    }
-    /// Whether the camera can aim rays at targets.
-    [[nodiscard]] virtual bool aims() const { return false; }
-    /// Targets from here on, where the camera aims; nullptr: none.
-    void set_targets(std::shared_ptr<const TargetGrid> targets) { targets_ = std::move(targets); }
-    [[nodiscard]] const TargetGrid* targets() const { return targets_.get(); }
     /// What sample() gives for each of up to kMostFilmPoints film points, to the bit, which a
     /// camera may find faster for all at once. All or none of the bands are spectral, and of the
     /// points have a pixel filter.
@@ -125,9 +119,28 @@ class Camera {
         for (size_t i = 0; i < points.size(); ++i) out[i] = sample(points[i], bands[i]);
     }
 
+    /// Whether the camera can send rays to targets.
+    [[nodiscard]] virtual bool takes_targets() const { return false; }
+    /// A target made ready for the film points of a cell, with a chance of 1. Nothing where no ray
+    /// from there seems to meet its middle, or the camera takes no targets.
+    [[nodiscard]] virtual std::optional<ListedTarget> ready(const Target&, const FilmCell&) const {
+        return std::nullopt;
+    }
+    /// Paths of the same film points to one of the targets of each: together with those of
+    /// sample(), by their shares, an estimate without a bias (balance heuristic, Veach and Guibas
+    /// 1995). None for a film point that has no targets, or where the ray is blocked. As
+    /// sample_all().
+    virtual void sample_targets(std::span<const FilmPoint> points, std::span<const Bands>,
+                                std::span<const TargetList>, std::span<CameraSample> out) const {
+        for (size_t i = 0; i < points.size(); ++i) out[i] = {};
+    }
+    /// Targets from here on, made ready by this camera; nullptr: none.
+    void set_targets(std::shared_ptr<const TargetGrid> targets) { targets_ = std::move(targets); }
+    [[nodiscard]] const TargetGrid* targets() const { return targets_.get(); }
+
   protected:
-    [[nodiscard]] std::span<const ListedTarget> targets_at(const FilmPoint& at) const {
-        return targets_ ? targets_->at(at.film) : std::span<const ListedTarget>();
+    [[nodiscard]] TargetList targets_at(const FilmPoint& at) const {
+        return targets_ ? targets_->at(at.film) : TargetList();
     }
 
   private:

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Targets: small bright things that a camera aims rays at, beside those that it draws anyway.
+// Targets: small bright things that a camera sends rays to, beside those that it draws anyway.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -20,14 +21,57 @@ struct Target {
     bool at_infinity = false;  ///< a spot of the sky
 };
 
-/// Whether camera rays are aimed at targets. Auto: where they pay.
+/// Whether camera rays are sent to targets. Auto: where they pay.
 enum class TargetUse : uint8_t { Auto, Off };
 
-/// A target, and the chance that a ray is aimed at it.
-struct ListedTarget {
-    Target target;
-    float chance;  ///< those of a list add up to 1
+/// Target in the space of a camera, in metres, with two axes in its plane.
+struct LocalTarget {
+    V3d centre, normal;
+    double radius_m;
+    bool at_infinity;
+    V3d across, up;  ///< unit, at right angles to each other and to the normal
+
+    LocalTarget(const V3d& centre, const V3d& normal, double radius_m, bool at_infinity);
 };
+
+/// A known ray of a lens to the middle of a target, and how it changes: where the search for rays
+/// nearby starts. Direction cosines at the film.
+struct TargetStart {
+    V2f film_mm{0.f}, cosines{0.f};
+    V2f by_film_x{0.f}, by_film_y{0.f};  ///< for a millimetre on the film
+    V2f by_across{0.f}, by_up{0.f};      ///< for a radius on the target
+};
+
+/// Part of the film, from corner to corner, as FilmPoint has it.
+struct FilmCell {
+    V2f first, last;
+
+    /// The place of the cell that is nearest to another.
+    [[nodiscard]] V2f nearest(V2f place) const {
+        return {std::clamp(place.x, first.x, last.x), std::clamp(place.y, first.y, last.y)};
+    }
+};
+
+/// A target that is ready for the film points of a cell, and the chance that a ray is sent to it.
+struct ListedTarget {
+    static constexpr size_t kMostStarts = 6;
+
+    LocalTarget target;
+    float chance;  ///< those of a list add up to 1
+    float met;     ///< share of ordinary rays that pass it, about
+    /// Of a traced lens: one for each way on which rays get there, as far as they are known.
+    std::array<TargetStart, kMostStarts> starts{};
+    uint8_t start_count = 0;
+};
+
+using TargetList = std::span<const ListedTarget>;
+
+/// Number of the target that is picked from a list, not empty, by its chance; u in [0, 1).
+[[nodiscard]] inline size_t picked(TargetList targets, float u) {
+    size_t i = 0;
+    while (i + 1 < targets.size() && u >= targets[i].chance) u -= targets[i++].chance;
+    return i;
+}
 
 /// Targets of each part of a frame, by a grid of cells.
 struct TargetGrid {
@@ -35,7 +79,7 @@ struct TargetGrid {
     std::vector<std::vector<ListedTarget>> lists;  ///< row by row
 
     /// List of the cell of a film point, as FilmPoint has it; beyond the frame, of the nearest.
-    [[nodiscard]] std::span<const ListedTarget> at(V2f film) const {
+    [[nodiscard]] TargetList at(V2f film) const {
         const auto cell = [](float share, int count) {
             return static_cast<size_t>(
                 std::clamp(static_cast<int>(share * static_cast<float>(count)), 0, count - 1));
@@ -43,5 +87,12 @@ struct TargetGrid {
         return lists[cell(film.y, cells.y) * static_cast<size_t>(cells.x) + cell(film.x, cells.x)];
     }
 };
+
+inline LocalTarget::LocalTarget(const V3d& c, const V3d& n, double radius, bool infinite)
+    : centre(c), normal(n), radius_m(radius), at_infinity(infinite) {
+    const V3d axis = std::abs(normal.x) < 0.5 ? V3d(1, 0, 0) : V3d(0, 1, 0);
+    across = axis.cross(normal).normalized();
+    up = normal.cross(across);
+}
 
 }  // namespace petzval

@@ -34,9 +34,12 @@ class PathTracer {
 
     /// Estimate of the radiance that arrives along a camera ray, in `lanes` of the bands, 0 in the
     /// others. The sample's alpha and layers are filled in on the way; aovs: layers are wanted, of
-    /// all lanes. led: the ray depends on which lane leads. Pure but for the counts.
+    /// all lanes. led: the ray depends on which lane leads. rest: chance, above 0, that light is
+    /// counted which a rough surface reflects; then it counts 1 / rest times. Pure but for the
+    /// counts.
     [[nodiscard]] f4 radiance(const Ray&, const Bands&, const Sampler&, bool aovs, FilmSample&,
-                              PathStats&, m4 lanes = m4{-1, -1, -1, -1}, bool led = true) const;
+                              PathStats&, m4 lanes = m4{-1, -1, -1, -1}, bool led = true,
+                              float rest = 1.f) const;
 
   private:
     struct Vertex;

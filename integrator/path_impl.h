@@ -190,7 +190,7 @@ inline void record_layers(const Surface& s, const ShadingInput& shading, Rgb emi
 template <RayCaster Caster>
 f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const Sampler& sampler,
                                 bool aovs, FilmSample& out, PathStats& stats, m4 lanes,
-                                bool led) const {
+                                bool led, float rest) const {
     f4 sum{}, throughput = zero_off(lanes, uniform(1.f, bands));
     Ray ray = camera_ray;
     Vertex last{camera_ray.origin};
@@ -258,6 +258,11 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         const Bsdf bsdf(shading.bsdf, bands, shading.frame.to_local(wo), throughput, shading.up);
         const bool light_sampled =
             options_.technique != Technique::BsdfOnly && bsdf.has_wide_lobe();
+        if (rest < 1.f && bsdf.has_wide_lobe()) {
+            if (sampler.get1(Dim::TargetRest) >= rest) break;
+            throughput *= 1.f / rest;
+            rest = 1.f;
+        }
         f4 direct{};
         if (light_sampled && light)
             direct = throughput * (s.lifted() && !light->sample.at_infinity

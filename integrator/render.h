@@ -61,7 +61,7 @@ class SampleBatch {
     }
     void find_camera_rays();
     void trace(size_t i);
-    [[nodiscard]] f4 aimed(size_t i);
+    [[nodiscard]] f4 to_targets(size_t i);
 
     const Tracer& tracer_;
     const Camera& camera_;
@@ -73,7 +73,7 @@ class SampleBatch {
     std::array<SampleId, kMostFilmPoints> ids_;
     std::array<FilmPoint, kMostFilmPoints> points_;
     std::array<Bands, kMostFilmPoints> bands_;
-    std::array<CameraSample, kMostFilmPoints> seen_;
+    std::array<CameraSample, kMostFilmPoints> seen_, to_targets_;
 };
 
 template <class Tracer>
@@ -93,6 +93,17 @@ void SampleBatch<Tracer>::find_camera_rays() {
         points_[i] = {at / size, sampler, {&job_.filter, offset, size}};
     }
     camera_.sample_all({points_.data(), size_}, {bands_.data(), size_}, {seen_.data(), size_});
+    if (!camera_.targets()) return;
+    std::array<TargetList, kMostFilmPoints> lists;
+    bool any = false;
+    for (size_t i = 0; i < size_; ++i) {
+        lists[i] = camera_.targets()->at(points_[i].film);
+        to_targets_[i] = {};
+        any = any || !lists[i].empty();
+    }
+    if (any)
+        camera_.sample_targets({points_.data(), size_}, {bands_.data(), size_},
+                               {lists.data(), size_}, {to_targets_.data(), size_});
 }
 
 template <class Tracer>
@@ -117,7 +128,7 @@ void SampleBatch<Tracer>::trace(size_t i) {
         layers = false;
         behind += hsum(zero_off(path.lanes, path.weight)) * (1.f - sample.alpha);
     }
-    if (camera_.targets()) sum += aimed(i);
+    if (camera_.targets()) sum += to_targets(i);
     if (!film_) return;
     // Light that a lens keeps from the film is black, not transparent.
     sample.alpha = 1.f - behind / (seen.exposure * static_cast<float>(lane_count(bands.on)));
@@ -132,18 +143,15 @@ void SampleBatch<Tracer>::trace(size_t i) {
 }
 
 template <class Tracer>
-f4 SampleBatch<Tracer>::aimed(size_t i) {
-    const CameraSample paths = [&] {
-        const SectionTimer timer(stats_, TimedSection::Camera);
-        return camera_.aimed(points_[i], bands_[i], camera_.targets()->at(points_[i].film));
-    }();
+f4 SampleBatch<Tracer>::to_targets(size_t i) {
     f4 sum{};
-    for (const CameraPath& path : paths) {
+    for (const CameraPath& path : to_targets_[i]) {
         FilmSample other;
-        ++stats_.aimed_rays;
+        ++stats_.target_rays;
+        // What surfaces reflect is found by ordinary rays as well: it is worth the share's effort.
         sum += path.weight * path.share *
                tracer_.radiance(path.ray, bands_[i], points_[i].sampler, false, other, stats_,
-                                path.lanes, path.led);
+                                path.lanes, path.led, path.share);
     }
     return sum;
 }

@@ -30,7 +30,7 @@ struct ChanceFinds {
 
 struct PathStats {
     uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0;
-    uint64_t aimed_rays = 0;  ///< camera rays that were aimed at targets
+    uint64_t target_rays = 0;  ///< camera rays that were sent to targets
     uint64_t vertices = 0;    ///< hits that were shaded
     uint64_t tiles = 0;       ///< tiles that this worker rendered
     LensLosses<uint64_t> lens_lanes;
@@ -45,7 +45,7 @@ struct PathStats {
         camera_rays += o.camera_rays;
         bounce_rays += o.bounce_rays;
         shadow_rays += o.shadow_rays;
-        aimed_rays += o.aimed_rays;
+        target_rays += o.target_rays;
         vertices += o.vertices;
         tiles += o.tiles;
         lens_lanes += o.lens_lanes;

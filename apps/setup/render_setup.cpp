@@ -155,7 +155,7 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
         prepared.lights = std::make_shared<const LightChoice>(
             taught_by_pilot(*prepared.lights, scene, *prepared.bvh, *setup.view.camera,
                             setup.view.observer, request.size));
-    if (asked.targets == TargetUse::Auto && setup.view.camera->aims())
+    if (asked.targets == TargetUse::Auto && setup.view.camera->takes_targets())
         setup.view.camera->set_targets(
             find_targets(*setup.view.camera, request.size, things_of(scene, kMostTargets)));
     from.camera = std::move(camera.report);

@@ -30,6 +30,7 @@ template <LensPoint P>
     if (first == 4) return out;
     CameraPath& path = out.add();
     path.ray = lens.ray(rays, first);
+    path.share = lens.share(rays);
     path.lanes = passed;
     path.weight = zero_off(passed, weight);
     return out;
@@ -46,6 +47,7 @@ template <LensPoint P>
         CameraPath& path = out.add();
         path.led = true;
         path.ray = lens.ray(rays, lane);
+        path.share = lens.share(rays);
         path.lanes = only_lane(lane);
         path.weight = zero_off(path.lanes, weight);
     }
@@ -69,6 +71,7 @@ template <LensPoint P>
     CameraPath& path = out.add();
     path.led = true;
     path.ray = lens.ray(rays, lead);
+    path.share = lens.share(rays);
     path.weight = weight;
     path.lanes = reached;
     return out;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "camera/lens/direction_search.h"
 #include "camera/lens/trace.h"
 
 namespace petzval {
@@ -18,7 +19,7 @@ constexpr float kMostStepLeft = 1e-3f;
 // Newton step that floats hardly resolve: the rays to a stop far smaller than the lens come no
 // nearer.
 constexpr float kLeastStep = 1e-6f;
-constexpr int kMostSteps = 12, kMostHalvings = 6;
+constexpr int kMostSteps = 12;
 
 // Wavelengths at which the table is solved: evenly in 1 / nm, over what is visible.
 constexpr f4 kNodes_nm = {400, 466.6667f, 560, 700};
@@ -109,31 +110,18 @@ template AimedRay<f4> RayAimer::cross(const PlanePoint<f4>&, f4, f4, const LensI
 template AimedRay<f8> RayAimer::cross(const PlanePoint<f8>&, f8, f8, const LensIndices<f8>&) const;
 template AimedRay<d4> RayAimer::cross(const PlanePoint<d4>&, d4, d4, const LensIndices<d4>&) const;
 
-// Rays by Newton's method from a guess: half the step where it leads to where rays never reach the
-// stop.
 FoundRays RayAimer::newton(const PlanePoint<f8>& film_mm, const PlanePoint<f8>& stop_mm,
                            const PlanePoint<f8>& guess, const LensIndices<f8>& indices) const {
     FoundRays out;
-    f8 l = guess.x, m = guess.y, good_l = l, good_m = m, step_l{}, step_m{};
-    m8 left = ~m8{}, halvings{};
-    for (int i = 0; i < kMostSteps; ++i) {
-        const AimedRay<f8> c = cross<f8>(film_mm, l, m, indices);
-        const Step<f8> by = step_towards(stop_mm, c);
-        const m8 reached = (l * l + m * m < 1.f) & c.ray.alive();
-        good_l = reached ? l : good_l, good_m = reached ? m : good_m;
-        step_l = reached ? by.l : 0.5f * step_l, step_m = reached ? by.m : 0.5f * step_m;
-        const m8 there = by.left2_mm2 < sqr(kTolerance * stop_radius_mm_);
-        const f8 most = there ? splat8(kMostStepLeft) : splat8(kLeastStep);
-        const m8 done = left & reached & (step_l * step_l + step_m * step_m < most * most);
-        out.found |= done;
-        out.traces = done ? m8{} + (i + 1) : out.traces;
-        // Lanes that are done stay where they are, and so does what is found there.
-        static_cast<AimedRay<f8>&>(out) = c;
-        halvings -= ~reached;
-        left &= ~done & (reached | (i > 0 ? halvings <= kMostHalvings : m8{}));
-        if (!any(left)) break;
-        l = left ? good_l + step_l : l, m = left ? good_m + step_m : m;
-    }
+    const FoundDirections found =
+        find_directions(~m8{}, guess.x, guess.y, kMostStepLeft, [&](f8 l, f8 m) -> DirectionStep {
+            static_cast<AimedRay<f8>&>(out) = cross<f8>(film_mm, l, m, indices);
+            const Step<f8> by = step_towards<f8>(stop_mm, out);
+            return {by.l, by.m, (l * l + m * m < 1.f) & out.ray.alive(),
+                    by.left2_mm2 < sqr(kTolerance * stop_radius_mm_)};
+        });
+    out.found = found.found;
+    out.traces = found.traces;
     return out;
 }
 

@@ -59,8 +59,9 @@ class AberratedLensCamera::Point {
     };
 
     /// Camera, film point and bands must outlive it.
-    Point(const AberratedLensCamera& camera, const FilmPoint& at, V2f stop_mm, const Bands& bands)
-        : c_(camera), at_(at), bands_(bands), stop_mm_(stop_mm) {}
+    Point(const AberratedLensCamera& camera, const FilmPoint& at, V2f stop_mm, float share,
+          const Bands& bands)
+        : c_(camera), at_(at), bands_(bands), stop_mm_(stop_mm), share_(share) {}
 
     [[nodiscard]] Rays rays(const LaneRequest& request) const {
         Rays out;
@@ -92,6 +93,7 @@ class AberratedLensCamera::Point {
         return {off * (rays.stop_mm.x * px.x), off * (-rays.stop_mm.y * px.y), all.weight,
                 all.weight, vignetting_where(off, rays.stop_mm)};
     }
+    [[nodiscard]] float share(const Rays&) const { return share_; }
     [[nodiscard]] float exposure() const { return c_.in_.exposure; }
 
   private:
@@ -123,32 +125,41 @@ class AberratedLensCamera::Point {
     const FilmPoint& at_;
     const Bands& bands_;
     V2f stop_mm_;
+    float share_;
 };
 
 CameraSample AberratedLensCamera::sample(const FilmPoint& at, const Bands& bands) const {
     const V2f stop_mm = in_.iris.sample(at.sampler.get2(Dim::Lens));
-    CameraSample out =
-        sample_lens(Point(*this, at, stop_mm, bands), in_.dispersion, at.pixel, bands);
     const auto targets = targets_at(at);
-    if (targets.empty()) return out;
-    const Pencils rays = pencils(at, bands);
-    const float share = TargetedStop{in_.iris, pose_, rays.span()}.share(stop_mm, targets);
-    for (CameraPath& path : out) path.share = share;
-    return out;
+    float share = 1;
+    if (!targets.empty())
+        share = TargetedStop{in_.iris, pencils(at, bands).span()}.share(stop_mm, targets);
+    return sample_lens(Point(*this, at, stop_mm, share, bands), in_.dispersion, at.pixel, bands);
 }
 
-CameraSample AberratedLensCamera::aimed(const FilmPoint& at, const Bands& bands,
-                                        std::span<const ListedTarget> targets) const {
+std::optional<ListedTarget> AberratedLensCamera::ready(const Target& target,
+                                                   const FilmCell& cell) const {
+    const LocalTarget local = pose_.local(target);
+    const FilmPoint at{cell.nearest(pictured(local.centre, V2f(tan_half_x_, tan_half_y_)))};
+    return TargetedStop{in_.iris, pencils(at, Bands::rgb()).span()}.ready(local);
+}
+
+void AberratedLensCamera::sample_targets(std::span<const FilmPoint> points,
+                                    std::span<const Bands> bands,
+                                    std::span<const TargetList> targets,
+                                    std::span<CameraSample> out) const {
+    for (size_t i = 0; i < points.size(); ++i) out[i] = to_target(points[i], bands[i], targets[i]);
+}
+
+CameraSample AberratedLensCamera::to_target(const FilmPoint& at, const Bands& bands,
+                                            TargetList targets) const {
     if (targets.empty()) return {};
     const Pencils rays = pencils(at, bands);
-    const auto found = TargetedStop{in_.iris, pose_, rays.span()}.aim_at_one(at, targets);
+    const auto found = TargetedStop{in_.iris, rays.span()}.aim_at_one(at, targets);
     if (!found) return {};
-    CameraSample out =
-        sample_lens(Point(*this, at, found->stop_mm, bands), in_.dispersion, at.pixel, bands);
-    for (CameraPath& path : out) {
-        path.share = found->share;
-        path.fills_layers = false;
-    }
+    CameraSample out = sample_lens(Point(*this, at, found->stop_mm, found->share, bands),
+                                   in_.dispersion, at.pixel, bands);
+    out.leave_layers();
     return out;
 }
 

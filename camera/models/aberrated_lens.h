@@ -31,12 +31,14 @@ class AberratedLensCamera final : public Camera {
     /// light at all of 360 to 830 nm, or an iris wider than its surfaces or than f(h) > f/2 allows.
     explicit AberratedLensCamera(AberratedLens);
     [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
-    [[nodiscard]] CameraSample aimed(const FilmPoint&, const Bands&,
-                                     std::span<const ListedTarget>) const override;
-    [[nodiscard]] bool aims() const override { return true; }
+    [[nodiscard]] bool takes_targets() const override { return true; }
+    [[nodiscard]] std::optional<ListedTarget> ready(const Target&, const FilmCell&) const override;
+    void sample_targets(std::span<const FilmPoint>, std::span<const Bands>,
+                        std::span<const TargetList>, std::span<CameraSample>) const override;
     [[nodiscard]] double film_distance_mm() const { return film_mm_; }
 
   private:
+    [[nodiscard]] CameraSample to_target(const FilmPoint&, const Bands&, TargetList) const;
     /// A film point's rays, for the strategies of camera/dispersion.
     class Point;
     /// Pencils of the lanes by whose rays points of the stop are drawn.

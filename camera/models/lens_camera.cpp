@@ -12,6 +12,8 @@ namespace petzval {
 namespace {
 
 constexpr auto kLineD = static_cast<float>(kLineD_nm);
+/// Directions that ray aiming finds are this near to the true ones.
+constexpr float kSameDirection = 2e-3f;
 
 // Transmission of the stop at a point of each lane.
 template <class V>
@@ -54,6 +56,11 @@ LensLosses<uint32_t> losses(m4 on, const LensDraw<V>& drawn, MaskOf<V> clear) {
     return out;
 }
 
+// Balance heuristic of the two ways in which a camera ray may be drawn.
+float share_of(float density, float to_targets) {
+    return to_targets > 0.f ? density / (density + to_targets) : 1.f;
+}
+
 // One lane of a ray.
 template <class V>
 SceneRay<ScalarOf<V>> lane_of(const LensRay<V>& ray, int i) {
@@ -72,6 +79,8 @@ LensCamera::LensCamera(LensCameraInput in)
       pose_(in_.to_world),
       optics_(in_.lens, in_.iris, in_.coating, in_.film_mm,
               0.5 * std::hypot(in_.film_width_mm, in_.film_height_mm)),
+      targets_(*in_.lens, optics_.aimer(), in_.entrance_pupil_mm,
+               double(in_.iris.bounding_radius_mm()), in_.iris.area_mm2()),
       line_d_(in_.lens->exact_indices(splat(kLineD))),
       line_d_of_all_(in_.lens->exact_indices(splat8(kLineD))),
       exact_line_d_(in_.lens->exact_indices(broadcast<d4>(kLineD_nm))) {}
@@ -124,6 +133,7 @@ class LensCamera::Point {
     [[nodiscard]] Ray ray(const LensDraw<V>& rays, int lane) const {
         return c_.in_world(lane_of(rays.ray, lane));
     }
+    [[nodiscard]] float share(const LensDraw<V>& rays) const { return rays.share; }
     [[nodiscard]] FilmLanding landing(const LensDraw<V>&, const LaneRequest&) const;
     [[nodiscard]] float exposure() const { return c_.exposure_; }
 
@@ -180,6 +190,7 @@ LensDraw<V> LensCamera::Point<V>::rays(const LaneRequest& request) const {
                                         out.ray, Clip::Yes));
         const S gain = S(c_.gain_) * static_cast<S>(lane_count(at_.bands.on)) / lanes;
         out.weight = select(aimed.clear & out.ray.alive(), V(open * (gain / density)), V{});
+        out.share = share_of(static_cast<float>(density), at_.to_targets);
     }
     out.losses = losses(request.lanes, out, aimed.clear);
     if (request.coated && any(out.weight > 0))
@@ -214,6 +225,9 @@ class LensCamera::LeadPoint {
 
     [[nodiscard]] Rays rays(const LaneRequest&) const;
     [[nodiscard]] Ray ray(const Rays&, int) const { return c_.in_world(lane_of(rays_.ray, lane_)); }
+    [[nodiscard]] float share(const Rays&) const {
+        return share_of(rays_.density[lane_], at_.to_targets);
+    }
     [[nodiscard]] FilmLanding landing(const Rays&, const LaneRequest&) const {
         return c_.in_pixels(landing_, at_.frame_px);
     }
@@ -287,44 +301,159 @@ CameraSample LensCamera::sample(const FilmPoint& point, const Bands& bands) cons
     return out;
 }
 
-void LensCamera::sample_all(std::span<const FilmPoint> points, std::span<const Bands> bands,
-                            std::span<CameraSample> out) const {
-    const bool achromatic = one_ray(bands[0], in_.dispersion);
+struct LensCamera::Batch {
+    std::span<const FilmPoint> points;
+    std::span<const Bands> bands;
+    bool achromatic;
+    bool of_lead;  ///< each point has one ray, that of the lane that leads
     LeadPoints at;
+    LensIndices<f8> indices;
+};
+
+// The image stands on its head: what is seen on the right falls on the left of the film.
+V2f LensCamera::film_mm(V2f film) const {
+    return {(0.5f - film.x) * static_cast<float>(in_.film_width_mm),
+            (film.y - 0.5f) * static_cast<float>(in_.film_height_mm)};
+}
+
+auto LensCamera::batch(std::span<const FilmPoint> points, std::span<const Bands> bands) const
+    -> Batch {
+    Batch out{points, bands, one_ray(bands[0], in_.dispersion), false, {}, {}};
+    LeadPoints& at = out.at;
     for (size_t i = 0; i < kMostFilmPoints; ++i) {
         if (i >= points.size()) {
             at.film_mm[i] = at.film_mm[0], at.u[i] = at.u[0], at.nm[i] = at.nm[0];
             continue;
         }
-        // The image stands on its head: what is seen on the right falls on the left of the film.
-        at.film_mm[i] = {(0.5f - points[i].film.x) * static_cast<float>(in_.film_width_mm),
-                         (points[i].film.y - 0.5f) * static_cast<float>(in_.film_height_mm)};
+        at.film_mm[i] = film_mm(points[i].film);
         at.u[i] = points[i].sampler.get2(Dim::Lens);
-        at.nm[i] = achromatic ? kLineD : bands[i].nm[bands[i].lead];
+        at.nm[i] = out.achromatic ? kLineD : bands[i].nm[bands[i].lead];
     }
-    const LensIndices<f8> indices = indices_of(at, achromatic);
-    LeadRays rays = optics_.aim(at, indices);
+    out.of_lead = out.achromatic ||
+                  (in_.dispersion == DispersionMode::Hero &&
+                   std::all_of(points.begin(), points.end(),
+                               [](const FilmPoint& p) { return p.pixel.filter != nullptr; }));
+    out.indices = indices_of(at, out.achromatic);
+    return out;
+}
+
+void LensCamera::sample_all(std::span<const FilmPoint> points, std::span<const Bands> bands,
+                            std::span<CameraSample> out) const {
+    const Batch all = batch(points, bands);
+    LeadRays rays = optics_.aim(all.at, all.indices);
+    std::array<float, kMostFilmPoints> density{};
+    if (targets()) {
+        std::array<TargetList, kMostFilmPoints> lists;
+        for (size_t i = 0; i < points.size(); ++i) lists[i] = targets_at(points[i]);
+        density = to_targets(all, rays, lists);
+    }
+    finish(all, rays, density, out);
+}
+
+std::optional<ListedTarget> LensCamera::ready(const Target& target, const FilmCell& cell) const {
+    const V2f a = film_mm(cell.first), b = film_mm(cell.last);
+    return targets_.ready(pose_.local(target), {V2f(std::min(a.x, b.x), std::min(a.y, b.y)),
+                                                V2f(std::max(a.x, b.x), std::max(a.y, b.y))});
+}
+
+void LensCamera::sample_targets(std::span<const FilmPoint> points, std::span<const Bands> bands,
+                                std::span<const TargetList> listed,
+                                std::span<CameraSample> out) const {
+    const Batch all = batch(points, bands);
+    std::array<TargetList, kMostFilmPoints> lists;
+    std::array<Sampler, kMostFilmPoints> samplers;
+    PlanePoint<f8> film(f8{}, f8{});
+    for (size_t i = 0; i < kMostFilmPoints; ++i) {
+        const int lane = static_cast<int>(i);
+        film.x[lane] = all.at.film_mm[i].x, film.y[lane] = all.at.film_mm[i].y;
+        if (i < points.size()) lists[i] = listed[i], samplers[i] = points[i].sampler;
+    }
+    const TargetChoice choice = LensTargets::choose(lists, {samplers.data(), points.size()});
+    const FoundDirections found = targets_.find({film, all.indices, lists}, choice);
+    LeadRays rays;
+    static_cast<AimedRay<f8>&>(rays.aimed) =
+        optics_.aimer().cross<f8>(film, found.l, found.m, all.indices);
+    rays.stop_mm = {rays.aimed.ray.origin.x, rays.aimed.ray.origin.y};
+    // Where the pupil folds, draws of the stop find one of the rays that cross it at a point. Only
+    // that one counts, with targets and without.
+    const FoundRays back = optics_.aimer().aim(film, rays.stop_mm, all.indices, all.at.nm);
+    const f8 off_l = back.l - found.l, off_m = back.m - found.m;
+    rays.aimed.found = found.found & rays.aimed.ray.alive() & back.found &
+                       (off_l * off_l + off_m * off_m < sqr(kSameDirection));
+    const std::array<float, kMostFilmPoints> density = to_targets(all, rays, lists);
+    for (size_t i = 0; i < points.size(); ++i)
+        if (!(density[i] > 0.f)) rays.aimed.found[static_cast<int>(i)] = 0;
+    finish(all, rays, density, out);
+    for (size_t i = 0; i < points.size(); ++i) out[i].leave_layers();
+}
+
+// Of one lane, or where lanes part and share a direction, the mean over lanes: each may have been
+// the one that it was drawn for.
+std::array<float, kMostFilmPoints> LensCamera::to_targets(
+    const Batch& all, const LeadRays& rays,
+    const std::array<TargetList, kMostFilmPoints>& listed) const {
+    std::array<float, kMostFilmPoints> out{};
+    std::array<TargetList, kMostFilmPoints> lists = listed;
+    bool any_listed = false;
+    for (size_t i = 0; i < kMostFilmPoints; ++i) {
+        if (!rays.aimed.found[static_cast<int>(i)]) lists[i] = {};
+        any_listed = any_listed || !lists[i].empty();
+    }
+    if (!any_listed) return out;
+    PlanePoint<f8> film(f8{}, f8{});
+    if (all.of_lead) {
+        for (int i = 0; i < 8; ++i)
+            film.x[i] = all.at.film_mm[size_t(i)].x, film.y[i] = all.at.film_mm[size_t(i)].y;
+        const f8 density =
+            targets_.density({film, all.indices, lists}, rays.aimed.l, rays.aimed.m);
+        for (int i = 0; i < 8; ++i) out[static_cast<size_t>(i)] = density[i];
+        return out;
+    }
+    for (size_t first = 0; first < all.points.size(); first += 2) {
+        const std::array<size_t, 2> pair{first, std::min(first + 1, all.points.size() - 1)};
+        const LensIndices<f8> indices =
+            in_.lens->indices(joined(all.bands[pair[0]].nm, all.bands[pair[1]].nm));
+        f8 l{}, m{};
+        TargetPoints at{film, indices, {}};
+        for (int i = 0; i < 8; ++i) {
+            const size_t lane = static_cast<size_t>(i), point = pair[lane / 4];
+            const Bands& bands = all.bands[point];
+            at.film_mm.x[i] = all.at.film_mm[point].x, at.film_mm.y[i] = all.at.film_mm[point].y;
+            l[i] = rays.aimed.l[static_cast<int>(point)];
+            m[i] = rays.aimed.m[static_cast<int>(point)];
+            if (bands.on[i % 4]) at.targets[lane] = lists[point];
+        }
+        const f8 density = targets_.density(at, l, m);
+        for (size_t k = 0; k < 2; ++k) {
+            const int begin = static_cast<int>(4 * k);
+            out[pair[k]] = (density[begin] + density[begin + 1] + density[begin + 2] +
+                            density[begin + 3]) /
+                           static_cast<float>(lane_count(all.bands[pair[k]].on));
+        }
+    }
+    return out;
+}
+
+void LensCamera::finish(const Batch& all, LeadRays& rays,
+                        const std::array<float, kMostFilmPoints>& to_targets,
+                        std::span<CameraSample> out) const {
     const auto place = [&](size_t i) {
-        return Place{at.film_mm[i], rays.stop_mm[static_cast<int>(i)], bands[i], achromatic,
-                     points[i].pixel.frame_px};
+        return Place{all.at.film_mm[i],  rays.stop_mm[static_cast<int>(i)],
+                     all.bands[i],       all.achromatic,
+                     all.points[i].pixel.frame_px, to_targets[i]};
     };
     const auto each = [&]<class P>(const auto&... more) {
-        for (size_t i = 0; i < points.size(); ++i) {
+        for (size_t i = 0; i < all.points.size(); ++i) {
             const Place here = place(i);
             out[i] = sample_lens(P(*this, here, rays, static_cast<int>(i), more[i]...),
-                                 in_.dispersion, points[i].pixel, bands[i]);
+                                 in_.dispersion, all.points[i].pixel, all.bands[i]);
         }
     };
-    const bool hero = in_.dispersion == DispersionMode::Hero && !achromatic;
-    const bool one =
-        achromatic || (hero && std::all_of(points.begin(), points.end(), [](const FilmPoint& p) {
-                           return p.pixel.filter != nullptr;
-                       }));
     if (in_.precision == Precision::Double) return each.template operator()<Point<d4>>();
-    if (!one) return each.template operator()<Point<f4>>();
-    optics_.trace(at, indices, rays);
+    if (!all.of_lead) return each.template operator()<Point<f4>>();
+    optics_.trace(all.at, all.indices, rays);
     std::array<LensLanding, kMostFilmPoints> landings;
-    if (hero) land(points.size(), bands, at, rays, landings);
+    if (!all.achromatic) land(all.points.size(), all.bands, all.at, rays, landings);
     each.template operator()<LeadPoint>(landings);
 }
 

@@ -11,6 +11,7 @@
 #include "camera/lens/lens.h"
 #include "camera/lens/lens_options.h"
 #include "camera/models/lens_optics.h"
+#include "camera/models/lens_targets.h"
 #include "camera/models/thin_lens.h"
 
 namespace petzval {
@@ -19,6 +20,7 @@ namespace petzval {
 template <class V>
 struct LensDraw {
     V weight{};      ///< 0 where the lane is blocked
+    float share = 1;  ///< CameraPath::share
     LensRay<V> ray;  ///< in front of the lens
     LensLosses<uint32_t> losses;
 
@@ -45,10 +47,16 @@ struct LensCameraInput {
 class LensCamera final : public Camera {
   public:
     explicit LensCamera(LensCameraInput);
+    LensCamera(const LensCamera&) = delete;
+    LensCamera& operator=(const LensCamera&) = delete;
 
     [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
     void sample_all(std::span<const FilmPoint>, std::span<const Bands>,
                     std::span<CameraSample>) const override;
+    [[nodiscard]] bool takes_targets() const override { return true; }
+    [[nodiscard]] std::optional<ListedTarget> ready(const Target&, const FilmCell&) const override;
+    void sample_targets(std::span<const FilmPoint>, std::span<const Bands>,
+                        std::span<const TargetList>, std::span<CameraSample>) const override;
 
     /// Scales the weights from here on: they average to the exposure in the middle of the film,
     /// where they averaged to its irradiance(). axial: that irradiance, before the first call.
@@ -76,6 +84,8 @@ class LensCamera final : public Camera {
         const Bands& bands;
         bool achromatic;  ///< all lanes have the indices of line d
         V2f frame_px;     ///< width and height of the full frame, in which landings count
+        /// Density of rays to targets in this direction, 1/sr of projected solid angle at the film.
+        float to_targets = 0;
 
         /// Wavelengths at which coatings count.
         [[nodiscard]] f4 coating_nm() const;
@@ -84,6 +94,14 @@ class LensCamera final : public Camera {
     template <class V>
     class Point;
     class LeadPoint;
+    /// Film points of a batch, their bands, and what carries the rays that are found for them.
+    struct Batch;
+    [[nodiscard]] Batch batch(std::span<const FilmPoint>, std::span<const Bands>) const;
+    [[nodiscard]] V2f film_mm(V2f film) const;
+    [[nodiscard]] std::array<float, kMostFilmPoints> to_targets(
+        const Batch&, const LeadRays&, const std::array<TargetList, kMostFilmPoints>&) const;
+    void finish(const Batch&, LeadRays&, const std::array<float, kMostFilmPoints>& to_targets,
+                std::span<CameraSample>) const;
 
     /// Distance of the ray's origin behind the middle of the entrance pupil.
     template <class S>
@@ -98,6 +116,7 @@ class LensCamera final : public Camera {
     LensCameraInput in_;
     Pose pose_;
     LensOptics optics_;
+    LensTargets targets_;
     LensIndices<f4> line_d_;
     LensIndices<f8> line_d_of_all_;
     LensIndices<d4> exact_line_d_;

@@ -103,14 +103,14 @@ struct StopDensity {
     double open, aimed;
 };
 StopDensity density_of(const TargetedStop& stop, V2f stop_mm,
-                       std::span<const ListedTarget> targets) {
+                       TargetList targets) {
     const double per_m2 = 1e6 / stop.iris.area_mm2();
     StopDensity out{double(stop.iris.transmits(stop_mm)) * per_m2, 0};
     const V2d s = V2d(stop_mm) * 1e-3;
     for (const ListedTarget& listed : targets) {
-        const LocalTarget target(listed.target, stop.pose);
         double sum = 0;
-        for (const StopPencil& pencil : stop.pencils) sum += aimed_density(pencil, target, s);
+        for (const StopPencil& pencil : stop.pencils)
+            sum += aimed_density(pencil, listed.target, s);
         out.aimed += double(listed.chance) * sum / static_cast<double>(stop.pencils.size());
     }
     return out;
@@ -124,13 +124,12 @@ Pose::Pose(const M44f& m)
       up(unit({m[1][0], m[1][1], m[1][2]})),
       back(unit({m[2][0], m[2][1], m[2][2]})) {}
 
-LocalTarget::LocalTarget(const Target& target, const Pose& pose)
-    : radius_m(double(target.radius_m)), at_infinity(target.at_infinity) {
-    const auto local = [&](const V3f& v) {
-        return V3d(double(v.dot(pose.right)), double(v.dot(pose.up)), double(v.dot(pose.back)));
+LocalTarget Pose::local(const Target& target) const {
+    const auto turned = [this](const V3f& v) {
+        return V3d(double(v.dot(right)), double(v.dot(up)), double(v.dot(back)));
     };
-    centre = local(target.at_infinity ? target.centre : target.centre - pose.origin);
-    normal = local(target.normal);
+    return {turned(target.at_infinity ? target.centre : target.centre - origin),
+            turned(target.normal), double(target.radius_m), target.at_infinity};
 }
 
 V3d StopPencil::direction(V2d s) const {
@@ -168,31 +167,26 @@ double aimed_density(const StopPencil& pencil, const LocalTarget& target, V2d s)
 }
 
 std::optional<V2d> aim(const StopPencil& pencil, const LocalTarget& target, V2f point, float pick) {
-    const V3d axis = std::fabs(target.normal.x) < 0.5 ? V3d(1, 0, 0) : V3d(0, 1, 0);
-    const V3d side = axis.cross(target.normal).normalized();
     const V2f on = uniform_disk(point);
     const V3d at =
-        target.centre +
-        (side * double(on.x) + target.normal.cross(side) * double(on.y)) * target.radius_m;
+        target.centre + (target.across * double(on.x) + target.up * double(on.y)) * target.radius_m;
     const StopPoints found = through(pencil, target, at);
     if (found.count == 0) return std::nullopt;
     return found
         .s[std::min(static_cast<size_t>(pick * static_cast<float>(found.count)), found.count - 1)];
 }
 
-float TargetedStop::share(V2f stop_mm, std::span<const ListedTarget> targets) const {
+float TargetedStop::share(V2f stop_mm, TargetList targets) const {
     const auto [open, aimed] = density_of(*this, stop_mm, targets);
     // A point of the very edge may be rounded to where the iris is closed: no ray is aimed there.
     return open > 0 ? static_cast<float>(open / (open + aimed)) : 1;
 }
 
 std::optional<TargetedStop::Aimed> TargetedStop::aim_at_one(
-    const FilmPoint& at, std::span<const ListedTarget> targets) const {
+    const FilmPoint& at, TargetList targets) const {
     const V2f pick = at.sampler.get2(Dim::TargetPick);
-    size_t i = 0;
-    float left = pick.x;
-    while (i + 1 < targets.size() && left >= targets[i].chance) left -= targets[i++].chance;
-    const LocalTarget target(targets[i].target, pose);
+    const size_t i = picked(targets, pick.x);
+    const LocalTarget& target = targets[i].target;
     const float lane = pick.y * static_cast<float>(pencils.size());
     const size_t chosen = std::min(static_cast<size_t>(lane), pencils.size() - 1);
     const auto s = aim(pencils[chosen], target, at.sampler.get2(Dim::TargetPoint),
@@ -204,6 +198,20 @@ std::optional<TargetedStop::Aimed> TargetedStop::aim_at_one(
     const auto [open, aimed] = density_of(*this, stop_mm, targets);
     if (!(open > 0)) return std::nullopt;
     return Aimed{stop_mm, static_cast<float>(open / (open + aimed))};
+}
+
+std::optional<ListedTarget> TargetedStop::ready(const LocalTarget& target) const {
+    // A target's rim is met from a little farther away than its middle.
+    constexpr double kReach = 1.25;
+    StopPencil wide = pencils[0];
+    wide.reach_m *= kReach;
+    const StopPoints found = through(wide, target, target.centre);
+    double met = 0;
+    for (size_t i = 0; i < found.count; ++i)
+        met += 1e6 / iris.area_mm2() / aimed_density(wide, target, found.s[i]) /
+               static_cast<double>(found.count);
+    if (!(met > 0 && std::isfinite(met))) return std::nullopt;
+    return ListedTarget{target, 1, static_cast<float>(met)};
 }
 
 }  // namespace petzval

@@ -32,15 +32,16 @@ struct Pose {
     V3f origin, right, up, back;
     explicit Pose(const M44f& matrix);
     [[nodiscard]] V3f to_world(const V3f& v) const { return right * v.x + up * v.y + back * v.z; }
+    /// Target in the space that the camera looks along -z in.
+    [[nodiscard]] LocalTarget local(const Target&) const;
 };
 
-/// Target in the space of a camera.
-struct LocalTarget {
-    V3d centre, normal;
-    double radius_m;
-    bool at_infinity;
-    LocalTarget(const Target&, const Pose&);
-};
+/// Film point, as FilmPoint has it, at which the middle of a stop sees a point in front of it.
+/// tan_half: of the angles from the axis to the film's right and upper edges.
+[[nodiscard]] inline V2f pictured(const V3d& point, V2f tan_half) {
+    return {static_cast<float>(0.5 - 0.5 * point.x / point.z / double(tan_half.x)),
+            static_cast<float>(0.5 + 0.5 * point.y / point.z / double(tan_half.y))};
+}
 
 /// Density with which `aim` draws a point of the stop, 1/m2; 0 where its ray passes beside the
 /// target, or is not one that `aim` finds.
@@ -54,21 +55,22 @@ struct LocalTarget {
 /// Stop of a film point with targets, and the pencils of the lanes whose rays share what is drawn.
 struct TargetedStop {
     const Iris& iris;
-    const Pose& pose;
     std::span<const StopPencil> pencils;
 
     /// Share of the light that a ray through a drawn point of the stop counts: the density of that
     /// draw over the sum of it and of those of rays that are aimed (balance heuristic, Veach and
     /// Guibas 1995, "Optimally combining sampling techniques for Monte Carlo rendering").
-    [[nodiscard]] float share(V2f stop_mm, std::span<const ListedTarget>) const;
+    [[nodiscard]] float share(V2f stop_mm, TargetList) const;
     /// Point of the stop from which a ray passes one of the targets, and its share, above 0;
     /// nothing where there is none, or the iris is closed there.
     struct Aimed {
         V2f stop_mm;
         float share;
     };
-    [[nodiscard]] std::optional<Aimed> aim_at_one(const FilmPoint&,
-                                                  std::span<const ListedTarget>) const;
+    [[nodiscard]] std::optional<Aimed> aim_at_one(const FilmPoint&, TargetList) const;
+    /// The target with the share of ordinary rays that pass it; nothing where no ray of the first
+    /// pencil passes its middle, nor nearly.
+    [[nodiscard]] std::optional<ListedTarget> ready(const LocalTarget&) const;
 };
 
 }  // namespace petzval

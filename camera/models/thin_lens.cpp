@@ -56,20 +56,35 @@ CameraSample ThinLensCamera::sample(const FilmPoint& at, const Bands& bands) con
     CameraSample out = through(at, stop_mm, bands);
     if (const auto targets = targets_at(at); !targets.empty()) {
         const StopPencil rays = pencil(at);
-        out[0].share = TargetedStop{*iris_, pose_, {&rays, 1}}.share(stop_mm, targets);
+        out[0].share = TargetedStop{*iris_, {&rays, 1}}.share(stop_mm, targets);
     }
     return out;
 }
 
-CameraSample ThinLensCamera::aimed(const FilmPoint& at, const Bands& bands,
-                                   std::span<const ListedTarget> targets) const {
+std::optional<ListedTarget> ThinLensCamera::ready(const Target& target,
+                                                   const FilmCell& cell) const {
+    const LocalTarget local = pose_.local(target);
+    const FilmPoint at{cell.nearest(pictured(local.centre, V2f(tan_half_x_, tan_half_y_)))};
+    const StopPencil rays = pencil(at);
+    return TargetedStop{*iris_, {&rays, 1}}.ready(local);
+}
+
+void ThinLensCamera::sample_targets(std::span<const FilmPoint> points,
+                                    std::span<const Bands> bands,
+                                    std::span<const TargetList> targets,
+                                    std::span<CameraSample> out) const {
+    for (size_t i = 0; i < points.size(); ++i) out[i] = to_target(points[i], bands[i], targets[i]);
+}
+
+CameraSample ThinLensCamera::to_target(const FilmPoint& at, const Bands& bands,
+                                       TargetList targets) const {
     if (targets.empty() || !iris_) return {};
     const StopPencil rays = pencil(at);
-    const auto found = TargetedStop{*iris_, pose_, {&rays, 1}}.aim_at_one(at, targets);
+    const auto found = TargetedStop{*iris_, {&rays, 1}}.aim_at_one(at, targets);
     if (!found) return {};
     CameraSample out = through(at, found->stop_mm, bands);
     out[0].share = found->share;
-    out[0].fills_layers = false;
+    out.leave_layers();
     return out;
 }
 

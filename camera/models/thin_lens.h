@@ -27,11 +27,13 @@ class ThinLensCamera final : public Camera {
   public:
     explicit ThinLensCamera(ThinLens);
     [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
-    [[nodiscard]] CameraSample aimed(const FilmPoint&, const Bands&,
-                                     std::span<const ListedTarget>) const override;
-    [[nodiscard]] bool aims() const override { return iris_.has_value(); }
+    [[nodiscard]] bool takes_targets() const override { return iris_.has_value(); }
+    [[nodiscard]] std::optional<ListedTarget> ready(const Target&, const FilmCell&) const override;
+    void sample_targets(std::span<const FilmPoint>, std::span<const Bands>,
+                        std::span<const TargetList>, std::span<CameraSample>) const override;
 
   private:
+    [[nodiscard]] CameraSample to_target(const FilmPoint&, const Bands&, TargetList) const;
     [[nodiscard]] V2f tangents(const FilmPoint&) const;
     [[nodiscard]] StopPencil pencil(const FilmPoint&) const;
     [[nodiscard]] CameraSample through(const FilmPoint&, V2f stop_mm, const Bands&) const;

@@ -26,7 +26,8 @@ enum class Dim : uint32_t {
     Count,
     // Apart from those of paths, so that pictures without targets keep their numbers.
     TargetPoint = 1u << 30,  ///< on a target's disc
-    TargetPick               ///< the target, and how it is reached
+    TargetPick,              ///< the target, and how it is reached
+    TargetRest               ///< whether a ray to a target brings more than what it finds
 };
 
 struct SampleId {

@@ -1,0 +1,384 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "camera/models/lens_targets.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "camera/lens/trace.h"
+#include "core/sampling/warp.h"
+#include "core/spectrum/glass.h"
+
+namespace petzval {
+namespace {
+
+/// Distance from the chosen point at which a ray is there, in radii of the target; what floats
+/// leave of a distance comes to it.
+constexpr float kTolerance = 1e-3f, kRounding = 3e-7f;
+/// Rays of a film point that are tried as starts, and how far from the middle of the stop what is
+/// found may lie, in its radii: a target's rim is met from a little farther away than its middle.
+constexpr int kTried = 16;
+constexpr float kMostStopRadii = 1.25f;
+/// Longest step of a film point: beyond it the search has lost its way.
+constexpr float kMostFilmStep_mm = 30;
+
+f8 select8(m8 on, f8 a, f8 b) {
+    return on ? a : b;
+}
+Vec3<f8> negated(const Vec3<f8>& a) {
+    return a * -1.f;
+}
+
+/// Guesses for eight film points and points of their targets, from a start of each.
+struct Guess {
+    f8 l{}, m{};
+    void put(int i, const TargetStart& start, V2f film_mm, V2f on) {
+        const V2f off = film_mm - start.film_mm;
+        const V2f lm = start.cosines + start.by_film_x * off.x + start.by_film_y * off.y +
+                       start.by_across * on.x + start.by_up * on.y;
+        l[i] = lm.x, m[i] = lm.y;
+    }
+};
+
+}  // namespace
+
+/// Targets of eight lanes, in the space of the lens.
+struct LensTargets::Goals {
+    Vec3<f8> normal{}, centre{}, across{}, up{};  ///< centre: at infinity the direction
+    f8 per_radius{}, chance{};
+    m8 at_infinity{}, on{};
+    std::array<const ListedTarget*, 8> listed{};
+
+    [[nodiscard]] int most_starts(m8 wanted) const {
+        int most = 0;
+        for (size_t i = 0; i < 8; ++i)
+            if (wanted[static_cast<int>(i)]) most = std::max<int>(most, listed[i]->start_count);
+        return most;
+    }
+};
+
+/// Where rays meet the planes of targets, in radii from their middles, and the derivatives by the
+/// two parameters of the ray.
+struct LensTargets::Landing {
+    f8 x{}, y{}, x_by_u{}, y_by_u{}, x_by_v{}, y_by_v{};
+    f8 radii{};  ///< distance to the plane
+    m8 ahead{};  ///< lanes whose ray leads there
+
+    Landing() = default;
+    Landing(const LensRay<Dual<f8>>& ray, const Goals& goal) {
+        const auto part = [](const Vec3<Dual<f8>>& a, auto which) {
+            return Vec3<f8>{a.x.*which, a.y.*which, a.z.*which};
+        };
+        constexpr auto value = &Dual<f8>::value;
+        const Vec3<f8> origin = part(ray.origin, value), d = part(ray.direction, value);
+        const Vec3<f8> away =
+            select(goal.at_infinity, goal.centre, goal.centre + negated(origin));
+        const f8 across = dot(goal.normal, d), t = dot(goal.normal, away) / across;
+        const Vec3<f8> from_centre = d * t + negated(away);
+        x = dot(goal.across, from_centre) * goal.per_radius;
+        y = dot(goal.up, from_centre) * goal.per_radius;
+        const auto change = [&](auto which, f8& x_by, f8& y_by) {
+            const Vec3<f8> moved =
+                select(goal.at_infinity, Vec3<f8>{}, part(ray.origin, which)) +
+                part(ray.direction, which) * t;
+            const Vec3<f8> in_plane = moved + d * (-dot(goal.normal, moved) / across);
+            x_by = dot(goal.across, in_plane) * goal.per_radius;
+            y_by = dot(goal.up, in_plane) * goal.per_radius;
+        };
+        change(&Dual<f8>::du, x_by_u, y_by_u);
+        change(&Dual<f8>::dv, x_by_v, y_by_v);
+        radii = t * goal.per_radius;
+        ahead = goal.on & ray.alive() & (t > 0.f);
+    }
+    [[nodiscard]] f8 determinant() const { return x_by_u * y_by_v - x_by_v * y_by_u; }
+    /// Area on the target for a unit of the parameters, in squared radii.
+    [[nodiscard]] f8 size() const {
+        const f8 d = determinant();
+        return d < 0.f ? -d : d;
+    }
+    /// What the parameters must change for x and y to change by so much.
+    [[nodiscard]] PlanePoint<f8> parameters(f8 by_x, f8 by_y) const {
+        const f8 per = 1 / determinant();
+        return {(y_by_v * by_x - x_by_v * by_y) * per, (x_by_u * by_y - y_by_u * by_x) * per};
+    }
+};
+
+/// Distinct directions from which rays pass one point, by the start that led to each.
+struct LensTargets::Ways {
+    int count = 0;
+    std::array<f8, ListedTarget::kMostStarts> l{}, m{};
+    std::array<f8, ListedTarget::kMostStarts> light{};  ///< in any unit; 0: no way, or known before
+    f8 all{};                                           ///< their light
+};
+
+LensTargets::LensTargets(const Lens& lens, const RayAimer& aimer, double pupil_mm,
+                         double stop_reach_mm, double iris_mm2)
+    : lens_(lens),
+      aimer_(aimer),
+      pupil_mm_(pupil_mm),
+      stop_reach_mm_(stop_reach_mm),
+      iris_mm2_(iris_mm2) {
+    const LensIndices<f8> line_d = lens.exact_indices(splat8(static_cast<float>(kLineD_nm)));
+    const float stretch_mm2 =
+        aimer.cross<f8>(PlanePoint<f8>(V2f(0.f)), f8{}, f8{}, line_d).stretch_mm2()[0];
+    cosine_reach_ = static_cast<float>(stop_reach_mm) / std::sqrt(stretch_mm2);
+}
+
+auto LensTargets::goals(const std::array<TargetList, 8>& lists,
+                        const std::array<int, 8>& which) const -> Goals {
+    Goals out;
+    for (int i = 0; i < 8; ++i) {
+        const auto lane = static_cast<size_t>(i);
+        if (which[lane] < 0 || which[lane] >= static_cast<int>(lists[lane].size())) continue;
+        const ListedTarget& listed = lists[lane][static_cast<size_t>(which[lane])];
+        const LocalTarget& target = listed.target;
+        const auto put = [i](Vec3<f8>& to, const V3d& v) {
+            to.x[i] = static_cast<float>(v.x), to.y[i] = static_cast<float>(v.y);
+            to.z[i] = static_cast<float>(v.z);
+        };
+        put(out.normal, target.normal);
+        put(out.across, target.across);
+        put(out.up, target.up);
+        put(out.centre, target.at_infinity ? target.centre
+                                           : 1e3 * target.centre + V3d(0, 0, pupil_mm_));
+        const double radius = target.at_infinity ? target.radius_m : 1e3 * target.radius_m;
+        out.per_radius[i] = static_cast<float>(1 / radius);
+        out.at_infinity[i] = target.at_infinity ? -1 : 0;
+        out.chance[i] = listed.chance;
+        out.on[i] = -1;
+        out.listed[lane] = &listed;
+    }
+    return out;
+}
+
+LensRay<Dual<f8>> LensTargets::trace(const TargetPoints& at, f8 l, f8 m) const {
+    LensRay<Dual<f8>> ray = aimer_.leave(at.film_mm, Dual<f8>{l, splat8(1), f8{}},
+                                         Dual<f8>{m, f8{}, splat8(1)});
+    static_cast<void>(trace_lens<Dual<f8>>(lens_, at.indices, Towards::Scene, {0, lens_.last()},
+                                           ray, Clip::No));
+    return ray;
+}
+
+FoundDirections LensTargets::search(const TargetPoints& at, const Goals& goal, m8 wanted, f8 x,
+                                    f8 y, f8 l, f8 m, Landing& last) const {
+    return find_directions(
+        wanted, l, m, kSame / 3 * cosine_reach_, [&](f8 l_now, f8 m_now) -> DirectionStep {
+            last = Landing(trace(at, l_now, m_now), goal);
+            const f8 left_x = x - last.x, left_y = y - last.y;
+            const PlanePoint<f8> by = last.parameters(left_x, left_y);
+            const f8 near = kTolerance + kRounding * last.radii;
+            return {by.x, by.y, last.ahead & (l_now * l_now + m_now * m_now < 1.f),
+                    left_x * left_x + left_y * left_y < near * near};
+        });
+}
+
+TargetChoice LensTargets::choose(const std::array<TargetList, 8>& targets,
+                                 std::span<const Sampler> samplers) {
+    TargetChoice out;
+    for (size_t i = 0; i < samplers.size(); ++i) {
+        if (targets[i].empty()) continue;
+        const V2f pick = samplers[i].get2(Dim::TargetPick);
+        const V2f on = uniform_disk(samplers[i].get2(Dim::TargetPoint));
+        const int lane = static_cast<int>(i);
+        out.target[i] = static_cast<int>(picked(targets[i], pick.x));
+        out.x[lane] = on.x, out.y[lane] = on.y, out.way[lane] = pick.y;
+    }
+    return out;
+}
+
+// Each start leads the search to a way, or to one that is known already. Ways outside the iris, or
+// through rims, bring no light.
+auto LensTargets::ways(const TargetPoints& at, const Goals& goal, m8 wanted, f8 x, f8 y) const
+    -> Ways {
+    Ways out;
+    out.count = goal.most_starts(wanted);
+    for (int b = 0; b < out.count; ++b) {
+        Guess guess;
+        m8 asked{};
+        for (int i = 0; i < 8; ++i) {
+            const auto lane = static_cast<size_t>(i);
+            if (!wanted[i] || b >= goal.listed[lane]->start_count) continue;
+            asked[i] = -1;
+            guess.put(i, goal.listed[lane]->starts[size_t(b)], at.film_mm[i], {x[i], y[i]});
+        }
+        Landing landing;
+        const FoundDirections found = search(at, goal, asked, x, y, guess.l, guess.m, landing);
+        const AimedRay<f8> crossed = aimer_.cross<f8>(at.film_mm, found.l, found.m, at.indices);
+        const f8 stop_x = crossed.ray.origin.x, stop_y = crossed.ray.origin.y;
+        const auto reach = static_cast<float>(stop_reach_mm_);
+        m8 passes = found.found & crossed.clear & crossed.ray.alive() &
+                    (stop_x * stop_x + stop_y * stop_y <= sqr(reach));
+        for (int a = 0; a < b; ++a) passes &= ~same(out.l[a] - found.l, out.m[a] - found.m);
+        const f8 light = crossed.stretch_mm2() / landing.size();
+        out.l[b] = found.l, out.m[b] = found.m;
+        out.light[b] = select8(passes & (light > 0.f), light, f8{});
+        out.all += out.light[b];
+    }
+    return out;
+}
+
+FoundDirections LensTargets::find(const TargetPoints& at, const TargetChoice& choice) const {
+    const Goals goal = goals(at.targets, choice.target);
+    const Ways found = ways(at, goal, goal.on, choice.x, choice.y);
+    FoundDirections out{};
+    f8 left = choice.way * found.all;
+    for (int b = 0; b < found.count; ++b) {
+        const m8 open = found.light[b] > 0.f, here = ~out.found & open;
+        out.l = here ? found.l[b] : out.l, out.m = here ? found.m[b] : out.m;
+        // What rounding leaves goes to the last way.
+        const m8 stays = here & (left < found.light[b]);
+        left -= select8(here, found.light[b], f8{});
+        out.found |= stays;
+    }
+    out.found = found.all > 0.f;
+    return out;
+}
+
+f8 LensTargets::density(const TargetPoints& at, f8 l, f8 m) const {
+    f8 sum{};
+    size_t most = 0;
+    for (const TargetList& list : at.targets) most = std::max(most, list.size());
+    if (most == 0) return sum;
+    const LensRay<Dual<f8>> ray = trace(at, l, m);
+    for (int k = 0; k < static_cast<int>(most); ++k) {
+        std::array<int, 8> which;
+        which.fill(k);
+        const Goals goal = goals(at.targets, which);
+        const Landing here(ray, goal);
+        const m8 passes = here.ahead & (here.x * here.x + here.y * here.y <= 1.f);
+        if (!any(passes)) continue;
+        const Ways found = ways(at, goal, passes, here.x, here.y);
+        f8 light{};
+        for (int b = 0; b < found.count; ++b)
+            light += select8(same(found.l[b] - l, found.m[b] - m), found.light[b], f8{});
+        sum += select8(passes & (light > 0.f),
+                       light / found.all * goal.chance * here.size() * (1 / kPi), f8{});
+    }
+    return sum;
+}
+
+TargetStart LensTargets::start_at(const TargetPoints& at, const Goals& goal, f8 l, f8 m,
+                                  int lane) const {
+    const Landing here(trace(at, l, m), goal);
+    // The same rays, with derivatives by the film point in place of the direction.
+    LensRay<Dual<f8>> moved = aimer_.leave(at.film_mm, Dual<f8>{l}, Dual<f8>{m});
+    moved.origin.x.du = splat8(1);
+    moved.origin.y.dv = splat8(1);
+    static_cast<void>(trace_lens<Dual<f8>>(lens_, at.indices, Towards::Scene, {0, lens_.last()},
+                                           moved, Clip::No));
+    const Landing by_film(moved, goal);
+    const auto change = [&](f8 by_x, f8 by_y) { return here.parameters(by_x, by_y)[lane]; };
+    return {at.film_mm[lane],
+            {l[lane], m[lane]},
+            change(-by_film.x_by_u, -by_film.y_by_u),
+            change(-by_film.x_by_v, -by_film.y_by_v),
+            change(splat8(1), f8{}),
+            change(f8{}, splat8(1))};
+}
+
+// Newton's method on the film points of rays through given points of the stop, with differences.
+// Lanes where it fails keep where they are.
+PlanePoint<f8> LensTargets::pictured_mm(const Goals& goal, const LensIndices<f8>& indices,
+                                        const PlanePoint<f8>& stop_mm, V2f from_mm,
+                                        int steps) const {
+    constexpr float kMoved_mm = 0.01f;
+    const f8 nm = splat8(static_cast<float>(kLineD_nm));
+    PlanePoint<f8> at(from_mm);
+    const auto landing = [&](float by_x, float by_y) {
+        const PlanePoint<f8> film(at.x + by_x, at.y + by_y);
+        const FoundRays rays = aimer_.aim(film, stop_mm, indices, nm);
+        Landing out(trace({film, indices, {}}, rays.l, rays.m), goal);
+        out.ahead &= rays.found;
+        return out;
+    };
+    for (int i = 0; i < steps; ++i) {
+        const Landing here = landing(0, 0), right = landing(kMoved_mm, 0),
+                      above = landing(0, kMoved_mm);
+        const f8 x_by_x = (right.x - here.x) / kMoved_mm, y_by_x = (right.y - here.y) / kMoved_mm;
+        const f8 x_by_y = (above.x - here.x) / kMoved_mm, y_by_y = (above.y - here.y) / kMoved_mm;
+        const f8 per = 1 / (x_by_x * y_by_y - x_by_y * y_by_x);
+        const f8 step_x = (y_by_y * here.x - x_by_y * here.y) * per;
+        const f8 step_y = (x_by_x * here.y - y_by_x * here.x) * per;
+        const m8 usable = here.ahead & right.ahead & above.ahead &
+                          (step_x * step_x + step_y * step_y < sqr(kMostFilmStep_mm));
+        at.x -= select8(usable, step_x, f8{});
+        at.y -= select8(usable, step_y, f8{});
+    }
+    return at;
+}
+
+// Ways are looked for from spread points of the stop: at the place of the cell from which the
+// middle of the stop sees the target, or nearly, and then each at the place from which it sees the
+// target itself. What is found from the starts that there are is no new way.
+std::optional<ListedTarget> LensTargets::ready(const LocalTarget& target,
+                                               const FilmCell& cell_mm) const {
+    ListedTarget out{target, 1, 0};
+    const f8 nm = splat8(static_cast<float>(kLineD_nm));
+    const LensIndices<f8> indices = lens_.exact_indices(nm);
+    TargetPoints at{PlanePoint<f8>(f8{}, f8{}), indices, {}};
+    at.targets.fill(TargetList(&out, 1));
+    const Goals goal = goals(at.targets, {});
+    const V2f middle = (cell_mm.first + cell_mm.last) / 2.f;
+    const V2f pictured = pictured_mm(goal, indices, PlanePoint<f8>(V2f(0.f)), middle, 6)[0];
+    at.film_mm = PlanePoint<f8>(cell_mm.nearest(pictured));
+    for (int tried = 0; tried < kTried; tried += 8)
+        add_starts(out, at, goal, aimer_.aim(at.film_mm, spread(tried), indices, nm), true);
+    if (out.start_count == 0 || !std::isfinite(out.met)) return std::nullopt;
+    const V2f half = (cell_mm.last - cell_mm.first) / 2.f;
+    for (int tried = 0; tried < kTried; tried += 8) {
+        const PlanePoint<f8> stop_mm = spread(tried);
+        at.film_mm = pictured_mm(goal, indices, stop_mm, pictured, 4);
+        FoundRays rays = aimer_.aim(at.film_mm, stop_mm, indices, nm);
+        for (int i = 0; i < 8; ++i) {
+            const V2f off = at.film_mm[i] - middle;
+            if (std::fabs(off.x) > 1.5f * half.x || std::fabs(off.y) > 1.5f * half.y)
+                rays.found[i] = 0;
+        }
+        if (any(rays.found)) add_starts(out, at, goal, rays, false);
+    }
+    return out;
+}
+
+PlanePoint<f8> LensTargets::spread(int first) const {
+    PlanePoint<f8> stop_mm(f8{}, f8{});
+    for (int i = 0; i < 8; ++i) {
+        // By the golden angle.
+        const float n = static_cast<float>(first + i) + 0.5f;
+        const float r = std::sqrt(n / kTried) * static_cast<float>(stop_reach_mm_);
+        const float angle = 2.39996323f * n;
+        stop_mm.x[i] = r * std::cos(angle), stop_mm.y[i] = r * std::sin(angle);
+    }
+    return stop_mm;
+}
+
+// Each lane has a film point of its own, from which the starts that there are are tried.
+void LensTargets::add_starts(ListedTarget& out, const TargetPoints& at, const Goals& goal,
+                             const FoundRays& rays, bool counts) const {
+    Landing landing;
+    const FoundDirections found =
+        search(at, goal, rays.found, f8{}, f8{}, rays.l, rays.m, landing);
+    const AimedRay<f8> crossed = aimer_.cross<f8>(at.film_mm, found.l, found.m, at.indices);
+    const f8 stretch_mm2 = crossed.stretch_mm2(), by_cosines = landing.determinant();
+    m8 fresh = found.found;
+    for (int i = 0; i < 8; ++i)
+        if (V2f(crossed.ray.origin.x[i], crossed.ray.origin.y[i]).length() >
+            kMostStopRadii * static_cast<float>(stop_reach_mm_))
+            fresh[i] = 0;
+    const auto strike_known = [&](const TargetStart& start) {
+        Guess guess;
+        for (int i = 0; i < 8; ++i) guess.put(i, start, at.film_mm[i], V2f(0.f));
+        const FoundDirections old = search(at, goal, fresh, f8{}, f8{}, guess.l, guess.m, landing);
+        fresh &= ~(old.found & same(old.l - found.l, old.m - found.m));
+    };
+    for (size_t b = 0; b < out.start_count && any(fresh); ++b) strike_known(out.starts[b]);
+    for (int i = 0; i < 8 && out.start_count < ListedTarget::kMostStarts; ++i) {
+        if (!fresh[i]) continue;
+        TargetStart& start = out.starts[out.start_count++];
+        start = start_at(at, goal, found.l, found.m, i);
+        if (counts)
+            out.met += kPi * stretch_mm2[i] /
+                       (static_cast<float>(iris_mm2_) * std::fabs(by_cosines[i]));
+        strike_known(start);
+    }
+}
+
+}  // namespace petzval

@@ -54,7 +54,7 @@ struct FilmCell {
 
 /// A target that is ready for the film points of a cell, and the chance that a ray is sent to it.
 struct ListedTarget {
-    static constexpr size_t kMostStarts = 6;
+    static constexpr size_t kMostStarts = 8;
 
     LocalTarget target;
     float chance;  ///< those of a list add up to 1

@@ -16,7 +16,7 @@ namespace {
 constexpr float kTolerance = 1e-3f, kRounding = 3e-7f;
 /// Rays of a film point that are tried as starts, and how far from the middle of the stop what is
 /// found may lie, in its radii: a target's rim is met from a little farther away than its middle.
-constexpr int kTried = 16;
+constexpr int kTried = 24;
 constexpr float kMostStopRadii = 1.25f;
 /// Longest step of a film point: beyond it the search has lost its way.
 constexpr float kMostFilmStep_mm = 30;

@@ -59,6 +59,7 @@ struct ListedTarget {
     LocalTarget target;
     float chance;  ///< those of a list add up to 1
     float met;     ///< share of ordinary rays that pass it, about
+    V2f place;     ///< of the cell, from which it is seen, or nearly
     /// Of a traced lens: one for each way on which rays get there, as far as they are known.
     std::array<TargetStart, kMostStarts> starts{};
     uint8_t start_count = 0;
@@ -78,6 +79,12 @@ struct TargetGrid {
     V2i cells{0, 0};
     std::vector<std::vector<ListedTarget>> lists;  ///< row by row
 
+    /// A cell of a frame.
+    [[nodiscard]] FilmCell cell(int i, int j, V2i size_px) const {
+        const V2i first(size_px.x * i / cells.x, size_px.y * j / cells.y),
+            last(size_px.x * (i + 1) / cells.x, size_px.y * (j + 1) / cells.y);
+        return {V2f(first) / V2f(size_px), V2f(last) / V2f(size_px)};
+    }
     /// List of the cell of a film point, as FilmPoint has it; beyond the frame, of the nearest.
     [[nodiscard]] TargetList at(V2f film) const {
         const auto cell = [](float share, int count) {

@@ -12,6 +12,7 @@
 #include "core/light/own_light.h"
 #include "core/scene/studio.h"
 #include "integrator/light_pilot.h"
+#include "integrator/target_pilot.h"
 #include "io/base/error.h"
 #include "io/base/format.h"
 #include "io/base/read_file.h"
@@ -155,9 +156,12 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
         prepared.lights = std::make_shared<const LightChoice>(
             taught_by_pilot(*prepared.lights, scene, *prepared.bvh, *setup.view.camera,
                             setup.view.observer, request.size));
-    if (asked.targets == TargetUse::Auto && setup.view.camera->takes_targets())
-        setup.view.camera->set_targets(
-            find_targets(*setup.view.camera, request.size, things_of(scene, kMostTargets)));
+    if (asked.targets == TargetUse::Auto && setup.view.camera->takes_targets()) {
+        Camera& seen = *setup.view.camera;
+        seen.set_targets(find_targets(seen, request.size, things_of(scene, kMostTargets)));
+        seen.set_targets(targets_that_pay(seen, scene, *prepared.bvh, *prepared.lights,
+                                          setup.view.observer, request.size));
+    }
     from.camera = std::move(camera.report);
     return setup;
 }

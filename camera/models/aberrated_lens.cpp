@@ -141,7 +141,7 @@ std::optional<ListedTarget> AberratedLensCamera::ready(const Target& target,
                                                    const FilmCell& cell) const {
     const LocalTarget local = pose_.local(target);
     const FilmPoint at{cell.nearest(pictured(local.centre, V2f(tan_half_x_, tan_half_y_)))};
-    return TargetedStop{in_.iris, pencils(at, Bands::rgb()).span()}.ready(local);
+    return TargetedStop{in_.iris, pencils(at, Bands::rgb()).span()}.ready(local, at.film);
 }
 
 void AberratedLensCamera::sample_targets(std::span<const FilmPoint> points,

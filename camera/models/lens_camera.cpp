@@ -345,15 +345,19 @@ void LensCamera::sample_all(std::span<const FilmPoint> points, std::span<const B
     if (targets()) {
         std::array<TargetList, kMostFilmPoints> lists;
         for (size_t i = 0; i < points.size(); ++i) lists[i] = targets_at(points[i]);
-        density = to_targets(all, rays, lists);
+        density = to_targets(all, rays, lists, {});
     }
     finish(all, rays, density, out);
 }
 
 std::optional<ListedTarget> LensCamera::ready(const Target& target, const FilmCell& cell) const {
     const V2f a = film_mm(cell.first), b = film_mm(cell.last);
-    return targets_.ready(pose_.local(target), {V2f(std::min(a.x, b.x), std::min(a.y, b.y)),
-                                                V2f(std::max(a.x, b.x), std::max(a.y, b.y))});
+    auto out = targets_.ready(pose_.local(target), {V2f(std::min(a.x, b.x), std::min(a.y, b.y)),
+                                                    V2f(std::max(a.x, b.x), std::max(a.y, b.y))});
+    if (out)
+        out->place = {0.5f - out->starts[0].film_mm.x / static_cast<float>(in_.film_width_mm),
+                      0.5f + out->starts[0].film_mm.y / static_cast<float>(in_.film_height_mm)};
+    return out;
 }
 
 void LensCamera::sample_targets(std::span<const FilmPoint> points, std::span<const Bands> bands,
@@ -369,7 +373,8 @@ void LensCamera::sample_targets(std::span<const FilmPoint> points, std::span<con
         if (i < points.size()) lists[i] = listed[i], samplers[i] = points[i].sampler;
     }
     const TargetChoice choice = LensTargets::choose(lists, {samplers.data(), points.size()});
-    const FoundDirections found = targets_.find({film, all.indices, lists}, choice);
+    const SentRays sent = targets_.find({film, all.indices, lists}, choice);
+    const FoundDirections& found = sent.directions;
     LeadRays rays;
     static_cast<AimedRay<f8>&>(rays.aimed) =
         optics_.aimer().cross<f8>(film, found.l, found.m, all.indices);
@@ -380,7 +385,7 @@ void LensCamera::sample_targets(std::span<const FilmPoint> points, std::span<con
     const f8 off_l = back.l - found.l, off_m = back.m - found.m;
     rays.aimed.found = found.found & rays.aimed.ray.alive() & back.found &
                        (off_l * off_l + off_m * off_m < sqr(kSameDirection));
-    const std::array<float, kMostFilmPoints> density = to_targets(all, rays, lists);
+    const std::array<float, kMostFilmPoints> density = to_targets(all, rays, lists, {});
     for (size_t i = 0; i < points.size(); ++i)
         if (!(density[i] > 0.f)) rays.aimed.found[static_cast<int>(i)] = 0;
     finish(all, rays, density, out);
@@ -391,7 +396,7 @@ void LensCamera::sample_targets(std::span<const FilmPoint> points, std::span<con
 // the one that it was drawn for.
 std::array<float, kMostFilmPoints> LensCamera::to_targets(
     const Batch& all, const LeadRays& rays,
-    const std::array<TargetList, kMostFilmPoints>& listed) const {
+    const std::array<TargetList, kMostFilmPoints>& listed, const SentRays& known) const {
     std::array<float, kMostFilmPoints> out{};
     std::array<TargetList, kMostFilmPoints> lists = listed;
     bool any_listed = false;
@@ -405,7 +410,7 @@ std::array<float, kMostFilmPoints> LensCamera::to_targets(
         for (int i = 0; i < 8; ++i)
             film.x[i] = all.at.film_mm[size_t(i)].x, film.y[i] = all.at.film_mm[size_t(i)].y;
         const f8 density =
-            targets_.density({film, all.indices, lists}, rays.aimed.l, rays.aimed.m);
+            targets_.density({film, all.indices, lists}, rays.aimed.l, rays.aimed.m, known);
         for (int i = 0; i < 8; ++i) out[static_cast<size_t>(i)] = density[i];
         return out;
     }
@@ -415,6 +420,7 @@ std::array<float, kMostFilmPoints> LensCamera::to_targets(
             in_.lens->indices(joined(all.bands[pair[0]].nm, all.bands[pair[1]].nm));
         f8 l{}, m{};
         TargetPoints at{film, indices, {}};
+        SentRays known_of_lanes;
         for (int i = 0; i < 8; ++i) {
             const size_t lane = static_cast<size_t>(i), point = pair[lane / 4];
             const Bands& bands = all.bands[point];
@@ -422,8 +428,11 @@ std::array<float, kMostFilmPoints> LensCamera::to_targets(
             l[i] = rays.aimed.l[static_cast<int>(point)];
             m[i] = rays.aimed.m[static_cast<int>(point)];
             if (bands.on[i % 4]) at.targets[lane] = lists[point];
+            if (i % 4 != bands.lead) continue;
+            known_of_lanes.target[lane] = known.target[point];
+            known_of_lanes.density[i] = known.density[static_cast<int>(point)];
         }
-        const f8 density = targets_.density(at, l, m);
+        const f8 density = targets_.density(at, l, m, known_of_lanes);
         for (size_t k = 0; k < 2; ++k) {
             const int begin = static_cast<int>(4 * k);
             out[pair[k]] = (density[begin] + density[begin + 1] + density[begin + 2] +

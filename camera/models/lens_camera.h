@@ -99,7 +99,8 @@ class LensCamera final : public Camera {
     [[nodiscard]] Batch batch(std::span<const FilmPoint>, std::span<const Bands>) const;
     [[nodiscard]] V2f film_mm(V2f film) const;
     [[nodiscard]] std::array<float, kMostFilmPoints> to_targets(
-        const Batch&, const LeadRays&, const std::array<TargetList, kMostFilmPoints>&) const;
+        const Batch&, const LeadRays&, const std::array<TargetList, kMostFilmPoints>&,
+        const SentRays& known) const;
     void finish(const Batch&, LeadRays&, const std::array<float, kMostFilmPoints>& to_targets,
                 std::span<CameraSample>) const;
 

@@ -107,6 +107,7 @@ struct LensTargets::Ways {
     int count = 0;
     std::array<f8, ListedTarget::kMostStarts> l{}, m{};
     std::array<f8, ListedTarget::kMostStarts> light{};  ///< in any unit; 0: no way, or known before
+    std::array<f8, ListedTarget::kMostStarts> size{};   ///< Landing::size()
     f8 all{};                                           ///< their light
 };
 
@@ -208,7 +209,8 @@ auto LensTargets::ways(const TargetPoints& at, const Goals& goal, m8 wanted, f8 
         m8 passes = found.found & crossed.clear & crossed.ray.alive() &
                     (stop_x * stop_x + stop_y * stop_y <= sqr(reach));
         for (int a = 0; a < b; ++a) passes &= ~same(out.l[a] - found.l, out.m[a] - found.m);
-        const f8 light = crossed.stretch_mm2() / landing.size();
+        out.size[b] = landing.size();
+        const f8 light = crossed.stretch_mm2() / out.size[b];
         out.l[b] = found.l, out.m[b] = found.m;
         out.light[b] = select8(passes & (light > 0.f), light, f8{});
         out.all += out.light[b];
@@ -216,25 +218,30 @@ auto LensTargets::ways(const TargetPoints& at, const Goals& goal, m8 wanted, f8 
     return out;
 }
 
-FoundDirections LensTargets::find(const TargetPoints& at, const TargetChoice& choice) const {
+SentRays LensTargets::find(const TargetPoints& at, const TargetChoice& choice) const {
     const Goals goal = goals(at.targets, choice.target);
     const Ways found = ways(at, goal, goal.on, choice.x, choice.y);
-    FoundDirections out{};
+    SentRays out;
+    out.target = choice.target;
     f8 left = choice.way * found.all;
+    m8 picked{};
     for (int b = 0; b < found.count; ++b) {
-        const m8 open = found.light[b] > 0.f, here = ~out.found & open;
-        out.l = here ? found.l[b] : out.l, out.m = here ? found.m[b] : out.m;
         // What rounding leaves goes to the last way.
-        const m8 stays = here & (left < found.light[b]);
+        const m8 here = ~picked & (found.light[b] > 0.f);
+        out.directions.l = here ? found.l[b] : out.directions.l;
+        out.directions.m = here ? found.m[b] : out.directions.m;
+        out.density = here ? found.light[b] * found.size[b] : out.density;
+        picked |= here & (left < found.light[b]);
         left -= select8(here, found.light[b], f8{});
-        out.found |= stays;
     }
-    out.found = found.all > 0.f;
+    out.directions.found = found.all > 0.f;
+    out.density = select8(out.directions.found, out.density / found.all * goal.chance * (1 / kPi),
+                          f8{});
     return out;
 }
 
-f8 LensTargets::density(const TargetPoints& at, f8 l, f8 m) const {
-    f8 sum{};
+f8 LensTargets::density(const TargetPoints& at, f8 l, f8 m, const SentRays& known) const {
+    f8 sum = known.density;
     size_t most = 0;
     for (const TargetList& list : at.targets) most = std::max(most, list.size());
     if (most == 0) return sum;
@@ -244,7 +251,9 @@ f8 LensTargets::density(const TargetPoints& at, f8 l, f8 m) const {
         which.fill(k);
         const Goals goal = goals(at.targets, which);
         const Landing here(ray, goal);
-        const m8 passes = here.ahead & (here.x * here.x + here.y * here.y <= 1.f);
+        m8 passes = here.ahead & (here.x * here.x + here.y * here.y <= 1.f);
+        for (int i = 0; i < 8; ++i)
+            if (known.target[static_cast<size_t>(i)] == k) passes[i] = 0;
         if (!any(passes)) continue;
         const Ways found = ways(at, goal, passes, here.x, here.y);
         f8 light{};
@@ -311,7 +320,7 @@ PlanePoint<f8> LensTargets::pictured_mm(const Goals& goal, const LensIndices<f8>
 // target itself. What is found from the starts that there are is no new way.
 std::optional<ListedTarget> LensTargets::ready(const LocalTarget& target,
                                                const FilmCell& cell_mm) const {
-    ListedTarget out{target, 1, 0};
+    ListedTarget out{target, 1, 0, V2f(0.f)};
     const f8 nm = splat8(static_cast<float>(kLineD_nm));
     const LensIndices<f8> indices = lens_.exact_indices(nm);
     TargetPoints at{PlanePoint<f8>(f8{}, f8{}), indices, {}};

@@ -31,6 +31,15 @@ struct TargetChoice {
     TargetChoice() { target.fill(-1); }
 };
 
+/// Rays that were sent, with the density of each for the target that it was sent to, 1/sr.
+struct SentRays {
+    FoundDirections directions{};
+    std::array<int, 8> target;  ///< -1: none
+    f8 density{};
+
+    SentRays() { target.fill(-1); }
+};
+
 class LensTargets {
   public:
     /// Lens and aimer must outlive it. pupil_mm: z of the middle of the entrance pupil, which is
@@ -47,10 +56,11 @@ class LensTargets {
                                              std::span<const Sampler>);
     /// Directions at the film whose rays pass the chosen points. Where several ways lead there,
     /// each is picked in proportion to the light that it brings.
-    [[nodiscard]] FoundDirections find(const TargetPoints&, const TargetChoice&) const;
+    [[nodiscard]] SentRays find(const TargetPoints&, const TargetChoice&) const;
     /// Density with which choose() and find() draw a direction, 1/sr of projected solid angle at
     /// the film: a sum over all targets that its ray passes, if find() would find this very ray.
-    [[nodiscard]] f8 density(const TargetPoints&, f8 l, f8 m) const;
+    /// known: what find() says of the lanes whose ray it found.
+    [[nodiscard]] f8 density(const TargetPoints&, f8 l, f8 m, const SentRays& known) const;
 
   private:
     /// Directions this far apart are the same, in units of what the stop spans; a search may leave

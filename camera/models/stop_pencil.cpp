@@ -200,7 +200,8 @@ std::optional<TargetedStop::Aimed> TargetedStop::aim_at_one(
     return Aimed{stop_mm, static_cast<float>(open / (open + aimed))};
 }
 
-std::optional<ListedTarget> TargetedStop::ready(const LocalTarget& target) const {
+std::optional<ListedTarget> TargetedStop::ready(const LocalTarget& target,
+                                                V2f place) const {
     // A target's rim is met from a little farther away than its middle.
     constexpr double kReach = 1.25;
     StopPencil wide = pencils[0];
@@ -211,7 +212,7 @@ std::optional<ListedTarget> TargetedStop::ready(const LocalTarget& target) const
         met += 1e6 / iris.area_mm2() / aimed_density(wide, target, found.s[i]) /
                static_cast<double>(found.count);
     if (!(met > 0 && std::isfinite(met))) return std::nullopt;
-    return ListedTarget{target, 1, static_cast<float>(met)};
+    return ListedTarget{target, 1, static_cast<float>(met), place};
 }
 
 }  // namespace petzval

@@ -66,7 +66,7 @@ std::optional<ListedTarget> ThinLensCamera::ready(const Target& target,
     const LocalTarget local = pose_.local(target);
     const FilmPoint at{cell.nearest(pictured(local.centre, V2f(tan_half_x_, tan_half_y_)))};
     const StopPencil rays = pencil(at);
-    return TargetedStop{*iris_, {&rays, 1}}.ready(local);
+    return TargetedStop{*iris_, {&rays, 1}}.ready(local, at.film);
 }
 
 void ThinLensCamera::sample_targets(std::span<const FilmPoint> points,

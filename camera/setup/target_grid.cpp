@@ -48,8 +48,7 @@ std::shared_ptr<const TargetGrid> find_targets(const Camera& camera, V2i size_px
                             size_px.x * (i + 1) / out->cells.x, size_px.y * (j + 1) / out->cells.y};
             std::vector<ListedTarget>& list = out->lists.emplace_back();
             const RayBundle bundle = bundle_of(camera, size_px, cell);
-            const FilmCell place{V2f(float(cell.x0), float(cell.y0)) / V2f(size_px),
-                                 V2f(float(cell.x1), float(cell.y1)) / V2f(size_px)};
+            const FilmCell place = out->cell(i, j, size_px);
             size_t tried = 0;
             for (const Thing& lamp : lamps) {
                 if (!passes(bundle, lamp)) continue;

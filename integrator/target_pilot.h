@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pilot of the targets: a few rays to each, before the first sample, tell where they pay.
+#pragma once
+
+#include "camera/camera.h"
+#include "core/light/light_choice.h"
+#include "core/scene/scene.h"
+#include "core/spectrum/observer.h"
+#include "core/traversal/bvh.h"
+
+namespace petzval {
+
+/// Those of a camera's targets that pay, cell by cell, with chances in proportion to the light that
+/// each is found to bring; nullptr where there is none. A pure function of its arguments: of a cell
+/// with 256 pixels at most 64 rays are cast, with numbers of their own.
+[[nodiscard]] std::shared_ptr<const TargetGrid> targets_that_pay(const Camera&, const Scene&,
+                                                                 const Bvh&, const LightChoice&,
+                                                                 const Observer&, V2i frame_px);
+
+}  // namespace petzval

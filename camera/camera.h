@@ -121,9 +121,15 @@ class Camera {
 
     /// Whether the camera can send rays to targets.
     [[nodiscard]] virtual bool takes_targets() const { return false; }
-    /// A target made ready for the film points of a cell, with a chance of 1. Nothing where no ray
-    /// from there seems to meet its middle, or the camera takes no targets.
-    [[nodiscard]] virtual std::optional<ListedTarget> ready(const Target&, const FilmCell&) const {
+    /// A target made ready for the film; nothing where no ray seems to meet its middle, or the
+    /// camera takes no targets.
+    [[nodiscard]] virtual std::optional<PreparedTarget> prepared(const Target&) const {
+        return std::nullopt;
+    }
+    /// A target made ready for the film points of a cell, with a chance of 1; nothing where no ray
+    /// from there seems to meet its middle.
+    [[nodiscard]] virtual std::optional<ListedTarget> listed(const PreparedTarget&,
+                                                             const FilmCell&) const {
         return std::nullopt;
     }
     /// Paths of the same film points to one of the targets of each: together with those of

@@ -42,6 +42,13 @@ struct TargetStart {
     V2f by_across{0.f}, by_up{0.f};      ///< for a radius on the target
 };
 
+/// A target in the space of a camera, with what is known of the ways to it from the whole film.
+struct PreparedTarget {
+    LocalTarget target;
+    V2f place;                           ///< film point at which the middle of the stop pictures it
+    std::vector<TargetStart> starts{};  ///< of a traced lens
+};
+
 /// Part of the film, from corner to corner, as FilmPoint has it.
 struct FilmCell {
     V2f first, last;

@@ -137,11 +137,15 @@ CameraSample AberratedLensCamera::sample(const FilmPoint& at, const Bands& bands
     return sample_lens(Point(*this, at, stop_mm, share, bands), in_.dispersion, at.pixel, bands);
 }
 
-std::optional<ListedTarget> AberratedLensCamera::ready(const Target& target,
-                                                   const FilmCell& cell) const {
+std::optional<PreparedTarget> AberratedLensCamera::prepared(const Target& target) const {
     const LocalTarget local = pose_.local(target);
-    const FilmPoint at{cell.nearest(pictured(local.centre, V2f(tan_half_x_, tan_half_y_)))};
-    return TargetedStop{in_.iris, pencils(at, Bands::rgb()).span()}.ready(local, at.film);
+    return PreparedTarget{local, pictured(local.centre, V2f(tan_half_x_, tan_half_y_))};
+}
+
+std::optional<ListedTarget> AberratedLensCamera::listed(const PreparedTarget& target,
+                                       const FilmCell& cell) const {
+    const FilmPoint at{cell.nearest(target.place)};
+    return TargetedStop{in_.iris, pencils(at, Bands::rgb()).span()}.listed(target.target, at.film);
 }
 
 void AberratedLensCamera::sample_targets(std::span<const FilmPoint> points,

@@ -32,7 +32,9 @@ class AberratedLensCamera final : public Camera {
     explicit AberratedLensCamera(AberratedLens);
     [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
     [[nodiscard]] bool takes_targets() const override { return true; }
-    [[nodiscard]] std::optional<ListedTarget> ready(const Target&, const FilmCell&) const override;
+    [[nodiscard]] std::optional<PreparedTarget> prepared(const Target&) const override;
+    [[nodiscard]] std::optional<ListedTarget> listed(const PreparedTarget&,
+                                                     const FilmCell&) const override;
     void sample_targets(std::span<const FilmPoint>, std::span<const Bands>,
                         std::span<const TargetList>, std::span<CameraSample>) const override;
     [[nodiscard]] double film_distance_mm() const { return film_mm_; }

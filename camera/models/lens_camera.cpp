@@ -316,6 +316,11 @@ V2f LensCamera::film_mm(V2f film) const {
             (film.y - 0.5f) * static_cast<float>(in_.film_height_mm)};
 }
 
+V2f LensCamera::film_of(V2f film_mm) const {
+    return {0.5f - film_mm.x / static_cast<float>(in_.film_width_mm),
+            0.5f + film_mm.y / static_cast<float>(in_.film_height_mm)};
+}
+
 auto LensCamera::batch(std::span<const FilmPoint> points, std::span<const Bands> bands) const
     -> Batch {
     Batch out{points, bands, one_ray(bands[0], in_.dispersion), false, {}, {}};
@@ -350,13 +355,20 @@ void LensCamera::sample_all(std::span<const FilmPoint> points, std::span<const B
     finish(all, rays, density, out);
 }
 
-std::optional<ListedTarget> LensCamera::ready(const Target& target, const FilmCell& cell) const {
+std::optional<PreparedTarget> LensCamera::prepared(const Target& target) const {
+    const V2f half_mm(V2d(in_.film_width_mm / 2, in_.film_height_mm / 2));
+    auto out = targets_.prepared(pose_.local(target), half_mm);
+    if (out) out->place = film_of(out->place);
+    return out;
+}
+
+std::optional<ListedTarget> LensCamera::listed(const PreparedTarget& target,
+                                               const FilmCell& cell) const {
     const V2f a = film_mm(cell.first), b = film_mm(cell.last);
-    auto out = targets_.ready(pose_.local(target), {V2f(std::min(a.x, b.x), std::min(a.y, b.y)),
-                                                    V2f(std::max(a.x, b.x), std::max(a.y, b.y))});
-    if (out)
-        out->place = {0.5f - out->starts[0].film_mm.x / static_cast<float>(in_.film_width_mm),
-                      0.5f + out->starts[0].film_mm.y / static_cast<float>(in_.film_height_mm)};
+    auto out = targets_.listed(target, film_mm(cell.nearest(target.place)),
+                               {V2f(std::min(a.x, b.x), std::min(a.y, b.y)),
+                                V2f(std::max(a.x, b.x), std::max(a.y, b.y))});
+    if (out) out->place = cell.nearest(target.place);
     return out;
 }
 

@@ -54,7 +54,9 @@ class LensCamera final : public Camera {
     void sample_all(std::span<const FilmPoint>, std::span<const Bands>,
                     std::span<CameraSample>) const override;
     [[nodiscard]] bool takes_targets() const override { return true; }
-    [[nodiscard]] std::optional<ListedTarget> ready(const Target&, const FilmCell&) const override;
+    [[nodiscard]] std::optional<PreparedTarget> prepared(const Target&) const override;
+    [[nodiscard]] std::optional<ListedTarget> listed(const PreparedTarget&,
+                                                     const FilmCell&) const override;
     void sample_targets(std::span<const FilmPoint>, std::span<const Bands>,
                         std::span<const TargetList>, std::span<CameraSample>) const override;
 
@@ -98,6 +100,7 @@ class LensCamera final : public Camera {
     struct Batch;
     [[nodiscard]] Batch batch(std::span<const FilmPoint>, std::span<const Bands>) const;
     [[nodiscard]] V2f film_mm(V2f film) const;
+    [[nodiscard]] V2f film_of(V2f film_mm) const;
     [[nodiscard]] std::array<float, kMostFilmPoints> to_targets(
         const Batch&, const LeadRays&, const std::array<TargetList, kMostFilmPoints>&,
         const SentRays& known) const;

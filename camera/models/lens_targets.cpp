@@ -20,6 +20,8 @@ constexpr int kTried = 24;
 constexpr float kMostStopRadii = 1.25f;
 /// Longest step of a film point: beyond it the search has lost its way.
 constexpr float kMostFilmStep_mm = 30;
+/// Distance of a start's ray from the middle of the target, in radii, that its derivatives mend.
+constexpr float kNearRadii = 3;
 
 f8 select8(m8 on, f8 a, f8 b) {
     return on ? a : b;
@@ -277,31 +279,39 @@ TargetStart LensTargets::start_at(const TargetPoints& at, const Goals& goal, f8 
     const Landing by_film(moved, goal);
     const auto change = [&](f8 by_x, f8 by_y) { return here.parameters(by_x, by_y)[lane]; };
     return {at.film_mm[lane],
-            {l[lane], m[lane]},
+            V2f(l[lane], m[lane]) - change(here.x, here.y),
             change(-by_film.x_by_u, -by_film.y_by_u),
             change(-by_film.x_by_v, -by_film.y_by_v),
             change(splat8(1), f8{}),
             change(f8{}, splat8(1))};
 }
 
-// Newton's method on the film points of rays through given points of the stop, with differences.
-// Lanes where it fails keep where they are.
-PlanePoint<f8> LensTargets::pictured_mm(const Goals& goal, const LensIndices<f8>& indices,
-                                        const PlanePoint<f8>& stop_mm, V2f from_mm,
-                                        int steps) const {
+/// Film points that see a target through given points of the stop.
+struct LensTargets::Pictured {
+    PlanePoint<f8> film_mm{f8{}, f8{}};
+    f8 l{}, m{};  ///< of the rays
+    m8 found{};
+};
+
+// Newton's method on the film points, with differences.
+auto LensTargets::pictured(const Goals& goal, const LensIndices<f8>& indices,
+                           const PlanePoint<f8>& stop_mm, const PlanePoint<f8>& from_mm,
+                           int steps) const -> Pictured {
     constexpr float kMoved_mm = 0.01f;
     const f8 nm = splat8(static_cast<float>(kLineD_nm));
-    PlanePoint<f8> at(from_mm);
+    Pictured out;
+    out.film_mm = from_mm;
     const auto landing = [&](float by_x, float by_y) {
-        const PlanePoint<f8> film(at.x + by_x, at.y + by_y);
+        const PlanePoint<f8> film(out.film_mm.x + by_x, out.film_mm.y + by_y);
         const FoundRays rays = aimer_.aim(film, stop_mm, indices, nm);
-        Landing out(trace({film, indices, {}}, rays.l, rays.m), goal);
-        out.ahead &= rays.found;
-        return out;
+        out.l = rays.l, out.m = rays.m;
+        Landing at(trace({film, indices, {}}, rays.l, rays.m), goal);
+        at.ahead &= rays.found;
+        return at;
     };
     for (int i = 0; i < steps; ++i) {
-        const Landing here = landing(0, 0), right = landing(kMoved_mm, 0),
-                      above = landing(0, kMoved_mm);
+        const Landing right = landing(kMoved_mm, 0), above = landing(0, kMoved_mm),
+                      here = landing(0, 0);
         const f8 x_by_x = (right.x - here.x) / kMoved_mm, y_by_x = (right.y - here.y) / kMoved_mm;
         const f8 x_by_y = (above.x - here.x) / kMoved_mm, y_by_y = (above.y - here.y) / kMoved_mm;
         const f8 per = 1 / (x_by_x * y_by_y - x_by_y * y_by_x);
@@ -309,40 +319,46 @@ PlanePoint<f8> LensTargets::pictured_mm(const Goals& goal, const LensIndices<f8>
         const f8 step_y = (x_by_x * here.y - y_by_x * here.x) * per;
         const m8 usable = here.ahead & right.ahead & above.ahead &
                           (step_x * step_x + step_y * step_y < sqr(kMostFilmStep_mm));
-        at.x -= select8(usable, step_x, f8{});
-        at.y -= select8(usable, step_y, f8{});
+        out.film_mm.x -= select8(usable, step_x, f8{});
+        out.film_mm.y -= select8(usable, step_y, f8{});
     }
-    return at;
+    const Landing here = landing(0, 0);
+    out.found = here.ahead & (here.x * here.x + here.y * here.y < sqr(kNearRadii));
+    return out;
 }
 
-// Ways are looked for from spread points of the stop: at the place of the cell from which the
-// middle of the stop sees the target, or nearly, and then each at the place from which it sees the
-// target itself. What is found from the starts that there are is no new way.
-std::optional<ListedTarget> LensTargets::ready(const LocalTarget& target,
-                                               const FilmCell& cell_mm) const {
-    ListedTarget out{target, 1, 0, V2f(0.f)};
-    const f8 nm = splat8(static_cast<float>(kLineD_nm));
-    const LensIndices<f8> indices = lens_.exact_indices(nm);
+std::optional<PreparedTarget> LensTargets::prepared(const LocalTarget& target,
+                                                    V2f half_film_mm) const {
+    const LensIndices<f8> indices = lens_.exact_indices(splat8(static_cast<float>(kLineD_nm)));
+    const ListedTarget listed{target, 1, 0, V2f(0.f)};
     TargetPoints at{PlanePoint<f8>(f8{}, f8{}), indices, {}};
-    at.targets.fill(TargetList(&out, 1));
+    at.targets.fill(TargetList(&listed, 1));
     const Goals goal = goals(at.targets, {});
-    const V2f middle = (cell_mm.first + cell_mm.last) / 2.f;
-    const V2f pictured = pictured_mm(goal, indices, PlanePoint<f8>(V2f(0.f)), middle, 6)[0];
-    at.film_mm = PlanePoint<f8>(cell_mm.nearest(pictured));
-    for (int tried = 0; tried < kTried; tried += 8)
-        add_starts(out, at, goal, aimer_.aim(at.film_mm, spread(tried), indices, nm), true);
-    if (out.start_count == 0 || !std::isfinite(out.met)) return std::nullopt;
-    const V2f half = (cell_mm.last - cell_mm.first) / 2.f;
+    const auto near_film = [&](V2f p) {
+        constexpr float kBeyond = 1.3f;
+        return std::fabs(p.x) < kBeyond * half_film_mm.x &&
+               std::fabs(p.y) < kBeyond * half_film_mm.y;
+    };
+    PlanePoint<f8> from(f8{}, f8{});
+    for (int i = 1; i < 8; ++i) {
+        const float angle = 2 * kPi * float(i) / 7;
+        from.x[i] = 0.6f * half_film_mm.x * std::cos(angle);
+        from.y[i] = 0.6f * half_film_mm.y * std::sin(angle);
+    }
+    const Pictured middle = pictured(goal, indices, PlanePoint<f8>(V2f(0.f)), from, 8);
+    PreparedTarget out{target, V2f(0.f)};
+    bool found = false;
+    for (int i = 0; i < 8 && !found; ++i)
+        if (middle.found[i] && near_film(middle.film_mm[i]))
+            out.place = middle.film_mm[i], found = true;
+    if (!found) return std::nullopt;
     for (int tried = 0; tried < kTried; tried += 8) {
-        const PlanePoint<f8> stop_mm = spread(tried);
-        at.film_mm = pictured_mm(goal, indices, stop_mm, pictured, 4);
-        FoundRays rays = aimer_.aim(at.film_mm, stop_mm, indices, nm);
-        for (int i = 0; i < 8; ++i) {
-            const V2f off = at.film_mm[i] - middle;
-            if (std::fabs(off.x) > 1.5f * half.x || std::fabs(off.y) > 1.5f * half.y)
-                rays.found[i] = 0;
-        }
-        if (any(rays.found)) add_starts(out, at, goal, rays, false);
+        const Pictured seen =
+            pictured(goal, indices, spread(tried), PlanePoint<f8>(out.place), 5);
+        at.film_mm = seen.film_mm;
+        for (int i = 0; i < 8; ++i)
+            if (seen.found[i] && near_film(seen.film_mm[i]))
+                out.starts.push_back(start_at(at, goal, seen.l, seen.m, i));
     }
     return out;
 }
@@ -359,35 +375,75 @@ PlanePoint<f8> LensTargets::spread(int first) const {
     return stop_mm;
 }
 
-// Each lane has a film point of its own, from which the starts that there are are tried.
-void LensTargets::add_starts(ListedTarget& out, const TargetPoints& at, const Goals& goal,
-                             const FoundRays& rays, bool counts) const {
+// Lanes in which a start leads to the rays that are there.
+m8 LensTargets::same_way(const TargetPoints& at, const Goals& goal, const TargetStart& start,
+                         m8 asked, const FoundDirections& there) const {
+    Guess guess;
     Landing landing;
-    const FoundDirections found =
-        search(at, goal, rays.found, f8{}, f8{}, rays.l, rays.m, landing);
-    const AimedRay<f8> crossed = aimer_.cross<f8>(at.film_mm, found.l, found.m, at.indices);
-    const f8 stretch_mm2 = crossed.stretch_mm2(), by_cosines = landing.determinant();
-    m8 fresh = found.found;
-    for (int i = 0; i < 8; ++i)
-        if (V2f(crossed.ray.origin.x[i], crossed.ray.origin.y[i]).length() >
-            kMostStopRadii * static_cast<float>(stop_reach_mm_))
-            fresh[i] = 0;
-    const auto strike_known = [&](const TargetStart& start) {
-        Guess guess;
-        for (int i = 0; i < 8; ++i) guess.put(i, start, at.film_mm[i], V2f(0.f));
-        const FoundDirections old = search(at, goal, fresh, f8{}, f8{}, guess.l, guess.m, landing);
-        fresh &= ~(old.found & same(old.l - found.l, old.m - found.m));
+    for (int i = 0; i < 8; ++i) guess.put(i, start, at.film_mm[i], V2f(0.f));
+    const FoundDirections found = search(at, goal, asked, f8{}, f8{}, guess.l, guess.m, landing);
+    return found.found & same(found.l - there.l, found.m - there.m);
+}
+
+std::optional<ListedTarget> LensTargets::listed(const PreparedTarget& target, V2f place_mm,
+                                                const FilmCell& cell_mm) const {
+    ListedTarget out{target.target, 1, 0, V2f(0.f)};
+    const LensIndices<f8> indices = lens_.exact_indices(splat8(static_cast<float>(kLineD_nm)));
+    TargetPoints at{PlanePoint<f8>(place_mm), indices, {}};
+    at.targets.fill(TargetList(&out, 1));
+    const Goals goal = goals(at.targets, {});
+    std::vector<const TargetStart*> near;
+    for (const TargetStart& start : target.starts) near.push_back(&start);
+    const auto away = [&](const TargetStart* s) {
+        return (cell_mm.nearest(s->film_mm) - s->film_mm).length2();
     };
-    for (size_t b = 0; b < out.start_count && any(fresh); ++b) strike_known(out.starts[b]);
-    for (int i = 0; i < 8 && out.start_count < ListedTarget::kMostStarts; ++i) {
-        if (!fresh[i]) continue;
-        TargetStart& start = out.starts[out.start_count++];
-        start = start_at(at, goal, found.l, found.m, i);
-        if (counts)
-            out.met += kPi * stretch_mm2[i] /
-                       (static_cast<float>(iris_mm2_) * std::fabs(by_cosines[i]));
-        strike_known(start);
+    std::stable_sort(near.begin(), near.end(),
+                     [&](const auto* a, const auto* b) { return away(a) < away(b); });
+    if (near.size() > 8) near.resize(8);
+    Guess guess;
+    m8 asked{};
+    for (size_t i = 0; i < near.size(); ++i) {
+        const int lane = static_cast<int>(i);
+        guess.put(lane, *near[i], place_mm, V2f(0.f));
+        asked[lane] = -1;
     }
+    Landing landing;
+    const FoundDirections found = search(at, goal, asked, f8{}, f8{}, guess.l, guess.m, landing);
+    const AimedRay<f8> crossed = aimer_.cross<f8>(at.film_mm, found.l, found.m, indices);
+    const f8 met = kPi * crossed.stretch_mm2() / landing.size() / static_cast<float>(iris_mm2_);
+    const auto keep = [&](size_t i) {
+        if (out.start_count < ListedTarget::kMostStarts) out.starts[out.start_count++] = *near[i];
+    };
+    for (size_t i = 0; i < near.size(); ++i) {
+        const int lane = static_cast<int>(i);
+        const V2f stop(crossed.ray.origin.x[lane], crossed.ray.origin.y[lane]);
+        bool fresh = found.found[lane] &&
+                     stop.length() < kMostStopRadii * static_cast<float>(stop_reach_mm_);
+        for (int k = 0; k < lane && fresh; ++k)
+            fresh = !(found.found[k] &&
+                      same(found.l - found.l[k], found.m - found.m[k])[lane]);
+        if (!fresh) continue;
+        keep(i);
+        out.met += met[lane];
+    }
+    if (out.start_count == 0 || !std::isfinite(out.met)) return std::nullopt;
+    // Other ways there may be at the starts' own places, where these lie in the cell.
+    FoundDirections own{};
+    m8 fresh{};
+    for (size_t i = 0; i < near.size() && away(near[i]) == 0; ++i) {
+        const int lane = static_cast<int>(i);
+        at.film_mm.x[lane] = near[i]->film_mm.x, at.film_mm.y[lane] = near[i]->film_mm.y;
+        own.l[lane] = near[i]->cosines.x, own.m[lane] = near[i]->cosines.y;
+        fresh[lane] = -1;
+    }
+    for (size_t b = 0; b < out.start_count && any(fresh); ++b)
+        fresh &= ~same_way(at, goal, out.starts[b], fresh, own);
+    for (size_t i = 0; i < near.size(); ++i) {
+        if (!fresh[static_cast<int>(i)]) continue;
+        keep(i);
+        fresh &= ~same_way(at, goal, *near[i], fresh, own);
+    }
+    return out;
 }
 
 }  // namespace petzval

@@ -47,10 +47,14 @@ class LensTargets {
     LensTargets(const Lens&, const RayAimer&, double pupil_mm, double stop_reach_mm,
                 double iris_mm2);
 
-    /// The target with the starts of the ways that lead to it from the place of a cell that is
-    /// nearest to where the middle of the stop pictures it; nothing where none does. Cell in mm.
-    [[nodiscard]] std::optional<ListedTarget> ready(const LocalTarget&,
-                                                    const FilmCell& cell_mm) const;
+    /// The target with starts from all over the stop, each for the film point that sees the target
+    /// through that point of the stop. The place is in mm. Nothing where none is found near a film
+    /// of so many mm from the middle to its edges.
+    [[nodiscard]] std::optional<PreparedTarget> prepared(const LocalTarget&, V2f half_film_mm) const;
+    /// The target with those starts that lead to it by ways of their own from a cell; nothing where
+    /// none does from a place of the cell. Without its place on the film.
+    [[nodiscard]] std::optional<ListedTarget> listed(const PreparedTarget&, V2f place_mm,
+                                                     const FilmCell& cell_mm) const;
     /// Draws a target for each lane and a point on its disc.
     [[nodiscard]] static TargetChoice choose(const std::array<TargetList, 8>&,
                                              std::span<const Sampler>);
@@ -80,12 +84,13 @@ class LensTargets {
         return l * l + m * m < sqr(kSame * cosine_reach_);
     }
     [[nodiscard]] LensRay<Dual<f8>> trace(const TargetPoints&, f8 l, f8 m) const;
-    [[nodiscard]] PlanePoint<f8> pictured_mm(const Goals&, const LensIndices<f8>&,
-                                             const PlanePoint<f8>& stop_mm, V2f from_mm,
-                                             int steps) const;
+    struct Pictured;
+    [[nodiscard]] Pictured pictured(const Goals&, const LensIndices<f8>&,
+                                    const PlanePoint<f8>& stop_mm, const PlanePoint<f8>& from_mm,
+                                    int steps) const;
     [[nodiscard]] PlanePoint<f8> spread(int first) const;
-    void add_starts(ListedTarget&, const TargetPoints&, const Goals&, const FoundRays&,
-                    bool counts) const;
+    [[nodiscard]] m8 same_way(const TargetPoints&, const Goals&, const TargetStart&, m8 asked,
+                              const FoundDirections&) const;
     [[nodiscard]] TargetStart start_at(const TargetPoints&, const Goals&, f8 l, f8 m,
                                        int lane) const;
 

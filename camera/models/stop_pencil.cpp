@@ -200,7 +200,7 @@ std::optional<TargetedStop::Aimed> TargetedStop::aim_at_one(
     return Aimed{stop_mm, static_cast<float>(open / (open + aimed))};
 }
 
-std::optional<ListedTarget> TargetedStop::ready(const LocalTarget& target,
+std::optional<ListedTarget> TargetedStop::listed(const LocalTarget& target,
                                                 V2f place) const {
     // A target's rim is met from a little farther away than its middle.
     constexpr double kReach = 1.25;

@@ -70,7 +70,7 @@ struct TargetedStop {
     [[nodiscard]] std::optional<Aimed> aim_at_one(const FilmPoint&, TargetList) const;
     /// The target with the share of ordinary rays that pass it; nothing where no ray of the first
     /// pencil passes its middle, nor nearly.
-    [[nodiscard]] std::optional<ListedTarget> ready(const LocalTarget&, V2f place) const;
+    [[nodiscard]] std::optional<ListedTarget> listed(const LocalTarget&, V2f place) const;
 };
 
 }  // namespace petzval

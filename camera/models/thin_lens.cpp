@@ -61,12 +61,16 @@ CameraSample ThinLensCamera::sample(const FilmPoint& at, const Bands& bands) con
     return out;
 }
 
-std::optional<ListedTarget> ThinLensCamera::ready(const Target& target,
-                                                   const FilmCell& cell) const {
+std::optional<PreparedTarget> ThinLensCamera::prepared(const Target& target) const {
     const LocalTarget local = pose_.local(target);
-    const FilmPoint at{cell.nearest(pictured(local.centre, V2f(tan_half_x_, tan_half_y_)))};
+    return PreparedTarget{local, pictured(local.centre, V2f(tan_half_x_, tan_half_y_))};
+}
+
+std::optional<ListedTarget> ThinLensCamera::listed(const PreparedTarget& target,
+                                       const FilmCell& cell) const {
+    const FilmPoint at{cell.nearest(target.place)};
     const StopPencil rays = pencil(at);
-    return TargetedStop{*iris_, {&rays, 1}}.ready(local, at.film);
+    return TargetedStop{*iris_, {&rays, 1}}.listed(target.target, at.film);
 }
 
 void ThinLensCamera::sample_targets(std::span<const FilmPoint> points,

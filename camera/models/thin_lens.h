@@ -28,7 +28,9 @@ class ThinLensCamera final : public Camera {
     explicit ThinLensCamera(ThinLens);
     [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
     [[nodiscard]] bool takes_targets() const override { return iris_.has_value(); }
-    [[nodiscard]] std::optional<ListedTarget> ready(const Target&, const FilmCell&) const override;
+    [[nodiscard]] std::optional<PreparedTarget> prepared(const Target&) const override;
+    [[nodiscard]] std::optional<ListedTarget> listed(const PreparedTarget&,
+                                                     const FilmCell&) const override;
     void sample_targets(std::span<const FilmPoint>, std::span<const Bands>,
                         std::span<const TargetList>, std::span<CameraSample>) const override;
 

@@ -24,6 +24,13 @@ Target target_of(const Thing& lamp, const V3f& eye) {
     return {lamp.centre, unit(lamp.centre - eye), lamp.reach_m, false};
 }
 
+/// A lamp, and what the camera makes of it once a cell asks for it.
+struct LampToTry {
+    Thing thing;
+    std::optional<PreparedTarget> ready{};
+    bool hopeless = false;
+};
+
 bool may_be_target(const Thing& thing) {
     return thing.is_lamp() && thing.reach_m > 0 && std::isfinite(thing.reach_m) &&
            std::isfinite(thing.radiance) && !(thing.at_infinity && thing.reach_m > 0.5f);
@@ -34,11 +41,13 @@ bool may_be_target(const Thing& thing) {
 std::shared_ptr<const TargetGrid> find_targets(const Camera& camera, V2i size_px,
                                                std::span<const Thing> things) {
     if (!camera.takes_targets()) return nullptr;
-    std::vector<Thing> lamps;
-    std::copy_if(things.begin(), things.end(), std::back_inserter(lamps), may_be_target);
+    std::vector<LampToTry> lamps;
+    for (const Thing& thing : things)
+        if (may_be_target(thing)) lamps.push_back({thing});
     if (lamps.empty()) return nullptr;
-    std::stable_sort(lamps.begin(), lamps.end(),
-                     [](const Thing& a, const Thing& b) { return a.radiance > b.radiance; });
+    std::stable_sort(lamps.begin(), lamps.end(), [](const LampToTry& a, const LampToTry& b) {
+        return a.thing.radiance > b.thing.radiance;
+    });
     auto out = std::make_shared<TargetGrid>();
     out->cells = {(size_px.x + kCell_px - 1) / kCell_px, (size_px.y + kCell_px - 1) / kCell_px};
     bool any = false;
@@ -50,12 +59,17 @@ std::shared_ptr<const TargetGrid> find_targets(const Camera& camera, V2i size_px
             const RayBundle bundle = bundle_of(camera, size_px, cell);
             const FilmCell place = out->cell(i, j, size_px);
             size_t tried = 0;
-            for (const Thing& lamp : lamps) {
-                if (!passes(bundle, lamp)) continue;
+            for (LampToTry& lamp : lamps) {
+                if (lamp.hopeless || !passes(bundle, lamp.thing)) continue;
+                if (!lamp.ready) {
+                    lamp.ready = camera.prepared(target_of(lamp.thing, bundle.rays[0].origin));
+                    lamp.hopeless = !lamp.ready;
+                    if (lamp.hopeless) continue;
+                }
                 if (++tried > kMostTried) break;
-                auto target = camera.ready(target_of(lamp, bundle.rays[0].origin), place);
+                auto target = camera.listed(*lamp.ready, place);
                 if (!target || !(target->met < kMostMet)) continue;
-                target->chance = target->met * static_cast<float>(lamp.radiance);
+                target->chance = target->met * static_cast<float>(lamp.thing.radiance);
                 list.push_back(*std::move(target));
             }
             std::stable_sort(list.begin(), list.end(),

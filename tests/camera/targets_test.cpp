@@ -125,7 +125,9 @@ std::shared_ptr<TargetGrid> one_list(const Camera& camera, V2f film,
     out->lists.emplace_back();
     float sum = 0;
     for (size_t i = 0; i < targets.size(); ++i) {
-        auto ready = camera.ready(targets[i], {film, film});
+        const auto prepared = camera.prepared(targets[i]);
+        if (!prepared) continue;
+        auto ready = camera.listed(*prepared, {film, film});
         if (!ready) continue;
         ready->chance = float(i + 1);
         sum += ready->chance;

@@ -96,11 +96,16 @@ class CellPilot {
     const Observer& observer_;
 };
 
+/// Targets of a cell that were tried: the root of what each brings, squared, and whether it pays.
+struct Tried {
+    std::vector<double> roots;
+    std::vector<bool> pays;
+};
+
 /// The part of a list with the least effort: variance times cost. What a target's light would add
 /// to the variance of ordinary rays is known from the rays that are sent to it, however seldom
 /// ordinary ones meet it: by the same shares as the light itself.
-std::vector<ListedTarget> best_part(std::vector<ListedTarget> list, const Found& ordinary,
-                                    const std::vector<Found>& sent) {
+Tried best_part(TargetList list, const Found& ordinary, const std::vector<Found>& sent) {
     std::vector<size_t> order(list.size());
     std::iota(order.begin(), order.end(), 0);
     const auto spread = [&](size_t k) {
@@ -108,30 +113,58 @@ std::vector<ListedTarget> best_part(std::vector<ListedTarget> list, const Found&
     };
     std::stable_sort(order.begin(), order.end(),
                      [&](size_t a, size_t b) { return spread(a) > spread(b); });
+    Tried out{{}, std::vector<bool>(list.size())};
+    for (const Found& one : sent) out.roots.push_back(std::sqrt(one.counted2));
     double rest = ordinary.counted2 - ordinary.counted * ordinary.counted;
     for (const size_t k : order) rest += spread(k);
     double least = kWorthIt * rest * (ordinary.cost + kLensCost), roots = 0, light = 0, cost = 0;
     size_t best = 0;
     for (size_t n = 0; n < order.size(); ++n) {
         const size_t k = order[n];
-        const double root = std::sqrt(sent[k].counted2);
-        if (!(root > 0)) break;
+        if (!(out.roots[k] > 0)) break;
         rest -= spread(k);
-        roots += root;
+        roots += out.roots[k];
         light += sent[k].counted;
         const int starts = list[k].start_count;
-        cost += root * (sent[k].cost + (starts > 0 ? kTracedCost + kStartCost * starts : kThinCost));
+        cost += out.roots[k] *
+                (sent[k].cost + (starts > 0 ? kTracedCost + kStartCost * starts : kThinCost));
         const double variance = rest + std::max(0., roots * roots - light * light);
         const double effort = variance * (ordinary.cost + kLensCost + cost / roots);
         if (effort < least) least = effort, best = n + 1;
     }
-    std::vector<ListedTarget> out;
-    double sum = 0;
-    for (size_t n = 0; n < best; ++n) sum += std::sqrt(sent[order[n]].counted2);
-    for (size_t n = 0; n < best; ++n) {
-        out.push_back(list[order[n]]);
-        out.back().chance = static_cast<float>(std::sqrt(sent[order[n]].counted2) / sum);
-    }
+    for (size_t n = 0; n < best; ++n) out.pays[order[n]] = true;
+    return out;
+}
+
+/// Root of a target where it pays in a cell; 0 elsewhere.
+double root_in(TargetList list, const Tried& tried, const ListedTarget& target) {
+    for (size_t k = 0; k < list.size(); ++k)
+        if (tried.pays[k] && list[k].target.centre == target.target.centre) return tried.roots[k];
+    return 0;
+}
+
+/// Lists of what pays in a cell or in one beside it: few rays may have missed what a part of a cell
+/// sees.
+TargetGrid with_neighbours(const TargetGrid& all, const std::vector<Tried>& tried) {
+    TargetGrid out{all.cells, {}};
+    const auto index = [&](int i, int j) { return static_cast<size_t>(j) * all.cells.x + i; };
+    for (int j = 0; j < all.cells.y; ++j)
+        for (int i = 0; i < all.cells.x; ++i) {
+            std::vector<ListedTarget>& kept = out.lists.emplace_back();
+            double sum = 0;
+            for (const ListedTarget& target : all.lists[index(i, j)]) {
+                double root = 0;
+                for (int y = std::max(j - 1, 0); y <= std::min(j + 1, all.cells.y - 1); ++y)
+                    for (int x = std::max(i - 1, 0); x <= std::min(i + 1, all.cells.x - 1); ++x)
+                        root = std::max(root, root_in(all.lists[index(x, y)], tried[index(x, y)],
+                                                      target));
+                if (!(root > 0)) continue;
+                sum += root;
+                kept.push_back(target);
+                kept.back().chance = static_cast<float>(root);
+            }
+            for (ListedTarget& target : kept) target.chance /= static_cast<float>(sum);
+        }
     return out;
 }
 
@@ -144,21 +177,19 @@ std::shared_ptr<const TargetGrid> targets_that_pay(const Camera& camera, const S
     if (!all) return nullptr;
     const PathTracer<> tracer(scene, bvh, lights, {});
     const CellPilot pilot(camera, tracer, observer);
-    auto out = std::make_shared<TargetGrid>();
-    out->cells = all->cells;
+    std::vector<Tried> tried;
     bool any = false;
     for (int j = 0; j < all->cells.y; ++j)
         for (int i = 0; i < all->cells.x; ++i) {
-            const size_t index = static_cast<size_t>(j) * all->cells.x + i;
-            std::vector<ListedTarget>& kept = out->lists.emplace_back();
-            if (all->lists[index].empty()) continue;
+            const TargetList list = all->lists[tried.size()];
+            tried.emplace_back();
+            if (list.empty()) continue;
             const FilmCell cell = all->cell(i, j, frame_px);
             const auto within = [&](V2f u) { return cell.first + u * (cell.last - cell.first); };
-            const Found ordinary =
-                pilot.samples({i, j}, kOrdinary, nullptr,
-                              [&](uint32_t, V2f u) { return within(u); });
+            const Found ordinary = pilot.samples({i, j}, kOrdinary, nullptr,
+                                                 [&](uint32_t, V2f u) { return within(u); });
             std::vector<Found> sent;
-            for (ListedTarget target : all->lists[index]) {
+            for (ListedTarget target : list) {
                 target.chance = 1;
                 // From where it is seen, and from farther and farther around.
                 sent.push_back(pilot.samples({i, j}, kSent, &target, [&](uint32_t n, V2f u) {
@@ -166,10 +197,12 @@ std::shared_ptr<const TargetGrid> targets_that_pay(const Camera& camera, const S
                     return target.place + (within(u) - target.place) * away;
                 }));
             }
-            kept = best_part(all->lists[index], ordinary, sent);
-            any = any || !kept.empty();
+            tried.back() = best_part(list, ordinary, sent);
+            any = any || std::find(tried.back().pays.begin(), tried.back().pays.end(), true) !=
+                             tried.back().pays.end();
         }
-    return any ? out : nullptr;
+    if (!any) return nullptr;
+    return std::make_shared<const TargetGrid>(with_neighbours(*all, tried));
 }
 
 }  // namespace petzval

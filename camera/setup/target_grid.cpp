@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kCell_px = 16;
 /// Things of a cell that are tried, brightest first.
-constexpr size_t kMostTried = 12;
+constexpr size_t kMostTried = 8;
 constexpr size_t kMostListed = 6;
 /// Share of a pixel's ordinary rays that may pass a target: where they are more, they do as well.
 constexpr double kMostMet = 0.25;

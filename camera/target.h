@@ -45,7 +45,7 @@ struct TargetStart {
 /// A target in the space of a camera, with what is known of the ways to it from the whole film.
 struct PreparedTarget {
     LocalTarget target;
-    V2f place;                           ///< film point at which the middle of the stop pictures it
+    V2f place;                          ///< film point at which the middle of the stop pictures it
     std::vector<TargetStart> starts{};  ///< of a traced lens
 };
 

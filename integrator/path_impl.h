@@ -189,8 +189,8 @@ inline void record_layers(const Surface& s, const ShadingInput& shading, Rgb emi
 
 template <RayCaster Caster>
 f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const Sampler& sampler,
-                                bool aovs, FilmSample& out, PathStats& stats, m4 lanes,
-                                bool led, float rest) const {
+                                bool aovs, FilmSample& out, PathStats& stats, m4 lanes, bool led,
+                                float rest) const {
     f4 sum{}, throughput = zero_off(lanes, uniform(1.f, bands));
     Ray ray = camera_ray;
     Vertex last{camera_ray.origin};

@@ -30,9 +30,9 @@ struct ChanceFinds {
 
 struct PathStats {
     uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0;
-    uint64_t target_rays = 0;  ///< camera rays that were sent to targets
-    uint64_t vertices = 0;    ///< hits that were shaded
-    uint64_t tiles = 0;       ///< tiles that this worker rendered
+    uint64_t target_rays = 0;  ///< of the camera rays, those to targets
+    uint64_t vertices = 0;     ///< hits that were shaded
+    uint64_t tiles = 0;        ///< tiles that this worker rendered
     LensLosses<uint64_t> lens_lanes;
     ChanceFinds mirrored;  ///< of paths that met smooth surfaces only
     ChanceFinds caustic;   ///< of paths that met a rough one before

@@ -14,9 +14,9 @@ namespace {
 
 constexpr uint32_t kSeed = 0x74617267;  ///< so that no sample is one of the picture
 /// Samples of a cell, and rays to each of its targets.
-constexpr uint32_t kOrdinary = 16, kSent = 8;
+constexpr uint32_t kOrdinary = 16, kSent = 6;
 /// Ratio of efforts that is worth it: they are known no better.
-constexpr double kWorthIt = 0.8;
+constexpr double kWorthIt = 0.4;
 
 /// Costs in steps of a path, each a ray or a vertex: that of a sample's lens, of a ray to a target
 /// through a thin lens and through a traced one, and for each start of the latter. From counts of
@@ -38,9 +38,7 @@ struct Found {
         counted2 += share * whole * share * whole;
         whole2 += share * whole * whole;
     }
-    void scale(double by) {
-        counted *= by, counted2 *= by, whole2 *= by, cost *= by;
-    }
+    void scale(double by) { counted *= by, counted2 *= by, whole2 *= by, cost *= by; }
 };
 
 class CellPilot {
@@ -59,20 +57,21 @@ class CellPilot {
             std::array<Bands, kMostFilmPoints> bands;
             std::array<CameraSample, kMostFilmPoints> paths;
             std::array<TargetList, kMostFilmPoints> lists;
-            for (uint32_t i = 0; i < kMostFilmPoints; ++i) {
+            const auto n = std::min(count - first, static_cast<uint32_t>(kMostFilmPoints));
+            for (uint32_t i = 0; i < n; ++i) {
                 const Sampler sampler(SamplerKind::Owen, kSeed, {cell.x, cell.y, first + i});
-                bands[i] = observer_.spectral()
-                               ? observer_.draw(sampler.get1(Dim::Wavelength))
-                               : Bands::rgb();
+                bands[i] = observer_.spectral() ? observer_.draw(sampler.get1(Dim::Wavelength))
+                                                : Bands::rgb();
                 points[i] = {place_of(first + i, sampler.get2(Dim::Film)), sampler};
             }
             if (to) {
                 lists.fill({to, 1});
-                camera_.sample_targets(points, bands, lists, paths);
+                camera_.sample_targets({points.data(), n}, {bands.data(), n}, {lists.data(), n},
+                                       {paths.data(), n});
             } else {
-                camera_.sample_all(points, bands, paths);
+                camera_.sample_all({points.data(), n}, {bands.data(), n}, {paths.data(), n});
             }
-            for (uint32_t i = 0; i < kMostFilmPoints; ++i) {
+            for (uint32_t i = 0; i < n; ++i) {
                 if (paths[i].empty()) continue;
                 f4 light{};
                 for (const CameraPath& path : paths[i]) {
@@ -156,8 +155,8 @@ TargetGrid with_neighbours(const TargetGrid& all, const std::vector<Tried>& trie
                 double root = 0;
                 for (int y = std::max(j - 1, 0); y <= std::min(j + 1, all.cells.y - 1); ++y)
                     for (int x = std::max(i - 1, 0); x <= std::min(i + 1, all.cells.x - 1); ++x)
-                        root = std::max(root, root_in(all.lists[index(x, y)], tried[index(x, y)],
-                                                      target));
+                        root = std::max(
+                            root, root_in(all.lists[index(x, y)], tried[index(x, y)], target));
                 if (!(root > 0)) continue;
                 sum += root;
                 kept.push_back(target);

@@ -258,6 +258,23 @@ ChartCase lights_case(const ResolvedScene& found, const RenderJob& job) {
     return std::move(cases).result();
 }
 
+ChartCase targets_case(const ResolvedScene& found, const RenderJob& job) {
+    Cases cases(ChartAxis::Targets, job, "targets", "camera rays to small lamps out of focus");
+    std::vector<std::string> remarks;
+    const SceneRequest lens = with_lens(found, remarks);
+    cases.remark(remarks);
+    const auto with = [](TargetUse use) {
+        return [use](SceneRequest& s, RenderJob&) { s.targets = use; };
+    };
+    cases.add("off", lens, with(TargetUse::Off));
+    cases.add("auto", lens, with(TargetUse::Auto));
+    cases.reference("without targets, independent points", lens, [](SceneRequest& s, RenderJob& j) {
+        s.targets = TargetUse::Off;
+        j.sampler = SamplerKind::Independent;
+    });
+    return std::move(cases).result();
+}
+
 /// Remark that counts traversal leaks: a wrong pixel here and there hardly shows in an error.
 std::string leak_count(const SceneRequest& request, const SetUpView& open) {
     constexpr size_t kRays = 20000;
@@ -308,10 +325,10 @@ ChartCase precision_case(const ResolvedScene& found, const RenderJob& job, const
 
 const std::vector<std::pair<std::string, ChartAxis>>& chart_axes() {
     static const std::vector<std::pair<std::string, ChartAxis>> axes{
-        {"camera", ChartAxis::Camera},      {"dispersion", ChartAxis::Dispersion},
-        {"spectral", ChartAxis::Spectral},  {"iris", ChartAxis::Iris},
-        {"sampler", ChartAxis::Sampler},    {"lights", ChartAxis::Lights},
-        {"precision", ChartAxis::Precision}};
+        {"camera", ChartAxis::Camera},     {"dispersion", ChartAxis::Dispersion},
+        {"spectral", ChartAxis::Spectral}, {"iris", ChartAxis::Iris},
+        {"sampler", ChartAxis::Sampler},   {"lights", ChartAxis::Lights},
+        {"targets", ChartAxis::Targets},   {"precision", ChartAxis::Precision}};
     return axes;
 }
 
@@ -327,7 +344,8 @@ std::vector<ChartCase> chart_cases(const std::vector<ChartAxis>& axes, const Cha
     std::vector<ChartCase> cases;
     for (const ChartAxis axis : axes) {
         const bool needs_lens = axis == ChartAxis::Camera || axis == ChartAxis::Dispersion ||
-                                axis == ChartAxis::Iris || axis == ChartAxis::Precision;
+                                axis == ChartAxis::Iris || axis == ChartAxis::Targets ||
+                                axis == ChartAxis::Precision;
         if (needs_lens && found.report.orthographic)
             throw ArgumentError(subject.request.scene.string(), "",
                                 fmt::format("axis {} needs a lens, and the camera is orthographic: "
@@ -351,6 +369,9 @@ std::vector<ChartCase> chart_cases(const std::vector<ChartAxis>& axes, const Cha
                 break;
             case ChartAxis::Lights:
                 cases.push_back(lights_case(found, subject.job));
+                break;
+            case ChartAxis::Targets:
+                cases.push_back(targets_case(found, subject.job));
                 break;
             case ChartAxis::Precision:
                 cases.push_back(precision_case(found, subject.job, open));

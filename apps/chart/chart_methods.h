@@ -15,7 +15,16 @@
 namespace petzval {
 
 /// Axes of a chart.
-enum class ChartAxis : uint8_t { Camera, Dispersion, Spectral, Iris, Sampler, Lights, Precision };
+enum class ChartAxis : uint8_t {
+    Camera,
+    Dispersion,
+    Spectral,
+    Iris,
+    Sampler,
+    Lights,
+    Targets,
+    Precision
+};
 
 /// Every axis with its word, in the order of a report.
 [[nodiscard]] const std::vector<std::pair<std::string, ChartAxis>>& chart_axes();

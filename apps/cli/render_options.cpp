@@ -55,8 +55,9 @@ void add_sampling_options(CLI::App& app, RenderOptions& o) {
         app, "--light-choice", o.scene.light_choice,
         "how one of many lights is chosen: tree (default; power, distance and direction), power, "
         "uniform");
-    add_choice<TargetUse>(app, "--targets", o.scene.targets,
-                          "camera rays to small lamps out of focus, of thin lenses and singlets: auto, off (default)");
+    add_choice<TargetUse>(
+        app, "--targets", o.scene.targets,
+        "camera rays to small lamps out of focus: auto (where they pay), off (default)");
     add_choice<Traversal>(app, "--traversal", o.scene.traversal,
                           "robust (default): watertight; fast: may leak at edges");
 }

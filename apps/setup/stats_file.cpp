@@ -87,6 +87,7 @@ void write_stats(const std::filesystem::path& path, const RenderSetup& setup,
     out["rays"] = {{"camera", s.camera_rays},
                    {"bounce", s.bounce_rays},
                    {"shadow", s.shadow_rays},
+                   {"to_targets", s.target_rays},
                    {"all", rays}};
     out["lens_lanes"] = lens_lanes(s.lens_lanes);
     out["path_vertices"] = s.vertices;

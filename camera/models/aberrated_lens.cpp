@@ -143,15 +143,15 @@ std::optional<PreparedTarget> AberratedLensCamera::prepared(const Target& target
 }
 
 std::optional<ListedTarget> AberratedLensCamera::listed(const PreparedTarget& target,
-                                       const FilmCell& cell) const {
+                                                        const FilmCell& cell) const {
     const FilmPoint at{cell.nearest(target.place)};
     return TargetedStop{in_.iris, pencils(at, Bands::rgb()).span()}.listed(target.target, at.film);
 }
 
 void AberratedLensCamera::sample_targets(std::span<const FilmPoint> points,
-                                    std::span<const Bands> bands,
-                                    std::span<const TargetList> targets,
-                                    std::span<CameraSample> out) const {
+                                         std::span<const Bands> bands,
+                                         std::span<const TargetList> targets,
+                                         std::span<CameraSample> out) const {
     for (size_t i = 0; i < points.size(); ++i) out[i] = to_target(points[i], bands[i], targets[i]);
 }
 

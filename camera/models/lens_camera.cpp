@@ -12,8 +12,6 @@ namespace petzval {
 namespace {
 
 constexpr auto kLineD = static_cast<float>(kLineD_nm);
-/// Directions that ray aiming finds are this near to the true ones.
-constexpr float kSameDirection = 2e-3f;
 
 // Transmission of the stop at a point of each lane.
 template <class V>
@@ -301,24 +299,10 @@ CameraSample LensCamera::sample(const FilmPoint& point, const Bands& bands) cons
     return out;
 }
 
-struct LensCamera::Batch {
-    std::span<const FilmPoint> points;
-    std::span<const Bands> bands;
-    bool achromatic;
-    bool of_lead;  ///< each point has one ray, that of the lane that leads
-    LeadPoints at;
-    LensIndices<f8> indices;
-};
-
 // The image stands on its head: what is seen on the right falls on the left of the film.
 V2f LensCamera::film_mm(V2f film) const {
     return {(0.5f - film.x) * static_cast<float>(in_.film_width_mm),
             (film.y - 0.5f) * static_cast<float>(in_.film_height_mm)};
-}
-
-V2f LensCamera::film_of(V2f film_mm) const {
-    return {0.5f - film_mm.x / static_cast<float>(in_.film_width_mm),
-            0.5f + film_mm.y / static_cast<float>(in_.film_height_mm)};
 }
 
 auto LensCamera::batch(std::span<const FilmPoint> points, std::span<const Bands> bands) const
@@ -355,113 +339,12 @@ void LensCamera::sample_all(std::span<const FilmPoint> points, std::span<const B
     finish(all, rays, density, out);
 }
 
-std::optional<PreparedTarget> LensCamera::prepared(const Target& target) const {
-    const V2f half_mm(V2d(in_.film_width_mm / 2, in_.film_height_mm / 2));
-    auto out = targets_.prepared(pose_.local(target), half_mm);
-    if (out) out->place = film_of(out->place);
-    return out;
-}
-
-std::optional<ListedTarget> LensCamera::listed(const PreparedTarget& target,
-                                               const FilmCell& cell) const {
-    const V2f a = film_mm(cell.first), b = film_mm(cell.last);
-    auto out = targets_.listed(target, film_mm(cell.nearest(target.place)),
-                               {V2f(std::min(a.x, b.x), std::min(a.y, b.y)),
-                                V2f(std::max(a.x, b.x), std::max(a.y, b.y))});
-    if (out) out->place = cell.nearest(target.place);
-    return out;
-}
-
-void LensCamera::sample_targets(std::span<const FilmPoint> points, std::span<const Bands> bands,
-                                std::span<const TargetList> listed,
-                                std::span<CameraSample> out) const {
-    const Batch all = batch(points, bands);
-    std::array<TargetList, kMostFilmPoints> lists;
-    std::array<Sampler, kMostFilmPoints> samplers;
-    PlanePoint<f8> film(f8{}, f8{});
-    for (size_t i = 0; i < kMostFilmPoints; ++i) {
-        const int lane = static_cast<int>(i);
-        film.x[lane] = all.at.film_mm[i].x, film.y[lane] = all.at.film_mm[i].y;
-        if (i < points.size()) lists[i] = listed[i], samplers[i] = points[i].sampler;
-    }
-    const TargetChoice choice = LensTargets::choose(lists, {samplers.data(), points.size()});
-    const SentRays sent = targets_.find({film, all.indices, lists}, choice);
-    const FoundDirections& found = sent.directions;
-    LeadRays rays;
-    static_cast<AimedRay<f8>&>(rays.aimed) =
-        optics_.aimer().cross<f8>(film, found.l, found.m, all.indices);
-    rays.stop_mm = {rays.aimed.ray.origin.x, rays.aimed.ray.origin.y};
-    // Where the pupil folds, draws of the stop find one of the rays that cross it at a point. Only
-    // that one counts, with targets and without.
-    const FoundRays back = optics_.aimer().aim(film, rays.stop_mm, all.indices, all.at.nm);
-    const f8 off_l = back.l - found.l, off_m = back.m - found.m;
-    rays.aimed.found = found.found & rays.aimed.ray.alive() & back.found &
-                       (off_l * off_l + off_m * off_m < sqr(kSameDirection));
-    const std::array<float, kMostFilmPoints> density = to_targets(all, rays, lists, {});
-    for (size_t i = 0; i < points.size(); ++i)
-        if (!(density[i] > 0.f)) rays.aimed.found[static_cast<int>(i)] = 0;
-    finish(all, rays, density, out);
-    for (size_t i = 0; i < points.size(); ++i) out[i].leave_layers();
-}
-
-// Of one lane, or where lanes part and share a direction, the mean over lanes: each may have been
-// the one that it was drawn for.
-std::array<float, kMostFilmPoints> LensCamera::to_targets(
-    const Batch& all, const LeadRays& rays,
-    const std::array<TargetList, kMostFilmPoints>& listed, const SentRays& known) const {
-    std::array<float, kMostFilmPoints> out{};
-    std::array<TargetList, kMostFilmPoints> lists = listed;
-    bool any_listed = false;
-    for (size_t i = 0; i < kMostFilmPoints; ++i) {
-        if (!rays.aimed.found[static_cast<int>(i)]) lists[i] = {};
-        any_listed = any_listed || !lists[i].empty();
-    }
-    if (!any_listed) return out;
-    PlanePoint<f8> film(f8{}, f8{});
-    if (all.of_lead) {
-        for (int i = 0; i < 8; ++i)
-            film.x[i] = all.at.film_mm[size_t(i)].x, film.y[i] = all.at.film_mm[size_t(i)].y;
-        const f8 density =
-            targets_.density({film, all.indices, lists}, rays.aimed.l, rays.aimed.m, known);
-        for (int i = 0; i < 8; ++i) out[static_cast<size_t>(i)] = density[i];
-        return out;
-    }
-    for (size_t first = 0; first < all.points.size(); first += 2) {
-        const std::array<size_t, 2> pair{first, std::min(first + 1, all.points.size() - 1)};
-        const LensIndices<f8> indices =
-            in_.lens->indices(joined(all.bands[pair[0]].nm, all.bands[pair[1]].nm));
-        f8 l{}, m{};
-        TargetPoints at{film, indices, {}};
-        SentRays known_of_lanes;
-        for (int i = 0; i < 8; ++i) {
-            const size_t lane = static_cast<size_t>(i), point = pair[lane / 4];
-            const Bands& bands = all.bands[point];
-            at.film_mm.x[i] = all.at.film_mm[point].x, at.film_mm.y[i] = all.at.film_mm[point].y;
-            l[i] = rays.aimed.l[static_cast<int>(point)];
-            m[i] = rays.aimed.m[static_cast<int>(point)];
-            if (bands.on[i % 4]) at.targets[lane] = lists[point];
-            if (i % 4 != bands.lead) continue;
-            known_of_lanes.target[lane] = known.target[point];
-            known_of_lanes.density[i] = known.density[static_cast<int>(point)];
-        }
-        const f8 density = targets_.density(at, l, m, known_of_lanes);
-        for (size_t k = 0; k < 2; ++k) {
-            const int begin = static_cast<int>(4 * k);
-            out[pair[k]] = (density[begin] + density[begin + 1] + density[begin + 2] +
-                            density[begin + 3]) /
-                           static_cast<float>(lane_count(all.bands[pair[k]].on));
-        }
-    }
-    return out;
-}
-
 void LensCamera::finish(const Batch& all, LeadRays& rays,
                         const std::array<float, kMostFilmPoints>& to_targets,
                         std::span<CameraSample> out) const {
     const auto place = [&](size_t i) {
-        return Place{all.at.film_mm[i],  rays.stop_mm[static_cast<int>(i)],
-                     all.bands[i],       all.achromatic,
-                     all.points[i].pixel.frame_px, to_targets[i]};
+        return Place{all.at.film_mm[i], rays.stop_mm[static_cast<int>(i)], all.bands[i],
+                     all.achromatic,    all.points[i].pixel.frame_px,      to_targets[i]};
     };
     const auto each = [&]<class P>(const auto&... more) {
         for (size_t i = 0; i < all.points.size(); ++i) {

@@ -19,9 +19,9 @@ namespace petzval {
 /// One draw of the iris, lane by lane. V: f4 or d4.
 template <class V>
 struct LensDraw {
-    V weight{};      ///< 0 where the lane is blocked
+    V weight{};       ///< 0 where the lane is blocked
     float share = 1;  ///< CameraPath::share
-    LensRay<V> ray;  ///< in front of the lens
+    LensRay<V> ray;   ///< in front of the lens
     LensLosses<uint32_t> losses;
 
     [[nodiscard]] f4 weight_of_lanes() const {
@@ -97,7 +97,14 @@ class LensCamera final : public Camera {
     class Point;
     class LeadPoint;
     /// Film points of a batch, their bands, and what carries the rays that are found for them.
-    struct Batch;
+    struct Batch {
+        std::span<const FilmPoint> points;
+        std::span<const Bands> bands;
+        bool achromatic;
+        bool of_lead;  ///< each point has one ray, that of the lane that leads
+        LeadPoints at;
+        LensIndices<f8> indices;
+    };
     [[nodiscard]] Batch batch(std::span<const FilmPoint>, std::span<const Bands>) const;
     [[nodiscard]] V2f film_mm(V2f film) const;
     [[nodiscard]] V2f film_of(V2f film_mm) const;

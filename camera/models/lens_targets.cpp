@@ -72,16 +72,14 @@ struct LensTargets::Landing {
         };
         constexpr auto value = &Dual<f8>::value;
         const Vec3<f8> origin = part(ray.origin, value), d = part(ray.direction, value);
-        const Vec3<f8> away =
-            select(goal.at_infinity, goal.centre, goal.centre + negated(origin));
+        const Vec3<f8> away = select(goal.at_infinity, goal.centre, goal.centre + negated(origin));
         const f8 across = dot(goal.normal, d), t = dot(goal.normal, away) / across;
         const Vec3<f8> from_centre = d * t + negated(away);
         x = dot(goal.across, from_centre) * goal.per_radius;
         y = dot(goal.up, from_centre) * goal.per_radius;
         const auto change = [&](auto which, f8& x_by, f8& y_by) {
-            const Vec3<f8> moved =
-                select(goal.at_infinity, Vec3<f8>{}, part(ray.origin, which)) +
-                part(ray.direction, which) * t;
+            const Vec3<f8> moved = select(goal.at_infinity, Vec3<f8>{}, part(ray.origin, which)) +
+                                   part(ray.direction, which) * t;
             const Vec3<f8> in_plane = moved + d * (-dot(goal.normal, moved) / across);
             x_by = dot(goal.across, in_plane) * goal.per_radius;
             y_by = dot(goal.up, in_plane) * goal.per_radius;
@@ -141,8 +139,8 @@ auto LensTargets::goals(const std::array<TargetList, 8>& lists,
         put(out.normal, target.normal);
         put(out.across, target.across);
         put(out.up, target.up);
-        put(out.centre, target.at_infinity ? target.centre
-                                           : 1e3 * target.centre + V3d(0, 0, pupil_mm_));
+        put(out.centre,
+            target.at_infinity ? target.centre : 1e3 * target.centre + V3d(0, 0, pupil_mm_));
         const double radius = target.at_infinity ? target.radius_m : 1e3 * target.radius_m;
         out.per_radius[i] = static_cast<float>(1 / radius);
         out.at_infinity[i] = target.at_infinity ? -1 : 0;
@@ -154,10 +152,10 @@ auto LensTargets::goals(const std::array<TargetList, 8>& lists,
 }
 
 LensRay<Dual<f8>> LensTargets::trace(const TargetPoints& at, f8 l, f8 m) const {
-    LensRay<Dual<f8>> ray = aimer_.leave(at.film_mm, Dual<f8>{l, splat8(1), f8{}},
-                                         Dual<f8>{m, f8{}, splat8(1)});
-    static_cast<void>(trace_lens<Dual<f8>>(lens_, at.indices, Towards::Scene, {0, lens_.last()},
-                                           ray, Clip::No));
+    LensRay<Dual<f8>> ray =
+        aimer_.leave(at.film_mm, Dual<f8>{l, splat8(1), f8{}}, Dual<f8>{m, f8{}, splat8(1)});
+    static_cast<void>(
+        trace_lens<Dual<f8>>(lens_, at.indices, Towards::Scene, {0, lens_.last()}, ray, Clip::No));
     return ray;
 }
 
@@ -237,8 +235,8 @@ SentRays LensTargets::find(const TargetPoints& at, const TargetChoice& choice) c
         left -= select8(here, found.light[b], f8{});
     }
     out.directions.found = found.all > 0.f;
-    out.density = select8(out.directions.found, out.density / found.all * goal.chance * (1 / kPi),
-                          f8{});
+    out.density =
+        select8(out.directions.found, out.density / found.all * goal.chance * (1 / kPi), f8{});
     return out;
 }
 
@@ -353,8 +351,7 @@ std::optional<PreparedTarget> LensTargets::prepared(const LocalTarget& target,
             out.place = middle.film_mm[i], found = true;
     if (!found) return std::nullopt;
     for (int tried = 0; tried < kTried; tried += 8) {
-        const Pictured seen =
-            pictured(goal, indices, spread(tried), PlanePoint<f8>(out.place), 5);
+        const Pictured seen = pictured(goal, indices, spread(tried), PlanePoint<f8>(out.place), 5);
         at.film_mm = seen.film_mm;
         for (int i = 0; i < 8; ++i)
             if (seen.found[i] && near_film(seen.film_mm[i]))
@@ -420,8 +417,7 @@ std::optional<ListedTarget> LensTargets::listed(const PreparedTarget& target, V2
         bool fresh = found.found[lane] &&
                      stop.length() < kMostStopRadii * static_cast<float>(stop_reach_mm_);
         for (int k = 0; k < lane && fresh; ++k)
-            fresh = !(found.found[k] &&
-                      same(found.l - found.l[k], found.m - found.m[k])[lane]);
+            fresh = !(found.found[k] && same(found.l - found.l[k], found.m - found.m[k])[lane]);
         if (!fresh) continue;
         keep(i);
         out.met += met[lane];

@@ -50,7 +50,8 @@ class LensTargets {
     /// The target with starts from all over the stop, each for the film point that sees the target
     /// through that point of the stop. The place is in mm. Nothing where none is found near a film
     /// of so many mm from the middle to its edges.
-    [[nodiscard]] std::optional<PreparedTarget> prepared(const LocalTarget&, V2f half_film_mm) const;
+    [[nodiscard]] std::optional<PreparedTarget> prepared(const LocalTarget&,
+                                                         V2f half_film_mm) const;
     /// The target with those starts that lead to it by ways of their own from a cell; nothing where
     /// none does from a place of the cell. Without its place on the film.
     [[nodiscard]] std::optional<ListedTarget> listed(const PreparedTarget&, V2f place_mm,
@@ -80,9 +81,7 @@ class LensTargets {
                                          f8 l, f8 m, Landing&) const;
     [[nodiscard]] Ways ways(const TargetPoints&, const Goals&, m8 wanted, f8 x, f8 y) const;
     /// Whether directions that are so far apart are the same.
-    [[nodiscard]] m8 same(f8 l, f8 m) const {
-        return l * l + m * m < sqr(kSame * cosine_reach_);
-    }
+    [[nodiscard]] m8 same(f8 l, f8 m) const { return l * l + m * m < sqr(kSame * cosine_reach_); }
     [[nodiscard]] LensRay<Dual<f8>> trace(const TargetPoints&, f8 l, f8 m) const;
     struct Pictured;
     [[nodiscard]] Pictured pictured(const Goals&, const LensIndices<f8>&,

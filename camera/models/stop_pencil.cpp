@@ -102,8 +102,7 @@ double area(const LocalTarget& target) {
 struct StopDensity {
     double open, aimed;
 };
-StopDensity density_of(const TargetedStop& stop, V2f stop_mm,
-                       TargetList targets) {
+StopDensity density_of(const TargetedStop& stop, V2f stop_mm, TargetList targets) {
     const double per_m2 = 1e6 / stop.iris.area_mm2();
     StopDensity out{double(stop.iris.transmits(stop_mm)) * per_m2, 0};
     const V2d s = V2d(stop_mm) * 1e-3;
@@ -182,8 +181,8 @@ float TargetedStop::share(V2f stop_mm, TargetList targets) const {
     return open > 0 ? static_cast<float>(open / (open + aimed)) : 1;
 }
 
-std::optional<TargetedStop::Aimed> TargetedStop::aim_at_one(
-    const FilmPoint& at, TargetList targets) const {
+std::optional<TargetedStop::Aimed> TargetedStop::aim_at_one(const FilmPoint& at,
+                                                            TargetList targets) const {
     const V2f pick = at.sampler.get2(Dim::TargetPick);
     const size_t i = picked(targets, pick.x);
     const LocalTarget& target = targets[i].target;
@@ -200,8 +199,7 @@ std::optional<TargetedStop::Aimed> TargetedStop::aim_at_one(
     return Aimed{stop_mm, static_cast<float>(open / (open + aimed))};
 }
 
-std::optional<ListedTarget> TargetedStop::listed(const LocalTarget& target,
-                                                V2f place) const {
+std::optional<ListedTarget> TargetedStop::listed(const LocalTarget& target, V2f place) const {
     // A target's rim is met from a little farther away than its middle.
     constexpr double kReach = 1.25;
     StopPencil wide = pencils[0];

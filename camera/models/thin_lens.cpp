@@ -67,14 +67,13 @@ std::optional<PreparedTarget> ThinLensCamera::prepared(const Target& target) con
 }
 
 std::optional<ListedTarget> ThinLensCamera::listed(const PreparedTarget& target,
-                                       const FilmCell& cell) const {
+                                                   const FilmCell& cell) const {
     const FilmPoint at{cell.nearest(target.place)};
     const StopPencil rays = pencil(at);
     return TargetedStop{*iris_, {&rays, 1}}.listed(target.target, at.film);
 }
 
-void ThinLensCamera::sample_targets(std::span<const FilmPoint> points,
-                                    std::span<const Bands> bands,
+void ThinLensCamera::sample_targets(std::span<const FilmPoint> points, std::span<const Bands> bands,
                                     std::span<const TargetList> targets,
                                     std::span<CameraSample> out) const {
     for (size_t i = 0; i < points.size(); ++i) out[i] = to_target(points[i], bands[i], targets[i]);

@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kCell_px = 16;
 /// Things of a cell that are tried, brightest first.
-constexpr size_t kMostTried = 8;
-constexpr size_t kMostListed = 6;
+constexpr size_t kMostTried = 12;
+constexpr size_t kMostListed = 8;
 /// Share of a pixel's ordinary rays that may pass a target: where they are more, they do as well.
 constexpr double kMostMet = 0.25;
 /// Share of the light of a cell's brightest target below which another is left out.

@@ -31,7 +31,8 @@ StopPencil pencil(double half_k_per_m) {
 }
 
 V2f random2(uint32_t i, uint32_t purpose) {
-    return {to_unit_float(hash32(hash32(i, purpose), 0)), to_unit_float(hash32(hash32(i, purpose), 1))};
+    return {to_unit_float(hash32(hash32(i, purpose), 0)),
+            to_unit_float(hash32(hash32(i, purpose), 1))};
 }
 
 // The density integrates to the share of draws that reach a point of the stop: as a mean over the
@@ -60,9 +61,8 @@ TEST(Targets, DensitiesAreThoseOfTheDraws) {
                 }
                 folded += found.mean() < 0.9;
                 const Mean apart = Mean(density) - Mean(found);
-                EXPECT_TRUE(test::agrees(apart, 0))
-                    << k << ' ' << z << ' ' << at_infinity << ": " << Mean(density) << ", "
-                    << Mean(found);
+                EXPECT_TRUE(test::agrees(apart, 0)) << k << ' ' << z << ' ' << at_infinity << ": "
+                                                    << Mean(density) << ", " << Mean(found);
             }
     EXPECT_GT(folded, 0);
 }
@@ -94,8 +94,8 @@ Means means(const Camera& camera, const Observer& observer, V2f film, const V3f&
     for (uint32_t first = 0; first < kSamples; first += kMostFilmPoints) {
         for (uint32_t k = 0; k < kMostFilmPoints; ++k) {
             const Sampler sampler(SamplerKind::Independent, 3, {7, 9, first + k});
-            bands[k] = observer.spectral() ? observer.draw(sampler.get1(Dim::Wavelength))
-                                           : Bands::rgb();
+            bands[k] =
+                observer.spectral() ? observer.draw(sampler.get1(Dim::Wavelength)) : Bands::rgb();
             const V2f offset = filter.sample(sampler.get2(Dim::Film));
             points[k] = {film + offset / size, sampler, {&filter, offset, size}};
         }
@@ -176,12 +176,12 @@ int expect_same_mean(Camera& camera, const Observer& observer, const TestLamp& l
         camera.set_targets(one_list(camera, lamp.film, cases[i]));
         for (const ListedTarget& listed : camera.targets()->lists[0])
             starts = std::max<int>(starts, listed.start_count);
-        const Means found = means(camera, observer, lamp.film, at, radius,
-                                  camera.targets()->lists[0]);
+        const Means found =
+            means(camera, observer, lamp.film, at, radius, camera.targets()->lists[0]);
         // They share their ordinary rays, so this allows a little more than chance does.
         EXPECT_TRUE(test::agrees(Mean(found.both) - Mean(found.ordinary), 0))
-            << "targets " << i << ", lamp at " << lamp.distance_m
-            << " m: " << Mean(found.both) << ", " << Mean(found.ordinary);
+            << "targets " << i << ", lamp at " << lamp.distance_m << " m: " << Mean(found.both)
+            << ", " << Mean(found.ordinary);
         least = std::min(least, found.both.standard_error());
         plain = found.ordinary.standard_error();
     }
@@ -205,16 +205,17 @@ TEST(Targets, SingletKeepsItsMean) {
     const Glass glass{"crown", IndexTable{{{400, 1.53}, {587, 1.517}, {700, 1.513}}}};
     for (const auto mode : {DispersionMode::Shared, DispersionMode::Split, DispersionMode::Hero})
         for (const float distance_m : {0.7f, 0.9f, 3.f}) {
-            AberratedLens lens{kPose, Singlet::bent(glass, 50, 0.8), Iris(ApertureShape(), 9), 1,
-                               0.5f,  1.6f,                          mode};
+            AberratedLens lens{
+                kPose, Singlet::bent(glass, 50, 0.8), Iris(ApertureShape(), 9), 1, 0.5f, 1.6f,
+                mode};
             AberratedLensCamera camera(lens);
             expect_same_mean(camera, test::plain_observer(),
                              {V2f(0.5f), distance_m, 0.001f, distance_m > 1});
         }
 }
 
-// As many rays are sent to a target and get there as the density says of the ordinary rays that pass
-// it: beside caustics, at them, and where the pupil itself folds.
+// As many rays are sent to a target and get there as the density says of the ordinary rays that
+// pass it: beside caustics, at them, and where the pupil itself folds.
 TEST(Targets, DensitiesOfTracedLensesAreThoseOfTheDraws) {
     struct Case {
         const char* lens;
@@ -235,10 +236,9 @@ TEST(Targets, DensitiesOfTracedLensesAreThoseOfTheDraws) {
         LensCamera camera(test::input_of(c.lens, DispersionMode::Shared));
         const Ray ray = ray_of(camera, c.film, c.draw);
         const bool at_infinity = c.radius_m > 1e3f;
-        const Target target =
-            at_infinity ? Target{ray.direction, ray.direction, 0.004f, true}
-                        : Target{ray.origin + ray.direction * c.distance_m, ray.direction,
-                                 c.radius_m, false};
+        const Target target = at_infinity ? Target{ray.direction, ray.direction, 0.004f, true}
+                                          : Target{ray.origin + ray.direction * c.distance_m,
+                                                   ray.direction, c.radius_m, false};
         camera.set_targets(one_list(camera, c.film, {target}));
         const TargetList list = camera.targets()->lists[0];
         test::Moments expected, found;

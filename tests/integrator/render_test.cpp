@@ -144,8 +144,8 @@ class CountingTracer {
   public:
     explicit CountingTracer(int threads) : threads_(threads) {}
 
-    f4 radiance(const Ray&, const Bands&, const Sampler&, bool, FilmSample&, PathStats&, m4,
-                bool) const {
+    f4 radiance(const Ray&, const Bands&, const Sampler&, bool, FilmSample&, PathStats&, m4, bool,
+                float = 1) const {
         std::unique_lock lock(mutex_);
         if (arrived_.insert(std::this_thread::get_id()).second) {
             all_.notify_all();
@@ -243,7 +243,7 @@ TEST(Render, ATimeLimitEndsAWholePass) {
 class BadTracer {
   public:
     f4 radiance(const Ray& ray, const Bands&, const Sampler&, bool, FilmSample&, PathStats&, m4,
-                bool) const {
+                bool, float = 1) const {
         return splat(ray.direction.x > 0 ? std::numeric_limits<float>::quiet_NaN() : 2.f);
     }
 };

@@ -86,7 +86,7 @@ TEST_F(CliTargets, NoByteChangesWhereThereAreNone) {
 
 TEST_F(CliTargets, AreCounted) {
     const auto rays = [&](const char* use) {
-        render(thin({"--targets", use, "--stats", path("stats.json")}));
+        static_cast<void>(render(thin({"--targets", use, "--stats", path("stats.json")})));
         return json::parse(file_bytes(path("stats.json")))["rays"];
     };
     EXPECT_EQ(rays("off")["to_targets"], 0);

@@ -18,8 +18,11 @@ class CliTargets : public CliSpectral {
         return words;
     }
     [[nodiscard]] static Words traced(Words more) {
-        Words words = {"--lens", "takumar-50mm-f1.2", "--focus", "0.5m",  "--fstop", "1.2",
-                       "--size", "64x42",             "--spp",   "5"};
+        Words words = {"--lens",  "takumar-50mm-f1.2",
+                       "--focus", "0.5m",
+                       "--fstop", "1.2",
+                       "--size",  "64x42",
+                       "--spp",   "5"};
         words.insert(words.end(), more.begin(), more.end());
         return words;
     }
@@ -72,7 +75,8 @@ TEST_F(CliTargets, AlphaAndLayersStay) {
 
 TEST_F(CliTargets, NoByteChangesWhereThereAreNone) {
     scene_ = PETZVAL_ASSETS "/scenes/gem.glb";  // its lamps are large
-    for (const Words& lens : {Words{"--lens", "pinhole"}, Words{"--fstop", "8", "--focus", "auto"}}) {
+    for (const Words& lens :
+         {Words{"--lens", "pinhole"}, Words{"--fstop", "8", "--focus", "auto"}}) {
         Words words = lens;
         words.insert(words.end(), {"--size", "40x24", "--spp", "2"});
         const auto pixels = [&](const char* use) {

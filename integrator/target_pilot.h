@@ -11,8 +11,8 @@
 namespace petzval {
 
 /// Those of a camera's targets that pay, cell by cell, with chances in proportion to the light that
-/// each is found to bring; nullptr where there is none. A pure function of its arguments: of a cell
-/// with 256 pixels at most 64 rays are cast, with numbers of their own.
+/// each is found to bring; nullptr where there is none. A pure function of its arguments: at most
+/// 64 camera samples are rendered in a cell with a list, with numbers of their own.
 [[nodiscard]] std::shared_ptr<const TargetGrid> targets_that_pay(const Camera&, const Scene&,
                                                                  const Bvh&, const LightChoice&,
                                                                  const Observer&, V2i frame_px);

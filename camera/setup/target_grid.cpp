@@ -40,7 +40,7 @@ bool may_be_target(const Thing& thing) {
 
 std::shared_ptr<const TargetGrid> find_targets(const Camera& camera, V2i size_px,
                                                std::span<const Thing> things) {
-    if (!camera.takes_targets()) return nullptr;
+    if (!camera.takes_targets() || size_px.x < kCell_px || size_px.y < kCell_px) return nullptr;
     std::vector<LampToTry> lamps;
     for (const Thing& thing : things)
         if (may_be_target(thing)) lamps.push_back({thing});
@@ -49,7 +49,8 @@ std::shared_ptr<const TargetGrid> find_targets(const Camera& camera, V2i size_px
         return a.thing.radiance > b.thing.radiance;
     });
     auto out = std::make_shared<TargetGrid>();
-    out->cells = {(size_px.x + kCell_px - 1) / kCell_px, (size_px.y + kCell_px - 1) / kCell_px};
+    // Cells are no smaller than that, so that a pilot of each stays below a quarter of a sample.
+    out->cells = {size_px.x / kCell_px, size_px.y / kCell_px};
     bool any = false;
     for (int j = 0; j < out->cells.y; ++j)
         for (int i = 0; i < out->cells.x; ++i) {

@@ -10,10 +10,10 @@
 
 namespace petzval {
 
-/// Targets for the lamps among some things: of each cell of about 16 x 16 pixels those that its
-/// rays pass, but few of them, by what each is expected to add to a pixel. nullptr where there are
-/// none, or the camera does not aim. A function of the arguments alone; at most a quarter of a
-/// camera ray is drawn for each pixel, and none is cast into the scene.
+/// Targets for the lamps among some things: of each cell of 16 x 16 pixels or a little more those
+/// that its rays pass, but few of them, by what each is expected to add to a pixel. nullptr where
+/// there are none, the camera takes no targets, or the frame is smaller than a cell. A function of
+/// the arguments alone. No ray is cast into the scene.
 [[nodiscard]] std::shared_ptr<const TargetGrid> find_targets(const Camera&, V2i size_px,
                                                              std::span<const Thing>);
 

@@ -143,6 +143,10 @@ class Camera {
     /// Targets from here on, made ready by this camera; nullptr: none.
     void set_targets(std::shared_ptr<const TargetGrid> targets) { targets_ = std::move(targets); }
     [[nodiscard]] const TargetGrid* targets() const { return targets_.get(); }
+    /// The same, for another camera that has the same rays.
+    [[nodiscard]] const std::shared_ptr<const TargetGrid>& shared_targets() const {
+        return targets_;
+    }
 
   protected:
     [[nodiscard]] TargetList targets_at(const FilmPoint& at) const {

@@ -258,11 +258,6 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         const Bsdf bsdf(shading.bsdf, bands, shading.frame.to_local(wo), throughput, shading.up);
         const bool light_sampled =
             options_.technique != Technique::BsdfOnly && bsdf.has_wide_lobe();
-        if (rest < 1.f && bsdf.has_wide_lobe()) {
-            if (sampler.get1(Dim::TargetRest) >= rest) break;
-            throughput *= 1.f / rest;
-            rest = 1.f;
-        }
         f4 direct{};
         if (light_sampled && light)
             direct = throughput * (s.lifted() && !light->sample.at_infinity
@@ -275,6 +270,11 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
             stats.light_records->push_back(lights_.record(
                 light ? std::optional(light->light) : std::nullopt, receiver, hsum(direct)));
 
+        if (rest < 1.f && bsdf.has_wide_lobe()) {
+            if (sampler.get1(Dim::TargetRest) >= rest) break;
+            throughput *= 1.f / rest;
+            rest = 1.f;
+        }
         // Sample the BSDF for the next direction.
         const auto next = bsdf.sample(u.bsdf_lobe, u.bsdf, led);
         if (!next) break;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "core/film/film.h"
 #include "core/spectrum/colour.h"
@@ -14,9 +13,12 @@ namespace {
 
 constexpr uint32_t kSeed = 0x74617267;  ///< so that no sample is one of the picture
 /// Samples of a cell, and rays to each of its targets.
-constexpr uint32_t kOrdinary = 16, kSent = 6;
-/// Ratio of efforts that is worth it: they are known no better.
-constexpr double kWorthIt = 0.4;
+constexpr uint32_t kOrdinary = 8, kSent = 3;
+/// Ratio of the frame's efforts that is worth it: they are known no better.
+constexpr double kWorthIt = 0.85;
+/// Share of the frame's mean that counts as dark.
+constexpr double kDark = 0.1;
+constexpr int kRounds = 16;
 
 /// Costs in steps of a path, each a ray or a vertex: that of a sample's lens, of a ray to a target
 /// through a thin lens and through a traced one, and for each start of the latter. From counts of
@@ -27,7 +29,7 @@ double steps(const PathStats& s) {
     return double(s.camera_rays + s.bounce_rays + s.shadow_rays + s.vertices);
 }
 
-/// Sums over the samples of a cell, or over the rays to one of its targets. Luminance.
+/// Means over the samples of cells, or over the rays to one of their targets. Luminance.
 struct Found {
     double counted = 0, counted2 = 0;  ///< what the shares leave, and its square
     double whole2 = 0;                 ///< square of ordinary rays in the same direction
@@ -38,13 +40,24 @@ struct Found {
         counted2 += share * whole * share * whole;
         whole2 += share * whole * whole;
     }
+    void add(const Found& o) {
+        counted += o.counted, counted2 += o.counted2, whole2 += o.whole2, cost += o.cost;
+    }
     void scale(double by) { counted *= by, counted2 *= by, whole2 *= by, cost *= by; }
+    /// What a target's light adds to the variance of ordinary rays, however seldom they meet it: by
+    /// the shares of the rays that are sent to it.
+    [[nodiscard]] double spread() const { return std::max(0., whole2 - counted * counted); }
+};
+
+struct CellFound {
+    Found ordinary;
+    std::vector<Found> sent;
 };
 
 class CellPilot {
   public:
-    CellPilot(const Camera& camera, const PathTracer<>& tracer, const Observer& observer)
-        : camera_(camera), tracer_(tracer), observer_(observer) {}
+    CellPilot(const Camera& camera, const PathTracer<>& tracer)
+        : camera_(camera), tracer_(tracer) {}
 
     /// Samples at places of a cell; to: a target, or none for ordinary ones.
     template <class PlaceOf>
@@ -60,8 +73,7 @@ class CellPilot {
             const auto n = std::min(count - first, static_cast<uint32_t>(kMostFilmPoints));
             for (uint32_t i = 0; i < n; ++i) {
                 const Sampler sampler(SamplerKind::Owen, kSeed, {cell.x, cell.y, first + i});
-                bands[i] = observer_.spectral() ? observer_.draw(sampler.get1(Dim::Wavelength))
-                                                : Bands::rgb();
+                bands[i] = Bands::rgb();
                 points[i] = {place_of(first + i, sampler.get2(Dim::Film)), sampler};
             }
             if (to) {
@@ -92,116 +104,173 @@ class CellPilot {
   private:
     const Camera& camera_;
     const PathTracer<>& tracer_;
-    const Observer& observer_;
 };
 
-/// Targets of a cell that were tried: the root of what each brings, squared, and whether it pays.
-struct Tried {
-    std::vector<double> roots;
-    std::vector<bool> pays;
-};
-
-/// The part of a list with the least effort: variance times cost. What a target's light would add
-/// to the variance of ordinary rays is known from the rays that are sent to it, however seldom
-/// ordinary ones meet it: by the same shares as the light itself.
-Tried best_part(TargetList list, const Found& ordinary, const std::vector<Found>& sent) {
-    std::vector<size_t> order(list.size());
-    std::iota(order.begin(), order.end(), 0);
-    const auto spread = [&](size_t k) {
-        return sent[k].whole2 - sent[k].counted * sent[k].counted;
+/// Number of a target in another list; its size where it is not there.
+size_t place_in(TargetList list, const ListedTarget& target) {
+    const auto same = [&](const ListedTarget& other) {
+        return other.target.centre == target.target.centre;
     };
-    std::stable_sort(order.begin(), order.end(),
-                     [&](size_t a, size_t b) { return spread(a) > spread(b); });
-    Tried out{{}, std::vector<bool>(list.size())};
-    for (const Found& one : sent) out.roots.push_back(std::sqrt(one.counted2));
-    double rest = ordinary.counted2 - ordinary.counted * ordinary.counted;
-    for (const size_t k : order) rest += spread(k);
-    double least = kWorthIt * rest * (ordinary.cost + kLensCost), roots = 0, light = 0, cost = 0;
-    size_t best = 0;
-    for (size_t n = 0; n < order.size(); ++n) {
-        const size_t k = order[n];
-        if (!(out.roots[k] > 0)) break;
-        rest -= spread(k);
+    return static_cast<size_t>(std::find_if(list.begin(), list.end(), same) - list.begin());
+}
+
+/// What is found in a cell and in those beside it: a few rays of one miss what a part of it sees.
+CellFound with_neighbours(const TargetGrid& grid, const std::vector<CellFound>& cells, int i,
+                          int j) {
+    const auto index = [&](int x, int y) { return static_cast<size_t>(y * grid.cells.x + x); };
+    const TargetList list = grid.lists[index(i, j)];
+    CellFound out{{}, std::vector<Found>(list.size())};
+    std::vector<int> counts(list.size());
+    int count = 0;
+    for (int y = std::max(j - 1, 0); y <= std::min(j + 1, grid.cells.y - 1); ++y)
+        for (int x = std::max(i - 1, 0); x <= std::min(i + 1, grid.cells.x - 1); ++x) {
+            const CellFound& cell = cells[index(x, y)];
+            out.ordinary.add(cell.ordinary);
+            ++count;
+            for (size_t k = 0; k < list.size(); ++k) {
+                const size_t there = place_in(grid.lists[index(x, y)], list[k]);
+                if (there == cell.sent.size()) continue;
+                out.sent[k].add(cell.sent[there]);
+                ++counts[k];
+            }
+        }
+    out.ordinary.scale(1. / count);
+    for (size_t k = 0; k < list.size(); ++k) out.sent[k].scale(1. / counts[k]);
+    return out;
+}
+
+/// Noise of a sample of a cell, as a relative standard deviation, and its cost.
+struct Effort {
+    double noise = 0, cost = 0;
+
+    [[nodiscard]] double product() const { return noise * noise * cost; }
+};
+
+/// The efforts of a cell with no target, with the worst one, the two worst ones, and so on.
+struct CellChoice {
+    std::vector<size_t> order;
+    std::vector<double> roots;    ///< of the mean square of what each target brings
+    std::vector<Effort> efforts;  ///< with the first 0, 1, 2 ... of the order
+    size_t taken = 0;
+};
+
+/// dark: luminance from which on variance is relative to the cell's own.
+CellChoice choice_of(TargetList list, const CellFound& found, double dark) {
+    CellChoice out;
+    for (size_t k = 0; k < list.size(); ++k)
+        if (found.sent[k].counted2 > 0) out.order.push_back(k);
+    std::stable_sort(out.order.begin(), out.order.end(), [&](size_t a, size_t b) {
+        return found.sent[a].spread() > found.sent[b].spread();
+    });
+    const Found& ordinary = found.ordinary;
+    double mean = ordinary.counted, rest = ordinary.spread();
+    for (const Found& sent : found.sent) {
+        out.roots.push_back(std::sqrt(sent.counted2));
+        mean += sent.counted, rest += sent.spread();
+    }
+    const double scale = 1 / (mean * mean + dark * dark);
+    const double usual = ordinary.cost + kLensCost;
+    out.efforts.push_back({std::sqrt(rest * scale), usual});
+    double roots = 0, light = 0, cost = 0;
+    for (const size_t k : out.order) {
+        const Found& sent = found.sent[k];
+        rest -= sent.spread();
         roots += out.roots[k];
-        light += sent[k].counted;
+        light += sent.counted;
         const int starts = list[k].start_count;
         cost += out.roots[k] *
-                (sent[k].cost + (starts > 0 ? kTracedCost + kStartCost * starts : kThinCost));
-        const double variance = rest + std::max(0., roots * roots - light * light);
-        const double effort = variance * (ordinary.cost + kLensCost + cost / roots);
-        if (effort < least) least = effort, best = n + 1;
+                (sent.cost + (starts > 0 ? kTracedCost + kStartCost * starts : kThinCost));
+        const double variance = std::max(0., rest) + std::max(0., roots * roots - light * light);
+        out.efforts.push_back({std::sqrt(variance * scale), usual + cost / roots});
     }
-    for (size_t n = 0; n < best; ++n) out.pays[order[n]] = true;
     return out;
 }
 
-/// Root of a target where it pays in a cell; 0 elsewhere.
-double root_in(TargetList list, const Tried& tried, const ListedTarget& target) {
-    for (size_t k = 0; k < list.size(); ++k)
-        if (tried.pays[k] && list[k].target.centre == target.target.centre) return tried.roots[k];
-    return 0;
+Effort sum_of(const std::vector<CellChoice>& cells) {
+    Effort sum;
+    for (const CellChoice& cell : cells) {
+        sum.noise += cell.efforts[cell.taken].noise;
+        sum.cost += cell.efforts[cell.taken].cost;
+    }
+    return sum;
 }
 
-/// Lists of what pays in a cell or in one beside it: few rays may have missed what a part of a cell
-/// sees.
-TargetGrid with_neighbours(const TargetGrid& all, const std::vector<Tried>& tried) {
-    TargetGrid out{all.cells, {}};
-    const auto index = [&](int i, int j) { return static_cast<size_t>(j) * all.cells.x + i; };
-    for (int j = 0; j < all.cells.y; ++j)
-        for (int i = 0; i < all.cells.x; ++i) {
-            std::vector<ListedTarget>& kept = out.lists.emplace_back();
-            double sum = 0;
-            for (const ListedTarget& target : all.lists[index(i, j)]) {
-                double root = 0;
-                for (int y = std::max(j - 1, 0); y <= std::min(j + 1, all.cells.y - 1); ++y)
-                    for (int x = std::max(i - 1, 0); x <= std::min(i + 1, all.cells.x - 1); ++x)
-                        root = std::max(
-                            root, root_in(all.lists[index(x, y)], tried[index(x, y)], target));
-                if (!(root > 0)) continue;
-                sum += root;
-                kept.push_back(target);
-                kept.back().chance = static_cast<float>(root);
-            }
-            for (ListedTarget& target : kept) target.chance /= static_cast<float>(sum);
+/// Takes of each cell the targets that lower the square of the frame's mean noise times its cost.
+/// Whether they do depends on what the other cells take: until nothing changes. (Variance in place
+/// of noise would leave out all discs but the worst.)
+void take_best(std::vector<CellChoice>& cells) {
+    for (CellChoice& cell : cells) cell.taken = cell.efforts.size() - 1;
+    for (int round = 0; round < kRounds; ++round) {
+        const Effort all = sum_of(cells);
+        bool changed = false;
+        for (CellChoice& cell : cells) {
+            const auto change = [&](const Effort& e) {
+                return 2 * e.noise / all.noise + e.cost / all.cost;
+            };
+            const auto least = std::min_element(
+                cell.efforts.begin(), cell.efforts.end(),
+                [&](const Effort& a, const Effort& b) { return change(a) < change(b); });
+            const auto best = static_cast<size_t>(least - cell.efforts.begin());
+            changed = changed || best != cell.taken;
+            cell.taken = best;
         }
-    return out;
+        if (!changed) return;
+    }
 }
 
 }  // namespace
 
 std::shared_ptr<const TargetGrid> targets_that_pay(const Camera& camera, const Scene& scene,
                                                    const Bvh& bvh, const LightChoice& lights,
-                                                   const Observer& observer, V2i frame_px) {
+                                                   V2i frame_px) {
     const TargetGrid* all = camera.targets();
     if (!all) return nullptr;
     const PathTracer<> tracer(scene, bvh, lights, {});
-    const CellPilot pilot(camera, tracer, observer);
-    std::vector<Tried> tried;
-    bool any = false;
+    const CellPilot pilot(camera, tracer);
+    std::vector<CellFound> found;
+    double mean = 0;
     for (int j = 0; j < all->cells.y; ++j)
         for (int i = 0; i < all->cells.x; ++i) {
-            const TargetList list = all->lists[tried.size()];
-            tried.emplace_back();
-            if (list.empty()) continue;
+            const TargetList list = all->lists[found.size()];
             const FilmCell cell = all->cell(i, j, frame_px);
             const auto within = [&](V2f u) { return cell.first + u * (cell.last - cell.first); };
-            const Found ordinary = pilot.samples({i, j}, kOrdinary, nullptr,
-                                                 [&](uint32_t, V2f u) { return within(u); });
-            std::vector<Found> sent;
+            CellFound& here = found.emplace_back();
+            here.ordinary = pilot.samples({i, j}, kOrdinary, nullptr,
+                                          [&](uint32_t, V2f u) { return within(u); });
+            mean += here.ordinary.counted;
             for (ListedTarget target : list) {
                 target.chance = 1;
                 // From where it is seen, and from farther and farther around.
-                sent.push_back(pilot.samples({i, j}, kSent, &target, [&](uint32_t n, V2f u) {
+                here.sent.push_back(pilot.samples({i, j}, kSent, &target, [&](uint32_t n, V2f u) {
                     const float away = (static_cast<float>(n) + 0.5f) / kSent;
                     return target.place + (within(u) - target.place) * away;
                 }));
+                mean += here.sent.back().counted;
             }
-            tried.back() = best_part(list, ordinary, sent);
-            any = any || std::find(tried.back().pays.begin(), tried.back().pays.end(), true) !=
-                             tried.back().pays.end();
         }
-    if (!any) return nullptr;
-    return std::make_shared<const TargetGrid>(with_neighbours(*all, tried));
+    const double dark = kDark * mean / static_cast<double>(found.size());
+    std::vector<CellChoice> cells;
+    for (int j = 0; j < all->cells.y; ++j)
+        for (int i = 0; i < all->cells.x; ++i)
+            cells.push_back(
+                choice_of(all->lists[cells.size()], with_neighbours(*all, found, i, j), dark));
+    const Effort without = sum_of(cells);
+    take_best(cells);
+    const Effort with = sum_of(cells);
+    if (!(with.product() < kWorthIt * without.product())) return nullptr;
+    auto out = std::make_shared<TargetGrid>();
+    out->cells = all->cells;
+    for (const CellChoice& cell : cells) {
+        const TargetList list = all->lists[out->lists.size()];
+        std::vector<ListedTarget>& kept = out->lists.emplace_back();
+        double sum = 0;
+        for (size_t n = 0; n < cell.taken; ++n) sum += cell.roots[cell.order[n]];
+        for (size_t n = 0; n < cell.taken; ++n) {
+            kept.push_back(list[cell.order[n]]);
+            kept.back().chance = static_cast<float>(cell.roots[cell.order[n]] / sum);
+        }
+    }
+    return out;
 }
 
 }  // namespace petzval

@@ -5,16 +5,16 @@
 #include "camera/camera.h"
 #include "core/light/light_choice.h"
 #include "core/scene/scene.h"
-#include "core/spectrum/observer.h"
 #include "core/traversal/bvh.h"
 
 namespace petzval {
 
 /// Those of a camera's targets that pay, cell by cell, with chances in proportion to the light that
-/// each is found to bring; nullptr where there is none. A pure function of its arguments: at most
-/// 64 camera samples are rendered in a cell with a list, with numbers of their own.
+/// each is found to bring; nullptr where there is none. They pay where they lower the variance times
+/// the cost of the whole frame. A pure function of its arguments: at most 32 camera samples are
+/// rendered in a cell, in RGB, with numbers of their own.
 [[nodiscard]] std::shared_ptr<const TargetGrid> targets_that_pay(const Camera&, const Scene&,
                                                                  const Bvh&, const LightChoice&,
-                                                                 const Observer&, V2i frame_px);
+                                                                 V2i frame_px);
 
 }  // namespace petzval

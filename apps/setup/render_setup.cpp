@@ -8,9 +8,11 @@
 #include "apps/setup/camera_setup.h"
 #include "apps/setup/input_files.h"
 #include "apps/setup/option_names.h"
+#include "camera/setup/film_region.h"
 #include "camera/setup/target_grid.h"
 #include "core/light/own_light.h"
 #include "core/scene/studio.h"
+#include "integrator/highlights.h"
 #include "integrator/light_pilot.h"
 #include "integrator/target_pilot.h"
 #include "io/base/error.h"
@@ -110,6 +112,18 @@ PreparedScene load(SceneRequest request, const Notice& notice) {
     return out;
 }
 
+/// Finds small bright things for a camera to send rays to, where that pays.
+void find_targets_of(Camera& camera, V2i size_px, const Scene& scene,
+                     const PreparedScene& prepared) {
+    std::vector<Thing> things = things_of(scene, kMostTargets);
+    const std::vector<Thing> images = highlights(camera, scene, *prepared.bvh, size_px, things);
+    if (getenv("HL")) fprintf(stderr,"%zu images\n",images.size());
+    things.insert(things.end(), images.begin(), images.end());
+    camera.set_targets(find_targets(camera, size_px, things));
+    camera.set_targets(
+        targets_that_pay(camera, scene, *prepared.bvh, *prepared.lights, size_px));
+}
+
 RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseSink& begins,
                    const RenderSetup* like) {
     const auto begin = [&](Phase phase) {
@@ -158,9 +172,11 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
                             setup.view.observer, request.size));
     if (asked.targets == TargetUse::Auto && setup.view.camera->takes_targets()) {
         Camera& seen = *setup.view.camera;
-        seen.set_targets(find_targets(seen, request.size, things_of(scene, kMostTargets)));
-        seen.set_targets(targets_that_pay(seen, scene, *prepared.bvh, *prepared.lights,
-                                          setup.view.observer, request.size));
+        if (shares && like->from.asked.targets == TargetUse::Auto &&
+            has_same_rays(seen, *like->view.camera))
+            seen.set_targets(like->view.camera->shared_targets());
+        else
+            find_targets_of(seen, request.size, scene, prepared);
     }
     from.camera = std::move(camera.report);
     return setup;

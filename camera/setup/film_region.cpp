@@ -11,9 +11,6 @@ namespace {
 constexpr int kRays = 16;  ///< of a cell: its corners, and points within
 constexpr double kFirstCells = 512;
 constexpr size_t kMostRects = 32;
-/// What the rays of a cell span is enlarged by this share on each side: those between and beyond
-/// them, through the rim of the iris, pass a little outside.
-constexpr float kMargin = 0.6f;
 
 std::vector<Rect> first_cells(V2i size) {
     const auto side =
@@ -67,7 +64,23 @@ RayBundle bundle_of(const Camera& camera, V2i size_px, const Rect& cell) {
     return out;
 }
 
-bool passes(const RayBundle& bundle, const Thing& thing) {
+bool has_same_rays(const Camera& a, const Camera& b) {
+    constexpr V2i kFrame(6, 6);
+    const auto same = [](const Ray& left, const Ray& right) {
+        return left.origin == right.origin && left.direction == right.direction;
+    };
+    for (int y = 0; y < kFrame.y; ++y)
+        for (int x = 0; x < kFrame.x; ++x) {
+            const Rect cell{x, y, x + 1, y + 1};
+            const RayBundle of_a = bundle_of(a, kFrame, cell), of_b = bundle_of(b, kFrame, cell);
+            if (!std::equal(of_a.rays.begin(), of_a.rays.end(), of_b.rays.begin(), of_b.rays.end(),
+                            same))
+                return false;
+        }
+    return true;
+}
+
+bool passes(const RayBundle& bundle, const Thing& thing, float margin) {
     const V3f w = bundle.direction;
     if (!(w.length2() > 0)) return false;
     const Frame frame = Frame::about(w);
@@ -82,8 +95,8 @@ bool passes(const RayBundle& bundle, const Thing& thing) {
     }
     if (span.isEmpty()) return false;
     const V2f middle = span.center(), half = span.size() / 2;
-    return std::fabs(middle.x) <= half.x * (1 + kMargin) + thing.radius_m &&
-           std::fabs(middle.y) <= half.y * (1 + kMargin) + thing.radius_m;
+    return std::fabs(middle.x) <= half.x * (1 + margin) + thing.radius_m &&
+           std::fabs(middle.y) <= half.y * (1 + margin) + thing.radius_m;
 }
 
 int64_t FilmRegion::area_px() const {

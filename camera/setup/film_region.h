@@ -27,9 +27,12 @@ struct RayBundle {
     V3f direction{0.f};  ///< mean, unit; 0 where there is no ray
 };
 [[nodiscard]] RayBundle bundle_of(const Camera&, V2i size_px, const Rect&);
+/// Whether two cameras, asked in RGB, have the same rays for a few dozen film points, to the bit.
+[[nodiscard]] bool has_same_rays(const Camera&, const Camera&);
 /// Whether rays of the bundle's rectangle pass a thing, as seen in the plane through it across
-/// their mean direction. Margins make up for rays that the bundle does not have.
-[[nodiscard]] bool passes(const RayBundle&, const Thing&);
+/// their mean direction. What the rays span is enlarged by this share on each side: those between
+/// and beyond them, through the rim of the iris, pass outside.
+[[nodiscard]] bool passes(const RayBundle&, const Thing&, float margin = 0.6f);
 
 /// For each thing, the region of the frame whose camera rays pass it, as coarse as a few dozen
 /// rectangles; empty where none does. What stands between, mirrors and glass are not regarded. Rays

@@ -10,8 +10,10 @@ namespace petzval {
 namespace {
 
 constexpr int kCell_px = 16;
-/// Things of a cell that are tried, brightest first.
-constexpr size_t kMostTried = 12;
+/// Things of a cell that are tried, brightest first, and that may be found.
+constexpr size_t kMostTried = 24, kMostFound = 12;
+/// A target that is not listed is worse than one that is tried in vain.
+constexpr float kMargin = 1.5f;
 constexpr size_t kMostListed = 8;
 /// Share of a pixel's ordinary rays that may pass a target: where they are more, they do as well.
 constexpr double kMostMet = 0.25;
@@ -61,13 +63,13 @@ std::shared_ptr<const TargetGrid> find_targets(const Camera& camera, V2i size_px
             const FilmCell place = out->cell(i, j, size_px);
             size_t tried = 0;
             for (LampToTry& lamp : lamps) {
-                if (lamp.hopeless || !passes(bundle, lamp.thing)) continue;
+                if (lamp.hopeless || !passes(bundle, lamp.thing, kMargin)) continue;
                 if (!lamp.ready) {
                     lamp.ready = camera.prepared(target_of(lamp.thing, bundle.rays[0].origin));
                     lamp.hopeless = !lamp.ready;
                     if (lamp.hopeless) continue;
                 }
-                if (++tried > kMostTried) break;
+                if (list.size() == kMostFound || ++tried > kMostTried) break;
                 auto target = camera.listed(*lamp.ready, place);
                 if (!target || !(target->met < kMostMet)) continue;
                 target->chance = target->met * static_cast<float>(lamp.thing.radiance);

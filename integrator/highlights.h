@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Highlights: virtual images of lamps in polished surfaces.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "camera/camera.h"
+#include "core/light/things.h"
+#include "core/scene/scene.h"
+#include "core/traversal/bvh.h"
+
+namespace petzval {
+
+/// Images of lamps in polished surfaces that a camera sees, as lamps at the places where they seem
+/// to be; there seldom is anything. At most a hundred or so. Lamps: those of the scene, without its
+/// lights that have no size, which are looked up.
+///
+/// A few camera rays of each cell of the frame find polished surfaces. From there Newton's method
+/// looks for the point whose normal lies half-way between the directions to the lens and to the
+/// lamp. The same for other points of the lens: the image is where the rays seem to meet. At most
+/// an eighth of a ray is cast for a pixel. A pure function of the arguments.
+[[nodiscard]] std::vector<Thing> highlights(const Camera&, const Scene&, const Bvh&, V2i frame_px,
+                                            std::span<const Thing> things);
+
+}  // namespace petzval

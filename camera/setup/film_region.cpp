@@ -8,7 +8,6 @@
 namespace petzval {
 namespace {
 
-constexpr int kRays = 16;  ///< of a cell: its corners, and points within
 constexpr double kFirstCells = 512;
 constexpr size_t kMostRects = 32;
 
@@ -46,11 +45,12 @@ FilmRegion refined(const Camera& camera, V2i size_px, const Thing& thing, std::v
 
 }  // namespace
 
-RayBundle bundle_of(const Camera& camera, V2i size_px, const Rect& cell) {
+RayBundle bundle_of(const Camera& camera, V2i size_px, const Rect& cell, int rays) {
     RayBundle out;
     const V2f size(size_px);
-    for (uint32_t i = 0; i < kRays; ++i) {
+    for (uint32_t i = 0; i < static_cast<uint32_t>(rays); ++i) {
         const Sampler sampler(SamplerKind::Owen, 0, {cell.x0, cell.y0, i});
+        // The corners, and points within.
         const V2f within = i < 4 ? V2f(float(i & 1), float(i >> 1)) : sampler.get2(Dim::Film);
         const V2f at(float(cell.x0) + within.x * float(cell.width()),
                      float(cell.y0) + within.y * float(cell.height()));

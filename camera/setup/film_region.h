@@ -26,7 +26,7 @@ struct RayBundle {
     std::vector<Ray> rays;
     V3f direction{0.f};  ///< mean, unit; 0 where there is no ray
 };
-[[nodiscard]] RayBundle bundle_of(const Camera&, V2i size_px, const Rect&);
+[[nodiscard]] RayBundle bundle_of(const Camera&, V2i size_px, const Rect&, int rays = 16);
 /// Whether two cameras, asked in RGB, have the same rays for a few dozen film points, to the bit.
 [[nodiscard]] bool has_same_rays(const Camera&, const Camera&);
 /// Whether rays of the bundle's rectangle pass a thing, as seen in the plane through it across

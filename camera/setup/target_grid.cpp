@@ -11,9 +11,10 @@ namespace {
 
 constexpr int kCell_px = 16;
 /// Things of a cell that are tried, brightest first, and that may be found.
-constexpr size_t kMostTried = 24, kMostFound = 12;
-/// A target that is not listed is worse than one that is tried in vain.
-constexpr float kMargin = 1.5f;
+constexpr size_t kMostTried = 32, kMostFound = 12;
+/// Rays of a cell that tell which things it may see, and the margin for what lies between them.
+constexpr int kRays = 64;
+constexpr float kMargin = 0.4f;
 constexpr size_t kMostListed = 8;
 /// Share of a pixel's ordinary rays that may pass a target: where they are more, they do as well.
 constexpr double kMostMet = 0.25;
@@ -59,7 +60,7 @@ std::shared_ptr<const TargetGrid> find_targets(const Camera& camera, V2i size_px
             const Rect cell{size_px.x * i / out->cells.x, size_px.y * j / out->cells.y,
                             size_px.x * (i + 1) / out->cells.x, size_px.y * (j + 1) / out->cells.y};
             std::vector<ListedTarget>& list = out->lists.emplace_back();
-            const RayBundle bundle = bundle_of(camera, size_px, cell);
+            const RayBundle bundle = bundle_of(camera, size_px, cell, kRays);
             const FilmCell place = out->cell(i, j, size_px);
             size_t tried = 0;
             for (LampToTry& lamp : lamps) {

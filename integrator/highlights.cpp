@@ -6,13 +6,13 @@
 #include <map>
 #include <optional>
 
+#include "camera/ray_bundle.h"
 #include "core/shading/surface.h"
 #include "core/spectrum/colour.h"
 
 namespace petzval {
 namespace {
 
-constexpr uint32_t kSeed = 0x676c696e;  ///< so that no ray is one of the picture
 constexpr int kCell_px = 16;
 constexpr int kRaysOfCell = 16;
 /// Rays of the search for a pixel.
@@ -323,12 +323,8 @@ std::vector<Start> starts_of(const Camera& camera, Search& search, V2i frame_px,
     for (int j = 0; j < cells.y; ++j)
         for (int i = 0; i < cells.x; ++i) {
             std::vector<V3f>& eyes_of_cell = eyes.emplace_back();
-            for (uint32_t n = 0; n < kRaysOfCell; ++n) {
-                const Sampler sampler(SamplerKind::Owen, kSeed, {i, j, n});
-                const V2f at = (V2f(V2i(i, j)) + sampler.get2(Dim::Film)) / V2f(cells);
-                const CameraSample seen = camera.sample({at, sampler}, Bands::rgb());
-                if (seen.empty()) continue;
-                const Ray& ray = seen[0].ray;
+            const FilmCell cell{V2f(V2i(i, j)) / V2f(cells), V2f(V2i(i + 1, j + 1)) / V2f(cells)};
+            for (const Ray& ray : bundle_of(camera, cell, {i, j}, kRaysOfCell).rays) {
                 eyes_of_cell.push_back(ray.origin);
                 if (const auto met = search.meet(ray.origin, ray.direction))
                     by_instance[met->instance].push_back(

@@ -8,7 +8,7 @@
 #include "apps/setup/camera_setup.h"
 #include "apps/setup/input_files.h"
 #include "apps/setup/option_names.h"
-#include "camera/setup/film_region.h"
+#include "camera/ray_bundle.h"
 #include "camera/setup/target_grid.h"
 #include "core/light/own_light.h"
 #include "core/scene/studio.h"

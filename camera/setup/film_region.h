@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "camera/camera.h"
+#include "camera/ray_bundle.h"
 #include "core/film/film.h"
 #include "core/light/things.h"
 
@@ -21,14 +21,6 @@ struct FilmRegion {
     [[nodiscard]] std::array<int, 2> pixel(int64_t i) const;
 };
 
-/// Rays of some film points of a rectangle.
-struct RayBundle {
-    std::vector<Ray> rays;
-    V3f direction{0.f};  ///< mean, unit; 0 where there is no ray
-};
-[[nodiscard]] RayBundle bundle_of(const Camera&, V2i size_px, const Rect&, int rays = 16);
-/// Whether two cameras, asked in RGB, have the same rays for a few dozen film points, to the bit.
-[[nodiscard]] bool has_same_rays(const Camera&, const Camera&);
 /// Whether rays of the bundle's rectangle pass a thing, as seen in the plane through it across
 /// their mean direction. What the rays span is enlarged by this share on each side: those between
 /// and beyond them, through the rim of the iris, pass outside.

@@ -57,11 +57,9 @@ std::shared_ptr<const TargetGrid> find_targets(const Camera& camera, V2i size_px
     bool any = false;
     for (int j = 0; j < out->cells.y; ++j)
         for (int i = 0; i < out->cells.x; ++i) {
-            const Rect cell{size_px.x * i / out->cells.x, size_px.y * j / out->cells.y,
-                            size_px.x * (i + 1) / out->cells.x, size_px.y * (j + 1) / out->cells.y};
             std::vector<ListedTarget>& list = out->lists.emplace_back();
-            const RayBundle bundle = bundle_of(camera, size_px, cell, kRays);
             const FilmCell place = out->cell(i, j, size_px);
+            const RayBundle bundle = bundle_of(camera, place, {i, j}, kRays);
             size_t tried = 0;
             for (LampToTry& lamp : lamps) {
                 if (lamp.hopeless || !passes(bundle, lamp.thing, kMargin)) continue;

@@ -70,6 +70,7 @@ struct ListedTarget {
     /// Of a traced lens: one for each way on which rays get there, as far as they are known.
     std::array<TargetStart, kMostStarts> starts{};
     uint8_t start_count = 0;
+    uint32_t number = 0;  ///< in TargetGrid::targets
 };
 
 using TargetList = std::span<const ListedTarget>;
@@ -85,6 +86,7 @@ using TargetList = std::span<const ListedTarget>;
 struct TargetGrid {
     V2i cells{0, 0};
     std::vector<std::vector<ListedTarget>> lists;  ///< row by row
+    std::vector<Target> targets;                   ///< all of them, in the world
 
     /// A cell of a frame.
     [[nodiscard]] FilmCell cell(int i, int j, V2i size_px) const {

@@ -109,7 +109,7 @@ class CellPilot {
 /// Number of a target in another list; its size where it is not there.
 size_t place_in(TargetList list, const ListedTarget& target) {
     const auto same = [&](const ListedTarget& other) {
-        return other.target.centre == target.target.centre;
+        return other.number == target.number;
     };
     return static_cast<size_t>(std::find_if(list.begin(), list.end(), same) - list.begin());
 }
@@ -260,6 +260,7 @@ std::shared_ptr<const TargetGrid> targets_that_pay(const Camera& camera, const S
     if (!(with.product() < kWorthIt * without.product())) return nullptr;
     auto out = std::make_shared<TargetGrid>();
     out->cells = all->cells;
+    out->targets = all->targets;
     for (const CellChoice& cell : cells) {
         const TargetList list = all->lists[out->lists.size()];
         std::vector<ListedTarget>& kept = out->lists.emplace_back();

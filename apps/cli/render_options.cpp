@@ -57,7 +57,7 @@ void add_sampling_options(CLI::App& app, RenderOptions& o) {
         "uniform");
     add_choice<TargetUse>(
         app, "--targets", o.scene.targets,
-        "camera rays to small lamps out of focus: auto (where they pay), off (default)");
+        "camera rays to small lamps and highlights out of focus: auto (default; where they pay), off");
     add_choice<Traversal>(app, "--traversal", o.scene.traversal,
                           "robust (default): watertight; fast: may leak at edges");
 }

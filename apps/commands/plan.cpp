@@ -80,6 +80,12 @@ void print(const Plan& plan, const std::string& command) {
     const std::string at_least = rare.empty() ? "" : "at least ";
     fmt::print("{:<10} {}: they bring noise from {} to {}{}\n", "samples", plan.samples,
                percent(plan.first_noise), at_least, percent(plan.noise));
+    if (const auto times = times_without_targets(plan))
+        fmt::print("{:<10} {} {}: without them about {:.2g} times the samples\n", "targets",
+                   plan.rare.targeted,
+                   plan.rare.targeted == 1 ? "lamp that rays are sent to"
+                                           : "lamps that rays are sent to",
+                   *times);
     if (!rare.empty()) fmt::print("{:<10} {}\n", "rare light", rare);
     fmt::print("{:<10} {}{}: {} by the model, {}{} by noise\n", "error", at_least,
                percent(plan.error()), percent(plan.bias), at_least, percent(plan.noise));
@@ -99,6 +105,8 @@ void print_json(const Plan& plan, const std::string& command) {
         out[line.choice] = one;
     }
     out["samples"] = plan.samples;
+    if (const auto times = times_without_targets(plan))
+        out["targets"] = {{"lamps", plan.rare.targeted}, {"times_samples_without", *times}};
     out["predicted_error"] = plan.error();
     out["predicted_bias"] = plan.bias;
     out["predicted_noise"] = plan.noise;

@@ -44,6 +44,7 @@ class PilotModel {
     friend class Pilot;
     PilotModel(RenderSetup, const RenderJob&, const PathOptions&, const std::vector<Look>&);
     [[nodiscard]] double lens_rays() const;
+    [[nodiscard]] double rays_to_find_targets() const;
 
     RenderSetup setup_;
     RenderJob job_;

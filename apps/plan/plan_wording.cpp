@@ -185,6 +185,13 @@ std::string rare_text(const Plan& plan) {
     return "few paths hold most of the noise";
 }
 
+std::optional<double> times_without_targets(const Plan& plan) {
+    constexpr double kDecisive = 4;
+    const double first = plan.first_noise * plan.first_noise;
+    if (!(plan.rare.spared > (kDecisive - 1) * first)) return std::nullopt;
+    return 1 + plan.rare.spared / first;
+}
+
 std::vector<PlanLine> lines_of(const Plan& plan) {
     return {camera_line(plan), spectral_line(plan), dispersion_line(plan), precision_line(plan),
             lights_line(plan)};

@@ -53,6 +53,26 @@ bool is_alone(const Thing& lamp) {
     return lamp.area_m2 >= kFilled * across;
 }
 
+/// Chance that a sample of a pixel sends a ray that meets a lamp. Of several lamps far apart,
+/// targets may hold some and not others: they do not count.
+double sent_to(const RenderSetup& setup, V2i size_px, std::array<int, 2> pixel,
+               const SeenLamp& lamp) {
+    const TargetGrid* grid = setup.view.camera->targets();
+    if (!grid || !lamp.alone) return 0;
+    const V2f film((float(pixel[0]) + 0.5f) / float(size_px.x),
+                   (float(pixel[1]) + 0.5f) / float(size_px.y));
+    double sum = 0;
+    for (const ListedTarget& listed : grid->at(film)) {
+        const Target& target = grid->targets[listed.number];
+        if (target.at_infinity != lamp.at_infinity ||
+            (target.centre - lamp.thing.centre).length() > lamp.thing.radius_m)
+            continue;
+        const double disc = double(kPi) * double(target.radius_m) * double(target.radius_m);
+        sum += double(listed.chance) * std::min(1., lamp.thing.area_m2 / disc);
+    }
+    return sum;
+}
+
 bool is_hidden(const Bvh& bvh, const Ray& ray, const Thing& lamp) {
     Ray shadow;
     shadow.origin = ray.origin;
@@ -88,7 +108,7 @@ std::vector<SeenLamp> seen_lamps(const RenderSetup& setup, V2i size_px,
         // A lamp that is larger than the disk is met by all rays within it.
         const double shown = disk > 0 ? std::min(1., lamp.area_m2 / disk) : 1;
         out.push_back({regions[n].area_px(), shown * kNearest / kRays, lamp.radiance,
-                       lamp.at_infinity, 2 * lamp.radius_m, is_alone(lamp), &regions[n]});
+                       lamp.at_infinity, 2 * lamp.radius_m, is_alone(lamp), lamp, &regions[n]});
     }
     return out;
 }
@@ -97,16 +117,20 @@ std::vector<V3d> least_means(const Pilot& pilot, const PilotModel& model,
                              const std::vector<SeenLamp>& lamps) {
     std::vector<V3d> out(pilot.pixels(), V3d(0.));
     for (const SeenLamp& lamp : lamps) {
-        if (!lamp.alone || kPilotReplicates * model.samples() * lamp.probability >= 1) continue;
+        if (!lamp.alone) continue;
         std::vector<size_t> on_disc;
         V3d sum(0.);
+        double sent = 0;
         for (size_t p = 0; p < pilot.pixels(); ++p) {
             const auto [x, y] = pilot.looks().looks[p].pixel;
             if (!lamp.region->contains(x, y)) continue;
             on_disc.push_back(p);
+            sent += sent_to(model.setup(), pilot.size_px(), {x, y}, lamp);
             for (const V3d& v : model.means(p)) sum += v / double(kPilotReplicates);
         }
         if (on_disc.empty()) continue;
+        const double met = lamp.probability + sent / static_cast<double>(on_disc.size());
+        if (kPilotReplicates * model.samples() * met >= 1) continue;
         sum /= static_cast<double>(on_disc.size());
         const double expected = lamp.radiance * lamp.probability;
         const double seen = double(luminance(Rgb(float(sum.x), float(sum.y), float(sum.z))));
@@ -124,19 +148,27 @@ RareLight rare_light(const Pilot& pilot, const PilotModel& model,
     const V2i size = pilot.size_px();
     const double pixels = double(size.x) * double(size.y);
     for (const SeenLamp& lamp : lamps) {
-        double looks = 0, light = 0;
+        double looks = 0, light = 0, sent = 0;
         for (size_t p = 0; p < pilot.pixels(); ++p) {
             const auto [x, y] = pilot.looks().looks[p].pixel;
             if (!lamp.region->contains(x, y)) continue;
             ++looks;
+            sent += sent_to(model.setup(), size, {x, y}, lamp);
             for (const V3d& v : model.means(p))
                 light +=
                     double(luminance(Rgb(float(v.x), float(v.y), float(v.z)))) / kPilotReplicates;
         }
-        if (looks * kPilotReplicates * model.samples() * lamp.probability >= kEnoughPaths) continue;
+        const double samples = kPilotReplicates * model.samples();
         const double behind = looks > 0 ? light / looks : 0;
-        const double with = behind + lamp.radiance * lamp.probability;
         const double share = static_cast<double>(lamp.area_px) / pixels;
+        if (samples * (looks * lamp.probability + sent) >= kEnoughPaths) {
+            if (samples * looks * lamp.probability >= kEnoughPaths) continue;
+            ++out.targeted;
+            out.spared += share * lamp.radiance * lamp.radiance * lamp.probability /
+                          (behind * behind + floor * floor);
+            continue;
+        }
+        const double with = behind + lamp.radiance * lamp.probability;
         ++(lamp.at_infinity ? out.spots : out.lamps);
         double& largest = lamp.at_infinity ? out.largest_spot_rad : out.largest_lamp_m;
         largest = std::max(largest, double(lamp.size));

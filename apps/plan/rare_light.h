@@ -23,6 +23,7 @@ struct SeenLamp {
     bool at_infinity;    ///< a spot of the sky
     float size;          ///< across: metres, at infinity radians
     bool alone;          ///< its light is even over the area: one lamp, not several far apart
+    Thing thing;
     const FilmRegion* region;
 };
 
@@ -44,6 +45,10 @@ struct RareLight {
     double largest_lamp_m = 0, largest_spot_rad = 0;  ///< of them
     double noise = 0;  ///< symmetric variance of one sample that they would add
     double lost = 0;   ///< symmetric MSE of a picture without them
+    /// Lamps that enough paths will have met, but only as rays are sent to them, and the variance
+    /// of one sample that they would add without.
+    size_t targeted = 0;
+    double spared = 0;
     /// Smooth surfaces were met, and behind them fewer than kEnoughPaths paths met a lamp.
     bool mirrored = false, caustic = false;
 

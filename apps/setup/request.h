@@ -113,7 +113,7 @@ struct SceneRequest {
     std::optional<Rgb> background;
     LightChoiceKind light_choice = LightChoiceKind::Tree;
     Traversal traversal = Traversal::Robust;
-    TargetUse targets = TargetUse::Off;  ///< whether camera rays are aimed at small lamps
+    TargetUse targets = TargetUse::Auto;  ///< whether camera rays are sent to small lamps
     SpectralRequest spectral;
     std::vector<NamedFile> outputs;  ///< files to be written: a scene that reads one is refused
     /// Memory for decoded pictures; absent: half of what can be had.

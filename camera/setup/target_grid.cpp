@@ -30,6 +30,7 @@ Target target_of(const Thing& lamp, const V3f& eye) {
 /// A lamp, and what the camera makes of it once a cell asks for it.
 struct LampToTry {
     Thing thing;
+    uint32_t number = 0;  ///< of its target
     std::optional<PreparedTarget> ready{};
     bool hopeless = false;
 };
@@ -64,14 +65,18 @@ std::shared_ptr<const TargetGrid> find_targets(const Camera& camera, V2i size_px
             for (LampToTry& lamp : lamps) {
                 if (lamp.hopeless || !passes(bundle, lamp.thing, kMargin)) continue;
                 if (!lamp.ready) {
-                    lamp.ready = camera.prepared(target_of(lamp.thing, bundle.rays[0].origin));
+                    const Target target = target_of(lamp.thing, bundle.rays[0].origin);
+                    lamp.ready = camera.prepared(target);
                     lamp.hopeless = !lamp.ready;
                     if (lamp.hopeless) continue;
+                    lamp.number = static_cast<uint32_t>(out->targets.size());
+                    out->targets.push_back(target);
                 }
                 if (list.size() == kMostFound || ++tried > kMostTried) break;
                 auto target = camera.listed(*lamp.ready, place);
                 if (!target || !(target->met < kMostMet)) continue;
                 target->chance = target->met * static_cast<float>(lamp.thing.radiance);
+                target->number = lamp.number;
                 list.push_back(*std::move(target));
             }
             std::stable_sort(list.begin(), list.end(),

@@ -12,13 +12,15 @@ namespace petzval {
 namespace {
 
 constexpr uint32_t kSeed = 0x74617267;  ///< so that no sample is one of the picture
-/// Samples of a cell, and rays to each of its targets.
-constexpr uint32_t kOrdinary = 8, kSent = 3;
+/// Samples of a cell, rays to all of its targets, and to one of them.
+constexpr uint32_t kOrdinary = 8, kSent = 24, kMostSent = 12;
 /// Ratio of the frame's efforts that is worth it: they are known no better.
 constexpr double kWorthIt = 0.85;
 /// Share of the frame's mean that counts as dark.
 constexpr double kDark = 0.1;
 constexpr int kRounds = 16;
+/// Share of the rays that the targets of a cell get evenly, the rest in proportion to their light.
+constexpr double kEvenly = 0.5;
 
 /// Costs in steps of a path, each a ray or a vertex: that of a sample's lens, of a ray to a target
 /// through a thin lens and through a traced one, and for each start of the latter. From counts of
@@ -238,11 +240,13 @@ std::shared_ptr<const TargetGrid> targets_that_pay(const Camera& camera, const S
             here.ordinary = pilot.samples({i, j}, kOrdinary, nullptr,
                                           [&](uint32_t, V2f u) { return within(u); });
             mean += here.ordinary.counted;
+            const uint32_t sent =
+                std::min(kMostSent, kSent / std::max(1u, static_cast<uint32_t>(list.size())));
             for (ListedTarget target : list) {
                 target.chance = 1;
                 // From where it is seen, and from farther and farther around.
-                here.sent.push_back(pilot.samples({i, j}, kSent, &target, [&](uint32_t n, V2f u) {
-                    const float away = (static_cast<float>(n) + 0.5f) / kSent;
+                here.sent.push_back(pilot.samples({i, j}, sent, &target, [&](uint32_t n, V2f u) {
+                    const float away = (static_cast<float>(n) + 0.5f) / static_cast<float>(sent);
                     return target.place + (within(u) - target.place) * away;
                 }));
                 mean += here.sent.back().counted;
@@ -268,7 +272,10 @@ std::shared_ptr<const TargetGrid> targets_that_pay(const Camera& camera, const S
         for (size_t n = 0; n < cell.taken; ++n) sum += cell.roots[cell.order[n]];
         for (size_t n = 0; n < cell.taken; ++n) {
             kept.push_back(list[cell.order[n]]);
-            kept.back().chance = static_cast<float>(cell.roots[cell.order[n]] / sum);
+            // Few rays know the light badly: no target that pays is sent next to nothing.
+            const double even = 1. / static_cast<double>(cell.taken);
+            kept.back().chance = static_cast<float>(
+                std::lerp(cell.roots[cell.order[n]] / sum, even, kEvenly));
         }
     }
     return out;

@@ -14,10 +14,13 @@ namespace {
 /// Distance from the chosen point at which a ray is there, in radii of the target; what floats
 /// leave of a distance comes to it.
 constexpr float kTolerance = 1e-3f, kRounding = 3e-7f;
-/// Rays of a film point that are tried as starts, and how far from the middle of the stop what is
-/// found may lie, in its radii: a target's rim is met from a little farther away than its middle.
+/// Rays of a film point that are tried as starts.
 constexpr int kTried = 24;
-constexpr float kMostStopRadii = 1.25f;
+/// How far from the iris what is found may lie, in its radii: a target's rim is met from a little
+/// farther away than its middle.
+constexpr float kMostSpanned = 0.25f;
+/// Starts this far from a cell, in its diagonals, may lead to ways of its own.
+constexpr float kNearCells = 0.25f;
 /// Longest step of a film point: beyond it the search has lost its way.
 constexpr float kMostFilmStep_mm = 30;
 /// Distance of a start's ray from the middle of the target, in radii, that its derivatives mend.
@@ -372,72 +375,85 @@ PlanePoint<f8> LensTargets::spread(int first) const {
     return stop_mm;
 }
 
-// Lanes in which a start leads to the rays that are there.
-m8 LensTargets::same_way(const TargetPoints& at, const Goals& goal, const TargetStart& start,
-                         m8 asked, const FoundDirections& there) const {
-    Guess guess;
-    Landing landing;
-    for (int i = 0; i < 8; ++i) guess.put(i, start, at.film_mm[i], V2f(0.f));
-    const FoundDirections found = search(at, goal, asked, f8{}, f8{}, guess.l, guess.m, landing);
-    return found.found & same(found.l - there.l, found.m - there.m);
+/// A ray from a place of a cell to the middle of a target, and the starts that lead to it, by bits.
+struct LensTargets::WayFrom {
+    float l, m;
+    float met;  ///< share of ordinary rays that pass the target by it, about
+    uint32_t starts;
+};
+
+// All starts are tried. Rays far outside the iris are no ways.
+auto LensTargets::ways_from(V2f place_mm, const Goals& goal, const LensIndices<f8>& indices,
+                            std::span<const TargetStart* const> starts) const
+    -> std::vector<WayFrom> {
+    std::vector<WayFrom> out;
+    const TargetPoints at{PlanePoint<f8>(place_mm), indices, {}};
+    for (size_t first = 0; first < starts.size(); first += 8) {
+        const size_t count = std::min<size_t>(8, starts.size() - first);
+        Guess guess;
+        m8 asked{};
+        for (size_t i = 0; i < count; ++i) {
+            const int lane = static_cast<int>(i);
+            guess.put(lane, *starts[first + i], place_mm, V2f(0.f));
+            asked[lane] = -1;
+        }
+        Landing landing;
+        const FoundDirections found =
+            search(at, goal, asked, f8{}, f8{}, guess.l, guess.m, landing);
+        const AimedRay<f8> crossed = aimer_.cross<f8>(at.film_mm, found.l, found.m, indices);
+        const f8 met = kPi * crossed.stretch_mm2() / landing.size() / float(iris_mm2_);
+        for (size_t i = 0; i < count; ++i) {
+            const int lane = static_cast<int>(i);
+            const V2f stop(crossed.ray.origin.x[lane], crossed.ray.origin.y[lane]);
+            if (!found.found[lane] || !(met[lane] >= 0 && met[lane] < kInfinity)) continue;
+            // Beyond the iris by what the target spans there, nothing of it is seen.
+            const float spanned = std::min(kMostSpanned, 1.5f * std::sqrt(met[lane]));
+            if (!(stop.length() < (1 + spanned) * float(stop_reach_mm_))) continue;
+            const float l = found.l[lane], m = found.m[lane];
+            const auto known = std::find_if(out.begin(), out.end(), [&](const WayFrom& way) {
+                return sqr(way.l - l) + sqr(way.m - m) < sqr(kSame * cosine_reach_);
+            });
+            if (known != out.end())
+                known->starts |= 1u << (first + i);
+            else
+                out.push_back({l, m, met[lane], 1u << (first + i)});
+        }
+    }
+    return out;
 }
 
+// The fewest starts, about, that lead to all ways from places all over the cell.
 std::optional<ListedTarget> LensTargets::listed(const PreparedTarget& target, V2f place_mm,
                                                 const FilmCell& cell_mm) const {
+    static_assert(kTried <= 32);
     ListedTarget out{target.target, 1, 0, V2f(0.f)};
     const LensIndices<f8> indices = lens_.exact_indices(splat8(static_cast<float>(kLineD_nm)));
-    TargetPoints at{PlanePoint<f8>(place_mm), indices, {}};
-    at.targets.fill(TargetList(&out, 1));
-    const Goals goal = goals(at.targets, {});
-    std::vector<const TargetStart*> near;
-    for (const TargetStart& start : target.starts) near.push_back(&start);
-    const auto away = [&](const TargetStart* s) {
-        return (cell_mm.nearest(s->film_mm) - s->film_mm).length2();
-    };
-    std::stable_sort(near.begin(), near.end(),
-                     [&](const auto* a, const auto* b) { return away(a) < away(b); });
-    if (near.size() > 8) near.resize(8);
-    Guess guess;
-    m8 asked{};
-    for (size_t i = 0; i < near.size(); ++i) {
-        const int lane = static_cast<int>(i);
-        guess.put(lane, *near[i], place_mm, V2f(0.f));
-        asked[lane] = -1;
-    }
-    Landing landing;
-    const FoundDirections found = search(at, goal, asked, f8{}, f8{}, guess.l, guess.m, landing);
-    const AimedRay<f8> crossed = aimer_.cross<f8>(at.film_mm, found.l, found.m, indices);
-    const f8 met = kPi * crossed.stretch_mm2() / landing.size() / static_cast<float>(iris_mm2_);
-    const auto keep = [&](size_t i) {
-        if (out.start_count < ListedTarget::kMostStarts) out.starts[out.start_count++] = *near[i];
-    };
-    for (size_t i = 0; i < near.size(); ++i) {
-        const int lane = static_cast<int>(i);
-        const V2f stop(crossed.ray.origin.x[lane], crossed.ray.origin.y[lane]);
-        bool fresh = found.found[lane] &&
-                     stop.length() < kMostStopRadii * static_cast<float>(stop_reach_mm_);
-        for (int k = 0; k < lane && fresh; ++k)
-            fresh = !(found.found[k] && same(found.l - found.l[k], found.m - found.m[k])[lane]);
-        if (!fresh) continue;
-        keep(i);
-        out.met += met[lane];
-    }
-    if (out.start_count == 0 || !std::isfinite(out.met)) return std::nullopt;
-    // Other ways there may be at the starts' own places, where these lie in the cell.
-    FoundDirections own{};
-    m8 fresh{};
-    for (size_t i = 0; i < near.size() && away(near[i]) == 0; ++i) {
-        const int lane = static_cast<int>(i);
-        at.film_mm.x[lane] = near[i]->film_mm.x, at.film_mm.y[lane] = near[i]->film_mm.y;
-        own.l[lane] = near[i]->cosines.x, own.m[lane] = near[i]->cosines.y;
-        fresh[lane] = -1;
-    }
-    for (size_t b = 0; b < out.start_count && any(fresh); ++b)
-        fresh &= ~same_way(at, goal, out.starts[b], fresh, own);
-    for (size_t i = 0; i < near.size(); ++i) {
-        if (!fresh[static_cast<int>(i)]) continue;
-        keep(i);
-        fresh &= ~same_way(at, goal, *near[i], fresh, own);
+    std::array<TargetList, 8> lists;
+    lists.fill(TargetList(&out, 1));
+    const Goals goal = goals(lists, {});
+    std::vector<const TargetStart*> starts;
+    for (const TargetStart& start : target.starts) starts.push_back(&start);
+    std::vector<WayFrom> ways = ways_from(place_mm, goal, indices, starts);
+    if (ways.empty()) return std::nullopt;
+    for (const WayFrom& way : ways) out.met += way.met;
+    std::vector<V2f> places{(cell_mm.first + cell_mm.last) / 2.f};
+    // Beside a caustic there are ways that are seen from a start's own place only, or nearly.
+    for (const TargetStart* start : starts)
+        if ((cell_mm.nearest(start->film_mm) - start->film_mm).length() <
+            kNearCells * (cell_mm.last - cell_mm.first).length())
+            places.push_back(start->film_mm);
+    for (const V2f& place : places)
+        for (const WayFrom& way : ways_from(place, goal, indices, starts)) ways.push_back(way);
+    while (!ways.empty() && out.start_count < ListedTarget::kMostStarts) {
+        size_t best = 0;
+        ptrdiff_t most = 0;
+        for (size_t k = 0; k < starts.size(); ++k) {
+            const auto leads = [&](const WayFrom& way) { return (way.starts >> k & 1) != 0; };
+            const auto count = std::count_if(ways.begin(), ways.end(), leads);
+            if (count > most) most = count, best = k;
+        }
+        out.starts[out.start_count++] = *starts[best];
+        std::erase_if(ways, [&](const WayFrom& way) { return (way.starts >> best & 1) != 0; });
     }
     return out;
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "camera/lens/direction_search.h"
 #include "camera/lens/ray_aiming.h"
@@ -88,8 +89,9 @@ class LensTargets {
                                     const PlanePoint<f8>& stop_mm, const PlanePoint<f8>& from_mm,
                                     int steps) const;
     [[nodiscard]] PlanePoint<f8> spread(int first) const;
-    [[nodiscard]] m8 same_way(const TargetPoints&, const Goals&, const TargetStart&, m8 asked,
-                              const FoundDirections&) const;
+    struct WayFrom;
+    [[nodiscard]] std::vector<WayFrom> ways_from(V2f place_mm, const Goals&, const LensIndices<f8>&,
+                                                 std::span<const TargetStart* const>) const;
     [[nodiscard]] TargetStart start_at(const TargetPoints&, const Goals&, f8 l, f8 m,
                                        int lane) const;
 

@@ -16,6 +16,8 @@ namespace {
 constexpr float kTolerance = 1e-3f, kRounding = 3e-7f;
 /// Rays of a film point that are tried as starts.
 constexpr int kTried = 24;
+/// Of them, those that are tried for a cell.
+constexpr size_t kMostTried = 16;
 /// How far from the iris what is found may lie, in its radii: a target's rim is met from a little
 /// farther away than its middle.
 constexpr float kMostSpanned = 0.25f;
@@ -425,7 +427,7 @@ auto LensTargets::ways_from(V2f place_mm, const Goals& goal, const LensIndices<f
 // The fewest starts, about, that lead to all ways from places all over the cell.
 std::optional<ListedTarget> LensTargets::listed(const PreparedTarget& target, V2f place_mm,
                                                 const FilmCell& cell_mm) const {
-    static_assert(kTried <= 32);
+    static_assert(kMostTried <= 32);
     ListedTarget out{target.target, 1, 0, V2f(0.f)};
     const LensIndices<f8> indices = lens_.exact_indices(splat8(static_cast<float>(kLineD_nm)));
     std::array<TargetList, 8> lists;
@@ -433,17 +435,27 @@ std::optional<ListedTarget> LensTargets::listed(const PreparedTarget& target, V2
     const Goals goal = goals(lists, {});
     std::vector<const TargetStart*> starts;
     for (const TargetStart& start : target.starts) starts.push_back(&start);
+    const auto away_mm = [&](const TargetStart* s) {
+        return (cell_mm.nearest(s->film_mm) - s->film_mm).length();
+    };
+    std::stable_sort(starts.begin(), starts.end(), [&](const auto* a, const auto* b) {
+        return away_mm(a) < away_mm(b);
+    });
+    // Those that are nearest tell whether the target is seen at all.
+    const auto first = [&](size_t count) {
+        return std::span(starts.data(), std::min(count, starts.size()));
+    };
+    if (ways_from(place_mm, goal, indices, first(8)).empty()) return std::nullopt;
+    starts.resize(std::min(kMostTried, starts.size()));
     std::vector<WayFrom> ways = ways_from(place_mm, goal, indices, starts);
-    if (ways.empty()) return std::nullopt;
     for (const WayFrom& way : ways) out.met += way.met;
-    std::vector<V2f> places{(cell_mm.first + cell_mm.last) / 2.f};
     // Beside a caustic there are ways that are seen from a start's own place only, or nearly.
-    for (const TargetStart* start : starts)
-        if ((cell_mm.nearest(start->film_mm) - start->film_mm).length() <
-            kNearCells * (cell_mm.last - cell_mm.first).length())
-            places.push_back(start->film_mm);
-    for (const V2f& place : places)
-        for (const WayFrom& way : ways_from(place, goal, indices, starts)) ways.push_back(way);
+    const float near_mm = kNearCells * (cell_mm.last - cell_mm.first).length();
+    for (const TargetStart* start : starts) {
+        if (!(away_mm(start) < near_mm)) break;
+        for (const WayFrom& way : ways_from(start->film_mm, goal, indices, starts))
+            ways.push_back(way);
+    }
     while (!ways.empty() && out.start_count < ListedTarget::kMostStarts) {
         size_t best = 0;
         ptrdiff_t most = 0;

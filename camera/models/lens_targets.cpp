@@ -23,6 +23,7 @@ constexpr size_t kMostTried = 16;
 constexpr float kMostSpanned = 0.25f;
 /// Starts this far from a cell, in its diagonals, may lead to ways of its own.
 constexpr float kNearCells = 0.25f;
+constexpr size_t kMostPlaces = 6;
 /// Longest step of a film point: beyond it the search has lost its way.
 constexpr float kMostFilmStep_mm = 30;
 /// Distance of a start's ray from the middle of the target, in radii, that its derivatives mend.
@@ -450,10 +451,13 @@ std::optional<ListedTarget> LensTargets::listed(const PreparedTarget& target, V2
     std::vector<WayFrom> ways = ways_from(place_mm, goal, indices, starts);
     for (const WayFrom& way : ways) out.met += way.met;
     // Beside a caustic there are ways that are seen from a start's own place only, or nearly.
+    // Most of these are seen from the outer parts of the stop, whose starts are the last.
     const float near_mm = kNearCells * (cell_mm.last - cell_mm.first).length();
-    for (const TargetStart* start : starts) {
-        if (!(away_mm(start) < near_mm)) break;
-        for (const WayFrom& way : ways_from(start->film_mm, goal, indices, starts))
+    size_t places = 0;
+    for (size_t k = target.starts.size(); k-- > 0 && places < kMostPlaces;) {
+        if (!(away_mm(&target.starts[k]) < near_mm)) continue;
+        ++places;
+        for (const WayFrom& way : ways_from(target.starts[k].film_mm, goal, indices, starts))
             ways.push_back(way);
     }
     while (!ways.empty() && out.start_count < ListedTarget::kMostStarts) {

@@ -6,8 +6,7 @@
 
 namespace petzval {
 
-RayBundle bundle_of(const Camera& camera, const FilmCell& cell, V2i drawn_for,
-                    int rays) {
+RayBundle bundle_of(const Camera& camera, const FilmCell& cell, V2i drawn_for, int rays) {
     RayBundle out;
     for (int first = 0; first < rays; first += int{kMostFilmPoints}) {
         const auto n = static_cast<size_t>(std::min(rays - first, int{kMostFilmPoints}));

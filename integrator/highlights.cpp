@@ -28,6 +28,8 @@ constexpr float kAlphas = 1.5f;
 constexpr float kMostAngle = 0.05f;
 /// Long side of an image over its short one.
 constexpr float kMostStretched = 30;
+/// Half-widths from the middle of the highlight at which it is found.
+constexpr float kTolerance = 0.02f;
 constexpr int kMostSteps = 12;
 /// Difference of directions by which derivatives are taken, radians.
 constexpr float kDifference = 1e-4f;
@@ -132,7 +134,8 @@ class Search {
 
     /// The image of a lamp that a point of the lens sees near a direction, by Newton's method: for
     /// the direction, until the shaded normal is the one that mirrors.
-    [[nodiscard]] std::optional<Mirrored> mirrored(const V3f& eye, V3f direction, const Source& lamp) {
+    [[nodiscard]] std::optional<Mirrored> mirrored(const V3f& eye, V3f direction,
+                                                   const Source& lamp) {
         std::optional<Met> here = meet(eye, direction);
         for (int i = 0; i < kMostSteps && here && rays_left_ > 0; ++i) {
             const auto half = half_way(*here, direction, lamp);
@@ -155,7 +158,7 @@ class Search {
             const V2f by_x = (*right - *f) / kDifference, by_y = (*above - *f) / kDifference;
             const float determinant = by_x.x * by_y.y - by_x.y * by_y.x;
             const float width = here->half_width(lamp);
-            if (f->length() < 0.1f * width) {
+            if (f->length() < kTolerance * width) {
                 if (!(here->normal.dot(*half) > 0.f)) break;
                 return finished(eye, direction, *here, by_x, by_y, width);
             }
@@ -199,8 +202,8 @@ class Search {
     }
     /// Nothing where the image is too large or too long.
     [[nodiscard]] static std::optional<Mirrored> finished(const V3f& eye, const V3f& direction,
-                                                       const Met& met, V2f by_x, V2f by_y,
-                                                       float width) {
+                                                          const Met& met, V2f by_x, V2f by_y,
+                                                          float width) {
         // Singular values of the derivatives: largest and smallest slope for a radian.
         const float sum = by_x.length2() + by_y.length2();
         const float determinant = std::fabs(by_x.x * by_y.y - by_x.y * by_y.x);
@@ -337,8 +340,9 @@ std::vector<Start> starts_of(const Camera& camera, Search& search, V2i frame_px,
             std::vector<Start>& starts = it->second;
             if (n < starts.size())
                 // By the golden ratio: neighbours see the same.
-                out.push_back(starts[(n * (static_cast<size_t>(0.618 * double(starts.size())) | 1)) %
-                                     starts.size()]);
+                out.push_back(
+                    starts[(n * (static_cast<size_t>(0.618 * double(starts.size())) | 1)) %
+                           starts.size()]);
             it = n + 1 < starts.size() ? std::next(it) : by_instance.erase(it);
         }
     return out;

@@ -34,8 +34,8 @@ class PathTracer {
 
     /// Estimate of the radiance that arrives along a camera ray, in `lanes` of the bands, 0 in the
     /// others. The sample's alpha and layers are filled in on the way; aovs: layers are wanted, of
-    /// all lanes. led: the ray depends on which lane leads. rest: chance, above 0, that light is
-    /// counted which a rough surface reflects; then it counts 1 / rest times. Pure but for the
+    /// all lanes. led: the ray depends on which lane leads. rest: chance, above 0, that a path goes
+    /// on from where it is scattered far and wide; then it counts 1 / rest times. Pure but for the
     /// counts.
     [[nodiscard]] f4 radiance(const Ray&, const Bands&, const Sampler&, bool aovs, FilmSample&,
                               PathStats&, m4 lanes = m4{-1, -1, -1, -1}, bool led = true,

@@ -38,6 +38,10 @@ struct PathTracer<Caster>::DrawnLight {
     std::optional<Sky::Place> sky;
 };
 
+/// Density from which on a scattered direction counts as drawn by a narrow lobe, 1/sr: one of GGX
+/// with a roughness below 0.5 or so.
+inline constexpr float kNarrowPdf = 1;
+
 /// Weight of a sample drawn with density a where b might have drawn it too. Veach 1997, "Robust
 /// Monte Carlo Methods for Light Transport Simulation", equation 9.13 with beta = 2.
 [[nodiscard]] inline float power_heuristic(float a, float b) {
@@ -270,14 +274,16 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
             stats.light_records->push_back(lights_.record(
                 light ? std::optional(light->light) : std::nullopt, receiver, hsum(direct)));
 
-        if (rest < 1.f && bsdf.has_wide_lobe()) {
+        // Sample the BSDF for the next direction.
+        const auto next = bsdf.sample(u.bsdf_lobe, u.bsdf, led);
+        if (!next) break;
+        // What is scattered far and wide, ordinary rays find as well. A narrow lobe may be the
+        // highlight that the ray was sent for.
+        if (rest < 1.f && !next->delta && next->pdf < kNarrowPdf) {
             if (sampler.get1(Dim::TargetRest) >= rest) break;
             throughput *= 1.f / rest;
             rest = 1.f;
         }
-        // Sample the BSDF for the next direction.
-        const auto next = bsdf.sample(u.bsdf_lobe, u.bsdf, led);
-        if (!next) break;
         const V3f direction = shading.frame.to_world(next->wi);
         // No ray that is not a number goes on: the film counts the sample and names its pixel.
         if (!std::isfinite(direction.x + direction.y + direction.z))

@@ -110,9 +110,7 @@ class CellPilot {
 
 /// Number of a target in another list; its size where it is not there.
 size_t place_in(TargetList list, const ListedTarget& target) {
-    const auto same = [&](const ListedTarget& other) {
-        return other.number == target.number;
-    };
+    const auto same = [&](const ListedTarget& other) { return other.number == target.number; };
     return static_cast<size_t>(std::find_if(list.begin(), list.end(), same) - list.begin());
 }
 
@@ -274,8 +272,8 @@ std::shared_ptr<const TargetGrid> targets_that_pay(const Camera& camera, const S
             kept.push_back(list[cell.order[n]]);
             // Few rays know the light badly: no target that pays is sent next to nothing.
             const double even = 1. / static_cast<double>(cell.taken);
-            kept.back().chance = static_cast<float>(
-                std::lerp(cell.roots[cell.order[n]] / sum, even, kEvenly));
+            kept.back().chance =
+                static_cast<float>(std::lerp(cell.roots[cell.order[n]] / sum, even, kEvenly));
         }
     }
     return out;

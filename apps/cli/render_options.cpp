@@ -55,9 +55,9 @@ void add_sampling_options(CLI::App& app, RenderOptions& o) {
         app, "--light-choice", o.scene.light_choice,
         "how one of many lights is chosen: tree (default; power, distance and direction), power, "
         "uniform");
-    add_choice<TargetUse>(
-        app, "--targets", o.scene.targets,
-        "camera rays to small lamps and highlights out of focus: auto (default; where they pay), off");
+    add_choice<TargetUse>(app, "--targets", o.scene.targets,
+                          "camera rays to small lamps and highlights out of focus: auto (default; "
+                          "where they pay), off");
     add_choice<Traversal>(app, "--traversal", o.scene.traversal,
                           "robust (default): watertight; fast: may leak at edges");
 }

@@ -81,11 +81,11 @@ void print(const Plan& plan, const std::string& command) {
     fmt::print("{:<10} {}: they bring noise from {} to {}{}\n", "samples", plan.samples,
                percent(plan.first_noise), at_least, percent(plan.noise));
     if (const auto times = times_without_targets(plan))
-        fmt::print("{:<10} {} {}: without them about {:.2g} times the samples\n", "targets",
-                   plan.rare.targeted,
-                   plan.rare.targeted == 1 ? "lamp that rays are sent to"
-                                           : "lamps that rays are sent to",
-                   *times);
+        fmt::print(
+            "{:<10} {} {}: without them about {:.2g} times the samples\n", "targets",
+            plan.rare.targeted,
+            plan.rare.targeted == 1 ? "lamp that rays are sent to" : "lamps that rays are sent to",
+            *times);
     if (!rare.empty()) fmt::print("{:<10} {}\n", "rare light", rare);
     fmt::print("{:<10} {}{}: {} by the model, {}{} by noise\n", "error", at_least,
                percent(plan.error()), percent(plan.bias), at_least, percent(plan.noise));

@@ -154,8 +154,8 @@ void PlanComparison::choose_looks(int wanted) {
     const Scene& scene = *first_.prepared.scene;
     const V2i size = request_.scene.size;
     // Lamps that are targets are known one by one.
-    things_ = first_.view.camera->targets() ? things_of(scene, kMostTargetedLamps)
-                                            : things_of(scene);
+    things_ =
+        first_.view.camera->targets() ? things_of(scene, kMostTargetedLamps) : things_of(scene);
     glass_disperses_ = std::any_of(scene.materials.begin(), scene.materials.end(),
                                    [](const Material& m) { return m.glass && m.refracts(); });
     regions_ = film_regions(*first_.view.camera, size, things_);

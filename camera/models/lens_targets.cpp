@@ -439,9 +439,8 @@ std::optional<ListedTarget> LensTargets::listed(const PreparedTarget& target, V2
     const auto away_mm = [&](const TargetStart* s) {
         return (cell_mm.nearest(s->film_mm) - s->film_mm).length();
     };
-    std::stable_sort(starts.begin(), starts.end(), [&](const auto* a, const auto* b) {
-        return away_mm(a) < away_mm(b);
-    });
+    std::stable_sort(starts.begin(), starts.end(),
+                     [&](const auto* a, const auto* b) { return away_mm(a) < away_mm(b); });
     // Those that are nearest tell whether the target is seen at all.
     const auto first = [&](size_t count) {
         return std::span(starts.data(), std::min(count, starts.size()));

@@ -259,11 +259,31 @@ TEST_F(Plans, NoiseOfLampsThatFewPathsFindIsAtLeast) {
         if (node.contains("mesh")) node["scale"] = {1e-6, 1e-6, 1e-6};
     use(tiny);
     const json plan = planned({"--fstop", "1.4", "--focus", "0.3", "--tolerance", "100%",
-                               "--background", "0.01,0.01,0.01"});
+                               "--background", "0.01,0.01,0.01", "--targets", "off"});
     EXPECT_EQ(plan["noise_at_least"], true) << plan;
     EXPECT_NE(plan["noise_at_least_because"].get<std::string>().find("few paths find"),
               std::string::npos)
         << plan;
+}
+
+// A plan sees lamps by the rays that are sent to them, and says what they spare.
+TEST_F(Plans, RaysToTargetsMakeLampsKnown) {
+    json strong;
+    strong["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = 1e5;
+    TinyGltf tiny = lamp(strong);
+    for (auto& node : tiny.json["nodes"])
+        if (node.contains("mesh")) node["scale"] = {1e-3, 1e-3, 1e-3};
+    use(tiny);
+    const auto with = [&](const char* use) {
+        return planned({"--fstop", "1.4", "--focus", "0.3", "--tolerance", "20%", "--background",
+                        "0.5,0.5,0.5", "--targets", use});
+    };
+    const json automatic = with("auto"), off = with("off");
+    EXPECT_EQ(automatic["targets"]["lamps"], 1) << automatic;
+    EXPECT_GT(automatic["targets"]["times_samples_without"].get<double>(), 4) << automatic;
+    EXPECT_FALSE(off.contains("targets")) << off;
+    EXPECT_GT(off["samples"].get<double>(), 4 * automatic["samples"].get<double>())
+        << automatic << off;
 }
 
 TEST(PlanWords, LampsAreInMillimetresAndSpotsOfTheSkyInDegrees) {

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "integrator/highlights.h"
+
+#include <gtest/gtest.h>
+
+#include "camera/models/thin_lens.h"
+#include "tests/support/scenes.h"
+
+namespace petzval {
+namespace {
+
+using namespace test;
+
+const V2i kFrame(96, 64);
+constexpr float kRadius_m = 0.1f;
+/// Of the ball's 50 mm: its facets lie up to 8 um below it, and the lens sees depth by 2 degrees.
+constexpr float kDepth_m = 6e-4f;
+
+Material mirror(float roughness = 0) {
+    Material m;
+    m.metallic = 1;
+    m.roughness = roughness;
+    return m;
+}
+
+Thing lamp_at(const V3f& centre, float reach_m, bool at_infinity = false) {
+    Thing lamp{Thing::Kind::Lamp, centre, reach_m, reach_m, at_infinity};
+    lamp.area_m2 = double(kPi * reach_m * reach_m);
+    lamp.radiance = 1000;
+    return lamp;
+}
+
+/// Seen from the origin along -z, through a lens 40 mm wide.
+std::vector<Thing> seen_in(World& world, const std::vector<Thing>& lamps) {
+    world.finish();
+    ThinLens lens;
+    lens.yfov_rad = 0.4f;
+    lens.iris = Iris(Disk{}, 20);
+    lens.focus_m = 3;
+    return highlights(ThinLensCamera(lens), world.scene, *world.bvh, kFrame, lamps);
+}
+
+std::vector<Thing> seen_in_a_ball(const Material& material, const std::vector<Thing>& lamps) {
+    World world;
+    place(world.scene, sphere(V3f(0, 0, -1), kRadius_m, 128, true), material);
+    return seen_in(world, lamps);
+}
+
+// Paraxial mirror: 1/s' = 1/s + 2/R, behind the vertex (Born and Wolf 1999, 4.4).
+TEST(Highlights, AreWhereAConvexMirrorHasItsImage) {
+    for (const float away_m : {0.5f, 2.f, 50.f}) {
+        const auto found =
+            seen_in_a_ball(mirror(), {lamp_at(V3f(0, 0, away_m), 0.002f * (1 + away_m))});
+        ASSERT_EQ(found.size(), 1u) << away_m;
+        const float s = away_m + 1 - kRadius_m, image = 1 / (1 / s + 2 / kRadius_m);
+        EXPECT_LT((found[0].centre - V3f(0, 0, -(1 - kRadius_m) - image)).length(), kDepth_m)
+            << found[0].centre;
+        // As large as the image, and not much larger.
+        const float size = 0.002f * (1 + away_m) * image / s;
+        EXPECT_GT(found[0].reach_m, 0.9f * size);
+        EXPECT_LT(found[0].reach_m, 2.5f * size);
+        EXPECT_TRUE(found[0].is_lamp());
+        EXPECT_GT(found[0].radiance, 200) << "a mirror takes little";
+        EXPECT_LE(found[0].radiance, 1001);
+    }
+}
+
+TEST(Highlights, OfASunLieHalfARadiusBehindABall) {
+    const auto found = seen_in_a_ball(mirror(), {lamp_at(V3f(0, 0, 1), 0.005f, true)});
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_FALSE(found[0].at_infinity);
+    EXPECT_LT((found[0].centre - V3f(0, 0, -0.95f)).length(), kDepth_m) << found[0].centre;
+}
+
+TEST(Highlights, OfAFlatMirrorAreMirrored) {
+    World world;
+    place(world.scene, quad(V3f(-1, -1, -1), V3f(2, 0, 0), V3f(0, 2, 0)), mirror());
+    const V3f lamp(0.1f, 0.15f, 0.5f);
+    const auto found = seen_in(world, {lamp_at(lamp, 0.003f)});
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_LT((found[0].centre - V3f(0.1f, 0.15f, -2.5f)).length(), 5e-3f) << found[0].centre;
+    World again;
+    place(again.scene, quad(V3f(-1, -1, -1), V3f(2, 0, 0), V3f(0, 2, 0)), mirror());
+    const V3f sun = unit(V3f(0.05f, 0.1f, 1));
+    const auto mirrored = seen_in(again, {lamp_at(sun, 0.004f, true)});
+    ASSERT_EQ(mirrored.size(), 1u);
+    EXPECT_TRUE(mirrored[0].at_infinity);
+    EXPECT_LT((mirrored[0].centre - V3f(sun.x, sun.y, -sun.z)).length(), 1e-3f);
+}
+
+TEST(Highlights, OfRoughSurfacesAreWiderAndDarker) {
+    const Thing lamp = lamp_at(V3f(0, 0, 2), 0.004f);
+    const auto smooth = seen_in_a_ball(mirror(), {lamp});
+    const auto rough = seen_in_a_ball(mirror(0.1f), {lamp});
+    ASSERT_EQ(smooth.size(), 1u);
+    ASSERT_EQ(rough.size(), 1u);
+    EXPECT_GT(rough[0].reach_m, 3 * smooth[0].reach_m);
+    EXPECT_LT(rough[0].radiance, smooth[0].radiance / 3);
+    EXPECT_TRUE(seen_in_a_ball(mirror(0.5f), {lamp}).empty()) << "no highlight that is small";
+    EXPECT_TRUE(seen_in_a_ball(diffuse_material(0.5f), {lamp}).empty());
+}
+
+// A mirror does not show a light without size, a rough surface does.
+TEST(Highlights, OfPunctualLights) {
+    for (const bool rough : {false, true}) {
+        World world;
+        place(world.scene, sphere(V3f(0, 0, -1), kRadius_m, 128, true), mirror(rough ? 0.1f : 0));
+        world.scene.lights.push_back(PointLight{V3f(0.3f, 0.2f, 1), Rgb(100.f)});
+        world.scene.lights.push_back(SunLight{unit(V3f(0.2f, -0.3f, -1)), Rgb(100.f)});
+        EXPECT_EQ(seen_in(world, {}).size(), rough ? 2u : 0u);
+    }
+}
+
+TEST(Highlights, OfHiddenLampsAreNone) {
+    World world;
+    place(world.scene, sphere(V3f(0, 0, -1), kRadius_m, 128, true), mirror());
+    place(world.scene, quad(V3f(-1, -1, 1), V3f(2, 0, 0), V3f(0, 2, 0)), diffuse_material(0.5f));
+    EXPECT_TRUE(seen_in(world, {lamp_at(V3f(0, 0, 2), 0.005f)}).empty());
+    EXPECT_TRUE(seen_in_a_ball(mirror(), {}).empty());
+    EXPECT_TRUE(seen_in_a_ball(mirror(), {lamp_at(V3f(0, 0, -4), 0.005f)}).empty())
+        << "behind the ball";
+}
+
+// Lamps of no size, infinite ones, and ones that are no numbers.
+TEST(Highlights, OfImpossibleLampsAreNone) {
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_TRUE(seen_in_a_ball(mirror(), {lamp_at(V3f(0, 0, 2), 0)}).empty());
+    EXPECT_TRUE(seen_in_a_ball(mirror(), {lamp_at(V3f(0, 0, 2), kInfinity)}).empty());
+    EXPECT_TRUE(seen_in_a_ball(mirror(), {lamp_at(V3f(kNan), 0.01f)}).empty());
+    Thing infinite = lamp_at(V3f(0, 0, 2), 0.01f);
+    infinite.radiance = INFINITY;
+    EXPECT_TRUE(seen_in_a_ball(mirror(), {infinite}).empty());
+}
+
+}  // namespace
+}  // namespace petzval

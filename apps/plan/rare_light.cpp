@@ -17,6 +17,9 @@ constexpr size_t kNearest = 16;
 /// Share of the light on its disc from which on a lamp decides how bright that is.
 constexpr double kMostOfTheLight = 0.5;
 
+/// Times as often as ordinary rays those that are sent to a lamp meet it where they decide.
+constexpr double kDecisive = 4;
+
 /// Share of the disc around a cluster of lamps that one lamp fills at least: a square has 0.3.
 constexpr double kFilled = 0.1;
 
@@ -162,7 +165,8 @@ RareLight rare_light(const Pilot& pilot, const PilotModel& model,
         const double behind = looks > 0 ? light / looks : 0;
         const double share = static_cast<double>(lamp.area_px) / pixels;
         if (samples * (looks * lamp.probability + sent) >= kEnoughPaths) {
-            if (samples * looks * lamp.probability >= kEnoughPaths) continue;
+            // Found as well, or nearly, without rays that are sent there.
+            if (sent < kDecisive * looks * lamp.probability) continue;
             ++out.targeted;
             out.spared += share * lamp.radiance * lamp.radiance * lamp.probability /
                           (behind * behind + floor * floor);

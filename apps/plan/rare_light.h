@@ -45,8 +45,8 @@ struct RareLight {
     double largest_lamp_m = 0, largest_spot_rad = 0;  ///< of them
     double noise = 0;  ///< symmetric variance of one sample that they would add
     double lost = 0;   ///< symmetric MSE of a picture without them
-    /// Lamps that enough paths will have met, but only as rays are sent to them, and the variance
-    /// of one sample that they would add without.
+    /// Lamps that rays are sent to, and would seldom be met without, and the variance of one sample
+    /// that they would add then.
     size_t targeted = 0;
     double spared = 0;
     /// Smooth surfaces were met, and behind them fewer than kEnoughPaths paths met a lamp.

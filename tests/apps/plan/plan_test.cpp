@@ -272,13 +272,15 @@ TEST_F(Plans, RaysToTargetsMakeLampsKnown) {
     strong["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = 1e5;
     TinyGltf tiny = lamp(strong);
     for (auto& node : tiny.json["nodes"])
-        if (node.contains("mesh")) node["scale"] = {1e-3, 1e-3, 1e-3};
+        if (node.contains("mesh"))
+            node.update({{"scale", {1e-4, 1e-4, 1e-4}}, {"translation", {0.05, 0.03, -1}}});
     use(tiny);
     const auto with = [&](const char* use) {
-        return planned({"--fstop", "1.4", "--focus", "0.3", "--tolerance", "20%", "--background",
-                        "0.5,0.5,0.5", "--targets", use});
+        return planned({"--fov", "10", "--fstop", "4", "--focus", "0.5", "--tolerance", "20%",
+                        "--background", "0.5,0.5,0.5", "--targets", use, "--size", "64x36"});
     };
     const json automatic = with("auto"), off = with("off");
+    ASSERT_TRUE(automatic.contains("targets")) << automatic << off;
     EXPECT_EQ(automatic["targets"]["lamps"], 1) << automatic;
     EXPECT_GT(automatic["targets"]["times_samples_without"].get<double>(), 4) << automatic;
     EXPECT_FALSE(off.contains("targets")) << off;

@@ -190,8 +190,7 @@ TEST(TargetMeans, AThousandLampsInAPixelAreASanePicture) {
     camera.set_targets(find_targets(camera, kSize, things_of(world.scene, 1024)));
     ASSERT_NE(camera.targets(), nullptr);
     for (const auto& list : camera.targets()->lists) EXPECT_LE(list.size(), 8u);
-    camera.set_targets(
-        targets_that_pay(camera, world.scene, *world.bvh, *world.lights, kSize));
+    camera.set_targets(targets_that_pay(camera, world.scene, *world.bvh, *world.lights, kSize));
     for (const Moments& part : rendered(world, camera, 1)) EXPECT_TRUE(std::isfinite(part.mean()));
 }
 

@@ -79,6 +79,8 @@ std::vector<Finding> stability_findings() {
             tiny_sun(),
             tiny_lamp(),
             defocused_highlights(),
+            rays_to_targets(),
+            search_for_targets(),
             planned_noise(),
             chains_of_glass(),
             nested_volumes(),

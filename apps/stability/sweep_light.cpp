@@ -218,7 +218,7 @@ Finding defocused_highlights() {
         "black: a pixel within its blur. By the highlight's side and the f-number: the circle of "
         "confusion on the film in pixels of 6 um and at the highlight, the share of it that the "
         "highlight fills, variance of one sample over the mean squared, samples for 10 % of error, "
-        "and by what Owen-scrambled points divide the variance of 256 samples.",
+        "and by what Owen-scrambled points divide the variance of 256 samples. No rays to targets.",
         kFocal_mm, kFocus_m, kBehind_m);
     f.table.columns = {"side (m)", "f/",       "blur (px)",        "blur there (m)",
                        "share",    "variance", "samples for 10 %", "gain of Owen"};
@@ -247,8 +247,9 @@ Finding defocused_highlights() {
         number(confusion_m(1.4)), number(hundred), number(thousand),
         percent(thousand.value_or(0) / confusion_m(1.4)));
     f.instead =
-        "Nothing: no light sample passes a lens. Noise falls with the samples, the sooner "
-        "for scrambled points; `--spp` is all there is.";
+        "Rays are sent to lamps and to highlights that a search finds (`--targets auto`, next "
+        "row). Of others no light sample passes a lens: noise falls with the samples, the sooner "
+        "for scrambled points.";
     return f;
 }
 

@@ -99,6 +99,8 @@ class Draws {
 [[nodiscard]] Finding tiny_sun();
 [[nodiscard]] Finding tiny_lamp();
 [[nodiscard]] Finding defocused_highlights();
+[[nodiscard]] Finding rays_to_targets();
+[[nodiscard]] Finding search_for_targets();
 [[nodiscard]] Finding planned_noise();
 [[nodiscard]] Finding chains_of_glass();
 [[nodiscard]] Finding nested_volumes();

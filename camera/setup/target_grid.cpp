@@ -11,11 +11,11 @@ namespace {
 
 constexpr int kCell_px = 16;
 /// Things of a cell that are tried, brightest first, and that may be found.
-constexpr size_t kMostTried = 32, kMostFound = 12;
+constexpr size_t kMostTried = 32, kMostFound = 20;
 /// Rays of a cell that tell which things it may see, and the margin for what lies between them.
 constexpr int kRays = 64;
 constexpr float kMargin = 0.4f;
-constexpr size_t kMostListed = 8;
+constexpr size_t kMostListed = 16;
 /// Share of a pixel's ordinary rays that may pass a target: where they are more, they do as well.
 constexpr double kMostMet = 0.25;
 /// Share of the light of a cell's brightest target below which another is left out.

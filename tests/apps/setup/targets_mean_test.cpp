@@ -189,7 +189,7 @@ TEST(TargetMeans, AThousandLampsInAPixelAreASanePicture) {
     ThinLensCamera camera = thin();
     camera.set_targets(find_targets(camera, kSize, things_of(world.scene, 1024)));
     ASSERT_NE(camera.targets(), nullptr);
-    for (const auto& list : camera.targets()->lists) EXPECT_LE(list.size(), 8u);
+    for (const auto& list : camera.targets()->lists) EXPECT_LE(list.size(), 16u);
     camera.set_targets(targets_that_pay(camera, world.scene, *world.bvh, *world.lights, kSize));
     for (const Moments& part : rendered(world, camera, 1)) EXPECT_TRUE(std::isfinite(part.mean()));
 }

@@ -300,7 +300,10 @@ std::optional<Thing> thing_of(std::vector<Mirrored> images, const Source& lamp) 
         off_m = std::max(off_m, distance_m(image, *centre));
     }
     out.centre = V3f(*centre);
-    out.reach_m = out.radius_m = static_cast<float>(angle * farthest_m + off_m);
+    const double image_m = angle * farthest_m, reach_m = image_m + off_m;
+    out.reach_m = out.radius_m = static_cast<float>(reach_m);
+    // Spread over the disc: an image that is blurred must not look like a large lamp.
+    out.radiance *= image_m * image_m / (reach_m * reach_m);
     out.area_m2 = double(kPi) * double(out.reach_m) * double(out.reach_m);
     return out;
 }

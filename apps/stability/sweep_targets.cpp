@@ -91,9 +91,9 @@ double variance_of_many(int lamps, int targets) {
     for (int i = 0; i < lamps; ++i) {
         const V3f at(0.02f * (float(i % 8) - 3.5f), 0.02f * (float(i / 8) - 3.5f),
                      static_cast<float>(-kAway_m));
-        world.place(quad(at - V3f(kSide_m / 2, kSide_m / 2, 0), V3f(kSide_m, 0, 0),
-                         V3f(0, kSide_m, 0)),
-                    lamp);
+        world.place(
+            quad(at - V3f(kSide_m / 2, kSide_m / 2, 0), V3f(kSide_m, 0, 0), V3f(0, kSide_m, 0)),
+            lamp);
         if (i < targets)
             list.push_back(*camera.listed(*camera.prepared(facing(at, kSide_m * 0.71)), kCell));
     }
@@ -182,9 +182,8 @@ Finding rays_to_targets() {
                                          std::pair(64, 16), std::pair(64, 64)})
         f.table.rows.push_back(
             row(lamps, targets, 0.004, 1., "", variance_of_many(lamps, targets)));
-    const auto in_focus = first_failure(1, 9.99, [](double focus_m) {
-        return !(sent_to(0.01, 1.4, focus_m).met < 0.25);
-    });
+    const auto in_focus = first_failure(
+        1, 9.99, [](double focus_m) { return !(sent_to(0.01, 1.4, focus_m).met < 0.25); });
     f.where = fmt::format(
         "The variance does not depend on the lamp's size: {} for 0.1 m, {} for a millimetre, where "
         "ordinary rays have 1 / share. From a focus of {} m on, a lamp of 10 mm at {:g} m is "

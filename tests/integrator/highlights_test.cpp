@@ -60,7 +60,8 @@ TEST(Highlights, AreWhereAConvexMirrorHasItsImage) {
         EXPECT_GT(found[0].reach_m, 0.9f * size);
         EXPECT_LT(found[0].reach_m, 2.5f * size);
         EXPECT_TRUE(found[0].is_lamp());
-        EXPECT_GT(found[0].radiance, 200) << "a mirror takes little";
+        EXPECT_GT(found[0].radiance, 150)
+            << "a mirror takes little, and the disc is not much larger";
         EXPECT_LE(found[0].radiance, 1001);
     }
 }

@@ -117,7 +117,6 @@ void find_targets_of(Camera& camera, V2i size_px, const Scene& scene,
                      const PreparedScene& prepared) {
     std::vector<Thing> things = things_of(scene, kMostTargets);
     const std::vector<Thing> images = highlights(camera, scene, *prepared.bvh, size_px, things);
-    if (getenv("HL")) fprintf(stderr, "%zu images\n", images.size());
     things.insert(things.end(), images.begin(), images.end());
     camera.set_targets(find_targets(camera, size_px, things));
     camera.set_targets(targets_that_pay(camera, scene, *prepared.bvh, *prepared.lights, size_px));

@@ -5,8 +5,8 @@
 #include <array>
 
 namespace petzval {
-
-RayBundle bundle_of(const Camera& camera, const FilmCell& cell, V2i drawn_for, int rays) {
+RayBundle bundle_of(const Camera& camera, const FilmCell& cell, uint32_t seed, V2i drawn_for,
+                    int rays) {
     RayBundle out;
     for (int first = 0; first < rays; first += int{kMostFilmPoints}) {
         const auto n = static_cast<size_t>(std::min(rays - first, int{kMostFilmPoints}));
@@ -15,7 +15,7 @@ RayBundle bundle_of(const Camera& camera, const FilmCell& cell, V2i drawn_for, i
         std::array<CameraSample, kMostFilmPoints> seen;
         for (size_t k = 0; k < n; ++k) {
             const auto i = static_cast<uint32_t>(first) + static_cast<uint32_t>(k);
-            const Sampler sampler(SamplerKind::Owen, 0, {drawn_for.x, drawn_for.y, i});
+            const Sampler sampler(SamplerKind::Owen, seed, {drawn_for.x, drawn_for.y, i});
             // The corners, and points within.
             const V2f within = i < 4 ? V2f(float(i & 1), float(i >> 1)) : sampler.get2(Dim::Film);
             points[k] = {cell.first + within * (cell.last - cell.first), sampler};
@@ -47,7 +47,8 @@ bool has_same_rays(const Camera& a, const Camera& b) {
     for (int y = 0; y < kFrame.y; ++y)
         for (int x = 0; x < kFrame.x; ++x) {
             const FilmCell cell{V2f(V2i(x, y)) / V2f(kFrame), V2f(V2i(x + 1, y + 1)) / V2f(kFrame)};
-            const RayBundle of_a = bundle_of(a, cell, {x, y}), of_b = bundle_of(b, cell, {x, y});
+            const RayBundle of_a = bundle_of(a, cell, 0, {x, y}),
+                            of_b = bundle_of(b, cell, 0, {x, y});
             if (!std::equal(of_a.rays.begin(), of_a.rays.end(), of_b.rays.begin(), of_b.rays.end(),
                             same))
                 return false;

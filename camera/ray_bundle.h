@@ -16,9 +16,10 @@ struct RayBundle {
     float least_cosine = 1;           ///< of the rays' directions with the mean
 };
 
-/// A bundle of up to so many rays, in RGB: from the corners of the cell and from points within,
-/// drawn for a place of the frame.
-[[nodiscard]] RayBundle bundle_of(const Camera&, const FilmCell&, V2i drawn_for, int rays = 16);
+/// A bundle of up to so many rays, in RGB: from the corners of the cell and from points within.
+/// They are drawn by the seed for a place of the frame. A picture with that seed draws the same.
+[[nodiscard]] RayBundle bundle_of(const Camera&, const FilmCell&, uint32_t seed, V2i drawn_for,
+                                  int rays = 16);
 /// Whether two cameras, asked in RGB, have the same rays for a few dozen film points, to the bit.
 [[nodiscard]] bool has_same_rays(const Camera&, const Camera&);
 

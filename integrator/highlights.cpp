@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <optional>
 
 #include "camera/ray_bundle.h"
@@ -13,12 +14,14 @@
 namespace petzval {
 namespace {
 
+constexpr uint32_t kSeed = 0x676c696e;  ///< so that no ray is one of the picture
 constexpr int kCell_px = 16;
 constexpr int kRaysOfCell = 16;
 /// Rays of the search for a pixel.
 constexpr double kSearchRays = 1. / 16;
 /// Lamps that are looked for in a surface, strongest first.
 constexpr size_t kMostLamps = 16;
+/// Images that are found at most.
 constexpr size_t kMostFound = 256;
 /// A rougher surface has no highlights that are small.
 constexpr float kMostRoughness = 0.35f;
@@ -33,7 +36,7 @@ constexpr float kTolerance = 0.02f;
 constexpr int kMostSteps = 12;
 /// Difference of directions by which derivatives are taken, radians.
 constexpr float kDifference = 1e-4f;
-/// Searches that may fail in an object for a lamp before it is given up, and more for each image.
+/// Searches for a lamp in an object that may fail, or find an image again, before it is given up.
 constexpr int kMostFailures = 6;
 /// Points of the lens for which an image is looked for, and of those at least that agree.
 constexpr size_t kEyes = 8, kFewestEyes = 4;
@@ -83,19 +86,23 @@ struct Start {
 
 /// Where a ray from the lens meets a polished surface.
 struct Met {
-    V3f p;
+    Surface surface;
     V3f normal;  ///< the shaded one, unit, on the ray's side
-    uint32_t instance;
     float alpha;
     double reflectance;
 
     [[nodiscard]] V3f to(const Source& lamp) const {
-        return lamp.at_infinity ? lamp.centre : unit(lamp.centre - p);
+        return lamp.at_infinity ? lamp.centre : unit(lamp.centre - surface.p);
+    }
+    [[nodiscard]] float distance_m(const Source& lamp) const {
+        return (lamp.centre - surface.p).length();
     }
     /// Half-width in slopes of what a lamp makes of the surface: its own, and the roughness's.
     [[nodiscard]] float half_width(const Source& lamp) const {
-        const float distance_m = lamp.at_infinity ? 1.f : (lamp.centre - p).length();
-        return std::hypot(lamp.reach_m / (2 * distance_m), kAlphas * alpha);
+        return std::hypot(own_half_width(lamp), kAlphas * alpha);
+    }
+    [[nodiscard]] float own_half_width(const Source& lamp) const {
+        return lamp.reach_m / (lamp.at_infinity ? 2 : 2 * distance_m(lamp));
     }
 };
 
@@ -126,8 +133,7 @@ class Search {
             if (s.material->unlit) return std::nullopt;
             const ShadingInput at = read_material(scene_, s, -direction, Bands::rgb());
             if (!(at.bsdf.roughness <= kMostRoughness)) return std::nullopt;
-            return Met{s.p, at.frame.z, hit->instance, sqr(at.bsdf.roughness),
-                       reflectance_of(at.bsdf)};
+            return Met{s, at.frame.z, sqr(at.bsdf.roughness), reflectance_of(at.bsdf)};
         }
         return std::nullopt;
     }
@@ -143,7 +149,7 @@ class Search {
             const Frame across = Frame::about(*half), about = Frame::about(direction);
             const auto miss = [&](const Met& met, const V3f& seen) -> std::optional<V2f> {
                 const auto wanted = half_way(met, seen, lamp);
-                if (!wanted || met.instance != here->instance) return std::nullopt;
+                if (!wanted || met.surface.instance != here->surface.instance) return std::nullopt;
                 const V3f off = met.normal - *wanted;
                 return V2f(off.dot(across.x), off.dot(across.y));
             };
@@ -182,9 +188,10 @@ class Search {
     /// Whether something stands between a surface and a lamp.
     [[nodiscard]] bool is_hidden(const Mirrored& image, const Source& lamp) {
         --rays_left_;
-        const V3f to = lamp.at_infinity ? lamp.centre : lamp.centre - image.met.p;
-        Ray shadow{image.met.p + 1e-4f * (image.met.p - image.eye).length() * image.met.normal, to};
-        if (!lamp.at_infinity) shadow.t_max = std::max(0.f, 0.999f - lamp.reach_m / to.length());
+        const Met& met = image.met;
+        Ray shadow{leave_surface(met.surface, met.to(lamp), false), met.to(lamp)};
+        if (!lamp.at_infinity)
+            shadow.t_max = std::max(0.f, 0.999f * met.distance_m(lamp) - lamp.reach_m);
         return bvh_.occluded(shadow);
     }
 
@@ -219,28 +226,22 @@ class Search {
     int64_t rays_left_;
 };
 
-/// Solution of a symmetric system of three equations; nothing where it is singular.
-std::optional<V3d> solved(const std::array<V3d, 3>& m, const V3d& b) {
-    const V3d c0 = m[1].cross(m[2]), c1 = m[2].cross(m[0]), c2 = m[0].cross(m[1]);
-    const double determinant = m[0].dot(c0);
-    if (!(std::fabs(determinant) > 1e-14)) return std::nullopt;
-    return (c0 * b.x + c1 * b.y + c2 * b.z) / determinant;
-}
-
-/// The point where rays seem to meet, with least squares: that with the smallest distance to them.
+/// The point where rays seem to meet, with least squares: that with the smallest distance to them;
+/// nothing where they are parallel.
 std::optional<V3d> meeting_point(const std::vector<Mirrored>& images) {
     V3d b(0.);
-    std::array<V3d, 3> m{V3d(0.), V3d(0.), V3d(0.)};
+    Imath::M33d m(0.);  // symmetric
     for (const Mirrored& image : images) {
         const V3d d(image.direction), o(image.eye);
         for (int i = 0; i < 3; ++i) {
             V3d row = -d[i] * d;
             row[i] += 1;
-            m[size_t(i)] += row;
+            for (int k = 0; k < 3; ++k) m[i][k] += row[k];
             b[i] += row.dot(o);
         }
     }
-    return solved(m, b);
+    if (!(std::fabs(m.determinant()) > 1e-14)) return std::nullopt;
+    return b * m.inverse();
 }
 
 double distance_m(const Mirrored& image, const V3d& point) {
@@ -249,13 +250,12 @@ double distance_m(const Mirrored& image, const V3d& point) {
 
 /// Luminance of an image: what a rough surface spreads over more slopes is as much darker.
 double luminance_of(const Mirrored& image, const Source& lamp) {
-    const double width = double(image.met.half_width(lamp));
-    const double away_m = lamp.at_infinity ? 1. : double((lamp.centre - image.met.p).length());
-    if (!lamp.has_size())
-        return image.met.reflectance * lamp.light / (away_m * away_m) /
-               (4 * double(kPi) * width * width);
-    const double own = double(lamp.reach_m) / (2 * away_m);
-    return image.met.reflectance * lamp.light * own * own / (width * width);
+    const Met& met = image.met;
+    const double width = double(met.half_width(lamp)), own = double(met.own_half_width(lamp));
+    const double spread = met.reflectance * lamp.light / (width * width);
+    if (lamp.has_size()) return spread * own * own;
+    const double away_m = lamp.at_infinity ? 1. : double(met.distance_m(lamp));
+    return spread / (4 * double(kPi) * away_m * away_m);
 }
 
 /// The image that several points of the lens see, as a lamp.
@@ -321,33 +321,56 @@ bool is_same(const Thing& a, const Thing& b, const V3f& eye) {
            std::fabs(along) < kSameDistance * to.length();
 }
 
+/// The image of a lamp near a start, as that point of the lens and others see it.
+std::optional<Thing> image_from(Search& search, const Start& start, const std::vector<V3f>& eyes,
+                                const Source& lamp) {
+    const auto found = search.mirrored(start.eye, start.direction, lamp);
+    if (!found || search.is_hidden(*found, lamp)) return std::nullopt;
+    std::vector<Mirrored> images{*found};
+    for (const V3f& eye : eyes) {
+        if (images.size() == kEyes) break;
+        if (eye == start.eye) continue;
+        if (const auto more = search.mirrored(eye, unit(found->met.surface.p - eye), lamp))
+            images.push_back(*more);
+    }
+    if (images.size() < kFewestEyes) return std::nullopt;
+    return thing_of(std::move(images), lamp);
+}
+
 /// Rays of all cells of a frame that meet polished surfaces, the objects by turns.
 std::vector<Start> starts_of(const Camera& camera, Search& search, V2i frame_px,
                              std::vector<std::vector<V3f>>& eyes) {
-    const V2i cells{std::max(1, frame_px.x / kCell_px), std::max(1, frame_px.y / kCell_px)};
+    const V2i cells = frame_px / kCell_px;
     std::map<uint32_t, std::vector<Start>> by_instance;
     for (int j = 0; j < cells.y; ++j)
         for (int i = 0; i < cells.x; ++i) {
             std::vector<V3f>& eyes_of_cell = eyes.emplace_back();
             const FilmCell cell{V2f(V2i(i, j)) / V2f(cells), V2f(V2i(i + 1, j + 1)) / V2f(cells)};
-            for (const Ray& ray : bundle_of(camera, cell, {i, j}, kRaysOfCell).rays) {
+            for (const Ray& ray : bundle_of(camera, cell, kSeed, {i, j}, kRaysOfCell).rays) {
                 eyes_of_cell.push_back(ray.origin);
                 if (const auto met = search.meet(ray.origin, ray.direction))
-                    by_instance[met->instance].push_back(
-                        {ray.origin, ray.direction, met->instance, eyes.size() - 1});
+                    by_instance[met->surface.hit.instance].push_back(
+                        {ray.origin, ray.direction, met->surface.hit.instance, eyes.size() - 1});
             }
         }
+    // First one of each object, then another of each. Neighbours see the same: they are mixed.
+    struct Turn {
+        size_t turn;
+        Start start;
+    };
+    std::vector<Turn> turns;
+    for (const auto& [instance, starts] : by_instance) {
+        std::vector<size_t> order(starts.size());
+        std::iota(order.begin(), order.end(), 0);
+        std::sort(order.begin(), order.end(), [](size_t a, size_t b) {
+            return hash32(static_cast<uint32_t>(a)) < hash32(static_cast<uint32_t>(b));
+        });
+        for (size_t n = 0; n < order.size(); ++n) turns.push_back({n, starts[order[n]]});
+    }
+    std::stable_sort(turns.begin(), turns.end(),
+                     [](const Turn& a, const Turn& b) { return a.turn < b.turn; });
     std::vector<Start> out;
-    for (size_t n = 0; !by_instance.empty(); ++n)
-        for (auto it = by_instance.begin(); it != by_instance.end();) {
-            std::vector<Start>& starts = it->second;
-            if (n < starts.size())
-                // By the golden ratio: neighbours see the same.
-                out.push_back(
-                    starts[(n * (static_cast<size_t>(0.618 * double(starts.size())) | 1)) %
-                           starts.size()]);
-            it = n + 1 < starts.size() ? std::next(it) : by_instance.erase(it);
-        }
+    for (const Turn& turn : turns) out.push_back(turn.start);
     return out;
 }
 
@@ -356,47 +379,24 @@ std::vector<Start> starts_of(const Camera& camera, Search& search, V2i frame_px,
 std::vector<Thing> highlights(const Camera& camera, const Scene& scene, const Bvh& bvh,
                               V2i frame_px, std::span<const Thing> things) {
     const std::vector<Source> lamps = sources_of(scene, things);
-    if (lamps.empty()) return {};
+    if (lamps.empty() || frame_px.x < kCell_px || frame_px.y < kCell_px) return {};
     const double pixels = double(frame_px.x) * double(frame_px.y);
     Search first(scene, bvh, INT64_MAX);
     std::vector<std::vector<V3f>> eyes;
     const std::vector<Start> starts = starts_of(camera, first, frame_px, eyes);
     Search search(scene, bvh, static_cast<int64_t>(kSearchRays * pixels));
-    struct Known {
-        std::vector<V3f> places;
-        int failures = 0;
-    };
-    std::map<std::pair<uint32_t, size_t>, Known> known;
+    std::map<std::pair<uint32_t, size_t>, int> failures;  // by object and lamp
     std::vector<Thing> out;
     for (const Start& start : starts)
         for (size_t l = 0; l < lamps.size(); ++l) {
             const Source& lamp = lamps[l];
             if (!search.may_go_on() || out.size() == kMostFound) return out;
-            Known& of_lamp = known[{start.instance, l}];
-            if (of_lamp.failures > kMostFailures) continue;
-            const auto found = search.mirrored(start.eye, start.direction, lamp);
-            if (!found || search.is_hidden(*found, lamp)) {
-                ++of_lamp.failures;
-                continue;
-            }
-            std::vector<Mirrored> images{*found};
-            for (const V3f& eye : eyes[start.cell]) {
-                if (images.size() == kEyes) break;
-                if (eye == start.eye) continue;
-                if (const auto more = search.mirrored(eye, unit(found->met.p - eye), lamp))
-                    images.push_back(*more);
-            }
-            if (images.size() < kFewestEyes) {
-                ++of_lamp.failures;
-                continue;
-            }
-            const auto thing = thing_of(images, lamp);
-            const bool again =
-                thing && std::any_of(out.begin(), out.end(), [&](const Thing& other) {
-                    return is_same(other, *thing, start.eye);
-                });
-            if (!thing || again)
-                ++of_lamp.failures;
+            int& failed = failures[{start.instance, l}];
+            if (failed > kMostFailures) continue;
+            const auto thing = image_from(search, start, eyes[start.cell], lamp);
+            const auto same = [&](const Thing& other) { return is_same(other, *thing, start.eye); };
+            if (!thing || std::any_of(out.begin(), out.end(), same))
+                ++failed;
             else
                 out.push_back(*thing);
         }

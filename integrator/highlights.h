@@ -13,8 +13,8 @@
 namespace petzval {
 
 /// Images of lamps in polished surfaces that a camera sees, as lamps at the places where they seem
-/// to be; there seldom is anything. At most a hundred or so. Lamps: those of the scene, without its
-/// lights that have no size, which are looked up.
+/// to be: at most 256, and none in a frame narrower than a cell of 16 pixels. Lamps are taken from
+/// the things, lights without size from the scene.
 ///
 /// A few camera rays of each cell of the frame find polished surfaces. From there Newton's method
 /// looks for the point whose normal lies half-way between the directions to the lens and to the

@@ -9,10 +9,11 @@
 
 namespace petzval {
 
-/// Those of a camera's targets that pay, cell by cell, with chances in proportion to the light that
-/// each is found to bring; nullptr where there is none. They pay where they lower the variance
-/// times the cost of the whole frame. A pure function of its arguments: at most 32 camera samples
-/// are rendered in a cell, in RGB, with numbers of their own.
+/// Those of a camera's targets that pay, cell by cell; nullptr where there is none. Half of a
+/// chance is the same for all of a cell, half is in proportion to the light that each is found to
+/// bring. They pay where they lower the square of the frame's mean noise times its cost. A pure
+/// function of its arguments: at most 32 camera samples are rendered in a cell, in RGB, with
+/// numbers of their own.
 [[nodiscard]] std::shared_ptr<const TargetGrid> targets_that_pay(const Camera&, const Scene&,
                                                                  const Bvh&, const LightChoice&,
                                                                  V2i frame_px);

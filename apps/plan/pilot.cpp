@@ -65,7 +65,8 @@ double PilotModel::lens_rays() const {
     }
 }
 
-// From counts of instructions: the search for a ray through a traced lens.
+// The search for a ray through a traced lens from one start: about what the pilot of the targets
+// counts for it (kTracedCost and kStartCost in integrator/target_pilot.cpp).
 double PilotModel::rays_to_find_targets() const {
     constexpr double kSearch = 12;
     if (stats_.lens_lanes.drawn == 0) return 0;

@@ -17,8 +17,8 @@ namespace petzval {
 
 /// Reason why the noise may be larger than a plan says; empty where it is known.
 [[nodiscard]] std::string rare_text(const Plan&);
-/// Times the samples that the same noise would take without rays to targets; nothing where they are
-/// not what makes the picture possible: below kDecisive.
+/// Times the samples that the same noise would take without rays to targets; nothing where that is
+/// below 4: then they are not what makes the picture possible.
 [[nodiscard]] std::optional<double> times_without_targets(const Plan&);
 
 struct PlanLine {

@@ -67,7 +67,7 @@ double sent_to(const RenderSetup& setup, V2i size_px, std::array<int, 2> pixel,
     double sum = 0;
     for (const ListedTarget& listed : grid->at(film)) {
         const Target& target = grid->targets[listed.number];
-        if (target.at_infinity != lamp.at_infinity ||
+        if (target.at_infinity != lamp.thing.at_infinity ||
             (target.centre - lamp.thing.centre).length() > lamp.thing.radius_m)
             continue;
         const double disc = double(kPi) * double(target.radius_m) * double(target.radius_m);
@@ -110,8 +110,8 @@ std::vector<SeenLamp> seen_lamps(const RenderSetup& setup, V2i size_px,
         const double disk = double(kPi) * squares[kNearest - 1];
         // A lamp that is larger than the disk is met by all rays within it.
         const double shown = disk > 0 ? std::min(1., lamp.area_m2 / disk) : 1;
-        out.push_back({regions[n].area_px(), shown * kNearest / kRays, lamp.radiance,
-                       lamp.at_infinity, 2 * lamp.radius_m, is_alone(lamp), lamp, &regions[n]});
+        out.push_back(
+            {regions[n].area_px(), shown * kNearest / kRays, is_alone(lamp), lamp, &regions[n]});
     }
     return out;
 }
@@ -135,7 +135,7 @@ std::vector<V3d> least_means(const Pilot& pilot, const PilotModel& model,
         const double met = lamp.probability + sent / static_cast<double>(on_disc.size());
         if (kPilotReplicates * model.samples() * met >= 1) continue;
         sum /= static_cast<double>(on_disc.size());
-        const double expected = lamp.radiance * lamp.probability;
+        const double expected = lamp.thing.radiance * lamp.probability;
         const double seen = double(luminance(Rgb(float(sum.x), float(sum.y), float(sum.z))));
         // Other light is better known, and uneven.
         if (expected < kMostOfTheLight * seen) continue;
@@ -168,17 +168,15 @@ RareLight rare_light(const Pilot& pilot, const PilotModel& model,
             // Found as well, or nearly, without rays that are sent there.
             if (sent < kDecisive * looks * lamp.probability) continue;
             ++out.targeted;
-            out.spared += share * lamp.radiance * lamp.radiance * lamp.probability /
-                          (behind * behind + floor * floor);
+            out.spared += share * lamp.square() / (behind * behind + floor * floor);
             continue;
         }
-        const double with = behind + lamp.radiance * lamp.probability;
-        ++(lamp.at_infinity ? out.spots : out.lamps);
-        double& largest = lamp.at_infinity ? out.largest_spot_rad : out.largest_lamp_m;
-        largest = std::max(largest, double(lamp.size));
-        if (with > 0)
-            out.noise += share * lamp.radiance * lamp.radiance * lamp.probability /
-                         (with * with + floor * floor);
+        const double with = behind + lamp.thing.radiance * lamp.probability;
+        const bool at_infinity = lamp.thing.at_infinity;
+        ++(at_infinity ? out.spots : out.lamps);
+        double& largest = at_infinity ? out.largest_spot_rad : out.largest_lamp_m;
+        largest = std::max(largest, 2 * double(lamp.thing.radius_m));
+        if (with > 0) out.noise += share * lamp.square() / (with * with + floor * floor);
         out.lost += share * symmetric_square(behind, with, floor);
     }
     const auto seldom = [&](const ChanceFinds& found) {

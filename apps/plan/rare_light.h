@@ -19,12 +19,12 @@ inline constexpr double kEnoughPaths = 16;
 struct SeenLamp {
     int64_t area_px;     ///< of the film that its light falls on
     double probability;  ///< that a camera ray of this area meets it
-    double radiance;     ///< nits
-    bool at_infinity;    ///< a spot of the sky
-    float size;          ///< across: metres, at infinity radians
     bool alone;          ///< its light is even over the area: one lamp, not several far apart
     Thing thing;
     const FilmRegion* region;
+
+    /// Variance of one sample that it adds where nothing else does, times the squared mean.
+    [[nodiscard]] double square() const { return thing.radiance * thing.radiance * probability; }
 };
 
 /// Lamps among the things that no surface hides from the camera, each with its region.

@@ -171,7 +171,7 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
     if (asked.targets == TargetUse::Auto && setup.view.camera->takes_targets()) {
         Camera& seen = *setup.view.camera;
         if (shares && like->from.asked.targets == TargetUse::Auto &&
-            has_same_rays(seen, *like->view.camera))
+            like->from.asked.size == request.size && has_same_rays(seen, *like->view.camera))
             seen.set_targets(like->view.camera->shared_targets());
         else
             find_targets_of(seen, request.size, scene, prepared);

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kFirstCells = 512;
 constexpr size_t kMostRects = 32;
+constexpr float kWide_rad = 0.25f;
 
 std::vector<Rect> first_cells(V2i size) {
     const auto side =
@@ -34,7 +35,7 @@ std::vector<Rect> quarters(const Rect& r) {
 RayBundle rays_of(const Camera& camera, V2i size_px, const Rect& cell) {
     const V2f size(size_px);
     return bundle_of(camera, {V2f(V2i(cell.x0, cell.y0)) / size, V2f(V2i(cell.x1, cell.y1)) / size},
-                     {cell.x0, cell.y0});
+                     0, {cell.x0, cell.y0});
 }
 
 /// The region in finer and finer cells, until they are pixels or too many.
@@ -57,6 +58,8 @@ bool may_pass(const RayBundle& bundle, const Thing& thing, float margin) {
     const V3f to = thing.at_infinity ? thing.centre : thing.centre - bundle.origin;
     const float away_m = to.length(), beside_m = wider * bundle.reach_m + 1.5f * thing.radius_m;
     if (!thing.at_infinity && away_m <= beside_m) return true;
+    // The plane of a wide spot of the sky is far from a cone.
+    if (thing.at_infinity && thing.radius_m > kWide_rad) return true;
     const float own = thing.at_infinity ? 1.5f * thing.radius_m : std::asin(beside_m / away_m);
     const float angle = wider * std::acos(std::min(1.f, bundle.least_cosine)) + own;
     return angle >= kPi / 2 || to.dot(bundle.direction) >= std::cos(angle) * away_m;

@@ -10,6 +10,7 @@ namespace petzval {
 namespace {
 
 constexpr int kCell_px = 16;
+constexpr uint32_t kSeed = 0x63656c6c;  ///< so that no ray is one of the picture
 /// Things of a cell that are tried, brightest first, and that may be found.
 constexpr size_t kMostTried = 32, kMostFound = 20;
 /// Rays of a cell that tell which things it may see, and the margin for what lies between them.
@@ -60,7 +61,7 @@ std::shared_ptr<const TargetGrid> find_targets(const Camera& camera, V2i size_px
         for (int i = 0; i < out->cells.x; ++i) {
             std::vector<ListedTarget>& list = out->lists.emplace_back();
             const FilmCell place = out->cell(i, j, size_px);
-            const RayBundle bundle = bundle_of(camera, place, {i, j}, kRays);
+            const RayBundle bundle = bundle_of(camera, place, kSeed, {i, j}, kRays);
             size_t tried = 0;
             for (LampToTry& lamp : lamps) {
                 if (lamp.hopeless || !passes(bundle, lamp.thing, kMargin)) continue;

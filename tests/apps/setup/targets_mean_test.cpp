@@ -84,6 +84,15 @@ Material mirror(float roughness) {
     return m;
 }
 
+/// Smooth and thin.
+Material clear(float albedo) {
+    Material m = diffuse_material(albedo);
+    m.roughness = 0;
+    m.transmission = 1;
+    m.specular = 1;
+    return m;
+}
+
 /// A lamp before a wall.
 void place_lamp(Scene& scene, const V3f& at, float radius_m = 0.006f) {
     place(scene, sphere(at, radius_m, 12, true), emitter_material(500.f));
@@ -112,10 +121,7 @@ TEST(TargetMeans, AreKeptForAHalfHiddenLamp) {
 TEST(TargetMeans, AreKeptForALampBehindAPane) {
     TracedWorld world;
     place_lamp(world.scene, V3f(0.05f, 0.02f, -3));
-    Material pane = diffuse_material(0.8f);
-    pane.roughness = 0;
-    pane.transmission = 1;
-    pane.specular = 1;
+    const Material pane = clear(0.8f);
     place(world.scene, quad(V3f(-1, -1, -2), V3f(2, 0, 0), V3f(0, 2, 0)), pane);
     ThinLensCamera camera = thin();
     expect_same_mean(world, camera, 4, "behind a pane");
@@ -124,10 +130,7 @@ TEST(TargetMeans, AreKeptForALampBehindAPane) {
 TEST(TargetMeans, AreKeptForALampInAbsorbingGlass) {
     TracedWorld world;
     place_lamp(world.scene, V3f(0.05f, 0.02f, -3));
-    Material glass = diffuse_material(1.f);
-    glass.roughness = 0;
-    glass.transmission = 1;
-    glass.specular = 1;
+    Material glass = clear(1);
     glass.has_volume = true;
     glass.attenuation_color = Rgb(0.3f, 0.5f, 0.7f);
     glass.attenuation_distance_m = 0.05f;

@@ -6,8 +6,9 @@
 
 Prints the ratios of noise, of CPU time, and the gain in efficiency, 1 / (noise x CPU time), of the whole frame and of its
 discs, with the smallest and the largest of what five leave-one-out sets give. Noise is the mean over pixels of the
-variance over seeds, over the squared mean plus a hundredth of the frame's squared grey. Discs are the pixels that are
-twice as bright as the median of what lies around them, 97 pixels wide: there lamps are over half of the light.
+variance over seeds, over the squared mean plus a hundredth of the frame's squared grey. Discs are the pixels whose
+median over the seeds with targets is twice as bright as the median of what lies around them, 96 pixels wide: there
+lamps are over half of the light. (By the mean, single bright pixels would count as discs.)
 "trimmed" leaves out the worst 0.1 % of the pixels.
 """
 import math
@@ -59,7 +60,7 @@ def main(program, name, arguments):
                 pictures[targets].append(picture)
                 cpu_s[targets].append(seconds)
     mean = numpy.mean(pictures["auto"], axis=0)
-    grey = mean.mean(-1)
+    grey = numpy.median(pictures["auto"], axis=0).mean(-1)
     discs = grey > 2 * median_around(grey)
     cost = float(numpy.median(numpy.array(cpu_s["auto"]) / numpy.array(cpu_s["off"])))
     print("%s: mean auto / off %.4f, CPU time %.2f, discs %.1f %% of the frame" % (

@@ -22,6 +22,7 @@ concept RayCaster = requires(const T t, const Ray& r) {
     { t.intersect(r) } -> std::same_as<std::optional<Hit>>;
     { t.occluded(r) } -> std::same_as<bool>;
     { t.has_cutouts() } -> std::same_as<bool>;
+    { t.has_panes() } -> std::same_as<bool>;
 };
 
 template <RayCaster Caster = Bvh>
@@ -43,6 +44,7 @@ class PathTracer {
 
   private:
     struct Vertex;
+    struct Scattering;
     struct DrawnLight;
     [[nodiscard]] f4 visible_background(const Ray&, const Bands&, FilmSample&) const;
     [[nodiscard]] f4 escaped(const Ray&, const Bands&, const Vertex& last,
@@ -51,12 +53,8 @@ class PathTracer {
     [[nodiscard]] std::optional<DrawnLight> draw_light(const LightReceiver&,
                                                        const Sampler::VertexNumbers&,
                                                        const Bands&) const;
-    [[nodiscard]] f4 light_on_smooth(const Surface&, const Frame&, const Bsdf&, const DrawnLight&,
-                                     const Bands&, const Sampler&, uint32_t depth,
-                                     const Material* medium, PathStats&) const;
-    [[nodiscard]] f4 direct_light(const Surface&, const Frame&, const Bsdf&, const DrawnLight&,
-                                  const Bands&, const Sampler&, uint32_t depth,
-                                  const Material* medium, PathStats&) const;
+    [[nodiscard]] f4 light_on_smooth(const Scattering&, const DrawnLight&) const;
+    [[nodiscard]] f4 direct_light(const Scattering&, const DrawnLight&) const;
 
     const Scene& scene_;
     const Caster& caster_;

@@ -6,6 +6,7 @@
 #include "core/sampling/warp.h"
 #include "core/shading/surface.h"
 #include "core/spectrum/colour.h"
+#include "integrator/panes.h"
 #include "integrator/path.h"
 
 namespace petzval {
@@ -24,6 +25,20 @@ struct PathTracer<Caster>::Vertex {
 [[nodiscard]] inline LightReceiver receiver_at(const Surface& s) {
     return {s.p, s.side, s.material->transmission > 0};
 }
+
+/// Where a path scatters light, and what it has come with.
+template <RayCaster Caster>
+struct PathTracer<Caster>::Scattering {
+    const Surface& surface;
+    const Frame& frame;
+    const Bsdf& bsdf;
+    f4 throughput;
+    const Bands& bands;
+    uint32_t alpha_seed;     ///< of shadow rays
+    const Material* medium;  ///< on the side where the path came from, or null
+    int clear_depth_left;
+    PathStats& stats;
+};
 
 /// Light sample, and how likely its light was picked.
 template <RayCaster Caster>
@@ -117,62 +132,66 @@ auto PathTracer<Caster>::draw_light(const LightReceiver& receiver, const Sampler
 // one point, those to the other side the other, and a point near the triangle's plane is met by
 // both.
 template <RayCaster Caster>
-f4 PathTracer<Caster>::light_on_smooth(const Surface& s, const Frame& frame, const Bsdf& bsdf,
-                                       const DrawnLight& drawn, const Bands& bands,
-                                       const Sampler& sampler, uint32_t depth,
-                                       const Material* medium, PathStats& stats) const {
+f4 PathTracer<Caster>::light_on_smooth(const Scattering& at, const DrawnLight& drawn) const {
+    const Surface& s = at.surface;
     const V3f facing = s.facing();
     f4 sum{};
-    if (!drawn.dark && drawn.sample.direction.dot(facing) > 0.f)
-        sum += direct_light(s, frame, bsdf, drawn, bands, sampler, depth, medium, stats);
+    if (!drawn.dark && drawn.sample.direction.dot(facing) > 0.f) sum += direct_light(at, drawn);
     const V3f smooth = s.p + s.lift;
-    const auto again = sample_light(scene_, scene_.lights[drawn.light], smooth, drawn.u, bands);
+    const auto again = sample_light(scene_, scene_.lights[drawn.light], smooth, drawn.u, at.bands);
     if (!again || !(again->direction.dot(facing) < 0.f && again->direction.dot(s.side) > 0.f))
         return sum;
     const DrawnLight from_smooth{*again, false, drawn.pick_probability, drawn.light, drawn.u, {}};
-    return sum + direct_light(s, frame, bsdf, from_smooth, bands, sampler, depth, medium, stats);
+    return sum + direct_light(at, from_smooth);
 }
 
 template <RayCaster Caster>
-f4 PathTracer<Caster>::direct_light(const Surface& s, const Frame& frame, const Bsdf& bsdf,
-                                    const DrawnLight& drawn, const Bands& bands,
-                                    const Sampler& sampler, uint32_t depth, const Material* medium,
-                                    PathStats& stats) const {
+f4 PathTracer<Caster>::direct_light(const Scattering& at, const DrawnLight& drawn) const {
     if (drawn.dark) return f4{};
+    const Surface& s = at.surface;
     LightSample light = drawn.sample;
-    const BsdfValue value = bsdf.eval(frame.to_local(light.direction));
+    const BsdfValue value = at.bsdf.eval(at.frame.to_local(light.direction));
     if (value.pdf <= 0.f) return f4{};
 
     const bool crosses = !(light.direction.dot(s.side) > 0.f);
-    Ray shadow;
-    shadow.origin = leave_surface(s, light.direction, crosses);
+    WayToLight way{{}, light.target, light.at_infinity};
+    way.ray.origin = leave_surface(s, light.direction, crosses);
     if (light.at_infinity) {
-        shadow.direction = light.direction;
+        way.ray.direction = light.direction;
     } else {
-        shadow.direction = light.target - shadow.origin;
-        shadow.t_max = kOneMinus;  // the target stands clear of the light
+        way.ray.direction = light.target - way.ray.origin;
+        way.ray.t_max = kOneMinus;  // the target stands clear of the light
     }
-    if (caster_.has_cutouts()) shadow.alpha_seed = sampler.get_bits(Dim::Coverage, 2 * depth + 1);
-    ++stats.shadow_rays;
+    way.ray.alpha_seed = at.alpha_seed;
+    ++at.stats.shadow_rays;
     {
-        const SectionTimer timer(stats, TimedSection::Traversal);
-        if (caster_.occluded(shadow)) return f4{};
+        const SectionTimer timer(at.stats, TimedSection::Traversal);
+        if (caster_.occluded(way.ray)) return f4{};
+    }
+    const Material* behind = s.material->has_volume ? (s.front ? s.material : nullptr) : at.medium;
+    const Material* through = crosses ? behind : at.medium;
+    float chance = value.pdf;
+    f4 left = uniform(1.f, at.bands);  // by panes
+    if (caster_.has_panes()) {
+        const auto panes = through_panes(scene_, caster_, way, at.throughput * value.f_cos, through,
+                                         at.clear_depth_left, at.bands, at.stats);
+        if (!panes) return f4{};
+        left = panes->value;
+        chance *= panes->chance;
     }
     if (drawn.sky) {
         const Sky::Found found = scene_.sky.find(*drawn.sky);
         if (!(found.pdf > 0.f)) return f4{};  // drawn at the very rim of a texel's tent
-        light.radiance = uplift_radiance(found.radiance, bands);
+        light.radiance = uplift_radiance(found.radiance, at.bands);
         light.pdf = found.pdf;
     }
-    const Material* behind = s.material->has_volume ? (s.front ? s.material : nullptr) : medium;
-    const Material* through = crosses ? behind : medium;
     if (through && !light.at_infinity)
-        light.radiance *= transmittance(*through, (light.target - s.p).length(), bands);
+        light.radiance *= transmittance(*through, (light.target - s.p).length(), at.bands);
     const float light_pdf = drawn.pick_probability * light.pdf;
     const float weight = light.delta || options_.technique == Technique::LightOnly
                              ? 1.f
-                             : power_heuristic(light_pdf, value.pdf);
-    return value.f_cos * light.radiance * (weight / light_pdf);
+                             : power_heuristic(light_pdf, chance);
+    return value.f_cos * light.radiance * left * (weight / light_pdf);
 }
 
 /// Fills the layers of a sample from its first surface.
@@ -198,14 +217,16 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
     f4 sum{}, throughput = zero_off(lanes, uniform(1.f, bands));
     Ray ray = camera_ray;
     Vertex last{camera_ray.origin};
+    V3f from = camera_ray.origin;  // of the segment: `last`, or a pane that it has passed since
     const Material* medium = nullptr;
     bool seen = false;  // the camera ray has found a surface that shows itself
     ChanceFinds* by_chance = &stats.mirrored;
 
-    for (uint32_t depth = 0;;) {
+    for (int vertex = 0, depth = 0, clear_depth = 0;;) {
+        const auto number = static_cast<uint32_t>(vertex);
         // Intersect the ray with the scene.
-        if (caster_.has_cutouts()) ray.alpha_seed = sampler.get_bits(Dim::Coverage, 2 * depth);
-        ++(depth == 0 ? stats.camera_rays : stats.bounce_rays);
+        if (caster_.has_cutouts()) ray.alpha_seed = sampler.get_bits(Dim::Coverage, 2 * number);
+        ++(vertex == 0 ? stats.camera_rays : stats.bounce_rays);
         const std::optional<Hit> hit = [&] {
             const SectionTimer timer(stats, TimedSection::Traversal);
             return caster_.intersect(ray);
@@ -227,7 +248,7 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         // A segment that ends on the back of a volume's surface lay in that volume, whatever the
         // path knows: it may have begun inside, as the camera's does.
         if (!s.front && s.material->has_volume && s.material->transmission > 0) medium = s.material;
-        if (medium) throughput *= transmittance(*medium, (s.p - last.p).length(), bands);
+        if (medium) throughput *= transmittance(*medium, (s.p - from).length(), bands);
         const V3f wo = -ray.direction;
         const MaterialLookups lookups = [&] {
             const SectionTimer timer(stats, TimedSection::Texture);
@@ -235,7 +256,7 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         }();
         // Sample one light, before the textures are read, so that the wait for them and for the
         // sky's tables is one.
-        const Sampler::VertexNumbers u = sampler.at_vertex(depth);
+        const Sampler::VertexNumbers u = sampler.at_vertex(number);
         const LightReceiver receiver = receiver_at(s);
         std::optional<DrawnLight> light;
         if (options_.technique != Technique::BsdfOnly) light = draw_light(receiver, u, bands);
@@ -251,24 +272,30 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
             glow +=
                 uplift_radiance(shading.unlit, bands, scene_.illuminant(s.material->illuminant));
         sum += throughput * glow;
-        by_chance->lamps += depth > 0 && !last.light_sampled && s.instance->first_light >= 0;
+        by_chance->lamps += vertex > 0 && !last.light_sampled && s.instance->first_light >= 0;
         if (!seen && aovs)
             record_layers(s, shading, to_rgb(glow, bands), camera_ray.origin, wo, bands, out);
         seen = true;
-        if (s.material->unlit || static_cast<int>(depth) >= options_.max_depth) break;
+        const bool at_depth = depth >= options_.max_depth;
+        if (s.material->unlit || (at_depth && !(s.material->transmission > 0))) break;
 
         // Add direct light, unless volumes or black surfaces left nothing to go on with.
         if (!(hmax(throughput) >= std::numeric_limits<float>::min())) break;
         const Bsdf bsdf(shading.bsdf, bands, shading.frame.to_local(wo), throughput, shading.up);
         const bool light_sampled =
-            options_.technique != Technique::BsdfOnly && bsdf.has_wide_lobe();
+            options_.technique != Technique::BsdfOnly && bsdf.has_wide_lobe() && !at_depth;
         f4 direct{};
-        if (light_sampled && light)
-            direct = throughput * (s.lifted() && !light->sample.at_infinity
-                                       ? light_on_smooth(s, shading.frame, bsdf, *light, bands,
-                                                         sampler, depth, medium, stats)
-                                       : direct_light(s, shading.frame, bsdf, *light, bands,
-                                                      sampler, depth, medium, stats));
+        if (light_sampled && light) {
+            const uint32_t alpha_seed =
+                caster_.has_cutouts() ? sampler.get_bits(Dim::Coverage, 2 * number + 1) : 0;
+            const Scattering at{
+                s,     shading.frame, bsdf,   throughput,
+                bands, alpha_seed,    medium, options_.max_clear_depth - clear_depth,
+                stats};
+            direct =
+                throughput * (s.lifted() && !light->sample.at_infinity ? light_on_smooth(at, *light)
+                                                                       : direct_light(at, *light));
+        }
         sum += direct;
         if (light_sampled && stats.light_records)
             stats.light_records->push_back(lights_.record(
@@ -277,6 +304,13 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         // Sample the BSDF for the next direction.
         const auto next = bsdf.sample(u.bsdf_lobe, u.bsdf, led);
         if (!next) break;
+        const bool is_clear = next->delta && bsdf.is_clear();
+        if (is_clear && clear_depth == options_.max_clear_depth) {
+            ++stats.clear_ends;
+            break;
+        }
+        if (!is_clear && at_depth) break;
+        ++(is_clear ? clear_depth : depth);
         // What is scattered far and wide, ordinary rays find as well. A narrow lobe may be the
         // highlight that the ray was sent for.
         if (rest < 1.f && !next->delta && next->pdf < kNarrowPdf) {
@@ -288,23 +322,32 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         // No ray that is not a number goes on: the film counts the sample and names its pixel.
         if (!std::isfinite(direction.x + direction.y + direction.z))
             return splat(std::numeric_limits<float>::quiet_NaN());
-        if (next->delta)
-            ++by_chance->bounces;
-        else
+        // Shadow rays go on through panes: what a path finds behind one, they find as well.
+        const bool straight = is_clear && next->transmitted && shading.bsdf.thin;
+        if (!next->delta)
             by_chance = &stats.caustic;
+        else if (!straight || !last.light_sampled)
+            ++by_chance->bounces;
         throughput *= next->weight;
         led |= next->transmitted && shading.bsdf.disperses;
         if (next->transmitted && s.material->has_volume) medium = s.front ? s.material : nullptr;
 
-        // Russian roulette.
-        ++depth;
-        if (static_cast<int>(depth) > options_.roulette_depth) {
+        // Russian roulette, by what the path has lost.
+        ++vertex;
+        if (vertex > options_.roulette_depth) {
             const float most = std::sqrt(hmax(throughput)), survival = most < 1.f ? most : 1.f;
             if (u.roulette_after >= survival) break;
             throughput *= 1.f / survival;
         }
         // Continue the path.
-        last = {s.leaving_point(direction), next->pdf, light_sampled && !next->delta, receiver};
+        if (straight) {
+            from = s.p;
+            last.pdf *= bsdf.straight_through().chance;
+            ray.origin = offset_origin(s.p, s.p_error, s.ng, ray.direction);
+            continue;
+        }
+        from = s.leaving_point(direction);
+        last = {from, next->pdf, light_sampled && !next->delta, receiver};
         ray.origin = leave_surface(s, direction, next->transmitted);
         ray.direction = unit(direction);
     }

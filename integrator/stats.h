@@ -32,6 +32,7 @@ struct PathStats {
     uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0;
     uint64_t target_rays = 0;  ///< of the camera rays, those to targets
     uint64_t vertices = 0;     ///< hits that were shaded
+    uint64_t clear_ends = 0;   ///< paths that ended at PathOptions::max_clear_depth
     uint64_t tiles = 0;        ///< tiles that this worker rendered
     LensLosses<uint64_t> lens_lanes;
     ChanceFinds mirrored;  ///< of paths that met smooth surfaces only
@@ -47,6 +48,7 @@ struct PathStats {
         shadow_rays += o.shadow_rays;
         target_rays += o.target_rays;
         vertices += o.vertices;
+        clear_ends += o.clear_ends;
         tiles += o.tiles;
         lens_lanes += o.lens_lanes;
         mirrored += o.mirrored;

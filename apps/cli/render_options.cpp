@@ -43,8 +43,12 @@ void add_frame_options(CLI::App& app, RenderOptions& o) {
 }
 
 void add_sampling_options(CLI::App& app, RenderOptions& o) {
-    app.add_option("--max-depth", o.path.max_depth, "scatterings of a path (default 16)")
+    app.add_option("--max-depth", o.path.max_depth,
+                   "scatterings of a path, without those at clear glass (default 16)")
         ->transform(whole_number_between(0, 10000));
+    app.add_option("--max-clear-depth", o.path.max_clear_depth,
+                   "reflections and refractions of a path at clear glass (default 256)")
+        ->transform(whole_number_between(0, 100000));
     add_choice<FilterKind>(app, "--filter", o.filter,
                            "pixel filter: box, gauss, blackman-harris (default)");
     app.add_option("--filter-radius", o.filter_radius_px,

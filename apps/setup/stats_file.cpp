@@ -91,6 +91,7 @@ void write_stats(const std::filesystem::path& path, const RenderSetup& setup,
                    {"all", rays}};
     out["lens_lanes"] = lens_lanes(s.lens_lanes);
     out["path_vertices"] = s.vertices;
+    out["paths_ended_in_clear_glass"] = s.clear_ends;
     out["rays_per_cpu_s"] = per_cpu_s(rays);
     out["samples_per_cpu_s"] = per_cpu_s(s.samples);
     out["cpu_time"] = sections(s, cost.render_cpu_s);

@@ -13,6 +13,10 @@ namespace petzval {
 
 enum class AlphaMode : uint8_t { Opaque, Mask, Blend };
 
+/// Smallest GGX width, the square of glTF's roughness: below it a lobe is a mirror, as floats no
+/// longer resolve it.
+inline constexpr float kSmallestAlpha = 1e-3f;
+
 /// Factors and textures as in the file; names follow the glTF specification.
 struct Material {
     std::string name;
@@ -49,6 +53,11 @@ struct Material {
     [[nodiscard]] bool cutout() const { return alpha_mode != AlphaMode::Opaque; }
     [[nodiscard]] bool emits() const {
         return emissive[0] > 0 || emissive[1] > 0 || emissive[2] > 0;
+    }
+    /// Whether it may be a pane somewhere: thin, smooth glass, through which light goes straight.
+    [[nodiscard]] bool may_be_pane() const {
+        return transmission > 0 && !has_volume && !unlit &&
+               (roughness * roughness < kSmallestAlpha || metallic_roughness_texture.present());
     }
     /// Whether some of the light that meets it is refracted into it.
     [[nodiscard]] bool refracts() const { return has_volume && transmission > 0 && metallic < 1; }

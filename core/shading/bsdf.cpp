@@ -2,6 +2,7 @@
 #include "core/shading/bsdf.h"
 
 #include "core/sampling/warp.h"
+#include "core/scene/material.h"
 #include "core/shading/microfacet.h"
 
 namespace petzval {

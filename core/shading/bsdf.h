@@ -30,6 +30,12 @@ struct BsdfValue {
     float pdf = 0;  ///< 1/sr
 };
 
+/// What goes straight on through a thin, smooth surface.
+struct StraightThrough {
+    f4 value{};        ///< share of light
+    float chance = 0;  ///< that Bsdf::sample draws it
+};
+
 struct BsdfSample {
     V3f wi;
     f4 weight;  ///< f cos / pdf
@@ -71,6 +77,12 @@ class Bsdf {
     }
     /// Whether some lobe is wide enough for light sampling to help.
     [[nodiscard]] bool has_wide_lobe() const { return p_diffuse_ > 0 || !delta_; }
+    /// Whether it is clear glass: what it lets through, it neither blurs nor scatters.
+    [[nodiscard]] bool is_clear() const { return delta_ && p_thin_ + p_glass_ > 0; }
+    /// Share of light that goes straight through; nothing unless the surface is thin and smooth.
+    [[nodiscard]] StraightThrough straight_through() const {
+        return delta_ ? StraightThrough{thin_, p_thin_} : StraightThrough{};
+    }
     /// Share of light that is scattered, all lobes together (glass: as if it lost nothing).
     [[nodiscard]] f4 albedo() const;
 

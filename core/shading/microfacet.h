@@ -9,9 +9,6 @@
 
 namespace petzval {
 
-/// Smallest GGX width: below it a lobe is a mirror, as floats no longer resolve it.
-inline constexpr float kSmallestAlpha = 1e-3f;
-
 /// Normal density, 1/sr. Walter et al. 2007, "Microfacet Models for Refraction", equation 33.
 [[nodiscard]] inline float ggx_d(const V3f& m, float alpha) {
     // Written in the slopes so that nothing cancels for a narrow lobe.

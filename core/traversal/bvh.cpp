@@ -42,6 +42,12 @@ void filter(const RTCFilterFunctionNArguments* args) {
         args->valid[0] = 0;
 }
 
+// Lets rays that only ask whether the way is free pass panes. What a pane takes from them is not
+// found here, where a triangle may be asked for twice and in any order.
+void pass_pane(const RTCFilterFunctionNArguments* args) {
+    args->valid[0] = 0;
+}
+
 RTCRay to_embree(const Ray& r) {
     RTCRay ray;
     ray.org_x = r.origin.x, ray.org_y = r.origin.y, ray.org_z = r.origin.z;
@@ -75,7 +81,7 @@ struct Bvh::Impl {
     RTCDevice device = nullptr;
     RTCScene top = nullptr;
     std::vector<RTCScene> shared;  // one for each mesh that instances share, else null
-    bool has_cutouts = false;
+    bool has_cutouts = false, has_panes = false;
 
     explicit Impl(const Scene& s) : scene(s) {}
     ~Impl() {
@@ -108,12 +114,17 @@ struct Bvh::Impl {
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                    mesh.triangles.data(), 0, sizeof(mesh.triangles[0]),
                                    mesh.triangles.size());
-        if (scene.materials[mesh.material].cutout()) {
+        const Material& material = scene.materials[mesh.material];
+        if (material.cutout()) {
             has_cutouts = true;
             // Embree wants a pointer to something that may change; the filter only reads.
             rtcSetGeometryUserData(geometry, const_cast<Scene*>(&scene));
             rtcSetGeometryIntersectFilterFunction(geometry, filter);
             rtcSetGeometryOccludedFilterFunction(geometry, filter);
+        }
+        if (material.may_be_pane()) {
+            has_panes = true;
+            rtcSetGeometryOccludedFilterFunction(geometry, pass_pane);
         }
         rtcCommitGeometry(geometry);
         return geometry;
@@ -182,6 +193,10 @@ bool Bvh::occluded(const Ray& r) const {
     RTCRay ray = to_embree(r);
     rtcOccluded1(impl_->top, &context.embree, &ray);
     return ray.tfar < 0.f;
+}
+
+bool Bvh::has_panes() const {
+    return impl_->has_panes;
 }
 
 bool Bvh::has_cutouts() const {

@@ -25,8 +25,10 @@ class Bvh {
 
     /// Nearest hit in (0, t_max].
     [[nodiscard]] std::optional<Hit> intersect(const Ray&) const;
-    /// Whether anything lies in (0, t_max).
+    /// Whether anything but what may be a pane (Material::may_be_pane) lies in (0, t_max).
     [[nodiscard]] bool occluded(const Ray&) const;
+    /// Whether there is something that may be a pane.
+    [[nodiscard]] bool has_panes() const;
     /// Whether some material is MASK or BLEND, so that rays need their alpha_seed.
     [[nodiscard]] bool has_cutouts() const;
     /// Embree's own scene, for measuring what bare traversal costs.

@@ -32,6 +32,7 @@ struct Recorder {
         return bvh.occluded(r);
     }
     bool has_cutouts() const { return bvh.has_cutouts(); }
+    bool has_panes() const { return bvh.has_panes(); }
 };
 
 RTCRay bare(const Ray& r) {

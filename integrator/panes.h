@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// The straight way of light through panes: thin, smooth glass, which bends nothing.
+#pragma once
+
+#include <optional>
+
+#include "core/shading/surface.h"
+#include "integrator/stats.h"
+
+namespace petzval {
+
+/// End of a shadow ray: a point, or a direction without end.
+struct WayToLight {
+    Ray ray;  ///< up to the point for ray.t_max < 1 of its direction, or without end
+    V3f target;
+    bool at_infinity;
+};
+
+/// Share of light that comes through the panes on a way where nothing else stands, and the chance
+/// that a path goes straight through all of them; nothing where a surface lets no light straight
+/// through, or `most` panes are not enough. From surface to surface in order of distance, as what a
+/// lane carries decides on the chance at the next: `carried` is what the path would carry there, up
+/// to a factor. medium: volume that the way lies in, or null.
+template <class Caster>
+[[nodiscard]] std::optional<StraightThrough> through_panes(const Scene& scene, const Caster& caster,
+                                                           WayToLight way, f4 carried,
+                                                           const Material* medium, int most,
+                                                           const Bands& bands, PathStats& stats) {
+    StraightThrough out{uniform(1.f, bands), 1.f};
+    V3f from = way.ray.origin;
+    for (int n = 0;; ++n) {
+        const std::optional<Hit> hit = [&] {
+            const SectionTimer timer(stats, TimedSection::Traversal);
+            return caster.intersect(way.ray);
+        }();
+        ++stats.shadow_rays;
+        if (!hit) return out;
+        const Surface s = make_surface(scene, way.ray.direction, *hit);
+        if (n >= most || s.material->unlit) return std::nullopt;
+        const V3f wo = -unit(way.ray.direction);
+        if (medium) carried *= transmittance(*medium, (s.p - from).length(), bands);
+        const ShadingInput shading = read_material(scene, s, wo, bands);
+        if (!(hmax(carried) >= std::numeric_limits<float>::min())) return std::nullopt;
+        const Bsdf bsdf(shading.bsdf, bands, shading.frame.to_local(wo), carried, shading.up);
+        const StraightThrough pane = bsdf.straight_through();
+        if (!(pane.chance > 0.f)) return std::nullopt;
+        out.value *= pane.value;
+        out.chance *= pane.chance;
+        carried *= pane.value;
+        from = s.p;
+        way.ray.origin = offset_origin(s.p, s.p_error, s.ng, way.ray.direction);
+        if (!way.at_infinity) way.ray.direction = way.target - way.ray.origin;
+    }
+}
+
+}  // namespace petzval

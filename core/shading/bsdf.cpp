@@ -83,11 +83,14 @@ Bsdf::Bsdf(const BsdfInput& in, const Bands& bands, const V3f& wo, f4 throughput
     glass_specular_ = in.dielectric_f90;
     glass_ = in.base_color;
     if (glass_share_ > 0.f && !delta_) {
+        // Without a difference in index all normals would share one direction.
+        eta_ = eta_ > 0.999f && eta_ < 1.001f ? splat(1.001f) : eta_;
         loss_ = GlassLoss(alpha_, eta_, !disperses_, glass_specular_);
         lost_ = zero_off(on_, loss_.lost(wo.z, false));
-        const float lost = hsum(share_ * lost_);
-        if (lost > 0.f) p_crossing_ = hsum(share_ * lost_ * loss_.crossing()) / lost;
-        p_lost_ = std::min(lost, 0.95f);  // the single scattering that is left has its samples too
+        const float glass_lost = hsum(share_ * lost_);
+        if (glass_lost > 0.f)
+            p_crossing_ = hsum(share_ * lost_ * loss_.crossing()) / glass_lost;
+        p_lost_ = std::min(glass_lost, 0.95f);  // the single scattering that is left has its samples too
     }
 
     p_diffuse_ = hsum(diffuse_ * share_);

@@ -88,9 +88,9 @@ Bsdf::Bsdf(const BsdfInput& in, const Bands& bands, const V3f& wo, f4 throughput
         loss_ = GlassLoss(alpha_, eta_, !disperses_, glass_specular_);
         lost_ = zero_off(on_, loss_.lost(wo.z, false));
         const float glass_lost = hsum(share_ * lost_);
-        if (glass_lost > 0.f)
-            p_crossing_ = hsum(share_ * lost_ * loss_.crossing()) / glass_lost;
-        p_lost_ = std::min(glass_lost, 0.95f);  // the single scattering that is left has its samples too
+        if (glass_lost > 0.f) p_crossing_ = hsum(share_ * lost_ * loss_.crossing()) / glass_lost;
+        p_lost_ =
+            std::min(glass_lost, 0.95f);  // the single scattering that is left has its samples too
     }
 
     p_diffuse_ = hsum(diffuse_ * share_);

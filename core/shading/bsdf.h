@@ -108,8 +108,8 @@ class Bsdf {
     f4 thin_;                       ///< albedo of straight transmission
     f4 glass_;                      ///< tint of refracted light; its untinted share is glass_share_
     float glass_share_, glass_specular_;
-    GlassLoss loss_;  ///< of rough glass
-    f4 lost_;         ///< its share of the light from wo
+    GlassLoss loss_;                     ///< of rough glass
+    f4 lost_;                            ///< its share of the light from wo
     float p_lost_ = 0, p_crossing_ = 0;  ///< chance of multiple scattering in glass, and then to
                                          ///< the other side
     float p_spec_, p_diffuse_, p_thin_, p_glass_;

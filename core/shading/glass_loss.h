@@ -18,8 +18,8 @@ namespace petzval {
 ///
 /// How much changes sides is free between these two laws. It is the share of single scattering
 /// from the side of the lower index, on average over the directions, which is nearly the share of
-/// multiple scattering in a random walk on the microsurface (Heitz et al. 2016, "Multiple-Scattering
-/// Microfacet BSDFs with the Smith Model").
+/// multiple scattering in a random walk on the microsurface (Heitz et al. 2016,
+/// "Multiple-Scattering Microfacet BSDFs with the Smith Model").
 class GlassLoss {
   public:
     GlassLoss() {}  // NOLINT(modernize-use-equals-default): nothing is set, which costs nothing
@@ -31,18 +31,23 @@ class GlassLoss {
     /// from 1.1 to 2.4 and cosines from 0.01 on it is off by -0.0095 to 0.003.
     [[nodiscard]] f4 lost(float cosine, bool behind) const;
     /// Share that goes on behind of what is lost in front.
-    [[nodiscard]] f4 crossing() const { return crossing_; }
+    [[nodiscard]] f4 crossing() const;
     /// Density of the directions that it leaves in, 1/sr; the integral over both sides is 1.
     [[nodiscard]] f4 lobe(float cosine, bool behind) const;
 
   private:
-    using Row = std::array<float, kGlassLossCosines>;
-    void set_lane(int lane, float alpha, float eta, float specular, const Row& weights);
+    static constexpr int kBoth = 2 * kGlassLossCosines;
+    struct Lane {
+        std::array<float, kBoth> lost;  ///< on the side of the lower index, then of the higher
+        float crossing;
+        std::array<float, 2> per_loss;  ///< lobe / (cos lost), in front and behind
+        bool dense;                     ///< the higher index is in front
+    };
+    [[nodiscard]] static Lane lane_of(float alpha, float eta, float specular);
 
     float knee_;
-    std::array<std::array<f4, kGlassLossCosines>, 2> lost_;  ///< in front, behind
-    f4 crossing_;
-    std::array<f4, 2> per_loss_;  ///< lobe / (cos lost)
+    int lanes_;  ///< 1 where all are alike
+    std::array<Lane, 4> lane_;
 };
 
 /// Draws directions of one side nearly as the lobe has them, in proportion to
@@ -51,7 +56,7 @@ class LostDirections {
   public:
     explicit LostDirections(float alpha);
 
-    [[nodiscard]] V3f draw(V2f u) const;             ///< z > 0
+    [[nodiscard]] V3f draw(V2f u) const;          ///< z > 0
     [[nodiscard]] float pdf(float cosine) const;  ///< 1/sr
 
   private:

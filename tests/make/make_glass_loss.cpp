@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prints core/shading/glass_loss_table.h: what single scattering loses on rough glass, by quadrature
-// over the visible normals, fitted by least squares. Takes minutes. Run it as:
+// Prints core/shading/glass_loss_table.h: what single scattering loses on rough glass, by
+// quadrature over the visible normals, fitted by least squares. Takes minutes. Run it as:
 // make_glass_loss > core/shading/glass_loss_table.h
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ constexpr double kMostF = 0.75, kLeastRoughness = 0.0316227766, kKnee = 16;
 constexpr int kFiner = 4;
 constexpr int kSteps = 96;
 /// What the fit is off by at worst counts as loss rather than as gain, of which less is allowed.
-constexpr double kLower = 0.0035;
+constexpr double kLower = 0.0025;
 
 struct Scattered {
     double all = 0, transmitted = 0;  ///< of 1, at specular 1
@@ -137,23 +137,23 @@ double weight_of_index(int i) {
     return index < 1.095 ? 0.02 : index < 2.5 ? 1 : 0.1;
 }
 
-// Losses at all places: [index][roughness][side][part][cosine].
+// Losses at all places: [index][roughness][specular 1, 0][side][cosine].
 std::vector<double> losses() {
     std::vector<double> lost;
     for (int i = 0; i < places(kIndices); ++i)
-        for (int r = 0; r < places(kRoughnesses); ++r)
-            for (const bool dense : {false, true}) {
-                std::vector<double> plain;
-                const double index = index_at(place(i, kIndices));
-                const double alpha = alpha_at(place(r, kRoughnesses));
+        for (int r = 0; r < places(kRoughnesses); ++r) {
+            std::vector<double> plain;
+            const double index = index_at(place(i, kIndices));
+            const double alpha = alpha_at(place(r, kRoughnesses));
+            for (const double eta : {index, 1 / index})
                 for (int c = 0; c < places(kCosines); ++c) {
                     const double cosine = cosine_at(place(c, kCosines), alpha);
-                    const Scattered s = integrate(cosine, alpha, dense ? 1 / index : index);
+                    const Scattered s = integrate(cosine, alpha, eta);
                     lost.push_back(1 - s.all);
                     plain.push_back(1 - s.all_plain);
                 }
-                lost.insert(lost.end(), plain.begin(), plain.end());
-            }
+            lost.insert(lost.end(), plain.begin(), plain.end());
+        }
     return lost;
 }
 
@@ -181,8 +181,9 @@ void print_losses() {
     lost = fit(lost, {places(kIndices), kRoughnesses, of_place}, equal);
     lost = fit(lost, {1, kIndices, kRoughnesses * of_place}, weight_of_index);
     std::printf(
-        "/// Light lost, in thousandths: [index][roughness][side: lower index, higher][specular 1, "
-        "0]\n/// [cosine].\n"
+        "/// Light lost, in thousandths: [index][roughness][specular 1, 0][side: lower index, "
+        "higher]\n"
+        "/// [cosine].\n"
         "inline constexpr uint16_t kGlassLoss[%d][%d][2][2][%d] = {\n",
         kIndices, kRoughnesses, kCosines);
     for (int i = 0; i < kIndices * kRoughnesses; ++i) {
@@ -201,7 +202,8 @@ void print_losses() {
 
 void print_crossings() {
     std::printf(
-        "/// Of what is scattered once from the side of the lower index, on average, the share that "
+        "/// Of what is scattered once from the side of the lower index, on average, the share "
+        "that "
         "changes\n/// sides at specular 1, in thousandths.\n"
         "inline constexpr uint16_t kGlassCrossing[%d][%d] = {\n",
         kIndices, kRoughnesses);
@@ -227,7 +229,8 @@ int main() {
         "inline constexpr float kGlassLossMostF = %gf;\n"
         "/// sqrt(alpha) of the first, spread evenly up to 1.\n"
         "inline constexpr float kGlassLossLeastRoughness = %.9gf;\n"
-        "/// Cosines c = k x^2 / (1 + k - x^2), x spread evenly from 0 to 1, with k so many alpha.\n"
+        "/// Cosines c = k x^2 / (1 + k - x^2), x spread evenly from 0 to 1, with k so many "
+        "alpha.\n"
         "inline constexpr float kGlassLossKnee = %.1ff;\n"
         "// clang-format off\n",
         kIndices, kRoughnesses, kCosines, kMostF, kLeastRoughness, kKnee);

@@ -35,12 +35,14 @@ struct Furnace {
     uint32_t bad = 0;  ///< samples that are not numbers
 };
 
-Furnace furnace(Kind kind, double roughness, double cosine, double eta = 1.5) {
-    constexpr uint32_t kSamples = 1u << 14;
+constexpr uint32_t kSamples = 1u << 14;
+
+Furnace furnace(Kind kind, double roughness, double cosine, double eta = 1.5,
+                uint32_t samples = kSamples) {
     const Bsdf bsdf(white(kind, roughness, eta), Bands::rgb(), at_cosine(cosine));
     Furnace out;
     double sum = 0;
-    for (uint32_t i = 0; i < kSamples; ++i) {
+    for (uint32_t i = 0; i < samples; ++i) {
         const Sampler u(SamplerKind::Owen, 7, {0, 0, i});
         const auto s = bsdf.sample(u.get1(Dim::BsdfLobe), u.get2(Dim::Bsdf));
         if (!s) continue;
@@ -50,7 +52,7 @@ Furnace furnace(Kind kind, double roughness, double cosine, double eta = 1.5) {
         else
             ++out.bad;
     }
-    out.albedo = sum / kSamples;
+    out.albedo = sum / samples;
     return out;
 }
 
@@ -64,13 +66,15 @@ struct Kept {
 
     void add(double roughness, double cosine) {
         for (const double eta : {1.1, 1 / 1.1, 1.5, 1 / 1.5, 2.4, 1 / 2.4}) {
-            const Furnace f = furnace(Kind::Glass, roughness, cosine, eta);
+            const Furnace f = furnace(Kind::Glass, roughness, cosine, eta, 4 * kSamples);
             least = std::fmin(least, f.albedo);
             most = std::fmax(most, f.albedo);
             bad += f.bad;
         }
     }
-    [[nodiscard]] std::string text() const { return percent(least) + " to " + percent(most); }
+    [[nodiscard]] std::string text() const {
+        return fmt::format("loses {} and gains {} at most", percent(1 - least), percent(most - 1));
+    }
 };
 
 }  // namespace
@@ -116,7 +120,7 @@ Finding ggx_energy() {
         if (const auto c = grazing(r); c && !(steepest && *steepest >= *c)) steepest = c;
     f.where = fmt::format(
         "Opaque: {}, worst {} at roughness {} and cosine {}. Glass of index 1.1 to 2.4, from both "
-        "sides, keeps {} from a cosine of 0.01 on, {} below. Samples that are not numbers: {}",
+        "sides, {} from a cosine of 0.01 on, and {} below. Samples that are not numbers: {}",
         steepest ? fmt::format("metal is 1 % off below a cosine of {}", number(*steepest))
                  : std::string("metal stays within 1 % down to a cosine of 1e-6"),
         percent(worst), number(worst_roughness), number(worst_cosine), kept.text(),

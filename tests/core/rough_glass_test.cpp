@@ -196,6 +196,29 @@ TEST(RoughGlass, EachLaneOfDispersiveGlassHoldsAllItsLight) {
     }
 }
 
+// By the midpoint rule in the cosine's fourth root, where the lobe is smooth.
+TEST(RoughGlass, TheLobeOfWhatIsLostHoldsItAll) {
+    test::Random random(30);
+    for (int i = 0; i < 300; ++i) {
+        const Place p = any_place(random);
+        for (const float specular : {0.3f, 1.f}) {
+            const GlassLoss loss(sqr(p.roughness), splat(p.eta()), true, specular);
+            double sum = 0;
+            constexpr int steps = 2000;
+            for (int j = 0; j < steps; ++j) {
+                const double root = (j + 0.5) / steps;
+                const auto cosine = static_cast<float>(root * root * root * root);
+                const double width = 4 * root * root * root / steps;
+                for (const bool behind : {false, true})
+                    sum += 2 * std::numbers::pi * width * double(loss.lobe(cosine, behind)[0]);
+            }
+            if (hmax(loss.lost(0.01f, false)) > 0.001f) {
+                EXPECT_NEAR(sum, 1, 2e-3) << p << " specular " << specular;
+            }
+        }
+    }
+}
+
 // What glass takes from reflection goes into transmission; less is promised of that fit.
 TEST(RoughGlass, WeakReflectionHoldsAllTheLight) {
     test::Random random(24);

@@ -212,9 +212,11 @@ TEST(RoughGlass, TheLobeOfWhatIsLostHoldsItAll) {
                 for (const bool behind : {false, true})
                     sum += 2 * std::numbers::pi * width * double(loss.lobe(cosine, behind)[0]);
             }
-            if (hmax(loss.lost(0.01f, false)) > 0.001f) {
-                EXPECT_NEAR(sum, 1, 2e-3) << p << " specular " << specular;
-            }
+            // In energy: what is hardly lost need not be split as exactly.
+            double most = 0;
+            for (const float cosine : {0.003f, 0.01f, 0.03f, 0.1f, 0.3f, 1.f})
+                most = std::fmax(most, double(loss.lost(cosine, false)[0]));
+            EXPECT_NEAR(sum * most, most, 2e-3) << p << " specular " << specular;
         }
     }
 }

@@ -98,7 +98,8 @@ def main(programs, disperses):
                 time = sum(cpu_s[1][seed] for seed in chosen) / sum(cpu_s[0][seed] for seed in chosen)
                 rows.append((light, ratio, time, 1 / (ratio * time)))
             spread = numpy.std(rows[1:], axis=0) * (SEEDS - 1)**.5
-            print("| %g | " % roughness + " | ".join("%.3f ± %.3f" % pair for pair in zip(rows[0], spread)) + " |", flush=True)
+            cells = " | ".join("%.3f ± %.3f" % pair for pair in zip(rows[0], spread))
+            print("| %g | %s |" % (roughness, cells), flush=True)
 
 
 if __name__ == "__main__":

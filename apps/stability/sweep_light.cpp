@@ -115,11 +115,11 @@ Finding tiny_lamp() {
     Finding f;
     f.id = "tiny-lamp";
     f.method = "Lamps of millimetres";
-    f.fails = "variance; no answer for punctual lights behind glass";
+    f.fails = "variance; no answer for punctual lights behind glass with a volume";
     f.sweep = fmt::format(
         "A matt floor 10 m below a square lamp, always of the same illuminance, by the lamp's "
         "side: variance of one sample over the mean squared, from {} independent samples, as for "
-        "the sun; and as rendered with a pane of glass between lamp and floor.",
+        "the sun; and as rendered with a slab of glass between lamp and floor.",
         kSamples);
     f.table.columns = {"side (m)", "both (as rendered)", "light samples only",
                        "surface samples only", "as rendered behind glass"};
@@ -156,9 +156,10 @@ Finding tiny_lamp() {
         both ? "above 1 below a side of " + number(*both) + " m"
              : std::string("never above 1 down to a micrometre"));
     f.instead =
-        "Lamps are drawn from by light samples, which glass blocks: through glass only "
-        "paths that happen to meet the lamp bring its light. Punctual lights and the sun "
-        "of a glTF file, which no path can meet, do not shine through glass at all.";
+        "Lamps are drawn from by light samples. They go through thin panes, but not through glass "
+        "with a volume: there only paths that happen to meet the lamp bring its light. Punctual "
+        "lights and the sun of a glTF file, which no path can meet, do not shine through it at "
+        "all.";
     return f;
 }
 

@@ -29,8 +29,8 @@ V3f mirror_below(const V3f& w) {
 
 // Layers as in the glTF 2.0 specification, appendix B: metal beside a dielectric coat over its
 // body. Energy lost by single scattering comes back by Turquin 2019, "Practical multiple scattering
-// compensation for microfacet models", equation 16, for each of the two; the body gets what the
-// coat leaves.
+// compensation for microfacet models", equation 16, for each of the two, and in glass as GlassLoss
+// says; the body gets what the coat leaves.
 Bsdf::Bsdf(const BsdfInput& in, const Bands& bands, const V3f& wo, f4 throughput, const V3f& up)
     : wo_(wo),
       up_(up),
@@ -83,6 +83,16 @@ Bsdf::Bsdf(const BsdfInput& in, const Bands& bands, const V3f& wo, f4 throughput
     glass_share_ = body * glass_part;
     glass_specular_ = in.dielectric_f90;
     glass_ = in.base_color;
+    if (glass_share_ > 0.f && !delta_) {
+        // Without a difference in index all normals would share one direction.
+        eta_ = eta_ > 0.999f && eta_ < 1.001f ? splat(1.001f) : eta_;
+        loss_ = GlassLoss(alpha_, eta_, !disperses_, glass_specular_);
+        lost_ = zero_off(on_, loss_.lost(wo.z, false));
+        const float glass_lost = hsum(share_ * lost_);
+        if (glass_lost > 0.f) p_crossing_ = hsum(share_ * lost_ * loss_.crossing()) / glass_lost;
+        p_lost_ =
+            std::min(glass_lost, 0.95f);  // the single scattering that is left has its samples too
+    }
 
     p_diffuse_ = hsum(diffuse_ * share_);
     p_thin_ = hsum(thin_ * share_);
@@ -184,7 +194,7 @@ BsdfValue Bsdf::eval_lobes(const V3f& wi) const {
             if (glass_share_ > 0.f) {
                 const f4 r = zero_off(on_, glass_reflectance(wo_m));
                 reflectance += glass_share_ * r;
-                chance += p_glass_ * hsum(share_ * r);
+                chance += p_glass_ * (1.f - p_lost_) * hsum(share_ * r);
             }
             value.f_cos += reflectance * single;
             value.pdf += chance * pdf;
@@ -194,6 +204,7 @@ BsdfValue Bsdf::eval_lobes(const V3f& wi) const {
         }
     }
     if (wi.z < 0.f && glass_share_ > 0.f) add_glass(wi, value);
+    if (p_lost_ > 0.f) add_lost(wi, value);
     return value;
 }
 
@@ -217,7 +228,21 @@ void Bsdf::add_glass(const V3f& wi, BsdfValue& value) const {
     }
     if (!disperses_) density = splat(density[0]);
     value.f_cos += zero_off(on_, glass_ * density) * (glass_share_ * shadowing);
-    value.pdf += p_glass_ * hsum(share_ * density);
+    value.pdf += p_glass_ * (1.f - p_lost_) * hsum(share_ * density);
+}
+
+void Bsdf::add_lost(const V3f& wi, BsdfValue& value) const {
+    const bool behind = wi.z < 0.f;
+    const float cosine = std::fabs(wi.z);
+    const f4 scattered = glass_share_ * lost_ * loss_.lobe(cosine, behind);
+    value.f_cos += zero_off(on_, behind ? glass_ * scattered : scattered);
+    value.pdf += p_glass_ * p_lost_ * (behind ? p_crossing_ : 1.f - p_crossing_) *
+                 LostDirections(alpha_).pdf(cosine);
+}
+
+V3f Bsdf::draw_lost(float u_side, V2f u) const {
+    const V3f wi = LostDirections(alpha_).draw(u);
+    return u_side < p_crossing_ ? mirror_below(wi) : wi;
 }
 
 std::optional<BsdfSample> Bsdf::sample_delta(float u, bool led) const {
@@ -245,6 +270,10 @@ std::optional<BsdfSample> Bsdf::sample_delta(float u, bool led) const {
 }
 
 std::optional<V3f> Bsdf::draw(float u_lobe, V2f u, bool led) const {
+    if (p_lost_ > 0.f) {
+        const float u_glass = (u_lobe - p_spec_ - p_thin_) / p_glass_;
+        if (u_glass >= 1.f - p_lost_) return draw_lost((u_glass + p_lost_ - 1.f) / p_lost_, u);
+    }
     const V3f m = ggx_sample_visible(wo_, alpha_, u);
     const float wo_m = wo_.dot(m);
     if (wo_m <= 0.f) return std::nullopt;
@@ -254,8 +283,8 @@ std::optional<V3f> Bsdf::draw(float u_lobe, V2f u, bool led) const {
     if (u_lobe < p_thin_)
         return mirrored.z > 0.f ? std::optional(mirror_below(mirrored)) : std::nullopt;
     if (p_glass_ <= 0.f) return std::nullopt;
-    const int lane =
-        draw_lane(zero_off(on_, glass_reflectance(wo_m)), (u_lobe - p_thin_) / p_glass_, led);
+    const float u_single = (u_lobe - p_thin_) / (p_glass_ * (1.f - p_lost_));
+    const int lane = draw_lane(zero_off(on_, glass_reflectance(wo_m)), u_single, led);
     if (lane < 0) return mirrored.z > 0.f ? std::optional(mirrored) : std::nullopt;
     const V3f wi = refract(wo_, m, wo_m, eta_[lane]);
     return wi.z < 0.f ? std::optional(wi) : std::nullopt;

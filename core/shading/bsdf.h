@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/math/math.h"
+#include "core/shading/glass_loss.h"
 #include "core/spectrum/bands.h"
 
 namespace petzval {
@@ -83,7 +84,7 @@ class Bsdf {
     [[nodiscard]] StraightThrough straight_through() const {
         return delta_ ? StraightThrough{thin_, p_thin_} : StraightThrough{};
     }
-    /// Share of light that is scattered, all lobes together (glass: as if it lost nothing).
+    /// Share of light that is scattered, all lobes together (glass: as if its tint were white).
     [[nodiscard]] f4 albedo() const;
 
   private:
@@ -95,6 +96,8 @@ class Bsdf {
     [[nodiscard]] std::optional<BsdfSample> sample_tilted(float u_lobe, V2f u, bool led) const;
     [[nodiscard]] float pdf_of_normal(float wo_m, float d) const;
     void add_glass(const V3f& wi, BsdfValue&) const;
+    void add_lost(const V3f& wi, BsdfValue&) const;
+    [[nodiscard]] V3f draw_lost(float u_side, V2f u) const;
     [[nodiscard]] f4 glass_reflectance(float wo_m) const;
     [[nodiscard]] f4 specular_reflectance(float wo_m) const;
     [[nodiscard]] int draw_lane(f4 reflectance, float u, bool led) const;
@@ -117,6 +120,10 @@ class Bsdf {
     f4 thin_;                       ///< albedo of straight transmission
     f4 glass_;                      ///< tint of refracted light; its untinted share is glass_share_
     float glass_share_, glass_specular_;
+    GlassLoss loss_;                     ///< of rough glass
+    f4 lost_;                            ///< its share of the light from wo
+    float p_lost_ = 0, p_crossing_ = 0;  ///< chance of multiple scattering in glass, and then to
+                                         ///< the other side
     float p_spec_, p_diffuse_, p_thin_, p_glass_;
     m4 on_;
     int lead_, rank_of_lead_ = 0;  ///< rank: number of wavelengths below the one that leads

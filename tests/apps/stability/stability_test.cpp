@@ -251,7 +251,7 @@ TEST(Stability, PanesLoseWhatTheDepthCutsOff) {
         world.scene.sky = Sky::uniform(Rgb(1.f));
         world.finish();
         PathOptions options;
-        options.max_depth = depth;
+        options.max_clear_depth = depth;
         const PathTracer tracer(world.scene, *world.bvh, *world.lights, options);
         PathStats stats;
         test::Moments light;

@@ -34,6 +34,24 @@ Mean estimate(const World& world, const PathOptions& options, uint32_t samples,
     return means;
 }
 
+/// Holds that light samples alone and BSDF samples alone give the mean of both together, each with
+/// a relative error below most_error. Returns the mean of both.
+template <class MakeRay>
+Mean expect_techniques_agree(const World& world, PathOptions options, uint32_t samples,
+                             const MakeRay& make_ray, double most_error) {
+    const auto by = [&](Technique technique) {
+        options.technique = technique;
+        return estimate(world, options, samples, make_ray);
+    };
+    const Mean both = by(Technique::Mis);
+    for (const Technique technique : {Technique::LightOnly, Technique::BsdfOnly}) {
+        const Mean one = by(technique);
+        EXPECT_TRUE(agrees(both - one, 0)) << both << " and " << one;
+        EXPECT_LT(one.error, most_error * one.value);
+    }
+    return both;
+}
+
 inline Ray ray_to(V3f origin, V3f target) {
     Ray ray;
     ray.origin = origin;

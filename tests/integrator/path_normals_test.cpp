@@ -70,16 +70,7 @@ TEST(Path, TechniquesAgreeOnATiltedNormal) {
     world.finish();
     PathOptions options;
     options.max_depth = 1;
-    const auto by = [&](Technique technique) {
-        options.technique = technique;
-        return estimate(world, options, 4096, bundle);
-    };
-    const Mean both = by(Technique::Mis);
-    for (const Technique technique : {Technique::LightOnly, Technique::BsdfOnly}) {
-        const Mean one = by(technique);
-        EXPECT_TRUE(test::agrees(both - one, 0)) << both << " and " << one;
-        EXPECT_LT(one.error, 0.01 * one.value);
-    }
+    test::expect_techniques_agree(world, options, 4096, bundle, 0.01);
 }
 
 // A ball of few triangles, smooth by its normals, loses nothing at their edges either.
@@ -141,18 +132,10 @@ TEST(Path, TechniquesAgreeOnACoarseSmoothBall) {
     options.max_depth = 1;
     for (const LightChoiceKind kind : {LightChoiceKind::Tree, LightChoiceKind::Power}) {
         world.lights = std::make_unique<LightChoice>(world.scene, kind);
-        const auto by = [&](Technique technique) {
-            options.technique = technique;
-            return estimate(world, options, 8192, [](V2f u) {
-                return ray_to(V3f(0, 0, 4), V3f(0.35f * u.x + 0.2f, u.y - 0.5f, 0));
-            });
-        };
-        const Mean both = by(Technique::Mis);
-        for (const Technique technique : {Technique::LightOnly, Technique::BsdfOnly}) {
-            const Mean one = by(technique);
-            EXPECT_TRUE(test::agrees(both - one, 0)) << both << " and " << one;
-            EXPECT_LT(one.error, 0.02 * one.value);
-        }
+        test::expect_techniques_agree(
+            world, options, 8192,
+            [](V2f u) { return ray_to(V3f(0, 0, 4), V3f(0.35f * u.x + 0.2f, u.y - 0.5f, 0)); },
+            0.02);
     }
 }
 

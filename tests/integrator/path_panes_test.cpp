@@ -210,16 +210,7 @@ TEST(Panes, TechniquesAgree) {
         const World world = room(true, pane);
         PathOptions options;
         options.max_depth = 3;
-        const auto by = [&](Technique technique) {
-            options.technique = technique;
-            return estimate(world, options, 2048, into_room);
-        };
-        const Mean mis = by(Technique::Mis);
-        for (const Technique technique : {Technique::LightOnly, Technique::BsdfOnly}) {
-            const Mean one = by(technique);
-            EXPECT_TRUE(test::agrees(mis - one, 0)) << mis << " and " << one;
-            EXPECT_LT(one.error, 0.2 * one.value);
-        }
+        const Mean mis = test::expect_techniques_agree(world, options, 2048, into_room, 0.2);
         EXPECT_LT(mis.error, 0.03 * mis.value);
     }
 }

@@ -127,16 +127,7 @@ TEST(Path, TechniquesAgreeInsideAVolume) {
     world.finish();
     PathOptions options;
     options.max_depth = 6;
-    const auto by = [&](Technique technique) {
-        options.technique = technique;
-        return estimate(world, options, 8192, bundle);
-    };
-    const Mean both = by(Technique::Mis);
-    for (const Technique technique : {Technique::LightOnly, Technique::BsdfOnly}) {
-        const Mean one = by(technique);
-        EXPECT_TRUE(test::agrees(both - one, 0)) << both << " and " << one;
-        EXPECT_LT(one.error, 0.03 * one.value);
-    }
+    test::expect_techniques_agree(world, options, 8192, bundle, 0.03);
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compares two builds on a frosted pane: what a pixel gets, its noise and its CPU time, by roughness.
 
-    frosted_pane.py BEFORE/bin/petzval AFTER/bin/petzval [--disperses]
+    frosted_pane.py BEFORE/bin/petzval AFTER/bin/petzval
 
 A pane of glass of index 1.5, 10 mm thick, stands before a chequered wall, under a grey sky and a lamp. The programs
 render by turns, one thread, eight seeds each. Noise is the variance over the seeds over the squared mean, averaged over
@@ -38,7 +38,7 @@ def box(low, high):
     return corners, faces
 
 
-def write_scene(path, roughness, disperses):
+def write_scene(path, roughness):
     file = Gltf()
     for parity, colour in enumerate(((.8, .7, .5), (.1, .15, .3))):
         paint, corners, faces = file.add_material(colour, 0, 1), [], []
@@ -54,8 +54,6 @@ def write_scene(path, roughness, disperses):
     file.add_node(mesh=file.add_mesh(shining, *quad((-.2, .9, -.2), (.2, .9, -.2), (.2, .9, .2), (-.2, .9, .2))))
     extensions = {"KHR_materials_transmission": {"transmissionFactor": 1}, "KHR_materials_ior": {"ior": 1.5},
                   "KHR_materials_volume": {"thicknessFactor": .01}}
-    if disperses:
-        extensions["KHR_materials_dispersion"] = {"dispersion": 1}
     glass = file.add_material((1, 1, 1), 0, roughness, extensions=extensions)
     file.add_node(mesh=file.add_mesh(glass, *box((-.5, -.5, -.01), (.5, .5, 0))))
     file.json["extensionsUsed"] = sorted({*extensions, "KHR_materials_emissive_strength"})
@@ -78,12 +76,12 @@ def noise(pictures):
     return (numpy.var(pictures, axis=0, ddof=1).sum(-1) / mean**2).mean()
 
 
-def main(programs, disperses):
+def main(programs):
     print("| roughness | light | noise | CPU time | efficiency |\n|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as folder:
         scene = os.path.join(folder, "pane.gltf")
         for roughness in ROUGHNESSES:
-            write_scene(scene, roughness, disperses)
+            write_scene(scene, roughness)
             pictures, cpu_s = ([], []), ([], [])
             for seed in range(1, SEEDS + 1):
                 for which in ((0, 1), (1, 0))[seed % 2]:
@@ -103,6 +101,6 @@ def main(programs, disperses):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) not in (3, 4):
+    if len(sys.argv) != 3:
         sys.exit(__doc__)
-    main(sys.argv[1:3], "--disperses" in sys.argv)
+    main(sys.argv[1:])

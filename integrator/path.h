@@ -4,6 +4,7 @@
 
 #include <concepts>
 #include <optional>
+#include <vector>
 
 #include "core/film/film.h"
 #include "core/light/light_choice.h"
@@ -23,6 +24,7 @@ concept RayCaster = requires(const T t, const Ray& r) {
     { t.occluded(r) } -> std::same_as<bool>;
     { t.has_cutouts() } -> std::same_as<bool>;
     { t.has_panes() } -> std::same_as<bool>;
+    { t.all_hits(r) } -> std::same_as<std::vector<Hit>>;
 };
 
 template <RayCaster Caster = Bvh>

@@ -6,8 +6,10 @@
 #include "core/sampling/warp.h"
 #include "core/shading/surface.h"
 #include "core/spectrum/colour.h"
+#include "integrator/boundary.h"
 #include "integrator/panes.h"
 #include "integrator/path.h"
+#include "integrator/start_volumes.h"
 
 namespace petzval {
 
@@ -34,8 +36,9 @@ struct PathTracer<Caster>::Scattering {
     const Bsdf& bsdf;
     f4 throughput;
     const Bands& bands;
-    uint32_t alpha_seed;     ///< of shadow rays
-    const Material* medium;  ///< on the side where the path came from, or null
+    uint32_t alpha_seed;       ///< of shadow rays
+    Fillings sides;            ///< volumes before and behind the surface, or null
+    const Boundary* boundary;  ///< null where the surface does not refract
     int clear_depth_left;
     PathStats& stats;
 };
@@ -156,6 +159,7 @@ f4 PathTracer<Caster>::direct_light(const Scattering& at, const DrawnLight& draw
     const bool crosses = !(light.direction.dot(s.side) > 0.f);
     WayToLight way{{}, light.target, light.at_infinity};
     way.ray.origin = leave_surface(s, light.direction, crosses);
+    if (at.boundary) way.ray.origin += at.boundary->clear(crosses);
     if (light.at_infinity) {
         way.ray.direction = light.direction;
     } else {
@@ -168,8 +172,7 @@ f4 PathTracer<Caster>::direct_light(const Scattering& at, const DrawnLight& draw
         const SectionTimer timer(at.stats, TimedSection::Traversal);
         if (caster_.occluded(way.ray)) return f4{};
     }
-    const Material* behind = s.material->has_volume ? (s.front ? s.material : nullptr) : at.medium;
-    const Material* through = crosses ? behind : at.medium;
+    const Material* through = crosses ? at.sides.behind : at.sides.before;
     float chance = value.pdf;
     f4 left = uniform(1.f, at.bands);  // by panes
     if (caster_.has_panes()) {
@@ -218,7 +221,7 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
     Ray ray = camera_ray;
     Vertex last{camera_ray.origin};
     V3f from = camera_ray.origin;  // of the segment: `last`, or a pane that it has passed since
-    const Material* medium = nullptr;
+    Volumes volumes = start_volumes(scene_, caster_, camera_ray.origin);
     bool seen = false;  // the camera ray has found a surface that shows itself
     ChanceFinds* by_chance = &stats.mirrored;
 
@@ -237,18 +240,36 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
                                       : visible_background(ray, bands, out));
             break;
         }
-        const Surface s = make_surface(scene_, ray.direction, *hit);
+        Surface s = make_surface(scene_, ray.direction, *hit);
         // Skip backs of single-sided surfaces, which glTF culls from view. Light must not pass
         // them, so only camera rays do; the inside of a volume is never culled.
         if (!seen && culled_from_view(s)) {
             ray.origin = offset_origin(s.p, s.p_error, s.ng, ray.direction);
             continue;
         }
-        ++stats.vertices;
-        // A segment that ends on the back of a volume's surface lay in that volume, whatever the
-        // path knows: it may have begun inside, as the camera's does.
-        if (!s.front && s.material->has_volume && s.material->transmission > 0) medium = s.material;
+        std::optional<Boundary> boundary;
+        if (s.material->refracts()) {
+            boundary = boundary_at(scene_, caster_, ray, s, volumes);
+            s = boundary->surface;
+        }
+        const Material* const medium = volumes.filling();
         if (medium) throughput *= transmittance(*medium, (s.p - from).length(), bands);
+        // Go on where nothing changes. Shadow rays do not pass the faces of volumes, so that what
+        // the path finds now, they have not found.
+        if (boundary && boundary->hidden()) {
+            if (clear_depth++ == options_.max_clear_depth) {
+                ++stats.clear_ends;
+                break;
+            }
+            by_chance->bounces += last.light_sampled;
+            last.light_sampled = false;
+            volumes = boundary->behind;
+            from = s.p;
+            ray.origin = leave_surface(s, ray.direction, true) + boundary->clear_onward;
+            continue;
+        }
+        const Fillings sides = boundary ? boundary->sides : Fillings{medium, medium};
+        ++stats.vertices;
         const V3f wo = -ray.direction;
         const MaterialLookups lookups = [&] {
             const SectionTimer timer(stats, TimedSection::Texture);
@@ -262,7 +283,8 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         if (options_.technique != Technique::BsdfOnly) light = draw_light(receiver, u, bands);
         const ShadingInput shading = [&] {
             const SectionTimer timer(stats, TimedSection::Texture);
-            return read_material(scene_, s, lookups, wo, bands);
+            return read_material(scene_, s, lookups, wo, bands,
+                                 boundary ? sides : Fillings::in_air(s));
         }();
         // Add light that the ray finds.
         out.alpha = 1.f;
@@ -288,10 +310,16 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         if (light_sampled && light) {
             const uint32_t alpha_seed =
                 caster_.has_cutouts() ? sampler.get_bits(Dim::Coverage, 2 * number + 1) : 0;
-            const Scattering at{
-                s,     shading.frame, bsdf,   throughput,
-                bands, alpha_seed,    medium, options_.max_clear_depth - clear_depth,
-                stats};
+            const Scattering at{s,
+                                shading.frame,
+                                bsdf,
+                                throughput,
+                                bands,
+                                alpha_seed,
+                                sides,
+                                boundary ? &*boundary : nullptr,
+                                options_.max_clear_depth - clear_depth,
+                                stats};
             direct =
                 throughput * (s.lifted() && !light->sample.at_infinity ? light_on_smooth(at, *light)
                                                                        : direct_light(at, *light));
@@ -330,7 +358,7 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
             ++by_chance->bounces;
         throughput *= next->weight;
         led |= next->transmitted && shading.bsdf.disperses;
-        if (next->transmitted && s.material->has_volume) medium = s.front ? s.material : nullptr;
+        if (next->transmitted && boundary) volumes = boundary->behind;
 
         // Russian roulette, by what the path has lost.
         ++vertex;
@@ -349,6 +377,7 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         from = s.leaving_point(direction);
         last = {from, next->pdf, light_sampled && !next->delta, receiver};
         ray.origin = leave_surface(s, direction, next->transmitted);
+        if (boundary) ray.origin += boundary->clear(next->transmitted);
         ray.direction = unit(direction);
     }
     return sum;

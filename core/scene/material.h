@@ -49,6 +49,11 @@ struct Material {
     Rgb attenuation_color{1.f};
     float attenuation_distance_m = kInfinity;
 
+    /// Rank among closed volumes, by rank_volumes: where several overlap, the highest is there. 0:
+    /// no volume, or its surface is not closed.
+    uint32_t priority = 0;
+    bool overlaps_itself = false;  ///< a point may lie in several closed volumes of it
+
     /// Whether coverage must be asked for at each hit.
     [[nodiscard]] bool cutout() const { return alpha_mode != AlphaMode::Opaque; }
     [[nodiscard]] bool emits() const {
@@ -59,8 +64,11 @@ struct Material {
         return transmission > 0 && !has_volume && !unlit &&
                (roughness * roughness < kSmallestAlpha || metallic_roughness_texture.present());
     }
-    /// Whether some of the light that meets it is refracted into it.
-    [[nodiscard]] bool refracts() const { return has_volume && transmission > 0 && metallic < 1; }
+    /// Whether light may be refracted into it.
+    [[nodiscard]] bool refracts() const {
+        return has_volume && transmission > 0 && !unlit &&
+               (metallic < 1 || metallic_roughness_texture.present());
+    }
 };
 
 }  // namespace petzval

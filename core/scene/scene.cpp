@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/scene/scene.h"
 
+#include "core/scene/volume_ranks.h"
+
 namespace petzval {
 namespace {
 
@@ -33,6 +35,7 @@ void find_places(const Scene& scene, Material& m) {
 
 void finish_scene(Scene& scene) {
     for (Material& material : scene.materials) find_places(scene, material);
+    rank_volumes(scene);
     for (uint32_t i = 0; i < scene.instances.size(); ++i) {
         Instance& instance = scene.instances[i];
         const Mesh& mesh = scene.meshes[instance.mesh];

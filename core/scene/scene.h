@@ -28,15 +28,20 @@ struct Scene {
     Sky sky;
 
     Box3f bounds;  ///< of all instances, in world space; empty where there are none
+    /// Of the closed volumes, where some of them may overlap or touch; else empty. By rank_volumes.
+    Box3f nested_bounds;
 
+    /// Whether volumes may lie in volumes, or touch.
+    [[nodiscard]] bool may_nest() const { return !nested_bounds.isEmpty(); }
     /// Illuminant of an index; nullptr for -1, which means the scene's own white.
     [[nodiscard]] const Illuminant* illuminant(int32_t index) const {
         return index < 0 ? nullptr : &illuminants[static_cast<size_t>(index)];
     }
 };
 
-/// Computes the bounds, marks the texture slots that share their place, and appends a light for
-/// every triangle of an emissive instance and for the sky where it is not black.
+/// Computes the bounds, ranks the volumes, marks the texture slots that share their place, and
+/// appends a light for every triangle of an emissive instance and for the sky where it is not
+/// black.
 void finish_scene(Scene&);
 
 /// Whether an instance lights the scene: its material emits, and is not one that only shows itself.

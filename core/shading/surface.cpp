@@ -85,11 +85,24 @@ V3f way_to_smooth(const Mesh& mesh, const std::array<uint32_t, 3>& corner, V2f u
     return sum;
 }
 
-// Reflectance at normal incidence: KHR_materials_ior and KHR_materials_specular.
-Rgb dielectric_f0(const Material& m, Rgb specular_color, float specular) {
-    const float root = m.ior == 0.f ? 1.f : (m.ior - 1.f) / (m.ior + 1.f);
+// Reflectance at normal incidence: KHR_materials_ior and KHR_materials_specular. outside: what lies
+// before the material, or null for air.
+Rgb dielectric_f0(const Material& m, const Material* outside, Rgb specular_color, float specular) {
+    const float n = outside && outside->ior != 0.f ? outside->ior : 1.f;
+    const float root = m.ior == 0.f ? 1.f : (m.ior - n) / (m.ior + n);
     const Rgb f0 = specular_color * sqr(root);
     return Rgb(min(f0.v, splat(1.f))) * specular;
+}
+
+// Index of what fills space, null for air. Thin materials do not bend, whatever their glass.
+f4 index_of(const Material* m, const Bands& bands) {
+    if (!m) return splat(1.f);
+    if (bands.spectral && m->glass && m->has_volume) return m->glass->index(bands.nm);
+    return splat(m->ior == 0.f ? 1.f : m->ior);
+}
+
+bool disperses(const Material* m, const Bands& bands) {
+    return m && bands.spectral && m->glass && m->has_volume;
 }
 
 }  // namespace
@@ -170,7 +183,7 @@ MaterialLookups locate_material(const Scene& scene, const Surface& s) {
 }
 
 ShadingInput read_material(const Scene& scene, const Surface& s, const MaterialLookups& lookups,
-                           const V3f& wo, const Bands& bands) {
+                           const V3f& wo, const Bands& bands, const Fillings& sides) {
     const Material& m = *s.material;
     ShadingInput out;
     f4 base = m.base_color.v * read_texture(lookups.base_color);
@@ -210,18 +223,19 @@ ShadingInput read_material(const Scene& scene, const Surface& s, const MaterialL
         texel[3] = 0.f;
         specular_color = specular_color * Rgb(texel);
     }
-    b.dielectric_f0 = uplift_reflectance(dielectric_f0(m, specular_color, specular), bands);
+    const Material* outside = &m == sides.before ? sides.behind : sides.before;
+    b.dielectric_f0 =
+        uplift_reflectance(dielectric_f0(m, outside, specular_color, specular), bands);
     b.dielectric_f90 = specular;
     b.transmission = m.transmission;
     if (m.transmission_texture.present())
         b.transmission *= read(scene, s, m.transmission_texture)[0];
     b.thin = !m.has_volume;
-    b.disperses = bands.spectral && m.glass && !b.thin;
-    f4 index = b.disperses ? m.glass->index(bands.nm) : splat(m.ior == 0.f ? 1.f : m.ior);
+    b.disperses = disperses(sides.before, bands) || disperses(sides.behind, bands);
+    b.eta = index_of(sides.behind, bands) / index_of(sides.before, bands);
     // A facet between equal indices has no half vector; a thousandth bends nothing that shows.
-    const f4 bend = index - 1.f;
-    index = max(bend, -bend) < 1e-3f ? splat(1.001f) : index;
-    b.eta = s.front ? index : 1.f / index;
+    const f4 bend = s.front ? b.eta - 1.f : 1.f / b.eta - 1.f;
+    b.eta = max(bend, -bend) < 1e-3f ? splat(s.front ? 1.001f : 1 / 1.001f) : b.eta;
     return out;
 }
 

@@ -63,12 +63,22 @@ struct MaterialLookups {
     TextureLookup base_color, metallic_roughness, normal, emissive;
     bool emits;  ///< the side that is seen emits
 };
+/// What fills space on the two sides of a face, or null for air.
+struct Fillings {
+    const Material* before;  ///< where the ray came from
+    const Material* behind;
+
+    /// Those of a volume in air, or of a surface without a volume.
+    [[nodiscard]] static Fillings in_air(const Surface& s) {
+        return s.front ? Fillings{nullptr, s.material} : Fillings{s.material, nullptr};
+    }
+};
 [[nodiscard]] MaterialLookups locate_material(const Scene&, const Surface&);
 [[nodiscard]] ShadingInput read_material(const Scene&, const Surface&, const MaterialLookups&,
-                                         const V3f& wo, const Bands&);
+                                         const V3f& wo, const Bands&, const Fillings&);
 [[nodiscard]] inline ShadingInput read_material(const Scene& scene, const Surface& s, const V3f& wo,
                                                 const Bands& bands) {
-    return read_material(scene, s, locate_material(scene, s), wo, bands);
+    return read_material(scene, s, locate_material(scene, s), wo, bands, Fillings::in_air(s));
 }
 
 /// Transmittance of a way through a volume: Beer and Lambert's law, with the coefficient that

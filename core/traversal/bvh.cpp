@@ -4,6 +4,7 @@
 #include <embree3/rtcore.h>
 #include <pmmintrin.h>
 
+#include <algorithm>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -15,8 +16,9 @@ namespace petzval {
 namespace {
 
 struct Context {
-    RTCIntersectContext embree;  // first: Embree hands back a pointer to it
-    const Ray* ray;              // in world space; Embree's own is in that of the instance
+    RTCIntersectContext embree;       // first: Embree hands back a pointer to it
+    const Ray* ray;                   // in world space; Embree's own is in that of the instance
+    std::vector<Hit>* all = nullptr;  // where all hits are wanted
 };
 
 uint32_t instance_of(uint32_t inst_id, uint32_t geom_id) {
@@ -45,6 +47,15 @@ void filter(const RTCFilterFunctionNArguments* args) {
 // Lets rays that only ask whether the way is free pass panes. What a pane takes from them is not
 // found here, where a triangle may be asked for twice and in any order.
 void pass_pane(const RTCFilterFunctionNArguments* args) {
+    args->valid[0] = 0;
+}
+
+// Notes a hit and goes on. Embree's own coordinates are left out, as barycentric() finds them.
+void note(const RTCFilterFunctionNArguments* args) {
+    if (args->valid[0] != -1) return;
+    const auto& hit = *reinterpret_cast<const RTCHit*>(args->hit);
+    reinterpret_cast<const Context*>(args->context)
+        ->all->push_back({V2f(0.f), instance_of(hit.instID[0], hit.geomID), hit.primID});
     args->valid[0] = 0;
 }
 
@@ -100,8 +111,9 @@ struct Bvh::Impl {
 
     RTCScene new_scene(Traversal traversal) const {
         RTCScene made = rtcNewScene(device);
-        rtcSetSceneFlags(
-            made, traversal == Traversal::Robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+        int flags = traversal == Traversal::Robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE;
+        if (scene.may_nest()) flags |= RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
+        rtcSetSceneFlags(made, static_cast<RTCSceneFlags>(flags));
         rtcSetSceneBuildQuality(made, RTC_BUILD_QUALITY_HIGH);
         return made;
     }
@@ -193,6 +205,27 @@ bool Bvh::occluded(const Ray& r) const {
     RTCRay ray = to_embree(r);
     rtcOccluded1(impl_->top, &context.embree, &ray);
     return ray.tfar < 0.f;
+}
+
+std::vector<Hit> Bvh::all_hits(const Ray& r) const {
+    std::vector<Hit> hits;
+    if (!traceable(r) || !impl_->scene.may_nest()) return hits;
+    Context context;
+    rtcInitIntersectContext(&context.embree);
+    context.embree.filter = note;
+    context.ray = &r;
+    context.all = &hits;
+    RTCRayHit query;
+    query.ray = to_embree(r);
+    query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(impl_->top, &context.embree, &query);
+    const auto place = [](const Hit& h) { return std::pair(h.instance, h.triangle); };
+    std::sort(hits.begin(), hits.end(),
+              [&](const Hit& a, const Hit& b) { return place(a) < place(b); });
+    const auto same = [&](const Hit& a, const Hit& b) { return place(a) == place(b); };
+    hits.erase(std::unique(hits.begin(), hits.end(), same), hits.end());
+    for (Hit& h : hits) h.barycentric = barycentric(impl_->scene, h.instance, h.triangle, r);
+    return hits;
 }
 
 bool Bvh::has_panes() const {

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "core/math/ray.h"
 #include "core/scene/scene.h"
@@ -27,6 +28,9 @@ class Bvh {
     [[nodiscard]] std::optional<Hit> intersect(const Ray&) const;
     /// Whether anything but what may be a pane (Material::may_be_pane) lies in (0, t_max).
     [[nodiscard]] bool occluded(const Ray&) const;
+    /// All hits in (0, t_max], in no order, each once. Only of a scene whose volumes may nest
+    /// (Scene::may_nest); others have none.
+    [[nodiscard]] std::vector<Hit> all_hits(const Ray&) const;
     /// Whether there is something that may be a pane.
     [[nodiscard]] bool has_panes() const;
     /// Whether some material is MASK or BLEND, so that rays need their alpha_seed.

@@ -33,6 +33,7 @@ struct Recorder {
     }
     bool has_cutouts() const { return bvh.has_cutouts(); }
     bool has_panes() const { return bvh.has_panes(); }
+    std::vector<Hit> all_hits(const Ray& r) const { return bvh.all_hits(r); }
 };
 
 RTCRay bare(const Ray& r) {

@@ -76,8 +76,7 @@ template <class Caster>
     // Twice the error of a point, and what Embree's t may be off by. What lies before the ray's
     // origin, the path has crossed already.
     const V3f way = s.p - ray.origin;
-    const float onward_m =
-        2 * abs(s.ng).dot(s.p_error) + rounding_bound(8) * way.length();
+    const float onward_m = 2 * abs(s.ng).dot(s.p_error) + rounding_bound(8) * way.length();
     const float back_m = std::min(onward_m, std::fabs(way.dot(s.ng)));
     boundary_detail::add_coincident(scene, caster, back_m, onward_m, faces);
     for (const Surface& f : faces) volumes.correct(*f.material, f.front);

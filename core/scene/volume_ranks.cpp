@@ -18,20 +18,13 @@ using Corners = std::vector<std::array<V3f, 3>>;
 struct Body {
     Box3f box;
     double volume = 0;  // m^3, where the surface is closed; below 0 where it faces inwards
+    bool touches_itself = false;  // it is several bodies that share edges
 };
 
 struct Bodies {
     bool closed = false;  // the surface has no border
     std::vector<Body> bodies;
 };
-
-uint64_t mix(uint64_t a) {  // finaliser of MurmurHash3 for 64 bits (Appleby 2011, public domain)
-    a ^= a >> 33;
-    a *= 0xff51afd7ed558ccdull;
-    a ^= a >> 33;
-    a *= 0xc4ceb9fe1a85ec53ull;
-    return a ^ (a >> 33);
-}
 
 // Numbers of the corners, where those at the same place have one number. Exporters round the two
 // ends of a seam differently: a place is a cell of 2^-16 of the surface's diagonal.
@@ -63,8 +56,15 @@ double signed_volume(const std::array<V3f, 3>& t, const V3f& about) {
     return a.dot(b.cross(c)) / 6;
 }
 
-// A surface has no border where each of its edges is run through as often one way as the other:
-// then the hashes of the edges, subtracted for the other way, sum to 0.
+struct Edge {
+    uint32_t low, high;  // numbers of its ends
+    int way;             // 1 from low to high, -1 back
+
+    [[nodiscard]] auto ends() const { return std::pair(low, high); }
+};
+
+// A surface has no border where each of its edges is run through as often one way as the other.
+// Where it is run through more than once each way, bodies touch.
 Bodies find_bodies(const Corners& triangles) {
     Box3f box;
     for (const auto& triangle : triangles)
@@ -74,15 +74,16 @@ Bodies find_bodies(const Corners& triangles) {
     const std::vector<uint32_t> number = weld(triangles, box);
     std::vector<uint32_t> parent(number.size());
     std::iota(parent.begin(), parent.end(), 0u);
-    uint64_t borders = 0;
+    std::vector<Edge> edges;
+    edges.reserve(number.size());
     for (size_t i = 0; i < number.size(); i += 3)
         for (size_t k = 0; k < 3; ++k) {
-            const uint64_t a = number[i + k], b = number[i + (k + 1) % 3];
-            borders += mix(a << 32 | b) - mix(b << 32 | a);
-            parent[root_of(parent, static_cast<uint32_t>(a))] =
-                root_of(parent, static_cast<uint32_t>(b));
+            const uint32_t a = number[i + k], b = number[i + (k + 1) % 3];
+            if (a != b) edges.push_back({std::min(a, b), std::max(a, b), a < b ? 1 : -1});
+            parent[root_of(parent, a)] = root_of(parent, b);
         }
-    out.closed = borders == 0;
+    std::sort(edges.begin(), edges.end(),
+              [](const Edge& a, const Edge& b) { return a.ends() < b.ends(); });
     std::unordered_map<uint32_t, size_t> body_of;
     for (size_t i = 0; i < triangles.size(); ++i) {
         const auto [at, is_new] =
@@ -91,6 +92,15 @@ Bodies find_bodies(const Corners& triangles) {
         Body& body = out.bodies[at->second];
         for (const V3f& p : triangles[i]) body.box.extendBy(p);
         body.volume += signed_volume(triangles[i], box.min);
+    }
+    out.closed = true;
+    for (size_t i = 0, end = 0; i < edges.size(); i = end) {
+        int sum = 0;
+        for (; end < edges.size() && edges[end].ends() == edges[i].ends(); ++end)
+            sum += edges[end].way;
+        out.closed &= sum == 0;
+        if (end - i > 2)
+            out.bodies[body_of.at(root_of(parent, edges[i].low))].touches_itself = true;
     }
     return out;
 }
@@ -108,7 +118,8 @@ Body placed(const Body& body, const Instance& instance) {
     const M44f& m = instance.to_world;
     const V3d x(m[0][0], m[0][1], m[0][2]), y(m[1][0], m[1][1], m[1][2]),
         z(m[2][0], m[2][1], m[2][2]);
-    return {Imath::transform(body.box, m), body.volume * std::fabs(x.dot(y.cross(z)))};
+    return {Imath::transform(body.box, m), body.volume * std::fabs(x.dot(y.cross(z))),
+            body.touches_itself};
 }
 
 bool is_candidate(const Material& m) {
@@ -173,6 +184,7 @@ std::optional<VolumeFault> fault_of(const Bodies& of_material) {
 struct PlacedBody {
     Box3f box;
     uint32_t material;
+    bool touches_itself;
 };
 
 // Marks what may overlap: bodies whose boxes meet. A box grows by a millionth of where it is, as
@@ -183,18 +195,18 @@ void mark_overlaps(Scene& scene, std::vector<PlacedBody> bodies) {
         b.box.min -= far;
         b.box.max += far;
     }
-    std::sort(bodies.begin(), bodies.end(), [](const PlacedBody& a, const PlacedBody& b) {
-        return a.box.min.x < b.box.min.x;
-    });
-    for (size_t i = 0; i < bodies.size(); ++i)
-        for (size_t j = i + 1;
-             j < bodies.size() && bodies[j].box.min.x <= bodies[i].box.max.x; ++j) {
-            if (!bodies[i].box.intersects(bodies[j].box)) continue;
-            scene.nested_bounds.extendBy(bodies[i].box);
-            scene.nested_bounds.extendBy(bodies[j].box);
-            if (bodies[i].material == bodies[j].material)
-                scene.materials[bodies[i].material].overlaps_itself = true;
-        }
+    std::sort(bodies.begin(), bodies.end(),
+              [](const PlacedBody& a, const PlacedBody& b) { return a.box.min.x < b.box.min.x; });
+    const auto mark = [&](const PlacedBody& a, const PlacedBody& b) {
+        scene.nested_bounds.extendBy(a.box);
+        scene.nested_bounds.extendBy(b.box);
+        if (a.material == b.material) scene.materials[a.material].overlaps_itself = true;
+    };
+    for (size_t i = 0; i < bodies.size(); ++i) {
+        if (bodies[i].touches_itself) mark(bodies[i], bodies[i]);
+        for (size_t j = i + 1; j < bodies.size() && bodies[j].box.min.x <= bodies[i].box.max.x; ++j)
+            if (bodies[i].box.intersects(bodies[j].box)) mark(bodies[i], bodies[j]);
+    }
 }
 
 }  // namespace
@@ -215,7 +227,7 @@ void rank_volumes(Scene& scene) {
         for (const Body& b : of_material[m].bodies) {
             r.largest_m3 = std::max(r.largest_m3, b.volume);
             r.box.extendBy(b.box);
-            bodies.push_back({b.box, m});
+            bodies.push_back({b.box, m, b.touches_itself});
         }
         ranked.push_back(r);
     }

@@ -13,7 +13,8 @@ namespace petzval {
 /// border and face outwards, but for those of cavities; materials with holes in their coverage are
 /// not. The smaller
 /// the largest body of a material is, the higher is its priority: ice is in whisky, a bubble in
-/// water. Equal ones are ranked by their place and name, so that the order of files does not matter.
+/// water. Equal ones are ranked by their place and name, so that the order of files does not
+/// matter.
 void rank_volumes(Scene&);
 
 /// Why a material that refracts is no closed volume: its surface has a border, or faces inwards, or

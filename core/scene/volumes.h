@@ -15,7 +15,9 @@ namespace petzval {
 class Volumes {
   public:
     /// Volume that fills space, or null for air.
-    [[nodiscard]] const Material* filling() const { return size_ > 0 ? closed_[0].material : open_; }
+    [[nodiscard]] const Material* filling() const {
+        return size_ > 0 ? closed_[0].material : open_;
+    }
     /// Closed volume that fills space, or null.
     [[nodiscard]] const Material* closed_filling() const {
         return size_ > 0 ? closed_[0].material : nullptr;

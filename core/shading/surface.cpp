@@ -94,11 +94,16 @@ Rgb dielectric_f0(const Material& m, const Material* outside, Rgb specular_color
     return Rgb(min(f0.v, splat(1.f))) * specular;
 }
 
-// Index of what fills space, null for air. Thin materials do not bend, whatever their glass.
+// Index of what fills space, null for air. Thin materials do not bend, whatever their glass. A
+// facet between equal indices has no half vector: what hardly differs from air differs by a
+// thousandth, which bends nothing that shows.
 f4 index_of(const Material* m, const Bands& bands) {
     if (!m) return splat(1.f);
-    if (bands.spectral && m->glass && m->has_volume) return m->glass->index(bands.nm);
-    return splat(m->ior == 0.f ? 1.f : m->ior);
+    const f4 index = bands.spectral && m->glass && m->has_volume
+                         ? m->glass->index(bands.nm)
+                         : splat(m->ior == 0.f ? 1.f : m->ior);
+    const f4 bend = index - 1.f;
+    return max(bend, -bend) < 1e-3f ? splat(1.001f) : index;
 }
 
 bool disperses(const Material* m, const Bands& bands) {
@@ -233,9 +238,6 @@ ShadingInput read_material(const Scene& scene, const Surface& s, const MaterialL
     b.thin = !m.has_volume;
     b.disperses = disperses(sides.before, bands) || disperses(sides.behind, bands);
     b.eta = index_of(sides.behind, bands) / index_of(sides.before, bands);
-    // A facet between equal indices has no half vector; a thousandth bends nothing that shows.
-    const f4 bend = s.front ? b.eta - 1.f : 1.f / b.eta - 1.f;
-    b.eta = max(bend, -bend) < 1e-3f ? splat(s.front ? 1.001f : 1 / 1.001f) : b.eta;
     return out;
 }
 

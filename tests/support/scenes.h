@@ -2,6 +2,7 @@
 // Scenes made of code, for tests of the renderer itself.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -61,6 +62,35 @@ inline Mesh quad(V3f corner, V3f a, V3f b) {
     mesh.uv[0] = {V2f(0, 0), V2f(1, 0), V2f(1, 1), V2f(0, 1)};
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
     return mesh;
+}
+
+/// A closed box, faces outwards, corners of their own for each face.
+inline Mesh box(V3f low, V3f high) {
+    Mesh mesh;
+    const V3f size = high - low, x(size.x, 0, 0), y(0, size.y, 0), z(0, 0, size.z);
+    const std::array<V3f, 3> faces[] = {{low, y, x},    {low, z, y},    {low, x, z},
+                                        {high, -x, -y}, {high, -y, -z}, {high, -z, -x}};
+    for (const auto& [corner, a, b] : faces) {
+        const auto first = static_cast<uint32_t>(mesh.positions.size());
+        for (const V3f& p : {corner, corner + a, corner + a + b, corner + b})
+            mesh.positions.push_back(p);
+        mesh.triangles.push_back({first, first + 1, first + 2});
+        mesh.triangles.push_back({first, first + 2, first + 3});
+    }
+    return mesh;
+}
+
+/// Smooth glass with a volume; attenuation: share of light that is left after a metre.
+inline Material glass_material(float ior, float attenuation = 1.f) {
+    Material m;
+    m.metallic = 0;
+    m.roughness = 0;
+    m.transmission = 1;
+    m.ior = ior;
+    m.has_volume = true;
+    m.attenuation_color = Rgb(attenuation);
+    m.attenuation_distance_m = 1;
+    return m;
 }
 
 /// Puts a mesh with a material of its own into world space.

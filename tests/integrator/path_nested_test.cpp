@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+// Glass in glass: absorption and refraction where volumes overlap, touch and hold the camera.
+#include "integrator/start_volumes.h"
+#include "tests/integrator/path_estimate.h"
+
+namespace petzval {
+namespace {
+
+using test::agrees;
+using test::box;
+using test::estimate;
+using test::glass_material;
+using test::Mean;
+using test::place;
+using test::ray_to;
+using test::sphere;
+using test::World;
+
+PathOptions no_roulette() {
+    PathOptions options;
+    options.roulette_depth = 1000;
+    return options;
+}
+
+// A layer across the z axis.
+Mesh layer(float front_z, float back_z, float half_width = 2) {
+    return box(V3f(-half_width, -half_width, back_z), V3f(half_width, half_width, front_z));
+}
+
+struct Layer {
+    float front_z, back_z, ior, attenuation;
+    float half_width = 2;
+};
+
+World of_layers(std::vector<Layer> layers, bool reversed = false) {
+    World world;
+    if (reversed) std::reverse(layers.begin(), layers.end());
+    for (const Layer& l : layers)
+        place(world.scene, layer(l.front_z, l.back_z, l.half_width),
+              glass_material(l.ior, l.attenuation));
+    world.scene.sky = Sky::uniform(Rgb(1.f));
+    world.finish();
+    return world;
+}
+
+Mean seen(const World& world, V3f eye, V3f target, uint32_t samples = 16) {
+    return estimate(world, no_roulette(), samples, [&](V2f) { return ray_to(eye, target); });
+}
+
+// Layers of index 1: what is left is the product over what fills each part of the way.
+TEST(NestedVolumes, AbsorbAsWhatFillsSpace) {
+    struct Case {
+        const char* what;
+        std::vector<Layer> layers;
+        double due;
+    };
+    const Case cases[] = {
+        {"inside", {{0, -4, 1, 0.5f}, {-1, -2, 1, 0.25f}}, 0.125 * 0.25},
+        {"three", {{0, -6, 1, 0.5f}, {-1, -5, 1, 0.8f, 1.9f}, {-2, -3, 1, 0.25f, 1.8f}},
+         0.25 * std::pow(0.8, 3) * 0.25},
+        // They overlap by a metre, which the smaller one has.
+        {"overlap", {{0, -3, 1, 0.5f}, {-2, -4, 1, 0.25f}}, 0.25 * 0.0625},
+        {"overlap before", {{0, -2, 1, 0.25f}, {-1, -4, 1, 0.5f}}, 0.0625 * 0.25},
+        // They touch.
+        {"touch", {{0, -3, 1, 0.5f}, {-3, -4, 1, 0.25f}}, 0.125 * 0.25},
+        {"touch from within", {{0, -3, 1, 0.5f}, {-2, -3, 1, 0.25f}}, 0.25 * 0.25},
+        {"touch at the front", {{0, -3, 1, 0.5f}, {0, -1, 1, 0.25f}}, 0.25 * 0.25},
+    };
+    for (const Case& c : cases)
+        for (const bool reversed : {false, true}) {
+            const World world = of_layers(c.layers, reversed);
+            EXPECT_NEAR(seen(world, V3f(0.1f, 0.2f, 3), V3f(0.1f, 0.2f, 0)).value, c.due,
+                        1e-4 * c.due)
+                << c.what;
+            EXPECT_NEAR(seen(world, V3f(0.3f, 0.1f, -9), V3f(0.3f, 0.1f, 0)).value, c.due,
+                        1e-4 * c.due)
+                << c.what << ", from behind";
+        }
+}
+
+// The same, seen aslant from far, where t is rounded more than points: no face is missed.
+TEST(NestedVolumes, FacesThatCoincideAreOneBoundaryFromAfar) {
+    const World world = of_layers({{0, -3, 1, 0.5f, 40}, {-2, -3, 1, 0.25f, 39}});
+    for (int i = 0; i < 200; ++i) {
+        const float a = 0.01f * static_cast<float>(i);
+        const V3f eye(900 * std::sin(a), 3, 900 * std::cos(a) + 2);
+        if (std::fabs(eye.z) < 100) continue;
+        const V3f target(0.37f, 0.11f, -1.5f);
+        const V3f way = target - eye;
+        // What stands for an index of 1 is 1.001.
+        const double sine = double(std::hypot(way.x, way.y) / way.length()) / 1.001;
+        const double slant = 1 / std::sqrt(1 - sine * sine);
+        if (slant > 1.7) continue;  // it reflects more than comes through
+        const double due = std::pow(0.25, slant) * std::pow(0.25, slant);
+        EXPECT_NEAR(seen(world, eye, target, 1).value, due, 2e-3 * due) << i;
+    }
+}
+
+// Fresnel's equations at the boundary between two media, not between each and air: what comes back
+// from one face inside, where the outer medium is black to what goes on.
+TEST(NestedVolumes, ReflectByTheIndexOfBothSides) {
+    const auto fresnel = [](double a, double b) {
+        return (a - b) * (a - b) / ((a + b) * (a + b));
+    };
+    for (const double inner : {1.001, 1.31, 1.6, 2.4}) {
+        World world;
+        place(world.scene, box(V3f(-50), V3f(50)), glass_material(1.33f));
+        // Dense: what goes in does not come out.
+        Material m = glass_material(static_cast<float>(inner), 1e-30f);
+        place(world.scene, box(V3f(-20, -20, -20), V3f(20, 20, 0)), m);
+        Material lamp;
+        lamp.base_color = Rgb(0.f);
+        lamp.specular = 0;
+        lamp.metallic = 0;
+        lamp.emissive = Rgb(1.f);
+        place(world.scene, test::quad(V3f(-9, -9, 40), V3f(0, 18, 0), V3f(18, 0, 0)), lamp);
+        world.finish();
+        const Mean e = estimate(world, no_roulette(), 4096,
+                                [](V2f) { return ray_to(V3f(0.1f, 0.1f, 4), V3f(0.1f, 0.1f, 0)); });
+        EXPECT_TRUE(agrees(e, fresnel(1.33, inner), 1e-5)) << inner << ": " << e;
+    }
+}
+
+// A ray through layers bends as if each stood in air: Snell's invariant n sin.
+TEST(NestedVolumes, RefractByTheIndexOfBothSides) {
+    World world;
+    place(world.scene, layer(0, -3, 30), glass_material(1.33f));
+    place(world.scene, layer(-1, -2, 29), glass_material(1.8f));
+    // Lamps as a ruler behind: 1 to the right of where the ray should land, 0 to the left.
+    const double sine = std::sin(0.6);
+    const auto shift = [&](double n) { return std::tan(std::asin(sine / n)); };
+    const double lands = std::tan(0.6) + 2 * shift(1.33) + shift(1.8) + std::tan(0.6);
+    for (const double off : {-0.002, 0.002}) {
+        World ruled;
+        ruled.scene = world.scene;
+        Material lamp = test::emitter_material(1.f);
+        place(ruled.scene, test::quad(V3f(static_cast<float>(lands + off), -9, -4), V3f(18, 0, 0), V3f(0, 18, 0)), lamp);
+        ruled.finish();
+        const Mean e = estimate(ruled, no_roulette(), 256, [](V2f) {
+            Ray ray;
+            ray.origin = V3f(0, 0, 1);
+            ray.direction = V3f(std::sin(0.6f), 0, -std::cos(0.6f));
+            return ray;
+        });
+        if (off < 0) EXPECT_GT(e.value, 0.5);
+        else EXPECT_LT(e.value, 0.1);
+    }
+}
+
+TEST(NestedVolumes, AClearNestVanishesInAWhiteSky) {
+    World world;
+    place(world.scene, sphere(V3f(0.f), 1.f, 32, false), glass_material(1.5f));
+    place(world.scene, sphere(V3f(0.2f, 0, 0), 0.6f, 32, false), glass_material(1.0f));
+    place(world.scene, sphere(V3f(0.2f, 0.3f, 0), 0.5f, 32, false), glass_material(2.0f));
+    Material rough = glass_material(1.33f);
+    rough.roughness = 0.5f;
+    place(world.scene, box(V3f(-0.3f), V3f(0.8f)), rough);
+    world.scene.sky = Sky::uniform(Rgb(1.f));
+    world.finish();
+    PathOptions options;
+    options.max_depth = 200;
+    const Mean e = estimate(world, options, 2048, test::bundle);
+    EXPECT_TRUE(agrees(e, 1, 0.004)) << e;  // rough glass keeps 99.0 to 100.3 %
+    EXPECT_LT(e.error, 0.003);
+}
+
+// Two cubes of one material that touch are one block.
+TEST(NestedVolumes, BodiesOfOneMaterialThatTouchAreOne) {
+    World world;
+    Mesh two = box(V3f(-2, -2, -1), V3f(2, 2, 0));
+    const Mesh other = box(V3f(-2, -2, -2), V3f(2, 2, -1));
+    const auto first = static_cast<uint32_t>(two.positions.size());
+    two.positions.insert(two.positions.end(), other.positions.begin(), other.positions.end());
+    for (const auto& [a, b, c] : other.triangles)
+        two.triangles.push_back({a + first, b + first, c + first});
+    Material m = glass_material(2.f, 0.5f);
+    place(world.scene, two, m);
+    world.scene.sky = Sky::uniform(Rgb(1.f));
+    world.finish();
+    World block;
+    place(block.scene, layer(0, -2), m);
+    block.scene.sky = Sky::uniform(Rgb(1.f));
+    block.finish();
+    const V3f eye(0.3f, 0.2f, 3), target(0.1f, 0.2f, 0);
+    const Mean a = seen(world, eye, target, 2048), b = seen(block, eye, target, 2048);
+    EXPECT_TRUE(agrees(a - b, 0)) << a << " and " << b;
+    EXPECT_LT(a.error, 0.01);
+}
+
+TEST(NestedVolumes, TheCameraKnowsWhereItStands) {
+    const World world = of_layers({{0, -4, 1, 0.5f}, {-1, -2, 1, 0.25f}, {-5, -6, 1, 0.1f}});
+    const std::pair<float, double> cases[] = {{1, 0.125 * 0.25 * 0.1},
+                                              {-0.5f, std::pow(0.5, 2.5) * 0.25 * 0.1},
+                                              {-1.5f, 0.25 * 0.5 * 0.1},
+                                              {-3.f, 0.05},
+                                              {-4.5f, 0.1},
+                                              {-5.5f, std::pow(0.1, 0.5)},
+                                              {-7, 1}};
+    for (const auto& [z, due] : cases)
+        EXPECT_NEAR(seen(world, V3f(0.3f, 0.2f, z), V3f(0.3f, 0.2f, -20)).value, due, 1e-4 * due)
+            << z;
+    // A lamp ahead of the next face: nothing on the way says where the camera is.
+    World with_lamp;
+    with_lamp.scene = world.scene;
+    place(with_lamp.scene, test::quad(V3f(-1, -1, -3.5f), V3f(2, 0, 0), V3f(0, 2, 0)),
+          test::emitter_material(1.f));
+    with_lamp.finish();
+    EXPECT_NEAR(seen(with_lamp, V3f(0.3f, 0.2f, -3), V3f(0.3f, 0.2f, -20)).value, std::sqrt(0.5),
+                1e-4);
+}
+
+TEST(NestedVolumes, VolumesAtAPointAreThoseThatHoldIt) {
+    World world;
+    place(world.scene, sphere(V3f(0), 2, 24, false), glass_material(1.5f));
+    place(world.scene, box(V3f(-1), V3f(1)), glass_material(1.3f));
+    place(world.scene, box(V3f(0), V3f(5)), glass_material(1.3f));
+    world.finish();
+    const Sampler sampler(SamplerKind::Independent, 1, {0, 0, 0});
+    for (uint32_t i = 0; i < 2000; ++i) {
+        const Sampler s(SamplerKind::Independent, 7, {1, 2, i});
+        const V2f a = s.get2(Dim::Film);
+        const V3f p(8 * a.x - 3, 8 * a.y - 3, 8 * s.get1(Dim::TargetRest) - 3);
+        if (std::fabs(p.length() - 2) < 0.1f) continue;  // facets
+        const auto in_box = [&](float lo, float hi) {
+            for (int k = 0; k < 3; ++k)
+                if (p[k] < lo || p[k] > hi) return false;
+            return true;
+        };
+        Volumes due;
+        if (p.length() < 2) due.add(world.scene.materials[0], 1);
+        if (in_box(-1, 1)) due.add(world.scene.materials[1], 1);
+        if (in_box(0, 5)) due.add(world.scene.materials[2], 1);
+        EXPECT_TRUE(volumes_at(world.scene, *world.bvh, p) == due) << p;
+    }
+}
+
+// A lamp within the inner volume's hidden part is found whichever technique looks for it.
+TEST(NestedVolumes, TechniquesAgree) {
+    World world;
+    Material rough = glass_material(1.2f, 0.5f);
+    rough.roughness = 0.6f;
+    place(world.scene, sphere(V3f(0.f), 1.5f, 16, false), rough);
+    place(world.scene, box(V3f(-0.4f, -0.9f, -0.4f), V3f(0.4f, -0.4f, 0.4f)),
+          glass_material(1.f, 0.3f));
+    place(world.scene, test::quad(V3f(-0.6f, -0.6f, 0.2f), V3f(1.2f, 0, 0), V3f(0, 1.2f, 0)),
+          test::diffuse_material(0.7f));
+    place(world.scene, test::quad(V3f(-0.5f, 0.7f, 0.3f), V3f(1, 0, 0), V3f(0, 0, 0.7f)),
+          test::emitter_material(5.f));
+    world.finish();
+    PathOptions options;
+    options.max_depth = 6;
+    test::expect_techniques_agree(world, options, 8192, test::bundle, 0.03);
+}
+
+}  // namespace
+}  // namespace petzval

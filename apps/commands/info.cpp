@@ -8,6 +8,7 @@
 #include "apps/cli/console.h"
 #include "apps/cli/reading_options.h"
 #include "apps/setup/auto_focus.h"
+#include "apps/setup/glass_remarks.h"
 #include "io/gltf/gltf.h"
 
 namespace petzval {
@@ -34,7 +35,8 @@ std::string focus_line(const std::string& camera, const FoundFocus& found) {
                        found.m > 0 ? fmt::format("{:.4g} m", found.m) : found.why_none);
 }
 
-// What of a file shows only in its finished scene: where it lies, and what cameras would focus on.
+// What of a file shows only in its finished scene: where it lies, what cameras would focus on, and
+// what its glass does.
 void append_placement(const std::string& path, FileScope scope, GltfFile& file) {
     Scene& scene = file.scene;
     if (scene.instances.empty()) return;
@@ -49,6 +51,9 @@ void append_placement(const std::string& path, FileScope scope, GltfFile& file) 
                            find_auto_focus(&file.cameras[i], path, scope, scene, bvh)));
     if (file.cameras.empty())
         file.contents.push_back(focus_line("", find_auto_focus(nullptr, path, scope, scene, bvh)));
+    for (const std::string& remark :
+         {faulty_volumes_text(scene), lost_light_text(scene, lost_light(scene, bvh))})
+        if (!remark.empty()) file.warnings.push_back(remark);
 }
 
 }  // namespace

@@ -180,6 +180,7 @@ std::string rare_text(const Plan& plan) {
     if (rare.noise > 0)
         return fmt::format("{}: few paths find {}", fmt::join(small, " and "),
                            rare.lamps + rare.spots == 1 ? "it" : "them");
+    if (rare.behind_glass > 0) return "lamps behind solid glass: no path finds them, or hardly one";
     if (rare.caustic) return "surfaces lit by lamps through glass or mirrors: few paths find them";
     if (rare.mirrored) return "lamps seen through glass or mirrors: few paths find them";
     return "few paths hold most of the noise";

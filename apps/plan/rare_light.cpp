@@ -184,6 +184,7 @@ RareLight rare_light(const Pilot& pilot, const PilotModel& model,
     };
     out.mirrored = seldom(model.stats().mirrored);
     out.caustic = seldom(model.stats().caustic);
+    out.behind_glass = model.setup().prepared.lost_light.size();
     return out;
 }
 

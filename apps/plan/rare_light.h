@@ -51,8 +51,10 @@ struct RareLight {
     double spared = 0;
     /// Smooth surfaces were met, and behind them fewer than kEnoughPaths paths met a lamp.
     bool mirrored = false, caustic = false;
+    size_t behind_glass =
+        0;  ///< lights that no path finds, or hardly one: PreparedScene::lost_light
 
-    [[nodiscard]] bool by_chance() const { return mirrored || caustic; }
+    [[nodiscard]] bool by_chance() const { return mirrored || caustic || behind_glass > 0; }
 };
 [[nodiscard]] RareLight rare_light(const Pilot&, const PilotModel&, const std::vector<SeenLamp>&,
                                    bool has_lamps, double floor);

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "apps/setup/camera_setup.h"
+#include "apps/setup/glass_remarks.h"
 #include "apps/setup/input_files.h"
 #include "apps/setup/option_names.h"
 #include "camera/ray_bundle.h"
@@ -112,6 +113,13 @@ PreparedScene load(SceneRequest request, const Notice& notice) {
     return out;
 }
 
+void remark_on_glass(PreparedScene& prepared, const Notice& notice) {
+    prepared.lost_light = lost_light(*prepared.scene, *prepared.bvh);
+    for (const std::string& remark : {faulty_volumes_text(*prepared.scene),
+                                      lost_light_text(*prepared.scene, prepared.lost_light)})
+        if (!remark.empty()) notice("warning: " + remark);
+}
+
 /// Finds small bright things for a camera to send rays to, where that pays.
 void find_targets_of(Camera& camera, V2i size_px, const Scene& scene,
                      const PreparedScene& prepared) {
@@ -158,6 +166,7 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
         prepared.bvh = std::make_shared<const Bvh>(scene, request.traversal);
     if (!shares || asked.light_choice != like->from.asked.light_choice)
         prepared.lights = std::make_shared<const LightChoice>(scene, request.light_choice);
+    if (!shares) remark_on_glass(prepared, notice);
     from.bvh_s = seconds_since(bvh_start);
     begin(Phase::Planning);
 

@@ -16,6 +16,7 @@
 #include "core/light/light_choice.h"
 #include "core/scene/scene.h"
 #include "core/traversal/bvh.h"
+#include "integrator/lost_light.h"
 #include "io/base/notice.h"
 #include "io/gltf/gltf.h"
 
@@ -32,6 +33,7 @@ struct PreparedScene {
     uint64_t hash = 0;             ///< of the file
     std::vector<NamedFile> files;  ///< that the scene names
     PictureBudget pictures;        ///< what the scene and its sky left of it
+    std::vector<LostLight> lost_light;
 };
 
 /// Camera and observer of a prepared scene.

@@ -10,6 +10,16 @@ Mesh quad(V3f corner, V3f a, V3f b) {
     return mesh;
 }
 
+Mesh box(V3f low, V3f high) {
+    Mesh mesh;
+    for (int i = 0; i < 8; ++i)
+        mesh.positions.emplace_back(i & 1 ? high.x : low.x, i & 2 ? high.y : low.y,
+                                    i & 4 ? high.z : low.z);
+    mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                      {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    return mesh;
+}
+
 Mesh ball(V3f centre, float radius) {
     constexpr int kRows = 24, kColumns = 2 * kRows;
     Mesh mesh;

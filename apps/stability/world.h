@@ -14,6 +14,8 @@ namespace petzval::stability {
 
 /// A parallelogram corner + s*a + t*b; the front is where cross(a, b) points.
 [[nodiscard]] Mesh quad(V3f corner, V3f a, V3f b);
+/// Closed box, faces outwards.
+[[nodiscard]] Mesh box(V3f low, V3f high);
 /// Latitude-longitude sphere of 24 rows, flat, normals outward.
 [[nodiscard]] Mesh ball(V3f centre, float radius);
 /// Lambert's, seen from both sides.

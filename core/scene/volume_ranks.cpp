@@ -243,6 +243,8 @@ void rank_volumes(Scene& scene) {
 }
 
 std::vector<FaultyVolume> faulty_volumes(const Scene& scene) {
+    const auto unranked = [](const Material& m) { return is_candidate(m) && m.priority == 0; };
+    if (std::none_of(scene.materials.begin(), scene.materials.end(), unranked)) return {};
     const std::vector<Bodies> of_material = bodies_of_materials(scene);
     std::vector<FaultyVolume> out;
     for (uint32_t m = 0; m < of_material.size(); ++m) {

@@ -152,8 +152,10 @@ TEST(VolumeRanks, EqualVolumesAreRankedAlikeInAnyOrder) {
         Scene scene;
         const auto left = [&] { place(scene, box(V3f(-1), V3f(1)), named("left")); };
         const auto right = [&] { place(scene, box(V3f(0, -1, -1), V3f(2, 1, 1)), named("right")); };
-        if (reversed) right(), left();
-        else left(), right();
+        if (reversed)
+            right(), left();
+        else
+            left(), right();
         finish_scene(scene);
         EXPECT_GT(priority(scene, "right"), priority(scene, "left"));
     }

@@ -56,7 +56,8 @@ TEST(NestedVolumes, AbsorbAsWhatFillsSpace) {
     };
     const Case cases[] = {
         {"inside", {{0, -4, 1, 0.5f}, {-1, -2, 1, 0.25f}}, 0.125 * 0.25},
-        {"three", {{0, -6, 1, 0.5f}, {-1, -5, 1, 0.8f, 1.9f}, {-2, -3, 1, 0.25f, 1.8f}},
+        {"three",
+         {{0, -6, 1, 0.5f}, {-1, -5, 1, 0.8f, 1.9f}, {-2, -3, 1, 0.25f, 1.8f}},
          0.25 * std::pow(0.8, 3) * 0.25},
         // They overlap by a metre, which the smaller one has.
         {"overlap", {{0, -3, 1, 0.5f}, {-2, -4, 1, 0.25f}}, 0.25 * 0.0625},
@@ -99,9 +100,7 @@ TEST(NestedVolumes, FacesThatCoincideAreOneBoundaryFromAfar) {
 // Fresnel's equations at the boundary between two media, not between each and air: what comes back
 // from one face inside, where the outer medium is black to what goes on.
 TEST(NestedVolumes, ReflectByTheIndexOfBothSides) {
-    const auto fresnel = [](double a, double b) {
-        return (a - b) * (a - b) / ((a + b) * (a + b));
-    };
+    const auto fresnel = [](double a, double b) { return (a - b) * (a - b) / ((a + b) * (a + b)); };
     for (const double inner : {1.001, 1.31, 1.6, 2.4}) {
         World world;
         place(world.scene, box(V3f(-50), V3f(50)), glass_material(1.33f));
@@ -134,7 +133,10 @@ TEST(NestedVolumes, RefractByTheIndexOfBothSides) {
         World ruled;
         ruled.scene = world.scene;
         Material lamp = test::emitter_material(1.f);
-        place(ruled.scene, test::quad(V3f(static_cast<float>(lands + off), -9, -4), V3f(18, 0, 0), V3f(0, 18, 0)), lamp);
+        place(
+            ruled.scene,
+            test::quad(V3f(static_cast<float>(lands + off), -9, -4), V3f(18, 0, 0), V3f(0, 18, 0)),
+            lamp);
         ruled.finish();
         const Mean e = estimate(ruled, no_roulette(), 256, [](V2f) {
             Ray ray;
@@ -142,8 +144,10 @@ TEST(NestedVolumes, RefractByTheIndexOfBothSides) {
             ray.direction = V3f(std::sin(0.6f), 0, -std::cos(0.6f));
             return ray;
         });
-        if (off < 0) EXPECT_GT(e.value, 0.5);
-        else EXPECT_LT(e.value, 0.1);
+        if (off < 0)
+            EXPECT_GT(e.value, 0.5);
+        else
+            EXPECT_LT(e.value, 0.1);
     }
 }
 

@@ -61,7 +61,7 @@ TEST_F(CliSpectral, SaysWhatItDecidesAndWhy) {
     for (size_t i = 0; i < cases.size(); ++i) {
         const Finished run = runs[i].wait();
         EXPECT_EQ(run.exit_code, 0);
-        EXPECT_TRUE(run.err.starts_with("petzval: " + cases[i].expected)) << run.err;
+        EXPECT_NE(run.err.find("petzval: " + cases[i].expected), std::string::npos) << run.err;
         const Picture p = read_picture(path(std::to_string(i) + ".exr"));
         const bool spectral = cases[i].expected.starts_with(wavelengths);
         EXPECT_EQ(metadata_of(p, "petzval:spectral"), spectral ? "wavelengths" : "rgb") << i;

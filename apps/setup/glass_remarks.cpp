@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/setup/glass_remarks.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "core/scene/volume_ranks.h"
+#include "io/base/format.h"
+
+namespace petzval {
+namespace {
+
+constexpr size_t kMostNamed = 3;
+
+std::string name_of(const Scene& scene, uint32_t material) {
+    const std::string& name = scene.materials[material].name;
+    return name.empty() ? fmt::format("material {}", material) : fmt::format("\"{}\"", name);
+}
+
+std::string name_of(VolumeFault fault) {
+    switch (fault) {
+        case VolumeFault::Open:
+            return "open";
+        case VolumeFault::InsideOut:
+            return "inside out";
+        case VolumeFault::Flat:
+            break;
+    }
+    return "flat";
+}
+
+std::string name_of(const LostLight& lost) {
+    switch (lost.kind) {
+        case LostLight::Kind::Point:
+            return fmt::format("point light {}", lost.light);
+        case LostLight::Kind::Spot:
+            return fmt::format("spot light {}", lost.light);
+        case LostLight::Kind::Sun:
+            return fmt::format("directional light {}", lost.light);
+        case LostLight::Kind::Lamp:
+            return fmt::format("a lamp of {:.2g} mm", 1e3 * lost.size);
+        case LostLight::Kind::SkySpot:
+            break;
+    }
+    return fmt::format("a spot of the sky of {:.2g}°", lost.size * 180 / double(kPi));
+}
+
+// The first few, and how many there are beside them.
+template <class All, class Word>
+std::string listed(const All& all, const Word& word) {
+    std::vector<std::string> words;
+    for (size_t i = 0; i < std::min(all.size(), kMostNamed); ++i) words.push_back(word(all[i]));
+    std::string text = fmt::format("{}", fmt::join(words, ", "));
+    if (all.size() > kMostNamed) text += fmt::format(" and {} more", all.size() - kMostNamed);
+    return text;
+}
+
+}  // namespace
+
+std::string faulty_volumes_text(const Scene& scene) {
+    const std::vector<FaultyVolume> faulty = faulty_volumes(scene);
+    if (faulty.empty()) return "";
+    return fmt::format(
+        "glass with a thickness whose surface is not a closed volume: {}; where it overlaps other "
+        "glass, absorption and refraction may be wrong; close its mesh, with faces outwards, or "
+        "take its thickness away",
+        listed(faulty, [&](const FaultyVolume& f) {
+            return fmt::format("{} ({})", name_of(scene, f.material), name_of(f.fault));
+        }));
+}
+
+std::string lost_light_text(const Scene& scene, const std::vector<LostLight>& lost) {
+    if (lost.empty()) return "";
+    std::vector<LostLight> by_share = lost;
+    std::stable_sort(by_share.begin(), by_share.end(),
+                     [](const auto& a, const auto& b) { return a.share > b.share; });
+    return fmt::format(
+        "no path finds light that comes through solid glass, or hardly one: {}; what it would "
+        "light is too dark; give the light a size or a larger one, or take the thickness of the "
+        "glass away",
+        listed(by_share, [&](const LostLight& l) {
+            return fmt::format("{} behind {} ({} of its light)", name_of(l),
+                               name_of(scene, l.glass), percent(l.share));
+        }));
+}
+
+}  // namespace petzval

@@ -30,7 +30,6 @@ struct Bodies {
 // ends of a seam differently: a place is a cell of 2^-16 of the surface's diagonal.
 std::vector<uint32_t> weld(const Corners& triangles, const Box3f& box) {
     const double cell = std::max(double((box.max - box.min).length()) / 65536, 1e-30);
-    constexpr double off_grid = 0.3719;  // regular models have many points at regular places
     std::unordered_map<uint64_t, uint32_t> places;
     std::vector<uint32_t> numbers;
     numbers.reserve(3 * triangles.size());
@@ -38,7 +37,7 @@ std::vector<uint32_t> weld(const Corners& triangles, const Box3f& box) {
         for (const V3f& p : triangle) {
             uint64_t key = 0;
             for (int i = 0; i < 3; ++i) {
-                const double at = std::floor((double(p[i]) - double(box.min[i])) / cell + off_grid);
+                const double at = std::round((double(p[i]) - double(box.min[i])) / cell);
                 key = key << 18 | static_cast<uint64_t>(at);
             }
             numbers.push_back(places.try_emplace(key, places.size()).first->second);

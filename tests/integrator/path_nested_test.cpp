@@ -11,6 +11,7 @@ using test::box;
 using test::estimate;
 using test::glass_material;
 using test::Mean;
+using test::Moments;
 using test::place;
 using test::ray_to;
 using test::sphere;
@@ -97,15 +98,76 @@ TEST(NestedVolumes, FacesThatCoincideAreOneBoundaryFromAfar) {
     }
 }
 
+// Faces that coincide up to the rounding of their corners: turned, and of very different sizes.
+TEST(NestedVolumes, FacesThatCoincideUpToRoundingAreOneBoundary) {
+    M44f turn;
+    turn.setAxisAngle(V3f(0.6f, -0.3f, 0.74f), 1.1f);
+    const V3f centre(3, 5, -7);
+    const auto turned = [&](Mesh mesh) {
+        for (V3f& p : mesh.positions) {
+            V3f q;
+            turn.multVecMatrix(p, q);
+            p = q + centre;
+        }
+        return mesh;
+    };
+    const auto at = [&](V3f p) {
+        V3f q;
+        turn.multVecMatrix(p, q);
+        return q + centre;
+    };
+    for (const bool reversed : {false, true}) {
+        World world;
+        const auto outer = [&] {
+            place(world.scene, turned(layer(0, -3, 40)), glass_material(1.33f, 0.5f));
+        };
+        const auto inner = [&] {
+            place(world.scene, turned(layer(0, -1, 1.3f)), glass_material(1.6f, 0.25f));
+            place(world.scene, turned(layer(-2, -3, 1.7f)), glass_material(1.6f, 0.25f));
+        };
+        if (reversed)
+            inner(), outer();
+        else
+            outer(), inner();
+        world.finish();
+        // Black but for a lamp behind, so that only what goes through all is seen.
+        Material lamp;
+        lamp.base_color = Rgb(0.f);
+        lamp.metallic = 0;
+        lamp.specular = 0;
+        lamp.emissive = Rgb(1.f);
+        place(world.scene, turned(test::quad(V3f(-30, -30, -4), V3f(60, 0, 0), V3f(0, 60, 0))),
+              lamp);
+        world.finish();
+        const auto r = [](double a, double b) { return std::pow((a - b) / (a + b), 2); };
+        // Ways to and fro within add less than 1 %.
+        const double once = std::pow(1 - r(1, 1.6), 2) * std::pow(1 - r(1.6, 1.33), 2);
+        const double due = once * 0.25 * 0.5 * 0.25;
+        Moments all;
+        for (uint32_t i = 0; i < 300; ++i) {
+            const Sampler s(SamplerKind::Independent, 5, {4, 4, i});
+            const V2f u = s.get2(Dim::Film);
+            const V3f p(u.x - 0.5f, u.y - 0.5f, 0), eye(p.x, p.y, i % 2 ? 2.f : 800.f);
+            all.add(seen(world, at(eye), at(p), 24).value);
+        }
+        const Mean mean = all;
+        EXPECT_NEAR(mean.value / due, 1, 0.02) << mean;
+        EXPECT_LT(mean.error, 0.004 * due);
+    }
+}
+
 // Fresnel's equations at the boundary between two media, not between each and air: what comes back
 // from one face inside, where the outer medium is black to what goes on.
 TEST(NestedVolumes, ReflectByTheIndexOfBothSides) {
     const auto fresnel = [](double a, double b) { return (a - b) * (a - b) / ((a + b) * (a + b)); };
-    for (const double inner : {1.001, 1.31, 1.6, 2.4}) {
+    for (const auto& [inner, transmission] :
+         {std::pair{1.001, 1.f}, {1.31, 1.f}, {1.6, 1.f}, {2.4, 1.f}, {1.001, 0.4f}, {1.6, 0.4f}}) {
         World world;
         place(world.scene, box(V3f(-50), V3f(50)), glass_material(1.33f));
         // Dense: what goes in does not come out.
         Material m = glass_material(static_cast<float>(inner), 1e-30f);
+        m.base_color = Rgb(0.f);  // of its share that is not glass
+        m.transmission = transmission;
         place(world.scene, box(V3f(-20, -20, -20), V3f(20, 20, 0)), m);
         Material lamp;
         lamp.base_color = Rgb(0.f);
@@ -149,6 +211,76 @@ TEST(NestedVolumes, RefractByTheIndexOfBothSides) {
         else
             EXPECT_LT(e.value, 0.1);
     }
+}
+
+// Where a volume of higher priority fills both sides of a face, the face's roughness and tint are
+// not there either.
+TEST(NestedVolumes, HiddenFacesDoNothing) {
+    World world;
+    Material rough = glass_material(1, 0.5f);
+    rough.roughness = 0.5f;
+    rough.base_color = Rgb(0.5f);
+    place(world.scene, layer(0, -3, 40), rough);
+    place(world.scene, layer(0.5f, -0.5f), glass_material(1));
+    place(world.scene, layer(-2.5f, -3.5f), glass_material(1));
+    world.scene.sky = Sky::uniform(Rgb(1.f));
+    world.finish();
+    EXPECT_NEAR(seen(world, V3f(0.1f, 0.2f, 3), V3f(0.1f, 0.2f, 0)).value, 0.25, 1e-4);
+}
+
+TEST(NestedVolumes, HiddenFacesGlow) {
+    World world;
+    Material glows = glass_material(1, 0.5f);
+    glows.emissive = Rgb(1.f);
+    place(world.scene, layer(0, -3, 40), glows);
+    place(world.scene, layer(0.5f, -0.5f), glass_material(1));
+    place(world.scene, layer(-2.5f, -3.5f), glass_material(1));
+    world.scene.sky = Sky::uniform(Rgb(1.f));
+    world.finish();
+    EXPECT_NEAR(seen(world, V3f(0.1f, 0.2f, 3), V3f(0.1f, 0.2f, 0)).value, 1.25, 1e-4);
+}
+
+// Of faces that coincide, that of the higher priority shades: the other's tint does not count.
+TEST(NestedVolumes, TheFaceOfTheHigherPriorityShades) {
+    for (const bool reversed : {false, true}) {
+        World world;
+        Material tinted = glass_material(1, 0.5f);
+        tinted.base_color = Rgb(0.5f);
+        const auto outer = [&] { place(world.scene, layer(0, -3, 40), tinted); };
+        const auto inner = [&] { place(world.scene, layer(0, -1), glass_material(1)); };
+        if (reversed)
+            inner(), outer();
+        else
+            outer(), inner();
+        world.scene.sky = Sky::uniform(Rgb(1.f));
+        world.finish();
+        EXPECT_NEAR(seen(world, V3f(0.1f, 0.2f, 3), V3f(0.1f, 0.2f, 0)).value, 0.25 * 0.5, 1e-4);
+    }
+}
+
+// A hidden face stands between a floor and a lamp: shadow rays end there, so that paths alone must
+// bring all of the light.
+TEST(NestedVolumes, ALampBeyondAHiddenFaceIsFoundWhole) {
+    const auto light = [](bool divided) {
+        World world;
+        place(world.scene, box(V3f(-2), V3f(2)), glass_material(1.2f));
+        if (divided)
+            place(world.scene, box(V3f(-50, -50, -50), V3f(50, 50, 0)), glass_material(1.3f));
+        place(world.scene, test::quad(V3f(-1, -1, -1.5f), V3f(2, 0, 0), V3f(0, 2, 0)),
+              test::diffuse_material(0.8f));
+        place(world.scene, test::quad(V3f(-1, -1, 1.5f), V3f(0, 2, 0), V3f(2, 0, 0)),
+              test::emitter_material(1.f));
+        world.finish();
+        PathOptions options;
+        options.max_depth = 2;
+        options.max_clear_depth = 4;
+        return estimate(world, options, 1024,
+                        [](V2f) { return ray_to(V3f(0.1f, 0.2f, 1), V3f(0.1f, 0.2f, -1)); });
+    };
+    const Mean whole = light(false), divided = light(true);
+    EXPECT_TRUE(agrees(whole - divided, 0, 0.01 * whole.value)) << whole << " and " << divided;
+    EXPECT_LT(divided.error, 0.01 * divided.value);
+    EXPECT_GT(whole.value, 0.05);
 }
 
 TEST(NestedVolumes, AClearNestVanishesInAWhiteSky) {
@@ -236,6 +368,27 @@ TEST(NestedVolumes, VolumesAtAPointAreThoseThatHoldIt) {
         if (in_box(0, 5)) due.add(world.scene.materials[2], 1);
         EXPECT_TRUE(volumes_at(world.scene, *world.bvh, p) == due) << p;
     }
+}
+
+// Sees no hits in one of three directions, as if it had slipped through a seam.
+struct Leaky {
+    const Bvh& bvh;
+    size_t leaks;
+    mutable size_t asked = 0;
+    [[nodiscard]] std::vector<Hit> all_hits(const Ray& ray) const {
+        return asked++ % 3 == leaks ? std::vector<Hit>() : bvh.all_hits(ray);
+    }
+};
+
+TEST(NestedVolumes, OneRayThatSlipsThroughASeamDoesNotDecide) {
+    World world;
+    place(world.scene, sphere(V3f(0), 2, 24, false), glass_material(1.5f));
+    place(world.scene, box(V3f(-1), V3f(1)), glass_material(1.3f));
+    world.finish();
+    Volumes due;
+    for (const Material& m : world.scene.materials) due.add(m, 1);
+    for (size_t leaks = 0; leaks < 3; ++leaks)
+        EXPECT_TRUE(volumes_at(world.scene, Leaky{*world.bvh, leaks}, V3f(0.1f)) == due) << leaks;
 }
 
 // A lamp within the inner volume's hidden part is found whichever technique looks for it.

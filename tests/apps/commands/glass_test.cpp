@@ -52,8 +52,8 @@ class CliGlass : public CliTest {
         file.json["extensions"]["KHR_lights_punctual"]["lights"] = {
             {{"type", "point"}, {"intensity", 10}}};
         file.add_root({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
-        const int camera = file.add("cameras", {{"type", "perspective"},
-                                                {"perspective", {{"yfov", 1}, {"znear", 0.1}}}});
+        const int camera = file.add(
+            "cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}});
         file.add_root({{"camera", camera}, {"translation", {0, 0, 1.5}}});
         return file.save_glb(folder_.path / "globe.glb").string();
     }
@@ -83,8 +83,8 @@ TEST_F(CliGlass, LightThatNoPathFindsIsNamed) {
 
 TEST_F(CliGlass, PlansCountItAsAtLeast) {
     const auto planned = [&](Glass kind) {
-        const Finished run = run_petzval(
-            {"plan", lamp_in(kind), "--size", "16x16", "--tolerance", "50%", "--max-depth", "2", "--json"});
+        const Finished run = run_petzval({"plan", lamp_in(kind), "--size", "16x16", "--tolerance",
+                                          "50%", "--max-depth", "2", "--json"});
         EXPECT_EQ(run.exit_code, 0) << run.err;
         return nlohmann::json::parse(run.out);
     };
@@ -98,11 +98,11 @@ TEST_F(CliGlass, PlansCountItAsAtLeast) {
 TEST_F(CliGlass, VolumesThatAreNotClosedAreNamed) {
     for (const auto& [kind, word] :
          {std::pair{Glass::Open, "open"}, std::pair{Glass::InsideOut, "inside out"}}) {
-        const std::string named =
-            fmt::format("{}\"globe\" ({}); where it overlaps other glass, absorption and "
-                        "refraction may be wrong; close its mesh, with faces outwards, or take its "
-                        "thickness away",
-                        kFaulty, word);
+        const std::string named = fmt::format(
+            "{}\"globe\" ({}); where it overlaps other glass, absorption and "
+            "refraction may be wrong; close its mesh, with faces outwards, or take its "
+            "thickness away",
+            kFaulty, word);
         EXPECT_THAT(run_petzval({"info", lamp_in(kind)}).out, HasSubstr(named));
         const Finished run = rendered(kind);
         EXPECT_EQ(run.exit_code, 0);

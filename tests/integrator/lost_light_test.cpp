@@ -57,6 +57,7 @@ TEST(LostLight, APointInAGlobeIsNamed) {
 TEST(LostLight, WhatPathsFindIsNotNamed) {
     for (const Shell shell : {Shell::Thin, Shell::Rough, Shell::None}) {
         World world = room(shell);
+        place(world.scene, sphere(V3f(9), 1, 8, false), glass_material(1.5f));  // in the dark
         world.scene.lights.push_back(PointLight{V3f(0), Rgb(1.f)});
         EXPECT_TRUE(lost(world).empty()) << int(shell);
     }

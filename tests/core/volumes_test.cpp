@@ -12,6 +12,7 @@
 namespace petzval {
 namespace {
 
+using test::append;
 using test::box;
 using test::diffuse_material;
 using test::glass_material;
@@ -28,13 +29,6 @@ uint32_t priority(const Scene& scene, const char* name) {
     for (const Material& m : scene.materials)
         if (m.name == name) return m.priority;
     throw std::runtime_error("no such material");
-}
-
-void append(Mesh& to, const Mesh& more) {
-    const auto first = static_cast<uint32_t>(to.positions.size());
-    to.positions.insert(to.positions.end(), more.positions.begin(), more.positions.end());
-    for (const auto& [a, b, c] : more.triangles)
-        to.triangles.push_back({a + first, b + first, c + first});
 }
 
 Mesh turned_inside_out(Mesh mesh) {

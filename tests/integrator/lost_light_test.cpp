@@ -9,6 +9,7 @@
 namespace petzval {
 namespace {
 
+using test::append;
 using test::box;
 using test::diffuse_material;
 using test::emitter_material;
@@ -29,12 +30,10 @@ World room(Shell shell) {
     if (shell == Shell::Rough) glass.roughness = 0.4f;
     if (shell == Shell::None) return world;
     // Outside and cavity: a shell of 5 mm.
-    Mesh outer = sphere(V3f(0), 0.1f, 16, false), inner = sphere(V3f(0), 0.095f, 16, false);
-    const auto first = static_cast<uint32_t>(outer.positions.size());
-    outer.positions.insert(outer.positions.end(), inner.positions.begin(), inner.positions.end());
-    for (const auto& [a, b, c] : inner.triangles)
-        outer.triangles.push_back({a + first, c + first, b + first});
-    place(world.scene, outer, glass);
+    Mesh shell_mesh = sphere(V3f(0), 0.1f, 16, false), cavity = sphere(V3f(0), 0.095f, 16, false);
+    for (auto& triangle : cavity.triangles) std::swap(triangle[1], triangle[2]);
+    append(shell_mesh, cavity);
+    place(world.scene, shell_mesh, glass);
     return world;
 }
 

@@ -15,6 +15,7 @@ spp=${GALLERY_SPP:-256}
 petzval=${PETZVAL:-build/bin/petzval}
 ornaments=assets/scenes/ornaments.glb
 dusk=assets/scenes/first_light.glb
+glass=assets/scenes/glass.glb
 wanted=("$@")
 known=()
 mkdir -p "$out" ${GALLERY_DOCS:+"$GALLERY_DOCS"}
@@ -117,6 +118,12 @@ picture star 480x320 $ornaments --lens double-gauss-100mm-f2 --focus 1m --apertu
     --aperture-scale inscribed --look-at -0.1,-0.06,0,-0.1,-0.06,-1
 picture fringes 1920x1280 $ornaments --lens petzval-portrait-100mm-f3.6 --crop 754,520,480,320 \
     --look-at 0,-0.17,3,0,-0.17,-1 --focus 4.6m
+
+# A room lit through its window alone, what stands on its table, and panes that blur.
+more=4
+picture glass_room 480x320 $glass --camera room --exposure -0.7
+picture glass_ice 480x320 $glass --camera ice --exposure -0.3
+picture glass_frosted 480x320 $glass --camera frosted --exposure -1
 
 for name in "${wanted[@]}"; do
     [[ " ${known[*]} " == *" $name "* ]] || {

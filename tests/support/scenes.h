@@ -80,6 +80,14 @@ inline Mesh box(V3f low, V3f high) {
     return mesh;
 }
 
+/// Adds the triangles of another mesh, positions alone.
+inline void append(Mesh& to, const Mesh& more) {
+    const auto first = static_cast<uint32_t>(to.positions.size());
+    to.positions.insert(to.positions.end(), more.positions.begin(), more.positions.end());
+    for (const auto& [a, b, c] : more.triangles)
+        to.triangles.push_back({a + first, b + first, c + first});
+}
+
 /// Smooth glass with a volume; attenuation: share of light that is left after a metre.
 inline Material glass_material(float ior, float attenuation = 1.f) {
     Material m;

@@ -16,16 +16,18 @@ struct LostLight {
     uint32_t light = 0;  ///< of a punctual one: index into Scene::lights
     double size = 0;     ///< of a lamp: diameter, metres; of a spot of the sky: radians
     uint32_t glass = 0;  ///< index into Scene::materials
-    double share = 0;    ///< of what it sends to surfaces, that which goes through solid glass
+    /// Of what it sends to surfaces, a lamp all about, others where the glass is: that which goes
+    /// through glass first.
+    double share = 0;
 };
 
 /// Chance below which a path that leaves a surface counts as never meeting a lamp.
 inline constexpr double kHardlyAnyPath = 1e-4;
 
-/// Lights of which at least a thousandth of what they send to surfaces goes through solid, smooth
-/// glass first, and which the path tracer does not find behind it: shadow rays end there, and what
-/// the glass sends on meets a light without size never, and another with a chance below
-/// kHardlyAnyPath. The glass is not taken to bend. A pure function of the scene; 1024 rays a light.
+/// Lights of which at least a hundredth (LostLight::share) goes through solid, smooth glass and
+/// then to a surface, where the path tracer does not find it: shadow rays end at the glass, and a
+/// path that goes back through it meets a light without size never, and another with a chance below
+/// kHardlyAnyPath. The glass is not taken to bend. A pure function of the scene; 256 rays a light.
 [[nodiscard]] std::vector<LostLight> lost_light(const Scene&, const Bvh&);
 
 }  // namespace petzval

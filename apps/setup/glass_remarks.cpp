@@ -7,7 +7,6 @@
 #include <algorithm>
 
 #include "core/scene/volume_ranks.h"
-#include "io/base/format.h"
 
 namespace petzval {
 namespace {
@@ -81,8 +80,7 @@ std::string lost_light_text(const Scene& scene, const std::vector<LostLight>& lo
         "light is too dark; give the light a size or a larger one, or take the thickness of the "
         "glass away",
         listed(by_share, [&](const LostLight& l) {
-            return fmt::format("{} behind {} ({} of its light)", name_of(l),
-                               name_of(scene, l.glass), percent(l.share));
+            return fmt::format("{} behind {}", name_of(l), name_of(scene, l.glass));
         }));
 }
 

@@ -64,7 +64,7 @@ class CliGlass : public CliTest {
 
 constexpr const char* kLost =
     "no path finds light that comes through solid glass, or hardly one: point light 0 behind "
-    "\"globe\" (100 % of its light); what it would light is too dark; give the light a size or a "
+    "\"globe\"; what it would light is too dark; give the light a size or a "
     "larger one, or take the thickness of the glass away";
 constexpr const char* kFaulty = "glass with a thickness whose surface is not a closed volume: ";
 

@@ -96,14 +96,15 @@ def walls():
 
 
 def bars():
-    """The window's frame: an upright and a cross bar, and a border."""
+    """The window's frame: an upright and a cross bar, and a border. Each is a millimetre thicker than the one before,
+    as faces in one plane flicker."""
     (low, back), (high, front) = WINDOW
     shape, t = Shape(), 0.025
-    x0, x1, middle, across = LEFT - 0.1, LEFT - 0.05, (back + front) / 2, low + 0.62 * (high - low)
-    for a, b in (((low, middle - t), (high, middle + t)), ((across - t, back), (across + t, front)),
-                 ((low, back), (high, back + 2 * t)), ((low, front - 2 * t), (high, front)),
-                 ((low, back), (low + 2 * t, front)), ((high - 2 * t, back), (high, front))):
-        shape.join(block((x0, a[0], a[1]), (x1, b[0], b[1])))
+    middle, across = (back + front) / 2, low + 0.62 * (high - low)
+    for i, (a, b) in enumerate((((low, middle - t), (high, middle + t)), ((across - t, back), (across + t, front)),
+                                ((low, back), (high, back + 2 * t)), ((low, front - 2 * t), (high, front)),
+                                ((low, back), (low + 2 * t, front)), ((high - 2 * t, back), (high, front)))):
+        shape.join(block((LEFT - 0.1 - 0.001 * i, a[0], a[1]), (LEFT - 0.05 + 0.001 * i, b[0], b[1])))
     return shape
 
 

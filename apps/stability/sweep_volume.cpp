@@ -159,10 +159,10 @@ Finding nested_volumes() {
     constexpr double kAsPrinted = 1e-5;
     f.where = fmt::format(
         "Closed volumes: within {}. Of open ones only the last is remembered: {} times too bright "
-        "at a = 0.01 for half a metre. A gap between glass and water is one of air: {} of the "
-        "light "
-        "comes through",
-        percent(std::fmax(worst_closed, kAsPrinted)), number(worst_open), percent(least_through));
+        "at a = 0.01 for half a metre. A gap between glass and water is one of air, which takes "
+        "{} of the light away",
+        percent(std::fmax(worst_closed, kAsPrinted)), number(worst_open),
+        percent(1 - least_through));
     f.instead =
         "A path counts the closed volumes that it is in, and the smallest of them is there. `info` "
         "and `render` name glass that is not closed.";

@@ -120,10 +120,10 @@ picture fringes 1920x1280 $ornaments --lens petzval-portrait-100mm-f3.6 --crop 7
     --look-at 0,-0.17,3,0,-0.17,-1 --focus 4.6m
 
 # A room lit through its window alone, what stands on its table, and panes that blur.
-more=4
-picture glass_room 480x320 $glass --camera room --exposure -0.7
-picture glass_ice 480x320 $glass --camera ice --exposure -0.3
-picture glass_frosted 480x320 $glass --camera frosted --exposure -1
+more=2
+picture glass_room 480x320 $glass --camera room
+picture glass_ice 480x320 $glass --camera ice --exposure -0.5
+picture glass_frosted 480x320 $glass --camera frosted
 
 for name in "${wanted[@]}"; do
     [[ " ${known[*]} " == *" $name "* ]] || {

@@ -148,17 +148,17 @@ def frosted(glb):
             glb.node("ball", mesh=glb.mesh("ball", (sphere(r), paint)), at=(x + dx, y, PANES_Z - 0.28))
         for k in range(7):
             glb.node("slat", mesh=slat, at=(x + 0.09 * (k - 3), 0, PANES_Z - 0.6))
-        lamp = glb.material("bulb", "#000000", 1.0, emissive="#ffd9a0", nits=60)
+        lamp = glb.material("bulb", "#000000", 1.0, emissive="#ffd9a0", nits=22)
         glb.node("bulb", mesh=glb.mesh("bulb", (sphere(0.03), lamp)), at=(x + 0.12, 1.2, PANES_Z - 0.25))
 
 
 def sun_and_sky(glb):
     glb.used.add("KHR_lights_punctual")
     glb.json["extensions"] = {"KHR_lights_punctual": {"lights": [
-        {"name": "sun", "type": "directional", "intensity": 70, "color": [1.0, 0.93, 0.82]}]}}
+        {"name": "sun", "type": "directional", "intensity": 22, "color": [1.0, 0.93, 0.82]}]}}
     # A light shines along -z of its node.
     glb.node("sun", rotation=look((0, 0, 0), SUN), extensions={"KHR_lights_punctual": {"light": 0}})
-    sky = glb.material("sky", "#000000", 1.0, emissive="#b9d4ff", nits=9)
+    sky = glb.material("sky", "#000000", 1.0, emissive="#b9d4ff", nits=12)
     glb.node("sky", mesh=glb.mesh("sky", (sheet((-4, -0.5, 3), (0, 0, -7.2), (0, 3.25, 0), X), sky)))
 
 

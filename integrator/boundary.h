@@ -2,6 +2,8 @@
 // Boundary between volumes: the face that a ray meets, with those that lie on top of it.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <vector>
 
 #include "core/scene/volumes.h"
@@ -27,9 +29,35 @@ struct Boundary {
 
 namespace boundary_detail {
 
+using Triangle = std::array<V3f, 3>;
+
+// Whether the point of a surface lies on an edge of its triangle, up to rounding.
+inline bool is_on_edge(const Surface& s, const Triangle& t) {
+    const V2f u = s.hit.barycentric;
+    const std::array<float, 3> weight{1 - u.x - u.y, u.x, u.y};
+    const float twice_area = (t[1] - t[0]).cross(t[2] - t[0]).length();
+    for (size_t i = 0; i < 3; ++i) {  // the edge across from corner i
+        const float edge_m = (t[(i + 1) % 3] - t[(i + 2) % 3]).length();
+        if (weight[i] * twice_area <= 4 * s.p_error.length() * edge_m) return true;
+    }
+    return false;
+}
+
+// Whether two faces at the same point are one crossing of one surface: the point lies on an edge or
+// a corner that they share.
+inline bool are_neighbours(const Scene& scene, const Surface& a, const Surface& b) {
+    if (a.material != b.material || a.front != b.front) return false;
+    const Triangle of_a = triangle_corners(scene, a.hit.instance, a.hit.triangle);
+    const Triangle of_b = triangle_corners(scene, b.hit.instance, b.hit.triangle);
+    if (!is_on_edge(a, of_a) && !is_on_edge(b, of_b)) return false;
+    for (const V3f& p : of_a)
+        for (const V3f& q : of_b)
+            if ((p - q).length() <= 4e-6f * (p.length() + q.length())) return true;
+    return false;
+}
+
 // Adds the faces of closed volumes along the normal of the first one, from `back` before it to
-// `onward` behind it, in metres. Neighbours that share an edge with one of them are left out: an
-// object is crossed once a side.
+// `onward` behind it, in metres.
 template <class Caster>
 void add_coincident(const Scene& scene, const Caster& caster, float back_m, float onward_m,
                     std::vector<Surface>& faces) {
@@ -41,10 +69,11 @@ void add_coincident(const Scene& scene, const Caster& caster, float back_m, floa
     for (const Hit& hit : caster.all_hits(probe)) {
         const Surface face = make_surface(scene, onward, hit);
         if (face.material->priority == 0) continue;
-        bool known = false;
-        for (const Surface& f : faces)
-            known |= f.hit.instance == hit.instance && f.front == face.front;
-        if (!known) faces.push_back(face);
+        const auto is_known = [&](const Surface& f) {
+            return (f.hit.instance == hit.instance && f.hit.triangle == hit.triangle) ||
+                   are_neighbours(scene, f, face);
+        };
+        if (std::none_of(faces.begin(), faces.end(), is_known)) faces.push_back(face);
     }
 }
 
@@ -66,7 +95,7 @@ template <class Caster>
         out.sides = s.front ? Fillings{outside, &m} : Fillings{&m, outside};
         return out;
     }
-    if (!scene.may_nest()) {
+    if (!scene.volumes_meet) {
         out.behind = volumes;
         out.behind.cross(m, s.front);
         out.sides = {volumes.filling(), out.behind.filling()};

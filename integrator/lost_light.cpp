@@ -13,33 +13,44 @@ namespace petzval {
 namespace {
 
 constexpr uint32_t kRays = 256;
-constexpr double kLeastShare = 0.01;
+constexpr uint32_t kMostPunctual = 512;
+constexpr double kLeastShare = 0.01;  // of a lamp's light
+constexpr float kLeastTransmission = 0.05f;
 constexpr int kMostFaces = 64;        // that one ray passes
 constexpr float kOneSpot = 0.99939f;  // cosine of 2 degrees
 
-// Glass that sends on in one direction. Where a texture may make it rough, light samples find it.
-bool is_solid_and_smooth(const Material& m) {
-    return m.refracts() && !m.metallic_roughness_texture.present() &&
-           sqr(m.roughness) < kSmallestAlpha;
+bool may_be_solid_and_smooth(const Material& m) {
+    return m.refracts() &&
+           (m.metallic_roughness_texture.present() || sqr(m.roughness) < kSmallestAlpha);
 }
 
-struct Ball {
-    V3f centre;
-    float radius_m;
-};
-
-// About all solid, smooth glass; nothing where there is none.
-std::optional<Ball> ball_of_glass(const Scene& scene) {
-    Box3f box;
-    for (uint32_t i = 0; i < scene.instances.size(); ++i) {
-        const Mesh& mesh = scene.meshes[scene.instances[i].mesh];
-        if (!is_solid_and_smooth(scene.materials[mesh.material])) continue;
-        for (uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle)
-            for (const V3f& corner : triangle_corners(scene, i, triangle)) box.extendBy(corner);
+// Points on glass that may be solid and smooth: as many on each object, whatever its size.
+class GlassPoints {
+  public:
+    explicit GlassPoints(const Scene& scene) : scene_(scene) {
+        for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+            const Mesh& mesh = scene.meshes[scene.instances[i].mesh];
+            if (may_be_solid_and_smooth(scene.materials[mesh.material]) && !mesh.triangles.empty())
+                objects_.push_back(i);
+        }
     }
-    if (box.isEmpty()) return std::nullopt;
-    return Ball{box.center(), box.size().length() / 2};
-}
+    [[nodiscard]] bool empty() const { return objects_.empty(); }
+    [[nodiscard]] V3f draw(const Sampler& sampler) const {
+        const V2f pick = sampler.get2(Dim::Lens), u = uniform_triangle(sampler.get2(Dim::Film));
+        const uint32_t object = objects_[index(pick.x, objects_.size())];
+        const Mesh& mesh = scene_.meshes[scene_.instances[object].mesh];
+        const auto triangle = static_cast<uint32_t>(index(pick.y, mesh.triangles.size()));
+        const auto corners = triangle_corners(scene_, object, triangle);
+        return corners[0] * (1 - u.x - u.y) + corners[1] * u.x + corners[2] * u.y;
+    }
+
+  private:
+    static size_t index(float u, size_t count) {
+        return std::min(static_cast<size_t>(double(u) * double(count)), count - 1);
+    }
+    const Scene& scene_;
+    std::vector<uint32_t> objects_;
+};
 
 Ray ray_of(const Sampler& sampler, const V3f& origin, const V3f& direction) {
     Ray ray;
@@ -47,30 +58,6 @@ Ray ray_of(const Sampler& sampler, const V3f& origin, const V3f& direction) {
     ray.direction = direction;
     ray.alpha_seed = sampler.get_bits(Dim::Coverage, 0);
     return ray;
-}
-
-// A ray from a point into the cone about the glass, or anywhere from within it.
-Ray ray_from(const Sampler& sampler, const V3f& p, const Ball& glass) {
-    const V3f way = glass.centre - p;
-    const float distance_m = way.length();
-    if (!(distance_m > glass.radius_m))
-        return ray_of(sampler, p, uniform_sphere(sampler.get2(Dim::Film)));
-    const float cos_cone = safe_sqrt(1 - sqr(glass.radius_m / distance_m));
-    const V2f u = sampler.get2(Dim::Film);
-    const float cosine = 1 - u.x * (1 - cos_cone), sine = safe_sqrt(1 - sqr(cosine));
-    const float phi = 2 * kPi * u.y;
-    return ray_of(sampler, p,
-                  Frame::about(way / distance_m)
-                      .to_world(V3f(sine * std::cos(phi), sine * std::sin(phi), cosine)));
-}
-
-// A ray from infinity that would cross the ball of glass.
-Ray ray_along(const Sampler& sampler, const Scene& scene, const V3f& direction, const Ball& glass) {
-    const V2f disk = uniform_disk(sampler.get2(Dim::Film)) * glass.radius_m;
-    const float back_m = 1.01f * scene.bounds.size().length();
-    return ray_of(sampler,
-                  glass.centre + Frame::about(direction).to_world(V3f(disk.x, disk.y, -back_m)),
-                  direction);
 }
 
 // What a ray of a light meets on its straight way.
@@ -87,13 +74,18 @@ Arrival follow(const Scene& scene, const Bvh& bvh, Ray ray) {
         const auto hit = bvh.intersect(ray);
         if (!hit) return out;
         const Surface s = make_surface(scene, ray.direction, *hit);
-        const bool solid = is_solid_and_smooth(*s.material);
-        if (!solid && !s.material->may_be_pane()) {
+        const auto is_clear = [&] {
+            if (!s.material->may_be_pane() && !may_be_solid_and_smooth(*s.material)) return false;
+            const BsdfInput at = read_material(scene, s, -ray.direction, Bands::rgb()).bsdf;
+            return sqr(at.roughness) < kSmallestAlpha &&
+                   at.transmission * (1 - at.metallic) >= kLeastTransmission;
+        };
+        if (!is_clear()) {
             out.lands = true;
             out.distance_m = double((s.p - start).length());
             return out;
         }
-        if (solid && !out.first_glass) out.first_glass = s.mesh->material;
+        if (s.material->has_volume && !out.first_glass) out.first_glass = s.mesh->material;
         ray.origin = offset_origin(s.p, s.p_error, s.ng, ray.direction);
     }
     return out;
@@ -102,40 +94,42 @@ Arrival follow(const Scene& scene, const Bvh& bvh, Ray ray) {
 // Names lights of a scene, one by one.
 class Search {
   public:
-    Search(const Scene& scene, const Bvh& bvh, const Ball& glass)
+    Search(const Scene& scene, const Bvh& bvh, const GlassPoints& glass)
         : scene_(scene), bvh_(bvh), glass_(glass) {}
 
     void add(const PointLight& light, uint32_t index) {
-        add_where_lost({LostLight::Kind::Point, index}, never,
-                       [&](const Sampler& s) { return ray_from(s, light.position, glass_); });
+        add_where_lost({LostLight::Kind::Point, index}, 0, never,
+                       [&](const Sampler& s) { return towards_glass(s, light.position); });
     }
     void add(const SpotLight& light, uint32_t index) {
-        add_where_lost({LostLight::Kind::Spot, index}, never,
+        // The glass may be small in the cone, or the cone on the glass.
+        add_where_lost({LostLight::Kind::Spot, index}, 0, never,
                        [&](const Sampler& s) -> std::optional<Ray> {
-                           const Ray ray = ray_from(s, light.position, glass_);
+                           if (s.get_bits(Dim::LightPoint, 0) % 2 == 0) return within(s, light);
+                           const Ray ray = towards_glass(s, light.position);
                            if (ray.direction.dot(light.direction) < light.cos_outer) return {};
                            return ray;
                        });
     }
     void add(const SunLight& light, uint32_t index) {
-        add_where_lost({LostLight::Kind::Sun, index}, never, [&](const Sampler& s) {
-            return ray_along(s, scene_, light.direction, glass_);
-        });
+        add_where_lost({LostLight::Kind::Sun, index}, 0, never,
+                       [&](const Sampler& s) { return along_to_glass(s, light.direction); });
     }
     void add(const TriangleLight&, uint32_t) {}  // its lamp is a thing
     void add(const SkyLight&, uint32_t) {}       // its bright spots are things
 
     void add(const Thing& lamp) {
-        const double size = 2 * double(lamp.radius_m);
+        const double size = 2 * double(lamp.reach_m);
         if (!lamp.at_infinity) {
             // Share of the directions about a surface, by their cosine, that lead to the lamp.
             const auto chance = [&](double squared_distance_m2) {
                 return lamp.area_m2 / (double(kPi) * squared_distance_m2);
             };
-            add_where_lost({LostLight::Kind::Lamp, 0, size}, chance, [&](const Sampler& s) {
-                const V3f direction = uniform_sphere(s.get2(Dim::Film));
-                return ray_of(s, lamp.centre + direction * (1.01f * lamp.reach_m), direction);
-            });
+            add_where_lost(
+                {LostLight::Kind::Lamp, 0, size}, kLeastShare, chance, [&](const Sampler& s) {
+                    const V3f direction = uniform_sphere(s.get2(Dim::Film));
+                    return ray_of(s, lamp.centre + direction * (1.01f * lamp.reach_m), direction);
+                });
             return;
         }
         // The texels of a sun are things of their own.
@@ -143,8 +137,9 @@ class Search {
         if (std::any_of(sky_spots_.begin(), sky_spots_.end(), is_near)) return;
         sky_spots_.push_back(lamp.centre);
         add_where_lost(
-            {LostLight::Kind::SkySpot, 0, size}, [&](double) { return lamp.area_m2 / double(kPi); },
-            [&](const Sampler& s) { return ray_along(s, scene_, -lamp.centre, glass_); });
+            {LostLight::Kind::SkySpot, 0, size}, 0,
+            [&](double) { return lamp.area_m2 / double(kPi); },
+            [&](const Sampler& s) { return along_to_glass(s, -lamp.centre); });
     }
 
     std::vector<LostLight> out;
@@ -152,10 +147,27 @@ class Search {
   private:
     static double never(double) { return 0; }
 
+    [[nodiscard]] Ray towards_glass(const Sampler& sampler, const V3f& p) const {
+        return ray_of(sampler, p, unit(glass_.draw(sampler) - p));
+    }
+    [[nodiscard]] Ray along_to_glass(const Sampler& sampler, const V3f& direction) const {
+        const float back_m = 1.01f * scene_.bounds.size().length();
+        return ray_of(sampler, glass_.draw(sampler) - direction * back_m, direction);
+    }
+    [[nodiscard]] static Ray within(const Sampler& sampler, const SpotLight& light) {
+        const V2f u = sampler.get2(Dim::Film);
+        const float cosine = 1 - u.x * (1 - light.cos_outer), sine = safe_sqrt(1 - sqr(cosine));
+        const float phi = 2 * kPi * u.y;
+        const Frame frame = Frame::about(light.direction);
+        return ray_of(sampler, light.position,
+                      frame.to_world(V3f(sine * std::cos(phi), sine * std::sin(phi), cosine)));
+    }
+
     // chance: of a path that leaves a surface at that squared distance. ray: one that the light
     // sends, or none.
     template <class Chance, class MakeRay>
-    void add_where_lost(LostLight found, const Chance& chance, const MakeRay& ray) {
+    void add_where_lost(LostLight found, double least_share, const Chance& chance,
+                        const MakeRay& ray) {
         std::map<uint32_t, int> through;
         int landed = 0, lost = 0;
         double squares_m2 = 0;
@@ -169,7 +181,7 @@ class Search {
             ++through[*arrival.first_glass];
             squares_m2 += sqr(arrival.distance_m);
         }
-        if (lost == 0 || lost < kLeastShare * landed) return;
+        if (lost == 0 || lost < least_share * landed) return;
         if (!(chance(squares_m2 / lost) < kHardlyAnyPath)) return;
         found.share = double(lost) / landed;
         found.glass = std::max_element(through.begin(), through.end(), [](auto& a, auto& b) {
@@ -180,18 +192,22 @@ class Search {
 
     const Scene& scene_;
     const Bvh& bvh_;
-    const Ball glass_;
+    const GlassPoints& glass_;
     std::vector<V3f> sky_spots_;  // directions
 };
 
 }  // namespace
 
 std::vector<LostLight> lost_light(const Scene& scene, const Bvh& bvh) {
-    const std::optional<Ball> glass = ball_of_glass(scene);
-    if (!glass) return {};
-    Search search(scene, bvh, *glass);
-    for (uint32_t i = 0; i < scene.lights.size(); ++i)
+    const GlassPoints glass(scene);
+    if (glass.empty()) return {};
+    Search search(scene, bvh, glass);
+    uint32_t punctual = 0;
+    for (uint32_t i = 0; i < scene.lights.size(); ++i) {
+        if (std::holds_alternative<TriangleLight>(scene.lights[i])) break;  // the file's come first
+        if (++punctual > kMostPunctual) break;
         std::visit([&](const auto& light) { search.add(light, i); }, scene.lights[i]);
+    }
     for (const Thing& thing : things_of(scene))
         if (thing.is_lamp()) search.add(thing);
     return search.out;

@@ -45,12 +45,13 @@ template <class Caster>
     return out;
 }
 
-/// Volumes that a camera ray begins in. Nothing where no volumes may nest: then the first face that
-/// the path meets says it.
+/// Volumes that a camera ray begins in; of volumes that are not closed the first face that the path
+/// meets may say it.
 template <class Caster>
 [[nodiscard]] Volumes start_volumes(const Scene& scene, const Caster& caster, const V3f& origin) {
-    if (!scene.nested_bounds.intersects(origin)) return {};
-    return volumes_at(scene, caster, origin);
+    for (const Box3f& box : scene.volume_boxes)
+        if (box.intersects(origin)) return volumes_at(scene, caster, origin);
+    return {};
 }
 
 }  // namespace petzval

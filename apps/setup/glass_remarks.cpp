@@ -6,8 +6,6 @@
 
 #include <algorithm>
 
-#include "core/scene/volume_ranks.h"
-
 namespace petzval {
 namespace {
 
@@ -20,14 +18,18 @@ std::string name_of(const Scene& scene, uint32_t material) {
 
 std::string name_of(VolumeFault fault) {
     switch (fault) {
+        case VolumeFault::None:
+            break;
         case VolumeFault::Open:
             return "open";
         case VolumeFault::InsideOut:
             return "inside out";
         case VolumeFault::Flat:
-            break;
+            return "flat";
+        case VolumeFault::Holes:
+            return "with holes in its coverage";
     }
-    return "flat";
+    return "closed";
 }
 
 std::string name_of(const LostLight& lost) {
@@ -59,14 +61,17 @@ std::string listed(const All& all, const Word& word) {
 }  // namespace
 
 std::string faulty_volumes_text(const Scene& scene) {
-    const std::vector<FaultyVolume> faulty = faulty_volumes(scene);
+    std::vector<uint32_t> faulty;
+    for (uint32_t m = 0; m < scene.materials.size(); ++m)
+        if (scene.materials[m].volume_fault != VolumeFault::None) faulty.push_back(m);
     if (faulty.empty()) return "";
     return fmt::format(
         "glass with a thickness whose surface is not a closed volume: {}; where it overlaps other "
-        "glass, absorption and refraction may be wrong; close its mesh, with faces outwards, or "
-        "take its thickness away",
-        listed(faulty, [&](const FaultyVolume& f) {
-            return fmt::format("{} ({})", name_of(scene, f.material), name_of(f.fault));
+        "glass, absorption and refraction may be wrong; close all meshes of the material, with "
+        "faces outwards, or take its thickness away",
+        listed(faulty, [&](uint32_t m) {
+            return fmt::format("{} ({})", name_of(scene, m),
+                               name_of(scene.materials[m].volume_fault));
         }));
 }
 

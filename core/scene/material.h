@@ -13,6 +13,10 @@ namespace petzval {
 
 enum class AlphaMode : uint8_t { Opaque, Mask, Blend };
 
+/// Why a material that refracts is no closed volume: its surface has a border, faces inwards, holds
+/// nothing, or may have holes in its coverage.
+enum class VolumeFault : uint8_t { None, Open, InsideOut, Flat, Holes };
+
 /// Smallest GGX width, the square of glTF's roughness: below it a lobe is a mirror, as floats no
 /// longer resolve it.
 inline constexpr float kSmallestAlpha = 1e-3f;
@@ -53,6 +57,7 @@ struct Material {
     /// no volume, or its surface is not closed.
     uint32_t priority = 0;
     bool overlaps_itself = false;  ///< a point may lie in several closed volumes of it
+    VolumeFault volume_fault = VolumeFault::None;
 
     /// Whether coverage must be asked for at each hit.
     [[nodiscard]] bool cutout() const { return alpha_mode != AlphaMode::Opaque; }

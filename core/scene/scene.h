@@ -28,11 +28,10 @@ struct Scene {
     Sky sky;
 
     Box3f bounds;  ///< of all instances, in world space; empty where there are none
-    /// Of the closed volumes, where some of them may overlap or touch; else empty. By rank_volumes.
-    Box3f nested_bounds;
+    /// Boxes about the bodies of all closed volumes, or one about them all. By rank_volumes, as is:
+    std::vector<Box3f> volume_boxes;
+    bool volumes_meet = false;  ///< some of them may overlap or touch
 
-    /// Whether volumes may lie in volumes, or touch.
-    [[nodiscard]] bool may_nest() const { return !nested_bounds.isEmpty(); }
     /// Illuminant of an index; nullptr for -1, which means the scene's own white.
     [[nodiscard]] const Illuminant* illuminant(int32_t index) const {
         return index < 0 ? nullptr : &illuminants[static_cast<size_t>(index)];

@@ -5,14 +5,18 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
-#include <optional>
 #include <unordered_map>
 
 namespace petzval {
 namespace {
 
 using Corners = std::vector<std::array<V3f, 3>>;
+
+// Triangles of a material from which on parts that are open by themselves count as open together.
+constexpr size_t kMostLoose = 1 << 22;
+constexpr size_t kMostBoxes = 64;
 
 // Part of a surface whose triangles hang together by their corners.
 struct Body {
@@ -26,28 +30,66 @@ struct Bodies {
     std::vector<Body> bodies;
 };
 
-// Numbers of the corners, where those at the same place have one number. Exporters round the two
-// ends of a seam differently: a place is a cell of 2^-16 of the surface's diagonal.
-std::vector<uint32_t> weld(const Corners& triangles, const Box3f& box) {
-    const double cell = std::max(double((box.max - box.min).length()) / 65536, 1e-30);
-    std::unordered_map<uint64_t, uint32_t> places;
+// Sets of numbers that count as one.
+class Unions {
+  public:
+    uint32_t add() {
+        parent_.push_back(static_cast<uint32_t>(parent_.size()));
+        return parent_.back();
+    }
+    [[nodiscard]] uint32_t root(uint32_t a) {
+        while (parent_[a] != a) a = parent_[a] = parent_[parent_[a]];
+        return a;
+    }
+    void unite(uint32_t a, uint32_t b) { parent_[root(a)] = root(b); }
+    [[nodiscard]] size_t size() const { return parent_.size(); }
+
+  private:
+    std::vector<uint32_t> parent_;
+};
+
+// Numbers of the corners, where those at the same place have one number, and how many numbers there
+// may be. Exporters round the two ends of a seam differently: points that lie within 2e-6 of the
+// largest coordinate count as one, and may as one up to some ten times that.
+std::pair<std::vector<uint32_t>, size_t> weld(const Corners& triangles, const Box3f& box) {
+    float largest = 0;
+    for (int i = 0; i < 3; ++i)
+        largest = std::max({largest, std::fabs(box.min[i]), std::fabs(box.max[i])});
+    const double cell = std::max(1.6e-5 * double(largest), 1e-30);
+    constexpr double margin = 0.125;  // of a cell
+    std::unordered_map<uint64_t, uint32_t> cells;
+    Unions places;
     std::vector<uint32_t> numbers;
     numbers.reserve(3 * triangles.size());
     for (const auto& triangle : triangles)
         for (const V3f& p : triangle) {
-            uint64_t key = 0;
+            std::array<uint64_t, 3> at;
+            std::array<int, 3> beside;  // the cell that is near along each axis, or 0
             for (int i = 0; i < 3; ++i) {
-                const double at = std::round((double(p[i]) - double(box.min[i])) / cell);
-                key = key << 18 | static_cast<uint64_t>(at);
+                const auto k = static_cast<size_t>(i);
+                const double x = (double(p[i]) - double(box.min[i])) / cell + 1;
+                at[k] = static_cast<uint64_t>(x);
+                const double within = x - std::floor(x);
+                beside[k] = within < margin ? -1 : within > 1 - margin ? 1 : 0;
             }
-            numbers.push_back(places.try_emplace(key, places.size()).first->second);
+            const auto key = [&](unsigned axes) {
+                uint64_t bits = 0;
+                for (size_t k = 0; k < 3; ++k)
+                    bits =
+                        bits << 20 | (at[k] + (axes >> k & 1 ? uint64_t(int64_t(beside[k])) : 0));
+                return bits;
+            };
+            const auto [home, is_new] = cells.try_emplace(key(0), 0);
+            if (is_new) home->second = places.add();
+            numbers.push_back(home->second);
+            const unsigned near =
+                (beside[0] ? 1u : 0u) | (beside[1] ? 2u : 0u) | (beside[2] ? 4u : 0u);
+            for (unsigned axes = near; axes > 0; axes = (axes - 1) & near)
+                if (const auto other = cells.find(key(axes)); other != cells.end())
+                    places.unite(numbers.back(), other->second);
         }
-    return numbers;
-}
-
-uint32_t root_of(std::vector<uint32_t>& parent, uint32_t a) {
-    while (parent[a] != a) a = parent[a] = parent[parent[a]];
-    return a;
+    for (uint32_t& n : numbers) n = places.root(n);
+    return {std::move(numbers), places.size()};
 }
 
 double signed_volume(const std::array<V3f, 3>& t, const V3f& about) {
@@ -69,24 +111,28 @@ Bodies find_bodies(const Corners& triangles) {
     for (const auto& triangle : triangles)
         for (const V3f& p : triangle) box.extendBy(p);
     Bodies out;
-    if (box.isEmpty() || !std::isfinite((box.max - box.min).length())) return out;
-    const std::vector<uint32_t> number = weld(triangles, box);
-    std::vector<uint32_t> parent(number.size());
-    std::iota(parent.begin(), parent.end(), 0u);
+    if (box.isEmpty()) return out;
+    if (!std::isfinite(box.size().length())) {  // beyond what can be looked at
+        out.bodies.push_back({box});
+        return out;
+    }
+    const auto [number, places] = weld(triangles, box);
+    Unions joined;
+    for (size_t i = 0; i < places; ++i) joined.add();
     std::vector<Edge> edges;
     edges.reserve(number.size());
     for (size_t i = 0; i < number.size(); i += 3)
         for (size_t k = 0; k < 3; ++k) {
             const uint32_t a = number[i + k], b = number[i + (k + 1) % 3];
             if (a != b) edges.push_back({std::min(a, b), std::max(a, b), a < b ? 1 : -1});
-            parent[root_of(parent, a)] = root_of(parent, b);
+            joined.unite(a, b);
         }
     std::sort(edges.begin(), edges.end(),
               [](const Edge& a, const Edge& b) { return a.ends() < b.ends(); });
     std::unordered_map<uint32_t, size_t> body_of;
     for (size_t i = 0; i < triangles.size(); ++i) {
         const auto [at, is_new] =
-            body_of.try_emplace(root_of(parent, number[3 * i]), out.bodies.size());
+            body_of.try_emplace(joined.root(number[3 * i]), out.bodies.size());
         if (is_new) out.bodies.emplace_back();
         Body& body = out.bodies[at->second];
         for (const V3f& p : triangles[i]) body.box.extendBy(p);
@@ -98,8 +144,7 @@ Bodies find_bodies(const Corners& triangles) {
         for (; end < edges.size() && edges[end].ends() == edges[i].ends(); ++end)
             sum += edges[end].way;
         out.closed &= sum == 0;
-        if (end - i > 2)
-            out.bodies[body_of.at(root_of(parent, edges[i].low))].touches_itself = true;
+        if (end - i > 2) out.bodies[body_of.at(joined.root(edges[i].low))].touches_itself = true;
     }
     return out;
 }
@@ -121,38 +166,46 @@ Body placed(const Body& body, const Instance& instance) {
             body.touches_itself};
 }
 
-bool is_candidate(const Material& m) {
-    return m.refracts() && !m.cutout();
+// Whether its coverage may leave holes.
+bool has_holes(const Material& m, const Mesh& mesh) {
+    if (!m.cutout()) return false;
+    const float least = m.alpha_mode == AlphaMode::Mask ? m.alpha_cutoff : 1.f;
+    return m.base_color_texture.present() || !mesh.colours.empty() || m.alpha < least;
 }
 
-// Bodies of each material in the world. Meshes that are closed by themselves are looked at once,
-// however many instances they have; the others of a material may close each other.
-std::vector<Bodies> bodies_of_materials(const Scene& scene) {
+// Bodies of each material that refracts, in the world. Meshes that are closed by themselves are
+// looked at once, however many instances they have; the others of a material may close each other.
+std::vector<Bodies> bodies_of_materials(Scene& scene) {
     std::vector<Bodies> of_mesh(scene.meshes.size()), out(scene.materials.size());
-    for (size_t i = 0; i < scene.meshes.size(); ++i)
-        if (is_candidate(scene.materials[scene.meshes[i].material]))
-            of_mesh[i] = find_bodies(corners_of(scene.meshes[i]));
-    std::vector<Corners> left(scene.materials.size());
+    std::vector<Corners> loose(scene.materials.size());
+    std::vector<bool> is_seen(scene.meshes.size(), false);
     for (uint32_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
         const Mesh& mesh = scene.meshes[instance.mesh];
-        if (!is_candidate(scene.materials[mesh.material])) continue;
-        const Bodies& bodies = of_mesh[instance.mesh];
+        Material& material = scene.materials[mesh.material];
+        if (!material.refracts()) continue;
+        if (has_holes(material, mesh)) material.volume_fault = VolumeFault::Holes;
+        Bodies& bodies = of_mesh[instance.mesh];
+        if (!is_seen[instance.mesh]) bodies = find_bodies(corners_of(mesh));
+        is_seen[instance.mesh] = true;
         if (bodies.closed) {
-            out[mesh.material].closed = true;
             for (const Body& b : bodies.bodies)
                 out[mesh.material].bodies.push_back(placed(b, instance));
             continue;
         }
-        for (uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
+        for (uint32_t triangle = 0;
+             triangle < mesh.triangles.size() && loose[mesh.material].size() <= kMostLoose;
+             ++triangle) {
             auto corners = triangle_corners(scene, i, triangle);
             if (instance.flips) std::swap(corners[1], corners[2]);
-            left[mesh.material].push_back(corners);
+            loose[mesh.material].push_back(corners);
         }
     }
     for (size_t m = 0; m < out.size(); ++m) {
-        if (left[m].empty()) continue;
-        const Bodies rest = find_bodies(left[m]);
+        out[m].closed = !out[m].bodies.empty();
+        if (loose[m].empty()) continue;
+        const Bodies rest =
+            loose[m].size() > kMostLoose ? Bodies{false, {Body{}}} : find_bodies(loose[m]);
         out[m].closed = rest.closed;
         out[m].bodies.insert(out[m].bodies.end(), rest.bodies.begin(), rest.bodies.end());
     }
@@ -163,21 +216,22 @@ bool contains(const Box3f& outer, const Box3f& inner) {
     return outer.intersects(inner.min) && outer.intersects(inner.max);
 }
 
-// Nothing where the bodies are closed volumes. A body that faces inwards is a cavity of one that
-// faces outwards and holds it.
-std::optional<VolumeFault> fault_of(const Bodies& of_material) {
+// A body that faces inwards is a cavity of one that faces outwards and holds it.
+VolumeFault fault_of(Bodies& of_material) {
     if (!of_material.closed) return VolumeFault::Open;
     constexpr double flat = 1e-9;  // of the cube of the diagonal: what rounding may leave
-    for (const Body& b : of_material.bodies) {
-        const double diagonal_m = double((b.box.max - b.box.min).length());
+    auto& bodies = of_material.bodies;
+    std::sort(bodies.begin(), bodies.end(),
+              [](const Body& a, const Body& b) { return a.volume > b.volume; });
+    for (const Body& b : bodies) {
+        const double diagonal_m = double(b.box.size().length());
         if (std::fabs(b.volume) <= flat * diagonal_m * diagonal_m * diagonal_m)
             return VolumeFault::Flat;
         const auto holds = [&](const Body& o) { return o.volume > 0 && contains(o.box, b.box); };
-        if (b.volume < 0 &&
-            std::none_of(of_material.bodies.begin(), of_material.bodies.end(), holds))
+        if (b.volume < 0 && std::none_of(bodies.begin(), bodies.end(), holds))
             return VolumeFault::InsideOut;
     }
-    return std::nullopt;
+    return VolumeFault::None;
 }
 
 struct PlacedBody {
@@ -189,30 +243,45 @@ struct PlacedBody {
 // Marks what may overlap: bodies whose boxes meet. A box grows by a millionth of where it is, as
 // faces that only touch are rounded.
 void mark_overlaps(Scene& scene, std::vector<PlacedBody> bodies) {
+    Box3f all;
     for (PlacedBody& b : bodies) {
+        all.extendBy(b.box);
         const V3f far = (abs(b.box.min) + abs(b.box.max)) * 1e-6f;
         b.box.min -= far;
         b.box.max += far;
     }
-    std::sort(bodies.begin(), bodies.end(),
-              [](const PlacedBody& a, const PlacedBody& b) { return a.box.min.x < b.box.min.x; });
-    const auto mark = [&](const PlacedBody& a, const PlacedBody& b) {
-        scene.nested_bounds.extendBy(a.box);
-        scene.nested_bounds.extendBy(b.box);
-        if (a.material == b.material) scene.materials[a.material].overlaps_itself = true;
-    };
+    const auto axis = static_cast<int>(all.majorAxis());
+    std::sort(bodies.begin(), bodies.end(), [&](const PlacedBody& a, const PlacedBody& b) {
+        return a.box.min[axis] < b.box.min[axis];
+    });
     for (size_t i = 0; i < bodies.size(); ++i) {
-        if (bodies[i].touches_itself) mark(bodies[i], bodies[i]);
-        for (size_t j = i + 1; j < bodies.size() && bodies[j].box.min.x <= bodies[i].box.max.x; ++j)
-            if (bodies[i].box.intersects(bodies[j].box)) mark(bodies[i], bodies[j]);
+        const PlacedBody& a = bodies[i];
+        if (a.touches_itself) scene.materials[a.material].overlaps_itself = true;
+        scene.volumes_meet |= a.touches_itself;
+        for (size_t j = i + 1; j < bodies.size() && bodies[j].box.min[axis] <= a.box.max[axis];
+             ++j) {
+            if (!a.box.intersects(bodies[j].box)) continue;
+            scene.volumes_meet = true;
+            if (a.material == bodies[j].material)
+                scene.materials[a.material].overlaps_itself = true;
+        }
     }
 }
 
 }  // namespace
 
 void rank_volumes(Scene& scene) {
-    if (std::none_of(scene.materials.begin(), scene.materials.end(), is_candidate)) return;
-    const std::vector<Bodies> of_material = bodies_of_materials(scene);
+    scene.volume_boxes.clear();
+    scene.volumes_meet = false;
+    for (Material& m : scene.materials) {
+        m.priority = 0;
+        m.overlaps_itself = false;
+        m.volume_fault = VolumeFault::None;
+    }
+    if (std::none_of(scene.materials.begin(), scene.materials.end(),
+                     [](const Material& m) { return m.refracts(); }))
+        return;
+    std::vector<Bodies> of_material = bodies_of_materials(scene);
     struct Ranked {
         uint32_t material;
         double largest_m3;
@@ -221,14 +290,24 @@ void rank_volumes(Scene& scene) {
     std::vector<Ranked> ranked;
     std::vector<PlacedBody> bodies;
     for (uint32_t m = 0; m < of_material.size(); ++m) {
-        if (of_material[m].bodies.empty() || fault_of(of_material[m])) continue;
+        Material& material = scene.materials[m];
+        if (of_material[m].bodies.empty()) continue;
+        if (material.volume_fault == VolumeFault::None)
+            material.volume_fault = fault_of(of_material[m]);
+        if (material.volume_fault != VolumeFault::None) continue;
         Ranked r{m, 0, {}};
         for (const Body& b : of_material[m].bodies) {
             r.largest_m3 = std::max(r.largest_m3, b.volume);
             r.box.extendBy(b.box);
             bodies.push_back({b.box, m, b.touches_itself});
+            if (b.volume > 0) scene.volume_boxes.push_back(b.box);
         }
         ranked.push_back(r);
+    }
+    if (scene.volume_boxes.size() > kMostBoxes) {
+        Box3f all;
+        for (const Box3f& box : scene.volume_boxes) all.extendBy(box);
+        scene.volume_boxes = {all};
     }
     std::sort(ranked.begin(), ranked.end(), [&](const Ranked& a, const Ranked& b) {
         if (a.largest_m3 != b.largest_m3) return a.largest_m3 > b.largest_m3;
@@ -239,18 +318,6 @@ void rank_volumes(Scene& scene) {
     for (uint32_t i = 0; i < ranked.size(); ++i)
         scene.materials[ranked[i].material].priority = i + 1;
     mark_overlaps(scene, std::move(bodies));
-}
-
-std::vector<FaultyVolume> faulty_volumes(const Scene& scene) {
-    const auto unranked = [](const Material& m) { return is_candidate(m) && m.priority == 0; };
-    if (std::none_of(scene.materials.begin(), scene.materials.end(), unranked)) return {};
-    const std::vector<Bodies> of_material = bodies_of_materials(scene);
-    std::vector<FaultyVolume> out;
-    for (uint32_t m = 0; m < of_material.size(); ++m) {
-        if (of_material[m].bodies.empty()) continue;
-        if (const auto fault = fault_of(of_material[m])) out.push_back({m, *fault});
-    }
-    return out;
 }
 
 }  // namespace petzval

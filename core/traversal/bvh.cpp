@@ -112,7 +112,7 @@ struct Bvh::Impl {
     RTCScene new_scene(Traversal traversal) const {
         RTCScene made = rtcNewScene(device);
         int flags = traversal == Traversal::Robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE;
-        if (scene.may_nest()) flags |= RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
+        if (!scene.volume_boxes.empty()) flags |= RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
         rtcSetSceneFlags(made, static_cast<RTCSceneFlags>(flags));
         rtcSetSceneBuildQuality(made, RTC_BUILD_QUALITY_HIGH);
         return made;
@@ -209,7 +209,7 @@ bool Bvh::occluded(const Ray& r) const {
 
 std::vector<Hit> Bvh::all_hits(const Ray& r) const {
     std::vector<Hit> hits;
-    if (!traceable(r) || !impl_->scene.may_nest()) return hits;
+    if (!traceable(r) || impl_->scene.volume_boxes.empty()) return hits;
     Context context;
     rtcInitIntersectContext(&context.embree);
     context.embree.filter = note;

@@ -28,8 +28,8 @@ class Bvh {
     [[nodiscard]] std::optional<Hit> intersect(const Ray&) const;
     /// Whether anything but what may be a pane (Material::may_be_pane) lies in (0, t_max).
     [[nodiscard]] bool occluded(const Ray&) const;
-    /// All hits in (0, t_max], in no order, each once. Only of a scene whose volumes may nest
-    /// (Scene::may_nest); others have none.
+    /// All hits in (0, t_max], in no order, each once. Only of a scene with closed volumes
+    /// (Scene::volume_boxes); others have none.
     [[nodiscard]] std::vector<Hit> all_hits(const Ray&) const;
     /// Whether there is something that may be a pane.
     [[nodiscard]] bool has_panes() const;

@@ -134,9 +134,11 @@ TEST(VolumeRanks, TheSmallerVolumeHasTheHigherPriority) {
         EXPECT_EQ(priority(scene, "whisky"), 2u);
         EXPECT_EQ(priority(scene, "ice"), 3u);
         EXPECT_EQ(priority(scene, "wall"), 0u);
-        EXPECT_TRUE(scene.may_nest());
-        EXPECT_TRUE(faulty_volumes(scene).empty());
-        for (const Material& m : scene.materials) EXPECT_FALSE(m.overlaps_itself) << m.name;
+        EXPECT_TRUE(scene.volumes_meet);
+        for (const Material& m : scene.materials) {
+            EXPECT_FALSE(m.overlaps_itself) << m.name;
+            EXPECT_EQ(m.volume_fault, VolumeFault::None) << m.name;
+        }
     }
 }
 
@@ -171,7 +173,7 @@ TEST(VolumeRanks, NothingNestsWhereNoBodiesMeet) {
     place(scene, box(V3f(-1), V3f(1)), named("a"));
     place(scene, box(V3f(1.5f, -1, -1), V3f(3, 1, 1)), named("b"));
     finish_scene(scene);
-    EXPECT_FALSE(scene.may_nest());
+    EXPECT_FALSE(scene.volumes_meet);
     EXPECT_EQ(priority(scene, "b"), 2u);  // closed all the same
 
     Scene touching;
@@ -179,8 +181,7 @@ TEST(VolumeRanks, NothingNestsWhereNoBodiesMeet) {
     place(touching, box(V3f(1, -1, -1), V3f(3, 1, 1)), named("b"));
     place(touching, box(V3f(50), V3f(51)), named("far"));
     finish_scene(touching);
-    EXPECT_TRUE(touching.may_nest());
-    EXPECT_FALSE(touching.nested_bounds.intersects(V3f(50)));
+    EXPECT_TRUE(touching.volumes_meet);
 }
 
 TEST(VolumeRanks, BodiesOfOneMaterialThatMeetMayOverlap) {
@@ -189,7 +190,7 @@ TEST(VolumeRanks, BodiesOfOneMaterialThatMeetMayOverlap) {
     append(two, box(V3f(0), V3f(2)));
     place(scene, two, named("ice"));
     finish_scene(scene);
-    EXPECT_TRUE(scene.may_nest());
+    EXPECT_TRUE(scene.volumes_meet);
     EXPECT_TRUE(scene.materials[0].overlaps_itself);
 }
 
@@ -204,8 +205,7 @@ TEST(VolumeRanks, PartsOfOneMaterialCloseEachOther) {
     EXPECT_TRUE(scene.materials.size() == 1);
     finish_scene(scene);
     EXPECT_EQ(scene.materials[0].priority, 0u);
-    ASSERT_EQ(faulty_volumes(scene).size(), 1u);
-    EXPECT_EQ(faulty_volumes(scene)[0].fault, VolumeFault::Open);
+    EXPECT_EQ(scene.materials[0].volume_fault, VolumeFault::Open);
 
     Instance lower;
     lower.identity = false;
@@ -215,7 +215,7 @@ TEST(VolumeRanks, PartsOfOneMaterialCloseEachOther) {
     scene.instances.push_back(lower);
     rank_volumes(scene);
     EXPECT_EQ(scene.materials[0].priority, 1u);
-    EXPECT_TRUE(faulty_volumes(scene).empty());
+    EXPECT_EQ(scene.materials[0].volume_fault, VolumeFault::None);
 }
 
 TEST(VolumeRanks, InstancesAreAsLargeAsTheyArePlaced) {
@@ -258,12 +258,12 @@ TEST(VolumeRanks, FaultsAreNamed) {
         Scene scene;
         place(scene, mesh, m);
         finish_scene(scene);
-        const auto faults = faulty_volumes(scene);
-        EXPECT_EQ(scene.materials[0].priority == 0, !faults.empty());
-        return faults.empty() ? std::nullopt : std::optional(faults[0].fault);
+        const VolumeFault found = scene.materials[0].volume_fault;
+        EXPECT_EQ(scene.materials[0].priority == 0, found != VolumeFault::None);
+        return found;
     };
     Mesh holed = box(V3f(-1), V3f(1));
-    EXPECT_EQ(fault(holed), std::nullopt);
+    EXPECT_EQ(fault(holed), VolumeFault::None);
     holed.triangles.pop_back();
     EXPECT_EQ(fault(holed), VolumeFault::Open);
     EXPECT_EQ(fault(quad(V3f(0), V3f(1, 0, 0), V3f(0, 1, 0))), VolumeFault::Open);
@@ -275,17 +275,51 @@ TEST(VolumeRanks, FaultsAreNamed) {
     // A cavity faces into itself.
     Mesh hollow = box(V3f(-1), V3f(1));
     append(hollow, turned_inside_out(box(V3f(-0.5f), V3f(0.5f))));
-    EXPECT_EQ(fault(hollow), std::nullopt);
+    EXPECT_EQ(fault(hollow), VolumeFault::None);
     // No thickness: two faces back to back.
     Mesh pane = quad(V3f(0), V3f(1, 0, 0), V3f(0, 1, 0));
     append(pane, turned_inside_out(pane));
     EXPECT_EQ(fault(pane), VolumeFault::Flat);
     Material cutout = named("cutout");
-    cutout.alpha_mode = AlphaMode::Mask;
-    Scene holes;
-    place(holes, box(V3f(-1), V3f(1)), cutout);
-    finish_scene(holes);
-    EXPECT_EQ(holes.materials[0].priority, 0u);
+    for (const AlphaMode mode : {AlphaMode::Mask, AlphaMode::Blend}) {
+        cutout.alpha_mode = mode;
+        cutout.alpha = 1;
+        EXPECT_EQ(fault(box(V3f(-1), V3f(1)), cutout), VolumeFault::None);
+        cutout.alpha = 0.4f;
+        EXPECT_EQ(fault(box(V3f(-1), V3f(1)), cutout), VolumeFault::Holes);
+    }
+}
+
+// Whatever the cells of the weld are: an edge whose ends are rounded apart, in many positions.
+TEST(VolumeRanks, SeamsAreWeldedWhereverTheyLie) {
+    for (int turn = 0; turn < 50; ++turn) {
+        M44f m;
+        m.setAxisAngle(V3f(0.3f, 0.8f, -0.5f), 0.13f * static_cast<float>(turn));
+        Mesh ball = sphere(V3f(0), 1, 100, false);
+        for (V3f& p : ball.positions) {
+            V3f q;
+            m.multVecMatrix(p, q);
+            p = q;
+        }
+        // Every triangle with corners of its own, each off by up to 1e-6.
+        Mesh soup;
+        uint32_t n = 0;
+        for (const auto& triangle : ball.triangles) {
+            for (const uint32_t corner : triangle) {
+                V3f p = ball.positions[corner];
+                for (int i = 0; i < 3; ++i)
+                    p[i] += 1e-6f * (to_unit_float(hash32(n, static_cast<uint32_t>(i))) - 0.5f);
+                soup.positions.push_back(p);
+                ++n;
+            }
+            soup.triangles.push_back({n - 3, n - 2, n - 1});
+        }
+        Scene scene;
+        place(scene, soup, named("ball"));
+        finish_scene(scene);
+        EXPECT_EQ(scene.materials[0].volume_fault, VolumeFault::None) << turn;
+        EXPECT_FALSE(scene.volumes_meet) << turn;
+    }
 }
 
 }  // namespace

@@ -365,6 +365,35 @@ TEST(NestedVolumes, TheCameraKnowsWhereItStands) {
                 1e-4);
 }
 
+// A lone volume, and what is seen in it is no face of glass.
+TEST(NestedVolumes, TheCameraKnowsThatItIsInWater) {
+    World world;
+    place(world.scene, box(V3f(-3), V3f(3)), glass_material(1.33f, 0.5f));
+    place(world.scene, test::quad(V3f(-1, -1, -2), V3f(2, 0, 0), V3f(0, 2, 0)),
+          test::emitter_material(1.f));
+    world.finish();
+    EXPECT_NEAR(seen(world, V3f(0.1f, 0.2f, 0), V3f(0.1f, 0.2f, -1)).value, 0.25, 1e-4);
+}
+
+// A long and a short box of one mesh, whose fronts and sides lie in one plane: where the ray leaves
+// the short one, it is in the long one still.
+TEST(NestedVolumes, BodiesOfOneMeshMayShareAPlane) {
+    for (const bool same_corners : {false, true}) {
+        World world;
+        Mesh boxes = layer(0, -4);
+        append(boxes, layer(0, -1, same_corners ? 2 : 1.3f));
+        place(world.scene, boxes, glass_material(1, 0.5f));
+        place(world.scene, test::quad(V3f(-1, -1, -3.5f), V3f(2, 0, 0), V3f(0, 2, 0)),
+              test::emitter_material(1.f));
+        world.finish();
+        const double due = std::pow(0.5, 3.5);
+        const Mean e = estimate(world, no_roulette(), 64, [](V2f u) {
+            return ray_to(V3f(u.x - 0.5f, u.y - 0.5f, 3), V3f(u.x - 0.5f, u.y - 0.5f, 0));
+        });
+        EXPECT_NEAR(e.value, due, 2e-3 * due) << same_corners;
+    }
+}
+
 TEST(NestedVolumes, VolumesAtAPointAreThoseThatHoldIt) {
     World world;
     place(world.scene, sphere(V3f(0), 2, 24, false), glass_material(1.5f));

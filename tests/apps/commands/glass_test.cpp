@@ -100,8 +100,8 @@ TEST_F(CliGlass, VolumesThatAreNotClosedAreNamed) {
          {std::pair{Glass::Open, "open"}, std::pair{Glass::InsideOut, "inside out"}}) {
         const std::string named = fmt::format(
             "{}\"globe\" ({}); where it overlaps other glass, absorption and "
-            "refraction may be wrong; close its mesh, with faces outwards, or take its "
-            "thickness away",
+            "refraction may be wrong; close all meshes of the material, with faces outwards, or "
+            "take its thickness away",
             kFaulty, word);
         EXPECT_THAT(run_petzval({"info", lamp_in(kind)}).out, HasSubstr(named));
         const Finished run = rendered(kind);

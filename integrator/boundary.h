@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "core/scene/volumes.h"
@@ -13,18 +14,15 @@ namespace petzval {
 
 /// What a path crosses at a hit, where the hit's material refracts.
 struct Boundary {
-    Surface surface;   ///< whose material shades the boundary
-    Volumes behind;    ///< what the path is in where it goes through
-    Fillings sides{};  ///< of the surface
+    std::optional<Surface>
+        shading;     ///< face that shades it; nothing where it is the one that was met
+    Volumes behind;  ///< what the path is in where it goes through
+    Fillings sides{};
+    bool hidden = false;  ///< nothing changes here: a volume of higher priority fills both sides
     /// What moves rays that leave the surface clear of all its faces; 0 where there is only one.
     V3f clear_back{0.f}, clear_onward{0.f};
 
     [[nodiscard]] V3f clear(bool onward) const { return onward ? clear_onward : clear_back; }
-
-    /// Whether nothing changes here: a volume of higher priority fills both sides.
-    [[nodiscard]] bool hidden() const {
-        return sides.before == sides.behind && !surface.material->emits();
-    }
 };
 
 namespace boundary_detail {
@@ -56,25 +54,25 @@ inline bool are_neighbours(const Scene& scene, const Surface& a, const Surface& 
     return false;
 }
 
-// Adds the faces of closed volumes along the normal of the first one, from `back` before it to
+// Faces of closed volumes beside one that was met, along its normal, from `back` before it to
 // `onward` behind it, in metres.
 template <class Caster>
-void add_coincident(const Scene& scene, const Caster& caster, float back_m, float onward_m,
-                    std::vector<Surface>& faces) {
-    const V3f onward = -faces.front().facing();
+std::vector<Surface> faces_beside(const Scene& scene, const Caster& caster, const Surface& s,
+                                  float back_m, float onward_m) {
     Ray probe;
-    probe.origin = faces.front().p - onward * back_m;
-    probe.direction = onward;
+    probe.direction = -s.facing();
+    probe.origin = s.p - probe.direction * back_m;
     probe.t_max = back_m + onward_m;
+    std::vector<Surface> faces;
     for (const Hit& hit : caster.all_hits(probe)) {
-        const Surface face = make_surface(scene, onward, hit);
-        if (face.material->priority == 0) continue;
-        const auto is_known = [&](const Surface& f) {
-            return (f.hit.instance == hit.instance && f.hit.triangle == hit.triangle) ||
-                   are_neighbours(scene, f, face);
-        };
-        if (std::none_of(faces.begin(), faces.end(), is_known)) faces.push_back(face);
+        if (hit.instance == s.hit.instance && hit.triangle == s.hit.triangle) continue;
+        const Surface face = make_surface(scene, probe.direction, hit);
+        const auto is_known = [&](const Surface& f) { return are_neighbours(scene, f, face); };
+        if (face.material->priority > 0 && !is_known(s) &&
+            std::none_of(faces.begin(), faces.end(), is_known))
+            faces.push_back(face);
     }
+    return faces;
 }
 
 }  // namespace boundary_detail
@@ -85,7 +83,7 @@ void add_coincident(const Scene& scene, const Caster& caster, float back_m, floa
 template <class Caster>
 [[nodiscard]] Boundary boundary_at(const Scene& scene, const Caster& caster, const Ray& ray,
                                    const Surface& s, Volumes& volumes) {
-    Boundary out{s, volumes, {}};
+    Boundary out;
     const Material& m = *s.material;
     volumes.correct(m, s.front);
     if (m.priority == 0) {
@@ -95,33 +93,33 @@ template <class Caster>
         out.sides = s.front ? Fillings{outside, &m} : Fillings{&m, outside};
         return out;
     }
-    if (!scene.volumes_meet) {
-        out.behind = volumes;
-        out.behind.cross(m, s.front);
-        out.sides = {volumes.filling(), out.behind.filling()};
-        return out;
-    }
-    std::vector<Surface> faces{s};
     // Twice the error of a point, and what Embree's t may be off by. What lies before the ray's
     // origin, the path has crossed already.
     const V3f way = s.p - ray.origin;
     const float onward_m = 2 * abs(s.ng).dot(s.p_error) + rounding_bound(8) * way.length();
     const float back_m = std::min(onward_m, std::fabs(way.dot(s.ng)));
-    boundary_detail::add_coincident(scene, caster, back_m, onward_m, faces);
-    for (const Surface& f : faces) volumes.correct(*f.material, f.front);
+    std::vector<Surface> beside;
+    if (scene.volumes_meet)
+        beside = boundary_detail::faces_beside(scene, caster, s, back_m, onward_m);
+    for (const Surface& f : beside) volumes.correct(*f.material, f.front);
     out.behind = volumes;
-    for (const Surface& f : faces) out.behind.cross(*f.material, f.front);
+    out.behind.cross(m, s.front);
+    for (const Surface& f : beside) out.behind.cross(*f.material, f.front);
     out.sides = {volumes.filling(), out.behind.filling()};
-    if (faces.size() == 1) return out;
+    const auto emits = [](const Surface& f) { return f.material->emits(); };
+    out.hidden = out.sides.before == out.sides.behind && !m.emits() &&
+                 std::none_of(beside.begin(), beside.end(), emits);
+    if (beside.empty()) return out;
     out.clear_back = s.facing() * back_m;
     out.clear_onward = -s.facing() * onward_m;
-    const Surface* shading = nullptr;
-    for (const Surface& f : faces) {
-        const bool changes = f.material == out.sides.before || f.material == out.sides.behind;
-        if (changes && (!shading || f.material->priority > shading->material->priority))
+    const auto changes = [&](const Material* of) {
+        return of == out.sides.before || of == out.sides.behind;
+    };
+    const Surface* shading = changes(&m) ? &s : nullptr;
+    for (const Surface& f : beside)
+        if (changes(f.material) && (!shading || f.material->priority > shading->material->priority))
             shading = &f;
-    }
-    if (shading) out.surface = *shading;
+    if (shading && shading != &s) out.shading = *shading;
     return out;
 }
 

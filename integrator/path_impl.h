@@ -250,13 +250,13 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         std::optional<Boundary> boundary;
         if (s.material->refracts()) {
             boundary = boundary_at(scene_, caster_, ray, s, volumes);
-            s = boundary->surface;
+            if (boundary->shading) s = *boundary->shading;
         }
         const Material* const medium = volumes.filling();
         if (medium) throughput *= transmittance(*medium, (s.p - from).length(), bands);
         // Go on where nothing changes. Shadow rays do not pass the faces of volumes, so that what
         // the path finds now, they have not found.
-        if (boundary && boundary->hidden()) {
+        if (boundary && boundary->hidden) {
             if (clear_depth++ == options_.max_clear_depth) {
                 ++stats.clear_ends;
                 break;

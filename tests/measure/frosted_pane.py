@@ -5,8 +5,8 @@
     frosted_pane.py BEFORE/bin/petzval AFTER/bin/petzval
 
 A pane of glass of index 1.5, 10 mm thick, stands before a chequered wall, under a grey sky and a lamp. The programs
-render by turns, one thread, eight seeds each. Noise is the variance over the seeds over the squared mean, averaged over
-the pixels that see the pane. Efficiency is 1 / (noise x CPU time); its error is the spread of leave-one-out sets.
+render by turns, one thread, eight seeds each. Noise is the variance over the seeds over the squared mean, both summed
+over the pixels. Efficiency is 1 / (noise x CPU time); its error is the spread of leave-one-out sets.
 """
 import os
 import resource
@@ -60,44 +60,52 @@ def write_scene(path, roughness):
     file.write(path)
 
 
-def render(program, scene, seed, folder):
-    picture = os.path.join(folder, "picture.exr")
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run([program, "render", scene, "--seed", str(seed), "--spp", "128", "--size", "64x64", "--threads", "1",
-                    "--look-at", "0.1,0.1,0.9,0,0,0", "--fov", "40", "--background", "0.5,0.5,0.5", "--quiet",
-                    "-o", picture], check=True)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    pixels = OpenImageIO.ImageBuf(picture).get_pixels(OpenImageIO.FLOAT)[..., :3].astype(float)
+def render(program, scene, seed, arguments):
+    """Pixels and CPU seconds."""
+    with tempfile.TemporaryDirectory() as folder:
+        picture = os.path.join(folder, "picture.exr")
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        subprocess.run([program, "render", scene, "--seed", str(seed), "--threads", "1", "--quiet", *arguments,
+                        "-o", picture], check=True)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        pixels = OpenImageIO.ImageBuf(picture).get_pixels(OpenImageIO.FLOAT)[..., :3].astype(float)
     return pixels, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
 def noise(pictures):
-    mean = pictures.mean(0).sum(-1)
-    return (numpy.var(pictures, axis=0, ddof=1).sum(-1) / mean**2).mean()
+    return numpy.var(pictures, axis=0, ddof=1).sum() / (pictures.mean(0)**2).sum()
+
+
+def compare(cases):
+    """cases: (program, scene, arguments) of before and of after. Light, noise, CPU time and efficiency of after over
+    before, each with its spread, as cells of a table."""
+    pictures, cpu_s = ([], []), ([], [])
+    for seed in range(1, SEEDS + 1):
+        for which in ((0, 1), (1, 0))[seed % 2]:
+            program, scene, arguments = cases[which]
+            pixels, seconds = render(program, scene, seed, arguments)
+            pictures[which].append(pixels)
+            cpu_s[which].append(seconds)
+    sets = [[seed for seed in range(SEEDS) if seed != left_out] for left_out in (None, *range(SEEDS))]
+    rows = []
+    for chosen in sets:
+        a, b = (numpy.array([pictures[which][seed] for seed in chosen]) for which in (0, 1))
+        light, ratio = b.mean() / a.mean(), noise(b) / noise(a)
+        time = sum(cpu_s[1][seed] for seed in chosen) / sum(cpu_s[0][seed] for seed in chosen)
+        rows.append((light, ratio, time, 1 / (ratio * time)))
+    spread = numpy.std(rows[1:], axis=0) * (SEEDS - 1)**.5
+    return " | ".join("%.3g ± %.2g" % pair for pair in zip(rows[0], spread))
 
 
 def main(programs):
+    arguments = ["--spp", "128", "--size", "64x64", "--look-at", "0.1,0.1,0.9,0,0,0", "--fov", "40",
+                 "--background", "0.5,0.5,0.5"]
     print("| roughness | light | noise | CPU time | efficiency |\n|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as folder:
         scene = os.path.join(folder, "pane.gltf")
         for roughness in ROUGHNESSES:
             write_scene(scene, roughness)
-            pictures, cpu_s = ([], []), ([], [])
-            for seed in range(1, SEEDS + 1):
-                for which in ((0, 1), (1, 0))[seed % 2]:
-                    pixels, seconds = render(programs[which], scene, seed, folder)
-                    pictures[which].append(pixels)
-                    cpu_s[which].append(seconds)
-            sets = [[seed for seed in range(SEEDS) if seed != left_out] for left_out in (None, *range(SEEDS))]
-            rows = []
-            for chosen in sets:
-                a, b = (numpy.array([pictures[which][seed] for seed in chosen]) for which in (0, 1))
-                light, ratio = b.mean() / a.mean(), noise(b) / noise(a)
-                time = sum(cpu_s[1][seed] for seed in chosen) / sum(cpu_s[0][seed] for seed in chosen)
-                rows.append((light, ratio, time, 1 / (ratio * time)))
-            spread = numpy.std(rows[1:], axis=0) * (SEEDS - 1)**.5
-            cells = " | ".join("%.3f ± %.3f" % pair for pair in zip(rows[0], spread))
-            print("| %g | %s |" % (roughness, cells), flush=True)
+            print("| %g | %s |" % (roughness, compare([(p, scene, arguments) for p in programs])), flush=True)
 
 
 if __name__ == "__main__":

@@ -295,5 +295,29 @@ TEST(Path, CountsLampsThatMirrorsShow) {
     }
 }
 
+// Paths that go on by chance from where light is scattered far and wide count as much more.
+TEST(Path, WhatGoesOnByChanceCountsMore) {
+    test::World world;
+    test::place(world.scene, test::sphere(V3f(0.f), 1.f, 16, false), test::diffuse_material(0.8f));
+    test::place(world.scene, test::box(V3f(-5), V3f(5)), test::emitter_material(1.f, 0.5f));
+    world.finish();
+    const PathTracer tracer(world.scene, *world.bvh, *world.lights, PathOptions());
+    PathStats stats;
+    const auto mean = [&](float rest) {
+        test::Moments sum;
+        for (uint32_t i = 0; i < 20000; ++i) {
+            const Sampler sampler(SamplerKind::Independent, 3, {1, 1, i});
+            FilmSample out;
+            sum.add(
+                double(tracer.radiance(test::bundle(sampler.get2(Dim::Film)), Bands::rgb(), sampler,
+                                       false, out, stats, m4{-1, -1, -1, -1}, true, rest)[0]));
+        }
+        return test::Mean(sum);
+    };
+    const test::Mean all = mean(1), some = mean(0.3f);
+    EXPECT_TRUE(test::agrees(all - some, 0)) << all << " and " << some;
+    EXPECT_LT(some.error, 0.02 * all.value);
+}
+
 }  // namespace
 }  // namespace petzval

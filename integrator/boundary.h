@@ -93,14 +93,16 @@ template <class Caster>
         out.sides = s.front ? Fillings{outside, &m} : Fillings{&m, outside};
         return out;
     }
-    // Twice the error of a point, and what Embree's t may be off by. What lies before the ray's
-    // origin, the path has crossed already.
-    const V3f way = s.p - ray.origin;
-    const float onward_m = 2 * abs(s.ng).dot(s.p_error) + rounding_bound(8) * way.length();
-    const float back_m = std::min(onward_m, std::fabs(way.dot(s.ng)));
+    float back_m = 0, onward_m = 0;
     std::vector<Surface> beside;
-    if (scene.volumes_meet)
+    if (scene.volumes_meet) {
+        // Twice the error of a point, and what Embree's t may be off by. What lies before the ray's
+        // origin, the path has crossed already.
+        const V3f way = s.p - ray.origin;
+        onward_m = 2 * abs(s.ng).dot(s.p_error) + rounding_bound(8) * way.length();
+        back_m = std::min(onward_m, std::fabs(way.dot(s.ng)));
         beside = boundary_detail::faces_beside(scene, caster, s, back_m, onward_m);
+    }
     for (const Surface& f : beside) volumes.correct(*f.material, f.front);
     out.behind = volumes;
     out.behind.cross(m, s.front);

@@ -14,8 +14,8 @@ struct LostLight {
     enum class Kind : uint8_t { Point, Spot, Sun, Lamp, SkySpot };
     Kind kind;
     uint32_t light = 0;  ///< of a punctual one: index into Scene::lights
-    double size =
-        0;  ///< of a lamp: diameter of a ball about it, metres; of a spot of the sky: radians
+    /// Of a lamp: diameter of a ball about it, metres; of a spot of the sky: radians.
+    double size = 0;
     uint32_t glass = 0;  ///< index into Scene::materials
     /// Of the rays that were sent, a lamp's all about and others' at the glass: those that went
     /// through glass first, and then to a surface.

@@ -2,6 +2,7 @@
 // The volumes that a camera ray begins in.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 

@@ -51,9 +51,8 @@ void append_placement(const std::string& path, FileScope scope, GltfFile& file) 
                            find_auto_focus(&file.cameras[i], path, scope, scene, bvh)));
     if (file.cameras.empty())
         file.contents.push_back(focus_line("", find_auto_focus(nullptr, path, scope, scene, bvh)));
-    for (const std::string& remark :
-         {faulty_volumes_text(scene), lost_light_text(scene, lost_light(scene, bvh))})
-        if (!remark.empty()) file.warnings.push_back(remark);
+    for (std::string& remark : glass_remarks(scene, lost_light(scene, bvh)))
+        file.warnings.push_back(std::move(remark));
 }
 
 }  // namespace

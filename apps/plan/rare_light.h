@@ -51,8 +51,8 @@ struct RareLight {
     double spared = 0;
     /// Smooth surfaces were met, and behind them fewer than kEnoughPaths paths met a lamp.
     bool mirrored = false, caustic = false;
-    size_t behind_glass =
-        0;  ///< lights that no path finds, or hardly one: PreparedScene::lost_light
+    /// Lights that no path finds, or hardly one (PreparedScene::lost_light).
+    size_t behind_glass = 0;
 
     [[nodiscard]] bool by_chance() const { return mirrored || caustic || behind_glass > 0; }
 };

@@ -58,13 +58,7 @@ std::string listed(const All& all, const Word& word) {
     return text;
 }
 
-}  // namespace
-
-std::string faulty_volumes_text(const Scene& scene) {
-    std::vector<uint32_t> faulty;
-    for (uint32_t m = 0; m < scene.materials.size(); ++m)
-        if (scene.materials[m].volume_fault != VolumeFault::None) faulty.push_back(m);
-    if (faulty.empty()) return "";
+std::string faulty_volumes_text(const Scene& scene, const std::vector<uint32_t>& faulty) {
     return fmt::format(
         "glass with a thickness whose surface is not a closed volume: {}; where it overlaps other "
         "glass, absorption and refraction may be wrong; close all meshes of the material, with "
@@ -76,7 +70,6 @@ std::string faulty_volumes_text(const Scene& scene) {
 }
 
 std::string lost_light_text(const Scene& scene, const std::vector<LostLight>& lost) {
-    if (lost.empty()) return "";
     std::vector<LostLight> by_share = lost;
     std::stable_sort(by_share.begin(), by_share.end(),
                      [](const auto& a, const auto& b) { return a.share > b.share; });
@@ -87,6 +80,18 @@ std::string lost_light_text(const Scene& scene, const std::vector<LostLight>& lo
         listed(by_share, [&](const LostLight& l) {
             return fmt::format("{} behind {}", name_of(l), name_of(scene, l.glass));
         }));
+}
+
+}  // namespace
+
+std::vector<std::string> glass_remarks(const Scene& scene, const std::vector<LostLight>& lost) {
+    std::vector<uint32_t> faulty;
+    for (uint32_t m = 0; m < scene.materials.size(); ++m)
+        if (scene.materials[m].volume_fault != VolumeFault::None) faulty.push_back(m);
+    std::vector<std::string> remarks;
+    if (!faulty.empty()) remarks.push_back(faulty_volumes_text(scene, faulty));
+    if (!lost.empty()) remarks.push_back(lost_light_text(scene, lost));
+    return remarks;
 }
 
 }  // namespace petzval

@@ -10,11 +10,8 @@
 
 namespace petzval {
 
-/// Remark on materials that refract and are no closed volumes, with what to do; empty where all
-/// are.
-[[nodiscard]] std::string faulty_volumes_text(const Scene&);
-/// Remark on light that no path finds: which lights, behind what, and what to do; empty where
-/// there is none.
-[[nodiscard]] std::string lost_light_text(const Scene&, const std::vector<LostLight>&);
+/// A remark on materials that refract and are no closed volumes, and one on light that no path
+/// finds: which, behind what, and what to do. None where there is neither.
+[[nodiscard]] std::vector<std::string> glass_remarks(const Scene&, const std::vector<LostLight>&);
 
 }  // namespace petzval

@@ -113,13 +113,6 @@ PreparedScene load(SceneRequest request, const Notice& notice) {
     return out;
 }
 
-void remark_on_glass(PreparedScene& prepared, const Notice& notice) {
-    prepared.lost_light = lost_light(*prepared.scene, *prepared.bvh);
-    for (const std::string& remark : {faulty_volumes_text(*prepared.scene),
-                                      lost_light_text(*prepared.scene, prepared.lost_light)})
-        if (!remark.empty()) notice("warning: " + remark);
-}
-
 /// Finds small bright things for a camera to send rays to, where that pays.
 void find_targets_of(Camera& camera, V2i size_px, const Scene& scene,
                      const PreparedScene& prepared) {
@@ -166,7 +159,11 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
         prepared.bvh = std::make_shared<const Bvh>(scene, request.traversal);
     if (!shares || asked.light_choice != like->from.asked.light_choice)
         prepared.lights = std::make_shared<const LightChoice>(scene, request.light_choice);
-    if (!shares) remark_on_glass(prepared, notice);
+    if (!shares) {
+        prepared.lost_light = lost_light(scene, *prepared.bvh);
+        for (const std::string& remark : glass_remarks(scene, prepared.lost_light))
+            notice("warning: " + remark);
+    }
     from.bvh_s = seconds_since(bvh_start);
     begin(Phase::Planning);
 

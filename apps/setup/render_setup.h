@@ -30,10 +30,10 @@ struct PreparedScene {
     std::shared_ptr<const std::vector<GltfCamera>> cameras;  ///< of the file
     /// As asked, or what a dark scene gets.
     std::optional<std::filesystem::path> environment;
-    uint64_t hash = 0;             ///< of the file
-    std::vector<NamedFile> files;  ///< that the scene names
-    PictureBudget pictures;        ///< what the scene and its sky left of it
-    std::vector<LostLight> lost_light;
+    uint64_t hash = 0;                  ///< of the file
+    std::vector<NamedFile> files;       ///< that the scene names
+    PictureBudget pictures;             ///< what the scene and its sky left of it
+    std::vector<LostLight> lost_light;  ///< that no path finds
 };
 
 /// Camera and observer of a prepared scene.

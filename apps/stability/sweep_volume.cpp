@@ -40,11 +40,8 @@ double lost(const World& world, int max_clear_depth) {
     return 1 - measure(world, options, 1u << 13, along_z).mean;
 }
 
-Material black_lamp() {
-    Material m;
-    m.base_color = Rgb(0.f);
-    m.metallic = 0;
-    m.specular = 0;
+Material lamp() {
+    Material m = diffuse(0);
     m.emissive = Rgb(1.f);
     return m;
 }
@@ -62,7 +59,7 @@ double from_lamp_in_slabs(double a, bool closed) {
         world.place(quad(V3f(-9, -9, front), V3f(18, 0, 0), V3f(0, 18, 0)), m);
         world.place(quad(V3f(-9, -9, back), V3f(0, 18, 0), V3f(18, 0, 0)), m);
     }
-    world.place(quad(V3f(-5, -5, -2.5f), V3f(10, 0, 0), V3f(0, 10, 0)), black_lamp());
+    world.place(quad(V3f(-5, -5, -2.5f), V3f(10, 0, 0), V3f(0, 10, 0)), lamp());
     world.finish();
     PathOptions options;
     options.roulette_depth = options.max_clear_depth;
@@ -75,7 +72,7 @@ double through_glass_and_water(double gap_m) {
     const auto gap = static_cast<float>(gap_m);
     world.place(box(V3f(-9, -9, -1), V3f(9, 9, 0)), clear_glass(1.5f));
     world.place(box(V3f(-8, -8, -3), V3f(8, 8, -1 - gap)), clear_glass(1.33f));
-    world.place(quad(V3f(-7, -7, -4), V3f(14, 0, 0), V3f(0, 14, 0)), black_lamp());
+    world.place(quad(V3f(-7, -7, -4), V3f(14, 0, 0), V3f(0, 14, 0)), lamp());
     world.finish();
     return measure(world, PathOptions(), 1u << 16, along_z).mean;
 }

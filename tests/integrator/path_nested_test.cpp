@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Glass in glass: absorption and refraction where volumes overlap, touch and hold the camera.
-#include "integrator/start_volumes.h"
 #include "tests/integrator/path_estimate.h"
 
 namespace petzval {
@@ -115,15 +114,6 @@ struct Turned {
     }
 };
 
-Material black_lamp() {
-    Material m;
-    m.base_color = Rgb(0.f);
-    m.metallic = 0;
-    m.specular = 0;
-    m.emissive = Rgb(1.f);
-    return m;
-}
-
 double reflectance(double a, double b) {
     return std::pow((a - b) / (a + b), 2);
 }
@@ -144,7 +134,7 @@ TEST(NestedVolumes, FacesThatNearlyCoincideAreEachCrossedOnce) {
             place(world.scene, turned(bodies), glass_material(1.6f, 0.25f));
             // Only what goes through is seen.
             place(world.scene, turned(test::quad(V3f(-30, -30, -4), V3f(60, 0, 0), V3f(0, 60, 0))),
-                  black_lamp());
+                  test::emitter_material(1));
             world.finish();
             ASSERT_TRUE(world.scene.materials[0].overlaps_itself);
             ASSERT_TRUE(world.scene.materials[1].overlaps_itself);
@@ -197,7 +187,8 @@ TEST(NestedVolumes, ReflectByTheIndexOfBothSides) {
         m.base_color = Rgb(0.f);  // of its share that is not glass
         m.transmission = transmission;
         place(world.scene, box(V3f(-20, -20, -20), V3f(20, 20, 0)), m);
-        place(world.scene, test::quad(V3f(-9, -9, 40), V3f(0, 18, 0), V3f(18, 0, 0)), black_lamp());
+        place(world.scene, test::quad(V3f(-9, -9, 40), V3f(0, 18, 0), V3f(18, 0, 0)),
+              test::emitter_material(1));
         world.finish();
         const Mean e = estimate(world, no_roulette(), 4096,
                                 [](V2f) { return ray_to(V3f(0.1f, 0.1f, 4), V3f(0.1f, 0.1f, 0)); });
@@ -236,31 +227,30 @@ TEST(NestedVolumes, RefractByTheIndexOfBothSides) {
     }
 }
 
-// Where a volume of higher priority fills both sides of a face, the face's roughness and tint are
-// not there either.
-TEST(NestedVolumes, HiddenFacesDoNothing) {
+// What is seen through a slab of 3 m whose faces lie within clear volumes of higher priority, half
+// a metre to each side.
+double seen_with_hidden_faces(const Material& m) {
     World world;
+    place(world.scene, layer(0, -3, 40), m);
+    place(world.scene, layer(0.5f, -0.5f), glass_material(1));
+    place(world.scene, layer(-2.5f, -3.5f), glass_material(1));
+    world.scene.sky = Sky::uniform(Rgb(1.f));
+    world.finish();
+    return seen(world, V3f(0.1f, 0.2f, 3), V3f(0.1f, 0.2f, 0)).value;
+}
+
+// The face's roughness and tint are not there either.
+TEST(NestedVolumes, HiddenFacesDoNothing) {
     Material rough = glass_material(1, 0.5f);
     rough.roughness = 0.5f;
     rough.base_color = Rgb(0.5f);
-    place(world.scene, layer(0, -3, 40), rough);
-    place(world.scene, layer(0.5f, -0.5f), glass_material(1));
-    place(world.scene, layer(-2.5f, -3.5f), glass_material(1));
-    world.scene.sky = Sky::uniform(Rgb(1.f));
-    world.finish();
-    EXPECT_NEAR(seen(world, V3f(0.1f, 0.2f, 3), V3f(0.1f, 0.2f, 0)).value, 0.25, 1e-4);
+    EXPECT_NEAR(seen_with_hidden_faces(rough), 0.25, 1e-4);
 }
 
 TEST(NestedVolumes, HiddenFacesGlow) {
-    World world;
     Material glows = glass_material(1, 0.5f);
     glows.emissive = Rgb(1.f);
-    place(world.scene, layer(0, -3, 40), glows);
-    place(world.scene, layer(0.5f, -0.5f), glass_material(1));
-    place(world.scene, layer(-2.5f, -3.5f), glass_material(1));
-    world.scene.sky = Sky::uniform(Rgb(1.f));
-    world.finish();
-    EXPECT_NEAR(seen(world, V3f(0.1f, 0.2f, 3), V3f(0.1f, 0.2f, 0)).value, 1.25, 1e-4);
+    EXPECT_NEAR(seen_with_hidden_faces(glows), 1.25, 1e-4);
 }
 
 // Of faces that coincide, that of the higher priority shades: the other's tint does not count.
@@ -392,52 +382,6 @@ TEST(NestedVolumes, BodiesOfOneMeshMayShareAPlane) {
         });
         EXPECT_NEAR(e.value, due, 2e-3 * due) << same_corners;
     }
-}
-
-TEST(NestedVolumes, VolumesAtAPointAreThoseThatHoldIt) {
-    World world;
-    place(world.scene, sphere(V3f(0), 2, 24, false), glass_material(1.5f));
-    place(world.scene, box(V3f(-1), V3f(1)), glass_material(1.3f));
-    place(world.scene, box(V3f(0), V3f(5)), glass_material(1.3f));
-    world.finish();
-    const Sampler sampler(SamplerKind::Independent, 1, {0, 0, 0});
-    for (uint32_t i = 0; i < 2000; ++i) {
-        const Sampler s(SamplerKind::Independent, 7, {1, 2, i});
-        const V2f a = s.get2(Dim::Film);
-        const V3f p(8 * a.x - 3, 8 * a.y - 3, 8 * s.get1(Dim::TargetRest) - 3);
-        if (std::fabs(p.length() - 2) < 0.1f) continue;  // facets
-        const auto in_box = [&](float lo, float hi) {
-            for (int k = 0; k < 3; ++k)
-                if (p[k] < lo || p[k] > hi) return false;
-            return true;
-        };
-        Volumes due;
-        if (p.length() < 2) due.add(world.scene.materials[0], 1);
-        if (in_box(-1, 1)) due.add(world.scene.materials[1], 1);
-        if (in_box(0, 5)) due.add(world.scene.materials[2], 1);
-        EXPECT_TRUE(volumes_at(world.scene, *world.bvh, p) == due) << p;
-    }
-}
-
-// Sees no hits in one of three directions, as if it had slipped through a seam.
-struct Leaky {
-    const Bvh& bvh;
-    size_t leaks;
-    mutable size_t asked = 0;
-    [[nodiscard]] std::vector<Hit> all_hits(const Ray& ray) const {
-        return asked++ % 3 == leaks ? std::vector<Hit>() : bvh.all_hits(ray);
-    }
-};
-
-TEST(NestedVolumes, OneRayThatSlipsThroughASeamDoesNotDecide) {
-    World world;
-    place(world.scene, sphere(V3f(0), 2, 24, false), glass_material(1.5f));
-    place(world.scene, box(V3f(-1), V3f(1)), glass_material(1.3f));
-    world.finish();
-    Volumes due;
-    for (const Material& m : world.scene.materials) due.add(m, 1);
-    for (size_t leaks = 0; leaks < 3; ++leaks)
-        EXPECT_TRUE(volumes_at(world.scene, Leaky{*world.bvh, leaks}, V3f(0.1f)) == due) << leaks;
 }
 
 // A lamp within the inner volume's hidden part is found whichever technique looks for it.

@@ -5,10 +5,9 @@
 Metres, y up, the floor at y = 0; RGB 1 is 1 nit. The window and the frosted panes are thin: light goes straight on
 through the one, and the others blur it. The tumbler, what is in it and the ice are closed volumes that overlap.
 """
-import math
-
 from first_light_glb import GlbWriter, then, turn, write_scene
-from first_light_shapes import Shape, add, arc, lathe, rounded_box, sphere, sub, unit
+from first_light_shapes import Shape, add, arc, lathe, rounded_box, sphere, unit
+from gem import look
 
 X, Y = (1, 0, 0), (0, 1, 0)
 WALL_M, HEIGHT_M = 0.15, 2.6
@@ -50,13 +49,6 @@ def sheet(corner, a, b, normal):
     shape.triangle(0, 1, 2)
     shape.triangle(0, 2, 3)
     return shape
-
-
-def look(eye, target):
-    """The rotation of a camera at eye that looks at target, upright."""
-    d = unit(sub(target, eye))
-    yaw = math.degrees(math.atan2(-d[0], -d[2]))
-    return then(turn(X, math.degrees(math.asin(d[1]))), turn(Y, yaw))
 
 
 def inner_radius(y):

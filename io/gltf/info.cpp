@@ -94,9 +94,11 @@ void describe_contents(const GltfModel& gltf, GltfFile& file) {
 
 void describe_support(const GltfModel& gltf, const GltfTally& tally, GltfFile& file) {
     file.honoured.assign(tally.honoured.begin(), tally.honoured.end());
-    for (const std::string& name : gltf.typed.extensionsUsed)
-        (is_supported_gltf_extension(name) ? file.honoured : file.ignored)
-            .push_back(printable(name));
+    for (const ExtensionInFile& extension : gltf.source.extensions) {
+        const bool rendered =
+            extension.use == ExtensionUse::Rendered || extension.use == ExtensionUse::Approximated;
+        (rendered ? file.honoured : file.ignored).push_back(printable(extension.name));
+    }
     const auto ignore = [&](uint64_t count, const char* what, const char* why) {
         if (count > 0) file.ignored.push_back(fmt::format("{} ({})", plural(count, what), why));
     };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <map>
 #include <set>
 
 #include "io/base/error.h"
@@ -14,39 +15,21 @@ namespace {
 using nlohmann::json;
 using Names = std::set<std::string>;
 
-/// Place where an extension's object may stand: the key that leads to the object, or to the array
-/// of objects, that has it; "" is the root, "*Texture" any key with that ending. From the
-/// extensions' own texts in Khronos' registry. A name that ends in '_' stands for all that begin
-/// so.
-struct Home {
-    std::string_view extension;
-    std::vector<std::string_view> keys;
-};
-
-const std::vector<Home>& homes() {
-    static const std::vector<Home> table = {{"KHR_lights_punctual", {"", "nodes"}},
-                                            {"KHR_texture_transform", {"*Texture"}},
-                                            {"KHR_materials_variants", {"", "primitives"}},
-                                            {"KHR_materials_", {"materials"}},
-                                            {"EXT_texture_webp", {"textures"}},
-                                            {"KHR_animation_pointer", {"target"}}};
-    return table;
+bool leads_to(std::string_view place, std::string_view key) {
+    if (place == "root") return key.empty();
+    return place == "*Texture" ? key.ends_with("Texture") : place == key;
 }
 
-bool leads_to(std::string_view home, std::string_view key) {
-    return home == "*Texture" ? key.ends_with("Texture") : home == key;
-}
-
-bool is_at_home(std::string_view extension, std::string_view key) {
-    for (const Home& home : homes()) {
-        const bool is_family = home.extension.ends_with('_');
-        if (is_family ? !extension.starts_with(home.extension) : extension != home.extension)
-            continue;
-        for (std::string_view where : home.keys)
-            if (leads_to(where, key)) return true;
-        return false;
+/// Whether an object to which that key leads may have the extension.
+bool is_at_home(const GltfExtension& extension, std::string_view key) {
+    std::string_view places = extension.places;
+    if (places.empty()) return true;
+    while (!places.empty()) {
+        const size_t end = std::min(places.find(' '), places.size());
+        if (leads_to(places.substr(0, end), key)) return true;
+        places.remove_prefix(std::min(end + 1, places.size()));
     }
-    return true;
+    return false;
 }
 
 Names read_names(const JsonCursor& root, const char* key) {
@@ -61,13 +44,18 @@ Names read_names(const JsonCursor& root, const char* key) {
     return names;
 }
 
-/// Visits every object of the document but those below "extras". The depth of the document is
-/// limited, so recursion is safe.
+/// Visits every object of the document but those below "extras", and counts those that have an
+/// extension. The depth of the document is limited, so recursion is safe.
 class Walk {
   public:
     Walk(const std::string& file, WarningLog& warnings) : file_(file), warnings_(warnings) {}
 
-    void visit(const json& value, std::string_view key, const std::string& path) const {
+    [[nodiscard]] uint64_t objects(const std::string& extension) const {
+        const auto at = objects_.find(extension);
+        return at == objects_.end() ? 0 : at->second;
+    }
+
+    void visit(const json& value, std::string_view key, const std::string& path) {
         if (value.is_object()) check(value, key, path);
         if (!value.is_structured()) return;
         for (const auto& [name, child] : value.items()) {
@@ -81,7 +69,7 @@ class Walk {
         return path + "/" + printable(name);
     }
 
-    void check(const json& object, std::string_view key, const std::string& path) const {
+    void check(const json& object, std::string_view key, const std::string& path) {
         const auto at = object.find("extensions");
         if (at == object.end()) return;
         const std::string place = child_path(path, "extensions");
@@ -89,7 +77,9 @@ class Walk {
         for (const auto& [name, content] : at->items()) {
             const std::string where = child_path(place, name);
             if (!content.is_object()) fail(where, "must be an object");
-            if (!is_at_home(name, key))
+            ++objects_[name];
+            const GltfExtension* known = find_gltf_extension(name);
+            if (known && !is_at_home(*known, key))
                 warnings_.push_back(where + ": stands where this extension has no meaning");
         }
     }
@@ -100,26 +90,46 @@ class Walk {
 
     const std::string& file_;
     WarningLog& warnings_;
+    std::map<std::string, uint64_t> objects_;
 };
+
+ExtensionInFile describe(const std::string& name, uint64_t objects, bool required) {
+    const GltfExtension* known = find_gltf_extension(name);
+    if (known) return {name, known->use, std::string(known->effect), objects, required};
+    return {name, required ? ExtensionUse::Needed : ExtensionUse::Ignored,
+            "this program does not know it", objects, required};
+}
+
+void warn(const ExtensionInFile& extension, WarningLog& warnings) {
+    const std::string name = "/extensionsUsed: " + printable(extension.name);
+    if (!find_gltf_extension(extension.name))
+        warnings.push_back(name + " is not supported and is ignored");
+    else if (extension.objects == 0 && !extension.required)
+        return;  // declared by habit: nothing has it
+    else if (extension.use == ExtensionUse::Approximated)
+        warnings.push_back(name + " is approximated: " + extension.effect);
+    else if (extension.use == ExtensionUse::Ignored || extension.use == ExtensionUse::Needed)
+        warnings.push_back(name + " is ignored: " + extension.effect);
+}
 
 }  // namespace
 
 void check_extensions(GltfCheck& check) {
     const Names used = read_names(check.root, "extensionsUsed");
     const Names required = read_names(check.root, "extensionsRequired");
-    for (const std::string& name : required) {
-        if (!is_supported_gltf_extension(name))
+    const std::string file = check.source.path.string();
+    Walk walk(file, check.source.warnings);
+    walk.visit(check.root.value(), "", "");
+    for (const std::string& name : used) {
+        const auto extension = describe(name, walk.objects(name), required.contains(name));
+        if (extension.refused())
             check.root.fail("extensionsRequired",
                             fmt::format("the file requires the extension {}, which is not "
                                         "supported; export it without",
                                         printable(name)));
+        warn(extension, check.source.warnings);
+        check.source.extensions.push_back(extension);
     }
-    for (const std::string& name : used)
-        if (!is_supported_gltf_extension(name))
-            check.source.warnings.push_back("/extensionsUsed: " + printable(name) +
-                                            " is not supported and is ignored");
-    const std::string file = check.source.path.string();
-    Walk(file, check.source.warnings).visit(check.root.value(), "", "");
 }
 
 }  // namespace petzval

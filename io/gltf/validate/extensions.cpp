@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Names and places follow the extensions' own texts in Khronos' registry
+// (github.com/KhronosGroup/glTF, extensions/2.0) and in those of VRM and OMI.
 #include "io/gltf/validate/extensions.h"
 
 #include <algorithm>
@@ -7,22 +9,117 @@
 namespace petzval {
 namespace {
 
-constexpr std::array<std::string_view, 11> supported = {
-    "EXT_texture_webp",           "KHR_lights_punctual",
-    "KHR_materials_dispersion",   "KHR_materials_emissive_strength",
-    "KHR_materials_ior",          "KHR_materials_specular",
-    "KHR_materials_transmission", "KHR_materials_unlit",
-    "KHR_materials_volume",       "KHR_mesh_quantization",
-    "KHR_texture_transform"};
+using enum ExtensionUse;
+
+constexpr std::string_view kMetadata = "describes, and shows nothing";
+constexpr std::string_view kStill = "nothing moves in a picture";
+constexpr std::string_view kSound = "pictures are silent";
+constexpr std::string_view kNoImage =
+    "textures that have no PNG, JPEG or WebP beside it are left out";
+
+constexpr auto table = std::to_array<GltfExtension>({
+    {"ADOBE_materials_clearcoat_specular", Ignored,
+     "clear coats reflect as those of an index of 1.5 do", "materials"},
+    {"ADOBE_materials_clearcoat_tint", Ignored, "clear coats have no colour of their own",
+     "materials"},
+    {"ADOBE_materials_thin_transparency", Ignored, "thin glass looks opaque", "materials"},
+    {"AGI_articulations", Harmless, kStill, ""},
+    {"AGI_stk_metadata", Harmless, kMetadata, ""},
+    {"CESIUM_primitive_outline", Ignored, "edges have no drawn lines", "primitives"},
+    {"EXT_feature_metadata", Harmless, kMetadata, ""},
+    {"EXT_instance_features", Harmless, kMetadata, ""},
+    {"EXT_lights_ies", Ignored, "lamps shine the same way in all directions", "root nodes"},
+    {"EXT_lights_image_based", Ignored, "the surroundings in the file give no light",
+     "root scenes"},
+    {"EXT_mesh_features", Harmless, kMetadata, ""},
+    {"EXT_mesh_gpu_instancing", Needed, "of many copies of a mesh one is shown", "nodes"},
+    {"EXT_mesh_manifold", Harmless, "it tells solids to programs that print them", "meshes"},
+    {"EXT_mesh_primitive_edge_visibility", Ignored, "edges have no drawn lines", "primitives"},
+    {"EXT_meshopt_compression", Needed, "meshes that have no plain data beside it are missing",
+     "buffers bufferViews"},
+    {"EXT_structural_metadata", Harmless, kMetadata, ""},
+    {"EXT_texture_avif", Needed, kNoImage, "textures"},
+    {"EXT_texture_webp", Rendered, "", "textures"},
+    {"FB_geometry_metadata", Harmless, kMetadata, ""},
+    {"GODOT_single_root", Harmless, kMetadata, ""},
+    {"GRIFFEL_bim_data", Harmless, kMetadata, ""},
+    {"KHR_animation_pointer", Harmless, kStill, "target"},
+    {"KHR_audio_emitter", Harmless, kSound, ""},
+    {"KHR_draco_mesh_compression", Needed, "meshes that have no plain data beside it are missing",
+     "primitives"},
+    {"KHR_gaussian_splatting", Needed, "splats are not shown", "primitives"},
+    {"KHR_implicit_shapes", Harmless, "shapes for physics are not seen", ""},
+    {"KHR_interactivity", Harmless, kStill, ""},
+    {"KHR_lights_punctual", Rendered, "", "root nodes"},
+    {"KHR_materials_anisotropy", Ignored, "highlights of brushed surfaces are round", "materials"},
+    {"KHR_materials_clearcoat", Ignored, "coated surfaces lack the reflections of their coat",
+     "materials"},
+    {"KHR_materials_diffuse_transmission", Ignored, "leaves, paper and cloth let no light through",
+     "materials"},
+    {"KHR_materials_dispersion", Rendered, "", "materials"},
+    {"KHR_materials_emissive_strength", Rendered, "", "materials"},
+    {"KHR_materials_ior", Rendered, "", "materials"},
+    {"KHR_materials_iridescence", Ignored, "thin films show no colours", "materials"},
+    {"KHR_materials_pbrSpecularGlossiness", Needed,
+     "surfaces have the simpler material beside it, or a white one", "materials"},
+    {"KHR_materials_sheen", Ignored, "cloth lacks its bright rims", "materials"},
+    {"KHR_materials_specular", Rendered, "", "materials"},
+    {"KHR_materials_transmission", Rendered, "", "materials"},
+    {"KHR_materials_unlit", Rendered, "", "materials"},
+    {"KHR_materials_variants", Ignored, "all variants but the default one are out of reach",
+     "root primitives"},
+    {"KHR_materials_volume", Rendered, "", "materials"},
+    {"KHR_materials_volume_scatter", Ignored,
+     "wax, skin and milk are clear inside: no light scatters there", "materials"},
+    {"KHR_mesh_quantization", Rendered, "", ""},
+    {"KHR_meshopt_compression", Needed, "meshes that have no plain data beside it are missing",
+     "buffers bufferViews"},
+    {"KHR_node_hoverability", Harmless, kStill, "nodes"},
+    {"KHR_node_selectability", Harmless, kStill, "nodes"},
+    {"KHR_node_visibility", Ignored, "hidden nodes are shown", "nodes"},
+    {"KHR_physics_rigid_bodies", Harmless, kStill, ""},
+    {"KHR_techniques_webgl", Needed, "surfaces that programs for graphics cards colour are white",
+     ""},
+    {"KHR_texture_basisu", Needed, kNoImage, "textures"},
+    {"KHR_texture_transform", Rendered, "", "*Texture"},
+    {"KHR_xmp", Harmless, kMetadata, ""},
+    {"KHR_xmp_json_ld", Harmless, kMetadata, ""},
+    {"MSFT_audio_emitter", Harmless, kSound, ""},
+    {"MSFT_lod", Harmless, "the finest level is shown", "nodes materials"},
+    {"MSFT_packing_normalRoughnessMetallic", Harmless,
+     "the same textures stand in the core material", "materials"},
+    {"MSFT_packing_occlusionRoughnessMetallic", Harmless,
+     "the same textures stand in the core material", "materials"},
+    {"MSFT_screencoverage", Harmless, "the finest level is shown", ""},
+    {"MSFT_texture_dds", Needed, kNoImage, "textures"},
+    {"NV_materials_mdl", Ignored, "surfaces have the simpler material beside it", ""},
+    {"OMI_physics_body", Harmless, kStill, ""},
+    {"OMI_physics_shape", Harmless, "shapes for physics are not seen", ""},
+    {"VRM", Ignored, "drawn looks (MToon) are shaded as real surfaces", "root"},
+    {"VRMC_materials_hdr_emissiveMultiplier", Ignored, "glowing surfaces are dimmer or brighter",
+     "materials"},
+    {"VRMC_materials_mtoon", Ignored, "drawn looks (MToon) are shaded as real surfaces",
+     "materials"},
+    {"VRMC_node_constraint", Harmless, kStill, "nodes"},
+    {"VRMC_springBone", Harmless, kStill, "root"},
+    {"VRMC_vrm", Harmless, kMetadata, "root"},
+});
+
+static_assert(std::is_sorted(table.begin(), table.end(),
+                             [](const GltfExtension& a, const GltfExtension& b) {
+                                 return a.name < b.name;
+                             }));
 
 }  // namespace
 
-std::span<const std::string_view> supported_gltf_extensions() {
-    return supported;
+std::span<const GltfExtension> gltf_extensions() {
+    return table;
 }
 
-bool is_supported_gltf_extension(std::string_view name) {
-    return std::find(supported.begin(), supported.end(), name) != supported.end();
+const GltfExtension* find_gltf_extension(std::string_view name) {
+    const auto at = std::find_if(table.begin(), table.end(),
+                                 [&](const GltfExtension& e) { return e.name == name; });
+    return at == table.end() ? nullptr : &*at;
 }
 
 }  // namespace petzval

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "io/base/warning_log.h"
+#include "io/gltf/validate/extensions.h"
 
 namespace petzval {
 
@@ -27,6 +28,7 @@ struct GltfSource {
     /// Encoded bytes of each image (PNG, JPEG ...), whatever way the file stores them. Not yet
     /// decoded: they may be no image. Empty for an image in an undefined buffer.
     std::vector<std::vector<uint8_t>> images;
+    std::vector<ExtensionInFile> extensions;   ///< those that the file lists, by name
     WarningLog warnings;                       ///< one line each: odd, but no reason to refuse
     std::vector<std::filesystem::path> files;  ///< every file that was read, `path` first
     uint64_t hash = 0;  ///< FNV-1a of the scene file and of every file it names

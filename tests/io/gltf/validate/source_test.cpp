@@ -135,12 +135,37 @@ TEST_F(Source, IndicesWithoutABufferViewAreZeros) {
     EXPECT_NO_THROW((void)read(file));
 }
 
-TEST_F(Source, WarnsOncePerExtensionThatIsNotSupported) {
-    file.json["extensionsUsed"] = {"KHR_materials_sheen", "KHR_materials_ior", "X_y"};
+TEST_F(Source, NamesEachExtensionThatIsIgnoredOnceWithWhatThatDoes) {
+    file.json["extensionsUsed"] = {"KHR_materials_volume_scatter", "KHR_materials_ior", "X_y",
+                                   "KHR_xmp_json_ld", "NV_materials_mdl"};
+    const json scatter = {{"extensions", {{"KHR_materials_volume_scatter", json::object()}}}};
+    file.json["materials"] = {scatter, scatter};
     const auto source = read(file);
-    ASSERT_EQ(source.warnings.lines().size(), 2u);
-    EXPECT_EQ(source.warnings.lines()[0],
-              "/extensionsUsed: KHR_materials_sheen is not supported and is ignored");
+    EXPECT_EQ(source.warnings.lines(),
+              (std::vector<std::string>{
+                  "/extensionsUsed: KHR_materials_volume_scatter is ignored: wax, skin and milk "
+                  "are clear inside: no light scatters there",
+                  "/extensionsUsed: X_y is not supported and is ignored"}));
+    ASSERT_EQ(source.extensions.size(), 5u);
+    EXPECT_EQ(source.extensions[0].use, ExtensionUse::Rendered);
+    EXPECT_EQ(source.extensions[1].objects, 2u);
+    EXPECT_EQ(source.extensions[1].use, ExtensionUse::Ignored);
+    EXPECT_EQ(source.extensions[2].use, ExtensionUse::Harmless);
+    EXPECT_EQ(source.extensions[3].objects, 0u);                 // declared by habit
+    EXPECT_EQ(source.extensions[4].use, ExtensionUse::Ignored);  // unknown
+}
+
+TEST_F(Source, RefusesARequiredExtensionOnlyWhereThePictureWouldMeanNothing) {
+    const auto require = [&](const char* name) {
+        file.json["extensionsUsed"] = file.json["extensionsRequired"] = {name};
+        const auto source = read(file);
+        EXPECT_TRUE(source.extensions.at(0).required);
+        return source.warnings.lines();
+    };
+    EXPECT_TRUE(require("KHR_interactivity").empty());
+    EXPECT_EQ(require("NV_materials_mdl").size(), 1u);
+    EXPECT_THROW(require("KHR_gaussian_splatting"), InputError);
+    EXPECT_THROW(require("X_y"), InputError);
 }
 
 TEST_F(Source, SharedVerticesAreNoExtravagance) {

@@ -132,6 +132,10 @@ class Search {
             }
             if (s.material->unlit) return std::nullopt;
             const ShadingInput at = read_material(scene_, s, -direction, Bands::rgb());
+            if (at.coat.weight > 0.f && at.coat.roughness < at.bsdf.roughness &&
+                at.coat.roughness <= kMostRoughness)
+                return Met{s, at.frame.to_world(at.coat.normal), sqr(at.coat.roughness),
+                           kCoatF0 * double(at.coat.weight)};
             if (!(at.bsdf.roughness <= kMostRoughness)) return std::nullopt;
             return Met{s, at.frame.z, sqr(at.bsdf.roughness), reflectance_of(at.bsdf)};
         }

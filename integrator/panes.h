@@ -41,8 +41,7 @@ template <class Caster>
         if (medium) carried *= transmittance(*medium, (s.p - from).length(), bands);
         const ShadingInput shading = read_material(scene, s, wo, bands);
         if (!(hmax(carried) >= std::numeric_limits<float>::min())) return std::nullopt;
-        const Bsdf bsdf(shading.bsdf, bands, shading.frame.to_local(wo), carried, shading.up);
-        const StraightThrough pane = bsdf.straight_through();
+        const StraightThrough pane = shading.scatter(wo, bands, carried).straight_through();
         if (!(pane.chance > 0.f)) return std::nullopt;
         out.value *= pane.value;
         out.chance *= pane.chance;

@@ -25,7 +25,7 @@ struct PathTracer<Caster>::Vertex {
 /// The light sampler's view of a hit, without textures: position, normal, whether it transmits.
 /// Reflected light lies on the surface's own side, whatever the normal map.
 [[nodiscard]] inline LightReceiver receiver_at(const Surface& s) {
-    return {s.p, s.side, s.material->transmission > 0};
+    return {s.p, s.side, s.material->lets_light_through()};
 }
 
 /// Where a path scatters light, and what it has come with.
@@ -33,7 +33,7 @@ template <RayCaster Caster>
 struct PathTracer<Caster>::Scattering {
     const Surface& surface;
     const Frame& frame;
-    const Bsdf& bsdf;
+    const CoatedBsdf& bsdf;
     f4 throughput;
     const Bands& bands;
     uint32_t alpha_seed;       ///< of shadow rays
@@ -202,7 +202,7 @@ inline void record_layers(const Surface& s, const ShadingInput& shading, Rgb emi
                           const V3f& camera, const V3f& wo, const Bands& bands, FilmSample& out) {
     const auto layer = [&](Aov aov) -> V3f& { return out.aov[static_cast<size_t>(aov)]; };
     const auto vector = [](Rgb c) { return V3f(c[0], c[1], c[2]); };
-    const Bsdf bsdf(shading.bsdf, bands, shading.frame.to_local(wo));
+    const CoatedBsdf bsdf = shading.scatter(wo, bands);
     out.hit = true;
     layer(Aov::Albedo) =
         vector(s.material->unlit ? shading.unlit : reflectance_to_rgb(bsdf.albedo(), bands));
@@ -303,7 +303,7 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
 
         // Add direct light, unless volumes or black surfaces left nothing to go on with.
         if (!(hmax(throughput) >= std::numeric_limits<float>::min())) break;
-        const Bsdf bsdf(shading.bsdf, bands, shading.frame.to_local(wo), throughput, shading.up);
+        const CoatedBsdf bsdf = shading.scatter(wo, bands, throughput);
         const bool light_sampled =
             options_.technique != Technique::BsdfOnly && bsdf.has_wide_lobe() && !at_depth;
         f4 direct{};

@@ -21,6 +21,7 @@ struct WavelengthReason {
         Lens,        ///< its glass disperses
         Glass,       ///< a material's glass disperses
         Metal,       ///< a material's metal is a measured one
+        Film,        ///< a material has a thin film, in which light interferes
         Emitter,     ///< a material that shines as an illuminant
         Lamp         ///< a punctual light that does
     };

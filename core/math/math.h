@@ -55,6 +55,12 @@ inline constexpr float kOneMinus = 0x1.fffffep-1f;
     return about * (2.f * w.dot(about)) - w;
 }
 
+[[nodiscard]] inline V3f transform_direction(const V3f& v, const M44f& m) {
+    V3f out;
+    m.multDirMatrix(v, out);
+    return out;
+}
+
 /// Orthonormal right-handed frame; z is the normal where a surface is meant.
 struct Frame {
     V3f x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
@@ -66,6 +72,13 @@ struct Frame {
         const float b = z.x * z.y * a;
         return {
             {1 + sign * z.x * z.x * a, sign * b, -sign * z.x}, {b, sign + z.y * z.y * a, -z.y}, z};
+    }
+    /// Frame about a unit z whose x is the part of `along` across z; any frame where there is none.
+    [[nodiscard]] static Frame about(const V3f& z, const V3f& along) {
+        const V3f across = along - z * along.dot(z);
+        if (!(across.dot(across) > 1e-12f)) return about(z);
+        const V3f x = unit(across);
+        return {x, z.cross(x), z};
     }
     [[nodiscard]] V3f to_local(const V3f& w) const { return {w.dot(x), w.dot(y), w.dot(z)}; }
     [[nodiscard]] V3f to_world(const V3f& w) const { return x * w.x + y * w.y + z * w.z; }

@@ -44,6 +44,18 @@ namespace petzval {
     return cosine > 0.f ? cosine * kInvPi : 0.f;
 }
 
+/// Direction about +z, uniform over the hemisphere; its cosine is above 0.
+[[nodiscard]] inline V3f uniform_hemisphere(V2f u) {
+    const float z = 1.f - u.y;
+    const float radius = safe_sqrt(u.y * (1.f + z));
+    const SinCos azimuth = sincos_turns(u.x);
+    return {radius * azimuth.cosine, radius * azimuth.sine, z};
+}
+/// Density, 1/sr.
+[[nodiscard]] constexpr float uniform_hemisphere_pdf() {
+    return 0.5f * kInvPi;
+}
+
 /// Direction, uniform over the sphere: uniform in height (Archimedes) and in azimuth.
 [[nodiscard]] inline V3f uniform_sphere(V2f u) {
     const float z = 1.f - 2.f * u.y;

@@ -2,6 +2,7 @@
 // The one material model of glTF 2.0, with the extensions that Petzval honours.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 
@@ -53,6 +54,28 @@ struct Material {
     Rgb attenuation_color{1.f};
     float attenuation_distance_m = kInfinity;
 
+    float coat = 0.f;          ///< KHR_materials_clearcoat: clearcoatFactor
+    TextureSlot coat_texture;  ///< r
+    float coat_roughness = 0.f;
+    TextureSlot coat_roughness_texture;  ///< g
+    TextureSlot coat_normal_texture;
+    float coat_normal_scale = 1.f;
+    Rgb sheen_color{0.f};             ///< KHR_materials_sheen
+    TextureSlot sheen_color_texture;  ///< rgb
+    float sheen_roughness = 0.f;
+    TextureSlot sheen_roughness_texture;  ///< a
+    float anisotropy = 0.f;               ///< KHR_materials_anisotropy: anisotropyStrength
+    float anisotropy_rotation_rad = 0.f;  ///< from the tangent towards the bitangent
+    TextureSlot anisotropy_texture;       ///< rg: direction, b: strength
+    float iridescence = 0.f;              ///< KHR_materials_iridescence: iridescenceFactor
+    TextureSlot iridescence_texture;      ///< r
+    float film_ior = 1.3f, film_thinnest_nm = 100.f, film_thickest_nm = 400.f;
+    TextureSlot film_thickness_texture;        ///< g: from the thinnest to the thickest
+    float diffuse_transmission = 0.f;          ///< KHR_materials_diffuse_transmission
+    TextureSlot diffuse_transmission_texture;  ///< a
+    Rgb diffuse_transmission_color{1.f};
+    TextureSlot diffuse_transmission_color_texture;  ///< rgb
+
     /// Rank among closed volumes, by rank_volumes: where several overlap, the highest is there. 0:
     /// no volume, or its surface is not closed.
     uint32_t priority = 0;
@@ -64,6 +87,46 @@ struct Material {
     [[nodiscard]] bool emits() const {
         return emissive[0] > 0 || emissive[1] > 0 || emissive[2] > 0;
     }
+    [[nodiscard]] bool has_sheen() const {
+        return sheen_color[0] > 0 || sheen_color[1] > 0 || sheen_color[2] > 0;
+    }
+    /// Whether it has any of the layers and lobes that most materials lack.
+    [[nodiscard]] bool layered() const {
+        return coat > 0 || has_sheen() || anisotropy > 0 || iridescence > 0 ||
+               diffuse_transmission > 0;
+    }
+    /// Whether a ray may go on behind it.
+    [[nodiscard]] bool lets_light_through() const {
+        return transmission > 0 || diffuse_transmission > 0;
+    }
+    /// Slot along whose coordinates tangents run where the file has none.
+    [[nodiscard]] const TextureSlot& tangent_slot() const {
+        if (normal_texture.present()) return normal_texture;
+        return coat_normal_texture.present() ? coat_normal_texture : anisotropy_texture;
+    }
+    [[nodiscard]] bool needs_tangents() const {
+        return normal_texture.present() || coat_normal_texture.present() || anisotropy > 0;
+    }
+    /// All slots.
+    [[nodiscard]] std::array<const TextureSlot*, 17> textures() const {
+        return {&base_color_texture,
+                &metallic_roughness_texture,
+                &normal_texture,
+                &emissive_texture,
+                &specular_texture,
+                &specular_color_texture,
+                &transmission_texture,
+                &coat_texture,
+                &coat_roughness_texture,
+                &coat_normal_texture,
+                &sheen_color_texture,
+                &sheen_roughness_texture,
+                &anisotropy_texture,
+                &iridescence_texture,
+                &film_thickness_texture,
+                &diffuse_transmission_texture,
+                &diffuse_transmission_color_texture};
+    }
     /// Whether it may be a pane somewhere: thin, smooth glass, through which light goes straight.
     [[nodiscard]] bool may_be_pane() const {
         return transmission > 0 && !has_volume && !unlit &&
@@ -71,7 +134,7 @@ struct Material {
     }
     /// Whether light may be refracted into it.
     [[nodiscard]] bool refracts() const {
-        return has_volume && transmission > 0 && !unlit &&
+        return has_volume && lets_light_through() && !unlit &&
                (metallic < 1 || metallic_roughness_texture.present());
     }
 };

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// BSDF of a glTF surface: one GGX reflection over a diffuse, thin or glass body.
+// BSDF of a glTF surface: sheen over one GGX reflection over a diffuse, thin or glass body.
 #pragma once
 
 #include <optional>
 
 #include "core/math/math.h"
 #include "core/shading/glass_loss.h"
+#include "core/shading/microfacet.h"
+#include "core/shading/sheen.h"
+#include "core/shading/thin_film.h"
 #include "core/spectrum/bands.h"
 
 namespace petzval {
@@ -23,6 +26,16 @@ struct BsdfInput {
     /// Whether the metallic part has the index metal_n + i metal_k instead of base_color.
     bool measured_metal = false;
     f4 metal_n{}, metal_k{};
+
+    /// KHR_materials_anisotropy: strength, and the direction of the wide lobe is x of the frame.
+    float anisotropy = 0;
+    /// KHR_materials_iridescence: how much of the surface has a film, and which.
+    float film_share = 0, film_index = 1.3f, film_thickness_nm = 0;
+    f4 sheen{};                                 ///< KHR_materials_sheen: its colour
+    float sheen_most = 0, sheen_roughness = 0;  ///< most: of the colour's R, G and B
+    /// KHR_materials_diffuse_transmission: share of the diffuse light that leaves behind.
+    float diffuse_transmission = 0;
+    f4 diffuse_transmission_color{};
 };
 
 /// Value f cos and its density; both 0 where only a delta lobe could answer.
@@ -77,7 +90,9 @@ class Bsdf {
         return tilted_ ? sample_tilted(u_lobe, u, led) : sample_lobes(u_lobe, u, led);
     }
     /// Whether some lobe is wide enough for light sampling to help.
-    [[nodiscard]] bool has_wide_lobe() const { return p_diffuse_ > 0 || !delta_; }
+    [[nodiscard]] bool has_wide_lobe() const {
+        return p_diffuse_ > 0 || !delta_ || p_behind_ > 0 || p_sheen_ > 0;
+    }
     /// Whether it is clear glass: what it lets through, it neither blurs nor scatters.
     [[nodiscard]] bool is_clear() const { return delta_ && p_thin_ + p_glass_ > 0; }
     /// Share of light that goes straight through; nothing unless the surface is thin and smooth.
@@ -100,23 +115,32 @@ class Bsdf {
     [[nodiscard]] V3f draw_lost(float u_side, V2f u) const;
     [[nodiscard]] f4 glass_reflectance(float wo_m) const;
     [[nodiscard]] f4 specular_reflectance(float wo_m) const;
+    [[nodiscard]] f4 film_reflectance(float wo_m) const;
+    /// Reflectances with the film: at normal incidence, mixed with those without it, and of the
+    /// film alone on average over the facets that wo sees.
+    struct FilmMeans {
+        f4 coat_f0, metal_f0, coat, metal;
+    };
+    [[nodiscard]] FilmMeans means_of_film(const BsdfInput&, const Bands&, f4 metal_f0);
+    [[nodiscard]] f4 lost_below_film() const;
+    void add_sheen(const BsdfInput&);
     [[nodiscard]] int draw_lane(f4 reflectance, float u, bool led) const;
     [[nodiscard]] std::optional<BsdfSample> sample_delta(float u_lobe, bool led) const;
     [[nodiscard]] std::optional<V3f> draw(float u_lobe, V2f u, bool led) const;
 
     V3f wo_, up_;
     bool tilted_;  ///< up is not z
-    float alpha_;
+    GgxWidth alpha_;
     f4 eta_, share_;  ///< share_: each lane's part of what the path carries
     bool disperses_, delta_;
     float lambda_o_;
     // Reflection: single-scatter GGX times spec0 (1 - s) + spec90 s, multiple scattering included.
     f4 spec0_, spec90_;
     bool measured_metal_;
-    f4 metal_n_, metal_k_;
     f4 metal_;                      ///< factor on what a measured metal reflects
     float albedo_f0_, albedo_f90_;  ///< of GGX alone, for wo
     f4 diffuse_;                    ///< albedo
+    f4 behind_;                     ///< albedo of what leaves diffusely on the other side
     f4 thin_;                       ///< albedo of straight transmission
     f4 glass_;                      ///< tint of refracted light; its untinted share is glass_share_
     float glass_share_, glass_specular_;
@@ -124,7 +148,14 @@ class Bsdf {
     f4 lost_;                            ///< its share of the light from wo
     float p_lost_ = 0, p_crossing_ = 0;  ///< chance of multiple scattering in glass, and then to
                                          ///< the other side
-    float p_spec_, p_diffuse_, p_thin_, p_glass_;
+    f4 sheen_colour_;
+    Sheen sheen_;  ///< set where p_sheen_ > 0
+    ThinFilm film_;
+    float film_share_;
+    f4 film_coat_, film_metal_;  ///< factors on what a film on the coat and on the metal reflects
+    f4 coat_n_, metal_n_, metal_k_;  ///< indices below the film, and of a measured metal
+    f4 film_albedo_;                 ///< of both films, for wo
+    float p_spec_, p_diffuse_, p_thin_, p_glass_, p_behind_ = 0, p_sheen_ = 0;
     m4 on_;
     int lead_, rank_of_lead_ = 0;  ///< rank: number of wavelengths below the one that leads
 };

@@ -9,30 +9,43 @@
 
 namespace petzval {
 
+/// Widths of a GGX lobe along x and y of the surface's frame; a single number is one for both.
+/// Burley 2012, "Physically-Based Shading at Disney", appendix B.
+struct GgxWidth {
+    float x, y;
+    float x_per_y2, y_per_x2;  ///< squares of the ratios; exactly 1 where both are the same
+
+    GgxWidth(float alpha)  // NOLINT(google-explicit-constructor): most surfaces have one width
+        : x(alpha), y(alpha), x_per_y2(1.f), y_per_x2(1.f) {}
+    GgxWidth(float x0, float y0) : x(x0), y(y0), x_per_y2(sqr(x0 / y0)), y_per_x2(sqr(y0 / x0)) {}
+    [[nodiscard]] bool anisotropic() const { return x != y; }
+    /// The single width whose lobe has the same peak.
+    [[nodiscard]] float mean() const { return anisotropic() ? std::sqrt(x * y) : x; }
+};
+
 /// Normal density, 1/sr. Walter et al. 2007, "Microfacet Models for Refraction", equation 33.
-[[nodiscard]] inline float ggx_d(const V3f& m, float alpha) {
+[[nodiscard]] inline float ggx_d(const V3f& m, const GgxWidth& alpha) {
     // Written in the slopes so that nothing cancels for a narrow lobe.
-    const float a2 = sqr(alpha);
-    const float e = (sqr(m.x) + sqr(m.y)) / a2 + sqr(m.z);
-    return kInvPi / (a2 * sqr(e));
+    const float e = (sqr(m.x) + sqr(m.y) * alpha.x_per_y2) / sqr(alpha.x) + sqr(m.z);
+    return kInvPi / (alpha.x * alpha.y * sqr(e));
 }
 
 /// Smith's auxiliary function. Heitz 2014, "Understanding the Masking-Shadowing Function",
-/// equation 72.
-[[nodiscard]] inline float ggx_lambda(const V3f& w, float alpha) {
-    const float tan2 = (sqr(w.x) + sqr(w.y)) / sqr(w.z);
-    return 0.5f * (std::sqrt(1.f + sqr(alpha) * tan2) - 1.f);
+/// equations 72 and 80.
+[[nodiscard]] inline float ggx_lambda(const V3f& w, const GgxWidth& alpha) {
+    const float tan2 = (sqr(w.x) + sqr(w.y) * alpha.y_per_x2) / sqr(w.z);
+    return 0.5f * (std::sqrt(1.f + sqr(alpha.x) * tan2) - 1.f);
 }
 
 /// A microfacet normal in proportion to what is visible of it from wo (wo.z > 0). Dupuy and
 /// Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", listing 3.
-[[nodiscard]] inline V3f ggx_sample_visible(const V3f& wo, float alpha, V2f u) {
-    const V3f stretched = unit({wo.x * alpha, wo.y * alpha, wo.z});
+[[nodiscard]] inline V3f ggx_sample_visible(const V3f& wo, const GgxWidth& alpha, V2f u) {
+    const V3f stretched = unit({wo.x * alpha.x, wo.y * alpha.y, wo.z});
     const SinCos phi = sincos_turns(u.x);
     const float z = 1.f - u.y * (1.f + stretched.z);
     const float sin_theta = safe_sqrt(1.f - sqr(z));
     const V3f half = V3f(sin_theta * phi.cosine, sin_theta * phi.sine, z) + stretched;
-    return unit({half.x * alpha, half.y * alpha, half.z > 1e-9f ? half.z : 1e-9f});
+    return unit({half.x * alpha.x, half.y * alpha.y, half.z > 1e-9f ? half.z : 1e-9f});
 }
 
 /// Schlick 1994's weight (1 - cos)^5.

@@ -6,9 +6,6 @@
 namespace petzval {
 namespace {
 
-// Cosine between normals that are the same but for rounding, or for the eye.
-constexpr float kSameNormal = 1.f - 1e-6f;
-
 V3f abs_transform(const V3f& p, const M44f& m) {
     V3f sum;
     for (int j = 0; j < 3; ++j)
@@ -22,46 +19,6 @@ V3f transform_normal(const V3f& n, const M44f& to_local) {
     return {n.x * to_local[0][0] + n.y * to_local[0][1] + n.z * to_local[0][2],
             n.x * to_local[1][0] + n.y * to_local[1][1] + n.z * to_local[1][2],
             n.x * to_local[2][0] + n.y * to_local[2][1] + n.z * to_local[2][2]};
-}
-
-V3f transform_direction(const V3f& v, const M44f& m) {
-    V3f out;
-    m.multDirMatrix(v, out);
-    return out;
-}
-
-TextureLookup locate(const Scene& scene, const Surface& s, const TextureSlot& slot) {
-    return locate_texture(scene.images, slot, s.uv[slot.uv_set]);
-}
-
-f4 read(const Scene& scene, const Surface& s, const TextureSlot& slot) {
-    return read_texture(locate(scene, s, slot));
-}
-
-// The normal map's normal in the frame that the tangents span, on the front side.
-V3f mapped_normal(const Surface& s, const TextureLookup& map) {
-    const Material& m = *s.material;
-    const V4f t4 =
-        interpolate(s.mesh->tangents, s.mesh->triangles[s.hit.triangle], s.hit.barycentric);
-    V3f t(t4.x, t4.y, t4.z);
-    if (!s.instance->identity) t = transform_direction(t, s.instance->to_world);
-    t -= s.ns * t.dot(s.ns);
-    if (t.dot(t) < 1e-20f) return s.ns;
-    t = unit(t);
-    const float flip = s.instance->flips ? -1.f : 1.f;
-    const V3f bitangent = s.ns.cross(t) * (t4.w < 0.f ? -flip : flip);
-    const f4 texel = read_texture(map) * 2.f - 1.f;
-    const V3f n =
-        t * (texel[0] * m.normal_scale) + bitangent * (texel[1] * m.normal_scale) + s.ns * texel[2];
-    return n.dot(n) > 1e-12f ? unit(n) : s.ns;
-}
-
-// Shading normal that wo sees from the front. One seen from behind would reflect into the surface:
-// it is tilted until wo grazes it.
-V3f face_towards(const V3f& n, const V3f& wo) {
-    constexpr float least_cosine = 1e-3f;
-    const float cosine = n.dot(wo);
-    return cosine >= least_cosine ? n : unit(n + wo * (least_cosine - cosine));
 }
 
 // Way from a point of a triangle to the smooth surface that its corners' normals mean, in the
@@ -83,31 +40,6 @@ V3f way_to_smooth(const Mesh& mesh, const std::array<uint32_t, 3>& corner, V2f u
         sum -= normal * (above * weight[i] * share);
     }
     return sum;
-}
-
-// Reflectance at normal incidence: KHR_materials_ior and KHR_materials_specular. outside: what lies
-// before the material, or null for air.
-Rgb dielectric_f0(const Material& m, const Material* outside, Rgb specular_color, float specular) {
-    const float n = outside && outside->ior != 0.f ? outside->ior : 1.f;
-    const float root = m.ior == 0.f ? 1.f : (m.ior - n) / (m.ior + n);
-    const Rgb f0 = specular_color * sqr(root);
-    return Rgb(min(f0.v, splat(1.f))) * specular;
-}
-
-// Index of what fills space, null for air. Thin materials do not bend, whatever their glass. A
-// facet between equal indices has no half vector: what hardly differs from air differs by a
-// thousandth, which bends nothing that shows.
-f4 index_of(const Material* m, const Bands& bands) {
-    if (!m) return splat(1.f);
-    const f4 index = bands.spectral && m->glass && m->has_volume
-                         ? m->glass->index(bands.nm)
-                         : splat(m->ior == 0.f ? 1.f : m->ior);
-    const f4 bend = index - 1.f;
-    return max(bend, -bend) < 1e-3f ? splat(1.001f) : index;
-}
-
-bool disperses(const Material* m, const Bands& bands) {
-    return m && bands.spectral && m->glass && m->has_volume;
 }
 
 }  // namespace
@@ -150,7 +82,7 @@ Surface make_surface(const Scene& scene, const V3f& direction, const Hit& hit) {
     s.front = direction.dot(s.ng) < 0.f;
     s.side = s.facing();
     s.lift = V3f(0.f);
-    if (smooth && s.material->transmission == 0.f && s.ns.dot(s.ng) < kSameNormal) {
+    if (smooth && !s.material->lets_light_through() && s.ns.dot(s.ng) < kSameNormal) {
         const V3f towards = s.front ? s.ns : -s.ns;
         if (direction.dot(towards) < 0.f)
             s.lift = way_to_smooth(*s.mesh, corner, u, p_of_mesh, n_of_mesh, s.front);
@@ -162,91 +94,6 @@ Surface make_surface(const Scene& scene, const V3f& direction, const Hit& hit) {
     for (int i = 0; i < 2; ++i)
         if (!s.mesh->uv[i].empty()) s.uv[i] = interpolate(s.mesh->uv[i], corner, u);
     return s;
-}
-
-f4 vertex_colour(const Surface& s) {
-    if (s.mesh->colours.empty()) return splat(1.f);
-    const V4f c =
-        interpolate(s.mesh->colours, s.mesh->triangles[s.hit.triangle], s.hit.barycentric);
-    return f4{c.x, c.y, c.z, c.w};
-}
-
-MaterialLookups locate_material(const Scene& scene, const Surface& s) {
-    const Material& m = *s.material;
-    MaterialLookups out;
-    out.base_color = locate(scene, s, m.base_color_texture);
-    const auto locate_next = [&](const TextureSlot& slot) {
-        return slot.place != 0 && slot.place == m.base_color_texture.place
-                   ? locate_beside(scene.images, slot, out.base_color)
-                   : locate(scene, s, slot);
-    };
-    out.metallic_roughness = locate_next(m.metallic_roughness_texture);
-    out.normal = locate_next(m.normal_texture);
-    out.emits = m.emits() && !m.unlit && (s.front || m.double_sided);
-    if (out.emits) out.emissive = locate_next(m.emissive_texture);
-    return out;
-}
-
-ShadingInput read_material(const Scene& scene, const Surface& s, const MaterialLookups& lookups,
-                           const V3f& wo, const Bands& bands, const Fillings& sides) {
-    const Material& m = *s.material;
-    ShadingInput out;
-    f4 base = m.base_color.v * read_texture(lookups.base_color);
-    if (!s.mesh->colours.empty()) base *= vertex_colour(s);
-    base[3] = 0.f;
-    const Rgb base_color(base);
-    V3f n = s.ns;
-    if (m.normal_texture.present() && !s.mesh->tangents.empty())
-        n = mapped_normal(s, lookups.normal);
-    out.frame = Frame::about(face_towards(s.front ? n : -n, wo));
-    if (out.frame.z.dot(s.side) < kSameNormal) out.up = out.frame.to_local(s.side);
-    if (lookups.emits) {
-        f4 texel = read_texture(lookups.emissive);
-        texel[3] = 0.f;
-        out.emitted = m.emissive * Rgb(texel);
-    }
-    if (m.unlit) {
-        out.unlit = base_color;
-        return out;
-    }
-    BsdfInput& b = out.bsdf;
-    b.base_color = uplift_reflectance(base_color, bands);
-    if (m.metal >= 0 && bands.spectral) {
-        const Metal& metal = scene.metals[static_cast<size_t>(m.metal)];
-        b.measured_metal = true;
-        b.metal_n = metal.n.at(bands.nm);
-        b.metal_k = metal.k.at(bands.nm);
-    }
-    const f4 surface_texel = read_texture(lookups.metallic_roughness);
-    b.roughness = m.roughness * surface_texel[1];
-    b.metallic = m.metallic * surface_texel[2];
-    float specular = m.specular;
-    if (m.specular_texture.present()) specular *= read(scene, s, m.specular_texture)[3];
-    Rgb specular_color = m.specular_color;
-    if (m.specular_color_texture.present()) {
-        f4 texel = read(scene, s, m.specular_color_texture);
-        texel[3] = 0.f;
-        specular_color = specular_color * Rgb(texel);
-    }
-    const Material* outside = &m == sides.before ? sides.behind : sides.before;
-    b.dielectric_f0 =
-        uplift_reflectance(dielectric_f0(m, outside, specular_color, specular), bands);
-    b.dielectric_f90 = specular;
-    b.transmission = m.transmission;
-    if (m.transmission_texture.present())
-        b.transmission *= read(scene, s, m.transmission_texture)[0];
-    b.thin = !m.has_volume;
-    b.disperses = disperses(sides.before, bands) || disperses(sides.behind, bands);
-    b.eta = index_of(sides.behind, bands) / index_of(sides.before, bands);
-    return out;
-}
-
-f4 transmittance(const Material& m, float distance_m, const Bands& bands) {
-    const float distances = distance_m / m.attenuation_distance_m;
-    if (!(distances > 0.f)) return uniform(1.f, bands);
-    f4 share = uplift_reflectance(m.attenuation_color, bands);
-    for (int i = 0; i < 4; ++i) share[i] = std::pow(share[i], distances);
-    return share;
 }
 
 }  // namespace petzval

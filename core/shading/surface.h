@@ -5,9 +5,12 @@
 #include "core/math/math.h"
 #include "core/math/ray.h"
 #include "core/scene/scene.h"
-#include "core/shading/bsdf.h"
+#include "core/shading/coated_bsdf.h"
 
 namespace petzval {
+
+/// Cosine between normals that are the same but for rounding, or for the eye.
+inline constexpr float kSameNormal = 1.f - 1e-6f;
 
 struct Surface {
     V3f p;        ///< world space, interpolated from the corners, not from t
@@ -52,10 +55,17 @@ struct Surface {
 /// Material at the hit, textures read: parameters of the Bsdf, and emission.
 struct ShadingInput {
     BsdfInput bsdf;
+    CoatInput coat;
     Rgb unlit{0.f};    ///< KHR_materials_unlit: shown as it is, nits
     Rgb emitted{0.f};  ///< emitted_radiance(), core/light/emission.h, nits
     Frame frame;       ///< shading frame on wo's side, the normal map applied
     V3f up{0, 0, 1};   ///< Surface::side in the frame
+
+    /// What the surface does with light from `wo`, in world space; throughput as Bsdf has it.
+    [[nodiscard]] CoatedBsdf scatter(const V3f& wo, const Bands& bands,
+                                     f4 throughput = splat(1.f)) const {
+        return {bsdf, coat, bands, frame.to_local(wo), throughput, up};
+    }
 };
 /// Locations of the textures that nearly every material has. Locating them prefetches them, so that
 /// time until they are read is not lost.

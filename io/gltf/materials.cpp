@@ -77,6 +77,11 @@ Material GltfMaterials::read(size_t index) {
         read_surface(json, material);
         read_specular(json, material);
         read_glass(json, material);
+        read_coat(json, material);
+        read_sheen(json, material);
+        read_anisotropy(json, material);
+        read_iridescence(json, material);
+        read_diffuse_transmission(json, material);
     }
     spectral_.apply(json, material);
     count(json, material);
@@ -118,6 +123,72 @@ void GltfMaterials::read_glass(const JsonCursor& json, Material& material) {
         material.attenuation_color = rgb_or(*volume, "attenuationColor", Rgb(1.f));
         material.attenuation_distance_m = number_or(*volume, "attenuationDistance", kInfinity);
     }
+}
+
+void GltfMaterials::read_coat(const JsonCursor& json, Material& material) {
+    const auto coat = json.extension("KHR_materials_clearcoat");
+    if (!coat) return;
+    material.coat = number_or(*coat, "clearcoatFactor", 0.f);
+    if (!(material.coat > 0.f)) return;
+    material.coat_texture = textures_.slot(*coat, "clearcoatTexture", Encoding::Linear);
+    material.coat_roughness = number_or(*coat, "clearcoatRoughnessFactor", 0.f);
+    material.coat_roughness_texture =
+        textures_.slot(*coat, "clearcoatRoughnessTexture", Encoding::Linear);
+    material.coat_normal_texture =
+        textures_.slot(*coat, "clearcoatNormalTexture", Encoding::Linear);
+    if (const auto map = coat->find_object("clearcoatNormalTexture"))
+        material.coat_normal_scale = number_or(*map, "scale", 1.f);
+    tally_.honoured.insert("clear coats");
+}
+
+void GltfMaterials::read_sheen(const JsonCursor& json, Material& material) {
+    const auto sheen = json.extension("KHR_materials_sheen");
+    if (!sheen) return;
+    material.sheen_color = rgb_or(*sheen, "sheenColorFactor", Rgb(0.f));
+    if (!material.has_sheen()) return;
+    material.sheen_color_texture = textures_.slot(*sheen, "sheenColorTexture", Encoding::Srgb);
+    material.sheen_roughness = number_or(*sheen, "sheenRoughnessFactor", 0.f);
+    material.sheen_roughness_texture =
+        textures_.slot(*sheen, "sheenRoughnessTexture", Encoding::Linear);
+    tally_.honoured.insert("sheen");
+}
+
+void GltfMaterials::read_anisotropy(const JsonCursor& json, Material& material) {
+    const auto anisotropy = json.extension("KHR_materials_anisotropy");
+    if (!anisotropy) return;
+    material.anisotropy = number_or(*anisotropy, "anisotropyStrength", 0.f);
+    if (!(material.anisotropy > 0.f)) return;
+    material.anisotropy_rotation_rad = number_or(*anisotropy, "anisotropyRotation", 0.f);
+    material.anisotropy_texture =
+        textures_.slot(*anisotropy, "anisotropyTexture", Encoding::Linear);
+    tally_.honoured.insert("anisotropic highlights");
+}
+
+void GltfMaterials::read_iridescence(const JsonCursor& json, Material& material) {
+    const auto film = json.extension("KHR_materials_iridescence");
+    if (!film) return;
+    material.iridescence = number_or(*film, "iridescenceFactor", 0.f);
+    if (!(material.iridescence > 0.f)) return;
+    material.iridescence_texture = textures_.slot(*film, "iridescenceTexture", Encoding::Linear);
+    material.film_ior = number_or(*film, "iridescenceIor", 1.3f);
+    material.film_thinnest_nm = number_or(*film, "iridescenceThicknessMinimum", 100.f);
+    material.film_thickest_nm = number_or(*film, "iridescenceThicknessMaximum", 400.f);
+    material.film_thickness_texture =
+        textures_.slot(*film, "iridescenceThicknessTexture", Encoding::Linear);
+    tally_.honoured.insert("iridescence of thin films");
+}
+
+void GltfMaterials::read_diffuse_transmission(const JsonCursor& json, Material& material) {
+    const auto leaf = json.extension("KHR_materials_diffuse_transmission");
+    if (!leaf) return;
+    material.diffuse_transmission = number_or(*leaf, "diffuseTransmissionFactor", 0.f);
+    if (!(material.diffuse_transmission > 0.f)) return;
+    material.diffuse_transmission_texture =
+        textures_.slot(*leaf, "diffuseTransmissionTexture", Encoding::Linear);
+    material.diffuse_transmission_color = rgb_or(*leaf, "diffuseTransmissionColorFactor", Rgb(1.f));
+    material.diffuse_transmission_color_texture =
+        textures_.slot(*leaf, "diffuseTransmissionColorTexture", Encoding::Srgb);
+    tally_.honoured.insert("diffuse transmission");
 }
 
 void GltfMaterials::count(const JsonCursor& json, const Material& material) {

@@ -24,6 +24,11 @@ class GltfMaterials {
     void read_surface(const JsonCursor&, Material&);
     void read_specular(const JsonCursor&, Material&);
     void read_glass(const JsonCursor&, Material&);
+    void read_coat(const JsonCursor&, Material&);
+    void read_sheen(const JsonCursor&, Material&);
+    void read_anisotropy(const JsonCursor&, Material&);
+    void read_iridescence(const JsonCursor&, Material&);
+    void read_diffuse_transmission(const JsonCursor&, Material&);
     void count(const JsonCursor&, const Material&);
 
     const GltfModel& gltf_;

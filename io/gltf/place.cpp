@@ -116,15 +116,15 @@ class Placer {
     // Tangents are found before the mesh is moved, so that every copy of it shades alike.
     Mesh read_shaded(const Placement& placement, const tinygltf::Primitive& primitive,
                      const Material& material) {
-        const bool normal_mapped = material.normal_texture.present();
+        const bool with_tangents = material.needs_tangents();
         Mesh mesh =
-            read_primitive(gltf_, primitive, placement.morph_weights, normal_mapped, tally_);
+            read_primitive(gltf_, primitive, placement.morph_weights, with_tangents, tally_);
         repair_values(mesh, tally_);
         tally_.unmapped_primitives += add_missing_uv(mesh, material);
         tally_.replaced_normals += repair_normals(mesh);
         repair_tangents(mesh);
-        if (normal_mapped && mesh.tangents.empty()) {
-            add_tangents(mesh, material.normal_texture);
+        if (with_tangents && mesh.tangents.empty()) {
+            add_tangents(mesh, material.tangent_slot());
             tally_.honoured.insert("tangents computed for normal maps");
         }
         return mesh;

@@ -46,10 +46,7 @@ void repair_values(Mesh& mesh, GltfTally& tally) {
 
 bool add_missing_uv(Mesh& mesh, const Material& material) {
     bool added = false;
-    for (const TextureSlot* slot :
-         {&material.base_color_texture, &material.metallic_roughness_texture,
-          &material.normal_texture, &material.emissive_texture, &material.specular_texture,
-          &material.specular_color_texture, &material.transmission_texture}) {
+    for (const TextureSlot* slot : material.textures()) {
         if (!slot->present() || !mesh.uv[slot->uv_set].empty()) continue;
         mesh.uv[slot->uv_set].assign(mesh.positions.size(), V2f(0.f));
         added = true;

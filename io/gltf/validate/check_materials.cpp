@@ -57,6 +57,38 @@ void check_volume(const JsonCursor& volume) {
         volume.fail("attenuationDistance", "must be more than 0");
 }
 
+void check_coat(const JsonCursor& coat) {
+    (void)coat.number_or("clearcoatFactor", 0, unit);
+    (void)coat.number_or("clearcoatRoughnessFactor", 0, unit);
+    if (const auto map = coat.find_object("clearcoatNormalTexture"))
+        (void)map->number_or("scale", 1);
+}
+
+void check_film(const JsonCursor& film) {
+    (void)film.number_or("iridescenceFactor", 0, unit);
+    const double ior = film.number_or("iridescenceIor", 1.3, not_negative);
+    if (ior < 1) film.fail("iridescenceIor", fmt::format("must be at least 1, but is {}", ior));
+    (void)film.number_or("iridescenceThicknessMinimum", 100, not_negative);
+    (void)film.number_or("iridescenceThicknessMaximum", 400, not_negative);
+}
+
+void check_layers(const JsonCursor& material) {
+    if (const auto coat = material.extension("KHR_materials_clearcoat")) check_coat(*coat);
+    if (const auto film = material.extension("KHR_materials_iridescence")) check_film(*film);
+    if (const auto sheen = material.extension("KHR_materials_sheen")) {
+        (void)sheen->numbers("sheenColorFactor", 3, unit);
+        (void)sheen->number_or("sheenRoughnessFactor", 0, unit);
+    }
+    if (const auto anisotropy = material.extension("KHR_materials_anisotropy")) {
+        (void)anisotropy->number_or("anisotropyStrength", 0, unit);
+        (void)anisotropy->number_or("anisotropyRotation", 0);
+    }
+    if (const auto leaf = material.extension("KHR_materials_diffuse_transmission")) {
+        (void)leaf->number_or("diffuseTransmissionFactor", 0, unit);
+        (void)leaf->numbers("diffuseTransmissionColorFactor", 3, unit);
+    }
+}
+
 void check_material_extensions(const JsonCursor& material) {
     if (const auto dispersion = material.extension("KHR_materials_dispersion"))
         (void)dispersion->number_or("dispersion", 0, not_negative);
@@ -93,6 +125,7 @@ void check_materials(GltfCheck& check) {
     for (const JsonCursor& material : check.root.objects("materials")) {
         check_core(material);
         check_material_extensions(material);
+        check_layers(material);
         check_material_extras(material);
         for (const JsonCursor& owner : texture_owners(material))
             for (const JsonCursor& info : texture_infos(owner)) check_texture_info(info, textures);

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/shading/coated_bsdf.h"
+
+namespace petzval {
+namespace {
+
+BsdfInput lobe_of(const CoatInput& coat, const Bands& bands) {
+    BsdfInput in;
+    in.roughness = coat.roughness;
+    in.dielectric_f0 = uniform(kCoatF0, bands);
+    return in;
+}
+
+Frame frame_of(const CoatInput& coat) {
+    return coat.normal == V3f(0, 0, 1) ? Frame{} : Frame::about(coat.normal);
+}
+
+}  // namespace
+
+CoatedBsdf::CoatedBsdf(const BsdfInput& in, const CoatInput& coat, const Bands& bands,
+                       const V3f& wo, f4 throughput, const V3f& up)
+    : base_(in, bands, wo, throughput, up) {
+    if (!(coat.weight > 0.f)) return;
+    const Frame frame = frame_of(coat);
+    const Bsdf lobe(lobe_of(coat, bands), bands, frame.to_local(wo), throughput,
+                    frame.to_local(up));
+    // All lanes reflect alike: any one that is on tells how much that is.
+    const float reflected = coat.weight * hmax(lobe.albedo()), under = 1.f - reflected;
+    const f4 share = zero_off(bands.on, throughput);
+    const float below = under * hsum(share * base_.albedo()) / hsum(share);
+    coat_.emplace(Coat{frame, lobe, coat.weight, under, reflected / (reflected + below)});
+}
+
+StraightThrough CoatedBsdf::straight_through() const {
+    StraightThrough out = base_.straight_through();
+    if (!coat_) return out;
+    out.value *= coat_->under;
+    out.chance *= 1.f - coat_->chance;
+    return out;
+}
+
+f4 CoatedBsdf::albedo() const {
+    if (!coat_) return base_.albedo();
+    return coat_->lobe.albedo() * coat_->weight + base_.albedo() * coat_->under;
+}
+
+BsdfValue CoatedBsdf::eval_coated(const V3f& wi) const {
+    const BsdfValue coat = coat_->lobe.eval(coat_->frame.to_local(wi)), base = base_.eval(wi);
+    return {coat.f_cos * coat_->weight + base.f_cos * coat_->under,
+            coat.pdf * coat_->chance + base.pdf * (1.f - coat_->chance)};
+}
+
+std::optional<BsdfSample> CoatedBsdf::sample_coated(float u_lobe, V2f u, bool led) const {
+    const bool from_coat = u_lobe < coat_->chance;
+    const float chance = from_coat ? coat_->chance : 1.f - coat_->chance;
+    const float left = std::min((from_coat ? u_lobe : u_lobe - coat_->chance) / chance, kOneMinus);
+    std::optional<BsdfSample> drawn =
+        from_coat ? coat_->lobe.sample(left, u, led) : base_.sample(left, u, led);
+    if (!drawn) return drawn;
+    if (from_coat) drawn->wi = coat_->frame.to_world(drawn->wi);
+    if (drawn->delta) {
+        drawn->weight *= (from_coat ? coat_->weight : coat_->under) / chance;
+        return drawn;
+    }
+    const BsdfValue value = eval_coated(drawn->wi);
+    if (!(value.pdf > 0.f)) return std::nullopt;
+    drawn->weight = value.f_cos * (1.f / value.pdf);
+    drawn->pdf = value.pdf;
+    return drawn;
+}
+
+}  // namespace petzval

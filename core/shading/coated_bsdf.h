@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// BSDF of a surface that may have a clear coat, as KHR_materials_clearcoat has it.
+#pragma once
+
+#include <optional>
+
+#include "core/shading/bsdf.h"
+
+namespace petzval {
+
+/// Reflectance of an index of 1.5 at normal incidence, as the extension sets it.
+inline constexpr float kCoatF0 = 0.04f;
+
+/// Clear coat at a point: a dielectric layer of index 1.5, which takes nothing.
+struct CoatInput {
+    float weight = 0;  ///< how much of the surface has it; 0: none
+    float roughness = 0;
+    V3f normal{0, 0, 1};  ///< unit, in the shading frame, on wo's side
+};
+
+/// Coat over a Bsdf. The coat is a GGX reflection about a normal of its own. What lies below gets
+/// what the coat does not send back towards wo, over all directions: that is how the extension
+/// mixes, so nothing is lost or gained in a white furnace. Each lobe is reciprocal; the mixture is
+/// not, by the ratio of what the coat lets through for wo and for wi. Directions are as in Bsdf.
+class CoatedBsdf {
+  public:
+    CoatedBsdf(const BsdfInput&, const CoatInput&, const Bands&, const V3f& wo,
+               f4 throughput = splat(1.f), const V3f& up = V3f(0, 0, 1));
+
+    [[nodiscard]] BsdfValue eval(const V3f& wi) const {
+        return coat_ ? eval_coated(wi) : base_.eval(wi);
+    }
+    [[nodiscard]] std::optional<BsdfSample> sample(float u_lobe, V2f u, bool led = true) const {
+        return coat_ ? sample_coated(u_lobe, u, led) : base_.sample(u_lobe, u, led);
+    }
+    [[nodiscard]] bool has_wide_lobe() const {
+        return base_.has_wide_lobe() || (coat_ && coat_->lobe.has_wide_lobe());
+    }
+    [[nodiscard]] bool is_clear() const { return base_.is_clear(); }
+    [[nodiscard]] StraightThrough straight_through() const;
+    [[nodiscard]] f4 albedo() const;
+
+  private:
+    struct Coat {
+        Frame frame;  ///< in the shading frame
+        Bsdf lobe;
+        float weight;
+        float under;   ///< share that the base gets
+        float chance;  ///< that sample() draws the coat
+    };
+    [[nodiscard]] BsdfValue eval_coated(const V3f& wi) const;
+    [[nodiscard]] std::optional<BsdfSample> sample_coated(float u_lobe, V2f u, bool led) const;
+
+    Bsdf base_;
+    std::optional<Coat> coat_;
+};
+
+}  // namespace petzval

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a material is at a hit: factors times textures, and the layers that glTF's extensions add.
+#include <optional>
+
+#include "core/shading/surface.h"
+
+namespace petzval {
+namespace {
+
+TextureLookup locate(const Scene& scene, const Surface& s, const TextureSlot& slot) {
+    return locate_texture(scene.images, slot, s.uv[slot.uv_set]);
+}
+
+f4 read(const Scene& scene, const Surface& s, const TextureSlot& slot) {
+    return read_texture(locate(scene, s, slot));
+}
+
+Rgb read_rgb(const Scene& scene, const Surface& s, const TextureSlot& slot) {
+    f4 texel = read(scene, s, slot);
+    texel[3] = 0.f;
+    return Rgb(texel);
+}
+
+// The part of the mesh's tangent across the normal, and the bitangent, on the front side; nothing
+// where the tangent has no such part.
+struct Tangents {
+    V3f tangent, bitangent;
+};
+std::optional<Tangents> tangents_at(const Surface& s) {
+    const V4f t4 =
+        interpolate(s.mesh->tangents, s.mesh->triangles[s.hit.triangle], s.hit.barycentric);
+    V3f t(t4.x, t4.y, t4.z);
+    if (!s.instance->identity) t = transform_direction(t, s.instance->to_world);
+    t -= s.ns * t.dot(s.ns);
+    if (t.dot(t) < 1e-20f) return std::nullopt;
+    t = unit(t);
+    const float flip = s.instance->flips ? -1.f : 1.f;
+    return Tangents{t, s.ns.cross(t) * (t4.w < 0.f ? -flip : flip)};
+}
+
+// The normal map's normal in the frame that the tangents span, on the front side.
+V3f mapped_normal(const Surface& s, const TextureLookup& map, float scale) {
+    const auto t = tangents_at(s);
+    if (!t) return s.ns;
+    const f4 texel = read_texture(map) * 2.f - 1.f;
+    const V3f n =
+        t->tangent * (texel[0] * scale) + t->bitangent * (texel[1] * scale) + s.ns * texel[2];
+    return n.dot(n) > 1e-12f ? unit(n) : s.ns;
+}
+
+// Shading normal that wo sees from the front. One seen from behind would reflect into the surface:
+// it is tilted until wo grazes it.
+V3f face_towards(const V3f& n, const V3f& wo) {
+    constexpr float least_cosine = 1e-3f;
+    const float cosine = n.dot(wo);
+    return cosine >= least_cosine ? n : unit(n + wo * (least_cosine - cosine));
+}
+
+// Reflectance at normal incidence: KHR_materials_ior and KHR_materials_specular. outside: what lies
+// before the material, or null for air.
+Rgb dielectric_f0(const Material& m, const Material* outside, Rgb specular_color, float specular) {
+    const float n = outside && outside->ior != 0.f ? outside->ior : 1.f;
+    const float root = m.ior == 0.f ? 1.f : (m.ior - n) / (m.ior + n);
+    const Rgb f0 = specular_color * sqr(root);
+    return Rgb(min(f0.v, splat(1.f))) * specular;
+}
+
+// Index of what fills space, null for air. Thin materials do not bend, whatever their glass. A
+// facet between equal indices has no half vector: what hardly differs from air differs by a
+// thousandth, which bends nothing that shows.
+f4 index_of(const Material* m, const Bands& bands) {
+    if (!m) return splat(1.f);
+    const f4 index = bands.spectral && m->glass && m->has_volume
+                         ? m->glass->index(bands.nm)
+                         : splat(m->ior == 0.f ? 1.f : m->ior);
+    const f4 bend = index - 1.f;
+    return max(bend, -bend) < 1e-3f ? splat(1.001f) : index;
+}
+
+bool disperses(const Material* m, const Bands& bands) {
+    return m && bands.spectral && m->glass && m->has_volume;
+}
+
+/// Reads the layers that most materials lack.
+class Layers {
+  public:
+    Layers(const Scene& scene, const Surface& s, const V3f& wo, const Bands& bands)
+        : scene_(scene), s_(s), m_(*s.material), wo_(wo), bands_(bands) {}
+
+    // Without a map of its own the coat has the mesh's normal, whatever the base's map.
+    void read_coat(const Frame& frame, CoatInput& coat) const {
+        if (!(m_.coat > 0.f)) return;
+        coat.weight = m_.coat * channel(m_.coat_texture, 0);
+        coat.roughness = m_.coat_roughness * channel(m_.coat_roughness_texture, 1);
+        const TextureSlot& map = m_.coat_normal_texture;
+        const bool mapped = map.present() && !s_.mesh->tangents.empty();
+        if (!mapped && !m_.normal_texture.present()) return;
+        const V3f n =
+            mapped ? mapped_normal(s_, locate(scene_, s_, map), m_.coat_normal_scale) : s_.ns;
+        coat.normal = unit(frame.to_local(face_towards(s_.front ? n : -n, wo_)));
+        if (coat.normal.z > kSameNormal) coat.normal = V3f(0, 0, 1);
+    }
+
+    void read_sheen(BsdfInput& b) const {
+        if (!m_.has_sheen()) return;
+        const Rgb colour = m_.sheen_color * read_rgb(scene_, s_, m_.sheen_color_texture);
+        b.sheen = uplift_reflectance(colour, bands_);
+        b.sheen_most = hmax(colour.v);
+        b.sheen_roughness = m_.sheen_roughness * channel(m_.sheen_roughness_texture, 3);
+    }
+
+    // Turns the frame's x along the wide lobe.
+    void read_anisotropy(Frame& frame, BsdfInput& b) const {
+        if (!(m_.anisotropy > 0.f)) return;
+        b.anisotropy = m_.anisotropy;
+        V2f along(std::cos(m_.anisotropy_rotation_rad), std::sin(m_.anisotropy_rotation_rad));
+        if (m_.anisotropy_texture.present()) {
+            const f4 texel = read(scene_, s_, m_.anisotropy_texture);
+            b.anisotropy *= texel[2];
+            const V2f direction(texel[0] * 2.f - 1.f, texel[1] * 2.f - 1.f);
+            along = V2f(along.x * direction.x - along.y * direction.y,
+                        along.x * direction.y + along.y * direction.x);
+        }
+        if (s_.mesh->tangents.empty()) return;
+        if (const auto t = tangents_at(s_))
+            frame = Frame::about(frame.z, t->tangent * along.x + t->bitangent * along.y);
+    }
+
+    void read_film(const Fillings& sides, BsdfInput& b) const {
+        if (!(m_.iridescence > 0.f)) return;
+        b.film_share = m_.iridescence * channel(m_.iridescence_texture, 0);
+        b.film_index = m_.film_ior / index_of(sides.before, Bands::rgb())[0];
+        const float way =
+            m_.film_thickness_texture.present() ? channel(m_.film_thickness_texture, 1) : 1.f;
+        b.film_thickness_nm = lerp(m_.film_thinnest_nm, m_.film_thickest_nm, way);
+        if (!(b.film_thickness_nm > 0.f)) b.film_share = 0.f;
+    }
+
+    void read_diffuse_transmission(BsdfInput& b) const {
+        if (!(m_.diffuse_transmission > 0.f)) return;
+        b.diffuse_transmission =
+            m_.diffuse_transmission * channel(m_.diffuse_transmission_texture, 3);
+        b.diffuse_transmission_color =
+            uplift_reflectance(m_.diffuse_transmission_color *
+                                   read_rgb(scene_, s_, m_.diffuse_transmission_color_texture),
+                               bands_);
+    }
+
+  private:
+    [[nodiscard]] float channel(const TextureSlot& slot, int of) const {
+        return slot.present() ? read(scene_, s_, slot)[of] : 1.f;
+    }
+
+    const Scene& scene_;
+    const Surface& s_;
+    const Material& m_;
+    const V3f& wo_;
+    const Bands& bands_;
+};
+
+}  // namespace
+
+f4 vertex_colour(const Surface& s) {
+    if (s.mesh->colours.empty()) return splat(1.f);
+    const V4f c =
+        interpolate(s.mesh->colours, s.mesh->triangles[s.hit.triangle], s.hit.barycentric);
+    return f4{c.x, c.y, c.z, c.w};
+}
+
+MaterialLookups locate_material(const Scene& scene, const Surface& s) {
+    const Material& m = *s.material;
+    MaterialLookups out;
+    out.base_color = locate(scene, s, m.base_color_texture);
+    const auto locate_next = [&](const TextureSlot& slot) {
+        return slot.place != 0 && slot.place == m.base_color_texture.place
+                   ? locate_beside(scene.images, slot, out.base_color)
+                   : locate(scene, s, slot);
+    };
+    out.metallic_roughness = locate_next(m.metallic_roughness_texture);
+    out.normal = locate_next(m.normal_texture);
+    out.emits = m.emits() && !m.unlit && (s.front || m.double_sided);
+    if (out.emits) out.emissive = locate_next(m.emissive_texture);
+    return out;
+}
+
+ShadingInput read_material(const Scene& scene, const Surface& s, const MaterialLookups& lookups,
+                           const V3f& wo, const Bands& bands, const Fillings& sides) {
+    const Material& m = *s.material;
+    ShadingInput out;
+    f4 base = m.base_color.v * read_texture(lookups.base_color);
+    if (!s.mesh->colours.empty()) base *= vertex_colour(s);
+    base[3] = 0.f;
+    const Rgb base_color(base);
+    V3f n = s.ns;
+    if (m.normal_texture.present() && !s.mesh->tangents.empty())
+        n = mapped_normal(s, lookups.normal, m.normal_scale);
+    out.frame = Frame::about(face_towards(s.front ? n : -n, wo));
+    const bool layered = m.layered() && !m.unlit;
+    const Layers layers(scene, s, wo, bands);
+    if (layered) layers.read_anisotropy(out.frame, out.bsdf);
+    if (out.frame.z.dot(s.side) < kSameNormal) out.up = out.frame.to_local(s.side);
+    if (lookups.emits) {
+        f4 texel = read_texture(lookups.emissive);
+        texel[3] = 0.f;
+        out.emitted = m.emissive * Rgb(texel);
+    }
+    if (m.unlit) {
+        out.unlit = base_color;
+        return out;
+    }
+    BsdfInput& b = out.bsdf;
+    b.base_color = uplift_reflectance(base_color, bands);
+    if (m.metal >= 0 && bands.spectral) {
+        const Metal& metal = scene.metals[static_cast<size_t>(m.metal)];
+        b.measured_metal = true;
+        b.metal_n = metal.n.at(bands.nm);
+        b.metal_k = metal.k.at(bands.nm);
+    }
+    const f4 surface_texel = read_texture(lookups.metallic_roughness);
+    b.roughness = m.roughness * surface_texel[1];
+    b.metallic = m.metallic * surface_texel[2];
+    float specular = m.specular;
+    if (m.specular_texture.present()) specular *= read(scene, s, m.specular_texture)[3];
+    Rgb specular_color = m.specular_color;
+    if (m.specular_color_texture.present())
+        specular_color = specular_color * read_rgb(scene, s, m.specular_color_texture);
+    const Material* outside = &m == sides.before ? sides.behind : sides.before;
+    b.dielectric_f0 =
+        uplift_reflectance(dielectric_f0(m, outside, specular_color, specular), bands);
+    b.dielectric_f90 = specular;
+    b.transmission = m.transmission;
+    if (m.transmission_texture.present())
+        b.transmission *= read(scene, s, m.transmission_texture)[0];
+    b.thin = !m.has_volume;
+    b.disperses = disperses(sides.before, bands) || disperses(sides.behind, bands);
+    b.eta = index_of(sides.behind, bands) / index_of(sides.before, bands);
+    if (layered) {
+        layers.read_coat(out.frame, out.coat);
+        layers.read_sheen(b);
+        layers.read_film(sides, b);
+        layers.read_diffuse_transmission(b);
+    }
+    return out;
+}
+
+f4 transmittance(const Material& m, float distance_m, const Bands& bands) {
+    const float distances = distance_m / m.attenuation_distance_m;
+    if (!(distances > 0.f)) return uniform(1.f, bands);
+    f4 share = uplift_reflectance(m.attenuation_color, bands);
+    for (int i = 0; i < 4; ++i) share[i] = std::pow(share[i], distances);
+    return share;
+}
+
+}  // namespace petzval

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Averages over the facets of a rough surface that are seen from one direction, where no table has
+// them: lobes of two widths, and reflectances that no Schlick weight describes.
+#pragma once
+
+#include <array>
+
+#include "core/shading/microfacet.h"
+
+namespace petzval {
+
+/// Directional albedo of a GGX lobe of two widths, by 192 facets that a lattice picks in proportion
+/// to what is seen of them. Against quadrature with 16,384 facets, widths from 0.001 to 1, cosines
+/// from 0.01 to 1: total() is off by 0.25 % in the mean square, by 1 % at most.
+[[nodiscard]] GgxAlbedo visible_albedo(const V3f& wo, const GgxWidth& alpha);
+
+/// A few facets as seen from wo, which stand for all of them.
+struct FewFacets {
+    static constexpr int kCount = 21;
+    std::array<float, kCount> cosine;  ///< between facet and wo
+    /// Shares of the light that leave again, of what facets reflect and of what they refract; each
+    /// adds up to 1 at most.
+    std::array<float, kCount> reflected, refracted;
+};
+/// eta: index behind over that in front, for what is refracted.
+[[nodiscard]] FewFacets few_visible_facets(const V3f& wo, const GgxWidth& alpha, float eta);
+
+}  // namespace petzval

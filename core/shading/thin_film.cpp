@@ -9,7 +9,7 @@ namespace petzval {
 namespace {
 
 /// Terms of the sum that RGB takes: what is left after them is below 0.1 % at indices up to 3.
-constexpr int kMostTerms = 8;
+constexpr int kMostTerms = 12;
 constexpr float kLeastTerm = 1e-3f;
 
 /// Responses of R, G and B to a cosine and a sine of the optical path, relative to those to 1.

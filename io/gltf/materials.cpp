@@ -3,6 +3,9 @@
 
 #include <tiny_gltf.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "io/base/json_parse.h"
 
 namespace petzval {
@@ -158,7 +161,8 @@ void GltfMaterials::read_anisotropy(const JsonCursor& json, Material& material) 
     if (!anisotropy) return;
     material.anisotropy = number_or(*anisotropy, "anisotropyStrength", 0.f);
     if (!(material.anisotropy > 0.f)) return;
-    material.anisotropy_rotation_rad = number_or(*anisotropy, "anisotropyRotation", 0.f);
+    material.anisotropy_rotation_rad = static_cast<float>(
+        std::remainder(anisotropy->number_or("anisotropyRotation", 0), 2 * std::numbers::pi));
     material.anisotropy_texture =
         textures_.slot(*anisotropy, "anisotropyTexture", Encoding::Linear);
     tally_.honoured.insert("anisotropic highlights");

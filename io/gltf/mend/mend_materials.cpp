@@ -94,6 +94,33 @@ void mend_ior(const JsonEditor& extension) {
     if (ior && ior->is_number() && *ior != 0) extension.clamp("ior", {1, kNotNegative.high});
 }
 
+void mend_film(const JsonEditor& film) {
+    film.clamp("iridescenceFactor", kUnit);
+    film.clamp("iridescenceIor", {1, kNotNegative.high});
+    film.clamp("iridescenceThicknessMinimum", kNotNegative);
+    film.clamp("iridescenceThicknessMaximum", kNotNegative);
+}
+
+void mend_layers(const JsonEditor& material) {
+    const auto factors = [&](const char* extension, std::initializer_list<const char*> names) {
+        if (const auto layer = material.extension(extension))
+            for (const char* const name : names) layer->clamp(name, kUnit);
+    };
+    const auto colour = [&](const char* extension, const char* name) {
+        if (const auto layer = material.extension(extension)) {
+            mend_length(*layer, name, 3, 1);
+            layer->clamp_each(name, kUnit);
+        }
+    };
+    factors("KHR_materials_clearcoat", {"clearcoatFactor", "clearcoatRoughnessFactor"});
+    factors("KHR_materials_sheen", {"sheenRoughnessFactor"});
+    colour("KHR_materials_sheen", "sheenColorFactor");
+    factors("KHR_materials_anisotropy", {"anisotropyStrength"});
+    factors("KHR_materials_diffuse_transmission", {"diffuseTransmissionFactor"});
+    colour("KHR_materials_diffuse_transmission", "diffuseTransmissionColorFactor");
+    if (const auto film = material.extension("KHR_materials_iridescence")) mend_film(*film);
+}
+
 void mend_extensions(const JsonEditor& material) {
     const auto with = [&](const char* name, auto mend) {
         if (const auto extension = material.extension(name)) mend(*extension);
@@ -109,6 +136,7 @@ void mend_extensions(const JsonEditor& material) {
     });
     with("KHR_materials_volume", mend_volume);
     with("KHR_materials_ior", mend_ior);
+    mend_layers(material);
     json* extensions = material.find("extensions");
     if (!extensions || !extensions->is_object()) return;
     for (const auto& [name, unused] : extensions->items())

@@ -2,6 +2,8 @@
 // Materials: factors, extensions, texture slots, and which images are decoded.
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "tests/support/load_tiny_gltf.h"
 #include "tests/support/refusal.h"
 #include "tests/support/tiny_png.h"
@@ -52,6 +54,12 @@ TinyGltf file_with_extension(const char* name, json value) {
     TinyGltf file = file_with(extension(name, std::move(value)));
     file.json["extensionsUsed"] = {name};
     return file;
+}
+
+/// The red of the texel that a slot reads.
+int red(const Scene& scene, const TextureSlot& slot) {
+    if (!slot.present()) return -1;
+    return std::get<0>(scene.images[static_cast<size_t>(slot.image)].texels)[0];
 }
 
 TEST(GltfMaterial, DefaultsAreThoseOfTheSpecification) {
@@ -131,6 +139,90 @@ TEST(GltfMaterial, IorSpecularTransmissionVolume) {
     EXPECT_EQ(thin.attenuation_distance_m, kInfinity);
 }
 
+TEST(GltfMaterial, LayersOfExtensions) {
+    const Material coat = load_material(file_with_extension(
+        "KHR_materials_clearcoat", {{"clearcoatFactor", 0.5}, {"clearcoatRoughnessFactor", 0.25}}));
+    EXPECT_EQ(coat.coat, 0.5f);
+    EXPECT_EQ(coat.coat_roughness, 0.25f);
+    const Material sheen = load_material(file_with_extension(
+        "KHR_materials_sheen",
+        {{"sheenColorFactor", {0.25, 0.5, 1}}, {"sheenRoughnessFactor", 0.75}}));
+    expect_rgb(sheen.sheen_color, 0.25f, 0.5f, 1);
+    EXPECT_EQ(sheen.sheen_roughness, 0.75f);
+    const Material brushed = load_material(file_with_extension(
+        "KHR_materials_anisotropy",
+        {{"anisotropyStrength", 0.5}, {"anisotropyRotation", 0.5 + 2000 * std::numbers::pi}}));
+    EXPECT_EQ(brushed.anisotropy, 0.5f);
+    EXPECT_NEAR(brushed.anisotropy_rotation_rad, 0.5f, 1e-6f);
+    const Material film = load_material(
+        file_with_extension("KHR_materials_iridescence", {{"iridescenceFactor", 0.5},
+                                                          {"iridescenceIor", 1.5},
+                                                          {"iridescenceThicknessMinimum", 200},
+                                                          {"iridescenceThicknessMaximum", 600}}));
+    EXPECT_EQ(film.iridescence, 0.5f);
+    EXPECT_EQ(film.film_ior, 1.5f);
+    EXPECT_EQ(film.film_thinnest_nm, 200.f);
+    EXPECT_EQ(film.film_thickest_nm, 600.f);
+    const Material usual =
+        load_material(file_with_extension("KHR_materials_iridescence", {{"iridescenceFactor", 1}}));
+    EXPECT_EQ(usual.film_ior, 1.3f);
+    EXPECT_EQ(usual.film_thinnest_nm, 100.f);
+    EXPECT_EQ(usual.film_thickest_nm, 400.f);
+    const Material leaf = load_material(file_with_extension(
+        "KHR_materials_diffuse_transmission",
+        {{"diffuseTransmissionFactor", 0.25}, {"diffuseTransmissionColorFactor", {0.25, 0.5, 1}}}));
+    EXPECT_EQ(leaf.diffuse_transmission, 0.25f);
+    expect_rgb(leaf.diffuse_transmission_color, 0.25f, 0.5f, 1);
+    EXPECT_TRUE(leaf.lets_light_through());
+    for (const Material& m : {coat, sheen, brushed, film, leaf}) EXPECT_TRUE(m.layered());
+    EXPECT_FALSE(material_of(json::object()).layered());
+}
+
+TEST(GltfMaterial, EverySlotOfALayerHasItsTextureAndEncoding) {
+    TinyGltf file = file_with(json::object());
+    for (uint8_t i = 0; i < 11; ++i) add_texture(file, uint8_t(100 + i));
+    const auto slot = [](int i) { return json{{"index", i}}; };
+    file.json["extensionsUsed"] = {"KHR_materials_clearcoat", "KHR_materials_sheen",
+                                   "KHR_materials_anisotropy", "KHR_materials_iridescence",
+                                   "KHR_materials_diffuse_transmission"};
+    json& extensions = file.json["materials"][0]["extensions"];
+    extensions["KHR_materials_clearcoat"] = {
+        {"clearcoatFactor", 1},
+        {"clearcoatTexture", slot(0)},
+        {"clearcoatRoughnessTexture", slot(1)},
+        {"clearcoatNormalTexture", {{"index", 2}, {"scale", 0.5}}}};
+    extensions["KHR_materials_sheen"] = {{"sheenColorFactor", {1, 1, 1}},
+                                         {"sheenColorTexture", slot(3)},
+                                         {"sheenRoughnessTexture", slot(4)}};
+    extensions["KHR_materials_anisotropy"] = {{"anisotropyStrength", 1},
+                                              {"anisotropyTexture", slot(5)}};
+    extensions["KHR_materials_iridescence"] = {{"iridescenceFactor", 1},
+                                               {"iridescenceTexture", slot(6)},
+                                               {"iridescenceThicknessTexture", slot(7)}};
+    extensions["KHR_materials_diffuse_transmission"] = {
+        {"diffuseTransmissionFactor", 1},
+        {"diffuseTransmissionTexture", slot(8)},
+        {"diffuseTransmissionColorTexture", slot(9)}};
+    const GltfFile loaded = load(file);
+    const Material& m = loaded.scene.materials[0];
+    const auto check = [&](const TextureSlot& texture, int expected, Encoding encoding) {
+        EXPECT_EQ(red(loaded.scene, texture), expected);
+        EXPECT_EQ(texture.encoding, encoding) << expected;
+    };
+    check(m.coat_texture, 100, Encoding::Linear);
+    check(m.coat_roughness_texture, 101, Encoding::Linear);
+    check(m.coat_normal_texture, 102, Encoding::Linear);
+    EXPECT_EQ(m.coat_normal_scale, 0.5f);
+    check(m.sheen_color_texture, 103, Encoding::Srgb);
+    check(m.sheen_roughness_texture, 104, Encoding::Linear);
+    check(m.anisotropy_texture, 105, Encoding::Linear);
+    check(m.iridescence_texture, 106, Encoding::Linear);
+    check(m.film_thickness_texture, 107, Encoding::Linear);
+    check(m.diffuse_transmission_texture, 108, Encoding::Linear);
+    check(m.diffuse_transmission_color_texture, 109, Encoding::Srgb);
+    EXPECT_FALSE(loaded.scene.meshes[0].tangents.empty());
+}
+
 TEST(GltfMaterial, UnlitShowsItsBaseColourOnly) {
     TinyGltf file = file_with_extension("KHR_materials_unlit", json::object());
     file.json["materials"][0]["emissiveFactor"] = {1, 1, 1};
@@ -140,12 +232,6 @@ TEST(GltfMaterial, UnlitShowsItsBaseColourOnly) {
     EXPECT_FALSE(loaded.scene.materials[0].emits());
     EXPECT_TRUE(loaded.scene.images.empty());
     EXPECT_TRUE(contains_line(loaded.honoured, "KHR_materials_unlit"));
-}
-
-/// The red of the texel that a slot reads.
-int red(const Scene& scene, const TextureSlot& slot) {
-    if (!slot.present()) return -1;
-    return std::get<0>(scene.images[static_cast<size_t>(slot.image)].texels)[0];
 }
 
 TEST(GltfMaterial, EverySlotHasItsTextureAndEncoding) {

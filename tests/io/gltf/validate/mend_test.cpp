@@ -178,6 +178,13 @@ TEST(GltfMend, MaterialExtensions) {
         R"({"KHR_materials_transmission": {"transmissionFactor": 1.5},
             "KHR_materials_volume": {"attenuationDistance": 0, "attenuationColor": [2, 1, 1]},
             "KHR_materials_specular": {"specularFactor": 3, "specularColorFactor": [-1, 2, 1]},
+            "KHR_materials_clearcoat": {"clearcoatFactor": 2, "clearcoatRoughnessFactor": -1},
+            "KHR_materials_sheen": {"sheenColorFactor": [3, 0, -1], "sheenRoughnessFactor": 4},
+            "KHR_materials_anisotropy": {"anisotropyStrength": -0.5},
+            "KHR_materials_iridescence": {"iridescenceFactor": 9, "iridescenceIor": 0.5,
+                "iridescenceThicknessMinimum": -1, "iridescenceThicknessMaximum": -2},
+            "KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 7,
+                "diffuseTransmissionColorFactor": [0.5, 0.5]},
             "KHR_materials_emissive_strength": {"emissiveStrength": -2}})";
     TinyGltf file = full_gltf();
     file.json["materials"][0]["extensions"] = json::parse(all);
@@ -188,6 +195,13 @@ TEST(GltfMend, MaterialExtensions) {
                   R"({"KHR_materials_transmission": {"transmissionFactor": 1},
             "KHR_materials_volume": {"attenuationColor": [1, 1, 1]},
             "KHR_materials_specular": {"specularFactor": 1, "specularColorFactor": [0, 2, 1]},
+            "KHR_materials_clearcoat": {"clearcoatFactor": 1, "clearcoatRoughnessFactor": 0},
+            "KHR_materials_sheen": {"sheenColorFactor": [1, 0, 0], "sheenRoughnessFactor": 1},
+            "KHR_materials_anisotropy": {"anisotropyStrength": 0},
+            "KHR_materials_iridescence": {"iridescenceFactor": 1, "iridescenceIor": 1,
+                "iridescenceThicknessMinimum": 0, "iridescenceThicknessMaximum": 0},
+            "KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 1,
+                "diffuseTransmissionColorFactor": [0.5, 0.5, 1]},
             "KHR_materials_emissive_strength": {"emissiveStrength": 0}})"));
     EXPECT_GE(source.warnings.lines().size(), 6u);
 }

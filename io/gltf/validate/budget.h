@@ -10,7 +10,8 @@ namespace petzval {
 /// Limit of the memory that a glTF file may ask for: its accessors (zero-filled or over the same
 /// bytes again and again), vertices that thousands of primitives share, one image listed a million
 /// times. The limit is 256 MiB plus 16 times the bytes that the file and its side files hold: an
-/// honest file asks for about once its own size.
+/// honest file asks for about once its own size. What is decoded counts besides: 256 MiB plus 32
+/// times the file is its limit, and then accessors may ask for twice that much more.
 class GltfBudget {
   public:
     /// Counts bytes that the file and its side files really hold.
@@ -19,8 +20,11 @@ class GltfBudget {
     /// Counts bytes asked for by the object at place; throws InputError there when it is too much.
     void ask(uint64_t bytes, const JsonCursor& place);
 
+    /// Counts bytes likewise to which compressed data at place are to be decoded.
+    void ask_decoded(uint64_t bytes, const JsonCursor& place);
+
   private:
-    uint64_t owned_ = 0, asked_ = 0;
+    uint64_t owned_ = 0, asked_ = 0, decoded_ = 0;
 };
 
 }  // namespace petzval

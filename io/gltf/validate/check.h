@@ -42,8 +42,14 @@ void check_asset(const GltfCheck&);
 void check_extensions(GltfCheck&);
 /// Checks that the root arrays hold objects, and that names are strings.
 void check_collections(const GltfCheck&);
+/// Decodes each bufferView that something needs and whose data are in EXT_meshopt_compression only,
+/// into a buffer of its own: from here on the file is as if it had never been compressed.
+void decode_buffer_views(GltfCheck&);
 /// Checks that every bufferView lies in its buffer. Comes before the images are read.
 void check_buffer_views(GltfCheck&);
+/// Decodes each primitive whose data are in KHR_draco_mesh_compression only, into buffers,
+/// bufferViews and accessors of its own. Comes between bufferViews and accessors.
+void decode_primitives(GltfCheck&);
 /// Checks that every accessor, sparse or not, lies in its bufferView, and that zero-filled ones are
 /// not absurdly long.
 void check_accessors(GltfCheck&);

@@ -125,8 +125,8 @@ void check_extensions(GltfCheck& check) {
         if (extension.refused())
             check.root.fail("extensionsRequired",
                             fmt::format("the file requires the extension {}, which is not "
-                                        "supported; export it without",
-                                        printable(name)));
+                                        "supported; {}",
+                                        printable(name), gltf_extension_advice(name)));
         warn(extension, check.source.warnings);
         check.source.extensions.push_back(extension);
     }

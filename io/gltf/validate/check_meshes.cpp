@@ -46,7 +46,6 @@ class MeshCheck {
         const Attributes found = read_attributes(attributes, false);
         const uint64_t vertices = vertex_count(found);
         check_counts(attributes, found, vertices);
-        check_stored(primitive, found);
         if (primitive.has("indices")) check_indices(primitive);
         ask_for_shared(primitive, found, vertices);
         if (primitive.integer_or("mode", 4) > 6) check_.warn(primitive, "mode is unknown");
@@ -108,16 +107,6 @@ class MeshCheck {
                 attributes.fail(name, fmt::format("accessor {} has {} elements, but another "
                                                   "attribute has {}",
                                                   index, check_.accessors[index].count, vertices));
-    }
-
-    /// Checks that a compressed primitive holds its vertices plainly as well.
-    void check_stored(const JsonCursor& primitive, const Attributes& found) const {
-        if (!primitive.extension("KHR_draco_mesh_compression")) return;
-        for (const auto& [unused, index] : found)
-            if (!check_.accessors[index].view)
-                primitive.fail(
-                    "its vertices are only in KHR_draco_mesh_compression, which is not supported; "
-                    "export it without");
     }
 
     void check_indices(const JsonCursor& primitive) {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
 #include "io/base/json_parse.h"
 #include "io/gltf/validate/check.h"
+#include "io/gltf/validate/extensions.h"
 
 namespace petzval {
 namespace {
@@ -39,8 +42,10 @@ void check_texture(const GltfCheck& check, const JsonCursor& texture) {
     if (!extensions) return;
     for (const auto& [name, unused] : extensions->value().items())
         if (extensions->object(name.c_str()).index("source", images, "image") && !source)
-            texture.fail("its image is only in " + printable(name) +
-                         ", which is not supported; export it with PNG, JPEG or WebP");
+            texture.fail(
+                fmt::format("its image is only in {}, which is not supported; {}", printable(name),
+                            name == "KHR_texture_basisu" ? gltf_extension_advice(name)
+                                                         : "export it with PNG, JPEG or WebP"));
 }
 
 }  // namespace

@@ -35,8 +35,7 @@ constexpr auto table = std::to_array<GltfExtension>({
     {"EXT_mesh_gpu_instancing", Needed, "of many copies of a mesh one is shown", "nodes"},
     {"EXT_mesh_manifold", Harmless, "it tells solids to programs that print them", "meshes"},
     {"EXT_mesh_primitive_edge_visibility", Ignored, "edges have no drawn lines", "primitives"},
-    {"EXT_meshopt_compression", Needed, "meshes that have no plain data beside it are missing",
-     "buffers bufferViews"},
+    {"EXT_meshopt_compression", Rendered, "", "buffers bufferViews"},
     {"EXT_structural_metadata", Harmless, kMetadata, ""},
     {"EXT_texture_avif", Needed, kNoImage, "textures"},
     {"EXT_texture_webp", Rendered, "", "textures"},
@@ -45,8 +44,7 @@ constexpr auto table = std::to_array<GltfExtension>({
     {"GRIFFEL_bim_data", Harmless, kMetadata, ""},
     {"KHR_animation_pointer", Harmless, kStill, "target"},
     {"KHR_audio_emitter", Harmless, kSound, ""},
-    {"KHR_draco_mesh_compression", Needed, "meshes that have no plain data beside it are missing",
-     "primitives"},
+    {"KHR_draco_mesh_compression", Rendered, "", "primitives"},
     {"KHR_gaussian_splatting", Needed, "splats are not shown", "primitives"},
     {"KHR_implicit_shapes", Harmless, "shapes for physics are not seen", ""},
     {"KHR_interactivity", Harmless, kStill, ""},
@@ -70,7 +68,7 @@ constexpr auto table = std::to_array<GltfExtension>({
     {"KHR_materials_volume_scatter", Ignored,
      "wax, skin and milk are clear inside: no light scatters there", "materials"},
     {"KHR_mesh_quantization", Rendered, "", ""},
-    {"KHR_meshopt_compression", Needed, "meshes that have no plain data beside it are missing",
+    {"KHR_meshopt_compression", Needed, "the plain data beside it are shown",
      "buffers bufferViews"},
     {"KHR_node_hoverability", Harmless, kStill, "nodes"},
     {"KHR_node_selectability", Harmless, kStill, "nodes"},
@@ -78,7 +76,7 @@ constexpr auto table = std::to_array<GltfExtension>({
     {"KHR_physics_rigid_bodies", Harmless, kStill, ""},
     {"KHR_techniques_webgl", Needed, "surfaces that programs for graphics cards colour are white",
      ""},
-    {"KHR_texture_basisu", Needed, kNoImage, "textures"},
+    {"KHR_texture_basisu", Needed, "textures show the images beside it", "textures"},
     {"KHR_texture_transform", Rendered, "", "*Texture"},
     {"KHR_xmp", Harmless, kMetadata, ""},
     {"KHR_xmp_json_ld", Harmless, kMetadata, ""},
@@ -118,6 +116,12 @@ const GltfExtension* find_gltf_extension(std::string_view name) {
     const auto at = std::find_if(table.begin(), table.end(),
                                  [&](const GltfExtension& e) { return e.name == name; });
     return at == table.end() ? nullptr : &*at;
+}
+
+std::string_view gltf_extension_advice(std::string_view name) {
+    return name == "KHR_texture_basisu"
+               ? "convert its KTX2 images to PNG: gltf-transform ktxdecompress IN OUT"
+               : "export it without";
 }
 
 }  // namespace petzval

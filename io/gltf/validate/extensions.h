@@ -46,4 +46,7 @@ struct ExtensionInFile {
     [[nodiscard]] bool refused() const { return required && use == ExtensionUse::Needed; }
 };
 
+/// What to do about a file that cannot be shown without an extension that is not supported.
+[[nodiscard]] std::string_view gltf_extension_advice(std::string_view name);
+
 }  // namespace petzval

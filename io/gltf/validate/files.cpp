@@ -105,6 +105,15 @@ Bytes buffer_from_chunk(const JsonCursor& buffer, std::span<const uint8_t> bin) 
     return {bin.begin(), bin.begin() + ptrdiff_t(length)};
 }
 
+/// Whether a buffer stands only for what EXT_meshopt_compression has, so that its bytes, if there
+/// are any, need not be read.
+bool is_fallback(const JsonCursor& buffer) {
+    const auto meshopt = buffer.extension("EXT_meshopt_compression");
+    if (!meshopt || !meshopt->has("fallback")) return false;
+    meshopt->check_bool("fallback");
+    return meshopt->value()["fallback"];
+}
+
 /// Sets a byteLength that is absent or too great to what is there: bufferViews that lie beyond it
 /// are found later.
 void mend_length(GltfSource& source, size_t index, const JsonCursor& buffer, size_t size) {
@@ -138,6 +147,11 @@ void read_buffers(GltfSource& source, const GltfContainer& container, GltfBudget
     Fetcher fetcher(source, budget);
     for (const JsonCursor& buffer : JsonCursor(source.json, file).objects("buffers")) {
         const bool first = source.buffers.empty();
+        if (is_fallback(buffer)) {
+            source.buffers.emplace_back();
+            (void)buffer.integer("byteLength");
+            continue;
+        }
         if (buffer.has("uri"))
             source.buffers.push_back(
                 fetcher.fetch(buffer, {"application/octet-stream", "application/gltf-buffer"}));

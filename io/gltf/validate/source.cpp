@@ -55,7 +55,9 @@ GltfSource read_gltf_source(const std::filesystem::path& path, FileScope scope) 
     check_extensions(check);
     check_collections(check);
     read_buffers(source, {binary, chunks.bin}, budget);
+    decode_buffer_views(check);
     check_buffer_views(check);
+    decode_primitives(check);
     check_accessors(check);
     read_images(source, check.use, budget);
     check_scene_graph(check);

@@ -23,7 +23,8 @@ struct GltfSource {
     FileScope scope = FileScope::Anywhere;
     nlohmann::json json;
     /// Bytes of each buffer, read from its file, its data URI or the binary chunk; at least
-    /// byteLength long. Empty for a buffer that the file leaves undefined.
+    /// byteLength long. Empty for a buffer that the file leaves undefined. Those behind the file's
+    /// own hold what was decoded, and the JSON refers to them.
     std::vector<std::vector<uint8_t>> buffers;
     /// Encoded bytes of each image (PNG, JPEG ...), whatever way the file stores them. Not yet
     /// decoded: they may be no image. Empty for an image in an undefined buffer.

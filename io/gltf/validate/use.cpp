@@ -69,6 +69,13 @@ void mark_views(const json& root, GltfUse& use) {
         for (const char* part : {"indices", "values"})
             mark(use.views, member(member(member(accessor, "sparse"), part), "bufferView"));
     });
+    each(root, "meshes", [&](const json& mesh) {
+        each(mesh, "primitives", [&](const json& primitive) {
+            const json& draco =
+                member(member(primitive, "extensions"), "KHR_draco_mesh_compression");
+            mark(use.views, member(draco, "bufferView"));
+        });
+    });
 }
 
 }  // namespace

@@ -35,7 +35,6 @@ json read_json(const fs::path& path) {
 
 /// Free of errors, but in need of what Petzval lacks.
 const std::set<std::string> beyond_petzval = {
-    "unsupported/BoxDraco/BoxDraco.gltf", "unsupported/BoxMeshopt/BoxMeshopt.glb",
     "validator/asset/min_version_valid.gltf"};  // it wants glTF 2.1
 
 /// Errors that are no reason to refuse a file: docs/design/refusals.md.

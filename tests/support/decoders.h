@@ -19,6 +19,7 @@
 #include "io/image/picture_files.h"
 #include "io/lens/lens_file.h"
 #include "io/spectra/spectra.h"
+#include "tests/support/mesh_decoders.h"
 
 namespace petzval::test {
 
@@ -35,11 +36,18 @@ struct Decoder {
         std::ifstream in(path, std::ios::binary);
         return std::vector<uint8_t>(std::istreambuf_iterator<char>(in), {});
     };
+    const auto codec = [bytes_of](bool (*decodes)(std::span<const uint8_t>)) -> Decoder {
+        return {".bin", [bytes_of, decodes](const fs::path& path) {
+                    if (!decodes(bytes_of(path))) throw InputError(path.string(), "", "is broken");
+                }};
+    };
     const auto lens = [](const fs::path& path) { (void)load_lens(path.string()); };
     const auto picture = [](const fs::path& path) { (void)read_picture(path); };
     static const std::map<std::string, Decoder> all = {
         {"gltf", {".gltf", [](const fs::path& path) { (void)load_gltf(path); }}},
         {"glb", {".glb", [](const fs::path& path) { (void)load_gltf(path); }}},
+        {"draco", codec(decodes_draco)},
+        {"meshopt", codec(decodes_meshopt)},
         {"texture",
          {".bin",
           [bytes_of](const fs::path& path) {

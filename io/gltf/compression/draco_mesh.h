@@ -16,14 +16,15 @@ struct DracoArray {
 };
 
 struct DracoMesh {
-    std::string fault;             ///< why there is none; empty where there is
+    std::string fault;  ///< why there is none; empty where there is
+    uint64_t vertices = 0;
     std::vector<uint8_t> indices;  ///< three numbers of 32 bits for each face, not yet checked
     std::vector<std::vector<uint8_t>> arrays;  ///< tightly packed, as asked for
 };
 
-/// Decodes a stream, whose header must be without fault, into the arrays asked for. vertices: how
-/// many there must be; another number is refused before the attributes take memory.
+/// Decodes a stream, whose header must be without fault, into the arrays asked for. Where it has
+/// more vertices than most_vertices, it is refused before they take memory.
 [[nodiscard]] DracoMesh decode_draco(std::span<const uint8_t> stream, const DracoHeader&,
-                                     uint64_t vertices, std::span<const DracoArray>);
+                                     uint64_t most_vertices, std::span<const DracoArray>);
 
 }  // namespace petzval

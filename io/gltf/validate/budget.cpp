@@ -23,9 +23,12 @@ void GltfBudget::ask(uint64_t bytes, const JsonCursor& place) {
     asked_ += bytes;
 }
 
+uint64_t GltfBudget::left_to_decode() const {
+    return free_bytes + times_compressed * owned_ - decoded_;
+}
+
 void GltfBudget::ask_decoded(uint64_t bytes, const JsonCursor& place) {
-    const uint64_t limit = free_bytes + times_compressed * owned_;
-    if (bytes > limit || decoded_ > limit - bytes)
+    if (bytes > left_to_decode())
         place.fail(
             fmt::format("would be decoded to {} MiB, too much for a file that holds {} MiB; "
                         "export it without compression",

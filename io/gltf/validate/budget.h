@@ -23,6 +23,9 @@ class GltfBudget {
     /// Counts bytes likewise to which compressed data at place are to be decoded.
     void ask_decoded(uint64_t bytes, const JsonCursor& place);
 
+    /// How many bytes ask_decoded() would still grant.
+    [[nodiscard]] uint64_t left_to_decode() const;
+
   private:
     uint64_t owned_ = 0, asked_ = 0, decoded_ = 0;
 };

@@ -130,29 +130,35 @@ class PrimitiveDecoder {
         const auto stream = stream_of(draco);
         const DracoHeader header = read_draco_header(stream);
         if (!header.fault.empty()) draco.fail(header.fault);
-        const uint64_t vertices = vertices_of(draco, wanted);
-        if (mode == kTriangles) check_faces(primitive, draco, header.faces);
-        if (vertices > 3 * header.faces)
-            draco.fail("its accessors have more vertices than its triangles have corners");
-        uint64_t size = 3 * header.faces * sizeof(uint32_t);
+        uint64_t vertex_bytes = 0;
         std::vector<DracoArray> arrays;
         for (const Wanted& attribute : wanted) {
             const DracoArray& array = attribute.array;
-            size += vertices * array.components * component_size(array.component_type);
+            vertex_bytes += size_t(array.components) * component_size(array.component_type);
             arrays.push_back(array);
         }
-        check_.budget.ask_decoded(size, draco);
-
-        DracoMesh mesh = decode_draco(stream, header, vertices, arrays);
+        check_.budget.ask_decoded(3 * header.faces * sizeof(uint32_t), draco);
+        DracoMesh mesh =
+            decode_draco(stream, header, check_.budget.left_to_decode() / vertex_bytes, arrays);
         if (!mesh.fault.empty()) draco.fail(mesh.fault);
+        check_.budget.ask_decoded(mesh.vertices * vertex_bytes, draco);
+
         json out;
+        bool agrees = mode != kTriangles || !primitive.has("indices") ||
+                      count_of(primitive.integer("indices")) == 3 * header.faces;
         for (size_t i = 0; i < wanted.size(); ++i) {
             const size_t accessor = wanted[i].accessor;
+            agrees &= count_of(accessor) == mesh.vertices;
             json described = accessors_[accessor].value();
             described.erase("byteOffset");
+            described["count"] = mesh.vertices;
             out["attributes"][wanted[i].name] = add(std::move(described), mesh.arrays[i]);
             replaced_.push_back(accessor);
         }
+        if (!agrees)
+            check_.warn(draco,
+                        "its stream has other numbers of triangles or vertices than its "
+                        "accessors; those of the stream are taken");
         if (primitive.has("indices")) replaced_.push_back(primitive.integer("indices"));
         out["indices"] =
             add({{"componentType", 5125}, {"type", "SCALAR"}, {"count", 3 * header.faces}},
@@ -168,21 +174,7 @@ class PrimitiveDecoder {
         return {buffer.data() + view.integer_or("byteOffset", 0), view.integer("byteLength")};
     }
 
-    uint64_t vertices_of(const JsonCursor& draco, const std::vector<Wanted>& wanted) const {
-        const uint64_t vertices = accessors_[wanted.front().accessor].integer("count");
-        for (const Wanted& attribute : wanted)
-            if (accessors_[attribute.accessor].integer("count") != vertices)
-                draco.fail("its accessors have different numbers of vertices");
-        return vertices;
-    }
-
-    void check_faces(const JsonCursor& primitive, const JsonCursor& draco, uint64_t faces) const {
-        if (!primitive.has("indices")) return;
-        const uint64_t count = accessors_[primitive.integer("indices")].integer("count");
-        if (count != 3 * faces)
-            draco.fail(fmt::format("its stream has {} triangles, but accessor {} has {} indices",
-                                   faces, primitive.integer("indices"), count));
-    }
+    uint64_t count_of(size_t accessor) const { return accessors_[accessor].integer("count"); }
 
     /// Adds an accessor of tightly packed bytes; returns its index.
     size_t add(json described, Bytes& bytes) {

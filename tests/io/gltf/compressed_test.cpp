@@ -338,21 +338,22 @@ TEST(GltfDraco, RefusesWhatIsBroken) {
                     {position.c_str(), 9, "lacks the attribute 9"},
                     {position.c_str(), 2, "lacks the attribute 2 in the format of its accessor"},
                     {position.c_str(), uint64_t(1) << 32, "is no id of Draco's"},
-                    {"/accessors/4/count", 3, "has 128 triangles, but accessor 4 has 3 indices"},
-                    {"/accessors/0/count", 80, "has another number of vertices"},
                     {"/accessors/0/type", "MAT4", "is of a type that no vertex has"},
                     {"/accessors/0/componentType", 5124, "is of a type that no vertex has"},
                     {"/meshes/0/primitives/0/mode", 0, "goes with triangles and strips"},
                     {"/bufferViews/0/byteLength", 60, "the file is damaged"}});
-    TinyGltf uneven = draco(grid, sequential(grid));
-    uneven.json["meshes"][0]["primitives"][0]["attributes"].erase("POSITION");
-    uneven.json["accessors"][2]["count"] = 80;
-    EXPECT_TRUE(has(refusal([&] { (void)load(uneven); }), "have different numbers of vertices"));
-    TinyGltf few = draco(grid, sequential(grid));
-    for (int i = 0; i < 4; ++i) few.json["accessors"][i]["count"] = 80;
-    EXPECT_TRUE(has(refusal([&] { (void)load(few); }), "has another number of vertices"));
-    for (int i = 0; i < 4; ++i) few.json["accessors"][i]["count"] = 1'000'000;
-    EXPECT_TRUE(has(refusal([&] { (void)load(few); }), "more vertices than its triangles have"));
+}
+
+// Draco drops vertices that nothing names and splits others: exporters forget to count again.
+TEST(GltfDraco, CountsOfAccessorsMayBeWrong) {
+    const Grid grid(9);
+    TinyGltf file = draco(grid, sequential(grid));
+    for (const int count : {80, 1000}) {
+        for (int i = 0; i < 5; ++i) file.json["accessors"][i]["count"] = count;
+        const GltfFile loaded = load(file);
+        EXPECT_TRUE(contains_line(loaded.warnings, "other numbers of triangles or vertices"));
+        expect_same(loaded.scene.meshes.at(0), load_mesh(plain(grid)));
+    }
 }
 
 // The encoder checks nothing: what it is given comes out again.

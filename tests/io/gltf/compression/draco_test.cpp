@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 
 #include "io/gltf/compression/draco_mesh.h"
 #include "tests/support/mesh_encoders.h"
@@ -186,13 +187,34 @@ TEST(DracoHeader, RefusesWhatWouldFillTheMemory) {
     EXPECT_NE(read_draco_header(announcing(4'000'000'000, 100, 0)).fault, "");
 }
 
-TEST(Draco, RefusesAnotherNumberOfVertices) {
+TEST(Draco, RefusesMoreVerticesThanTheMost) {
     const Grid grid(5);
     for (const auto method : {draco::MESH_SEQUENTIAL_ENCODING, draco::MESH_EDGEBREAKER_ENCODING}) {
         const Bytes stream = test::DracoGrid(grid).encode(method);
-        EXPECT_NE(decoded(stream, grid.points() + 1, kAll).fault.find("number of vertices"),
+        EXPECT_EQ(decoded(stream, grid.points(), kAll).vertices, grid.points());
+        EXPECT_NE(decoded(stream, grid.points() - 1, kAll).fault.find("too many vertices"),
                   std::string::npos);
     }
+}
+
+// A number of orientations of texture coordinates that would take seconds and 256 MiB.
+TEST(Draco, RefusesMoreOrientationsThanCorners) {
+    const Grid grid(21);
+    Bytes stream = test::DracoGrid(grid).encode(draco::MESH_EDGEBREAKER_ENCODING, 10, 0);
+    ASSERT_EQ(decoded(stream, grid.points(), kAll).fault, "");
+    // It stands before the bits, whose number is the size of a whole grid's at most.
+    int refused = 0;
+    for (size_t at = 0; at + 4 <= stream.size(); ++at) {
+        uint32_t number;
+        std::memcpy(&number, &stream[at], 4);
+        if (number < 200 || number > grid.points()) continue;
+        Bytes hostile = stream;
+        hostile[at + 3] = 0x7f;
+        const auto start = std::chrono::steady_clock::now();
+        refused += !decoded(hostile, grid.points(), kAll).fault.empty();
+        EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
+    }
+    EXPECT_GT(refused, 0);
 }
 
 // 4000 attributes of 255 doubles for each of 40000 vertices would take 300 GB.

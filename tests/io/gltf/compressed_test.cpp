@@ -369,7 +369,7 @@ TEST(GltfDraco, RefusesToFillTheMemory) {
     const Grid grid(400);
     test::DracoBuilder builder(grid.points(), grid.indices);
     builder.add(draco::GeometryAttribute::POSITION, draco::DT_FLOAT32, grid.positions);
-    TinyGltf file = draco(grid, builder.encode(draco::MESH_EDGEBREAKER_ENCODING, 8));
+    TinyGltf file = draco(grid, builder.encode(draco::MESH_SEQUENTIAL_ENCODING, 8));
     json& primitives = file.json["meshes"][0]["primitives"];
     primitives[0]["attributes"] = {{"POSITION", 0}};
     primitives[0]["extensions"][kDraco]["attributes"] = {{"POSITION", 0}};
@@ -378,7 +378,8 @@ TEST(GltfDraco, RefusesToFillTheMemory) {
         primitives.push_back(first);
         primitives.back()["attributes"]["POSITION"] = file.add("accessors", positions);
     }
-    EXPECT_TRUE(has(refusal([&] { (void)load(file); }), "would be decoded to"));
+    const std::string message = refusal([&] { (void)load(file); });
+    EXPECT_TRUE(has(message, "would be decoded to") || has(message, "for so small a file"));
 }
 
 }  // namespace

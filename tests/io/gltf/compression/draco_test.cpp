@@ -81,6 +81,37 @@ TEST(Draco, EdgebreakerGivesTheTrianglesBack) {
     }
 }
 
+/// A grid whose triangles share no vertex, each with texture coordinates of its own.
+Grid split(const Grid& grid) {
+    Grid out(0);
+    for (const uint32_t v : grid.indices) {
+        const float shift = float(out.indices.size() / 3 % 7);
+        out.positions.insert(out.positions.end(), &grid.positions[3 * v],
+                             &grid.positions[3 * v] + 3);
+        out.normals.insert(out.normals.end(), &grid.normals[3 * v], &grid.normals[3 * v] + 3);
+        out.uv.insert(out.uv.end(), {grid.uv[2 * v] + shift, grid.uv[2 * v + 1]});
+        out.colours.insert(out.colours.end(), &grid.colours[4 * v], &grid.colours[4 * v] + 4);
+        out.indices.push_back(uint32_t(out.indices.size()));
+    }
+    return out;
+}
+
+TEST(Draco, EdgebreakerKeepsSeams) {
+    const Grid grid = split(Grid(9));
+    for (const int speed : {0, 5, 10}) {
+        test::DracoGrid builder(grid);
+        builder.mesh().DeduplicateAttributeValues();  // so that it is one surface with seams
+        builder.mesh().DeduplicatePointIds();
+        const Bytes stream = builder.encode(draco::MESH_EDGEBREAKER_ENCODING, 0, speed);
+        const DracoMesh mesh = decoded(stream, grid.points(), kAll);
+        ASSERT_EQ(mesh.fault, "");
+        EXPECT_EQ(
+            corners(values<uint32_t>(mesh.indices), values<float>(mesh.arrays[0]),
+                    values<float>(mesh.arrays[1]), values<float>(mesh.arrays[2]), mesh.arrays[3]),
+            corners(grid.indices, grid.positions, grid.normals, grid.uv, grid.colours));
+    }
+}
+
 TEST(Draco, QuantizedPositionsAreWithinHalfAStep) {
     const Grid grid(21);
     const Bytes stream = test::DracoGrid(grid).encode(draco::MESH_SEQUENTIAL_ENCODING, 10);

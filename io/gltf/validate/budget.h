@@ -11,7 +11,8 @@ namespace petzval {
 /// bytes again and again), vertices that thousands of primitives share, one image listed a million
 /// times. The limit is 256 MiB plus 16 times the bytes that the file and its side files hold: an
 /// honest file asks for about once its own size. What is decoded counts besides: 256 MiB plus 32
-/// times the file is its limit, and then accessors may ask for twice that much more.
+/// times the file is its limit. Accessors may then ask for twice as much more: those that were
+/// decoded, and those in whose place they stand.
 class GltfBudget {
   public:
     /// Counts bytes that the file and its side files really hold.

@@ -50,7 +50,7 @@ class PrimitiveDecoder {
         value["extensions"].erase(kDraco);
     }
 
-    /// Puts what was decoded into the file. Accessors that nothing names any more hold nothing.
+    /// Puts what was decoded into the file.
     void store() {
         if (bytes_.empty()) return;
         json& root = check_.source.json;
@@ -62,10 +62,6 @@ class PrimitiveDecoder {
             check_.source.buffers.push_back(std::move(bytes_[i]));
         }
         check_.use = find_used(root);
-        for (const size_t accessor : replaced_)
-            if (!check_.use.accessors[accessor])
-                root["accessors"][accessor] = {
-                    {"componentType", 5121}, {"type", "SCALAR"}, {"count", 1}};
     }
 
   private:
@@ -153,13 +149,11 @@ class PrimitiveDecoder {
             described.erase("byteOffset");
             described["count"] = mesh.vertices;
             out["attributes"][wanted[i].name] = add(std::move(described), mesh.arrays[i]);
-            replaced_.push_back(accessor);
         }
         if (!agrees)
             check_.warn(draco,
                         "its stream has other numbers of triangles or vertices than its "
                         "accessors; those of the stream are taken");
-        if (primitive.has("indices")) replaced_.push_back(primitive.integer("indices"));
         out["indices"] =
             add({{"componentType", 5125}, {"type", "SCALAR"}, {"count", 3 * header.faces}},
                 mesh.indices);
@@ -187,7 +181,6 @@ class PrimitiveDecoder {
     GltfCheck& check_;
     const std::vector<JsonCursor> accessors_, views_;  ///< those of the file
     std::map<std::string, json> known_;                ///< what a stream was decoded to
-    std::vector<size_t> replaced_;                     ///< accessors of the file
     std::vector<json> described_;                      ///< the new accessors ...
     std::vector<Bytes> bytes_;                         ///< ... and what each holds
 };

@@ -44,8 +44,8 @@ TEST(GltfRefusal, AssetAndExtensions) {
         {"/asset/version", "\"99999999999999.0\"", "/asset/version: must be a version"},
         {"/asset/minVersion", "\"2.1\"", "/asset/minVersion: is more than the version"},
         {"/extensionsUsed/0", "1", "/extensionsUsed: must be an array of strings"},
-        {"/extensionsRequired", R"(["KHR_animation_pointer"])",
-         "/extensionsRequired: the file requires the extension KHR_animation_pointer"},
+        {"/extensionsRequired", R"(["KHR_gaussian_splatting"])",
+         "/extensionsRequired: the file requires the extension KHR_gaussian_splatting"},
         {"/nodes/1/extensions", R"({"KHR_x": 1})", "/nodes/1/extensions/KHR_x: must be an object"},
         {"/materials", R"({"a": 1})", "/materials: must be an array"},
     });

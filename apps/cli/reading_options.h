@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options of what may be read for a scene, and how much memory it may take.
+// Options of what is read for a scene, and how much memory it may take.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <string>
 
+#include "io/gltf/choice.h"
 #include "io/gltf/validate/source.h"
 #include "io/picture/picture_budget.h"
 
@@ -19,6 +20,7 @@ namespace petzval {
 struct ReadingOptions {
     std::string max_memory;
     bool confine = false;
+    GltfChoice choice;
 
     [[nodiscard]] FileScope scope() const {
         return confine ? FileScope::Confined : FileScope::Anywhere;
@@ -32,7 +34,7 @@ struct ReadingOptions {
 /// Declares --max-memory for a command that reads pictures; it writes to the argument, which must
 /// outlive the parsing.
 void add_memory_option(CLI::App&, ReadingOptions&);
-/// Declares --max-memory and --confine for a command that reads a scene, likewise.
+/// Declares --max-memory, --confine and --variant for a command that reads a scene, likewise.
 void add_reading_options(CLI::App&, ReadingOptions&);
 
 /// Largest number of threads that --threads takes.

@@ -69,7 +69,8 @@ void add_info_command(CLI::App& app) {
     add_reading_options(*command, options->reading);
     command->callback([options] {
         PictureBudget pictures = options->reading.pictures();
-        GltfFile file = load_gltf(options->scene, options->reading.scope(), pictures);
+        GltfFile file =
+            load_gltf(options->scene, options->reading.scope(), pictures, options->reading.choice);
         append_placement(options->scene.string(), options->reading.scope(), file);
         print_list("holds", file.contents);
         print_list("honoured", file.honoured);

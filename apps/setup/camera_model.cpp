@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "io/base/error.h"
-#include "io/base/nearest.h"
+#include "io/base/named.h"
 #include "io/base/printable.h"
 #include "io/base/read_file.h"
 #include "io/glass/catalogue.h"
@@ -22,25 +22,12 @@ constexpr std::string_view kSinglet = "singlet:";
 
 const GltfCamera& find_camera(const std::string& wanted, const std::string& scene,
                               const std::vector<GltfCamera>& cameras) {
-    size_t index = 0;
-    const auto [end, error] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), index);
-    for (const GltfCamera& camera : cameras)
-        if (camera.name == wanted || visible(camera.name) == wanted) return camera;
-    if (error == std::errc() && end == wanted.data() + wanted.size() && index < cameras.size())
-        return cameras[index];
-    constexpr size_t most = 20;  // fit one message
-    std::string known;
     std::vector<std::string> names;
-    for (size_t i = 0; i < cameras.size(); ++i) {
-        names.push_back(printable(cameras[i].name));
-        if (i < most) known += fmt::format("{}{} \"{}\"", i ? ", " : "", i, names.back());
-    }
-    if (cameras.size() > most) known += fmt::format(" and {} more", cameras.size() - most);
-    throw ArgumentError(
-        scene, "",
-        fmt::format("no camera \"{}\"; {}{}", wanted,
-                    known.empty() ? "the file has none, use --look-at" : "it has " + known,
-                    did_you_mean(wanted, names)));
+    names.reserve(cameras.size());
+    for (const GltfCamera& camera : cameras) names.push_back(camera.name);
+    if (const auto index = find_named(wanted, names)) return cameras[*index];
+    throw ArgumentError(scene, "",
+                        no_such("camera", wanted, names, "the file has none, use --look-at"));
 }
 
 std::string extras_of(const GltfCamera& camera) {

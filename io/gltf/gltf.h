@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/scene/scene.h"
+#include "io/gltf/choice.h"
 #include "io/gltf/validate/camera_extras.h"
 #include "io/gltf/validate/source.h"
 #include "io/picture/picture_budget.h"
@@ -26,8 +27,9 @@ struct GltfCamera {
 };
 
 struct GltfFile {
-    Scene scene;                      ///< not yet finished: the sky is still black
-    std::vector<GltfCamera> cameras;  ///< in depth-first order of the node tree
+    Scene scene;                        ///< not yet finished: the sky is still black
+    std::vector<GltfCamera> cameras;    ///< in depth-first order of the node tree
+    std::vector<std::string> variants;  ///< names, in the file's order; empty where it has none
     std::vector<std::string> warnings;
     /// For `petzval info`: what the file holds, one "name: value" line each, then what is honoured
     /// and what is ignored.
@@ -37,8 +39,10 @@ struct GltfFile {
 };
 
 /// Loads the default scene (else the first one, else all root nodes). Throws InputError, also where
-/// the budget is too small for the pictures of the scene.
-[[nodiscard]] GltfFile load_gltf(const std::filesystem::path&, FileScope, PictureBudget&);
+/// the budget is too small for the pictures of the scene, and ArgumentError where it has not what
+/// is chosen.
+[[nodiscard]] GltfFile load_gltf(const std::filesystem::path&, FileScope, PictureBudget&,
+                                 const GltfChoice& = {});
 /// Loads a scene that may name any file, with the usual budget.
 [[nodiscard]] GltfFile load_gltf(const std::filesystem::path&);
 

@@ -71,23 +71,28 @@ bool all_finite(const Values& values, int components) {
 
 class Placer {
   public:
-    Placer(const GltfModel& gltf, const GltfNodes& nodes, GltfMaterials& materials, Scene& scene,
-           GltfTally& tally)
-        : gltf_(gltf), nodes_(nodes), materials_(materials), scene_(scene), tally_(tally) {}
+    Placer(const GltfModel& gltf, const GltfNodes& nodes, const GltfVariant& variant,
+           GltfMaterials& materials, Scene& scene, GltfTally& tally)
+        : gltf_(gltf),
+          nodes_(nodes),
+          variant_(variant),
+          materials_(materials),
+          scene_(scene),
+          tally_(tally) {}
 
     void place(const Placement& placement) {
         const auto& primitives = gltf_.typed.meshes[static_cast<size_t>(placement.mesh)].primitives;
         for (size_t i = 0; i < primitives.size(); ++i) {
             if (!is_drawn(primitives[i], tally_)) continue;
-            place_primitive(placement, primitives[i],
+            const int material = variant_.material_of(placement.mesh, i, primitives[i].material);
+            place_primitive(placement, primitives[i], materials_.use(material),
                             json_path("meshes", placement.mesh, "primitives", i));
         }
     }
 
   private:
     void place_primitive(const Placement& placement, const tinygltf::Primitive& primitive,
-                         const std::string& where) {
-        const uint32_t material = materials_.use(primitive.material);
+                         uint32_t material, const std::string& where) {
         Mesh mesh = read_shaded(placement, primitive, scene_.materials[material]);
         mesh.material = material;
         if (mesh.triangles.empty()) return;
@@ -161,6 +166,7 @@ class Placer {
 
     const GltfModel& gltf_;
     const GltfNodes& nodes_;
+    const GltfVariant& variant_;
     GltfMaterials& materials_;
     Scene& scene_;
     GltfTally& tally_;
@@ -168,9 +174,9 @@ class Placer {
 
 }  // namespace
 
-void place_meshes(const GltfModel& gltf, const GltfNodes& nodes, GltfMaterials& materials,
-                  Scene& scene, GltfTally& tally) {
-    Placer placer(gltf, nodes, materials, scene, tally);
+void place_meshes(const GltfModel& gltf, const GltfNodes& nodes, const GltfVariant& variant,
+                  GltfMaterials& materials, Scene& scene, GltfTally& tally) {
+    Placer placer(gltf, nodes, variant, materials, scene, tally);
     for (const Placement& placement : group_nodes(gltf, nodes, tally)) placer.place(placement);
 }
 

@@ -58,6 +58,8 @@ void check_textures(GltfCheck&);
 void check_materials(GltfCheck&);
 /// Checks attributes, indices and morph targets: references, formats and counts.
 void check_meshes(GltfCheck&);
+/// Checks which materials the variants of primitives map to.
+void check_variants(GltfCheck&);
 void check_cameras(GltfCheck&);
 void check_lights(GltfCheck&);
 void check_skins(const GltfCheck&);

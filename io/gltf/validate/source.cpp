@@ -19,6 +19,7 @@ void check_scene_graph(GltfCheck& check) {
     check_textures(check);
     check_materials(check);
     check_meshes(check);
+    check_variants(check);
     check_cameras(check);
     check_lights(check);
     check_skins(check);

@@ -152,6 +152,34 @@ TEST_F(ReadingOptions, ConfineHoldsForLensAndIrisOfACamera) {
     }
 }
 
+TEST_F(ReadingOptions, AVariantStandsInThePictureItsMetadataAndThePlan) {
+    TinyGltf file = studio();
+    file.json["extensionsUsed"].push_back("KHR_materials_variants");
+    file.json["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "lit one"}}};
+    const int glow = file.add("materials", {{"emissiveFactor", {1, 1, 1}}});
+    file.json["meshes"][0]["primitives"][0]["extensions"]["KHR_materials_variants"]["mappings"] = {
+        {{"material", glow}, {"variants", {0}}}};
+    scene_ = file.save_glb(folder_.path / "variants.glb").string();
+    const Picture plain = render({});
+    const Picture lit = render({"--variant", "lit one"});
+    EXPECT_EQ(metadata_of(plain, "petzval:variant"), "(none)");
+    EXPECT_EQ(metadata_of(lit, "petzval:variant"), "lit one");
+    const size_t middle = (8 * 16 + 8) * lit.channels.size();
+    EXPECT_GT(lit.pixels.at(middle), plain.pixels.at(middle) + 0.5f);
+
+    const Finished plan =
+        run_petzval({"plan", scene_, "--size", "8x8", "--tolerance", "100%", "--variant", "0"});
+    EXPECT_NE(plan.out.find(" --variant 0 "), plan.out.npos) << plan.out << plan.err;
+    for (const Words& words :
+         {Words{"info", scene_}, Words{"plan", scene_}, Words{"chart", scene_, "-o", path("c")},
+          Words{"render", scene_, "-o", path("o.exr")}}) {
+        Words wrong = words;
+        wrong.insert(wrong.end(), {"--variant", "lit"});
+        EXPECT_TRUE(error_of(wrong, 2).ends_with(
+            "no variant \"lit\"; it has 0 \"lit one\"; did you mean lit one?"));
+    }
+}
+
 TEST_F(ReadingOptions, ThreadsFollowTheAffinityMask) {
     cpu_set_t before, one;
     ASSERT_EQ(sched_getaffinity(0, sizeof before, &before), 0);

@@ -83,6 +83,10 @@ const std::set<std::string> kindly_read = {
     "validator/ext/KHR_lights_punctual/light/empty_light_object.gltf",
     "validator/ext/KHR_lights_punctual/light/spot_light_without_spot_object.gltf",
     "validator/ext/KHR_materials_dispersion/material/out_of_range.gltf",
+    "validator/ext/KHR_materials_variants/primitive/dependency.gltf",
+    "validator/ext/KHR_materials_variants/primitive/empties.gltf",
+    "validator/ext/KHR_materials_variants/variant/empty_object.gltf",
+    "validator/ext/KHR_materials_variants/variant/invalid_name.gltf",
     "validator/glb/bom.glb",
     "validator/glb/json_and_two_buffers.glb",
     "validator/image/invalid_data_uri.gltf",
@@ -97,11 +101,7 @@ const std::set<std::string> fault_in_ignored_extension = {
     "KHR_animation_pointer/animation/channel/target/invalid_channel_target_node.gltf",
     "KHR_animation_pointer/animation/channel/target/invalid_channel_target_path.gltf",
     "KHR_animation_pointer/animation/channel/target/invalid_pointer_syntax.gltf",
-    "KHR_materials_anisotropy/material/no_tangent_space.gltf",
-    "KHR_materials_variants/primitive/dependency.gltf",
-    "KHR_materials_variants/primitive/empties.gltf",
-    "KHR_materials_variants/variant/empty_object.gltf",
-    "KHR_materials_variants/variant/invalid_name.gltf"};
+    "KHR_materials_anisotropy/material/no_tangent_space.gltf"};
 
 /// Empty joints are refused although EMPTY_ENTITY is tolerated: a skin without joints is none.
 const std::string empty_joints = "validator/skin/empty_joints_array.gltf";

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace petzval {
+
+/// What of a glTF file is shown, where it leaves a choice.
+struct GltfChoice {
+    std::optional<std::string> variant;  ///< of its materials, by name or number; absent: none
+
+    [[nodiscard]] bool operator==(const GltfChoice&) const = default;
+};
+
+}  // namespace petzval

@@ -39,6 +39,11 @@ struct Material {
     bool double_sided = false;
     bool unlit = false;  ///< KHR_materials_unlit: shows its base colour, as nits
 
+    /// KHR_materials_pbrSpecularGlossiness: base_color is its diffuse colour, specular_color its
+    /// specular one (ior is 0, metallic 0), 1 - roughness its glossiness; the glossiness of its
+    /// texture is the alpha of specular_color_texture.
+    bool specular_glossiness = false;
+
     float ior = 1.5f;              ///< KHR_materials_ior; 0 means a specular weight of 1
     std::optional<Glass> glass;    ///< set where the index depends on wavelength; ior is its nd
     int32_t metal = -1;            ///< measured, index into Scene::metals: replaces the base colour

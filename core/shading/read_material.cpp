@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a material is at a hit: factors times textures, and the layers that glTF's extensions add.
+#include <algorithm>
 #include <optional>
 
 #include "core/shading/surface.h"
@@ -75,6 +76,18 @@ f4 index_of(const Material* m, const Bands& bands) {
                          : splat(m->ior == 0.f ? 1.f : m->ior);
     const f4 bend = index - 1.f;
     return max(bend, -bend) < 1e-3f ? splat(1.001f) : index;
+}
+
+// Replaces the diffuse colour and the roughness by those of KHR_materials_pbrSpecularGlossiness:
+// c_diff = diffuse (1 - max(specular)), alpha = (1 - glossiness)^2.
+void read_glossiness(const Scene& scene, const Surface& s, Rgb diffuse, Rgb specular,
+                     const Bands& bands, BsdfInput& b) {
+    const Material& m = *s.material;
+    const TextureSlot& slot = m.specular_color_texture;
+    const float texel = slot.present() ? read(scene, s, slot)[3] : 1.f;
+    b.roughness = 1.f - (1.f - m.roughness) * texel;
+    const float most = std::max({specular[0], specular[1], specular[2]});
+    b.base_color = uplift_reflectance(diffuse * (1.f - most), bands);
 }
 
 bool disperses(const Material* m, const Bands& bands) {
@@ -234,6 +247,7 @@ ShadingInput read_material(const Scene& scene, const Surface& s, const MaterialL
     b.thin = !m.has_volume;
     b.disperses = disperses(sides.before, bands) || disperses(sides.behind, bands);
     b.eta = index_of(sides.behind, bands) / index_of(sides.before, bands);
+    if (m.specular_glossiness) read_glossiness(scene, s, base_color, specular_color, bands, b);
     if (layered) {
         layers.read_coat(out.frame, out.coat);
         layers.read_sheen(b);

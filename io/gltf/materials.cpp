@@ -71,28 +71,48 @@ uint32_t GltfMaterials::use(int material) {
 Material GltfMaterials::read(size_t index) {
     const JsonCursor& json = json_.at(index);
     Material material = core_factors(gltf_.typed.materials.at(index));
-    if (const auto pbr = json.find_object("pbrMetallicRoughness"))
-        material.base_color_texture = textures_.slot(*pbr, "baseColorTexture", Encoding::Srgb);
     material.unlit = json.extension("KHR_materials_unlit").has_value();
+    const auto glossy = json.extension("KHR_materials_pbrSpecularGlossiness");
+    material.specular_glossiness = glossy && !material.unlit;
+    if (material.specular_glossiness)
+        read_specular_glossiness(*glossy, material);
+    else if (const auto pbr = json.find_object("pbrMetallicRoughness"))
+        material.base_color_texture = textures_.slot(*pbr, "baseColorTexture", Encoding::Srgb);
     if (material.unlit) {  // only its base colour is ever seen
         material.emissive = Rgb(0.f);
     } else {
         read_surface(json, material);
-        read_specular(json, material);
-        read_glass(json, material);
-        read_coat(json, material);
-        read_sheen(json, material);
-        read_anisotropy(json, material);
-        read_iridescence(json, material);
-        read_diffuse_transmission(json, material);
+        if (!material.specular_glossiness) {  // which excludes all of these
+            read_specular(json, material);
+            read_glass(json, material);
+            read_coat(json, material);
+            read_sheen(json, material);
+            read_anisotropy(json, material);
+            read_iridescence(json, material);
+            read_diffuse_transmission(json, material);
+        }
     }
     spectral_.apply(json, material);
     count(json, material);
     return material;
 }
 
+void GltfMaterials::read_specular_glossiness(const JsonCursor& json, Material& material) {
+    const auto diffuse = json.numbers("diffuseFactor", 4);
+    material.base_color = diffuse.empty() ? Rgb(1.f) : to_rgb(diffuse);
+    material.alpha = diffuse.empty() ? 1.f : static_cast<float>(diffuse[3]);
+    material.base_color_texture = textures_.slot(json, "diffuseTexture", Encoding::Srgb);
+    material.ior = 0.f;  // so that the specular colour is the reflectance at normal incidence
+    material.specular_color = rgb_or(json, "specularFactor", Rgb(1.f));
+    material.specular_color_texture =
+        textures_.slot(json, "specularGlossinessTexture", Encoding::Srgb);
+    material.metallic = 0.f;
+    material.roughness = 1.f - number_or(json, "glossinessFactor", 1.f);
+}
+
 void GltfMaterials::read_surface(const JsonCursor& json, Material& material) {
-    if (const auto pbr = json.find_object("pbrMetallicRoughness"))
+    const auto pbr = json.find_object("pbrMetallicRoughness");
+    if (pbr && !material.specular_glossiness)
         material.metallic_roughness_texture =
             textures_.slot(*pbr, "metallicRoughnessTexture", Encoding::Linear);
     material.normal_texture = textures_.slot(json, "normalTexture", Encoding::Linear);

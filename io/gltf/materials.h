@@ -21,6 +21,7 @@ class GltfMaterials {
 
   private:
     [[nodiscard]] Material read(size_t index);
+    void read_specular_glossiness(const JsonCursor&, Material&);
     void read_surface(const JsonCursor&, Material&);
     void read_specular(const JsonCursor&, Material&);
     void read_glass(const JsonCursor&, Material&);

@@ -134,6 +134,13 @@ void mend_extensions(const JsonEditor& material) {
         mend_length(e, "specularColorFactor", 3, 1);
         e.clamp_each("specularColorFactor", kNotNegative);
     });
+    with("KHR_materials_pbrSpecularGlossiness", [](const auto& e) {
+        mend_length(e, "diffuseFactor", 4, 1);
+        e.clamp_each("diffuseFactor", kUnit);
+        mend_length(e, "specularFactor", 3, 1);
+        e.clamp_each("specularFactor", kUnit);
+        e.clamp("glossinessFactor", kUnit);
+    });
     with("KHR_materials_volume", mend_volume);
     with("KHR_materials_ior", mend_ior);
     mend_layers(material);

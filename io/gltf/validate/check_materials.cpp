@@ -100,6 +100,11 @@ void check_material_extensions(const JsonCursor& material) {
         (void)specular->number_or("specularFactor", 1, unit);
         (void)specular->numbers("specularColorFactor", 3, not_negative);
     }
+    if (const auto glossy = material.extension("KHR_materials_pbrSpecularGlossiness")) {
+        (void)glossy->numbers("diffuseFactor", 4, unit);
+        (void)glossy->numbers("specularFactor", 3, unit);
+        (void)glossy->number_or("glossinessFactor", 1, unit);
+    }
     if (const auto volume = material.extension("KHR_materials_volume")) check_volume(*volume);
     const auto ior = material.extension("KHR_materials_ior");
     const double value = ior ? ior->number_or("ior", 1.5, not_negative) : 1.5;

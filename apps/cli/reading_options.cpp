@@ -29,7 +29,7 @@ void add_reading_options(CLI::App& app, ReadingOptions& o) {
     add_memory_option(app, o);
     app.add_flag("--confine", o.confine,
                  "refuse files that the scene names outside its own folder");
-    app.add_option("--variant", o.choice.variant,
+    app.add_option("--variant", o.choices.variant,
                    "variant of the file's materials, by name or index (petzval info lists them)");
 }
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "io/gltf/choice.h"
+#include "io/gltf/choices.h"
 #include "io/gltf/validate/source.h"
 #include "io/picture/picture_budget.h"
 
@@ -20,7 +20,7 @@ namespace petzval {
 struct ReadingOptions {
     std::string max_memory;
     bool confine = false;
-    GltfChoice choice;
+    GltfChoices choices;
 
     [[nodiscard]] FileScope scope() const {
         return confine ? FileScope::Confined : FileScope::Anywhere;

@@ -7,9 +7,10 @@
 
 #include "apps/cli/console.h"
 #include "apps/cli/reading_options.h"
-#include "apps/setup/auto_focus.h"
+#include "apps/commands/info_report.h"
 #include "apps/setup/glass_remarks.h"
-#include "io/gltf/gltf.h"
+#include "io/base/error.h"
+#include "io/gltf/info.h"
 
 namespace petzval {
 namespace {
@@ -17,66 +18,79 @@ namespace {
 /// Number of cameras for which the focus is looked for.
 constexpr size_t kMostCameras = 10;
 
-void print_list(const char* title, const std::vector<std::string>& lines) {
-    if (lines.empty()) return;
-    fmt::print("{}\n", title);
-    for (const std::string& line : lines) print_line("  " + line);
-}
-
-std::string bounds_line(const Box3f& b) {
-    const V3f size = b.max - b.min;
-    return fmt::format(
-        "bounds: {:.4g} x {:.4g} x {:.4g} m, from {:.4g},{:.4g},{:.4g} to {:.4g},{:.4g},{:.4g}",
-        size.x, size.y, size.z, b.min.x, b.min.y, b.min.z, b.max.x, b.max.y, b.max.z);
-}
-
-std::string focus_line(const std::string& camera, const FoundFocus& found) {
-    return fmt::format("--focus auto{}: {}", camera,
-                       found.m > 0 ? fmt::format("{:.4g} m", found.m) : found.why_none);
-}
+struct InfoOptions {
+    std::filesystem::path scene;
+    ReadingOptions reading;
+    bool json = false;
+};
 
 // What of a file shows only in its finished scene: where it lies, what cameras would focus on, and
 // what its glass does.
-void append_placement(const std::string& path, FileScope scope, GltfFile& file) {
+void append_placement(FileScope scope, InfoReport& report) {
+    GltfFile& file = report.file;
     Scene& scene = file.scene;
     if (scene.instances.empty()) return;
     flush_denormals();
     finish_scene(scene);
-    file.contents.push_back(bounds_line(scene.bounds));
+    report.bounds = scene.bounds;
     const Bvh bvh(scene, Traversal::Robust);
+    report.bvh_bytes = bvh.bytes();
+    const auto find = [&](const GltfCamera* camera) {
+        report.focus.push_back(find_auto_focus(camera, report.path.string(), scope, scene, bvh));
+    };
     for (size_t i = 0; i < file.cameras.size() && i < kMostCameras; ++i)
-        if (!file.cameras[i].orthographic)
-            file.contents.push_back(
-                focus_line(fmt::format(", camera {}", i),
-                           find_auto_focus(&file.cameras[i], path, scope, scene, bvh)));
-    if (file.cameras.empty())
-        file.contents.push_back(focus_line("", find_auto_focus(nullptr, path, scope, scene, bvh)));
+        file.cameras[i].orthographic ? void(report.focus.emplace_back()) : find(&file.cameras[i]);
+    if (file.cameras.empty()) find(nullptr);
     for (std::string& remark : glass_remarks(scene, lost_light(scene, bvh)))
         file.warnings.push_back(std::move(remark));
+}
+
+// The extensions of a file that was refused for one of them; none where something else is wrong.
+std::vector<ExtensionInFile> refused_extensions(const std::filesystem::path& scene) {
+    try {
+        std::vector<ExtensionInFile> all = read_gltf_extensions(scene);
+        for (const ExtensionInFile& one : all)
+            if (one.refused()) return all;
+    } catch (const InputError&) {  // the error of the reading itself is told
+    }
+    return {};
+}
+
+void tell_refusal(const InfoOptions& o, const std::string& error) {
+    const std::vector<ExtensionInFile> extensions = refused_extensions(o.scene);
+    if (o.json) {
+        print_refusal_json(o.scene, error, extensions);
+    } else if (!extensions.empty()) {
+        fmt::print("extensions\n");
+        for (const std::string& line : table_of(extensions)) print_line("  " + line);
+    }
+}
+
+void info_command(const InfoOptions& o) {
+    PictureBudget pictures = o.reading.pictures();
+    InfoReport report{.path = o.scene, .file = {}, .variant = o.reading.choices.variant};
+    try {
+        report.file = load_gltf(o.scene, o.reading.scope(), pictures, o.reading.choices);
+    } catch (const ArgumentError&) {
+        throw;
+    } catch (const InputError& error) {
+        tell_refusal(o, error.what());
+        throw;
+    }
+    append_placement(o.reading.scope(), report);
+    o.json ? print_info_json(report) : print_info(report);
 }
 
 }  // namespace
 
 void add_info_command(CLI::App& app) {
-    struct InfoOptions {
-        std::filesystem::path scene;
-        ReadingOptions reading;
-    };
     auto options = std::make_shared<InfoOptions>();
     CLI::App* command =
         app.add_subcommand("info", "print what a glTF file holds and what of it is honoured");
     command->add_option("scene", options->scene, "glTF scene, .gltf or .glb")->required();
+    command->add_flag("--json", options->json, "print it for programs");
     add_reading_options(*command, options->reading);
-    command->callback([options] {
-        PictureBudget pictures = options->reading.pictures();
-        GltfFile file =
-            load_gltf(options->scene, options->reading.scope(), pictures, options->reading.choice);
-        append_placement(options->scene.string(), options->reading.scope(), file);
-        print_list("holds", file.contents);
-        print_list("honoured", file.honoured);
-        print_list("ignored", file.ignored);
-        print_list("warnings", file.warnings);
-    });
+    command->callback([options] { info_command(*options); });
 }
 
 }  // namespace petzval

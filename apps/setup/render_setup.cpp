@@ -66,7 +66,7 @@ Sky sky_of(const SceneRequest& request, const Notice& notice, PictureBudget& pic
 std::vector<std::pair<std::string, std::string>> describe(const SceneRequest& request) {
     std::vector<std::pair<std::string, std::string>> m;
     m.emplace_back("petzval:scene", request.scene.filename().string());
-    if (const auto& variant = request.choice.variant)
+    if (const auto& variant = request.choices.variant)
         m.emplace_back("petzval:variant", visible(*variant));
     if (request.environment) {
         m.emplace_back("petzval:environment", request.environment == kStudioLight
@@ -90,7 +90,7 @@ bool same(const std::optional<Rgb>& a, const std::optional<Rgb>& b) {
 }
 
 bool same_scene(const SceneRequest& a, const SceneRequest& b) {
-    return a.scene == b.scene && a.choice == b.choice && a.environment == b.environment &&
+    return a.scene == b.scene && a.choices == b.choices && a.environment == b.environment &&
            a.environment_rotate_deg == b.environment_rotate_deg &&
            a.environment_strength == b.environment_strength && same(a.background, b.background);
 }
@@ -99,7 +99,7 @@ bool same_scene(const SceneRequest& a, const SceneRequest& b) {
 PreparedScene load(SceneRequest request, const Notice& notice) {
     PreparedScene out;
     if (request.picture_memory_bytes) out.pictures = PictureBudget(*request.picture_memory_bytes);
-    GltfFile file = load_gltf(request.scene, request.scope, out.pictures, request.choice);
+    GltfFile file = load_gltf(request.scene, request.scope, out.pictures, request.choices);
     out.files = input_files(file, request.scene);
     refuse_overwriting(request.outputs, out.files);
     for (const std::string& warning : file.warnings) notice("warning: " + warning);

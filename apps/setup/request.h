@@ -21,7 +21,7 @@
 #include "core/spectrum/bins.h"
 #include "core/traversal/traversal_options.h"
 #include "io/base/overwrite.h"
-#include "io/gltf/choice.h"
+#include "io/gltf/choices.h"
 #include "io/gltf/validate/source.h"
 #include "io/picture/picture_budget.h"
 
@@ -120,7 +120,7 @@ struct SceneRequest {
     /// Memory for decoded pictures; absent: half of what can be had.
     std::optional<uint64_t> picture_memory_bytes;
     FileScope scope = FileScope::Anywhere;  ///< of files that the scene names
-    GltfChoice choice;
+    GltfChoices choices;
 };
 
 }  // namespace petzval

@@ -5,6 +5,7 @@
 #include <pmmintrin.h>
 
 #include <algorithm>
+#include <atomic>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -81,6 +82,12 @@ bool traceable(const Ray& r) {
     return (beyond(r.origin) | beyond(r.direction) | int{!(r.t_max >= 0.f)}) == 0;
 }
 
+// Embree's callback for memory that it takes (or gives back: below 0).
+bool count_bytes(void* sum, ssize_t bytes, bool) {
+    *static_cast<std::atomic<int64_t>*>(sum) += bytes;
+    return true;
+}
+
 }  // namespace
 
 // Embree takes the widest instructions it finds. Each set rounds otherwise, so it gets the one that
@@ -93,6 +100,7 @@ struct Bvh::Impl {
     RTCScene top = nullptr;
     std::vector<RTCScene> shared;  // one for each mesh that instances share, else null
     bool has_cutouts = false, has_panes = false;
+    std::atomic<int64_t> bytes = 0;
 
     explicit Impl(const Scene& s) : scene(s) {}
     ~Impl() {
@@ -147,6 +155,7 @@ Bvh::Bvh(const Scene& scene, Traversal traversal) : impl_(std::make_unique<Impl>
     Impl& d = *impl_;
     d.device = rtcNewDevice(kDeviceConfig);
     if (!d.device) d.check();
+    rtcSetDeviceMemoryMonitorFunction(d.device, count_bytes, &d.bytes);
     d.top = d.new_scene(traversal);
     d.shared.resize(scene.meshes.size(), nullptr);
 
@@ -234,6 +243,10 @@ bool Bvh::has_panes() const {
 
 bool Bvh::has_cutouts() const {
     return impl_->has_cutouts;
+}
+
+uint64_t Bvh::bytes() const {
+    return static_cast<uint64_t>(std::max<int64_t>(impl_->bytes, 0));
 }
 
 RTCSceneTy* Bvh::native() const {

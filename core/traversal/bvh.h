@@ -2,6 +2,7 @@
 // Ray traversal. The only file pair that sees Embree.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -35,6 +36,9 @@ class Bvh {
     [[nodiscard]] bool has_panes() const;
     /// Whether some material is MASK or BLEND, so that rays need their alpha_seed.
     [[nodiscard]] bool has_cutouts() const;
+    /// Memory that the hierarchy takes beside the scene's own buffers, about: it is built by many
+    /// threads.
+    [[nodiscard]] uint64_t bytes() const;
     /// Embree's own scene, for measuring what bare traversal costs.
     [[nodiscard]] RTCSceneTy* native() const;
 

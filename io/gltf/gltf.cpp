@@ -13,7 +13,7 @@ namespace petzval {
 namespace {
 
 GltfFile load(const std::filesystem::path& path, FileScope scope, PictureBudget& pictures,
-              const GltfChoice& choice) {
+              const GltfChoices& choices) {
     const GltfSource source = read_gltf_source(path, scope);
     const tinygltf::Model model = parse_model(source);
     const std::string name = path.string();
@@ -23,11 +23,10 @@ GltfFile load(const std::filesystem::path& path, FileScope scope, PictureBudget&
     GltfTally tally;
     const GltfNodes nodes = flatten_nodes(gltf);
     GltfMaterials materials(gltf, file.scene, tally, pictures);
-    place_meshes(gltf, nodes, GltfVariant(gltf, choice.variant), materials, file.scene, tally);
+    place_meshes(gltf, nodes, GltfVariant(gltf, choices.variant), materials, file.scene, tally);
     read_lights(gltf, nodes, file.scene, tally);
     file.cameras = read_cameras(gltf, nodes, tally);
 
-    file.variants = variant_names(gltf);
     file.hash = source.hash;
     file.files = source.files;
     file.warnings = source.warnings.lines();
@@ -38,8 +37,8 @@ GltfFile load(const std::filesystem::path& path, FileScope scope, PictureBudget&
 }  // namespace
 
 GltfFile load_gltf(const std::filesystem::path& path, FileScope scope, PictureBudget& pictures,
-                   const GltfChoice& choice) {
-    return naming_file(path.string(), [&] { return load(path, scope, pictures, choice); });
+                   const GltfChoices& choices) {
+    return naming_file(path.string(), [&] { return load(path, scope, pictures, choices); });
 }
 
 GltfFile load_gltf(const std::filesystem::path& path) {

@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "core/scene/scene.h"
-#include "io/gltf/choice.h"
+#include "io/gltf/choices.h"
+#include "io/gltf/summary.h"
 #include "io/gltf/validate/camera_extras.h"
 #include "io/gltf/validate/source.h"
 #include "io/picture/picture_budget.h"
@@ -27,12 +28,12 @@ struct GltfCamera {
 };
 
 struct GltfFile {
-    Scene scene;                        ///< not yet finished: the sky is still black
-    std::vector<GltfCamera> cameras;    ///< in depth-first order of the node tree
-    std::vector<std::string> variants;  ///< names, in the file's order; empty where it has none
+    Scene scene;                      ///< not yet finished: the sky is still black
+    std::vector<GltfCamera> cameras;  ///< in depth-first order of the node tree
     std::vector<std::string> warnings;
-    /// For `petzval info`: what the file holds, one "name: value" line each, then what is honoured
-    /// and what is ignored.
+    /// For `petzval info`: what the file holds, and the same as one "name: value" line each; then
+    /// which of its features, besides extensions, are honoured and which are ignored.
+    GltfSummary holds;
     std::vector<std::string> contents, honoured, ignored;
     std::vector<std::filesystem::path> files;  ///< those that were read; the first is the file
     uint64_t hash = 0;
@@ -42,7 +43,7 @@ struct GltfFile {
 /// the budget is too small for the pictures of the scene, and ArgumentError where it has not what
 /// is chosen.
 [[nodiscard]] GltfFile load_gltf(const std::filesystem::path&, FileScope, PictureBudget&,
-                                 const GltfChoice& = {});
+                                 const GltfChoices& = {});
 /// Loads a scene that may name any file, with the usual budget.
 [[nodiscard]] GltfFile load_gltf(const std::filesystem::path&);
 

@@ -2,11 +2,8 @@
 #include "io/gltf/info.h"
 
 #include <fmt/format.h>
-#include <tiny_gltf.h>
-
 #include <algorithm>
 
-#include "io/base/json_cursor.h"
 #include "io/base/json_parse.h"
 #include "io/gltf/validate/extensions.h"
 
@@ -25,20 +22,13 @@ std::string named(const std::string& name) {
     return name.empty() ? "(unnamed)" : printable(name);
 }
 
-std::string describe_lights(const Scene& scene) {
-    const auto count = [&](size_t kind) {
-        return std::count_if(scene.lights.begin(), scene.lights.end(),
-                             [&](const Light& light) { return light.index() == kind; });
-    };
-    uint64_t meshes = 0, triangles = 0;
-    for (const Instance& instance : scene.instances) {
-        if (!emits(scene, instance)) continue;
-        ++meshes;
-        triangles += scene.meshes[instance.mesh].triangles.size();
-    }
-    return fmt::format("lights: {} point, {} spot, {} directional, {}{}", count(0), count(1),
-                       count(2), plural(meshes, "emissive mesh", "emissive meshes"),
-                       meshes > 0 ? fmt::format(" ({})", plural(triangles, "triangle")) : "");
+std::string describe(const GltfSummary::Lights& lights) {
+    return fmt::format("lights: {} point, {} spot, {} directional, {}{}", lights.point, lights.spot,
+                       lights.directional,
+                       plural(lights.emissive_meshes, "emissive mesh", "emissive meshes"),
+                       lights.emissive_meshes > 0
+                           ? fmt::format(" ({})", plural(lights.emissive_triangles, "triangle"))
+                           : "");
 }
 
 std::string describe_extras(const CameraExtras& extras) {
@@ -63,48 +53,56 @@ std::string describe_camera(size_t index, const GltfCamera& camera) {
            aspect + describe_extras(camera.extras);
 }
 
-std::string describe_triangles(const Scene& scene) {
-    uint64_t stored = 0, placed = 0;
-    for (const Mesh& mesh : scene.meshes) stored += mesh.triangles.size();
-    for (const Instance& instance : scene.instances)
-        placed += scene.meshes[instance.mesh].triangles.size();
-    return fmt::format("triangles: {} stored, {} placed", stored, placed);
+// Number of things, and a line for each with its name.
+void list_names(const char* one, const char* more, const std::vector<std::string>& names,
+                std::vector<std::string>& lines) {
+    constexpr size_t kMost = 100;
+    if (names.empty()) return;
+    lines.push_back(fmt::format("{}: {}", more, names.size()));
+    for (size_t i = 0; i < std::min(kMost, names.size()); ++i)
+        lines.push_back(fmt::format("{} {}: {}", one, i, named(names[i])));
 }
 
-void describe_contents(const GltfModel& gltf, GltfFile& file) {
-    const Scene& scene = file.scene;
+void describe_animations(const GltfSummary& holds, std::vector<std::string>& lines) {
+    if (holds.animation_count == 0) return;
+    lines.push_back(fmt::format("animations: {}", holds.animation_count));
+    for (size_t i = 0; i < holds.animations.size(); ++i) {
+        const GltfSummary::Animation& one = holds.animations[i];
+        lines.push_back(fmt::format(
+            "animation {}: {}, {}{}", i, named(one.name), plural(one.channels, "channel"),
+            one.duration_s ? fmt::format(", {:.4g} s", *one.duration_s) : ""));
+    }
+}
+
+void describe_contents(GltfFile& file) {
+    const GltfSummary& holds = file.holds;
     auto& lines = file.contents;
-    if (!gltf.typed.asset.generator.empty())
-        lines.push_back("generator: " + printable(gltf.typed.asset.generator));
+    if (!holds.generator.empty()) lines.push_back("generator: " + printable(holds.generator));
+    lines.push_back(fmt::format("nodes: {}", holds.nodes));
+    if (holds.scenes.size() > 1) list_names("scene", "scenes", holds.scenes, lines);
     lines.push_back(
-        fmt::format("nodes: {}", JsonCursor(gltf.source.json, gltf.file).length("nodes")));
-    lines.push_back(
-        fmt::format("meshes: {}, placed {} times", scene.meshes.size(), scene.instances.size()));
-    lines.push_back(describe_triangles(scene));
-    lines.push_back(fmt::format("materials: {}", scene.materials.size()));
-    lines.push_back(fmt::format("images: {}", scene.images.size()));
-    for (size_t i = 0; i < scene.images.size(); ++i)
-        lines.push_back(fmt::format("image {}: {}, {}x{}", i, named(scene.images[i].name),
-                                    scene.images[i].width, scene.images[i].height));
-    lines.push_back(describe_lights(scene));
+        fmt::format("meshes: {}, placed {} times", holds.meshes_stored, holds.meshes_placed));
+    lines.push_back(fmt::format("triangles: {} stored, {} placed", holds.triangles_stored,
+                                holds.triangles_placed));
+    lines.push_back(fmt::format("materials: {}", holds.materials));
+    list_names("variant", "variants", holds.variants, lines);
+    lines.push_back(fmt::format("images: {}", holds.pictures.size()));
+    for (size_t i = 0; i < holds.pictures.size(); ++i)
+        lines.push_back(fmt::format("image {}: {}, {}x{}", i, named(holds.pictures[i].name),
+                                    holds.pictures[i].width_px, holds.pictures[i].height_px));
+    lines.push_back(describe(holds.lights));
+    describe_animations(holds, lines);
     lines.push_back(fmt::format("cameras: {}", file.cameras.size()));
     for (size_t i = 0; i < file.cameras.size(); ++i)
         lines.push_back(describe_camera(i, file.cameras[i]));
 }
 
-void describe_support(const GltfModel& gltf, const GltfTally& tally, GltfFile& file) {
+void describe_support(const GltfTally& tally, GltfFile& file) {
     file.honoured.assign(tally.honoured.begin(), tally.honoured.end());
-    for (const ExtensionInFile& extension : gltf.source.extensions) {
-        const bool rendered =
-            extension.use == ExtensionUse::Rendered || extension.use == ExtensionUse::Approximated;
-        (rendered ? file.honoured : file.ignored).push_back(printable(extension.name));
-    }
     const auto ignore = [&](uint64_t count, const char* what, const char* why) {
         if (count > 0) file.ignored.push_back(fmt::format("{} ({})", plural(count, what), why));
     };
-    const auto animations = gltf.source.json.find("animations");
-    ignore(animations == gltf.source.json.end() ? 0 : animations->size(), "animation",
-           "the stored pose is shown");
+    ignore(file.holds.animation_count, "animation", "the stored pose is shown");
     ignore(tally.occlusion_textures, "occlusion texture", "path tracing finds occlusion itself");
     ignore(tally.ranged_lights, "light range", "light falls off with the squared distance");
     ignore(tally.idle_dispersions, "dispersion", "the material refracts nothing");
@@ -135,9 +133,40 @@ void append_warnings(const GltfTally& tally, std::vector<std::string>& warnings)
 }  // namespace
 
 void describe(const GltfModel& gltf, const GltfTally& tally, GltfFile& file) {
-    describe_contents(gltf, file);
-    describe_support(gltf, tally, file);
+    file.holds = summarise(gltf, file.scene);
+    describe_contents(file);
+    describe_support(tally, file);
     append_warnings(tally, file.warnings);
+}
+
+std::string word_of(const ExtensionInFile& extension) {
+    if (extension.refused()) return "refused";
+    switch (extension.use) {
+        case ExtensionUse::Rendered:
+            return "rendered";
+        case ExtensionUse::Approximated:
+            return "approximated";
+        default:
+            return "ignored";
+    }
+}
+
+std::vector<std::string> table_of(const std::vector<ExtensionInFile>& extensions) {
+    size_t width = 0;
+    for (const ExtensionInFile& one : extensions)
+        width = std::max(width, printable(one.name).size());
+    std::vector<std::string> lines;
+    for (const ExtensionInFile& one : extensions) {
+        std::string rest = one.required ? "required" : "";
+        if (one.objects > 0)
+            rest += (rest.empty() ? "" : ", ") + ("in " + plural(one.objects, "object"));
+        if (!one.effect.empty()) rest += (rest.empty() ? "" : ": ") + one.effect;
+        std::string line =
+            fmt::format("{:{}}  {:12}  {}", printable(one.name), width, word_of(one), rest);
+        line.erase(line.find_last_not_of(' ') + 1);
+        lines.push_back(std::move(line));
+    }
+    return lines;
 }
 
 }  // namespace petzval

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contents of a glTF file, in words.
+// Contents of a glTF file, in numbers and in words.
 #pragma once
 
 #include "io/gltf/gltf.h"
@@ -8,7 +8,16 @@
 
 namespace petzval {
 
-/// Fills contents, honoured and ignored, and appends one warning for each kind of trouble counted.
+/// Counts what a file holds. scene: what the loader made of it.
+[[nodiscard]] GltfSummary summarise(const GltfModel&, const Scene&);
+
+/// Fills holds, contents, honoured and ignored, and appends one warning for each kind of trouble
+/// counted.
 void describe(const GltfModel&, const GltfTally&, GltfFile&);
+
+/// What becomes of an extension in one word: rendered, approximated, ignored or refused.
+[[nodiscard]] std::string word_of(const ExtensionInFile&);
+/// One line for each extension: its name, what becomes of it, and what that does to the picture.
+[[nodiscard]] std::vector<std::string> table_of(const std::vector<ExtensionInFile>&);
 
 }  // namespace petzval

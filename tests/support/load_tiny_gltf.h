@@ -29,4 +29,11 @@ inline bool contains_line(const std::vector<std::string>& lines, const std::stri
     return false;
 }
 
+/// Whether a file lists that extension, and it is rendered.
+inline bool renders(const GltfFile& file, const std::string& extension) {
+    for (const ExtensionInFile& one : file.holds.extensions)
+        if (one.name == extension) return one.use == ExtensionUse::Rendered;
+    return false;
+}
+
 }  // namespace petzval

@@ -37,9 +37,11 @@ struct GltfCheck {
 
 /// Checks that asset.version is 2.x and asset.minVersion at most 2.0.
 void check_asset(const GltfCheck&);
-/// Checks that required extensions are supported, and used ones declared and in the right place;
-/// warns of each that is used but not supported.
-void check_extensions(GltfCheck&);
+/// Lists the extensions of the file in its source. Warns of each that is ignored with an effect, or
+/// stands in a wrong place.
+void list_extensions(GltfCheck&);
+/// Checks that no listed extension is refused.
+void check_extensions(const GltfCheck&);
 /// Checks that the root arrays hold objects, and that names are strings.
 void check_collections(const GltfCheck&);
 /// Decodes each bufferView that something needs and whose data are in EXT_meshopt_compression only,

@@ -114,7 +114,7 @@ void warn(const ExtensionInFile& extension, WarningLog& warnings) {
 
 }  // namespace
 
-void check_extensions(GltfCheck& check) {
+void list_extensions(GltfCheck& check) {
     const Names used = read_names(check.root, "extensionsUsed");
     const Names required = read_names(check.root, "extensionsRequired");
     const std::string file = check.source.path.string();
@@ -122,14 +122,19 @@ void check_extensions(GltfCheck& check) {
     walk.visit(check.root.value(), "", "");
     for (const std::string& name : used) {
         const auto extension = describe(name, walk.objects(name), required.contains(name));
+        warn(extension, check.source.warnings);
+        check.source.extensions.push_back(extension);
+    }
+}
+
+void check_extensions(const GltfCheck& check) {
+    for (const ExtensionInFile& extension : check.source.extensions)
         if (extension.refused())
             check.root.fail("extensionsRequired",
                             fmt::format("the file requires the extension {}, which is not "
                                         "supported; {}",
-                                        printable(name), gltf_extension_advice(name)));
-        warn(extension, check.source.warnings);
-        check.source.extensions.push_back(extension);
-    }
+                                        printable(extension.name),
+                                        gltf_extension_advice(extension.name)));
 }
 
 }  // namespace petzval

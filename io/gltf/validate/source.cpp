@@ -27,35 +27,59 @@ void check_scene_graph(GltfCheck& check) {
     check_animations(check);
 }
 
-}  // namespace
+/// A file as it lies on the disk. `chunks` views `file`.
+struct Opened {
+    FileBytes file;
+    bool binary = false;
+    GlbChunks chunks;
+};
 
-GltfSource read_gltf_source(const std::filesystem::path& path, FileScope scope) {
+/// Reads the file, and its JSON into `source`, mended.
+Opened open_gltf(const std::filesystem::path& path, GltfSource& source) {
     const std::string name = path.string();
     const std::string foreign = foreign_scene_advice(path);
     if (!foreign.empty()) throw InputError(name, "", foreign);
-    const FileBytes file = read_file(path);
-    if (!file.error.empty()) throw InputError(name, "", file.error);
-
-    GltfSource source;
+    Opened out{read_file(path), false, {}};
+    if (!out.file.error.empty()) throw InputError(name, "", out.file.error);
+    const auto& bytes = out.file.bytes;
+    out.binary = is_glb(bytes);
+    out.chunks = {{reinterpret_cast<const char*>(bytes.data()), bytes.size()}, {}};
+    if (out.binary) out.chunks = split_glb(bytes, name, source.warnings);
     source.path = path;
+    source.json = parse_json(out.chunks.json, name);
+    mend_gltf(source.json, source.warnings);
+    return out;
+}
+
+}  // namespace
+
+std::vector<ExtensionInFile> read_gltf_extensions(const std::filesystem::path& path) {
+    GltfSource source;
+    (void)open_gltf(path, source);
+    GltfBudget budget;
+    const std::string name = path.string();
+    GltfCheck check{source, JsonCursor(source.json, name), budget, {}, {}};
+    check_asset(check);
+    list_extensions(check);
+    return source.extensions;
+}
+
+GltfSource read_gltf_source(const std::filesystem::path& path, FileScope scope) {
+    GltfSource source;
+    const Opened opened = open_gltf(path, source);
     source.files.push_back(path);
     source.scope = scope;
-    source.hash = fnv1a(file.bytes);
+    source.hash = fnv1a(opened.file.bytes);
     GltfBudget budget;
-    budget.add_owned(file.bytes.size());
+    budget.add_owned(opened.file.bytes.size());
 
-    const bool binary = is_glb(file.bytes);
-    GlbChunks chunks{{reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size()}, {}};
-    if (binary) chunks = split_glb(file.bytes, name, source.warnings);
-    source.json = parse_json(chunks.json, name);
-
-    mend_gltf(source.json, source.warnings);
-
+    const std::string name = path.string();
     GltfCheck check{source, JsonCursor(source.json, name), budget, {}, find_used(source.json)};
     check_asset(check);
+    list_extensions(check);
     check_extensions(check);
     check_collections(check);
-    read_buffers(source, {binary, chunks.bin}, budget);
+    read_buffers(source, {opened.binary, opened.chunks.bin}, budget);
     decode_buffer_views(check);
     check_buffer_views(check);
     decode_primitives(check);

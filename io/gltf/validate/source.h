@@ -35,6 +35,10 @@ struct GltfSource {
     uint64_t hash = 0;  ///< FNV-1a of the scene file and of every file it names
 };
 
+/// The extensions that a file lists, also of a file that is refused for one of them. Throws
+/// InputError where it is no glTF.
+[[nodiscard]] std::vector<ExtensionInFile> read_gltf_extensions(const std::filesystem::path&);
+
 /// Reads a .gltf or .glb with everything it refers to, and checks it before anything else uses it:
 /// container, JSON (and its depth), version, required extensions, every index, every byte range,
 /// the node tree, counts against the sizes of the buffers. Throws InputError with file and JSON

@@ -56,7 +56,7 @@ TEST(GltfVariants, MapMaterialsByNameOrNumber) {
     EXPECT_EQ(materials_of(file, "blue\n"), "db");
     EXPECT_EQ(materials_of(file, "blue\\u000a"), "db");
     EXPECT_EQ(materials_of(file, "2"), "db");
-    EXPECT_EQ(load(file).variants, (std::vector<std::string>{"red", "blue\n", "red"}));
+    EXPECT_EQ(load(file).holds.variants, (std::vector<std::string>{"red", "blue\n", "red"}));
 }
 
 TEST(GltfVariants, ANameGoesBeforeANumber) {

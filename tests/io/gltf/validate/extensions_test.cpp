@@ -3,6 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "io/gltf/validate/source.h"
+#include "tests/support/refusal.h"
+#include "tests/support/tiny_gltf.h"
+
 namespace petzval {
 namespace {
 
@@ -17,6 +25,47 @@ TEST(GltfExtensions, AreFoundByName) {
         EXPECT_EQ(find_gltf_extension(extension.name), &extension);
     EXPECT_EQ(find_gltf_extension("KHR_materials"), nullptr);
     EXPECT_EQ(find_gltf_extension(""), nullptr);
+}
+
+/// Second cell of each row of README.md's tables that begins with a known extension.
+std::map<std::string, std::string> in_readme() {
+    std::ifstream readme(PETZVAL_ASSETS "/../README.md");
+    std::map<std::string, std::string> found;
+    for (std::string line; std::getline(readme, line);) {
+        std::istringstream words(line);
+        std::string bar, name, second_bar, word;
+        words >> bar >> name >> second_bar >> word;
+        if (bar == "|" && find_gltf_extension(name)) found[name] = word;
+    }
+    return found;
+}
+
+TEST(GltfExtensions, AreInTheReadmeAsTheyAre) {
+    const auto readme = in_readme();
+    for (const auto& [name, word] : readme) {
+        const ExtensionUse use = find_gltf_extension(name)->use;
+        EXPECT_EQ(word, use == ExtensionUse::Rendered       ? "yes"
+                        : use == ExtensionUse::Approximated ? "partly"
+                                                            : "no")
+            << name;
+    }
+    for (const GltfExtension& extension : gltf_extensions())
+        if (extension.use == ExtensionUse::Rendered || extension.use == ExtensionUse::Approximated)
+            EXPECT_TRUE(readme.contains(std::string(extension.name))) << extension.name;
+}
+
+TEST(GltfExtensions, AreReadOfFilesThatAreRefusedForOne) {
+    const TempFolder folder;
+    TinyGltf file;
+    file.json["extensionsUsed"] =
+        file.json["extensionsRequired"] = {"KHR_gaussian_splatting", "KHR_xmp_json_ld"};
+    const auto path = file.save_glb(folder.path / "a.glb");
+    EXPECT_NE(refusal([&] { (void)read_gltf_source(path); }), "");
+    const auto extensions = read_gltf_extensions(path);
+    ASSERT_EQ(extensions.size(), 2u);
+    EXPECT_TRUE(extensions[0].refused());
+    EXPECT_FALSE(extensions[1].refused());
+    EXPECT_NE(refusal([&] { (void)read_gltf_extensions(folder.path / "none.glb"); }), "");
 }
 
 }  // namespace

@@ -7,10 +7,10 @@
 namespace petzval {
 
 /// What of a glTF file is shown, where it leaves a choice.
-struct GltfChoice {
+struct GltfChoices {
     std::optional<std::string> variant;  ///< of its materials, by name or number; absent: none
 
-    [[nodiscard]] bool operator==(const GltfChoice&) const = default;
+    [[nodiscard]] bool operator==(const GltfChoices&) const = default;
 };
 
 }  // namespace petzval

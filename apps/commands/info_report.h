@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// What petzval info found, for people and for programs.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/setup/auto_focus.h"
+#include "io/gltf/gltf.h"
+
+namespace petzval {
+
+/// A file that was read, and what its finished scene shows.
+struct InfoReport {
+    std::filesystem::path path;
+    GltfFile file;
+    std::optional<std::string> variant;  ///< that is shown, as asked for
+    std::optional<Box3f> bounds;         ///< absent: nothing is there
+    std::vector<FoundFocus> focus;       ///< of the first cameras; of the framing one without any
+    uint64_t bvh_bytes = 0;
+};
+
+/// Prints to stdout what a file holds and what becomes of it.
+void print_info(const InfoReport&);
+/// Prints the same as JSON; docs/guide/render.md has the schema.
+void print_info_json(const InfoReport&);
+/// Prints why a file is refused, and its extensions, as JSON.
+void print_refusal_json(const std::filesystem::path&, const std::string& error,
+                        const std::vector<ExtensionInFile>&);
+
+}  // namespace petzval

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a glTF file holds, in numbers and names: for `petzval info`.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/gltf/validate/extensions.h"
+
+namespace petzval {
+
+/// Names are as in the file; an unnamed thing has an empty one.
+struct GltfSummary {
+    struct Animation {
+        std::string name;
+        size_t channels = 0;
+        std::optional<double> duration_s;  ///< where the file says it
+    };
+    struct Picture {
+        std::string name;
+        int width_px = 0, height_px = 0;
+        uint64_t bytes = 0;  ///< decoded
+    };
+    struct Lights {
+        uint64_t point = 0, spot = 0, directional = 0, emissive_meshes = 0, emissive_triangles = 0;
+    };
+
+    std::string generator;
+    std::vector<ExtensionInFile> extensions;
+    std::vector<std::string> scenes, variants;
+    std::vector<Animation> animations;  ///< the first hundred
+    uint64_t animation_count = 0;
+    uint64_t nodes = 0, materials = 0;
+    uint64_t meshes_stored = 0, meshes_placed = 0, triangles_stored = 0, triangles_placed = 0;
+    uint64_t mesh_bytes = 0;
+    std::vector<Picture> pictures;  ///< those that the scene uses
+    Lights lights;
+};
+
+}  // namespace petzval

@@ -11,6 +11,7 @@
 #include "io/base/error.h"
 #include "io/base/text_lines.h"
 #include "io/codec/codec.h"
+#include "io/codec/colour_space.h"
 #include "io/picture/limits.h"
 #include "io/picture/picture_kind.h"
 
@@ -61,10 +62,26 @@ std::vector<T> to_rgba(std::vector<T> in, int channels, T opaque) {
     return out;
 }
 
+ColourRemarks remarks_of(const OIIO::ImageSpec& spec, const std::vector<uint8_t>& bytes,
+                         std::string_view ending) {
+    ColourRemarks remarks;
+    const std::string_view inks = spec.get_string_attribute("jpeg:ColorSpace");
+    remarks.inks = inks == "CMYK" || inks == "YCbCrK";
+    std::span<const uint8_t> profile;
+    if (const OIIO::ParamValue* found = spec.find_attribute("ICCProfile");
+        found && found->type().basetype == OIIO::TypeDesc::UINT8)
+        profile = {static_cast<const uint8_t*>(found->data()),
+                   static_cast<size_t>(found->datasize())};
+    if (!remarks.inks)  // the profile of inks says nothing of what was made of them
+        remarks.other_space =
+            ending == "png" ? other_space_of_png(bytes, profile) : other_space_of_profile(profile);
+    return remarks;
+}
+
 }  // namespace
 
 Image decode_image(const std::vector<uint8_t>& bytes, const std::string& file,
-                   const std::string& place, PictureBudget& budget) {
+                   const std::string& place, PictureBudget& budget, ColourRemarks& remarks) {
     const auto refuse = [&](const std::string& why) -> InputError {
         return {file, place, "the image " + why};
     };
@@ -106,6 +123,7 @@ Image decode_image(const std::vector<uint8_t>& bytes, const std::string& file,
         const std::string error = first_line(input->geterror());
         if (!success || is_cut_short(error)) throw refuse("cannot be decoded: " + error);
     };
+    remarks = remarks_of(spec, bytes, ending);
     Image image{.name = "", .width = spec.width, .height = spec.height, .texels = {}};
     if (bytewise) {
         std::vector<uint8_t> texels(count);

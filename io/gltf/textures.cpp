@@ -4,6 +4,11 @@
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <type_traits>
+
 #include "io/base/json_parse.h"
 #include "io/image/picture_files.h"
 
@@ -34,6 +39,43 @@ void set_transform(TextureSlot& slot, const JsonCursor& transform) {
     slot.v_row = to_row(-s * su, c * sv, v);
 }
 
+/// Slots that read alpha alone, which is linear in an image of colours too.
+constexpr std::array<std::string_view, 3> kAlphaOnly = {"specularTexture", "sheenRoughnessTexture",
+                                                        "diffuseTransmissionTexture"};
+
+/// What a normal map looks as if it had gone through, by the mean of its x and y, which is 1/2 for
+/// normals that lean to all sides alike, and 0.735 or 0.214 after the curve of sRGB or back.
+std::string fault_of_normals(const Image& image) {
+    constexpr size_t most = 1 << 16;
+    constexpr double tolerance = 0.03, least_blue = 0.85;
+    const size_t count = static_cast<size_t>(image.width) * static_cast<size_t>(image.height);
+    const size_t step = 1 + count / most;
+    std::array<double, 3> mean{};
+    double taken = 0;
+    for (size_t i = 0; i < count; i += step, ++taken)
+        for (size_t c = 0; c < 3; ++c)
+            mean[c] += std::visit(
+                [&](const auto& texels) {
+                    const double one =
+                        std::is_same_v<std::decay_t<decltype(texels[0])>, float> ? 1 : 255;
+                    return double(texels[4 * i + c]) / one;
+                },
+                image.texels);
+    for (double& m : mean) m /= taken;
+    const auto both_near = [&](double value) {
+        return std::fabs(mean[0] - value) < tolerance && std::fabs(mean[1] - value) < tolerance &&
+               mean[2] > least_blue;
+    };
+    const char* const went_through = both_near(0.735)   ? "encoded as sRGB"
+                                     : both_near(0.214) ? "decoded from sRGB"
+                                                        : nullptr;
+    if (!went_through) return "";
+    return fmt::format(
+        "is a normal map whose x and y are {:.2f} on average instead of 0.5, as if it had been {}; "
+        "all normals lean; export it as linear data",
+        mean[0], went_through);
+}
+
 }  // namespace
 
 GltfTextures::GltfTextures(const GltfModel& gltf, std::vector<Image>& images, GltfTally& tally,
@@ -42,7 +84,7 @@ GltfTextures::GltfTextures(const GltfModel& gltf, std::vector<Image>& images, Gl
       images_(images),
       tally_(tally),
       pictures_(pictures),
-      used_(gltf.source.images.size(), -1) {}
+      used_(gltf.source.images.size()) {}
 
 TextureSlot GltfTextures::slot(const JsonCursor& parent, const char* key, Encoding encoding) {
     const auto info = parent.find_object(key);
@@ -78,19 +120,57 @@ TextureSlot GltfTextures::slot(const JsonCursor& parent, const char* key, Encodi
         slot.wrap_v = to_wrap(sampler.wrapT);
         slot.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
     }
-    slot.image = use_image(static_cast<size_t>(texture.source));
+    const auto source = static_cast<size_t>(texture.source);
+    slot.image = use_image(source);
+    check_colours(source, info->path(), key, encoding);
     return slot;
 }
 
-int32_t GltfTextures::use_image(size_t image) {
-    int32_t& used = used_.at(image);
-    if (used >= 0) return used;
+void GltfTextures::check_colours(size_t image, const std::string& slot, std::string_view key,
+                                 Encoding encoding) {
+    Used& used = used_.at(image);
     const std::string place = json_path("images", image);
-    images_.push_back(decode_image(gltf_.source.images[image], gltf_.file, place, pictures_));
+    if (used.remarks.inks)
+        tally_.warnings.push_back(
+            place +
+            ": is in CMYK inks; its colours are guessed, as nothing says what "
+            "the inks look like; convert it to RGB");
+    used.remarks.inks = false;
+    if (std::find(kAlphaOnly.begin(), kAlphaOnly.end(), key) != kAlphaOnly.end()) return;
+    if (encoding == Encoding::Srgb && !used.remarks.other_space.empty()) {
+        tally_.warnings.push_back(fmt::format(
+            "{}: says that its colours are in {}; glTF takes them for sRGB, so they are not those "
+            "that were meant; convert it to sRGB",
+            place, used.remarks.other_space));
+        used.remarks.other_space.clear();
+    }
+    std::string& first = encoding == Encoding::Srgb ? used.colour_slot : used.data_slot;
+    const std::string& other = encoding == Encoding::Srgb ? used.data_slot : used.colour_slot;
+    if (first.empty() && !other.empty())
+        tally_.warnings.push_back(fmt::format(
+            "{}: is read as colours in sRGB by {}, and as numbers by {}; one of them is "
+            "likely a mistake",
+            place, encoding == Encoding::Srgb ? slot : other,
+            encoding == Encoding::Srgb ? other : slot));
+    if (first.empty()) first = slot;
+    if (key == "normalTexture" && !used.normals_checked) {
+        used.normals_checked = true;
+        if (const std::string fault = fault_of_normals(images_[static_cast<size_t>(used.place)]);
+            !fault.empty())
+            tally_.warnings.push_back(fmt::format("{}: {}", place, fault));
+    }
+}
+
+int32_t GltfTextures::use_image(size_t image) {
+    Used& used = used_.at(image);
+    if (used.place >= 0) return used.place;
+    const std::string place = json_path("images", image);
+    images_.push_back(
+        decode_image(gltf_.source.images[image], gltf_.file, place, pictures_, used.remarks));
     const JsonCursor json(gltf_.source.json["images"][image], gltf_.file, place);
     const std::string uri = json.text_or("uri", "");
     images_.back().name = json.text_or("name", uri.starts_with("data:") ? "" : uri.c_str());
-    return used = static_cast<int32_t>(images_.size()) - 1;
+    return used.place = static_cast<int32_t>(images_.size()) - 1;
 }
 
 }  // namespace petzval

@@ -8,6 +8,7 @@
 #include "io/base/json_cursor.h"
 #include "io/gltf/model.h"
 #include "io/gltf/tally.h"
+#include "io/picture/colour_remarks.h"
 #include "io/picture/picture_budget.h"
 
 namespace petzval {
@@ -22,13 +23,24 @@ class GltfTextures {
     [[nodiscard]] TextureSlot slot(const JsonCursor& parent, const char* key, Encoding);
 
   private:
+    /// What is known of an image of the file.
+    struct Used {
+        int32_t place = -1;  ///< in images_; -1: not needed yet
+        ColourRemarks remarks;
+        std::string colour_slot, data_slot;  ///< the first that reads it as colours, as numbers
+        bool normals_checked = false;
+    };
+
     [[nodiscard]] int32_t use_image(size_t image);
+    /// Warns of what is likely a mistake in an image that a slot reads, each once. key: the slot's
+    /// name.
+    void check_colours(size_t image, const std::string& slot, std::string_view key, Encoding);
 
     const GltfModel& gltf_;
     std::vector<Image>& images_;
     GltfTally& tally_;
     PictureBudget& pictures_;
-    std::vector<int32_t> used_;  ///< place in images_ of each image of the file, -1: not needed yet
+    std::vector<Used> used_;  ///< by image of the file
 };
 
 }  // namespace petzval

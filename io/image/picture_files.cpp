@@ -60,7 +60,13 @@ Picture read_picture(const std::filesystem::path& path) {
 
 Image decode_image(const std::vector<uint8_t>& bytes, const std::string& file,
                    const std::string& place, PictureBudget& budget) {
-    return image_codec().decode_image(bytes, file, place, budget);
+    ColourRemarks unread;
+    return decode_image(bytes, file, place, budget, unread);
+}
+
+Image decode_image(const std::vector<uint8_t>& bytes, const std::string& file,
+                   const std::string& place, PictureBudget& budget, ColourRemarks& remarks) {
+    return image_codec().decode_image(bytes, file, place, budget, remarks);
 }
 
 void write_exr(const std::filesystem::path& path, const PictureRows& picture) {

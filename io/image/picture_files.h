@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/scene/texture.h"
+#include "io/picture/colour_remarks.h"
 #include "io/picture/picture.h"
 #include "io/picture/picture_budget.h"
 #include "io/picture/picture_kind.h"
@@ -27,6 +28,9 @@ namespace petzval {
 /// InputError, also where the budget is too small.
 [[nodiscard]] Image decode_image(const std::vector<uint8_t>& bytes, const std::string& file,
                                  const std::string& place, PictureBudget&);
+/// Decodes an image likewise, and says what it says of its colours.
+[[nodiscard]] Image decode_image(const std::vector<uint8_t>& bytes, const std::string& file,
+                                 const std::string& place, PictureBudget&, ColourRemarks&);
 
 /// Writes a 32-bit float EXR with every channel, all metadata, and the chromaticities of R, G and
 /// B, which are those of Rec. 709 with a D65 white in every picture of this program. Equal pictures

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/scene/texture.h"
+#include "io/picture/colour_remarks.h"
 #include "io/picture/picture.h"
 #include "io/picture/picture_budget.h"
 
@@ -20,7 +21,7 @@ struct ImageCodec {
     Picture (*read_picture)(const std::filesystem::path&, PictureBudget&,
                             std::optional<uint64_t> kept_per_pixel);
     Image (*decode_image)(const std::vector<uint8_t>& bytes, const std::string& file,
-                          const std::string& place, PictureBudget&);
+                          const std::string& place, PictureBudget&, ColourRemarks&);
     void (*write_exr)(const std::filesystem::path&, const PictureRows&);
     void (*write_8bit)(const std::filesystem::path&, const PictureRows& encoded, bool srgb);
     void (*limit_threads)(int threads);

@@ -48,15 +48,17 @@ inline std::vector<uint8_t> zlib_stored(std::span<const uint8_t> bytes) {
 }
 
 /// rows: the bytes of each row as PNG packs them, row 0 at the top. extra: whole chunks that stand
-/// between header and data. Nothing is checked, so that broken files can be made too.
+/// between header and data. interlace: 1 where the rows are those of the passes of Adam7. Nothing
+/// is checked, so that broken files can be made too.
 inline std::vector<uint8_t> tiny_png(uint32_t width, uint32_t height, uint8_t bits,
                                      PngColour colour,
                                      const std::vector<std::vector<uint8_t>>& rows,
-                                     const std::vector<uint8_t>& extra = {}) {
+                                     const std::vector<uint8_t>& extra = {},
+                                     uint8_t interlace = 0) {
     std::vector<uint8_t> header, data;
     put_big_endian(header, width);
     put_big_endian(header, height);
-    header.insert(header.end(), {bits, uint8_t(colour), 0, 0, 0});
+    header.insert(header.end(), {bits, uint8_t(colour), 0, 0, interlace});
     for (const std::vector<uint8_t>& row : rows) {
         data.push_back(0);  // no filter
         data.insert(data.end(), row.begin(), row.end());

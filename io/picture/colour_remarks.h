@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an image of a scene says of its colours, and glTF does not listen to.
+#pragma once
+
+#include <string>
+
+namespace petzval {
+
+struct ColourRemarks {
+    bool inks = false;  ///< its texels were made of CMYK, by the simplest formula
+    /// Colour space that the file says it is in, where that is not sRGB: "the profile Adobe RGB
+    /// (1998)". glTF takes it for sRGB all the same (glTF 2.0, section 3.8.3).
+    std::string other_space;
+};
+
+}  // namespace petzval

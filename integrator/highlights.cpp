@@ -68,6 +68,9 @@ std::vector<Source> sources_of(const Scene& scene, std::span<const Thing> things
             add(point->position, false, point->intensity_cd);
         if (const auto* spot = std::get_if<SpotLight>(&light))
             add(spot->position, false, spot->intensity_cd);
+        if (const auto* measured = std::get_if<ProfileLight>(&light))  // on average
+            add(measured->position, false,
+                measured->factor * (scene.profiles[measured->profile].flux_lm() / (4 * kPi)));
         if (const auto* sun = std::get_if<SunLight>(&light))
             add(-sun->direction, true, sun->illuminance_lx);
     }

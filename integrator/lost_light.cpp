@@ -111,6 +111,16 @@ class Search {
                            return ray;
                        });
     }
+    void add(const ProfileLight& light, uint32_t index) {
+        add_where_lost({LostLight::Kind::Point, index}, 0, never,
+                       [&](const Sampler& s) -> std::optional<Ray> {
+                           const Ray ray = towards_glass(s, light.position);
+                           const V3f& d = ray.direction;
+                           const V3f local(d.dot(light.x), d.dot(light.y), d.dot(light.f));
+                           if (!(scene_.profiles[light.profile].intensity(local) > 0)) return {};
+                           return ray;
+                       });
+    }
     void add(const SunLight& light, uint32_t index) {
         add_where_lost({LostLight::Kind::Sun, index}, 0, never,
                        [&](const Sampler& s) { return along_to_glass(s, light.direction); });

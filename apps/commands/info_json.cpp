@@ -55,6 +55,8 @@ ordered_json json_of(const GltfSummary::Lights& lights) {
     return {{"point", lights.point},
             {"spot", lights.spot},
             {"directional", lights.directional},
+            {"with_radius", lights.balls},
+            {"profiles", lights.profiles},
             {"emissive_meshes", lights.emissive_meshes},
             {"emissive_triangles", lights.emissive_triangles}};
 }

@@ -37,7 +37,7 @@ double seconds_since(Clock::time_point start) {
 
 // Lights a scene by the studio where nobody asked for light and the file has none, or too little.
 void add_missing_light(SceneRequest& request, const Scene& scene, const Notice& notice) {
-    if (request.environment || request.background) return;
+    if (request.environment || request.background || !scene.sky.black()) return;
     const OwnLight own = own_light(scene);
     if (own == OwnLight::Enough) return;
     request.environment = kStudioLight;
@@ -108,7 +108,8 @@ PreparedScene load(SceneRequest request, const Notice& notice) {
     out.cameras = std::make_shared<std::vector<GltfCamera>>(std::move(file.cameras));
     add_missing_light(request, *scene, notice);
     out.environment = request.environment;
-    scene->sky = sky_of(request, notice, out.pictures);
+    if (request.environment || request.background)  // instead of the file's own
+        scene->sky = sky_of(request, notice, out.pictures);
     finish_scene(*scene);
     if (scene->instances.empty())
         notice("warning: the scene is empty: only its background is rendered");

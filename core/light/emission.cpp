@@ -18,6 +18,11 @@ Rgb emitted_radiance(const Scene& scene, uint32_t instance, uint32_t triangle, V
     return material.emissive * Rgb(texel);
 }
 
+float share_of_beam(const Scene& scene, uint32_t instance, const V3f& away) {
+    const auto& beam = scene.materials[scene.meshes[scene.instances[instance].mesh].material].beam;
+    return beam ? beam->falloff(away.dot(beam->direction)) : 1.f;
+}
+
 const Illuminant* white_of(const Scene& scene, uint32_t instance) {
     const Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
     return scene.illuminant(scene.materials[mesh.material].illuminant);

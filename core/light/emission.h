@@ -12,10 +12,14 @@ struct Scene;
 struct Illuminant;
 
 /// Emitted radiance, nits, towards every direction on the front side, and on the back side where
-/// the material is double-sided. barycentric: weights of the second and third vertex. Materials
-/// with KHR_materials_unlit emit nothing here.
+/// the material is double-sided; of a beam, along its axis. barycentric: weights of the second and
+/// third vertex. Materials with KHR_materials_unlit emit nothing here.
 [[nodiscard]] Rgb emitted_radiance(const Scene&, uint32_t instance, uint32_t triangle,
                                    V2f barycentric, bool front);
+
+/// Share of emitted_radiance that leaves in a direction: below 1 only for a beam. away: unit, from
+/// the surface.
+[[nodiscard]] float share_of_beam(const Scene&, uint32_t instance, const V3f& away);
 
 /// White point of an instance's emission; nullptr: the scene's own.
 [[nodiscard]] const Illuminant* white_of(const Scene&, uint32_t instance);

@@ -24,22 +24,31 @@ struct BoundsOf {
     const Scene& scene;
     float power;  ///< light_power, above 0
 
+    [[nodiscard]] LightBounds bounds_of(const Beam& beam, const Box3f& box) const {
+        const float inner = std::acos(beam.cos_inner), outer = std::acos(beam.cos_outer);
+        return LightBounds{box, beam.direction, inner, outer - inner, false, power};
+    }
     std::optional<LightBounds> operator()(const PointLight& light) const {
         return LightBounds{Box3f(light.position), V3f(0, 0, 1), kPi, kPi / 2, false, power};
     }
     std::optional<LightBounds> operator()(const SpotLight& light) const {
-        const float inner = std::acos(light.cos_inner), outer = std::acos(light.cos_outer);
-        return LightBounds{Box3f(light.position), light.direction, inner,
-                           outer - inner,         false,           power};
+        return bounds_of({light.direction, light.cos_inner, light.cos_outer},
+                         Box3f(light.position));
+    }
+    std::optional<LightBounds> operator()(const ProfileLight& light) const {
+        const float reach = scene.profiles[light.profile].reach_rad();
+        return LightBounds{Box3f(light.position), light.f, reach, 0, false, power};
     }
     std::optional<LightBounds> operator()(const TriangleLight& light) const {
         const auto corner = triangle_corners(scene, light.instance, light.triangle);
         Box3f box;
         for (const V3f& c : corner) box.extendBy(c);
         const Instance& instance = scene.instances[light.instance];
-        const bool two_sided = scene.materials[scene.meshes[instance.mesh].material].double_sided;
+        const Material& material = scene.materials[scene.meshes[instance.mesh].material];
+        if (const auto& beam = material.beam) return bounds_of(*beam, box);
         const V3f front = (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
-        return LightBounds{box, instance.flips ? -front : front, 0, kPi / 2, two_sided, power};
+        return LightBounds{box,     instance.flips ? -front : front, 0,
+                           kPi / 2, material.double_sided,           power};
     }
     std::optional<LightBounds> operator()(const SunLight&) const { return std::nullopt; }
     std::optional<LightBounds> operator()(const SkyLight&) const { return std::nullopt; }

@@ -17,24 +17,20 @@ namespace {
 constexpr float kWideRatio = 1.f;
 constexpr float kLeastSolidAngle = 1e-4f;  // sr
 
-// Angular attenuation: KHR_lights_punctual, "Inner and Outer Cone Angles".
-float spot_width(const SpotLight& light) {
-    return std::max(0.001f, light.cos_inner - light.cos_outer);
-}
-float spot_falloff(const SpotLight& light, float cosine) {
-    return sqr(std::clamp((cosine - light.cos_outer) / spot_width(light), 0.f, 1.f));
+Beam beam_of(const SpotLight& light) {
+    return {light.direction, light.cos_inner, light.cos_outer};
 }
 
 template <class L>
-std::optional<LightSample> sample_at(const Scene& scene, const L& light, const V3f& p,
-                                     const Bands& bands) {
+std::optional<LightSample> sample_at(const Scene& scene, const L& light, Rgb intensity_cd,
+                                     const V3f& p, const Bands& bands) {
     const V3f to_light = light.position - p;
     const float distance2 = to_light.dot(to_light);
     if (!(distance2 > 0.f)) return std::nullopt;
     return LightSample{to_light / std::sqrt(distance2),
                        light.position,
                        false,
-                       uplift_radiance(light.intensity_cd * (1.f / distance2), bands,
+                       uplift_radiance(intensity_cd * (1.f / distance2), bands,
                                        scene.illuminant(light.illuminant)),
                        1.f,
                        true};
@@ -42,17 +38,28 @@ std::optional<LightSample> sample_at(const Scene& scene, const L& light, const V
 
 std::optional<LightSample> sample(const Scene& scene, const PointLight& light, const V3f& p, V2f,
                                   const Bands& bands) {
-    return sample_at(scene, light, p, bands);
+    return sample_at(scene, light, light.intensity_cd, p, bands);
 }
 
 std::optional<LightSample> sample(const Scene& scene, const SpotLight& light, const V3f& p, V2f,
                                   const Bands& bands) {
-    auto drawn = sample_at(scene, light, p, bands);
+    auto drawn = sample_at(scene, light, light.intensity_cd, p, bands);
     if (!drawn) return drawn;
-    const float falloff = spot_falloff(light, -drawn->direction.dot(light.direction));
+    const float falloff = beam_of(light).falloff(-drawn->direction.dot(light.direction));
     if (falloff == 0.f) return std::nullopt;
     drawn->radiance *= falloff;
     return drawn;
+}
+
+std::optional<LightSample> sample(const Scene& scene, const ProfileLight& light, const V3f& p, V2f,
+                                  const Bands& bands) {
+    const V3f away = p - light.position;
+    const float distance = away.length();
+    if (!(distance > 0.f)) return std::nullopt;
+    const V3f local(away.dot(light.x), away.dot(light.y), away.dot(light.f));
+    const float candela = scene.profiles[light.profile].intensity(local / distance);
+    if (!(candela > 0.f)) return std::nullopt;
+    return sample_at(scene, light, light.factor * candela, p, bands);
 }
 
 std::optional<LightSample> sample(const Scene& scene, const SunLight& light, const V3f&, V2f,
@@ -123,7 +130,8 @@ std::optional<LightSample> sample(const Scene& scene, const TriangleLight& light
 
     const bool front = (facing > 0.f) != scene.instances[light.instance].flips;
     const Rgb emitted = emitted_radiance(scene, light.instance, light.triangle, b, front) *
-                        coverage(scene, light.instance, light.triangle, b);
+                        coverage(scene, light.instance, light.triangle, b) *
+                        share_of_beam(scene, light.instance, wide ? -drawn : to_light / -distance);
     if (!(hmax(emitted.v) > 0.f)) return std::nullopt;
     const V3f error = plane_error(scene, light, target, to_light, corner);
     // Near a large lamp the rounded target lies aside of the direction that was drawn.
@@ -174,6 +182,32 @@ float mean_emission(const Scene& scene, const TriangleLight& light) {
     return std::max(sum / 16, 1e-3f * untextured);
 }
 
+// Integral over a beam of the cosine to a triangle's front, or to both of its sides; at least a
+// thousandth of the whole beam where some of it leaves the triangle.
+float projected_beam(const Beam& beam, const Scene& scene, const TriangleLight& light,
+                     bool double_sided) {
+    constexpr int rings = 16, sectors = 16;
+    const auto corner = triangle_corners(scene, light.instance, light.triangle);
+    const V3f cross = unit((corner[1] - corner[0]).cross(corner[2] - corner[0]));
+    const Frame frame = Frame::about(beam.direction);
+    const V3f front = frame.to_local(scene.instances[light.instance].flips ? -cross : cross);
+    float whole = 0.f, sum = 0.f;
+    for (int i = 0; i < rings; ++i) {
+        const float cosine = lerp(1.f, beam.cos_outer, (i + 0.5f) / rings);
+        const float sine = safe_sqrt(1.f - sqr(cosine)), falloff = beam.falloff(cosine);
+        for (int k = 0; k < sectors; ++k) {
+            const float phi = 2 * kPi * (k + 0.5f) / sectors;
+            const float facing = front.dot(V3f(sine * std::cos(phi), sine * std::sin(phi), cosine));
+            whole += falloff;
+            sum += falloff * (double_sided ? std::fabs(facing) : std::max(facing, 0.f));
+        }
+    }
+    constexpr float slack = 1e-3f;
+    const bool some = double_sided || front.z > -safe_sqrt(1.f - sqr(beam.cos_outer)) - slack;
+    const float solid_angle = 2 * kPi * (1.f - beam.cos_outer) / (rings * sectors);
+    return some ? std::max(sum, 1e-3f * whole) * solid_angle : 0.f;
+}
+
 float power(const Scene&, const PointLight& light) {
     return 4 * kPi * luminance(light.intensity_cd);
 }
@@ -181,10 +215,14 @@ float power(const Scene&, const PointLight& light) {
 // Power of a spot: the integral of its falloff over the sphere. The narrowest cones saturate beyond
 // the axis.
 float power(const Scene&, const SpotLight& light) {
-    const float width = spot_width(light), reach = 1.f - light.cos_outer;
+    const float width = beam_of(light).width(), reach = 1.f - light.cos_outer;
     const float ramp = std::min(reach, width);
     const float integral = ramp * sqr(ramp / width) / 3 + (reach - ramp);
     return 2 * kPi * integral * luminance(light.intensity_cd);
+}
+
+float power(const Scene& scene, const ProfileLight& light) {
+    return luminance(light.factor) * scene.profiles[light.profile].flux_lm();
 }
 
 float power(const Scene& scene, const SunLight& light) {
@@ -195,7 +233,11 @@ float power(const Scene& scene, const TriangleLight& light) {
     const Mesh& mesh = scene.meshes[scene.instances[light.instance].mesh];
     const float area = triangle_area(scene, light);
     if (!(area > 0.f)) return 0.f;
-    const float sides = scene.materials[mesh.material].double_sided ? 2.f : 1.f;
+    const Material& material = scene.materials[mesh.material];
+    if (material.beam)
+        return projected_beam(*material.beam, scene, light, material.double_sided) * area *
+               mean_emission(scene, light);
+    const float sides = material.double_sided ? 2.f : 1.f;
     return sides * kPi * area * mean_emission(scene, light);
 }
 

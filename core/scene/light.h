@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The five kinds of light that a scene may hold.
+// The six kinds of light that a scene may hold.
 #pragma once
 
 #include <cstdint>
@@ -23,6 +23,14 @@ struct SpotLight {
     float cos_inner, cos_outer;
     int32_t illuminant = -1;
 };
+/// A point that sends what a LightProfile says: EXT_lights_ies.
+struct ProfileLight {
+    V3f position;
+    V3f x, y, f;       ///< unit axes of the profile in the scene
+    Rgb factor;        ///< on the profile's intensities
+    uint32_t profile;  ///< index into Scene::profiles
+    int32_t illuminant = -1;
+};
 /// KHR_lights_punctual "directional".
 struct SunLight {
     V3f direction;  ///< unit, the way the light shines
@@ -36,6 +44,6 @@ struct TriangleLight {
 /// The scene's sky (core/scene/sky.h): an environment picture or a uniform colour.
 struct SkyLight {};
 
-using Light = std::variant<PointLight, SpotLight, SunLight, TriangleLight, SkyLight>;
+using Light = std::variant<PointLight, SpotLight, SunLight, TriangleLight, SkyLight, ProfileLight>;
 
 }  // namespace petzval

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "core/scene/beam.h"
 #include "core/scene/texture.h"
 #include "core/spectrum/bands.h"
 #include "core/spectrum/glass.h"
@@ -48,6 +49,7 @@ struct Material {
     std::optional<Glass> glass;    ///< set where the index depends on wavelength; ior is its nd
     int32_t metal = -1;            ///< measured, index into Scene::metals: replaces the base colour
     int32_t illuminant = -1;       ///< white of its emission, index into Scene::illuminants
+    std::optional<Beam> beam;      ///< directions that `emissive` is sent in; none: all
     float specular = 1.f;          ///< KHR_materials_specular
     TextureSlot specular_texture;  ///< a
     Rgb specular_color{1.f};

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/scene/light.h"
+#include "core/scene/light_profile.h"
 #include "core/scene/material.h"
 #include "core/scene/mesh.h"
 #include "core/scene/sky.h"
@@ -23,6 +24,7 @@ struct Scene {
     std::vector<Illuminant> illuminants;
     std::vector<Mesh> meshes;
     std::vector<Instance> instances;
+    std::vector<LightProfile> profiles;
     std::vector<Light> lights;  ///< punctual lights of the file; finish_scene adds the others
     int32_t sky_light = -1;     ///< the sky's among them, by finish_scene; -1: even or black
     Sky sky;

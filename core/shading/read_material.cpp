@@ -216,6 +216,7 @@ ShadingInput read_material(const Scene& scene, const Surface& s, const MaterialL
         f4 texel = read_texture(lookups.emissive);
         texel[3] = 0.f;
         out.emitted = m.emissive * Rgb(texel);
+        if (m.beam) out.emitted = out.emitted * m.beam->falloff(wo.dot(m.beam->direction));
     }
     if (m.unlit) {
         out.unlit = base_color;

@@ -4,6 +4,7 @@
 #include <tiny_gltf.h>
 
 #include "io/base/error.h"
+#include "io/gltf/image_light.h"
 #include "io/gltf/info.h"
 #include "io/gltf/lights.h"
 #include "io/gltf/place.h"
@@ -24,13 +25,16 @@ GltfFile load(const std::filesystem::path& path, FileScope scope, PictureBudget&
     const GltfNodes nodes = flatten_nodes(gltf);
     GltfMaterials materials(gltf, file.scene, tally, pictures);
     place_meshes(gltf, nodes, GltfVariant(gltf, choices.variant), materials, file.scene, tally);
-    read_lights(gltf, nodes, file.scene, tally);
+    const std::vector<BallLamp> lamps = read_lights(gltf, nodes, file.scene, tally);
+    read_profile_lights(gltf, nodes, file.scene, tally);
+    if (auto sky = read_image_light(gltf, tally, pictures)) file.scene.sky = *std::move(sky);
     file.cameras = read_cameras(gltf, nodes, tally);
 
     file.hash = source.hash;
     file.files = source.files;
     file.warnings = source.warnings.lines();
     describe(gltf, tally, file);
+    add_lamps(file.scene, lamps);
     return file;
 }
 

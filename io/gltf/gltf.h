@@ -28,7 +28,7 @@ struct GltfCamera {
 };
 
 struct GltfFile {
-    Scene scene;                      ///< not yet finished: the sky is still black
+    Scene scene;                      ///< not yet finished; its sky is black, or that of the file
     std::vector<GltfCamera> cameras;  ///< in depth-first order of the node tree
     std::vector<std::string> warnings;
     /// For `petzval info`: what the file holds, and the same as one "name: value" line each; then

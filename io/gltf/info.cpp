@@ -23,8 +23,11 @@ std::string named(const std::string& name) {
 }
 
 std::string describe(const GltfSummary::Lights& lights) {
-    return fmt::format("lights: {} point, {} spot, {} directional, {}{}", lights.point, lights.spot,
-                       lights.directional,
+    return fmt::format("lights: {} point, {} spot, {} directional{}{}, {}{}", lights.point,
+                       lights.spot, lights.directional,
+                       lights.balls > 0 ? fmt::format(" ({} with a radius)", lights.balls) : "",
+                       lights.profiles > 0 ? fmt::format(", {} by IES profiles", lights.profiles)
+                                           : "",
                        plural(lights.emissive_meshes, "emissive mesh", "emissive meshes"),
                        lights.emissive_meshes > 0
                            ? fmt::format(" ({})", plural(lights.emissive_triangles, "triangle"))
@@ -133,7 +136,7 @@ void append_warnings(const GltfTally& tally, std::vector<std::string>& warnings)
 }  // namespace
 
 void describe(const GltfModel& gltf, const GltfTally& tally, GltfFile& file) {
-    file.holds = summarise(gltf, file.scene);
+    file.holds = summarise(gltf, tally, file.scene);
     describe_contents(file);
     describe_support(tally, file);
     append_warnings(tally, file.warnings);

@@ -9,7 +9,7 @@
 namespace petzval {
 
 /// Counts what a file holds. scene: what the loader made of it.
-[[nodiscard]] GltfSummary summarise(const GltfModel&, const Scene&);
+[[nodiscard]] GltfSummary summarise(const GltfModel&, const GltfTally&, const Scene&);
 
 /// Fills holds, contents, honoured and ignored, and appends one warning for each kind of trouble
 /// counted.

@@ -47,6 +47,43 @@ void set_illuminant(Light& light, int32_t illuminant) {
     std::visit(set, light);
 }
 
+// Radius from which on a light is a ball: below, floats cannot tell its points apart, or its
+// radiance is beyond them.
+bool can_be_ball(const V3f& centre, float radius_m, Rgb intensity_cd) {
+    constexpr float least_m = 1e-6f, least_share = 1e-5f, most_nits = 1e30f;
+    const V3f away = abs(centre);
+    return radius_m >= least_m && radius_m >= least_share * std::max({away.x, away.y, away.z}) &&
+           hmax(intensity_cd.v) / (radius_m * radius_m) < most_nits;
+}
+
+/// The lamp that a light with a radius is; nothing for one that has none.
+std::optional<BallLamp> as_ball(const Light& light, const JsonCursor& json, const std::string& node,
+                                GltfTally& tally) {
+    const float radius_m = light_radius_m(json).value_or(0.f);
+    if (radius_m == 0.f) return {};
+    const auto* const point = std::get_if<PointLight>(&light);
+    const auto* const spot = std::get_if<SpotLight>(&light);
+    if (!point && !spot) {
+        tally.warnings.push_back(json.path() + ": a directional light has no use for a radius");
+        return {};
+    }
+    BallLamp lamp;
+    if (point)
+        lamp = {point->position, radius_m, point->intensity_cd, point->illuminant, {}};
+    else
+        lamp = {spot->position, radius_m, spot->intensity_cd, spot->illuminant,
+                Beam{spot->direction, spot->cos_inner, spot->cos_outer}};
+    if (!can_be_ball(lamp.centre, radius_m, lamp.intensity_cd)) {
+        tally.warnings.push_back(node +
+                                 ": its light's radius is too small for where it stands or "
+                                 "how bright it is; it is rendered as a point");
+        return {};
+    }
+    ++(point ? tally.point_lamps : tally.spot_lamps);
+    tally.honoured.insert("lights with a radius, as balls that can be seen");
+    return lamp;
+}
+
 bool is_dark(const tinygltf::Light& light) {
     const auto zero = [](double c) { return c == 0; };
     return light.intensity == 0 ||
@@ -86,10 +123,12 @@ bool is_usable(const GltfCamera& camera) {
 
 }  // namespace
 
-void read_lights(const GltfModel& gltf, const GltfNodes& nodes, Scene& scene, GltfTally& tally) {
+std::vector<BallLamp> read_lights(const GltfModel& gltf, const GltfNodes& nodes, Scene& scene,
+                                  GltfTally& tally) {
+    std::vector<BallLamp> lamps;
     const JsonCursor root(gltf.source.json, gltf.file);
     const auto definitions = root.extension("KHR_lights_punctual");
-    if (!definitions) return;
+    if (!definitions) return lamps;
     const auto lights = definitions->objects("lights"), json = root.objects("nodes");
     GltfSpectral spectral(scene, tally);
     for (int node : nodes.in_scene) {
@@ -102,11 +141,15 @@ void read_lights(const GltfModel& gltf, const GltfNodes& nodes, Scene& scene, Gl
         if (auto made = make_light(light, nodes.to_world[index])) {
             tally.ranged_lights += light.range > 0;
             set_illuminant(*made, spectral.illuminant(lights[number]));
-            scene.lights.push_back(*made);
+            if (const auto lamp = as_ball(*made, lights[number], json_path("nodes", node), tally))
+                lamps.push_back(*lamp);
+            else
+                scene.lights.push_back(*made);
         } else {
             tally.warnings.push_back(json_path("nodes", node) + ": its light is left out");
         }
     }
+    return lamps;
 }
 
 std::vector<GltfCamera> read_cameras(const GltfModel& gltf, const GltfNodes& nodes,

@@ -58,13 +58,19 @@ GltfSummary::Animation read_animation(const json& root, const json& animation) {
     return {name_in(animation), member(animation, "channels").size(), duration_s(root, animation)};
 }
 
-GltfSummary::Lights count_lights(const Scene& scene) {
+GltfSummary::Lights count_lights(const Scene& scene, const GltfTally& tally) {
     const auto count = [&](size_t kind) {
         return static_cast<uint64_t>(
             std::count_if(scene.lights.begin(), scene.lights.end(),
                           [&](const Light& light) { return light.index() == kind; }));
     };
-    GltfSummary::Lights lights{count(0), count(1), count(2)};
+    GltfSummary::Lights lights{
+        .point = count(0) + tally.point_lamps,
+        .spot = count(1) + tally.spot_lamps,
+        .directional = count(2),
+        .balls = tally.point_lamps + tally.spot_lamps,
+        .profiles = count(Light(ProfileLight()).index()),
+    };
     for (const Instance& instance : scene.instances) {
         if (!emits(scene, instance)) continue;
         ++lights.emissive_meshes;
@@ -86,7 +92,7 @@ void count_meshes(const Scene& scene, GltfSummary& out) {
 
 }  // namespace
 
-GltfSummary summarise(const GltfModel& gltf, const Scene& scene) {
+GltfSummary summarise(const GltfModel& gltf, const GltfTally& tally, const Scene& scene) {
     const json& root = gltf.source.json;
     GltfSummary out;
     out.generator = gltf.typed.asset.generator;
@@ -104,7 +110,7 @@ GltfSummary summarise(const GltfModel& gltf, const Scene& scene) {
         out.pictures.push_back(
             {image.name, image.width, image.height,
              std::visit([](const auto& texels) { return bytes_of(texels); }, image.texels)});
-    out.lights = count_lights(scene);
+    out.lights = count_lights(scene, tally);
     return out;
 }
 

@@ -21,9 +21,10 @@ struct GltfTally {
     uint64_t singular_nodes = 0;         ///< whose matrix flattens space
     uint64_t replaced_normals = 0;       ///< of no length
     uint64_t occlusion_textures = 0, ranged_lights = 0;
-    uint64_t idle_dispersions = 0;   ///< of materials that refract nothing
-    std::set<std::string> honoured;  ///< features that the scene uses, in words
-    WarningLog warnings;             ///< one line each
+    uint64_t point_lamps = 0, spot_lamps = 0;  ///< lights with a radius
+    uint64_t idle_dispersions = 0;             ///< of materials that refract nothing
+    std::set<std::string> honoured;            ///< features that the scene uses, in words
+    WarningLog warnings;                       ///< one line each
 };
 
 }  // namespace petzval

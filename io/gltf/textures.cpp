@@ -153,7 +153,7 @@ void GltfTextures::check_colours(size_t image, const std::string& slot, std::str
             place, encoding == Encoding::Srgb ? slot : other,
             encoding == Encoding::Srgb ? other : slot));
     if (first.empty()) first = slot;
-    if (key == "normalTexture" && !used.normals_checked) {
+    if (key.ends_with("ormalTexture") && !used.normals_checked) {
         used.normals_checked = true;
         if (const std::string fault = fault_of_normals(images_[static_cast<size_t>(used.place)]);
             !fault.empty())

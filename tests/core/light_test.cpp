@@ -5,6 +5,7 @@
 
 #include <numbers>
 
+#include "core/light/light_choice.h"
 #include "core/scene/scene.h"
 #include "tests/support/lamp.h"
 
@@ -66,6 +67,53 @@ TEST(SpotLight, PowerIsTheIntegralOfTheFalloff) {
         EXPECT_NEAR(light_power(Scene(), spot(inner, outer)), 9 * integral, 2e-3 * 9 * integral);
     }
     EXPECT_FLOAT_EQ(light_power(Scene(), PointLight{V3f(0.f), Rgb(1.f)}), 4 * kPi);
+}
+
+TEST(ProfileLight, OfOneIntensityIsAPoint) {
+    Scene scene;
+    scene.profiles.emplace_back(ProfilePole::Forward, std::vector<float>{0, 180},
+                                std::vector<float>{0, 360}, std::vector<float>(4, 3.f));
+    const PointLight point{V3f(1, 5, 2), Rgb(90, 180, 45)};
+    const ProfileLight profile{point.position, V3f(0, 0, 1),    V3f(1, 0, 0),
+                               V3f(0, 1, 0),   Rgb(30, 60, 15), 0};
+    for (const V3f& p : {V3f(1, 2, 2), V3f(1, 7, 2), V3f(3, 4, -8)}) {
+        const auto expected = sample_light(scene, point, p, V2f(0.3f), kRgb);
+        const auto found = sample_light(scene, profile, p, V2f(0.3f), kRgb);
+        ASSERT_TRUE(expected && found);
+        EXPECT_EQ(found->direction, expected->direction);
+        EXPECT_EQ(found->target, expected->target);
+        EXPECT_TRUE(found->delta && !found->at_infinity);
+        for (int i = 0; i < 3; ++i) EXPECT_EQ(found->radiance[i], expected->radiance[i]);
+    }
+    EXPECT_FALSE(sample_light(scene, profile, profile.position, V2f(0.3f), kRgb));
+    EXPECT_NEAR(light_power(scene, profile), light_power(scene, point),
+                1e-5 * light_power(scene, point));
+}
+
+TEST(ProfileLight, ShinesAsItStands) {
+    Scene scene;  // 8 cd along f, 4 at right angles to it towards x, 2 towards y, nothing behind
+    scene.profiles.emplace_back(ProfilePole::Forward, std::vector<float>{0, 90},
+                                std::vector<float>{0, 90, 180, 270, 360},
+                                std::vector<float>{8, 4, 8, 2, 8, 1, 8, 3, 8, 4});
+    const ProfileLight light{V3f(0), V3f(0, 0, 1), V3f(1, 0, 0), V3f(0, 1, 0), Rgb(1.f), 0};
+    const auto towards = [&](const V3f& d) {
+        const auto s = sample_light(scene, light, d, V2f(0.f), kRgb);
+        return s ? s->radiance[0] : 0;
+    };
+    EXPECT_FLOAT_EQ(towards(V3f(0, 1, 0)), 8);
+    EXPECT_NEAR(towards(unit(V3f(0, 1e-5f, 1))), 4, 1e-4);
+    EXPECT_NEAR(towards(unit(V3f(1, 1e-5f, 0))), 2, 1e-4);
+    EXPECT_NEAR(towards(unit(V3f(0, 1e-5f, -1))), 1, 1e-4);
+    EXPECT_NEAR(towards(unit(V3f(-1, 1e-5f, 0))), 3, 1e-4);
+    EXPECT_NEAR(towards(2.f * unit(V3f(0, 1, 1))), 6 / 4., 1e-4);
+    EXPECT_EQ(towards(V3f(0, -1, 0.5f)), 0);
+    // Every way of choosing picks it where it shines.
+    for (const auto kind : {LightChoiceKind::Tree, LightChoiceKind::Power}) {
+        scene.lights = {light, PointLight{V3f(3, 3, 3), Rgb(1.f)}};
+        const LightChoice choice(scene, kind);
+        for (const V3f& d : {V3f(0, 1, 0), unit(V3f(1, 0.01f, 0)), unit(V3f(0, 1, -1))})
+            EXPECT_GT(choice.probability(0, {d, -d, false}), 0) << d;
+    }
 }
 
 TEST(SunLight, ShinesFromInfinity) {

@@ -3,6 +3,7 @@
 // its corpus.
 #pragma once
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -15,6 +16,7 @@
 #include "io/base/error.h"
 #include "io/glass/agf.h"
 #include "io/gltf/gltf.h"
+#include "io/ies/ies.h"
 #include "io/image/environment.h"
 #include "io/image/picture_files.h"
 #include "io/lens/lens_file.h"
@@ -74,6 +76,17 @@ struct Decoder {
           [](const fs::path& path) {
               const AgfCatalog catalog(path);
               for (const char* name : {"A", "B", "C", "D", "N-BK7"}) (void)catalog.find(name);
+          }}},
+        {"ies",
+         {".ies",
+          [bytes_of](const fs::path& path) {
+              const std::vector<uint8_t> bytes = bytes_of(path);
+              const IesFile found =
+                  parse_ies({reinterpret_cast<const char*>(bytes.data()), bytes.size()},
+                            path.string(), "/extensions/EXT_lights_ies/lights/0");
+              for (const V3f& d : {V3f(0, 0, 1), V3f(-1, 0, 0), unit(V3f(1, -2, 0.5f))})
+                  if (!(found.profile.intensity(d) >= 0)) std::abort();
+              if (!(found.profile.flux_lm() >= 0)) std::abort();
           }}},
         {"spectrum", {".csv", [](const fs::path& path) { (void)find_illuminant(path.string()); }}},
         {"response", {".csv", [](const fs::path& path) { (void)find_response(path.string()); }}},

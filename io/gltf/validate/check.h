@@ -64,6 +64,8 @@ void check_meshes(GltfCheck&);
 void check_variants(GltfCheck&);
 void check_cameras(GltfCheck&);
 void check_lights(GltfCheck&);
+/// Checks EXT_lights_image_based: numbers, images, and the lights that scenes name.
+void check_image_lights(GltfCheck&);
 void check_skins(const GltfCheck&);
 /// Checks nodes and scenes: the references, the transforms, and that the nodes form trees.
 void check_nodes(GltfCheck&);

@@ -38,6 +38,8 @@ class NodeCheck {
         for (size_t m = 0; m < meshes_.size(); ++m) targets_.push_back(target_count(meshes_, m));
         if (const auto lights = check.root.extension("KHR_lights_punctual"))
             lights_ = lights->length("lights");
+        if (const auto lights = check.root.extension("EXT_lights_ies"))
+            profiles_ = lights->length("lights");
     }
 
     void run() {
@@ -57,7 +59,15 @@ class NodeCheck {
         if (mesh) (void)node.numbers("weights", targets_[*mesh]);
         if (const auto light = node.extension("KHR_lights_punctual"))
             (void)light->required_index("light", lights_, "light");
+        if (const auto light = node.extension("EXT_lights_ies")) check_profile_light(*light);
         link_children(index);
+    }
+
+    void check_profile_light(const JsonCursor& light) {
+        constexpr Range not_negative = {0, std::numeric_limits<float>::max()};
+        (void)light.required_index("light", profiles_, "light");
+        (void)light.number_or("multiplier", 1, not_negative);
+        (void)light.numbers("color", 3, not_negative);
     }
 
     void link_children(size_t index) {
@@ -108,7 +118,7 @@ class NodeCheck {
     std::vector<std::optional<size_t>> parent_;
     std::vector<std::vector<size_t>> children_;
     std::vector<size_t> targets_;  ///< morph targets of each mesh
-    size_t lights_ = 0;
+    size_t lights_ = 0, profiles_ = 0;
 };
 
 void check_inverse_bind_matrices(const GltfCheck& check, const JsonCursor& skin, size_t joints) {

@@ -58,7 +58,23 @@ void check_material_extras(const JsonCursor& material) {
 }
 
 void check_light_extras(const JsonCursor& light) {
-    check_texts(light, "light", {"illuminant"});
+    require_known_extras(light, "light", {"illuminant", "radius_m"});
+    const auto extras = petzval_extras(light);
+    if (extras && extras->has("illuminant")) (void)extras->text("illuminant");
+    (void)light_radius_m(light);
+}
+
+std::optional<float> light_radius_m(const JsonCursor& light) {
+    constexpr Range range = {0, kLength.high};
+    if (const auto extras = petzval_extras(light); extras && extras->has("radius_m"))
+        return static_cast<float>(extras->number("radius_m", range));
+    const auto extras = light.value().find("extras");
+    if (extras == light.value().end() || !extras->is_object()) return std::nullopt;
+    const auto radius = extras->find("radius");
+    if (radius == extras->end() || !radius->is_number()) return std::nullopt;
+    const auto value = radius->get<double>();
+    if (!(value >= range.low && value <= range.high)) return std::nullopt;
+    return static_cast<float>(value);
 }
 
 CameraExtras camera_extras(const JsonCursor& camera) {

@@ -16,6 +16,10 @@ namespace petzval {
 void check_material_extras(const JsonCursor& material);
 /// Checks an entry of KHR_lights_punctual's lights likewise.
 void check_light_extras(const JsonCursor& light);
+/// Radius of a punctual light, metres in the scene: radius_m in extras.petzval, else a number
+/// `radius` in extras itself, where custom properties of modellers end up. Throws InputError with
+/// the JSON path where the first is not from 0 to 10^6.
+[[nodiscard]] std::optional<float> light_radius_m(const JsonCursor& light);
 
 /// Camera settings in extras.petzval of a camera: {"lens": "takumar-50mm-f1.2", "fstop": 2,
 /// "focus_m": 1.5, "aperture": "polygon:6", "sensor_mm": [36, 24]}, each of which may be absent.

@@ -35,11 +35,12 @@ class Fetcher {
         return is_data_uri(uri) ? from_data(owner, uri, mime_types) : from_file(owner, uri);
     }
 
-    /// Bytes of an image likewise; none, and a warning, where its file does not exist: models are
-    /// passed on without their textures.
-    Bytes fetch_image(const JsonCursor& image) {
-        const std::string uri = image.text("uri");
-        return is_data_uri(uri) ? from_data(image, uri, {}) : from_file(image, uri, true);
+    /// Bytes likewise of what a scene can be shown without; none, and a warning that it is left
+    /// out, where its file does not exist: models are passed on without their textures. what: "the
+    /// texture" ...
+    Bytes fetch_if_there(const JsonCursor& owner, const char* what) {
+        const std::string uri = owner.text("uri");
+        return is_data_uri(uri) ? from_data(owner, uri, {}) : from_file(owner, uri, what);
     }
 
   private:
@@ -54,12 +55,13 @@ class Fetcher {
         return std::move(data->bytes);
     }
 
-    Bytes from_file(const JsonCursor& owner, const std::string& uri, bool may_be_missing = false) {
+    Bytes from_file(const JsonCursor& owner, const std::string& uri,
+                    const char* dispensable = nullptr) {
         const auto path = relative_path(uri);
-        if (!path && may_be_missing) {
+        if (!path && dispensable) {
             source_.warnings.push_back(
-                fmt::format("{}: \"{}\" is not a relative path to a file; the texture is left out",
-                            owner.path_of("uri"), printable(uri)));
+                fmt::format("{}: \"{}\" is not a relative path to a file; {} is left out",
+                            owner.path_of("uri"), printable(uri), dispensable));
             return {};
         }
         if (!path)
@@ -74,10 +76,10 @@ class Fetcher {
                                                       : "lies outside the folder of the scene, and "
                                                         "--confine allows no file there"));
         FileBytes file = read_file(full);
-        if (may_be_missing && file.error == "no such file") {
-            source_.warnings.push_back(
-                fmt::format("{}: there is no file \"{}\"; the texture is left out",
-                            owner.path_of("uri"), printable(*path)));
+        if (dispensable && file.error == "no such file") {
+            source_.warnings.push_back(fmt::format("{}: there is no file \"{}\"; {} is left out",
+                                                   owner.path_of("uri"), printable(*path),
+                                                   dispensable));
             return {};
         }
         if (!file.error.empty())
@@ -127,16 +129,16 @@ void mend_length(GltfSource& source, size_t index, const JsonCursor& buffer, siz
     source.json["buffers"][index]["byteLength"] = size;
 }
 
-Bytes image_from_view(GltfSource& source, const std::vector<JsonCursor>& views,
-                      const JsonCursor& image, GltfBudget& budget) {
-    const JsonCursor& view = views[image.required_index("bufferView", views.size(), "bufferView")];
+Bytes bytes_from_view(GltfSource& source, const std::vector<JsonCursor>& views,
+                      const JsonCursor& owner, GltfBudget& budget) {
+    const JsonCursor& view = views[owner.required_index("bufferView", views.size(), "bufferView")];
     const Bytes& buffer = source.buffers[view.integer("buffer")];
     if (buffer.empty()) {
-        source.warnings.push_back(image.path() + ": lies in a buffer without data; left empty");
+        source.warnings.push_back(owner.path() + ": lies in a buffer without data; left empty");
         return {};
     }
     const uint64_t offset = view.integer_or("byteOffset", 0), length = view.integer("byteLength");
-    budget.ask(length, image);
+    budget.ask(length, owner);
     return {buffer.begin() + ptrdiff_t(offset), buffer.begin() + ptrdiff_t(offset + length)};
 }
 
@@ -182,12 +184,28 @@ void read_images(GltfSource& source, const GltfUse& use, GltfBudget& budget) {
             continue;
         }
         try {
-            source.images.back() = image.has("uri") ? fetcher.fetch_image(image)
-                                                    : image_from_view(source, views, image, budget);
+            source.images.back() = image.has("uri") ? fetcher.fetch_if_there(image, "the texture")
+                                                    : bytes_from_view(source, views, image, budget);
         } catch (const InputError&) {
             if (used) throw;
             source.warnings.push_back(image.path() + ": is broken, but nothing needs it");
         }
+    }
+}
+
+void read_light_profiles(GltfSource& source, GltfBudget& budget) {
+    const std::string file = source.path.string();
+    const JsonCursor root(source.json, file);
+    const auto extension = root.extension("EXT_lights_ies");
+    if (!extension) return;
+    const auto views = root.objects("bufferViews");
+    Fetcher fetcher(source, budget);
+    for (const JsonCursor& light : extension->objects("lights")) {
+        if (!light.has("uri") && !light.has("bufferView"))
+            light.fail("has neither a uri nor a bufferView");
+        source.light_profiles.push_back(light.has("uri")
+                                            ? fetcher.fetch_if_there(light, "its light")
+                                            : bytes_from_view(source, views, light, budget));
     }
 }
 

@@ -24,4 +24,8 @@ void read_buffers(GltfSource& source, const GltfContainer&, GltfBudget&);
 /// one that is not there, or is broken and not used, stays empty.
 void read_images(GltfSource& source, const GltfUse&, GltfBudget&);
 
+/// Fills source.light_profiles with the files of EXT_lights_ies likewise; one that is not there
+/// stays empty.
+void read_light_profiles(GltfSource& source, GltfBudget&);
+
 }  // namespace petzval

@@ -22,6 +22,7 @@ void check_scene_graph(GltfCheck& check) {
     check_variants(check);
     check_cameras(check);
     check_lights(check);
+    check_image_lights(check);
     check_skins(check);
     check_nodes(check);
     check_animations(check);
@@ -85,6 +86,7 @@ GltfSource read_gltf_source(const std::filesystem::path& path, FileScope scope) 
     decode_primitives(check);
     check_accessors(check);
     read_images(source, check.use, budget);
+    read_light_profiles(source, budget);
     check_scene_graph(check);
     check_data(check);
     return source;

@@ -30,6 +30,8 @@ struct GltfSource {
     /// decoded: they may be no image. Empty for an image in an undefined buffer.
     std::vector<std::vector<uint8_t>> images;
     std::vector<ExtensionInFile> extensions;   ///< those that the file lists, by name
+    /// Text of each light of EXT_lights_ies; empty for one that is not there.
+    std::vector<std::vector<uint8_t>> light_profiles;
     WarningLog warnings;                       ///< one line each: odd, but no reason to refuse
     std::vector<std::filesystem::path> files;  ///< every file that was read, `path` first
     uint64_t hash = 0;  ///< FNV-1a of the scene file and of every file it names

@@ -42,6 +42,16 @@ void mark_images(const json& root, GltfUse& use) {
     });
 }
 
+/// Images of the first level of each cube: the others are blurred copies of it.
+void mark_cubes(const json& root, GltfUse& use) {
+    each(member(member(root, "extensions"), "EXT_lights_image_based"), "lights",
+         [&](const json& light) {
+             const json& levels = member(light, "specularImages");
+             if (levels.is_array() && !levels.empty() && levels[0].is_array())
+                 for (const json& image : levels[0]) mark(use.images, image);
+         });
+}
+
 void mark_accessors(const json& root, GltfUse& use) {
     each(root, "meshes", [&](const json& mesh) {
         each(mesh, "primitives", [&](const json& primitive) {
@@ -64,6 +74,8 @@ void mark_views(const json& root, GltfUse& use) {
     };
     of_used("images", use.images,
             [&](const json& image) { mark(use.views, member(image, "bufferView")); });
+    each(member(member(root, "extensions"), "EXT_lights_ies"), "lights",
+         [&](const json& light) { mark(use.views, member(light, "bufferView")); });
     of_used("accessors", use.accessors, [&](const json& accessor) {
         mark(use.views, member(accessor, "bufferView"));
         for (const char* part : {"indices", "values"})
@@ -85,6 +97,7 @@ GltfUse find_used(const json& root) {
                 std::vector<bool>(count(root, "bufferViews")),
                 std::vector<bool>(count(root, "images"))};
     mark_images(root, use);
+    mark_cubes(root, use);
     mark_accessors(root, use);
     mark_views(root, use);
     return use;

@@ -66,6 +66,74 @@ TEST(GltfLights, SpotLight) {
     EXPECT_NEAR(standard.cos_outer, std::sqrt(0.5), 1e-7);
 }
 
+// With the radius that this extras object gives.
+TinyGltf ball(json light, json extras) {
+    light["extras"] = std::move(extras);
+    return lit(std::move(light), {{"translation", {1, 2, 3}}, {"scale", {5, 5, 5}}});
+}
+
+TEST(GltfLights, ARadiusMakesABall) {
+    for (const json& extras : {json{{"petzval", {{"radius_m", 0.5}}}}, json{{"radius", 0.5}},
+                               json{{"petzval", {{"radius_m", 0.5}}}, {"radius", 7}}}) {
+        const GltfFile loaded = load(ball({{"type", "point"}, {"intensity", 100}}, extras));
+        EXPECT_TRUE(loaded.scene.lights.empty());
+        ASSERT_EQ(loaded.scene.meshes.size(), 1u);
+        for (const V3f& p : loaded.scene.meshes[0].positions)
+            EXPECT_NEAR((p - V3f(1, 2, 3)).length(), 0.5f, 1e-6f);  // scale does not change it
+        const double nits = 100 / (double(kPi) * 0.25);
+        EXPECT_NEAR(loaded.scene.materials[0].emissive[0], nits, 0.01 * nits);
+        EXPECT_FALSE(loaded.scene.materials[0].beam);
+        EXPECT_TRUE(contains_line(loaded.contents,
+                                  "lights: 1 point, 0 spot, 0 directional (1 with "
+                                  "a radius), 0 emissive meshes"));
+        EXPECT_TRUE(contains_line(loaded.contents, "meshes: 0, placed 0 times"));
+        EXPECT_TRUE(contains_line(loaded.honoured, "with a radius"));
+        EXPECT_TRUE(loaded.warnings.empty());
+    }
+}
+
+TEST(GltfLights, ASpotWithARadiusKeepsItsBeamAndWhite) {
+    const GltfFile loaded =
+        load(ball({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.25}, {"outerConeAngle", 0.5}}}},
+                  {{"petzval", {{"radius_m", 0.1}, {"illuminant", "a"}}}}));
+    ASSERT_EQ(loaded.scene.materials.size(), 1u);
+    const Material& material = loaded.scene.materials[0];
+    ASSERT_TRUE(material.beam);
+    expect_near(material.beam->direction, {0, 0, -1});
+    EXPECT_EQ(material.beam->cos_inner, static_cast<float>(std::cos(0.25)));
+    EXPECT_EQ(material.beam->cos_outer, static_cast<float>(std::cos(0.5)));
+    EXPECT_EQ(material.illuminant, 0);
+    EXPECT_TRUE(contains_line(loaded.contents, "0 point, 1 spot, 0 directional (1 with a radius)"));
+}
+
+TEST(GltfLights, ARadiusOfNothingLeavesAPoint) {
+    for (const json& extras :
+         {json{{"petzval", {{"radius_m", 0}}}}, json{{"radius", 0}}, json{{"radius", -1}},
+          json{{"radius", "wide"}}, json{{"radius", 1e30}}, json(3), json{{"Radius", 1}}}) {
+        const GltfFile loaded = load(ball({{"type", "point"}}, extras));
+        EXPECT_EQ(loaded.scene.lights.size(), 1u) << extras;
+        EXPECT_TRUE(loaded.scene.meshes.empty() && loaded.warnings.empty()) << extras;
+    }
+}
+
+TEST(GltfLights, ARadiusThatCannotBeIsNamed) {
+    for (const json& radius : {json(-1), json("wide"), json(2e6)}) {
+        const TempFolder folder;
+        const auto path = ball({{"type", "point"}}, {{"petzval", {{"radius_m", radius}}}})
+                              .save_glb(folder.path / "test.glb");
+        EXPECT_THROW(static_cast<void>(load_gltf(path)), std::runtime_error) << radius;
+    }
+    const GltfFile sun = load(ball({{"type", "directional"}}, {{"petzval", {{"radius_m", 1}}}}));
+    EXPECT_EQ(sun.scene.lights.size(), 1u);
+    EXPECT_TRUE(contains_line(sun.warnings, "a directional light has no use for a radius"));
+    for (const auto& [intensity, radius] : {std::pair(1.0, 1e-7), {1e38, 1e-3}, {1.0, 1e-5}}) {
+        const GltfFile tiny = load(ball({{"type", "point"}, {"intensity", intensity}},
+                                        {{"petzval", {{"radius_m", radius}}}}));
+        EXPECT_EQ(tiny.scene.lights.size(), 1u);
+        EXPECT_TRUE(contains_line(tiny.warnings, "is rendered as a point")) << radius;
+    }
+}
+
 TEST(GltfLights, DarkOnesAreLeftOut) {
     EXPECT_TRUE(load(lit({{"type", "point"}, {"intensity", 0}})).scene.lights.empty());
     EXPECT_TRUE(load(lit({{"type", "point"}, {"color", {0, 0, 0}}})).scene.lights.empty());

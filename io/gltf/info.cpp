@@ -23,15 +23,15 @@ std::string named(const std::string& name) {
 }
 
 std::string describe(const GltfSummary::Lights& lights) {
-    return fmt::format("lights: {} point, {} spot, {} directional{}{}, {}{}", lights.point,
-                       lights.spot, lights.directional,
-                       lights.balls > 0 ? fmt::format(" ({} with a radius)", lights.balls) : "",
-                       lights.profiles > 0 ? fmt::format(", {} by IES profiles", lights.profiles)
-                                           : "",
-                       plural(lights.emissive_meshes, "emissive mesh", "emissive meshes"),
-                       lights.emissive_meshes > 0
-                           ? fmt::format(" ({})", plural(lights.emissive_triangles, "triangle"))
-                           : "");
+    return fmt::format(
+        "lights: {} point, {} spot, {} directional{}{}, {}{}", lights.point, lights.spot,
+        lights.directional,
+        lights.balls > 0 ? fmt::format(" ({} with a radius)", lights.balls) : "",
+        lights.profiles > 0 ? fmt::format(", {} by IES profiles", lights.profiles) : "",
+        plural(lights.emissive_meshes, "emissive mesh", "emissive meshes"),
+        lights.emissive_meshes > 0
+            ? fmt::format(" ({})", plural(lights.emissive_triangles, "triangle"))
+            : "");
 }
 
 std::string describe_extras(const CameraExtras& extras) {

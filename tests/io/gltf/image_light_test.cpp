@@ -63,7 +63,7 @@ TEST(GltfImageLight, FacesAreASky) {
     expect_rgb(sky.radiance(V3f(0, 0, 1)), 1, 1, 0);
     expect_rgb(sky.radiance(V3f(0, 0, -1)), 0, 0, 1);
     EXPECT_TRUE(loaded.warnings.empty());
-    EXPECT_TRUE(contains_line(loaded.honoured, "EXT_lights_image_based"));
+    EXPECT_TRUE(renders(loaded, "EXT_lights_image_based"));
     EXPECT_TRUE(contains_line(loaded.honoured, "sky of a cube of 4x4 texels"));
 }
 

@@ -341,7 +341,7 @@ TEST(GltfDraco, RefusesWhatIsBroken) {
                     {"/accessors/0/type", "MAT4", "is of a type that no vertex has"},
                     {"/accessors/0/componentType", 5124, "is of a type that no vertex has"},
                     {"/meshes/0/primitives/0/mode", 0, "goes with triangles and strips"},
-                {"/bufferViews/0/buffer", 9, "/bufferViews/0/buffer: "},
+                    {"/bufferViews/0/buffer", 9, "/bufferViews/0/buffer: "},
                     {"/bufferViews/0/byteLength", 60, "the file is damaged"}});
 }
 

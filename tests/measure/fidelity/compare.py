@@ -28,6 +28,7 @@ import glob
 import json
 import math
 import os
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -151,7 +152,7 @@ def compare(scene, a):
     size = sizes.pop() if sizes else (dimensions["width"], dimensions["height"])
     output = os.path.join(a.output, scene["name"] + ".png")
     words = command(scene, os.path.dirname(os.path.abspath(a.list)), size, output, a.petzval, a.spp)
-    print(" ".join(words), flush=True)
+    print(shlex.join(words), flush=True)
     run(words + ["--progress", "none"])
     ours = read_png(output)
     beside = [ours] + ([numpy.median(list(others.values()), 0)] if others else []) + list(others.values())

@@ -23,6 +23,20 @@ float share_of_beam(const Scene& scene, uint32_t instance, const V3f& away) {
     return beam ? beam->falloff(away.dot(beam->direction)) : 1.f;
 }
 
+float share_past_coat(const Scene& scene, uint32_t instance, uint32_t triangle, V2f barycentric,
+                      float cosine) {
+    const Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
+    const Material& material = scene.materials[mesh.material];
+    if (!(material.coat > 0.f)) return 1.f;
+    const TextureSlot& slot = material.coat_texture;
+    float weight = material.coat;
+    if (slot.present()) {
+        const V2f uv = mesh.uv_at(triangle, barycentric, slot.uv_set);
+        weight *= sample_texture(scene.images, slot, uv)[0];
+    }
+    return past_coat(weight, cosine);
+}
+
 const Illuminant* white_of(const Scene& scene, uint32_t instance) {
     const Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
     return scene.illuminant(scene.materials[mesh.material].illuminant);

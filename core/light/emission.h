@@ -21,6 +21,11 @@ struct Illuminant;
 /// the surface.
 [[nodiscard]] float share_of_beam(const Scene&, uint32_t instance, const V3f& away);
 
+/// Share of emitted_radiance that comes through the material's clear coat, at a cosine to the
+/// triangle; 1 where it has none.
+[[nodiscard]] float share_past_coat(const Scene&, uint32_t instance, uint32_t triangle,
+                                    V2f barycentric, float cosine);
+
 /// White point of an instance's emission; nullptr: the scene's own.
 [[nodiscard]] const Illuminant* white_of(const Scene&, uint32_t instance);
 

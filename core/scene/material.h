@@ -146,4 +146,11 @@ struct Material {
     }
 };
 
+/// Share of the light from below that a clear coat lets through, at a cosine to the surface: what
+/// Schlick's formula for an index of 1.5 leaves, whatever the coat's roughness.
+[[nodiscard]] inline float past_coat(float weight, float cosine) {
+    const float a = clamp_unit(1.f - cosine);
+    return 1.f - weight * (0.04f + 0.96f * (a * a) * (a * a) * a);
+}
+
 }  // namespace petzval

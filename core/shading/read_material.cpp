@@ -100,10 +100,12 @@ class Layers {
     Layers(const Scene& scene, const Surface& s, const V3f& wo, const Bands& bands)
         : scene_(scene), s_(s), m_(*s.material), wo_(wo), bands_(bands) {}
 
+    [[nodiscard]] float coat_weight() const { return m_.coat * channel(m_.coat_texture, 0); }
+
     // Without a map of its own the coat has the mesh's normal, whatever the base's map.
     void read_coat(const Frame& frame, CoatInput& coat) const {
         if (!(m_.coat > 0.f)) return;
-        coat.weight = m_.coat * channel(m_.coat_texture, 0);
+        coat.weight = coat_weight();
         coat.roughness = m_.coat_roughness * channel(m_.coat_roughness_texture, 1);
         const TextureSlot& map = m_.coat_normal_texture;
         const bool mapped = map.present() && !s_.mesh->tangents.empty();
@@ -218,6 +220,8 @@ ShadingInput read_material(const Scene& scene, const Surface& s, const MaterialL
         out.emitted = m.emissive * Rgb(texel);
         if (m.beam) out.emitted = out.emitted * m.beam->falloff(wo.dot(m.beam->direction));
     }
+    if (m.coat > 0.f && lookups.emits)
+        out.emitted = out.emitted * past_coat(layers.coat_weight(), std::fabs(wo.dot(s.ng)));
     if (m.unlit) {
         out.unlit = base_color;
         return out;

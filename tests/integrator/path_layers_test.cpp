@@ -112,6 +112,25 @@ TEST(CoatedSurface, APaneWithACoatLetsItsShareThrough) {
         0.5 / std::numbers::pi * (1 - schlick) * (1 - 0.5 * schlick) * 100 / 25 * 0.8, "point");
 }
 
+// A lamp shines from below its coat.
+TEST(CoatedSurface, DimsWhatItEmits) {
+    World world;
+    Material lamp = emitter_material(3.f);
+    lamp.coat = 0.5f;
+    lamp.coat_roughness = 0.3f;
+    place(world.scene, quad(V3f(-1, -1, 0), V3f(2, 0, 0), V3f(0, 2, 0)), lamp);
+    place(world.scene, quad(V3f(-1, -1, 1), V3f(0, 2, 0), V3f(2, 0, 0)),
+          test::diffuse_material(0.5f));
+    world.finish();
+    const V3f from(0, 0, 0.6f), to(0.8f, 0, 0);  // cosine 0.6
+    expect_agrees(estimate(world, {.max_depth = 0}, 16, [&](V2f) { return ray_to(from, to); }),
+                  3 * (1 - 0.5 * (0.04 + 0.96 * std::pow(0.4, 5))), "seen");
+    PathOptions once;
+    once.max_depth = 1;
+    test::expect_techniques_agree(
+        world, once, 4096, [](V2f u) { return ray_to(V3f(0, 0, 0.5f), V3f(u.x, u.y, 1)); }, 0.01);
+}
+
 TEST(CoatedSurface, TechniquesAgree) {
     World world;
     Material m = test::diffuse_material(0.6f);

@@ -23,7 +23,9 @@ void mend_view(const JsonEditor& view) {
 
 void mend_accessor(const JsonEditor& accessor) {
     accessor.value().erase("min");  // bounds come from the data
-    accessor.value().erase("max");
+    const json* most = accessor.find("max");
+    const bool one = most && most->is_array() && most->size() == 1 && (*most)[0].is_number();
+    if (!one) accessor.value().erase("max");  // one number may be the end of an animation
     json* normalized = accessor.find("normalized");
     if (normalized && normalized->is_number()) *normalized = *normalized != 0;
     const auto type = accessor.integer("componentType");

@@ -21,7 +21,8 @@ class Info : public CliTest {
                                                                          {{"name", "shiny"}}};
         file.json["extensions"]["NV_materials_mdl"] = json::object();
         file.json["scenes"].push_back({{"name", "cellar"}});
-        const int times = file.add_accessor<float>("SCALAR", {0, 2.5f}, {{"max", {2.5}}});
+        const int times =
+            file.add_accessor<float>("SCALAR", {0, 2.5f}, {{"max", json::array({2.5})}});
         const int moves = file.add_accessor<float>("VEC3", {0, 0, 0, 1, 1, 1});
         file.json["animations"] = {
             {{"name", "walk"},

@@ -5,9 +5,15 @@
 #include <algorithm>
 
 #include "apps/cli/parse.h"
+#include "apps/cli/quantity.h"
 #include "io/base/machine.h"
 
 namespace petzval {
+namespace {
+
+constexpr double kThinnest_m = 1e-9, kThickest_m = 1e9;
+
+}  // namespace
 
 std::optional<uint64_t> ReadingOptions::memory_bytes() const {
     if (max_memory.empty()) return std::nullopt;
@@ -31,6 +37,12 @@ void add_reading_options(CLI::App& app, ReadingOptions& o) {
                  "refuse files that the scene names outside its own folder");
     app.add_option("--variant", o.choices.variant,
                    "variant of the file's materials, by name or index (petzval info lists them)");
+    app.add_option("--scene", o.choices.scene,
+                   "scene of the file, by name or number (default: the one that it names)");
+    app.add_option("--point-line-radius", o.choices.point_line_radius_m,
+                   "draw the file's points as spheres and its lines as cylinders of this radius: "
+                   "2mm, 0.01 (default: they are skipped)")
+        ->transform(number_between(kThinnest_m, kThickest_m, kMetres));
 }
 
 int usual_threads() {

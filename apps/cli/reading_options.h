@@ -34,7 +34,8 @@ struct ReadingOptions {
 /// Declares --max-memory for a command that reads pictures; it writes to the argument, which must
 /// outlive the parsing.
 void add_memory_option(CLI::App&, ReadingOptions&);
-/// Declares --max-memory, --confine and --variant for a command that reads a scene, likewise.
+/// Declares --max-memory, --confine and what may be chosen of a file, for a command that reads a
+/// scene, likewise.
 void add_reading_options(CLI::App&, ReadingOptions&);
 
 /// Largest number of threads that --threads takes.

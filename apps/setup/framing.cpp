@@ -17,13 +17,44 @@ constexpr double kMargin = 0.06;         ///< of half the picture, on each side
 constexpr double kWidestHalf_rad = 0.8;  ///< a wider view gets wider margins: its rim is stretched
 constexpr double kFlat = 0.2;            ///< thickness over the next larger side
 
+constexpr size_t kMostTriangles = 1 << 22;  ///< that a mean direction is found from
+
+size_t triangle_count(const Scene& scene, uint32_t instance) {
+    return scene.meshes[scene.instances[instance].mesh].triangles.size();
+}
+
+// Visits triangles of the whole scene at even steps, all of them where they are not too many.
 template <class Visit>
-void each_triangle(const Scene& scene, Visit visit) {
+void sample_triangles(const Scene& scene, Visit visit) {
+    size_t all = 0;
+    for (uint32_t i = 0; i < scene.instances.size(); ++i) all += triangle_count(scene, i);
+    const size_t step = 1 + all / kMostTriangles;
+    size_t next = 0;
     for (uint32_t i = 0; i < scene.instances.size(); ++i) {
-        const auto count =
-            static_cast<uint32_t>(scene.meshes[scene.instances[i].mesh].triangles.size());
-        for (uint32_t triangle = 0; triangle < count; ++triangle)
-            visit(triangle_corners(scene, i, triangle));
+        const size_t count = triangle_count(scene, i);
+        for (; next < count; next += step)
+            visit(triangle_corners(scene, i, static_cast<uint32_t>(next)));
+        next -= count;
+    }
+}
+
+// Visits all corners of triangles, but those of instances that lie in a box of which no point
+// matters: there may be millions.
+template <class Matters, class Visit>
+void each_corner(const Scene& scene, Matters matters, Visit visit) {
+    const std::vector<Box3f> boxes = mesh_boxes(scene);
+    for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+        const Instance& instance = scene.instances[i];
+        if (!instance.identity) {
+            const Box3f box = placed_box(boxes[instance.mesh], instance.to_world);
+            bool any = false;
+            for (int k = 0; k < 8; ++k)
+                any |= matters(V3d(k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y,
+                                   k & 4 ? box.max.z : box.min.z));
+            if (!any) continue;
+        }
+        for (uint32_t triangle = 0; triangle < triangle_count(scene, i); ++triangle)
+            for (const V3f& p : triangle_corners(scene, i, triangle)) visit(V3d(p));
     }
 }
 
@@ -31,7 +62,7 @@ void each_triangle(const Scene& scene, Visit visit) {
 // area have or are opposite to, by the greatest eigenvector of their covariance.
 std::optional<V3d> slanting_normal(const Scene& scene) {
     Imath::M33d covariance(0.0), axes;
-    each_triangle(scene, [&](const std::array<V3f, 3>& corner) {
+    sample_triangles(scene, [&](const std::array<V3f, 3>& corner) {
         const V3d a(corner[0]), twice_area = (V3d(corner[1]) - a).cross(V3d(corner[2]) - a);
         const double length = twice_area.length();
         if (!(length > 0)) return;
@@ -41,9 +72,9 @@ std::optional<V3d> slanting_normal(const Scene& scene) {
     V3d area;
     Imath::jacobiEigenSolver(covariance, area, axes);  // axes: in the columns
     Imath::Box3d along;
-    each_triangle(scene, [&](const std::array<V3f, 3>& corner) {
-        for (const V3f& p : corner) along.extendBy(V3d(p) * axes);
-    });
+    each_corner(
+        scene, [&](const V3d& p) { return !along.intersects(p * axes); },
+        [&](const V3d& p) { along.extendBy(p * axes); });
     const V3d size = along.size();
     const int n = area.x > std::max(area.y, area.z) ? 0 : area.y > area.z ? 1 : 2;
     if (!(size[n] < kFlat * std::min(size[(n + 1) % 3], size[(n + 2) % 3]))) return std::nullopt;
@@ -86,6 +117,12 @@ class Frustum {
         }
         nearest_ = std::max(nearest_, p.z);
     }
+    /// Whether a point would move no plane.
+    [[nodiscard]] bool holds(const V3d& p) const {
+        Frustum moved = *this;
+        moved.add(p);
+        return moved.most_ == most_ && moved.nearest_ == nearest_;
+    }
     /// The nearest point from which all is seen. Opposite planes meet in a line; the eye stands on
     /// the one further back, midway between the other two planes.
     [[nodiscard]] V3d eye() const {
@@ -113,9 +150,9 @@ std::optional<std::array<V3f, 2>> frame_scene(const Scene& scene, float yfov_rad
     const ViewAxes axes(view_direction(scene, high - low));
     const double slope = std::tan(std::min(double(yfov_rad) / 2, kWidestHalf_rad)) * (1 - kMargin);
     Frustum frustum({slope * double(aspect), slope});
-    each_triangle(scene, [&](const std::array<V3f, 3>& corner) {
-        for (const V3f& p : corner) frustum.add(axes.to_view(V3d(p) - centre));
-    });
+    each_corner(
+        scene, [&](const V3d& p) { return !frustum.holds(axes.to_view(p - centre)); },
+        [&](const V3d& p) { frustum.add(axes.to_view(p - centre)); });
     V3d eye = frustum.eye();
     eye.z += stand_back_m;
     const std::array placed{V3f(centre + axes.to_world(eye)),

@@ -68,6 +68,10 @@ std::vector<std::pair<std::string, std::string>> describe(const SceneRequest& re
     m.emplace_back("petzval:scene", request.scene.filename().string());
     if (const auto& variant = request.choices.variant)
         m.emplace_back("petzval:variant", visible(*variant));
+    if (const auto& name = request.choices.scene)
+        m.emplace_back("petzval:sceneName", visible(*name));
+    if (const auto& radius_m = request.choices.point_line_radius_m)
+        m.emplace_back("petzval:pointLineRadius_m", fmt::format("{:.9g}", *radius_m));
     if (request.environment) {
         m.emplace_back("petzval:environment", request.environment == kStudioLight
                                                   ? kStudioLight

@@ -120,7 +120,7 @@ struct SceneRequest {
     /// Memory for decoded pictures; absent: half of what can be had.
     std::optional<uint64_t> picture_memory_bytes;
     FileScope scope = FileScope::Anywhere;  ///< of files that the scene names
-    GltfChoices choices;
+    GltfChoices choices;                    ///< what is taken of the scene's file
 };
 
 }  // namespace petzval

@@ -20,6 +20,7 @@ using V2d = Imath::V2d;
 using V3d = Imath::V3d;
 using V2i = Imath::V2i;
 /// Imath's convention: row vectors, point * matrix; the translation is the last row.
+using M33f = Imath::M33f;
 using M44f = Imath::M44f;
 using M44d = Imath::M44d;
 using Box3f = Imath::Box3f;
@@ -50,6 +51,11 @@ inline constexpr float kOneMinus = 0x1.fffffep-1f;
 }
 [[nodiscard]] inline V3f abs(const V3f& v) {
     return {std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)};
+}
+/// Upper left 3x3 part of a matrix: how it moves directions.
+template <class T>
+[[nodiscard]] Imath::Matrix33<T> linear_part(const Imath::Matrix44<T>& m) {
+    return {m[0][0], m[0][1], m[0][2], m[1][0], m[1][1], m[1][2], m[2][0], m[2][1], m[2][2]};
 }
 [[nodiscard]] inline V3f reflect(const V3f& w, const V3f& about) {
     return about * (2.f * w.dot(about)) - w;

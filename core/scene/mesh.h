@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "core/math/math.h"
@@ -23,14 +24,34 @@ struct Mesh {
     std::vector<V3f> normals;    ///< unit; empty: flat shading
     std::vector<V4f> tangents;   ///< unit xyz, w = +-1: bitangent = w * cross(normal, tangent)
     std::array<std::vector<V2f>, 2> uv;              ///< TEXCOORD_0 and TEXCOORD_1
+    std::vector<std::vector<V2f>> more_uv;           ///< those that few materials use: sets from 2
     std::vector<V4f> colours;                        ///< COLOR_0, linear RGBA
     std::vector<std::array<uint32_t, 3>> triangles;  ///< counter-clockwise seen from the front
     uint32_t material = 0;
+    /// Instance from which on each has two colours of its own: for vertices of even number, and of
+    /// odd number. kByVertex: `colours` are those of the vertices.
+    uint32_t colours_from = kByVertex;
+    static constexpr uint32_t kByVertex = ~0u;
 
+    /// Texture coordinates of a set of a TextureSlot; empty where there are none.
+    [[nodiscard]] const std::vector<V2f>& uv_of(int uv_set) const {
+        const auto set = static_cast<size_t>(uv_set);
+        return set < uv.size() ? uv[set] : more_uv[set - uv.size()];
+    }
+    [[nodiscard]] std::vector<V2f>& uv_of(int uv_set) {
+        return const_cast<std::vector<V2f>&>(std::as_const(*this).uv_of(uv_set));
+    }
     /// Texture coordinates at a point of a triangle, b as in interpolate(); 0 where there are none.
     [[nodiscard]] V2f uv_at(uint32_t triangle, V2f b, int uv_set) const {
-        const std::vector<V2f>& of_set = uv[static_cast<size_t>(uv_set)];
+        const std::vector<V2f>& of_set = uv_of(uv_set);
         return of_set.empty() ? V2f(0.f) : interpolate(of_set, triangles[triangle], b);
+    }
+    /// Colour at a point of a triangle of an instance, where there are colours; b as above.
+    [[nodiscard]] V4f colour_at(uint32_t instance, uint32_t triangle, V2f b) const {
+        std::array<uint32_t, 3> corner = triangles[triangle];
+        if (colours_from != kByVertex)
+            for (uint32_t& c : corner) c = 2 * (instance - colours_from) + c % 2;
+        return interpolate(colours, corner, b);
     }
 };
 
@@ -39,9 +60,10 @@ struct Instance {
     uint32_t mesh = 0;
     bool identity = true;
     bool flips = false;        ///< the matrix mirrors: front faces appear clockwise
-    M44f to_world;             ///< affine
-    M44f to_local;             ///< its inverse
     int32_t first_light = -1;  ///< light of triangle 0; -1: the instance does not emit
+    M44f to_world;             ///< affine
+    M33f to_local;             ///< linear part of its inverse
 };
+static_assert(sizeof(Instance) <= 112);  // there may be millions
 
 }  // namespace petzval

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/scene/scene.h"
 
+#include <algorithm>
+
 #include "core/scene/volume_ranks.h"
 
 namespace petzval {
@@ -31,17 +33,29 @@ void find_places(const Scene& scene, Material& m) {
     }
 }
 
+// Adds the corners of an instance's triangles to the bounds. of_mesh: box about those of the mesh.
+void extend_bounds(Box3f& bounds, const Mesh& mesh, const Instance& instance,
+                   const Box3f& of_mesh) {
+    // There may be millions of instances: most lie within the others.
+    if (!instance.identity) {
+        const Box3f box = placed_box(of_mesh, instance.to_world);
+        if (bounds.intersects(box.min) && bounds.intersects(box.max)) return;
+    }
+    for (const auto& triangle : mesh.triangles)
+        for (const uint32_t corner : triangle)
+            bounds.extendBy(placed(instance, mesh.positions[corner]));
+}
+
 }  // namespace
 
 void finish_scene(Scene& scene) {
     for (Material& material : scene.materials) find_places(scene, material);
     rank_volumes(scene);
+    const std::vector<Box3f> boxes = mesh_boxes(scene);
     for (uint32_t i = 0; i < scene.instances.size(); ++i) {
         Instance& instance = scene.instances[i];
         const Mesh& mesh = scene.meshes[instance.mesh];
-        for (const auto& triangle : mesh.triangles)
-            for (const uint32_t corner : triangle)
-                scene.bounds.extendBy(placed(instance, mesh.positions[corner]));
+        extend_bounds(scene.bounds, mesh, instance, boxes[instance.mesh]);
         if (!emits(scene, instance)) continue;
         instance.first_light = static_cast<int32_t>(scene.lights.size());
         for (uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle)
@@ -57,6 +71,32 @@ bool emits(const Scene& scene, const Instance& instance) {
     if (mesh.triangles.empty()) return false;
     const Material& material = scene.materials[mesh.material];
     return material.emits() && !material.unlit;
+}
+
+std::vector<Box3f> mesh_boxes(const Scene& scene) {
+    std::vector<Box3f> boxes(scene.meshes.size());
+    for (size_t i = 0; i < boxes.size(); ++i)
+        for (const auto& triangle : scene.meshes[i].triangles)
+            for (const uint32_t corner : triangle)
+                boxes[i].extendBy(scene.meshes[i].positions[corner]);
+    return boxes;
+}
+
+Box3f placed_box(const Box3f& box, const M44f& to_world) {
+    constexpr float rounding = 1e-6f;  // of the sum of what is added, and more than it takes
+    Box3f out;
+    for (int i = 0; i < 3; ++i) {
+        float low = to_world[3][i], high = low, most = std::fabs(low);
+        for (int j = 0; j < 3; ++j) {
+            const float a = box.min[j] * to_world[j][i], b = box.max[j] * to_world[j][i];
+            low += std::min(a, b);
+            high += std::max(a, b);
+            most += std::max(std::fabs(a), std::fabs(b));
+        }
+        out.min[i] = low - most * rounding;
+        out.max[i] = high + most * rounding;
+    }
+    return out;
 }
 
 std::array<V3f, 3> triangle_corners(const Scene& scene, uint32_t instance, uint32_t triangle) {

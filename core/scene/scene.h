@@ -48,6 +48,11 @@ void finish_scene(Scene&);
 /// Whether an instance lights the scene: its material emits, and is not one that only shows itself.
 [[nodiscard]] bool emits(const Scene&, const Instance&);
 
+/// Boxes about the triangles of each mesh, in its own space.
+[[nodiscard]] std::vector<Box3f> mesh_boxes(const Scene&);
+/// Box that holds all that is moved by the matrix out of a box, rounding included.
+[[nodiscard]] Box3f placed_box(const Box3f&, const M44f& to_world);
+
 /// Three world-space corners of a triangle.
 [[nodiscard]] std::array<V3f, 3> triangle_corners(const Scene&, uint32_t instance,
                                                   uint32_t triangle);

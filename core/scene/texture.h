@@ -29,7 +29,7 @@ struct TextureSlot {
     Wrap wrap_u = Wrap::Repeat, wrap_v = Wrap::Repeat;
     bool nearest = false;
     Encoding encoding = Encoding::Linear;
-    uint8_t uv_set = 0;
+    uint8_t uv_set = 0;  ///< as Mesh::uv_of counts them
     /// Place number: slots of a material with the same one above 0 find their texels at the same
     /// places of pictures of one size. finish_scene sets it.
     uint8_t place = 0;

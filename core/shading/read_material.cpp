@@ -9,7 +9,10 @@ namespace petzval {
 namespace {
 
 TextureLookup locate(const Scene& scene, const Surface& s, const TextureSlot& slot) {
-    return locate_texture(scene.images, slot, s.uv[slot.uv_set]);
+    const V2f uv = slot.uv_set < s.uv.size()
+                       ? s.uv[slot.uv_set]
+                       : s.mesh->uv_at(s.hit.triangle, s.hit.barycentric, slot.uv_set);
+    return locate_texture(scene.images, slot, uv);
 }
 
 f4 read(const Scene& scene, const Surface& s, const TextureSlot& slot) {
@@ -177,8 +180,7 @@ class Layers {
 
 f4 vertex_colour(const Surface& s) {
     if (s.mesh->colours.empty()) return splat(1.f);
-    const V4f c =
-        interpolate(s.mesh->colours, s.mesh->triangles[s.hit.triangle], s.hit.barycentric);
+    const V4f c = s.mesh->colour_at(s.hit.instance, s.hit.triangle, s.hit.barycentric);
     return f4{c.x, c.y, c.z, c.w};
 }
 

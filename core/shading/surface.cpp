@@ -15,7 +15,7 @@ V3f abs_transform(const V3f& p, const M44f& m) {
 }
 
 // Unnormalised normal in world space, by the inverse transpose; to_local is the inverse.
-V3f transform_normal(const V3f& n, const M44f& to_local) {
+V3f transform_normal(const V3f& n, const M33f& to_local) {
     return {n.x * to_local[0][0] + n.y * to_local[0][1] + n.z * to_local[0][2],
             n.x * to_local[1][0] + n.y * to_local[1][1] + n.z * to_local[1][2],
             n.x * to_local[2][0] + n.y * to_local[2][1] + n.z * to_local[2][2]};

@@ -22,12 +22,13 @@ GltfFile load(const std::filesystem::path& path, FileScope scope, PictureBudget&
 
     GltfFile file;
     GltfTally tally;
-    const GltfNodes nodes = flatten_nodes(gltf);
+    const GltfNodes nodes = flatten_nodes(gltf, choices.scene);
     GltfMaterials materials(gltf, file.scene, tally, pictures);
-    place_meshes(gltf, nodes, GltfVariant(gltf, choices.variant), materials, file.scene, tally);
+    place_meshes(gltf, nodes, GltfVariant(gltf, choices.variant), materials, file.scene, tally,
+                 choices.point_line_radius_m);
     const std::vector<BallLamp> lamps = read_lights(gltf, nodes, file.scene, tally);
     read_profile_lights(gltf, nodes, file.scene, tally);
-    if (auto sky = read_image_light(gltf, tally, pictures)) file.scene.sky = *std::move(sky);
+    if (auto sky = read_image_light(gltf, nodes, tally, pictures)) file.scene.sky = *std::move(sky);
     file.cameras = read_cameras(gltf, nodes, tally);
 
     file.hash = source.hash;

@@ -39,9 +39,9 @@ struct GltfFile {
     uint64_t hash = 0;
 };
 
-/// Loads the default scene (else the first one, else all root nodes). Throws InputError, also where
-/// the budget is too small for the pictures of the scene, and ArgumentError where it has not what
-/// is chosen.
+/// Loads the scene that is chosen (else the default one, the first one, all root nodes). Throws
+/// InputError, also where the budget is too small for the pictures of the scene, and ArgumentError
+/// where it has not what is chosen.
 [[nodiscard]] GltfFile load_gltf(const std::filesystem::path&, FileScope, PictureBudget&,
                                  const GltfChoices& = {});
 /// Loads a scene that may name any file, with the usual budget.

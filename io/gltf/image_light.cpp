@@ -18,11 +18,10 @@ constexpr const char* kExtension = "EXT_lights_image_based";
 constexpr int kHarmonicsHeight = 64;
 
 /// The light that the drawn scene names, and its number.
-std::optional<size_t> light_of_scene(const JsonCursor& root, size_t lights) {
+std::optional<size_t> light_of_scene(const JsonCursor& root, int scene, size_t lights) {
     const auto scenes = root.objects("scenes");
-    if (scenes.empty()) return std::nullopt;
-    const size_t drawn = root.index("scene", scenes.size(), "scene").value_or(0);
-    const auto extension = scenes[drawn].extension(kExtension);
+    if (scene < 0) return std::nullopt;
+    const auto extension = scenes[static_cast<size_t>(scene)].extension(kExtension);
     if (!extension) return std::nullopt;
     return extension->required_index("light", lights, "light");
 }
@@ -120,13 +119,13 @@ class Reader {
 
 }  // namespace
 
-std::optional<Sky> read_image_light(const GltfModel& gltf, GltfTally& tally,
+std::optional<Sky> read_image_light(const GltfModel& gltf, const GltfNodes& nodes, GltfTally& tally,
                                     PictureBudget& pictures) {
     const JsonCursor root(gltf.source.json, gltf.file);
     const auto definitions = root.extension(kExtension);
     if (!definitions) return std::nullopt;
     const auto lights = definitions->objects("lights");
-    const auto number = light_of_scene(root, lights.size());
+    const auto number = light_of_scene(root, nodes.scene, lights.size());
     if (!number) return std::nullopt;
     const JsonCursor& light = lights[*number];
     Reader reader(gltf, light, pictures);

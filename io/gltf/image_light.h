@@ -6,6 +6,7 @@
 
 #include "core/scene/sky.h"
 #include "io/gltf/model.h"
+#include "io/gltf/nodes.h"
 #include "io/gltf/tally.h"
 #include "io/picture/picture_budget.h"
 
@@ -14,6 +15,7 @@ namespace petzval {
 /// Sky that the drawn scene names: the first level of its cube, which is not blurred; where an
 /// image of that is not there, what its spherical harmonics of the irradiance tell. Nothing where
 /// it names none. 1 in a picture is 1 nit. Throws InputError where an image cannot be decoded.
-[[nodiscard]] std::optional<Sky> read_image_light(const GltfModel&, GltfTally&, PictureBudget&);
+[[nodiscard]] std::optional<Sky> read_image_light(const GltfModel&, const GltfNodes&, GltfTally&,
+                                                  PictureBudget&);
 
 }  // namespace petzval

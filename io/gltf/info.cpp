@@ -109,8 +109,9 @@ void describe_support(const GltfTally& tally, GltfFile& file) {
     ignore(tally.occlusion_textures, "occlusion texture", "path tracing finds occlusion itself");
     ignore(tally.ranged_lights, "light range", "light falls off with the squared distance");
     ignore(tally.idle_dispersions, "dispersion", "the material refracts nothing");
-    ignore(tally.point_primitives, "point primitive", "points have no surface");
-    ignore(tally.line_primitives, "line primitive", "lines have no surface");
+    constexpr const char* no_surface = "they have no surface; --point-line-radius gives one";
+    ignore(tally.point_primitives, "point primitive", no_surface);
+    ignore(tally.line_primitives, "line primitive", no_surface);
 }
 
 void append_warnings(const GltfTally& tally, std::vector<std::string>& warnings) {
@@ -130,6 +131,8 @@ void append_warnings(const GltfTally& tally, std::vector<std::string>& warnings)
     warn(tally.unmapped_primitives, "primitive",
          "without texture coordinates for its textures; 0,0 is taken");
     warn(tally.singular_nodes, "node", "scaled to nothing skipped");
+    warn(tally.hidden_instances, "instance", "scaled to nothing, or nowhere, skipped");
+    warn(tally.broken_strokes, "point or line segment", "that is not finite skipped");
     warn(tally.replaced_normals, "normal", "without a length replaced by those of the faces");
 }
 

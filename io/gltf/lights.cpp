@@ -157,7 +157,7 @@ std::vector<GltfCamera> read_cameras(const GltfModel& gltf, const GltfNodes& nod
     std::vector<GltfCamera> cameras;
     const JsonCursor root(gltf.source.json, gltf.file);
     const auto json = root.objects("cameras");
-    for (int index : nodes.in_scene) {
+    for (int index : nodes.all_in_scene) {
         const GltfNode& node = nodes.node[static_cast<size_t>(index)];
         if (node.camera < 0) continue;
         const auto to_world = rigid(nodes.to_world[static_cast<size_t>(index)]);

@@ -63,6 +63,7 @@ uint32_t GltfMaterials::use(int material) {
     std::optional<uint32_t>& used = used_.at(index);
     if (!used) {
         scene_.materials.push_back(material < 0 ? Material{} : read(index));
+        more_sets_.push_back(textures_.take_more_sets());
         used = static_cast<uint32_t>(scene_.materials.size() - 1);
     }
     return *used;

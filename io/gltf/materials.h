@@ -18,6 +18,10 @@ class GltfMaterials {
 
     /// Index in the scene of a material of the file; of glTF's default material for -1.
     [[nodiscard]] uint32_t use(int material);
+    /// Numbers of the TEXCOORD_n that a material of the scene reads as its sets from 2 on.
+    [[nodiscard]] const std::vector<uint64_t>& more_sets(uint32_t of_scene) const {
+        return more_sets_[of_scene];
+    }
 
   private:
     [[nodiscard]] Material read(size_t index);
@@ -38,6 +42,7 @@ class GltfMaterials {
     GltfTextures textures_;
     GltfSpectral spectral_;
     std::vector<JsonCursor> json_;
+    std::vector<std::vector<uint64_t>> more_sets_;  ///< of each material of the scene
     std::vector<std::optional<uint32_t>> used_;  ///< by material of the file; the default is last
 };
 

@@ -1,35 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/gltf/nodes.h"
 
+#include <fmt/format.h>
 #include <tiny_gltf.h>
 
+#include <algorithm>
+#include <charconv>
+
+#include "io/base/error.h"
 #include "io/base/json_cursor.h"
+#include "io/base/nearest.h"
+#include "io/base/printable.h"
 
 namespace petzval {
 namespace {
-
-// Rotation by a unit quaternion (x, y, z, w); rows are the images of the axes.
-M44d rotation_matrix(const std::vector<double>& q) {
-    const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    if (norm == 0) return {};
-    const double x = q[0] / norm, y = q[1] / norm, z = q[2] / norm, w = q[3] / norm;
-    return {1 - 2 * (y * y + z * z),
-            2 * (x * y + w * z),
-            2 * (x * z - w * y),
-            0,
-            2 * (x * y - w * z),
-            1 - 2 * (x * x + z * z),
-            2 * (y * z + w * x),
-            0,
-            2 * (x * z + w * y),
-            2 * (y * z - w * x),
-            1 - 2 * (x * x + y * y),
-            0,
-            0,
-            0,
-            0,
-            1};
-}
 
 int index_or_none(const JsonCursor& node, const char* key) {
     return node.has(key) ? static_cast<int>(node.integer(key)) : -1;
@@ -39,12 +23,18 @@ std::vector<double> numbers(const JsonCursor& node, const char* key) {
     return node.numbers(key, node.length(key));
 }
 
+bool is_visible(const JsonCursor& node) {
+    const auto extension = node.extension("KHR_node_visibility");
+    return !extension || extension->value().value("visible", true);
+}
+
 GltfNode read_node(const JsonCursor& json) {
     GltfNode node{.mesh = index_or_none(json, "mesh"),
                   .skin = index_or_none(json, "skin"),
                   .camera = index_or_none(json, "camera"),
                   .weights = numbers(json, "weights"),
-                  .children = {}};
+                  .children = {},
+                  .visible = is_visible(json)};
     for (const double child : numbers(json, "children"))
         node.children.push_back(static_cast<int>(child));
     return node;
@@ -58,7 +48,7 @@ M44d node_matrix(const JsonCursor& json) {
     M44d matrix;
     if (const auto s = json.numbers("scale", 3); !s.empty()) matrix.setScale(V3d(s[0], s[1], s[2]));
     if (const auto q = json.numbers("rotation", 4); !q.empty())
-        matrix = matrix * rotation_matrix(q);
+        matrix = matrix * rotation_matrix({q[0], q[1], q[2], q[3]});
     if (const auto t = json.numbers("translation", 3); !t.empty())
         for (int axis = 0; axis < 3; ++axis) matrix[3][axis] = t[static_cast<size_t>(axis)];
     return matrix;
@@ -88,9 +78,34 @@ void depth_first(const std::vector<GltfNode>& nodes, const std::vector<int>& roo
     }
 }
 
+// Number of a scene of that name, or of that number where no name is so.
+int find_scene(const GltfModel& gltf, const std::string& wanted) {
+    const auto& scenes = gltf.typed.scenes;
+    std::vector<std::string> names;
+    for (size_t i = 0; i < scenes.size(); ++i) {
+        if (scenes[i].name == wanted || visible(scenes[i].name) == wanted)
+            return static_cast<int>(i);
+        names.push_back(printable(scenes[i].name));
+    }
+    size_t number = 0;
+    const auto [end, error] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), number);
+    if (error == std::errc() && end == wanted.data() + wanted.size() && number < scenes.size())
+        return static_cast<int>(number);
+    constexpr size_t most = 20;  // fit one message
+    std::string known;
+    for (size_t i = 0; i < std::min(most, names.size()); ++i)
+        known += fmt::format("{}{} \"{}\"", i ? ", " : "", i, names[i]);
+    if (names.size() > most) known += fmt::format(" and {} more", names.size() - most);
+    throw ArgumentError(
+        gltf.file, "",
+        fmt::format("no scene \"{}\"; {}{}", printable(wanted),
+                    known.empty() ? "the file has none, leave out --scene" : "it has " + known,
+                    did_you_mean(wanted, names)));
+}
+
 }  // namespace
 
-GltfNodes flatten_nodes(const GltfModel& gltf) {
+GltfNodes flatten_nodes(const GltfModel& gltf, const std::optional<std::string>& scene) {
     const tinygltf::Model& model = gltf.typed;
     const JsonCursor root(gltf.source.json, gltf.file);
     GltfNodes nodes;
@@ -99,6 +114,8 @@ GltfNodes flatten_nodes(const GltfModel& gltf) {
     for (const JsonCursor& json : root.objects("nodes")) {
         nodes.node.push_back(read_node(json));
         nodes.to_world.push_back(node_matrix(json));
+        if (const auto many = read_instancing(json))
+            nodes.instancing.emplace(static_cast<int>(nodes.node.size()) - 1, *many);
     }
     // Skins may name joints anywhere in the file, so every node gets its place.
     const std::vector<int> roots = all_roots(nodes.node);
@@ -111,14 +128,48 @@ GltfNodes flatten_nodes(const GltfModel& gltf) {
     });
 
     const std::vector<int>* drawn = &roots;
-    if (!model.scenes.empty())
-        drawn = &model.scenes.at(static_cast<size_t>(std::max(model.defaultScene, 0))).nodes;
+    if (scene)
+        nodes.scene = find_scene(gltf, *scene);
+    else if (!model.scenes.empty())
+        nodes.scene = std::max(model.defaultScene, 0);
+    if (nodes.scene >= 0) drawn = &model.scenes.at(static_cast<size_t>(nodes.scene)).nodes;
     std::vector<bool> seen(nodes.node.size(), false);  // a scene may list a child beside its root
+    std::vector<bool> hidden(nodes.node.size(), false);
+    depth_first(nodes.node, roots, [&](int index, const GltfNode& node) {
+        const bool hides = hidden[static_cast<size_t>(index)] || !node.visible;
+        hidden[static_cast<size_t>(index)] = hides;
+        for (int child : node.children) hidden[static_cast<size_t>(child)] = hides;
+    });
     depth_first(nodes.node, *drawn, [&](int index, const GltfNode&) {
-        if (!seen[static_cast<size_t>(index)]) nodes.in_scene.push_back(index);
+        if (!seen[static_cast<size_t>(index)]) {
+            nodes.all_in_scene.push_back(index);
+            if (!hidden[static_cast<size_t>(index)]) nodes.in_scene.push_back(index);
+        }
         seen[static_cast<size_t>(index)] = true;
     });
     return nodes;
+}
+
+M44d rotation_matrix(const std::array<double, 4>& q) {
+    const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    if (norm == 0) return {};
+    const double x = q[0] / norm, y = q[1] / norm, z = q[2] / norm, w = q[3] / norm;
+    return {1 - 2 * (y * y + z * z),
+            2 * (x * y + w * z),
+            2 * (x * z - w * y),
+            0,
+            2 * (x * y - w * z),
+            1 - 2 * (x * x + z * z),
+            2 * (y * z + w * x),
+            0,
+            2 * (x * z + w * y),
+            2 * (y * z - w * x),
+            1 - 2 * (x * x + y * y),
+            0,
+            0,
+            0,
+            0,
+            1};
 }
 
 double relative_determinant(const M44d& m) {

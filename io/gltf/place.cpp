@@ -6,59 +6,25 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <map>
 
 #include "io/base/error.h"
+#include "io/gltf/arrays.h"
 #include "io/gltf/bake.h"
+#include "io/gltf/flat.h"
+#include "io/gltf/placement.h"
 #include "io/gltf/primitive.h"
 #include "io/gltf/repair.h"
 #include "io/gltf/skin.h"
+#include "io/gltf/strokes.h"
 #include "io/gltf/tangents.h"
 #include "io/gltf/triangles.h"
 
 namespace petzval {
 namespace {
 
-/// Nodes that show the same mesh in the same shape.
-struct Placement {
-    int mesh = -1, skin = -1;
-    std::vector<double> morph_weights;
-    std::vector<int> nodes;
-};
-
-bool fits_floats(const M44d& m) {
-    constexpr double greatest = std::numeric_limits<float>::max();
-    const double* const first = m.getValue();
-    return std::all_of(first, first + 16, [](double x) { return std::fabs(x) <= greatest; });
-}
-
-// Placements of the meshes. Nodes whose matrix flattens space show nothing, except where a skin
-// places the mesh instead.
-std::vector<Placement> group_nodes(const GltfModel& gltf, const GltfNodes& nodes,
-                                   GltfTally& tally) {
-    std::vector<Placement> placements;
-    std::map<std::pair<int, std::vector<double>>, size_t> known;
-    for (int index : nodes.in_scene) {
-        const GltfNode& node = nodes.node[static_cast<size_t>(index)];
-        if (node.mesh < 0) continue;
-        const M44d& to_world = nodes.to_world[static_cast<size_t>(index)];
-        if (!fits_floats(to_world))
-            throw InputError(gltf.file, json_path("nodes", index),
-                             "places its mesh beyond the range of a float");
-        if (node.skin < 0 && is_singular(to_world)) {
-            ++tally.singular_nodes;
-            continue;
-        }
-        const auto& mesh = gltf.typed.meshes.at(static_cast<size_t>(node.mesh));
-        const auto& weights = node.weights.empty() ? mesh.weights : node.weights;
-        size_t at = placements.size();
-        if (node.skin < 0) at = known.try_emplace({node.mesh, weights}, at).first->second;
-        if (at == placements.size()) placements.push_back({node.mesh, node.skin, weights, {}});
-        placements[at].nodes.push_back(index);
-    }
-    return placements;
-}
+/// Bytes that a triangle takes which is a light, in the tree of the lights too: rounded up.
+constexpr double kLightBytes = 400;
 
 template <class Values>
 bool all_finite(const Values& values, int components) {
@@ -72,40 +38,58 @@ bool all_finite(const Values& values, int components) {
 class Placer {
   public:
     Placer(const GltfModel& gltf, const GltfNodes& nodes, const GltfVariant& variant,
-           GltfMaterials& materials, Scene& scene, GltfTally& tally)
+           GltfMaterials& materials, Scene& scene, GltfTally& tally,
+           std::optional<float> stroke_radius_m)
         : gltf_(gltf),
           nodes_(nodes),
           variant_(variant),
           materials_(materials),
           scene_(scene),
-          tally_(tally) {}
+          tally_(tally),
+          places_(gltf, nodes),
+          memory_(gltf.file) {
+        if (stroke_radius_m) strokes_.emplace(*stroke_radius_m);
+    }
 
-    void place(const Placement& placement) {
-        const auto& primitives = gltf_.typed.meshes[static_cast<size_t>(placement.mesh)].primitives;
-        for (size_t i = 0; i < primitives.size(); ++i) {
-            if (!is_drawn(primitives[i], tally_)) continue;
-            const int material = variant_.material_of(placement.mesh, i, primitives[i].material);
-            place_primitive(placement, primitives[i], materials_.use(material),
-                            json_path("meshes", placement.mesh, "primitives", i));
-        }
+    void run() {
+        for (const Placement& placement : find_placements(gltf_, nodes_, places_, tally_))
+            place(placement);
+        if (strokes_) strokes_->finish(scene_);
     }
 
   private:
+    void place(const Placement& placement) {
+        const auto& primitives = gltf_.typed.meshes[static_cast<size_t>(placement.mesh)].primitives;
+        for (size_t i = 0; i < primitives.size(); ++i) {
+            const std::string where = json_path("meshes", placement.mesh, "primitives", i);
+            const Drawing drawing = drawing_of(primitives[i], tally_);
+            const int material = variant_.material_of(placement.mesh, i, primitives[i].material);
+            if (drawing == Drawing::Triangles)
+                place_primitive(placement, primitives[i], materials_.use(material), where);
+            else if (drawing != Drawing::Nothing)
+                place_strokes(placement, primitives[i], material, where);
+        }
+    }
+
     void place_primitive(const Placement& placement, const tinygltf::Primitive& primitive,
                          uint32_t material, const std::string& where) {
-        Mesh mesh = read_shaded(placement, primitive, scene_.materials[material]);
+        Mesh mesh = read_shaded(placement, primitive, material);
         mesh.material = material;
         if (mesh.triangles.empty()) return;
 
         const bool posed =
             placement.skin >= 0 && pose_by_skin(gltf_, nodes_, placement.skin, primitive, mesh);
         if (posed) tally_.honoured.insert("skins, in the pose that the nodes stand in");
-        const bool baked = posed || placement.nodes.size() == 1;
-        if (baked && !posed) bake(mesh, matrix_of(placement.nodes.front()));
+        const bool baked = posed || placement.places == 1;
+        if (baked && !posed)
+            each_place(placement, [&](int, const M44d& to_world) { bake(mesh, to_world); });
         check_finite(mesh, where);
         tally_.zero_area_triangles += remove_zero_area(mesh);
         if (mesh.triangles.empty()) return;
 
+        const Material& of_mesh = scene_.materials[material];
+        if (of_mesh.emits() && !of_mesh.unlit)
+            memory_.ask(kLightBytes, placement.places, mesh.triangles.size(), where);
         const auto index = static_cast<uint32_t>(scene_.meshes.size());
         scene_.meshes.push_back(std::move(mesh));
         if (baked) {
@@ -113,17 +97,86 @@ class Placer {
             return;
         }
         tally_.honoured.insert("mesh instancing");
+        memory_.ask(kInstanceBytes, placement.places, 1, where);
+        reserve(placement.places);
         Box3f bounds;
         for (const V3f& position : scene_.meshes[index].positions) bounds.extendBy(position);
-        for (int node : placement.nodes) scene_.instances.push_back(instance(index, node, bounds));
+        each_place(placement, [&](int node, const M44d& to_world) {
+            scene_.instances.push_back(instance(index, node, to_world, bounds));
+        });
+    }
+
+    void place_strokes(const Placement& placement, const tinygltf::Primitive& primitive,
+                       int material_of_file, const std::string& where) {
+        if (!strokes_) {
+            ++(primitive.mode == TINYGLTF_MODE_POINTS ? tally_.point_primitives
+                                                      : tally_.line_primitives);
+            return;
+        }
+        StrokeSource source = read_stroke(gltf_, primitive, placement.morph_weights, tally_);
+        Mesh& vertices = source.vertices;
+        const StrokeShapes shapes = shapes_of(source, primitive.mode, tally_.broken_strokes);
+        repair_values(vertices, tally_);
+        memory_.ask(kInstanceBytes, placement.places,
+                    shapes.spheres.size() + shapes.cylinders.size(), where);
+        const uint32_t material = materials_.use(material_of_file);
+        tally_.honoured.insert("points and lines, as spheres and cylinders");
+        if (placement.skin >= 0 &&
+            pose_by_skin(gltf_, nodes_, placement.skin, primitive, vertices)) {
+            strokes_->add(material, vertices, shapes, M44d());
+            return;
+        }
+        each_place(placement, [&](int, const M44d& to_world) {
+            strokes_->add(material, vertices, shapes, to_world);
+        });
+    }
+
+    // Calls visit(node, matrix) for each place where something shows.
+    template <class Visit>
+    void each_place(const Placement& placement, Visit visit) {
+        for (const int node : placement.nodes) {
+            const auto visit_shown = [&](const M44d& to_world) {
+                if (!Places::shows(to_world) && placement.skin < 0) return;
+                visit(node, dimensions_left(to_world) == 2 ? thickened(to_world, box_of(placement))
+                                                           : to_world);
+            };
+            if (placement.skin >= 0)
+                visit_shown(places_.of_node(node));
+            else
+                places_.each(node, visit_shown);
+        }
+    }
+
+    // Box about all vertices of a mesh, with those of its primitives that go together.
+    const Box3f& box_of(const Placement& placement) {
+        const auto [at, is_new] = boxes_.try_emplace(placement.mesh);
+        if (!is_new) return at->second;
+        for (const auto& primitive :
+             gltf_.typed.meshes[static_cast<size_t>(placement.mesh)].primitives) {
+            const int positions = attribute(primitive, "POSITION");
+            if (positions < 0) continue;
+            for (const V3f& p : read_vec3(gltf_, positions))
+                if (all_finite(std::array{p}, 3)) at->second.extendBy(p);
+        }
+        if (at->second.isEmpty()) at->second = Box3f(V3f(0.f));
+        return at->second;
+    }
+
+    void reserve(size_t more) {
+        auto& instances = scene_.instances;
+        const size_t needed = instances.size() + more;
+        if (needed > instances.capacity())
+            instances.reserve(std::max(needed, instances.size() + instances.size() / 2));
     }
 
     // Tangents are found before the mesh is moved, so that every copy of it shades alike.
     Mesh read_shaded(const Placement& placement, const tinygltf::Primitive& primitive,
-                     const Material& material) {
+                     uint32_t material_index) {
+        const Material& material = scene_.materials[material_index];
         const bool with_tangents = material.needs_tangents();
-        Mesh mesh =
-            read_primitive(gltf_, primitive, placement.morph_weights, with_tangents, tally_);
+        Mesh mesh = read_primitive(
+            gltf_, primitive,
+            {placement.morph_weights, with_tangents, materials_.more_sets(material_index)}, tally_);
         repair_values(mesh, tally_);
         tally_.unmapped_primitives += add_missing_uv(mesh, material);
         tally_.replaced_normals += repair_normals(mesh);
@@ -135,17 +188,15 @@ class Placer {
         return mesh;
     }
 
-    const M44d& matrix_of(int node) const { return nodes_.to_world[static_cast<size_t>(node)]; }
-
-    Instance instance(uint32_t mesh, int node, const Box3f& bounds) const {
-        const M44d& to_world = matrix_of(node);
+    Instance instance(uint32_t mesh, int node, const M44d& to_world, const Box3f& bounds) const {
+        const M44d to_local = to_world.inverse();
         const Instance made{.mesh = mesh,
                             .identity = false,
                             .flips = relative_determinant(to_world) < 0,
                             .to_world = M44f(to_world),
-                            .to_local = M44f(to_world.inverse())};
+                            .to_local = M33f(linear_part(to_local))};
         const Box3f placed = Imath::transform(bounds, made.to_world);
-        const Box3f back = Imath::transform(placed, made.to_local);
+        const Box3f back = Imath::transform(placed, M44f(to_local));
         if (!all_finite(std::array{placed.min, placed.max, back.min, back.max}, 3))
             throw InputError(gltf_.file, json_path("nodes", node),
                              "places its mesh beyond the range of a float");
@@ -161,6 +212,7 @@ class Placer {
         require(all_finite(mesh.positions, 3), "POSITION");
         require(all_finite(mesh.uv[0], 2), "TEXCOORD_0");
         require(all_finite(mesh.uv[1], 2), "TEXCOORD_1");
+        for (const auto& uv : mesh.more_uv) require(all_finite(uv, 2), "TEXCOORD_n");
         require(all_finite(mesh.colours, 4), "COLOR_0");
     }
 
@@ -170,14 +222,18 @@ class Placer {
     GltfMaterials& materials_;
     Scene& scene_;
     GltfTally& tally_;
+    Places places_;
+    std::optional<Strokes> strokes_;
+    std::map<int, Box3f> boxes_;  ///< of meshes that are flattened somewhere
+    PlaceMemory memory_;
 };
 
 }  // namespace
 
 void place_meshes(const GltfModel& gltf, const GltfNodes& nodes, const GltfVariant& variant,
-                  GltfMaterials& materials, Scene& scene, GltfTally& tally) {
-    Placer placer(gltf, nodes, variant, materials, scene, tally);
-    for (const Placement& placement : group_nodes(gltf, nodes, tally)) placer.place(placement);
+                  GltfMaterials& materials, Scene& scene, GltfTally& tally,
+                  std::optional<float> stroke_radius_m) {
+    Placer(gltf, nodes, variant, materials, scene, tally, stroke_radius_m).run();
 }
 
 }  // namespace petzval

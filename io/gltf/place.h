@@ -2,6 +2,8 @@
 // Meshes of a glTF scene, and their instances.
 #pragma once
 
+#include <optional>
+
 #include "core/scene/scene.h"
 #include "io/gltf/materials.h"
 #include "io/gltf/model.h"
@@ -13,8 +15,10 @@ namespace petzval {
 
 /// Fills scene.meshes and scene.instances (and, through the materials, what they need). A mesh
 /// that stands once, or is posed by a skin, is stored in world space; any other once in its own
-/// space, with an instance for each place. Throws InputError.
+/// space, with an instance for each place. Points and lines are spheres and cylinders of the radius
+/// in the world; without one they are skipped, and counted. Throws InputError, also where all that
+/// would take more memory than there is.
 void place_meshes(const GltfModel&, const GltfNodes&, const GltfVariant&, GltfMaterials&, Scene&,
-                  GltfTally&);
+                  GltfTally&, std::optional<float> stroke_radius_m);
 
 }  // namespace petzval

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/gltf/primitive.h"
 
+#include <fmt/format.h>
 #include <tiny_gltf.h>
 
 #include <algorithm>
@@ -18,25 +19,30 @@ class PrimitiveReader {
     PrimitiveReader(const GltfModel& gltf, const tinygltf::Primitive& primitive, GltfTally& tally)
         : gltf_(gltf), primitive_(primitive), tally_(tally) {}
 
-    void read_attributes(Mesh& mesh, bool with_tangents) const {
+    void read_attributes(Mesh& mesh, bool with_tangents, const std::vector<uint64_t>& more_sets) {
         mesh.positions = read_vec3(gltf_, attribute(primitive_, "POSITION"));
         mesh.normals = read("NORMAL", read_vec3);
         if (with_tangents && !mesh.normals.empty())  // flat normals void the file's tangents
             mesh.tangents = read("TANGENT", read_vec4);
         mesh.uv = {read("TEXCOORD_0", read_vec2), read("TEXCOORD_1", read_vec2)};
+        for (const uint64_t set : more_sets) {
+            more_names_.push_back(fmt::format("TEXCOORD_{}", set));
+            mesh.more_uv.push_back(read(more_names_.back(), read_vec2));
+        }
         mesh.colours = read("COLOR_0", read_vec4);
         if (!mesh.colours.empty()) tally_.honoured.insert("vertex colours");
     }
 
+    [[nodiscard]] std::vector<uint32_t> read_order(const Mesh& mesh) const {
+        if (primitive_.indices >= 0) return read_indices(gltf_, primitive_.indices);
+        tally_.honoured.insert("geometry without indices");
+        std::vector<uint32_t> order(mesh.positions.size());
+        std::iota(order.begin(), order.end(), 0u);
+        return order;
+    }
+
     void read_triangles(Mesh& mesh) const {
-        std::vector<uint32_t> index;
-        if (primitive_.indices >= 0) {
-            index = read_indices(gltf_, primitive_.indices);
-        } else {
-            index.resize(mesh.positions.size());
-            std::iota(index.begin(), index.end(), 0u);
-            tally_.honoured.insert("geometry without indices");
-        }
+        const std::vector<uint32_t> index = read_order(mesh);
         const TriangleMode mode = triangle_mode();
         if (index.size() < 3 || (mode == TriangleMode::List && index.size() % 3 != 0))
             ++tally_.incomplete_primitives;
@@ -55,7 +61,7 @@ class PrimitiveReader {
 
   private:
     template <class Value>
-    std::vector<Value> read(const char* name,
+    std::vector<Value> read(const std::string& name,
                             std::vector<Value> (*reader)(const GltfModel&, int)) const {
         const int accessor = attribute(primitive_, name);
         if (accessor < 0) return {};
@@ -82,6 +88,8 @@ class PrimitiveReader {
         if (name == "TANGENT") add(mesh.tangents, read_vec3(gltf_, accessor), weight);
         if (name == "TEXCOORD_0") add(mesh.uv[0], read_vec2(gltf_, accessor), weight);
         if (name == "TEXCOORD_1") add(mesh.uv[1], read_vec2(gltf_, accessor), weight);
+        for (size_t i = 0; i < more_names_.size(); ++i)
+            if (name == more_names_[i]) add(mesh.more_uv[i], read_vec2(gltf_, accessor), weight);
         if (name == "COLOR_0") add_colours(mesh.colours, accessor, weight);
     }
 
@@ -105,6 +113,7 @@ class PrimitiveReader {
     const GltfModel& gltf_;
     const tinygltf::Primitive& primitive_;
     GltfTally& tally_;
+    std::vector<std::string> more_names_;  ///< of the attributes in Mesh::more_uv
 };
 
 }  // namespace
@@ -114,32 +123,35 @@ int attribute(const tinygltf::Primitive& primitive, const std::string& name) {
     return found == primitive.attributes.end() ? -1 : found->second;
 }
 
-bool is_drawn(const tinygltf::Primitive& primitive, GltfTally& tally) {
-    if (primitive.mode == TINYGLTF_MODE_POINTS) {
-        ++tally.point_primitives;
-        return false;
-    }
-    if (primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN) return false;  // warned of by the checks
-    if (primitive.mode < TINYGLTF_MODE_TRIANGLES) {
-        ++tally.line_primitives;
-        return false;
-    }
+Drawing drawing_of(const tinygltf::Primitive& primitive, GltfTally& tally) {
+    if (primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN)  // warned of by the checks
+        return Drawing::Nothing;
     if (attribute(primitive, "POSITION") < 0) {
         ++tally.primitives_without_positions;
-        return false;
+        return Drawing::Nothing;
     }
-    return true;
+    if (primitive.mode >= TINYGLTF_MODE_TRIANGLES) return Drawing::Triangles;
+    return primitive.mode == TINYGLTF_MODE_POINTS ? Drawing::Points : Drawing::Lines;
 }
 
 Mesh read_primitive(const GltfModel& gltf, const tinygltf::Primitive& primitive,
-                    const std::vector<double>& morph_weights, bool with_tangents,
-                    GltfTally& tally) {
-    const PrimitiveReader reader(gltf, primitive, tally);
+                    const PrimitiveRequest& asked, GltfTally& tally) {
+    PrimitiveReader reader(gltf, primitive, tally);
     Mesh mesh;
-    reader.read_attributes(mesh, with_tangents);
-    reader.add_morph_targets(mesh, morph_weights);
+    reader.read_attributes(mesh, asked.with_tangents, asked.more_sets);
+    reader.add_morph_targets(mesh, asked.morph_weights);
     reader.read_triangles(mesh);
     return mesh;
+}
+
+StrokeSource read_stroke(const GltfModel& gltf, const tinygltf::Primitive& primitive,
+                         const std::vector<double>& morph_weights, GltfTally& tally) {
+    PrimitiveReader reader(gltf, primitive, tally);
+    StrokeSource source;
+    reader.read_attributes(source.vertices, false, {});
+    reader.add_morph_targets(source.vertices, morph_weights);
+    source.order = reader.read_order(source.vertices);
+    return source;
 }
 
 }  // namespace petzval

@@ -14,16 +14,32 @@ struct Primitive;
 
 namespace petzval {
 
-/// Whether a primitive is drawn. Not drawn are points, lines and primitives without positions,
-/// which are counted, and modes that glTF does not have.
-[[nodiscard]] bool is_drawn(const tinygltf::Primitive&, GltfTally&);
+/// What a primitive shows.
+enum class Drawing : uint8_t { Nothing, Points, Lines, Triangles };
 
-/// Reads attributes and triangles of a primitive that is drawn, and applies the morph targets with
-/// their weights. Tangents are read only on request: they serve normal maps. Directions are as the
-/// file has them, the material is left at 0.
+/// Kind of a primitive. Nothing is shown by those without positions, which are counted, and by
+/// modes that glTF does not have.
+[[nodiscard]] Drawing drawing_of(const tinygltf::Primitive&, GltfTally&);
+
+/// What is wanted of a primitive.
+struct PrimitiveRequest {
+    const std::vector<double>& morph_weights;
+    bool with_tangents;                      ///< they serve normal maps
+    const std::vector<uint64_t>& more_sets;  ///< numbers of the TEXCOORD_n for Mesh::more_uv
+};
+
+/// Reads attributes and triangles of a primitive that shows some, and applies the morph targets.
+/// Directions are as the file has them, the material is left at 0.
 [[nodiscard]] Mesh read_primitive(const GltfModel&, const tinygltf::Primitive&,
-                                  const std::vector<double>& morph_weights, bool with_tangents,
-                                  GltfTally&);
+                                  const PrimitiveRequest&, GltfTally&);
+
+/// Points or lines of a primitive: vertices without triangles, and the order in which they come.
+struct StrokeSource {
+    Mesh vertices;
+    std::vector<uint32_t> order;
+};
+[[nodiscard]] StrokeSource read_stroke(const GltfModel&, const tinygltf::Primitive&,
+                                       const std::vector<double>& morph_weights, GltfTally&);
 
 /// Accessor index of an attribute; -1 where the primitive has none of that name.
 [[nodiscard]] int attribute(const tinygltf::Primitive&, const std::string& name);

@@ -28,6 +28,7 @@ uint64_t replace_broken(std::vector<Value>& values, const Value& by) {
 
 void repair_values(Mesh& mesh, GltfTally& tally) {
     for (auto& uv : mesh.uv) tally.broken_values += replace_broken(uv, V2f(0.f));
+    for (auto& uv : mesh.more_uv) tally.broken_values += replace_broken(uv, V2f(0.f));
     tally.broken_values += replace_broken(mesh.colours, V4f(1.f));
 
     auto& positions = mesh.positions;
@@ -47,8 +48,8 @@ void repair_values(Mesh& mesh, GltfTally& tally) {
 bool add_missing_uv(Mesh& mesh, const Material& material) {
     bool added = false;
     for (const TextureSlot* slot : material.textures()) {
-        if (!slot->present() || !mesh.uv[slot->uv_set].empty()) continue;
-        mesh.uv[slot->uv_set].assign(mesh.positions.size(), V2f(0.f));
+        if (!slot->present() || !mesh.uv_of(slot->uv_set).empty()) continue;
+        mesh.uv_of(slot->uv_set).assign(mesh.positions.size(), V2f(0.f));
         added = true;
     }
     return added;

@@ -18,7 +18,9 @@ struct GltfTally {
     uint64_t broken_triangles = 0;       ///< with a corner that is not finite
     uint64_t broken_values = 0;          ///< texture coordinates and colours likewise
     uint64_t unmapped_primitives = 0;    ///< textured, but without texture coordinates
-    uint64_t singular_nodes = 0;         ///< whose matrix flattens space
+    uint64_t singular_nodes = 0;         ///< whose matrix leaves a line or a point
+    uint64_t hidden_instances = 0;       ///< likewise, or not finite
+    uint64_t broken_strokes = 0;         ///< points and lines that are not finite
     uint64_t replaced_normals = 0;       ///< of no length
     uint64_t occlusion_textures = 0, ranged_lights = 0;
     uint64_t point_lamps = 0, spot_lamps = 0;  ///< lights with a radius

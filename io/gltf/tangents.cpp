@@ -38,6 +38,7 @@ void gather_vertices(Mesh& mesh, const std::vector<uint32_t>& from) {
     gather(mesh.positions, from);
     gather(mesh.normals, from);
     for (auto& uv : mesh.uv) gather(uv, from);
+    for (auto& uv : mesh.more_uv) gather(uv, from);
     gather(mesh.colours, from);
 }
 
@@ -64,7 +65,7 @@ class TangentBuilder {
   public:
     TangentBuilder(Mesh& mesh, const TextureSlot& map) : mesh_(mesh), flat_(mesh.normals.empty()) {
         if (flat_) unshare_vertices(mesh);
-        for (const V2f& uv : mesh.uv[map.uv_set])
+        for (const V2f& uv : mesh.uv_of(map.uv_set))
             uv_.push_back({map.u_row[0] * uv.x + map.u_row[1] * uv.y + map.u_row[2],
                            map.v_row[0] * uv.x + map.v_row[1] * uv.y + map.v_row[2]});
     }
@@ -213,7 +214,7 @@ void repair_tangents(Mesh& mesh) {
 }
 
 void add_tangents(Mesh& mesh, const TextureSlot& normal_map) {
-    if (mesh.uv[normal_map.uv_set].empty()) return;
+    if (mesh.uv_of(normal_map.uv_set).empty()) return;
     TangentBuilder(mesh, normal_map).build();
 }
 

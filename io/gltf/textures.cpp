@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/gltf/textures.h"
 
-#include <fmt/format.h>
 #include <tiny_gltf.h>
 
 #include <algorithm>
@@ -14,8 +13,6 @@
 
 namespace petzval {
 namespace {
-
-constexpr uint64_t kUvSets = 2;
 
 Wrap to_wrap(int mode) {
     if (mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Wrap::ClampToEdge;
@@ -106,13 +103,7 @@ TextureSlot GltfTextures::slot(const JsonCursor& parent, const char* key, Encodi
         set_transform(slot, *transform);
         uv_set = transform->integer_or("texCoord", uv_set);
     }
-    if (uv_set >= kUvSets) {
-        tally_.warnings.push_back(fmt::format(
-            "{}: uses TEXCOORD_{}, of which only 0 and 1 are read; the slot is left without",
-            info->path(), uv_set));
-        return {};
-    }
-    slot.uv_set = static_cast<uint8_t>(uv_set);
+    slot.uv_set = set_of(uv_set);
     slot.encoding = encoding;
     if (texture.sampler >= 0) {
         const auto& sampler = gltf_.typed.samplers.at(static_cast<size_t>(texture.sampler));
@@ -124,6 +115,15 @@ TextureSlot GltfTextures::slot(const JsonCursor& parent, const char* key, Encodi
     slot.image = use_image(source);
     check_colours(source, info->path(), key, encoding);
     return slot;
+}
+
+uint8_t GltfTextures::set_of(uint64_t texcoord) {
+    constexpr size_t always = std::tuple_size_v<decltype(Mesh::uv)>;
+    if (texcoord < always) return static_cast<uint8_t>(texcoord);
+    const auto at = std::find(more_sets_.begin(), more_sets_.end(), texcoord);
+    const auto number = static_cast<size_t>(at - more_sets_.begin());
+    if (at == more_sets_.end()) more_sets_.push_back(texcoord);
+    return static_cast<uint8_t>(always + number);  // a material has some twenty slots
 }
 
 void GltfTextures::check_colours(size_t image, const std::string& slot, std::string_view key,

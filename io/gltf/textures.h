@@ -2,6 +2,7 @@
 // Texture slots of glTF materials, and the images behind them.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "core/scene/scene.h"
@@ -21,6 +22,8 @@ class GltfTextures {
     /// Texture slot from the textureInfo object at `key`, with KHR_texture_transform; a slot
     /// without a texture where there is none. Throws InputError where the image cannot be decoded.
     [[nodiscard]] TextureSlot slot(const JsonCursor& parent, const char* key, Encoding);
+    /// Numbers of the TEXCOORD_n that slots made since the last call have as their sets from 2 on.
+    [[nodiscard]] std::vector<uint64_t> take_more_sets() { return std::exchange(more_sets_, {}); }
 
   private:
     /// What is known of an image of the file.
@@ -31,6 +34,7 @@ class GltfTextures {
         bool normals_checked = false;
     };
 
+    [[nodiscard]] uint8_t set_of(uint64_t texcoord);
     [[nodiscard]] int32_t use_image(size_t image);
     /// Warns of what is likely a mistake in an image that a slot reads, each once. key: the slot's
     /// name.
@@ -40,6 +44,7 @@ class GltfTextures {
     std::vector<Image>& images_;
     GltfTally& tally_;
     PictureBudget& pictures_;
+    std::vector<uint64_t> more_sets_;
     std::vector<Used> used_;  ///< by image of the file
 };
 

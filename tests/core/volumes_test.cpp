@@ -211,7 +211,7 @@ TEST(VolumeRanks, PartsOfOneMaterialCloseEachOther) {
     lower.identity = false;
     lower.flips = true;
     lower.to_world = M44f(1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1);
-    lower.to_local = lower.to_world;
+    lower.to_local = linear_part(lower.to_world);
     scene.instances.push_back(lower);
     rank_volumes(scene);
     EXPECT_EQ(scene.materials[0].priority, 1u);
@@ -225,7 +225,7 @@ TEST(VolumeRanks, InstancesAreAsLargeAsTheyArePlaced) {
     Instance& scaled = scene.instances[1];
     scaled.identity = false;
     scaled.to_world = M44f(0.1f, 0, 0, 0, 0, 0.1f, 0, 0, 0, 0, 0.1f, 0, 0, 0, 0, 1);
-    scaled.to_local = scaled.to_world.inverse();
+    scaled.to_local = linear_part(scaled.to_world.inverse());
     finish_scene(scene);
     EXPECT_GT(priority(scene, "small"), priority(scene, "large"));
 }

@@ -45,8 +45,13 @@ struct Decoder {
     };
     const auto lens = [](const fs::path& path) { (void)load_lens(path.string()); };
     const auto picture = [](const fs::path& path) { (void)read_picture(path); };
+    const auto load_with_strokes = [](const fs::path& path) {
+        PictureBudget pictures;
+        (void)load_gltf(path, FileScope::Anywhere, pictures,
+                        {.scene = {}, .point_line_radius_m = 0.1f});
+    };
     static const std::map<std::string, Decoder> all = {
-        {"gltf", {".gltf", [](const fs::path& path) { (void)load_gltf(path); }}},
+        {"gltf", {".gltf", load_with_strokes}},
         {"glb", {".glb", [](const fs::path& path) { (void)load_gltf(path); }}},
         {"draco", codec(decodes_draco)},
         {"meshopt", codec(decodes_meshopt)},

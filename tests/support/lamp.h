@@ -32,7 +32,7 @@ inline constexpr std::array<std::array<float, 3>, 3> kLampCorners{
     instance.mesh = mesh;
     instance.identity = false;
     instance.to_world = to_world;
-    instance.to_local = to_world.inverse();
+    instance.to_local = linear_part(to_world.inverse());
     instance.flips = to_world.determinant() < 0;
     return instance;
 }

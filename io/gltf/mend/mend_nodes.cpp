@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <string_view>
 
 #include "io/gltf/mend/mend.h"
 
@@ -105,8 +106,36 @@ void mend_repeats(const JsonEditor& owner, const char* key, const char* what) {
     *list = std::move(once);
 }
 
-void mend_node(const JsonEditor& node) {
+/// Mends EXT_mesh_gpu_instancing: instances that are none, as exporters write them, and rotations
+/// that are not said to be shares of 1.
+void mend_instancing(const JsonEditor& root, const JsonEditor& node) {
+    const auto many = node.extension("EXT_mesh_gpu_instancing");
+    const auto attributes = many ? many->object("attributes") : std::nullopt;
+    json* const accessors = root.array("accessors");
+    if (!attributes || !accessors) return;
+    for (const char* name : {"TRANSLATION", "ROTATION", "SCALE"}) {
+        const auto index = attributes->integer(name);
+        if (!index || *index >= accessors->size() || !(*accessors)[*index].is_object()) continue;
+        json& accessor = (*accessors)[*index];
+        if (accessor.value("count", json()) == 0) {
+            many->warn(fmt::format("has no instances in {}; the node shows nothing", name));
+            node.value().erase("mesh");
+            node.find("extensions")->erase("EXT_mesh_gpu_instancing");
+            return;
+        }
+        const json type = accessor.value("componentType", json());
+        if ((type != 5120 && type != 5122) || accessor.value("normalized", json()) == true)
+            continue;
+        if (std::string_view(name) != "ROTATION") continue;
+        root.warn(fmt::format("/accessors/{}/normalized: must be true for ROTATION; it is taken so",
+                              *index));
+        accessor["normalized"] = true;
+    }
+}
+
+void mend_node(const JsonEditor& root, const JsonEditor& node) {
     if (node.value().empty()) return;
+    mend_instancing(root, node);
     mend_transform(node);
     mend_absent(node, "children");
     mend_repeats(node, "children", "node");
@@ -119,7 +148,7 @@ void mend_node(const JsonEditor& node) {
 }  // namespace
 
 void mend_nodes(const JsonEditor& root) {
-    root.each("nodes", mend_node);
+    root.each("nodes", [&](const JsonEditor& node) { mend_node(root, node); });
     root.each("scenes", [](const JsonEditor& scene) {
         mend_absent(scene, "nodes");
         mend_repeats(scene, "nodes", "node");

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
 
+#include "io/base/json_parse.h"
 #include "io/gltf/validate/check.h"
 
 namespace petzval {
@@ -12,6 +14,9 @@ namespace {
 /// Greatest depth of the node tree, so that code may recurse. Deep rigs have about a hundred
 /// levels.
 constexpr int max_tree_depth = 1024;
+
+/// Bytes that a loader takes for an instance, at least, and a count whose product with it fits.
+constexpr uint64_t kInstanceBytes = 600, kMostCounted = uint64_t(1) << 40;
 
 void check_transform(const JsonCursor& node) {
     (void)node.numbers("matrix", 16);
@@ -60,6 +65,9 @@ class NodeCheck {
         if (const auto light = node.extension("KHR_lights_punctual"))
             (void)light->required_index("light", lights_, "light");
         if (const auto light = node.extension("EXT_lights_ies")) check_profile_light(*light);
+        if (const auto many = node.extension("EXT_mesh_gpu_instancing"))
+            check_instancing(node, *many, mesh);
+        if (const auto shown = node.extension("KHR_node_visibility")) shown->check_bool("visible");
         link_children(index);
     }
 
@@ -68,6 +76,51 @@ class NodeCheck {
         (void)light.required_index("light", profiles_, "light");
         (void)light.number_or("multiplier", 1, not_negative);
         (void)light.numbers("color", 3, not_negative);
+    }
+
+    void check_instancing(const JsonCursor& node, const JsonCursor& many,
+                          const std::optional<size_t>& mesh) {
+        if (!mesh) check_.warn(many, "has no meaning on a node without a mesh");
+        const auto attributes = many.find_object("attributes");
+        std::optional<uint64_t> count;
+        bool stored = false;
+        for (const auto& [name, type] :
+             {std::pair{"TRANSLATION", "VEC3"}, std::pair{"ROTATION", "VEC4"},
+              std::pair{"SCALE", "VEC3"}}) {
+            if (!attributes || !attributes->has(name)) continue;
+            const GltfAccessor& accessor = check_.accessors[attributes->required_index(
+                name, check_.accessors.size(), "accessor")];
+            const std::string component = component_name(format_of(accessor));
+            const bool turns = std::string_view(name) == "ROTATION";
+            if (accessor.type != type ||
+                (component != "float" &&
+                 !(turns && (component == "int8n" || component == "int16n"))))
+                attributes->fail(
+                    name,
+                    fmt::format("is {} of {}, not {} of floats{}", printable(accessor.type),
+                                component, type, turns ? ", or of normalized int8 or int16" : ""));
+            if (count.value_or(accessor.count) != accessor.count)
+                attributes->fail(name, fmt::format("has {} elements, but another attribute has {}",
+                                                   accessor.count, *count));
+            count = accessor.count;
+            stored |= !accessor.bytes.empty();
+        }
+        if (!count) {
+            check_.warn(many,
+                        "has none of TRANSLATION, ROTATION and SCALE; the node is shown once");
+            return;
+        }
+        // Those that are stored are as many as the file is long; the loader asks the machine.
+        if (!stored) check_.budget.ask(std::min(*count, kMostCounted) * kInstanceBytes, node);
+        warn_of_own(*attributes);
+    }
+
+    void warn_of_own(const JsonCursor& attributes) {
+        for (const auto& [name, unused] : attributes.value().items())
+            if (name != "TRANSLATION" && name != "ROTATION" && name != "SCALE")
+                check_.warn(attributes, printable(name) +
+                                            " is an attribute of the file's own; it is "
+                                            "ignored");
     }
 
     void link_children(size_t index) {

@@ -61,6 +61,12 @@ void mark_accessors(const json& root, GltfUse& use) {
                  [&](const json& target) { mark_all(use.accessors, target); });
         });
     });
+    each(root, "nodes", [&](const json& node) {
+        const json& attributes =
+            member(member(member(node, "extensions"), "EXT_mesh_gpu_instancing"), "attributes");
+        for (const char* name : {"TRANSLATION", "ROTATION", "SCALE"})
+            mark(use.accessors, member(attributes, name));
+    });
     each(root, "skins",
          [&](const json& skin) { mark(use.accessors, member(skin, "inverseBindMatrices")); });
 }

@@ -7,8 +7,8 @@
 namespace petzval {
 
 /// Which objects of a glTF file something refers to that is shown: a broken one that nothing needs
-/// is no reason to refuse the file. Meshes and skins need accessors (animations do not: they are
-/// not played), accessors and images need bufferViews, textures need images.
+/// is no reason to refuse the file. Meshes, skins and instances need accessors (animations do not:
+/// they are not played), accessors and images need bufferViews, textures need images.
 struct GltfUse {
     std::vector<bool> accessors, views, images;
 };

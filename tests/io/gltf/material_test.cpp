@@ -301,6 +301,79 @@ TEST(GltfMaterial, SamplersSetWrapAndFilter) {
     EXPECT_EQ(m.base_color_texture.uv_set, 1);
 }
 
+/// A triangle with five sets of coordinates, of which the texture's place tells the number.
+TinyGltf five_sets(const std::vector<int>& sets) {
+    TinyGltf file;
+    json attributes;
+    for (int n = 0; n < 5; ++n) {
+        const float at = 0.125f * static_cast<float>(n);
+        attributes["TEXCOORD_" + std::to_string(n)] =
+            file.add_accessor<float>("VEC2", {at, 0, at, 0.5f, at, 1});
+    }
+    file.add_triangle({{"material", 0}, {"attributes", attributes}});
+    file.add_root({{"mesh", 0}});
+    add_texture(file, 1);
+    const auto texture = [&](size_t i) { return json{{"index", 0}, {"texCoord", sets[i]}}; };
+    file.json["materials"] = {
+        {{"pbrMetallicRoughness",
+          {{"baseColorTexture", texture(0)}, {"metallicRoughnessTexture", texture(1)}}},
+         {"normalTexture", texture(2)},
+         {"emissiveTexture", texture(3)},
+         {"emissiveFactor", {1, 1, 1}}}};
+    return file;
+}
+
+std::vector<int> sets_found(const GltfFile& loaded) {
+    const Mesh& mesh = loaded.scene.meshes.at(0);
+    const Material& m = loaded.scene.materials.at(mesh.material);
+    std::vector<int> found;
+    for (const TextureSlot* slot : {&m.base_color_texture, &m.metallic_roughness_texture,
+                                    &m.normal_texture, &m.emissive_texture}) {
+        const V2f uv = mesh.uv_at(0, V2f(0.25f, 0.5f), slot->uv_set);
+        EXPECT_EQ(uv.y, 0.625f);
+        found.push_back(static_cast<int>(uv.x * 8));
+    }
+    return found;
+}
+
+TEST(GltfMaterial, TexturesMayUseAnySetOfCoordinates) {
+    for (const std::vector<int>& sets :
+         {std::vector{0, 1, 0, 1}, {0, 3, 0, 3}, {4, 3, 2, 1}, {2, 2, 2, 2}, {4, 0, 2, 3}}) {
+        const GltfFile loaded = load(five_sets(sets));
+        EXPECT_EQ(sets_found(loaded), sets);
+        EXPECT_TRUE(loaded.warnings.empty());
+    }
+    const Mesh usual = load(five_sets({0, 1, 1, 0})).scene.meshes[0];
+    EXPECT_TRUE(usual.more_uv.empty());  // costs nothing where it is not needed
+    EXPECT_EQ(load(five_sets({3, 1, 3, 0})).scene.meshes[0].more_uv.size(), 1u);
+}
+
+TEST(GltfMaterial, ASetThatIsNotThereReadsAsZero) {
+    for (const auto& set : {json(7), json(300), json(4294967296), json(4294967297)}) {
+        TinyGltf file = five_sets({0, 0, 0, 0});
+        file.json["materials"][0]["emissiveTexture"]["texCoord"] = set;
+        const GltfFile loaded = load(file);
+        const Mesh& mesh = loaded.scene.meshes.at(0);
+        EXPECT_EQ(mesh.uv_at(0, V2f(0.25f, 0.5f), 2), V2f(0.f));
+        EXPECT_TRUE(contains_line(loaded.warnings, "without texture coordinates"));
+    }
+}
+
+TEST(GltfMaterial, TangentsAndMorphTargetsOfAnySet) {
+    TinyGltf file = five_sets({0, 0, 3, 0});
+    auto& primitive = file.json["meshes"][0]["primitives"][0];
+    primitive["attributes"]["TEXCOORD_3"] =  // u along y
+        file.add_accessor<float>("VEC2", {0, 0, 0, 1, 1, 0});
+    const int more = file.add_accessor<float>("VEC2", {0.5f, 0, 0, 0, 0, 0});
+    primitive["targets"] = {{{"TEXCOORD_3", more}}};
+    file.json["meshes"][0]["weights"] = {0.5};
+    const Mesh mesh = load(file).scene.meshes.at(0);
+    ASSERT_EQ(mesh.more_uv.size(), 1u);
+    EXPECT_EQ(mesh.more_uv[0][mesh.triangles[0][0]], V2f(0.25f, 0));
+    ASSERT_FALSE(mesh.tangents.empty());
+    EXPECT_GT(mesh.tangents[0].y, 0.9f);
+}
+
 void expect_uv(const TextureSlot& slot, V2f from, V2f to) {
     const V2f moved(slot.u_row[0] * from.x + slot.u_row[1] * from.y + slot.u_row[2],
                     slot.v_row[0] * from.x + slot.v_row[1] * from.y + slot.v_row[2]);

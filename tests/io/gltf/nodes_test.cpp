@@ -99,21 +99,22 @@ TEST(GltfNodes, AMeshThatStandsTwiceBecomesInstances) {
     EXPECT_FALSE(first.identity);
     EXPECT_FALSE(first.flips);
     EXPECT_EQ(V3f(1, 2, 3) * first.to_world, V3f(1, 2, 8));
-    EXPECT_EQ(V3f(1, 2, 8) * first.to_local, V3f(1, 2, 3));
+    EXPECT_EQ(first.to_local, M33f());
     EXPECT_TRUE(second.flips);
     EXPECT_EQ(V3f(1, 2, 3) * second.to_world, V3f(2, 4, -6));
     EXPECT_EQ(V3f(2, 4, -6) * second.to_local, V3f(1, 2, 3));
     EXPECT_TRUE(contains_line(loaded.contents, "triangles: 1 stored, 2 placed"));
 }
 
-TEST(GltfNodes, FlatteningMatricesAreSkippedWithAWarning) {
+TEST(GltfNodes, WhatIsScaledToALineOrAPointIsSkippedWithAWarning) {
     TinyGltf file = one_triangle();
-    file.add_root({{"mesh", 0}, {"scale", {0, 1, 1}}});
+    file.add_root({{"mesh", 0}, {"scale", {0, 1, 0}}});
+    file.add_root({{"mesh", 0}, {"matrix", {1, 2, 3, 0, 2, 4, 6, 0, 3, 6, 9, 0, 5, 5, 5, 1}}});
     file.add_root({{"mesh", 0}, {"scale", {1e-9, 1, 1e9}}});
     const GltfFile loaded = load(file);
     ASSERT_EQ(loaded.scene.instances.size(), 1u);
     EXPECT_TRUE(loaded.scene.instances[0].identity);  // the only one left
-    EXPECT_EQ(loaded.warnings, std::vector<std::string>{"1 node scaled to nothing skipped"});
+    EXPECT_EQ(loaded.warnings, std::vector<std::string>{"2 nodes scaled to nothing skipped"});
 }
 
 TEST(GltfNodes, PositionsBeyondAFloatAreRefused) {
@@ -137,6 +138,68 @@ TEST(GltfNodes, WhichSceneIsShown) {
     EXPECT_EQ(load_mesh(file).positions[0], V3f(10, 0, 0));
     file.json.erase("scenes");
     EXPECT_EQ(load(file).scene.instances.size(), 2u);
+}
+
+/// Loads with choices.
+GltfFile load_with(const TinyGltf& file, const GltfChoices& choices) {
+    const TempFolder folder;
+    PictureBudget pictures;
+    return load_gltf(file.save_glb(folder.path / "test.glb"), FileScope::Anywhere, pictures,
+                     choices);
+}
+
+TEST(GltfNodes, AnySceneOfTheFileMayBeShown) {
+    TinyGltf file = one_triangle();
+    for (const char* name : {"day", "1", "night"}) {
+        const int node = file.add("nodes", {{"mesh", 0}, {"translation", {name[0], 0, 0}}});
+        file.add("scenes", {{"nodes", {node}}, {"name", name}});
+    }
+    file.json["scene"] = 1;
+    const auto left_of = [&](const char* scene) {
+        return load_with(file, {.scene = scene}).scene.meshes.at(0).positions.at(0).x;
+    };
+    EXPECT_EQ(left_of("night"), float('n'));
+    EXPECT_EQ(left_of("0"), float('d'));
+    EXPECT_EQ(left_of("1"), float('1'));
+    EXPECT_EQ(left_of("2"), float('n'));
+    EXPECT_TRUE(has(refusal([&] { (void)load_with(file, {.scene = "nigth"}); }),
+                    "no scene \"nigth\"; it has 0 \"day\", 1 \"1\", 2 \"night\""));
+    EXPECT_TRUE(has(refusal([&] { (void)load_with(file, {.scene = "3"}); }), "no scene \"3\""));
+    const GltfFile shown = load_with(file, {.scene = "night"});
+    EXPECT_TRUE(contains_line(shown.contents, "scene 2: night, shown"));
+    file.json["scenes"][0]["name"] = "1";  // the first of a name
+    EXPECT_EQ(left_of("1"), float('d'));
+    TinyGltf none = one_triangle();
+    none.add("nodes", {{"mesh", 0}});
+    EXPECT_TRUE(has(refusal([&] { (void)load_with(none, {.scene = "0"}); }), "the file has none"));
+}
+
+// KHR_node_visibility: "Visibility affects neither cameras", and no child of a hidden node shows.
+TEST(GltfNodes, HiddenNodesShowNeitherMeshesNorLights) {
+    TinyGltf file = one_triangle();
+    file.json["extensionsUsed"] = {"KHR_node_visibility", "KHR_lights_punctual"};
+    file.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
+    file.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}});
+    const auto with = [](nlohmann::json node, bool visible) {
+        node["extensions"]["KHR_node_visibility"]["visible"] = visible;
+        return node;
+    };
+    nlohmann::json all = {{"mesh", 0}, {"camera", 0}};
+    all["extensions"]["KHR_lights_punctual"]["light"] = 0;
+    const int child = file.add("nodes", with(all, true));
+    const int group = file.add("nodes", {{"children", {child}}});
+    file.add_root(with({{"children", {group}}}, false));
+    file.add_root(with(all, true));
+    file.add_root(all);
+    const GltfFile loaded = load(file);
+    EXPECT_EQ(loaded.scene.instances.size(), 2u);
+    EXPECT_EQ(loaded.scene.lights.size(), 2u);
+    EXPECT_EQ(loaded.cameras.size(), 3u);
+    EXPECT_TRUE(contains_line(loaded.honoured, "KHR_node_visibility"));
+    file.json["nodes"][2]["extensions"]["KHR_node_visibility"] = nlohmann::json::object();
+    EXPECT_EQ(load(file).scene.instances.size(), 3u);  // visible by default
+    file.json["nodes"][2]["extensions"]["KHR_node_visibility"]["visible"] = 0;
+    EXPECT_TRUE(has(refusal([&] { (void)load(file); }), "/KHR_node_visibility/visible"));
 }
 
 TEST(GltfNodes, DeepTrees) {

@@ -20,7 +20,8 @@ TinyGltf sample_file() {
     file.add("materials", {{"normalTexture", {{"index", 0}, {"texCoord", 0}}},
                            {"extensions", {{"KHR_materials_dispersion", {{"dispersion", 1}}}}},
                            {"extras", {{"petzval", {{"metal", "au"}, {"illuminant", "a"}}}}}});
-    file.json["extensionsUsed"] = {"KHR_materials_dispersion"};
+    file.json["extensionsUsed"] = {"EXT_mesh_gpu_instancing", "KHR_materials_dispersion",
+                                   "KHR_node_visibility"};
     file.add("textures", {{"source", file.add_image(Bytes{1, 2, 3})}});
     const int mesh = file.add_triangle({{"material", 0}});
     file.json["meshes"][size_t(mesh)]["primitives"][0]["attributes"]["TEXCOORD_0"] =
@@ -31,7 +32,13 @@ TinyGltf sample_file() {
         {"count", 2},
         {"indices", {{"bufferView", at}, {"componentType", 5121}}},
         {"values", {{"bufferView", values}}}};
+    const int t = file.add_accessor<float>("VEC3", {0, 0, 0, 1, 2, 3});
+    const int r =
+        file.add_accessor<int8_t>("VEC4", {0, 0, 0, 127, 0, 127, 0, 0}, {{"normalized", true}});
     const int child = file.add("nodes", {{"mesh", mesh}, {"scale", {1, 2, 3}}});
+    file.json["nodes"][size_t(child)]["extensions"] = {
+        {"KHR_node_visibility", {{"visible", true}}},
+        {"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", t}, {"ROTATION", r}}}}}};
     file.add_root({{"children", {child}}});
     return file;
 }

@@ -132,7 +132,7 @@ void append_warnings(const GltfTally& tally, std::vector<std::string>& warnings)
          "without texture coordinates for its textures; 0,0 is taken");
     warn(tally.singular_nodes, "node", "scaled to nothing skipped");
     warn(tally.hidden_instances, "instance", "scaled to nothing, or nowhere, skipped");
-    warn(tally.broken_strokes, "point or line segment", "that is not finite skipped");
+    warn(tally.broken_strokes, "point or line segment", "without a finite place skipped");
     warn(tally.replaced_normals, "normal", "without a length replaced by those of the faces");
 }
 

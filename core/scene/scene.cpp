@@ -75,10 +75,13 @@ bool emits(const Scene& scene, const Instance& instance) {
 
 std::vector<Box3f> mesh_boxes(const Scene& scene) {
     std::vector<Box3f> boxes(scene.meshes.size());
-    for (size_t i = 0; i < boxes.size(); ++i)
-        for (const auto& triangle : scene.meshes[i].triangles)
-            for (const uint32_t corner : triangle)
-                boxes[i].extendBy(scene.meshes[i].positions[corner]);
+    for (const Instance& instance : scene.instances) {
+        Box3f& box = boxes[instance.mesh];
+        if (instance.identity || !box.isEmpty()) continue;
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        for (const auto& triangle : mesh.triangles)
+            for (const uint32_t corner : triangle) box.extendBy(mesh.positions[corner]);
+    }
     return boxes;
 }
 

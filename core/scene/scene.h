@@ -48,7 +48,7 @@ void finish_scene(Scene&);
 /// Whether an instance lights the scene: its material emits, and is not one that only shows itself.
 [[nodiscard]] bool emits(const Scene&, const Instance&);
 
-/// Boxes about the triangles of each mesh, in its own space.
+/// Boxes about the triangles of each mesh, in its own space; empty where it is stored in the world.
 [[nodiscard]] std::vector<Box3f> mesh_boxes(const Scene&);
 /// Box that holds all that is moved by the matrix out of a box, rounding included.
 [[nodiscard]] Box3f placed_box(const Box3f&, const M44f& to_world);

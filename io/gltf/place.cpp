@@ -54,7 +54,7 @@ class Placer {
     void run() {
         for (const Placement& placement : find_placements(gltf_, nodes_, places_, tally_))
             place(placement);
-        if (strokes_) strokes_->finish(scene_);
+        if (strokes_) strokes_->finish(scene_, materials_);
     }
 
   private:

@@ -144,12 +144,13 @@ void Strokes::add(uint32_t material, const Mesh& vertices, const StrokeShapes& s
     }
 }
 
-void Strokes::finish(Scene& scene) {
+void Strokes::finish(Scene& scene, const GltfMaterials& materials) {
     for (auto& [material, groups] : by_material_)
         for (Group& group : groups) {
             if (group.instances.empty()) continue;
             Mesh mesh = &group == &groups[0] ? unit_sphere() : unit_cylinder();
             mesh.material = material;
+            mesh.more_uv.resize(materials.more_sets(material).size());
             if (!group.colours.empty()) {
                 mesh.colours = std::move(group.colours);
                 mesh.colours_from = static_cast<uint32_t>(scene.instances.size());

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/scene/scene.h"
+#include "io/gltf/materials.h"
 #include "io/gltf/primitive.h"
 
 namespace petzval {
@@ -27,8 +28,8 @@ class Strokes {
 
     /// Adds the shapes between vertices that are moved by the matrix.
     void add(uint32_t material, const Mesh& vertices, const StrokeShapes&, const M44d& to_world);
-    /// Moves all into the scene.
-    void finish(Scene&);
+    /// Moves all into the scene, with that material's sets of texture coordinates, all 0.
+    void finish(Scene&, const GltfMaterials&);
 
   private:
     struct Group {

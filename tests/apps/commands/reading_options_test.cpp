@@ -96,6 +96,40 @@ TEST_F(ReadingOptions, MaxMemoryIsAnAmountAndHoldsForTheRenderToo) {
     expect_refused(4, {{{"--max-memory", "10MB", "--size", "2000x2000"}, "--size: needs"}});
 }
 
+TEST_F(ReadingOptions, ASceneOfTheFileAndARadiusForItsPoints) {
+    TinyGltf file = studio();
+    file.json["scenes"][0]["name"] = "day";
+    nlohmann::json night = file.json["scenes"][0];
+    night["name"] = "night";
+    night["nodes"].push_back(file.add(
+        "nodes", {{"mesh", file.add_mesh(
+                               {{"mode", 0},
+                                {"attributes", {{"POSITION", file.add_positions({0, 0, 0})}}}})}}));
+    file.json["scenes"].push_back(night);
+    const std::string scene = file.save_gltf(folder_.path / "two.gltf").string();
+    const auto info = [&](Words words) {
+        words.insert(words.begin(), {"info", scene});
+        return run_petzval(words).out;
+    };
+    EXPECT_NE(info({}).find("scene 0: day, shown"), std::string::npos);
+    const std::string shown = info({"--scene", "night", "--point-line-radius", "2cm"});
+    EXPECT_NE(shown.find("scene 1: night, shown"), std::string::npos) << shown;
+    EXPECT_NE(shown.find("points and lines, as spheres"), std::string::npos) << shown;
+    const Words more = {"--scene", "night", "--point-line-radius", "2cm"};
+    for (Words words : {Words{"info", scene}, Words{"plan", scene, "--size", "8x8"},
+                        Words{"render", scene, "-o", path("o.exr")},
+                        Words{"chart", scene, "-o", path("chart")}}) {
+        words.insert(words.end(), {"--scene", "dusk"});
+        const std::string line = error_of(words, 1);
+        EXPECT_NE(line.find("no scene \"dusk\"; it has 0 \"day\", 1 \"night\""), line.npos) << line;
+    }
+    Words plan = {"plan", scene, "--size", "8x8", "--quiet", "--tolerance", "50%"};
+    plan.insert(plan.end(), more.begin(), more.end());
+    const std::string command = run_petzval(plan).out;
+    EXPECT_NE(command.find(" --scene night"), std::string::npos) << command;
+    EXPECT_NE(command.find(" --point-line-radius 0.02"), std::string::npos) << command;
+}
+
 // A scene that a stranger sent names what it likes.
 TEST_F(ReadingOptions, ConfineKeepsToTheFolderOfTheScene) {
     std::filesystem::create_directories(path("scene"));

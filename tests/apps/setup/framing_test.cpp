@@ -5,6 +5,7 @@
 
 #include "camera/models/thin_lens.h"
 #include "core/sampling/warp.h"
+#include "tests/support/lamp.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 
@@ -50,6 +51,33 @@ Covered covered(const Scene& scene, const std::array<V3f, 2>& aim, float yfov_ra
                 out.top = std::max(out.top, y);
             }
     return out;
+}
+
+// Instances inside others are not looked at triangle by triangle: it must make no difference.
+TEST(Framing, InstancesAreFramedLikeTheirCopiesInTheWorld) {
+    test::Random random(5);
+    for (int round = 0; round < 20; ++round) {
+        Scene many, copies;
+        const Mesh ball = test::sphere(V3f(0.2f, 0, 0), 1.f, 5, false);
+        place(many, ball, diffuse_material(0.5f));
+        many.instances.clear();
+        for (int i = 0; i < 200; ++i) {
+            M44f m;
+            m.setScale(V3f(random(), random(), random() + 0.1f));
+            for (int j = 0; j < 3; ++j) m[3][j] = (random() - 0.5f) * (j == round % 3 ? 1.f : 30.f);
+            many.instances.push_back(test::placed(0, m));
+            Mesh copy = ball;
+            for (V3f& p : copy.positions) p = p * m;
+            place(copies, copy, diffuse_material(0.5f));
+        }
+        finish_scene(many);
+        finish_scene(copies);
+        const auto one = frame_scene(many, 0.7f, 1.5f, 0),
+                   other = frame_scene(copies, 0.7f, 1.5f, 0);
+        ASSERT_TRUE(one && other);
+        EXPECT_EQ((*one)[0], (*other)[0]) << round;
+        EXPECT_EQ((*one)[1], (*other)[1]) << round;
+    }
 }
 
 struct Case {

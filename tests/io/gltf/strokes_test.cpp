@@ -7,6 +7,7 @@
 #include "core/traversal/bvh.h"
 #include "tests/support/load_tiny_gltf.h"
 #include "tests/support/refusal.h"
+#include "tests/support/tiny_png.h"
 
 namespace petzval {
 namespace {
@@ -166,6 +167,26 @@ TEST(GltfStrokes, BrokenOnesAreSkippedAndTooManyRefused) {
     const json node = many.json["nodes"][0];
     for (int i = 0; i < 20'000; ++i) many.add_root(node);
     EXPECT_TRUE(has(refusal([&] { (void)load_drawn(many); }), "stands at 20001 places"));
+}
+
+TEST(GltfStrokes, TexturesAreReadAtZeroWhateverTheirCoordinates) {
+    TinyGltf file = square(0);
+    file.add("textures", {{"source", file.add_image(tiny_png(1, 1, {255, 0, 0, 255}))}});
+    file.json["materials"] = {
+        {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}, {"texCoord", 5}}}}},
+         {"emissiveTexture", {{"index", 0}, {"texCoord", 3}}},
+         {"emissiveFactor", {1, 1, 1}},
+         {"alphaMode", "MASK"}}};
+    file.json["meshes"][0]["primitives"][0]["material"] = 0;
+    GltfFile loaded = load_drawn(file);
+    finish_scene(loaded.scene);
+    const Bvh bvh(loaded.scene, Traversal::Robust);
+    const auto s = below(loaded.scene, bvh, 0.02f, 0.02f);
+    ASSERT_TRUE(s);
+    const ShadingInput found = read_material(loaded.scene, *s, locate_material(loaded.scene, *s),
+                                             V3f(0, 0, 1), Bands::rgb(), {});
+    EXPECT_GT(found.emitted[0], 0.9f);
+    EXPECT_EQ(found.emitted[1], 0.f);
 }
 
 TEST(GltfStrokes, AnUndefinedPlaceIsNone) {

@@ -17,10 +17,11 @@ using test::Random;
 // Turned, sheared and mirrored anyhow, from tiny to large, near the origin and far from it.
 M44f any_matrix(Random& random) {
     M44f m;
-    const float scale = std::pow(10.f, 6 * random() - 3), far = std::pow(10.f, 4 * random() - 1);
+    const float scale = std::pow(10.f, 6 * random.next() - 3);
+    const float far = std::pow(10.f, 4 * random.next() - 1);
     for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) m[i][j] = (2 * random() - 1) * scale;
-    for (int j = 0; j < 3; ++j) m[3][j] = (2 * random() - 1) * far;
+        for (int j = 0; j < 3; ++j) m[i][j] = (2 * random.next() - 1) * scale;
+    for (int j = 0; j < 3; ++j) m[3][j] = (2 * random.next() - 1) * far;
     return m;
 }
 

@@ -48,7 +48,7 @@ struct Decoder {
     const auto load_with_strokes = [](const fs::path& path) {
         PictureBudget pictures;
         (void)load_gltf(path, FileScope::Anywhere, pictures,
-                        {.scene = {}, .point_line_radius_m = 0.1f});
+                        {.scene = {}, .variant = {}, .point_line_radius_m = 0.1f});
     };
     static const std::map<std::string, Decoder> all = {
         {"gltf", {".gltf", load_with_strokes}},

@@ -63,8 +63,9 @@ TEST(Framing, InstancesAreFramedLikeTheirCopiesInTheWorld) {
         many.instances.clear();
         for (int i = 0; i < 200; ++i) {
             M44f m;
-            m.setScale(V3f(random(), random(), random() + 0.1f));
-            for (int j = 0; j < 3; ++j) m[3][j] = (random() - 0.5f) * (j == round % 3 ? 1.f : 30.f);
+            m.setScale(V3f(random.next(), random.next(), random.next() + 0.1f));
+            for (int j = 0; j < 3; ++j)
+                m[3][j] = (random.next() - 0.5f) * (j == round % 3 ? 1.f : 30.f);
             many.instances.push_back(test::placed(0, m));
             Mesh copy = ball;
             for (V3f& p : copy.positions) p = p * m;

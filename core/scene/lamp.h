@@ -17,7 +17,7 @@ struct BallLamp {
     float radius_m;
     Rgb intensity_cd;  ///< in all directions; of a beam: along its axis
     int32_t illuminant = -1;
-    std::optional<Beam> beam;  ///< the same from every point of the ball
+    std::optional<Beam> beam{};  ///< the same from every point of the ball
 };
 
 /// Adds lamps to a scene that is not finished, each as a mesh with a material of its own: a

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/sampling/sampler.h"
 #include "core/sampling/warp.h"
 #include "core/scene/sky.h"
@@ -49,7 +51,11 @@ TEST(CubeSky, FacesAreWhatAnEyeInTheMiddleSees) {
     for (uint32_t i = 0; i < 4096; ++i) {
         const V3f d = direction_of(i);
         const Rgb found = cube.radiance(d), expected = smooth(d);
-        for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 0.03) << d;
+        // Half a texel at a face's rim is not bilinear.
+        std::array<float, 3> sides{std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)};
+        std::sort(sides.begin(), sides.end());
+        const float tolerance = sides[1] < 0.98f * sides[2] ? 0.002f : 0.03f;
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], tolerance) << d;
     }
     EXPECT_EQ(seen_by_an_eye(1).radiance(unit(V3f(1, 0.2f, -0.3f)))[0], 3);
 }

@@ -16,7 +16,7 @@ struct TinyJpeg {
     std::vector<std::vector<int>> components;
     bool progressive = false;
     int bits = 8;
-    std::optional<int> adobe_transform;            ///< 0: as is, 1: YCbCr, 2: YCCK; none: no APP14
+    std::optional<int> adobe_transform{};          ///< 0: as is, 1: YCbCr, 2: YCCK; none: no APP14
     std::vector<std::vector<uint8_t>> segments{};  ///< whole ones, right behind the start
 };
 

@@ -60,6 +60,12 @@ TEST(Ies, HalfOfTheSphereIsDarkWhereItWasNotMeasured) {
     EXPECT_EQ(at(up, 91, 20), 50);
 }
 
+TEST(Ies, ReachIsWhereTheLastLightEnds) {
+    EXPECT_FLOAT_EQ(parsed(ies("4 1 1", "0 30 60 90\n0\n5 0 0 0")).reach_rad(), kPi / 6);
+    EXPECT_FLOAT_EQ(parsed(ies("4 1 1", "0 30 60 90\n0\n5 0 1 0")).reach_rad(), kPi / 2);
+    EXPECT_FLOAT_EQ(parsed(ies("3 2 2", "-90 0 90\n-90 90\n0 1 0\n0 1 0")).reach_rad(), kPi / 2);
+}
+
 // A Lambertian lamp of 100 cd has 100 pi lumen; knots every degree are off by 1/12 of a degree
 // squared.
 TEST(Ies, CosineHasItsFluxAndIsLinearBetweenKnots) {

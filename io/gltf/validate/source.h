@@ -29,7 +29,7 @@ struct GltfSource {
     /// Encoded bytes of each image (PNG, JPEG ...), whatever way the file stores them. Not yet
     /// decoded: they may be no image. Empty for an image in an undefined buffer.
     std::vector<std::vector<uint8_t>> images;
-    std::vector<ExtensionInFile> extensions;   ///< those that the file lists, by name
+    std::vector<ExtensionInFile> extensions;  ///< those that the file lists, by name
     /// Text of each light of EXT_lights_ies; empty for one that is not there.
     std::vector<std::vector<uint8_t>> light_profiles;
     WarningLog warnings;                       ///< one line each: odd, but no reason to refuse

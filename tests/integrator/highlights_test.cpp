@@ -89,6 +89,47 @@ TEST(Highlights, OfAFlatMirrorAreMirrored) {
     EXPECT_LT((mirrored[0].centre - V3f(sun.x, sun.y, -sun.z)).length(), 1e-3f);
 }
 
+// Seen aslant the rays meet in no point, so the disc is larger than the image of a tiny lamp: it is
+// as much darker, and what it sends goes by the size of the lamp.
+TEST(Highlights, OfTinyLampsSendWhatTheirSizeSays) {
+    const auto sent = [](float reach_m) {
+        const auto found = seen_in_a_ball(mirror(), {lamp_at(V3f(0.6f, 0.5f, -0.5f), reach_m)});
+        EXPECT_EQ(found.size(), 1u);
+        return found.empty() ? 0. : found[0].radiance * sqr(double(found[0].reach_m));
+    };
+    EXPECT_NEAR(sent(0.002f) / sent(0.0005f), 16, 2);
+}
+
+// One behind the other, as the lens sees them.
+TEST(Highlights, OfTwoLampsOnALineAreTwo) {
+    World world;
+    place(world.scene, quad(V3f(-1, -1, -1), V3f(2, 0, 0), V3f(0, 2, 0)), mirror());
+    const auto found = seen_in(
+        world, {lamp_at(V3f(0.1f, 0.15f, 0.5f), 0.02f), lamp_at(V3f(0.15f, 0.225f, 1.75f), 0.02f)});
+    EXPECT_EQ(found.size(), 2u);
+}
+
+// A camera sees through the back of a single-sided surface, as glTF culls it, but not its front.
+TEST(Highlights, AreSeenThroughCulledBacks) {
+    for (const bool front : {false, true}) {
+        World world;
+        place(world.scene, sphere(V3f(0, 0, -1), kRadius_m, 128, true), mirror());
+        const V3f right(0.4f, 0, 0), up(0, 0.4f, 0);
+        Material sheet = diffuse_material(0.5f);
+        sheet.double_sided = false;
+        place(world.scene, quad(V3f(-0.2f, -0.2f, -0.3f), front ? right : up, front ? up : right),
+              sheet);
+        const Thing lamp = lamp_at(V3f(0.6f, 0.5f, -0.5f), 0.005f);
+        EXPECT_EQ(seen_in(world, {lamp}).size(), front ? 0u : 1u);
+    }
+}
+
+TEST(Highlights, OfUnlitSurfacesAreNone) {
+    Material unlit = mirror();
+    unlit.unlit = true;
+    EXPECT_TRUE(seen_in_a_ball(unlit, {lamp_at(V3f(0, 0, 2), 0.005f)}).empty());
+}
+
 TEST(Highlights, OfRoughSurfacesAreWiderAndDarker) {
     const Thing lamp = lamp_at(V3f(0, 0, 2), 0.004f);
     const auto smooth = seen_in_a_ball(mirror(), {lamp});

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which targets the pilot keeps, and how often rays are sent to each.
+#include "integrator/target_pilot.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "camera/models/thin_lens.h"
+#include "camera/setup/target_grid.h"
+#include "tests/support/scenes.h"
+
+namespace petzval {
+namespace {
+
+using namespace test;
+
+const V2i kSize(128, 96);
+constexpr float kFar_m = 3;
+
+/// Two lamps whose discs overlap, and are a cell wide.
+const V3f kOne(0.02f, 0.05f, -kFar_m), kOther(0.08f, 0.05f, -kFar_m);
+
+ThinLensCamera wide_lens() {
+    ThinLens lens;
+    lens.to_world = look_at(V3f(0, 0, 0), V3f(0, 0, -1));
+    lens.yfov_rad = 0.3f;
+    lens.aspect = 4.f / 3;
+    lens.iris = Iris(Disk{}, 50);
+    lens.focus_m = 1;
+    return ThinLensCamera(lens);
+}
+
+void place_lamp(Scene& scene, const V3f& at, float nits) {
+    place(scene, sphere(at, 0.004f, 8, true), emitter_material(nits));
+}
+void place_wall(Scene& scene) {
+    place(scene, quad(V3f(-2, -2, -4), V3f(4, 0, 0), V3f(0, 4, 0)), diffuse_material(0.5f));
+}
+/// So near to a lamp that no point of the lens sees it, and so small that it hides no other.
+void hide(Scene& scene, const V3f& lamp) {
+    place(scene, quad(lamp + V3f(-.01f, -.01f, .02f), V3f(.02f, 0, 0), V3f(0, .02f, 0)),
+          diffuse_material(0.5f));
+}
+
+struct Grids {
+    std::shared_ptr<const TargetGrid> all, paying;
+};
+Grids grids_of(World& world) {
+    world.finish();
+    ThinLensCamera camera = wide_lens();
+    camera.set_targets(find_targets(camera, kSize, things_of(world.scene)));
+    return {camera.shared_targets(),
+            targets_that_pay(camera, world.scene, *world.bvh, *world.lights, kSize)};
+}
+
+bool is_at(const TargetGrid& grid, const ListedTarget& listed, const V3f& lamp) {
+    return (grid.targets[listed.number].centre - lamp).length() < 1e-3f;
+}
+size_t cells_with(const TargetGrid& grid, const V3f& lamp) {
+    return static_cast<size_t>(
+        std::count_if(grid.lists.begin(), grid.lists.end(), [&](const auto& list) {
+            return std::any_of(list.begin(), list.end(),
+                               [&](const ListedTarget& t) { return is_at(grid, t, lamp); });
+        }));
+}
+
+/// Each of a cell's targets is one of those that were found for it, and chances add up to 1.
+void expect_sane(const Grids& grids) {
+    ASSERT_EQ(grids.paying->lists.size(), grids.all->lists.size());
+    for (size_t i = 0; i < grids.all->lists.size(); ++i) {
+        std::set<uint32_t> found, kept;
+        for (const ListedTarget& t : grids.all->lists[i]) found.insert(t.number);
+        double sum = 0;
+        const auto& list = grids.paying->lists[i];
+        for (const ListedTarget& t : list) {
+            EXPECT_TRUE(kept.insert(t.number).second) << "twice in cell " << i;
+            EXPECT_TRUE(found.count(t.number)) << "not of cell " << i;
+            EXPECT_GE(t.chance, 0.5f / float(list.size()) - 1e-6f);
+            sum += double(t.chance);
+        }
+        if (!list.empty()) {
+            EXPECT_NEAR(sum, 1, 1e-6) << "cell " << i;
+        }
+    }
+}
+
+// Half of the chances is even, half goes by what a ray brings: 4 to 1 is 0.65 to 0.35.
+TEST(TargetPilot, BrightTargetsGetMoreRays) {
+    World world;
+    place_lamp(world.scene, kOne, 250);
+    place_lamp(world.scene, kOther, 1000);
+    place_wall(world.scene);
+    const Grids grids = grids_of(world);
+    ASSERT_NE(grids.paying, nullptr);
+    expect_sane(grids);
+    int both = 0;
+    for (const auto& list : grids.paying->lists) {
+        if (list.size() != 2) continue;
+        ++both;
+        for (const ListedTarget& t : list)
+            EXPECT_NEAR(t.chance, is_at(*grids.paying, t, kOther) ? 0.65f : 0.35f, 0.12f);
+    }
+    EXPECT_GT(both, 0);
+}
+
+// Some cells have both lamps, some one of them: in no cell the hidden one is taken for the other.
+TEST(TargetPilot, HiddenLampsAreLeftOut) {
+    for (const bool first : {false, true}) {
+        const V3f &hidden = first ? kOne : kOther, &seen = first ? kOther : kOne;
+        World world;
+        place_lamp(world.scene, hidden, 2000);
+        place_lamp(world.scene, seen, 500);
+        place_wall(world.scene);
+        hide(world.scene, hidden);
+        const Grids grids = grids_of(world);
+        ASSERT_NE(grids.all, nullptr);
+        ASSERT_GT(cells_with(*grids.all, hidden), 0u);
+        ASSERT_NE(grids.paying, nullptr);
+        expect_sane(grids);
+        EXPECT_EQ(cells_with(*grids.paying, hidden), 0u);
+        EXPECT_GT(cells_with(*grids.paying, seen), 0u);
+    }
+}
+
+// A lamp that no ray gets to, and one that adds next to nothing to the noise of a wall that a large
+// panel lights.
+TEST(TargetPilot, NothingThatDoesNotPay) {
+    for (const bool hidden : {false, true}) {
+        World world;
+        place_lamp(world.scene, kOne, hidden ? 2000 : 12);
+        place_wall(world.scene);
+        place(world.scene, quad(V3f(-3, -3, 1), V3f(6, 0, 0), V3f(0, 6, 0)), emitter_material(30));
+        if (hidden) hide(world.scene, kOne);
+        const Grids grids = grids_of(world);
+        ASSERT_NE(grids.all, nullptr);
+        EXPECT_EQ(grids.paying, nullptr);
+    }
+}
+
+}  // namespace
+}  // namespace petzval

@@ -17,7 +17,7 @@ from frosted_pane import compare, render
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "targets"))
 from scenes import Gltf, quad  # noqa: E402
 
-ARGUMENTS = ["--spp", "64", "--size", "48x32", "--look-at", "0,0,1.9,0,-0.2,-2", "--fov", "70", "--max-depth", "6",
+ARGUMENTS = ["--spp", "64", "--size", "48x32", "--look-at", "0,0,1.9,0,-0.2,-2", "--fov", "70",
              "--background", "0,0,0"]
 
 
@@ -44,7 +44,9 @@ def write_scene(path, light, panes):
     glass = file.add_material((1, 1, 1), 0, 0, doubleSided=True,
                               extensions={"KHR_materials_transmission": {"transmissionFactor": 1}})
     for i in range(panes):
-        file.add_node(mesh=file.add_mesh(glass, *rectangle(0, -2.02 - .02 * i, (-.6, -.6), (.6, .6))))
+        # The first one fills the window, so that nothing comes in beside it.
+        half = .5 + .1 * i
+        file.add_node(mesh=file.add_mesh(glass, *rectangle(0, -2 - .02 * i, (-half, -half), (half, half))))
     if light == "lamp":
         shining = file.add_material((0, 0, 0), 0, 1, emissiveFactor=[1, 1, 1], doubleSided=True, extensions={
             "KHR_materials_emissive_strength": {"emissiveStrength": 20}})

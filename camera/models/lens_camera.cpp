@@ -334,7 +334,7 @@ void LensCamera::sample_all(std::span<const FilmPoint> points, std::span<const B
     if (targets()) {
         std::array<TargetList, kMostFilmPoints> lists;
         for (size_t i = 0; i < points.size(); ++i) lists[i] = targets_at(points[i]);
-        density = to_targets(all, rays, lists, {});
+        density = to_targets(all, rays, lists);
     }
     finish(all, rays, density, out);
 }

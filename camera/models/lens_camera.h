@@ -109,8 +109,7 @@ class LensCamera final : public Camera {
     [[nodiscard]] V2f film_mm(V2f film) const;
     [[nodiscard]] V2f film_of(V2f film_mm) const;
     [[nodiscard]] std::array<float, kMostFilmPoints> to_targets(
-        const Batch&, const LeadRays&, const std::array<TargetList, kMostFilmPoints>&,
-        const SentRays& known) const;
+        const Batch&, const LeadRays&, const std::array<TargetList, kMostFilmPoints>&) const;
     void finish(const Batch&, LeadRays&, const std::array<float, kMostFilmPoints>& to_targets,
                 std::span<CameraSample>) const;
 

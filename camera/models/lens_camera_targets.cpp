@@ -47,8 +47,7 @@ void LensCamera::sample_targets(std::span<const FilmPoint> points, std::span<con
         if (i < points.size()) lists[i] = listed[i], samplers[i] = points[i].sampler;
     }
     const TargetChoice choice = LensTargets::choose(lists, {samplers.data(), points.size()});
-    const SentRays sent = targets_.find({film, all.indices, lists}, choice);
-    const FoundDirections& found = sent.directions;
+    const FoundDirections found = targets_.find({film, all.indices, lists}, choice);
     LeadRays rays;
     static_cast<AimedRay<f8>&>(rays.aimed) =
         optics_.aimer().cross<f8>(film, found.l, found.m, all.indices);
@@ -59,7 +58,7 @@ void LensCamera::sample_targets(std::span<const FilmPoint> points, std::span<con
     const f8 off_l = back.l - found.l, off_m = back.m - found.m;
     rays.aimed.found = found.found & rays.aimed.ray.alive() & back.found &
                        (off_l * off_l + off_m * off_m < sqr(kSameDirection));
-    const std::array<float, kMostFilmPoints> density = to_targets(all, rays, lists, {});
+    const std::array<float, kMostFilmPoints> density = to_targets(all, rays, lists);
     for (size_t i = 0; i < points.size(); ++i)
         if (!(density[i] > 0.f)) rays.aimed.found[static_cast<int>(i)] = 0;
     finish(all, rays, density, out);
@@ -69,8 +68,8 @@ void LensCamera::sample_targets(std::span<const FilmPoint> points, std::span<con
 // Of one lane, or where lanes part and share a direction, the mean over lanes: each may have been
 // the one that it was drawn for.
 std::array<float, kMostFilmPoints> LensCamera::to_targets(
-    const Batch& all, const LeadRays& rays, const std::array<TargetList, kMostFilmPoints>& listed,
-    const SentRays& known) const {
+    const Batch& all, const LeadRays& rays,
+    const std::array<TargetList, kMostFilmPoints>& listed) const {
     std::array<float, kMostFilmPoints> out{};
     std::array<TargetList, kMostFilmPoints> lists = listed;
     bool any_listed = false;
@@ -83,8 +82,7 @@ std::array<float, kMostFilmPoints> LensCamera::to_targets(
     if (all.of_lead) {
         for (int i = 0; i < 8; ++i)
             film.x[i] = all.at.film_mm[size_t(i)].x, film.y[i] = all.at.film_mm[size_t(i)].y;
-        const f8 density =
-            targets_.density({film, all.indices, lists}, rays.aimed.l, rays.aimed.m, known);
+        const f8 density = targets_.density({film, all.indices, lists}, rays.aimed.l, rays.aimed.m);
         for (int i = 0; i < 8; ++i) out[static_cast<size_t>(i)] = density[i];
         return out;
     }
@@ -94,7 +92,6 @@ std::array<float, kMostFilmPoints> LensCamera::to_targets(
             in_.lens->indices(joined(all.bands[pair[0]].nm, all.bands[pair[1]].nm));
         f8 l{}, m{};
         TargetPoints at{film, indices, {}};
-        SentRays known_of_lanes;
         for (int i = 0; i < 8; ++i) {
             const size_t lane = static_cast<size_t>(i), point = pair[lane / 4];
             const Bands& bands = all.bands[point];
@@ -102,11 +99,8 @@ std::array<float, kMostFilmPoints> LensCamera::to_targets(
             l[i] = rays.aimed.l[static_cast<int>(point)];
             m[i] = rays.aimed.m[static_cast<int>(point)];
             if (bands.on[i % 4]) at.targets[lane] = lists[point];
-            if (i % 4 != bands.lead) continue;
-            known_of_lanes.target[lane] = known.target[point];
-            known_of_lanes.density[i] = known.density[static_cast<int>(point)];
         }
-        const f8 density = targets_.density(at, l, m, known_of_lanes);
+        const f8 density = targets_.density(at, l, m);
         for (size_t k = 0; k < 2; ++k) {
             const int begin = static_cast<int>(4 * k);
             out[pair[k]] =

@@ -22,13 +22,15 @@ constexpr float kNearCells = 0.25f;
 constexpr size_t kMostPlaces = 6;
 /// Longest step of a film point: beyond it the search has lost its way.
 constexpr float kMostFilmStep_mm = 30;
+/// Film points that move less are there.
+constexpr float kStill_mm = 1e-3f;
 /// Distance of a start's ray from the middle of the target, in radii, that its derivatives mend.
 constexpr float kNearRadii = 3;
 
 }  // namespace
 
-TargetStart LensTargets::start_at(const TargetPoints& at, const Goals& goal, f8 l, f8 m,
-                                  int lane) const {
+std::array<TargetStart, 8> LensTargets::starts_at(const TargetPoints& at, const Goals& goal, f8 l,
+                                                  f8 m) const {
     const Landing here(trace(at, l, m), goal);
     // The same rays, with derivatives by the film point in place of the direction.
     LensRay<Dual<f8>> moved = aimer_.leave(at.film_mm, Dual<f8>{l}, Dual<f8>{m});
@@ -37,13 +39,16 @@ TargetStart LensTargets::start_at(const TargetPoints& at, const Goals& goal, f8 
     static_cast<void>(trace_lens<Dual<f8>>(lens_, at.indices, Towards::Scene, {0, lens_.last()},
                                            moved, Clip::No));
     const Landing by_film(moved, goal);
-    const auto change = [&](f8 by_x, f8 by_y) { return here.parameters(by_x, by_y)[lane]; };
-    return {at.film_mm[lane],
-            V2f(l[lane], m[lane]) - change(here.x, here.y),
-            change(-by_film.x_by_u, -by_film.y_by_u),
-            change(-by_film.x_by_v, -by_film.y_by_v),
-            change(splat8(1), f8{}),
-            change(f8{}, splat8(1))};
+    const PlanePoint<f8> off = here.parameters(here.x, here.y),
+                         by_x = here.parameters(-by_film.x_by_u, -by_film.y_by_u),
+                         by_y = here.parameters(-by_film.x_by_v, -by_film.y_by_v),
+                         by_across = here.parameters(splat8(1), f8{}),
+                         by_up = here.parameters(f8{}, splat8(1));
+    std::array<TargetStart, 8> out;
+    for (int i = 0; i < 8; ++i)
+        out[static_cast<size_t>(i)] = {
+            at.film_mm[i], V2f(l[i], m[i]) - off[i], by_x[i], by_y[i], by_across[i], by_up[i]};
+    return out;
 }
 
 /// Film points that see a target through given points of the stop.
@@ -81,6 +86,7 @@ auto LensTargets::pictured(const Goals& goal, const LensIndices<f8>& indices,
                           (step_x * step_x + step_y * step_y < sqr(kMostFilmStep_mm));
         out.film_mm.x -= select8(usable, step_x, f8{});
         out.film_mm.y -= select8(usable, step_y, f8{});
+        if (!any(usable & (step_x * step_x + step_y * step_y > sqr(kStill_mm)))) break;
     }
     const Landing here = landing(0, 0);
     out.found = here.ahead & (here.x * here.x + here.y * here.y < sqr(kNearRadii));
@@ -115,9 +121,10 @@ std::optional<PreparedTarget> LensTargets::prepared(const LocalTarget& target,
     for (int tried = 0; tried < kTried; tried += 8) {
         const Pictured seen = pictured(goal, indices, spread(tried), PlanePoint<f8>(out.place), 5);
         at.film_mm = seen.film_mm;
+        const std::array<TargetStart, 8> starts = starts_at(at, goal, seen.l, seen.m);
         for (int i = 0; i < 8; ++i)
             if (seen.found[i] && near_film(seen.film_mm[i]))
-                out.starts.push_back(start_at(at, goal, seen.l, seen.m, i));
+                out.starts.push_back(starts[static_cast<size_t>(i)]);
     }
     return out;
 }
@@ -141,13 +148,12 @@ struct LensTargets::WayFrom {
     uint32_t starts;
 };
 
-// All starts are tried. Rays far outside the iris are no ways.
-auto LensTargets::ways_from(V2f place_mm, const Goals& goal, const LensIndices<f8>& indices,
-                            std::span<const TargetStart* const> starts) const
-    -> std::vector<WayFrom> {
-    std::vector<WayFrom> out;
+// All starts from a first one on are tried. Rays far outside the iris are no ways.
+void LensTargets::add_ways(std::vector<WayFrom>& out, V2f place_mm, const Goals& goal,
+                           const LensIndices<f8>& indices,
+                           std::span<const TargetStart* const> starts, size_t from) const {
     const TargetPoints at{PlanePoint<f8>(place_mm), indices, {}};
-    for (size_t first = 0; first < starts.size(); first += 8) {
+    for (size_t first = from; first < starts.size(); first += 8) {
         const size_t count = std::min<size_t>(8, starts.size() - first);
         Guess guess;
         m8 asked{};
@@ -178,7 +184,6 @@ auto LensTargets::ways_from(V2f place_mm, const Goals& goal, const LensIndices<f
                 out.push_back({l, m, met[lane], 1u << (first + i)});
         }
     }
-    return out;
 }
 
 // The fewest starts, about, that lead to all ways that are found from a few places of the cell.
@@ -198,10 +203,13 @@ std::optional<ListedTarget> LensTargets::listed(const PreparedTarget& target, V2
     std::stable_sort(starts.begin(), starts.end(),
                      [&](const auto* a, const auto* b) { return away_mm(a) < away_mm(b); });
     // Those that are nearest tell whether the target is seen at all.
-    const std::span nearest(starts.data(), std::min<size_t>(8, starts.size()));
-    if (ways_from(place_mm, goal, indices, nearest).empty()) return std::nullopt;
+    constexpr size_t kNearest = 8;
     starts.resize(std::min(kMostTried, starts.size()));
-    std::vector<WayFrom> ways = ways_from(place_mm, goal, indices, starts);
+    const std::span all(starts);
+    std::vector<WayFrom> ways;
+    add_ways(ways, place_mm, goal, indices, all.first(std::min(kNearest, all.size())), 0);
+    if (ways.empty()) return std::nullopt;
+    add_ways(ways, place_mm, goal, indices, all, kNearest);
     for (const WayFrom& way : ways) out.met += way.met;
     // Beside a caustic there are ways that are seen from a start's own place only, or nearly.
     // Most of these are seen from the outer parts of the stop, whose starts are the last.
@@ -210,8 +218,9 @@ std::optional<ListedTarget> LensTargets::listed(const PreparedTarget& target, V2
     for (size_t k = target.starts.size(); k-- > 0 && places < kMostPlaces;) {
         if (!(away_mm(&target.starts[k]) < near_mm)) continue;
         ++places;
-        for (const WayFrom& way : ways_from(target.starts[k].film_mm, goal, indices, starts))
-            ways.push_back(way);
+        std::vector<WayFrom> here;
+        add_ways(here, target.starts[k].film_mm, goal, indices, starts, 0);
+        ways.insert(ways.end(), here.begin(), here.end());
     }
     while (!ways.empty() && out.start_count < ListedTarget::kMostStarts) {
         size_t best = 0;

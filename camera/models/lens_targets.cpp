@@ -22,7 +22,6 @@ struct LensTargets::Ways {
     int count = 0;
     std::array<f8, ListedTarget::kMostStarts> l{}, m{};
     std::array<f8, ListedTarget::kMostStarts> light{};  ///< in any unit; 0: no way, or known before
-    std::array<f8, ListedTarget::kMostStarts> size{};   ///< Landing::size()
     f8 all{};                                           ///< their light
 };
 
@@ -124,8 +123,7 @@ auto LensTargets::ways(const TargetPoints& at, const Goals& goal, m8 wanted, f8 
         m8 passes = found.found & crossed.clear & crossed.ray.alive() &
                     (stop_x * stop_x + stop_y * stop_y <= sqr(reach));
         for (int a = 0; a < b; ++a) passes &= ~same(out.l[a] - found.l, out.m[a] - found.m);
-        out.size[b] = landing.size();
-        const f8 light = crossed.stretch_mm2() / out.size[b];
+        const f8 light = crossed.stretch_mm2() / landing.size();
         out.l[b] = found.l, out.m[b] = found.m;
         out.light[b] = select8(passes & (light > 0.f), light, f8{});
         out.all += out.light[b];
@@ -133,30 +131,26 @@ auto LensTargets::ways(const TargetPoints& at, const Goals& goal, m8 wanted, f8 
     return out;
 }
 
-SentRays LensTargets::find(const TargetPoints& at, const TargetChoice& choice) const {
+FoundDirections LensTargets::find(const TargetPoints& at, const TargetChoice& choice) const {
     const Goals goal = goals(at.targets, choice.target);
     const Ways found = ways(at, goal, goal.on, choice.x, choice.y);
-    SentRays out;
-    out.target = choice.target;
+    FoundDirections out{};
     f8 left = choice.way * found.all;
     m8 picked{};
     for (int b = 0; b < found.count; ++b) {
         // What rounding leaves goes to the last way.
         const m8 here = ~picked & (found.light[b] > 0.f);
-        out.directions.l = here ? found.l[b] : out.directions.l;
-        out.directions.m = here ? found.m[b] : out.directions.m;
-        out.density = here ? found.light[b] * found.size[b] : out.density;
+        out.l = here ? found.l[b] : out.l;
+        out.m = here ? found.m[b] : out.m;
         picked |= here & (left < found.light[b]);
         left -= select8(here, found.light[b], f8{});
     }
-    out.directions.found = found.all > 0.f;
-    out.density =
-        select8(out.directions.found, out.density / found.all * goal.chance * (1 / kPi), f8{});
+    out.found = found.all > 0.f;
     return out;
 }
 
-f8 LensTargets::density(const TargetPoints& at, f8 l, f8 m, const SentRays& known) const {
-    f8 sum = known.density;
+f8 LensTargets::density(const TargetPoints& at, f8 l, f8 m) const {
+    f8 sum{};
     size_t most = 0;
     for (const TargetList& list : at.targets) most = std::max(most, list.size());
     if (most == 0) return sum;
@@ -166,9 +160,7 @@ f8 LensTargets::density(const TargetPoints& at, f8 l, f8 m, const SentRays& know
         which.fill(k);
         const Goals goal = goals(at.targets, which);
         const Landing here(ray, goal);
-        m8 passes = here.ahead & (here.x * here.x + here.y * here.y <= 1.f);
-        for (int i = 0; i < 8; ++i)
-            if (known.target[static_cast<size_t>(i)] == k) passes[i] = 0;
+        const m8 passes = here.ahead & (here.x * here.x + here.y * here.y <= 1.f);
         if (!any(passes)) continue;
         const Ways found = ways(at, goal, passes, here.x, here.y);
         f8 light{};

@@ -32,15 +32,6 @@ struct TargetChoice {
     TargetChoice() { target.fill(-1); }
 };
 
-/// Rays that were sent, with the density of each for the target that it was sent to, 1/sr.
-struct SentRays {
-    FoundDirections directions{};
-    std::array<int, 8> target;  ///< -1: none
-    f8 density{};
-
-    SentRays() { target.fill(-1); }
-};
-
 class LensTargets {
   public:
     /// Lens and aimer must outlive it. pupil_mm: z of the middle of the entrance pupil, which is
@@ -62,11 +53,10 @@ class LensTargets {
                                              std::span<const Sampler>);
     /// Directions at the film whose rays pass the chosen points. Where several ways lead there,
     /// each is picked in proportion to the light that it brings.
-    [[nodiscard]] SentRays find(const TargetPoints&, const TargetChoice&) const;
+    [[nodiscard]] FoundDirections find(const TargetPoints&, const TargetChoice&) const;
     /// Density with which choose() and find() draw a direction, 1/sr of projected solid angle at
     /// the film: a sum over all targets that its ray passes, if find() would find this very ray.
-    /// known: what find() says of the lanes whose ray it found.
-    [[nodiscard]] f8 density(const TargetPoints&, f8 l, f8 m, const SentRays& known) const;
+    [[nodiscard]] f8 density(const TargetPoints&, f8 l, f8 m) const;
 
   private:
     /// Directions this far apart are the same, in units of what the stop spans; a search may leave
@@ -90,10 +80,10 @@ class LensTargets {
                                     int steps) const;
     [[nodiscard]] PlanePoint<f8> spread(int first) const;
     struct WayFrom;
-    [[nodiscard]] std::vector<WayFrom> ways_from(V2f place_mm, const Goals&, const LensIndices<f8>&,
-                                                 std::span<const TargetStart* const>) const;
-    [[nodiscard]] TargetStart start_at(const TargetPoints&, const Goals&, f8 l, f8 m,
-                                       int lane) const;
+    void add_ways(std::vector<WayFrom>&, V2f place_mm, const Goals&, const LensIndices<f8>&,
+                  std::span<const TargetStart* const>, size_t from) const;
+    [[nodiscard]] std::array<TargetStart, 8> starts_at(const TargetPoints&, const Goals&, f8 l,
+                                                       f8 m) const;
 
     const Lens& lens_;
     const RayAimer& aimer_;

@@ -79,22 +79,31 @@ bool is_compact(const std::vector<Part>& parts) {
                        [&](const Part& p) { return p.light() <= kEven * all.light(); });
 }
 
+/// Parts that are one thing, and the longest side of the box around them.
+struct Cluster {
+    std::vector<Part> parts;
+    double longest_m;
+
+    explicit Cluster(std::vector<Part> of)
+        : parts(std::move(of)), longest_m(longest(box_of(parts))) {}
+};
+
 /// Clusters of parts: the largest is halved until there are enough.
-std::vector<std::vector<Part>> clusters_of(std::vector<Part> parts, size_t most) {
-    std::vector<std::vector<Part>> clusters, whole;
-    if (!parts.empty()) clusters.push_back(std::move(parts));
+std::vector<Cluster> clusters_of(std::vector<Part> parts, size_t most) {
+    std::vector<Cluster> clusters, whole;
+    if (!parts.empty()) clusters.emplace_back(std::move(parts));
     while (!clusters.empty() && clusters.size() + whole.size() < most) {
         const auto largest = std::max_element(
             clusters.begin(), clusters.end(),
-            [](const auto& a, const auto& b) { return longest(box_of(a)) < longest(box_of(b)); });
-        auto [a, b] = halved(*largest);
+            [](const Cluster& a, const Cluster& b) { return a.longest_m < b.longest_m; });
+        auto [a, b] = halved(largest->parts);
         if (a.empty() || b.empty()) {
             whole.push_back(std::move(*largest));
             clusters.erase(largest);
             continue;
         }
-        *largest = std::move(a);
-        clusters.push_back(std::move(b));
+        *largest = Cluster(std::move(a));
+        clusters.emplace_back(std::move(b));
     }
     clusters.insert(clusters.end(), std::make_move_iterator(whole.begin()),
                     std::make_move_iterator(whole.end()));
@@ -102,8 +111,8 @@ std::vector<std::vector<Part>> clusters_of(std::vector<Part> parts, size_t most)
 }
 
 void add_things(std::vector<Thing>& out, Thing::Kind kind, std::vector<Part> parts, size_t most) {
-    for (const std::vector<Part>& cluster : clusters_of(std::move(parts), most)) {
-        const Part all = sum_of(cluster);
+    for (const Cluster& cluster : clusters_of(std::move(parts), most)) {
+        const Part all = sum_of(cluster.parts);
         out.push_back({kind, all.box.center(), all.box.size().length() / 2, all.reach_m, false,
                        all.area_m2 / 2, all.light()});
     }

@@ -351,8 +351,8 @@ void Bsdf::add_glass(const V3f& wi, BsdfValue& value) const {
         if (wo_m <= 0.f || wi_m >= 0.f) continue;
         const float denominator = wo_m + eta * wi_m;
         const float jacobian = sqr(eta) * -wi_m / sqr(denominator);
-        const f4 refracted = (1.f - glass_reflectance(wo_m)) *
-                             pdf_of_normal(wo_m, ggx_d(m, alpha_)) * jacobian;
+        const f4 refracted =
+            (1.f - glass_reflectance(wo_m)) * pdf_of_normal(wo_m, ggx_d(m, alpha_)) * jacobian;
         if (disperses_)
             density[i] = refracted[i];
         else

@@ -48,6 +48,11 @@ struct GgxWidth {
     return unit({half.x * alpha.x, half.y * alpha.y, half.z > 1e-9f ? half.z : 1e-9f});
 }
 
+/// The first where share is 0, the second where it is 1, exactly.
+[[nodiscard]] inline f4 mix(f4 a, f4 b, float share) {
+    return a * (1.f - share) + b * share;
+}
+
 /// Schlick 1994's weight (1 - cos)^5.
 [[nodiscard]] inline float schlick_weight(float cosine) {
     const float a = clamp_unit(1.f - cosine);

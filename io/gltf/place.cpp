@@ -10,15 +10,15 @@
 
 #include "io/base/error.h"
 #include "io/gltf/arrays.h"
-#include "io/gltf/bake.h"
-#include "io/gltf/flat.h"
+#include "io/gltf/meshes/bake.h"
+#include "io/gltf/meshes/flat.h"
+#include "io/gltf/meshes/repair.h"
+#include "io/gltf/meshes/tangents.h"
+#include "io/gltf/meshes/triangles.h"
 #include "io/gltf/placement.h"
 #include "io/gltf/primitive.h"
-#include "io/gltf/repair.h"
 #include "io/gltf/skin.h"
 #include "io/gltf/strokes.h"
-#include "io/gltf/tangents.h"
-#include "io/gltf/triangles.h"
 
 namespace petzval {
 namespace {
@@ -71,6 +71,11 @@ class Placer {
         }
     }
 
+    void count(const BrokenValues& broken) {
+        tally_.broken_triangles += broken.triangles;
+        tally_.broken_values += broken.values;
+    }
+
     void place_primitive(const Placement& placement, const tinygltf::Primitive& primitive,
                          uint32_t material, const std::string& where) {
         Mesh mesh = read_shaded(placement, primitive, material);
@@ -116,7 +121,7 @@ class Placer {
         StrokeSource source = read_stroke(gltf_, primitive, placement.morph_weights, tally_);
         Mesh& vertices = source.vertices;
         const StrokeShapes shapes = shapes_of(source, primitive.mode, tally_.broken_strokes);
-        repair_values(vertices, tally_);
+        count(repair_values(vertices));
         memory_.ask(kInstanceBytes, placement.places,
                     shapes.spheres.size() + shapes.cylinders.size(), where);
         const uint32_t material = materials_.use(material_of_file);
@@ -177,7 +182,7 @@ class Placer {
         Mesh mesh = read_primitive(
             gltf_, primitive,
             {placement.morph_weights, with_tangents, materials_.more_sets(material_index)}, tally_);
-        repair_values(mesh, tally_);
+        count(repair_values(mesh));
         tally_.unmapped_primitives += add_missing_uv(mesh, material);
         tally_.replaced_normals += repair_normals(mesh);
         repair_tangents(mesh);

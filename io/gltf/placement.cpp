@@ -10,7 +10,7 @@
 
 #include "io/base/error.h"
 #include "io/base/machine.h"
-#include "io/gltf/flat.h"
+#include "io/gltf/meshes/flat.h"
 
 namespace petzval {
 namespace {

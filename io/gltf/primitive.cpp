@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "io/gltf/arrays.h"
-#include "io/gltf/triangles.h"
+#include "io/gltf/meshes/triangles.h"
 
 namespace petzval {
 namespace {

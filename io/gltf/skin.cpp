@@ -5,7 +5,7 @@
 #include <tiny_gltf.h>
 
 #include "io/gltf/arrays.h"
-#include "io/gltf/bake.h"
+#include "io/gltf/meshes/bake.h"
 #include "io/gltf/primitive.h"
 
 namespace petzval {

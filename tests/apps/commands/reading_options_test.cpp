@@ -120,7 +120,7 @@ TEST_F(ReadingOptions, ASceneOfTheFileAndARadiusForItsPoints) {
                         Words{"render", scene, "-o", path("o.exr")},
                         Words{"chart", scene, "-o", path("chart")}}) {
         words.insert(words.end(), {"--scene", "dusk"});
-        const std::string line = error_of(words, 1);
+        const std::string line = error_of(words, 2);
         EXPECT_NE(line.find("no scene \"dusk\"; it has 0 \"day\", 1 \"night\""), line.npos) << line;
     }
     Words plan = {"plan", scene, "--size", "8x8", "--quiet", "--tolerance", "50%"};

@@ -313,7 +313,8 @@ TEST_F(Cli, InfoVersionAndHelp) {
           "  camera 2: plan, orthographic, 3 x 3 m\n",
           "lights: 2 point, 0 spot, 0 directional, 0 emissive meshes\n",
           "  bounds: 2 x 2 x 1 m, from -1,-1,-2 to 1,1,-1\n", "  --focus auto, camera 0: 2 m\n",
-          "  --focus auto, camera 1: 2 m\n", "honoured\n", "  KHR_lights_punctual\n"})
+          "  --focus auto, camera 1: 2 m\n", "extensions\n",
+          "  KHR_lights_punctual     rendered      in 3 objects\n"})
         EXPECT_NE(info.out.find(line), std::string::npos) << line << info.out;
 
     const Finished version = run_petzval({"--version"});

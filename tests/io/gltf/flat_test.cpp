@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Nodes that mirror and nodes that flatten: what rays meet there.
-#include "io/gltf/flat.h"
+#include "io/gltf/meshes/flat.h"
 
 #include <gtest/gtest.h>
 

@@ -341,7 +341,7 @@ TEST(GltfMaterial, TexturesMayUseAnySetOfCoordinates) {
          {std::vector{0, 1, 0, 1}, {0, 3, 0, 3}, {4, 3, 2, 1}, {2, 2, 2, 2}, {4, 0, 2, 3}}) {
         const GltfFile loaded = load(five_sets(sets));
         EXPECT_EQ(sets_found(loaded), sets);
-        EXPECT_TRUE(loaded.warnings.empty());
+        EXPECT_FALSE(contains_line(loaded.warnings, "texture coordinates"));
     }
     const Mesh usual = load(five_sets({0, 1, 1, 0})).scene.meshes[0];
     EXPECT_TRUE(usual.more_uv.empty());  // costs nothing where it is not needed

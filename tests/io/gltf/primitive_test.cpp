@@ -2,7 +2,7 @@
 // From primitives to triangles: modes, what is skipped, normals, morph targets.
 #include <gtest/gtest.h>
 
-#include "io/gltf/triangles.h"
+#include "io/gltf/meshes/triangles.h"
 #include "tests/support/load_tiny_gltf.h"
 
 namespace petzval {

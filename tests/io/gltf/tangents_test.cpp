@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-#include "io/gltf/bake.h"
-#include "io/gltf/tangents.h"
+#include "io/gltf/meshes/bake.h"
+#include "io/gltf/meshes/tangents.h"
 #include "tests/support/load_tiny_gltf.h"
 #include "tests/support/tiny_png.h"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/gltf/flat.h"
+#include "io/gltf/meshes/flat.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "io/gltf/nodes.h"
+#include "io/gltf/meshes/matrix.h"
 
 namespace petzval {
 namespace {

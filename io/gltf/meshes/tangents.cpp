@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/gltf/tangents.h"
+#include "io/gltf/meshes/tangents.h"
 
 #include <bit>
 #include <numeric>

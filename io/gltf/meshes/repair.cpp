@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/gltf/repair.h"
+#include "io/gltf/meshes/repair.h"
 
 #include <algorithm>
 
@@ -26,16 +26,17 @@ uint64_t replace_broken(std::vector<Value>& values, const Value& by) {
 
 }  // namespace
 
-void repair_values(Mesh& mesh, GltfTally& tally) {
-    for (auto& uv : mesh.uv) tally.broken_values += replace_broken(uv, V2f(0.f));
-    for (auto& uv : mesh.more_uv) tally.broken_values += replace_broken(uv, V2f(0.f));
-    tally.broken_values += replace_broken(mesh.colours, V4f(1.f));
+BrokenValues repair_values(Mesh& mesh) {
+    BrokenValues broken;
+    for (auto& uv : mesh.uv) broken.values += replace_broken(uv, V2f(0.f));
+    for (auto& uv : mesh.more_uv) broken.values += replace_broken(uv, V2f(0.f));
+    broken.values += replace_broken(mesh.colours, V4f(1.f));
 
     auto& positions = mesh.positions;
     const auto good = std::find_if(positions.begin(), positions.end(), is_finite<V3f>);
     if (std::find_if_not(positions.begin(), positions.end(), is_finite<V3f>) == positions.end())
-        return;
-    tally.broken_triangles += std::erase_if(mesh.triangles, [&](const auto& triangle) {
+        return broken;
+    broken.triangles += std::erase_if(mesh.triangles, [&](const auto& triangle) {
         return std::any_of(triangle.begin(), triangle.end(),
                            [&](uint32_t vertex) { return !is_finite(positions[vertex]); });
     });
@@ -43,6 +44,7 @@ void repair_values(Mesh& mesh, GltfTally& tally) {
     const V3f inside = good == positions.end() ? V3f(0.f) : *good;
     for (V3f& position : positions)
         if (!is_finite(position)) position = inside;
+    return broken;
 }
 
 bool add_missing_uv(Mesh& mesh, const Material& material) {

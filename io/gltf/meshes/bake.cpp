@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/gltf/bake.h"
+#include "io/gltf/meshes/bake.h"
 
 #include <utility>
 
-#include "io/gltf/nodes.h"
+#include "io/gltf/meshes/matrix.h"
 
 namespace petzval {
 namespace {

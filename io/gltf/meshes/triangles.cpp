@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/gltf/triangles.h"
+#include "io/gltf/meshes/triangles.h"
 
 #include <algorithm>
 #include <cstring>

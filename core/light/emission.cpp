@@ -18,11 +18,6 @@ Rgb emitted_radiance(const Scene& scene, uint32_t instance, uint32_t triangle, V
     return material.emissive * Rgb(texel);
 }
 
-float share_of_beam(const Scene& scene, uint32_t instance, const V3f& away) {
-    const auto& beam = scene.materials[scene.meshes[scene.instances[instance].mesh].material].beam;
-    return beam ? beam->falloff(away.dot(beam->direction)) : 1.f;
-}
-
 float share_past_coat(const Scene& scene, uint32_t instance, uint32_t triangle, V2f barycentric,
                       float cosine) {
     const Mesh& mesh = scene.meshes[scene.instances[instance].mesh];

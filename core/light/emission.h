@@ -17,10 +17,6 @@ struct Illuminant;
 [[nodiscard]] Rgb emitted_radiance(const Scene&, uint32_t instance, uint32_t triangle,
                                    V2f barycentric, bool front);
 
-/// Share of emitted_radiance that leaves in a direction: below 1 only for a beam. away: unit, from
-/// the surface.
-[[nodiscard]] float share_of_beam(const Scene&, uint32_t instance, const V3f& away);
-
 /// Share of emitted_radiance that comes through the material's clear coat, at a cosine to the
 /// triangle; 1 where it has none.
 [[nodiscard]] float share_past_coat(const Scene&, uint32_t instance, uint32_t triangle,

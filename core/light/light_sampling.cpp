@@ -129,11 +129,17 @@ std::optional<LightSample> sample(const Scene& scene, const TriangleLight& light
     if (!(by_area > 0.f && by_area < kInfinity)) return std::nullopt;
 
     const bool front = (facing > 0.f) != scene.instances[light.instance].flips;
-    const Rgb emitted = emitted_radiance(scene, light.instance, light.triangle, b, front) *
-                        coverage(scene, light.instance, light.triangle, b) *
-                        share_of_beam(scene, light.instance, wide ? -drawn : to_light / -distance) *
-                        share_past_coat(scene, light.instance, light.triangle, b,
-                                        std::fabs(facing) / (cross.length() * distance));
+    Rgb emitted = emitted_radiance(scene, light.instance, light.triangle, b, front) *
+                  coverage(scene, light.instance, light.triangle, b);
+    const Material& material =
+        scene.materials[scene.meshes[scene.instances[light.instance].mesh].material];
+    if (material.beam)
+        emitted =
+            emitted * material.beam->falloff(
+                          (wide ? -drawn : to_light / -distance).dot(material.beam->direction));
+    if (material.coat > 0.f)
+        emitted = emitted * share_past_coat(scene, light.instance, light.triangle, b,
+                                            std::fabs(facing) / (cross.length() * distance));
     if (!(hmax(emitted.v) > 0.f)) return std::nullopt;
     const V3f error = plane_error(scene, light, target, to_light, corner);
     // Near a large lamp the rounded target lies aside of the direction that was drawn.

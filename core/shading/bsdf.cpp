@@ -40,8 +40,7 @@ f4 Bsdf::albedo() const {
 
 f4 Bsdf::glass_reflectance(float wo_m) const {
     f4 reflectance = fresnel_dielectric(wo_m, eta_);
-    if (film_share_ > 0.f)
-        reflectance = mix(reflectance, film_.reflectance(wo_m, eta_, f4{}), film_share_);
+    if (film_share_ > 0.f) reflectance = with_film(reflectance, wo_m);
     return reflectance < 1.f ? reflectance * glass_specular_ : splat(1.f);
 }
 
@@ -51,6 +50,10 @@ f4 Bsdf::specular_reflectance(float wo_m) const {
     if (film_share_ > 0.f) reflectance += film_reflectance(wo_m);
     if (!measured_metal_) return reflectance;
     return reflectance + metal_ * fresnel_conductor(wo_m, metal_n_, metal_k_);
+}
+
+f4 Bsdf::with_film(f4 bare, float wo_m) const {
+    return mix(bare, film_.reflectance(wo_m, eta_, f4{}), film_share_);
 }
 
 f4 Bsdf::film_reflectance(float wo_m) const {

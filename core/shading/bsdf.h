@@ -115,15 +115,18 @@ class Bsdf {
     [[nodiscard]] V3f draw_lost(float u_side, V2f u) const;
     [[nodiscard]] f4 glass_reflectance(float wo_m) const;
     [[nodiscard]] f4 specular_reflectance(float wo_m) const;
-    [[nodiscard]] f4 film_reflectance(float wo_m) const;
+    // Apart, so that surfaces without a film pay a branch and no registers.
+    [[nodiscard, gnu::noinline]] f4 film_reflectance(float wo_m) const;
+    [[nodiscard, gnu::noinline]] f4 with_film(f4 bare, float wo_m) const;
     /// Reflectances with the film: at normal incidence, mixed with those without it, and of the
     /// film alone on average over the facets that wo sees.
     struct FilmMeans {
         f4 coat_f0, metal_f0, coat, metal;
     };
-    [[nodiscard]] FilmMeans means_of_film(const BsdfInput&, const Bands&, f4 metal_f0);
-    [[nodiscard]] f4 lost_below_film() const;
-    void add_sheen(const BsdfInput&);
+    [[nodiscard, gnu::noinline]] FilmMeans means_of_film(const BsdfInput&, const Bands&,
+                                                         f4 metal_f0);
+    [[nodiscard, gnu::noinline]] f4 lost_below_film() const;
+    [[gnu::noinline]] void add_sheen(const BsdfInput&);
     [[nodiscard]] int draw_lane(f4 reflectance, float u, bool led) const;
     [[nodiscard]] std::optional<BsdfSample> sample_delta(float u_lobe, bool led) const;
     [[nodiscard]] std::optional<V3f> draw(float u_lobe, V2f u, bool led) const;

@@ -17,10 +17,8 @@ Frame frame_of(const CoatInput& coat) {
 
 }  // namespace
 
-CoatedBsdf::CoatedBsdf(const BsdfInput& in, const CoatInput& coat, const Bands& bands,
-                       const V3f& wo, f4 throughput, const V3f& up)
-    : base_(in, bands, wo, throughput, up) {
-    if (!(coat.weight > 0.f)) return;
+void CoatedBsdf::add_coat(const CoatInput& coat, const Bands& bands, const V3f& wo, f4 throughput,
+                          const V3f& up) {
     const Frame frame = frame_of(coat);
     const Bsdf lobe(lobe_of(coat, bands), bands, frame.to_local(wo), throughput,
                     frame.to_local(up));

@@ -24,8 +24,11 @@ struct CoatInput {
 /// not, by the ratio of what the coat lets through for wo and for wi. Directions are as in Bsdf.
 class CoatedBsdf {
   public:
-    CoatedBsdf(const BsdfInput&, const CoatInput&, const Bands&, const V3f& wo,
-               f4 throughput = splat(1.f), const V3f& up = V3f(0, 0, 1));
+    CoatedBsdf(const BsdfInput& in, const CoatInput& coat, const Bands& bands, const V3f& wo,
+               f4 throughput = splat(1.f), const V3f& up = V3f(0, 0, 1))
+        : base_(in, bands, wo, throughput, up) {
+        if (coat.weight > 0.f) add_coat(coat, bands, wo, throughput, up);
+    }
 
     [[nodiscard]] BsdfValue eval(const V3f& wi) const {
         return coat_ ? eval_coated(wi) : base_.eval(wi);
@@ -48,6 +51,7 @@ class CoatedBsdf {
         float under;   ///< share that the base gets
         float chance;  ///< that sample() draws the coat
     };
+    void add_coat(const CoatInput&, const Bands&, const V3f& wo, f4 throughput, const V3f& up);
     [[nodiscard]] BsdfValue eval_coated(const V3f& wi) const;
     [[nodiscard]] std::optional<BsdfSample> sample_coated(float u_lobe, V2f u, bool led) const;
 

@@ -8,7 +8,9 @@
 namespace petzval {
 namespace {
 
-TextureLookup locate(const Scene& scene, const Surface& s, const TextureSlot& slot) {
+// It is called for every texture of every hit, so that a call would show.
+[[gnu::always_inline]] inline TextureLookup locate(const Scene& scene, const Surface& s,
+                                                   const TextureSlot& slot) {
     const V2f uv = slot.uv_set < s.uv.size()
                        ? s.uv[slot.uv_set]
                        : s.mesh->uv_at(s.hit.triangle, s.hit.barycentric, slot.uv_set);

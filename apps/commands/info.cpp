@@ -68,7 +68,9 @@ void tell_refusal(const InfoOptions& o, const std::string& error) {
 
 void info_command(const InfoOptions& o) {
     PictureBudget pictures = o.reading.pictures();
-    InfoReport report{.path = o.scene, .file = {}, .variant = o.reading.choices.variant};
+    InfoReport report;
+    report.path = o.scene;
+    report.variant = o.reading.choices.variant;
     try {
         report.file = load_gltf(o.scene, o.reading.scope(), pictures, o.reading.choices);
     } catch (const ArgumentError&) {

@@ -24,7 +24,7 @@ struct InfoReport {
 
 /// Prints to stdout what a file holds and what becomes of it.
 void print_info(const InfoReport&);
-/// Prints the same as JSON; docs/guide/render.md has the schema.
+/// Prints the same as JSON; docs/guide/info.md has the schema.
 void print_info_json(const InfoReport&);
 /// Prints why a file is refused, and its extensions, as JSON.
 void print_refusal_json(const std::filesystem::path&, const std::string& error,

@@ -123,7 +123,9 @@ TEST(CoatedSurface, DimsWhatItEmits) {
           test::diffuse_material(0.5f));
     world.finish();
     const V3f from(0, 0, 0.6f), to(0.8f, 0, 0);  // cosine 0.6
-    expect_agrees(estimate(world, {.max_depth = 0}, 16, [&](V2f) { return ray_to(from, to); }),
+    PathOptions seen;
+    seen.max_depth = 0;
+    expect_agrees(estimate(world, seen, 16, [&](V2f) { return ray_to(from, to); }),
                   3 * (1 - 0.5 * (0.04 + 0.96 * std::pow(0.4, 5))), "seen");
     PathOptions once;
     once.max_depth = 1;

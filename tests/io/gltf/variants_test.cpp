@@ -37,8 +37,9 @@ TinyGltf chair() {
 GltfFile load_variant(const TinyGltf& file, std::optional<std::string> variant) {
     const TempFolder folder;
     PictureBudget pictures;
-    return load_gltf(file.save_glb(folder.path / "v.glb"), FileScope::Anywhere, pictures,
-                     {.variant = std::move(variant)});
+    GltfChoices choices;
+    choices.variant = std::move(variant);
+    return load_gltf(file.save_glb(folder.path / "v.glb"), FileScope::Anywhere, pictures, choices);
 }
 
 std::string materials_of(const TinyGltf& file, std::optional<std::string> variant) {

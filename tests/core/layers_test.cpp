@@ -116,6 +116,23 @@ TEST(Coat, KeepsWhiteWhiteAboutNormalsOfItsOwn) {
                              "coat " + std::to_string(coat), from_cosine(0.95f, 4.f));
 }
 
+// What a coat reflects about a normal of its own leaves on the surface's own side.
+TEST(Coat, SamplesLieOnTheSurfacesSide) {
+    const V3f up = from_cosine(0.6f, 2.2f), wo = from_cosine(0.7f);
+    for (const float roughness : {0.f, 0.5f}) {
+        const CoatedBsdf bsdf =
+            bsdf_of(coated(white(0.6f), roughness, 1, from_cosine(0.75f, 4.5f)), wo, up);
+        test::Random random(4);
+        for (int i = 0; i < 4000; ++i) {
+            const float u_lobe = random.next();
+            const auto s = bsdf.sample(u_lobe, random.next2());
+            if (s) {
+                EXPECT_GT(s->wi.dot(up), 0.f) << roughness;
+            }
+        }
+    }
+}
+
 // Fresnel's share of a smooth coat over black is all that is seen of it.
 TEST(Coat, ReflectsSchlicksShare) {
     Layered black = coated(white(0.5f), 0.f, 0.7f);
@@ -150,6 +167,11 @@ TEST(SheenLobe, KeepsWhiteWhite) {
             for (const float cosine : {0.02f, 0.05f, 0.1f, 0.2f, 0.5f, 0.8f, 1.f})
                 expect_white(with_sheen(white(roughness), sheen), cosine,
                              "sheen " + std::to_string(sheen));
+}
+
+TEST(SheenLobe, LeavesGlassWhatItDoesNotScatter) {
+    for (const bool thin : {false, true})
+        expect_white(with_sheen(glass(0.f, 1.5f, thin), 0.5f), 0.3f, "sheen over glass");
 }
 
 TEST(SheenLobe, TakesFromBelowWhatItsStrongestColourScatters) {

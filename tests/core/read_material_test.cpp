@@ -100,13 +100,14 @@ TEST(MaterialLayers, AnisotropyTurnsFromTheTangentTowardsTheBitangent) {
     turned.m.anisotropy = 0.5f;
     turned.m.anisotropy_rotation_rad = kPi / 6;
     expect_near(turned.at_middle().frame.x, V3f(std::sqrt(0.75f), 0.5f, 0));
-    // The texture's direction along the bitangent, turned further; its strength is blue.
+    // The texture's direction, (1, 1/2), turned further; its strength is blue.
     Square mapped;
     mapped.m.anisotropy = 0.5f;
     mapped.m.anisotropy_rotation_rad = kPi / 6;
-    mapped.m.anisotropy_texture = mapped.texel(128, 255, 102);
+    mapped.m.anisotropy_texture = mapped.texel(255, 191, 102);
     const ShadingInput in = mapped.at_middle();
-    expect_near(in.frame.x, V3f(-0.5f, std::sqrt(0.75f), 0));
+    const float angle_rad = std::atan(0.5f) + kPi / 6;
+    expect_near(in.frame.x, V3f(std::cos(angle_rad), std::sin(angle_rad), 0));
     EXPECT_NEAR(in.bsdf.anisotropy, 0.2f, 1e-6f);
 }
 

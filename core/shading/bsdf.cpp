@@ -184,11 +184,11 @@ void Bsdf::add_lost(const V3f& wi, BsdfValue& value) const {
     const f4 scattered = glass_share_ * lost_ * loss_.lobe(cosine, behind);
     value.f_cos += zero_off(on_, behind ? glass_ * scattered : scattered);
     value.pdf += p_glass_ * p_lost_ * (behind ? p_crossing_ : 1.f - p_crossing_) *
-                 LostDirections(alpha_.mean()).pdf(cosine);
+                 LostDirections(alpha_.x).pdf(cosine);
 }
 
 V3f Bsdf::draw_lost(float u_side, V2f u) const {
-    const V3f wi = LostDirections(alpha_.mean()).draw(u);
+    const V3f wi = LostDirections(alpha_.x).draw(u);
     return u_side < p_crossing_ ? mirror_below(wi) : wi;
 }
 

@@ -125,6 +125,7 @@ class Bsdf {
     };
     [[nodiscard, gnu::noinline]] FilmMeans means_of_film(const BsdfInput&, const Bands&,
                                                          f4 metal_f0);
+    [[nodiscard, gnu::noinline]] f4 lost_by_two_widths() const;
     [[nodiscard, gnu::noinline]] f4 lost_below_film() const;
     [[gnu::noinline]] void add_sheen(const BsdfInput&);
     [[nodiscard]] int draw_lane(f4 reflectance, float u, bool led) const;

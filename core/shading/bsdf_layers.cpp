@@ -104,8 +104,9 @@ Bsdf::Bsdf(const BsdfInput& in, const Bands& bands, const V3f& wo, f4 throughput
     if (glass_share_ > 0.f && !delta_) {
         // Without a difference in index all normals would share one direction.
         eta_ = eta_ > 0.999f && eta_ < 1.001f ? splat(1.001f) : eta_;
-        loss_ = GlassLoss(alpha_.mean(), eta_, !disperses_, glass_specular_);
-        lost_ = zero_off(on_, loss_.lost(wo.z, false));
+        loss_ = GlassLoss(alpha_.x, eta_, !disperses_, glass_specular_);
+        lost_ = alpha_.anisotropic() ? lost_by_two_widths() : loss_.lost(wo.z, false);
+        lost_ = zero_off(on_, lost_);
         if (film_share_ > 0.f) lost_ = lost_below_film();
         const float glass_lost = hsum(share_ * lost_);
         if (glass_lost > 0.f) p_crossing_ = hsum(share_ * lost_ * loss_.crossing()) / glass_lost;
@@ -160,6 +161,13 @@ Bsdf::FilmMeans Bsdf::means_of_film(const BsdfInput& in, const Bands& bands, f4 
     out.coat *= known;
     out.metal *= known;
     return out;
+}
+
+f4 Bsdf::lost_by_two_widths() const {
+    f4 lost = splat(visible_glass_loss(wo_, alpha_, eta_[0], glass_specular_));
+    for (int i = 1; i < 4 && disperses_; ++i)
+        lost[i] = visible_glass_loss(wo_, alpha_, eta_[i], glass_specular_);
+    return lost;
 }
 
 // What facets of glass lose, where a film reflects more or less than Fresnel's formula: facets hide

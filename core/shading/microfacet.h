@@ -19,8 +19,6 @@ struct GgxWidth {
         : x(alpha), y(alpha), x_per_y2(1.f), y_per_x2(1.f) {}
     GgxWidth(float x0, float y0) : x(x0), y(y0), x_per_y2(sqr(x0 / y0)), y_per_x2(sqr(y0 / x0)) {}
     [[nodiscard]] bool anisotropic() const { return x != y; }
-    /// The single width whose lobe has the same peak.
-    [[nodiscard]] float mean() const { return anisotropic() ? std::sqrt(x * y) : x; }
 };
 
 /// Normal density, 1/sr. Walter et al. 2007, "Microfacet Models for Refraction", equation 33.

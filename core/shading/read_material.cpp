@@ -269,7 +269,8 @@ ShadingInput read_material(const Scene& scene, const Surface& s, const MaterialL
 f4 transmittance(const Material& m, float distance_m, const Bands& bands) {
     const float distances = distance_m / m.attenuation_distance_m;
     if (!(distances > 0.f)) return uniform(1.f, bands);
-    f4 share = uplift_reflectance(m.attenuation_color, bands);
+    // Rounding must not make light grow: small distances have large powers.
+    f4 share = max(min(uplift_reflectance(m.attenuation_color, bands), splat(1.f)), f4{});
     for (int i = 0; i < 4; ++i) share[i] = std::pow(share[i], distances);
     return share;
 }

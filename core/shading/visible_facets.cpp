@@ -68,10 +68,20 @@ class Facets {
     float lambda_o_;
 };
 
-}  // namespace
+// fresnel_dielectric (core/shading/microfacet.h), eight cosines at once.
+f8 fresnel(f8 cosine, float eta, float specular) {
+    const f8 zero{};
+    const f8 cos2 = 1.f - (1.f - cosine * cosine) / sqr(eta);
+    const f8 behind = sqrt(max(cos2, zero));
+    const f8 parallel = (eta * cosine - behind) / (eta * cosine + behind);
+    const f8 perpendicular = (cosine - eta * behind) / (cosine + eta * behind);
+    const f8 share = 0.5f * specular * (parallel * parallel + perpendicular * perpendicular);
+    return cos2 > 0.f ? share : splat8(1.f);
+}
 
-GgxAlbedo visible_albedo(const V3f& wo, const GgxWidth& alpha) {
-    const Facets facets(wo, alpha);
+/// Calls visit with all facets of the long lattice, eight by eight.
+template <class Visit>
+void for_many(const Facets& facets, const Visit& visit) {
     f8 sine, cosine;
     for (int i = 0; i < 8; ++i) {
         const SinCos at = sincos_turns(static_cast<float>(i) * kManyStep);
@@ -79,18 +89,36 @@ GgxAlbedo visible_albedo(const V3f& wo, const GgxWidth& alpha) {
         cosine[i] = at.cosine;
     }
     const SinCos step = sincos_turns(8 * kManyStep);
-    f8 all{}, schlick{};
     for (int i = 0; i < kMany; i += 8) {
-        const f8 v = (numbers_from(static_cast<float>(i)) + 0.5f) * (1.f / kMany);
-        const Facets::Eight met = facets.at(sine, cosine, v);
-        all += met.reflected;
-        schlick += met.reflected * fifth_power(1.f - met.cosine);
+        visit(
+            facets.at(sine, cosine, (numbers_from(static_cast<float>(i)) + 0.5f) * (1.f / kMany)));
         const f8 turned = sine * step.cosine + cosine * step.sine;
         cosine = cosine * step.cosine - sine * step.sine;
         sine = turned;
     }
+}
+
+}  // namespace
+
+GgxAlbedo visible_albedo(const V3f& wo, const GgxWidth& alpha) {
+    const Facets facets(wo, alpha);
+    f8 all{}, schlick{};
+    for_many(facets, [&](const Facets::Eight& met) {
+        all += met.reflected;
+        schlick += met.reflected * fifth_power(1.f - met.cosine);
+    });
     const float f90 = hsum(schlick) * (1.f / kMany);
     return {hsum(all) * (1.f / kMany) - f90, f90};
+}
+
+float visible_glass_loss(const V3f& wo, const GgxWidth& alpha, float eta, float specular) {
+    const Facets facets(wo, alpha);
+    f8 left{};
+    for_many(facets, [&](const Facets::Eight& met) {
+        const f8 reflectance = fresnel(met.cosine, eta, specular);
+        left += reflectance * met.reflected + (1.f - reflectance) * facets.refracted(met, eta);
+    });
+    return clamp_unit(1.f - hsum(left) * (1.f / kMany));
 }
 
 FewFacets few_visible_facets(const V3f& wo, const GgxWidth& alpha, float eta) {

@@ -14,6 +14,12 @@ namespace petzval {
 /// from 0.01 to 1: total() is off by 0.25 % in the mean square, by 1 % at most.
 [[nodiscard]] GgxAlbedo visible_albedo(const V3f& wo, const GgxWidth& alpha);
 
+/// Share of the light from wo that single scattering at glass of two widths loses, reflection and
+/// refraction together, by as many facets. eta: index behind over that in front; specular: factor
+/// on Fresnel's reflectance.
+[[nodiscard]] float visible_glass_loss(const V3f& wo, const GgxWidth& alpha, float eta,
+                                       float specular);
+
 /// A few facets as seen from wo, which stand for all of them.
 struct FewFacets {
     static constexpr int kCount = 21;

@@ -92,6 +92,20 @@ TEST(Leaf, WithAVolumeAbsorbs) {
     EXPECT_TRUE(test::agrees(dark, expected, 0.001)) << dark << ", not " << expected;
 }
 
+// White takes nothing, however often: rounding must not let light grow.
+TEST(Attenuation, WhiteAbsorbsNothingAtAnyDistance) {
+    Material m;
+    m.attenuation_color = Rgb(1.f);
+    m.attenuation_distance_m = 1e-30f;
+    Bands bands = Bands::rgb();
+    bands.red = splat(0.3f);
+    bands.green = splat(0.4f);
+    bands.blue = splat(0.30000007f);  // a sum above 1
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(transmittance(m, 1.f, bands)[i], 1.f);
+    m.attenuation_color = Rgb(0.5f);
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(transmittance(m, 1.f, bands)[i], 0.f);
+}
+
 TEST(CoatedSurface, APaneWithACoatLetsItsShareThrough) {
     World world;
     place(world.scene, quad(V3f(-50, -50, 0), V3f(100, 0, 0), V3f(0, 100, 0)),

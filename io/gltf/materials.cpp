@@ -145,7 +145,10 @@ void GltfMaterials::read_glass(const JsonCursor& json, Material& material) {
     if (const auto volume = json.extension("KHR_materials_volume")) {
         material.has_volume = number_or(*volume, "thicknessFactor", 0.f) > 0.f;
         material.attenuation_color = rgb_or(*volume, "attenuationColor", Rgb(1.f));
-        material.attenuation_distance_m = number_or(*volume, "attenuationDistance", kInfinity);
+        const Rgb& colour = material.attenuation_color;
+        // White takes nothing at any distance; rounding would make a little of it.
+        if (colour[0] < 1 || colour[1] < 1 || colour[2] < 1)
+            material.attenuation_distance_m = number_or(*volume, "attenuationDistance", kInfinity);
     }
 }
 

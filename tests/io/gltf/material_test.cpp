@@ -133,6 +133,9 @@ TEST(GltfMaterial, IorSpecularTransmissionVolume) {
     EXPECT_TRUE(volume.has_volume);
     EXPECT_EQ(volume.attenuation_distance_m, 5e9f);
     expect_rgb(volume.attenuation_color, 0.2f, 0.4f, 0.6f);
+    const Material white = load_material(file_with_extension(
+        "KHR_materials_volume", {{"thicknessFactor", 1}, {"attenuationDistance", 1e-7}}));
+    EXPECT_EQ(white.attenuation_distance_m, kInfinity);
     const Material thin =
         load_material(file_with_extension("KHR_materials_volume", json::object()));
     EXPECT_FALSE(thin.has_volume);

@@ -19,8 +19,8 @@ using V4f = Imath::V4f;
 using V2d = Imath::V2d;
 using V3d = Imath::V3d;
 using V2i = Imath::V2i;
-/// Imath's convention: row vectors, point * matrix; the translation is the last row.
 using M33f = Imath::M33f;
+/// Imath's convention: row vectors, point * matrix; the translation is the last row.
 using M44f = Imath::M44f;
 using M44d = Imath::M44d;
 using Box3f = Imath::Box3f;

@@ -146,11 +146,13 @@ struct Material {
     }
 };
 
+/// Reflectance of a clear coat at normal incidence: KHR_materials_clearcoat sets an index of 1.5.
+inline constexpr float kCoatF0 = 0.04f;
 /// Share of the light from below that a clear coat lets through, at a cosine to the surface: what
 /// Schlick's formula for an index of 1.5 leaves, whatever the coat's roughness.
 [[nodiscard]] inline float past_coat(float weight, float cosine) {
     const float a = clamp_unit(1.f - cosine);
-    return 1.f - weight * (0.04f + 0.96f * (a * a) * (a * a) * a);
+    return 1.f - weight * (kCoatF0 + (1.f - kCoatF0) * (a * a) * (a * a) * a);
 }
 
 }  // namespace petzval

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/shading/coated_bsdf.h"
 
+#include "core/scene/material.h"
+
 namespace petzval {
 namespace {
 

@@ -8,9 +8,6 @@
 
 namespace petzval {
 
-/// Reflectance of an index of 1.5 at normal incidence, as the extension sets it.
-inline constexpr float kCoatF0 = 0.04f;
-
 /// Clear coat at a point: a dielectric layer of index 1.5, which takes nothing.
 struct CoatInput {
     float weight = 0;  ///< how much of the surface has it; 0: none

@@ -146,13 +146,13 @@ class Layers {
             frame = Frame::about(frame.z, t->tangent * along.x + t->bitangent * along.y);
     }
 
-    void read_film(const Fillings& sides, BsdfInput& b) const {
+    // front: what lies before the film, or null for air.
+    void read_film(const Material* front, BsdfInput& b) const {
         if (!(m_.iridescence > 0.f)) return;
         b.film_share = m_.iridescence * channel(m_.iridescence_texture, 0);
-        b.film_index = m_.film_ior / index_of(sides.before, Bands::rgb())[0];
-        const float way =
-            m_.film_thickness_texture.present() ? channel(m_.film_thickness_texture, 1) : 1.f;
-        b.film_thickness_nm = lerp(m_.film_thinnest_nm, m_.film_thickest_nm, way);
+        b.film_index = m_.film_ior / index_of(front, Bands::rgb())[0];
+        b.film_thickness_nm =
+            lerp(m_.film_thinnest_nm, m_.film_thickest_nm, channel(m_.film_thickness_texture, 1));
         if (!(b.film_thickness_nm > 0.f)) b.film_share = 0.f;
     }
 
@@ -214,7 +214,7 @@ ShadingInput read_material(const Scene& scene, const Surface& s, const MaterialL
     if (m.normal_texture.present() && !s.mesh->tangents.empty())
         n = mapped_normal(s, lookups.normal, m.normal_scale);
     out.frame = Frame::about(face_towards(s.front ? n : -n, wo));
-    const bool layered = m.layered() && !m.unlit;
+    const bool layered = m.layered();
     const Layers layers(scene, s, wo, bands);
     if (layered) layers.read_anisotropy(out.frame, out.bsdf);
     if (out.frame.z.dot(s.side) < kSameNormal) out.up = out.frame.to_local(s.side);
@@ -260,7 +260,7 @@ ShadingInput read_material(const Scene& scene, const Surface& s, const MaterialL
     if (layered) {
         layers.read_coat(out.frame, out.coat);
         layers.read_sheen(b);
-        layers.read_film(sides, b);
+        layers.read_film(m.has_volume ? sides.before : outside, b);
         layers.read_diffuse_transmission(b);
     }
     return out;

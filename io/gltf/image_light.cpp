@@ -27,17 +27,9 @@ std::optional<size_t> light_of_scene(const JsonCursor& root, int scene, size_t l
 }
 
 /// Inverse of a light's rotation: what it takes a direction in the scene to.
-std::function<V3f(const V3f&)> to_picture(const JsonCursor& light) {
+M44f to_picture(const JsonCursor& light) {
     const auto q = light.numbers("rotation", 4);
-    const double norm =
-        q.empty() ? 0 : std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    if (!(norm > 0)) return [](const V3f& d) { return d; };
-    const V3d axis = V3d(-q[0], -q[1], -q[2]) / norm;
-    const double w = q[3] / norm;
-    return [axis, w](const V3f& d) {
-        const V3d v(d), twice = axis.cross(v) * 2.;
-        return V3f(v + twice * w + axis.cross(twice));
-    };
+    return q.empty() ? M44f() : M44f(rotation_matrix({-q[0], -q[1], -q[2], q[3]}));
 }
 
 /// RGB of a face: encoded as sRGB, and divided by alpha (RGBD) where there is some. Khronos,
@@ -103,10 +95,11 @@ class Reader {
         const std::string shortage =
             pictures_.take(texels * bytes_per_texel, texels * 3 * sizeof(float));
         if (!shortage.empty()) light_.fail("the sky " + shortage);
-        const auto turned = to_picture(light_);
+        const M44f turned = to_picture(light_);
         constexpr float most_nits = 1e20f;
         const auto intensity = static_cast<float>(light_.number_or("intensity", 1));
-        auto rgb = sky_texels(height, [&](const V3f& d) { return radiance(turned(d)); });
+        auto rgb = sky_texels(
+            height, [&](const V3f& d) { return radiance(transform_direction(d, turned)); });
         for (float& value : rgb) value = std::min(value * intensity, most_nits);
         return Sky::picture(std::move(rgb), 2 * height, height, 0.f, 1.f);
     }

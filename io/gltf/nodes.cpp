@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/gltf/nodes.h"
 
-#include <fmt/format.h>
 #include <tiny_gltf.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include "io/base/error.h"
 #include "io/base/json_cursor.h"
-#include "io/base/nearest.h"
-#include "io/base/printable.h"
+#include "io/base/named.h"
 
 namespace petzval {
 namespace {
@@ -78,29 +75,14 @@ void depth_first(const std::vector<GltfNode>& nodes, const std::vector<int>& roo
     }
 }
 
-// Number of a scene of that name, or of that number where no name is so.
 int find_scene(const GltfModel& gltf, const std::string& wanted) {
-    const auto& scenes = gltf.typed.scenes;
     std::vector<std::string> names;
-    for (size_t i = 0; i < scenes.size(); ++i) {
-        if (scenes[i].name == wanted || visible(scenes[i].name) == wanted)
-            return static_cast<int>(i);
-        names.push_back(printable(scenes[i].name));
-    }
-    size_t number = 0;
-    const auto [end, error] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), number);
-    if (error == std::errc() && end == wanted.data() + wanted.size() && number < scenes.size())
-        return static_cast<int>(number);
-    constexpr size_t most = 20;  // fit one message
-    std::string known;
-    for (size_t i = 0; i < std::min(most, names.size()); ++i)
-        known += fmt::format("{}{} \"{}\"", i ? ", " : "", i, names[i]);
-    if (names.size() > most) known += fmt::format(" and {} more", names.size() - most);
-    throw ArgumentError(
-        gltf.file, "",
-        fmt::format("no scene \"{}\"; {}{}", printable(wanted),
-                    known.empty() ? "the file has none, leave out --scene" : "it has " + known,
-                    did_you_mean(wanted, names)));
+    for (const auto& scene : gltf.typed.scenes) names.push_back(scene.name);
+    const auto number = find_named(wanted, names);
+    if (!number)
+        throw ArgumentError(
+            gltf.file, "", no_such("scene", wanted, names, "the file has none, leave out --scene"));
+    return static_cast<int>(*number);
 }
 
 }  // namespace

@@ -25,6 +25,7 @@ uint64_t bytes_of(const Mesh& mesh) {
     uint64_t bytes = bytes_of(mesh.positions) + bytes_of(mesh.normals) + bytes_of(mesh.tangents) +
                      bytes_of(mesh.colours) + bytes_of(mesh.triangles);
     for (const auto& uv : mesh.uv) bytes += bytes_of(uv);
+    for (const auto& uv : mesh.more_uv) bytes += bytes_of(uv);
     return bytes;
 }
 

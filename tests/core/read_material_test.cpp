@@ -76,6 +76,21 @@ TEST(MaterialLayers, AFilmWithoutATextureIsAsThickAsItMayBe) {
     EXPECT_EQ(s.at_middle().bsdf.film_thickness_nm, 400.f);
 }
 
+// A sheet without a volume has air on both sides; within a volume the film lies before its index.
+TEST(MaterialLayers, AFilmIsTheSameFromBothSidesOfASheet) {
+    for (const bool volume : {false, true})
+        for (const float side : {1.f, -1.f}) {
+            Square s;
+            s.m.iridescence = 1;
+            s.m.film_ior = 1.8f;
+            s.m.transmission = 1;
+            s.m.has_volume = volume;
+            const float front = volume && side < 0 ? s.m.ior : 1.f;
+            EXPECT_NEAR(s.at_middle(V3f(0, 0, side)).bsdf.film_index, 1.8f / front, 1e-6f)
+                << volume << ' ' << side;
+        }
+}
+
 // (0.6, 0, 0.8) in each map, one turned; the coat without a map has the mesh's normal.
 TEST(MaterialLayers, CoatAndBaseHaveNormalsOfTheirOwn) {
     const V3f along_x = unit(V3f(0.6f, 0, 0.8f)), along_y = unit(V3f(0, 0.6f, 0.8f));

@@ -22,7 +22,6 @@ float share_past_coat(const Scene& scene, uint32_t instance, uint32_t triangle, 
                       float cosine) {
     const Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
     const Material& material = scene.materials[mesh.material];
-    if (!(material.coat > 0.f)) return 1.f;
     const TextureSlot& slot = material.coat_texture;
     float weight = material.coat;
     if (slot.present()) {

@@ -45,6 +45,13 @@ inline constexpr float kOneMinus = 0x1.fffffep-1f;
     a = a > 0.f ? a : 0.f;
     return a < 1.f ? a : 1.f;
 }
+/// Whether every component of a vector is finite.
+template <class Vector>
+[[nodiscard]] bool is_finite(const Vector& v) {
+    for (unsigned k = 0; k < Vector::dimensions(); ++k)
+        if (!std::isfinite(v[static_cast<int>(k)])) return false;
+    return true;
+}
 /// Unit vector along v; v must not be zero.
 [[nodiscard]] inline V3f unit(const V3f& v) {
     return v * (1.f / std::sqrt(v.dot(v)));

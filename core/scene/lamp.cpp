@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/scene/lamp.h"
 
-#include <array>
-#include <map>
-#include <numbers>
+#include "core/scene/geodesic_sphere.h"
 
 namespace petzval {
 namespace {
@@ -11,59 +9,12 @@ namespace {
 constexpr int kMostHalvings = 3;
 constexpr size_t kMostTriangles = size_t{1} << 20;  // of all lamps, where fewer halvings do
 
-// A unit icosahedron: corners at the even permutations of (0, 1, golden ratio).
-Mesh icosahedron() {
-    const auto a = static_cast<float>(1 / std::sqrt(2 + std::numbers::phi));
-    const auto b = static_cast<float>(std::numbers::phi) * a;
-    Mesh mesh;
-    for (const float u : {-a, a})
-        for (const float v : {-b, b}) {
-            mesh.positions.emplace_back(0.f, u, v);
-            mesh.positions.emplace_back(u, v, 0.f);
-            mesh.positions.emplace_back(v, 0.f, u);
-        }
-    // Faces are the triples of corners at the distance of an edge, 2a.
-    const auto joined = [&](uint32_t i, uint32_t j) {
-        return (mesh.positions[i] - mesh.positions[j]).length() < 2.1f * a;
-    };
-    const auto count = static_cast<uint32_t>(mesh.positions.size());
-    for (uint32_t i = 0; i < count; ++i)
-        for (uint32_t j = i + 1; j < count; ++j)
-            for (uint32_t k = j + 1; k < count; ++k) {
-                if (!joined(i, j) || !joined(j, k) || !joined(k, i)) continue;
-                const V3f &p = mesh.positions[i], &q = mesh.positions[j], &r = mesh.positions[k];
-                const bool outwards = (q - p).cross(r - p).dot(p) > 0;
-                mesh.triangles.push_back({i, outwards ? j : k, outwards ? k : j});
-            }
-    return mesh;
-}
-
-// Every triangle as four, their new corners on the unit sphere.
-Mesh halved(const Mesh& from) {
-    Mesh mesh;
-    mesh.positions = from.positions;
-    std::map<std::array<uint32_t, 2>, uint32_t> middles;
-    const auto middle = [&](uint32_t i, uint32_t j) {
-        const auto [at, is_new] = middles.try_emplace({std::min(i, j), std::max(i, j)},
-                                                      static_cast<uint32_t>(mesh.positions.size()));
-        if (is_new) mesh.positions.push_back(unit(from.positions[i] + from.positions[j]));
-        return at->second;
-    };
-    for (const auto& [a, b, c] : from.triangles) {
-        const uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-        mesh.triangles.insert(mesh.triangles.end(),
-                              {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
-    }
-    return mesh;
-}
-
-Mesh unit_sphere(size_t lamps) {
-    Mesh mesh = icosahedron();
-    for (int i = 0; i < kMostHalvings; ++i) {
-        if (4 * mesh.triangles.size() * lamps > kMostTriangles) break;
-        mesh = halved(mesh);
-    }
-    return mesh;
+// How often a sphere's triangles are parted.
+int halvings(size_t lamps) {
+    int count = 0;
+    while (count < kMostHalvings && geodesic_triangles(count + 1) * lamps <= kMostTriangles)
+        ++count;
+    return count;
 }
 
 double area(const Mesh& mesh) {
@@ -78,7 +29,7 @@ double area(const Mesh& mesh) {
 }  // namespace
 
 void add_lamps(Scene& scene, std::span<const BallLamp> lamps) {
-    const Mesh sphere = unit_sphere(lamps.size());
+    const Mesh sphere = geodesic_sphere(halvings(lamps.size()));
     // A convex body shows a quarter of its area, on average over all directions (Cauchy 1832).
     const double shown = area(sphere) / 4;
     for (const BallLamp& lamp : lamps) {

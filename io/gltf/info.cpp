@@ -2,6 +2,7 @@
 #include "io/gltf/info.h"
 
 #include <fmt/format.h>
+
 #include <algorithm>
 
 #include "io/base/json_parse.h"

@@ -26,13 +26,9 @@ namespace {
 /// Bytes that a triangle takes which is a light, in the tree of the lights too: rounded up.
 constexpr double kLightBytes = 400;
 
-template <class Values>
-bool all_finite(const Values& values, int components) {
-    return std::all_of(values.begin(), values.end(), [&](const auto& value) {
-        for (int k = 0; k < components; ++k)
-            if (!std::isfinite(value[k])) return false;
-        return true;
-    });
+template <class Vector>
+bool all_finite(const std::vector<Vector>& values) {
+    return std::all_of(values.begin(), values.end(), is_finite<Vector>);
 }
 
 class Placer {
@@ -161,7 +157,7 @@ class Placer {
             const int positions = attribute(primitive, "POSITION");
             if (positions < 0) continue;
             for (const V3f& p : read_vec3(gltf_, positions))
-                if (all_finite(std::array{p}, 3)) at->second.extendBy(p);
+                if (is_finite(p)) at->second.extendBy(p);
         }
         if (at->second.isEmpty()) at->second = Box3f(V3f(0.f));
         return at->second;
@@ -202,7 +198,8 @@ class Placer {
                             .to_local = M33f(linear_part(to_local))};
         const Box3f placed = Imath::transform(bounds, made.to_world);
         const Box3f back = Imath::transform(placed, M44f(to_local));
-        if (!all_finite(std::array{placed.min, placed.max, back.min, back.max}, 3))
+        if (!is_finite(placed.min) || !is_finite(placed.max) || !is_finite(back.min) ||
+            !is_finite(back.max))
             throw InputError(gltf_.file, json_path("nodes", node),
                              "places its mesh beyond the range of a float");
         return made;
@@ -214,11 +211,11 @@ class Placer {
                 throw InputError(gltf_.file, where + "/attributes/" + what,
                                  "holds a number that is not finite in the scene");
         };
-        require(all_finite(mesh.positions, 3), "POSITION");
-        require(all_finite(mesh.uv[0], 2), "TEXCOORD_0");
-        require(all_finite(mesh.uv[1], 2), "TEXCOORD_1");
-        for (const auto& uv : mesh.more_uv) require(all_finite(uv, 2), "TEXCOORD_n");
-        require(all_finite(mesh.colours, 4), "COLOR_0");
+        require(all_finite(mesh.positions), "POSITION");
+        require(all_finite(mesh.uv[0]), "TEXCOORD_0");
+        require(all_finite(mesh.uv[1]), "TEXCOORD_1");
+        for (const auto& uv : mesh.more_uv) require(all_finite(uv), "TEXCOORD_n");
+        require(all_finite(mesh.colours), "COLOR_0");
     }
 
     const GltfModel& gltf_;

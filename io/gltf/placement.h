@@ -10,11 +10,9 @@
 #include "io/gltf/model.h"
 #include "io/gltf/nodes.h"
 #include "io/gltf/tally.h"
+#include "io/gltf/validate/budget.h"
 
 namespace petzval {
-
-/// Bytes that an instance takes here and in the BVH while that is built: measured, and rounded up.
-inline constexpr double kInstanceBytes = 600;
 
 /// Memory that is taken for each of many places: it is asked for before it is.
 class PlaceMemory {

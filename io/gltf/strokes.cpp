@@ -6,44 +6,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/scene/geodesic_sphere.h"
 #include "io/gltf/nodes.h"
 
 namespace petzval {
 namespace {
 
-/// Sides of a cylinder, and how often an octahedron's faces are parted in four for a sphere: 16
-/// sides and 512 triangles are round at the size of a few pixels, and their normals are smooth.
+/// Sides of a cylinder, and halvings of a sphere's edges: 16 sides and 320 triangles are round at
+/// the size of a few pixels, and their normals are smooth.
 constexpr uint32_t kSides = 16;
-constexpr int kPartings = 3;
+constexpr int kHalvings = 2;
 constexpr double kShortest = 1e-3;  ///< cylinder, in radii
 
-using Triangle = std::array<uint32_t, 3>;
-
-// Octahedron with its faces parted in four again and again, on the unit sphere.
 Mesh unit_sphere() {
-    Mesh mesh;
-    mesh.positions = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-    for (uint32_t k = 0; k < 8; ++k) {
-        const uint32_t x = k & 1, y = 2 + (k >> 1 & 1), z = 4 + (k >> 2 & 1);
-        const bool odd = ((k ^ k >> 1 ^ k >> 2) & 1) != 0;
-        mesh.triangles.push_back(odd ? Triangle{x, z, y} : Triangle{x, y, z});
-    }
-    for (int i = 0; i < kPartings; ++i) {
-        std::map<std::pair<uint32_t, uint32_t>, uint32_t> known;
-        const auto middle = [&](uint32_t a, uint32_t b) {
-            const auto [at, is_new] =
-                known.try_emplace(std::minmax(a, b), uint32_t(mesh.positions.size()));
-            if (is_new)
-                mesh.positions.push_back((mesh.positions[a] + mesh.positions[b]).normalized());
-            return at->second;
-        };
-        std::vector<Triangle> parted;
-        for (const auto& [a, b, c] : mesh.triangles) {
-            const uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-            parted.insert(parted.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
-        }
-        mesh.triangles = std::move(parted);
-    }
+    Mesh mesh = geodesic_sphere(kHalvings);
     mesh.normals = mesh.positions;
     return mesh;
 }
@@ -68,10 +44,6 @@ Mesh unit_cylinder() {
 
 M44d rows(const V3d& x, const V3d& y, const V3d& z, const V3d& origin) {
     return {x.x, x.y, x.z, 0, y.x, y.y, y.z, 0, z.x, z.y, z.z, 0, origin.x, origin.y, origin.z, 1};
-}
-
-bool is_finite(const V3f& p) {
-    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
 std::vector<std::array<uint32_t, 2>> to_segments(const std::vector<uint32_t>& order, int mode) {

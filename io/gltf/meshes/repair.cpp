@@ -7,13 +7,6 @@ namespace petzval {
 namespace {
 
 template <class Value>
-bool is_finite(const Value& value) {
-    for (unsigned k = 0; k < Value::dimensions(); ++k)
-        if (!std::isfinite(value[static_cast<int>(k)])) return false;
-    return true;
-}
-
-template <class Value>
 uint64_t replace_broken(std::vector<Value>& values, const Value& by) {
     uint64_t count = 0;
     for (Value& value : values) {

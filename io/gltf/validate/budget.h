@@ -7,6 +7,10 @@
 
 namespace petzval {
 
+/// Bytes that an instance takes while it is loaded, and in the BVH while that is built: measured,
+/// and rounded up.
+inline constexpr uint64_t kInstanceBytes = 600;
+
 /// Limit of the memory that a glTF file may ask for: its accessors (zero-filled or over the same
 /// bytes again and again), vertices that thousands of primitives share, one image listed a million
 /// times. The limit is 256 MiB plus 16 times the bytes that the file and its side files hold: an

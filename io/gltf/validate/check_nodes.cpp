@@ -15,8 +15,8 @@ namespace {
 /// levels.
 constexpr int max_tree_depth = 1024;
 
-/// Bytes that a loader takes for an instance, at least, and a count whose product with it fits.
-constexpr uint64_t kInstanceBytes = 600, kMostCounted = uint64_t(1) << 40;
+/// Count of instances whose product with their bytes fits.
+constexpr uint64_t kMostCounted = uint64_t(1) << 40;
 
 void check_transform(const JsonCursor& node) {
     (void)node.numbers("matrix", 16);

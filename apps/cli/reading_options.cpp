@@ -20,6 +20,12 @@ std::optional<uint64_t> ReadingOptions::memory_bytes() const {
     return parse_memory_bytes("--max-memory", max_memory);
 }
 
+GltfChoices ReadingOptions::all_choices() const {
+    GltfChoices all = choices;
+    all.animation = time.animation();
+    return all;
+}
+
 PictureBudget ReadingOptions::pictures() const {
     const auto bytes = memory_bytes();
     return bytes ? PictureBudget(*bytes) : PictureBudget();
@@ -43,6 +49,7 @@ void add_reading_options(CLI::App& app, ReadingOptions& o) {
                    "draw the file's points as spheres and its lines as cylinders of this radius: "
                    "2mm, 0.01 (default: they are skipped)")
         ->transform(number_between(kThinnest_m, kThickest_m, kMetres));
+    add_time_options(app, o.time);
 }
 
 int usual_threads() {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/cli/time_options.h"
 #include "io/gltf/choices.h"
 #include "io/gltf/validate/source.h"
 #include "io/picture/picture_budget.h"
@@ -20,11 +21,14 @@ namespace petzval {
 struct ReadingOptions {
     std::string max_memory;
     bool confine = false;
-    GltfChoices choices;
+    GltfChoices choices;  ///< without the time, which is in `time`
+    TimeOptions time;
 
     [[nodiscard]] FileScope scope() const {
         return confine ? FileScope::Confined : FileScope::Anywhere;
     }
+    /// Choices with the time. Throws CLI::ValidationError.
+    [[nodiscard]] GltfChoices all_choices() const;
     /// Bytes of --max-memory; absent where it is not given. Throws CLI::ValidationError.
     [[nodiscard]] std::optional<uint64_t> memory_bytes() const;
     /// Budget for decoded pictures that follows from it. Throws CLI::ValidationError.

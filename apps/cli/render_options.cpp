@@ -195,7 +195,7 @@ RenderFrame resolve(RenderOptions& o) {
     s.size = parse_size("--size", o.size);
     s.picture_memory_bytes = o.reading.memory_bytes();
     s.scope = o.reading.scope();
-    s.choices = o.reading.choices;
+    s.choices = o.reading.all_choices();
     resolve(o.spectral);
     s.spectral = o.spectral.request;
     s.camera = resolve(o.camera, s.size);

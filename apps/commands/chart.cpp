@@ -115,7 +115,7 @@ void resolve(ChartOptions& o) {
     resolve_background(o.background, scene);
     scene.picture_memory_bytes = o.reading.memory_bytes();
     scene.scope = o.reading.scope();
-    scene.choices = o.reading.choices;
+    scene.choices = o.reading.all_choices();
     if (o.threads == 0) o.threads = usual_threads();
 }
 

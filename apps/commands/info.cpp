@@ -68,11 +68,12 @@ void tell_refusal(const InfoOptions& o, const std::string& error) {
 
 void info_command(const InfoOptions& o) {
     PictureBudget pictures = o.reading.pictures();
+    const GltfChoices choices = o.reading.all_choices();
     InfoReport report;
     report.path = o.scene;
     report.variant = o.reading.choices.variant;
     try {
-        report.file = load_gltf(o.scene, o.reading.scope(), pictures, o.reading.choices);
+        report.file = load_gltf(o.scene, o.reading.scope(), pictures, choices);
     } catch (const ArgumentError&) {
         throw;
     } catch (const InputError& error) {

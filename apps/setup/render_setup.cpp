@@ -2,6 +2,7 @@
 #include "apps/setup/render_setup.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <chrono>
 
@@ -72,6 +73,13 @@ std::vector<std::pair<std::string, std::string>> describe(const SceneRequest& re
         m.emplace_back("petzval:sceneName", visible(*name));
     if (const auto& radius_m = request.choices.point_line_radius_m)
         m.emplace_back("petzval:pointLineRadius_m", fmt::format("{:.9g}", *radius_m));
+    if (const auto& animation = request.choices.animation) {
+        m.emplace_back("petzval:time_s", fmt::format("{:.9g}", animation->time_s));
+        m.emplace_back("petzval:loop", animation->repeats ? "1" : "0");
+        if (!animation->names.empty())
+            m.emplace_back("petzval:animations",
+                           visible(fmt::format("{}", fmt::join(animation->names, ", "))));
+    }
     if (request.environment) {
         m.emplace_back("petzval:environment", request.environment == kStudioLight
                                                   ? kStudioLight
@@ -107,6 +115,7 @@ PreparedScene load(SceneRequest request, const Notice& notice) {
     out.files = input_files(file, request.scene);
     refuse_overwriting(request.outputs, out.files);
     for (const std::string& warning : file.warnings) notice("warning: " + warning);
+    for (const std::string& remark : file.remarks) notice(remark);
     auto scene = std::make_shared<Scene>(std::move(file.scene));
     out.hash = file.hash;
     out.cameras = std::make_shared<std::vector<GltfCamera>>(std::move(file.cameras));

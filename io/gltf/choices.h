@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "io/gltf/animation/choice.h"
+
 namespace petzval {
 
 /// What of a glTF file is shown, where it leaves a choice.
@@ -11,6 +13,7 @@ struct GltfChoices {
     std::optional<std::string> scene;    ///< its name or number; absent: the default scene
     std::optional<std::string> variant;  ///< of its materials, by name or number; absent: none
     std::optional<float> point_line_radius_m;  ///< draws points and lines as solids of this radius
+    std::optional<AnimationChoice> animation;  ///< absent: the pose that the file stores
 
     [[nodiscard]] bool operator==(const GltfChoices&) const = default;
 };

@@ -15,7 +15,7 @@ namespace {
 
 GltfFile load(const std::filesystem::path& path, FileScope scope, PictureBudget& pictures,
               const GltfChoices& choices) {
-    const GltfSource source = read_gltf_source(path, scope);
+    const GltfSource source = read_gltf_source(path, scope, choices.animation);
     const tinygltf::Model model = parse_model(source);
     const std::string name = path.string();
     const GltfModel gltf{source, model, name};
@@ -34,7 +34,7 @@ GltfFile load(const std::filesystem::path& path, FileScope scope, PictureBudget&
     file.hash = source.hash;
     file.files = source.files;
     file.warnings = source.warnings.lines();
-    describe(gltf, tally, file);
+    describe(gltf, tally, choices.animation, file);
     add_lamps(file.scene, lamps);
     return file;
 }

@@ -31,6 +31,7 @@ struct GltfFile {
     Scene scene;                      ///< not yet finished; its sky is black, or that of the file
     std::vector<GltfCamera> cameras;  ///< in depth-first order of the node tree
     std::vector<std::string> warnings;
+    std::vector<std::string> remarks;  ///< what was chosen of it, one line each
     /// For `petzval info`: what the file holds, and the same as one "name: value" line each; then
     /// which of its features, besides extensions, are honoured and which are ignored.
     GltfSummary holds;

@@ -101,18 +101,50 @@ void describe_contents(GltfFile& file) {
         lines.push_back(describe_camera(i, file.cameras[i]));
 }
 
-void describe_support(const GltfTally& tally, GltfFile& file) {
+void describe_support(const GltfModel& gltf, const GltfTally& tally, GltfFile& file) {
     file.honoured.assign(tally.honoured.begin(), tally.honoured.end());
     const auto ignore = [&](uint64_t count, const char* what, const char* why) {
         if (count > 0) file.ignored.push_back(fmt::format("{} ({})", plural(count, what), why));
     };
-    ignore(file.holds.animation_count, "animation", "the stored pose is shown");
+    if (gltf.source.clips.empty())
+        ignore(file.holds.animation_count, "animation",
+               "the stored pose is shown; --at TIME plays them");
+    else
+        ignore(file.holds.animation_count - gltf.source.clips.size(), "animation",
+               "--animation plays them");
     ignore(tally.occlusion_textures, "occlusion texture", "path tracing finds occlusion itself");
     ignore(tally.ranged_lights, "light range", "light falls off with the squared distance");
     ignore(tally.idle_dispersions, "dispersion", "the material refracts nothing");
     constexpr const char* no_surface = "they have no surface; --point-line-radius gives one";
     ignore(tally.point_primitives, "point primitive", no_surface);
     ignore(tally.line_primitives, "line primitive", no_surface);
+}
+
+// Tells which moment of which animations is shown.
+void describe_time(const GltfModel& gltf, const std::optional<AnimationChoice>& animation,
+                   GltfFile& file) {
+    const uint64_t count = file.holds.animation_count;
+    if (!animation) {
+        if (count > 0)
+            file.remarks.push_back(
+                fmt::format("the file holds {}; the pose that it stores is shown (--at 1s shows "
+                            "that moment)",
+                            plural(count, "animation")));
+        return;
+    }
+    if (count == 0)
+        file.remarks.emplace_back("the file holds no animation, so that --at changes nothing");
+    for (const GltfClip& clip : gltf.source.clips) {
+        const double local_s =
+            clip.local_s(animation->time_s, animation->time_s, animation->repeats);
+        file.remarks.push_back(fmt::format("animation: {} at {:.6g} s of {:.6g}", named(clip.name),
+                                           local_s, clip.duration_s));
+        file.honoured.push_back("animation " + named(clip.name));
+    }
+    if (count > gltf.source.clips.size() && animation->names.empty())
+        file.remarks.push_back(fmt::format(
+            "{} not played, as they move the same things (--animation NAME plays one)",
+            plural(count - gltf.source.clips.size(), "more animation is", "more animations are")));
 }
 
 void append_warnings(const GltfTally& tally, std::vector<std::string>& warnings) {
@@ -139,10 +171,13 @@ void append_warnings(const GltfTally& tally, std::vector<std::string>& warnings)
 
 }  // namespace
 
-void describe(const GltfModel& gltf, const GltfTally& tally, GltfFile& file) {
+void describe(const GltfModel& gltf, const GltfTally& tally,
+              const std::optional<AnimationChoice>& animation, GltfFile& file) {
     file.holds = summarise(gltf, tally, file.scene);
     describe_contents(file);
-    describe_support(tally, file);
+    describe_support(gltf, tally, file);
+    describe_time(gltf, animation, file);
+
     append_warnings(tally, file.warnings);
 }
 

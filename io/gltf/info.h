@@ -12,9 +12,10 @@ namespace petzval {
 /// Counts what a file holds. scene: what the loader made of it.
 [[nodiscard]] GltfSummary summarise(const GltfModel&, const GltfTally&, const Scene&);
 
-/// Fills holds, contents, honoured and ignored, and appends one warning for each kind of trouble
-/// counted.
-void describe(const GltfModel&, const GltfTally&, GltfFile&);
+/// Fills holds, contents, honoured, ignored and remarks, and appends one warning for each kind of
+/// trouble counted.
+void describe(const GltfModel&, const GltfTally&, const std::optional<AnimationChoice>&,
+              GltfFile&);
 
 /// What becomes of an extension in one word: rendered, approximated, ignored or refused.
 [[nodiscard]] std::string word_of(const ExtensionInFile&);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
+#include <type_traits>
 
 namespace petzval {
 namespace {
@@ -18,6 +20,31 @@ T load(const uint8_t* at) {
 uint32_t load_unsigned(const uint8_t* at, int component_type) {
     if (component_type == 5121) return *at;
     return component_type == 5123 ? load<uint16_t>(at) : load<uint32_t>(at);
+}
+
+template <class T>
+double load_number(const uint8_t* at, bool normalised) {
+    const T raw = load<T>(at);
+    if constexpr (std::is_integral_v<T>)
+        if (normalised) return std::max(double(raw) / double(std::numeric_limits<T>::max()), -1.);
+    return double(raw);
+}
+
+double load_number(const uint8_t* at, int component_type, bool normalised) {
+    switch (component_type) {
+        case 5120:
+            return load_number<int8_t>(at, normalised);
+        case 5121:
+            return load_number<uint8_t>(at, normalised);
+        case 5122:
+            return load_number<int16_t>(at, normalised);
+        case 5123:
+            return load_number<uint16_t>(at, normalised);
+        case 5125:
+            return load_number<uint32_t>(at, normalised);
+        default:
+            return load_number<float>(at, normalised);
+    }
 }
 
 /// Calls put(element, address) for every element that has data, sparse ones last.
@@ -94,6 +121,12 @@ std::vector<uint32_t> read_unsigned(const GltfAccessor& accessor) {
 
 std::vector<float> read_floats(const GltfAccessor& accessor) {
     return read_all<float>(accessor, load<float>);
+}
+
+std::vector<double> read_numbers(const GltfAccessor& accessor) {
+    return read_all<double>(accessor, [&](const uint8_t* at) {
+        return load_number(at, accessor.component_type, accessor.normalized);
+    });
 }
 
 }  // namespace petzval

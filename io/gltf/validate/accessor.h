@@ -54,4 +54,8 @@ struct GltfAccessor {
 /// All components of a float accessor, sparse ones replaced.
 [[nodiscard]] std::vector<float> read_floats(const GltfAccessor&);
 
+/// All components of an accessor, sparse ones replaced, normalised ones as glTF 2.0, section 3.11
+/// has it.
+[[nodiscard]] std::vector<double> read_numbers(const GltfAccessor&);
+
 }  // namespace petzval

@@ -27,6 +27,7 @@ struct GltfCheck {
     GltfBudget& budget;
     std::vector<GltfAccessor> accessors;  ///< filled by check_accessors
     GltfUse use;
+    std::vector<size_t> played{};  ///< numbers of the animations
 
     /// Number of things in the root array `kind` ("meshes" ...).
     [[nodiscard]] size_t count(const char* kind) const { return root.length(kind); }
@@ -69,7 +70,7 @@ void check_image_lights(GltfCheck&);
 void check_skins(const GltfCheck&);
 /// Checks nodes and scenes: the references, the transforms, and that the nodes form trees.
 void check_nodes(GltfCheck&);
-/// Warns of animations that are broken: they are not played.
+/// Checks and decodes the animations that are played, and warns of others that are broken.
 void check_animations(GltfCheck&);
 /// Checks values in the buffers: vertex and joint indices in range.
 void check_data(const GltfCheck&);

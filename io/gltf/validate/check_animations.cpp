@@ -1,37 +1,174 @@
 // SPDX-License-Identifier: Apache-2.0
-// Animations are not played: only what they refer to is checked.
+// Animations that are played are checked and decoded. Of others only a broken one is told.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/base/ascii.h"
 #include "io/base/error.h"
+#include "io/base/json_parse.h"
+#include "io/gltf/animation/pose.h"
 #include "io/gltf/validate/check.h"
 
 namespace petzval {
 namespace {
 
-void check_channel(const JsonCursor& channel, size_t samplers, size_t nodes) {
-    (void)channel.required_index("sampler", samplers, "sampler of the animation");
-    const JsonCursor target = channel.object("target");
-    (void)target.index("node", nodes, "node");
-    (void)target.text("path");
-}
+using nlohmann::json;
 
-void check_animation(const GltfCheck& check, const JsonCursor& animation) {
+/// Reads one animation, whose parts may be wrong.
+class ClipReader {
+  public:
+    ClipReader(GltfCheck& check, const JsonCursor& animation)
+        : check_(check), animation_(animation), samplers_(animation.objects("samplers")) {}
+
+    [[nodiscard]] GltfClip run() {
+        animation_.require("samplers");
+        animation_.require("channels");
+        GltfClip clip;
+        clip.name = animation_.text_or("name", "");
+        for (const JsonCursor& channel : animation_.objects("channels"))
+            read_channel(channel, clip);
+        for (const AnimatedProperty& property : clip.properties)
+            clip.duration_s = std::max(clip.duration_s, property.keys.times_s.back());
+        clip.find_whether_closed();
+        return clip;
+    }
+
+  private:
+    void read_channel(const JsonCursor& channel, GltfClip& clip) {
+        const size_t sampler =
+            channel.required_index("sampler", samplers_.size(), "sampler of the animation");
+        const JsonCursor target = channel.object("target");
+        const bool has_node = target.index("node", check_.count("nodes"), "node").has_value();
+        if (target.text("path") != "pointer" && !has_node) return;  // for extensions: glTF 2.0, 5.4
+        const std::string pointer = target_of(channel.value());
+        const auto kind = property_kind(pointer);
+        if (!kind || !stands(pointer)) {
+            check_.warn(target, fmt::format("animates {}, which Petzval does not read or which is "
+                                            "not there; it stays as the file stores it",
+                                            pointer.empty() ? "nothing" : printable(pointer)));
+            return;
+        }
+        AnimatedProperty property{pointer, read_keys(samplers_[sampler], *kind)};
+        const auto same = [&](const auto& one) { return one.pointer == pointer; };
+        if (std::ranges::any_of(clip.properties, same)) {
+            check_.warn(target, "animates what an earlier channel does; that one is taken");
+            return;
+        }
+        clip.properties.push_back(std::move(property));
+    }
+
+    // Whether all is there that a pointer leads through. Its last word may have a default.
+    [[nodiscard]] bool stands(const std::string& pointer) const {
+        json::json_pointer at;
+        try {
+            at = json::json_pointer(pointer).parent_pointer();
+        } catch (const json::exception&) {
+            return false;
+        }
+        const json& root = check_.root.value();
+        if (at.back() == "pbrMetallicRoughness") at.pop_back();
+        if (!root.contains(at)) return false;
+        const json& owner = root[at];
+        if (owner.is_object()) {
+            // A node has a matrix or is animated: glTF 2.0, section 3.5.3.
+            const std::string name = json::json_pointer(pointer).back();
+            const bool moves = name == "translation" || name == "rotation" || name == "scale";
+            return !(moves && pointer.starts_with("/nodes/") && owner.contains("matrix"));
+        }
+        const std::string index = json::json_pointer(pointer).back();
+        return owner.is_array() && index.size() < 9 && std::stoul(index) < owner.size();
+    }
+
+    [[nodiscard]] static Interpolation interpolation_of(const JsonCursor& sampler) {
+        const std::string word = sampler.text_or("interpolation", "LINEAR");
+        if (lower(word) == "linear") return Interpolation::Linear;
+        if (lower(word) == "step") return Interpolation::Step;
+        if (lower(word) == "cubicspline") return Interpolation::CubicSpline;
+        sampler.fail(
+            "interpolation",
+            fmt::format("is \"{}\"; it must be LINEAR, STEP or CUBICSPLINE", printable(word)));
+    }
+
+    [[nodiscard]] Keyframes read_keys(const JsonCursor& sampler, const PropertyKind& kind) {
+        Keyframes keys;
+        keys.interpolation = interpolation_of(sampler);
+        if (kind.yes_or_no) keys.interpolation = Interpolation::Step;
+        keys.rotation = kind.quaternion;
+        const GltfAccessor& input = accessor(sampler, "input");
+        if (input.components != 1) sampler.fail("input", "must be an accessor of SCALAR");
+        keys.times_s = read_numbers(input);
+        check_times(sampler, keys.times_s);
+        const GltfAccessor& output = accessor(sampler, "output");
+        keys.values = read_numbers(output);
+        const size_t parts = keys.interpolation == Interpolation::CubicSpline ? 3 : 1;
+        const size_t rows = keys.times_s.size() * parts;
+        keys.width = kind.width > 0 ? kind.width : keys.values.size() / rows;
+        if (keys.width == 0 || keys.values.size() < rows * keys.width)
+            sampler.fail("output",
+                         fmt::format("holds {} numbers; {} keys need {}", keys.values.size(),
+                                     keys.times_s.size(), rows * std::max<size_t>(keys.width, 1)));
+        const auto bad = std::ranges::find_if(keys.values, [](double x) {
+            return !(std::fabs(x) <= std::numeric_limits<float>::max());
+        });
+        if (bad != keys.values.end())
+            sampler.fail("output", fmt::format("number {} is not finite",
+                                               std::distance(keys.values.begin(), bad)));
+        return keys;
+    }
+
+    static void check_times(const JsonCursor& sampler, const std::vector<double>& times_s) {
+        if (times_s.empty()) sampler.fail("input", "holds no keys");
+        for (size_t i = 0; i < times_s.size(); ++i) {
+            if (!std::isfinite(times_s[i]) || times_s[i] < 0)
+                sampler.fail("input", fmt::format("the time of key {} is not a number from 0", i));
+            if (i > 0 && times_s[i] < times_s[i - 1])
+                sampler.fail("input",
+                             fmt::format("key {} is before key {}: keys must come in the order of "
+                                         "their times",
+                                         i, i - 1));
+        }
+    }
+
+    [[nodiscard]] const GltfAccessor& accessor(const JsonCursor& sampler, const char* key) const {
+        const size_t index = sampler.required_index(key, check_.accessors.size(), "accessor");
+        const GltfAccessor& found = check_.accessors[index];
+        if (found.components == 0)
+            sampler.fail(key, fmt::format("accessor {} has no type of numbers", index));
+        return found;
+    }
+
+    GltfCheck& check_;
+    const JsonCursor& animation_;
+    const std::vector<JsonCursor> samplers_;
+};
+
+/// Checks what an animation that is not played refers to.
+void check_references(const GltfCheck& check, const JsonCursor& animation) {
     animation.require("samplers");
     animation.require("channels");
-    for (const JsonCursor& sampler : animation.objects("samplers")) {
-        (void)sampler.required_index("input", check.accessors.size(), "accessor");
-        (void)sampler.required_index("output", check.accessors.size(), "accessor");
-        (void)sampler.text_or("interpolation", "LINEAR");
+    for (const JsonCursor& sampler : animation.objects("samplers"))
+        for (const char* key : {"input", "output"})
+            (void)sampler.required_index(key, check.accessors.size(), "accessor");
+    for (const JsonCursor& channel : animation.objects("channels")) {
+        (void)channel.required_index("sampler", animation.length("samplers"), "sampler");
+        const JsonCursor target = channel.object("target");
+        (void)target.index("node", check.count("nodes"), "node");
+        (void)target.text("path");
     }
-    for (const JsonCursor& channel : animation.objects("channels"))
-        check_channel(channel, animation.length("samplers"), check.count("nodes"));
 }
 
 }  // namespace
 
 void check_animations(GltfCheck& check) {
-    for (const JsonCursor& animation : check.root.objects("animations")) try {
-            check_animation(check, animation);
+    const auto animations = check.root.objects("animations");
+    for (const size_t index : check.played)
+        check.source.clips.push_back(ClipReader(check, animations[index]).run());
+    for (size_t i = 0; i < animations.size(); ++i) try {
+            check_references(check, animations[i]);
         } catch (const InputError&) {
-            check.warn(animation, "is broken; animations are not played");
+            check.warn(animations[i], "is broken; it cannot be played");
         }
 }
 

@@ -61,7 +61,7 @@ class PrimitiveDecoder {
             root["accessors"].push_back(std::move(described_[i]));
             check_.source.buffers.push_back(std::move(bytes_[i]));
         }
-        check_.use = find_used(root);
+        check_.use = find_used(root, check_.played);
     }
 
   private:

@@ -41,7 +41,7 @@ constexpr auto table = std::to_array<GltfExtension>({
     {"FB_geometry_metadata", Harmless, kMetadata, ""},
     {"GODOT_single_root", Harmless, kMetadata, ""},
     {"GRIFFEL_bim_data", Harmless, kMetadata, ""},
-    {"KHR_animation_pointer", Harmless, kStill, "target"},
+    {"KHR_animation_pointer", Rendered, "", "target"},
     {"KHR_audio_emitter", Harmless, kSound, ""},
     {"KHR_draco_mesh_compression", Rendered, "", "primitives"},
     {"KHR_gaussian_splatting", Needed, "splats are not shown", "primitives"},

@@ -4,6 +4,7 @@
 #include "io/base/error.h"
 #include "io/base/json_parse.h"
 #include "io/base/read_file.h"
+#include "io/gltf/animation/pose.h"
 #include "io/gltf/mend/mend.h"
 #include "io/gltf/validate/budget.h"
 #include "io/gltf/validate/check.h"
@@ -25,7 +26,18 @@ void check_scene_graph(GltfCheck& check) {
     check_image_lights(check);
     check_skins(check);
     check_nodes(check);
-    check_animations(check);
+}
+
+/// Makes the JSON that of the time that is shown, and checks it once more: values between keys may
+/// leave the range of a property, and are clamped as those of a file are.
+void pose_at(GltfCheck& check, const AnimationChoice& choice) {
+    GltfSource& source = check.source;
+    pose(source.json, source.clips, choice.time_s, choice.time_s, choice.repeats);
+    WarningLog said_before;
+    std::swap(said_before, source.warnings);
+    mend_gltf(source.json, source.warnings);
+    check_scene_graph(check);
+    std::swap(said_before, source.warnings);
 }
 
 /// A file as it lies on the disk. `chunks` views `file`.
@@ -59,13 +71,14 @@ std::vector<ExtensionInFile> read_gltf_extensions(const std::filesystem::path& p
     (void)open_gltf(path, source);
     GltfBudget budget;
     const std::string name = path.string();
-    GltfCheck check{source, JsonCursor(source.json, name), budget, {}, {}};
+    GltfCheck check{source, JsonCursor(source.json, name), budget, {}, {}, {}};
     check_asset(check);
     list_extensions(check);
     return source.extensions;
 }
 
-GltfSource read_gltf_source(const std::filesystem::path& path, FileScope scope) {
+GltfSource read_gltf_source(const std::filesystem::path& path, FileScope scope,
+                            const std::optional<AnimationChoice>& animation) {
     GltfSource source;
     const Opened opened = open_gltf(path, source);
     source.files.push_back(path);
@@ -75,11 +88,13 @@ GltfSource read_gltf_source(const std::filesystem::path& path, FileScope scope) 
     budget.add_owned(opened.file.bytes.size());
 
     const std::string name = path.string();
-    GltfCheck check{source, JsonCursor(source.json, name), budget, {}, find_used(source.json)};
+    GltfCheck check{source, JsonCursor(source.json, name), budget, {}, {}, {}};
     check_asset(check);
     list_extensions(check);
     check_extensions(check);
     check_collections(check);
+    if (animation) check.played = played_animations(source.json, *animation, name);
+    check.use = find_used(source.json, check.played);
     read_buffers(source, {opened.binary, opened.chunks.bin}, budget);
     decode_buffer_views(check);
     check_buffer_views(check);
@@ -88,7 +103,9 @@ GltfSource read_gltf_source(const std::filesystem::path& path, FileScope scope) 
     read_images(source, check.use, budget);
     read_light_profiles(source, budget);
     check_scene_graph(check);
+    check_animations(check);
     check_data(check);
+    if (animation) pose_at(check, *animation);
     return source;
 }
 

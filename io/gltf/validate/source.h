@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "io/base/warning_log.h"
+#include "io/gltf/animation/clip.h"
 #include "io/gltf/validate/extensions.h"
 
 namespace petzval {
@@ -32,6 +34,7 @@ struct GltfSource {
     std::vector<ExtensionInFile> extensions;  ///< those that the file lists, by name
     /// Text of each light of EXT_lights_ies; empty for one that is not there.
     std::vector<std::vector<uint8_t>> light_profiles;
+    std::vector<GltfClip> clips;  ///< animations that are played
     WarningLog warnings;                       ///< one line each: odd, but no reason to refuse
     std::vector<std::filesystem::path> files;  ///< every file that was read, `path` first
     uint64_t hash = 0;  ///< FNV-1a of the scene file and of every file it names
@@ -44,8 +47,9 @@ struct GltfSource {
 /// Reads a .gltf or .glb with everything it refers to, and checks it before anything else uses it:
 /// container, JSON (and its depth), version, required extensions, every index, every byte range,
 /// the node tree, counts against the sizes of the buffers. Throws InputError with file and JSON
-/// path.
+/// path. Where animations are chosen, the JSON is as they have it at their time.
 [[nodiscard]] GltfSource read_gltf_source(const std::filesystem::path&,
-                                          FileScope = FileScope::Anywhere);
+                                          FileScope = FileScope::Anywhere,
+                                          const std::optional<AnimationChoice>& = {});
 
 }  // namespace petzval

@@ -71,6 +71,14 @@ void mark_accessors(const json& root, GltfUse& use) {
          [&](const json& skin) { mark(use.accessors, member(skin, "inverseBindMatrices")); });
 }
 
+void mark_played(const json& root, std::span<const size_t> played, GltfUse& use) {
+    for (const size_t i : played)
+        each(member(root, "animations")[i], "samplers", [&](const json& sampler) {
+            mark(use.accessors, member(sampler, "input"));
+            mark(use.accessors, member(sampler, "output"));
+        });
+}
+
 void mark_views(const json& root, GltfUse& use) {
     const auto of_used = [&](const char* kind, const std::vector<bool>& used, auto mark_views_of) {
         size_t i = 0;
@@ -98,13 +106,14 @@ void mark_views(const json& root, GltfUse& use) {
 
 }  // namespace
 
-GltfUse find_used(const json& root) {
+GltfUse find_used(const json& root, std::span<const size_t> played) {
     GltfUse use{std::vector<bool>(count(root, "accessors")),
                 std::vector<bool>(count(root, "bufferViews")),
                 std::vector<bool>(count(root, "images"))};
     mark_images(root, use);
     mark_cubes(root, use);
     mark_accessors(root, use);
+    mark_played(root, played, use);
     mark_views(root, use);
     return use;
 }

@@ -2,18 +2,20 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <span>
 #include <vector>
 
 namespace petzval {
 
 /// Which objects of a glTF file something refers to that is shown: a broken one that nothing needs
-/// is no reason to refuse the file. Meshes, skins and instances need accessors (animations do not:
-/// they are not played), accessors and images need bufferViews, textures need images.
+/// is no reason to refuse the file. Meshes, skins, instances and animations that are played need
+/// accessors, accessors and images need bufferViews, textures need images.
 struct GltfUse {
     std::vector<bool> accessors, views, images;
 };
 
-/// Finds them in a file that is not yet checked: what is no reference is passed over.
-[[nodiscard]] GltfUse find_used(const nlohmann::json& root);
+/// Finds them in a file that is not yet checked: what is no reference is passed over. played:
+/// numbers of the animations.
+[[nodiscard]] GltfUse find_used(const nlohmann::json& root, std::span<const size_t> played);
 
 }  // namespace petzval

@@ -61,7 +61,7 @@ TEST_F(Info, HasATableOfTheExtensions) {
     has("  animations: 1\n  animation 0: walk, 1 channel, 2.5 s\n");
     has("  memory: 0.");
     has("  triangles: 4 stored, 4 placed\n");
-    has("  1 animation (the stored pose is shown)\n");
+    has("  1 animation (the stored pose is shown; --at TIME plays them)\n");
 }
 
 TEST_F(Info, JsonHasTheKeysOfItsSchema) {

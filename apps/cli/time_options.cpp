@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/time_options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+
+#include "apps/cli/quantity.h"
+
+namespace petzval {
+namespace {
+
+constexpr double kMost_s = 1e6, kMostFps = 1e6, kLeastFps = 1e-3;
+constexpr std::array<Unit, 4> kSeconds{{{"s"}, {"sec"}, {"ms", 1, 1000}, {"min", 60, 1}}};
+constexpr std::string_view kFrame = "frame:";
+
+}  // namespace
+
+double parse_time_s(const std::string& option, const std::string& text, double fps) {
+    const std::string_view given = trimmed(text);
+    std::optional<double> s;
+    if (given.starts_with(kFrame)) {
+        if (const auto frame = number<double>(given.substr(kFrame.size()))) s = *frame / fps;
+    } else {
+        s = quantity(given, kSeconds);
+    }
+    if (!s || !(std::fabs(*s) <= kMost_s))
+        throw CLI::ValidationError(
+            option, fmt::format("\"{}\" is not a time such as 1.25s, 40ms or frame:30", text));
+    return *s;
+}
+
+std::optional<AnimationChoice> TimeOptions::animation() const {
+    if (at.empty()) return std::nullopt;
+    return AnimationChoice{parse_time_s("--at", at, fps), animations, !no_loop};
+}
+
+void add_time_options(CLI::App& app, TimeOptions& o) {
+    const auto group = [](CLI::Option* option) { return option->group("Time"); };
+    auto* at = group(app.add_option(
+        "--at", o.at,
+        "moment of the file's animations: 1.25s, 40ms, frame:30 (default: the pose that the file "
+        "stores)"));
+    group(app.add_option("--fps", o.fps, "frames in a second (default 24)"))
+        ->transform(number_between(kLeastFps, kMostFps));
+    group(app.add_option("--animation", o.animations,
+                         "animation that is played, by name or number; may be given again "
+                         "(default: all that do not contradict an earlier one)"))
+        ->needs(at)
+        ->allow_extra_args(false);
+    group(app.add_flag("--no-loop", o.no_loop,
+                       "an animation stays as it ends (default: it begins anew)"))
+        ->needs(at);
+}
+
+}  // namespace petzval

@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "camera/shutter.h"
 #include "camera/target.h"
 #include "core/math/ray.h"
 #include "core/sampling/filter.h"
@@ -148,6 +149,11 @@ class Camera {
         return targets_;
     }
 
+    /// The shutter, for whoever asks for rays: those of the functions above are of its middle.
+    void set_shutter(std::shared_ptr<const Shutter> shutter) { shutter_ = std::move(shutter); }
+    /// nullptr: nothing moves.
+    [[nodiscard]] const Shutter* shutter() const { return shutter_.get(); }
+
   protected:
     [[nodiscard]] TargetList targets_at(const FilmPoint& at) const {
         return targets_ ? targets_->at(at.film) : TargetList();
@@ -155,6 +161,7 @@ class Camera {
 
   private:
     std::shared_ptr<const TargetGrid> targets_;
+    std::shared_ptr<const Shutter> shutter_;
 };
 
 }  // namespace petzval

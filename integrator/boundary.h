@@ -45,8 +45,8 @@ inline bool is_on_edge(const Surface& s, const Triangle& t) {
 // a corner that they share.
 inline bool are_neighbours(const Scene& scene, const Surface& a, const Surface& b) {
     if (a.material != b.material || a.front != b.front) return false;
-    const Triangle of_a = triangle_corners(scene, a.hit.instance, a.hit.triangle);
-    const Triangle of_b = triangle_corners(scene, b.hit.instance, b.hit.triangle);
+    const Triangle of_a = triangle_corners(scene, a.hit.instance, a.hit.triangle, a.hit.time);
+    const Triangle of_b = triangle_corners(scene, b.hit.instance, b.hit.triangle, b.hit.time);
     if (!is_on_edge(a, of_a) && !is_on_edge(b, of_b)) return false;
     for (const V3f& p : of_a)
         for (const V3f& q : of_b)
@@ -63,6 +63,7 @@ std::vector<Surface> faces_beside(const Scene& scene, const Caster& caster, cons
     probe.direction = -s.facing();
     probe.origin = s.p - probe.direction * back_m;
     probe.t_max = back_m + onward_m;
+    probe.time = s.hit.time;
     std::vector<Surface> faces;
     for (const Hit& hit : caster.all_hits(probe)) {
         if (hit.instance == s.hit.instance && hit.triangle == s.hit.triangle) continue;

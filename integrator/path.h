@@ -53,8 +53,8 @@ class PathTracer {
                              ChanceFinds& by_chance) const;
     [[nodiscard]] f4 emitted(const Surface&, Rgb, const Bands&, const Vertex& last) const;
     [[nodiscard]] std::optional<DrawnLight> draw_light(const LightReceiver&,
-                                                       const Sampler::VertexNumbers&,
-                                                       const Bands&) const;
+                                                       const Sampler::VertexNumbers&, const Bands&,
+                                                       float time) const;
     [[nodiscard]] f4 light_on_smooth(const Scattering&, const DrawnLight&) const;
     [[nodiscard]] f4 direct_light(const Scattering&, const DrawnLight&) const;
 

@@ -4,6 +4,7 @@
 
 #include "core/light/light_sampling.h"
 #include "core/sampling/warp.h"
+#include "core/scene/motion.h"
 #include "core/shading/surface.h"
 #include "core/spectrum/colour.h"
 #include "integrator/boundary.h"
@@ -104,18 +105,20 @@ f4 PathTracer<Caster>::emitted(const Surface& s, Rgb rgb, const Bands& bands,
     const float cosine = s.ng.dot(along) / std::sqrt(distance_squared);
     const float light_pdf = lights_.probability(light, last.receiver) *
                             triangle_light_pdf(scene_, {s.hit.instance, s.hit.triangle}, last.p,
-                                               distance_squared, std::fabs(cosine));
+                                               distance_squared, std::fabs(cosine), s.hit.time);
     if (options_.technique == Technique::LightOnly && light_pdf > 0.f) return f4{};
     return radiance * power_heuristic(last.pdf, light_pdf);
 }
 
 template <RayCaster Caster>
 auto PathTracer<Caster>::draw_light(const LightReceiver& receiver, const Sampler::VertexNumbers& u,
-                                    const Bands& bands) const -> std::optional<DrawnLight> {
+                                    const Bands& bands, float time) const
+    -> std::optional<DrawnLight> {
     const auto pick = lights_.pick(u.light_point.x, receiver);
     if (!pick) return std::nullopt;
     const V2f u_on_light(left_of_unit(pick->u, pick->probability, u.light_rest), u.light_point.y);
-    const Light& light = scene_.lights[pick->light];
+    Light moved;
+    const Light& light = light_at(scene_, pick->light, time, moved);
     if (std::holds_alternative<SkyLight>(light)) {
         const Sky::Draw drawn = scene_.sky.sample(u_on_light);
         return DrawnLight{{drawn.direction, V3f(0.f), true, f4{}, 0.f, false},
@@ -125,7 +128,7 @@ auto PathTracer<Caster>::draw_light(const LightReceiver& receiver, const Sampler
                           u_on_light,
                           drawn.place};
     }
-    const auto sample = sample_light(scene_, light, receiver.p, u_on_light, bands);
+    const auto sample = sample_light(scene_, light, receiver.p, u_on_light, bands, time);
     return DrawnLight{
         sample.value_or(LightSample{}), !sample, pick->probability, pick->light, u_on_light, {}};
 }
@@ -141,7 +144,9 @@ f4 PathTracer<Caster>::light_on_smooth(const Scattering& at, const DrawnLight& d
     f4 sum{};
     if (!drawn.dark && drawn.sample.direction.dot(facing) > 0.f) sum += direct_light(at, drawn);
     const V3f smooth = s.p + s.lift;
-    const auto again = sample_light(scene_, scene_.lights[drawn.light], smooth, drawn.u, at.bands);
+    Light moved;
+    const Light& light = light_at(scene_, drawn.light, s.hit.time, moved);
+    const auto again = sample_light(scene_, light, smooth, drawn.u, at.bands, s.hit.time);
     if (!again || !(again->direction.dot(facing) < 0.f && again->direction.dot(s.side) > 0.f))
         return sum;
     const DrawnLight from_smooth{*again, false, drawn.pick_probability, drawn.light, drawn.u, {}};
@@ -167,6 +172,7 @@ f4 PathTracer<Caster>::direct_light(const Scattering& at, const DrawnLight& draw
         way.ray.t_max = kOneMinus;  // the target stands clear of the light
     }
     way.ray.alpha_seed = at.alpha_seed;
+    way.ray.time = s.hit.time;
     ++at.stats.shadow_rays;
     {
         const SectionTimer timer(at.stats, TimedSection::Traversal);
@@ -221,7 +227,7 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
     Ray ray = camera_ray;
     Vertex last{camera_ray.origin};
     V3f from = camera_ray.origin;  // of the segment: `last`, or a pane that it has passed since
-    Volumes volumes = start_volumes(scene_, caster_, camera_ray.origin);
+    Volumes volumes = start_volumes(scene_, caster_, camera_ray.origin, camera_ray.time);
     bool seen = false;  // the camera ray has found a surface that shows itself
     ChanceFinds* by_chance = &stats.mirrored;
 
@@ -280,7 +286,8 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         const Sampler::VertexNumbers u = sampler.at_vertex(number);
         const LightReceiver receiver = receiver_at(s);
         std::optional<DrawnLight> light;
-        if (options_.technique != Technique::BsdfOnly) light = draw_light(receiver, u, bands);
+        if (options_.technique != Technique::BsdfOnly)
+            light = draw_light(receiver, u, bands, ray.time);
         const ShadingInput shading = [&] {
             const SectionTimer timer(stats, TimedSection::Texture);
             return read_material(scene_, s, lookups, wo, bands,

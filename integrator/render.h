@@ -60,6 +60,8 @@ class SampleBatch {
         return hash32(hash32(pixel), first.index) % 16 == 0;
     }
     void find_camera_rays();
+    void find_target_rays();
+    void find_times();
     void trace(size_t i);
     [[nodiscard]] f4 to_targets(size_t i);
 
@@ -93,7 +95,12 @@ void SampleBatch<Tracer>::find_camera_rays() {
         points_[i] = {at / size, sampler, {&job_.filter, offset, size}};
     }
     camera_.sample_all({points_.data(), size_}, {bands_.data(), size_}, {seen_.data(), size_});
-    if (!camera_.targets()) return;
+    if (camera_.targets()) find_target_rays();
+    if (camera_.shutter()) find_times();
+}
+
+template <class Tracer>
+void SampleBatch<Tracer>::find_target_rays() {
     std::array<TargetList, kMostFilmPoints> lists;
     bool any = false;
     for (size_t i = 0; i < size_; ++i) {
@@ -104,6 +111,23 @@ void SampleBatch<Tracer>::find_camera_rays() {
     if (any)
         camera_.sample_targets({points_.data(), size_}, {bands_.data(), size_},
                                {lists.data(), size_}, {to_targets_.data(), size_});
+}
+
+// Draws a time for each sample, and moves its rays to where the camera stands then.
+template <class Tracer>
+void SampleBatch<Tracer>::find_times() {
+    const Shutter& shutter = *camera_.shutter();
+    for (size_t i = 0; i < size_; ++i) {
+        const float time = shutter.time(points_[i].sampler.get1(Dim::Time));
+        const auto move = [&](CameraSample& sample) {
+            for (CameraPath& path : sample) {
+                path.ray.time = time;
+                shutter.move(path.ray);
+            }
+        };
+        move(seen_[i]);
+        if (camera_.targets()) move(to_targets_[i]);
+    }
 }
 
 template <class Tracer>

@@ -15,7 +15,8 @@ namespace petzval {
 /// from there to infinity. A ray may meet an edge twice or slip through a seam, so that of three
 /// directions the two that agree decide, or the middle number.
 template <class Caster>
-[[nodiscard]] Volumes volumes_at(const Scene& scene, const Caster& caster, const V3f& p) {
+[[nodiscard]] Volumes volumes_at(const Scene& scene, const Caster& caster, const V3f& p,
+                                 float time = kMiddleOfShutter) {
     struct Count {
         const Material* material;
         std::array<int, 3> times{};
@@ -29,6 +30,7 @@ template <class Caster>
         Ray ray;
         ray.origin = p;
         ray.direction = directions[i];
+        ray.time = time;
         for (const Hit& hit : caster.all_hits(ray)) {
             const Surface s = make_surface(scene, ray.direction, hit);
             if (s.material->priority == 0) continue;
@@ -49,9 +51,10 @@ template <class Caster>
 /// Volumes that a camera ray begins in; of volumes that are not closed the first face that the path
 /// meets may say it.
 template <class Caster>
-[[nodiscard]] Volumes start_volumes(const Scene& scene, const Caster& caster, const V3f& origin) {
+[[nodiscard]] Volumes start_volumes(const Scene& scene, const Caster& caster, const V3f& origin,
+                                    float time = kMiddleOfShutter) {
     for (const Box3f& box : scene.volume_boxes)
-        if (box.intersects(origin)) return volumes_at(scene, caster, origin);
+        if (box.intersects(origin)) return volumes_at(scene, caster, origin, time);
     return {};
 }
 

@@ -104,7 +104,14 @@ void add_exposure_options(CLI::App& app, CameraOptions& o) {
     group(app.add_option("--iso", r.iso, "speed of the film (default 100)"))
         ->transform(number_between(1e-3, 1e9))
         ->needs(mode);
-    group(app.add_option("--shutter", o.shutter, "seconds: 0.01 or 1/100 (default)"))->needs(mode);
+    auto* shutter = group(app.add_option(
+        "--shutter", o.shutter,
+        "seconds or degrees: 0.01 or 1/100 (default), 180deg of a frame of --fps; with --at, what "
+        "moves meanwhile is blurred"));
+    group(app.add_option("--shutter-curve", o.shutter_curve,
+                         "how it opens and closes: box (default, at once), trapezoid, or a CSV "
+                         "file of time and openness"))
+        ->needs(shutter);
 }
 
 std::array<V3f, 2> parse_look_at(const std::string& text) {
@@ -127,7 +134,7 @@ void add_camera_options(CLI::App& app, CameraOptions& o) {
     add_exposure_options(app, o);
 }
 
-CameraRequest resolve(CameraOptions& o, V2i frame) {
+CameraRequest resolve(CameraOptions& o, V2i frame, const TimeOptions& time) {
     CameraRequest& r = o.request;
     for (const char* word : {"pinhole", "thin"})
         if (r.lens && lower(*r.lens) == word) r.lens = word;
@@ -137,11 +144,18 @@ CameraRequest resolve(CameraOptions& o, V2i frame) {
     }
     if (!o.sensor.empty()) r.sensor_mm = parse_sensor("--sensor", o.sensor, kLeast, kMost);
     if (!o.focus.empty()) r.focus = parse_focus("--focus", o.focus, frame);
-    if (!o.shutter.empty()) r.shutter_s = parse_shutter_s("--shutter", o.shutter);
-    if (r.exposure != ExposureMode::Photographic &&
-        (!o.shutter.empty() || r.iso != CameraRequest().iso))
-        throw CLI::ValidationError("--exposure-mode",
-                                   "--iso and --shutter have no effect but with photographic");
+    if (!o.shutter.empty()) {
+        r.shutter_s = parse_shutter_s("--shutter", o.shutter, time.fps);
+        if (time.plays()) r.shutter_curve = parse_shutter_curve("--shutter-curve", o.shutter_curve);
+    }
+    if (r.exposure != ExposureMode::Photographic) {
+        if (r.iso != CameraRequest().iso)
+            throw CLI::ValidationError("--exposure-mode",
+                                       "--iso has no effect but with photographic");
+        if (!o.shutter.empty() && !time.plays())
+            throw CLI::ValidationError(
+                "--shutter", "has no effect but with --at, or with --exposure-mode photographic");
+    }
     return r;
 }
 

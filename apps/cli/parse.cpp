@@ -189,8 +189,13 @@ double parse_share(const std::string& option, const std::string& text) {
     return share;
 }
 
-float parse_shutter_s(const std::string& option, const std::string& text) {
+float parse_shutter_s(const std::string& option, const std::string& text, double fps) {
     constexpr float shortest_s = 1e-9f, longest_s = 1e9f;
+    if (!number<double>(trimmed(text)))
+        if (const auto angle_deg = quantity(text, kDegrees))
+            if (const auto s = static_cast<float>(*angle_deg / 360 / fps);
+                s >= shortest_s && s <= longest_s)
+                return s;
     std::string_view digits = text;
     const float per_s = digits.ends_with("ms") ? 1000 : 1;
     if (digits.ends_with('s')) digits.remove_suffix(per_s == 1 ? 1 : 2);
@@ -199,7 +204,7 @@ float parse_shutter_s(const std::string& option, const std::string& text) {
     const auto below = parts.size() == 2 ? number<float>(parts[1]) : std::optional(1.f);
     if (parts.size() <= 2 && above && below)
         if (const float s = *above / *below / per_s; s >= shortest_s && s <= longest_s) return s;
-    refuse(option, text, "seconds above 0, as 0.01, 1/100 or 10ms");
+    refuse(option, text, "seconds above 0, as 0.01, 1/100 or 10ms, or an angle such as 180deg");
 }
 
 namespace {

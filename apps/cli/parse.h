@@ -38,8 +38,9 @@ namespace petzval {
 [[nodiscard]] uint64_t parse_memory_bytes(const std::string& option, const std::string& text);
 /// Share from "1%" or "0.01": above 0, 1 at most.
 [[nodiscard]] double parse_share(const std::string& option, const std::string& text);
-/// Shutter time from "0.01", "1/100", "1/100s" or "10ms": seconds above 0.
-[[nodiscard]] float parse_shutter_s(const std::string& option, const std::string& text);
+/// Shutter time from "0.01", "1/100", "1/100s", "10ms", or "180deg" of a frame, of which `fps` make
+/// a second: seconds above 0.
+[[nodiscard]] float parse_shutter_s(const std::string& option, const std::string& text, double fps);
 /// Focus distance in metres from "1.5", "30cm", "5ft" (above 0), "infinity", "inf" or "∞".
 [[nodiscard]] float parse_focus_distance_m(const std::string& option, const std::string& text);
 /// Focus from a focus distance, "auto", or "x,y" (a pixel of the frame).

@@ -198,7 +198,8 @@ RenderFrame resolve(RenderOptions& o) {
     s.choices = o.reading.all_choices();
     resolve(o.spectral);
     s.spectral = o.spectral.request;
-    s.camera = resolve(o.camera, s.size);
+    s.camera = resolve(o.camera, s.size, o.reading.time);
+    if (s.choices.animation) s.choices.animation->open_s = s.camera.open_s();
     resolve_job(o);
     resolve_background(o.background, s);
     const auto exposure_ev = parse_exposure_ev("--exposure", o.exposure);

@@ -7,6 +7,8 @@
 #include <array>
 
 #include "apps/cli/quantity.h"
+#include "io/base/csv.h"
+#include "io/base/error.h"
 
 namespace petzval {
 namespace {
@@ -34,6 +36,34 @@ double parse_time_s(const std::string& option, const std::string& text, double f
 std::optional<AnimationChoice> TimeOptions::animation() const {
     if (at.empty()) return std::nullopt;
     return AnimationChoice{parse_time_s("--at", at, fps), animations, !no_loop};
+}
+
+ShutterCurve parse_shutter_curve(const std::string& option, const std::string& text) {
+    if (text.empty() || text == "box") return ShutterCurve::box();
+    if (text == "trapezoid") return ShutterCurve::trapezoid();
+    if (text.find('.') == text.npos && text.find('/') == text.npos)
+        throw CLI::ValidationError(
+            option,
+            fmt::format("\"{}\" is neither box, trapezoid nor the name of a CSV file", text));
+    const CsvTable table = read_csv(text);
+    if (table.names.size() != 2)
+        throw InputError(text, table.place(0), "must hold two columns, time and open");
+    if (table.rows.size() < 2)
+        throw InputError(text, table.place(0), "must hold two rows at least");
+    const double first = table.rows.front()[0], whole = table.rows.back()[0] - first;
+    ShutterCurve curve;
+    for (size_t i = 0; i < table.rows.size(); ++i) {
+        const auto& row = table.rows[i];
+        if (i > 0 && !(row[0] >= table.rows[i - 1][0]))
+            throw InputError(text, table.place(i), "is at an earlier time than the row before it");
+        if (!(row[1] >= 0 && row[1] <= 1e6))
+            throw InputError(text, table.place(i), "is open by less than 0, or over 1e6");
+        curve.points.push_back(
+            {static_cast<float>((row[0] - first) / whole), static_cast<float>(row[1])});
+    }
+    if (!(whole > 0) || !(curve.efficiency() > 0))
+        throw InputError(text, table.place(0), "never lets any light in");
+    return curve;
 }
 
 void add_time_options(CLI::App& app, TimeOptions& o) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "camera/shutter.h"
 #include "io/gltf/animation/choice.h"
 
 namespace CLI {
@@ -21,6 +22,7 @@ struct TimeOptions {
     double fps = 24;
     bool no_loop = false;
 
+    [[nodiscard]] bool plays() const { return !at.empty(); }
     /// What is played; nothing where no time is given. Throws CLI::ValidationError.
     [[nodiscard]] std::optional<AnimationChoice> animation() const;
 };
@@ -31,5 +33,10 @@ void add_time_options(CLI::App&, TimeOptions&);
 /// Time in seconds from "1.25", "1.25s", "40ms" or "frame:30", of which `fps` make a second. Throws
 /// CLI::ValidationError.
 [[nodiscard]] double parse_time_s(const std::string& option, const std::string& text, double fps);
+
+/// Shutter curve from "box" (or nothing), "trapezoid", or the name of a CSV file with the columns
+/// time and open, whose times rise and which is stretched to the time that the shutter is open.
+/// Throws InputError.
+[[nodiscard]] ShutterCurve parse_shutter_curve(const std::string& option, const std::string& text);
 
 }  // namespace petzval

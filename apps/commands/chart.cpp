@@ -111,11 +111,12 @@ void resolve(ChartOptions& o) {
     if (!o.spectral.bins.empty())
         throw CLI::ValidationError("--bins", "is for render; a chart's axis spectral has its own");
     scene.spectral = o.spectral.request;
-    scene.camera = resolve(o.camera, scene.size);
+    scene.camera = resolve(o.camera, scene.size, o.reading.time);
     resolve_background(o.background, scene);
     scene.picture_memory_bytes = o.reading.memory_bytes();
     scene.scope = o.reading.scope();
     scene.choices = o.reading.all_choices();
+    if (scene.choices.animation) scene.choices.animation->open_s = scene.camera.open_s();
     if (o.threads == 0) o.threads = usual_threads();
 }
 

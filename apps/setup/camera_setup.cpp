@@ -7,6 +7,7 @@
 
 #include "apps/setup/framing.h"
 #include "apps/setup/thin_setup.h"
+#include "core/scene/motion.h"
 #include "integrator/autofocus.h"
 #include "io/base/error.h"
 #include "io/base/format.h"
@@ -186,14 +187,30 @@ CameraSetup without_prescription(const CameraContext& at) {
     return setup;
 }
 
+CameraSetup still_camera(const CameraContext& at) {
+    const CameraModel& model = at.model;
+    if (model.from && model.from->orthographic) return orthographic(at, *model.from);
+    if (const auto* lens = std::get_if<LoadedLens>(&model.optics)) return with_lens(at, *lens);
+    return without_prescription(at);
+}
+
+// The shutter, where something moves while it is open.
+std::shared_ptr<const Shutter> shutter_of(const CameraModel& model, const Scene& scene) {
+    const bool moves = model.from && !model.from->steps.empty();
+    if (!model.asked.shutter_curve || !(moves || has_motion(scene))) return nullptr;
+    const auto steps = moves ? std::span<const M44f>(model.from->steps) : std::span<const M44f>();
+    return std::make_shared<const Shutter>(*model.asked.shutter_curve, steps,
+                                           moves ? model.from->to_world : M44f());
+}
+
 }  // namespace
 
 CameraSetup set_up_camera(const CameraModel& model, const std::string& scene_file, V2i size,
                           const Scene& scene, const Bvh& bvh, const Notice& notice) {
     const CameraContext at{model, scene_file, size, scene, bvh, notice};
-    if (model.from && model.from->orthographic) return orthographic(at, *model.from);
-    if (const auto* lens = std::get_if<LoadedLens>(&model.optics)) return with_lens(at, *lens);
-    return without_prescription(at);
+    CameraSetup setup = still_camera(at);
+    setup.camera->set_shutter(shutter_of(model, scene));
+    return setup;
 }
 
 }  // namespace petzval

@@ -14,6 +14,7 @@
 #include "camera/dispersion/dispersion_mode.h"
 #include "camera/iris/iris_options.h"
 #include "camera/lens/lens_options.h"
+#include "camera/shutter.h"
 #include "camera/target.h"
 #include "core/light/light_options.h"
 #include "core/math/math.h"
@@ -74,11 +75,18 @@ struct CameraRequest {
     Precision precision = Precision::Float;
     ExposureMode exposure = ExposureMode::Normalised;
     float iso = 100, shutter_s = 0.01f;
+    /// Given: what moves is blurred. The shutter's time is that of one which opens and closes at
+    /// once and lets as much light in.
+    std::optional<ShutterCurve> shutter_curve;
     std::optional<PictureBudget> iris_pictures;  ///< what those of the scene leave; absent: usual
     /// Fall-off to the corners of lenses that are not traced; absent: with photographic exposure.
     std::optional<bool> natural_vignetting;
     std::vector<std::filesystem::path> glasses;  ///< catalogues that go before those that ship
 
+    /// How long the shutter is not closed, in seconds; 0: nothing is blurred.
+    [[nodiscard]] double open_s() const {
+        return shutter_curve ? double(shutter_s) / double(shutter_curve->efficiency()) : 0;
+    }
     /// How wavelengths pass through the lens where no plan chooses: along one ray if its glass does
     /// not disperse.
     [[nodiscard]] DispersionMode dispersion_by(bool glass_disperses) const {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/light/light_sampling.h"
+#include "core/scene/motion.h"
 
 namespace petzval {
 namespace {
@@ -19,6 +20,13 @@ float finite(const Scene& scene, float power) {
 // Share that each of two groups of lights has at least, whatever a pilot found: what it missed has
 // a weight of 20 at most.
 constexpr float kLeastShare = 0.05f;
+
+// Bounds of a light that is first like one and then like the other.
+LightBounds over_both(const LightBounds& a, const LightBounds& b) {
+    LightBounds both = a | b;
+    both.power = a.power;
+    return both;
+}
 
 struct BoundsOf {
     const Scene& scene;
@@ -40,7 +48,14 @@ struct BoundsOf {
         return LightBounds{Box3f(light.position), light.f, reach, 0, false, power};
     }
     std::optional<LightBounds> operator()(const TriangleLight& light) const {
-        const auto corner = triangle_corners(scene, light.instance, light.triangle);
+        const size_t steps = step_count(scene, light.instance);
+        LightBounds all = bounds_of(light, steps == 1 ? kMiddleOfShutter : 0.f);
+        for (size_t i = 1; i < steps; ++i)
+            all = over_both(all, bounds_of(light, step_time(i, steps)));
+        return all;
+    }
+    [[nodiscard]] LightBounds bounds_of(const TriangleLight& light, float time) const {
+        const auto corner = triangle_corners(scene, light.instance, light.triangle, time);
         Box3f box;
         for (const V3f& c : corner) box.extendBy(c);
         const Instance& instance = scene.instances[light.instance];
@@ -53,6 +68,19 @@ struct BoundsOf {
     std::optional<LightBounds> operator()(const SunLight&) const { return std::nullopt; }
     std::optional<LightBounds> operator()(const SkyLight&) const { return std::nullopt; }
 };
+
+std::optional<LightBounds> bounds_of_light(const Scene& scene, uint32_t light, float power) {
+    const BoundsOf bounds{scene, power};
+    if (light >= scene.light_motion_of.size() || scene.light_motion_of[light] < 0)
+        return std::visit(bounds, scene.lights[light]);
+    std::optional<LightBounds> all;
+    for (const Light& step :
+         scene.light_motions[static_cast<size_t>(scene.light_motion_of[light])]) {
+        const auto one = std::visit(bounds, step);
+        if (one) all = all ? over_both(*all, *one) : *one;
+    }
+    return all;
+}
 
 // Illuminance, lux, on a surface that faces a light outside the tree.
 float illuminance(const Scene& scene, const Light& light) {
@@ -80,7 +108,7 @@ void LightChoice::plant(const Scene& scene, std::span<float> power) {
     float outside = 0;
     for (size_t i = 0; i < power.size(); ++i) {
         if (!(power[i] > 0.f)) continue;
-        bounds[i] = std::visit(BoundsOf{scene, power[i]}, scene.lights[i]);
+        bounds[i] = bounds_of_light(scene, static_cast<uint32_t>(i), power[i]);
         if (!bounds[i]) outside += finite(scene, illuminance(scene, scene.lights[i]));
     }
     if (std::none_of(bounds.begin(), bounds.end(), [](const auto& b) { return b.has_value(); }))

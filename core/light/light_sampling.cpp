@@ -7,6 +7,7 @@
 #include "core/light/spherical_triangle.h"
 #include "core/sampling/warp.h"
 #include "core/scene/coverage.h"
+#include "core/scene/motion.h"
 #include "core/scene/scene.h"
 
 namespace petzval {
@@ -37,12 +38,12 @@ std::optional<LightSample> sample_at(const Scene& scene, const L& light, Rgb int
 }
 
 std::optional<LightSample> sample(const Scene& scene, const PointLight& light, const V3f& p, V2f,
-                                  const Bands& bands) {
+                                  const Bands& bands, float) {
     return sample_at(scene, light, light.intensity_cd, p, bands);
 }
 
 std::optional<LightSample> sample(const Scene& scene, const SpotLight& light, const V3f& p, V2f,
-                                  const Bands& bands) {
+                                  const Bands& bands, float) {
     auto drawn = sample_at(scene, light, light.intensity_cd, p, bands);
     if (!drawn) return drawn;
     const float falloff = beam_of(light).falloff(-drawn->direction.dot(light.direction));
@@ -52,7 +53,7 @@ std::optional<LightSample> sample(const Scene& scene, const SpotLight& light, co
 }
 
 std::optional<LightSample> sample(const Scene& scene, const ProfileLight& light, const V3f& p, V2f,
-                                  const Bands& bands) {
+                                  const Bands& bands, float) {
     const V3f away = p - light.position;
     const float distance = away.length();
     if (!(distance > 0.f)) return std::nullopt;
@@ -63,7 +64,7 @@ std::optional<LightSample> sample(const Scene& scene, const ProfileLight& light,
 }
 
 std::optional<LightSample> sample(const Scene& scene, const SunLight& light, const V3f&, V2f,
-                                  const Bands& bands) {
+                                  const Bands& bands, float) {
     const f4 irradiance =
         uplift_radiance(light.illuminance_lx, bands, scene.illuminant(light.illuminant));
     return LightSample{-light.direction, {}, true, irradiance, 1.f, true};
@@ -75,9 +76,13 @@ V3f plane_error(const Scene& scene, const TriangleLight& light, const V3f& targe
                 const V3f& to_light, const std::array<V3f, 3>& corner) {
     const V3f corners = abs(corner[0]) + abs(corner[1]) + abs(corner[2]) + abs(target);
     V3f error = (corners + abs(to_light)) * rounding_bound(8);
-    if (scene.instances[light.instance].identity) return error;
-    const M44f& m = scene.instances[light.instance].to_world;
-    return error + abs(V3f(m[3][0], m[3][1], m[3][2])) * rounding_bound(8);
+    const Instance& instance = scene.instances[light.instance];
+    if (instance.identity && scene.meshes[instance.mesh].steps.empty()) return error;
+    const M44f& m = instance.to_world;
+    if (!is_moving(scene, light.instance))
+        return error + abs(V3f(m[3][0], m[3][1], m[3][2])) * rounding_bound(8);
+    // Between steps a point may be near 0, and its roundings are those of the steps.
+    return error + (abs(scene.bounds.min) + abs(scene.bounds.max)) * rounding_bound(16);
 }
 
 // The triangle as p sees it, where its directions are drawn by solid angle: where it is wide, as
@@ -114,8 +119,8 @@ V2f where_met(const V3f& p, const V3f& direction, const std::array<V3f, 3>& corn
 }
 
 std::optional<LightSample> sample(const Scene& scene, const TriangleLight& light, const V3f& p,
-                                  V2f u, const Bands& bands) {
-    const auto corner = triangle_corners(scene, light.instance, light.triangle);
+                                  V2f u, const Bands& bands, float time) {
+    const auto corner = triangle_corners(scene, light.instance, light.triangle, time);
     const V3f edge1 = corner[1] - corner[0], edge2 = corner[2] - corner[0];
     const V3f cross = edge1.cross(edge2);  // twice the area long
     const auto wide = if_wide(scene, light, p, corner);
@@ -152,7 +157,7 @@ std::optional<LightSample> sample(const Scene& scene, const TriangleLight& light
 }
 
 std::optional<LightSample> sample(const Scene& scene, const SkyLight&, const V3f&, V2f u,
-                                  const Bands& bands) {
+                                  const Bands& bands, float) {
     if (scene.sky.even()) return std::nullopt;
     const Sky::Draw drawn = scene.sky.sample(u);
     const Sky::Found found = scene.sky.find(drawn.place);
@@ -161,9 +166,20 @@ std::optional<LightSample> sample(const Scene& scene, const SkyLight&, const V3f
                        found.pdf,       false};
 }
 
-float triangle_area(const Scene& scene, const TriangleLight& light) {
-    const auto corner = triangle_corners(scene, light.instance, light.triangle);
+float area_of(const std::array<V3f, 3>& corner) {
     return 0.5f * (corner[1] - corner[0]).cross(corner[2] - corner[0]).length();
+}
+
+// Greatest area while the shutter is open: a light that has none at a moment must be picked at
+// others.
+float greatest_area(const Scene& scene, const TriangleLight& light) {
+    const size_t steps = step_count(scene, light.instance);
+    if (steps == 1) return area_of(triangle_corners(scene, light.instance, light.triangle));
+    float most = 0.f;
+    for (size_t i = 0; i < steps; ++i)
+        most = std::max(most, area_of(triangle_corners(scene, light.instance, light.triangle,
+                                                       step_time(i, steps))));
+    return most;
 }
 
 // Area of the scene's silhouette from afar, bounded by its sphere; that of a unit sphere where the
@@ -239,7 +255,7 @@ float power(const Scene& scene, const SunLight& light) {
 
 float power(const Scene& scene, const TriangleLight& light) {
     const Mesh& mesh = scene.meshes[scene.instances[light.instance].mesh];
-    const float area = triangle_area(scene, light);
+    const float area = greatest_area(scene, light);
     if (!(area > 0.f)) return 0.f;
     const Material& material = scene.materials[mesh.material];
     if (material.beam)
@@ -256,15 +272,16 @@ float power(const Scene& scene, const SkyLight&) {
 }  // namespace
 
 std::optional<LightSample> sample_light(const Scene& scene, const Light& light, const V3f& p, V2f u,
-                                        const Bands& bands) {
-    return std::visit([&](const auto& kind) { return sample(scene, kind, p, u, bands); }, light);
+                                        const Bands& bands, float time) {
+    return std::visit([&](const auto& kind) { return sample(scene, kind, p, u, bands, time); },
+                      light);
 }
 
 float triangle_light_pdf(const Scene& scene, const TriangleLight& light, const V3f& p,
-                         float distance_squared, float cosine) {
-    const auto corner = triangle_corners(scene, light.instance, light.triangle);
+                         float distance_squared, float cosine, float time) {
+    const auto corner = triangle_corners(scene, light.instance, light.triangle, time);
     if (const auto wide = if_wide(scene, light, p, corner)) return 1.f / wide->solid_angle();
-    return distance_squared / (std::fabs(cosine) * triangle_area(scene, light));
+    return distance_squared / (std::fabs(cosine) * area_of(corner));
 }
 
 float light_power(const Scene& scene, const Light& light) {

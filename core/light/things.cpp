@@ -9,6 +9,7 @@
 
 #include "core/light/emission.h"
 #include "core/sampling/sampler.h"
+#include "core/scene/motion.h"
 
 namespace petzval {
 namespace {
@@ -143,11 +144,18 @@ bool depends_on_wavelength(const Scene& scene, const Instance& instance) {
 
 Part part_of(const Scene& scene, uint32_t instance, uint32_t triangle) {
     Part part;
-    const auto corners = triangle_corners(scene, instance, triangle);
-    for (const V3f& corner : corners) part.box.extendBy(corner);
-    const V3f cross = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-    part.area_m2 = double(cross.length()) / 2;
-    for (const V3f& corner : corners)
+    // What moves is a thing as large as where it comes while the shutter is open.
+    std::vector<V3f> reached;
+    const size_t steps = step_count(scene, instance);
+    for (size_t i = 0; i < steps; ++i) {
+        const auto corners = triangle_corners(scene, instance, triangle,
+                                              steps == 1 ? kMiddleOfShutter : step_time(i, steps));
+        const V3f cross = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+        part.area_m2 = std::max(part.area_m2, double(cross.length()) / 2);
+        reached.insert(reached.end(), corners.begin(), corners.end());
+    }
+    for (const V3f& corner : reached) part.box.extendBy(corner);
+    for (const V3f& corner : reached)
         part.reach_m = std::max(part.reach_m, (corner - part.box.center()).length());
     return part;
 }

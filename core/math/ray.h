@@ -6,18 +6,23 @@
 
 namespace petzval {
 
+/// Times lie from 0, as the shutter opens, to 1, as it has closed.
+inline constexpr float kMiddleOfShutter = 0.5f;
+
 struct Ray {
     V3f origin;
     V3f direction;  ///< unit length for rays that measure distance; t counts in its length
     float t_max = kInfinity;
     /// Seed of BLEND coverage: the same seed and triangle give the same answer.
     uint32_t alpha_seed = 0;
+    float time = kMiddleOfShutter;
 };
 
 /// A triangle hit, as the traversal reports it; Surface (core/shading/surface.h) has the rest.
 struct Hit {
     V2f barycentric;  ///< weights of the second and third vertex
     uint32_t instance, triangle;
+    float time = kMiddleOfShutter;  ///< of the ray
 };
 
 }  // namespace petzval

@@ -27,7 +27,8 @@ enum class Dim : uint32_t {
     // Apart from those of paths, so that pictures without targets keep their numbers.
     TargetPoint = 1u << 30,  ///< on a target's disc
     TargetPick,              ///< the target, and how it is reached
-    TargetRest               ///< whether a ray to a target brings more than what it finds
+    TargetRest,              ///< whether a ray to a target brings more than what it finds
+    Time                     ///< while the shutter is open
 };
 
 struct SampleId {

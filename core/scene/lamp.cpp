@@ -26,6 +26,12 @@ double area(const Mesh& mesh) {
     return sum;
 }
 
+M44f moved_to(const V3f& place) {
+    M44f matrix;
+    matrix.setTranslation(place);
+    return matrix;
+}
+
 }  // namespace
 
 void add_lamps(Scene& scene, std::span<const BallLamp> lamps) {
@@ -42,10 +48,21 @@ void add_lamps(Scene& scene, std::span<const BallLamp> lamps) {
         material.illuminant = lamp.illuminant;
         material.beam = lamp.beam;
         Mesh mesh = sphere;
-        for (V3f& position : mesh.positions) position = lamp.centre + position * lamp.radius_m;
+        const bool moves = !lamp.centres.empty();
+        const V3f centre = moves ? V3f(0.f) : lamp.centre;
+        for (V3f& position : mesh.positions) position = centre + position * lamp.radius_m;
         mesh.material = static_cast<uint32_t>(scene.materials.size());
         Instance instance;
         instance.mesh = static_cast<uint32_t>(scene.meshes.size());
+        if (moves) {
+            instance.identity = false;
+            instance.moves = true;
+            instance.to_world = moved_to(lamp.centre);
+            scene.motion_of.resize(scene.instances.size() + 1, -1);
+            scene.motion_of.back() = static_cast<int32_t>(scene.motions.size());
+            InstanceMotion& motion = scene.motions.emplace_back();
+            for (const V3f& at : lamp.centres) motion.to_world.push_back(moved_to(at));
+        }
         scene.materials.push_back(std::move(material));
         scene.meshes.push_back(std::move(mesh));
         scene.instances.push_back(instance);

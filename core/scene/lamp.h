@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "core/scene/beam.h"
 #include "core/scene/scene.h"
@@ -18,6 +19,8 @@ struct BallLamp {
     Rgb intensity_cd;  ///< in all directions; of a beam: along its axis
     int32_t illuminant = -1;
     std::optional<Beam> beam{};  ///< the same from every point of the ball
+    /// Centres at time steps while the shutter is open (core/scene/motion.h); empty: it is still.
+    std::vector<V3f> centres{};
 };
 
 /// Adds lamps to a scene that is not finished, each as a mesh with a material of its own: a

@@ -18,6 +18,12 @@ template <class T>
            values[corner[2]] * b.y;
 }
 
+/// Vertices of a mesh at a time step; arrays are as long as those of the mesh.
+struct MeshStep {
+    std::vector<V3f> positions, normals;
+    std::vector<V4f> tangents;
+};
+
 /// One glTF primitive as indexed triangles. Optional arrays are empty or as long as `positions`.
 struct Mesh {
     std::vector<V3f> positions;  ///< metres, in the mesh's own space
@@ -28,6 +34,9 @@ struct Mesh {
     std::vector<V4f> colours;                        ///< COLOR_0, linear RGBA
     std::vector<std::array<uint32_t, 3>> triangles;  ///< counter-clockwise seen from the front
     uint32_t material = 0;
+    /// Shapes while the shutter is open (core/scene/motion.h), two at least; empty: it keeps its
+    /// shape. The arrays above are as in the middle.
+    std::vector<MeshStep> steps;
     /// Instance from which on each has two colours of its own: for vertices of even number, and of
     /// odd number. kByVertex: `colours` are those of the vertices.
     uint32_t colours_from = kByVertex;
@@ -60,6 +69,7 @@ struct Instance {
     uint32_t mesh = 0;
     bool identity = true;
     bool flips = false;        ///< the matrix mirrors: front faces appear clockwise
+    bool moves = false;        ///< while the shutter is open; the matrices are as in the middle
     int32_t first_light = -1;  ///< light of triangle 0; -1: the instance does not emit
     M44f to_world;             ///< affine
     M33f to_local;             ///< linear part of its inverse

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/scene/motion.h"
 #include "core/scene/volume_ranks.h"
 
 namespace petzval {
@@ -33,17 +34,37 @@ void find_places(const Scene& scene, Material& m) {
     }
 }
 
+template <class Visit>
+void each_shape(const Mesh& mesh, Visit visit) {
+    visit(mesh.positions);
+    for (const MeshStep& step : mesh.steps) visit(step.positions);
+}
+
+void extend_box(Box3f& box, const Mesh& mesh) {
+    each_shape(mesh, [&](const std::vector<V3f>& positions) {
+        for (const auto& triangle : mesh.triangles)
+            for (const uint32_t corner : triangle) box.extendBy(positions[corner]);
+    });
+}
+
 // Adds the corners of an instance's triangles to the bounds. of_mesh: box about those of the mesh.
-void extend_bounds(Box3f& bounds, const Mesh& mesh, const Instance& instance,
-                   const Box3f& of_mesh) {
-    // There may be millions of instances: most lie within the others.
-    if (!instance.identity) {
-        const Box3f box = placed_box(of_mesh, instance.to_world);
-        if (bounds.intersects(box.min) && bounds.intersects(box.max)) return;
+void extend_bounds(Box3f& bounds, const Scene& scene, uint32_t index, const Box3f& of_mesh) {
+    const Instance& instance = scene.instances[index];
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    if (instance.identity) return extend_box(bounds, mesh);
+    if (instance.moves) {  // between steps, corners run in straight lines
+        for (const M44f& m : scene.motions[static_cast<size_t>(scene.motion_of[index])].to_world)
+            bounds.extendBy(placed_box(of_mesh, m));
+        return;
     }
-    for (const auto& triangle : mesh.triangles)
-        for (const uint32_t corner : triangle)
-            bounds.extendBy(placed(instance, mesh.positions[corner]));
+    // There may be millions of instances: most lie within the others.
+    const Box3f box = placed_box(of_mesh, instance.to_world);
+    if (bounds.intersects(box.min) && bounds.intersects(box.max)) return;
+    each_shape(mesh, [&](const std::vector<V3f>& positions) {
+        for (const auto& triangle : mesh.triangles)
+            for (const uint32_t corner : triangle)
+                bounds.extendBy(placed(instance, positions[corner]));
+    });
 }
 
 }  // namespace
@@ -55,7 +76,7 @@ void finish_scene(Scene& scene) {
     for (uint32_t i = 0; i < scene.instances.size(); ++i) {
         Instance& instance = scene.instances[i];
         const Mesh& mesh = scene.meshes[instance.mesh];
-        extend_bounds(scene.bounds, mesh, instance, boxes[instance.mesh]);
+        extend_bounds(scene.bounds, scene, i, boxes[instance.mesh]);
         if (!emits(scene, instance)) continue;
         instance.first_light = static_cast<int32_t>(scene.lights.size());
         for (uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle)
@@ -78,9 +99,7 @@ std::vector<Box3f> mesh_boxes(const Scene& scene) {
     for (const Instance& instance : scene.instances) {
         Box3f& box = boxes[instance.mesh];
         if (instance.identity || !box.isEmpty()) continue;
-        const Mesh& mesh = scene.meshes[instance.mesh];
-        for (const auto& triangle : mesh.triangles)
-            for (const uint32_t corner : triangle) box.extendBy(mesh.positions[corner]);
+        extend_box(box, scene.meshes[instance.mesh]);
     }
     return boxes;
 }
@@ -102,13 +121,14 @@ Box3f placed_box(const Box3f& box, const M44f& to_world) {
     return out;
 }
 
-std::array<V3f, 3> triangle_corners(const Scene& scene, uint32_t instance, uint32_t triangle) {
-    const Instance& placement = scene.instances[instance];
-    const Mesh& mesh = scene.meshes[placement.mesh];
-    const auto& corner = mesh.triangles[triangle];
-    return {placed(placement, mesh.positions[corner[0]]),
-            placed(placement, mesh.positions[corner[1]]),
-            placed(placement, mesh.positions[corner[2]])};
+std::array<V3f, 3> triangle_corners(const Scene& scene, uint32_t instance, uint32_t triangle,
+                                    float time) {
+    return with_instance_at(scene, instance, time, [&](const Instance& placement) {
+        const Mesh& mesh = scene.meshes[placement.mesh];
+        CornerValues corners = corner_positions(mesh, mesh.triangles[triangle], time);
+        for (V3f& corner : corners) corner = placed(placement, corner);
+        return corners;
+    });
 }
 
 }  // namespace petzval

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "core/math/ray.h"
 #include "core/scene/light.h"
 #include "core/scene/light_profile.h"
 #include "core/scene/material.h"
@@ -15,6 +16,11 @@
 
 namespace petzval {
 
+/// Places of an instance at time steps (core/scene/motion.h), two at least.
+struct InstanceMotion {
+    std::vector<M44f> to_world;
+};
+
 /// Scene in metres, y up, right-handed, as in glTF. io fills the arrays down to `sky`, then calls
 /// finish_scene once; nothing changes afterwards.
 struct Scene {
@@ -24,9 +30,15 @@ struct Scene {
     std::vector<Illuminant> illuminants;
     std::vector<Mesh> meshes;
     std::vector<Instance> instances;
+    std::vector<InstanceMotion> motions;
+    std::vector<int32_t> motion_of;  ///< index into motions by instance; empty: nothing moves
     std::vector<LightProfile> profiles;
     std::vector<Light> lights;  ///< punctual lights of the file; finish_scene adds the others
-    int32_t sky_light = -1;     ///< the sky's among them, by finish_scene; -1: even or black
+    /// A light at time steps, two at least and all of its kind; and index into them by light, -1
+    /// for one that is still. Lights beyond the list are still too.
+    std::vector<std::vector<Light>> light_motions;
+    std::vector<int32_t> light_motion_of;
+    int32_t sky_light = -1;  ///< the sky's among them, by finish_scene; -1: even or black
     Sky sky;
 
     Box3f bounds;  ///< of all instances, in world space; empty where there are none
@@ -53,8 +65,8 @@ void finish_scene(Scene&);
 /// Box that holds all that is moved by the matrix out of a box, rounding included.
 [[nodiscard]] Box3f placed_box(const Box3f&, const M44f& to_world);
 
-/// Three world-space corners of a triangle.
+/// Three world-space corners of a triangle at a time.
 [[nodiscard]] std::array<V3f, 3> triangle_corners(const Scene&, uint32_t instance,
-                                                  uint32_t triangle);
+                                                  uint32_t triangle, float time = kMiddleOfShutter);
 
 }  // namespace petzval

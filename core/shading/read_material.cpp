@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "core/scene/motion.h"
 #include "core/shading/surface.h"
 
 namespace petzval {
@@ -32,11 +33,13 @@ Rgb read_rgb(const Scene& scene, const Surface& s, const TextureSlot& slot) {
 struct Tangents {
     V3f tangent, bitangent;
 };
-std::optional<Tangents> tangents_at(const Surface& s) {
-    const V4f t4 =
-        interpolate(s.mesh->tangents, s.mesh->triangles[s.hit.triangle], s.hit.barycentric);
+std::optional<Tangents> tangents_at(const Scene& scene, const Surface& s) {
+    const V4f t4 = tangent_at(*s.mesh, s.hit.triangle, s.hit.barycentric, s.hit.time);
     V3f t(t4.x, t4.y, t4.z);
-    if (!s.instance->identity) t = transform_direction(t, s.instance->to_world);
+    if (!s.instance->identity)
+        t = with_instance_at(scene, s.hit.instance, s.hit.time, [&](const Instance& placement) {
+            return transform_direction(t, placement.to_world);
+        });
     t -= s.ns * t.dot(s.ns);
     if (t.dot(t) < 1e-20f) return std::nullopt;
     t = unit(t);
@@ -45,8 +48,8 @@ std::optional<Tangents> tangents_at(const Surface& s) {
 }
 
 // The normal map's normal in the frame that the tangents span, on the front side.
-V3f mapped_normal(const Surface& s, const TextureLookup& map, float scale) {
-    const auto t = tangents_at(s);
+V3f mapped_normal(const Scene& scene, const Surface& s, const TextureLookup& map, float scale) {
+    const auto t = tangents_at(scene, s);
     if (!t) return s.ns;
     const f4 texel = read_texture(map) * 2.f - 1.f;
     const V3f n =
@@ -115,8 +118,9 @@ class Layers {
         const TextureSlot& map = m_.coat_normal_texture;
         const bool mapped = map.present() && !s_.mesh->tangents.empty();
         if (!mapped && !m_.normal_texture.present()) return;
-        const V3f n =
-            mapped ? mapped_normal(s_, locate(scene_, s_, map), m_.coat_normal_scale) : s_.ns;
+        const V3f n = mapped
+                          ? mapped_normal(scene_, s_, locate(scene_, s_, map), m_.coat_normal_scale)
+                          : s_.ns;
         coat.normal = unit(frame.to_local(face_towards(s_.front ? n : -n, wo_)));
         if (coat.normal.z > kSameNormal) coat.normal = V3f(0, 0, 1);
     }
@@ -142,7 +146,7 @@ class Layers {
                         along.x * direction.y + along.y * direction.x);
         }
         if (s_.mesh->tangents.empty()) return;
-        if (const auto t = tangents_at(s_))
+        if (const auto t = tangents_at(scene_, s_))
             frame = Frame::about(frame.z, t->tangent * along.x + t->bitangent * along.y);
     }
 
@@ -212,7 +216,7 @@ ShadingInput read_material(const Scene& scene, const Surface& s, const MaterialL
     const Rgb base_color(base);
     V3f n = s.ns;
     if (m.normal_texture.present() && !s.mesh->tangents.empty())
-        n = mapped_normal(s, lookups.normal, m.normal_scale);
+        n = mapped_normal(scene, s, lookups.normal, m.normal_scale);
     out.frame = Frame::about(face_towards(s.front ? n : -n, wo));
     const bool layered = m.layered();
     const Layers layers(scene, s, wo, bands);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "core/scene/motion.h"
+
 namespace petzval {
 namespace {
 
@@ -26,15 +28,15 @@ V3f transform_normal(const V3f& n, const M33f& to_local) {
 // those lie above it. Hanika 2021, "Hacking the Shadow Terminator", Ray Tracing Gems II, chapter 4.
 // Normals far from the triangle's are those of a hard edge that was smoothed by mistake, and mean
 // no surface. n: the triangle's, any length.
-V3f way_to_smooth(const Mesh& mesh, const std::array<uint32_t, 3>& corner, V2f u, const V3f& p,
+V3f way_to_smooth(const CornerValues& positions, const CornerValues& normals, V2f u, const V3f& p,
                   const V3f& n, bool front) {
     constexpr float all = 0.766f, none = 0.643f;  // cosines of 40 and 50 degrees
     const float weight[3] = {1.f - u.x - u.y, u.x, u.y};
     const V3f triangle = n * (1.f / std::sqrt(n.dot(n)));
     V3f sum(0.f);
     for (size_t i = 0; i < 3; ++i) {
-        const V3f& normal = mesh.normals[corner[i]];
-        const float above = (p - mesh.positions[corner[i]]).dot(normal);
+        const V3f& normal = normals[i];
+        const float above = (p - positions[i]).dot(normal);
         if (front ? !(above < 0.f) : !(above > 0.f)) continue;
         const float share = clamp_unit((normal.dot(triangle) - none) / (all - none));
         sum -= normal * (above * weight[i] * share);
@@ -42,29 +44,58 @@ V3f way_to_smooth(const Mesh& mesh, const std::array<uint32_t, 3>& corner, V2f u
     return sum;
 }
 
-}  // namespace
+// Bound on how far rounding of what moves carries a point of a triangle, in each axis: it grows
+// with the steps' own coordinates, between which the point may be near 0.
+V3f motion_error(const Scene& scene, const Hit& hit) {
+    const Instance& instance = scene.instances[hit.instance];
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    V3f reach(0.f);
+    const auto extend = [&](const std::vector<V3f>& positions) {
+        for (const uint32_t corner : mesh.triangles[hit.triangle])
+            for (int k = 0; k < 3; ++k)
+                reach[k] = std::max(reach[k], std::fabs(positions[corner][k]));
+    };
+    extend(mesh.positions);
+    if (!mesh.steps.empty()) {
+        const size_t before = step_place(hit.time, mesh.steps.size()).before;
+        extend(mesh.steps[before].positions);
+        extend(mesh.steps[before + 1].positions);
+    }
+    if (instance.identity) return reach * rounding_bound(6);
+    if (!instance.moves) return abs_transform(reach, instance.to_world) * rounding_bound(6);
+    const auto& steps = scene.motions[static_cast<size_t>(scene.motion_of[hit.instance])].to_world;
+    const size_t before = step_place(hit.time, steps.size()).before;
+    return (abs_transform(reach, steps[before]) + abs_transform(reach, steps[before + 1])) *
+           rounding_bound(8);
+}
 
-Surface make_surface(const Scene& scene, const V3f& direction, const Hit& hit) {
+// Geometry of a hit of a mesh that is placed so.
+Surface surface_of(const Scene& scene, const Instance& placement, const V3f& direction,
+                   const Hit& hit) {
     Surface s;
     s.hit = hit;
     s.instance = &scene.instances[hit.instance];
     s.mesh = &scene.meshes[s.instance->mesh];
     s.material = &scene.materials[s.mesh->material];
     const auto& corner = s.mesh->triangles[hit.triangle];
-    const V3f& a = s.mesh->positions[corner[0]];
-    const V3f& b = s.mesh->positions[corner[1]];
-    const V3f& c = s.mesh->positions[corner[2]];
+    const CornerValues positions = corner_positions(*s.mesh, corner, hit.time);
+    const auto& [a, b, c] = positions;
     const V2f u = hit.barycentric;
     const float w = 1.f - u.x - u.y;
     s.p = a * w + b * u.x + c * u.y;
     // Seven roundings from the corners to p; Embree's own coordinates add as many again.
     s.p_error = (abs(a) * std::fabs(w) + abs(b) * u.x + abs(c) * u.y) * rounding_bound(14);
     V3f n = (b - a).cross(c - a);
-    const V3f p_of_mesh = s.p, n_of_mesh = n;
     const bool smooth = !s.mesh->normals.empty();
-    V3f ns = smooth ? interpolate(s.mesh->normals, corner, u) : n;
-    if (!s.instance->identity) {
-        const M44f& m = s.instance->to_world;
+    CornerValues normals;
+    V3f ns = n;
+    if (smooth) {
+        normals = corner_normals(*s.mesh, corner, hit.time);
+        ns = normals[0] * w + normals[1] * u.x + normals[2] * u.y;
+    }
+    const V3f p_of_mesh = s.p, n_of_mesh = n;
+    if (!placement.identity) {
+        const M44f& m = placement.to_world;
         const V3f magnitude = abs_transform(s.p, m);
         M44f linear = m;
         for (int j = 0; j < 3; ++j) linear[3][j] = 0;
@@ -72,10 +103,14 @@ Surface make_surface(const Scene& scene, const V3f& direction, const Hit& hit) {
         V3f moved;
         m.multVecMatrix(s.p, moved);
         s.p = moved;
-        n = transform_normal(n, s.instance->to_local);
-        ns = smooth ? transform_normal(ns, s.instance->to_local) : n;
+        n = transform_normal(n, placement.to_local);
+        ns = smooth ? transform_normal(ns, placement.to_local) : n;
     }
     s.ng = unit(n);
+    if (is_moving(scene, hit.instance)) {
+        s.p_error += motion_error(scene, hit);
+        if (!is_finite(s.ng)) s.ng = -unit(direction);  // without an area at this moment
+    }
     const float length2 = ns.dot(ns);
     s.ns = length2 > 0.f ? ns * (1.f / std::sqrt(length2)) : s.ng;
     if (s.ns.dot(s.ng) < 0.f) s.ns = -s.ns;
@@ -85,15 +120,23 @@ Surface make_surface(const Scene& scene, const V3f& direction, const Hit& hit) {
     if (smooth && !s.material->lets_light_through() && s.ns.dot(s.ng) < kSameNormal) {
         const V3f towards = s.front ? s.ns : -s.ns;
         if (direction.dot(towards) < 0.f)
-            s.lift = way_to_smooth(*s.mesh, corner, u, p_of_mesh, n_of_mesh, s.front);
+            s.lift = way_to_smooth(positions, normals, u, p_of_mesh, n_of_mesh, s.front);
         if (s.lifted()) {
             s.side = towards;
-            if (!s.instance->identity) s.lift = transform_direction(s.lift, s.instance->to_world);
+            if (!placement.identity) s.lift = transform_direction(s.lift, placement.to_world);
         }
     }
     for (int i = 0; i < 2; ++i)
         if (!s.mesh->uv[i].empty()) s.uv[i] = interpolate(s.mesh->uv[i], corner, u);
     return s;
+}
+
+}  // namespace
+
+Surface make_surface(const Scene& scene, const V3f& direction, const Hit& hit) {
+    return with_instance_at(scene, hit.instance, hit.time, [&](const Instance& placement) {
+        return surface_of(scene, placement, direction, hit);
+    });
 }
 
 }  // namespace petzval

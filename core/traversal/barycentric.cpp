@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "core/scene/motion.h"
+
 namespace petzval {
 namespace {
 
@@ -18,18 +20,26 @@ V3d from_origin(const Instance& instance, const V3f& corner, const V3d& origin) 
     return placed - origin;
 }
 
+// Corners of a triangle relative to the origin of a ray.
+std::array<V3d, 3> from_origin(const Scene& scene, uint32_t instance, uint32_t triangle,
+                               const Ray& ray) {
+    return with_instance_at(scene, instance, ray.time, [&](const Instance& placement) {
+        const Mesh& mesh = scene.meshes[placement.mesh];
+        const CornerValues corners = corner_positions(mesh, mesh.triangles[triangle], ray.time);
+        const V3d origin(ray.origin);
+        return std::array<V3d, 3>{from_origin(placement, corners[0], origin),
+                                  from_origin(placement, corners[1], origin),
+                                  from_origin(placement, corners[2], origin)};
+    });
+}
+
 }  // namespace
 
 // Weights in the ratio of the signed volumes that the ray spans with the edges: Kensler and Shirley
 // 2006, "Optimizing Ray-Triangle Intersection via Automated Search".
 V2f barycentric(const Scene& scene, uint32_t instance, uint32_t triangle, const Ray& ray) {
-    const Instance& placement = scene.instances[instance];
-    const Mesh& mesh = scene.meshes[placement.mesh];
-    const auto& corner = mesh.triangles[triangle];
-    const V3d origin(ray.origin), direction(ray.direction);
-    const V3d a = from_origin(placement, mesh.positions[corner[0]], origin);
-    const V3d b = from_origin(placement, mesh.positions[corner[1]], origin);
-    const V3d c = from_origin(placement, mesh.positions[corner[2]], origin);
+    const auto [a, b, c] = from_origin(scene, instance, triangle, ray);
+    const V3d direction(ray.direction);
     // Edge times sum in place of corner times corner: twice the volume, and far from a small
     // triangle without its cancellation.
     const double of_a = direction.dot((c - b).cross(c + b));

@@ -55,8 +55,9 @@ void pass_pane(const RTCFilterFunctionNArguments* args) {
 void note(const RTCFilterFunctionNArguments* args) {
     if (args->valid[0] != -1) return;
     const auto& hit = *reinterpret_cast<const RTCHit*>(args->hit);
-    reinterpret_cast<const Context*>(args->context)
-        ->all->push_back({V2f(0.f), instance_of(hit.instID[0], hit.geomID), hit.primID});
+    const auto& context = *reinterpret_cast<const Context*>(args->context);
+    context.all->push_back(
+        {V2f(0.f), instance_of(hit.instID[0], hit.geomID), hit.primID, context.ray->time});
     args->valid[0] = 0;
 }
 
@@ -67,7 +68,7 @@ RTCRay to_embree(const Ray& r) {
     // tnear above 0: in a plane through the origin of an axis nothing rounds, so that no offset
     // moves a ray off it, and it would meet at 0 what it leaves.
     ray.tnear = std::numeric_limits<float>::min(), ray.tfar = r.t_max;
-    ray.time = 0.f, ray.mask = ~0u, ray.id = 0, ray.flags = 0;
+    ray.time = r.time, ray.mask = ~0u, ray.id = 0, ray.flags = 0;
     return ray;
 }
 
@@ -129,8 +130,15 @@ struct Bvh::Impl {
     RTCGeometry triangles(uint32_t mesh_id) {
         const Mesh& mesh = scene.meshes[mesh_id];
         RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                   mesh.positions.data(), 0, sizeof(V3f), mesh.positions.size());
+        const auto set_positions = [&](unsigned step, const std::vector<V3f>& positions) {
+            rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, step, RTC_FORMAT_FLOAT3,
+                                       positions.data(), 0, sizeof(V3f), positions.size());
+        };
+        if (mesh.steps.empty())
+            set_positions(0, mesh.positions);
+        else
+            rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(mesh.steps.size()));
+        for (unsigned i = 0; i < mesh.steps.size(); ++i) set_positions(i, mesh.steps[i].positions);
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                    mesh.triangles.data(), 0, sizeof(mesh.triangles[0]),
                                    mesh.triangles.size());
@@ -175,9 +183,18 @@ Bvh::Bvh(const Scene& scene, Traversal traversal) : impl_(std::make_unique<Impl>
             }
             geometry = rtcNewGeometry(d.device, RTC_GEOMETRY_TYPE_INSTANCE);
             rtcSetGeometryInstancedScene(geometry, part);
-            // Imath's rows are Embree's columns.
-            rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR,
-                                    instance.to_world.getValue());
+            const auto place = [&](unsigned step, const M44f& to_world) {
+                // Imath's rows are Embree's columns.
+                rtcSetGeometryTransform(geometry, step, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR,
+                                        to_world.getValue());
+            };
+            if (instance.moves) {
+                const auto& steps = scene.motions[static_cast<size_t>(scene.motion_of[i])].to_world;
+                rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(steps.size()));
+                for (unsigned k = 0; k < steps.size(); ++k) place(k, steps[k]);
+            } else {
+                place(0, instance.to_world);
+            }
             rtcCommitGeometry(geometry);
         }
         rtcAttachGeometryByID(d.top, geometry, i);
@@ -203,7 +220,7 @@ std::optional<Hit> Bvh::intersect(const Ray& r) const {
     // of different makers have different ones.
     const uint32_t instance = instance_of(query.hit.instID[0], query.hit.geomID);
     const uint32_t triangle = query.hit.primID;
-    return Hit{barycentric(impl_->scene, instance, triangle, r), instance, triangle};
+    return Hit{barycentric(impl_->scene, instance, triangle, r), instance, triangle, r.time};
 }
 
 bool Bvh::occluded(const Ray& r) const {

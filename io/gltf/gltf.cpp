@@ -23,13 +23,16 @@ GltfFile load(const std::filesystem::path& path, FileScope scope, PictureBudget&
     GltfFile file;
     GltfTally tally;
     const GltfNodes nodes = flatten_nodes(gltf, choices.scene);
+    NodeMotion motion;
+    if (choices.animation)
+        motion = NodeMotion(source.json, source.clips, *choices.animation, nodes.to_world);
     GltfMaterials materials(gltf, file.scene, tally, pictures);
-    place_meshes(gltf, nodes, GltfVariant(gltf, choices.variant), materials, file.scene, tally,
-                 choices.point_line_radius_m);
-    const std::vector<BallLamp> lamps = read_lights(gltf, nodes, file.scene, tally);
-    read_profile_lights(gltf, nodes, file.scene, tally);
+    place_meshes(gltf, nodes, motion, GltfVariant(gltf, choices.variant), materials, file.scene,
+                 tally, choices.point_line_radius_m);
+    const std::vector<BallLamp> lamps = read_lights(gltf, nodes, motion, file.scene, tally);
+    read_profile_lights(gltf, nodes, motion, file.scene, tally);
     if (auto sky = read_image_light(gltf, nodes, tally, pictures)) file.scene.sky = *std::move(sky);
-    file.cameras = read_cameras(gltf, nodes, tally);
+    file.cameras = read_cameras(gltf, nodes, motion, tally);
 
     file.hash = source.hash;
     file.files = source.files;

@@ -20,6 +20,8 @@ namespace petzval {
 struct GltfCamera {
     std::string name;  ///< of the camera, else of its node; may be empty
     M44f to_world;     ///< rigid (scale removed): looks along -z, y up
+    /// The same at time steps while the shutter is open (core/scene/motion.h); empty: it is still.
+    std::vector<M44f> steps;
     bool orthographic = false;
     float yfov_rad = 0.f;
     std::optional<float> aspect;       ///< width / height, where the file gives one

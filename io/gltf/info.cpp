@@ -120,9 +120,33 @@ void describe_support(const GltfModel& gltf, const GltfTally& tally, GltfFile& f
     ignore(tally.line_primitives, "line primitive", no_surface);
 }
 
+// Tells what moves while the shutter is open, and how well that is followed.
+void describe_motion(const GltfTally& tally, GltfFile& file) {
+    std::string text;
+    const auto add = [&](uint64_t count, std::string_view what) {
+        if (count > 0) text += (text.empty() ? "" : ", ") + plural(count, what);
+    };
+    add(tally.moving_instances, "moving instance");
+    if (tally.deforming_meshes > 0)
+        text += (text.empty() ? "" : ", ") +
+                plural(tally.deforming_meshes, "deforming mesh", "deforming meshes");
+    add(tally.moving_lights, "moving light");
+    add(tally.moving_cameras, "moving camera");
+    if (text.empty()) {
+        file.remarks.emplace_back("nothing moves while the shutter is open");
+        return;
+    }
+    if (tally.moving_instances + tally.deforming_meshes > 0)
+        text += fmt::format(
+            "; between time steps, meshes are off by at most {:.2g} m, {:.2g} % of "
+            "their extent",
+            tally.motion_off_m, 100 * tally.motion_off);
+    file.remarks.push_back("while the shutter is open: " + text);
+}
+
 // Tells which moment of which animations is shown.
-void describe_time(const GltfModel& gltf, const std::optional<AnimationChoice>& animation,
-                   GltfFile& file) {
+void describe_time(const GltfModel& gltf, const GltfTally& tally,
+                   const std::optional<AnimationChoice>& animation, GltfFile& file) {
     const uint64_t count = file.holds.animation_count;
     if (!animation) {
         if (count > 0)
@@ -141,6 +165,7 @@ void describe_time(const GltfModel& gltf, const std::optional<AnimationChoice>& 
                                            local_s, clip.duration_s));
         file.honoured.push_back("animation " + named(clip.name));
     }
+    if (animation->open_s > 0) describe_motion(tally, file);
     if (count > gltf.source.clips.size() && animation->names.empty())
         file.remarks.push_back(fmt::format(
             "{} not played, as they move the same things (--animation NAME plays one)",
@@ -176,7 +201,7 @@ void describe(const GltfModel& gltf, const GltfTally& tally,
     file.holds = summarise(gltf, tally, file.scene);
     describe_contents(file);
     describe_support(gltf, tally, file);
-    describe_time(gltf, animation, file);
+    describe_time(gltf, tally, animation, file);
 
     append_warnings(tally, file.warnings);
 }

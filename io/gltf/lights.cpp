@@ -69,10 +69,14 @@ std::optional<BallLamp> as_ball(const Light& light, const JsonCursor& json, cons
     }
     BallLamp lamp;
     if (point)
-        lamp = {point->position, radius_m, point->intensity_cd, point->illuminant, {}};
+        lamp = {point->position, radius_m, point->intensity_cd, point->illuminant, {}, {}};
     else
-        lamp = {spot->position, radius_m, spot->intensity_cd, spot->illuminant,
-                Beam{spot->direction, spot->cos_inner, spot->cos_outer}};
+        lamp = {spot->position,
+                radius_m,
+                spot->intensity_cd,
+                spot->illuminant,
+                Beam{spot->direction, spot->cos_inner, spot->cos_outer},
+                {}};
     if (!can_be_ball(lamp.centre, radius_m, lamp.intensity_cd)) {
         tally.warnings.push_back(node +
                                  ": its light's radius is too small for where it stands or "
@@ -82,6 +86,20 @@ std::optional<BallLamp> as_ball(const Light& light, const JsonCursor& json, cons
     ++(point ? tally.point_lamps : tally.spot_lamps);
     tally.honoured.insert("lights with a radius, as balls that can be seen");
     return lamp;
+}
+
+// Makes a ball move as its node does.
+void move_ball(const NodeMotion& motion, int node, BallLamp& lamp, GltfTally& tally) {
+    const auto* const places = motion.places(node);
+    if (!places) return;
+    std::vector<M44d> centres(places->size());
+    for (size_t i = 0; i < centres.size(); ++i)
+        for (int axis = 0; axis < 3; ++axis) centres[i][3][axis] = (*places)[i][3][axis];
+    const double r = lamp.radius_m;
+    const Thinning thinning = thin(centres, std::array{V3d(-r), V3d(r)});
+    for (size_t i = 0; i < centres.size(); i += thinning.stride)
+        lamp.centres.emplace_back(row(centres[i], 3));
+    ++tally.moving_lights;
 }
 
 bool is_dark(const tinygltf::Light& light) {
@@ -123,8 +141,23 @@ bool is_usable(const GltfCamera& camera) {
 
 }  // namespace
 
-std::vector<BallLamp> read_lights(const GltfModel& gltf, const GltfNodes& nodes, Scene& scene,
-                                  GltfTally& tally) {
+void move_last_light(const NodeMotion& motion, int node, Scene& scene, GltfTally& tally,
+                     const std::function<std::optional<Light>(const M44d&)>& make) {
+    const auto* const places = motion.places(node);
+    if (!places) return;
+    std::vector<Light> steps;
+    for (const M44d& place : *places) {
+        auto made = make(place);
+        steps.push_back(made ? *std::move(made) : scene.lights.back());
+    }
+    scene.light_motion_of.resize(scene.lights.size(), -1);
+    scene.light_motion_of.back() = static_cast<int32_t>(scene.light_motions.size());
+    scene.light_motions.push_back(std::move(steps));
+    ++tally.moving_lights;
+}
+
+std::vector<BallLamp> read_lights(const GltfModel& gltf, const GltfNodes& nodes,
+                                  const NodeMotion& motion, Scene& scene, GltfTally& tally) {
     std::vector<BallLamp> lamps;
     const JsonCursor root(gltf.source.json, gltf.file);
     const auto definitions = root.extension("KHR_lights_punctual");
@@ -140,11 +173,19 @@ std::vector<BallLamp> read_lights(const GltfModel& gltf, const GltfNodes& nodes,
         if (is_dark(light)) continue;
         if (auto made = make_light(light, nodes.to_world[index])) {
             tally.ranged_lights += light.range > 0;
-            set_illuminant(*made, spectral.illuminant(lights[number]));
-            if (const auto lamp = as_ball(*made, lights[number], json_path("nodes", node), tally))
-                lamps.push_back(*lamp);
-            else
+            const int32_t illuminant = spectral.illuminant(lights[number]);
+            set_illuminant(*made, illuminant);
+            if (auto lamp = as_ball(*made, lights[number], json_path("nodes", node), tally)) {
+                move_ball(motion, node, *lamp, tally);
+                lamps.push_back(*std::move(lamp));
+            } else {
                 scene.lights.push_back(*made);
+                move_last_light(motion, node, scene, tally, [&](const M44d& place) {
+                    auto step = make_light(light, place);
+                    if (step) set_illuminant(*step, illuminant);
+                    return step;
+                });
+            }
         } else {
             tally.warnings.push_back(json_path("nodes", node) + ": its light is left out");
         }
@@ -153,7 +194,7 @@ std::vector<BallLamp> read_lights(const GltfModel& gltf, const GltfNodes& nodes,
 }
 
 std::vector<GltfCamera> read_cameras(const GltfModel& gltf, const GltfNodes& nodes,
-                                     GltfTally& tally) {
+                                     const NodeMotion& motion, GltfTally& tally) {
     std::vector<GltfCamera> cameras;
     const JsonCursor root(gltf.source.json, gltf.file);
     const auto json = root.objects("cameras");
@@ -167,6 +208,11 @@ std::vector<GltfCamera> read_cameras(const GltfModel& gltf, const GltfNodes& nod
         }
         const auto& from = gltf.typed.cameras.at(static_cast<size_t>(node.camera));
         GltfCamera camera = to_camera(from, *to_world);
+        if (const auto* const places = motion.places(index)) {
+            for (const M44d& place : *places)
+                camera.steps.push_back(rigid(place).value_or(*to_world));
+            ++tally.moving_cameras;
+        }
         camera.name = from.name.empty()
                           ? JsonCursor(root.value()["nodes"][static_cast<size_t>(index)], gltf.file,
                                        json_path("nodes", index))

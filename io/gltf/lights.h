@@ -2,10 +2,13 @@
 // KHR_lights_punctual, EXT_lights_ies, and the cameras of a glTF file.
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "core/scene/lamp.h"
 #include "core/scene/scene.h"
+#include "io/gltf/animation/node_motion.h"
 #include "io/gltf/gltf.h"
 #include "io/gltf/model.h"
 #include "io/gltf/nodes.h"
@@ -16,14 +19,20 @@ namespace petzval {
 /// Adds the punctual lights of the scene's nodes, in depth-first order, but those of no intensity;
 /// and the illuminants that they name. Those with a radius are returned, and are not yet in the
 /// scene.
-[[nodiscard]] std::vector<BallLamp> read_lights(const GltfModel&, const GltfNodes&, Scene&,
-                                                GltfTally&);
+[[nodiscard]] std::vector<BallLamp> read_lights(const GltfModel&, const GltfNodes&,
+                                                const NodeMotion&, Scene&, GltfTally&);
 
 /// Adds the lights of EXT_lights_ies likewise, and their profiles. Throws InputError for a profile
 /// that cannot be read.
-void read_profile_lights(const GltfModel&, const GltfNodes&, Scene&, GltfTally&);
+void read_profile_lights(const GltfModel&, const GltfNodes&, const NodeMotion&, Scene&, GltfTally&);
+
+/// Makes the last light of the scene move as a node does, where that moves: make(place) gives the
+/// light at a place in the world, or nothing where it cannot be.
+void move_last_light(const NodeMotion&, int node, Scene&, GltfTally&,
+                     const std::function<std::optional<Light>(const M44d&)>& make);
 
 /// Cameras of the scene's nodes, in depth-first order.
-[[nodiscard]] std::vector<GltfCamera> read_cameras(const GltfModel&, const GltfNodes&, GltfTally&);
+[[nodiscard]] std::vector<GltfCamera> read_cameras(const GltfModel&, const GltfNodes&,
+                                                   const NodeMotion&, GltfTally&);
 
 }  // namespace petzval

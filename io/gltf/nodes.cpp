@@ -42,13 +42,13 @@ M44d node_matrix(const JsonCursor& json) {
     if (const auto m = json.numbers("matrix", 16); !m.empty())
         return {m[0], m[1], m[2],  m[3],  m[4],  m[5],  m[6],  m[7],
                 m[8], m[9], m[10], m[11], m[12], m[13], m[14], m[15]};
-    M44d matrix;
-    if (const auto s = json.numbers("scale", 3); !s.empty()) matrix.setScale(V3d(s[0], s[1], s[2]));
+    NodePlace place;
+    if (const auto s = json.numbers("scale", 3); !s.empty()) place.scale = {s[0], s[1], s[2]};
     if (const auto q = json.numbers("rotation", 4); !q.empty())
-        matrix = matrix * rotation_matrix({q[0], q[1], q[2], q[3]});
+        place.rotation = {q[0], q[1], q[2], q[3]};
     if (const auto t = json.numbers("translation", 3); !t.empty())
-        for (int axis = 0; axis < 3; ++axis) matrix[3][axis] = t[static_cast<size_t>(axis)];
-    return matrix;
+        place.translation = {t[0], t[1], t[2]};
+    return place.matrix();
 }
 
 std::vector<int> all_roots(const std::vector<GltfNode>& nodes) {
@@ -130,28 +130,6 @@ GltfNodes flatten_nodes(const GltfModel& gltf, const std::optional<std::string>&
         seen[static_cast<size_t>(index)] = true;
     });
     return nodes;
-}
-
-M44d rotation_matrix(const std::array<double, 4>& q) {
-    const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    if (norm == 0) return {};
-    const double x = q[0] / norm, y = q[1] / norm, z = q[2] / norm, w = q[3] / norm;
-    return {1 - 2 * (y * y + z * z),
-            2 * (x * y + w * z),
-            2 * (x * z - w * y),
-            0,
-            2 * (x * y - w * z),
-            1 - 2 * (x * x + z * z),
-            2 * (y * z + w * x),
-            0,
-            2 * (x * z + w * y),
-            2 * (y * z - w * x),
-            1 - 2 * (x * x + y * y),
-            0,
-            0,
-            0,
-            0,
-            1};
 }
 
 }  // namespace petzval

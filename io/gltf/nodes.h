@@ -38,8 +38,4 @@ struct GltfNodes {
 /// tinygltf would take a kilobyte for each. Throws ArgumentError where there is no such scene.
 [[nodiscard]] GltfNodes flatten_nodes(const GltfModel&, const std::optional<std::string>& scene);
 
-/// Rotation by a quaternion (x, y, z, w) of any length; none for the length 0. Rows are the images
-/// of the axes.
-[[nodiscard]] M44d rotation_matrix(const std::array<double, 4>&);
-
 }  // namespace petzval

@@ -33,11 +33,12 @@ bool all_finite(const std::vector<Vector>& values) {
 
 class Placer {
   public:
-    Placer(const GltfModel& gltf, const GltfNodes& nodes, const GltfVariant& variant,
-           GltfMaterials& materials, Scene& scene, GltfTally& tally,
+    Placer(const GltfModel& gltf, const GltfNodes& nodes, const NodeMotion& motion,
+           const GltfVariant& variant, GltfMaterials& materials, Scene& scene, GltfTally& tally,
            std::optional<float> stroke_radius_m)
         : gltf_(gltf),
           nodes_(nodes),
+          motion_(motion),
           variant_(variant),
           materials_(materials),
           scene_(scene),
@@ -48,7 +49,7 @@ class Placer {
     }
 
     void run() {
-        for (const Placement& placement : find_placements(gltf_, nodes_, places_, tally_))
+        for (const Placement& placement : find_placements(gltf_, nodes_, motion_, places_, tally_))
             place(placement);
         if (strokes_) strokes_->finish(scene_, materials_);
     }
@@ -67,25 +68,29 @@ class Placer {
         }
     }
 
-    void count(const BrokenValues& broken) {
-        tally_.broken_triangles += broken.triangles;
-        tally_.broken_values += broken.values;
+    static void count(const BrokenValues& broken, GltfTally& tally) {
+        tally.broken_triangles += broken.triangles;
+        tally.broken_values += broken.values;
     }
 
     void place_primitive(const Placement& placement, const tinygltf::Primitive& primitive,
                          uint32_t material, const std::string& where) {
-        Mesh mesh = read_shaded(placement, primitive, material);
+        Mesh mesh = read_shaded(placement.morph_weights, primitive, material, tally_);
         mesh.material = material;
         if (mesh.triangles.empty()) return;
 
-        const bool posed =
-            placement.skin >= 0 && pose_by_skin(gltf_, nodes_, placement.skin, primitive, mesh);
+        const Mesh unposed = deforms(placement) ? mesh : Mesh();
+        const bool posed = pose(placement, primitive, std::nullopt, mesh);
         if (posed) tally_.honoured.insert("skins, in the pose that the nodes stand in");
-        const bool baked = posed || placement.places == 1;
+        const bool baked =
+            posed || (placement.places == 1 && !placement.moves && !placement.morphs);
         if (baked && !posed)
-            each_place(placement, [&](int, const M44d& to_world) { bake(mesh, to_world); });
+            each_place(placement,
+                       [&](int, const M44d& to_world, const M44d&) { bake(mesh, to_world); });
+        if (deforms(placement)) add_steps(placement, primitive, unposed, mesh);
         check_finite(mesh, where);
-        tally_.zero_area_triangles += remove_zero_area(mesh);
+        // What has no area now may have some at another time.
+        if (mesh.steps.empty()) tally_.zero_area_triangles += remove_zero_area(mesh);
         if (mesh.triangles.empty()) return;
 
         const Material& of_mesh = scene_.materials[material];
@@ -100,10 +105,11 @@ class Placer {
         tally_.honoured.insert("mesh instancing");
         memory_.ask(kInstanceBytes, placement.places, 1, where);
         reserve(placement.places);
-        Box3f bounds;
-        for (const V3f& position : scene_.meshes[index].positions) bounds.extendBy(position);
-        each_place(placement, [&](int node, const M44d& to_world) {
+        const Box3f bounds = box_about(scene_.meshes[index].positions);
+        each_place(placement, [&](int node, const M44d& to_world, const M44d& own) {
             scene_.instances.push_back(instance(index, node, to_world, bounds));
+            if (const auto* const places = motion_.places(node))
+                move_instance(node, *places, own, bounds);
         });
     }
 
@@ -117,34 +123,162 @@ class Placer {
         StrokeSource source = read_stroke(gltf_, primitive, placement.morph_weights, tally_);
         Mesh& vertices = source.vertices;
         const StrokeShapes shapes = shapes_of(source, primitive.mode, tally_.broken_strokes);
-        count(repair_values(vertices));
+        count(repair_values(vertices), tally_);
         memory_.ask(kInstanceBytes, placement.places,
                     shapes.spheres.size() + shapes.cylinders.size(), where);
         const uint32_t material = materials_.use(material_of_file);
         tally_.honoured.insert("points and lines, as spheres and cylinders");
-        if (placement.skin >= 0 &&
-            pose_by_skin(gltf_, nodes_, placement.skin, primitive, vertices)) {
+        if (placement.moves || deforms(placement))
+            tally_.warnings.push_back(where +
+                                      ": moving points and lines are shown as they are in "
+                                      "the middle of the exposure");
+        if (pose(placement, primitive, std::nullopt, vertices)) {
             strokes_->add(material, vertices, shapes, M44d());
             return;
         }
-        each_place(placement, [&](int, const M44d& to_world) {
+        each_place(placement, [&](int, const M44d& to_world, const M44d&) {
             strokes_->add(material, vertices, shapes, to_world);
         });
     }
 
-    // Calls visit(node, matrix) for each place where something shows.
+    // Whether the shape of a mesh changes while the shutter is open.
+    [[nodiscard]] bool deforms(const Placement& placement) const {
+        if (placement.morphs) return true;
+        if (placement.skin < 0) return false;
+        const auto& joints = gltf_.typed.skins[static_cast<size_t>(placement.skin)].joints;
+        return std::any_of(joints.begin(), joints.end(),
+                           [&](int node) { return motion_.places(node) != nullptr; });
+    }
+
+    [[nodiscard]] std::vector<M44d> joints_at(const Placement& placement,
+                                              std::optional<size_t> step) const {
+        return joint_matrices(gltf_, placement.skin, [&](int node) {
+            const auto* const places = motion_.places(node);
+            return step && places ? (*places)[*step] : places_.of_node(node);
+        });
+    }
+
+    // Moves a mesh by its skin as it is at a time step, or in the middle; false where it has none.
+    bool pose(const Placement& placement, const tinygltf::Primitive& primitive,
+              std::optional<size_t> step, Mesh& mesh) const {
+        return placement.skin >= 0 &&
+               pose_by_skin(gltf_, joints_at(placement, step), primitive, mesh);
+    }
+
+    // Adds the shapes that a mesh takes while the shutter is open, at as few steps as will do.
+    void add_steps(const Placement& placement, const tinygltf::Primitive& primitive,
+                   const Mesh& unposed, Mesh& mesh) {
+        const Thinning thinning = thinning_of(placement, primitive, unposed);
+        const auto* const weights = motion_.weights(placement.nodes.front());
+        for (size_t step = 0; step < motion_.steps(); step += thinning.stride) {
+            GltfTally uncounted;
+            Mesh shape = weights
+                             ? read_shaded((*weights)[step], primitive, mesh.material, uncounted)
+                             : unposed;
+            (void)pose(placement, primitive, step, shape);
+            if (shape.positions.size() != mesh.positions.size()) {  // triangles broke on the way
+                mesh.steps.clear();
+                return;
+            }
+            mesh.steps.push_back(
+                {std::move(shape.positions), std::move(shape.normals), std::move(shape.tangents)});
+        }
+        count(thinning, tally_.deforming_meshes);
+    }
+
+    void count(const Thinning& thinning, uint64_t& of_kind) {
+        ++of_kind;
+        tally_.motion_off_m = std::max(tally_.motion_off_m, thinning.off_m);
+        if (thinning.size_m > 0)
+            tally_.motion_off = std::max(tally_.motion_off, thinning.off_m / thinning.size_m);
+    }
+
+    [[nodiscard]] Thinning thinning_of(const Placement& placement,
+                                       const tinygltf::Primitive& primitive,
+                                       const Mesh& unposed) const {
+        const Box3f box = box_about(unposed.positions);
+        Thinning all{.stride = motion_.steps() - 1};
+        if (placement.skin >= 0) {
+            std::vector<std::vector<M44d>> by_joint;
+            for (size_t step = 0; step < motion_.steps(); ++step) {
+                const std::vector<M44d> joints = joints_at(placement, step);
+                by_joint.resize(joints.size());
+                for (size_t j = 0; j < joints.size(); ++j) by_joint[j].push_back(joints[j]);
+            }
+            for (const auto& joint : by_joint) all = all | thin(joint, corners_of(box));
+        }
+        if (const auto* const weights = motion_.weights(placement.nodes.front())) {
+            std::vector<double> sizes_m;
+            for (const auto& target : primitive.targets) {
+                double most = 0;
+                if (const auto at = target.find("POSITION"); at != target.end())
+                    for (const V3f& delta : read_vec3(gltf_, at->second))
+                        most = std::max(most, double(delta.length()));
+                sizes_m.push_back(most);
+            }
+            all = all | thin(*weights, sizes_m, double(box.size().length()));
+        }
+        return all;
+    }
+
+    [[nodiscard]] static Box3f box_about(const std::vector<V3f>& positions) {
+        Box3f box;
+        for (const V3f& p : positions) box.extendBy(p);
+        return box;
+    }
+
+    [[nodiscard]] static std::array<V3d, 8> corners_of(const Box3f& box) {
+        std::array<V3d, 8> corners;
+        for (size_t i = 0; i < 8; ++i)
+            corners[i] = V3d((i & 1 ? box.max : box.min).x, (i & 2 ? box.max : box.min).y,
+                             (i & 4 ? box.max : box.min).z);
+        return corners;
+    }
+
+    // Makes the last instance move as its node does. own: its place in the node's own space.
+    void move_instance(int node, const std::vector<M44d>& places, const M44d& own,
+                       const Box3f& bounds) {
+        std::vector<M44d> all;
+        for (const M44d& place : places) {
+            all.push_back(own * place);
+            if (is_singular(all.back())) add_thickness(all.back(), own * places_.of_node(node));
+        }
+        const Thinning thinning = thin(all, corners_of(bounds));
+        InstanceMotion motion;
+        for (size_t step = 0; step < all.size(); step += thinning.stride) {
+            (void)instance(0, node, all[step], bounds);  // for its checks
+            motion.to_world.emplace_back(all[step]);
+        }
+        scene_.motion_of.resize(scene_.instances.size(), -1);
+        scene_.motion_of.back() = static_cast<int32_t>(scene_.motions.size());
+        scene_.motions.push_back(std::move(motion));
+        scene_.instances.back().moves = true;
+        count(thinning, tally_.moving_instances);
+    }
+
+    // Gives a matrix that flattens space for a moment a little of what it is in the middle.
+    static void add_thickness(M44d& flat, const M44d& in_the_middle) {
+        constexpr double share = 1e-4;
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) flat[i][j] += share * in_the_middle[i][j];
+    }
+
+    // Calls visit(node, matrix, own) for each place where something shows; own: the place in the
+    // node's own space.
     template <class Visit>
     void each_place(const Placement& placement, Visit visit) {
         for (const int node : placement.nodes) {
-            const auto visit_shown = [&](const M44d& to_world) {
+            const auto visit_shown = [&](const M44d& to_world, const M44d& own) {
                 if (!Places::shows(to_world) && placement.skin < 0) return;
-                visit(node, dimensions_left(to_world) == 2 ? thickened(to_world, box_of(placement))
-                                                           : to_world);
+                visit(node,
+                      dimensions_left(to_world) == 2 ? thickened(to_world, box_of(placement))
+                                                     : to_world,
+                      own);
             };
             if (placement.skin >= 0)
-                visit_shown(places_.of_node(node));
+                visit_shown(places_.of_node(node), M44d());
             else
-                places_.each(node, visit_shown);
+                places_.each_with_own(node, visit_shown);
         }
     }
 
@@ -171,20 +305,20 @@ class Placer {
     }
 
     // Tangents are found before the mesh is moved, so that every copy of it shades alike.
-    Mesh read_shaded(const Placement& placement, const tinygltf::Primitive& primitive,
-                     uint32_t material_index) {
+    Mesh read_shaded(const std::vector<double>& morph_weights, const tinygltf::Primitive& primitive,
+                     uint32_t material_index, GltfTally& tally) {
         const Material& material = scene_.materials[material_index];
         const bool with_tangents = material.needs_tangents();
         Mesh mesh = read_primitive(
-            gltf_, primitive,
-            {placement.morph_weights, with_tangents, materials_.more_sets(material_index)}, tally_);
-        count(repair_values(mesh));
-        tally_.unmapped_primitives += add_missing_uv(mesh, material);
-        tally_.replaced_normals += repair_normals(mesh);
+            gltf_, primitive, {morph_weights, with_tangents, materials_.more_sets(material_index)},
+            tally);
+        count(repair_values(mesh), tally);
+        tally.unmapped_primitives += add_missing_uv(mesh, material);
+        tally.replaced_normals += repair_normals(mesh);
         repair_tangents(mesh);
         if (with_tangents && mesh.tangents.empty()) {
             add_tangents(mesh, material.tangent_slot());
-            tally_.honoured.insert("tangents computed for normal maps");
+            tally.honoured.insert("tangents computed for normal maps");
         }
         return mesh;
     }
@@ -220,6 +354,7 @@ class Placer {
 
     const GltfModel& gltf_;
     const GltfNodes& nodes_;
+    const NodeMotion& motion_;
     const GltfVariant& variant_;
     GltfMaterials& materials_;
     Scene& scene_;
@@ -232,10 +367,10 @@ class Placer {
 
 }  // namespace
 
-void place_meshes(const GltfModel& gltf, const GltfNodes& nodes, const GltfVariant& variant,
-                  GltfMaterials& materials, Scene& scene, GltfTally& tally,
-                  std::optional<float> stroke_radius_m) {
-    Placer(gltf, nodes, variant, materials, scene, tally, stroke_radius_m).run();
+void place_meshes(const GltfModel& gltf, const GltfNodes& nodes, const NodeMotion& motion,
+                  const GltfVariant& variant, GltfMaterials& materials, Scene& scene,
+                  GltfTally& tally, std::optional<float> stroke_radius_m) {
+    Placer(gltf, nodes, motion, variant, materials, scene, tally, stroke_radius_m).run();
 }
 
 }  // namespace petzval

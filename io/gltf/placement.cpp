@@ -23,8 +23,14 @@ bool fits_floats(const M44d& m) {
 
 class Grouping {
   public:
-    Grouping(const GltfModel& gltf, const GltfNodes& nodes, Places& places, GltfTally& tally)
-        : gltf_(gltf), nodes_(nodes), places_(places), tally_(tally), memory_(gltf.file) {}
+    Grouping(const GltfModel& gltf, const GltfNodes& nodes, const NodeMotion& motion,
+             Places& places, GltfTally& tally)
+        : gltf_(gltf),
+          nodes_(nodes),
+          motion_(motion),
+          places_(places),
+          tally_(tally),
+          memory_(gltf.file) {}
 
     [[nodiscard]] std::vector<Placement> run() {
         for (const int index : nodes_.in_scene)
@@ -48,10 +54,14 @@ class Grouping {
         const auto& mesh = gltf_.typed.meshes.at(static_cast<size_t>(node.mesh));
         const auto& weights = node.weights.empty() ? mesh.weights : node.weights;
         size_t at = placements_.size();
-        if (node.skin < 0) at = known_.try_emplace({node.mesh, weights}, at).first->second;
+        const bool morphs = motion_.weights(index) != nullptr;
+        if (node.skin < 0 && !morphs)
+            at = known_.try_emplace({node.mesh, weights}, at).first->second;
         if (at == placements_.size()) placements_.push_back({node.mesh, node.skin, weights, {}});
         placements_[at].nodes.push_back(index);
         placements_[at].places += places;
+        placements_[at].moves |= motion_.places(index) != nullptr;
+        placements_[at].morphs |= morphs;
     }
 
     // Counts the places where the mesh shows, and what does not show.
@@ -71,6 +81,7 @@ class Grouping {
 
     const GltfModel& gltf_;
     const GltfNodes& nodes_;
+    const NodeMotion& motion_;
     Places& places_;
     GltfTally& tally_;
     PlaceMemory memory_;
@@ -111,8 +122,8 @@ bool Places::shows(const M44d& to_world) {
 }
 
 std::vector<Placement> find_placements(const GltfModel& gltf, const GltfNodes& nodes,
-                                       Places& places, GltfTally& tally) {
-    return Grouping(gltf, nodes, places, tally).run();
+                                       const NodeMotion& motion, Places& places, GltfTally& tally) {
+    return Grouping(gltf, nodes, motion, places, tally).run();
 }
 
 }  // namespace petzval

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "io/gltf/animation/node_motion.h"
 #include "io/gltf/instancing.h"
 #include "io/gltf/model.h"
 #include "io/gltf/nodes.h"
@@ -33,7 +34,9 @@ struct Placement {
     int mesh = -1, skin = -1;
     std::vector<double> morph_weights;
     std::vector<int> nodes;
-    size_t places = 0;  ///< more than nodes where instancing repeats it
+    size_t places = 0;    ///< more than nodes where instancing repeats it
+    bool moves = false;   ///< some of the nodes do, while the shutter is open
+    bool morphs = false;  ///< its one node's weights change meanwhile
 };
 
 /// Places of the meshes of nodes, as the file has them.
@@ -49,9 +52,17 @@ class Places {
     /// Calls visit(matrix) for each place of a node.
     template <class Visit>
     void each(int node, Visit visit) {
+        each_with_own(node, [&](const M44d& to_world, const M44d&) { visit(to_world); });
+    }
+    /// Calls visit(matrix, own) likewise, with the place in the node's own space beside it.
+    template <class Visit>
+    void each_with_own(int node, Visit visit) {
         const InstancePlaces* const many = instances_of(node);
-        if (!many) return visit(of_node(node));
-        for (size_t i = 0; i < many->count(); ++i) visit(many->at(i) * of_node(node));
+        if (!many) return visit(of_node(node), M44d());
+        for (size_t i = 0; i < many->count(); ++i) {
+            const M44d own = many->at(i);
+            visit(own * of_node(node), own);
+        }
     }
     /// Whether there is anything to see at a place.
     [[nodiscard]] static bool shows(const M44d& to_world);
@@ -68,7 +79,7 @@ class Places {
 /// Placements of all meshes of the scene, without places where nothing shows: those are counted.
 /// Throws InputError where a node is out of the range of a float, and where its places would take
 /// more memory than there is.
-[[nodiscard]] std::vector<Placement> find_placements(const GltfModel&, const GltfNodes&, Places&,
-                                                     GltfTally&);
+[[nodiscard]] std::vector<Placement> find_placements(const GltfModel&, const GltfNodes&,
+                                                     const NodeMotion&, Places&, GltfTally&);
 
 }  // namespace petzval

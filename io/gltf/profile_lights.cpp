@@ -65,8 +65,8 @@ class Profiles {
 
 }  // namespace
 
-void read_profile_lights(const GltfModel& gltf, const GltfNodes& nodes, Scene& scene,
-                         GltfTally& tally) {
+void read_profile_lights(const GltfModel& gltf, const GltfNodes& nodes, const NodeMotion& motion,
+                         Scene& scene, GltfTally& tally) {
     const JsonCursor root(gltf.source.json, gltf.file);
     const auto definitions = root.extension("EXT_lights_ies");
     if (!definitions) return;
@@ -82,15 +82,25 @@ void read_profile_lights(const GltfModel& gltf, const GltfNodes& nodes, Scene& s
         if (!(hmax(factor.v) > 0)) continue;
         const auto profile = profiles.use(number);
         if (!profile) continue;
-        const M44d& to_world = nodes.to_world[index];
-        const auto axes = axes_of(to_world);
-        if (!axes) {
+        const int32_t illuminant = spectral.illuminant(lights[number]);
+        const auto make = [&](const M44d& to_world) -> std::optional<Light> {
+            const auto axes = axes_of(to_world);
+            if (!axes) return {};
+            return ProfileLight{V3f(row(to_world, 3)),
+                                V3f(axes->x),
+                                V3f(axes->y),
+                                V3f(axes->forward),
+                                factor,
+                                *profile,
+                                illuminant};
+        };
+        const auto made = make(nodes.to_world[index]);
+        if (!made) {
             tally.warnings.push_back(json_path("nodes", node) + ": its light is left out");
             continue;
         }
-        scene.lights.push_back(ProfileLight{V3f(row(to_world, 3)), V3f(axes->x), V3f(axes->y),
-                                            V3f(axes->forward), factor, *profile,
-                                            spectral.illuminant(lights[number])});
+        scene.lights.push_back(*made);
+        move_last_light(motion, node, scene, tally, make);
     }
 }
 

@@ -11,18 +11,6 @@
 namespace petzval {
 namespace {
 
-std::vector<M44d> joint_matrices(const GltfModel& gltf, const GltfNodes& nodes, int skin_index) {
-    const tinygltf::Skin& skin = gltf.typed.skins.at(static_cast<size_t>(skin_index));
-    std::vector<M44d> matrices(skin.joints.size());
-    if (skin.inverseBindMatrices >= 0) {
-        const auto inverse_bind = read_matrices(gltf, skin.inverseBindMatrices);
-        std::copy_n(inverse_bind.begin(), matrices.size(), matrices.begin());
-    }
-    for (size_t i = 0; i < matrices.size(); ++i)
-        matrices[i] = matrices[i] * nodes.to_world.at(static_cast<size_t>(skin.joints[i]));
-    return matrices;
-}
-
 /// Four joints and their weights for every vertex.
 struct Influences {
     std::vector<std::array<uint32_t, 4>> joints;
@@ -57,9 +45,21 @@ M44d blend(const std::vector<Influences>& sets, const std::vector<M44d>& matrice
 
 }  // namespace
 
-bool pose_by_skin(const GltfModel& gltf, const GltfNodes& nodes, int skin,
+std::vector<M44d> joint_matrices(const GltfModel& gltf, int skin_index,
+                                 const std::function<M44d(int)>& place_of) {
+    const tinygltf::Skin& skin = gltf.typed.skins.at(static_cast<size_t>(skin_index));
+    std::vector<M44d> matrices(skin.joints.size());
+    if (skin.inverseBindMatrices >= 0) {
+        const auto inverse_bind = read_matrices(gltf, skin.inverseBindMatrices);
+        std::copy_n(inverse_bind.begin(), matrices.size(), matrices.begin());
+    }
+    for (size_t i = 0; i < matrices.size(); ++i)
+        matrices[i] = matrices[i] * place_of(skin.joints[i]);
+    return matrices;
+}
+
+bool pose_by_skin(const GltfModel& gltf, const std::vector<M44d>& matrices,
                   const tinygltf::Primitive& primitive, Mesh& mesh) {
-    const std::vector<M44d> matrices = joint_matrices(gltf, nodes, skin);
     const auto sets = read_influences(gltf, primitive);
     if (sets.empty()) return false;
     for (size_t v = 0; v < mesh.positions.size(); ++v)

@@ -2,9 +2,11 @@
 // Skinned meshes in the pose that the file's nodes stand in.
 #pragma once
 
+#include <functional>
+#include <vector>
+
 #include "core/scene/mesh.h"
 #include "io/gltf/model.h"
-#include "io/gltf/nodes.h"
 
 namespace tinygltf {
 struct Primitive;
@@ -12,11 +14,16 @@ struct Primitive;
 
 namespace petzval {
 
+/// For each joint of a skin its inverse bind matrix * the joint's place, which place_of(node)
+/// tells.
+[[nodiscard]] std::vector<M44d> joint_matrices(const GltfModel&, int skin,
+                                               const std::function<M44d(int)>& place_of);
+
 /// Moves a primitive's vertices to world space by its joints, each vertex by the weighted sum of
 /// inverse bind matrix * joint's place (glTF 2.0, section 3.7.3.3; the place of the node that holds
 /// the mesh does not count). Returns false, and changes nothing, where the primitive names no
 /// joints.
-[[nodiscard]] bool pose_by_skin(const GltfModel&, const GltfNodes&, int skin,
+[[nodiscard]] bool pose_by_skin(const GltfModel&, const std::vector<M44d>& joint_matrices,
                                 const tinygltf::Primitive&, Mesh&);
 
 }  // namespace petzval

@@ -23,10 +23,14 @@ struct GltfTally {
     uint64_t broken_strokes = 0;         ///< points and lines that are not finite
     uint64_t replaced_normals = 0;       ///< of no length
     uint64_t occlusion_textures = 0, ranged_lights = 0;
-    uint64_t point_lamps = 0, spot_lamps = 0;  ///< lights with a radius
-    uint64_t idle_dispersions = 0;             ///< of materials that refract nothing
-    std::set<std::string> honoured;            ///< features that the scene uses, in words
-    WarningLog warnings;                       ///< one line each
+    uint64_t point_lamps = 0, spot_lamps = 0;             ///< lights with a radius
+    uint64_t moving_instances = 0, deforming_meshes = 0;  ///< while the shutter is open
+    uint64_t moving_lights = 0, moving_cameras = 0;
+    /// Bound on how far what moves is off between time steps, in metres and in its own extents.
+    double motion_off_m = 0, motion_off = 0;
+    uint64_t idle_dispersions = 0;   ///< of materials that refract nothing
+    std::set<std::string> honoured;  ///< features that the scene uses, in words
+    WarningLog warnings;             ///< one line each
 };
 
 }  // namespace petzval

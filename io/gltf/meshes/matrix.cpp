@@ -9,4 +9,34 @@ double relative_determinant(const M44d& m) {
     return lengths > 0 ? x.cross(y).dot(z) / lengths : 0;
 }
 
+M44d rotation_matrix(const std::array<double, 4>& q) {
+    const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    if (norm == 0) return {};
+    const double x = q[0] / norm, y = q[1] / norm, z = q[2] / norm, w = q[3] / norm;
+    return {1 - 2 * (y * y + z * z),
+            2 * (x * y + w * z),
+            2 * (x * z - w * y),
+            0,
+            2 * (x * y - w * z),
+            1 - 2 * (x * x + z * z),
+            2 * (y * z + w * x),
+            0,
+            2 * (x * z + w * y),
+            2 * (y * z - w * x),
+            1 - 2 * (x * x + y * y),
+            0,
+            0,
+            0,
+            0,
+            1};
+}
+
+M44d NodePlace::matrix() const {
+    M44d out;
+    out.setScale(V3d(scale[0], scale[1], scale[2]));
+    out = out * rotation_matrix(rotation);
+    for (int axis = 0; axis < 3; ++axis) out[3][axis] = translation[static_cast<size_t>(axis)];
+    return out;
+}
+
 }  // namespace petzval

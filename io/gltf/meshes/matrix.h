@@ -2,6 +2,7 @@
 // What a node's matrix does to space.
 #pragma once
 
+#include <array>
 #include <cmath>
 
 #include "core/math/math.h"
@@ -19,5 +20,19 @@ namespace petzval {
 [[nodiscard]] inline V3d row(const M44d& m, int axis) {
     return {m[axis][0], m[axis][1], m[axis][2]};
 }
+
+/// Rotation by a quaternion (x, y, z, w) of any length; none for the length 0. Rows are the images
+/// of the axes.
+[[nodiscard]] M44d rotation_matrix(const std::array<double, 4>&);
+
+/// Place of a node in its parent's space, in three parts.
+struct NodePlace {
+    std::array<double, 3> translation{0, 0, 0};
+    std::array<double, 4> rotation{0, 0, 0, 1};  ///< quaternion (x, y, z, w)
+    std::array<double, 3> scale{1, 1, 1};
+
+    /// Scaled, then turned, then moved; for row vectors.
+    [[nodiscard]] M44d matrix() const;
+};
 
 }  // namespace petzval

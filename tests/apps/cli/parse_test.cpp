@@ -57,7 +57,7 @@ TEST(Parse, OtherValuesTakeTheirUnits) {
               (std::vector<float>{0, 1.5f, 0.3f, -0.002f, 0, 0.3048f}));
     EXPECT_THROW((void)parse_numbers("--background", "1m,1,1", 3), CLI::ValidationError);
     for (const char* text : {"0.01", "1/100", "1/100s", "10ms", "10 ms"})
-        EXPECT_FLOAT_EQ(parse_shutter_s("--shutter", text), 0.01f) << text;
+        EXPECT_FLOAT_EQ(parse_shutter_s("--shutter", text, 24), 0.01f) << text;
     EXPECT_EQ(parse_share("--tolerance", "1 %"), 0.01);
     for (const char* text : {"8GB", "8gb", "8 GB", "8000mb"})
         EXPECT_EQ(parse_memory_bytes("--max-memory", text), 8'000'000'000u) << text;

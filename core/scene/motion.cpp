@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/scene/motion.h"
+
+#include <type_traits>
+
+namespace petzval {
+namespace {
+
+V3f between(const V3f& a, const V3f& b, float share) {
+    return a * (1.f - share) + b * share;
+}
+
+V3f direction_between(const V3f& a, const V3f& b, float share) {
+    const V3f sum = between(a, b, share);
+    const float length2 = sum.dot(sum);
+    return length2 > 0.f ? sum / std::sqrt(length2) : a;
+}
+
+// Inverse of the linear part of a matrix, by its cofactors in double.
+M33f inverse_linear(const M44f& m) {
+    const V3d x(m[0][0], m[0][1], m[0][2]), y(m[1][0], m[1][1], m[1][2]),
+        z(m[2][0], m[2][1], m[2][2]);
+    const V3d a = y.cross(z), b = z.cross(x), c = x.cross(y);
+    const double scale = 1 / x.dot(a);
+    M33f inverse;
+    for (int i = 0; i < 3; ++i) {
+        inverse[i][0] = static_cast<float>(a[i] * scale);
+        inverse[i][1] = static_cast<float>(b[i] * scale);
+        inverse[i][2] = static_cast<float>(c[i] * scale);
+    }
+    return inverse;
+}
+
+struct Between {
+    float share;
+
+    template <class L>
+    Light operator()(const L& a, const L& b) const {
+        L out = a;
+        if constexpr (requires { out.position; })
+            out.position = between(a.position, b.position, share);
+        if constexpr (requires { out.direction; })
+            out.direction = direction_between(a.direction, b.direction, share);
+        if constexpr (std::is_same_v<L, ProfileLight>) {
+            out.x = direction_between(a.x, b.x, share);
+            out.y = direction_between(a.y, b.y, share);
+            out.f = direction_between(a.f, b.f, share);
+        }
+        return out;
+    }
+    template <class A, class B>
+    requires(!std::is_same_v<A, B>) Light operator()(const A& a, const B&) const {
+        return a;  // the steps of a light are of one kind
+    }
+};
+
+}  // namespace
+
+Instance moved_instance(const Scene& scene, uint32_t instance, float time) {
+    Instance out = scene.instances[instance];
+    const auto& steps = scene.motions[static_cast<size_t>(scene.motion_of[instance])].to_world;
+    const StepPlace at = step_place(time, steps.size());
+    const M44f &a = steps[at.before], &b = steps[at.before + 1];
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < 3; ++j)
+            out.to_world[i][j] = a[i][j] * (1.f - at.share) + b[i][j] * at.share;
+    out.to_local = inverse_linear(out.to_world);
+    return out;
+}
+
+CornerValues moved_corners(const Mesh& mesh, const std::array<uint32_t, 3>& corner,
+                           std::vector<V3f> MeshStep::*of, float time) {
+    const StepPlace at = step_place(time, mesh.steps.size());
+    const std::vector<V3f>&a = mesh.steps[at.before].*of, &b = mesh.steps[at.before + 1].*of;
+    CornerValues out;
+    for (size_t i = 0; i < 3; ++i) out[i] = between(a[corner[i]], b[corner[i]], at.share);
+    return out;
+}
+
+V4f tangent_at(const Mesh& mesh, uint32_t triangle, V2f b, float time) {
+    const auto& corner = mesh.triangles[triangle];
+    if (mesh.steps.empty()) return interpolate(mesh.tangents, corner, b);
+    const StepPlace at = step_place(time, mesh.steps.size());
+    return interpolate(mesh.steps[at.before].tangents, corner, b) * (1.f - at.share) +
+           interpolate(mesh.steps[at.before + 1].tangents, corner, b) * at.share;
+}
+
+size_t step_count(const Scene& scene, uint32_t instance) {
+    const Instance& i = scene.instances[instance];
+    size_t count = std::max<size_t>(1, scene.meshes[i.mesh].steps.size());
+    if (i.moves)
+        count = std::max(
+            count, scene.motions[static_cast<size_t>(scene.motion_of[instance])].to_world.size());
+    return count;
+}
+
+const Light& light_at(const Scene& scene, uint32_t light, float time, Light& moved) {
+    const Light& still = scene.lights[light];
+    if (light >= scene.light_motion_of.size() || scene.light_motion_of[light] < 0) return still;
+    const auto& steps = scene.light_motions[static_cast<size_t>(scene.light_motion_of[light])];
+    const StepPlace at = step_place(time, steps.size());
+    moved = std::visit(Between{at.share}, steps[at.before], steps[at.before + 1]);
+    return moved;
+}
+
+bool has_motion(const Scene& scene) {
+    return !scene.motions.empty() || !scene.light_motions.empty() ||
+           std::any_of(scene.meshes.begin(), scene.meshes.end(),
+                       [](const Mesh& mesh) { return !mesh.steps.empty(); });
+}
+
+}  // namespace petzval

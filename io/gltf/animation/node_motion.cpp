@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/gltf/animation/node_motion.h"
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
+#include "io/gltf/meshes/matrix.h"
+
+namespace petzval {
+namespace {
+
+using nlohmann::json;
+
+constexpr size_t kMostSegments = 128;  // Embree takes 129 steps at most
+constexpr double kMostBytes = 0x1p30;
+/// Share of a body's extent that points may be off between time steps.
+constexpr double kTolerance = 1e-3;
+
+/// Keys of a property with the clip that has them.
+struct Track {
+    const Keyframes* keys = nullptr;
+    const GltfClip* clip = nullptr;
+    int element = -1;  ///< of a list; -1: the whole of it
+};
+
+struct Tracks {
+    Track translation, rotation, scale;
+    std::vector<Track> weights;
+
+    [[nodiscard]] bool moves() const { return translation.keys || rotation.keys || scale.keys; }
+};
+
+/// Parts of "/nodes/3/weights/1": kind, index, name, element.
+struct Target {
+    std::string kind, name;
+    int index = -1, element = -1;
+};
+
+std::optional<Target> target_in(const std::string& pointer) {
+    const auto path = json::json_pointer(pointer);
+    std::vector<std::string> words;
+    for (auto at = path; !at.empty(); at.pop_back()) words.insert(words.begin(), at.back());
+    if (words.size() < 3 || (words[0] != "nodes" && words[0] != "meshes")) return std::nullopt;
+    const auto number = [](const std::string& text) {
+        int value = -1;
+        std::from_chars(text.data(), text.data() + text.size(), value);
+        return value;
+    };
+    return Target{words[0], words[2], number(words[1]), words.size() > 3 ? number(words[3]) : -1};
+}
+
+std::vector<double> list(const json& owner, const char* key) {
+    return owner.contains(key) ? owner[key].get<std::vector<double>>() : std::vector<double>();
+}
+
+template <size_t N>
+void take(const json& node, const char* key, std::array<double, N>& to) {
+    if (const auto values = list(node, key); values.size() == N)
+        std::copy(values.begin(), values.end(), to.begin());
+}
+
+/// The tracks of a file, sorted by what they move.
+class Collection {
+  public:
+    Collection(const json& posed, std::span<const GltfClip> clips) : posed_(posed) {
+        for (const GltfClip& clip : clips)
+            for (const AnimatedProperty& property : clip.properties) add(clip, property);
+    }
+
+    std::map<int, Tracks> of_nodes, of_meshes;
+
+  private:
+    void add(const GltfClip& clip, const AnimatedProperty& property) {
+        const auto target = target_in(property.pointer);
+        if (!target) return;
+        Tracks& tracks = (target->kind == "nodes" ? of_nodes : of_meshes)[target->index];
+        const Track track{&property.keys, &clip, target->element};
+        if (target->name == "translation") tracks.translation = track;
+        if (target->name == "rotation") tracks.rotation = track;
+        if (target->name == "scale") tracks.scale = track;
+        if (target->name == "weights") tracks.weights.push_back(track);
+    }
+
+    const json& posed_;
+};
+
+size_t segments_for(size_t moving_nodes) {
+    size_t segments = kMostSegments;
+    while (segments > 2 && double(segments) * double(moving_nodes) * sizeof(M44d) > kMostBytes)
+        segments /= 2;
+    return segments;
+}
+
+double most_second_difference(const std::vector<std::vector<V3d>>& at) {
+    double most = 0;
+    for (size_t i = 1; i + 1 < at.size(); ++i)
+        for (size_t k = 0; k < at[i].size(); ++k)
+            most = std::max(most, (at[i - 1][k] - at[i][k] * 2. + at[i + 1][k]).length());
+    return most;
+}
+
+/// Coarsest stride at which off(step, before, after, share) stays within a bound.
+template <class Off>
+Thinning coarsest(size_t steps, double bound, Off off) {
+    Thinning out;
+    for (size_t stride = steps - 1; stride >= 1; stride /= 2) {
+        double most = 0;
+        for (size_t i = 0; i < steps; ++i) {
+            const size_t before = std::min(i / stride * stride, steps - 1 - stride);
+            most = std::max(most,
+                            off(i, before, before + stride, double(i - before) / double(stride)));
+            if (most > bound) break;
+        }
+        out.stride = stride;
+        out.off_m = most;
+        if (most <= bound) break;
+    }
+    return out;
+}
+
+}  // namespace
+
+NodeMotion::NodeMotion(const json& posed, std::span<const GltfClip> clips,
+                       const AnimationChoice& choice, std::span<const M44d> to_world) {
+    if (!(choice.open_s > 0) || clips.empty()) return;
+    const Collection tracks(posed, clips);
+    const json none = json::array();
+    const json& nodes = posed.contains("nodes") ? posed["nodes"] : none;
+
+    // Nodes that move come after their parents.
+    std::vector<int> parent(nodes.size(), -1);
+    for (size_t i = 0; i < nodes.size(); ++i)
+        for (const double child : list(nodes[i], "children"))
+            parent[static_cast<size_t>(child)] = static_cast<int>(i);
+    std::vector<int> order, open;
+    for (size_t i = 0; i < nodes.size(); ++i)
+        if (parent[i] < 0) open.push_back(static_cast<int>(i));
+    std::vector<bool> moving(nodes.size(), false);
+    while (!open.empty()) {
+        const int i = open.back();
+        open.pop_back();
+        const auto at = tracks.of_nodes.find(i);
+        const int up = parent[static_cast<size_t>(i)];
+        if ((at != tracks.of_nodes.end() && at->second.moves()) ||
+            (up >= 0 && moving[static_cast<size_t>(up)])) {
+            moving[static_cast<size_t>(i)] = true;
+            order.push_back(i);
+        }
+        for (const double child : list(nodes[static_cast<size_t>(i)], "children"))
+            open.push_back(static_cast<int>(child));
+    }
+    steps_ = segments_for(order.size()) + 1;
+
+    const auto values_at = [&](const Track& track, size_t step) {
+        const double share = double(step) / double(steps_ - 1) - 0.5;
+        const double time_s = choice.time_s + share * choice.open_s;
+        return track.keys->at(track.clip->local_s(time_s, choice.time_s, choice.repeats));
+    };
+    for (const int i : order) {
+        const auto index = static_cast<size_t>(i);
+        const json& node = nodes[index];
+        const int up = parent[index];
+        const std::vector<M44d>* const above = up >= 0 ? places(up) : nullptr;
+        const M44d parent_place = up >= 0 ? to_world[static_cast<size_t>(up)] : M44d();
+        const auto at = tracks.of_nodes.find(i);
+        NodePlace local;
+        take(node, "translation", local.translation);
+        take(node, "rotation", local.rotation);
+        take(node, "scale", local.scale);
+        M44d matrix = local.matrix();
+        if (const auto m = list(node, "matrix"); m.size() == 16)
+            std::copy(m.begin(), m.end(), &matrix[0][0]);
+        std::vector<M44d> all(steps_);
+        for (size_t step = 0; step < steps_; ++step) {
+            if (at != tracks.of_nodes.end() && at->second.moves()) {
+                const auto play = [&](const Track& track, auto& to) {
+                    if (!track.keys) return;
+                    const auto values = values_at(track, step);
+                    std::copy_n(values.begin(), to.size(), to.begin());
+                };
+                play(at->second.translation, local.translation);
+                play(at->second.rotation, local.rotation);
+                play(at->second.scale, local.scale);
+                matrix = local.matrix();
+            }
+            all[step] = matrix * (above ? (*above)[step] : parent_place);
+        }
+        if (std::any_of(all.begin(), all.end(), [&](const M44d& m) { return m != all[0]; }))
+            places_.emplace(i, std::move(all));
+    }
+
+    for (size_t i = 0; i < nodes.size(); ++i) {
+        if (!nodes[i].contains("mesh")) continue;
+        const int mesh = nodes[i]["mesh"].get<int>();
+        const auto of_node = tracks.of_nodes.find(static_cast<int>(i));
+        const auto of_mesh = tracks.of_meshes.find(mesh);
+        const bool own = of_node != tracks.of_nodes.end() && !of_node->second.weights.empty();
+        const bool stored = nodes[i].contains("weights");  // they go before those of the mesh
+        if (!own && (stored || of_mesh == tracks.of_meshes.end())) continue;
+        const std::vector<Track>& played = own ? of_node->second.weights : of_mesh->second.weights;
+        const std::vector<double> middle =
+            list(stored ? nodes[i] : posed["meshes"][static_cast<size_t>(mesh)], "weights");
+        std::vector<std::vector<double>> all(steps_, middle);
+        for (size_t step = 0; step < steps_; ++step)
+            for (const Track& track : played) {
+                const auto values = values_at(track, step);
+                if (track.element < 0)
+                    all[step] = values;
+                else if (static_cast<size_t>(track.element) < all[step].size())
+                    all[step][static_cast<size_t>(track.element)] = values[0];
+            }
+        if (std::any_of(all.begin(), all.end(), [&](const auto& w) { return w != all[0]; }))
+            weights_.emplace(static_cast<int>(i), std::move(all));
+    }
+}
+
+const std::vector<M44d>* NodeMotion::places(int node) const {
+    const auto at = places_.find(node);
+    return at == places_.end() ? nullptr : &at->second;
+}
+
+const std::vector<std::vector<double>>* NodeMotion::weights(int node) const {
+    const auto at = weights_.find(node);
+    return at == weights_.end() ? nullptr : &at->second;
+}
+
+Thinning Thinning::operator|(const Thinning& o) const {
+    return {std::min(stride, o.stride), std::max(off_m, o.off_m), std::max(size_m, o.size_m)};
+}
+
+Thinning thin(std::span<const M44d> to_world, std::span<const V3d> points) {
+    std::vector<std::vector<V3d>> at(to_world.size());
+    for (size_t i = 0; i < at.size(); ++i)
+        for (const V3d& p : points) at[i].push_back(p * to_world[i]);
+    Imath::Box<V3d> box;
+    for (const V3d& p : at[at.size() / 2]) box.extendBy(p);
+    const double size_m = box.isEmpty() ? 0 : box.size().length();
+    Thinning out = coarsest(
+        at.size(), kTolerance * size_m, [&](size_t i, size_t before, size_t after, double share) {
+            double most = 0;
+            for (size_t k = 0; k < points.size(); ++k)
+                most = std::max(
+                    most, (at[i][k] - at[before][k] * (1 - share) - at[after][k] * share).length());
+            return most;
+        });
+    out.off_m += most_second_difference(at);
+    out.size_m = size_m;
+    return out;
+}
+
+Thinning thin(std::span<const std::vector<double>> weights, std::span<const double> sizes_m,
+              double size_m) {
+    const size_t count = std::min(sizes_m.size(), weights[0].size());
+    const auto off = [&](size_t i, size_t before, size_t after, double share) {
+        double sum = 0;
+        for (size_t k = 0; k < count; ++k)
+            sum += sizes_m[k] * std::fabs(weights[i][k] - weights[before][k] * (1 - share) -
+                                          weights[after][k] * share);
+        return sum;
+    };
+    Thinning out = coarsest(weights.size(), kTolerance * size_m, off);
+    double bend = 0;
+    for (size_t i = 1; i + 1 < weights.size(); ++i)
+        bend = std::max(bend, 2 * off(i, i - 1, i + 1, 0.5));
+    out.off_m += bend;
+    out.size_m = size_m;
+    return out;
+}
+
+}  // namespace petzval

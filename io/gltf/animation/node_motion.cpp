@@ -60,17 +60,15 @@ void take(const json& node, const char* key, std::array<double, N>& to) {
         std::copy(values.begin(), values.end(), to.begin());
 }
 
-/// The tracks of a file, sorted by what they move.
-class Collection {
-  public:
-    Collection(const json& posed, std::span<const GltfClip> clips) : posed_(posed) {
+/// The tracks of a file, by what they move.
+struct Collection {
+    std::map<int, Tracks> of_nodes, of_meshes;
+
+    explicit Collection(std::span<const GltfClip> clips) {
         for (const GltfClip& clip : clips)
             for (const AnimatedProperty& property : clip.properties) add(clip, property);
     }
 
-    std::map<int, Tracks> of_nodes, of_meshes;
-
-  private:
     void add(const GltfClip& clip, const AnimatedProperty& property) {
         const auto target = target_in(property.pointer);
         if (!target) return;
@@ -82,8 +80,68 @@ class Collection {
         if (target->name == "weights") tracks.weights.push_back(track);
     }
 
-    const json& posed_;
+    /// Tracks that place a node; nullptr where it is not moved by itself.
+    [[nodiscard]] const Tracks* placing(int node) const {
+        const auto at = of_nodes.find(node);
+        return at != of_nodes.end() && at->second.moves() ? &at->second : nullptr;
+    }
+    /// Tracks of the morph weights that a node shows: its own, else those of its mesh, where the
+    /// node stores none that go before.
+    [[nodiscard]] std::span<const Track> weighing(int index, const json& node) const {
+        const auto own = of_nodes.find(index);
+        if (own != of_nodes.end() && !own->second.weights.empty()) return own->second.weights;
+        if (node.contains("weights")) return {};
+        const auto of_mesh = of_meshes.find(node["mesh"].get<int>());
+        return of_mesh == of_meshes.end() ? std::span<const Track>() : of_mesh->second.weights;
+    }
 };
+
+/// The nodes of a file as a tree.
+struct Tree {
+    const json& nodes;
+    std::vector<int> parent;  ///< -1: a root
+
+    explicit Tree(const json& list_of_nodes)
+        : nodes(list_of_nodes), parent(list_of_nodes.size(), -1) {
+        for (size_t i = 0; i < nodes.size(); ++i)
+            for (const double child : list(nodes[i], "children"))
+                parent[static_cast<size_t>(child)] = static_cast<int>(i);
+    }
+
+    /// Nodes that tracks move, or that hang on one of these; each after its parent.
+    [[nodiscard]] std::vector<int> moving(const Collection& tracks) const {
+        std::vector<int> order, open;
+        for (size_t i = 0; i < nodes.size(); ++i)
+            if (parent[i] < 0) open.push_back(static_cast<int>(i));
+        std::vector<bool> moves(nodes.size(), false);
+        while (!open.empty()) {
+            const int i = open.back();
+            const auto index = static_cast<size_t>(i);
+            open.pop_back();
+            moves[index] = tracks.placing(i) != nullptr ||
+                           (parent[index] >= 0 && moves[static_cast<size_t>(parent[index])]);
+            if (moves[index]) order.push_back(i);
+            for (const double child : list(nodes[index], "children"))
+                open.push_back(static_cast<int>(child));
+        }
+        return order;
+    }
+};
+
+NodePlace stored_place(const json& node) {
+    NodePlace place;
+    take(node, "translation", place.translation);
+    take(node, "rotation", place.rotation);
+    take(node, "scale", place.scale);
+    return place;
+}
+
+M44d stored_matrix(const json& node) {
+    M44d matrix = stored_place(node).matrix();
+    if (const auto m = list(node, "matrix"); m.size() == 16)
+        std::copy(m.begin(), m.end(), &matrix[0][0]);
+    return matrix;
+}
 
 size_t segments_for(size_t moving_nodes) {
     size_t segments = kMostSegments;
@@ -123,95 +181,64 @@ Thinning coarsest(size_t steps, double bound, Off off) {
 
 NodeMotion::NodeMotion(const json& posed, std::span<const GltfClip> clips,
                        const AnimationChoice& choice, std::span<const M44d> to_world) {
-    if (!(choice.open_s > 0) || clips.empty()) return;
-    const Collection tracks(posed, clips);
-    const json none = json::array();
-    const json& nodes = posed.contains("nodes") ? posed["nodes"] : none;
-
-    // Nodes that move come after their parents.
-    std::vector<int> parent(nodes.size(), -1);
-    for (size_t i = 0; i < nodes.size(); ++i)
-        for (const double child : list(nodes[i], "children"))
-            parent[static_cast<size_t>(child)] = static_cast<int>(i);
-    std::vector<int> order, open;
-    for (size_t i = 0; i < nodes.size(); ++i)
-        if (parent[i] < 0) open.push_back(static_cast<int>(i));
-    std::vector<bool> moving(nodes.size(), false);
-    while (!open.empty()) {
-        const int i = open.back();
-        open.pop_back();
-        const auto at = tracks.of_nodes.find(i);
-        const int up = parent[static_cast<size_t>(i)];
-        if ((at != tracks.of_nodes.end() && at->second.moves()) ||
-            (up >= 0 && moving[static_cast<size_t>(up)])) {
-            moving[static_cast<size_t>(i)] = true;
-            order.push_back(i);
-        }
-        for (const double child : list(nodes[static_cast<size_t>(i)], "children"))
-            open.push_back(static_cast<int>(child));
-    }
-    steps_ = segments_for(order.size()) + 1;
-
+    if (!(choice.open_s > 0) || clips.empty() || !posed.contains("nodes")) return;
+    const Collection tracks(clips);
+    const Tree tree(posed["nodes"]);
+    const std::vector<int> moving = tree.moving(tracks);
+    steps_ = segments_for(moving.size()) + 1;
     const auto values_at = [&](const Track& track, size_t step) {
         const double share = double(step) / double(steps_ - 1) - 0.5;
         const double time_s = choice.time_s + share * choice.open_s;
         return track.keys->at(track.clip->local_s(time_s, choice.time_s, choice.repeats));
     };
-    for (const int i : order) {
-        const auto index = static_cast<size_t>(i);
-        const json& node = nodes[index];
-        const int up = parent[index];
+    const auto changes = [](const auto& all) {
+        return std::any_of(all.begin(), all.end(), [&](const auto& one) { return one != all[0]; });
+    };
+
+    for (const int i : moving) {
+        const json& node = tree.nodes[static_cast<size_t>(i)];
+        const int up = tree.parent[static_cast<size_t>(i)];
         const std::vector<M44d>* const above = up >= 0 ? places(up) : nullptr;
-        const M44d parent_place = up >= 0 ? to_world[static_cast<size_t>(up)] : M44d();
-        const auto at = tracks.of_nodes.find(i);
-        NodePlace local;
-        take(node, "translation", local.translation);
-        take(node, "rotation", local.rotation);
-        take(node, "scale", local.scale);
-        M44d matrix = local.matrix();
-        if (const auto m = list(node, "matrix"); m.size() == 16)
-            std::copy(m.begin(), m.end(), &matrix[0][0]);
+        const M44d still_above = up >= 0 ? to_world[static_cast<size_t>(up)] : M44d();
+        const Tracks* const own = tracks.placing(i);
+        NodePlace local = stored_place(node);
+        M44d matrix = stored_matrix(node);
         std::vector<M44d> all(steps_);
         for (size_t step = 0; step < steps_; ++step) {
-            if (at != tracks.of_nodes.end() && at->second.moves()) {
-                const auto play = [&](const Track& track, auto& to) {
-                    if (!track.keys) return;
-                    const auto values = values_at(track, step);
-                    std::copy_n(values.begin(), to.size(), to.begin());
-                };
-                play(at->second.translation, local.translation);
-                play(at->second.rotation, local.rotation);
-                play(at->second.scale, local.scale);
+            const auto play = [&](const Track& track, auto& to) {
+                if (!track.keys) return;
+                const auto values = values_at(track, step);
+                std::copy_n(values.begin(), to.size(), to.begin());
+            };
+            if (own) {
+                play(own->translation, local.translation);
+                play(own->rotation, local.rotation);
+                play(own->scale, local.scale);
                 matrix = local.matrix();
             }
-            all[step] = matrix * (above ? (*above)[step] : parent_place);
+            all[step] = matrix * (above ? (*above)[step] : still_above);
         }
-        if (std::any_of(all.begin(), all.end(), [&](const M44d& m) { return m != all[0]; }))
-            places_.emplace(i, std::move(all));
+        if (changes(all)) places_.emplace(i, std::move(all));
     }
 
-    for (size_t i = 0; i < nodes.size(); ++i) {
-        if (!nodes[i].contains("mesh")) continue;
-        const int mesh = nodes[i]["mesh"].get<int>();
-        const auto of_node = tracks.of_nodes.find(static_cast<int>(i));
-        const auto of_mesh = tracks.of_meshes.find(mesh);
-        const bool own = of_node != tracks.of_nodes.end() && !of_node->second.weights.empty();
-        const bool stored = nodes[i].contains("weights");  // they go before those of the mesh
-        if (!own && (stored || of_mesh == tracks.of_meshes.end())) continue;
-        const std::vector<Track>& played = own ? of_node->second.weights : of_mesh->second.weights;
-        const std::vector<double> middle =
-            list(stored ? nodes[i] : posed["meshes"][static_cast<size_t>(mesh)], "weights");
-        std::vector<std::vector<double>> all(steps_, middle);
+    for (size_t i = 0; i < tree.nodes.size(); ++i) {
+        const json& node = tree.nodes[i];
+        if (!node.contains("mesh")) continue;
+        const auto played = tracks.weighing(static_cast<int>(i), node);
+        if (played.empty()) continue;
+        const json& mesh = posed["meshes"][node["mesh"].get<size_t>()];
+        std::vector<std::vector<double>> all(
+            steps_, list(node.contains("weights") ? node : mesh, "weights"));
         for (size_t step = 0; step < steps_; ++step)
             for (const Track& track : played) {
                 const auto values = values_at(track, step);
+                const auto element = static_cast<size_t>(track.element);
                 if (track.element < 0)
                     all[step] = values;
-                else if (static_cast<size_t>(track.element) < all[step].size())
-                    all[step][static_cast<size_t>(track.element)] = values[0];
+                else if (element < all[step].size())
+                    all[step][element] = values[0];
             }
-        if (std::any_of(all.begin(), all.end(), [&](const auto& w) { return w != all[0]; }))
-            weights_.emplace(static_cast<int>(i), std::move(all));
+        if (changes(all)) weights_.emplace(static_cast<int>(i), std::move(all));
     }
 }
 

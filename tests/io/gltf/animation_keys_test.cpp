@@ -160,6 +160,19 @@ TEST(AnimationKeys, AKeyOfNoLengthTurnsNothing) {
     EXPECT_NEAR(p.length(), 1, 1e-6);
 }
 
+TEST(AnimationKeys, RotationsComeOutWithALengthOfOne) {
+    Keyframes keys;
+    keys.times_s = {0, 1};
+    keys.width = 4;
+    keys.rotation = true;
+    keys.interpolation = Interpolation::CubicSpline;
+    keys.values = {0, 0, 0, 0, 0, 0, 0, 1, 1, 2, 0, 0, 0, 3, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0};
+    for (const double time : {-1., 0., 0.3, 0.5, 1., 2.}) {
+        const std::vector<double> q = keys.at(time);
+        EXPECT_NEAR(std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3])), 1, 1e-15) << time;
+    }
+}
+
 TEST(AnimationKeys, HalfATurnIsTurned) {
     AnimatedGltf file = probe();
     file.add_channel(node_target(0, "rotation"), {0, 1}, "VEC4", {0, 0, 0, 1, 0, 1, 0, 0});

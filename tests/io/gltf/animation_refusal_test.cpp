@@ -221,6 +221,20 @@ TEST(AnimationRefusal, ASplineBeyondTheRangeOfAFloatIsRefused) {
     EXPECT_TRUE(has(text, "/nodes/0/translation"));
 }
 
+TEST(AnimationRefusal, ACameraBeyondTheRangeOfAFloatIsRefused) {
+    AnimatedGltf file = moving();
+    file.add("cameras", {{"type", "orthographic"},
+                         {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"zfar", 9}, {"znear", 0}}}});
+    file.add_root({{"camera", 0}});
+    channel_of(file)["target"] = pointer_target("/cameras/0/orthographic/xmag");
+    sampler_of(file)["interpolation"] = "CUBICSPLINE";
+    sampler_of(file)["input"] = file.add_accessor<float>("SCALAR", {0, 1e6f});
+    sampler_of(file)["output"] =
+        file.add_accessor<float>("SCALAR", {0, 1, std::numeric_limits<float>::max(), 0, 1, 0});
+    const std::string text = refusal([&] { (void)load_at(file, moment(3e5, {"wrong"})); });
+    EXPECT_TRUE(has(text, "/cameras/0/orthographic/xmag"));
+}
+
 TEST(AnimationRefusal, TimesFarAwayAreTimes) {
     const AnimatedGltf file = moving();
     EXPECT_FLOAT_EQ(load_at(file, 1e6 + 0.5).scene.meshes.at(0).positions.at(0).x, 0.5f);

@@ -45,13 +45,16 @@ struct Decoder {
     };
     const auto lens = [](const fs::path& path) { (void)load_lens(path.string()); };
     const auto picture = [](const fs::path& path) { (void)read_picture(path); };
-    const auto load_with_strokes = [](const fs::path& path) {
+    const auto load_with_more = [](const fs::path& path) {
         PictureBudget pictures;
         (void)load_gltf(path, FileScope::Anywhere, pictures,
-                        {.scene = {}, .variant = {}, .point_line_radius_m = 0.1f});
+                        {.scene = {},
+                         .variant = {},
+                         .point_line_radius_m = 0.1f,
+                         .animation = AnimationChoice{0.5, {}, true}});
     };
     static const std::map<std::string, Decoder> all = {
-        {"gltf", {".gltf", load_with_strokes}},
+        {"gltf", {".gltf", load_with_more}},
         {"glb", {".glb", [](const fs::path& path) { (void)load_gltf(path); }}},
         {"draco", codec(decodes_draco)},
         {"meshopt", codec(decodes_meshopt)},

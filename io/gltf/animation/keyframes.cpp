@@ -9,23 +9,31 @@ namespace {
 
 using Values = std::span<const double>;
 
-void normalise(std::span<double> quaternion) {
+double length_of(Values quaternion) {
     double sum = 0;
     for (const double x : quaternion) sum += x * x;
-    if (!(sum > 0)) return;
-    for (double& x : quaternion) x /= std::sqrt(sum);
+    return std::sqrt(sum);
 }
 
-// Spherical linear interpolation, Shoemake 1985, as glTF 2.0, appendix C.4 has it.
+void normalise(std::span<double> quaternion) {
+    const double length = length_of(quaternion);
+    if (!(length > 0)) return;
+    for (double& x : quaternion) x /= length;
+}
+
+// Spherical linear interpolation, Shoemake 1985, as glTF 2.0, appendix C.4 has it. Keys that are
+// stored as integers have not quite unit length.
 void slerp(Values a, Values b, double u, std::span<double> out) {
+    const auto one_over = [](double length) { return length > 0 ? 1 / length : 0; };
+    const double to_a = one_over(length_of(a)), to_b = one_over(length_of(b));
     double dot = 0;
-    for (size_t k = 0; k < out.size(); ++k) dot += a[k] * b[k];
+    for (size_t k = 0; k < out.size(); ++k) dot += a[k] * to_a * b[k] * to_b;
     const double sign = dot < 0 ? -1 : 1, angle = std::acos(std::min(std::fabs(dot), 1.));
     // Below this angle the sines are as their arguments, to the precision of a double.
     const bool tiny = angle < 1e-8;
     const double of_a = tiny ? 1 - u : std::sin(angle * (1 - u)) / std::sin(angle);
     const double of_b = tiny ? u : std::sin(angle * u) / std::sin(angle);
-    for (size_t k = 0; k < out.size(); ++k) out[k] = of_a * a[k] + sign * of_b * b[k];
+    for (size_t k = 0; k < out.size(); ++k) out[k] = of_a * to_a * a[k] + sign * of_b * to_b * b[k];
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "io/base/ascii.h"
 #include "io/base/error.h"
@@ -15,6 +16,16 @@ namespace petzval {
 namespace {
 
 using nlohmann::json;
+
+/// Greatest number of morph targets of a mesh, or of the mesh of a node; 0 for anything else.
+size_t target_count(const json& root, const json& owner) {
+    const json& mesh = owner.contains("mesh") ? root["meshes"][owner["mesh"].get<size_t>()] : owner;
+    size_t most = 0;
+    if (mesh.contains("primitives"))
+        for (const json& primitive : mesh["primitives"])
+            if (primitive.contains("targets")) most = std::max(most, primitive["targets"].size());
+    return most;
+}
 
 /// Reads one animation, whose parts may be wrong.
 class ClipReader {
@@ -43,42 +54,58 @@ class ClipReader {
         const bool has_node = target.index("node", check_.count("nodes"), "node").has_value();
         if (target.text("path") != "pointer" && !has_node) return;  // for extensions: glTF 2.0, 5.4
         const std::string pointer = target_of(channel.value());
-        const auto kind = property_kind(pointer);
-        if (!kind || !stands(pointer)) {
+        const auto kind = kind_of(pointer);
+        if (!kind) {
             check_.warn(target, fmt::format("animates {}, which Petzval does not read or which is "
                                             "not there; it stays as the file stores it",
                                             pointer.empty() ? "nothing" : printable(pointer)));
             return;
         }
-        AnimatedProperty property{pointer, read_keys(samplers_[sampler], *kind)};
         const auto same = [&](const auto& one) { return one.pointer == pointer; };
         if (std::ranges::any_of(clip.properties, same)) {
             check_.warn(target, "animates what an earlier channel does; that one is taken");
             return;
         }
-        clip.properties.push_back(std::move(property));
+        clip.properties.push_back({pointer, read_keys(samplers_[sampler], *kind)});
     }
 
-    // Whether all is there that a pointer leads through. Its last word may have a default.
-    [[nodiscard]] bool stands(const std::string& pointer) const {
-        json::json_pointer at;
+    // Kind of the property that a pointer leads to, weights counted; nothing where all that it
+    // leads through is not there. Its last word may have a default.
+    [[nodiscard]] std::optional<PropertyKind> kind_of(const std::string& pointer) {
+        auto kind = property_kind(pointer);
+        if (!kind) return std::nullopt;
         try {
-            at = json::json_pointer(pointer).parent_pointer();
-        } catch (const json::exception&) {
-            return false;
-        }
-        const json& root = check_.root.value();
-        if (at.back() == "pbrMetallicRoughness") at.pop_back();
-        if (!root.contains(at)) return false;
-        const json& owner = root[at];
-        if (owner.is_object()) {
+            const json& root = check_.source.json;
+            const json::json_pointer whole(pointer);
+            json::json_pointer at = whole.parent_pointer();
+            if (at.back() == "weights") write_out_weights(at);
+            if (at.back() == "pbrMetallicRoughness") at.pop_back();
+            if (!root.contains(at)) return std::nullopt;
+            const json& owner = root[at];
+            if (!owner.is_object() && !root.contains(whole)) return std::nullopt;
             // A node has a matrix or is animated: glTF 2.0, section 3.5.3.
-            const std::string name = json::json_pointer(pointer).back();
+            const std::string& name = whole.back();
             const bool moves = name == "translation" || name == "rotation" || name == "scale";
-            return !(moves && pointer.starts_with("/nodes/") && owner.contains("matrix"));
+            if (moves && pointer.starts_with("/nodes/") && owner.contains("matrix"))
+                return std::nullopt;
+            if (kind->width == 0) kind->width = target_count(root, owner);
+        } catch (const json::exception&) {  // no pointer, or an index beyond all numbers
+            return std::nullopt;
         }
-        const std::string index = json::json_pointer(pointer).back();
-        return owner.is_array() && index.size() < 9 && std::stoul(index) < owner.size();
+        if (kind->width == 0) return std::nullopt;
+        return kind;
+    }
+
+    // Weights that have their default: 0, or at a node those of its mesh. One of them may move.
+    void write_out_weights(const json::json_pointer& weights) {
+        json& root = check_.source.json;
+        if (!root.contains(weights.parent_pointer())) return;
+        json& owner = root[weights.parent_pointer()];
+        const size_t count = target_count(root, owner);
+        if (count == 0 || owner.contains("weights")) return;
+        json mesh = json::object();
+        if (owner.contains("mesh")) mesh = root["meshes"][owner["mesh"].get<size_t>()];
+        owner["weights"] = mesh.value("weights", json(std::vector<double>(count)));
     }
 
     [[nodiscard]] static Interpolation interpolation_of(const JsonCursor& sampler) {
@@ -98,17 +125,24 @@ class ClipReader {
         keys.rotation = kind.quaternion;
         const GltfAccessor& input = accessor(sampler, "input");
         if (input.components != 1) sampler.fail("input", "must be an accessor of SCALAR");
-        keys.times_s = read_numbers(input);
+        keys.times_s = numbers_of(input, sampler);
         check_times(sampler, keys.times_s);
         const GltfAccessor& output = accessor(sampler, "output");
-        keys.values = read_numbers(output);
+        keys.width = kind.width;
+        const auto components = static_cast<size_t>(output.components);
+        if (components != 1 && components != keys.width)  // numbers of keys would be mixed
+            sampler.fail("output", fmt::format("is an accessor of {}, not of {} numbers",
+                                               printable(output.type), kind.width));
+        keys.values = numbers_of(output, sampler);
         const size_t parts = keys.interpolation == Interpolation::CubicSpline ? 3 : 1;
-        const size_t rows = keys.times_s.size() * parts;
-        keys.width = kind.width > 0 ? kind.width : keys.values.size() / rows;
-        if (keys.width == 0 || keys.values.size() < rows * keys.width)
-            sampler.fail("output",
-                         fmt::format("holds {} numbers; {} keys need {}", keys.values.size(),
-                                     keys.times_s.size(), rows * std::max<size_t>(keys.width, 1)));
+        const size_t needed = keys.times_s.size() * parts * keys.width;
+        if (keys.values.size() < needed)
+            sampler.fail("output", fmt::format("holds {} numbers; {} keys need {}",
+                                               keys.values.size(), keys.times_s.size(), needed));
+        if (keys.values.size() > needed)
+            check_.warn(sampler, fmt::format("holds {} numbers in output, but {} keys need {}; "
+                                             "those behind are not used",
+                                             keys.values.size(), keys.times_s.size(), needed));
         const auto bad = std::ranges::find_if(keys.values, [](double x) {
             return !(std::fabs(x) <= std::numeric_limits<float>::max());
         });
@@ -116,6 +150,16 @@ class ClipReader {
             sampler.fail("output", fmt::format("number {} is not finite",
                                                std::distance(keys.values.begin(), bad)));
         return keys;
+    }
+
+    // A file may play the same few bytes at thousands of nodes.
+    [[nodiscard]] std::vector<double> numbers_of(const GltfAccessor& from,
+                                                 const JsonCursor& sampler) {
+        constexpr uint64_t kMostCounted = uint64_t(1) << 40;
+        check_.budget.ask(std::min(from.count, kMostCounted) *
+                              static_cast<uint64_t>(from.components) * sizeof(double),
+                          sampler);
+        return read_numbers(from);
     }
 
     static void check_times(const JsonCursor& sampler, const std::vector<double>& times_s) {
@@ -166,7 +210,8 @@ void check_animations(GltfCheck& check) {
     for (const size_t index : check.played)
         check.source.clips.push_back(ClipReader(check, animations[index]).run());
     for (size_t i = 0; i < animations.size(); ++i) try {
-            check_references(check, animations[i]);
+            if (std::ranges::find(check.played, i) == check.played.end())
+                check_references(check, animations[i]);
         } catch (const InputError&) {
             check.warn(animations[i], "is broken; it cannot be played");
         }

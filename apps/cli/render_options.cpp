@@ -84,6 +84,11 @@ void add_output_options(CLI::App& app, RenderOptions& o) {
         "once")
         ->allow_extra_args(false);
     add("--stats", o.stats, "write counts and times to this JSON file");
+    app.add_option("--frames", o.frames,
+                   "render these frames of --fps, as 1:48 or 1:48:2; #### in the names of the "
+                   "files becomes their number")
+        ->group("Time")
+        ->excludes(app.get_option("--at"));
     add_choice<ProgressStyle>(app, "--progress", o.progress,
                               {{"auto", ProgressStyle::Auto},
                                {"bar", ProgressStyle::Bar},

@@ -49,6 +49,7 @@ struct RenderOptions {
     bool auto_exposure = false;
     ProgressStyle progress = ProgressStyle::Auto;
     bool quiet = false;
+    std::string frames;  ///< of a sequence; empty: one picture
 };
 
 /// Values from the texts of RenderOptions that have no place elsewhere.

@@ -34,7 +34,12 @@ double parse_time_s(const std::string& option, const std::string& text, double f
 }
 
 std::optional<AnimationChoice> TimeOptions::animation() const {
-    if (at.empty()) return std::nullopt;
+    if (at.empty()) {
+        if (!animations.empty() || no_loop)
+            throw CLI::ValidationError(animations.empty() ? "--no-loop" : "--animation",
+                                       "needs a time: --at 1s");
+        return std::nullopt;
+    }
     return AnimationChoice{parse_time_s("--at", at, fps), animations, !no_loop};
 }
 
@@ -68,7 +73,7 @@ ShutterCurve parse_shutter_curve(const std::string& option, const std::string& t
 
 void add_time_options(CLI::App& app, TimeOptions& o) {
     const auto group = [](CLI::Option* option) { return option->group("Time"); };
-    auto* at = group(app.add_option(
+    group(app.add_option(
         "--at", o.at,
         "moment of the file's animations: 1.25s, 40ms, frame:30 (default: the pose that the file "
         "stores)"));
@@ -77,11 +82,9 @@ void add_time_options(CLI::App& app, TimeOptions& o) {
     group(app.add_option("--animation", o.animations,
                          "animation that is played, by name or number; may be given again "
                          "(default: all that do not contradict an earlier one)"))
-        ->needs(at)
         ->allow_extra_args(false);
     group(app.add_flag("--no-loop", o.no_loop,
-                       "an animation stays as it ends (default: it begins anew)"))
-        ->needs(at);
+                       "an animation stays as it ends (default: it begins anew)"));
 }
 
 }  // namespace petzval

@@ -6,8 +6,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
+#include <set>
 
 #include "apps/cli/display_options.h"
+#include "apps/cli/frames.h"
 #include "apps/cli/render_options.h"
 #include "apps/commands/session.h"
 #include "apps/plan/plan.h"
@@ -181,14 +183,21 @@ int write_all(const RenderOptions& o, const RenderSetup& setup, const Film& film
     return stopped ? kStopped : kSuccess;
 }
 
-int render_command(RenderOptions& o, Session& session) {
+/// Settings that the first frame of a sequence found, and that hold for all.
+struct Found {
+    CameraReport camera;
+    bool framed = false;  ///< the camera, to show the scene
+    float exposure_ev = 0;
+};
+
+/// Renders one picture; `found` gets what it chose. The exit code.
+int render_one(RenderOptions& o, const Notice& notice, Session& session, Found& found) {
     const RenderFrame frame = resolve(o);
     check_outputs(o, frame.crop);
 
     flush_denormals();
     TbbExecutor executor(o.threads);
     limit_picture_threads(o.threads);
-    const Notice notice = [&](const std::string& text) { session.console.notice(text); };
     for (const std::string& remark : frame.remarks) notice(remark);
     Progress progress(o.quiet ? ProgressStyle::None : o.progress, session.console,
                       session.interrupt.monitor(), goal_of(o.job, frame.crop));
@@ -200,7 +209,57 @@ int render_command(RenderOptions& o, Session& session) {
     Film film(o.scene.size, frame.crop, frame.aovs, o.scene.spectral.bins);
     const Rendered rendered = render_watched(o, setup, film, executor, session, progress);
     report_bad_samples(film, notice);
-    return write_all(o, setup, film, rendered, executor, notice, session, progress);
+    const int code = write_all(o, setup, film, rendered, executor, notice, session, progress);
+    found = {setup.from.camera, setup.prepared.cameras->empty() && !o.scene.camera.look_at,
+             setup.from.exposure_ev};
+    if (o.scene.reuse) give_back(*o.scene.reuse, std::move(setup.prepared));
+    return code;
+}
+
+// Makes what the first frame found hold for the others: else the view, the focus and the brightness
+// would jump from frame to frame.
+void hold(const Found& found, RenderOptions& o) {
+    const CameraReport& camera = found.camera;
+    if (found.framed)
+        o.camera.look_at =
+            fmt::format("{},{}", with_commas(camera.eye), with_commas(camera.target));
+    const bool has_focus = camera.lens_radius_m > 0 && camera.focus_m > 0;
+    if (has_focus && (o.camera.focus.empty() || o.camera.focus == "auto"))
+        o.camera.focus = fmt::format("{}", camera.focus_m);
+    if (o.exposure == "auto") o.exposure = fmt::format("{}", found.exposure_ev);
+}
+
+/// Renders the frames of a sequence, each as --at would. The exit code is that of the first frame
+/// that fails, which ends the sequence.
+int render_frames(const RenderOptions& asked, const Notice& notice, Session& session) {
+    const std::vector<int> frames = parse_frames("--frames", asked.frames);
+    const bool several = frames.size() > 1;
+    RenderOptions all = asked;
+    all.scene.reuse = std::make_shared<FrameReuse>();
+    std::set<std::string> said;
+    const Notice once = [&](const std::string& text) {
+        if (said.insert(text).second) notice(text);
+    };
+    for (size_t i = 0; i < frames.size(); ++i) {
+        RenderOptions one = all;
+        one.reading.time.at = fmt::format("frame:{}", frames[i]);
+        for (auto& output : one.outputs) output = name_of_frame("-o", output, frames[i], several);
+        if (one.stats) one.stats = name_of_frame("--stats", *one.stats, frames[i], several);
+        if (several) notice(fmt::format("frame {}, {} of {}", frames[i], i + 1, frames.size()));
+        session.interrupt.monitor().pixel_samples_done = 0;
+        Found found;
+        const int code = render_one(one, once, session, found);
+        if (code != kSuccess) return code;
+        if (i == 0) hold(found, all);
+    }
+    return kSuccess;
+}
+
+int render_command(RenderOptions& o, Session& session) {
+    const Notice notice = [&](const std::string& text) { session.console.notice(text); };
+    if (!o.frames.empty()) return render_frames(o, notice, session);
+    Found found;
+    return render_one(o, notice, session, found);
 }
 
 }  // namespace

@@ -107,11 +107,27 @@ bool same_scene(const SceneRequest& a, const SceneRequest& b) {
            a.environment_strength == b.environment_strength && same(a.background, b.background);
 }
 
+GltfFile load_file(const SceneRequest& request, PictureBudget& pictures) {
+    if (!request.reuse) return load_gltf(request.scene, request.scope, pictures, request.choices);
+    auto& reader = request.reuse->reader;
+    if (!reader)
+        reader = std::make_unique<GltfReader>(request.scene, request.scope, request.choices);
+    return reader->load(pictures,
+                        request.choices.animation ? request.choices.animation->time_s : 0);
+}
+
+// The sky that is asked for; of a sequence, that of the frame before.
+Sky sky_of_frame(const SceneRequest& request, const Notice& notice, PictureBudget& pictures) {
+    if (request.reuse && request.reuse->environment)
+        return *std::exchange(request.reuse->environment, std::nullopt);
+    return sky_of(request, notice, pictures);
+}
+
 // The scene with its sky, not yet its BVH and lights.
 PreparedScene load(SceneRequest request, const Notice& notice) {
     PreparedScene out;
     if (request.picture_memory_bytes) out.pictures = PictureBudget(*request.picture_memory_bytes);
-    GltfFile file = load_gltf(request.scene, request.scope, out.pictures, request.choices);
+    GltfFile file = load_file(request, out.pictures);
     out.files = input_files(file, request.scene);
     refuse_overwriting(request.outputs, out.files);
     for (const std::string& warning : file.warnings) notice("warning: " + warning);
@@ -122,7 +138,7 @@ PreparedScene load(SceneRequest request, const Notice& notice) {
     add_missing_light(request, *scene, notice);
     out.environment = request.environment;
     if (request.environment || request.background)  // instead of the file's own
-        scene->sky = sky_of(request, notice, out.pictures);
+        scene->sky = sky_of_frame(request, notice, out.pictures);
     finish_scene(*scene);
     if (scene->instances.empty())
         notice("warning: the scene is empty: only its background is rendered");
@@ -204,6 +220,15 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
 }
 
 }  // namespace
+
+void give_back(FrameReuse& reuse, PreparedScene&& prepared) {
+    // It was made as a scene that may change (load()), and nobody sees it any more.
+    const auto scene = std::const_pointer_cast<Scene>(std::move(prepared.scene));
+    prepared.bvh.reset();
+    prepared.lights.reset();
+    if (reuse.reader) reuse.reader->give_back(std::move(scene->images));
+    if (prepared.environment) reuse.environment = std::move(scene->sky);
+}
 
 RenderSetup set_up_render(const SceneRequest& asked, const Notice& notice,
                           const PhaseSink& begins) {

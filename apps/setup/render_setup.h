@@ -36,6 +36,15 @@ struct PreparedScene {
     std::vector<LostLight> lost_light;  ///< that no path finds
 };
 
+/// What the frames of a sequence have from those before them.
+struct FrameReuse {
+    std::unique_ptr<GltfReader> reader;
+    std::optional<Sky> environment;
+};
+
+/// Takes from a frame that is done with what serves the next one. Nobody else may use its scene.
+void give_back(FrameReuse&, PreparedScene&&);
+
 /// Camera and observer of a prepared scene.
 struct View {
     std::unique_ptr<Camera> camera;

@@ -11,42 +11,77 @@
 
 namespace petzval {
 
-namespace {
+struct GltfReader::Impl {
+    std::string name;
+    GltfChoices choices;
+    GltfSource source;
+    nlohmann::json stored;  ///< the JSON as the file has it, where it is posed
+    DecodedImages decoded;
+    std::vector<GltfTextures::Origin> origins;  ///< of the images of the last scene
+};
 
-GltfFile load(const std::filesystem::path& path, FileScope scope, PictureBudget& pictures,
-              const GltfChoices& choices) {
-    const GltfSource source = read_gltf_source(path, scope, choices.animation);
-    const tinygltf::Model model = parse_model(source);
-    const std::string name = path.string();
-    const GltfModel gltf{source, model, name};
-
-    GltfFile file;
-    GltfTally tally;
-    const GltfNodes nodes = flatten_nodes(gltf, choices.scene);
-    NodeMotion motion;
-    if (choices.animation)
-        motion = NodeMotion(source.json, source.clips, *choices.animation, nodes.to_world);
-    GltfMaterials materials(gltf, file.scene, tally, pictures);
-    place_meshes(gltf, nodes, motion, GltfVariant(gltf, choices.variant), materials, file.scene,
-                 tally, choices.point_line_radius_m);
-    const std::vector<BallLamp> lamps = read_lights(gltf, nodes, motion, file.scene, tally);
-    read_profile_lights(gltf, nodes, motion, file.scene, tally);
-    if (auto sky = read_image_light(gltf, nodes, tally, pictures)) file.scene.sky = *std::move(sky);
-    file.cameras = read_cameras(gltf, nodes, motion, tally);
-
-    file.hash = source.hash;
-    file.files = source.files;
-    file.warnings = source.warnings.lines();
-    describe(gltf, tally, choices.animation, file);
-    add_lamps(file.scene, lamps);
-    return file;
+GltfReader::GltfReader(const std::filesystem::path& path, FileScope scope,
+                       const GltfChoices& choices)
+    : impl_(std::make_unique<Impl>()) {
+    naming_file(path.string(), [&] {
+        impl_->name = path.string();
+        impl_->choices = choices;
+        impl_->source = read_gltf_source(path, scope, choices.animation);
+        if (choices.animation) impl_->stored = impl_->source.json;
+    });
 }
 
-}  // namespace
+GltfReader::~GltfReader() = default;
+
+GltfFile GltfReader::load(PictureBudget& pictures, double time_s) {
+    Impl& d = *impl_;
+    std::optional<AnimationChoice>& animation = d.choices.animation;
+    return naming_file(d.name, [&] {
+        if (animation) {
+            animation->time_s = time_s;
+            d.source.json = d.stored;
+            pose_source(d.source, *animation);
+        }
+        const tinygltf::Model model = parse_model(d.source);
+        const GltfModel gltf{d.source, model, d.name};
+
+        GltfFile file;
+        GltfTally tally;
+        const GltfNodes nodes = flatten_nodes(gltf, d.choices.scene);
+        NodeMotion motion;
+        if (animation)
+            motion = NodeMotion(d.source.json, d.source.clips, *animation, nodes.to_world);
+        GltfMaterials materials(gltf, file.scene, tally, pictures, d.decoded);
+        place_meshes(gltf, nodes, motion, GltfVariant(gltf, d.choices.variant), materials,
+                     file.scene, tally, d.choices.point_line_radius_m);
+        d.origins = materials.textures().origins();
+        const std::vector<BallLamp> lamps = read_lights(gltf, nodes, motion, file.scene, tally);
+        read_profile_lights(gltf, nodes, motion, file.scene, tally);
+        if (auto sky = read_image_light(gltf, nodes, tally, pictures))
+            file.scene.sky = *std::move(sky);
+        file.cameras = read_cameras(gltf, nodes, motion, tally);
+
+        file.hash = d.source.hash;
+        file.files = d.source.files;
+        file.warnings = d.source.warnings.lines();
+        describe(gltf, tally, animation, file);
+        add_lamps(file.scene, lamps);
+        return file;
+    });
+}
+
+void GltfReader::give_back(std::vector<Image>&& images) {
+    Impl& d = *impl_;
+    for (size_t i = 0; i < std::min(images.size(), d.origins.size()); ++i)
+        d.decoded.images[d.origins[i].number] = {std::move(images[i]),
+                                                 std::move(d.origins[i].remarks)};
+    d.origins.clear();
+}
 
 GltfFile load_gltf(const std::filesystem::path& path, FileScope scope, PictureBudget& pictures,
                    const GltfChoices& choices) {
-    return naming_file(path.string(), [&] { return load(path, scope, pictures, choices); });
+    return GltfReader(path, scope, choices)
+        .load(pictures, choices.animation ? choices.animation->time_s : 0);
 }
 
 GltfFile load_gltf(const std::filesystem::path& path) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,6 +41,26 @@ struct GltfFile {
     std::vector<std::string> contents, honoured, ignored;
     std::vector<std::filesystem::path> files;  ///< those that were read; the first is the file
     uint64_t hash = 0;
+};
+
+/// A file that is loaded at one moment of its animations after another. It is read and checked
+/// once, and what is decoded of it can be given back for the next moment.
+class GltfReader {
+  public:
+    /// Reads the file. Throws InputError, and ArgumentError where it has not what is chosen.
+    GltfReader(const std::filesystem::path&, FileScope, const GltfChoices&);
+    ~GltfReader();
+    GltfReader(const GltfReader&) = delete;
+    GltfReader& operator=(const GltfReader&) = delete;
+
+    /// Loads the scene at a time; the other choices are those of the constructor. As load_gltf().
+    [[nodiscard]] GltfFile load(PictureBudget&, double time_s);
+    /// Takes the images of the scene that was loaded last, which is done with.
+    void give_back(std::vector<Image>&& images);
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
 };
 
 /// Loads the scene that is chosen (else the default one, the first one, all root nodes). Throws

@@ -14,8 +14,7 @@ namespace petzval {
 
 /// Fills holds, contents, honoured, ignored and remarks, and appends one warning for each kind of
 /// trouble counted.
-void describe(const GltfModel&, const GltfTally&, const std::optional<AnimationChoice>&,
-              GltfFile&);
+void describe(const GltfModel&, const GltfTally&, const std::optional<AnimationChoice>&, GltfFile&);
 
 /// What becomes of an extension in one word: rendered, approximated, ignored or refused.
 [[nodiscard]] std::string word_of(const ExtensionInFile&);

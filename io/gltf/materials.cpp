@@ -49,11 +49,11 @@ Material core_factors(const tinygltf::Material& from) {
 }  // namespace
 
 GltfMaterials::GltfMaterials(const GltfModel& gltf, Scene& scene, GltfTally& tally,
-                             PictureBudget& pictures)
+                             PictureBudget& pictures, DecodedImages& decoded)
     : gltf_(gltf),
       scene_(scene),
       tally_(tally),
-      textures_(gltf, scene.images, tally, pictures),
+      textures_(gltf, scene.images, tally, pictures, decoded),
       spectral_(scene, tally),
       json_(JsonCursor(gltf.source.json, gltf.file).objects("materials")),
       used_(gltf.typed.materials.size() + 1) {}

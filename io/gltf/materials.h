@@ -14,7 +14,7 @@ namespace petzval {
 /// Converts materials as primitives ask for them, so that what no primitive uses is never read.
 class GltfMaterials {
   public:
-    GltfMaterials(const GltfModel&, Scene&, GltfTally&, PictureBudget&);
+    GltfMaterials(const GltfModel&, Scene&, GltfTally&, PictureBudget&, DecodedImages&);
 
     /// Index in the scene of a material of the file; of glTF's default material for -1.
     [[nodiscard]] uint32_t use(int material);
@@ -22,6 +22,8 @@ class GltfMaterials {
     [[nodiscard]] const std::vector<uint64_t>& more_sets(uint32_t of_scene) const {
         return more_sets_[of_scene];
     }
+
+    [[nodiscard]] const GltfTextures& textures() const { return textures_; }
 
   private:
     [[nodiscard]] Material read(size_t index);

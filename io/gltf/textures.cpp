@@ -74,14 +74,20 @@ std::string fault_of_normals(const Image& image) {
         mean[0], went_through);
 }
 
+uint64_t bytes_of(const Image& image) {
+    return std::visit([](const auto& texels) { return texels.size() * sizeof(texels[0]); },
+                      image.texels);
+}
+
 }  // namespace
 
 GltfTextures::GltfTextures(const GltfModel& gltf, std::vector<Image>& images, GltfTally& tally,
-                           PictureBudget& pictures)
+                           PictureBudget& pictures, DecodedImages& decoded)
     : gltf_(gltf),
       images_(images),
       tally_(tally),
       pictures_(pictures),
+      decoded_(decoded),
       used_(gltf.source.images.size()) {}
 
 TextureSlot GltfTextures::slot(const JsonCursor& parent, const char* key, Encoding encoding) {
@@ -166,8 +172,16 @@ int32_t GltfTextures::use_image(size_t image) {
     Used& used = used_.at(image);
     if (used.place >= 0) return used.place;
     const std::string place = json_path("images", image);
-    images_.push_back(
-        decode_image(gltf_.source.images[image], gltf_.file, place, pictures_, used.remarks));
+    if (const auto known = decoded_.images.find(image); known != decoded_.images.end()) {
+        images_.push_back(std::move(known->second.image));
+        (void)pictures_.take(bytes_of(images_.back()), 0);  // there was room when it was decoded
+        used.remarks = std::move(known->second.remarks);
+        decoded_.images.erase(known);
+    } else {
+        images_.push_back(
+            decode_image(gltf_.source.images[image], gltf_.file, place, pictures_, used.remarks));
+    }
+    origins_.push_back({image, used.remarks});
     const JsonCursor json(gltf_.source.json["images"][image], gltf_.file, place);
     const std::string uri = json.text_or("uri", "");
     images_.back().name = json.text_or("name", uri.starts_with("data:") ? "" : uri.c_str());

@@ -2,6 +2,7 @@
 // Texture slots of glTF materials, and the images behind them.
 #pragma once
 
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -14,14 +15,32 @@
 
 namespace petzval {
 
+/// Images of a file that are decoded already, by their number there.
+struct DecodedImages {
+    struct One {
+        Image image;
+        ColourRemarks remarks;
+    };
+    std::map<size_t, One> images;
+};
+
 /// Makes texture slots, and decodes an image when the first slot asks for it.
 class GltfTextures {
   public:
-    GltfTextures(const GltfModel&, std::vector<Image>& images, GltfTally&, PictureBudget&);
+    /// decoded: images that need not be decoded again; they are taken from there.
+    GltfTextures(const GltfModel&, std::vector<Image>& images, GltfTally&, PictureBudget&,
+                 DecodedImages& decoded);
 
     /// Texture slot from the textureInfo object at `key`, with KHR_texture_transform; a slot
     /// without a texture where there is none. Throws InputError where the image cannot be decoded.
     [[nodiscard]] TextureSlot slot(const JsonCursor& parent, const char* key, Encoding);
+    /// What was decoded, for when the images come back: of each image of the scene, its number in
+    /// the file and its remarks.
+    struct Origin {
+        size_t number;
+        ColourRemarks remarks;
+    };
+    [[nodiscard]] const std::vector<Origin>& origins() const { return origins_; }
     /// Numbers of the TEXCOORD_n that slots made since the last call have as their sets from 2 on.
     [[nodiscard]] std::vector<uint64_t> take_more_sets() { return std::exchange(more_sets_, {}); }
 
@@ -44,6 +63,8 @@ class GltfTextures {
     std::vector<Image>& images_;
     GltfTally& tally_;
     PictureBudget& pictures_;
+    DecodedImages& decoded_;
+    std::vector<Origin> origins_;  ///< by image of the scene
     std::vector<uint64_t> more_sets_;
     std::vector<Used> used_;  ///< by image of the file
 };

@@ -28,18 +28,6 @@ void check_scene_graph(GltfCheck& check) {
     check_nodes(check);
 }
 
-/// Makes the JSON that of the time that is shown, and checks it once more: values between keys may
-/// leave the range of a property, and are clamped as those of a file are.
-void pose_at(GltfCheck& check, const AnimationChoice& choice) {
-    GltfSource& source = check.source;
-    pose(source.json, source.clips, choice.time_s, choice.time_s, choice.repeats);
-    WarningLog said_before;
-    std::swap(said_before, source.warnings);
-    mend_gltf(source.json, source.warnings);
-    check_scene_graph(check);
-    std::swap(said_before, source.warnings);
-}
-
 /// A file as it lies on the disk. `chunks` views `file`.
 struct Opened {
     FileBytes file;
@@ -105,8 +93,22 @@ GltfSource read_gltf_source(const std::filesystem::path& path, FileScope scope,
     check_scene_graph(check);
     check_animations(check);
     check_data(check);
-    if (animation) pose_at(check, *animation);
     return source;
+}
+
+void pose_source(GltfSource& source, const AnimationChoice& choice) {
+    pose(source.json, source.clips, choice.time_s, choice.time_s, choice.repeats);
+    WarningLog said;  // of the file, not of a moment
+    std::swap(said, source.warnings);
+    mend_gltf(source.json, source.warnings);
+    const std::string name = source.path.string();
+    GltfBudget budget;
+    for (const auto& buffer : source.buffers) budget.add_owned(buffer.size());
+    GltfCheck check{source, JsonCursor(source.json, name), budget, {}, {}, {}};
+    check.use = find_used(source.json, {});
+    check_accessors(check);
+    check_scene_graph(check);
+    std::swap(said, source.warnings);
 }
 
 }  // namespace petzval

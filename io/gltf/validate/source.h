@@ -47,9 +47,14 @@ struct GltfSource {
 /// Reads a .gltf or .glb with everything it refers to, and checks it before anything else uses it:
 /// container, JSON (and its depth), version, required extensions, every index, every byte range,
 /// the node tree, counts against the sizes of the buffers. Throws InputError with file and JSON
-/// path. Where animations are chosen, the JSON is as they have it at their time.
+/// path. Where animations are chosen, they are decoded too.
 [[nodiscard]] GltfSource read_gltf_source(const std::filesystem::path&,
                                           FileScope = FileScope::Anywhere,
                                           const std::optional<AnimationChoice>& = {});
+
+/// Makes the JSON of a file say what its animations say at a moment, and checks it once more: values
+/// between keys may leave the range of a property, and are clamped as those of a file are. Throws
+/// InputError.
+void pose_source(GltfSource&, const AnimationChoice&);
 
 }  // namespace petzval

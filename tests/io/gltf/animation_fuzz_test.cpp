@@ -137,7 +137,7 @@ TEST(AnimationFuzz, PointersOfAnyWords) {
                                   "ior"};
     std::mt19937 random(20261124);
     int shown = 0;
-    constexpr int kFiles = 4000;
+    constexpr int kFiles = 1500;
     for (int i = 0; i < kFiles; ++i) {
         std::ostringstream pointer_text;
         // Most begin as those that lead somewhere.

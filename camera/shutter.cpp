@@ -45,17 +45,26 @@ float Shutter::time(float u) const {
     return std::min(lerp(a.time, b.time, s), kOneMinus);
 }
 
-void Shutter::move(Ray& ray) const {
-    if (from_middle_.empty()) return;
-    const double at = std::clamp(double(ray.time), 0., 1.) * double(from_middle_.size() - 1);
+M44d Shutter::moved(float time) const {
+    if (from_middle_.empty()) return {};
+    const double at = std::clamp(double(time), 0., 1.) * double(from_middle_.size() - 1);
     const auto before = std::min(static_cast<size_t>(at), from_middle_.size() - 2);
     const double share = at - double(before);
-    const M44d m = from_middle_[before] * (1 - share) + from_middle_[before + 1] * share;
+    return from_middle_[before] * (1 - share) + from_middle_[before + 1] * share;
+}
+
+void Shutter::move(Ray& ray) const {
+    if (from_middle_.empty()) return;
+    const M44d m = moved(ray.time);
     V3d origin, direction;
     m.multVecMatrix(V3d(ray.origin), origin);
     m.multDirMatrix(V3d(ray.direction), direction);
     ray.origin = V3f(origin);
     ray.direction = V3f(direction.normalized());
+}
+
+V3d Shutter::seen_from_middle(const V3f& p, float time) const {
+    return V3d(p) * moved(time).inverse();
 }
 
 }  // namespace petzval

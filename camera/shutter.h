@@ -38,8 +38,13 @@ class Shutter {
     [[nodiscard]] float time(float u) const;
     /// Moves a camera ray to where the camera stands at the ray's time.
     void move(Ray&) const;
+    /// What of a point of the world a camera that stands still in the middle would have to see, to
+    /// see what this one sees of the point at a time.
+    [[nodiscard]] V3d seen_from_middle(const V3f& p, float time) const;
 
   private:
+    [[nodiscard]] M44d moved(float time) const;
+
     ShutterCurve curve_;
     std::vector<float> reached_;     ///< share of the light up to each point of the curve
     std::vector<M44d> from_middle_;  ///< moves of the camera, at each step

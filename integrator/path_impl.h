@@ -210,6 +210,7 @@ inline void record_layers(const Surface& s, const ShadingInput& shading, Rgb emi
     const auto vector = [](Rgb c) { return V3f(c[0], c[1], c[2]); };
     const CoatedBsdf bsdf = shading.scatter(wo, bands);
     out.hit = true;
+    out.first = s.hit;
     layer(Aov::Albedo) =
         vector(s.material->unlit ? shading.unlit : reflectance_to_rgb(bsdf.albedo(), bands));
     layer(Aov::Normal) = shading.frame.z;
@@ -217,6 +218,7 @@ inline void record_layers(const Surface& s, const ShadingInput& shading, Rgb emi
     layer(Aov::Position) = s.p;
     layer(Aov::Uv) = V3f(s.uv[0].x, s.uv[0].y, 0);
     layer(Aov::Emission) = vector(emission);
+    layer(Aov::Velocity) = V3f(0.f);  // where nobody tells it
 }
 
 template <RayCaster Caster>

@@ -12,6 +12,7 @@
 #include "integrator/path.h"
 #include "integrator/render_job.h"
 #include "integrator/tiles.h"
+#include "integrator/velocity.h"
 
 namespace petzval {
 
@@ -157,6 +158,9 @@ void SampleBatch<Tracer>::trace(size_t i) {
     // Light that a lens keeps from the film is black, not transparent.
     sample.alpha = 1.f - behind / (seen.exposure * static_cast<float>(lane_count(bands.on)));
     sample.colour = to_rgb(sum, bands);
+    if (job_.velocity && sample.hit)
+        sample.aov[static_cast<size_t>(Aov::Velocity)] =
+            job_.velocity->at(sample.first, points_[i].film * V2f(frame_px_));
     sample.aov[static_cast<size_t>(Aov::Cost)] =
         V3f(static_cast<float>(stats_.vertices - vertices_before), 0, 0);
     if (film_->spectral())

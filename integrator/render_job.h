@@ -21,6 +21,8 @@ namespace petzval {
         .count();
 }
 
+class Velocity;
+
 struct RenderJob {
     uint32_t first_sample = 0, end_sample = 64;  ///< sample indices [first, end) of every pixel
     std::optional<double> time_limit_s;  ///< ends with the pass that reaches it, end_sample or not
@@ -31,6 +33,7 @@ struct RenderJob {
     int tile_size_px = 16;
     Observer observer;        ///< draws what the lanes carry
     uint32_t replicates = 1;  ///< kReplicates for a film with bins
+    const Velocity* velocity = nullptr;  ///< where that layer is wanted; must outlive the job
     bool timing = false;      ///< measure where the time goes, on a sixteenth of the samples
 };
 

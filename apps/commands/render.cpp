@@ -206,6 +206,11 @@ int render_one(RenderOptions& o, const Notice& notice, Session& session, Found& 
     choose_exposure(o, setup, executor, notice);
     o.path.visible_background = setup.view.visible_background;
     o.job.observer = setup.view.observer;
+    std::unique_ptr<NextFrame> next;
+    if (std::ranges::find(frame.aovs, Aov::Velocity) != frame.aovs.end()) {
+        next = set_up_velocity(setup, o.reading.time.fps);
+        o.job.velocity = next->velocity.get();
+    }
     Film film(o.scene.size, frame.crop, frame.aovs, o.scene.spectral.bins);
     const Rendered rendered = render_watched(o, setup, film, executor, session, progress);
     report_bad_samples(film, notice);

@@ -119,6 +119,8 @@ CameraSetup orthographic(const CameraContext& at, const GltfCamera& from) {
     // The picture's aspect wins over the file's; the height stays.
     setup.camera =
         std::make_unique<OrthographicCamera>(from.to_world, from.ymag_m * at.aspect(), from.ymag_m);
+    setup.finder =
+        std::make_unique<OrthographicCamera>(from.to_world, from.ymag_m * at.aspect(), from.ymag_m);
     setup.report.name = from.name;
     setup.report.orthographic = true;
     setup.report.eye = position(from.to_world);
@@ -145,6 +147,7 @@ CameraSetup with_lens(const CameraContext& at, const LoadedLens& loaded) {
     report.stop_radius_mm = lens.stop_radius_mm;
     report.lens_radius_m = static_cast<float>(loaded.focal_length_mm * 1e-3 / (2 * lens.fnumber));
     setup.camera = std::move(lens.camera);
+    setup.finder = viewfinder(loaded, to_world, report.focus_m);
     return setup;
 }
 
@@ -184,6 +187,7 @@ CameraSetup without_prescription(const CameraContext& at) {
         report.stop_radius_mm = 1e3 * thin.lens_radius_m;
     }
     setup.camera = std::move(thin.camera);
+    setup.finder = std::make_unique<ThinLensCamera>(pose);
     return setup;
 }
 
@@ -198,12 +202,19 @@ CameraSetup still_camera(const CameraContext& at) {
 std::shared_ptr<const Shutter> shutter_of(const CameraModel& model, const Scene& scene) {
     const bool moves = model.from && !model.from->steps.empty();
     if (!model.asked.shutter_curve || !(moves || has_motion(scene))) return nullptr;
-    const auto steps = moves ? std::span<const M44f>(model.from->steps) : std::span<const M44f>();
-    return std::make_shared<const Shutter>(*model.asked.shutter_curve, steps,
-                                           moves ? model.from->to_world : M44f());
+    return shutter_with(*model.asked.shutter_curve, model.from,
+                        model.from ? model.from->to_world : M44f());
 }
 
 }  // namespace
+
+std::shared_ptr<const Shutter> shutter_with(const ShutterCurve& curve, const GltfCamera* camera,
+                                            const M44f& in_the_middle) {
+    std::vector<M44f> steps;
+    if (camera) steps = camera->steps;
+    if (camera && steps.empty()) steps = {camera->to_world, camera->to_world};
+    return std::make_shared<const Shutter>(curve, steps, in_the_middle);
+}
 
 CameraSetup set_up_camera(const CameraModel& model, const std::string& scene_file, V2i size,
                           const Scene& scene, const Bvh& bvh, const Notice& notice) {

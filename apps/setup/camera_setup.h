@@ -13,8 +13,14 @@ namespace petzval {
 
 struct CameraSetup {
     std::unique_ptr<Camera> camera;
+    std::unique_ptr<Camera> finder;  ///< pictures the same with a narrow iris
     CameraReport report;
 };
+
+/// A shutter for a camera of a file, or for one that stands still (nullptr), whose rays start from
+/// in_the_middle: where the camera is in the middle of an exposure, maybe of another frame.
+[[nodiscard]] std::shared_ptr<const Shutter> shutter_with(const ShutterCurve&, const GltfCamera*,
+                                                          const M44f& in_the_middle);
 
 /// Camera of a model in a scene, which must be finished and in bvh; scene_file is its name, for
 /// errors. Whatever `notice` is told in the form of options gives the same camera when it is passed

@@ -203,6 +203,8 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
     CameraSetup camera =
         set_up_camera(model, request.scene.string(), request.size, scene, *prepared.bvh, notice);
     setup.view.camera = std::move(camera.camera);
+    setup.view.finder = std::move(camera.finder);
+    if (model.from) setup.view.of_file = static_cast<size_t>(model.from - prepared.cameras->data());
     if (prepared.lights->divides())
         prepared.lights = std::make_shared<const LightChoice>(
             taught_by_pilot(*prepared.lights, scene, *prepared.bvh, *setup.view.camera,
@@ -234,6 +236,40 @@ RenderSetup set_up_render(const SceneRequest& asked, const Notice& notice,
                           const PhaseSink& begins) {
     return naming_file(asked.scene.string(),
                        [&] { return set_up(asked, notice, begins, nullptr); });
+}
+
+std::unique_ptr<NextFrame> set_up_velocity(const RenderSetup& setup, double fps) {
+    const SceneRequest& asked = setup.from.asked;
+    const std::string file = asked.scene.string();
+    if (!asked.choices.animation)
+        throw ArgumentError(file, "", "--aov velocity needs a time: --at 1s or --frames 1:48");
+    GltfChoices choices = asked.choices;
+    choices.animation->time_s += 1 / fps;
+    PictureBudget pictures =
+        asked.picture_memory_bytes ? PictureBudget(*asked.picture_memory_bytes) : PictureBudget();
+    auto out = std::make_unique<NextFrame>();
+    out->file = load_gltf(asked.scene, asked.scope, pictures, choices);
+    const Scene &now = *setup.prepared.scene, &next = out->file.scene;
+    const auto triangles = [](const Scene& scene, size_t i) {
+        return scene.meshes[scene.instances[i].mesh].triangles.size();
+    };
+    bool same = now.instances.size() == next.instances.size() &&
+                setup.prepared.cameras->size() == out->file.cameras.size();
+    for (size_t i = 0; same && i < now.instances.size(); ++i)
+        same = triangles(now, i) == triangles(next, i);
+    if (!same)
+        throw ArgumentError(file, "",
+                            "--aov velocity: the next frame shows other meshes, so that nobody can "
+                            "tell how they move");
+    const auto curve = asked.camera.shutter_curve.value_or(ShutterCurve::box());
+    const auto& of_file = setup.view.of_file;
+    const GltfCamera* const before = of_file ? &(*setup.prepared.cameras)[*of_file] : nullptr;
+    const GltfCamera* const after = of_file ? &out->file.cameras[*of_file] : nullptr;
+    const M44f middle = before ? before->to_world : M44f();
+    out->velocity = std::make_unique<Velocity>(now, next, *setup.view.finder, asked.size,
+                                               shutter_with(curve, before, middle),
+                                               shutter_with(curve, after, middle));
+    return out;
 }
 
 RenderSetup set_up_view(const RenderSetup& like, const SceneRequest& asked, const Notice& notice) {

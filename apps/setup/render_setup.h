@@ -17,6 +17,7 @@
 #include "core/scene/scene.h"
 #include "core/traversal/bvh.h"
 #include "integrator/lost_light.h"
+#include "integrator/velocity.h"
 #include "io/base/notice.h"
 #include "io/gltf/gltf.h"
 
@@ -47,7 +48,8 @@ void give_back(FrameReuse&, PreparedScene&&);
 
 /// Camera and observer of a prepared scene.
 struct View {
-    std::unique_ptr<Camera> camera;
+    std::unique_ptr<Camera> camera, finder;  ///< finder: the same with a narrow iris
+    std::optional<size_t> of_file;           ///< the camera's index among those of the file
     Observer observer;
     std::optional<Rgb> visible_background;  ///< shown behind the scene in place of the environment
 };
@@ -77,6 +79,16 @@ struct RenderSetup {
 /// request does not fit the file.
 [[nodiscard]] RenderSetup set_up_render(const SceneRequest&, const Notice& notice,
                                         const PhaseSink& begins = {});
+
+/// The next frame of a setup, for the layer of velocities.
+struct NextFrame {
+    GltfFile file;
+    std::unique_ptr<Velocity> velocity;  ///< it points into the file and the setup
+};
+
+/// Loads the scene a frame later. Throws InputError, and ArgumentError where it has other meshes
+/// then, or nothing is played.
+[[nodiscard]] std::unique_ptr<NextFrame> set_up_velocity(const RenderSetup&, double fps);
 
 /// Another view of a scene that is set up already. What the request asks for in the same way is
 /// shared, and notices about it are not repeated; the rest is loaded anew.

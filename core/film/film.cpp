@@ -14,6 +14,7 @@ constexpr std::array<AovInfo, static_cast<size_t>(Aov::Count)> kAovs{{
     {"uv", {"uv.U", "uv.V", ""}, 2},
     {"emission", {"emission.R", "emission.G", "emission.B"}, 3},
     {"cost", {"cost.N", "", ""}, 1},
+    {"velocity", {"velocity.X", "velocity.Y", ""}, 2},
 }};
 
 // Fault of a sample: 0 where every number is finite, else NaN.

@@ -10,13 +10,13 @@
 #include <vector>
 
 #include "core/film/spectral_film.h"
-#include "core/math/math.h"
+#include "core/math/ray.h"
 #include "core/spectrum/bands.h"
 
 namespace petzval {
 
 /// Layers beside the picture (AOVs): values at the first surface that a sample sees.
-enum class Aov : uint8_t { Albedo, Normal, Depth, Position, Uv, Emission, Cost, Count };
+enum class Aov : uint8_t { Albedo, Normal, Depth, Position, Uv, Emission, Cost, Velocity, Count };
 
 /// Name and channels of a layer, as they stand in files and on the command line.
 struct AovInfo {
@@ -40,6 +40,7 @@ struct FilmSample {
     Rgb colour;
     float alpha = 0.f;
     bool hit = false;                                      ///< the layers below hold something
+    Hit first{};                                           ///< of the surface that they are of
     std::array<V3f, static_cast<size_t>(Aov::Count)> aov;  ///< unset where nothing was hit
 };
 

@@ -56,6 +56,13 @@ using CornerValues = std::array<V3f, 3>;
 /// Tangent at a point of a triangle at a time, of a mesh that has some; b as in interpolate().
 [[nodiscard]] V4f tangent_at(const Mesh&, uint32_t triangle, V2f b, float time);
 
+/// Point of a triangle at a time, in world space; b as in interpolate().
+[[nodiscard]] inline V3f point_at(const Scene& scene, uint32_t instance, uint32_t triangle, V2f b,
+                                  float time) {
+    const auto corner = triangle_corners(scene, instance, triangle, time);
+    return corner[0] * (1.f - b.x - b.y) + corner[1] * b.x + corner[2] * b.y;
+}
+
 /// Whether a triangle is elsewhere at other times.
 [[nodiscard]] inline bool is_moving(const Scene& scene, uint32_t instance) {
     const Instance& i = scene.instances[instance];

@@ -34,7 +34,7 @@ struct GltfSource {
     std::vector<ExtensionInFile> extensions;  ///< those that the file lists, by name
     /// Text of each light of EXT_lights_ies; empty for one that is not there.
     std::vector<std::vector<uint8_t>> light_profiles;
-    std::vector<GltfClip> clips;  ///< animations that are played
+    std::vector<GltfClip> clips;               ///< animations that are played
     WarningLog warnings;                       ///< one line each: odd, but no reason to refuse
     std::vector<std::filesystem::path> files;  ///< every file that was read, `path` first
     uint64_t hash = 0;  ///< FNV-1a of the scene file and of every file it names
@@ -52,9 +52,9 @@ struct GltfSource {
                                           FileScope = FileScope::Anywhere,
                                           const std::optional<AnimationChoice>& = {});
 
-/// Makes the JSON of a file say what its animations say at a moment, and checks it once more: values
-/// between keys may leave the range of a property, and are clamped as those of a file are. Throws
-/// InputError.
+/// Makes the JSON of a file say what its animations say at a moment, and checks it once more:
+/// values between keys may leave the range of a property, and are clamped as those of a file are.
+/// Throws InputError.
 void pose_source(GltfSource&, const AnimationChoice&);
 
 }  // namespace petzval

@@ -117,8 +117,9 @@ auto PathTracer<Caster>::draw_light(const LightReceiver& receiver, const Sampler
     const auto pick = lights_.pick(u.light_point.x, receiver);
     if (!pick) return std::nullopt;
     const V2f u_on_light(left_of_unit(pick->u, pick->probability, u.light_rest), u.light_point.y);
-    Light moved;
-    const Light& light = light_at(scene_, pick->light, time, moved);
+    std::optional<Light> moved;
+    const Light& light = scene_.light_motions.empty() ? scene_.lights[pick->light]
+                                                      : light_at(scene_, pick->light, time, moved);
     if (std::holds_alternative<SkyLight>(light)) {
         const Sky::Draw drawn = scene_.sky.sample(u_on_light);
         return DrawnLight{{drawn.direction, V3f(0.f), true, f4{}, 0.f, false},
@@ -144,7 +145,7 @@ f4 PathTracer<Caster>::light_on_smooth(const Scattering& at, const DrawnLight& d
     f4 sum{};
     if (!drawn.dark && drawn.sample.direction.dot(facing) > 0.f) sum += direct_light(at, drawn);
     const V3f smooth = s.p + s.lift;
-    Light moved;
+    std::optional<Light> moved;
     const Light& light = light_at(scene_, drawn.light, s.hit.time, moved);
     const auto again = sample_light(scene_, light, smooth, drawn.u, at.bands, s.hit.time);
     if (!again || !(again->direction.dot(facing) < 0.f && again->direction.dot(s.side) > 0.f))

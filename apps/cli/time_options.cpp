@@ -34,13 +34,13 @@ double parse_time_s(const std::string& option, const std::string& text, double f
 }
 
 std::optional<AnimationChoice> TimeOptions::animation() const {
-    if (at.empty()) {
+    if (!at) {
         if (!animations.empty() || no_loop)
             throw CLI::ValidationError(animations.empty() ? "--no-loop" : "--animation",
                                        "needs a time: --at 1s");
         return std::nullopt;
     }
-    return AnimationChoice{parse_time_s("--at", at, fps), animations, !no_loop};
+    return AnimationChoice{parse_time_s("--at", *at, fps), animations, !no_loop};
 }
 
 ShutterCurve parse_shutter_curve(const std::string& option, const std::string& text) {

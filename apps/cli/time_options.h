@@ -17,12 +17,12 @@ namespace petzval {
 
 /// Time options as given.
 struct TimeOptions {
-    std::string at;
+    std::optional<std::string> at;
     std::vector<std::string> animations;
     double fps = 24;
     bool no_loop = false;
 
-    [[nodiscard]] bool plays() const { return !at.empty(); }
+    [[nodiscard]] bool plays() const { return at.has_value(); }
     /// What is played; nothing where no time is given. Throws CLI::ValidationError.
     [[nodiscard]] std::optional<AnimationChoice> animation() const;
 };

@@ -77,10 +77,11 @@ V3f plane_error(const Scene& scene, const TriangleLight& light, const V3f& targe
     const V3f corners = abs(corner[0]) + abs(corner[1]) + abs(corner[2]) + abs(target);
     V3f error = (corners + abs(to_light)) * rounding_bound(8);
     const Instance& instance = scene.instances[light.instance];
-    if (instance.identity && scene.meshes[instance.mesh].steps.empty()) return error;
-    const M44f& m = instance.to_world;
-    if (!is_moving(scene, light.instance))
+    if (!instance.moves) [[likely]] {
+        if (instance.identity) return error;
+        const M44f& m = instance.to_world;
         return error + abs(V3f(m[3][0], m[3][1], m[3][2])) * rounding_bound(8);
+    }
     // Between steps a point may be near 0, and its roundings are those of the steps.
     return error + (abs(scene.bounds.min) + abs(scene.bounds.max)) * rounding_bound(16);
 }

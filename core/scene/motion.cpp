@@ -56,11 +56,10 @@ struct Between {
 
 }  // namespace
 
-Instance moved_instance(const Scene& scene, uint32_t instance, float time) {
-    Instance out = scene.instances[instance];
-    const auto& steps = scene.motions[static_cast<size_t>(scene.motion_of[instance])].to_world;
-    const StepPlace at = step_place(time, steps.size());
-    const M44f &a = steps[at.before], &b = steps[at.before + 1];
+Instance moved_instance(const Instance& still, const std::vector<M44f>& places, float time) {
+    Instance out = still;
+    const StepPlace at = step_place(time, places.size());
+    const M44f &a = places[at.before], &b = places[at.before + 1];
     for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 3; ++j)
             out.to_world[i][j] = a[i][j] * (1.f - at.share) + b[i][j] * at.share;
@@ -86,21 +85,15 @@ V4f tangent_at(const Mesh& mesh, uint32_t triangle, V2f b, float time) {
 }
 
 size_t step_count(const Scene& scene, uint32_t instance) {
-    const Instance& i = scene.instances[instance];
-    size_t count = std::max<size_t>(1, scene.meshes[i.mesh].steps.size());
-    if (i.moves)
-        count = std::max(
-            count, scene.motions[static_cast<size_t>(scene.motion_of[instance])].to_world.size());
-    return count;
+    const size_t shapes = scene.meshes[scene.instances[instance].mesh].steps.size();
+    const auto* const places = places_of(scene, instance);
+    return std::max({size_t{1}, shapes, places ? places->size() : 0});
 }
 
-const Light& light_at(const Scene& scene, uint32_t light, float time, Light& moved) {
-    const Light& still = scene.lights[light];
-    if (light >= scene.light_motion_of.size() || scene.light_motion_of[light] < 0) return still;
+Light moved_light(const Scene& scene, uint32_t light, float time) {
     const auto& steps = scene.light_motions[static_cast<size_t>(scene.light_motion_of[light])];
     const StepPlace at = step_place(time, steps.size());
-    moved = std::visit(Between{at.share}, steps[at.before], steps[at.before + 1]);
-    return moved;
+    return std::visit(Between{at.share}, steps[at.before], steps[at.before + 1]);
 }
 
 bool has_motion(const Scene& scene) {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "core/math/ray.h"
 #include "core/scene/scene.h"
@@ -24,34 +25,50 @@ struct StepPlace {
     return {before, at - static_cast<float>(before)};
 }
 
-/// Instance as it stands at a time, one that moves.
-[[nodiscard]] Instance moved_instance(const Scene&, uint32_t instance, float time);
+/// Places of an instance at the steps; nullptr for one that stands still.
+[[nodiscard]] inline const std::vector<M44f>* places_of(const Scene& scene, uint32_t instance) {
+    if (instance >= scene.motion_of.size() || scene.motion_of[instance] < 0) return nullptr;
+    return &scene.motions[static_cast<size_t>(scene.motion_of[instance])].to_world;
+}
+/// Instance as it stands at a time; places: those of one that moves.
+[[nodiscard]] Instance moved_instance(const Instance&, const std::vector<M44f>& places, float time);
 
 /// Calls visit(instance) with an instance as it stands at a time; returns what that returns.
 template <class Visit>
 decltype(auto) with_instance_at(const Scene& scene, uint32_t instance, float time, Visit&& visit) {
     const Instance& still = scene.instances[instance];
-    if (!still.moves) return visit(still);
-    return visit(moved_instance(scene, instance, time));
+    const auto* const places = still.moves ? places_of(scene, instance) : nullptr;
+    if (!places) return visit(still);
+    return visit(moved_instance(still, *places, time));
 }
 
 /// Values at the corners of a triangle of a mesh at a time; of: positions or normals.
 using CornerValues = std::array<V3f, 3>;
 [[nodiscard]] CornerValues moved_corners(const Mesh&, const std::array<uint32_t, 3>& corner,
                                          std::vector<V3f> MeshStep::*of, float time);
-[[nodiscard]] inline CornerValues corner_positions(const Mesh& mesh,
-                                                   const std::array<uint32_t, 3>& corner,
-                                                   float time) {
-    const auto& p = mesh.positions;
-    if (mesh.steps.empty()) return {p[corner[0]], p[corner[1]], p[corner[2]]};
-    return moved_corners(mesh, corner, &MeshStep::positions, time);
+/// The same as pointers: into the mesh, or into `moved` where it changes its shape. kStill: it is
+/// known not to, which saves the question.
+using CornerPointers = std::array<const V3f*, 3>;
+template <bool kStill = false>
+[[nodiscard]] CornerPointers corners_at(const Mesh& mesh, const std::array<uint32_t, 3>& corner,
+                                        const std::vector<V3f>& still,
+                                        std::vector<V3f> MeshStep::*of, float time,
+                                        CornerValues& moved) {
+    if (kStill || mesh.steps.empty())
+        return {&still[corner[0]], &still[corner[1]], &still[corner[2]]};
+    moved = moved_corners(mesh, corner, of, time);
+    return {&moved[0], &moved[1], &moved[2]};
 }
-[[nodiscard]] inline CornerValues corner_normals(const Mesh& mesh,
-                                                 const std::array<uint32_t, 3>& corner,
-                                                 float time) {
-    const auto& n = mesh.normals;
-    if (mesh.steps.empty()) return {n[corner[0]], n[corner[1]], n[corner[2]]};
-    return moved_corners(mesh, corner, &MeshStep::normals, time);
+template <bool kStill = false>
+[[nodiscard]] CornerPointers corner_positions(const Mesh& mesh,
+                                              const std::array<uint32_t, 3>& corner, float time,
+                                              CornerValues& moved) {
+    return corners_at<kStill>(mesh, corner, mesh.positions, &MeshStep::positions, time, moved);
+}
+template <bool kStill = false>
+[[nodiscard]] CornerPointers corner_normals(const Mesh& mesh, const std::array<uint32_t, 3>& corner,
+                                            float time, CornerValues& moved) {
+    return corners_at<kStill>(mesh, corner, mesh.normals, &MeshStep::normals, time, moved);
 }
 /// Tangent at a point of a triangle at a time, of a mesh that has some; b as in interpolate().
 [[nodiscard]] V4f tangent_at(const Mesh&, uint32_t triangle, V2f b, float time);
@@ -63,11 +80,6 @@ using CornerValues = std::array<V3f, 3>;
     return corner[0] * (1.f - b.x - b.y) + corner[1] * b.x + corner[2] * b.y;
 }
 
-/// Whether a triangle is elsewhere at other times.
-[[nodiscard]] inline bool is_moving(const Scene& scene, uint32_t instance) {
-    const Instance& i = scene.instances[instance];
-    return i.moves || !scene.meshes[i.mesh].steps.empty();
-}
 /// Number of steps at which an instance, or the shape of its mesh, is known; 1 where it is still.
 [[nodiscard]] size_t step_count(const Scene&, uint32_t instance);
 
@@ -76,8 +88,15 @@ using CornerValues = std::array<V3f, 3>;
     return static_cast<float>(step) / static_cast<float>(count - 1);
 }
 
+/// A light that moves, as it is at a time.
+[[nodiscard]] Light moved_light(const Scene&, uint32_t light, float time);
 /// A light as it is at a time; `moved` holds it where it moves.
-[[nodiscard]] const Light& light_at(const Scene&, uint32_t light, float time, Light& moved);
+[[nodiscard]] inline const Light& light_at(const Scene& scene, uint32_t light, float time,
+                                           std::optional<Light>& moved) {
+    if (light >= scene.light_motion_of.size() || scene.light_motion_of[light] < 0)
+        return scene.lights[light];
+    return moved.emplace(moved_light(scene, light, time));
+}
 
 /// Whether anything moves while the shutter is open.
 [[nodiscard]] bool has_motion(const Scene&);

@@ -52,9 +52,8 @@ void extend_bounds(Box3f& bounds, const Scene& scene, uint32_t index, const Box3
     const Instance& instance = scene.instances[index];
     const Mesh& mesh = scene.meshes[instance.mesh];
     if (instance.identity) return extend_box(bounds, mesh);
-    if (instance.moves) {  // between steps, corners run in straight lines
-        for (const M44f& m : scene.motions[static_cast<size_t>(scene.motion_of[index])].to_world)
-            bounds.extendBy(placed_box(of_mesh, m));
+    if (const auto* const places = places_of(scene, index)) {  // corners run straight between them
+        for (const M44f& m : *places) bounds.extendBy(placed_box(of_mesh, m));
         return;
     }
     // There may be millions of instances: most lie within the others.
@@ -76,6 +75,7 @@ void finish_scene(Scene& scene) {
     for (uint32_t i = 0; i < scene.instances.size(); ++i) {
         Instance& instance = scene.instances[i];
         const Mesh& mesh = scene.meshes[instance.mesh];
+        instance.moves |= !mesh.steps.empty();
         extend_bounds(scene.bounds, scene, i, boxes[instance.mesh]);
         if (!emits(scene, instance)) continue;
         instance.first_light = static_cast<int32_t>(scene.lights.size());
@@ -123,11 +123,17 @@ Box3f placed_box(const Box3f& box, const M44f& to_world) {
 
 std::array<V3f, 3> triangle_corners(const Scene& scene, uint32_t instance, uint32_t triangle,
                                     float time) {
+    const Instance& still = scene.instances[instance];
+    const Mesh& mesh = scene.meshes[still.mesh];
+    const auto& corner = mesh.triangles[triangle];
+    if (!still.moves) [[likely]]
+        return {placed(still, mesh.positions[corner[0]]), placed(still, mesh.positions[corner[1]]),
+                placed(still, mesh.positions[corner[2]])};
     return with_instance_at(scene, instance, time, [&](const Instance& placement) {
-        const Mesh& mesh = scene.meshes[placement.mesh];
-        CornerValues corners = corner_positions(mesh, mesh.triangles[triangle], time);
-        for (V3f& corner : corners) corner = placed(placement, corner);
-        return corners;
+        CornerValues moved;
+        const auto at = corner_positions(mesh, corner, time, moved);
+        return std::array<V3f, 3>{placed(placement, *at[0]), placed(placement, *at[1]),
+                                  placed(placement, *at[2])};
     });
 }
 

@@ -28,15 +28,15 @@ V3f transform_normal(const V3f& n, const M33f& to_local) {
 // those lie above it. Hanika 2021, "Hacking the Shadow Terminator", Ray Tracing Gems II, chapter 4.
 // Normals far from the triangle's are those of a hard edge that was smoothed by mistake, and mean
 // no surface. n: the triangle's, any length.
-V3f way_to_smooth(const CornerValues& positions, const CornerValues& normals, V2f u, const V3f& p,
-                  const V3f& n, bool front) {
+V3f way_to_smooth(const CornerPointers& positions, const CornerPointers& normals, V2f u,
+                  const V3f& p, const V3f& n, bool front) {
     constexpr float all = 0.766f, none = 0.643f;  // cosines of 40 and 50 degrees
     const float weight[3] = {1.f - u.x - u.y, u.x, u.y};
     const V3f triangle = n * (1.f / std::sqrt(n.dot(n)));
     V3f sum(0.f);
     for (size_t i = 0; i < 3; ++i) {
-        const V3f& normal = normals[i];
-        const float above = (p - positions[i]).dot(normal);
+        const V3f& normal = *normals[i];
+        const float above = (p - *positions[i]).dot(normal);
         if (front ? !(above < 0.f) : !(above > 0.f)) continue;
         const float share = clamp_unit((normal.dot(triangle) - none) / (all - none));
         sum -= normal * (above * weight[i] * share);
@@ -62,24 +62,26 @@ V3f motion_error(const Scene& scene, const Hit& hit) {
         extend(mesh.steps[before + 1].positions);
     }
     if (instance.identity) return reach * rounding_bound(6);
-    if (!instance.moves) return abs_transform(reach, instance.to_world) * rounding_bound(6);
-    const auto& steps = scene.motions[static_cast<size_t>(scene.motion_of[hit.instance])].to_world;
-    const size_t before = step_place(hit.time, steps.size()).before;
-    return (abs_transform(reach, steps[before]) + abs_transform(reach, steps[before + 1])) *
+    const auto* const places = places_of(scene, hit.instance);
+    if (!places) return abs_transform(reach, instance.to_world) * rounding_bound(6);
+    const size_t before = step_place(hit.time, places->size()).before;
+    return (abs_transform(reach, (*places)[before]) + abs_transform(reach, (*places)[before + 1])) *
            rounding_bound(8);
 }
 
-// Geometry of a hit of a mesh that is placed so.
-Surface surface_of(const Scene& scene, const Instance& placement, const V3f& direction,
-                   const Hit& hit) {
+// Geometry of a hit of a mesh that is placed so. kStill: neither it nor its mesh moves.
+template <bool kStill>
+[[gnu::always_inline]] inline Surface surface_of(const Scene& scene, const Instance& placement,
+                                                 const V3f& direction, const Hit& hit) {
     Surface s;
     s.hit = hit;
     s.instance = &scene.instances[hit.instance];
     s.mesh = &scene.meshes[s.instance->mesh];
     s.material = &scene.materials[s.mesh->material];
     const auto& corner = s.mesh->triangles[hit.triangle];
-    const CornerValues positions = corner_positions(*s.mesh, corner, hit.time);
-    const auto& [a, b, c] = positions;
+    CornerValues moved_positions, moved_normals;
+    const auto positions = corner_positions<kStill>(*s.mesh, corner, hit.time, moved_positions);
+    const V3f &a = *positions[0], &b = *positions[1], &c = *positions[2];
     const V2f u = hit.barycentric;
     const float w = 1.f - u.x - u.y;
     s.p = a * w + b * u.x + c * u.y;
@@ -87,11 +89,11 @@ Surface surface_of(const Scene& scene, const Instance& placement, const V3f& dir
     s.p_error = (abs(a) * std::fabs(w) + abs(b) * u.x + abs(c) * u.y) * rounding_bound(14);
     V3f n = (b - a).cross(c - a);
     const bool smooth = !s.mesh->normals.empty();
-    CornerValues normals;
+    CornerPointers normals;
     V3f ns = n;
     if (smooth) {
-        normals = corner_normals(*s.mesh, corner, hit.time);
-        ns = normals[0] * w + normals[1] * u.x + normals[2] * u.y;
+        normals = corner_normals<kStill>(*s.mesh, corner, hit.time, moved_normals);
+        ns = *normals[0] * w + *normals[1] * u.x + *normals[2] * u.y;
     }
     const V3f p_of_mesh = s.p, n_of_mesh = n;
     if (!placement.identity) {
@@ -107,7 +109,7 @@ Surface surface_of(const Scene& scene, const Instance& placement, const V3f& dir
         ns = smooth ? transform_normal(ns, placement.to_local) : n;
     }
     s.ng = unit(n);
-    if (is_moving(scene, hit.instance)) {
+    if constexpr (!kStill) {
         s.p_error += motion_error(scene, hit);
         if (!is_finite(s.ng)) s.ng = -unit(direction);  // without an area at this moment
     }
@@ -134,8 +136,10 @@ Surface surface_of(const Scene& scene, const Instance& placement, const V3f& dir
 }  // namespace
 
 Surface make_surface(const Scene& scene, const V3f& direction, const Hit& hit) {
+    if (const Instance& still = scene.instances[hit.instance]; !still.moves) [[likely]]
+        return surface_of<true>(scene, still, direction, hit);
     return with_instance_at(scene, hit.instance, hit.time, [&](const Instance& placement) {
-        return surface_of(scene, placement, direction, hit);
+        return surface_of<false>(scene, placement, direction, hit);
     });
 }
 

@@ -20,16 +20,24 @@ V3d from_origin(const Instance& instance, const V3f& corner, const V3d& origin) 
     return placed - origin;
 }
 
-// Corners of a triangle relative to the origin of a ray.
-std::array<V3d, 3> from_origin(const Scene& scene, uint32_t instance, uint32_t triangle,
-                               const Ray& ray) {
+// Corners of a triangle of an instance relative to the origin of a ray.
+template <bool kStill>
+std::array<V3d, 3> corners_from(const Scene& scene, const Instance& placement, uint32_t triangle,
+                                const Ray& ray) {
+    const Mesh& mesh = scene.meshes[placement.mesh];
+    CornerValues moved;
+    const auto corner = corner_positions<kStill>(mesh, mesh.triangles[triangle], ray.time, moved);
+    const V3d origin(ray.origin);
+    return {from_origin(placement, *corner[0], origin), from_origin(placement, *corner[1], origin),
+            from_origin(placement, *corner[2], origin)};
+}
+
+std::array<V3d, 3> corners_from(const Scene& scene, uint32_t instance, uint32_t triangle,
+                                const Ray& ray) {
+    if (const Instance& still = scene.instances[instance]; !still.moves) [[likely]]
+        return corners_from<true>(scene, still, triangle, ray);
     return with_instance_at(scene, instance, ray.time, [&](const Instance& placement) {
-        const Mesh& mesh = scene.meshes[placement.mesh];
-        const CornerValues corners = corner_positions(mesh, mesh.triangles[triangle], ray.time);
-        const V3d origin(ray.origin);
-        return std::array<V3d, 3>{from_origin(placement, corners[0], origin),
-                                  from_origin(placement, corners[1], origin),
-                                  from_origin(placement, corners[2], origin)};
+        return corners_from<false>(scene, placement, triangle, ray);
     });
 }
 
@@ -38,7 +46,7 @@ std::array<V3d, 3> from_origin(const Scene& scene, uint32_t instance, uint32_t t
 // Weights in the ratio of the signed volumes that the ray spans with the edges: Kensler and Shirley
 // 2006, "Optimizing Ray-Triangle Intersection via Automated Search".
 V2f barycentric(const Scene& scene, uint32_t instance, uint32_t triangle, const Ray& ray) {
-    const auto [a, b, c] = from_origin(scene, instance, triangle, ray);
+    const auto [a, b, c] = corners_from(scene, instance, triangle, ray);
     const V3d direction(ray.direction);
     // Edge times sum in place of corner times corner: twice the volume, and far from a small
     // triangle without its cancellation.

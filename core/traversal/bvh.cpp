@@ -11,6 +11,7 @@
 #include <string>
 
 #include "core/scene/coverage.h"
+#include "core/scene/motion.h"
 #include "core/traversal/barycentric.h"
 
 namespace petzval {
@@ -188,10 +189,9 @@ Bvh::Bvh(const Scene& scene, Traversal traversal) : impl_(std::make_unique<Impl>
                 rtcSetGeometryTransform(geometry, step, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR,
                                         to_world.getValue());
             };
-            if (instance.moves) {
-                const auto& steps = scene.motions[static_cast<size_t>(scene.motion_of[i])].to_world;
-                rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(steps.size()));
-                for (unsigned k = 0; k < steps.size(); ++k) place(k, steps[k]);
+            if (const auto* const places = places_of(scene, i)) {
+                rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(places->size()));
+                for (unsigned k = 0; k < places->size(); ++k) place(k, (*places)[k]);
             } else {
                 place(0, instance.to_world);
             }

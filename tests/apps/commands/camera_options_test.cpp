@@ -328,7 +328,7 @@ TEST_F(CliCamera, RefusesWhatHasNoEffect) {
         {{"--iris-sampling", "rejection"}, "--iris-sampling: a pinhole has no iris"},
         {{"--aperture-scale", "inscribed"}, "--aperture-scale: a pinhole has no iris"},
         {{"--exposure-mode", "normalised", "--iso", "400"}, "but with photographic"},
-        {{"--exposure-mode", "normalised", "--shutter", "1/50"}, "but with photographic"},
+        {{"--exposure-mode", "normalised", "--shutter", "1/50"}, "but with --at"},
         {{"--lens", "tessar-100mm-f2.8", "--natural-vignetting", "on"}, "always has its own"},
         {{"--camera", "plan", "--natural-vignetting", "on"}, "is orthographic"},
         {{"--camera", "plan", "--focus", "2"}, "is orthographic"},

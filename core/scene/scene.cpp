@@ -70,12 +70,13 @@ void extend_bounds(Box3f& bounds, const Scene& scene, uint32_t index, const Box3
 
 void finish_scene(Scene& scene) {
     for (Material& material : scene.materials) find_places(scene, material);
+    for (Instance& instance : scene.instances)
+        instance.moves |= !scene.meshes[instance.mesh].steps.empty();
     rank_volumes(scene);
     const std::vector<Box3f> boxes = mesh_boxes(scene);
     for (uint32_t i = 0; i < scene.instances.size(); ++i) {
         Instance& instance = scene.instances[i];
         const Mesh& mesh = scene.meshes[instance.mesh];
-        instance.moves |= !mesh.steps.empty();
         extend_bounds(scene.bounds, scene, i, boxes[instance.mesh]);
         if (!emits(scene, instance)) continue;
         instance.first_light = static_cast<int32_t>(scene.lights.size());

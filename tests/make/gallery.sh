@@ -13,6 +13,7 @@ cd "$(dirname "$0")/../.."
 out=${GALLERY_OUT:-out/gallery}
 spp=${GALLERY_SPP:-256}
 petzval=${PETZVAL:-build/bin/petzval}
+scenes=assets/scenes
 ornaments=assets/scenes/ornaments.glb
 dusk=assets/scenes/first_light.glb
 glass=assets/scenes/glass.glb
@@ -124,6 +125,26 @@ more=2
 picture glass_room 480x320 $glass --camera room
 picture glass_ice 480x320 $glass --camera ice --exposure -0.5
 picture glass_frosted 480x320 $glass --camera frosted
+
+# What moves while the shutter is open.
+more=1
+picture wheels 480x320 $scenes/wheels.glb --at 0.1s --shutter 180deg
+picture wheels_follow 480x320 $scenes/wheels.glb --camera follow --at 0.3s --shutter 180deg
+picture face 480x320 $scenes/face.glb --at 0.979s --shutter 180deg
+more=4
+picture flying_lamp 480x320 $scenes/flying_lamp.glb --camera moving --at 0.55s --shutter 1/24
+# Two seconds of a walk, frame by frame. The model is another's, and is not shipped.
+fox=../shared/scenes/open/fox/Fox.glb
+if is_wanted fox; then
+    if [[ -e $fox ]]; then
+        echo "fox: petzval render $fox --animation Walk --frames 1:48 --shutter 180deg"
+        "$petzval" render $fox --animation Walk --frames 1:48 --shutter 180deg --size 120x80 \
+            --spp "$spp" --look-at 200,80,60,0,40,-10 --progress none --quiet -o "$out/fox_##.png"
+        jpeg fox "$out"/fox_??.png --mosaic 8x6
+    else
+        echo "fox: skipped, as there is no $fox" >&2
+    fi
+fi
 
 for name in "${wanted[@]}"; do
     [[ " ${known[*]} " == *" $name "* ]] || {

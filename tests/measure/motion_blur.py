@@ -77,7 +77,8 @@ def main():
 
     def rms(picture):
         return float(np.sqrt((picture ** 2).mean()))
-    noise = np.hypot(rms(blurred[0] - blurred[1]) / 2, rms(halves[0] - halves[1]) / 2)
+    of_blur, of_stills = (rms(pair[0] - pair[1]) / 2 for pair in (blurred, halves))
+    noise = np.hypot(of_blur, of_stills)
     # Errors of blocks: from the pixels' spread between halves, which are independent.
     spread = ((blurred[0] - blurred[1]) / 2) ** 2 + ((halves[0] - halves[1]) / 2) ** 2
     error = np.sqrt(blocks(spread)) / 16
@@ -85,6 +86,8 @@ def main():
     print("mean: blurred / stills - 1 = %+.4f %%" % (100 * (blur.mean() / still.mean() - 1)))
     print("RMS of the difference: %.3f %% of the mean; noise alone gives %.3f %%" %
           (100 * rms(blur - still) / still.mean(), 100 * noise / still.mean()))
+    print("noise at as many samples: blurred %.3f %%, stills %.3f %% of the mean" %
+          (100 * of_blur / still.mean(), 100 * of_stills / still.mean()))
     print("worst of %d blocks: %.2f standard errors" % (apart.size, abs(apart).max()))
 
 

@@ -9,6 +9,8 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "core/scene/motion.h"
+
 namespace petzval {
 namespace {
 
@@ -23,6 +25,7 @@ struct Body {
     Box3f box;
     double volume = 0;  // m^3, where the surface is closed; below 0 where it faces inwards
     bool touches_itself = false;  // it is several bodies that share edges
+    Box3f reach{};                // box about it at all times while the shutter is open
 };
 
 struct Bodies {
@@ -113,7 +116,7 @@ Bodies find_bodies(const Corners& triangles) {
     Bodies out;
     if (box.isEmpty()) return out;
     if (!std::isfinite(box.size().length())) {  // beyond what can be looked at
-        out.bodies.push_back({box});
+        out.bodies.push_back({box, 0, false, box});
         return out;
     }
     const auto [number, places] = weld(triangles, box);
@@ -146,7 +149,22 @@ Bodies find_bodies(const Corners& triangles) {
         out.closed &= sum == 0;
         if (end - i > 2) out.bodies[body_of.at(joined.root(edges[i].low))].touches_itself = true;
     }
+    for (Body& body : out.bodies) body.reach = body.box;
     return out;
+}
+
+// Lets bodies come wherever a box is.
+void extend_reach(Bodies& all, const Box3f& box) {
+    for (Body& body : all.bodies) body.reach.extendBy(box);
+}
+
+// Box about all shapes of a mesh that deforms; empty for others.
+Box3f box_of_steps(const Mesh& mesh) {
+    Box3f box;
+    for (const MeshStep& step : mesh.steps)
+        for (const auto& triangle : mesh.triangles)
+            for (const uint32_t corner : triangle) box.extendBy(step.positions[corner]);
+    return box;
 }
 
 Corners corners_of(const Mesh& mesh) {
@@ -157,13 +175,25 @@ Corners corners_of(const Mesh& mesh) {
     return corners;
 }
 
-Body placed(const Body& body, const Instance& instance) {
+// Box about all places of a box that an instance moves.
+Box3f placed_at_all_times(const Scene& scene, const Box3f& box, uint32_t index) {
+    const Instance& instance = scene.instances[index];
+    if (instance.identity) return box;
+    if (!instance.moves) return Imath::transform(box, instance.to_world);
+    Box3f all;
+    for (const M44f& m : scene.motions[static_cast<size_t>(scene.motion_of[index])].to_world)
+        all.extendBy(Imath::transform(box, m));
+    return all;
+}
+
+Body placed(const Scene& scene, const Body& body, uint32_t index) {
+    const Instance& instance = scene.instances[index];
     if (instance.identity) return body;
     const M44f& m = instance.to_world;
     const V3d x(m[0][0], m[0][1], m[0][2]), y(m[1][0], m[1][1], m[1][2]),
         z(m[2][0], m[2][1], m[2][2]);
     return {Imath::transform(body.box, m), body.volume * std::fabs(x.dot(y.cross(z))),
-            body.touches_itself};
+            body.touches_itself, placed_at_all_times(scene, body.reach, index)};
 }
 
 // Whether its coverage may leave holes.
@@ -178,6 +208,7 @@ bool has_holes(const Material& m, const Mesh& mesh) {
 std::vector<Bodies> bodies_of_materials(Scene& scene) {
     std::vector<Bodies> of_mesh(scene.meshes.size()), out(scene.materials.size());
     std::vector<Corners> loose(scene.materials.size());
+    std::vector<Box3f> reach_of_loose(scene.materials.size());  // of those that move
     std::vector<bool> is_seen(scene.meshes.size(), false);
     for (uint32_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
@@ -186,13 +217,19 @@ std::vector<Bodies> bodies_of_materials(Scene& scene) {
         if (!material.refracts()) continue;
         if (has_holes(material, mesh)) material.volume_fault = VolumeFault::Holes;
         Bodies& bodies = of_mesh[instance.mesh];
-        if (!is_seen[instance.mesh]) bodies = find_bodies(corners_of(mesh));
+        if (!is_seen[instance.mesh]) {
+            bodies = find_bodies(corners_of(mesh));
+            extend_reach(bodies, box_of_steps(mesh));
+        }
         is_seen[instance.mesh] = true;
         if (bodies.closed) {
             for (const Body& b : bodies.bodies)
-                out[mesh.material].bodies.push_back(placed(b, instance));
+                out[mesh.material].bodies.push_back(placed(scene, b, i));
             continue;
         }
+        if (is_moving(scene, i))
+            for (const Body& b : bodies.bodies)
+                reach_of_loose[mesh.material].extendBy(placed_at_all_times(scene, b.reach, i));
         for (uint32_t triangle = 0;
              triangle < mesh.triangles.size() && loose[mesh.material].size() <= kMostLoose;
              ++triangle) {
@@ -204,8 +241,9 @@ std::vector<Bodies> bodies_of_materials(Scene& scene) {
     for (size_t m = 0; m < out.size(); ++m) {
         out[m].closed = !out[m].bodies.empty();
         if (loose[m].empty()) continue;
-        const Bodies rest =
+        Bodies rest =
             loose[m].size() > kMostLoose ? Bodies{false, {Body{}}} : find_bodies(loose[m]);
+        extend_reach(rest, reach_of_loose[m]);
         out[m].closed = rest.closed;
         out[m].bodies.insert(out[m].bodies.end(), rest.bodies.begin(), rest.bodies.end());
     }
@@ -299,8 +337,8 @@ void rank_volumes(Scene& scene) {
         for (const Body& b : of_material[m].bodies) {
             r.largest_m3 = std::max(r.largest_m3, b.volume);
             r.box.extendBy(b.box);
-            bodies.push_back({b.box, m, b.touches_itself});
-            if (b.volume > 0) scene.volume_boxes.push_back(b.box);
+            bodies.push_back({b.reach, m, b.touches_itself});
+            if (b.volume > 0) scene.volume_boxes.push_back(b.reach);
         }
         ranked.push_back(r);
     }

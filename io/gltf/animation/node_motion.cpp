@@ -150,6 +150,25 @@ size_t segments_for(size_t moving_nodes) {
     return segments;
 }
 
+std::span<const double> numbers_of(const M44d& matrix) {
+    return {matrix.getValue(), 16};
+}
+std::span<const double> numbers_of(const std::vector<double>& numbers) {
+    return numbers;
+}
+
+// Whether numbers differ by more than rounding: a curve between equal keys rounds at every time
+// otherwise.
+bool differ(std::span<const double> a, std::span<const double> b) {
+    constexpr double kRounding = 1e-12;
+    double most = 0, apart = 0;
+    for (size_t i = 0; i < a.size(); ++i) {
+        most = std::max(most, std::fabs(a[i]));
+        apart = std::max(apart, std::fabs(a[i] - b[i]));
+    }
+    return apart > kRounding * most;
+}
+
 double most_second_difference(const std::vector<std::vector<V3d>>& at) {
     double most = 0;
     for (size_t i = 1; i + 1 < at.size(); ++i)
@@ -192,7 +211,9 @@ NodeMotion::NodeMotion(const json& posed, std::span<const GltfClip> clips,
         return track.keys->at(track.clip->local_s(time_s, choice.time_s, choice.repeats));
     };
     const auto changes = [](const auto& all) {
-        return std::any_of(all.begin(), all.end(), [&](const auto& one) { return one != all[0]; });
+        return std::any_of(all.begin(), all.end(), [&](const auto& one) {
+            return differ(numbers_of(one), numbers_of(all[0]));
+        });
     };
 
     for (const int i : moving) {

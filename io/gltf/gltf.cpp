@@ -26,6 +26,7 @@ GltfFile load(const std::filesystem::path& path, FileScope scope, PictureBudget&
     NodeMotion motion;
     if (choices.animation)
         motion = NodeMotion(source.json, source.clips, *choices.animation, nodes.to_world);
+    tally.keys_between_steps = motion.keys_between_steps();
     GltfMaterials materials(gltf, file.scene, tally, pictures);
     place_meshes(gltf, nodes, motion, GltfVariant(gltf, choices.variant), materials, file.scene,
                  tally, choices.point_line_radius_m);

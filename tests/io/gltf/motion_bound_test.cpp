@@ -109,7 +109,6 @@ TinyGltf morph(json node, bool node_turns, bool skinned) {
 }
 
 std::vector<Case> cases() {
-    TinyGltf moved_mesh = wheel(150, 4);
     return {
         {"a slow wheel", wheel(10)},
         {"a wheel", wheel(200)},
@@ -151,10 +150,84 @@ TEST(GltfMotionBound, HoldsAtRandomTimes) {
             }
             // Two digits are said, and coordinates are rounded to floats.
             EXPECT_LE(most, 1.05 * said + 1e-5) << name << ", open for " << open_s << " s";
-            if (getenv("SHOW"))
-                printf("%-45s %4g said %-9.3g true %.3g\n", name, open_s, said, most);
         }
     }
+}
+
+// What no step sees cannot be bounded; it is said that there may be some.
+TEST(GltfMotionBound, IsNotGivenAloneWhereKeysLieBetweenSteps) {
+    const auto says = [](const TinyGltf& file, double open_s) {
+        return contains_line(SavedGltf(file).at(0.5, open_s).remarks, "keys lie closer");
+    };
+    TinyGltf spike, flick, calm, late;
+    for (TinyGltf* file : {&spike, &flick, &calm, &late})
+        file->add_root({{"mesh", add_wedge(*file)}});
+    animate(spike, 0, "translation", {0, 0.5005f, 0.503f, 0.5055f, 1},
+            {0, 0, 0, 0, 0, 0, 5, 0, 0, 0, 0, 0, 0, 0, 0});
+    animate(flick, 0, "translation", {0, 0.5005f, 0.5055f, 1}, {0, 0, 0, 5, 0, 0, 0, 0, 0, 0, 0, 0},
+            "STEP");
+    animate(calm, 0, "translation", {0, 0.5005f, 0.503f, 0.5055f, 1},
+            {0, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 2, 0, 0});
+    animate(late, 0, "translation", {0, 0.9f, 0.903f, 1}, {0, 0, 0, 1, 0, 0, 4, 0, 0, 1, 0, 0});
+    EXPECT_TRUE(says(spike, 1));
+    EXPECT_TRUE(says(flick, 1));
+    EXPECT_FALSE(says(calm, 1));  // these keys are equal
+    EXPECT_FALSE(says(spike, 0.1));
+    EXPECT_FALSE(says(late, 0.5));
+    EXPECT_TRUE(says(late, 0.9));
+    for (const double turns : {64., 127., 128.}) EXPECT_TRUE(says(wheel(turns * 360), 1)) << turns;
+    EXPECT_FALSE(says(wheel(3 * 360), 1));
+    EXPECT_FALSE(says(wheel(40 * 360), 1));
+}
+
+/// Greatest distance of the chosen steps' chords from all steps, by another way than thin().
+double chord_error(const std::vector<M44d>& all, size_t stride, const std::vector<V3d>& points) {
+    double most = 0;
+    for (size_t i = 0; i < all.size(); ++i)
+        for (const V3d& p : points) {
+            const size_t k = i / stride * stride, next = std::min(k + stride, all.size() - 1);
+            const double share = next == k ? 0 : double(i - k) / double(next - k);
+            const V3d chord = p * all[k] * (1 - share) + p * all[next] * share;
+            most = std::max(most, (p * all[i] - chord).length());
+        }
+    return most;
+}
+
+TEST(GltfMotionBound, ThinningTakesTheFewestStepsThatStayWithinAThousandth) {
+    const std::vector<V3d> points{V3d(0.), V3d(1, 0, 0), V3d(0.3, 2, 0.1)};
+    for (const double degrees : {0.001, 5., 50., 200., 1500., 20000.}) {
+        std::vector<M44d> all(129);
+        for (size_t i = 0; i < all.size(); ++i)
+            all[i].setEulerAngles(V3d(0, degrees * M_PI / 180 * double(i) / 128, 0.2));
+        const Thinning thinning = thin(all, points);
+        ASSERT_EQ(128 % thinning.stride, 0u);
+        const double bound = 1e-3 * thinning.size_m;
+        if (thinning.stride > 1) {
+            EXPECT_LE(chord_error(all, thinning.stride, points), bound * (1 + 1e-9)) << degrees;
+        }
+        if (thinning.stride < 128) {
+            EXPECT_GT(chord_error(all, thinning.stride * 2, points), bound) << degrees;
+        }
+        EXPECT_GE(thinning.off_m, chord_error(all, thinning.stride, points)) << degrees;
+    }
+}
+
+TEST(GltfMotionBound, ThinningOfWeightsAddsUpWhatTargetsDo) {
+    std::vector<std::vector<double>> straight, bent;
+    for (int i = 0; i <= 128; ++i) {
+        const double s = i / 128.;
+        straight.push_back({s, 1 - 3 * s});
+        bent.push_back({s * s, 4 * s * (1 - s)});
+    }
+    const std::vector<double> sizes{2, 0.5};
+    EXPECT_EQ(thin(straight, sizes, 1).stride, 128u);
+    EXPECT_NEAR(thin(straight, sizes, 1).off_m, 0, 1e-12);
+    // Between chosen steps that are k apart the sum is off by (2 + 4 / 2) (k / 128)^2 / 4.
+    const Thinning thinning = thin(bent, sizes, 1);
+    EXPECT_EQ(thinning.stride, 4u);
+    EXPECT_NEAR(thinning.off_m, 4 / 4. / 1024 + 8 / 128. / 128, 1e-9);
+    EXPECT_EQ((Thinning{8, 1, 2} | Thinning{4, 3, 1}).stride, 4u);
+    EXPECT_EQ((Thinning{8, 1, 2} | Thinning{4, 3, 1}).off_m, 3);
 }
 
 }  // namespace

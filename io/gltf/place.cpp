@@ -114,7 +114,7 @@ class Placer {
             scene_.instances.push_back(instance(index, node, to_world, bounds));
             const auto* const places = motion_.places(node);
             if (!places && deformation) note_off(scaled(*deformation, stretch(to_world)));
-            if (places) move_instance(node, *places, own, bounds, deformation);
+            if (places) move_instance(node, *places, {to_world, own}, bounds, deformation);
         });
     }
 
@@ -271,14 +271,21 @@ class Placer {
         return corners;
     }
 
-    // Makes the last instance move as its node does. own: its place in the node's own space.
-    void move_instance(int node, const std::vector<M44d>& places, const M44d& own,
+    struct InstancePlace {
+        M44d to_world;  ///< one that does not flatten space
+        M44d own;       ///< in the node's own space
+    };
+    // Makes the last instance move as its node does.
+    void move_instance(int node, const std::vector<M44d>& places, const InstancePlace& at,
                        const Box3f& bounds, const std::optional<Thinning>& deformation) {
         std::vector<M44d> all;
         double most_stretch = 0;
         for (const M44d& place : places) {
-            all.push_back(own * place);
-            if (is_singular(all.back())) add_thickness(all.back(), own * places_.of_node(node));
+            all.push_back(at.own * place);
+            if (dimensions_left(all.back()) == 2)
+                all.back() = thickened(all.back(), bounds);
+            else if (is_singular(all.back()))
+                add_thickness(all.back(), at.to_world);
             most_stretch = std::max(most_stretch, stretch(all.back()));
         }
         Thinning thinning = thin(all, corners_of(bounds));
@@ -296,11 +303,11 @@ class Placer {
         note_off(thinning);
     }
 
-    // Gives a matrix that flattens space for a moment a little of what it is in the middle.
-    static void add_thickness(M44d& flat, const M44d& in_the_middle) {
+    // Gives a matrix that leaves nothing to see for a moment a little of what it is at another.
+    static void add_thickness(M44d& flat, const M44d& other) {
         constexpr double share = 1e-4;
         for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j) flat[i][j] += share * in_the_middle[i][j];
+            for (int j = 0; j < 3; ++j) flat[i][j] += share * other[i][j];
     }
 
     // Calls visit(node, matrix, own) for each place where something shows; own: the place in the
@@ -308,7 +315,8 @@ class Placer {
     template <class Visit>
     void each_place(const Placement& placement, Visit visit) {
         for (const int node : placement.nodes) {
-            const auto visit_shown = [&](const M44d& to_world, const M44d& own) {
+            const auto visit_shown = [&](const M44d& in_the_middle, const M44d& own) {
+                const M44d to_world = shown_place(motion_, node, in_the_middle, own);
                 if (!Places::shows(to_world) && placement.skin < 0) return;
                 visit(node,
                       dimensions_left(to_world) == 2 ? thickened(to_world, box_of(placement))

@@ -309,6 +309,34 @@ TEST(GltfMotion, CamerasStandWhereTheStillsHaveThem) {
     EXPECT_TRUE(open.cameras[0].to_world.equalWithAbsError(saved.at(kAt).cameras[0].to_world, 0.f));
 }
 
+// Small in the middle, there before and after; there from a moment on; flat all the time.
+TEST(GltfMotion, WhatDoesNotShowInTheMiddleShowsAtOtherTimes) {
+    TinyGltf shrinks, appears, flat;
+    for (TinyGltf* file : {&shrinks, &appears, &flat}) file->add_root({{"mesh", add_wedge(*file)}});
+    animate(shrinks, 0, "scale", {0, 0.5f, 1}, {2, 2, 2, 0, 0, 0, 1, 1, 1});
+    animate(appears, 0, "scale", {0, 0.6f}, {0, 0, 0, 1, 1, 1}, "STEP");
+    flat.json["nodes"][0]["scale"] = {1, 1, 0};
+    swing(flat, 0);
+    for (const TinyGltf& file : {shrinks, appears, flat}) {
+        const SavedGltf saved(file);
+        const GltfFile open = saved.at(kAt, kOpen, false);
+        ASSERT_EQ(moving(open.scene), 1u);
+        for (const M44f& m : open.scene.motions[0].to_world) {
+            const double det = M44d(m).determinant();
+            EXPECT_TRUE(std::isfinite(1 / det)) << m;
+        }
+        for (const float time : {0.f, 0.1f, 0.9f, 1.f}) {
+            const double at_s = kAt + (double(time) - 0.5) * kOpen;
+            const GltfFile still = saved.at(at_s, 0, false);
+            const auto now = triangles_at(open.scene, time);
+            if (still.scene.instances.empty())
+                for (const PlacedTriangle& one : now) EXPECT_LT(one.front.length(), 1e-6f);
+            else
+                EXPECT_TRUE(same_triangles(now, triangles_at(still.scene, 0.5f), 5e-3f)) << time;
+        }
+    }
+}
+
 // A clip that does not end as it begins stays within its turn: no blur from its end to its begin.
 TEST(GltfMotion, AnOpenClipDoesNotJumpBackWhileTheShutterIsOpen) {
     TinyGltf file;

@@ -97,7 +97,7 @@ TEST(MotionBlur, OfAThingThatDeformsOnItsFlight) {
     expect_mean_of_stills(motion);
 }
 
-// A lamp that turns its one bright side away, by all ways to its light.
+// A lamp that grows and turns its one bright side away, by all ways to its light.
 TEST(MotionBlur, OfALampByEveryTechnique) {
     for (const Technique technique : {Technique::Mis, Technique::LightOnly, Technique::BsdfOnly}) {
         Motion motion = room();
@@ -106,7 +106,8 @@ TEST(MotionBlur, OfALampByEveryTechnique) {
         lamp.double_sided = false;
         place_moving(motion.scene, quad(V3f(-0.7f, 0, -0.7f), V3f(1.4f, 0, 0), V3f(0, 0, 1.4f)),
                      lamp, at_steps(17, [](float time) {
-                         return turned(V3f(0.3f, 0, 3 * time), V3f(2 * time - 1, 1.2f, 0));
+                         return turned(V3f(0.3f, 0, 3 * time), V3f(2 * time - 1, 1.2f, 0),
+                                       V3f(0.3f + 1.4f * time));
                      }));
         expect_mean_of_stills(motion, technique == Technique::BsdfOnly ? 192 : 96);
     }
@@ -197,13 +198,13 @@ TEST(MotionBlur, WithRaysToTargets) {
         Motion motion = lit_room();
         motion.camera = traced ? traced_lens : blurring_lens;
         motion.size = V2i(16, 16);
-        motion.camera_steps = at_steps(3, [](float time) {
-            return look_at(V3f(0.1f * time, 0.6f, 4), V3f(0.15f * time, 0.3f, 0));
+        motion.camera_steps = at_steps(2, [](float time) {
+            return look_at(V3f(0.8f * time - 0.4f, 0.5f, 4), V3f(0.8f * time - 0.4f, 0.35f, 0));
         });
         const float size = traced ? 0.15f : 1;  // the traced lens blurs less
         place_moving(motion.scene, sphere(V3f(0.f), 0.03f * size, 6, true),
                      emitter_material(200.f / (size * size)), at_steps(5, [&](float time) {
-                         return turned(V3f(0.f), V3f(0.05f * size * time, 0.35f, 0));
+                         return turned(V3f(0.f), V3f(0, 0.35f + 0.05f * size * time, 0));
                      }));
         const auto shown = shuttered(motion);
         Scene finished = motion.scene;
@@ -232,14 +233,16 @@ TEST(MotionBlur, OfGlassThatFlies) {
     expect_mean_of_stills(motion);
 }
 
-// Glass that passes over the camera: elsewhere in the middle of the exposure.
+// Glass that passes over the camera, elsewhere in the middle of the exposure, and a ball of another
+// glass before the camera: what the path meets first does not tell where it began.
 TEST(MotionBlur, OfACameraThatGlassPassesOver) {
     Motion motion = lit_room();
     motion.options.max_depth = 1;
     motion.scene.sky = Sky::uniform(Rgb(0.5f));
     place_moving(
-        motion.scene, box(V3f(-0.7f), V3f(0.7f)), tinted_glass(1.0f),
+        motion.scene, box(V3f(-0.9f), V3f(0.9f)), tinted_glass(1.4f),
         at_steps(5, [](float time) { return turned(V3f(0.f), V3f(4 * time, 0.7f, 4.1f)); }));
+    place(motion.scene, sphere(V3f(0, 0.6f, 3.6f), 0.15f, 8, true), tinted_glass(1.2f));
     expect_mean_of_stills(motion);
 }
 
@@ -253,6 +256,44 @@ TEST(MotionBlur, OfGlassThatFliesIntoGlass) {
         motion.scene, box(V3f(-0.3f), V3f(0.3f)), tinted_glass(1.6f),
         at_steps(5, [](float time) { return turned(V3f(0.f), V3f(3 * time - 2.2f, 0.7f, 0)); }));
     expect_mean_of_stills(motion);
+}
+
+// A drink in a glass that it touches, which turn together.
+TEST(MotionBlur, OfADrinkInAGlass) {
+    Motion motion = lit_room();
+    motion.options.max_depth = 1;
+    motion.scene.sky = Sky::uniform(Rgb(0.5f));
+    const auto flight = at_steps(17, [](float time) {
+        return turned(V3f(0.2f, 1.5f * time, 1.f * time), V3f(1.6f * time - 0.8f, 0.8f, 0));
+    });
+    place_moving(motion.scene, box(V3f(-0.5f, -0.5f, -0.4f), V3f(0.5f, 0.1f, 0.4f)),
+                 tinted_glass(1.3f), flight);
+    place_moving(motion.scene, box(V3f(-0.5f, 0.1f, -0.4f), V3f(0.5f, 0.5f, 0.4f)),
+                 tinted_glass(1.6f), flight);
+    expect_mean_of_stills(motion);
+}
+
+// Few triangles with smooth normals, lit across their edges by lights that move.
+TEST(MotionBlur, OfACoarseSmoothThing) {
+    for (const bool point : {false, true}) {
+        Motion motion = room();
+        motion.options.max_depth = 1;
+        const auto flight = [](float time) { return V3f(5 * time - 2.5f, 1.2f, 0.2f); };
+        const auto steps = at_steps(9, [&](float time) { return turned(V3f(0.f), flight(time)); });
+        if (point) {
+            const auto light = [&](float time) -> Light {
+                return PointLight{flight(time), Rgb(8.f)};
+            };
+            motion.scene.lights.push_back(light(0.5f));
+            motion.scene.light_motion_of = {0};
+            motion.scene.light_motions = {at_steps(9, light)};
+        } else {
+            place_moving(motion.scene, box(V3f(-0.1f), V3f(0.1f)), emitter_material(60.f), steps);
+        }
+        place(motion.scene, sphere(V3f(0, 0.8f, 0.6f), 0.9f, 3, true), diffuse_material(0.8f));
+        motion.scene.materials.back().double_sided = false;
+        expect_mean_of_stills(motion, 192);
+    }
 }
 
 TEST(MotionBlur, OfALeafThatIsPartlyThere) {

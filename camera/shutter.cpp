@@ -25,6 +25,10 @@ float ShutterCurve::efficiency() const {
 
 Shutter::Shutter(ShutterCurve curve, std::span<const M44f> to_world, const M44f& in_the_middle)
     : curve_(std::move(curve)), reached_{0.f} {
+    // Only ratios count, and the squares below must stay within the range of floats.
+    float peak = 0;
+    for (const ShutterCurve::Point& point : curve_.points) peak = std::max(peak, point.open);
+    for (ShutterCurve::Point& point : curve_.points) point.open /= peak;
     for (size_t i = 1; i < curve_.points.size(); ++i)
         reached_.push_back(reached_.back() + area_before(curve_, i));
     const float whole = reached_.back();
@@ -41,7 +45,8 @@ float Shutter::time(float u) const {
         std::clamp((u - reached_[i - 1]) / (reached_[i] - reached_[i - 1]), 0.f, 1.f);
     // The part s of the way with a s + (b - a) s^2 / 2 = share (a + b) / 2, without cancellation.
     const float root = std::sqrt(lerp(a.open * a.open, b.open * b.open, share));
-    const float s = a.open == b.open ? share : share * (a.open + b.open) / (a.open + root);
+    const float sum = a.open + root;  // 0 at the very start of a piece that begins closed
+    const float s = a.open == b.open ? share : sum > 0.f ? share * (a.open + b.open) / sum : 0.f;
     return std::min(lerp(a.time, b.time, s), kOneMinus);
 }
 

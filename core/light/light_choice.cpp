@@ -62,8 +62,8 @@ struct BoundsOf {
         const Material& material = scene.materials[scene.meshes[instance.mesh].material];
         if (const auto& beam = material.beam) return bounds_of(*beam, box);
         const V3f front = (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
-        return LightBounds{box,     instance.flips ? -front : front, 0,
-                           kPi / 2, material.double_sided,           power};
+        const bool flips = flips_at(scene, light.instance, time);
+        return LightBounds{box, flips ? -front : front, 0, kPi / 2, material.double_sided, power};
     }
     std::optional<LightBounds> operator()(const SunLight&) const { return std::nullopt; }
     std::optional<LightBounds> operator()(const SkyLight&) const { return std::nullopt; }

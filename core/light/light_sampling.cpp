@@ -134,7 +134,7 @@ std::optional<LightSample> sample(const Scene& scene, const TriangleLight& light
     const float by_area = 2.f * distance2 * distance / std::fabs(facing);
     if (!(by_area > 0.f && by_area < kInfinity)) return std::nullopt;
 
-    const bool front = (facing > 0.f) != scene.instances[light.instance].flips;
+    const bool front = (facing > 0.f) != flips_at(scene, light.instance, time);
     Rgb emitted = emitted_radiance(scene, light.instance, light.triangle, b, front) *
                   coverage(scene, light.instance, light.triangle, b);
     const Material& material =
@@ -215,7 +215,8 @@ float projected_beam(const Beam& beam, const Scene& scene, const TriangleLight& 
     const auto corner = triangle_corners(scene, light.instance, light.triangle);
     const V3f cross = unit((corner[1] - corner[0]).cross(corner[2] - corner[0]));
     const Frame frame = Frame::about(beam.direction);
-    const V3f front = frame.to_local(scene.instances[light.instance].flips ? -cross : cross);
+    const V3f front =
+        frame.to_local(flips_at(scene, light.instance, kMiddleOfShutter) ? -cross : cross);
     float whole = 0.f, sum = 0.f;
     for (int i = 0; i < rings; ++i) {
         const float cosine = lerp(1.f, beam.cos_outer, (i + 0.5f) / rings);

@@ -31,6 +31,13 @@ M33f inverse_linear(const M44f& m) {
     return inverse;
 }
 
+// Whether a matrix turns what is counter-clockwise into clockwise.
+bool mirrors(const M44f& m) {
+    const V3d x(m[0][0], m[0][1], m[0][2]), y(m[1][0], m[1][1], m[1][2]),
+        z(m[2][0], m[2][1], m[2][2]);
+    return x.dot(y.cross(z)) < 0;
+}
+
 struct Between {
     float share;
 
@@ -64,7 +71,12 @@ Instance moved_instance(const Instance& still, const std::vector<M44f>& places, 
         for (int j = 0; j < 3; ++j)
             out.to_world[i][j] = a[i][j] * (1.f - at.share) + b[i][j] * at.share;
     out.to_local = inverse_linear(out.to_world);
+    out.flips = mirrors(out.to_world);
     return out;
+}
+
+bool flips_at(const Scene& scene, uint32_t instance, float time) {
+    return with_instance_at(scene, instance, time, [](const Instance& i) { return i.flips; });
 }
 
 CornerValues moved_corners(const Mesh& mesh, const std::array<uint32_t, 3>& corner,

@@ -33,6 +33,9 @@ struct StepPlace {
 /// Instance as it stands at a time; places: those of one that moves.
 [[nodiscard]] Instance moved_instance(const Instance&, const std::vector<M44f>& places, float time);
 
+/// Whether an instance is mirrored at a time: one that moves may be turned inside out on its way.
+[[nodiscard]] bool flips_at(const Scene&, uint32_t instance, float time);
+
 /// Calls visit(instance) with an instance as it stands at a time; returns what that returns.
 template <class Visit>
 decltype(auto) with_instance_at(const Scene& scene, uint32_t instance, float time, Visit&& visit) {

@@ -25,7 +25,7 @@ struct Body {
     Box3f box;
     double volume = 0;  // m^3, where the surface is closed; below 0 where it faces inwards
     bool touches_itself = false;  // it is several bodies that share edges
-    Box3f reached;                // box about all that it comes to while the shutter is open
+    Box3f reach{};                // box about it at all times while the shutter is open
 };
 
 struct Bodies {
@@ -116,7 +116,7 @@ Bodies find_bodies(const Corners& triangles) {
     Bodies out;
     if (box.isEmpty()) return out;
     if (!std::isfinite(box.size().length())) {  // beyond what can be looked at
-        out.bodies.push_back({.box = box, .reached = box});
+        out.bodies.push_back({box, 0, false, box});
         return out;
     }
     const auto [number, places] = weld(triangles, box);
@@ -149,7 +149,22 @@ Bodies find_bodies(const Corners& triangles) {
         out.closed &= sum == 0;
         if (end - i > 2) out.bodies[body_of.at(joined.root(edges[i].low))].touches_itself = true;
     }
+    for (Body& body : out.bodies) body.reach = body.box;
     return out;
+}
+
+// Lets bodies come wherever a box is.
+void extend_reach(Bodies& all, const Box3f& box) {
+    for (Body& body : all.bodies) body.reach.extendBy(box);
+}
+
+// Box about all shapes of a mesh that deforms; empty for others.
+Box3f box_of_steps(const Mesh& mesh) {
+    Box3f box;
+    for (const MeshStep& step : mesh.steps)
+        for (const auto& triangle : mesh.triangles)
+            for (const uint32_t corner : triangle) box.extendBy(step.positions[corner]);
+    return box;
 }
 
 Corners corners_of(const Mesh& mesh) {
@@ -160,31 +175,25 @@ Corners corners_of(const Mesh& mesh) {
     return corners;
 }
 
-// How far vertices of a mesh go from where they are in the middle of the exposure.
-float greatest_shift(const Mesh& mesh) {
-    float most = 0.f;
-    for (const MeshStep& step : mesh.steps)
-        for (size_t i = 0; i < mesh.positions.size(); ++i)
-            most = std::max(most, (step.positions[i] - mesh.positions[i]).length());
-    return most;
+// Box about all places of a box that an instance moves.
+Box3f placed_at_all_times(const Scene& scene, const Box3f& box, uint32_t index) {
+    const Instance& instance = scene.instances[index];
+    if (instance.identity) return box;
+    const auto* const places = places_of(scene, index);
+    if (!places) return Imath::transform(box, instance.to_world);
+    Box3f all;
+    for (const M44f& m : *places) all.extendBy(Imath::transform(box, m));
+    return all;
 }
 
-// A body of a mesh, placed as an instance of it is.
-Body placed(const Body& body, const Scene& scene, uint32_t index, float shift) {
+Body placed(const Scene& scene, const Body& body, uint32_t index) {
     const Instance& instance = scene.instances[index];
-    Body out = body;
-    out.reached = {body.box.min - V3f(shift), body.box.max + V3f(shift)};
-    if (instance.identity) return out;
+    if (instance.identity) return body;
     const M44f& m = instance.to_world;
-    const V3f x(m[0][0], m[0][1], m[0][2]), y(m[1][0], m[1][1], m[1][2]),
+    const V3d x(m[0][0], m[0][1], m[0][2]), y(m[1][0], m[1][1], m[1][2]),
         z(m[2][0], m[2][1], m[2][2]);
-    out.box = Imath::transform(body.box, m);
-    out.volume = body.volume * std::fabs(x.dot(y.cross(z)));
-    const Box3f own = out.reached;
-    out.reached = Imath::transform(own, m);
-    if (const auto* const places = places_of(scene, index))
-        for (const M44f& place : *places) out.reached.extendBy(Imath::transform(own, place));
-    return out;
+    return {Imath::transform(body.box, m), body.volume * std::fabs(x.dot(y.cross(z))),
+            body.touches_itself, placed_at_all_times(scene, body.reach, index)};
 }
 
 // Whether its coverage may leave holes.
@@ -199,9 +208,8 @@ bool has_holes(const Material& m, const Mesh& mesh) {
 std::vector<Bodies> bodies_of_materials(Scene& scene) {
     std::vector<Bodies> of_mesh(scene.meshes.size()), out(scene.materials.size());
     std::vector<Corners> loose(scene.materials.size());
+    std::vector<Box3f> reach_of_loose(scene.materials.size());  // of those that move
     std::vector<bool> is_seen(scene.meshes.size(), false);
-    std::vector<float> shifts(scene.meshes.size(), 0.f);
-    std::vector<Box3f> moving(scene.materials.size());  // of triangles that move
     for (uint32_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
         const Mesh& mesh = scene.meshes[instance.mesh];
@@ -211,25 +219,23 @@ std::vector<Bodies> bodies_of_materials(Scene& scene) {
         Bodies& bodies = of_mesh[instance.mesh];
         if (!is_seen[instance.mesh]) {
             bodies = find_bodies(corners_of(mesh));
-            shifts[instance.mesh] = greatest_shift(mesh);
+            extend_reach(bodies, box_of_steps(mesh));
         }
         is_seen[instance.mesh] = true;
         if (bodies.closed) {
             for (const Body& b : bodies.bodies)
-                out[mesh.material].bodies.push_back(placed(b, scene, i, shifts[instance.mesh]));
+                out[mesh.material].bodies.push_back(placed(scene, b, i));
             continue;
         }
+        if (instance.moves)
+            for (const Body& b : bodies.bodies)
+                reach_of_loose[mesh.material].extendBy(placed_at_all_times(scene, b.reach, i));
         for (uint32_t triangle = 0;
              triangle < mesh.triangles.size() && loose[mesh.material].size() <= kMostLoose;
              ++triangle) {
             auto corners = triangle_corners(scene, i, triangle);
             if (instance.flips) std::swap(corners[1], corners[2]);
             loose[mesh.material].push_back(corners);
-            if (const size_t steps = step_count(scene, i); steps > 1)
-                for (size_t k = 0; k < steps; ++k)
-                    for (const V3f& corner :
-                         triangle_corners(scene, i, triangle, step_time(k, steps)))
-                        moving[mesh.material].extendBy(corner);
         }
     }
     for (size_t m = 0; m < out.size(); ++m) {
@@ -237,10 +243,7 @@ std::vector<Bodies> bodies_of_materials(Scene& scene) {
         if (loose[m].empty()) continue;
         Bodies rest =
             loose[m].size() > kMostLoose ? Bodies{false, {Body{}}} : find_bodies(loose[m]);
-        for (Body& body : rest.bodies) {
-            body.reached = body.box;
-            body.reached.extendBy(moving[m]);
-        }
+        extend_reach(rest, reach_of_loose[m]);
         out[m].closed = rest.closed;
         out[m].bodies.insert(out[m].bodies.end(), rest.bodies.begin(), rest.bodies.end());
     }
@@ -270,7 +273,7 @@ VolumeFault fault_of(Bodies& of_material) {
 }
 
 struct PlacedBody {
-    Box3f box;  ///< of all that it reaches
+    Box3f box;
     uint32_t material;
     bool touches_itself;
 };
@@ -334,8 +337,8 @@ void rank_volumes(Scene& scene) {
         for (const Body& b : of_material[m].bodies) {
             r.largest_m3 = std::max(r.largest_m3, b.volume);
             r.box.extendBy(b.box);
-            bodies.push_back({b.reached, m, b.touches_itself});
-            if (b.volume > 0) scene.volume_boxes.push_back(b.reached);
+            bodies.push_back({b.reach, m, b.touches_itself});
+            if (b.volume > 0) scene.volume_boxes.push_back(b.reach);
         }
         ranked.push_back(r);
     }

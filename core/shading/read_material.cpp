@@ -36,14 +36,16 @@ struct Tangents {
 std::optional<Tangents> tangents_at(const Scene& scene, const Surface& s) {
     const V4f t4 = tangent_at(*s.mesh, s.hit.triangle, s.hit.barycentric, s.hit.time);
     V3f t(t4.x, t4.y, t4.z);
+    bool flips = false;
     if (!s.instance->identity)
-        t = with_instance_at(scene, s.hit.instance, s.hit.time, [&](const Instance& placement) {
-            return transform_direction(t, placement.to_world);
+        with_instance_at(scene, s.hit.instance, s.hit.time, [&](const Instance& placement) {
+            t = transform_direction(t, placement.to_world);
+            flips = placement.flips;
         });
     t -= s.ns * t.dot(s.ns);
     if (t.dot(t) < 1e-20f) return std::nullopt;
     t = unit(t);
-    const float flip = s.instance->flips ? -1.f : 1.f;
+    const float flip = flips ? -1.f : 1.f;
     return Tangents{t, s.ns.cross(t) * (t4.w < 0.f ? -flip : flip)};
 }
 

@@ -132,8 +132,12 @@ void describe_motion(const GltfTally& tally, GltfFile& file) {
                 plural(tally.deforming_meshes, "deforming mesh", "deforming meshes");
     add(tally.moving_lights, "moving light");
     add(tally.moving_cameras, "moving camera");
+    const std::string unseen =
+        tally.keys_between_steps
+            ? "; keys lie closer together than time steps, between which their motion is not seen"
+            : "";
     if (text.empty()) {
-        file.remarks.emplace_back("nothing moves while the shutter is open");
+        file.remarks.emplace_back("nothing moves while the shutter is open" + unseen);
         return;
     }
     if (tally.moving_instances + tally.deforming_meshes > 0)
@@ -141,7 +145,7 @@ void describe_motion(const GltfTally& tally, GltfFile& file) {
             "; between time steps, meshes are off by at most {:.2g} m, {:.2g} % of "
             "their extent",
             tally.motion_off_m, 100 * tally.motion_off);
-    file.remarks.push_back("while the shutter is open: " + text);
+    file.remarks.push_back("while the shutter is open: " + text + unseen);
 }
 
 // Tells which moment of which animations is shown.

@@ -87,7 +87,8 @@ class Placer {
         if (baked && !posed)
             each_place(placement,
                        [&](int, const M44d& to_world, const M44d&) { bake(mesh, to_world); });
-        if (deforms(placement)) add_steps(placement, primitive, unposed, mesh);
+        const std::optional<Thinning> deformation =
+            deforms(placement) ? add_steps(placement, primitive, unposed, mesh) : std::nullopt;
         check_finite(mesh, where);
         // What has no area now may have some at another time.
         if (mesh.steps.empty()) tally_.zero_area_triangles += remove_zero_area(mesh);
@@ -100,16 +101,20 @@ class Placer {
         scene_.meshes.push_back(std::move(mesh));
         if (baked) {
             scene_.instances.push_back({.mesh = index, .to_world = {}, .to_local = {}});
+            if (deformation) note_off(*deformation);
             return;
         }
         tally_.honoured.insert("mesh instancing");
         memory_.ask(kInstanceBytes, placement.places, 1, where);
         reserve(placement.places);
-        const Box3f bounds = box_about(scene_.meshes[index].positions);
+        Box3f bounds = box_about(scene_.meshes[index].positions);
+        for (const MeshStep& step : scene_.meshes[index].steps)
+            bounds.extendBy(box_about(step.positions));
         each_place(placement, [&](int node, const M44d& to_world, const M44d& own) {
             scene_.instances.push_back(instance(index, node, to_world, bounds));
-            if (const auto* const places = motion_.places(node))
-                move_instance(node, *places, own, bounds);
+            const auto* const places = motion_.places(node);
+            if (!places && deformation) note_off(scaled(*deformation, stretch(to_world)));
+            if (places) move_instance(node, *places, {to_world, own}, bounds, deformation);
         });
     }
 
@@ -165,9 +170,11 @@ class Placer {
                pose_by_skin(gltf_, joints_at(placement, step), primitive, mesh);
     }
 
-    // Adds the shapes that a mesh takes while the shutter is open, at as few steps as will do.
-    void add_steps(const Placement& placement, const tinygltf::Primitive& primitive,
-                   const Mesh& unposed, Mesh& mesh) {
+    // Adds the shapes that a mesh takes while the shutter is open, at as few steps as will do;
+    // tells how well that follows them, in the mesh's own space or, with a skin, in the world.
+    std::optional<Thinning> add_steps(const Placement& placement,
+                                      const tinygltf::Primitive& primitive, const Mesh& unposed,
+                                      Mesh& mesh) {
         const Thinning thinning = thinning_of(placement, primitive, unposed);
         const auto* const weights = motion_.weights(placement.nodes.front());
         for (size_t step = 0; step < motion_.steps(); step += thinning.stride) {
@@ -178,16 +185,31 @@ class Placer {
             (void)pose(placement, primitive, step, shape);
             if (shape.positions.size() != mesh.positions.size()) {  // triangles broke on the way
                 mesh.steps.clear();
-                return;
+                return std::nullopt;
             }
             mesh.steps.push_back(
                 {std::move(shape.positions), std::move(shape.normals), std::move(shape.tangents)});
         }
-        count(thinning, tally_.deforming_meshes);
+        ++tally_.deforming_meshes;
+        return thinning;
     }
 
-    void count(const Thinning& thinning, uint64_t& of_kind) {
-        ++of_kind;
+    // Greatest factor by which a matrix makes something longer, or a little more.
+    static double stretch(const M44d& m) {
+        double most = 0;
+        for (int i = 0; i < 3; ++i) {
+            double sum = 0;  // of a row of the matrix times its transpose: bounds its eigenvalues
+            for (int j = 0; j < 3; ++j) sum += std::fabs(row(m, i).dot(row(m, j)));
+            most = std::max(most, sum);
+        }
+        return std::sqrt(most);
+    }
+
+    static Thinning scaled(const Thinning& of, double factor) {
+        return {of.stride, of.off_m * factor, of.size_m * factor};
+    }
+
+    void note_off(const Thinning& thinning) {
         tally_.motion_off_m = std::max(tally_.motion_off_m, thinning.off_m);
         if (thinning.size_m > 0)
             tally_.motion_off = std::max(tally_.motion_off, thinning.off_m / thinning.size_m);
@@ -196,28 +218,42 @@ class Placer {
     [[nodiscard]] Thinning thinning_of(const Placement& placement,
                                        const tinygltf::Primitive& primitive,
                                        const Mesh& unposed) const {
-        const Box3f box = box_about(unposed.positions);
+        Box3f box = box_about(unposed.positions);
+        const double size_m = double(box.size().length());
         Thinning all{.stride = motion_.steps() - 1};
-        if (placement.skin >= 0) {
-            std::vector<std::vector<M44d>> by_joint;
-            for (size_t step = 0; step < motion_.steps(); ++step) {
-                const std::vector<M44d> joints = joints_at(placement, step);
-                by_joint.resize(joints.size());
-                for (size_t j = 0; j < joints.size(); ++j) by_joint[j].push_back(joints[j]);
-            }
-            for (const auto& joint : by_joint) all = all | thin(joint, corners_of(box));
-        }
         if (const auto* const weights = motion_.weights(placement.nodes.front())) {
             std::vector<double> sizes_m;
+            double reach_m = 0;  // of a point, by all targets together
             for (const auto& target : primitive.targets) {
-                double most = 0;
+                double most = 0, weight = 0;
                 if (const auto at = target.find("POSITION"); at != target.end())
                     for (const V3f& delta : read_vec3(gltf_, at->second))
                         most = std::max(most, double(delta.length()));
+                for (const std::vector<double>& step : *weights)
+                    if (sizes_m.size() < step.size())
+                        weight = std::max(weight, std::fabs(step[sizes_m.size()]));
                 sizes_m.push_back(most);
+                reach_m += 2 * weight * most;
             }
-            all = all | thin(*weights, sizes_m, double(box.size().length()));
+            all = thin(*weights, sizes_m, size_m);
+            box.min -= V3f(static_cast<float>(reach_m));
+            box.max += V3f(static_cast<float>(reach_m));
         }
+        if (placement.skin < 0) return all;
+        std::vector<std::vector<M44d>> by_joint;
+        double most_stretch = 0;
+        for (size_t step = 0; step < motion_.steps(); ++step) {
+            const std::vector<M44d> joints = joints_at(placement, step);
+            by_joint.resize(joints.size());
+            for (size_t j = 0; j < joints.size(); ++j) {
+                by_joint[j].push_back(joints[j]);
+                most_stretch = std::max(most_stretch, stretch(joints[j]));
+            }
+        }
+        const double morphed_m = all.off_m * most_stretch;
+        all.off_m = all.size_m = 0;
+        for (const auto& joint : by_joint) all = all | thin(joint, corners_of(box));
+        all.off_m += morphed_m;  // a point is off by both
         return all;
     }
 
@@ -235,15 +271,25 @@ class Placer {
         return corners;
     }
 
-    // Makes the last instance move as its node does. own: its place in the node's own space.
-    void move_instance(int node, const std::vector<M44d>& places, const M44d& own,
-                       const Box3f& bounds) {
+    struct InstancePlace {
+        M44d to_world;  ///< one that does not flatten space
+        M44d own;       ///< in the node's own space
+    };
+    // Makes the last instance move as its node does.
+    void move_instance(int node, const std::vector<M44d>& places, const InstancePlace& at,
+                       const Box3f& bounds, const std::optional<Thinning>& deformation) {
         std::vector<M44d> all;
+        double most_stretch = 0;
         for (const M44d& place : places) {
-            all.push_back(own * place);
-            if (is_singular(all.back())) add_thickness(all.back(), own * places_.of_node(node));
+            all.push_back(at.own * place);
+            if (dimensions_left(all.back()) == 2)
+                all.back() = thickened(all.back(), bounds);
+            else if (is_singular(all.back()))
+                add_thickness(all.back(), at.to_world);
+            most_stretch = std::max(most_stretch, stretch(all.back()));
         }
-        const Thinning thinning = thin(all, corners_of(bounds));
+        Thinning thinning = thin(all, corners_of(bounds));
+        if (deformation) thinning.off_m += most_stretch * deformation->off_m;
         InstanceMotion motion;
         for (size_t step = 0; step < all.size(); step += thinning.stride) {
             (void)instance(0, node, all[step], bounds);  // for its checks
@@ -253,14 +299,15 @@ class Placer {
         scene_.motion_of.back() = static_cast<int32_t>(scene_.motions.size());
         scene_.motions.push_back(std::move(motion));
         scene_.instances.back().moves = true;
-        count(thinning, tally_.moving_instances);
+        ++tally_.moving_instances;
+        note_off(thinning);
     }
 
-    // Gives a matrix that flattens space for a moment a little of what it is in the middle.
-    static void add_thickness(M44d& flat, const M44d& in_the_middle) {
+    // Gives a matrix that leaves nothing to see for a moment a little of what it is at another.
+    static void add_thickness(M44d& flat, const M44d& other) {
         constexpr double share = 1e-4;
         for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j) flat[i][j] += share * in_the_middle[i][j];
+            for (int j = 0; j < 3; ++j) flat[i][j] += share * other[i][j];
     }
 
     // Calls visit(node, matrix, own) for each place where something shows; own: the place in the
@@ -268,7 +315,8 @@ class Placer {
     template <class Visit>
     void each_place(const Placement& placement, Visit visit) {
         for (const int node : placement.nodes) {
-            const auto visit_shown = [&](const M44d& to_world, const M44d& own) {
+            const auto visit_shown = [&](const M44d& in_the_middle, const M44d& own) {
+                const M44d to_world = shown_place(motion_, node, in_the_middle, own);
                 if (!Places::shows(to_world) && placement.skin < 0) return;
                 visit(node,
                       dimensions_left(to_world) == 2 ? thickened(to_world, box_of(placement))

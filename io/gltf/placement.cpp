@@ -69,7 +69,8 @@ class Grouping {
         if (many) memory_.ask(kInstanceBytes, places_.count(index), 1, json_path("nodes", index));
         size_t places = 0, hidden = 0;
         bool flattens = false;
-        places_.each(index, [&](const M44d& to_world) {
+        places_.each_with_own(index, [&](const M44d& in_the_middle, const M44d& own) {
+            const M44d to_world = shown_place(motion_, index, in_the_middle, own);
             const bool shows = Places::shows(to_world);
             ++(shows ? places : hidden);
             flattens |= shows && is_singular(to_world);
@@ -119,6 +120,21 @@ const InstancePlaces* Places::instances_of(int node) {
 
 bool Places::shows(const M44d& to_world) {
     return fits_floats(to_world) && dimensions_left(to_world) >= 2;
+}
+
+M44d shown_place(const NodeMotion& motion, int node, const M44d& to_world, const M44d& own) {
+    const auto* const places = Places::shows(to_world) ? nullptr : motion.places(node);
+    if (!places) return to_world;
+    M44d shown = to_world;
+    double most = -1;
+    for (const M44d& place : *places) {
+        const M44d at = own * place;
+        const double size = std::fabs(linear_part(at).determinant());
+        if (!Places::shows(at) || size <= most) continue;
+        most = size;
+        shown = at;
+    }
+    return shown;
 }
 
 std::vector<Placement> find_placements(const GltfModel& gltf, const GltfNodes& nodes,

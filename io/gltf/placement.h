@@ -76,6 +76,10 @@ class Places {
     std::optional<InstancePlaces> read_;  ///< of that node: its primitives ask one after the other
 };
 
+/// Matrix of a place of a node: that of the middle, or of another time where nothing shows then;
+/// own: as each_with_own() has it.
+[[nodiscard]] M44d shown_place(const NodeMotion&, int node, const M44d& to_world, const M44d& own);
+
 /// Placements of all meshes of the scene, without places where nothing shows: those are counted.
 /// Throws InputError where a node is out of the range of a float, and where its places would take
 /// more memory than there is.

@@ -150,6 +150,49 @@ size_t segments_for(size_t moving_nodes) {
     return segments;
 }
 
+std::span<const double> numbers_of(const M44d& matrix) {
+    return {matrix.getValue(), 16};
+}
+std::span<const double> numbers_of(const std::vector<double>& numbers) {
+    return numbers;
+}
+
+// Whether numbers differ by more than rounding: a curve between equal keys rounds at every time
+// otherwise.
+bool differ(std::span<const double> a, std::span<const double> b) {
+    constexpr double kRounding = 1e-12;
+    double most = 0, apart = 0;
+    for (size_t i = 0; i < a.size(); ++i) {
+        most = std::max(most, std::fabs(a[i]));
+        apart = std::max(apart, std::fabs(a[i] - b[i]));
+    }
+    return apart > kRounding * most;
+}
+
+// Whether two keys lie within one time step, while the shutter is open. One alone shows in the
+// steps around it, and so does a cubic spline that is several steps long.
+bool has_keys_between_steps(const Track& track, const AnimationChoice& choice, double step_s) {
+    const Keyframes& keys = *track.keys;
+    const double least_s =
+        keys.interpolation == Interpolation::CubicSpline ? 4 * step_s : 0.999 * step_s;
+    const GltfClip& clip = *track.clip;
+    const auto local_s = [&](double time_s) {
+        return clip.local_s(time_s, choice.time_s, choice.repeats);
+    };
+    const double first_s = local_s(choice.time_s - choice.open_s / 2);
+    const double last_s = local_s(choice.time_s + choice.open_s / 2);
+    const bool wraps =
+        choice.repeats && clip.closed && (last_s < first_s || choice.open_s >= clip.duration_s);
+    for (size_t i = 1; i < keys.times_s.size(); ++i) {
+        if (keys.times_s[i] - keys.times_s[i - 1] >= least_s) continue;
+        if (keys.times_s[i] == keys.times_s[i - 1]) continue;
+        if (!wraps && (keys.times_s[i] < first_s || keys.times_s[i - 1] > last_s)) continue;
+        const auto a = keys.at(keys.times_s[i - 1]), b = keys.at(keys.times_s[i]);
+        if (differ(a, b)) return true;
+    }
+    return false;
+}
+
 double most_second_difference(const std::vector<std::vector<V3d>>& at) {
     double most = 0;
     for (size_t i = 1; i + 1 < at.size(); ++i)
@@ -191,8 +234,14 @@ NodeMotion::NodeMotion(const json& posed, std::span<const GltfClip> clips,
         const double time_s = choice.time_s + share * choice.open_s;
         return track.keys->at(track.clip->local_s(time_s, choice.time_s, choice.repeats));
     };
+    const double step_s = choice.open_s / double(steps_ - 1);
+    const auto look_between_steps = [&](const Track& track) {
+        if (track.keys && has_keys_between_steps(track, choice, step_s)) keys_between_steps_ = true;
+    };
     const auto changes = [](const auto& all) {
-        return std::any_of(all.begin(), all.end(), [&](const auto& one) { return one != all[0]; });
+        return std::any_of(all.begin(), all.end(), [&](const auto& one) {
+            return differ(numbers_of(one), numbers_of(all[0]));
+        });
     };
 
     for (const int i : moving) {
@@ -218,6 +267,9 @@ NodeMotion::NodeMotion(const json& posed, std::span<const GltfClip> clips,
             }
             all[step] = matrix * (above ? (*above)[step] : still_above);
         }
+        if (own)
+            for (const Track& track : {own->translation, own->rotation, own->scale})
+                look_between_steps(track);
         if (changes(all)) places_.emplace(i, std::move(all));
     }
 
@@ -229,6 +281,7 @@ NodeMotion::NodeMotion(const json& posed, std::span<const GltfClip> clips,
         const json& mesh = posed["meshes"][node["mesh"].get<size_t>()];
         std::vector<std::vector<double>> all(
             steps_, list(node.contains("weights") ? node : mesh, "weights"));
+        for (const Track& track : played) look_between_steps(track);
         for (size_t step = 0; step < steps_; ++step)
             for (const Track& track : played) {
                 const auto values = values_at(track, step);

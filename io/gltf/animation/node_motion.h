@@ -28,10 +28,13 @@ class NodeMotion {
     /// Weights of the morph targets of the mesh that a node shows; nullptr where they stay.
     [[nodiscard]] const std::vector<std::vector<double>>* weights(int node) const;
     [[nodiscard]] size_t steps() const { return steps_; }
+    /// Whether some keys lie so close together that what moves between time steps is not seen.
+    [[nodiscard]] bool keys_between_steps() const { return keys_between_steps_; }
     [[nodiscard]] bool empty() const { return places_.empty() && weights_.empty(); }
 
   private:
     size_t steps_ = 0;
+    bool keys_between_steps_ = false;
     std::map<int, std::vector<M44d>> places_;
     std::map<int, std::vector<std::vector<double>>> weights_;
 };
@@ -39,8 +42,8 @@ class NodeMotion {
 /// Choice of every n-th of the time steps.
 struct Thinning {
     size_t stride = 1;
-    /// Bound on how far a point is off between the chosen steps, where no key within the time moves
-    /// it by more than what two steps show.
+    /// Bound on how far a point is off between the chosen steps, but for NodeMotion's
+    /// keys_between_steps().
     double off_m = 0;
     double size_m = 0;  ///< greatest extent of the points in the middle
 

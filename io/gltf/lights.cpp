@@ -100,6 +100,15 @@ void move_ball(const NodeMotion& motion, int node, BallLamp& lamp, GltfTally& ta
     for (size_t i = 0; i < centres.size(); i += thinning.stride)
         lamp.centres.emplace_back(row(centres[i], 3));
     ++tally.moving_lights;
+    constexpr float same = 1e-4f;
+    const auto turns = [&](const M44d& place) {
+        const auto direction = forward(place);
+        return direction && (*direction - lamp.beam->direction).length() > same;
+    };
+    if (lamp.beam && std::any_of(places->begin(), places->end(), turns))
+        tally.warnings.push_back(json_path("nodes", node) +
+                                 ": its light has a radius: while it turns, it shines as in the "
+                                 "middle of the exposure");
 }
 
 bool is_dark(const tinygltf::Light& light) {

@@ -185,6 +185,9 @@ class Placer {
             (void)pose(placement, primitive, step, shape);
             if (shape.positions.size() != mesh.positions.size()) {  // triangles broke on the way
                 mesh.steps.clear();
+                tally_.warnings.push_back(json_path("meshes", placement.mesh) +
+                                          ": its shape is broken at times; it keeps that of the "
+                                          "middle of the exposure");
                 return std::nullopt;
             }
             mesh.steps.push_back(

@@ -29,9 +29,9 @@ struct GltfTally {
     /// Bound on how far what moves is off between time steps, in metres and in its own extents.
     double motion_off_m = 0, motion_off = 0;
     bool keys_between_steps = false;  ///< so that more may be off
-    uint64_t idle_dispersions = 0;   ///< of materials that refract nothing
-    std::set<std::string> honoured;  ///< features that the scene uses, in words
-    WarningLog warnings;             ///< one line each
+    uint64_t idle_dispersions = 0;    ///< of materials that refract nothing
+    std::set<std::string> honoured;   ///< features that the scene uses, in words
+    WarningLog warnings;              ///< one line each
 };
 
 }  // namespace petzval

@@ -6,6 +6,7 @@
 #include "core/light/light_choice.h"
 #include "core/light/light_sampling.h"
 #include "core/light/things.h"
+#include "core/scene/lamp.h"
 #include "core/scene/motion.h"
 #include "core/shading/surface.h"
 #include "core/traversal/bvh.h"
@@ -317,6 +318,55 @@ TEST(MovingLight, IsAThingAsLargeAsWhereItComes) {
         for (const V3d& corner : corners_at(scene, 0, 0, i / 20.))
             EXPECT_LE((V3f(corner) - things[0].centre).length(),
                       things[0].reach_m * 1.0001f + 1e-4f);
+}
+
+// Its corners are rounded as those of the steps are, between which it is near the receiver.
+TEST(MovingLight, IsNotInItsOwnShadowOnAFastFlight) {
+    for (const float reach : {1.f, 1e3f, 1e5f}) {
+        Scene scene = lamp_scene(Rgb(1.f), true), moving;
+        place_moving(moving, scene.meshes[0], scene.materials[0], at_steps(2, [&](float time) {
+                         return turned(V3f(time), V3f(2, -1, 0.5f) * (reach * (time - 0.5f)));
+                     }));
+        finish_scene(moving);
+        const Bvh bvh(moving, Traversal::Robust);
+        Random random(11);
+        int drawn = 0, shadowed = 0;
+        for (int i = 0; i < 20000; ++i) {
+            const float time = 0.5f + (random.next() - 0.5f) / reach;
+            const auto c = corners_at(moving, 0, 0, double(time));
+            Ray ray;
+            ray.origin = V3f((c[0] + c[1] + c[2]) / 3) + random.direction() * (3 * random.next());
+            // Beside the lamp's own plane, rounding decides on which side of it the receiver is.
+            const V3d normal = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
+            if (std::fabs(normal.dot(V3d(ray.origin) - c[0])) < 0.2) continue;
+            const auto s =
+                sample_light(moving, moving.lights[0], ray.origin, random.next2(), kRgb, time);
+            if (!s) continue;
+            ++drawn;
+            ray.direction = s->target - ray.origin;
+            ray.t_max = kOneMinus;
+            ray.time = time;
+            shadowed += bvh.occluded(ray);
+        }
+        EXPECT_GT(drawn, 10000) << reach;
+        EXPECT_EQ(shadowed, 0) << reach;
+    }
+}
+
+TEST(MovingLight, BallsAreAtEachTimeTheBallThatStandsThere) {
+    const auto flight = [](float time) { return V3f(3 * time, 1 - time, 0.5f); };
+    Scene moving;
+    const std::vector<BallLamp> ball{{flight(0.5f), 0.2f, Rgb(1.f), -1, {}, at_steps(3, flight)}};
+    add_lamps(moving, ball);
+    finish_scene(moving);
+    for (const float time : {0.f, 0.3f, 0.5f, 1.f}) {
+        Scene still;
+        add_lamps(still, std::vector<BallLamp>{{flight(time), 0.2f, Rgb(1.f)}});
+        for (uint32_t t = 0; t < still.meshes[0].triangles.size(); ++t) {
+            const auto a = triangle_corners(moving, 0, t, time), b = triangle_corners(still, 0, t);
+            for (size_t k = 0; k < 3; ++k) ASSERT_LT((a[k] - b[k]).length(), 1e-6f) << time;
+        }
+    }
 }
 
 }  // namespace

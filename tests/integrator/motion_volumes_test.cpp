@@ -3,6 +3,7 @@
 // meet.
 #include <gtest/gtest.h>
 
+#include "integrator/boundary.h"
 #include "integrator/start_volumes.h"
 #include "tests/support/moving.h"
 #include "tests/support/scenes.h"
@@ -112,6 +113,29 @@ TEST(MovingVolumes, HoldAPointWhereTwoOpenMeshesCloseEachOther) {
         EXPECT_TRUE(start_volumes(world.scene, *world.bvh, centre + V3f(0, 2, 0), time) == due);
         due.add(world.scene.materials[0], 1);
         EXPECT_TRUE(start_volumes(world.scene, *world.bvh, centre + within, time) == due) << time;
+    }
+}
+
+// A ray that meets the edge between two triangles of a face crosses one face, wherever it is then.
+TEST(MovingVolumes, FacesThatShareAnEdgeAreNeighboursAtAllTimes) {
+    World world;
+    place_moving(world.scene, box(V3f(-1), V3f(1)), glass_material(1.5f),
+                 at_steps(5, [](float time) {
+                     return turned(V3f(time, 2 * time, 0), V3f(9 * time, 0, 0));
+                 }));
+    world.finish();
+    for (const float time : {0.f, 0.13f, 0.5f, 0.9f}) {
+        // The diagonal leads from the first corner to the third one: of both triangles.
+        const Hit one{V2f(0, 0.4f), 0, 0, time}, other{V2f(0.4f, 0), 0, 1, time};
+        const V3f along(0.3f, 0.2f, -0.5f);
+        const Surface a = make_surface(world.scene, along, one);
+        const Surface b = make_surface(world.scene, along, other);
+        ASSERT_LT((a.p - b.p).length(), 1e-5f);
+        EXPECT_TRUE(boundary_detail::are_neighbours(world.scene, a, b)) << time;
+        EXPECT_TRUE(boundary_detail::are_neighbours(world.scene, b, a)) << time;
+        const Surface inside = make_surface(world.scene, along, {V2f(0.3f, 0.3f), 0, 1, time});
+        EXPECT_FALSE(boundary_detail::are_neighbours(
+            world.scene, make_surface(world.scene, along, {V2f(0.3f, 0.3f), 0, 0, time}), inside));
     }
 }
 

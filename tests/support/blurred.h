@@ -68,6 +68,8 @@ inline Light between(const Light& a, const Light& b, double share) {
             mesh.positions[v] = a.positions[v] * float(1 - share) + b.positions[v] * float(share);
         for (size_t v = 0; v < mesh.normals.size(); ++v)
             mesh.normals[v] = a.normals[v] * float(1 - share) + b.normals[v] * float(share);
+        for (size_t v = 0; v < mesh.tangents.size(); ++v)
+            mesh.tangents[v] = a.tangents[v] * float(1 - share) + b.tangents[v] * float(share);
         mesh.steps.clear();
     }
     for (size_t i = 0; i < scene.light_motion_of.size(); ++i) {

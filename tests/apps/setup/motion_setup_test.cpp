@@ -125,6 +125,7 @@ TEST(MotionSetup, ACameraThatTheUserPlacesStandsStill) {
     saved.request.camera.look_at = std::array{V3f(0.3f, 0, 4), V3f(0.3f, 0, 0)};
     expect_mean_of_stills(saved);
     const RenderSetup open = set_up(saved.at(kAt, true));
+    ASSERT_NE(open.view.camera->shutter(), nullptr);
     Ray ray;
     ray.origin = V3f(1, 2, 3);
     ray.direction = V3f(0, 0, -1);
@@ -141,6 +142,18 @@ TEST(MotionSetup, AnotherViewOfTheSceneHasAShutterToo) {
     const RenderSetup second = set_up_view(first, other, [](const std::string&) {});
     EXPECT_EQ(second.prepared.scene, first.prepared.scene);
     ASSERT_NE(second.view.camera->shutter(), nullptr);
+}
+
+TEST(MotionSetup, ACameraThatAloneMovesHasAShutter) {
+    TinyGltf file = file_with(kPerspective);
+    json& channels = file.json["animations"][0]["channels"];
+    std::erase_if(channels.get_ref<json::array_t&>(), [&](const json& channel) {
+        return !file.json["nodes"][channel["target"]["node"].get<size_t>()].contains("camera");
+    });
+    const Saved saved(file);
+    const RenderSetup open = set_up(saved.at(kAt, true));
+    EXPECT_FALSE(has_motion(*open.prepared.scene));
+    EXPECT_NE(open.view.camera->shutter(), nullptr);
 }
 
 TEST(MotionSetup, NothingThatMovesHasNoShutter) {

@@ -288,6 +288,23 @@ TEST(GltfMotion, LightsWithARadiusAreBallsThatMove) {
     }
 }
 
+// What is not followed is said.
+TEST(GltfMotion, ASpotWithARadiusThatTurnsIsWarnedOf) {
+    for (const bool turns : {false, true}) {
+        TinyGltf file;
+        file.json["extensionsUsed"] = {"KHR_lights_punctual"};
+        file.json["extensions"]["KHR_lights_punctual"]["lights"] = {
+            {{"type", "spot"},
+             {"spot", json::object()},
+             {"extras", {{"petzval", {{"radius_m", 0.1}}}}}}};
+        const int node = file.add_root({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+        animate(file, node, "translation", {0, 1}, {0, 0, 0, 1, 2, 3});
+        if (turns) spin(file, node, kAxis, 60);
+        const GltfFile open = SavedGltf(file).at(kAt, kOpen);
+        EXPECT_EQ(contains_line(open.warnings, "shines as in the middle"), turns);
+    }
+}
+
 TEST(GltfMotion, CamerasStandWhereTheStillsHaveThem) {
     TinyGltf file;
     file.add("cameras",

@@ -31,10 +31,10 @@ struct RenderJob {
     SamplerKind sampler = SamplerKind::Owen;
     Filter filter{FilterKind::BlackmanHarris, 1.5f};
     int tile_size_px = 16;
-    Observer observer;        ///< draws what the lanes carry
-    uint32_t replicates = 1;  ///< kReplicates for a film with bins
+    Observer observer;                   ///< draws what the lanes carry
+    uint32_t replicates = 1;             ///< kReplicates for a film with bins
     const Velocity* velocity = nullptr;  ///< where that layer is wanted; must outlive the job
-    bool timing = false;      ///< measure where the time goes, on a sixteenth of the samples
+    bool timing = false;  ///< measure where the time goes, on a sixteenth of the samples
 };
 
 /// Progress of a running render, and the flag that stops it. Any thread may use it.

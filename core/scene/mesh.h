@@ -69,8 +69,8 @@ struct Instance {
     uint32_t mesh = 0;
     bool identity = true;
     bool flips = false;  ///< the matrix mirrors: front faces appear clockwise
-    /// While the shutter is open the instance moves, or its mesh changes its shape (finish_scene
-    /// sets that); the matrices are as in the middle.
+    /// While the shutter is open the instance moves, or its mesh changes its shape; the matrices
+    /// are as in the middle.
     bool moves = false;
     int32_t first_light = -1;  ///< light of triangle 0; -1: the instance does not emit
     M44f to_world;             ///< affine

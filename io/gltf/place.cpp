@@ -98,9 +98,11 @@ class Placer {
         if (of_mesh.emits() && !of_mesh.unlit)
             memory_.ask(kLightBytes, placement.places, mesh.triangles.size(), where);
         const auto index = static_cast<uint32_t>(scene_.meshes.size());
+        const bool deforms_here = !mesh.steps.empty();
         scene_.meshes.push_back(std::move(mesh));
         if (baked) {
-            scene_.instances.push_back({.mesh = index, .to_world = {}, .to_local = {}});
+            scene_.instances.push_back(
+                {.mesh = index, .moves = deforms_here, .to_world = {}, .to_local = {}});
             if (deformation) note_off(*deformation);
             return;
         }
@@ -112,6 +114,7 @@ class Placer {
             bounds.extendBy(box_about(step.positions));
         each_place(placement, [&](int node, const M44d& to_world, const M44d& own) {
             scene_.instances.push_back(instance(index, node, to_world, bounds));
+            scene_.instances.back().moves = deforms_here;
             const auto* const places = motion_.places(node);
             if (!places && deformation) note_off(scaled(*deformation, stretch(to_world)));
             if (places) move_instance(node, *places, {to_world, own}, bounds, deformation);

@@ -12,12 +12,14 @@ out=$(mktemp -d)
 trap 'rm -r "$out"' EXIT
 no_avx512=glibc.cpu.hwcaps=-AVX512F,-AVX512VL,-AVX512BW,-AVX512DQ,-AVX512CD
 
-# Glass, wavelengths, a lens, and lamps under a sky, whose shares a pilot learns; a sky through
-# alpha-tested leaves has no scene that ships.
+# Glass, wavelengths, a lens, lamps under a sky, whose shares a pilot learns, and motion; a sky
+# through alpha-tested leaves has no scene that ships.
 renders=("gem.glb --size 32x18 --spp 2"
     "glass.glb --camera ice --size 24x16 --spp 4"
     "ornaments.glb --size 24x16 --spp 2 --lens takumar-50mm-f1.2 --focus 1m"
-    "first_light.glb --size 24x16 --spp 1 --env studio --lens pinhole")
+    "first_light.glb --size 24x16 --spp 1 --env studio --lens pinhole"
+    "wheels.glb --size 24x16 --spp 4 --at 0.1 --shutter 180deg"
+    "face.glb --size 16x16 --spp 2 --at 0.98 --shutter 180deg")
 
 compare() {
     local name=$1

@@ -92,6 +92,9 @@ std::optional<PropertyKind> property_kind(const std::string& pointer) {
                            words[0] == "materials";
     if (in_arrays ? !is_number(words[1]) : words[0] != "extensions") return std::nullopt;
     const std::string_view name = words.back(), parent = words[words.size() - 2];
+    const bool of_node = name == "translation" || name == "rotation" || name == "scale";
+    if (words[0] == "nodes" && words.size() == 3 && !of_node && name != "weights")
+        return std::nullopt;  // its other properties are no numbers
     if (name == "weights") return kWeights;
     if (parent == "weights" && is_number(name)) return kNumber;
     if (name == "rotation") {

@@ -290,10 +290,10 @@ TEST_P(Nowhere, IsWarnedOfAndChangesNothing) {
 INSTANTIATE_TEST_SUITE_P(
     Pointers, Nowhere,
     testing::Values(
-        "", "/", "nodes/0/translation", "/nodes", "/nodes/0", "/nodes/9/translation",
-        "/nodes/00/translation", "/nodes/-/translation", "/nodes/-1/translation",
-        "/nodes/99999999999999999999999999/translation", "/nodes/0/name", "/nodes/0/mesh",
-        "/nodes/0/children/0", "/nodes/0/translation~", "/nodes/0~2/translation",
+        "", "/", "nodes/0/translation", "/nodes", "/nodes/1/color", "/nodes/0",
+        "/nodes/9/translation", "/nodes/00/translation", "/nodes/-/translation",
+        "/nodes/-1/translation", "/nodes/99999999999999999999999999/translation", "/nodes/0/name",
+        "/nodes/0/mesh", "/nodes/0/children/0", "/nodes/0/translation~", "/nodes/0~2/translation",
         "/nodes/2/children/translation", "/nodes/2/children/weights", "/nodes/0/weights",
         "/nodes/0/weights/0", "/nodes/1/weights/0", "/nodes/1/translation", "/nodes/1/rotation",
         "/nodes/0/extensions/KHR_node_visibility/visible", "/materials/0/normalTexture/scale",

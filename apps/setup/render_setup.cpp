@@ -64,6 +64,14 @@ Sky sky_of(const SceneRequest& request, const Notice& notice, PictureBudget& pic
     return request.background ? Sky::uniform(*request.background) : Sky();
 }
 
+// Points of a shutter curve as time:open, the time as a share of the whole.
+std::string text_of(const ShutterCurve& curve) {
+    std::string text;
+    for (const auto& [time, open] : curve.points)
+        text += fmt::format("{}{:.6g}:{:.6g}", text.empty() ? "" : ",", time, open);
+    return text;
+}
+
 std::vector<std::pair<std::string, std::string>> describe(const SceneRequest& request) {
     std::vector<std::pair<std::string, std::string>> m;
     m.emplace_back("petzval:scene", request.scene.filename().string());
@@ -76,6 +84,10 @@ std::vector<std::pair<std::string, std::string>> describe(const SceneRequest& re
     if (const auto& animation = request.choices.animation) {
         m.emplace_back("petzval:time_s", fmt::format("{:.9g}", animation->time_s));
         m.emplace_back("petzval:loop", animation->repeats ? "1" : "0");
+        if (const auto& curve = request.camera.shutter_curve) {
+            m.emplace_back("petzval:shutterOpen_s", fmt::format("{:.9g}", animation->open_s));
+            m.emplace_back("petzval:shutterCurve", text_of(*curve));
+        }
         if (!animation->names.empty())
             m.emplace_back("petzval:animations",
                            visible(fmt::format("{}", fmt::join(animation->names, ", "))));

@@ -117,6 +117,9 @@ TEST_F(CliTime, AShutterBlursOnlyWhatMoves) {
     const Picture sharp = render({"--at", "0.5"}),
                   blurred = render({"--at", "0.5", "--shutter", "1"});
     EXPECT_NE(sharp.pixels, blurred.pixels);
+    EXPECT_EQ(metadata_of(blurred, "petzval:time_s"), "0.5");
+    EXPECT_EQ(metadata_of(blurred, "petzval:shutterOpen_s"), "1");
+    EXPECT_EQ(metadata_of(blurred, "petzval:shutterCurve"), "0:1,1:1");
     // The shutter's time exposes in the photographic mode too: twice the time, twice the light.
     const Words photo = {
         "--exposure-mode", "photographic", "--fstop", "8", "--focus", "2", "--at", "9.25",

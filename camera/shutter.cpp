@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/steps.h"
+
 namespace petzval {
 namespace {
 
@@ -52,9 +54,7 @@ float Shutter::time(float u) const {
 
 M44d Shutter::moved(float time) const {
     if (from_middle_.empty()) return {};
-    const double at = std::clamp(double(time), 0., 1.) * double(from_middle_.size() - 1);
-    const auto before = std::min(static_cast<size_t>(at), from_middle_.size() - 2);
-    const double share = at - double(before);
+    const auto [before, share] = step_place(double(time), from_middle_.size());
     return from_middle_[before] * (1 - share) + from_middle_[before + 1] * share;
 }
 

@@ -118,8 +118,7 @@ auto PathTracer<Caster>::draw_light(const LightReceiver& receiver, const Sampler
     if (!pick) return std::nullopt;
     const V2f u_on_light(left_of_unit(pick->u, pick->probability, u.light_rest), u.light_point.y);
     std::optional<Light> moved;
-    const Light& light = scene_.light_motions.empty() ? scene_.lights[pick->light]
-                                                      : light_at(scene_, pick->light, time, moved);
+    const Light& light = light_at(scene_, pick->light, time, moved);
     if (std::holds_alternative<SkyLight>(light)) {
         const Sky::Draw drawn = scene_.sky.sample(u_on_light);
         return DrawnLight{{drawn.direction, V3f(0.f), true, f4{}, 0.f, false},

@@ -81,8 +81,7 @@ void add_output_options(CLI::App& app, RenderOptions& o) {
         o.display_only.push_back(option->group("Output"));
     add("--aov", o.aovs,
         "layers of the EXR: albedo,normal,depth,position,uv,emission,cost,velocity; may be given "
-        "more than "
-        "once")
+        "more than once")
         ->allow_extra_args(false);
     add("--stats", o.stats, "write counts and times to this JSON file");
     app.add_option("--frames", o.frames,

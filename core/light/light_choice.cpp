@@ -49,7 +49,7 @@ struct BoundsOf {
     }
     std::optional<LightBounds> operator()(const TriangleLight& light) const {
         const size_t steps = step_count(scene, light.instance);
-        LightBounds all = bounds_of(light, steps == 1 ? kMiddleOfShutter : 0.f);
+        LightBounds all = bounds_of(light, step_time(0, steps));
         for (size_t i = 1; i < steps; ++i)
             all = over_both(all, bounds_of(light, step_time(i, steps)));
         return all;
@@ -71,11 +71,10 @@ struct BoundsOf {
 
 std::optional<LightBounds> bounds_of_light(const Scene& scene, uint32_t light, float power) {
     const BoundsOf bounds{scene, power};
-    if (light >= scene.light_motion_of.size() || scene.light_motion_of[light] < 0)
-        return std::visit(bounds, scene.lights[light]);
+    const auto* const steps = steps_of_light(scene, light);
+    if (!steps) return std::visit(bounds, scene.lights[light]);
     std::optional<LightBounds> all;
-    for (const Light& step :
-         scene.light_motions[static_cast<size_t>(scene.light_motion_of[light])]) {
+    for (const Light& step : *steps) {
         const auto one = std::visit(bounds, step);
         if (one) all = all ? over_both(*all, *one) : *one;
     }

@@ -175,7 +175,6 @@ float area_of(const std::array<V3f, 3>& corner) {
 // others.
 float greatest_area(const Scene& scene, const TriangleLight& light) {
     const size_t steps = step_count(scene, light.instance);
-    if (steps == 1) return area_of(triangle_corners(scene, light.instance, light.triangle));
     float most = 0.f;
     for (size_t i = 0; i < steps; ++i)
         most = std::max(most, area_of(triangle_corners(scene, light.instance, light.triangle,

@@ -148,8 +148,7 @@ Part part_of(const Scene& scene, uint32_t instance, uint32_t triangle) {
     std::vector<V3f> reached;
     const size_t steps = step_count(scene, instance);
     for (size_t i = 0; i < steps; ++i) {
-        const auto corners = triangle_corners(scene, instance, triangle,
-                                              steps == 1 ? kMiddleOfShutter : step_time(i, steps));
+        const auto corners = triangle_corners(scene, instance, triangle, step_time(i, steps));
         const V3f cross = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
         part.area_m2 = std::max(part.area_m2, double(cross.length()) / 2);
         reached.insert(reached.end(), corners.begin(), corners.end());

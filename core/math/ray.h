@@ -3,11 +3,9 @@
 #pragma once
 
 #include "core/math/math.h"
+#include "core/math/steps.h"
 
 namespace petzval {
-
-/// Times lie from 0, as the shutter opens, to 1, as it has closed.
-inline constexpr float kMiddleOfShutter = 0.5f;
 
 struct Ray {
     V3f origin;
@@ -15,7 +13,7 @@ struct Ray {
     float t_max = kInfinity;
     /// Seed of BLEND coverage: the same seed and triangle give the same answer.
     uint32_t alpha_seed = 0;
-    float time = kMiddleOfShutter;
+    float time = kMiddleOfShutter;  ///< core/math/steps.h
 };
 
 /// A triangle hit, as the traversal reports it; Surface (core/shading/surface.h) has the rest.

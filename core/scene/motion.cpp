@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/scene/motion.h"
 
+#include <algorithm>
 #include <type_traits>
 
 namespace petzval {
@@ -14,28 +15,6 @@ V3f direction_between(const V3f& a, const V3f& b, float share) {
     const V3f sum = between(a, b, share);
     const float length2 = sum.dot(sum);
     return length2 > 0.f ? sum / std::sqrt(length2) : a;
-}
-
-// Inverse of the linear part of a matrix, by its cofactors in double.
-M33f inverse_linear(const M44f& m) {
-    const V3d x(m[0][0], m[0][1], m[0][2]), y(m[1][0], m[1][1], m[1][2]),
-        z(m[2][0], m[2][1], m[2][2]);
-    const V3d a = y.cross(z), b = z.cross(x), c = x.cross(y);
-    const double scale = 1 / x.dot(a);
-    M33f inverse;
-    for (int i = 0; i < 3; ++i) {
-        inverse[i][0] = static_cast<float>(a[i] * scale);
-        inverse[i][1] = static_cast<float>(b[i] * scale);
-        inverse[i][2] = static_cast<float>(c[i] * scale);
-    }
-    return inverse;
-}
-
-// Whether a matrix turns what is counter-clockwise into clockwise.
-bool mirrors(const M44f& m) {
-    const V3d x(m[0][0], m[0][1], m[0][2]), y(m[1][0], m[1][1], m[1][2]),
-        z(m[2][0], m[2][1], m[2][2]);
-    return x.dot(y.cross(z)) < 0;
 }
 
 struct Between {
@@ -65,13 +44,14 @@ struct Between {
 
 Instance moved_instance(const Instance& still, const std::vector<M44f>& places, float time) {
     Instance out = still;
-    const StepPlace at = step_place(time, places.size());
+    const auto at = step_place(time, places.size());
     const M44f &a = places[at.before], &b = places[at.before + 1];
     for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 3; ++j)
             out.to_world[i][j] = a[i][j] * (1.f - at.share) + b[i][j] * at.share;
-    out.to_local = inverse_linear(out.to_world);
-    out.flips = mirrors(out.to_world);
+    const auto linear = linear_part(M44d(out.to_world));
+    out.to_local = M33f(linear.inverse());
+    out.flips = linear.determinant() < 0;
     return out;
 }
 
@@ -81,7 +61,7 @@ bool flips_at(const Scene& scene, uint32_t instance, float time) {
 
 CornerValues moved_corners(const Mesh& mesh, const std::array<uint32_t, 3>& corner,
                            std::vector<V3f> MeshStep::*of, float time) {
-    const StepPlace at = step_place(time, mesh.steps.size());
+    const auto at = step_place(time, mesh.steps.size());
     const std::vector<V3f>&a = mesh.steps[at.before].*of, &b = mesh.steps[at.before + 1].*of;
     CornerValues out;
     for (size_t i = 0; i < 3; ++i) out[i] = between(a[corner[i]], b[corner[i]], at.share);
@@ -91,7 +71,7 @@ CornerValues moved_corners(const Mesh& mesh, const std::array<uint32_t, 3>& corn
 V4f tangent_at(const Mesh& mesh, uint32_t triangle, V2f b, float time) {
     const auto& corner = mesh.triangles[triangle];
     if (mesh.steps.empty()) return interpolate(mesh.tangents, corner, b);
-    const StepPlace at = step_place(time, mesh.steps.size());
+    const auto at = step_place(time, mesh.steps.size());
     return interpolate(mesh.steps[at.before].tangents, corner, b) * (1.f - at.share) +
            interpolate(mesh.steps[at.before + 1].tangents, corner, b) * at.share;
 }
@@ -102,9 +82,8 @@ size_t step_count(const Scene& scene, uint32_t instance) {
     return std::max({size_t{1}, shapes, places ? places->size() : 0});
 }
 
-Light moved_light(const Scene& scene, uint32_t light, float time) {
-    const auto& steps = scene.light_motions[static_cast<size_t>(scene.light_motion_of[light])];
-    const StepPlace at = step_place(time, steps.size());
+Light moved_light(const std::vector<Light>& steps, float time) {
+    const auto at = step_place(time, steps.size());
     return std::visit(Between{at.share}, steps[at.before], steps[at.before + 1]);
 }
 

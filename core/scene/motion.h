@@ -4,26 +4,14 @@
 // matrices run in straight lines, as Embree has it.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <optional>
 
 #include "core/math/ray.h"
+#include "core/math/steps.h"
 #include "core/scene/scene.h"
 
 namespace petzval {
-
-/// Place of a time among `count` steps, at least two: the step before it, and the share of the way
-/// to the next one.
-struct StepPlace {
-    size_t before;
-    float share;
-};
-[[nodiscard]] inline StepPlace step_place(float time, size_t count) {
-    const float at = std::clamp(time, 0.f, 1.f) * static_cast<float>(count - 1);
-    const auto before = std::min(static_cast<size_t>(at), count - 2);
-    return {before, at - static_cast<float>(before)};
-}
 
 /// Places of an instance at the steps; nullptr for one that stands still.
 [[nodiscard]] inline const std::vector<M44f>* places_of(const Scene& scene, uint32_t instance) {
@@ -86,19 +74,20 @@ template <bool kStill = false>
 /// Number of steps at which an instance, or the shape of its mesh, is known; 1 where it is still.
 [[nodiscard]] size_t step_count(const Scene&, uint32_t instance);
 
-/// Time of one of `count` steps, at least two.
-[[nodiscard]] inline float step_time(size_t step, size_t count) {
-    return static_cast<float>(step) / static_cast<float>(count - 1);
+/// A light at the steps; nullptr for one that stands still.
+[[nodiscard]] inline const std::vector<Light>* steps_of_light(const Scene& scene, uint32_t light) {
+    if (light >= scene.light_motion_of.size() || scene.light_motion_of[light] < 0) return nullptr;
+    return &scene.light_motions[static_cast<size_t>(scene.light_motion_of[light])];
 }
-
-/// A light that moves, as it is at a time.
-[[nodiscard]] Light moved_light(const Scene&, uint32_t light, float time);
+/// A light that moves, as it is at a time; steps: at least two.
+[[nodiscard]] Light moved_light(const std::vector<Light>& steps, float time);
 /// A light as it is at a time; `moved` holds it where it moves.
 [[nodiscard]] inline const Light& light_at(const Scene& scene, uint32_t light, float time,
                                            std::optional<Light>& moved) {
-    if (light >= scene.light_motion_of.size() || scene.light_motion_of[light] < 0)
+    const auto* const steps = steps_of_light(scene, light);
+    if (!steps) [[likely]]
         return scene.lights[light];
-    return moved.emplace(moved_light(scene, light, time));
+    return moved.emplace(moved_light(*steps, time));
 }
 
 /// Whether anything moves while the shutter is open.

@@ -147,4 +147,15 @@ json parse_json(std::string_view text, const std::string& file) {
     return Builder(text, file).parse();
 }
 
+const nlohmann::json& member(const nlohmann::json& owner, const char* key) {
+    static const nlohmann::json none;
+    const auto at = owner.is_object() ? owner.find(key) : owner.end();
+    return at == owner.end() ? none : *at;
+}
+
+std::string text_of(const nlohmann::json& owner, const char* key) {
+    const nlohmann::json& text = member(owner, key);
+    return text.is_string() ? text.get<std::string>() : std::string();
+}
+
 }  // namespace petzval

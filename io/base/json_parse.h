@@ -20,4 +20,9 @@ inline constexpr int max_json_depth = 128;
 /// name, for the InputError.
 [[nodiscard]] nlohmann::json parse_json(std::string_view text, const std::string& file);
 
+/// Member of an object; null where it has none of that key, or is no object.
+[[nodiscard]] const nlohmann::json& member(const nlohmann::json& owner, const char* key);
+/// Text of a member; empty where there is none.
+[[nodiscard]] std::string text_of(const nlohmann::json& owner, const char* key);
+
 }  // namespace petzval

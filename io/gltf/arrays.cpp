@@ -44,15 +44,6 @@ void with_component_type(int component_type, Visit&& visit) {
     }
 }
 
-template <class Number, class T>
-Number convert(T raw, bool normalized) {
-    if constexpr (std::is_integral_v<T> && std::is_floating_point_v<Number>) {
-        if (normalized)
-            return std::max(Number(raw) / Number(std::numeric_limits<T>::max()), Number(-1));
-    }
-    return static_cast<Number>(raw);
-}
-
 /// Decodes into rows of `row` numbers each, element i into row slot(i).
 template <class T, class Number, class Slot>
 void decode(const Elements& from, int width, bool normalized, Number* to, int row, Slot slot) {
@@ -66,7 +57,7 @@ void decode(const Elements& from, int width, bool normalized, Number* to, int ro
         const uint8_t* element = from.first + i * from.stride;
         Number* out = to + slot(i) * row;
         for (int k = 0; k < width; ++k)
-            out[k] = convert<Number>(load<T>(element + k * sizeof(T)), normalized);
+            out[k] = component_value<Number>(load<T>(element + k * sizeof(T)), normalized);
     }
 }
 

@@ -50,8 +50,9 @@ GltfFile GltfReader::load(PictureBudget& pictures, double time_s) {
         const GltfNodes nodes = flatten_nodes(gltf, d.choices.scene);
         NodeMotion motion;
         if (animation)
-            motion = NodeMotion(d.source.json, d.source.clips, *animation, nodes.to_world);
-        tally.keys_between_steps = motion.keys_between_steps();
+            motion = NodeMotion(d.source.json, d.source.clips, *animation,
+                                {nodes.order, nodes.parent, nodes.to_world});
+        tally.motion_unseen = motion.unseen();
         GltfMaterials materials(gltf, file.scene, tally, pictures, d.decoded);
         place_meshes(gltf, nodes, motion, GltfVariant(gltf, d.choices.variant), materials,
                      file.scene, tally, d.choices.point_line_radius_m);

@@ -120,6 +120,9 @@ void describe_support(const GltfModel& gltf, const GltfTally& tally, GltfFile& f
     ignore(tally.line_primitives, "line primitive", no_surface);
 }
 
+/// Makes a bound that is said in two digits hold: they may be less than it by a twentieth.
+constexpr double kRoundedUp = 1.05;
+
 // Tells what moves while the shutter is open, and how well that is followed.
 void describe_motion(const GltfTally& tally, GltfFile& file) {
     std::string text;
@@ -133,8 +136,9 @@ void describe_motion(const GltfTally& tally, GltfFile& file) {
     add(tally.moving_lights, "moving light");
     add(tally.moving_cameras, "moving camera");
     const std::string unseen =
-        tally.keys_between_steps
-            ? "; keys lie closer together than time steps, between which their motion is not seen"
+        tally.motion_unseen
+            ? "; keys lie closer together than time steps, or something turns by more than half "
+              "a turn between them: such motion is not seen"
             : "";
     if (text.empty()) {
         file.remarks.emplace_back("nothing moves while the shutter is open" + unseen);
@@ -144,7 +148,7 @@ void describe_motion(const GltfTally& tally, GltfFile& file) {
         text += fmt::format(
             "; between time steps, meshes are off by at most {:.2g} m, {:.2g} % of "
             "their extent",
-            tally.motion_off_m, 100 * tally.motion_off);
+            kRoundedUp * tally.motion_off_m, kRoundedUp * 100 * tally.motion_off);
     file.remarks.push_back("while the shutter is open: " + text + unseen);
 }
 
@@ -206,7 +210,6 @@ void describe(const GltfModel& gltf, const GltfTally& tally,
     describe_contents(file);
     describe_support(gltf, tally, file);
     describe_time(gltf, tally, animation, file);
-
     append_warnings(tally, file.warnings);
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "io/base/json_cursor.h"
+#include "io/gltf/animation/thinning.h"
 #include "io/gltf/spectral.h"
 #include "io/gltf/validate/extras.h"
 

@@ -8,6 +8,7 @@
 #include "io/base/error.h"
 #include "io/base/json_cursor.h"
 #include "io/base/named.h"
+#include "io/gltf/animation/node_place.h"
 
 namespace petzval {
 namespace {
@@ -35,20 +36,6 @@ GltfNode read_node(const JsonCursor& json) {
     for (const double child : numbers(json, "children"))
         node.children.push_back(static_cast<int>(child));
     return node;
-}
-
-// The node's own transform, for row vectors: its matrix, or scale, rotation and translation.
-M44d node_matrix(const JsonCursor& json) {
-    if (const auto m = json.numbers("matrix", 16); !m.empty())
-        return {m[0], m[1], m[2],  m[3],  m[4],  m[5],  m[6],  m[7],
-                m[8], m[9], m[10], m[11], m[12], m[13], m[14], m[15]};
-    NodePlace place;
-    if (const auto s = json.numbers("scale", 3); !s.empty()) place.scale = {s[0], s[1], s[2]};
-    if (const auto q = json.numbers("rotation", 4); !q.empty())
-        place.rotation = {q[0], q[1], q[2], q[3]};
-    if (const auto t = json.numbers("translation", 3); !t.empty())
-        place.translation = {t[0], t[1], t[2]};
-    return place.matrix();
 }
 
 std::vector<int> all_roots(const std::vector<GltfNode>& nodes) {
@@ -95,17 +82,20 @@ GltfNodes flatten_nodes(const GltfModel& gltf, const std::optional<std::string>&
     nodes.to_world.reserve(root.length("nodes"));
     for (const JsonCursor& json : root.objects("nodes")) {
         nodes.node.push_back(read_node(json));
-        nodes.to_world.push_back(node_matrix(json));
+        nodes.to_world.push_back(stored_matrix(json.value()));
         if (const auto many = read_instancing(json))
             nodes.instancing.emplace(static_cast<int>(nodes.node.size()) - 1, *many);
     }
+    nodes.parent.assign(nodes.node.size(), -1);
     // Skins may name joints anywhere in the file, so every node gets its place.
     const std::vector<int> roots = all_roots(nodes.node);
     depth_first(nodes.node, roots, [&](int index, const GltfNode& node) {
         const M44d& parent = nodes.to_world[static_cast<size_t>(index)];
+        nodes.order.push_back(index);
         for (int child : node.children) {
             M44d& matrix = nodes.to_world[static_cast<size_t>(child)];
             matrix = matrix * parent;
+            nodes.parent[static_cast<size_t>(child)] = index;
         }
     });
 

@@ -26,6 +26,8 @@ struct GltfNode {
 struct GltfNodes {
     std::vector<GltfNode> node;  ///< every node of the file
     std::vector<M44d> to_world;  ///< of every node of the file
+    std::vector<int> parent;     ///< of every node of the file; -1: a root
+    std::vector<int> order;      ///< every node of the file, each after its parent
     int scene = -1;              ///< the one that is shown; -1: the file has none
     std::vector<int> in_scene;   ///< visible nodes of it, depth first, in the file's order
     /// The same with the hidden ones: KHR_node_visibility hides no cameras.

@@ -9,6 +9,7 @@
 #include <map>
 
 #include "io/base/error.h"
+#include "io/gltf/animation/thinning.h"
 #include "io/gltf/arrays.h"
 #include "io/gltf/meshes/bake.h"
 #include "io/gltf/meshes/flat.h"
@@ -25,6 +26,8 @@ namespace {
 
 /// Bytes that a triangle takes which is a light, in the tree of the lights too: rounded up.
 constexpr double kLightBytes = 400;
+/// Bytes of a time step of a vertex, and of the place of an instance, in the BVH too: rounded up.
+constexpr double kVertexStepBytes = 60, kPlaceStepBytes = 320;
 
 template <class Vector>
 bool all_finite(const std::vector<Vector>& values) {
@@ -179,6 +182,9 @@ class Placer {
                                       const tinygltf::Primitive& primitive, const Mesh& unposed,
                                       Mesh& mesh) {
         const Thinning thinning = thinning_of(placement, primitive, unposed);
+        memory_.ask(kVertexStepBytes, 1, unposed.positions.size(),
+                    json_path("meshes", placement.mesh),
+                    (motion_.steps() - 1) / thinning.stride + 1);
         const auto* const weights = motion_.weights(placement.nodes.front());
         for (size_t step = 0; step < motion_.steps(); step += thinning.stride) {
             GltfTally uncounted;
@@ -296,6 +302,8 @@ class Placer {
         }
         Thinning thinning = thin(all, corners_of(bounds));
         if (deformation) thinning.off_m += most_stretch * deformation->off_m;
+        memory_.ask(kPlaceStepBytes, 1, 1, json_path("nodes", node),
+                    (all.size() - 1) / thinning.stride + 1);
         InstanceMotion motion;
         for (size_t step = 0; step < all.size(); step += thinning.stride) {
             (void)instance(0, node, all[step], bounds);  // for its checks

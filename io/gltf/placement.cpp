@@ -95,13 +95,18 @@ class Grouping {
 PlaceMemory::PlaceMemory(const std::string& file)
     : file_(file), there_bytes_(static_cast<double>(usable_memory_bytes())) {}
 
-void PlaceMemory::ask(double bytes, size_t places, size_t parts, const std::string& where) {
-    asked_bytes_ += bytes * static_cast<double>(places) * static_cast<double>(parts);
+void PlaceMemory::ask(double bytes, size_t places, size_t parts, const std::string& where,
+                      size_t steps) {
+    asked_bytes_ += bytes * static_cast<double>(places) * static_cast<double>(parts) *
+                    static_cast<double>(steps);
     if (asked_bytes_ <= there_bytes_) return;
-    throw InputError(file_, where,
-                     fmt::format("stands at {} places: with what came before it takes {:.1f} GiB, "
-                                 "and {:.1f} can be had; show fewer of them",
-                                 places, asked_bytes_ * 0x1p-30, there_bytes_ * 0x1p-30));
+    const std::string moves = fmt::format("moves through {} time steps", steps);
+    throw InputError(
+        file_, where,
+        fmt::format("{}: with what came before it takes {:.1f} GiB, and {:.1f} can be had; {}",
+                    steps > 1 ? moves : fmt::format("stands at {} places", places),
+                    asked_bytes_ * 0x1p-30, there_bytes_ * 0x1p-30,
+                    steps > 1 ? "open the shutter for a shorter time" : "show fewer of them"));
 }
 
 size_t Places::count(int node) {

@@ -20,9 +20,9 @@ class PlaceMemory {
   public:
     /// All that can be had. file: for messages; it must outlive this.
     explicit PlaceMemory(const std::string& file);
-    /// Counts these bytes for each of `places` times `parts`. Throws InputError where that is more
-    /// than there is. where: a JSON path.
-    void ask(double bytes, size_t places, size_t parts, const std::string& where);
+    /// Counts these bytes for each of `places` times `parts`, at each of so many time steps. Throws
+    /// InputError where that is more than there is. where: a JSON path.
+    void ask(double bytes, size_t places, size_t parts, const std::string& where, size_t steps = 1);
 
   private:
     const std::string& file_;

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "io/base/json_cursor.h"
+#include "io/base/json_parse.h"
 #include "io/gltf/info.h"
 #include "io/gltf/variants.h"
 
@@ -29,17 +30,6 @@ uint64_t bytes_of(const Mesh& mesh) {
     return bytes;
 }
 
-const json& member(const json& owner, const char* key) {
-    static const json none;
-    const auto at = owner.is_object() ? owner.find(key) : owner.end();
-    return at == owner.end() ? none : *at;
-}
-
-std::string name_in(const json& object) {
-    const json& name = member(object, "name");
-    return name.is_string() ? name.get<std::string>() : std::string();
-}
-
 // The latest time at which an animation has a key. Animations are not checked: what is wrong in
 // one is passed over.
 std::optional<double> duration_s(const json& root, const json& animation) {
@@ -56,7 +46,8 @@ std::optional<double> duration_s(const json& root, const json& animation) {
 }
 
 GltfSummary::Animation read_animation(const json& root, const json& animation) {
-    return {name_in(animation), member(animation, "channels").size(), duration_s(root, animation)};
+    return {text_of(animation, "name"), member(animation, "channels").size(),
+            duration_s(root, animation)};
 }
 
 GltfSummary::Lights count_lights(const Scene& scene, const GltfTally& tally) {
@@ -98,7 +89,7 @@ GltfSummary summarise(const GltfModel& gltf, const GltfTally& tally, const Scene
     GltfSummary out;
     out.generator = gltf.typed.asset.generator;
     out.extensions = gltf.source.extensions;
-    for (const json& one : member(root, "scenes")) out.scenes.push_back(name_in(one));
+    for (const json& one : member(root, "scenes")) out.scenes.push_back(text_of(one, "name"));
     out.variants = variant_names(gltf);
     const json& animations = member(root, "animations");
     out.animation_count = animations.size();

@@ -28,10 +28,10 @@ struct GltfTally {
     uint64_t moving_lights = 0, moving_cameras = 0;
     /// Bound on how far what moves is off between time steps, in metres and in its own extents.
     double motion_off_m = 0, motion_off = 0;
-    bool keys_between_steps = false;  ///< so that more may be off
-    uint64_t idle_dispersions = 0;    ///< of materials that refract nothing
-    std::set<std::string> honoured;   ///< features that the scene uses, in words
-    WarningLog warnings;              ///< one line each
+    bool motion_unseen = false;      ///< NodeMotion::unseen(): more may be off
+    uint64_t idle_dispersions = 0;   ///< of materials that refract nothing
+    std::set<std::string> honoured;  ///< features that the scene uses, in words
+    WarningLog warnings;             ///< one line each
 };
 
 }  // namespace petzval

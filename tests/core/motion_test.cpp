@@ -294,7 +294,7 @@ TEST(Motion, RaysThatLeaveTurningAndBendingThingsDoNotMeetTheirOwnTriangle) {
 TEST(Motion, StepsLieEvenlyFromTheFirstTimeToTheLast) {
     for (const size_t count : {2, 3, 9, 129}) {
         for (size_t i = 0; i < count; ++i) {
-            const StepPlace at = step_place(step_time(i, count), count);
+            const auto at = step_place(step_time(i, count), count);
             EXPECT_NEAR(double(at.before) + double(at.share), double(i), 1e-4);
         }
         EXPECT_EQ(step_place(0.f, count).before, 0u);

@@ -5,12 +5,15 @@
     motion_blur.py PETZVAL SCENE --at 0.1 --shutter 0.0208 [--frames 256] [--spp 256] [--keep FOLDER] -- OPTIONS
 
 Renders SCENE once with --shutter, with as many samples as all still frames have together, and `frames` stills whose
-times lie evenly in the exposure, each with a seed of its own. Prints the relative difference of the pictures' means,
+times lie evenly in the exposure, each with a seed of its own (--frames 0: none). Prints the relative difference of the pictures' means,
 the root mean square of the difference over the picture beside what noise alone gives (from two independent blurred
-pictures and two independent halves of the stills), and the worst of 16 x 16 pixel blocks in standard errors.
+pictures and two independent halves of the stills), and the worst of 16 x 16 pixel blocks in standard errors. Last the
+noise of a still in the middle of the exposure with as many samples as a blurred picture, and the ratio of their CPU
+times: both are rendered three times, in turns.
 Needs numpy and OpenImageIO (python3-openimageio).
 """
 import argparse
+import json
 import os
 import subprocess
 import sys
@@ -38,6 +41,19 @@ def render(o, out, at_s, spp, seed, more):
     return read_rgb(out)
 
 
+def cost_of_blur(o, folder):
+    """Noise of stills and of blurred pictures in shares of the mean, and the ratio of their CPU times."""
+    name, stats = os.path.join(folder, "a.exr"), os.path.join(folder, "a.json")
+    pictures, cpu_s = ([], []), ([], [])
+    for seed in (1, 2, 3):
+        for kind, more in enumerate(([], ["--shutter", repr(o.shutter)])):
+            pictures[kind].append(render(o, name, o.at, o.spp, seed, [*more, "--stats", stats]))
+            with open(stats, encoding="utf-8") as file:
+                cpu_s[kind].append(json.load(file)["render_cpu_s"])
+    noise = [float(np.sqrt(np.var(p, axis=0, ddof=1).mean()) / np.mean(p)) for p in map(np.array, pictures)]
+    return noise, [b / a for a, b in zip(*cpu_s)]
+
+
 def blocks(picture, size=16):
     """Means of square blocks; what is left over at the edges is dropped."""
     h, w = (n // size * size for n in picture.shape[:2])
@@ -57,6 +73,12 @@ def main():
     ours = words.index("--") if "--" in words else len(words)
     o = parser.parse_args(words[:ours])
     o.options = words[ours + 1:]  # of petzval render
+    with tempfile.TemporaryDirectory() as folder:
+        (of_still, of_blur), times = cost_of_blur(o, folder)
+    print("noise with %d samples: still %.2f %%, blurred %.2f %% of the mean; CPU time of blurred ones: %s times that" %
+          (o.spp, 100 * of_still, 100 * of_blur, ", ".join("%.2f" % t for t in sorted(times))))
+    if o.frames == 0:
+        return
     each = max(1, o.spp // (o.frames // 2))
     with tempfile.TemporaryDirectory() as folder:
         name = os.path.join(folder, "a.exr")

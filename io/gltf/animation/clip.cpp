@@ -8,23 +8,13 @@
 #include <set>
 
 #include "io/base/error.h"
+#include "io/base/json_parse.h"
 #include "io/base/named.h"
 
 namespace petzval {
 namespace {
 
 using nlohmann::json;
-
-const json& member(const json& owner, const char* key) {
-    static const json none;
-    const auto at = owner.is_object() ? owner.find(key) : owner.end();
-    return at == owner.end() ? none : *at;
-}
-
-std::string text_in(const json& owner, const char* key) {
-    const json& text = member(owner, key);
-    return text.is_string() ? text.get<std::string>() : std::string();
-}
 
 // Whether a property ends as it begins: to a thousandth of how much it changes.
 bool is_closed(const AnimatedProperty& property, double duration_s) {
@@ -65,9 +55,9 @@ double GltfClip::local_s(double time_s, double frame_s, bool repeats) const {
 
 std::string target_of(const json& channel) {
     const json& target = member(channel, "target");
-    const std::string path = text_in(target, "path");
+    const std::string path = text_of(target, "path");
     if (path == "pointer")
-        return text_in(member(member(target, "extensions"), "KHR_animation_pointer"), "pointer");
+        return text_of(member(member(target, "extensions"), "KHR_animation_pointer"), "pointer");
     const json& node = member(target, "node");
     return node.is_number_unsigned() ? fmt::format("/nodes/{}/{}", node.get<uint64_t>(), path)
                                      : std::string();
@@ -93,7 +83,7 @@ std::vector<size_t> played_animations(const json& root, const AnimationChoice& c
         return played;
     }
     std::vector<std::string> names;
-    for (const json& animation : animations) names.push_back(text_in(animation, "name"));
+    for (const json& animation : animations) names.push_back(text_of(animation, "name"));
     for (const std::string& wanted : choice.names) {
         const auto found = find_named(wanted, names);
         if (!found)

@@ -4,24 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <string_view>
-#include <vector>
 
 namespace petzval {
 namespace {
 
 using nlohmann::json;
-using Words = std::vector<std::string_view>;
-
-Words words_of(const std::string& pointer) {
-    Words words;
-    for (size_t at = 0; at < pointer.size() && pointer[at] == '/';) {
-        const size_t end = std::min(pointer.find('/', at + 1), pointer.size());
-        words.push_back(std::string_view(pointer).substr(at + 1, end - at - 1));
-        at = end;
-    }
-    return words;
-}
 
 bool is_number(std::string_view word) {
     return !word.empty() && std::ranges::all_of(word, [](char c) { return c >= '0' && c <= '9'; });
@@ -85,8 +72,18 @@ constexpr std::array<Named, 43> kByName = {{
 
 }  // namespace
 
+std::vector<std::string_view> words_of(const std::string& pointer) {
+    std::vector<std::string_view> words;
+    for (size_t at = 0; at < pointer.size() && pointer[at] == '/';) {
+        const size_t end = std::min(pointer.find('/', at + 1), pointer.size());
+        words.push_back(std::string_view(pointer).substr(at + 1, end - at - 1));
+        at = end;
+    }
+    return words;
+}
+
 std::optional<PropertyKind> property_kind(const std::string& pointer) {
-    Words words = words_of(pointer);
+    const auto words = words_of(pointer);
     if (words.size() < 3) return std::nullopt;
     const bool in_arrays = words[0] == "nodes" || words[0] == "meshes" || words[0] == "cameras" ||
                            words[0] == "materials";

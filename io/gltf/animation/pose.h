@@ -6,10 +6,15 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "io/gltf/animation/clip.h"
 
 namespace petzval {
+
+/// Words of a pointer: "nodes", "3" and "scale" of /nodes/3/scale. They live as long as it does.
+[[nodiscard]] std::vector<std::string_view> words_of(const std::string& pointer);
 
 /// Kind of a property that can be animated, by where it stands: the glTF object model, and
 /// KHR_animation_pointer.

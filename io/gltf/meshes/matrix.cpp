@@ -31,12 +31,4 @@ M44d rotation_matrix(const std::array<double, 4>& q) {
             1};
 }
 
-M44d NodePlace::matrix() const {
-    M44d out;
-    out.setScale(V3d(scale[0], scale[1], scale[2]));
-    out = out * rotation_matrix(rotation);
-    for (int axis = 0; axis < 3; ++axis) out[3][axis] = translation[static_cast<size_t>(axis)];
-    return out;
-}
-
 }  // namespace petzval

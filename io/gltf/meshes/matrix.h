@@ -25,14 +25,4 @@ namespace petzval {
 /// of the axes.
 [[nodiscard]] M44d rotation_matrix(const std::array<double, 4>&);
 
-/// Place of a node in its parent's space, in three parts.
-struct NodePlace {
-    std::array<double, 3> translation{0, 0, 0};
-    std::array<double, 4> rotation{0, 0, 0, 1};  ///< quaternion (x, y, z, w)
-    std::array<double, 3> scale{1, 1, 1};
-
-    /// Scaled, then turned, then moved; for row vectors.
-    [[nodiscard]] M44d matrix() const;
-};
-
 }  // namespace petzval

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <limits>
-#include <type_traits>
 
 namespace petzval {
 namespace {
@@ -22,28 +20,20 @@ uint32_t load_unsigned(const uint8_t* at, int component_type) {
     return component_type == 5123 ? load<uint16_t>(at) : load<uint32_t>(at);
 }
 
-template <class T>
-double load_number(const uint8_t* at, bool normalised) {
-    const T raw = load<T>(at);
-    if constexpr (std::is_integral_v<T>)
-        if (normalised) return std::max(double(raw) / double(std::numeric_limits<T>::max()), -1.);
-    return double(raw);
-}
-
 double load_number(const uint8_t* at, int component_type, bool normalised) {
     switch (component_type) {
         case 5120:
-            return load_number<int8_t>(at, normalised);
+            return component_value<double>(load<int8_t>(at), normalised);
         case 5121:
-            return load_number<uint8_t>(at, normalised);
+            return component_value<double>(load<uint8_t>(at), normalised);
         case 5122:
-            return load_number<int16_t>(at, normalised);
+            return component_value<double>(load<int16_t>(at), normalised);
         case 5123:
-            return load_number<uint16_t>(at, normalised);
+            return component_value<double>(load<uint16_t>(at), normalised);
         case 5125:
-            return load_number<uint32_t>(at, normalised);
+            return component_value<double>(load<uint32_t>(at), normalised);
         default:
-            return load_number<float>(at, normalised);
+            return component_value<double>(load<float>(at), normalised);
     }
 }
 

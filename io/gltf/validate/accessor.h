@@ -2,10 +2,13 @@
 // Layout of an accessor's data (glTF 2.0, section 3.6.2), in checked numbers.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "io/gltf/mend/attributes.h"
@@ -54,8 +57,18 @@ struct GltfAccessor {
 /// All components of a float accessor, sparse ones replaced.
 [[nodiscard]] std::vector<float> read_floats(const GltfAccessor&);
 
-/// All components of an accessor, sparse ones replaced, normalised ones as glTF 2.0, section 3.11
-/// has it.
+/// Value of a component as a number: of an integer that is normalised, the share of one that glTF
+/// 2.0, section 3.11 gives it.
+template <class Number, class T>
+[[nodiscard]] Number component_value(T raw, bool normalised) {
+    if constexpr (std::is_integral_v<T> && std::is_floating_point_v<Number>) {
+        if (normalised)
+            return std::max(Number(raw) / Number(std::numeric_limits<T>::max()), Number(-1));
+    }
+    return static_cast<Number>(raw);
+}
+
+/// All components of an accessor, sparse ones replaced, normalised ones as above.
 [[nodiscard]] std::vector<double> read_numbers(const GltfAccessor&);
 
 }  // namespace petzval

@@ -59,6 +59,9 @@ void check_accessors(GltfCheck&);
 /// Checks textures, samplers, images and their kind.
 void check_textures(GltfCheck&);
 void check_materials(GltfCheck&);
+/// Greatest number of morph targets of a mesh's primitives, once it is checked; 0 for what is no
+/// mesh.
+[[nodiscard]] size_t morph_target_count(const nlohmann::json& mesh);
 /// Checks attributes, indices and morph targets: references, formats and counts.
 void check_meshes(GltfCheck&);
 /// Checks which materials the variants of primitives map to.

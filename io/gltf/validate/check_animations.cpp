@@ -19,12 +19,8 @@ using nlohmann::json;
 
 /// Greatest number of morph targets of a mesh, or of the mesh of a node; 0 for anything else.
 size_t target_count(const json& root, const json& owner) {
-    const json& mesh = owner.contains("mesh") ? root["meshes"][owner["mesh"].get<size_t>()] : owner;
-    size_t most = 0;
-    if (mesh.contains("primitives"))
-        for (const json& primitive : mesh["primitives"])
-            if (primitive.contains("targets")) most = std::max(most, primitive["targets"].size());
-    return most;
+    return morph_target_count(owner.contains("mesh") ? root["meshes"][owner["mesh"].get<size_t>()]
+                                                     : owner);
 }
 
 /// Reads one animation, whose parts may be wrong.

@@ -138,6 +138,13 @@ class MeshCheck {
 
 }  // namespace
 
+size_t morph_target_count(const nlohmann::json& mesh) {
+    size_t most = 0;
+    for (const nlohmann::json& primitive : member(mesh, "primitives"))
+        most = std::max(most, member(primitive, "targets").size());
+    return most;
+}
+
 void check_meshes(GltfCheck& check) {
     MeshCheck meshes(check);
     for (const JsonCursor& mesh : check.root.objects("meshes")) meshes.check_mesh(mesh);

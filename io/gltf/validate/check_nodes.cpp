@@ -25,13 +25,6 @@ void check_transform(const JsonCursor& node) {
     (void)node.numbers("rotation", 4);
 }
 
-size_t target_count(const std::vector<JsonCursor>& meshes, size_t mesh) {
-    size_t most = 0;
-    for (const JsonCursor& primitive : meshes[mesh].objects("primitives"))
-        most = std::max(most, primitive.length("targets"));
-    return most;
-}
-
 class NodeCheck {
   public:
     explicit NodeCheck(GltfCheck& check)
@@ -40,7 +33,7 @@ class NodeCheck {
           meshes_(check.root.objects("meshes")),
           parent_(nodes_.size()),
           children_(nodes_.size()) {
-        for (size_t m = 0; m < meshes_.size(); ++m) targets_.push_back(target_count(meshes_, m));
+        for (const JsonCursor& mesh : meshes_) targets_.push_back(morph_target_count(mesh.value()));
         if (const auto lights = check.root.extension("KHR_lights_punctual"))
             lights_ = lights->length("lights");
         if (const auto lights = check.root.extension("EXT_lights_ies"))

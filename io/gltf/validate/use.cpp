@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/gltf/validate/use.h"
 
+#include "io/base/json_parse.h"
+
 namespace petzval {
 namespace {
 
 using nlohmann::json;
-
-const json& member(const json& owner, const char* key) {
-    static const json none;
-    if (!owner.is_object()) return none;
-    const auto at = owner.find(key);
-    return at == owner.end() ? none : *at;
-}
 
 template <class Visit>
 void each(const json& owner, const char* key, Visit visit) {

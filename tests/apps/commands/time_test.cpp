@@ -14,7 +14,7 @@ class CliTime : public CliTest {
     CliTime() { scene_ = moving().save_glb(folder_.path / "moving.glb").string(); }
 
     /// The studio, whose first wall goes 0.3 m to the right and 0.6 m up each second, for a second,
-    /// and whose camera "tele" comes 0.5 m nearer meanwhile. A third animation hides the lamps.
+    /// and whose camera "tele" comes 0.5 m nearer meanwhile. A third animation moves the wall too.
     [[nodiscard]] static TinyGltf moving() {
         TinyGltf file = studio();
         const int times = file.add_accessor<float>("SCALAR", {0, 1});

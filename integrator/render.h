@@ -4,6 +4,7 @@
 
 #include <array>
 #include <chrono>
+#include <limits>
 #include <vector>
 
 #include "camera/camera.h"
@@ -200,8 +201,18 @@ void render_samples(const Tracer& tracer, const Camera& camera, const RenderJob&
     return std::min(grown, wanted - done);
 }
 
+/// Number of samples that every pixel of a film has taken.
+[[nodiscard]] inline uint32_t least_taken(const Film& film) {
+    uint32_t least = std::numeric_limits<uint32_t>::max();
+    const Rect& crop = film.crop();
+    for (int y = crop.y0; y < crop.y1; ++y)
+        for (int x = crop.x0; x < crop.x1; ++x) least = std::min(least, film.taken_count(x, y));
+    return least;
+}
+
 /// Renders every pixel of the film's crop. Pixels do not depend on the executor, its threads, the
-/// tile size, the crop or the passes.
+/// tile size, the crop or the passes. A film that has samples of this job goes on from there: each
+/// pixel has the first taken_count() of them.
 template <class Executor, class Tracer>
 RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob& job, Film& film,
                     Executor& executor, RenderMonitor& monitor) {
@@ -212,44 +223,41 @@ RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob&
     };
     std::vector<Worker> workers(static_cast<size_t>(executor.threads()));
 
-    RenderResult result;
-    const uint32_t wanted = job.end_sample - job.first_sample;
-    uint32_t done = 0;
-    bool stopped = false;
-    while (done < wanted) {
-        if (monitor.stop) {
-            stopped = true;
-            break;
-        }
+    const uint32_t wanted = job.end_sample - job.first_sample, before = least_taken(film);
+    uint32_t done = before;
+    while (done < wanted && !monitor.stop) {
         uint32_t pass = pass_size(done, wanted, job.replicates);
         if (job.time_limit_s && done > 0) {
-            const double elapsed_s = job.wall_s() - start_s;
-            const double fits = (*job.time_limit_s - elapsed_s) / (elapsed_s / done);
-            if (fits < 1) break;
-            if (fits < pass) pass = static_cast<uint32_t>(fits);  // fits may be beyond uint32_t
+            const double elapsed_s = job.wall_s() - start_s, left_s = *job.time_limit_s - elapsed_s;
+            const double fits = done > before ? left_s / (elapsed_s / (done - before)) : left_s;
+            if (done > before ? fits < 1 : left_s <= 0) break;
+            if (done > before && fits < pass)
+                pass = static_cast<uint32_t>(fits);  // fits may be beyond uint32_t
         }
         executor.run(static_cast<int>(tiles.size()), [&](int task, int worker) {
-            if (monitor.stop) return;
+            if (monitor.stop || monitor.pause) return;
             PathStats& stats = workers[static_cast<size_t>(worker)].stats;
             const Rect& tile = tiles[static_cast<size_t>(task)];
-            const uint32_t first = job.first_sample + done;
+            const uint64_t samples_before = stats.samples;
             SampleBatch<Tracer> batch(tracer, camera, job, film.full_size(), &film, stats);
             for (int y = tile.y0; y < tile.y1; ++y)
                 for (int x = tile.x0; x < tile.x1; ++x)
-                    for (uint32_t i = first; i < first + pass; ++i) batch.add({x, y, i});
+                    for (uint32_t i = film.taken_count(x, y); i < done + pass; ++i)
+                        batch.add({x, y, job.first_sample + i});
             batch.render();
-            ++stats.tiles;
-            monitor.pixel_samples_done +=
-                static_cast<uint64_t>(tile.width()) * tile.height() * pass;
+            stats.tiles += stats.samples > samples_before;
+            monitor.pixel_samples_done += stats.samples - samples_before;
         });
-        if (monitor.stop) {
-            stopped = true;
-            break;
+        // The tiles that a pause left out are rendered when the pass is run once more.
+        if (monitor.pause.exchange(false)) {
+            if (job.at_pause && !monitor.stop) job.at_pause();
+        } else if (!monitor.stop) {
+            done += pass;
         }
-        done += pass;
     }
-    result.end_sample = job.first_sample + done;
-    result.stopped = stopped;
+    RenderResult result;
+    result.end_sample = job.first_sample + least_taken(film);
+    result.stopped = monitor.stop && result.end_sample < job.end_sample;
     for (const Worker& worker : workers) {
         result.stats += worker.stats;
         result.workers += worker.stats.tiles > 0;

@@ -27,6 +27,9 @@ struct RenderJob {
     uint32_t first_sample = 0, end_sample = 64;  ///< sample indices [first, end) of every pixel
     std::optional<double> time_limit_s;  ///< ends with the pass that reaches it, end_sample or not
     std::function<double()> wall_s = steady_s;  ///< clock of the time limit; tests step their own
+    /// Called in the rendering thread after the monitor said pause, while no sample is under way:
+    /// the film may be read.
+    std::function<void()> at_pause;
     uint32_t seed = 0;
     SamplerKind sampler = SamplerKind::Owen;
     Filter filter{FilterKind::BlackmanHarris, 1.5f};
@@ -40,6 +43,8 @@ struct RenderJob {
 /// Progress of a running render, and the flag that stops it. Any thread may use it.
 struct RenderMonitor {
     std::atomic<bool> stop = false;  ///< set it: tiles under way are finished, no more begun
+    std::atomic<bool> pause =
+        false;  ///< likewise; then at_pause() is called, and rendering goes on
     std::atomic<uint64_t> pixel_samples_done = 0;
 };
 
@@ -47,7 +52,7 @@ struct RenderResult {
     PathStats stats;
     int workers = 0;          ///< threads that rendered at least one tile
     uint32_t end_sample = 0;  ///< samples [first, end) are complete in every pixel
-    bool stopped = false;     ///< the monitor said stop before the job was done
+    bool stopped = false;     ///< the monitor said stop, and samples are left to render
 };
 
 }  // namespace petzval

@@ -20,16 +20,16 @@ namespace {
 /// NaN.
 constexpr float kUnknownError = std::numeric_limits<float>::max();
 
-/// Number of samples whose spread tells a pixel's error: 0 where one was left out, as it is not
-/// known which replicate it was dealt to.
-uint32_t dealt_samples(const Film& film, int x, int y) {
-    return film.bad_count(x, y) == 0 ? film.sample_count(x, y) : 0;
+/// Samples whose spread tells a pixel's error: none where one was left out, as it is not known
+/// which replicate it was dealt to.
+SampleRange dealt_samples(const Film& film, uint32_t first, int x, int y) {
+    return {first, first + (film.bad_count(x, y) == 0 ? film.sample_count(x, y) : 0)};
 }
 
 /// Mean over the pixels with light of the standard error of their luminance, relative to it;
 /// infinite where one has too few samples to tell. Pixels with samples that were left out do not
 /// count.
-float mean_relative_error(const Film& film) {
+float mean_relative_error(const Film& film, uint32_t first) {
     const Rect crop = film.crop();
     double sum = 0;
     uint64_t lit = 0;
@@ -40,13 +40,13 @@ float mean_relative_error(const Film& film) {
             if (!(light > 0) || film.bad_count(x, y) > 0) continue;
             ++lit;
             sum += double(film.spectral()->luminance_error(film.offset(x, y),
-                                                           dealt_samples(film, x, y))) /
+                                                           dealt_samples(film, first, x, y))) /
                    light;
         }
     return lit > 0 ? static_cast<float>(sum / double(lit)) : 0.f;
 }
 
-void describe_spectrum(const Film& film, PictureLayout& layout) {
+void describe_spectrum(const Film& film, uint32_t first, PictureLayout& layout) {
     const Bins& bins = film.spectral()->bins();
     auto& m = layout.metadata;
     m.emplace_back("spectralLayoutVersion", "1.0");
@@ -59,7 +59,7 @@ void describe_spectrum(const Film& film, PictureLayout& layout) {
                    fmt::format("standard error of the mean; {:.9g} where it is not known: with "
                                "fewer than {} samples, or one that was not finite",
                                kUnknownError, kReplicates));
-    if (const float error = mean_relative_error(film); std::isfinite(error))
+    if (const float error = mean_relative_error(film, first); std::isfinite(error))
         m.emplace_back("petzval:meanRelativeError", error);
 }
 
@@ -79,7 +79,7 @@ std::vector<std::string> channels_of(const Film& film) {
 }
 
 /// Writes the values of one pixel in the order of channels_of; returns where the next pixel's go.
-float* develop_pixel(const Film& film, int x, int y, float* out) {
+float* develop_pixel(const Film& film, uint32_t first, int x, int y, float* out) {
     const auto put = [&](const auto& values, int count) {
         for (int i = 0; i < count; ++i) *out++ = values[i];
     };
@@ -90,7 +90,7 @@ float* develop_pixel(const Film& film, int x, int y, float* out) {
         spectral->bin_means(at, count, out);
         out += spectral->bins().count;
         put(spectral->xyz(at, count), 3);
-        V3f error = spectral->standard_error(at, dealt_samples(film, x, y));
+        V3f error = spectral->standard_error(at, dealt_samples(film, first, x, y));
         for (int i = 0; i < 3; ++i) error[i] = std::min(error[i], kUnknownError);
         put(error, 3);
     }
@@ -132,12 +132,12 @@ PictureRows develop(const Film& film, const RenderSetup& setup, const RenderJob&
     if (setup.from.exposure_is_auto)
         layout.metadata.emplace_back("petzval:exposure_ev", setup.from.exposure_ev);
     describe_camera(setup.from.camera, layout);
-    if (film.spectral()) describe_spectrum(film, layout);
+    if (film.spectral()) describe_spectrum(film, job.first_sample, layout);
     for (auto& [name, value] : layout.metadata)
         if (auto* text = std::get_if<std::string>(&value)) *text = visible(*text);
-    return {std::move(layout), [&film, crop](int y, float* row) {
+    return {std::move(layout), [&film, crop, first = job.first_sample](int y, float* row) {
                 for (int x = crop.x0; x < crop.x1; ++x)
-                    row = develop_pixel(film, x, crop.y0 + y, row);
+                    row = develop_pixel(film, first, x, crop.y0 + y, row);
             }};
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/film/film.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 
 namespace petzval {
@@ -17,9 +19,12 @@ constexpr std::array<AovInfo, static_cast<size_t>(Aov::Count)> kAovs{{
     {"velocity", {"velocity.X", "velocity.Y", ""}, 2},
 }};
 
-// Fault of a sample: 0 where every number is finite, else NaN.
-float not_finite(const V3f& a) {
-    return (a.x - a.x) + (a.y - a.y) + (a.z - a.z);
+// Whether a sum takes a number; what is not finite is none.
+bool in_range(float a) {
+    return std::abs(a) < FilmSum::kLimit;
+}
+bool in_range(const V3f& a) {
+    return in_range(a.x) && in_range(a.y) && in_range(a.z);
 }
 
 }  // namespace
@@ -44,53 +49,81 @@ Film::Film(V2i full_size, Rect crop, std::vector<Aov> aovs, std::optional<Bins> 
 }
 
 size_t Film::bytes_per_pixel(size_t layers, const std::optional<Bins>& bins) {
-    return sizeof(Pixel) + layers * sizeof(std::array<double, 3>) +
+    return sizeof(Pixel) + layers * sizeof(std::array<FilmSum, 3>) +
            (bins ? SpectralFilm::bytes_per_pixel(*bins) : 0);
 }
 
 void Film::add(int x, int y, uint32_t index, const FilmSample& sample) {
-    static_cast<void>(accept(offset(x, y), index, sample, 0.f));
+    const size_t at = offset(x, y);
+    if (holds(sample))
+        accept(pixels_[at], at, sample);
+    else
+        reject(pixels_[at], index);
 }
 
 void Film::add(int x, int y, uint32_t index, const FilmSample& sample,
-               const SpectralSample& spectral, const Bands& bands) {
+               const SpectralFilm::Sample& spectral, const Bands& bands) {
     const size_t at = offset(x, y);
-    // A lane that is not finite shows in the colour, which every lane adds to.
-    if (accept(at, index, sample, not_finite(spectral.xyz)))
-        spectral_->add(at, spectral.replicate, sample.colour, spectral.xyz, spectral.radiance,
-                       bands);
+    if (!holds(sample) || !spectral_->holds(spectral, bands)) return reject(pixels_[at], index);
+    accept(pixels_[at], at, sample);
+    spectral_->add(at, sample.colour, spectral, bands);
 }
 
-bool Film::accept(size_t at, uint32_t index, const FilmSample& sample, float fault) {
-    Pixel& pixel = pixels_[at];
-    f4 rgba = sample.colour.v;
-    rgba[3] = sample.alpha;
-    fault += hsum(rgba - rgba);
+bool Film::holds(const FilmSample& sample) const {
+    const Rgb& c = sample.colour;
+    bool all = in_range(c[0]) && in_range(c[1]) && in_range(c[2]) && in_range(sample.alpha);
     if (sample.hit)
-        for (const Aov aov : aovs_) fault += not_finite(sample.aov[static_cast<size_t>(aov)]);
-    if (fault != 0.f) {
-        if (pixel.bad++ == 0 || index < pixel.first_bad_index) pixel.first_bad_index = index;
-        return false;
-    }
-    d4 sum;
-    std::memcpy(&sum, pixel.sum.data(), sizeof sum);
-    sum += __builtin_convertvector(rgba, d4);
-    std::memcpy(pixel.sum.data(), &sum, sizeof sum);
+        for (const Aov aov : aovs_) all = all && in_range(sample.aov[static_cast<size_t>(aov)]);
+    return all;
+}
+
+void Film::reject(Pixel& pixel, uint32_t index) {
+    if (pixel.bad++ == 0 || index < pixel.first_bad_index) pixel.first_bad_index = index;
+}
+
+void Film::accept(Pixel& pixel, size_t at, const FilmSample& sample) {
+    for (int i = 0; i < 3; ++i) pixel.sum[static_cast<size_t>(i)].add(sample.colour[i]);
+    pixel.sum[3].add(sample.alpha);
     ++pixel.count;
-    if (!sample.hit) return true;
+    if (!sample.hit) return;
     ++pixel.hits;
     for (size_t layer = 0; layer < aovs_.size(); ++layer) {
         const V3f& value = sample.aov[static_cast<size_t>(aovs_[layer])];
         auto& to = aov_sums_[at * aovs_.size() + layer];
-        for (int i = 0; i < 3; ++i) to[i] += value[i];
+        for (int i = 0; i < 3; ++i) to[static_cast<size_t>(i)].add(value[i]);
     }
-    return true;
+}
+
+void Film::pack(int x, int y, uint8_t* to) const {
+    const size_t at = offset(x, y), layers = aovs_.size();
+    std::memcpy(to, &pixels_[at], sizeof(Pixel));
+    to += sizeof(Pixel);
+    for (size_t layer = 0; layer < layers; ++layer)
+        to = petzval::pack(std::span<const FilmSum>(aov_sums_[at * layers + layer]), to);
+    if (spectral_) spectral_->pack(at, to);
+}
+
+void Film::add_packed(int x, int y, const uint8_t* from) {
+    const size_t at = offset(x, y), layers = aovs_.size();
+    Pixel other;
+    std::memcpy(&other, from, sizeof other);
+    from += sizeof other;
+    Pixel& pixel = pixels_[at];
+    for (size_t i = 0; i < pixel.sum.size(); ++i) pixel.sum[i] += other.sum[i];
+    pixel.count += other.count;
+    pixel.hits += other.hits;
+    if (other.bad > 0 && (pixel.bad == 0 || other.first_bad_index < pixel.first_bad_index))
+        pixel.first_bad_index = other.first_bad_index;
+    pixel.bad += other.bad;
+    for (size_t layer = 0; layer < layers; ++layer)
+        from = petzval::add_packed(std::span<FilmSum>(aov_sums_[at * layers + layer]), from);
+    if (spectral_) spectral_->add_packed(at, from);
 }
 
 V4f Film::colour(int x, int y) const {
     const Pixel& p = pixel(x, y);
     const double scale = p.count > 0 ? 1.0 / p.count : 0.0;
-    const auto mean = [&](int i) { return static_cast<float>(p.sum[i] * scale); };
+    const auto mean = [&](int i) { return static_cast<float>(p.sum[size_t(i)].value() * scale); };
     return {mean(0), mean(1), mean(2), mean(3)};
 }
 
@@ -98,7 +131,7 @@ V3f Film::aov(int x, int y, size_t layer) const {
     const uint32_t hits = pixel(x, y).hits;
     const double scale = hits > 0 ? 1.0 / hits : 0.0;
     const auto& sum = aov_sums_[offset(x, y) * aovs_.size() + layer];
-    const auto mean = [&](int i) { return static_cast<float>(sum[i] * scale); };
+    const auto mean = [&](int i) { return static_cast<float>(sum[size_t(i)].value() * scale); };
     return {mean(0), mean(1), mean(2)};
 }
 

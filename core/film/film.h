@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Film: sums of the samples of each pixel, in doubles, so that its value does not depend on how the
-// samples are grouped beyond rounding far below float's.
+// Film: exact sums of the samples of each pixel, so that neither their order nor their grouping
+// changes a bit.
 #pragma once
 
 #include <array>
@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/film/exact_sum.h"
+#include "core/film/sample_range.h"
 #include "core/film/spectral_film.h"
 #include "core/math/ray.h"
 #include "core/spectrum/bands.h"
@@ -53,17 +55,18 @@ class Film {
     /// Memory that a film takes for each pixel of its crop.
     [[nodiscard]] static size_t bytes_per_pixel(size_t layers, const std::optional<Bins>&);
 
-    /// Adds a sample. One that is not finite is only counted, and the first such is remembered.
+    /// Adds a sample. One that is not finite, or beyond the range of the sums (exact_sum.h), is
+    /// only counted, and the first such is remembered.
     void add(int x, int y, uint32_t index, const FilmSample&);
-
-    /// Values of a sample that a spectral film keeps beside FilmSample.
-    struct SpectralSample {
-        uint32_t replicate;  ///< < kReplicates
-        f4 radiance;
-        V3f xyz;
-    };
     /// Adds a sample to a film with bins.
-    void add(int x, int y, uint32_t index, const FilmSample&, const SpectralSample&, const Bands&);
+    void add(int x, int y, uint32_t index, const FilmSample&, const SpectralFilm::Sample&,
+             const Bands&);
+
+    /// Writes what the film has of a pixel, as bytes_per_pixel() bytes.
+    void pack(int x, int y, uint8_t* to) const;
+    /// Adds to a pixel what pack() wrote of other samples of it, on a film with the same layers and
+    /// bins.
+    void add_packed(int x, int y, const uint8_t* from);
 
     [[nodiscard]] V2i full_size() const { return full_size_; }
     [[nodiscard]] Rect crop() const { return crop_; }
@@ -77,6 +80,10 @@ class Film {
     [[nodiscard]] uint32_t sample_count(int x, int y) const { return pixel(x, y).count; }
     /// Number of samples of a pixel that were not finite.
     [[nodiscard]] uint32_t bad_count(int x, int y) const { return pixel(x, y).bad; }
+    /// Number of samples of a pixel that were given to add(), finite or not.
+    [[nodiscard]] uint32_t taken_count(int x, int y) const {
+        return pixel(x, y).count + pixel(x, y).bad;
+    }
     /// Mean linear RGB in nits, and alpha; zero where there is no sample.
     [[nodiscard]] V4f colour(int x, int y) const;
     /// Mean of a layer over the samples that hit something; zero where none did.
@@ -92,17 +99,19 @@ class Film {
 
   private:
     struct Pixel {
-        std::array<double, 4> sum{};
+        std::array<FilmSum, 4> sum{};
         uint32_t count = 0, hits = 0, bad = 0, first_bad_index = 0;
     };
-    [[nodiscard]] bool accept(size_t at, uint32_t index, const FilmSample&, float fault);
+    void accept(Pixel&, size_t at, const FilmSample&);
+    void reject(Pixel&, uint32_t index);
+    [[nodiscard]] bool holds(const FilmSample&) const;
     [[nodiscard]] const Pixel& pixel(int x, int y) const { return pixels_[offset(x, y)]; }
 
     V2i full_size_;
     Rect crop_;
     std::vector<Aov> aovs_;
     std::vector<Pixel> pixels_;
-    std::vector<std::array<double, 3>> aov_sums_;  ///< pixel-major
+    std::vector<std::array<FilmSum, 3>> aov_sums_;  ///< pixel-major
     std::optional<SpectralFilm> spectral_;
 };
 

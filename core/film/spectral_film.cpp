@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/film/spectral_film.h"
 
+#include <cmath>
 #include <limits>
+#include <span>
 
 namespace petzval {
 
@@ -11,39 +13,57 @@ SpectralFilm::SpectralFilm(size_t pixels, const Bins& bins)
       xyz_sums_(pixels),
       replicate_sums_(pixels) {}
 
-void SpectralFilm::add(size_t pixel, uint32_t replicate, Rgb colour, const V3f& xyz, f4 radiance,
-                       const Bands& bands) {
-    double* bins = bin_sums_.data() + pixel * static_cast<size_t>(bins_.count);
-    const int lanes = lane_count(bands.on);
+// Estimate of the average over the bin that each lane falls into.
+f4 SpectralFilm::bin_values(f4 radiance, const Bands& bands) const {
+    const float width_nm = static_cast<float>(bins_.width_nm);
+    const f4 density = bands.pdf * (static_cast<float>(lane_count(bands.on)) * width_nm);
+    return zero_off(bands.on, radiance / density);
+}
+
+bool SpectralFilm::holds(const Sample& sample, const Bands& bands) const {
+    const f4 values = bin_values(sample.radiance, bands);
+    bool within = true;
+    for (int i = 0; i < 4; ++i) within = within && std::abs(values[i]) < SpectralSum::kLimit;
+    for (int i = 0; i < 3; ++i) within = within && std::abs(sample.xyz[i]) < FilmSum::kLimit;
+    return within;
+}
+
+void SpectralFilm::add(size_t pixel, Rgb colour, const Sample& sample, const Bands& bands) {
+    SpectralSum* bins = bin_sums_.data() + pixel * static_cast<size_t>(bins_.count);
+    const f4 values = bin_values(sample.radiance, bands);
     for (int i = 0; i < 4; ++i) {
         const int bin = bands.on[i] ? bins_.index(bands.nm[i]) : -1;
-        if (bin >= 0) bins[bin] += radiance[i] / (bands.pdf[i] * lanes * bins_.width_nm);
+        if (bin >= 0) bins[bin].add(values[i]);
     }
-    for (int i = 0; i < 3; ++i) xyz_sums_[pixel][static_cast<size_t>(i)] += xyz[i];
-    auto& sums = replicate_sums_[pixel][replicate];
-    for (int i = 0; i < 3; ++i) sums[static_cast<size_t>(i)] += colour[i];
+    auto& replicate = replicate_sums_[pixel][sample.replicate];
+    for (int i = 0; i < 3; ++i) {
+        xyz_sums_[pixel][static_cast<size_t>(i)].add(sample.xyz[i]);
+        replicate[static_cast<size_t>(i)].add(colour[i]);
+    }
 }
 
 void SpectralFilm::bin_means(size_t pixel, uint32_t count, float* out) const {
-    const double* bins = bin_sums_.data() + pixel * static_cast<size_t>(bins_.count);
+    const SpectralSum* bins = bin_sums_.data() + pixel * static_cast<size_t>(bins_.count);
     for (int i = 0; i < bins_.count; ++i)
-        out[i] = count > 0 ? static_cast<float>(bins[i] / count) : 0.f;
+        out[i] = count > 0 ? static_cast<float>(bins[i].value() / count) : 0.f;
 }
 
 V3f SpectralFilm::xyz(size_t pixel, uint32_t count) const {
     if (count == 0) return V3f(0.f);
     const auto& sum = xyz_sums_[pixel];
-    return V3f(Imath::V3d(sum[0], sum[1], sum[2]) / double(count));
+    return V3f(Imath::V3d(sum[0].value(), sum[1].value(), sum[2].value()) / double(count));
 }
 
 // Standard error of the mean of all samples from the replicates' means, each as heavy as it has
-// samples: the first (count mod kReplicates) have one more. The sum of n_k (m_k - m)^2 over
-// the replicates is K - 1 variances of one sample, so that the squared error is unbiased.
+// samples. The sum of n_k (m_k - m)^2 over the replicates is K - 1 variances of one sample, so that
+// the squared error is unbiased.
 template <class Number>
-float SpectralFilm::error_of(size_t pixel, uint32_t count, const Number& number) const {
+float SpectralFilm::error_of(size_t pixel, SampleRange range, const Number& number) const {
+    const uint32_t count = range.count();
     if (count < kReplicates) return std::numeric_limits<float>::infinity();
-    const auto samples = [count](uint32_t k) {
-        return (count - k + kReplicates - 1) / kReplicates;
+    const auto samples = [range](uint64_t k) {  // indices of the range that are k modulo K
+        const auto below = [k](uint64_t end) { return (end + kReplicates - 1 - k) / kReplicates; };
+        return double(below(range.end) - below(range.first));
     };
     const auto& sums = replicate_sums_[pixel];
     double centre = 0, squares = 0;
@@ -52,22 +72,37 @@ float SpectralFilm::error_of(size_t pixel, uint32_t count, const Number& number)
         const double off = number(sums[k]) / samples(k) - centre;
         squares += samples(k) * off * off;
     }
-    const double error = std::sqrt(squares / (count * (kReplicates - 1.)));
-    // The sums are floats, and overflow where the picture does not.
-    return std::isfinite(error) ? static_cast<float>(error)
-                                : std::numeric_limits<float>::infinity();
+    return static_cast<float>(std::sqrt(squares / (count * (kReplicates - 1.))));
 }
 
-V3f SpectralFilm::standard_error(size_t pixel, uint32_t count) const {
+V3f SpectralFilm::standard_error(size_t pixel, SampleRange range) const {
     const auto of = [&](size_t c) {
-        return error_of(pixel, count, [c](const auto& rgb) { return double(rgb[c]); });
+        return error_of(pixel, range, [c](const auto& rgb) { return rgb[c].value(); });
     };
     return {of(0), of(1), of(2)};
 }
 
-float SpectralFilm::luminance_error(size_t pixel, uint32_t count) const {
-    return error_of(pixel, count,
-                    [](const auto& rgb) { return double(luminance(Rgb(rgb[0], rgb[1], rgb[2]))); });
+float SpectralFilm::luminance_error(size_t pixel, SampleRange range) const {
+    return error_of(pixel, range, [](const auto& rgb) {
+        const auto mean = [&](size_t c) { return static_cast<float>(rgb[c].value()); };
+        return double(luminance(Rgb(mean(0), mean(1), mean(2))));
+    });
+}
+
+void SpectralFilm::pack(size_t pixel, uint8_t* to) const {
+    const auto count = static_cast<size_t>(bins_.count);
+    to = petzval::pack(std::span(bin_sums_).subspan(pixel * count, count), to);
+    to = petzval::pack(std::span<const FilmSum>(xyz_sums_[pixel]), to);
+    for (const Tristimulus& replicate : replicate_sums_[pixel])
+        to = petzval::pack(std::span<const FilmSum>(replicate), to);
+}
+
+void SpectralFilm::add_packed(size_t pixel, const uint8_t* from) {
+    const auto count = static_cast<size_t>(bins_.count);
+    from = petzval::add_packed(std::span(bin_sums_).subspan(pixel * count, count), from);
+    from = petzval::add_packed(std::span<FilmSum>(xyz_sums_[pixel]), from);
+    for (Tristimulus& replicate : replicate_sums_[pixel])
+        from = petzval::add_packed(std::span<FilmSum>(replicate), from);
 }
 
 }  // namespace petzval

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/film/exact_sum.h"
+#include "core/film/sample_range.h"
 #include "core/math/math.h"
 #include "core/spectrum/bands.h"
 #include "core/spectrum/bins.h"
@@ -22,33 +24,48 @@ class SpectralFilm {
   public:
     /// Memory that it takes for each pixel.
     [[nodiscard]] static size_t bytes_per_pixel(const Bins& bins) {
-        return sizeof(double) * static_cast<size_t>(bins.count) + sizeof(std::array<double, 3>) +
+        return sizeof(SpectralSum) * static_cast<size_t>(bins.count) + sizeof(Tristimulus) +
                sizeof(ReplicateSums);
     }
     SpectralFilm(size_t pixels, const Bins&);
 
-    /// Adds a sample's estimates: colour, XYZ, and lanes of radiance; replicate < kReplicates.
-    void add(size_t pixel, uint32_t replicate, Rgb colour, const V3f& xyz, f4 radiance,
-             const Bands&);
+    /// A sample's estimates.
+    struct Sample {
+        uint32_t replicate;  ///< < kReplicates
+        f4 radiance;
+        V3f xyz;
+    };
+    /// Whether a sample's numbers are within the range of the sums.
+    [[nodiscard]] bool holds(const Sample&, const Bands&) const;
+    /// Adds a sample that holds().
+    void add(size_t pixel, Rgb colour, const Sample&, const Bands&);
 
     [[nodiscard]] const Bins& bins() const { return bins_; }
     /// Band averages, W/(m2 sr nm), bins().count of them: means over `count` samples.
     void bin_means(size_t pixel, uint32_t count, float* out) const;
     [[nodiscard]] V3f xyz(size_t pixel, uint32_t count) const;  ///< nits
-    /// Standard error of the mean of R, G and B over `count` samples, dealt to the replicates in
-    /// turn; infinite where fewer than kReplicates samples are there.
-    [[nodiscard]] V3f standard_error(size_t pixel, uint32_t count) const;
+    /// Standard error of the mean of R, G and B over all samples of a range, of which each was
+    /// dealt to the replicate that its index says; infinite where the range has fewer than
+    /// kReplicates samples.
+    [[nodiscard]] V3f standard_error(size_t pixel, SampleRange) const;
     /// Standard error of the mean luminance, likewise.
-    [[nodiscard]] float luminance_error(size_t pixel, uint32_t count) const;
+    [[nodiscard]] float luminance_error(size_t pixel, SampleRange) const;
+
+    /// Writes a pixel's sums as bytes_per_pixel() bytes.
+    void pack(size_t pixel, uint8_t* to) const;
+    /// Adds a pixel's sums that pack() wrote.
+    void add_packed(size_t pixel, const uint8_t* from);
 
   private:
-    using ReplicateSums = std::array<std::array<float, 3>, kReplicates>;
+    using Tristimulus = std::array<FilmSum, 3>;
+    using ReplicateSums = std::array<Tristimulus, kReplicates>;
+    [[nodiscard]] f4 bin_values(f4 radiance, const Bands&) const;
     template <class Number>
-    [[nodiscard]] float error_of(size_t pixel, uint32_t count, const Number&) const;
+    [[nodiscard]] float error_of(size_t pixel, SampleRange, const Number&) const;
 
     Bins bins_;
-    std::vector<double> bin_sums_;  ///< pixel-major
-    std::vector<std::array<double, 3>> xyz_sums_;
+    std::vector<SpectralSum> bin_sums_;  ///< pixel-major
+    std::vector<Tristimulus> xyz_sums_;
     std::vector<ReplicateSums> replicate_sums_;
 };
 

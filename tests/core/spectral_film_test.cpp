@@ -31,16 +31,16 @@ std::vector<float> means(const SpectralFilm& film, size_t pixel, uint32_t count)
 }
 
 void add_colour(SpectralFilm& film, size_t pixel, uint32_t index, const V3f& c) {
-    film.add(pixel, index % kReplicates, Rgb(c.x, c.y, c.z), V3f(0.f), f4{}, Bands::rgb());
+    film.add(pixel, Rgb(c.x, c.y, c.z), {index % kReplicates, f4{}, V3f(0.f)}, Bands::rgb());
 }
 
 TEST(SpectralFilm, ALaneGoesToItsBinAlone) {
     SpectralFilm film(2, kBins);
     // Both ends of the first bin, which is half open, and what lies outside of all.
-    film.add(1, 0, Rgb(0.f), V3f(1, 2, 3), f4{3, 5, 7, 9},
+    film.add(1, Rgb(0.f), {0, f4{3, 5, 7, 9}, V3f(1, 2, 3)},
              bands_at(f4{380, 390, 379.99f, 730}, f4{0.5f, 0.25f, 1, 1}, m4{-1, -1, -1, -1}));
     // A lane that is off adds nothing, whatever it holds; it is not one of the lanes that share.
-    film.add(1, 1, Rgb(0.f), V3f(3, 6, 9), f4{8, NAN, 1, 1},
+    film.add(1, Rgb(0.f), {1, f4{8, NAN, 1, 1}, V3f(3, 6, 9)},
              bands_at(f4{405, 405, 405, 405}, f4{2, 0, 0, 0}, m4{-1, 0, 0, 0}));
     const std::vector<float> found = means(film, 1, 2);
     EXPECT_FLOAT_EQ(found[0], 3 / (0.5f * 4 * 10) / 2);
@@ -71,7 +71,7 @@ TEST(SpectralFilm, AFlatSpectrumIsTheSameInEveryBin) {
                 pdf[lane] = static_cast<float>(2 * std::sqrt(u) / 470);
             }
             const m4 on = lanes == 1 ? m4{-1, 0, 0, 0} : m4{-1, -1, -1, -1};
-            film.add(0, i % kReplicates, Rgb(0.f), V3f(0.f), splat(3.f), bands_at(nm, pdf, on));
+            film.add(0, Rgb(0.f), {i % kReplicates, splat(3.f), V3f(0.f)}, bands_at(nm, pdf, on));
         }
         // The first bin has the fewest of the evenly spread samples, 148 of each lane; its edges
         // take or leave one of them at most.
@@ -99,9 +99,9 @@ TEST(SpectralFilm, StandardErrorOfAKnownVariance) {
                 const float r = noise(random), g = noise(random), b = noise(random);
                 add_colour(film, p, i, level + sigma * V3f(r, g, b));
             }
-            const V3f error = film.standard_error(p, n);
+            const V3f error = film.standard_error(p, {0, n});
             for (int c = 0; c < 3; ++c) squares[size_t(c)].add(double(error[c]) * error[c]);
-            const double light = film.luminance_error(p, n);
+            const double light = film.luminance_error(p, {0, n});
             squares[3].add(light * light);
         }
         const double r = 0.2126 * sigma.x, g = 0.7152 * sigma.y, b = 0.0722 * sigma.z;
@@ -116,16 +116,44 @@ TEST(SpectralFilm, StandardErrorOfAKnownVariance) {
     }
 }
 
+// A range that begins anywhere: the replicates that have one sample more are others.
+TEST(SpectralFilm, StandardErrorOfARangeThatDoesNotBeginAtZero) {
+    constexpr size_t pixels = 3000;
+    constexpr SampleRange kRange{5, 16};
+    test::Random random(2);
+    SpectralFilm film(pixels, Bins{380, 350, 1});
+    test::Moments squares;
+    for (size_t p = 0; p < pixels; ++p) {
+        for (uint32_t i = kRange.first; i < kRange.end; ++i)
+            add_colour(film, p, i, V3f(10 + noise(random), 0, 0));
+        const double error = double(film.standard_error(p, kRange).x);
+        squares.add(error * error);
+    }
+    EXPECT_TRUE(test::agrees(squares, 1. / kRange.count())) << squares.mean() * kRange.count();
+}
+
 TEST(SpectralFilm, FewerSamplesThanReplicatesTellNoError) {
     constexpr float unknown = std::numeric_limits<float>::infinity();
     SpectralFilm film(1, kBins);
     for (uint32_t n = 0; n < kReplicates; ++n) {
-        EXPECT_EQ(film.standard_error(0, n), V3f(unknown)) << n;
-        EXPECT_EQ(film.luminance_error(0, n), unknown) << n;
+        EXPECT_EQ(film.standard_error(0, {0, n}), V3f(unknown)) << n;
+        EXPECT_EQ(film.luminance_error(0, {0, n}), unknown) << n;
         add_colour(film, 0, n, V3f(1, 2, 3));
     }
-    EXPECT_EQ(film.standard_error(0, kReplicates), V3f(0.f));
-    EXPECT_EQ(film.luminance_error(0, kReplicates), 0.f);
+    EXPECT_EQ(film.standard_error(0, {0, kReplicates}), V3f(0.f));
+    EXPECT_EQ(film.luminance_error(0, {0, kReplicates}), 0.f);
+}
+
+// Spectral radiance of a lane that the colour does not see: beyond the sums of the bins.
+TEST(SpectralFilm, RadianceBeyondTheRangeIsNoSample) {
+    Film film({1, 1}, {0, 0, 1, 1}, {}, kBins);
+    const Bands bands = bands_at(f4{405, 505, 605, 705}, splat(1e-3f), m4{-1, -1, -1, -1});
+    FilmSample sample;
+    film.add(0, 0, 3, sample, {3, f4{1e9f, 0, 0, 0}, V3f(0.f)}, bands);
+    film.add(0, 0, 4, sample, {4, f4{1e7f, 0, 0, 0}, V3f(0.f)}, bands);
+    EXPECT_EQ(film.bad_count(), 1u);
+    EXPECT_EQ(film.first_bad()->index, 3u);
+    EXPECT_FLOAT_EQ(means(*film.spectral(), 0, 1)[2], 1e7f / (1e-3f * 4 * 10));
 }
 
 TEST(SpectralFilm, WhatIsNotFiniteIsLeftOutOfEverySum) {
@@ -141,7 +169,7 @@ TEST(SpectralFilm, WhatIsNotFiniteIsLeftOutOfEverySum) {
     EXPECT_EQ(film.bad_count(), 1u);
     const SpectralFilm& spectral = *film.spectral();
     EXPECT_EQ(spectral.xyz(0, 8), V3f(1.f));
-    EXPECT_EQ(spectral.standard_error(0, 8), V3f(0.f));
+    EXPECT_EQ(spectral.standard_error(0, {0, 8}), V3f(0.f));
     EXPECT_FLOAT_EQ(means(spectral, 0, 8)[2], 1 / (0.01f * 4 * 10));
 }
 

@@ -204,6 +204,89 @@ TEST(Render, StopsWhenTold) {
     EXPECT_EQ(result.end_sample, 0u);
 }
 
+// An executor that asks for a pause, or for a stop, after every so many tasks.
+class InterruptingExecutor {
+  public:
+    InterruptingExecutor(std::atomic<bool>& flag, int tasks)
+        : flag_(flag), left_(tasks), tasks_(tasks) {}
+    [[nodiscard]] static int threads() { return 2; }
+    template <class F>
+    void run(int count, const F& f) {
+        ThreadExecutor(2).run(count, [&](int task, int worker) {
+            f(task, worker);
+            if (--left_ % tasks_ == 0) flag_ = true;
+        });
+    }
+
+  private:
+    std::atomic<bool>& flag_;
+    std::atomic<int> left_;
+    int tasks_;
+};
+
+TEST(Render, PausesChangeNothing) {
+    static const Studio studio(kSize);
+    const Film whole = picture(ThreadExecutor(2), job_of(24));
+    for (const int tasks : {1, 2, 7, 12, 13}) {
+        Film film(kSize, kWhole, {Aov::Albedo, Aov::Normal, Aov::Depth});
+        RenderMonitor monitor;
+        RenderJob job = job_of(24);
+        int pauses = 0;
+        uint64_t at_pause = 0;
+        job.at_pause = [&] {
+            ++pauses;
+            EXPECT_GT(monitor.pixel_samples_done, at_pause) << "something is done between pauses";
+            at_pause = monitor.pixel_samples_done;
+        };
+        InterruptingExecutor executor(monitor.pause, tasks);
+        const RenderResult result =
+            render(*studio.tracer, *studio.camera, job, film, executor, monitor);
+        EXPECT_FALSE(result.stopped);
+        EXPECT_GT(pauses, 2) << tasks;
+        EXPECT_EQ(result.stats.samples, uint64_t(kSize.x) * kSize.y * 24);
+        expect_same_bytes(whole, film);
+    }
+}
+
+// Stopped again and again in the middle of a pass, with tiles that are ahead of others.
+TEST(Render, GoesOnWhereItWasStopped) {
+    static const Studio studio(kSize);
+    const Film whole = picture(ThreadExecutor(2), job_of(24));
+    for (const int tasks : {2, 5, 13}) {
+        Film film(kSize, kWhole, {Aov::Albedo, Aov::Normal, Aov::Depth});
+        uint64_t samples = 0;
+        int runs = 0;
+        for (RenderResult result{.stopped = true}; result.stopped; ++runs) {
+            RenderMonitor monitor;
+            InterruptingExecutor executor(monitor.stop, tasks);
+            result = render(*studio.tracer, *studio.camera, job_of(24), film, executor, monitor);
+            samples += result.stats.samples;
+        }
+        EXPECT_GT(runs, 3) << tasks;
+        EXPECT_EQ(samples, uint64_t(kSize.x) * kSize.y * 24);
+        expect_same_bytes(whole, film);
+    }
+}
+
+// Ranges of samples, each in a film of its own, add up to the film of all.
+TEST(Render, RangesAddUpToTheWhole) {
+    static const Studio studio(kSize);
+    const Film whole = picture(ThreadExecutor(2), job_of(24));
+    Film sum(kSize, kWhole, {Aov::Albedo, Aov::Normal, Aov::Depth});
+    std::vector<uint8_t> packed(Film::bytes_per_pixel(3, {}));
+    for (const SampleRange range : {SampleRange{7, 20}, SampleRange{0, 7}, SampleRange{20, 24}}) {
+        RenderJob job = job_of(range.end);
+        job.first_sample = range.first;
+        const Film part = picture(ThreadExecutor(2), job);
+        for (int y = 0; y < kSize.y; ++y)
+            for (int x = 0; x < kSize.x; ++x) {
+                part.pack(x, y, packed.data());
+                sum.add_packed(x, y, packed.data());
+            }
+    }
+    expect_same_bytes(whole, sum);
+}
+
 // As any number of samples is rendered by a machine that takes a second for one of every pixel, or
 // another time that it is given: the samples at which a time limit ends it.
 uint32_t samples_within(double limit_s, uint32_t spp, double (*time_of_s)(double samples)) {

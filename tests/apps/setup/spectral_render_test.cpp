@@ -409,8 +409,8 @@ TEST(SpectralRender, SameBytesForAnyNumberOfThreads) {
             one.spectral()->bin_means(one.offset(x, y), 16, bins_a.data());
             four.spectral()->bin_means(four.offset(x, y), 16, bins_b.data());
             ASSERT_EQ(bins_a, bins_b);
-            ASSERT_EQ(one.spectral()->standard_error(one.offset(x, y), 16),
-                      four.spectral()->standard_error(four.offset(x, y), 16));
+            ASSERT_EQ(one.spectral()->standard_error(one.offset(x, y), {0, 16}),
+                      four.spectral()->standard_error(four.offset(x, y), {0, 16}));
         }
 }
 

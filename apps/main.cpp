@@ -6,23 +6,20 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
-#include <exception>
-#include <new>
-#include <stdexcept>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "apps/cli/command_line.h"
 #include "apps/commands/chart.h"
+#include "apps/commands/failure.h"
 #include "apps/commands/image.h"
 #include "apps/commands/info.h"
 #include "apps/commands/lens.h"
 #include "apps/commands/plan.h"
 #include "apps/commands/render.h"
+#include "apps/commands/resume.h"
 #include "apps/commands/session.h"
 #include "apps/setup/develop.h"
-#include "io/base/error.h"
 
 namespace {
 
@@ -48,21 +45,8 @@ int run(CLI::App& app, petzval::Spelling line, Session& session) {
         app.parse(std::vector<std::string>(line.words.rbegin(), line.words.rend()));
     } catch (const CLI::ParseError& e) {
         return stop_parsing(session, app, e, line);
-    } catch (const petzval::ArgumentError& e) {
-        return fail(session, petzval::kUsage, e.what());
-    } catch (const petzval::OutputError& e) {
-        return fail(session, petzval::kOutputFailed, e.what());
-    } catch (const std::bad_alloc& e) {
-        const std::string what = e.what();
-        return fail(session, petzval::kOutOfMemory,
-                    what == "std::bad_alloc" ? "out of memory" : what);
-    } catch (const std::length_error&) {  // of a container: more than any memory
-        return fail(session, petzval::kOutOfMemory, "out of memory");
-    } catch (const std::system_error& e) {
-        // fmt throws one where standard output cannot be written, which finish_stdout() tells.
-        if (std::ferror(stdout) == 0) return fail(session, petzval::kFailure, e.what());
-    } catch (const std::exception& e) {
-        return fail(session, petzval::kFailure, e.what());
+    } catch (...) {
+        return petzval::tell_failure(session);
     }
     return session.exit_code;
 }
@@ -88,13 +72,17 @@ int main(int argc, char** argv) {
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);
     petzval::Spelling line = petzval::with_current_spellings(argc, argv);
-    Session session(petzval::console_style_of(line.words), petzval::is_quiet(line.words));
+    const std::vector<std::string> words = petzval::words_of_console(line.words);
+    Session session(petzval::console_style_of(words), petzval::is_quiet(words));
+    session.words = line.words;
     CLI::App app("A path tracer whose camera is a lens. Every command has --help.");
     app.name("petzval");
     app.option_defaults()->take_last();  // of an option that is given twice
     app.set_version_flag("--version", petzval::program_version());
     app.require_subcommand(1);
     petzval::add_render_command(app, session);
+    petzval::add_resume_command(app, session);
+    petzval::add_merge_command(app, session);
     petzval::add_plan_command(app);
     petzval::add_chart_command(app, session);
     petzval::add_info_command(app);

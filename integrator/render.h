@@ -22,6 +22,13 @@ namespace petzval {
     return hash32(seed, replicate + 1);
 }
 
+/// Factor that makes no number of a colour larger than a limit in magnitude, 1 where none is. Of an
+/// infinite colour NaN comes, which the film counts.
+[[nodiscard]] inline float clamping_share(const Rgb& colour, float limit) {
+    const float largest = std::max({std::abs(colour[0]), std::abs(colour[1]), std::abs(colour[2])});
+    return largest > limit ? limit / largest : 1.f;
+}
+
 /// Samples whose camera rays are found together: what the film gets of each is a pure function of
 /// the job and its id. Holds as many as a camera takes at once; `render` must be called for those
 /// that are left.
@@ -159,6 +166,11 @@ void SampleBatch<Tracer>::trace(size_t i) {
     // Light that a lens keeps from the film is black, not transparent.
     sample.alpha = 1.f - behind / (seen.exposure * static_cast<float>(lane_count(bands.on)));
     sample.colour = to_rgb(sum, bands);
+    if (job_.clamp_nits)
+        if (const float share = clamping_share(sample.colour, *job_.clamp_nits); share < 1) {
+            sample.colour = sample.colour * share;
+            sum *= splat(share);
+        }
     if (job_.velocity && sample.hit)
         sample.aov[static_cast<size_t>(Aov::Velocity)] =
             job_.velocity->at(sample.first, points_[i].film * V2f(frame_px_));
@@ -222,6 +234,11 @@ RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob&
         PathStats stats;
     };
     std::vector<Worker> workers(static_cast<size_t>(executor.threads()));
+    const auto total = [&] {
+        PathStats sum;
+        for (const Worker& worker : workers) sum += worker.stats;
+        return sum;
+    };
 
     const uint32_t wanted = job.end_sample - job.first_sample, before = least_taken(film);
     uint32_t done = before;
@@ -250,18 +267,16 @@ RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob&
         });
         // The tiles that a pause left out are rendered when the pass is run once more.
         if (monitor.pause.exchange(false)) {
-            if (job.at_pause && !monitor.stop) job.at_pause();
+            if (job.at_pause && !monitor.stop) job.at_pause(total());
         } else if (!monitor.stop) {
             done += pass;
         }
     }
     RenderResult result;
+    result.stats = total();
     result.end_sample = job.first_sample + least_taken(film);
     result.stopped = monitor.stop && result.end_sample < job.end_sample;
-    for (const Worker& worker : workers) {
-        result.stats += worker.stats;
-        result.workers += worker.stats.tiles > 0;
-    }
+    for (const Worker& worker : workers) result.workers += worker.stats.tiles > 0;
     return result;
 }
 

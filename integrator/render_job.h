@@ -28,8 +28,8 @@ struct RenderJob {
     std::optional<double> time_limit_s;  ///< ends with the pass that reaches it, end_sample or not
     std::function<double()> wall_s = steady_s;  ///< clock of the time limit; tests step their own
     /// Called in the rendering thread after the monitor said pause, while no sample is under way:
-    /// the film may be read.
-    std::function<void()> at_pause;
+    /// the film may be read. It gets the counts so far.
+    std::function<void(const PathStats&)> at_pause;
     uint32_t seed = 0;
     SamplerKind sampler = SamplerKind::Owen;
     Filter filter{FilterKind::BlackmanHarris, 1.5f};
@@ -37,6 +37,8 @@ struct RenderJob {
     Observer observer;                   ///< draws what the lanes carry
     uint32_t replicates = 1;             ///< kReplicates for a film with bins
     const Velocity* velocity = nullptr;  ///< where that layer is wanted; must outlive the job
+    /// Largest R, G or B of a sample: a brighter one is made as bright, in its colour.
+    std::optional<float> clamp_nits;
     bool timing = false;  ///< measure where the time goes, on a sixteenth of the samples
 };
 

@@ -53,7 +53,7 @@ class MethodRenders {
 
     /// Continues one seed's render; false where it was stopped.
     [[nodiscard]] bool advance(uint32_t seed, uint32_t end_sample) {
-        return render_into(films_[seed], seed, samples_, end_sample, cpu_s_[seed]);
+        return render_into(films_[seed], seed, end_sample, cpu_s_[seed]);
     }
     /// After all seeds have been advanced there.
     void reached(uint32_t samples) { samples_ = samples; }
@@ -61,7 +61,7 @@ class MethodRenders {
     [[nodiscard]] bool warm_up() {
         Film scratch = new_film();
         double ignored_s = 0;
-        return render_into(scratch, 0, 0, 1, ignored_s);
+        return render_into(scratch, 0, 1, ignored_s);
     }
 
     [[nodiscard]] uint32_t samples() const { return samples_; }
@@ -77,10 +77,9 @@ class MethodRenders {
     [[nodiscard]] Film new_film() const {
         return {at_.frame.size, at_.frame.crop, {}, setup_.view.observer.bins()};
     }
-    bool render_into(Film& film, uint32_t seed, uint32_t first, uint32_t end, double& cpu_s) {
+    bool render_into(Film& film, uint32_t seed, uint32_t end, double& cpu_s) {
         RenderJob job = job_;
         job.seed = first_seed_ + seed;
-        job.first_sample = first;
         job.end_sample = end;
         const double start_s = at_.clock.cpu_s();
         const RenderResult result =

@@ -5,11 +5,15 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
+#include <ctime>
 #include <exception>
 
 #include "io/base/ascii.h"
+#include "io/base/atomic_file.h"
+#include "io/base/error.h"
 #include "io/base/printable.h"
 
 namespace petzval {
@@ -83,6 +87,7 @@ void Console::notice(const std::string& text) {
         messages_.warnings.push_back(text.substr(kWarning.size()));
     else
         messages_.notices.push_back(text);
+    log(text);
     if (quiet_) return;
     if (style_ == ConsoleStyle::Json)
         put_event(warning ? "warning" : "notice", {{"notice", text}});
@@ -93,6 +98,7 @@ void Console::notice(const std::string& text) {
 void Console::error(const std::string& text) {
     const std::lock_guard lock(mutex_);
     messages_.errors.push_back(text);
+    log("error: " + text);
     if (style_ == ConsoleStyle::Json)
         put_event("error", {{"error", text}});
     else
@@ -101,6 +107,7 @@ void Console::error(const std::string& text) {
 
 void Console::line(const std::string& text) {
     const std::lock_guard lock(mutex_);
+    log(text);
     put(text);
 }
 
@@ -116,7 +123,18 @@ void Console::event(const char* name, const Json& fields) {
     put_event(name, fields);
 }
 
+void Console::log_to(const std::filesystem::path& file) {
+    check_writable(file);
+    const std::lock_guard lock(mutex_);
+    log_.open(file, std::ios::app);
+    if (!log_) throw OutputError(file.string(), "", "cannot be written");
+}
+
 void Console::end(int exit_code) {
+    {
+        const std::lock_guard lock(mutex_);
+        log(fmt::format("ends with exit code {}", exit_code));
+    }
     if (style_ != ConsoleStyle::Json) return;
     capture_.reset();  // what libraries printed comes before the end
     to_ = STDERR_FILENO;
@@ -126,6 +144,16 @@ void Console::end(int exit_code) {
 Messages Console::messages() const {
     const std::lock_guard lock(mutex_);
     return messages_;
+}
+
+void Console::log(const std::string& text) {
+    if (!log_.is_open()) return;
+    const std::time_t now = std::time(nullptr);
+    std::tm utc{};
+    gmtime_r(&now, &utc);
+    std::array<char, 32> time{};
+    std::strftime(time.data(), time.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
+    log_ << time.data() << ' ' << visible(text) << std::endl;  // flushed: the next may be the last
 }
 
 void Console::put(const std::string& text) {

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -58,12 +60,16 @@ class Console {
     void live_line(const std::string& text);
     /// Prints an event, as JSON.
     void event(const char* name, const Json& fields);
+    /// From now on adds what is said to a file, with the time (UTC) of each line. Throws
+    /// OutputError where it cannot be written.
+    void log_to(const std::filesystem::path&);
     /// Prints the last event.
     void end(int exit_code);
     [[nodiscard]] Messages messages() const;
 
   private:
     void put(const std::string& line);
+    void log(const std::string& text);
     void put_event(const char* name, const Json& fields);
     void clear_live_line();
 
@@ -72,6 +78,7 @@ class Console {
     int to_ = 2;  ///< descriptor that JSON goes to
     mutable std::mutex mutex_;
     Messages messages_;
+    std::ofstream log_;
     std::optional<StderrCapture> capture_;  // last: its thread uses the rest
 };
 

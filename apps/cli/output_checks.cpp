@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/output_checks.h"
 
+#include "apps/cli/keep_options.h"
 #include "io/base/error.h"
 #include "io/image/picture_files.h"
 
@@ -13,6 +14,10 @@ std::string complaint_about_picture_name(const std::string& name) {
     } catch (const InputError& error) {
         return error.what();
     }
+}
+
+std::string complaint_about_render_name(const std::string& name) {
+    return is_state_name(name) ? "" : complaint_about_picture_name(name);
 }
 
 std::string complaint_about_display_name(const std::string& name) {

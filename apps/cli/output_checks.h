@@ -9,6 +9,8 @@ namespace petzval {
 
 /// Complaint about the name of a picture to write.
 [[nodiscard]] std::string complaint_about_picture_name(const std::string&);
+/// Complaint about the name of a picture, or of a state, to write.
+[[nodiscard]] std::string complaint_about_render_name(const std::string&);
 /// Complaint about the name of a picture to write for a display: no EXR.
 [[nodiscard]] std::string complaint_about_display_name(const std::string&);
 

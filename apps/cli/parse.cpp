@@ -90,6 +90,16 @@ Rect parse_crop(const std::string& option, const std::string& text, V2i frame) {
     refuse(option, text, fmt::format("x,y,width,height inside the {}x{} frame", frame.x, frame.y));
 }
 
+SampleRange parse_samples(const std::string& option, const std::string& text, uint32_t most) {
+    if (const auto parts = split(text, ':'); parts.size() == 2) {
+        const auto first = number<uint32_t>(trimmed(parts[0])),
+                   end = number<uint32_t>(trimmed(parts[1]));
+        if (first && end && *first < *end && *end <= most) return {*first, *end};
+    }
+    refuse(option, text,
+           fmt::format("a range A:B of samples, from A to before B, with A < B <= {}", most));
+}
+
 V2i parse_pixel(const std::string& option, const std::string& text) {
     if (const auto parts = split(text, ','); parts.size() == 2) {
         const auto x = number<int>(trimmed(parts[0])), y = number<int>(trimmed(parts[1]));

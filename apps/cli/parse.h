@@ -26,6 +26,9 @@ namespace petzval {
                                double most);
 /// Crop from "x,y,w,h" in pixels of a frame; must lie inside it and hold a pixel.
 [[nodiscard]] Rect parse_crop(const std::string& option, const std::string& text, V2i frame);
+/// Range of sample indices from "A:B": A below B, and B at most `most`.
+[[nodiscard]] SampleRange parse_samples(const std::string& option, const std::string& text,
+                                        uint32_t most);
 /// Pixel from "x,y": two whole numbers.
 [[nodiscard]] V2i parse_pixel(const std::string& option, const std::string& text);
 /// Duration from "90", "90s", "1.5m", "1h30m", or as a clock shows it, "1:30" and "1:30:00":

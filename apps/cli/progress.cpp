@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/progress.h"
 
+#include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -79,6 +80,20 @@ void Progress::end_rendering(bool whole) {
         console_.line(progress_line(figures, terminal_columns(), ProgressBar::Yes));
     if (style_ == ProgressStyle::Lines)
         console_.line(progress_line(figures, kUsualColumns, ProgressBar::No));
+    if (style_ == ProgressStyle::Percent) show_percent(figures.fraction);
+}
+
+void Progress::show_percent(double fraction) {
+    const double whole = goal_.part_of.first + fraction;
+    const int percent = static_cast<int>(100 * whole / goal_.part_of.second);
+    if (percent == percent_) return;
+    percent_ = percent;
+    console_.line(fmt::format("PROGRESS {}%", percent));
+}
+
+void Progress::set_before(uint64_t pixel_samples) {
+    const std::lock_guard lock(mutex_);
+    goal_.before = pixel_samples;
 }
 
 PhaseTimes Progress::times() const {
@@ -105,7 +120,8 @@ void Progress::end_phase() {
 
 void Progress::watch(const std::stop_token& stop) {
     using namespace std::chrono_literals;
-    const auto every = style_ == ProgressStyle::Bar ? 200ms : 2000ms;
+    const auto every =
+        style_ == ProgressStyle::Bar || style_ == ProgressStyle::Percent ? 200ms : 2000ms;
     std::condition_variable_any wake;
     std::unique_lock lock(mutex_);
     while (!wake.wait_for(lock, stop, every, [&] { return stop.stop_requested(); }))
@@ -124,6 +140,7 @@ void Progress::show_now() {
     if (style_ == ProgressStyle::Bar)
         console_.live_line(line(terminal_columns(), ProgressBar::Yes));
     if (style_ == ProgressStyle::Lines) console_.line(line(kUsualColumns, ProgressBar::No));
+    if (style_ == ProgressStyle::Percent && rendering) show_percent(figures.fraction);
     if (style_ != ProgressStyle::Json) return;
     if (rendering)
         console_.event("progress", json_of(figures));

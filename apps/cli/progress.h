@@ -14,7 +14,8 @@
 
 namespace petzval {
 
-enum class ProgressStyle { Auto, Bar, Lines, Json, None };
+/// Percent: lines such as "PROGRESS 37%", for programs that look for one.
+enum class ProgressStyle { Auto, Bar, Lines, Json, Percent, None };
 
 /// Wall time of each phase, in seconds.
 using PhaseTimes = std::array<double, static_cast<size_t>(Phase::Count)>;
@@ -31,12 +32,15 @@ class Progress {
     void begin(Phase);
     /// Shows the last of rendering. whole: it ended by its samples or its time, by no signal.
     void end_rendering(bool whole);
+    /// Pixel samples that are there before rendering begins.
+    void set_before(uint64_t pixel_samples);
     /// Times of the phases so far.
     [[nodiscard]] PhaseTimes times() const;
 
   private:
     void watch(const std::stop_token&);
     void show_now();
+    void show_percent(double fraction);
     void end_phase();
     [[nodiscard]] double phase_s() const;
 
@@ -48,6 +52,7 @@ class Progress {
     Phase phase_ = Phase::Count;  ///< none yet
     double phase_start_s_ = 0;
     bool rendered_ = false;
+    int percent_ = -1;  ///< shown last
     PhaseTimes times_{};
     std::jthread thread_;
 };

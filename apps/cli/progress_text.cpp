@@ -47,24 +47,31 @@ std::string cut(const std::string& text, int columns) {
 
 ProgressFigures figures_under_way(const ProgressGoal& goal, uint64_t pixel_samples,
                                   double elapsed_s) {
-    const auto done = static_cast<double>(pixel_samples);
+    const bool any = pixel_samples > goal.before;
+    const auto done = any ? static_cast<double>(pixel_samples - goal.before) : 0.;
     ProgressFigures out{pixel_samples, elapsed_s, done / std::max(elapsed_s, 1e-9), 0, {}};
     const auto left_to = [&](uint64_t samples) {
         return samples > pixel_samples
                    ? static_cast<double>(samples - pixel_samples) / out.samples_per_s
                    : 0.;
     };
-    if (pixel_samples > 0 && goal.total) out.left_s = left_to(*goal.total);
+    if (any && goal.total) out.left_s = left_to(*goal.total);
     if (goal.time_limit_s) {
         const double to_limit_s = std::max(*goal.time_limit_s - elapsed_s, 0.);
-        if (pixel_samples > 0)
+        if (any)
             out.left_s = std::max(std::min(out.left_s.value_or(to_limit_s), to_limit_s),
                                   left_to(goal.first_pass));
         else if (to_limit_s > 0)
             out.left_s = to_limit_s;
     }
+    // What was there before is as much of the whole as its samples are.
+    const double at_start = goal.total && *goal.total > 0 ? static_cast<double>(goal.before) /
+                                                                static_cast<double>(*goal.total)
+                                                          : 0.;
+    out.fraction = std::min(at_start, kNearlyDone);
     if (out.left_s && elapsed_s + *out.left_s > 0)
-        out.fraction = std::clamp(elapsed_s / (elapsed_s + *out.left_s), 0., kNearlyDone);
+        out.fraction = std::clamp(at_start + (1 - at_start) * elapsed_s / (elapsed_s + *out.left_s),
+                                  0., kNearlyDone);
     return out;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "apps/setup/phase.h"
 
@@ -15,6 +16,8 @@ struct ProgressGoal {
     uint64_t first_pass = 1;        ///< pixel samples that are taken whatever the time limit
     std::optional<uint64_t> total;  ///< pixel samples; absent where only time bounds it
     std::optional<double> time_limit_s;
+    uint64_t before = 0;                ///< pixel samples that were there when it began
+    std::pair<int, int> part_of{0, 1};  ///< of a sequence: its number from 0, of so many
 };
 
 /// How far rendering is.

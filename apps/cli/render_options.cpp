@@ -9,6 +9,7 @@
 
 #include "apps/cli/choice.h"
 #include "apps/cli/display_options.h"
+#include "apps/cli/frames.h"
 #include "apps/cli/output_checks.h"
 #include "apps/cli/parse.h"
 #include "apps/setup/memory.h"
@@ -36,8 +37,13 @@ void add_frame_options(CLI::App& app, RenderOptions& o) {
     app.add_option("--crop", o.crop, "x,y,width,height: only these pixels of the full frame");
     app.add_option("--spp", o.spp, "samples of each pixel (default 64)")
         ->transform(whole_number_between(1, kMostSamples));
+    app.add_option("--samples", o.samples,
+                   "render only the samples A:B of each pixel, and keep their sums in NAME.state, "
+                   "for petzval merge")
+        ->excludes(app.get_option("--spp"));
     app.add_option("--time", o.time,
-                   "render for this long: 60s, 10m, 1h30m, 1:30; with --spp whichever ends first");
+                   "render for this long: 60s, 10m, 1h30m, 1:30; with --spp whichever ends first")
+        ->excludes(app.get_option("--samples"));
     app.add_option("--seed", o.job.seed, "another seed, another noise")
         ->transform(whole_number_between(0, std::numeric_limits<uint32_t>::max()));
 }
@@ -62,6 +68,9 @@ void add_sampling_options(CLI::App& app, RenderOptions& o) {
     add_choice<TargetUse>(app, "--targets", o.scene.targets,
                           "camera rays to small lamps and highlights out of focus: auto (default; "
                           "where they pay), off");
+    app.add_option("--clamp", o.job.clamp_nits,
+                   "largest R, G or B of a sample, in nits: takes fireflies, and light with them")
+        ->transform(number_between(1e-9, 1e12));
     add_choice<Traversal>(app, "--traversal", o.scene.traversal,
                           "robust (default): watertight; fast: may leak at edges");
 }
@@ -70,10 +79,11 @@ void add_output_options(CLI::App& app, RenderOptions& o) {
     const auto add = [&](const char* name, auto& value, const char* help) {
         return app.add_option(name, value, help)->group("Output");
     };
-    add("-o,--output", o.outputs, "picture to write: .exr, .png, .jpg; may be given more than once")
+    add("-o,--output", o.outputs,
+        "picture to write: .exr, .png, .jpg; or .state; may be given more than once")
         ->required()
         ->allow_extra_args(false)  // one name each, so that the scene may follow
-        ->check(complaint_about_picture_name);
+        ->check(complaint_about_render_name);
     o.display_only = {
         add("--exposure", o.exposure,
             "stops, for PNG and JPEG, or auto; EXR is always scene-linear (default 0)")};
@@ -89,22 +99,28 @@ void add_output_options(CLI::App& app, RenderOptions& o) {
                    "files becomes their number")
         ->group("Time")
         ->excludes(app.get_option("--at"));
-    add_choice<ProgressStyle>(app, "--progress", o.progress,
-                              {{"auto", ProgressStyle::Auto},
-                               {"bar", ProgressStyle::Bar},
-                               {"lines", ProgressStyle::Lines},
-                               {"json", ProgressStyle::Json},
-                               {"none", ProgressStyle::None}},
-                              "on stderr: auto (default), bar, lines, json, none");
+    app.add_option("--number", o.number, "")->group("");  // of one picture of a sequence
+    add_choice<ProgressStyle>(
+        app, "--progress", o.progress,
+        {{"auto", ProgressStyle::Auto},
+         {"bar", ProgressStyle::Bar},
+         {"lines", ProgressStyle::Lines},
+         {"json", ProgressStyle::Json},
+         {"percent", ProgressStyle::Percent},
+         {"none", ProgressStyle::None}},
+        "on stderr: auto (default), bar, lines, json, percent (lines as PROGRESS 37%), "
+        "none");
     app.add_flag("--quiet", o.quiet, "print nothing but errors");
 }
 
 // Checks that what was asked for has an output that takes it. Returns what to tell about it.
 std::vector<std::string> resolve_outputs(RenderOptions& o) {
-    if (o.outputs.empty()) return {};  // of a plan
+    if (o.outputs.empty() && !o.keep.state) return {};  // of a plan
     const auto is_exr = [](const auto& path) { return picture_format(path) == PictureFormat::Exr; };
-    const bool any_exr = std::any_of(o.outputs.begin(), o.outputs.end(), is_exr);
-    const bool all_exr = std::all_of(o.outputs.begin(), o.outputs.end(), is_exr);
+    // A state that stays keeps all, and may become a PNG.
+    const bool keeps = o.keep.state_is_wanted;
+    const bool any_exr = keeps || std::any_of(o.outputs.begin(), o.outputs.end(), is_exr);
+    const bool all_exr = !keeps && std::all_of(o.outputs.begin(), o.outputs.end(), is_exr);
     if (o.scene.spectral.bins && !any_exr)
         throw CLI::ValidationError("--bins", "needs an output that keeps them: -o FILE.exr");
     if (!o.aovs.empty() && !any_exr)
@@ -127,9 +143,14 @@ std::vector<std::string> resolve_outputs(RenderOptions& o) {
 void resolve_job(RenderOptions& o) {
     if (!o.time.empty()) o.job.time_limit_s = parse_duration_s("--time", o.time);
     o.job.end_sample = o.spp.value_or(o.job.time_limit_s ? kMostSamples : kDefaultSpp);
+    if (!o.samples.empty()) {
+        const SampleRange samples = parse_samples("--samples", o.samples, kMostSamples);
+        o.job.first_sample = samples.first;
+        o.job.end_sample = samples.end;
+    }
     if (o.scene.spectral.bins) {
         o.job.replicates = kReplicates;
-        if (o.job.end_sample < kReplicates)
+        if (o.samples.empty() && o.job.end_sample < kReplicates)
             throw CLI::ValidationError(
                 "--spp",
                 fmt::format("the standard errors of --bins need at least {}", kReplicates));
@@ -148,6 +169,14 @@ void require_memory(const RenderFrame& frame, const SceneRequest& scene) {
         static_cast<double>(Film::bytes_per_pixel(frame.aovs.size(), scene.spectral.bins));
     if (const auto shortage = memory_shortage(pixels * pixel_bytes, there_bytes))
         throw OutOfMemory("--size: " + *shortage);
+}
+
+// Puts the number of a picture of a sequence into the names of its files.
+void number_files(RenderOptions& o) {
+    if (!o.number) return;
+    for (auto& output : o.outputs) output = name_of_frame("-o", output, *o.number, false);
+    for (auto* file : {&o.stats, &o.keep.preview})
+        if (*file) **file = name_of_frame("", **file, *o.number, false);
 }
 
 }  // namespace
@@ -193,9 +222,11 @@ void add_render_options(CLI::App& app, RenderOptions& o) {
     add_frame_options(app, o);
     add_plan_options(app, o);
     add_output_options(app, o);
+    add_keep_options(app, o.keep);
 }
 
 RenderFrame resolve(RenderOptions& o) {
+    number_files(o);
     SceneRequest& s = o.scene;
     s.size = parse_size("--size", o.size);
     s.picture_memory_bytes = o.reading.memory_bytes();
@@ -213,6 +244,7 @@ RenderFrame resolve(RenderOptions& o) {
     RenderFrame frame{{0, 0, s.size.x, s.size.y}, {}, parse_share("--tolerance", o.tolerance), {}};
     if (!o.crop.empty()) frame.crop = parse_crop("--crop", o.crop, s.size);
     if (!o.aovs.empty()) frame.aovs = parse_aovs("--aov", o.aovs);
+    if (!o.outputs.empty()) resolve(o.keep, o.outputs, !o.samples.empty());
     frame.remarks = resolve_outputs(o);
     require_memory(frame, s);
     return frame;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/cli/camera_options.h"
+#include "apps/cli/keep_options.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/reading_options.h"
 #include "apps/cli/spectral_options.h"
@@ -34,9 +35,11 @@ struct RenderOptions {
     SpectralOptions spectral;
     CameraOptions camera;
     ReadingOptions reading;
-    std::vector<std::filesystem::path> outputs;
+    std::vector<std::filesystem::path> outputs;  ///< pictures, and before resolve() a state
+    KeepOptions keep;
     std::optional<std::filesystem::path> stats;
-    std::string size = "1280x720", crop, time, background, tolerance = "1%", exposure = "0";
+    std::string size = "1280x720", crop, samples, time, background, tolerance = "1%",
+                exposure = "0";
     std::vector<std::string> aovs;  ///< lists of names
     std::optional<uint32_t> spp;
     int threads = 0;  ///< 0: as many as can be had
@@ -49,7 +52,8 @@ struct RenderOptions {
     bool auto_exposure = false;
     ProgressStyle progress = ProgressStyle::Auto;
     bool quiet = false;
-    std::string frames;  ///< of a sequence; empty: one picture
+    std::string frames;         ///< of a sequence; empty: one picture
+    std::optional<int> number;  ///< that #### in the names of files becomes
 };
 
 /// Values from the texts of RenderOptions that have no place elsewhere.

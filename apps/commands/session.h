@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "apps/cli/console.h"
 #include "apps/cli/exit_code.h"
 #include "apps/cli/interrupt.h"
@@ -12,6 +15,7 @@ namespace petzval {
 struct Session {
     Interrupt interrupt;  ///< first: the threads of the others inherit its blocked signals
     Console console;
+    std::vector<std::string> words;  ///< of the command line, without the program's name
     int exit_code = kSuccess;
 
     Session(ConsoleStyle style, bool quiet) : console(style, quiet) {}

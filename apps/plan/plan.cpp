@@ -134,11 +134,19 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
     return plan;
 }
 
+namespace {
+
+RenderSetup set_up_like(const PlanRequest& request, const Notice& notice, const PhaseSink& begins) {
+    if (request.like) return set_up_view(*request.like, request.scene, notice);
+    return set_up_render(request.scene, notice, begins);
+}
+
+}  // namespace
+
 AutoSetup set_up_planned(const PlanRequest& request, TbbExecutor& executor, const Notice& notice,
                          const PhaseSink& begins) {
     AutoSetup out;
-    RenderSetup first =
-        executor.inside([&] { return set_up_render(request.scene, notice, begins); });
+    RenderSetup first = executor.inside([&] { return set_up_like(request, notice, begins); });
     const PlanOpen open(request.scene, first);
     AutoChoice& choice = out.choice;
     std::optional<SceneRequest> other;  // a request other than what was set up

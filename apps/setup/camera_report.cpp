@@ -7,8 +7,7 @@
 namespace petzval {
 namespace {
 
-void describe_iris(const CameraReport& c, PictureLayout& layout) {
-    auto& m = layout.metadata;
+void describe_iris(const CameraReport& c, Metadata& m) {
     m.emplace_back("petzval:aperture", c.asked.aperture.value_or("circle"));
     m.emplace_back("petzval:apertureScale", name_of(c.asked.aperture_scale));
     if (c.asked.iris_sampling)
@@ -20,8 +19,7 @@ void describe_iris(const CameraReport& c, PictureLayout& layout) {
     }
 }
 
-void describe_glass(const CameraReport& c, PictureLayout& layout) {
-    auto& m = layout.metadata;
+void describe_glass(const CameraReport& c, Metadata& m) {
     m.emplace_back("petzval:lens", c.lens);
     m.emplace_back("petzval:film_mm", static_cast<float>(c.film_mm));
     m.emplace_back("petzval:stopRadius_mm", static_cast<float>(c.stop_radius_mm));
@@ -34,8 +32,7 @@ void describe_glass(const CameraReport& c, PictureLayout& layout) {
 
 }  // namespace
 
-void describe_camera(const CameraReport& c, PictureLayout& layout) {
-    auto& m = layout.metadata;
+void describe_camera(const CameraReport& c, Metadata& m) {
     m.emplace_back("petzval:camera", c.name);
     m.emplace_back("petzval:cameraEye_m", with_commas(c.eye));
     m.emplace_back("petzval:cameraTarget_m", with_commas(c.target));
@@ -47,9 +44,9 @@ void describe_camera(const CameraReport& c, PictureLayout& layout) {
     m.emplace_back("petzval:lensRadius_m", c.lens_radius_m);
     if (c.natural_vignetting)
         m.emplace_back("petzval:naturalVignetting", *c.natural_vignetting ? "on" : "off");
-    if (!c.lens.empty()) describe_glass(c, layout);
+    if (!c.lens.empty()) describe_glass(c, m);
     if (c.lens_radius_m <= 0) return;
-    describe_iris(c, layout);
+    describe_iris(c, m);
     m.emplace_back("petzval:fstop", c.focal_length_mm * 1e-3f / (2 * c.lens_radius_m));
     m.emplace_back("petzval:focus_m", c.focus_m);
 }

@@ -31,6 +31,6 @@ struct CameraReport {
 };
 
 /// Adds a report to a picture's metadata.
-void describe_camera(const CameraReport&, PictureLayout&);
+void describe_camera(const CameraReport&, Metadata&);
 
 }  // namespace petzval

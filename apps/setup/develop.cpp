@@ -46,9 +46,8 @@ float mean_relative_error(const Film& film, uint32_t first) {
     return lit > 0 ? static_cast<float>(sum / double(lit)) : 0.f;
 }
 
-void describe_spectrum(const Film& film, uint32_t first, PictureLayout& layout) {
+void describe_spectrum(const Film& film, uint32_t first, Metadata& m) {
     const Bins& bins = film.spectral()->bins();
-    auto& m = layout.metadata;
     m.emplace_back("spectralLayoutVersion", "1.0");
     m.emplace_back("emissiveUnits", "W.m^-2.sr^-1");
     m.emplace_back("petzval:bins", fmt::format("{:.9g}:{:.9g}:{:.9g}", bins.first_edge_nm,
@@ -105,37 +104,42 @@ std::string program_version() {
     return "petzval " PETZVAL_VERSION;
 }
 
-PictureRows develop(const Film& film, const RenderSetup& setup, const RenderJob& job,
-                    const PathOptions& options, uint32_t end_sample) {
-    const Rect crop = film.crop();
-    PictureLayout layout{
-        .width = crop.width(),
-        .height = crop.height(),
-        .x = crop.x0,
-        .y = crop.y0,
-        .full_width = film.full_size().x,
-        .full_height = film.full_size().y,
-        .channels = channels_of(film),
-        .metadata = {{"Software", program_version()},
-                     {"petzval:sceneHash", fmt::format("{:016x}", setup.prepared.hash)},
-                     {"petzval:samples", fmt::format("{}:{}", job.first_sample, end_sample)},
-                     {"petzval:seed", fmt::format("{}", job.seed)},
-                     {"petzval:sampler", name_of(job.sampler)},
-                     {"petzval:filter", name_of(job.filter.kind())},
-                     {"petzval:filterRadius_px", job.filter.radius_px()},
-                     {"petzval:maxDepth", options.max_depth},
-                     {"petzval:maxClearDepth", options.max_clear_depth},
-                     {"petzval:scale", setup.from.scale},
-                     {"petzval:transparent", int(options.transparent)},
-                     {"petzval:luminousEfficacy_lm_per_W", kLuminousEfficacy_lm_per_w}}};
-    for (const auto& [name, value] : setup.from.metadata) layout.metadata.emplace_back(name, value);
-    if (setup.from.exposure_is_auto)
-        layout.metadata.emplace_back("petzval:exposure_ev", setup.from.exposure_ev);
-    describe_camera(setup.from.camera, layout);
-    if (film.spectral()) describe_spectrum(film, job.first_sample, layout);
-    for (auto& [name, value] : layout.metadata)
+Metadata describe_render(const RenderSetup& setup, const RenderJob& job,
+                         const PathOptions& options) {
+    Metadata m{{"Software", program_version()},
+               {"petzval:sceneHash", fmt::format("{:016x}", setup.prepared.hash)},
+               {"petzval:seed", fmt::format("{}", job.seed)},
+               {"petzval:sampler", name_of(job.sampler)},
+               {"petzval:filter", name_of(job.filter.kind())},
+               {"petzval:filterRadius_px", job.filter.radius_px()},
+               {"petzval:maxDepth", options.max_depth},
+               {"petzval:maxClearDepth", options.max_clear_depth},
+               {"petzval:scale", setup.from.scale},
+               {"petzval:transparent", int(options.transparent)},
+               {"petzval:luminousEfficacy_lm_per_W", kLuminousEfficacy_lm_per_w}};
+    if (job.clamp_nits) m.emplace_back("petzval:clamp_nits", *job.clamp_nits);
+    for (const auto& [name, value] : setup.from.metadata) m.emplace_back(name, value);
+    if (setup.from.exposure_is_auto) m.emplace_back(kFoundExposure, setup.from.exposure_ev);
+    describe_camera(setup.from.camera, m);
+    for (auto& [name, value] : m)
         if (auto* text = std::get_if<std::string>(&value)) *text = visible(*text);
-    return {std::move(layout), [&film, crop, first = job.first_sample](int y, float* row) {
+    return m;
+}
+
+PictureRows develop(const Film& film, SampleRange samples, const Metadata& of_render) {
+    const Rect crop = film.crop();
+    PictureLayout layout{.width = crop.width(),
+                         .height = crop.height(),
+                         .x = crop.x0,
+                         .y = crop.y0,
+                         .full_width = film.full_size().x,
+                         .full_height = film.full_size().y,
+                         .channels = channels_of(film),
+                         .metadata = of_render};
+    layout.metadata.emplace_back("petzval:samples",
+                                 fmt::format("{}:{}", samples.first, samples.end));
+    if (film.spectral()) describe_spectrum(film, samples.first, layout.metadata);
+    return {std::move(layout), [&film, crop, first = samples.first](int y, float* row) {
                 for (int x = crop.x0; x < crop.x1; ++x)
                     row = develop_pixel(film, first, x, crop.y0 + y, row);
             }};

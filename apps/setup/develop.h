@@ -13,11 +13,17 @@ namespace petzval {
 /// Name and version of the program, "petzval 0.1.0" say.
 [[nodiscard]] std::string program_version();
 
-/// Picture of a film: R, G, B, A in nits of the white point; with bins the channels S0 of
-/// io/image/spectral_layout.h, XYZ in nits and the standard errors of R, G and B; then the film's
-/// layers as "layer.channel". Metadata holds what the pixels follow from; no times, so that equal
-/// renders are equal files. The film must outlive the rows.
-[[nodiscard]] PictureRows develop(const Film&, const RenderSetup&, const RenderJob&,
-                                  const PathOptions&, uint32_t end_sample);
+/// Metadata name of an exposure that was found, not asked for: of PNG and JPEG alone.
+inline constexpr const char* kFoundExposure = "petzval:exposure_ev";
+
+/// Metadata that say what the pixels of a render follow from: the same for all of its samples and
+/// crops.
+[[nodiscard]] Metadata describe_render(const RenderSetup&, const RenderJob&, const PathOptions&);
+
+/// Picture of a film that has these samples: R, G, B, A in nits of the white point; with bins the
+/// channels S0 of io/image/spectral_layout.h, XYZ in nits and the standard errors of R, G and B;
+/// then the film's layers as "layer.channel". Metadata: those of the render, with the samples and
+/// what bins mean; no times, so that equal renders are equal files. The film must outlive the rows.
+[[nodiscard]] PictureRows develop(const Film&, SampleRange, const Metadata&);
 
 }  // namespace petzval

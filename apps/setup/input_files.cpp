@@ -27,8 +27,7 @@ std::vector<NamedFile> input_files(const GltfFile& file, const fs::path& scene) 
     for (const fs::path& one : file.files) files.push_back({"a file of the scene", one});
     for (const GltfCamera& camera : file.cameras)
         for (const auto& name : {camera.extras.lens, camera.extras.aperture})
-            if (name)
-                files.push_back({"a file of the scene's camera", scene.parent_path() / *name});
+            if (name) files.push_back({kCameraFile, scene.parent_path() / *name});
     return files;
 }
 

@@ -10,6 +10,9 @@
 
 namespace petzval {
 
+/// Role of the lens and the iris that a scene's camera asks for.
+inline constexpr const char* kCameraFile = "a file of the scene's camera";
+
 /// Files that the options of a request name, whether or not they are there.
 [[nodiscard]] std::vector<NamedFile> input_files(const SceneRequest&);
 /// Files that a scene file names: buffers, images, and what its cameras ask for.

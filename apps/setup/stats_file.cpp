@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include <nlohmann/json.hpp>
+#include <algorithm>
 
 #include "apps/setup/develop.h"
 #include "io/base/atomic_file.h"
@@ -47,6 +47,38 @@ nlohmann::ordered_json files_of(const std::vector<WriteOutcome>& outputs) {
     return out;
 }
 
+// Calls f(name, number) for each number that is kept in a state.
+template <class Figures, class F>
+void for_each_number(Figures& f, const F& each) {
+    auto& s = f.stats;
+    each("camera_rays", s.camera_rays);
+    each("bounce_rays", s.bounce_rays);
+    each("shadow_rays", s.shadow_rays);
+    each("target_rays", s.target_rays);
+    each("vertices", s.vertices);
+    each("clear_ends", s.clear_ends);
+    each("tiles", s.tiles);
+    each("samples", s.samples);
+    each("timed_samples", s.timed_samples);
+    each("lanes_drawn", s.lens_lanes.drawn);
+    each("lanes_vignetted", s.lens_lanes.vignetted);
+    each("lanes_totally_reflected", s.lens_lanes.totally_reflected);
+    each("lanes_missed", s.lens_lanes.missed);
+    each("lanes_unreached", s.lens_lanes.unreached);
+    each("mirrored_bounces", s.mirrored.bounces);
+    each("mirrored_lamps", s.mirrored.lamps);
+    each("caustic_bounces", s.caustic.bounces);
+    each("caustic_lamps", s.caustic.lamps);
+    each("ticks", s.ticks);
+    each("load_s", f.load_s);
+    each("bvh_s", f.bvh_s);
+    each("render_wall_s", f.render_wall_s);
+    each("render_cpu_s", f.render_cpu_s);
+    each("threads", f.threads);
+    each("workers", f.workers);
+    each("peak_memory_mib", f.peak_memory_mib);
+}
+
 }  // namespace
 
 double peak_memory_mib() {
@@ -55,35 +87,58 @@ double peak_memory_mib() {
     return static_cast<double>(self.ru_maxrss) / 1024;
 }
 
-void write_stats(const std::filesystem::path& path, const RenderSetup& setup,
-                 const RenderResult& result, const RenderCost& cost, const RunReport& run,
-                 const Film& film) {
-    const PathStats& s = result.stats;
+RunFigures& RunFigures::operator+=(const RunFigures& o) {
+    stats += o.stats;
+    load_s += o.load_s;
+    bvh_s += o.bvh_s;
+    render_wall_s += o.render_wall_s;
+    render_cpu_s += o.render_cpu_s;
+    threads = std::max(threads, o.threads);
+    workers = std::max(workers, o.workers);
+    peak_memory_mib = std::max(peak_memory_mib, o.peak_memory_mib);
+    return *this;
+}
+
+nlohmann::ordered_json to_json(const RunFigures& f) {
+    nlohmann::ordered_json out;
+    for_each_number(f, [&](const char* name, const auto& number) { out[name] = number; });
+    return out;
+}
+
+RunFigures figures_from(const nlohmann::ordered_json& json) {
+    RunFigures f;
+    for_each_number(f, [&](const char* name, auto& number) { json.at(name).get_to(number); });
+    return f;
+}
+
+void write_stats(const std::filesystem::path& path, const StatsPicture& picture,
+                 const RunFigures& figures, const RunReport& run) {
+    const PathStats& s = figures.stats;
     const uint64_t rays = s.camera_rays + s.bounce_rays + s.shadow_rays;
     // A render that was stopped at once took no time that the clock shows.
     const auto per_cpu_s = [&](uint64_t count) -> nlohmann::ordered_json {
-        if (!(cost.render_cpu_s > 0)) return nullptr;
-        return static_cast<double>(count) / cost.render_cpu_s;
+        if (!(figures.render_cpu_s > 0)) return nullptr;
+        return static_cast<double>(count) / figures.render_cpu_s;
     };
     nlohmann::ordered_json out;
     out["schema"] = "petzval.stats";
     out["version"] = 1;
     out["program"] = program_version();
-    out["size_px"] = {film.full_size().x, film.full_size().y};
-    out["samples_per_pixel"] = result.end_sample;
+    out["size_px"] = {picture.width, picture.height};
+    out["samples_per_pixel"] = picture.samples.count();
     out["pixel_samples"] = s.samples;
     // The digits that were typed or printed, not those of the float.
-    out["exposure_ev"] = nlohmann::ordered_json::parse(fmt::format("{}", setup.from.exposure_ev));
-    out["threads"] = cost.threads;
-    out["threads_that_worked"] = result.workers;
+    out["exposure_ev"] = nlohmann::ordered_json::parse(fmt::format("{}", picture.exposure_ev));
+    out["threads"] = figures.threads;
+    out["threads_that_worked"] = figures.workers;
     out["stopped_by"] = nullptr;
     if (run.stopped_by) out["stopped_by"] = run.stopped_by;
     out["phase_s"] = nlohmann::ordered_json::object();
     for (const auto& [name, seconds] : run.phase_s) out["phase_s"][name] = seconds;
-    out["load_s"] = setup.from.load_s;
-    out["bvh_build_s"] = setup.from.bvh_s;
-    out["render_wall_s"] = cost.render_wall_s;
-    out["render_cpu_s"] = cost.render_cpu_s;
+    out["load_s"] = figures.load_s;
+    out["bvh_build_s"] = figures.bvh_s;
+    out["render_wall_s"] = figures.render_wall_s;
+    out["render_cpu_s"] = figures.render_cpu_s;
     out["rays"] = {{"camera", s.camera_rays},
                    {"bounce", s.bounce_rays},
                    {"shadow", s.shadow_rays},
@@ -94,9 +149,9 @@ void write_stats(const std::filesystem::path& path, const RenderSetup& setup,
     out["paths_ended_in_clear_glass"] = s.clear_ends;
     out["rays_per_cpu_s"] = per_cpu_s(rays);
     out["samples_per_cpu_s"] = per_cpu_s(s.samples);
-    out["cpu_time"] = sections(s, cost.render_cpu_s);
-    out["bad_samples"] = film.bad_count();
-    out["peak_memory_mib"] = peak_memory_mib();
+    out["cpu_time"] = sections(s, figures.render_cpu_s);
+    out["bad_samples"] = picture.bad_samples;
+    out["peak_memory_mib"] = figures.peak_memory_mib;
     out["outputs"] = files_of(run.outputs);
     out["notices"] = run.notices;
     out["warnings"] = run.warnings;

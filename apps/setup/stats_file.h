@@ -3,21 +3,31 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "apps/setup/render_setup.h"
-#include "core/film/film.h"
-#include "integrator/render_job.h"
+#include "core/film/sample_range.h"
+#include "integrator/stats.h"
 #include "io/base/rescue.h"
 
 namespace petzval {
 
-struct RenderCost {
-    double render_wall_s = 0, render_cpu_s = 0;
-    int threads = 0;
+/// Counts and times of a render that add up: over the runs of one that was resumed, and over the
+/// parts of a merged one.
+struct RunFigures {
+    PathStats stats;
+    double load_s = 0, bvh_s = 0, render_wall_s = 0, render_cpu_s = 0;
+    int threads = 0, workers = 0;  ///< most of any run: asked for, and that rendered a tile
+    double peak_memory_mib = 0;    ///< largest of any run
+
+    RunFigures& operator+=(const RunFigures&);
 };
+
+/// Figures as JSON, and back. Throws a nlohmann::json exception where a member is missing.
+[[nodiscard]] nlohmann::ordered_json to_json(const RunFigures&);
+[[nodiscard]] RunFigures figures_from(const nlohmann::ordered_json&);
 
 /// How a run went, beside what it rendered.
 struct RunReport {
@@ -27,12 +37,20 @@ struct RunReport {
     std::vector<std::string> notices, warnings, errors;
 };
 
+/// The picture that figures are of.
+struct StatsPicture {
+    int width = 0, height = 0;  ///< of the full frame
+    SampleRange samples;        ///< that every pixel has
+    float exposure_ev = 0;
+    uint64_t bad_samples = 0;
+};
+
 /// Peak resident memory of this process, MiB.
 [[nodiscard]] double peak_memory_mib();
 
 /// Writes the statistics of a render as JSON; docs/guide/render.md has the schema. Throws
 /// OutputError where the file cannot be written.
-void write_stats(const std::filesystem::path&, const RenderSetup&, const RenderResult&,
-                 const RenderCost&, const RunReport&, const Film&);
+void write_stats(const std::filesystem::path&, const StatsPicture&, const RunFigures&,
+                 const RunReport&);
 
 }  // namespace petzval

@@ -43,6 +43,8 @@ class LightChoice {
     [[nodiscard]] LightRecord record(const std::optional<uint32_t>& light, const LightReceiver&,
                                      float found) const;
 
+    [[nodiscard]] const LightShares& shares() const { return shares_; }
+
   private:
     void plant(const Scene&, std::span<float> power);
 

@@ -43,6 +43,8 @@ class LightShares {
         return factors_[node - (size_t{1} << levels_)];
     }
     [[nodiscard]] int levels() const { return levels_; }
+    /// Factors of the leaves, from left to right: what was learned.
+    [[nodiscard]] std::span<const float> factors() const { return factors_; }
 
   private:
     struct Cut {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/scene/texture.h"
@@ -19,10 +20,15 @@ namespace petzval::codec {
 
 [[nodiscard]] Picture read_picture(const std::filesystem::path&, PictureBudget&,
                                    std::optional<uint64_t> kept_per_pixel);
+[[nodiscard]] Metadata read_metadata(const std::filesystem::path&);
 [[nodiscard]] Image decode_image(const std::vector<uint8_t>& bytes, const std::string& file,
                                  const std::string& place, PictureBudget&, ColourRemarks&);
 void write_exr(const std::filesystem::path&, const PictureRows&);
 void write_8bit(const std::filesystem::path&, const PictureRows& encoded, bool srgb);
+
+/// Start of the names of metadata that PNG and JPEG carry too, in their description: "NAME=VALUE"
+/// with a blank between two.
+inline constexpr std::string_view kOwnMetadata = "petzval:";
 
 /// Whether libjpeg said that the file ends early. OpenImageIO still calls such a picture read, grey
 /// where it is missing; libjpeg's other warnings do no harm.

@@ -2,8 +2,11 @@
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <fstream>
+#include <memory>
+#include <sstream>
 #include <system_error>
 
 #include "io/base/error.h"
@@ -15,8 +18,6 @@
 
 namespace petzval::codec {
 namespace {
-
-using Metadata = decltype(Picture::metadata);
 
 /// The attributes of the file that are one number or one text; not those OpenImageIO adds for
 /// itself.
@@ -57,20 +58,18 @@ std::string_view kind_of(const std::filesystem::path& path) {
     return picture_kind({head.data(), head.size()});
 }
 
-Picture decode(const std::filesystem::path& path, PictureBudget& budget,
-               std::optional<uint64_t> kept_per_pixel) {
-    const auto refuse = [&](const std::string& why) -> InputError {
-        return {path.string(), "", "the picture " + why};
-    };
-    const uint64_t byte_count = size_on_disk(path);
-    const Head head = head_of(path);
-    if (const auto size = webp_size(head)) {
-        const uint64_t decoded_bytes = uint64_t{4} * (*size)[0] * (*size)[1];
-        PictureBudget spent = budget;
-        const std::string shortage = spent.take(4 * decoded_bytes, decoded_bytes);
-        if (!shortage.empty())
-            throw refuse(fmt::format("of {}x{} pixels {}", (*size)[0], (*size)[1], shortage));
-    }
+InputError refusal(const std::filesystem::path& path, const std::string& why) {
+    return {path.string(), "", "the picture " + why};
+}
+
+/// A picture whose header is read.
+struct OpenPicture {
+    std::unique_ptr<OIIO::ImageInput> input;
+    OIIO::ImageSpec spec;
+};
+
+OpenPicture open_picture(const std::filesystem::path& path) {
+    const auto refuse = [&](const std::string& why) { return refusal(path, why); };
     OIIO::ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1);
     const std::string_view kind = kind_of(path);
@@ -81,11 +80,27 @@ Picture decode(const std::filesystem::path& path, PictureBudget& budget,
     if (const std::string why = kind == "exr" ? exr_header_complaint(path) : ""; !why.empty())
         throw refuse(why);
     // In two steps: OpenImageIO's open in one would offer a broken file to all its readers.
-    const auto input = OIIO::ImageInput::create(std::string(kind));
+    auto input = OIIO::ImageInput::create(std::string(kind));
     if (!input) throw refuse("cannot be read: " + first_line(OIIO::geterror()));
     OIIO::ImageSpec spec;
     if (!input->open(path.string(), spec, config))
         throw refuse("cannot be read: " + first_line(input->geterror()));
+    return {std::move(input), std::move(spec)};
+}
+
+Picture decode(const std::filesystem::path& path, PictureBudget& budget,
+               std::optional<uint64_t> kept_per_pixel) {
+    const auto refuse = [&](const std::string& why) { return refusal(path, why); };
+    const uint64_t byte_count = size_on_disk(path);
+    const Head head = head_of(path);
+    if (const auto size = webp_size(head)) {
+        const uint64_t decoded_bytes = uint64_t{4} * (*size)[0] * (*size)[1];
+        PictureBudget spent = budget;
+        const std::string shortage = spent.take(4 * decoded_bytes, decoded_bytes);
+        if (!shortage.empty())
+            throw refuse(fmt::format("of {}x{} pixels {}", (*size)[0], (*size)[1], shortage));
+    }
+    const auto [input, spec] = open_picture(path);
     const std::string why =
         size_complaint(spec.width, spec.height, spec.depth, spec.nchannels, byte_count);
     if (!why.empty()) throw refuse(why);
@@ -121,6 +136,18 @@ Picture decode(const std::filesystem::path& path, PictureBudget& budget,
 Picture read_picture(const std::filesystem::path& path, PictureBudget& budget,
                      std::optional<uint64_t> kept_per_pixel) {
     return naming_file(path.string(), [&] { return decode(path, budget, kept_per_pixel); });
+}
+
+Metadata read_metadata(const std::filesystem::path& path) {
+    Metadata out = metadata_of(open_picture(path).spec);
+    const auto found = std::find_if(
+        out.begin(), out.end(), [](const auto& one) { return one.first == "ImageDescription"; });
+    if (found == out.end() || !std::holds_alternative<std::string>(found->second)) return out;
+    std::istringstream words(std::get<std::string>(found->second));
+    for (std::string word; words >> word;)
+        if (const size_t at = word.find('='); word.starts_with(kOwnMetadata) && at != word.npos)
+            out.emplace_back(word.substr(0, at), word.substr(at + 1));
+    return out;
 }
 
 }  // namespace petzval::codec

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <stdexcept>
 
 #include "io/base/atomic_file.h"
@@ -89,6 +90,19 @@ OIIO::ImageSpec exr_spec(const PictureLayout& picture) {
     return spec;
 }
 
+/// Own metadata as one text, by name, as an EXR has them. Only what has no blank: that divides
+/// them.
+std::string description_of(const PictureLayout& picture) {
+    std::map<std::string, std::string> words;
+    for (const auto& [name, value] : picture.metadata)
+        if (const auto* word = std::get_if<std::string>(&value);
+            word && name.starts_with(kOwnMetadata) && word->find(' ') == std::string::npos)
+            words[name] = *word;
+    std::string text;
+    for (const auto& [name, word] : words) text += (text.empty() ? "" : " ") + name + "=" + word;
+    return text;
+}
+
 /// Nearest of 256 levels; what is not a number is black.
 uint8_t to_8bit(float value) {
     return value > 0.f ? static_cast<uint8_t>(std::min(value, 1.f) * 255.f + 0.5f) : 0;
@@ -115,6 +129,8 @@ void write_8bit(const std::filesystem::path& path, const PictureRows& encoded, b
     if (srgb) spec.attribute("oiio:ColorSpace", "sRGB");
     spec.attribute("oiio:UnassociatedAlpha", 1);
     spec.attribute("CompressionQuality", 95);
+    if (const std::string text = description_of(layout); !text.empty())
+        spec.attribute("ImageDescription", text);
     spec.attribute("jpeg:subsampling", "4:4:4");  // small coloured lights keep their colour
     std::vector<float> values(size_t(layout.width) * layout.channels.size());
     encode<uint8_t>(path, png ? "png" : "jpg", spec, [&](int y, uint8_t* row) {

@@ -58,6 +58,10 @@ Picture read_picture(const std::filesystem::path& path) {
     return read_picture(path, budget);
 }
 
+Metadata read_metadata(const std::filesystem::path& path) {
+    return image_codec().read_metadata(path);
+}
+
 Image decode_image(const std::vector<uint8_t>& bytes, const std::string& file,
                    const std::string& place, PictureBudget& budget) {
     ColourRemarks unread;

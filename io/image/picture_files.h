@@ -24,6 +24,9 @@ namespace petzval {
                                    std::optional<uint64_t> kept_per_pixel = {});
 /// Reads a picture that shares its budget, the usual one, with no other.
 [[nodiscard]] Picture read_picture(const std::filesystem::path&);
+/// Reads the metadata of a picture alone. Of a PNG or JPEG those that this program wrote. Throws
+/// InputError.
+[[nodiscard]] Metadata read_metadata(const std::filesystem::path&);
 /// Decodes an image of a scene from its encoded bytes; file and place are for messages. Throws
 /// InputError, also where the budget is too small.
 [[nodiscard]] Image decode_image(const std::vector<uint8_t>& bytes, const std::string& file,
@@ -37,8 +40,9 @@ namespace petzval {
 /// give equal files: there is no date in them. Throws InputError where it cannot be written.
 void write_exr(const std::filesystem::path&, const PictureRows&);
 /// Writes an 8-bit PNG or JPEG of display-encoded R, G, B in [0, 1] (and, in PNG, unassociated A if
-/// there is one); of a crop just the crop. srgb: the file says that its values are for an sRGB
-/// display. Throws InputError where it cannot be written.
+/// there is one); of a crop just the crop. Of the metadata it keeps the texts without blanks that
+/// are this program's own. srgb: the file says that its values are for an sRGB display. Throws
+/// InputError where it cannot be written.
 void write_8bit(const std::filesystem::path&, const PictureRows& encoded, bool srgb = true);
 
 /// Loads the module, a sixth of a second of CPU time: early, before hours of work, to learn whether

@@ -20,6 +20,7 @@ struct ImageCodec {
     const char* version;  ///< of the program that it was built with: of that alone it is a part
     Picture (*read_picture)(const std::filesystem::path&, PictureBudget&,
                             std::optional<uint64_t> kept_per_pixel);
+    Metadata (*read_metadata)(const std::filesystem::path&);
     Image (*decode_image)(const std::vector<uint8_t>& bytes, const std::string& file,
                           const std::string& place, PictureBudget&, ColourRemarks&);
     void (*write_exr)(const std::filesystem::path&, const PictureRows&);

@@ -11,13 +11,16 @@
 
 namespace petzval {
 
+/// Metadata of a picture, name by name.
+using Metadata = std::vector<std::pair<std::string, std::variant<int, float, std::string>>>;
+
 /// Layout of a picture: size, place, channels and metadata, without the pixels.
 struct PictureLayout {
     int width = 0, height = 0;            ///< of the pixels held (a crop)
     int x = 0, y = 0;                     ///< where they lie in the full frame
     int full_width = 0, full_height = 0;  ///< the full frame
     std::vector<std::string> channels;    ///< "R", "G", "B", "A", "albedo.R", "depth.Z" ...
-    std::vector<std::pair<std::string, std::variant<int, float, std::string>>> metadata;
+    Metadata metadata;
 };
 
 /// Picture with float pixels, row 0 at the top, channels interleaved, linear.

@@ -204,45 +204,43 @@ TEST(Render, StopsWhenTold) {
     EXPECT_EQ(result.end_sample, 0u);
 }
 
-// An executor that asks for a pause, or for a stop, after every so many tasks.
+// An executor that asks for a pause, or for a stop, whenever so many samples more are done.
 class InterruptingExecutor {
   public:
-    InterruptingExecutor(std::atomic<bool>& flag, int tasks)
-        : flag_(flag), left_(tasks), tasks_(tasks) {}
+    InterruptingExecutor(const RenderMonitor& monitor, std::atomic<bool>& flag, uint64_t samples)
+        : monitor_(monitor), flag_(flag), due_(samples), samples_(samples) {}
     [[nodiscard]] static int threads() { return 2; }
     template <class F>
     void run(int count, const F& f) {
         ThreadExecutor(2).run(count, [&](int task, int worker) {
             f(task, worker);
-            if (--left_ % tasks_ == 0) flag_ = true;
+            if (monitor_.pixel_samples_done < due_) return;
+            due_ += samples_;
+            flag_ = true;
         });
     }
 
   private:
+    const RenderMonitor& monitor_;
     std::atomic<bool>& flag_;
-    std::atomic<int> left_;
-    int tasks_;
+    std::atomic<uint64_t> due_;
+    uint64_t samples_;
 };
 
 TEST(Render, PausesChangeNothing) {
     static const Studio studio(kSize);
     const Film whole = picture(ThreadExecutor(2), job_of(24));
-    for (const int tasks : {1, 2, 7, 12, 13}) {
+    for (const uint64_t samples : {1, 300, 1000, 1961, 5000}) {
         Film film(kSize, kWhole, {Aov::Albedo, Aov::Normal, Aov::Depth});
         RenderMonitor monitor;
         RenderJob job = job_of(24);
         int pauses = 0;
-        uint64_t at_pause = 0;
-        job.at_pause = [&] {
-            ++pauses;
-            EXPECT_GT(monitor.pixel_samples_done, at_pause) << "something is done between pauses";
-            at_pause = monitor.pixel_samples_done;
-        };
-        InterruptingExecutor executor(monitor.pause, tasks);
+        job.at_pause = [&](const PathStats&) { ++pauses; };
+        InterruptingExecutor executor(monitor, monitor.pause, samples);
         const RenderResult result =
             render(*studio.tracer, *studio.camera, job, film, executor, monitor);
         EXPECT_FALSE(result.stopped);
-        EXPECT_GT(pauses, 2) << tasks;
+        EXPECT_GT(pauses, 2) << samples;
         EXPECT_EQ(result.stats.samples, uint64_t(kSize.x) * kSize.y * 24);
         expect_same_bytes(whole, film);
     }
@@ -252,17 +250,18 @@ TEST(Render, PausesChangeNothing) {
 TEST(Render, GoesOnWhereItWasStopped) {
     static const Studio studio(kSize);
     const Film whole = picture(ThreadExecutor(2), job_of(24));
-    for (const int tasks : {2, 5, 13}) {
+    for (const uint64_t interval : {300, 1961, 5000}) {
         Film film(kSize, kWhole, {Aov::Albedo, Aov::Normal, Aov::Depth});
         uint64_t samples = 0;
         int runs = 0;
-        for (RenderResult result{.stopped = true}; result.stopped; ++runs) {
+        RenderResult result;
+        for (result.stopped = true; result.stopped; ++runs) {
             RenderMonitor monitor;
-            InterruptingExecutor executor(monitor.stop, tasks);
+            InterruptingExecutor executor(monitor, monitor.stop, interval);
             result = render(*studio.tracer, *studio.camera, job_of(24), film, executor, monitor);
             samples += result.stats.samples;
         }
-        EXPECT_GT(runs, 3) << tasks;
+        EXPECT_GT(runs, 3) << interval;
         EXPECT_EQ(samples, uint64_t(kSize.x) * kSize.y * 24);
         expect_same_bytes(whole, film);
     }

@@ -57,8 +57,9 @@ TEST_P(CliSignals, StopARenderAndKeepWhatThereIs) {
               std::string::npos);
     EXPECT_EQ(file_bytes(path("out.exr")), "the old one");
     EXPECT_EQ(file_bytes(path("out.png")), "the old one");
-    EXPECT_EQ(listing(), (std::set<std::string>{"out.exr", "out.png", "out.partial.exr", "s.json",
-                                                "studio.glb"}));
+    EXPECT_NE(run.err.find("petzval resume " + path("out.state") + " goes on"), std::string::npos);
+    EXPECT_EQ(listing(), (std::set<std::string>{"out.exr", "out.png", "out.partial.exr",
+                                                "out.state", "s.json", "studio.glb"}));
     const Picture partial = read_picture(path("out.partial.exr"));
     EXPECT_EQ(partial.width, 16);
     EXPECT_GT(value_at(partial, 8, 8, "B"), 0.f);
@@ -68,7 +69,8 @@ TEST_P(CliSignals, StopARenderAndKeepWhatThereIs) {
     EXPECT_GE(stats.at("samples_per_pixel"), 1);
     EXPECT_EQ(stats.at("outputs"),
               nlohmann::json::array(
-                  {{{"file", path("out.partial.exr")}, {"error", nullptr}, {"rescue", nullptr}}}));
+                  {{{"file", path("out.state")}, {"error", nullptr}, {"rescue", nullptr}},
+                   {{"file", path("out.partial.exr")}, {"error", nullptr}, {"rescue", nullptr}}}));
 }
 
 // The first notice is of a scene that is loaded. Where it is there before the signal, a larger
@@ -84,6 +86,7 @@ TEST_P(CliSignals, WhileLoadingLeaveNothing) {
         if (run.err.find("nothing lights this scene") != std::string::npos &&
             triangles < 4'000'000) {
             std::filesystem::remove(path("out.partial.exr"));
+            std::filesystem::remove(path("out.state"));
             continue;
         }
         EXPECT_EQ(run.exit_code, 130) << run.err;

@@ -59,7 +59,7 @@ Film filled(Rect crop, uint32_t samples) {
 }
 
 PictureRows developed(const Film& film, uint32_t samples) {
-    return develop(film, RenderSetup{}, RenderJob{}, PathOptions{}, samples);
+    return develop(film, {0, samples}, describe_render(RenderSetup{}, RenderJob{}, PathOptions{}));
 }
 
 /// One channel of a file by name, through an OpenImageIO reader of its own.

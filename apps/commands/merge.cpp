@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+
+#include "apps/cli/display_options.h"
+#include "apps/cli/keep_options.h"
+#include "apps/cli/output_checks.h"
+#include "apps/cli/reading_options.h"
+#include "apps/commands/render_files.h"
+#include "apps/commands/resume.h"
+#include "apps/setup/input_files.h"
+#include "apps/state/merge.h"
+#include "io/base/error.h"
+
+namespace petzval {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct MergeOptions {
+    std::vector<fs::path> states, outputs;
+    std::optional<fs::path> stats;
+};
+
+void check_files(const MergeOptions& o) {
+    std::vector<NamedFile> inputs, outputs;
+    for (const fs::path& state : o.states) inputs.push_back({"a state to merge", state});
+    for (const fs::path& output : o.outputs) outputs.push_back({"-o", output});
+    if (o.stats) outputs.push_back({"--stats", *o.stats});
+    refuse_overwriting(outputs, inputs);
+    refuse_overwriting(outputs, own_files());
+    for (const NamedFile& output : outputs) check_writable(output.path);
+}
+
+// Throws where the display's configuration is not what it was.
+void check_display(const RunRecord& record) {
+    const auto is_same = [&] {
+        return record.facts.display == display_facts(record.display, input_files(record.display));
+    };
+    if (!record.display.config.empty() && !is_same())
+        throw InputError(record.display.config.string(), "",
+                         "has changed since the states were written; their pictures would look "
+                         "different");
+}
+
+int merge(const MergeOptions& o, Session& session) {
+    check_files(o);
+    const MergedState merged = merge_states(o.states);
+    const Film& film = merged.film;
+    check_display(merged.record);
+    std::vector<fs::path> pictures = o.outputs, states;
+    const auto first_state =
+        std::stable_partition(pictures.begin(), pictures.end(),
+                              [](const fs::path& path) { return !is_state_name(path); });
+    states.assign(first_state, pictures.end());
+    pictures.erase(first_state, pictures.end());
+    std::vector<WriteOutcome> outcomes =
+        write_pictures(pictures, merged.record.display, {film, merged.samples, merged.record.facts},
+                       false, session.console);
+    for (const fs::path& state : states)
+        outcomes.push_back(write_or_rescue(state, [&](const fs::path& to) {
+            write_state(to, header_of(merged.record, FilmShape::of(film), merged.samples), film);
+        }));
+    if (o.stats)
+        outcomes.push_back(write_or_rescue(*o.stats, [&](const fs::path& to) {
+            RunReport report;
+            report.outputs = outcomes;
+            write_stats(to,
+                        {film.full_size().x, film.full_size().y, merged.samples,
+                         merged.record.display.exposure_ev, film.bad_count()},
+                        merged.record.figures, report);
+        }));
+    bool written = true;
+    for (const WriteOutcome& one : outcomes) {
+        written = written && one.written();
+        const bool told = std::find(pictures.begin(), pictures.end(), one.wanted) != pictures.end();
+        if (!one.written() && !told) session.console.error(one.message());
+    }
+    if (const auto bad = film.first_bad())
+        session.console.notice(
+            fmt::format("warning: {} samples were not finite and are left out; the first is sample "
+                        "{} of pixel {},{}",
+                        film.bad_count(), bad->index, bad->x, bad->y));
+    return written ? kSuccess : kOutputFailed;
+}
+
+}  // namespace
+
+void add_merge_command(CLI::App& app, Session& session) {
+    auto options = std::make_shared<MergeOptions>();
+    CLI::App* command =
+        app.add_subcommand("merge", "add the states of parts of a render, and write its picture");
+    command->add_option("states", options->states, "states of ranges of samples, or of crops")
+        ->required();
+    command->add_option("-o,--output", options->outputs, "picture or state to write")
+        ->required()
+        ->allow_extra_args(false)
+        ->check(complaint_about_render_name);
+    command->add_option("--stats", options->stats,
+                        "write summed counts and times to this JSON file");
+    command->callback([options, &session] { session.exit_code = merge(*options, session); });
+}
+
+}  // namespace petzval

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/commands/render_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "apps/cli/display_options.h"
+#include "apps/setup/develop.h"
+#include "apps/setup/input_files.h"
+#include "io/base/error.h"
+#include "io/image/picture_files.h"
+
+namespace petzval {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kLightHash = "petzval:lightHash";
+constexpr const char* kDisplayHash = "petzval:displayHash";
+
+}  // namespace
+
+void check_outputs(RenderOptions& o, const Rect& crop) {
+    std::vector<NamedFile>& outputs = o.scene.outputs;
+    std::vector<fs::path> partials;
+    for (const auto& output : o.outputs) {
+        outputs.push_back({"-o", output});
+        const auto partial = partial_name(output);  // which the formats of a name share
+        const auto same = [&](const auto& other) { return same_file(other, partial); };
+        if (std::none_of(partials.begin(), partials.end(), same)) partials.push_back(partial);
+    }
+    if (o.stats) outputs.push_back({"--stats", *o.stats});
+    if (o.keep.preview) outputs.push_back({"--preview", *o.keep.preview});
+    if (o.keep.log) outputs.push_back({"--log", *o.keep.log});
+    for (const auto& partial : partials)
+        outputs.push_back({"the picture of a render that is stopped", partial});
+    if (o.keep.state) outputs.push_back({"the state of the render", *o.keep.state});
+    refuse_overwriting(outputs, input_files(o.scene));
+    refuse_overwriting(outputs, input_files(o.display));
+    refuse_overwriting(outputs, own_files());
+    for (const auto& output : o.outputs)
+        check_output(output, o.display, crop.width(), crop.height());
+    if (o.keep.preview) check_output(*o.keep.preview, o.display, crop.width(), crop.height());
+    if (o.keep.state) check_writable(*o.keep.state);
+    if (o.stats) check_writable(*o.stats);
+}
+
+PictureRows picture_for(const fs::path& path, const FinishedFilm& done) {
+    Metadata metadata = done.facts.metadata;
+    metadata.emplace_back(kLightHash,
+                          light_hash(done.facts, FilmShape::of(done.film), done.samples));
+    if (picture_format(path) != PictureFormat::Exr)
+        metadata.emplace_back(kDisplayHash, display_hash(done.facts));
+    return develop(done.film, done.samples, metadata);
+}
+
+std::vector<WriteOutcome> write_pictures(const std::vector<fs::path>& outputs,
+                                         const DisplayOptions& display, const FinishedFilm& done,
+                                         bool stopped, Console& console) {
+    std::vector<WriteOutcome> outcomes;
+    if (stopped)
+        outcomes = write_partial(outputs, develop(done.film, done.samples, done.facts.metadata));
+    else
+        for (const auto& output : outputs)
+            outcomes.push_back(write_or_rescue(output, [&](const fs::path& to) {
+                write_output(to, picture_for(to, done), display);
+            }));
+    for (const WriteOutcome& one : outcomes) {
+        if (!one.written())
+            console.error(one.message());
+        else if (stopped)
+            console.notice(fmt::format("stopped: what there is, is in {}", one.wanted.string()));
+    }
+    return outcomes;
+}
+
+bool is_up_to_date(const fs::path& path, const RenderFacts& facts, const FilmShape& shape,
+                   SampleRange samples) {
+    std::error_code error;
+    if (!fs::is_regular_file(path, error)) return false;
+    Metadata found;
+    try {
+        found = read_metadata(path);
+    } catch (const InputError&) {  // no picture, or half of one: it is to be written
+        return false;
+    }
+    const auto is = [&](const char* name, const std::string& wanted) {
+        return std::any_of(found.begin(), found.end(), [&](const auto& one) {
+            const auto* text = std::get_if<std::string>(&one.second);
+            return one.first == name && text && *text == wanted;
+        });
+    };
+    return is(kLightHash, light_hash(facts, shape, samples)) &&
+           (picture_format(path) == PictureFormat::Exr || is(kDisplayHash, display_hash(facts)));
+}
+
+}  // namespace petzval

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files of a render: checked before hours of work, written after them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/cli/console.h"
+#include "apps/cli/render_options.h"
+#include "apps/state/run_record.h"
+#include "core/film/film.h"
+#include "io/base/rescue.h"
+
+namespace petzval {
+
+/// Refuses files that could not be written, and those that are read. Adds the names to the request,
+/// so that a scene which reads one of them is refused. Throws OutputError and ArgumentError.
+void check_outputs(RenderOptions&, const Rect& crop);
+
+/// A finished render, as far as its pictures go.
+struct FinishedFilm {
+    const Film& film;
+    SampleRange samples;
+    const RenderFacts& facts;
+};
+
+/// Writes all pictures, whichever of them fail; each failure is told. stopped: unfinished ones,
+/// NAME.partial.exr.
+[[nodiscard]] std::vector<WriteOutcome> write_pictures(const std::vector<std::filesystem::path>&,
+                                                       const DisplayOptions&, const FinishedFilm&,
+                                                       bool stopped, Console&);
+
+/// Linear picture of a film, with the metadata of its file: PNG and JPEG say how they were made for
+/// a display too.
+[[nodiscard]] PictureRows picture_for(const std::filesystem::path&, const FinishedFilm&);
+
+/// Whether a picture is there already that was made from the same command and inputs.
+[[nodiscard]] bool is_up_to_date(const std::filesystem::path&, const RenderFacts&, const FilmShape&,
+                                 SampleRange);
+
+}  // namespace petzval

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Render of one picture: from the options to its files.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/cli/render_options.h"
+#include "apps/commands/session.h"
+#include "apps/setup/render_setup.h"
+#include "io/base/notice.h"
+
+namespace petzval {
+
+/// A picture of a sequence, and what it shares with those beside it.
+struct SequencePlace {
+    std::pair<int, int> part_of{0, 1};  ///< its number from 0, of so many
+    /// Setup of the picture before, from which this one takes what it has in common; afterwards its
+    /// own. nullptr: it is not kept.
+    std::optional<RenderSetup>* before = nullptr;
+    /// Words that fix what the render found by itself: view, focus, exposure.
+    std::vector<std::string> found;
+};
+
+/// Renders one picture and writes its files. command: the words that ask for it, by which a state
+/// is resumed. The exit code. Throws what setting up throws.
+[[nodiscard]] int render_one(RenderOptions&, const std::vector<std::string>& command,
+                             const Notice& notice, Session&, SequencePlace&);
+
+}  // namespace petzval

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/state/keeper.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <limits>
+#include <utility>
+
+namespace petzval {
+namespace {
+
+constexpr double kNever_s = std::numeric_limits<double>::infinity();
+/// Time between two previews: a few seconds, and more where writing one takes long, so that it
+/// costs at most a twentieth of one thread.
+constexpr double kPreview_s = 3, kPreviewShare = 1. / 20;
+
+}  // namespace
+
+Picture snapshot(const Film& film) {
+    const Rect& crop = film.crop();
+    Picture out;
+    out.width = crop.width();
+    out.height = crop.height();
+    out.x = crop.x0;
+    out.y = crop.y0;
+    out.full_width = film.full_size().x;
+    out.full_height = film.full_size().y;
+    out.channels = {"R", "G", "B", "A"};
+    out.pixels.reserve(size_t(4) * static_cast<size_t>(out.width) *
+                       static_cast<size_t>(out.height));
+    for (int y = crop.y0; y < crop.y1; ++y)
+        for (int x = crop.x0; x < crop.x1; ++x) {
+            const V4f rgba = film.colour(x, y);
+            for (int i = 0; i < 4; ++i) out.pixels.push_back(rgba[i]);
+        }
+    return out;
+}
+
+Keeper::Keeper(KeeperPlan plan, RenderMonitor& monitor, const Film& film)
+    : plan_(std::move(plan)),
+      monitor_(monitor),
+      film_(film),
+      checkpoint_due_s_(steady_s() + plan_.checkpoint_s.value_or(kNever_s)),
+      preview_due_s_(plan_.preview ? steady_s() + 1 : kNever_s) {
+    if (plan_.checkpoint_s || plan_.preview)
+        thread_ = std::jthread([this](const std::stop_token& stop) { watch(stop); });
+}
+
+Keeper::~Keeper() {
+    if (!thread_.joinable()) return;
+    thread_.request_stop();
+    thread_.join();
+}
+
+void Keeper::finish() {
+    if (!thread_.joinable()) return;
+    thread_.request_stop();
+    thread_.join();
+    if (plan_.preview) write_preview(snapshot(film_));
+}
+
+void Keeper::at_pause(const PathStats& stats) {
+    bool checkpoint = false, preview = false;
+    {
+        const std::lock_guard lock(mutex_);
+        const double now_s = steady_s();
+        checkpoint = now_s >= checkpoint_due_s_;
+        preview = now_s >= preview_due_s_;
+    }
+    if (checkpoint) attempt([&] { plan_.write_checkpoint(stats); });
+    std::optional<Picture> now;
+    if (preview) now = snapshot(film_);
+    const std::lock_guard lock(mutex_);
+    if (checkpoint) checkpoint_due_s_ = steady_s() + *plan_.checkpoint_s;
+    if (preview) {
+        to_show_ = std::move(now);
+        preview_due_s_ = kNever_s;  // until it is written
+    }
+    wake_.notify_one();
+}
+
+void Keeper::watch(const std::stop_token& stop) {
+    std::unique_lock lock(mutex_);
+    while (!stop.stop_requested()) {
+        if (to_show_) {
+            const Picture picture = std::move(*to_show_);
+            to_show_.reset();
+            lock.unlock();
+            const double start_s = steady_s();
+            write_preview(picture);
+            const double pause_s = std::max(kPreview_s, (steady_s() - start_s) / kPreviewShare);
+            lock.lock();
+            preview_due_s_ = steady_s() + pause_s;
+        }
+        const double left_s = std::min(checkpoint_due_s_, preview_due_s_) - steady_s();
+        if (left_s <= 0) monitor_.pause = true;  // the next round waits until it was answered
+        const double wait_s = left_s <= 0 ? 0.05 : std::min(left_s, 1.);
+        wake_.wait_for(lock, stop, std::chrono::duration<double>(wait_s),
+                       [&] { return to_show_.has_value(); });
+    }
+}
+
+void Keeper::write_preview(const Picture& picture) {
+    attempt([&] { write_output(*plan_.preview, picture, plan_.display); });
+}
+
+void Keeper::attempt(const std::function<void()>& action) {
+    try {
+        action();
+    } catch (const std::exception& error) {
+        {
+            const std::lock_guard lock(mutex_);
+            if (std::exchange(told_, true)) return;
+        }
+        plan_.notice(fmt::format("warning: {}; it is tried again", error.what()));
+    }
+}
+
+}  // namespace petzval

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/state/render_facts.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <bit>
+#include <span>
+
+#include "apps/setup/develop.h"
+#include "apps/setup/input_files.h"
+#include "io/base/read_file.h"
+
+namespace petzval {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// FNV-1a of texts and numbers, one after the other.
+class Hash {
+  public:
+    void add(std::string_view text) {
+        add_bytes({reinterpret_cast<const uint8_t*>(text.data()), text.size()});
+        add(static_cast<uint64_t>(text.size()));  // or "ab", "c" would be "a", "bc"
+    }
+    void add(uint64_t number) {
+        add_bytes({reinterpret_cast<const uint8_t*>(&number), sizeof number});
+    }
+    void add(float number) { add(uint64_t(std::bit_cast<uint32_t>(number))); }
+    void add(const V3f& v) {
+        for (int i = 0; i < 3; ++i) add(v[i]);
+    }
+    void add_bytes(std::span<const uint8_t> bytes) { hash_ = fnv1a(bytes, hash_); }
+    [[nodiscard]] std::string text() const { return fmt::format("{:016x}", hash_); }
+
+  private:
+    uint64_t hash_ = fnv1a({});
+};
+
+// What the pilots of lights and of targets found.
+std::string hash_of_learned(const RenderSetup& setup) {
+    Hash hash;
+    if (const auto& lights = setup.prepared.lights)
+        for (const float factor : lights->shares().factors()) hash.add(factor);
+    const TargetGrid* const targets = setup.view.camera ? setup.view.camera->targets() : nullptr;
+    if (!targets) return hash.text();
+    for (const Target& target : targets->targets) {
+        hash.add(target.centre);
+        hash.add(target.normal);
+        hash.add(target.radius_m);
+    }
+    for (const auto& list : targets->lists) {
+        hash.add(uint64_t(list.size()));
+        for (const ListedTarget& listed : list) {
+            hash.add(uint64_t(listed.number));
+            hash.add(listed.chance);
+        }
+    }
+    return hash.text();
+}
+
+std::string hash_of_files(const std::vector<NamedFile>& files) {
+    Hash hash;
+    std::vector<std::string> texts;
+    for (const NamedFile& file : files) texts.push_back(name_and_hash(file.path));
+    std::sort(texts.begin(), texts.end());  // folders are listed in any order
+    for (const std::string& text : texts) hash.add(text);
+    return hash.text();
+}
+
+std::string text_of(const Metadata::value_type::second_type& value) {
+    return std::visit([](const auto& v) { return fmt::format("{}", v); }, value);
+}
+
+// "petzval:lensRadius_m" reads "lensRadius_m".
+std::string_view short_name(std::string_view name) {
+    return name.substr(name.starts_with("petzval:") ? sizeof "petzval:" - 1 : 0);
+}
+
+std::string shape_text(const FilmShape& shape) {
+    std::vector<std::string_view> layers;
+    for (const Aov layer : shape.layers) layers.push_back(aov_info(layer).name);
+    std::string text =
+        fmt::format("{}x{} px, layers {}", shape.full_size.x, shape.full_size.y,
+                    layers.empty() ? "none" : fmt::format("{}", fmt::join(layers, ",")));
+    if (const auto& b = shape.bins)
+        text += fmt::format(", bins {:.9g}:{:.9g}:{:.9g}", b->first_edge_nm, b->last_edge_nm(),
+                            b->width_nm);
+    return text;
+}
+
+RenderFacts::Texts all_of(const RenderFacts& facts, const FilmShape& shape) {
+    RenderFacts::Texts out{{"frame", shape_text(shape)}};
+    for (const auto& [name, value] : facts.metadata)
+        out.emplace_back(short_name(name), text_of(value));
+    out.insert(out.end(), facts.inputs.begin(), facts.inputs.end());
+    out.insert(out.end(), facts.display.begin(), facts.display.end());
+    return out;
+}
+
+}  // namespace
+
+RenderFacts::Texts display_facts(const DisplayOptions& display,
+                                 const std::vector<NamedFile>& files) {
+    return {{"exposure", fmt::format("{}", display.exposure_ev)},
+            {"view", display.view},
+            {"OpenColorIO configuration",
+             files.empty() ? std::string("Petzval's own") : hash_of_files(files)}};
+}
+
+RenderFacts facts_of(const RenderSetup& setup, const RenderJob& job, const PathOptions& path,
+                     const DisplayOptions& display, const std::vector<NamedFile>& display_files) {
+    RenderFacts facts;
+    facts.metadata = describe_render(setup, job, path);
+    facts.inputs.emplace_back("Petzval's own files", hash_of_files(own_files()));
+    const auto add = [&](const NamedFile& file) {
+        std::error_code error;  // of a name that is no file the metadata say all
+        if (!std::filesystem::is_regular_file(file.path, error)) return;
+        std::string name = file.role;  // several catalogues have one role
+        const auto taken = [&](const auto& one) { return one.first == name; };
+        for (int i = 2; std::any_of(facts.inputs.begin(), facts.inputs.end(), taken); ++i)
+            name = fmt::format("{} {}", file.role, i);
+        facts.inputs.emplace_back(name, name_and_hash(file.path));
+    };
+    // The hash of the scene's own files is in the metadata.
+    for (const NamedFile& file : input_files(setup.from.asked))
+        if (file.path != setup.from.asked.scene && file.path != setup.from.asked.environment)
+            add(file);
+    for (const NamedFile& file : setup.prepared.files)
+        if (file.role == kCameraFile) add(file);
+    facts.inputs.emplace_back("what pilots learned", hash_of_learned(setup));
+    facts.display = display_facts(display, display_files);
+    return facts;
+}
+
+Json to_json(const RenderFacts& facts) {
+    Json metadata = Json::array();
+    for (const auto& [name, value] : facts.metadata)
+        std::visit([&, &key = name](const auto& v) { metadata.push_back({key, v}); }, value);
+    return {
+        {"metadata", std::move(metadata)}, {"inputs", facts.inputs}, {"display", facts.display}};
+}
+
+RenderFacts facts_from(const Json& json) {
+    RenderFacts facts;
+    for (const Json& one : json.at("metadata")) {
+        const auto name = one.at(0).get<std::string>();
+        const Json& value = one.at(1);
+        if (value.is_string())
+            facts.metadata.emplace_back(name, value.get<std::string>());
+        else if (value.is_number_integer())
+            facts.metadata.emplace_back(name, value.get<int>());
+        else
+            facts.metadata.emplace_back(name, value.get<float>());
+    }
+    json.at("inputs").get_to(facts.inputs);
+    json.at("display").get_to(facts.display);
+    return facts;
+}
+
+std::optional<std::string> difference(const RenderFacts& a, const FilmShape& shape_a,
+                                      const std::string& name_a, const RenderFacts& b,
+                                      const FilmShape& shape_b, const std::string& name_b) {
+    const auto of_a = all_of(a, shape_a), of_b = all_of(b, shape_b);
+    const auto find = [](const RenderFacts::Texts& in, const std::string& name) {
+        const auto found =
+            std::find_if(in.begin(), in.end(), [&](const auto& one) { return one.first == name; });
+        return found == in.end() ? std::string("absent") : found->second;
+    };
+    for (const auto* texts : {&of_a, &of_b})
+        for (const auto& [name, value] : *texts)
+            if (const std::string in_a = find(of_a, name), in_b = find(of_b, name); in_a != in_b)
+                return fmt::format("{} is {} in {} and {} in {}", name, in_a, name_a, in_b, name_b);
+    return std::nullopt;
+}
+
+std::string light_hash(const RenderFacts& facts, const FilmShape& shape, SampleRange samples) {
+    Hash hash;
+    for (const auto& [name, value] : facts.metadata) {
+        if (name == kFoundExposure) continue;  // of the display
+        hash.add(name);
+        hash.add(text_of(value));
+    }
+    for (const auto& [name, value] : facts.inputs) {
+        hash.add(name);
+        hash.add(value);
+    }
+    hash.add(shape_text(shape));
+    for (const int edge : {shape.crop.x0, shape.crop.y0, shape.crop.x1, shape.crop.y1})
+        hash.add(static_cast<uint64_t>(edge));
+    hash.add(uint64_t(samples.first));
+    hash.add(uint64_t(samples.end));
+    return hash.text();
+}
+
+std::string display_hash(const RenderFacts& facts) {
+    Hash hash;
+    for (const auto& [name, value] : facts.display) {
+        hash.add(name);
+        hash.add(value);
+    }
+    return hash.text();
+}
+
+}  // namespace petzval

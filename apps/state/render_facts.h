@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Facts of a render: everything that its samples follow from, so that two renders can be compared.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/setup/render_setup.h"
+#include "integrator/path_options.h"
+#include "integrator/render_job.h"
+#include "io/base/overwrite.h"
+#include "io/image/output.h"
+#include "io/picture/picture.h"
+#include "io/state/state_file.h"
+
+namespace petzval {
+
+/// Facts of a render, name by name. Two renders with the same facts have the same samples.
+struct RenderFacts {
+    using Texts = std::vector<std::pair<std::string, std::string>>;
+
+    Metadata metadata;  ///< of pictures
+    Texts inputs;   ///< hashes of files that are not in the metadata, and of what pilots learned
+    Texts display;  ///< how PNG and JPEG show the picture
+};
+
+/// Facts of how PNG and JPEG show a picture. files: those that the settings read.
+[[nodiscard]] RenderFacts::Texts display_facts(const DisplayOptions&,
+                                               const std::vector<NamedFile>& files);
+
+/// Facts of a render that is set up. display_files: those that the display settings read.
+[[nodiscard]] RenderFacts facts_of(const RenderSetup&, const RenderJob&, const PathOptions&,
+                                   const DisplayOptions&,
+                                   const std::vector<NamedFile>& display_files);
+
+/// Facts as JSON, and back. Throws a nlohmann::json exception where something is missing.
+[[nodiscard]] nlohmann::ordered_json to_json(const RenderFacts&);
+[[nodiscard]] RenderFacts facts_from(const nlohmann::ordered_json&);
+
+/// The first difference between two renders, as "the seed is 1 in A and 2 in B"; nothing where
+/// samples of one are samples of the other. Crops and ranges of samples may differ.
+[[nodiscard]] std::optional<std::string> difference(const RenderFacts& a, const FilmShape& shape_a,
+                                                    const std::string& name_a, const RenderFacts& b,
+                                                    const FilmShape& shape_b,
+                                                    const std::string& name_b);
+
+/// Hashes in a picture's metadata, as 16 digits: of the light, that is of all facts but the
+/// display's, the shape and the samples; and of the display's facts.
+[[nodiscard]] std::string light_hash(const RenderFacts&, const FilmShape&, SampleRange);
+[[nodiscard]] std::string display_hash(const RenderFacts&);
+
+}  // namespace petzval

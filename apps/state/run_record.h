@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Record of a run: what a state says beside its sums, so that the render can go on, be added to
+// others, and be written as a picture.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apps/setup/stats_file.h"
+#include "apps/state/render_facts.h"
+#include "io/state/state_file.h"
+
+namespace petzval {
+
+struct RunRecord {
+    std::vector<std::string> command;  ///< its words, without the program's name
+    std::filesystem::path folder;      ///< in which it runs
+    RenderFacts facts;
+    DisplayOptions display;
+    RunFigures figures;  ///< so far, with those of the runs before
+};
+
+/// Header of a state with a record.
+[[nodiscard]] StateHeader header_of(const RunRecord&, const FilmShape&, SampleRange);
+
+/// Record in the header of a state. Throws InputError, which names the file, where the header has
+/// none or another version of the program wrote it.
+[[nodiscard]] RunRecord record_in(const StateHeader&, const std::filesystem::path& file);
+
+/// "37 %" of the samples, rounded down.
+[[nodiscard]] std::string share_text(const StateHeader&);
+
+}  // namespace petzval

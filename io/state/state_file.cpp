@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/state/state_file.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstring>
+#include <span>
+#include <string_view>
+
+#include "io/base/atomic_file.h"
+#include "io/base/error.h"
+#include "io/base/read_file.h"
+
+namespace petzval {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kMagic = "PETZVALS";
+constexpr uint64_t kVersion = 1;
+/// Longest header: a command line and the facts of a scene are far shorter.
+constexpr uint64_t kMostHeaderBytes = uint64_t(1) << 26;
+
+std::span<const uint8_t> bytes_of(std::string_view text) {
+    return {reinterpret_cast<const uint8_t*>(text.data()), text.size()};
+}
+
+std::span<const uint8_t> bytes_of(const uint64_t& number) {
+    return {reinterpret_cast<const uint8_t*>(&number), sizeof number};
+}
+
+size_t pixel_bytes(const FilmShape& shape) {
+    return Film::bytes_per_pixel(shape.layers.size(), shape.bins);
+}
+
+Json to_json(const StateHeader& h) {
+    const Rect& c = h.shape.crop;
+    Json layers = Json::array(), bins = nullptr;
+    for (const Aov layer : h.shape.layers) layers.push_back(aov_info(layer).name);
+    if (const auto& b = h.shape.bins) bins = {b->first_edge_nm, b->width_nm, b->count};
+    return {{"size_px", {h.shape.full_size.x, h.shape.full_size.y}},
+            {"crop_px", {c.x0, c.y0, c.x1, c.y1}},
+            {"layers", std::move(layers)},
+            {"bins_nm", std::move(bins)},
+            {"samples", {h.samples.first, h.samples.end}},
+            {"pixel_samples", h.pixel_samples},
+            {"run", h.run}};
+}
+
+// Throws a nlohmann::json exception where a member is missing or of another type.
+StateHeader from_json(const Json& json) {
+    StateHeader h;
+    FilmShape& shape = h.shape;
+    json.at("size_px").at(0).get_to(shape.full_size.x);
+    json.at("size_px").at(1).get_to(shape.full_size.y);
+    const auto crop = json.at("crop_px").get<std::array<int, 4>>();
+    shape.crop = {crop[0], crop[1], crop[2], crop[3]};
+    for (const auto& name : json.at("layers"))
+        shape.layers.push_back(aov_from_name(name.get<std::string>()).value());
+    if (const Json& b = json.at("bins_nm"); !b.is_null())
+        shape.bins = Bins{b.at(0).get<double>(), b.at(1).get<double>(), b.at(2).get<int>()};
+    const auto samples = json.at("samples").get<std::array<uint32_t, 2>>();
+    h.samples = {samples[0], samples[1]};
+    json.at("pixel_samples").get_to(h.pixel_samples);
+    h.run = json.at("run");
+    return h;
+}
+
+bool is_possible(const StateHeader& h) {
+    constexpr int kMostBins = 1 << 12, kLargestSide_px = 1 << 20;
+    const FilmShape& s = h.shape;
+    const Rect& c = s.crop;
+    return s.full_size.x > 0 && s.full_size.y > 0 && s.full_size.x <= kLargestSide_px &&
+           s.full_size.y <= kLargestSide_px && c.x0 >= 0 && c.y0 >= 0 && c.x0 < c.x1 &&
+           c.y0 < c.y1 && c.x1 <= s.full_size.x && c.y1 <= s.full_size.y &&
+           h.samples.first < h.samples.end && h.pixel_samples <= h.wanted() &&
+           s.layers.size() <= static_cast<size_t>(Aov::Count) &&
+           (!s.bins || (s.bins->count > 0 && s.bins->count <= kMostBins && s.bins->width_nm > 0));
+}
+
+uint64_t pixels_of(const Rect& crop) {
+    return static_cast<uint64_t>(crop.width()) * static_cast<uint64_t>(crop.height());
+}
+
+}  // namespace
+
+FilmShape FilmShape::of(const Film& film) {
+    FilmShape shape{film.full_size(), film.crop(), film.aovs(), {}};
+    if (film.spectral()) shape.bins = film.spectral()->bins();
+    return shape;
+}
+
+uint64_t FilmShape::bytes() const {
+    return pixels_of(crop) * pixel_bytes(*this);
+}
+
+uint64_t StateHeader::wanted() const {
+    return pixels_of(shape.crop) * samples.count();
+}
+
+void write_state(const std::filesystem::path& path, StateHeader header, const Film& film) {
+    const Rect& crop = header.shape.crop;
+    header.pixel_samples = 0;
+    for (int y = crop.y0; y < crop.y1; ++y)
+        for (int x = crop.x0; x < crop.x1; ++x) header.pixel_samples += film.taken_count(x, y);
+    const std::string text = to_json(header).dump();
+    AtomicFile file(path);
+    uint64_t offset = 0, hash = fnv1a({});
+    const auto put = [&](std::span<const uint8_t> bytes) {
+        file.write(bytes, offset);
+        offset += bytes.size();
+        hash = fnv1a(bytes, hash);
+    };
+    put(bytes_of(kMagic));
+    put(bytes_of(kVersion));
+    put(bytes_of(text.size()));
+    put(bytes_of(text));
+    const size_t each = pixel_bytes(header.shape);
+    std::vector<uint8_t> row(static_cast<size_t>(crop.width()) * each);
+    for (int y = crop.y0; y < crop.y1; ++y) {
+        for (int x = crop.x0; x < crop.x1; ++x)
+            film.pack(x, y, row.data() + static_cast<size_t>(x - crop.x0) * each);
+        put(row);
+    }
+    file.write(bytes_of(hash), offset);
+    file.commit();
+}
+
+StateReader::StateReader(const std::filesystem::path& path) : path_(path) {
+    std::error_code error;
+    const auto refuse = [&](const std::string& why) { return InputError(path.string(), "", why); };
+    if (!std::filesystem::exists(path, error)) throw refuse("there is no such file");
+    if (!std::filesystem::is_regular_file(path, error)) throw refuse("is no file");
+    const uint64_t size = std::filesystem::file_size(path, error);
+    file_.open(path, std::ios::binary);
+    if (error || !file_) throw refuse("cannot be read");
+    std::array<uint8_t, 24> start{};
+    file_.read(reinterpret_cast<char*>(start.data()), start.size());
+    if (!file_ || std::memcmp(start.data(), kMagic.data(), kMagic.size()) != 0)
+        throw refuse("is no state of a render");
+    uint64_t version = 0, length = 0;
+    std::memcpy(&version, start.data() + 8, 8);
+    std::memcpy(&length, start.data() + 16, 8);
+    if (version != kVersion)
+        throw refuse(
+            fmt::format("is a state of version {}, and this program reads version {}; use the "
+                        "program that wrote it",
+                        version, kVersion));
+    const InputError cut_short = refuse("is damaged or cut short");
+    if (length > kMostHeaderBytes || length + start.size() > size) throw cut_short;
+    std::string text(length, '\0');
+    file_.read(text.data(), static_cast<std::streamsize>(length));
+    if (!file_) throw cut_short;
+    try {
+        header_ = from_json(Json::parse(text));
+    } catch (const std::exception&) {  // of JSON, or of a layer that has no such name
+        throw cut_short;
+    }
+    if (!is_possible(header_) ||
+        size != start.size() + length + header_.shape.bytes() + sizeof(uint64_t))
+        throw cut_short;
+    hash_ = fnv1a(bytes_of(text), fnv1a(start));
+}
+
+void StateReader::add_to(Film& film) {
+    const Rect& crop = header_.shape.crop;
+    const size_t each = pixel_bytes(header_.shape);
+    std::vector<uint8_t> row(static_cast<size_t>(crop.width()) * each);
+    const InputError damaged(path_.string(), "",
+                             "is damaged: its bytes are not those that were written");
+    uint64_t taken = 0;
+    for (int y = crop.y0; y < crop.y1; ++y) {
+        file_.read(reinterpret_cast<char*>(row.data()), static_cast<std::streamsize>(row.size()));
+        if (!file_) throw damaged;
+        hash_ = fnv1a(row, hash_);
+        for (int x = crop.x0; x < crop.x1; ++x) {
+            const uint32_t before = film.taken_count(x, y);
+            film.add_packed(x, y, row.data() + static_cast<size_t>(x - crop.x0) * each);
+            taken += film.taken_count(x, y) - before;
+        }
+    }
+    uint64_t written_hash = 0;
+    file_.read(reinterpret_cast<char*>(&written_hash), sizeof written_hash);
+    if (!file_ || written_hash != hash_ || taken != header_.pixel_samples) throw damaged;
+}
+
+}  // namespace petzval

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// State files: the exact sums of a render that is to go on, or to be added to others.
+//
+// A file is the text "PETZVALS", the version of the format, the length of the header (both 64 bits,
+// little-endian), the header as JSON, what Film::pack writes of each pixel in scan order, and the
+// FNV-1a hash of all before it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/film/film.h"
+
+namespace petzval {
+
+/// Part of a frame that a film keeps, and what it keeps of each pixel.
+struct FilmShape {
+    V2i full_size{0, 0};
+    Rect crop;
+    std::vector<Aov> layers;
+    std::optional<Bins> bins;
+
+    [[nodiscard]] static FilmShape of(const Film&);
+    [[nodiscard]] Film empty_film() const { return {full_size, crop, layers, bins}; }
+    /// Memory that such a film takes.
+    [[nodiscard]] uint64_t bytes() const;
+};
+
+/// Header of a state.
+struct StateHeader {
+    FilmShape shape;
+    SampleRange samples;         ///< that the render is to have of each pixel
+    uint64_t pixel_samples = 0;  ///< that are there, of all pixels together
+    nlohmann::ordered_json run;  ///< what the program says of the render
+
+    /// Number of pixel samples that the whole render has.
+    [[nodiscard]] uint64_t wanted() const;
+    [[nodiscard]] bool is_complete() const { return pixel_samples == wanted(); }
+};
+
+/// Writes a state: whole, or not at all. pixel_samples is counted. Throws OutputError with the
+/// system's reason.
+void write_state(const std::filesystem::path&, StateHeader, const Film&);
+
+/// A state that is open for reading.
+class StateReader {
+  public:
+    /// Reads the header. Throws InputError where the file is no state, is cut short, or is of
+    /// another version of the format.
+    explicit StateReader(const std::filesystem::path&);
+
+    [[nodiscard]] const StateHeader& header() const { return header_; }
+    /// Adds the sums to a film whose crop holds the state's, with the same layers and bins. Throws
+    /// InputError where the bytes are not those that were written; the film is of no use then.
+    void add_to(Film&);
+
+  private:
+    std::filesystem::path path_;
+    std::ifstream file_;
+    StateHeader header_;
+    uint64_t hash_ = 0;  ///< of what was read
+};
+
+}  // namespace petzval

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/state/state_file.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <array>
+#include <limits>
+
+#include "io/base/error.h"
+#include "tests/support/file_size_limit.h"
+#include "tests/support/statistics.h"
+#include "tests/support/temporary_folder.h"
+
+namespace petzval {
+namespace {
+
+const FilmShape kShape{{20, 10}, {3, 2, 17, 9}, {Aov::Depth, Aov::Normal}, Bins{380, 50, 7}};
+constexpr SampleRange kSamples{16, 40};
+
+/// A film of any numbers; pixels have up to `most` samples, one of them fewer where it is not
+/// whole.
+Film filled(bool whole) {
+    Film film = kShape.empty_film();
+    test::Random random(1);
+    for (int y = kShape.crop.y0; y < kShape.crop.y1; ++y)
+        for (int x = kShape.crop.x0; x < kShape.crop.x1; ++x)
+            for (uint32_t i = kSamples.first; i < kSamples.end - (whole ? 0 : x % 3); ++i) {
+                FilmSample sample;
+                sample.colour = Rgb(random.next(), 1e6f * random.next(), -random.next());
+                if (random.next() < 0.02f)
+                    sample.colour = Rgb(std::numeric_limits<float>::quiet_NaN());
+                sample.alpha = random.next();
+                sample.hit = random.next() < 0.5f;
+                for (V3f& layer : sample.aov) layer = V3f(random.next());
+                Bands bands = Bands::rgb();
+                bands.nm = f4{400, 500, 600, 0};
+                film.add(x, y, i, sample, {i % kReplicates, splat(random.next()), V3f(1, 2, 3)},
+                         bands);
+            }
+    return film;
+}
+
+std::vector<uint8_t> bytes_of(const Film& film) {
+    const size_t each = Film::bytes_per_pixel(kShape.layers.size(), kShape.bins);
+    std::vector<uint8_t> out;
+    for (int y = kShape.crop.y0; y < kShape.crop.y1; ++y)
+        for (int x = kShape.crop.x0; x < kShape.crop.x1; ++x) {
+            out.resize(out.size() + each);
+            film.pack(x, y, out.data() + out.size() - each);
+        }
+    return out;
+}
+
+class StateFile : public ::testing::Test {
+  protected:
+    test::TemporaryFolder folder_;
+    std::filesystem::path path_ = folder_ / "a.state";
+    const StateHeader header_{kShape, kSamples, 0, {{"name", "München"}, {"n", 3.5}}};
+
+    [[nodiscard]] std::vector<uint8_t> bytes() const {
+        std::ifstream in(path_, std::ios::binary);
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+    void write(const std::vector<uint8_t>& bytes) const {
+        std::ofstream(path_, std::ios::binary)
+            .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+    }
+    /// What reading all of it says; empty where it succeeds.
+    [[nodiscard]] std::string complaint() const {
+        try {
+            StateReader reader(path_);
+            Film film = reader.header().shape.empty_film();
+            reader.add_to(film);
+            return "";
+        } catch (const InputError& error) {
+            return error.what();
+        }
+    }
+};
+
+TEST_F(StateFile, HoldsAFilmToTheBit) {
+    for (const bool whole : {false, true}) {
+        const Film film = filled(whole);
+        ASSERT_GT(film.bad_count(), 0u);
+        write_state(path_, header_, film);
+        StateReader reader(path_);
+        const StateHeader& read = reader.header();
+        EXPECT_EQ(read.shape.full_size, kShape.full_size);
+        EXPECT_EQ(read.shape.crop, kShape.crop);
+        EXPECT_EQ(read.shape.layers, kShape.layers);
+        EXPECT_EQ(read.shape.bins, kShape.bins);
+        EXPECT_EQ(read.samples, kSamples);
+        EXPECT_EQ(read.run, header_.run);
+        EXPECT_EQ(read.is_complete(), whole);
+        Film again = read.shape.empty_film();
+        reader.add_to(again);
+        EXPECT_EQ(bytes_of(again), bytes_of(film));
+    }
+}
+
+// Whatever bit flips, a whole byte at a time in each place: no film comes out of it.
+TEST_F(StateFile, EveryFlippedByteIsFound) {
+    write_state(path_, header_, filled(true));
+    const std::vector<uint8_t> good = bytes();
+    EXPECT_EQ(complaint(), "");
+    const size_t header_bytes = 600;
+    ASSERT_GT(good.size(), 4 * header_bytes);
+    for (size_t i = 0; i < good.size(); i += i < header_bytes ? 1 : 211)
+        for (const uint8_t flip : {0x01, 0x80}) {
+            std::vector<uint8_t> bad = good;
+            bad[i] ^= flip;
+            write(bad);
+            EXPECT_NE(complaint(), "") << i << ' ' << int(flip);
+        }
+    write({good.begin(), good.end()});
+    EXPECT_EQ(complaint(), "");
+}
+
+TEST_F(StateFile, EveryLengthButTheRightOneIsRefused) {
+    write_state(path_, header_, filled(true));
+    std::vector<uint8_t> cut = bytes();
+    cut.push_back(0);
+    write(cut);
+    EXPECT_NE(complaint().find("cut short"), std::string::npos) << complaint();
+    cut.pop_back();
+    while (!cut.empty()) {
+        cut.resize(cut.size() > 300 ? cut.size() * 3 / 4 : cut.size() - 1);
+        write(cut);
+        const std::string found = complaint();
+        EXPECT_TRUE(found.find("cut short") != found.npos ||
+                    found.find("is no state") != found.npos)
+            << cut.size() << found;
+    }
+}
+
+TEST_F(StateFile, AnotherVersionSaysWhichOne) {
+    write_state(path_, header_, filled(true));
+    std::vector<uint8_t> other = bytes();
+    other[8] = 7;
+    write(other);
+    EXPECT_EQ(complaint(), path_.string() +
+                               ": is a state of version 7, and this program reads version 1; use "
+                               "the program that wrote it");
+}
+
+TEST_F(StateFile, WhatIsNoStateIsRefused) {
+    EXPECT_EQ(complaint(), path_.string() + ": there is no such file");
+    std::filesystem::create_directory(path_);
+    EXPECT_EQ(complaint(), path_.string() + ": is no file");
+    std::filesystem::remove(path_);
+    mkfifo(path_.c_str(), 0600);  // which nobody writes to: it must not wait
+    EXPECT_EQ(complaint(), path_.string() + ": is no file");
+    std::filesystem::remove(path_);
+    write({'P', 'N', 'G'});
+    EXPECT_EQ(complaint(), path_.string() + ": is no state of a render");
+}
+
+// A header that asks for a film beyond all memory, or for nonsense, is that of a damaged file.
+TEST_F(StateFile, ImpossibleHeadersAreRefused) {
+    write_state(path_, header_, filled(true));
+    const std::vector<uint8_t> good = bytes();
+    const std::vector<std::array<std::string, 2>> changes = {
+        {R"("size_px":[20,10])", R"("size_px":[2 ,10])"},
+        {R"("size_px":[20,10])", R"("size_px":[2e9,9])"},
+        {R"("crop_px":[3,2,17,9])", R"("crop_px":[3,2,3 ,9])"},
+        {R"("samples":[16,40])", R"("samples":[40,40])"},
+        {R"(,50.0,7])", R"(,50.0,0])"},
+        {R"(,50.0,7])", R"(, 0.0,7])"},
+        {R"(,50.0,7])", R"(,5.0,9e9)"},
+        {R"("depth","normal")", R"("depth","normel")"},
+        {R"("depth","normal")", R"("depth"         )"},
+        {R"("pixel_samples":)", R"("pixel_xamples":)"}};
+    for (const auto& [before, after] : changes) {
+        ASSERT_EQ(before.size(), after.size());
+        std::string text(good.begin(), good.end());
+        const size_t at = text.find(before);
+        ASSERT_NE(at, std::string::npos) << before;
+        text.replace(at, before.size(), after);
+        write({text.begin(), text.end()});
+        EXPECT_NE(complaint().find("is damaged"), std::string::npos) << after << complaint();
+    }
+}
+
+// A disk that fills up: the state before is still there, whole.
+TEST_F(StateFile, IsWholeOrWhatItWas) {
+    write_state(path_, header_, filled(false));
+    const std::vector<uint8_t> before = bytes();
+    {
+        const test::FileSizeLimit limit(before.size() / 2);
+        EXPECT_THROW(write_state(path_, header_, filled(true)), OutputError);
+    }
+    EXPECT_EQ(bytes(), before);
+    EXPECT_EQ(folder_.count(), 1u);
+}
+
+}  // namespace
+}  // namespace petzval

@@ -23,6 +23,8 @@ namespace petzval::codec {
                                  const std::string& place, PictureBudget&, ColourRemarks&);
 void write_exr(const std::filesystem::path&, const PictureRows&);
 void write_8bit(const std::filesystem::path&, const PictureRows& encoded, bool srgb);
+[[nodiscard]] Picture draw_text(const std::string& utf8, int letter_px,
+                                const std::filesystem::path& font);
 
 /// Whether libjpeg said that the file ends early. OpenImageIO still calls such a picture read, grey
 /// where it is missing; libjpeg's other warnings do no harm.

@@ -17,7 +17,8 @@ void limit_threads(int threads) {
 /// The table is made when the module is loaded, which also sets the usual limit.
 ImageCodec made_at_load() {
     limit_threads(usable_threads());
-    return {PETZVAL_VERSION, read_picture, decode_image, write_exr, write_8bit, limit_threads};
+    return {PETZVAL_VERSION, read_picture, decode_image, write_exr,
+            write_8bit,      draw_text,    limit_threads};
 }
 
 const ImageCodec kCodec = made_at_load();

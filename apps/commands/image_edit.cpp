@@ -40,8 +40,7 @@ std::vector<std::string> labels_of(const SheetRequest& o) {
     if (labels.size() != o.in.size())
         throw CLI::ValidationError(
             "--labels",
-            fmt::format("there are {} labels, separated by semicolons, for {} pictures; "
-                        "give one for each",
+            fmt::format("{} for {} pictures; give one label for each, separated by semicolons",
                         labels.size(), o.in.size()));
     return labels;
 }

@@ -111,9 +111,10 @@ TEST_F(CliImageEdit, SheetRefuses) {
     const std::string out = path("out.png");
     EXPECT_NE(error({"-o", out}, 2).find("pictures is required"), std::string::npos);
     EXPECT_NE(error({a, a, "-o", out, "--labels", "one"}, 2)
-                  .find("--labels: there are 1 labels, separated by semicolons, for 2 pictures"),
+                  .find("--labels: 1 for 2 pictures; give one label for each"),
               std::string::npos);
-    EXPECT_NE(error({a, "-o", out, "--labels", "one;two"}, 2).find("2 labels"), std::string::npos);
+    EXPECT_NE(error({a, "-o", out, "--labels", "one;two"}, 2).find("2 for 1 pictures"),
+              std::string::npos);
     EXPECT_NE(error({a, "-o", path("out.exr")}, 2).find("a view is written as .png"),
               std::string::npos);
     EXPECT_NE(error({a, "-o", out, "--columns", "0"}, 2).find("--columns"), std::string::npos);

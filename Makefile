@@ -2,7 +2,8 @@
 # Two commands for a fresh Debian 12: make render, make test. Everything else is CMake's.
 PACKAGES = cmake ninja-build ccache mold libembree-dev libtbb-dev libimath-dev libopenimageio-dev \
     openimageio-tools libopencolorio-dev libtinygltf-dev nlohmann-json3-dev libfmt-dev \
-    libcli11-dev libpugixml-dev libdraco-dev libmeshoptimizer-dev gnuplot-nox
+    libcli11-dev libpugixml-dev libdraco-dev libmeshoptimizer-dev libfreetype-dev gnuplot-nox \
+    fonts-dejavu-core
 TEST_PACKAGES = libgtest-dev libgmock-dev libbenchmark-dev python3-numpy
 SOURCES = git ls-files '*.h' '*.cpp'
 

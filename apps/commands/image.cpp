@@ -4,20 +4,16 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
 
 #include "apps/cli/console.h"
-#include "apps/cli/display_options.h"
 #include "apps/cli/output_checks.h"
 #include "apps/cli/parse.h"
 #include "apps/cli/reading_options.h"
-#include "apps/setup/exposure.h"
-#include "apps/setup/input_files.h"
+#include "apps/commands/image_edit.h"
+#include "apps/commands/image_shown.h"
 #include "io/base/error.h"
 #include "io/base/overwrite.h"
 #include "io/image/difference.h"
@@ -85,26 +81,10 @@ void add_diff(CLI::App& image) {
     diff->callback([options] { diff_command(*options); });
 }
 
-// Luminances of the pixels that show something, for exposure_for().
-std::vector<double> luminances_of(const Picture& p) {
-    const int grey = channel_index(p, "Y"), alpha = channel_index(p, "A");
-    const auto from = [&](const char* name) { return grey < 0 ? channel_index(p, name) : grey; };
-    const std::array<int, 3> at{from("R"), from("G"), from("B")};
-    std::vector<double> out;
-    if (*std::min_element(at.begin(), at.end()) < 0) return out;
-    for (auto pixel = p.pixels.begin(); pixel != p.pixels.end(); pixel += p.channels.size()) {
-        const double light = double(luminance(Rgb(pixel[at[0]], pixel[at[1]], pixel[at[2]])));
-        const double opaque = alpha < 0 ? 1 : double(pixel[alpha]);
-        if (const double shown = light / opaque; opaque > 0 && shown > 0 && std::isfinite(shown))
-            out.push_back(shown);
-    }
-    return out;
-}
-
 void add_view(CLI::App& image) {
     struct ViewOptions {
-        std::string in, out, exposure = "0";
-        DisplayOptions display;
+        std::string in, out;
+        ShownOptions shown;
         ReadingOptions reading;
     };
     auto options = std::make_shared<ViewOptions>();
@@ -113,17 +93,10 @@ void add_view(CLI::App& image) {
     view->add_option("-o,--output", options->out, "picture to write, .png or .jpg")
         ->required()
         ->check(complaint_about_display_name);
-    view->add_option("--exposure", options->exposure, "stops of 2, or auto; default 0");
-    add_display_options(*view, options->display);
+    add_shown_options(*view, options->shown);
     add_memory_option(*view, options->reading);
     view->callback([options] {
-        const auto exposure_ev = parse_exposure_ev("--exposure", options->exposure);
-        if (const std::string told = resolve_display(options->display); !told.empty())
-            print_notice(told);
-        const std::vector<NamedFile> output{{"-o", options->out}};
-        refuse_overwriting(output, {{"the picture to show", options->in}});
-        refuse_overwriting(output, input_files(options->display));
-        refuse_overwriting(output, own_files());
+        begin_showing(options->shown, options->out, {{"the picture to show", options->in}});
         PictureBudget pictures = options->reading.pictures();
         const Picture picture = read_picture(options->in, pictures);
         if (picture.for_display)
@@ -131,13 +104,8 @@ void add_view(CLI::App& image) {
                 fmt::format("warning: {} holds values for a display already, and goes "
                             "through the view as if they were light",
                             options->in));
-        options->display.exposure_ev = exposure_ev.value_or(0.f);
-        if (!exposure_ev) {
-            options->display.exposure_ev = exposure_for(luminances_of(picture)).ev;
-            print_notice(
-                fmt::format("exposure: {0} EV (--exposure {0})", options->display.exposure_ev));
-        }
-        write_output(options->out, picture, options->display);
+        settle_exposure(options->shown, picture);
+        write_output(options->out, picture, options->shown.display);
     });
 }
 
@@ -177,11 +145,13 @@ void add_spectrum(CLI::App& image) {
 }  // namespace
 
 void add_image_commands(CLI::App& app) {
-    CLI::App* image = app.add_subcommand("image", "compare and show pictures");
+    CLI::App* image = app.add_subcommand("image", "compare, show and cut pictures");
     image->require_subcommand(1);
     add_diff(*image);
     add_view(*image);
     add_spectrum(*image);
+    add_sheet(*image);
+    add_crop(*image);
 }
 
 }  // namespace petzval

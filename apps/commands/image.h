@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// petzval image: pictures compared and shown.
+// petzval image: pictures compared, shown, put together and cut.
 #pragma once
 
 namespace CLI {
@@ -8,8 +8,8 @@ class App;
 
 namespace petzval {
 
-/// Adds the subcommands "image diff", "image view" and "image spectrum"; their callbacks do the
-/// work and throw InputError, also for pictures further apart than --fail-above allows.
+/// Adds the subcommands "image diff", "view", "spectrum", "sheet" and "crop"; their callbacks do
+/// the work and throw InputError, also for pictures further apart than --fail-above allows.
 void add_image_commands(CLI::App&);
 
 }  // namespace petzval

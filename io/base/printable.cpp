@@ -43,34 +43,11 @@ bool is_hidden(uint32_t code) {
     });
 }
 
-struct Character {
-    uint32_t code;
-    size_t bytes;  ///< 0: not UTF-8
-};
-
-// First character of a text that is not empty: RFC 3629, section 4, so without overlong forms and
-// surrogates.
-Character first_of(std::string_view text) {
-    const auto byte = [&](size_t i) { return static_cast<uint8_t>(text[i]); };
-    const uint8_t lead = byte(0);
-    if (lead < 0x80) return {lead, 1};
-    const size_t bytes = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : 2;
-    if (lead < 0xC2 || lead > 0xF4 || text.size() < bytes) return {0, 0};
-    uint32_t code = lead & (0xFFu >> (bytes + 1));
-    for (size_t i = 1; i < bytes; ++i) {
-        if ((byte(i) & 0xC0) != 0x80) return {0, 0};
-        code = code << 6 | (byte(i) & 0x3Fu);
-    }
-    constexpr std::array<uint32_t, 5> least{0, 0, 0x80, 0x800, 0x10000};
-    const bool surrogate = code >= 0xD800 && code <= 0xDFFF;
-    return {code, code < least[bytes] || code > 0x10FFFF || surrogate ? 0 : bytes};
-}
-
 // Text made visible, up to so many bytes; whole characters and escapes only.
 std::string visible_up_to(size_t most_bytes, std::string_view text) {
     std::string out;
     while (!text.empty()) {
-        const Character character = first_of(text);
+        const Character character = first_character(text);
         const size_t taken = std::max<size_t>(character.bytes, 1);
         std::string shown(text.substr(0, taken));
         if (character.bytes == 0)
@@ -86,6 +63,22 @@ std::string visible_up_to(size_t most_bytes, std::string_view text) {
 }
 
 }  // namespace
+
+Character first_character(std::string_view text) {
+    const auto byte = [&](size_t i) { return static_cast<uint8_t>(text[i]); };
+    const uint8_t lead = byte(0);
+    if (lead < 0x80) return {lead, 1};
+    const size_t bytes = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : 2;
+    if (lead < 0xC2 || lead > 0xF4 || text.size() < bytes) return {0, 0};
+    uint32_t code = lead & (0xFFu >> (bytes + 1));
+    for (size_t i = 1; i < bytes; ++i) {
+        if ((byte(i) & 0xC0) != 0x80) return {0, 0};
+        code = code << 6 | (byte(i) & 0x3Fu);
+    }
+    constexpr std::array<uint32_t, 5> least{0, 0, 0x80, 0x800, 0x10000};
+    const bool surrogate = code >= 0xD800 && code <= 0xDFFF;
+    return {code, code < least[bytes] || code > 0x10FFFF || surrogate ? 0 : bytes};
+}
 
 std::string visible(std::string_view text) {
     return visible_up_to(std::string::npos, text);

@@ -2,10 +2,20 @@
 // Text of files and names, made fit to be shown.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
 namespace petzval {
+
+struct Character {
+    uint32_t code;
+    size_t bytes;  ///< 0: not UTF-8
+};
+/// First character of a text that is not empty: RFC 3629, section 4, so without overlong forms and
+/// surrogates.
+[[nodiscard]] Character first_character(std::string_view);
 
 /// Text in which every character shows. Control characters, marks of direction and characters
 /// without width become escapes such as \u202e; bytes that are not UTF-8 become \xff. What a

@@ -25,6 +25,8 @@ namespace petzval::codec {
                                  const std::string& place, PictureBudget&, ColourRemarks&);
 void write_exr(const std::filesystem::path&, const PictureRows&);
 void write_8bit(const std::filesystem::path&, const PictureRows& encoded, bool srgb);
+[[nodiscard]] Picture draw_text(const std::string& utf8, int letter_px,
+                                const std::filesystem::path& font);
 
 /// Start of the names of metadata that PNG and JPEG carry too, in their description: "NAME=VALUE"
 /// with a blank between two.

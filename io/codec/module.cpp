@@ -18,7 +18,7 @@ void limit_threads(int threads) {
 ImageCodec made_at_load() {
     limit_threads(usable_threads());
     return {PETZVAL_VERSION, read_picture, read_metadata, decode_image,
-            write_exr,       write_8bit,   limit_threads};
+            write_exr,       write_8bit,   draw_text,     limit_threads};
 }
 
 const ImageCodec kCodec = made_at_load();

@@ -165,10 +165,14 @@ ocio::ConstCPUProcessorRcPtr view_processor(const Config& loaded, const View& vi
     }
 }
 
-/// Indices of R, G and B among the channels.
+/// Indices of R, G and B among the channels. Throws where there are none.
 std::array<int, 3> colour_channels(const PictureLayout& picture) {
     if (const int grey = channel_index(picture, "Y"); grey >= 0) return {grey, grey, grey};
-    return {channel_index(picture, "R"), channel_index(picture, "G"), channel_index(picture, "B")};
+    const std::array<int, 3> rgb{channel_index(picture, "R"), channel_index(picture, "G"),
+                                 channel_index(picture, "B")};
+    if (*std::min_element(rgb.begin(), rgb.end()) < 0)
+        throw InputError("the picture", "", "has no channels R, G and B (nor Y) to show");
+    return rgb;
 }
 
 }  // namespace
@@ -187,8 +191,6 @@ std::string find_view(const std::string& text, const std::filesystem::path& conf
 PictureRows to_display(const PictureRows& linear, float exposure_ev, const std::string& view,
                        AlphaUse alpha_use, const std::filesystem::path& config) {
     const std::array<int, 3> from = colour_channels(linear.layout);
-    if (*std::min_element(from.begin(), from.end()) < 0)
-        throw InputError("the picture", "", "has no channels R, G and B (nor Y) to show");
     const int alpha_from = alpha_use == AlphaUse::Keep ? channel_index(linear.layout, "A") : -1;
 
     PictureLayout layout = linear.layout;
@@ -211,6 +213,26 @@ PictureRows to_display(const PictureRows& linear, float exposure_ev, const std::
             if (alpha_from >= 0) *out++ = alpha;
         }
         processor->apply(shown);
+    };
+    return {std::move(layout), row};
+}
+
+PictureRows as_display(const PictureRows& shown) {
+    const auto rgb = colour_channels(shown.layout);
+    std::vector<int> from(rgb.begin(), rgb.end());
+    PictureLayout layout = shown.layout;
+    layout.channels = {"R", "G", "B"};
+    if (const int alpha = channel_index(shown.layout, "A"); alpha >= 0) {
+        from.push_back(alpha);
+        layout.channels.emplace_back("A");
+    }
+    const size_t channels = shown.layout.channels.size();
+    const auto row = [from, channels, source = shown.row,
+                      values = std::vector<float>(size_t(layout.width) * channels)](
+                         int y, float* out) mutable {
+        source(y, values.data());
+        for (size_t i = 0; i < values.size(); i += channels)
+            for (const int channel : from) *out++ = values[i + size_t(channel)];
     };
     return {std::move(layout), row};
 }

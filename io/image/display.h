@@ -38,4 +38,8 @@ enum class AlphaUse : uint8_t {
                                      const std::string& view, AlphaUse alpha,
                                      const std::filesystem::path& config = {});
 
+/// Display picture of one that holds values for a display already (Picture::for_display): its R, G
+/// and B, or Y as each of them, and its A. Throws InputError where it has none of these colours.
+[[nodiscard]] PictureRows as_display(const PictureRows& shown);
+
 }  // namespace petzval

@@ -81,6 +81,10 @@ void write_8bit(const std::filesystem::path& path, const PictureRows& encoded, b
     image_codec().write_8bit(path, encoded, srgb);
 }
 
+Picture draw_text(const std::string& utf8, int letter_px, const std::filesystem::path& font) {
+    return image_codec().draw_text(utf8, letter_px, font);
+}
+
 void load_image_codec() {
     static_cast<void>(image_codec());
 }

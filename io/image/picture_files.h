@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures on disk: EXR, Radiance, PNG, JPEG and WebP in (io/picture/picture_kind.h), EXR, PNG and
-// JPEG out. The module of io/codec does the work; it is loaded at the first call.
+// JPEG out, and the letters that are drawn into them. The module of io/codec does the work; it is
+// loaded at the first call.
 #pragma once
 
 #include <cstdint>
@@ -44,6 +45,12 @@ void write_exr(const std::filesystem::path&, const PictureRows&);
 /// are this program's own. srgb: the file says that its values are for an sRGB display. Throws
 /// InputError where it cannot be written.
 void write_8bit(const std::filesystem::path&, const PictureRows& encoded, bool srgb = true);
+
+/// Coverage in [0, 1] of a line of letters, letter_px high, in the one channel A. x and y: where it
+/// lies from the start of the base line; an empty text covers nothing. Characters that the font
+/// lacks are boxes. Throws InputError where the font cannot be used.
+[[nodiscard]] Picture draw_text(const std::string& utf8, int letter_px,
+                                const std::filesystem::path& font);
 
 /// Loads the module, a sixth of a second of CPU time: early, before hours of work, to learn whether
 /// it can be loaded. Throws InputError where it cannot.

@@ -25,6 +25,7 @@ struct ImageCodec {
                           const std::string& place, PictureBudget&, ColourRemarks&);
     void (*write_exr)(const std::filesystem::path&, const PictureRows&);
     void (*write_8bit)(const std::filesystem::path&, const PictureRows& encoded, bool srgb);
+    Picture (*draw_text)(const std::string& utf8, int letter_px, const std::filesystem::path& font);
     void (*limit_threads)(int threads);
 };
 

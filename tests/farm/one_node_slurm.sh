@@ -88,11 +88,11 @@ CONF
 
 start() {
     require_packages
-    mkdir -p "$dir"
-    [[ -z $(ls -A "$dir") ]] || fail "$dir is not empty: name a new folder"
-    dir=$(cd "$dir" && pwd -P)
+    dir=$(realpath -m "$dir")
     ((${#dir} < 80)) || fail "the path of $dir is too long for a socket: name one of under 80 letters"
     [[ $dir != *[[:space:],]* ]] || fail "$dir has spaces or commas, which slurm.conf cannot hold: name another"
+    mkdir -p "$dir"
+    [[ -z $(ls -A "$dir") ]] || fail "$dir is not empty: name a new folder"
     chmod 700 "$dir"
     touch "$dir/.one_node_slurm"  # stop removes no folder without it
     trap 'stop || true' EXIT      # of a start that fails
@@ -128,7 +128,7 @@ processes() {
 stop() {
     unset PETZVAL_ONE_NODE_SLURM  # or what stop calls itself would belong to it
     [[ -e $dir/.one_node_slurm ]] || fail "$dir holds no Slurm that start has made"
-    dir=$(cd "$dir" && pwd -P)
+    dir=$(realpath "$dir")
     export SLURM_CONF=$dir/slurm.conf
     # Jobs first, by Slurm's own means: nobody else ends what they have started.
     if [[ -e $dir/slurmctld.pid ]] && timeout 5 scontrol ping > /dev/null 2>&1; then

@@ -21,7 +21,7 @@ export CHECKPOINT=${CHECKPOINT:-10m}  # how much work is lost at most when a nod
 export RETRIES=${RETRIES:-3}          # how often a task starts again that something other than Slurm ended
 CPUS=${CPUS:-4}                       # per task
 MEMORY=${MEMORY:-}                    # per task, as 8G; empty: what the farm gives
-TIME=${TIME:-}                        # per start of a task, as 4:00:00; a task that needs more goes on in another
+TIME_LIMIT=${TIME_LIMIT:-}                        # per start of a task, as 4:00:00; a task that needs more goes on in another
 
 fail() {
     echo "submit_ranges.sh: $1" >&2
@@ -39,7 +39,7 @@ mkdir -p "$OUT.parts"
 options=(--parsable --export=ALL)
 task=("${options[@]}" --array="0-$((PARTS - 1))" --cpus-per-task="$CPUS")
 [[ -z $MEMORY ]] || task+=(--mem="$MEMORY")
-[[ -z $TIME ]] || task+=(--time="$TIME")
+[[ -z $TIME_LIMIT ]] || task+=(--time="$TIME_LIMIT")
 array=$(sbatch "${task[@]}" "$here/ranges.sbatch" "$@")
 array=${array%%;*}  # of several clusters sbatch names the one
 # afterok: the merge starts when every task has ended well. When one fails for good, it cannot any

@@ -25,6 +25,13 @@ void add_place_options(CLI::App& app, CameraOptions& o) {
     };
     add("--camera", r.name, "camera of the file, by name or index");
     add("--look-at", o.look_at, "ex,ey,ez,tx,ty,tz: eye and target in metres");
+    auto* orbit = add("--orbit", r.orbit_deg,
+                      "turn the camera about the scene: degrees, counter-clockwise from above")
+                      ->transform(number_between(-kMost, kMost, kDegrees));
+    add("--orbit-about", o.orbit_about,
+        "x,y,z: about the vertical axis there (default: through the target of --look-at, else "
+        "the middle of the scene)")
+        ->needs(orbit);
     add("--fov", r.fov_deg, "vertical angle of view in degrees")
         ->transform(number_between(kSmallestFov_deg, kLargestFov_deg, kDegrees));
     add("--sensor", o.sensor,
@@ -141,6 +148,10 @@ CameraRequest resolve(CameraOptions& o, V2i frame, const TimeOptions& time) {
     if (!o.look_at.empty()) {
         r.look_at = parse_look_at(o.look_at);
         if (r.name) throw CLI::ValidationError("--look-at", "excludes --camera");
+    }
+    if (!o.orbit_about.empty()) {
+        const auto at_m = parse_lengths_m("--orbit-about", o.orbit_about, 3);
+        r.orbit_about = V3f(at_m[0], at_m[1], at_m[2]);
     }
     if (!o.sensor.empty()) r.sensor_mm = parse_sensor("--sensor", o.sensor, kLeast, kMost);
     if (!o.focus.empty()) r.focus = parse_focus("--focus", o.focus, frame);

@@ -14,7 +14,7 @@ namespace petzval {
 /// Camera options as given; resolve() reads the texts.
 struct CameraOptions {
     CameraRequest request;
-    std::string look_at, sensor, focus, shutter, shutter_curve;
+    std::string look_at, orbit_about, sensor, focus, shutter, shutter_curve;
 };
 
 /// Declares the options; they write to the struct, which must outlive the parsing.

@@ -9,7 +9,6 @@
 
 #include "apps/cli/choice.h"
 #include "apps/cli/display_options.h"
-#include "apps/cli/frames.h"
 #include "apps/cli/output_checks.h"
 #include "apps/cli/parse.h"
 #include "apps/setup/memory.h"
@@ -94,12 +93,6 @@ void add_output_options(CLI::App& app, RenderOptions& o) {
         "more than once")
         ->allow_extra_args(false);
     add("--stats", o.stats, "write counts and times to this JSON file");
-    app.add_option("--frames", o.frames,
-                   "render these frames of --fps, as 1:48 or 1:48:2; #### in the names of the "
-                   "files becomes their number")
-        ->group("Time")
-        ->excludes(app.get_option("--at"));
-    app.add_option("--number", o.number, "")->group("");  // of one picture of a sequence
     add_choice<ProgressStyle>(
         app, "--progress", o.progress,
         {{"auto", ProgressStyle::Auto},
@@ -115,12 +108,13 @@ void add_output_options(CLI::App& app, RenderOptions& o) {
 
 // Checks that what was asked for has an output that takes it. Returns what to tell about it.
 std::vector<std::string> resolve_outputs(RenderOptions& o) {
-    if (o.outputs.empty() && !o.keep.state) return {};  // of a plan
+    if (o.outputs.empty() && !o.keep.state && !o.sequence.sheet) return {};  // of a plan
     const auto is_exr = [](const auto& path) { return picture_format(path) == PictureFormat::Exr; };
     // A state that stays keeps all, and may become a PNG.
     const bool keeps = o.keep.state_is_wanted;
     const bool any_exr = keeps || std::any_of(o.outputs.begin(), o.outputs.end(), is_exr);
-    const bool all_exr = !keeps && std::all_of(o.outputs.begin(), o.outputs.end(), is_exr);
+    const bool all_exr =
+        !keeps && !o.sequence.sheet && std::all_of(o.outputs.begin(), o.outputs.end(), is_exr);
     if (o.scene.spectral.bins && !any_exr)
         throw CLI::ValidationError("--bins", "needs an output that keeps them: -o FILE.exr");
     if (!o.aovs.empty() && !any_exr)
@@ -173,10 +167,11 @@ void require_memory(const RenderFrame& frame, const SceneRequest& scene) {
 
 // Puts the number of a picture of a sequence into the names of its files.
 void number_files(RenderOptions& o) {
-    if (!o.number) return;
-    for (auto& output : o.outputs) output = name_of_frame("-o", output, *o.number, false);
+    const auto number = o.sequence.number;
+    if (!number) return;
+    for (auto& output : o.outputs) output = name_of_frame("-o", output, *number, false);
     for (auto* file : {&o.stats, &o.keep.preview})
-        if (*file) **file = name_of_frame("", **file, *o.number, false);
+        if (*file) **file = name_of_frame("", **file, *number, false);
 }
 
 }  // namespace
@@ -222,6 +217,7 @@ void add_render_options(CLI::App& app, RenderOptions& o) {
     add_frame_options(app, o);
     add_plan_options(app, o);
     add_output_options(app, o);
+    add_sequence_options(app, o.sequence);
     add_keep_options(app, o.keep);
 }
 

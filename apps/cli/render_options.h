@@ -11,6 +11,7 @@
 #include "apps/cli/keep_options.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/reading_options.h"
+#include "apps/cli/sequence_options.h"
 #include "apps/cli/spectral_options.h"
 #include "apps/setup/render_setup.h"
 #include "core/film/film.h"
@@ -52,8 +53,7 @@ struct RenderOptions {
     bool auto_exposure = false;
     ProgressStyle progress = ProgressStyle::Auto;
     bool quiet = false;
-    std::string frames;         ///< of a sequence; empty: one picture
-    std::optional<int> number;  ///< that #### in the names of files becomes
+    SequenceOptions sequence;
 };
 
 /// Values from the texts of RenderOptions that have no place elsewhere.

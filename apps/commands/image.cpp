@@ -14,6 +14,7 @@
 #include "apps/cli/reading_options.h"
 #include "apps/commands/image_edit.h"
 #include "apps/commands/image_shown.h"
+#include "apps/state/render_facts.h"
 #include "io/base/error.h"
 #include "io/base/overwrite.h"
 #include "io/image/difference.h"
@@ -98,13 +99,16 @@ void add_view(CLI::App& image) {
     view->callback([options] {
         begin_showing(options->shown, options->out, {{"the picture to show", options->in}});
         PictureBudget pictures = options->reading.pictures();
-        const Picture picture = read_picture(options->in, pictures);
+        Picture picture = read_picture(options->in, pictures);
         if (picture.for_display)
             print_notice(
                 fmt::format("warning: {} holds values for a display already, and goes "
                             "through the view as if they were light",
                             options->in));
         settle_exposure(options->shown, picture);
+        const DisplayOptions& display = options->shown.display;
+        picture.metadata.emplace_back(kDisplayHash,
+                                      display_hash(display_facts(display, input_files(display))));
         write_output(options->out, picture, options->shown.display);
     });
 }

@@ -13,6 +13,7 @@
 #include "apps/cli/parse.h"
 #include "apps/cli/reading_options.h"
 #include "apps/commands/image_shown.h"
+#include "apps/state/render_facts.h"
 #include "io/base/error.h"
 #include "io/image/picture_files.h"
 #include "io/image/sheet.h"
@@ -80,6 +81,8 @@ Picture cut_out(const Picture& from, const Rect& crop, const std::string& file) 
                         "pixels inside that",
                         as_words(held), from.full_width, from.full_height, as_words(crop)));
     Picture cut{from, {}};
+    // It is not the picture that the hash is of.
+    std::erase_if(cut.metadata, [](const auto& one) { return one.first == kLightHash; });
     cut.for_display = from.for_display;
     cut.x = crop.x0;
     cut.y = crop.y0;

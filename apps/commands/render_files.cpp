@@ -12,14 +12,8 @@
 #include "io/image/picture_files.h"
 
 namespace petzval {
-namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* kLightHash = "petzval:lightHash";
-constexpr const char* kDisplayHash = "petzval:displayHash";
-
-}  // namespace
 
 void check_outputs(RenderOptions& o, const Rect& crop) {
     std::vector<NamedFile>& outputs = o.scene.outputs;
@@ -32,6 +26,7 @@ void check_outputs(RenderOptions& o, const Rect& crop) {
     }
     if (o.stats) outputs.push_back({"--stats", *o.stats});
     if (o.keep.preview) outputs.push_back({"--preview", *o.keep.preview});
+    if (o.sequence.sheet) outputs.push_back({"--sheet", *o.sequence.sheet});
     if (o.keep.log) outputs.push_back({"--log", *o.keep.log});
     for (const auto& partial : partials)
         outputs.push_back({"the picture of a render that is stopped", partial});
@@ -51,7 +46,7 @@ PictureRows picture_for(const fs::path& path, const FinishedFilm& done) {
     metadata.emplace_back(kLightHash,
                           light_hash(done.facts, FilmShape::of(done.film), done.samples));
     if (picture_format(path) != PictureFormat::Exr)
-        metadata.emplace_back(kDisplayHash, display_hash(done.facts));
+        metadata.emplace_back(kDisplayHash, display_hash(done.facts.display));
     return develop(done.film, done.samples, metadata);
 }
 
@@ -92,7 +87,8 @@ bool is_up_to_date(const fs::path& path, const RenderFacts& facts, const FilmSha
         });
     };
     return is(kLightHash, light_hash(facts, shape, samples)) &&
-           (picture_format(path) == PictureFormat::Exr || is(kDisplayHash, display_hash(facts)));
+           (picture_format(path) == PictureFormat::Exr ||
+            is(kDisplayHash, display_hash(facts.display)));
 }
 
 }  // namespace petzval

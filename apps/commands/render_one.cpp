@@ -10,6 +10,7 @@
 #include "apps/commands/render_files.h"
 #include "apps/plan/plan.h"
 #include "apps/plan/plan_wording.h"
+#include "apps/setup/develop.h"
 #include "apps/setup/exposure.h"
 #include "apps/setup/spectral_wording.h"
 #include "apps/setup/stats_file.h"
@@ -49,8 +50,9 @@ class OneRender {
     [[nodiscard]] bool is_there() const;
     [[nodiscard]] RenderResult render(TbbExecutor&, Progress&);
     void write_state_now(const fs::path&, const RunFigures& now, SampleRange) const;
-    [[nodiscard]] int write_all(const RenderResult&, TbbExecutor&, Progress&);
+    [[nodiscard]] int write_all(const RenderResult&, TbbExecutor&, Progress&, const SequencePlace&);
     void remove_unfinished() const;
+    void show_existing(const SequencePlace&) const;
     void advise_exposure(TbbExecutor&);
     void tell_bad_samples() const;
     [[nodiscard]] RunReport report_of(const Progress&, std::vector<WriteOutcome>,
@@ -149,6 +151,7 @@ void OneRender::take_up_state() {
 
 bool OneRender::is_there() const {
     if (!o_.keep.skip_existing) return false;
+    if (o_.outputs.empty() && !o_.keep.state) return false;
     if (o_.keep.state_is_wanted && !(film_ && least_taken(*film_) == samples_.count()))
         return false;
     return std::all_of(o_.outputs.begin(), o_.outputs.end(), [&](const fs::path& output) {
@@ -235,7 +238,8 @@ RunReport OneRender::report_of(const Progress& progress, std::vector<WriteOutcom
 }
 
 // Writes the state where one is to stay, then pictures and statistics; the exit code.
-int OneRender::write_all(const RenderResult& result, TbbExecutor& executor, Progress& progress) {
+int OneRender::write_all(const RenderResult& result, TbbExecutor& executor, Progress& progress,
+                         const SequencePlace& place) {
     const bool stopped = result.stopped;
     progress.begin(Phase::Writing);
     RunFigures figures = figures_now(result.stats, result.workers);
@@ -259,6 +263,11 @@ int OneRender::write_all(const RenderResult& result, TbbExecutor& executor, Prog
                                [](const WriteOutcome& one) { return one.written(); });
     // Only where the pictures are there: else the state is all that is left.
     if (!stopped && written) remove_unfinished();
+    if (!stopped && place.show)
+        place.show(
+            to_display(develop(*film_, taken, record_.facts.metadata), o_.display.exposure_ev,
+                       o_.display.view, AlphaUse::Keep, o_.display.config),
+            o_.display);
     if (!stopped) advise_exposure(executor);
     if (o_.stats) {
         figures += record_.figures;
@@ -282,6 +291,21 @@ void OneRender::remove_unfinished() const {
     for (const fs::path& output : o_.outputs) fs::remove(partial_name(output), error);
 }
 
+// Shows a picture that is there, as a display or as light.
+void OneRender::show_existing(const SequencePlace& place) const {
+    const auto is_exr = [](const fs::path& path) {
+        return picture_format(path) == PictureFormat::Exr;
+    };
+    const auto shown = std::find_if_not(o_.outputs.begin(), o_.outputs.end(), is_exr);
+    const Picture there = read_picture(shown == o_.outputs.end() ? o_.outputs.front() : *shown);
+    if (there.for_display)
+        place.show(as_display(there), o_.display);
+    else
+        place.show(to_display(there, o_.display.exposure_ev, o_.display.view, AlphaUse::Keep,
+                              o_.display.config),
+                   o_.display);
+}
+
 // What fixes the choices of this render for others: else the view, the focus and the brightness
 // would jump from picture to picture.
 std::vector<std::string> OneRender::found_words() const {
@@ -290,6 +314,8 @@ std::vector<std::string> OneRender::found_words() const {
     if (setup_.prepared.cameras->empty() && !o_.scene.camera.look_at)
         words.insert(words.end(), {"--look-at", fmt::format("{},{}", with_commas(camera.eye),
                                                             with_commas(camera.target))});
+    if (o_.scene.camera.orbit_deg && !o_.scene.camera.orbit_about)
+        words.insert(words.end(), {"--orbit-about", with_commas(camera.orbit_about)});
     const bool has_focus = camera.lens_radius_m > 0 && camera.focus_m > 0;
     if (has_focus && (o_.camera.focus.empty() || o_.camera.focus == "auto"))
         words.insert(words.end(), {"--focus", fmt::format("{}", camera.focus_m)});
@@ -321,6 +347,7 @@ int OneRender::run(SequencePlace& place) {
     if (is_there()) {
         for (const fs::path& output : o_.outputs)
             notice_(fmt::format("{} is there already", output.string()));
+        if (place.show && !o_.outputs.empty()) show_existing(place);
     } else {
         if (!film_) film_ = shape_.empty_film();
         uint64_t before = 0;
@@ -331,7 +358,7 @@ int OneRender::run(SequencePlace& place) {
         progress.set_before(before);
         const RenderResult result = render(executor, progress);
         tell_bad_samples();
-        code = write_all(result, executor, progress);
+        code = write_all(result, executor, progress, place);
     }
     next_.reset();
     if (o_.scene.reuse)

@@ -2,6 +2,7 @@
 // Render of one picture: from the options to its files.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -22,6 +23,8 @@ struct SequencePlace {
     std::optional<RenderSetup>* before = nullptr;
     /// Words that fix what the render found by itself: view, focus, exposure.
     std::vector<std::string> found;
+    /// Gets the picture for a display when it is finished, or was there already.
+    std::function<void(const PictureRows&, const DisplayOptions&)> show;
 };
 
 /// Renders one picture and writes its files. command: the words that ask for it, by which a state

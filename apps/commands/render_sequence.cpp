@@ -6,96 +6,154 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <set>
 
-#include "apps/cli/frames.h"
+#include "apps/cli/sequence_options.h"
 #include "apps/commands/failure.h"
 #include "apps/commands/render.h"
 #include "apps/commands/render_one.h"
+#include "io/base/error.h"
+#include "io/image/sheet.h"
 
 namespace petzval {
 namespace {
 
 using Words = std::vector<std::string>;
 
-/// One picture of a sequence.
-struct Item {
-    Words words;        ///< that are added to those of the sequence
-    int number;         ///< in the names of its files
-    std::string label;  ///< "frame 12"
-};
-
-std::vector<Item> items_of(const RenderOptions& o) {
-    std::vector<Item> items;
-    for (const int frame : parse_frames("--frames", o.frames))
-        items.push_back(
-            {{"--at", fmt::format("frame:{}", frame)}, frame, fmt::format("frame {}", frame)});
-    return items;
+// Refuses names of files that all pictures would share.
+void check_names(const RenderOptions& o, size_t pictures) {
+    if (pictures < 2) return;
+    for (const auto& output : o.outputs) static_cast<void>(name_of_frame("-o", output, 0, true));
+    if (o.stats) static_cast<void>(name_of_frame("--stats", *o.stats, 0, true));
 }
 
-// Words without an option and its value.
-Words without(const Words& words, const std::string& option) {
+// What the first picture found, without the focus where the sweep is over where the camera stands.
+Words held(const Words& found, const std::string& swept) {
+    constexpr std::array<std::string_view, 4> kPlaces{"camera", "look-at", "orbit", "focus"};
+    if (std::ranges::find(kPlaces, swept) == kPlaces.end()) return found;
     Words out;
-    for (size_t i = 0; i < words.size(); ++i) {
-        if (words[i] == option)
-            ++i;
-        else if (!words[i].starts_with(option + "="))
-            out.push_back(words[i]);
-    }
+    for (size_t i = 0; i + 1 < found.size(); i += 2)
+        if (found[i] == "--exposure") out.insert(out.end(), {found[i], found[i + 1]});
     return out;
 }
 
-// Refuses names of files that all pictures would share.
-void check_names(const RenderOptions& o, const std::vector<Item>& items) {
-    if (items.size() < 2) return;
-    for (const auto& output : o.outputs) static_cast<void>(name_of_frame("-o", output, 0, true));
-    if (o.stats) static_cast<void>(name_of_frame("--stats", *o.stats, 0, true));
+/// A sequence under way.
+class Sequence {
+  public:
+    Sequence(const RenderOptions& o, const Notice& notice, Session& session)
+        : o_(o), notice_(notice), session_(session), items_(items_of(o.sequence)) {
+        check_names(o, items_.size());
+        all_ = without_sequence(session.words);
+        if (!o.sequence.frames.empty()) reuse_ = std::make_shared<FrameReuse>();
+        // What is wrong with one ends all at once. Frames differ in a number only.
+        const size_t checked = o.sequence.frames.empty() ? items_.size() : 1;
+        for (size_t i = 0; i < checked; ++i) static_cast<void>(parse_render(words_of(items_[i])));
+        if (!o.sequence.sheet) return;
+        check_sheet(*o.sequence.sheet, {});
+        sheet_.emplace(items_.size());
+    }
+    int run();
+
+  private:
+    [[nodiscard]] Words words_of(const SequenceItem& item) const {
+        Words words = all_;
+        words.insert(words.end(), item.words.begin(), item.words.end());
+        words.insert(words.end(), {"--number", fmt::format("{}", item.number)});
+        return words;
+    }
+    [[nodiscard]] int render(size_t i);
+    [[nodiscard]] int write_sheet() const;
+
+    const RenderOptions& o_;
+    const Notice& notice_;
+    Session& session_;
+    std::vector<SequenceItem> items_;
+    Words all_;  ///< of every picture
+    std::shared_ptr<FrameReuse> reuse_;
+    std::optional<RenderSetup> before_;
+    std::optional<ContactSheet> sheet_;
+    bool for_srgb_ = true;  ///< what the sheet shows
+    std::set<std::string> said_;
+};
+
+int Sequence::render(size_t i) {
+    const SequenceItem& item = items_[i];
+    const bool several = items_.size() > 1;
+    const Notice once = [&](const std::string& text) {
+        if (said_.insert(text).second) notice_(text);
+    };
+    bool shown = false;
+    const auto leave_cell = [&] {
+        if (sheet_ && !shown) sheet_->add_missing(item.label);
+    };
+    try {
+        const Words words = words_of(item);
+        const ParsedRender parsed = parse_render(words);
+        parsed.options->scene.reuse = reuse_;
+        SequencePlace place;
+        place.part_of = {static_cast<int>(i), static_cast<int>(items_.size())};
+        if (!reuse_ && several) place.before = &before_;
+        if (sheet_)
+            place.show = [&](const PictureRows& picture, const DisplayOptions& display) {
+                sheet_->add(picture, item.label);
+                for_srgb_ = display.config.empty();
+                shown = true;
+            };
+        const int code = render_one(*parsed.options, words, once, session_, place);
+        if (i == 0) {
+            const Words found = held(place.found, swept_option(o_.sequence));
+            all_.insert(all_.end(), found.begin(), found.end());
+        }
+        leave_cell();
+        return code;
+    } catch (...) {
+        leave_cell();
+        return tell_failure(session_, several ? item.label : "");
+    }
+}
+
+int Sequence::write_sheet() const {
+    const WriteOutcome sheet = write_or_rescue(
+        *o_.sequence.sheet, [&](const std::filesystem::path& to) { sheet_->write(to, for_srgb_); });
+    if (sheet.written()) return kSuccess;
+    session_.console.error(sheet.message());
+    return kOutputFailed;
+}
+
+int Sequence::run() {
+    std::vector<std::string> failed;
+    int code = kSuccess;
+    for (size_t i = 0; i < items_.size(); ++i) {
+        if (session_.interrupt.signal_name() != nullptr) {
+            code = kStopped;
+            break;
+        }
+        if (items_.size() > 1)
+            notice_(fmt::format("{}, {} of {}", items_[i].label, i + 1, items_.size()));
+        const int one = render(i);
+        if (one == kSuccess) continue;
+        if (code == kSuccess || one == kStopped) code = one;
+        if (one == kStopped) break;
+        failed.push_back(items_[i].label);
+    }
+    if (!failed.empty() && items_.size() > 1)
+        session_.console.error(fmt::format("{} of {} pictures failed: {}", failed.size(),
+                                           items_.size(), fmt::join(failed, ", ")));
+    if (sheet_ && failed.size() < items_.size())
+        if (const int written = write_sheet(); code == kSuccess) code = written;
+    return code;
 }
 
 }  // namespace
 
 bool is_sequence(const RenderOptions& o) {
-    return !o.frames.empty();
+    return o.sequence.several();
 }
 
 int render_sequence(const RenderOptions& o, const Notice& notice, Session& session) {
-    const std::vector<Item> items = items_of(o);
-    check_names(o, items);
-    Words all = without(session.words, "--frames");
-    std::set<std::string> said;
-    const Notice once = [&](const std::string& text) {
-        if (said.insert(text).second) notice(text);
-    };
-    const auto reuse = std::make_shared<FrameReuse>();
-    std::vector<std::string> failed;
-    int code = kSuccess;
-    for (size_t i = 0; i < items.size() && session.interrupt.signal_name() == nullptr; ++i) {
-        const Item& item = items[i];
-        Words words = all;
-        words.insert(words.end(), item.words.begin(), item.words.end());
-        words.insert(words.end(), {"--number", fmt::format("{}", item.number)});
-        if (items.size() > 1) notice(fmt::format("{}, {} of {}", item.label, i + 1, items.size()));
-        int one = kFailure;
-        try {
-            const ParsedRender parsed = parse_render(words);
-            parsed.options->scene.reuse = reuse;
-            SequencePlace place;
-            place.part_of = {int(i), int(items.size())};
-            one = render_one(*parsed.options, words, once, session, place);
-            if (i == 0) all.insert(all.end(), place.found.begin(), place.found.end());
-        } catch (...) {
-            one = tell_failure(session, items.size() > 1 ? item.label : "");
-        }
-        if (one == kSuccess) continue;
-        if (code == kSuccess) code = one;
-        if (one == kStopped) return kStopped;
-        failed.push_back(item.label);
-    }
-    if (!failed.empty() && items.size() > 1)
-        session.console.error(fmt::format("{} of {} pictures failed: {}", failed.size(),
-                                          items.size(), fmt::join(failed, ", ")));
-    return session.interrupt.signal_name() ? kStopped : code;
+    return Sequence(o, notice, session).run();
 }
 
 }  // namespace petzval

@@ -36,6 +36,7 @@ void describe_camera(const CameraReport& c, Metadata& m) {
     m.emplace_back("petzval:camera", c.name);
     m.emplace_back("petzval:cameraEye_m", with_commas(c.eye));
     m.emplace_back("petzval:cameraTarget_m", with_commas(c.target));
+    if (c.asked.orbit_deg) m.emplace_back("petzval:orbit_deg", *c.asked.orbit_deg);
     if (c.orthographic) return;
     m.emplace_back("petzval:fov_deg", c.yfov_deg);
     m.emplace_back("petzval:focalLength_mm", c.focal_length_mm);

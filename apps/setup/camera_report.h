@@ -10,7 +10,8 @@ namespace petzval {
 
 struct CameraReport {
     std::string name;
-    V3f eye, target;  ///< target: one metre ahead, or what --look-at said
+    V3f eye, target;       ///< target: one metre ahead, or what --look-at said
+    V3f orbit_about{0.f};  ///< point of the vertical axis that it turns, or would turn, about
     bool orthographic = false;
     float yfov_deg = 0, focal_length_mm = 0;
     V2f sensor_mm{0.f};                    ///< as much of it as the picture uses

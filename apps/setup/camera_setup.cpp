@@ -49,28 +49,42 @@ struct UnplacedView {
 
 // Eye and target that frame the scene.
 std::array<V3f, 2> framed(const CameraContext& at, const UnplacedView& view) {
-    const auto aim = frame_scene(at.scene, view.yfov_rad, at.aspect(), view.stand_back_m);
+    const auto aim = frame_scene(at.scene, view.yfov_rad, at.aspect(), view.stand_back_m,
+                                 at.model.asked.orbit_deg.has_value());
     if (!aim) throw at.unfit("is too large or too far away to be framed; give --look-at");
     at.notice(fmt::format("no camera in the file: --look-at {},{}{}", with_commas((*aim)[0]),
                           with_commas((*aim)[1]), view.fov_option));
     return *aim;
 }
 
-// Pose of the camera, also noted in the report.
-M44f stand(const CameraContext& at, const UnplacedView& view, CameraReport& report) {
+// A pose turned about the vertical axis that is asked for, or through a point; noted in the report.
+M44f turned(const CameraContext& at, M44f to_world, const V3f& about, CameraReport& report) {
     const CameraRequest& asked = at.model.asked;
-    M44f to_world;
-    if (const GltfCamera* from = at.model.from) {
-        to_world = from->to_world;
-        report.name = from->name;
-        report.target = position(to_world) + forward(to_world);
-    } else {
-        const auto aim = asked.look_at ? *asked.look_at : framed(at, view);
-        to_world = look_at(aim[0], aim[1]);
-        report.target = aim[1];
+    report.orbit_about = asked.orbit_about.value_or(about);
+    if (asked.orbit_deg) {
+        M44f there, turn, back;
+        there.setTranslation(-report.orbit_about);
+        turn.rotate(V3f(0, *asked.orbit_deg * kDegree, 0));
+        back.setTranslation(report.orbit_about);
+        to_world = to_world * there * turn * back;
+        report.target = report.target * (there * turn * back);
     }
     report.eye = position(to_world);
     return to_world;
+}
+
+// Pose of the camera, also noted in the report.
+M44f stand(const CameraContext& at, const UnplacedView& view, CameraReport& report) {
+    const CameraRequest& asked = at.model.asked;
+    const V3f middle = at.scene.bounds.isEmpty() ? V3f(0.f) : at.scene.bounds.center();
+    if (const GltfCamera* from = at.model.from) {
+        report.name = from->name;
+        report.target = position(from->to_world) + forward(from->to_world);
+        return turned(at, from->to_world, middle, report);
+    }
+    const auto aim = asked.look_at ? *asked.look_at : framed(at, view);
+    report.target = aim[1];
+    return turned(at, look_at(aim[0], aim[1]), asked.look_at ? aim[1] : middle, report);
 }
 
 using Finder = std::function<std::unique_ptr<Camera>(std::optional<float> focus_m)>;
@@ -116,15 +130,16 @@ float find_focus(const CameraContext& at, const M44f& to_world, const Finder& fi
 
 CameraSetup orthographic(const CameraContext& at, const GltfCamera& from) {
     CameraSetup setup;
-    // The picture's aspect wins over the file's; the height stays.
-    setup.camera =
-        std::make_unique<OrthographicCamera>(from.to_world, from.ymag_m * at.aspect(), from.ymag_m);
-    setup.finder =
-        std::make_unique<OrthographicCamera>(from.to_world, from.ymag_m * at.aspect(), from.ymag_m);
-    setup.report.name = from.name;
+    setup.report.asked = at.model.asked;
     setup.report.orthographic = true;
-    setup.report.eye = position(from.to_world);
-    setup.report.target = setup.report.eye + forward(from.to_world);
+    const M44f to_world = stand(at, {}, setup.report);
+    // The picture's aspect wins over the file's; the height stays.
+    const auto camera = [&] {
+        return std::make_unique<OrthographicCamera>(to_world, from.ymag_m * at.aspect(),
+                                                    from.ymag_m);
+    };
+    setup.camera = camera();
+    setup.finder = camera();
     return setup;
 }
 

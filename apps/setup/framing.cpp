@@ -144,15 +144,31 @@ class Frustum {
 }  // namespace
 
 std::optional<std::array<V3f, 2>> frame_scene(const Scene& scene, float yfov_rad, float aspect,
-                                              double stand_back_m) {
+                                              double stand_back_m, bool all_around) {
     if (scene.bounds.isEmpty()) return std::array{V3f(0, 0, 1), V3f(0, 0, 0)};
     const V3d low(scene.bounds.min), high(scene.bounds.max), centre = low / 2 + high / 2;
     const ViewAxes axes(view_direction(scene, high - low));
     const double slope = std::tan(std::min(double(yfov_rad) / 2, kWidestHalf_rad)) * (1 - kMargin);
     Frustum frustum({slope * double(aspect), slope});
-    each_corner(
-        scene, [&](const V3d& p) { return !frustum.holds(axes.to_view(p - centre)); },
-        [&](const V3d& p) { frustum.add(axes.to_view(p - centre)); });
+    const auto each_turned = [&](const V3d& p, const auto& visit) {
+        const V3d from(p - centre);
+        if (!all_around) return visit(axes.to_view(from));
+        // The circle on which a point turns, by a polygon around it.
+        constexpr int kSides = 32;
+        const double radius = std::hypot(from.x, from.z) / std::cos(M_PI / kSides);
+        for (int i = 0; i < kSides; ++i) {
+            const double angle = 2 * M_PI * i / kSides;
+            visit(axes.to_view({radius * std::cos(angle), from.y, radius * std::sin(angle)}));
+        }
+    };
+    const auto matters = [&](const V3d& p) {
+        bool any = false;
+        each_turned(p, [&](const V3d& v) { any = any || !frustum.holds(v); });
+        return any;
+    };
+    each_corner(scene, matters, [&](const V3d& p) {
+        if (!all_around || matters(p)) each_turned(p, [&](const V3d& v) { frustum.add(v); });
+    });
     V3d eye = frustum.eye();
     eye.z += stand_back_m;
     const std::array placed{V3f(centre + axes.to_world(eye)),

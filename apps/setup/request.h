@@ -58,7 +58,12 @@ inline constexpr float kSmallestFov_deg = 0.001f, kLargestFov_deg = 179.f;
 struct CameraRequest {
     std::optional<std::string> name;            ///< of the file's cameras, or its index
     std::optional<std::array<V3f, 2>> look_at;  ///< eye and target
-    std::optional<float> fov_deg;               ///< vertical
+    /// Turn of the camera about a vertical axis, counter-clockwise from above. Given, a camera that
+    /// frames the scene stands where it sees all of it from all around.
+    std::optional<float> orbit_deg;
+    std::optional<V3f>
+        orbit_about;               ///< point of the axis; absent: the target, or the scene's middle
+    std::optional<float> fov_deg;  ///< vertical
     /// "pinhole", "thin", "singlet:GLASS[,BENDING]", "singlet:GLASS,R1_MM,R2_MM", the name of a
     /// lens in assets/lenses, or a file.
     std::optional<std::string> lens;

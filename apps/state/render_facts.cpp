@@ -194,9 +194,9 @@ std::string light_hash(const RenderFacts& facts, const FilmShape& shape, SampleR
     return hash.text();
 }
 
-std::string display_hash(const RenderFacts& facts) {
+std::string display_hash(const RenderFacts::Texts& display) {
     Hash hash;
-    for (const auto& [name, value] : facts.display) {
+    for (const auto& [name, value] : display) {
         hash.add(name);
         hash.add(value);
     }

@@ -48,9 +48,13 @@ struct RenderFacts {
                                                     const FilmShape& shape_b,
                                                     const std::string& name_b);
 
-/// Hashes in a picture's metadata, as 16 digits: of the light, that is of all facts but the
-/// display's, the shape and the samples; and of the display's facts.
+/// Names of the hashes in a picture's metadata.
+inline constexpr const char* kLightHash = "petzval:lightHash";
+inline constexpr const char* kDisplayHash = "petzval:displayHash";
+
+/// Hashes as 16 digits: of the light, that is of all facts but the display's, the shape and the
+/// samples; and of the display's facts.
 [[nodiscard]] std::string light_hash(const RenderFacts&, const FilmShape&, SampleRange);
-[[nodiscard]] std::string display_hash(const RenderFacts&);
+[[nodiscard]] std::string display_hash(const RenderFacts::Texts& display);
 
 }  // namespace petzval

@@ -252,7 +252,8 @@ TEST_F(Sequences, WhatMakesNoSequenceIsRefused) {
             {{"--clamp", "0", "-o", path("s.png")}, "--clamp"},
             {{"--preview", path("p.exr"), "-o", path("s.png")}, "--preview"}});
     expect_refused(3, {{{"--log", path("none/log.txt"), "-o", path("s.png")}, "there is no folder"},
-                       {{"render", scene_, "--turntable", "2", "-o", path("s_#.png"), "--sheet", path("none/s.png")},
+                       {{"render", scene_, "--turntable", "2", "-o", path("s_#.png"), "--sheet",
+                         path("none/s.png")},
                         "there is no folder"}});
 }
 

@@ -88,7 +88,8 @@ TEST_F(CliSpelling, MisspeltCommandsAreFound) {
     EXPECT_EQ(refused({"lens", "shwo"}), "\"shwo\" is no command; did you mean show?");
     EXPECT_EQ(refused({"image", "blur"}),
               "\"blur\" is no command; there are petzval image diff, view, spectrum, sheet, crop");
-    EXPECT_EQ(refused({}), "petzval needs a command: render, resume, merge, plan, chart, info, image, lens");
+    EXPECT_EQ(refused({}),
+              "petzval needs a command: render, resume, merge, plan, chart, info, image, lens");
     EXPECT_EQ(refused({"image"}),
               "petzval image needs a command: diff, view, spectrum, sheet, crop");
     EXPECT_EQ(refused({"studio.glb"}),

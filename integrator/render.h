@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "camera/camera.h"
@@ -213,6 +214,19 @@ void render_samples(const Tracer& tracer, const Camera& camera, const RenderJob&
     return std::min(grown, wanted - done);
 }
 
+/// Number of samples of the next pass within the job's time limit: 0 where it is over. before: what
+/// was there when rendering began, elapsed_s ago.
+[[nodiscard]] inline uint32_t pass_within(const RenderJob& job, uint32_t done, uint32_t before,
+                                          uint32_t wanted, double elapsed_s) {
+    const uint32_t pass = pass_size(done, wanted, job.replicates);
+    if (!job.time_limit_s || done == 0) return pass;
+    const double left_s = *job.time_limit_s - elapsed_s;
+    if (done == before) return left_s > 0 ? pass : 0;
+    const double fits = left_s / (elapsed_s / (done - before));
+    if (!(fits >= 1)) return 0;
+    return fits < pass ? static_cast<uint32_t>(fits) : pass;  // fits may be beyond uint32_t
+}
+
 /// Number of samples that every pixel of a film has taken.
 [[nodiscard]] inline uint32_t least_taken(const Film& film) {
     uint32_t least = std::numeric_limits<uint32_t>::max();
@@ -242,14 +256,11 @@ RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob&
 
     const uint32_t wanted = job.end_sample - job.first_sample, before = least_taken(film);
     uint32_t done = before;
+    std::optional<uint32_t> pass;  // that is under way: once begun, every pixel gets it
     while (done < wanted && !monitor.stop) {
-        uint32_t pass = pass_size(done, wanted, job.replicates);
-        if (job.time_limit_s && done > 0) {
-            const double elapsed_s = job.wall_s() - start_s, left_s = *job.time_limit_s - elapsed_s;
-            const double fits = done > before ? left_s / (elapsed_s / (done - before)) : left_s;
-            if (done > before ? fits < 1 : left_s <= 0) break;
-            if (done > before && fits < pass)
-                pass = static_cast<uint32_t>(fits);  // fits may be beyond uint32_t
+        if (!pass) {
+            pass = pass_within(job, done, before, wanted, job.wall_s() - start_s);
+            if (*pass == 0) break;
         }
         executor.run(static_cast<int>(tiles.size()), [&](int task, int worker) {
             if (monitor.stop || monitor.pause) return;
@@ -259,7 +270,7 @@ RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob&
             SampleBatch<Tracer> batch(tracer, camera, job, film.full_size(), &film, stats);
             for (int y = tile.y0; y < tile.y1; ++y)
                 for (int x = tile.x0; x < tile.x1; ++x)
-                    for (uint32_t i = film.taken_count(x, y); i < done + pass; ++i)
+                    for (uint32_t i = film.taken_count(x, y); i < done + *pass; ++i)
                         batch.add({x, y, job.first_sample + i});
             batch.render();
             stats.tiles += stats.samples > samples_before;
@@ -269,7 +280,8 @@ RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob&
         if (monitor.pause.exchange(false)) {
             if (job.at_pause && !monitor.stop) job.at_pause(total());
         } else if (!monitor.stop) {
-            done += pass;
+            done += *pass;
+            pass.reset();
         }
     }
     RenderResult result;

@@ -25,13 +25,12 @@ void add_place_options(CLI::App& app, CameraOptions& o) {
     };
     add("--camera", r.name, "camera of the file, by name or index");
     add("--look-at", o.look_at, "ex,ey,ez,tx,ty,tz: eye and target in metres");
-    auto* orbit = add("--orbit", r.orbit_deg,
-                      "turn the camera about the scene: degrees, counter-clockwise from above")
-                      ->transform(number_between(-kMost, kMost, kDegrees));
+    add("--orbit", r.orbit_deg,
+        "turn the camera about the scene: degrees, counter-clockwise from above")
+        ->transform(number_between(-kMost, kMost, kDegrees));
     add("--orbit-about", o.orbit_about,
         "x,y,z: about the vertical axis there (default: through the target of --look-at, else "
-        "the middle of the scene)")
-        ->needs(orbit);
+        "the middle of the scene)");
     add("--fov", r.fov_deg, "vertical angle of view in degrees")
         ->transform(number_between(kSmallestFov_deg, kLargestFov_deg, kDegrees));
     add("--sensor", o.sensor,

@@ -30,6 +30,16 @@ void write_all(int descriptor, std::string_view text) {
     }
 }
 
+/// Whether a line begins with a time, as "2026-11-24T13:25:35Z ".
+bool is_log_line(const std::string& line) {
+    constexpr std::string_view kPattern = "0000-00-00T00:00:00Z ";
+    if (line.size() < kPattern.size()) return false;
+    for (size_t i = 0; i < kPattern.size(); ++i)
+        if (kPattern[i] == '0' ? line[i] < '0' || line[i] > '9' : line[i] != kPattern[i])
+            return false;
+    return true;
+}
+
 }  // namespace
 
 ConsoleStyle console_style_of(const std::vector<std::string>& words) {
@@ -125,6 +135,11 @@ void Console::event(const char* name, const Json& fields) {
 
 void Console::log_to(const std::filesystem::path& file) {
     check_writable(file);
+    std::ifstream before(file);
+    if (std::string line; std::getline(before, line) && !is_log_line(line))
+        throw ArgumentError(file.string(), "",
+                            "is no log of this program's, and messages would be added to it; name "
+                            "another file");
     const std::lock_guard lock(mutex_);
     log_.open(file, std::ios::app);
     if (!log_) throw OutputError(file.string(), "", "cannot be written");

@@ -61,7 +61,7 @@ class Console {
     /// Prints an event, as JSON.
     void event(const char* name, const Json& fields);
     /// From now on adds what is said to a file, with the time (UTC) of each line. Throws
-    /// OutputError where it cannot be written.
+    /// OutputError where it cannot be written, and ArgumentError where it holds anything but a log.
     void log_to(const std::filesystem::path&);
     /// Prints the last event.
     void end(int exit_code);

@@ -19,8 +19,7 @@ void add_keep_options(CLI::App& app, KeepOptions& o) {
     };
     add("--checkpoint", o.checkpoint,
         "write what there is to NAME.state this often, for petzval resume: 10m; off; auto "
-        "(default; "
-        "every 10m, where that file is below 256 MB)");
+        "(default: every 10m, where that file is below 256 MB or stays anyway)");
     add("--preview", o.preview, "picture, .png or .jpg, that is written anew every few seconds")
         ->check(complaint_about_display_name);
     add("--log", o.log, "file to which all messages are added, with the time");
@@ -34,16 +33,22 @@ bool is_state_name(const fs::path& path) {
     return lower(path.extension().string()) == ".state";
 }
 
-void resolve(KeepOptions& o, std::vector<fs::path>& outputs, bool wanted) {
+std::vector<fs::path> take_states(std::vector<fs::path>& outputs) {
     const auto states = std::stable_partition(
         outputs.begin(), outputs.end(), [](const fs::path& path) { return !is_state_name(path); });
-    if (outputs.end() - states > 1)
+    std::vector<fs::path> taken(states, outputs.end());
+    outputs.erase(states, outputs.end());
+    return taken;
+}
+
+void resolve(KeepOptions& o, std::vector<fs::path>& outputs, bool wanted) {
+    const std::vector<fs::path> states = take_states(outputs);
+    if (states.size() > 1)
         throw CLI::ValidationError("-o", "names two states, and a render has one");
     const bool off = lower(o.checkpoint) == "off";
-    if (states != outputs.end()) {
-        o.state = *states;
+    if (!states.empty()) {
+        o.state = states.front();
         wanted = true;
-        outputs.erase(states);
     } else if (wanted || !off) {
         const auto file = std::find_if_not(outputs.begin(), outputs.end(),
                                            [](const fs::path& path) { return is_stream(path); });
@@ -52,15 +57,19 @@ void resolve(KeepOptions& o, std::vector<fs::path>& outputs, bool wanted) {
             throw CLI::ValidationError("-o", "needs a file for the state: -o NAME.state");
     }
     o.state_is_wanted = wanted;
-    if (!off && lower(o.checkpoint) != "auto")
-        o.checkpoint_s = parse_duration_s("--checkpoint", o.checkpoint);
+    if (off || lower(o.checkpoint) == "auto") return;
+    o.checkpoint_s = parse_duration_s("--checkpoint", o.checkpoint);
+    if (!o.state)
+        throw CLI::ValidationError("--checkpoint", "needs a file to write: -o NAME.state");
 }
 
 std::optional<double> checkpoint_interval_s(const KeepOptions& o, uint64_t state_bytes) {
     constexpr double kUsual_s = 600;
     constexpr uint64_t kMostByItself_bytes = 256'000'000;
-    if (o.checkpoint_s || !o.state) return o.checkpoint_s;
-    const bool by_itself = lower(o.checkpoint) == "auto" && state_bytes < kMostByItself_bytes;
+    if (!o.state) return std::nullopt;
+    if (o.checkpoint_s) return o.checkpoint_s;
+    const bool by_itself =
+        lower(o.checkpoint) == "auto" && (o.state_is_wanted || state_bytes < kMostByItself_bytes);
     return by_itself ? std::optional(kUsual_s) : std::nullopt;
 }
 

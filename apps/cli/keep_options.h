@@ -35,8 +35,12 @@ void add_keep_options(CLI::App&, KeepOptions&);
 void resolve(KeepOptions&, std::vector<std::filesystem::path>& outputs, bool wanted);
 
 /// Time between two checkpoints of a state of that size: as asked, or ten minutes for a state that
-/// is small enough; nothing where there is none.
+/// stays anyway or is small enough; nothing where there is none.
 [[nodiscard]] std::optional<double> checkpoint_interval_s(const KeepOptions&, uint64_t state_bytes);
+
+/// Takes the states out of the files to write.
+[[nodiscard]] std::vector<std::filesystem::path> take_states(
+    std::vector<std::filesystem::path>& outputs);
 
 /// Whether a file's name is that of a state.
 [[nodiscard]] bool is_state_name(const std::filesystem::path&);

@@ -91,9 +91,15 @@ void Progress::show_percent(double fraction) {
     console_.line(fmt::format("PROGRESS {}%", percent));
 }
 
-void Progress::set_before(uint64_t pixel_samples) {
+void Progress::set_before(uint64_t pixel_samples, double spent_s) {
     const std::lock_guard lock(mutex_);
     goal_.before = pixel_samples;
+    goal_.spent_s = spent_s;
+}
+
+void Progress::skip() {
+    const std::lock_guard lock(mutex_);
+    if (style_ == ProgressStyle::Percent) show_percent(1);
 }
 
 PhaseTimes Progress::times() const {

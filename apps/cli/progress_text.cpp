@@ -43,6 +43,12 @@ std::string cut(const std::string& text, int columns) {
     return text.substr(0, static_cast<size_t>(std::max(columns, 0)));
 }
 
+// What was there before: as much of the whole as its samples are, or as the time that it took.
+double share_at_start(const ProgressGoal& goal) {
+    if (goal.total) return static_cast<double>(goal.before) / static_cast<double>(*goal.total);
+    return goal.time_limit_s ? std::min(goal.spent_s / *goal.time_limit_s, 1.) : 0.;
+}
+
 }  // namespace
 
 ProgressFigures figures_under_way(const ProgressGoal& goal, uint64_t pixel_samples,
@@ -57,17 +63,14 @@ ProgressFigures figures_under_way(const ProgressGoal& goal, uint64_t pixel_sampl
     };
     if (any && goal.total) out.left_s = left_to(*goal.total);
     if (goal.time_limit_s) {
-        const double to_limit_s = std::max(*goal.time_limit_s - elapsed_s, 0.);
+        const double to_limit_s = std::max(*goal.time_limit_s - goal.spent_s - elapsed_s, 0.);
         if (any)
             out.left_s = std::max(std::min(out.left_s.value_or(to_limit_s), to_limit_s),
                                   left_to(goal.first_pass));
         else if (to_limit_s > 0)
             out.left_s = to_limit_s;
     }
-    // What was there before is as much of the whole as its samples are.
-    const double at_start = goal.total && *goal.total > 0 ? static_cast<double>(goal.before) /
-                                                                static_cast<double>(*goal.total)
-                                                          : 0.;
+    const double at_start = share_at_start(goal);
     out.fraction = std::min(at_start, kNearlyDone);
     if (out.left_s && elapsed_s + *out.left_s > 0)
         out.fraction = std::clamp(at_start + (1 - at_start) * elapsed_s / (elapsed_s + *out.left_s),

@@ -16,6 +16,7 @@ struct ProgressGoal {
     uint64_t first_pass = 1;        ///< pixel samples that are taken whatever the time limit
     std::optional<uint64_t> total;  ///< pixel samples; absent where only time bounds it
     std::optional<double> time_limit_s;
+    double spent_s = 0;                 ///< of the time limit, before it began
     uint64_t before = 0;                ///< pixel samples that were there when it began
     std::pair<int, int> part_of{0, 1};  ///< of a sequence: its number from 0, of so many
 };

@@ -240,7 +240,9 @@ RenderFrame resolve(RenderOptions& o) {
     RenderFrame frame{{0, 0, s.size.x, s.size.y}, {}, parse_share("--tolerance", o.tolerance), {}};
     if (!o.crop.empty()) frame.crop = parse_crop("--crop", o.crop, s.size);
     if (!o.aovs.empty()) frame.aovs = parse_aovs("--aov", o.aovs);
-    if (!o.outputs.empty()) resolve(o.keep, o.outputs, !o.samples.empty());
+    if (o.sequence.sheet && !o.sequence.several() && !o.sequence.number)
+        throw CLI::ValidationError("--sheet", "needs --frames, --turntable or --sweep");
+    if (!o.outputs.empty() || o.sequence.sheet) resolve(o.keep, o.outputs, !o.samples.empty());
     frame.remarks = resolve_outputs(o);
     require_memory(frame, s);
     return frame;

@@ -69,7 +69,7 @@ void add_sequence_options(CLI::App& app, SequenceOptions& o) {
                        "their number")
                        ->excludes(app.get_option("--at"));
     auto* turntable =
-        add("--turntable", o.turntable, "so many views from all around, each turned by --orbit")
+        add("--turntable", o.turntable, "this number of views, evenly spaced around the scene")
             ->transform(whole_number_between(1, kMostViews))
             ->excludes(frames)
             ->excludes(app.get_option("--orbit"));

@@ -51,12 +51,8 @@ int merge(const MergeOptions& o, Session& session) {
     const MergedState merged = merge_states(o.states);
     const Film& film = merged.film;
     check_display(merged.record);
-    std::vector<fs::path> pictures = o.outputs, states;
-    const auto first_state =
-        std::stable_partition(pictures.begin(), pictures.end(),
-                              [](const fs::path& path) { return !is_state_name(path); });
-    states.assign(first_state, pictures.end());
-    pictures.erase(first_state, pictures.end());
+    std::vector<fs::path> pictures = o.outputs;
+    const std::vector<fs::path> states = take_states(pictures);
     std::vector<WriteOutcome> outcomes =
         write_pictures(pictures, merged.record.display, {film, merged.samples, merged.record.facts},
                        false, session.console);
@@ -79,11 +75,7 @@ int merge(const MergeOptions& o, Session& session) {
         const bool told = std::find(pictures.begin(), pictures.end(), one.wanted) != pictures.end();
         if (!one.written() && !told) session.console.error(one.message());
     }
-    if (const auto bad = film.first_bad())
-        session.console.notice(
-            fmt::format("warning: {} samples were not finite and are left out; the first is sample "
-                        "{} of pixel {},{}",
-                        film.bad_count(), bad->index, bad->x, bad->y));
+    tell_bad_samples(film, [&](const std::string& text) { session.console.notice(text); });
     return written ? kSuccess : kOutputFailed;
 }
 

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cinttypes>
+#include <cstdio>
 
 #include "apps/cli/display_options.h"
 #include "apps/setup/develop.h"
@@ -41,6 +43,14 @@ void check_outputs(RenderOptions& o, const Rect& crop) {
     if (o.stats) check_writable(*o.stats);
 }
 
+void tell_bad_samples(const Film& film, const Notice& notice) {
+    if (const auto first = film.first_bad())
+        notice(
+            fmt::format("warning: {} samples were not finite and are left out; the first is "
+                        "sample {} of pixel {},{}",
+                        film.bad_count(), first->index, first->x, first->y));
+}
+
 PictureRows picture_for(const fs::path& path, const FinishedFilm& done) {
     Metadata metadata = done.facts.metadata;
     metadata.emplace_back(kLightHash,
@@ -71,7 +81,7 @@ std::vector<WriteOutcome> write_pictures(const std::vector<fs::path>& outputs,
 }
 
 bool is_up_to_date(const fs::path& path, const RenderFacts& facts, const FilmShape& shape,
-                   SampleRange samples) {
+                   std::optional<SampleRange> samples) {
     std::error_code error;
     if (!fs::is_regular_file(path, error)) return false;
     Metadata found;
@@ -80,15 +90,21 @@ bool is_up_to_date(const fs::path& path, const RenderFacts& facts, const FilmSha
     } catch (const InputError&) {  // no picture, or half of one: it is to be written
         return false;
     }
-    const auto is = [&](const char* name, const std::string& wanted) {
-        return std::any_of(found.begin(), found.end(), [&](const auto& one) {
-            const auto* text = std::get_if<std::string>(&one.second);
-            return one.first == name && text && *text == wanted;
-        });
+    const auto text = [&](const char* name) {
+        for (const auto& [other, value] : found)
+            if (const auto* here = std::get_if<std::string>(&value); here && other == name)
+                return *here;
+        return std::string();
     };
-    return is(kLightHash, light_hash(facts, shape, samples)) &&
+    SampleRange taken;
+    if (samples)
+        taken = *samples;
+    else if (std::sscanf(text(kSamples).c_str(), "%" SCNu32 ":%" SCNu32, &taken.first,
+                         &taken.end) != 2)
+        return false;
+    return text(kLightHash) == light_hash(facts, shape, taken) &&
            (picture_format(path) == PictureFormat::Exr ||
-            is(kDisplayHash, display_hash(facts.display)));
+            text(kDisplayHash) == display_hash(facts.display));
 }
 
 }  // namespace petzval

@@ -9,6 +9,7 @@
 #include "apps/cli/render_options.h"
 #include "apps/state/run_record.h"
 #include "core/film/film.h"
+#include "io/base/notice.h"
 #include "io/base/rescue.h"
 
 namespace petzval {
@@ -30,12 +31,16 @@ struct FinishedFilm {
                                                        const DisplayOptions&, const FinishedFilm&,
                                                        bool stopped, Console&);
 
+/// Tells of samples that were left out of a film.
+void tell_bad_samples(const Film&, const Notice&);
+
 /// Linear picture of a film, with the metadata of its file: PNG and JPEG say how they were made for
 /// a display too.
 [[nodiscard]] PictureRows picture_for(const std::filesystem::path&, const FinishedFilm&);
 
-/// Whether a picture is there already that was made from the same command and inputs.
+/// Whether a picture is there already that was made from the same command and inputs. Without
+/// samples any number of them will do, as where a time limit decides.
 [[nodiscard]] bool is_up_to_date(const std::filesystem::path&, const RenderFacts&, const FilmShape&,
-                                 SampleRange);
+                                 std::optional<SampleRange>);
 
 }  // namespace petzval

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "apps/cli/display_options.h"
+#include "apps/commands/kept_state.h"
 #include "apps/commands/render_files.h"
 #include "apps/plan/plan.h"
 #include "apps/plan/plan_wording.h"
@@ -15,7 +16,6 @@
 #include "apps/setup/spectral_wording.h"
 #include "apps/setup/stats_file.h"
 #include "apps/state/keeper.h"
-#include "apps/state/run_record.h"
 #include "integrator/executor.h"
 #include "integrator/render.h"
 #include "io/base/clock.h"
@@ -33,10 +33,7 @@ class OneRender {
   public:
     OneRender(RenderOptions& o, const std::vector<std::string>& command, const Notice& notice,
               Session& session)
-        : o_(o), notice_(notice), session_(session), frame_(resolve(o)) {
-        record_.command = command;
-        std::error_code error;
-        record_.folder = fs::current_path(error);
+        : o_(o), notice_(notice), session_(session), frame_(resolve(o)), kept_(o.keep, command) {
         check_outputs(o_, frame_.crop);
         shape_ = {o_.scene.size, frame_.crop, frame_.aovs, o_.scene.spectral.bins};
         samples_ = {o_.job.first_sample, o_.job.end_sample};
@@ -46,15 +43,11 @@ class OneRender {
   private:
     void set_up(TbbExecutor&, Progress&, const RenderSetup* like);
     void choose_exposure(TbbExecutor&);
-    void take_up_state();
     [[nodiscard]] bool is_there() const;
     [[nodiscard]] RenderResult render(TbbExecutor&, Progress&);
-    void write_state_now(const fs::path&, const RunFigures& now, SampleRange) const;
     [[nodiscard]] int write_all(const RenderResult&, TbbExecutor&, Progress&, const SequencePlace&);
-    void remove_unfinished() const;
     void show_existing(const SequencePlace&) const;
     void advise_exposure(TbbExecutor&);
-    void tell_bad_samples() const;
     [[nodiscard]] RunReport report_of(const Progress&, std::vector<WriteOutcome>,
                                       bool stopped) const;
     [[nodiscard]] std::vector<std::string> found_words() const;
@@ -67,11 +60,10 @@ class OneRender {
     RenderFrame frame_;
     FilmShape shape_;
     SampleRange samples_;
-    RunRecord record_;  ///< figures: of the runs before
+    KeptState kept_;
     RenderSetup setup_;
     std::unique_ptr<NextFrame> next_;
     std::optional<Film> film_;
-    bool goes_on_ = false;  ///< from the samples of a state
     double render_start_s_ = 0, render_start_cpu_s_ = 0;
 };
 
@@ -112,50 +104,15 @@ void OneRender::choose_exposure(TbbExecutor& executor) {
     setup_.from.exposure_is_auto = o_.auto_exposure;
 }
 
-// Takes up the samples of a state of this very render, where that is asked for.
-void OneRender::take_up_state() {
-    const bool goes_on = o_.keep.resumed_from.has_value();
-    const auto& file = goes_on ? o_.keep.resumed_from : o_.keep.state;
-    std::error_code error;
-    if (!file || !fs::exists(*file, error)) return;
-    if (!goes_on && !o_.keep.skip_existing) {
-        if (!o_.keep.state_is_wanted)
-            notice_(
-                fmt::format("warning: {0} is there from a render before, and will be replaced; "
-                            "petzval resume {0} would go on with that one",
-                            file->string()));
-        return;
-    }
-    try {
-        StateReader reader(*file);
-        const StateHeader& header = reader.header();
-        const RunRecord before = record_in(header, *file);
-        const auto differs = difference(before.facts, header.shape, "the state", record_.facts,
-                                        shape_, "what it would be now");
-        if (differs || header.samples != samples_ || header.shape.crop != shape_.crop)
-            throw InputError(file->string(), "",
-                             differs ? "does not go on: something has changed: " + *differs
-                                     : "is of other samples or another crop");
-        Film film = shape_.empty_film();
-        reader.add_to(film);
-        film_ = std::move(film);
-        goes_on_ = true;
-        record_.figures = before.figures;
-        notice_(fmt::format("goes on with {}, which has {} of the samples", file->string(),
-                            share_text(header)));
-    } catch (const InputError& refused) {
-        if (goes_on) throw;
-        notice_(fmt::format("warning: {}; it will be replaced", refused.what()));
-    }
-}
-
 bool OneRender::is_there() const {
     if (!o_.keep.skip_existing) return false;
     if (o_.outputs.empty() && !o_.keep.state) return false;
     if (o_.keep.state_is_wanted && !(film_ && least_taken(*film_) == samples_.count()))
         return false;
+    std::optional<SampleRange> wanted = samples_;
+    if (o_.job.time_limit_s) wanted.reset();
     return std::all_of(o_.outputs.begin(), o_.outputs.end(), [&](const fs::path& output) {
-        return is_up_to_date(output, record_.facts, shape_, samples_);
+        return is_up_to_date(output, kept_.record().facts, shape_, wanted);
     });
 }
 
@@ -170,13 +127,6 @@ RunFigures OneRender::figures_now(const PathStats& stats, int workers) const {
             peak_memory_mib()};
 }
 
-void OneRender::write_state_now(const fs::path& to, const RunFigures& now,
-                                SampleRange samples) const {
-    RunRecord record = record_;
-    record.figures += now;
-    write_state(to, header_of(record, shape_, samples), *film_);
-}
-
 RenderResult OneRender::render(TbbExecutor& executor, Progress& progress) {
     const PreparedScene& prepared = setup_.prepared;
     const PathTracer tracer(*prepared.scene, *prepared.bvh, *prepared.lights, o_.path);
@@ -185,11 +135,10 @@ RenderResult OneRender::render(TbbExecutor& executor, Progress& progress) {
     render_start_s_ = steady_s();
     render_start_cpu_s_ = process_cpu_s();
     RenderJob job = o_.job;
-    if (job.time_limit_s) *job.time_limit_s -= record_.figures.render_wall_s;
+    if (job.time_limit_s) *job.time_limit_s -= kept_.record().figures.render_wall_s;
     Keeper keeper({checkpoint_interval_s(o_.keep, shape_.bytes()),
                    [&](const PathStats& stats) {
-                       write_state_now(*o_.keep.state, figures_now(stats, executor.threads()),
-                                       samples_);
+                       kept_.write(*film_, figures_now(stats, executor.threads()), samples_);
                    },
                    o_.keep.preview, o_.display, notice_},
                   monitor, *film_);
@@ -200,14 +149,6 @@ RenderResult OneRender::render(TbbExecutor& executor, Progress& progress) {
     keeper.finish();
     progress.end_rendering(!result.stopped);
     return result;
-}
-
-void OneRender::tell_bad_samples() const {
-    if (const auto first = film_->first_bad())
-        notice_(
-            fmt::format("warning: {} samples were not finite and are left out; the first is "
-                        "sample {} of pixel {},{}",
-                        film_->bad_count(), first->index, first->x, first->y));
 }
 
 // Tells what to type where PNG and JPEG show nothing.
@@ -249,28 +190,28 @@ int OneRender::write_all(const RenderResult& result, TbbExecutor& executor, Prog
     if (state && (stopped || o_.keep.state_is_wanted)) {
         const SampleRange wanted = stopped ? samples_ : taken;
         outcomes.push_back(write_or_rescue(
-            *state, [&](const fs::path& to) { write_state_now(to, figures, wanted); }));
+            *state, [&](const fs::path& to) { kept_.write(to, *film_, figures, wanted); }));
         if (!outcomes.back().written())
             session_.console.error(outcomes.back().message());
         else if (stopped)
             notice_(fmt::format("stopped: petzval resume {} goes on", state->string()));
     }
-    const FinishedFilm done{*film_, taken, record_.facts};
+    const FinishedFilm done{*film_, taken, kept_.record().facts};
     for (WriteOutcome& one :
          write_pictures(o_.outputs, o_.display, done, stopped, session_.console))
         outcomes.push_back(std::move(one));
     bool written = std::all_of(outcomes.begin(), outcomes.end(),
                                [](const WriteOutcome& one) { return one.written(); });
-    // Only where the pictures are there: else the state is all that is left.
-    if (!stopped && written) remove_unfinished();
+    // Else the state is all that is left.
+    if (!stopped && written) kept_.remove_unfinished(o_.outputs);
     if (!stopped && place.show)
         place.show(
-            to_display(develop(*film_, taken, record_.facts.metadata), o_.display.exposure_ev,
-                       o_.display.view, AlphaUse::Keep, o_.display.config),
+            to_display(develop(*film_, taken, kept_.record().facts.metadata),
+                       o_.display.exposure_ev, o_.display.view, AlphaUse::Keep, o_.display.config),
             o_.display);
     if (!stopped) advise_exposure(executor);
     if (o_.stats) {
-        figures += record_.figures;
+        figures += kept_.record().figures;
         const StatsPicture picture{o_.scene.size.x, o_.scene.size.y, taken, setup_.from.exposure_ev,
                                    film_->bad_count()};
         const RunReport report = report_of(progress, std::move(outcomes), stopped);
@@ -281,14 +222,6 @@ int OneRender::write_all(const RenderResult& result, TbbExecutor& executor, Prog
     }
     if (!written) return kOutputFailed;
     return stopped ? kStopped : kSuccess;
-}
-
-// Removes what runs before left of a render that is complete now.
-void OneRender::remove_unfinished() const {
-    std::error_code error;
-    if (o_.keep.state && !o_.keep.state_is_wanted) fs::remove(*o_.keep.state, error);
-    if (!goes_on_) return;
-    for (const fs::path& output : o_.outputs) fs::remove(partial_name(output), error);
 }
 
 // Shows a picture that is there, as a display or as light.
@@ -337,27 +270,26 @@ int OneRender::run(SequencePlace& place) {
     if (std::ranges::find(frame_.aovs, Aov::Velocity) != frame_.aovs.end()) {
         next_ = set_up_velocity(setup_, o_.reading.time.fps);
         o_.job.velocity = next_->velocity.get();
+        setup_.from.metadata.emplace_back("petzval:fps", fmt::format("{}", o_.reading.time.fps));
     }
-    record_.facts = facts_of(setup_, o_.job, o_.path, o_.display, input_files(o_.display));
-    record_.display = o_.display;
-    if (auto& config = record_.display.config; !config.empty()) config = fs::absolute(config);
+    kept_.set(shape_, samples_,
+              facts_of(setup_, o_.job, o_.path, o_.display, input_files(o_.display)), o_.display);
     place.found = found_words();
-    take_up_state();
+    if (session_.interrupt.monitor().stop) return kStopped;  // nothing of it is there yet
+    film_ = kept_.take_up(notice_);
     int code = kSuccess;
     if (is_there()) {
         for (const fs::path& output : o_.outputs)
             notice_(fmt::format("{} is there already", output.string()));
+        progress.skip();
         if (place.show && !o_.outputs.empty()) show_existing(place);
     } else {
         if (!film_) film_ = shape_.empty_film();
-        uint64_t before = 0;
-        for (int y = frame_.crop.y0; y < frame_.crop.y1; ++y)
-            for (int x = frame_.crop.x0; x < frame_.crop.x1; ++x)
-                before += film_->taken_count(x, y);
+        const uint64_t before = film_->taken_count();
         session_.interrupt.monitor().pixel_samples_done = before;
-        progress.set_before(before);
+        progress.set_before(before, kept_.record().figures.render_wall_s);
         const RenderResult result = render(executor, progress);
-        tell_bad_samples();
+        tell_bad_samples(*film_, notice_);
         code = write_all(result, executor, progress, place);
     }
     next_.reset();

@@ -21,7 +21,7 @@ struct SequencePlace {
     /// Setup of the picture before, from which this one takes what it has in common; afterwards its
     /// own. nullptr: it is not kept.
     std::optional<RenderSetup>* before = nullptr;
-    /// Words that fix what the render found by itself: view, focus, exposure.
+    /// Options that make other pictures use what this one found: view, focus, exposure.
     std::vector<std::string> found;
     /// Gets the picture for a display when it is finished, or was there already.
     std::function<void(const PictureRows&, const DisplayOptions&)> show;

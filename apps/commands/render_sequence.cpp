@@ -49,7 +49,10 @@ class Sequence {
         if (!o.sequence.frames.empty()) reuse_ = std::make_shared<FrameReuse>();
         // What is wrong with one ends all at once. Frames differ in a number only.
         const size_t checked = o.sequence.frames.empty() ? items_.size() : 1;
-        for (size_t i = 0; i < checked; ++i) static_cast<void>(parse_render(words_of(items_[i])));
+        for (size_t i = 0; i < checked; ++i) {
+            const ParsedRender parsed = parse_render(words_of(items_[i]));
+            static_cast<void>(resolve(*parsed.options));
+        }
         if (!o.sequence.sheet) return;
         check_sheet(*o.sequence.sheet, {});
         sheet_.emplace(items_.size());
@@ -141,7 +144,7 @@ int Sequence::run() {
     if (!failed.empty() && items_.size() > 1)
         session_.console.error(fmt::format("{} of {} pictures failed: {}", failed.size(),
                                            items_.size(), fmt::join(failed, ", ")));
-    if (sheet_ && failed.size() < items_.size())
+    if (sheet_ && code != kStopped && failed.size() < items_.size())  // else one may be there
         if (const int written = write_sheet(); code == kSuccess) code = written;
     return code;
 }

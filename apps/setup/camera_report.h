@@ -12,7 +12,9 @@ struct CameraReport {
     std::string name;
     V3f eye, target;       ///< target: one metre ahead, or what --look-at said
     V3f orbit_about{0.f};  ///< point of the vertical axis that it turns, or would turn, about
+    M44f to_world;
     bool orthographic = false;
+    float ymag_m = 0;  ///< half height of an orthographic view
     float yfov_deg = 0, focal_length_mm = 0;
     V2f sensor_mm{0.f};                    ///< as much of it as the picture uses
     float lens_radius_m = 0, focus_m = 0;  ///< 0: a pinhole

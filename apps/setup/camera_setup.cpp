@@ -70,6 +70,7 @@ M44f turned(const CameraContext& at, M44f to_world, const V3f& about, CameraRepo
         report.target = report.target * (there * turn * back);
     }
     report.eye = position(to_world);
+    report.to_world = to_world;
     return to_world;
 }
 
@@ -132,6 +133,7 @@ CameraSetup orthographic(const CameraContext& at, const GltfCamera& from) {
     CameraSetup setup;
     setup.report.asked = at.model.asked;
     setup.report.orthographic = true;
+    setup.report.ymag_m = from.ymag_m;
     const M44f to_world = stand(at, {}, setup.report);
     // The picture's aspect wins over the file's; the height stays.
     const auto camera = [&] {

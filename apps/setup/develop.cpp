@@ -136,8 +136,7 @@ PictureRows develop(const Film& film, SampleRange samples, const Metadata& of_re
                          .full_height = film.full_size().y,
                          .channels = channels_of(film),
                          .metadata = of_render};
-    layout.metadata.emplace_back("petzval:samples",
-                                 fmt::format("{}:{}", samples.first, samples.end));
+    layout.metadata.emplace_back(kSamples, fmt::format("{}:{}", samples.first, samples.end));
     if (film.spectral()) describe_spectrum(film, samples.first, layout.metadata);
     return {std::move(layout), [&film, crop, first = samples.first](int y, float* row) {
                 for (int x = crop.x0; x < crop.x1; ++x)

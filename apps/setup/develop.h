@@ -16,6 +16,9 @@ namespace petzval {
 /// Metadata name of an exposure that was found, not asked for: of PNG and JPEG alone.
 inline constexpr const char* kFoundExposure = "petzval:exposure_ev";
 
+/// Metadata name of the samples that a picture has, as "0:64".
+inline constexpr const char* kSamples = "petzval:samples";
+
 /// Metadata that say what the pixels of a render follow from: the same for all of its samples and
 /// crops.
 [[nodiscard]] Metadata describe_render(const RenderSetup&, const RenderJob&, const PathOptions&);

@@ -61,8 +61,8 @@ struct CameraRequest {
     /// Turn of the camera about a vertical axis, counter-clockwise from above. Given, a camera that
     /// frames the scene stands where it sees all of it from all around.
     std::optional<float> orbit_deg;
-    std::optional<V3f>
-        orbit_about;               ///< point of the axis; absent: the target, or the scene's middle
+    /// Point of that axis; absent: the target, or the middle of the scene.
+    std::optional<V3f> orbit_about;
     std::optional<float> fov_deg;  ///< vertical
     /// "pinhole", "thin", "singlet:GLASS[,BENDING]", "singlet:GLASS,R1_MM,R2_MM", the name of a
     /// lens in assets/lenses, or a file.

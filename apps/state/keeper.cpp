@@ -59,7 +59,7 @@ void Keeper::finish() {
     if (!thread_.joinable()) return;
     thread_.request_stop();
     thread_.join();
-    if (plan_.preview) write_preview(snapshot(film_));
+    if (plan_.preview) attempt([&] { write_preview(snapshot(film_)); }, preview_told_);
 }
 
 void Keeper::at_pause(const PathStats& stats) {
@@ -70,9 +70,9 @@ void Keeper::at_pause(const PathStats& stats) {
         checkpoint = now_s >= checkpoint_due_s_;
         preview = now_s >= preview_due_s_;
     }
-    if (checkpoint) attempt([&] { plan_.write_checkpoint(stats); });
+    if (checkpoint) attempt([&] { plan_.write_checkpoint(stats); }, checkpoint_told_);
     std::optional<Picture> now;
-    if (preview) now = snapshot(film_);
+    if (preview) attempt([&] { now = snapshot(film_); }, preview_told_);
     const std::lock_guard lock(mutex_);
     if (checkpoint) checkpoint_due_s_ = steady_s() + *plan_.checkpoint_s;
     if (preview) {
@@ -104,16 +104,16 @@ void Keeper::watch(const std::stop_token& stop) {
 }
 
 void Keeper::write_preview(const Picture& picture) {
-    attempt([&] { write_output(*plan_.preview, picture, plan_.display); });
+    attempt([&] { write_output(*plan_.preview, picture, plan_.display); }, preview_told_);
 }
 
-void Keeper::attempt(const std::function<void()>& action) {
+void Keeper::attempt(const std::function<void()>& action, bool& told) {
     try {
         action();
     } catch (const std::exception& error) {
         {
             const std::lock_guard lock(mutex_);
-            if (std::exchange(told_, true)) return;
+            if (std::exchange(told, true)) return;
         }
         plan_.notice(fmt::format("warning: {}; it is tried again", error.what()));
     }

@@ -45,7 +45,7 @@ class Keeper {
   private:
     void watch(const std::stop_token&);
     void write_preview(const Picture&);
-    void attempt(const std::function<void()>& action);
+    void attempt(const std::function<void()>& action, bool& told);
 
     KeeperPlan plan_;
     RenderMonitor& monitor_;
@@ -54,8 +54,9 @@ class Keeper {
     std::condition_variable_any wake_;
     double checkpoint_due_s_, preview_due_s_;  ///< by steady_s(); infinite: never
     std::optional<Picture> to_show_;           ///< snapshot that is to be written
-    bool told_ = false;                        ///< of a file that cannot be written
-    std::jthread thread_;                      // last: it uses the rest
+    /// Whether it was told that one cannot be written.
+    bool checkpoint_told_ = false, preview_told_ = false;
+    std::jthread thread_;  // last: it uses the rest
 };
 
 /// Linear picture of what a film has now: R, G, B, A.

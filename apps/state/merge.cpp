@@ -99,10 +99,9 @@ StateBox covered_box(const std::vector<StateBox>& parts, const std::vector<fs::p
     if (const auto missing = missing_part(whole, boxes))
         throw InputError(
             names.front().string(), "",
-            fmt::format("and the other {} states leave a gap: {} are in none of them; "
-                        "render them by --samples {}:{} and, for a part of the frame, "
-                        "--crop",
-                        names.size() - 1, text_of(*missing), (*missing)[2][0], (*missing)[2][1]));
+            fmt::format("this state and the others leave a gap: {} are in none of them; render "
+                        "them by --samples {}:{} and, for a part of the frame, --crop",
+                        text_of(*missing), (*missing)[2][0], (*missing)[2][1]));
     return {{int(whole[0][0]), int(whole[1][0]), int(whole[0][1]), int(whole[1][1])},
             {uint32_t(whole[2][0]), uint32_t(whole[2][1])}};
 }
@@ -115,18 +114,17 @@ MergedState merge_states(const std::vector<fs::path>& files) {
         const StateReader reader(file);
         const StateHeader& header = reader.header();
         if (!header.is_complete())
-            throw InputError(
-                file.string(), "",
-                fmt::format("is not complete: it has {} of its samples; petzval resume "
-                            "{} renders the rest",
-                            share_text(header), file.string()));
+            throw InputError(file.string(), "",
+                             fmt::format("is not complete: it has {}; petzval resume "
+                                         "{} renders the rest",
+                                         share_text(header), file.string()));
         RunRecord record = record_in(header, file);
         if (!sum) {
             sum = std::move(record);
         } else {
-            if (const auto differs =
-                    difference(sum->facts, headers.front().shape, files.front().string(),
-                               record.facts, header.shape, file.string()))
+            const ComparedRender first{sum->facts, headers.front().shape, files.front().string()},
+                other{record.facts, header.shape, file.string()};
+            if (const auto differs = difference(first, other, Compare::Pictures))
                 throw InputError(file.string(), "", "is a state of another render: " + *differs);
             sum->figures += record.figures;
         }
@@ -139,7 +137,13 @@ MergedState merge_states(const std::vector<fs::path>& files) {
     if (const auto shortage = memory_shortage(double(shape.bytes())))
         throw OutOfMemory("the merged picture " + *shortage);
     Film film = shape.empty_film();
-    for (const fs::path& file : files) StateReader(file).add_to(film);
+    for (size_t i = 0; i < files.size(); ++i) {
+        StateReader reader(files[i]);
+        if (reader.header().shape != headers[i].shape ||
+            reader.header().samples != headers[i].samples)
+            throw InputError(files[i].string(), "", "was replaced meanwhile; merge again");
+        reader.add_to(film);
+    }
     return {std::move(film), box.samples, std::move(*sum)};
 }
 

@@ -6,16 +6,21 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstdlib>
 #include <span>
 
 #include "apps/setup/develop.h"
 #include "apps/setup/input_files.h"
+#include "io/base/printable.h"
 #include "io/base/read_file.h"
 
 namespace petzval {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+/// Key of a float, which is kept as text: JSON has no infinity.
+constexpr const char* kFloat = "float";
 
 /// FNV-1a of texts and numbers, one after the other.
 class Hash {
@@ -37,6 +42,15 @@ class Hash {
   private:
     uint64_t hash_ = fnv1a({});
 };
+
+// Where the camera stands, and how large an orthographic view is: the metadata have less.
+std::string hash_of_pose(const CameraReport& camera) {
+    Hash hash;
+    for (const auto& row : camera.to_world.x)
+        for (const float number : row) hash.add(number);
+    hash.add(camera.ymag_m);
+    return hash.text();
+}
 
 // What the pilots of lights and of targets found.
 std::string hash_of_learned(const RenderSetup& setup) {
@@ -90,12 +104,15 @@ std::string shape_text(const FilmShape& shape) {
     return text;
 }
 
-RenderFacts::Texts all_of(const RenderFacts& facts, const FilmShape& shape) {
-    RenderFacts::Texts out{{"frame", shape_text(shape)}};
+RenderFacts::Texts all_of(const ComparedRender& render, Compare compare) {
+    const RenderFacts& facts = render.facts;
+    RenderFacts::Texts out{{"frame", shape_text(render.shape)}};
     for (const auto& [name, value] : facts.metadata)
-        out.emplace_back(short_name(name), text_of(value));
+        if (name != kFoundExposure || compare == Compare::Pictures)
+            out.emplace_back(short_name(name), text_of(value));
     out.insert(out.end(), facts.inputs.begin(), facts.inputs.end());
-    out.insert(out.end(), facts.display.begin(), facts.display.end());
+    if (compare == Compare::Pictures)
+        out.insert(out.end(), facts.display.begin(), facts.display.end());
     return out;
 }
 
@@ -121,7 +138,7 @@ RenderFacts facts_of(const RenderSetup& setup, const RenderJob& job, const PathO
         const auto taken = [&](const auto& one) { return one.first == name; };
         for (int i = 2; std::any_of(facts.inputs.begin(), facts.inputs.end(), taken); ++i)
             name = fmt::format("{} {}", file.role, i);
-        facts.inputs.emplace_back(name, name_and_hash(file.path));
+        facts.inputs.emplace_back(name, visible(name_and_hash(file.path)));
     };
     // The hash of the scene's own files is in the metadata.
     for (const NamedFile& file : input_files(setup.from.asked))
@@ -129,6 +146,7 @@ RenderFacts facts_of(const RenderSetup& setup, const RenderJob& job, const PathO
             add(file);
     for (const NamedFile& file : setup.prepared.files)
         if (file.role == kCameraFile) add(file);
+    facts.inputs.emplace_back("pose of the camera", hash_of_pose(setup.from.camera));
     facts.inputs.emplace_back("what pilots learned", hash_of_learned(setup));
     facts.display = display_facts(display, display_files);
     return facts;
@@ -137,7 +155,12 @@ RenderFacts facts_of(const RenderSetup& setup, const RenderJob& job, const PathO
 Json to_json(const RenderFacts& facts) {
     Json metadata = Json::array();
     for (const auto& [name, value] : facts.metadata)
-        std::visit([&, &key = name](const auto& v) { metadata.push_back({key, v}); }, value);
+        if (const float* number = std::get_if<float>(&value))
+            metadata.push_back({name, {{kFloat, fmt::format("{}", *number)}}});
+        else if (const int* whole = std::get_if<int>(&value))
+            metadata.push_back({name, *whole});
+        else
+            metadata.push_back({name, std::get<std::string>(value)});
     return {
         {"metadata", std::move(metadata)}, {"inputs", facts.inputs}, {"display", facts.display}};
 }
@@ -152,17 +175,17 @@ RenderFacts facts_from(const Json& json) {
         else if (value.is_number_integer())
             facts.metadata.emplace_back(name, value.get<int>());
         else
-            facts.metadata.emplace_back(name, value.get<float>());
+            facts.metadata.emplace_back(
+                name, std::strtof(value.at(kFloat).get<std::string>().c_str(), nullptr));
     }
     json.at("inputs").get_to(facts.inputs);
     json.at("display").get_to(facts.display);
     return facts;
 }
 
-std::optional<std::string> difference(const RenderFacts& a, const FilmShape& shape_a,
-                                      const std::string& name_a, const RenderFacts& b,
-                                      const FilmShape& shape_b, const std::string& name_b) {
-    const auto of_a = all_of(a, shape_a), of_b = all_of(b, shape_b);
+std::optional<std::string> difference(const ComparedRender& a, const ComparedRender& b,
+                                      Compare compare) {
+    const auto of_a = all_of(a, compare), of_b = all_of(b, compare);
     const auto find = [](const RenderFacts::Texts& in, const std::string& name) {
         const auto found =
             std::find_if(in.begin(), in.end(), [&](const auto& one) { return one.first == name; });
@@ -171,7 +194,7 @@ std::optional<std::string> difference(const RenderFacts& a, const FilmShape& sha
     for (const auto* texts : {&of_a, &of_b})
         for (const auto& [name, value] : *texts)
             if (const std::string in_a = find(of_a, name), in_b = find(of_b, name); in_a != in_b)
-                return fmt::format("{} is {} in {} and {} in {}", name, in_a, name_a, in_b, name_b);
+                return fmt::format("{} is {} in {} and {} in {}", name, in_a, a.name, in_b, b.name);
     return std::nullopt;
 }
 

@@ -41,12 +41,20 @@ struct RenderFacts {
 [[nodiscard]] nlohmann::ordered_json to_json(const RenderFacts&);
 [[nodiscard]] RenderFacts facts_from(const nlohmann::ordered_json&);
 
+/// A render to compare: its facts, its film, and what it is called.
+struct ComparedRender {
+    const RenderFacts& facts;
+    const FilmShape& shape;
+    std::string name;
+};
+
+enum class Compare : uint8_t { Samples, Pictures };
+
 /// The first difference between two renders, as "the seed is 1 in A and 2 in B"; nothing where
-/// samples of one are samples of the other. Crops and ranges of samples may differ.
-[[nodiscard]] std::optional<std::string> difference(const RenderFacts& a, const FilmShape& shape_a,
-                                                    const std::string& name_a, const RenderFacts& b,
-                                                    const FilmShape& shape_b,
-                                                    const std::string& name_b);
+/// samples of one are samples of the other and, if that is compared, they are shown alike. Crops
+/// and ranges of samples may differ.
+[[nodiscard]] std::optional<std::string> difference(const ComparedRender& a,
+                                                    const ComparedRender& b, Compare);
 
 /// Names of the hashes in a picture's metadata.
 inline constexpr const char* kLightHash = "petzval:lightHash";

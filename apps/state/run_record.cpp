@@ -68,8 +68,11 @@ RunRecord record_in(const StateHeader& header, const std::filesystem::path& file
 }
 
 std::string share_text(const StateHeader& header) {
+    const uint64_t pixels = header.wanted() / header.samples.count();
+    if (header.samples.count() >= kUnboundedSamples)
+        return fmt::format("{} samples of each pixel", header.pixel_samples / pixels);
     const double share = double(header.pixel_samples) / double(header.wanted());
-    return fmt::format("{} %", static_cast<int>(100 * share));
+    return fmt::format("{} % of its samples", static_cast<int>(100 * share));
 }
 
 }  // namespace petzval

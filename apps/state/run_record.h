@@ -28,7 +28,10 @@ struct RunRecord {
 /// none or another version of the program wrote it.
 [[nodiscard]] RunRecord record_in(const StateHeader&, const std::filesystem::path& file);
 
-/// "37 %" of the samples, rounded down.
+/// Number of samples from which on time alone ends a render.
+inline constexpr uint32_t kUnboundedSamples = 1u << 30;
+
+/// "37 % of its samples", rounded down, or "12 samples of each pixel" where time decides.
 [[nodiscard]] std::string share_text(const StateHeader&);
 
 }  // namespace petzval

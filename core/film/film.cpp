@@ -135,6 +135,12 @@ V3f Film::aov(int x, int y, size_t layer) const {
     return {mean(0), mean(1), mean(2)};
 }
 
+uint64_t Film::taken_count() const {
+    uint64_t total = 0;
+    for (const Pixel& p : pixels_) total += p.count + uint64_t(p.bad);
+    return total;
+}
+
 uint64_t Film::bad_count() const {
     uint64_t total = 0;
     for (const Pixel& p : pixels_) total += p.bad;

@@ -84,8 +84,8 @@ V3f SpectralFilm::standard_error(size_t pixel, SampleRange range) const {
 
 float SpectralFilm::luminance_error(size_t pixel, SampleRange range) const {
     return error_of(pixel, range, [](const auto& rgb) {
-        const auto mean = [&](size_t c) { return static_cast<float>(rgb[c].value()); };
-        return double(luminance(Rgb(mean(0), mean(1), mean(2))));
+        const auto sum = [&](size_t c) { return static_cast<float>(rgb[c].value()); };
+        return double(luminance(Rgb(sum(0), sum(1), sum(2))));
     });
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstring>
 #include <span>
+#include <stdexcept>
 #include <string_view>
 
 #include "io/base/atomic_file.h"
@@ -101,9 +102,9 @@ uint64_t StateHeader::wanted() const {
 
 void write_state(const std::filesystem::path& path, StateHeader header, const Film& film) {
     const Rect& crop = header.shape.crop;
-    header.pixel_samples = 0;
-    for (int y = crop.y0; y < crop.y1; ++y)
-        for (int x = crop.x0; x < crop.x1; ++x) header.pixel_samples += film.taken_count(x, y);
+    header.pixel_samples = film.taken_count();
+    if (header.pixel_samples > header.wanted())
+        throw std::logic_error("a film has more samples than its state may have");
     const std::string text = to_json(header).dump();
     AtomicFile file(path);
     uint64_t offset = 0, hash = fnv1a({});
@@ -131,7 +132,8 @@ StateReader::StateReader(const std::filesystem::path& path) : path_(path) {
     std::error_code error;
     const auto refuse = [&](const std::string& why) { return InputError(path.string(), "", why); };
     if (!std::filesystem::exists(path, error)) throw refuse("there is no such file");
-    if (!std::filesystem::is_regular_file(path, error)) throw refuse("is no file");
+    if (!std::filesystem::is_regular_file(path, error))
+        throw refuse("is a folder or a device, not a file");
     const uint64_t size = std::filesystem::file_size(path, error);
     file_.open(path, std::ios::binary);
     if (error || !file_) throw refuse("cannot be read");

@@ -25,6 +25,7 @@ struct FilmShape {
     std::vector<Aov> layers;
     std::optional<Bins> bins;
 
+    bool operator==(const FilmShape&) const = default;
     [[nodiscard]] static FilmShape of(const Film&);
     [[nodiscard]] Film empty_film() const { return {full_size, crop, layers, bins}; }
     /// Memory that such a film takes.
@@ -43,8 +44,8 @@ struct StateHeader {
     [[nodiscard]] bool is_complete() const { return pixel_samples == wanted(); }
 };
 
-/// Writes a state: whole, or not at all. pixel_samples is counted. Throws OutputError with the
-/// system's reason.
+/// Writes a state: whole, or not at all. pixel_samples is counted, and may not be above what is
+/// wanted. Throws OutputError with the system's reason.
 void write_state(const std::filesystem::path&, StateHeader, const Film&);
 
 /// A state that is open for reading.

@@ -162,24 +162,45 @@ TEST_F(Sequences, WhatIsThereIsNotRenderedAgain) {
     EXPECT_TRUE(renders(walls_, {}));
 }
 
+// How many samples there are is not known before: any number of them will do.
+TEST_F(Sequences, WhatATimeLimitEndedIsThere) {
+    const Words asked = {"--look-at", "0,0,1,0,0,0", "--size",         "8x8", "--env",
+                         "studio",    "--time",      "0.2s",           "-o",  path("t.exr"),
+                         "-o",        path("t.png"), "--skip-existing"};
+    const auto rendered = [&](const Words& more) {
+        Words all = {"render", walls_};
+        all.insert(all.end(), asked.begin(), asked.end());
+        all.insert(all.end(), more.begin(), more.end());
+        const Finished done = run_petzval(all);
+        EXPECT_EQ(done.exit_code, 0) << done.err;
+        return done.err.find("is there already") == std::string::npos;
+    };
+    EXPECT_TRUE(rendered({}));
+    EXPECT_FALSE(rendered({}));
+    EXPECT_TRUE(rendered({"--seed", "3"}));
+}
+
 // A sequence that is stopped in the middle of a picture, and given again.
 TEST_F(Sequences, WhatWasStoppedGoesOn) {
+    std::string spp = "500";
     const auto asked = [&](const std::string& name, const Words& more) {
         Words all = {"--sweep",   "fov=30,40",   "-o",    path(name),
-                     "--look-at", "0,0,1,0,0,0", "--spp", "3000"};
+                     "--look-at", "0,0,1,0,0,0", "--spp", spp};
         all.insert(all.end(), more.begin(), more.end());
         return words(walls_, all);
     };
+    ASSERT_EQ(run_petzval(asked("x_#.exr", {"--stats", path("x_#.json")})).exit_code, 0);
+    const auto trial = nlohmann::json::parse(file_bytes(path("x_2.json")));
+    spp = std::to_string(std::max(500, int(500 / trial["render_wall_s"].get<double>())));  // 1 s
     EXPECT_EQ(run_petzval(asked("w_#.exr", {})).exit_code, 0);
-    Process render(asked("r_#.exr", {"--progress", "json"}));
-    ASSERT_TRUE(render.wait_for_stderr("fov 40, 2 of 2"));
+    Process render(asked("r_#.exr", {"--progress", "json", "--sheet", path("sheet.png")}));
     ASSERT_TRUE(render.wait_for_stderr([](const std::string& text) {
         const size_t second = text.find("fov 40, 2 of 2");
-        return text.find("\"phase\":\"rendering\"", second) != text.npos;
+        return second != text.npos && text.find("\"phase\":\"rendering\"", second) != text.npos;
     }));
-    std::this_thread::sleep_for(std::chrono::milliseconds(30));
     render.signal(SIGTERM);
     EXPECT_EQ(render.wait().exit_code, 130);
+    EXPECT_FALSE(std::filesystem::exists(path("sheet.png"))) << "a finished one may be there";
     ASSERT_TRUE(std::filesystem::exists(path("r_2.state")));
     std::filesystem::copy(path("r_2.state"), path("copy.state"));
     const Finished again = run_petzval(asked("r_#.exr", {"--skip-existing"}));
@@ -244,13 +265,13 @@ TEST_F(Sequences, WhatMakesNoSequenceIsRefused) {
             {{"--sweep", "fstop=1,2", "--frames", "1:2", "-o", path("s_#.png")}, "--frames"},
             {{"--turntable", "0", "-o", path("s_#.png")}, "--turntable"},
             {{"--turntable", "4", "--orbit", "3", "-o", path("s_#.png")}, "--orbit"},
-            {{"--orbit-about", "0,0,0", "-o", path("s.png")}, "--orbit"},
             {{"render", scene_, "--samples", "4", "-o", path("s.png")}, "a range A:B of samples"},
             {{"render", scene_, "--samples", "8:4", "-o", path("s.png")}, "a range A:B of samples"},
             {{"-o", path("a.state"), "-o", path("b.state")}, "names two states"},
             {{"--checkpoint", "often", "-o", path("s.png")}, "--checkpoint"},
             {{"--clamp", "0", "-o", path("s.png")}, "--clamp"},
-            {{"--preview", path("p.exr"), "-o", path("s.png")}, "--preview"}});
+            {{"--preview", path("p.exr"), "-o", path("s.png")}, "--preview"},
+            {{"--sheet", path("x.png"), "-o", path("s.png")}, "--sheet: needs"}});
     expect_refused(3, {{{"--log", path("none/log.txt"), "-o", path("s.png")}, "there is no folder"},
                        {{"render", scene_, "--turntable", "2", "-o", path("s_#.png"), "--sheet",
                          path("none/s.png")},

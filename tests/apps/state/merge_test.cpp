@@ -115,7 +115,7 @@ TEST(CoveredBox, SaysHowTheGapIsFilled) {
     const Rect frame{0, 0, 8, 4};
     EXPECT_EQ(
         complaint({{frame, {0, 16}}, {frame, {32, 64}}, {frame, {64, 65}}}),
-        "0.state: and the other 2 states leave a gap: samples 16:32 of the pixels 0,0,8,4 are "
+        "0.state: this state and the others leave a gap: samples 16:32 of the pixels 0,0,8,4 are "
         "in none of them; render them by --samples 16:32 and, for a part of the frame, "
         "--crop");
     EXPECT_EQ(

@@ -147,10 +147,10 @@ TEST_F(StateFile, AnotherVersionSaysWhichOne) {
 TEST_F(StateFile, WhatIsNoStateIsRefused) {
     EXPECT_EQ(complaint(), path_.string() + ": there is no such file");
     std::filesystem::create_directory(path_);
-    EXPECT_EQ(complaint(), path_.string() + ": is no file");
+    EXPECT_EQ(complaint(), path_.string() + ": is a folder or a device, not a file");
     std::filesystem::remove(path_);
     mkfifo(path_.c_str(), 0600);  // which nobody writes to: it must not wait
-    EXPECT_EQ(complaint(), path_.string() + ": is no file");
+    EXPECT_EQ(complaint(), path_.string() + ": is a folder or a device, not a file");
     std::filesystem::remove(path_);
     write({'P', 'N', 'G'});
     EXPECT_EQ(complaint(), path_.string() + ": is no state of a render");

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/commands/kept_state.h"
+
+#include <fmt/format.h>
+
+#include "io/base/error.h"
+#include "io/image/output.h"
+
+namespace petzval {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Refuses to put a checkpoint in the place of what is none.
+void refuse_loss(const fs::path& file) {
+    const auto refuse = [&](const char* what) {
+        return ArgumentError(file.string(), "",
+                             fmt::format("{}, and a checkpoint would take its place; move it, name "
+                                         "another by -o NAME.state, or give --checkpoint off",
+                                         what));
+    };
+    std::optional<StateHeader> there;
+    try {
+        there = StateReader(file).header();
+    } catch (const InputError&) {
+        throw refuse("is there, and is no state of this program's");
+    }
+    if (there->is_complete()) throw refuse("has finished samples");
+}
+
+}  // namespace
+
+KeptState::KeptState(KeepOptions& keep, std::vector<std::string> command) : keep_(keep) {
+    record_.command = std::move(command);
+    std::error_code error;
+    record_.folder = fs::current_path(error);
+    const bool named = keep.state_is_wanted;
+    if (keep.resumed_from && !named) keep.state = keep.resumed_from;
+    const bool ours = named || keep.resumed_from || keep.skip_existing;
+    if (keep.state && !ours && fs::exists(*keep.state, error)) refuse_loss(*keep.state);
+}
+
+void KeptState::set(FilmShape shape, SampleRange samples, RenderFacts facts,
+                    const DisplayOptions& display) {
+    shape_ = std::move(shape);
+    samples_ = samples;
+    record_.facts = std::move(facts);
+    record_.display = display;
+    if (auto& config = record_.display.config; !config.empty()) config = fs::absolute(config);
+}
+
+std::optional<Film> KeptState::take_up(const Notice& notice) {
+    const bool resumed = keep_.resumed_from.has_value();
+    const auto& file = resumed ? keep_.resumed_from : keep_.state;
+    std::error_code error;
+    if (!file || !fs::exists(*file, error)) return std::nullopt;
+    if (!resumed && !keep_.skip_existing) {
+        if (!keep_.state_is_wanted)
+            notice(
+                fmt::format("warning: {0} is there from a render before, and the first "
+                            "checkpoint takes its place; petzval resume {0} would go on with "
+                            "that one",
+                            file->string()));
+        return std::nullopt;
+    }
+    try {
+        StateReader reader(*file);
+        const StateHeader& header = reader.header();
+        const RunRecord before = record_in(header, *file);
+        const auto differs =
+            difference({before.facts, header.shape, "the state"},
+                       {record_.facts, shape_, "what it would be now"}, Compare::Samples);
+        if (differs || header.samples != samples_ || header.shape.crop != shape_.crop)
+            throw InputError(file->string(), "",
+                             differs ? "does not go on: something has changed: " + *differs
+                                     : "is of other samples or another crop");
+        Film film = shape_.empty_film();
+        reader.add_to(film);
+        goes_on_ = true;
+        record_.figures = before.figures;
+        notice(fmt::format("goes on with {}, which has {}", file->string(), share_text(header)));
+        return film;
+    } catch (const InputError& refused) {
+        if (resumed) throw;
+        notice(fmt::format("warning: {}; it will be replaced", refused.what()));
+        return std::nullopt;
+    }
+}
+
+void KeptState::write(const fs::path& to, const Film& film, const RunFigures& now,
+                      SampleRange samples) {
+    RunRecord record = record_;
+    record.figures += now;
+    write_state(to, header_of(record, shape_, samples), film);
+    wrote_ = true;
+}
+
+void KeptState::write(const Film& film, const RunFigures& now, SampleRange samples) {
+    write(*keep_.state, film, now, samples);
+}
+
+void KeptState::remove_unfinished(const std::vector<fs::path>& pictures) const {
+    std::error_code error;
+    if (keep_.state && !keep_.state_is_wanted && (wrote_ || goes_on_))
+        fs::remove(*keep_.state, error);
+    if (!goes_on_) return;
+    for (const fs::path& picture : pictures) fs::remove(partial_name(picture), error);
+}
+
+}  // namespace petzval

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// State of a render under way: where it lies, whether its samples are taken up, when it goes.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/cli/keep_options.h"
+#include "apps/state/run_record.h"
+#include "core/film/film.h"
+#include "io/base/notice.h"
+
+namespace petzval {
+
+class KeptState {
+  public:
+    /// keep must outlive it. A state that was moved goes on where it is. Throws ArgumentError where
+    /// a file lies in its place that would be lost: none of a render, or a finished one that nobody
+    /// asks to replace.
+    KeptState(KeepOptions& keep, std::vector<std::string> command);
+
+    /// What the render is, once that is known.
+    void set(FilmShape, SampleRange, RenderFacts, const DisplayOptions&);
+    [[nodiscard]] const RunRecord& record() const { return record_; }
+
+    /// Film with the samples of the state, where there are some to go on from; the figures of the
+    /// runs before are those of the record then. Nothing where there are none. Throws InputError
+    /// where a resumed state does not fit.
+    [[nodiscard]] std::optional<Film> take_up(const Notice&);
+    /// Whether the render goes on from samples that were there.
+    [[nodiscard]] bool goes_on() const { return goes_on_; }
+
+    /// Writes the samples so far, with the figures of this run, to a file. Throws OutputError.
+    void write(const std::filesystem::path&, const Film&, const RunFigures&, SampleRange);
+    /// The same, to where it belongs.
+    void write(const Film&, const RunFigures&, SampleRange);
+    /// Removes what this run and those before wrote, of a render whose pictures are there.
+    void remove_unfinished(const std::vector<std::filesystem::path>& pictures) const;
+
+  private:
+    KeepOptions& keep_;
+    FilmShape shape_;
+    SampleRange samples_;
+    RunRecord record_;  ///< figures: of the runs before
+    bool goes_on_ = false, wrote_ = false;
+};
+
+}  // namespace petzval

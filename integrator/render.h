@@ -227,6 +227,15 @@ void render_samples(const Tracer& tracer, const Camera& camera, const RenderJob&
     return fits < pass ? static_cast<uint32_t>(fits) : pass;  // fits may be beyond uint32_t
 }
 
+/// Largest number of samples that a pixel of a film has taken.
+[[nodiscard]] inline uint32_t most_taken(const Film& film) {
+    uint32_t most = 0;
+    const Rect& crop = film.crop();
+    for (int y = crop.y0; y < crop.y1; ++y)
+        for (int x = crop.x0; x < crop.x1; ++x) most = std::max(most, film.taken_count(x, y));
+    return most;
+}
+
 /// Number of samples that every pixel of a film has taken.
 [[nodiscard]] inline uint32_t least_taken(const Film& film) {
     uint32_t least = std::numeric_limits<uint32_t>::max();
@@ -257,6 +266,7 @@ RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob&
     const uint32_t wanted = job.end_sample - job.first_sample, before = least_taken(film);
     uint32_t done = before;
     std::optional<uint32_t> pass;  // that is under way: once begun, every pixel gets it
+    if (const uint32_t most = most_taken(film); most > before) pass = most - before;
     while (done < wanted && !monitor.stop) {
         if (!pass) {
             pass = pass_within(job, done, before, wanted, job.wall_s() - start_s);

@@ -12,6 +12,7 @@
 #include "apps/cli/output_checks.h"
 #include "io/base/ascii.h"
 #include "io/base/nearest.h"
+#include "io/base/printable.h"
 #include "io/gltf/validate/foreign.h"
 
 namespace petzval {
@@ -73,18 +74,6 @@ std::string unknown_option(const CLI::App& app, const std::string& option, const
     if (!near.empty()) return what + near;
     const Words elsewhere = takers(root_of(app), option);
     return elsewhere.empty() ? what : fmt::format("{}; {} has it", what, elsewhere.front());
-}
-
-// Word as one of a command line, between quotes where a shell would divide or change it.
-std::string for_shell(const std::string& word) {
-    const auto is_plain = [](unsigned char c) {
-        return c >= 0x80 || std::isalnum(c) ||
-               std::string_view("%+,-./:=@_").find(char(c)) != std::string_view::npos;
-    };
-    if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
-    std::string quoted = "'";
-    for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-    return quoted + "'";
 }
 
 std::string unknown_command(const CLI::App& app, const std::string& word) {

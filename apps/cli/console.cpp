@@ -47,7 +47,7 @@ ConsoleStyle console_style_of(const std::vector<std::string>& words) {
     const auto take = [&](std::string_view value) {
         style = lower(std::string(value)) == "json" ? ConsoleStyle::Json : ConsoleStyle::Text;
     };
-    if (words.empty() || words.front() != "render") return style;
+    if (words.empty() || (words.front() != "render" && words.front() != "resume")) return style;
     constexpr std::string_view kOption = "--progress", kWithValue = "--progress=";
     for (size_t i = 0; i < words.size(); ++i) {
         if (words[i].starts_with(kWithValue)) take(words[i].substr(kWithValue.size()));
@@ -134,6 +134,9 @@ void Console::event(const char* name, const Json& fields) {
 }
 
 void Console::log_to(const std::filesystem::path& file) {
+    std::error_code error;
+    if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error))
+        throw OutputError(file.string(), "", "is no file; a log needs one");
     check_writable(file);
     std::ifstream before(file);
     if (std::string line; std::getline(before, line) && !is_log_line(line))
@@ -169,6 +172,14 @@ void Console::log(const std::string& text) {
     std::array<char, 32> time{};
     std::strftime(time.data(), time.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
     log_ << time.data() << ' ' << visible(text) << std::endl;  // flushed: the next may be the last
+    if (log_) return;
+    log_.close();
+    print_error_line("petzval: warning: the log cannot be written any more");
+}
+
+void Console::forget_messages() {
+    const std::lock_guard lock(mutex_);
+    messages_ = {};
 }
 
 void Console::put(const std::string& text) {

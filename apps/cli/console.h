@@ -65,7 +65,9 @@ class Console {
     void log_to(const std::filesystem::path&);
     /// Prints the last event.
     void end(int exit_code);
+    /// What was said since the beginning, or since it was forgotten.
     [[nodiscard]] Messages messages() const;
+    void forget_messages();
 
   private:
     void put(const std::string& line);

@@ -42,9 +42,9 @@ std::vector<SequenceItem> sweep_items(const std::string& sweep) {
     const size_t at = sweep.find('=');
     if (at == sweep.npos || at == 0) throw refuse();
     const std::string option = sweep.substr(0, at), values = sweep.substr(at + 1);
-    constexpr std::array<std::string_view, 10> kNoSweep{
-        "output", "stats", "sweep",   "frames", "turntable",
-        "sheet",  "log",   "preview", "number", "checkpoint"};
+    constexpr std::array<std::string_view, 13> kNoSweep{
+        "output",  "stats",  "sweep",      "frames", "turntable", "sheet", "log",
+        "preview", "number", "checkpoint", "help",   "progress",  "quiet"};
     if (std::ranges::find(kNoSweep, option) != kNoSweep.end() || option.starts_with('-'))
         throw refuse();
     std::vector<SequenceItem> items;
@@ -91,6 +91,12 @@ std::vector<SequenceItem> items_of(const SequenceOptions& o) {
 
 std::string swept_option(const SequenceOptions& o) {
     return o.sweep.substr(0, o.sweep.find('='));
+}
+
+std::vector<std::string> with_words(std::vector<std::string> words,
+                                    const std::vector<std::string>& added) {
+    words.insert(std::find(words.begin(), words.end(), "--"), added.begin(), added.end());
+    return words;
 }
 
 std::vector<std::string> without_sequence(const std::vector<std::string>& words) {

@@ -39,6 +39,10 @@ void add_sequence_options(CLI::App&, SequenceOptions&);
 /// Option that a sweep is over, as "fstop"; empty where there is none.
 [[nodiscard]] std::string swept_option(const SequenceOptions&);
 
+/// Words of a command line with some that are added: they count as the last ones, before a "--".
+[[nodiscard]] std::vector<std::string> with_words(std::vector<std::string> words,
+                                                  const std::vector<std::string>& added);
+
 /// Words of a command line without the options that make a sequence of it.
 [[nodiscard]] std::vector<std::string> without_sequence(const std::vector<std::string>& words);
 

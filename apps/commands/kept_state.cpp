@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "io/base/error.h"
+#include "io/base/printable.h"
 #include "io/image/output.h"
 
 namespace petzval {
@@ -26,7 +27,8 @@ void refuse_loss(const fs::path& file) {
     } catch (const InputError&) {
         throw refuse("is there, and is no state of this program's");
     }
-    if (there->is_complete()) throw refuse("has finished samples");
+    if (there->is_complete())
+        throw refuse("has finished samples, whose pictures petzval resume writes");
 }
 
 }  // namespace
@@ -35,10 +37,10 @@ KeptState::KeptState(KeepOptions& keep, std::vector<std::string> command) : keep
     record_.command = std::move(command);
     std::error_code error;
     record_.folder = fs::current_path(error);
-    const bool named = keep.state_is_wanted;
-    if (keep.resumed_from && !named) keep.state = keep.resumed_from;
-    const bool ours = named || keep.resumed_from || keep.skip_existing;
-    if (keep.state && !ours && fs::exists(*keep.state, error)) refuse_loss(*keep.state);
+    if (keep.resumed_from) keep.state = keep.resumed_from;
+    const bool may_go_on = keep.resumed_from || keep.skip_existing;
+    if (keep.state && !keep.state_is_wanted && !may_go_on && fs::exists(*keep.state, error))
+        refuse_loss(*keep.state);
 }
 
 void KeptState::set(FilmShape shape, SampleRange samples, RenderFacts facts,
@@ -50,9 +52,9 @@ void KeptState::set(FilmShape shape, SampleRange samples, RenderFacts facts,
     if (auto& config = record_.display.config; !config.empty()) config = fs::absolute(config);
 }
 
-std::optional<Film> KeptState::take_up(const Notice& notice) {
+std::optional<Film> KeptState::take_up(Compare compare, const Notice& notice) {
     const bool resumed = keep_.resumed_from.has_value();
-    const auto& file = resumed ? keep_.resumed_from : keep_.state;
+    const auto& file = keep_.state;
     std::error_code error;
     if (!file || !fs::exists(*file, error)) return std::nullopt;
     if (!resumed && !keep_.skip_existing) {
@@ -68,9 +70,8 @@ std::optional<Film> KeptState::take_up(const Notice& notice) {
         StateReader reader(*file);
         const StateHeader& header = reader.header();
         const RunRecord before = record_in(header, *file);
-        const auto differs =
-            difference({before.facts, header.shape, "the state"},
-                       {record_.facts, shape_, "what it would be now"}, Compare::Samples);
+        const auto differs = difference({before.facts, header.shape, "the state"},
+                                        {record_.facts, shape_, "what it would be now"}, compare);
         if (differs || header.samples != samples_ || header.shape.crop != shape_.crop)
             throw InputError(file->string(), "",
                              differs ? "does not go on: something has changed: " + *differs
@@ -78,11 +79,13 @@ std::optional<Film> KeptState::take_up(const Notice& notice) {
         Film film = shape_.empty_film();
         reader.add_to(film);
         goes_on_ = true;
+        was_complete_ = header.is_complete();
         record_.figures = before.figures;
         notice(fmt::format("goes on with {}, which has {}", file->string(), share_text(header)));
         return film;
     } catch (const InputError& refused) {
         if (resumed) throw;
+        if (!keep_.state_is_wanted) refuse_loss(*file);
         notice(fmt::format("warning: {}; it will be replaced", refused.what()));
         return std::nullopt;
     }
@@ -102,7 +105,9 @@ void KeptState::write(const Film& film, const RunFigures& now, SampleRange sampl
 
 void KeptState::remove_unfinished(const std::vector<fs::path>& pictures) const {
     std::error_code error;
-    if (keep_.state && !keep_.state_is_wanted && (wrote_ || goes_on_))
+    // A state that was complete may be somebody's part of a picture.
+    const bool of_others = was_complete_ && !keep_.resumed_from;
+    if (keep_.state && !keep_.state_is_wanted && (wrote_ || goes_on_) && !of_others)
         fs::remove(*keep_.state, error);
     if (!goes_on_) return;
     for (const fs::path& picture : pictures) fs::remove(partial_name(picture), error);

@@ -28,7 +28,7 @@ class KeptState {
     /// Film with the samples of the state, where there are some to go on from; the figures of the
     /// runs before are those of the record then. Nothing where there are none. Throws InputError
     /// where a resumed state does not fit.
-    [[nodiscard]] std::optional<Film> take_up(const Notice&);
+    [[nodiscard]] std::optional<Film> take_up(Compare, const Notice&);
     /// Whether the render goes on from samples that were there.
     [[nodiscard]] bool goes_on() const { return goes_on_; }
 
@@ -44,7 +44,7 @@ class KeptState {
     FilmShape shape_;
     SampleRange samples_;
     RunRecord record_;  ///< figures: of the runs before
-    bool goes_on_ = false, wrote_ = false;
+    bool goes_on_ = false, was_complete_ = false, wrote_ = false;
 };
 
 }  // namespace petzval

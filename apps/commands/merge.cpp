@@ -23,6 +23,7 @@ namespace fs = std::filesystem;
 struct MergeOptions {
     std::vector<fs::path> states, outputs;
     std::optional<fs::path> stats;
+    bool quiet = false;  ///< the console takes it from the words
 };
 
 void check_files(const MergeOptions& o) {
@@ -93,6 +94,7 @@ void add_merge_command(CLI::App& app, Session& session) {
         ->check(complaint_about_render_name);
     command->add_option("--stats", options->stats,
                         "write summed counts and times to this JSON file");
+    command->add_flag("--quiet", options->quiet, "print nothing but errors");
     command->callback([options, &session] { session.exit_code = merge(*options, session); });
 }
 

@@ -80,6 +80,20 @@ std::vector<WriteOutcome> write_pictures(const std::vector<fs::path>& outputs,
     return outcomes;
 }
 
+namespace {
+
+// Whether a picture can be read to its end.
+bool is_whole(const fs::path& path) {
+    try {
+        static_cast<void>(read_picture(path));
+        return true;
+    } catch (const InputError&) {
+        return false;
+    }
+}
+
+}  // namespace
+
 bool is_up_to_date(const fs::path& path, const RenderFacts& facts, const FilmShape& shape,
                    std::optional<SampleRange> samples) {
     std::error_code error;
@@ -102,9 +116,10 @@ bool is_up_to_date(const fs::path& path, const RenderFacts& facts, const FilmSha
     else if (std::sscanf(text(kSamples).c_str(), "%" SCNu32 ":%" SCNu32, &taken.first,
                          &taken.end) != 2)
         return false;
-    return text(kLightHash) == light_hash(facts, shape, taken) &&
-           (picture_format(path) == PictureFormat::Exr ||
-            text(kDisplayHash) == display_hash(facts.display));
+    const bool same = text(kLightHash) == light_hash(facts, shape, taken) &&
+                      (picture_format(path) == PictureFormat::Exr ||
+                       text(kDisplayHash) == display_hash(facts.display));
+    return same && is_whole(path);
 }
 
 }  // namespace petzval

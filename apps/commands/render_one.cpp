@@ -21,6 +21,7 @@
 #include "io/base/clock.h"
 #include "io/base/error.h"
 #include "io/base/format.h"
+#include "io/base/printable.h"
 #include "io/image/picture_files.h"
 
 namespace petzval {
@@ -28,12 +29,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
+bool is_for_display(const fs::path& picture) {
+    return picture_format(picture) != PictureFormat::Exr;
+}
+
 /// One render, step by step.
 class OneRender {
   public:
     OneRender(RenderOptions& o, const std::vector<std::string>& command, const Notice& notice,
               Session& session)
         : o_(o), notice_(notice), session_(session), frame_(resolve(o)), kept_(o.keep, command) {
+        session_.console.forget_messages();  // of the pictures before
         check_outputs(o_, frame_.crop);
         shape_ = {o_.scene.size, frame_.crop, frame_.aovs, o_.scene.spectral.bins};
         samples_ = {o_.job.first_sample, o_.job.end_sample};
@@ -153,10 +159,7 @@ RenderResult OneRender::render(TbbExecutor& executor, Progress& progress) {
 
 // Tells what to type where PNG and JPEG show nothing.
 void OneRender::advise_exposure(TbbExecutor& executor) {
-    const auto displayed = [](const auto& path) {
-        return picture_format(path) != PictureFormat::Exr;
-    };
-    if (std::none_of(o_.outputs.begin(), o_.outputs.end(), displayed)) return;
+    if (std::ranges::none_of(o_.outputs, is_for_display)) return;
     const Brightness brightness = brightness_of(*film_, o_.display.exposure_ev);
     if (brightness == Brightness::Normal) return;
     const FoundExposure found = find_exposure(setup_, o_.job, o_.path, executor);
@@ -191,10 +194,10 @@ int OneRender::write_all(const RenderResult& result, TbbExecutor& executor, Prog
         const SampleRange wanted = stopped ? samples_ : taken;
         outcomes.push_back(write_or_rescue(
             *state, [&](const fs::path& to) { kept_.write(to, *film_, figures, wanted); }));
-        if (!outcomes.back().written())
-            session_.console.error(outcomes.back().message());
-        else if (stopped)
-            notice_(fmt::format("stopped: petzval resume {} goes on", state->string()));
+        if (!outcomes.back().written()) session_.console.error(outcomes.back().message());
+        const fs::path& there = outcomes.back().written() ? *state : outcomes.back().rescue;
+        if (stopped && !there.empty())
+            notice_(fmt::format("stopped: petzval resume {} goes on", for_shell(there.string())));
     }
     const FinishedFilm done{*film_, taken, kept_.record().facts};
     for (WriteOutcome& one :
@@ -226,10 +229,7 @@ int OneRender::write_all(const RenderResult& result, TbbExecutor& executor, Prog
 
 // Shows a picture that is there, as a display or as light.
 void OneRender::show_existing(const SequencePlace& place) const {
-    const auto is_exr = [](const fs::path& path) {
-        return picture_format(path) == PictureFormat::Exr;
-    };
-    const auto shown = std::find_if_not(o_.outputs.begin(), o_.outputs.end(), is_exr);
+    const auto shown = std::ranges::find_if(o_.outputs, is_for_display);
     const Picture there = read_picture(shown == o_.outputs.end() ? o_.outputs.front() : *shown);
     if (there.for_display)
         place.show(as_display(there), o_.display);
@@ -276,7 +276,8 @@ int OneRender::run(SequencePlace& place) {
               facts_of(setup_, o_.job, o_.path, o_.display, input_files(o_.display)), o_.display);
     place.found = found_words();
     if (session_.interrupt.monitor().stop) return kStopped;  // nothing of it is there yet
-    film_ = kept_.take_up(notice_);
+    const bool shown = o_.keep.state_is_wanted || std::ranges::any_of(o_.outputs, is_for_display);
+    film_ = kept_.take_up(shown ? Compare::Pictures : Compare::Samples, notice_);
     int code = kSuccess;
     if (is_there()) {
         for (const fs::path& output : o_.outputs)

@@ -9,6 +9,7 @@
 #include <array>
 #include <memory>
 #include <set>
+#include <utility>
 
 #include "apps/cli/sequence_options.h"
 #include "apps/commands/failure.h"
@@ -61,12 +62,12 @@ class Sequence {
 
   private:
     [[nodiscard]] Words words_of(const SequenceItem& item) const {
-        Words words = all_;
-        words.insert(words.end(), item.words.begin(), item.words.end());
-        words.insert(words.end(), {"--number", fmt::format("{}", item.number)});
-        return words;
+        Words added = item.words;
+        added.insert(added.end(), {"--number", fmt::format("{}", item.number)});
+        return with_words(all_, added);
     }
     [[nodiscard]] int render(size_t i);
+    void hold(const SequencePlace&);
     [[nodiscard]] int write_sheet() const;
 
     const RenderOptions& o_;
@@ -77,6 +78,7 @@ class Sequence {
     std::shared_ptr<FrameReuse> reuse_;
     std::optional<RenderSetup> before_;
     std::optional<ContactSheet> sheet_;
+    bool holds_ = false;    ///< what the first picture that was set up found
     bool for_srgb_ = true;  ///< what the sheet shows
     std::set<std::string> said_;
 };
@@ -105,16 +107,19 @@ int Sequence::render(size_t i) {
                 shown = true;
             };
         const int code = render_one(*parsed.options, words, once, session_, place);
-        if (i == 0) {
-            const Words found = held(place.found, swept_option(o_.sequence));
-            all_.insert(all_.end(), found.begin(), found.end());
-        }
+        hold(place);
         leave_cell();
         return code;
     } catch (...) {
         leave_cell();
         return tell_failure(session_, several ? item.label : "");
     }
+}
+
+// Makes what the first picture found hold for the others.
+void Sequence::hold(const SequencePlace& place) {
+    if (std::exchange(holds_, true)) return;
+    all_ = with_words(all_, held(place.found, swept_option(o_.sequence)));
 }
 
 int Sequence::write_sheet() const {

@@ -72,7 +72,8 @@ std::string text_of(const ShutterCurve& curve) {
     return text;
 }
 
-std::vector<std::pair<std::string, std::string>> describe(const SceneRequest& request) {
+std::vector<std::pair<std::string, std::string>> describe(const SceneRequest& request,
+                                                          const std::string& environment) {
     std::vector<std::pair<std::string, std::string>> m;
     m.emplace_back("petzval:scene", request.scene.filename().string());
     if (const auto& variant = request.choices.variant)
@@ -93,9 +94,7 @@ std::vector<std::pair<std::string, std::string>> describe(const SceneRequest& re
                            visible(fmt::format("{}", fmt::join(animation->names, ", "))));
     }
     if (request.environment) {
-        m.emplace_back("petzval:environment", request.environment == kStudioLight
-                                                  ? kStudioLight
-                                                  : name_and_hash(*request.environment));
+        m.emplace_back("petzval:environment", environment);
         m.emplace_back("petzval:environmentRotate_deg",
                        fmt::format("{:.9g}", request.environment_rotate_deg));
         m.emplace_back("petzval:environmentStrength",
@@ -128,11 +127,18 @@ GltfFile load_file(const SceneRequest& request, PictureBudget& pictures) {
                         request.choices.animation ? request.choices.animation->time_s : 0);
 }
 
-// The sky that is asked for; of a sequence, that of the frame before.
-Sky sky_of_frame(const SceneRequest& request, const Notice& notice, PictureBudget& pictures) {
-    if (request.reuse && request.reuse->environment)
-        return *std::exchange(request.reuse->environment, std::nullopt);
-    return sky_of(request, notice, pictures);
+// Takes the sky that is asked for; of a sequence, that of the frame before.
+void take_sky(const SceneRequest& request, const Notice& notice, PreparedScene& out, Sky& sky) {
+    if (request.reuse && request.reuse->environment) {
+        sky = *std::exchange(request.reuse->environment, std::nullopt);
+        out.environment_text = request.reuse->environment_text;
+        return;
+    }
+    sky = sky_of(request, notice, out.pictures);
+    if (request.environment)
+        out.environment_text = request.environment == kStudioLight
+                                   ? kStudioLight
+                                   : name_and_hash(*request.environment);
 }
 
 // The scene with its sky, not yet its BVH and lights.
@@ -150,7 +156,7 @@ PreparedScene load(SceneRequest request, const Notice& notice) {
     add_missing_light(request, *scene, notice);
     out.environment = request.environment;
     if (request.environment || request.background)  // instead of the file's own
-        scene->sky = sky_of_frame(request, notice, out.pictures);
+        take_sky(request, notice, out, scene->sky);
     finish_scene(*scene);
     if (scene->instances.empty())
         notice("warning: the scene is empty: only its background is rendered");
@@ -194,7 +200,7 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
     setup.view.observer = std::move(spectra.observer);
     from.scale = std::move(spectra.scale);
     from.spectral = std::move(spectra.decision);
-    from.metadata = describe(request);
+    from.metadata = describe(request, prepared.environment_text);
     from.metadata.insert(from.metadata.end(), spectra.metadata.begin(), spectra.metadata.end());
     from.load_s = seconds_since(load_start);
 
@@ -241,7 +247,9 @@ void give_back(FrameReuse& reuse, PreparedScene&& prepared) {
     prepared.bvh.reset();
     prepared.lights.reset();
     if (reuse.reader) reuse.reader->give_back(std::move(scene->images));
-    if (prepared.environment) reuse.environment = std::move(scene->sky);
+    if (!prepared.environment) return;
+    reuse.environment = std::move(scene->sky);
+    reuse.environment_text = std::move(prepared.environment_text);
 }
 
 RenderSetup set_up_render(const SceneRequest& asked, const Notice& notice,

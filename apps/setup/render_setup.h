@@ -31,6 +31,7 @@ struct PreparedScene {
     std::shared_ptr<const std::vector<GltfCamera>> cameras;  ///< of the file
     /// As asked, or what a dark scene gets.
     std::optional<std::filesystem::path> environment;
+    std::string environment_text;       ///< its name and hash, as it was read
     uint64_t hash = 0;                  ///< of the file
     std::vector<NamedFile> files;       ///< that the scene names
     PictureBudget pictures;             ///< what the scene and its sky left of it
@@ -41,6 +42,7 @@ struct PreparedScene {
 struct FrameReuse {
     std::unique_ptr<GltfReader> reader;
     std::optional<Sky> environment;
+    std::string environment_text;
 };
 
 /// Takes from a frame that is done with what serves the next one. Nobody else may use its scene.

@@ -10,6 +10,7 @@
 
 #include "apps/setup/memory.h"
 #include "io/base/error.h"
+#include "io/base/printable.h"
 
 namespace petzval {
 namespace {
@@ -117,7 +118,7 @@ MergedState merge_states(const std::vector<fs::path>& files) {
             throw InputError(file.string(), "",
                              fmt::format("is not complete: it has {}; petzval resume "
                                          "{} renders the rest",
-                                         share_text(header), file.string()));
+                                         share_text(header), for_shell(file.string())));
         RunRecord record = record_in(header, file);
         if (!sum) {
             sum = std::move(record);

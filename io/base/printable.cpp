@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstdint>
 
 namespace petzval {
@@ -86,6 +87,17 @@ std::string visible(std::string_view text) {
 
 std::string printable(std::string_view text) {
     return visible_up_to(80, text);
+}
+
+std::string for_shell(const std::string& word) {
+    const auto is_plain = [](unsigned char c) {
+        return c >= 0x80 || std::isalnum(c) ||
+               std::string_view("%+,-./:=@_").find(char(c)) != std::string_view::npos;
+    };
+    if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
+    std::string quoted = "'";
+    for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+    return quoted + "'";
 }
 
 }  // namespace petzval

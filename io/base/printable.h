@@ -26,4 +26,7 @@ struct Character {
 /// Text from a file made fit for a message of one line: visible(), and cut after about 80 bytes.
 [[nodiscard]] std::string printable(std::string_view text);
 
+/// Word as one of a command line, between quotes where a shell would divide or change it.
+[[nodiscard]] std::string for_shell(const std::string& word);
+
 }  // namespace petzval

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <span>
@@ -155,26 +156,48 @@ StateReader::StateReader(const std::filesystem::path& path) : path_(path) {
     file_.read(text.data(), static_cast<std::streamsize>(length));
     if (!file_) throw cut_short;
     try {
-        header_ = from_json(Json::parse(text));
+        header_ = from_json(Json::parse(text, [](int depth, Json::parse_event_t, Json&) {
+            // Copies of what is nested deeply would fill the stack.
+            constexpr int kDeepest = 16;
+            if (depth > kDeepest) throw std::length_error("nested too deeply");
+            return true;
+        }));
     } catch (const std::exception&) {  // of JSON, or of a layer that has no such name
         throw cut_short;
     }
     if (!is_possible(header_) ||
         size != start.size() + length + header_.shape.bytes() + sizeof(uint64_t))
         throw cut_short;
+    header_bytes_ = length;
     hash_ = fnv1a(bytes_of(text), fnv1a(start));
+}
+
+void StateReader::check() const {
+    std::ifstream file(path_, std::ios::binary);
+    std::vector<uint8_t> part(1 << 20);
+    uint64_t left = 24 + header_bytes_ + header_.shape.bytes(), hash = fnv1a({}), written = 0;
+    while (left > 0 && file) {
+        part.resize(std::min<uint64_t>(left, part.size()));
+        file.read(reinterpret_cast<char*>(part.data()), static_cast<std::streamsize>(part.size()));
+        hash = fnv1a(part, hash);
+        left -= part.size();
+    }
+    file.read(reinterpret_cast<char*>(&written), sizeof written);
+    if (!file || written != hash) throw damaged();
+}
+
+InputError StateReader::damaged() const {
+    return {path_.string(), "", "is damaged: its bytes are not those that were written"};
 }
 
 void StateReader::add_to(Film& film) {
     const Rect& crop = header_.shape.crop;
     const size_t each = pixel_bytes(header_.shape);
     std::vector<uint8_t> row(static_cast<size_t>(crop.width()) * each);
-    const InputError damaged(path_.string(), "",
-                             "is damaged: its bytes are not those that were written");
     uint64_t taken = 0;
     for (int y = crop.y0; y < crop.y1; ++y) {
         file_.read(reinterpret_cast<char*>(row.data()), static_cast<std::streamsize>(row.size()));
-        if (!file_) throw damaged;
+        if (!file_) throw damaged();
         hash_ = fnv1a(row, hash_);
         for (int x = crop.x0; x < crop.x1; ++x) {
             const uint32_t before = film.taken_count(x, y);
@@ -184,7 +207,7 @@ void StateReader::add_to(Film& film) {
     }
     uint64_t written_hash = 0;
     file_.read(reinterpret_cast<char*>(&written_hash), sizeof written_hash);
-    if (!file_ || written_hash != hash_ || taken != header_.pixel_samples) throw damaged;
+    if (!file_ || written_hash != hash_ || taken != header_.pixel_samples) throw damaged();
 }
 
 }  // namespace petzval

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/film/film.h"
+#include "io/base/error.h"
 
 namespace petzval {
 
@@ -56,14 +57,20 @@ class StateReader {
     explicit StateReader(const std::filesystem::path&);
 
     [[nodiscard]] const StateHeader& header() const { return header_; }
+    /// Reads the file to its end. Throws InputError where the bytes are not those that were
+    /// written.
+    void check() const;
     /// Adds the sums to a film whose crop holds the state's, with the same layers and bins. Throws
     /// InputError where the bytes are not those that were written; the film is of no use then.
     void add_to(Film&);
 
   private:
+    [[nodiscard]] InputError damaged() const;
+
     std::filesystem::path path_;
     std::ifstream file_;
     StateHeader header_;
+    uint64_t header_bytes_ = 0;
     uint64_t hash_ = 0;  ///< of what was read
 };
 

@@ -402,13 +402,85 @@ TEST_F(LongRenders, NothingOfOthersIsReplaced) {
     const std::string finished = error_of(words({"--spp", "1", "-o", path("room.png")}), 2);
     EXPECT_NE(finished.find("has finished samples"), std::string::npos) << finished;
     EXPECT_TRUE(file_bytes(path("room.state")) == state);
+    const std::string skipping =
+        error_of(words({"--spp", "1", "-o", path("r.png"), "--skip-existing"}), 2);
+    EXPECT_NE(skipping.find("is no state of this program's"), std::string::npos) << skipping;
     run({"--spp", "1", "-o", path("r.png"), "--checkpoint", "off"});
     EXPECT_EQ(file_bytes(path("r.state")), "notes of mine");
+    run({"--spp", "2", "-o", path("room.png"),
+         "--skip-existing"});  // from the samples of the state
+    EXPECT_TRUE(file_bytes(path("room.state")) == state);
     // Messages are added to a log, and to nothing else.
     const std::string scene = file_bytes(scene_);
     EXPECT_NE(error_of(words({"-o", path("x.png"), "--log", scene_}), 2).find("is no log"),
               std::string::npos);
     EXPECT_TRUE(file_bytes(scene_) == scene);
+}
+
+// A state holds a command: nothing of it is done before its checksum is right.
+TEST_F(LongRenders, AChangedCommandIsNotRun) {
+    Process render(words({"--spp", "1000000", "-o", path("r.exr"), "--progress", "json"}));
+    ASSERT_TRUE(let_render(render, 50ms));
+    render.signal(SIGTERM);
+    ASSERT_EQ(render.wait().exit_code, 130);
+    std::string state = file_bytes(path("r.state"));
+    const size_t at = state.find("\"--spp\"");
+    ASSERT_NE(at, std::string::npos);
+    state.replace(at, 7, "\"--log\"");  // of the file 1000000, in the folder of the render
+    std::ofstream(path("r.state"), std::ios::binary) << state;
+    const Finished damaged = run_petzval({"resume", path("r.state")});
+    EXPECT_EQ(damaged.exit_code, 1);
+    EXPECT_NE(damaged.err.find("r.state: is damaged"), std::string::npos) << damaged.err;
+    EXPECT_FALSE(std::filesystem::exists("1000000"));
+}
+
+// As json, also where there is nothing to resume.
+TEST_F(LongRenders, ResumingTalksAsItIsAsked) {
+    const Finished none = run_petzval({"resume", path("none.state"), "--progress", "json"});
+    EXPECT_EQ(none.exit_code, 1);
+    std::istringstream lines(none.err);
+    int count = 0;
+    for (std::string line; std::getline(lines, line); ++count)
+        EXPECT_EQ(nlohmann::json::parse(line).at("schema"), "petzval.progress");
+    EXPECT_EQ(count, 2) << none.err;  // the error, and the end
+    const std::string spp = samples_for(1);
+    Process render(words({"--spp", spp, "-o", path("r.exr"), "--quiet"}));
+    std::this_thread::sleep_for(600ms);
+    render.signal(SIGTERM);
+    if (render.wait().exit_code != 130) GTEST_SKIP() << "it was over before the signal";
+    const Finished quiet = run_petzval({"resume", path("r.state"), "--progress", "percent"});
+    EXPECT_NE(quiet.err.find("PROGRESS 100%"), std::string::npos) << quiet.err;
+}
+
+// The words after "--" stay the last ones.
+TEST_F(LongRenders, ACommandWithTwoDashesGoesOn) {
+    const std::string spp = samples_for(1.5);
+    run({"--spp", spp, "-o", path("w.exr")});
+    Words asked = words({"--spp", spp, "-o", path("r.exr"), "--progress", "json"});
+    asked.erase(asked.begin() + 1);
+    asked.insert(asked.end(), {"--", scene_});
+    Process render(asked);
+    ASSERT_TRUE(let_render(render, 100ms));
+    render.signal(SIGTERM);
+    ASSERT_EQ(render.wait().exit_code, 130);
+    const Finished done = run_petzval({"resume", path("r.state"), "--threads", "1"});
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    expect_same("w.exr", "r.exr");
+}
+
+// A limit of time that was over when it was stopped: the pass under way is finished.
+TEST_F(LongRenders, ATimeLimitThatIsOverEndsEvenly) {
+    Process render(words({"--size", "300x200", "--time", "1s", "-o", path("t.state"), "--progress",
+                          "json", "--threads", "1"}));
+    ASSERT_TRUE(let_render(render, 300ms));
+    render.signal(SIGSTOP);
+    std::this_thread::sleep_for(1500ms);
+    render.signal(SIGTERM);
+    render.signal(SIGCONT);
+    if (render.wait().exit_code != 130) GTEST_SKIP() << "it was over before the signal";
+    EXPECT_EQ(run_petzval({"resume", path("t.state")}).exit_code, 0);
+    const Finished done = merge({"t.state"}, {"-o", path("t.exr")});
+    EXPECT_EQ(done.exit_code, 0) << done.err;
 }
 
 // A render of two seconds has no time for a checkpoint: one of another stays as it was.

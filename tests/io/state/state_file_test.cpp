@@ -182,6 +182,23 @@ TEST_F(StateFile, ImpossibleHeadersAreRefused) {
     }
 }
 
+// A header that is nested so deeply that copies of it would fill the stack.
+TEST_F(StateFile, DeepHeadersAreRefused) {
+    nlohmann::ordered_json deep = 1;
+    for (int i = 0; i < 100; ++i) deep = {deep};
+    write_state(path_, {kShape, kSamples, 0, deep}, filled(true));
+    EXPECT_NE(complaint().find("is damaged"), std::string::npos) << complaint();
+}
+
+TEST_F(StateFile, CheckReadsAllOfIt) {
+    write_state(path_, header_, filled(true));
+    std::vector<uint8_t> bad = bytes();
+    EXPECT_NO_THROW(StateReader(path_).check());
+    bad[bad.size() - 20] ^= 4;
+    write(bad);
+    EXPECT_THROW(StateReader(path_).check(), InputError);
+}
+
 // A disk that fills up: the state before is still there, whole.
 TEST_F(StateFile, IsWholeOrWhatItWas) {
     write_state(path_, header_, filled(false));

@@ -402,9 +402,11 @@ TEST_F(LongRenders, NothingOfOthersIsReplaced) {
     const std::string finished = error_of(words({"--spp", "1", "-o", path("room.png")}), 2);
     EXPECT_NE(finished.find("has finished samples"), std::string::npos) << finished;
     EXPECT_TRUE(file_bytes(path("room.state")) == state);
-    const std::string skipping =
-        error_of(words({"--spp", "1", "-o", path("r.png"), "--skip-existing"}), 2);
-    EXPECT_NE(skipping.find("is no state of this program's"), std::string::npos) << skipping;
+    const Finished skipping =
+        run_petzval(words({"--spp", "1", "-o", path("r.png"), "--skip-existing"}));
+    EXPECT_EQ(skipping.exit_code, 2);
+    EXPECT_NE(skipping.err.find("is no state of this program's"), std::string::npos)
+        << skipping.err;
     run({"--spp", "1", "-o", path("r.png"), "--checkpoint", "off"});
     EXPECT_EQ(file_bytes(path("r.state")), "notes of mine");
     run({"--spp", "2", "-o", path("room.png"),

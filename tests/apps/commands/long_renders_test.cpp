@@ -270,7 +270,8 @@ TEST_F(LongRenders, ResumingElsewhereMeansTheSameFiles) {
     Process render(relative, in_folder);
     ASSERT_TRUE(render.wait_for_stderr("\"phase\":\"rendering\""));
     render.signal(SIGTERM);
-    EXPECT_EQ(render.wait().exit_code, 130);
+    const Finished first = render.wait();
+    EXPECT_EQ(first.exit_code, 130) << first.err;
     Process again({"resume", path("r.state"), "--progress", "json"});
     ASSERT_TRUE(again.wait_for_stderr("\"phase\":\"rendering\""));
     again.signal(SIGTERM);

@@ -55,8 +55,11 @@ class Sequence {
             static_cast<void>(resolve(*parsed.options));
         }
         if (!o.sequence.sheet) return;
-        check_sheet(*o.sequence.sheet, {});
-        sheet_.emplace(items_.size());
+        SheetOptions options;
+        constexpr size_t kMostInARow = 3;  // so few are to be compared
+        if (items_.size() <= kMostInARow) options.columns = static_cast<int>(items_.size());
+        check_sheet(*o.sequence.sheet, options);
+        sheet_.emplace(items_.size(), options);
     }
     int run();
 

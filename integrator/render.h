@@ -4,7 +4,6 @@
 
 #include <array>
 #include <chrono>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -227,24 +226,6 @@ void render_samples(const Tracer& tracer, const Camera& camera, const RenderJob&
     return fits < pass ? static_cast<uint32_t>(fits) : pass;  // fits may be beyond uint32_t
 }
 
-/// Largest number of samples that a pixel of a film has taken.
-[[nodiscard]] inline uint32_t most_taken(const Film& film) {
-    uint32_t most = 0;
-    const Rect& crop = film.crop();
-    for (int y = crop.y0; y < crop.y1; ++y)
-        for (int x = crop.x0; x < crop.x1; ++x) most = std::max(most, film.taken_count(x, y));
-    return most;
-}
-
-/// Number of samples that every pixel of a film has taken.
-[[nodiscard]] inline uint32_t least_taken(const Film& film) {
-    uint32_t least = std::numeric_limits<uint32_t>::max();
-    const Rect& crop = film.crop();
-    for (int y = crop.y0; y < crop.y1; ++y)
-        for (int x = crop.x0; x < crop.x1; ++x) least = std::min(least, film.taken_count(x, y));
-    return least;
-}
-
 /// Renders every pixel of the film's crop. Pixels do not depend on the executor, its threads, the
 /// tile size, the crop or the passes. A film that has samples of this job goes on from there: each
 /// pixel has the first taken_count() of them.
@@ -263,10 +244,11 @@ RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob&
         return sum;
     };
 
-    const uint32_t wanted = job.end_sample - job.first_sample, before = least_taken(film);
+    const auto [before, most] = film.taken_range();
+    const uint32_t wanted = job.end_sample - job.first_sample;
     uint32_t done = before;
     std::optional<uint32_t> pass;  // that is under way: once begun, every pixel gets it
-    if (const uint32_t most = most_taken(film); most > before) pass = most - before;
+    if (most > before) pass = most - before;
     while (done < wanted && !monitor.stop) {
         if (!pass) {
             pass = pass_within(job, done, before, wanted, job.wall_s() - start_s);
@@ -296,7 +278,7 @@ RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob&
     }
     RenderResult result;
     result.stats = total();
-    result.end_sample = job.first_sample + least_taken(film);
+    result.end_sample = job.first_sample + film.taken_range().least;
     result.stopped = monitor.stop && result.end_sample < job.end_sample;
     for (const Worker& worker : workers) result.workers += worker.stats.tiles > 0;
     return result;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/setup/develop.h"
 #include "integrator/render.h"
 #include "io/image/difference.h"
 #include "io/image/picture_files.h"
@@ -68,7 +69,7 @@ class MethodRenders {
     [[nodiscard]] uint32_t seed_count() const { return static_cast<uint32_t>(films_.size()); }
     [[nodiscard]] uint32_t seed(uint32_t i) const { return first_seed_ + i; }
     [[nodiscard]] double cpu_s(uint32_t i) const { return cpu_s_[i]; }
-    [[nodiscard]] Picture picture(uint32_t i) const { return rgb_picture(films_[i]); }
+    [[nodiscard]] Picture picture(uint32_t i) const { return colours_of(films_[i], 3); }
 
     double spent_s = 0, last_s = 0;  ///< wall time of all turns, and of the last level
     [[nodiscard]] double next_s() const { return 2.1 * last_s; }
@@ -303,25 +304,6 @@ bool MeasuredCase::believed(const ChartPoint& point) const {
     return !reference.symmetric_mse || point.symmetric_mse().mean >= 2 * *reference.symmetric_mse;
 }
 
-Picture rgb_picture(const Film& film) {
-    const Rect crop = film.crop();
-    Picture picture;
-    picture.width = crop.width();
-    picture.height = crop.height();
-    picture.x = crop.x0;
-    picture.y = crop.y0;
-    picture.full_width = film.full_size().x;
-    picture.full_height = film.full_size().y;
-    picture.channels = {"R", "G", "B"};
-    picture.pixels.reserve(static_cast<size_t>(3 * picture.width) * picture.height);
-    for (int y = crop.y0; y < crop.y1; ++y)
-        for (int x = crop.x0; x < crop.x1; ++x) {
-            const V4f c = film.colour(x, y);
-            picture.pixels.insert(picture.pixels.end(), {c.x, c.y, c.z});
-        }
-    return picture;
-}
-
 ChartSeed errors_of(const Picture& picture, const Picture& reference, const Flip& flip) {
     const LayerDifference rgb = compare(picture, reference).front();
     return {.symmetric_mse = rgb.symmetric_mse.value(),
@@ -346,7 +328,7 @@ Picture read_reference(const std::filesystem::path& path, V2i size, Rect crop) {
     if (read.for_display)
         throw InputError(path.string(), "",
                          "holds values for a display, not light; give a rendered EXR");
-    Picture picture = rgb_picture(Film(size, crop, {}));
+    Picture picture = colours_of(Film(size, crop, {}), 3);
     const std::array<int, 3> from{channel_index(read, "R"), channel_index(read, "G"),
                                   channel_index(read, "B")};
     if (*std::min_element(from.begin(), from.end()) < 0)

@@ -75,8 +75,6 @@ struct MeasuredCase {
     [[nodiscard]] bool believed(const ChartPoint&) const;
 };
 
-/// A film as a plain picture of R, G and B.
-[[nodiscard]] Picture rgb_picture(const Film&);
 /// Errors of a picture from the reference, which `flip` holds too; seed and cost are left at 0.
 [[nodiscard]] ChartSeed errors_of(const Picture&, const Picture& reference, const Flip& flip);
 /// A reference from independent renders, three or more, with its own error from their spread.

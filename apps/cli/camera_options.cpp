@@ -149,6 +149,9 @@ CameraRequest resolve(CameraOptions& o, V2i frame, const TimeOptions& time) {
         if (r.name) throw CLI::ValidationError("--look-at", "excludes --camera");
     }
     if (!o.orbit_about.empty()) {
+        if (!r.orbit_deg)
+            throw CLI::ValidationError("--orbit-about",
+                                       "has no effect but with --orbit or --turntable");
         const auto at_m = parse_lengths_m("--orbit-about", o.orbit_about, 3);
         r.orbit_about = V3f(at_m[0], at_m[1], at_m[2]);
     }

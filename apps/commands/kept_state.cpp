@@ -60,10 +60,9 @@ std::optional<Film> KeptState::take_up(Compare compare, const Notice& notice) {
     if (!resumed && !keep_.skip_existing) {
         if (!keep_.state_is_wanted)
             notice(
-                fmt::format("warning: {0} is there from a render before, and the first "
-                            "checkpoint takes its place; petzval resume {0} would go on with "
-                            "that one",
-                            file->string()));
+                fmt::format("warning: {} is there from a render before, and the first checkpoint "
+                            "takes its place; petzval resume {} would go on with that one",
+                            file->string(), for_shell(file->string())));
         return std::nullopt;
     }
     try {
@@ -97,10 +96,6 @@ void KeptState::write(const fs::path& to, const Film& film, const RunFigures& no
     record.figures += now;
     write_state(to, header_of(record, shape_, samples), film);
     wrote_ = true;
-}
-
-void KeptState::write(const Film& film, const RunFigures& now, SampleRange samples) {
-    write(*keep_.state, film, now, samples);
 }
 
 void KeptState::remove_unfinished(const std::vector<fs::path>& pictures) const {

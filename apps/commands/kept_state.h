@@ -14,6 +14,7 @@
 
 namespace petzval {
 
+/// State of one render.
 class KeptState {
   public:
     /// keep must outlive it. A state that was moved goes on where it is. Throws ArgumentError where
@@ -29,13 +30,9 @@ class KeptState {
     /// runs before are those of the record then. Nothing where there are none. Throws InputError
     /// where a resumed state does not fit.
     [[nodiscard]] std::optional<Film> take_up(Compare, const Notice&);
-    /// Whether the render goes on from samples that were there.
-    [[nodiscard]] bool goes_on() const { return goes_on_; }
 
     /// Writes the samples so far, with the figures of this run, to a file. Throws OutputError.
     void write(const std::filesystem::path&, const Film&, const RunFigures&, SampleRange);
-    /// The same, to where it belongs.
-    void write(const Film&, const RunFigures&, SampleRange);
     /// Removes what this run and those before wrote, of a render whose pictures are there.
     void remove_unfinished(const std::vector<std::filesystem::path>& pictures) const;
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "apps/commands/merge.h"
+
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -10,7 +12,6 @@
 #include "apps/cli/output_checks.h"
 #include "apps/cli/reading_options.h"
 #include "apps/commands/render_files.h"
-#include "apps/commands/resume.h"
 #include "apps/setup/input_files.h"
 #include "apps/state/merge.h"
 #include "io/base/error.h"

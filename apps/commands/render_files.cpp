@@ -17,6 +17,20 @@ namespace petzval {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+// Whether a picture can be read to its end.
+bool is_whole(const fs::path& path) {
+    try {
+        static_cast<void>(read_picture(path));
+        return true;
+    } catch (const InputError&) {
+        return false;
+    }
+}
+
+}  // namespace
+
 void check_outputs(RenderOptions& o, const Rect& crop) {
     std::vector<NamedFile>& outputs = o.scene.outputs;
     std::vector<fs::path> partials;
@@ -79,20 +93,6 @@ std::vector<WriteOutcome> write_pictures(const std::vector<fs::path>& outputs,
     }
     return outcomes;
 }
-
-namespace {
-
-// Whether a picture can be read to its end.
-bool is_whole(const fs::path& path) {
-    try {
-        static_cast<void>(read_picture(path));
-        return true;
-    } catch (const InputError&) {
-        return false;
-    }
-}
-
-}  // namespace
 
 bool is_up_to_date(const fs::path& path, const RenderFacts& facts, const FilmShape& shape,
                    std::optional<SampleRange> samples) {

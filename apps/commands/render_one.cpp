@@ -52,6 +52,9 @@ class OneRender {
     [[nodiscard]] bool is_there() const;
     [[nodiscard]] RenderResult render(TbbExecutor&, Progress&);
     [[nodiscard]] int write_all(const RenderResult&, TbbExecutor&, Progress&, const SequencePlace&);
+    void write_state(const RenderResult&, const RunFigures&, std::vector<WriteOutcome>&);
+    [[nodiscard]] bool write_statistics(RunFigures, SampleRange, const RunReport&);
+    void show(const PictureRows& light, const SequencePlace&) const;
     void show_existing(const SequencePlace&) const;
     void advise_exposure(TbbExecutor&);
     [[nodiscard]] RunReport report_of(const Progress&, std::vector<WriteOutcome>,
@@ -113,7 +116,7 @@ void OneRender::choose_exposure(TbbExecutor& executor) {
 bool OneRender::is_there() const {
     if (!o_.keep.skip_existing) return false;
     if (o_.outputs.empty() && !o_.keep.state) return false;
-    if (o_.keep.state_is_wanted && !(film_ && least_taken(*film_) == samples_.count()))
+    if (o_.keep.state_is_wanted && !(film_ && film_->taken_range().least == samples_.count()))
         return false;
     std::optional<SampleRange> wanted = samples_;
     if (o_.job.time_limit_s) wanted.reset();
@@ -144,7 +147,8 @@ RenderResult OneRender::render(TbbExecutor& executor, Progress& progress) {
     if (job.time_limit_s) *job.time_limit_s -= kept_.record().figures.render_wall_s;
     Keeper keeper({checkpoint_interval_s(o_.keep, shape_.bytes()),
                    [&](const PathStats& stats) {
-                       kept_.write(*film_, figures_now(stats, executor.threads()), samples_);
+                       kept_.write(*o_.keep.state, *film_, figures_now(stats, executor.threads()),
+                                   samples_);
                    },
                    o_.keep.preview, o_.display, notice_},
                   monitor, *film_);
@@ -181,24 +185,40 @@ RunReport OneRender::report_of(const Progress& progress, std::vector<WriteOutcom
     return report;
 }
 
-// Writes the state where one is to stay, then pictures and statistics; the exit code.
+// Writes the state where one is to stay, or the render goes on later.
+void OneRender::write_state(const RenderResult& result, const RunFigures& figures,
+                            std::vector<WriteOutcome>& outcomes) {
+    const auto& state = o_.keep.state;
+    if (!state || !(result.stopped || o_.keep.state_is_wanted)) return;
+    const SampleRange wanted{samples_.first, result.stopped ? samples_.end : result.end_sample};
+    const WriteOutcome& one = outcomes.emplace_back(write_or_rescue(
+        *state, [&](const fs::path& to) { kept_.write(to, *film_, figures, wanted); }));
+    if (!one.written()) session_.console.error(one.message());
+    const fs::path& there = one.written() ? *state : one.rescue;
+    if (result.stopped && !there.empty())
+        notice_(fmt::format("stopped: petzval resume {} goes on", for_shell(there.string())));
+}
+
+// Writes the statistics of this run and those before it; whether that was possible.
+bool OneRender::write_statistics(RunFigures figures, SampleRange taken, const RunReport& report) {
+    figures += kept_.record().figures;
+    const StatsPicture picture{o_.scene.size.x, o_.scene.size.y, taken, setup_.from.exposure_ev,
+                               film_->bad_count()};
+    const WriteOutcome stats = write_or_rescue(
+        *o_.stats, [&](const fs::path& to) { write_stats(to, picture, figures, report); });
+    if (!stats.written()) session_.console.error(stats.message());
+    return stats.written();
+}
+
+// Writes the state, then pictures and statistics; the exit code.
 int OneRender::write_all(const RenderResult& result, TbbExecutor& executor, Progress& progress,
                          const SequencePlace& place) {
     const bool stopped = result.stopped;
     progress.begin(Phase::Writing);
-    RunFigures figures = figures_now(result.stats, result.workers);
+    const RunFigures figures = figures_now(result.stats, result.workers);
     std::vector<WriteOutcome> outcomes;
-    const auto state = o_.keep.state;
+    write_state(result, figures, outcomes);
     const SampleRange taken{samples_.first, result.end_sample};
-    if (state && (stopped || o_.keep.state_is_wanted)) {
-        const SampleRange wanted = stopped ? samples_ : taken;
-        outcomes.push_back(write_or_rescue(
-            *state, [&](const fs::path& to) { kept_.write(to, *film_, figures, wanted); }));
-        if (!outcomes.back().written()) session_.console.error(outcomes.back().message());
-        const fs::path& there = outcomes.back().written() ? *state : outcomes.back().rescue;
-        if (stopped && !there.empty())
-            notice_(fmt::format("stopped: petzval resume {} goes on", for_shell(there.string())));
-    }
     const FinishedFilm done{*film_, taken, kept_.record().facts};
     for (WriteOutcome& one :
          write_pictures(o_.outputs, o_.display, done, stopped, session_.console))
@@ -207,24 +227,20 @@ int OneRender::write_all(const RenderResult& result, TbbExecutor& executor, Prog
                                [](const WriteOutcome& one) { return one.written(); });
     // Else the state is all that is left.
     if (!stopped && written) kept_.remove_unfinished(o_.outputs);
-    if (!stopped && place.show)
-        place.show(
-            to_display(develop(*film_, taken, kept_.record().facts.metadata),
-                       o_.display.exposure_ev, o_.display.view, AlphaUse::Keep, o_.display.config),
-            o_.display);
+    if (!stopped && place.show) show(develop(*film_, taken, {}), place);
     if (!stopped) advise_exposure(executor);
-    if (o_.stats) {
-        figures += kept_.record().figures;
-        const StatsPicture picture{o_.scene.size.x, o_.scene.size.y, taken, setup_.from.exposure_ev,
-                                   film_->bad_count()};
-        const RunReport report = report_of(progress, std::move(outcomes), stopped);
-        const WriteOutcome stats = write_or_rescue(
-            *o_.stats, [&](const fs::path& to) { write_stats(to, picture, figures, report); });
-        if (!stats.written()) session_.console.error(stats.message());
-        written = written && stats.written();
-    }
+    if (o_.stats)
+        written =
+            write_statistics(figures, taken, report_of(progress, std::move(outcomes), stopped)) &&
+            written;
     if (!written) return kOutputFailed;
     return stopped ? kStopped : kSuccess;
+}
+
+// Shows light through the view that was asked for.
+void OneRender::show(const PictureRows& light, const SequencePlace& place) const {
+    const DisplayOptions& d = o_.display;
+    place.show(to_display(light, d.exposure_ev, d.view, AlphaUse::Keep, d.config), d);
 }
 
 // Shows a picture that is there, as a display or as light.
@@ -234,9 +250,7 @@ void OneRender::show_existing(const SequencePlace& place) const {
     if (there.for_display)
         place.show(as_display(there), o_.display);
     else
-        place.show(to_display(there, o_.display.exposure_ev, o_.display.view, AlphaUse::Keep,
-                              o_.display.config),
-                   o_.display);
+        show(there, place);
 }
 
 // What fixes the choices of this render for others: else the view, the focus and the brightness

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// petzval resume, petzval merge.
+// petzval resume.
 #pragma once
 
 #include <string>
@@ -17,7 +17,5 @@ namespace petzval {
 void add_resume_command(CLI::App&, Session&);
 /// Words that say how a command talks: of a resumed render, those of its state too.
 [[nodiscard]] std::vector<std::string> words_of_console(const std::vector<std::string>& words);
-/// Declares the command that adds states and writes their picture.
-void add_merge_command(CLI::App&, Session&);
 
 }  // namespace petzval

@@ -126,6 +126,26 @@ Metadata describe_render(const RenderSetup& setup, const RenderJob& job,
     return m;
 }
 
+Picture colours_of(const Film& film, int channels) {
+    const Rect crop = film.crop();
+    Picture out;
+    out.width = crop.width();
+    out.height = crop.height();
+    out.x = crop.x0;
+    out.y = crop.y0;
+    out.full_width = film.full_size().x;
+    out.full_height = film.full_size().y;
+    for (int i = 0; i < channels; ++i) out.channels.emplace_back(1, "RGBA"[i]);
+    out.pixels.reserve(static_cast<size_t>(channels) * static_cast<size_t>(out.width) *
+                       static_cast<size_t>(out.height));
+    for (int y = crop.y0; y < crop.y1; ++y)
+        for (int x = crop.x0; x < crop.x1; ++x) {
+            const V4f rgba = film.colour(x, y);
+            for (int i = 0; i < channels; ++i) out.pixels.push_back(rgba[i]);
+        }
+    return out;
+}
+
 PictureRows develop(const Film& film, SampleRange samples, const Metadata& of_render) {
     const Rect crop = film.crop();
     PictureLayout layout{.width = crop.width(),

@@ -23,6 +23,10 @@ inline constexpr const char* kSamples = "petzval:samples";
 /// crops.
 [[nodiscard]] Metadata describe_render(const RenderSetup&, const RenderJob&, const PathOptions&);
 
+/// Picture in memory of what a film has now: R, G, B in nits, and A where four channels are asked
+/// for.
+[[nodiscard]] Picture colours_of(const Film&, int channels);
+
 /// Picture of a film that has these samples: R, G, B, A in nits of the white point; with bins the
 /// channels S0 of io/image/spectral_layout.h, XYZ in nits and the standard errors of R, G and B;
 /// then the film's layers as "layer.channel". Metadata: those of the render, with the samples and

@@ -9,6 +9,8 @@
 #include <limits>
 #include <utility>
 
+#include "apps/setup/develop.h"
+
 namespace petzval {
 namespace {
 
@@ -18,26 +20,6 @@ constexpr double kNever_s = std::numeric_limits<double>::infinity();
 constexpr double kPreview_s = 3, kPreviewShare = 1. / 20;
 
 }  // namespace
-
-Picture snapshot(const Film& film) {
-    const Rect& crop = film.crop();
-    Picture out;
-    out.width = crop.width();
-    out.height = crop.height();
-    out.x = crop.x0;
-    out.y = crop.y0;
-    out.full_width = film.full_size().x;
-    out.full_height = film.full_size().y;
-    out.channels = {"R", "G", "B", "A"};
-    out.pixels.reserve(size_t(4) * static_cast<size_t>(out.width) *
-                       static_cast<size_t>(out.height));
-    for (int y = crop.y0; y < crop.y1; ++y)
-        for (int x = crop.x0; x < crop.x1; ++x) {
-            const V4f rgba = film.colour(x, y);
-            for (int i = 0; i < 4; ++i) out.pixels.push_back(rgba[i]);
-        }
-    return out;
-}
 
 Keeper::Keeper(KeeperPlan plan, RenderMonitor& monitor, const Film& film)
     : plan_(std::move(plan)),
@@ -49,17 +31,11 @@ Keeper::Keeper(KeeperPlan plan, RenderMonitor& monitor, const Film& film)
         thread_ = std::jthread([this](const std::stop_token& stop) { watch(stop); });
 }
 
-Keeper::~Keeper() {
-    if (!thread_.joinable()) return;
-    thread_.request_stop();
-    thread_.join();
-}
-
 void Keeper::finish() {
     if (!thread_.joinable()) return;
     thread_.request_stop();
     thread_.join();
-    if (plan_.preview) attempt([&] { write_preview(snapshot(film_)); }, preview_told_);
+    if (plan_.preview) attempt([&] { write_preview(colours_of(film_, 4)); }, preview_told_);
 }
 
 void Keeper::at_pause(const PathStats& stats) {
@@ -72,7 +48,7 @@ void Keeper::at_pause(const PathStats& stats) {
     }
     if (checkpoint) attempt([&] { plan_.write_checkpoint(stats); }, checkpoint_told_);
     std::optional<Picture> now;
-    if (preview) attempt([&] { now = snapshot(film_); }, preview_told_);
+    if (preview) attempt([&] { now = colours_of(film_, 4); }, preview_told_);
     const std::lock_guard lock(mutex_);
     if (checkpoint) checkpoint_due_s_ = steady_s() + *plan_.checkpoint_s;
     if (preview) {
@@ -90,7 +66,7 @@ void Keeper::watch(const std::stop_token& stop) {
             to_show_.reset();
             lock.unlock();
             const double start_s = steady_s();
-            write_preview(picture);
+            attempt([&] { write_preview(picture); }, preview_told_);
             const double pause_s = std::max(kPreview_s, (steady_s() - start_s) / kPreviewShare);
             lock.lock();
             preview_due_s_ = steady_s() + pause_s;
@@ -104,7 +80,7 @@ void Keeper::watch(const std::stop_token& stop) {
 }
 
 void Keeper::write_preview(const Picture& picture) {
-    attempt([&] { write_output(*plan_.preview, picture, plan_.display); }, preview_told_);
+    write_output(*plan_.preview, picture, plan_.display);
 }
 
 void Keeper::attempt(const std::function<void()>& action, bool& told) {

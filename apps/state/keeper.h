@@ -33,7 +33,6 @@ class Keeper {
   public:
     /// All must outlive it.
     Keeper(KeeperPlan, RenderMonitor&, const Film&);
-    ~Keeper();
     Keeper(const Keeper&) = delete;
     Keeper& operator=(const Keeper&) = delete;
 
@@ -56,10 +55,7 @@ class Keeper {
     std::optional<Picture> to_show_;           ///< snapshot that is to be written
     /// Whether it was told that one cannot be written.
     bool checkpoint_told_ = false, preview_told_ = false;
-    std::jthread thread_;  // last: it uses the rest
+    std::jthread thread_;  // last: it uses the rest, and ends first
 };
-
-/// Linear picture of what a film has now: R, G, B, A.
-[[nodiscard]] Picture snapshot(const Film&);
 
 }  // namespace petzval

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace petzval {
 namespace {
@@ -133,6 +134,15 @@ V3f Film::aov(int x, int y, size_t layer) const {
     const auto& sum = aov_sums_[offset(x, y) * aovs_.size() + layer];
     const auto mean = [&](int i) { return static_cast<float>(sum[size_t(i)].value() * scale); };
     return {mean(0), mean(1), mean(2)};
+}
+
+Film::TakenRange Film::taken_range() const {
+    TakenRange range{std::numeric_limits<uint32_t>::max(), 0};
+    for (const Pixel& p : pixels_) {
+        range.least = std::min(range.least, p.count + p.bad);
+        range.most = std::max(range.most, p.count + p.bad);
+    }
+    return range;
 }
 
 uint64_t Film::taken_count() const {

@@ -80,6 +80,11 @@ class Film {
     [[nodiscard]] uint32_t sample_count(int x, int y) const { return pixel(x, y).count; }
     /// Number of samples of a pixel that were not finite.
     [[nodiscard]] uint32_t bad_count(int x, int y) const { return pixel(x, y).bad; }
+    /// Fewest and most samples that a pixel has been given.
+    struct TakenRange {
+        uint32_t least, most;
+    };
+    [[nodiscard]] TakenRange taken_range() const;
     /// Number of samples of all pixels that were given to add().
     [[nodiscard]] uint64_t taken_count() const;
     /// Number of samples of a pixel that were given to add(), finite or not.

@@ -21,6 +21,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kMagic = "PETZVALS";
 constexpr uint64_t kVersion = 1;
+/// Bytes before the header: the text, the version and the length.
+constexpr size_t kStartBytes = kMagic.size() + 2 * sizeof(uint64_t);
 /// Longest header: a command line and the facts of a scene are far shorter.
 constexpr uint64_t kMostHeaderBytes = uint64_t(1) << 26;
 
@@ -138,7 +140,7 @@ StateReader::StateReader(const std::filesystem::path& path) : path_(path) {
     const uint64_t size = std::filesystem::file_size(path, error);
     file_.open(path, std::ios::binary);
     if (error || !file_) throw refuse("cannot be read");
-    std::array<uint8_t, 24> start{};
+    std::array<uint8_t, kStartBytes> start{};
     file_.read(reinterpret_cast<char*>(start.data()), start.size());
     if (!file_ || std::memcmp(start.data(), kMagic.data(), kMagic.size()) != 0)
         throw refuse("is no state of a render");
@@ -175,7 +177,8 @@ StateReader::StateReader(const std::filesystem::path& path) : path_(path) {
 void StateReader::check() const {
     std::ifstream file(path_, std::ios::binary);
     std::vector<uint8_t> part(1 << 20);
-    uint64_t left = 24 + header_bytes_ + header_.shape.bytes(), hash = fnv1a({}), written = 0;
+    uint64_t left = kStartBytes + header_bytes_ + header_.shape.bytes(), hash = fnv1a({}),
+             written = 0;
     while (left > 0 && file) {
         part.resize(std::min<uint64_t>(left, part.size()));
         file.read(reinterpret_cast<char*>(part.data()), static_cast<std::streamsize>(part.size()));

@@ -321,6 +321,28 @@ TEST(Render, ATimeLimitEndsAWholePass) {
     EXPECT_EQ(samples_within(1, 40, at_once), 40u) << "a clock that stands still";
 }
 
+// Pauses in the middle of a pass, by a clock that runs faster and faster: a pass that was begun is
+// finished in every pixel, whatever the time is then.
+TEST(Render, ATimeLimitWithPausesEndsEvenly) {
+    static const Studio studio(kSize);
+    for (const double limit_s : {60., 200., 900.}) {
+        Film film(kSize, kWhole, {});
+        RenderMonitor monitor;
+        RenderJob job = job_of(1u << 30);
+        job.time_limit_s = limit_s;
+        job.wall_s = [&] {
+            const double samples = double(monitor.pixel_samples_done) / (kSize.x * kSize.y);
+            return samples * samples;
+        };
+        InterruptingExecutor executor(monitor, monitor.pause, 700);
+        const RenderResult result =
+            render(*studio.tracer, *studio.camera, job, film, executor, monitor);
+        EXPECT_GE(result.end_sample, 7u);
+        EXPECT_EQ(film.taken_range().most, result.end_sample) << limit_s;
+        EXPECT_EQ(film.taken_range().least, result.end_sample) << limit_s;
+    }
+}
+
 // Not a number for one half of the picture.
 class BadTracer {
   public:

@@ -271,6 +271,7 @@ TEST_F(Sequences, WhatMakesNoSequenceIsRefused) {
             {{"--sweep", "fstop=1,2", "--frames", "1:2", "-o", path("s_#.png")}, "--frames"},
             {{"--turntable", "0", "-o", path("s_#.png")}, "--turntable"},
             {{"--turntable", "4", "--orbit", "3", "-o", path("s_#.png")}, "--orbit"},
+            {{"--orbit-about", "0,0,0", "-o", path("s.png")}, "--orbit-about: has no effect"},
             {{"render", scene_, "--samples", "4", "-o", path("s.png")}, "a range A:B of samples"},
             {{"render", scene_, "--samples", "8:4", "-o", path("s.png")}, "a range A:B of samples"},
             {{"-o", path("a.state"), "-o", path("b.state")}, "names two states"},

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "apps/cli/parse.h"
-#include "apps/commands/lens_request.h"
+#include "apps/commands/lens/request.h"
 #include "camera/bench/ray_bundle.h"
 #include "camera/lens/focus.h"
 

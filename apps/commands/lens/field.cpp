@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/commands/lens_field.h"
+#include "apps/commands/lens/field.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/commands/image.h"
+#include "apps/commands/image/image.h"
 
 #include <fmt/format.h>
 
@@ -12,8 +12,8 @@
 #include "apps/cli/output_checks.h"
 #include "apps/cli/parse.h"
 #include "apps/cli/reading_options.h"
-#include "apps/commands/image_edit.h"
-#include "apps/commands/image_shown.h"
+#include "apps/commands/image/edit.h"
+#include "apps/commands/image/shown.h"
 #include "apps/state/render_facts.h"
 #include "io/base/error.h"
 #include "io/base/overwrite.h"

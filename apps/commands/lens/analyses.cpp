@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "apps/cli/console.h"
-#include "apps/commands/lens_field.h"
+#include "apps/commands/lens/field.h"
 #include "camera/bench/analysis.h"
 #include "camera/bench/spot.h"
 #include "io/base/atomic_file.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/commands/image_shown.h"
+#include "apps/commands/image/shown.h"
 
 #include <fmt/format.h>
 

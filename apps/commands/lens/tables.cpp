@@ -11,7 +11,7 @@
 
 #include "apps/cli/console.h"
 #include "apps/cli/parse.h"
-#include "apps/commands/lens_request.h"
+#include "apps/commands/lens/request.h"
 #include "camera/bench/analysis.h"
 #include "camera/lens/blockage.h"
 #include "camera/lens/focus.h"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/commands/lens.h"
+#include "apps/commands/lens/lens.h"
 
 #include <algorithm>
 
 #include "apps/cli/console.h"
-#include "apps/commands/lens_request.h"
+#include "apps/commands/lens/request.h"
 #include "apps/setup/input_files.h"
 #include "io/glass/agf.h"
 #include "io/lens/lens_file.h"

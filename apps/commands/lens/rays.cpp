@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "apps/commands/lens_field.h"
-#include "apps/commands/lens_request.h"
+#include "apps/commands/lens/field.h"
+#include "apps/commands/lens/request.h"
 #include "camera/lens/traced_ray.h"
 #include "io/base/atomic_file.h"
 #include "io/lens/lens_drawing.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/shading/bsdf.h"
 
+#include <bit>
+
 #include "core/sampling/warp.h"
 
 namespace petzval {
@@ -53,7 +55,7 @@ f4 Bsdf::specular_reflectance(float wo_m) const {
 }
 
 f4 Bsdf::with_film(f4 bare, float wo_m) const {
-    return mix(bare, film_.reflectance(wo_m, eta_, f4{}), film_share_);
+    return mix(bare, film_on_glass_.reflectance(wo_m, eta_, f4{}), film_share_);
 }
 
 f4 Bsdf::film_reflectance(float wo_m) const {
@@ -131,19 +133,20 @@ BsdfValue Bsdf::eval_lobes(const V3f& wi) const {
         // Height-correlated masking and shadowing: Heitz 2014, equation 99.
         const float g2 = 1.f / (1.f + lambda_o_ + ggx_lambda(above, alpha_));
         const float single = d * g2 / (4.f * wo_.z);
-        const float pdf = pdf_of_normal(wo_m, d) / (4.f * wo_m);
+        const float by_normal = pdf_of_normal(wo_m, d) / (4.f * wo_m);
+        const float by_value = single / (albedo_f0_ + albedo_f90_);
+        const float pdf = even_weights_ ? by_value : by_normal;
         if (wi.z > 0.f) {
             f4 reflectance = specular_reflectance(wo_m);
-            float chance = p_spec_;
+            value.pdf += p_spec_ * pdf;
             if (glass_share_ > 0.f) {
                 const f4 r = zero_off(on_, glass_reflectance(wo_m));
                 reflectance += glass_share_ * r;
-                chance += p_glass_ * (1.f - p_lost_) * hsum(share_ * r);
+                value.pdf += p_glass_ * (1.f - p_lost_) * hsum(share_ * r) * by_normal;
             }
             value.f_cos += reflectance * single;
-            value.pdf += chance * pdf;
         } else {
-            value.f_cos += thin_ * (single / (albedo_f0_ + albedo_f90_));
+            value.f_cos += thin_ * by_value;
             value.pdf += p_thin_ * pdf;
         }
     }
@@ -225,6 +228,12 @@ std::optional<V3f> Bsdf::draw(float u_lobe, V2f u, bool led) const {
         const float u_glass = (u_lobe - p_spec_ - p_thin_) / p_glass_;
         if (u_glass >= 1.f - p_lost_) return draw_lost((u_glass + p_lost_ - 1.f) / p_lost_, u);
     }
+    if (even_weights_ && u_lobe < p_spec_ + p_thin_) {
+        const bool reflected = u_lobe < p_spec_;
+        const float u_more = reflected ? u_lobe / p_spec_ : (u_lobe - p_spec_) / p_thin_;
+        const std::optional<V3f> drawn = draw_evenly(u_more, u);
+        return reflected || !drawn ? drawn : mirror_below(*drawn);
+    }
     const V3f m = ggx_sample_visible(wo_, alpha_, u);
     const float wo_m = wo_.dot(m);
     if (wo_m <= 0.f) return std::nullopt;
@@ -239,6 +248,25 @@ std::optional<V3f> Bsdf::draw(float u_lobe, V2f u, bool led) const {
     if (lane < 0) return mirrored.z > 0.f ? std::optional(mirrored) : std::nullopt;
     const V3f wi = refract(wo_, m, wo_m, eta_[lane]);
     return wi.z < 0.f ? std::optional(wi) : std::nullopt;
+}
+
+// A reflection drawn in proportion to its value but for Fresnel's factor: facets are drawn until
+// one is met whose light leaves, with the share that masking lets go on. u_more is free to use.
+std::optional<V3f> Bsdf::draw_evenly(float u_more, V2f u) const {
+    constexpr uint32_t tries = 64;  // a try fails in three of four cases at most
+    const uint32_t seed =
+        hash32(std::bit_cast<uint32_t>(u_more),
+               hash32(std::bit_cast<uint32_t>(u.x), std::bit_cast<uint32_t>(u.y)));
+    for (uint32_t i = 0; i < tries; ++i) {
+        const V3f wi = reflect(wo_, ggx_sample_visible(wo_, alpha_, u));
+        if (wi.z > 0.f) {
+            const float all = 1.f + lambda_o_;
+            if (to_unit_float(hash32(seed, 3 * i)) * (all + ggx_lambda(wi, alpha_)) < all)
+                return wi;
+        }
+        u = V2f(to_unit_float(hash32(seed, 3 * i + 1)), to_unit_float(hash32(seed, 3 * i + 2)));
+    }
+    return std::nullopt;
 }
 
 std::optional<BsdfSample> Bsdf::sample_tilted(float u_lobe, V2f u, bool led) const {

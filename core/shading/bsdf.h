@@ -29,8 +29,9 @@ struct BsdfInput {
 
     /// KHR_materials_anisotropy: strength, and the direction of the wide lobe is x of the frame.
     float anisotropy = 0;
-    /// KHR_materials_iridescence: how much of the surface has a film, and which.
-    float film_share = 0, film_index = 1.3f, film_thickness_nm = 0;
+    /// KHR_materials_iridescence: how much of the surface has a film, and which. Its index is over
+    /// that outside the material, from both sides; over glass it is over the index on wo's side.
+    float film_share = 0, film_index = 1.3f, film_index_on_glass = 1.3f, film_thickness_nm = 0;
     f4 sheen{};                                 ///< KHR_materials_sheen: its colour
     float sheen_most = 0, sheen_roughness = 0;  ///< most: of the colour's R, G and B
     /// KHR_materials_diffuse_transmission: share of the diffuse light that leaves behind.
@@ -131,12 +132,14 @@ class Bsdf {
     [[nodiscard]] int draw_lane(f4 reflectance, float u, bool led) const;
     [[nodiscard]] std::optional<BsdfSample> sample_delta(float u_lobe, bool led) const;
     [[nodiscard]] std::optional<V3f> draw(float u_lobe, V2f u, bool led) const;
+    [[nodiscard, gnu::noinline]] std::optional<V3f> draw_evenly(float u_more, V2f u) const;
 
     V3f wo_, up_;
     bool tilted_;  ///< up is not z
     GgxWidth alpha_;
     f4 eta_, share_;  ///< share_: each lane's part of what the path carries
     bool disperses_, delta_;
+    bool even_weights_;  ///< reflections are drawn in proportion to their value
     float lambda_o_;
     // Reflection: single-scatter GGX times spec0 (1 - s) + spec90 s, multiple scattering included.
     f4 spec0_, spec90_;
@@ -154,7 +157,7 @@ class Bsdf {
                                          ///< the other side
     f4 sheen_colour_;
     Sheen sheen_;  ///< set where p_sheen_ > 0
-    ThinFilm film_;
+    ThinFilm film_, film_on_glass_;
     float film_share_;
     f4 film_coat_, film_metal_;  ///< factors on what a film on the coat and on the metal reflects
     f4 coat_n_, metal_n_, metal_k_;  ///< indices below the film, and of a measured metal

@@ -117,6 +117,7 @@ Bsdf::Bsdf(const BsdfInput& in, const Bands& bands, const V3f& wo, f4 throughput
     p_diffuse_ = hsum(diffuse_ * share_);
     p_thin_ = hsum(thin_ * share_);
     p_glass_ = glass_share_;
+    even_weights_ = !delta_ && p_thin_ + p_glass_ + p_behind_ > 0.f;
     const float sum = p_spec_ + p_diffuse_ + p_thin_ + p_glass_ + (p_behind_ + p_sheen_);
     const float scale = sum > 0.f ? 1.f / sum : 0.f;
     p_spec_ *= scale;
@@ -130,6 +131,7 @@ Bsdf::Bsdf(const BsdfInput& in, const Bands& bands, const V3f& wo, f4 throughput
 // The film replaces Fresnel's reflectance, of the coat and of the metal: KHR_materials_iridescence.
 Bsdf::FilmMeans Bsdf::means_of_film(const BsdfInput& in, const Bands& bands, f4 metal_f0) {
     film_ = ThinFilm(in.film_index, in.film_thickness_nm, bands);
+    film_on_glass_ = ThinFilm(in.film_index_on_glass, in.film_thickness_nm, bands);
     const float specular = in.dielectric_f90;
     coat_n_ = index_for_reflectance(specular > 0.f ? in.dielectric_f0 / specular : f4{});
     if (!measured_metal_) {

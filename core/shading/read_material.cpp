@@ -67,6 +67,28 @@ V3f face_towards(const V3f& n, const V3f& wo) {
     return cosine >= least_cosine ? n : unit(n + wo * (least_cosine - cosine));
 }
 
+// Normal of a map, turned towards the surface's own, `up`, until the mirror image of wo about it
+// just leaves the surface. In the plane of the two, where the normal stands at an angle t from `up`
+// and wo has the coordinates a along it and b along `up`, the image's height is a sin 2t + b cos
+// 2t. Both normals lie on wo's side.
+V3f reflect_outwards(const V3f& n, const V3f& up, const V3f& wo) {
+    constexpr float least_height = 0.01f;
+    const float b = wo.dot(up), cosine = n.dot(up), height = std::min(least_height, 0.5f * b);
+    if (2.f * n.dot(wo) * cosine - b >= height) return n;
+    const V3f across = n - up * cosine;
+    if (!(across.dot(across) > 1e-12f)) return up;
+    const V3f x = unit(across);
+    const float a = wo.dot(x), length2 = sqr(a) + sqr(b);
+    const float cos2 = (b * height - a * safe_sqrt(length2 - sqr(height))) / length2;
+    return unit(up * safe_sqrt(0.5f + 0.5f * cos2) + x * safe_sqrt(0.5f - 0.5f * cos2));
+}
+
+// The shading normal on wo's side; n is on the front side, and from a map if it says so.
+V3f shading_normal(const Surface& s, const V3f& n, bool mapped, const V3f& wo) {
+    const V3f facing = face_towards(s.front ? n : -n, wo);
+    return mapped ? reflect_outwards(facing, s.side, wo) : facing;
+}
+
 // Reflectance at normal incidence: KHR_materials_ior and KHR_materials_specular. outside: what lies
 // before the material, or null for air.
 Rgb dielectric_f0(const Material& m, const Material* outside, Rgb specular_color, float specular) {
@@ -123,7 +145,7 @@ class Layers {
         const V3f n = mapped
                           ? mapped_normal(scene_, s_, locate(scene_, s_, map), m_.coat_normal_scale)
                           : s_.ns;
-        coat.normal = unit(frame.to_local(face_towards(s_.front ? n : -n, wo_)));
+        coat.normal = unit(frame.to_local(shading_normal(s_, n, mapped, wo_)));
         if (coat.normal.z > kSameNormal) coat.normal = V3f(0, 0, 1);
     }
 
@@ -152,11 +174,14 @@ class Layers {
             frame = Frame::about(frame.z, t->tangent * along.x + t->bitangent * along.y);
     }
 
-    // front: what lies before the film, or null for air.
-    void read_film(const Material* front, BsdfInput& b) const {
+    // outside and front: what lies outside the material, and before the surface; null for air.
+    void read_film(const Material* outside, const Material* front, BsdfInput& b) const {
         if (!(m_.iridescence > 0.f)) return;
         b.film_share = m_.iridescence * channel(m_.iridescence_texture, 0);
-        b.film_index = m_.film_ior / index_of(front, Bands::rgb())[0];
+        b.film_index = m_.film_ior / index_of(outside, Bands::rgb())[0];
+        // Diffuse light goes in at all angles, and none of them may keep it in for ever.
+        if (m_.diffuse_transmission > 0.f) b.film_index = std::max(b.film_index, 1.f);
+        b.film_index_on_glass = m_.film_ior / index_of(front, Bands::rgb())[0];
         b.film_thickness_nm =
             lerp(m_.film_thinnest_nm, m_.film_thickest_nm, channel(m_.film_thickness_texture, 1));
         if (!(b.film_thickness_nm > 0.f)) b.film_share = 0.f;
@@ -217,9 +242,9 @@ ShadingInput read_material(const Scene& scene, const Surface& s, const MaterialL
     base[3] = 0.f;
     const Rgb base_color(base);
     V3f n = s.ns;
-    if (m.normal_texture.present() && !s.mesh->tangents.empty())
-        n = mapped_normal(scene, s, lookups.normal, m.normal_scale);
-    out.frame = Frame::about(face_towards(s.front ? n : -n, wo));
+    const bool mapped = m.normal_texture.present() && !s.mesh->tangents.empty();
+    if (mapped) n = mapped_normal(scene, s, lookups.normal, m.normal_scale);
+    out.frame = Frame::about(shading_normal(s, n, mapped, wo));
     const bool layered = m.layered();
     const Layers layers(scene, s, wo, bands);
     if (layered) layers.read_anisotropy(out.frame, out.bsdf);
@@ -266,7 +291,7 @@ ShadingInput read_material(const Scene& scene, const Surface& s, const MaterialL
     if (layered) {
         layers.read_coat(out.frame, out.coat);
         layers.read_sheen(b);
-        layers.read_film(m.has_volume ? sides.before : outside, b);
+        layers.read_film(outside, sides.before, b);
         layers.read_diffuse_transmission(b);
     }
     return out;

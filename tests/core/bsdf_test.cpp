@@ -67,6 +67,11 @@ BsdfInput thin_glass(float roughness) {
     return in;
 }
 
+BsdfInput half_metal(BsdfInput in) {
+    in.metallic = 0.5f;
+    return in;
+}
+
 // Mean weight over a jittered grid: lobes along one axis, directions along the two others.
 float albedo_of(const BsdfInput& in, const V3f& wo, const V3f& up, int side) {
     const Bsdf bsdf(in, Bands::rgb(), wo, splat(1.f), up);
@@ -110,6 +115,26 @@ TEST(Bsdf, OpaqueWhiteReflectsEverythingAtEveryRoughness) {
                     << "metallic " << metallic << " roughness " << roughness << " cosine "
                     << cosine;
             }
+}
+
+// In a closed body that light can enter, rough metal reflects a path many times before it finds a
+// way out. If a white weight has the variance v and the share r stays inside, the variance of a
+// path is finite only where r (1 + v) < 1: reflections are drawn so that nearly all weigh the same.
+TEST(Bsdf, WeightsOfRoughMetalWithGlassAreEven) {
+    for (const BsdfInput& body : {glass(1.f, 1.001f), glass(1.f, 1 / 1.5f), thin_glass(1.f)}) {
+        BsdfInput in = body;
+        in.metallic = 0.81f;
+        test::Random random(3);
+        test::Moments weights;
+        for (int i = 0; i < 100000; ++i) {
+            const float cosine = random.next(), u_lobe = random.next();
+            const auto s = Bsdf(in, Bands::rgb(), from_cosine(std::max(cosine, 0.01f)))
+                               .sample(u_lobe, random.next2());
+            weights.add(s ? double(s->weight[0]) : 0);
+        }
+        EXPECT_NEAR(weights.mean(), 1, 0.005);
+        EXPECT_LT(0.81 * (1 + weights.variance()), 0.9) << weights.variance();
+    }
 }
 
 // What a normal map tilts keeps its light: no direction is lost behind the surface.
@@ -315,21 +340,23 @@ TEST_P(BsdfSampling, WeightsIntegrateTheValue) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, BsdfSampling,
-    testing::Values(Case{"diffuse", dielectric(1.f), 0.7f}, Case{"coat", dielectric(0.4f), 0.4f},
-                    Case{"metal", metal(0.5f), 0.6f}, Case{"grazing metal", metal(0.7f), 0.1f},
-                    Case{"glass in", glass(0.5f, 1.5f), 0.7f},
-                    Case{"glass out", glass(0.5f, 1 / 1.5f), 0.8f},
-                    Case{"thin", thin_glass(0.6f), 0.5f}, Case{"gold", gold(0.5f), 0.6f},
-                    Case{"dispersing in", dispersing(0.5f, false), 0.7f, 0},
-                    Case{"dispersing out", dispersing(0.5f, true), 0.8f, 2},
-                    Case{"one lane left", dispersing(0.5f, true), 0.8f, 2, f4{0, 0, 1, 0}},
-                    Case{"unequal lanes", dispersing(0.4f, false), 0.6f, 1, f4{1, 0.2f, 3, 0}},
-                    Case{"tilted diffuse", dielectric(1.f), 0.7f, 1, splat(1.f), kTilted},
-                    Case{"tilted metal", metal(0.4f), 0.6f, 1, splat(1.f), kTilted},
-                    Case{"tilted thin", thin_glass(0.5f), 0.5f, 1, splat(1.f), kTilted},
-                    Case{"tilted glass", glass(0.5f, 1.5f), 0.7f, 1, splat(1.f), kTilted},
-                    Case{"tilted dispersing", dispersing(0.5f, true), 0.8f, 2, splat(1.f),
-                         kTilted}),
+    testing::Values(
+        Case{"diffuse", dielectric(1.f), 0.7f}, Case{"coat", dielectric(0.4f), 0.4f},
+        Case{"metal", metal(0.5f), 0.6f}, Case{"grazing metal", metal(0.7f), 0.1f},
+        Case{"glass in", glass(0.5f, 1.5f), 0.7f}, Case{"glass out", glass(0.5f, 1 / 1.5f), 0.8f},
+        Case{"thin", thin_glass(0.6f), 0.5f}, Case{"gold", gold(0.5f), 0.6f},
+        Case{"dispersing in", dispersing(0.5f, false), 0.7f, 0},
+        Case{"dispersing out", dispersing(0.5f, true), 0.8f, 2},
+        Case{"one lane left", dispersing(0.5f, true), 0.8f, 2, f4{0, 0, 1, 0}},
+        Case{"unequal lanes", dispersing(0.4f, false), 0.6f, 1, f4{1, 0.2f, 3, 0}},
+        Case{"metal and glass", half_metal(glass(1.f, 1 / 1.5f)), 0.6f},
+        Case{"metal and a rough pane", half_metal(thin_glass(0.6f)), 0.3f},
+        Case{"tilted metal and glass", half_metal(glass(0.7f, 1.5f)), 0.6f, 1, splat(1.f), kTilted},
+        Case{"tilted diffuse", dielectric(1.f), 0.7f, 1, splat(1.f), kTilted},
+        Case{"tilted metal", metal(0.4f), 0.6f, 1, splat(1.f), kTilted},
+        Case{"tilted thin", thin_glass(0.5f), 0.5f, 1, splat(1.f), kTilted},
+        Case{"tilted glass", glass(0.5f, 1.5f), 0.7f, 1, splat(1.f), kTilted},
+        Case{"tilted dispersing", dispersing(0.5f, true), 0.8f, 2, splat(1.f), kTilted}),
     [](const auto& case_info) {
         std::string name = case_info.param.name;
         for (char& c : name) c = c == ' ' ? '_' : c;

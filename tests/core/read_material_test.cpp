@@ -76,8 +76,9 @@ TEST(MaterialLayers, AFilmWithoutATextureIsAsThickAsItMayBe) {
     EXPECT_EQ(s.at_middle().bsdf.film_thickness_nm, 400.f);
 }
 
-// A sheet without a volume has air on both sides; within a volume the film lies before its index.
-TEST(MaterialLayers, AFilmIsTheSameFromBothSidesOfASheet) {
+// Where light is not refracted, the film lies between the outside and the material from both sides,
+// as Fresnel's reflectance does. Over glass, from within, it lies before the glass.
+TEST(MaterialLayers, AFilmIsTheSameFromBothSides) {
     for (const bool volume : {false, true})
         for (const float side : {1.f, -1.f}) {
             Square s;
@@ -86,9 +87,51 @@ TEST(MaterialLayers, AFilmIsTheSameFromBothSidesOfASheet) {
             s.m.transmission = 1;
             s.m.has_volume = volume;
             const float front = volume && side < 0 ? s.m.ior : 1.f;
-            EXPECT_NEAR(s.at_middle(V3f(0, 0, side)).bsdf.film_index, 1.8f / front, 1e-6f)
-                << volume << ' ' << side;
+            const BsdfInput in = s.at_middle(V3f(0, 0, side)).bsdf;
+            EXPECT_NEAR(in.film_index, 1.8f, 1e-6f) << volume << ' ' << side;
+            EXPECT_NEAR(in.film_index_on_glass, 1.8f / front, 1e-6f) << volume << ' ' << side;
         }
+}
+
+// A mapped normal about which the viewer's mirror image leaves the surface is kept; any other is
+// turned in its plane with the surface's normal until the image grazes.
+TEST(MaterialLayers, MappedNormalsAreBentUntilReflectionsLeave) {
+    int kept = 0, bent = 0;
+    for (const bool coat : {false, true})
+        for (const float tilt_deg : {10.f, 30.f, 50.f, 80.f, 100.f, 170.f})
+            for (const float view_deg : {-89.f, -60.f, -20.f, 0.f, 40.f, 80.f})
+                for (const float side : {1.f, -1.f}) {
+                    const float tilt = tilt_deg * kPi / 180, view = view_deg * kPi / 180;
+                    Square s;
+                    s.m.coat = coat ? 1.f : 0.f;
+                    TextureSlot& slot = coat ? s.m.coat_normal_texture : s.m.normal_texture;
+                    s.scene.images.push_back({"", 1, 1,
+                                              std::vector<float>{std::sin(tilt) / 2 + 0.5f, 0.5f,
+                                                                 std::cos(tilt) / 2 + 0.5f, 1.f}});
+                    slot.image = 0;
+                    const V3f wo = V3f(std::sin(view), 0.3f, std::cos(view)) * side;
+                    const V3f to_eye = unit(wo), up = V3f(0, 0, side);
+                    const ShadingInput in = s.at_middle(to_eye);
+                    const V3f n = coat ? in.frame.to_world(in.coat.normal) : in.frame.z;
+                    const V3f map = V3f(std::sin(tilt), 0, std::cos(tilt)) * side;
+                    const auto height = [&](const V3f& m) {
+                        return up.dot(m * (2 * m.dot(to_eye)) - to_eye);
+                    };
+                    const float most = std::min(0.01f, 0.5f * up.dot(to_eye));
+                    EXPECT_GT(n.dot(to_eye), 0.f) << tilt_deg << ' ' << view_deg;
+                    EXPECT_GT(height(n), 0.9f * most) << tilt_deg << ' ' << view_deg;
+                    if (map.dot(to_eye) > 0.01f && height(map) > 0.02f) {
+                        expect_near(n, map);
+                        ++kept;
+                    } else if (map.dot(to_eye) > 0.01f && height(map) < 0.f) {
+                        EXPECT_NEAR(height(n), most, 1e-4f) << tilt_deg << ' ' << view_deg;
+                        EXPECT_NEAR(n.y, 0.f, 1e-5f);
+                        EXPECT_GE(n.x * side, -1e-5f);
+                        ++bent;
+                    }
+                }
+    EXPECT_GT(kept, 10);
+    EXPECT_GT(bent, 10);
 }
 
 // (0.6, 0, 0.8) in each map, one turned; the coat without a map has the mesh's normal.

@@ -58,6 +58,35 @@ TEST(Path, NormalMapsTakeNoLightAtAnyTilt) {
             }
 }
 
+// A polished floor whose map is so steep that it would mirror the viewer into the floor shows what
+// is at the horizon, not a lamp above it.
+TEST(Path, ASteepNormalMapDoesNotMirrorTheLampsAbove) {
+    for (const bool coat : {false, true}) {
+        World world;
+        Material m;
+        m.metallic = coat ? 0.f : 1.f;
+        m.roughness = 0.f;
+        if (coat) {
+            m.base_color = Rgb(0.f);
+            m.specular = 0;
+            m.coat = 1;
+        }
+        place_tilted(world, m, 60);
+        if (coat) {
+            Material& placed = world.scene.materials.back();
+            std::swap(placed.normal_texture, placed.coat_normal_texture);
+        }
+        // Seen from above, a normal at 60 degrees sends the image 30 degrees below the horizon.
+        // The lamp is 30 degrees above it.
+        place(world.scene, quad(V3f(1.5f, -1, 0.5f), V3f(0, 2, 0), V3f(0, 0, 1)),
+              emitter_material(5.f));
+        world.finish();
+        const Mean e =
+            estimate(world, PathOptions(), 16, [](V2f) { return ray_to(V3f(0, 0, 3), V3f(0.f)); });
+        EXPECT_EQ(e.value, 0) << coat;
+    }
+}
+
 TEST(Path, TechniquesAgreeOnATiltedNormal) {
     World world;
     Material m;

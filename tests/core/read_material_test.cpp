@@ -89,7 +89,9 @@ TEST(MaterialLayers, AFilmIsTheSameFromBothSides) {
             const float front = volume && side < 0 ? s.m.ior : 1.f;
             const BsdfInput in = s.at_middle(V3f(0, 0, side)).bsdf;
             EXPECT_NEAR(in.film_index, 1.8f, 1e-6f) << volume << ' ' << side;
-            EXPECT_NEAR(in.film_index_on_glass, 1.8f / front, 1e-6f) << volume << ' ' << side;
+            if (volume) {
+                EXPECT_NEAR(in.film_index_on_glass, 1.8f / front, 1e-6f) << side;
+            }
         }
 }
 

@@ -120,22 +120,23 @@ Mean furnace(const Material& m, Shape shape, bool behind, uint32_t samples) {
 // mean that stands at the very limit passes with a chance of 0.3 % by Student's t.
 TEST(Mixtures, VanishInAWhiteFurnace) {
     Mixtures mixtures(37);
-    int seen = 0;
+    test::Moments all;
     for (int i = 0; i < 200; ++i) {
         const Mixture mixture = mixtures.next();
         const auto shape = static_cast<Shape>(i % 4);
         for (const bool behind : {false, true}) {
             if (behind && closed(shape) && way_out(mixture.m) < 0.1f) continue;
-            const Mean e = furnace(mixture.m, shape, behind, 64);
+            const Mean e = furnace(mixture.m, shape, behind, 256);
             EXPECT_GT(e.value, 0.99 - 3 * e.error)
                 << i << (behind ? " behind" : " before") << mixture.words << ": " << e;
             EXPECT_LT(e.value, 1.003 + 3 * e.error)
                 << i << (behind ? " behind" : " before") << mixture.words << ": " << e;
             EXPECT_LT(e.error, 0.03) << i << mixture.words;
-            ++seen;
+            all.add(e.value);
         }
     }
-    EXPECT_GT(seen, 300);
+    EXPECT_GT(all.count(), 300);
+    EXPECT_TRUE(test::agrees(all, 1, 0.003)) << Mean(all);
 }
 
 // Diffuse light enters at all angles: no film may keep it in, whatever lies before it.

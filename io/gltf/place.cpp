@@ -13,6 +13,7 @@
 #include "io/gltf/arrays.h"
 #include "io/gltf/meshes/bake.h"
 #include "io/gltf/meshes/flat.h"
+#include "io/gltf/meshes/matrix.h"
 #include "io/gltf/meshes/repair.h"
 #include "io/gltf/meshes/tangents.h"
 #include "io/gltf/meshes/triangles.h"
@@ -78,12 +79,13 @@ class Placer {
 
     void place_primitive(const Placement& placement, const tinygltf::Primitive& primitive,
                          uint32_t material, const std::string& where) {
-        Mesh mesh = read_shaded(placement.morph_weights, primitive, material, tally_);
-        mesh.material = material;
+        SourceMesh source = read_shaded(placement.morph_weights, primitive, material);
+        Mesh& mesh = source.mesh;
         if (mesh.triangles.empty()) return;
 
-        const Mesh unposed = deforms(placement) ? mesh : Mesh();
-        const bool posed = pose(placement, primitive, std::nullopt, mesh);
+        const bool deforming = deforms(placement, primitive);
+        const SourceMesh unposed = deforming ? source : SourceMesh();
+        const bool posed = pose(placement, primitive, std::nullopt, source);
         if (posed) tally_.honoured.insert("skins, in the pose that the nodes stand in");
         const bool baked =
             posed || (placement.places == 1 && !placement.moves && !placement.morphs);
@@ -91,7 +93,7 @@ class Placer {
             each_place(placement,
                        [&](int, const M44d& to_world, const M44d&) { bake(mesh, to_world); });
         const std::optional<Thinning> deformation =
-            deforms(placement) ? add_steps(placement, primitive, unposed, mesh) : std::nullopt;
+            deforming ? add_steps(placement, primitive, unposed, mesh) : std::nullopt;
         check_finite(mesh, where);
         // What has no area now may have some at another time.
         if (mesh.steps.empty()) tally_.zero_area_triangles += remove_zero_area(mesh);
@@ -119,7 +121,7 @@ class Placer {
             scene_.instances.push_back(instance(index, node, to_world, bounds));
             scene_.instances.back().moves = deforms_here;
             const auto* const places = motion_.places(node);
-            if (!places && deformation) note_off(scaled(*deformation, stretch(to_world)));
+            if (!places && deformation) note_off(deformation->scaled(stretch(to_world)));
             if (places) move_instance(node, *places, {to_world, own}, bounds, deformation);
         });
     }
@@ -132,18 +134,18 @@ class Placer {
             return;
         }
         StrokeSource source = read_stroke(gltf_, primitive, placement.morph_weights, tally_);
-        Mesh& vertices = source.vertices;
+        Mesh& vertices = source.vertices.mesh;
         const StrokeShapes shapes = shapes_of(source, primitive.mode, tally_.broken_strokes);
         count(repair_values(vertices), tally_);
         memory_.ask(kInstanceBytes, placement.places,
                     shapes.spheres.size() + shapes.cylinders.size(), where);
         const uint32_t material = materials_.use(material_of_file);
         tally_.honoured.insert("points and lines, as spheres and cylinders");
-        if (placement.moves || deforms(placement))
+        if (placement.moves || deforms(placement, primitive))
             tally_.warnings.push_back(where +
                                       ": moving points and lines are shown as they are in "
                                       "the middle of the exposure");
-        if (pose(placement, primitive, std::nullopt, vertices)) {
+        if (pose(placement, primitive, std::nullopt, source.vertices)) {
             strokes_->add(material, vertices, shapes, M44d());
             return;
         }
@@ -153,9 +155,10 @@ class Placer {
     }
 
     // Whether the shape of a mesh changes while the shutter is open.
-    [[nodiscard]] bool deforms(const Placement& placement) const {
+    [[nodiscard]] bool deforms(const Placement& placement,
+                               const tinygltf::Primitive& primitive) const {
         if (placement.morphs) return true;
-        if (placement.skin < 0) return false;
+        if (placement.skin < 0 || !has_joints(primitive)) return false;
         const auto& joints = gltf_.typed.skins[static_cast<size_t>(placement.skin)].joints;
         return std::any_of(joints.begin(), joints.end(),
                            [&](int node) { return motion_.places(node) != nullptr; });
@@ -171,7 +174,7 @@ class Placer {
 
     // Moves a mesh by its skin as it is at a time step, or in the middle; false where it has none.
     bool pose(const Placement& placement, const tinygltf::Primitive& primitive,
-              std::optional<size_t> step, Mesh& mesh) const {
+              std::optional<size_t> step, SourceMesh& mesh) const {
         return placement.skin >= 0 &&
                pose_by_skin(gltf_, joints_at(placement, step), primitive, mesh);
     }
@@ -179,46 +182,27 @@ class Placer {
     // Adds the shapes that a mesh takes while the shutter is open, at as few steps as will do;
     // tells how well that follows them, in the mesh's own space or, with a skin, in the world.
     std::optional<Thinning> add_steps(const Placement& placement,
-                                      const tinygltf::Primitive& primitive, const Mesh& unposed,
-                                      Mesh& mesh) {
-        const Thinning thinning = thinning_of(placement, primitive, unposed);
-        memory_.ask(kVertexStepBytes, 1, unposed.positions.size(),
-                    json_path("meshes", placement.mesh),
+                                      const tinygltf::Primitive& primitive,
+                                      const SourceMesh& unposed, Mesh& mesh) {
+        const Thinning thinning = thinning_of(placement, primitive, unposed.mesh);
+        memory_.ask(kVertexStepBytes, 1, mesh.positions.size(), json_path("meshes", placement.mesh),
                     (motion_.steps() - 1) / thinning.stride + 1);
         const auto* const weights = motion_.weights(placement.nodes.front());
         for (size_t step = 0; step < motion_.steps(); step += thinning.stride) {
-            GltfTally uncounted;
-            Mesh shape = weights
-                             ? read_shaded((*weights)[step], primitive, mesh.material, uncounted)
-                             : unposed;
-            (void)pose(placement, primitive, step, shape);
-            if (shape.positions.size() != mesh.positions.size()) {  // triangles broke on the way
+            SourceMesh shape = unposed;
+            if (weights && !reshape(shape, (*weights)[step], primitive)) {
                 mesh.steps.clear();
                 tally_.warnings.push_back(json_path("meshes", placement.mesh) +
                                           ": its shape is broken at times; it keeps that of the "
                                           "middle of the exposure");
                 return std::nullopt;
             }
-            mesh.steps.push_back(
-                {std::move(shape.positions), std::move(shape.normals), std::move(shape.tangents)});
+            (void)pose(placement, primitive, step, shape);
+            mesh.steps.push_back({std::move(shape.mesh.positions), std::move(shape.mesh.normals),
+                                  std::move(shape.mesh.tangents)});
         }
         ++tally_.deforming_meshes;
         return thinning;
-    }
-
-    // Greatest factor by which a matrix makes something longer, or a little more.
-    static double stretch(const M44d& m) {
-        double most = 0;
-        for (int i = 0; i < 3; ++i) {
-            double sum = 0;  // of a row of the matrix times its transpose: bounds its eigenvalues
-            for (int j = 0; j < 3; ++j) sum += std::fabs(row(m, i).dot(row(m, j)));
-            most = std::max(most, sum);
-        }
-        return std::sqrt(most);
-    }
-
-    static Thinning scaled(const Thinning& of, double factor) {
-        return {of.stride, of.off_m * factor, of.size_m * factor};
     }
 
     void note_off(const Thinning& thinning) {
@@ -366,23 +350,48 @@ class Placer {
             instances.reserve(std::max(needed, instances.size() + instances.size() / 2));
     }
 
-    // Tangents are found before the mesh is moved, so that every copy of it shades alike.
-    Mesh read_shaded(const std::vector<double>& morph_weights, const tinygltf::Primitive& primitive,
-                     uint32_t material_index, GltfTally& tally) {
+    // A primitive with the file's vertices, its values repaired.
+    Mesh read_repaired(const std::vector<double>& morph_weights,
+                       const tinygltf::Primitive& primitive, uint32_t material_index,
+                       GltfTally& tally) const {
         const Material& material = scene_.materials[material_index];
-        const bool with_tangents = material.needs_tangents();
         Mesh mesh = read_primitive(
-            gltf_, primitive, {morph_weights, with_tangents, materials_.more_sets(material_index)},
+            gltf_, primitive,
+            {morph_weights, material.needs_tangents(), materials_.more_sets(material_index)},
             tally);
+        mesh.material = material_index;
         count(repair_values(mesh), tally);
         tally.unmapped_primitives += add_missing_uv(mesh, material);
         tally.replaced_normals += repair_normals(mesh);
         repair_tangents(mesh);
-        if (with_tangents && mesh.tangents.empty()) {
-            add_tangents(mesh, material.tangent_slot());
-            tally.honoured.insert("tangents computed for normal maps");
-        }
         return mesh;
+    }
+
+    // Tangents are found before the mesh is moved, so that every copy of it shades alike.
+    SourceMesh read_shaded(const std::vector<double>& morph_weights,
+                           const tinygltf::Primitive& primitive, uint32_t material_index) {
+        SourceMesh source(read_repaired(morph_weights, primitive, material_index, tally_));
+        const Material& material = scene_.materials[material_index];
+        if (material.needs_tangents() && source.mesh.tangents.empty()) {
+            split_for_tangents(source, material.tangent_slot());
+            add_tangents(source.mesh, material.tangent_slot());
+            tally_.honoured.insert("tangents computed for normal maps");
+        }
+        return source;
+    }
+
+    // Gives a mesh that read_shaded() made the shape of other morph weights, with its triangles and
+    // texture coordinates; false where other triangles are broken then.
+    bool reshape(SourceMesh& source, const std::vector<double>& morph_weights,
+                 const tinygltf::Primitive& primitive) const {
+        GltfTally uncounted;
+        Mesh shape = read_repaired(morph_weights, primitive, source.mesh.material, uncounted);
+        if (shape.triangles.size() != source.mesh.triangles.size()) return false;
+        source.take_shape(std::move(shape));
+        const Material& material = scene_.materials[source.mesh.material];
+        if (material.needs_tangents() && source.mesh.tangents.empty())
+            add_tangents(source.mesh, material.tangent_slot());
+        return true;
     }
 
     Instance instance(uint32_t mesh, int node, const M44d& to_world, const Box3f& bounds) const {

@@ -50,13 +50,18 @@ class PrimitiveReader {
     }
 
     void add_morph_targets(Mesh& mesh, const std::vector<double>& weights) const {
+        bool clamps_colours = false;
         for (size_t i = 0; i < std::min(weights.size(), primitive_.targets.size()); ++i) {
             const auto weight = static_cast<float>(weights[i]);
             if (weight == 0.f) continue;
             for (const auto& [name, accessor] : primitive_.targets[i])
                 add_target(mesh, name, accessor, weight);
+            if (primitive_.targets[i].contains("COLOR_0")) clamps_colours = true;
             tally_.honoured.insert("morph targets, with the stored weights");
         }
+        if (!clamps_colours) return;
+        for (V4f& c : mesh.colours)  // as glTF 2.0, section 3.7.2.2 asks after morphing
+            for (int k = 0; k < 4; ++k) c[k] = std::clamp(c[k], 0.f, 1.f);
     }
 
   private:
@@ -99,8 +104,6 @@ class PrimitiveReader {
             add(to, read_vec3(gltf_, accessor), weight);
         else
             add(to, read_vec4(gltf_, accessor), weight);
-        for (V4f& c : to)  // as glTF 2.0, section 3.7.2.2 asks after morphing
-            for (int k = 0; k < 4; ++k) c[k] = std::clamp(c[k], 0.f, 1.f);
     }
 
     template <class To, class Delta>
@@ -148,9 +151,9 @@ StrokeSource read_stroke(const GltfModel& gltf, const tinygltf::Primitive& primi
                          const std::vector<double>& morph_weights, GltfTally& tally) {
     PrimitiveReader reader(gltf, primitive, tally);
     StrokeSource source;
-    reader.read_attributes(source.vertices, false, {});
-    reader.add_morph_targets(source.vertices, morph_weights);
-    source.order = reader.read_order(source.vertices);
+    reader.read_attributes(source.vertices.mesh, false, {});
+    reader.add_morph_targets(source.vertices.mesh, morph_weights);
+    source.order = reader.read_order(source.vertices.mesh);
     return source;
 }
 

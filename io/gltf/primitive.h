@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/scene/mesh.h"
+#include "io/gltf/meshes/source_mesh.h"
 #include "io/gltf/model.h"
 #include "io/gltf/tally.h"
 
@@ -35,7 +35,7 @@ struct PrimitiveRequest {
 
 /// Points or lines of a primitive: vertices without triangles, and the order in which they come.
 struct StrokeSource {
-    Mesh vertices;
+    SourceMesh vertices;
     std::vector<uint32_t> order;
 };
 [[nodiscard]] StrokeSource read_stroke(const GltfModel&, const tinygltf::Primitive&,

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
+#include <algorithm>
+
 #include "io/gltf/arrays.h"
 #include "io/gltf/meshes/bake.h"
 #include "io/gltf/primitive.h"
@@ -58,12 +60,25 @@ std::vector<M44d> joint_matrices(const GltfModel& gltf, int skin_index,
     return matrices;
 }
 
+bool has_joints(const tinygltf::Primitive& primitive) {
+    return attribute(primitive, "JOINTS_0") >= 0 && attribute(primitive, "WEIGHTS_0") >= 0;
+}
+
 bool pose_by_skin(const GltfModel& gltf, const std::vector<M44d>& matrices,
-                  const tinygltf::Primitive& primitive, Mesh& mesh) {
+                  const tinygltf::Primitive& primitive, SourceMesh& source) {
+    if (!has_joints(primitive)) return false;
     const auto sets = read_influences(gltf, primitive);
-    if (sets.empty()) return false;
-    for (size_t v = 0; v < mesh.positions.size(); ++v)
-        transform_vertex(mesh, v, blend(sets, matrices, v));
+    Mesh& mesh = source.mesh;
+    std::vector<bool> mirrored(mesh.positions.size());
+    for (size_t v = 0; v < mesh.positions.size(); ++v) {
+        const VertexTransform transform(blend(sets, matrices, source.in_file(v)));
+        transform.apply(mesh, v);
+        mirrored[v] = transform.mirrors();
+    }
+    const auto is_mirrored = [&](const std::array<uint32_t, 3>& t) {
+        return mirrored[t[0]] && mirrored[t[1]] && mirrored[t[2]];
+    };
+    if (std::all_of(mesh.triangles.begin(), mesh.triangles.end(), is_mirrored)) turn_over(mesh);
     return true;
 }
 

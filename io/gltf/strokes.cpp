@@ -59,7 +59,7 @@ std::vector<std::array<uint32_t, 2>> to_segments(const std::vector<uint32_t>& or
 }  // namespace
 
 StrokeShapes shapes_of(const StrokeSource& source, int gltf_mode, uint64_t& broken) {
-    const auto& positions = source.vertices.positions;
+    const auto& positions = source.vertices.mesh.positions;
     StrokeShapes shapes;
     std::vector<bool> drawn(positions.size(), false);
     const auto draw = [&](uint32_t vertex) {

@@ -19,6 +19,10 @@ struct Thinning {
 
     /// The finer of two, with the greater error.
     [[nodiscard]] Thinning operator|(const Thinning&) const;
+    /// The same where lengths are that many times as long.
+    [[nodiscard]] Thinning scaled(double factor) const {
+        return {stride, off_m * factor, size_m * factor};
+    }
 };
 
 /// The fewest steps, a power of two and one more, so that points which matrices move run straight

@@ -43,21 +43,19 @@ void VertexTransform::apply(Mesh& mesh, size_t i) const {
         V4f& tangent = mesh.tangents[i];
         const V3f before(tangent.x, tangent.y, tangent.z);
         const V3f after = unit_or_same(transform_direction(matrix_, V3d(before)), before);
-        tangent = {after.x, after.y, after.z, tangent.w};
+        tangent = {after.x, after.y, after.z, mirrors_ ? -tangent.w : tangent.w};
     }
 }
 
-void transform_vertex(Mesh& mesh, size_t vertex, const M44d& to_world) {
-    VertexTransform(to_world).apply(mesh, vertex);
+void turn_over(Mesh& mesh) {
+    for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
 }
 
 void bake(Mesh& mesh, const M44d& to_world) {
     if (to_world == M44d()) return;
     const VertexTransform transform(to_world);
     for (size_t i = 0; i < mesh.positions.size(); ++i) transform.apply(mesh, i);
-    if (!transform.mirrors()) return;
-    for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
-    for (V4f& tangent : mesh.tangents) tangent.w = -tangent.w;
+    if (transform.mirrors()) turn_over(mesh);
 }
 
 }  // namespace petzval

@@ -7,7 +7,7 @@
 namespace petzval {
 
 /// Transform of a mesh's vertices: positions and tangents by the matrix, normals by the inverse
-/// transpose. All in double.
+/// transpose; a matrix that mirrors turns the sign of a tangent's w. All in double.
 class VertexTransform {
   public:
     explicit VertexTransform(const M44d& to_world);
@@ -20,11 +20,11 @@ class VertexTransform {
     bool mirrors_;
 };
 
-/// Moves one vertex: as VertexTransform::apply, for matrices that differ by vertex.
-void transform_vertex(Mesh&, size_t vertex, const M44d& to_world);
+/// Turns the winding of all triangles of a mesh that was mirrored, so that its front faces stay
+/// counter-clockwise.
+void turn_over(Mesh&);
 
-/// Moves a whole mesh; a mirrored one gets its triangles' winding and its tangents' w turned, so
-/// that its front faces stay counter-clockwise.
+/// Moves a whole mesh, and turns over one that is mirrored.
 void bake(Mesh&, const M44d& to_world);
 
 }  // namespace petzval

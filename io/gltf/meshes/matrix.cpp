@@ -1,12 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/gltf/meshes/matrix.h"
 
+#include <algorithm>
+
 namespace petzval {
 
 double relative_determinant(const M44d& m) {
     const V3d x = row(m, 0), y = row(m, 1), z = row(m, 2);
     const double lengths = x.length() * y.length() * z.length();
     return lengths > 0 ? x.cross(y).dot(z) / lengths : 0;
+}
+
+double stretch(const M44d& m) {
+    double most = 0;
+    for (int i = 0; i < 3; ++i) {
+        double sum = 0;  // of a row of the matrix times its transpose: bounds its eigenvalues
+        for (int j = 0; j < 3; ++j) sum += std::fabs(row(m, i).dot(row(m, j)));
+        most = std::max(most, sum);
+    }
+    return std::sqrt(most);
 }
 
 M44d rotation_matrix(const std::array<double, 4>& q) {

@@ -21,6 +21,9 @@ namespace petzval {
     return {m[axis][0], m[axis][1], m[axis][2]};
 }
 
+/// Greatest factor by which a matrix makes something longer, or a little more.
+[[nodiscard]] double stretch(const M44d&);
+
 /// Rotation by a quaternion (x, y, z, w) of any length; none for the length 0. Rows are the images
 /// of the axes.
 [[nodiscard]] M44d rotation_matrix(const std::array<double, 4>&);

@@ -24,33 +24,60 @@ V3d across(const V3d& v, const V3d& unit_normal) {
     return v - unit_normal * v.dot(unit_normal);
 }
 
-template <class Value>
-void gather(std::vector<Value>& values, const std::vector<uint32_t>& from) {
-    if (values.empty()) return;
-    std::vector<Value> gathered;
-    gathered.reserve(from.size());
-    for (uint32_t i : from) gathered.push_back(values[i]);
-    values = std::move(gathered);
+/// Texture coordinates as a map reads them; empty where there are none.
+std::vector<V2f> uv_of_map(const Mesh& mesh, const TextureSlot& map) {
+    std::vector<V2f> out;
+    for (const V2f& uv : mesh.uv_of(map.uv_set))
+        out.push_back({map.u_row[0] * uv.x + map.u_row[1] * uv.y + map.u_row[2],
+                       map.v_row[0] * uv.x + map.v_row[1] * uv.y + map.v_row[2]});
+    return out;
 }
 
-/// New vertex i becomes a copy of old vertex from[i].
-void gather_vertices(Mesh& mesh, const std::vector<uint32_t>& from) {
-    gather(mesh.positions, from);
-    gather(mesh.normals, from);
-    for (auto& uv : mesh.uv) gather(uv, from);
-    for (auto& uv : mesh.more_uv) gather(uv, from);
-    gather(mesh.colours, from);
+/// Twice the signed area of a face in the texture; 0 where it is of no use.
+double texture_area(const std::vector<V2f>& uv, const Triangle& t) {
+    const V2f a = uv[t[1]] - uv[t[0]], b = uv[t[2]] - uv[t[0]];
+    const double area = double(a.x) * b.y - double(b.x) * a.y;
+    return std::isfinite(area) ? area : 0;
 }
 
-void unshare_vertices(Mesh& mesh) {
+enum class Side : uint8_t { Unknown, Plain, Mirrored };
+
+Side side_of(double texture_area) {
+    return texture_area > 0 ? Side::Mirrored : texture_area < 0 ? Side::Plain : Side::Unknown;
+}
+
+/// Each corner becomes a vertex of its own.
+void unshare_vertices(SourceMesh& source) {
     std::vector<uint32_t> from;
-    from.reserve(mesh.triangles.size() * 3);
-    for (Triangle& t : mesh.triangles)
+    from.reserve(source.mesh.triangles.size() * 3);
+    for (Triangle& t : source.mesh.triangles)
         for (uint32_t& vertex : t) {
             from.push_back(vertex);
             vertex = static_cast<uint32_t>(from.size() - 1);
         }
-    gather_vertices(mesh, from);
+    source.gather(from);
+}
+
+/// The first face to use a vertex decides its side; faces of the other side share a copy of it.
+void split_sides(SourceMesh& source, const std::vector<V2f>& uv) {
+    const size_t count = source.mesh.positions.size();
+    std::vector<Side> sides(count, Side::Unknown);
+    std::vector<uint32_t> from(count), copy(count, 0);
+    std::iota(from.begin(), from.end(), 0u);
+    for (Triangle& t : source.mesh.triangles) {
+        const Side wanted = side_of(texture_area(uv, t));
+        if (wanted == Side::Unknown) continue;
+        for (uint32_t& vertex : t) {
+            if (sides[vertex] == Side::Unknown) sides[vertex] = wanted;
+            if (sides[vertex] == wanted) continue;
+            if (copy[vertex] == 0) {
+                copy[vertex] = static_cast<uint32_t>(from.size());
+                from.push_back(vertex);
+            }
+            vertex = copy[vertex];
+        }
+    }
+    if (from.size() > count) source.gather(from);
 }
 
 struct HashFloats {
@@ -63,29 +90,18 @@ struct HashFloats {
 
 class TangentBuilder {
   public:
-    TangentBuilder(Mesh& mesh, const TextureSlot& map) : mesh_(mesh), flat_(mesh.normals.empty()) {
-        if (flat_) unshare_vertices(mesh);
-        for (const V2f& uv : mesh.uv_of(map.uv_set))
-            uv_.push_back({map.u_row[0] * uv.x + map.u_row[1] * uv.y + map.u_row[2],
-                           map.v_row[0] * uv.x + map.v_row[1] * uv.y + map.v_row[2]});
-    }
+    TangentBuilder(Mesh& mesh, std::vector<V2f> uv)
+        : mesh_(mesh), flat_(mesh.normals.empty()), uv_(std::move(uv)) {}
 
     void build() {
         find_equal_vertices();
         sums_.assign(2 * mesh_.positions.size(), V3d(0.0));
+        sides_.assign(mesh_.positions.size(), Side::Unknown);
         for (const Triangle& t : mesh_.triangles) add_face(t);
-        assign_sides();
         set_tangents();
     }
 
   private:
-    /// Twice the signed area of a face in the texture; 0 where it is of no use.
-    [[nodiscard]] double texture_area(const Triangle& t) const {
-        const V2f a = uv_[t[1]] - uv_[t[0]], b = uv_[t[2]] - uv_[t[0]];
-        const double area = double(a.x) * b.y - double(b.x) * a.y;
-        return std::isfinite(area) ? area : 0;
-    }
-
     [[nodiscard]] V3d normal(const Triangle& t, int corner) const {
         return flat_ ? face_normal(mesh_, t).normalized()
                      : V3d(mesh_.normals[t[static_cast<size_t>(corner)]]);
@@ -111,8 +127,10 @@ class TangentBuilder {
     }
 
     void add_face(const Triangle& t) {
-        const double area = texture_area(t);
+        const double area = texture_area(uv_, t);
         if (area == 0) return;
+        for (const uint32_t vertex : t)
+            if (sides_[vertex] == Side::Unknown) sides_[vertex] = side_of(area);
         const V2f ta = uv_[t[1]] - uv_[t[0]], tb = uv_[t[2]] - uv_[t[0]];
         const V3d p[3] = {V3d(mesh_.positions[t[0]]), V3d(mesh_.positions[t[1]]),
                           V3d(mesh_.positions[t[2]])};
@@ -128,38 +146,12 @@ class TangentBuilder {
         }
     }
 
-    // The first face to use a vertex decides its side; faces of the other side share a copy of it.
-    void assign_sides() {
-        const size_t count = mesh_.positions.size();
-        side_.assign(count, Side::Unknown);
-        std::vector<uint32_t> from(count), copy(count, 0);
-        std::iota(from.begin(), from.end(), 0u);
-        for (Triangle& t : mesh_.triangles) {
-            const double area = texture_area(t);
-            if (area == 0) continue;
-            const Side wanted = area > 0 ? Side::Mirrored : Side::Plain;
-            for (uint32_t& vertex : t) {
-                if (side_[vertex] == Side::Unknown) side_[vertex] = wanted;
-                if (side_[vertex] == wanted) continue;
-                if (copy[vertex] == 0) {
-                    copy[vertex] = static_cast<uint32_t>(from.size());
-                    from.push_back(vertex);
-                    side_.push_back(wanted);
-                }
-                vertex = copy[vertex];
-            }
-        }
-        if (from.size() == count) return;
-        gather_vertices(mesh_, from);
-        gather(equal_, from);
-    }
-
     void set_tangents() {
         mesh_.tangents.assign(mesh_.positions.size(), V4f(0.f, 0.f, 0.f, 1.f));
         for (const Triangle& t : mesh_.triangles)
             for (int k = 0; k < 3; ++k) {
                 const uint32_t vertex = t[static_cast<size_t>(k)];
-                const bool mirrored = side_[vertex] == Side::Mirrored;
+                const bool mirrored = sides_[vertex] == Side::Mirrored;
                 const V3d n = normal(t, k);
                 V3d tangent = across(sum(vertex, mirrored), n);
                 if (!usable(tangent)) tangent = V3d(Frame::about(V3f(n)).x);
@@ -170,14 +162,12 @@ class TangentBuilder {
             }
     }
 
-    enum class Side : uint8_t { Unknown, Plain, Mirrored };
-
     Mesh& mesh_;
     bool flat_;
     std::vector<V2f> uv_;
     std::vector<uint32_t> equal_;  ///< the first vertex that is the same in all that counts
     std::vector<V3d> sums_;        ///< of tangents, one for each vertex and side
-    std::vector<Side> side_;
+    std::vector<Side> sides_;
 };
 
 }  // namespace
@@ -213,9 +203,18 @@ void repair_tangents(Mesh& mesh) {
     }
 }
 
+void split_for_tangents(SourceMesh& source, const TextureSlot& normal_map) {
+    const std::vector<V2f> uv = uv_of_map(source.mesh, normal_map);
+    if (uv.empty()) return;
+    if (source.mesh.normals.empty())
+        unshare_vertices(source);
+    else
+        split_sides(source, uv);
+}
+
 void add_tangents(Mesh& mesh, const TextureSlot& normal_map) {
-    if (mesh.uv_of(normal_map.uv_set).empty()) return;
-    TangentBuilder(mesh, normal_map).build();
+    std::vector<V2f> uv = uv_of_map(mesh, normal_map);
+    if (!uv.empty()) TangentBuilder(mesh, std::move(uv)).build();
 }
 
 }  // namespace petzval

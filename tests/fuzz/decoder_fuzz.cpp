@@ -2,7 +2,7 @@
 // The readers of files under libFuzzer, with the address and undefined-behaviour sanitizers: each
 // file is accepted, or refused with an InputError, in bounded time and memory. Needs clang:
 //
-//   cmake --preset fuzz && cmake --build build-fuzz --target decoder_fuzz
+//   cmake --preset fuzz && cmake --build build-fuzz --target decoder_fuzz mesh_seeds
 //   tests/fuzz/run.sh SECONDS       # every reader in turn, from the corpus in tests/data/corpus
 //
 // FUZZ_READER=gltf build-fuzz/bin/decoder_fuzz FILE repeats one file.

@@ -53,9 +53,16 @@ struct Decoder {
                          .point_line_radius_m = 0.1f,
                          .animation = AnimationChoice{0.5, {}, true}});
     };
+    const auto load_still_and_open = [](const fs::path& path) {
+        (void)load_gltf(path);
+        PictureBudget pictures;
+        GltfChoices open;
+        open.animation = AnimationChoice{1, {}, true, 1};
+        (void)load_gltf(path, FileScope::Anywhere, pictures, open);
+    };
     static const std::map<std::string, Decoder> all = {
         {"gltf", {".gltf", load_with_more}},
-        {"glb", {".glb", [](const fs::path& path) { (void)load_gltf(path); }}},
+        {"glb", {".glb", load_still_and_open}},
         {"draco", codec(decodes_draco)},
         {"meshopt", codec(decodes_meshopt)},
         {"texture",
@@ -92,7 +99,7 @@ struct Decoder {
               const IesFile found =
                   parse_ies({reinterpret_cast<const char*>(bytes.data()), bytes.size()},
                             path.string(), "/extensions/EXT_lights_ies/lights/0");
-              for (const V3f& d : {V3f(0, 0, 1), V3f(-1, 0, 0), unit(V3f(1, -2, 0.5f))})
+              for (const V3f& d : {V3f(0, 0, 1), V3f(-1, 0, 0), petzval::unit(V3f(1, -2, 0.5f))})
                   if (!(found.profile.intensity(d) >= 0)) std::abort();
               if (!(found.profile.flux_lm() >= 0)) std::abort();
           }}},

@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "tests/support/combined/combined_gltf.h"
 #include "tests/support/decoders.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/text_mutation.h"
@@ -38,20 +39,38 @@ TEST(Decoders, AcceptOrRefuseTheCorpus) {
     }
 }
 
+/// Changes bytes of a file several times, and gives each to a reader.
+void expect_no_crash(const test::Decoder& decoder, const std::vector<uint8_t>& bytes,
+                     const fs::path& folder, std::mt19937& random) {
+    for (int i = 0; i < 8; ++i) {
+        const std::string changed = test::mutated({bytes.begin(), bytes.end()}, random);
+        SCOPED_TRACE("change " + std::to_string(i));
+        EXPECT_NO_THROW((void)test::is_accepted(
+            decoder, {reinterpret_cast<const uint8_t*>(changed.data()), changed.size()}, folder));
+    }
+}
+
 TEST(Decoders, AcceptOrRefuseChangedFiles) {
     const test::TemporaryFolder folder;
     std::mt19937 random(12);
     for (const auto& [name, decoder] : decoders())
         for (const fs::path& file : files_of(name)) {
-            const std::vector<uint8_t> bytes = test::read_bytes(file);
-            for (int i = 0; i < 8; ++i) {
-                const std::string changed = test::mutated({bytes.begin(), bytes.end()}, random);
-                SCOPED_TRACE(file.string() + ", change " + std::to_string(i));
-                EXPECT_NO_THROW((void)test::is_accepted(
-                    decoder, {reinterpret_cast<const uint8_t*>(changed.data()), changed.size()},
-                    folder.path()));
-            }
+            SCOPED_TRACE(file);
+            expect_no_crash(decoder, test::read_bytes(file), folder.path(), random);
         }
+}
+
+TEST(Decoders, AcceptOrRefuseChangedFilesThatCombineWhatMeshesMayHave) {
+    const test::TemporaryFolder folder, of_sound;
+    std::mt19937 random(13);
+    const auto& decoder = decoders().at("glb");
+    for (uint32_t seed = 1000; seed < 1030; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        const auto path = test::CombinedGltf(seed).save_glb(of_sound.path() / "sound.glb");
+        const std::vector<uint8_t> bytes = test::read_bytes(path);
+        EXPECT_TRUE(test::is_accepted(decoder, bytes, folder.path()));
+        expect_no_crash(decoder, bytes, folder.path(), random);
+    }
 }
 
 }  // namespace

@@ -210,6 +210,39 @@ class AnimationTruth {
         return out;
     }
 
+    /// The file's JSON, with the values of the time that is played.
+    [[nodiscard]] const nlohmann::json& root() const { return root_; }
+
+    /// Of each vertex of a primitive with joints, as the nodes stand.
+    [[nodiscard]] std::vector<Columns> skin_matrices(const nlohmann::json& skin,
+                                                     const nlohmann::json& attributes,
+                                                     size_t vertices) const {
+        std::vector<Columns> of_joint;
+        for (const size_t node : skin["joints"]) of_joint.push_back(world(node));
+        if (skin.contains("inverseBindMatrices")) {
+            const std::vector<double> all = numbers(skin["inverseBindMatrices"]);
+            for (size_t j = 0; j < of_joint.size(); ++j) {
+                Columns inverse;
+                std::copy_n(all.begin() + std::ptrdiff_t(16 * j), 16, inverse.begin());
+                of_joint[j] = product(of_joint[j], inverse);
+            }
+        }
+        std::vector<Columns> out(vertices, Columns{});
+        std::vector<double> total(vertices, 0.);
+        for (int set = 0; attributes.contains("JOINTS_" + std::to_string(set)); ++set) {
+            const auto joints = numbers(attributes["JOINTS_" + std::to_string(set)]);
+            const auto weights = numbers(attributes["WEIGHTS_" + std::to_string(set)]);
+            for (size_t i = 0; i < weights.size(); ++i) {
+                for (size_t k = 0; k < 16; ++k)
+                    out[i / 4][k] += weights[i] * of_joint[size_t(joints[i])][k];
+                total[i / 4] += weights[i];
+            }
+        }
+        for (size_t v = 0; v < vertices; ++v)
+            for (double& x : out[v]) x /= total[v];
+        return out;
+    }
+
   private:
     [[nodiscard]] static size_t width_of(const nlohmann::json& accessor) {
         const std::string type = accessor.at("type");
@@ -293,35 +326,6 @@ class AnimationTruth {
             out.positions[i] = moved(each[i], out.positions[i], 1);
             if (!out.normals.empty()) out.normals[i] = moved_normal(each[i], out.normals[i]);
         }
-        return out;
-    }
-
-    [[nodiscard]] std::vector<Columns> skin_matrices(const nlohmann::json& skin,
-                                                     const nlohmann::json& attributes,
-                                                     size_t vertices) const {
-        std::vector<Columns> of_joint;
-        for (const size_t node : skin["joints"]) of_joint.push_back(world(node));
-        if (skin.contains("inverseBindMatrices")) {
-            const std::vector<double> all = numbers(skin["inverseBindMatrices"]);
-            for (size_t j = 0; j < of_joint.size(); ++j) {
-                Columns inverse;
-                std::copy_n(all.begin() + std::ptrdiff_t(16 * j), 16, inverse.begin());
-                of_joint[j] = product(of_joint[j], inverse);
-            }
-        }
-        std::vector<Columns> out(vertices, Columns{});
-        std::vector<double> total(vertices, 0.);
-        for (int set = 0; attributes.contains("JOINTS_" + std::to_string(set)); ++set) {
-            const auto joints = numbers(attributes["JOINTS_" + std::to_string(set)]);
-            const auto weights = numbers(attributes["WEIGHTS_" + std::to_string(set)]);
-            for (size_t i = 0; i < weights.size(); ++i) {
-                for (size_t k = 0; k < 16; ++k)
-                    out[i / 4][k] += weights[i] * of_joint[size_t(joints[i])][k];
-                total[i / 4] += weights[i];
-            }
-        }
-        for (size_t v = 0; v < vertices; ++v)
-            for (double& x : out[v]) x /= total[v];
         return out;
     }
 

@@ -85,7 +85,11 @@ class CombinedGltf : public AnimatedGltf {
         if (dice_.comes(50))
             add_channel(node_target(j, "translation"), {0, 2}, "VEC3",
                         {0, 0.25f, 0, float(dice_.between(-1, 1)), 0.5f, 0.25f});
-        if (dice_.comes(40)) {
+        if (j == 0 && dice_.comes(25)) {  // what hangs on it is mirrored as a whole
+            add_channel(node_target(j, "scale"), {0, 0.25f}, "VEC3",
+                        {at_rest[0], at_rest[1], at_rest[2], -at_rest[0], at_rest[1], at_rest[2]},
+                        "STEP");
+        } else if (dice_.comes(40)) {
             std::vector<float> sizes = at_rest;
             for (size_t k = 0; k < 3; ++k)
                 sizes.push_back(at_rest[k] * float(dice_.between(0.5, 1.5)));

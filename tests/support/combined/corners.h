@@ -138,7 +138,7 @@ class CornerTruth : public AnimationTruth {
             if (set > 1) uv.push_back(read("TEXCOORD_" + std::to_string(set)));
             if (!normals.empty()) tangents = read("TANGENT");
         }
-        const bool skinned = node.contains("skin");
+        const bool skinned = node.contains("skin") && primitive["attributes"].contains("JOINTS_0");
         const std::vector<Columns> each =
             skinned ? skin_matrices(root()["skins"][node["skin"].get<size_t>()],
                                     primitive["attributes"], positions.size())

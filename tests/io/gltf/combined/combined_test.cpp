@@ -119,5 +119,25 @@ TEST_F(Combined, WhileTheShutterIsOpenBothEndsAreThoseOfTheReference) {
     });
 }
 
+/// Beside one that follows the joints: it stands where its node does.
+TEST(CombinedSkin, APrimitiveWithoutJointsDoesNotMoveWithThem) {
+    AnimatedGltf file;
+    file.add_root(nlohmann::json::object());
+    file.add_channel(node_target(0, "rotation"), {0, 2}, "VEC4", {0, 0, 0, 1, 0, 0.6f, 0, 0.8f});
+    file.add_probe();
+    auto& primitives = file.json["meshes"][0]["primitives"];
+    primitives.push_back(primitives[0]);
+    auto& attributes = primitives[0]["attributes"];
+    attributes["JOINTS_0"] = file.add_accessor<uint8_t>("VEC4", std::vector<uint8_t>(16, 0));
+    attributes["WEIGHTS_0"] =
+        file.add_accessor<float>("VEC4", {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
+    file.add("skins", {{"joints", {0}}});
+    file.add_root({{"mesh", 0}, {"skin", 0}, {"translation", {5, 0, 0}}});
+    const GltfFile open = load_open(file, 1, 1);
+    for (const float time : {0.f, 1.f})
+        expect_same_corners(corners_only(truth_at(file, 0.5 + double(time))),
+                            corners_of(open.scene, time));
+}
+
 }  // namespace
 }  // namespace petzval::test

@@ -10,6 +10,8 @@ namespace petzval {
 namespace {
 
 constexpr size_t kMostNamed = 3;
+constexpr const char* kMakeThin =
+    R"(make the glass thin by {"petzval": {"solid": false}} in its extras)";
 
 std::string name_of(const Scene& scene, uint32_t material) {
     const std::string& name = scene.materials[material].name;
@@ -60,13 +62,24 @@ std::string listed(const All& all, const Word& word) {
 
 std::string faulty_volumes_text(const Scene& scene, const std::vector<uint32_t>& faulty) {
     return fmt::format(
-        "glass with a thickness whose surface is not a closed volume: {}; where it overlaps other "
-        "glass, absorption and refraction may be wrong; close all meshes of the material, with "
-        "faces outwards, or take its thickness away",
-        listed(faulty, [&](uint32_t m) {
-            return fmt::format("{} ({})", name_of(scene, m),
-                               name_of(scene.materials[m].volume_fault));
-        }));
+        "solid glass whose surface is not a closed volume: {}; where it overlaps other glass, "
+        "absorption and refraction may be wrong; close all meshes of the material, with faces "
+        "outwards, or {}",
+        listed(faulty,
+               [&](uint32_t m) {
+                   return fmt::format("{} ({})", name_of(scene, m),
+                                      name_of(scene.materials[m].volume_fault));
+               }),
+        kMakeThin);
+}
+
+std::string thin_bodies_text(const Scene& scene, const std::vector<uint32_t>& thin) {
+    return fmt::format(
+        "thin glass in the shape of a closed body: {}; it refracts nothing, as a soap bubble; for "
+        "solid glass give the material a thickness (KHR_materials_volume; in Blender the input "
+        "Thickness of a node group named \"glTF Material Output\"), or {{\"petzval\": "
+        "{{\"solid\": true}}}} in its extras; false there keeps it thin without this message",
+        listed(thin, [&](uint32_t m) { return name_of(scene, m); }));
 }
 
 std::string lost_light_text(const Scene& scene, const std::vector<LostLight>& lost) {
@@ -75,20 +88,24 @@ std::string lost_light_text(const Scene& scene, const std::vector<LostLight>& lo
                      [](const auto& a, const auto& b) { return a.share > b.share; });
     return fmt::format(
         "no path finds light that comes through solid glass, or hardly one: {}; what it would "
-        "light is too dark; give the light a size or a larger one, or take the thickness of the "
-        "glass away",
-        listed(by_share, [&](const LostLight& l) {
-            return fmt::format("{} behind {}", name_of(l), name_of(scene, l.glass));
-        }));
+        "light is too dark; give the light a size or a larger one, or {}",
+        listed(by_share,
+               [&](const LostLight& l) {
+                   return fmt::format("{} behind {}", name_of(l), name_of(scene, l.glass));
+               }),
+        kMakeThin);
 }
 
 }  // namespace
 
 std::vector<std::string> glass_remarks(const Scene& scene, const std::vector<LostLight>& lost) {
-    std::vector<uint32_t> faulty;
-    for (uint32_t m = 0; m < scene.materials.size(); ++m)
+    std::vector<uint32_t> faulty, thin;
+    for (uint32_t m = 0; m < scene.materials.size(); ++m) {
         if (scene.materials[m].volume_fault != VolumeFault::None) faulty.push_back(m);
+        if (scene.materials[m].thin_body) thin.push_back(m);
+    }
     std::vector<std::string> remarks;
+    if (!thin.empty()) remarks.push_back(thin_bodies_text(scene, thin));
     if (!faulty.empty()) remarks.push_back(faulty_volumes_text(scene, faulty));
     if (!lost.empty()) remarks.push_back(lost_light_text(scene, lost));
     return remarks;

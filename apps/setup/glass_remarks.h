@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a user should know of the glass in a scene: volumes that are not closed, light that is lost.
+// What a user should know of the glass in a scene: bodies without a volume, volumes that are not
+// closed, light that is lost.
 #pragma once
 
 #include <string>
@@ -10,8 +11,9 @@
 
 namespace petzval {
 
-/// A remark on materials that refract and are no closed volumes, and one on light that no path
-/// finds: which, behind what, and what to do. None where there is neither.
+/// A remark on thin glass in the shape of a body, one on materials that refract and are no closed
+/// volumes, and one on light that no path finds: which, behind what, and what to do. None where
+/// there is nothing of the kind.
 [[nodiscard]] std::vector<std::string> glass_remarks(const Scene&, const std::vector<LostLight>&);
 
 }  // namespace petzval

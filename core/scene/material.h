@@ -57,7 +57,8 @@ struct Material {
 
     float transmission = 0.f;          ///< KHR_materials_transmission
     TextureSlot transmission_texture;  ///< r
-    bool has_volume = false;           ///< KHR_materials_volume with a thickness above 0
+    bool has_volume = false;  ///< KHR_materials_volume with a thickness above 0, or extras say so
+    bool meant_thin = false;  ///< extras say that it has no volume
     Rgb attenuation_color{1.f};
     float attenuation_distance_m = kInfinity;
 
@@ -88,6 +89,7 @@ struct Material {
     uint32_t priority = 0;
     bool overlaps_itself = false;  ///< a point may lie in several closed volumes of it
     VolumeFault volume_fault = VolumeFault::None;
+    bool thin_body = false;  ///< it is thin glass, not meant_thin, and part of a mesh is closed
 
     /// Whether coverage must be asked for at each hit.
     [[nodiscard]] bool cutout() const { return alpha_mode != AlphaMode::Opaque; }
@@ -138,6 +140,11 @@ struct Material {
     [[nodiscard]] bool may_be_pane() const {
         return transmission > 0 && !has_volume && !unlit &&
                (roughness * roughness < kSmallestAlpha || metallic_roughness_texture.present());
+    }
+    /// Whether it transmits light somewhere and refracts none, as a pane or a soap bubble.
+    [[nodiscard]] bool thin_glass() const {
+        return transmission > 0 && !has_volume && !unlit &&
+               (metallic < 1 || metallic_roughness_texture.present());
     }
     /// Whether light may be refracted into it.
     [[nodiscard]] bool refracts() const {

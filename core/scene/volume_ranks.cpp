@@ -26,6 +26,13 @@ struct Body {
     double volume = 0;  // m^3, where the surface is closed; below 0 where it faces inwards
     bool touches_itself = false;  // it is several bodies that share edges
     Box3f reach{};                // box about it at all times while the shutter is open
+    bool closed = true;           // it has no border
+
+    // Whether it holds nothing, but for what rounding may leave.
+    [[nodiscard]] bool flat() const {
+        const double diagonal_m = double(box.size().length());
+        return std::fabs(volume) <= 1e-9 * diagonal_m * diagonal_m * diagonal_m;
+    }
 };
 
 struct Bodies {
@@ -116,7 +123,7 @@ Bodies find_bodies(const Corners& triangles) {
     Bodies out;
     if (box.isEmpty()) return out;
     if (!std::isfinite(box.size().length())) {  // beyond what can be looked at
-        out.bodies.push_back({box, 0, false, box});
+        out.bodies.push_back({box, 0, false, box, false});
         return out;
     }
     const auto [number, places] = weld(triangles, box);
@@ -147,7 +154,10 @@ Bodies find_bodies(const Corners& triangles) {
         for (; end < edges.size() && edges[end].ends() == edges[i].ends(); ++end)
             sum += edges[end].way;
         out.closed &= sum == 0;
-        if (end - i > 2) out.bodies[body_of.at(joined.root(edges[i].low))].touches_itself = true;
+        if (sum == 0 && end - i <= 2) continue;
+        Body& body = out.bodies[body_of.at(joined.root(edges[i].low))];
+        body.closed &= sum == 0;
+        body.touches_itself |= end - i > 2;
     }
     for (Body& body : out.bodies) body.reach = body.box;
     return out;
@@ -250,6 +260,21 @@ std::vector<Bodies> bodies_of_materials(Scene& scene) {
     return out;
 }
 
+// Marks thin glass in the shape of a body: a thickness may have been forgotten.
+void mark_thin_bodies(Scene& scene) {
+    std::vector<bool> is_seen(scene.meshes.size(), false);
+    for (const Instance& instance : scene.instances) {
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        Material& material = scene.materials[mesh.material];
+        if (!material.thin_glass() || material.meant_thin || material.thin_body) continue;
+        if (is_seen[instance.mesh] || has_holes(material, mesh)) continue;
+        is_seen[instance.mesh] = true;
+        const Bodies found = find_bodies(corners_of(mesh));
+        material.thin_body = std::any_of(found.bodies.begin(), found.bodies.end(),
+                                         [](const Body& b) { return b.closed && !b.flat(); });
+    }
+}
+
 bool contains(const Box3f& outer, const Box3f& inner) {
     return outer.intersects(inner.min) && outer.intersects(inner.max);
 }
@@ -257,14 +282,11 @@ bool contains(const Box3f& outer, const Box3f& inner) {
 // A body that faces inwards is a cavity of one that faces outwards and holds it.
 VolumeFault fault_of(Bodies& of_material) {
     if (!of_material.closed) return VolumeFault::Open;
-    constexpr double flat = 1e-9;  // of the cube of the diagonal: what rounding may leave
     auto& bodies = of_material.bodies;
     std::sort(bodies.begin(), bodies.end(),
               [](const Body& a, const Body& b) { return a.volume > b.volume; });
     for (const Body& b : bodies) {
-        const double diagonal_m = double(b.box.size().length());
-        if (std::fabs(b.volume) <= flat * diagonal_m * diagonal_m * diagonal_m)
-            return VolumeFault::Flat;
+        if (b.flat()) return VolumeFault::Flat;
         const auto holds = [&](const Body& o) { return o.volume > 0 && contains(o.box, b.box); };
         if (b.volume < 0 && std::none_of(bodies.begin(), bodies.end(), holds))
             return VolumeFault::InsideOut;
@@ -315,7 +337,9 @@ void rank_volumes(Scene& scene) {
         m.priority = 0;
         m.overlaps_itself = false;
         m.volume_fault = VolumeFault::None;
+        m.thin_body = false;
     }
+    mark_thin_bodies(scene);
     if (std::none_of(scene.materials.begin(), scene.materials.end(),
                      [](const Material& m) { return m.refracts(); }))
         return;

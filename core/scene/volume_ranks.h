@@ -7,7 +7,7 @@
 namespace petzval {
 
 /// Sets Material::priority, overlaps_itself and volume_fault of every material in use that
-/// refracts, and Scene::volume_boxes and volumes_meet.
+/// refracts, thin_body of every one that is thin glass, and Scene::volume_boxes and volumes_meet.
 ///
 /// A material is a closed volume where all its surfaces together have no border and face outwards,
 /// but for those of cavities, and where nothing cuts holes into them. The smaller the largest body

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "io/base/json_parse.h"
+#include "io/gltf/validate/extras.h"
 
 namespace petzval {
 namespace {
@@ -149,6 +150,10 @@ void GltfMaterials::read_glass(const JsonCursor& json, Material& material) {
         // White takes nothing at any distance; rounding would make a little of it.
         if (colour[0] < 1 || colour[1] < 1 || colour[2] < 1)
             material.attenuation_distance_m = number_or(*volume, "attenuationDistance", kInfinity);
+    }
+    if (const auto solid = is_solid(json)) {
+        material.has_volume = *solid;
+        material.meant_thin = !*solid;
     }
 }
 

@@ -60,6 +60,14 @@ void GltfSpectral::apply(const JsonCursor& json, Material& material) {
         apply_glass(*extras, material);
     else
         apply_dispersion(json, material);
+    if (is_solid(json).value_or(false) && !material.refracts()) {
+        const bool named = extras->has("glass");
+        tally_.warnings.push_back(fmt::format(
+            "{}: {}, as the material does not refract light; that takes transmissionFactor above "
+            "0, and metallicFactor below 1",
+            extras->path_of(named ? "glass" : "solid"),
+            named ? "disperses nothing" : "has no effect"));
+    }
     if (extras && extras->has("metal")) apply_metal(*extras, material);
     if (material.emits())
         material.illuminant = illuminant(json);
@@ -97,13 +105,7 @@ void GltfSpectral::apply_glass(const JsonCursor& extras, Material& material) {
     material.glass = glass(extras);
     material.ior = static_cast<float>(material.glass->index(kLineD_nm));
     tally_.honoured.insert("named glass " + material.glass->name);
-    if (material.refracts())
-        tally_.honoured.insert("dispersion of light");
-    else
-        tally_.warnings.push_back(
-            extras.path_of("glass") +
-            ": disperses nothing, as the material does not refract light; that takes "
-            "transmissionFactor and thicknessFactor above 0, and metallicFactor below 1");
+    if (material.refracts()) tally_.honoured.insert("dispersion of light");
 }
 
 const Glass& GltfSpectral::glass(const JsonCursor& extras) {

@@ -290,6 +290,53 @@ TEST(VolumeRanks, FaultsAreNamed) {
     }
 }
 
+TEST(VolumeRanks, ClosedBodiesOfThinGlassAreMarked) {
+    const auto marked = [](const Mesh& mesh, Material m) {
+        m.has_volume = false;
+        Scene scene;
+        place(scene, mesh, m);
+        place(scene, box(V3f(5), V3f(6)), named("solid"));
+        finish_scene(scene);
+        EXPECT_EQ(scene.materials[0].volume_fault, VolumeFault::None);
+        EXPECT_EQ(scene.materials[0].priority, 0u);
+        EXPECT_FALSE(scene.materials[1].thin_body);
+        return scene.materials[0].thin_body;
+    };
+    const Mesh closed = box(V3f(-1), V3f(1));
+    EXPECT_TRUE(marked(closed, named("m")));
+    EXPECT_TRUE(marked(turned_inside_out(closed), named("m")));
+    Mesh open = closed;
+    open.triangles.pop_back();
+    EXPECT_FALSE(marked(open, named("m")));
+    // A body beside a pane in one mesh, on either side of it.
+    const Mesh pane = quad(V3f(3, 0, 0), V3f(4, 0, 0), V3f(3, 1, 0));
+    for (const bool first : {false, true}) {
+        Mesh both = first ? pane : closed;
+        append(both, first ? closed : pane);
+        EXPECT_TRUE(marked(both, named("m")));
+    }
+    // A pane of two faces back to back holds nothing.
+    Mesh two_faces = pane;
+    append(two_faces, turned_inside_out(pane));
+    EXPECT_FALSE(marked(two_faces, named("m")));
+
+    Material m = named("m");
+    m.roughness = 0.3f;
+    EXPECT_TRUE(marked(closed, m)) << "frosted";
+    m.meant_thin = true;
+    EXPECT_FALSE(marked(closed, m));
+    m = named("m");
+    m.transmission = 0;
+    EXPECT_FALSE(marked(closed, m)) << "opaque";
+    m.transmission = 1;
+    m.metallic = 1;
+    EXPECT_FALSE(marked(closed, m)) << "metal";
+    m.metallic = 0;
+    m.alpha_mode = AlphaMode::Mask;
+    m.alpha = 0.4f;
+    EXPECT_FALSE(marked(closed, m)) << "nothing of it is there";
+}
+
 // Whatever the cells of the weld are: an edge whose ends are rounded apart, in many positions.
 TEST(VolumeRanks, SeamsAreWeldedWhereverTheyLie) {
     for (int turn = 0; turn < 50; ++turn) {

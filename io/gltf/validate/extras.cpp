@@ -35,13 +35,6 @@ void require_known_extras(const JsonCursor& owner, const char* what,
                                           what, fmt::join(known, ", ")));
 }
 
-void check_texts(const JsonCursor& owner, const char* what,
-                 const std::vector<std::string_view>& known) {
-    require_known_extras(owner, what, known);
-    if (const auto extras = petzval_extras(owner))
-        for (const auto& [key, unused] : extras->value().items()) (void)extras->text(key.c_str());
-}
-
 }  // namespace
 
 std::optional<JsonCursor> petzval_extras(const JsonCursor& owner) {
@@ -51,10 +44,25 @@ std::optional<JsonCursor> petzval_extras(const JsonCursor& owner) {
 }
 
 void check_material_extras(const JsonCursor& material) {
-    check_texts(material, "material", {"glass", "metal", "illuminant"});
+    require_known_extras(material, "material", {"glass", "metal", "illuminant", "solid"});
     const auto extras = petzval_extras(material);
-    if (extras && extras->has("glass") && extras->has("metal"))
+    if (!extras) return;
+    for (const char* const key : {"glass", "metal", "illuminant"})
+        if (extras->has(key)) (void)extras->text(key);
+    (void)is_solid(material);
+    if (extras->has("glass") && extras->has("metal"))
         extras->fail("names a glass and a metal; a material is one of them");
+}
+
+std::optional<bool> is_solid(const JsonCursor& material) {
+    const auto extras = petzval_extras(material);
+    if (!extras) return std::nullopt;
+    if (!extras->has("solid")) return extras->has("glass") ? std::optional(true) : std::nullopt;
+    const nlohmann::json& solid = extras->value().at("solid");
+    // The properties of Blender before 3.5 hold a truth as a number.
+    if (solid == 0 || solid == 1) return solid == 1;
+    extras->check_bool("solid");
+    return solid.get<bool>();
 }
 
 void check_light_extras(const JsonCursor& light) {

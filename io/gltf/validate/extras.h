@@ -14,6 +14,10 @@ namespace petzval {
 
 /// Checks keys and types of a material's extras.petzval. Throws InputError with the JSON path.
 void check_material_extras(const JsonCursor& material);
+/// Whether a material's extras.petzval make its glass solid, so that light is refracted into it:
+/// "solid" says so, or that it is thin; without that a named glass is solid. Nothing where they say
+/// nothing. Throws InputError with the JSON path where "solid" is neither true nor false.
+[[nodiscard]] std::optional<bool> is_solid(const JsonCursor& material);
 /// Checks an entry of KHR_lights_punctual's lights likewise.
 void check_light_extras(const JsonCursor& light);
 /// Radius of a punctual light, metres in the scene: radius_m in extras.petzval, else a number

@@ -13,7 +13,7 @@ using testing::Not;
 
 class CliGlass : public CliTest {
   protected:
-    enum class Glass { Solid, Thin, Open, InsideOut };
+    enum class Glass { Solid, Thin, MeantThin, Named, Open, InsideOut };
 
     /// Box of a colour; glass where `thickness` is not negative.
     static void add_box(TinyGltf& file, const char* name, float half_m, float thickness_m,
@@ -34,7 +34,9 @@ class CliGlass : public CliTest {
         if (thickness_m >= 0) {
             auto& more = material["extensions"];
             more["KHR_materials_transmission"] = {{"transmissionFactor", 1}};
-            if (kind != Glass::Thin)
+            if (kind == Glass::MeantThin) material["extras"]["petzval"]["solid"] = false;
+            if (kind == Glass::Named) material["extras"]["petzval"]["glass"] = "schott:N-BK7";
+            if (kind != Glass::Thin && kind != Glass::Named)
                 more["KHR_materials_volume"] = {{"thicknessFactor", thickness_m}};
         }
         nlohmann::json primitive = {{"material", file.add("materials", material)}};
@@ -65,8 +67,10 @@ class CliGlass : public CliTest {
 constexpr const char* kLost =
     "no path finds light that comes through solid glass, or hardly one: point light 0 behind "
     "\"globe\"; what it would light is too dark; give the light a size or a "
-    "larger one, or take the thickness of the glass away";
-constexpr const char* kFaulty = "glass with a thickness whose surface is not a closed volume: ";
+    "larger one, or make the glass thin by {\"petzval\": {\"solid\": false}} in its extras";
+constexpr const char* kFaulty = "solid glass whose surface is not a closed volume: ";
+constexpr const char* kBubble =
+    "thin glass in the shape of a closed body: \"globe\"; it refracts nothing, as a soap bubble; ";
 
 TEST_F(CliGlass, LightThatNoPathFindsIsNamed) {
     const Finished info = run_petzval({"info", lamp_in(Glass::Solid)});
@@ -76,9 +80,25 @@ TEST_F(CliGlass, LightThatNoPathFindsIsNamed) {
     const Finished run = rendered(Glass::Solid);
     EXPECT_EQ(run.exit_code, 0);
     EXPECT_THAT(run.err, HasSubstr(std::string("warning: ") + kLost));
-    const Finished thin = rendered(Glass::Thin);
+    const Finished named = rendered(Glass::Named);
+    EXPECT_THAT(named.err, HasSubstr(kLost));
+    EXPECT_THAT(named.err, Not(HasSubstr(kBubble)));
+    const Finished thin = rendered(Glass::MeantThin);
     EXPECT_EQ(thin.exit_code, 0);
     EXPECT_THAT(thin.err, Not(HasSubstr("glass")));
+}
+
+TEST_F(CliGlass, ClosedBodiesOfThinGlassAreNamed) {
+    EXPECT_THAT(run_petzval({"info", lamp_in(Glass::Thin)}).out, HasSubstr(kBubble));
+    const auto json =
+        nlohmann::json::parse(run_petzval({"info", "--json", lamp_in(Glass::Thin)}).out);
+    EXPECT_THAT(json["warnings"].dump(), HasSubstr("closed body"));
+    const Finished run = rendered(Glass::Thin);
+    EXPECT_EQ(run.exit_code, 0);
+    EXPECT_THAT(run.err, HasSubstr(std::string("warning: ") + kBubble));
+    EXPECT_THAT(run.err, Not(HasSubstr(kLost)));
+    for (const Glass kind : {Glass::Solid, Glass::MeantThin, Glass::Named, Glass::Open})
+        EXPECT_THAT(run_petzval({"info", lamp_in(kind)}).out, Not(HasSubstr("closed body")));
 }
 
 TEST_F(CliGlass, PlansCountItAsAtLeast) {
@@ -101,7 +121,7 @@ TEST_F(CliGlass, VolumesThatAreNotClosedAreNamed) {
         const std::string named = fmt::format(
             "{}\"globe\" ({}); where it overlaps other glass, absorption and "
             "refraction may be wrong; close all meshes of the material, with faces outwards, or "
-            "take its thickness away",
+            "make the glass thin by {{\"petzval\": {{\"solid\": false}}}} in its extras",
             kFaulty, word);
         EXPECT_THAT(run_petzval({"info", lamp_in(kind)}).out, HasSubstr(named));
         const Finished run = rendered(kind);

@@ -173,6 +173,63 @@ TEST(GltfExtras, GlassStandsInPlaceOfTheExtensions) {
     EXPECT_TRUE(loaded.warnings.empty());  // they are what other programs show
 }
 
+TEST(GltfExtras, NamedGlassIsSolidUnlessItIsSaidToBeThin) {
+    struct Case {
+        json extras;
+        bool thickness, solid;
+    };
+    const std::vector<Case> cases = {
+        {R"({"glass": "schott:N-BK7"})"_json, false, true},
+        {R"({"glass": "schott:N-BK7"})"_json, true, true},
+        {R"({"solid": true})"_json, false, true},
+        {R"({"solid": 1})"_json, false, true},
+        {R"({"solid": false})"_json, true, false},
+        {R"({"solid": 0})"_json, true, false},
+        {R"({"solid": false})"_json, false, false},
+        {R"({"glass": "schott:N-BK7", "solid": false})"_json, true, false},
+        {R"({"glass": "schott:N-BK7", "solid": true})"_json, false, true},
+        {R"({"illuminant": "a"})"_json, false, false},
+        {R"({"illuminant": "a"})"_json, true, true}};
+    for (const Case& one : cases) {
+        json material = thing(one.extras);
+        material["pbrMetallicRoughness"]["metallicFactor"] = 0;
+        material["emissiveFactor"] = {1, 1, 1};
+        auto& more = material["extensions"];
+        more["KHR_materials_transmission"]["transmissionFactor"] = 1;
+        if (one.thickness) more["KHR_materials_volume"]["thicknessFactor"] = 0.1;
+        const GltfFile loaded = load(file_with({material}));
+        const Material& m = loaded.scene.materials[0];
+        EXPECT_EQ(m.refracts(), one.solid) << one.extras;
+        EXPECT_EQ(m.meant_thin, one.extras.contains("solid") && !one.solid) << one.extras;
+        EXPECT_EQ(m.glass.has_value(), one.extras.contains("glass"));
+        EXPECT_TRUE(loaded.warnings.empty()) << one.extras;
+    }
+}
+
+TEST(GltfExtras, SolidGlassDispersesAndAbsorbsWithoutAThickness) {
+    json material = prism(dispersing(1), {{"solid", true}});
+    material["extensions"]["KHR_materials_volume"] = {
+        {"thicknessFactor", 0}, {"attenuationColor", {0.5, 1, 1}}, {"attenuationDistance", 0.2}};
+    const GltfFile loaded = load(file_with({material}));
+    EXPECT_TRUE(loaded.scene.materials[0].glass.has_value());
+    EXPECT_TRUE(contains_line(loaded.honoured, "dispersion of light"));
+    EXPECT_EQ(loaded.scene.materials[0].attenuation_distance_m, 0.2f);
+}
+
+TEST(GltfExtras, SolidIsWarnedOfWhereNothingIsRefracted) {
+    const auto warns = [](json material) {
+        const GltfFile loaded = load(file_with({std::move(material)}));
+        return contains_line(loaded.warnings,
+                             "extras/petzval/solid: has no effect, as the material does not");
+    };
+    EXPECT_TRUE(warns(thing({{"solid", true}})));
+    EXPECT_FALSE(warns(thing({{"solid", false}})));
+    json metal = prism({}, {{"solid", true}});
+    EXPECT_FALSE(warns(metal));
+    metal["pbrMetallicRoughness"]["metallicFactor"] = 1;
+    EXPECT_TRUE(warns(metal));
+}
+
 TEST(GltfExtras, GlassThatRefractsNothingIsWarnedOf) {
     const GltfFile loaded = load(file_with({thing({{"glass", "schott:N-BK7"}})}));
     EXPECT_NEAR(loaded.scene.materials[0].ior, 1.5168, 5e-6);
@@ -298,6 +355,9 @@ TEST(GltfExtras, WrongOnesOfMaterialsAreRefused) {
          "/glas: is not known; in a material's extras.petzval there may be glass, metal, ill"},
         {R"({"glass": 1})"_json, "/glass: must be a string, but is number"},
         {R"({"metal": ["au"]})"_json, "/metal: must be a string, but is array"},
+        {R"({"solid": "yes"})"_json, "/solid: must be true or false, but is string"},
+        {R"({"solid": 2})"_json, "/solid: must be true or false, but is number"},
+        {R"({"solid": null})"_json, "/solid: must be true or false, but is null"},
         {R"({"illuminant": null})"_json, "/illuminant: must be a string, but is null"},
         {R"({"glass": "schott:N-BK7", "metal": "au"})"_json,
          ": names a glass and a metal; a material is one of them"},

@@ -86,6 +86,20 @@ FirstOrder first_order(const Lens& lens, double nm, Section section) {
     return out;
 }
 
+std::vector<double> marginal_heights_mm(const std::vector<LensSurface>& surfaces, Section section) {
+    std::vector<double> heights;
+    ParaxialRay ray{1, 0};
+    double before = 1;
+    for (const LensSurface& surface : surfaces) {
+        heights.push_back(ray.height);
+        const double after = surface.glass ? surface.glass->index(kLineD_nm) : 1;
+        ray.reduced_angle -= ray.height * (after - before) * curvature_at_vertex(surface, section);
+        ray.height += ray.reduced_angle / after * surface.thickness_mm;
+        before = after;
+    }
+    return heights;
+}
+
 ParaxialImage image_of(const Lens& lens, double object_mm, double nm, Section section) {
     const ParaxialLens system(lens, nm, section);
     // A ray from the foot of the object, at an angle of 1.

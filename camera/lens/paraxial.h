@@ -27,6 +27,10 @@ struct FirstOrder {
 };
 [[nodiscard]] FirstOrder first_order(const Lens&, double nm, Section = Section::Y);
 
+/// Heights at which the paraxial ray of line d that arrives parallel to the axis, 1 mm from it,
+/// meets the surfaces, mm.
+[[nodiscard]] std::vector<double> marginal_heights_mm(const std::vector<LensSurface>&, Section);
+
 struct ParaxialImage {
     double from_last_vertex_mm;
     double magnification;  ///< height of the image over that of the object

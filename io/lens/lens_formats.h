@@ -30,6 +30,17 @@ inline constexpr double kMinLength_mm = 1e-4;
 /// Fault in the lengths of a surface, a text that begins with "has"; nothing where all is well.
 [[nodiscard]] std::optional<std::string> fault_of(const LensSurface&);
 
+/// Warning of a stop for which add_stop() is true.
+inline constexpr const char* kShapedStop =
+    "the stop is a curved surface; the plane through its vertex is taken";
+/// Adds the stop behind other surfaces. One that is shaped, or where the glass changes, becomes
+/// that surface and a plane through its vertex, as wide as it is and on its side in air, if it has
+/// one. Returns whether it is shaped, so that the plane is an approximation.
+bool add_stop(std::vector<LensSurface>&, LensSurface stop);
+/// Number of the surface whose edge limits the light of a distant point on the axis: its aperture
+/// stop (Welford 1986, Aberrations of Optical Systems, ch. 3), by paraxial rays of line d.
+[[nodiscard]] size_t limiting_surface(const std::vector<LensSurface>&);
+
 /// Summary of a lens in our JSON, without its surfaces.
 [[nodiscard]] LensSummary read_lens_summary(std::string_view text, const std::string& file);
 

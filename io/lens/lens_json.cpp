@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <utility>
 
 #include "camera/lens/lens.h"
 #include "io/base/json_cursor.h"
@@ -105,13 +106,6 @@ LensSurface read_surface(const JsonCursor& at, LensGlasses& glasses) {
     return surface;
 }
 
-void check_stop(const JsonCursor& at, const LensSurface& stop, const std::optional<Glass>& before) {
-    if (stop.curvature_1_mm != 0 || !stop.asphere.empty() || stop.profile != Profile::Rotational)
-        at.fail("stop", "must be a plane of its own; put it before or behind this surface");
-    if (stop.glass != before)
-        at.fail("medium", "must not change at the stop; put the stop before or behind the glass");
-}
-
 std::vector<LensSurface> read_surfaces(const JsonCursor& lens, LensGlasses& glasses) {
     lens.require("surfaces");
     const std::vector<JsonCursor> items = lens.objects("surfaces");
@@ -121,16 +115,42 @@ std::vector<LensSurface> read_surfaces(const JsonCursor& lens, LensGlasses& glas
     std::vector<LensSurface> surfaces;
     const JsonCursor* stop = nullptr;
     for (const JsonCursor& at : items) {
-        const auto before = surfaces.empty() ? std::nullopt : surfaces.back().glass;
         surfaces.push_back(read_surface(at, glasses));
         if (!surfaces.back().stop) continue;
         if (stop)
             at.fail("stop", fmt::format("is the second; {} is the stop already", stop->path()));
         stop = &at;
-        check_stop(at, surfaces.back(), before);
     }
-    if (!stop) lens.fail("surfaces", "have no stop; give the plane of the iris \"stop\": true");
     return surfaces;
+}
+
+// Makes a plane of the stop, and finds it where the file names none. Surfaces behind it may count
+// one more than in the file, which the focusing group follows.
+void place_stop(const std::string& file, LensFile& out) {
+    Prescription& lens = out.lens;
+    const auto is_stop = [](const LensSurface& s) { return s.stop; };
+    std::vector<LensSurface> filed = std::exchange(lens.surfaces, {});
+    const auto named = std::find_if(filed.begin(), filed.end(), is_stop);
+    auto number = static_cast<size_t>(named - filed.begin());
+    if (named == filed.end()) {
+        number = limiting_surface(filed);
+        filed[number].stop = true;
+        out.warnings.push_back(
+            fmt::format("{}: /surfaces: none has \"stop\": true; the iris is at number {}, counted "
+                        "from 0, whose "
+                        "edge limits the light of a distant point on the axis",
+                        file, number));
+    }
+    for (LensSurface& surface : filed) {
+        if (!surface.stop)
+            lens.surfaces.push_back(std::move(surface));
+        else if (add_stop(lens.surfaces, std::move(surface)))
+            out.warnings.push_back(fmt::format("{}: /surfaces/{}: {}", file, number, kShapedStop));
+    }
+    if (!lens.focus_group || lens.surfaces.size() == filed.size()) return;
+    auto& [first, last] = *lens.focus_group;
+    first += first > static_cast<int>(number);
+    last += last >= static_cast<int>(number);
 }
 
 std::optional<std::array<int, 2>> read_focus_group(const JsonCursor& at, size_t surfaces) {
@@ -167,7 +187,9 @@ LensFile read_lens_json(std::string_view text, const std::string& file, const st
     lens.image_circle_mm = at.number_or("image_circle", 0, kLength);
     lens.surfaces = read_surfaces(at, glasses);
     lens.focus_group = read_focus_group(at, lens.surfaces.size());
-    return {std::move(lens), {}};
+    LensFile out{std::move(lens), {}};
+    place_stop(file, out);
+    return out;
 }
 
 LensSummary read_lens_summary(std::string_view text, const std::string& file) {

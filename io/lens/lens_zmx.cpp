@@ -104,7 +104,6 @@ class Reader {
     Glass model(const Surface&, double nd, double abbe);
     void build();
     void add(const Surface&);
-    void add_stop(const Surface&, LensSurface surface);
 
     const std::string& file_;
     LensGlasses& glasses_;
@@ -260,33 +259,6 @@ Glass Reader::find_glass(const Surface& surface) {
                      printable(name), fmt::join(glasses_near(name), ", ")));
 }
 
-// Adds the stop. One that is a surface of glass becomes a plane through its vertex, on its side in
-// air.
-void Reader::add_stop(const Surface& from, LensSurface surface) {
-    auto& surfaces = out_.lens.surfaces;
-    const auto before = surfaces.empty() ? std::nullopt : surfaces.back().glass;
-    const bool shaped = surface.curvature_1_mm != 0 || !surface.asphere.empty();
-    if (!shaped && surface.glass == before) {
-        surfaces.push_back(std::move(surface));
-        return;
-    }
-    if (shaped)
-        warn(from.at, "the stop is a curved surface; the plane through its vertex is taken");
-    LensSurface plane;
-    plane.stop = true;
-    plane.semi_diameter_mm = surface.semi_diameter_mm;
-    surface.stop = false;
-    if (before) {
-        plane.glass = surface.glass;
-        plane.thickness_mm = std::exchange(surface.thickness_mm, 0);
-        surfaces.push_back(std::move(surface));
-        surfaces.push_back(std::move(plane));
-    } else {
-        surfaces.push_back(std::move(plane));
-        surfaces.push_back(std::move(surface));
-    }
-}
-
 void Reader::add(const Surface& from) {
     auto& surfaces = out_.lens.surfaces;
     Surface at = from;
@@ -309,10 +281,10 @@ void Reader::add(const Surface& from) {
     if (at.clear_semi_diameter != 0) surface.semi_diameter_mm = at.clear_semi_diameter;
     surface.semi_diameter_mm *= unit_mm_;
     if (const auto fault = fault_of(surface)) fail(at.at, *fault);
-    if (surface.stop)
-        add_stop(at, std::move(surface));
-    else
+    if (!surface.stop)
         surfaces.push_back(std::move(surface));
+    else if (add_stop(surfaces, std::move(surface)))
+        warn(at.at, kShapedStop);
 }
 
 void Reader::build() {

@@ -68,7 +68,7 @@ int merge(const MergeOptions& o, Session& session) {
             report.outputs = outcomes;
             write_stats(to,
                         {film.full_size().x, film.full_size().y, merged.samples,
-                         merged.record.display.exposure_ev, film.bad_count()},
+                         merged.record.display.exposure_ev, film.left_out()},
                         merged.record.figures, report);
         }));
     bool written = true;

@@ -58,11 +58,21 @@ void check_outputs(RenderOptions& o, const Rect& crop) {
 }
 
 void tell_bad_samples(const Film& film, const Notice& notice) {
-    if (const auto first = film.first_bad())
-        notice(
-            fmt::format("warning: {} samples were not finite and are left out; the first is "
-                        "sample {} of pixel {},{}",
-                        film.bad_count(), first->index, first->x, first->y));
+    const Film::LeftOut bad = film.left_out();
+    if (bad.count() == 0) return;
+    std::string text;
+    if (bad.not_finite > 0) text = fmt::format("{} samples were not finite", bad.not_finite);
+    if (bad.too_large > 0)
+        text += fmt::format(
+            "{}{} samples were brighter than {:.2g} nits{}, which is more than a film holds",
+            text.empty() ? "" : "; ", bad.too_large, FilmSum::kLimit,
+            film.spectral() ? fmt::format(", or than {:.2g} W/(m2 sr nm)", SpectralSum::kLimit)
+            : film.aovs().empty() ? ""
+                                  : ", or a layer was as large");
+    text += fmt::format("; they are left out, the first is sample {} of pixel {},{}", bad.index,
+                        bad.x, bad.y);
+    if (bad.too_large > 0) text += "; --clamp keeps them, or give the lights less strength";
+    notice("warning: " + text);
 }
 
 PictureRows picture_for(const fs::path& path, const FinishedFilm& done) {

@@ -203,7 +203,7 @@ void OneRender::write_state(const RenderResult& result, const RunFigures& figure
 bool OneRender::write_statistics(RunFigures figures, SampleRange taken, const RunReport& report) {
     figures += kept_.record().figures;
     const StatsPicture picture{o_.scene.size.x, o_.scene.size.y, taken, setup_.from.exposure_ev,
-                               film_->bad_count()};
+                               film_->left_out()};
     const WriteOutcome stats = write_or_rescue(
         *o_.stats, [&](const fs::path& to) { write_stats(to, picture, figures, report); });
     if (!stats.written()) session_.console.error(stats.message());

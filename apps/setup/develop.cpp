@@ -23,7 +23,7 @@ constexpr float kUnknownError = std::numeric_limits<float>::max();
 /// Samples whose spread tells a pixel's error: none where one was left out, as it is not known
 /// which replicate it was dealt to.
 SampleRange dealt_samples(const Film& film, uint32_t first, int x, int y) {
-    return {first, first + (film.bad_count(x, y) == 0 ? film.sample_count(x, y) : 0)};
+    return {first, first + (film.left_out(x, y) == 0 ? film.sample_count(x, y) : 0)};
 }
 
 /// Mean over the pixels with light of the standard error of their luminance, relative to it;
@@ -37,7 +37,7 @@ float mean_relative_error(const Film& film, uint32_t first) {
         for (int x = crop.x0; x < crop.x1; ++x) {
             const V4f mean = film.colour(x, y);
             const float light = luminance({mean.x, mean.y, mean.z});
-            if (!(light > 0) || film.bad_count(x, y) > 0) continue;
+            if (!(light > 0) || film.left_out(x, y) > 0) continue;
             ++lit;
             sum += double(film.spectral()->luminance_error(film.offset(x, y),
                                                            dealt_samples(film, first, x, y))) /
@@ -56,7 +56,7 @@ void describe_spectrum(const Film& film, uint32_t first, Metadata& m) {
     m.emplace_back("petzval:replicates", static_cast<int>(kReplicates));
     m.emplace_back("petzval:stderr",
                    fmt::format("standard error of the mean; {:.9g} where it is not known: with "
-                               "fewer than {} samples, or one that was not finite",
+                               "fewer than {} samples, or one that was left out",
                                kUnknownError, kReplicates));
     if (const float error = mean_relative_error(film, first); std::isfinite(error))
         m.emplace_back("petzval:meanRelativeError", error);

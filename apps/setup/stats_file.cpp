@@ -150,7 +150,8 @@ void write_stats(const std::filesystem::path& path, const StatsPicture& picture,
     out["rays_per_cpu_s"] = per_cpu_s(rays);
     out["samples_per_cpu_s"] = per_cpu_s(s.samples);
     out["cpu_time"] = sections(s, figures.render_cpu_s);
-    out["bad_samples"] = picture.bad_samples;
+    out["bad_samples"] = picture.left_out.not_finite;
+    out["too_bright_samples"] = picture.left_out.too_large;
     out["peak_memory_mib"] = figures.peak_memory_mib;
     out["outputs"] = files_of(run.outputs);
     out["notices"] = run.notices;

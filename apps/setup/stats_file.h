@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/film/sample_range.h"
+#include "core/film/film.h"
 #include "integrator/stats.h"
 #include "io/base/rescue.h"
 
@@ -42,7 +42,7 @@ struct StatsPicture {
     int width = 0, height = 0;  ///< of the full frame
     SampleRange samples;        ///< that every pixel has
     float exposure_ev = 0;
-    uint64_t bad_samples = 0;
+    Film::LeftOut left_out;
 };
 
 /// Peak resident memory of this process, MiB.

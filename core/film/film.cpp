@@ -20,13 +20,8 @@ constexpr std::array<AovInfo, static_cast<size_t>(Aov::Count)> kAovs{{
     {"velocity", {"velocity.X", "velocity.Y", ""}, 2},
 }};
 
-// Whether a sum takes a number; what is not finite is none.
-bool in_range(float a) {
-    return std::abs(a) < FilmSum::kLimit;
-}
-bool in_range(const V3f& a) {
-    return in_range(a.x) && in_range(a.y) && in_range(a.z);
-}
+constexpr auto kInRange = [](float a) { return std::abs(a) < FilmSum::kLimit; };
+constexpr auto kIsFinite = [](float a) { return std::isfinite(a); };
 
 }  // namespace
 
@@ -45,41 +40,50 @@ Film::Film(V2i full_size, Rect crop, std::vector<Aov> aovs, std::optional<Bins> 
       crop_(crop),
       aovs_(std::move(aovs)),
       pixels_(static_cast<size_t>(crop.width()) * crop.height()),
+      too_large_(pixels_.size()),
       aov_sums_(pixels_.size() * aovs_.size()) {
     if (bins) spectral_.emplace(pixels_.size(), *bins);
 }
 
 size_t Film::bytes_per_pixel(size_t layers, const std::optional<Bins>& bins) {
-    return sizeof(Pixel) + layers * sizeof(std::array<FilmSum, 3>) +
+    return sizeof(Pixel) + sizeof(uint32_t) + layers * sizeof(std::array<FilmSum, 3>) +
            (bins ? SpectralFilm::bytes_per_pixel(*bins) : 0);
 }
 
 void Film::add(int x, int y, uint32_t index, const FilmSample& sample) {
     const size_t at = offset(x, y);
-    if (holds(sample))
+    if (each_number(sample, kInRange))
         accept(pixels_[at], at, sample);
     else
-        reject(pixels_[at], index);
+        reject(at, index, each_number(sample, kIsFinite));
 }
 
 void Film::add(int x, int y, uint32_t index, const FilmSample& sample,
                const SpectralFilm::Sample& spectral, const Bands& bands) {
     const size_t at = offset(x, y);
-    if (!holds(sample) || !spectral_->holds(spectral, bands)) return reject(pixels_[at], index);
+    if (!each_number(sample, kInRange) || !spectral_->holds(spectral, bands))
+        return reject(at, index, each_number(sample, kIsFinite) && spectral.finite());
     accept(pixels_[at], at, sample);
     spectral_->add(at, sample.colour, spectral, bands);
 }
 
-bool Film::holds(const FilmSample& sample) const {
+// Whether all numbers of a sample that the film would add pass a test.
+template <class Test>
+bool Film::each_number(const FilmSample& sample, const Test& passes) const {
     const Rgb& c = sample.colour;
-    bool all = in_range(c[0]) && in_range(c[1]) && in_range(c[2]) && in_range(sample.alpha);
+    bool all = passes(c[0]) && passes(c[1]) && passes(c[2]) && passes(sample.alpha);
     if (sample.hit)
-        for (const Aov aov : aovs_) all = all && in_range(sample.aov[static_cast<size_t>(aov)]);
+        for (const Aov aov : aovs_) {
+            const V3f& value = sample.aov[static_cast<size_t>(aov)];
+            all = all && passes(value.x) && passes(value.y) && passes(value.z);
+        }
     return all;
 }
 
-void Film::reject(Pixel& pixel, uint32_t index) {
-    if (pixel.bad++ == 0 || index < pixel.first_bad_index) pixel.first_bad_index = index;
+void Film::reject(size_t at, uint32_t index, bool finite) {
+    Pixel& pixel = pixels_[at];
+    if (pixel.left_out++ == 0 || index < pixel.first_left_out) pixel.first_left_out = index;
+    too_large_[at] += finite;
 }
 
 void Film::accept(Pixel& pixel, size_t at, const FilmSample& sample) {
@@ -99,6 +103,8 @@ void Film::pack(int x, int y, uint8_t* to) const {
     const size_t at = offset(x, y), layers = aovs_.size();
     std::memcpy(to, &pixels_[at], sizeof(Pixel));
     to += sizeof(Pixel);
+    std::memcpy(to, &too_large_[at], sizeof(uint32_t));
+    to += sizeof(uint32_t);
     for (size_t layer = 0; layer < layers; ++layer)
         to = petzval::pack(std::span<const FilmSum>(aov_sums_[at * layers + layer]), to);
     if (spectral_) spectral_->pack(at, to);
@@ -109,13 +115,17 @@ void Film::add_packed(int x, int y, const uint8_t* from) {
     Pixel other;
     std::memcpy(&other, from, sizeof other);
     from += sizeof other;
+    uint32_t too_large;
+    std::memcpy(&too_large, from, sizeof too_large);
+    from += sizeof too_large;
+    too_large_[at] += too_large;
     Pixel& pixel = pixels_[at];
     for (size_t i = 0; i < pixel.sum.size(); ++i) pixel.sum[i] += other.sum[i];
     pixel.count += other.count;
     pixel.hits += other.hits;
-    if (other.bad > 0 && (pixel.bad == 0 || other.first_bad_index < pixel.first_bad_index))
-        pixel.first_bad_index = other.first_bad_index;
-    pixel.bad += other.bad;
+    if (other.left_out > 0 && (pixel.left_out == 0 || other.first_left_out < pixel.first_left_out))
+        pixel.first_left_out = other.first_left_out;
+    pixel.left_out += other.left_out;
     for (size_t layer = 0; layer < layers; ++layer)
         from = petzval::add_packed(std::span<FilmSum>(aov_sums_[at * layers + layer]), from);
     if (spectral_) spectral_->add_packed(at, from);
@@ -139,29 +149,28 @@ V3f Film::aov(int x, int y, size_t layer) const {
 Film::TakenRange Film::taken_range() const {
     TakenRange range{std::numeric_limits<uint32_t>::max(), 0};
     for (const Pixel& p : pixels_) {
-        range.least = std::min(range.least, p.count + p.bad);
-        range.most = std::max(range.most, p.count + p.bad);
+        range.least = std::min(range.least, p.count + p.left_out);
+        range.most = std::max(range.most, p.count + p.left_out);
     }
     return range;
 }
 
 uint64_t Film::taken_count() const {
     uint64_t total = 0;
-    for (const Pixel& p : pixels_) total += p.count + uint64_t(p.bad);
+    for (const Pixel& p : pixels_) total += p.count + uint64_t(p.left_out);
     return total;
 }
 
-uint64_t Film::bad_count() const {
-    uint64_t total = 0;
-    for (const Pixel& p : pixels_) total += p.bad;
-    return total;
-}
-
-std::optional<Film::BadSample> Film::first_bad() const {
+Film::LeftOut Film::left_out() const {
+    LeftOut all;
     for (int y = crop_.y0; y < crop_.y1; ++y)
-        for (int x = crop_.x0; x < crop_.x1; ++x)
-            if (const Pixel& p = pixel(x, y); p.bad > 0) return BadSample{x, y, p.first_bad_index};
-    return std::nullopt;
+        for (int x = crop_.x0; x < crop_.x1; ++x) {
+            const Pixel& p = pixel(x, y);
+            if (all.count() == 0 && p.left_out > 0) all = {0, 0, x, y, p.first_left_out};
+            all.too_large += too_large_[offset(x, y)];
+            all.not_finite += p.left_out - too_large_[offset(x, y)];
+        }
+    return all;
 }
 
 }  // namespace petzval

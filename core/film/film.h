@@ -55,8 +55,8 @@ class Film {
     /// Memory that a film takes for each pixel of its crop.
     [[nodiscard]] static size_t bytes_per_pixel(size_t layers, const std::optional<Bins>&);
 
-    /// Adds a sample. One that is not finite, or beyond the range of the sums (exact_sum.h), is
-    /// only counted, and the first such is remembered.
+    /// Adds a sample. One that is not finite, or too large for the sums (exact_sum.h), is only
+    /// counted, and the first such is remembered.
     void add(int x, int y, uint32_t index, const FilmSample&);
     /// Adds a sample to a film with bins.
     void add(int x, int y, uint32_t index, const FilmSample&, const SpectralFilm::Sample&,
@@ -78,8 +78,8 @@ class Film {
         return static_cast<size_t>(y - crop_.y0) * crop_.width() + (x - crop_.x0);
     }
     [[nodiscard]] uint32_t sample_count(int x, int y) const { return pixel(x, y).count; }
-    /// Number of samples of a pixel that were not finite.
-    [[nodiscard]] uint32_t bad_count(int x, int y) const { return pixel(x, y).bad; }
+    /// Number of samples of a pixel that were left out.
+    [[nodiscard]] uint32_t left_out(int x, int y) const { return pixel(x, y).left_out; }
     /// Fewest and most samples that a pixel has been given.
     struct TakenRange {
         uint32_t least, most;
@@ -87,37 +87,41 @@ class Film {
     [[nodiscard]] TakenRange taken_range() const;
     /// Number of samples of all pixels that were given to add().
     [[nodiscard]] uint64_t taken_count() const;
-    /// Number of samples of a pixel that were given to add(), finite or not.
+    /// Number of samples of a pixel that were given to add().
     [[nodiscard]] uint32_t taken_count(int x, int y) const {
-        return pixel(x, y).count + pixel(x, y).bad;
+        return pixel(x, y).count + pixel(x, y).left_out;
     }
     /// Mean linear RGB in nits, and alpha; zero where there is no sample.
     [[nodiscard]] V4f colour(int x, int y) const;
     /// Mean of a layer over the samples that hit something; zero where none did.
     [[nodiscard]] V3f aov(int x, int y, size_t layer) const;
 
-    struct BadSample {
-        int x, y;
-        uint32_t index;
+    /// Samples that were left out, and the first of them in scan order, of either kind.
+    struct LeftOut {
+        uint64_t not_finite = 0, too_large = 0;
+        int x = 0, y = 0;
+        uint32_t index = 0;
+        [[nodiscard]] uint64_t count() const { return not_finite + too_large; }
     };
-    /// Number of samples that were not finite, and the first of them in scan order.
-    [[nodiscard]] uint64_t bad_count() const;
-    [[nodiscard]] std::optional<BadSample> first_bad() const;
+    [[nodiscard]] LeftOut left_out() const;
 
   private:
     struct Pixel {
         std::array<FilmSum, 4> sum{};
-        uint32_t count = 0, hits = 0, bad = 0, first_bad_index = 0;
+        uint32_t count = 0, hits = 0, left_out = 0, first_left_out = 0;
     };
     void accept(Pixel&, size_t at, const FilmSample&);
-    void reject(Pixel&, uint32_t index);
-    [[nodiscard]] bool holds(const FilmSample&) const;
+    void reject(size_t at, uint32_t index, bool finite);
+    template <class Test>
+    [[nodiscard]] bool each_number(const FilmSample&, const Test&) const;
     [[nodiscard]] const Pixel& pixel(int x, int y) const { return pixels_[offset(x, y)]; }
 
     V2i full_size_;
     Rect crop_;
     std::vector<Aov> aovs_;
     std::vector<Pixel> pixels_;
+    std::vector<uint32_t>
+        too_large_;  ///< of those that a pixel left out; in Pixel it would take 16 bytes
     std::vector<std::array<FilmSum, 3>> aov_sums_;  ///< pixel-major
     std::optional<SpectralFilm> spectral_;
 };

@@ -20,6 +20,12 @@ f4 SpectralFilm::bin_values(f4 radiance, const Bands& bands) const {
     return zero_off(bands.on, radiance / density);
 }
 
+bool SpectralFilm::Sample::finite() const {
+    bool all = std::isfinite(xyz.x) && std::isfinite(xyz.y) && std::isfinite(xyz.z);
+    for (int i = 0; i < 4; ++i) all = all && std::isfinite(radiance[i]);
+    return all;
+}
+
 bool SpectralFilm::holds(const Sample& sample, const Bands& bands) const {
     const f4 values = bin_values(sample.radiance, bands);
     bool within = true;

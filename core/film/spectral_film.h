@@ -34,6 +34,8 @@ class SpectralFilm {
         uint32_t replicate;  ///< < kReplicates
         f4 radiance;
         V3f xyz;
+
+        [[nodiscard]] bool finite() const;
     };
     /// Whether a sample's numbers are within the range of the sums.
     [[nodiscard]] bool holds(const Sample&, const Bands&) const;

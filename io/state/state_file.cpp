@@ -20,7 +20,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kMagic = "PETZVALS";
-constexpr uint64_t kVersion = 1;
+constexpr uint64_t kVersion = 2;
 /// Bytes before the header: the text, the version and the length.
 constexpr size_t kStartBytes = kMagic.size() + 2 * sizeof(uint64_t);
 /// Longest header: a command line and the facts of a scene are far shorter.

@@ -87,6 +87,7 @@ FilmSample any_sample(test::Random& random) {
     s.hit = random.next() < 0.7f;
     for (V3f& layer : s.aov) layer = V3f(random.next(), -random.next(), 1e4f * random.next());
     if (random.next() < 0.05f) s.colour = Rgb(std::numeric_limits<float>::infinity());
+    if (random.next() < 0.05f) s.colour = Rgb(1e20f);
     return s;
 }
 
@@ -121,7 +122,9 @@ TEST(Film, PartsAddUpToTheWhole) {
                 whole.add(x, y, i, s, lanes, bands);
                 parts[size_t(random.next() * 5)].add(x, y, i, s, lanes, bands);
             }
-    ASSERT_GT(whole.bad_count(), 0u);
+    const Film::LeftOut due = whole.left_out();
+    ASSERT_GT(due.not_finite, 0u);
+    ASSERT_GT(due.too_large, 0u);
     for (const auto& order : {std::array{0, 1, 2, 3, 4}, std::array{3, 1, 4, 0, 2}}) {
         Film joined = empty();
         std::vector<uint8_t> packed(Film::bytes_per_pixel(layers.size(), bins));
@@ -132,7 +135,9 @@ TEST(Film, PartsAddUpToTheWhole) {
                     joined.add_packed(x, y, packed.data());
                 }
         EXPECT_EQ(bytes_of(joined), bytes_of(whole));
-        EXPECT_EQ(joined.first_bad()->index, whole.first_bad()->index);
+        EXPECT_EQ(joined.left_out().not_finite, due.not_finite);
+        EXPECT_EQ(joined.left_out().too_large, due.too_large);
+        EXPECT_EQ(joined.left_out().index, due.index);
         EXPECT_EQ(joined.taken_count(3, 2), 40u);
     }
 }

@@ -56,7 +56,7 @@ TEST(Film, LayersAverageOverHitsOnly) {
 
 TEST(Film, WhatIsNotFiniteIsCountedAndLeftOut) {
     Film film({4, 4}, {0, 0, 4, 4}, {Aov::Position});
-    EXPECT_FALSE(film.first_bad());
+    EXPECT_EQ(film.left_out().count(), 0u);
     film.add(2, 3, 7, sample(kNan, 0, 0));
     film.add(1, 2, 9, sample(0, 0, kInfinity));
     film.add(1, 2, 5, sample(0, 0, 0, -kInfinity));
@@ -65,23 +65,45 @@ TEST(Film, WhatIsNotFiniteIsCountedAndLeftOut) {
     bad_layer.aov[static_cast<size_t>(Aov::Position)].z = kNan;
     film.add(3, 3, 0, bad_layer);
     film.add(1, 2, 6, sample(2, 2, 2));
-    EXPECT_EQ(film.bad_count(), 4u);
-    ASSERT_TRUE(film.first_bad());
-    EXPECT_EQ(film.first_bad()->x, 1);
-    EXPECT_EQ(film.first_bad()->y, 2);
-    EXPECT_EQ(film.first_bad()->index, 5u);
+    EXPECT_EQ(film.left_out().not_finite, 4u);
+    EXPECT_EQ(film.left_out().too_large, 0u);
+    EXPECT_EQ(film.left_out().x, 1);
+    EXPECT_EQ(film.left_out().y, 2);
+    EXPECT_EQ(film.left_out().index, 5u);
     EXPECT_EQ(film.colour(1, 2), V4f(2, 2, 2, 1));
     EXPECT_EQ(film.sample_count(1, 2), 1u);
     EXPECT_EQ(film.sample_count(3, 3), 0u);
+}
+
+TEST(Film, WhatIsTooLargeIsCountedByItself) {
+    Film film({2, 1}, {0, 0, 2, 1}, {Aov::Position});
+    FilmSample far = sample(1, 1, 1);
+    far.hit = true;
+    far.aov[static_cast<size_t>(Aov::Position)] = V3f(-2e14f, 0, 0);
+    film.add(0, 0, 4, far);
+    film.add(0, 0, 3, sample(0, 1.5e14f, 0));
+    film.add(0, 0, 5, sample(1e14f, 0, 0));
+    far.colour = Rgb(kNan);
+    film.add(1, 0, 1, far);  // both: it is not finite
+    film.add(1, 0, 2, sample(3e38f, 0, kInfinity));
+    const Film::LeftOut left_out = film.left_out();
+    EXPECT_EQ(left_out.too_large, 2u);
+    EXPECT_EQ(left_out.not_finite, 2u);
+    EXPECT_EQ(left_out.x, 0);
+    EXPECT_EQ(left_out.index, 3u);
+    EXPECT_EQ(film.left_out(0, 0), 2u);
+    EXPECT_EQ(film.taken_count(0, 0), 3u);
+    EXPECT_EQ(film.colour(0, 0).x, 1e14f);
 }
 
 TEST(Film, UnaskedLayersMayHoldAnything) {
     Film film({1, 1}, {0, 0, 1, 1}, {Aov::Depth});
     FilmSample s = sample(1, 1, 1);
     s.hit = true;
+    s.aov[static_cast<size_t>(Aov::Depth)] = V3f(1);
     s.aov[static_cast<size_t>(Aov::Position)] = V3f(kNan);
     film.add(0, 0, 0, s);
-    EXPECT_EQ(film.bad_count(), 0u);
+    EXPECT_EQ(film.left_out().count(), 0u);
     EXPECT_EQ(film.sample_count(0, 0), 1u);
 }
 

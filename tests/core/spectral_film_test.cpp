@@ -151,8 +151,11 @@ TEST(SpectralFilm, RadianceBeyondTheRangeIsNoSample) {
     FilmSample sample;
     film.add(0, 0, 3, sample, {3, f4{1e9f, 0, 0, 0}, V3f(0.f)}, bands);
     film.add(0, 0, 4, sample, {4, f4{1e7f, 0, 0, 0}, V3f(0.f)}, bands);
-    EXPECT_EQ(film.bad_count(), 1u);
-    EXPECT_EQ(film.first_bad()->index, 3u);
+    EXPECT_EQ(film.left_out().too_large, 1u);
+    EXPECT_EQ(film.left_out().index, 3u);
+    film.add(0, 0, 5, sample, {5, f4{INFINITY, 0, 0, 0}, V3f(0.f)}, bands);
+    EXPECT_EQ(film.left_out().too_large, 1u);
+    EXPECT_EQ(film.left_out().not_finite, 1u);
     EXPECT_FLOAT_EQ(means(*film.spectral(), 0, 1)[2], 1e7f / (1e-3f * 4 * 10));
 }
 
@@ -166,7 +169,7 @@ TEST(SpectralFilm, WhatIsNotFiniteIsLeftOutOfEverySum) {
         film.add(0, 0, i, sample, {i % kReplicates, radiance, V3f(radiance[0])}, bands);
     }
     ASSERT_EQ(film.sample_count(0, 0), 8u);
-    EXPECT_EQ(film.bad_count(), 1u);
+    EXPECT_EQ(film.left_out().not_finite, 1u);
     const SpectralFilm& spectral = *film.spectral();
     EXPECT_EQ(spectral.xyz(0, 8), V3f(1.f));
     EXPECT_EQ(spectral.standard_error(0, {0, 8}), V3f(0.f));

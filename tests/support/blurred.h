@@ -104,7 +104,7 @@ class Renderer {
         ThreadExecutor executor(threads);
         RenderMonitor monitor;
         (void)render(*tracer_, camera, job, film, executor, monitor);
-        EXPECT_EQ(film.bad_count(), 0u);
+        EXPECT_EQ(film.left_out().count(), 0u);
         std::vector<float> out;
         for (int y = 0; y < size.y; ++y)
             for (int x = 0; x < size.x; ++x) out.push_back(film.colour(x, y)[1]);

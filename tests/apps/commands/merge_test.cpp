@@ -67,7 +67,7 @@ TEST_F(Merging, FiguresAddUp) {
     const auto whole = figures("w.json"), a = figures("a.json"), b = figures("b.json"),
                m = figures("m.json");
     for (const char* same : {"size_px", "samples_per_pixel", "pixel_samples", "rays",
-                             "path_vertices", "exposure_ev", "bad_samples"})
+                             "path_vertices", "exposure_ev", "bad_samples", "too_bright_samples"})
         EXPECT_EQ(m[same], whole[same]) << same;
     for (const char* sum : {"render_wall_s", "render_cpu_s", "load_s"})
         EXPECT_NEAR(m[sum].get<double>(), a[sum].get<double>() + b[sum].get<double>(), 1e-9) << sum;

@@ -221,6 +221,33 @@ TEST_F(Cli, Stats) {
                                           s.at("rays").at("bounce").get<int>() +
                                           s.at("rays").at("shadow").get<int>());
     EXPECT_EQ(s.at("bad_samples"), 0);
+    EXPECT_EQ(s.at("too_bright_samples"), 0);
+}
+
+TEST_F(Cli, SamplesThatAreTooBrightAreCountedAsSuch) {
+    const auto run = [&](const Words& more) {
+        Words words = {"--background",  "1e16,1e16,1e16", "-o",
+                       path("out.exr"), "--stats",        path("s.json")};
+        words.insert(words.end(), more.begin(), more.end());
+        return run_petzval(render_words(words, scene_));
+    };
+    const Finished bright = run({});
+    EXPECT_EQ(bright.exit_code, 0);
+    json s = json::parse(file_bytes(path("s.json")));
+    const int count = s.at("too_bright_samples").get<int>();
+    EXPECT_GT(count, 0);
+    EXPECT_EQ(s.at("bad_samples"), 0);
+    EXPECT_NE(bright.err.find("warning: " + std::to_string(count) +
+                              " samples were brighter than 1.4e+14 nits, which is more than a "
+                              "film holds; they are left out, the first is sample 0 of pixel "),
+              std::string::npos)
+        << bright.err;
+    EXPECT_EQ(bright.err.find("not finite"), std::string::npos) << bright.err;
+
+    const Finished clamped = run({"--clamp", "1e14"});
+    EXPECT_EQ(clamped.err.find("brighter than"), std::string::npos) << clamped.err;
+    s = json::parse(file_bytes(path("s.json")));
+    EXPECT_EQ(s.at("too_bright_samples"), 0);
 }
 
 TEST_F(Cli, ProgressStyles) {

@@ -33,7 +33,7 @@ Film render_film(const World& world, const Camera& camera, V2i size, const Rende
     ThreadExecutor executor(threads);
     RenderMonitor monitor;
     static_cast<void>(render(*world.tracer, camera, job, film, executor, monitor));
-    EXPECT_EQ(film.bad_count(), 0u);
+    EXPECT_EQ(film.left_out().count(), 0u);
     return film;
 }
 

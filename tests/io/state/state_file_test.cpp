@@ -82,7 +82,7 @@ class StateFile : public ::testing::Test {
 TEST_F(StateFile, HoldsAFilmToTheBit) {
     for (const bool whole : {false, true}) {
         const Film film = filled(whole);
-        ASSERT_GT(film.bad_count(), 0u);
+        ASSERT_GT(film.left_out().count(), 0u);
         write_state(path_, header_, film);
         StateReader reader(path_);
         const StateHeader& read = reader.header();
@@ -140,7 +140,7 @@ TEST_F(StateFile, AnotherVersionSaysWhichOne) {
     other[8] = 7;
     write(other);
     EXPECT_EQ(complaint(), path_.string() +
-                               ": is a state of version 7, and this program reads version 1; use "
+                               ": is a state of version 7, and this program reads version 2; use "
                                "the program that wrote it");
 }
 

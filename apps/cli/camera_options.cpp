@@ -38,7 +38,10 @@ void add_place_options(CLI::App& app, CameraOptions& o) {
     add("--focus", o.focus,
         "sharp plane: its distance from the entrance pupil (1.5m, 30cm, 5ft; 1.5 is metres), "
         "infinity, the pixel x,y, or auto");
-    auto* fstop = add("--fstop", r.fstop, "f-number of the lens: its iris, as 2 or f/2")
+    auto* fstop = add("--fstop", r.fstop,
+                      "f-number of the lens: its iris, as 2 or f/2; traced: 1 / (2 sin u') of a "
+                      "distant point, "
+                      "others: focal length / diameter")
                       ->transform(fnumber_between(kLeast, kMost));
     add("--lens-radius", r.lens_radius_m, "of a thin lens, in metres")
         ->transform(number_between(kLeast, kMost, kMetres))

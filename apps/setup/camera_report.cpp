@@ -2,6 +2,7 @@
 #include "apps/setup/camera_report.h"
 
 #include "apps/setup/option_names.h"
+#include "camera/lens/focus.h"
 #include "io/base/format.h"
 
 namespace petzval {
@@ -49,6 +50,8 @@ void describe_camera(const CameraReport& c, Metadata& m) {
     if (c.lens_radius_m <= 0) return;
     describe_iris(c, m);
     m.emplace_back("petzval:fstop", c.focal_length_mm * 1e-3f / (2 * c.lens_radius_m));
+    m.emplace_back("petzval:fstopMeaning",
+                   c.traced ? kTracedFnumber : "focal length / diameter of the iris");
     m.emplace_back("petzval:focus_m", c.focus_m);
 }
 

@@ -49,8 +49,8 @@ double stop_radius_of(const LoadedLens& loaded, std::optional<float> fstop, cons
     if (!fstop) return filed_mm;
     const auto wanted_mm = stop_radius_for(loaded.lens, *fstop);
     if (wanted_mm && *wanted_mm <= filed_mm * (1 + 1e-6)) return *wanted_mm;
-    notice(fmt::format("warning: {} opens to f/{:.3g} at most, not to f/{:g}", loaded.name(),
-                       fnumber_of(loaded.lens, filed_mm), *fstop));
+    notice(fmt::format("warning: {} opens to f/{:.3g} at most, not to f/{:g}: an f-number is {}",
+                       loaded.name(), fnumber_of(loaded.lens, filed_mm), *fstop, kTracedFnumber));
     return filed_mm;
 }
 

@@ -132,7 +132,8 @@ std::vector<StatedFigure> stated_figures(const Lens& lens) {
     std::vector<StatedFigure> out;
     if (file.stated_focal_length_mm)
         out.push_back({"focal length (mm)", *file.stated_focal_length_mm, first.focal_length_mm});
-    if (file.stated_fnumber) out.push_back({"f-number", *file.stated_fnumber, first.fnumber});
+    if (file.stated_fnumber)
+        out.push_back({"f-number (paraxial)", *file.stated_fnumber, first.fnumber});
     if (file.stated_field_half_deg && file.image_circle_mm > 0)
         out.push_back({"half field (degrees)", *file.stated_field_half_deg,
                        field_of_height_deg(lens, file.image_circle_mm / 2, lens.film_mm(), section)

@@ -35,10 +35,15 @@ struct AxialRay {
 /// through the clear semi-diameters, the stop's left out.
 [[nodiscard]] std::optional<AxialRay> axial_ray(const Lens&, double height_mm);
 
-/// Stop radius that gives an f-number 1 / (2 sin u') for a distant axial point; nothing where the
-/// glass does not let such a ray through, or no ray has that angle.
+/// Which f-number stop_radius_for() and fnumber_of() mean, for people. Irradiance in the middle of
+/// the film follows it but for aberrations.
+inline constexpr const char* kTracedFnumber =
+    "1 / (2 sin u') of the ray at the iris's rim, from a distant point on the axis, at line d";
+
+/// Stop radius that gives an f-number by kTracedFnumber; nothing where the glass does not let such
+/// a ray through, or no ray has that angle.
 [[nodiscard]] std::optional<double> stop_radius_for(const Lens&, double fnumber);
-/// F-number of a stop radius, by the same measure; infinite where no ray gets there.
+/// F-number of a stop radius, by kTracedFnumber; infinite where no ray gets there.
 [[nodiscard]] double fnumber_of(const Lens&, double stop_radius_mm);
 
 }  // namespace petzval

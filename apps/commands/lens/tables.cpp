@@ -26,7 +26,7 @@ using Json = nlohmann::ordered_json;
 
 void list_command() {
     fmt::print("{:<33} {:>6} {:>9} {:>8}  {}\n{:<33} {:>6} {:>9} {:>8}\n", "lens", "focal",
-               "f-number", "angle", "design (patent)", "", "mm", "", "degrees");
+               "f-number", "angle", "design (patent)", "", "mm", "stated", "degrees");
     for (const LensSummary& lens : list_lenses())
         print_line(fmt::format("{:<33} {:>6g} {:>9} {:>8.4g}  {}{}", lens.name,
                                lens.focal_length_mm, fmt::format("f/{:g}", lens.fnumber),
@@ -54,7 +54,7 @@ void show_command(const LensRequest& request) {
         if (value) fmt::print(fmt::runtime(format), *value);
     };
     print_if("focal length {:g} mm\n", file.stated_focal_length_mm);
-    print_if("f/{:g}\n", file.stated_fnumber);
+    print_if("f/{:g}, as the file states\n", file.stated_fnumber);
     print_if("half field {:g}°\n", file.stated_field_half_deg);
     if (file.image_circle_mm > 0) fmt::print("image circle {:g} mm\n", file.image_circle_mm);
     if (file.focus_group)
@@ -133,8 +133,10 @@ void print_check(const Lens& lens, const Check& c) {
         for (const auto& [line, data] : c.first_order) fmt::print(" {:>16.6f}", data.*member);
         fmt::print("\n");
     }
-    fmt::print("\nsmallest f-number by real rays, 1 / (2 sin u') at line d: {:.4f}\n",
-               c.traced_fnumber);
+    fmt::print(
+        "\nfnumber above is paraxial: focal length / diameter of the entrance pupil\n"
+        "smallest f-number by real rays, that of --fstop: {:.4f}\n  {}\n",
+        c.traced_fnumber, kTracedFnumber);
     if (c.seidel) {
         fmt::print("\nSeidel sums (mm), wide open, {}\n{:>7}",
                    c.field_deg ? fmt::format("half field {:g}°", *c.field_deg)

@@ -35,12 +35,12 @@ double parse_time_s(const std::string& option, const std::string& text, double f
 
 std::optional<AnimationChoice> TimeOptions::animation() const {
     if (!at) {
-        if (!animations.empty() || no_loop)
-            throw CLI::ValidationError(animations.empty() ? "--no-loop" : "--animation",
+        if (!animations.empty() || loop)
+            throw CLI::ValidationError(animations.empty() ? "--loop" : "--animation",
                                        "needs a time: --at 1s");
         return std::nullopt;
     }
-    return AnimationChoice{parse_time_s("--at", *at, fps), animations, !no_loop};
+    return AnimationChoice{parse_time_s("--at", *at, fps), animations, loop};
 }
 
 ShutterCurve parse_shutter_curve(const std::string& option, const std::string& text) {
@@ -83,8 +83,8 @@ void add_time_options(CLI::App& app, TimeOptions& o) {
                          "animation that is played, by name or number; may be given again "
                          "(default: all that do not contradict an earlier one)"))
         ->allow_extra_args(false);
-    group(app.add_flag("--no-loop", o.no_loop,
-                       "an animation stays as it ends (default: it begins anew)"));
+    group(app.add_flag("--loop", o.loop,
+                       "an animation begins anew at its end (default: it stays as it ends)"));
 }
 
 }  // namespace petzval

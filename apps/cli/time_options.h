@@ -20,7 +20,7 @@ struct TimeOptions {
     std::optional<std::string> at;
     std::vector<std::string> animations;
     double fps = 24;
-    bool no_loop = false;
+    bool loop = false;
 
     [[nodiscard]] bool plays() const { return at.has_value(); }
     /// What is played; nothing where no time is given. Throws CLI::ValidationError.

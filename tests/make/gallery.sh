@@ -137,8 +137,8 @@ picture flying_lamp 480x320 $scenes/flying_lamp.glb --camera moving --at 0.55s -
 fox=../shared/scenes/open/fox/Fox.glb
 if is_wanted fox; then
     if [[ -e $fox ]]; then
-        echo "fox: petzval render $fox --animation Walk --frames 1:48 --shutter 180deg"
-        "$petzval" render $fox --animation Walk --frames 1:48 --shutter 180deg --size 120x80 \
+        echo "fox: petzval render $fox --animation Walk --frames 1:48 --loop --shutter 180deg"
+        "$petzval" render $fox --animation Walk --frames 1:48 --loop --shutter 180deg --size 120x80 \
             --spp "$spp" --look-at 200,80,60,0,40,-10 --progress none --quiet -o "$out/fox_##.png"
         jpeg fox "$out"/fox_??.png --mosaic 8x6
     else

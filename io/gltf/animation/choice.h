@@ -10,7 +10,7 @@ namespace petzval {
 struct AnimationChoice {
     double time_s = 0;               ///< that is shown
     std::vector<std::string> names;  ///< or numbers; none: as played_animations() finds
-    bool repeats = true;             ///< after their end they begin anew; else their end stays
+    bool repeats = false;            ///< after their end they begin anew; else their end stays
     double open_s = 0;               ///< how long the shutter is open, half of it before time_s
 
     [[nodiscard]] bool operator==(const AnimationChoice&) const = default;

@@ -47,7 +47,11 @@ void GltfClip::find_whether_closed() {
 double GltfClip::local_s(double time_s, double frame_s, bool repeats) const {
     if (!(duration_s > 0)) return 0;
     if (!repeats) return std::clamp(time_s, 0., duration_s);
-    const double turn_s = std::floor(frame_s / duration_s) * duration_s;
+    // Times of keys are floats: the end in their digits is the beginning of the next turn.
+    constexpr double kRounding = 0x1p-24, kMost = 1e-6;  // in turns
+    const double turns = frame_s / duration_s;
+    const double same = std::min(kRounding * (1 + std::fabs(turns)), kMost);
+    const double turn_s = std::floor(turns + same) * duration_s;
     const double local = time_s - turn_s;
     if (closed) return local - std::floor(local / duration_s) * duration_s;
     return std::clamp(local, 0., duration_s);

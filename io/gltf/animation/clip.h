@@ -27,9 +27,9 @@ struct GltfClip {
 
     /// Sets `closed` from the keys.
     void find_whether_closed();
-    /// Time in the clip that is shown at a time, where `frame_s` is the middle of the exposure: it
-    /// decides how often the clip has begun. Beyond the ends of that turn a closed clip goes on,
-    /// and another one stays as it ends.
+    /// Time in the clip that is shown at a time. Beyond its ends it stays as it is there. One that
+    /// repeats begins anew at its end: `frame_s`, the middle of the exposure, decides how often it
+    /// has begun. Beyond the ends of that turn a closed clip goes on, and another one stays.
     [[nodiscard]] double local_s(double time_s, double frame_s, bool repeats) const;
 };
 

@@ -68,6 +68,26 @@ TEST_F(CliTime, FramesAreThoseOfTheirMoments) {
     EXPECT_NE(file_bytes(path("f-0001.exr")), file_bytes(path("f-0005.exr")));
 }
 
+// The animations take a second.
+TEST_F(CliTime, TheLastFrameIsTheLastPose) {
+    const Finished run = run_petzval(render_words(
+        {"--frames", "1:25:12", "--fps", "25", "--background", "1,1,1", "-o", path("f##.exr")},
+        scene_));
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    const auto at = [&](Words words) {
+        words.insert(words.end(), {"--background", "1,1,1"});
+        return render(words).pixels;
+    };
+    const auto last = read_picture(path("f25.exr")).pixels;
+    EXPECT_EQ(last, at({"--at", "1s"}));
+    EXPECT_EQ(last, at({"--at", "7s"}));
+    EXPECT_NE(last, at({"--at", "0"}));
+    EXPECT_EQ(at({"--at", "0"}), at({"--at", "1s", "--loop"}));
+    EXPECT_EQ(at({"--at", "0.25"}), at({"--at", "3.25", "--loop"}));
+    EXPECT_EQ(metadata_of(render({"--at", "1s"}), "petzval:loop"), "0");
+    EXPECT_EQ(metadata_of(render({"--at", "1s", "--loop"}), "petzval:loop"), "1");
+}
+
 TEST_F(CliTime, WhatTheFirstFrameFindsHolds) {
     TinyGltf file = walls();
     const int times = file.add_accessor<float>("SCALAR", {0, 1});
@@ -103,14 +123,13 @@ TEST_F(CliTime, SaysWhatIsShown) {
     expect(playing, "while the shutter is open: 1 moving instance, 1 moving camera; between");
     expect(told({"--at", "0.25", "--animation", "approach", "--shutter", "1/8"}),
            "while the shutter is open: 1 moving camera\n");
-    expect(told({"--at", "9.25", "--no-loop", "--shutter", "1/8"}),
-           "nothing moves while the shutter is open");
+    expect(told({"--at", "9.25", "--shutter", "1/8"}), "nothing moves while the shutter is open");
 }
 
 TEST_F(CliTime, AShutterBlursOnlyWhatMoves) {
     // Without motion, and with a still moment, the bytes are those without a shutter but for what
     // the file says of it.
-    const Words still = {"--at", "9.25", "--no-loop"};
+    const Words still = {"--at", "9.25"};
     Words open = still;
     open.insert(open.end(), {"--shutter", "1/8", "--shutter-curve", "trapezoid"});
     EXPECT_EQ(render(still).pixels, render(open).pixels);
@@ -123,7 +142,7 @@ TEST_F(CliTime, AShutterBlursOnlyWhatMoves) {
     // The shutter's time exposes in the photographic mode too: twice the time, twice the light.
     const Words photo = {
         "--exposure-mode", "photographic", "--fstop", "8", "--focus", "2", "--at", "9.25",
-        "--no-loop",       "--camera",     "wide"};
+        "--camera",        "wide"};
     const auto mean = [&](const char* time, const char* curve) {
         Words words = photo;
         words.insert(words.end(), {"--shutter", time, "--shutter-curve", curve});
@@ -219,18 +238,17 @@ TEST_F(CliTime, VelocitiesThroughALensAreThoseOfItsPictures) {
            {{"sampler", 1}, {"target", {{"node", 1}, {"path", "rotation"}}}}}}});
     scene_ = file.save_glb(folder_.path / "wall.glb").string();
     const auto frame = [&](const char* at) {
-        return render({"--lens",      "tessar-100mm-f2.8",
-                       "--fit",       "fov",
-                       "--fstop",     "32",
-                       "--focus",     "3",
-                       "--at",        at,
-                       "--fps",       "1",
-                       "--no-loop",   "--spectral",
-                       "rgb",         "--filter",
-                       "box",         "--background",
-                       "1,1,1",       "--aov",
-                       "uv,velocity", "--spp",
-                       "64"});
+        return render({"--lens",       "tessar-100mm-f2.8",
+                       "--fit",        "fov",
+                       "--fstop",      "32",
+                       "--focus",      "3",
+                       "--at",         at,
+                       "--fps",        "1",
+                       "--spectral",   "rgb",
+                       "--filter",     "box",
+                       "--background", "1,1,1",
+                       "--aov",        "uv,velocity",
+                       "--spp",        "64"});
     };
     const Picture now = frame("0"), then = frame("1");
     const auto uv = [](const Picture& p, int x, int y) {
@@ -270,7 +288,7 @@ TEST_F(CliTime, RefusesWhatHasNoMeaning) {
         {{"--at", "1e9", "-o", out}, "--at"},
         {{"--at", "1", "--fps", "0", "-o", out}, "--fps"},
         {{"--animation", "drift", "-o", out}, "needs a time"},
-        {{"--no-loop", "-o", out}, "needs a time"},
+        {{"--loop", "-o", out}, "--loop: needs a time"},
         {{"--at", "1", "--animation", "fly", "-o", out},
          "no animation \"fly\"; it has 0 \"drift\""},
         {{"--at", "1", "--shutter", "0", "-o", out}, "--shutter"},

@@ -153,6 +153,56 @@ TEST(AnimationLoop, StartsAtZeroWhateverTheFirstKey) {
     EXPECT_EQ(origin(file, 0, moment(5)).x, 2);
 }
 
+/// Where the first probe is along x at a time, as without --loop and with it.
+std::array<float, 2> along(const AnimatedGltf& file, double time_s) {
+    return {origin(file, 0, {time_s, {}, false}).x, origin(file, 0, {time_s, {}, true}).x};
+}
+
+TEST(AnimationEnd, ItsLastMomentIsItsLastPose) {
+    for (const float seconds : {1.f, 2.f, 0.1f, 0.3f, 25.f / 24}) {
+        AnimatedGltf file;
+        file.add_root({{"mesh", file.add_probe()}});
+        add_motion(file, "", 0, 0, seconds);
+        // As decimals of the command line and frames have it, and as the float of the key.
+        for (const double end : {std::round(double(seconds) * 240) / 240, double(seconds)}) {
+            EXPECT_NEAR(along(file, end)[0], seconds, 1e-6) << seconds;
+            EXPECT_NEAR(along(file, end)[1], 0, 1e-6) << seconds;  // begins anew
+            EXPECT_NEAR(along(file, -end)[0], 0, 1e-6) << seconds;
+            EXPECT_NEAR(along(file, -end)[1], 0, 1e-6) << seconds;
+            EXPECT_NEAR(along(file, 3 * end)[1], 0, 1e-6) << seconds;
+            EXPECT_NEAR(along(file, 0.99 * end)[1], 0.99 * double(seconds), 1e-6) << seconds;
+        }
+    }
+}
+
+TEST(AnimationEnd, EachEndsWhereItEnds) {
+    const GltfFile loaded = load_at(motions(), AnimationChoice{3, {}});
+    EXPECT_EQ(origin(loaded, 0).x, 2);  // of 2 s
+    EXPECT_EQ(origin(loaded, 1).z, 3);  // of 4 s
+}
+
+TEST(AnimationEnd, AnArmatureOfBlenderEndsAsItEnds) {
+    const std::filesystem::path path = PETZVAL_SHARED "/faults2/blender/armature.glb";
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << "needs the folder ../shared";
+    const auto at_frame = [&](int frame) {
+        const GltfFile file = load_at(path, AnimationChoice{frame / 24., {}});
+        std::vector<V3f> all;
+        for (const Mesh& mesh : file.scene.meshes)
+            all.insert(all.end(), mesh.positions.begin(), mesh.positions.end());
+        return all;
+    };
+    const auto apart_by = [](const std::vector<V3f>& a, const std::vector<V3f>& b) {
+        float most = 0;
+        for (size_t i = 0; i < a.size(); ++i) most = std::max(most, (a[i] - b[i]).length());
+        return most;
+    };
+    const auto first = at_frame(1), before = at_frame(24), last = at_frame(25);
+    ASSERT_EQ(first.size(), last.size());
+    EXPECT_GT(apart_by(first, last), 0.5f);
+    EXPECT_LT(apart_by(before, last), apart_by(first, last) / 8);
+    EXPECT_EQ(apart_by(at_frame(40), last), 0);
+}
+
 TEST(AnimationLoop, MayStayAsItEnds) {
     for (const auto& [time, x] :
          {std::pair{1.5, 1.5}, {2., 2.}, {2.5, 2.}, {1e6, 2.}, {-0.5, 0.}, {-1e6, 0.}})

@@ -68,7 +68,8 @@ void tell_refusal(const InfoOptions& o, const std::string& error) {
 
 void info_command(const InfoOptions& o) {
     PictureBudget pictures = o.reading.pictures();
-    const GltfChoices choices = o.reading.all_choices();
+    GltfChoices choices = o.reading.all_choices();
+    choices.checks_all_animations = true;
     InfoReport report;
     report.path = o.scene;
     report.variant = o.reading.choices.variant;

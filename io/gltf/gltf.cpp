@@ -26,7 +26,8 @@ GltfReader::GltfReader(const std::filesystem::path& path, FileScope scope,
     naming_file(path.string(), [&] {
         impl_->name = path.string();
         impl_->choices = choices;
-        impl_->source = read_gltf_source(path, scope, choices.animation);
+        impl_->source =
+            read_gltf_source(path, scope, choices.animation, choices.checks_all_animations);
         if (choices.animation) impl_->stored = impl_->source.json;
     });
 }

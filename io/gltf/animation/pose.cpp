@@ -19,55 +19,56 @@ constexpr PropertyKind kNumber{.width = 1}, kPair{.width = 2, .list = true},
     kWeights{.width = 0, .list = true}, kTurn{.width = 4, .list = true, .quaternion = true};
 
 struct Named {
+    std::string_view parent;  ///< what it stands in; empty: an element of a list, mostly
     std::string_view name;
     PropertyKind kind;
 };
 
-/// Properties whose name alone tells what they are.
+/// Properties whose name tells what they are, where they stand in what glTF has them in.
 constexpr std::array<Named, 43> kByName = {{
-    {"yfov", kNumber},
-    {"aspectRatio", kNumber},
-    {"znear", kNumber},
-    {"zfar", kNumber},
-    {"xmag", kNumber},
-    {"ymag", kNumber},
-    {"alphaCutoff", kNumber},
-    {"emissiveFactor", kTriple},
-    {"strength", kNumber},
-    {"baseColorFactor", kFour},
-    {"metallicFactor", kNumber},
-    {"roughnessFactor", kNumber},
-    {"anisotropyStrength", kNumber},
-    {"anisotropyRotation", kNumber},
-    {"clearcoatFactor", kNumber},
-    {"clearcoatRoughnessFactor", kNumber},
-    {"diffuseTransmissionFactor", kNumber},
-    {"diffuseTransmissionColorFactor", kTriple},
-    {"dispersion", kNumber},
-    {"emissiveStrength", kNumber},
-    {"ior", kNumber},
-    {"iridescenceFactor", kNumber},
-    {"iridescenceIor", kNumber},
-    {"iridescenceThicknessMinimum", kNumber},
-    {"iridescenceThicknessMaximum", kNumber},
-    {"sheenColorFactor", kTriple},
-    {"sheenRoughnessFactor", kNumber},
-    {"specularColorFactor", kTriple},
-    {"transmissionFactor", kNumber},
-    {"thicknessFactor", kNumber},
-    {"attenuationDistance", kNumber},
-    {"attenuationColor", kTriple},
-    {"diffuseFactor", kFour},
-    {"glossinessFactor", kNumber},
-    {"color", kTriple},
-    {"intensity", kNumber},
-    {"range", kNumber},
-    {"innerConeAngle", kNumber},
-    {"outerConeAngle", kNumber},
-    {"multiplier", kNumber},
-    {"visible", {.width = 1, .yes_or_no = true}},
-    {"offset", kPair},
-    {"translation", kTriple},
+    {"perspective", "yfov", kNumber},
+    {"perspective", "aspectRatio", kNumber},
+    {"", "znear", kNumber},
+    {"", "zfar", kNumber},
+    {"orthographic", "xmag", kNumber},
+    {"orthographic", "ymag", kNumber},
+    {"", "alphaCutoff", kNumber},
+    {"", "emissiveFactor", kTriple},
+    {"occlusionTexture", "strength", kNumber},
+    {"pbrMetallicRoughness", "baseColorFactor", kFour},
+    {"pbrMetallicRoughness", "metallicFactor", kNumber},
+    {"pbrMetallicRoughness", "roughnessFactor", kNumber},
+    {"KHR_materials_anisotropy", "anisotropyStrength", kNumber},
+    {"KHR_materials_anisotropy", "anisotropyRotation", kNumber},
+    {"KHR_materials_clearcoat", "clearcoatFactor", kNumber},
+    {"KHR_materials_clearcoat", "clearcoatRoughnessFactor", kNumber},
+    {"KHR_materials_diffuse_transmission", "diffuseTransmissionFactor", kNumber},
+    {"KHR_materials_diffuse_transmission", "diffuseTransmissionColorFactor", kTriple},
+    {"KHR_materials_dispersion", "dispersion", kNumber},
+    {"KHR_materials_emissive_strength", "emissiveStrength", kNumber},
+    {"KHR_materials_ior", "ior", kNumber},
+    {"KHR_materials_iridescence", "iridescenceFactor", kNumber},
+    {"KHR_materials_iridescence", "iridescenceIor", kNumber},
+    {"KHR_materials_iridescence", "iridescenceThicknessMinimum", kNumber},
+    {"KHR_materials_iridescence", "iridescenceThicknessMaximum", kNumber},
+    {"KHR_materials_sheen", "sheenColorFactor", kTriple},
+    {"KHR_materials_sheen", "sheenRoughnessFactor", kNumber},
+    {"KHR_materials_specular", "specularColorFactor", kTriple},
+    {"KHR_materials_transmission", "transmissionFactor", kNumber},
+    {"KHR_materials_volume", "thicknessFactor", kNumber},
+    {"KHR_materials_volume", "attenuationDistance", kNumber},
+    {"KHR_materials_volume", "attenuationColor", kTriple},
+    {"KHR_materials_pbrSpecularGlossiness", "diffuseFactor", kFour},
+    {"KHR_materials_pbrSpecularGlossiness", "specularFactor", kTriple},
+    {"KHR_materials_pbrSpecularGlossiness", "glossinessFactor", kNumber},
+    {"", "color", kTriple},
+    {"", "intensity", kNumber},
+    {"", "range", kNumber},
+    {"spot", "innerConeAngle", kNumber},
+    {"spot", "outerConeAngle", kNumber},
+    {"", "multiplier", kNumber},
+    {"KHR_node_visibility", "visible", {.width = 1, .yes_or_no = true}},
+    {"KHR_texture_transform", "offset", kPair},
 }};
 
 }  // namespace
@@ -90,23 +91,32 @@ std::optional<PropertyKind> property_kind(const std::string& pointer) {
     if (in_arrays ? !is_number(words[1]) : words[0] != "extensions") return std::nullopt;
     const std::string_view name = words.back(), parent = words[words.size() - 2];
     const bool of_node = name == "translation" || name == "rotation" || name == "scale";
-    if (words[0] == "nodes" && words.size() == 3 && !of_node && name != "weights")
+    if (words[0] == "nodes" && (words.size() == 3) != (of_node || name == "weights") &&
+        parent != "weights")
         return std::nullopt;  // its other properties are no numbers
     if (name == "weights") return kWeights;
     if (parent == "weights" && is_number(name)) return kNumber;
-    if (name == "rotation") {
-        if (parent == "KHR_texture_transform") return kNumber;
-        return kTurn;  // of a node, or of an image-based light
+    if (of_node && parent == "KHR_texture_transform") {
+        if (name == "rotation") return kNumber;
+        return name == "scale" ? std::optional(kPair) : std::nullopt;
+    }
+    if (name == "rotation") {  // of a node, or of an image-based light
+        if (words[0] == "nodes" || words[0] == "extensions") return kTurn;
+        return std::nullopt;
     }
     if (name == "scale") {
-        if (parent == "KHR_texture_transform") return kPair;
-        return words[0] == "nodes" ? kTriple : kNumber;  // of a node, or a normal map
+        if (words[0] == "nodes") return kTriple;
+        const bool of_normals = parent == "normalTexture" || parent == "clearcoatNormalTexture";
+        return of_normals ? std::optional(kNumber) : std::nullopt;
     }
-    if (name == "specularFactor")
-        return parent == "KHR_materials_pbrSpecularGlossiness" ? kTriple : kNumber;
+    if (name == "translation") return words[0] == "nodes" ? std::optional(kTriple) : std::nullopt;
+    if (name == "specularFactor" && parent == "KHR_materials_specular") return kNumber;
     const auto found = std::ranges::find(kByName, name, &Named::name);
     if (found == kByName.end()) return std::nullopt;
-    return found->kind;
+    const bool fits = found->parent.empty()
+                          ? is_number(parent) || parent == "EXT_lights_ies" || words[0] == "cameras"
+                          : found->parent == parent;
+    return fits ? std::optional(found->kind) : std::nullopt;
 }
 
 void pose(json& root, std::span<const GltfClip> clips, double time_s, double frame_s,

@@ -27,7 +27,8 @@ struct GltfCheck {
     GltfBudget& budget;
     std::vector<GltfAccessor> accessors;  ///< filled by check_accessors
     GltfUse use;
-    std::vector<size_t> played{};  ///< numbers of the animations
+    std::vector<size_t> played{};       ///< numbers of the animations
+    bool reads_all_animations = false;  ///< to tell of faults in the others too
 
     /// Number of things in the root array `kind` ("meshes" ...).
     [[nodiscard]] size_t count(const char* kind) const { return root.length(kind); }
@@ -73,7 +74,8 @@ void check_image_lights(GltfCheck&);
 void check_skins(const GltfCheck&);
 /// Checks nodes and scenes: the references, the transforms, and that the nodes form trees.
 void check_nodes(GltfCheck&);
-/// Checks and decodes the animations that are played, and warns of others that are broken.
+/// Checks and decodes the animations that are played, and warns of channels that are left out and
+/// of other animations that are broken.
 void check_animations(GltfCheck&);
 /// Checks values in the buffers: vertex and joint indices in range.
 void check_data(const GltfCheck&);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Animations that are played are checked and decoded. Of others only a broken one is told.
+// Animations that are played are checked and decoded; a channel with a fault is left out. Of others
+// only a broken one is told, or every fault where that is asked for.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,19 +24,32 @@ size_t target_count(const json& root, const json& owner) {
                                                      : owner);
 }
 
+/// What a fault is, with its place in the JSON but without the name of the file.
+std::string text_of(const GltfCheck& check, const InputError& fault) {
+    return std::string(fault.what()).substr(check.source.path.string().size() + 2);
+}
+
 /// Reads one animation, whose parts may be wrong.
 class ClipReader {
   public:
-    ClipReader(GltfCheck& check, const JsonCursor& animation)
-        : check_(check), animation_(animation), samplers_(animation.objects("samplers")) {}
+    ClipReader(GltfCheck& check, GltfBudget& budget, const JsonCursor& animation)
+        : check_(check),
+          budget_(budget),
+          animation_(animation),
+          samplers_(animation.objects("samplers")) {}
 
     [[nodiscard]] GltfClip run() {
         animation_.require("samplers");
         animation_.require("channels");
         GltfClip clip;
         clip.name = animation_.text_or("name", "");
-        for (const JsonCursor& channel : animation_.objects("channels"))
-            read_channel(channel, clip);
+        for (const JsonCursor& channel : animation_.objects("channels")) try {
+                read_channel(channel, clip);
+            } catch (const InputError& fault) {
+                if (over_budget_) throw;
+                check_.source.warnings.push_back(
+                    fmt::format("{}; {} is left out", text_of(check_, fault), channel.path()));
+            }
         for (const AnimatedProperty& property : clip.properties)
             clip.duration_s = std::max(clip.duration_s, property.keys.times_s.back());
         clip.find_whether_closed();
@@ -152,9 +166,11 @@ class ClipReader {
     [[nodiscard]] std::vector<double> numbers_of(const GltfAccessor& from,
                                                  const JsonCursor& sampler) {
         constexpr uint64_t kMostCounted = uint64_t(1) << 40;
-        check_.budget.ask(std::min(from.count, kMostCounted) *
-                              static_cast<uint64_t>(from.components) * sizeof(double),
-                          sampler);
+        over_budget_ = true;  // where this throws
+        budget_.ask(std::min(from.count, kMostCounted) * static_cast<uint64_t>(from.components) *
+                        sizeof(double),
+                    sampler);
+        over_budget_ = false;
         return read_numbers(from);
     }
 
@@ -180,7 +196,9 @@ class ClipReader {
     }
 
     GltfCheck& check_;
+    GltfBudget& budget_;
     const JsonCursor& animation_;
+    bool over_budget_ = false;  ///< more memory was asked for than a file may
     const std::vector<JsonCursor> samplers_;
 };
 
@@ -204,12 +222,19 @@ void check_references(const GltfCheck& check, const JsonCursor& animation) {
 void check_animations(GltfCheck& check) {
     const auto animations = check.root.objects("animations");
     for (const size_t index : check.played)
-        check.source.clips.push_back(ClipReader(check, animations[index]).run());
+        check.source.clips.push_back(ClipReader(check, check.budget, animations[index]).run());
     for (size_t i = 0; i < animations.size(); ++i) try {
-            if (std::ranges::find(check.played, i) == check.played.end())
+            if (std::ranges::find(check.played, i) != check.played.end()) continue;
+            GltfBudget budget = check.budget;  // what is read is not kept
+            if (check.reads_all_animations)
+                (void)ClipReader(check, budget, animations[i]).run();
+            else
                 check_references(check, animations[i]);
-        } catch (const InputError&) {
-            check.warn(animations[i], "is broken; it cannot be played");
+        } catch (const InputError& fault) {
+            if (check.reads_all_animations)
+                check.source.warnings.push_back(text_of(check, fault) + "; it cannot be played");
+            else
+                check.warn(animations[i], "is broken in places; petzval info names them");
         }
 }
 

@@ -66,7 +66,8 @@ std::vector<ExtensionInFile> read_gltf_extensions(const std::filesystem::path& p
 }
 
 GltfSource read_gltf_source(const std::filesystem::path& path, FileScope scope,
-                            const std::optional<AnimationChoice>& animation) {
+                            const std::optional<AnimationChoice>& animation,
+                            bool checks_all_animations) {
     GltfSource source;
     const Opened opened = open_gltf(path, source);
     source.files.push_back(path);
@@ -81,6 +82,7 @@ GltfSource read_gltf_source(const std::filesystem::path& path, FileScope scope,
     list_extensions(check);
     check_extensions(check);
     check_collections(check);
+    check.reads_all_animations = checks_all_animations;
     if (animation) check.played = played_animations(source.json, *animation, name);
     check.use = find_used(source.json, check.played);
     read_buffers(source, {opened.binary, opened.chunks.bin}, budget);

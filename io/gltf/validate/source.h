@@ -47,10 +47,12 @@ struct GltfSource {
 /// Reads a .gltf or .glb with everything it refers to, and checks it before anything else uses it:
 /// container, JSON (and its depth), version, required extensions, every index, every byte range,
 /// the node tree, counts against the sizes of the buffers. Throws InputError with file and JSON
-/// path. Where animations are chosen, they are decoded too.
+/// path. Where animations are chosen, they are decoded too; checks_all_animations: the others are
+/// looked through for faults.
 [[nodiscard]] GltfSource read_gltf_source(const std::filesystem::path&,
                                           FileScope = FileScope::Anywhere,
-                                          const std::optional<AnimationChoice>& = {});
+                                          const std::optional<AnimationChoice>& = {},
+                                          bool checks_all_animations = false);
 
 /// Makes the JSON of a file say what its animations say at a moment, and checks it once more:
 /// values between keys may leave the range of a property, and are clamped as those of a file are.

@@ -42,6 +42,20 @@ class Info : public CliTest {
     }
 };
 
+TEST_F(Info, TellsOfChannelsThatCannotBePlayed) {
+    TinyGltf file = rich();
+    EXPECT_EQ(info(file).out.find("left out"), std::string::npos);
+    file.json["animations"][0]["samplers"][0]["input"] =
+        file.add_accessor<float>("SCALAR", {2.5f, 0});
+    const Finished text = info(file);
+    EXPECT_EQ(text.exit_code, 0) << text.err;
+    EXPECT_NE(text.out.find("/animations/0/samplers/0/input: key 1 is before key 0"),
+              std::string::npos)
+        << text.out;
+    const json out = json::parse(info(file, {"--json"}).out);
+    EXPECT_NE(out["warnings"].dump().find("key 1 is before key 0"), std::string::npos);
+}
+
 TEST_F(Info, HasATableOfTheExtensions) {
     const Finished text = info(rich());
     EXPECT_EQ(text.exit_code, 0) << text.err;

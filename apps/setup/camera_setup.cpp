@@ -7,6 +7,7 @@
 
 #include "apps/setup/framing.h"
 #include "apps/setup/thin_setup.h"
+#include "camera/models/zoom_camera.h"
 #include "core/scene/motion.h"
 #include "integrator/autofocus.h"
 #include "io/base/error.h"
@@ -129,6 +130,28 @@ float find_focus(const CameraContext& at, const M44f& to_world, const Finder& fi
     return depth_m;
 }
 
+// Camera whose view changes while the shutter is open; nullptr where it does not. make: a camera
+// for a view of the file's camera, as at one of the steps.
+template <class Make>
+std::unique_ptr<Camera> zooming(const CameraContext& at, const GltfCamera* from, Make make) {
+    if (!from || from->zoom.empty() || !at.model.asked.shutter_curve) return nullptr;
+    std::vector<std::unique_ptr<Camera>> at_steps;
+    GltfCamera now = *from;
+    for (const float view : from->zoom) {
+        (now.orthographic ? now.ymag_m : now.yfov_rad) = view;
+        at_steps.push_back(make(now));
+    }
+    return std::make_unique<ZoomCamera>(std::move(at_steps));
+}
+
+// Tells that a lens does not zoom as the file's camera does.
+void tell_of_held_zoom(const CameraContext& at) {
+    if (at.model.from && !at.model.from->zoom.empty() && at.model.asked.shutter_curve)
+        at.notice(
+            "the camera zooms while the shutter is open, but its lens cannot: the angle of "
+            "view stays as in the middle of the exposure");
+}
+
 CameraSetup orthographic(const CameraContext& at, const GltfCamera& from) {
     CameraSetup setup;
     setup.report.asked = at.model.asked;
@@ -136,12 +159,14 @@ CameraSetup orthographic(const CameraContext& at, const GltfCamera& from) {
     setup.report.ymag_m = from.ymag_m;
     const M44f to_world = stand(at, {}, setup.report);
     // The picture's aspect wins over the file's; the height stays.
-    const auto camera = [&] {
-        return std::make_unique<OrthographicCamera>(to_world, from.ymag_m * at.aspect(),
-                                                    from.ymag_m);
+    const auto camera = [&](const GltfCamera& view) {
+        return std::make_unique<OrthographicCamera>(to_world, view.ymag_m * at.aspect(),
+                                                    view.ymag_m);
     };
-    setup.camera = camera();
-    setup.finder = camera();
+    setup.camera = zooming(at, &from, camera);
+    setup.zooms = setup.camera != nullptr;
+    if (!setup.zooms) setup.camera = camera(from);
+    setup.finder = camera(from);
     return setup;
 }
 
@@ -149,6 +174,7 @@ CameraSetup with_lens(const CameraContext& at, const LoadedLens& loaded) {
     CameraSetup setup;
     CameraReport& report = setup.report;
     report.asked = at.model.asked;
+    if (report.asked.fit == Fit::Fov && !report.asked.fov_deg) tell_of_held_zoom(at);
     report.dispersive_lens = at.model.dispersive_lens();
     report.yfov_deg = loaded.yfov_rad / kDegree;
     const M44f to_world = stand(at, {loaded.yfov_rad, 1e-3 * loaded.focal_length_mm, ""}, report);
@@ -166,6 +192,16 @@ CameraSetup with_lens(const CameraContext& at, const LoadedLens& loaded) {
     setup.camera = std::move(lens.camera);
     setup.finder = viewfinder(loaded, to_world, report.focus_m);
     return setup;
+}
+
+// Camera without a prescription with the angle of view of another moment.
+std::unique_ptr<Camera> thin_camera_at(const CameraContext& at, const GltfCamera& now,
+                                       ThinLens pose, std::optional<float> focus_m) {
+    CameraModel model = at.model;
+    model.from = &now;
+    const ThinView view = thin_view(model, at.scene_file, at.aspect());
+    pose.yfov_rad = yfov_at_rad(view, focus_m);
+    return set_up_thin(model, view, std::move(pose), focus_m, at.notice).camera;
 }
 
 CameraSetup without_prescription(const CameraContext& at) {
@@ -204,6 +240,15 @@ CameraSetup without_prescription(const CameraContext& at) {
         report.stop_radius_mm = 1e3 * thin.lens_radius_m;
     }
     setup.camera = std::move(thin.camera);
+    if (view.angle_of_file && std::holds_alternative<SingleLens>(at.model.optics))
+        tell_of_held_zoom(at);
+    else if (view.angle_of_file)
+        if (auto camera = zooming(at, at.model.from, [&](const GltfCamera& now) {
+                return thin_camera_at(at, now, pose, focus_m);
+            })) {
+            setup.camera = std::move(camera);
+            setup.zooms = true;
+        }
     setup.finder = std::make_unique<ThinLensCamera>(pose);
     return setup;
 }
@@ -216,8 +261,9 @@ CameraSetup still_camera(const CameraContext& at) {
 }
 
 // The shutter, where something moves while it is open.
-std::shared_ptr<const Shutter> shutter_of(const CameraModel& model, const Scene& scene) {
-    const bool moves = model.from && !model.from->steps.empty();
+std::shared_ptr<const Shutter> shutter_of(const CameraModel& model, const Scene& scene,
+                                          bool zooms) {
+    const bool moves = zooms || (model.from && !model.from->steps.empty());
     if (!model.asked.shutter_curve || !(moves || has_motion(scene))) return nullptr;
     return shutter_with(*model.asked.shutter_curve, model.from,
                         model.from ? model.from->to_world : M44f());
@@ -237,7 +283,7 @@ CameraSetup set_up_camera(const CameraModel& model, const std::string& scene_fil
                           const Scene& scene, const Bvh& bvh, const Notice& notice) {
     const CameraContext at{model, scene_file, size, scene, bvh, notice};
     CameraSetup setup = still_camera(at);
-    setup.camera->set_shutter(shutter_of(model, scene));
+    setup.camera->set_shutter(shutter_of(model, scene, setup.zooms));
     return setup;
 }
 

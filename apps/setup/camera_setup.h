@@ -14,6 +14,7 @@ namespace petzval {
 struct CameraSetup {
     std::unique_ptr<Camera> camera;
     std::unique_ptr<Camera> finder;  ///< pictures the same with a narrow iris
+    bool zooms = false;              ///< the camera's view changes while the shutter is open
     CameraReport report;
 };
 

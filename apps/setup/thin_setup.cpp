@@ -90,6 +90,7 @@ ThinView thin_view(const CameraModel& model, const std::string& scene, float asp
                     kAsFarAsInfinity_m);
             }));
     } else if (model.from && !asked.fov_deg && !view.focal_mm) {
+        view.angle_of_file = true;
         view.yfov_rad = model.from->yfov_rad;
         view.yfov_deg = view.yfov_rad / kDegree;
     } else if (asked.fov_deg || !view.focal_mm) {

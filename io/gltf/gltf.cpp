@@ -54,6 +54,8 @@ GltfFile GltfReader::load(PictureBudget& pictures, double time_s) {
             motion = NodeMotion(d.source.json, d.source.clips, *animation,
                                 {nodes.order, nodes.parent, nodes.to_world});
         tally.motion_unseen = motion.unseen();
+        if (animation && animation->open_s > 0)
+            tally.held = held_while_open(d.source.clips, *animation);
         GltfMaterials materials(gltf, file.scene, tally, pictures, d.decoded);
         place_meshes(gltf, nodes, motion, GltfVariant(gltf, d.choices.variant), materials,
                      file.scene, tally, d.choices.point_line_radius_m);

@@ -2,6 +2,7 @@
 #include "io/gltf/info.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -135,12 +136,13 @@ void describe_motion(const GltfTally& tally, GltfFile& file) {
                 plural(tally.deforming_meshes, "deforming mesh", "deforming meshes");
     add(tally.moving_lights, "moving light");
     add(tally.moving_cameras, "moving camera");
+    add(tally.zooming_cameras, "zooming camera");
     const std::string unseen =
         tally.motion_unseen
             ? "; keys lie closer together than time steps, or something turns by more than half "
               "a turn between them: such motion is not seen"
             : "";
-    if (text.empty()) {
+    if (text.empty() && tally.held.empty()) {
         file.remarks.emplace_back("nothing moves while the shutter is open" + unseen);
         return;
     }
@@ -149,6 +151,9 @@ void describe_motion(const GltfTally& tally, GltfFile& file) {
             "; between time steps, meshes are off by at most {:.2g} m, {:.2g} % of "
             "their extent",
             kRoundedUp * tally.motion_off_m, kRoundedUp * 100 * tally.motion_off);
+    if (!tally.held.empty())
+        text += fmt::format("{}not blurred but shown as in the middle: {}",
+                            text.empty() ? "" : "; ", fmt::join(tally.held, ", "));
     file.remarks.push_back("while the shutter is open: " + text + unseen);
 }
 

@@ -149,6 +149,33 @@ bool is_usable(const GltfCamera& camera) {
     return camera.orthographic || (camera.yfov_rad > 0 && camera.yfov_rad < kPi);
 }
 
+// Gives a camera whose view changes while the shutter is open that view at few time steps: the
+// height of the picture is followed within a thousandth.
+void zoom(const NodeMotion& motion, int number, GltfCamera& camera, GltfTally& tally) {
+    const char* const kind = camera.orthographic ? "orthographic" : "perspective";
+    const std::string place = json_path("cameras", number);
+    const auto* const values =
+        motion.of_camera(place + "/" + kind + (camera.orthographic ? "/ymag" : "/yfov"));
+    if (!values || !is_usable(camera)) return;
+    std::vector<std::vector<double>> heights;  // of what is seen at a distance of 1, or everywhere
+    double most = 0;
+    for (const double value : *values) {
+        if (!camera.orthographic && !(value > 0 && value < double(kPi))) {
+            tally.warnings.push_back(place +
+                                     ": its yfov leaves 0 to 180 degrees while the shutter is "
+                                     "open; it stays as in the middle of the exposure");
+            tally.held.insert("views of cameras");
+            return;
+        }
+        heights.push_back({camera.orthographic ? std::fabs(value) : std::tan(value / 2)});
+        most = std::max(most, heights.back()[0]);
+    }
+    const Thinning thinning = thin(heights, std::array{1.}, most);
+    for (size_t i = 0; i < values->size(); i += thinning.stride)
+        camera.zoom.push_back(static_cast<float>(std::fabs((*values)[i])));
+    ++tally.zooming_cameras;
+}
+
 }  // namespace
 
 void move_last_light(const NodeMotion& motion, int node, Scene& scene, GltfTally& tally,
@@ -233,6 +260,7 @@ std::vector<GltfCamera> read_cameras(const GltfModel& gltf, const GltfNodes& nod
             tally.warnings.push_back(json_path("cameras", node.camera) +
                                      "/extras/petzval: an orthographic camera has no use for it");
         if (camera.extras.lens) tally.honoured.insert("lens " + *camera.extras.lens);
+        zoom(motion, node.camera, camera, tally);
         if (is_usable(camera))
             cameras.push_back(camera);
         else

@@ -141,10 +141,12 @@ class Placer {
                     shapes.spheres.size() + shapes.cylinders.size(), where);
         const uint32_t material = materials_.use(material_of_file);
         tally_.honoured.insert("points and lines, as spheres and cylinders");
-        if (placement.moves || deforms(placement, primitive))
+        if (placement.moves || deforms(placement, primitive)) {
+            tally_.held.insert("points and lines");
             tally_.warnings.push_back(where +
                                       ": moving points and lines are shown as they are in "
                                       "the middle of the exposure");
+        }
         if (pose(placement, primitive, std::nullopt, source.vertices)) {
             strokes_->add(material, vertices, shapes, M44d());
             return;

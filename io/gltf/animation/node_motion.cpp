@@ -75,28 +75,68 @@ bool changes(const All& all) {
     });
 }
 
+/// The part of a clip that is played while the shutter is open.
+struct Reach {
+    double first_s, last_s;
+    bool wraps;  ///< over the end of the clip, so that all of it may be met
+
+    Reach(const GltfClip& clip, const AnimationChoice& choice) {
+        const auto local_s = [&](double share) {
+            return clip.local_s(choice.time_s + share * choice.open_s, choice.time_s,
+                                choice.repeats);
+        };
+        first_s = local_s(-0.5);
+        last_s = local_s(0.5);
+        wraps =
+            choice.repeats && clip.closed && (last_s < first_s || choice.open_s >= clip.duration_s);
+    }
+    [[nodiscard]] bool meets(double from_s, double to_s) const {
+        return wraps || (to_s >= first_s && from_s <= last_s);
+    }
+};
+
 // Whether two keys lie within one time step, while the shutter is open. One alone shows in the
 // steps around it, and so does a cubic spline that is several steps long.
 bool has_keys_between_steps(const Track& track, const AnimationChoice& choice, double step_s) {
     const Keyframes& keys = *track.keys;
     const double least_s =
         keys.interpolation == Interpolation::CubicSpline ? 4 * step_s : 0.999 * step_s;
-    const GltfClip& clip = *track.clip;
-    const auto local_s = [&](double time_s) {
-        return clip.local_s(time_s, choice.time_s, choice.repeats);
-    };
-    const double first_s = local_s(choice.time_s - choice.open_s / 2);
-    const double last_s = local_s(choice.time_s + choice.open_s / 2);
-    const bool wraps =
-        choice.repeats && clip.closed && (last_s < first_s || choice.open_s >= clip.duration_s);
+    const Reach reach(*track.clip, choice);
     for (size_t i = 1; i < keys.times_s.size(); ++i) {
         if (keys.times_s[i] - keys.times_s[i - 1] >= least_s) continue;
         if (keys.times_s[i] == keys.times_s[i - 1]) continue;
-        if (!wraps && (keys.times_s[i] < first_s || keys.times_s[i - 1] > last_s)) continue;
+        if (!reach.meets(keys.times_s[i - 1], keys.times_s[i])) continue;
         const auto a = keys.at(keys.times_s[i - 1]), b = keys.at(keys.times_s[i]);
         if (differ(a, b)) return true;
     }
     return false;
+}
+
+// What a property is of; empty for what moves, or shows in no picture.
+std::string what_holds(const std::string& pointer) {
+    const auto words = words_of(pointer);
+    const auto has = [&](std::string_view word) { return std::ranges::count(words, word) > 0; };
+    if (has("KHR_texture_transform")) return "textures";
+    if (words[0] == "materials") return words.back() == "strength" ? "" : "materials";
+    if (has("KHR_node_visibility")) return "what is visible";
+    if (has("KHR_lights_punctual") || has("EXT_lights_ies"))
+        return words.back() == "range" ? "" : "the light of lamps";
+    return has("EXT_lights_image_based") ? "the sky" : "";
+}
+
+// Whether a property has two values while the shutter is open, at the steps or at its keys.
+bool changes_while_open(const Keyframes& keys, const GltfClip& clip,
+                        const AnimationChoice& choice) {
+    std::vector<std::vector<double>> values;
+    for (size_t i = 0; i <= kMostSegments; ++i) {
+        const double share = double(i) / double(kMostSegments) - 0.5;
+        values.push_back(keys.at(
+            clip.local_s(choice.time_s + share * choice.open_s, choice.time_s, choice.repeats)));
+    }
+    const Reach reach(clip, choice);
+    for (const double key_s : keys.times_s)
+        if (reach.meets(key_s, key_s)) values.push_back(keys.at(key_s));
+    return changes(values);
 }
 
 }  // namespace
@@ -111,6 +151,8 @@ class NodeMotion::Player {
     }
 
     [[nodiscard]] const json& nodes() const { return member(posed_, "nodes"); }
+    /// Tracks of numbers of cameras, by their pointers.
+    [[nodiscard]] const std::map<std::string, Track>& cameras() const { return of_cameras_; }
     [[nodiscard]] const json& node(int index) const { return nodes()[static_cast<size_t>(index)]; }
     /// Tracks that place a node; nullptr where it is not moved by itself.
     [[nodiscard]] const Tracks* placing(int node) const {
@@ -171,6 +213,7 @@ class NodeMotion::Player {
   private:
     void add(const GltfClip& clip, const AnimatedProperty& property) {
         const auto words = words_of(property.pointer);
+        if (words[0] == "cameras") of_cameras_[property.pointer] = {&property.keys, &clip};
         if (words.size() < 3 || (words[0] != "nodes" && words[0] != "meshes")) return;
         Tracks& tracks = (words[0] == "nodes" ? of_nodes_ : of_meshes_)[number_in(words[1])];
         const Track track{&property.keys, &clip, words.size() > 3 ? number_in(words[3]) : -1};
@@ -184,6 +227,7 @@ class NodeMotion::Player {
     const json& posed_;
     size_t steps_ = 0;
     std::map<int, Tracks> of_nodes_, of_meshes_;
+    std::map<std::string, Track> of_cameras_;
 };
 
 NodeMotion::NodeMotion(const json& posed, std::span<const GltfClip> clips,
@@ -203,6 +247,7 @@ NodeMotion::NodeMotion(const json& posed, std::span<const GltfClip> clips,
     player.set_steps(steps_);
     add_places(player, tree, moving);
     add_weights(player);
+    add_cameras(player);
 }
 
 void NodeMotion::add_places(const Player& player, const NodeTree& tree,
@@ -256,6 +301,16 @@ void NodeMotion::add_weights(const Player& player) {
     }
 }
 
+void NodeMotion::add_cameras(const Player& player) {
+    for (const auto& [pointer, track] : player.cameras()) {
+        std::vector<std::vector<double>> all;
+        for (size_t step = 0; step < steps_; ++step) all.push_back(player.at(track, step));
+        if (!changes(all)) continue;
+        unseen_ |= player.has_keys_between_steps(track);
+        for (const auto& value : all) of_cameras_[pointer].push_back(value[0]);
+    }
+}
+
 const std::vector<M44d>* NodeMotion::places(int node) const {
     const auto at = places_.find(node);
     return at == places_.end() ? nullptr : &at->second;
@@ -264,6 +319,22 @@ const std::vector<M44d>* NodeMotion::places(int node) const {
 const std::vector<std::vector<double>>* NodeMotion::weights(int node) const {
     const auto at = weights_.find(node);
     return at == weights_.end() ? nullptr : &at->second;
+}
+
+const std::vector<double>* NodeMotion::of_camera(const std::string& pointer) const {
+    const auto at = of_cameras_.find(pointer);
+    return at == of_cameras_.end() ? nullptr : &at->second;
+}
+
+std::set<std::string> held_while_open(std::span<const GltfClip> clips,
+                                      const AnimationChoice& choice) {
+    std::set<std::string> held;
+    for (const GltfClip& clip : clips)
+        for (const AnimatedProperty& property : clip.properties)
+            if (const std::string what = what_holds(property.pointer);
+                !what.empty() && changes_while_open(property.keys, clip, choice))
+                held.insert(what);
+    return held;
 }
 
 }  // namespace petzval

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,6 +35,8 @@ class NodeMotion {
     [[nodiscard]] const std::vector<M44d>* places(int node) const;
     /// Weights of the morph targets of the mesh that a node shows; nullptr where they stay.
     [[nodiscard]] const std::vector<std::vector<double>>* weights(int node) const;
+    /// Values of a number of a camera, by its pointer in the JSON; nullptr where it stays.
+    [[nodiscard]] const std::vector<double>* of_camera(const std::string& pointer) const;
     [[nodiscard]] size_t steps() const { return steps_; }
     /// Whether something may move between time steps that they do not show: keys lie closer
     /// together than they, or a node turns by more than half a turn, with those that it hangs on.
@@ -43,11 +46,18 @@ class NodeMotion {
     class Player;
     void add_places(const Player&, const NodeTree&, std::span<const int> moving);
     void add_weights(const Player&);
+    void add_cameras(const Player&);
 
     size_t steps_ = 0;
     bool unseen_ = false;
     std::map<int, std::vector<M44d>> places_;
     std::map<int, std::vector<std::vector<double>>> weights_;
+    std::map<std::string, std::vector<double>> of_cameras_;
 };
+
+/// What of a scene changes while the shutter is open and is shown as it is in the middle, in words:
+/// "materials" say. Of nodes, morph weights and views of cameras nothing.
+[[nodiscard]] std::set<std::string> held_while_open(std::span<const GltfClip>,
+                                                    const AnimationChoice&);
 
 }  // namespace petzval

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "apps/setup/render_setup.h"
+#include "camera/models/thin_lens.h"
 #include "tests/support/blurred.h"
 #include "tests/support/moving_gltf.h"
 
@@ -154,6 +155,129 @@ TEST(MotionSetup, ACameraThatAloneMovesHasAShutter) {
     const RenderSetup open = set_up(saved.at(kAt, true));
     EXPECT_FALSE(has_motion(*open.prepared.scene));
     EXPECT_NE(open.view.camera->shutter(), nullptr);
+}
+
+/// The file with a camera whose view alone is animated besides.
+TinyGltf zooming(const json& camera, const char* pointer, float first, float last) {
+    TinyGltf file = file_with(camera);
+    json& animation = file.json["animations"][0];
+    animation["samplers"].push_back(
+        {{"input", file.add_accessor<float>("SCALAR", {0, 1})},
+         {"output", file.add_accessor<float>("SCALAR", {first, last})}});
+    animation["channels"].push_back(
+        {{"sampler", animation["samplers"].size() - 1},
+         {"target",
+          {{"path", "pointer"},
+           {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}}}});
+    return file;
+}
+constexpr const char* kYfov = "/cameras/0/perspective/yfov";
+
+TEST(MotionSetup, APinholeThatZoomsGivesTheMeanOfItsStills) {
+    Saved saved(zooming(kPerspective, kYfov, 0.3f, 1.3f));
+    saved.request.camera.natural_vignetting = true;
+    expect_mean_of_stills(saved);
+}
+
+TEST(MotionSetup, AnOrthographicCameraThatZoomsGivesTheMeanOfItsStills) {
+    expect_mean_of_stills(Saved(zooming(kOrthographic, "/cameras/0/orthographic/ymag", 0.4f, 3.f)));
+}
+
+// The iris widens with the focal length, and the light on the film changes with both.
+TEST(MotionSetup, AThinLensThatZoomsGivesTheMeanOfItsStills) {
+    Saved saved(zooming(kPerspective, kYfov, 0.3f, 1.3f));
+    saved.request.camera.lens = "thin";
+    saved.request.camera.fstop = 0.1f;
+    saved.request.camera.focus = FocusDistance{1.5f};
+    saved.request.camera.exposure = ExposureMode::Photographic;
+    saved.request.camera.iso = 1e4f;
+    saved.request.targets = TargetUse::Auto;  // none for such a camera
+    expect_mean_of_stills(saved);
+    EXPECT_FALSE(set_up(saved.at(kAt, true)).view.camera->takes_targets());
+}
+
+/// The light of a wall's part above a height, through a camera whose angle of view grows evenly.
+TEST(MotionSetup, AnEdgeThroughAZoomIsBlurredByTheClosedForm) {
+    TinyGltf file;
+    const int wall = file.add_mesh(
+        {{"attributes",
+          {{"POSITION", file.add_positions({-9, 0.5f, -1, 9, 0.5f, -1, 9, 9, -1, -9, 9, -1})}}},
+         {"indices", file.add_accessor<uint16_t>("SCALAR", {0, 1, 2, 0, 2, 3})},
+         {"material", file.add("materials", {{"emissiveFactor", {1, 1, 1}}})}});
+    file.add_root({{"mesh", wall}});
+    file.add("cameras", kPerspective);
+    file.add_root({{"camera", 0}});
+    const double first = 0.8, last = 1.6;
+    const int times = file.add_accessor<float>("SCALAR", {0, 1});
+    const int angles = file.add_accessor<float>("SCALAR", {float(first), float(last)});
+    file.add("animations",
+             {{"samplers", {{{"input", times}, {"output", angles}}}},
+              {"channels",
+               {{{"sampler", 0},
+                 {"target",
+                  {{"path", "pointer"},
+                   {"extensions", {{"KHR_animation_pointer", {{"pointer", kYfov}}}}}}}}}}});
+    const Saved saved(file);
+    SceneRequest request = saved.at(0.5, true);
+    request.choices.animation->open_s = 1;
+    request.background = Rgb(0.f);
+    const RenderSetup open = set_up(request);
+    ASSERT_NE(open.view.camera->shutter(), nullptr);
+    constexpr uint32_t kSamples = 4096;
+    const std::vector<float> found = picture(open, kSamples, 1);
+    int partly = 0;
+    for (int y = 0; y < kSize.y; ++y) {
+        // A height h of the film, 1 at the picture's rim, sees the wall while h tan(angle / 2) is
+        // above a half.
+        double share = 0;
+        constexpr int kHeights = 4000;
+        for (int i = 0; i < kHeights; ++i) {
+            const double h = 1 - 2 * (y + (i + 0.5) / kHeights) / kSize.y;
+            if (h <= 0) continue;
+            const double from = (2 * std::atan(0.5 / h) - first) / (last - first);
+            share += std::clamp(1 - from, 0., 1.) / kHeights;
+        }
+        partly += share > 0.05 && share < 0.95;
+        // 5 standard errors of as many independent samples, and a thousandth for the time steps.
+        const double tolerance = 5 * std::sqrt(share * (1 - share) / kSamples) + 1e-3;
+        for (int x = 0; x < kSize.x; ++x)
+            EXPECT_NEAR(found[size_t(y * kSize.x + x)], share, tolerance) << x << ' ' << y;
+    }
+    EXPECT_GE(partly, 2);
+}
+
+TEST(MotionSetup, ALensThatCannotZoomIsHeldAndSaysSo) {
+    const Saved saved(zooming(kPerspective, kYfov, 0.3f, 1.3f));
+    const auto told = [](const SceneRequest& request) {
+        std::string all;
+        (void)set_up_render(request, [&](const std::string& line) { all += line + '\n'; });
+        return all.find("its lens cannot: the angle of view stays") != all.npos;
+    };
+    SceneRequest asked = saved.at(kAt, true);
+    EXPECT_FALSE(told(asked));
+    asked.camera.focus = FocusDistance{2};
+    asked.camera.fstop = 8;
+    EXPECT_FALSE(told(asked));
+    asked.camera.lens = "singlet:N-BK7";
+    EXPECT_TRUE(told(asked));
+    asked.camera.fov_deg = 40;  // not the file's
+    EXPECT_FALSE(told(asked));
+    asked.camera.fov_deg = {};
+    asked.camera.lens = "tessar-100mm-f2.8";
+    EXPECT_FALSE(told(asked));
+    asked.camera.fit = Fit::Fov;
+    EXPECT_TRUE(told(asked));
+    asked.camera.shutter_curve = {};
+    EXPECT_FALSE(told(asked));
+}
+
+TEST(MotionSetup, AnAngleThatTheUserGivesDoesNotZoom) {
+    const Saved saved(zooming(kPerspective, kYfov, 0.3f, 1.3f));
+    SceneRequest asked = saved.at(kAt, true);
+    asked.camera.fov_deg = 40;
+    EXPECT_NE(dynamic_cast<const ThinLensCamera*>(set_up(asked).view.camera.get()), nullptr);
+    asked.camera.fov_deg = {};
+    EXPECT_EQ(dynamic_cast<const ThinLensCamera*>(set_up(asked).view.camera.get()), nullptr);
 }
 
 TEST(MotionSetup, NothingThatMovesHasNoShutter) {

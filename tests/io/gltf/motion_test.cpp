@@ -4,6 +4,7 @@
 
 #include "io/gltf/animation/node_motion.h"
 #include "tests/support/moving_gltf.h"
+#include "tests/support/tiny_png.h"
 
 namespace petzval {
 namespace {
@@ -204,6 +205,121 @@ TEST(GltfMotion, NothingMovesWhereTheShutterOrTheAnimationStandsStill) {
         EXPECT_TRUE(contains_line(before.remarks, "nothing moves")) << name;
         EXPECT_FALSE(contains_line(saved.at(kAt, kOpen).remarks, "nothing moves")) << name;
     }
+}
+
+/// A channel that moves what a pointer names, from `first` at 0 s to `last` at 1 s.
+void animate_pointer(TinyGltf& file, const std::string& pointer, const char* type,
+                     const std::vector<float>& first, const std::vector<float>& last) {
+    std::vector<float> values = first;
+    values.insert(values.end(), last.begin(), last.end());
+    json& animation = file.json["animations"][0];
+    animation["samplers"].push_back({{"input", file.add_accessor<float>("SCALAR", {0, 1})},
+                                     {"output", file.add_accessor<float>(type, values)}});
+    animation["channels"].push_back(
+        {{"sampler", animation["samplers"].size() - 1},
+         {"target",
+          {{"path", "pointer"},
+           {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}}}});
+}
+
+TEST(GltfMotion, WhatChangesButIsNotBlurredIsTold) {
+    struct Held {
+        const char *pointer, *type, *word;
+        std::vector<float> first, last;
+    };
+    const Held cases[] = {
+        {"/materials/0/pbrMetallicRoughness/roughnessFactor", "SCALAR", "materials", {0}, {1}},
+        {"/materials/0/normalTexture/extensions/KHR_texture_transform/offset",
+         "VEC2",
+         "textures",
+         {0, 0},
+         {1, 0}},
+        {"/extensions/KHR_lights_punctual/lights/0/color",
+         "VEC3",
+         "the light of lamps",
+         {1, 0, 0},
+         {0, 1, 0}},
+        {"/nodes/1/extensions/KHR_node_visibility/visible", "SCALAR", "what is visible", {1}, {0}}};
+    for (const Held& held : cases) {
+        TinyGltf file;
+        file.json["extensionsUsed"] = {"KHR_lights_punctual", "KHR_node_visibility"};
+        file.add("materials",
+                 {{"normalTexture",
+                   {{"index", 0}, {"extensions", {{"KHR_texture_transform", json::object()}}}}}});
+        file.add_image(tiny_png(1, 1, {128, 128, 255, 255}));
+        file.add("textures", {{"source", 0}});
+        file.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
+        file.add_root({{"mesh", add_wedge(file)}});
+        file.add_root({{"extensions",
+                        {{"KHR_lights_punctual", {{"light", 0}}},
+                         {"KHR_node_visibility", {{"visible", true}}}}}});
+        animate_pointer(file, held.pointer, held.type, held.first, held.last);
+        const std::string told =
+            std::string("while the shutter is open: not blurred but shown as in the middle: ") +
+            held.word;
+        const double open_s = std::string(held.word) == "what is visible" ? 1.5 : kOpen;
+        const GltfFile open = SavedGltf(file).at(0.9, open_s, false);
+        EXPECT_TRUE(contains_line(open.remarks, told)) << held.word;
+        EXPECT_FALSE(contains_line(open.remarks, "nothing moves")) << held.word;
+        // Nothing changes after the end.
+        EXPECT_TRUE(contains_line(SavedGltf(file).at(7, kOpen, false).remarks, "nothing moves"));
+        swing(file, 0);
+        const GltfFile both = SavedGltf(file).at(0.9, open_s, false);
+        EXPECT_TRUE(contains_line(both.remarks, "while the shutter is open: 1 moving instance"));
+        EXPECT_TRUE(contains_line(
+            both.remarks, std::string("; not blurred but shown as in the middle: ") + held.word));
+    }
+}
+
+TEST(GltfMotion, AChangeBetweenTwoTimeStepsIsTold) {
+    TinyGltf file;
+    file.add("materials", json::object());
+    file.add_root({{"mesh", add_wedge(file)}});
+    json& animation = file.json["animations"][0];
+    animate_pointer(file, "/materials/0/alphaCutoff", "SCALAR", {0}, {0});
+    animation["samplers"][0]["input"] =
+        file.add_accessor<float>("SCALAR", {0, 0.5001f, 0.5002f, 0.5003f, 1});
+    animation["samplers"][0]["output"] = file.add_accessor<float>("SCALAR", {0, 0, 1, 0, 0});
+    EXPECT_TRUE(contains_line(SavedGltf(file).at(0.5, 1, false).remarks, "middle: materials"));
+    EXPECT_TRUE(contains_line(SavedGltf(file).at(0.2, 0.4, false).remarks, "nothing moves"));
+}
+
+TEST(GltfMotion, CamerasZoomAsTheStillsDo) {
+    TinyGltf file;
+    file.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}});
+    file.add("cameras", {{"type", "orthographic"},
+                         {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"zfar", 9}, {"znear", 0}}}});
+    for (int i = 0; i < 3; ++i) file.add_root({{"camera", i % 2}});
+    animate_pointer(file, "/cameras/0/perspective/yfov", "SCALAR", {0.5f}, {1.5f});
+    animate_pointer(file, "/cameras/1/orthographic/ymag", "SCALAR", {-2}, {4});
+    const SavedGltf saved(file);
+    const GltfFile open = saved.at(kAt, kOpen);
+    ASSERT_EQ(open.cameras.size(), 3u);
+    for (const GltfCamera& camera : open.cameras) {
+        ASSERT_GE(camera.zoom.size(), 2u);
+        for (size_t i = 0; i < camera.zoom.size(); ++i) {
+            const double share = double(i) / double(camera.zoom.size() - 1) - 0.5;
+            const GltfFile still = saved.at(kAt + share * kOpen);
+            const GltfCamera& then = still.cameras[camera.orthographic ? 1 : 0];
+            EXPECT_TRUE(then.zoom.empty());
+            EXPECT_NEAR(camera.zoom[i], camera.orthographic ? then.ymag_m : then.yfov_rad, 1e-6);
+        }
+    }
+    EXPECT_TRUE(contains_line(open.remarks, "while the shutter is open: 3 zooming cameras"));
+    EXPECT_TRUE(saved.at(7, kOpen, false).cameras[0].zoom.empty());
+    EXPECT_TRUE(contains_line(saved.at(7, kOpen, false).remarks, "nothing moves"));
+}
+
+TEST(GltfMotion, AViewThatIsNoneForAWhileIsHeld) {
+    TinyGltf file;
+    file.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}});
+    file.add_root({{"camera", 0}});
+    animate_pointer(file, "/cameras/0/perspective/yfov", "SCALAR", {-0.5f}, {1.5f});
+    const GltfFile open = SavedGltf(file).at(kAt, 0.8);
+    ASSERT_EQ(open.cameras.size(), 1u);
+    EXPECT_TRUE(open.cameras[0].zoom.empty());
+    EXPECT_TRUE(contains_line(open.warnings, "/cameras/0: its yfov leaves 0 to 180 degrees"));
+    EXPECT_TRUE(contains_line(open.remarks, "shown as in the middle: views of cameras"));
 }
 
 TEST(GltfMotion, AConstantTrackMovesNothing) {

@@ -187,8 +187,8 @@ TEST(MotionSetup, AnOrthographicCameraThatZoomsGivesTheMeanOfItsStills) {
 TEST(MotionSetup, AThinLensThatZoomsGivesTheMeanOfItsStills) {
     Saved saved(zooming(kPerspective, kYfov, 0.3f, 1.3f));
     saved.request.camera.lens = "thin";
-    saved.request.camera.fstop = 0.1f;
-    saved.request.camera.focus = FocusDistance{1.5f};
+    saved.request.camera.fstop = 0.5f;
+    saved.request.camera.focus = FocusDistance{3};
     saved.request.camera.exposure = ExposureMode::Photographic;
     saved.request.camera.iso = 1e4f;
     saved.request.targets = TargetUse::Auto;  // none for such a camera

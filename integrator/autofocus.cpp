@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/shading/surface.h"
+#include "integrator/front_at_back.h"
 
 namespace petzval {
 
@@ -17,7 +18,7 @@ std::optional<float> depth_under(const Scene& scene, const Bvh& bvh, const Camer
     // Surfaces that are culled from view are no place to focus on.
     while (const std::optional<Hit> hit = bvh.intersect(ray)) {
         const Surface s = make_surface(scene, ray.direction, *hit);
-        if (!culled_from_view(s)) return (s.p - eye).dot(axis);
+        if (!culled_from_view(s) || front_at_back(scene, bvh, ray, s)) return (s.p - eye).dot(axis);
         ray.origin = offset_origin(s.p, s.p_error, s.ng, ray.direction);
     }
     return std::nullopt;

@@ -10,6 +10,7 @@
 #include "camera/ray_bundle.h"
 #include "core/shading/surface.h"
 #include "core/spectrum/colour.h"
+#include "integrator/front_at_back.h"
 
 namespace petzval {
 namespace {
@@ -128,10 +129,14 @@ class Search {
         Ray ray{eye, direction};
         --rays_left_;
         while (const std::optional<Hit> hit = bvh_.intersect(ray)) {
-            const Surface s = make_surface(scene_, direction, *hit);
+            Surface s = make_surface(scene_, direction, *hit);
             if (culled_from_view(s)) {
-                ray.origin = offset_origin(s.p, s.p_error, s.ng, direction);
-                continue;
+                if (const auto front = front_at_back(scene_, bvh_, ray, s)) {
+                    s = *front;
+                } else {
+                    ray.origin = offset_origin(s.p, s.p_error, s.ng, direction);
+                    continue;
+                }
             }
             if (s.material->unlit) return std::nullopt;
             const ShadingInput at = read_material(scene_, s, -direction, Bands::rgb());

@@ -21,6 +21,7 @@ namespace petzval {
 template <class T>
 concept RayCaster = requires(const T t, const Ray& r) {
     { t.intersect(r) } -> std::same_as<std::optional<Hit>>;
+    { t.intersect_front(r, float()) } -> std::same_as<std::optional<Hit>>;
     { t.occluded(r) } -> std::same_as<bool>;
     { t.has_cutouts() } -> std::same_as<bool>;
     { t.has_panes() } -> std::same_as<bool>;

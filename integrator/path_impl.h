@@ -8,6 +8,7 @@
 #include "core/shading/surface.h"
 #include "core/spectrum/colour.h"
 #include "integrator/boundary.h"
+#include "integrator/front_at_back.h"
 #include "integrator/panes.h"
 #include "integrator/path.h"
 #include "integrator/start_volumes.h"
@@ -251,9 +252,13 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         Surface s = make_surface(scene_, ray.direction, *hit);
         // Skip backs of single-sided surfaces, which glTF culls from view. Light must not pass
         // them, so only camera rays do; the inside of a volume is never culled.
-        if (!seen && culled_from_view(s)) {
-            ray.origin = offset_origin(s.p, s.p_error, s.ng, ray.direction);
-            continue;
+        if (culled_from_view(s)) {
+            if (const auto front = front_at_back(scene_, caster_, ray, s)) {
+                s = *front;
+            } else if (!seen) {
+                ray.origin = offset_origin(s.p, s.p_error, s.ng, ray.direction);
+                continue;
+            }
         }
         std::optional<Boundary> boundary;
         if (s.material->refracts()) {

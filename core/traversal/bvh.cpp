@@ -62,6 +62,16 @@ void note(const RTCFilterFunctionNArguments* args) {
     args->valid[0] = 0;
 }
 
+// Lets rays pass backs. Ray and normal are in one space, whose mirroring changes no front into a
+// back: glTF turns the winding of what is mirrored.
+void pass_back(const RTCFilterFunctionNArguments* args) {
+    if (args->valid[0] != -1) return;
+    const auto& hit = *reinterpret_cast<const RTCHit*>(args->hit);
+    const auto& ray = *reinterpret_cast<const RTCRay*>(args->ray);
+    if (ray.dir_x * hit.Ng_x + ray.dir_y * hit.Ng_y + ray.dir_z * hit.Ng_z >= 0.f)
+        args->valid[0] = 0;
+}
+
 RTCRay to_embree(const Ray& r) {
     RTCRay ray;
     ray.org_x = r.origin.x, ray.org_y = r.origin.y, ray.org_z = r.origin.z;
@@ -121,11 +131,29 @@ struct Bvh::Impl {
 
     RTCScene new_scene(Traversal traversal) const {
         RTCScene made = rtcNewScene(device);
-        int flags = traversal == Traversal::Robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE;
-        if (!scene.volume_boxes.empty()) flags |= RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
+        int flags = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
+        if (traversal == Traversal::Robust) flags |= RTC_SCENE_FLAG_ROBUST;
         rtcSetSceneFlags(made, static_cast<RTCSceneFlags>(flags));
         rtcSetSceneBuildQuality(made, RTC_BUILD_QUALITY_HIGH);
         return made;
+    }
+
+    std::optional<Hit> nearest(const Ray& r, const RTCRay& ray, RTCFilterFunctionN also) const {
+        if (!traceable(r)) return std::nullopt;
+        Context context;
+        rtcInitIntersectContext(&context.embree);
+        context.embree.filter = also;
+        context.ray = &r;
+        RTCRayHit query;
+        query.ray = ray;
+        query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        rtcIntersect1(top, &context.embree, &query);
+        if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+        // Not Embree's own coordinates: they come from an approximate reciprocal, of which
+        // processors of different makers have different ones.
+        const uint32_t instance = instance_of(query.hit.instID[0], query.hit.geomID);
+        const uint32_t triangle = query.hit.primID;
+        return Hit{barycentric(scene, instance, triangle, r), instance, triangle, r.time};
     }
 
     RTCGeometry triangles(uint32_t mesh_id) {
@@ -207,20 +235,13 @@ Bvh::Bvh(const Scene& scene, Traversal traversal) : impl_(std::make_unique<Impl>
 Bvh::~Bvh() = default;
 
 std::optional<Hit> Bvh::intersect(const Ray& r) const {
-    if (!traceable(r)) return std::nullopt;
-    Context context;
-    rtcInitIntersectContext(&context.embree);
-    context.ray = &r;
-    RTCRayHit query;
-    query.ray = to_embree(r);
-    query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(impl_->top, &context.embree, &query);
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-    // Not Embree's own coordinates: they come from an approximate reciprocal, of which processors
-    // of different makers have different ones.
-    const uint32_t instance = instance_of(query.hit.instID[0], query.hit.geomID);
-    const uint32_t triangle = query.hit.primID;
-    return Hit{barycentric(impl_->scene, instance, triangle, r), instance, triangle, r.time};
+    return impl_->nearest(r, to_embree(r), nullptr);
+}
+
+std::optional<Hit> Bvh::intersect_front(const Ray& r, float t_min) const {
+    RTCRay ray = to_embree(r);
+    ray.tnear = std::max(ray.tnear, t_min);
+    return impl_->nearest(r, ray, pass_back);
 }
 
 bool Bvh::occluded(const Ray& r) const {

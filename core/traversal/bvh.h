@@ -27,6 +27,8 @@ class Bvh {
 
     /// Nearest hit in (0, t_max].
     [[nodiscard]] std::optional<Hit> intersect(const Ray&) const;
+    /// Nearest hit in [t_min, t_max] of a face whose front the ray meets.
+    [[nodiscard]] std::optional<Hit> intersect_front(const Ray&, float t_min) const;
     /// Whether anything but what may be a pane (Material::may_be_pane) lies in (0, t_max).
     [[nodiscard]] bool occluded(const Ray&) const;
     /// All hits in (0, t_max], in no order, each once. Only of a scene with closed volumes

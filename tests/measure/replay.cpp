@@ -27,6 +27,10 @@ struct Recorder {
         nearest.push_back(r);
         return bvh.intersect(r);
     }
+    std::optional<Hit> intersect_front(const Ray& r, float t_min) const {
+        nearest.push_back(r);
+        return bvh.intersect_front(r, t_min);
+    }
     bool occluded(const Ray& r) const {
         shadow.push_back(r);
         return bvh.occluded(r);

@@ -20,7 +20,7 @@
 #include "apps/commands/render.h"
 #include "apps/commands/resume.h"
 #include "apps/commands/session.h"
-#include "apps/setup/develop.h"
+#include "io/build/build.h"
 
 namespace {
 
@@ -79,7 +79,8 @@ int main(int argc, char** argv) {
     CLI::App app("A path tracer whose camera is a lens. Every command has --help.");
     app.name("petzval");
     app.option_defaults()->take_last();  // of an option that is given twice
-    app.set_version_flag("--version", petzval::program_version());
+    app.set_version_flag("--version",
+                         petzval::program_version() + "\n" + petzval::build_description());
     app.require_subcommand(1);
     petzval::add_render_command(app, session);
     petzval::add_resume_command(app, session);

@@ -2,11 +2,11 @@
 #include <fmt/format.h>
 
 #include "apps/chart/chart_report.h"
-#include "apps/setup/develop.h"
 #include "io/base/error.h"
 #include "io/base/printable.h"
 #include "io/base/read_file.h"
 #include "io/base/uri.h"
+#include "io/build/build.h"
 #include "io/image/difference.h"
 #include "io/image/symmetric_mse.h"
 

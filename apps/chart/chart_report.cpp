@@ -9,9 +9,9 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "apps/setup/develop.h"
 #include "io/base/atomic_file.h"
 #include "io/base/rescue.h"
+#include "io/build/build.h"
 #include "io/image/flip.h"
 #include "io/image/output.h"
 #include "io/image/picture_files.h"

@@ -11,6 +11,7 @@
 #include "apps/setup/option_names.h"
 #include "core/spectrum/colour.h"
 #include "io/base/printable.h"
+#include "io/build/build.h"
 #include "io/image/spectral_layout.h"
 
 namespace petzval {
@@ -99,10 +100,6 @@ float* develop_pixel(const Film& film, uint32_t first, int x, int y, float* out)
 }
 
 }  // namespace
-
-std::string program_version() {
-    return "petzval " PETZVAL_VERSION;
-}
 
 Metadata describe_render(const RenderSetup& setup, const RenderJob& job,
                          const PathOptions& options) {

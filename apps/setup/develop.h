@@ -10,9 +10,6 @@
 
 namespace petzval {
 
-/// Name and version of the program, "petzval 0.1.0" say.
-[[nodiscard]] std::string program_version();
-
 /// Metadata name of an exposure that was found, not asked for: of PNG and JPEG alone.
 inline constexpr const char* kFoundExposure = "petzval:exposure_ev";
 

@@ -6,8 +6,8 @@
 
 #include <algorithm>
 
-#include "apps/setup/develop.h"
 #include "io/base/atomic_file.h"
+#include "io/build/build.h"
 
 namespace petzval {
 namespace {
@@ -124,6 +124,7 @@ void write_stats(const std::filesystem::path& path, const StatsPicture& picture,
     out["schema"] = "petzval.stats";
     out["version"] = 1;
     out["program"] = program_version();
+    out["build"] = build_description();
     out["size_px"] = {picture.width, picture.height};
     out["samples_per_pixel"] = picture.samples.count();
     out["pixel_samples"] = s.samples;

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "apps/setup/develop.h"
 #include "io/base/error.h"
+#include "io/build/build.h"
 
 namespace petzval {
 namespace {

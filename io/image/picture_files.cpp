@@ -8,6 +8,7 @@
 #include "io/base/machine.h"
 #include "io/base/printable.h"
 #include "io/base/program_file.h"
+#include "io/build/build.h"
 #include "io/picture/image_codec.h"
 
 namespace petzval {
@@ -40,9 +41,9 @@ const ImageCodec& image_codec() {
     void* const symbol = ::dlsym(module, kImageCodecSymbol);
     if (!symbol) throw cannot_load(path, reason());
     const ImageCodec& codec = *reinterpret_cast<const ImageCodec* (*)()>(symbol)();
-    if (std::string_view(codec.version) != PETZVAL_VERSION)
-        throw cannot_load(path, fmt::format("it is of version {}, and the program of {}",
-                                            printable(codec.version), PETZVAL_VERSION));
+    if (std::string_view(codec.version) != program_version())
+        throw cannot_load(path, fmt::format("it is of {}, and this is {}", printable(codec.version),
+                                            program_version()));
     return codec;
 }
 

@@ -6,7 +6,7 @@
 #   same_bytes.sh AFTER/build/bin/petzval after && diff -r before after
 #
 # OUT/pixels: a hash of the pixels of each picture and of all its layers. OUT/metadata: what else an
-# EXR says. OUT/text: what commands print, seconds left out. Old spellings of options are used, so
+# EXR says, but of its build. OUT/text: what commands print, seconds left out. Old spellings of options are used, so
 # that older builds understand them. Scenes outside the project are left out where they are absent.
 set -euo pipefail
 
@@ -23,7 +23,7 @@ render() {
     shift
     "$program" render "$@" --quiet -o "$out/$name.exr"
     oiiotool --hash -a --info "$out/$name.exr" | grep SHA | sed "s/^ */$name /" >> "$out/pixels"
-    oiiotool --info -v -a "$out/$name.exr" | grep -v '^Reading\|SHA' | sed "s|^$out/||" > "$out/metadata/$name"
+    oiiotool --info -v -a "$out/$name.exr" | grep -v '^Reading\|SHA\|Software\|petzval:lightHash\|petzval:fileHash' | sed "s|^$out/||" > "$out/metadata/$name"
     rm "$out/$name.exr"
 }
 says() {

@@ -13,6 +13,7 @@
 #include "apps/plan/plan_wording.h"
 #include "apps/setup/develop.h"
 #include "apps/setup/exposure.h"
+#include "apps/setup/input_files.h"
 #include "apps/setup/spectral_wording.h"
 #include "apps/setup/stats_file.h"
 #include "apps/state/keeper.h"
@@ -22,6 +23,7 @@
 #include "io/base/error.h"
 #include "io/base/format.h"
 #include "io/base/printable.h"
+#include "io/base/read_file.h"
 #include "io/image/picture_files.h"
 
 namespace petzval {
@@ -31,6 +33,17 @@ namespace fs = std::filesystem;
 
 bool is_for_display(const fs::path& picture) {
     return picture_format(picture) != PictureFormat::Exr;
+}
+
+/// Files that options name, but for pictures and the scene, which are hashed as they are read.
+std::vector<std::pair<fs::path, std::string>> hashes_of_inputs(const SceneRequest& scene) {
+    std::vector<std::pair<fs::path, std::string>> out;
+    std::error_code none;
+    for (const NamedFile& file : input_files(scene))
+        if (file.path != scene.scene && file.path != scene.environment &&
+            fs::is_regular_file(file.path, none))
+            out.emplace_back(file.path, name_and_hash(file.path));
+    return out;
 }
 
 /// One render, step by step.
@@ -278,6 +291,7 @@ int OneRender::run(SequencePlace& place) {
     for (const std::string& remark : frame_.remarks) notice_(remark);
     Progress progress(o_.quiet ? ProgressStyle::None : o_.progress, session_.console,
                       session_.interrupt.monitor(), goal(place.part_of));
+    const auto inputs = hashes_of_inputs(o_.scene);
     set_up(executor, progress, place.before && *place.before ? &**place.before : nullptr);
     load_image_codec();  // before hours of work: a picture will be written
     choose_exposure(executor);
@@ -288,6 +302,9 @@ int OneRender::run(SequencePlace& place) {
     }
     kept_.set(shape_, samples_,
               facts_of(setup_, o_.job, o_.path, o_.display, input_files(o_.display)), o_.display);
+    for (const auto& [file, hash] : inputs)
+        if (name_and_hash(file) != hash)
+            throw InputError(file.string(), "", "was changed while it was read; start again");
     place.found = found_words();
     if (session_.interrupt.monitor().stop) return kStopped;  // nothing of it is there yet
     const bool shown = o_.keep.state_is_wanted || std::ranges::any_of(o_.outputs, is_for_display);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <span>
 
 namespace petzval {
 namespace {
@@ -129,6 +130,28 @@ void Film::add_packed(int x, int y, const uint8_t* from) {
     for (size_t layer = 0; layer < layers; ++layer)
         from = petzval::add_packed(std::span<FilmSum>(aov_sums_[at * layers + layer]), from);
     if (spectral_) spectral_->add_packed(at, from);
+}
+
+std::optional<uint32_t> Film::packed_count(const uint8_t* from, size_t layers,
+                                           const std::optional<Bins>& bins, SampleRange range) {
+    Pixel p;
+    std::memcpy(&p, from, sizeof p);
+    const std::span rest(from + sizeof p, bytes_per_pixel(layers, bins) - sizeof p);
+    const auto reached = [](const FilmSum& sum, uint32_t count) {
+        return std::abs(sum.value()) <= double(count) * double(FilmSum::kLimit);
+    };
+    bool possible = p.hits <= p.count && uint64_t(p.count) + p.bad <= range.count();
+    if (p.bad > 0)
+        possible = possible && p.first_bad_index >= range.first && p.first_bad_index < range.end;
+    for (const FilmSum& sum : p.sum) possible = possible && reached(sum, p.count);
+    for (size_t i = 0; i < 3 * layers; ++i) {
+        FilmSum sum;
+        std::memcpy(&sum, rest.data() + i * sizeof sum, sizeof sum);
+        possible = possible && reached(sum, p.hits);
+    }
+    if (p.count == 0)
+        possible = possible && std::all_of(rest.begin(), rest.end(), [](auto b) { return b == 0; });
+    return possible ? std::optional(p.count + p.bad) : std::nullopt;
 }
 
 V4f Film::colour(int x, int y) const {

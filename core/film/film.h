@@ -68,6 +68,12 @@ class Film {
     /// bins.
     void add_packed(int x, int y, const uint8_t* from);
 
+    /// Number of samples, of this range of indices, in what pack() wrote of a pixel of a film with
+    /// so many layers and these bins; nothing where no film has such sums and counts.
+    [[nodiscard]] static std::optional<uint32_t> packed_count(const uint8_t* from, size_t layers,
+                                                              const std::optional<Bins>&,
+                                                              SampleRange);
+
     [[nodiscard]] V2i full_size() const { return full_size_; }
     [[nodiscard]] Rect crop() const { return crop_; }
     [[nodiscard]] const std::vector<Aov>& aovs() const { return aovs_; }

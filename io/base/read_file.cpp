@@ -1,37 +1,69 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/base/read_file.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
-#include <fstream>
+#include <cerrno>
+#include <cstring>
 
 #include "io/base/machine.h"
 
 namespace petzval {
 
 /// Size of file for which nobody need be asked whether there is memory.
-constexpr uintmax_t kSurelyThere_bytes = 64 << 20;
+constexpr uint64_t kSurelyThere_bytes = 64 << 20;
+
+InputFile::InputFile(const std::filesystem::path& path) {
+    struct stat status {};
+    const auto refuse_others = [&] {
+        if (S_ISDIR(status.st_mode))
+            error_ = "is a folder";
+        else if (!S_ISREG(status.st_mode))
+            error_ = "is not a regular file";
+        return !error_.empty();
+    };
+    const auto refuse = [&] {
+        error_ = errno == ENOENT || errno == ENOTDIR ? "no such file" : std::strerror(errno);
+    };
+    // Before it is opened, which may act on a device, and after it: it may be another one by now.
+    if (::stat(path.c_str(), &status) != 0) refuse();
+    if (!error_.empty() || refuse_others()) return;
+    descriptor_ = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0)
+        refuse();
+    else if (!refuse_others())
+        size_ = static_cast<uint64_t>(status.st_size);
+}
+
+InputFile::~InputFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+size_t InputFile::read(std::span<uint8_t> to, uint64_t offset) const {
+    size_t done = 0;
+    while (error_.empty() && done < to.size()) {
+        const ssize_t count = ::pread(descriptor_, to.data() + done, to.size() - done,
+                                      static_cast<off_t>(offset + done));
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) break;
+        done += static_cast<size_t>(count);
+    }
+    return done;
+}
 
 FileBytes read_file(const std::filesystem::path& path) {
-    namespace fs = std::filesystem;
-    std::error_code code;
-    const fs::file_status status = fs::status(path, code);
-    if (status.type() == fs::file_type::not_found) return {{}, "no such file"};
-    if (code) return {{}, code.message()};
-    if (status.type() == fs::file_type::directory) return {{}, "is a folder"};
-    if (status.type() != fs::file_type::regular) return {{}, "is not a regular file"};
-
-    const uintmax_t size = fs::file_size(path, code);
-    if (code) return {{}, code.message()};
-    if (size > kSurelyThere_bytes && size > usable_memory_bytes())
-        return {{}, fmt::format("has {} MiB, more than the memory that can be had", size >> 20)};
-    std::ifstream in(path, std::ios::binary);
-    if (!in) return {{}, "cannot be opened"};
+    const InputFile in(path);
+    if (!in.error().empty()) return {{}, in.error()};
+    if (in.size() > kSurelyThere_bytes && in.size() > usable_memory_bytes())
+        return {{},
+                fmt::format("has {} MiB, more than the memory that can be had", in.size() >> 20)};
     FileBytes file;
-    file.bytes.resize(size);
-    in.read(reinterpret_cast<char*>(file.bytes.data()), std::streamsize(size));
-    if (uintmax_t(in.gcount()) != size) return {{}, "cannot be read to its end"};
+    file.bytes.resize(in.size());
+    if (in.read(file.bytes, 0) != in.size()) return {{}, "cannot be read to its end"};
     return file;
 }
 

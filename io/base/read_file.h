@@ -9,13 +9,35 @@
 
 namespace petzval {
 
+/// A regular file that is open for reading: the one door through which files come in. Pipes and
+/// devices are refused: they may never end. What a library opens by its name passes here first.
+class InputFile {
+  public:
+    explicit InputFile(const std::filesystem::path&);
+    ~InputFile();
+    InputFile(const InputFile&) = delete;
+    InputFile& operator=(const InputFile&) = delete;
+
+    /// Why it cannot be read, e.g. "no such file"; empty where it can.
+    [[nodiscard]] const std::string& error() const { return error_; }
+    /// Size in bytes, when it was opened.
+    [[nodiscard]] uint64_t size() const { return size_; }
+    /// Reads what lies from offset on; the number of bytes that there were.
+    [[nodiscard]] size_t read(std::span<uint8_t> to, uint64_t offset) const;
+
+  private:
+    int descriptor_ = -1;
+    uint64_t size_ = 0;
+    std::string error_;
+};
+
 /// A file's bytes, or why there are none.
 struct FileBytes {
     std::vector<uint8_t> bytes;
-    std::string error;  ///< empty, or e.g. "no such file"
+    std::string error;  ///< empty, or as InputFile has it
 };
 
-/// Reads a whole file. Pipes and devices are refused: they may never end.
+/// Reads a whole file.
 [[nodiscard]] FileBytes read_file(const std::filesystem::path&);
 
 /// Whether a file lies in a folder or below it, all links followed; one that does not exist counts

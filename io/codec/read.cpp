@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <memory>
 #include <sstream>
-#include <system_error>
 
 #include "io/base/error.h"
+#include "io/base/read_file.h"
 #include "io/base/text_lines.h"
 #include "io/codec/codec.h"
 #include "io/picture/exr_header.h"
@@ -33,30 +32,28 @@ Metadata metadata_of(const OIIO::ImageSpec& spec) {
     return found;
 }
 
-/// Size on disk; throws for what is no readable file.
-uint64_t size_on_disk(const std::filesystem::path& path) {
-    std::error_code error;
-    if (std::filesystem::is_directory(path, error))
-        throw InputError(path.string(), "", "is a folder; name a picture in it");
-    const uint64_t size = std::filesystem::file_size(path, error);
-    if (error) throw InputError(path.string(), "", "cannot be read: " + error.message());
-    return size;
-}
-
 using Head = std::array<uint8_t, 30>;
 
-/// First bytes of a file, zeros behind its end.
-Head head_of(const std::filesystem::path& path) {
+/// What is looked at before a file is decoded: its size, and its first bytes with zeros behind its
+/// end. Throws for what is no readable file.
+struct Start {
+    uint64_t size = 0;
     Head head{};
-    std::ifstream(path, std::ios::binary).read(reinterpret_cast<char*>(head.data()), head.size());
-    return head;
-}
 
-std::string_view kind_of(const std::filesystem::path& path) {
-    std::array<char, kPictureKindBytes> head{};
-    std::ifstream(path, std::ios::binary).read(head.data(), head.size());
-    return picture_kind({head.data(), head.size()});
-}
+    explicit Start(const std::filesystem::path& path) {
+        const InputFile in(path);
+        if (!in.error().empty())
+            throw InputError(path.string(), "",
+                             in.error() == "is a folder" ? "is a folder; name a picture in it"
+                                                         : "cannot be read: " + in.error());
+        size = in.size();
+        static_cast<void>(in.read(head, 0));
+    }
+    [[nodiscard]] std::string_view kind() const {
+        static_assert(kPictureKindBytes <= sizeof(Head));
+        return picture_kind({reinterpret_cast<const char*>(head.data()), kPictureKindBytes});
+    }
+};
 
 InputError refusal(const std::filesystem::path& path, const std::string& why) {
     return {path.string(), "", "the picture " + why};
@@ -68,11 +65,11 @@ struct OpenPicture {
     OIIO::ImageSpec spec;
 };
 
-OpenPicture open_picture(const std::filesystem::path& path) {
+OpenPicture open_picture(const std::filesystem::path& path, const Start& start) {
     const auto refuse = [&](const std::string& why) { return refusal(path, why); };
     OIIO::ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1);
-    const std::string_view kind = kind_of(path);
+    const std::string_view kind = start.kind();
     if (kind.empty())
         throw refuse(
             "cannot be read: it is no OpenEXR, Radiance, PNG, JPEG or WebP file; convert it "
@@ -91,18 +88,17 @@ OpenPicture open_picture(const std::filesystem::path& path) {
 Picture decode(const std::filesystem::path& path, PictureBudget& budget,
                std::optional<uint64_t> kept_per_pixel) {
     const auto refuse = [&](const std::string& why) { return refusal(path, why); };
-    const uint64_t byte_count = size_on_disk(path);
-    const Head head = head_of(path);
-    if (const auto size = webp_size(head)) {
+    const Start start(path);
+    if (const auto size = webp_size(start.head)) {
         const uint64_t decoded_bytes = uint64_t{4} * (*size)[0] * (*size)[1];
         PictureBudget spent = budget;
         const std::string shortage = spent.take(4 * decoded_bytes, decoded_bytes);
         if (!shortage.empty())
             throw refuse(fmt::format("of {}x{} pixels {}", (*size)[0], (*size)[1], shortage));
     }
-    const auto [input, spec] = open_picture(path);
+    const auto [input, spec] = open_picture(path, start);
     const std::string why =
-        size_complaint(spec.width, spec.height, spec.depth, spec.nchannels, byte_count);
+        size_complaint(spec.width, spec.height, spec.depth, spec.nchannels, start.size);
     if (!why.empty()) throw refuse(why);
     const uint64_t pixels = uint64_t(spec.width) * spec.height;
     const uint64_t float_bytes = pixels * spec.nchannels * sizeof(float);
@@ -139,7 +135,7 @@ Picture read_picture(const std::filesystem::path& path, PictureBudget& budget,
 }
 
 Metadata read_metadata(const std::filesystem::path& path) {
-    Metadata out = metadata_of(open_picture(path).spec);
+    Metadata out = metadata_of(open_picture(path, Start(path)).spec);
     const auto found = std::find_if(
         out.begin(), out.end(), [](const auto& one) { return one.first == "ImageDescription"; });
     if (found == out.end() || !std::holds_alternative<std::string>(found->second)) return out;

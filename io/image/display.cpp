@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/image/display.h"
 
-#include <OpenColorIO/OpenColorIO.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -15,6 +14,7 @@
 #include "io/base/error.h"
 #include "io/base/nearest.h"
 #include "io/base/text_lines.h"
+#include "io/image/ocio_config.h"
 
 namespace petzval {
 namespace {
@@ -33,11 +33,7 @@ InputError config_error(const std::string& path, const ocio::Exception& error) {
 
 Config load_config(const std::filesystem::path& file) {
     const std::string path = file.empty() ? asset("color/config.ocio").string() : file.string();
-    try {
-        return {path, ocio::Config::CreateFromFile(path.c_str()), file.empty()};
-    } catch (const ocio::Exception& error) {
-        throw config_error(path, error);
-    }
+    return {path, open_ocio_config(path).config, file.empty()};
 }
 
 /// View of a display, and its name among those of all displays.

@@ -5,9 +5,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <fstream>
+
+#include "io/base/read_file.h"
 
 namespace petzval {
 namespace {
@@ -17,52 +19,50 @@ constexpr size_t kLongestName = 255;
 
 class HeaderCheck {
   public:
-    explicit HeaderCheck(const std::filesystem::path& path) : in_(path, std::ios::binary) {
-        std::error_code none;
-        size_ = std::filesystem::file_size(path, none);
-    }
+    explicit HeaderCheck(const std::filesystem::path& path) : in_(path) {}
 
     std::string complaint() {
         (void)word();  // the magic number
         const bool multi_part = (word() & kMultiPart) != 0;
         bool first = true;
-        while (in_) {
+        while (good_) {
             const std::string name = text();
-            if (!in_) break;
+            if (!good_) break;
             if (name.empty() && (first || !multi_part)) return "";
             first = name.empty();
             if (first) continue;
             (void)text();  // the type
             const uint32_t bytes = word();
-            const auto at = static_cast<uint64_t>(in_.tellg());
-            if (!in_ || bytes > size_ || at > size_ - bytes)
+            if (!good_ || bytes > in_.size() || at_ > in_.size() - bytes)
                 return fmt::format(
                     "has an attribute of {} bytes, beyond its {}; it is damaged or "
                     "cut short",
-                    bytes, size_);
-            in_.seekg(bytes, std::ios::cur);
+                    bytes, in_.size());
+            at_ += bytes;
         }
         return "has no whole header; it is damaged or cut short";
     }
 
   private:
     uint32_t word() {
-        std::array<unsigned char, 4> b{};
-        in_.read(reinterpret_cast<char*>(b.data()), b.size());
+        std::array<uint8_t, 4> b{};
+        good_ = good_ && in_.read(b, at_) == b.size();
+        at_ += b.size();
         return uint32_t(b[0]) | uint32_t(b[1]) << 8 | uint32_t(b[2]) << 16 | uint32_t(b[3]) << 24;
     }
-    /// Text up to its zero; one that is too long for a name fails the stream.
+    /// Text up to its zero; one that is too long for a name is not good.
     std::string text() {
-        std::string out;
-        for (char c = 0; in_.get(c) && c != 0;) {
-            out += c;
-            if (out.size() > kLongestName) in_.setstate(std::ios::failbit);
-        }
-        return out;
+        std::array<uint8_t, kLongestName + 1> b{};
+        const auto end = b.begin() + std::ptrdiff_t(in_.read(b, at_));
+        const auto zero = std::find(b.begin(), end, 0);
+        good_ = good_ && zero != end;
+        at_ += uint64_t(zero - b.begin()) + 1;
+        return {b.begin(), zero};
     }
 
-    std::ifstream in_;
-    uint64_t size_ = 0;
+    const InputFile in_;
+    uint64_t at_ = 0;
+    bool good_ = true;
 };
 
 }  // namespace

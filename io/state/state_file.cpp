@@ -131,18 +131,12 @@ void write_state(const std::filesystem::path& path, StateHeader header, const Fi
     file.commit();
 }
 
-StateReader::StateReader(const std::filesystem::path& path) : path_(path) {
-    std::error_code error;
+StateReader::StateReader(const std::filesystem::path& path) : path_(path), file_(path) {
     const auto refuse = [&](const std::string& why) { return InputError(path.string(), "", why); };
-    if (!std::filesystem::exists(path, error)) throw refuse("there is no such file");
-    if (!std::filesystem::is_regular_file(path, error))
-        throw refuse("is a folder or a device, not a file");
-    const uint64_t size = std::filesystem::file_size(path, error);
-    file_.open(path, std::ios::binary);
-    if (error || !file_) throw refuse("cannot be read");
+    if (!file_.error().empty()) throw refuse(file_.error());
     std::array<uint8_t, kStartBytes> start{};
-    file_.read(reinterpret_cast<char*>(start.data()), start.size());
-    if (!file_ || std::memcmp(start.data(), kMagic.data(), kMagic.size()) != 0)
+    if (file_.read(start, 0) != start.size() ||
+        std::memcmp(start.data(), kMagic.data(), kMagic.size()) != 0)
         throw refuse("is no state of a render");
     uint64_t version = 0, length = 0;
     std::memcpy(&version, start.data() + 8, 8);
@@ -153,10 +147,9 @@ StateReader::StateReader(const std::filesystem::path& path) : path_(path) {
                         "program that wrote it",
                         version, kVersion));
     const InputError cut_short = refuse("is damaged or cut short");
-    if (length > kMostHeaderBytes || length + start.size() > size) throw cut_short;
-    std::string text(length, '\0');
-    file_.read(text.data(), static_cast<std::streamsize>(length));
-    if (!file_) throw cut_short;
+    if (length > kMostHeaderBytes || length + start.size() > file_.size()) throw cut_short;
+    std::vector<uint8_t> text(length);
+    if (file_.read(text, start.size()) != length) throw cut_short;
     try {
         header_ = from_json(Json::parse(text, [](int depth, Json::parse_event_t, Json&) {
             // Copies of what is nested deeply would fill the stack.
@@ -168,49 +161,46 @@ StateReader::StateReader(const std::filesystem::path& path) : path_(path) {
         throw cut_short;
     }
     if (!is_possible(header_) ||
-        size != start.size() + length + header_.shape.bytes() + sizeof(uint64_t))
+        file_.size() != start.size() + length + header_.shape.bytes() + sizeof(uint64_t))
         throw cut_short;
-    header_bytes_ = length;
-    hash_ = fnv1a(bytes_of(text), fnv1a(start));
-}
-
-void StateReader::check() const {
-    std::ifstream file(path_, std::ios::binary);
-    std::vector<uint8_t> part(1 << 20);
-    uint64_t left = kStartBytes + header_bytes_ + header_.shape.bytes(), hash = fnv1a({}),
-             written = 0;
-    while (left > 0 && file) {
-        part.resize(std::min<uint64_t>(left, part.size()));
-        file.read(reinterpret_cast<char*>(part.data()), static_cast<std::streamsize>(part.size()));
-        hash = fnv1a(part, hash);
-        left -= part.size();
-    }
-    file.read(reinterpret_cast<char*>(&written), sizeof written);
-    if (!file || written != hash) throw damaged();
+    pixels_at_ = start.size() + length;
+    hash_ = fnv1a(text, fnv1a(start));
 }
 
 InputError StateReader::damaged() const {
     return {path_.string(), "", "is damaged: its bytes are not those that were written"};
 }
 
-void StateReader::add_to(Film& film) {
-    const Rect& crop = header_.shape.crop;
-    const size_t each = pixel_bytes(header_.shape);
-    std::vector<uint8_t> row(static_cast<size_t>(crop.width()) * each);
-    uint64_t taken = 0;
-    for (int y = crop.y0; y < crop.y1; ++y) {
-        file_.read(reinterpret_cast<char*>(row.data()), static_cast<std::streamsize>(row.size()));
-        if (!file_) throw damaged();
-        hash_ = fnv1a(row, hash_);
-        for (int x = crop.x0; x < crop.x1; ++x) {
-            const uint32_t before = film.taken_count(x, y);
-            film.add_packed(x, y, row.data() + static_cast<size_t>(x - crop.x0) * each);
-            taken += film.taken_count(x, y) - before;
+template <class Use>
+void StateReader::read_pixels(const Use& use) const {
+    const FilmShape& shape = header_.shape;
+    const size_t each = pixel_bytes(shape);
+    std::vector<uint8_t> row(static_cast<size_t>(shape.crop.width()) * each);
+    uint64_t taken = 0, hash = hash_, at = pixels_at_, written = 0;
+    for (int y = shape.crop.y0; y < shape.crop.y1; ++y, at += row.size()) {
+        if (file_.read(row, at) != row.size()) throw damaged();
+        hash = fnv1a(row, hash);
+        for (int x = shape.crop.x0; x < shape.crop.x1; ++x) {
+            const uint8_t* const pixel = row.data() + static_cast<size_t>(x - shape.crop.x0) * each;
+            const auto count =
+                Film::packed_count(pixel, shape.layers.size(), shape.bins, header_.samples);
+            if (!count) throw damaged();
+            taken += *count;
+            use(x, y, pixel);
         }
     }
-    uint64_t written_hash = 0;
-    file_.read(reinterpret_cast<char*>(&written_hash), sizeof written_hash);
-    if (!file_ || written_hash != hash_ || taken != header_.pixel_samples) throw damaged();
+    std::array<uint8_t, sizeof written> end{};
+    const bool ends = file_.read(end, at) == end.size();
+    std::memcpy(&written, end.data(), end.size());
+    if (!ends || written != hash || taken != header_.pixel_samples) throw damaged();
+}
+
+void StateReader::check() const {
+    read_pixels([](int, int, const uint8_t*) {});
+}
+
+void StateReader::add_to(Film& film) const {
+    read_pixels([&](int x, int y, const uint8_t* pixel) { film.add_packed(x, y, pixel); });
 }
 
 }  // namespace petzval

@@ -8,7 +8,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -16,6 +15,7 @@
 
 #include "core/film/film.h"
 #include "io/base/error.h"
+#include "io/base/read_file.h"
 
 namespace petzval {
 
@@ -58,20 +58,23 @@ class StateReader {
 
     [[nodiscard]] const StateHeader& header() const { return header_; }
     /// Reads the file to its end. Throws InputError where the bytes are not those that were
-    /// written.
+    /// written, or the pixels do not have the samples that the header says.
     void check() const;
     /// Adds the sums to a film whose crop holds the state's, with the same layers and bins. Throws
-    /// InputError where the bytes are not those that were written; the film is of no use then.
-    void add_to(Film&);
+    /// InputError likewise; the film is of no use then.
+    void add_to(Film&) const;
 
   private:
     [[nodiscard]] InputError damaged() const;
+    /// Calls use(x, y, packed) for each pixel, and checks all of them.
+    template <class Use>
+    void read_pixels(const Use&) const;
 
     std::filesystem::path path_;
-    std::ifstream file_;
+    InputFile file_;
     StateHeader header_;
-    uint64_t header_bytes_ = 0;
-    uint64_t hash_ = 0;  ///< of what was read
+    uint64_t pixels_at_ = 0;  ///< offset in the file
+    uint64_t hash_ = 0;       ///< of what is before it
 };
 
 }  // namespace petzval

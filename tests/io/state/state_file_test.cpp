@@ -5,7 +5,9 @@
 #include <sys/stat.h>
 
 #include <array>
+#include <cstring>
 #include <limits>
+#include <span>
 
 #include "io/base/error.h"
 #include "tests/support/file_size_limit.h"
@@ -145,12 +147,12 @@ TEST_F(StateFile, AnotherVersionSaysWhichOne) {
 }
 
 TEST_F(StateFile, WhatIsNoStateIsRefused) {
-    EXPECT_EQ(complaint(), path_.string() + ": there is no such file");
+    EXPECT_EQ(complaint(), path_.string() + ": no such file");
     std::filesystem::create_directory(path_);
-    EXPECT_EQ(complaint(), path_.string() + ": is a folder or a device, not a file");
+    EXPECT_EQ(complaint(), path_.string() + ": is a folder");
     std::filesystem::remove(path_);
     mkfifo(path_.c_str(), 0600);  // which nobody writes to: it must not wait
-    EXPECT_EQ(complaint(), path_.string() + ": is a folder or a device, not a file");
+    EXPECT_EQ(complaint(), path_.string() + ": is not a regular file");
     std::filesystem::remove(path_);
     write({'P', 'N', 'G'});
     EXPECT_EQ(complaint(), path_.string() + ": is no state of a render");
@@ -197,6 +199,44 @@ TEST_F(StateFile, CheckReadsAllOfIt) {
     bad[bad.size() - 20] ^= 4;
     write(bad);
     EXPECT_THROW(StateReader(path_).check(), InputError);
+}
+
+// Counts and sums that no render has, with the checksum that belongs to them.
+TEST_F(StateFile, ForgedCountsAndSumsAreFound) {
+    write_state(path_, header_, filled(true));
+    const std::vector<uint8_t> good = bytes();
+    const size_t each = Film::bytes_per_pixel(kShape.layers.size(), kShape.bins),
+                 pixels = size_t(kShape.crop.width()) * size_t(kShape.crop.height()),
+                 first = good.size() - 8 - each * pixels;
+    constexpr size_t kCount = 64, kHits = 68, kBad = 72, kFirstBad = 76;  // behind four sums
+    const auto forged = [&](const auto& edit) {
+        std::vector<uint8_t> bad = good;
+        const auto at = [&](size_t pixel, size_t offset) -> uint32_t& {
+            return *reinterpret_cast<uint32_t*>(&bad[first + pixel * each + offset]);
+        };
+        edit(at);
+        const uint64_t hash = fnv1a(std::span(bad).first(bad.size() - 8));
+        std::memcpy(&bad[bad.size() - 8], &hash, 8);
+        write(bad);
+        EXPECT_THROW(StateReader(path_).check(), InputError);
+        return complaint();
+    };
+    const auto refused = [&](const auto& edit) {
+        return forged(edit).find("is damaged") != std::string::npos;
+    };
+    EXPECT_TRUE(refused([](auto at) { at(0, kCount) -= 1; }));
+    EXPECT_TRUE(refused([](auto at) { at(0, kCount) += 1, at(1, kCount) -= 1; })) << "same total";
+    EXPECT_TRUE(refused([](auto at) { at(0, kBad) += 0u - at(0, kCount), at(0, kCount) *= 2; }));
+    EXPECT_TRUE(refused([](auto at) { at(3, kHits) = at(3, kCount) + 1; }));
+    EXPECT_TRUE(
+        refused([](auto at) { at(0, kBad) = 1, at(0, kCount) -= 1, at(0, kFirstBad) = 40; }));
+    EXPECT_TRUE(refused([](auto at) { at(5, 12) = 0x40000000; })) << "of red";
+    EXPECT_TRUE(refused([](auto at) { at(5, 80 + 12) = 0x40000000; })) << "of a layer";
+    EXPECT_TRUE(refused([](auto at) {
+        at(7, kBad) += at(7, kCount), at(7, kFirstBad) = 16, at(7, kCount) = at(7, kHits) = 0;
+    })) << "light without samples";
+    write(good);
+    EXPECT_EQ(complaint(), "");
 }
 
 // A disk that fills up: the state before is still there, whole.

@@ -12,24 +12,11 @@
 #include "apps/setup/input_files.h"
 #include "io/base/error.h"
 #include "io/image/picture_files.h"
+#include "io/picture/seal.h"
 
 namespace petzval {
 
 namespace fs = std::filesystem;
-
-namespace {
-
-// Whether a picture can be read to its end.
-bool is_whole(const fs::path& path) {
-    try {
-        static_cast<void>(read_picture(path));
-        return true;
-    } catch (const InputError&) {
-        return false;
-    }
-}
-
-}  // namespace
 
 void check_outputs(RenderOptions& o, const Rect& crop) {
     std::vector<NamedFile>& outputs = o.scene.outputs;
@@ -79,8 +66,10 @@ PictureRows picture_for(const fs::path& path, const FinishedFilm& done) {
     Metadata metadata = done.facts.metadata;
     metadata.emplace_back(kLightHash,
                           light_hash(done.facts, FilmShape::of(done.film), done.samples));
-    if (picture_format(path) != PictureFormat::Exr)
+    const PictureFormat format = picture_format(path);
+    if (format != PictureFormat::Exr)
         metadata.emplace_back(kDisplayHash, display_hash(done.facts.display));
+    if (format != PictureFormat::Png) metadata.emplace_back(kSealName, kUnsealed);
     return develop(done.film, done.samples, metadata);
 }
 
@@ -129,7 +118,7 @@ bool is_up_to_date(const fs::path& path, const RenderFacts& facts, const FilmSha
     const bool same = text(kLightHash) == light_hash(facts, shape, taken) &&
                       (picture_format(path) == PictureFormat::Exr ||
                        text(kDisplayHash) == display_hash(facts.display));
-    return same && is_whole(path);
+    return same && is_as_written(path, text(kSealName));
 }
 
 }  // namespace petzval

@@ -126,7 +126,7 @@ TemporaryFile::TemporaryFile(const fs::path& folder, const fs::path& for_message
     : folder_(folder) {
     // Without /proc an unnamed file could not get a name.
     if (::access("/proc/self/fd", X_OK) == 0) {
-        const int fd = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+        const int fd = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
         if (fd >= 0) {
             file_.emplace(fd);
             return;
@@ -134,7 +134,7 @@ TemporaryFile::TemporaryFile(const fs::path& folder, const fs::path& for_message
     }
     for (;;) {
         const fs::path path = folder / random_name();
-        const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (fd >= 0) {
             path_ = path;
             file_.emplace(fd);
@@ -277,6 +277,18 @@ void AtomicFile::write(std::span<const uint8_t> bytes, uint64_t offset) noexcept
     if (state_->error == 0) state_->error = write_at(state_->file().get(), bytes, offset);
 }
 
+size_t AtomicFile::read(std::span<uint8_t> to, uint64_t offset) noexcept {
+    size_t done = 0;
+    while (state_->error == 0 && done < to.size()) {
+        const ssize_t count = ::pread(state_->file().get(), to.data() + done, to.size() - done,
+                                      static_cast<off_t>(offset + done));
+        if (count < 0 && errno != EINTR) state_->error = errno;
+        if (count == 0) break;
+        done += count > 0 ? static_cast<size_t>(count) : 0;
+    }
+    return done;
+}
+
 void AtomicFile::commit() {
     state_->check(state_->error);
     if (state_->spooled)
@@ -303,7 +315,11 @@ bool is_stream(const fs::path& path) {
 }
 
 void check_writable(const fs::path& path) {
-    if (is_stream(path, status_of(path))) return;
+    const auto status = status_of(path);
+    if (is_stream(path, status)) {
+        if (!status) throw system_refusal(path, ENOENT);  // nothing makes a stream
+        return;
+    }
     const TemporaryFile trial(folder_of(follow_links(path), path), path);
 }
 

@@ -25,6 +25,8 @@ class AtomicFile {
     /// Writes at any place, in any order. The first failure is kept for commit(), and nothing is
     /// written after it: libraries that encode pictures do not get along with failing writes.
     void write(std::span<const uint8_t> bytes, uint64_t offset) noexcept;
+    /// Reads what was written from an offset on; the number of bytes that there were.
+    size_t read(std::span<uint8_t> to, uint64_t offset) noexcept;
     /// Syncs and puts the file in place. Throws OutputError with the system's reason, also for a
     /// failed write.
     void commit();

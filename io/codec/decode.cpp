@@ -14,6 +14,7 @@
 #include "io/codec/colour_space.h"
 #include "io/picture/limits.h"
 #include "io/picture/picture_kind.h"
+#include "io/picture/seal.h"
 
 namespace petzval::codec {
 namespace {
@@ -23,21 +24,6 @@ std::string_view ending_of(const std::vector<uint8_t>& bytes) {
     const std::string_view head(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     const std::string_view kind = picture_kind(head.substr(0, kPictureKindBytes));
     return kind == "png" || kind == "jpg" || kind == "webp" ? kind : "";
-}
-
-/// Whether the chunks of a PNG fit into it and end with IEND. libpng would find out too, but print
-/// a line of its own, and OpenImageIO would leak its message.
-bool is_whole_png(const std::vector<uint8_t>& bytes) {
-    constexpr size_t kSignature = 8, kAroundData = 12;  // length, type, CRC
-    size_t at = kSignature;
-    while (bytes.size() - at >= kAroundData) {
-        size_t length = 0;
-        for (size_t i = 0; i < 4; ++i) length = length << 8 | bytes[at + i];
-        if (length > bytes.size() - at - kAroundData) return false;
-        if (std::equal(&bytes[at + 4], &bytes[at + 8], "IEND")) return true;
-        at += length + kAroundData;
-    }
-    return false;
 }
 
 /// "of 4096x4096 pixels with 3 channels ", for messages.
@@ -88,7 +74,9 @@ Image decode_image(const std::vector<uint8_t>& bytes, const std::string& file,
     const std::string_view ending = ending_of(bytes);
     if (ending.empty()) throw refuse("is not a PNG, JPEG or WebP file; convert it to one of these");
 
-    if (ending == "png" && !is_whole_png(bytes)) throw refuse("is a PNG that is cut short");
+    // libpng would find out too, but print a line of its own, and OpenImageIO would leak its
+    // message.
+    if (ending == "png" && !is_whole_png(bytes, false)) throw refuse("is a PNG that is cut short");
 
     if (const auto size = webp_size(bytes)) {
         const uint64_t decoded_bytes = uint64_t{4} * (*size)[0] * (*size)[1];

@@ -12,6 +12,7 @@
 #include "io/base/text_lines.h"
 #include "io/codec/codec.h"
 #include "io/picture/picture_kind.h"
+#include "io/picture/seal.h"
 
 namespace petzval::codec {
 namespace {
@@ -64,6 +65,7 @@ void encode(const std::filesystem::path& path, const std::string& ending, OIIO::
     }
     good = output->close() && good;
     if (!good) throw refuse(output->geterror());
+    seal(file);
     file.commit();
 }
 

@@ -8,6 +8,7 @@
 #include "apps/cli/console.h"
 #include "apps/cli/reading_options.h"
 #include "apps/commands/info_report.h"
+#include "apps/setup/camera_model.h"
 #include "apps/setup/glass_remarks.h"
 #include "io/base/error.h"
 #include "io/gltf/info.h"
@@ -75,6 +76,7 @@ void info_command(const InfoOptions& o) {
     report.variant = o.reading.choices.variant;
     try {
         report.file = load_gltf(o.scene, o.reading.scope(), pictures, choices);
+        check_camera_files(o.scene, o.reading.scope(), report.file.cameras);
     } catch (const ArgumentError&) {
         throw;
     } catch (const InputError& error) {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "io/base/ascii.h"
 #include "io/base/error.h"
 #include "io/base/named.h"
 #include "io/base/printable.h"
@@ -17,6 +18,8 @@
 
 namespace petzval {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr std::string_view kSinglet = "singlet:";
 
@@ -34,28 +37,41 @@ std::string extras_of(const GltfCamera& camera) {
     return fmt::format("extras.petzval of camera \"{}\"", printable(camera.name));
 }
 
-// Path of a file that a camera of a scene names: it lies beside the scene.
-std::string beside(const std::filesystem::path& scene, FileScope scope, const GltfCamera& camera,
-                   const std::string& name) {
-    namespace fs = std::filesystem;
-    const fs::path folder = scene.parent_path(), path = folder / name;
+// Whether a camera means a file by a name, and not a lens that ships or a shape: by how it is
+// written, or there is such a file beside the scene. Nothing is looked for elsewhere.
+bool means_file(const std::string& name, const fs::path& beside, bool is_iris) {
+    const std::string text = lower(name);
+    for (const std::string_view prefix :
+         {kSinglet, std::string_view("star:"), std::string_view("polygon:")})
+        if (text.starts_with(prefix)) return false;
+    const std::string ending = fs::path(text).extension().string();
+    if (text.find('/') != text.npos) return true;
+    if (ending.size() < 2) return false;
     std::error_code none;
-    const bool is_file =
-        path.has_extension() && fs::path(name).is_relative() && fs::is_regular_file(path, none);
-    const fs::path meant = is_file ? path : fs::path(name);
-    if (scope == FileScope::Confined && fs::exists(meant, none) && !lies_within(meant, folder))
-        throw InputError(scene.string(), extras_of(camera),
-                         fmt::format("\"{}\" lies outside the folder of the scene, and --confine "
-                                     "allows no file there",
-                                     printable(name)));
-    return meant.string();
+    return is_iris || (ending[1] >= 'a' && ending[1] <= 'z') || fs::is_regular_file(beside, none);
+}
+
+// What a camera of a scene names: the path of a file, which lies beside the scene, or a name.
+std::string beside(const fs::path& scene, FileScope scope, const GltfCamera& camera,
+                   const std::string& name, bool is_iris) {
+    const fs::path folder = scene.parent_path(), path = folder / name;
+    if (!means_file(name, path, is_iris)) return name;
+    const auto refuse = [&](const char* why) {
+        return InputError(scene.string(), extras_of(camera),
+                          fmt::format("\"{}\" {}", printable(name), why));
+    };
+    if (scope == FileScope::Confined && !lies_within(path, folder))
+        throw refuse("lies outside the folder of the scene, and --confine allows no file there");
+    if (fs::path(name).is_absolute())
+        throw refuse("is an absolute path, which is not read; put the file beside the scene");
+    return path.string();
 }
 
 // Takes from the file's camera what the user has not said.
 void take_extras(const GltfCamera& camera, const std::filesystem::path& scene, FileScope scope,
                  CameraRequest& asked) {
     const CameraExtras& file = camera.extras;
-    if (!asked.lens && file.lens) asked.lens = beside(scene, scope, camera, *file.lens);
+    if (!asked.lens && file.lens) asked.lens = beside(scene, scope, camera, *file.lens, false);
     if (!asked.sensor_mm) asked.sensor_mm = file.sensor_mm;
     if (asked.lens == "pinhole") return;
     if (!asked.fstop && !asked.lens_radius_m) asked.fstop = file.fstop;
@@ -63,7 +79,7 @@ void take_extras(const GltfCamera& camera, const std::filesystem::path& scene, F
     if (!asked.focus && file.focus_m && !asked.film_distance_mm)
         asked.focus = FocusDistance{*file.focus_m};
     if (!asked.aperture && file.aperture)
-        asked.aperture = beside(scene, scope, camera, *file.aperture);
+        asked.aperture = beside(scene, scope, camera, *file.aperture, true);
 }
 
 std::vector<AgfCatalog> open_catalogs(const CameraRequest& asked) {
@@ -204,6 +220,16 @@ void check_lens(const CameraRequest& asked) {
 }
 
 }  // namespace
+
+void check_camera_files(const fs::path& scene, FileScope scope,
+                        const std::vector<GltfCamera>& cameras) {
+    if (scope == FileScope::Anywhere) return;
+    for (const GltfCamera& camera : cameras) {
+        const CameraExtras& file = camera.extras;
+        if (file.lens) static_cast<void>(beside(scene, scope, camera, *file.lens, false));
+        if (file.aperture) static_cast<void>(beside(scene, scope, camera, *file.aperture, true));
+    }
+}
 
 std::string CameraModel::dispersive_lens() const {
     if (asked.dispersion == DispersionMode::Shared) return "";

@@ -43,4 +43,9 @@ struct CameraModel {
                                               const std::filesystem::path& scene, FileScope,
                                               const std::vector<GltfCamera>& cameras, float aspect);
 
+/// Throws InputError where a camera of a confined scene names a file outside the scene's folder,
+/// whether or not it is the one that is rendered.
+void check_camera_files(const std::filesystem::path& scene, FileScope,
+                        const std::vector<GltfCamera>&);
+
 }  // namespace petzval

@@ -6,6 +6,7 @@
 
 #include <chrono>
 
+#include "apps/setup/camera_model.h"
 #include "apps/setup/camera_setup.h"
 #include "apps/setup/glass_remarks.h"
 #include "apps/setup/input_files.h"
@@ -146,6 +147,7 @@ PreparedScene load(SceneRequest request, const Notice& notice) {
     PreparedScene out;
     if (request.picture_memory_bytes) out.pictures = PictureBudget(*request.picture_memory_bytes);
     GltfFile file = load_file(request, out.pictures);
+    check_camera_files(request.scene, request.scope, file.cameras);
     out.files = input_files(file, request.scene);
     refuse_overwriting(request.outputs, out.files);
     for (const std::string& warning : file.warnings) notice("warning: " + warning);

@@ -174,6 +174,8 @@ class MeshMender {
         if (quantized() || is_allowed_format(semantic, summary, false, is_target) ||
             !is_allowed_format(semantic, summary, true, is_target))
             return;
+        // What is no list cannot take a name; it is refused later.
+        if (root_.find("extensionsUsed") && !root_.array("extensionsUsed")) return;
         root_.value()["extensionsUsed"].push_back(kQuantization);
         root_.warn("extensionsUsed",
                    fmt::format("does not list {}, which accessor {} needs; it is added",

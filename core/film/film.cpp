@@ -136,13 +136,17 @@ std::optional<uint32_t> Film::packed_count(const uint8_t* from, size_t layers,
                                            const std::optional<Bins>& bins, SampleRange range) {
     Pixel p;
     std::memcpy(&p, from, sizeof p);
-    const std::span rest(from + sizeof p, bytes_per_pixel(layers, bins) - sizeof p);
+    uint32_t too_large;
+    std::memcpy(&too_large, from + sizeof p, sizeof too_large);
+    const size_t before_layers = sizeof p + sizeof too_large;
+    const std::span rest(from + before_layers, bytes_per_pixel(layers, bins) - before_layers);
     const auto reached = [](const FilmSum& sum, uint32_t count) {
         return std::abs(sum.value()) <= double(count) * double(FilmSum::kLimit);
     };
-    bool possible = p.hits <= p.count && uint64_t(p.count) + p.bad <= range.count();
-    if (p.bad > 0)
-        possible = possible && p.first_bad_index >= range.first && p.first_bad_index < range.end;
+    bool possible = p.hits <= p.count && uint64_t(p.count) + p.left_out <= range.count() &&
+                    too_large <= p.left_out;
+    if (p.left_out > 0)
+        possible = possible && p.first_left_out >= range.first && p.first_left_out < range.end;
     for (const FilmSum& sum : p.sum) possible = possible && reached(sum, p.count);
     for (size_t i = 0; i < 3 * layers; ++i) {
         FilmSum sum;
@@ -151,7 +155,7 @@ std::optional<uint32_t> Film::packed_count(const uint8_t* from, size_t layers,
     }
     if (p.count == 0)
         possible = possible && std::all_of(rest.begin(), rest.end(), [](auto b) { return b == 0; });
-    return possible ? std::optional(p.count + p.bad) : std::nullopt;
+    return possible ? std::optional(p.count + p.left_out) : std::nullopt;
 }
 
 V4f Film::colour(int x, int y) const {

@@ -25,17 +25,17 @@ inline bool decodes_draco(std::span<const uint8_t> bytes) {
     return decode_draco(stream, header, vertices, all).fault.empty();
 }
 
-/// Whether bytes are a meshopt stream: mode and filter in two bits each, the stride, the count in
-/// 16 bits, then the stream.
+/// Whether bytes are a meshopt stream: mode in two bits and filter in three, the stride, the count
+/// in 16 bits, then the stream.
 inline bool decodes_meshopt(std::span<const uint8_t> bytes) {
-    if (bytes.size() < 4 || (bytes[0] & 3) > 2) return false;
+    if (bytes.size() < 4 || (bytes[0] & 3) > 2 || (bytes[0] >> 2 & 7) > 4) return false;
     const MeshoptLayout layout{static_cast<MeshoptMode>(bytes[0] & 3),
-                               static_cast<MeshoptFilter>(bytes[0] >> 2 & 3),
+                               static_cast<MeshoptFilter>(bytes[0] >> 2 & 7),
                                uint64_t(bytes[2] | bytes[3] << 8), bytes[1]};
     const auto stream = bytes.subspan(4);
     if (!meshopt_fault(layout, stream).empty()) return false;
     const auto decoded = decode_meshopt(layout, stream);
-    if (decoded && decoded->size() > 64 * stream.size())
+    if (decoded && decoded->size() > 1024 * stream.size())
         throw std::logic_error("a stream is decoded to more than its bound");
     return decoded.has_value();
 }

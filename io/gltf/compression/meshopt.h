@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Codec of EXT_meshopt_compression, version 0 of its streams: bytes in, bytes out.
+// Codec of KHR_meshopt_compression and of EXT_meshopt_compression, which is a part of it: bytes in,
+// bytes out.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +12,7 @@
 namespace petzval {
 
 enum class MeshoptMode : uint8_t { Attributes, Triangles, Indices };
-enum class MeshoptFilter : uint8_t { None, Octahedral, Quaternion, Exponential };
+enum class MeshoptFilter : uint8_t { None, Octahedral, Quaternion, Exponential, Color };
 
 /// What a bufferView says of its stream.
 struct MeshoptLayout {
@@ -23,7 +24,7 @@ struct MeshoptLayout {
 
 /// Why a stream cannot be what the layout says, found before memory is taken: a layout that the
 /// extension forbids, another kind of stream, or fewer bytes than the count takes at least. Empty
-/// where all is well: then a stream of n bytes is decoded to at most 64 n.
+/// where all is well: then a stream of n bytes is decoded to at most 1024 n (64 n in version 0).
 [[nodiscard]] std::string meshopt_fault(const MeshoptLayout&, std::span<const uint8_t> stream);
 
 /// The count * stride bytes of a stream, filtered; nothing where it is broken. meshopt_fault() must

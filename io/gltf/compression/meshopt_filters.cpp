@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
 namespace petzval {
 namespace {
@@ -45,6 +47,22 @@ void octahedral(std::span<uint8_t> elements) {
     });
 }
 
+/// T: unsigned, of the size of a component.
+template <class T>
+void color(std::span<uint8_t> elements) {
+    using Signed = std::make_signed_t<T>;
+    each<T, 4>(elements, [](std::array<T, 4>& v) {
+        const int greatest = (1 << std::bit_width(v[3])) - 1;
+        if (greatest == 0) return;
+        const int y = v[0], co = Signed(v[1]), cg = Signed(v[2]);
+        const int alpha = v[3] & greatest >> 1;
+        const float scale = float(std::numeric_limits<T>::max()) / float(greatest);
+        const std::array<int, 4> rgba = {y + co - cg, y + cg, y - co - cg,
+                                         alpha << 1 | (alpha & 1)};
+        for (size_t k = 0; k < 4; ++k) v[k] = to_integer<T>(float(rgba[k]) * scale);
+    });
+}
+
 }  // namespace
 
 void filter_octahedral_8(std::span<uint8_t> elements) {
@@ -75,6 +93,14 @@ void filter_exponential(std::span<uint8_t> elements) {
         const float value = std::ldexp(static_cast<float>(mantissa), exponent);
         std::memcpy(v.data(), &value, sizeof value);
     });
+}
+
+void filter_color_8(std::span<uint8_t> elements) {
+    color<uint8_t>(elements);
+}
+
+void filter_color_16(std::span<uint8_t> elements) {
+    color<uint16_t>(elements);
 }
 
 }  // namespace petzval

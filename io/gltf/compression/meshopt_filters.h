@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The filters of EXT_meshopt_compression (appendix B), in place. They are our own because the
+// The filters of KHR_meshopt_compression (appendix B), in place. They are our own because the
 // library's takes approximate square roots (RSQRTPS), which differ between makers of processors.
 #pragma once
 
@@ -21,5 +21,12 @@ void filter_quaternion(std::span<uint8_t> elements);
 
 /// Decodes floats: 8 bits of exponent, 24 of mantissa, both signed.
 void filter_exponential(std::span<uint8_t> elements);
+
+/// Decodes colours of four bytes each: luma, two signed chromas (YCoCg, Malvar and Sullivan 2003)
+/// and alpha, whose highest bit that is set tells how many bits the others have.
+void filter_color_8(std::span<uint8_t> elements);
+
+/// Decodes colours of four 16-bit integers each, likewise.
+void filter_color_16(std::span<uint8_t> elements);
 
 }  // namespace petzval

@@ -91,7 +91,9 @@ TEST(Meshopt, RefusesWhatTheExtensionForbids) {
     EXPECT_EQ(fault(Attributes, None, 3, 12, 0xa0), "");
     for (const uint64_t stride : {0u, 2u, 6u, 260u})
         EXPECT_NE(fault(Attributes, None, 3, stride, 0xa0), "");
-    EXPECT_NE(fault(Attributes, None, 3, 12, 0xa1), "");
+    EXPECT_EQ(fault(Attributes, None, 3, 12, 0xa1), "");
+    EXPECT_NE(fault(Attributes, None, 3, 12, 0xa2), "");
+    EXPECT_NE(fault(Indices, Color, 4, 4, 0xd1), "");
     EXPECT_NE(fault(Attributes, None, 3, 12, 0xe0), "");
     EXPECT_NE(fault(Attributes, Octahedral, 3, 12, 0xa0), "");
     EXPECT_NE(fault(Attributes, Quaternion, 3, 4, 0xa0), "");

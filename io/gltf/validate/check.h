@@ -46,8 +46,9 @@ void list_extensions(GltfCheck&);
 void check_extensions(const GltfCheck&);
 /// Checks that the root arrays hold objects, and that names are strings.
 void check_collections(const GltfCheck&);
-/// Decodes each bufferView that something needs and whose data are in EXT_meshopt_compression only,
-/// into a buffer of its own: from here on the file is as if it had never been compressed.
+/// Decodes each bufferView that something needs and whose data are in KHR_meshopt_compression or
+/// EXT_meshopt_compression only, into a buffer of its own: from here on the file is as if it had
+/// never been compressed.
 void decode_buffer_views(GltfCheck&);
 /// Checks that every bufferView lies in its buffer. Comes before the images are read.
 void check_buffer_views(GltfCheck&);

@@ -33,10 +33,6 @@ void check_buffer_view(GltfCheck& check, size_t index, const JsonCursor& view,
                        const std::vector<JsonCursor>& buffers) {
     const size_t buffer = view.required_index("buffer", buffers.size(), "buffer");
     fit(check, index, view, buffers[buffer].integer("byteLength"));
-    if (check.source.buffers[buffer].empty() && view.extension("KHR_meshopt_compression"))
-        view.fail(
-            "its data is only in KHR_meshopt_compression, which is not supported; export it with "
-            "EXT_meshopt_compression, or without");
     (void)view.integer_or("byteStride", 4);
 }
 

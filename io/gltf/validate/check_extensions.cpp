@@ -95,7 +95,11 @@ class Walk {
 
 ExtensionInFile describe(const std::string& name, uint64_t objects, bool required) {
     const GltfExtension* known = find_gltf_extension(name);
-    if (known) return {name, known->use, std::string(known->effect), objects, required};
+    if (known) {
+        ExtensionInFile out{name, known->use, std::string(known->effect), objects, required};
+        if (out.refused()) out.effect = gltf_extension_advice(name);
+        return out;
+    }
     return {name, required ? ExtensionUse::Needed : ExtensionUse::Ignored,
             "this program does not know it", objects, required};
 }

@@ -33,6 +33,11 @@ void check_images(GltfCheck& check) {
                        "read all the same");
 }
 
+std::string_view texture_advice(std::string_view extension) {
+    return find_gltf_extension(extension) ? gltf_extension_advice(extension)
+                                          : "export it with PNG, JPEG or WebP";
+}
+
 void check_texture(const GltfCheck& check, const JsonCursor& texture) {
     const size_t images = check.count("images");
     (void)texture.index("sampler", check.count("samplers"), "sampler");
@@ -42,10 +47,8 @@ void check_texture(const GltfCheck& check, const JsonCursor& texture) {
     if (!extensions) return;
     for (const auto& [name, unused] : extensions->value().items())
         if (extensions->object(name.c_str()).index("source", images, "image") && !source)
-            texture.fail(
-                fmt::format("its image is only in {}, which is not supported; {}", printable(name),
-                            name == "KHR_texture_basisu" ? gltf_extension_advice(name)
-                                                         : "export it with PNG, JPEG or WebP"));
+            texture.fail(fmt::format("its image is only in {}, which is not supported; {}",
+                                     printable(name), texture_advice(name)));
 }
 
 }  // namespace

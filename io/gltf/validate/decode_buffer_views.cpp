@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// EXT_meshopt_compression: bufferViews whose data are compressed.
+// KHR_meshopt_compression and EXT_meshopt_compression: bufferViews whose data are compressed.
 #include <algorithm>
 #include <array>
 
@@ -7,14 +7,13 @@
 #include "io/base/json_parse.h"
 #include "io/gltf/compression/meshopt.h"
 #include "io/gltf/validate/check.h"
+#include "io/gltf/validate/extensions.h"
 
 namespace petzval {
 namespace {
 
 using nlohmann::json;
 using Bytes = std::vector<uint8_t>;
-
-constexpr const char* kMeshopt = "EXT_meshopt_compression";
 
 /// The number of a word in a list; a word that is not there is refused.
 template <size_t N>
@@ -27,8 +26,8 @@ size_t word(const JsonCursor& owner, const char* key, const std::string& text,
 
 MeshoptLayout layout_of(const JsonCursor& meshopt) {
     constexpr std::array<std::string_view, 3> modes = {"ATTRIBUTES", "TRIANGLES", "INDICES"};
-    constexpr std::array<std::string_view, 4> filters = {"NONE", "OCTAHEDRAL", "QUATERNION",
-                                                         "EXPONENTIAL"};
+    constexpr std::array<std::string_view, 5> filters = {"NONE", "OCTAHEDRAL", "QUATERNION",
+                                                         "EXPONENTIAL", "COLOR"};
     MeshoptLayout layout;
     layout.mode = static_cast<MeshoptMode>(word(meshopt, "mode", meshopt.text("mode"), modes));
     layout.filter = static_cast<MeshoptFilter>(
@@ -50,7 +49,7 @@ std::span<const uint8_t> stream_of(const GltfCheck& check, const JsonCursor& mes
 
 /// What a bufferView is decoded to; nothing where its data are there plainly.
 std::optional<Bytes> decode(GltfCheck& check, const JsonCursor& view) {
-    const auto meshopt = view.extension(kMeshopt);
+    const auto meshopt = meshopt_extension(view);
     if (!meshopt) return std::nullopt;
     const auto& buffers = check.source.buffers;
     if (!buffers[view.required_index("buffer", buffers.size(), "buffer")].empty())

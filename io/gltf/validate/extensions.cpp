@@ -14,8 +14,7 @@ using enum ExtensionUse;
 constexpr std::string_view kMetadata = "describes, and shows nothing";
 constexpr std::string_view kStill = "nothing moves in a picture";
 constexpr std::string_view kSound = "pictures are silent";
-constexpr std::string_view kNoImage =
-    "textures that have no PNG, JPEG or WebP beside it are left out";
+constexpr std::string_view kImageBeside = "textures show the images beside it";
 
 constexpr auto table = std::to_array<GltfExtension>({
     {"ADOBE_materials_clearcoat_specular", Ignored,
@@ -36,7 +35,7 @@ constexpr auto table = std::to_array<GltfExtension>({
     {"EXT_mesh_primitive_edge_visibility", Ignored, "edges have no drawn lines", "primitives"},
     {"EXT_meshopt_compression", Rendered, "", "buffers bufferViews"},
     {"EXT_structural_metadata", Harmless, kMetadata, ""},
-    {"EXT_texture_avif", Needed, kNoImage, "textures"},
+    {"EXT_texture_avif", Needed, kImageBeside, "textures"},
     {"EXT_texture_webp", Rendered, "", "textures"},
     {"FB_geometry_metadata", Harmless, kMetadata, ""},
     {"GODOT_single_root", Harmless, kMetadata, ""},
@@ -65,15 +64,14 @@ constexpr auto table = std::to_array<GltfExtension>({
     {"KHR_materials_volume_scatter", Ignored,
      "wax, skin and milk are clear inside: no light scatters there", "materials"},
     {"KHR_mesh_quantization", Rendered, "", ""},
-    {"KHR_meshopt_compression", Needed, "the plain data beside it are shown",
-     "buffers bufferViews"},
+    {"KHR_meshopt_compression", Rendered, "", "buffers bufferViews"},
     {"KHR_node_hoverability", Harmless, kStill, "nodes"},
     {"KHR_node_selectability", Harmless, kStill, "nodes"},
     {"KHR_node_visibility", Rendered, "", "nodes"},
     {"KHR_physics_rigid_bodies", Harmless, kStill, ""},
     {"KHR_techniques_webgl", Needed, "surfaces that programs for graphics cards colour are white",
      ""},
-    {"KHR_texture_basisu", Needed, "textures show the images beside it", "textures"},
+    {"KHR_texture_basisu", Needed, kImageBeside, "textures"},
     {"KHR_texture_transform", Rendered, "", "*Texture"},
     {"KHR_xmp", Harmless, kMetadata, ""},
     {"KHR_xmp_json_ld", Harmless, kMetadata, ""},
@@ -84,7 +82,7 @@ constexpr auto table = std::to_array<GltfExtension>({
     {"MSFT_packing_occlusionRoughnessMetallic", Harmless,
      "the same textures stand in the core material", "materials"},
     {"MSFT_screencoverage", Harmless, "the finest level is shown", ""},
-    {"MSFT_texture_dds", Needed, kNoImage, "textures"},
+    {"MSFT_texture_dds", Needed, kImageBeside, "textures"},
     {"NV_materials_mdl", Ignored, "surfaces have the simpler material beside it", ""},
     {"OMI_physics_body", Harmless, kStill, ""},
     {"OMI_physics_shape", Harmless, "shapes for physics are not seen", ""},
@@ -116,9 +114,17 @@ const GltfExtension* find_gltf_extension(std::string_view name) {
 }
 
 std::string_view gltf_extension_advice(std::string_view name) {
-    return name == "KHR_texture_basisu"
-               ? "convert its KTX2 images to PNG: gltf-transform ktxdecompress IN OUT"
-               : "export it without";
+    if (name == "KHR_texture_basisu")
+        return "convert its KTX2 images to PNG with the script in docs/guide/textures.md";
+    if (name == "EXT_texture_avif")
+        return "convert its AVIF images to PNG: npx @gltf-transform/cli png IN OUT --formats avif";
+    if (name == "MSFT_texture_dds") return "export it with PNG, JPEG or WebP";
+    return "export it without";
+}
+
+std::optional<JsonCursor> meshopt_extension(const JsonCursor& owner) {
+    auto found = owner.extension("KHR_meshopt_compression");
+    return found ? found : owner.extension("EXT_meshopt_compression");
 }
 
 }  // namespace petzval

@@ -4,9 +4,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+
+#include "io/base/json_cursor.h"
 
 namespace petzval {
 
@@ -39,7 +42,7 @@ struct ExtensionInFile {
     std::string name;  ///< as in the file
     /// Needed where the file requires it: then it is refused. Unknown ones are Ignored, or Needed.
     ExtensionUse use;
-    std::string effect;    ///< as in the table
+    std::string effect;    ///< as in the table; where it is refused, what to do
     uint64_t objects = 0;  ///< that have it
     bool required = false;
 
@@ -48,5 +51,9 @@ struct ExtensionInFile {
 
 /// What to do about a file that cannot be shown without an extension that is not supported.
 [[nodiscard]] std::string_view gltf_extension_advice(std::string_view name);
+
+/// What a buffer or a bufferView has of KHR_meshopt_compression, or of EXT_meshopt_compression: the
+/// second is a part of the first, with the same members.
+[[nodiscard]] std::optional<JsonCursor> meshopt_extension(const JsonCursor& owner);
 
 }  // namespace petzval

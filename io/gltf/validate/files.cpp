@@ -11,6 +11,7 @@
 #include "io/base/json_parse.h"
 #include "io/base/read_file.h"
 #include "io/base/uri.h"
+#include "io/gltf/validate/extensions.h"
 
 namespace petzval {
 namespace {
@@ -110,10 +111,10 @@ Bytes buffer_from_chunk(const JsonCursor& buffer, std::span<const uint8_t> bin) 
     return {bin.begin(), bin.begin() + ptrdiff_t(length)};
 }
 
-/// Whether a buffer stands only for what EXT_meshopt_compression has, so that its bytes, if there
+/// Whether a buffer stands only for what compressed bufferViews have, so that its bytes, if there
 /// are any, need not be read.
 bool is_fallback(const JsonCursor& buffer) {
-    const auto meshopt = buffer.extension("EXT_meshopt_compression");
+    const auto meshopt = meshopt_extension(buffer);
     if (!meshopt || !meshopt->has("fallback")) return false;
     meshopt->check_bool("fallback");
     return meshopt->value()["fallback"];

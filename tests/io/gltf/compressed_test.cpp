@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compressed files are read as if they had never been compressed: EXT_meshopt_compression and
-// KHR_draco_mesh_compression.
+// Compressed files are read as if they had never been compressed: KHR_meshopt_compression,
+// EXT_meshopt_compression and KHR_draco_mesh_compression.
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <set>
 
 #include "tests/support/load_tiny_gltf.h"
 #include "tests/support/mesh_encoders.h"
@@ -103,6 +105,54 @@ TEST(GltfMeshopt, IsReadAsIfItWereNotCompressed) {
     expect_same(file.scene.meshes[0], load_mesh(plain(grid)));
 }
 
+/// The file with the extension under its other name.
+TinyGltf as_khr(TinyGltf file) {
+    std::string text = file.json.dump();
+    for (size_t at; (at = text.find(kMeshopt)) != std::string::npos;)
+        text.replace(at, std::string_view(kMeshopt).size(), "KHR_meshopt_compression");
+    file.json = json::parse(text);
+    return file;
+}
+
+TEST(GltfMeshopt, HasTwoNames) {
+    const Grid grid(30);
+    TinyGltf file = as_khr(meshopt(grid));
+    file.json["buffers"][1]["uri"] = "absent.bin";  // a fallback under this name too
+    const GltfFile loaded = load(file);
+    EXPECT_TRUE(loaded.warnings.empty()) << loaded.warnings[0];
+    EXPECT_TRUE(renders(loaded, "KHR_meshopt_compression"));
+    expect_same(loaded.scene.meshes.at(0), load_mesh(plain(grid)));
+    file.json["bufferViews"][0]["extensions"]["KHR_meshopt_compression"]["filter"] = "COLOR";
+    EXPECT_TRUE(has(refusal([&] { (void)load(file); }),
+                    "/bufferViews/0/extensions/KHR_meshopt_compression: byteStride of"));
+}
+
+// A grid of 9 by 9 points, with the heights, normals and colours of the formulas below, as gltfpack
+// 1.3 (npm) writes it with -cz: shorts, octahedral normals and YCoCg colours in streams of
+// version 1.
+TEST(GltfMeshopt, ReadsWhatGltfpackWrites) {
+    const GltfFile file = load_gltf(PETZVAL_TEST_DATA "/gltfpack/grid_cz.glb");
+    EXPECT_TRUE(file.warnings.empty()) << file.warnings[0];
+    ASSERT_EQ(file.scene.meshes.size(), 1u);
+    const Mesh& mesh = file.scene.meshes[0];
+    EXPECT_EQ(mesh.triangles.size(), 128u);
+    ASSERT_EQ(mesh.positions.size(), 81u);
+    ASSERT_EQ(mesh.colours.size(), 81u);
+    std::set<std::pair<long, long>> places;
+    for (size_t i = 0; i < 81; ++i) {
+        const V3f p = mesh.positions[i];
+        const float slope = -0.9f * std::cos(9 * p.x + 5 * p.y);
+        EXPECT_NEAR(p.z, 0.1f * std::sin(9 * p.x + 5 * p.y), 5e-4f);  // 14 bits, slopes up to 1
+        EXPECT_LT((unit(V3f(slope, slope * 5 / 9, 1)) - unit(mesh.normals[i])).length(), 0.03f);
+        for (int k = 0; k < 4; ++k) {
+            const float expected[] = {p.x, p.y, 0.5f, 1};
+            EXPECT_NEAR(mesh.colours[i][k], expected[k], 1.6f / 255) << i << " " << k;
+        }
+        places.insert({std::lround(p.x * 8), std::lround(p.y * 8)});
+    }
+    EXPECT_EQ(places.size(), 81u);
+}
+
 TEST(GltfMeshopt, InterleavedViews) {
     const Grid grid(9);
     TinyGltf file = plain(grid);
@@ -199,7 +249,7 @@ TEST(GltfMeshopt, RefusesWhatIsBroken) {
                    {{mode.c_str(), "VERTICES", "/mode: is \"VERTICES\", which is unknown"},
                     {mode.c_str(), "TRIANGLES", "byteStride of indices must be 2 or 4"},
                     {mode.c_str(), 3, "/mode: must be"},
-                    {filter.c_str(), "COLOR", "/filter: is \"COLOR\", which is unknown"},
+                    {filter.c_str(), "COLOUR", "/filter: is \"COLOUR\", which is unknown"},
                     {filter.c_str(), "OCTAHEDRAL", "must be 4 or 8"},
                     {count.c_str(), 1'000'000, "too short for its count"},
                     {count.c_str(), uint64_t(1) << 53, "too short for its count"},

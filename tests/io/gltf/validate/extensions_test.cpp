@@ -70,5 +70,25 @@ TEST(GltfExtensions, AreReadOfFilesThatAreRefusedForOne) {
     EXPECT_NE(refusal([&] { (void)read_gltf_extensions(folder.path / "none.glb"); }), "");
 }
 
+// Of a file that is refused nothing is shown, so its table says what to do instead.
+TEST(GltfExtensions, SayOfARefusalWhatToDo) {
+    const TempFolder folder;
+    int needed = 0;
+    for (const GltfExtension& extension : gltf_extensions()) {
+        if (extension.use != ExtensionUse::Needed) continue;
+        ++needed;
+        TinyGltf file;
+        file.json["extensionsUsed"] = {extension.name};
+        const auto used = read_gltf_extensions(file.save_glb(folder.path / "used.glb"));
+        EXPECT_EQ(used.at(0).effect, extension.effect);
+        file.json["extensionsRequired"] = {extension.name};
+        const auto path = file.save_glb(folder.path / "required.glb");
+        const auto required = read_gltf_extensions(path);
+        EXPECT_EQ(required.at(0).effect, gltf_extension_advice(extension.name));
+        EXPECT_TRUE(has(refusal([&] { (void)read_gltf_source(path); }), required[0].effect));
+    }
+    EXPECT_GT(needed, 3);
+}
+
 }  // namespace
 }  // namespace petzval

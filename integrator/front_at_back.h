@@ -20,7 +20,8 @@ template <class Caster>
                                                    const Ray& ray, const Surface& back) {
     constexpr float least_cosine = 1e-3f;  // a grazing ray runs along both faces
     const float cosine = std::max(std::fabs(back.ng.dot(ray.direction)), least_cosine);
-    const float apart = 4 * back.p_error.dot(abs(back.ng)) / cosine;
+    const V3f& error = back.p_error;
+    const float apart = 4 * std::max({error.x, error.y, error.z}) / cosine;
     const float t = (back.p - ray.origin).dot(ray.direction);
     Ray there = ray;
     there.t_max = t + apart + t * rounding_bound(8);

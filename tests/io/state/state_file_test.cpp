@@ -208,7 +208,8 @@ TEST_F(StateFile, ForgedCountsAndSumsAreFound) {
     const size_t each = Film::bytes_per_pixel(kShape.layers.size(), kShape.bins),
                  pixels = size_t(kShape.crop.width()) * size_t(kShape.crop.height()),
                  first = good.size() - 8 - each * pixels;
-    constexpr size_t kCount = 64, kHits = 68, kBad = 72, kFirstBad = 76;  // behind four sums
+    // Behind four sums; the sums of layers come last.
+    constexpr size_t kCount = 64, kHits = 68, kBad = 72, kFirstBad = 76, kTooLarge = 80;
     const auto forged = [&](const auto& edit) {
         std::vector<uint8_t> bad = good;
         const auto at = [&](size_t pixel, size_t offset) -> uint32_t& {
@@ -227,11 +228,12 @@ TEST_F(StateFile, ForgedCountsAndSumsAreFound) {
     EXPECT_TRUE(refused([](auto at) { at(0, kCount) -= 1; }));
     EXPECT_TRUE(refused([](auto at) { at(0, kCount) += 1, at(1, kCount) -= 1; })) << "same total";
     EXPECT_TRUE(refused([](auto at) { at(0, kBad) += 0u - at(0, kCount), at(0, kCount) *= 2; }));
+    EXPECT_TRUE(refused([](auto at) { at(2, kTooLarge) = at(2, kBad) + 1; }));
     EXPECT_TRUE(refused([](auto at) { at(3, kHits) = at(3, kCount) + 1; }));
     EXPECT_TRUE(
         refused([](auto at) { at(0, kBad) = 1, at(0, kCount) -= 1, at(0, kFirstBad) = 40; }));
     EXPECT_TRUE(refused([](auto at) { at(5, 12) = 0x40000000; })) << "of red";
-    EXPECT_TRUE(refused([](auto at) { at(5, 80 + 12) = 0x40000000; })) << "of a layer";
+    EXPECT_TRUE(refused([](auto at) { at(5, kTooLarge + 4 + 12) = 0x40000000; })) << "of a layer";
     EXPECT_TRUE(refused([](auto at) {
         at(7, kBad) += at(7, kCount), at(7, kFirstBad) = 16, at(7, kCount) = at(7, kHits) = 0;
     })) << "light without samples";

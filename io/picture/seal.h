@@ -8,6 +8,7 @@
 #include <string>
 
 #include "io/base/atomic_file.h"
+#include "io/picture/picture.h"
 
 namespace petzval {
 
@@ -15,6 +16,13 @@ namespace petzval {
 /// sums.
 inline constexpr const char* kSealName = "petzval:fileHash";
 inline constexpr const char* kUnsealed = "fnv1a-0000000000000000";
+
+/// Whether metadata are the seal of another file, which a picture made from that one must not
+/// carry.
+[[nodiscard]] inline bool is_seal_of_another(const Metadata::value_type& metadata) {
+    const auto* const seal = std::get_if<std::string>(&metadata.second);
+    return metadata.first == kSealName && seal && *seal != kUnsealed;
+}
 
 /// Where the first megabyte of a file has the unfilled value: writes the FNV-1a hash of the file as
 /// it is in its place.

@@ -21,7 +21,7 @@
 #include "io/image/picture_files.h"
 #include "io/lens/lens_file.h"
 #include "io/spectra/spectra.h"
-#include "tests/support/mesh_decoders.h"
+#include "tests/support/meshes/decoders.h"
 
 namespace petzval::test {
 

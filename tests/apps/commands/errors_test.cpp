@@ -149,7 +149,7 @@ TEST_F(CliErrors, MemoryThatRunsOut) {
     options.address_space_limit_bytes = rlim_t{3} << 30;
     const std::string line = error_of(
         {"render", scene_, "-o", path("out.exr"), "--size", "16000x8000", "--quiet"}, 4, options);
-    EXPECT_TRUE(line.starts_with("petzval: error: --size: needs 9.5 GiB of memory, and ")) << line;
+    EXPECT_TRUE(line.starts_with("petzval: error: --size: needs 10.0 GiB of memory, and ")) << line;
 }
 
 TEST_F(CliErrors, StandardStreamsThatAreFull) {

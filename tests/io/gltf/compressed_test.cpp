@@ -7,7 +7,7 @@
 #include <set>
 
 #include "tests/support/load_tiny_gltf.h"
-#include "tests/support/mesh_encoders.h"
+#include "tests/support/meshes/encoders.h"
 #include "tests/support/refusal.h"
 
 namespace petzval {

@@ -5,7 +5,7 @@
 #include <array>
 #include <random>
 
-#include "tests/support/mesh_encoders.h"
+#include "tests/support/meshes/encoders.h"
 #include "tests/support/tiny_gltf.h"
 
 namespace petzval::test {

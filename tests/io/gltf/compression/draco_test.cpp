@@ -6,7 +6,7 @@
 #include <chrono>
 
 #include "io/gltf/compression/draco_mesh.h"
-#include "tests/support/mesh_encoders.h"
+#include "tests/support/meshes/encoders.h"
 
 namespace petzval {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "io/gltf/compression/meshopt.h"
 #include "io/gltf/compression/meshopt_filters.h"
-#include "tests/support/meshopt_version_1.h"
+#include "tests/support/meshes/meshopt_version_1.h"
 
 namespace petzval {
 namespace {

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "io/gltf/compression/meshopt_filters.h"
-#include "tests/support/mesh_encoders.h"
+#include "tests/support/meshes/encoders.h"
 
 namespace petzval {
 namespace {

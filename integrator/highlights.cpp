@@ -72,7 +72,7 @@ std::vector<Source> sources_of(const Scene& scene, std::span<const Thing> things
         if (const auto* measured = std::get_if<ProfileLight>(&light))  // on average
             add(measured->position, false,
                 measured->factor * (scene.profiles[measured->profile].flux_lm() / (4 * kPi)));
-        if (const auto* sun = std::get_if<SunLight>(&light))
+        if (const auto* sun = std::get_if<SunLight>(&light); sun && !sun->has_disc())
             add(-sun->direction, true, sun->illuminance_lx);
     }
     std::stable_sort(out.begin(), out.end(),

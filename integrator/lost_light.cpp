@@ -122,6 +122,7 @@ class Search {
                        });
     }
     void add(const SunLight& light, uint32_t index) {
+        if (light.has_disc()) return;  // it is a thing
         add_where_lost({LostLight::Kind::Sun, index}, 0, never,
                        [&](const Sampler& s) { return along_to_glass(s, light.direction); });
     }

@@ -52,6 +52,8 @@ class PathTracer {
     [[nodiscard]] f4 visible_background(const Ray&, const Bands&, FilmSample&) const;
     [[nodiscard]] f4 escaped(const Ray&, const Bands&, const Vertex& last,
                              ChanceFinds& by_chance) const;
+    [[nodiscard]] f4 sun_discs(const Ray&, const Bands&, const Vertex& last, bool in_view,
+                               ChanceFinds&) const;
     [[nodiscard]] f4 emitted(const Surface&, Rgb, const Bands&, const Vertex& last) const;
     [[nodiscard]] std::optional<DrawnLight> draw_light(const LightReceiver&,
                                                        const Sampler::VertexNumbers&, const Bands&,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/light/light_sampling.h"
+#include "core/light/sun_disc.h"
 #include "core/sampling/warp.h"
 #include "core/scene/motion.h"
 #include "core/shading/surface.h"
@@ -91,6 +92,26 @@ f4 PathTracer<Caster>::escaped(const Ray& ray, const Bands& bands, const Vertex&
     const float light_pdf = lights_.probability(sky_light, last.receiver) * found.pdf;
     if (options_.technique == Technique::LightOnly && light_pdf > 0.f) return f4{};
     return radiance * power_heuristic(last.pdf, light_pdf);
+}
+
+// Light of the discs of suns that a ray leads to.
+template <RayCaster Caster>
+f4 PathTracer<Caster>::sun_discs(const Ray& ray, const Bands& bands, const Vertex& last,
+                                 bool in_view, ChanceFinds& by_chance) const {
+    f4 sum{};
+    for (const uint32_t light : scene_.sun_discs) {
+        std::optional<Light> moved;
+        const auto& sun = std::get<SunLight>(light_at(scene_, light, ray.time, moved));
+        if ((in_view && sun.unseen) || !is_in_disc(sun, ray.direction)) continue;
+        const f4 radiance =
+            uplift_radiance(disc_radiance(sun), bands, scene_.illuminant(sun.illuminant));
+        by_chance.lamps += !in_view && !last.light_sampled;
+        const float light_pdf =
+            last.light_sampled ? lights_.probability(light, last.receiver) * disc_pdf(sun) : 0.f;
+        if (options_.technique == Technique::LightOnly && light_pdf > 0.f) continue;
+        sum += radiance * (light_pdf > 0.f ? power_heuristic(last.pdf, light_pdf) : 1.f);
+    }
+    return sum;
 }
 
 template <RayCaster Caster>
@@ -231,7 +252,8 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
     Vertex last{camera_ray.origin};
     V3f from = camera_ray.origin;  // of the segment: `last`, or a pane that it has passed since
     Volumes volumes = start_volumes(scene_, caster_, camera_ray.origin, camera_ray.time);
-    bool seen = false;  // the camera ray has found a surface that shows itself
+    bool seen = false;    // the camera ray has found a surface that shows itself
+    bool in_view = true;  // it has passed nothing but panes
     ChanceFinds* by_chance = &stats.mirrored;
 
     for (int vertex = 0, depth = 0, clear_depth = 0;;) {
@@ -247,15 +269,18 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         if (!hit) {
             sum += throughput * (seen ? escaped(ray, bands, last, *by_chance)
                                       : visible_background(ray, bands, out));
+            if (!scene_.sun_discs.empty() && (seen || !options_.transparent))
+                sum += throughput * sun_discs(ray, bands, last, in_view, *by_chance);
             break;
         }
         Surface s = make_surface(scene_, ray.direction, *hit);
-        // Skip backs of single-sided surfaces, which glTF culls from view. Light must not pass
-        // them, so only camera rays do; the inside of a volume is never culled.
+        // Skip backs of single-sided surfaces, which glTF culls from view, and lamps that are not
+        // to be seen, these behind panes too. Light must not pass them, so only camera rays do; the
+        // inside of a volume is never culled.
         if (culled_from_view(s)) {
             if (const auto front = front_at_back(scene_, caster_, ray, s)) {
                 s = *front;
-            } else if (!seen) {
+            } else if (!seen || (in_view && s.material->unseen)) {
                 ray.origin = offset_origin(s.p, s.p_error, s.ng, ray.direction);
                 continue;
             }
@@ -388,6 +413,7 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
             ray.origin = offset_origin(s.p, s.p_error, s.ng, ray.direction);
             continue;
         }
+        in_view = false;
         from = s.leaving_point(direction);
         last = {from, next->pdf, light_sampled && !next->delta, receiver};
         ray.origin = leave_surface(s, direction, next->transmitted);

@@ -5,6 +5,7 @@
 
 #include "core/light/emission.h"
 #include "core/light/spherical_triangle.h"
+#include "core/light/sun_disc.h"
 #include "core/sampling/warp.h"
 #include "core/scene/coverage.h"
 #include "core/scene/motion.h"
@@ -63,8 +64,16 @@ std::optional<LightSample> sample(const Scene& scene, const ProfileLight& light,
     return sample_at(scene, light, light.factor * candela, p, bands);
 }
 
-std::optional<LightSample> sample(const Scene& scene, const SunLight& light, const V3f&, V2f,
+std::optional<LightSample> sample(const Scene& scene, const SunLight& light, const V3f&, V2f u,
                                   const Bands& bands, float) {
+    if (light.has_disc())
+        return LightSample{
+            direction_in_disc(light, u),
+            V3f(0.f),
+            true,
+            uplift_radiance(disc_radiance(light), bands, scene.illuminant(light.illuminant)),
+            disc_pdf(light),
+            false};
     const f4 irradiance =
         uplift_radiance(light.illuminance_lx, bands, scene.illuminant(light.illuminant));
     return LightSample{-light.direction, {}, true, irradiance, 1.f, true};

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/light/emission.h"
+#include "core/light/sun_disc.h"
 #include "core/sampling/sampler.h"
 #include "core/scene/motion.h"
 
@@ -287,12 +288,35 @@ void add_sky(const Scene& scene, std::vector<Thing>& out, size_t most) {
     }
 }
 
+// The disc of each sun that has one, as wide as where it comes while the shutter is open.
+void add_suns(const Scene& scene, std::vector<Thing>& out, size_t most) {
+    for (size_t i = 0; i < std::min(most, scene.sun_discs.size()); ++i) {
+        const uint32_t light = scene.sun_discs[i];
+        const auto& sun = std::get<SunLight>(scene.lights[light]);
+        const auto disc_rad = 2 * std::asin(std::sqrt(sun.versine / 2));
+        Thing thing{Thing::Kind::Lamp, -sun.direction};
+        if (const auto* const steps = steps_of_light(scene, light))
+            for (const Light& step : *steps) {
+                const V3f apart = std::get<SunLight>(step).direction - sun.direction;
+                thing.reach_m =
+                    std::max(thing.reach_m, 2 * std::asin(std::min(1.f, apart.length() / 2)));
+            }
+        thing.at_infinity = true;
+        thing.reach_m += disc_rad;
+        thing.radius_m = thing.reach_m;
+        thing.area_m2 = 2 * double(kPi) * double(sun.versine);
+        thing.radiance = double(luminance(disc_radiance(sun)));
+        out.push_back(thing);
+    }
+}
+
 }  // namespace
 
 std::vector<Thing> things_of(const Scene& scene, size_t most_of_class) {
     std::vector<Thing> out;
     add_surfaces(scene, out, most_of_class);
     add_sky(scene, out, most_of_class);
+    add_suns(scene, out, most_of_class);
     return out;
 }
 

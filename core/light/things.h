@@ -13,7 +13,7 @@ namespace petzval {
 struct Thing {
     enum class Kind : uint8_t {
         Wavelength,  ///< refracts, reflects or emits by wavelength
-        Lamp         ///< emits, or is a bright spot of the sky
+        Lamp         ///< emits, or is a bright spot of the sky or the disc of a sun
     };
     Kind kind;
     V3f centre;                ///< metres; a unit direction for what lies at infinity

@@ -31,11 +31,15 @@ struct ProfileLight {
     uint32_t profile;  ///< index into Scene::profiles
     int32_t illuminant = -1;
 };
-/// KHR_lights_punctual "directional".
+/// KHR_lights_punctual "directional", as a point of the sky or an even disc of it.
 struct SunLight {
-    V3f direction;  ///< unit, the way the light shines
+    V3f direction;  ///< unit, the way the light shines; of a disc: from its middle
     Rgb illuminance_lx;
     int32_t illuminant = -1;
+    float versine = 0;    ///< 1 - cosine of the disc's angular radius, at most 1; 0: a point
+    bool unseen = false;  ///< camera rays do not meet the disc
+
+    [[nodiscard]] bool has_disc() const { return versine > 0; }
 };
 /// One emissive triangle of an instance.
 struct TriangleLight {

@@ -38,7 +38,8 @@ struct Material {
     AlphaMode alpha_mode = AlphaMode::Opaque;
     float alpha_cutoff = 0.5f;
     bool double_sided = false;
-    bool unlit = false;  ///< KHR_materials_unlit: shows its base colour, as nits
+    bool unseen = false;  ///< camera rays go on behind it
+    bool unlit = false;   ///< KHR_materials_unlit: shows its base colour, as nits
 
     /// KHR_materials_pbrSpecularGlossiness: base_color is its diffuse colour, specular_color its
     /// specular one (ior is 0, metallic 0), 1 - roughness its glossiness; the glossiness of its

@@ -70,6 +70,9 @@ void extend_bounds(Box3f& bounds, const Scene& scene, uint32_t index, const Box3
 
 void finish_scene(Scene& scene) {
     for (Material& material : scene.materials) find_places(scene, material);
+    for (uint32_t i = 0; i < scene.lights.size(); ++i)
+        if (const auto* sun = std::get_if<SunLight>(&scene.lights[i]); sun && sun->has_disc())
+            scene.sun_discs.push_back(i);
     for (Instance& instance : scene.instances)
         instance.moves |= !scene.meshes[instance.mesh].steps.empty();
     rank_volumes(scene);

@@ -38,7 +38,8 @@ struct Scene {
     /// for one that is still. Lights beyond the list are still too.
     std::vector<std::vector<Light>> light_motions;
     std::vector<int32_t> light_motion_of;
-    int32_t sky_light = -1;  ///< the sky's among them, by finish_scene; -1: even or black
+    int32_t sky_light = -1;           ///< the sky's among them, by finish_scene; -1: even or black
+    std::vector<uint32_t> sun_discs;  ///< suns with a disc among them, by finish_scene
     Sky sky;
 
     Box3f bounds;  ///< of all instances, in world space; empty where there are none

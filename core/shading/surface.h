@@ -45,10 +45,10 @@ struct Surface {
     if (transmitted) return offset_origin(s.p, s.p_error, s.ng, -facing);
     return offset_origin(s.leaving_point(w), s.p_error, s.ng, facing);
 }
-/// Whether the hit is on the back of a single-sided surface, which glTF culls from view; the inside
-/// of a volume is seen.
+/// Whether a camera ray goes on behind the hit: on the back of a single-sided surface, which glTF
+/// culls from view (the inside of a volume is seen), or on one that is not to be seen.
 [[nodiscard]] inline bool culled_from_view(const Surface& s) {
-    return !s.front && !s.material->double_sided && !s.material->has_volume;
+    return (!s.front && !s.material->double_sided && !s.material->has_volume) || s.material->unseen;
 }
 /// COLOR_0 at the hit as linear RGBA; 1 where the mesh has none.
 [[nodiscard]] f4 vertex_colour(const Surface&);

@@ -234,7 +234,8 @@ RenderFrame resolve(RenderOptions& o) {
     if (s.choices.animation) s.choices.animation->open_s = s.camera.open_s();
     resolve_job(o);
     resolve_background(o.background, s);
-    const auto exposure_ev = parse_exposure_ev("--exposure", o.exposure);
+    o.asks_view = !o.display.view.empty();  // before resolve_display() finds the default one
+    const auto exposure_ev = o.exposure ? parse_exposure_ev("--exposure", *o.exposure) : 0.f;
     o.display.exposure_ev = exposure_ev.value_or(0.f);
     o.auto_exposure = !exposure_ev;
     RenderFrame frame{{0, 0, s.size.x, s.size.y}, {}, parse_share("--tolerance", o.tolerance), {}};

@@ -39,8 +39,8 @@ struct RenderOptions {
     std::vector<std::filesystem::path> outputs;  ///< pictures, and before resolve() a state
     KeepOptions keep;
     std::optional<std::filesystem::path> stats;
-    std::string size = "1280x720", crop, samples, time, background, tolerance = "1%",
-                exposure = "0";
+    std::string size = "1280x720", crop, samples, time, background, tolerance = "1%";
+    std::optional<std::string> exposure;
     std::vector<std::string> aovs;  ///< lists of names
     std::optional<uint32_t> spp;
     int threads = 0;  ///< 0: as many as can be had
@@ -51,6 +51,7 @@ struct RenderOptions {
     DisplayOptions display;
     std::vector<const CLI::Option*> display_only;  ///< options that an EXR takes no notice of
     bool auto_exposure = false;
+    bool asks_view = false;  ///< by its option
     ProgressStyle progress = ProgressStyle::Auto;
     bool quiet = false;
     SequenceOptions sequence;

@@ -56,6 +56,7 @@ ordered_json json_of(const GltfSummary::Lights& lights) {
             {"spot", lights.spot},
             {"directional", lights.directional},
             {"with_radius", lights.balls},
+            {"with_area", lights.flat},
             {"profiles", lights.profiles},
             {"emissive_meshes", lights.emissive_meshes},
             {"emissive_triangles", lights.emissive_triangles}};
@@ -125,6 +126,10 @@ void print_info_json(const InfoReport& report) {
     out["materials"] = holds.materials;
     out["images"] = json_of(holds.pictures);
     out["lights"] = json_of(holds.lights);
+    out["scene_extras"] = {{"sky", or_null(file.extras.sky)},
+                           {"sky_rotation_deg", file.extras.sky_rotation_deg},
+                           {"exposure_ev", or_null(file.extras.exposure_ev)},
+                           {"view", or_null(file.extras.view)}};
     out["memory_bytes"] = {
         {"meshes", holds.mesh_bytes}, {"images", picture_bytes}, {"bvh", report.bvh_bytes}};
     out["bounds_m"] = nullptr;
@@ -133,6 +138,7 @@ void print_info_json(const InfoReport& report) {
                            {"max", json_of(report.bounds->max)}};
     out["honoured"] = file.honoured;
     out["ignored"] = file.ignored;
+    out["probably_lost"] = file.lost;
     out["warnings"] = file.warnings;
     print(out);
 }

@@ -51,6 +51,7 @@ void print_info(const InfoReport& report) {
     print_list("extensions", table_of(file.holds.extensions));
     print_list("honoured", file.honoured);
     print_list("ignored", file.ignored);
+    print_list("probably lost by the exporter", file.lost);
     print_list("warnings", file.warnings);
 }
 

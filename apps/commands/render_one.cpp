@@ -24,6 +24,7 @@
 #include "io/base/format.h"
 #include "io/base/printable.h"
 #include "io/base/read_file.h"
+#include "io/image/display.h"
 #include "io/image/picture_files.h"
 
 namespace petzval {
@@ -61,6 +62,7 @@ class OneRender {
 
   private:
     void set_up(TbbExecutor&, Progress&, const RenderSetup* like);
+    void take_display_of_file();
     void choose_exposure(TbbExecutor&);
     [[nodiscard]] bool is_there() const;
     [[nodiscard]] RenderResult render(TbbExecutor&, Progress&);
@@ -112,6 +114,27 @@ void OneRender::set_up(TbbExecutor& executor, Progress& progress, const RenderSe
     setup_ = std::move(found.setup);
     o_.path.visible_background = setup_.view.visible_background;
     o_.job.observer = setup_.view.observer;
+}
+
+// Takes what the scene asks for of its display, where the user asks for nothing.
+void OneRender::take_display_of_file() {
+    const SceneExtras& file = setup_.prepared.extras;
+    std::string taken;
+    if (file.exposure_ev && !o_.exposure) {
+        o_.display.exposure_ev = *file.exposure_ev;
+        taken = fmt::format("exposure {} EV", *file.exposure_ev);
+    }
+    if (file.view && !o_.asks_view) {
+        try {
+            o_.display.view = find_view(*file.view, o_.display.config);
+        } catch (const InputError& error) {
+            throw InputError(o_.scene.scene.string(), file.path + "/view",
+                             fmt::format("{}; --view takes another", error.what()));
+        }
+        taken += (taken.empty() ? "view " : ", view ") + printable(*file.view);
+    }
+    if (!taken.empty())
+        notice_(fmt::format("the scene asks for {} (--exposure and --view go before it)", taken));
 }
 
 // Finds the exposure where it is asked for, and tells it.
@@ -180,7 +203,8 @@ void OneRender::advise_exposure(TbbExecutor& executor) {
     const Brightness brightness = brightness_of(*film_, o_.display.exposure_ev);
     if (brightness == Brightness::Normal) return;
     const FoundExposure found = find_exposure(setup_, o_.job, o_.path, executor);
-    if (const auto advice = exposure_advice(brightness, found, o_.display.exposure_ev))
+    if (const auto advice = exposure_advice(brightness, found, o_.display.exposure_ev,
+                                            setup_.prepared.lamp_unit_doubt))
         notice_(*advice);
 }
 
@@ -294,6 +318,7 @@ int OneRender::run(SequencePlace& place) {
     const auto inputs = hashes_of_inputs(o_.scene);
     set_up(executor, progress, place.before && *place.before ? &**place.before : nullptr);
     load_image_codec();  // before hours of work: a picture will be written
+    take_display_of_file();
     choose_exposure(executor);
     if (std::ranges::find(frame_.aovs, Aov::Velocity) != frame_.aovs.end()) {
         next_ = set_up_velocity(setup_, o_.reading.time.fps);

@@ -137,18 +137,19 @@ Brightness brightness_of(const Film& film, float exposure_ev) {
 }
 
 std::optional<std::string> exposure_advice(Brightness brightness, const FoundExposure& found,
-                                           float exposure_ev) {
+                                           float exposure_ev, const std::string& white_cause) {
     if (brightness == Brightness::Normal) return std::nullopt;
     if (!(found.log_average > 0))
         return "the picture is black, and no --exposure can help: no light was found (petzval info "
                "tells whether the file has lights)";
     if (std::fabs(found.ev - exposure_ev) < 1) return std::nullopt;
     const double above_ev = std::log2(found.log_average / kMidGrey) + double(exposure_ev);
+    const bool white = brightness == Brightness::AlmostWhite;
     return fmt::format(
         "the picture is almost {}: its log-average is {:.1f} EV {} mid-grey; try --exposure {} or "
-        "--exposure auto",
-        brightness == Brightness::AlmostWhite ? "white" : "black", std::fabs(above_ev),
-        above_ev < 0 ? "below" : "above", found.ev);
+        "--exposure auto{}",
+        white ? "white" : "black", std::fabs(above_ev), above_ev < 0 ? "below" : "above", found.ev,
+        white && !white_cause.empty() ? ". " + white_cause : "");
 }
 
 }  // namespace petzval

@@ -40,8 +40,10 @@ enum class Brightness : uint8_t { Normal, Black, AlmostBlack, AlmostWhite };
 [[nodiscard]] Brightness brightness_of(const Film&, float exposure_ev);
 
 /// Line for a picture that shows nothing: what to type. Nothing where the picture is normal, and
-/// where the exposure that was found would hardly change it.
+/// where the exposure that was found would hardly change it. white_cause: sentence on why a white
+/// one may be white; empty: nothing is known.
 [[nodiscard]] std::optional<std::string> exposure_advice(Brightness, const FoundExposure&,
-                                                         float exposure_ev);
+                                                         float exposure_ev,
+                                                         const std::string& white_cause = "");
 
 }  // namespace petzval

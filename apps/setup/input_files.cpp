@@ -25,6 +25,8 @@ std::vector<NamedFile> input_files(const SceneRequest& r) {
 std::vector<NamedFile> input_files(const GltfFile& file, const fs::path& scene) {
     std::vector<NamedFile> files;
     for (const fs::path& one : file.files) files.push_back({"a file of the scene", one});
+    if (file.extras.sky)
+        files.push_back({"the sky of the scene", scene.parent_path() / *file.extras.sky});
     for (const GltfCamera& camera : file.cameras)
         for (const auto& name : {camera.extras.lens, camera.extras.aperture})
             if (name) files.push_back({kCameraFile, scene.parent_path() / *name});

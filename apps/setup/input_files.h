@@ -15,7 +15,7 @@ inline constexpr const char* kCameraFile = "a file of the scene's camera";
 
 /// Files that the options of a request name, whether or not they are there.
 [[nodiscard]] std::vector<NamedFile> input_files(const SceneRequest&);
-/// Files that a scene file names: buffers, images, and what its cameras ask for.
+/// Files that a scene file names: buffers, images, its sky, and what its cameras ask for.
 [[nodiscard]] std::vector<NamedFile> input_files(const GltfFile&,
                                                  const std::filesystem::path& scene);
 /// Files that come with the program and that commands read: colours, glasses, lenses, spectra.

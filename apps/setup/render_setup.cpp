@@ -56,6 +56,26 @@ void add_missing_light(SceneRequest& request, const Scene& scene, const Notice& 
                         kStudioLight));
 }
 
+// Takes the sky that the file asks for, where the user asks for none.
+void take_sky_of_file(const SceneExtras& file, SceneRequest& request, const Notice& notice) {
+    if (!file.sky || request.environment || request.background) return;
+    const auto folder = request.scene.parent_path(), path = folder / *file.sky;
+    const auto refuse = [&](const char* why) {
+        return InputError(request.scene.string(), file.path + "/sky",
+                          fmt::format("\"{}\" {}", printable(*file.sky), why));
+    };
+    if (request.scope == FileScope::Confined && !lies_within(path, folder))
+        throw refuse("lies outside the folder of the scene, and --confine allows no file there");
+    if (std::filesystem::path(*file.sky).is_absolute())
+        throw refuse("is an absolute path, which is not read; put the file beside the scene");
+    request.environment = path;
+    request.environment_rotate_deg = file.sky_rotation_deg;
+    notice(
+        fmt::format("the scene asks for its sky, {}, turned by {:g} degrees (--env FILE or "
+                    "--background R,G,B give another)",
+                    printable(*file.sky), file.sky_rotation_deg));
+}
+
 Sky sky_of(const SceneRequest& request, const Notice& notice, PictureBudget& pictures) {
     if (request.environment == kStudioLight)
         return studio_sky(request.environment_rotate_deg, request.environment_strength);
@@ -155,8 +175,12 @@ PreparedScene load(SceneRequest request, const Notice& notice) {
     auto scene = std::make_shared<Scene>(std::move(file.scene));
     out.hash = file.hash;
     out.cameras = std::make_shared<std::vector<GltfCamera>>(std::move(file.cameras));
+    take_sky_of_file(file.extras, request, notice);
     add_missing_light(request, *scene, notice);
     out.environment = request.environment;
+    out.environment_rotate_deg = request.environment_rotate_deg;
+    out.extras = std::move(file.extras);
+    out.lamp_unit_doubt = std::move(file.lamp_unit_doubt);
     if (request.environment || request.background)  // instead of the file's own
         take_sky(request, notice, out, scene->sky);
     finish_scene(*scene);
@@ -192,6 +216,7 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
     const Scene& scene = *prepared.scene;
     SceneRequest request = asked;
     request.environment = prepared.environment;
+    request.environment_rotate_deg = prepared.environment_rotate_deg;
     request.camera.iris_pictures = prepared.pictures;
     if (request.environment) setup.view.visible_background = request.background;
     const CameraModel model = choose_camera_model(

@@ -29,13 +29,16 @@ struct PreparedScene {
     std::shared_ptr<const Bvh> bvh;
     std::shared_ptr<const LightChoice> lights;
     std::shared_ptr<const std::vector<GltfCamera>> cameras;  ///< of the file
-    /// As asked, or what a dark scene gets.
+    /// As asked, that of the file, or what a dark scene gets.
     std::optional<std::filesystem::path> environment;
+    float environment_rotate_deg = 0;
     std::string environment_text;       ///< its name and hash, as it was read
     uint64_t hash = 0;                  ///< of the file
     std::vector<NamedFile> files;       ///< that the scene names
     PictureBudget pictures;             ///< what the scene and its sky left of it
     std::vector<LostLight> lost_light;  ///< that no path finds
+    SceneExtras extras;                 ///< what the file asks for
+    std::string lamp_unit_doubt;        ///< as GltfFile has it
 };
 
 /// What the frames of a sequence have from those before them.

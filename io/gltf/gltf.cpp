@@ -4,10 +4,12 @@
 #include <tiny_gltf.h>
 
 #include "io/base/error.h"
+#include "io/gltf/exporter/lost.h"
 #include "io/gltf/image_light.h"
 #include "io/gltf/info.h"
 #include "io/gltf/lights.h"
 #include "io/gltf/place.h"
+#include "io/gltf/validate/extras.h"
 
 namespace petzval {
 
@@ -61,16 +63,26 @@ GltfFile GltfReader::load(PictureBudget& pictures, double time_s) {
                      file.scene, tally, d.choices.point_line_radius_m);
         d.origins = materials.textures().origins();
         const std::vector<BallLamp> lamps = read_lights(gltf, nodes, motion, file.scene, tally);
+        const std::vector<FlatLamp> flat = read_flat_lamps(gltf, nodes, motion, file.scene, tally);
         read_profile_lights(gltf, nodes, motion, file.scene, tally);
         if (auto sky = read_image_light(gltf, nodes, tally, pictures))
             file.scene.sky = *std::move(sky);
         file.cameras = read_cameras(gltf, nodes, motion, tally);
+        if (nodes.scene >= 0) {
+            const auto number = static_cast<size_t>(nodes.scene);
+            file.extras = scene_extras(
+                JsonCursor(d.source.json["scenes"][number], d.name, json_path("scenes", number)));
+        }
+        file.lost = lost_by_exporter(d.source.json, nodes.in_scene,
+                                     file.extras.sky || !file.scene.sky.black());
+        file.lamp_unit_doubt = lamp_unit_doubt(d.source.json);
 
         file.hash = d.source.hash;
         file.files = d.source.files;
         file.warnings = d.source.warnings.lines();
         describe(gltf, tally, animation, file);
         add_lamps(file.scene, lamps);
+        add_lamps(file.scene, flat);
         return file;
     });
 }

@@ -12,6 +12,7 @@
 #include "io/gltf/choices.h"
 #include "io/gltf/summary.h"
 #include "io/gltf/validate/camera_extras.h"
+#include "io/gltf/validate/scene_extras.h"
 #include "io/gltf/validate/source.h"
 #include "io/picture/picture_budget.h"
 
@@ -40,6 +41,9 @@ struct GltfFile {
     /// which of its features, besides extensions, are honoured and which are ignored.
     GltfSummary holds;
     std::vector<std::string> contents, honoured, ignored;
+    std::vector<std::string> lost;  ///< what its exporter probably left out (io/gltf/exporter)
+    std::string lamp_unit_doubt;    ///< likewise; empty: none
+    SceneExtras extras;             ///< of the scene that is shown
     std::vector<std::filesystem::path> files;  ///< those that were read; the first is the file
     uint64_t hash = 0;
 };

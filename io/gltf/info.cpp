@@ -26,9 +26,10 @@ std::string named(const std::string& name) {
 
 std::string describe(const GltfSummary::Lights& lights) {
     return fmt::format(
-        "lights: {} point, {} spot, {} directional{}{}, {}{}", lights.point, lights.spot,
+        "lights: {} point, {} spot, {} directional{}{}{}, {}{}", lights.point, lights.spot,
         lights.directional,
         lights.balls > 0 ? fmt::format(" ({} with a radius)", lights.balls) : "",
+        lights.flat > 0 ? fmt::format(", {} with an area", lights.flat) : "",
         lights.profiles > 0 ? fmt::format(", {} by IES profiles", lights.profiles) : "",
         plural(lights.emissive_meshes, "emissive mesh", "emissive meshes"),
         lights.emissive_meshes > 0
@@ -96,6 +97,12 @@ void describe_contents(GltfFile& file) {
         lines.push_back(fmt::format("image {}: {}, {}x{}", i, named(holds.pictures[i].name),
                                     holds.pictures[i].width_px, holds.pictures[i].height_px));
     lines.push_back(describe(holds.lights));
+    const SceneExtras& asked = file.extras;
+    if (asked.sky)
+        lines.push_back(fmt::format("sky: {}, turned by {:g} degrees", printable(*asked.sky),
+                                    asked.sky_rotation_deg));
+    if (asked.exposure_ev) lines.push_back(fmt::format("exposure: {:g} EV", *asked.exposure_ev));
+    if (asked.view) lines.push_back("view: " + printable(*asked.view));
     describe_animations(holds, lines);
     lines.push_back(fmt::format("cameras: {}", file.cameras.size()));
     for (size_t i = 0; i < file.cameras.size(); ++i)

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "io/base/json_cursor.h"
+#include "io/base/json_parse.h"
 #include "io/gltf/animation/thinning.h"
 #include "io/gltf/spectral.h"
 #include "io/gltf/validate/extras.h"
@@ -39,6 +40,27 @@ std::optional<Light> make_light(const tinygltf::Light& light, const M44d& to_wor
     const double inner_rad = std::min(light.spot.innerConeAngle, outer_rad);
     return SpotLight{position, *direction, colour, static_cast<float>(std::cos(inner_rad)),
                      static_cast<float>(std::cos(outer_rad))};
+}
+
+/// Makes a sun a disc where the file gives it an angle.
+void widen(Light& light, const JsonCursor& json, GltfTally& tally) {
+    const float angle_deg = light_angle_deg(json);
+    if (angle_deg == 0.f) return;
+    auto* const sun = std::get_if<SunLight>(&light);
+    constexpr float least_deg = 0.01f;  // floats hardly tell directions of less apart
+    if (!sun) {
+        tally.warnings.push_back(json.path() +
+                                 ": only a directional light has a use for angle_deg");
+    } else if (angle_deg < least_deg) {
+        tally.warnings.push_back(json.path() +
+                                 ": its angle_deg is too small for a disc; it is "
+                                 "rendered as a point of the sky");
+    } else {
+        const double half_sine = std::sin(double(angle_deg) * double(kPi) / 180 / 4);
+        sun->versine = static_cast<float>(2 * half_sine * half_sine);
+        sun->unseen = is_unseen(json);
+        tally.honoured.insert("suns with an angle, as discs of the sky that can be seen");
+    }
 }
 
 void set_illuminant(Light& light, int32_t illuminant) {
@@ -78,6 +100,7 @@ std::optional<BallLamp> as_ball(const Light& light, const JsonCursor& json, cons
                 spot->illuminant,
                 Beam{spot->direction, spot->cos_inner, spot->cos_outer},
                 {}};
+    lamp.unseen = is_unseen(json);
     if (!can_be_ball(lamp.centre, radius_m, lamp.intensity_cd)) {
         tally.warnings.push_back(node +
                                  ": its light's radius is too small for where it stands or "
@@ -87,6 +110,20 @@ std::optional<BallLamp> as_ball(const Light& light, const JsonCursor& json, cons
     ++(point ? tally.point_lamps : tally.spot_lamps);
     tally.honoured.insert("lights with a radius, as balls that can be seen");
     return lamp;
+}
+
+// Warns where the beam of a lamp turns while the shutter is open.
+void warn_of_turning(const std::vector<M44d>& places, int node, const std::optional<Beam>& beam,
+                     GltfTally& tally) {
+    constexpr float same = 1e-4f;
+    const auto turns = [&](const M44d& place) {
+        const auto direction = forward(place);
+        return direction && (*direction - beam->direction).length() > same;
+    };
+    if (beam && std::any_of(places.begin(), places.end(), turns))
+        tally.warnings.push_back(json_path("nodes", node) +
+                                 ": its light has a size: while it turns, its beam shines as in "
+                                 "the middle of the exposure");
 }
 
 // Makes a ball move as its node does.
@@ -101,21 +138,19 @@ void move_ball(const NodeMotion& motion, int node, BallLamp& lamp, GltfTally& ta
     for (size_t i = 0; i < centres.size(); i += thinning.stride)
         lamp.centres.emplace_back(row(centres[i], 3));
     ++tally.moving_lights;
-    constexpr float same = 1e-4f;
-    const auto turns = [&](const M44d& place) {
-        const auto direction = forward(place);
-        return direction && (*direction - lamp.beam->direction).length() > same;
-    };
-    if (lamp.beam && std::any_of(places->begin(), places->end(), turns))
-        tally.warnings.push_back(json_path("nodes", node) +
-                                 ": its light has a radius: while it turns, it shines as in the "
-                                 "middle of the exposure");
+    warn_of_turning(*places, node, lamp.beam, tally);
 }
 
 bool is_dark(const tinygltf::Light& light) {
     const auto zero = [](double c) { return c == 0; };
     return light.intensity == 0 ||
            (!light.color.empty() && std::all_of(light.color.begin(), light.color.end(), zero));
+}
+
+// Whether a lamp is too small, or too bright for its size, to be more than a point.
+bool is_almost_point(const FlatLamp& lamp) {
+    const V3f at(row(M44d(lamp.to_world), 3));
+    return !can_be_ball(at, std::min(lamp.size_m.x, lamp.size_m.y) / 2, lamp.intensity_cd);
 }
 
 /// Rigid matrix: orthonormal axes with the file's -z and, as nearly as can be, its y. Nothing where
@@ -126,6 +161,20 @@ std::optional<M44f> rigid(const M44d& m) {
     const V3d x = row(m, 1).cross(z).normalized();
     const V3d y = z.cross(x), p = row(m, 3);
     return M44f(M44d(x.x, x.y, x.z, 0, y.x, y.y, y.z, 0, z.x, z.y, z.z, 0, p.x, p.y, p.z, 1));
+}
+
+// Makes a flat lamp move as its node does.
+void move_flat(const NodeMotion& motion, int node, FlatLamp& lamp, GltfTally& tally) {
+    const auto* const places = motion.places(node);
+    if (!places) return;
+    std::vector<M44d> steps;
+    for (const M44d& place : *places) steps.emplace_back(rigid(place).value_or(lamp.to_world));
+    const V3d half(double(lamp.size_m.x) / 2, double(lamp.size_m.y) / 2, 0);
+    const Thinning thinning =
+        thin(steps, std::array{half, -half, V3d(half.x, -half.y, 0), V3d(-half.x, half.y, 0)});
+    for (size_t i = 0; i < steps.size(); i += thinning.stride) lamp.steps.emplace_back(steps[i]);
+    ++tally.moving_lights;
+    warn_of_turning(*places, node, lamp.beam, tally);
 }
 
 GltfCamera to_camera(const tinygltf::Camera& from, const M44f& to_world) {
@@ -176,6 +225,40 @@ void zoom(const NodeMotion& motion, int number, GltfCamera& camera, GltfTally& t
     ++tally.zooming_cameras;
 }
 
+// The light of a node that has an area: what the node says of it goes before what its light says.
+FlatLamp flat_lamp(const GltfModel& gltf, const JsonCursor& node, const AreaExtras& area,
+                   const M44d& to_world, GltfSpectral& spectral) {
+    FlatLamp lamp;
+    lamp.size_m = area.size_m;
+    lamp.ellipse = area.ellipse;
+    lamp.unseen = is_unseen(node);
+    Rgb color(1.f);
+    float intensity_cd = 0;
+    const JsonCursor root(gltf.source.json, gltf.file);
+    if (const auto extension = node.extension("KHR_lights_punctual")) {
+        const auto lights = root.extension("KHR_lights_punctual")->objects("lights");
+        const size_t number = extension->required_index("light", lights.size(), "light");
+        const tinygltf::Light& light = gltf.typed.lights.at(number);
+        if (light.type == "directional")
+            node.fail(
+                "has an area and a directional light, which has none; give the light an "
+                "\"angle_deg\" in its extras.petzval");
+        if (light.color.size() == 3)
+            for (int i = 0; i < 3; ++i)
+                color.v[i] = static_cast<float>(light.color[static_cast<size_t>(i)]);
+        intensity_cd = static_cast<float>(light.intensity);
+        lamp.illuminant = spectral.illuminant(lights[number]);
+        lamp.unseen |= is_unseen(lights[number]);
+        const auto made = make_light(light, to_world);
+        if (const auto* spot = made ? std::get_if<SpotLight>(&*made) : nullptr)
+            lamp.beam = Beam{spot->direction, spot->cos_inner, spot->cos_outer};
+    }
+    if (area.color) color = {area.color->x, area.color->y, area.color->z};
+    lamp.intensity_cd = color * area.intensity_cd.value_or(intensity_cd);
+    if (const int32_t own = spectral.illuminant(node); own >= 0) lamp.illuminant = own;
+    return lamp;
+}
+
 }  // namespace
 
 void move_last_light(const NodeMotion& motion, int node, Scene& scene, GltfTally& tally,
@@ -193,6 +276,35 @@ void move_last_light(const NodeMotion& motion, int node, Scene& scene, GltfTally
     ++tally.moving_lights;
 }
 
+std::vector<FlatLamp> read_flat_lamps(const GltfModel& gltf, const GltfNodes& nodes,
+                                      const NodeMotion& motion, Scene& scene, GltfTally& tally) {
+    std::vector<FlatLamp> lamps;
+    const auto& json = member(gltf.source.json, "nodes");
+    GltfSpectral spectral(scene, tally);
+    for (int number : nodes.in_scene) {
+        const auto index = static_cast<size_t>(number);
+        if (!json[index].contains("extras")) continue;
+        const JsonCursor node(json[index], gltf.file, json_path("nodes", number));
+        const auto area = area_extras(node);
+        if (!area) continue;
+        FlatLamp lamp = flat_lamp(gltf, node, *area, nodes.to_world[index], spectral);
+        if (!(hmax(lamp.intensity_cd.v) > 0)) continue;
+        const auto place = rigid(nodes.to_world[index]);
+        if (place) lamp.to_world = *place;
+        if (!place || is_almost_point(lamp)) {
+            tally.warnings.push_back(node.path() +
+                                     ": its area lamp is left out, as it is too small for where "
+                                     "it stands or how bright it is, or scaled to nothing");
+            continue;
+        }
+        move_flat(motion, number, lamp, tally);
+        ++tally.flat_lamps;
+        tally.honoured.insert("nodes with an area, as flat lamps that can be seen");
+        lamps.push_back(std::move(lamp));
+    }
+    return lamps;
+}
+
 std::vector<BallLamp> read_lights(const GltfModel& gltf, const GltfNodes& nodes,
                                   const NodeMotion& motion, Scene& scene, GltfTally& tally) {
     std::vector<BallLamp> lamps;
@@ -207,11 +319,12 @@ std::vector<BallLamp> read_lights(const GltfModel& gltf, const GltfNodes& nodes,
         if (!extension) continue;
         const size_t number = extension->required_index("light", lights.size(), "light");
         const tinygltf::Light& light = gltf.typed.lights.at(number);
-        if (is_dark(light)) continue;
+        if (is_dark(light) || area_extras(json[index])) continue;  // flat lamps are read apart
         if (auto made = make_light(light, nodes.to_world[index])) {
             tally.ranged_lights += light.range > 0;
             const int32_t illuminant = spectral.illuminant(lights[number]);
             set_illuminant(*made, illuminant);
+            widen(*made, lights[number], tally);
             if (auto lamp = as_ball(*made, lights[number], json_path("nodes", node), tally)) {
                 move_ball(motion, node, *lamp, tally);
                 lamps.push_back(*std::move(lamp));
@@ -219,6 +332,9 @@ std::vector<BallLamp> read_lights(const GltfModel& gltf, const GltfNodes& nodes,
                 scene.lights.push_back(*made);
                 move_last_light(motion, node, scene, tally, [&](const M44d& place) {
                     auto step = make_light(light, place);
+                    auto* const sun = step ? std::get_if<SunLight>(&*step) : nullptr;
+                    if (sun) sun->versine = std::get<SunLight>(*made).versine;
+                    if (sun) sun->unseen = std::get<SunLight>(*made).unseen;
                     if (step) set_illuminant(*step, illuminant);
                     return step;
                 });

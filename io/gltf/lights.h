@@ -22,6 +22,11 @@ namespace petzval {
 [[nodiscard]] std::vector<BallLamp> read_lights(const GltfModel&, const GltfNodes&,
                                                 const NodeMotion&, Scene&, GltfTally&);
 
+/// Lamps of the visible nodes that have an area (area_extras), likewise. Adds the illuminants that
+/// they name. Throws InputError where a node's light has no use for one.
+[[nodiscard]] std::vector<FlatLamp> read_flat_lamps(const GltfModel&, const GltfNodes&,
+                                                    const NodeMotion&, Scene&, GltfTally&);
+
 /// Adds the lights of EXT_lights_ies likewise, and their profiles. Throws InputError for a profile
 /// that cannot be read.
 void read_profile_lights(const GltfModel&, const GltfNodes&, const NodeMotion&, Scene&, GltfTally&);

@@ -61,6 +61,7 @@ GltfSummary::Lights count_lights(const Scene& scene, const GltfTally& tally) {
         .spot = count(1) + tally.spot_lamps,
         .directional = count(2),
         .balls = tally.point_lamps + tally.spot_lamps,
+        .flat = tally.flat_lamps,
         .profiles = count(Light(ProfileLight()).index()),
     };
     for (const Instance& instance : scene.instances) {

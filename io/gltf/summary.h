@@ -26,6 +26,7 @@ struct GltfSummary {
     struct Lights {
         uint64_t point = 0, spot = 0, directional = 0;
         uint64_t balls = 0;     ///< of the points and spots: those with a radius
+        uint64_t flat = 0;      ///< nodes with an area
         uint64_t profiles = 0;  ///< lights by IES profiles
         uint64_t emissive_meshes = 0, emissive_triangles = 0;
     };

@@ -7,6 +7,7 @@
 
 #include "io/base/json_parse.h"
 #include "io/gltf/validate/check.h"
+#include "io/gltf/validate/extras.h"
 
 namespace petzval {
 namespace {
@@ -60,6 +61,7 @@ class NodeCheck {
         if (const auto light = node.extension("EXT_lights_ies")) check_profile_light(*light);
         if (const auto many = node.extension("EXT_mesh_gpu_instancing"))
             check_instancing(node, *many, mesh);
+        (void)area_extras(node);
         if (const auto shown = node.extension("KHR_node_visibility")) shown->check_bool("visible");
         link_children(index);
     }
@@ -151,6 +153,7 @@ class NodeCheck {
     }
 
     void check_scene(const JsonCursor& scene) const {
+        (void)scene_extras(scene);
         for (size_t node : scene.indices("nodes", nodes_.size(), "node"))
             if (parent_[node])
                 check_.source.warnings.push_back(

@@ -66,10 +66,68 @@ std::optional<bool> is_solid(const JsonCursor& material) {
 }
 
 void check_light_extras(const JsonCursor& light) {
-    require_known_extras(light, "light", {"illuminant", "radius_m"});
+    require_known_extras(light, "light", {"illuminant", "radius_m", "angle_deg", "visible"});
     const auto extras = petzval_extras(light);
     if (extras && extras->has("illuminant")) (void)extras->text("illuminant");
     (void)light_radius_m(light);
+    (void)light_angle_deg(light);
+    (void)is_unseen(light);
+}
+
+float light_angle_deg(const JsonCursor& light) {
+    const auto extras = petzval_extras(light);
+    return extras ? static_cast<float>(extras->number_or("angle_deg", 0, {0, 180})) : 0.f;
+}
+
+bool is_unseen(const JsonCursor& owner) {
+    const auto extras = petzval_extras(owner);
+    if (!extras || !extras->has("visible")) return false;
+    extras->check_bool("visible");
+    return !extras->value()["visible"];
+}
+
+std::optional<AreaExtras> area_extras(const JsonCursor& node) {
+    if (!node.has("extras")) return std::nullopt;  // of millions
+    require_known_extras(node, "node",
+                         {"area", "shape", "intensity_cd", "color", "illuminant", "visible"});
+    const auto extras = petzval_extras(node);
+    if (!extras || extras->value().empty()) return std::nullopt;
+    extras->require("area");
+    const auto sides = extras->numbers("area", 2, kLength);
+    AreaExtras area{V2f(static_cast<float>(sides[0]), static_cast<float>(sides[1])), false, {}, {}};
+    if (const auto shape = text_at(*extras, "shape")) {
+        area.ellipse = shape == "ellipse";
+        if (!area.ellipse && shape != "rectangle")
+            extras->fail("shape", "must be \"rectangle\" or \"ellipse\"");
+    }
+    constexpr Range not_negative = {0, std::numeric_limits<float>::max()};
+    if (extras->has("intensity_cd"))
+        area.intensity_cd = static_cast<float>(extras->number("intensity_cd", not_negative));
+    else if (!node.extension("KHR_lights_punctual"))
+        extras->fail(
+            "says nothing of the light's strength; give its \"intensity_cd\", or the node "
+            "a point or spot light of KHR_lights_punctual");
+    if (const auto color = extras->numbers("color", 3, not_negative); !color.empty())
+        area.color = V3f(static_cast<float>(color[0]), static_cast<float>(color[1]),
+                         static_cast<float>(color[2]));
+    (void)text_at(*extras, "illuminant");
+    (void)is_unseen(node);
+    return area;
+}
+
+SceneExtras scene_extras(const JsonCursor& scene) {
+    require_known_extras(scene, "scene", {"sky", "sky_rotation_deg", "exposure_ev", "view"});
+    SceneExtras asked;
+    const auto extras = petzval_extras(scene);
+    if (!extras) return asked;
+    asked.path = extras->path();
+    asked.sky = text_at(*extras, "sky");
+    asked.sky_rotation_deg =
+        static_cast<float>(extras->number_or("sky_rotation_deg", 0, {-360, 360}));
+    if (extras->has("exposure_ev"))
+        asked.exposure_ev = static_cast<float>(extras->number("exposure_ev", {-100, 100}));
+    asked.view = text_at(*extras, "view");
+    return asked;
 }
 
 std::optional<float> light_radius_m(const JsonCursor& light) {

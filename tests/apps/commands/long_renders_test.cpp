@@ -248,8 +248,8 @@ TEST_F(LongRenders, ResumingTalksAsItIsAsked) {
         EXPECT_EQ(nlohmann::json::parse(line).at("schema"), "petzval.progress");
     EXPECT_EQ(count, 2) << none.err;  // the error, and the end
     const std::string spp = samples_for(1);
-    Process render(words({"--spp", spp, "-o", path("r.exr"), "--quiet"}));
-    std::this_thread::sleep_for(600ms);
+    Process render(words({"--spp", spp, "-o", path("r.exr"), "--progress", "json"}));
+    ASSERT_TRUE(let_render(render, 100ms));
     render.signal(SIGTERM);
     if (render.wait().exit_code != 130) GTEST_SKIP() << "it was over before the signal";
     const Finished quiet = run_petzval({"resume", path("r.state"), "--progress", "percent"});

@@ -330,7 +330,7 @@ TEST(GltfExtras, ThoseOfOthersAreIgnored) {
     for (const json& extras : {R"(1)"_json, R"("petzval")"_json, R"([{"petzval": 1}])"_json,
                                R"({"glass": "x", "petzvaL": {"glass": 1}})"_json}) {
         TinyGltf file = file_with({{{"extras", extras}}});
-        for (const char* other : {"meshes", "nodes", "scenes", "asset"}) {
+        for (const char* other : {"meshes", "asset"}) {
             json& owner = file.json[other];
             (owner.is_array() ? owner[0] : owner)["extras"]["petzval"] = 1;
         }

@@ -18,7 +18,7 @@ namespace petzval {
 template <class Caster>
 [[nodiscard]] std::optional<Surface> front_at_back(const Scene& scene, const Caster& caster,
                                                    const Ray& ray, const Surface& back) {
-    if (back.front) return std::nullopt;  // of a lamp that is not to be seen
+    if (back.front) return std::nullopt;   // of a lamp that is not to be seen
     constexpr float least_cosine = 1e-3f;  // a grazing ray runs along both faces
     const float cosine = std::max(std::fabs(back.ng.dot(ray.direction)), least_cosine);
     const V3f& error = back.p_error;

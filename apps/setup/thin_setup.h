@@ -15,7 +15,7 @@ namespace petzval {
 /// View of a camera as far as the request decides it, before anything of the scene is known.
 struct ThinView {
     float yfov_rad, yfov_deg;  ///< both, so that an angle that is printed is the same angle
-    bool angle_of_file;   ///< the angle is that of the file's camera
+    bool angle_of_file;        ///< the angle is that of the file's camera
     bool angle_by_focal;  ///< the angle follows from the focal length: it is that of a far focus
     V2f sensor_mm;        ///< as much as the picture uses
     std::optional<double> focal_mm;  ///< absent: follows from the distance in focus

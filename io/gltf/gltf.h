@@ -28,7 +28,7 @@ struct GltfCamera {
     float yfov_rad = 0.f;
     std::optional<float> aspect;       ///< width / height, where the file gives one
     float xmag_m = 0.f, ymag_m = 0.f;  ///< half width and half height of an orthographic view
-    std::vector<float> zoom;  ///< yfov_rad or ymag_m at such time steps; empty: it stays
+    std::vector<float> zoom;           ///< yfov_rad or ymag_m at such time steps; empty: it stays
     CameraExtras extras;
 };
 

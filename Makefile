@@ -7,7 +7,7 @@ PACKAGES = cmake ninja-build ccache mold libembree-dev libtbb-dev libimath-dev l
 TEST_PACKAGES = libgtest-dev libgmock-dev libbenchmark-dev python3-numpy
 SOURCES = git ls-files '*.h' '*.cpp'
 
-.PHONY: render gallery test program build format format-check
+.PHONY: render gallery test test-files program build format format-check
 
 render: program
 	mkdir -p out
@@ -20,6 +20,13 @@ gallery: program
 
 test: build
 	ctest --preset release --parallel $$(nproc)
+
+# What reads files, under the address and undefined-behaviour sanitizers.
+test-files:
+	@.ci/install_packages $(PACKAGES) $(TEST_PACKAGES)
+	cmake --preset asan
+	cmake --build --preset asan-files
+	ctest --preset asan-files --parallel $$(nproc)
 
 # The program alone, without tests and benchmarks.
 program:

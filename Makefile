@@ -5,9 +5,10 @@ PACKAGES = cmake ninja-build ccache mold libembree-dev libtbb-dev libimath-dev l
     libcli11-dev libpugixml-dev libdraco-dev libmeshoptimizer-dev libfreetype-dev gnuplot-nox \
     fonts-dejavu-core
 TEST_PACKAGES = libgtest-dev libgmock-dev libbenchmark-dev python3-numpy
+LONG_PACKAGES = clang libclang-rt-dev gcovr debootstrap qemu-user
 SOURCES = git ls-files '*.h' '*.cpp'
 
-.PHONY: render gallery test test-files program build format format-check
+.PHONY: render gallery test test-files test-long program build format format-check
 
 render: program
 	mkdir -p out
@@ -27,6 +28,11 @@ test-files:
 	cmake --preset asan
 	cmake --build --preset asan-files
 	ctest --preset asan-files --parallel $$(nproc)
+
+# All that takes too long for each merge: hours on two cores. tests/long.sh NAME... runs a part of it.
+test-long: build
+	@.ci/install_packages $(LONG_PACKAGES)
+	tests/long.sh
 
 # The program alone, without tests and benchmarks.
 program:

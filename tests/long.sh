@@ -1,0 +1,48 @@
+#!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
+# Runs the checks that take too long for each merge, all of them or those that are named:
+#
+#   tests/long.sh [address] [thread] [fuzz] [coverage] [mutants] [root]
+#
+#   address   all tests under the address and undefined-behaviour sanitizers
+#   thread    the tile loop under the thread sanitizer
+#   fuzz      the readers of files, and random lenses, FUZZ_SECONDS each (600)
+#   coverage  the share of the product's lines that the tests reach
+#   mutants   small faults on purpose: do the tests notice? MUTANTS of them (20)
+#   root      README's commands in a bare Debian 12 (root only)
+#
+# Goes on after a failure. Ends with a line for each part, and fails where one failed.
+set -u
+cd "$(dirname "$0")/.."
+parts=("$@")
+[ ${#parts[@]} -gt 0 ] || parts=(address thread fuzz coverage mutants root)
+
+address() { cmake --preset asan && cmake --build --preset asan && ctest --preset asan --parallel "$(nproc)"; }
+thread() { cmake --preset tsan && cmake --build --preset tsan --target integrator_test apps_state_test && ctest --preset tsan; }
+fuzz() {
+    local seconds=${FUZZ_SECONDS:-600}
+    cmake --preset fuzz && cmake --build --preset fuzz || return 1
+    local found=out/fuzz
+    tests/fuzz/run.sh "$seconds" build-fuzz/bin/decoder_fuzz "$found"
+    build-fuzz/bin/lens_fuzz 1000000000 --seconds "$seconds" || return 1
+    if compgen -G "$found/*-crash-*" > /dev/null; then
+        echo "The files that show faults: $found/*-crash-*"
+        return 1
+    fi
+}
+coverage() {
+    cmake --preset coverage && cmake --build --preset coverage && ctest --preset coverage --parallel "$(nproc)" &&
+        gcovr --root . --filter '(core|camera|integrator|io|apps)/' --sort-percentage --print-summary build-coverage
+}
+mutants() { python3 tests/measure/mutants.py --count "${MUTANTS:-20}"; }
+root() { tests/measure/roots.sh 12; }
+
+status=0 results=()
+for part in "${parts[@]}"; do
+    echo "== $part"
+    SECONDS=0
+    if "$part"; then result=passed; else result=FAILED status=1; fi
+    results+=("$part: $result, $((SECONDS / 60)) min")
+done
+printf '%s\n' "${results[@]}"
+exit $status

@@ -33,8 +33,12 @@ constexpr uint32_t kPilotSeed = 0x65787073;  ///< so that no sample is one of th
 
 /// Luminance below which a pixel is as good as black on a display: level 25 of 255 in sRGB.
 constexpr double kBlack = 0.01;
-/// Shares of the pixels with light from which a picture is almost black, or almost white.
-constexpr double kLeastDark = 0.9, kLeastWhite = 0.9;
+/// Shares of the pixels with light from which a picture is mostly black, almost black, almost
+/// white.
+constexpr double kMostlyDark = 0.5, kLeastDark = 0.9, kLeastWhite = 0.9;
+/// Exposures that differ by less look alike. A picture that is black in most places may be meant
+/// so: it would have to be much brighter.
+constexpr double kAlike_ev = 1, kMuchBrighter_ev = 3;
 
 /// Luminance of a pixel as a picture shows it: what is partly transparent is not darker for it.
 double shown_luminance(const V4f& c) {
@@ -133,6 +137,7 @@ Brightness brightness_of(const Film& film, float exposure_ev) {
         return static_cast<double>(n) / static_cast<double>(lit);
     };
     if (share(dark) >= kLeastDark) return Brightness::AlmostBlack;
+    if (share(dark) >= kMostlyDark) return Brightness::MostlyBlack;
     return share(white) >= kLeastWhite ? Brightness::AlmostWhite : Brightness::Normal;
 }
 
@@ -142,13 +147,17 @@ std::optional<std::string> exposure_advice(Brightness brightness, const FoundExp
     if (!(found.log_average > 0))
         return "the picture is black, and no --exposure can help: no light was found (petzval info "
                "tells whether the file has lights)";
-    if (std::fabs(found.ev - exposure_ev) < 1) return std::nullopt;
+    const bool mostly = brightness == Brightness::MostlyBlack;
+    const float change_ev = found.ev - exposure_ev;
+    if (mostly ? change_ev < kMuchBrighter_ev : std::fabs(change_ev) < kAlike_ev)
+        return std::nullopt;
     const double above_ev = std::log2(found.log_average / kMidGrey) + double(exposure_ev);
     const bool white = brightness == Brightness::AlmostWhite;
     return fmt::format(
-        "the picture is almost {}: its log-average is {:.1f} EV {} mid-grey; try --exposure {} or "
+        "the picture is {} {}: its log-average is {:.1f} EV {} mid-grey; try --exposure {} or "
         "--exposure auto{}",
-        white ? "white" : "black", std::fabs(above_ev), above_ev < 0 ? "below" : "above", found.ev,
+        mostly ? "mostly" : "almost", white ? "white" : "black", std::fabs(above_ev),
+        above_ev < 0 ? "below" : "above", found.ev,
         white && !white_cause.empty() ? ". " + white_cause : "");
 }
 

@@ -34,14 +34,15 @@ struct FoundExposure {
                                           TbbExecutor&);
 
 /// Brightness of a picture as PNG and JPEG show it.
-enum class Brightness : uint8_t { Normal, Black, AlmostBlack, AlmostWhite };
+enum class Brightness : uint8_t { Normal, Black, AlmostBlack, MostlyBlack, AlmostWhite };
 
 /// Brightness of a film with an exposure. Pixels without light do not count.
 [[nodiscard]] Brightness brightness_of(const Film&, float exposure_ev);
 
 /// Line for a picture that shows nothing: what to type. Nothing where the picture is normal, and
-/// where the exposure that was found would hardly change it. white_cause: sentence on why a white
-/// one may be white; empty: nothing is known.
+/// where the exposure that was found would hardly change it, or make a mostly black one, which may
+/// be meant so, less than 8 times as bright. white_cause: sentence on why a white one may be white;
+/// empty: nothing is known.
 [[nodiscard]] std::optional<std::string> exposure_advice(Brightness, const FoundExposure&,
                                                          float exposure_ev,
                                                          const std::string& white_cause = "");

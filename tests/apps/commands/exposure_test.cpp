@@ -50,6 +50,25 @@ TEST_F(CliExposure, APictureThatIsAlmostBlackSaysWhatToType) {
     EXPECT_GT(middle(read_picture(path("b.png"))), 0.2);
 }
 
+// As of 64 pixels of a hundred that are lit, and 81 of all, which is not yet almost black.
+TEST_F(CliExposure, APictureWithOneSmallGlowSaysWhatToType) {
+    TinyGltf file;
+    add_wall(file, -15, -15, 15, 15, -6, {0.8f, 0.8f, 0.8f});
+    add_wall(file, -0.3f, -0.3f, 0.3f, 0.3f, -5.7f, {0, 0, 0});
+    nlohmann::json& glow = file.json["materials"].back();
+    glow["emissiveFactor"] = {1, 1, 1};
+    glow["doubleSided"] = true;
+    glow["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = 8;
+    file.json["extensionsUsed"].push_back("KHR_materials_emissive_strength");
+    const std::string scene = file.save_glb(path("glow.glb")).string();
+    const Finished dark = run(scene, {"-o", path("a.png"), "--size", "64x36"});
+    EXPECT_NE(dark.err.find("the picture is mostly black: its log-average is "), std::string::npos)
+        << dark.err;
+    const Finished better =
+        run(scene, {"-o", path("a.png"), "--size", "64x36", "--exposure", typed(dark.err)});
+    EXPECT_EQ(better.err.find("the picture"), std::string::npos) << better.err;
+}
+
 TEST_F(CliExposure, APictureThatIsWhiteSaysSo) {
     const Finished white = run(lit_by("directional", 1e5), {"-o", path("a.jpg")});
     EXPECT_NE(white.err.find("the picture is almost white: "), std::string::npos) << white.err;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/setup/exposure.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/support/tiny_gltf.h"
@@ -57,13 +58,31 @@ TEST(BrightnessOf, TellsFilmsThatShowNothing) {
     EXPECT_EQ(brightness_of(of(0, 0, 0), 0), Brightness::Black);
     EXPECT_EQ(brightness_of(of(1e-4f, 0, 0), 0), Brightness::AlmostBlack);
     EXPECT_EQ(brightness_of(of(1e-4f, 100, 3), 0), Brightness::AlmostBlack);  // a lamp in view
-    EXPECT_EQ(brightness_of(of(1e-4f, 1, 60), 0), Brightness::Normal);
+    EXPECT_EQ(brightness_of(of(1e-4f, 1, 60), 0), Brightness::MostlyBlack);
+    EXPECT_EQ(brightness_of(of(1e-4f, 1, 210), 0), Brightness::Normal);
+    EXPECT_EQ(brightness_of(of(0, 1, 60), 0), Brightness::Normal);  // on black
     EXPECT_EQ(brightness_of(of(1e-4f, 0, 0), 8), Brightness::Normal);
     EXPECT_EQ(brightness_of(of(2, 0, 0), 0), Brightness::AlmostWhite);
     EXPECT_EQ(brightness_of(of(2, 0, 200), 0), Brightness::AlmostWhite);  // on black
     EXPECT_EQ(brightness_of(of(2, 0.5f, 60), 0), Brightness::Normal);
     EXPECT_EQ(brightness_of(of(2, 0, 0), -2), Brightness::Normal);
     EXPECT_EQ(brightness_of(of(1, 0, 0), 0), Brightness::Normal);  // white, as it was asked for
+}
+
+TEST(ExposureAdvice, LeavesWhatMayBeMeantToBeDark) {
+    const auto says = [](Brightness brightness, float found_ev) {
+        return exposure_advice(brightness, {found_ev, 0.18 * std::exp2(-double(found_ev))}, 0)
+            .value_or("");
+    };
+    EXPECT_EQ(says(Brightness::Normal, 9), "");
+    EXPECT_EQ(says(Brightness::AlmostBlack, 0.9f), "");
+    EXPECT_EQ(says(Brightness::MostlyBlack, 2.9f), "");
+    EXPECT_EQ(says(Brightness::MostlyBlack, -9), "");
+    EXPECT_THAT(
+        says(Brightness::MostlyBlack, 3),
+        testing::StartsWith("the picture is mostly black: its log-average is 3.0 EV below"));
+    EXPECT_THAT(says(Brightness::AlmostBlack, 2), testing::HasSubstr("almost black"));
+    EXPECT_THAT(says(Brightness::AlmostWhite, -2), testing::HasSubstr("2.0 EV above mid-grey"));
 }
 
 class FindExposure : public testing::Test {

@@ -18,6 +18,16 @@ double object_mm(const Lens& lens, double distance_mm, Section section) {
     return first_order(lens, kLineD_nm, section).entrance_pupil_mm - distance_mm;
 }
 
+/// Section whose focal length is nearer to the stated one.
+Section stated_section(const Lens& lens) {
+    const auto stated_mm = lens.prescription().stated_focal_length_mm;
+    if (!stated_mm || lens.of_revolution()) return Section::Y;
+    const auto off_mm = [&](Section section) {
+        return std::fabs(first_order(lens, kLineD_nm, section).focal_length_mm - *stated_mm);
+    };
+    return off_mm(Section::X) < off_mm(Section::Y) ? Section::X : Section::Y;
+}
+
 }  // namespace
 
 std::optional<double> chief_height_mm(const Lens& lens, const ObjectPoint& object, double film_mm) {
@@ -117,29 +127,30 @@ std::vector<double> film_irradiance(std::shared_ptr<const Lens> lens, double fil
 
 std::vector<StatedFigure> stated_figures(const Lens& lens) {
     const Prescription& file = lens.prescription();
-    Section section = Section::Y;
-    FirstOrder first = first_order(lens, kLineD_nm);
-    if (file.stated_focal_length_mm) {
-        const FirstOrder other = first_order(lens, kLineD_nm, Section::X);
-        const auto off = [&](const FirstOrder& data) {
-            return std::fabs(data.focal_length_mm - *file.stated_focal_length_mm);
-        };
-        if (off(other) < off(first)) {
-            first = other;
-            section = Section::X;
-        }
-    }
+    const FirstOrder first = first_order(lens, kLineD_nm, stated_section(lens));
     std::vector<StatedFigure> out;
     if (file.stated_focal_length_mm)
         out.push_back({"focal length (mm)", *file.stated_focal_length_mm, first.focal_length_mm});
     if (file.stated_fnumber)
         out.push_back({"f-number (paraxial)", *file.stated_fnumber, first.fnumber});
-    if (file.stated_field_half_deg && file.image_circle_mm > 0)
-        out.push_back({"half field (degrees)", *file.stated_field_half_deg,
-                       field_of_height_deg(lens, file.image_circle_mm / 2, lens.film_mm(), section)
-                           .value_or(NAN)});
     out.push_back({"film behind the last vertex (mm)", file.surfaces.back().thickness_mm,
                    first.back_focus_mm});
+    return out;
+}
+
+FieldAndCircle field_and_circle(const Lens& lens) {
+    const Prescription& file = lens.prescription();
+    const Section section = stated_section(lens);
+    FieldAndCircle out{.half_field_deg = file.stated_field_half_deg};
+    if (out.half_field_deg)
+        if (const auto height_mm = chief_height_mm(
+                lens, {.field_deg = *out.half_field_deg, .section = section}, lens.film_mm()))
+            out.circle_of_half_field_mm = 2 * std::fabs(*height_mm);
+    if (file.image_circle_mm > 0) {
+        out.image_circle_mm = file.image_circle_mm;
+        out.half_field_of_image_circle_deg =
+            field_of_height_deg(lens, file.image_circle_mm / 2, lens.film_mm(), section);
+    }
     return out;
 }
 

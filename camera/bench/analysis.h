@@ -52,8 +52,18 @@ struct StatedFigure {
     double stated, computed;
     [[nodiscard]] double relative() const { return computed / stated - 1; }
 };
-/// Stated and computed focal length, f-number, half field and film position, as far as they are
-/// stated. With cylinders, those of the section whose focal length is nearer to the stated one.
+/// Stated and computed focal length, f-number and film position, as far as they are stated. With
+/// cylinders, those of the section whose focal length is nearer to the stated one.
 [[nodiscard]] std::vector<StatedFigure> stated_figures(const Lens&);
+
+/// Field and image circle that a lens's file states, each with its counterpart by a traced chief
+/// ray. Neither is a check of the other: a published field often belongs to another film format.
+struct FieldAndCircle {
+    std::optional<double> half_field_deg, circle_of_half_field_mm;
+    std::optional<double> image_circle_mm, half_field_of_image_circle_deg;
+};
+/// As far as they are stated, and their rays reach the other side. With cylinders, in the section
+/// of stated_figures().
+[[nodiscard]] FieldAndCircle field_and_circle(const Lens&);
 
 }  // namespace petzval

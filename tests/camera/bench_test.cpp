@@ -218,6 +218,37 @@ TEST(LensAnalysis, ComparesWhatTheFileStates) {
     EXPECT_EQ(*field_half_deg(wide), 57);
 }
 
+// Each figure with its counterpart; f tan(field) up to the distortion, which is 1 % here.
+TEST(LensAnalysis, TheStatedFieldIsNotMeasuredByTheCircle) {
+    Prescription file = read_lens("takumar-50mm-f1.2");
+    file.stated_focal_length_mm = 50;
+    file.stated_fnumber = 1.2;
+    file.stated_field_half_deg = 21;
+    file.image_circle_mm = 43.27;
+    const FieldAndCircle takumar = field_and_circle(Lens(file));
+    EXPECT_EQ(*takumar.half_field_deg, 21);
+    EXPECT_NEAR(*takumar.circle_of_half_field_mm, 2 * 50 * std::tan(21 * kDegree), 0.8);
+    EXPECT_EQ(*takumar.image_circle_mm, 43.27);
+    EXPECT_NEAR(*takumar.half_field_of_image_circle_deg, std::atan(43.27 / 100) / kDegree, 0.5);
+    for (const StatedFigure& figure : stated_figures(Lens(file)))
+        EXPECT_LT(std::fabs(figure.relative()), 0.005) << figure.name;
+
+    // In the y-z section, to whose focal length the file's belongs.
+    file = read_lens("schneider-anamorphic-31mm");
+    file.stated_field_half_deg = 14;
+    file.stated_focal_length_mm = 60.55;
+    EXPECT_NEAR(*field_and_circle(Lens(file)).circle_of_half_field_mm, 29.9, 0.05);
+    file.stated_focal_length_mm = 31;
+    file.image_circle_mm = 27.5;
+    EXPECT_NEAR(*field_and_circle(Lens(file)).half_field_of_image_circle_deg, 27.0, 0.05);
+
+    file.stated_field_half_deg = std::nullopt;
+    file.image_circle_mm = 0;
+    const FieldAndCircle none = field_and_circle(Lens(file));
+    EXPECT_FALSE(none.half_field_deg || none.circle_of_half_field_mm || none.image_circle_mm ||
+                 none.half_field_of_image_circle_deg);
+}
+
 // Each section of an anamorphic lens has its own field, there and back.
 TEST(LensAnalysis, FieldsOfHeightsAreThoseOfTheirSection) {
     const Lens lens(read_lens("schneider-anamorphic-31mm"));

@@ -84,6 +84,7 @@ struct Check {
     std::optional<double> field_deg;                              ///< of the Seidel sums
     std::optional<Seidel> seidel;
     std::vector<StatedFigure> stated;
+    FieldAndCircle field;
 };
 
 Check check(const Lens& lens) {
@@ -100,6 +101,7 @@ Check check(const Lens& lens) {
         out.first_order.push_back({line + ", x", first_order(lens, nm, Section::X)});
     }
     out.stated = stated_figures(lens);
+    out.field = field_and_circle(lens);
     if (!lens.of_revolution()) return out;
     // The sums are for the tangent of the field, which grows without bounds.
     constexpr double widest_deg = 60;
@@ -158,6 +160,17 @@ void print_check(const Lens& lens, const Check& c) {
     for (const StatedFigure& figure : c.stated)
         fmt::print("{:<33} {:>12.6g} {:>12.6g} {:>8.3f} %\n", figure.name, figure.stated,
                    figure.computed, 100 * figure.relative());
+    const auto reached = [](const char* before, std::optional<double> value, const char* unit) {
+        return value ? fmt::format("{}{:.4g}{}", before, *value, unit)
+                     : std::string("no chief ray of it");
+    };
+    if (const auto& f = c.field; f.half_field_deg)
+        fmt::print("\nhalf field {:g}°, as the file states: {} on the film\n", *f.half_field_deg,
+                   reached("a circle of ", f.circle_of_half_field_mm, " mm"));
+    if (const auto& f = c.field; f.image_circle_mm)
+        fmt::print("image circle {:g} mm, as the file states: {} before the lens\n",
+                   *f.image_circle_mm,
+                   reached("a half field of ", f.half_field_of_image_circle_deg, "°"));
 }
 
 Json json_of(const Lens& lens, const Check& c) {
@@ -179,6 +192,12 @@ Json json_of(const Lens& lens, const Check& c) {
                                  {"stated", figure.stated},
                                  {"computed", figure.computed},
                                  {"relative_difference", figure.relative()}});
+    const auto number = [](std::optional<double> value) { return value ? Json(*value) : Json(); };
+    out["field"] = {
+        {"half_field_deg", number(c.field.half_field_deg)},
+        {"circle_of_half_field_mm", number(c.field.circle_of_half_field_mm)},
+        {"image_circle_mm", number(c.field.image_circle_mm)},
+        {"half_field_of_image_circle_deg", number(c.field.half_field_of_image_circle_deg)}};
     return out;
 }
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Breaks the product in small ways, one at a time, and sees whether the tests notice.
 
-    tests/measure/mutants.py [--count 20] [--seed 1] [--minutes 3] [--only N]
+    tests/measure/mutants.py [--count 20] [--seed 1] [--minutes 3]
 
 Draws places over all rooms with a fixed seed: a room by its lines, a line of code in it, one change of that line
 (an operator, a condition, a constant, a bound). Each mutant is built in a copy of the checkout (build-mutants/tree),
@@ -160,7 +160,6 @@ def main():
     parser.add_argument("--count", type=int, default=20, help="mutants that compile")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--minutes", type=float, default=3, help="for the tests of one mutant")
-    parser.add_argument("--only", type=int, help="one of the mutants, by its number")
     parser.add_argument("--show", action="store_true", help="print what would be changed, and end")
     arguments = parser.parse_args()
     draw, all_places = random.Random(arguments.seed), places()

@@ -2,9 +2,7 @@
 #include "apps/commands/render.h"
 
 #include <CLI/CLI.hpp>
-#include <memory>
 
-#include "apps/cli/render_options.h"
 #include "apps/commands/render_one.h"
 #include "apps/commands/render_sequence.h"
 

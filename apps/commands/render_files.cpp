@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cinttypes>
-#include <cstdio>
 
 #include "apps/cli/display_options.h"
 #include "apps/setup/develop.h"

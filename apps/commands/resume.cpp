@@ -7,7 +7,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
-#include <optional>
 
 #include "apps/cli/quantity.h"
 #include "apps/cli/reading_options.h"

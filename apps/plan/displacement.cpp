@@ -2,7 +2,6 @@
 #include "apps/plan/displacement.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "io/image/symmetric_mse.h"

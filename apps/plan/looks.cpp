@@ -2,7 +2,6 @@
 #include "apps/plan/looks.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
 

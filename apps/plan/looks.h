@@ -3,8 +3,6 @@
 #pragma once
 
 #include <array>
-#include <functional>
-#include <span>
 #include <vector>
 
 #include "camera/setup/film_region.h"

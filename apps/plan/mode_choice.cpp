@@ -2,7 +2,6 @@
 #include "apps/plan/mode_choice.h"
 
 #include <algorithm>
-#include <memory>
 #include <utility>
 
 #include "apps/plan/pilot_error.h"

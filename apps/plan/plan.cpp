@@ -8,7 +8,6 @@
 
 #include "apps/plan/pilot.h"
 #include "apps/plan/plan_comparison.h"
-#include "apps/setup/equivalent_camera.h"
 #include "io/base/error.h"
 
 namespace petzval {

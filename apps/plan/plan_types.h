@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <vector>
 
 #include "apps/plan/pilot_error.h"
 #include "apps/plan/rare_light.h"

@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cmath>
-
 #include "apps/setup/option_names.h"
 #include "apps/setup/spectral_wording.h"
 #include "io/base/format.h"

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "core/scene/scene.h"
 #include "core/traversal/bvh.h"

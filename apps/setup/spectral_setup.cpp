@@ -3,11 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <stdexcept>
 
 #include "apps/setup/option_names.h"
-#include "apps/setup/wavelength_reasons.h"
 #include "core/spectrum/sensor_fit.h"
 #include "io/base/ascii.h"
 #include "io/base/error.h"

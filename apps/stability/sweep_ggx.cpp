@@ -2,7 +2,6 @@
 // GGX from mirror to matt, up to grazing light.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <numbers>
 
 #include "apps/stability/sweeps.h"

@@ -2,8 +2,6 @@
 // Dispersion formulas outside of the wavelengths that they were fitted to.
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "apps/stability/sweeps.h"
 #include "core/spectrum/spectrum_table.h"
 #include "io/glass/agf.h"

@@ -2,7 +2,6 @@
 // Light that is hard to find: tiny suns and lamps, and highlights out of focus.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <numbers>
 
 #include "apps/stability/sweeps.h"

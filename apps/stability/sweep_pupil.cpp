@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "apps/stability/sweeps.h"
-#include "camera/lens/paraxial.h"
 #include "camera/lens/trace.h"
 #include "camera/models/lens_camera.h"
 #include "io/lens/lens_file.h"

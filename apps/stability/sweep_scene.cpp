@@ -2,8 +2,6 @@
 // How small, how large and how far away a scene may be.
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "apps/stability/sweeps.h"
 #include "apps/stability/world.h"
 #include "camera/models/thin_lens.h"

@@ -2,7 +2,6 @@
 // Rays to targets: where they bring little, and what their search misses.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <numbers>
 
 #include "apps/stability/sweeps.h"

@@ -2,8 +2,6 @@
 // Where the closed forms of a thin lens end.
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "apps/setup/thin_setup.h"
 #include "apps/stability/sweeps.h"
 #include "camera/models/aberrated_lens.h"

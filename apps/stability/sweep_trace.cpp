@@ -2,7 +2,6 @@
 // Where rays through lens surfaces lose digits, or the surface.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <numbers>
 
 #include "apps/stability/rays.h"

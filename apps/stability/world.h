@@ -3,7 +3,6 @@
 #pragma once
 
 #include <memory>
-#include <utility>
 
 #include "core/light/light_choice.h"
 #include "core/scene/scene.h"

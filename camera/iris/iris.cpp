@@ -2,7 +2,6 @@
 #include "camera/iris/iris.h"
 
 #include <algorithm>
-#include <numbers>
 #include <numeric>
 #include <stdexcept>
 

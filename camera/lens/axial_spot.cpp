@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "camera/lens/axial_spot.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 

@@ -8,7 +8,6 @@
 #include "camera/bench/analysis.h"
 #include "camera/bench/lens_scale.h"
 #include "camera/lens/focus.h"
-#include "camera/lens/paraxial.h"
 
 namespace petzval {
 namespace {

@@ -2,7 +2,6 @@
 #include "core/scene/sky.h"
 
 #include <algorithm>
-#include <array>
 #include <numbers>
 #include <numeric>
 

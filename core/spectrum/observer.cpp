@@ -2,7 +2,6 @@
 #include "core/spectrum/observer.h"
 
 #include <algorithm>
-#include <array>
 
 #include "core/spectrum/colour.h"
 

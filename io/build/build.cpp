@@ -5,7 +5,6 @@
 #include <gnu/libc-version.h>
 
 #include <cstdint>
-#include <span>
 
 #include "build_facts.h"  // made by sources.cmake
 #include "io/base/read_file.h"

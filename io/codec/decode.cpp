@@ -4,8 +4,6 @@
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <memory>
 #include <string_view>
 
 #include "io/base/error.h"

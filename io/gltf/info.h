@@ -4,7 +4,6 @@
 
 #include "io/gltf/gltf.h"
 #include "io/gltf/model.h"
-#include "io/gltf/nodes.h"
 #include "io/gltf/tally.h"
 
 namespace petzval {

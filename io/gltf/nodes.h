@@ -2,7 +2,6 @@
 // The node tree of a glTF file, flattened.
 #pragma once
 
-#include <array>
 #include <map>
 #include <optional>
 #include <string>

@@ -3,11 +3,9 @@
 
 #include <tiny_gltf.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/scene/geodesic_sphere.h"
-#include "io/gltf/nodes.h"
 
 namespace petzval {
 namespace {

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <type_traits>
 
-#include "io/base/json_parse.h"
 #include "io/image/picture_files.h"
 
 namespace petzval {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 
 #include "core/scene/sky.h"
 #include "io/base/notice.h"

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 
-#include "core/spectrum/bands.h"
 #include "io/base/csv.h"
 #include "io/base/error.h"
 

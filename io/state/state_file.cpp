@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cstring>
 #include <span>
@@ -11,8 +10,6 @@
 #include <string_view>
 
 #include "io/base/atomic_file.h"
-#include "io/base/error.h"
-#include "io/base/read_file.h"
 
 namespace petzval {
 namespace {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/commands/lens/lens.h"
 
-#include <algorithm>
-
 #include "apps/cli/console.h"
 #include "apps/commands/lens/request.h"
 #include "apps/setup/input_files.h"

@@ -4,7 +4,6 @@
 
 #include <numbers>
 
-#include "io/base/json_parse.h"
 #include "io/gltf/mend/mend.h"
 
 namespace petzval {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/gltf/validate/accessor.h"
 
-#include <algorithm>
 #include <cstring>
 
 namespace petzval {

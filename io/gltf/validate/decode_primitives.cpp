@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <map>
 
-#include "io/base/json_parse.h"
 #include "io/gltf/compression/draco_mesh.h"
 #include "io/gltf/validate/check.h"
 

@@ -61,17 +61,4 @@ f4 transmittance(Coating coating, const Crossing& c, bool touches_air, f4 nm) {
     return 1 - (coated ? coated_reflectance(c, nm) : fresnel_reflectance(c)).mean();
 }
 
-float axial_transmittance(const Lens& lens, Coating coating, float nm) {
-    const LensIndices<f4> indices = lens.exact_indices(splat(nm));
-    f4 out = splat(1.f);
-    for (const SurfaceFacts<float>& s : lens.surfaces<float>()) {
-        if (s.medium_before == s.medium_after) continue;
-        out *= transmittance(
-            coating,
-            {indices.of_medium[s.medium_before], indices.of_medium[s.medium_after], splat(1.f)},
-            touches_air(s), splat(nm));
-    }
-    return out[0];
-}
-
 }  // namespace petzval

@@ -42,7 +42,4 @@ template <class S>
     return (s.medium_before == 0) != (s.medium_after == 0);
 }
 
-/// Transmittance of a lens along its axis, a share of light; nm in air.
-[[nodiscard]] float axial_transmittance(const Lens&, Coating, float nm);
-
 }  // namespace petzval

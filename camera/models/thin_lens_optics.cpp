@@ -90,24 +90,6 @@ double focal_length_between_mm(double object_mm, double film_mm) {
     return film_mm / (1 + film_mm / object_mm);
 }
 
-double stop_radius_mm(double focal_mm, double f_number) {
-    require_length(focal_mm, "focal length");
-    require_positive(f_number, "f-number");
-    return focal_mm / (2 * f_number);
-}
-
-double field_of_view_rad(double sensor_side_mm, double film_mm) {
-    require_length(sensor_side_mm, "side of the sensor");
-    require_length(film_mm, "film distance");
-    return 2 * std::atan(sensor_side_mm / (2 * film_mm));
-}
-
-double blur_diameter_mm(double focal_mm, double stop_diameter_mm, double object_mm, double z_mm) {
-    require_positive(z_mm, "distance of the point");
-    return stop_diameter_mm * image_distance_mm(focal_mm, object_mm) *
-           std::fabs(1 / object_mm - 1 / z_mm);
-}
-
 Singlet Singlet::bent(Glass glass, double focal_mm, double bending) {
     const double n = glass.index(kLineD_nm);
     require_lens({n, focal_mm, bending});

@@ -19,17 +19,6 @@ namespace petzval {
 /// Focal length that images S on S'.
 [[nodiscard]] double focal_length_between_mm(double object_mm, double film_mm);
 
-/// Radius of the stop of a lens of that f-number, f / diameter.
-[[nodiscard]] double stop_radius_mm(double focal_mm, double f_number);
-/// Full angle of view of a side of the sensor, seen from the lens's centre.
-[[nodiscard]] double field_of_view_rad(double sensor_side_mm, double film_mm);
-
-/// Diameter on the film of the blur of a point at z_mm, for a stop of that diameter and a lens
-/// focused at S: diameter S' |1/S - 1/z|, by similar triangles from the stop to the film (Potmesil
-/// and Chakravarty 1982, "Synthetic Image Generation with a Lens and Aperture Camera Model").
-[[nodiscard]] double blur_diameter_mm(double focal_mm, double stop_diameter_mm, double object_mm,
-                                      double z_mm);
-
 /// Thin lens at one wavelength.
 struct SingletOptics {
     double n;         ///< index, above 1

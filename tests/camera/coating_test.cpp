@@ -7,7 +7,6 @@
 #include <complex>
 #include <numbers>
 
-#include "tests/support/lens_json.h"
 #include "tests/support/statistics.h"
 
 namespace petzval {
@@ -144,25 +143,6 @@ TEST(Coating, CementedSurfacesStayBare) {
               transmittance(Coating::Uncoated, c, false, splat(550))[0]);
     EXPECT_NE(transmittance(Coating::MgF2, c, true, splat(550))[0],
               transmittance(Coating::Uncoated, c, true, splat(550))[0]);
-}
-
-TEST(Coating, ALensLosesWhatItsSurfacesDo) {
-    const Lens lens(test::read_lens("double-gauss-100mm-f2"));
-    double bare = 1, coated = 1;
-    const auto indices = lens.exact_indices(splat(587.5618f));
-    for (const auto& s : lens.surfaces<float>()) {
-        const double a = indices.of_medium[s.medium_before][0],
-                     b = indices.of_medium[s.medium_after][0];
-        const double loss = std::pow((a - b) / (a + b), 2);
-        bare *= 1 - loss;
-        const bool air = (a == 1) != (b == 1);
-        coated *= 1 - (air ? by_matrix(a, b, 1, 587.5618, true) : loss);
-    }
-    EXPECT_NEAR(axial_transmittance(lens, Coating::Uncoated, 587.5618f), bare, 1e-5);
-    EXPECT_NEAR(axial_transmittance(lens, Coating::MgF2, 587.5618f), coated, 1e-5);
-    EXPECT_EQ(axial_transmittance(lens, Coating::Ideal, 587.5618f), 1);
-    EXPECT_LT(bare, 0.65);
-    EXPECT_GT(coated, 0.85);
 }
 
 }  // namespace

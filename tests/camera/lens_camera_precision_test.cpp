@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "camera/lens/coating.h"
 #include "camera/lens/traced_ray.h"
 #include "tests/support/lens_cameras.h"
 #include "tests/support/statistics.h"
@@ -86,6 +87,19 @@ TEST(LensCameraPrecision, DoublesAreATracedRays) {
         }
         EXPECT_GT(checked, 60) << name;
     }
+}
+
+// Share of light that passes a lens along its axis.
+float axial_transmittance(const Lens& lens, Coating coating, float nm) {
+    const LensIndices<f4> indices = lens.exact_indices(splat(nm));
+    f4 out = splat(1.f);
+    for (const auto& s : lens.surfaces<float>())
+        if (s.medium_before != s.medium_after)
+            out *= transmittance(
+                coating,
+                {indices.of_medium[s.medium_before], indices.of_medium[s.medium_after], splat(1.f)},
+                touches_air(s), splat(nm));
+    return out[0];
 }
 
 TEST(LensCameraCoating, LossesMultiplyTheWeight) {

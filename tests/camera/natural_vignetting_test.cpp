@@ -66,7 +66,7 @@ TEST(NaturalVignetting, OfAPinholeIsCosToTheFourth) {
 
 TEST(NaturalVignetting, OfThinLensAndSingletIsFootes) {
     for (const double fnumber : {1., 1.4, 2.8, 22.}) {
-        const double radius_mm = stop_radius_mm(kFocal_mm, fnumber);
+        const double radius_mm = kFocal_mm / (2 * fnumber);
         const NaturalVignetting vignetting(kFilm_mm,
                                            NaturalVignetting::axial_mean(radius_mm, kFilm_mm));
         ThinLens thin;
@@ -119,7 +119,7 @@ TEST(NaturalVignetting, HasTheSameMeanInEachWayToCarryWavelengths) {
     bands.nm = f4{430.f, 520.f, 590.f, 680.f};
     bands.on = m4{-1, -1, -1, -1};
     bands.spectral = true;
-    const double radius_mm = stop_radius_mm(kFocal_mm, 2.8);
+    const double radius_mm = kFocal_mm / (2 * 2.8);
     const auto camera = [&](DispersionMode mode) {
         AberratedLens glass{M44f(),
                             Singlet::bent(n_bk7(), kFocal_mm, 0.7),

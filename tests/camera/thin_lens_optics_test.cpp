@@ -73,17 +73,6 @@ TEST(ThinLensOptics, AnyTwoOfFocusFilmAndFocalLengthGiveTheThird) {
     EXPECT_EQ(object_distance_mm(50, 50), kInf);
     EXPECT_EQ(focal_length_between_mm(kInf, 50), 50);
     EXPECT_NEAR(image_distance_mm(50, 100), 100, 1e-12);
-    EXPECT_EQ(stop_radius_mm(50, 2), 12.5);
-    EXPECT_NEAR(field_of_view_rad(24, 50), 26.99 * 3.14159265 / 180, 1e-4);  // small format
-}
-
-TEST(ThinLensOptics, BlurOfPhotographersTables) {
-    // 50 mm at f/2 focused at 2 m: the hyperfocal rule f^2 / (N c) + f read backwards gives the
-    // blur at infinity, 25 * 50 / 1950.
-    EXPECT_NEAR(blur_diameter_mm(50, 25, 2000, kInf), 25 * 50 / 1950., 1e-12);
-    EXPECT_NEAR(blur_diameter_mm(50, 25, 2000, 1000), 25 * 50 / 1950., 1e-12);  // half of S: same
-    EXPECT_NEAR(blur_diameter_mm(50, 25, kInf, 5000), 0.25, 1e-12);
-    EXPECT_EQ(blur_diameter_mm(50, 25, 2000, 2000), 0);
 }
 
 // The law as it is often printed, K h^2 / 2, and the factor (S'/f)^2 that a finite object needs.
@@ -189,9 +178,6 @@ TEST(ThinLensOptics, RefusesWhatHasNoImage) {
         EXPECT_TRUE(says([&] { (void)image_distance_mm(bad, 100); }, "focal length must be"));
         EXPECT_TRUE(says([&] { (void)image_distance_mm(50, bad); }, "object distance must be"));
         EXPECT_TRUE(says([&] { (void)object_distance_mm(50, bad); }, "film distance must be"));
-        EXPECT_TRUE(says([&] { (void)stop_radius_mm(50, bad); }, "f-number must be"));
-        EXPECT_TRUE(says([&] { (void)field_of_view_rad(bad, 50); }, "side of the sensor must be"));
-        EXPECT_TRUE(says([&] { (void)blur_diameter_mm(50, 10, 100, bad); }, "must be above 0"));
     }
     EXPECT_TRUE(says([] { (void)image_distance_mm(kInf, kInf); }, "must be finite"));
 }

@@ -91,9 +91,8 @@ ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, Rende
     const auto elapsed_s = [&] { return clock.wall_s() - start_s; };
     const double least_s = kLeastChartBudget_s * static_cast<double>(request.axes.size());
     if (request.budget_s < least_s)
-        throw ArgumentError("--budget", "",
-                            fmt::format("is too small: {} axes need {:g} s at least",
-                                        request.axes.size(), least_s));
+        throw ArgumentError("--budget", "", "is too small: {} axes need {:g} s at least",
+                            request.axes.size(), least_s);
     std::set<std::string> said;  // notices that one of the views gave
     const auto once = [&](const std::string& text) {
         if (said.insert(text).second) notice(text);

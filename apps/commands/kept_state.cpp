@@ -17,9 +17,9 @@ namespace {
 void refuse_loss(const fs::path& file) {
     const auto refuse = [&](const char* what) {
         return ArgumentError(file.string(), "",
-                             fmt::format("{}, and a checkpoint would take its place; move it, name "
-                                         "another by -o NAME.state, or give --checkpoint off",
-                                         what));
+                             "{}, and a checkpoint would take its place; move it, name "
+                             "another by -o NAME.state, or give --checkpoint off",
+                             what);
     };
     std::optional<StateHeader> there;
     try {

@@ -113,10 +113,9 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
     if (plan.lights) plan.scene.light_choice = plan.lights->kind;
     const double samples = std::ceil(chosen.samples_for(tolerance));
     if (!(samples <= kMostPlannedSamples))
-        throw ArgumentError(
-            "--tolerance", "",
-            fmt::format("would take more than {:.2g} samples of each pixel; give a larger one",
-                        kMostPlannedSamples));
+        throw ArgumentError("--tolerance", "",
+                            "would take more than {:.2g} samples of each pixel; give a larger one",
+                            kMostPlannedSamples);
     plan.samples = static_cast<uint64_t>(samples);
     // Standard errors of spectra come from as many replicates, each with the same share of the
     // samples.

@@ -24,9 +24,8 @@ namespace {
 FocusedLens focused_at(const LoadedLens& loaded, float focus_m, FocusBy by, double stop_radius_mm) {
     auto sharp = focused_from_pupil(loaded.lens, 1e3 * double(focus_m), by, stop_radius_mm);
     if (!sharp)
-        throw ArgumentError(
-            loaded.name(), "",
-            fmt::format("cannot focus at {:g} m; give --focus a greater distance", focus_m));
+        throw ArgumentError(loaded.name(), "",
+                            "cannot focus at {:g} m; give --focus a greater distance", focus_m);
     return *std::move(sharp);
 }
 
@@ -110,9 +109,9 @@ LoadedLens load_lens_for_film(const std::string& name_or_file, std::span<const A
         auto fitted = scaled_to_view(loaded.lens, loaded.film_mm.y, *fit_yfov_rad);
         if (!fitted)
             throw ArgumentError("--fit", "",
-                                fmt::format("{} does not see {:.4g} degrees: take a smaller --fov "
-                                            "or another lens",
-                                            loaded.name(), double(*fit_yfov_rad) * 180 / kPi));
+                                "{} does not see {:.4g} degrees: take a smaller --fov "
+                                "or another lens",
+                                loaded.name(), double(*fit_yfov_rad) * 180 / kPi);
         loaded.lens = *std::move(fitted);
     }
     const double circle_mm = loaded.lens.prescription().image_circle_mm;
@@ -147,8 +146,7 @@ LensSetup set_up_lens(const CameraRequest& asked, const LoadedLens& loaded, cons
                         loaded.stop_radius_mm());
         if (iris.share_cut() > 5e-4)
             notice(
-                fmt::format("aperture {}: {:.1f} % of it lies beyond the stop's rim and is cut "
-                            "off",
+                fmt::format("aperture {}: {:.1f} % of it lies beyond the stop's rim and is cut off",
                             aperture, 100 * iris.share_cut()));
         LensCameraInput in = input_of(loaded, to_world, std::move(sharp), iris);
         setup.film_mm = in.film_mm;

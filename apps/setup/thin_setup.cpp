@@ -37,10 +37,8 @@ auto or_argument_error(const CameraModel& model, Function&& function) {
 
 void require_fov(float fov_deg, const std::string& scene, const std::string& why) {
     if (fov_deg >= kSmallestFov_deg && fov_deg <= kLargestFov_deg) return;
-    throw ArgumentError(scene, "",
-                        fmt::format("{} gives an angle of view of {:g} degrees; it must be {} to "
-                                    "{}",
-                                    why, fov_deg, kSmallestFov_deg, kLargestFov_deg));
+    throw ArgumentError(scene, "", "{} gives an angle of view of {:g} degrees; it must be {} to {}",
+                        why, fov_deg, kSmallestFov_deg, kLargestFov_deg);
 }
 
 Singlet singlet_of(const SingleLens& lens, double focal_mm) {

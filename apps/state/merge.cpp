@@ -86,10 +86,9 @@ StateBox covered_box(const std::vector<StateBox>& parts, const std::vector<fs::p
             const Box &a = boxes[order[i]], &b = boxes[order[j]];
             if (b[2][0] >= a[2][1]) break;
             if (overlap(a, b))
-                throw InputError(
-                    names[order[i]].string(), "",
-                    fmt::format("has samples that are in {} too: {} and {}; a sample counts once",
-                                names[order[j]].string(), text_of(a), text_of(b)));
+                throw InputError(names[order[i]].string(), "",
+                                 "has samples that are in {} too: {} and {}; a sample counts once",
+                                 names[order[j]].string(), text_of(a), text_of(b));
         }
     Box whole = boxes.front();
     for (const Box& b : boxes)
@@ -98,11 +97,10 @@ StateBox covered_box(const std::vector<StateBox>& parts, const std::vector<fs::p
             whole[i][1] = std::max(whole[i][1], b[i][1]);
         }
     if (const auto missing = missing_part(whole, boxes))
-        throw InputError(
-            names.front().string(), "",
-            fmt::format("this state and the others leave a gap: {} are in none of them; render "
-                        "them by --samples {}:{} and, for a part of the frame, --crop",
-                        text_of(*missing), (*missing)[2][0], (*missing)[2][1]));
+        throw InputError(names.front().string(), "",
+                         "this state and the others leave a gap: {} are in none of them; render "
+                         "them by --samples {}:{} and, for a part of the frame, --crop",
+                         text_of(*missing), (*missing)[2][0], (*missing)[2][1]);
     return {{int(whole[0][0]), int(whole[1][0]), int(whole[0][1]), int(whole[1][1])},
             {uint32_t(whole[2][0]), uint32_t(whole[2][1])}};
 }
@@ -116,9 +114,8 @@ MergedState merge_states(const std::vector<fs::path>& files) {
         const StateHeader& header = reader.header();
         if (!header.is_complete())
             throw InputError(file.string(), "",
-                             fmt::format("is not complete: it has {}; petzval resume "
-                                         "{} renders the rest",
-                                         share_text(header), for_shell(file.string())));
+                             "is not complete: it has {}; petzval resume {} renders the rest",
+                             share_text(header), for_shell(file.string()));
         RunRecord record = record_in(header, file);
         if (!sum) {
             sum = std::move(record);

@@ -51,9 +51,9 @@ RunRecord record_in(const StateHeader& header, const std::filesystem::path& file
     try {
         if (const auto program = run.at("program").get<std::string>(); program != program_version())
             throw InputError(file.string(), "",
-                             fmt::format("was written by {}, and this is {}: samples of both are "
-                                         "not of one picture; use the one that wrote it",
-                                         program, program_version()));
+                             "was written by {}, and this is {}: samples of both are "
+                             "not of one picture; use the one that wrote it",
+                             program, program_version());
         for (const Json& word : run.at("command")) record.command.push_back(word_from(word));
         record.folder = word_from(run.at("folder"));
         record.facts = facts_from(run.at("facts"));

@@ -25,8 +25,7 @@ void require_stop(const Singlet& lens, double radius_mm, double focus_mm) {
     }
     if (!narrow)
         throw std::invalid_argument(
-            "the stop is too wide for the curves of the lens: "
-            "raise the f-number");
+            "the stop is too wide for the curves of the lens: raise the f-number");
 }
 
 }  // namespace

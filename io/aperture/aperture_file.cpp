@@ -74,11 +74,10 @@ ApertureShape parse_aperture(const std::string& text, const fs::path& folder,
     const std::string ending = lower(path.extension().string());
     std::error_code none;
     if (ending.empty() || !fs::exists(path, none))
-        throw ArgumentError(text, "",
-                            fmt::format("is neither a file nor a shape; {}{}", kPossible,
-                                        did_you_mean(text.substr(0, text.find(':')),
-                                                     {"circle", "square", "triangle", "rhomboid",
-                                                      "frame", "star", "polygon"})));
+        throw ArgumentError(
+            text, "", "is neither a file nor a shape; {}{}", kPossible,
+            did_you_mean(text.substr(0, text.find(':')),
+                         {"circle", "square", "triangle", "rhomboid", "frame", "star", "polygon"}));
     if (ending == ".svg") return read_svg_aperture(path);
     return read_mask_aperture(path, pictures);
 }

@@ -37,13 +37,11 @@ class SvgFile {
         if (!read.error.empty()) throw InputError(file_, "", read.error);
         bytes_ = std::move(read.bytes);
         if (bytes_.size() > kMaxBytes)
-            throw InputError(file_, "",
-                             fmt::format("has {} bytes, and an aperture may have {}; simplify it",
-                                         bytes_.size(), kMaxBytes));
+            throw InputError(file_, "", "has {} bytes, and an aperture may have {}; simplify it",
+                             bytes_.size(), kMaxBytes);
         const auto result = document_.load_buffer(bytes_.data(), bytes_.size());
         if (!result)
-            throw InputError(file_, line_at(result.offset),
-                             fmt::format("is no XML: {}", result.description()));
+            throw InputError(file_, line_at(result.offset), "is no XML: {}", result.description());
         if (name_of(document_.document_element()) != "svg")
             throw InputError(file_, "", "is no SVG; its first element must be svg");
     }

@@ -21,9 +21,8 @@ constexpr uintmax_t kMaxBytes = 4 << 20;
 std::string read_text(const std::filesystem::path& path) {
     std::error_code none;
     if (const uintmax_t size = std::filesystem::file_size(path, none); !none && size > kMaxBytes)
-        throw InputError(
-            path.string(), "",
-            fmt::format("has {} bytes, and a table may have {}; keep fewer rows", size, kMaxBytes));
+        throw InputError(path.string(), "",
+                         "has {} bytes, and a table may have {}; keep fewer rows", size, kMaxBytes);
     const FileBytes file = read_file(path);
     if (!file.error.empty()) throw InputError(path.string(), "", file.error);
     std::string text(file.bytes.begin(), file.bytes.end());
@@ -102,9 +101,8 @@ CsvTable read_csv(const std::filesystem::path& path) {
             const std::optional<double> value = finite_number(cell);
             if (!value)
                 throw InputError(table.file, table.place(row),
-                                 fmt::format("column {} is not a finite number; write it as 0.25 "
-                                             "or 2.5e-1",
-                                             column + 1));
+                                 "column {} is not a finite number; write it as 0.25 or 2.5e-1",
+                                 column + 1);
             values.push_back(*value);
         }
     }

@@ -2,6 +2,8 @@
 // The exceptions that io throws: something outside the program is not as it must be.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -15,6 +17,13 @@ class InputError : public std::runtime_error {
   public:
     InputError(const std::string& file, const std::string& place, const std::string& message)
         : std::runtime_error(file + ": " + (place.empty() ? "" : place + ": ") + message) {}
+    /// Likewise with a message that holds values: as fmt::format() takes it.
+    template <class Value, class... More>
+    InputError(const std::string& file, const std::string& place,
+               fmt::format_string<Value, More...> message, Value&& value, More&&... more)
+        : InputError(
+              file, place,
+              fmt::format(message, std::forward<Value>(value), std::forward<More>(more)...)) {}
 
   protected:
     explicit InputError(const std::string& message) : std::runtime_error(message) {}

@@ -16,8 +16,7 @@ using nlohmann::json;
 /// "must be X, not Y": the one message for a value of the wrong type.
 [[noreturn]] void fail_type(const std::string& file, const std::string& place, const char* wanted,
                             const json& value) {
-    throw InputError(file, place,
-                     fmt::format("must be {}, but is {}", wanted, printable(value.type_name())));
+    throw InputError(file, place, "must be {}, but is {}", wanted, printable(value.type_name()));
 }
 
 /// A key in a JSON pointer (RFC 6901, section 3).
@@ -97,8 +96,8 @@ uint64_t JsonCursor::as_integer(const json& value, const Place& place) const {
     if (!value.is_number()) fail_type(*file_, place(), "a whole number", value);
     const double number = value.get<double>();
     if (!value.is_number_integer() || number < 0 || number > 0x1p53)
-        throw InputError(*file_, place(),
-                         fmt::format("must be a whole number from 0 to 2^53, but is {}", number));
+        throw InputError(*file_, place(), "must be a whole number from 0 to 2^53, but is {}",
+                         number);
     return value.get<uint64_t>();
 }
 
@@ -116,9 +115,8 @@ double JsonCursor::as_number(const json& value, const Place& place, Range range)
     if (!value.is_number()) fail_type(*file_, place(), "a number", value);
     const double number = value.get<double>();
     if (!(number >= range.low && number <= range.high))
-        throw InputError(
-            *file_, place(),
-            fmt::format("must be from {} to {}, but is {}", range.low, range.high, number));
+        throw InputError(*file_, place(), "must be from {} to {}, but is {}", range.low, range.high,
+                         number);
     return number;
 }
 
@@ -165,8 +163,7 @@ size_t JsonCursor::as_index(const json& value, const Place& place, size_t count,
                             const char* what) const {
     const uint64_t index = as_integer(value, place);
     if (index >= count)
-        throw InputError(*file_, place(),
-                         fmt::format("there is no {} {}; the file has {}", what, index, count));
+        throw InputError(*file_, place(), "there is no {} {}; the file has {}", what, index, count);
     return index;
 }
 
@@ -189,7 +186,7 @@ std::vector<size_t> JsonCursor::indices(const char* key, size_t count, const cha
         const auto place = [&] { return element_path(key, i); };
         out.push_back(as_index((*array)[i], place, count, what));
         if (!seen.insert(out.back()).second)
-            throw InputError(*file_, place(), fmt::format("names {} {} again", what, out.back()));
+            throw InputError(*file_, place(), "names {} {} again", what, out.back());
     }
     return out;
 }

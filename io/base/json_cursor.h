@@ -3,6 +3,8 @@
 // its place.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -32,6 +34,12 @@ class JsonCursor {
     [[nodiscard]] std::string path_of(std::string_view key) const;
     [[noreturn]] void fail(const std::string& message) const;
     [[noreturn]] void fail(std::string_view key, const std::string& message) const;
+    /// With a message that holds values: as fmt::format() takes it.
+    template <class Value, class... More>
+    [[noreturn]] void fail(std::string_view key, fmt::format_string<Value, More...> message,
+                           Value&& value, More&&... more) const {
+        fail(key, fmt::format(message, std::forward<Value>(value), std::forward<More>(more)...));
+    }
 
     [[nodiscard]] bool has(const char* key) const { return value_->contains(key); }
     void require(const char* key) const;

@@ -121,9 +121,8 @@ class Builder {
     }
     bool open(json container) {
         if (open_.size() >= max_json_depth)
-            throw InputError(
-                file_, "",
-                fmt::format("JSON is nested more than {} levels deep; flatten it", max_json_depth));
+            throw InputError(file_, "", "JSON is nested more than {} levels deep; flatten it",
+                             max_json_depth);
         open_.push_back(place(std::move(container)));
         return true;
     }

@@ -58,9 +58,9 @@ void refuse_overwriting(const std::vector<NamedFile>& outputs,
         for (const auto& [before, other] : written)
             if (before == identity)
                 throw ArgumentError(output.path.string(), "",
-                                    fmt::format("{} would overwrite what {} writes ({}); give "
-                                                "each a name of its own",
-                                                output.role, other->role, other->path.string()));
+                                    "{} would overwrite what {} writes ({}); give "
+                                    "each a name of its own",
+                                    output.role, other->role, other->path.string());
         written.emplace_back(identity, &output);
     }
     for (const NamedFile& input : inputs) {
@@ -68,8 +68,8 @@ void refuse_overwriting(const std::vector<NamedFile>& outputs,
         for (const auto& [of_output, output] : written)
             if (of_output == identity)
                 throw ArgumentError(output->path.string(), "",
-                                    fmt::format("{} would overwrite {} ({}); give another name",
-                                                output->role, input.role, input.path.string()));
+                                    "{} would overwrite {} ({}); give another name", output->role,
+                                    input.role, input.path.string());
     }
 }
 

@@ -47,8 +47,8 @@ std::string as_utf8(std::string_view text) {
 std::string text_of_file(const std::filesystem::path& path) {
     std::error_code none;
     if (const uintmax_t size = std::filesystem::file_size(path, none); !none && size > kMaxBytes)
-        throw InputError(path.string(), "",
-                         fmt::format("has {} bytes, and such a file may have {}", size, kMaxBytes));
+        throw InputError(path.string(), "", "has {} bytes, and such a file may have {}", size,
+                         kMaxBytes);
     const FileBytes file = read_file(path);
     if (!file.error.empty()) throw InputError(path.string(), "", file.error);
     return {file.bytes.begin(), file.bytes.end()};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cstdint>
 #include <map>
 #include <string>
@@ -14,6 +16,14 @@ namespace petzval {
 class WarningLog {
   public:
     void push_back(std::string line);
+    /// The line "place: what".
+    void add(const std::string& place, const std::string& what) { push_back(place + ": " + what); }
+    /// With words that hold values: as fmt::format() takes them.
+    template <class Value, class... More>
+    void add(const std::string& place, fmt::format_string<Value, More...> what, Value&& value,
+             More&&... more) {
+        add(place, fmt::format(what, std::forward<Value>(value), std::forward<More>(more)...));
+    }
     [[nodiscard]] bool empty() const { return first_.empty(); }
     /// The warnings in order; one that was met again ends with how often.
     [[nodiscard]] std::vector<std::string> lines() const;

@@ -72,9 +72,8 @@ class Reader {
             const Image image = decode_image(bytes, gltf_.file, place, pictures_);
             if (image.width != image.height || (i > 0 && image.width != cube.size))
                 throw InputError(gltf_.file, place,
-                                 fmt::format("is {}x{} texels; the faces of a cube must be squares "
-                                             "of one size",
-                                             image.width, image.height));
+                                 "is {}x{} texels; the faces of a cube must be squares of one size",
+                                 image.width, image.height);
             cube.size = image.width;
             cube.texel[i] = face_texels(image);
         }
@@ -126,9 +125,9 @@ std::optional<Sky> read_image_light(const GltfModel& gltf, const GltfNodes& node
         tally.honoured.insert(fmt::format("sky of a cube of {0}x{0} texels", cube->size));
         return reader.sky(2 * cube->size, [&](const V3f& d) { return cube->radiance(d); });
     }
-    tally.warnings.push_back(light.path() +
-                             ": an image of its cube is not there; its irradiance coefficients "
-                             "light the scene, and make a blurred sky");
+    tally.warnings.add(light.path(),
+                       "an image of its cube is not there; its irradiance coefficients "
+                       "light the scene, and make a blurred sky");
     const Harmonics harmonics = reader.harmonics();
     return reader.sky(kHarmonicsHeight,
                       [&](const V3f& d) { return radiance_of_irradiance(harmonics, d); });

@@ -155,8 +155,7 @@ void describe_motion(const GltfTally& tally, GltfFile& file) {
     }
     if (tally.moving_instances + tally.deforming_meshes > 0)
         text += fmt::format(
-            "; between time steps, meshes are off by at most {:.2g} m, {:.2g} % of "
-            "their extent",
+            "; between time steps, meshes are off by at most {:.2g} m, {:.2g} % of their extent",
             kRoundedUp * tally.motion_off_m, kRoundedUp * 100 * tally.motion_off);
     if (!tally.held.empty())
         text += fmt::format("{}not blurred but shown as in the middle: {}",

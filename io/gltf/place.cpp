@@ -143,9 +143,9 @@ class Placer {
         tally_.honoured.insert("points and lines, as spheres and cylinders");
         if (placement.moves || deforms(placement, primitive)) {
             tally_.held.insert("points and lines");
-            tally_.warnings.push_back(where +
-                                      ": moving points and lines are shown as they are in "
-                                      "the middle of the exposure");
+            tally_.warnings.add(where,
+                                "moving points and lines are shown as they are in "
+                                "the middle of the exposure");
         }
         if (pose(placement, primitive, std::nullopt, source.vertices)) {
             strokes_->add(material, vertices, shapes, M44d());
@@ -194,9 +194,9 @@ class Placer {
             SourceMesh shape = unposed;
             if (weights && !reshape(shape, (*weights)[step], primitive)) {
                 mesh.steps.clear();
-                tally_.warnings.push_back(json_path("meshes", placement.mesh) +
-                                          ": its shape is broken at times; it keeps that of the "
-                                          "middle of the exposure");
+                tally_.warnings.add(json_path("meshes", placement.mesh),
+                                    "its shape is broken at times; it keeps that of the "
+                                    "middle of the exposure");
                 return std::nullopt;
             }
             (void)pose(placement, primitive, step, shape);

@@ -46,9 +46,9 @@ class Grouping {
             throw InputError(gltf_.file, json_path("nodes", index),
                              "places its mesh beyond the range of a float");
         if (node.skin >= 0 && many)
-            tally_.warnings.push_back(json_path("nodes", index) +
-                                      ": its skin places its mesh, so that its instances have no "
-                                      "meaning; it is shown once");
+            tally_.warnings.add(json_path("nodes", index),
+                                "its skin places its mesh, so that its instances have no "
+                                "meaning; it is shown once");
         const size_t places = node.skin >= 0 ? 1 : count(index, many);
         if (places == 0) return;
         const auto& mesh = gltf_.typed.meshes.at(static_cast<size_t>(node.mesh));
@@ -101,12 +101,11 @@ void PlaceMemory::ask(double bytes, size_t places, size_t parts, const std::stri
                     static_cast<double>(steps);
     if (asked_bytes_ <= there_bytes_) return;
     const std::string moves = fmt::format("moves through {} time steps", steps);
-    throw InputError(
-        file_, where,
-        fmt::format("{}: with what came before it takes {:.1f} GiB, and {:.1f} can be had; {}",
-                    steps > 1 ? moves : fmt::format("stands at {} places", places),
-                    asked_bytes_ * 0x1p-30, there_bytes_ * 0x1p-30,
-                    steps > 1 ? "open the shutter for a shorter time" : "show fewer of them"));
+    throw InputError(file_, where,
+                     "{}: with what came before it takes {:.1f} GiB, and {:.1f} can be had; {}",
+                     steps > 1 ? moves : fmt::format("stands at {} places", places),
+                     asked_bytes_ * 0x1p-30, there_bytes_ * 0x1p-30,
+                     steps > 1 ? "open the shutter for a shorter time" : "show fewer of them");
 }
 
 size_t Places::count(int node) {

@@ -52,8 +52,7 @@ class Profiles {
     void read(const std::vector<uint8_t>& bytes, const std::string& place) {
         IesFile found = parse_ies({reinterpret_cast<const char*>(bytes.data()), bytes.size()},
                                   gltf_.file, place);
-        for (const std::string& remark : found.remarks)
-            tally_.warnings.push_back(place + ": " + remark);
+        for (const std::string& remark : found.remarks) tally_.warnings.add(place, remark);
         scene_.profiles.push_back(std::move(found.profile));
     }
 
@@ -96,7 +95,7 @@ void read_profile_lights(const GltfModel& gltf, const GltfNodes& nodes, const No
         };
         const auto made = make(nodes.to_world[index]);
         if (!made) {
-            tally.warnings.push_back(json_path("nodes", node) + ": its light is left out");
+            tally.warnings.add(json_path("nodes", node), "its light is left out");
             continue;
         }
         scene.lights.push_back(*made);

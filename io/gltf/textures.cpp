@@ -97,9 +97,8 @@ TextureSlot GltfTextures::slot(const JsonCursor& parent, const char* key, Encodi
     const bool missing =
         texture.source < 0 || gltf_.source.images[static_cast<size_t>(texture.source)].empty();
     if (missing) {
-        tally_.warnings.push_back(info->path() +
-                                  ": its texture has no image that can be read; "
-                                  "the slot is left without");
+        tally_.warnings.add(info->path(),
+                            "its texture has no image that can be read; the slot is left without");
         return {};
     }
 
@@ -137,33 +136,32 @@ void GltfTextures::check_colours(size_t image, const std::string& slot, std::str
     Used& used = used_.at(image);
     const std::string place = json_path("images", image);
     if (used.remarks.inks)
-        tally_.warnings.push_back(
-            place +
-            ": is in CMYK inks; its colours are guessed, as nothing says what "
-            "the inks look like; convert it to RGB");
+        tally_.warnings.add(place,
+                            "is in CMYK inks; its colours are guessed, as nothing says what "
+                            "the inks look like; convert it to RGB");
     used.remarks.inks = false;
     if (std::find(kAlphaOnly.begin(), kAlphaOnly.end(), key) != kAlphaOnly.end()) return;
     if (encoding == Encoding::Srgb && !used.remarks.other_space.empty()) {
-        tally_.warnings.push_back(fmt::format(
-            "{}: says that its colours are in {}; glTF takes them for sRGB, so they are not those "
-            "that were meant; convert it to sRGB",
-            place, used.remarks.other_space));
+        tally_.warnings.add(place,
+                            "says that its colours are in {}; glTF takes them for sRGB, so they "
+                            "are not those that were meant; convert it to sRGB",
+                            used.remarks.other_space);
         used.remarks.other_space.clear();
     }
     std::string& first = encoding == Encoding::Srgb ? used.colour_slot : used.data_slot;
     const std::string& other = encoding == Encoding::Srgb ? used.data_slot : used.colour_slot;
     if (first.empty() && !other.empty())
-        tally_.warnings.push_back(fmt::format(
-            "{}: is read as colours in sRGB by {}, and as numbers by {}; one of them is "
-            "likely a mistake",
-            place, encoding == Encoding::Srgb ? slot : other,
-            encoding == Encoding::Srgb ? other : slot));
+        tally_.warnings.add(place,
+                            "is read as colours in sRGB by {}, and as numbers by {}; one of them "
+                            "is likely a mistake",
+                            encoding == Encoding::Srgb ? slot : other,
+                            encoding == Encoding::Srgb ? other : slot);
     if (first.empty()) first = slot;
     if (key.ends_with("ormalTexture") && !used.normals_checked) {
         used.normals_checked = true;
         if (const std::string fault = fault_of_normals(images_[static_cast<size_t>(used.place)]);
             !fault.empty())
-            tally_.warnings.push_back(fmt::format("{}: {}", place, fault));
+            tally_.warnings.add(place, fault);
     }
 }
 

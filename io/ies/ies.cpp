@@ -28,8 +28,7 @@ class Numbers {
 
     [[noreturn]] void fail(const std::string& message) const {
         const size_t at = line_ - 1;  // at least that of TILT=
-        throw InputError(file_, place_,
-                         fmt::format("IES profile, line {}: {}", lines_[at].number, message));
+        throw InputError(file_, place_, "IES profile, line {}: {}", lines_[at].number, message);
     }
     /// The next number; what: its name, for messages.
     double next(const char* what, double least, double most) {

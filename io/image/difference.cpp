@@ -128,8 +128,7 @@ std::string why_not_comparable(const Picture& a, const Picture& b) {
     if (a.for_display != b.for_display)
         return fmt::format(
             "the {0} holds values for a display, the {1} light; make a picture for a display of "
-            "the "
-            "{1} too, by petzval image view",
+            "the {1} too, by petzval image view",
             a.for_display ? "former" : "latter", a.for_display ? "latter" : "former");
     std::string why = why_not_the_same_wavelengths(a, b);
     if (!why.empty()) return why;
@@ -164,8 +163,7 @@ std::vector<LayerDifference> compare_files(const std::filesystem::path& a,
     const Picture picture_b = read_picture(b, budget);
     const std::string why = why_not_comparable(picture_a, picture_b);
     if (!why.empty())
-        throw InputError(a.string(), "",
-                         fmt::format("differs in kind from {}: {}", b.string(), why));
+        throw InputError(a.string(), "", "differs in kind from {}: {}", b.string(), why);
     return compare(picture_a, picture_b);
 }
 

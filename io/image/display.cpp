@@ -94,8 +94,8 @@ View view_of(const Config& loaded, const std::string& text) {
             return view;
     const std::vector<std::string> names = names_of(views);
     throw InputError(loaded.own ? "Petzval's configuration" : loaded.path, "",
-                     fmt::format("there is no view \"{}\"; there are {}{}", text,
-                                 fmt::join(names, ", "), did_you_mean(text, names)));
+                     "there is no view \"{}\"; there are {}{}", text, fmt::join(names, ", "),
+                     did_you_mean(text, names));
 }
 
 /// Names by which configurations call the linear space of Rec. 709 with a D65 white: those of the
@@ -131,10 +131,10 @@ ocio::ConstTransformRcPtr transform_of(const Config& loaded, const View& view) {
     }
     if (!loaded.config->hasRole(kAces))
         throw InputError(loaded.path, "",
-                         fmt::format("does not say which of its colour spaces is linear Rec. 709, "
-                                     "in which pictures are rendered; give one the alias or role "
-                                     "{}, or ACES2065-1 the role {}",
-                                     kLinearRec709[1], kAces));
+                         "does not say which of its colour spaces is linear Rec. 709, "
+                         "in which pictures are rendered; give one the alias or role "
+                         "{}, or ACES2065-1 the role {}",
+                         kLinearRec709[1], kAces);
     shown->setSrc(kAces);
     if (shows_data(loaded, view)) return shown;
     auto all = ocio::GroupTransform::Create();

@@ -113,8 +113,8 @@ class Tables {
         }
         if (std::find(files_.begin(), files_.end(), path) != files_.end()) return;
         if (const InputFile file(path); !file.error().empty())
-            throw InputError(files_.front().string(), "",
-                             fmt::format("names {}, which {}", path.string(), file.error()));
+            throw InputError(files_.front().string(), "", "names {}, which {}", path.string(),
+                             file.error());
         files_.push_back(path);
         for (const std::string& other : paths_in(xml_of(path), path)) add_file(other);
     }

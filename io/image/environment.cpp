@@ -74,20 +74,18 @@ Sky decode(const std::filesystem::path& path, float rotate_deg, float strength,
     constexpr uint64_t sky_bytes_per_texel = 28;  // the most while Sky::picture works
     Picture picture = read_picture(path, budget, sky_bytes_per_texel);
     if (picture.width != picture.full_width || picture.height != picture.full_height)
-        throw InputError(
-            path.string(), "",
-            fmt::format("holds {}x{} of {}x{} pixels; an environment must be whole", picture.width,
-                        picture.height, picture.full_width, picture.full_height));
+        throw InputError(path.string(), "",
+                         "holds {}x{} of {}x{} pixels; an environment must be whole", picture.width,
+                         picture.height, picture.full_width, picture.full_height);
     Mended mended;
     std::vector<float> rgb = sky_texels(picture, path, mended);
     picture.pixels = std::vector<float>();   // "= {}" would keep its memory
     constexpr float brightest_nits = 1e20f;  // sums over the sky and the scene stay finite
     if (!rgb.empty() && *std::max_element(rgb.begin(), rgb.end()) * strength > brightest_nits)
-        throw InputError(
-            path.string(), "",
-            fmt::format("brighter than {:g} nits once it is multiplied by {:g}; give a "
-                        "smaller --env-strength",
-                        brightest_nits, strength));
+        throw InputError(path.string(), "",
+                         "brighter than {:g} nits once it is multiplied by {:g}; give a "
+                         "smaller --env-strength",
+                         brightest_nits, strength);
     report(mended, path.string(), notice);
     if (picture.width != 2 * picture.height)
         notice(fmt::format(

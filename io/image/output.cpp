@@ -17,8 +17,8 @@ void check_output(const std::filesystem::path& path, const DisplayOptions& displ
     constexpr int kLargestJpegSide_px = 65500;  // JPEG_MAX_DIMENSION of libjpeg
     if (format == PictureFormat::Jpeg && std::max(width, height) > kLargestJpegSide_px)
         throw OutputError(path.string(), "",
-                          fmt::format("a JPEG has {} pixels on a side at most; write .png or .exr",
-                                      kLargestJpegSide_px));
+                          "a JPEG has {} pixels on a side at most; write .png or .exr",
+                          kLargestJpegSide_px);
     check_writable(path);
 }
 

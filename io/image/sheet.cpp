@@ -24,9 +24,9 @@ constexpr int64_t kLargestSide_px = 65535, kLargestJpegSide_px = 65500;
 void check_size(const std::string& sheet, const SheetSize& size, int64_t most_px) {
     if (std::max(size.width_px, size.height_px) <= most_px) return;
     throw InputError(sheet, "",
-                     fmt::format("would be {}x{} pixels, and a contact sheet has {} on a side at "
-                                 "most; give it narrower cells, other columns or fewer pictures",
-                                 size.width_px, size.height_px, most_px));
+                     "would be {}x{} pixels, and a contact sheet has {} on a side at "
+                     "most; give it narrower cells, other columns or fewer pictures",
+                     size.width_px, size.height_px, most_px);
 }
 
 /// Finished cells and where they lie.

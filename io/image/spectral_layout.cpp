@@ -101,10 +101,9 @@ std::vector<std::array<double, 2>> spectrum_of_pixel(const Picture& picture,
             "is not spectral, it has no channels S0; render with --bins to get one");
     const int64_t column = int64_t{x} - picture.x, row = int64_t{y} - picture.y;
     if (column < 0 || row < 0 || column >= picture.width || row >= picture.height)
-        throw ArgumentError(
-            file.string(), "",
-            fmt::format("has no pixel {},{}; it has {},{} to {},{}", x, y, picture.x, picture.y,
-                        picture.x + picture.width - 1, picture.y + picture.height - 1));
+        throw ArgumentError(file.string(), "", "has no pixel {},{}; it has {},{} to {},{}", x, y,
+                            picture.x, picture.y, picture.x + picture.width - 1,
+                            picture.y + picture.height - 1);
     const size_t pixel = size_t(row) * size_t(picture.width) + size_t(column);
     std::vector<std::array<double, 2>> spectrum;
     for (const auto& [nm, index] : channels)

@@ -16,17 +16,14 @@ namespace {
 std::array<double, 4> columns(const TextLine& line, const std::vector<std::string>& word,
                               const std::string& file) {
     if (word.size() != 4)
-        throw InputError(
-            file, line.place(),
-            fmt::format("has {} columns; each surface has 4: radius, thickness, index, "
-                        "diameter of the aperture, in mm",
-                        word.size()));
+        throw InputError(file, line.place(),
+                         "has {} columns; each surface has 4: radius, thickness, index, "
+                         "diameter of the aperture, in mm",
+                         word.size());
     std::array<double, 4> values{};
     for (size_t i = 0; i < 4; ++i) {
         const auto value = finite_number(word[i]);
-        if (!value)
-            throw InputError(file, line.place(),
-                             fmt::format("column {} is not a finite number", i + 1));
+        if (!value) throw InputError(file, line.place(), "column {} is not a finite number", i + 1);
         values[i] = *value;
     }
     return values;

@@ -60,10 +60,8 @@ void check_size(const Prescription& lens, const std::string& file) {
             std::find(different.begin(), different.end(), *surface.glass) == different.end())
             different.push_back(*surface.glass);
     if (lens.surfaces.size() > kMaxSurfaces || different.size() > size_t(kMaxMedia) - 1)
-        throw InputError(
-            file, "",
-            fmt::format("has {} surfaces and {} glasses; a lens may have {} and {}",
-                        lens.surfaces.size(), different.size(), kMaxSurfaces, kMaxMedia - 1));
+        throw InputError(file, "", "has {} surfaces and {} glasses; a lens may have {} and {}",
+                         lens.surfaces.size(), different.size(), kMaxSurfaces, kMaxMedia - 1);
 }
 
 }  // namespace

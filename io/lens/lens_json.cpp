@@ -22,8 +22,8 @@ constexpr Range kIndex{1, 5}, kAbbe{1, 1e4};
 void allow(const JsonCursor& at, std::initializer_list<const char*> keys) {
     for (const auto& item : at.value().items())
         if (std::find(keys.begin(), keys.end(), item.key()) == keys.end())
-            at.fail(item.key(), fmt::format("is not a key of a lens here; the keys are {}",
-                                            fmt::join(keys, ", ")));
+            at.fail(item.key(), "is not a key of a lens here; the keys are {}",
+                    fmt::join(keys, ", "));
 }
 
 // Text to be shown: in one line, with spaces for control characters.
@@ -42,8 +42,8 @@ Glass catalogue_glass(const JsonCursor& at, LensGlasses& glasses) {
     const std::string name = at.text("glass");
     auto glass = glasses.find(name);
     if (!glass)
-        at.fail("glass", fmt::format("there is no glass \"{}\"; near are {}", printable(name),
-                                     fmt::join(glasses_near(name), ", ")));
+        at.fail("glass", "there is no glass \"{}\"; near are {}", printable(name),
+                fmt::join(glasses_near(name), ", "));
     return *std::move(glass);
 }
 
@@ -70,9 +70,8 @@ std::vector<std::array<double, 2>> read_asphere(const JsonCursor& surface) {
         const auto power = finite_number(item.key());
         if (!power || *power < 2 || *power > kMaxAspherePower ||
             item.key() != std::to_string(int(*power)))
-            at->fail(item.key(), fmt::format("is not a power of r; write a whole number from 2 to "
-                                             "{}",
-                                             kMaxAspherePower));
+            at->fail(item.key(), "is not a power of r; write a whole number from 2 to {}",
+                     kMaxAspherePower);
         terms.push_back({*power, at->number(item.key().c_str())});
     }
     std::sort(terms.begin(), terms.end());
@@ -110,15 +109,14 @@ std::vector<LensSurface> read_surfaces(const JsonCursor& lens, LensGlasses& glas
     lens.require("surfaces");
     const std::vector<JsonCursor> items = lens.objects("surfaces");
     if (items.empty() || items.size() > kMaxSurfaces)
-        lens.fail("surfaces", fmt::format("must hold 1 to {} surfaces, but holds {}", kMaxSurfaces,
-                                          items.size()));
+        lens.fail("surfaces", "must hold 1 to {} surfaces, but holds {}", kMaxSurfaces,
+                  items.size());
     std::vector<LensSurface> surfaces;
     const JsonCursor* stop = nullptr;
     for (const JsonCursor& at : items) {
         surfaces.push_back(read_surface(at, glasses));
         if (!surfaces.back().stop) continue;
-        if (stop)
-            at.fail("stop", fmt::format("is the second; {} is the stop already", stop->path()));
+        if (stop) at.fail("stop", "is the second; {} is the stop already", stop->path());
         stop = &at;
     }
     return surfaces;
@@ -137,8 +135,7 @@ void place_stop(const std::string& file, LensFile& out) {
         filed[number].stop = true;
         out.warnings.push_back(
             fmt::format("{}: /surfaces: none has \"stop\": true; the iris is at number {}, counted "
-                        "from 0, whose "
-                        "edge limits the light of a distant point on the axis",
+                        "from 0, whose edge limits the light of a distant point on the axis",
                         file, number));
     }
     for (LensSurface& surface : filed) {

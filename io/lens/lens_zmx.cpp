@@ -67,7 +67,7 @@ class Reader {
         if (surfaces_.size() < 3)
             throw InputError(file_, "", "has no lens: it needs an object, surfaces and an image");
         if (surfaces_.size() > kMaxSurfaces)
-            throw InputError(file_, "", fmt::format("has more than {} surfaces", kMaxSurfaces));
+            throw InputError(file_, "", "has more than {} surfaces", kMaxSurfaces);
         build();
         return std::move(out_);
     }

@@ -35,8 +35,7 @@ class HeaderCheck {
             const uint32_t bytes = word();
             if (!good_ || bytes > in_.size() || at_ > in_.size() - bytes)
                 return fmt::format(
-                    "has an attribute of {} bytes, beyond its {}; it is damaged or "
-                    "cut short",
+                    "has an attribute of {} bytes, beyond its {}; it is damaged or cut short",
                     bytes, in_.size());
             at_ += bytes;
         }

@@ -77,9 +77,9 @@ Picture cut_out(const Picture& from, const Rect& crop, const std::string& file) 
     if (crop.x0 < held.x0 || crop.y0 < held.y0 || crop.x1 > held.x1 || crop.y1 > held.y1)
         throw ArgumentError(
             file, "",
-            fmt::format("holds only {} (x,y,width,height) of its {}x{} frame, not all of {}; name "
-                        "pixels inside that",
-                        as_words(held), from.full_width, from.full_height, as_words(crop)));
+            "holds only {} (x,y,width,height) of its {}x{} frame, not all of {}; name "
+            "pixels inside that",
+            as_words(held), from.full_width, from.full_height, as_words(crop));
     Picture cut{from, {}};
     // It is not the picture that the hash is of.
     std::erase_if(cut.metadata, [](const auto& one) { return one.first == kLightHash; });
@@ -118,9 +118,9 @@ void crop_command(CropRequest& o) {
     if (format == PictureFormat::Exr) {
         if (cut.for_display)
             throw ArgumentError(o.out, "",
-                                fmt::format("{} holds values for a display, and EXR holds light; "
-                                            "write .png or .jpg",
-                                            o.in));
+                                "{} holds values for a display, and EXR holds light; "
+                                "write .png or .jpg",
+                                o.in);
         return write_exr(o.out, cut);
     }
     if (cut.for_display && format == PictureFormat::Jpeg) require_opaque(cut, o.out);

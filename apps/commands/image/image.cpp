@@ -47,13 +47,11 @@ void print_layer(const LayerDifference& d) {
 /// Throws where a layer is further from the reference than it may be.
 void require_within(double limit, const DiffOptions& o, const LayerDifference& d) {
     if (d.not_finite > 0)
-        throw InputError(
-            o.a, "",
-            fmt::format("{}: {} values are not finite in it or in {}", d.layer, d.not_finite, o.b));
+        throw InputError(o.a, "", "{}: {} values are not finite in it or in {}", d.layer,
+                         d.not_finite, o.b);
     if (d.rmse > limit)
-        throw InputError(
-            o.a, "",
-            fmt::format("{}: RMSE {:.6g} against {} is above {:g}", d.layer, d.rmse, o.b, limit));
+        throw InputError(o.a, "", "{}: RMSE {:.6g} against {} is above {:g}", d.layer, d.rmse, o.b,
+                         limit);
 }
 
 void diff_command(const DiffOptions& o) {

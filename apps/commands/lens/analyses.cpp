@@ -56,10 +56,9 @@ void append(std::vector<BundleRay>& all, const std::vector<BundleRay>& more) {
 }
 
 [[noreturn]] void refuse_dark(const Lens& lens, double field_deg) {
-    throw ArgumentError(
-        lens.prescription().name, "",
-        fmt::format("no light of the field {:g}° reaches the film; give a smaller --field",
-                    field_deg));
+    throw ArgumentError(lens.prescription().name, "",
+                        "no light of the field {:g}° reaches the film; give a smaller --field",
+                        field_deg);
 }
 
 void print_spot(double field_deg, const char* line, const SpotSize& size) {
@@ -231,9 +230,9 @@ Found distortion_analysis(const AnalysisOptions& o) {
     say_left_out(dark, "no ray through the middle of the stop reaches the film");
     if (out.rows.empty())
         throw ArgumentError(o.field.request.lens, "",
-                            fmt::format("no field above 0° and up to {:g}° reaches the film; give "
-                                        "other ones by --field",
-                                        widest_deg));
+                            "no field above 0° and up to {:g}° reaches the film; give "
+                            "other ones by --field",
+                            widest_deg);
     out.plot = {.title = title_of(*setup.lens, "distortion at line d"),
                 .x_label = "field (degrees)",
                 .y_label = "height on the film against f tan(field) (%)",

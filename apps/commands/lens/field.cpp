@@ -32,10 +32,9 @@ std::shared_ptr<const Lens> in_focus(const Lens& lens, const FieldRequest& reque
     if (!std::isfinite(distance_mm))
         throw ArgumentError(request.request.lens, "",
                             "forms no image of a distant object; give --focus a distance");
-    throw ArgumentError(
-        request.request.lens, "",
-        fmt::format("--focus {} is too near for {}; give a greater distance", request.focus,
-                    lens.prescription().focus_group ? "the group that focuses" : "the lens"));
+    throw ArgumentError(request.request.lens, "",
+                        "--focus {} is too near for {}; give a greater distance", request.focus,
+                        lens.prescription().focus_group ? "the group that focuses" : "the lens");
 }
 
 }  // namespace
@@ -107,11 +106,10 @@ void require_light(const Lens& lens) {
 RayBundle aim(const FieldSetup& setup, double field_deg, double nm) {
     auto bundle = RayBundle::aim(*setup.lens, {field_deg, setup.distance_mm, setup.section}, nm);
     if (!bundle)
-        throw ArgumentError(
-            setup.lens->prescription().name, "",
-            fmt::format("no ray at {:g}° and {:g} nm reaches the middle of the stop; give a "
-                        "smaller --field",
-                        field_deg, nm));
+        throw ArgumentError(setup.lens->prescription().name, "",
+                            "no ray at {:g}° and {:g} nm reaches the middle of the stop; give a "
+                            "smaller --field",
+                            field_deg, nm);
     return *std::move(bundle);
 }
 

@@ -111,11 +111,10 @@ void add_lens_trace_commands(CLI::App& lens) {
     trace->add_flag("--reverse", options->reverse, "from the film to the scene");
     trace->add_flag("--unclipped", options->unclipped, "semi-diameters do not stop rays");
     trace->footer(
-        "Millimetres; z = 0 at the first vertex, +z towards the film. A ray may begin "
-        "anywhere on its line. Rows come in the order of the rays: where and how each "
-        "leaves the last surface, where it meets the film, its optical path from the "
-        "origin, its status (ok, vignetted, tir, miss) and, if it was blocked, the "
-        "surface where, counted from 0.");
+        "Millimetres; z = 0 at the first vertex, +z towards the film. A ray may begin anywhere on "
+        "its line. Rows come in the order of the rays: where and how each leaves the last surface, "
+        "where it meets the film, its optical path from the origin, its status (ok, vignetted, "
+        "tir, miss) and, if it was blocked, the surface where, counted from 0.");
     trace->callback([options] { trace_command(*options); });
 }
 

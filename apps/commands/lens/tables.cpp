@@ -222,11 +222,10 @@ void check_command(const CheckOptions& o) {
     if (!o.fail_above_percent) return;
     for (const StatedFigure& figure : result.stated)
         if (!(std::fabs(100 * figure.relative()) <= *o.fail_above_percent))
-            throw InputError(
-                o.request.lens, "",
-                fmt::format("{}: {:.6g} is stated and {:.6g} comes out, which differs "
-                            "by more than {:g} %",
-                            figure.name, figure.stated, figure.computed, *o.fail_above_percent));
+            throw InputError(o.request.lens, "",
+                             "{}: {:.6g} is stated and {:.6g} comes out, which differs "
+                             "by more than {:g} %",
+                             figure.name, figure.stated, figure.computed, *o.fail_above_percent);
 }
 
 }  // namespace

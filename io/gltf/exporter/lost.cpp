@@ -144,9 +144,8 @@ std::vector<std::string> lost_by_exporter(const json& root, std::span<const int>
 std::string lamp_unit_doubt(const json& root) {
     if (!is_from_blender(root) || lights_of(root).empty()) return "";
     return "Blender wrote the file: with its exporter's Lighting Mode \"Standard\", the default, "
-           "lamps "
-           "are 683 times too bright beside emissive surfaces; export with \"Unitless\" (Data > "
-           "Lighting)";
+           "lamps are 683 times too bright beside emissive surfaces; export with \"Unitless\" "
+           "(Data > Lighting)";
 }
 
 }  // namespace petzval

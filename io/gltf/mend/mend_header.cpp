@@ -77,8 +77,7 @@ class Collector {
             const bool empty = content == true || (content.is_array() && content.empty());
             if (!empty) continue;
             root_.warn(
-                fmt::format("an extension {} is {} instead of an object; an empty one is "
-                            "taken",
+                fmt::format("an extension {} is {} instead of an object; an empty one is taken",
                             printable(name), content.dump()));
             content = json::object();
         }

@@ -33,7 +33,7 @@ struct GltfCheck {
     /// Number of things in the root array `kind` ("meshes" ...).
     [[nodiscard]] size_t count(const char* kind) const { return root.length(kind); }
     void warn(const JsonCursor& at, const std::string& message) {
-        source.warnings.push_back(at.path() + ": " + message);
+        source.warnings.add(at.path(), message);
     }
 };
 

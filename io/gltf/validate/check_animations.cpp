@@ -123,9 +123,8 @@ class ClipReader {
         if (lower(word) == "linear") return Interpolation::Linear;
         if (lower(word) == "step") return Interpolation::Step;
         if (lower(word) == "cubicspline") return Interpolation::CubicSpline;
-        sampler.fail(
-            "interpolation",
-            fmt::format("is \"{}\"; it must be LINEAR, STEP or CUBICSPLINE", printable(word)));
+        sampler.fail("interpolation", "is \"{}\"; it must be LINEAR, STEP or CUBICSPLINE",
+                     printable(word));
     }
 
     [[nodiscard]] Keyframes read_keys(const JsonCursor& sampler, const PropertyKind& kind) {
@@ -141,14 +140,14 @@ class ClipReader {
         keys.width = kind.width;
         const auto components = static_cast<size_t>(output.components);
         if (components != 1 && components != keys.width)  // numbers of keys would be mixed
-            sampler.fail("output", fmt::format("is an accessor of {}, not of {} numbers",
-                                               printable(output.type), kind.width));
+            sampler.fail("output", "is an accessor of {}, not of {} numbers",
+                         printable(output.type), kind.width);
         keys.values = numbers_of(output, sampler);
         const size_t parts = keys.interpolation == Interpolation::CubicSpline ? 3 : 1;
         const size_t needed = keys.times_s.size() * parts * keys.width;
         if (keys.values.size() < needed)
-            sampler.fail("output", fmt::format("holds {} numbers; {} keys need {}",
-                                               keys.values.size(), keys.times_s.size(), needed));
+            sampler.fail("output", "holds {} numbers; {} keys need {}", keys.values.size(),
+                         keys.times_s.size(), needed);
         if (keys.values.size() > needed)
             check_.warn(sampler, fmt::format("holds {} numbers in output, but {} keys need {}; "
                                              "those behind are not used",
@@ -157,8 +156,8 @@ class ClipReader {
             return !(std::fabs(x) <= std::numeric_limits<float>::max());
         });
         if (bad != keys.values.end())
-            sampler.fail("output", fmt::format("number {} is not finite",
-                                               std::distance(keys.values.begin(), bad)));
+            sampler.fail("output", "number {} is not finite",
+                         std::distance(keys.values.begin(), bad));
         return keys;
     }
 
@@ -178,20 +177,18 @@ class ClipReader {
         if (times_s.empty()) sampler.fail("input", "holds no keys");
         for (size_t i = 0; i < times_s.size(); ++i) {
             if (!std::isfinite(times_s[i]) || times_s[i] < 0)
-                sampler.fail("input", fmt::format("the time of key {} is not a number from 0", i));
+                sampler.fail("input", "the time of key {} is not a number from 0", i);
             if (i > 0 && times_s[i] < times_s[i - 1])
                 sampler.fail("input",
-                             fmt::format("key {} is before key {}: keys must come in the order of "
-                                         "their times",
-                                         i, i - 1));
+                             "key {} is before key {}: keys must come in the order of their times",
+                             i, i - 1);
         }
     }
 
     [[nodiscard]] const GltfAccessor& accessor(const JsonCursor& sampler, const char* key) const {
         const size_t index = sampler.required_index(key, check_.accessors.size(), "accessor");
         const GltfAccessor& found = check_.accessors[index];
-        if (found.components == 0)
-            sampler.fail(key, fmt::format("accessor {} has no type of numbers", index));
+        if (found.components == 0) sampler.fail(key, "accessor {} has no type of numbers", index);
         return found;
     }
 

@@ -27,8 +27,7 @@ Version read_version(const JsonCursor& asset, const char* key) {
     const bool has_dot = dot.ec == std::errc() && dot.ptr != end && *dot.ptr == '.';
     const auto last = has_dot ? std::from_chars(dot.ptr + 1, end, version.minor) : dot;
     if (!has_dot || last.ec != std::errc() || last.ptr != end)
-        asset.fail(
-            key, fmt::format("must be a version such as \"2.0\", but is \"{}\"", printable(text)));
+        asset.fail(key, "must be a version such as \"2.0\", but is \"{}\"", printable(text));
     return version;
 }
 
@@ -38,14 +37,12 @@ void check_asset(const GltfCheck& check) {
     const JsonCursor asset = check.root.object("asset");
     const Version version = read_version(asset, "version");
     if (version.major != 2)
-        asset.fail("version",
-                   fmt::format("is {}.{}; only glTF 2 can be read", version.major, version.minor));
+        asset.fail("version", "is {}.{}; only glTF 2 can be read", version.major, version.minor);
     if (!asset.has("minVersion")) return;
     const Version least = read_version(asset, "minVersion");
     if (least > version) asset.fail("minVersion", "is more than the version");
     if (least > Version{2, 0})
-        asset.fail("minVersion",
-                   fmt::format("is {}.{}; only glTF 2.0 can be read", least.major, least.minor));
+        asset.fail("minVersion", "is {}.{}; only glTF 2.0 can be read", least.major, least.minor);
 }
 
 void check_collections(const GltfCheck& check) {

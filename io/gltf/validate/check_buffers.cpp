@@ -46,8 +46,7 @@ std::span<const uint8_t> place_in_view(const GltfCheck& check, const JsonCursor&
                       (count - 1) <= (length - offset - last) / stride;
     if (!fits)
         user.fail(
-            fmt::format("{} elements of {} bytes from byte {} do not fit into the {} bytes "
-                        "of {}",
+            fmt::format("{} elements of {} bytes from byte {} do not fit into the {} bytes of {}",
                         count, stride, offset, length, view.path()));
     const auto bytes = view_bytes(check, view);
     return bytes.empty() ? bytes : bytes.subspan(offset);
@@ -104,8 +103,8 @@ class AccessorCheck {
         GltfSparse sparse;
         sparse.count = json.integer("count");
         if (sparse.count == 0 || sparse.count > accessor.count)
-            json.fail("count", fmt::format("must be from 1 to the accessor's {}, but is {}",
-                                           accessor.count, sparse.count));
+            json.fail("count", "must be from 1 to the accessor's {}, but is {}", accessor.count,
+                      sparse.count);
         const JsonCursor indices = json.object("indices");
         const uint64_t type = indices.integer("componentType");
         if (type != 5121 && type != 5123 && type != 5125)

@@ -45,14 +45,12 @@ class IndexCheck {
             (uint64_t(1) << 8 * component_size(check_.accessors[index].component_type)) - 1;
         if (found.value == restart)
             primitive.fail("indices",
-                           fmt::format("index {} of accessor {} has all bits set, which restarts "
-                                       "the primitive in other programs; use larger integers, or "
-                                       "leave the index out",
-                                       found.at, index));
+                           "index {} of accessor {} has all bits set, which restarts the primitive "
+                           "in other programs; use larger integers, or leave the index out",
+                           found.at, index);
         if (found.value >= vertices)
-            primitive.fail("indices",
-                           fmt::format("index {} of accessor {} is beyond the {} vertices",
-                                       found.at, index, vertices));
+            primitive.fail("indices", "index {} of accessor {} is beyond the {} vertices", found.at,
+                           index, vertices);
     }
 
     /// The greatest joint that has a weight at a vertex of the mesh; nothing where there is none.
@@ -115,8 +113,8 @@ void check_joints(const GltfCheck& check, const std::vector<std::optional<uint64
         if (!node.has("skin")) continue;
         const size_t skin = node.integer("skin"), mesh = node.integer("mesh");
         if (greatest[mesh] && *greatest[mesh] >= skins[skin].length("joints"))
-            node.fail("skin", fmt::format("mesh {} names a joint beyond the {} of skin {}", mesh,
-                                          skins[skin].length("joints"), skin));
+            node.fail("skin", "mesh {} names a joint beyond the {} of skin {}", mesh,
+                      skins[skin].length("joints"), skin);
     }
 }
 

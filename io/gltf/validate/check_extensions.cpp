@@ -134,11 +134,9 @@ void list_extensions(GltfCheck& check) {
 void check_extensions(const GltfCheck& check) {
     for (const ExtensionInFile& extension : check.source.extensions)
         if (extension.refused())
-            check.root.fail(
-                "extensionsRequired",
-                fmt::format("the file requires the extension {}, which is not "
-                            "supported; {}",
-                            printable(extension.name), gltf_extension_advice(extension.name)));
+            check.root.fail("extensionsRequired",
+                            "the file requires the extension {}, which is not supported; {}",
+                            printable(extension.name), gltf_extension_advice(extension.name));
 }
 
 }  // namespace petzval

@@ -33,11 +33,10 @@ void check_cube(const GltfCheck& check, const JsonCursor& light) {
         light.fail("specularImages", "must be an array of levels");
     for (size_t level = 0; level < levels.size(); ++level) {
         if (!levels[level].is_array() || levels[level].size() != 6)
-            light.fail("specularImages", fmt::format("level {} must name 6 images", level));
+            light.fail("specularImages", "level {} must name 6 images", level);
         for (const json& image : levels[level])
             if (!image.is_number_unsigned() || image.get<uint64_t>() >= images)
-                light.fail("specularImages",
-                           fmt::format("level {} names an image that is not there", level));
+                light.fail("specularImages", "level {} names an image that is not there", level);
     }
 }
 

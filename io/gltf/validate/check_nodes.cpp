@@ -90,13 +90,11 @@ class NodeCheck {
             if (accessor.type != type ||
                 (component != "float" &&
                  !(turns && (component == "int8n" || component == "int16n"))))
-                attributes->fail(
-                    name,
-                    fmt::format("is {} of {}, not {} of floats{}", printable(accessor.type),
-                                component, type, turns ? ", or of normalized int8 or int16" : ""));
+                attributes->fail(name, "is {} of {}, not {} of floats{}", printable(accessor.type),
+                                 component, type, turns ? ", or of normalized int8 or int16" : "");
             if (count.value_or(accessor.count) != accessor.count)
-                attributes->fail(name, fmt::format("has {} elements, but another attribute has {}",
-                                                   accessor.count, *count));
+                attributes->fail(name, "has {} elements, but another attribute has {}",
+                                 accessor.count, *count);
             count = accessor.count;
             stored |= !accessor.bytes.empty();
         }
@@ -113,17 +111,16 @@ class NodeCheck {
     void warn_of_own(const JsonCursor& attributes) {
         for (const auto& [name, unused] : attributes.value().items())
             if (name != "TRANSLATION" && name != "ROTATION" && name != "SCALE")
-                check_.warn(attributes, printable(name) +
-                                            " is an attribute of the file's own; it is "
-                                            "ignored");
+                check_.warn(attributes,
+                            printable(name) + " is an attribute of the file's own; it is ignored");
     }
 
     void link_children(size_t index) {
         children_[index] = nodes_[index].indices("children", nodes_.size(), "node");
         for (size_t child : children_[index]) {
             if (parent_[child])
-                nodes_[index].fail("children", fmt::format("node {} is a child of node {} already",
-                                                           child, *parent_[child]));
+                nodes_[index].fail("children", "node {} is a child of node {} already", child,
+                                   *parent_[child]);
             parent_[child] = index;
         }
     }
@@ -156,10 +153,10 @@ class NodeCheck {
         (void)scene_extras(scene);
         for (size_t node : scene.indices("nodes", nodes_.size(), "node"))
             if (parent_[node])
-                check_.source.warnings.push_back(
-                    fmt::format("{}/nodes: node {} is not a root, but a child of node {}; it is "
-                                "shown once",
-                                scene.path(), node, *parent_[node]));
+                check_.source.warnings.add(
+                    scene.path_of("nodes"),
+                    "node {} is not a root, but a child of node {}; it is shown once", node,
+                    *parent_[node]);
     }
 
     GltfCheck& check_;
@@ -177,8 +174,7 @@ void check_inverse_bind_matrices(const GltfCheck& check, const JsonCursor& skin,
     if (matrices.type != "MAT4" || matrices.component_type != 5126)
         skin.fail("inverseBindMatrices", "must be MAT4 of floats");
     if (matrices.count < joints)
-        skin.fail("inverseBindMatrices",
-                  fmt::format("has {} matrices for {} joints", matrices.count, joints));
+        skin.fail("inverseBindMatrices", "has {} matrices for {} joints", matrices.count, joints);
 }
 
 }  // namespace

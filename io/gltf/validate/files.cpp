@@ -52,10 +52,9 @@ class Fetcher {
         auto data = parse_data_uri(uri);
         if (!data) owner.fail("uri", "is not a valid data URI; it must hold base64");
         if (!types.empty() && std::find(types.begin(), types.end(), data->mime_type) == types.end())
-            source_.warnings.push_back(
-                fmt::format("{}: holds \"{}\" instead of {}; it is read "
-                            "all the same",
-                            owner.path_of("uri"), printable(data->mime_type), types.front()));
+            source_.warnings.add(owner.path_of("uri"),
+                                 "holds \"{}\" instead of {}; it is read all the same",
+                                 printable(data->mime_type), types.front());
         return std::move(data->bytes);
     }
 
@@ -63,31 +62,29 @@ class Fetcher {
                     const char* dispensable = nullptr) {
         const auto path = relative_path(uri);
         if (!path && dispensable) {
-            source_.warnings.push_back(
-                fmt::format("{}: \"{}\" is not a relative path to a file; {} is left out",
-                            owner.path_of("uri"), printable(uri), dispensable));
+            source_.warnings.add(owner.path_of("uri"),
+                                 "\"{}\" is not a relative path to a file; {} is left out",
+                                 printable(uri), dispensable);
             return {};
         }
         if (!path)
-            owner.fail("uri", fmt::format("\"{}\" is not a relative path to a file; network and "
-                                          "absolute addresses are not read",
-                                          printable(uri)));
+            owner.fail("uri",
+                       "\"{}\" is not a relative path to a file; network and "
+                       "absolute addresses are not read",
+                       printable(uri));
         const std::filesystem::path folder = source_.path.parent_path(), full = folder / *path;
         if (source_.scope == FileScope::Confined && !lies_within(full, folder))
-            owner.fail("uri",
-                       fmt::format("\"{}\" {}", printable(*path),
-                                   is_link_loop(full) ? "is a link that leads back to itself"
-                                                      : "lies outside the folder of the scene, and "
-                                                        "--confine allows no file there"));
+            owner.fail("uri", "\"{}\" {}", printable(*path),
+                       is_link_loop(full) ? "is a link that leads back to itself"
+                                          : "lies outside the folder of the scene, and "
+                                            "--confine allows no file there");
         FileBytes file = read_file(full);
         if (dispensable && file.error == "no such file") {
-            source_.warnings.push_back(fmt::format("{}: there is no file \"{}\"; {} is left out",
-                                                   owner.path_of("uri"), printable(*path),
-                                                   dispensable));
+            source_.warnings.add(owner.path_of("uri"), "there is no file \"{}\"; {} is left out",
+                                 printable(*path), dispensable);
             return {};
         }
-        if (!file.error.empty())
-            owner.fail("uri", fmt::format("\"{}\": {}", printable(*path), file.error));
+        if (!file.error.empty()) owner.fail("uri", "\"{}\": {}", printable(*path), file.error);
         if (!times_read_.contains(*path)) source_.files.push_back(full);
         count(*path, file.bytes, owner);
         return std::move(file.bytes);
@@ -125,11 +122,11 @@ bool is_fallback(const JsonCursor& buffer) {
 void mend_length(GltfSource& source, size_t index, const JsonCursor& buffer, size_t size) {
     const uint64_t length = buffer.integer_or("byteLength", size);
     if (buffer.has("byteLength") && length <= size) return;
-    source.warnings.push_back(
-        buffer.has("byteLength")
-            ? fmt::format("{}: byteLength is {}, but there are {} bytes", buffer.path(), length,
-                          size)
-            : fmt::format("{}: has no byteLength; there are {} bytes", buffer.path(), size));
+    if (buffer.has("byteLength"))
+        source.warnings.add(buffer.path(), "byteLength is {}, but there are {} bytes", length,
+                            size);
+    else
+        source.warnings.add(buffer.path(), "has no byteLength; there are {} bytes", size);
     source.json["buffers"][index]["byteLength"] = size;
 }
 
@@ -138,7 +135,7 @@ Bytes bytes_from_view(GltfSource& source, const std::vector<JsonCursor>& views,
     const JsonCursor& view = views[owner.required_index("bufferView", views.size(), "bufferView")];
     const Bytes& buffer = source.buffers[view.integer("buffer")];
     if (buffer.empty()) {
-        source.warnings.push_back(owner.path() + ": lies in a buffer without data; left empty");
+        source.warnings.add(owner.path(), "lies in a buffer without data; left empty");
         return {};
     }
     const uint64_t offset = view.integer_or("byteOffset", 0), length = view.integer("byteLength");
@@ -167,7 +164,7 @@ void read_buffers(GltfSource& source, const GltfContainer& container, GltfBudget
             buffer.fail("has no uri, and the file has no BIN chunk; the file is cut short");
         else {
             source.buffers.emplace_back();
-            source.warnings.push_back(buffer.path() + ": has no data; reads as zeros");
+            source.warnings.add(buffer.path(), "has no data; reads as zeros");
             (void)buffer.integer("byteLength");
             continue;
         }
@@ -184,7 +181,7 @@ void read_images(GltfSource& source, const GltfUse& use, GltfBudget& budget) {
         const bool used = use.images[source.images.size()];
         source.images.emplace_back();
         if (!image.has("uri") && !image.has("bufferView")) {
-            source.warnings.push_back(image.path() + ": has neither a uri nor a bufferView");
+            source.warnings.add(image.path(), "has neither a uri nor a bufferView");
             continue;
         }
         try {
@@ -192,7 +189,7 @@ void read_images(GltfSource& source, const GltfUse& use, GltfBudget& budget) {
                                                     : bytes_from_view(source, views, image, budget);
         } catch (const InputError&) {
             if (used) throw;
-            source.warnings.push_back(image.path() + ": is broken, but nothing needs it");
+            source.warnings.add(image.path(), "is broken, but nothing needs it");
         }
     }
 }

@@ -46,11 +46,9 @@ std::string foreign_scene_advice(const std::filesystem::path& file) {
     for (const ForeignFormat& format : kFormats) {
         if (format.ending != ending) continue;
         return fmt::format(
-            "is a file of {} by its ending; scenes are read as glTF 2.0, .gltf or "
-            ".glb: {}",
+            "is a file of {} by its ending; scenes are read as glTF 2.0, .gltf or .glb: {}",
             format.name,
-            format.opens ? "open it or import it in Blender, then File > Export > "
-                           "glTF 2.0"
+            format.opens ? "open it or import it in Blender, then File > Export > glTF 2.0"
                          : "export it as that from a program that opens it");
     }
     return "";

@@ -45,9 +45,8 @@ class Splitter {
                                 bytes_.size()));
         const uint32_t version = word_at(bytes_, 4), length = word_at(bytes_, 8);
         if (version != 2)
-            throw InputError(
-                file_, "byte 4",
-                fmt::format("is a container of version {}; only 2 can be read", version));
+            throw InputError(file_, "byte 4", "is a container of version {}; only 2 can be read",
+                             version);
         if (length > bytes_.size() || length < header_size + chunk_header_size)
             fail(8, fmt::format("the header promises {} bytes, the file has {}", length,
                                 bytes_.size()));

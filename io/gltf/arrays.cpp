@@ -3,7 +3,6 @@
 
 #include <tiny_gltf.h>
 
-#include <cstring>
 #include <functional>
 
 #include "io/gltf/validate/accessor.h"
@@ -16,32 +15,6 @@ struct Elements {
     const uint8_t* first = nullptr;
     size_t stride = 0, count = 0;
 };
-
-template <class T>
-T load(const uint8_t* bytes) {
-    T value;
-    std::memcpy(&value, bytes, sizeof value);  // accessors need not be aligned in memory
-    return value;
-}
-
-/// Calls visit with a value of the component's C++ type, so that loops are compiled for each.
-template <class Visit>
-void with_component_type(int component_type, Visit&& visit) {
-    switch (component_type) {
-        case TINYGLTF_COMPONENT_TYPE_BYTE:
-            return visit(int8_t{});
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-            return visit(uint8_t{});
-        case TINYGLTF_COMPONENT_TYPE_SHORT:
-            return visit(int16_t{});
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-            return visit(uint16_t{});
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-            return visit(uint32_t{});
-        default:
-            return visit(float{});
-    }
-}
 
 /// Decodes into rows of `row` numbers each, element i into row slot(i).
 template <class T, class Number, class Slot>
@@ -127,50 +100,41 @@ class Reader {
     int width_;
 };
 
+/// All elements, each a row of numbers; `undefined` is what one reads as that the file leaves out.
+template <class Number, class Row>
+std::vector<Row> read_rows(const Reader& reader, const Row& undefined) {
+    std::vector<Row> rows(reader.count(), undefined);
+    reader.read(reinterpret_cast<Number*>(rows.data()), sizeof(Row) / sizeof(Number));
+    return rows;
+}
+
 }  // namespace
 
 std::vector<V2f> read_vec2(const GltfModel& gltf, int accessor) {
-    const Reader reader(gltf, accessor);
-    std::vector<V2f> values(reader.count(), V2f(0.f));
-    if (!values.empty()) reader.read(values.front().getValue(), 2);
-    return values;
+    return read_rows<float>(Reader(gltf, accessor), V2f(0.f));
 }
 
 std::vector<V3f> read_vec3(const GltfModel& gltf, int accessor) {
-    const Reader reader(gltf, accessor);
-    std::vector<V3f> values(reader.count(), V3f(0.f));
-    if (!values.empty()) reader.read(values.front().getValue(), 3);
-    return values;
+    return read_rows<float>(Reader(gltf, accessor), V3f(0.f));
 }
 
 std::vector<V4f> read_vec4(const GltfModel& gltf, int accessor) {
     const Reader reader(gltf, accessor);
-    std::vector<V4f> values(reader.count(), V4f(0.f, 0.f, 0.f, reader.width() == 3 ? 1.f : 0.f));
-    if (!values.empty()) reader.read(&values.front().x, 4);
-    return values;
+    return read_rows<float>(reader, V4f(0.f, 0.f, 0.f, reader.width() == 3 ? 1.f : 0.f));
 }
 
 std::vector<M44d> read_matrices(const GltfModel& gltf, int accessor) {
-    const Reader reader(gltf, accessor);
-    std::vector<M44d> values(reader.count(), M44d(0.0));
     // Columns of a matrix for column vectors, as the file has them, are rows of one for row
     // vectors.
-    if (!values.empty()) reader.read(values.front().getValue(), 16);
-    return values;
+    return read_rows<double>(Reader(gltf, accessor), M44d(0.0));
 }
 
 std::vector<uint32_t> read_indices(const GltfModel& gltf, int accessor) {
-    const Reader reader(gltf, accessor);
-    std::vector<uint32_t> values(reader.count(), 0u);
-    if (!values.empty()) reader.read(values.data(), 1);
-    return values;
+    return read_rows<uint32_t>(Reader(gltf, accessor), uint32_t{0});
 }
 
 std::vector<std::array<uint32_t, 4>> read_joints(const GltfModel& gltf, int accessor) {
-    const Reader reader(gltf, accessor);
-    std::vector<std::array<uint32_t, 4>> values(reader.count());
-    if (!values.empty()) reader.read(values.front().data(), 4);
-    return values;
+    return read_rows<uint32_t>(Reader(gltf, accessor), std::array<uint32_t, 4>{});
 }
 
 }  // namespace petzval

@@ -1,18 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/gltf/validate/accessor.h"
 
-#include <cstring>
-
 namespace petzval {
 namespace {
-
-/// glTF is little-endian, and so is every machine that this program is built for.
-template <class T>
-T load(const uint8_t* at) {
-    T value;
-    std::memcpy(&value, at, sizeof value);
-    return value;
-}
 
 uint32_t load_unsigned(const uint8_t* at, int component_type) {
     if (component_type == 5121) return *at;
@@ -20,20 +10,9 @@ uint32_t load_unsigned(const uint8_t* at, int component_type) {
 }
 
 double load_number(const uint8_t* at, int component_type, bool normalised) {
-    switch (component_type) {
-        case 5120:
-            return component_value<double>(load<int8_t>(at), normalised);
-        case 5121:
-            return component_value<double>(load<uint8_t>(at), normalised);
-        case 5122:
-            return component_value<double>(load<int16_t>(at), normalised);
-        case 5123:
-            return component_value<double>(load<uint16_t>(at), normalised);
-        case 5125:
-            return component_value<double>(load<uint32_t>(at), normalised);
-        default:
-            return component_value<double>(load<float>(at), normalised);
-    }
+    return with_component_type(component_type, [&](auto type) {
+        return component_value<double>(load<decltype(type)>(at), normalised);
+    });
 }
 
 /// Calls put(element, address) for every element that has data, sparse ones last.

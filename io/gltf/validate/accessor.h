@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <optional>
 #include <span>
@@ -66,6 +67,34 @@ template <class Number, class T>
             return std::max(Number(raw) / Number(std::numeric_limits<T>::max()), Number(-1));
     }
     return static_cast<Number>(raw);
+}
+
+/// A number at an address that need not be aligned. glTF is little-endian, and so is every machine
+/// that this program is built for.
+template <class T>
+[[nodiscard]] T load(const uint8_t* at) {
+    T value;
+    std::memcpy(&value, at, sizeof value);
+    return value;
+}
+
+/// Calls visit with a value of the component's C++ type, so that loops are compiled for each.
+template <class Visit>
+decltype(auto) with_component_type(int component_type, Visit&& visit) {
+    switch (component_type) {
+        case 5120:
+            return visit(int8_t{});
+        case 5121:
+            return visit(uint8_t{});
+        case 5122:
+            return visit(int16_t{});
+        case 5123:
+            return visit(uint16_t{});
+        case 5125:
+            return visit(uint32_t{});
+        default:
+            return visit(float{});
+    }
 }
 
 /// All components of an accessor, sparse ones replaced, normalised ones as above.

@@ -8,15 +8,13 @@
 
 #include "io/base/ascii.h"
 #include "io/base/json_parse.h"
+#include "io/gltf/mend/material_properties.h"
 #include "io/gltf/mend/mend.h"
 
 namespace petzval {
 namespace {
 
 using nlohmann::json;
-
-constexpr Range kUnit = {0, 1};
-constexpr Range kNotNegative = {0, std::numeric_limits<float>::max()};
 
 /// Fills up a list of numbers that is one short, and cuts off those that are too many.
 void mend_length(const JsonEditor& owner, const char* key, size_t count, double last) {
@@ -79,10 +77,7 @@ void mend_slots(const JsonEditor& owner) {
         owner.drop(key.c_str(), "names no texture; the slot is left without");
 }
 
-void mend_volume(const JsonEditor& volume) {
-    volume.clamp("thicknessFactor", kNotNegative);
-    mend_length(volume, "attenuationColor", 3, 1);
-    volume.clamp_each("attenuationColor", kUnit);
+void mend_distance(const JsonEditor& volume) {
     const json* distance = volume.find("attenuationDistance");
     if (distance && distance->is_number() && distance->get<double>() <= 0)
         volume.drop("attenuationDistance",
@@ -94,56 +89,19 @@ void mend_ior(const JsonEditor& extension) {
     if (ior && ior->is_number() && *ior != 0) extension.clamp("ior", {1, kNotNegative.high});
 }
 
-void mend_film(const JsonEditor& film) {
-    film.clamp("iridescenceFactor", kUnit);
-    film.clamp("iridescenceIor", {1, kNotNegative.high});
-    film.clamp("iridescenceThicknessMinimum", kNotNegative);
-    film.clamp("iridescenceThicknessMaximum", kNotNegative);
-}
-
-void mend_layers(const JsonEditor& material) {
-    const auto factors = [&](const char* extension, std::initializer_list<const char*> names) {
-        if (const auto layer = material.extension(extension))
-            for (const char* const name : names) layer->clamp(name, kUnit);
-    };
-    const auto colour = [&](const char* extension, const char* name) {
-        if (const auto layer = material.extension(extension)) {
-            mend_length(*layer, name, 3, 1);
-            layer->clamp_each(name, kUnit);
-        }
-    };
-    factors("KHR_materials_clearcoat", {"clearcoatFactor", "clearcoatRoughnessFactor"});
-    factors("KHR_materials_sheen", {"sheenRoughnessFactor"});
-    colour("KHR_materials_sheen", "sheenColorFactor");
-    factors("KHR_materials_anisotropy", {"anisotropyStrength"});
-    factors("KHR_materials_diffuse_transmission", {"diffuseTransmissionFactor"});
-    colour("KHR_materials_diffuse_transmission", "diffuseTransmissionColorFactor");
-    if (const auto film = material.extension("KHR_materials_iridescence")) mend_film(*film);
-}
-
 void mend_extensions(const JsonEditor& material) {
-    const auto with = [&](const char* name, auto mend) {
-        if (const auto extension = material.extension(name)) mend(*extension);
-    };
-    with("KHR_materials_dispersion", [](const auto& e) { e.clamp("dispersion", kNotNegative); });
-    with("KHR_materials_emissive_strength",
-         [](const auto& e) { e.clamp("emissiveStrength", kNotNegative); });
-    with("KHR_materials_transmission", [](const auto& e) { e.clamp("transmissionFactor", kUnit); });
-    with("KHR_materials_specular", [](const auto& e) {
-        e.clamp("specularFactor", kUnit);
-        mend_length(e, "specularColorFactor", 3, 1);
-        e.clamp_each("specularColorFactor", kNotNegative);
-    });
-    with("KHR_materials_pbrSpecularGlossiness", [](const auto& e) {
-        mend_length(e, "diffuseFactor", 4, 1);
-        e.clamp_each("diffuseFactor", kUnit);
-        mend_length(e, "specularFactor", 3, 1);
-        e.clamp_each("specularFactor", kUnit);
-        e.clamp("glossinessFactor", kUnit);
-    });
-    with("KHR_materials_volume", mend_volume);
-    with("KHR_materials_ior", mend_ior);
-    mend_layers(material);
+    for (const auto& [name, key, count, range] : kMaterialProperties) {
+        const auto extension = material.extension(name);
+        if (!extension) continue;
+        if (count == 1) {
+            extension->clamp(key, range);
+        } else {
+            mend_length(*extension, key, count, 1);
+            extension->clamp_each(key, range);
+        }
+    }
+    if (const auto volume = material.extension("KHR_materials_volume")) mend_distance(*volume);
+    if (const auto ior = material.extension("KHR_materials_ior")) mend_ior(*ior);
     json* extensions = material.find("extensions");
     if (!extensions || !extensions->is_object()) return;
     for (const auto& [name, unused] : extensions->items())

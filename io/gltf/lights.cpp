@@ -22,15 +22,14 @@ std::optional<V3f> forward(const M44d& to_world) {
     return V3f(z / -length);
 }
 
+Rgb colour_of(const tinygltf::Light& light) {
+    const auto& c = light.color;
+    return c.size() == 3 ? Rgb(float(c[0]), float(c[1]), float(c[2])) : Rgb(1.f);
+}
+
 std::optional<Light> make_light(const tinygltf::Light& light, const M44d& to_world) {
     const V3f position(row(to_world, 3));
-    const auto intensity = static_cast<float>(light.intensity);
-    Rgb colour(1.f);
-    if (light.color.size() == 3)
-        colour = {static_cast<float>(light.color[0]), static_cast<float>(light.color[1]),
-                  static_cast<float>(light.color[2])};
-    colour = colour * intensity;
-
+    const Rgb colour = colour_of(light) * static_cast<float>(light.intensity);
     if (light.type == "point") return PointLight{position, colour};
     const std::optional<V3f> direction = forward(to_world);
     if (!direction) return {};
@@ -49,12 +48,11 @@ void widen(Light& light, const JsonCursor& json, GltfTally& tally) {
     auto* const sun = std::get_if<SunLight>(&light);
     constexpr float least_deg = 0.01f;  // floats hardly tell directions of less apart
     if (!sun) {
-        tally.warnings.push_back(json.path() +
-                                 ": only a directional light has a use for angle_deg");
+        tally.warnings.add(json.path(), "only a directional light has a use for angle_deg");
     } else if (angle_deg < least_deg) {
-        tally.warnings.push_back(json.path() +
-                                 ": its angle_deg is too small for a disc; it is "
-                                 "rendered as a point of the sky");
+        tally.warnings.add(json.path(),
+                           "its angle_deg is too small for a disc; it is "
+                           "rendered as a point of the sky");
     } else {
         const double half_sine = std::sin(double(angle_deg) * double(kPi) / 180 / 4);
         sun->versine = static_cast<float>(2 * half_sine * half_sine);
@@ -87,24 +85,20 @@ std::optional<BallLamp> as_ball(const Light& light, const JsonCursor& json, cons
     const auto* const point = std::get_if<PointLight>(&light);
     const auto* const spot = std::get_if<SpotLight>(&light);
     if (!point && !spot) {
-        tally.warnings.push_back(json.path() + ": a directional light has no use for a radius");
+        tally.warnings.add(json.path(), "a directional light has no use for a radius");
         return {};
     }
     BallLamp lamp;
-    if (point)
-        lamp = {point->position, radius_m, point->intensity_cd, point->illuminant, {}, {}};
-    else
-        lamp = {spot->position,
-                radius_m,
-                spot->intensity_cd,
-                spot->illuminant,
-                Beam{spot->direction, spot->cos_inner, spot->cos_outer},
-                {}};
+    const auto take = [&](const auto& from) {
+        lamp = {from.position, radius_m, from.intensity_cd, from.illuminant, {}, {}};
+    };
+    point ? take(*point) : take(*spot);
+    if (spot) lamp.beam = Beam{spot->direction, spot->cos_inner, spot->cos_outer};
     lamp.unseen = is_unseen(json);
     if (!can_be_ball(lamp.centre, radius_m, lamp.intensity_cd)) {
-        tally.warnings.push_back(node +
-                                 ": its light's radius is too small for where it stands or "
-                                 "how bright it is; it is rendered as a point");
+        tally.warnings.add(node,
+                           "its light's radius is too small for where it stands or "
+                           "how bright it is; it is rendered as a point");
         return {};
     }
     ++(point ? tally.point_lamps : tally.spot_lamps);
@@ -121,9 +115,9 @@ void warn_of_turning(const std::vector<M44d>& places, int node, const std::optio
         return direction && (*direction - beam->direction).length() > same;
     };
     if (beam && std::any_of(places.begin(), places.end(), turns))
-        tally.warnings.push_back(json_path("nodes", node) +
-                                 ": its light has a size: while it turns, its beam shines as in "
-                                 "the middle of the exposure");
+        tally.warnings.add(json_path("nodes", node),
+                           "its light has a size: while it turns, its beam shines as in "
+                           "the middle of the exposure");
 }
 
 // Makes a ball move as its node does.
@@ -210,9 +204,9 @@ void zoom(const NodeMotion& motion, int number, GltfCamera& camera, GltfTally& t
     double most = 0;
     for (const double value : *values) {
         if (!camera.orthographic && !(value > 0 && value < double(kPi))) {
-            tally.warnings.push_back(place +
-                                     ": its yfov leaves 0 to 180 degrees while the shutter is "
-                                     "open; it stays as in the middle of the exposure");
+            tally.warnings.add(place,
+                               "its yfov leaves 0 to 180 degrees while the shutter is "
+                               "open; it stays as in the middle of the exposure");
             tally.held.insert("views of cameras");
             return;
         }
@@ -243,9 +237,7 @@ FlatLamp flat_lamp(const GltfModel& gltf, const JsonCursor& node, const AreaExtr
             node.fail(
                 "has an area and a directional light, which has none; give the light an "
                 "\"angle_deg\" in its extras.petzval");
-        if (light.color.size() == 3)
-            for (int i = 0; i < 3; ++i)
-                color.v[i] = static_cast<float>(light.color[static_cast<size_t>(i)]);
+        color = colour_of(light);
         intensity_cd = static_cast<float>(light.intensity);
         lamp.illuminant = spectral.illuminant(lights[number]);
         lamp.unseen |= is_unseen(lights[number]);
@@ -292,9 +284,9 @@ std::vector<FlatLamp> read_flat_lamps(const GltfModel& gltf, const GltfNodes& no
         const auto place = rigid(nodes.to_world[index]);
         if (place) lamp.to_world = *place;
         if (!place || is_almost_point(lamp)) {
-            tally.warnings.push_back(node.path() +
-                                     ": its area lamp is left out, as it is too small for where "
-                                     "it stands or how bright it is, or scaled to nothing");
+            tally.warnings.add(node.path(),
+                               "its area lamp is left out, as it is too small for where "
+                               "it stands or how bright it is, or scaled to nothing");
             continue;
         }
         move_flat(motion, number, lamp, tally);
@@ -340,7 +332,7 @@ std::vector<BallLamp> read_lights(const GltfModel& gltf, const GltfNodes& nodes,
                 });
             }
         } else {
-            tally.warnings.push_back(json_path("nodes", node) + ": its light is left out");
+            tally.warnings.add(json_path("nodes", node), "its light is left out");
         }
     }
     return lamps;
@@ -380,9 +372,8 @@ std::vector<GltfCamera> read_cameras(const GltfModel& gltf, const GltfNodes& nod
         if (is_usable(camera))
             cameras.push_back(camera);
         else
-            tally.warnings.push_back(json_path("cameras", node.camera) +
-                                     ": left out, as its view "
-                                     "cannot be drawn");
+            tally.warnings.add(json_path("cameras", node.camera),
+                               "left out, as its view cannot be drawn");
     }
     return cameras;
 }

@@ -42,6 +42,13 @@ std::vector<double> list(const json& owner, const char* key) {
     return numbers.is_array() ? numbers.get<std::vector<double>>() : std::vector<double>();
 }
 
+/// Value of a key; nullptr where there is none.
+template <class Map>
+const typename Map::mapped_type* found_in(const Map& map, const typename Map::key_type& key) {
+    const auto at = map.find(key);
+    return at == map.end() ? nullptr : &at->second;
+}
+
 size_t segments_for(size_t moving_nodes) {
     size_t segments = kMostSegments;
     while (segments > 2 && double(segments) * double(moving_nodes) * sizeof(M44d) > kMostBytes)
@@ -75,18 +82,18 @@ bool changes(const All& all) {
     });
 }
 
+/// Time within a clip at a share of the exposure, from -0.5 as the shutter opens to 0.5.
+double local_s(const GltfClip& clip, const AnimationChoice& choice, double share) {
+    return clip.local_s(choice.time_s + share * choice.open_s, choice.time_s, choice.repeats);
+}
+
 /// The part of a clip that is played while the shutter is open.
 struct Reach {
     double first_s, last_s;
     bool wraps;  ///< over the end of the clip, so that all of it may be met
 
-    Reach(const GltfClip& clip, const AnimationChoice& choice) {
-        const auto local_s = [&](double share) {
-            return clip.local_s(choice.time_s + share * choice.open_s, choice.time_s,
-                                choice.repeats);
-        };
-        first_s = local_s(-0.5);
-        last_s = local_s(0.5);
+    Reach(const GltfClip& clip, const AnimationChoice& choice)
+        : first_s(local_s(clip, choice, -0.5)), last_s(local_s(clip, choice, 0.5)) {
         wraps =
             choice.repeats && clip.closed && (last_s < first_s || choice.open_s >= clip.duration_s);
     }
@@ -130,8 +137,7 @@ bool changes_while_open(const Keyframes& keys, const GltfClip& clip,
     std::vector<std::vector<double>> values;
     for (size_t i = 0; i <= kMostSegments; ++i) {
         const double share = double(i) / double(kMostSegments) - 0.5;
-        values.push_back(keys.at(
-            clip.local_s(choice.time_s + share * choice.open_s, choice.time_s, choice.repeats)));
+        values.push_back(keys.at(local_s(clip, choice, share)));
     }
     const Reach reach(clip, choice);
     for (const double key_s : keys.times_s)
@@ -156,19 +162,19 @@ class NodeMotion::Player {
     [[nodiscard]] const json& node(int index) const { return nodes()[static_cast<size_t>(index)]; }
     /// Tracks that place a node; nullptr where it is not moved by itself.
     [[nodiscard]] const Tracks* placing(int node) const {
-        const auto at = of_nodes_.find(node);
-        return at != of_nodes_.end() && at->second.moves() ? &at->second : nullptr;
+        const Tracks* const tracks = found_in(of_nodes_, node);
+        return tracks && tracks->moves() ? tracks : nullptr;
     }
     /// Tracks of the morph weights that a node shows: its own, else those of its mesh, where the
     /// node stores none that go before.
     [[nodiscard]] std::span<const Track> weighing(int index) const {
         const json& mesh = member(node(index), "mesh");
         if (mesh.is_null()) return {};
-        const auto own = of_nodes_.find(index);
-        if (own != of_nodes_.end() && !own->second.weights.empty()) return own->second.weights;
+        const Tracks* const own = found_in(of_nodes_, index);
+        if (own && !own->weights.empty()) return own->weights;
         if (node(index).contains("weights")) return {};
-        const auto of_mesh = of_meshes_.find(mesh.get<int>());
-        return of_mesh == of_meshes_.end() ? std::span<const Track>() : of_mesh->second.weights;
+        const Tracks* const of_mesh = found_in(of_meshes_, mesh.get<int>());
+        return of_mesh ? of_mesh->weights : std::span<const Track>();
     }
     /// Weights that a node shows in the middle.
     [[nodiscard]] std::vector<double> weights(int index) const {
@@ -181,8 +187,7 @@ class NodeMotion::Player {
     /// Values of a track at a step.
     [[nodiscard]] std::vector<double> at(const Track& track, size_t step) const {
         const double share = double(step) / double(steps_ - 1) - 0.5;
-        const double time_s = choice_.time_s + share * choice_.open_s;
-        return track.keys->at(track.clip->local_s(time_s, choice_.time_s, choice_.repeats));
+        return track.keys->at(local_s(*track.clip, choice_, share));
     }
     /// Writes the values of a track at a step, if it has keys.
     template <size_t N>
@@ -312,18 +317,15 @@ void NodeMotion::add_cameras(const Player& player) {
 }
 
 const std::vector<M44d>* NodeMotion::places(int node) const {
-    const auto at = places_.find(node);
-    return at == places_.end() ? nullptr : &at->second;
+    return found_in(places_, node);
 }
 
 const std::vector<std::vector<double>>* NodeMotion::weights(int node) const {
-    const auto at = weights_.find(node);
-    return at == weights_.end() ? nullptr : &at->second;
+    return found_in(weights_, node);
 }
 
 const std::vector<double>* NodeMotion::of_camera(const std::string& pointer) const {
-    const auto at = of_cameras_.find(pointer);
-    return at == of_cameras_.end() ? nullptr : &at->second;
+    return found_in(of_cameras_, pointer);
 }
 
 std::set<std::string> held_while_open(std::span<const GltfClip> clips,

@@ -14,6 +14,8 @@ using enum ExtensionUse;
 constexpr std::string_view kMetadata = "describes, and shows nothing";
 constexpr std::string_view kStill = "nothing moves in a picture";
 constexpr std::string_view kSound = "pictures are silent";
+constexpr std::string_view kDrawnLook = "drawn looks (MToon) are shaded as real surfaces";
+constexpr std::string_view kPacked = "the same textures stand in the core material";
 constexpr std::string_view kImageBeside = "textures show the images beside it";
 
 constexpr auto table = std::to_array<GltfExtension>({
@@ -77,20 +79,17 @@ constexpr auto table = std::to_array<GltfExtension>({
     {"KHR_xmp_json_ld", Harmless, kMetadata, ""},
     {"MSFT_audio_emitter", Harmless, kSound, ""},
     {"MSFT_lod", Harmless, "the finest level is shown", "nodes materials"},
-    {"MSFT_packing_normalRoughnessMetallic", Harmless,
-     "the same textures stand in the core material", "materials"},
-    {"MSFT_packing_occlusionRoughnessMetallic", Harmless,
-     "the same textures stand in the core material", "materials"},
+    {"MSFT_packing_normalRoughnessMetallic", Harmless, kPacked, "materials"},
+    {"MSFT_packing_occlusionRoughnessMetallic", Harmless, kPacked, "materials"},
     {"MSFT_screencoverage", Harmless, "the finest level is shown", ""},
     {"MSFT_texture_dds", Needed, kImageBeside, "textures"},
     {"NV_materials_mdl", Ignored, "surfaces have the simpler material beside it", ""},
     {"OMI_physics_body", Harmless, kStill, ""},
     {"OMI_physics_shape", Harmless, "shapes for physics are not seen", ""},
-    {"VRM", Ignored, "drawn looks (MToon) are shaded as real surfaces", "root"},
+    {"VRM", Ignored, kDrawnLook, "root"},
     {"VRMC_materials_hdr_emissiveMultiplier", Ignored, "glowing surfaces are dimmer or brighter",
      "materials"},
-    {"VRMC_materials_mtoon", Ignored, "drawn looks (MToon) are shaded as real surfaces",
-     "materials"},
+    {"VRMC_materials_mtoon", Ignored, kDrawnLook, "materials"},
     {"VRMC_node_constraint", Harmless, kStill, "nodes"},
     {"VRMC_springBone", Harmless, kStill, "root"},
     {"VRMC_vrm", Harmless, kMetadata, "root"},

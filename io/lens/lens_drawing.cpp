@@ -8,7 +8,7 @@
 #include "io/base/ascii.h"
 #include "io/base/atomic_file.h"
 #include "io/base/error.h"
-#include "io/base/printable.h"
+#include "io/base/xml_text.h"
 
 namespace petzval {
 namespace {
@@ -22,21 +22,6 @@ struct Bounds {
         top = std::max(top, std::abs(height));
     }
 };
-
-std::string escaped(const std::string& text) {
-    std::string out;
-    for (const char c : visible(text)) {
-        if (c == '&')
-            out += "&amp;";
-        else if (c == '<')
-            out += "&lt;";
-        else if (c == '>')
-            out += "&gt;";
-        else
-            out += c;
-    }
-    return out;
-}
 
 // Path data of an outline; SVG's y points down. 0 - h: no -0.0000.
 std::string path_data(const Outline& points, bool closed) {
@@ -114,7 +99,7 @@ std::string lens_svg(const Lens& lens, const LensDrawing& drawing) {
     out += fmt::format(
         "<text x=\"{:.4f}\" y=\"{:.4f}\" font-family=\"sans-serif\" font-size=\"{:.4f}\">{}"
         "</text>\n</svg>\n",
-        bounds.left + text, bounds.top + 1.2 * text, text, escaped(drawing.caption));
+        bounds.left + text, bounds.top + 1.2 * text, text, xml_text(drawing.caption));
     return out;
 }
 

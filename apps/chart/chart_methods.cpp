@@ -7,7 +7,6 @@
 
 #include "apps/chart/traversal_leaks.h"
 #include "apps/setup/equivalent_camera.h"
-#include "apps/setup/option_names.h"
 #include "camera/iris/iris.h"
 #include "core/film/spectral_film.h"
 #include "io/aperture/aperture_file.h"
@@ -46,8 +45,17 @@ class Cases {
     using Change = std::function<void(SceneRequest&, RenderJob&)>;
 
     void remark(std::string text) { case_.remarks.push_back(std::move(text)); }
-    void remark(const std::vector<std::string>& texts) {
-        case_.remarks.insert(case_.remarks.end(), texts.begin(), texts.end());
+    /// Request with a real lens, where wavelengths and rims ask for one: its own, else kChartLens.
+    SceneRequest with_lens(const ResolvedScene& found) {
+        SceneRequest request = found.request;
+        CameraRequest& camera = request.camera;
+        if (is_prescription(camera)) return request;
+        remark(fmt::format("No lens with a prescription was asked for: {} was taken", kChartLens));
+        camera.lens = kChartLens;
+        camera.fit = Fit::Lens;
+        camera.fov_deg = camera.focal_length_mm = camera.lens_radius_m = std::nullopt;
+        camera.film_distance_mm = std::nullopt;
+        return request;
     }
     void add(std::string name, const SceneRequest& base, const Change& change) {
         case_.methods.push_back(made(std::move(name), base, change));
@@ -55,7 +63,13 @@ class Cases {
     void reference(std::string name, const SceneRequest& base, const Change& change) {
         case_.reference = made(std::move(name), base, change);
     }
-    [[nodiscard]] ChartCase result() && { return std::move(case_); }
+    /// By independent points.
+    void independent_reference(const std::string& name, const SceneRequest& base,
+                               const Change& change) {
+        reference(name + ", independent points", base, change);
+        case_.reference.job.sampler = SamplerKind::Independent;
+    }
+    [[nodiscard]] std::vector<ChartCase> result() && { return {std::move(case_)}; }
 
   private:
     [[nodiscard]] ChartMethod made(std::string name, const SceneRequest& base,
@@ -69,30 +83,21 @@ class Cases {
     ChartCase case_;
 };
 
-/// Request with a real lens, where wavelengths and rims ask for one: its own, else kChartLens.
-SceneRequest with_lens(const ResolvedScene& found, std::vector<std::string>& remarks) {
-    SceneRequest request = found.request;
-    CameraRequest& camera = request.camera;
-    if (is_prescription(camera)) return request;
-    remarks.push_back(
-        fmt::format("No lens with a prescription was asked for: {} was taken", kChartLens));
-    camera.lens = kChartLens;
-    camera.fit = Fit::Lens;
-    camera.fov_deg = camera.focal_length_mm = camera.lens_radius_m = std::nullopt;
-    camera.film_distance_mm = std::nullopt;
-    return request;
+/// The lens of references, without the errors that a chart looks for.
+void split_in_doubles(SceneRequest& scene, RenderJob&) {
+    scene.camera.dispersion = DispersionMode::Split;
+    scene.camera.precision = Precision::Double;
 }
 
-ChartCase camera_case(const ResolvedScene& found, const RenderJob& job, const SetUpView& open) {
-    Cases cases(ChartAxis::Camera, job, "camera",
+std::vector<ChartCase> camera_cases(const ResolvedScene& found, const ChartSubject& subject,
+                                    const SetUpView& open) {
+    Cases cases(ChartAxis::Camera, subject.job, "camera",
                 "models of the camera against its lens (a bias is their point)");
-    std::vector<std::string> remarks;
-    SceneRequest lens = with_lens(found, remarks);
+    SceneRequest lens = cases.with_lens(found);
     const RenderSetup setup = open(lens);
     const CameraReport& report = setup.from.camera;
     lens.camera.focus = FocusDistance{report.focus_m};
     const SceneRequest thin = equivalent_thin_lens(lens, setup);
-    cases.remark(remarks);
     cases.remark(
         fmt::format("Pinhole, thin and singlet stand in the entrance pupil of the lens, "
                     "see {:.4g} degrees as it does when it is focused, and have its iris",
@@ -106,20 +111,16 @@ ChartCase camera_case(const ResolvedScene& found, const RenderJob& job, const Se
     cases.add("lens", lens,
               [](SceneRequest& s, RenderJob&) { s.camera.dispersion = DispersionMode::Hero; });
     cases.reference("the lens, wavelengths always split, rays followed in doubles", lens,
-                    [](SceneRequest& s, RenderJob&) {
-                        s.camera.dispersion = DispersionMode::Split;
-                        s.camera.precision = Precision::Double;
-                    });
+                    split_in_doubles);
     return std::move(cases).result();
 }
 
-ChartCase dispersion_case(const ResolvedScene& found, const RenderJob& job) {
-    Cases cases(ChartAxis::Dispersion, job, "dispersion",
+std::vector<ChartCase> dispersion_cases(const ResolvedScene& found, const ChartSubject& subject,
+                                        const SetUpView&) {
+    Cases cases(ChartAxis::Dispersion, subject.job, "dispersion",
                 "ways to carry wavelengths through the lens");
-    std::vector<std::string> remarks;
-    SceneRequest lens = with_lens(found, remarks);
+    SceneRequest lens = cases.with_lens(found);
     lens.spectral.mode = SpectralMode::Wavelengths;
-    cases.remark(remarks);
     const auto with = [](DispersionMode dispersion) {
         return [dispersion](SceneRequest& s, RenderJob&) { s.camera.dispersion = dispersion; };
     };
@@ -128,15 +129,13 @@ ChartCase dispersion_case(const ResolvedScene& found, const RenderJob& job) {
     cases.add("hero", lens, with(DispersionMode::Hero));
     cases.remark("shared is biased: it leaves out the colour errors of the lens");
     cases.reference("split, rays followed in doubles with the glasses' own formulas", lens,
-                    [](SceneRequest& s, RenderJob&) {
-                        s.camera.dispersion = DispersionMode::Split;
-                        s.camera.precision = Precision::Double;
-                    });
+                    split_in_doubles);
     return std::move(cases).result();
 }
 
-ChartCase spectral_case(const ResolvedScene& found, const RenderJob& job) {
-    Cases cases(ChartAxis::Spectral, job, "spectral", "what a path carries");
+std::vector<ChartCase> spectral_cases(const ResolvedScene& found, const ChartSubject& subject,
+                                      const SetUpView&) {
+    Cases cases(ChartAxis::Spectral, subject.job, "spectral", "what a path carries");
     const auto with = [](SpectralMode mode) {
         return [mode](SceneRequest& s, RenderJob&) { s.spectral.mode = mode; };
     };
@@ -149,11 +148,7 @@ ChartCase spectral_case(const ResolvedScene& found, const RenderJob& job) {
     });
     cases.remark("The bins are 35 of 10 nm");
     cases.remark("rgb is biased where light and reflectance multiply by wavelength");
-    cases.reference("wavelengths, independent points", found.request,
-                    [](SceneRequest& s, RenderJob& j) {
-                        s.spectral.mode = SpectralMode::Wavelengths;
-                        j.sampler = SamplerKind::Independent;
-                    });
+    cases.independent_reference("wavelengths", found.request, with(SpectralMode::Wavelengths));
     return std::move(cases).result();
 }
 
@@ -185,11 +180,8 @@ std::string write_mask(const std::filesystem::path& folder) {
     return path.string();
 }
 
-std::vector<ChartCase> iris_cases(const ResolvedScene& found, const ChartSubject& subject) {
-    std::vector<std::string> remarks;
-    SceneRequest lens = with_lens(found, remarks);
-    lens.camera.dispersion = DispersionMode::Shared;  // the iris is measured, not the glass
-    remarks.emplace_back("One ray for all wavelengths");
+std::vector<ChartCase> iris_cases(const ResolvedScene& found, const ChartSubject& subject,
+                                  const SetUpView&) {
     const std::vector<std::pair<std::string, std::string>> shapes{
         {"disk", "circle"},
         {"hexagon", "polygon:6"},
@@ -200,31 +192,32 @@ std::vector<ChartCase> iris_cases(const ResolvedScene& found, const ChartSubject
     for (const auto& [name, aperture] : shapes) {
         Cases cases(ChartAxis::Iris, subject.job, "iris-" + name,
                     "ways to draw points of the iris: " + name);
+        SceneRequest lens = cases.with_lens(found);
+        lens.camera.dispersion = DispersionMode::Shared;  // the iris is measured, not the glass
+        cases.remark("One ray for all wavelengths");
         lens.camera.aperture = aperture;
         // A sliver of the round stop's area would reach far beyond the stop's rim.
         const bool sliver = name == "sliver";
         lens.camera.aperture_scale = sliver ? ApertureScale::Inscribed : ApertureScale::EqualArea;
+        const auto by = [](IrisSampling way) {
+            return [way](SceneRequest& s, RenderJob&) { s.camera.iris_sampling = way; };
+        };
         for (const IrisSampling way : iris_samplings(parse_aperture(aperture)))
-            cases.add(petzval::name_of(way), lens,
-                      [way](SceneRequest& s, RenderJob&) { s.camera.iris_sampling = way; });
-        cases.remark(remarks);
+            cases.add(name_of(way), lens, by(way));
         if (sliver)
             cases.remark(
                 "1:1000 and aslant: rejection mostly gives up and falls back on triangles");
-        cases.reference(sliver ? "triangles, independent points" : "rejection, independent points",
-                        lens, [sliver](SceneRequest& s, RenderJob& j) {
-                            s.camera.iris_sampling =
-                                sliver ? IrisSampling::Triangles : IrisSampling::Rejection;
-                            j.sampler = SamplerKind::Independent;
-                        });
-        all.push_back(std::move(cases).result());
+        const IrisSampling simple = sliver ? IrisSampling::Triangles : IrisSampling::Rejection;
+        cases.independent_reference(name_of(simple), lens, by(simple));
+        all.push_back(std::move(cases).result().front());
         all.back().weight = 1. / static_cast<double>(shapes.size());
     }
     return all;
 }
 
-ChartCase sampler_case(const ResolvedScene& found, const RenderJob& job) {
-    Cases cases(ChartAxis::Sampler, job, "sampler", "sources of sample points");
+std::vector<ChartCase> sampler_cases(const ResolvedScene& found, const ChartSubject& subject,
+                                     const SetUpView&) {
+    Cases cases(ChartAxis::Sampler, subject.job, "sampler", "sources of sample points");
     for (const auto& [name, kind] :
          {std::pair{"independent", SamplerKind::Independent},
           std::pair{"sobol", SamplerKind::Sobol}, std::pair{"owen", SamplerKind::Owen}})
@@ -235,8 +228,9 @@ ChartCase sampler_case(const ResolvedScene& found, const RenderJob& job) {
     return std::move(cases).result();
 }
 
-ChartCase lights_case(const ResolvedScene& found, const RenderJob& job) {
-    Cases cases(ChartAxis::Lights, job, "lights", "ways to choose one of the lights");
+std::vector<ChartCase> lights_cases(const ResolvedScene& found, const ChartSubject& subject,
+                                    const SetUpView&) {
+    Cases cases(ChartAxis::Lights, subject.job, "lights", "ways to choose one of the lights");
     if (found.lights < 2) {
         cases.remark(fmt::format("Left out: the scene has {} light, and a choice needs two",
                                  found.lights == 0 ? "no" : "one"));
@@ -250,28 +244,21 @@ ChartCase lights_case(const ResolvedScene& found, const RenderJob& job) {
     cases.add("uniform", found.request, with(LightChoiceKind::Uniform));
     cases.add("power", found.request, with(LightChoiceKind::Power));
     cases.add("tree", found.request, with(LightChoiceKind::Tree));
-    cases.reference("by power, independent points", found.request,
-                    [](SceneRequest& s, RenderJob& j) {
-                        s.light_choice = LightChoiceKind::Power;
-                        j.sampler = SamplerKind::Independent;
-                    });
+    cases.independent_reference("by power", found.request, with(LightChoiceKind::Power));
     return std::move(cases).result();
 }
 
-ChartCase targets_case(const ResolvedScene& found, const RenderJob& job) {
-    Cases cases(ChartAxis::Targets, job, "targets", "camera rays to small lamps out of focus");
-    std::vector<std::string> remarks;
-    const SceneRequest lens = with_lens(found, remarks);
-    cases.remark(remarks);
+std::vector<ChartCase> targets_cases(const ResolvedScene& found, const ChartSubject& subject,
+                                     const SetUpView&) {
+    Cases cases(ChartAxis::Targets, subject.job, "targets",
+                "camera rays to small lamps out of focus");
+    const SceneRequest lens = cases.with_lens(found);
     const auto with = [](TargetUse use) {
         return [use](SceneRequest& s, RenderJob&) { s.targets = use; };
     };
     cases.add("off", lens, with(TargetUse::Off));
     cases.add("auto", lens, with(TargetUse::Auto));
-    cases.reference("without targets, independent points", lens, [](SceneRequest& s, RenderJob& j) {
-        s.targets = TargetUse::Off;
-        j.sampler = SamplerKind::Independent;
-    });
+    cases.independent_reference("without targets", lens, with(TargetUse::Off));
     return std::move(cases).result();
 }
 
@@ -294,14 +281,13 @@ std::string leak_count(const SceneRequest& request, const SetUpView& open) {
         rays.size(), robust, fast);
 }
 
-ChartCase precision_case(const ResolvedScene& found, const RenderJob& job, const SetUpView& open) {
-    Cases cases(ChartAxis::Precision, job, "precision",
+std::vector<ChartCase> precision_cases(const ResolvedScene& found, const ChartSubject& subject,
+                                       const SetUpView& open) {
+    Cases cases(ChartAxis::Precision, subject.job, "precision",
                 "floats and doubles in the lens, robust and fast traversal");
-    std::vector<std::string> remarks;
-    SceneRequest lens = with_lens(found, remarks);
+    SceneRequest lens = cases.with_lens(found);
     lens.camera.dispersion = DispersionMode::Shared;
-    remarks.emplace_back("One ray for all wavelengths");
-    cases.remark(remarks);
+    cases.remark("One ray for all wavelengths");
     cases.remark(leak_count(lens, open));
     const auto with = [](Precision precision, Traversal traversal) {
         return [=](SceneRequest& s, RenderJob&) {
@@ -312,71 +298,36 @@ ChartCase precision_case(const ResolvedScene& found, const RenderJob& job, const
     cases.add("float robust", lens, with(Precision::Float, Traversal::Robust));
     cases.add("double robust", lens, with(Precision::Double, Traversal::Robust));
     cases.add("float fast", lens, with(Precision::Float, Traversal::Fast));
-    cases.reference("double and robust, independent points", lens,
-                    [](SceneRequest& s, RenderJob& j) {
-                        s.camera.precision = Precision::Double;
-                        s.traversal = Traversal::Robust;
-                        j.sampler = SamplerKind::Independent;
-                    });
+    cases.independent_reference("double and robust", lens,
+                                with(Precision::Double, Traversal::Robust));
     return std::move(cases).result();
 }
 
+/// What makes the cases of an axis.
+struct Maker {
+    bool needs_lens;
+    std::vector<ChartCase> (*make)(const ResolvedScene&, const ChartSubject&, const SetUpView&);
+};
+/// In the order of ChartAxis.
+constexpr Maker kMakers[] = {{true, camera_cases},    {true, dispersion_cases},
+                             {false, spectral_cases}, {true, iris_cases},
+                             {false, sampler_cases},  {false, lights_cases},
+                             {true, targets_cases},   {true, precision_cases}};
+
 }  // namespace
-
-const std::vector<std::pair<std::string, ChartAxis>>& chart_axes() {
-    static const std::vector<std::pair<std::string, ChartAxis>> axes{
-        {"camera", ChartAxis::Camera},     {"dispersion", ChartAxis::Dispersion},
-        {"spectral", ChartAxis::Spectral}, {"iris", ChartAxis::Iris},
-        {"sampler", ChartAxis::Sampler},   {"lights", ChartAxis::Lights},
-        {"targets", ChartAxis::Targets},   {"precision", ChartAxis::Precision}};
-    return axes;
-}
-
-std::string name_of(ChartAxis axis) {
-    for (const auto& [word, one] : chart_axes())
-        if (one == axis) return word;
-    return {};
-}
 
 std::vector<ChartCase> chart_cases(const std::vector<ChartAxis>& axes, const ChartSubject& subject,
                                    const SetUpView& open) {
     const ResolvedScene found = resolved(subject.request, open);
     std::vector<ChartCase> cases;
     for (const ChartAxis axis : axes) {
-        const bool needs_lens = axis == ChartAxis::Camera || axis == ChartAxis::Dispersion ||
-                                axis == ChartAxis::Iris || axis == ChartAxis::Targets ||
-                                axis == ChartAxis::Precision;
-        if (needs_lens && found.report.orthographic)
+        const Maker& maker = kMakers[static_cast<size_t>(axis)];
+        if (maker.needs_lens && found.report.orthographic)
             throw ArgumentError(subject.request.scene.string(), "",
-                                fmt::format("axis {} needs a lens, and the camera is orthographic: "
-                                            "give --camera or --look-at",
-                                            name_of(axis)));
-        switch (axis) {
-            case ChartAxis::Camera:
-                cases.push_back(camera_case(found, subject.job, open));
-                break;
-            case ChartAxis::Dispersion:
-                cases.push_back(dispersion_case(found, subject.job));
-                break;
-            case ChartAxis::Spectral:
-                cases.push_back(spectral_case(found, subject.job));
-                break;
-            case ChartAxis::Iris:
-                for (ChartCase& one : iris_cases(found, subject)) cases.push_back(std::move(one));
-                break;
-            case ChartAxis::Sampler:
-                cases.push_back(sampler_case(found, subject.job));
-                break;
-            case ChartAxis::Lights:
-                cases.push_back(lights_case(found, subject.job));
-                break;
-            case ChartAxis::Targets:
-                cases.push_back(targets_case(found, subject.job));
-                break;
-            case ChartAxis::Precision:
-                cases.push_back(precision_case(found, subject.job, open));
-                break;
-        }
+                                "axis {} needs a lens, and the camera is orthographic: give "
+                                "--camera or --look-at",
+                                name_of(axis));
+        for (ChartCase& one : maker.make(found, subject, open)) cases.push_back(std::move(one));
     }
     return cases;
 }

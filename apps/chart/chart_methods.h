@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <functional>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "apps/setup/option_names.h"
 #include "apps/setup/render_setup.h"
 #include "integrator/render_job.h"
 
@@ -26,9 +26,17 @@ enum class ChartAxis : uint8_t {
     Precision
 };
 
-/// Every axis with its word, in the order of a report.
-[[nodiscard]] const std::vector<std::pair<std::string, ChartAxis>>& chart_axes();
-[[nodiscard]] std::string name_of(ChartAxis);
+/// In the order of a report.
+template <>
+inline constexpr auto kOptionNames<ChartAxis> =
+    std::to_array<OptionName<ChartAxis>>({{"camera", ChartAxis::Camera},
+                                          {"dispersion", ChartAxis::Dispersion},
+                                          {"spectral", ChartAxis::Spectral},
+                                          {"iris", ChartAxis::Iris},
+                                          {"sampler", ChartAxis::Sampler},
+                                          {"lights", ChartAxis::Lights},
+                                          {"targets", ChartAxis::Targets},
+                                          {"precision", ChartAxis::Precision}});
 
 struct ChartMethod {
     std::string name;

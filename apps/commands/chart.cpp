@@ -39,7 +39,7 @@ constexpr const char* kStability = "stability";
 
 std::vector<std::string> axis_words() {
     std::vector<std::string> words;
-    for (const auto& [word, axis] : chart_axes()) words.push_back(word);
+    for (const auto& [word, axis] : kOptionNames<ChartAxis>) words.emplace_back(word);
     words.insert(words.end(), {"all", kStability});
     return words;
 }
@@ -79,15 +79,15 @@ void add_chart_options(CLI::App& app, ChartOptions& o) {
 
 std::vector<ChartAxis> parse_axes(const std::vector<std::string>& words) {
     std::vector<ChartAxis> axes;
-    for (const auto& [word, axis] : chart_axes()) {
+    for (const auto& [word, axis] : kOptionNames<ChartAxis>) {
         const auto asked = [&, name = word](const std::string& w) {
             return w == name || w == "all";
         };
         if (words.empty() || std::any_of(words.begin(), words.end(), asked)) axes.push_back(axis);
     }
     for (const std::string& word : words) {
-        const auto named = [&](const auto& known) { return known.first == word; };
-        if (word != "all" && std::none_of(chart_axes().begin(), chart_axes().end(), named))
+        const auto named = [&](const auto& known) { return known.name == word; };
+        if (word != "all" && std::ranges::none_of(kOptionNames<ChartAxis>, named))
             throw CLI::ValidationError("--axis",
                                        fmt::format("\"{}\" is none of {}{}", word, known_axes(),
                                                    did_you_mean(word, axis_words())));

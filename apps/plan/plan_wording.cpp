@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "apps/setup/option_names.h"
 #include "apps/setup/spectral_wording.h"
 #include "io/base/format.h"
 
@@ -139,26 +138,6 @@ PlanLine lights_line(const Plan& plan) {
 }
 
 }  // namespace
-
-std::string name_of(PlanModel model) {
-    switch (model) {
-        case PlanModel::Pinhole:
-            return "pinhole";
-        case PlanModel::Thin:
-            return "thin";
-        case PlanModel::Rgb:
-            return "rgb";
-        case PlanModel::Shared:
-            return "shared";
-        case PlanModel::Hero:
-            return "hero";
-        case PlanModel::Split:
-            return "split";
-        case PlanModel::Full:
-            break;
-    }
-    return "full";
-}
 
 std::string rare_text(const Plan& plan) {
     if (!plan.noise_at_least) return "";

@@ -9,11 +9,19 @@
 #include <vector>
 
 #include "apps/plan/plan.h"
+#include "apps/setup/option_names.h"
 
 namespace petzval {
 
-/// Name of a model: "pinhole", "thin", "rgb", "shared", "hero", "split" or "full".
-[[nodiscard]] std::string name_of(PlanModel);
+template <>
+inline constexpr auto kOptionNames<PlanModel> =
+    std::to_array<OptionName<PlanModel>>({{"pinhole", PlanModel::Pinhole},
+                                          {"thin", PlanModel::Thin},
+                                          {"rgb", PlanModel::Rgb},
+                                          {"shared", PlanModel::Shared},
+                                          {"hero", PlanModel::Hero},
+                                          {"split", PlanModel::Split},
+                                          {"full", PlanModel::Full}});
 
 /// Reason why the noise may be larger than a plan says; empty where it is known.
 [[nodiscard]] std::string rare_text(const Plan&);

@@ -15,28 +15,16 @@ namespace {
 constexpr std::array<const char*, 7> kColumns{"x", "y", "z", "dx", "dy", "dz", "nm"};
 constexpr double kFarthest_mm = 1e9;
 
-const char* status_of(RayStatus status) {
-    switch (status) {
-        case RayStatus::Passed:
-            return "ok";
-        case RayStatus::Vignetted:
-            return "vignetted";
-        case RayStatus::TotallyReflected:
-            return "tir";
-        case RayStatus::Missed:
-            return "miss";
-    }
-    return "";
-}
+/// In the order of RayStatus.
+constexpr std::array<const char*, 4> kStatuses{"ok", "vignetted", "tir", "miss"};
 
 std::array<size_t, 7> places_of_columns(const CsvTable& table) {
     std::array<size_t, 7> places{};
     for (size_t i = 0; i < kColumns.size(); ++i) {
         const auto at = std::find(table.names.begin(), table.names.end(), kColumns[i]);
         if (at == table.names.end() || table.names.size() != kColumns.size())
-            throw InputError(
-                table.file, "",
-                fmt::format("must have the columns {}, and no others", fmt::join(kColumns, ",")));
+            throw InputError(table.file, "", "must have the columns {}, and no others",
+                             fmt::join(kColumns, ","));
         places[i] = static_cast<size_t>(at - table.names.begin());
     }
     return places;
@@ -72,7 +60,8 @@ std::string ray_table(std::span<const TracedRay> rays, Towards towards, double f
     std::string out = "x,y,z,dx,dy,dz,film_x,film_y,path,status,surface\n";
     for (const TracedRay& ray : rays) {
         if (ray.status != RayStatus::Passed) {
-            out += fmt::format(",,,,,,,,,{},{}\n", status_of(ray.status), ray.end_surface);
+            out += fmt::format(",,,,,,,,,{},{}\n", kStatuses[static_cast<size_t>(ray.status)],
+                               ray.end_surface);
             continue;
         }
         const auto film = towards == Towards::Film ? ray.at_plane(film_mm) : std::nullopt;

@@ -117,8 +117,7 @@ std::filesystem::path write_stability(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error)
-        throw OutputError(folder.string(), "",
-                          fmt::format("cannot be made a folder: {}", error.message()));
+        throw OutputError(folder.string(), "", "cannot be made a folder: {}", error.message());
     const std::filesystem::path page = folder / "stability.md";
     check_writable(page);
     const std::vector<Finding> findings = stability_findings();

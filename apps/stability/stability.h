@@ -16,13 +16,13 @@ struct SweepTable {
 
 /// One method and where it ends.
 struct Finding {
-    std::string id;       ///< words with hyphens, which stay when its section gets another name
-    std::string method;   ///< a few words: the name of its section
-    std::string fails;    ///< bias, variance, NaN, no answer; "nothing" within the range swept
-    std::string where;    ///< with the numbers that the sweep found and their units
-    std::string instead;  ///< what the program does there; messages are those that it gave
-    std::string sweep;    ///< what was varied over which range, and what is measured
-    SweepTable table;
+    std::string id;         ///< words with hyphens, which stay when its section gets another name
+    std::string method;     ///< a few words: the name of its section
+    std::string fails{};    ///< bias, variance, NaN, no answer; "nothing" within the range swept
+    std::string where{};    ///< with the numbers that the sweep found and their units
+    std::string instead{};  ///< what the program does there; messages are those that it gave
+    std::string sweep{};    ///< what was varied over which range, and what is measured
+    SweepTable table{};
 };
 
 /// Every sweep, in the order of the report: some seconds of one thread. The same in every run:

@@ -75,16 +75,14 @@ Newton newton_on(const LensSurface& s) {
 }  // namespace
 
 Finding newton_on_strong_aspheres() {
-    Finding f;
-    f.id = "newton-on-strong-aspheres";
-    f.method = "Newton on strong aspheres";
-    f.fails = "no answer";
+    Finding f{.id = "newton-on-strong-aspheres",
+              .method = "Newton on strong aspheres",
+              .fails = "no answer"};
     f.sweep =
         "Each asphere of the lenses that ship, alone, its coefficients multiplied by a factor from "
         "1 to 1e4, and 48 rays at 0 and 22 degrees, in floats and in doubles, against a search for "
-        "the first change "
-        "of sign along the ray within the semi-diameter: the factor from which a ray misses a "
-        "surface that is there, or meets another point of it than the first.";
+        "the first change of sign along the ray within the semi-diameter: the factor from which a "
+        "ray misses a surface that is there, or meets another point of it than the first.";
     f.table.columns = {"lens",        "surface",        "departure at the rim / semi-diameter",
                        "a miss from", "10 % miss from", "another point from"};
     double least = HUGE_VAL, least_share = 0;
@@ -108,8 +106,7 @@ Finding newton_on_strong_aspheres() {
             const auto miss = from([](const Newton& n) { return n.missed > 0; });
             const auto many = from([](const Newton& n) { return n.missed > 0.1; });
             const auto other = from([](const Newton& n) { return n.other > 0; });
-            f.table.rows.push_back(
-                row(summary.name, static_cast<int>(i) + 1, departure, miss, many, other));
+            add_row(f, summary.name, static_cast<int>(i) + 1, departure, miss, many, other);
             const double first = std::fmin(miss.value_or(HUGE_VAL), other.value_or(HUGE_VAL));
             if (first < least) least = first, least_share = departure, least_name = summary.name;
         }

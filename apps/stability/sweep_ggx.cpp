@@ -79,10 +79,7 @@ struct Kept {
 }  // namespace
 
 Finding ggx_energy() {
-    Finding f;
-    f.id = "ggx-energy";
-    f.method = "Energy of GGX";
-    f.fails = "bias";
+    Finding f{.id = "ggx-energy", .method = "Energy of GGX", .fails = "bias"};
     f.sweep =
         "White metal, white plastic (F0 = 0.04) and clear glass (n = 1.5, from outside) in a white "
         "furnace: what comes back of 1, from 16384 samples, over roughness and the cosine of the "
@@ -104,10 +101,9 @@ Finding ggx_energy() {
             }
         }
         const auto of = [r](Kind kind, double c) { return furnace(kind, r, c).albedo; };
-        f.table.rows.push_back(
-            row(r, of(Kind::Metal, 1), of(Kind::Metal, 0.1), of(Kind::Metal, 0.01),
+        add_row(f, r, of(Kind::Metal, 1), of(Kind::Metal, 0.1), of(Kind::Metal, 0.01),
                 of(Kind::Metal, 1e-4), of(Kind::Plastic, 0.1), of(Kind::Plastic, 1e-4),
-                of(Kind::Glass, 1), of(Kind::Glass, 0.1), of(Kind::Glass, 1e-4)));
+                of(Kind::Glass, 1), of(Kind::Glass, 0.1), of(Kind::Glass, 1e-4));
     }
     const auto grazing = [](double r) {
         return first_failure(
@@ -168,9 +164,7 @@ Density density_of(double roughness, double cosine) {
 }  // namespace
 
 Finding ggx_density() {
-    Finding f;
-    f.id = "ggx-density";
-    f.method = "Density of GGX";
+    Finding f{.id = "ggx-density", .method = "Density of GGX"};
     f.sweep =
         "White metal: the integral of the density over the directions above, by 131072 draws of "
         "another kind, over the share of the sampler's own draws that end there; 1 where the two "

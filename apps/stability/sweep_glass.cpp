@@ -48,10 +48,9 @@ const char* name_of(const Glass& glass) {
 }  // namespace
 
 Finding dispersion_out_of_range() {
-    Finding f;
-    f.id = "dispersion-out-of-range";
-    f.method = "Dispersion formulas out of their range";
-    f.fails = "NaN, bias";
+    Finding f{.id = "dispersion-out-of-range",
+              .method = "Dispersion formulas out of their range",
+              .fails = "NaN, bias"};
     f.sweep = fmt::format(
         "All glasses of assets/glass at every nm from {:g} to {:g}: the formula by itself, beyond "
         "the range that it was fitted to, and as it is used. Glasses whose index is not a number, "
@@ -90,9 +89,9 @@ Finding dispersion_out_of_range() {
                     break;
                 }
         }
-        f.table.rows.push_back(row(kind, count, no_number, below_one, jumps,
-                                   blue_here > 0 ? number(blue_here) : "none",
-                                   std::isfinite(red_here) ? number(red_here) : "none", used));
+        add_row(f, kind, count, no_number, below_one, jumps,
+                blue_here > 0 ? number(blue_here) : "none",
+                std::isfinite(red_here) ? number(red_here) : "none", used);
 
         blue_nm = std::fmax(blue_nm, blue_here), red_nm = std::fmin(red_nm, red_here);
         broken_as_used += used;

@@ -68,10 +68,9 @@ Iris iris_of(const Polygon& polygon, IrisSampling way = IrisSampling::Triangles)
 }  // namespace
 
 Finding rejection_of_slivers() {
-    Finding f;
-    f.id = "rejection-of-slivers";
-    f.method = "Rejection from slivers";
-    f.fails = "time, then bias";
+    Finding f{.id = "rejection-of-slivers",
+              .method = "Rejection from slivers",
+              .fails = "time, then bias"};
     f.sweep = fmt::format(
         "A rectangle 1:N along the diagonal of its bounding box, {:g} mm to its corners. Points of "
         "the box that are tried for each one inside, of {} that there may be at most; the share of "
@@ -88,7 +87,7 @@ Finding rejection_of_slivers() {
     const auto lost = [](double ratio) { return share_refused(iris_of(sliver(ratio))); };
     for (const double ratio : {1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7}) {
         const Rejection r = rejected(ratio);
-        f.table.rows.push_back(row(ratio, r.attempts, percent(r.gives_up), percent(lost(ratio))));
+        add_row(f, ratio, r.attempts, percent(r.gives_up), percent(lost(ratio)));
     }
     const auto few = first_failure(10, 1e6, [&](double n) { return rejected(n).gives_up > 0.01; });
     const auto half = first_failure(10, 1e6, [&](double n) { return rejected(n).gives_up > 0.5; });
@@ -198,10 +197,9 @@ Quality quality_of(const Polygon& polygon) {
 }  // namespace
 
 Finding degenerate_polygons() {
-    Finding f;
-    f.id = "degenerate-polygons";
-    f.method = "Triangles of nearly degenerate polygons";
-    f.fails = "bias, then no answer";
+    Finding f{.id = "degenerate-polygons",
+              .method = "Triangles of nearly degenerate polygons",
+              .fails = "bias, then no answer"};
     f.sweep = fmt::format(
         "Polygons of size 1 that are degenerate but for d, scaled to {:g} mm: d comes down from "
         "0.1. Where the area is off by more than 1e-6 of itself, where 1 % of the drawn points are "
@@ -226,7 +224,7 @@ Finding degenerate_polygons() {
         const auto lost = below([](const Quality& q) { return q.called_outside > 0.01; });
         const auto strays = below([](const Quality& q) { return q.stray > 0; });
         const auto refused = below([](const Quality& q) { return q.refused; });
-        f.table.rows.push_back(row(family.name, area, lost, strays, refused));
+        add_row(f, family.name, area, lost, strays, refused);
         if (lost.value_or(0) > worst_lost) worst_lost = *lost, lost_by = family.name;
         if (refused.value_or(0) > worst_refused) worst_refused = *refused, refused_by = family.name;
         stray = stray || strays;
@@ -245,10 +243,7 @@ Finding degenerate_polygons() {
 }
 
 Finding choice_by_weight() {
-    Finding f;
-    f.id = "choice-by-weight";
-    f.method = "Choice by weight";
-    f.fails = "bias";
+    Finding f{.id = "choice-by-weight", .method = "Choice by weight", .fails = "bias"};
     f.sweep =
         "Two things of weights 1 and w: the probability of the second over what it should be, by "
         "the running sum (whole multiples of 2^-24: triangles, texels of a mask or of a sky, "
@@ -267,7 +262,7 @@ Finding choice_by_weight() {
         return drawn / double(kDistributionUnits) * (1 + w) / w;
     };
     for (const double w : {1e-2, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9})
-        f.table.rows.push_back(row(w, sum_ratio(w), alias_ratio(w)));
+        add_row(f, w, sum_ratio(w), alias_ratio(w));
     const auto off =
         first_failure(1e-2, 1e-10, [&](double w) { return std::fabs(sum_ratio(w) - 1) > 0.1; });
     f.where = fmt::format(

@@ -61,9 +61,7 @@ World under_lamp(double side_m, bool pane) {
     World world;
     place_floor(world);
     const auto a = static_cast<float>(side_m);
-    Material lamp = diffuse(0);
-    lamp.emissive = Rgb(1 / (a * a));
-    world.place(quad(V3f(-a / 2, 10, -a / 2), V3f(a, 0, 0), V3f(0, 0, a)), lamp);
+    world.place(quad(V3f(-a / 2, 10, -a / 2), V3f(a, 0, 0), V3f(0, 0, a)), glowing(1 / (a * a)));
     if (pane) {
         const Material glass = clear_glass(1.5f);
         world.place(quad(V3f(-50, 5, -50), V3f(100, 0, 0), V3f(0, 0, 100)), glass);
@@ -76,10 +74,7 @@ World under_lamp(double side_m, bool pane) {
 }  // namespace
 
 Finding tiny_sun() {
-    Finding f;
-    f.id = "tiny-sun";
-    f.method = "A sun of one texel";
-    f.fails = "variance";
+    Finding f{.id = "tiny-sun", .method = "A sun of one texel", .fails = "variance"};
     f.sweep = fmt::format(
         "A matt floor under a black sky whose one bright texel is the sun, always of the same "
         "illuminance, by the width of the picture: variance of one sample over the mean squared, "
@@ -93,9 +88,8 @@ Finding tiny_sun() {
         const World world = under_sun(width);
         const Measured both = lit(world, Technique::Mis);
         const Measured surface = lit(world, Technique::BsdfOnly);
-        f.table.rows.push_back(row(std::to_string(width), variance_of(both),
-                                   variance_of(lit(world, Technique::LightOnly)),
-                                   variance_of(surface)));
+        add_row(f, std::to_string(width), variance_of(both),
+                variance_of(lit(world, Technique::LightOnly)), variance_of(surface));
         worst_both = std::fmax(worst_both, both.relative_variance);
         if (!blind && surface.relative_variance > kMost) blind = width;
     }
@@ -111,10 +105,9 @@ Finding tiny_sun() {
 }
 
 Finding tiny_lamp() {
-    Finding f;
-    f.id = "tiny-lamp";
-    f.method = "Lamps of millimetres";
-    f.fails = "variance; no answer for punctual lights behind glass with a volume";
+    Finding f{.id = "tiny-lamp",
+              .method = "Lamps of millimetres",
+              .fails = "variance; no answer for punctual lights behind glass with a volume"};
     f.sweep = fmt::format(
         "A matt floor 10 m below a square lamp, always of the same illuminance, by the lamp's "
         "side: variance of one sample over the mean squared, from {} independent samples, as for "
@@ -124,29 +117,21 @@ Finding tiny_lamp() {
                        "surface samples only", "as rendered behind glass"};
     for (const double side : {3., 1., 0.1, 0.01, 1e-3, 1e-4}) {
         const World world = under_lamp(side, false);
-        f.table.rows.push_back(row(side, variance_of(lit(world, Technique::Mis)),
-                                   variance_of(lit(world, Technique::LightOnly)),
-                                   variance_of(lit(world, Technique::BsdfOnly)),
-                                   variance_of(lit(under_lamp(side, true), Technique::Mis, 8))));
+        add_row(f, side, variance_of(lit(world, Technique::Mis)),
+                variance_of(lit(world, Technique::LightOnly)),
+                variance_of(lit(world, Technique::BsdfOnly)),
+                variance_of(lit(under_lamp(side, true), Technique::Mis, 8)));
     }
-    const auto surface = first_failure(
-        10, 1e-3,
-        [](double side) {
-            return lit(under_lamp(side, false), Technique::BsdfOnly).relative_variance > kMost;
-        },
-        2);
-    const auto glass = first_failure(
-        10, 1e-3,
-        [](double side) {
-            return lit(under_lamp(side, true), Technique::Mis, 8).relative_variance > kMost;
-        },
-        2);
-    const auto both = first_failure(
-        10, 1e-6,
-        [](double side) {
-            return lit(under_lamp(side, false), Technique::Mis).relative_variance > 1;
-        },
-        2);
+    const auto above = [](double most, double least_side, bool pane, Technique technique,
+                          int max_depth) {
+        const auto fails = [=](double side) {
+            return lit(under_lamp(side, pane), technique, max_depth).relative_variance > most;
+        };
+        return first_failure(10, least_side, fails, 2);
+    };
+    const auto surface = above(kMost, 1e-3, false, Technique::BsdfOnly, 1);
+    const auto glass = above(kMost, 1e-3, true, Technique::Mis, 8);
+    const auto both = above(1, 1e-6, false, Technique::Mis, 1);
     f.where = fmt::format(
         "Without light samples the variance passes {} (1 % of error in 1e8 samples) below a side "
         "of {} m, and so it does as rendered behind glass below {} m: what no path of {} finds "
@@ -209,10 +194,8 @@ double confusion_m(double fstop) {
 }  // namespace
 
 Finding defocused_highlights() {
-    Finding f;
-    f.id = "defocused-highlights";
-    f.method = "Highlights out of focus";
-    f.fails = "variance";
+    Finding f{
+        .id = "defocused-highlights", .method = "Highlights out of focus", .fails = "variance"};
     f.sweep = fmt::format(
         "A thin lens of {:g} mm in focus at {:g} m, and a square highlight of 1 nit {:g} m away on "
         "black: a pixel within its blur. By the highlight's side and the f-number: the circle of "
@@ -229,10 +212,9 @@ Finding defocused_highlights() {
             const double there_m = confusion_m(fstop);
             const double blur_px = there_m / kBehind_m * film_mm / kFilm_px_mm;
             const double v = h.all.relative_variance;
-            f.table.rows.push_back(
-                row(side, fstop, blur_px, there_m,
+            add_row(f, side, fstop, blur_px, there_m,
                     side * side / (std::numbers::pi / 4 * there_m * there_m), v, v / 0.01,
-                    h.all.found * 32768 > 100 && h.all.found < 1 ? number(h.owen_gain) : ""));
+                    h.all.found * 32768 > 100 && h.all.found < 1 ? number(h.owen_gain) : "");
         }
     const auto below = [](double fstop, double most) {
         return first_failure(0.2, 1e-4, [=](double side) {

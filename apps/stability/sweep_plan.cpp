@@ -67,10 +67,9 @@ double share_of(double side_m) {
 }  // namespace
 
 Finding planned_noise() {
-    Finding f;
-    f.id = "planned-noise";
-    f.method = "Noise that plans predict";
-    f.fails = "variance of the prediction, called \"at least\"";
+    Finding f{.id = "planned-noise",
+              .method = "Noise that plans predict",
+              .fails = "variance of the prediction, called \"at least\""};
     f.sweep = fmt::format(
         "A thin lens of {:g} mm at f/{:g} in focus at {:g} m, and a square lamp {:g} m away on "
         "black: {} x {} pixels within its blur, all looked at with {} samples in four replicates. "
@@ -86,8 +85,8 @@ Finding planned_noise() {
         const double share = share_of(side), truth = 1 / share - 1;
         const double variance =
             p.candidate.noise.variances.back().mean * kSamples + p.candidate.rare.noise;
-        f.table.rows.push_back(row(side, share, p.met, share * paths, truth, variance,
-                                   p.candidate.noise_at_least() ? "at least" : "about"));
+        add_row(f, side, share, p.met, share * paths, truth, variance,
+                p.candidate.noise_at_least() ? "at least" : "about");
         if (!p.candidate.noise_at_least())
             worst = std::max({worst, variance / truth, truth / variance});
     }

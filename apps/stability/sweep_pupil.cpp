@@ -4,31 +4,15 @@
 
 #include <algorithm>
 
+#include "apps/stability/shipped_lens.h"
 #include "apps/stability/sweeps.h"
 #include "camera/lens/trace.h"
-#include "camera/models/lens_camera.h"
-#include "io/lens/lens_file.h"
 
 namespace petzval::stability {
 namespace {
 
 // A direction that is not along an axis: cylinders have no symmetry there.
 const V2f kAcross(0.8f, 0.6f);
-
-struct Subject {
-    std::shared_ptr<const Lens> lens;
-    double stop_mm, half_circle_mm;
-
-    explicit Subject(const std::string& name) {
-        Prescription p = load_lens(name).lens;
-        half_circle_mm = 0.5 * (p.image_circle_mm > 0 ? p.image_circle_mm : 43.27);
-        lens = std::make_shared<const Lens>(std::move(p));
-        stop_mm = lens->prescription().surfaces[static_cast<size_t>(lens->stop())].semi_diameter_mm;
-    }
-    [[nodiscard]] LensIndices<f4> line_d() const {
-        return lens->exact_indices(splat(static_cast<float>(kLineD_nm)));
-    }
-};
 
 // Irradiance at a film point over the radiance of an even scene: by counting directions on a grid
 // that pass through the lens, without the solver.
@@ -38,10 +22,10 @@ struct Counted {
     double folded = 0;
 };
 
-Counted count_light(const Subject& of, V2f film_mm) {
+Counted count_light(const ShippedLens& of, V2f film_mm) {
     const Lens& lens = *of.lens;
     const RayAimer aimer(lens, lens.film_mm(), film_mm.length());
-    const LensIndices<f4> indices = of.line_d();
+    const LensIndices<f4> indices = lens.exact_indices(splat(static_cast<float>(kLineD_nm)));
     const auto stop2_mm2 = static_cast<float>(sqr(of.stop_mm));
     V2f low(-1.f), high(1.f);
     Counted out;
@@ -84,7 +68,7 @@ struct Solved {
     int most_traces = 0;
 };
 
-Solved solved_at(const Subject& of, double height_mm) {
+Solved solved_at(const ShippedLens& of, double height_mm) {
     constexpr uint32_t kDraws = 1024;
     const V2f film_mm = kAcross * static_cast<float>(height_mm);
     const RayAimer aimer(*of.lens, of.lens->film_mm(), height_mm);
@@ -118,14 +102,9 @@ struct Drawn {
     double irradiance = 0, heaviest = 0;  ///< heaviest weight over the mean of those that pass
 };
 
-Drawn drawn_at(const Subject& of, V2f film_mm) {
+Drawn drawn_at(const ShippedLens& of, V2f film_mm) {
     constexpr uint32_t kDraws = 1u << 16;
-    LensCameraInput in{.lens = of.lens, .iris = Iris(Disk{}, of.stop_mm), .to_world = M44f()};
-    in.film_mm = of.lens->film_mm();
-    in.film_width_mm = 2 * double(film_mm.x);
-    in.film_height_mm = 2 * double(film_mm.y);
-    in.dispersion = DispersionMode::Shared;
-    const LensCamera camera(in);
+    const LensCamera camera = of.camera(2 * double(film_mm.x), 2 * double(film_mm.y));
     Drawn out;
     double passed = 0;
     for (uint32_t i = 0; i < kDraws; ++i) {
@@ -142,17 +121,15 @@ Drawn drawn_at(const Subject& of, V2f film_mm) {
 }  // namespace
 
 Finding pupil_at_wide_fields() {
-    Finding f;
-    f.id = "pupil-at-wide-fields";
-    f.method = "Aiming through the pupil";
-    f.fails = "bias, variance";
+    Finding f{.id = "pupil-at-wide-fields",
+              .method = "Aiming through the pupil",
+              .fails = "bias, variance"};
     f.sweep =
         "Every lens that ships, wide open, line d, at 0.98 of the rim of its image circle: 1024 "
         "draws of the stop for which no ray is found; how often the others trace through the rear "
-        "of the lens; the irradiance of 65536 draws against counting directions on a grid of "
-        "400 x 400, without the solver, and the share of those directions that meet the stop the "
-        "other way round; the weight of the heaviest draw over the mean of those "
-        "that pass. And from "
+        "of the lens; the irradiance of 65536 draws against counting directions on a grid of 400 x "
+        "400, without the solver, and the share of those directions that meet the stop the other "
+        "way round; the weight of the heaviest draw over the mean of those that pass. And from "
         "where on, in steps of 5 % to three times the circle, some draw of 1024 has no ray.";
     f.table.columns = {"lens",
                        "height (mm)",
@@ -167,7 +144,7 @@ Finding pupil_at_wide_fields() {
     std::string off_name, folded_name, heavy_name;
     int most = 0, clear = 0, all = 0;
     for (const LensSummary& summary : list_lenses()) {
-        const Subject of(summary.name);
+        const ShippedLens of(summary.name);
         const double r_mm = 0.98 * of.half_circle_mm;
         const V2f film_mm = kAcross * static_cast<float>(r_mm);
         const Solved corner = solved_at(of, r_mm);
@@ -177,9 +154,8 @@ Finding pupil_at_wide_fields() {
         std::optional<double> first;
         for (int i = 0; i <= 60 && !first; ++i)
             if (solved_at(of, of.half_circle_mm * 0.05 * i).unreached > 0) first = 0.05 * i;
-        f.table.rows.push_back(row(summary.name, r_mm, percent(corner.unreached), corner.traces,
-                                   corner.most_traces, percent(off), percent(counted.folded),
-                                   drawn.heaviest, first));
+        add_row(f, summary.name, r_mm, percent(corner.unreached), corner.traces, corner.most_traces,
+                percent(off), percent(counted.folded), drawn.heaviest, first);
         ++all, clear += corner.unreached == 0;
         most = std::max(most, corner.most_traces);
         if (counted.folded > folded) folded = counted.folded, folded_name = summary.name;

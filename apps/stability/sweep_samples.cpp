@@ -50,9 +50,7 @@ uint32_t empty_cells(SamplerKind kind, uint32_t first) {
 }  // namespace
 
 Finding many_samples() {
-    Finding f;
-    f.id = "many-samples";
-    f.method = "Sample counts";
+    Finding f{.id = "many-samples", .method = "Sample counts"};
     f.sweep = fmt::format(
         "Root mean square error of a quarter disk's area, 0.785, over {} seeds, from 2^8 to 2^22 "
         "samples of one dimension; and how many cells of 256 x 256 the 65536 points from an index "
@@ -113,14 +111,11 @@ FilmSample grey(float a) {
 }  // namespace
 
 Finding film_sums() {
-    Finding f;
-    f.id = "film-sums";
-    f.method = "Sums of films";
+    Finding f{.id = "film-sums", .method = "Sums of films"};
     f.sweep =
         "One pixel of a spectral film that gets n samples of 1 plus an even random number from "
-        "-0.1 to "
-        "0.1: error of its mean against exact sums, and the standard error that it states, from "
-        "its eight replicates, over the one of exact sums.";
+        "-0.1 to 0.1: error of its mean against exact sums, and the standard error that it states, "
+        "from its eight replicates, over the one of exact sums.";
     f.table.columns = {"n", "error of the mean", "stated / exact standard error"};
     Film film({1, 1}, kOnePixel, {}, Bins{380, 50, 7});
     Bands bands = Bands::rgb();
@@ -141,7 +136,7 @@ Finding film_sums() {
         const double error = std::sqrt(squares / (kReplicates * (kReplicates - 1)));
         const double off = std::fabs(double(film.colour(0, 0).x) - sum / next);
         const double ratio = double(film.spectral()->standard_error(0, {0, next}).x) / error;
-        f.table.rows.push_back(row(fmt::format("2^{}", std::lround(std::log2(next))), off, ratio));
+        add_row(f, fmt::format("2^{}", std::lround(std::log2(next))), off, ratio);
         worst_mean = std::fmax(worst_mean, off);
         if (std::fabs(ratio - 1) > std::fabs(worst_error - 1))
             worst_error = ratio, worst_at = f.table.rows.back()[0];

@@ -56,10 +56,7 @@ Faults leave_ball(double radius_m, double away_radii) {
 }  // namespace
 
 Finding scene_scale() {
-    Finding f;
-    f.id = "scene-scale";
-    f.method = "Scales of scenes";
-    f.fails = "leaks";
+    Finding f{.id = "scene-scale", .method = "Scales of scenes", .fails = "leaks"};
     f.sweep =
         "A closed ball of 2208 triangles. Of 1500 rays from within, those that leak, or that hit "
         "the triangle which they just left: over its radius with its middle at the origin, and, "
@@ -131,10 +128,8 @@ double place_error_px(double away_m) {
 }  // namespace
 
 Finding camera_far_from_origin() {
-    Finding f;
-    f.id = "camera-far-from-origin";
-    f.method = "Cameras far from the origin";
-    f.fails = "bias";
+    Finding f{
+        .id = "camera-far-from-origin", .method = "Cameras far from the origin", .fails = "bias"};
     f.sweep =
         "A pinhole (50 mm over 36 mm and 6000 pixels) and a wall 1 m ahead of it, both so far from "
         "the origin: the worst of 1000 points that camera rays find, against exact geometry, in "
@@ -142,7 +137,7 @@ Finding camera_far_from_origin() {
     f.table.columns = {"distance from the origin (m)", "off (px)"};
     for (int k = 0; k <= 7; ++k) {
         const double away = std::pow(10, k);
-        f.table.rows.push_back(row(away, place_error_px(away)));
+        add_row(f, away, place_error_px(away));
     }
     const auto tenth = first_failure(1, 1e8, [](double d) { return place_error_px(d) > 0.1; });
     const auto whole = first_failure(1, 1e8, [](double d) { return place_error_px(d) > 1; });

@@ -4,11 +4,10 @@
 
 #include <numbers>
 
+#include "apps/stability/shipped_lens.h"
 #include "apps/stability/sweeps.h"
 #include "apps/stability/world.h"
-#include "camera/models/lens_camera.h"
 #include "camera/models/thin_lens.h"
-#include "io/lens/lens_file.h"
 
 namespace petzval::stability {
 namespace {
@@ -83,8 +82,6 @@ Sent sent_to(double side_m, double fstop, double focus_m) {
 double variance_of_many(int lamps, int targets) {
     constexpr float kSide_m = 0.004f;
     World world;
-    Material lamp = diffuse(0);
-    lamp.emissive = Rgb(1.f);
     ThinLensCamera camera = thin(1.4, 1);
     std::vector<ListedTarget> list;
     for (int i = 0; i < lamps; ++i) {
@@ -92,7 +89,7 @@ double variance_of_many(int lamps, int targets) {
                      static_cast<float>(-kAway_m));
         world.place(
             quad(at - V3f(kSide_m / 2, kSide_m / 2, 0), V3f(kSide_m, 0, 0), V3f(0, kSide_m, 0)),
-            lamp);
+            glowing(1));
         if (i < targets)
             list.push_back(*camera.listed(*camera.prepared(facing(at, kSide_m * 0.71)), kCell));
     }
@@ -109,26 +106,18 @@ struct Missed {
     [[nodiscard]] double share() const { return hits > 0 ? double(missed) / hits : 0; }
 };
 
-// The lens is in focus as it ships, and the cell half a millimetre wide.
+// The cell is half a millimetre wide.
 Missed missed_by(const std::string& name, double of_circle) {
     constexpr uint32_t kRays = 1u << 18;
-    Prescription p = load_lens(name).lens;
-    const double half_circle_mm = 0.5 * (p.image_circle_mm > 0 ? p.image_circle_mm : 43.27);
-    const auto lens = std::make_shared<const Lens>(std::move(p));
-    const double stop_mm =
-        lens->prescription().surfaces[static_cast<size_t>(lens->stop())].semi_diameter_mm;
-    LensCameraInput in{.lens = lens, .iris = Iris(Disk{}, stop_mm), .to_world = M44f()};
-    in.film_mm = lens->film_mm();
-    in.film_width_mm = in.film_height_mm = 2 * half_circle_mm;
-    in.dispersion = DispersionMode::Shared;
-    LensCamera camera(in);
+    const ShippedLens lens(name);
+    LensCamera camera = lens.camera(2 * lens.half_circle_mm, 2 * lens.half_circle_mm);
     const V2f film(static_cast<float>(0.5 - 0.5 * of_circle), 0.5f);
     const FilmPoint middle{film, Sampler(SamplerKind::Owen, 3, {0, 0, 0})};
     const CameraSample seen = camera.sample(middle, Bands::rgb());
     Missed out;
     if (seen.empty()) return out;
     const Ray& ray = seen[0].ray;
-    const V2f half(static_cast<float>(0.125 / half_circle_mm));
+    const V2f half(static_cast<float>(0.125 / lens.half_circle_mm));
     const FilmCell cell{film - half, film + half};
     Target target;
     std::optional<ListedTarget> listed;
@@ -159,10 +148,7 @@ Missed missed_by(const std::string& name, double of_circle) {
 }  // namespace
 
 Finding rays_to_targets() {
-    Finding f;
-    f.id = "rays-to-targets";
-    f.method = "Rays to targets";
-    f.fails = "variance";
+    Finding f{.id = "rays-to-targets", .method = "Rays to targets", .fails = "variance"};
     f.sweep = fmt::format(
         "A thin lens of {:g} mm at f/1.4 and a square lamp {:g} m away on black, with a target "
         "around it: variance of one sample over the mean squared, by the lamp's side and the "
@@ -175,12 +161,11 @@ Finding rays_to_targets() {
             const Sent s = sent_to(side_m, 1.4, focus_m);
             // Near focus the disc of a small lamp does not reach the pixel.
             if (!std::isfinite(s.variance)) continue;
-            f.table.rows.push_back(row(1, 1, side_m, focus_m, s.met, s.variance));
+            add_row(f, 1, 1, side_m, focus_m, s.met, s.variance);
         }
     for (const auto& [lamps, targets] : {std::pair(8, 8), std::pair(16, 16), std::pair(17, 16),
                                          std::pair(64, 16), std::pair(64, 64)})
-        f.table.rows.push_back(
-            row(lamps, targets, 0.004, 1., "", variance_of_many(lamps, targets)));
+        add_row(f, lamps, targets, 0.004, 1., "", variance_of_many(lamps, targets));
     const auto in_focus = first_failure(
         1, 9.99, [](double focus_m) { return !(sent_to(0.01, 1.4, focus_m).met < 0.25); });
     f.where = fmt::format(
@@ -199,10 +184,9 @@ Finding rays_to_targets() {
 }
 
 Finding search_for_targets() {
-    Finding f;
-    f.id = "search-for-targets";
-    f.method = "The search for rays to targets";
-    f.fails = "variance";
+    Finding f{.id = "search-for-targets",
+              .method = "The search for rays to targets",
+              .fails = "variance"};
     f.sweep =
         "Every lens that ships, wide open, line d, in focus as it ships, with a target that a ray "
         "of the stop passes, a 500th as wide as it is far away, at the first of 2, 1, 0.5, 0.25 "
@@ -215,8 +199,8 @@ Finding search_for_targets() {
     for (const LensSummary& summary : list_lenses())
         for (const double of_circle : {0., 0.5, 0.95}) {
             const Missed m = missed_by(summary.name, of_circle);
-            f.table.rows.push_back(row(summary.name, of_circle, m.away_m, m.hits,
-                                       m.hits > 0 ? percent(m.share()) : ""));
+            add_row(f, summary.name, of_circle, m.away_m, m.hits,
+                    m.hits > 0 ? percent(m.share()) : "");
             if (m.hits > 100 && m.share() > worst) worst = m.share(), name = summary.name;
         }
     f.where = fmt::format(

@@ -49,10 +49,8 @@ std::string warning_of(const Glass& glass, float fstop) {
 Finding third_order_formula() {
     const Glass glass = find_glass("schott:N-BK7").value();
     const double n = glass.index(kLineD_nm);
-    Finding f;
-    f.id = "third-order-formula";
-    f.method = "Third-order formula of a singlet";
-    f.fails = "bias";
+    Finding f{
+        .id = "third-order-formula", .method = "Third-order formula of a singlet", .fails = "bias"};
     f.sweep = fmt::format(
         "A singlet of N-BK7 with f = {:g} mm, equiconvex (q = 0) or flat towards the film (q = 1). "
         "The ray's height h grows from f/1000 until the formula's intersection with the axis is "
@@ -90,7 +88,7 @@ Finding third_order_formula() {
                            AberratedLensCamera(singlet_camera(glass, q, h_mm, object_mm));
                        }) != "accepted";
             });
-            f.table.rows.push_back(row(s, q, one, ten, pixel, no_ray, refused));
+            add_row(f, s, q, one, ten, pixel, no_ray, refused);
             if (q == 0 && std::isinf(s)) one_far = *one, ten_far = *ten, px_far = *pixel;
             if (ten.value_or(0) > ten_worst) ten_worst = *ten, ten_worst_at = s;
             if (pixel.value_or(0) > px_worst) px_worst = *pixel, px_worst_at = s;
@@ -153,10 +151,9 @@ double film_place_error(double closeness) {
 }  // namespace
 
 Finding focus_near_focal_length() {
-    Finding f;
-    f.id = "focus-near-focal-length";
-    f.method = "Thin lens near S = f";
-    f.fails = "bias, then no answer";
+    Finding f{.id = "focus-near-focal-length",
+              .method = "Thin lens near S = f",
+              .fails = "bias, then no answer"};
     f.sweep =
         "The distance in focus S comes down to the focal length, at f/2 and 50 mm. Errors of the "
         "film's place S' because S is a float in metres (the worst of a hundred focal lengths from "
@@ -166,8 +163,8 @@ Finding focus_near_focal_length() {
                        "miss 1.7 m from it (px)"};
     for (int k = 0; k <= 8; ++k) {
         const double closeness = std::pow(10, -k);
-        f.table.rows.push_back(row(closeness, 1 / closeness, film_place_error(closeness),
-                                   spread_px(closeness, 0), spread_px(closeness, 1)));
+        add_row(f, closeness, 1 / closeness, film_place_error(closeness), spread_px(closeness, 0),
+                spread_px(closeness, 1));
     }
     const auto place = first_failure(1, 1e-8, [](double c) { return film_place_error(c) > 0.01; });
     const auto here = first_failure(1, 1e-8, [](double c) { return spread_px(c, 0) > 1; });

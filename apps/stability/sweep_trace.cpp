@@ -56,10 +56,8 @@ Spread out_of_glass(double cosine) {
 }  // namespace
 
 Finding trace_at_grazing_incidence() {
-    Finding f;
-    f.id = "rays-at-grazing-incidence";
-    f.method = "Rays at grazing incidence";
-    f.fails = "bias";
+    Finding f{
+        .id = "rays-at-grazing-incidence", .method = "Rays at grazing incidence", .fails = "bias"};
     f.sweep = fmt::format(
         "512 rays in floats and in doubles, from the same origin and direction: parallel to the "
         "axis onto a sphere of 50 mm of n = {}, and out of that glass through a plane. The cosine, "
@@ -71,8 +69,8 @@ Finding trace_at_grazing_incidence() {
                        "other status there"};
     for (const double c : {0.9, 0.3, 0.1, 1e-2, 1e-3, 1e-4, 1e-5}) {
         const Spread in = into_glass(c), out = out_of_glass(c);
-        f.table.rows.push_back(row(c, in.apart_mm, percent(in.statuses_differ), out.apart_mm,
-                                   percent(out.statuses_differ)));
+        add_row(f, c, in.apart_mm, percent(in.statuses_differ), out.apart_mm,
+                percent(out.statuses_differ));
     }
     const auto sphere =
         first_failure(0.9, 1e-6, [](double c) { return into_glass(c).apart_mm > kPixel_mm; });
@@ -128,10 +126,9 @@ double from_afar_mm(double distance_mm) {
 }  // namespace
 
 Finding trace_over_long_radii() {
-    Finding f;
-    f.id = "rays-over-long-radii";
-    f.method = "Rays over long radii and from afar";
-    f.fails = "bias";
+    Finding f{.id = "rays-over-long-radii",
+              .method = "Rays over long radii and from afar",
+              .fails = "bias"};
     f.sweep = fmt::format(
         "512 rays in floats and in doubles from the same origin and direction: through a plate of "
         "5 mm bent to a radius R, and onto a sphere of 50 mm from an origin a distance D before "
@@ -141,7 +138,7 @@ Finding trace_over_long_radii() {
     double worst = 0;
     for (int k = 2; k <= 9; ++k) {
         const double x = std::pow(10, k), bent = over_radius_mm(x);
-        f.table.rows.push_back(row(x, bent, from_afar_mm(x)));
+        add_row(f, x, bent, from_afar_mm(x));
         worst = std::fmax(worst, bent);
     }
     const auto radius =

@@ -40,12 +40,6 @@ double lost(const World& world, int max_clear_depth) {
     return 1 - measure(world, options, 1u << 13, along_z).mean;
 }
 
-Material lamp() {
-    Material m = diffuse(0);
-    m.emissive = Rgb(1.f);
-    return m;
-}
-
 // What comes from a lamp of 1 nit in the outer of two slabs, behind the inner one.
 double from_lamp_in_slabs(double a, bool closed) {
     World world;
@@ -59,7 +53,7 @@ double from_lamp_in_slabs(double a, bool closed) {
         world.place(quad(V3f(-9, -9, front), V3f(18, 0, 0), V3f(0, 18, 0)), m);
         world.place(quad(V3f(-9, -9, back), V3f(0, 18, 0), V3f(18, 0, 0)), m);
     }
-    world.place(quad(V3f(-5, -5, -2.5f), V3f(10, 0, 0), V3f(0, 10, 0)), lamp());
+    world.place(quad(V3f(-5, -5, -2.5f), V3f(10, 0, 0), V3f(0, 10, 0)), glowing(1));
     world.finish();
     PathOptions options;
     options.roulette_depth = options.max_clear_depth;
@@ -72,7 +66,7 @@ double through_glass_and_water(double gap_m) {
     const auto gap = static_cast<float>(gap_m);
     world.place(box(V3f(-9, -9, -1), V3f(9, 9, 0)), clear_glass(1.5f));
     world.place(box(V3f(-8, -8, -3), V3f(8, 8, -1 - gap)), clear_glass(1.33f));
-    world.place(quad(V3f(-7, -7, -4), V3f(14, 0, 0), V3f(0, 14, 0)), lamp());
+    world.place(quad(V3f(-7, -7, -4), V3f(14, 0, 0), V3f(0, 14, 0)), glowing(1));
     world.finish();
     return measure(world, PathOptions(), 1u << 16, along_z).mean;
 }
@@ -93,10 +87,7 @@ double share_through(std::initializer_list<double> indices) {
 }  // namespace
 
 Finding chains_of_glass() {
-    Finding f;
-    f.id = "chains-of-glass";
-    f.method = "Chains of glass";
-    f.fails = "bias";
+    Finding f{.id = "chains-of-glass", .method = "Chains of glass", .fails = "bias"};
     f.sweep =
         "A ray onto N clear panes (n = 1.5) in a white sky, 8192 samples: what of 1 is lost "
         "because paths end at --max-clear-depth, 256 unless it is given.";
@@ -104,8 +95,8 @@ Finding chains_of_glass() {
     const int usual = PathOptions().max_clear_depth;
     for (const int count : {1, 2, 4, 8, 16, 32, 64, 128}) {
         const World world = panes(count);
-        f.table.rows.push_back(row(std::to_string(count), percent(lost(world, 16)),
-                                   percent(lost(world, 64)), percent(lost(world, usual))));
+        add_row(f, std::to_string(count), percent(lost(world, 16)), percent(lost(world, 64)),
+                percent(lost(world, usual)));
     }
     const auto first = [](auto fails) {
         int count = 8;
@@ -124,24 +115,20 @@ Finding chains_of_glass() {
 }
 
 Finding nested_volumes() {
-    Finding f;
-    f.id = "nested-volumes";
-    f.method = "Volumes in volumes";
-    f.fails = "bias";
+    Finding f{.id = "nested-volumes", .method = "Volumes in volumes", .fails = "bias"};
     f.sweep =
         "A slab of 3 m keeps a share a of light for each metre. In its middle stands a slab of 1 m "
         "of the same kind, and 0.5 m behind that, in the outer slab, a lamp of 1 nit (n = 1, so "
         "that nothing bends or reflects): what arrives from it. Both slabs are closed boxes, or "
         "open: a front and a back without sides. Then a slab of glass (n = 1.5) before one of "
-        "water "
-        "(n = 1.33), which overlap, touch, or leave a gap of air: what arrives from a lamp behind "
-        "them, and what should where they touch.";
+        "water (n = 1.33), which overlap, touch, or leave a gap of air: what arrives from a lamp "
+        "behind them, and what should where they touch.";
     f.table.columns = {"slabs", "a", "gap (m)", "seen", "should", "ratio"};
     double worst_closed = 0, worst_open = 1, least_through = 1;
     for (const bool closed : {true, false})
         for (const double a : {0.9, 0.5, 0.1, 0.01}) {
             const double seen = from_lamp_in_slabs(a, closed), due = std::pow(a, 2.5);
-            f.table.rows.push_back(row(closed ? "closed" : "open", a, "", seen, due, seen / due));
+            add_row(f, closed ? "closed" : "open", a, "", seen, due, seen / due);
             if (closed)
                 worst_closed = std::fmax(worst_closed, std::fabs(seen / due - 1));
             else
@@ -150,7 +137,7 @@ Finding nested_volumes() {
     const double due = share_through({1, 1.5, 1.33, 1});
     for (const double gap_m : {-1e-3, 0., 1e-4, 1e-2}) {
         const double seen = through_glass_and_water(gap_m);
-        f.table.rows.push_back(row("glass and water", "", gap_m, seen, due, seen / due));
+        add_row(f, "glass and water", "", gap_m, seen, due, seen / due);
         least_through = std::fmin(least_through, seen / due);
     }
     constexpr double kAsPrinted = 1e-5;

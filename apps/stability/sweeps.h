@@ -33,6 +33,11 @@ template <class... Cells>
     };
     return {text(cells)...};
 }
+/// Adds it to the table of a finding.
+template <class... Cells>
+void add_row(Finding& f, const Cells&... cells) {
+    f.table.rows.push_back(row(cells...));
+}
 
 /// The parameter at which fails(x) is first true, on geometric steps from one end to the other,
 /// then halved until its relative error is below 1e-3; nothing where it never is.

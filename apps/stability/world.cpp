@@ -50,6 +50,12 @@ Material diffuse(float albedo) {
     return m;
 }
 
+Material glowing(float nits) {
+    Material m = diffuse(0);
+    m.emissive = Rgb(nits);
+    return m;
+}
+
 Material clear_glass(float ior, float attenuation) {
     Material m;
     m.metallic = 0;
@@ -80,9 +86,8 @@ void World::finish() {
 World lamp_ahead(double side_m, double distance_m) {
     World world;
     const auto a = static_cast<float>(side_m);
-    Material lamp = diffuse(0);
-    lamp.emissive = Rgb(1.f);
-    world.place(quad(V3f(-a / 2, -a / 2, -float(distance_m)), V3f(a, 0, 0), V3f(0, a, 0)), lamp);
+    world.place(quad(V3f(-a / 2, -a / 2, -float(distance_m)), V3f(a, 0, 0), V3f(0, a, 0)),
+                glowing(1));
     world.finish();
     return world;
 }

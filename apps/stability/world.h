@@ -19,6 +19,8 @@ namespace petzval::stability {
 [[nodiscard]] Mesh ball(V3f centre, float radius);
 /// Lambert's, seen from both sides.
 [[nodiscard]] Material diffuse(float albedo);
+/// A black surface that shines to both sides.
+[[nodiscard]] Material glowing(float nits);
 /// Clear and smooth, of that index; attenuation: share that is left after a metre.
 [[nodiscard]] Material clear_glass(float ior, float attenuation = 1.f);
 

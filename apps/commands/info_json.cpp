@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
+#include "apps/cli/or_null.h"
 #include "apps/commands/info_report.h"
 #include "io/gltf/info.h"
 
@@ -13,11 +12,6 @@ using nlohmann::ordered_json;
 
 ordered_json head_of(const std::filesystem::path& path) {
     return {{"schema", "petzval.info"}, {"version", 1}, {"file", path.string()}};
-}
-
-template <class T>
-ordered_json or_null(const std::optional<T>& value) {
-    return value ? ordered_json(*value) : ordered_json(nullptr);
 }
 
 ordered_json json_of(const std::vector<ExtensionInFile>& extensions) {

@@ -8,69 +8,13 @@
 #include <random>
 
 #include "core/shading/microfacet.h"
-#include "tests/support/chi_square.h"
-#include "tests/support/jacobian.h"
+#include "tests/core/bsdf_inputs.h"
+#include "tests/support/statistics.h"
 
 namespace petzval {
 namespace {
 
-using test::chi_square_sphere;
-
-V3f from_cosine(float cosine, float azimuth = 0.f) {
-    const float sine = safe_sqrt(1 - sqr(cosine));
-    return {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine};
-}
-
-BsdfInput dielectric(float roughness) {
-    BsdfInput in;
-    in.base_color = uniform(1.f, Bands::rgb());
-    in.roughness = roughness;
-    in.dielectric_f0 = uniform(0.04f, Bands::rgb());
-    return in;
-}
-
-BsdfInput metal(float roughness) {
-    BsdfInput in = dielectric(roughness);
-    in.metallic = 1.f;
-    return in;
-}
-
-BsdfInput glass(float roughness, float eta) {
-    BsdfInput in = dielectric(roughness);
-    in.transmission = 1.f;
-    in.thin = false;
-    in.eta = splat(eta);
-    return in;
-}
-
-/// A glass of 1.3, 1.5 and 1.9 in the three lanes: further apart than any real one.
-BsdfInput dispersing(float roughness, bool from_inside) {
-    BsdfInput in = glass(roughness, 1.5f);
-    in.eta = f4{1.3f, 1.5f, 1.9f, 1.f};
-    if (from_inside) in.eta = 1.f / in.eta;
-    in.disperses = true;
-    return in;
-}
-
-/// n and k of gold near 610, 540 and 450 nm.
-BsdfInput gold(float roughness) {
-    BsdfInput in = metal(roughness);
-    in.measured_metal = true;
-    in.metal_n = f4{0.21f, 0.43f, 1.5f, 1.f};
-    in.metal_k = f4{3.25f, 2.35f, 1.88f, 0.f};
-    return in;
-}
-
-BsdfInput thin_glass(float roughness) {
-    BsdfInput in = dielectric(roughness);
-    in.transmission = 1.f;
-    return in;
-}
-
-BsdfInput half_metal(BsdfInput in) {
-    in.metallic = 0.5f;
-    return in;
-}
+using namespace test;
 
 // Mean weight over a jittered grid: lobes along one axis, directions along the two others.
 float albedo_of(const BsdfInput& in, const V3f& wo, const V3f& up, int side) {
@@ -293,76 +237,6 @@ TEST(Microfacet, FresnelAtNormalIncidenceAndAtTheCriticalAngle) {
                 1e-5f);
 }
 
-struct Case {
-    const char* name;
-    BsdfInput in;
-    float cosine;
-    int lane = 1;
-    f4 throughput = splat(1.f);
-    V3f up{0, 0, 1};
-};
-
-/// 60 degrees off the shading normal.
-const V3f kTilted = from_cosine(0.5f, 2.2f);
-
-class BsdfSampling : public testing::TestWithParam<Case> {};
-
-TEST_P(BsdfSampling, DirectionsFollowTheDensity) {
-    const Bsdf bsdf(GetParam().in, Bands::rgb(), from_cosine(GetParam().cosine, 0.7f),
-                    GetParam().throughput, GetParam().up);
-    const auto draw = [&](test::Random& random) -> std::optional<V3f> {
-        const float u_lobe = random.next();
-        const auto s = bsdf.sample(u_lobe, random.next2());
-        return s ? std::optional(s->wi) : std::nullopt;
-    };
-    const auto pdf = [&](const V3f& wi) -> double { return bsdf.eval(wi).pdf; };
-    EXPECT_TRUE(chi_square_sphere(draw, pdf, 11)) << GetParam().name;
-}
-
-// The integral of the value over uniform directions, which know nothing of the lobes, against the
-// mean weight of the sampler's own.
-TEST_P(BsdfSampling, WeightsIntegrateTheValue) {
-    const Bsdf bsdf(GetParam().in, Bands::rgb(), from_cosine(GetParam().cosine, 0.7f),
-                    GetParam().throughput, GetParam().up);
-    const int lane = GetParam().lane;
-    constexpr int n = 400000;
-    test::Random random(5);
-    test::Moments value, weight;
-    for (int i = 0; i < n; ++i) {
-        value.add(4 * std::numbers::pi * double(bsdf.eval(random.direction()).f_cos[lane]));
-        const float u_lobe = random.next();
-        const auto s = bsdf.sample(u_lobe, random.next2());
-        weight.add(s ? double(s->weight[lane]) : 0);
-    }
-    EXPECT_TRUE(test::agrees(test::Mean(value) - test::Mean(weight), 0))
-        << value.mean() << " and " << weight.mean();
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    All, BsdfSampling,
-    testing::Values(
-        Case{"diffuse", dielectric(1.f), 0.7f}, Case{"coat", dielectric(0.4f), 0.4f},
-        Case{"metal", metal(0.5f), 0.6f}, Case{"grazing metal", metal(0.7f), 0.1f},
-        Case{"glass in", glass(0.5f, 1.5f), 0.7f}, Case{"glass out", glass(0.5f, 1 / 1.5f), 0.8f},
-        Case{"thin", thin_glass(0.6f), 0.5f}, Case{"gold", gold(0.5f), 0.6f},
-        Case{"dispersing in", dispersing(0.5f, false), 0.7f, 0},
-        Case{"dispersing out", dispersing(0.5f, true), 0.8f, 2},
-        Case{"one lane left", dispersing(0.5f, true), 0.8f, 2, f4{0, 0, 1, 0}},
-        Case{"unequal lanes", dispersing(0.4f, false), 0.6f, 1, f4{1, 0.2f, 3, 0}},
-        Case{"metal and glass", half_metal(glass(1.f, 1 / 1.5f)), 0.6f},
-        Case{"metal and a rough pane", half_metal(thin_glass(0.6f)), 0.3f},
-        Case{"tilted metal and glass", half_metal(glass(0.7f, 1.5f)), 0.6f, 1, splat(1.f), kTilted},
-        Case{"tilted diffuse", dielectric(1.f), 0.7f, 1, splat(1.f), kTilted},
-        Case{"tilted metal", metal(0.4f), 0.6f, 1, splat(1.f), kTilted},
-        Case{"tilted thin", thin_glass(0.5f), 0.5f, 1, splat(1.f), kTilted},
-        Case{"tilted glass", glass(0.5f, 1.5f), 0.7f, 1, splat(1.f), kTilted},
-        Case{"tilted dispersing", dispersing(0.5f, true), 0.8f, 2, splat(1.f), kTilted}),
-    [](const auto& case_info) {
-        std::string name = case_info.param.name;
-        for (char& c : name) c = c == ' ' ? '_' : c;
-        return name;
-    });
-
 // The lane that leads is one of four, all equally likely. Drawn by it, each lane keeps its mean,
 // whatever the lanes carry; where all carry the same, the one that leads is kept.
 TEST(Bsdf, TheLaneThatLeadsPicksTheRefractedOne) {
@@ -449,20 +323,6 @@ TEST(Bsdf, MeasuredMetalReflectsAsItsIndexSays) {
                 std::norm((index * double(cosine) - behind) / (index * double(cosine) + behind));
             EXPECT_NEAR(s->weight[lane], (rs + rp) / 2, 2e-6) << lane << ' ' << cosine;
         }
-    }
-}
-
-// Where one lobe answers alone, its density is the inverse of the area that u is spread over.
-TEST(Bsdf, JacobianOfTheReflectionLobe) {
-    const V3f wo = from_cosine(0.6f, 0.3f);
-    for (const float roughness : {0.3f, 0.8f}) {
-        const Bsdf bsdf(metal(roughness), Bands::rgb(), wo);
-        const auto direction = [&](V2f u) -> std::optional<V3f> {
-            const auto s = bsdf.sample(0.5f, u);
-            return s ? std::optional(s->wi) : std::nullopt;
-        };
-        const auto pdf = [&](const V3f& wi) -> double { return bsdf.eval(wi).pdf; };
-        EXPECT_TRUE(test::jacobian_matches(direction, pdf, 3)) << roughness;
     }
 }
 

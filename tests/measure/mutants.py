@@ -7,7 +7,8 @@
 Draws places over all rooms with a fixed seed: a room by its lines, a line of code in it, one change of that line
 (an operator, a condition, a constant, a bound). Each mutant is built in a copy of the checkout (build-mutants/tree),
 where the programs of the tests that see the file run in the order of tests/CMakeLists.txt, lowest room first, until
-one fails or the minutes for tests are over. Time for building does not count. A mutant that does not compile is
+one fails or the minutes for tests are over: of the clock, so keep the machine idle. Time for building does not
+count. A mutant that hangs counts as survived. A mutant that does not compile is
 drawn anew. Prints a line for each: killed by which test, or survived. Ends with the survivors as differences.
 """
 import argparse
@@ -137,22 +138,21 @@ def run(program, seconds):
     return found
 
 
-def judge(path, minutes):
+def killer_of(minutes):
     """What kills the mutant that lies in the tree: None if nothing, 'does not compile' if it is none."""
     left = minutes * 60
-    programs = test_programs()
-    seen = [program for program in programs if "no work to do" not in ninja("-n", program).stdout]
+    seen = [program for program in test_programs() if "no work to do" not in ninja("-n", program).stdout]
     for program in seen:
         if ninja("-k", "1", program, "petzval").returncode != 0:
-            return "does not compile", left
+            return "does not compile"
         start = time.monotonic()
         failed = run(program, left)
         left -= time.monotonic() - start
         if failed:
-            return f"{program}: {failed}", left
+            return f"{program}: {failed}"
         if left <= 0:
             break
-    return None, left
+    return None
 
 
 def main():
@@ -179,7 +179,7 @@ def main():
         lines[line] = new + "\n"
         target.write_text("".join(lines))
         try:
-            killer, _ = judge(path, arguments.minutes)
+            killer = killer_of(arguments.minutes)
         finally:
             target.write_text(whole)
         if killer == "does not compile":

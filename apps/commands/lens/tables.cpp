@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "apps/cli/console.h"
+#include "apps/cli/or_null.h"
 #include "apps/cli/parse.h"
 #include "apps/commands/lens/request.h"
 #include "camera/bench/analysis.h"
@@ -192,12 +193,11 @@ Json json_of(const Lens& lens, const Check& c) {
                                  {"stated", figure.stated},
                                  {"computed", figure.computed},
                                  {"relative_difference", figure.relative()}});
-    const auto number = [](std::optional<double> value) { return value ? Json(*value) : Json(); };
     out["field"] = {
-        {"half_field_deg", number(c.field.half_field_deg)},
-        {"circle_of_half_field_mm", number(c.field.circle_of_half_field_mm)},
-        {"image_circle_mm", number(c.field.image_circle_mm)},
-        {"half_field_of_image_circle_deg", number(c.field.half_field_of_image_circle_deg)}};
+        {"half_field_deg", or_null(c.field.half_field_deg)},
+        {"circle_of_half_field_mm", or_null(c.field.circle_of_half_field_mm)},
+        {"image_circle_mm", or_null(c.field.image_circle_mm)},
+        {"half_field_of_image_circle_deg", or_null(c.field.half_field_of_image_circle_deg)}};
     return out;
 }
 

@@ -3,32 +3,13 @@
 #include <gtest/gtest.h>
 
 #include "io/gltf/animation/node_motion.h"
-#include "tests/support/moving_gltf.h"
+#include "tests/io/gltf/swinging.h"
 #include "tests/support/tiny_png.h"
 
 namespace petzval {
 namespace {
 
 using namespace test;
-
-constexpr double kAt = 0.5, kOpen = 0.5;
-const V3d kAxis = V3d(1, 2, -0.5).normalized();
-
-/// A mesh of two triangles with normals.
-int add_wedge(TinyGltf& file, json more = json::object()) {
-    more["attributes"]["POSITION"] =
-        file.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0.2f, 0.3f, 0.2f, 1});
-    more["attributes"]["NORMAL"] =
-        file.add_accessor<float>("VEC3", {0, 0, 1, 0, 0.6f, 0.8f, 1, 0, 0, 0, 1, 0});
-    more["indices"] = file.add_accessor<uint16_t>("SCALAR", {0, 1, 2, 1, 3, 2});
-    return file.add_mesh(std::move(more));
-}
-
-/// Swings a node; its path has a kink in the middle of the exposure, where a step lies.
-void swing(TinyGltf& file, int node) {
-    spin(file, node, kAxis, 90);
-    animate(file, node, "translation", {0, 0.5f, 1}, {0, 0, 0, 1, 2, 0, 3, 0, -1});
-}
 
 struct Case {
     const char* name;
@@ -119,24 +100,6 @@ std::vector<Case> cases() {
     return out;
 }
 
-size_t deforming(const Scene& scene) {
-    return static_cast<size_t>(std::count_if(scene.meshes.begin(), scene.meshes.end(),
-                                             [](const Mesh& m) { return !m.steps.empty(); }));
-}
-size_t moving(const Scene& scene) {
-    return static_cast<size_t>(std::count_if(scene.instances.begin(), scene.instances.end(),
-                                             [](const Instance& i) { return i.moves; }));
-}
-
-void expect_still(const GltfFile& file) {
-    EXPECT_EQ(moving(file.scene), 0u);
-    EXPECT_EQ(deforming(file.scene), 0u);
-    EXPECT_TRUE(file.scene.motions.empty());
-    EXPECT_TRUE(file.scene.light_motions.empty());
-    for (const GltfCamera& camera : file.cameras) EXPECT_TRUE(camera.steps.empty());
-    EXPECT_FALSE(has_motion(file.scene));
-}
-
 TEST(GltfMotion, StepsAreTheStillsOfTheirTimes) {
     for (const auto& [name, file, moves, deforms] : cases()) {
         const SavedGltf saved(file);
@@ -207,21 +170,6 @@ TEST(GltfMotion, NothingMovesWhereTheShutterOrTheAnimationStandsStill) {
     }
 }
 
-/// A channel that moves what a pointer names, from `first` at 0 s to `last` at 1 s.
-void animate_pointer(TinyGltf& file, const std::string& pointer, const char* type,
-                     const std::vector<float>& first, const std::vector<float>& last) {
-    std::vector<float> values = first;
-    values.insert(values.end(), last.begin(), last.end());
-    json& animation = file.json["animations"][0];
-    animation["samplers"].push_back({{"input", file.add_accessor<float>("SCALAR", {0, 1})},
-                                     {"output", file.add_accessor<float>(type, values)}});
-    animation["channels"].push_back(
-        {{"sampler", animation["samplers"].size() - 1},
-         {"target",
-          {{"path", "pointer"},
-           {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}}}});
-}
-
 TEST(GltfMotion, WhatChangesButIsNotBlurredIsTold) {
     struct Held {
         const char *pointer, *type, *word;
@@ -284,44 +232,6 @@ TEST(GltfMotion, AChangeBetweenTwoTimeStepsIsTold) {
     EXPECT_TRUE(contains_line(SavedGltf(file).at(0.2, 0.4, false).remarks, "nothing moves"));
 }
 
-TEST(GltfMotion, CamerasZoomAsTheStillsDo) {
-    TinyGltf file;
-    file.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}});
-    file.add("cameras", {{"type", "orthographic"},
-                         {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"zfar", 9}, {"znear", 0}}}});
-    for (int i = 0; i < 3; ++i) file.add_root({{"camera", i % 2}});
-    animate_pointer(file, "/cameras/0/perspective/yfov", "SCALAR", {0.5f}, {1.5f});
-    animate_pointer(file, "/cameras/1/orthographic/ymag", "SCALAR", {-2}, {4});
-    const SavedGltf saved(file);
-    const GltfFile open = saved.at(kAt, kOpen);
-    ASSERT_EQ(open.cameras.size(), 3u);
-    for (const GltfCamera& camera : open.cameras) {
-        ASSERT_GE(camera.zoom.size(), 2u);
-        for (size_t i = 0; i < camera.zoom.size(); ++i) {
-            const double share = double(i) / double(camera.zoom.size() - 1) - 0.5;
-            const GltfFile still = saved.at(kAt + share * kOpen);
-            const GltfCamera& then = still.cameras[camera.orthographic ? 1 : 0];
-            EXPECT_TRUE(then.zoom.empty());
-            EXPECT_NEAR(camera.zoom[i], camera.orthographic ? then.ymag_m : then.yfov_rad, 1e-6);
-        }
-    }
-    EXPECT_TRUE(contains_line(open.remarks, "while the shutter is open: 3 zooming cameras"));
-    EXPECT_TRUE(saved.at(7, kOpen, false).cameras[0].zoom.empty());
-    EXPECT_TRUE(contains_line(saved.at(7, kOpen, false).remarks, "nothing moves"));
-}
-
-TEST(GltfMotion, AViewThatIsNoneForAWhileIsHeld) {
-    TinyGltf file;
-    file.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}});
-    file.add_root({{"camera", 0}});
-    animate_pointer(file, "/cameras/0/perspective/yfov", "SCALAR", {-0.5f}, {1.5f});
-    const GltfFile open = SavedGltf(file).at(kAt, 0.8);
-    ASSERT_EQ(open.cameras.size(), 1u);
-    EXPECT_TRUE(open.cameras[0].zoom.empty());
-    EXPECT_TRUE(contains_line(open.warnings, "/cameras/0: its yfov leaves 0 to 180 degrees"));
-    EXPECT_TRUE(contains_line(open.remarks, "shown as in the middle: views of cameras"));
-}
-
 TEST(GltfMotion, AConstantTrackMovesNothing) {
     TinyGltf file;
     const int node = file.add_root({{"mesh", add_wedge(file)}});
@@ -343,104 +253,6 @@ TEST(GltfMotion, AMeshThatMovesKeepsTheStillOnesBesideItBaked) {
     EXPECT_TRUE(open.scene.instances[0].identity);
     EXPECT_FALSE(open.scene.instances[0].moves);
     EXPECT_TRUE(open.scene.instances[1].moves);
-}
-
-template <class L>
-void expect_near(const L& one, const Light& light) {
-    const L& other = std::get<L>(light);
-    if constexpr (requires { one.position; }) {
-        EXPECT_LT((one.position - other.position).length(), 1e-4f);
-    }
-    if constexpr (requires { one.direction; }) {
-        EXPECT_LT((one.direction - other.direction).length(), 1e-4f);
-    }
-    if constexpr (requires { one.cos_outer; }) {
-        EXPECT_EQ(one.cos_outer, other.cos_outer);
-    }
-}
-
-// A light of each kind on a node that turns and flies.
-TEST(GltfMotion, LightsStandWhereTheStillsHaveThem) {
-    TinyGltf file;
-    file.json["extensionsUsed"] = {"KHR_lights_punctual"};
-    auto& lights = file.json["extensions"]["KHR_lights_punctual"]["lights"];
-    lights = {{{"type", "point"}, {"intensity", 2}},
-              {{"type", "spot"}, {"spot", {{"outerConeAngle", 0.5}}}},
-              {{"type", "directional"}}};
-    const int root = file.add_root({{"children", {1, 2, 3}}});
-    for (int i = 0; i < 3; ++i)
-        file.add("nodes", {{"translation", {i, 1, 0}},
-                           {"extensions", {{"KHR_lights_punctual", {{"light", i}}}}}});
-    swing(file, root);
-    const SavedGltf saved(file);
-    const GltfFile open = saved.at(kAt, kOpen);
-    ASSERT_EQ(open.scene.lights.size(), 3u);
-    for (int i = 0; i <= 20; ++i) {
-        const float time = float(i) / 20;
-        const GltfFile still = saved.at(kAt + (double(time) - 0.5) * kOpen);
-        expect_still(still);
-        for (uint32_t k = 0; k < 3; ++k) {
-            std::optional<Light> moved;
-            const Light& light = light_at(open.scene, k, time, moved);
-            ASSERT_EQ(light.index(), still.scene.lights[k].index());
-            std::visit([&](const auto& one) { expect_near(one, still.scene.lights[k]); }, light);
-        }
-    }
-}
-
-TEST(GltfMotion, LightsWithARadiusAreBallsThatMove) {
-    TinyGltf file;
-    file.json["extensionsUsed"] = {"KHR_lights_punctual"};
-    file.json["extensions"]["KHR_lights_punctual"]["lights"] = {
-        {{"type", "point"}, {"intensity", 2}, {"extras", {{"petzval", {{"radius_m", 0.1}}}}}}};
-    const int node = file.add_root({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
-    swing(file, node);
-    const SavedGltf saved(file);
-    const GltfFile open = saved.at(kAt, kOpen);
-    ASSERT_EQ(open.scene.instances.size(), 1u);
-    EXPECT_TRUE(open.scene.instances[0].moves);
-    for (const float time : {0.f, 0.3f, 0.5f, 0.8f, 1.f}) {
-        const GltfFile still = saved.at(kAt + (double(time) - 0.5) * kOpen);
-        EXPECT_LT(apart(triangles_at(open.scene, time), triangles_at(still.scene, 0.5f)), 1e-3);
-    }
-}
-
-// What is not followed is said.
-TEST(GltfMotion, ASpotWithARadiusThatTurnsIsWarnedOf) {
-    for (const bool turns : {false, true}) {
-        TinyGltf file;
-        file.json["extensionsUsed"] = {"KHR_lights_punctual"};
-        file.json["extensions"]["KHR_lights_punctual"]["lights"] = {
-            {{"type", "spot"},
-             {"spot", json::object()},
-             {"extras", {{"petzval", {{"radius_m", 0.1}}}}}}};
-        const int node = file.add_root({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
-        animate(file, node, "translation", {0, 1}, {0, 0, 0, 1, 2, 3});
-        if (turns) spin(file, node, kAxis, 60);
-        const GltfFile open = SavedGltf(file).at(kAt, kOpen);
-        EXPECT_EQ(contains_line(open.warnings, "shines as in the middle"), turns);
-    }
-}
-
-TEST(GltfMotion, CamerasStandWhereTheStillsHaveThem) {
-    TinyGltf file;
-    file.add("cameras",
-             {{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.1}}}});
-    const int root = file.add_root({{"children", {1}}, {"scale", {2, 2, 2}}});
-    file.add("nodes", {{"camera", 0}, {"translation", {0, 1, 4}}});
-    swing(file, root);
-    const SavedGltf saved(file);
-    const GltfFile open = saved.at(kAt, kOpen);
-    ASSERT_EQ(open.cameras.size(), 1u);
-    const auto& steps = open.cameras[0].steps;
-    ASSERT_GE(steps.size(), 2u);
-    for (size_t i = 0; i < steps.size(); i += 8) {
-        const double share = double(i) / double(steps.size() - 1) - 0.5;
-        const GltfFile still = saved.at(kAt + share * kOpen);
-        expect_still(still);
-        EXPECT_TRUE(steps[i].equalWithAbsError(still.cameras[0].to_world, 1e-6f)) << i;
-    }
-    EXPECT_TRUE(open.cameras[0].to_world.equalWithAbsError(saved.at(kAt).cameras[0].to_world, 0.f));
 }
 
 // Small in the middle, there before and after; there from a moment on; flat all the time.

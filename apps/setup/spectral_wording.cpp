@@ -27,6 +27,8 @@ std::string text_of(const WavelengthReason& reason) {
             return fmt::format("{} disperses ({})", material, reason.what);
         case Kind::Metal:
             return fmt::format("{} is a measured metal ({})", material, reason.what);
+        case Kind::Reflectance:
+            return fmt::format("{} has a measured reflectance ({})", material, reason.what);
         case Kind::Film:
             return fmt::format("light interferes in the thin film of {}", material);
         case Kind::Emitter:

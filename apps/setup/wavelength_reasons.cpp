@@ -78,6 +78,9 @@ std::vector<WavelengthReason> scene_reasons(const Scene& scene) {
         if (disperses(m)) reasons.add(Kind::Glass, m.glass->name, m.name);
         if (m.metal >= 0 && m.metallic > 0)
             reasons.add(Kind::Metal, scene.metals[static_cast<size_t>(m.metal)].name, m.name);
+        if (m.reflectance >= 0)
+            reasons.add(Kind::Reflectance,
+                        scene.reflectances[static_cast<size_t>(m.reflectance)].name, m.name);
         if (m.iridescence > 0) reasons.add(Kind::Film, "", m.name);
         if (const Illuminant* white = scene.illuminant(m.illuminant); white && m.emits())
             reasons.add(Kind::Emitter, white->name, m.name);

@@ -15,18 +15,19 @@ namespace petzval {
 /// Reason to carry wavelengths: something depends on them.
 struct WavelengthReason {
     enum class Kind {
-        Bins,        ///< spectra are asked for
-        Illuminant,  ///< another white is asked for
-        Response,    ///< another sensor is asked for
-        Lens,        ///< its glass disperses
-        Glass,       ///< a material's glass disperses
-        Metal,       ///< a material's metal is a measured one
-        Film,        ///< a material has a thin film, in which light interferes
-        Emitter,     ///< a material that shines as an illuminant
-        Lamp         ///< a punctual light that does
+        Bins,         ///< spectra are asked for
+        Illuminant,   ///< another white is asked for
+        Response,     ///< another sensor is asked for
+        Lens,         ///< its glass disperses
+        Glass,        ///< a material's glass disperses
+        Metal,        ///< a material's metal is a measured one
+        Reflectance,  ///< a material's reflectance is a measured one
+        Film,         ///< a material has a thin film, in which light interferes
+        Emitter,      ///< a material that shines as an illuminant
+        Lamp          ///< a punctual light that does
     };
     Kind kind;
-    std::string what;      ///< the illuminant, response, lens, glass or metal
+    std::string what;      ///< the illuminant, response, lens, glass, metal or reflectance
     std::string material;  ///< that has it; empty where it has no name or there is none
     size_t others = 0;     ///< further things of this kind
 

@@ -139,8 +139,8 @@ const Material& material_of(const Scene& scene, const Instance& instance) {
 
 bool depends_on_wavelength(const Scene& scene, const Instance& instance) {
     const Material& m = material_of(scene, instance);
-    return (m.glass && m.refracts()) || (m.metal >= 0 && m.metallic > 0) || m.iridescence > 0 ||
-           (m.emits() && m.illuminant >= 0);
+    return (m.glass && m.refracts()) || (m.metal >= 0 && m.metallic > 0) || m.reflectance >= 0 ||
+           m.iridescence > 0 || (m.emits() && m.illuminant >= 0);
 }
 
 Part part_of(const Scene& scene, uint32_t instance, uint32_t triangle) {

@@ -49,6 +49,7 @@ struct Material {
     float ior = 1.5f;              ///< KHR_materials_ior; 0 means a specular weight of 1
     std::optional<Glass> glass;    ///< set where the index depends on wavelength; ior is its nd
     int32_t metal = -1;            ///< measured, index into Scene::metals: replaces the base colour
+    int32_t reflectance = -1;      ///< measured, index into Scene::reflectances: likewise
     int32_t illuminant = -1;       ///< white of its emission, index into Scene::illuminants
     std::optional<Beam> beam;      ///< directions that `emissive` is sent in; none: all
     float specular = 1.f;          ///< KHR_materials_specular

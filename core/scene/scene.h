@@ -27,6 +27,7 @@ struct Scene {
     std::vector<Image> images;
     std::vector<Material> materials;  ///< at least one where there is a mesh
     std::vector<Metal> metals;
+    std::vector<MeasuredReflectance> reflectances;
     std::vector<Illuminant> illuminants;
     std::vector<Mesh> meshes;
     std::vector<Instance> instances;

@@ -112,14 +112,13 @@ f4 index_of(const Material* m, const Bands& bands) {
 
 // Replaces the diffuse colour and the roughness by those of KHR_materials_pbrSpecularGlossiness:
 // c_diff = diffuse (1 - max(specular)), alpha = (1 - glossiness)^2.
-void read_glossiness(const Scene& scene, const Surface& s, Rgb diffuse, Rgb specular,
-                     const Bands& bands, BsdfInput& b) {
+void read_glossiness(const Scene& scene, const Surface& s, Rgb specular, BsdfInput& b) {
     const Material& m = *s.material;
     const TextureSlot& slot = m.specular_color_texture;
     const float texel = slot.present() ? read(scene, s, slot)[3] : 1.f;
     b.roughness = 1.f - (1.f - m.roughness) * texel;
     const float most = std::max({specular[0], specular[1], specular[2]});
-    b.base_color = uplift_reflectance(diffuse * (1.f - most), bands);
+    b.base_color *= 1.f - most;
 }
 
 bool disperses(const Material* m, const Bands& bands) {
@@ -237,7 +236,9 @@ ShadingInput read_material(const Scene& scene, const Surface& s, const MaterialL
                            const V3f& wo, const Bands& bands, const Fillings& sides) {
     const Material& m = *s.material;
     ShadingInput out;
-    f4 base = m.base_color.v * read_texture(lookups.base_color);
+    // Where the reflectance is measured, the texture is that of a cutout: it has the holes.
+    f4 base =
+        m.reflectance < 0 ? m.base_color.v * read_texture(lookups.base_color) : m.base_color.v;
     if (!s.mesh->colours.empty()) base *= vertex_colour(s);
     base[3] = 0.f;
     const Rgb base_color(base);
@@ -269,6 +270,11 @@ ShadingInput read_material(const Scene& scene, const Surface& s, const MaterialL
         b.metal_n = metal.n.at(bands.nm);
         b.metal_k = metal.k.at(bands.nm);
     }
+    if (m.reflectance >= 0 && bands.spectral) {
+        const f4 c = vertex_colour(s);
+        b.base_color = uplift_reflectance({c[0], c[1], c[2]}, bands) *
+                       scene.reflectances[static_cast<size_t>(m.reflectance)].share.at(bands.nm);
+    }
     const f4 surface_texel = read_texture(lookups.metallic_roughness);
     b.roughness = m.roughness * surface_texel[1];
     b.metallic = m.metallic * surface_texel[2];
@@ -287,7 +293,7 @@ ShadingInput read_material(const Scene& scene, const Surface& s, const MaterialL
     b.thin = !m.has_volume;
     b.disperses = disperses(sides.before, bands) || disperses(sides.behind, bands);
     b.eta = index_of(sides.behind, bands) / index_of(sides.before, bands);
-    if (m.specular_glossiness) read_glossiness(scene, s, base_color, specular_color, bands, b);
+    if (m.specular_glossiness) read_glossiness(scene, s, specular_color, b);
     if (layered) {
         layers.read_coat(out.frame, out.coat);
         layers.read_sheen(b);

@@ -18,12 +18,12 @@ namespace {
 // Largest size of a file: some fifty times that of measured spectra.
 constexpr uintmax_t kMaxBytes = 4 << 20;
 
-std::string read_text(const std::filesystem::path& path) {
+std::string read_text(const std::filesystem::path& path, const std::vector<uint8_t>* bytes) {
     std::error_code none;
     if (const uintmax_t size = std::filesystem::file_size(path, none); !none && size > kMaxBytes)
         throw InputError(path.string(), "",
                          "has {} bytes, and a table may have {}; keep fewer rows", size, kMaxBytes);
-    const FileBytes file = read_file(path);
+    const FileBytes file = bytes ? FileBytes{*bytes, ""} : read_file(path);
     if (!file.error.empty()) throw InputError(path.string(), "", file.error);
     std::string text(file.bytes.begin(), file.bytes.end());
     if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
@@ -52,8 +52,8 @@ bool is_text(std::string_view line) {
 
 }  // namespace
 
-CsvText read_csv_text(const std::filesystem::path& path) {
-    const std::string text = read_text(path);
+CsvText read_csv_text(const std::filesystem::path& path, const std::vector<uint8_t>* bytes) {
+    const std::string text = read_text(path, bytes);
     CsvText table{path.string(), {}, {}, {}};
     int line_number = 0;
     for (size_t begin = 0; begin < text.size();) {
@@ -87,8 +87,8 @@ CsvText read_csv_text(const std::filesystem::path& path) {
     return table;
 }
 
-CsvTable read_csv(const std::filesystem::path& path) {
-    CsvText text = read_csv_text(path);
+CsvTable read_csv(const std::filesystem::path& path, const std::vector<uint8_t>* bytes) {
+    CsvText text = read_csv_text(path, bytes);
     CsvTable table{std::move(text.file), std::move(text.names), {}, std::move(text.line_of_row)};
     if (finite_number(table.names.front()))
         throw InputError(

@@ -3,6 +3,7 @@
 // lines are comments.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -26,12 +27,14 @@ using CsvText = Table<std::string>;
 using CsvTable = Table<double>;
 
 /// Reads a table of texts. Throws InputError with the line: a row too short or too long, no row, a
-/// file over 4 MiB, one that cannot be read or is not text.
-[[nodiscard]] CsvText read_csv_text(const std::filesystem::path&);
+/// file over 4 MiB, one that cannot be read or is not text. bytes: as in read_csv.
+[[nodiscard]] CsvText read_csv_text(const std::filesystem::path&,
+                                    const std::vector<uint8_t>* bytes = nullptr);
 
 /// Reads a table of numbers. Throws as read_csv_text does, and for a missing or broken number, one
-/// that is not finite, or no line of names.
-[[nodiscard]] CsvTable read_csv(const std::filesystem::path&);
+/// that is not finite, or no line of names. bytes: the file's, where they were read already.
+[[nodiscard]] CsvTable read_csv(const std::filesystem::path&,
+                                const std::vector<uint8_t>* bytes = nullptr);
 
 /// CSV text of names, which must have no commas, and rows. A number that is not finite is an empty
 /// cell.

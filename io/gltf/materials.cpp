@@ -94,7 +94,7 @@ Material GltfMaterials::read(size_t index) {
             read_diffuse_transmission(json, material);
         }
     }
-    spectral_.apply(json, material);
+    spectral_.apply(json, gltf_.source.reflectances, material);
     count(json, material);
     return material;
 }

@@ -48,7 +48,9 @@ std::optional<int32_t> place_of(std::vector<Thing>& things, const std::string& n
 
 GltfSpectral::GltfSpectral(Scene& scene, GltfTally& tally) : scene_(scene), tally_(tally) {}
 
-void GltfSpectral::apply(const JsonCursor& json, Material& material) {
+void GltfSpectral::apply(const JsonCursor& json,
+                         const std::map<std::string, MeasuredReflectance>& reflectances,
+                         Material& material) {
     const auto extras = petzval_extras(json);
     if (material.unlit) {  // its base colour is all there is to see
         tally_.idle_dispersions += json.extension("KHR_materials_dispersion").has_value();
@@ -69,6 +71,8 @@ void GltfSpectral::apply(const JsonCursor& json, Material& material) {
             named ? "disperses nothing" : "has no effect"));
     }
     if (extras && extras->has("metal")) apply_metal(*extras, material);
+    if (extras && extras->has("reflectance"))
+        apply_reflectance(*extras, reflectances.at(extras->text("reflectance")), material);
     if (material.emits())
         material.illuminant = illuminant(json);
     else if (extras && extras->has("illuminant"))
@@ -134,6 +138,19 @@ void GltfSpectral::apply_metal(const JsonCursor& extras, Material& material) {
     if (material.metallic == 0)
         tally_.warnings.push_back(extras.path_of("metal") +
                                   ": is not seen, as the material's metallicFactor is 0");
+}
+
+void GltfSpectral::apply_reflectance(const JsonCursor& extras,
+                                     const MeasuredReflectance& reflectance, Material& material) {
+    if (material.base_color_texture.present() && !material.cutout())
+        extras.fail("reflectance",
+                    "is the material's colour, and so is its texture; leave out one of them");
+    const auto [at, is_new] = reflectances_.try_emplace(
+        reflectance.name, static_cast<int32_t>(scene_.reflectances.size()));
+    if (is_new) scene_.reflectances.push_back(reflectance);
+    material.reflectance = at->second;
+    material.base_color = reflectance.rgb;
+    tally_.honoured.insert("measured reflectance " + printable(reflectance.name));
 }
 
 }  // namespace petzval

@@ -81,9 +81,10 @@ void mend_negative(CsvTable& table) {
     }
 }
 
-// Reads a table of spectra. columns: those after the wavelength.
-CsvTable read_spectra(const fs::path& path, size_t columns) {
-    CsvTable table = read_csv(path);
+// Reads a table of spectra. columns: those after the wavelength. bytes: as in read_csv.
+CsvTable read_spectra(const fs::path& path, size_t columns,
+                      const std::vector<uint8_t>* bytes = nullptr) {
+    CsvTable table = read_csv(path, bytes);
     if (table.names.size() != 1 + columns)
         throw InputError(
             table.file, "",
@@ -102,6 +103,10 @@ CsvTable read_spectra(const fs::path& path, size_t columns) {
         previous_nm = nm;
     }
     mend_negative(table);
+    if (table.rows.front()[0] > kLast_nm || previous_nm < kFirst_nm)
+        throw InputError(table.file, table.place(0),
+                         "wavelengths {} to {} do not reach {} to {} nm; write them in nm",
+                         table.rows.front()[0], previous_nm, kFirst_nm, kLast_nm);
     return table;
 }
 
@@ -138,12 +143,6 @@ double area(const CsvTable& table, size_t column, double unit) {
 template <size_t N>
 std::array<SpectrumTable, N> read_relative(const fs::path& path) {
     const CsvTable table = read_spectra(path, N);
-    const double first_nm = table.rows.front()[0], last_nm = table.rows.back()[0];
-    if (first_nm > kLast_nm || last_nm < kFirst_nm)
-        throw InputError(
-            table.file, table.place(0),
-            fmt::format("wavelengths {} to {} do not reach {} to {} nm; write them in nm", first_nm,
-                        last_nm, kFirst_nm, kLast_nm));
     double greatest = 0;
     for (const auto& row : table.rows)
         greatest = std::max(greatest, *std::max_element(row.begin() + 1, row.end()));
@@ -173,6 +172,29 @@ Rgb to_srgb(const V3d& xyz, const V3d& white) {
     return {static_cast<float>(rgb.x), static_cast<float>(rgb.y), static_cast<float>(rgb.z)};
 }
 
+// Linear sRGB of a reflectance under D65.
+Rgb colour_of(const SpectrumTable& share) {
+    const auto observer = standard_observer();
+    SpectrumTable seen = tabulate<1>(read_spectra(shipped("d65"), 1), Extrapolate::Zero)[0];
+    const V3d white = respond(observer, seen);
+    for (size_t i = 0; i < seen.value.size(); ++i) seen.value[i] *= share.value[i];
+    return to_srgb(respond(observer, seen), white);
+}
+
+CsvTable read_patches() {
+    return read_spectra(shipped("colorchecker"), 24);
+}
+
+MeasuredReflectance reflectance_of(const CsvTable& table, size_t column, const std::string& name) {
+    for (size_t row = 0; row < table.rows.size(); ++row)
+        if (table.rows[row][column] > 1)
+            throw InputError(table.file, table.place(row),
+                             "{} in column {} must not be above 1; write shares, not percent",
+                             table.rows[row][column], table.names[column]);
+    const SpectrumTable share = tabulate(table, column, Extrapolate::Hold);
+    return {name, share, Rgb(max(f4{}, min(splat(1.f), colour_of(share).v)))};
+}
+
 }  // namespace
 
 std::array<SpectrumTable, 3> standard_observer() {
@@ -184,7 +206,7 @@ std::array<SpectrumTable, 3> rgb_basis() {
 }
 
 std::vector<SpectrumTable> training_reflectances() {
-    const auto patches = tabulate<24>(read_spectra(shipped("colorchecker"), 24), Extrapolate::Hold);
+    const auto patches = tabulate<24>(read_patches(), Extrapolate::Hold);
     return {patches.begin(), patches.end()};
 }
 
@@ -215,15 +237,25 @@ std::optional<Metal> find_metal(const std::string& name) {
 }
 
 Rgb colour_of(const Metal& metal) {
-    const auto observer = standard_observer();
-    SpectrumTable seen = tabulate<1>(read_spectra(shipped("d65"), 1), Extrapolate::Zero)[0];
-    const V3d white = respond(observer, seen);
+    SpectrumTable share;
     // Normal incidence: Born and Wolf 1999, "Principles of Optics", equation 14.2 (17).
-    for (size_t i = 0; i < seen.value.size(); ++i) {
+    for (size_t i = 0; i < share.value.size(); ++i) {
         const float n = metal.n.value[i], k2 = metal.k.value[i] * metal.k.value[i];
-        seen.value[i] *= ((n - 1) * (n - 1) + k2) / ((n + 1) * (n + 1) + k2);
+        share.value[i] = ((n - 1) * (n - 1) + k2) / ((n + 1) * (n + 1) + k2);
     }
-    return to_srgb(respond(observer, seen), white);
+    return colour_of(share);
+}
+
+std::optional<MeasuredReflectance> find_reflectance(const std::string& name) {
+    const CsvTable table = read_patches();
+    const auto at = std::find(table.names.begin() + 1, table.names.end(), lower(name));
+    if (at == table.names.end()) return std::nullopt;
+    return reflectance_of(table, static_cast<size_t>(at - table.names.begin()), *at);
+}
+
+MeasuredReflectance read_reflectance(const fs::path& path, const std::vector<uint8_t>& bytes,
+                                     const std::string& name) {
+    return reflectance_of(read_spectra(path, 1, &bytes), 1, name);
 }
 
 std::string illuminant_names() {
@@ -232,6 +264,12 @@ std::string illuminant_names() {
 
 std::string metal_names() {
     return fmt::format("{}", fmt::join(kMetals, ", "));
+}
+
+std::vector<std::string> reflectance_names() {
+    std::vector<std::string> names = read_patches().names;
+    names.erase(names.begin());  // the wavelength
+    return names;
 }
 
 }  // namespace petzval

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -39,8 +40,19 @@ namespace petzval {
 /// Linear sRGB of a metal's reflectance at normal incidence under D65; may lie outside [0, 1].
 [[nodiscard]] Rgb colour_of(const Metal&);
 
+/// A reflectance that ships, "colorchecker:dark_skin" say, whatever the case. Nothing where there
+/// is none.
+[[nodiscard]] std::optional<MeasuredReflectance> find_reflectance(const std::string& name);
+/// Reflectance of a CSV file, whose bytes these are: one column from 0 to 1, held beyond its ends.
+/// Throws InputError with the line.
+[[nodiscard]] MeasuredReflectance read_reflectance(const std::filesystem::path&,
+                                                   const std::vector<uint8_t>& bytes,
+                                                   const std::string& name);
+
 /// Names of the illuminants and metals that ship, for messages: "d65, a, f11" and "ag, al, au, cu".
 [[nodiscard]] std::string illuminant_names();
 [[nodiscard]] std::string metal_names();
+/// Names of the reflectances that ship.
+[[nodiscard]] std::vector<std::string> reflectance_names();
 
 }  // namespace petzval

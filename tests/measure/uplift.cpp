@@ -49,6 +49,7 @@ class Eye {
     [[nodiscard]] V3d lab(Rgb c) const {
         return xyz_to_lab(to_rgb_.inverse() * V3d(c[0], c[1], c[2]), white_);
     }
+    [[nodiscard]] V3d xyz(const SpectrumTable& s) const { return respond(curves_, s); }
     [[nodiscard]] V3d rgb(const SpectrumTable& s) const { return to_rgb_ * respond(curves_, s); }
     [[nodiscard]] double difference(const SpectrumTable& a, const SpectrumTable& b) const {
         return delta_e_2000(lab(a), lab(b));
@@ -169,6 +170,9 @@ struct Lights {
     Eye d65, a, f11;
 };
 
+// Where the patches are measured, and where the eye has nearly all of its sensitivity.
+constexpr std::pair kWide_nm{380, 730}, kNarrow_nm{430, 670};
+
 // How far reflectances are from what they should be: a row of a table.
 class Differences {
   public:
@@ -176,11 +180,11 @@ class Differences {
         fmt::print(
             "| | RMS {} to {} nm: mean | max | {} to {} nm: mean | max | CIEDE2000 D65: mean | max "
             "| A: mean | max | F11: mean | max |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
-            wide_nm.first, wide_nm.second, narrow_nm.first, narrow_nm.second);
+            kWide_nm.first, kWide_nm.second, kNarrow_nm.first, kNarrow_nm.second);
     }
     void add(const SpectrumTable& got, const SpectrumTable& wanted, const Lights& lights) {
-        wide_.add(rms(got, wanted, wide_nm.first, wide_nm.second));
-        narrow_.add(rms(got, wanted, narrow_nm.first, narrow_nm.second));
+        wide_.add(rms(got, wanted, kWide_nm.first, kWide_nm.second));
+        narrow_.add(rms(got, wanted, kNarrow_nm.first, kNarrow_nm.second));
         d65_.add(lights.d65.difference(got, wanted));
         a_.add(lights.a.difference(got, wanted));
         f11_.add(lights.f11.difference(got, wanted));
@@ -193,8 +197,6 @@ class Differences {
     }
 
   private:
-    // Where the patches are measured, and where the eye has nearly all of its sensitivity.
-    static constexpr std::pair wide_nm{380, 730}, narrow_nm{430, 670};
     Statistics wide_, narrow_, d65_, a_, f11_;
 };
 
@@ -230,6 +232,46 @@ void compare_filtering(const std::vector<Filtering>& ways, const Lights& lights,
     }
 }
 
+Rgb clipped(const V3d& rgb) {
+    const auto channel = [&](int k) { return static_cast<float>(std::clamp(rgb[k], 0., 1.)); };
+    return {channel(0), channel(1), channel(2)};
+}
+
+// What a material's RGB cannot say of each measured patch.
+void tell_of_patches(const Model& model, const Lights& lights) {
+    fmt::print(
+        "\nReflectance by {} from the sRGB of each patch (clipped) against the measurement: RMS "
+        "from {} to {} nm, X, Y and Z in percent of the patch's own under A and F11, CIEDE2000.\n\n"
+        "| patch | RMS | X under A | Y | Z | X under F11 | Y | Z | CIEDE2000 A | F11 |\n"
+        "|---|---|---|---|---|---|---|---|---|---|\n",
+        model.name, kWide_nm.first, kWide_nm.second);
+    const auto print = [](const std::string& name, const std::vector<double>& v) {
+        fmt::print("| {} | {:.3f} |", name, v[0]);
+        for (size_t i = 1; i < v.size(); ++i)
+            fmt::print(fmt::runtime(i < 7 ? " {:+.1f} |" : " {:.1f} |"), v[i]);
+        fmt::print("\n");
+    };
+    std::vector<double> sums(9), worst(9);
+    const std::vector<std::string> names = reflectance_names();
+    for (const std::string& name : names) {
+        const SpectrumTable patch = find_reflectance(name)->share;
+        const SpectrumTable got = model.uplift(clipped(lights.d65.rgb(patch)));
+        std::vector<double> row{rms(got, patch, kWide_nm.first, kWide_nm.second)};
+        for (const Eye* eye : {&lights.a, &lights.f11})
+            for (int k = 0; k < 3; ++k)
+                row.push_back(100 * (eye->xyz(got)[k] / eye->xyz(patch)[k] - 1));
+        for (const Eye* eye : {&lights.a, &lights.f11}) row.push_back(eye->difference(got, patch));
+        print(name, row);
+        for (size_t i = 0; i < row.size(); ++i) {
+            sums[i] += row[i] * row[i];
+            if (std::fabs(row[i]) > std::fabs(worst[i])) worst[i] = row[i];
+        }
+    }
+    for (double& sum : sums) sum = std::sqrt(sum / double(names.size()));
+    print("root mean square", sums);
+    print("worst", worst);
+}
+
 void compare_with_nature(const std::vector<Model>& models, const Lights& lights) {
     fmt::print(
         "\n24 measured patches: reflectance from their sRGB (clipped) against the "
@@ -238,11 +280,7 @@ void compare_with_nature(const std::vector<Model>& models, const Lights& lights)
     for (const Model& model : models) {
         Differences off;
         for (const SpectrumTable& patch : training_reflectances()) {
-            const V3d rgb = lights.d65.rgb(patch);
-            const auto clipped = [&](int k) {
-                return static_cast<float>(std::clamp(rgb[k], 0., 1.));
-            };
-            off.add(model.uplift({clipped(0), clipped(1), clipped(2)}), patch, lights);
+            off.add(model.uplift(clipped(lights.d65.rgb(patch))), patch, lights);
         }
         off.print(model.name);
     }
@@ -403,6 +441,7 @@ void run() {
                     direct});
     for (const float apart : {1.f, 0.1f}) compare_filtering(ways, lights, apart);
     compare_with_nature(models, lights);
+    tell_of_patches(models.front(), lights);
     compare_speed(observer, small, large);
 }
 

@@ -4,6 +4,7 @@
 #include "io/gltf/mend/material_properties.h"
 #include "io/gltf/validate/check.h"
 #include "io/gltf/validate/extras.h"
+#include "io/gltf/validate/files.h"
 
 namespace petzval {
 namespace {
@@ -85,7 +86,8 @@ void check_materials(GltfCheck& check) {
     for (const JsonCursor& material : check.root.objects("materials")) {
         check_core(material);
         check_material_extensions(material);
-        check_material_extras(material);
+        if (const auto extras = check_material_extras(material))
+            fetch_reflectance(check.source, *extras, check.budget);
         for (const JsonCursor& owner : texture_owners(material))
             for (const JsonCursor& info : texture_infos(owner)) check_texture_info(info, textures);
     }

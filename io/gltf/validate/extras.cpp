@@ -43,15 +43,19 @@ std::optional<JsonCursor> petzval_extras(const JsonCursor& owner) {
     return owner.object("extras").find_object("petzval");
 }
 
-void check_material_extras(const JsonCursor& material) {
-    require_known_extras(material, "material", {"glass", "metal", "illuminant", "solid"});
+std::optional<JsonCursor> check_material_extras(const JsonCursor& material) {
+    require_known_extras(material, "material",
+                         {"glass", "metal", "reflectance", "illuminant", "solid"});
     const auto extras = petzval_extras(material);
-    if (!extras) return;
-    for (const char* const key : {"glass", "metal", "illuminant"})
+    if (!extras) return extras;
+    for (const char* const key : {"glass", "metal", "reflectance", "illuminant"})
         if (extras->has(key)) (void)extras->text(key);
     (void)is_solid(material);
     if (extras->has("glass") && extras->has("metal"))
         extras->fail("names a glass and a metal; a material is one of them");
+    if (extras->has("metal") && extras->has("reflectance"))
+        extras->fail("names a metal and a reflectance, which both are its colour; leave out one");
+    return extras;
 }
 
 std::optional<bool> is_solid(const JsonCursor& material) {

@@ -14,8 +14,8 @@ namespace petzval {
 /// extras.petzval of an object. Other people's extras may be of any type: they are ignored.
 [[nodiscard]] std::optional<JsonCursor> petzval_extras(const JsonCursor& owner);
 
-/// Checks keys and types of a material's extras.petzval. Throws InputError with the JSON path.
-void check_material_extras(const JsonCursor& material);
+/// extras.petzval of a material, keys and types checked. Throws InputError with the JSON path.
+std::optional<JsonCursor> check_material_extras(const JsonCursor& material);
 /// Whether a material's extras.petzval make its glass solid, so that light is refracted into it:
 /// "solid" says so, or that it is thin; without that a named glass is solid. Nothing where they say
 /// nothing. Throws InputError with the JSON path where "solid" is neither true nor false.

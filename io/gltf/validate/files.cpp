@@ -9,9 +9,11 @@
 #include "io/base/error.h"
 #include "io/base/json_cursor.h"
 #include "io/base/json_parse.h"
+#include "io/base/nearest.h"
 #include "io/base/read_file.h"
 #include "io/base/uri.h"
 #include "io/gltf/validate/extensions.h"
+#include "io/spectra/spectra.h"
 
 namespace petzval {
 namespace {
@@ -33,10 +35,12 @@ class Fetcher {
   public:
     Fetcher(GltfSource& source, GltfBudget& budget) : source_(source), budget_(budget) {}
 
-    /// Bytes behind the "uri" of owner. mime_types: those that a data URI may declare; empty: any.
-    Bytes fetch(const JsonCursor& owner, const MimeTypes& mime_types) {
-        const std::string uri = owner.text("uri");
-        return is_data_uri(uri) ? from_data(owner, uri, mime_types) : from_file(owner, uri);
+    /// Bytes behind the "uri" of owner, or what key says. mime_types: those that a data URI may
+    /// declare; empty: any.
+    Bytes fetch(const JsonCursor& owner, const MimeTypes& mime_types, const char* key = "uri") {
+        const std::string uri = owner.text(key);
+        return is_data_uri(uri) ? from_data(owner, uri, mime_types)
+                                : from_file(owner, uri, nullptr, key);
     }
 
     /// Bytes likewise of what a scene can be shown without; none, and a warning that it is left
@@ -59,7 +63,7 @@ class Fetcher {
     }
 
     Bytes from_file(const JsonCursor& owner, const std::string& uri,
-                    const char* dispensable = nullptr) {
+                    const char* dispensable = nullptr, const char* key = "uri") {
         const auto path = relative_path(uri);
         if (!path && dispensable) {
             source_.warnings.add(owner.path_of("uri"),
@@ -68,13 +72,13 @@ class Fetcher {
             return {};
         }
         if (!path)
-            owner.fail("uri",
+            owner.fail(key,
                        "\"{}\" is not a relative path to a file; network and "
                        "absolute addresses are not read",
                        printable(uri));
         const std::filesystem::path folder = source_.path.parent_path(), full = folder / *path;
         if (source_.scope == FileScope::Confined && !lies_within(full, folder))
-            owner.fail("uri", "\"{}\" {}", printable(*path),
+            owner.fail(key, "\"{}\" {}", printable(*path),
                        is_link_loop(full) ? "is a link that leads back to itself"
                                           : "lies outside the folder of the scene, and "
                                             "--confine allows no file there");
@@ -84,7 +88,7 @@ class Fetcher {
                                  printable(*path), dispensable);
             return {};
         }
-        if (!file.error.empty()) owner.fail("uri", "\"{}\": {}", printable(*path), file.error);
+        if (!file.error.empty()) owner.fail(key, "\"{}\": {}", printable(*path), file.error);
         if (!times_read_.contains(*path)) source_.files.push_back(full);
         count(*path, file.bytes, owner);
         return std::move(file.bytes);
@@ -209,6 +213,23 @@ void read_light_profiles(GltfSource& source, GltfBudget& budget) {
                                             : bytes_from_view(source, views, light, budget));
         budget.ask(source.light_profiles.back().size() * kProfileGrowth, light);
     }
+}
+
+void fetch_reflectance(GltfSource& source, const JsonCursor& extras, GltfBudget& budget) {
+    if (!extras.has("reflectance")) return;
+    const std::string name = extras.text("reflectance");
+    if (source.reflectances.contains(name)) return;
+    auto found = find_reflectance(name);
+    if (!found) {
+        const auto path = relative_path(name);
+        if (!path || path->find_first_of("./") == path->npos)
+            extras.fail("reflectance", "\"{}\" is neither a name nor a relative path to a file{}",
+                        printable(name),
+                        did_you_mean_or("the names are", name, reflectance_names()));
+        const Bytes bytes = Fetcher(source, budget).fetch(extras, {}, "reflectance");
+        found = read_reflectance(source.path.parent_path() / *path, bytes, name);
+    }
+    source.reflectances.emplace(name, *std::move(found));
 }
 
 }  // namespace petzval

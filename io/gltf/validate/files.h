@@ -28,4 +28,7 @@ void read_images(GltfSource& source, const GltfUse&, GltfBudget&);
 /// stays empty.
 void read_light_profiles(GltfSource& source, GltfBudget&);
 
+/// Adds to source.reflectances the one that a material's extras.petzval name, if any.
+void fetch_reflectance(GltfSource& source, const JsonCursor& extras, GltfBudget&);
+
 }  // namespace petzval

@@ -4,10 +4,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
+#include "core/spectrum/metal.h"
 #include "io/base/warning_log.h"
 #include "io/gltf/animation/clip.h"
 #include "io/gltf/validate/extensions.h"
@@ -33,7 +35,8 @@ struct GltfSource {
     std::vector<ExtensionInFile> extensions;  ///< those that the file lists, by name
     /// Text of each light of EXT_lights_ies; empty for one that is not there.
     std::vector<std::vector<uint8_t>> light_profiles;
-    std::vector<GltfClip> clips;               ///< animations that are played
+    std::map<std::string, MeasuredReflectance> reflectances;  ///< of materials, by name in the file
+    std::vector<GltfClip> clips;                              ///< animations that are played
     WarningLog warnings;                       ///< one line each: odd, but no reason to refuse
     std::vector<std::filesystem::path> files;  ///< every file that was read, `path` first
     uint64_t hash = 0;  ///< FNV-1a of the scene file and of every file it names

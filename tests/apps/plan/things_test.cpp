@@ -152,6 +152,17 @@ TEST(Things, GlassThatDispersesIsOne) {
     EXPECT_NEAR(double(things[0].centre.x), 0.2, 0.05);
 }
 
+TEST(Things, AMeasuredReflectanceIsOne) {
+    Scene scene;
+    place(scene, square({0.2f, 0, -2}, 0.1f), diffuse_material(0.5f));
+    scene.materials.back().reflectance = 0;
+    scene.reflectances.emplace_back();
+    const auto things = things_of(scene);
+    ASSERT_FALSE(things.empty());
+    EXPECT_EQ(things[0].kind, Thing::Kind::Wavelength);
+    EXPECT_NEAR(double(things[0].centre.x), 0.2, 0.05);
+}
+
 TEST(Things, ASunOfASkyIsALamp) {
     constexpr int kWidth = 256, kHeight = 128, kColumn = 40, kRow = 50;
     std::vector<float> rgb(size_t{3} * kWidth * kHeight, 0.1f);

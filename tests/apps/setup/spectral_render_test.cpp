@@ -306,6 +306,46 @@ TEST(SpectralRender, MetalsReflectAsTheirIndicesSay) {
     }
 }
 
+// A curve is the colour of its surface: of its texture only the holes count, and colours of
+// vertices multiply it, as glTF has them multiply the factor.
+TEST(SpectralRender, AMeasuredReflectanceIsTheBaseColour) {
+    World world;
+    Scene& scene = world.scene;
+    scene.reflectances.push_back(*find_reflectance("colorchecker:yellow"));
+    Material m = diffuse_material(0.f);
+    m.reflectance = 0;
+    m.base_color = scene.reflectances[0].rgb;
+    scene.images.push_back(Image{"dark", 1, 1, std::vector<uint8_t>{25, 50, 75, 255}});
+    m.base_color_texture.image = 0;
+    Mesh plain = quad(V3f(-1, -1, 0), V3f(1, 0, 0), V3f(0, 2, 0)),
+         coloured = quad(V3f(0, -1, 0), V3f(1, 0, 0), V3f(0, 2, 0)),
+         glossy = quad(V3f(1, -1, 0), V3f(1, 0, 0), V3f(0, 2, 0));
+    coloured.colours.assign(4, V4f(0.5f, 0.5f, 0.5f, 0.3f));
+    place(scene, plain, m);
+    place(scene, coloured, m);
+    m.specular_glossiness = true;
+    m.specular_color = Rgb(0.2f, 0.75f, 0.1f);
+    place(scene, glossy, m);
+    world.finish();
+    const f4 nm{400, 500, 587.5f, 700};
+    const Bands bands = observer_of({}).at(nm, splat(1.f), m4{-1, -1, -1, 0});
+    const auto base_of = [&](float x, const Bands& of) {
+        Ray ray;
+        ray.origin = V3f(x, 0.2f, 1);
+        ray.direction = V3f(0, 0, -1);
+        const Surface s = make_surface(scene, ray.direction, *world.bvh->intersect(ray));
+        return read_material(scene, s, -ray.direction, of).bsdf.base_color;
+    };
+    for (const auto& [x, factor] : {std::pair{-0.4f, 1.f}, {0.4f, 0.5f}, {1.4f, 0.25f}}) {
+        const f4 base = base_of(x, bands), rgb = base_of(x, Bands::rgb());
+        for (int i = 0; i < 3; ++i) {
+            EXPECT_NEAR(base[i], factor * scene.reflectances[0].share.at(nm[i]), 1e-6) << x;
+            EXPECT_NEAR(rgb[i], factor * scene.reflectances[0].rgb[i], 1e-6) << x;
+        }
+        EXPECT_EQ(base[3], 0) << "a lane that is off";
+    }
+}
+
 // Everything that depends on wavelength, small enough to be rendered well.
 void add_wavelength_scene(World& world) {
     Scene& scene = world.scene;

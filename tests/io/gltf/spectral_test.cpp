@@ -278,6 +278,55 @@ TEST(GltfExtras, MetalThatIsNotSeenIsWarnedOf) {
     EXPECT_TRUE(scene_reasons(loaded.scene).empty());
 }
 
+TEST(GltfExtras, MeasuredReflectance) {
+    const TempFolder folder;
+    const std::string text = "nm,r\n400,0.25\n";
+    for (const char* name : {"Paint.csv", "paint.csv"})
+        (void)write_bytes(folder.path / name,
+                          {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
+    TinyGltf file = file_with({thing({{"reflectance", "colorchecker:Red"}}),
+                               thing({{"reflectance", "Paint.csv"}}),
+                               thing({{"reflectance", "colorchecker:red"}}),
+                               prism({}, {{"reflectance", "paint.csv"}, {"glass", "schott:N-BK7"}}),
+                               thing({{"reflectance", "Paint.csv"}})});
+    const auto loaded = [&] { return load_gltf(file.save_glb(folder.path / "test.glb")); };
+    const GltfFile first = loaded();
+    const Scene& scene = first.scene;
+    ASSERT_EQ(scene.reflectances.size(), 3u);
+    const std::vector<int32_t> places = {0, 1, 0, 2, 1};
+    for (size_t i = 0; i < places.size(); ++i) {
+        EXPECT_EQ(scene.materials[i].reflectance, places[i]);
+        for (int k = 0; k < 3; ++k)
+            EXPECT_EQ(scene.materials[i].base_color[k],
+                      scene.reflectances[size_t(places[i])].rgb[k]);
+    }
+    EXPECT_EQ(scene.reflectances[0].name, "colorchecker:red");
+    EXPECT_EQ(scene.reflectances[1].name, "Paint.csv");
+    EXPECT_EQ(scene.reflectances[1].share.at_nm(600), 0.25f);
+    EXPECT_TRUE(contains_line(first.honoured, "measured reflectance colorchecker:red"));
+    EXPECT_TRUE(contains_line(first.honoured, "measured reflectance paint.csv"));
+    EXPECT_TRUE(first.warnings.empty());
+    EXPECT_EQ(first.files,
+              (std::vector<std::filesystem::path>{
+                  folder.path / "test.glb", folder.path / "Paint.csv", folder.path / "paint.csv"}));
+    (void)write_bytes(folder.path / "paint.csv",
+                      std::vector<uint8_t>{'n', ',', 'r', '\n', '5', '0', '0', ',', '1', '\n'});
+    EXPECT_NE(loaded().hash, first.hash);
+}
+
+TEST(GltfExtras, AReflectanceHasNoTextureButACutoutsHoles) {
+    TinyGltf file = file_with({thing({{"reflectance", "colorchecker:red"}})});
+    file.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
+    file.add("textures", {{"source", file.add_image(tiny_png(1, 1, {1, 2, 3, 4}))}});
+    file.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] =
+        file.add_accessor<float>("VEC2", {0, 0, 1, 0, 0, 1});
+    EXPECT_TRUE(has(refused(file),
+                    "/materials/0/extras/petzval/reflectance: is the material's colour, and so is "
+                    "its texture; leave out one"));
+    file.json["materials"][0]["alphaMode"] = "MASK";
+    EXPECT_TRUE(load(file).scene.materials[0].base_color_texture.present());
+}
+
 TEST(GltfExtras, IlluminantOfAMaterial) {
     json bulb = thing({{"illuminant", "A"}, {"metal", "al"}}),
          tube = thing({{"illuminant", "f11"}}), wire = thing({{"illuminant", "a"}});
@@ -318,12 +367,17 @@ TEST(GltfExtras, IlluminantsOfLights) {
 }
 
 TEST(GltfExtras, UnlitMaterialsHaveNoUseForThem) {
-    json unlit = thing({{"metal", "au"}, {"illuminant", "a"}});
-    unlit["extensions"]["KHR_materials_unlit"] = json::object();
-    const GltfFile loaded = load(file_with({unlit}));
-    EXPECT_EQ(loaded.scene.materials[0].metal, -1);
-    EXPECT_EQ(loaded.scene.materials[0].base_color[2], 1.f);
-    EXPECT_TRUE(contains_line(loaded.warnings, "/materials/0/extras/petzval: an unlit material"));
+    json unlit = thing({{"metal", "au"}, {"illuminant", "a"}}),
+         bare = thing({{"reflectance", "colorchecker:red"}});
+    for (json* m : {&unlit, &bare}) {
+        (*m)["extensions"]["KHR_materials_unlit"] = json::object();
+        const GltfFile loaded = load(file_with({*m}));
+        EXPECT_EQ(loaded.scene.materials[0].metal, -1);
+        EXPECT_EQ(loaded.scene.materials[0].reflectance, -1);
+        EXPECT_EQ(loaded.scene.materials[0].base_color[2], 1.f);
+        EXPECT_TRUE(
+            contains_line(loaded.warnings, "/materials/0/extras/petzval: an unlit material"));
+    }
 }
 
 TEST(GltfExtras, ThoseOfOthersAreIgnored) {
@@ -352,7 +406,7 @@ TEST(GltfExtras, WrongOnesOfMaterialsAreRefused) {
         {R"(null)"_json, ": must be an object, but is null"},
         {R"(["glass"])"_json, ": must be an object, but is array"},
         {R"({"glas": "schott:N-BK7"})"_json,
-         "/glas: is not known; in a material's extras.petzval there may be glass, metal, ill"},
+         "/glas: is not known; in a material's extras.petzval there may be glass, metal, ref"},
         {R"({"glass": 1})"_json, "/glass: must be a string, but is number"},
         {R"({"metal": ["au"]})"_json, "/metal: must be a string, but is array"},
         {R"({"solid": "yes"})"_json, "/solid: must be true or false, but is string"},
@@ -361,6 +415,19 @@ TEST(GltfExtras, WrongOnesOfMaterialsAreRefused) {
         {R"({"illuminant": null})"_json, "/illuminant: must be a string, but is null"},
         {R"({"glass": "schott:N-BK7", "metal": "au"})"_json,
          ": names a glass and a metal; a material is one of them"},
+        {R"({"reflectance": 0.5})"_json, "/reflectance: must be a string, but is number"},
+        {R"({"reflectance": "colorchecker:red", "metal": "au"})"_json,
+         ": names a metal and a reflectance, which both are its colour; leave out one"},
+        {R"({"reflectance": "colorchecker:dark-skn"})"_json,
+         "/reflectance: \"colorchecker:dark-skn\" is neither a name nor a relative path to a file; "
+         "did you mean colorchecker:dark_skin"},
+        {R"({"reflectance": "purple"})"_json,
+         "/reflectance: \"purple\" is neither a name nor a relative path to a file; did you mean "
+         "colorchecker:purple?"},
+        {R"({"reflectance": "\u0007xyz"})"_json,
+         "/reflectance: \"\\u0007xyz\" is neither a name nor a relative path to a file; the names "
+         "are colorchecker:dark_skin, "},
+        {R"({"reflectance": "purple.csv"})"_json, "/reflectance: \"purple.csv\": no such file"},
         {R"({"metal": "gold"})"_json, "/metal: there is no metal \"gold\"; there are ag, al, au, "},
         {R"({"glass": "shott:N-SF11"})"_json,
          "/glass: there is no glass \"shott:N-SF11\"; near it are schott:N-SF11, "},
@@ -402,18 +469,22 @@ TEST(NeedsWavelengths, OneReasonForEachKind) {
     bulb["emissiveFactor"] = {1, 1, 1};
     nameless.erase("name");
     Scene scene = load(file_with({prism({}, {{"glass", "schott:N-SF11"}}), thing({{"metal", "au"}}),
-                                  bulb, nameless, prism(dispersing(2)), bulb}))
+                                  thing({{"reflectance", "colorchecker:red"}}), bulb, nameless,
+                                  prism(dispersing(2)), bulb}))
                       .scene;
     scene.lights = {PointLight{V3f(0.f), Rgb(1.f), 0}, PointLight{V3f(0.f), Rgb(1.f)}};
     using Kind = WavelengthReason::Kind;
     const std::vector<WavelengthReason> reasons = scene_reasons(scene);
-    EXPECT_EQ(reasons, (std::vector<WavelengthReason>{{Kind::Glass, "schott:N-SF11", "prism", 2},
-                                                      {Kind::Metal, "au", "thing"},
-                                                      {Kind::Emitter, "a", "thing", 1},
-                                                      {Kind::Lamp, "a", ""}}));
+    EXPECT_EQ(reasons,
+              (std::vector<WavelengthReason>{{Kind::Glass, "schott:N-SF11", "prism", 2},
+                                             {Kind::Metal, "au", "thing"},
+                                             {Kind::Reflectance, "colorchecker:red", "thing"},
+                                             {Kind::Emitter, "a", "thing", 1},
+                                             {Kind::Lamp, "a", ""}}));
     EXPECT_EQ(text_of(reasons),
               "material \"prism\" disperses (schott:N-SF11), and 2 more; "
               "material \"thing\" is a measured metal (au); "
+              "material \"thing\" has a measured reflectance (colorchecker:red); "
               "material \"thing\" shines as illuminant a, and 1 more; "
               "a light shines as illuminant a");
     EXPECT_EQ(text_of(scene_reasons(load(file_with({nameless})).scene)),

@@ -109,6 +109,66 @@ TEST(TrainingReflectances, AreTheChartsPatches) {
     EXPECT_FLOAT_EQ(patches[23].at_nm(385), 0.0315f);
 }
 
+TEST(Reflectances, AreTheChartsPatchesByName) {
+    const std::vector<std::string> names = reflectance_names();
+    ASSERT_EQ(names.size(), 24u);
+    EXPECT_EQ(names[0], "colorchecker:dark_skin");
+    EXPECT_EQ(names[20], "colorchecker:neutral_6.5");
+    const auto patches = training_reflectances();
+    for (size_t i = 0; i < names.size(); ++i) {
+        const auto found = find_reflectance(names[i]);
+        ASSERT_TRUE(found) << names[i];
+        EXPECT_EQ(found->name, names[i]);
+        EXPECT_EQ(found->share.value, patches[i].value) << names[i];
+    }
+    EXPECT_EQ(find_reflectance("ColorChecker:Cyan")->name, "colorchecker:cyan");
+    for (const char* none : {"", "cyan", "colorchecker:", "wavelength_nm", "d65"})
+        EXPECT_FALSE(find_reflectance(none)) << none;
+}
+
+// 8-bit sRGB that X-Rite prints for the chart, up to the differences between charts; cyan's red
+// lies outside the gamut.
+TEST(Reflectances, HaveTheirColoursUnderD65WithinTheGamut) {
+    for (const auto& [name, r, g, b] :
+         {std::tuple{"colorchecker:red", 175, 54, 60}, std::tuple{"colorchecker:blue", 56, 61, 150},
+          std::tuple{"colorchecker:yellow", 231, 199, 31},
+          std::tuple{"colorchecker:neutral_5", 122, 122, 121}}) {
+        const Rgb rgb = find_reflectance(name)->rgb;
+        const int srgb8[] = {r, g, b};
+        for (int i = 0; i < 3; ++i) {
+            EXPECT_GT(rgb[i], srgb_to_linear(float(srgb8[i] - 16) / 255)) << name << ' ' << i;
+            EXPECT_LT(rgb[i], srgb_to_linear(float(srgb8[i] + 16) / 255)) << name << ' ' << i;
+        }
+    }
+    EXPECT_EQ(find_reflectance("colorchecker:cyan")->rgb[0], 0);
+}
+
+TEST(Reflectances, OfAFileAreSharesOfLight) {
+    const TemporaryFolder folder;
+    const auto read = [&](const std::string& text) {
+        return read_reflectance(folder / "mine.csv", {text.begin(), text.end()}, "mine");
+    };
+    const MeasuredReflectance mine = read("nm,r\n700,1\n400,0\n");
+    EXPECT_EQ(mine.name, "mine");
+    EXPECT_FLOAT_EQ(mine.share.at_nm(550), 0.5f);
+    EXPECT_EQ(mine.share.at_nm(370), 0) << "held";
+    EXPECT_EQ(mine.share.at_nm(800), 1) << "held";
+    EXPECT_EQ(read("nm,r\n500,0.9\n600,-0.001\n").share.at_nm(650), 0) << "noise";
+    expect_near(read("nm,r\n500,0.25\n").rgb, {0.25f, 0.25f, 0.25f}, 1e-6f);
+    struct Wrong {
+        const char *text, *expected;
+    };
+    for (const Wrong& wrong :
+         {Wrong{"nm,r\n500,0.5\n# and\n600,1.01\n", "line 4: 1.01 in column r must not be above 1"},
+          Wrong{"nm,r\n500,0.5\n600,-0.1\n", "line 3: -0.1 in column r must not be below 0"},
+          Wrong{"um,r\n0.5,0.5\n0.6,0.6\n", "line 2: wavelengths 0.5 to 0.6 do not reach 360 to"},
+          Wrong{"nm,r,g\n500,0.5,1\n", "number of columns is 3 and must be 2"},
+          Wrong{"nm,r\n500,x\n", "line 2: column 2 is not a finite number"},
+          Wrong{"", "line 1: ends without a row"}})
+        EXPECT_TRUE(has(refusal([&] { (void)read(wrong.text); }),
+                        (folder / "mine.csv").string() + ": " + wrong.expected));
+}
+
 // ((n-1)^2 + k^2) / ((n+1)^2 + k^2), worked by hand from n and k of each row.
 TEST(Metals, ReflectAsTheirIndexSays) {
     struct Row {

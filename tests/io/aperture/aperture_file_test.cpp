@@ -188,7 +188,8 @@ TEST(SvgAperture, Refuses) {
     test::write_bytes(folder / "empty.svg", {});
     EXPECT_TRUE(
         has(refusal([&] { (void)parse_aperture("page.svg", folder.path()); }), "is no SVG"));
-    EXPECT_TRUE(has(refusal([&] { (void)parse_aperture("empty.svg", folder.path()); }), "is no"));
+    EXPECT_TRUE(
+        has(refusal([&] { (void)parse_aperture("empty.svg", folder.path()); }), "is empty"));
     EXPECT_TRUE(has(refusal([&] { (void)read_svg_aperture(folder.path()); }), "is a folder"));
 }
 

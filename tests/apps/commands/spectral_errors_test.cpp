@@ -76,7 +76,7 @@ TEST_F(CliSpectralErrors, FilesThatAreNotAsTheyShouldBe) {
             {{"--response", blank}, "column curve1 is 0 at every"}});
     std::vector<Case> scenes;
     for (const auto& [key, name, part] : std::vector<std::array<const char*, 3>>{
-             {"glass", "schott:BK77", "there is no glass \"schott:BK77\"; near it are schott:"},
+             {"glass", "schott:BK77", "there is no glass \"schott:BK77\"; near are schott:"},
              {"metal", "fe", "there is no metal \"fe\"; there are ag, al, au, cu"},
              {"illuminant", "d50", "there is no illuminant \"d50\"; there are d65, a, f11"}}) {
         const auto file =

@@ -59,7 +59,13 @@ void add_lens_options(CLI::App& app, CameraOptions& o) {
     const auto group = [](CLI::Option* option) { return option->group("Lens"); };
     group(app.add_option("--lens", r.lens,
                          "pinhole, thin, singlet:GLASS[,BENDING], singlet:GLASS,R1_MM,R2_MM, a "
-                         "lens that ships (petzval lens list) or FILE.json, .dat, .zmx"));
+                         "lens that ships (petzval lens list) or FILE.json, .dat, .zmx"))
+        ->check([](const std::string& text) {
+            return quantity(text, kMillimetres)
+                       ? fmt::format("\"{0}\" is a length; type --lens thin --focal-length {0}",
+                                     text)
+                       : "";
+        });
     group(app.add_option("--glasses", r.glasses,
                          "catalogue of glasses, .agf, that goes before those that ship; may be "
                          "given more than once"))
@@ -72,7 +78,13 @@ void add_lens_options(CLI::App& app, CameraOptions& o) {
                           "to that of the camera or --fov"));
     group(app.add_option("--aperture", r.aperture,
                          "shape of the iris: circle (default), square, triangle, rhomboid, frame, "
-                         "star:N, polygon:N[,ROTATION_DEG[,ROUNDNESS]], FILE.svg, FILE.png"));
+                         "star:N, polygon:N[,ROTATION_DEG[,ROUNDNESS]], FILE.svg, FILE.png"))
+        ->check([](std::string text) {
+            const std::string complaint = fnumber_between(kLeast, kMost)(text);
+            return complaint.empty()
+                       ? fmt::format("{0} is an f-number and no shape; type --fstop {0}", text)
+                       : "";
+        });
     group(add_choice<ApertureScale>(
         app, "--aperture-scale", r.aperture_scale,
         "area (default): the round stop's area; inscribed: inside the round stop"));

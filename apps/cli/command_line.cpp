@@ -5,9 +5,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <filesystem>
 #include <functional>
+#include <iterator>
+#include <string_view>
 
 #include "apps/cli/output_checks.h"
 #include "io/base/ascii.h"
@@ -41,11 +44,50 @@ std::string without_value(const std::string& option) {
     return option.substr(0, option.find('='));
 }
 
-Words option_names(const CLI::App& app) {
+/// What options of other renderers are called here, by a word that their names hold; by the whole
+/// name where it is short.
+struct ForeignWord {
+    std::string_view word, option, value;
+};
+constexpr std::array<ForeignWord, 12> kForeign{
+    {{"width", "--size", "WIDTHxHEIGHT"},
+     {"height", "--size", "WIDTHxHEIGHT"},
+     {"resolution", "--size", "WIDTHxHEIGHT"},
+     {"denois", "--aov", "albedo,normal, which a denoiser of another program needs"},
+     {"bounce", "--max-depth", "NUMBER"},
+     {"hdri", "--env", "FILE"},
+     {"tonemap", "--view", "NAME"},
+     {"dof", "--fstop", "NUMBER --focus DISTANCE"},
+     {"ev", "--exposure", "STOPS"},
+     {"fnumber", "--fstop", "NUMBER"},
+     {"format", "--output", "FILE, whose ending says the format"},
+     {"outfile", "--output", "FILE"}}};
+
+// "; type --size WIDTHxHEIGHT" for --width; empty where the command has nothing of the kind.
+std::string as_called_here(const CLI::App& app, std::string typed) {
+    constexpr size_t kShort = 3;
+    std::erase_if(typed, [](char c) { return c == '-' || c == '_'; });
+    for (const auto& [word, option, value] : kForeign)
+        if (word.size() > kShort ? typed.find(word) != typed.npos : typed == word)
+            if (app.get_option_no_throw(std::string(option)))
+                return fmt::format("; type {} {}", option, value);
+    return "";
+}
+
+// "; did you mean --focus?"; empty where no option that is shown is near.
+std::string near_options(const CLI::App& app, const std::string& typed) {
     Words names;
     for (const CLI::Option* option : app.get_options())
-        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-    return names;
+        if (!option->get_group().empty())
+            names.insert(names.end(), option->get_lnames().begin(), option->get_lnames().end());
+    const std::string bare = typed.substr(typed.starts_with("--") ? 2 : 1);
+    Words near = words_near(bare, names);
+    const auto begins = [&](const std::string& name) { return name.starts_with(bare); };
+    if (bare.size() == 1) std::ranges::copy_if(names, std::back_inserter(near), begins);
+    constexpr size_t kMost = 3;  // of -s, say, with which many begin
+    return near.empty() || near.size() > kMost
+               ? ""
+               : fmt::format("; did you mean --{}?", fmt::join(near, " or --"));
 }
 
 // Commands, anywhere below one, that take an option.
@@ -59,21 +101,18 @@ Words takers(const CLI::App& app, const std::string& option) {
     return found;
 }
 
-const CLI::App& root_of(const CLI::App& app) {
-    return app.get_parent() ? root_of(*app.get_parent()) : app;
-}
-
 std::string unknown_option(const CLI::App& app, const std::string& option, const Spelling& line) {
     std::string typed = option;
     for (const auto& [before, now] : line.renamed)
         if (now == option) typed = before;
     const std::string what = fmt::format("{} is no option of {}", typed, full_name(app));
-    // One dash too few, as in -spp, is a slip as well.
-    const std::string dashed = option.starts_with("--") ? option : "-" + option;
-    const std::string near = did_you_mean(dashed, option_names(app));
-    if (!near.empty()) return what + near;
-    const Words elsewhere = takers(root_of(app), option);
-    return elsewhere.empty() ? what : fmt::format("{}; {} has it", what, elsewhere.front());
+    if (option.starts_with("--") && app.get_option_no_throw(option.substr(2)))
+        return fmt::format("{}; type the {} without it", what, option.substr(2));
+    if (const std::string here = as_called_here(app, option); !here.empty()) return what + here;
+    for (const CLI::App* at = app.get_parent(); at; at = at->get_parent())
+        if (const Words elsewhere = takers(*at, option); !elsewhere.empty())
+            return fmt::format("{}; {} has it", what, elsewhere.front());
+    return what + near_options(app, option);
 }
 
 std::string unknown_command(const CLI::App& app, const std::string& word) {
@@ -88,6 +127,8 @@ std::string unknown_command(const CLI::App& app, const std::string& word) {
             word, app.get_name(), for_shell(word), for_shell(file.stem().string() + ".png"));
     const std::string foreign = foreign_scene_advice(file);
     if (!app.get_parent() && !foreign.empty()) return word + ": " + foreign;
+    if (app.get_option_no_throw("--" + word))
+        return fmt::format("\"{0}\" is no command; did you mean --{0}?", word);
     return fmt::format("\"{}\" is no command{}", word,
                        did_you_mean_or("there are " + full_name(app), word, names));
 }

@@ -39,22 +39,6 @@ std::string_view without_f(std::string_view text) {
 
 }  // namespace
 
-std::string_view trimmed(std::string_view text) {
-    while (text.starts_with(' ')) text.remove_prefix(1);
-    while (text.ends_with(' ')) text.remove_suffix(1);
-    return text;
-}
-
-std::vector<std::string_view> split(std::string_view text, char at) {
-    std::vector<std::string_view> parts;
-    for (;;) {
-        const size_t end = text.find(at);
-        parts.push_back(text.substr(0, end));
-        if (end == std::string_view::npos) return parts;
-        text.remove_prefix(end + 1);
-    }
-}
-
 std::optional<double> quantity(std::string_view text, std::span<const Unit> units) {
     text = trimmed(text);
     if (const auto plain = number<double>(text)) return plain;

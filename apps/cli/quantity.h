@@ -12,7 +12,8 @@
 #include <string_view>
 #include <system_error>
 #include <type_traits>
-#include <vector>
+
+#include "io/base/text_lines.h"
 
 namespace CLI {
 class Validator;
@@ -41,11 +42,6 @@ inline constexpr std::array<Unit, 4> kDegrees{{{"deg"}, {"°"}, {"degrees"}, {"d
 inline constexpr std::array<Unit, 1> kPixels{{{"px"}}};
 inline constexpr std::array<Unit, 1> kNanometres{{{"nm"}}};
 inline constexpr std::array<Unit, 1> kStops{{{"EV"}}};
-
-/// Text without the spaces at its ends.
-[[nodiscard]] std::string_view trimmed(std::string_view);
-/// Parts of a text between the places of a character.
-[[nodiscard]] std::vector<std::string_view> split(std::string_view, char at);
 
 /// Decimal number that is the whole of a text; nothing where that is anything else or not finite.
 template <class T>

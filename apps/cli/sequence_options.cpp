@@ -45,8 +45,10 @@ std::vector<SequenceItem> sweep_items(const std::string& sweep) {
     constexpr std::array<std::string_view, 13> kNoSweep{
         "output",  "stats",  "sweep",      "frames", "turntable", "sheet", "log",
         "preview", "number", "checkpoint", "help",   "progress",  "quiet"};
-    if (std::ranges::find(kNoSweep, option) != kNoSweep.end() || option.starts_with('-'))
-        throw refuse();
+    if (option.starts_with('-')) throw refuse();
+    if (std::ranges::find(kNoSweep, option) != kNoSweep.end())
+        throw CLI::ValidationError(
+            "--sweep", option + " is the same for all pictures; sweep what changes the picture");
     std::vector<SequenceItem> items;
     for (const std::string_view part : split(values, values.find(';') == values.npos ? ',' : ';')) {
         const std::string value(trimmed(part));

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "apps/cli/command_line.h"
 #include "apps/commands/render_one.h"
 #include "apps/commands/render_sequence.h"
 
@@ -13,8 +14,13 @@ ParsedRender parse_render(const std::vector<std::string>& words) {
     out.app->option_defaults()->take_last();  // of an option that is given twice
     CLI::App* command = out.app->add_subcommand("render");
     add_render_options(*command, *out.options);
-    // CLI11 takes the words from the end of a vector.
-    out.app->parse(std::vector<std::string>(words.rbegin(), words.rend()));
+    out.app->name("petzval");
+    try {
+        // CLI11 takes the words from the end of a vector.
+        out.app->parse(std::vector<std::string>(words.rbegin(), words.rend()));
+    } catch (const CLI::ExtrasError& error) {
+        throw CLI::ParseError(explanation(*out.app, error, {}), CLI::ExitCodes::ExtrasError);
+    }
     return out;
 }
 

@@ -13,7 +13,6 @@
 #include "io/base/named.h"
 #include "io/base/printable.h"
 #include "io/base/read_file.h"
-#include "io/glass/catalogue.h"
 #include "io/glass/glass_lookup.h"
 
 namespace petzval {
@@ -88,20 +87,6 @@ std::vector<AgfCatalog> open_catalogs(const CameraRequest& asked) {
     return catalogs;
 }
 
-// Glass of a name with or without its maker; `refuse` makes the error of why there is none.
-Glass find_singlet_glass(const std::string& text, LensGlasses& glasses, const auto& refuse) {
-    if (auto glass = glasses.find(text)) return *std::move(glass);
-    std::vector<Glass> found = glasses.of_any_maker(text);
-    if (found.size() == 1) return std::move(found.front());
-    if (found.empty())
-        throw refuse(fmt::format("there is no glass \"{}\", near are {}", text,
-                                 fmt::join(glasses_near(text), ", ")));
-    std::vector<std::string> names;
-    for (const Glass& glass : found) names.push_back(glass.name);
-    throw refuse(fmt::format("glass \"{}\" has several makers: say which of {}", text,
-                             fmt::join(names, ", ")));
-}
-
 SingleLens parse_singlet(const std::string& text, LensGlasses& glasses) {
     const auto refuse = [&](const std::string& why) {
         return ArgumentError("--lens", text,
@@ -127,7 +112,9 @@ SingleLens parse_singlet(const std::string& text, LensGlasses& glasses) {
     }
     if (numbers.size() > 2) throw refuse("has too many numbers");
     SingleLens lens;
-    lens.glass = find_singlet_glass(name, glasses, refuse);
+    FoundGlass found = glasses.named(name);
+    if (!found.glass) throw refuse(found.error);
+    lens.glass = *std::move(found.glass);
     if (numbers.size() == 1) {
         if (has_unit) throw refuse("the bending has no unit");
         if (!std::isfinite(numbers[0])) throw refuse("the bending must be finite");

@@ -6,7 +6,7 @@
 #include "apps/stability/sweeps.h"
 #include "camera/models/aberrated_lens.h"
 #include "camera/models/thin_lens_optics.h"
-#include "io/glass/catalogue.h"
+#include "io/glass/glass_lookup.h"
 
 namespace petzval::stability {
 namespace {
@@ -47,7 +47,7 @@ std::string warning_of(const Glass& glass, float fstop) {
 }  // namespace
 
 Finding third_order_formula() {
-    const Glass glass = find_glass("schott:N-BK7").value();
+    const Glass glass = LensGlasses({}).find("schott:N-BK7").value();
     const double n = glass.index(kLineD_nm);
     Finding f{
         .id = "third-order-formula", .method = "Third-order formula of a singlet", .fails = "bias"};

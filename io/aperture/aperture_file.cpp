@@ -53,7 +53,9 @@ std::optional<ApertureShape> built_in(const std::string& as_typed) {
     if (text == "frame") return frame();
     const size_t colon = text.find(':');
     const std::string name = text.substr(0, colon);
-    if (colon == text.npos || (name != "star" && name != "polygon")) return std::nullopt;
+    if (name != "star" && name != "polygon") return std::nullopt;
+    if (colon == text.npos)
+        throw ArgumentError(text, "", "needs a number; did you mean {}:5?", name);
     const auto v = numbers_of(std::string_view(text).substr(colon + 1));
     if (!v || v->size() > (name == "star" ? 1 : 3)) throw ArgumentError(text, "", kPossible);
     try {

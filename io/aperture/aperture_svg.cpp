@@ -11,6 +11,7 @@
 #include "io/aperture/svg_path.h"
 #include "io/base/error.h"
 #include "io/base/read_file.h"
+#include "io/base/text_lines.h"
 
 namespace petzval {
 namespace {
@@ -125,11 +126,6 @@ class SvgFile {
             if (!value.empty() && value != "inherit") return value;
         }
         return {};
-    }
-    [[nodiscard]] static std::string_view trimmed(std::string_view text) {
-        const size_t first = text.find_first_not_of(" \t\r\n");
-        if (first == text.npos) return {};
-        return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
     }
     [[nodiscard]] static bool is_even_odd(const pugi::xml_node& shape) {
         return property(shape, "fill-rule") == "evenodd";

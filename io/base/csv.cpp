@@ -13,47 +13,10 @@
 #include "io/base/text_lines.h"
 
 namespace petzval {
-namespace {
-
-// Largest size of a file: some fifty times that of measured spectra.
-constexpr uintmax_t kMaxBytes = 4 << 20;
-
-std::string read_text(const std::filesystem::path& path, const std::vector<uint8_t>* bytes) {
-    std::error_code none;
-    if (const uintmax_t size = std::filesystem::file_size(path, none); !none && size > kMaxBytes)
-        throw InputError(path.string(), "",
-                         "has {} bytes, and a table may have {}; keep fewer rows", size, kMaxBytes);
-    const FileBytes file = bytes ? FileBytes{*bytes, ""} : read_file(path);
-    if (!file.error.empty()) throw InputError(path.string(), "", file.error);
-    std::string text(file.bytes.begin(), file.bytes.end());
-    if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
-    return text;
-}
-
-std::string_view trimmed(std::string_view text) {
-    const size_t first = text.find_first_not_of(" \t");
-    if (first == text.npos) return {};
-    return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
-std::vector<std::string> split(std::string_view line) {
-    std::vector<std::string> cells;
-    for (size_t comma; (comma = line.find(',')) != line.npos; line.remove_prefix(comma + 1))
-        cells.emplace_back(trimmed(line.substr(0, comma)));
-    cells.emplace_back(trimmed(line));
-    return cells;
-}
-
-bool is_text(std::string_view line) {
-    for (const char c : line)
-        if ((static_cast<unsigned char>(c) < ' ' && c != '\t') || c == '\x7f') return false;
-    return true;
-}
-
-}  // namespace
 
 CsvText read_csv_text(const std::filesystem::path& path, const std::vector<uint8_t>* bytes) {
-    const std::string text = read_text(path, bytes);
+    std::string text = bytes ? std::string(bytes->begin(), bytes->end()) : text_of_file(path);
+    if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
     CsvText table{path.string(), {}, {}, {}};
     int line_number = 0;
     for (size_t begin = 0; begin < text.size();) {
@@ -65,10 +28,12 @@ CsvText read_csv_text(const std::filesystem::path& path, const std::vector<uint8
         const auto refuse = [&](const std::string& message) {
             return InputError(table.file, fmt::format("line {}", line_number), message);
         };
-        if (!is_text(line)) throw refuse("is not text; save the table as UTF-8 or ASCII");
+        if (line.find('\r') != line.npos || !is_text(line))
+            throw refuse("is not text; save the table as UTF-8 or ASCII");
         line = trimmed(line);
         if (line.empty() || line.starts_with('#')) continue;
-        std::vector<std::string> cells = split(line);
+        std::vector<std::string> cells;
+        for (const std::string_view cell : split(line, ',')) cells.emplace_back(trimmed(cell));
         if (table.names.empty()) {
             table.names = std::move(cells);
             continue;

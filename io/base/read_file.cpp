@@ -7,15 +7,31 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 
+#include "io/base/ascii.h"
 #include "io/base/machine.h"
+#include "io/base/text_lines.h"
 
 namespace petzval {
+namespace {
 
 /// Size of file for which nobody need be asked whether there is memory.
 constexpr uint64_t kSurelyThere_bytes = 64 << 20;
+
+/// What lies where a download went wrong, by how it begins, in small letters. Git LFS: its
+/// docs/spec.md, "The Pointer".
+struct StandIn {
+    std::string_view begin, what;
+};
+constexpr std::array<StandIn, 2> kStandIns{
+    {{"version https://git-lfs.github.com/spec/",
+      "is only a pointer of Git LFS; git lfs pull fetches the file itself"},
+     {"<!doctype html", "is a web page; download the file itself"}}};
+
+}  // namespace
 
 InputFile::InputFile(const std::filesystem::path& path) {
     struct stat status {};
@@ -37,6 +53,11 @@ InputFile::InputFile(const std::filesystem::path& path) {
         refuse();
     else if (!refuse_others())
         size_ = static_cast<uint64_t>(status.st_size);
+    if (error_.empty() && size_ == 0) error_ = "is empty";
+    std::array<uint8_t, 64> head{};
+    const std::string start = lower({head.begin(), head.begin() + std::ptrdiff_t(read(head, 0))});
+    for (const StandIn& one : kStandIns)
+        if (trimmed(start).starts_with(one.begin)) error_ = one.what;
 }
 
 InputFile::~InputFile() {
@@ -53,6 +74,12 @@ size_t InputFile::read(std::span<uint8_t> to, uint64_t offset) const {
         done += static_cast<size_t>(count);
     }
     return done;
+}
+
+bool is_text(std::string_view bytes) {
+    return std::ranges::none_of(bytes, [](unsigned char c) {
+        return c == 0x7F || (c < ' ' && c != '\t' && c != '\r' && c != '\n');
+    });
 }
 
 FileBytes read_file(const std::filesystem::path& path) {

@@ -5,12 +5,14 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace petzval {
 
 /// A regular file that is open for reading: the one door through which files come in. Pipes and
-/// devices are refused: they may never end. What a library opens by its name passes here first.
+/// devices are refused: they may never end. So are empty files, and what a download left in a
+/// file's place. What a library opens by its name passes here first.
 class InputFile {
   public:
     explicit InputFile(const std::filesystem::path&);
@@ -30,6 +32,9 @@ class InputFile {
     uint64_t size_ = 0;
     std::string error_;
 };
+
+/// Whether the bytes are those of a text, in ASCII or UTF-8: they hold no control characters.
+[[nodiscard]] bool is_text(std::string_view);
 
 /// A file's bytes, or why there are none.
 struct FileBytes {

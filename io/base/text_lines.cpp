@@ -70,6 +70,23 @@ std::vector<TextLine> text_lines(std::string_view text, const std::string& file)
     return lines;
 }
 
+std::string_view trimmed(std::string_view text) {
+    constexpr std::string_view kSpaces = " \t\r\n";
+    const size_t first = text.find_first_not_of(kSpaces);
+    if (first == text.npos) return {};
+    return text.substr(first, text.find_last_not_of(kSpaces) - first + 1);
+}
+
+std::vector<std::string_view> split(std::string_view text, char at) {
+    std::vector<std::string_view> parts;
+    for (;;) {
+        const size_t end = text.find(at);
+        parts.push_back(text.substr(0, end));
+        if (end == std::string_view::npos) return parts;
+        text.remove_prefix(end + 1);
+    }
+}
+
 std::vector<std::string> words(std::string_view line) {
     constexpr std::string_view kSpaces = " \t";
     std::vector<std::string> out;

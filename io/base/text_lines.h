@@ -31,6 +31,11 @@ struct TextLine {
     return text.substr(0, text.find_first_of("\r\n"));
 }
 
+/// Text without the spaces, tabs and line breaks at its ends.
+[[nodiscard]] std::string_view trimmed(std::string_view);
+/// Parts of a text between the places of a character.
+[[nodiscard]] std::vector<std::string_view> split(std::string_view, char at);
+
 /// Words of a line, separated by spaces and tabs.
 [[nodiscard]] std::vector<std::string> words(std::string_view line);
 

@@ -44,14 +44,18 @@ struct Start {
         const InputFile in(path);
         if (!in.error().empty())
             throw InputError(path.string(), "",
-                             in.error() == "is a folder" ? "is a folder; name a picture in it"
-                                                         : "cannot be read: " + in.error());
+                             in.error() == "is a folder"     ? "is a folder; name a picture in it"
+                             : in.error().starts_with("is ") ? in.error()
+                                                             : "cannot be read: " + in.error());
         size = in.size();
         static_cast<void>(in.read(head, 0));
     }
+    [[nodiscard]] std::string_view begin() const {
+        return {reinterpret_cast<const char*>(head.data()), std::min<size_t>(size, head.size())};
+    }
     [[nodiscard]] std::string_view kind() const {
         static_assert(kPictureKindBytes <= sizeof(Head));
-        return picture_kind({reinterpret_cast<const char*>(head.data()), kPictureKindBytes});
+        return picture_kind(begin());
     }
 };
 
@@ -72,8 +76,9 @@ OpenPicture open_picture(const std::filesystem::path& path, const Start& start) 
     const std::string_view kind = start.kind();
     if (kind.empty())
         throw refuse(
-            "cannot be read: it is no OpenEXR, Radiance, PNG, JPEG or WebP file; convert it "
-            "to one of these");
+            fmt::format("cannot be read: it is {}no OpenEXR, Radiance, PNG, JPEG or WebP file; "
+                        "convert it to one of these",
+                        is_text(start.begin()) ? "a text file, and " : ""));
     if (const std::string why = kind == "exr" ? exr_header_complaint(path) : ""; !why.empty())
         throw refuse(why);
     // In two steps: OpenImageIO's open in one would offer a broken file to all its readers.

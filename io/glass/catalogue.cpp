@@ -23,6 +23,12 @@ std::string full_name(const std::vector<std::string>& row) {
     return row[Maker] + ":" + row[Name];
 }
 
+// Name without what people leave out of it or add: hyphens and spaces.
+std::string bare(std::string name) {
+    std::erase_if(name, [](char c) { return c == '-' || c == ' '; });
+    return name;
+}
+
 // Numbers with one space between; nothing where a text is anything else.
 std::vector<double> numbers(std::string_view text) {
     std::vector<double> values;
@@ -71,14 +77,6 @@ CsvText read_catalog() {
 
 }  // namespace
 
-std::optional<Glass> find_glass(const std::string& maker_and_name) {
-    const CsvText catalog = read_catalog();
-    const std::string wanted = lower(maker_and_name);
-    for (size_t i = 0; i < catalog.rows.size(); ++i)
-        if (lower(full_name(catalog.rows[i])) == wanted) return parse(catalog, i);
-    return std::nullopt;
-}
-
 std::vector<Glass> glass_catalog() {
     const CsvText catalog = read_catalog();
     std::vector<Glass> glasses;
@@ -91,13 +89,13 @@ std::vector<std::string> glasses_near(const std::string& text) {
     const std::string wanted = lower(text.substr(0, 64));
     const size_t colon = wanted.find(':');
     const std::string maker = colon == wanted.npos ? "" : wanted.substr(0, colon);
-    const std::string name = colon == wanted.npos ? wanted : wanted.substr(colon + 1);
+    const std::string name = bare(colon == wanted.npos ? wanted : wanted.substr(colon + 1));
 
     const CsvText catalog = read_catalog();
     // Rank of each glass: edit distance, difference in length, name.
     std::vector<std::tuple<size_t, size_t, std::string>> ranked;
     for (const auto& row : catalog.rows) {
-        const std::string candidate = lower(row[Name]);
+        const std::string candidate = bare(lower(row[Name]));
         const bool contained = candidate.find(name) != candidate.npos;
         // A wrong maker weighs no more than two letters: the name tells more.
         const size_t makers =

@@ -2,8 +2,10 @@
 #include "io/glass/glass_lookup.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "io/base/ascii.h"
+#include "io/base/printable.h"
 #include "io/glass/catalogue.h"
 
 namespace petzval {
@@ -37,6 +39,20 @@ std::vector<Glass> LensGlasses::of_any_maker(const std::string& name) {
     for (const auto& [key, glass] : assets_)
         if (key.ends_with(ending)) out.push_back(glass);
     return out;
+}
+
+FoundGlass LensGlasses::named(const std::string& text) {
+    if (auto glass = find(text)) return {std::move(glass), {}};
+    std::vector<Glass> found = of_any_maker(text);
+    if (found.size() == 1) return {std::move(found.front()), {}};
+    std::vector<std::string> names =
+        found.empty() ? glasses_near(text) : std::vector<std::string>();
+    for (const Glass& glass : found) names.push_back(glass.name);
+    return {{},
+            fmt::format("{} \"{}\"{} {}", found.empty() ? "there is no glass" : "the glass",
+                        printable(text),
+                        found.empty() ? "; near are" : " has several makers: say which of",
+                        fmt::join(names, ", "))};
 }
 
 Glass model_glass(double nd, double abbe) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Glass lookup for the readers of lens files.
+// Glasses by their names, for all files and options that name some.
 #pragma once
 
 #include <map>
@@ -13,16 +13,24 @@
 
 namespace petzval {
 
+/// A glass, or why there is none.
+struct FoundGlass {
+    std::optional<Glass> glass;
+    std::string error;  ///< empty, or such as: there is no glass "X"; near are A, B
+};
+
 class LensGlasses {
   public:
     /// catalogs: searched before assets/glass; they must outlive this.
     explicit LensGlasses(std::span<const AgfCatalog> catalogs) : catalogs_(catalogs) {}
 
-    /// Glass called "maker:NAME", whatever the case. Nothing where there is none. Throws InputError
-    /// for a glass of a catalogue that cannot be used.
+    /// Glass called "maker:NAME", as "schott:N-SF11", whatever the case. Nothing where there is
+    /// none. Throws InputError for a glass of a catalogue that cannot be used.
     [[nodiscard]] std::optional<Glass> find(const std::string& maker_and_name);
     /// The glasses of that name of all makers.
     [[nodiscard]] std::vector<Glass> of_any_maker(const std::string& name);
+    /// Glass as people name it: "maker:NAME", or a name that one maker alone has.
+    [[nodiscard]] FoundGlass named(const std::string& text);
 
   private:
     void read_assets();

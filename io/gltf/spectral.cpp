@@ -7,7 +7,7 @@
 
 #include "io/base/ascii.h"
 #include "io/base/json_parse.h"
-#include "io/glass/catalogue.h"
+#include "io/glass/glass_lookup.h"
 #include "io/gltf/validate/extras.h"
 #include "io/spectra/spectra.h"
 
@@ -115,10 +115,9 @@ void GltfSpectral::apply_glass(const JsonCursor& extras, Material& material) {
 const Glass& GltfSpectral::glass(const JsonCursor& extras) {
     const std::string name = extras.text("glass");
     if (const auto known = glasses_.find(name); known != glasses_.end()) return known->second;
-    if (auto found = find_glass(name))
-        return glasses_.emplace(name, *std::move(found)).first->second;
-    extras.fail("glass", fmt::format("there is no glass \"{}\"; near it are {}", printable(name),
-                                     fmt::join(glasses_near(name), ", ")));
+    FoundGlass found = LensGlasses({}).named(name);
+    if (!found.glass) extras.fail("glass", found.error);
+    return glasses_.emplace(name, *std::move(found.glass)).first->second;
 }
 
 void GltfSpectral::apply_metal(const JsonCursor& extras, Material& material) {

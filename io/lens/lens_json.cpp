@@ -10,7 +10,6 @@
 #include "io/base/json_cursor.h"
 #include "io/base/json_parse.h"
 #include "io/base/text_lines.h"
-#include "io/glass/catalogue.h"
 #include "io/lens/lens_formats.h"
 
 namespace petzval {
@@ -39,12 +38,9 @@ std::optional<double> number_if(const JsonCursor& at, const char* key, Range ran
 }
 
 Glass catalogue_glass(const JsonCursor& at, LensGlasses& glasses) {
-    const std::string name = at.text("glass");
-    auto glass = glasses.find(name);
-    if (!glass)
-        at.fail("glass", "there is no glass \"{}\"; near are {}", printable(name),
-                fmt::join(glasses_near(name), ", "));
-    return *std::move(glass);
+    FoundGlass found = glasses.named(at.text("glass"));
+    if (!found.glass) at.fail("glass", found.error);
+    return *std::move(found.glass);
 }
 
 std::optional<Glass> read_medium(const JsonCursor& surface, LensGlasses& glasses) {

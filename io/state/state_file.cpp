@@ -132,9 +132,11 @@ StateReader::StateReader(const std::filesystem::path& path) : path_(path), file_
     const auto refuse = [&](const std::string& why) { return InputError(path.string(), "", why); };
     if (!file_.error().empty()) throw refuse(file_.error());
     std::array<uint8_t, kStartBytes> start{};
-    if (file_.read(start, 0) != start.size() ||
-        std::memcmp(start.data(), kMagic.data(), kMagic.size()) != 0)
-        throw refuse("is no state of a render");
+    const size_t there = file_.read(start, 0);
+    if (there != start.size() || std::memcmp(start.data(), kMagic.data(), kMagic.size()) != 0)
+        throw refuse(is_text({reinterpret_cast<const char*>(start.data()), there})
+                         ? "is a text file, and no state of a render"
+                         : "is no state of a render");
     uint64_t version = 0, length = 0;
     std::memcpy(&version, start.data() + 8, 8);
     std::memcpy(&length, start.data() + 16, 8);

@@ -45,7 +45,14 @@ Opened open_gltf(const std::filesystem::path& path, GltfSource& source) {
     const auto& bytes = out.file.bytes;
     out.binary = is_glb(bytes);
     out.chunks = {{reinterpret_cast<const char*>(bytes.data()), bytes.size()}, {}};
-    if (out.binary) out.chunks = split_glb(bytes, name, source.warnings);
+    const size_t begin = out.chunks.json.find_first_not_of("\xEF\xBB\xBF \t\r\n");
+    if (out.binary)
+        out.chunks = split_glb(bytes, name, source.warnings);
+    else if (begin == std::string_view::npos || out.chunks.json[begin] != '{')
+        throw InputError(name, "",
+                         "is {}no glTF: a .glb begins with the letters glTF, a .gltf with {{; "
+                         "export the scene again",
+                         is_text(out.chunks.json) ? "a text file, and " : "");
     source.path = path;
     source.json = parse_json(out.chunks.json, name);
     mend_gltf(source.json, source.warnings);

@@ -52,6 +52,27 @@ TEST(Parse, SizesTakeWhateverStandsForTimes) {
         EXPECT_THROW((void)parse_size("--size", text), CLI::ValidationError) << text;
 }
 
+std::string samples_refused(const std::string& text) {
+    try {
+        (void)parse_samples("--samples", text, 100);
+    } catch (const CLI::ValidationError& error) {
+        return error.what();
+    }
+    return "none";
+}
+
+TEST(Parse, SamplesAreARangeAndNotTheirNumber) {
+    EXPECT_EQ(parse_samples("--samples", "8:16", 100).first, 8u);
+    EXPECT_EQ(
+        samples_refused("64"),
+        "--samples: \"64\" is not a range A:B, which is a part of the samples; for 64 samples "
+        "of each pixel type --spp 64");
+    for (const char* text : {"", "0", "-4", "x", "8:4", "0:101", "1:2:3"})
+        EXPECT_EQ(samples_refused(text),
+                  std::string("--samples: \"") + text +
+                      "\" is not a range A:B of samples, from A to before B, with A < B <= 100");
+}
+
 TEST(Parse, OtherValuesTakeTheirUnits) {
     EXPECT_EQ(parse_lengths_m("--look-at", "0,1.5m,30cm,-2mm,0,1ft", 6),
               (std::vector<float>{0, 1.5f, 0.3f, -0.002f, 0, 0.3048f}));

@@ -65,7 +65,8 @@ TEST_F(CliSpectralErrors, FilesThatAreNotAsTheyShouldBe) {
         return Case{{"--illuminant", text_file(name, text)}, name + ": " + part};
     };
     expect_refused(
-        1, {light("empty.csv", "", "line 1: ends without a row"),
+        1, {light("empty.csv", "", "is empty"),
+            light("names.csv", "nm,v", "line 1: ends without a row"),
             light("unsorted.csv", "nm,v\n500,1\n500,1\n", "line 3: wavelength 500 nm must be"),
             light("missing.csv", "nm,v\n500\n", "line 2: number of columns is 1, and 2"),
             light("dark.csv", "nm,v\n400,0\n700,0\n", "line 2: column v is 0 at every"),
@@ -75,7 +76,7 @@ TEST_F(CliSpectralErrors, FilesThatAreNotAsTheyShouldBe) {
             {{"--response", blank}, "column curve1 is 0 at every"}});
     std::vector<Case> scenes;
     for (const auto& [key, name, part] : std::vector<std::array<const char*, 3>>{
-             {"glass", "schott:BK77", "there is no glass \"schott:BK77\"; near it are schott:"},
+             {"glass", "schott:BK77", "there is no glass \"schott:BK77\"; near are schott:"},
              {"metal", "fe", "there is no metal \"fe\"; there are ag, al, au, cu"},
              {"illuminant", "d50", "there is no illuminant \"d50\"; there are d65, a, f11"}}) {
         const auto file =

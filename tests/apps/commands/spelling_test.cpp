@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is typed nearly right: spellings of values, options given twice, words that nothing knows.
+#include <fmt/format.h>
+
 #include "tests/support/cli.h"
 
 namespace petzval {
@@ -73,6 +75,52 @@ TEST_F(CliSpelling, UnknownOptionsAreNamedAsTypedAndByWhatWasMeant) {
     EXPECT_EQ(refused({"--versoin"}), "--versoin is no option of petzval; did you mean --version?");
 }
 
+// As in Blender, Cycles, Mitsuba and pbrt, and in cameras.
+TEST_F(CliSpelling, OptionsOfOtherProgramsAreToldTheirNames) {
+    const std::string size = " is no option of petzval render; type --size WIDTHxHEIGHT";
+    for (const char* typed :
+         {"--width", "--height", "--resolution", "--resolution-x", "--image_width"})
+        EXPECT_EQ(refused_render({typed, "64"}), typed + size);
+    EXPECT_EQ(refused({"plan", scene_, "--width=64"}),
+              "--width is no option of petzval plan; type --size WIDTHxHEIGHT");
+    const std::pair<const char*, const char*> now[] = {
+        {"--denoise", "--aov albedo,normal, which a denoiser of another program needs"},
+        {"--max-bounces", "--max-depth NUMBER"},
+        {"--hdri", "--env FILE"},
+        {"--tone-mapping", "--view NAME"},
+        {"--dof", "--fstop NUMBER --focus DISTANCE"},
+        {"--ev", "--exposure STOPS"},
+        {"--f-number", "--fstop NUMBER"},
+        {"--format", "--output FILE, whose ending says the format"},
+        {"--outfile", "--output FILE"}};
+    for (const auto& [typed, option] : now)
+        EXPECT_EQ(refused_render({typed, "1"}),
+                  fmt::format("{} is no option of petzval render; type {}", typed, option));
+    // Only where the command has it, and short words only as they stand.
+    EXPECT_EQ(refused({"info", scene_, "--width", "4"}), "--width is no option of petzval info");
+    EXPECT_EQ(refused_render({"--device", "gpu"}), "--device is no option of petzval render");
+}
+
+TEST_F(CliSpelling, OptionsOfOtherCommandsComeBeforeNearOnes) {
+    EXPECT_EQ(refused({"plan", scene_, "-o", path("a.png")}),
+              "-o is no option of petzval plan; petzval render has it");
+    EXPECT_EQ(refused({"plan", scene_, "--progress", "json"}),
+              "--progress is no option of petzval plan; petzval render has it");
+    EXPECT_EQ(refused({"lens", "show", "--lens", "tessar-100mm-f2.8"}),
+              "--lens is no option of petzval lens show; type the lens without it");
+    EXPECT_EQ(refused({"image", "view", "--picture", path("a.exr"), "-o", path("a.png")}),
+              "--picture is no option of petzval image view; type the picture without it");
+    EXPECT_EQ(refused({"lens", "list", "--json"}),
+              "--json is no option of petzval lens list; petzval lens check has it");
+    // Of several words one, and no option that --help does not show.
+    EXPECT_EQ(refused_render({"--depth", "4"}),
+              "--depth is no option of petzval render; did you mean --max-depth or "
+              "--max-clear-depth?");
+    EXPECT_EQ(refused_render({"-q"}), "-q is no option of petzval render; did you mean --quiet?");
+    EXPECT_EQ(refused_render({"-s", "4"}), "-s is no option of petzval render");
+    EXPECT_EQ(refused_render({"--numbr", "4"}), "--numbr is no option of petzval render");
+}
+
 TEST_F(CliSpelling, OldNamesAreNamedAsTyped) {
     EXPECT_EQ(refused({"info", scene_, "--chroma", "split"}),
               "--chroma is no option of petzval info; petzval render has it");
@@ -88,6 +136,7 @@ TEST_F(CliSpelling, MisspeltCommandsAreFound) {
     EXPECT_EQ(refused({"lens", "shwo"}), "\"shwo\" is no command; did you mean show?");
     EXPECT_EQ(refused({"image", "blur"}),
               "\"blur\" is no command; there are petzval image diff, view, spectrum, sheet, crop");
+    EXPECT_EQ(refused({"version"}), "\"version\" is no command; did you mean --version?");
     EXPECT_EQ(refused({}),
               "petzval needs a command: render, resume, merge, plan, chart, info, image, lens");
     EXPECT_EQ(refused({"image"}),
@@ -100,6 +149,16 @@ TEST_F(CliSpelling, MisspeltCommandsAreFound) {
                         "petzval info 'my scene.GLTF'"),
               std::string::npos);
     EXPECT_NE(refused({"it's.glb"}).find("render 'it'\\''s.glb' -o"), std::string::npos);
+}
+
+TEST_F(CliSpelling, NumbersInPlaceOfNamesAreToldTheirOption) {
+    EXPECT_EQ(refused_render({"--lens", "50mm"}),
+              "--lens: \"50mm\" is a length; type --lens thin --focal-length 50mm");
+    EXPECT_EQ(refused_render({"--lens", "35"}),
+              "--lens: \"35\" is a length; type --lens thin --focal-length 35");
+    for (const char* text : {"2.8", "f/2.8", "F2.8", "1:2.8"})
+        EXPECT_EQ(refused_render({"--aperture", text}),
+                  "--aperture: 2.8 is an f-number and no shape; type --fstop 2.8");
 }
 
 TEST_F(CliSpelling, WordsWithoutAPlace) {

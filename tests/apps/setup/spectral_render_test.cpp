@@ -10,7 +10,7 @@
 #include "core/spectrum/colour.h"
 #include "integrator/executor.h"
 #include "integrator/render.h"
-#include "io/glass/catalogue.h"
+#include "io/glass/glass_lookup.h"
 #include "io/spectra/spectra.h"
 #include "tests/support/set_up_observer.h"
 #include "tests/support/statistics.h"
@@ -149,7 +149,7 @@ Material glass_material(const char* name, float roughness) {
     m.roughness = roughness;
     m.transmission = 1;
     m.has_volume = true;
-    m.glass = find_glass(name);
+    m.glass = LensGlasses({}).find(name);
     m.ior = static_cast<float>(m.glass->index(kLineD_nm));
     return m;
 }

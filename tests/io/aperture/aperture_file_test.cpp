@@ -188,7 +188,8 @@ TEST(SvgAperture, Refuses) {
     test::write_bytes(folder / "empty.svg", {});
     EXPECT_TRUE(
         has(refusal([&] { (void)parse_aperture("page.svg", folder.path()); }), "is no SVG"));
-    EXPECT_TRUE(has(refusal([&] { (void)parse_aperture("empty.svg", folder.path()); }), "is no"));
+    EXPECT_TRUE(
+        has(refusal([&] { (void)parse_aperture("empty.svg", folder.path()); }), "is empty"));
     EXPECT_TRUE(has(refusal([&] { (void)read_svg_aperture(folder.path()); }), "is a folder"));
 }
 
@@ -276,9 +277,11 @@ TEST(ParseAperture, ListsWhatIsPossible) {
         return std::string("none");
     };
     for (const char* text :
-         {"", "heart", "star", "star:", "star:x", "star:5,1", "polygon:6,0,0,0", "polygon:6,",
+         {"", "heart", "star:", "star:x", "star:5,1", "polygon:6,0,0,0", "polygon:6,",
           "polygon:6,,1", "polygon: 6", "polygon:6;3", "nosuch.svg", "nosuch.png", "hexagon:6"})
         EXPECT_TRUE(has(complaint(text), "polygon:N[,ROTATION_DEG[,ROUNDNESS]]")) << text;
+    EXPECT_EQ(complaint("Star"), "star: needs a number; did you mean star:5?");
+    EXPECT_EQ(complaint("polygon"), "polygon: needs a number; did you mean polygon:5?");
     EXPECT_TRUE(has(complaint("heart"), "heart: is neither a file nor a shape; give circle"));
     for (const char* text : {"star:2", "star:101", "star:5.5", "star:-5", "star:nan", "star:1e99"})
         EXPECT_TRUE(has(complaint(text), "tips of a star must be from 3 to 100")) << text;

@@ -64,7 +64,7 @@ TEST(Csv, ErrorsNameFileAndLine) {
         {"nm,v\n400,\x1b[31m\n", "line 2", "is not text"},
         {"nm,v\r400,0.5\r", "line 1", "is not text"},
         {std::string("\xFF\xFEn\0m\0", 6), "line 1", "is not text"},
-        {"", "line 1", "without a row"},
+        {"", "", "is empty"},
         {"nm,v\n", "line 1", "without a row"},
         {"# only\n# comments\n", "line 2", "without a row"},
         {"400,0.5\n410,2\n", "", "has no line of names"},

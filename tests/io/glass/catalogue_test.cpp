@@ -10,9 +10,14 @@
 #include "core/spectrum/spectrum_table.h"
 #include "io/base/csv.h"
 #include "io/glass/catalogue.h"
+#include "io/glass/glass_lookup.h"
 
 namespace petzval {
 namespace {
+
+std::optional<Glass> find_glass(const std::string& name) {
+    return LensGlasses({}).find(name);
+}
 
 // nd, nF and nC as the data sheets of Schott, Ohara and Hoya print them, five digits.
 TEST(Glass, AgreesWithDataSheets) {
@@ -228,6 +233,19 @@ TEST(GlassCatalog, IsSearchedWhateverTheCase) {
     EXPECT_NE(find_glass("schott:F2")->index(kLineD_nm), find_glass("cdgm:F2")->index(kLineD_nm));
     for (const char* text : {"N-BK7", "schott:", "schott:N-BK", "", ":", "schott: N-BK7"})
         EXPECT_FALSE(find_glass(text)) << text;
+}
+
+TEST(GlassCatalog, NamesOfOneMakerNeedNoMaker) {
+    LensGlasses glasses({});
+    EXPECT_EQ(glasses.named("schott:F2").glass->name, "schott:F2");
+    EXPECT_EQ(glasses.named("n-bk7").glass->name, "schott:N-BK7");
+    EXPECT_EQ(glasses.named("n-bk7").error, "");
+    EXPECT_EQ(glasses.named("F2").error,
+              "the glass \"F2\" has several makers: say which of cdgm:F2, hikari:F2, schott:F2");
+    EXPECT_FALSE(glasses.named("F2").glass);
+    EXPECT_EQ(glasses.named("BK-7").error,
+              "there is no glass \"BK-7\"; near are hikari:E-BK7, hikari:J-BK7, schott:N-BK7, "
+              "schott:P-BK7, sumita:K-BK7");
 }
 
 TEST(GlassCatalog, SuggestsWhatWasMeant) {

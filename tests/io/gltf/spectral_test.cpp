@@ -165,6 +165,13 @@ TEST(GltfExtras, GlassOfTheCatalogue) {
     EXPECT_TRUE(loaded.warnings.empty());
 }
 
+TEST(GltfExtras, GlassOfOneMakerNeedsNoMaker) {
+    const GltfFile loaded = load(file_with({prism({}, {{"glass", "n-sf11"}})}));
+    ASSERT_TRUE(loaded.scene.materials[0].glass.has_value());
+    EXPECT_EQ(loaded.scene.materials[0].glass->name, "schott:N-SF11");
+    EXPECT_TRUE(contains_line(loaded.honoured, "named glass schott:N-SF11"));
+}
+
 TEST(GltfExtras, GlassStandsInPlaceOfTheExtensions) {
     const GltfFile loaded =
         load(file_with({prism(dispersing(5, 2.42), {{"glass", "schott:N-BK7"}})}));
@@ -430,7 +437,10 @@ TEST(GltfExtras, WrongOnesOfMaterialsAreRefused) {
         {R"({"reflectance": "purple.csv"})"_json, "/reflectance: \"purple.csv\": no such file"},
         {R"({"metal": "gold"})"_json, "/metal: there is no metal \"gold\"; there are ag, al, au, "},
         {R"({"glass": "shott:N-SF11"})"_json,
-         "/glass: there is no glass \"shott:N-SF11\"; near it are schott:N-SF11, "},
+         "/glass: there is no glass \"shott:N-SF11\"; near are schott:N-SF11, "},
+        {R"({"glass": "BK7"})"_json, "/glass: there is no glass \"BK7\"; near are hikari:E-BK7, "},
+        {R"({"glass": "F2"})"_json,
+         "/glass: the glass \"F2\" has several makers: say which of cdgm:F2, hikari:F2, schott:F2"},
         {R"({"glass": "\u0007"})"_json, "/glass: there is no glass \"\\u0007\""},
         {R"({"illuminant": "b"})"_json,
          "/illuminant: there is no illuminant \"b\"; there are d65, a, f11"},

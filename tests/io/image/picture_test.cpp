@@ -196,8 +196,18 @@ TEST(ReadPicture, RefusesWhatIsNotThere) {
     const TemporaryFolder folder;
     EXPECT_THROW((void)read_picture(folder / "none.exr"), InputError);
     EXPECT_THROW((void)read_picture(folder.path()), InputError);
-    write_bytes(folder / "text.exr", {'h', 'i'});
-    EXPECT_THROW((void)read_picture(folder / "text.exr"), InputError);
+    const auto of_bytes = [&](const Bytes& bytes) {
+        write_bytes(folder / "a.exr", bytes);
+        const std::string name = (folder / "a.exr").string() + ": ",
+                          message = refusal([&] { (void)read_picture(folder / "a.exr"); });
+        return message.substr(message.starts_with(name) ? name.size() : 0);
+    };
+    const std::string no_picture =
+        "no OpenEXR, Radiance, PNG, JPEG or WebP file; convert it to one of these";
+    EXPECT_EQ(of_bytes({}), "is empty");
+    EXPECT_EQ(of_bytes({'h', 'i'}),
+              "the picture cannot be read: it is a text file, and " + no_picture);
+    EXPECT_EQ(of_bytes(Bytes(64, 1)), "the picture cannot be read: it is " + no_picture);
 }
 
 TEST(ReadPicture, RefusesTheBrokenEnvironments) {

@@ -207,6 +207,11 @@ TEST_F(LensText, AStopOnGlassIsAPlaneThroughItsVertex) {
     EXPECT_TRUE(flat.lens.surfaces[3].stop);
 }
 
+TEST_F(LensText, GlassesOfOneMakerNeedNoMaker) {
+    const LensFile file = read("a.json", with(kJson, "\"n\": 1.62", "\"glass\": \"n-bk7\""));
+    EXPECT_EQ(file.lens.surfaces[1].glass->name, "schott:N-BK7");
+}
+
 TEST_F(LensText, WithoutAStopItIsWhereTheAxialLightIsLimited) {
     const auto stop_of = [&](const std::string& text) {
         const LensFile file = read("a.json", with(text, ", \"stop\": true", ""));
@@ -249,7 +254,8 @@ TEST_F(LensText, RefusesJsonThatIsNoLens) {
          {"\"n\": 1.62", "\"n\": 0.9", "/surfaces/1/medium/n: must be from 1 to 5"},
          {"\"n\": 1.62", "\"glass\": \"schot:NBK7\"",
           "/surfaces/1/medium/glass: there is no glass \"schot:NBK7\"; near are schott:N-BK7"},
-         {"\"n\": 1.62", "\"glass\": \"N-BK7\"", "no glass \"N-BK7\"; near are schott:N-BK7"},
+         {"\"n\": 1.62", "\"glass\": \"F2\"",
+          "/surfaces/1/medium/glass: the glass \"F2\" has several makers: say which of cdgm:F2"},
          {"{\"4\": 1e-7}", "{\"1\": 1e-7}", "/surfaces/2/asphere/1: is not a power of r"},
          {"{\"4\": 1e-7}", "{\"4.0\": 1}", "/surfaces/2/asphere/4.0: is not a power of r"},
          {"{\"4\": 1e-7}", "{\"4\": null}", "/surfaces/2/asphere/4: must be a number"},

@@ -205,7 +205,8 @@ TEST_F(LensText, RefusesPbrtsDescriptionsThatAreWrong) {
          {"50 4 1.5 20", "1e-9 4 1.5 20", "line 2: has a radius that is too small"},
          {"60 4 1.6", "0 4 0", "line 5: is a second stop (radius 0 in air); that at line 4"},
          {"\n0 3", "\n70 3", "a.dat: has no stop"},
-         {kDat, "", "a.dat: has no stop"}});
+         {kDat, "", "a.dat: is empty"},
+         {kDat, "# none", "a.dat: has no stop"}});
 }
 
 // A scene may name any file of the machine as its lens.

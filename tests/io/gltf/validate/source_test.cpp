@@ -52,6 +52,22 @@ TEST_F(Source, SameContentFromTextAndBinary) {
     EXPECT_EQ(binary.path, folder.path / "a.glb");
 }
 
+TEST_F(Source, SaysWhatLiesInPlaceOfAScene) {
+    const auto of_bytes = [&](const Bytes& bytes) {
+        write_bytes(folder.path / "a.glb", bytes);
+        return refusal([&] { (void)read_gltf_source(folder.path / "a.glb"); });
+    };
+    const std::string name = (folder.path / "a.glb").string();
+    const std::string no_gltf =
+        "no glTF: a .glb begins with the letters glTF, a .gltf with {; export the scene again";
+    EXPECT_EQ(of_bytes({}), name + ": is empty");
+    EXPECT_EQ(of_bytes({'h', 'i', '\n'}), name + ": is a text file, and " + no_gltf);
+    EXPECT_EQ(of_bytes({' ', '\n'}), name + ": is a text file, and " + no_gltf);
+    EXPECT_EQ(of_bytes({'P', 'K', 3, 4}), name + ": is " + no_gltf);
+    EXPECT_EQ(of_bytes({0xEF, 0xBB, 0xBF, ' ', '{', 'x'}),
+              name + ": line 1, column 3: is not valid JSON from here on");
+}
+
 TEST_F(Source, ReadsSideFilesBesideTheScene) {
     std::filesystem::create_directory(folder.path / "sub folder");
     const Bytes buffer = text_file("sub folder/b.bin", "12345");

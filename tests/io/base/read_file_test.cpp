@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/base/read_file.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/temporary_folder.h"
+
+namespace petzval {
+namespace {
+
+using test::TemporaryFolder;
+
+std::string error_of(const std::string& content) {
+    const TemporaryFolder folder;
+    test::write_text(folder / "a", content);
+    EXPECT_EQ(InputFile(folder / "a").error(), read_file(folder / "a").error);
+    return read_file(folder / "a").error;
+}
+
+TEST(ReadFile, RefusesWhatStandsInPlaceOfAFile) {
+    EXPECT_EQ(error_of(""), "is empty");
+    EXPECT_EQ(error_of("version https://git-lfs.github.com/spec/v1\noid sha256:4d\nsize 12\n"),
+              "is only a pointer of Git LFS; git lfs pull fetches the file itself");
+    for (const char* page : {"<!DOCTYPE html><title>", "\n\n\t<!doctype HTML>"})
+        EXPECT_EQ(error_of(page), "is a web page; download the file itself") << page;
+}
+
+TEST(ReadFile, TakesWhatOnlySpeaksOfIt) {
+    for (const char* text :
+         {"x", "\n", " ", "<!DOCTYPE svg><html>", "<htm", "a <html>", "version https://git-lfs",
+          "see version https://git-lfs.github.com/spec/"})
+        EXPECT_EQ(error_of(text), "") << text;
+    const TemporaryFolder folder;
+    test::write_text(folder / "a", "123\n");
+    EXPECT_EQ(read_file(folder / "a").bytes, (std::vector<uint8_t>{'1', '2', '3', '\n'}));
+}
+
+TEST(ReadFile, TellsTextsByWhatTheyDoNotHold) {
+    for (const char* text : {"", "a\tb\r\nc", "größer", "~"}) EXPECT_TRUE(is_text(text)) << text;
+    for (const std::string& bytes :
+         {std::string(1, '\0'), std::string("a\x1b"), std::string("\x7f")})
+        EXPECT_FALSE(is_text(bytes));
+}
+
+}  // namespace
+}  // namespace petzval

@@ -27,7 +27,7 @@ using CsvText = Table<std::string>;
 using CsvTable = Table<double>;
 
 /// Reads a table of texts. Throws InputError with the line: a row too short or too long, no row, a
-/// file over 4 MiB, one that cannot be read or is not text. bytes: as in read_csv.
+/// file over 16 MiB, one that cannot be read or is not text. bytes: as in read_csv.
 [[nodiscard]] CsvText read_csv_text(const std::filesystem::path&,
                                     const std::vector<uint8_t>* bytes = nullptr);
 

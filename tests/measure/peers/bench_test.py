@@ -4,10 +4,12 @@
 import json
 import math
 import os
+import random
 import struct
 import sys
 import tempfile
 import unittest
+import zlib
 
 try:
     import numpy
@@ -97,10 +99,42 @@ class Scenes(unittest.TestCase):
         m = rooms.Model()
         m.box("wall", (-1, -1, -1), (1, 1, 1), 30)
         m.sphere("gold", (0, 0, 0), 1)
-        for positions, normals, triangles in m.parts.values():
+        m.turned("red", (0, 0, 0), ((0, 0), (1, 0), (.9, 1), (.8, 1), (0, .1)), (.5, 0, .2))
+        m.crossed_cards("leaf", numpy.zeros(3), 1, random.Random(1))
+        for positions, normals, triangles, _ in m.parts.values():
             p, n, t = (numpy.concatenate(x) for x in (positions, normals, triangles))
             a, b, c = (p[t[:, i]] for i in range(3))
             self.assertGreater((numpy.cross(b - a, c - a) * n[t[:, 0]]).sum(-1).min(), 0)
+
+    def test_leaves_and_glass_keep_their_alpha_and_their_picture(self):
+        with tempfile.TemporaryDirectory() as folder:
+            m = rooms.Model()
+            m.box("black glass", (0, 0, 0), (1, 1, 1))
+            m.crossed_cards("leaf", numpy.zeros(3), 1, random.Random(1))
+            m.write(os.path.join(folder, "x.glb"))
+            with open(os.path.join(folder, "x.glb"), "rb") as file:
+                data = file.read()
+        length, = struct.unpack_from("<I", data, 12)
+        gltf, data = json.loads(data[20:20 + length]), data[28 + length:]
+        glass, leaf = gltf["materials"]
+        self.assertEqual((glass["alphaMode"], glass["pbrMetallicRoughness"]["baseColorFactor"][3]), ("BLEND", .25))
+        self.assertEqual((leaf["alphaMode"], leaf["alphaCutoff"]), ("MASK", .5))
+        of_glass, of_leaf = (p["attributes"] for p in gltf["meshes"][0]["primitives"])
+        self.assertNotIn("TEXCOORD_0", of_glass)
+        self.assertEqual(gltf["accessors"][of_leaf["TEXCOORD_0"]]["count"], 8)
+        self.assertEqual(len(data), gltf["buffers"][0]["byteLength"])
+        view = gltf["bufferViews"][gltf["images"][0]["bufferView"]]
+        picture, at, content = data[view["byteOffset"]:][:view["byteLength"]], 8, b""
+        while at < len(picture):
+            length, kind = struct.unpack_from(">I4s", picture, at)
+            self.assertEqual(struct.unpack_from(">I", picture, at + 8 + length)[0],
+                             zlib.crc32(picture[at + 4:at + 8 + length]))
+            content += picture[at + 8:][:length] if kind == b"IDAT" else b""
+            at += 12 + length
+        rows = numpy.frombuffer(zlib.decompress(content), numpy.uint8).reshape(512, -1)
+        numpy.testing.assert_array_equal(rows[:, 1:], rooms.leaf_picture().reshape(512, -1))
+        opaque = rooms.leaf_picture()[..., 3] > 127
+        self.assertTrue(.2 < opaque.mean() < .6 and not (opaque[0].any() or opaque[:, 0].any() or opaque[:, -1].any()))
 
     def test_a_sun_points_where_it_should(self):
         for d in ((1, -.75, -.25), (0, -1, 0), (0, 0, -1)):

@@ -94,6 +94,31 @@ class Table(unittest.TestCase):
         self.assertIn("| 1 |", lines[-2])
 
 
+class NewOverOld(unittest.TestCase):
+    def program(self, sigma, cpu_s, seeds):
+        errors = noise.with_each_left_out(lambda p: noise.error_against(p, numpy.ones((20000, 3))),
+                                          noisy(sigma, seeds))
+        return {"cpu_s": cpu_s, "mean": 1 + sigma, **errors}
+
+    def test_cost_and_error_below_one_make_efficiency_above_one(self):
+        found = table.new_over_old(self.program(.2, [2, 2, 4, 2], 4), self.program(.1, [1, 1, 2, 1], 4))
+        self.assertAlmostEqual(found["CPU time"]["ratio"], .5)
+        self.assertAlmostEqual(found["CPU time"]["log_error"], 0)
+        self.assertAlmostEqual(found["brightness"], 1.1 / 1.2)
+        for measure in noise.MEASURES:
+            self.assertAlmostEqual(found["error " + measure]["ratio"], .25, delta=.002)
+            self.assertAlmostEqual(found["efficiency " + measure]["ratio"] * found["error " + measure]["ratio"], 2)
+
+    def test_a_cost_that_differs_between_seeds_has_an_interval(self):
+        found = table.new_over_old(self.program(.1, [1, 1, 1, 1], 4), self.program(.1, [1, 1.2, 1, 1], 4))
+        self.assertAlmostEqual(found["CPU time"]["ratio"], 1.05)
+        self.assertTrue(found["CPU time"]["low"] < 1 < found["CPU time"]["high"])
+
+    def test_two_seeds_have_no_interval(self):
+        found = table.new_over_old(self.program(.1, [1, 1], 2), self.program(.1, [1, 3], 2))
+        self.assertEqual((found["CPU time"]["ratio"], found["CPU time"]["low"]), (2, None))
+
+
 class Scenes(unittest.TestCase):
     def test_rooms_are_whole_files_whose_faces_look_outwards(self):
         m = rooms.Model()

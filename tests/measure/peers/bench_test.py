@@ -131,6 +131,14 @@ class Scenes(unittest.TestCase):
             a, b, c = (p[t[:, i]] for i in range(3))
             self.assertGreater((numpy.cross(b - a, c - a) * n[t[:, 0]]).sum(-1).min(), 0)
 
+    def test_a_cone_stands_on_its_foot_and_leans(self):
+        m = rooms.Model()
+        m.turned("shaft", (1, 2, 3), ((.5, 0), (0, 2)), (.5, 0, .25))
+        points = numpy.concatenate(m.parts["shaft"][0])
+        numpy.testing.assert_allclose(points[points[:, 1].argmax()], (2, 4, 3.5))
+        rim = points[points[:, 1] < 3] - (1, 2, 3)
+        numpy.testing.assert_allclose(numpy.linalg.norm(rim, axis=1), .5)
+
     def test_leaves_and_glass_keep_their_alpha_and_their_picture(self):
         with tempfile.TemporaryDirectory() as folder:
             m = rooms.Model()

@@ -4,10 +4,12 @@
 import json
 import math
 import os
+import random
 import struct
 import sys
 import tempfile
 import unittest
+import zlib
 
 try:
     import numpy
@@ -92,15 +94,80 @@ class Table(unittest.TestCase):
         self.assertIn("| 1 |", lines[-2])
 
 
+class NewOverOld(unittest.TestCase):
+    def program(self, sigma, cpu_s, seeds):
+        errors = noise.with_each_left_out(lambda p: noise.error_against(p, numpy.ones((20000, 3))),
+                                          noisy(sigma, seeds))
+        return {"cpu_s": cpu_s, "mean": 1 + sigma, **errors}
+
+    def test_cost_and_error_below_one_make_efficiency_above_one(self):
+        found = table.new_over_old(self.program(.2, [2, 2, 4, 2], 4), self.program(.1, [1, 1, 2, 1], 4))
+        self.assertAlmostEqual(found["CPU time"]["ratio"], .5)
+        self.assertAlmostEqual(found["CPU time"]["log_error"], 0)
+        self.assertAlmostEqual(found["brightness"], 1.1 / 1.2)
+        for measure in noise.MEASURES:
+            self.assertAlmostEqual(found["error " + measure]["ratio"], .25, delta=.002)
+            self.assertAlmostEqual(found["efficiency " + measure]["ratio"] * found["error " + measure]["ratio"], 2)
+
+    def test_a_cost_that_differs_between_seeds_has_an_interval(self):
+        found = table.new_over_old(self.program(.1, [1, 1, 1, 1], 4), self.program(.1, [1, 1.2, 1, 1], 4))
+        self.assertAlmostEqual(found["CPU time"]["ratio"], 1.05)
+        self.assertTrue(found["CPU time"]["low"] < 1 < found["CPU time"]["high"])
+
+    def test_two_seeds_have_no_interval(self):
+        found = table.new_over_old(self.program(.1, [1, 1], 2), self.program(.1, [1, 3], 2))
+        self.assertEqual((found["CPU time"]["ratio"], found["CPU time"]["low"]), (2, None))
+
+
 class Scenes(unittest.TestCase):
     def test_rooms_are_whole_files_whose_faces_look_outwards(self):
         m = rooms.Model()
         m.box("wall", (-1, -1, -1), (1, 1, 1), 30)
         m.sphere("gold", (0, 0, 0), 1)
-        for positions, normals, triangles in m.parts.values():
+        m.turned("red", (0, 0, 0), ((0, 0), (1, 0), (.9, 1), (.8, 1), (0, .1)), (.5, 0, .2))
+        m.crossed_cards("leaf", numpy.zeros(3), 1, random.Random(1))
+        for positions, normals, triangles, _ in m.parts.values():
             p, n, t = (numpy.concatenate(x) for x in (positions, normals, triangles))
             a, b, c = (p[t[:, i]] for i in range(3))
             self.assertGreater((numpy.cross(b - a, c - a) * n[t[:, 0]]).sum(-1).min(), 0)
+
+    def test_a_cone_stands_on_its_foot_and_leans(self):
+        m = rooms.Model()
+        m.turned("shaft", (1, 2, 3), ((.5, 0), (0, 2)), (.5, 0, .25))
+        points = numpy.concatenate(m.parts["shaft"][0])
+        numpy.testing.assert_allclose(points[points[:, 1].argmax()], (2, 4, 3.5))
+        rim = points[points[:, 1] < 3] - (1, 2, 3)
+        numpy.testing.assert_allclose(numpy.linalg.norm(rim, axis=1), .5)
+
+    def test_leaves_and_glass_keep_their_alpha_and_their_picture(self):
+        with tempfile.TemporaryDirectory() as folder:
+            m = rooms.Model()
+            m.box("black glass", (0, 0, 0), (1, 1, 1))
+            m.crossed_cards("leaf", numpy.zeros(3), 1, random.Random(1))
+            m.write(os.path.join(folder, "x.glb"))
+            with open(os.path.join(folder, "x.glb"), "rb") as file:
+                data = file.read()
+        length, = struct.unpack_from("<I", data, 12)
+        gltf, data = json.loads(data[20:20 + length]), data[28 + length:]
+        glass, leaf = gltf["materials"]
+        self.assertEqual((glass["alphaMode"], glass["pbrMetallicRoughness"]["baseColorFactor"][3]), ("BLEND", .25))
+        self.assertEqual((leaf["alphaMode"], leaf["alphaCutoff"]), ("MASK", .5))
+        of_glass, of_leaf = (p["attributes"] for p in gltf["meshes"][0]["primitives"])
+        self.assertNotIn("TEXCOORD_0", of_glass)
+        self.assertEqual(gltf["accessors"][of_leaf["TEXCOORD_0"]]["count"], 8)
+        self.assertEqual(len(data), gltf["buffers"][0]["byteLength"])
+        view = gltf["bufferViews"][gltf["images"][0]["bufferView"]]
+        picture, at, content = data[view["byteOffset"]:][:view["byteLength"]], 8, b""
+        while at < len(picture):
+            length, kind = struct.unpack_from(">I4s", picture, at)
+            self.assertEqual(struct.unpack_from(">I", picture, at + 8 + length)[0],
+                             zlib.crc32(picture[at + 4:at + 8 + length]))
+            content += picture[at + 8:][:length] if kind == b"IDAT" else b""
+            at += 12 + length
+        rows = numpy.frombuffer(zlib.decompress(content), numpy.uint8).reshape(512, -1)
+        numpy.testing.assert_array_equal(rows[:, 1:], rooms.leaf_picture().reshape(512, -1))
+        opaque = rooms.leaf_picture()[..., 3] > 127
+        self.assertTrue(.2 < opaque.mean() < .6 and not (opaque[0].any() or opaque[:, 0].any() or opaque[:, -1].any()))
 
     def test_a_sun_points_where_it_should(self):
         for d in ((1, -.75, -.25), (0, -1, 0), (0, 0, -1)):

@@ -27,13 +27,18 @@ def summaries(errors):
     return {"plain": ordered.mean(), "trimmed": kept.mean(), "typical": numpy.median(shown if len(shown) else ordered)}
 
 
-def noise(pictures):
-    """Errors of one program: of all seeds, and with each seed left out."""
+def with_each_left_out(measure, pictures):
+    """What `measure` says of the pictures of all seeds, and with each seed left out."""
     pictures = numpy.asarray(pictures)
-    out = {"all": summaries(pixel_errors(pictures)), "without": []}
+    out = {"all": measure(pictures), "without": []}
     if len(pictures) > 2:
-        out["without"] = [summaries(pixel_errors(numpy.delete(pictures, i, 0))) for i in range(len(pictures))]
+        out["without"] = [measure(numpy.delete(pictures, i, 0)) for i in range(len(pictures))]
     return out
+
+
+def noise(pictures):
+    """Errors of one program by their variance: of all seeds, and with each seed left out."""
+    return with_each_left_out(lambda some: summaries(pixel_errors(some)), pictures)
 
 
 def error_against(pictures, reference):

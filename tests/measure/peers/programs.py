@@ -34,7 +34,7 @@ class Petzval:
         self.path = os.path.abspath(path)
         self.name = "petzval"
         if not os.path.exists(self.path):
-            sys.exit("no %s: build it, or say --petzval PATH" % self.path)
+            sys.exit("no %s: build it, or give the path of another program" % self.path)
         with open(self.path, "rb") as file:  # two builds of one version are not the same
             self.version = "sha256 " + hashlib.sha256(file.read()).hexdigest()[:16]
 

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The table of bench.py: Petzval over each peer, the worst row first."""
+"""The tables of bench.py, Petzval over each peer, the worst row first, and of efficiency.py, new over old."""
+import numpy
+
 import noise
 
 HEAD = ("scene", "speed", "error", "efficiency", "error, trimmed", "efficiency, trimmed", "error, typical pixel",
@@ -29,6 +31,20 @@ def ratios(ours, theirs):
         out["error " + measure] = theirs["all"][measure] / ours["all"][measure]
         out["efficiency " + measure] = efficiency(ours, theirs, "sample_cpu_s", measure)
     out["efficiency whole"] = efficiency(ours, theirs, "whole_cpu_s", "plain")
+    return out
+
+
+def new_over_old(old, new):
+    """Ratios of two programs over the same number of seeds, with intervals: CPU time and errors (below 1 the new one
+    is better), efficiency (above 1), and brightness."""
+    def cost(i):
+        return sum(numpy.delete(new["cpu_s"], i)) / sum(numpy.delete(old["cpu_s"], i))
+    without = range(len(new["without"]))
+    out = {"CPU time": noise.jackknife(cost([]), [cost(i) for i in without]), "brightness": new["mean"] / old["mean"]}
+    for measure in noise.MEASURES:
+        out["error " + measure] = noise.jackknife(new["all"][measure] / old["all"][measure], [
+            new["without"][i][measure] / old["without"][i][measure] for i in without])
+        out["efficiency " + measure] = efficiency(new, old, "cpu_s", measure)
     return out
 
 

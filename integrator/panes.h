@@ -16,22 +16,25 @@ struct WayToLight {
     bool at_infinity;
 };
 
-/// Share of light that comes through the panes on a way where nothing else stands, and the chance
-/// that a path goes straight through all of them; nothing where a surface lets no light straight
-/// through, or `most` panes are not enough. From surface to surface in order of distance, as what a
-/// lane carries decides on the chance at the next: `carried` is what the path would carry there, up
-/// to a factor. medium: volume that the way lies in, or null.
+/// Share of light that comes through the panes on a way where nothing else stands (but BLEND
+/// surfaces, which count elsewhere), and the chance that a path goes straight through all panes;
+/// nothing where a surface lets no light straight through, or `most` panes are not enough. From
+/// surface to surface in order of distance, as what a lane carries decides on the chance at the
+/// next: `carried` is what the path would carry there, up to a factor. medium: volume that the way
+/// lies in, or null.
 template <class Caster>
 [[nodiscard]] std::optional<StraightThrough> through_panes(const Scene& scene, const Caster& caster,
                                                            WayToLight way, f4 carried,
                                                            const Material* medium, int most,
                                                            const Bands& bands, PathStats& stats) {
     StraightThrough out{uniform(1.f, bands), 1.f};
+    PassedBlends blends;
+    blends.all = true;
     V3f from = way.ray.origin;
     for (int n = 0;; ++n) {
         const std::optional<Hit> hit = [&] {
             const SectionTimer timer(stats, TimedSection::Traversal);
-            return caster.intersect(way.ray);
+            return caster.intersect(way.ray, &blends);
         }();
         ++stats.shadow_rays;
         if (!hit) return out;

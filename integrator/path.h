@@ -19,12 +19,12 @@ namespace petzval {
 
 /// Ray caster for paths: Bvh, or a test's own.
 template <class T>
-concept RayCaster = requires(const T t, const Ray& r) {
-    { t.intersect(r) } -> std::same_as<std::optional<Hit>>;
-    { t.intersect_front(r, float()) } -> std::same_as<std::optional<Hit>>;
-    { t.occluded(r) } -> std::same_as<bool>;
+concept RayCaster = requires(const T t, const Ray& r, const PassedBlends* passed) {
+    { t.intersect(r, passed) } -> std::same_as<std::optional<Hit>>;
+    { t.intersect_front(r, float(), passed) } -> std::same_as<std::optional<Hit>>;
+    { t.passage(r) } -> std::same_as<Passage>;
     { t.has_cutouts() } -> std::same_as<bool>;
-    { t.has_panes() } -> std::same_as<bool>;
+    { t.has_blends() } -> std::same_as<bool>;
     { t.all_hits(r) } -> std::same_as<std::vector<Hit>>;
 };
 

@@ -8,8 +8,10 @@
 #include "core/scene/motion.h"
 #include "core/shading/surface.h"
 #include "core/spectrum/colour.h"
+#include "integrator/blend.h"
 #include "integrator/boundary.h"
 #include "integrator/front_at_back.h"
+#include "integrator/layers.h"
 #include "integrator/panes.h"
 #include "integrator/path.h"
 #include "integrator/start_volumes.h"
@@ -62,6 +64,10 @@ struct PathTracer<Caster>::DrawnLight {
 /// Density from which on a scattered direction counts as drawn by a narrow lobe, 1/sr: one of GGX
 /// with a roughness below 0.5 or so.
 inline constexpr float kNarrowPdf = 1;
+
+/// From here on of the way to a BLEND surface, the ray looks again: with room for rounding. What
+/// it did not meet nearer, it does not meet.
+inline constexpr float kNearOne = 0.999f;
 
 /// Weight of a sample drawn with density a where b might have drawn it too. Veach 1997, "Robust
 /// Monte Carlo Methods for Light Transport Simulation", equation 9.13 with beta = 2.
@@ -196,18 +202,19 @@ f4 PathTracer<Caster>::direct_light(const Scattering& at, const DrawnLight& draw
     way.ray.alpha_seed = at.alpha_seed;
     way.ray.time = s.hit.time;
     ++at.stats.shadow_rays;
-    {
+    const Passage passage = [&] {
         const SectionTimer timer(at.stats, TimedSection::Traversal);
-        if (caster_.occluded(way.ray)) return f4{};
-    }
+        return caster_.passage(way.ray);
+    }();
+    if (!(passage.left > 0.f)) return f4{};
     const Material* through = crosses ? at.sides.behind : at.sides.before;
     float chance = value.pdf;
-    f4 left = uniform(1.f, at.bands);  // by panes
-    if (caster_.has_panes()) {
+    f4 left = uniform(passage.left, at.bands);
+    if (passage.panes) {
         const auto panes = through_panes(scene_, caster_, way, at.throughput * value.f_cos, through,
                                          at.clear_depth_left, at.bands, at.stats);
         if (!panes) return f4{};
-        left = panes->value;
+        left *= panes->value;
         chance *= panes->chance;
     }
     if (drawn.sky) {
@@ -225,24 +232,6 @@ f4 PathTracer<Caster>::direct_light(const Scattering& at, const DrawnLight& draw
     return value.f_cos * light.radiance * left * (weight / light_pdf);
 }
 
-/// Fills the layers of a sample from its first surface.
-inline void record_layers(const Surface& s, const ShadingInput& shading, Rgb emission,
-                          const V3f& camera, const V3f& wo, const Bands& bands, FilmSample& out) {
-    const auto layer = [&](Aov aov) -> V3f& { return out.aov[static_cast<size_t>(aov)]; };
-    const auto vector = [](Rgb c) { return V3f(c[0], c[1], c[2]); };
-    const CoatedBsdf bsdf = shading.scatter(wo, bands);
-    out.hit = true;
-    out.first = s.hit;
-    layer(Aov::Albedo) =
-        vector(s.material->unlit ? shading.unlit : reflectance_to_rgb(bsdf.albedo(), bands));
-    layer(Aov::Normal) = shading.frame.z;
-    layer(Aov::Depth) = V3f((s.p - camera).length(), 0, 0);
-    layer(Aov::Position) = s.p;
-    layer(Aov::Uv) = V3f(s.uv[0].x, s.uv[0].y, 0);
-    layer(Aov::Emission) = vector(emission);
-    layer(Aov::Velocity) = V3f(0.f);  // where nobody tells it
-}
-
 template <RayCaster Caster>
 f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const Sampler& sampler,
                                 bool aovs, FilmSample& out, PathStats& stats, m4 lanes, bool led,
@@ -253,17 +242,22 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
     V3f from = camera_ray.origin;  // of the segment: `last`, or a pane that it has passed since
     Volumes volumes = start_volumes(scene_, caster_, camera_ray.origin, camera_ray.time);
     bool seen = false;    // the camera ray has found a surface that shows itself
-    bool in_view = true;  // it has passed nothing but panes
+    bool in_view = true;  // the camera ray has passed nothing but panes and BLEND surfaces
+    PassedBlends blends;  // passed on the segment
+    const PassedBlends* const passed = caster_.has_blends() ? &blends : nullptr;
+    uint32_t passed_before = 0;  // in all
     ChanceFinds* by_chance = &stats.mirrored;
 
     for (int vertex = 0, depth = 0, clear_depth = 0;;) {
-        const auto number = static_cast<uint32_t>(vertex);
-        // Intersect the ray with the scene.
-        if (caster_.has_cutouts()) ray.alpha_seed = sampler.get_bits(Dim::Coverage, 2 * number);
+        const auto number = static_cast<uint32_t>(vertex) + passed_before;
+        // Intersect the ray with the scene. Its seed stays where it goes on behind a BLEND surface:
+        // what it does not meet, it does not meet a second time.
+        if (caster_.has_cutouts())
+            ray.alpha_seed = sampler.get_bits(Dim::Coverage, 2 * static_cast<uint32_t>(vertex));
         ++(vertex == 0 ? stats.camera_rays : stats.bounce_rays);
         const std::optional<Hit> hit = [&] {
             const SectionTimer timer(stats, TimedSection::Traversal);
-            return caster_.intersect(ray);
+            return caster_.intersect(ray, passed);
         }();
         // Add light from behind the scene where the ray leaves it.
         if (!hit) {
@@ -278,10 +272,11 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         // to be seen, these behind panes too. Light must not pass them, so only camera rays do; the
         // inside of a volume is never culled.
         if (culled_from_view(s)) {
-            if (const auto front = front_at_back(scene_, caster_, ray, s)) {
+            if (const auto front = front_at_back(scene_, caster_, ray, s, passed)) {
                 s = *front;
             } else if (!seen || (in_view && s.material->unseen)) {
                 ray.origin = offset_origin(s.p, s.p_error, s.ng, ray.direction);
+                blends.t_min = 0.f;
                 continue;
             }
         }
@@ -304,6 +299,7 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
             volumes = boundary->behind;
             from = s.p;
             ray.origin = leave_surface(s, ray.direction, true) + boundary->clear_onward;
+            blends.t_min = 0.f;
             continue;
         }
         const Fillings sides = boundary ? boundary->sides : Fillings{medium, medium};
@@ -326,19 +322,32 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
                                  boundary ? sides : Fillings::in_air(s));
         }();
         // Add light that the ray finds.
-        out.alpha = 1.f;
+        const Blend blend = blend_at(scene_, s, ray, passed);
         const bool shows = s.front || s.material->double_sided;
         f4 glow = emitted(s, shading.emitted, bands, last);
         if (s.material->unlit && shows)
             glow +=
                 uplift_radiance(shading.unlit, bands, scene_.illuminant(s.material->illuminant));
-        sum += throughput * glow;
+        sum += throughput * (glow * blend.weight);
         by_chance->lamps += vertex > 0 && !last.light_sampled && s.instance->first_light >= 0;
-        if (!seen && aovs)
-            record_layers(s, shading, to_rgb(glow, bands), camera_ray.origin, wo, bands, out);
-        seen = true;
+        if (!seen && blend.stops()) {
+            if (aovs && !out.hit)
+                record_layers(s, shading, to_rgb(glow, bands), camera_ray.origin, wo, bands, out);
+            out.alpha = 1.f;
+        }
+        const auto go_on_behind = [&](float scattering_chance) {
+            throughput *= (1.f - blend.weight) / (1.f - scattering_chance);
+            from = s.p;
+            blends.t_min = kNearOne * (s.p - ray.origin).dot(ray.direction);
+            blends.add({s.hit.instance, s.hit.triangle, 1.f - blend.alpha});
+            ++passed_before;
+        };
         const bool at_depth = depth >= options_.max_depth;
-        if (s.material->unlit || (at_depth && !(s.material->transmission > 0))) break;
+        if (s.material->unlit || (at_depth && !(s.material->transmission > 0))) {
+            if (blend.weight == 1.f) break;
+            go_on_behind(0.f);
+            continue;
+        }
 
         // Add direct light, unless volumes or black surfaces left nothing to go on with.
         if (!(hmax(throughput) >= std::numeric_limits<float>::min())) break;
@@ -363,10 +372,23 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
                 throughput * (s.lifted() && !light->sample.at_infinity ? light_on_smooth(at, *light)
                                                                        : direct_light(at, *light));
         }
+        direct *= blend.weight;
         sum += direct;
         if (light_sampled && stats.light_records)
             stats.light_records->push_back(lights_.record(
                 light ? std::optional(light->light) : std::nullopt, receiver, hsum(direct)));
+
+        // Go on behind a BLEND surface, or scatter there.
+        if (blend.weight < 1.f) {
+            const float chance =
+                blend.scattering_chance(at_depth ? 0.f : clamp_unit(hmax(bsdf.albedo())));
+            if (!blend.scatters(chance)) {
+                go_on_behind(chance);
+                continue;
+            }
+            throughput *= blend.weight / chance;
+        }
+        seen = true;
 
         // Sample the BSDF for the next direction.
         const auto next = bsdf.sample(u.bsdf_lobe, u.bsdf, led);
@@ -411,6 +433,7 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
             from = s.p;
             last.pdf *= bsdf.straight_through().chance;
             ray.origin = offset_origin(s.p, s.p_error, s.ng, ray.direction);
+            blends.t_min = 0.f;
             continue;
         }
         in_view = false;
@@ -419,6 +442,7 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         ray.origin = leave_surface(s, direction, next->transmitted);
         if (boundary) ray.origin += boundary->clear(next->transmitted);
         ray.direction = unit(direction);
+        blends.clear();
     }
     return sum;
 }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/scene/coverage.h"
 
-#include <algorithm>
-
 #include "core/scene/scene.h"
 
 namespace petzval {
@@ -19,7 +17,7 @@ float coverage(const Scene& scene, uint32_t instance, uint32_t triangle, V2f bar
     }
     if (!mesh.colours.empty()) alpha *= mesh.colour_at(instance, triangle, barycentric).w;
     if (material.alpha_mode == AlphaMode::Mask) return alpha >= material.alpha_cutoff ? 1.f : 0.f;
-    return std::clamp(alpha, 0.f, 1.f);
+    return clamp_unit(alpha);
 }
 
 }  // namespace petzval

@@ -95,6 +95,11 @@ struct Material {
 
     /// Whether coverage must be asked for at each hit.
     [[nodiscard]] bool cutout() const { return alpha_mode != AlphaMode::Opaque; }
+    /// Whether paths weigh its coverage, in place of drawing whether they meet it: of BLEND, all
+    /// but what light goes through by other rules.
+    [[nodiscard]] bool weighed() const {
+        return alpha_mode == AlphaMode::Blend && !refracts() && !may_be_pane();
+    }
     [[nodiscard]] bool emits() const {
         return emissive[0] > 0 || emissive[1] > 0 || emissive[2] > 0;
     }

@@ -18,37 +18,92 @@ namespace petzval {
 namespace {
 
 struct Context {
-    RTCIntersectContext embree;       // first: Embree hands back a pointer to it
-    const Ray* ray;                   // in world space; Embree's own is in that of the instance
-    std::vector<Hit>* all = nullptr;  // where all hits are wanted
+    RTCIntersectContext embree;  // first: Embree hands back a pointer to it
+    const Ray* ray;              // in world space; Embree's own is in that of the instance
+    explicit Context(const Ray& r) : ray(&r) { rtcInitIntersectContext(&embree); }
 };
+
+// Of a ray that looks for the nearest hit, and of one that wants all hits.
+struct NearestContext : Context {
+    const PassedBlends* passed;
+};
+struct AllContext : NearestContext {
+    std::vector<Hit>* all;
+};
+
+// Of a shadow ray. Without a list its BLEND surfaces are drawn.
+struct ShadowContext : Context {
+    PassedBlends* blends = nullptr;
+    bool too_many = false, panes = false;
+};
+
+template <class OfRay>
+OfRay& context_of(const RTCFilterFunctionNArguments* args) {
+    return static_cast<OfRay&>(*reinterpret_cast<Context*>(args->context));
+}
 
 uint32_t instance_of(uint32_t inst_id, uint32_t geom_id) {
     return inst_id != RTC_INVALID_GEOMETRY_ID ? inst_id : geom_id;
 }
 
-// Whether a ray passes a triangle by its coverage and the ray's alpha_seed. A pure function of its
-// arguments: Embree may ask twice for one triangle (spatial splits), and the second answer must be
-// the first one.
-bool lets_pass(const Scene& scene, const RTCHit& hit, const Ray& ray) {
-    const uint32_t instance = instance_of(hit.instID[0], hit.geomID);
-    const float covered =
-        coverage(scene, instance, hit.primID, barycentric(scene, instance, hit.primID, ray));
-    return to_unit_float(hash32(hash32(ray.alpha_seed, instance), hit.primID)) >= covered;
-}
+// A triangle that Embree asks about, and how much of it covers at the ray. Embree may ask twice for
+// one (spatial splits): the second answer must be the first one.
+struct Asked {
+    uint32_t instance, triangle;
+    float covered;
 
-// Embree's filter callback; its packet has one ray, as only the single-ray calls are used.
+    explicit Asked(const RTCFilterFunctionNArguments* args) {
+        const auto& hit = *reinterpret_cast<const RTCHit*>(args->hit);
+        const auto& scene = *static_cast<const Scene*>(args->geometryUserPtr);
+        const auto& context = context_of<Context>(args);
+        instance = instance_of(hit.instID[0], hit.geomID), triangle = hit.primID;
+        covered = coverage(scene, instance, triangle,
+                           barycentric(scene, instance, triangle, *context.ray));
+    }
+    // Whether a ray that meets it with a chance does not.
+    [[nodiscard]] bool passed(float chance, const Ray& ray) const {
+        return coverage_number(ray.alpha_seed, instance, triangle) >= chance;
+    }
+};
+
+// Embree's filter callbacks; a packet has one ray, as only the single-ray calls are used.
 void filter(const RTCFilterFunctionNArguments* args) {
     if (args->valid[0] != -1) return;
-    const auto& scene = *static_cast<const Scene*>(args->geometryUserPtr);
-    const auto& context = *reinterpret_cast<const Context*>(args->context);
-    if (lets_pass(scene, *reinterpret_cast<const RTCHit*>(args->hit), *context.ray))
+    const Asked asked(args);
+    if (asked.passed(asked.covered, *context_of<Context>(args).ray)) args->valid[0] = 0;
+}
+
+// For surfaces that paths weigh.
+void filter_weighed(const RTCFilterFunctionNArguments* args) {
+    if (args->valid[0] != -1) return;
+    const auto& context = context_of<NearestContext>(args);
+    const PassedBlends* const passed = context.passed;
+    const Asked asked(args);
+    const bool weighed = passed && !passed->full();
+    if ((passed && passed->has(asked.instance, asked.triangle)) ||
+        asked.passed(weighed ? chance_met(asked.covered) : asked.covered, *context.ray))
         args->valid[0] = 0;
+}
+
+// For shadow rays: lists what they pass. The product is taken when all is known, in an order of its
+// own.
+void list_weighed(const RTCFilterFunctionNArguments* args) {
+    if (args->valid[0] != -1) return;
+    auto& context = context_of<ShadowContext>(args);
+    if (!context.blends) return filter(args);
+    const Asked asked(args);
+    if (asked.covered >= 1.f) return;
+    args->valid[0] = 0;
+    if (asked.covered <= 0.f || context.blends->has(asked.instance, asked.triangle)) return;
+    context.too_many |= context.blends->full();
+    if (!context.too_many)
+        context.blends->add({asked.instance, asked.triangle, 1.f - asked.covered});
 }
 
 // Lets rays that only ask whether the way is free pass panes. What a pane takes from them is not
 // found here, where a triangle may be asked for twice and in any order.
 void pass_pane(const RTCFilterFunctionNArguments* args) {
+    context_of<ShadowContext>(args).panes = true;
     args->valid[0] = 0;
 }
 
@@ -56,7 +111,7 @@ void pass_pane(const RTCFilterFunctionNArguments* args) {
 void note(const RTCFilterFunctionNArguments* args) {
     if (args->valid[0] != -1) return;
     const auto& hit = *reinterpret_cast<const RTCHit*>(args->hit);
-    const auto& context = *reinterpret_cast<const Context*>(args->context);
+    const auto& context = context_of<AllContext>(args);
     context.all->push_back(
         {V2f(0.f), instance_of(hit.instID[0], hit.geomID), hit.primID, context.ray->time});
     args->valid[0] = 0;
@@ -111,7 +166,7 @@ struct Bvh::Impl {
     RTCDevice device = nullptr;
     RTCScene top = nullptr;
     std::vector<RTCScene> shared;  // one for each mesh that instances share, else null
-    bool has_cutouts = false, has_panes = false;
+    bool has_cutouts = false, has_blends = false;
     std::atomic<int64_t> bytes = 0;
 
     explicit Impl(const Scene& s) : scene(s) {}
@@ -138,12 +193,11 @@ struct Bvh::Impl {
         return made;
     }
 
-    std::optional<Hit> nearest(const Ray& r, const RTCRay& ray, RTCFilterFunctionN also) const {
+    std::optional<Hit> nearest(const Ray& r, const RTCRay& ray, RTCFilterFunctionN also,
+                               const PassedBlends* passed) const {
         if (!traceable(r)) return std::nullopt;
-        Context context;
-        rtcInitIntersectContext(&context.embree);
+        NearestContext context{Context(r), passed};
         context.embree.filter = also;
-        context.ray = &r;
         RTCRayHit query;
         query.ray = ray;
         query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
@@ -154,6 +208,13 @@ struct Bvh::Impl {
         const uint32_t instance = instance_of(query.hit.instID[0], query.hit.geomID);
         const uint32_t triangle = query.hit.primID;
         return Hit{barycentric(scene, instance, triangle, r), instance, triangle, r.time};
+    }
+
+    // Whether a ray meets what its context does not let it pass.
+    bool is_met(const Ray& r, ShadowContext& context) const {
+        RTCRay ray = to_embree(r);
+        rtcOccluded1(top, &context.embree, &ray);
+        return ray.tfar < 0.f;
     }
 
     RTCGeometry triangles(uint32_t mesh_id) {
@@ -176,13 +237,12 @@ struct Bvh::Impl {
             has_cutouts = true;
             // Embree wants a pointer to something that may change; the filter only reads.
             rtcSetGeometryUserData(geometry, const_cast<Scene*>(&scene));
-            rtcSetGeometryIntersectFilterFunction(geometry, filter);
-            rtcSetGeometryOccludedFilterFunction(geometry, filter);
+            const bool weighed = material.weighed();
+            has_blends |= weighed;
+            rtcSetGeometryIntersectFilterFunction(geometry, weighed ? filter_weighed : filter);
+            rtcSetGeometryOccludedFilterFunction(geometry, weighed ? list_weighed : filter);
         }
-        if (material.may_be_pane()) {
-            has_panes = true;
-            rtcSetGeometryOccludedFilterFunction(geometry, pass_pane);
-        }
+        if (material.may_be_pane()) rtcSetGeometryOccludedFilterFunction(geometry, pass_pane);
         rtcCommitGeometry(geometry);
         return geometry;
     }
@@ -234,34 +294,52 @@ Bvh::Bvh(const Scene& scene, Traversal traversal) : impl_(std::make_unique<Impl>
 
 Bvh::~Bvh() = default;
 
-std::optional<Hit> Bvh::intersect(const Ray& r) const {
-    return impl_->nearest(r, to_embree(r), nullptr);
+std::optional<Hit> Bvh::intersect(const Ray& r, const PassedBlends* passed) const {
+    RTCRay ray = to_embree(r);
+    if (passed) ray.tnear = std::max(ray.tnear, passed->t_min);
+    return impl_->nearest(r, ray, nullptr, passed);
 }
 
-std::optional<Hit> Bvh::intersect_front(const Ray& r, float t_min) const {
+std::optional<Hit> Bvh::intersect_front(const Ray& r, float t_min,
+                                        const PassedBlends* passed) const {
     RTCRay ray = to_embree(r);
     ray.tnear = std::max(ray.tnear, t_min);
-    return impl_->nearest(r, ray, pass_back);
+    return impl_->nearest(r, ray, pass_back, passed);
 }
 
 bool Bvh::occluded(const Ray& r) const {
-    if (!traceable(r)) return false;
-    Context context;
-    rtcInitIntersectContext(&context.embree);
-    context.ray = &r;
-    RTCRay ray = to_embree(r);
-    rtcOccluded1(impl_->top, &context.embree, &ray);
-    return ray.tfar < 0.f;
+    ShadowContext context{Context(r)};
+    return traceable(r) && impl_->is_met(r, context);
+}
+
+Passage Bvh::passage(const Ray& r) const {
+    if (!traceable(r)) return {1.f, false};
+    ShadowContext context{Context(r)};
+    if (!impl_->has_blends) {
+        const bool met = impl_->is_met(r, context);
+        return {met ? 0.f : 1.f, context.panes};
+    }
+    PassedBlends blends;
+    context.blends = &blends;
+    if (impl_->is_met(r, context)) return {0.f, context.panes};
+    float left = 1.f;
+    if (context.too_many) {
+        context.blends = nullptr;
+        left = impl_->is_met(r, context) ? 0.f : 1.f;
+    } else if (blends.count > 0) {
+        const auto begin = blends.passed.begin(), end = begin + blends.count;
+        const auto place = [](const auto& p) { return std::pair(p.instance, p.triangle); };
+        std::sort(begin, end, [&](auto& a, auto& b) { return place(a) < place(b); });
+        for (auto p = begin; p != end; ++p) left *= p->left;
+    }
+    return {left, context.panes};
 }
 
 std::vector<Hit> Bvh::all_hits(const Ray& r) const {
     std::vector<Hit> hits;
     if (!traceable(r) || impl_->scene.volume_boxes.empty()) return hits;
-    Context context;
-    rtcInitIntersectContext(&context.embree);
+    AllContext context{{Context(r), nullptr}, &hits};
     context.embree.filter = note;
-    context.ray = &r;
-    context.all = &hits;
     RTCRayHit query;
     query.ray = to_embree(r);
     query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
@@ -275,12 +353,12 @@ std::vector<Hit> Bvh::all_hits(const Ray& r) const {
     return hits;
 }
 
-bool Bvh::has_panes() const {
-    return impl_->has_panes;
-}
-
 bool Bvh::has_cutouts() const {
     return impl_->has_cutouts;
+}
+
+bool Bvh::has_blends() const {
+    return impl_->has_blends;
 }
 
 uint64_t Bvh::bytes() const {

@@ -23,20 +23,21 @@ struct Recorder {
     const Bvh& bvh;
     mutable std::vector<Ray> nearest, shadow;
 
-    std::optional<Hit> intersect(const Ray& r) const {
+    std::optional<Hit> intersect(const Ray& r, const PassedBlends* passed) const {
         nearest.push_back(r);
-        return bvh.intersect(r);
+        return bvh.intersect(r, passed);
     }
-    std::optional<Hit> intersect_front(const Ray& r, float t_min) const {
+    std::optional<Hit> intersect_front(const Ray& r, float t_min,
+                                       const PassedBlends* passed) const {
         nearest.push_back(r);
-        return bvh.intersect_front(r, t_min);
+        return bvh.intersect_front(r, t_min, passed);
     }
-    bool occluded(const Ray& r) const {
+    Passage passage(const Ray& r) const {
         shadow.push_back(r);
-        return bvh.occluded(r);
+        return bvh.passage(r);
     }
     bool has_cutouts() const { return bvh.has_cutouts(); }
-    bool has_panes() const { return bvh.has_panes(); }
+    bool has_blends() const { return bvh.has_blends(); }
     std::vector<Hit> all_hits(const Ray& r) const { return bvh.all_hits(r); }
 };
 

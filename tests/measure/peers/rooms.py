@@ -23,6 +23,7 @@ MATERIALS = {  # base colour (alphaMode BLEND if it has an alpha), metallic, rou
     "gold": ((1, .77, .34), 1, .25, None), "steel": ((.6, .6, .62), 1, .4, None),
     "window": ((0, 0, 0), 0, 1, (12, 13, 15)), "lamp": ((0, 0, 0), 0, 1, (60, 42, 20)),
     "blue lamp": ((0, 0, 0), 0, 1, (15, 25, 60)), "leaf": ((1, 1, 1), 0, .8, None),
+    "slate": ((.08, .08, .09), 0, .9, None),
     "black glass": ((.02, .02, .02, .25), 0, .02, None), "shaft": ((1, 1, 1, .03), 0, 1, None),
 }
 
@@ -312,12 +313,12 @@ def glass_table(m):
 def light_cone(m):
     m.sun = ((-.6, -1, -.1), 40.)
     m.box("green", (-200, -.3, -400), (200, -.2, 100))
-    m.box("floor", (-3, -.2, -5), (3, 0, 4))
+    m.box("slate", (-3, -.2, -5), (3, 0, 4))
     for x in (-3, 3):
         m.box("wall", (x - .1, 0, -5), (x + .1, .7, 4))
         m.box("wall", (x - .06, 2.6, -5), (x + .06, 2.7, 4))
         m.box("floor", (x - .55 * x / 3 - .45, .55, -4.8), (x - .55 * x / 3 + .45, .6, 3))
-    m.box("red", (-3.1, 0, -5.1), (3.1, 2.7, -4.9))
+    m.box("slate", (-3.1, 0, -5.1), (3.1, 2.7, -4.9))
     for z in range(-5, 5):
         for x in (-3, 3):
             m.box("wall", (x - .05, .7, z - .05), (x + .05, 2.6, z + .05))

@@ -254,6 +254,16 @@ TEST(Blend, IsNotSeenInAWhiteFurnace) {
     EXPECT_TRUE(test::agrees(e, 1, 0.001)) << e;
 }
 
+TEST(Blend, GreySheetsScatterTheSky) {
+    for (const float alpha : {0.1f, 0.4f}) {
+        Stack world(1, blended(diffuse_material(0.5f), alpha));
+        world.scene.sky = Sky::uniform(Rgb(1.f));
+        world.finish();
+        const Mean e = seen(world, 256, 4);
+        EXPECT_TRUE(test::agrees(e, 1 - 0.5 * double{alpha}, 1e-5)) << alpha << ": " << e;
+    }
+}
+
 TEST(Blend, MovesWithTheShutter) {
     World world;
     const auto at = [](float z) {

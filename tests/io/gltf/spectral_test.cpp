@@ -1,81 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// KHR_materials_dispersion and extras.petzval: what becomes of them, what is refused, and what
-// follows for a render.
+// KHR_materials_dispersion and extras.petzval: what becomes of them, and what is refused.
 #include <gtest/gtest.h>
 
-#include "apps/setup/spectral_wording.h"
-#include "apps/setup/wavelength_reasons.h"
 #include "io/glass/catalogue.h"
 #include "io/spectra/spectra.h"
-#include "tests/support/load_tiny_gltf.h"
-#include "tests/support/refusal.h"
+#include "tests/support/spectral_gltf.h"
 #include "tests/support/tiny_png.h"
 
 namespace petzval {
 namespace {
 
+using namespace test;
 using nlohmann::json;
 using nlohmann::literals::operator""_json;
-
-/// A triangle for each material.
-TinyGltf file_with(std::vector<json> materials) {
-    TinyGltf file;
-    file.json["extensionsUsed"] = {"KHR_materials_dispersion",   "KHR_materials_ior",
-                                   "KHR_materials_transmission", "KHR_materials_volume",
-                                   "KHR_materials_unlit",        "KHR_lights_punctual"};
-    for (json& material : materials) {
-        const int index = file.add("materials", std::move(material));
-        file.add_root({{"mesh", file.add_triangle({{"material", index}})}});
-    }
-    return file;
-}
-
-/// A material that light is refracted into, called "prism".
-json prism(json extensions = json::object(), json extras = nullptr) {
-    extensions["KHR_materials_transmission"] = {{"transmissionFactor", 1}};
-    extensions["KHR_materials_volume"] = {{"thicknessFactor", 1}};
-    json material = {{"name", "prism"},
-                     {"pbrMetallicRoughness", {{"metallicFactor", 0}}},
-                     {"extensions", extensions}};
-    if (!extras.is_null()) material["extras"]["petzval"] = extras;
-    return material;
-}
-
-json dispersing(double dispersion, double ior = 1.5) {
-    return {{"KHR_materials_dispersion", {{"dispersion", dispersion}}},
-            {"KHR_materials_ior", {{"ior", ior}}}};
-}
-
-/// A material called "thing" with these extras.
-json thing(json extras) {
-    return {{"name", "thing"}, {"extras", {{"petzval", std::move(extras)}}}};
-}
-
-json lamp(json extras, const char* type = "point") {
-    json light = {{"type", type}, {"extras", {{"petzval", std::move(extras)}}}};
-    if (std::string(type) == "spot") light["spot"] = json::object();
-    return light;
-}
-
-/// A node for each light.
-TinyGltf lit(std::vector<json> lights) {
-    TinyGltf file = file_with({});
-    for (size_t i = 0; i < lights.size(); ++i)
-        file.add_root({{"extensions", {{"KHR_lights_punctual", {{"light", i}}}}}});
-    file.json["extensions"]["KHR_lights_punctual"]["lights"] = std::move(lights);
-    return file;
-}
-
-Material material_of(json material) {
-    return load(file_with({std::move(material)})).scene.materials.at(0);
-}
-
-std::string refused(const TinyGltf& file) {
-    return refusal([&] { (void)load(file); });
-}
-std::string refused(json material) {
-    return refused(file_with({std::move(material)}));
-}
 
 TEST(GltfDispersion, IsCauchysFormulaThroughTheIndex) {
     const Material m = material_of(prism(dispersing(0.36, 2.42)));
@@ -242,96 +179,6 @@ TEST(GltfExtras, GlassThatRefractsNothingIsWarnedOf) {
     EXPECT_NEAR(loaded.scene.materials[0].ior, 1.5168, 5e-6);
     EXPECT_TRUE(contains_line(loaded.warnings, "extras/petzval/glass: disperses nothing"));
     EXPECT_FALSE(contains_line(loaded.honoured, "dispersion of light"));
-    EXPECT_TRUE(scene_reasons(loaded.scene).empty());
-}
-
-TEST(GltfExtras, MeasuredMetal) {
-    TinyGltf file =
-        file_with({thing({{"metal", "Au"}}), thing({{"metal", "ag"}}), thing({{"metal", "au"}})});
-    file.json["materials"][0]["pbrMetallicRoughness"] = {{"baseColorFactor", {0, 0, 1, 0.5}},
-                                                         {"baseColorTexture", {{"index", 0}}}};
-    file.add("textures", {{"source", file.add_image(tiny_png(1, 1, {1, 2, 3, 4}))}});
-    file.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] =
-        file.add_accessor<float>("VEC2", {0, 0, 1, 0, 0, 1});
-    const GltfFile loaded = load(file);
-    const Scene& scene = loaded.scene;
-    ASSERT_EQ(scene.metals.size(), 2u);
-    EXPECT_EQ(scene.metals[0].name, "au");
-    EXPECT_EQ(scene.metals[1].name, "ag");
-    EXPECT_EQ(scene.materials[0].metal, 0);
-    EXPECT_EQ(scene.materials[1].metal, 1);
-    EXPECT_EQ(scene.materials[2].metal, 0);
-    EXPECT_FALSE(scene.materials[0].base_color_texture.present());
-    EXPECT_EQ(scene.materials[0].alpha, 0.5f);
-    for (const Material& m : scene.materials) {
-        const Rgb colour = colour_of(scene.metals[size_t(m.metal)]);
-        for (int i = 0; i < 3; ++i)
-            EXPECT_EQ(m.base_color[i], std::min(1.f, std::max(0.f, colour[i])));
-    }
-    EXPECT_GT(scene.materials[0].base_color[0], 2 * scene.materials[0].base_color[2]);  // golden
-    EXPECT_TRUE(contains_line(loaded.honoured, "measured metal au"));
-    EXPECT_TRUE(contains_line(loaded.honoured, "measured metal ag"));
-    EXPECT_TRUE(loaded.warnings.empty());
-
-    file.json["materials"][0]["alphaMode"] = "MASK";  // its holes are in the texture
-    EXPECT_TRUE(load(file).scene.materials[0].base_color_texture.present());
-}
-
-TEST(GltfExtras, MetalThatIsNotSeenIsWarnedOf) {
-    json dull = thing({{"metal", "cu"}});
-    dull["pbrMetallicRoughness"]["metallicFactor"] = 0;
-    const GltfFile loaded = load(file_with({dull}));
-    EXPECT_TRUE(contains_line(loaded.warnings, "/materials/0/extras/petzval/metal: is not seen"));
-    EXPECT_TRUE(scene_reasons(loaded.scene).empty());
-}
-
-TEST(GltfExtras, MeasuredReflectance) {
-    const TempFolder folder;
-    const std::string text = "nm,r\n400,0.25\n";
-    for (const char* name : {"Paint.csv", "paint.csv"})
-        (void)write_bytes(folder.path / name,
-                          {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
-    TinyGltf file = file_with({thing({{"reflectance", "colorchecker:Red"}}),
-                               thing({{"reflectance", "Paint.csv"}}),
-                               thing({{"reflectance", "colorchecker:red"}}),
-                               prism({}, {{"reflectance", "paint.csv"}, {"glass", "schott:N-BK7"}}),
-                               thing({{"reflectance", "Paint.csv"}})});
-    const auto loaded = [&] { return load_gltf(file.save_glb(folder.path / "test.glb")); };
-    const GltfFile first = loaded();
-    const Scene& scene = first.scene;
-    ASSERT_EQ(scene.reflectances.size(), 3u);
-    const std::vector<int32_t> places = {0, 1, 0, 2, 1};
-    for (size_t i = 0; i < places.size(); ++i) {
-        EXPECT_EQ(scene.materials[i].reflectance, places[i]);
-        for (int k = 0; k < 3; ++k)
-            EXPECT_EQ(scene.materials[i].base_color[k],
-                      scene.reflectances[size_t(places[i])].rgb[k]);
-    }
-    EXPECT_EQ(scene.reflectances[0].name, "colorchecker:red");
-    EXPECT_EQ(scene.reflectances[1].name, "Paint.csv");
-    EXPECT_EQ(scene.reflectances[1].share.at_nm(600), 0.25f);
-    EXPECT_TRUE(contains_line(first.honoured, "measured reflectance colorchecker:red"));
-    EXPECT_TRUE(contains_line(first.honoured, "measured reflectance paint.csv"));
-    EXPECT_TRUE(first.warnings.empty());
-    EXPECT_EQ(first.files,
-              (std::vector<std::filesystem::path>{
-                  folder.path / "test.glb", folder.path / "Paint.csv", folder.path / "paint.csv"}));
-    (void)write_bytes(folder.path / "paint.csv",
-                      std::vector<uint8_t>{'n', ',', 'r', '\n', '5', '0', '0', ',', '1', '\n'});
-    EXPECT_NE(loaded().hash, first.hash);
-}
-
-TEST(GltfExtras, AReflectanceHasNoTextureButACutoutsHoles) {
-    TinyGltf file = file_with({thing({{"reflectance", "colorchecker:red"}})});
-    file.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
-    file.add("textures", {{"source", file.add_image(tiny_png(1, 1, {1, 2, 3, 4}))}});
-    file.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] =
-        file.add_accessor<float>("VEC2", {0, 0, 1, 0, 0, 1});
-    EXPECT_TRUE(has(refused(file),
-                    "/materials/0/extras/petzval/reflectance: is the material's colour, and so is "
-                    "its texture; leave out one"));
-    file.json["materials"][0]["alphaMode"] = "MASK";
-    EXPECT_TRUE(load(file).scene.materials[0].base_color_texture.present());
 }
 
 TEST(GltfExtras, IlluminantOfAMaterial) {
@@ -463,59 +310,6 @@ TEST(GltfExtras, WrongOnesOfLightsAreRefused) {
         has(refused(lit({lamp({{"illuminant", 2}})})), path + "/illuminant: must be a string"));
     EXPECT_TRUE(has(refused(lit({lamp({{"illuminant", "f12"}})})),
                     path + "/illuminant: there is no illuminant \"f12\"; there are d65, a, f11"));
-}
-
-TEST(NeedsWavelengths, NothingInAnOrdinaryScene) {
-    TinyGltf file = file_with({prism(), json::object()});
-    file.json["materials"][1]["emissiveFactor"] = {1, 1, 1};
-    const GltfFile loaded = load(file);
-    EXPECT_TRUE(scene_reasons(loaded.scene).empty());
-    EXPECT_TRUE(glass_range_warnings(loaded.scene).empty());
-    EXPECT_FALSE(glass_beyond(loaded.scene, 100, 5000));
-}
-
-TEST(NeedsWavelengths, OneReasonForEachKind) {
-    json bulb = thing({{"illuminant", "a"}}), nameless = prism(dispersing(1));
-    bulb["emissiveFactor"] = {1, 1, 1};
-    nameless.erase("name");
-    Scene scene = load(file_with({prism({}, {{"glass", "schott:N-SF11"}}), thing({{"metal", "au"}}),
-                                  thing({{"reflectance", "colorchecker:red"}}), bulb, nameless,
-                                  prism(dispersing(2)), bulb}))
-                      .scene;
-    scene.lights = {PointLight{V3f(0.f), Rgb(1.f), 0}, PointLight{V3f(0.f), Rgb(1.f)}};
-    using Kind = WavelengthReason::Kind;
-    const std::vector<WavelengthReason> reasons = scene_reasons(scene);
-    EXPECT_EQ(reasons,
-              (std::vector<WavelengthReason>{{Kind::Glass, "schott:N-SF11", "prism", 2},
-                                             {Kind::Metal, "au", "thing"},
-                                             {Kind::Reflectance, "colorchecker:red", "thing"},
-                                             {Kind::Emitter, "a", "thing", 1},
-                                             {Kind::Lamp, "a", ""}}));
-    EXPECT_EQ(text_of(reasons),
-              "material \"prism\" disperses (schott:N-SF11), and 2 more; "
-              "material \"thing\" is a measured metal (au); "
-              "material \"thing\" has a measured reflectance (colorchecker:red); "
-              "material \"thing\" shines as illuminant a, and 1 more; "
-              "a light shines as illuminant a");
-    EXPECT_EQ(text_of(scene_reasons(load(file_with({nameless})).scene)),
-              "a material without a name disperses (KHR_materials_dispersion)");
-}
-
-TEST(NeedsWavelengths, GlassThatIsNotKnownEverywhere) {
-    const json flint = prism({}, {{"glass", "schott:N-SF11"}});
-    const Scene scene =
-        load(file_with({flint, flint, prism(dispersing(1)), thing({{"glass", "schott:N-SF57"}}),
-                        prism({}, {{"glass", "schott:N-BK7"}})}))
-            .scene;
-    EXPECT_EQ(glass_range_warnings(scene),
-              std::vector<std::string>{"glass schott:N-SF11 is known from 370 to 2500 nm: "
-                                       "the value at the end is held outside"});
-    EXPECT_FALSE(glass_beyond(scene, 370, 2500));
-    for (const auto& [first_nm, last_nm] : {std::pair{369., 800.}, std::pair{400., 2501.}})
-        EXPECT_EQ(glass_beyond(scene, first_nm, last_nm).value_or(""),
-                  "glass schott:N-SF11 is known from 370 to 2500 nm, not from " +
-                      std::to_string(int(first_nm)) + " to " + std::to_string(int(last_nm)) +
-                      " nm");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <memory>
 #include <system_error>
 
@@ -16,6 +17,7 @@
 #include "apps/cli/spectral_options.h"
 #include "apps/commands/session.h"
 #include "apps/stability/stability.h"
+#include "io/base/ascii.h"
 #include "io/base/nearest.h"
 #include "io/image/picture_files.h"
 
@@ -36,6 +38,8 @@ struct ChartOptions {
 };
 
 constexpr const char* kStability = "stability";
+/// Endings of files: a folder that is named so was meant as one.
+constexpr std::array<std::string_view, 6> kFiles{".csv", ".exr", ".html", ".json", ".md", ".png"};
 
 std::vector<std::string> axis_words() {
     std::vector<std::string> words;
@@ -98,11 +102,17 @@ std::vector<ChartAxis> parse_axes(const std::vector<std::string>& words) {
 void resolve(ChartOptions& o) {
     ChartRequest& r = o.request;
     SceneRequest& scene = r.subject.request;
+    const std::filesystem::path& folder = r.subject.folder;
+    if (std::ranges::find(kFiles, lower(folder.extension().string())) != kFiles.end())
+        throw CLI::ValidationError(
+            "--output",
+            fmt::format("a report is a folder, and \"{}\" is named as a file; type -o {}",
+                        folder.string(), (folder.parent_path() / folder.stem()).string()));
     o.stability = std::erase(o.axes, kStability) > 0;
     if (o.stability && o.axes.empty()) return;
     r.axes = parse_axes(o.axes);
     if (scene.scene.empty()) throw CLI::RequiredError("scene");
-    if (r.subject.folder.empty()) throw CLI::RequiredError("--output");
+    if (folder.empty()) throw CLI::RequiredError("--output");
     r.budget_s = parse_duration_s("--budget", o.budget);
     r.frame.size = scene.size = parse_size("--size", o.size);
     r.frame.crop = {0, 0, scene.size.x, scene.size.y};
@@ -135,16 +145,12 @@ void print_case(const MeasuredCase& of) {
     std::fflush(stdout);
 }
 
-void chart_stability(const ChartOptions& o) {
-    const std::filesystem::path& folder = o.request.subject.folder;
-    const auto page = write_stability(folder.empty() ? "." : folder);
-    if (!o.quiet) print_line(page.string());
-}
-
 int chart_command(ChartOptions& o, Interrupt& interrupt) {
     resolve(o);
     if (o.stability) {
-        chart_stability(o);
+        const std::filesystem::path& folder = o.request.subject.folder;
+        const auto page = write_stability(folder.empty() ? "." : folder);
+        if (!o.quiet) print_line(page.string());
         if (o.request.axes.empty()) return 0;
     }
     flush_denormals();

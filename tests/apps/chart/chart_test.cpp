@@ -319,15 +319,20 @@ class ChartCli : public CliTest {
 
 // Whether the time is enough is the machine's; one of the two holds on any.
 TEST_F(ChartCli, WritesAReportOrSaysThatTheTimeIsTooShort) {
-    const Finished run = run_petzval(
-        chart_words({"--axis", "lights", "--size", "8x8", "--budget", "4s", "-o", path("report")}));
+    Words words =
+        chart_words({"--axis", "lights", "--size", "8x8", "--budget", "4s", "-o", path("report")});
+    std::erase(words, "--quiet");
+    const Finished run = run_petzval(words);
     if (run.exit_code == 0) {
-        EXPECT_EQ(run.out + run.err, "");
+        for (const char* said :
+             {"\n  reference: ", " samples, symmetric MSE ", "/s", "report.html\n"})
+            EXPECT_NE(run.out.find(said), std::string::npos) << said << run.out;
         EXPECT_TRUE(file_bytes(path("report/report.html")).ends_with("</html>\n"));
         const json all = json::parse(file_bytes(path("report/points.json")));
         EXPECT_EQ(all["cases"][0]["axis"], "lights");
     } else {
-        EXPECT_NE(only_line(run, 2).find("give more time"), std::string::npos) << run.err;
+        EXPECT_EQ(run.exit_code, 2);
+        EXPECT_NE(run.err.find("give more time"), std::string::npos) << run.err;
         EXPECT_EQ(listing(), (std::set<std::string>{"studio.glb"}));
     }
 }
@@ -340,6 +345,11 @@ TEST_F(ChartCli, RefusesWhatItCannotDo) {
     expect({"--axis", "colour", "-o", path("r")}, 2, "is none of camera, dispersion");
     expect({"--budget", "1s", "-o", path("r")}, 2, "--budget");
     expect({"--axis", "sampler", "--seeds", "4", "-o", path("r")}, 2, "--seeds");
+    expect({"--axis", "sampler", "-o", path("x.csv")}, 2,
+           path("x.csv") + "\" is named as a file; type -o " + path("x"));
+    EXPECT_NE(error_of({"chart", "--axis", "stability", "-o", path("x.MD")}, 2)
+                  .find("type -o " + path("x")),
+              std::string::npos);
     expect({"--axis", "sampler", "-o", scene_}, 3, "cannot be made a folder");
     expect({"--axis", "sampler", "-o", scene_ + "/none"}, 3, "studio.glb/none");
     expect({"--axis", "camera", "--camera", "plan", "-o", path("r")}, 2, "orthographic");

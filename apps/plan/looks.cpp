@@ -58,12 +58,8 @@ Emphasis emphasis_of(V2i size, const FilmMap& map) {
             out.chance.push_back(map.values[out.chance.size()] * area);
             sum += out.chance.back();
         }
-    for (size_t i = 0; i < out.cells.size(); ++i) {
-        const Rect& r = out.cells[i];
-        const double area = double(r.width()) * double(r.height());
-        out.chance[i] /= sum;
-        out.density.push_back(area > 0 ? out.chance[i] / area : 0);
-    }
+    for (double& chance : out.chance) chance /= sum;
+    for (const double value : map.values) out.density.push_back(value / sum);
     return out;
 }
 

@@ -61,6 +61,20 @@ TEST(Looks, RegionsAndEmphasisGetTheirOwn) {
     EXPECT_EQ(pixels.size(), looks.looks.size()) << "none twice";
 }
 
+// Dim pictures have small values.
+TEST(Looks, OfAnEmphasisOnlyRatiosCount) {
+    FilmMap dim = kCorner;
+    for (double& value : dim.values) value *= 0x1p-40;
+    const Looks looks = choose_looks(kSize, 400, regions(), kCorner, 0),
+                of_dim = choose_looks(kSize, 400, regions(), dim, 0);
+    ASSERT_EQ(of_dim.looks.size(), looks.looks.size());
+    for (size_t i = 0; i < looks.looks.size(); ++i) {
+        EXPECT_EQ(of_dim.looks[i].pixel, looks.looks[i].pixel);
+        EXPECT_EQ(of_dim.looks[i].weight, looks.looks[i].weight);
+    }
+    EXPECT_EQ(of_dim.density.values, looks.density.values);
+}
+
 TEST(Looks, SmallFramesAreLookedAtWholly) {
     const Looks looks = choose_looks({20, 10}, 200, {}, kCorner, 3);
     EXPECT_EQ(looks.looks.size(), 200u);

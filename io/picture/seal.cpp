@@ -28,22 +28,22 @@ void each_place(Bytes& bytes, std::string_view text, const F& f) {
         f(at);
 }
 
-/// Filled value for a file whose first bytes are `head`. read(bytes, offset) reads it.
-template <class Read>
-std::string seal_of(const Bytes& head, const Read& read) {
+/// Filled value for a file whose first bytes are `head`.
+template <class File>
+std::string seal_of(const Bytes& head, File& file) {
     uint64_t hash = fnv1a(head);
     Bytes part(kPart);
     for (uint64_t at = head.size(); part.size() == kPart; at += part.size()) {
-        part.resize(read(part, at));
+        part.resize(file.read(part, at));
         hash = fnv1a(part, hash);
     }
     return fmt::format("fnv1a-{:016x}", hash);
 }
 
-template <class Read>
-Bytes head_of(const Read& read) {
+template <class File>
+Bytes head_of(File& file) {
     Bytes head(kPart);
-    head.resize(read(head, 0));
+    head.resize(file.read(head, 0));
     return head;
 }
 
@@ -66,27 +66,25 @@ uint32_t crc32(std::span<const uint8_t> bytes) {
 }  // namespace
 
 void seal(AtomicFile& file) {
-    const auto read = [&](std::span<uint8_t> to, uint64_t at) { return file.read(to, at); };
-    Bytes head = head_of(read);
+    Bytes head = head_of(file);
     std::vector<uint64_t> places;
     each_place(head, kUnsealed, [&](auto at) { places.push_back(uint64_t(at - head.begin())); });
     if (places.empty()) return;
-    const std::string filled = seal_of(head, read);
+    const std::string filled = seal_of(head, file);
     for (const uint64_t place : places)
         file.write({reinterpret_cast<const uint8_t*>(filled.data()), filled.size()}, place);
 }
 
 bool is_as_written(const std::filesystem::path& path, const std::string& sealed) {
     const InputFile file(path);
-    const auto read = [&](std::span<uint8_t> to, uint64_t at) { return file.read(to, at); };
-    Bytes head = head_of(read);
+    Bytes head = head_of(file);
     const size_t start = std::min(head.size(), kPictureKindBytes);
     if (picture_kind({reinterpret_cast<const char*>(head.data()), start}) == "png")
         return is_whole_png(read_file(path).bytes, true);
     const std::string_view unsealed = kUnsealed;
     if (sealed.size() != unsealed.size()) return false;
     each_place(head, sealed, [&](auto at) { std::copy(unsealed.begin(), unsealed.end(), at); });
-    return seal_of(head, read) == sealed;
+    return seal_of(head, file) == sealed;
 }
 
 bool is_whole_png(std::span<const uint8_t> bytes, bool with_sums) {

@@ -20,8 +20,7 @@ inline constexpr const char* kUnsealed = "fnv1a-0000000000000000";
 /// Whether metadata are the seal of another file, which a picture made from that one must not
 /// carry.
 [[nodiscard]] inline bool is_seal_of_another(const Metadata::value_type& metadata) {
-    const auto* const seal = std::get_if<std::string>(&metadata.second);
-    return metadata.first == kSealName && seal && *seal != kUnsealed;
+    return metadata.first == kSealName && metadata.second != decltype(metadata.second)(kUnsealed);
 }
 
 /// Where the first megabyte of a file has the unfilled value: writes the FNV-1a hash of the file as

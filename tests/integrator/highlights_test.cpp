@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include "camera/models/thin_lens.h"
 #include "tests/support/scenes.h"
 
@@ -30,14 +32,18 @@ Thing lamp_at(const V3f& centre, float reach_m, bool at_infinity = false) {
     return lamp;
 }
 
-/// Seen from the origin along -z, through a lens 40 mm wide.
-std::vector<Thing> seen_in(World& world, const std::vector<Thing>& lamps) {
-    world.finish();
+/// From the origin along -z, through a lens 40 mm wide.
+ThinLensCamera camera() {
     ThinLens lens;
     lens.yfov_rad = 0.4f;
     lens.iris = Iris(Disk{}, 20);
     lens.focus_m = 3;
-    return highlights(ThinLensCamera(lens), world.scene, *world.bvh, kFrame, lamps);
+    return ThinLensCamera(lens);
+}
+
+std::vector<Thing> seen_in(World& world, const std::vector<Thing>& lamps) {
+    world.finish();
+    return highlights(camera(), world.scene, *world.bvh, kFrame, lamps);
 }
 
 std::vector<Thing> seen_in_a_ball(const Material& material, const std::vector<Thing>& lamps) {
@@ -172,6 +178,29 @@ TEST(Highlights, OfImpossibleLampsAreNone) {
     Thing infinite = lamp_at(V3f(0, 0, 2), 0.01f);
     infinite.radiance = INFINITY;
     EXPECT_TRUE(seen_in_a_ball(mirror(), {infinite}).empty());
+}
+
+/// Counts the points of the film that it is asked for.
+struct CountingCamera : Camera {
+    ThinLensCamera of = camera();
+    mutable std::atomic<int> asked = 0;
+
+    [[nodiscard]] CameraSample sample(const FilmPoint& at, const Bands& bands) const override {
+        ++asked;
+        return of.sample(at, bands);
+    }
+};
+
+// The search begins with few rays: a render waits for it.
+TEST(Highlights, TakeFewRaysOfTheLens) {
+    World world;
+    place(world.scene, sphere(V3f(0, 0, -1), kRadius_m, 128, true), mirror());
+    world.finish();
+    const std::vector<Thing> lamps{lamp_at(V3f(0, 0, 2), 0.006f)};
+    const CountingCamera counting;
+    EXPECT_EQ(highlights(counting, world.scene, *world.bvh, kFrame, lamps).size(), 1u);
+    EXPECT_GT(counting.asked, 0);
+    EXPECT_LE(counting.asked, kFrame.x * kFrame.y / 8);
 }
 
 }  // namespace

@@ -23,12 +23,16 @@ class OpenWatch {
     ~OpenWatch() { close(notices_); }
 
     /// False where nobody has opened it after two minutes.
-    [[nodiscard]] bool wait() const {
-        pollfd wanted{notices_, POLLIN, 0};
-        return poll(&wanted, 1, 120'000) == 1;
-    }
+    [[nodiscard]] bool wait() const { return is_told_within(120'000); }
+    /// Whether somebody has opened it by now.
+    [[nodiscard]] bool has_happened() const { return is_told_within(0); }
 
   private:
+    [[nodiscard]] bool is_told_within(int ms) const {
+        pollfd wanted{notices_, POLLIN, 0};
+        return poll(&wanted, 1, ms) == 1;
+    }
+
     int notices_ = inotify_init1(IN_CLOEXEC);
 };
 

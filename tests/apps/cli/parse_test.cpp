@@ -7,6 +7,8 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 
+#include "apps/cli/sequence_options.h"
+
 namespace petzval {
 namespace {
 
@@ -91,6 +93,15 @@ TEST(Parse, OtherValuesTakeTheirUnits) {
     EXPECT_EQ(parse_number("--field", "10°", 0, 90, kDegrees), 10);
     EXPECT_EQ(parse_aovs("--aov", {"depth,Albedo", "depth"}),
               (std::vector<Aov>{*aov_from_name("depth"), *aov_from_name("albedo")}));
+}
+
+TEST(Parse, FramesAreARangeWithinItsLimits) {
+    EXPECT_EQ(parse_frames("--frames", "1:7:3"), (std::vector<int>{1, 4, 7}));
+    EXPECT_EQ(parse_frames("--frames", "1:6:3"), (std::vector<int>{1, 4}));
+    EXPECT_EQ(parse_frames("--frames", "10000000"), std::vector<int>{10'000'000});
+    EXPECT_EQ(parse_frames("--frames", "0:99999").size(), 100'000u);
+    for (const char* text : {"", "-1", "10000001", "2:1", "1:2:0", "1:2:1:1", "0:100000"})
+        EXPECT_THROW((void)parse_frames("--frames", text), CLI::ValidationError) << text;
 }
 
 // The text that a reader leaves in place of one; "refused" where it complains.

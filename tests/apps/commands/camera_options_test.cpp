@@ -273,6 +273,12 @@ TEST_F(CliCamera, TheFirstRadiusFacesTheScene) {
     EXPECT_LT(error_of(front, bent), 1e-5);
     EXPECT_LT(error_of(back, turned), 1e-5);
     EXPECT_GT(error_of(front, back), 1e-3);
+    // Without a number it is equiconvex.
+    const auto plain = [&](const char* lens) {
+        return picture_of(scene_, {"--lens", lens, "--fstop", "5", "--focal-length", "100",
+                                   "--focus", "1", "--dispersion", "shared"});
+    };
+    EXPECT_EQ(plain("singlet:schott:N-BK7").pixels, plain("singlet:schott:N-BK7,0").pixels);
 }
 
 TEST_F(CliCamera, ASharedRayNeedsNoWavelengths) {

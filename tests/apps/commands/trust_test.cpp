@@ -51,15 +51,18 @@ class Trust : public LongRenders {
         const std::string out = run_with_alarm({"--version"}, program).out;
         return out.substr(0, out.find('\n'));
     }
-    /// Copies a file of this build with another hash of its sources: it is as one of another build.
-    void copy_changed(const fs::path& from, const fs::path& to) const {
-        const std::string out = run_petzval({"--version"}).out, sources = "sources: ";
-        const std::string hash = out.substr(out.find(sources) + sources.size(), 64);
-        std::string bytes = file_bytes(from), other = hash;
-        other[5] = other[5] == '0' ? '1' : '0';
+    /// Copies a file of this build with another fact of its description, by default the hash of its
+    /// sources: it is as one of another build.
+    void copy_changed(const fs::path& from, const fs::path& to,
+                      const std::string& before = "sources: ") const {
+        const std::string out = run_petzval({"--version"}).out;
+        const size_t begin = out.find(before) + before.size();
+        const std::string fact = out.substr(begin, out.find('\n', begin) - begin);
+        std::string bytes = file_bytes(from), other = fact;
+        other.back() = other.back() == '0' ? '1' : '0';
         size_t count = 0;
-        for (size_t at = 0; (at = bytes.find(hash, at)) != bytes.npos; ++count)
-            bytes.replace(at, hash.size(), other);
+        for (size_t at = 0; (at = bytes.find(fact, at)) != bytes.npos; ++count)
+            bytes.replace(at, fact.size(), other);
         EXPECT_GE(count, 1u) << from;
         fs::create_directories(to.parent_path());
         std::ofstream(to, std::ios::binary) << bytes;
@@ -83,6 +86,15 @@ TEST_F(Trust, TheVersionSaysWhatTheProgramWasBuiltFrom) {
         << out;
     EXPECT_EQ(out.find(fs::path(PETZVAL_PROGRAM).parent_path().parent_path().string()), out.npos)
         << "other folders are no other build";
+}
+
+TEST_F(Trust, AnotherCompilerOrLibraryIsAnotherBuild) {
+    std::set<std::string> versions{version()};
+    for (const char* fact : {"sources: ", "compiler: ", "Embree "}) {
+        const fs::path other = folder_.path / "other";
+        copy_changed(PETZVAL_PROGRAM, other, fact);
+        EXPECT_TRUE(versions.insert(version(other)).second) << fact;
+    }
 }
 
 TEST_F(Trust, AnotherBuildIsRefusedByName) {

@@ -6,6 +6,7 @@
 
 #include "apps/plan/plan_wording.h"
 #include "camera/setup/lateral_dispersion.h"
+#include "core/film/spectral_film.h"
 #include "io/image/difference.h"
 #include "io/image/picture_files.h"
 #include "tests/apps/plan/plans.h"
@@ -182,6 +183,11 @@ TEST_F(Plans, NothingIsAtLeastWhereThereIsNoNoise) {
             EXPECT_EQ(plan["samples"], 1) << plan;
             EXPECT_EQ(plan["predicted_noise"], 0.) << plan;
         }
+}
+
+TEST_F(Plans, SpectraTakeAsManySamplesInEachReplicate) {
+    EXPECT_EQ(planned({"--tolerance", "100%"})["samples"], 1);
+    EXPECT_EQ(planned({"--tolerance", "100%", "--bins", "400:700:100"})["samples"], kReplicates);
 }
 
 // The first samples of a pilot met no light, those that followed did: one sample is not enough.

@@ -2,7 +2,9 @@
 #include "io/base/read_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include "tests/support/open_watch.h"
 #include "tests/support/temporary_folder.h"
 
 namespace petzval {
@@ -33,6 +35,39 @@ TEST(ReadFile, TakesWhatOnlySpeaksOfIt) {
     const TemporaryFolder folder;
     test::write_text(folder / "a", "123\n");
     EXPECT_EQ(read_file(folder / "a").bytes, (std::vector<uint8_t>{'1', '2', '3', '\n'}));
+}
+
+TEST(ReadFile, OpensNoPipeAndLeavesNoFileOpen) {
+    const TemporaryFolder folder;
+    const std::filesystem::path pipe = folder / "pipe";
+    mkfifo(pipe.c_str(), 0600);
+    const test::OpenWatch opened(pipe);
+    EXPECT_EQ(read_file(pipe).error, "is not a regular file");
+    EXPECT_FALSE(opened.has_happened());
+    EXPECT_EQ(read_file(folder / "none").error, "no such file");
+    EXPECT_EQ(read_file(pipe / "none").error, "no such file");
+    EXPECT_EQ(read_file(folder.path()).error, "is a folder");
+    test::write_text(folder / "a", "1");
+    const auto open_files = [] {
+        return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {});
+    };
+    const auto before = open_files();
+    EXPECT_EQ(read_file(folder / "a").error, "");
+    EXPECT_EQ(open_files(), before);
+}
+
+// Files of holes, which take no room on the disk.
+TEST(ReadFile, OnlyWhatFitsIntoMemoryIsRead) {
+    const TemporaryFolder folder;
+    test::write_text(folder / "a", "1");
+    std::filesystem::resize_file(folder / "a", (64 << 20) + 1);
+    const FileBytes file = read_file(folder / "a");
+    EXPECT_EQ(file.error, "");
+    ASSERT_EQ(file.bytes.size(), size_t((64 << 20) + 1));
+    EXPECT_EQ(file.bytes[0], '1');
+    std::filesystem::resize_file(folder / "a", uint64_t(1) << 42);
+    EXPECT_EQ(read_file(folder / "a").error,
+              "has 4194304 MiB, more than the memory that can be had");
 }
 
 TEST(ReadFile, TellsTextsByWhatTheyDoNotHold) {

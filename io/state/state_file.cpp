@@ -72,11 +72,10 @@ bool is_possible(const StateHeader& h) {
     constexpr int kMostBins = 1 << 12, kLargestSide_px = 1 << 20;
     const FilmShape& s = h.shape;
     const Rect& c = s.crop;
-    return s.full_size.x > 0 && s.full_size.y > 0 && s.full_size.x <= kLargestSide_px &&
-           s.full_size.y <= kLargestSide_px && c.x0 >= 0 && c.y0 >= 0 && c.x0 < c.x1 &&
-           c.y0 < c.y1 && c.x1 <= s.full_size.x && c.y1 <= s.full_size.y &&
-           h.samples.first < h.samples.end && h.pixel_samples <= h.wanted() &&
-           s.layers.size() <= static_cast<size_t>(Aov::Count) &&
+    return s.full_size.x <= kLargestSide_px && s.full_size.y <= kLargestSide_px && c.x0 >= 0 &&
+           c.y0 >= 0 && c.x0 < c.x1 && c.y0 < c.y1 && c.x1 <= s.full_size.x &&
+           c.y1 <= s.full_size.y && h.samples.first < h.samples.end &&
+           h.pixel_samples <= h.wanted() && s.layers.size() <= static_cast<size_t>(Aov::Count) &&
            (!s.bins || (s.bins->count > 0 && s.bins->count <= kMostBins && s.bins->width_nm > 0));
 }
 

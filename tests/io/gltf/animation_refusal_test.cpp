@@ -47,6 +47,7 @@ std::string left_out(const TinyGltf& file) {
     std::string text;
     for (const std::string& line : loaded.warnings) text += line + "\n";
     EXPECT_TRUE(has(text, "; /animations/0/channels/0 is left out"));
+    EXPECT_TRUE(has("\n" + text, "\n/animations/0/"));
     return text;
 }
 
@@ -77,6 +78,13 @@ TEST(AnimationRefusal, TimesMustBeInOrderAndFrom0) {
     EXPECT_TRUE(has(left_out(moving({-1, 0, 1})), at + "the time of key 0 is not a number from 0"));
     EXPECT_TRUE(has(left_out(moving({0, kNan, 1})), at + "the time of key 1"));
     EXPECT_TRUE(has(left_out(moving({0, 1, kInf})), at + "the time of key 2"));
+}
+
+TEST(AnimationRefusal, ThereMustBeKeys) {
+    AnimatedGltf file = moving();
+    file.json["accessors"][sampler_of(file)["input"].get<size_t>()]["count"] = 0;
+    EXPECT_TRUE(has(refused(file), "/count: must be at least 1"));
+    EXPECT_TRUE(contains_line(told(file), "/animations/0/channels/0 is left out"));
 }
 
 TEST(AnimationRefusal, ValuesMustBeFinite) {
@@ -323,6 +331,7 @@ TEST(AnimationRefusal, TimesFarAwayAreTimes) {
     const AnimatedGltf file = moving();
     EXPECT_FLOAT_EQ(load_at(file, 1e6 + 0.5).scene.meshes.at(0).positions.at(0).x, 0.5f);
     EXPECT_FLOAT_EQ(load_at(file, -1e6 + 0.5).scene.meshes.at(0).positions.at(0).x, 0.5f);
+    EXPECT_NEAR(load_at(file, 1e6 + 1.98).scene.meshes.at(0).positions.at(0).x, 1.98, 1e-4);
     AnimatedGltf late = moving({1e30f, 2e30f, 3e30f});
     EXPECT_EQ(shown(late), V3f(0));
 }
@@ -336,6 +345,16 @@ TEST(AnimationRefusal, ABrokenOneThatIsNotPlayedIsAWarning) {
     EXPECT_TRUE(contains_line(load(file).warnings, "/animations/0: is broken in places"));
     EXPECT_TRUE(has(left_out(file), "/animations/0/samplers/0/input"));
     EXPECT_TRUE(load_at(moving({0, 2, 1}), moment(0.5, {"idle"})).warnings.empty());
+}
+
+TEST(AnimationRefusal, EachReferenceOfOneThatIsNotPlayedIsLookedAt) {
+    const std::pair<const char*, json> changes[] = {
+        {"/sampler", 1}, {"/target/node", 99}, {"/target/path", 5}, {"/target", 5}};
+    for (const auto& [at, value] : changes) {
+        AnimatedGltf file = moving();
+        channel_of(file)[json::json_pointer(at)] = value;
+        EXPECT_TRUE(contains_line(load(file).warnings, "/animations/0: is broken in places")) << at;
+    }
 }
 
 TEST(AnimationRefusal, ASamplerThatNoChannelUsesMayBeBroken) {

@@ -172,13 +172,16 @@ TEST_F(StateFile, ImpossibleHeadersAreRefused) {
     const std::vector<std::array<std::string, 2>> changes = {
         {R"("size_px":[20,10])", R"("size_px":[2 ,10])"},
         {R"("size_px":[20,10])", R"("size_px":[2e9,9])"},
+        {R"("size_px":[20,10])", R"("size_px":[20, 8])"},
         {R"("crop_px":[3,2,17,9])", R"("crop_px":[3,2,3 ,9])"},
+        {R"("crop_px":[3,2,17,9])", R"("crop_px":[-7,2,7,9])"},
         {R"("samples":[16,40])", R"("samples":[40,40])"},
         {R"(,50.0,7])", R"(,50.0,0])"},
         {R"(,50.0,7])", R"(, 0.0,7])"},
         {R"(,50.0,7])", R"(,5.0,9e9)"},
         {R"("depth","normal")", R"("depth","normel")"},
         {R"("depth","normal")", R"("depth"         )"},
+        {R"("pixel_samples":2352)", R"("pixel_samples":2353)"},
         {R"("pixel_samples":)", R"("pixel_xamples":)"}};
     for (const auto& [before, after] : changes) {
         ASSERT_EQ(before.size(), after.size());
@@ -187,8 +190,15 @@ TEST_F(StateFile, ImpossibleHeadersAreRefused) {
         ASSERT_NE(at, std::string::npos) << before;
         text.replace(at, before.size(), after);
         write({text.begin(), text.end()});
-        EXPECT_NE(complaint().find("is damaged"), std::string::npos) << after << complaint();
+        // Before any pixel is read, and not by the checksum.
+        EXPECT_EQ(complaint(), path_.string() + ": is damaged or cut short") << after;
     }
+    FilmShape no_bins = kShape;  // as long as it says
+    no_bins.bins->count = 0;
+    write_state(path_, {no_bins, kSamples, 0, {}}, no_bins.empty_film());
+    EXPECT_EQ(complaint(), path_.string() + ": is damaged or cut short");
+    write_state(path_, {kShape, {40, 40}, 0, {}}, kShape.empty_film());
+    EXPECT_EQ(complaint(), path_.string() + ": is damaged or cut short");
 }
 
 // A header that is nested so deeply that copies of it would fill the stack.

@@ -30,7 +30,9 @@ struct Blend {
 /// How a ray that was cast with `passed` meets a surface.
 [[nodiscard]] inline Blend blend_at(const Scene& scene, const Surface& s, const Ray& ray,
                                     const PassedBlends* passed) {
-    if (!passed || passed->full() || !s.material->weighed()) return {};
+    if (!passed) [[likely]]
+        return {};
+    if (passed->full() || !s.material->weighed()) return {};
     const Hit& h = s.hit;
     const float alpha = coverage(scene, h.instance, h.triangle, h.barycentric);
     return {alpha, alpha / chance_met(alpha),

@@ -244,7 +244,8 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
     bool seen = false;    // the camera ray has found a surface that shows itself
     bool in_view = true;  // the camera ray has passed nothing but panes and BLEND surfaces
     PassedBlends blends;  // passed on the segment
-    const PassedBlends* const passed = caster_.has_blends() ? &blends : nullptr;
+    const bool has_cutouts = caster_.has_cutouts();
+    const PassedBlends* const passed = has_cutouts && caster_.has_blends() ? &blends : nullptr;
     uint32_t passed_before = 0;  // in all
     ChanceFinds* by_chance = &stats.mirrored;
 
@@ -252,7 +253,7 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         const auto number = static_cast<uint32_t>(vertex) + passed_before;
         // Intersect the ray with the scene. Its seed stays where it goes on behind a BLEND surface:
         // what it does not meet, it does not meet a second time.
-        if (caster_.has_cutouts())
+        if (has_cutouts)
             ray.alpha_seed = sampler.get_bits(Dim::Coverage, 2 * static_cast<uint32_t>(vertex));
         ++(vertex == 0 ? stats.camera_rays : stats.bounce_rays);
         const std::optional<Hit> hit = [&] {
@@ -344,7 +345,8 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         };
         const bool at_depth = depth >= options_.max_depth;
         if (s.material->unlit || (at_depth && !(s.material->transmission > 0))) {
-            if (blend.weight == 1.f) break;
+            if (blend.weight == 1.f) [[likely]]
+                break;
             go_on_behind(0.f);
             continue;
         }
@@ -357,7 +359,7 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
         f4 direct{};
         if (light_sampled && light) {
             const uint32_t alpha_seed =
-                caster_.has_cutouts() ? sampler.get_bits(Dim::Coverage, 2 * number + 1) : 0;
+                has_cutouts ? sampler.get_bits(Dim::Coverage, 2 * number + 1) : 0;
             const Scattering at{s,
                                 shading.frame,
                                 bsdf,
@@ -379,7 +381,7 @@ f4 PathTracer<Caster>::radiance(const Ray& camera_ray, const Bands& bands, const
                 light ? std::optional(light->light) : std::nullopt, receiver, hsum(direct)));
 
         // Go on behind a BLEND surface, or scatter there.
-        if (blend.weight < 1.f) {
+        if (blend.weight < 1.f) [[unlikely]] {
             const float chance =
                 blend.scattering_chance(at_depth ? 0.f : clamp_unit(hmax(bsdf.albedo())));
             if (!blend.scatters(chance)) {

@@ -127,13 +127,13 @@ void pass_back(const RTCFilterFunctionNArguments* args) {
         args->valid[0] = 0;
 }
 
-RTCRay to_embree(const Ray& r) {
+RTCRay to_embree(const Ray& r, float t_min = 0) {
     RTCRay ray;
     ray.org_x = r.origin.x, ray.org_y = r.origin.y, ray.org_z = r.origin.z;
     ray.dir_x = r.direction.x, ray.dir_y = r.direction.y, ray.dir_z = r.direction.z;
     // tnear above 0: in a plane through the origin of an axis nothing rounds, so that no offset
     // moves a ray off it, and it would meet at 0 what it leaves.
-    ray.tnear = std::numeric_limits<float>::min(), ray.tfar = r.t_max;
+    ray.tnear = std::max(std::numeric_limits<float>::min(), t_min), ray.tfar = r.t_max;
     ray.time = r.time, ray.mask = ~0u, ray.id = 0, ray.flags = 0;
     return ray;
 }
@@ -141,12 +141,12 @@ RTCRay to_embree(const Ray& r) {
 // Whether Embree can trace a ray: Debian's ends the program on others, with a bound of 1.844e18 for
 // every coordinate.
 bool traceable(const Ray& r) {
-    constexpr float bound = 1.8e18f;
-    const auto beyond = [](const V3f& v) {  // no branches: nearly every ray is within
-        return int{!(std::fabs(v.x) <= bound)} | int{!(std::fabs(v.y) <= bound)} |
-               int{!(std::fabs(v.z) <= bound)};
-    };
-    return (beyond(r.origin) | beyond(r.direction) | int{!(r.t_max >= 0.f)}) == 0;
+    const f4 bound = splat(1.8e18f);
+    const V3f &o = r.origin, &d = r.direction;
+    const f4 first{o.x, o.y, o.z, d.x}, last{o.z, d.x, d.y, d.z};
+    const m4 within = (first <= bound) & (first >= -bound) & (last <= bound) & (last >= -bound);
+    const m4 pairs = within & __builtin_shufflevector(within, within, 2, 3, 0, 1);
+    return (pairs[0] & pairs[1]) != 0 && r.t_max >= 0.f;
 }
 
 // Embree's callback for memory that it takes (or gives back: below 0).
@@ -193,13 +193,13 @@ struct Bvh::Impl {
         return made;
     }
 
-    std::optional<Hit> nearest(const Ray& r, const RTCRay& ray, RTCFilterFunctionN also,
+    std::optional<Hit> nearest(const Ray& r, float t_min, RTCFilterFunctionN also,
                                const PassedBlends* passed) const {
         if (!traceable(r)) return std::nullopt;
         NearestContext context{Context(r), passed};
         context.embree.filter = also;
         RTCRayHit query;
-        query.ray = ray;
+        query.ray = to_embree(r, t_min);
         query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
         rtcIntersect1(top, &context.embree, &query);
         if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
@@ -295,16 +295,13 @@ Bvh::Bvh(const Scene& scene, Traversal traversal) : impl_(std::make_unique<Impl>
 Bvh::~Bvh() = default;
 
 std::optional<Hit> Bvh::intersect(const Ray& r, const PassedBlends* passed) const {
-    RTCRay ray = to_embree(r);
-    if (passed) ray.tnear = std::max(ray.tnear, passed->t_min);
-    return impl_->nearest(r, ray, nullptr, passed);
+    if (!passed) return impl_->nearest(r, 0.f, nullptr, nullptr);
+    return impl_->nearest(r, passed->t_min, nullptr, passed);
 }
 
 std::optional<Hit> Bvh::intersect_front(const Ray& r, float t_min,
                                         const PassedBlends* passed) const {
-    RTCRay ray = to_embree(r);
-    ray.tnear = std::max(ray.tnear, t_min);
-    return impl_->nearest(r, ray, pass_back, passed);
+    return impl_->nearest(r, t_min, pass_back, passed);
 }
 
 bool Bvh::occluded(const Ray& r) const {

@@ -15,8 +15,9 @@ constexpr float kRound = 0x1p-24f;
 // coordinates from the ray's origin) rounds corners, edges, products and sums once each: in all 29
 // times, its fast test (Moeller and Trumbore) 37 times, where the ray passes a corner.
 constexpr float kRoundings = 40 * kRound;
-// Texels of the margin that are left for rounding of texture coordinates, by at most 40 times.
-constexpr float kForUv = 0.25f;
+// Texels of the margin that are left for the rounding of texture coordinates, and how much that is
+// at most, relative.
+constexpr float kForUv = 0.25f, kUvRoundings = 40 * kRound;
 
 // Texels along an axis, with those beyond its ends that wrapping leads to. Within kMargin texels of
 // a place whose upper left texel is number i, those from i to i + kReaches of these are read.
@@ -78,20 +79,22 @@ std::optional<MaskedMesh> MaskedMesh::of(const Scene& scene, const Mesh& mesh, c
     MaskedMesh masked(scene, mesh, map);
     if (!mesh.steps.empty() || !mesh.colours.empty() || masked.uv_.empty()) return std::nullopt;
     const TextureSlot& slot = map.slot();
+    // Texels along an axis, less what the row adds; not a number where floats resolve them badly.
     const auto place = [&](const std::array<float, 3>& row, uint32_t corner, int size) {
-        const V2f& uv = masked.uv_[corner];
-        const float most = std::fabs(uv.x * row[0]) + std::fabs(uv.y * row[1]) + std::fabs(row[2]);
-        return V2f((uv.x * row[0] + uv.y * row[1]) * float(size), most * float(size));
+        const float u = masked.uv_[corner].x * row[0], v = masked.uv_[corner].y * row[1];
+        const float most = (std::fabs(u) + std::fabs(v) + std::fabs(row[2])) * float(size);
+        return most * kUvRoundings < kForUv ? (u + v) * float(size) : NAN;
     };
     masked.doubts_.reserve(mesh.triangles.size());
     for (const auto& [a, b, c] : mesh.triangles) {
         float texels = 64;  // so that the bounds, of first order, are good
         for (const auto& [row, size] : {std::pair(slot.u_row, map.image().width),
                                         std::pair(slot.v_row, map.image().height)}) {
-            const V2f at_a = place(row, a, size), at_b = place(row, b, size),
-                      at_c = place(row, c, size);
-            if (!(std::max({at_a.y, at_b.y, at_c.y}) * 40 * kRound < kForUv)) return std::nullopt;
-            texels = std::max(texels, std::fabs(at_b.x - at_a.x) + std::fabs(at_c.x - at_a.x));
+            const float from = place(row, a, size);
+            const float both =
+                std::fabs(place(row, b, size) - from) + std::fabs(place(row, c, size) - from);
+            if (!(both < kInfinity)) return std::nullopt;
+            texels = std::max(texels, both);
         }
         const V3f &p = mesh.positions[a], &q = mesh.positions[b], &r = mesh.positions[c];
         const float edge = std::max({(q - p).length(), (r - p).length(), (r - q).length()});

@@ -68,24 +68,18 @@ std::optional<MaskMap> MaskMap::of(const Scene& scene, const Material& material)
     return map;
 }
 
-std::optional<bool> MaskMap::covers(V2f uv) const {
-    const uint32_t texel = locate_texture(images_, slot_, uv).texel[0];
-    const int answer = answers_[texel / 4] >> (texel % 4 * 2) & All;
-    if (answer != Hole && answer != Covered) return std::nullopt;
-    return answer == Covered;
-}
-
 std::optional<MaskedMesh> MaskedMesh::of(const Scene& scene, const Mesh& mesh, const MaskMap& map) {
-    MaskedMesh masked(scene, mesh, map);
-    if (!mesh.steps.empty() || !mesh.colours.empty() || masked.uv_.empty()) return std::nullopt;
     const TextureSlot& slot = map.slot();
+    const std::vector<V2f>& uv = mesh.uv_of(slot.uv_set);
+    if (!mesh.steps.empty() || !mesh.colours.empty() || uv.empty()) return std::nullopt;
+    MaskedMesh masked(scene, map);
     // Texels along an axis, less what the row adds; not a number where floats resolve them badly.
     const auto place = [&](const std::array<float, 3>& row, uint32_t corner, int size) {
-        const float u = masked.uv_[corner].x * row[0], v = masked.uv_[corner].y * row[1];
+        const float u = uv[corner].x * row[0], v = uv[corner].y * row[1];
         const float most = (std::fabs(u) + std::fabs(v) + std::fabs(row[2])) * float(size);
         return most * kUvRoundings < kForUv ? (u + v) * float(size) : NAN;
     };
-    masked.doubts_.reserve(mesh.triangles.size());
+    masked.corners_.reserve(mesh.triangles.size());
     for (const auto& [a, b, c] : mesh.triangles) {
         float texels = 64;  // so that the bounds, of first order, are good
         for (const auto& [row, size] : {std::pair(slot.u_row, map.image().width),
@@ -100,7 +94,7 @@ std::optional<MaskedMesh> MaskedMesh::of(const Scene& scene, const Mesh& mesh, c
         const float edge = std::max({(q - p).length(), (r - p).length(), (r - q).length()});
         const float one = kRoundings * texels * edge / (MaskMap::kMargin - kForUv);
         // The corners are up to an edge farther than the hit; more for bounds of first order.
-        masked.doubts_.emplace_back(one, 16 * one * edge);
+        masked.corners_.push_back({{uv[a], uv[b], uv[c]}, one, 16 * one * edge});
     }
     return masked;
 }
@@ -121,15 +115,6 @@ V2f MaskedMesh::rounding_of(const Instance& instance) {
     if (instance.moves || !(skew < 4 && stretch < 12)) return V2f(kInfinity);
     const float rounding = 8 * (skew + 1) * kRound / kRoundings * inverse;
     return {rounding, rounding * V3f(m[3][0], m[3][1], m[3][2]).length()};
-}
-
-std::optional<bool> MaskedMesh::covers(uint32_t triangle, V2f b, const V3f& ng,
-                                       const V3f& direction, float t, float more) const {
-    const float length = std::sqrt(direction.dot(direction)) + 1e-15f;  // above what underflows
-    const V2f& doubt = doubts_[triangle];
-    const float least = (doubt.x * (t * length + more) + doubt.y) * length + 1e-30f;
-    if (!(std::fabs(ng.dot(direction)) > least)) return std::nullopt;
-    return map_.covers(interpolate(uv_, mesh_.triangles[triangle], b));
 }
 
 }  // namespace petzval

@@ -51,18 +51,37 @@ class MaskedMesh {
     [[nodiscard]] std::optional<bool> covers(uint32_t triangle, V2f b, const V3f& ng,
                                              const V3f& direction, float t, float more) const;
     [[nodiscard]] const Scene& scene() const { return scene_; }
-    [[nodiscard]] size_t bytes() const { return doubts_.size() * sizeof(V2f); }
+    [[nodiscard]] size_t bytes() const { return corners_.size() * sizeof(Corners); }
 
   private:
-    MaskedMesh(const Scene& scene, const Mesh& mesh, const MaskMap& map)
-        : scene_(scene), mesh_(mesh), map_(map), uv_(mesh.uv_of(map.slot().uv_set)) {}
+    /// Of a triangle, side by side: texture coordinates of its corners, and the least |ng . unit
+    /// direction| for a way of 1, and what is added to that.
+    struct alignas(32) Corners {
+        std::array<V2f, 3> uv;
+        float doubt, more_doubt;
+    };
+
+    MaskedMesh(const Scene& scene, const MaskMap& map) : scene_(scene), map_(map) {}
 
     const Scene& scene_;
-    const Mesh& mesh_;
     const MaskMap& map_;
-    const std::vector<V2f>& uv_;
-    /// Least |ng . unit direction| of each triangle for a way of 1, and what is added.
-    std::vector<V2f> doubts_;
+    std::vector<Corners> corners_;
 };
+
+inline std::optional<bool> MaskMap::covers(V2f uv) const {
+    const uint32_t texel = locate_texture(images_, slot_, uv).texel[0];
+    const int answer = answers_[texel / 4] >> (texel % 4 * 2) & 3;
+    if (answer != 1 && answer != 2) return std::nullopt;
+    return answer == 2;
+}
+
+inline std::optional<bool> MaskedMesh::covers(uint32_t triangle, V2f b, const V3f& ng,
+                                              const V3f& direction, float t, float more) const {
+    const float length = std::sqrt(direction.dot(direction)) + 1e-15f;  // above what underflows
+    const Corners& at = corners_[triangle];
+    const float least = (at.doubt * (t * length + more) + at.more_doubt) * length + 1e-30f;
+    if (!(std::fabs(ng.dot(direction)) > least)) return std::nullopt;
+    return map_.covers(at.uv[0] * (1.f - b.x - b.y) + at.uv[1] * b.x + at.uv[2] * b.y);
+}
 
 }  // namespace petzval

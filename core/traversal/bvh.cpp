@@ -76,32 +76,24 @@ void filter(const RTCFilterFunctionNArguments* args) {
     if (asked.passed(asked.covered, *context_of<Context>(args).ray)) args->valid[0] = 0;
 }
 
-// What Embree is given with a mesh that has a map.
-struct Mapped {
-    MaskedMesh mesh;
-    const std::vector<V2f>& rounding;  // of instances: MaskedMesh::rounding_of
-};
-
 // For MASK: the answers of filter(), most of them without the exact place of the hit.
 void filter_mapped(const RTCFilterFunctionNArguments* args) {
     if (args->valid[0] != -1) return;
     const auto& hit = *reinterpret_cast<const RTCHit*>(args->hit);
     const auto& ray = *reinterpret_cast<const RTCRay*>(args->ray);  // as long as the way to the hit
-    const auto& [mesh, rounding] = *static_cast<const Mapped*>(args->geometryUserPtr);
-    const Ray& world = *context_of<Context>(args).ray;
-    float more = 0;
-    if (hit.instID[0] != RTC_INVALID_GEOMETRY_ID) {
-        const V2f& of = rounding[hit.instID[0]];
-        more = of.x * (world.origin.length() + 2 * ray.tfar * world.direction.length()) + of.y;
-    }
+    const auto& mesh = *static_cast<const MaskedMesh*>(args->geometryUserPtr);
+    const Scene& scene = mesh.scene();
+    const Ray& in_world = *context_of<Context>(args).ray;
+    const uint32_t instance = instance_of(hit.instID[0], hit.geomID), triangle = hit.primID;
+    const float more = hit.instID[0] != RTC_INVALID_GEOMETRY_ID
+                           ? MaskedMesh::rounding_of(scene.instances[instance], in_world, ray.tfar)
+                           : 0.f;
     std::optional<bool> covers =
-        mesh.covers(hit.primID, {hit.u, hit.v}, {hit.Ng_x, hit.Ng_y, hit.Ng_z},
+        mesh.covers(triangle, {hit.u, hit.v}, {hit.Ng_x, hit.Ng_y, hit.Ng_z},
                     {ray.dir_x, ray.dir_y, ray.dir_z}, ray.tfar, more);
-    if (!covers) {
-        const uint32_t instance = instance_of(hit.instID[0], hit.geomID);
-        covers = coverage(mesh.scene(), instance, hit.primID,
-                          barycentric(mesh.scene(), instance, hit.primID, world)) > 0.f;
-    }
+    if (!covers)
+        covers = coverage(scene, instance, triangle,
+                          barycentric(scene, instance, triangle, in_world)) > 0.f;
     if (!*covers) args->valid[0] = 0;
 }
 
@@ -199,9 +191,8 @@ struct Bvh::Impl {
     RTCScene top = nullptr;
     std::vector<RTCScene> shared;  // one for each mesh that instances share, else null
     bool has_cutouts = false, has_blends = false;
-    std::map<uint32_t, std::optional<MaskMap>> mask_maps;  // by material
-    std::deque<Mapped> mapped;
-    std::vector<V2f> rounding;  // of instances, where a mesh is mapped
+    std::map<uint32_t, MaskMap> mask_maps;  // by material
+    std::deque<MaskedMesh> masked;
     std::atomic<int64_t> bytes = 0;
 
     explicit Impl(const Scene& s) : scene(s) {}
@@ -252,24 +243,6 @@ struct Bvh::Impl {
         return ray.tfar < 0.f;
     }
 
-    // Makes a mesh's answers come from a map where they can.
-    void map(RTCGeometry geometry, const Mesh& mesh) {
-        auto found = mask_maps.find(mesh.material);
-        if (found == mask_maps.end()) {
-            const Material& material = scene.materials[mesh.material];
-            found = mask_maps.emplace(mesh.material, MaskMap::of(scene, material)).first;
-            if (found->second) bytes += static_cast<int64_t>(found->second->bytes());
-        }
-        if (!found->second) return;
-        auto masked = MaskedMesh::of(scene, mesh, *found->second);
-        if (!masked) return;
-        bytes += static_cast<int64_t>(masked->bytes());
-        rtcSetGeometryUserData(geometry,
-                               &mapped.emplace_back(Mapped{*std::move(masked), rounding}));
-        rtcSetGeometryIntersectFilterFunction(geometry, filter_mapped);
-        rtcSetGeometryOccludedFilterFunction(geometry, filter_mapped);
-    }
-
     RTCGeometry triangles(uint32_t mesh_id) {
         const Mesh& mesh = scene.meshes[mesh_id];
         RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -294,7 +267,16 @@ struct Bvh::Impl {
             has_blends |= weighed;
             rtcSetGeometryIntersectFilterFunction(geometry, weighed ? filter_weighed : filter);
             rtcSetGeometryOccludedFilterFunction(geometry, weighed ? list_weighed : filter);
-            map(geometry, mesh);
+            const auto [map, added] = mask_maps.try_emplace(mesh.material, scene, material);
+            masked.emplace_back(scene, mesh, map->second);
+            bytes += masked.back().bytes() + (added ? map->second.answers.size() : 0);
+            if (masked.back().empty()) {
+                masked.pop_back();
+            } else {
+                rtcSetGeometryUserData(geometry, &masked.back());
+                rtcSetGeometryIntersectFilterFunction(geometry, filter_mapped);
+                rtcSetGeometryOccludedFilterFunction(geometry, filter_mapped);
+            }
         }
         if (material.may_be_pane()) rtcSetGeometryOccludedFilterFunction(geometry, pass_pane);
         rtcCommitGeometry(geometry);
@@ -344,9 +326,6 @@ Bvh::Bvh(const Scene& scene, Traversal traversal) : impl_(std::make_unique<Impl>
     }
     rtcCommitScene(d.top);
     d.check();
-    if (d.mapped.empty()) return;
-    for (const Instance& i : scene.instances) d.rounding.push_back(MaskedMesh::rounding_of(i));
-    d.bytes += static_cast<int64_t>(d.rounding.size() * sizeof(V2f));
 }
 
 Bvh::~Bvh() = default;

@@ -2,86 +2,64 @@
 // Where the texture of a MASK material surely covers, and where it surely does not.
 #pragma once
 
-#include <cstdint>
 #include <optional>
-#include <vector>
 
+#include "core/math/ray.h"
 #include "core/scene/scene.h"
 
 namespace petzval {
 
-/// Answers of a MASK material at places on its texture that are known to kMargin texels.
-class MaskMap {
-  public:
-    /// How far off a place may be along each axis, texels.
+/// Answers of a material at places on its texture that are known to kMargin texels along each axis.
+struct MaskMap {
     static constexpr int kMargin = 2;
+    enum Answer : uint8_t { Hole = 1, Covered = 2, All = 3 };
+    const std::vector<Image>& images;
+    const TextureSlot& slot;
+    /// Four a byte, by the upper left texel that is filtered, `All` where the exact place decides.
+    /// Empty: the material is not MASK, or has no base-colour texture of 8 bits.
+    std::vector<uint8_t> answers;
 
-    /// The map of a material; nothing where it is not MASK, or has no base-colour texture of 8
-    /// bits.
-    [[nodiscard]] static std::optional<MaskMap> of(const Scene&, const Material&);
-    /// Whether the surface covers about uv; nothing where that hangs on the exact place.
-    [[nodiscard]] std::optional<bool> covers(V2f uv) const;
-    [[nodiscard]] const TextureSlot& slot() const { return slot_; }
-    [[nodiscard]] const Image& image() const { return images_[slot_.image]; }
-    [[nodiscard]] size_t bytes() const { return answers_.size(); }
-
-  private:
-    MaskMap(const std::vector<Image>& images, const TextureSlot& slot)
-        : images_(images), slot_(slot) {}
-
-    const std::vector<Image>& images_;
-    const TextureSlot& slot_;
-    std::vector<uint8_t> answers_;  ///< two bits for each upper left texel
+    MaskMap(const Scene&, const Material&);
 };
 
-/// A mesh with a map. A traversal in floats hits it at barycentric coordinates that are off by
-/// about its rounding times the way to the triangle: a bound of that says where they will do.
+/// A mesh with a map. The traversal finds where it is hit but for the rounding of its floats, which
+/// grows with the way of the ray: a bound of that tells where the map will do.
 class MaskedMesh {
   public:
-    /// Nothing where only coverage() knows: it changes its shape, has colours or no texture
-    /// coordinates, or these are too many texels for floats. Scene and map must outlive it.
-    [[nodiscard]] static std::optional<MaskedMesh> of(const Scene&, const Mesh&, const MaskMap&);
-    /// What placing does to a ray that is moved into the mesh's space, as lengths in that space: x
-    /// for each metre of |origin| + 2 t |direction| in world space, and y. Infinite where it is not
-    /// bounded well.
-    [[nodiscard]] static V2f rounding_of(const Instance&);
-
-    /// Whether a triangle covers where a ray hits it; nothing where only coverage() knows. b, ng
-    /// and t as the traversal found them, in the space of the mesh; more: length for rounding_of.
-    [[nodiscard]] std::optional<bool> covers(uint32_t triangle, V2f b, const V3f& ng,
-                                             const V3f& direction, float t, float more) const;
-    [[nodiscard]] const Scene& scene() const { return scene_; }
+    /// All must outlive it.
+    MaskedMesh(const Scene&, const Mesh&, const MaskMap&);
+    /// Whether only coverage() knows: the map is empty, the mesh changes its shape or has colours,
+    /// or its texture coordinates are too many texels for floats.
+    [[nodiscard]] bool empty() const { return corners_.empty(); }
     [[nodiscard]] size_t bytes() const { return corners_.size() * sizeof(Corners); }
+    [[nodiscard]] const Scene& scene() const { return scene_; }
+
+    /// Way that would round as much as moving a ray into the space of an instance does; infinite
+    /// where that is not bounded well. t: of the hit.
+    [[nodiscard]] static float rounding_of(const Instance&, const Ray& in_world, float t);
+    /// Whether a triangle covers where a ray hits it, by what the traversal found in the mesh's
+    /// space; nothing where only coverage() knows. ng: product of two edges; more: rounding_of.
+    [[nodiscard]] std::optional<bool> covers(uint32_t triangle, V2f b, const V3f& ng,
+                                             const V3f& direction, float t, float more) const {
+        const float length = std::sqrt(direction.dot(direction)) + 1e-15f;  // above underflow
+        const Corners& at = corners_[triangle];
+        const float least = (at.doubt * (t * length + more) + at.more_doubt) * length + 1e-30f;
+        if (!(std::fabs(ng.dot(direction)) > least)) return std::nullopt;
+        const V2f uv = at.uv[0] * (1.f - b.x - b.y) + at.uv[1] * b.x + at.uv[2] * b.y;
+        const uint32_t texel = locate_texture(map_.images, map_.slot, uv).texel[0];
+        const int answer = map_.answers[texel / 4] >> (texel % 4 * 2) & MaskMap::All;
+        if (answer != MaskMap::Hole && answer != MaskMap::Covered) return std::nullopt;
+        return answer == MaskMap::Covered;
+    }
 
   private:
-    /// Of a triangle, side by side: texture coordinates of its corners, and the least |ng . unit
-    /// direction| for a way of 1, and what is added to that.
-    struct alignas(32) Corners {
+    struct alignas(32) Corners {  // of a triangle, side by side
         std::array<V2f, 3> uv;
-        float doubt, more_doubt;
+        float doubt, more_doubt;  // least |ng . unit direction| for a way of 1, and for none
     };
-
-    MaskedMesh(const Scene& scene, const MaskMap& map) : scene_(scene), map_(map) {}
-
     const Scene& scene_;
     const MaskMap& map_;
     std::vector<Corners> corners_;
 };
-
-inline std::optional<bool> MaskMap::covers(V2f uv) const {
-    const uint32_t texel = locate_texture(images_, slot_, uv).texel[0];
-    const int answer = answers_[texel / 4] >> (texel % 4 * 2) & 3;
-    if (answer != 1 && answer != 2) return std::nullopt;
-    return answer == 2;
-}
-
-inline std::optional<bool> MaskedMesh::covers(uint32_t triangle, V2f b, const V3f& ng,
-                                              const V3f& direction, float t, float more) const {
-    const float length = std::sqrt(direction.dot(direction)) + 1e-15f;  // above what underflows
-    const Corners& at = corners_[triangle];
-    const float least = (at.doubt * (t * length + more) + at.more_doubt) * length + 1e-30f;
-    if (!(std::fabs(ng.dot(direction)) > least)) return std::nullopt;
-    return map_.covers(at.uv[0] * (1.f - b.x - b.y) + at.uv[1] * b.x + at.uv[2] * b.y);
-}
 
 }  // namespace petzval

@@ -37,9 +37,7 @@ void check_files(const MergeOptions& o) {
 
 // Throws where the display's configuration is not what it was.
 void check_display(const RunRecord& record) {
-    const auto is_same = [&] {
-        return record.facts.display == display_facts(record.display, input_files(record.display));
-    };
+    const auto is_same = [&] { return record.facts.display == display_facts(record.display); };
     if (!record.display.config.empty() && !is_same())
         throw InputError(record.display.config.string(), "",
                          "has changed since the states were written; their pictures would look "

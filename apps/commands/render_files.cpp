@@ -61,17 +61,6 @@ void tell_bad_samples(const Film& film, const Notice& notice) {
     notice("warning: " + text);
 }
 
-PictureRows picture_for(const fs::path& path, const FinishedFilm& done) {
-    Metadata metadata = done.facts.metadata;
-    metadata.emplace_back(kLightHash,
-                          light_hash(done.facts, FilmShape::of(done.film), done.samples));
-    const PictureFormat format = picture_format(path);
-    if (format != PictureFormat::Exr)
-        metadata.emplace_back(kDisplayHash, display_hash(done.facts.display));
-    if (format != PictureFormat::Png) metadata.emplace_back(kSealName, kUnsealed);
-    return develop(done.film, done.samples, metadata);
-}
-
 std::vector<WriteOutcome> write_pictures(const std::vector<fs::path>& outputs,
                                          const DisplayOptions& display, const FinishedFilm& done,
                                          bool stopped, Console& console) {

@@ -7,7 +7,7 @@
 
 #include "apps/cli/console.h"
 #include "apps/cli/render_options.h"
-#include "apps/state/run_record.h"
+#include "apps/state/finished_film.h"
 #include "core/film/film.h"
 #include "io/base/notice.h"
 #include "io/base/rescue.h"
@@ -18,13 +18,6 @@ namespace petzval {
 /// so that a scene which reads one of them is refused. Throws OutputError and ArgumentError.
 void check_outputs(RenderOptions&, const Rect& crop);
 
-/// A finished render, as far as its pictures go.
-struct FinishedFilm {
-    const Film& film;
-    SampleRange samples;
-    const RenderFacts& facts;
-};
-
 /// Writes all pictures, whichever of them fail; each failure is told. stopped: unfinished ones,
 /// NAME.partial.exr.
 [[nodiscard]] std::vector<WriteOutcome> write_pictures(const std::vector<std::filesystem::path>&,
@@ -33,10 +26,6 @@ struct FinishedFilm {
 
 /// Tells of samples that were left out of a film.
 void tell_bad_samples(const Film&, const Notice&);
-
-/// Linear picture of a film, with the metadata of its file: PNG and JPEG say how they were made for
-/// a display too.
-[[nodiscard]] PictureRows picture_for(const std::filesystem::path&, const FinishedFilm&);
 
 /// Whether a picture is there already that was made from the same command and inputs. Without
 /// samples any number of them will do, as where a time limit decides.

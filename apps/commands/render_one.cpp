@@ -9,16 +9,11 @@
 #include "apps/cli/display_options.h"
 #include "apps/commands/kept_state.h"
 #include "apps/commands/render_files.h"
-#include "apps/plan/plan.h"
-#include "apps/plan/plan_wording.h"
 #include "apps/setup/develop.h"
 #include "apps/setup/exposure.h"
 #include "apps/setup/input_files.h"
-#include "apps/setup/spectral_wording.h"
 #include "apps/setup/stats_file.h"
 #include "apps/state/keeper.h"
-#include "integrator/executor.h"
-#include "integrator/render.h"
 #include "io/base/clock.h"
 #include "io/base/error.h"
 #include "io/base/format.h"
@@ -36,17 +31,6 @@ bool is_for_display(const fs::path& picture) {
     return picture_format(picture) != PictureFormat::Exr;
 }
 
-/// Files that options name, but for pictures and the scene, which are hashed as they are read.
-std::vector<std::pair<fs::path, std::string>> hashes_of_inputs(const SceneRequest& scene) {
-    std::vector<std::pair<fs::path, std::string>> out;
-    std::error_code none;
-    for (const NamedFile& file : input_files(scene))
-        if (file.path != scene.scene && file.path != scene.environment &&
-            fs::is_regular_file(file.path, none))
-            out.emplace_back(file.path, name_and_hash(file.path));
-    return out;
-}
-
 /// One render, step by step.
 class OneRender {
   public:
@@ -61,17 +45,17 @@ class OneRender {
     int run(SequencePlace&);
 
   private:
-    void set_up(TbbExecutor&, Progress&, const RenderSetup* like);
-    void take_display_of_file();
-    void choose_exposure(TbbExecutor&);
-    [[nodiscard]] bool is_there() const;
-    [[nodiscard]] RenderResult render(TbbExecutor&, Progress&);
-    [[nodiscard]] int write_all(const RenderResult&, TbbExecutor&, Progress&, const SequencePlace&);
+    [[nodiscard]] RenderRequest request() const;
+    [[nodiscard]] const RenderSetup& setup() const { return render_->setup(); }
+    [[nodiscard]] const DisplayOptions& display() const { return render_->request().display; }
+    [[nodiscard]] bool is_there(const std::optional<Film>&) const;
+    [[nodiscard]] RenderResult render(Progress&);
+    [[nodiscard]] int write_all(const RenderResult&, Progress&, const SequencePlace&);
     void write_state(const RenderResult&, const RunFigures&, std::vector<WriteOutcome>&);
     [[nodiscard]] bool write_statistics(RunFigures, SampleRange, const RunReport&);
     void show(const PictureRows& light, const SequencePlace&) const;
     void show_existing(const SequencePlace&) const;
-    void advise_exposure(TbbExecutor&);
+    void advise_exposure();
     [[nodiscard]] RunReport report_of(const Progress&, std::vector<WriteOutcome>,
                                       bool stopped) const;
     [[nodiscard]] std::vector<std::string> found_words() const;
@@ -85,9 +69,7 @@ class OneRender {
     FilmShape shape_;
     SampleRange samples_;
     KeptState kept_;
-    RenderSetup setup_;
-    std::unique_ptr<NextFrame> next_;
-    std::optional<Film> film_;
+    RenderSession* render_ = nullptr;
     double render_start_s_ = 0, render_start_cpu_s_ = 0;
 };
 
@@ -101,58 +83,24 @@ ProgressGoal OneRender::goal(std::pair<int, int> part_of) const {
     return goal;
 }
 
-// Makes the choices that are open, tells them, and keeps them for the metadata.
-void OneRender::set_up(TbbExecutor& executor, Progress& progress, const RenderSetup* like) {
-    AutoSetup found =
-        set_up_planned({o_.scene, o_.job, o_.path, frame_.tolerance, true, like}, executor, notice_,
-                       [&](Phase phase) { progress.begin(phase); });
-    for (const std::string& line : lines_of(found.setup.from.spectral)) notice_(line);
-    if (const auto line = line_of(found.choice)) notice_(*line);
-    if (const std::string reason = reason_of(found.choice); !reason.empty())
-        found.setup.from.metadata.emplace_back(
-            "petzval:plan", fmt::format("{}: {}", percent(frame_.tolerance), reason));
-    setup_ = std::move(found.setup);
-    o_.path.visible_background = setup_.view.visible_background;
-    o_.job.observer = setup_.view.observer;
+RenderRequest OneRender::request() const {
+    return {.scene = o_.scene,
+            .crop = frame_.crop,
+            .layers = frame_.aovs,
+            .job = o_.job,
+            .path = o_.path,
+            .tolerance = frame_.tolerance,
+            .fps = o_.reading.time.fps,
+            .display = o_.display,
+            .asks_exposure = o_.exposure.has_value(),
+            .asks_view = o_.asks_view,
+            .finds_exposure = o_.auto_exposure};
 }
 
-// Takes what the scene asks for of its display, where the user asks for nothing.
-void OneRender::take_display_of_file() {
-    const SceneExtras& file = setup_.prepared.extras;
-    std::string taken;
-    if (file.exposure_ev && !o_.exposure) {
-        o_.display.exposure_ev = *file.exposure_ev;
-        taken = fmt::format("exposure {} EV", *file.exposure_ev);
-    }
-    if (file.view && !o_.asks_view) {
-        try {
-            o_.display.view = find_view(*file.view, o_.display.config);
-        } catch (const InputError& error) {
-            throw InputError(o_.scene.scene.string(), file.path + "/view",
-                             fmt::format("{}; --view takes another", error.what()));
-        }
-        taken += (taken.empty() ? "view " : ", view ") + printable(*file.view);
-    }
-    if (!taken.empty())
-        notice_(fmt::format("the scene asks for {} (--exposure and --view go before it)", taken));
-}
-
-// Finds the exposure where it is asked for, and tells it.
-void OneRender::choose_exposure(TbbExecutor& executor) {
-    if (o_.auto_exposure) {
-        const FoundExposure found = find_exposure(setup_, o_.job, o_.path, executor);
-        o_.display.exposure_ev = found.ev;
-        notice_(fmt::format("exposure: {0} EV (--exposure {0}){1}", found.ev,
-                            found.log_average > 0 ? "" : ", as no light was found"));
-    }
-    setup_.from.exposure_ev = o_.display.exposure_ev;
-    setup_.from.exposure_is_auto = o_.auto_exposure;
-}
-
-bool OneRender::is_there() const {
+bool OneRender::is_there(const std::optional<Film>& film) const {
     if (!o_.keep.skip_existing) return false;
     if (o_.outputs.empty() && !o_.keep.state) return false;
-    if (o_.keep.state_is_wanted && !(film_ && film_->taken_range().least == samples_.count()))
+    if (o_.keep.state_is_wanted && !(film && film->taken_range().least == samples_.count()))
         return false;
     std::optional<SampleRange> wanted = samples_;
     if (o_.job.time_limit_s) wanted.reset();
@@ -163,8 +111,8 @@ bool OneRender::is_there() const {
 
 RunFigures OneRender::figures_now(const PathStats& stats, int workers) const {
     return {stats,
-            setup_.from.load_s,
-            setup_.from.bvh_s,
+            setup().from.load_s,
+            setup().from.bvh_s,
             steady_s() - render_start_s_,
             process_cpu_s() - render_start_cpu_s_,
             o_.threads,
@@ -172,39 +120,35 @@ RunFigures OneRender::figures_now(const PathStats& stats, int workers) const {
             peak_memory_mib()};
 }
 
-RenderResult OneRender::render(TbbExecutor& executor, Progress& progress) {
-    const PreparedScene& prepared = setup_.prepared;
-    const PathTracer tracer(*prepared.scene, *prepared.bvh, *prepared.lights, o_.path);
+RenderResult OneRender::render(Progress& progress) {
     RenderMonitor& monitor = session_.interrupt.monitor();
     session_.interrupt.arm();
     render_start_s_ = steady_s();
     render_start_cpu_s_ = process_cpu_s();
-    RenderJob job = o_.job;
-    if (job.time_limit_s) *job.time_limit_s -= kept_.record().figures.render_wall_s;
+    const Film& film = render_->film();
     Keeper keeper({checkpoint_interval_s(o_.keep, shape_.bytes()),
                    [&](const PathStats& stats) {
-                       kept_.write(*o_.keep.state, *film_, figures_now(stats, executor.threads()),
-                                   samples_);
+                       kept_.write(*o_.keep.state, film, figures_now(stats, o_.threads), samples_);
                    },
-                   o_.keep.preview, o_.display, notice_},
-                  monitor, *film_);
-    job.at_pause = [&](const PathStats& stats) { keeper.at_pause(stats); };
+                   o_.keep.preview, display(), notice_},
+                  monitor, film);
     progress.begin(Phase::Rendering);
-    const RenderResult result =
-        petzval::render(tracer, *setup_.view.camera, job, *film_, executor, monitor);
+    const RenderResult result = render_->render(
+        monitor, [&](const PathStats& stats) { keeper.at_pause(stats); },
+        kept_.record().figures.render_wall_s);
     keeper.finish();
     progress.end_rendering(!result.stopped);
     return result;
 }
 
 // Tells what to type where PNG and JPEG show nothing.
-void OneRender::advise_exposure(TbbExecutor& executor) {
+void OneRender::advise_exposure() {
     if (std::ranges::none_of(o_.outputs, is_for_display)) return;
-    const Brightness brightness = brightness_of(*film_, o_.display.exposure_ev);
+    const Brightness brightness = brightness_of(render_->film(), display().exposure_ev);
     if (brightness == Brightness::Normal) return;
-    const FoundExposure found = find_exposure(setup_, o_.job, o_.path, executor);
-    if (const auto advice = exposure_advice(brightness, found, o_.display.exposure_ev,
-                                            setup_.prepared.lamp_unit_doubt))
+    const FoundExposure found = render_->find_exposure();
+    if (const auto advice = exposure_advice(brightness, found, display().exposure_ev,
+                                            setup().prepared.lamp_unit_doubt))
         notice_(*advice);
 }
 
@@ -229,7 +173,7 @@ void OneRender::write_state(const RenderResult& result, const RunFigures& figure
     if (!state || !(result.stopped || o_.keep.state_is_wanted)) return;
     const SampleRange wanted{samples_.first, result.stopped ? samples_.end : result.end_sample};
     const WriteOutcome& one = outcomes.emplace_back(write_or_rescue(
-        *state, [&](const fs::path& to) { kept_.write(to, *film_, figures, wanted); }));
+        *state, [&](const fs::path& to) { kept_.write(to, render_->film(), figures, wanted); }));
     if (!one.written()) session_.console.error(one.message());
     const fs::path& there = one.written() ? *state : one.rescue;
     if (result.stopped && !there.empty())
@@ -239,8 +183,8 @@ void OneRender::write_state(const RenderResult& result, const RunFigures& figure
 // Writes the statistics of this run and those before it; whether that was possible.
 bool OneRender::write_statistics(RunFigures figures, SampleRange taken, const RunReport& report) {
     figures += kept_.record().figures;
-    const StatsPicture picture{o_.scene.size.x, o_.scene.size.y, taken, setup_.from.exposure_ev,
-                               film_->left_out()};
+    const StatsPicture picture{o_.scene.size.x, o_.scene.size.y, taken, setup().from.exposure_ev,
+                               render_->film().left_out()};
     const WriteOutcome stats = write_or_rescue(
         *o_.stats, [&](const fs::path& to) { write_stats(to, picture, figures, report); });
     if (!stats.written()) session_.console.error(stats.message());
@@ -248,7 +192,7 @@ bool OneRender::write_statistics(RunFigures figures, SampleRange taken, const Ru
 }
 
 // Writes the state, then pictures and statistics; the exit code.
-int OneRender::write_all(const RenderResult& result, TbbExecutor& executor, Progress& progress,
+int OneRender::write_all(const RenderResult& result, Progress& progress,
                          const SequencePlace& place) {
     const bool stopped = result.stopped;
     progress.begin(Phase::Writing);
@@ -256,16 +200,15 @@ int OneRender::write_all(const RenderResult& result, TbbExecutor& executor, Prog
     std::vector<WriteOutcome> outcomes;
     write_state(result, figures, outcomes);
     const SampleRange taken{samples_.first, result.end_sample};
-    const FinishedFilm done{*film_, taken, kept_.record().facts};
-    for (WriteOutcome& one :
-         write_pictures(o_.outputs, o_.display, done, stopped, session_.console))
+    const FinishedFilm done{render_->film(), taken, kept_.record().facts};
+    for (WriteOutcome& one : write_pictures(o_.outputs, display(), done, stopped, session_.console))
         outcomes.push_back(std::move(one));
     bool written = std::all_of(outcomes.begin(), outcomes.end(),
                                [](const WriteOutcome& one) { return one.written(); });
     // Else the state is all that is left.
     if (!stopped && written) kept_.remove_unfinished(o_.outputs);
-    if (!stopped && place.show) show(develop(*film_, taken, {}), place);
-    if (!stopped) advise_exposure(executor);
+    if (!stopped && place.show) show(develop(render_->film(), taken, {}), place);
+    if (!stopped) advise_exposure();
     if (o_.stats)
         written =
             write_statistics(figures, taken, report_of(progress, std::move(outcomes), stopped)) &&
@@ -276,7 +219,7 @@ int OneRender::write_all(const RenderResult& result, TbbExecutor& executor, Prog
 
 // Shows light through the view that was asked for.
 void OneRender::show(const PictureRows& light, const SequencePlace& place) const {
-    const DisplayOptions& d = o_.display;
+    const DisplayOptions& d = display();
     place.show(to_display(light, d.exposure_ev, d.view, AlphaUse::Keep, d.config), d);
 }
 
@@ -285,7 +228,7 @@ void OneRender::show_existing(const SequencePlace& place) const {
     const auto shown = std::ranges::find_if(o_.outputs, is_for_display);
     const Picture there = read_picture(shown == o_.outputs.end() ? o_.outputs.front() : *shown);
     if (there.for_display)
-        place.show(as_display(there), o_.display);
+        place.show(as_display(there), display());
     else
         show(there, place);
 }
@@ -294,8 +237,8 @@ void OneRender::show_existing(const SequencePlace& place) const {
 // would jump from picture to picture.
 std::vector<std::string> OneRender::found_words() const {
     std::vector<std::string> words;
-    const CameraReport& camera = setup_.from.camera;
-    if (setup_.prepared.cameras->empty() && !o_.scene.camera.look_at)
+    const CameraReport& camera = setup().from.camera;
+    if (setup().prepared.cameras->empty() && !o_.scene.camera.look_at)
         words.insert(words.end(), {"--look-at", fmt::format("{},{}", with_commas(camera.eye),
                                                             with_commas(camera.target))});
     if (o_.scene.camera.orbit_deg && !o_.scene.camera.orbit_about)
@@ -304,57 +247,39 @@ std::vector<std::string> OneRender::found_words() const {
     if (has_focus && (o_.camera.focus.empty() || o_.camera.focus == "auto"))
         words.insert(words.end(), {"--focus", fmt::format("{}", camera.focus_m)});
     if (o_.auto_exposure)
-        words.insert(words.end(), {"--exposure", fmt::format("{}", setup_.from.exposure_ev)});
+        words.insert(words.end(), {"--exposure", fmt::format("{}", setup().from.exposure_ev)});
     return words;
 }
 
 int OneRender::run(SequencePlace& place) {
-    flush_denormals();
-    TbbExecutor executor(o_.threads);
-    limit_picture_threads(o_.threads);
     for (const std::string& remark : frame_.remarks) notice_(remark);
     Progress progress(o_.quiet ? ProgressStyle::None : o_.progress, session_.console,
                       session_.interrupt.monitor(), goal(place.part_of));
-    const auto inputs = hashes_of_inputs(o_.scene);
-    set_up(executor, progress, place.before && *place.before ? &**place.before : nullptr);
-    load_image_codec();  // before hours of work: a picture will be written
-    take_display_of_file();
-    choose_exposure(executor);
-    if (std::ranges::find(frame_.aovs, Aov::Velocity) != frame_.aovs.end()) {
-        next_ = set_up_velocity(setup_, o_.reading.time.fps);
-        o_.job.velocity = next_->velocity.get();
-        setup_.from.metadata.emplace_back("petzval:fps", fmt::format("{}", o_.reading.time.fps));
+    if (!place.render || place.render->threads() != o_.threads) {
+        place.render.reset();
+        place.render = std::make_unique<RenderSession>(o_.threads, place.frames);
     }
-    kept_.set(shape_, samples_,
-              facts_of(setup_, o_.job, o_.path, o_.display, input_files(o_.display)), o_.display);
-    for (const auto& [file, hash] : inputs)
-        if (name_and_hash(file) != hash)
-            throw InputError(file.string(), "", "was changed while it was read; start again");
+    render_ = place.render.get();
+    render_->prepare(request(), notice_, [&](Phase phase) { progress.begin(phase); });
+    kept_.set(shape_, samples_, render_->facts(), display());
     place.found = found_words();
     if (session_.interrupt.monitor().stop) return kStopped;  // nothing of it is there yet
     const bool shown = o_.keep.state_is_wanted || std::ranges::any_of(o_.outputs, is_for_display);
-    film_ = kept_.take_up(shown ? Compare::Pictures : Compare::Samples, notice_);
-    int code = kSuccess;
-    if (is_there()) {
+    std::optional<Film> film = kept_.take_up(shown ? Compare::Pictures : Compare::Samples, notice_);
+    if (is_there(film)) {
         for (const fs::path& output : o_.outputs)
             notice_(fmt::format("{} is there already", output.string()));
         progress.skip();
         if (place.show && !o_.outputs.empty()) show_existing(place);
-    } else {
-        if (!film_) film_ = shape_.empty_film();
-        const uint64_t before = film_->taken_count();
-        session_.interrupt.monitor().pixel_samples_done = before;
-        progress.set_before(before, kept_.record().figures.render_wall_s);
-        const RenderResult result = render(executor, progress);
-        tell_bad_samples(*film_, notice_);
-        code = write_all(result, executor, progress, place);
+        return kSuccess;
     }
-    next_.reset();
-    if (o_.scene.reuse)
-        give_back(*o_.scene.reuse, std::move(setup_.prepared));
-    else if (place.before)
-        *place.before = std::move(setup_);
-    return code;
+    if (film) render_->take_up(std::move(*film));
+    const uint64_t before = render_->film().taken_count();
+    session_.interrupt.monitor().pixel_samples_done = before;
+    progress.set_before(before, kept_.record().figures.render_wall_s);
+    const RenderResult result = render(progress);
+    tell_bad_samples(render_->film(), notice_);
+    return write_all(result, progress, place);
 }
 
 }  // namespace

@@ -3,14 +3,14 @@
 #pragma once
 
 #include <functional>
-#include <optional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "apps/cli/render_options.h"
 #include "apps/commands/session.h"
-#include "apps/setup/render_setup.h"
+#include "apps/render/render_session.h"
 #include "io/base/notice.h"
 
 namespace petzval {
@@ -18,9 +18,9 @@ namespace petzval {
 /// A picture of a sequence, and what it shares with those beside it.
 struct SequencePlace {
     std::pair<int, int> part_of{0, 1};  ///< its number from 0, of so many
-    /// Setup of the picture before, from which this one takes what it has in common; afterwards its
-    /// own. nullptr: it is not kept.
-    std::optional<RenderSetup>* before = nullptr;
+    /// That of the pictures before, or null; afterwards that of this one.
+    std::unique_ptr<RenderSession> render{};
+    RenderSession::Frames frames = RenderSession::Frames::Single;
     /// Options that make other pictures use what this one found: view, focus, exposure.
     std::vector<std::string> found;
     /// Gets the picture for a display when it is finished, or was there already.

@@ -47,7 +47,7 @@ class Sequence {
         : o_(o), notice_(notice), session_(session), items_(items_of(o.sequence)) {
         check_names(o, items_.size());
         all_ = without_sequence(session.words);
-        if (!o.sequence.frames.empty()) reuse_ = std::make_shared<FrameReuse>();
+        if (!o.sequence.frames.empty()) place_.frames = RenderSession::Frames::Sequence;
         // What is wrong with one ends all at once. Frames differ in a number only.
         const size_t checked = o.sequence.frames.empty() ? items_.size() : 1;
         for (size_t i = 0; i < checked; ++i) {
@@ -78,8 +78,7 @@ class Sequence {
     Session& session_;
     std::vector<SequenceItem> items_;
     Words all_;  ///< of every picture
-    std::shared_ptr<FrameReuse> reuse_;
-    std::optional<RenderSetup> before_;
+    SequencePlace place_;
     std::optional<ContactSheet> sheet_;
     bool holds_ = false;    ///< what the first picture that was set up found
     bool for_srgb_ = true;  ///< what the sheet shows
@@ -99,18 +98,15 @@ int Sequence::render(size_t i) {
     try {
         const Words words = words_of(item);
         const ParsedRender parsed = parse_render(words);
-        parsed.options->scene.reuse = reuse_;
-        SequencePlace place;
-        place.part_of = {static_cast<int>(i), static_cast<int>(items_.size())};
-        if (!reuse_ && several) place.before = &before_;
+        place_.part_of = {static_cast<int>(i), static_cast<int>(items_.size())};
         if (sheet_)
-            place.show = [&](const PictureRows& picture, const DisplayOptions& display) {
+            place_.show = [&](const PictureRows& picture, const DisplayOptions& display) {
                 sheet_->add(picture, item.label);
                 for_srgb_ = display.config.empty();
                 shown = true;
             };
-        const int code = render_one(*parsed.options, words, once, session_, place);
-        hold(place);
+        const int code = render_one(*parsed.options, words, once, session_, place_);
+        hold(place_);
         leave_cell();
         return code;
     } catch (...) {

@@ -136,7 +136,7 @@ namespace {
 
 RenderSetup set_up_like(const PlanRequest& request, const Notice& notice, const PhaseSink& begins) {
     if (request.like) return set_up_view(*request.like, request.scene, notice);
-    return set_up_render(request.scene, notice, begins);
+    return set_up_render(request.scene, notice, begins, request.frames);
 }
 
 }  // namespace

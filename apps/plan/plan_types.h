@@ -28,6 +28,7 @@ struct PlanRequest {
     double tolerance = kUsualTolerance;  ///< above 0
     bool light_choice_open = true;       ///< scene.light_choice is no wish of the user's
     const RenderSetup* like = nullptr;   ///< a setup of which what is the same is taken
+    FrameReuse* frames = nullptr;        ///< of a sequence, which it is part of
 };
 
 /// Ways to render a scene, simplest first. Shared to Split carry wavelengths through a lens.

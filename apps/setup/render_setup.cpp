@@ -139,9 +139,9 @@ bool same_scene(const SceneRequest& a, const SceneRequest& b) {
            a.environment_strength == b.environment_strength && same(a.background, b.background);
 }
 
-GltfFile load_file(const SceneRequest& request, PictureBudget& pictures) {
-    if (!request.reuse) return load_gltf(request.scene, request.scope, pictures, request.choices);
-    auto& reader = request.reuse->reader;
+GltfFile load_file(const SceneRequest& request, PictureBudget& pictures, FrameReuse* frames) {
+    if (!frames) return load_gltf(request.scene, request.scope, pictures, request.choices);
+    auto& reader = frames->reader;
     if (!reader)
         reader = std::make_unique<GltfReader>(request.scene, request.scope, request.choices);
     return reader->load(pictures,
@@ -149,10 +149,11 @@ GltfFile load_file(const SceneRequest& request, PictureBudget& pictures) {
 }
 
 // Takes the sky that is asked for; of a sequence, that of the frame before.
-void take_sky(const SceneRequest& request, const Notice& notice, PreparedScene& out, Sky& sky) {
-    if (request.reuse && request.reuse->environment) {
-        sky = *std::exchange(request.reuse->environment, std::nullopt);
-        out.environment_text = request.reuse->environment_text;
+void take_sky(const SceneRequest& request, const Notice& notice, PreparedScene& out, Sky& sky,
+              FrameReuse* frames) {
+    if (frames && frames->before && !frames->environment_text.empty()) {
+        sky = std::move(frames->before->sky);
+        out.environment_text = frames->environment_text;
         return;
     }
     sky = sky_of(request, notice, out.pictures);
@@ -163,10 +164,14 @@ void take_sky(const SceneRequest& request, const Notice& notice, PreparedScene& 
 }
 
 // The scene with its sky, not yet its BVH and lights.
-PreparedScene load(SceneRequest request, const Notice& notice) {
+PreparedScene load(SceneRequest request, const Notice& notice, FrameReuse* frames) {
     PreparedScene out;
+    if (frames && frames->before) {
+        if (frames->before.use_count() > 1) frames->before.reset();  // somebody looks at it still
+        if (frames->before) frames->reader->give_back(std::move(frames->before->images));
+    }
     if (request.picture_memory_bytes) out.pictures = PictureBudget(*request.picture_memory_bytes);
-    GltfFile file = load_file(request, out.pictures);
+    GltfFile file = load_file(request, out.pictures, frames);
     check_camera_files(request.scene, request.scope, file.cameras);
     out.files = input_files(file, request.scene);
     refuse_overwriting(request.outputs, out.files);
@@ -182,10 +187,14 @@ PreparedScene load(SceneRequest request, const Notice& notice) {
     out.extras = std::move(file.extras);
     out.lamp_unit_doubt = std::move(file.lamp_unit_doubt);
     if (request.environment || request.background)  // instead of the file's own
-        take_sky(request, notice, out, scene->sky);
+        take_sky(request, notice, out, scene->sky, frames);
     finish_scene(*scene);
     if (scene->instances.empty())
         notice("warning: the scene is empty: only its background is rendered");
+    if (frames) {
+        frames->before = scene;
+        frames->environment_text = out.environment_text;
+    }
     out.scene = std::move(scene);
     return out;
 }
@@ -201,7 +210,7 @@ void find_targets_of(Camera& camera, V2i size_px, const Scene& scene,
 }
 
 RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseSink& begins,
-                   const RenderSetup* like) {
+                   const RenderSetup* like, FrameReuse* frames) {
     const auto begin = [&](Phase phase) {
         if (begins) begins(phase);
     };
@@ -212,7 +221,7 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
     from.asked = asked;
     const auto load_start = Clock::now();
     const bool shares = like != nullptr && same_scene(asked, like->from.asked);
-    prepared = shares ? like->prepared : load(asked, notice);
+    prepared = shares ? like->prepared : load(asked, notice, frames);
     const Scene& scene = *prepared.scene;
     SceneRequest request = asked;
     request.environment = prepared.environment;
@@ -268,21 +277,10 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
 
 }  // namespace
 
-void give_back(FrameReuse& reuse, PreparedScene&& prepared) {
-    // It was made as a scene that may change (load()), and nobody sees it any more.
-    const auto scene = std::const_pointer_cast<Scene>(std::move(prepared.scene));
-    prepared.bvh.reset();
-    prepared.lights.reset();
-    if (reuse.reader) reuse.reader->give_back(std::move(scene->images));
-    if (!prepared.environment) return;
-    reuse.environment = std::move(scene->sky);
-    reuse.environment_text = std::move(prepared.environment_text);
-}
-
-RenderSetup set_up_render(const SceneRequest& asked, const Notice& notice,
-                          const PhaseSink& begins) {
+RenderSetup set_up_render(const SceneRequest& asked, const Notice& notice, const PhaseSink& begins,
+                          FrameReuse* frames) {
     return naming_file(asked.scene.string(),
-                       [&] { return set_up(asked, notice, begins, nullptr); });
+                       [&] { return set_up(asked, notice, begins, nullptr, frames); });
 }
 
 std::unique_ptr<NextFrame> set_up_velocity(const RenderSetup& setup, double fps) {
@@ -320,7 +318,8 @@ std::unique_ptr<NextFrame> set_up_velocity(const RenderSetup& setup, double fps)
 }
 
 RenderSetup set_up_view(const RenderSetup& like, const SceneRequest& asked, const Notice& notice) {
-    return naming_file(asked.scene.string(), [&] { return set_up(asked, notice, {}, &like); });
+    return naming_file(asked.scene.string(),
+                       [&] { return set_up(asked, notice, {}, &like, nullptr); });
 }
 
 }  // namespace petzval

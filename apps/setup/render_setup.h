@@ -41,15 +41,13 @@ struct PreparedScene {
     std::string lamp_unit_doubt;        ///< as GltfFile has it
 };
 
-/// What the frames of a sequence have from those before them.
+/// What the frames of a sequence, which differ in their time alone, have from those before them.
 struct FrameReuse {
     std::unique_ptr<GltfReader> reader;
-    std::optional<Sky> environment;
-    std::string environment_text;
+    /// Scene of the frame before. Its images and sky serve the next one once nobody else has it.
+    std::shared_ptr<Scene> before;
+    std::string environment_text;  ///< of its sky; empty: none was asked for
 };
-
-/// Takes from a frame that is done with what serves the next one. Nobody else may use its scene.
-void give_back(FrameReuse&, PreparedScene&&);
 
 /// Camera and observer of a prepared scene.
 struct View {
@@ -80,10 +78,10 @@ struct RenderSetup {
 
 /// Loads the file, its sky and its camera. `notice` gets one line for everything that was chosen
 /// for the user or is odd in the file, but for the spectral decision: spectral_wording.h words it.
-/// `begins` gets Loading, Bvh and Planning. Throws InputError, of which ArgumentError where the
-/// request does not fit the file.
+/// `begins` gets Loading, Bvh and Planning. `frames`: of a sequence, which it is part of. Throws
+/// InputError, of which ArgumentError where the request does not fit the file.
 [[nodiscard]] RenderSetup set_up_render(const SceneRequest&, const Notice& notice,
-                                        const PhaseSink& begins = {});
+                                        const PhaseSink& begins = {}, FrameReuse* frames = nullptr);
 
 /// The next frame of a setup, for the layer of velocities.
 struct NextFrame {

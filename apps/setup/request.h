@@ -5,7 +5,6 @@
 
 #include <array>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -117,8 +116,6 @@ struct SpectralRequest {
 /// Name of the built-in environment: what a scene gets that nothing lights.
 inline constexpr const char* kStudioLight = "studio";
 
-struct FrameReuse;
-
 /// Request for a scene. Everything absent means: as the file has it, else a sensible choice that is
 /// reported.
 struct SceneRequest {
@@ -137,7 +134,6 @@ struct SceneRequest {
     std::optional<uint64_t> picture_memory_bytes;
     FileScope scope = FileScope::Anywhere;  ///< of files that the scene names
     GltfChoices choices;                    ///< what is taken of the scene's file
-    std::shared_ptr<FrameReuse> reuse;      ///< of a sequence of frames; nullptr: one frame
 };
 
 }  // namespace petzval

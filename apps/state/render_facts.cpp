@@ -13,6 +13,7 @@
 #include "apps/setup/input_files.h"
 #include "io/base/printable.h"
 #include "io/base/read_file.h"
+#include "io/image/display_files.h"
 
 namespace petzval {
 namespace {
@@ -74,10 +75,10 @@ std::string hash_of_learned(const RenderSetup& setup) {
     return hash.text();
 }
 
-std::string hash_of_files(const std::vector<NamedFile>& files) {
+std::string hash_of_files(const std::vector<std::filesystem::path>& files) {
     Hash hash;
     std::vector<std::string> texts;
-    for (const NamedFile& file : files) texts.push_back(name_and_hash(file.path));
+    for (const auto& file : files) texts.push_back(name_and_hash(file));
     std::sort(texts.begin(), texts.end());  // folders are listed in any order
     for (const std::string& text : texts) hash.add(text);
     return hash.text();
@@ -118,19 +119,21 @@ RenderFacts::Texts all_of(const ComparedRender& render, Compare compare) {
 
 }  // namespace
 
-RenderFacts::Texts display_facts(const DisplayOptions& display,
-                                 const std::vector<NamedFile>& files) {
+RenderFacts::Texts display_facts(const DisplayOptions& display) {
     return {{"exposure", fmt::format("{}", display.exposure_ev)},
             {"view", display.view},
-            {"OpenColorIO configuration",
-             files.empty() ? std::string("Petzval's own") : hash_of_files(files)}};
+            {"OpenColorIO configuration", display.config.empty()
+                                              ? std::string("Petzval's own")
+                                              : hash_of_files(display_files(display.config))}};
 }
 
 RenderFacts facts_of(const RenderSetup& setup, const RenderJob& job, const PathOptions& path,
-                     const DisplayOptions& display, const std::vector<NamedFile>& display_files) {
+                     const DisplayOptions& display) {
     RenderFacts facts;
     facts.metadata = describe_render(setup, job, path);
-    facts.inputs.emplace_back("Petzval's own files", hash_of_files(own_files()));
+    std::vector<std::filesystem::path> own;
+    for (const NamedFile& file : own_files()) own.push_back(file.path);
+    facts.inputs.emplace_back("Petzval's own files", hash_of_files(own));
     const auto add = [&](const NamedFile& file) {
         std::error_code error;  // of a name that is no file the metadata say all
         if (!std::filesystem::is_regular_file(file.path, error)) return;
@@ -148,7 +151,7 @@ RenderFacts facts_of(const RenderSetup& setup, const RenderJob& job, const PathO
         if (file.role == kCameraFile) add(file);
     facts.inputs.emplace_back("pose of the camera", hash_of_pose(setup.from.camera));
     facts.inputs.emplace_back("what pilots learned", hash_of_learned(setup));
-    facts.display = display_facts(display, display_files);
+    facts.display = display_facts(display);
     return facts;
 }
 

@@ -28,14 +28,12 @@ struct RenderFacts {
     Texts display;  ///< how PNG and JPEG show the picture
 };
 
-/// Facts of how PNG and JPEG show a picture. files: those that the settings read.
-[[nodiscard]] RenderFacts::Texts display_facts(const DisplayOptions&,
-                                               const std::vector<NamedFile>& files);
+/// Facts of how PNG and JPEG show a picture, with a hash of the files that its configuration reads.
+[[nodiscard]] RenderFacts::Texts display_facts(const DisplayOptions&);
 
-/// Facts of a render that is set up. display_files: those that the display settings read.
+/// Facts of a render that is set up.
 [[nodiscard]] RenderFacts facts_of(const RenderSetup&, const RenderJob&, const PathOptions&,
-                                   const DisplayOptions&,
-                                   const std::vector<NamedFile>& display_files);
+                                   const DisplayOptions&);
 
 /// Facts as JSON, and back. Throws a nlohmann::json exception where something is missing.
 [[nodiscard]] nlohmann::ordered_json to_json(const RenderFacts&);

@@ -105,8 +105,7 @@ void add_view(CLI::App& image) {
                             options->in));
         settle_exposure(options->shown, picture);
         const DisplayOptions& display = options->shown.display;
-        picture.metadata.emplace_back(kDisplayHash,
-                                      display_hash(display_facts(display, input_files(display))));
+        picture.metadata.emplace_back(kDisplayHash, display_hash(display_facts(display)));
         write_output(options->out, picture, options->shown.display);
     });
 }

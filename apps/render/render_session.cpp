@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/render/render_session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "apps/plan/plan_wording.h"
+#include "apps/setup/develop.h"
+#include "apps/setup/input_files.h"
+#include "apps/setup/spectral_wording.h"
+#include "apps/state/finished_film.h"
+#include "integrator/render.h"
+#include "io/base/error.h"
+#include "io/base/format.h"
+#include "io/base/printable.h"
+#include "io/base/read_file.h"
+#include "io/image/display.h"
+#include "io/image/picture_files.h"
+
+namespace petzval {
+namespace {
+
+/// Files that a request names, but for pictures and the scene, which are hashed as they are read.
+std::vector<std::pair<std::filesystem::path, std::string>> hashes_of_inputs(
+    const SceneRequest& scene) {
+    std::vector<std::pair<std::filesystem::path, std::string>> out;
+    std::error_code none;
+    for (const NamedFile& file : input_files(scene))
+        if (file.path != scene.scene && file.path != scene.environment &&
+            std::filesystem::is_regular_file(file.path, none))
+            out.emplace_back(file.path, name_and_hash(file.path));
+    return out;
+}
+
+// Makes the choices that are open, tells them, and keeps them for the metadata.
+RenderSetup set_up(const PlanRequest& request, TbbExecutor& executor, const Notice& notice,
+                   const PhaseSink& begins) {
+    AutoSetup found = set_up_planned(request, executor, notice, begins);
+    for (const std::string& line : lines_of(found.setup.from.spectral)) notice(line);
+    if (const auto line = line_of(found.choice)) notice(*line);
+    if (const std::string reason = reason_of(found.choice); !reason.empty())
+        found.setup.from.metadata.emplace_back(
+            "petzval:plan", fmt::format("{}: {}", percent(request.tolerance), reason));
+    return std::move(found.setup);
+}
+
+}  // namespace
+
+RenderSession::RenderSession(int threads, Frames frames) : executor_(threads) {
+    limit_picture_threads(threads);
+    if (frames == Frames::Sequence) frames_.emplace();
+}
+
+void RenderSession::prepare(const RenderRequest& asked, const Notice& notice,
+                            const PhaseSink& begins) {
+    flush_denormals();
+    const auto inputs = hashes_of_inputs(asked.scene);
+    next_.reset();
+    std::optional<Film> film = std::exchange(film_, std::nullopt);
+    const RenderFacts facts = std::exchange(facts_, {});
+    const FilmShape shape = std::exchange(shape_, {});
+    const uint32_t first = request_.job.first_sample;
+    RenderSetup before = std::exchange(setup_, {});
+    if (frames_) before = {};  // the frame takes it apart
+    const bool shares = before.prepared.scene != nullptr;
+    request_ = asked;
+    setup_ = set_up({request_.scene, request_.job, request_.path, request_.tolerance, true,
+                     shares ? &before : nullptr, frames_ ? &*frames_ : nullptr},
+                    executor_, notice, begins);
+    request_.path.visible_background = setup_.view.visible_background;
+    request_.job.observer = setup_.view.observer;
+    request_.job.replicates = request_.scene.spectral.bins ? kReplicates : 1;
+    load_image_codec();  // before hours of work: a picture will be written
+    take_display_of_file(notice);
+    choose_exposure(notice);
+    const V2i size = request_.scene.size;
+    shape_ = {size, request_.crop.value_or(Rect{0, 0, size.x, size.y}), request_.layers,
+              request_.scene.spectral.bins};
+    if (std::ranges::find(request_.layers, Aov::Velocity) != request_.layers.end()) {
+        next_ = set_up_velocity(setup_, request_.fps);
+        request_.job.velocity = next_->velocity.get();
+        setup_.from.metadata.emplace_back("petzval:fps", fmt::format("{}", request_.fps));
+    }
+    facts_ = facts_of(setup_, request_.job, request_.path, request_.display);
+    for (const auto& [file, hash] : inputs)
+        if (name_and_hash(file) != hash)
+            throw InputError(file.string(), "", "was changed while it was read; start again");
+    const uint32_t asked_samples = request_.job.end_sample - request_.job.first_sample;
+    if (film && shape == shape_ && first == request_.job.first_sample &&
+        film->taken_range().most <= asked_samples &&
+        light_hash(facts, shape, {0, 0}) == light_hash(facts_, shape_, {0, 0}))
+        film_ = std::move(film);
+    else
+        film_ = shape_.empty_film();
+}
+
+// Takes what the scene asks for of its display, where the user asks for nothing.
+void RenderSession::take_display_of_file(const Notice& notice) {
+    const SceneExtras& file = setup_.prepared.extras;
+    DisplayOptions& display = request_.display;
+    std::string taken;
+    if (file.exposure_ev && !request_.asks_exposure) {
+        display.exposure_ev = *file.exposure_ev;
+        taken = fmt::format("exposure {} EV", *file.exposure_ev);
+    }
+    if (file.view && !request_.asks_view) {
+        try {
+            display.view = find_view(*file.view, display.config);
+        } catch (const InputError& error) {
+            throw InputError(request_.scene.scene.string(), file.path + "/view",
+                             fmt::format("{}; --view takes another", error.what()));
+        }
+        taken += (taken.empty() ? "view " : ", view ") + printable(*file.view);
+    }
+    if (display.view.empty()) display.view = find_view("", display.config);
+    if (!taken.empty())
+        notice(fmt::format("the scene asks for {} (--exposure and --view go before it)", taken));
+}
+
+// Finds the exposure where it is asked for, and tells it.
+void RenderSession::choose_exposure(const Notice& notice) {
+    DisplayOptions& display = request_.display;
+    if (request_.finds_exposure) {
+        const FoundExposure found = find_exposure();
+        display.exposure_ev = found.ev;
+        notice(fmt::format("exposure: {0} EV (--exposure {0}){1}", found.ev,
+                           found.log_average > 0 ? "" : ", as no light was found"));
+    }
+    setup_.from.exposure_ev = display.exposure_ev;
+    setup_.from.exposure_is_auto = request_.finds_exposure;
+}
+
+RenderResult RenderSession::render(RenderMonitor& monitor,
+                                   const std::function<void(const PathStats&)>& at_pause,
+                                   double spent_s) {
+    flush_denormals();
+    const PreparedScene& prepared = setup_.prepared;
+    const PathTracer tracer(*prepared.scene, *prepared.bvh, *prepared.lights, request_.path);
+    RenderJob job = request_.job;
+    if (job.time_limit_s) *job.time_limit_s -= spent_s;
+    job.at_pause = at_pause;
+    return petzval::render(tracer, *setup_.view.camera, job, *film_, executor_, monitor);
+}
+
+// Samples that every pixel has.
+SampleRange RenderSession::complete() const {
+    const uint32_t first = request_.job.first_sample;
+    return {first, first + film_->taken_range().least};
+}
+
+PictureRows RenderSession::light() const {
+    return develop(*film_, complete(), facts_.metadata);
+}
+
+PictureRows RenderSession::shown() const {
+    const DisplayOptions& d = request_.display;
+    return to_display(light(), d.exposure_ev, d.view, AlphaUse::Keep, d.config);
+}
+
+void RenderSession::write(const std::filesystem::path& file) const {
+    write_output(file, picture_for(file, {*film_, complete(), facts_}), request_.display);
+}
+
+FoundExposure RenderSession::find_exposure() {
+    return petzval::find_exposure(setup_, request_.job, request_.path, executor_);
+}
+
+}  // namespace petzval

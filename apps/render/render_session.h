@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// A render from a request to a picture in memory, without files of its own and without a console.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "apps/plan/plan.h"
+#include "apps/render/render_request.h"
+#include "apps/setup/exposure.h"
+#include "apps/setup/render_setup.h"
+#include "apps/state/render_facts.h"
+#include "integrator/executor.h"
+#include "integrator/render_job.h"
+#include "io/base/notice.h"
+#include "io/state/state_file.h"
+
+namespace petzval {
+
+/// Session of renders that follow each other: what a request has in common with the one before is
+/// kept. The same scene is not loaded again; the same light keeps its samples, so that more of them
+/// or another exposure cost only what is new.
+///
+/// Threads: calls come from one thread at a time; a monitor may be used from any. Rendering takes
+/// the threads of the session and the calling one, whose denormals become zero. Errors: an
+/// exception leaves the session without a render, ready for the next request. Lifetime: what is
+/// returned by reference, and rows of a picture, hold until the next call of prepare(). Bytes: a
+/// picture depends on its request alone, not on the requests before, on pauses or on threads.
+class RenderSession {
+  public:
+    /// Frames: whether requests will differ in their time alone, so that each frame takes what it
+    /// can from the one before, which is then gone.
+    enum class Frames : uint8_t { Single, Sequence };
+
+    /// Starts a session of so many threads, 1 or more.
+    explicit RenderSession(int threads, Frames = Frames::Single);
+    RenderSession(const RenderSession&) = delete;
+    RenderSession& operator=(const RenderSession&) = delete;
+
+    [[nodiscard]] int threads() const { return executor_.threads(); }
+
+    /// Loads what a request needs, and chooses what it leaves open. `notice` gets a line for each
+    /// choice and oddity, `begins` the phases. Throws InputError; ArgumentError where the request
+    /// does not fit its scene.
+    void prepare(const RenderRequest&, const Notice& notice, const PhaseSink& begins = {});
+
+    /// The request with all choices made. After prepare(), as the functions below.
+    [[nodiscard]] const RenderRequest& request() const { return request_; }
+    [[nodiscard]] const RenderSetup& setup() const { return setup_; }
+    [[nodiscard]] const FilmShape& shape() const { return shape_; }
+    /// Facts that the picture follows from.
+    [[nodiscard]] const RenderFacts& facts() const { return facts_; }
+
+    /// Goes on with a film of the same facts and shape, as a state has it.
+    void take_up(Film film) { film_ = std::move(film); }
+    /// The samples so far.
+    [[nodiscard]] const Film& film() const { return *film_; }
+
+    /// Renders the samples that the film lacks. Ends early where the monitor says stop; calling
+    /// again goes on. at_pause: as in RenderJob; the film and the picture may be looked at there.
+    /// spent_s: what runs before took of a time limit.
+    RenderResult render(RenderMonitor&, const std::function<void(const PathStats&)>& at_pause = {},
+                        double spent_s = 0);
+
+    /// The picture so far: R, G, B, A in nits, then the layers. Also at a pause.
+    [[nodiscard]] PictureRows light() const;
+    /// The picture so far as a display shows it.
+    [[nodiscard]] PictureRows shown() const;
+    /// Writes the picture so far, as the command line writes it. Throws OutputError.
+    void write(const std::filesystem::path&) const;
+
+    /// Exposure that suits the picture, found by a pilot.
+    [[nodiscard]] FoundExposure find_exposure();
+
+  private:
+    [[nodiscard]] SampleRange complete() const;
+    void take_display_of_file(const Notice&);
+    void choose_exposure(const Notice&);
+
+    TbbExecutor executor_;
+    std::optional<FrameReuse> frames_;
+    RenderRequest request_;
+    RenderSetup setup_;
+    FilmShape shape_;
+    RenderFacts facts_;
+    std::unique_ptr<NextFrame> next_;
+    std::optional<Film> film_;
+};
+
+}  // namespace petzval

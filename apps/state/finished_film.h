@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Picture of a finished render, with all that its file says of it.
+#pragma once
+
+#include <filesystem>
+
+#include "apps/state/render_facts.h"
+#include "core/film/film.h"
+#include "io/picture/picture.h"
+
+namespace petzval {
+
+/// A finished render, as far as its pictures go.
+struct FinishedFilm {
+    const Film& film;
+    SampleRange samples;
+    const RenderFacts& facts;
+};
+
+/// Linear picture of a film, with the metadata of its file: PNG and JPEG say how they were made for
+/// a display too.
+[[nodiscard]] PictureRows picture_for(const std::filesystem::path&, const FinishedFilm&);
+
+}  // namespace petzval

@@ -15,7 +15,6 @@
 #include "apps/cli/render_options.h"
 #include "apps/cli/spectral_options.h"
 #include "apps/commands/session.h"
-#include "apps/stability/stability.h"
 #include "io/base/nearest.h"
 #include "io/image/picture_files.h"
 
@@ -32,15 +31,12 @@ struct ChartOptions {
     std::string size = "192x108", crop, budget = "10m", background;
     int threads = 0;
     bool quiet = false;
-    bool stability = false;  ///< the axis that needs no scene, and is not among all
 };
-
-constexpr const char* kStability = "stability";
 
 std::vector<std::string> axis_words() {
     std::vector<std::string> words;
     for (const auto& [word, axis] : kOptionNames<ChartAxis>) words.emplace_back(word);
-    words.insert(words.end(), {"all", kStability});
+    words.emplace_back("all");
     return words;
 }
 
@@ -50,15 +46,11 @@ std::string known_axes() {
 
 void add_chart_options(CLI::App& app, ChartOptions& o) {
     ChartRequest& r = o.request;
-    app.add_option("scene", r.subject.request.scene,
-                   "glTF scene, .gltf or .glb; --axis stability needs none");
-    app.add_option("--axis", o.axes,
-                   known_axes() +
-                       ", the map of failures, which needs no scene; default all; may be "
-                       "given more than once")
+    app.add_option("scene", r.subject.request.scene, "glTF scene, .gltf or .glb")->required();
+    app.add_option("--axis", o.axes, known_axes() + "; default all; may be given more than once")
         ->allow_extra_args(false);
-    app.add_option("-o,--output", r.subject.folder,
-                   "folder of the report; made if need be (--axis stability: default .)");
+    app.add_option("-o,--output", r.subject.folder, "folder of the report; made if need be")
+        ->required();
     app.add_option("--budget", o.budget, "time for all of it: 60s, 10m (default), 1h30m");
     app.add_option("--size", o.size, "WIDTHxHEIGHT in pixels (default 192x108)");
     app.add_option("--crop", o.crop, "x,y,width,height: only these pixels of the full frame");
@@ -98,11 +90,7 @@ std::vector<ChartAxis> parse_axes(const std::vector<std::string>& words) {
 void resolve(ChartOptions& o) {
     ChartRequest& r = o.request;
     SceneRequest& scene = r.subject.request;
-    o.stability = std::erase(o.axes, kStability) > 0;
-    if (o.stability && o.axes.empty()) return;
     r.axes = parse_axes(o.axes);
-    if (scene.scene.empty()) throw CLI::RequiredError("scene");
-    if (r.subject.folder.empty()) throw CLI::RequiredError("--output");
     r.budget_s = parse_duration_s("--budget", o.budget);
     r.frame.size = scene.size = parse_size("--size", o.size);
     r.frame.crop = {0, 0, scene.size.x, scene.size.y};
@@ -135,18 +123,8 @@ void print_case(const MeasuredCase& of) {
     std::fflush(stdout);
 }
 
-void chart_stability(const ChartOptions& o) {
-    const std::filesystem::path& folder = o.request.subject.folder;
-    const auto page = write_stability(folder.empty() ? "." : folder);
-    if (!o.quiet) print_line(page.string());
-}
-
 int chart_command(ChartOptions& o, Interrupt& interrupt) {
     resolve(o);
-    if (o.stability) {
-        chart_stability(o);
-        if (o.request.axes.empty()) return 0;
-    }
     flush_denormals();
     TbbExecutor executor(o.threads);
     limit_picture_threads(o.threads);

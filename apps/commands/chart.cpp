@@ -16,7 +16,6 @@
 #include "apps/cli/render_options.h"
 #include "apps/cli/spectral_options.h"
 #include "apps/commands/session.h"
-#include "apps/stability/stability.h"
 #include "io/base/ascii.h"
 #include "io/base/nearest.h"
 #include "io/image/picture_files.h"
@@ -34,17 +33,15 @@ struct ChartOptions {
     std::string size = "192x108", crop, budget = "10m", background;
     int threads = 0;
     bool quiet = false;
-    bool stability = false;  ///< the axis that needs no scene, and is not among all
 };
 
-constexpr const char* kStability = "stability";
 /// Endings of files: a folder that is named so was meant as one.
 constexpr std::array<std::string_view, 6> kFiles{".csv", ".exr", ".html", ".json", ".md", ".png"};
 
 std::vector<std::string> axis_words() {
     std::vector<std::string> words;
     for (const auto& [word, axis] : kOptionNames<ChartAxis>) words.emplace_back(word);
-    words.insert(words.end(), {"all", kStability});
+    words.emplace_back("all");
     return words;
 }
 
@@ -54,15 +51,11 @@ std::string known_axes() {
 
 void add_chart_options(CLI::App& app, ChartOptions& o) {
     ChartRequest& r = o.request;
-    app.add_option("scene", r.subject.request.scene,
-                   "glTF scene, .gltf or .glb; --axis stability needs none");
-    app.add_option("--axis", o.axes,
-                   known_axes() +
-                       ", the map of failures, which needs no scene; default all; may be "
-                       "given more than once")
+    app.add_option("scene", r.subject.request.scene, "glTF scene, .gltf or .glb")->required();
+    app.add_option("--axis", o.axes, known_axes() + "; default all; may be given more than once")
         ->allow_extra_args(false);
-    app.add_option("-o,--output", r.subject.folder,
-                   "folder of the report; made if need be (--axis stability: default .)");
+    app.add_option("-o,--output", r.subject.folder, "folder of the report; made if need be")
+        ->required();
     app.add_option("--budget", o.budget, "time for all of it: 60s, 10m (default), 1h30m");
     app.add_option("--size", o.size, "WIDTHxHEIGHT in pixels (default 192x108)");
     app.add_option("--crop", o.crop, "x,y,width,height: only these pixels of the full frame");
@@ -108,11 +101,7 @@ void resolve(ChartOptions& o) {
             "--output",
             fmt::format("a report is a folder, and \"{}\" is named as a file; type -o {}",
                         folder.string(), (folder.parent_path() / folder.stem()).string()));
-    o.stability = std::erase(o.axes, kStability) > 0;
-    if (o.stability && o.axes.empty()) return;
     r.axes = parse_axes(o.axes);
-    if (scene.scene.empty()) throw CLI::RequiredError("scene");
-    if (folder.empty()) throw CLI::RequiredError("--output");
     r.budget_s = parse_duration_s("--budget", o.budget);
     r.frame.size = scene.size = parse_size("--size", o.size);
     r.frame.crop = {0, 0, scene.size.x, scene.size.y};
@@ -147,12 +136,6 @@ void print_case(const MeasuredCase& of) {
 
 int chart_command(ChartOptions& o, Interrupt& interrupt) {
     resolve(o);
-    if (o.stability) {
-        const std::filesystem::path& folder = o.request.subject.folder;
-        const auto page = write_stability(folder.empty() ? "." : folder);
-        if (!o.quiet) print_line(page.string());
-        if (o.request.axes.empty()) return 0;
-    }
     flush_denormals();
     TbbExecutor executor(o.threads);
     limit_picture_threads(o.threads);

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <numbers>
 
-#include "apps/stability/sweeps.h"
 #include "camera/iris/iris.h"
 #include "core/sampling/alias_table.h"
 #include "core/sampling/distribution.h"
+#include "tests/stability/sweeps.h"
 
 namespace petzval::stability {
 namespace {
@@ -68,9 +68,7 @@ Iris iris_of(const Polygon& polygon, IrisSampling way = IrisSampling::Triangles)
 }  // namespace
 
 Finding rejection_of_slivers() {
-    Finding f{.id = "rejection-of-slivers",
-              .method = "Rejection from slivers",
-              .fails = "time, then bias"};
+    Finding f{.method = "Rejection from slivers", .fails = "time, then bias"};
     f.sweep = fmt::format(
         "A rectangle 1:N along the diagonal of its bounding box, {:g} mm to its corners. Points of "
         "the box that are tried for each one inside, of {} that there may be at most; the share of "
@@ -197,9 +195,7 @@ Quality quality_of(const Polygon& polygon) {
 }  // namespace
 
 Finding degenerate_polygons() {
-    Finding f{.id = "degenerate-polygons",
-              .method = "Triangles of nearly degenerate polygons",
-              .fails = "bias, then no answer"};
+    Finding f{.method = "Triangles of nearly degenerate polygons", .fails = "bias, then no answer"};
     f.sweep = fmt::format(
         "Polygons of size 1 that are degenerate but for d, scaled to {:g} mm: d comes down from "
         "0.1. Where the area is off by more than 1e-6 of itself, where 1 % of the drawn points are "
@@ -243,7 +239,7 @@ Finding degenerate_polygons() {
 }
 
 Finding choice_by_weight() {
-    Finding f{.id = "choice-by-weight", .method = "Choice by weight", .fails = "bias"};
+    Finding f{.method = "Choice by weight", .fails = "bias"};
     f.sweep =
         "Two things of weights 1 and w: the probability of the second over what it should be, by "
         "the running sum (whole multiples of 2^-24: triangles, texels of a mask or of a sky, "

@@ -6,8 +6,8 @@
 #include <array>
 #include <numbers>
 
-#include "apps/stability/sweeps.h"
 #include "core/film/film.h"
+#include "tests/stability/sweeps.h"
 
 namespace petzval::stability {
 namespace {
@@ -50,7 +50,7 @@ uint32_t empty_cells(SamplerKind kind, uint32_t first) {
 }  // namespace
 
 Finding many_samples() {
-    Finding f{.id = "many-samples", .method = "Sample counts"};
+    Finding f{.method = "Sample counts"};
     f.sweep = fmt::format(
         "Root mean square error of a quarter disk's area, 0.785, over {} seeds, from 2^8 to 2^22 "
         "samples of one dimension; and how many cells of 256 x 256 the 65536 points from an index "
@@ -111,7 +111,7 @@ FilmSample grey(float a) {
 }  // namespace
 
 Finding film_sums() {
-    Finding f{.id = "film-sums", .method = "Sums of films"};
+    Finding f{.method = "Sums of films"};
     f.sweep =
         "One pixel of a spectral film that gets n samples of 1 plus an even random number from "
         "-0.1 to 0.1: error of its mean against exact sums, and the standard error that it states, "

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/stability/stability.h"
+#include "tests/stability/stability.h"
 
 #include <fmt/format.h>
 
 #include <cctype>
 #include <cmath>
+#include <sstream>
 
-#include "apps/stability/sweeps.h"
 #include "core/traversal/bvh.h"
-#include "io/base/atomic_file.h"
+#include "io/base/csv.h"
 #include "io/base/error.h"
-#include "io/base/rescue.h"
+#include "tests/stability/sweeps.h"
 
 namespace petzval {
 namespace {
@@ -61,45 +61,40 @@ std::string stability::percent(double share) {
 std::vector<Finding> stability_findings() {
     using namespace stability;
     flush_denormals();
-    return {third_order_formula(),
-            focus_near_focal_length(),
-            rejection_of_slivers(),
-            degenerate_polygons(),
-            choice_by_weight(),
-            pupil_at_wide_fields(),
-            trace_at_grazing_incidence(),
-            trace_over_long_radii(),
-            newton_on_strong_aspheres(),
-            dispersion_out_of_range(),
-            scene_scale(),
-            camera_far_from_origin(),
-            ggx_energy(),
-            ggx_density(),
-            tiny_sun(),
-            tiny_lamp(),
-            defocused_highlights(),
-            rays_to_targets(),
-            search_for_targets(),
-            planned_noise(),
-            chains_of_glass(),
-            nested_volumes(),
-            many_samples(),
-            film_sums()};
+    std::vector<Finding> findings;
+    for (const Sweep& sweep : kSweeps) {
+        findings.push_back(sweep.run());
+        findings.back().id = sweep.id;
+    }
+    return findings;
 }
 
-std::string stability_markdown(const std::vector<Finding>& findings) {
+Guards read_guards(const std::string& file) {
+    const CsvText table = read_csv_text(file);
+    Guards guards;
+    for (size_t i = 0; i < table.rows.size(); ++i) {
+        std::istringstream names(table.rows[i].at(1));
+        auto [row, is_new] = guards.try_emplace(table.rows[i].at(0));
+        if (!is_new) throw InputError(file, table.place(i), "has a finding for the second time");
+        for (std::string name; names >> name;) row->second.push_back(name);
+    }
+    return guards;
+}
+
+std::string stability_markdown(const std::vector<Finding>& findings, const Guards& guards) {
     std::string out =
         "# Where methods fail\n\n"
-        "    petzval chart --axis stability -o OUT\n\n"
-        "This command wrote the page. For each method it sweeps the parameters until the method "
+        "    cmake --build --preset release --target stability_page\n\n"
+        "This command wrote the page. For each method it varies the parameters until the method "
         "fails.\nSeeds are fixed: the same program finds the same on the same machine, and nearly "
-        "the "
-        "same on another.\nThe command also writes `stability.csv`, with the numbers of all "
-        "tables.\n\n" +
+        "the same on another.\nThe command also writes `stability.csv`, with the numbers of all "
+        "tables. The tests after \"Guard\" hold what\nis said; `make test` runs them.\n\n" +
         table_head({"method", "what fails", "where"});
     for (const Finding& f : findings)
         out += table_row({fmt::format("[{}](#{})", f.method, anchor(f.method)), f.fails, f.where});
-    for (const Finding& f : findings) out += fmt::format("\n{}", section(f));
+    for (const Finding& f : findings)
+        out +=
+            fmt::format("\n{}- **Guard:** `{}`\n", section(f), fmt::join(guards.at(f.id), "`, `"));
     return out;
 }
 
@@ -111,19 +106,6 @@ std::string stability_csv(const std::vector<Finding>& findings) {
                 out += fmt::format("{},{},{},{},{}\n", f.id, f.method, i + 1, f.table.columns[k],
                                    f.table.rows[i][k]);
     return out;
-}
-
-std::filesystem::path write_stability(const std::filesystem::path& folder) {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error)
-        throw OutputError(folder.string(), "", "cannot be made a folder: {}", error.message());
-    const std::filesystem::path page = folder / "stability.md";
-    check_writable(page);
-    const std::vector<Finding> findings = stability_findings();
-    attempt_all({[&] { write_file_atomically(folder / "stability.csv", stability_csv(findings)); },
-                 [&] { write_file_atomically(page, stability_markdown(findings)); }});
-    return page;
 }
 
 }  // namespace petzval

@@ -4,9 +4,9 @@
 
 #include <numbers>
 
-#include "apps/stability/sweeps.h"
-#include "apps/stability/world.h"
 #include "camera/models/thin_lens.h"
+#include "tests/stability/sweeps.h"
+#include "tests/stability/world.h"
 
 namespace petzval::stability {
 namespace {
@@ -74,7 +74,7 @@ World under_lamp(double side_m, bool pane) {
 }  // namespace
 
 Finding tiny_sun() {
-    Finding f{.id = "tiny-sun", .method = "A sun of one texel", .fails = "variance"};
+    Finding f{.method = "A sun of one texel", .fails = "variance"};
     f.sweep = fmt::format(
         "A matt floor under a black sky whose one bright texel is the sun, always of the same "
         "illuminance, by the width of the picture: variance of one sample over the mean squared, "
@@ -105,8 +105,7 @@ Finding tiny_sun() {
 }
 
 Finding tiny_lamp() {
-    Finding f{.id = "tiny-lamp",
-              .method = "Lamps of millimetres",
+    Finding f{.method = "Lamps of millimetres",
               .fails = "variance; no answer for punctual lights behind glass with a volume"};
     f.sweep = fmt::format(
         "A matt floor 10 m below a square lamp, always of the same illuminance, by the lamp's "
@@ -194,8 +193,7 @@ double confusion_m(double fstop) {
 }  // namespace
 
 Finding defocused_highlights() {
-    Finding f{
-        .id = "defocused-highlights", .method = "Highlights out of focus", .fails = "variance"};
+    Finding f{.method = "Highlights out of focus", .fails = "variance"};
     f.sweep = fmt::format(
         "A thin lens of {:g} mm in focus at {:g} m, and a square highlight of 1 nit {:g} m away on "
         "black: a pixel within its blur. By the highlight's side and the f-number: the circle of "

@@ -2,10 +2,10 @@
 // Dispersion formulas outside of the wavelengths that they were fitted to.
 #include <fmt/format.h>
 
-#include "apps/stability/sweeps.h"
 #include "core/spectrum/spectrum_table.h"
 #include "io/glass/agf.h"
 #include "io/glass/catalogue.h"
+#include "tests/stability/sweeps.h"
 
 namespace petzval::stability {
 namespace {
@@ -48,9 +48,7 @@ const char* name_of(const Glass& glass) {
 }  // namespace
 
 Finding dispersion_out_of_range() {
-    Finding f{.id = "dispersion-out-of-range",
-              .method = "Dispersion formulas out of their range",
-              .fails = "NaN, bias"};
+    Finding f{.method = "Dispersion formulas out of their range", .fails = "NaN, bias"};
     f.sweep = fmt::format(
         "All glasses of assets/glass at every nm from {:g} to {:g}: the formula by itself, beyond "
         "the range that it was fitted to, and as it is used. Glasses whose index is not a number, "

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <tuple>
 
-#include "apps/stability/sweeps.h"
-#include "apps/stability/world.h"
+#include "tests/stability/sweeps.h"
+#include "tests/stability/world.h"
 
 namespace petzval::stability {
 namespace {
@@ -87,7 +87,7 @@ double share_through(std::initializer_list<double> indices) {
 }  // namespace
 
 Finding chains_of_glass() {
-    Finding f{.id = "chains-of-glass", .method = "Chains of glass", .fails = "bias"};
+    Finding f{.method = "Chains of glass", .fails = "bias"};
     f.sweep =
         "A ray onto N clear panes (n = 1.5) in a white sky, 8192 samples: what of 1 is lost "
         "because paths end at --max-clear-depth, 256 unless it is given.";
@@ -115,7 +115,7 @@ Finding chains_of_glass() {
 }
 
 Finding nested_volumes() {
-    Finding f{.id = "nested-volumes", .method = "Volumes in volumes", .fails = "bias"};
+    Finding f{.method = "Volumes in volumes", .fails = "bias"};
     f.sweep =
         "A slab of 3 m keeps a share a of light for each metre. In its middle stands a slab of 1 m "
         "of the same kind, and 0.5 m behind that, in the outer slab, a lamp of 1 nit (n = 1, so "

@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/stability/sweeps.h"
 #include "core/traversal/bvh.h"
+#include "tests/stability/sweeps.h"
 
 namespace petzval::stability {
 
@@ -70,7 +70,7 @@ inline void expect_cell(const std::string& found, const std::string& expected, c
         EXPECT_EQ(found, expected == "-" ? "" : expected) << where;
 }
 
-/// The sweeps run as stability_findings() runs them.
+/// Sweeps run as stability_findings() runs them.
 class Findings : public ::testing::Test {
   protected:
     explicit Findings() { flush_denormals(); }

@@ -7,9 +7,9 @@
 #include "apps/plan/pilot_error.h"
 #include "apps/plan/plan_types.h"
 #include "apps/plan/rare_light.h"
-#include "apps/stability/sweeps.h"
-#include "apps/stability/world.h"
 #include "camera/models/thin_lens.h"
+#include "tests/stability/sweeps.h"
+#include "tests/stability/world.h"
 
 namespace petzval::stability {
 namespace {
@@ -67,8 +67,7 @@ double share_of(double side_m) {
 }  // namespace
 
 Finding planned_noise() {
-    Finding f{.id = "planned-noise",
-              .method = "Noise that plans predict",
+    Finding f{.method = "Noise that plans predict",
               .fails = "variance of the prediction, called \"at least\""};
     f.sweep = fmt::format(
         "A thin lens of {:g} mm at f/{:g} in focus at {:g} m, and a square lamp {:g} m away on "

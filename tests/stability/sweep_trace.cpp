@@ -4,8 +4,8 @@
 
 #include <numbers>
 
-#include "apps/stability/rays.h"
-#include "apps/stability/sweeps.h"
+#include "tests/stability/rays.h"
+#include "tests/stability/sweeps.h"
 
 namespace petzval::stability {
 namespace {
@@ -56,8 +56,7 @@ Spread out_of_glass(double cosine) {
 }  // namespace
 
 Finding trace_at_grazing_incidence() {
-    Finding f{
-        .id = "rays-at-grazing-incidence", .method = "Rays at grazing incidence", .fails = "bias"};
+    Finding f{.method = "Rays at grazing incidence", .fails = "bias"};
     f.sweep = fmt::format(
         "512 rays in floats and in doubles, from the same origin and direction: parallel to the "
         "axis onto a sphere of 50 mm of n = {}, and out of that glass through a plane. The cosine, "
@@ -126,9 +125,7 @@ double from_afar_mm(double distance_mm) {
 }  // namespace
 
 Finding trace_over_long_radii() {
-    Finding f{.id = "rays-over-long-radii",
-              .method = "Rays over long radii and from afar",
-              .fails = "bias"};
+    Finding f{.method = "Rays over long radii and from afar", .fails = "bias"};
     f.sweep = fmt::format(
         "512 rays in floats and in doubles from the same origin and direction: through a plate of "
         "5 mm bent to a radius R, and onto a sphere of 50 mm from an origin a distance D before "

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include "apps/setup/thin_setup.h"
-#include "apps/stability/sweeps.h"
 #include "camera/models/aberrated_lens.h"
 #include "camera/models/thin_lens_optics.h"
 #include "io/glass/glass_lookup.h"
+#include "tests/stability/sweeps.h"
 
 namespace petzval::stability {
 namespace {
@@ -49,8 +49,7 @@ std::string warning_of(const Glass& glass, float fstop) {
 Finding third_order_formula() {
     const Glass glass = LensGlasses({}).find("schott:N-BK7").value();
     const double n = glass.index(kLineD_nm);
-    Finding f{
-        .id = "third-order-formula", .method = "Third-order formula of a singlet", .fails = "bias"};
+    Finding f{.method = "Third-order formula of a singlet", .fails = "bias"};
     f.sweep = fmt::format(
         "A singlet of N-BK7 with f = {:g} mm, equiconvex (q = 0) or flat towards the film (q = 1). "
         "The ray's height h grows from f/1000 until the formula's intersection with the axis is "
@@ -151,9 +150,7 @@ double film_place_error(double closeness) {
 }  // namespace
 
 Finding focus_near_focal_length() {
-    Finding f{.id = "focus-near-focal-length",
-              .method = "Thin lens near S = f",
-              .fails = "bias, then no answer"};
+    Finding f{.method = "Thin lens near S = f", .fails = "bias, then no answer"};
     f.sweep =
         "The distance in focus S comes down to the focal length, at f/2 and 50 mm. Errors of the "
         "film's place S' because S is a float in metres (the worst of a hundred focal lengths from "

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/stability/world.h"
+#include "tests/stability/world.h"
 
 namespace petzval::stability {
 

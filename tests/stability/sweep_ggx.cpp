@@ -4,9 +4,9 @@
 
 #include <numbers>
 
-#include "apps/stability/sweeps.h"
 #include "core/shading/bsdf.h"
 #include "core/shading/microfacet.h"
+#include "tests/stability/sweeps.h"
 
 namespace petzval::stability {
 namespace {
@@ -79,7 +79,7 @@ struct Kept {
 }  // namespace
 
 Finding ggx_energy() {
-    Finding f{.id = "ggx-energy", .method = "Energy of GGX", .fails = "bias"};
+    Finding f{.method = "Energy of GGX", .fails = "bias"};
     f.sweep =
         "White metal, white plastic (F0 = 0.04) and clear glass (n = 1.5, from outside) in a white "
         "furnace: what comes back of 1, from 16384 samples, over roughness and the cosine of the "
@@ -164,7 +164,7 @@ Density density_of(double roughness, double cosine) {
 }  // namespace
 
 Finding ggx_density() {
-    Finding f{.id = "ggx-density", .method = "Density of GGX"};
+    Finding f{.method = "Density of GGX"};
     f.sweep =
         "White metal: the integral of the density over the directions above, by 131072 draws of "
         "another kind, over the share of the sampler's own draws that end there; 1 where the two "

@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the program writes as the map of failures, and the guards of what no other test holds.
-#include "apps/stability/stability.h"
+// The page of the map of failures, and the guards of what no other test holds.
+#include "tests/stability/stability.h"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <set>
 
-#include "apps/stability/world.h"
 #include "camera/models/lens_camera.h"
 #include "core/shading/bsdf.h"
 #include "core/shading/surface.h"
 #include "integrator/path.h"
-#include "io/base/csv.h"
 #include "io/lens/lens_file.h"
-#include "tests/apps/stability/guards.h"
-#include "tests/support/cli.h"
+#include "tests/stability/sweeps.h"
+#include "tests/stability/world.h"
 #include "tests/support/statistics.h"
 
 namespace petzval {
@@ -25,43 +24,15 @@ using stability::diffuse;
 using stability::quad;
 using stability::World;
 
-class StabilityCli : public CliTest {};
-
-// The numbers are those of findings_test.cpp.
-TEST_F(StabilityCli, WritesAPageAndTablesOfEveryFinding) {
-    const Finished run = run_petzval({"chart", "--axis", "stability", "-o", path("map")});
-    ASSERT_EQ(run.exit_code, 0) << run.err;
-    EXPECT_EQ(run.out, path("map/stability.md") + "\n");
-    const CsvText table = read_csv_text(path("map/stability.csv"));
-    EXPECT_EQ(table.names,
-              (std::vector<std::string>{"finding", "method", "row", "quantity", "value"}));
-    EXPECT_GT(table.rows.size(), 500u);
-    const std::string page = file_bytes(path("map/stability.md"));
-    std::set<std::string> found;
-    for (const auto& row : table.rows) {
-        found.insert(row[0]);
-        EXPECT_NE(page.find("\n## " + row[1] + "\n"), std::string::npos) << row[1];
-    }
-    // Every finding is guarded by tests, and whatever tests guard is still a finding.
-    std::set<std::string> guarded;
-    for (const auto& [id, tests] :
-         test::read_guards(PETZVAL_TEST_DATA "/../apps/stability/guards.csv")) {
+TEST(StabilityPage, EveryFindingIsGuardedAndWhateverIsGuardedIsFound) {
+    std::set<std::string> found, guarded;
+    for (const stability::Sweep& sweep : stability::kSweeps) found.insert(sweep.id);
+    EXPECT_EQ(found.size(), std::size(stability::kSweeps));
+    for (const auto& [id, tests] : read_guards(PETZVAL_TEST_DATA "/../stability/guards.csv")) {
         guarded.insert(id);
         EXPECT_FALSE(tests.empty()) << id;
     }
     EXPECT_EQ(found, guarded);
-}
-
-TEST_F(StabilityCli, OtherAxesNeedASceneAndAFolder) {
-    EXPECT_NE(
-        error_of({"chart", "--axis", "sampler", "-o", path("r")}, 2).find("scene is required"),
-        std::string::npos);
-    EXPECT_NE(error_of({"chart", scene_, "--axis", "sampler", "--axis", "stability"}, 2)
-                  .find("--output is required"),
-              std::string::npos);
-    EXPECT_NE(
-        error_of({"chart", "--axis", "stability", "-o", scene_}, 3).find("cannot be made a folder"),
-        std::string::npos);
 }
 
 TEST(StabilityPage, TablesHoldWhatWasFound) {
@@ -72,13 +43,15 @@ TEST(StabilityPage, TablesHoldWhatWasFound) {
                                     "a warning",
                                     "The range.",
                                     {{"x (mm)", "y"}, {{"1", "2"}}}}};
-    const std::string page = stability_markdown(one);
+    const std::string page = stability_markdown(one, {{"a-method", {"Suite.A", "Suite.B"}}});
     EXPECT_NE(page.find("| [A method (odd)](#a-method-odd) | bias | below 3 mm |\n"),
               std::string::npos);
     EXPECT_NE(page.find("## A method (odd)\nThe range.\n\n| x (mm) | y |\n|---|---|\n| 1 | 2 |\n"),
               std::string::npos);
-    EXPECT_NE(page.find("- **Fails:** bias. below 3 mm\n- **There:** a warning\n"),
-              std::string::npos);
+    EXPECT_TRUE(
+        page.ends_with("- **Fails:** bias. below 3 mm\n- **There:** a warning\n- **Guard:** "
+                       "`Suite.A`, `Suite.B`\n"))
+        << page;
     EXPECT_EQ(stability_csv(one),
               "finding,method,row,quantity,value\na-method,A method (odd),1,x (mm),1\n"
               "a-method,A method (odd),1,y,2\n");

@@ -4,10 +4,10 @@
 
 #include <numbers>
 
-#include "apps/stability/shipped_lens.h"
-#include "apps/stability/sweeps.h"
-#include "apps/stability/world.h"
 #include "camera/models/thin_lens.h"
+#include "tests/stability/shipped_lens.h"
+#include "tests/stability/sweeps.h"
+#include "tests/stability/world.h"
 
 namespace petzval::stability {
 namespace {
@@ -148,7 +148,7 @@ Missed missed_by(const std::string& name, double of_circle) {
 }  // namespace
 
 Finding rays_to_targets() {
-    Finding f{.id = "rays-to-targets", .method = "Rays to targets", .fails = "variance"};
+    Finding f{.method = "Rays to targets", .fails = "variance"};
     f.sweep = fmt::format(
         "A thin lens of {:g} mm at f/1.4 and a square lamp {:g} m away on black, with a target "
         "around it: variance of one sample over the mean squared, by the lamp's side and the "
@@ -184,9 +184,7 @@ Finding rays_to_targets() {
 }
 
 Finding search_for_targets() {
-    Finding f{.id = "search-for-targets",
-              .method = "The search for rays to targets",
-              .fails = "variance"};
+    Finding f{.method = "The search for rays to targets", .fails = "variance"};
     f.sweep =
         "Every lens that ships, wide open, line d, in focus as it ships, with a target that a ray "
         "of the stop passes, a 500th as wide as it is far away, at the first of 2, 1, 0.5, 0.25 "

@@ -2,11 +2,11 @@
 // How small, how large and how far away a scene may be.
 #include <fmt/format.h>
 
-#include "apps/stability/sweeps.h"
-#include "apps/stability/world.h"
 #include "camera/models/thin_lens.h"
 #include "core/sampling/warp.h"
 #include "core/shading/surface.h"
+#include "tests/stability/sweeps.h"
+#include "tests/stability/world.h"
 
 namespace petzval::stability {
 namespace {
@@ -56,7 +56,7 @@ Faults leave_ball(double radius_m, double away_radii) {
 }  // namespace
 
 Finding scene_scale() {
-    Finding f{.id = "scene-scale", .method = "Scales of scenes", .fails = "leaks"};
+    Finding f{.method = "Scales of scenes", .fails = "leaks"};
     f.sweep =
         "A closed ball of 2208 triangles. Of 1500 rays from within, those that leak, or that hit "
         "the triangle which they just left: over its radius with its middle at the origin, and, "
@@ -128,8 +128,7 @@ double place_error_px(double away_m) {
 }  // namespace
 
 Finding camera_far_from_origin() {
-    Finding f{
-        .id = "camera-far-from-origin", .method = "Cameras far from the origin", .fails = "bias"};
+    Finding f{.method = "Cameras far from the origin", .fails = "bias"};
     f.sweep =
         "A pinhole (50 mm over 36 mm and 6000 pixels) and a wall 1 m ahead of it, both so far from "
         "the origin: the worst of 1000 points that camera rays find, against exact geometry, in "

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "apps/stability/shipped_lens.h"
-#include "apps/stability/sweeps.h"
 #include "camera/lens/trace.h"
+#include "tests/stability/shipped_lens.h"
+#include "tests/stability/sweeps.h"
 
 namespace petzval::stability {
 namespace {
@@ -121,9 +121,7 @@ Drawn drawn_at(const ShippedLens& of, V2f film_mm) {
 }  // namespace
 
 Finding pupil_at_wide_fields() {
-    Finding f{.id = "pupil-at-wide-fields",
-              .method = "Aiming through the pupil",
-              .fails = "bias, variance"};
+    Finding f{.method = "Aiming through the pupil", .fails = "bias, variance"};
     f.sweep =
         "Every lens that ships, wide open, line d, at 0.98 of the rim of its image circle: 1024 "
         "draws of the stop for which no ray is found; how often the others trace through the rear "

@@ -2,7 +2,7 @@
 // The map of failures: for each method the region where it fails, found by going there.
 #pragma once
 
-#include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,7 +16,7 @@ struct SweepTable {
 
 /// One method and where it ends.
 struct Finding {
-    std::string id;         ///< words with hyphens, which stay when its section gets another name
+    std::string id{};       ///< that of its sweep
     std::string method;     ///< a few words: the name of its section
     std::string fails{};    ///< bias, variance, NaN, no answer; "nothing" within the range swept
     std::string where{};    ///< with the numbers that the sweep found and their units
@@ -30,13 +30,16 @@ struct Finding {
 /// rendering does. Throws InputError where assets are missing.
 [[nodiscard]] std::vector<Finding> stability_findings();
 
-/// The page stability.md: a table of all findings, then a section for each.
-[[nodiscard]] std::string stability_markdown(const std::vector<Finding>&);
+/// Names of the tests that guard each finding, Suite.Name, by its identifier.
+using Guards = std::map<std::string, std::vector<std::string>>;
+
+/// Guards from a file: rows of an identifier and names with spaces between them. Throws InputError.
+[[nodiscard]] Guards read_guards(const std::string& file);
+
+/// The page stability.md: a table of all findings, then a section for each. Throws
+/// std::out_of_range where a finding has no guard.
+[[nodiscard]] std::string stability_markdown(const std::vector<Finding>&, const Guards&);
 /// All tables in one: a row for each cell.
 [[nodiscard]] std::string stability_csv(const std::vector<Finding>&);
-
-/// Sweeps, and writes stability.md and stability.csv into a folder, which is made before if need
-/// be. Returns the first. Throws InputError.
-[[nodiscard]] std::filesystem::path write_stability(const std::filesystem::path& folder);
 
 }  // namespace petzval

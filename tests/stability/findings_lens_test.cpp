@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "io/lens/lens_file.h"
-#include "tests/apps/stability/findings.h"
+#include "tests/stability/findings.h"
 #include "tests/support/statistics.h"
 
 namespace petzval::stability {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the sweeps of stability.h are made of, and the list of them.
+// The sweeps of the map of failures, and what they share.
 #pragma once
 
 #include <cmath>
@@ -8,8 +8,8 @@
 #include <string>
 #include <type_traits>
 
-#include "apps/stability/stability.h"
 #include "core/sampling/sampler.h"
+#include "tests/stability/stability.h"
 
 namespace petzval::stability {
 
@@ -111,5 +111,39 @@ class Draws {
 [[nodiscard]] Finding nested_volumes();
 [[nodiscard]] Finding many_samples();
 [[nodiscard]] Finding film_sums();
+
+/// A sweep, and the identifier of its finding: words with hyphens, which stay when the section of
+/// the page gets another name.
+struct Sweep {
+    const char* id;
+    Finding (*run)();
+};
+/// Every sweep, in the order of the page.
+inline constexpr Sweep kSweeps[] = {
+    {"third-order-formula", third_order_formula},
+    {"focus-near-focal-length", focus_near_focal_length},
+    {"rejection-of-slivers", rejection_of_slivers},
+    {"degenerate-polygons", degenerate_polygons},
+    {"choice-by-weight", choice_by_weight},
+    {"pupil-at-wide-fields", pupil_at_wide_fields},
+    {"rays-at-grazing-incidence", trace_at_grazing_incidence},
+    {"rays-over-long-radii", trace_over_long_radii},
+    {"newton-on-strong-aspheres", newton_on_strong_aspheres},
+    {"dispersion-out-of-range", dispersion_out_of_range},
+    {"scene-scale", scene_scale},
+    {"camera-far-from-origin", camera_far_from_origin},
+    {"ggx-energy", ggx_energy},
+    {"ggx-density", ggx_density},
+    {"tiny-sun", tiny_sun},
+    {"tiny-lamp", tiny_lamp},
+    {"defocused-highlights", defocused_highlights},
+    {"rays-to-targets", rays_to_targets},
+    {"search-for-targets", search_for_targets},
+    {"planned-noise", planned_noise},
+    {"chains-of-glass", chains_of_glass},
+    {"nested-volumes", nested_volumes},
+    {"many-samples", many_samples},
+    {"film-sums", film_sums},
+};
 
 }  // namespace petzval::stability

@@ -1,10 +1,10 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
 # Fails where a folder of the project holds over 40 files, or where one of its top-level folders
-# holds over 36 % of the product's lines.
+# holds over 37 % of the product's lines.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-most_files=40 most_percent=36 status=0
+most_files=40 most_percent=37 status=0
 
 while read -r count folder; do
     if ((count > most_files)); then

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "camera/bench/ray_bundle.h"
+#include "camera/bench/aimed_bundle.h"
 #include "camera/lens/lens.h"
 #include "camera/lens/paraxial.h"
 

@@ -26,7 +26,7 @@ Prescription scaled(Prescription p, double factor) {
 std::optional<double> scale_for_field(const Lens& lens, double half_height_mm,
                                       double half_field_deg, double film_mm) {
     constexpr int side = 64;
-    const auto bundle = RayBundle::aim(lens, {.field_deg = half_field_deg}, kLineD_nm);
+    const auto bundle = AimedBundle::aim(lens, {.field_deg = half_field_deg}, kLineD_nm);
     if (!bundle || bundle->trace(bundle->grid(side), film_mm).empty()) return std::nullopt;
     const auto height_mm = chief_height_mm(lens, bundle->object(), film_mm);
     if (!height_mm || !(*height_mm > 0)) return std::nullopt;

@@ -56,7 +56,7 @@ double geometric_mtf(std::span<const BundleRay> rays, double cycles_per_mm, Sect
     return std::abs(sum) / static_cast<double>(rays.size());
 }
 
-std::vector<FanPoint> ray_fan(const Lens& lens, const RayBundle& bundle, Section along,
+std::vector<FanPoint> ray_fan(const Lens& lens, const AimedBundle& bundle, Section along,
                               double film_mm, std::array<double, 2> from_mm, int count) {
     const size_t moves = along == bundle.object().section ? 1 : 0;
     std::vector<PupilPoint> pupil_points;

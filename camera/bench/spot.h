@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "camera/bench/ray_bundle.h"
+#include "camera/bench/aimed_bundle.h"
 
 namespace petzval {
 
@@ -34,7 +34,7 @@ struct FanPoint {
 /// Ray fan: rays on a line through the middle of the aperture, `along` the section or across it;
 /// only those that pass. from_mm: on the film, usually where the chief ray of the main wavelength
 /// arrives.
-[[nodiscard]] std::vector<FanPoint> ray_fan(const Lens&, const RayBundle&, Section along,
+[[nodiscard]] std::vector<FanPoint> ray_fan(const Lens&, const AimedBundle&, Section along,
                                             double film_mm, std::array<double, 2> from_mm,
                                             int count = 65);
 

@@ -44,7 +44,7 @@ Bounds bounds_of(const Lens& lens, const LensDrawing& drawing) {
             out.add(z, height);
     // Rays may come from far to the side: only points within 1.5 times the lens's height count.
     const double most = 1.5 * out.top;
-    for (const DrawnRay& ray : drawing.rays)
+    for (const SvgRay& ray : drawing.rays)
         for (const auto& [z, height] : ray.path)
             if (std::abs(height) < most) out.add(z, height);
     const double margin = 0.04 * (out.right - out.left + out.top);
@@ -87,7 +87,7 @@ std::string lens_svg(const Lens& lens, const LensDrawing& drawing) {
     for (int i = 0; i < lens.size(); ++i)
         if (const Outline element = element_outline(lens, i, drawing.section); !element.empty())
             out += path_element("class=\"glass\"", element, true);
-    for (const DrawnRay& ray : drawing.rays)
+    for (const SvgRay& ray : drawing.rays)
         out += path_element(fmt::format("class=\"ray\" style=\"stroke:{}\"", ray.colour), ray.path);
     for (int i = 0; i < lens.size(); ++i)
         if (i != lens.stop())

@@ -11,7 +11,8 @@
 
 namespace petzval {
 
-struct DrawnRay {
+/// A ray of a drawing.
+struct SvgRay {
     Outline path;        ///< {z, height}, mm
     std::string colour;  ///< as SVG names it, #2060d0 say
 };
@@ -20,7 +21,7 @@ struct LensDrawing {
     Section section = Section::Y;
     double film_mm = 0;         ///< from the first vertex
     double film_radius_mm = 0;  ///< half of the height that is drawn
-    std::vector<DrawnRay> rays;
+    std::vector<SvgRay> rays;
     std::string caption;  ///< one line below
 };
 

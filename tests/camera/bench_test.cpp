@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "camera/bench/ray_bundle.h"
+#include "camera/bench/aimed_bundle.h"
 #include "camera/bench/spot.h"
 #include "camera/lens/focus.h"
 #include "camera/lens/profile.h"
@@ -23,8 +23,8 @@ using test::read_oracle;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-RayBundle aimed(const Lens& lens, const ObjectPoint& object, double nm = kLineD_nm) {
-    auto bundle = RayBundle::aim(lens, object, nm);
+AimedBundle aimed(const Lens& lens, const ObjectPoint& object, double nm = kLineD_nm) {
+    auto bundle = AimedBundle::aim(lens, object, nm);
     if (!bundle) throw std::runtime_error("no chief ray");
     return *std::move(bundle);
 }
@@ -44,13 +44,13 @@ TEST_P(OracleAnalysis, SpotOnTheAxisAndItsBestFocus) {
     const bool round = oracle.contains("seidel");
     double rim_mm = INFINITY;
     if (round) {
-        const RayBundle d = aimed(lens, {});
+        const AimedBundle d = aimed(lens, {});
         std::vector<PupilPoint> line;
         for (int i = 0; i < 20000; ++i) line.push_back({0, d.most()[1] * (0.9 + 5e-6 * i)});
         rim_mm = d.trace(line, film_mm).back().pupil_point[1];
     }
     for (const auto& [line, wanted] : oracle.at("axial_spot").items()) {
-        const RayBundle bundle = aimed(lens, {}, std::stod(line));
+        const AimedBundle bundle = aimed(lens, {}, std::stod(line));
         auto rays = bundle.trace(bundle.grid(400), film_mm);
         std::erase_if(rays, [&](const BundleRay& ray) {
             return std::hypot(ray.pupil_point[0], ray.pupil_point[1]) > rim_mm;
@@ -67,7 +67,8 @@ TEST_P(OracleAnalysis, BundlesFillTheStop) {
     const double widest = std::string(GetParam()).find("fisheye") == std::string::npos ? 18 : 90;
     for (const Section section : {Section::X, Section::Y})
         for (const double deg : {0., 0.6 * widest, widest}) {
-            const RayBundle bundle = aimed(lens, {.field_deg = deg, .section = section}, kLineF_nm);
+            const AimedBundle bundle =
+                aimed(lens, {.field_deg = deg, .section = section}, kLineF_nm);
             const PupilPoint chief = bundle.chief();
             const auto middle = bundle.trace({&chief, 1}, film_mm, Clip::No);
             ASSERT_EQ(middle.size(), 1u);
@@ -156,7 +157,7 @@ TEST(LensAnalysis, BestFilmShiftHasTheLeastSpot) {
     const auto rms = [&](double shift_mm) {
         std::vector<BundleRay> all;
         for (const double nm : {kLineF_nm, kLineD_nm, kLineC_nm}) {
-            const RayBundle bundle = aimed(lens, {}, nm);
+            const AimedBundle bundle = aimed(lens, {}, nm);
             const auto rays = bundle.trace(bundle.grid(101), lens.film_mm() + shift_mm);
             all.insert(all.end(), rays.begin(), rays.end());
         }
@@ -186,7 +187,7 @@ TEST(LensAnalysis, MtfOfADiskIsBessels) {
 
 TEST(LensAnalysis, FansCrossTheWholeStopAndAgreeWithSymmetry) {
     const Lens lens(read_lens("cooke-triplet-50mm-f5"));
-    const RayBundle bundle = aimed(lens, {});
+    const AimedBundle bundle = aimed(lens, {});
     const auto tangential = ray_fan(lens, bundle, Section::Y, lens.film_mm(), {});
     const auto sagittal = ray_fan(lens, bundle, Section::X, lens.film_mm(), {});
     ASSERT_EQ(tangential.size(), sagittal.size());
@@ -262,7 +263,7 @@ TEST(LensAnalysis, FieldsOfHeightsAreThoseOfTheirSection) {
 
 TEST(LensAnalysis, SaysWhereNoRayGetsThrough) {
     const Lens lens(read_lens("kodak-petzval-100mm-f2"));
-    EXPECT_FALSE(RayBundle::aim(lens, {.field_deg = 100}, kLineD_nm));
+    EXPECT_FALSE(AimedBundle::aim(lens, {.field_deg = 100}, kLineD_nm));
     EXPECT_FALSE(field_of_height_deg(lens, 500, lens.film_mm()));
     EXPECT_FALSE(distortion(lens, 89, lens.film_mm(), INFINITY));
 }

@@ -21,8 +21,8 @@
 #include <sanitizer/common_interface_defs.h>
 #endif
 
+#include "camera/bench/aimed_bundle.h"
 #include "camera/bench/analysis.h"
-#include "camera/bench/ray_bundle.h"
 #include "camera/lens/focus.h"
 #include "camera/lens/profile.h"
 #include "camera/lens/traced_ray.h"
@@ -261,7 +261,7 @@ class Trial {
         const ObjectPoint object{between(random_, 0, 80),
                                  by_chance(random_, 0.5f) ? INFINITY : between(random_, 1, 10000),
                                  by_chance(random_, 0.5f) ? Section::X : Section::Y};
-        const auto bundle = RayBundle::aim(lens_, object, wavelength_nm());
+        const auto bundle = AimedBundle::aim(lens_, object, wavelength_nm());
         if (!bundle) return;
         for (const BundleRay& ray : bundle->trace(bundle->grid(5), lens_.film_mm()))
             require(!std::isnan(ray.film_mm[0] + ray.film_mm[1]), "a bundle's film point is NaN");

@@ -47,7 +47,7 @@ FieldSetup set_up_lit(const FieldRequest& request, const std::vector<double>& sh
     return setup;
 }
 
-std::vector<BundleRay> traced(const RayBundle& bundle, double film_mm, int side) {
+std::vector<BundleRay> traced(const AimedBundle& bundle, double film_mm, int side) {
     return bundle.trace(bundle.grid(side), film_mm);
 }
 
@@ -85,7 +85,7 @@ Found spot_analysis(const AnalysisOptions& o) {
         std::vector<BundleRay> all;
         drawn.emplace_back();
         for (const SpectralLine& line : kSpectralLines) {
-            const RayBundle bundle = aim(setup, deg, line.nm);
+            const AimedBundle bundle = aim(setup, deg, line.nm);
             const auto rays = traced(bundle, setup.film_mm, side);
             if (rays.empty()) refuse_dark(*setup.lens, deg);
             print_spot(deg, line.name, spot_size(rays));
@@ -127,7 +127,7 @@ Found fan_analysis(const AnalysisOptions& o) {
     Found out;
     out.names = {"field_deg", "nm", "tangential", "stop_radii", "dx_mm", "dy_mm"};
     for (const double deg : setup.fields_deg) {
-        const RayBundle main = aim(setup, deg, kLineD_nm);
+        const AimedBundle main = aim(setup, deg, kLineD_nm);
         const PupilPoint chief = main.chief();
         const auto centre = main.trace({&chief, 1}, setup.film_mm, Clip::No);
         if (centre.empty()) refuse_dark(*setup.lens, deg);
@@ -137,7 +137,7 @@ Found fan_analysis(const AnalysisOptions& o) {
                 PlotSeries series{{}, PlotStyle::Lines, {}};
                 series.label = fmt::format("{:.4g}° {} {}", deg, line.name,
                                            tangential ? "tangential" : "sagittal");
-                const RayBundle bundle = aim(setup, deg, line.nm);
+                const AimedBundle bundle = aim(setup, deg, line.nm);
                 const auto fan =
                     ray_fan(*setup.lens, bundle, along, setup.film_mm, centre[0].film_mm);
                 if (fan.empty()) refuse_dark(*setup.lens, deg);

@@ -103,8 +103,8 @@ void require_light(const Lens& lens) {
                             "lets no light through to the middle of the film: " + blockage->text());
 }
 
-RayBundle aim(const FieldSetup& setup, double field_deg, double nm) {
-    auto bundle = RayBundle::aim(*setup.lens, {field_deg, setup.distance_mm, setup.section}, nm);
+AimedBundle aim(const FieldSetup& setup, double field_deg, double nm) {
+    auto bundle = AimedBundle::aim(*setup.lens, {field_deg, setup.distance_mm, setup.section}, nm);
     if (!bundle)
         throw ArgumentError(setup.lens->prescription().name, "",
                             "no ray at {:g}° and {:g} nm reaches the middle of the stop; give a "

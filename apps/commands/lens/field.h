@@ -10,7 +10,7 @@
 
 #include "apps/cli/parse.h"
 #include "apps/commands/lens/request.h"
-#include "camera/bench/ray_bundle.h"
+#include "camera/bench/aimed_bundle.h"
 #include "camera/lens/focus.h"
 
 namespace petzval {
@@ -51,6 +51,6 @@ void require_light(const Lens&);
 
 /// Ray bundle of a field at a wavelength. Throws ArgumentError where no ray of that field passes
 /// the middle of the stop.
-[[nodiscard]] RayBundle aim(const FieldSetup&, double field_deg, double nm);
+[[nodiscard]] AimedBundle aim(const FieldSetup&, double field_deg, double nm);
 
 }  // namespace petzval

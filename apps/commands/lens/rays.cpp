@@ -21,10 +21,10 @@ struct DrawOptions {
 };
 
 // Path of a ray from a little before the first face, or its plane, to the film or to where it ends.
-Outline path_of(const Lens& lens, const RayBundle& bundle, PupilPoint pupil_point, double film_mm,
+Outline path_of(const Lens& lens, const AimedBundle& bundle, PupilPoint pupil_point, double film_mm,
                 double lead_mm) {
     const size_t axis = bundle.object().section == Section::X ? 0 : 1;
-    const RayBundle::Line line = bundle.line(pupil_point);
+    const AimedBundle::Line line = bundle.line(pupil_point);
     const TracedRay ray =
         trace_ray(lens, line.origin_mm, line.direction, bundle.nm(), Towards::Film, Clip::Yes);
     const auto height = [axis](const V3d& p) { return axis == 0 ? p.x : p.y; };
@@ -50,7 +50,7 @@ void draw_command(const DrawOptions& o) {
     for (const double deg : setup.fields_deg) {
         fields += fmt::format("{}{:.4g}°", fields.empty() ? "" : ", ", deg);
         for (const SpectralLine& line : kSpectralLines) {
-            const RayBundle bundle = aim(setup, deg, line.nm);
+            const AimedBundle bundle = aim(setup, deg, line.nm);
             for (int i = 0; i < o.rays; ++i) {
                 PupilPoint pupil_point = bundle.chief();
                 const double least = bundle.least()[tangential], most = bundle.most()[tangential];

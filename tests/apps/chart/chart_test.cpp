@@ -347,9 +347,7 @@ TEST_F(ChartCli, RefusesWhatItCannotDo) {
     expect({"--axis", "sampler", "--seeds", "4", "-o", path("r")}, 2, "--seeds");
     expect({"--axis", "sampler", "-o", path("x.csv")}, 2,
            path("x.csv") + "\" is named as a file; type -o " + path("x"));
-    EXPECT_NE(error_of({"chart", "--axis", "stability", "-o", path("x.MD")}, 2)
-                  .find("type -o " + path("x")),
-              std::string::npos);
+    expect({"--axis", "sampler", "-o", path("x.MD")}, 2, "type -o " + path("x"));
     expect({"--axis", "sampler", "-o", scene_}, 3, "cannot be made a folder");
     expect({"--axis", "sampler", "-o", scene_ + "/none"}, 3, "studio.glb/none");
     expect({"--axis", "camera", "--camera", "plan", "-o", path("r")}, 2, "orthographic");

@@ -37,11 +37,11 @@ struct BundleRay {
 };
 
 /// Rays of an object point, traced as for rendering, in doubles. The lens must outlive it.
-class RayBundle {
+class AimedBundle {
   public:
     /// Finds the ray to the middle of the stop, following it from the axis outwards, and then the
     /// rays to the stop's rim. Nothing where no ray reaches the middle of the stop.
-    [[nodiscard]] static std::optional<RayBundle> aim(const Lens&, const ObjectPoint&, double nm);
+    [[nodiscard]] static std::optional<AimedBundle> aim(const Lens&, const ObjectPoint&, double nm);
 
     [[nodiscard]] double nm() const { return nm_; }
     [[nodiscard]] const ObjectPoint& object() const { return object_; }
@@ -62,7 +62,7 @@ class RayBundle {
     [[nodiscard]] std::vector<PupilPoint> grid(int side) const;
 
   private:
-    RayBundle(const Lens&, const ObjectPoint&, double nm);
+    AimedBundle(const Lens&, const ObjectPoint&, double nm);
     template <class N>
     [[nodiscard]] LensRay<N> launched(N sagittal, N tangential) const;
     [[nodiscard]] std::optional<PupilPoint> solve(std::array<double, 2> stop_mm,

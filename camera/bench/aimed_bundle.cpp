@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "camera/bench/ray_bundle.h"
+#include "camera/bench/aimed_bundle.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ double stop_radius_mm(const Lens& lens) {
 
 }  // namespace
 
-RayBundle::RayBundle(const Lens& lens, const ObjectPoint& object, double nm)
+AimedBundle::AimedBundle(const Lens& lens, const ObjectPoint& object, double nm)
     : lens_(&lens),
       object_(object),
       nm_(nm),
@@ -31,7 +31,7 @@ RayBundle::RayBundle(const Lens& lens, const ObjectPoint& object, double nm)
 }
 
 template <class N>
-LensRay<N> RayBundle::launched(N sagittal, N tangential) const {
+LensRay<N> AimedBundle::launched(N sagittal, N tangential) const {
     const double angle = object_.field_deg * std::numbers::pi / 180;
     const double sine = std::sin(angle), cosine = std::cos(angle);
     const auto number = [](double a) { return constant<N>(broadcast<ValueOf<N>>(a)); };
@@ -55,7 +55,8 @@ LensRay<N> RayBundle::launched(N sagittal, N tangential) const {
 }
 
 // Newton's method with the trace's own derivatives.
-std::optional<PupilPoint> RayBundle::solve(std::array<double, 2> stop_mm, PupilPoint guess) const {
+std::optional<PupilPoint> AimedBundle::solve(std::array<double, 2> stop_mm,
+                                             PupilPoint guess) const {
     using D = Dual<d4>;
     const double tolerance_mm = kTolerance * stop_radius_mm(*lens_);
     PupilPoint at = guess, good = guess, step{};
@@ -83,13 +84,14 @@ std::optional<PupilPoint> RayBundle::solve(std::array<double, 2> stop_mm, PupilP
     return std::nullopt;
 }
 
-std::optional<RayBundle> RayBundle::aim(const Lens& lens, const ObjectPoint& object, double nm) {
+std::optional<AimedBundle> AimedBundle::aim(const Lens& lens, const ObjectPoint& object,
+                                            double nm) {
     // Entrance pupils of wide-angle lenses move with the field: each ray begins at one that is
     // near.
     for (const double step_deg : {2., 0.25}) {
         const int steps = std::max(1, static_cast<int>(std::ceil(object.field_deg / step_deg)));
         std::optional<PupilPoint> chief = PupilPoint{};
-        RayBundle bundle(lens, object, nm);
+        AimedBundle bundle(lens, object, nm);
         for (int i = 1; i <= steps && chief; ++i) {
             bundle.object_.field_deg = object.field_deg * i / steps;
             chief = bundle.solve({}, *chief);
@@ -103,7 +105,7 @@ std::optional<RayBundle> RayBundle::aim(const Lens& lens, const ObjectPoint& obj
     return std::nullopt;
 }
 
-void RayBundle::find_box() {
+void AimedBundle::find_box() {
     constexpr int directions = 32, steps = 4;
     constexpr double margin = 0.02;  // more than the rim may bulge between two directions
     least_ = most_ = chief_;
@@ -130,14 +132,14 @@ void RayBundle::find_box() {
     }
 }
 
-RayBundle::Line RayBundle::line(PupilPoint pupil_point) const {
+AimedBundle::Line AimedBundle::line(PupilPoint pupil_point) const {
     const auto ray = launched<d4>(broadcast<d4>(pupil_point[0]), broadcast<d4>(pupil_point[1]));
     return {V3d(ray.origin.x[0], ray.origin.y[0], ray.origin.z[0]),
             V3d(ray.direction.x[0], ray.direction.y[0], ray.direction.z[0])};
 }
 
-std::vector<BundleRay> RayBundle::trace(std::span<const PupilPoint> pupil_points, double film_mm,
-                                        Clip clip) const {
+std::vector<BundleRay> AimedBundle::trace(std::span<const PupilPoint> pupil_points, double film_mm,
+                                          Clip clip) const {
     std::vector<BundleRay> out;
     const double to_film_mm = film_mm - lens_->vertex_mm(lens_->last());
     for (size_t first = 0; first < pupil_points.size(); first += 4) {
@@ -170,7 +172,7 @@ std::vector<BundleRay> RayBundle::trace(std::span<const PupilPoint> pupil_points
     return out;
 }
 
-std::vector<PupilPoint> RayBundle::grid(int side) const {
+std::vector<PupilPoint> AimedBundle::grid(int side) const {
     std::vector<PupilPoint> out;
     for (int i = 0; i < side; ++i)
         for (int j = 0; j < side; ++j)

@@ -88,8 +88,7 @@ void RenderSession::prepare(const RenderRequest& asked, const Notice& notice,
         if (name_and_hash(file) != hash)
             throw InputError(file.string(), "", "was changed while it was read; start again");
     const uint32_t asked_samples = request_.job.end_sample - request_.job.first_sample;
-    if (film && shape == shape_ && first == request_.job.first_sample &&
-        film->taken_range().most <= asked_samples &&
+    if (film && first == request_.job.first_sample && film->taken_range().most <= asked_samples &&
         light_hash(facts, shape, {0, 0}) == light_hash(facts_, shape_, {0, 0}))
         film_ = std::move(film);
     else

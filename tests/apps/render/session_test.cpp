@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sessions of renders: what they keep, and that what they keep changes no pixel.
+#include "apps/render/render_session.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "io/base/error.h"
+#include "io/image/output.h"
+#include "tests/support/temporary_folder.h"
+
+namespace petzval {
+namespace {
+
+const Notice kSilent = [](const std::string&) {};
+
+RenderRequest request_of(const char* scene = "first_light.glb") {
+    RenderRequest request;
+    request.scene.scene = std::filesystem::path(PETZVAL_ASSETS) / "scenes" / scene;
+    request.scene.size = {24, 16};
+    request.job.end_sample = 4;
+    return request;
+}
+
+std::vector<float> values_of(const PictureRows& picture) {
+    const size_t row = picture.layout.channels.size() * size_t(picture.layout.width);
+    std::vector<float> out(row * size_t(picture.layout.height));
+    for (int y = 0; y < picture.layout.height; ++y) picture.row(y, out.data() + size_t(y) * row);
+    return out;
+}
+
+/// Renders a request; how many samples of all pixels were there before.
+uint64_t render(RenderSession& session, const RenderRequest& request) {
+    session.prepare(request, kSilent);
+    const uint64_t before = session.film().taken_count();
+    RenderMonitor monitor;
+    EXPECT_FALSE(session.render(monitor).stopped);
+    return before;
+}
+
+std::vector<float> alone(const RenderRequest& request) {
+    RenderSession session(1);
+    render(session, request);
+    return values_of(session.light());
+}
+
+constexpr uint64_t kPixels = 24 * 16;
+
+TEST(RenderSession, AnotherExposureKeepsTheSamples) {
+    RenderSession session(2);
+    RenderRequest request = request_of();
+    EXPECT_EQ(render(session, request), 0u);
+    const auto light = values_of(session.light()), shown = values_of(session.shown());
+    request.display.exposure_ev = 2;
+    request.asks_exposure = true;
+    EXPECT_EQ(render(session, request), 4 * kPixels);
+    EXPECT_EQ(values_of(session.light()), light);
+    EXPECT_NE(values_of(session.shown()), shown);
+}
+
+TEST(RenderSession, MoreSamplesAreAddedToThoseThatAreThere) {
+    RenderSession session(2);
+    RenderRequest request = request_of();
+    render(session, request);
+    request.job.end_sample = 9;
+    EXPECT_EQ(render(session, request), 4 * kPixels);
+    EXPECT_EQ(values_of(session.light()), alone(request));
+}
+
+// What has other samples, or too many, is rendered anew.
+TEST(RenderSession, NothingIsKeptOfOtherSamples) {
+    const auto of_others = [](const auto& change) {
+        RenderSession session(2);
+        RenderRequest request = request_of();
+        request.job.end_sample = 6;
+        render(session, request);
+        change(request);
+        EXPECT_EQ(render(session, request), 0u);
+        EXPECT_EQ(values_of(session.light()), alone(request));
+    };
+    of_others([](RenderRequest& r) { r.job.end_sample = 3; });
+    of_others([](RenderRequest& r) { r.job.first_sample = 2, r.job.end_sample = 9; });
+    of_others([](RenderRequest& r) { r.job.seed = 1; });
+    of_others([](RenderRequest& r) { r.path.max_depth = 2; });
+    of_others([](RenderRequest& r) { r.crop = Rect{0, 0, 12, 16}; });
+    of_others([](RenderRequest& r) { r.layers = {Aov::Depth}; });
+    of_others([](RenderRequest& r) { r.scene.background = Rgb(2.f); });
+    of_others([](RenderRequest& r) { r.scene.spectral.bins = Bins{400, 100, 3}; });
+}
+
+TEST(RenderSession, AnotherCameraKeepsTheScene) {
+    RenderSession session(2);
+    RenderRequest request = request_of();
+    render(session, request);
+    const Scene* const scene = session.setup().prepared.scene.get();
+    const Bvh* const bvh = session.setup().prepared.bvh.get();
+    request.scene.camera.lens = "thin";
+    request.scene.camera.fstop = 2.f;
+    EXPECT_EQ(render(session, request), 0u);
+    EXPECT_EQ(session.setup().prepared.scene.get(), scene);
+    EXPECT_EQ(session.setup().prepared.bvh.get(), bvh);
+    EXPECT_EQ(values_of(session.light()), alone(request));
+}
+
+TEST(RenderSession, StopsAndGoesOn) {
+    RenderSession session(2);
+    const RenderRequest request = request_of();
+    session.prepare(request, kSilent);
+    RenderMonitor stopped;
+    stopped.stop = true;
+    EXPECT_TRUE(session.render(stopped).stopped);
+    EXPECT_LT(session.film().taken_count(), 4 * kPixels);
+    RenderMonitor monitor;
+    EXPECT_FALSE(session.render(monitor).stopped);
+    EXPECT_EQ(values_of(session.light()), alone(request));
+}
+
+TEST(RenderSession, GoesOnAfterARequestThatFails) {
+    RenderSession session(2);
+    RenderRequest request = request_of();
+    render(session, request);
+    RenderRequest wrong = request;
+    wrong.scene.scene = "not_there.glb";
+    EXPECT_THROW(session.prepare(wrong, kSilent), InputError);
+    EXPECT_EQ(render(session, request), 0u);
+    EXPECT_EQ(values_of(session.light()), alone(request));
+}
+
+TEST(RenderSession, SpectraHaveStandardErrors) {
+    RenderSession session(2);
+    RenderRequest request = request_of();
+    request.job.end_sample = 2 * kReplicates;
+    request.scene.spectral.bins = Bins{400, 100, 3};
+    render(session, request);
+    const auto values = values_of(session.light());
+    EXPECT_LT(*std::ranges::max_element(values), std::numeric_limits<float>::max());
+}
+
+// The file of the sky is read once: it may be gone for the frames that follow.
+TEST(RenderSession, FramesShareTheirSky) {
+    const test::TemporaryFolder folder;
+    RenderRequest request = request_of("flying_lamp.glb");
+    request.scene.environment = folder.path() / "sky.exr";
+    Picture sky;
+    sky.width = sky.full_width = 4, sky.height = sky.full_height = 2;
+    sky.channels = {"R", "G", "B"};
+    sky.pixels.assign(24, 3.f);
+    write_output(*request.scene.environment, sky, {});
+    request.scene.choices.animation.emplace().time_s = 0.5;
+    const auto expected = alone(request);
+
+    RenderSession session(2, RenderSession::Frames::Sequence);
+    request.scene.choices.animation->time_s = 0;
+    render(session, request);
+    std::filesystem::remove(*request.scene.environment);
+    request.scene.choices.animation->time_s = 0.5;
+    render(session, request);
+    EXPECT_EQ(values_of(session.light()), expected);
+}
+
+TEST(RenderSession, FramesAreThoseOfSingleRenders) {
+    RenderSession session(2, RenderSession::Frames::Sequence);
+    RenderRequest request = request_of("flying_lamp.glb");
+    request.scene.environment = kStudioLight;
+    for (const double time_s : {0., 0.5, 0.25}) {
+        request.scene.choices.animation.emplace().time_s = time_s;
+        render(session, request);
+        EXPECT_EQ(values_of(session.light()), alone(request)) << time_s;
+    }
+}
+
+}  // namespace
+}  // namespace petzval

@@ -64,7 +64,10 @@ template <std::floating_point S>
 [[nodiscard]] inline bool all(m8 on) {
     return __builtin_ia32_movmskps256((f8)on) == 255;
 }
-[[nodiscard]] inline bool all(l4 on) {
+// Of l4, and of the long long that clang makes of a comparison of doubles.
+template <class Mask>
+requires(sizeof(Mask) == sizeof(d4) && sizeof(Mask{}[0]) == sizeof(double))
+    [[nodiscard]] bool all(Mask on) {
     return __builtin_ia32_movmskpd256((d4)on) == 15;
 }
 template <class Mask>

@@ -11,6 +11,7 @@
 #include <draco/compression/mesh/traverser/mesh_attribute_indices_encoding_observer.h>
 #include <draco/compression/mesh/traverser/mesh_traversal_sequencer.h>
 
+#include <cstring>
 #include <stdexcept>
 
 namespace petzval {
@@ -73,6 +74,11 @@ class FencedAttribute : public Decoder {
     std::unique_ptr<FencedPrediction::Prediction> CreateIntPredictionScheme(
         draco::PredictionSchemeMethod method,
         draco::PredictionSchemeTransformType transform) override {
+        // The library takes any byte of the file for a method.
+        std::underlying_type_t<draco::PredictionSchemeMethod> number;
+        std::memcpy(&number, &method, sizeof number);
+        if (number < draco::PREDICTION_NONE || number >= draco::NUM_PREDICTION_SCHEMES)
+            return nullptr;
         auto prediction = Decoder::CreateIntPredictionScheme(method, transform);
         if (!prediction) return nullptr;
         const auto* mesh = static_cast<const draco::MeshDecoder*>(this->decoder())->mesh();

@@ -34,6 +34,15 @@ std::vector<std::pair<std::filesystem::path, std::string>> hashes_of_inputs(
     return out;
 }
 
+/// Whether two requests are for frames of one sequence.
+bool same_but_for_time(SceneRequest a, const SceneRequest& b) {
+    if (a.choices.animation && b.choices.animation)
+        a.choices.animation->time_s = b.choices.animation->time_s;
+    return a.scene == b.scene && a.scope == b.scope && a.choices == b.choices &&
+           a.environment == b.environment && a.environment_rotate_deg == b.environment_rotate_deg &&
+           a.environment_strength == b.environment_strength;
+}
+
 // Makes the choices that are open, tells them, and keeps them for the metadata.
 RenderSetup set_up(const PlanRequest& request, TbbExecutor& executor, const Notice& notice,
                    const PhaseSink& begins) {
@@ -64,6 +73,7 @@ void RenderSession::prepare(const RenderRequest& asked, const Notice& notice,
     const uint32_t first = request_.job.first_sample;
     RenderSetup before = std::exchange(setup_, {});
     if (frames_) before = {};  // the frame takes it apart
+    if (frames_ && !same_but_for_time(request_.scene, asked.scene)) frames_.emplace();
     const bool shares = before.prepared.scene != nullptr;
     request_ = asked;
     setup_ = set_up({request_.scene, request_.job, request_.path, request_.tolerance, true,

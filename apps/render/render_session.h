@@ -29,8 +29,8 @@ namespace petzval {
 /// picture depends on its request alone, not on the requests before, on pauses or on threads.
 class RenderSession {
   public:
-    /// Frames: whether requests will differ in their time alone, so that each frame takes what it
-    /// can from the one before, which is then gone.
+    /// Frames: whether most requests will differ in their time alone, so that each frame takes what
+    /// it can from the one before, which is then gone.
     enum class Frames : uint8_t { Single, Sequence };
 
     /// Starts a session of so many threads, 1 or more.

@@ -150,10 +150,10 @@ GltfFile load_file(const SceneRequest& request, PictureBudget& pictures, FrameRe
 
 // Takes the sky that is asked for; of a sequence, that of the frame before.
 void take_sky(const SceneRequest& request, const Notice& notice, PreparedScene& out, Sky& sky,
-              FrameReuse* frames) {
-    if (frames && frames->before && !frames->environment_text.empty()) {
-        sky = std::move(frames->before->sky);
-        out.environment_text = frames->environment_text;
+              Scene* before, const std::string& text_before) {
+    if (before && !text_before.empty()) {
+        sky = std::move(before->sky);
+        out.environment_text = text_before;
         return;
     }
     sky = sky_of(request, notice, out.pictures);
@@ -166,10 +166,10 @@ void take_sky(const SceneRequest& request, const Notice& notice, PreparedScene& 
 // The scene with its sky, not yet its BVH and lights.
 PreparedScene load(SceneRequest request, const Notice& notice, FrameReuse* frames) {
     PreparedScene out;
-    if (frames && frames->before) {
-        if (frames->before.use_count() > 1) frames->before.reset();  // somebody looks at it still
-        if (frames->before) frames->reader->give_back(std::move(frames->before->images));
-    }
+    // Taken out of the sequence: where this frame fails, the next must not find what is left of it.
+    std::shared_ptr<Scene> before = frames ? std::exchange(frames->before, nullptr) : nullptr;
+    if (before.use_count() > 1) before.reset();  // somebody looks at it still
+    if (before) frames->reader->give_back(std::move(before->images));
     if (request.picture_memory_bytes) out.pictures = PictureBudget(*request.picture_memory_bytes);
     GltfFile file = load_file(request, out.pictures, frames);
     check_camera_files(request.scene, request.scope, file.cameras);
@@ -187,7 +187,8 @@ PreparedScene load(SceneRequest request, const Notice& notice, FrameReuse* frame
     out.extras = std::move(file.extras);
     out.lamp_unit_doubt = std::move(file.lamp_unit_doubt);
     if (request.environment || request.background)  // instead of the file's own
-        take_sky(request, notice, out, scene->sky, frames);
+        take_sky(request, notice, out, scene->sky, before.get(),
+                 frames ? frames->environment_text : "");
     finish_scene(*scene);
     if (scene->instances.empty())
         notice("warning: the scene is empty: only its background is rendered");

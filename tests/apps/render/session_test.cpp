@@ -169,6 +169,17 @@ TEST(RenderSession, FramesAreThoseOfSingleRenders) {
         render(session, request);
         EXPECT_EQ(values_of(session.light()), alone(request)) << time_s;
     }
+    RenderRequest wrong = request;
+    wrong.scene.camera.lens = "no-such-lens";
+    EXPECT_THROW(session.prepare(wrong, kSilent), InputError);
+    // Another sky and another file are another sequence.
+    request.scene.environment_strength = 2;
+    render(session, request);
+    EXPECT_EQ(values_of(session.light()), alone(request));
+    request = request_of("wheels.glb");
+    request.scene.choices.animation.emplace().time_s = 0;
+    render(session, request);
+    EXPECT_EQ(values_of(session.light()), alone(request));
 }
 
 }  // namespace

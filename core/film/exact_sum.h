@@ -65,7 +65,8 @@ static_assert(std::endian::native == std::endian::little, "packed sums are littl
 /// Writes sums as 16 bytes each, little-endian; returns where the next ones go.
 template <int fraction_bits>
 uint8_t* pack(std::span<const ExactSum<fraction_bits>> sums, uint8_t* to) {
-    std::memcpy(to, sums.data(), sums.size_bytes());
+    // An empty span has no address, and memcpy takes none.
+    if (!sums.empty()) std::memcpy(to, sums.data(), sums.size_bytes());
     return to + sums.size_bytes();
 }
 /// Adds sums that pack() wrote; returns where the next ones are.

@@ -20,11 +20,14 @@
 #include "apps/commands/render.h"
 #include "apps/commands/resume.h"
 #include "apps/commands/session.h"
+#include "apps/request/value_error.h"
 #include "io/build/build.h"
 
 namespace {
 
 using petzval::Session;
+
+constexpr const char* kMore = " (--help says more)";
 
 int fail(Session& session, int exit_code, const std::string& what) {
     session.console.error(what);
@@ -35,8 +38,7 @@ int fail(Session& session, int exit_code, const std::string& what) {
 int stop_parsing(Session& session, const CLI::App& app, const CLI::ParseError& e,
                  const petzval::Spelling& line) {
     if (e.get_exit_code() == 0) return app.exit(e);
-    return fail(session, petzval::kUsage,
-                petzval::explanation(app, e, line) + " (--help says more)");
+    return fail(session, petzval::kUsage, petzval::explanation(app, e, line) + kMore);
 }
 
 int run(CLI::App& app, petzval::Spelling line, Session& session) {
@@ -46,6 +48,8 @@ int run(CLI::App& app, petzval::Spelling line, Session& session) {
         app.parse(std::vector<std::string>(line.words.rbegin(), line.words.rend()));
     } catch (const CLI::ParseError& e) {
         return stop_parsing(session, app, e, line);
+    } catch (const petzval::ValueError& e) {
+        return fail(session, petzval::kUsage, std::string(e.what()) + kMore);
     } catch (...) {
         return petzval::tell_failure(session);
     }
@@ -73,9 +77,8 @@ int main(int argc, char** argv) {
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);
     petzval::Spelling line = petzval::with_current_spellings(argc, argv);
-    const std::vector<std::string> words = petzval::words_of_console(line.words);
-    Session session(petzval::console_style_of(words), petzval::is_quiet(words));
-    session.words = line.words;
+    const petzval::ConsoleWish wish = petzval::console_wish_of(line.words);
+    Session session(wish.style, wish.quiet);
     CLI::App app("A path tracer whose camera is a lens. Every command has --help.");
     app.name("petzval");
     app.option_defaults()->take_last();  // of an option that is given twice

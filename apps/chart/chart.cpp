@@ -8,6 +8,7 @@
 #include <set>
 #include <string_view>
 
+#include "apps/request/option_text.h"
 #include "apps/setup/input_files.h"
 #include "apps/setup/memory.h"
 #include "apps/setup/spectral_wording.h"
@@ -77,8 +78,8 @@ void require_memory(const std::vector<ChartCase>& cases, const ChartFrame& frame
     }
     const double needed = most * frame.crop.width() * frame.crop.height();
     if (const auto shortage = memory_shortage(needed))
-        throw ArgumentError("--size", "",
-                            *shortage + "; give a smaller --size, a --crop or fewer --seeds");
+        throw ArgumentError("⟨size⟩", "",
+                            *shortage + "; give a smaller ⟨size⟩, a ⟨crop⟩ or fewer ⟨seeds⟩");
 }
 
 }  // namespace
@@ -91,7 +92,7 @@ ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, Rende
     const auto elapsed_s = [&] { return clock.wall_s() - start_s; };
     const double least_s = kLeastChartBudget_s * static_cast<double>(request.axes.size());
     if (request.budget_s < least_s)
-        throw ArgumentError("--budget", "", "is too small: {} axes need {:g} s at least",
+        throw ArgumentError("⟨budget⟩", "", "is too small: {} axes need {:g} s at least",
                             request.axes.size(), least_s);
     std::set<std::string> said;  // notices that one of the views gave
     const auto once = [&](const std::string& text) {
@@ -103,7 +104,7 @@ ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, Rende
         frame.reference_name = request.reference->filename().string();
     }
     std::vector<NamedFile> inputs = input_files(request.subject.request);
-    if (request.reference) inputs.push_back({"the file of --reference", *request.reference});
+    if (request.reference) inputs.push_back({"the file of ⟨reference⟩", *request.reference});
     refuse_overwriting_in(request.subject.folder, inputs);
     Folder folder(request.subject.folder);
     const RenderSetup first =
@@ -117,7 +118,7 @@ ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, Rende
     require_memory(cases, frame);
     const bool nothing = std::all_of(cases.begin(), cases.end(),
                                      [](const ChartCase& of) { return of.methods.empty(); });
-    if (nothing) throw ArgumentError("--axis", "", cases.front().remarks.front());
+    if (nothing) throw ArgumentError("⟨axis⟩", "", cases.front().remarks.front());
 
     double weight_left = 0;
     for (const ChartCase& of : cases) weight_left += of.methods.empty() ? 0 : of.weight;
@@ -133,7 +134,7 @@ ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, Rende
             if (cases.size() == 1) throw;
             measured.emplace().of = of;
             measured->of.methods.clear();
-            measured->of.remarks.push_back(std::string("Left out: ") + error.what());
+            measured->of.remarks.push_back(as_options(std::string("Left out: ") + error.what()));
         }
         if (!measured) {
             outcome.stopped = true;
@@ -160,7 +161,7 @@ ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, Rende
         throw OutputError(points.written() ? unwritten : points.message());
     }
     if (outcome.measured == 0 && !outcome.stopped)
-        throw ArgumentError("--budget", "", "is too small for each of the axes");
+        throw ArgumentError("⟨budget⟩", "", "is too small for each of the axes");
     return outcome;
 }
 

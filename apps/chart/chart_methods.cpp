@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "apps/chart/traversal_leaks.h"
+#include "apps/request/option_text.h"
 #include "apps/setup/equivalent_camera.h"
 #include "camera/iris/iris.h"
 #include "core/film/spectral_film.h"
@@ -44,7 +45,7 @@ class Cases {
     }
     using Change = std::function<void(SceneRequest&, RenderJob&)>;
 
-    void remark(std::string text) { case_.remarks.push_back(std::move(text)); }
+    void remark(const std::string& text) { case_.remarks.push_back(as_options(text)); }
     /// Request with a real lens, where wavelengths and rims ask for one: its own, else kChartLens.
     SceneRequest with_lens(const ResolvedScene& found) {
         SceneRequest request = found.request;
@@ -325,7 +326,7 @@ std::vector<ChartCase> chart_cases(const std::vector<ChartAxis>& axes, const Cha
         if (maker.needs_lens && found.report.orthographic)
             throw ArgumentError(subject.request.scene.string(), "",
                                 "axis {} needs a lens, and the camera is orthographic: give "
-                                "--camera or --look-at",
+                                "⟨camera⟩ or ⟨look-at⟩",
                                 name_of(axis));
         for (ChartCase& one : maker.make(found, subject, open)) cases.push_back(std::move(one));
     }

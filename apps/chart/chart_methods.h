@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/setup/option_names.h"
+#include "apps/request/option_names.h"
 #include "apps/setup/render_setup.h"
 #include "integrator/render_job.h"
 

@@ -146,9 +146,9 @@ double relative_variance(const std::vector<Picture>& parts, const Picture& mean)
 /// once_s: what one sample of everything will take.
 void require_time(double once_s, double budget_s, const char* what) {
     if (once_s <= budget_s) return;
-    throw TooSlow("--budget", "",
+    throw TooSlow("⟨budget⟩", "",
                   "is too small: the first samples of {} take {:.0f} s, and {:.0f} s are there for "
-                  "them; give more time or a smaller --size",
+                  "them; give more time or a smaller ⟨size⟩",
                   what, once_s, std::max(budget_s, 0.));
 }
 
@@ -336,7 +336,7 @@ Picture read_reference(const std::filesystem::path& path, V2i size, Rect crop) {
         read.y != picture.y || read.full_width != size.x || read.full_height != size.y)
         throw InputError(path.string(), "",
                          "has {}x{} pixels from {},{} of {}x{}, and the chart {}x{} "
-                         "from {},{} of {}x{}; give the same --size and --crop",
+                         "from {},{} of {}x{}; give the same ⟨size⟩ and ⟨crop⟩",
                          read.width, read.height, read.x, read.y, read.full_width, read.full_height,
                          picture.width, picture.height, picture.x, picture.y, size.x, size.y);
     for (size_t i = 0; i < picture.pixels.size() / 3; ++i)

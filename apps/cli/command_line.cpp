@@ -12,7 +12,7 @@
 #include <iterator>
 #include <string_view>
 
-#include "apps/cli/output_checks.h"
+#include "apps/request/file_names.h"
 #include "io/base/ascii.h"
 #include "io/base/nearest.h"
 #include "io/base/printable.h"
@@ -207,8 +207,12 @@ void resolve_help(const CLI::App& app, Spelling& line) {
     if (asked) line.words.emplace_back("--help");
 }
 
+CLI::ParseError no_such_option(const CLI::App& app, const std::string& option) {
+    return {unknown_option(app, option, {}), CLI::ExitCodes::InvalidError};
+}
+
 std::string explanation(const CLI::App& app, const CLI::ParseError& error, const Spelling& line) {
-    if (is(error, CLI::ExitCodes::InvalidError)) return error.what();  // of resolve_help()
+    if (is(error, CLI::ExitCodes::InvalidError)) return error.what();  // it explains itself
     std::string what = by_words_left(app, error, line);
     if (what.empty()) what = error.what();
     if (is(error, CLI::ExitCodes::ArgumentMismatch))

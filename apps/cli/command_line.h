@@ -17,6 +17,9 @@ void resolve_repeats(CLI::App&);
 /// CLI::ParseError where help is wanted about what is no command.
 void resolve_help(const CLI::App&, Spelling&);
 
+/// Error of an option that a command does not have, with what may have been meant.
+[[nodiscard]] CLI::ParseError no_such_option(const CLI::App&, const std::string& option);
+
 /// Explanation of why words were not parsed, with what was typed and what may have been meant.
 [[nodiscard]] std::string explanation(const CLI::App&, const CLI::ParseError&, const Spelling&);
 

@@ -11,6 +11,7 @@
 #include <ctime>
 #include <exception>
 
+#include "apps/request/option_text.h"
 #include "io/base/ascii.h"
 #include "io/base/atomic_file.h"
 #include "io/base/error.h"
@@ -42,27 +43,25 @@ bool is_log_line(const std::string& line) {
 
 }  // namespace
 
-ConsoleStyle console_style_of(const std::vector<std::string>& words) {
-    auto style = ConsoleStyle::Text;
+ConsoleWish console_wish(const std::vector<std::string>& words) {
+    ConsoleWish wish;
+    wish.quiet = std::find(words.begin(), words.end(), "--quiet") != words.end();
+    if (words.empty() || (words.front() != "render" && words.front() != "resume")) return wish;
     const auto take = [&](std::string_view value) {
-        style = lower(std::string(value)) == "json" ? ConsoleStyle::Json : ConsoleStyle::Text;
+        wish.asks_progress = true;
+        wish.style = lower(std::string(value)) == "json" ? ConsoleStyle::Json : ConsoleStyle::Text;
     };
-    if (words.empty() || (words.front() != "render" && words.front() != "resume")) return style;
     constexpr std::string_view kOption = "--progress", kWithValue = "--progress=";
     for (size_t i = 0; i < words.size(); ++i) {
         if (words[i].starts_with(kWithValue)) take(words[i].substr(kWithValue.size()));
         if (words[i] == kOption && i + 1 < words.size()) take(words[i + 1]);
     }
-    return style;
-}
-
-bool is_quiet(const std::vector<std::string>& words) {
-    return std::find(words.begin(), words.end(), "--quiet") != words.end();
+    return wish;
 }
 
 void print_error_line(std::string line) noexcept {
     try {
-        line = visible(line);
+        line = visible(as_options(line));
     } catch (const std::exception&) {  // no memory: nothing but plain characters, in place
         for (char& c : line)
             if (c < 0x20 || c == 0x7F) c = '?';
@@ -73,7 +72,7 @@ void print_error_line(std::string line) noexcept {
 }
 
 void print_line(const std::string& line) {
-    fmt::print("{}\n", visible(line));
+    fmt::print("{}\n", visible(as_options(line)));
 }
 
 void print_notice(const std::string& text) {
@@ -90,7 +89,8 @@ Console::Console(ConsoleStyle style, bool quiet) : style_(style), quiet_(quiet) 
     if (capture_->before() >= 0) to_ = capture_->before();
 }
 
-void Console::notice(const std::string& text) {
+void Console::notice(const std::string& message) {
+    const std::string text = as_options(message);
     const std::lock_guard lock(mutex_);
     const bool warning = text.starts_with(kWarning);
     if (warning)
@@ -105,7 +105,8 @@ void Console::notice(const std::string& text) {
         put("petzval: " + text);
 }
 
-void Console::error(const std::string& text) {
+void Console::error(const std::string& message) {
+    const std::string text = as_options(message);
     const std::lock_guard lock(mutex_);
     messages_.errors.push_back(text);
     log("error: " + text);

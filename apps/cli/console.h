@@ -33,10 +33,15 @@ struct Messages {
 
 enum class ConsoleStyle : uint8_t { Text, Json };
 
-/// Style that the words of a command line ask for; known before they are parsed, for their errors.
-[[nodiscard]] ConsoleStyle console_style_of(const std::vector<std::string>& words);
-/// Whether they ask for errors only.
-[[nodiscard]] bool is_quiet(const std::vector<std::string>& words);
+/// How a command is asked to talk.
+struct ConsoleWish {
+    ConsoleStyle style = ConsoleStyle::Text;
+    bool quiet = false;          ///< errors only
+    bool asks_progress = false;  ///< in any style
+};
+
+/// Wish in the words of a command line; known before they are parsed, for their errors.
+[[nodiscard]] ConsoleWish console_wish(const std::vector<std::string>& words);
 
 /// Stderr of a command, as text or as one JSON object for each line; docs/guide/render.md has the
 /// schema. Any thread may use it. As JSON it takes in what libraries print, so that nothing else

@@ -3,29 +3,15 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdlib>
 
-#include "io/base/error.h"
+#include "apps/request/value_error.h"
+#include "io/image/display.h"
 #include "io/image/display_files.h"
 
 namespace petzval {
 
-std::vector<CLI::Option*> add_display_options(CLI::App& app, DisplayOptions& o) {
-    const auto not_empty = [](const std::string& text) {
-        return text.empty() ? "is empty" : std::string();
-    };
-    return {app.add_option("--view", o.view,
-                           "display transform of PNG and JPEG: sRGB (default), ACES, raw; with "
-                           "--ocio a view of its default display, or DISPLAY/VIEW")
-                ->check(not_empty),
-            app.add_option("--ocio", o.config,
-                           "OpenColorIO configuration for PNG and JPEG (default: the one that "
-                           "$OCIO names, else Petzval's own)")
-                ->check(not_empty)};
-}
-
-std::string resolve_display(DisplayOptions& o) {
+std::string resolve_display(DisplayRequest& o) {
     const char* from_environment = o.config.empty() ? std::getenv("OCIO") : nullptr;
     if (from_environment) o.config = from_environment;
     const bool foreign = !o.config.empty();
@@ -33,19 +19,20 @@ std::string resolve_display(DisplayOptions& o) {
         // By its name first, to tell what is wrong with the configuration from what with the view.
         if (foreign) static_cast<void>(find_view("", o.config));
     } catch (const InputError& error) {
-        throw CLI::ValidationError(from_environment ? "$OCIO" : "--ocio", error.what());
+        throw ValueError(from_environment ? "$OCIO" : "--ocio", error.what());
     }
+    std::string view;
     try {
-        o.view = find_view(o.view, o.config);
+        view = find_view(o.view, o.config);
     } catch (const InputError& error) {
-        throw CLI::ValidationError("--view", error.what());
+        throw ValueError("--view", error.what());
     }
     if (!foreign) return "";
-    return fmt::format("display: view {} of {}{}", o.view, o.config.string(),
+    return fmt::format("display: view {} of {}{}", view, o.config.string(),
                        from_environment ? ", which $OCIO names" : "");
 }
 
-std::vector<NamedFile> input_files(const DisplayOptions& o) {
+std::vector<NamedFile> input_files(const DisplayRequest& o) {
     const char* from_environment = std::getenv("OCIO");
     std::filesystem::path config = o.config;
     if (config.empty() && from_environment) config = from_environment;

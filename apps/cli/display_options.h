@@ -5,26 +5,18 @@
 #include <string>
 #include <vector>
 
+#include "apps/request/render_request.h"
 #include "io/base/overwrite.h"
-#include "io/image/output.h"
-
-namespace CLI {
-class App;
-class Option;
-}  // namespace CLI
 
 namespace petzval {
 
-/// Declares --view and --ocio; they write to the struct, which must outlive the parsing. Returns
-/// them.
-std::vector<CLI::Option*> add_display_options(CLI::App&, DisplayOptions&);
-
-/// Settles configuration and view: without --ocio the one that the environment variable OCIO names
-/// is taken. Returns what to tell about it, or nothing. Throws CLI::ValidationError.
-[[nodiscard]] std::string resolve_display(DisplayOptions&);
+/// Settles the configuration: without one that is asked for it is that which the environment
+/// variable OCIO names. Returns what to tell about it, or nothing. Throws ValueError, also where
+/// the configuration does not have the view.
+[[nodiscard]] std::string resolve_display(DisplayRequest&);
 
 /// Files of the configuration that is asked for, or that $OCIO names whether or not it is used:
 /// none of them may be written.
-[[nodiscard]] std::vector<NamedFile> input_files(const DisplayOptions&);
+[[nodiscard]] std::vector<NamedFile> input_files(const DisplayRequest&);
 
 }  // namespace petzval

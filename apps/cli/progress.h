@@ -10,12 +10,10 @@
 
 #include "apps/cli/console.h"
 #include "apps/cli/progress_text.h"
+#include "apps/request/render_order.h"
 #include "integrator/render_job.h"
 
 namespace petzval {
-
-/// Percent: lines such as "PROGRESS 37%", for programs that look for one.
-enum class ProgressStyle { Auto, Bar, Lines, Json, Percent, None };
 
 /// Wall time of each phase, in seconds.
 using PhaseTimes = std::array<double, static_cast<size_t>(Phase::Count)>;

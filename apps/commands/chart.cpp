@@ -10,12 +10,10 @@
 #include <system_error>
 
 #include "apps/chart/chart.h"
-#include "apps/cli/camera_options.h"
-#include "apps/cli/parse.h"
-#include "apps/cli/reading_options.h"
-#include "apps/cli/render_options.h"
-#include "apps/cli/spectral_options.h"
+#include "apps/cli/field_options.h"
+#include "apps/cli/readers.h"
 #include "apps/commands/session.h"
+#include "apps/request/parse.h"
 #include "io/base/ascii.h"
 #include "io/base/nearest.h"
 #include "io/image/picture_files.h"
@@ -26,13 +24,9 @@ namespace {
 /// Chart options as given; the texts become values in resolve().
 struct ChartOptions {
     ChartRequest request;
-    SpectralOptions spectral;
-    CameraOptions camera;
-    ReadingOptions reading;
+    RenderOrder order;
     std::vector<std::string> axes;
-    std::string size = "192x108", crop, budget = "10m", background;
-    int threads = 0;
-    bool quiet = false;
+    std::string budget = "10m";
 };
 
 /// Endings of files: a folder that is named so was meant as one.
@@ -51,27 +45,19 @@ std::string known_axes() {
 
 void add_chart_options(CLI::App& app, ChartOptions& o) {
     ChartRequest& r = o.request;
-    app.add_option("scene", r.subject.request.scene, "glTF scene, .gltf or .glb")->required();
+    o.order.render.scene.size = {192, 108};
+    add_field_options(app, o.order, kChart);
     app.add_option("--axis", o.axes, known_axes() + "; default all; may be given more than once")
         ->allow_extra_args(false);
     app.add_option("-o,--output", r.subject.folder, "folder of the report; made if need be")
         ->required();
     app.add_option("--budget", o.budget, "time for all of it: 60s, 10m (default), 1h30m");
-    app.add_option("--size", o.size, "WIDTHxHEIGHT in pixels (default 192x108)");
-    app.add_option("--crop", o.crop, "x,y,width,height: only these pixels of the full frame");
     app.add_option("--reference", r.reference,
                    "EXR of the same frame, in place of references that are rendered");
     app.add_option("--seeds", r.frame.seeds, "renders of each method (default 5)")
         ->transform(whole_number_between(kChartSeeds, 1000));
     app.add_option("--exposure", r.frame.exposure_ev, "stops, of pictures and of FLIP")
         ->transform(number_between(-100, 100, kStops));
-    app.add_option("--threads", o.threads, "default: one for each core that can be had")
-        ->transform(whole_number_between(1, kMostThreads));
-    add_reading_options(app, o.reading);
-    app.add_flag("--quiet", o.quiet, "print nothing but errors");
-    add_camera_options(app, o.camera);
-    add_light_options(app, r.subject.request, o.background);
-    add_spectral_options(app, o.spectral);
 }
 
 std::vector<ChartAxis> parse_axes(const std::vector<std::string>& words) {
@@ -85,8 +71,7 @@ std::vector<ChartAxis> parse_axes(const std::vector<std::string>& words) {
     for (const std::string& word : words) {
         const auto named = [&](const auto& known) { return known.name == word; };
         if (word != "all" && std::ranges::none_of(kOptionNames<ChartAxis>, named))
-            throw CLI::ValidationError("--axis",
-                                       fmt::format("\"{}\" is none of {}{}", word, known_axes(),
+            throw ValueError("--axis", fmt::format("\"{}\" is none of {}{}", word, known_axes(),
                                                    did_you_mean(word, axis_words())));
     }
     return axes;
@@ -97,25 +82,18 @@ void resolve(ChartOptions& o) {
     SceneRequest& scene = r.subject.request;
     const std::filesystem::path& folder = r.subject.folder;
     if (std::ranges::find(kFiles, lower(folder.extension().string())) != kFiles.end())
-        throw CLI::ValidationError(
+        throw ValueError(
             "--output",
             fmt::format("a report is a folder, and \"{}\" is named as a file; type -o {}",
                         folder.string(), (folder.parent_path() / folder.stem()).string()));
     r.axes = parse_axes(o.axes);
     r.budget_s = parse_duration_s("--budget", o.budget);
-    r.frame.size = scene.size = parse_size("--size", o.size);
-    r.frame.crop = {0, 0, scene.size.x, scene.size.y};
-    if (!o.crop.empty()) r.frame.crop = parse_crop("--crop", o.crop, scene.size);
-    if (!o.spectral.bins.empty())
-        throw CLI::ValidationError("--bins", "is for render; a chart's axis spectral has its own");
-    scene.spectral = o.spectral.request;
-    scene.camera = resolve(o.camera, scene.size, o.reading.time);
-    resolve_background(o.background, scene);
-    scene.picture_memory_bytes = o.reading.memory_bytes();
-    scene.scope = o.reading.scope();
-    scene.choices = o.reading.all_choices();
-    if (scene.choices.animation) scene.choices.animation->open_s = scene.camera.open_s();
-    if (o.threads == 0) o.threads = usual_threads();
+    if (o.order.render.scene.spectral.bins)
+        throw ValueError("--bins", "is for render; a chart's axis spectral has its own");
+    check(o.order.render);
+    scene = resolved_scene(o.order.render);
+    r.frame.size = scene.size;
+    r.frame.crop = o.order.render.crop.value_or(Rect{0, 0, scene.size.x, scene.size.y});
 }
 
 void print_case(const MeasuredCase& of) {
@@ -137,15 +115,16 @@ void print_case(const MeasuredCase& of) {
 int chart_command(ChartOptions& o, Interrupt& interrupt) {
     resolve(o);
     flush_denormals();
-    TbbExecutor executor(o.threads);
-    limit_picture_threads(o.threads);
-    const auto notice = [quiet = o.quiet](const std::string& text) {
+    const int threads = threads_of(o.order.run);
+    TbbExecutor executor(threads);
+    limit_picture_threads(threads);
+    const auto notice = [quiet = o.order.run.quiet](const std::string& text) {
         if (!quiet) print_notice(text);
     };
     load_image_codec();  // before minutes of work: pictures will be written
     interrupt.arm();
     const auto finished = [&](const MeasuredCase& of) {
-        if (o.quiet) return;
+        if (o.order.run.quiet) return;
         try {
             print_case(of);
         } catch (const std::system_error&) {  // the report matters more than what is printed
@@ -160,7 +139,7 @@ int chart_command(ChartOptions& o, Interrupt& interrupt) {
                    : "stopped: nothing was measured whole, and no report is written");
         return kStopped;
     }
-    if (!o.quiet) print_line(page);
+    if (!o.order.run.quiet) print_line(page);
     return 0;
 }
 

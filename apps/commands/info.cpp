@@ -6,7 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/cli/console.h"
-#include "apps/cli/reading_options.h"
+#include "apps/cli/field_options.h"
 #include "apps/commands/info_report.h"
 #include "apps/setup/camera_model.h"
 #include "apps/setup/glass_remarks.h"
@@ -20,8 +20,7 @@ namespace {
 constexpr size_t kMostCameras = 10;
 
 struct InfoOptions {
-    std::filesystem::path scene;
-    ReadingOptions reading;
+    RenderOrder order;
     bool json = false;
 };
 
@@ -58,9 +57,9 @@ std::vector<ExtensionInFile> refused_extensions(const std::filesystem::path& sce
 }
 
 void tell_refusal(const InfoOptions& o, const std::string& error) {
-    const std::vector<ExtensionInFile> extensions = refused_extensions(o.scene);
+    const std::vector<ExtensionInFile> extensions = refused_extensions(o.order.render.scene.scene);
     if (o.json) {
-        print_refusal_json(o.scene, error, extensions);
+        print_refusal_json(o.order.render.scene.scene, error, extensions);
     } else if (!extensions.empty()) {
         fmt::print("extensions\n");
         for (const std::string& line : table_of(extensions)) print_line("  " + line);
@@ -68,22 +67,24 @@ void tell_refusal(const InfoOptions& o, const std::string& error) {
 }
 
 void info_command(const InfoOptions& o) {
-    PictureBudget pictures = o.reading.pictures();
-    GltfChoices choices = o.reading.all_choices();
+    check(o.order.render);
+    const SceneRequest scene = resolved_scene(o.order.render);
+    PictureBudget pictures = scene.pictures();
+    GltfChoices choices = scene.choices;
     choices.checks_all_animations = true;
     InfoReport report;
-    report.path = o.scene;
-    report.variant = o.reading.choices.variant;
+    report.path = scene.scene;
+    report.variant = choices.variant;
     try {
-        report.file = load_gltf(o.scene, o.reading.scope(), pictures, choices);
-        check_camera_files(o.scene, o.reading.scope(), report.file.cameras);
+        report.file = load_gltf(scene.scene, scene.scope, pictures, choices);
+        check_camera_files(scene.scene, scene.scope, report.file.cameras);
     } catch (const ArgumentError&) {
         throw;
     } catch (const InputError& error) {
         tell_refusal(o, error.what());
         throw;
     }
-    append_placement(o.reading.scope(), report);
+    append_placement(scene.scope, report);
     o.json ? print_info_json(report) : print_info(report);
 }
 
@@ -93,9 +94,8 @@ void add_info_command(CLI::App& app) {
     auto options = std::make_shared<InfoOptions>();
     CLI::App* command =
         app.add_subcommand("info", "print what a glTF file holds and what of it is honoured");
-    command->add_option("scene", options->scene, "glTF scene, .gltf or .glb")->required();
     command->add_flag("--json", options->json, "print it for programs");
-    add_reading_options(*command, options->reading);
+    add_field_options(*command, options->order, kInfo);
     command->callback([options] { info_command(*options); });
 }
 

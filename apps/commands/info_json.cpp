@@ -3,6 +3,7 @@
 
 #include "apps/cli/or_null.h"
 #include "apps/commands/info_report.h"
+#include "apps/request/option_text.h"
 #include "io/gltf/info.h"
 
 namespace petzval {
@@ -90,7 +91,17 @@ ordered_json json_of(const V3f& v) {
     return {v.x, v.y, v.z};
 }
 
-void print(const ordered_json& out) {
+// JSON whose texts spell fields as options.
+ordered_json spelled(const ordered_json& json) {
+    if (json.is_string()) return as_options(json.get<std::string>());
+    ordered_json out = json;
+    if (json.is_structured())
+        for (auto& [key, value] : out.items()) value = spelled(value);
+    return out;
+}
+
+void print(const ordered_json& json) {
+    const ordered_json out = spelled(json);
     // Names of files need not be UTF-8, and names in files may hold anything.
     fmt::print("{}\n", out.dump(2, ' ', true, ordered_json::error_handler_t::replace));
 }

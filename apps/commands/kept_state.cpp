@@ -33,14 +33,20 @@ void refuse_loss(const fs::path& file) {
 
 }  // namespace
 
-KeptState::KeptState(KeepOptions& keep, std::vector<std::string> command) : keep_(keep) {
-    record_.command = std::move(command);
+KeptState::KeptState(const RenderOrder& order, RenderFiles files,
+                     const std::optional<fs::path>& resumed_from)
+    : files_(std::move(files)),
+      resumed_(resumed_from.has_value()),
+      skips_existing_(order.run.skip_existing) {
+    RenderOrder alone = order;
+    alone.sequence = {};
+    record_.fields = fields_of(alone);
     std::error_code error;
     record_.folder = fs::current_path(error);
-    if (keep.resumed_from) keep.state = keep.resumed_from;
-    const bool may_go_on = keep.resumed_from || keep.skip_existing;
-    if (keep.state && !keep.state_is_wanted && !may_go_on && fs::exists(*keep.state, error))
-        refuse_loss(*keep.state);
+    if (resumed_) files_.state = resumed_from;
+    if (files_.state && !files_.state_stays && !resumed_ && !skips_existing_ &&
+        fs::exists(*files_.state, error))
+        refuse_loss(*files_.state);
 }
 
 void KeptState::set(FilmShape shape, SampleRange samples, RenderFacts facts,
@@ -53,12 +59,11 @@ void KeptState::set(FilmShape shape, SampleRange samples, RenderFacts facts,
 }
 
 std::optional<Film> KeptState::take_up(Compare compare, const Notice& notice) {
-    const bool resumed = keep_.resumed_from.has_value();
-    const auto& file = keep_.state;
+    const auto& file = files_.state;
     std::error_code error;
     if (!file || !fs::exists(*file, error)) return std::nullopt;
-    if (!resumed && !keep_.skip_existing) {
-        if (!keep_.state_is_wanted)
+    if (!resumed_ && !skips_existing_) {
+        if (!files_.state_stays)
             notice(
                 fmt::format("warning: {} is there from a render before, and the first checkpoint "
                             "takes its place; petzval resume {} would go on with that one",
@@ -83,8 +88,8 @@ std::optional<Film> KeptState::take_up(Compare compare, const Notice& notice) {
         notice(fmt::format("goes on with {}, which has {}", file->string(), share_text(header)));
         return film;
     } catch (const InputError& refused) {
-        if (resumed) throw;
-        if (!keep_.state_is_wanted) refuse_loss(*file);
+        if (resumed_) throw;
+        if (!files_.state_stays) refuse_loss(*file);
         notice(fmt::format("warning: {}; it will be replaced", refused.what()));
         return std::nullopt;
     }
@@ -101,9 +106,9 @@ void KeptState::write(const fs::path& to, const Film& film, const RunFigures& no
 void KeptState::remove_unfinished(const std::vector<fs::path>& pictures) const {
     std::error_code error;
     // A state that was complete may be somebody's part of a picture.
-    const bool of_others = was_complete_ && !keep_.resumed_from;
-    if (keep_.state && !keep_.state_is_wanted && (wrote_ || goes_on_) && !of_others)
-        fs::remove(*keep_.state, error);
+    const bool of_others = was_complete_ && !resumed_;
+    if (files_.state && !files_.state_stays && (wrote_ || goes_on_) && !of_others)
+        fs::remove(*files_.state, error);
     if (!goes_on_) return;
     for (const fs::path& picture : pictures) fs::remove(partial_name(picture), error);
 }

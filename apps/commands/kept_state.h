@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/cli/keep_options.h"
+#include "apps/request/file_names.h"
 #include "apps/state/run_record.h"
 #include "core/film/film.h"
 #include "io/base/notice.h"
@@ -17,10 +17,13 @@ namespace petzval {
 /// State of one render.
 class KeptState {
   public:
-    /// keep must outlive it. A state that was moved goes on where it is. Throws ArgumentError where
-    /// a file lies in its place that would be lost: none of a render, or a finished one that nobody
-    /// asks to replace.
-    KeptState(KeepOptions& keep, std::vector<std::string> command);
+    /// resumed_from: a state whose samples it goes on from, and where it is written. Throws
+    /// ArgumentError where a file lies in its place that would be lost: none of a render, or a
+    /// finished one that nobody asks to replace.
+    KeptState(const RenderOrder&, RenderFiles files,
+              const std::optional<std::filesystem::path>& resumed_from);
+
+    [[nodiscard]] const RenderFiles& files() const { return files_; }
 
     /// What the render is, once that is known.
     void set(FilmShape, SampleRange, RenderFacts, const DisplayOptions&);
@@ -37,7 +40,8 @@ class KeptState {
     void remove_unfinished(const std::vector<std::filesystem::path>& pictures) const;
 
   private:
-    KeepOptions& keep_;
+    RenderFiles files_;
+    bool resumed_ = false, skips_existing_ = false;
     FilmShape shape_;
     SampleRange samples_;
     RunRecord record_;  ///< figures: of the runs before

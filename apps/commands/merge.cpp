@@ -5,11 +5,8 @@
 #include <algorithm>
 #include <memory>
 
-#include "apps/cli/display_options.h"
-#include "apps/cli/keep_options.h"
-#include "apps/cli/output_checks.h"
-#include "apps/cli/reading_options.h"
 #include "apps/commands/render_files.h"
+#include "apps/request/file_names.h"
 #include "apps/setup/input_files.h"
 #include "apps/state/merge.h"
 #include "io/base/error.h"
@@ -49,8 +46,9 @@ int merge(const MergeOptions& o, Session& session) {
     const MergedState merged = merge_states(o.states);
     const Film& film = merged.film;
     check_display(merged.record);
-    std::vector<fs::path> pictures = o.outputs;
-    const std::vector<fs::path> states = take_states(pictures);
+    std::vector<fs::path> pictures, states;
+    for (const fs::path& output : o.outputs)
+        (is_state_name(output) ? states : pictures).push_back(output);
     std::vector<WriteOutcome> outcomes =
         write_pictures(pictures, merged.record.display, {film, merged.samples, merged.record.facts},
                        false, session.console);

@@ -5,12 +5,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "apps/cli/console.h"
-#include "apps/cli/render_options.h"
+#include "apps/cli/field_options.h"
 #include "apps/plan/plan.h"
 #include "apps/plan/plan_wording.h"
 #include "apps/setup/input_files.h"
@@ -22,7 +21,7 @@ namespace petzval {
 namespace {
 
 struct PlanOptions {
-    RenderOptions render;
+    RenderOrder order;
     bool json = false;
 };
 
@@ -43,28 +42,17 @@ std::string quoted(const std::string& word) {
     return out + "'";
 }
 
-// Command that renders by the plan: the options given, with those of the plan in their place.
-std::string command_of(const CLI::App& app, const Plan& plan) {
-    const std::vector<PlanOption> options = options_of(plan);
-    std::map<std::string, std::optional<std::string>> placed(options.begin(), options.end());
-    for (const char* own : {"--tolerance", "--json", "--quiet", "--help"}) placed[own] = {};
+// Command that renders by the plan: what was asked for, with the plan's choices in place.
+std::string command_of(RenderOrder order, const Plan& plan) {
+    order.render = carried_out(plan, std::move(order.render));
+    order.render.tolerance = kUsualTolerance;  // nothing is left to choose
+    order.run.quiet = false;
+    order.run.outputs = {"out.exr"};
+    for (const NamedFile& input : input_files(plan.scene))
+        if (same_file(input.path, "out.exr")) order.run.outputs = {"picture.exr"};
     std::string command = "petzval render";
-    for (const CLI::Option* option : app.get_options()) {
-        const std::string name = option->get_name();
-        if (option->count() == 0 || placed.contains(name)) continue;
-        const bool flag = option->get_expected_max() == 0, positional = option->get_positional();
-        if (flag) command += " " + name;
-        for (const std::string& value : option->reduced_results())
-            if (!flag) command += (positional ? "" : " " + name) + " " + quoted(value);
-    }
-    for (const auto& [name, value] : options)
-        if (value) command += " " + name + " " + quoted(*value);
-    const auto is_read = [&](const char* name) {
-        const std::vector<NamedFile> inputs = input_files(plan.scene);
-        return std::any_of(inputs.begin(), inputs.end(),
-                           [&](const NamedFile& one) { return same_file(one.path, name); });
-    };
-    return command + (is_read("out.exr") ? " -o picture.exr" : " -o out.exr");
+    for (const std::string& word : words_of(order)) command += " " + quoted(word);
+    return command;
 }
 
 std::string duration(double s) {
@@ -120,18 +108,20 @@ void print_json(const Plan& plan, const std::string& command) {
     fmt::print("{}\n", out.dump(2, ' ', true, nlohmann::json::error_handler_t::replace));
 }
 
-void plan_command(PlanOptions& o, const CLI::App& app) {
-    RenderOptions& r = o.render;
-    const RenderFrame frame = resolve(r);
+void plan_command(PlanOptions& o) {
+    const RenderOrder& order = o.order;
+    check(order.render);
+    const int threads = threads_of(order.run);
     flush_denormals();
-    TbbExecutor executor(r.threads);
-    limit_picture_threads(r.threads);
+    TbbExecutor executor(threads);
+    limit_picture_threads(threads);
+    const RenderRequest& request = order.render;
     const Plan plan =
-        make_plan({r.scene, r.job, r.path, frame.tolerance, app.count("--light-choice") == 0},
+        make_plan({resolved_scene(request), job_of(request), request.path, request.tolerance},
                   executor, [&](const std::string& text) {
-                      if (!r.quiet) print_notice(text);
+                      if (!order.run.quiet) print_notice(text);
                   });
-    const std::string command = command_of(app, plan);
+    const std::string command = command_of(order, plan);
     o.json ? print_json(plan, command) : print(plan, command);
 }
 
@@ -141,10 +131,9 @@ void add_plan_command(CLI::App& app) {
     auto options = std::make_shared<PlanOptions>();
     CLI::App* command = app.add_subcommand(
         "plan", "print the cheapest way to render a scene within a tolerance, and why");
-    add_plan_options(*command, options->render);
+    add_field_options(*command, options->order, kPlan);
     command->add_flag("--json", options->json, "print it for programs");
-    command->add_flag("--quiet", options->render.quiet, "nothing but the plan");
-    command->callback([options, command] { plan_command(*options, *command); });
+    command->callback([options] { plan_command(*options); });
 }
 
 }  // namespace petzval

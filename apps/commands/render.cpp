@@ -2,41 +2,38 @@
 #include "apps/commands/render.h"
 
 #include <CLI/CLI.hpp>
+#include <memory>
 
 #include "apps/cli/command_line.h"
+#include "apps/cli/field_options.h"
 #include "apps/commands/render_one.h"
 #include "apps/commands/render_sequence.h"
 
 namespace petzval {
 
-ParsedRender parse_render(const std::vector<std::string>& words) {
-    ParsedRender out{std::make_unique<CLI::App>(), std::make_unique<RenderOptions>()};
-    out.app->option_defaults()->take_last();  // of an option that is given twice
-    CLI::App* command = out.app->add_subcommand("render");
-    add_render_options(*command, *out.options);
-    out.app->name("petzval");
-    try {
-        // CLI11 takes the words from the end of a vector.
-        out.app->parse(std::vector<std::string>(words.rbegin(), words.rend()));
-    } catch (const CLI::ExtrasError& error) {
-        throw CLI::ParseError(explanation(*out.app, error, {}), CLI::ExitCodes::ExtrasError);
-    }
-    return out;
-}
-
-int run_render(RenderOptions& o, Session& session) {
+int run_render(const RenderOrder& order, Session& session,
+               const std::optional<std::filesystem::path>& resumed_from) {
     const Notice notice = [&](const std::string& text) { session.console.notice(text); };
-    if (o.keep.log) session.console.log_to(*o.keep.log);
-    if (is_sequence(o)) return render_sequence(o, notice, session);
+    check_sequence(order);
+    if (order.run.log) session.console.log_to(*order.run.log);
+    if (order.sequence.several()) return render_sequence(order, notice, session);
     SequencePlace alone;
-    return render_one(o, session.words, notice, session, alone);
+    return render_one(order, resumed_from, notice, session, alone);
 }
 
 void add_render_command(CLI::App& app, Session& session) {
-    auto options = std::make_shared<RenderOptions>();
+    auto order = std::make_shared<RenderOrder>();
     CLI::App* command = app.add_subcommand("render", "render a glTF scene to EXR, PNG or JPEG");
-    add_render_options(*command, *options);
-    command->callback([options, &session] { session.exit_code = run_render(*options, session); });
+    add_field_options(*command, *order, kRender);
+    CLI::Option* const output = command->get_option("--output")->required();
+    command->get_option("--sheet")->each([output](const std::string&) {
+        output->required(false);  // the sheet is one
+    });
+    command->callback([order, command, &session] {
+        if (const auto& sweep = order->sequence.sweep; sweep && !find_field(sweep->field))
+            throw no_such_option(*command, "--" + sweep->field);
+        session.exit_code = run_render(*order, session);
+    });
 }
 
 }  // namespace petzval

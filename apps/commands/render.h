@@ -2,12 +2,11 @@
 // petzval render.
 #pragma once
 
-#include <memory>
-#include <string>
-#include <vector>
+#include <filesystem>
+#include <optional>
 
-#include "apps/cli/render_options.h"
 #include "apps/commands/session.h"
+#include "apps/request/render_order.h"
 
 namespace CLI {
 class App;
@@ -18,17 +17,9 @@ namespace petzval {
 /// Declares the command; its exit code goes to the session, which must outlive the app.
 void add_render_command(CLI::App&, Session&);
 
-/// Options of a render from the words of its command line.
-struct ParsedRender {
-    std::unique_ptr<CLI::App> app;  ///< the options point into it
-    std::unique_ptr<RenderOptions> options;
-};
-
-/// Parses the words of a render, "render" first. Throws CLI::ParseError.
-[[nodiscard]] ParsedRender parse_render(const std::vector<std::string>& words);
-
-/// Renders a picture or a sequence. session.words: the command, by which a state is resumed. The
-/// exit code.
-[[nodiscard]] int run_render(RenderOptions&, Session&);
+/// Renders a picture or a sequence. resumed_from: a state whose samples it goes on from. The exit
+/// code.
+[[nodiscard]] int run_render(const RenderOrder&, Session&,
+                             const std::optional<std::filesystem::path>& resumed_from = {});
 
 }  // namespace petzval

@@ -2,6 +2,7 @@
 #include "apps/commands/render_files.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cinttypes>
@@ -17,30 +18,55 @@ namespace petzval {
 
 namespace fs = std::filesystem;
 
-void check_outputs(RenderOptions& o, const Rect& crop) {
-    std::vector<NamedFile>& outputs = o.scene.outputs;
+void check_outputs(RenderOrder& order, const RenderFiles& files) {
+    SceneRequest& scene = order.render.scene;
+    const RunRequest& run = order.run;
+    std::vector<NamedFile>& outputs = scene.outputs;
     std::vector<fs::path> partials;
-    for (const auto& output : o.outputs) {
-        outputs.push_back({"-o", output});
-        const auto partial = partial_name(output);  // which the formats of a name share
+    for (const auto& picture : files.pictures) {
+        outputs.push_back({"-o", picture});
+        const auto partial = partial_name(picture);  // which the formats of a name share
         const auto same = [&](const auto& other) { return same_file(other, partial); };
         if (std::none_of(partials.begin(), partials.end(), same)) partials.push_back(partial);
     }
-    if (o.stats) outputs.push_back({"--stats", *o.stats});
-    if (o.keep.preview) outputs.push_back({"--preview", *o.keep.preview});
-    if (o.sequence.sheet) outputs.push_back({"--sheet", *o.sequence.sheet});
-    if (o.keep.log) outputs.push_back({"--log", *o.keep.log});
+    if (run.stats) outputs.push_back({"--stats", *run.stats});
+    if (run.preview) outputs.push_back({"--preview", *run.preview});
+    if (order.sequence.sheet) outputs.push_back({"--sheet", *order.sequence.sheet});
+    if (run.log) outputs.push_back({"--log", *run.log});
     for (const auto& partial : partials)
         outputs.push_back({"the picture of a render that is stopped", partial});
-    if (o.keep.state) outputs.push_back({"the state of the render", *o.keep.state});
-    refuse_overwriting(outputs, input_files(o.scene));
-    refuse_overwriting(outputs, input_files(o.display));
+    if (files.state) outputs.push_back({"the state of the render", *files.state});
+    const DisplayRequest& asked = order.render.display;
+    refuse_overwriting(outputs, input_files(scene));
+    refuse_overwriting(outputs, input_files(asked));
     refuse_overwriting(outputs, own_files());
-    for (const auto& output : o.outputs)
-        check_output(output, o.display, crop.width(), crop.height());
-    if (o.keep.preview) check_output(*o.keep.preview, o.display, crop.width(), crop.height());
-    if (o.keep.state) check_writable(*o.keep.state);
-    if (o.stats) check_writable(*o.stats);
+    const Rect crop = order.render.crop.value_or(Rect{0, 0, scene.size.x, scene.size.y});
+    const DisplayOptions display{0, asked.view, asked.config};
+    for (const auto& picture : files.pictures)
+        check_output(picture, display, crop.width(), crop.height());
+    if (run.preview) check_output(*run.preview, display, crop.width(), crop.height());
+    if (files.state) check_writable(*files.state);
+    if (run.stats) check_writable(*run.stats);
+}
+
+std::vector<std::string> settle_display(RenderOrder& order, const RenderFiles& files) {
+    DisplayRequest& display = order.render.display;
+    std::vector<std::string> remarks;
+    if (!files.state_stays && !order.sequence.sheet &&
+        std::ranges::none_of(files.pictures, is_for_display)) {
+        std::vector<std::string> idle;
+        if (display.exposure) idle.emplace_back("--exposure");
+        if (!display.view.empty()) idle.emplace_back("--view");
+        if (!display.config.empty()) idle.emplace_back("--ocio");
+        if (idle.empty()) return {};
+        remarks.push_back(fmt::format(
+            "warning: {}: without effect, as EXR keeps the light; add -o FILE.png, or show the EXR "
+            "later by petzval image view",
+            fmt::join(idle, ", ")));
+    }
+    if (std::string told = resolve_display(display); !told.empty())
+        remarks.push_back(std::move(told));
+    return remarks;
 }
 
 void tell_bad_samples(const Film& film, const Notice& notice) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/cli/console.h"
-#include "apps/cli/render_options.h"
+#include "apps/request/file_names.h"
 #include "apps/state/finished_film.h"
 #include "core/film/film.h"
 #include "io/base/notice.h"
@@ -16,7 +16,11 @@ namespace petzval {
 
 /// Refuses files that could not be written, and those that are read. Adds the names to the request,
 /// so that a scene which reads one of them is refused. Throws OutputError and ArgumentError.
-void check_outputs(RenderOptions&, const Rect& crop);
+void check_outputs(RenderOrder&, const RenderFiles&);
+
+/// Settles how a display shows the pictures, where one of them is for a display. Returns what to
+/// tell about it. Throws ValueError.
+[[nodiscard]] std::vector<std::string> settle_display(RenderOrder&, const RenderFiles&);
 
 /// Writes all pictures, whichever of them fail; each failure is told. stopped: unfinished ones,
 /// NAME.partial.exr.

@@ -6,12 +6,13 @@
 #include <algorithm>
 #include <memory>
 
-#include "apps/cli/display_options.h"
+#include "apps/cli/progress.h"
 #include "apps/commands/kept_state.h"
 #include "apps/commands/render_files.h"
 #include "apps/setup/develop.h"
 #include "apps/setup/exposure.h"
 #include "apps/setup/input_files.h"
+#include "apps/setup/memory.h"
 #include "apps/setup/stats_file.h"
 #include "apps/state/keeper.h"
 #include "io/base/clock.h"
@@ -27,27 +28,35 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_for_display(const fs::path& picture) {
-    return picture_format(picture) != PictureFormat::Exr;
-}
-
 /// One render, step by step.
 class OneRender {
   public:
-    OneRender(RenderOptions& o, const std::vector<std::string>& command, const Notice& notice,
-              Session& session)
-        : o_(o), notice_(notice), session_(session), frame_(resolve(o)), kept_(o.keep, command) {
+    OneRender(const RenderOrder& order, const std::optional<fs::path>& resumed_from,
+              const Notice& notice, Session& session)
+        : order_(order),
+          notice_(notice),
+          session_(session),
+          job_(job_of(order.render)),
+          kept_(order, checked_files(order), resumed_from) {
         session_.console.forget_messages();  // of the pictures before
-        check_outputs(o_, frame_.crop);
-        shape_ = {o_.scene.size, frame_.crop, frame_.aovs, o_.scene.spectral.bins};
-        samples_ = {o_.job.first_sample, o_.job.end_sample};
+        remarks_ = settle_display(order_, kept_.files());
+        const SceneRequest& scene = order.render.scene;
+        const Rect all{0, 0, scene.size.x, scene.size.y};
+        shape_ = {scene.size, order.render.crop.value_or(all), order.render.layers,
+                  scene.spectral.bins};
+        require_memory();
+        check_outputs(order_, kept_.files());
+        samples_ = {job_.first_sample, job_.end_sample};
     }
     int run(SequencePlace&);
 
   private:
-    [[nodiscard]] RenderRequest request() const;
+    [[nodiscard]] static RenderFiles checked_files(const RenderOrder&);
+    void require_memory() const;
     [[nodiscard]] const RenderSetup& setup() const { return render_->setup(); }
-    [[nodiscard]] const DisplayOptions& display() const { return render_->request().display; }
+    [[nodiscard]] const DisplayOptions& display() const { return render_->display(); }
+    [[nodiscard]] const std::vector<fs::path>& pictures() const { return kept_.files().pictures; }
+    [[nodiscard]] const std::optional<fs::path>& state() const { return kept_.files().state; }
     [[nodiscard]] bool is_there(const std::optional<Film>&) const;
     [[nodiscard]] RenderResult render(Progress&);
     [[nodiscard]] int write_all(const RenderResult&, Progress&, const SequencePlace&);
@@ -58,53 +67,57 @@ class OneRender {
     void advise_exposure();
     [[nodiscard]] RunReport report_of(const Progress&, std::vector<WriteOutcome>,
                                       bool stopped) const;
-    [[nodiscard]] std::vector<std::string> found_words() const;
+    [[nodiscard]] FoundChoices found() const;
     [[nodiscard]] RunFigures figures_now(const PathStats&, int workers) const;
     [[nodiscard]] ProgressGoal goal(std::pair<int, int> part_of) const;
 
-    RenderOptions& o_;
+    RenderOrder order_;
     const Notice& notice_;
     Session& session_;
-    RenderFrame frame_;
+    RenderJob job_;
+    KeptState kept_;
+    std::vector<std::string> remarks_;
     FilmShape shape_;
     SampleRange samples_;
-    KeptState kept_;
     RenderSession* render_ = nullptr;
     double render_start_s_ = 0, render_start_cpu_s_ = 0;
 };
 
+RenderFiles OneRender::checked_files(const RenderOrder& order) {
+    check(order);
+    return files_of(order);
+}
+
+void OneRender::require_memory() const {
+    const SceneRequest& scene = order_.render.scene;
+    const double pixels =
+        static_cast<double>(shape_.crop.width()) * static_cast<double>(shape_.crop.height());
+    const uint64_t there_bytes =
+        std::min(usable_memory_bytes(), scene.picture_memory_bytes.value_or(UINT64_MAX));
+    const auto pixel_bytes =
+        static_cast<double>(Film::bytes_per_pixel(shape_.layers.size(), shape_.bins));
+    if (const auto shortage = memory_shortage(pixels * pixel_bytes, there_bytes))
+        throw OutOfMemory("--size: " + *shortage);
+}
+
 ProgressGoal OneRender::goal(std::pair<int, int> part_of) const {
     const uint64_t pixels =
-        static_cast<uint64_t>(frame_.crop.width()) * static_cast<uint64_t>(frame_.crop.height());
-    ProgressGoal goal{pixels * o_.job.replicates, {}, o_.job.time_limit_s};
-    if (o_.job.end_sample < kMostSamples || !o_.job.time_limit_s)
+        static_cast<uint64_t>(shape_.crop.width()) * static_cast<uint64_t>(shape_.crop.height());
+    ProgressGoal goal{pixels * job_.replicates, {}, job_.time_limit_s};
+    if (job_.end_sample < kMostSamples || !job_.time_limit_s)
         goal.total = pixels * samples_.count();
     goal.part_of = part_of;
     return goal;
 }
 
-RenderRequest OneRender::request() const {
-    return {.scene = o_.scene,
-            .crop = frame_.crop,
-            .layers = frame_.aovs,
-            .job = o_.job,
-            .path = o_.path,
-            .tolerance = frame_.tolerance,
-            .fps = o_.reading.time.fps,
-            .display = o_.display,
-            .asks_exposure = o_.exposure.has_value(),
-            .asks_view = o_.asks_view,
-            .finds_exposure = o_.auto_exposure};
-}
-
 bool OneRender::is_there(const std::optional<Film>& film) const {
-    if (!o_.keep.skip_existing) return false;
-    if (o_.outputs.empty() && !o_.keep.state) return false;
-    if (o_.keep.state_is_wanted && !(film && film->taken_range().least == samples_.count()))
+    if (!order_.run.skip_existing) return false;
+    if (pictures().empty() && !state()) return false;
+    if (kept_.files().state_stays && !(film && film->taken_range().least == samples_.count()))
         return false;
     std::optional<SampleRange> wanted = samples_;
-    if (o_.job.time_limit_s) wanted.reset();
-    return std::all_of(o_.outputs.begin(), o_.outputs.end(), [&](const fs::path& output) {
+    if (job_.time_limit_s) wanted.reset();
+    return std::ranges::all_of(pictures(), [&](const fs::path& output) {
         return is_up_to_date(output, kept_.record().facts, shape_, wanted);
     });
 }
@@ -115,7 +128,7 @@ RunFigures OneRender::figures_now(const PathStats& stats, int workers) const {
             setup().from.bvh_s,
             steady_s() - render_start_s_,
             process_cpu_s() - render_start_cpu_s_,
-            o_.threads,
+            render_->threads(),
             workers,
             peak_memory_mib()};
 }
@@ -126,16 +139,18 @@ RenderResult OneRender::render(Progress& progress) {
     render_start_s_ = steady_s();
     render_start_cpu_s_ = process_cpu_s();
     const Film& film = render_->film();
-    Keeper keeper({checkpoint_interval_s(o_.keep, shape_.bytes()),
+    const RunRequest& run = order_.run;
+    Keeper keeper({checkpoint_interval_s(run.checkpoint, kept_.files(), shape_.bytes()),
                    [&](const PathStats& stats) {
-                       kept_.write(*o_.keep.state, film, figures_now(stats, o_.threads), samples_);
+                       kept_.write(*state(), film, figures_now(stats, render_->threads()),
+                                   samples_);
                    },
-                   o_.keep.preview, display(), notice_},
+                   run.preview, display(), notice_},
                   monitor, film);
     progress.begin(Phase::Rendering);
-    const RenderResult result = render_->render(
-        monitor, [&](const PathStats& stats) { keeper.at_pause(stats); },
-        kept_.record().figures.render_wall_s);
+    const RenderResult result =
+        render_->render(monitor, {[&](const PathStats& stats) { keeper.at_pause(stats); },
+                                  kept_.record().figures.render_wall_s, run.stats.has_value()});
     keeper.finish();
     progress.end_rendering(!result.stopped);
     return result;
@@ -143,7 +158,7 @@ RenderResult OneRender::render(Progress& progress) {
 
 // Tells what to type where PNG and JPEG show nothing.
 void OneRender::advise_exposure() {
-    if (std::ranges::none_of(o_.outputs, is_for_display)) return;
+    if (std::ranges::none_of(pictures(), is_for_display)) return;
     const Brightness brightness = brightness_of(render_->film(), display().exposure_ev);
     if (brightness == Brightness::Normal) return;
     const FoundExposure found = render_->find_exposure();
@@ -169,8 +184,8 @@ RunReport OneRender::report_of(const Progress& progress, std::vector<WriteOutcom
 // Writes the state where one is to stay, or the render goes on later.
 void OneRender::write_state(const RenderResult& result, const RunFigures& figures,
                             std::vector<WriteOutcome>& outcomes) {
-    const auto& state = o_.keep.state;
-    if (!state || !(result.stopped || o_.keep.state_is_wanted)) return;
+    const auto& state = kept_.files().state;
+    if (!state || !(result.stopped || kept_.files().state_stays)) return;
     const SampleRange wanted{samples_.first, result.stopped ? samples_.end : result.end_sample};
     const WriteOutcome& one = outcomes.emplace_back(write_or_rescue(
         *state, [&](const fs::path& to) { kept_.write(to, render_->film(), figures, wanted); }));
@@ -183,10 +198,10 @@ void OneRender::write_state(const RenderResult& result, const RunFigures& figure
 // Writes the statistics of this run and those before it; whether that was possible.
 bool OneRender::write_statistics(RunFigures figures, SampleRange taken, const RunReport& report) {
     figures += kept_.record().figures;
-    const StatsPicture picture{o_.scene.size.x, o_.scene.size.y, taken, setup().from.exposure_ev,
-                               render_->film().left_out()};
+    const StatsPicture picture{shape_.full_size.x, shape_.full_size.y, taken,
+                               setup().from.exposure_ev, render_->film().left_out()};
     const WriteOutcome stats = write_or_rescue(
-        *o_.stats, [&](const fs::path& to) { write_stats(to, picture, figures, report); });
+        *order_.run.stats, [&](const fs::path& to) { write_stats(to, picture, figures, report); });
     if (!stats.written()) session_.console.error(stats.message());
     return stats.written();
 }
@@ -201,15 +216,15 @@ int OneRender::write_all(const RenderResult& result, Progress& progress,
     write_state(result, figures, outcomes);
     const SampleRange taken{samples_.first, result.end_sample};
     const FinishedFilm done{render_->film(), taken, kept_.record().facts};
-    for (WriteOutcome& one : write_pictures(o_.outputs, display(), done, stopped, session_.console))
+    for (WriteOutcome& one : write_pictures(pictures(), display(), done, stopped, session_.console))
         outcomes.push_back(std::move(one));
     bool written = std::all_of(outcomes.begin(), outcomes.end(),
                                [](const WriteOutcome& one) { return one.written(); });
     // Else the state is all that is left.
-    if (!stopped && written) kept_.remove_unfinished(o_.outputs);
+    if (!stopped && written) kept_.remove_unfinished(pictures());
     if (!stopped && place.show) show(develop(render_->film(), taken, {}), place);
     if (!stopped) advise_exposure();
-    if (o_.stats)
+    if (order_.run.stats)
         written =
             write_statistics(figures, taken, report_of(progress, std::move(outcomes), stopped)) &&
             written;
@@ -225,52 +240,49 @@ void OneRender::show(const PictureRows& light, const SequencePlace& place) const
 
 // Shows a picture that is there, as a display or as light.
 void OneRender::show_existing(const SequencePlace& place) const {
-    const auto shown = std::ranges::find_if(o_.outputs, is_for_display);
-    const Picture there = read_picture(shown == o_.outputs.end() ? o_.outputs.front() : *shown);
+    const auto shown = std::ranges::find_if(pictures(), is_for_display);
+    const Picture there = read_picture(shown == pictures().end() ? pictures().front() : *shown);
     if (there.for_display)
         place.show(as_display(there), display());
     else
         show(there, place);
 }
 
-// What fixes the choices of this render for others: else the view, the focus and the brightness
-// would jump from picture to picture.
-std::vector<std::string> OneRender::found_words() const {
-    std::vector<std::string> words;
+FoundChoices OneRender::found() const {
+    FoundChoices found;
+    const CameraRequest& asked = order_.render.scene.camera;
     const CameraReport& camera = setup().from.camera;
-    if (setup().prepared.cameras->empty() && !o_.scene.camera.look_at)
-        words.insert(words.end(), {"--look-at", fmt::format("{},{}", with_commas(camera.eye),
-                                                            with_commas(camera.target))});
-    if (o_.scene.camera.orbit_deg && !o_.scene.camera.orbit_about)
-        words.insert(words.end(), {"--orbit-about", with_commas(camera.orbit_about)});
-    const bool has_focus = camera.lens_radius_m > 0 && camera.focus_m > 0;
-    if (has_focus && (o_.camera.focus.empty() || o_.camera.focus == "auto"))
-        words.insert(words.end(), {"--focus", fmt::format("{}", camera.focus_m)});
-    if (o_.auto_exposure)
-        words.insert(words.end(), {"--exposure", fmt::format("{}", setup().from.exposure_ev)});
-    return words;
+    if (setup().prepared.cameras->empty() && !asked.look_at)
+        found.look_at = {camera.eye, camera.target};
+    if (asked.orbit_deg && !asked.orbit_about) found.orbit_about = camera.orbit_about;
+    const bool is_open = !asked.focus || std::holds_alternative<FocusAuto>(*asked.focus);
+    if (is_open && camera.lens_radius_m > 0 && camera.focus_m > 0)
+        found.focus = FocusDistance{camera.focus_m};
+    if (setup().from.exposure_is_auto) found.exposure_ev = setup().from.exposure_ev;
+    return found;
 }
 
 int OneRender::run(SequencePlace& place) {
-    for (const std::string& remark : frame_.remarks) notice_(remark);
-    Progress progress(o_.quiet ? ProgressStyle::None : o_.progress, session_.console,
-                      session_.interrupt.monitor(), goal(place.part_of));
-    if (!place.render || place.render->threads() != o_.threads) {
+    for (const std::string& remark : remarks_) notice_(remark);
+    Progress progress(order_.run.quiet ? ProgressStyle::None : order_.run.progress,
+                      session_.console, session_.interrupt.monitor(), goal(place.part_of));
+    if (const int threads = threads_of(order_.run);
+        !place.render || place.render->threads() != threads) {
         place.render.reset();
-        place.render = std::make_unique<RenderSession>(o_.threads, place.frames);
+        place.render = std::make_unique<RenderSession>(threads, place.frames);
     }
     render_ = place.render.get();
-    render_->prepare(request(), notice_, [&](Phase phase) { progress.begin(phase); });
+    render_->prepare(order_.render, notice_, [&](Phase phase) { progress.begin(phase); });
     kept_.set(shape_, samples_, render_->facts(), display());
-    place.found = found_words();
+    place.found = found();
     if (session_.interrupt.monitor().stop) return kStopped;  // nothing of it is there yet
-    const bool shown = o_.keep.state_is_wanted || std::ranges::any_of(o_.outputs, is_for_display);
+    const bool shown = kept_.files().state_stays || std::ranges::any_of(pictures(), is_for_display);
     std::optional<Film> film = kept_.take_up(shown ? Compare::Pictures : Compare::Samples, notice_);
     if (is_there(film)) {
-        for (const fs::path& output : o_.outputs)
+        for (const fs::path& output : pictures())
             notice_(fmt::format("{} is there already", output.string()));
         progress.skip();
-        if (place.show && !o_.outputs.empty()) show_existing(place);
+        if (place.show && !pictures().empty()) show_existing(place);
         return kSuccess;
     }
     if (film) render_->take_up(std::move(*film));
@@ -284,9 +296,9 @@ int OneRender::run(SequencePlace& place) {
 
 }  // namespace
 
-int render_one(RenderOptions& o, const std::vector<std::string>& command, const Notice& notice,
-               Session& session, SequencePlace& place) {
-    return OneRender(o, command, notice, session).run(place);
+int render_one(const RenderOrder& order, const std::optional<fs::path>& resumed_from,
+               const Notice& notice, Session& session, SequencePlace& place) {
+    return OneRender(order, resumed_from, notice, session).run(place);
 }
 
 }  // namespace petzval

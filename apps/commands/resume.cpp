@@ -2,16 +2,15 @@
 #include "apps/commands/resume.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 
-#include "apps/cli/quantity.h"
-#include "apps/cli/reading_options.h"
-#include "apps/cli/sequence_options.h"
+#include "apps/cli/field_options.h"
 #include "apps/commands/render.h"
+#include "apps/request/file_names.h"
+#include "apps/request/value_error.h"
 #include "apps/state/run_record.h"
 #include "io/base/error.h"
 
@@ -22,21 +21,21 @@ namespace fs = std::filesystem;
 
 struct ResumeOptions {
     fs::path state;
-    std::string progress;
-    int threads = 0;  ///< 0: as the render was asked to
-    bool quiet = false;
+    RenderOrder order;  ///< of what is asked for anew
+    bool asks_progress = false;
 };
 
-// Words of the render in a state, with what is asked for anew.
-std::vector<std::string> words_of(const RunRecord& record, const ResumeOptions& o) {
-    std::vector<std::string> words = record.command, added;
-    if (o.threads > 0) added.insert(added.end(), {"--threads", fmt::format("{}", o.threads)});
-    if (!o.progress.empty()) {
-        std::erase(words, "--quiet");
-        added.insert(added.end(), {"--progress", o.progress});
+// Order of the render in a state, with what is asked for anew.
+RenderOrder order_in(const RunRecord& record, const ResumeOptions& o) {
+    RenderOrder order = order_of(record.fields);
+    const RunRequest& asked = o.order.run;
+    if (asked.threads > 0) order.run.threads = asked.threads;
+    if (o.asks_progress) {
+        order.run.progress = asked.progress;
+        order.run.quiet = false;
     }
-    if (o.quiet) added.emplace_back("--quiet");
-    return with_words(words, added);
+    order.run.quiet = order.run.quiet || asked.quiet;
+    return order;
 }
 
 int resume(const ResumeOptions& o, Session& session) {
@@ -46,24 +45,23 @@ int resume(const ResumeOptions& o, Session& session) {
     const auto refuse = [&](const std::string& why) {
         return InputError(o.state.string(), "", why);
     };
-    if (record.command.empty() || record.command.front() != "render")
-        throw refuse("holds no command of a render");
-    ParsedRender parsed;
+    RenderOrder order;
     try {
-        parsed = parse_render(words_of(record, o));
-    } catch (const CLI::ParseError& error) {
-        throw refuse(fmt::format("holds a command that is not understood: {}", error.what()));
+        order = order_in(record, o);
+        check_sequence(order);
+        if (order.sequence.several()) throw ValueError("--frames", "a state is of one picture");
+    } catch (const ValueError& error) {
+        throw refuse(fmt::format("holds a request that is not understood: {}", error.what()));
     }
-    const auto& outputs = parsed.options->outputs;
     if (reader.header().is_complete()) {
-        if (std::all_of(outputs.begin(), outputs.end(), is_state_name)) {
+        if (std::ranges::all_of(order.run.outputs, is_state_name)) {
             session.console.notice(o.state.string() + " is complete: there is nothing to render");
             return kSuccess;
         }
-        parsed.options->keep.skip_existing = true;  // its pictures may be there
+        order.run.skip_existing = true;  // its pictures may be there
     }
     const fs::path state = fs::absolute(o.state);
-    // What the command names relative to its folder means what it meant.
+    // What the request names relative to its folder means what it meant.
     std::error_code error;
     fs::current_path(record.folder, error);
     if (error)
@@ -71,25 +69,24 @@ int resume(const ResumeOptions& o, Session& session) {
             "its render ran in the folder {}, which cannot be entered: {}; make that folder, with "
             "the files of the render",
             record.folder.string(), error.message()));
-    session.words = record.command;
-    parsed.options->keep.resumed_from = state;
-    return run_render(*parsed.options, session);
+    return run_render(order, session, state);
 }
 
 }  // namespace
 
-std::vector<std::string> words_of_console(const std::vector<std::string>& words) {
-    if (words.size() < 2 || words.front() != "resume") return words;
-    std::vector<std::string> all;
-    for (size_t i = 1; i < words.size() && all.empty(); ++i) try {
+ConsoleWish console_wish_of(const std::vector<std::string>& words) {
+    ConsoleWish asked = console_wish(words);
+    if (words.size() < 2 || words.front() != "resume") return asked;
+    for (size_t i = 1; i < words.size(); ++i) try {
             const StateReader reader(words[i]);
-            all = record_in(reader.header(), words[i]).command;
+            const RunRequest before = order_of(record_in(reader.header(), words[i]).fields).run;
+            if (!asked.asks_progress && before.progress == ProgressStyle::Json)
+                asked.style = ConsoleStyle::Json;
+            asked.quiet = asked.quiet || (before.quiet && !asked.asks_progress);
+            return asked;
         } catch (const InputError&) {  // an option, or what resume() will refuse
         }
-    if (all.empty()) return words;
-    if (std::find(words.begin(), words.end(), "--progress") != words.end())
-        std::erase(all, "--quiet");
-    return with_words(all, {words.begin() + 1, words.end()});
+    return asked;
 }
 
 void add_resume_command(CLI::App& app, Session& session) {
@@ -97,11 +94,12 @@ void add_resume_command(CLI::App& app, Session& session) {
     CLI::App* command =
         app.add_subcommand("resume", "go on with a render that was stopped, from its state");
     command->add_option("state", options->state, "NAME.state of the render")->required();
-    command->add_option("--threads", options->threads, "another number of threads")
-        ->transform(whole_number_between(1, kMostThreads));
-    command->add_option("--progress", options->progress, "as of petzval render");
-    command->add_flag("--quiet", options->quiet, "print nothing but errors");
-    command->callback([options, &session] { session.exit_code = resume(*options, session); });
+    for (const char* field : {"threads", "progress", "quiet"})
+        add_field_option(*command, options->order, field);
+    command->callback([options, command, &session] {
+        options->asks_progress = command->count("--progress") > 0;
+        session.exit_code = resume(*options, session);
+    });
 }
 
 }  // namespace petzval

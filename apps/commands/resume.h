@@ -15,7 +15,7 @@ namespace petzval {
 
 /// Declares the command that goes on with a render from its state.
 void add_resume_command(CLI::App&, Session&);
-/// Words that say how a command talks: of a resumed render, those of its state too.
-[[nodiscard]] std::vector<std::string> words_of_console(const std::vector<std::string>& words);
+/// How a command talks: as its words ask, and a resumed render as its state asks besides.
+[[nodiscard]] ConsoleWish console_wish_of(const std::vector<std::string>& words);
 
 }  // namespace petzval

@@ -15,7 +15,6 @@ namespace petzval {
 struct Session {
     Interrupt interrupt;  ///< first: the threads of the others inherit its blocked signals
     Console console;
-    std::vector<std::string> words;  ///< of the command line, without the program's name
     int exit_code = kSuccess;
 
     Session(ConsoleStyle style, bool quiet) : console(style, quiet) {}

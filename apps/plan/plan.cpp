@@ -108,12 +108,12 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
             }
         }
     }
-    plan.lights_asked = !request.light_choice_open;
+    plan.lights_asked = request.scene.light_choice.has_value();
     if (!plan.lights_asked) plan.lights = find_lights(compared, first, chosen.scene, best);
     if (plan.lights) plan.scene.light_choice = plan.lights->kind;
     const double samples = std::ceil(chosen.samples_for(tolerance));
     if (!(samples <= kMostPlannedSamples))
-        throw ArgumentError("--tolerance", "",
+        throw ArgumentError("⟨tolerance⟩", "",
                             "would take more than {:.2g} samples of each pixel; give a larger one",
                             kMostPlannedSamples);
     plan.samples = static_cast<uint64_t>(samples);

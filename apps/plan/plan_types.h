@@ -8,6 +8,7 @@
 
 #include "apps/plan/pilot_error.h"
 #include "apps/plan/rare_light.h"
+#include "apps/request/render_request.h"
 #include "apps/setup/render_setup.h"
 #include "integrator/path_options.h"
 #include "integrator/render_job.h"
@@ -15,7 +16,6 @@
 
 namespace petzval {
 
-inline constexpr double kUsualTolerance = 0.01;
 /// Share of the squared tolerance that a simpler model may err; the rest is for noise.
 inline constexpr double kBiasShare = 0.5;
 
@@ -26,7 +26,6 @@ struct PlanRequest {
     RenderJob job;  ///< sampler and filter count: samples and seed do not, nor does a crop
     PathOptions path;
     double tolerance = kUsualTolerance;  ///< above 0
-    bool light_choice_open = true;       ///< scene.light_choice is no wish of the user's
     const RenderSetup* like = nullptr;   ///< a setup of which what is the same is taken
     FrameReuse* frames = nullptr;        ///< of a sequence, which it is part of
 };

@@ -123,10 +123,9 @@ PlanLine precision_line(const Plan& plan) {
 }
 
 PlanLine lights_line(const Plan& plan) {
-    if (plan.lights_asked)
-        return {"lights", name_of(plan.scene.light_choice), "it was asked for", {}};
+    if (plan.lights_asked) return {"lights", name_of(plan.scene.lights()), "it was asked for", {}};
     if (!plan.lights)
-        return {"lights", name_of(plan.scene.light_choice), "there is nothing to choose from", {}};
+        return {"lights", name_of(plan.scene.lights()), "there is nothing to choose from", {}};
     const auto kind = plan.lights->kind;
     const auto other =
         kind == LightChoiceKind::Tree ? LightChoiceKind::Power : LightChoiceKind::Tree;
@@ -175,39 +174,47 @@ std::vector<PlanLine> lines_of(const Plan& plan) {
             lights_line(plan)};
 }
 
-std::vector<PlanOption> options_of(const Plan& plan) {
-    std::vector<PlanOption> out{{"--spp", std::to_string(plan.samples)}};
-    const CameraRequest& camera = plan.scene.camera;
-    const auto set = [&](const char* name, const auto& value) {
-        out.emplace_back(name, fmt::format("{}", value));
-    };
-    const auto leave_out = [&](std::initializer_list<const char*> names) {
-        for (const char* name : names) out.emplace_back(name, std::nullopt);
-    };
+RenderRequest carried_out(const Plan& plan, RenderRequest request) {
+    request.samples.count = static_cast<uint32_t>(plan.samples);
+    SceneRequest& scene = request.scene;
     if (plan.lights && plan.lights->kind != LightChoiceKind::Tree)
-        set("--light-choice", name_of(plan.lights->kind));
+        scene.light_choice = plan.lights->kind;
+    CameraRequest& camera = scene.camera;
+    const CameraRequest& planned = plan.scene.camera;
     if (replaces_camera(plan.chosen)) {
-        leave_out({"--fit", "--fstop", "--focal-length", "--film-distance", "--coating",
-                   "--lens-precision", "--focus-by", "--glasses", "--dispersion"});
-        set("--lens", name_of(plan.chosen));
-        set("--fov", *camera.fov_deg);
-        set("--sensor", fmt::format("{}x{}", camera.sensor_mm->x, camera.sensor_mm->y));
+        const CameraRequest nothing;
+        camera.fit = nothing.fit;
+        camera.fstop = nothing.fstop;
+        camera.focal_length_mm = nothing.focal_length_mm;
+        camera.film_distance_mm = nothing.film_distance_mm;
+        camera.coating = nothing.coating;
+        camera.precision = nothing.precision;
+        camera.focus_by = nothing.focus_by;
+        camera.glasses = nothing.glasses;
+        camera.dispersion = nothing.dispersion;
+        camera.lens = name_of(plan.chosen);
+        camera.fov_deg = planned.fov_deg;
+        camera.sensor_mm = planned.sensor_mm;
         if (plan.chosen == PlanModel::Pinhole) {
-            leave_out(
-                {"--focus", "--aperture", "--aperture-scale", "--iris-sampling", "--lens-radius"});
+            camera.focus = nothing.focus;
+            camera.aperture = nothing.aperture;
+            camera.aperture_scale = nothing.aperture_scale;
+            camera.iris_sampling = nothing.iris_sampling;
+            camera.lens_radius_m = nothing.lens_radius_m;
         } else {
-            set("--lens-radius", *camera.lens_radius_m);
-            set("--focus", focus_text(std::get<FocusDistance>(*camera.focus)));
+            camera.lens_radius_m = planned.lens_radius_m;
+            camera.focus = planned.focus;
         }
-        return out;
+        return request;
     }
     if (plan.precision && plan.precision->precision == Precision::Double)
-        set("--lens-precision", name_of(plan.precision->precision));
+        camera.precision = plan.precision->precision;
     if (plan.anything_open)
-        set("--spectral", plan.chosen == PlanModel::Rgb ? "rgb" : "wavelengths");
-    if (plan.dispersion_open) set("--dispersion", name_of(*camera.dispersion));
-    if (plan.measured_mode) set("--dispersion", name_of(plan.measured_mode->mode()));
-    return out;
+        scene.spectral.mode =
+            plan.chosen == PlanModel::Rgb ? SpectralMode::Rgb : SpectralMode::Wavelengths;
+    if (plan.dispersion_open) camera.dispersion = planned.dispersion;
+    if (plan.measured_mode) camera.dispersion = plan.measured_mode->mode();
+    return request;
 }
 
 std::string reason_of(const AutoChoice& choice) {

@@ -5,11 +5,10 @@
 
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "apps/plan/plan.h"
-#include "apps/setup/option_names.h"
+#include "apps/request/option_names.h"
 
 namespace petzval {
 
@@ -36,10 +35,8 @@ struct PlanLine {
 /// A line for each choice: camera, spectral, dispersion.
 [[nodiscard]] std::vector<PlanLine> lines_of(const Plan&);
 
-/// An option of petzval render with its value; without one the option is left out.
-using PlanOption = std::pair<std::string, std::optional<std::string>>;
-/// The options that lead to the plan, in place of those that were given.
-[[nodiscard]] std::vector<PlanOption> options_of(const Plan&);
+/// Request that the plan leads to, with its choices in place of those that were asked for.
+[[nodiscard]] RenderRequest carried_out(const Plan&, RenderRequest);
 
 /// The reason of what `auto` chose for a render; empty where nothing was open.
 [[nodiscard]] std::string reason_of(const AutoChoice&);

@@ -65,97 +65,97 @@ RenderSession::RenderSession(int threads, Frames frames) : executor_(threads) {
 void RenderSession::prepare(const RenderRequest& asked, const Notice& notice,
                             const PhaseSink& begins) {
     flush_denormals();
-    const auto inputs = hashes_of_inputs(asked.scene);
     next_.reset();
     std::optional<Film> film = std::exchange(film_, std::nullopt);
     const RenderFacts facts = std::exchange(facts_, {});
     const FilmShape shape = std::exchange(shape_, {});
-    const uint32_t first = request_.job.first_sample;
     RenderSetup before = std::exchange(setup_, {});
+    check(asked);
+    SceneRequest scene = resolved_scene(asked);
+    const auto inputs = hashes_of_inputs(scene);
+    const uint32_t first = job_.first_sample;
     if (frames_) before = {};  // the frame takes it apart
-    if (frames_ && !same_but_for_time(request_.scene, asked.scene)) frames_.emplace();
+    if (frames_ && !same_but_for_time(scene_, scene)) frames_.emplace();
     const bool shares = before.prepared.scene != nullptr;
     request_ = asked;
-    setup_ = set_up({request_.scene, request_.job, request_.path, request_.tolerance, true,
-                     shares ? &before : nullptr, frames_ ? &*frames_ : nullptr},
+    scene_ = std::move(scene);
+    job_ = job_of(asked);
+    path_ = asked.path;
+    setup_ = set_up({scene_, job_, path_, asked.tolerance, shares ? &before : nullptr,
+                     frames_ ? &*frames_ : nullptr},
                     executor_, notice, begins);
-    request_.path.visible_background = setup_.view.visible_background;
-    request_.job.observer = setup_.view.observer;
-    request_.job.replicates = request_.scene.spectral.bins ? kReplicates : 1;
+    path_.visible_background = setup_.view.visible_background;
+    job_.observer = setup_.view.observer;
     load_image_codec();  // before hours of work: a picture will be written
-    take_display_of_file(notice);
-    choose_exposure(notice);
-    const V2i size = request_.scene.size;
-    shape_ = {size, request_.crop.value_or(Rect{0, 0, size.x, size.y}), request_.layers,
-              request_.scene.spectral.bins};
-    if (std::ranges::find(request_.layers, Aov::Velocity) != request_.layers.end()) {
-        next_ = set_up_velocity(setup_, request_.fps);
-        request_.job.velocity = next_->velocity.get();
-        setup_.from.metadata.emplace_back("petzval:fps", fmt::format("{}", request_.fps));
+    choose_display(notice);
+    const V2i size = scene_.size;
+    shape_ = {size, asked.crop.value_or(Rect{0, 0, size.x, size.y}), asked.layers,
+              scene_.spectral.bins};
+    if (std::ranges::find(asked.layers, Aov::Velocity) != asked.layers.end()) {
+        const double fps = asked.moment.fps;
+        next_ = set_up_velocity(setup_, fps);
+        job_.velocity = next_->velocity.get();
+        setup_.from.metadata.emplace_back("petzval:fps", fmt::format("{}", fps));
     }
-    facts_ = facts_of(setup_, request_.job, request_.path, request_.display);
+    facts_ = facts_of(setup_, job_, path_, display_);
     for (const auto& [file, hash] : inputs)
         if (name_and_hash(file) != hash)
             throw InputError(file.string(), "", "was changed while it was read; start again");
-    const uint32_t asked_samples = request_.job.end_sample - request_.job.first_sample;
-    if (film && first == request_.job.first_sample && film->taken_range().most <= asked_samples &&
+    const uint32_t asked_samples = job_.end_sample - job_.first_sample;
+    if (film && first == job_.first_sample && film->taken_range().most <= asked_samples &&
         light_hash(facts, shape, {0, 0}) == light_hash(facts_, shape_, {0, 0}))
         film_ = std::move(film);
     else
         film_ = shape_.empty_film();
 }
 
-// Takes what the scene asks for of its display, where the user asks for nothing.
-void RenderSession::take_display_of_file(const Notice& notice) {
+// Settles exposure and view: as asked, as the scene's file asks, or as a pilot finds; and tells it.
+void RenderSession::choose_display(const Notice& notice) {
+    const DisplayRequest& asked = request_.display;
     const SceneExtras& file = setup_.prepared.extras;
-    DisplayOptions& display = request_.display;
+    display_ = {asked.exposure ? asked.exposure->ev : file.exposure_ev.value_or(0.f), asked.view,
+                asked.config};
     std::string taken;
-    if (file.exposure_ev && !request_.asks_exposure) {
-        display.exposure_ev = *file.exposure_ev;
+    if (file.exposure_ev && !asked.exposure)
         taken = fmt::format("exposure {} EV", *file.exposure_ev);
-    }
-    if (file.view && !request_.asks_view) {
+    if (file.view && asked.view.empty()) {
         try {
-            display.view = find_view(*file.view, display.config);
+            display_.view = find_view(*file.view, asked.config);
         } catch (const InputError& error) {
-            throw InputError(request_.scene.scene.string(), file.path + "/view",
-                             fmt::format("{}; --view takes another", error.what()));
+            throw InputError(scene_.scene.string(), file.path + "/view",
+                             fmt::format("{}; ⟨view⟩ takes another", error.what()));
         }
         taken += (taken.empty() ? "view " : ", view ") + printable(*file.view);
+    } else {
+        display_.view = find_view(asked.view, asked.config);
     }
-    if (display.view.empty()) display.view = find_view("", display.config);
     if (!taken.empty())
-        notice(fmt::format("the scene asks for {} (--exposure and --view go before it)", taken));
-}
-
-// Finds the exposure where it is asked for, and tells it.
-void RenderSession::choose_exposure(const Notice& notice) {
-    DisplayOptions& display = request_.display;
-    if (request_.finds_exposure) {
+        notice(fmt::format("the scene asks for {} (⟨exposure⟩ and ⟨view⟩ go before it)", taken));
+    const bool finds = asked.exposure && asked.exposure->is_auto;
+    if (finds) {
         const FoundExposure found = find_exposure();
-        display.exposure_ev = found.ev;
-        notice(fmt::format("exposure: {0} EV (--exposure {0}){1}", found.ev,
+        display_.exposure_ev = found.ev;
+        notice(fmt::format("exposure: {0} EV (⟨exposure⟩ {0}){1}", found.ev,
                            found.log_average > 0 ? "" : ", as no light was found"));
     }
-    setup_.from.exposure_ev = display.exposure_ev;
-    setup_.from.exposure_is_auto = request_.finds_exposure;
+    setup_.from.exposure_ev = display_.exposure_ev;
+    setup_.from.exposure_is_auto = finds;
 }
 
-RenderResult RenderSession::render(RenderMonitor& monitor,
-                                   const std::function<void(const PathStats&)>& at_pause,
-                                   double spent_s) {
+RenderResult RenderSession::render(RenderMonitor& monitor, const RenderRun& run) {
     flush_denormals();
     const PreparedScene& prepared = setup_.prepared;
-    const PathTracer tracer(*prepared.scene, *prepared.bvh, *prepared.lights, request_.path);
-    RenderJob job = request_.job;
-    if (job.time_limit_s) *job.time_limit_s -= spent_s;
-    job.at_pause = at_pause;
+    const PathTracer tracer(*prepared.scene, *prepared.bvh, *prepared.lights, path_);
+    RenderJob job = job_;
+    if (job.time_limit_s) *job.time_limit_s -= run.spent_s;
+    job.at_pause = run.at_pause;
+    job.timing = run.timing;
     return petzval::render(tracer, *setup_.view.camera, job, *film_, executor_, monitor);
 }
 
 // Samples that every pixel has.
 SampleRange RenderSession::complete() const {
-    const uint32_t first = request_.job.first_sample;
+    const uint32_t first = job_.first_sample;
     return {first, first + film_->taken_range().least};
 }
 
@@ -164,16 +164,16 @@ PictureRows RenderSession::light() const {
 }
 
 PictureRows RenderSession::shown() const {
-    const DisplayOptions& d = request_.display;
+    const DisplayOptions& d = display_;
     return to_display(light(), d.exposure_ev, d.view, AlphaUse::Keep, d.config);
 }
 
 void RenderSession::write(const std::filesystem::path& file) const {
-    write_output(file, picture_for(file, {*film_, complete(), facts_}), request_.display);
+    write_output(file, picture_for(file, {*film_, complete(), facts_}), display_);
 }
 
 FoundExposure RenderSession::find_exposure() {
-    return petzval::find_exposure(setup_, request_.job, request_.path, executor_);
+    return petzval::find_exposure(setup_, job_, path_, executor_);
 }
 
 }  // namespace petzval

@@ -7,16 +7,25 @@
 #include <optional>
 
 #include "apps/plan/plan.h"
-#include "apps/render/render_request.h"
+#include "apps/request/render_request.h"
 #include "apps/setup/exposure.h"
 #include "apps/setup/render_setup.h"
 #include "apps/state/render_facts.h"
 #include "integrator/executor.h"
 #include "integrator/render_job.h"
 #include "io/base/notice.h"
+#include "io/image/output.h"
 #include "io/state/state_file.h"
 
 namespace petzval {
+
+/// How a render runs; nothing of it changes a sample.
+struct RenderRun {
+    /// As in RenderJob; the film and the picture may be looked at there.
+    std::function<void(const PathStats&)> at_pause{};
+    double spent_s = 0;   ///< of a time limit, by runs before
+    bool timing = false;  ///< measure where the time goes
+};
 
 /// Session of renders that follow each other: what a request has in common with the one before is
 /// kept. The same scene is not loaded again; the same light keeps its samples, so that more of them
@@ -45,9 +54,10 @@ class RenderSession {
     /// does not fit its scene.
     void prepare(const RenderRequest&, const Notice& notice, const PhaseSink& begins = {});
 
-    /// The request with all choices made. After prepare(), as the functions below.
-    [[nodiscard]] const RenderRequest& request() const { return request_; }
+    /// The scene with all choices made. After prepare(), as the functions below.
     [[nodiscard]] const RenderSetup& setup() const { return setup_; }
+    /// How PNG and JPEG show the picture.
+    [[nodiscard]] const DisplayOptions& display() const { return display_; }
     [[nodiscard]] const FilmShape& shape() const { return shape_; }
     /// Facts that the picture follows from.
     [[nodiscard]] const RenderFacts& facts() const { return facts_; }
@@ -58,10 +68,8 @@ class RenderSession {
     [[nodiscard]] const Film& film() const { return *film_; }
 
     /// Renders the samples that the film lacks. Ends early where the monitor says stop; calling
-    /// again goes on. at_pause: as in RenderJob; the film and the picture may be looked at there.
-    /// spent_s: what runs before took of a time limit.
-    RenderResult render(RenderMonitor&, const std::function<void(const PathStats&)>& at_pause = {},
-                        double spent_s = 0);
+    /// again goes on.
+    RenderResult render(RenderMonitor&, const RenderRun& = {});
 
     /// The picture so far: R, G, B, A in nits, then the layers. Also at a pause.
     [[nodiscard]] PictureRows light() const;
@@ -75,12 +83,15 @@ class RenderSession {
 
   private:
     [[nodiscard]] SampleRange complete() const;
-    void take_display_of_file(const Notice&);
-    void choose_exposure(const Notice&);
+    void choose_display(const Notice&);
 
     TbbExecutor executor_;
     std::optional<FrameReuse> frames_;
     RenderRequest request_;
+    SceneRequest scene_;  ///< of the request, resolved
+    RenderJob job_;
+    PathOptions path_;
+    DisplayOptions display_;
     RenderSetup setup_;
     FilmShape shape_;
     RenderFacts facts_;

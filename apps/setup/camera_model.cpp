@@ -29,7 +29,7 @@ const GltfCamera& find_camera(const std::string& wanted, const std::string& scen
     for (const GltfCamera& camera : cameras) names.push_back(camera.name);
     if (const auto index = find_named(wanted, names)) return cameras[*index];
     throw ArgumentError(scene, "",
-                        no_such("camera", wanted, names, "the file has none, use --look-at"));
+                        no_such("camera", wanted, names, "the file has none, use ⟨look-at⟩"));
 }
 
 std::string extras_of(const GltfCamera& camera) {
@@ -60,7 +60,7 @@ std::string beside(const fs::path& scene, FileScope scope, const GltfCamera& cam
                           fmt::format("\"{}\" {}", printable(name), why));
     };
     if (scope == FileScope::Confined && !lies_within(path, folder))
-        throw refuse("lies outside the folder of the scene, and --confine allows no file there");
+        throw refuse("lies outside the folder of the scene, and ⟨confine⟩ allows no file there");
     if (fs::path(name).is_absolute())
         throw refuse("is an absolute path, which is not read; put the file beside the scene");
     return path.string();
@@ -89,7 +89,7 @@ std::vector<AgfCatalog> open_catalogs(const CameraRequest& asked) {
 
 SingleLens parse_singlet(const std::string& text, LensGlasses& glasses) {
     const auto refuse = [&](const std::string& why) {
-        return ArgumentError("--lens", text,
+        return ArgumentError("⟨lens⟩", text,
                              why +
                                  "; it must read singlet:GLASS[,BENDING] or "
                                  "singlet:GLASS,R1,R2 with radii in mm (inf: flat)");
@@ -132,7 +132,7 @@ std::optional<float> fit_yfov_rad(const CameraRequest& asked, const GltfCamera* 
     if (asked.fit != Fit::Fov) return std::nullopt;
     if (asked.fov_deg) return *asked.fov_deg * kPi / 180.f;
     if (from) return from->yfov_rad;
-    throw ArgumentError("--fit", "", "no camera gives an angle of view: give --fov too");
+    throw ArgumentError("⟨fit⟩", "", "no camera gives an angle of view: give ⟨fov⟩ too");
 }
 
 Optics optics_of(const CameraRequest& asked, const GltfCamera* from, float aspect) {
@@ -151,14 +151,14 @@ Optics optics_of(const CameraRequest& asked, const GltfCamera* from, float aspec
 void check_no_prescription(const CameraRequest& asked, bool has_glass) {
     const auto refuse = [](const char* option) {
         throw ArgumentError(option, "",
-                            "needs a lens that is traced surface by surface: give --lens NAME or "
+                            "needs a lens that is traced surface by surface: give ⟨lens⟩ NAME or "
                             "FILE");
     };
-    if (asked.fit == Fit::Fov) refuse("--fit");
-    if (asked.coating != Coating::Ideal) refuse("--coating");
-    if (asked.precision != Precision::Float) refuse("--lens-precision");
-    if (asked.focus_by != FocusBy::Paraxial) refuse("--focus-by");
-    if (!asked.glasses.empty() && !has_glass) refuse("--glasses");
+    if (asked.fit == Fit::Fov) refuse("⟨fit⟩");
+    if (asked.coating != Coating::Ideal) refuse("⟨coating⟩");
+    if (asked.precision != Precision::Float) refuse("⟨lens-precision⟩");
+    if (asked.focus_by != FocusBy::Paraxial) refuse("⟨focus-by⟩");
+    if (!asked.glasses.empty() && !has_glass) refuse("⟨glasses⟩");
 }
 
 void check_pinhole(const CameraRequest& asked) {
@@ -166,44 +166,44 @@ void check_pinhole(const CameraRequest& asked) {
         throw ArgumentError(option, "", why);
     };
     if (asked.fstop || asked.lens_radius_m)
-        refuse("--lens", "a pinhole has no iris: leave out --fstop and --lens-radius");
-    if (asked.focus) refuse("--focus", "a pinhole has no focus: give --fstop or --lens-radius too");
+        refuse("⟨lens⟩", "a pinhole has no iris: leave out ⟨fstop⟩ and ⟨lens-radius⟩");
+    if (asked.focus) refuse("⟨focus⟩", "a pinhole has no focus: give ⟨fstop⟩ or ⟨lens-radius⟩ too");
     if (asked.aperture)
-        refuse("--aperture", "a pinhole has no iris: give --fstop, --lens-radius or --lens too");
+        refuse("⟨aperture⟩", "a pinhole has no iris: give ⟨fstop⟩, ⟨lens-radius⟩ or ⟨lens⟩ too");
     if (asked.aperture_scale != ApertureScale::EqualArea || asked.iris_sampling)
-        refuse(asked.iris_sampling ? "--iris-sampling" : "--aperture-scale",
-               "a pinhole has no iris: give --fstop, --lens-radius or --lens too");
+        refuse(asked.iris_sampling ? "⟨iris-sampling⟩" : "⟨aperture-scale⟩",
+               "a pinhole has no iris: give ⟨fstop⟩, ⟨lens-radius⟩ or ⟨lens⟩ too");
     if (asked.film_distance_mm)
-        refuse("--film-distance", "a pinhole has no focus: give --fstop or --lens-radius too");
+        refuse("⟨film-distance⟩", "a pinhole has no focus: give ⟨fstop⟩ or ⟨lens-radius⟩ too");
     if (asked.exposure == ExposureMode::Photographic)
-        refuse("--exposure-mode",
-               "a pinhole has no iris that says how much light there is: give --fstop too");
+        refuse("⟨exposure-mode⟩",
+               "a pinhole has no iris that says how much light there is: give ⟨fstop⟩ too");
 }
 
 void check_thin(const CameraModel& model) {
     const CameraRequest& asked = model.asked;
     const auto* single = std::get_if<SingleLens>(&model.optics);
     if (!asked.fstop && !asked.lens_radius_m)
-        throw ArgumentError("--lens", *asked.lens, "needs --fstop or --lens-radius");
+        throw ArgumentError("⟨lens⟩", *asked.lens, "needs ⟨fstop⟩ or ⟨lens-radius⟩");
     const bool focal_given = asked.focal_length_mm || (single && single->radii_mm);
     if (single && single->radii_mm && asked.focal_length_mm)
-        throw ArgumentError("--focal-length", "", "follows from the radii of the singlet");
+        throw ArgumentError("⟨focal-length⟩", "", "follows from the radii of the singlet");
     if (!asked.film_distance_mm) return;
     if (asked.fov_deg)
-        throw ArgumentError("--fov", "", "follows from --film-distance and the sensor");
+        throw ArgumentError("⟨fov⟩", "", "follows from ⟨film-distance⟩ and the sensor");
     if (focal_given && asked.focus)
-        throw ArgumentError("--focus", "", "follows from --film-distance and the focal length");
+        throw ArgumentError("⟨focus⟩", "", "follows from ⟨film-distance⟩ and the focal length");
 }
 
 void check_lens(const CameraRequest& asked) {
     if (asked.natural_vignetting)
-        throw ArgumentError("--natural-vignetting", "",
+        throw ArgumentError("⟨natural-vignetting⟩", "",
                             "a traced lens always has its own: leave it out");
     if (asked.focal_length_mm || asked.lens_radius_m || asked.film_distance_mm ||
         (asked.fov_deg && asked.fit != Fit::Fov))
-        throw ArgumentError("--lens", *asked.lens,
-                            "gives the angle of view and the focal length: leave out --fov, "
-                            "--focal-length, --lens-radius and --film-distance, or say --fit fov");
+        throw ArgumentError("⟨lens⟩", *asked.lens,
+                            "gives the angle of view and the focal length: leave out ⟨fov⟩, "
+                            "⟨focal-length⟩, ⟨lens-radius⟩ and ⟨film-distance⟩, or say ⟨fit⟩ fov");
 }
 
 }  // namespace

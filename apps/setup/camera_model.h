@@ -9,8 +9,8 @@
 #include <variant>
 #include <vector>
 
+#include "apps/request/scene_request.h"
 #include "apps/setup/lens_setup.h"
-#include "apps/setup/request.h"
 #include "core/spectrum/glass.h"
 #include "io/gltf/gltf.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/setup/camera_report.h"
 
-#include "apps/setup/option_names.h"
+#include "apps/request/option_names.h"
 #include "camera/lens/focus.h"
 #include "io/base/format.h"
 

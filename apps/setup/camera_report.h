@@ -2,7 +2,7 @@
 // Facts of a camera that was set up.
 #pragma once
 
-#include "apps/setup/request.h"
+#include "apps/request/scene_request.h"
 #include "camera/setup/focus_plane.h"
 #include "io/picture/picture.h"
 

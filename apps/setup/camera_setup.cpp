@@ -52,8 +52,8 @@ struct UnplacedView {
 std::array<V3f, 2> framed(const CameraContext& at, const UnplacedView& view) {
     const auto aim = frame_scene(at.scene, view.yfov_rad, at.aspect(), view.stand_back_m,
                                  at.model.asked.orbit_deg.has_value());
-    if (!aim) throw at.unfit("is too large or too far away to be framed; give --look-at");
-    at.notice(fmt::format("no camera in the file: --look-at {},{}{}", with_commas((*aim)[0]),
+    if (!aim) throw at.unfit("is too large or too far away to be framed; give ⟨look-at⟩");
+    at.notice(fmt::format("no camera in the file: ⟨look-at⟩ {},{}{}", with_commas((*aim)[0]),
                           with_commas((*aim)[1]), view.fov_option));
     return *aim;
 }
@@ -104,7 +104,7 @@ float depth_of(const CameraContext& at, const Focus& focus, const M44f& to_world
     }
     const auto depth = depth_of_middle(at.scene, at.bvh, finder, eye, axis);
     if (!depth)
-        throw at.unfit("nothing in the middle of the picture to focus on; give --focus in metres");
+        throw at.unfit("nothing in the middle of the picture to focus on; give ⟨focus⟩ in metres");
     return *depth;
 }
 
@@ -123,10 +123,10 @@ float find_focus(const CameraContext& at, const M44f& to_world, const Finder& fi
         if (std::fabs(depth_m - before_m) <= kSettled * before_m) break;
     }
     if (depth_m > kFarthestFocus_m) {
-        at.notice("focus: infinity (--focus infinity)");
+        at.notice("focus: infinity (⟨focus⟩ infinity)");
         return std::numeric_limits<float>::infinity();
     }
-    at.notice(fmt::format("focus: {:.4g} m (--focus {})", depth_m, depth_m));
+    at.notice(fmt::format("focus: {:.4g} m (⟨focus⟩ {})", depth_m, depth_m));
     return depth_m;
 }
 
@@ -215,7 +215,7 @@ CameraSetup without_prescription(const CameraContext& at) {
     const UnplacedView unplaced =
         view.angle_by_focal
             ? UnplacedView{view.yfov_rad, at.model.has_iris() ? 1e-3 * *view.focal_mm : 0, ""}
-            : UnplacedView{view.yfov_rad, 0, fmt::format(" --fov {}", view.yfov_deg)};
+            : UnplacedView{view.yfov_rad, 0, fmt::format(" ⟨fov⟩ {}", view.yfov_deg)};
     ThinLens pose;
     pose.aspect = at.aspect();
     pose.to_world = stand(at, unplaced, report);

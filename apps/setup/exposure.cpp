@@ -145,7 +145,7 @@ std::optional<std::string> exposure_advice(Brightness brightness, const FoundExp
                                            float exposure_ev, const std::string& white_cause) {
     if (brightness == Brightness::Normal) return std::nullopt;
     if (!(found.log_average > 0))
-        return "the picture is black, and no --exposure can help: no light was found (petzval info "
+        return "the picture is black, and no ⟨exposure⟩ can help: no light was found (petzval info "
                "tells whether the file has lights)";
     const bool mostly = brightness == Brightness::MostlyBlack;
     const float change_ev = found.ev - exposure_ev;
@@ -154,8 +154,8 @@ std::optional<std::string> exposure_advice(Brightness brightness, const FoundExp
     const double above_ev = std::log2(found.log_average / kMidGrey) + double(exposure_ev);
     const bool white = brightness == Brightness::AlmostWhite;
     return fmt::format(
-        "the picture is {} {}: its log-average is {:.1f} EV {} mid-grey; try --exposure {} or "
-        "--exposure auto{}",
+        "the picture is {} {}: its log-average is {:.1f} EV {} mid-grey; try ⟨exposure⟩ {} or "
+        "⟨exposure⟩ auto{}",
         mostly ? "mostly" : "almost", white ? "white" : "black", std::fabs(above_ev),
         above_ev < 0 ? "below" : "above", found.ev,
         white && !white_cause.empty() ? ". " + white_cause : "");

@@ -13,12 +13,12 @@ std::vector<NamedFile> input_files(const SceneRequest& r) {
     const auto add = [&](const char* role, const auto& path) {
         if (path && !path->empty()) files.push_back({role, *path});
     };
-    add("the file of --env", r.environment);
-    add("the file of --lens", r.camera.lens);
-    add("the file of --aperture", r.camera.aperture);
-    for (const fs::path& file : r.camera.glasses) files.push_back({"the file of --glasses", file});
-    files.push_back({"the file of --illuminant", r.spectral.illuminant});
-    files.push_back({"the file of --response", r.spectral.response});
+    add("the file of ⟨env⟩", r.environment);
+    add("the file of ⟨lens⟩", r.camera.lens);
+    add("the file of ⟨aperture⟩", r.camera.aperture);
+    for (const fs::path& file : r.camera.glasses) files.push_back({"the file of ⟨glasses⟩", file});
+    files.push_back({"the file of ⟨illuminant⟩", r.spectral.illuminant});
+    files.push_back({"the file of ⟨response⟩", r.spectral.response});
     return files;
 }
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "apps/setup/request.h"
+#include "apps/request/scene_request.h"
 #include "io/base/overwrite.h"
 #include "io/gltf/gltf.h"
 

@@ -25,7 +25,7 @@ FocusedLens focused_at(const LoadedLens& loaded, float focus_m, FocusBy by, doub
     auto sharp = focused_from_pupil(loaded.lens, 1e3 * double(focus_m), by, stop_radius_mm);
     if (!sharp)
         throw ArgumentError(loaded.name(), "",
-                            "cannot focus at {:g} m; give --focus a greater distance", focus_m);
+                            "cannot focus at {:g} m; give ⟨focus⟩ a greater distance", focus_m);
     return *std::move(sharp);
 }
 
@@ -81,7 +81,7 @@ void tell_dark_film(const std::string& name, const LensCamera& camera, V2f film_
     if (share < kLeastLit)
         notice(fmt::format(
             "warning: {} lights {} of the film, which is {:.4g} x {:.4g} mm; give a "
-            "smaller --sensor",
+            "smaller ⟨sensor⟩",
             name, lit ? fmt::format("{:.0f} %", 100 * share) : "hardly any", film_mm.x, film_mm.y));
 }
 
@@ -108,8 +108,8 @@ LoadedLens load_lens_for_film(const std::string& name_or_file, std::span<const A
     if (fit_yfov_rad) {
         auto fitted = scaled_to_view(loaded.lens, loaded.film_mm.y, *fit_yfov_rad);
         if (!fitted)
-            throw ArgumentError("--fit", "",
-                                "{} does not see {:.4g} degrees: take a smaller --fov "
+            throw ArgumentError("⟨fit⟩", "",
+                                "{} does not see {:.4g} degrees: take a smaller ⟨fov⟩ "
                                 "or another lens",
                                 loaded.name(), double(*fit_yfov_rad) * 180 / kPi);
         loaded.lens = *std::move(fitted);

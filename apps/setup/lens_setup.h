@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "apps/setup/request.h"
+#include "apps/request/scene_request.h"
 #include "camera/camera.h"
 #include "camera/lens/lens.h"
 #include "io/base/notice.h"

@@ -6,11 +6,11 @@
 
 #include <chrono>
 
+#include "apps/request/option_names.h"
 #include "apps/setup/camera_model.h"
 #include "apps/setup/camera_setup.h"
 #include "apps/setup/glass_remarks.h"
 #include "apps/setup/input_files.h"
-#include "apps/setup/option_names.h"
 #include "camera/ray_bundle.h"
 #include "camera/setup/target_grid.h"
 #include "core/light/own_light.h"
@@ -45,14 +45,14 @@ void add_missing_light(SceneRequest& request, const Scene& scene, const Notice& 
     request.environment = kStudioLight;
     if (own == OwnLight::None)
         notice(
-            fmt::format("nothing lights this scene, so the built-in studio light is used (--env "
-                        "{}); give --env FILE or --background R,G,B for another",
+            fmt::format("nothing lights this scene, so the built-in studio light is used (⟨env⟩ "
+                        "{}); give ⟨env⟩ FILE or ⟨background⟩ R,G,B for another",
                         kStudioLight));
     else
         notice(
             fmt::format("what glows in this scene hardly lights it, so the built-in studio light "
-                        "is used too (--env {}); give --env FILE or --background R,G,B for "
-                        "another, --background 0,0,0 for none",
+                        "is used too (⟨env⟩ {}); give ⟨env⟩ FILE or ⟨background⟩ R,G,B for "
+                        "another, ⟨background⟩ 0,0,0 for none",
                         kStudioLight));
 }
 
@@ -65,14 +65,14 @@ void take_sky_of_file(const SceneExtras& file, SceneRequest& request, const Noti
                           fmt::format("\"{}\" {}", printable(*file.sky), why));
     };
     if (request.scope == FileScope::Confined && !lies_within(path, folder))
-        throw refuse("lies outside the folder of the scene, and --confine allows no file there");
+        throw refuse("lies outside the folder of the scene, and ⟨confine⟩ allows no file there");
     if (std::filesystem::path(*file.sky).is_absolute())
         throw refuse("is an absolute path, which is not read; put the file beside the scene");
     request.environment = path;
     request.environment_rotate_deg = file.sky_rotation_deg;
     notice(
-        fmt::format("the scene asks for its sky, {}, turned by {:g} degrees (--env FILE or "
-                    "--background R,G,B give another)",
+        fmt::format("the scene asks for its sky, {}, turned by {:g} degrees (⟨env⟩ FILE or "
+                    "⟨background⟩ R,G,B give another)",
                     printable(*file.sky), file.sky_rotation_deg));
 }
 
@@ -122,7 +122,7 @@ std::vector<std::pair<std::string, std::string>> describe(const SceneRequest& re
                        fmt::format("{:.9g}", request.environment_strength));
     }
     if (const auto& b = request.background) m.emplace_back("petzval:background", with_commas(*b));
-    m.emplace_back("petzval:lightChoice", name_of(request.light_choice));
+    m.emplace_back("petzval:lightChoice", name_of(request.lights()));
     m.emplace_back("petzval:targets", name_of(request.targets));
     m.emplace_back("petzval:traversal", name_of(request.traversal));
     return m;
@@ -170,7 +170,7 @@ PreparedScene load(SceneRequest request, const Notice& notice, FrameReuse* frame
     std::shared_ptr<Scene> before = frames ? std::exchange(frames->before, nullptr) : nullptr;
     if (before.use_count() > 1) before.reset();  // somebody looks at it still
     if (before) frames->reader->give_back(std::move(before->images));
-    if (request.picture_memory_bytes) out.pictures = PictureBudget(*request.picture_memory_bytes);
+    out.pictures = request.pictures();
     GltfFile file = load_file(request, out.pictures, frames);
     check_camera_files(request.scene, request.scope, file.cameras);
     out.files = input_files(file, request.scene);
@@ -245,8 +245,8 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
     const auto bvh_start = Clock::now();
     if (!shares || asked.traversal != like->from.asked.traversal)
         prepared.bvh = std::make_shared<const Bvh>(scene, request.traversal);
-    if (!shares || asked.light_choice != like->from.asked.light_choice)
-        prepared.lights = std::make_shared<const LightChoice>(scene, request.light_choice);
+    if (!shares || asked.lights() != like->from.asked.lights())
+        prepared.lights = std::make_shared<const LightChoice>(scene, request.lights());
     if (!shares) {
         prepared.lost_light = lost_light(scene, *prepared.bvh);
         for (const std::string& remark : glass_remarks(scene, prepared.lost_light))
@@ -288,7 +288,7 @@ std::unique_ptr<NextFrame> set_up_velocity(const RenderSetup& setup, double fps)
     const SceneRequest& asked = setup.from.asked;
     const std::string file = asked.scene.string();
     if (!asked.choices.animation)
-        throw ArgumentError(file, "", "--aov velocity needs a time: --at 1s or --frames 1:48");
+        throw ArgumentError(file, "", "⟨aov⟩ velocity needs a time: ⟨at⟩ 1s or ⟨frames⟩ 1:48");
     GltfChoices choices = asked.choices;
     choices.animation->time_s += 1 / fps;
     PictureBudget pictures =
@@ -305,7 +305,7 @@ std::unique_ptr<NextFrame> set_up_velocity(const RenderSetup& setup, double fps)
         same = triangles(now, i) == triangles(next, i);
     if (!same)
         throw ArgumentError(file, "",
-                            "--aov velocity: the next frame shows other meshes, so that nobody can "
+                            "⟨aov⟩ velocity: the next frame shows other meshes, so that nobody can "
                             "tell how they move");
     const auto curve = asked.camera.shutter_curve.value_or(ShutterCurve::box());
     const auto& of_file = setup.view.of_file;

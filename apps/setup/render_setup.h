@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "apps/request/scene_request.h"
 #include "apps/setup/camera_report.h"
 #include "apps/setup/phase.h"
-#include "apps/setup/request.h"
 #include "apps/setup/spectral_setup.h"
 #include "camera/camera.h"
 #include "core/light/light_choice.h"

@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-#include "apps/setup/option_names.h"
+#include "apps/request/option_names.h"
 #include "core/spectrum/sensor_fit.h"
 #include "io/base/ascii.h"
 #include "io/base/error.h"
@@ -41,7 +41,7 @@ void warn_of_glasses(const SpectralRequest& request, const Scene& scene, const N
     if (!request.bins) return;
     const auto beyond =
         glass_beyond(scene, request.bins->first_edge_nm, request.bins->last_edge_nm());
-    if (beyond) throw ArgumentError("--bins", "", *beyond);
+    if (beyond) throw ArgumentError("⟨bins⟩", "", *beyond);
 }
 
 std::array<V3f, 3> rows(const Matrix3& m) {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/setup/request.h"
+#include "apps/request/scene_request.h"
 #include "apps/setup/wavelength_reasons.h"
 #include "core/scene/scene.h"
 #include "core/spectrum/observer.h"

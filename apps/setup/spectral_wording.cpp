@@ -16,11 +16,11 @@ std::string text_of(const WavelengthReason& reason) {
                                      : fmt::format("material \"{}\"", reason.material);
     switch (reason.kind) {
         case Kind::Bins:
-            return "--bins asks for spectra";
+            return "⟨bins⟩ asks for spectra";
         case Kind::Illuminant:
-            return "--illuminant is " + reason.what;
+            return "⟨illuminant⟩ is " + reason.what;
         case Kind::Response:
-            return "--response is " + reason.what;
+            return "⟨response⟩ is " + reason.what;
         case Kind::Lens:
             return fmt::format("lens {} disperses", reason.what);
         case Kind::Glass:
@@ -43,7 +43,7 @@ std::string because(const SpectralDecision& decision) {
     const std::string reasons = text_of(decision.reasons);
     switch (decision.by) {
         case DecidedBy::User:
-            return "--spectral says";
+            return "⟨spectral⟩ says";
         case DecidedBy::Plan:
             return decision.wavelengths ? reasons
                                         : fmt::format("it is off by {} at most, though {}",
@@ -68,7 +68,7 @@ std::vector<std::string> lines_of(const SpectralDecision& decision) {
     std::vector<std::string> lines{fmt::format(
         "spectral: {}, as {}", decision.wavelengths ? "wavelengths" : "rgb", because(decision))};
     if (decision.by == DecidedBy::User && !decision.wavelengths && !decision.reasons.empty())
-        lines.push_back("warning: --spectral rgb cannot show that " + text_of(decision.reasons));
+        lines.push_back("warning: ⟨spectral⟩ rgb cannot show that " + text_of(decision.reasons));
     return lines;
 }
 

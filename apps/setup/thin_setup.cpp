@@ -80,7 +80,7 @@ ThinView thin_view(const CameraModel& model, const std::string& scene, float asp
     };
     if (asked.film_distance_mm) {
         view.yfov_deg = of_half(*asked.film_distance_mm);
-        require_fov(view.yfov_deg, scene, "--film-distance");
+        require_fov(view.yfov_deg, scene, "⟨film-distance⟩");
         if (view.focal_mm)
             view.focus_m = static_cast<float>(or_argument_error(model, [&] {
                 return std::fmin(

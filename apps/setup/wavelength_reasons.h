@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/setup/request.h"
+#include "apps/request/scene_request.h"
 #include "core/scene/scene.h"
 
 namespace petzval {

@@ -11,17 +11,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A word of a command line: text, or bytes where it is no UTF-8, which JSON demands.
-Json json_of_word(const std::string& word) {
+// A text, as bytes where it is no UTF-8, which JSON demands.
+Json json_of_text(const std::string& text) {
     try {
-        static_cast<void>(Json(word).dump());
-        return word;
+        static_cast<void>(Json(text).dump());
+        return text;
     } catch (const Json::type_error&) {
-        return std::vector<uint8_t>(word.begin(), word.end());
+        return std::vector<uint8_t>(text.begin(), text.end());
     }
 }
 
-std::string word_from(const Json& json) {
+std::string text_from(const Json& json) {
     if (json.is_string()) return json.get<std::string>();
     const auto bytes = json.get<std::vector<uint8_t>>();
     return {bytes.begin(), bytes.end()};
@@ -30,18 +30,22 @@ std::string word_from(const Json& json) {
 }  // namespace
 
 StateHeader header_of(const RunRecord& record, const FilmShape& shape, SampleRange samples) {
-    Json words = Json::array();
-    for (const std::string& word : record.command) words.push_back(json_of_word(word));
+    Json fields = Json::array();
+    for (const auto& [name, texts] : record.fields) {
+        Json values = Json::array();
+        for (const std::string& text : texts) values.push_back(json_of_text(text));
+        fields.push_back({name, std::move(values)});
+    }
     return {shape,
             samples,
             0,
             {{"program", program_version()},
-             {"command", std::move(words)},
-             {"folder", json_of_word(record.folder.string())},
+             {"request", std::move(fields)},
+             {"folder", json_of_text(record.folder.string())},
              {"facts", to_json(record.facts)},
              {"display",
-              {record.display.exposure_ev, json_of_word(record.display.view),
-               json_of_word(record.display.config.string())}},
+              {record.display.exposure_ev, json_of_text(record.display.view),
+               json_of_text(record.display.config.string())}},
              {"figures", to_json(record.figures)}}};
 }
 
@@ -54,12 +58,16 @@ RunRecord record_in(const StateHeader& header, const std::filesystem::path& file
                              "was written by {}, and this is {}: samples of both are "
                              "not of one picture; use the one that wrote it",
                              program, program_version());
-        for (const Json& word : run.at("command")) record.command.push_back(word_from(word));
-        record.folder = word_from(run.at("folder"));
+        for (const Json& field : run.at("request")) {
+            FieldTexts& one = record.fields.emplace_back();
+            field.at(0).get_to(one.name);
+            for (const Json& text : field.at(1)) one.texts.push_back(text_from(text));
+        }
+        record.folder = text_from(run.at("folder"));
         record.facts = facts_from(run.at("facts"));
         const Json& display = run.at("display");
-        record.display = {display.at(0).get<float>(), word_from(display.at(1)),
-                          word_from(display.at(2))};
+        record.display = {display.at(0).get<float>(), text_from(display.at(1)),
+                          text_from(display.at(2))};
         record.figures = figures_from(run.at("figures"));
     } catch (const nlohmann::json::exception&) {
         throw InputError(file.string(), "", "is damaged: its header says too little of its render");
@@ -69,7 +77,7 @@ RunRecord record_in(const StateHeader& header, const std::filesystem::path& file
 
 std::string share_text(const StateHeader& header) {
     const uint64_t pixels = header.wanted() / header.samples.count();
-    if (header.samples.count() >= kUnboundedSamples)
+    if (header.samples.count() >= kMostSamples)
         return fmt::format("{} samples of each pixel", header.pixel_samples / pixels);
     const double share = double(header.pixel_samples) / double(header.wanted());
     return fmt::format("{} % of its samples", static_cast<int>(100 * share));

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/request/fields.h"
 #include "apps/setup/stats_file.h"
 #include "apps/state/render_facts.h"
 #include "io/state/state_file.h"
@@ -14,8 +15,8 @@
 namespace petzval {
 
 struct RunRecord {
-    std::vector<std::string> command;  ///< its words, without the program's name
-    std::filesystem::path folder;      ///< in which it runs
+    std::vector<FieldTexts> fields;  ///< of its order, where they are given
+    std::filesystem::path folder;    ///< in which it runs
     RenderFacts facts;
     DisplayOptions display;
     RunFigures figures;  ///< so far, with those of the runs before
@@ -27,9 +28,6 @@ struct RunRecord {
 /// Record in the header of a state. Throws InputError, which names the file, where the header has
 /// none or another version of the program wrote it.
 [[nodiscard]] RunRecord record_in(const StateHeader&, const std::filesystem::path& file);
-
-/// Number of samples from which on time alone ends a render.
-inline constexpr uint32_t kUnboundedSamples = 1u << 30;
 
 /// "37 % of its samples", rounded down, or "12 samples of each pixel" where time decides.
 [[nodiscard]] std::string share_text(const StateHeader&);

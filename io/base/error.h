@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exceptions that io throws: something outside the program is not as it must be.
+// The exceptions that io throws: something outside the program is not as it must be. In messages
+// the name of a field of a request stands as ⟨focus⟩; who shows them to a user writes it as that
+// user types it (apps/request/option_text.h).
 #pragma once
 
 #include <fmt/format.h>

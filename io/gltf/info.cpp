@@ -116,14 +116,14 @@ void describe_support(const GltfModel& gltf, const GltfTally& tally, GltfFile& f
     };
     if (gltf.source.clips.empty())
         ignore(file.holds.animation_count, "animation",
-               "the stored pose is shown; --at TIME plays them");
+               "the stored pose is shown; ⟨at⟩ TIME plays them");
     else
         ignore(file.holds.animation_count - gltf.source.clips.size(), "animation",
-               "--animation plays them");
+               "⟨animation⟩ plays them");
     ignore(tally.occlusion_textures, "occlusion texture", "path tracing finds occlusion itself");
     ignore(tally.ranged_lights, "light range", "light falls off with the squared distance");
     ignore(tally.idle_dispersions, "dispersion", "the material refracts nothing");
-    constexpr const char* no_surface = "they have no surface; --point-line-radius gives one";
+    constexpr const char* no_surface = "they have no surface; ⟨point-line-radius⟩ gives one";
     ignore(tally.point_primitives, "point primitive", no_surface);
     ignore(tally.line_primitives, "line primitive", no_surface);
 }
@@ -170,13 +170,13 @@ void describe_time(const GltfModel& gltf, const GltfTally& tally,
     if (!animation) {
         if (count > 0)
             file.remarks.push_back(
-                fmt::format("the file holds {}; the pose that it stores is shown (--at 1s shows "
+                fmt::format("the file holds {}; the pose that it stores is shown (⟨at⟩ 1s shows "
                             "that moment)",
                             plural(count, "animation")));
         return;
     }
     if (count == 0)
-        file.remarks.emplace_back("the file holds no animation, so that --at changes nothing");
+        file.remarks.emplace_back("the file holds no animation, so that ⟨at⟩ changes nothing");
     for (const GltfClip& clip : gltf.source.clips) {
         const double local_s =
             clip.local_s(animation->time_s, animation->time_s, animation->repeats);
@@ -187,7 +187,7 @@ void describe_time(const GltfModel& gltf, const GltfTally& tally,
     if (animation->open_s > 0) describe_motion(tally, file);
     if (count > gltf.source.clips.size() && animation->names.empty())
         file.remarks.push_back(fmt::format(
-            "{} not played, as they move the same things (--animation NAME plays one)",
+            "{} not played, as they move the same things (⟨animation⟩ NAME plays one)",
             plural(count - gltf.source.clips.size(), "more animation is", "more animations are")));
 }
 

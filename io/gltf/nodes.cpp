@@ -68,7 +68,7 @@ int find_scene(const GltfModel& gltf, const std::string& wanted) {
     const auto number = find_named(wanted, names);
     if (!number)
         throw ArgumentError(
-            gltf.file, "", no_such("scene", wanted, names, "the file has none, leave out --scene"));
+            gltf.file, "", no_such("scene", wanted, names, "the file has none, leave out ⟨scene⟩"));
     return static_cast<int>(*number);
 }
 

@@ -84,7 +84,7 @@ Sky decode(const std::filesystem::path& path, float rotate_deg, float strength,
     if (!rgb.empty() && *std::max_element(rgb.begin(), rgb.end()) * strength > brightest_nits)
         throw InputError(path.string(), "",
                          "brighter than {:g} nits once it is multiplied by {:g}; give a "
-                         "smaller --env-strength",
+                         "smaller ⟨env-strength⟩",
                          brightest_nits, strength);
     report(mended, path.string(), notice);
     if (picture.width != 2 * picture.height)

@@ -98,7 +98,7 @@ std::vector<std::array<double, 2>> spectrum_of_pixel(const Picture& picture,
     if (channels.empty())
         throw ArgumentError(
             file.string(), "",
-            "is not spectral, it has no channels S0; render with --bins to get one");
+            "is not spectral, it has no channels S0; render with ⟨bins⟩ to get one");
     const int64_t column = int64_t{x} - picture.x, row = int64_t{y} - picture.y;
     if (column < 0 || row < 0 || column >= picture.width || row >= picture.height)
         throw ArgumentError(file.string(), "", "has no pixel {},{}; it has {},{} to {},{}", x, y,

@@ -24,7 +24,7 @@ std::string PictureBudget::take(uint64_t kept_bytes, uint64_t meanwhile_bytes) {
     }
     return fmt::format(
         "needs {} once it is decoded; of the {} for pictures other pictures take {}; scale it "
-        "down, or give more --max-memory",
+        "down, or give more ⟨max-memory⟩",
         mebibytes(needed_bytes), mebibytes(limit_bytes_), mebibytes(taken_bytes_));
 }
 

@@ -14,7 +14,7 @@ int main(int count, char** words) try {
     RenderRequest request;
     request.scene.scene = words[1];
     request.scene.size = {320, 180};
-    request.job.end_sample = 64;
+    request.samples.count = 64;
 
     RenderSession session(2);
     session.prepare(request, [](const std::string&) {});

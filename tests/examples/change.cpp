@@ -13,8 +13,7 @@ int main(int count, char** words) try {
     RenderRequest request;
     request.scene.scene = words[1];
     request.scene.size = {96, 64};
-    request.job.end_sample = 8;
-    request.asks_exposure = true;
+    request.samples.count = 8;
 
     RenderSession session(2);
     const auto render = [&](const char* name) {
@@ -28,7 +27,7 @@ int main(int count, char** words) try {
                     static_cast<unsigned long long>(before));
     };
     render("first.png");
-    request.display.exposure_ev = 1;  // keeps the samples
+    request.display.exposure = ExposureRequest{false, 1};  // keeps the samples
     render("brighter.png");
     request.scene.camera.fov_deg = 30;  // keeps the scene and its BVH
     render("nearer.png");

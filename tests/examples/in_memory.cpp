@@ -14,7 +14,7 @@ int main(int count, char** words) try {
     request.scene.scene = words[1];
     request.scene.size = {96, 64};
     request.scene.camera.lens = "double-gauss-100mm-f2";
-    request.job.end_sample = 16;
+    request.samples.count = 16;
 
     RenderSession session(2);
     session.prepare(request, [](const std::string& line) { std::puts(line.c_str()); });

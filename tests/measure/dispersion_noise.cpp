@@ -10,7 +10,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "apps/cli/parse.h"
+#include "apps/request/parse.h"
 #include "apps/setup/render_setup.h"
 #include "tests/measure/noise.h"
 #include "tests/measure/program.h"
@@ -140,9 +140,9 @@ int run(int argc, char** argv) {
     app.add_option("--reference-spp", reference_spp, "of each of four renders");
     CLI11_PARSE(app, argc, argv);
     request.size = parse_size("--size", size);
-    camera.focus = parse_focus("--focus", focus, request.size);
+    camera.focus = parse_focus("--focus", focus);
     const Rect crop = crop_text.empty() ? Rect{0, 0, request.size.x, request.size.y}
-                                        : parse_crop("--crop", crop_text, request.size);
+                                        : parse_crop("--crop", crop_text);
     flush_denormals();
     request.spectral.mode = SpectralMode::Wavelengths;
 

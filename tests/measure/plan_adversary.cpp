@@ -16,9 +16,9 @@
 #include <fstream>
 #include <map>
 
-#include "apps/cli/parse.h"
 #include "apps/plan/plan.h"
 #include "apps/plan/plan_wording.h"
+#include "apps/request/parse.h"
 #include "io/base/clock.h"
 #include "io/base/error.h"
 #include "tests/measure/plan_verdict.h"

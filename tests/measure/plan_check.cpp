@@ -11,10 +11,10 @@
 
 #include <CLI/CLI.hpp>
 
-#include "apps/cli/parse.h"
 #include "apps/plan/pilot_error.h"
 #include "apps/plan/plan.h"
 #include "apps/plan/plan_wording.h"
+#include "apps/request/parse.h"
 #include "io/base/error.h"
 #include "io/lens/lens_file.h"
 #include "tests/measure/program.h"

@@ -9,7 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "apps/cli/parse.h"
+#include "apps/request/parse.h"
 #include "apps/setup/render_setup.h"
 #include "integrator/executor.h"
 #include "integrator/path_impl.h"

@@ -8,7 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "apps/cli/parse.h"
+#include "apps/request/parse.h"
 #include "apps/setup/render_setup.h"
 #include "tests/measure/noise.h"
 #include "tests/measure/program.h"

@@ -9,10 +9,10 @@
 #include <memory>
 #include <optional>
 
-#include "apps/cli/output_checks.h"
-#include "apps/cli/parse.h"
-#include "apps/cli/reading_options.h"
+#include "apps/cli/readers.h"
 #include "apps/commands/image/shown.h"
+#include "apps/request/file_names.h"
+#include "apps/request/parse.h"
 #include "apps/state/render_facts.h"
 #include "io/base/error.h"
 #include "io/image/picture_files.h"
@@ -27,7 +27,6 @@ struct SheetRequest {
     std::optional<std::string> labels;
     SheetOptions sheet;
     ShownOptions shown;
-    ReadingOptions reading;
 };
 
 /// Labels as given, one for each picture; without --labels the names of the files.
@@ -39,7 +38,7 @@ std::vector<std::string> labels_of(const SheetRequest& o) {
     }
     for (const std::string_view label : split(*o.labels, ';')) labels.emplace_back(trimmed(label));
     if (labels.size() != o.in.size())
-        throw CLI::ValidationError(
+        throw ValueError(
             "--labels",
             fmt::format("{} for {} pictures; give one label for each, separated by semicolons",
                         labels.size(), o.in.size()));
@@ -54,7 +53,8 @@ void sheet_command(SheetRequest& o) {
     check_sheet(o.out, o.sheet);
     ContactSheet sheet(o.in.size(), o.sheet);
     for (size_t i = 0; i < o.in.size(); ++i) {
-        PictureBudget one = o.reading.pictures();  // the sheet keeps next to nothing of each
+        PictureBudget one =
+            o.shown.order.render.scene.pictures();  // the sheet keeps next to nothing of each
         const Picture picture = read_picture(o.in[i], one);
         sheet.add(shown(picture, o.in[i], o.shown, AlphaUse::Keep), labels[i]);
     }
@@ -64,7 +64,6 @@ void sheet_command(SheetRequest& o) {
 struct CropRequest {
     std::string in, crop, out;
     ShownOptions shown;
-    ReadingOptions reading;
 };
 
 std::string as_words(const Rect& r) {
@@ -110,9 +109,10 @@ void require_opaque(const Picture& picture, const std::string& out) {
 void crop_command(CropRequest& o) {
     begin_showing(o.shown, o.out, {{"the picture to cut", o.in}});
     check_output(o.out, o.shown.display);
-    PictureBudget pictures = o.reading.pictures();
+    PictureBudget pictures = o.shown.order.render.scene.pictures();
     const Picture whole = read_picture(o.in, pictures);
-    const Rect crop = parse_crop("crop", o.crop, {whole.full_width, whole.full_height});
+    const Rect crop = parse_crop("crop", o.crop);
+    check_inside("crop", crop, {whole.full_width, whole.full_height});
     const Picture cut = cut_out(whole, crop, o.in);
     const PictureFormat format = picture_format(o.out);
     if (format == PictureFormat::Exr) {
@@ -156,7 +156,6 @@ void add_sheet(CLI::App& image) {
                      "pictures are, but the sheet at most 3840 wide)")
         ->transform(whole_number_between(kLeastCellWidth_px, kMostPixels));
     add_shown_options(*sheet, options->shown);
-    add_memory_option(*sheet, options->reading);
     sheet->footer(
         "--exposure auto is found from the first linear picture and used for all, so that they can "
         "be compared. PNG and JPEG are shown as they are.");
@@ -174,7 +173,6 @@ void add_crop(CLI::App& image) {
         ->required()
         ->check(complaint_about_picture_name);
     add_shown_options(*crop, options->shown);
-    add_memory_option(*crop, options->reading);
     crop->callback([options] { crop_command(*options); });
 }
 

@@ -9,11 +9,12 @@
 #include <optional>
 
 #include "apps/cli/console.h"
-#include "apps/cli/output_checks.h"
-#include "apps/cli/parse.h"
-#include "apps/cli/reading_options.h"
+#include "apps/cli/field_options.h"
+#include "apps/cli/readers.h"
 #include "apps/commands/image/edit.h"
 #include "apps/commands/image/shown.h"
+#include "apps/request/file_names.h"
+#include "apps/request/parse.h"
 #include "apps/state/render_facts.h"
 #include "io/base/error.h"
 #include "io/base/overwrite.h"
@@ -30,7 +31,7 @@ namespace {
 struct DiffOptions {
     std::string a, b;
     std::optional<double> fail_above;
-    ReadingOptions reading;
+    RenderOrder order;
 };
 
 void print_layer(const LayerDifference& d) {
@@ -55,7 +56,8 @@ void require_within(double limit, const DiffOptions& o, const LayerDifference& d
 }
 
 void diff_command(const DiffOptions& o) {
-    const std::vector<LayerDifference> layers = compare_files(o.a, o.b, o.reading.pictures());
+    const std::vector<LayerDifference> layers =
+        compare_files(o.a, o.b, o.order.render.scene.pictures());
     for (const LayerDifference& layer : layers) print_layer(layer);
     std::fflush(stdout);  // the result comes before a complaint
     if (!o.fail_above) return;
@@ -70,7 +72,7 @@ void add_diff(CLI::App& image) {
     diff->add_option("--fail-above", options->fail_above,
                      "exit with 1 if the RMSE of any layer is above this")
         ->transform(number_between(0, std::numeric_limits<float>::max()));
-    add_memory_option(*diff, options->reading);
+    add_field_option(*diff, options->order, "max-memory");
     diff->footer(fmt::format(
         "symmetric MSE is the mean of (a - b)^2 / ((a^2 + b^2) / 2 + f^2), where f is {} times the "
         "reference's mid-grey: 0 for equal pictures, {:g} at most, and the same for light that is "
@@ -84,7 +86,6 @@ void add_view(CLI::App& image) {
     struct ViewOptions {
         std::string in, out;
         ShownOptions shown;
-        ReadingOptions reading;
     };
     auto options = std::make_shared<ViewOptions>();
     CLI::App* view = image.add_subcommand("view", "write a linear picture as PNG or JPEG");
@@ -93,10 +94,9 @@ void add_view(CLI::App& image) {
         ->required()
         ->check(complaint_about_display_name);
     add_shown_options(*view, options->shown);
-    add_memory_option(*view, options->reading);
     view->callback([options] {
         begin_showing(options->shown, options->out, {{"the picture to show", options->in}});
-        PictureBudget pictures = options->reading.pictures();
+        PictureBudget pictures = options->shown.order.render.scene.pictures();
         Picture picture = read_picture(options->in, pictures);
         if (picture.for_display)
             print_notice(
@@ -112,7 +112,7 @@ void add_view(CLI::App& image) {
 
 struct SpectrumOptions {
     std::string in, pixel, plot;
-    ReadingOptions reading;
+    RenderOrder order;
 };
 
 void spectrum_command(const SpectrumOptions& o) {
@@ -121,7 +121,7 @@ void spectrum_command(const SpectrumOptions& o) {
         refuse_overwriting({{"-o", o.plot}}, {{"the picture to read", o.in}});
         check_plot(o.plot);
     }
-    PictureBudget pictures = o.reading.pictures();
+    PictureBudget pictures = o.order.render.scene.pictures();
     const auto spectrum = spectrum_of_pixel(read_picture(o.in, pictures), o.in, at.x, at.y);
     if (!o.plot.empty())
         write_plot(o.plot, {.title = fmt::format("pixel {},{} of {}", at.x, at.y, o.in),
@@ -139,7 +139,7 @@ void add_spectrum(CLI::App& image) {
         ->required();
     spectrum->add_option("pixel", options->pixel, "x,y in pixels of the full frame")->required();
     spectrum->add_option("-o,--output", options->plot, "plot to write too, .svg or .png");
-    add_memory_option(*spectrum, options->reading);
+    add_field_option(*spectrum, options->order, "max-memory");
     spectrum->callback([options] { spectrum_command(*options); });
 }
 

@@ -9,7 +9,8 @@
 #include <cmath>
 
 #include "apps/cli/console.h"
-#include "apps/cli/parse.h"
+#include "apps/cli/display_options.h"
+#include "apps/cli/field_options.h"
 #include "apps/setup/exposure.h"
 #include "apps/setup/input_files.h"
 #include "io/base/error.h"
@@ -47,19 +48,20 @@ std::vector<double> luminances_of(const Picture& p) {
 }  // namespace
 
 void add_shown_options(CLI::App& app, ShownOptions& o) {
-    app.add_option("--exposure", o.exposure, "stops of 2, or auto; default 0");
-    add_display_options(app, o.display);
+    for (const char* field : {"exposure", "view", "ocio", "max-memory"})
+        add_field_option(app, o.order, field);
 }
 
 void begin_showing(ShownOptions& o, const std::string& output,
                    const std::vector<NamedFile>& inputs) {
-    const auto exposure_ev = parse_exposure_ev("--exposure", o.exposure);
-    o.exposure_known = exposure_ev.has_value();
-    o.display.exposure_ev = exposure_ev.value_or(0.f);
-    if (const std::string told = resolve_display(o.display); !told.empty()) print_notice(told);
+    DisplayRequest& asked = o.order.render.display;
+    const auto exposure = asked.exposure.value_or(ExposureRequest());
+    o.exposure_known = !exposure.is_auto;
+    if (const std::string told = resolve_display(asked); !told.empty()) print_notice(told);
+    o.display = {exposure.ev, find_view(asked.view, asked.config), asked.config};
     const std::vector<NamedFile> outputs{{"-o", output}};
     refuse_overwriting(outputs, inputs);
-    refuse_overwriting(outputs, input_files(o.display));
+    refuse_overwriting(outputs, input_files(asked));
     refuse_overwriting(outputs, own_files());
 }
 

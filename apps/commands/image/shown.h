@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/cli/display_options.h"
+#include "apps/request/render_order.h"
 #include "io/base/overwrite.h"
 #include "io/image/display.h"
 #include "io/image/output.h"
@@ -17,9 +17,9 @@ class App;
 
 namespace petzval {
 
-/// --exposure, --view and --ocio as given, and what was settled of them.
+/// Exposure, view, configuration and memory as asked for, and what was settled of them.
 struct ShownOptions {
-    std::string exposure = "0";
+    RenderOrder order;
     DisplayOptions display;
     bool exposure_known = false;  ///< else it is found from a picture
 };

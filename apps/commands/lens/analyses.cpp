@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "apps/cli/console.h"
+#include "apps/cli/readers.h"
 #include "apps/commands/lens/field.h"
 #include "camera/bench/analysis.h"
 #include "camera/bench/spot.h"

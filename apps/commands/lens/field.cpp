@@ -20,7 +20,7 @@ constexpr double kWidest_deg = 120, kWidestNear_deg = 85;
 std::vector<double> parse_fields(const std::string& text, double widest_deg) {
     std::vector<double> out;
     for (const std::string_view part : split(text, ','))
-        out.push_back(parse_number("--field", std::string(part), 0, widest_deg, kDegrees));
+        out.push_back(parse_number("--field", std::string(part), {0, widest_deg, kDegrees}));
     return out;
 }
 
@@ -93,7 +93,7 @@ FieldSetup set_up(const FieldRequest& request, const std::vector<double>& shares
                                 "no ray along the axis reaches the film; give --film-shift in mm");
         out.film_mm += *shift;
     } else if (!request.film_shift.empty())
-        out.film_mm += parse_number("--film-shift", request.film_shift, -1e4, 1e4, kMillimetres);
+        out.film_mm += parse_number("--film-shift", request.film_shift, {-1e4, 1e4, kMillimetres});
     return out;
 }
 

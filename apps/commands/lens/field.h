@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/cli/parse.h"
 #include "apps/commands/lens/request.h"
+#include "apps/request/parse.h"
 #include "camera/bench/aimed_bundle.h"
 #include "camera/lens/focus.h"
 

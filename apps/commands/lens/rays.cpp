@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "apps/cli/readers.h"
 #include "apps/commands/lens/field.h"
 #include "apps/commands/lens/request.h"
 #include "camera/lens/traced_ray.h"

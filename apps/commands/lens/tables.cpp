@@ -11,8 +11,9 @@
 
 #include "apps/cli/console.h"
 #include "apps/cli/or_null.h"
-#include "apps/cli/parse.h"
+#include "apps/cli/readers.h"
 #include "apps/commands/lens/request.h"
+#include "apps/request/parse.h"
 #include "camera/bench/analysis.h"
 #include "camera/lens/blockage.h"
 #include "camera/lens/focus.h"

@@ -93,7 +93,7 @@ std::vector<size_t> played_animations(const json& root, const AnimationChoice& c
         if (!found)
             throw ArgumentError(
                 file, "",
-                no_such("animation", wanted, names, "the file has none, leave out --animation"));
+                no_such("animation", wanted, names, "the file has none, leave out ⟨animation⟩"));
         if (std::find(played.begin(), played.end(), *found) == played.end())
             played.push_back(*found);
     }

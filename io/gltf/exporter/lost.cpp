@@ -118,7 +118,7 @@ void add_cameras(const json& root, std::vector<std::string>& lines) {
                !says(camera, "fstop");
     });
     if (count > 0)
-        lines.push_back(fmt::format("depth of field of {}: --lens, --fstop and --focus give it",
+        lines.push_back(fmt::format("depth of field of {}: ⟨lens⟩, ⟨fstop⟩ and ⟨focus⟩ give it",
                                     counted(static_cast<uint64_t>(count), "camera")));
 }
 
@@ -131,7 +131,7 @@ std::vector<std::string> lost_by_exporter(const json& root, std::span<const int>
     add_empty_nodes(root, shown, lines);
     add_lamps(root, lines);
     if (!has_sky)
-        lines.emplace_back("the world: the exporter writes none; --env SKY.hdr gives one");
+        lines.emplace_back("the world: the exporter writes none; ⟨env⟩ SKY.hdr gives one");
     add_cameras(root, lines);
     const json& used = member(root, "extensionsUsed");
     if (std::find(used.begin(), used.end(), "KHR_node_visibility") == used.end())

@@ -81,7 +81,7 @@ class Fetcher {
             owner.fail(key, "\"{}\" {}", printable(*path),
                        is_link_loop(full) ? "is a link that leads back to itself"
                                           : "lies outside the folder of the scene, and "
-                                            "--confine allows no file there");
+                                            "⟨confine⟩ allows no file there");
         FileBytes file = read_file(full);
         if (dispensable && file.error == "no such file") {
             source_.warnings.add(owner.path_of("uri"), "there is no file \"{}\"; {} is left out",

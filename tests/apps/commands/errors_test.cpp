@@ -43,7 +43,7 @@ TEST_F(CliErrors, WordsThatAreNone) {
 
 TEST_F(CliErrors, ListsThatDoNotFit) {
     expect_refused(2, {{{"--crop", "0,0,17,1"}, "inside the 16x16 frame"},
-                       {{"--crop", "0,0,4"}, "inside the 16x16 frame"},
+                       {{"--crop", "0,0,4"}, "x,y,width,height inside the frame"},
                        {{"--look-at", "0,0,0,0,0"}, "--look-at"},
                        {{"--look-at", "1e30,0,0,0,0,0"}, "too far away"},
                        {{"--look-at", "1,2,3,1,2,3"}, "the same point"},
@@ -55,12 +55,13 @@ TEST_F(CliErrors, ListsThatDoNotFit) {
 }
 
 TEST_F(CliErrors, OptionsThatDoNotGoTogether) {
-    expect_refused(2, {{{"--focus", "1"}, "a pinhole has no focus"},
-                       {{"--fstop", "2", "--lens-radius", "0.1"}, "--fstop excludes --lens-radius"},
-                       {{"--look-at", "0,0,0,0,0,-1", "--camera", "0"}, "excludes --camera"},
-                       {{"--env-rotate", "10"}, "--env-rotate requires --env"},
-                       {{"--env-strength", "2"}, "--env-strength requires --env"},
-                       {{"--stats", path("out.exr")}, "--stats"}});
+    expect_refused(2,
+                   {{{"--focus", "1"}, "a pinhole has no focus"},
+                    {{"--fstop", "2", "--lens-radius", "0.1"}, "--fstop: excludes --lens-radius"},
+                    {{"--look-at", "0,0,0,0,0,-1", "--camera", "0"}, "excludes --camera"},
+                    {{"--env-rotate", "10"}, "--env-rotate: needs --env"},
+                    {{"--env-strength", "2"}, "--env-strength: needs --env"},
+                    {{"--stats", path("out.exr")}, "--stats"}});
     expect_refused(4, {{{"--size", "65536x65536", "--aov", "normal,position"}, "GiB of memory"}});
 }
 

@@ -221,16 +221,16 @@ TEST_F(LongRenders, NothingOfOthersIsReplaced) {
     EXPECT_TRUE(file_bytes(scene_) == scene);
 }
 
-// A state holds a command: nothing of it is done before its checksum is right.
-TEST_F(LongRenders, AChangedCommandIsNotRun) {
+// A state holds a request: nothing of it is done before its checksum is right.
+TEST_F(LongRenders, AChangedRequestIsNotRendered) {
     Process render(words({"--spp", "1000000", "-o", path("r.exr"), "--progress", "json"}));
     ASSERT_TRUE(let_render(render, 50ms));
     render.signal(SIGTERM);
     ASSERT_EQ(render.wait().exit_code, 130);
     std::string state = file_bytes(path("r.state"));
-    const size_t at = state.find("\"--spp\"");
+    const size_t at = state.find("[\"spp\"");
     ASSERT_NE(at, std::string::npos);
-    state.replace(at, 7, "\"--log\"");  // of the file 1000000, in the folder of the render
+    state.replace(at, 6, "[\"log\"");  // of the file 1000000, in the folder of the render
     std::ofstream(path("r.state"), std::ios::binary) << state;
     const Finished damaged = run_petzval({"resume", path("r.state")});
     EXPECT_EQ(damaged.exit_code, 1);

@@ -20,7 +20,7 @@ RenderRequest request_of(const char* scene = "first_light.glb") {
     RenderRequest request;
     request.scene.scene = std::filesystem::path(PETZVAL_ASSETS) / "scenes" / scene;
     request.scene.size = {24, 16};
-    request.job.end_sample = 4;
+    request.samples.count = 4;
     return request;
 }
 
@@ -53,8 +53,7 @@ TEST(RenderSession, AnotherExposureKeepsTheSamples) {
     RenderRequest request = request_of();
     EXPECT_EQ(render(session, request), 0u);
     const auto light = values_of(session.light()), shown = values_of(session.shown());
-    request.display.exposure_ev = 2;
-    request.asks_exposure = true;
+    request.display.exposure = ExposureRequest{false, 2};
     EXPECT_EQ(render(session, request), 4 * kPixels);
     EXPECT_EQ(values_of(session.light()), light);
     EXPECT_NE(values_of(session.shown()), shown);
@@ -64,7 +63,7 @@ TEST(RenderSession, MoreSamplesAreAddedToThoseThatAreThere) {
     RenderSession session(2);
     RenderRequest request = request_of();
     render(session, request);
-    request.job.end_sample = 9;
+    request.samples.count = 9;
     EXPECT_EQ(render(session, request), 4 * kPixels);
     EXPECT_EQ(values_of(session.light()), alone(request));
 }
@@ -74,15 +73,17 @@ TEST(RenderSession, NothingIsKeptOfOtherSamples) {
     const auto of_others = [](const auto& change) {
         RenderSession session(2);
         RenderRequest request = request_of();
-        request.job.end_sample = 6;
+        request.samples.count = 8;
         render(session, request);
         change(request);
         EXPECT_EQ(render(session, request), 0u);
         EXPECT_EQ(values_of(session.light()), alone(request));
     };
-    of_others([](RenderRequest& r) { r.job.end_sample = 3; });
-    of_others([](RenderRequest& r) { r.job.first_sample = 2, r.job.end_sample = 9; });
-    of_others([](RenderRequest& r) { r.job.seed = 1; });
+    of_others([](RenderRequest& r) { r.samples.count = 3; });
+    of_others([](RenderRequest& r) {
+        r.samples.count.reset(), r.samples.range = SampleRange{2, 12};
+    });
+    of_others([](RenderRequest& r) { r.samples.seed = 1; });
     of_others([](RenderRequest& r) { r.path.max_depth = 2; });
     of_others([](RenderRequest& r) { r.crop = Rect{0, 0, 12, 16}; });
     of_others([](RenderRequest& r) { r.layers = {Aov::Depth}; });
@@ -131,7 +132,7 @@ TEST(RenderSession, GoesOnAfterARequestThatFails) {
 TEST(RenderSession, SpectraHaveStandardErrors) {
     RenderSession session(2);
     RenderRequest request = request_of();
-    request.job.end_sample = 2 * kReplicates;
+    request.samples.count = 2 * kReplicates;
     request.scene.spectral.bins = Bins{400, 100, 3};
     render(session, request);
     const auto values = values_of(session.light());
@@ -148,14 +149,14 @@ TEST(RenderSession, FramesShareTheirSky) {
     sky.channels = {"R", "G", "B"};
     sky.pixels.assign(24, 3.f);
     write_output(*request.scene.environment, sky, {});
-    request.scene.choices.animation.emplace().time_s = 0.5;
+    request.moment.at = Moment{0.5};
     const auto expected = alone(request);
 
     RenderSession session(2, RenderSession::Frames::Sequence);
-    request.scene.choices.animation->time_s = 0;
+    request.moment.at = Moment{0};
     render(session, request);
     std::filesystem::remove(*request.scene.environment);
-    request.scene.choices.animation->time_s = 0.5;
+    request.moment.at = Moment{0.5};
     render(session, request);
     EXPECT_EQ(values_of(session.light()), expected);
 }
@@ -165,7 +166,7 @@ TEST(RenderSession, FramesAreThoseOfSingleRenders) {
     RenderRequest request = request_of("flying_lamp.glb");
     request.scene.environment = kStudioLight;
     for (const double time_s : {0., 0.5, 0.25}) {
-        request.scene.choices.animation.emplace().time_s = time_s;
+        request.moment.at = Moment{time_s};
         render(session, request);
         EXPECT_EQ(values_of(session.light()), alone(request)) << time_s;
     }
@@ -177,7 +178,7 @@ TEST(RenderSession, FramesAreThoseOfSingleRenders) {
     render(session, request);
     EXPECT_EQ(values_of(session.light()), alone(request));
     request = request_of("wheels.glb");
-    request.scene.choices.animation.emplace().time_s = 0;
+    request.moment.at = Moment{0};
     render(session, request);
     EXPECT_EQ(values_of(session.light()), alone(request));
 }

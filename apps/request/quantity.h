@@ -13,11 +13,8 @@
 #include <system_error>
 #include <type_traits>
 
+#include "apps/request/value_error.h"
 #include "io/base/text_lines.h"
-
-namespace CLI {
-class Validator;
-}
 
 namespace petzval {
 
@@ -59,17 +56,20 @@ template <class T>
 /// Number with or without one of these units, in the first of them: 0.3 for "30cm" in kMetres.
 [[nodiscard]] std::optional<double> quantity(std::string_view text, std::span<const Unit>);
 
-/// Readers of one number, for CLI11's transform(). They refuse what is not finite or out of bounds,
-/// and leave a plain number in the first unit, as "0.3" for "30cm".
-[[nodiscard]] CLI::Validator number_between(double least, double most,
-                                            std::span<const Unit> units = {});
-/// The same for an f-number, which may read f/2, F2 or 1:2.
-[[nodiscard]] CLI::Validator fnumber_between(double least, double most);
-/// The same for a whole number, always decimal: "010" is ten, where CLI11 alone would read eight.
-[[nodiscard]] CLI::Validator whole_number_between(uint64_t least, uint64_t most);
+/// Interval of numbers that a value may take, ends included, and its units.
+struct NumberRange {
+    double least, most;
+    std::span<const Unit> units = {};
+};
 
-/// The number that number_between() would leave. Throws CLI::ValidationError.
-[[nodiscard]] double parse_number(const std::string& option, const std::string& text, double least,
-                                  double most, std::span<const Unit> units = {});
+/// Number in a range, in the first of its units. Throws ValueError, which names the option.
+[[nodiscard]] double parse_number(const std::string& option, const std::string& text,
+                                  const NumberRange&);
+/// The same for an f-number, which may read f/2, F2 or 1:2.
+[[nodiscard]] double parse_fnumber(const std::string& option, const std::string& text,
+                                   const NumberRange&);
+/// The same for a whole number, always decimal: "010" is ten.
+[[nodiscard]] uint64_t parse_whole_number(const std::string& option, const std::string& text,
+                                          uint64_t least, uint64_t most);
 
 }  // namespace petzval

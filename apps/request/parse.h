@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values from words of the command line. Each function throws CLI::ValidationError, which ends with
-// exit code 2.
+// Values from texts, and texts that give them again. Each function throws ValueError, which names
+// the option.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "apps/cli/quantity.h"
-#include "apps/setup/render_setup.h"
+#include "apps/request/quantity.h"
+#include "apps/request/render_order.h"
 #include "core/film/film.h"
 #include "core/spectrum/bins.h"
 
@@ -24,8 +24,10 @@ namespace petzval {
 /// Sensor size in millimetres from "36x24" or "36x24mm": two numbers from least to most.
 [[nodiscard]] V2f parse_sensor(const std::string& option, const std::string& text, double least,
                                double most);
-/// Crop from "x,y,w,h" in pixels of a frame; must lie inside it and hold a pixel.
-[[nodiscard]] Rect parse_crop(const std::string& option, const std::string& text, V2i frame);
+/// Crop from "x,y,w,h" in pixels; must hold one.
+[[nodiscard]] Rect parse_crop(const std::string& option, const std::string& text);
+/// Throws where a crop does not lie inside a frame.
+void check_inside(const std::string& option, const Rect& crop, V2i frame);
 /// Range of sample indices from "A:B": A below B, and B at most `most`.
 [[nodiscard]] SampleRange parse_samples(const std::string& option, const std::string& text,
                                         uint32_t most);
@@ -34,25 +36,33 @@ namespace petzval {
 /// Duration from "90", "90s", "1.5m", "1h30m", or as a clock shows it, "1:30" and "1:30:00":
 /// seconds above 0.
 [[nodiscard]] double parse_duration_s(const std::string& option, const std::string& text);
-/// Exposure in EV from "6.5": -100 to 100; nothing for "auto".
-[[nodiscard]] std::optional<float> parse_exposure_ev(const std::string& option,
-                                                     const std::string& text);
+/// Exposure from "6.5", -100 to 100 EV, or "auto".
+[[nodiscard]] ExposureRequest parse_exposure(const std::string& option, const std::string& text);
 /// Bytes from "512MB" (10^6), "8GB" or "8GiB" (2^30): above 0.
 [[nodiscard]] uint64_t parse_memory_bytes(const std::string& option, const std::string& text);
 /// Share from "1%" or "0.01": above 0, 1 at most.
 [[nodiscard]] double parse_share(const std::string& option, const std::string& text);
-/// Shutter time from "0.01", "1/100", "1/100s", "10ms", or "180deg" of a frame, of which `fps` make
-/// a second: seconds above 0.
-[[nodiscard]] float parse_shutter_s(const std::string& option, const std::string& text, double fps);
+/// Moment from "1.25", "1.25s", "40ms" or "frame:30".
+[[nodiscard]] Moment parse_moment(const std::string& option, const std::string& text);
+/// Shutter time above 0 from "0.01", "1/100", "1/100s", "10ms", or "180deg" of a frame.
+[[nodiscard]] ShutterTime parse_shutter(const std::string& option, const std::string& text);
 /// Focus distance in metres from "1.5", "30cm", "5ft" (above 0), "infinity", "inf" or "∞".
 [[nodiscard]] float parse_focus_distance_m(const std::string& option, const std::string& text);
 /// Focus from a focus distance, "auto", or "x,y" (a pixel of the frame).
-[[nodiscard]] Focus parse_focus(const std::string& option, const std::string& text, V2i frame);
+[[nodiscard]] Focus parse_focus(const std::string& option, const std::string& text);
+/// Throws where a focus is a pixel that does not lie inside a frame.
+void check_inside(const std::string& option, const Focus&, V2i frame);
 /// Bins from "380:730:10", also with nm: edges of equal bins in nm, inside the wavelengths that
 /// paths carry.
 [[nodiscard]] Bins parse_bins(const std::string& option, const std::string& text);
-/// Layers from lists of their names, "albedo,normal".
-[[nodiscard]] std::vector<Aov> parse_aovs(const std::string& option,
-                                          const std::vector<std::string>& lists);
+/// Adds the layers of a list of their names, "albedo,normal", that are not there yet.
+void add_aovs(const std::string& option, const std::string& list, std::vector<Aov>& layers);
+/// Eye and target in metres from "ex,ey,ez,tx,ty,tz": two points.
+[[nodiscard]] std::array<V3f, 2> parse_look_at(const std::string& option, const std::string& text);
+/// Numbers of frames from "1:48" (both are rendered), "1:48:2" (every second one) or "7": whole
+/// numbers from 0, at most 100,000 of them.
+[[nodiscard]] std::vector<int> parse_frames(const std::string& option, const std::string& text);
+/// Sweep from "fstop=1.4,2,2.8", with semicolons between values that hold commas.
+[[nodiscard]] Sweep parse_sweep(const std::string& option, const std::string& text);
 
 }  // namespace petzval

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/cli/parse.h"
+#include "apps/request/parse.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -19,10 +18,20 @@ namespace {
 constexpr int kLargestSide_px = 65536;
 constexpr float kMostExposure_ev = 100;
 constexpr float kNearestFocus_m = 1e-6f;
+constexpr const char* kShutterTimes =
+    "seconds above 0, as 0.01, 1/100 or 10ms, or an angle such as 180deg";
 
 [[noreturn]] void refuse(const std::string& option, const std::string& text,
                          const std::string& want) {
-    throw CLI::ValidationError(option, fmt::format("\"{}\" is not {}", text, want));
+    throw ValueError(option, fmt::format("\"{}\" is not {}", text, want));
+}
+
+bool is_shutter_time(float s) {
+    return s >= 1e-9f && s <= 1e9f;
+}
+
+std::string text_of(const Rect& crop) {
+    return fmt::format("{},{},{},{}", crop.x0, crop.y0, crop.width(), crop.height());
 }
 
 // Two sides from "WIDTHxHEIGHT", whatever stands for times.
@@ -75,19 +84,23 @@ V2f parse_sensor(const std::string& option, const std::string& text, double leas
     refuse(option, text, fmt::format("WIDTHxHEIGHT in millimetres, {:g} to {:g}", least, most));
 }
 
-Rect parse_crop(const std::string& option, const std::string& text, V2i frame) {
+Rect parse_crop(const std::string& option, const std::string& text) {
     const auto parts = split(text, ',');
     std::vector<int> v;
     for (const std::string_view part : parts)
         if (const auto value = number<int>(trimmed(part))) v.push_back(*value);
-    if (v.size() == 4 && parts.size() == 4) {
-        const auto inside = [](int at, int size, int whole) {
-            return at >= 0 && at < whole && size >= 1 && size <= whole - at;
-        };
-        if (inside(v[0], v[2], frame.x) && inside(v[1], v[3], frame.y))
-            return {v[0], v[1], v[0] + v[2], v[1] + v[3]};
-    }
-    refuse(option, text, fmt::format("x,y,width,height inside the {}x{} frame", frame.x, frame.y));
+    const auto fits = [](int at, int size) {
+        return at >= 0 && size >= 1 && at <= kLargestSide_px && size <= kLargestSide_px;
+    };
+    if (v.size() == 4 && parts.size() == 4 && fits(v[0], v[2]) && fits(v[1], v[3]))
+        return {v[0], v[1], v[0] + v[2], v[1] + v[3]};
+    refuse(option, text, "x,y,width,height inside the frame");
+}
+
+void check_inside(const std::string& option, const Rect& crop, V2i frame) {
+    if (crop.x1 <= frame.x && crop.y1 <= frame.y) return;
+    refuse(option, text_of(crop),
+           fmt::format("x,y,width,height inside the {}x{} frame", frame.x, frame.y));
 }
 
 SampleRange parse_samples(const std::string& option, const std::string& text, uint32_t most) {
@@ -98,7 +111,7 @@ SampleRange parse_samples(const std::string& option, const std::string& text, ui
     } else if (const auto count = number<uint32_t>(trimmed(text)); count && *count > 0) {
         refuse(option, text,
                fmt::format("a range A:B, which is a part of the samples; for {0} samples of each "
-                           "pixel type --spp {0}",
+                           "pixel type ⟨spp⟩ {0}",
                            *count));
     }
     refuse(option, text,
@@ -166,9 +179,9 @@ double parse_duration_s(const std::string& option, const std::string& text) {
     return *s;
 }
 
-std::optional<float> parse_exposure_ev(const std::string& option, const std::string& text) {
+ExposureRequest parse_exposure(const std::string& option, const std::string& text) {
     std::string_view digits = trimmed(text);
-    if (lower(std::string(digits)) == "auto") return std::nullopt;
+    if (lower(std::string(digits)) == "auto") return {true};
     if (lower(std::string(digits)).ends_with("ev"))
         digits = trimmed(digits.substr(0, digits.size() - 2));
     const auto value = number<float>(digits);
@@ -176,7 +189,7 @@ std::optional<float> parse_exposure_ev(const std::string& option, const std::str
         refuse(option, text,
                fmt::format("auto or a number from {0:g} to {1:g}", -kMostExposure_ev,
                            kMostExposure_ev));
-    return value;
+    return {false, *value};
 }
 
 uint64_t parse_memory_bytes(const std::string& option, const std::string& text) {
@@ -204,13 +217,22 @@ double parse_share(const std::string& option, const std::string& text) {
     return share;
 }
 
-float parse_shutter_s(const std::string& option, const std::string& text, double fps) {
-    constexpr float shortest_s = 1e-9f, longest_s = 1e9f;
+Moment parse_moment(const std::string& option, const std::string& text) {
+    constexpr double kMost_s = 1e6;
+    constexpr std::array<Unit, 4> kSeconds{{{"s"}, {"sec"}, {"ms", 1, 1000}, {"min", 60, 1}}};
+    constexpr std::string_view kFrame = "frame:";
+    const std::string_view given = trimmed(text);
+    const bool is_frame = given.starts_with(kFrame);
+    const auto value =
+        is_frame ? number<double>(given.substr(kFrame.size())) : quantity(given, kSeconds);
+    if (value && (is_frame || std::fabs(*value) <= kMost_s)) return {*value, is_frame};
+    refuse(option, text, "a time such as 1.25s, 40ms or frame:30");
+}
+
+ShutterTime parse_shutter(const std::string& option, const std::string& text) {
     if (!number<double>(trimmed(text)))
-        if (const auto angle_deg = quantity(text, kDegrees))
-            if (const auto s = static_cast<float>(*angle_deg / 360 / fps);
-                s >= shortest_s && s <= longest_s)
-                return s;
+        if (const auto angle_deg = quantity(text, kDegrees); angle_deg && *angle_deg > 0)
+            return {*angle_deg, true};
     std::string_view digits = text;
     const float per_s = digits.ends_with("ms") ? 1000 : 1;
     if (digits.ends_with('s')) digits.remove_suffix(per_s == 1 ? 1 : 2);
@@ -218,8 +240,8 @@ float parse_shutter_s(const std::string& option, const std::string& text, double
     const auto above = number<float>(parts[0]);
     const auto below = parts.size() == 2 ? number<float>(parts[1]) : std::optional(1.f);
     if (parts.size() <= 2 && above && below)
-        if (const float s = *above / *below / per_s; s >= shortest_s && s <= longest_s) return s;
-    refuse(option, text, "seconds above 0, as 0.01, 1/100 or 10ms, or an angle such as 180deg");
+        if (const float s = *above / *below / per_s; is_shutter_time(s)) return {double(s), false};
+    refuse(option, text, kShutterTimes);
 }
 
 namespace {
@@ -249,16 +271,23 @@ float parse_focus_distance_m(const std::string& option, const std::string& text)
     return *distance_m;
 }
 
-Focus parse_focus(const std::string& option, const std::string& text, V2i frame) {
+Focus parse_focus(const std::string& option, const std::string& text) {
     if (lower(text) == "auto") return FocusAuto{};
     if (const auto parts = split(text, ','); parts.size() == 2) {
         const auto x = number<int>(trimmed(parts[0])), y = number<int>(trimmed(parts[1]));
-        if (x && y && *x >= 0 && *y >= 0 && *x < frame.x && *y < frame.y) return FocusPixel{*x, *y};
-        refuse(option, text, fmt::format("a pixel x,y of the {}x{} frame", frame.x, frame.y));
+        if (x && y && *x >= 0 && *y >= 0) return FocusPixel{*x, *y};
+        refuse(option, text, "a pixel x,y of the frame");
     }
     const auto distance_m = focus_distance_m(text);
     if (!distance_m) refuse(option, text, focus_distances() + ", a pixel x,y or auto");
     return FocusDistance{*distance_m};
+}
+
+void check_inside(const std::string& option, const Focus& focus, V2i frame) {
+    const auto* pixel = std::get_if<FocusPixel>(&focus);
+    if (pixel && !(pixel->x < frame.x && pixel->y < frame.y))
+        refuse(option, fmt::format("{},{}", pixel->x, pixel->y),
+               fmt::format("a pixel x,y of the {}x{} frame", frame.x, frame.y));
 }
 
 Bins parse_bins(const std::string& option, const std::string& text) {
@@ -284,22 +313,66 @@ Bins parse_bins(const std::string& option, const std::string& text) {
     return {v[0], v[2], static_cast<int>(std::lround(count))};
 }
 
-std::vector<Aov> parse_aovs(const std::string& option, const std::vector<std::string>& lists) {
+void add_aovs(const std::string& option, const std::string& list, std::vector<Aov>& layers) {
     std::vector<std::string> known;
     for (int i = 0; i < static_cast<int>(Aov::Count); ++i)
         known.emplace_back(aov_info(static_cast<Aov>(i)).name);
-    std::vector<Aov> aovs;
-    for (const std::string& list : lists)
-        for (const std::string_view part : split(list, ',')) {
-            const std::string name = lower(std::string(trimmed(part)));
-            const auto aov = aov_from_name(name);
-            if (!aov)
-                refuse(option, name,
-                       fmt::format("a layer; there are {}{}", fmt::join(known, ", "),
-                                   did_you_mean(name, known)));
-            if (std::find(aovs.begin(), aovs.end(), *aov) == aovs.end()) aovs.push_back(*aov);
-        }
-    return aovs;
+    for (const std::string_view part : split(list, ',')) {
+        const std::string name = lower(std::string(trimmed(part)));
+        const auto aov = aov_from_name(name);
+        if (!aov)
+            refuse(option, name,
+                   fmt::format("a layer; there are {}{}", fmt::join(known, ", "),
+                               did_you_mean(name, known)));
+        if (std::find(layers.begin(), layers.end(), *aov) == layers.end()) layers.push_back(*aov);
+    }
+}
+
+std::array<V3f, 2> parse_look_at(const std::string& option, const std::string& text) {
+    constexpr float kFarthest_m = 1e12f, kNearest_m = 1e-12f;
+    const auto v = parse_lengths_m(option, text, 6);
+    for (const float x : v)
+        if (std::fabs(x) > kFarthest_m)
+            throw ValueError(option, fmt::format("{:g} m is too far away", x));
+    const std::array<V3f, 2> aim{V3f(v[0], v[1], v[2]), V3f(v[3], v[4], v[5])};
+    if ((aim[0] - aim[1]).length() < kNearest_m)
+        throw ValueError(option, "eye and target are the same point");
+    return aim;
+}
+
+std::vector<int> parse_frames(const std::string& option, const std::string& text) {
+    constexpr int kMostFrames = 100'000, kLastFrame = 10'000'000;
+    std::vector<int> numbers;
+    for (const std::string_view part : split(text, ':'))
+        numbers.push_back(number<int>(trimmed(part)).value_or(-1));
+    const bool right =
+        numbers.size() <= 3 && std::all_of(numbers.begin(), numbers.end(),
+                                           [](int n) { return n >= 0 && n <= kLastFrame; });
+    const int first = numbers[0], last = numbers.size() > 1 ? numbers[1] : first,
+              step = numbers.size() > 2 ? numbers[2] : 1;
+    if (!right || last < first || step < 1 || (last - first) / step >= kMostFrames)
+        refuse(option, text,
+               fmt::format("a range of frames such as 1:48, 1:48:2 or 7, {} at most", kMostFrames));
+    std::vector<int> frames;
+    for (int frame = first; frame <= last; frame += step) frames.push_back(frame);
+    return frames;
+}
+
+Sweep parse_sweep(const std::string& option, const std::string& text) {
+    const size_t at = text.find('=');
+    Sweep sweep;
+    if (at != text.npos && at > 0 && text[0] != '-') {
+        sweep.field = text.substr(0, at);
+        const std::string values = text.substr(at + 1);
+        for (const std::string_view part :
+             split(values, values.find(';') == values.npos ? ',' : ';'))
+            sweep.values.emplace_back(trimmed(part));
+    }
+    if (sweep.values.empty() || std::ranges::find(sweep.values, "") != sweep.values.end())
+        refuse(option, text,
+               "an option and its values, as fstop=1.4,2,2.8; with semicolons between values that "
+               "hold commas");
+    return sweep;
 }
 
 }  // namespace petzval

@@ -125,7 +125,7 @@ struct SceneRequest {
     std::optional<std::filesystem::path> environment;  ///< a picture, or kStudioLight
     float environment_rotate_deg = 0, environment_strength = 1;
     std::optional<Rgb> background;
-    LightChoiceKind light_choice = LightChoiceKind::Tree;
+    std::optional<LightChoiceKind> light_choice;  ///< absent: as a plan finds, or the tree
     Traversal traversal = Traversal::Robust;
     TargetUse targets = TargetUse::Auto;  ///< whether camera rays are sent to small lamps
     SpectralRequest spectral;
@@ -134,6 +134,15 @@ struct SceneRequest {
     std::optional<uint64_t> picture_memory_bytes;
     FileScope scope = FileScope::Anywhere;  ///< of files that the scene names
     GltfChoices choices;                    ///< what is taken of the scene's file
+
+    /// Budget of decoded pictures.
+    [[nodiscard]] PictureBudget pictures() const {
+        return picture_memory_bytes ? PictureBudget(*picture_memory_bytes) : PictureBudget();
+    }
+    /// How one of many lights is chosen where no plan chooses.
+    [[nodiscard]] LightChoiceKind lights() const {
+        return light_choice.value_or(LightChoiceKind::Tree);
+    }
 };
 
 }  // namespace petzval

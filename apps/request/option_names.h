@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "apps/setup/request.h"
+#include "apps/request/render_order.h"
 #include "core/sampling/filter.h"
 #include "core/sampling/sampler.h"
 
@@ -83,6 +83,15 @@ inline constexpr auto kOptionNames<TargetUse> =
 template <>
 inline constexpr auto kOptionNames<Traversal> = std::to_array<OptionName<Traversal>>(
     {{"robust", Traversal::Robust}, {"fast", Traversal::Fast}});
+
+template <>
+inline constexpr auto kOptionNames<ProgressStyle> =
+    std::to_array<OptionName<ProgressStyle>>({{"auto", ProgressStyle::Auto},
+                                              {"bar", ProgressStyle::Bar},
+                                              {"lines", ProgressStyle::Lines},
+                                              {"json", ProgressStyle::Json},
+                                              {"percent", ProgressStyle::Percent},
+                                              {"none", ProgressStyle::None}});
 
 /// Text of a distance as --focus takes it.
 [[nodiscard]] inline std::string focus_text(FocusDistance distance) {

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Options of the command line, from the table of fields.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "apps/request/fields.h"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace petzval {
+
+/// Declares the options of all fields that a command takes; they write to the order, which must
+/// outlive the parsing.
+void add_field_options(CLI::App&, RenderOrder&, Taker);
+
+/// Declares the option of one field, likewise.
+void add_field_option(CLI::App&, RenderOrder&, std::string_view name);
+
+/// Words of a command line that asks for an order, without the command's name. A word that is no
+/// option follows the option that it is for.
+[[nodiscard]] std::vector<std::string> words_of(const RenderOrder&);
+
+}  // namespace petzval

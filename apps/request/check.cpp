@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// What does not go together in a request or an order.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "apps/request/file_names.h"
+#include "apps/request/parse.h"
+#include "core/film/spectral_film.h"
+
+namespace petzval {
+namespace {
+
+void refuse(const char* option, const std::string& why) {
+    throw ValueError(option, why);
+}
+
+void check_camera(const CameraRequest& camera, V2i frame) {
+    if (camera.look_at && camera.name) refuse("⟨look-at⟩", "excludes ⟨camera⟩");
+    if (camera.fstop && camera.lens_radius_m) refuse("⟨fstop⟩", "excludes ⟨lens-radius⟩");
+    if (camera.focus) check_inside("⟨focus⟩", *camera.focus, frame);
+    if (camera.exposure != ExposureMode::Photographic && camera.iso != CameraRequest().iso)
+        refuse("⟨exposure-mode⟩", "⟨iso⟩ has no effect but with photographic");
+}
+
+void check_moment(const MomentRequest& moment, ExposureMode mode) {
+    if (!moment.at && !moment.animations.empty()) refuse("⟨animation⟩", "needs a time: ⟨at⟩ 1s");
+    if (!moment.at && moment.loop) refuse("⟨loop⟩", "needs a time: ⟨at⟩ 1s");
+    if (moment.shutter && !moment.at && mode != ExposureMode::Photographic)
+        refuse("⟨shutter⟩", "has no effect but with ⟨at⟩, or with ⟨exposure-mode⟩ photographic");
+    if (!moment.shutter && !moment.shutter_curve.empty())
+        refuse("⟨shutter-curve⟩", "needs ⟨shutter⟩");
+}
+
+void check_samples(const SampleRequest& samples, bool bins) {
+    if (samples.range && samples.count) refuse("⟨samples⟩", "excludes ⟨spp⟩");
+    if (samples.range && samples.time_limit_s) refuse("⟨time⟩", "excludes ⟨samples⟩");
+    if (bins && !samples.range && samples.count.value_or(kUsualSamples) < kReplicates)
+        refuse("⟨spp⟩",
+               fmt::format("the standard errors of ⟨bins⟩ need at least {}", kReplicates));
+}
+
+}  // namespace
+
+void check(const RenderRequest& request) {
+    const SceneRequest& scene = request.scene;
+    check_camera(scene.camera, scene.size);
+    if (scene.camera.orbit_about && !scene.camera.orbit_deg)
+        refuse("⟨orbit-about⟩", "has no effect but with ⟨orbit⟩ or ⟨turntable⟩");
+    check_moment(request.moment, scene.camera.exposure);
+    check_samples(request.samples, scene.spectral.bins.has_value());
+    if (request.crop) check_inside("⟨crop⟩", *request.crop, scene.size);
+    if (!scene.environment && scene.environment_rotate_deg != 0)
+        refuse("⟨env-rotate⟩", "needs ⟨env⟩");
+    if (!scene.environment && scene.environment_strength != 1)
+        refuse("⟨env-strength⟩", "needs ⟨env⟩");
+    if (scene.spectral.bins && scene.spectral.mode == SpectralMode::Rgb)
+        refuse("⟨bins⟩", "needs wavelengths: leave out ⟨spectral⟩ rgb");
+}
+
+void check(const RenderOrder& order) {
+    check(order.render);
+    const RenderFiles files = files_of(order);
+    // A state that stays keeps all.
+    const bool keeps_all =
+        files.state_stays || std::ranges::any_of(files.pictures, [](const auto& picture) {
+            return !is_for_display(picture);
+        });
+    if (order.render.scene.spectral.bins && !keeps_all)
+        refuse("⟨bins⟩", "needs an output that keeps them: ⟨output⟩ FILE.exr");
+    if (!order.render.layers.empty() && !keeps_all)
+        refuse("⟨aov⟩", "needs an output that keeps layers: ⟨output⟩ FILE.exr");
+}
+
+void check_sequence(const RenderOrder& order) {
+    const SequenceRequest& sequence = order.sequence;
+    const bool frames = !sequence.frames.empty();
+    if (frames && order.render.moment.at) refuse("⟨frames⟩", "excludes ⟨at⟩");
+    if (frames && sequence.turntable) refuse("⟨turntable⟩", "excludes ⟨frames⟩");
+    if (sequence.turntable && order.render.scene.camera.orbit_deg)
+        refuse("⟨turntable⟩", "excludes ⟨orbit⟩");
+    if (sequence.sweep && frames) refuse("⟨sweep⟩", "excludes ⟨frames⟩");
+    if (sequence.sweep && sequence.turntable) refuse("⟨sweep⟩", "excludes ⟨turntable⟩");
+    if (sequence.sheet && !sequence.several())
+        refuse("⟨sheet⟩", "needs ⟨frames⟩, ⟨turntable⟩ or ⟨sweep⟩");
+}
+
+}  // namespace petzval

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/request/option_text.h"
+
+#include <algorithm>
+#include <string_view>
+
+namespace petzval {
+
+std::string as_options(const std::string& message) {
+    constexpr std::string_view kOpen = "⟨", kClose = "⟩";
+    std::string text;
+    size_t done = 0;
+    for (;;) {
+        const size_t open = message.find(kOpen, done), name_at = open + kOpen.size();
+        const size_t close = open == message.npos ? open : message.find(kClose, name_at);
+        if (close == message.npos) return text + message.substr(done);
+        const std::string name = message.substr(name_at, close - name_at);
+        const bool is_name = !name.empty() && std::ranges::all_of(name, [](char c) {
+            return (c >= 'a' && c <= 'z') || c == '-';
+        });
+        text += message.substr(done, open - done);
+        if (is_name)
+            text += name == "output" ? "-o" : "--" + name;
+        else
+            text += message.substr(open, name_at - open);
+        done = is_name ? close + kClose.size() : name_at;
+    }
+}
+
+}  // namespace petzval

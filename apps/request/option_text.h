@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// Messages of the library, as the command line spells them.
+#pragma once
+
+#include <string>
+
+namespace petzval {
+
+/// Text in which ⟨focus⟩, a field's name in a message, reads --focus, and ⟨output⟩ reads -o.
+[[nodiscard]] std::string as_options(const std::string& message);
+
+}  // namespace petzval

@@ -35,19 +35,18 @@ int fail(Session& session, int exit_code, const std::string& what) {
 }
 
 // Exit code where parsing stopped. Help and the version are "errors" to CLI11 as well.
-int stop_parsing(Session& session, const CLI::App& app, const CLI::ParseError& e,
-                 const petzval::Spelling& line) {
+int stop_parsing(Session& session, const CLI::App& app, const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);
-    return fail(session, petzval::kUsage, petzval::explanation(app, e, line) + kMore);
+    return fail(session, petzval::kUsage, petzval::explanation(app, e) + kMore);
 }
 
-int run(CLI::App& app, petzval::Spelling line, Session& session) {
+int run(CLI::App& app, std::vector<std::string> words, Session& session) {
     try {
-        petzval::resolve_help(app, line);
+        petzval::resolve_help(app, words);
         // CLI11 takes the words from the end of a vector.
-        app.parse(std::vector<std::string>(line.words.rbegin(), line.words.rend()));
+        app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
     } catch (const CLI::ParseError& e) {
-        return stop_parsing(session, app, e, line);
+        return stop_parsing(session, app, e);
     } catch (const petzval::ValueError& e) {
         return fail(session, petzval::kUsage, std::string(e.what()) + kMore);
     } catch (...) {
@@ -76,8 +75,8 @@ int main(int argc, char** argv) {
     // whose reader has gone, instead of killing.
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);
-    petzval::Spelling line = petzval::with_current_spellings(argc, argv);
-    const petzval::ConsoleWish wish = petzval::console_wish_of(line.words);
+    std::vector<std::string> words(argv + 1, argv + argc);
+    const petzval::ConsoleWish wish = petzval::console_wish_of(words);
     Session session(wish.style, wish.quiet);
     CLI::App app("A path tracer whose camera is a lens. Every command has --help.");
     app.name("petzval");
@@ -95,7 +94,7 @@ int main(int argc, char** argv) {
     petzval::add_lens_commands(app);
     petzval::resolve_repeats(app);
     app.footer("petzval help COMMAND prints what a command takes.");
-    const int exit_code = finish_stdout(session, run(app, std::move(line), session));
+    const int exit_code = finish_stdout(session, run(app, std::move(words), session));
     session.console.end(exit_code);
     return exit_code;
 }

@@ -12,6 +12,7 @@
 #include <iterator>
 #include <string_view>
 
+#include "apps/request/fields.h"
 #include "apps/request/file_names.h"
 #include "io/base/ascii.h"
 #include "io/base/nearest.h"
@@ -49,12 +50,13 @@ std::string without_value(const std::string& option) {
 struct ForeignWord {
     std::string_view word, option, value;
 };
-constexpr std::array<ForeignWord, 12> kForeign{
-    {{"width", "--size", "WIDTHxHEIGHT"},
+constexpr std::array<ForeignWord, 13> kForeign{
+    {{"samples", "--spp", "NUMBER"},
+     {"width", "--size", "WIDTHxHEIGHT"},
      {"height", "--size", "WIDTHxHEIGHT"},
      {"resolution", "--size", "WIDTHxHEIGHT"},
      {"denois", "--aov", "albedo,normal, which a denoiser of another program needs"},
-     {"bounce", "--max-depth", "NUMBER"},
+     {"bounce", "--method", "max-depth=NUMBER"},
      {"hdri", "--env", "FILE"},
      {"tonemap", "--view", "NAME"},
      {"dof", "--fstop", "NUMBER --focus DISTANCE"},
@@ -81,9 +83,14 @@ std::string near_options(const CLI::App& app, const std::string& typed) {
         if (!option->get_group().empty())
             names.insert(names.end(), option->get_lnames().begin(), option->get_lnames().end());
     const std::string bare = typed.substr(typed.starts_with("--") ? 2 : 1);
+    if (app.get_option_no_throw("--method"))
+        for (const RequestField& field : request_fields())
+            if (field.level == FieldLevel::Method) names.push_back(field.name);
     Words near = words_near(bare, names);
     const auto begins = [&](const std::string& name) { return name.starts_with(bare); };
     if (bare.size() == 1) std::ranges::copy_if(names, std::back_inserter(near), begins);
+    for (std::string& name : near)
+        if (!app.get_option_no_throw("--" + name)) name = "method " + name;
     constexpr size_t kMost = 3;  // of -s, say, with which many begin
     return near.empty() || near.size() > kMost
                ? ""
@@ -101,11 +108,8 @@ Words takers(const CLI::App& app, const std::string& option) {
     return found;
 }
 
-std::string unknown_option(const CLI::App& app, const std::string& option, const Spelling& line) {
-    std::string typed = option;
-    for (const auto& [before, now] : line.renamed)
-        if (now == option) typed = before;
-    const std::string what = fmt::format("{} is no option of {}", typed, full_name(app));
+std::string unknown_option(const CLI::App& app, const std::string& option) {
+    const std::string what = fmt::format("{} is no option of {}", option, full_name(app));
     if (option.starts_with("--") && app.get_option_no_throw(option.substr(2)))
         return fmt::format("{}; type the {} without it", what, option.substr(2));
     if (const std::string here = as_called_here(app, option); !here.empty()) return what + here;
@@ -151,26 +155,17 @@ std::string about_word(const CLI::App& command, const CLI::ParseError& error,
 }
 
 // What is wrong by the words that nothing took; empty where they do not explain it.
-std::string by_words_left(const CLI::App& app, const CLI::ParseError& error, const Spelling& line) {
+std::string by_words_left(const CLI::App& app, const CLI::ParseError& error) {
     const auto below = app.get_subcommands();
     const Words left = app.remaining();
     const auto plain = std::find_if_not(left.begin(), left.end(), is_option);
     const bool wants_command = below.empty() && !commands_of(app).empty();
     if (wants_command && plain != left.end()) return unknown_command(app, *plain);
     for (const std::string& word : left)
-        if (is_option(word)) return unknown_option(app, without_value(word), line);
+        if (is_option(word)) return unknown_option(app, without_value(word));
     if (wants_command) return missing_command(app);
-    if (!below.empty()) return by_words_left(*below.front(), error, line);
+    if (!below.empty()) return by_words_left(*below.front(), error);
     return plain == left.end() ? "" : about_word(app, error, *plain);
-}
-
-// What was typed, where an error speaks of an option by today's name.
-std::string renamed_note(const std::string& what, const Spelling& line) {
-    std::string note;
-    for (const auto& [before, now] : line.renamed)
-        if (what.find(now) != std::string::npos && what.find(before) == std::string::npos)
-            note = fmt::format(" ({} is called {} now)", before, now);
-    return note;
 }
 
 }  // namespace
@@ -183,17 +178,17 @@ void resolve_repeats(CLI::App& app) {
         resolve_repeats(*command);
 }
 
-void resolve_help(const CLI::App& app, Spelling& line) {
-    const CLI::App* at = &app;
+void resolve_help(CLI::App& app, std::vector<std::string>& words) {
+    CLI::App* at = &app;
     bool asked = false;
-    for (auto word = line.words.begin(); word != line.words.end();) {
+    for (auto word = words.begin(); word != words.end();) {
         if (*word == "help" && !asked && !commands_of(*at).empty()) {
             asked = true;
-            word = line.words.erase(word);
+            word = words.erase(word);
             continue;
         }
         if (is_option(*word)) break;
-        const auto commands = commands_of(*at);
+        const auto commands = at->get_subcommands(std::function<bool(CLI::App*)>());
         const auto named = [&](const CLI::App* command) { return command->get_name() == *word; };
         const auto found = std::find_if(commands.begin(), commands.end(), named);
         if (found == commands.end()) {
@@ -204,22 +199,30 @@ void resolve_help(const CLI::App& app, Spelling& line) {
         at = *found;
         ++word;
     }
-    if (asked) line.words.emplace_back("--help");
+    if (asked) words.insert(std::find(words.begin(), words.end(), "all"), "--help");
+    const auto help = std::find_if(words.begin(), words.end(), [](const auto& word) {
+        return word == "--help" || word == "-h";
+    });
+    if (help == words.end()) return;
+    if (help + 1 != words.end() && *(help + 1) == "all")
+        words.erase(help + 1);
+    else
+        hide_expert_options(*at);
 }
 
 CLI::ParseError no_such_option(const CLI::App& app, const std::string& option) {
-    return {unknown_option(app, option, {}), CLI::ExitCodes::InvalidError};
+    return {unknown_option(app, option), CLI::ExitCodes::InvalidError};
 }
 
-std::string explanation(const CLI::App& app, const CLI::ParseError& error, const Spelling& line) {
+std::string explanation(const CLI::App& app, const CLI::ParseError& error) {
     if (is(error, CLI::ExitCodes::InvalidError)) return error.what();  // it explains itself
-    std::string what = by_words_left(app, error, line);
+    std::string what = by_words_left(app, error);
     if (what.empty()) what = error.what();
     if (is(error, CLI::ExitCodes::ArgumentMismatch))
         what = what.substr(0, what.find(':')) + (what.find("At Most") == std::string::npos
                                                      ? " needs a value"
                                                      : " is given twice, and one file is written");
-    return what + renamed_note(what, line);
+    return what;
 }
 
 }  // namespace petzval

@@ -4,8 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
-
-#include "apps/cli/old_spellings.h"
+#include <vector>
 
 namespace petzval {
 
@@ -13,14 +12,15 @@ namespace petzval {
 /// other options that are given twice the last holds.
 void resolve_repeats(CLI::App&);
 
-/// Writes "petzval help render" and "petzval lens help spot" as the --help that they mean. Throws
+/// Writes "petzval help render" and "petzval lens help spot" as the --help that they mean, which
+/// has all options where "all" follows. Throws
 /// CLI::ParseError where help is wanted about what is no command.
-void resolve_help(const CLI::App&, Spelling&);
+void resolve_help(CLI::App&, std::vector<std::string>& words);
 
 /// Error of an option that a command does not have, with what may have been meant.
 [[nodiscard]] CLI::ParseError no_such_option(const CLI::App&, const std::string& option);
 
-/// Explanation of why words were not parsed, with what was typed and what may have been meant.
-[[nodiscard]] std::string explanation(const CLI::App&, const CLI::ParseError&, const Spelling&);
+/// Explanation of why words were not parsed, with what may have been meant.
+[[nodiscard]] std::string explanation(const CLI::App&, const CLI::ParseError&);
 
 }  // namespace petzval

@@ -7,6 +7,7 @@
 
 #include "apps/request/option_text.h"
 #include "apps/request/value_error.h"
+#include "io/base/nearest.h"
 
 namespace petzval {
 namespace {
@@ -33,7 +34,8 @@ CLI::Option* add(CLI::App& app, RenderOrder& order, const RequestField& field) {
         case FieldForm::Argument:
             return app.add_option_function<std::string>("scene", set, help)->required();
         case FieldForm::Switch:
-            return app.add_flag_callback(name, [set] { set("on"); }, help);
+            return app.add_flag_callback(
+                name, [set] { set("on"); }, help);
         case FieldForm::List:
             return app
                 .add_option_function<std::vector<std::string>>(
@@ -43,7 +45,8 @@ CLI::Option* add(CLI::App& app, RenderOrder& order, const RequestField& field) {
                     },
                     help)
                 ->allow_extra_args(false);  // one value each, so that the scene may follow
-        default: return app.add_option_function<std::string>(name, set, help);
+        default:
+            return app.add_option_function<std::string>(name, set, help);
     }
 }
 
@@ -53,15 +56,67 @@ void add_in_group(CLI::App& app, RenderOrder& order, const RequestField& field) 
     if (field.form != FieldForm::Switch) option->type_name(field.value);
 }
 
+// Reads "sampler=sobol".
+void set_method(const std::vector<RequestField>& methods, RenderOrder& order,
+                const std::string& text) {
+    const size_t at = text.find('=');
+    const std::string name = text.substr(0, at);
+    std::vector<std::string> known;
+    for (const RequestField& field : methods) {
+        known.push_back(field.name);
+        if (field.name != name) continue;
+        if (at == text.npos) throw CLI::ValidationError("--method " + name, "needs =VALUE");
+        return as_typed([&] { field.set(order, text.substr(at + 1)); });
+    }
+    throw CLI::ValidationError("--method", fmt::format("\"{}\" is none{}", name,
+                                                       did_you_mean_or("there are", name, known)));
+}
+
+// Declares --method for fields that compare methods; --help all has them below the options.
+void add_method_option(CLI::App& app, RenderOrder& order, std::vector<RequestField> methods) {
+    std::string footer = "Methods, as --method NAME=VALUE:\n";
+    for (const RequestField& field : methods)
+        footer += fmt::format("  {:<20}{}\n", field.name, as_options(field.help));
+    app.footer(footer);
+    app.add_option_function<std::vector<std::string>>(
+           "--method",
+           [&order, methods = std::move(methods)](const std::vector<std::string>& texts) {
+               for (const std::string& text : texts) set_method(methods, order, text);
+           },
+           "how it is computed, for experts; may be given more than once")
+        ->allow_extra_args(false)
+        ->type_name("NAME=VALUE");
+}
+
 }  // namespace
 
 void add_field_options(CLI::App& app, RenderOrder& order, Taker taker) {
+    std::vector<RequestField> methods;
     for (const RequestField& field : request_fields())
-        if (field.takers & taker) add_in_group(app, order, field);
+        if (!(field.takers & taker))
+            continue;
+        else if (field.level == FieldLevel::Method)
+            methods.push_back(field);
+        else
+            add_in_group(app, order, field);
+    add_method_option(app, order, std::move(methods));
 }
 
 void add_field_option(CLI::App& app, RenderOrder& order, std::string_view name) {
     if (const auto field = find_field(name)) add_in_group(app, order, *field);
+}
+
+void hide_expert_options(CLI::App& app) {
+    if (!app.get_option_no_throw("--method")) return;
+    for (const RequestField& field : request_fields())
+        if (CLI::Option* const option = app.get_option_no_throw("--" + field.name);
+            option && field.level == FieldLevel::More)
+            option->group("");
+    app.get_option("--method")->group("");
+    app.footer(
+        fmt::format("petzval {0} --help all lists all options. An example:\n"
+                    "  petzval {0} scene.glb --lens takumar-50mm-f1.2 --focus 2m{1}",
+                    app.get_name(), app.get_option_no_throw("--output") ? " -o picture.png" : ""));
 }
 
 std::vector<std::string> words_of(const RenderOrder& order) {
@@ -70,6 +125,10 @@ std::vector<std::string> words_of(const RenderOrder& order) {
         const auto field = find_field(name);
         const std::string& letter = field->short_name;
         for (const std::string& text : texts) {
+            if (field->level == FieldLevel::Method) {
+                words.insert(words.end(), {"--method", name + "=" + text});
+                continue;
+            }
             if (field->form != FieldForm::Argument)
                 words.push_back(letter.empty() ? "--" + name : "-" + letter);
             if (field->form != FieldForm::Switch) words.push_back(text);

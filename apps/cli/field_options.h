@@ -22,6 +22,9 @@ void add_field_options(CLI::App&, RenderOrder&, Taker);
 /// Declares the option of one field, likewise.
 void add_field_option(CLI::App&, RenderOrder&, std::string_view name);
 
+/// Hides the options that most people do not need from --help, and says how to see them.
+void hide_expert_options(CLI::App&);
+
 /// Words of a command line that asks for an order, without the command's name. A word that is no
 /// option follows the option that it is for.
 [[nodiscard]] std::vector<std::string> words_of(const RenderOrder&);

@@ -33,11 +33,12 @@ void check_moment(const MomentRequest& moment, ExposureMode mode) {
 }
 
 void check_samples(const SampleRequest& samples, bool bins) {
-    if (samples.range && samples.count) refuse("⟨samples⟩", "excludes ⟨spp⟩");
-    if (samples.range && samples.time_limit_s) refuse("⟨time⟩", "excludes ⟨samples⟩");
+    if (samples.range && samples.count)
+        refuse("⟨spp⟩", "is a number of samples or a range of them");
+    if (samples.range && samples.time_limit_s)
+        refuse("⟨time-limit⟩", "excludes a range of samples");
     if (bins && !samples.range && samples.count.value_or(kUsualSamples) < kReplicates)
-        refuse("⟨spp⟩",
-               fmt::format("the standard errors of ⟨bins⟩ need at least {}", kReplicates));
+        refuse("⟨spp⟩", fmt::format("the standard errors of ⟨bins⟩ need at least {}", kReplicates));
 }
 
 }  // namespace

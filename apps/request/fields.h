@@ -28,14 +28,19 @@ enum class FieldPart : uint8_t {
 /// each value is added to; or a switch, whose value is "on".
 enum class FieldForm : uint8_t { Value, Argument, List, Switch };
 
+/// Who needs a field: most people; some; those who compare methods. The last are written as
+/// --method NAME=VALUE.
+enum class FieldLevel : uint8_t { Common, More, Method };
+
 struct RequestField {
-    std::string name;  ///< as "fstop"
+    std::string name;        ///< as "fstop"
     std::string short_name;  ///< of one letter, as "o"; or empty
     std::string value;       ///< what --help calls its value: NUMBER, WORD, FILE, TEXT
     std::string group, help;
     uint8_t takers = kRender;
     FieldPart part = FieldPart::Picture;
     FieldForm form = FieldForm::Value;
+    FieldLevel level = FieldLevel::More;
     /// Reads a value from its text. Throws ValueError.
     std::function<void(RenderOrder&, const std::string& text)> set;
     /// Texts from which set() reads what an order holds; none where it holds nothing.

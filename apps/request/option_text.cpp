@@ -4,7 +4,24 @@
 #include <algorithm>
 #include <string_view>
 
+#include "apps/request/fields.h"
+
 namespace petzval {
+namespace {
+
+bool is_method(const std::string& name) {
+    const auto field = find_field(name);
+    return field && field->level == FieldLevel::Method;
+}
+
+// Options that are of no request, as those of petzval chart, are spelled alike.
+std::string option_of(const std::string& name) {
+    const auto field = find_field(name);
+    if (field && !field->short_name.empty()) return "-" + field->short_name;
+    return (field && field->level == FieldLevel::Method ? "--method " : "--") + name;
+}
+
+}  // namespace
 
 std::string as_options(const std::string& message) {
     constexpr std::string_view kOpen = "⟨", kClose = "⟩";
@@ -20,10 +37,14 @@ std::string as_options(const std::string& message) {
         });
         text += message.substr(done, open - done);
         if (is_name)
-            text += name == "output" ? "-o" : "--" + name;
+            text += option_of(name);
         else
             text += message.substr(open, name_at - open);
         done = is_name ? close + kClose.size() : name_at;
+        if (is_name && done < message.size() && message[done] == '=' && !is_method(name)) {
+            text += ' ';
+            ++done;
+        }
     }
 }
 

@@ -6,7 +6,8 @@
 
 namespace petzval {
 
-/// Text in which ⟨focus⟩, a field's name in a message, reads --focus, and ⟨output⟩ reads -o.
+/// Text in which ⟨focus⟩, a field's name in a message, reads --focus, and ⟨sampler⟩, one that
+/// compares methods, --method sampler. A value stands behind "=": ⟨focus⟩=1 reads --focus 1.
 [[nodiscard]] std::string as_options(const std::string& message);
 
 }  // namespace petzval

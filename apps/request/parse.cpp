@@ -108,11 +108,6 @@ SampleRange parse_samples(const std::string& option, const std::string& text, ui
         const auto first = number<uint32_t>(trimmed(parts[0])),
                    end = number<uint32_t>(trimmed(parts[1]));
         if (first && end && *first < *end && *end <= most) return {*first, *end};
-    } else if (const auto count = number<uint32_t>(trimmed(text)); count && *count > 0) {
-        refuse(option, text,
-               fmt::format("a range A:B, which is a part of the samples; for {0} samples of each "
-                           "pixel type ⟨spp⟩ {0}",
-                           *count));
     }
     refuse(option, text,
            fmt::format("a range A:B of samples, from A to before B, with A < B <= {}", most));

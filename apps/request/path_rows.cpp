@@ -10,28 +10,30 @@ namespace {
 constexpr uint8_t kAll = kRender | kPlan | kChart;
 constexpr double kMost = 1e6;  ///< keeps every product of two numbers a float
 
-
 std::vector<RequestField> sampling_fields() {
-    return {
-        number("max-depth", in::path(&PathOptions::max_depth), {0, 10000},
-               "scatterings of a path, without those at clear glass (default 16)"),
-        number("max-clear-depth", in::path(&PathOptions::max_clear_depth), {0, 100000},
-               "reflections and refractions of a path at clear glass (default 256)"),
-        choice("filter", in::samples(&SampleRequest::filter),
-               "pixel filter: box, gauss, blackman-harris (default)"),
-        number("filter-radius", in::samples(&SampleRequest::filter_radius_px), {0.01, 16, kPixels},
-               "pixels (default: box 0.5, the others 1.5)"),
-        choice("sampler", in::samples(&SampleRequest::sampler), "owen (default), sobol, independent"),
-        choice("light-choice", in::scene(&SceneRequest::light_choice),
-               "how one of many lights is chosen: tree (default; power, distance and direction), "
-               "power, uniform"),
-        choice("targets", in::scene(&SceneRequest::targets),
-               "camera rays to small lamps and highlights out of focus: auto (default; where they "
-               "pay), off"),
-        number("clamp", in::samples(&SampleRequest::clamp_nits), {1e-9, 1e12},
-               "largest R, G or B of a sample, in nits: takes fireflies, and light with them"),
-        choice("traversal", in::scene(&SceneRequest::traversal),
-               "robust (default): watertight; fast: may leak at edges")};
+    return {method(number("max-depth", in::path(&PathOptions::max_depth), {0, 10000},
+                          "scatterings of a path, without those at clear glass (default 16)")),
+            method(number("max-clear-depth", in::path(&PathOptions::max_clear_depth), {0, 100000},
+                          "reflections and refractions of a path at clear glass (default 256)")),
+            method(choice("filter", in::samples(&SampleRequest::filter),
+                          "pixel filter: box, gauss, blackman-harris (default)")),
+            method(number("filter-radius", in::samples(&SampleRequest::filter_radius_px),
+                          {0.01, 16, kPixels}, "pixels (default: box 0.5, the others 1.5)")),
+            method(choice("sampler", in::samples(&SampleRequest::sampler),
+                          "owen (default), sobol, independent")),
+            method(choice(
+                "light-choice", in::scene(&SceneRequest::light_choice),
+                "how one of many lights is chosen: tree (default; power, distance and direction), "
+                "power, uniform")),
+            method(choice(
+                "targets", in::scene(&SceneRequest::targets),
+                "camera rays to small lamps and highlights out of focus: auto (default; where they "
+                "pay), off")),
+            method(number(
+                "clamp", in::samples(&SampleRequest::clamp_nits), {1e-9, 1e12},
+                "largest R, G or B of a sample, in nits: takes fireflies, and light with them")),
+            method(choice("traversal", in::scene(&SceneRequest::traversal),
+                          "robust (default): watertight; fast: may leak at edges"))};
 }
 
 Rgb parse_background(const std::string& option, const std::string& text) {
@@ -41,30 +43,32 @@ Rgb parse_background(const std::string& option, const std::string& text) {
 }
 
 std::vector<RequestField> light_fields() {
-    return {
-        text("env", in::scene(&SceneRequest::environment),
-             "equirectangular environment picture, .hdr or .exr, or studio: the light that is "
-             "built in"),
-        number("env-rotate", in::scene(&SceneRequest::environment_rotate_deg),
-               {-kMost, kMost, kDegrees}, "degrees about +y, counter-clockwise from above"),
-        number("env-strength", in::scene(&SceneRequest::environment_strength), {0, kMost},
-               "factor on the environment"),
-        parsed("background", in::scene(&SceneRequest::background),
-               "R,G,B in nits: a uniform environment; with ⟨env⟩ only what the camera sees behind",
-               parse_background, [](const Rgb& b) {
-                   return fmt::format("{},{},{}", b.v[0], b.v[1], b.v[2]);
-               })};
+    return {common(text(
+                "env", in::scene(&SceneRequest::environment),
+                "equirectangular environment picture, .hdr or .exr, or studio: the light that is "
+                "built in")),
+            number("env-rotate", in::scene(&SceneRequest::environment_rotate_deg),
+                   {-kMost, kMost, kDegrees}, "degrees about +y, counter-clockwise from above"),
+            method(number("env-strength", in::scene(&SceneRequest::environment_strength),
+                          {0, kMost}, "factor on the environment")),
+            common(parsed(
+                "background", in::scene(&SceneRequest::background),
+                "R,G,B in nits: a uniform environment; with ⟨env⟩ only what the camera sees behind",
+                parse_background,
+                [](const Rgb& b) { return fmt::format("{},{},{}", b.v[0], b.v[1], b.v[2]); }))};
 }
 
 std::vector<RequestField> spectrum_fields() {
     return {
-        choice("spectral", in::spectral(&SpectralRequest::mode),
-               "what a path carries: rgb, wavelengths (four), or auto (default): wavelengths where "
-               "something depends on them and rgb is not surely within ⟨tolerance⟩"),
+        common(choice(
+            "spectral", in::spectral(&SpectralRequest::mode),
+            "what a path carries: rgb, wavelengths (four), or auto (default): wavelengths where "
+            "something depends on them and rgb is not surely within ⟨tolerance⟩")),
         parsed("bins", in::spectral(&SpectralRequest::bins),
                "FIRST:LAST:WIDTH in nm, as 380:730:10: a spectrum for each pixel of the EXR, with "
                "its standard error",
-               parse_bins, [](const Bins& bins) {
+               parse_bins,
+               [](const Bins& bins) {
                    return fmt::format("{}:{}:{}", bins.first_edge_nm, bins.last_edge_nm(),
                                       bins.width_nm);
                }),
@@ -72,8 +76,8 @@ std::vector<RequestField> spectrum_fields() {
              "what white RGB light means: d65 (default), a, f11, FILE.csv"),
         text("response", in::spectral(&SpectralRequest::response),
              "sensitivities of R, G and B: cie1931 (default), FILE.csv"),
-        choice("white-balance", in::spectral(&SpectralRequest::white_balance),
-               "none (default); illuminant: the illuminant looks white")};
+        method(choice("white-balance", in::spectral(&SpectralRequest::white_balance),
+                      "none (default); illuminant: the illuminant looks white"))};
 }
 
 }  // namespace

@@ -13,9 +13,9 @@ constexpr int kMostViews = 100'000;
 
 std::vector<RequestField> output_fields() {
     RequestField output =
-        list("output", in::run(&RunRequest::outputs),
-             "picture to write: .exr, .png, .jpg; or .state; may be given more than once",
-             complaint_about_render_name);
+        common(list("output", in::run(&RunRequest::outputs),
+                    "picture to write: .exr, .png, .jpg; or .state; may be given more than once",
+                    complaint_about_render_name));
     output.short_name = "o";
     output.value = "FILE";
     return {output};
@@ -23,15 +23,16 @@ std::vector<RequestField> output_fields() {
 
 std::vector<RequestField> display_fields() {
     return {
-        parsed("exposure", in::display(&DisplayRequest::exposure),
-               "stops, for PNG and JPEG, or auto; EXR is always scene-linear (default 0)",
-               parse_exposure,
-               [](const ExposureRequest& asked) {
-                   return asked.is_auto ? std::string("auto") : fmt::format("{}", asked.ev);
-               }),
-        text("view", in::display(&DisplayRequest::view),
-             "display transform of PNG and JPEG: sRGB (default), ACES, raw; with ⟨ocio⟩ a view of "
-             "its default display, or DISPLAY/VIEW"),
+        common(parsed("exposure", in::display(&DisplayRequest::exposure),
+                      "stops, for PNG and JPEG, or auto; EXR is always scene-linear (default 0)",
+                      parse_exposure,
+                      [](const ExposureRequest& asked) {
+                          return asked.is_auto ? std::string("auto") : fmt::format("{}", asked.ev);
+                      })),
+        common(text(
+            "view", in::display(&DisplayRequest::view),
+            "display transform of PNG and JPEG: sRGB (default), ACES, raw; with ⟨ocio⟩ a view of "
+            "its default display, or DISPLAY/VIEW")),
         text("ocio", in::display(&DisplayRequest::config),
              "OpenColorIO configuration for PNG and JPEG (default: the one that $OCIO names, else "
              "Petzval's own)")};
@@ -40,6 +41,7 @@ std::vector<RequestField> display_fields() {
 RequestField layer_field() {
     RequestField field;
     field.name = "aov";
+    field.level = FieldLevel::Common;
     field.value = "TEXT";
     field.help =
         "layers of the EXR: albedo,normal,depth,position,uv,emission,cost,velocity; may be given "
@@ -69,24 +71,24 @@ std::string text_of(const std::vector<int>& frames) {
 }
 
 std::vector<RequestField> sequence_fields() {
-    RequestField frames = parsed(
+    RequestField frames = common(parsed(
         "frames", in::sequence(&SequenceRequest::frames),
         "frames of ⟨fps⟩, as 1:48 or 1:48:2; #### in the names of files becomes their number",
-        parse_frames, [](const std::vector<int>& numbers) { return text_of(numbers); });
+        parse_frames, [](const std::vector<int>& numbers) { return text_of(numbers); }));
     frames.texts = [](const RenderOrder& order) -> std::vector<std::string> {
         if (order.sequence.frames.empty()) return {};
         return {text_of(order.sequence.frames)};
     };
     return {
-        frames,
+        common(frames),
         number("turntable", in::sequence(&SequenceRequest::turntable), {1, kMostViews},
                "this number of views, evenly spaced around the scene"),
-        parsed("sweep", in::sequence(&SequenceRequest::sweep),
-               "a picture for each value of an option: fstop=1.4,2,2.8 or lens=NAME,NAME",
-               parse_sweep,
-               [](const Sweep& sweep) {
-                   return fmt::format("{}={}", sweep.field, fmt::join(sweep.values, ";"));
-               }),
+        common(parsed("sweep", in::sequence(&SequenceRequest::sweep),
+                      "a picture for each value of an option: fstop=1.4,2,2.8 or lens=NAME,NAME",
+                      parse_sweep,
+                      [](const Sweep& sweep) {
+                          return fmt::format("{}={}", sweep.field, fmt::join(sweep.values, ";"));
+                      })),
         text("sheet", in::sequence(&SequenceRequest::sheet),
              "all pictures side by side with labels, as .png or .jpg")};
 }

@@ -203,7 +203,7 @@ void check_lens(const CameraRequest& asked) {
         (asked.fov_deg && asked.fit != Fit::Fov))
         throw ArgumentError("⟨lens⟩", *asked.lens,
                             "gives the angle of view and the focal length: leave out ⟨fov⟩, "
-                            "⟨focal-length⟩, ⟨lens-radius⟩ and ⟨film-distance⟩, or say ⟨fit⟩ fov");
+                            "⟨focal-length⟩, ⟨lens-radius⟩ and ⟨film-distance⟩, or say ⟨fit⟩=fov");
 }
 
 }  // namespace

@@ -54,16 +54,16 @@ picture() {
 # What is sharp, and how deep: ornaments at 1 m and 2 m through a thin lens that is 2 cm or 10 cm
 # wide. Names say radii of 0.1 and 0.5, as in the units of another scene; these keep their ratio of
 # five.
-picture focus_1_aperture_0.1 480x320 $ornaments --lens-radius 0.01 --focus 1m
-picture focus_2_aperture_0.1 480x320 $ornaments --lens-radius 0.01 --focus 2m
-picture focus_2_aperture_0.5 480x320 $ornaments --lens-radius 0.05 --focus 2m
+picture focus_1_aperture_0.1 480x320 $ornaments --method lens-radius=0.01 --focus 1m
+picture focus_2_aperture_0.1 480x320 $ornaments --method lens-radius=0.01 --focus 2m
+picture focus_2_aperture_0.5 480x320 $ornaments --method lens-radius=0.05 --focus 2m
 more=4 # discs so large that their noise shows
-picture focus_1_aperture_0.5 480x320 $ornaments --lens-radius 0.05 --focus 1m
+picture focus_1_aperture_0.5 480x320 $ornaments --method lens-radius=0.05 --focus 1m
 
 # The four shapes, in the round iris's area: every lamp becomes one. The narrow view has large ones.
 more=2
 for iris in triangle rhomboid star:5 frame; do
-    picture "iris_${iris%:*}" 480x320 $ornaments --lens thin --fov 26 --lens-radius 0.045 \
+    picture "iris_${iris%:*}" 480x320 $ornaments --lens thin --fov 26 --method lens-radius=0.045 \
         --focus 1m --aperture "$iris"
 done
 more=1
@@ -72,7 +72,7 @@ more=1
 # First what is sharp; then lamps behind and before the sharp plane, from between ornaments and
 # lamps, through a lens so wide that their discs are larger than they are.
 if is_wanted spherical_aberration; then
-    among_lamps=(--look-at 0,0,-2.2,0,0,-4 --fov 22 --focal-length 800 --lens-radius 0.15)
+    among_lamps=(--look-at 0,0,-2.2,0,0,-4 --fov 22 --focal-length 800 --method lens-radius=0.15)
     panels=()
     for row in sharp behind before; do
         case $row in
@@ -83,7 +83,7 @@ if is_wanted spherical_aberration; then
         esac
         for lens in thin singlet:schott:N-BK7,0; do
             panels+=("$out/spherical_${row}_${lens%%:*}.png")
-            render "spherical_${row}_${lens%%:*}" 360x240 $ornaments --lens $lens --dispersion shared \
+            render "spherical_${row}_${lens%%:*}" 360x240 $ornaments --lens $lens --method dispersion=shared \
                 "${view[@]}"
         done
     done
@@ -116,7 +116,7 @@ picture cats_eyes 480x320 $ornaments --lens takumar-50mm-f1.2 --focus 0.6m \
     --look-at 0,0,-0.4,0,0,-1
 more=1
 picture star 480x320 $ornaments --lens double-gauss-100mm-f2 --focus 1m --aperture star:5 \
-    --aperture-scale inscribed --look-at -0.1,-0.06,0,-0.1,-0.06,-1
+    --method aperture-scale=inscribed --look-at -0.1,-0.06,0,-0.1,-0.06,-1
 picture fringes 1920x1280 $ornaments --lens petzval-portrait-100mm-f3.6 --crop 754,520,480,320 \
     --look-at 0,-0.17,3,0,-0.17,-1 --focus 4.6m
 

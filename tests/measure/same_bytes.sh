@@ -6,8 +6,8 @@
 #   same_bytes.sh AFTER/build/bin/petzval after && diff -r before after
 #
 # OUT/pixels: a hash of the pixels of each picture and of all its layers. OUT/metadata: what else an
-# EXR says, but of its build. OUT/text: what commands print, seconds left out. Old spellings of options are used, so
-# that older builds understand them. Scenes outside the project are left out where they are absent.
+# EXR says, but of its build. OUT/text: what commands print, seconds left out. as_called() has the names
+# that options had in builds without --method. Scenes outside the project are left out where they are absent.
 set -euo pipefail
 
 program=$(realpath "$1") out=$2
@@ -18,10 +18,25 @@ out=$(realpath "$out")
 light=assets/scenes/first_light.glb gem=assets/scenes/gem.glb ornaments=assets/scenes/ornaments.glb
 open=../shared/scenes/open takumar=takumar-50mm-f1.2
 
+has_method=$("$program" render --help all | grep -c -- --method || true)
+# Sets `words` to options as the program calls them.
+as_called() {
+    words=()
+    while [ $# -gt 0 ]; do
+        if [ "$has_method" -eq 0 ] && [ "$1" = --method ]; then
+            words+=("--${2%%=*}" "${2#*=}")
+            shift 2
+            continue
+        fi
+        words+=("$1")
+        shift
+    done
+}
 render() {
     local name=$1
     shift
-    "$program" render "$@" --quiet -o "$out/$name.exr"
+    as_called "$@"
+    "$program" render "${words[@]}" --quiet -o "$out/$name.exr"
     oiiotool --hash -a --info "$out/$name.exr" | grep SHA | sed "s/^ */$name /" >> "$out/pixels"
     oiiotool --info -v -a "$out/$name.exr" | grep -v '^Reading\|SHA\|Software\|petzval:lightHash\|petzval:fileHash' | sed "s|^$out/||" > "$out/metadata/$name"
     rm "$out/$name.exr"
@@ -29,7 +44,8 @@ render() {
 says() {
     local name=$1
     shift
-    "$program" "$@" > "$out/text/$name" 2>&1 || echo "exit $?" >> "$out/text/$name"
+    as_called "$@"
+    "$program" "${words[@]}" > "$out/text/$name" 2>&1 || echo "exit $?" >> "$out/text/$name"
     sed -i -E "s#$out#OUT#g; s/[0-9.e+-]+ (s|min|h) of CPU/N s of CPU/; s/(\"predicted_cpu_s\":) .*/\1 N,/" \
         "$out/text/$name"
 }
@@ -37,25 +53,25 @@ says() {
 small=(--size 96x64 --spp 8)
 render rgb_pinhole $light "${small[@]}" --spectral rgb
 render rgb_thin $light "${small[@]}" --spectral rgb --fstop 2 --focus 1.5m --aperture star:5
-render thin_sobol $light "${small[@]}" --fstop 2 --focus auto --sampler sobol --filter gauss
-render hero_gem $gem "${small[@]}" --spectral hero
+render thin_sobol $light "${small[@]}" --fstop 2 --focus auto --method sampler=sobol --method filter=gauss
+render hero_gem $gem "${small[@]}" --spectral wavelengths
 render auto_gem $gem "${small[@]}"
 render bins_gem $gem "${small[@]}" --bins 380:730:10
-render singlet $light "${small[@]}" --lens singlet:N-BK7 --fstop 2 --focus 1m --spectral hero
-render singlet_hero $light "${small[@]}" --lens singlet:N-SF11 --fstop 2 --focus 1m --spectral hero --chroma hero
+render singlet $light "${small[@]}" --lens singlet:N-BK7 --fstop 2 --focus 1m --spectral wavelengths
+render singlet_hero $light "${small[@]}" --lens singlet:N-SF11 --fstop 2 --focus 1m --spectral wavelengths --method dispersion=hero
 for chroma in shared split hero; do
-    render takumar_$chroma $light "${small[@]}" --lens $takumar --focus 1m --spectral hero --chroma $chroma
+    render takumar_$chroma $light "${small[@]}" --lens $takumar --focus 1m --spectral wavelengths --method dispersion=$chroma
 done
 render takumar_auto $light "${small[@]}" --lens $takumar --focus 1m
-render double_gauss_double $light "${small[@]}" --lens double-gauss-100mm-f2 --focus 2m --march double --coating mgf2
-render fisheye $light "${small[@]}" --lens minolta-fisheye-16mm-f2.8 --focus 1m --fstop 4 --focus-by traced
+render double_gauss_double $light "${small[@]}" --lens double-gauss-100mm-f2 --focus 2m --method lens-precision=double --method coating=mgf2
+render fisheye $light "${small[@]}" --lens minolta-fisheye-16mm-f2.8 --focus 1m --fstop 4 --method focus-by=traced
 render anamorphic $light --spp 8 --lens schneider-anamorphic-31mm --focus 200,30 --size 300x100 --crop 100,20,64,48
-render petzval_photographic $ornaments "${small[@]}" --lens petzval-portrait-100mm-f3.6 --fit fov --fov 12 \
+render petzval_photographic $ornaments "${small[@]}" --lens petzval-portrait-100mm-f3.6 --method fit=fov --fov 12 \
     --exposure-mode photographic --iso 400 --shutter 1/50
 render crop_aovs $light --size 200x120 --crop 60,30,80,60 --spp 8 --aov albedo,normal,depth,position,uv,emission
 render transparent $ornaments "${small[@]}" --transparent --fstop 4 --focus 1m
-render white_balance $ornaments "${small[@]}" --spectral hero --illuminant a --white-balance illuminant
-render background $ornaments "${small[@]}" --background 0.2,0.3,0.9 --light-choice power --traversal fast
+render white_balance $ornaments "${small[@]}" --spectral wavelengths --illuminant a --method white-balance=illuminant
+render background $ornaments "${small[@]}" --background 0.2,0.3,0.9 --method light-choice=power --method traversal=fast
 if [[ -d $open ]]; then
     render many_lights "$open"/many-lights/*.gl* "${small[@]}"
     render sky "$open"/damaged-helmet/*.gl* "${small[@]}" --env "$(ls "$open"/env/*.hdr | head -1)"

@@ -227,7 +227,8 @@ Finding defocused_highlights() {
         number(confusion_m(1.4)), number(hundred), number(thousand),
         percent(thousand.value_or(0) / confusion_m(1.4)));
     f.instead =
-        "Rays are sent to lamps and to highlights that a search finds (`--targets auto`, next "
+        "Rays are sent to lamps and to highlights that a search finds (`--method targets=auto`, "
+        "next "
         "row). Of others no light sample passes a lens: noise falls with the samples, the sooner "
         "for scrambled points.";
     return f;

@@ -87,7 +87,7 @@ Finding trace_at_grazing_incidence() {
         number(sphere), degrees_off(sphere), number(losses), number(plane), degrees_off(plane));
     f.instead =
         "Every ray has a defined end: a point or a status. Grazing rays carry little light, as "
-        "Fresnel's reflection goes to 1; `--lens-precision double` follows them in doubles.";
+        "Fresnel's reflection goes to 1; `--method lens-precision=double` follows them in doubles.";
     return f;
 }
 

@@ -90,7 +90,7 @@ Finding chains_of_glass() {
     Finding f{.method = "Chains of glass", .fails = "bias"};
     f.sweep =
         "A ray onto N clear panes (n = 1.5) in a white sky, 8192 samples: what of 1 is lost "
-        "because paths end at --max-clear-depth, 256 unless it is given.";
+        "because paths end at --method max-clear-depth, 256 unless it is given.";
     f.table.columns = {"panes", "lost at depth 16", "lost at depth 64", "lost at depth 256"};
     const int usual = PathOptions().max_clear_depth;
     for (const int count : {1, 2, 4, 8, 16, 32, 64, 128}) {
@@ -109,7 +109,8 @@ Finding chains_of_glass() {
         usual, first([&](const World& w) { return lost(w, usual) > 0.001; }),
         first([&](const World& w) { return lost(w, usual) > 0.01; }));
     f.instead =
-        "A path that is at its depth ends, dark, and `--stats` counts it. `--max-clear-depth` "
+        "A path that is at its depth ends, dark, and `--stats` counts it. `--method "
+        "max-clear-depth` "
         "raises it.";
     return f;
 }

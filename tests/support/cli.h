@@ -94,7 +94,7 @@ class CliTest : public ::testing::Test {
                 all.insert(all.end(), {option, value});
         };
         add("--size", "16x16");
-        if (std::find(words.begin(), words.end(), "--time") == words.end()) add("--spp", "4");
+        if (std::find(words.begin(), words.end(), "--time-limit") == words.end()) add("--spp", "4");
         add("--threads", "2");
         all.insert(all.end(), words.begin(), words.end());
         return all;

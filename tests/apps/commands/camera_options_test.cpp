@@ -68,9 +68,10 @@ TEST_F(CliCamera, TheFilesCameraIsEnough) {
                                               "polygon:6,10", "--sensor", "30x20"})
                                .pixels);
     // A radius goes with a thin lens, not with the file's lens of glass.
-    EXPECT_NE(finished(full, {"--lens-radius", "0.02"}).err.find("leave out"), std::string::npos);
-    const Picture radius = picture_of(full, {"--lens", "thin", "--lens-radius", "0.02"});
-    EXPECT_EQ(radius.pixels, picture_of(plain, {"--lens-radius", "0.02", "--focus", "2",
+    EXPECT_NE(finished(full, {"--method", "lens-radius=0.02"}).err.find("leave out"),
+              std::string::npos);
+    const Picture radius = picture_of(full, {"--lens", "thin", "--method", "lens-radius=0.02"});
+    EXPECT_EQ(radius.pixels, picture_of(plain, {"--method", "lens-radius=0.02", "--focus", "2",
                                                 "--aperture", "polygon:6,10", "--sensor", "30x20"})
                                  .pixels);
     const std::string none = scene_with("none.gltf", {{"lens", "lens/none.json"}});
@@ -90,7 +91,7 @@ TEST_F(CliCamera, ExtrasGiveWayToWhatTheUserFixes) {
     EXPECT_EQ(picture_of(focus, {"--fstop", "2"}).pixels,
               picture_of(plain, {"--fstop", "2", "--focus", "2", "--aperture", "square"}).pixels);
     // A film and a focal length say what is in focus.
-    const Words fixed = {"--fstop", "2", "--film-distance", "52", "--focal-length", "50"};
+    const Words fixed = {"--fstop", "2", "--method", "film-distance=52", "--focal-length", "50"};
     EXPECT_EQ(picture_of(focus, fixed).pixels,
               picture_of(plain,
                          [&] {
@@ -125,7 +126,7 @@ TEST_F(CliCamera, PhotographicExposureFollowsIrisShutterAndSpeed) {
     };
     const Words exposed = {"--exposure-mode", "photographic", "--shutter", "1/50", "--iso", "200"};
     // Pixels beside the middle are a little darker through real lenses: that is measured apart.
-    const Words even = {"--natural-vignetting", "off"};
+    const Words even = {"--method", "natural-vignetting=off"};
     const auto with = [&](Words more) {
         more.insert(more.end(), exposed.begin(), exposed.end());
         if (std::find(more.begin(), more.end(), "double-gauss-100mm-f2") == more.end())
@@ -142,19 +143,19 @@ TEST_F(CliCamera, PhotographicExposureFollowsIrisShutterAndSpeed) {
         1, 1e-4);
     // Inside the round stop a triangle has 3 sqrt 3 / (4 pi) of its area.
     EXPECT_NEAR(with({"--focal-length", "50", "--fstop", "2", "--focus", "1", "--aperture",
-                      "triangle", "--aperture-scale", "inscribed"}) /
+                      "triangle", "--method", "aperture-scale=inscribed"}) /
                     expected,
                 3 * std::sqrt(3.) / (4 * std::numbers::pi), 1e-4);
     EXPECT_NEAR(green({"--focal-length", "50", "--fstop", "2", "--focus", "1"}), 100, 1e-2);
     const double slow = std::sin(std::atan(50 / 16. / film_mm));
-    EXPECT_NEAR(with({"--lens", "singlet:schott:N-BK7", "--dispersion", "shared", "--focal-length",
-                      "50", "--fstop", "8", "--focus", "1"}) /
+    EXPECT_NEAR(with({"--lens", "singlet:schott:N-BK7", "--method", "dispersion=shared",
+                      "--focal-length", "50", "--fstop", "8", "--focus", "1"}) /
                     (expected * sqr(slow / sine)),
                 1, 1e-4);
     // A lens of glass at the same f-number, focused far away: a thin lens without its bellows.
     const double far = std::numbers::pi / 16 * 100 / 50 * 200 / 78;
     EXPECT_NEAR(with({"--lens", "double-gauss-100mm-f2", "--fstop", "2.8", "--focus", "1000",
-                      "--dispersion", "shared", "--spp", "1024"}) /
+                      "--method", "dispersion=shared", "--spp", "1024"}) /
                     far,
                 sqr(2 / 2.8), 0.03);
 }
@@ -180,8 +181,8 @@ TEST_F(CliCamera, CornersDarkenAsTheyDoBehindAStop) {
     for (const std::string lens : {"thin", "singlet:schott:N-BK7"})
         for (const double fstop : {4., 8.}) {
             const Words words = {
-                "--lens", lens,      "--focal-length",         "28",           "--focus",
-                "1",      "--fstop", fmt::format("{}", fstop), "--dispersion", "shared"};
+                "--lens", lens,      "--focal-length",         "28",       "--focus",
+                "1",      "--fstop", fmt::format("{}", fstop), "--method", "dispersion=shared"};
             const double radius_mm = 28 / (2 * fstop);
             const double expected =
                 foote(radius_mm, film_mm, off_mm) / foote(radius_mm, film_mm, 0);
@@ -192,14 +193,15 @@ TEST_F(CliCamera, CornersDarkenAsTheyDoBehindAStop) {
                 return corner_over_middle(all);
             };
             EXPECT_NEAR(with(photographic) / expected, 1, 0.005) << lens << fstop;
-            EXPECT_NEAR(with({"--natural-vignetting", "on"}) / expected, 1, 0.005);
-            EXPECT_NEAR(with({"--exposure-mode", "photographic", "--natural-vignetting", "off"}), 1,
-                        1e-5);
+            EXPECT_NEAR(with({"--method", "natural-vignetting=on"}) / expected, 1, 0.005);
+            EXPECT_NEAR(
+                with({"--exposure-mode", "photographic", "--method", "natural-vignetting=off"}), 1,
+                1e-5);
             EXPECT_NEAR(with({}), 1, 1e-5);
         }
     const double half = std::tan(30 * std::numbers::pi / 180);  // --fov 60
     const double tangent = half * 2 / 21 * std::hypot(16., 10.);
-    EXPECT_NEAR(corner_over_middle({"--fov", "60", "--natural-vignetting", "on"}) *
+    EXPECT_NEAR(corner_over_middle({"--fov", "60", "--method", "natural-vignetting=on"}) *
                     sqr(1 + tangent * tangent),
                 1, 0.01);
     EXPECT_NEAR(corner_over_middle({"--fov", "60"}), 1, 1e-6);
@@ -231,8 +233,8 @@ TEST_F(CliCamera, TwoDistancesGiveTheThird) {
         for (size_t i = 0; i < p.pixels.size(); ++i)
             ASSERT_NEAR(p.pixels[i], expected.pixels[i], 2e-4f) << i;
     };
-    expect_same(picture({"--focal-length", "50", "--film-distance", film}));
-    expect_same(picture({"--focus", "1.5", "--film-distance", film}));
+    expect_same(picture({"--focal-length", "50", "--method", "film-distance=" + film}));
+    expect_same(picture({"--focus", "1.5", "--method", "film-distance=" + film}));
 }
 
 TEST_F(CliCamera, ASingletWarnsWhereItsFormulaEnds) {
@@ -256,7 +258,7 @@ TEST_F(CliCamera, TheFirstRadiusFacesTheScene) {
     const double radius_mm = 100 * (1.5168 - 1);
     const auto picture = [&](const std::string& lens, Words more) {
         more.insert(more.end(), {"--lens", "singlet:schott:N-BK7," + lens, "--fstop", "5", "--fov",
-                                 "1", "--focus", "1", "--dispersion", "shared", "--look-at",
+                                 "1", "--focus", "1", "--method", "dispersion=shared", "--look-at",
                                  "-0.2,0,0,-0.2,0,-1", "--spp", "64"});
         return picture_of(scene_, more);
     };
@@ -276,17 +278,17 @@ TEST_F(CliCamera, TheFirstRadiusFacesTheScene) {
     // Without a number it is equiconvex.
     const auto plain = [&](const char* lens) {
         return picture_of(scene_, {"--lens", lens, "--fstop", "5", "--focal-length", "100",
-                                   "--focus", "1", "--dispersion", "shared"});
+                                   "--focus", "1", "--method", "dispersion=shared"});
     };
     EXPECT_EQ(plain("singlet:schott:N-BK7").pixels, plain("singlet:schott:N-BK7,0").pixels);
 }
 
 TEST_F(CliCamera, ASharedRayNeedsNoWavelengths) {
-    const Words lens = {"--lens", "singlet:schott:N-BK7", "--fstop", "8", "--focus",
-                        "2",      "--dispersion"};
+    const Words lens = {"--lens",  "singlet:schott:N-BK7", "--fstop", "8", "--focus", "2",
+                        "--method"};
     const auto err = [&](const char* dispersion) {
         Words words = lens;
-        words.emplace_back(dispersion);
+        words.push_back("dispersion=" + std::string(dispersion));
         const Finished done = finished(scene_, words);
         EXPECT_EQ(done.exit_code, 0) << done.err;
         return done.err;
@@ -300,9 +302,13 @@ TEST_F(CliCamera, DispersionModesCastTheirRays) {
          {std::string("singlet:schott:N-BK7"), std::string("kodak-petzval-100mm-f2")})
         for (const auto& [mode, least, most] :
              {std::tuple{"split", 3.7, 4.}, {"hero", 0.9, 1.}, {"shared", 0.9, 1.}}) {
-            Words words = {"--lens",  lens,           "--fstop",      "4",      "--focus",
-                           "2",       "--sensor",     "30x20",        "--size", "60x40",
-                           "--stats", path("s.json"), "--dispersion", mode};
+            Words words = {"--lens",   lens,
+                           "--fstop",  "4",
+                           "--focus",  "2",
+                           "--sensor", "30x20",
+                           "--size",   "60x40",
+                           "--stats",  path("s.json"),
+                           "--method", "dispersion=" + std::string(mode)};
             if (lens.starts_with("singlet")) words.insert(words.end(), {"--focal-length", "100"});
             const Finished done = finished(scene_, words);
             EXPECT_EQ(done.exit_code, 0) << done.err;
@@ -318,10 +324,10 @@ TEST_F(CliCamera, RefusesWhatHasNoEffect) {
     const Words thin = {"--lens", "thin", "--fstop", "2", "--focus", "1"};
     const Words singlet = {"--lens", "singlet:schott:N-BK7", "--fstop", "8", "--focus", "1"};
     const Words pinhole = {"--lens", "pinhole"};
-    const std::pair<const char*, const char*> surfaces[] = {{"--coating", "uncoated"},
-                                                            {"--lens-precision", "double"},
-                                                            {"--focus-by", "traced"},
-                                                            {"--fit", "fov"}};
+    const std::pair<const char*, const char*> surfaces[] = {{"--method", "coating=uncoated"},
+                                                            {"--method", "lens-precision=double"},
+                                                            {"--method", "focus-by=traced"},
+                                                            {"--method", "fit=fov"}};
     for (const Words& camera : {thin, singlet, pinhole})
         for (const auto& [option, value] : surfaces) {
             Words words = camera;
@@ -332,15 +338,17 @@ TEST_F(CliCamera, RefusesWhatHasNoEffect) {
                 << err;
         }
     const std::pair<Words, std::string> cases[] = {
-        {{"--iris-sampling", "rejection"}, "--iris-sampling: a pinhole has no iris"},
-        {{"--aperture-scale", "inscribed"}, "--aperture-scale: a pinhole has no iris"},
+        {{"--method", "iris-sampling=rejection"}, "--method iris-sampling: a pinhole has no iris"},
+        {{"--method", "aperture-scale=inscribed"},
+         "--method aperture-scale: a pinhole has no iris"},
         {{"--exposure-mode", "normalised", "--iso", "400"}, "but with photographic"},
         {{"--exposure-mode", "normalised", "--shutter", "1/50"}, "but with --at"},
-        {{"--lens", "tessar-100mm-f2.8", "--natural-vignetting", "on"}, "always has its own"},
-        {{"--camera", "plan", "--natural-vignetting", "on"}, "is orthographic"},
+        {{"--lens", "tessar-100mm-f2.8", "--method", "natural-vignetting=on"},
+         "always has its own"},
+        {{"--camera", "plan", "--method", "natural-vignetting=on"}, "is orthographic"},
         {{"--camera", "plan", "--focus", "2"}, "is orthographic"},
         {{"--camera", "plan", "--aperture", "square"}, "is orthographic"},
-        {{"--camera", "plan", "--film-distance", "50"}, "is orthographic"},
+        {{"--camera", "plan", "--method", "film-distance=50"}, "is orthographic"},
         {{"--camera", "plan", "--sensor", "36x24"}, "is orthographic"}};
     for (const auto& [words, part] : cases) {
         const std::string err = refusal(words);
@@ -367,13 +375,13 @@ TEST_F(CliCamera, RefusesWhatDoesNotGoTogether) {
         {{"--lens", "singlet:schott:N-BK7,50,-50", "--fstop", "4", "--focal-length", "5"},
          "follows from the radii"},
         {{"--lens", "singlet:schott:N-BK7,1", "--fstop", "0.7", "--focus", "1"}, "too wide"},
-        {{"--fstop", "2", "--focal-length", "50", "--film-distance", "40"},
+        {{"--fstop", "2", "--focal-length", "50", "--method", "film-distance=40"},
          "within the focal length"},
         {{"--fstop", "2", "--focal-length", "50", "--focus", "0.04"}, "within the focal length"},
-        {{"--fstop", "2", "--film-distance", "50", "--fov", "20"}, "--fov"},
-        {{"--fstop", "2", "--film-distance", "52", "--focal-length", "50", "--focus", "1"},
-         "follows from --film-distance"},
-        {{"--lens", "tessar-100mm-f2.8", "--lens-radius", "0.1"}, "--lens-radius"},
+        {{"--fstop", "2", "--method", "film-distance=50", "--fov", "20"}, "--fov"},
+        {{"--fstop", "2", "--method", "film-distance=52", "--focal-length", "50", "--focus", "1"},
+         "follows from --method film-distance"},
+        {{"--lens", "tessar-100mm-f2.8", "--method", "lens-radius=0.1"}, "--method lens-radius"},
         {{"--shutter", "1/0", "--exposure-mode", "photographic"}, "--shutter"},
         {{"--fstop", "2", "--focus", "1", "--aperture", "star:2"}, "star"}};
     for (const auto& [words, part] : cases)

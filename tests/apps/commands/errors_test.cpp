@@ -16,25 +16,25 @@ TEST_F(CliErrors, NumbersThatAreNone) {
                        {{"--spp", "1.5"}, "--spp: \"1.5\""},
                        {{"--threads", "0"}, "--threads: \"0\""},
                        {{"--seed", "5000000000"}, "--seed: \"5000000000\""},
-                       {{"--max-depth", "x"}, "--max-depth: \"x\""},
+                       {{"--method", "max-depth=x"}, "--method max-depth: \"x\""},
                        {{"--fov", "0"}, "--fov: \"0\" is not a number from 0.001 to 179"},
                        {{"--fstop", "nan"}, "--fstop: \"nan\""},
-                       {{"--lens-radius", "inf"}, "--lens-radius: \"inf\""},
+                       {{"--method", "lens-radius=inf"}, "--method lens-radius: \"inf\""},
                        {{"--focal-length", "-50"}, "--focal-length: \"-50\""},
-                       {{"--filter-radius", "1mm"}, "--filter-radius: \"1mm\""},
+                       {{"--method", "filter-radius=1mm"}, "--method filter-radius: \"1mm\""},
                        {{"--exposure", "nan"}, "--exposure: \"nan\""},
-                       {{"--time", "0"}, "--time: \"0\""},
-                       {{"--time", "10d"}, "--time: \"10d\""}});
+                       {{"--time-limit", "0"}, "--time-limit: \"0\""},
+                       {{"--time-limit", "10d"}, "--time-limit: \"10d\""}});
 }
 
 TEST_F(CliErrors, WordsThatAreNone) {
     expect_refused(2, {{{"--view", "film"}, "\"film\"; there are sRGB, ACES, raw"},
                        {{"--aov", "depth,heat"}, "\"heat\" is not a layer; there are albedo"},
-                       {{"--filter", "cube"}, "box, gauss, blackman-harris"},
-                       {{"--sampler", "dice"}, "owen, sobol, independent"},
-                       {{"--light-choice", "best"}, "tree, power, uniform"},
-                       {{"--traversal", "slow"}, "robust, fast"},
-                       {{"--targets", "some"}, "auto, off"},
+                       {{"--method", "filter=cube"}, "box, gauss, blackman-harris"},
+                       {{"--method", "sampler=dice"}, "owen, sobol, independent"},
+                       {{"--method", "light-choice=best"}, "tree, power, uniform"},
+                       {{"--method", "traversal=slow"}, "robust, fast"},
+                       {{"--method", "targets=some"}, "auto, off"},
                        {{"--progress", "loud"}, "auto, bar, lines, json, percent, none"},
                        {{"--frob"}, "--frob"},
                        {{"-o", path("out.tga")}, "must end in .exr, .png, .jpg or .jpeg"},
@@ -55,13 +55,13 @@ TEST_F(CliErrors, ListsThatDoNotFit) {
 }
 
 TEST_F(CliErrors, OptionsThatDoNotGoTogether) {
-    expect_refused(2,
-                   {{{"--focus", "1"}, "a pinhole has no focus"},
-                    {{"--fstop", "2", "--lens-radius", "0.1"}, "--fstop: excludes --lens-radius"},
-                    {{"--look-at", "0,0,0,0,0,-1", "--camera", "0"}, "excludes --camera"},
-                    {{"--env-rotate", "10"}, "--env-rotate: needs --env"},
-                    {{"--env-strength", "2"}, "--env-strength: needs --env"},
-                    {{"--stats", path("out.exr")}, "--stats"}});
+    expect_refused(2, {{{"--focus", "1"}, "a pinhole has no focus"},
+                       {{"--fstop", "2", "--method", "lens-radius=0.1"},
+                        "--fstop: excludes --method lens-radius"},
+                       {{"--look-at", "0,0,0,0,0,-1", "--camera", "0"}, "excludes --camera"},
+                       {{"--env-rotate", "10"}, "--env-rotate: needs --env"},
+                       {{"--method", "env-strength=2"}, "--method env-strength: needs --env"},
+                       {{"--stats", path("out.exr")}, "--stats"}});
     expect_refused(4, {{{"--size", "65536x65536", "--aov", "normal,position"}, "GiB of memory"}});
 }
 

@@ -87,11 +87,11 @@ TEST_F(CliExposure, NothingIsSaidWhereNothingIsAmiss) {
 
 TEST_F(CliExposure, ABlackPictureSaysThatThereIsNoLight) {
     const Finished black =
-        run(scene_, {"-o", path("a.png"), "--max-depth", "0", "--background", "0,0,0"});
+        run(scene_, {"-o", path("a.png"), "--method", "max-depth=0", "--background", "0,0,0"});
     EXPECT_NE(black.err.find("the picture is black, and no --exposure can help"), std::string::npos)
         << black.err;
-    const Finished found = run(scene_, {"-o", path("a.png"), "--max-depth", "0", "--background",
-                                        "0,0,0", "--exposure", "auto"});
+    const Finished found = run(scene_, {"-o", path("a.png"), "--method", "max-depth=0",
+                                        "--background", "0,0,0", "--exposure", "auto"});
     EXPECT_NE(found.err.find("exposure: 0 EV (--exposure 0), as no light was found"),
               std::string::npos)
         << found.err;

@@ -104,7 +104,7 @@ TEST_F(CliGlass, ClosedBodiesOfThinGlassAreNamed) {
 TEST_F(CliGlass, PlansCountItAsAtLeast) {
     const auto planned = [&](Glass kind) {
         const Finished run = run_petzval({"plan", lamp_in(kind), "--size", "16x16", "--tolerance",
-                                          "50%", "--max-depth", "2", "--json"});
+                                          "50%", "--method", "max-depth=2", "--json"});
         EXPECT_EQ(run.exit_code, 0) << run.err;
         return nlohmann::json::parse(run.out);
     };

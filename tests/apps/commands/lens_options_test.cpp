@@ -39,8 +39,8 @@ TEST_F(CliLens, MidGreyIsMidGreyThroughEveryLens) {
     for (const Words& words :
          {Words{"--lens", "double-gauss-100mm-f2"},
           Words{"--lens", "double-gauss-100mm-f2", "--fstop", "8", "--aperture", "star:5"},
-          Words{"--lens", "schneider-anamorphic-31mm", "--dispersion", "shared"},
-          Words{"--lens", "tessar-100mm-f2.8", "--dispersion", "hero"}}) {
+          Words{"--lens", "schneider-anamorphic-31mm", "--method", "dispersion=shared"},
+          Words{"--lens", "tessar-100mm-f2.8", "--method", "dispersion=hero"}}) {
         const Picture p = flat(words);
         for (const char* c : {"R", "G", "B"})
             EXPECT_NEAR(middle(p, c), 1.f, 0.06f) << words[1] << ' ' << c;
@@ -58,8 +58,9 @@ TEST_F(CliLens, FocusMeansTheSameForRenderAndForTheBench) {
         for (const std::string by : {"paraxial", "traced"}) {
             if (by == "traced" && std::string(focus) != "infinity") continue;
             const Picture p =
-                render({"--lens", lens, "--focus", focus, "--focus-by", by, "--background", "1,1,1",
-                        "--look-at", "0,0,0,0,0,-1", "--spp", "1", "--spectral", "rgb"});
+                render({"--lens", lens, "--focus", focus, "--method", "focus-by=" + std::string(by),
+                        "--background", "1,1,1", "--look-at", "0,0,0,0,0,-1", "--spp", "1",
+                        "--spectral", "rgb"});
             const Finished bench = run_petzval(
                 {"lens", "spot", lens, "--focus", focus, "--focus-by", by, "-o", path("spot.svg")});
             ASSERT_EQ(bench.exit_code, 0) << bench.err;
@@ -92,28 +93,8 @@ TEST_F(CliLens, AThinLensFocusesAtInfinity) {
     }
 }
 
-// Old names of options still work, and are not told.
-TEST_F(CliLens, OldSpellingsMeanTheSame) {
-    const Words lens = {"--lens", "takumar-50mm-f1.2", "--focus", "1", "--spp", "2"};
-    const std::pair<Words, Words> pairs[] = {
-        {{"--chroma", "split"}, {"--dispersion", "split"}},
-        {{"--chroma=hero"}, {"--dispersion", "hero"}},
-        {{"--march", "double"}, {"--lens-precision", "double"}},
-        {{"--spectral", "hero"}, {"--spectral", "wavelengths"}},
-        {{"--spectral=hero"}, {"--spectral", "wavelengths"}}};
-    for (const auto& [before, now] : pairs) {
-        Words a = lens, b = lens;
-        a.insert(a.end(), before.begin(), before.end());
-        b.insert(b.end(), now.begin(), now.end());
-        EXPECT_EQ(render_bytes(a, "a.exr"), render_bytes(b, "b.exr")) << before.front();
-    }
-    const Finished help = run_petzval({"render", "--help"});
-    EXPECT_EQ(help.out.find("--chroma"), std::string::npos);
-    EXPECT_EQ(help.out.find("--march"), std::string::npos);
-}
-
 TEST_F(CliLens, CornersAreDarkerAndOpaque) {
-    const Picture p = flat({"--lens", "takumar-50mm-f1.2", "--dispersion", "shared"});
+    const Picture p = flat({"--lens", "takumar-50mm-f1.2", "--method", "dispersion=shared"});
     EXPECT_LT(value_at(p, 0, 0, "G"), 0.4f);
     EXPECT_GT(value_at(p, 0, 0, "G"), 0.1f);
     EXPECT_EQ(value_at(p, 0, 0, "A"), 1.f);
@@ -121,7 +102,7 @@ TEST_F(CliLens, CornersAreDarkerAndOpaque) {
 
 // What is laid under a transparent picture is darkened as the lens darkens the sky.
 TEST_F(CliLens, AlphaIsWhatTheLensKeepsBack) {
-    const Words lens = {"--lens", "takumar-50mm-f1.2", "--dispersion", "shared"};
+    const Words lens = {"--lens", "takumar-50mm-f1.2", "--method", "dispersion=shared"};
     Words photographic = lens;
     photographic.insert(photographic.end(), {"--exposure-mode", "photographic", "--iso", "400"});
     for (const Words& words : {lens, photographic}) {
@@ -183,10 +164,10 @@ TEST_F(CliLens, FitsTheAngleOfView) {
     };
     const double expected = 96 * 0.2 / std::tan(13 * std::numbers::pi / 180);
     EXPECT_NEAR(width_px(picture({"--fov", "26"})), expected, 1.5);
-    const Words lens = {"--lens", "biotar-58mm-f1.4", "--dispersion", "shared", "--fstop",
+    const Words lens = {"--lens", "biotar-58mm-f1.4", "--method", "dispersion=shared", "--fstop",
                         "16",     "--focus",          "1000"};
     Words fitted = lens;
-    fitted.insert(fitted.end(), {"--fit", "fov", "--fov", "26"});
+    fitted.insert(fitted.end(), {"--method", "fit=fov", "--fov", "26"});
     const Picture p = picture(fitted);
     EXPECT_NEAR(width_px(p), expected, 1.5);
     EXPECT_NEAR(std::stof(metadata_of(p, "petzval:fov_deg")), 26, 1e-3);
@@ -200,7 +181,8 @@ TEST_F(CliLens, FitsTheAngleOfView) {
 // The spot of a fast lens is smallest in front of where rays near the axis meet.
 TEST_F(CliLens, FocusByTracedRaysMovesTheFilm) {
     const auto film_mm = [&](const char* by) {
-        const Picture p = flat({"--lens", "double-gauss-100mm-f2", "--focus-by", by});
+        const Picture p =
+            flat({"--lens", "double-gauss-100mm-f2", "--method", "focus-by=" + std::string(by)});
         return std::stof(metadata_of(p, "petzval:film_mm"));
     };
     EXPECT_NEAR(film_mm("traced") - film_mm("paraxial"), -0.38, 0.02);
@@ -215,7 +197,9 @@ const char* const kGrey = R"({"name": "grey", "image_circle": 43.27, "surfaces":
 TEST_F(CliLens, GlassReflectsWhereItIsAskedTo) {
     const std::string lens = text_file("grey.json", kGrey);
     const auto grey = [&](const char* coating) {
-        return double(middle(flat({"--lens", lens, "--coating", coating, "--fstop", "16"}), "G"));
+        return double(middle(
+            flat({"--lens", lens, "--method", "coating=" + std::string(coating), "--fstop", "16"}),
+            "G"));
     };
     const double ideal = grey("ideal"), film = sqr((1.5 - 1.38 * 1.38) / (1.5 + 1.38 * 1.38));
     EXPECT_NEAR(ideal, 1, 2e-3);
@@ -232,8 +216,9 @@ TEST_F(CliLens, DoublesAreAskedForAndAgree) {
     const std::string walls_file = walls().save_gltf(folder_.path / "walls.gltf").string();
     const auto picture = [&](const char* trace) {
         scene_ = walls_file;
-        return render({"--lens", "double-gauss-100mm-f2", "--lens-precision", trace, "--background",
-                       "1,1,1", "--look-at", "-0.4,0,0,-0.4,0,-1", "--focus", "1", "--spp", "64"});
+        return render({"--lens", "double-gauss-100mm-f2", "--method",
+                       "lens-precision=" + std::string(trace), "--background", "1,1,1", "--look-at",
+                       "-0.4,0,0,-0.4,0,-1", "--focus", "1", "--spp", "64"});
     };
     const Picture in_floats = picture("float"), in_doubles = picture("double");
     EXPECT_NE(in_floats.pixels, in_doubles.pixels);
@@ -260,11 +245,11 @@ TEST_F(CliLens, AFilmLargerThanTheImageCircleIsSaid) {
 // The picture is not that of a thin lens: a wall's edge is where the fisheye shows it.
 TEST_F(CliLens, FocusIsOnWhatThePixelShows) {
     scene_ = walls().save_gltf(folder_.path / "walls.gltf").string();
-    const Words lens = {"--lens",       "minolta-fisheye-16mm-f2.8",
-                        "--look-at",    "0,0,0,0,0,-1",
-                        "--size",       "180x120",
-                        "--crop",       "0,60,180,1",
-                        "--dispersion", "shared",
+    const Words lens = {"--lens",    "minolta-fisheye-16mm-f2.8",
+                        "--look-at", "0,0,0,0,0,-1",
+                        "--size",    "180x120",
+                        "--crop",    "0,60,180,1",
+                        "--method",  "dispersion=shared",
                         "--focus"};
     Words seen = lens;
     seen.insert(seen.end(), {"1", "--fstop", "22", "--aov", "position", "--spp", "16"});
@@ -301,10 +286,11 @@ TEST_F(CliLens, StatsTellWhatBecameOfTheLanes) {
         return all;
     };
     const std::pair<Words, int> cases[] = {
-        {{"--lens", "takumar-50mm-f1.2", "--dispersion", "split"}, 4},
-        {{"--lens", "takumar-50mm-f1.2", "--dispersion", "hero"}, 1},
-        {{"--lens", "takumar-50mm-f1.2", "--dispersion", "shared"}, 3},
-        {{"--lens", "takumar-50mm-f1.2", "--dispersion", "split", "--lens-precision", "double"},
+        {{"--lens", "takumar-50mm-f1.2", "--method", "dispersion=split"}, 4},
+        {{"--lens", "takumar-50mm-f1.2", "--method", "dispersion=hero"}, 1},
+        {{"--lens", "takumar-50mm-f1.2", "--method", "dispersion=shared"}, 3},
+        {{"--lens", "takumar-50mm-f1.2", "--method", "dispersion=split", "--method",
+          "lens-precision=double"},
          4}};
     for (const auto& [words, each] : cases) {
         const nlohmann::json l = lanes(words);
@@ -314,13 +300,13 @@ TEST_F(CliLens, StatsTellWhatBecameOfTheLanes) {
         EXPECT_GT(l.at("vignetted"), samples * each / 10);
         EXPECT_GT(l.at("passed"), samples * each / 2);
     }
-    const nlohmann::json wide =
-        lanes({"--lens", "canon-14mm-f2.8-asph", "--dispersion", "shared", "--sensor", "45x30"});
+    const nlohmann::json wide = lanes(
+        {"--lens", "canon-14mm-f2.8-asph", "--method", "dispersion=shared", "--sensor", "45x30"});
     for (const char* cause : {"vignetted", "totally_reflected", "missed"})
         EXPECT_GT(wide.at(cause), 0) << cause;
     EXPECT_EQ(sum(wide), wide.at("drawn"));
-    const nlohmann::json beyond =
-        lanes({"--lens", "double-gauss-100mm-f2", "--dispersion", "shared", "--sensor", "300x200"});
+    const nlohmann::json beyond = lanes({"--lens", "double-gauss-100mm-f2", "--method",
+                                         "dispersion=shared", "--sensor", "300x200"});
     EXPECT_GT(beyond.at("unreached"), samples);
     EXPECT_TRUE(lanes({"--lens", "thin", "--fstop", "2"}).is_null());
 }

@@ -133,7 +133,7 @@ TEST_F(LongRenders, AStateOfSomethingElseIsNotResumed) {
 }
 
 TEST_F(LongRenders, ACompleteStateHasNothingToResume) {
-    parts({{"--samples", "0:4"}});
+    parts({{"--spp", "0:4"}});
     const Finished done = run_petzval({"resume", path("a.state")});
     EXPECT_EQ(done.exit_code, 0);
     EXPECT_NE(done.err.find("a.state is complete: there is nothing to render"), std::string::npos);
@@ -184,7 +184,8 @@ TEST_F(LongRenders, LooksOn) {
 
 // A limit of time that pauses interrupt: every pixel has as many samples as the files say.
 TEST_F(LongRenders, ATimeLimitWithCheckpointsEndsEvenly) {
-    run({"--time", "1.5s", "--checkpoint", "0.02s", "-o", path("t.state"), "-o", path("t.exr")});
+    run({"--time-limit", "1.5s", "--checkpoint", "0.02s", "-o", path("t.state"), "-o",
+         path("t.exr")});
     ASSERT_EQ(merge({"t.state"}, {"-o", path("m.exr")}).exit_code, 0);
     expect_same("t.exr", "m.exr");
     std::string samples;
@@ -199,7 +200,7 @@ TEST_F(LongRenders, NothingOfOthersIsReplaced) {
     text_file("r.state", "notes of mine");
     const std::string notes = error_of(words({"--spp", "1", "-o", path("r.png")}), 2);
     EXPECT_NE(notes.find("is no state of this program's"), std::string::npos) << notes;
-    run({"--samples", "0:2", "-o", path("room.exr")});
+    run({"--spp", "0:2", "-o", path("room.exr")});
     const std::string state = file_bytes(path("room.state"));
     const std::string finished = error_of(words({"--spp", "1", "-o", path("room.png")}), 2);
     EXPECT_NE(finished.find("has finished samples"), std::string::npos) << finished;
@@ -274,8 +275,8 @@ TEST_F(LongRenders, ACommandWithTwoDashesGoesOn) {
 
 // A limit of time that was over when it was stopped: the pass under way is finished.
 TEST_F(LongRenders, ATimeLimitThatIsOverEndsEvenly) {
-    Process render(words({"--size", "300x200", "--time", "1s", "-o", path("t.state"), "--progress",
-                          "json", "--threads", "1"}));
+    Process render(words({"--size", "300x200", "--time-limit", "1s", "-o", path("t.state"),
+                          "--progress", "json", "--threads", "1"}));
     ASSERT_TRUE(let_render(render, 300ms));
     render.signal(SIGSTOP);
     std::this_thread::sleep_for(1500ms);
@@ -315,8 +316,8 @@ TEST_F(LongRenders, ClampTakesWhatIsBrighter) {
     };
     const float free = brightest({});
     EXPECT_GT(free, 0.2f);
-    EXPECT_LE(brightest({"--clamp", "0.2"}), 0.2f * 1.000001f);
-    EXPECT_EQ(brightest({"--clamp", "1e6"}), free);
+    EXPECT_LE(brightest({"--method", "clamp=0.2"}), 0.2f * 1.000001f);
+    EXPECT_EQ(brightest({"--method", "clamp=1e6"}), free);
 }
 
 }  // namespace

@@ -13,12 +13,11 @@ TEST_F(Merging, RangesAndCropsMergeToTheBytesOfOneRun) {
     whole.insert(whole.end(),
                  {"--spp", "24", "-o", path("w.exr"), "-o", path("w.png"), "-o", path("w.jpg")});
     run(whole);
-    const std::vector<Words> in_ranges = {
-        {"--samples", "0:5"}, {"--samples", "16:24"}, {"--samples", "5:16"}};
-    const std::vector<Words> in_crops = {{"--samples", "0:24", "--crop", "0,0,13,24"},
-                                         {"--samples", "0:24", "--crop", "13,0,27,9"},
-                                         {"--samples", "0:11", "--crop", "13,9,27,15"},
-                                         {"--samples", "11:24", "--crop", "13,9,27,15"}};
+    const std::vector<Words> in_ranges = {{"--spp", "0:5"}, {"--spp", "16:24"}, {"--spp", "5:16"}};
+    const std::vector<Words> in_crops = {{"--spp", "0:24", "--crop", "0,0,13,24"},
+                                         {"--spp", "0:24", "--crop", "13,0,27,9"},
+                                         {"--spp", "0:11", "--crop", "13,9,27,15"},
+                                         {"--spp", "11:24", "--crop", "13,9,27,15"}};
     for (const auto& of : {in_ranges, in_crops}) {
         std::vector<std::string> states = parts(of, layers);
         for (int order = 0; order < 2; ++order) {
@@ -37,8 +36,7 @@ TEST_F(Merging, SpectraMergeWithTheirErrors) {
     Words whole = bins;
     whole.insert(whole.end(), {"--spp", "24", "-o", path("w.exr")});
     run(whole);
-    const auto states =
-        parts({{"--samples", "0:3"}, {"--samples", "3:20"}, {"--samples", "20:24"}}, bins);
+    const auto states = parts({{"--spp", "0:3"}, {"--spp", "3:20"}, {"--spp", "20:24"}}, bins);
     EXPECT_EQ(merge(states, {"-o", path("m.exr")}).exit_code, 0);
     expect_same("w.exr", "m.exr");
 }
@@ -46,7 +44,7 @@ TEST_F(Merging, SpectraMergeWithTheirErrors) {
 // A merged state is a state: merging in steps, as a tree, is the same.
 TEST_F(Merging, MergedStatesMerge) {
     run({"--spp", "12", "-o", path("w.exr"), "-o", path("w.state")});
-    parts({{"--samples", "0:4"}, {"--samples", "4:8"}, {"--samples", "8:12"}});
+    parts({{"--spp", "0:4"}, {"--spp", "4:8"}, {"--spp", "8:12"}});
     ASSERT_EQ(merge({"b.state", "c.state"}, {"-o", path("bc.state")}).exit_code, 0);
     ASSERT_EQ(merge({"bc.state", "a.state"}, {"-o", path("m.exr")}).exit_code, 0);
     expect_same("w.exr", "m.exr");
@@ -59,8 +57,8 @@ TEST_F(Merging, FiguresAddUp) {
         return nlohmann::json::parse(file_bytes(path(name)));
     };
     run({"--spp", "12", "-o", path("w.exr"), "--stats", path("w.json")});
-    run({"--samples", "0:4", "-o", path("a.state"), "--stats", path("a.json")});
-    run({"--samples", "4:12", "-o", path("b.state"), "--stats", path("b.json")});
+    run({"--spp", "0:4", "-o", path("a.state"), "--stats", path("a.json")});
+    run({"--spp", "4:12", "-o", path("b.state"), "--stats", path("b.json")});
     ASSERT_EQ(
         merge({"a.state", "b.state"}, {"-o", path("m.exr"), "--stats", path("m.json")}).exit_code,
         0);
@@ -74,9 +72,9 @@ TEST_F(Merging, FiguresAddUp) {
 }
 
 TEST_F(Merging, WhatDoesNotBelongTogetherIsRefusedByName) {
-    parts({{"--samples", "0:4"}});
+    parts({{"--spp", "0:4"}});
     const auto refused = [&](const Words& more, const std::string& why) {
-        Words all = {"--samples", "4:8", "-o", path("x.state")};
+        Words all = {"--spp", "4:8", "-o", path("x.state")};
         all.insert(all.end(), more.begin(), more.end());
         run(all);
         const Finished done = merge({"a.state", "x.state"}, {"-o", path("m.exr")});
@@ -88,8 +86,8 @@ TEST_F(Merging, WhatDoesNotBelongTogetherIsRefusedByName) {
     };
     const std::string in = " in " + path("a.state") + " and ", in_x = " in " + path("x.state");
     refused({"--seed", "7"}, "seed is 0" + in + "7" + in_x);
-    refused({"--max-depth", "3"}, "maxDepth is 16" + in + "3" + in_x);
-    refused({"--clamp", "5"}, "clamp_nits is absent" + in + "5" + in_x);
+    refused({"--method", "max-depth=3"}, "maxDepth is 16" + in + "3" + in_x);
+    refused({"--method", "clamp=5"}, "clamp_nits is absent" + in + "5" + in_x);
     refused({"--fstop", "4"}, "lensRadius_m is ");
     refused({"--exposure", "1"}, "exposure is 0" + in + "1" + in_x);
     refused({"--size", "20x12"}, "frame is 40x24 px, layers none" + in + "20x12 px, layers none");
@@ -103,7 +101,7 @@ TEST_F(Merging, WhatDoesNotBelongTogetherIsRefusedByName) {
     const std::string cameras = rolled.save_glb(folder_.path / "rolled.glb").string();
     for (const int i : {0, 1}) {
         const std::string range = std::to_string(4 * i) + ":" + std::to_string(4 * i + 4);
-        const Words all = words({"--samples", range, "--camera", std::to_string(i), "-o",
+        const Words all = words({"--spp", range, "--camera", std::to_string(i), "-o",
                                  path("roll" + std::to_string(i) + ".state")},
                                 cameras);
         ASSERT_EQ(run_petzval(all).exit_code, 0);
@@ -112,7 +110,7 @@ TEST_F(Merging, WhatDoesNotBelongTogetherIsRefusedByName) {
     EXPECT_EQ(rolls.exit_code, 1);
     EXPECT_NE(rolls.err.find("pose of the camera is "), std::string::npos) << rolls.err;
     // The scene of the same name, changed.
-    run({"--samples", "4:8", "-o", path("x.state")});
+    run({"--spp", "4:8", "-o", path("x.state")});
     TinyGltf other = studio();
     other.json["nodes"][0]["translation"] = {0, 0, -0.5};
     other.save_glb(folder_.path / "studio.glb");
@@ -120,8 +118,7 @@ TEST_F(Merging, WhatDoesNotBelongTogetherIsRefusedByName) {
 }
 
 TEST_F(Merging, GapsAndOverlapsAreRefusedByName) {
-    parts(
-        {{"--samples", "0:4"}, {"--samples", "4:8"}, {"--samples", "8:12"}, {"--samples", "6:9"}});
+    parts({{"--spp", "0:4"}, {"--spp", "4:8"}, {"--spp", "8:12"}, {"--spp", "6:9"}});
     const Finished gap = merge({"a.state", "c.state"}, {"-o", path("m.exr")});
     EXPECT_EQ(gap.exit_code, 1);
     EXPECT_NE(gap.err.find("samples 4:8 of the pixels 0,0,40,24 are in none of them"),
@@ -143,7 +140,7 @@ TEST_F(Merging, InfinityIsKept) {
     Words whole = far;
     whole.insert(whole.end(), {"--spp", "8", "-o", path("w.exr")});
     run(whole);
-    const auto states = parts({{"--samples", "0:3"}, {"--samples", "3:8"}}, far);
+    const auto states = parts({{"--spp", "0:3"}, {"--spp", "3:8"}}, far);
     const Finished done = merge(states, {"-o", path("m.exr")});
     EXPECT_EQ(done.exit_code, 0) << done.err;
     expect_same("w.exr", "m.exr");

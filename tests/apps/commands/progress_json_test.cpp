@@ -77,7 +77,7 @@ TEST_F(CliProgressJson, PhasesNoticesAndTheEnd) {
 }
 
 TEST_F(CliProgressJson, ATimeLimitEndsAtOne) {
-    const auto all = render_events({"--time", "0.2s"}, scene_, 0);
+    const auto all = render_events({"--time-limit", "0.2s"}, scene_, 0);
     EXPECT_EQ(of_kind(all, "progress").back().at("fraction"), 1);
 }
 

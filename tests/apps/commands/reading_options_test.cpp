@@ -112,10 +112,10 @@ TEST_F(ReadingOptions, ASceneOfTheFileAndARadiusForItsPoints) {
         return run_petzval(words).out;
     };
     EXPECT_NE(info({}).find("scene 0: day"), std::string::npos);
-    const std::string shown = info({"--scene", "night", "--point-line-radius", "2cm"});
+    const std::string shown = info({"--scene", "night", "--method", "point-line-radius=2cm"});
     EXPECT_NE(shown.find("scene 1: night"), std::string::npos) << shown;
     EXPECT_NE(shown.find("points and lines, as spheres"), std::string::npos) << shown;
-    const Words more = {"--scene", "night", "--point-line-radius", "2cm"};
+    const Words more = {"--scene", "night", "--method", "point-line-radius=2cm"};
     for (Words words : {Words{"info", scene}, Words{"plan", scene, "--size", "8x8"},
                         Words{"render", scene, "-o", path("o.exr")},
                         Words{"chart", scene, "-o", path("chart")}}) {
@@ -127,7 +127,7 @@ TEST_F(ReadingOptions, ASceneOfTheFileAndARadiusForItsPoints) {
     plan.insert(plan.end(), more.begin(), more.end());
     const std::string command = run_petzval(plan).out;
     EXPECT_NE(command.find(" --scene night"), std::string::npos) << command;
-    EXPECT_NE(command.find(" --point-line-radius 0.02"), std::string::npos) << command;
+    EXPECT_NE(command.find(" --method point-line-radius 0.02"), std::string::npos) << command;
 }
 
 // A scene that a stranger sent names what it likes.

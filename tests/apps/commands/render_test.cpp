@@ -51,9 +51,9 @@ TEST_F(Cli, FrameAndSamples) {
                     ASSERT_EQ(value_at(part, x, y, c), value_at(whole, x + 10, y + 3, c));
     }
 
-    const Picture timed = render({"--time", "0.1s"});
+    const Picture timed = render({"--time-limit", "0.1s"});
     EXPECT_GE(std::stoi(metadata_of(timed, "petzval:samples").substr(2)), 1) << "it ends at all";
-    const Picture both = render({"--time", "24h", "--spp", "2"});
+    const Picture both = render({"--time-limit", "24h", "--spp", "2"});
     EXPECT_EQ(metadata_of(both, "petzval:samples"), "0:2");
 }
 
@@ -80,7 +80,7 @@ TEST_F(Cli, Cameras) {
     EXPECT_EQ(difference({"--camera", "tele"}, {"--fov", "28.64789"}), 0.);
 
     // Orthographic: 3 m high, of which the wall is 2.
-    const Words sharp = {"--transparent", "--filter", "box", "--spp", "64"};
+    const Words sharp = {"--transparent", "--method", "filter=box", "--spp", "64"};
     Words plan = sharp;
     plan.insert(plan.end(), {"--camera", "plan"});
     const Picture seen = render(plan);
@@ -100,7 +100,7 @@ TEST_F(Cli, Lens) {
               "22.619865");  // 2 atan(10 / 50)
 
     const auto focus_of = [&](const std::string& focus) {
-        const Picture q = render({"--lens-radius", "0.1", "--focus", focus});
+        const Picture q = render({"--method", "lens-radius=0.1", "--focus", focus});
         EXPECT_EQ(metadata_of(q, "petzval:lensRadius_m"), "0.100000");
         return std::stod(metadata_of(q, "petzval:focus_m"));
     };
@@ -110,8 +110,8 @@ TEST_F(Cli, Lens) {
 
     // Out of focus the wall's edge is spread over more pixels.
     const auto mixed = [&](const std::string& focus) {
-        const Picture q = render({"--lens-radius", "0.1", "--focus", focus, "--transparent",
-                                  "--filter", "box", "--size", "32x32", "--spp", "32"});
+        const Picture q = render({"--method", "lens-radius=0.1", "--focus", focus, "--transparent",
+                                  "--method", "filter=box", "--size", "32x32", "--spp", "32"});
         int count = 0;
         for (int i = 0; i < 32 * 32; ++i) {
             const float alpha = value_at(q, i % 32, i / 32, "A");
@@ -126,7 +126,7 @@ TEST_F(Cli, EnvironmentAndBackground) {
     const std::string sky = red_and_blue();
     EXPECT_EQ(corner(render({"--env", sky})), V3f(1, 0, 0));
     EXPECT_EQ(corner(render({"--env", sky, "--env-rotate", "180"})), V3f(0, 0, 1));
-    EXPECT_EQ(corner(render({"--env", sky, "--env-strength", "3"})), V3f(3, 0, 0));
+    EXPECT_EQ(corner(render({"--env", sky, "--method", "env-strength=3"})), V3f(3, 0, 0));
     const Picture painted = render({"--env", sky, "--background", "0.25,0.5,2"});
     EXPECT_EQ(corner(painted), V3f(0.25f, 0.5f, 2));
     // The wall faces the blue half: lit by the environment, not by what is painted behind.
@@ -142,8 +142,8 @@ TEST_F(Cli, EnvironmentAndBackground) {
 }
 
 TEST_F(Cli, DepthFilterSamplerLightChoiceTraversal) {
-    EXPECT_EQ(mean_of(render({"--max-depth", "0"}), "G"), 0.);
-    EXPECT_GT(mean_of(render({"--max-depth", "1"}), "G"), 0.01);
+    EXPECT_EQ(mean_of(render({"--method", "max-depth=0"}), "G"), 0.);
+    EXPECT_GT(mean_of(render({"--method", "max-depth=1"}), "G"), 0.01);
 
     std::set<std::string> pictures;
     const auto add = [&](const Words& words, const std::string& name, const std::string& value) {
@@ -151,18 +151,18 @@ TEST_F(Cli, DepthFilterSamplerLightChoiceTraversal) {
         EXPECT_EQ(metadata_of(read_picture(path("out.exr")), "petzval:" + name), value);
     };
     add({}, "filterRadius_px", "1.500000");
-    add({"--filter", "gauss"}, "filter", "gauss");
-    add({"--filter", "box"}, "filterRadius_px", "0.500000");
-    add({"--filter", "box", "--filter-radius", "2"}, "filterRadius_px", "2.000000");
-    add({"--sampler", "sobol"}, "sampler", "sobol");
-    add({"--sampler", "independent"}, "sampler", "independent");
-    add({"--light-choice", "uniform"}, "lightChoice", "uniform");
-    add({"--light-choice", "power"}, "lightChoice", "power");
+    add({"--method", "filter=gauss"}, "filter", "gauss");
+    add({"--method", "filter=box"}, "filterRadius_px", "0.500000");
+    add({"--method", "filter=box", "--method", "filter-radius=2"}, "filterRadius_px", "2.000000");
+    add({"--method", "sampler=sobol"}, "sampler", "sobol");
+    add({"--method", "sampler=independent"}, "sampler", "independent");
+    add({"--method", "light-choice=uniform"}, "lightChoice", "uniform");
+    add({"--method", "light-choice=power"}, "lightChoice", "power");
     EXPECT_EQ(pictures.size(), 8u);
-    EXPECT_EQ(render_bytes({"--sampler", "owen", "--filter", "blackman-harris", "--light-choice",
-                            "tree", "--traversal", "robust"}),
+    EXPECT_EQ(render_bytes({"--method", "sampler=owen", "--method", "filter=blackman-harris",
+                            "--method", "light-choice=tree", "--method", "traversal=robust"}),
               render_bytes({}));
-    EXPECT_LT(difference({"--traversal", "fast"}, {}), 1e-3);
+    EXPECT_LT(difference({"--method", "traversal=fast"}, {}), 1e-3);
 }
 
 TEST_F(Cli, DisplayPictures) {
@@ -184,7 +184,7 @@ TEST_F(Cli, DisplayPictures) {
 }
 
 TEST_F(Cli, Layers) {
-    const Picture p = render({"--size", "17x17", "--filter", "box", "--spp", "16", "--aov",
+    const Picture p = render({"--size", "17x17", "--method", "filter=box", "--spp", "16", "--aov",
                               "albedo,normal,depth,position,uv,emission,cost"});
     EXPECT_EQ(p.channels.size(), 4u + 3 + 3 + 1 + 3 + 2 + 3 + 1);
     const auto at = [&](const std::string& channel) { return value_at(p, 8, 8, channel); };
@@ -244,7 +244,7 @@ TEST_F(Cli, SamplesThatAreTooBrightAreCountedAsSuch) {
         << bright.err;
     EXPECT_EQ(bright.err.find("not finite"), std::string::npos) << bright.err;
 
-    const Finished clamped = run({"--clamp", "1e12"});
+    const Finished clamped = run({"--method", "clamp=1e12"});
     EXPECT_EQ(clamped.exit_code, 0) << clamped.err;
     EXPECT_EQ(clamped.err.find("brighter than"), std::string::npos) << clamped.err;
     s = json::parse(file_bytes(path("s.json")));

@@ -68,7 +68,7 @@ TEST_F(Sequences, AListOfCamerasIsASweep) {
 // The scene is another one for each value: nothing of the one before may stay.
 TEST_F(Sequences, ASweepOverTheLight) {
     run(scene_, {"--sweep", "env-strength=1,4", "-o", path("l_#.exr"), "--camera", "wide"});
-    run(scene_, {"--env-strength", "4", "-o", path("one.exr"), "--camera", "wide"});
+    run(scene_, {"--method", "env-strength=4", "-o", path("one.exr"), "--camera", "wide"});
     expect_same("one.exr", "l_2.exr");
 }
 
@@ -117,8 +117,8 @@ TEST_F(Sequences, AnOrbitTurnsCounterClockwiseFromAbove) {
     EXPECT_NEAR(x, 4, 1e-5f);
     EXPECT_NEAR(y, 0, 1e-5f);
     EXPECT_NEAR(z, -1, 1e-5f);
-    run(walls_, {"--look-at", "0,0,3,0,0,-1", "--orbit", "90", "--orbit-about", "1,7,3", "-o",
-                 path("o.exr")});
+    run(walls_, {"--look-at", "0,0,3,0,0,-1", "--orbit", "90", "--method", "orbit-about=1,7,3",
+                 "-o", path("o.exr")});
     for (const auto& [name, value] : read_picture(path("o.exr")).metadata)
         if (name == "petzval:cameraEye_m") eye = std::get<std::string>(value);
     ASSERT_EQ(sscanf(eye.c_str(), "%f,%f,%f", &x, &y, &z), 3) << eye;
@@ -170,9 +170,9 @@ TEST_F(Sequences, WhatIsThereIsNotRenderedAgain) {
 
 // How many samples there are is not known before: any number of them will do.
 TEST_F(Sequences, WhatATimeLimitEndedIsThere) {
-    const Words asked = {"--look-at", "0,0,1,0,0,0", "--size",         "8x8", "--env",
-                         "studio",    "--time",      "0.2s",           "-o",  path("t.exr"),
-                         "-o",        path("t.png"), "--skip-existing"};
+    const Words asked = {"--look-at", "0,0,1,0,0,0",  "--size",         "8x8", "--env",
+                         "studio",    "--time-limit", "0.2s",           "-o",  path("t.exr"),
+                         "-o",        path("t.png"),  "--skip-existing"};
     const auto rendered = [&](const Words& more) {
         Words all = {"render", walls_};
         all.insert(all.end(), asked.begin(), asked.end());
@@ -239,7 +239,7 @@ TEST_F(Sequences, OneThatFailsDoesNotEndTheOthers) {
 
 TEST_F(Sequences, ASheetShowsAllInOrder) {
     run(walls_, {"--sweep", "background=9,0,0;0,9,0;0,0,9", "--sheet", path("sheet.png"),
-                 "--look-at", "0,0,1,0,0,9", "--size", "40x40", "--env-strength", "0"});
+                 "--look-at", "0,0,1,0,0,9", "--size", "40x40", "--method", "env-strength=0"});
     EXPECT_EQ(listing(), (std::set<std::string>{"sheet.png", "studio.glb", "walls.glb"}))
         << "no other picture was asked for";
     const Picture sheet = read_picture(path("sheet.png"));
@@ -277,12 +277,13 @@ TEST_F(Sequences, WhatMakesNoSequenceIsRefused) {
             {{"--sweep", "fstop=1,2", "--frames", "1:2", "-o", path("s_#.png")}, "--frames"},
             {{"--turntable", "0", "-o", path("s_#.png")}, "--turntable"},
             {{"--turntable", "4", "--orbit", "3", "-o", path("s_#.png")}, "--orbit"},
-            {{"--orbit-about", "0,0,0", "-o", path("s.png")}, "--orbit-about: has no effect"},
-            {{"render", scene_, "--samples", "4", "-o", path("s.png")}, "type --spp 4"},
-            {{"render", scene_, "--samples", "8:4", "-o", path("s.png")}, "a range A:B of samples"},
+            {{"--method", "orbit-about=0,0,0", "-o", path("s.png")},
+             "--method orbit-about: has no effect"},
+            {{"render", scene_, "--spp", "4", "-o", path("s.png")}, "type --spp 4"},
+            {{"render", scene_, "--spp", "8:4", "-o", path("s.png")}, "a range A:B of samples"},
             {{"-o", path("a.state"), "-o", path("b.state")}, "names two states"},
             {{"--checkpoint", "often", "-o", path("s.png")}, "--checkpoint"},
-            {{"--clamp", "0", "-o", path("s.png")}, "--clamp"},
+            {{"--method", "clamp=0", "-o", path("s.png")}, "--method clamp"},
             {{"--preview", path("p.exr"), "-o", path("s.png")}, "--preview"},
             {{"--sheet", path("x.png"), "-o", path("s.png")}, "--sheet: needs"}});
     expect_refused(3, {{{"--log", path("none/log.txt"), "-o", path("s.png")}, "there is no folder"},

@@ -41,7 +41,7 @@ TEST_F(CliSpectralErrors, OptionsThatDoNotGoTogether) {
             {with({"--spp", "8", "-o", path("out.png")}), "--bins: needs an output"},
             {{"--bins", "360:830:10", "--spp", "8"}, "glass schott:N-SF11 is known from 370 to"},
             {{"--spectral", "full"}, "auto, rgb, wavelengths"},
-            {{"--white-balance", "a"}, "none, illuminant"},
+            {{"--method", "white-balance=a"}, "none, illuminant"},
             {{"--illuminant", path("none.csv")}, "none.csv: is neither a file nor a name; the"},
             {{"--illuminant", "d50"}, "the names are d65, a, f11"},
             {{"--illuminant", ""}, "--illuminant: is empty"},

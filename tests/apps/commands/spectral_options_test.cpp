@@ -91,7 +91,7 @@ TEST_F(CliSpectral, AnEmitterOfOneReadsBackOne) {
     const std::string eye = mixed_eye();
     const std::string uneven =
         csv("uneven.csv", [](int nm) -> std::vector<double> { return {nm % 100 < 50 ? 1. : 0.}; });
-    const Words balanced = {"--white-balance", "illuminant", "--illuminant"};
+    const Words balanced = {"--method", "white-balance=illuminant", "--illuminant"};
     const auto with = [](Words words, const Words& more) {
         words.insert(words.end(), more.begin(), more.end());
         return words;
@@ -141,8 +141,8 @@ TEST_F(CliSpectral, BinsAreBandAveragesOfTheLight) {
         {"f11", find_light_spectrum("f11")->per_nit},
         {flat, even}};
     for (const auto& [name, per_nit] : lights) {
-        const Picture p = render(
-            {"--illuminant", name, "--bins", "380:730:10", "--spp", "256", "--filter", "box"});
+        const Picture p = render({"--illuminant", name, "--bins", "380:730:10", "--spp", "256",
+                                  "--method", "filter=box"});
         EXPECT_EQ(spectral_channels(p).size(), 35u);
         double sum = 0, expected_sum = 0;
         for (int nm = 380; nm < 730; nm += 10) {
@@ -272,8 +272,8 @@ TEST_F(CliSpectral, StandardErrorsAreHonest) {
 
 TEST_F(CliSpectral, TheFileSaysHowItWasMade) {
     use(lamp());
-    const Picture p = render({"--bins", "380:730:10", "--spp", "64", "--white-balance",
-                              "illuminant", "--illuminant", "f11"});
+    const Picture p = render({"--bins", "380:730:10", "--spp", "64", "--method",
+                              "white-balance=illuminant", "--illuminant", "f11"});
     const std::pair<const char*, const char*> expected[] = {{"petzval:bins", "380:730:10"},
                                                             {"petzval:spectral", "wavelengths"},
                                                             {"petzval:illuminant", "f11"},
@@ -297,7 +297,7 @@ TEST_F(CliSpectral, TheFileSaysHowItWasMade) {
         words.insert(words.end(), {option, value});
         return render(words);
     };
-    const Picture timed = layers_with("--time", "0.01s");
+    const Picture timed = layers_with("--time-limit", "0.01s");
     EXPECT_GE(std::stoi(metadata_of(timed, "petzval:samples").substr(2)), 8);
     EXPECT_EQ(timed.channels.size(), 4u + 35 + 3 + 3 + 1);
     EXPECT_LT(mean_of(layers_with("--spp", "8"), "stderr.G"), 1);

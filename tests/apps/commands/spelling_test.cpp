@@ -26,35 +26,36 @@ TEST_F(CliSpelling, ValuesMeanTheSameHoweverTheyAreSpelt) {
     const std::pair<Words, Words> pairs[] = {
         {{"--fstop", "f/2", "--focus", "150cm"}, {"--fstop", "2", "--focus", "1.5"}},
         {{"--fstop", "F2", "--focus", "∞"}, {"--fstop", "2", "--focus", "infinity"}},
-        {{"--lens", "Thin", "--lens-radius", "2cm", "--focal-length", "5cm", "--focus", "1"},
-         {"--lens", "thin", "--lens-radius", "0.02", "--focal-length", "50", "--focus", "1"}},
-        {{"--fov", "40°", "--size", "16X16", "--filter", "Box", "--spp", "010"},
-         {"--fov", "40", "--size", "16x16", "--filter", "box", "--spp", "10"}}};
+        {{"--lens", "Thin", "--method", "lens-radius=2cm", "--focal-length", "5cm", "--focus", "1"},
+         {"--lens", "thin", "--method", "lens-radius=0.02", "--focal-length", "50", "--focus",
+          "1"}},
+        {{"--fov", "40°", "--size", "16X16", "--method", "filter=Box", "--spp", "010"},
+         {"--fov", "40", "--size", "16x16", "--method", "filter=box", "--spp", "10"}}};
     for (const auto& [as_typed, usual] : pairs)
         EXPECT_EQ(render_bytes(as_typed, "a.exr"), render_bytes(usual, "b.exr")) << as_typed[1];
 }
 
 TEST_F(CliSpelling, OfAnOptionGivenTwiceTheLastHolds) {
     EXPECT_EQ(render_bytes({"--seed", "3", "--view", "ACES", "--spp", "2", "--seed", "1", "--spp",
-                            "4", "--filter", "gauss", "--filter", "box", "--quiet"},
+                            "4", "--method", "filter=gauss", "--method", "filter=box", "--quiet"},
                            "a.exr"),
-              render_bytes({"--seed", "1", "--spp", "4", "--filter", "box"}, "b.exr"));
-    EXPECT_EQ(
-        render_bytes({"--chroma", "split", "--lens", "takumar-50mm-f1.2", "--focus", "1",
-                      "--dispersion", "shared"},
-                     "a.exr"),
-        render_bytes({"--lens", "takumar-50mm-f1.2", "--focus", "1", "--dispersion", "shared"},
-                     "b.exr"));
+              render_bytes({"--seed", "1", "--spp", "4", "--method", "filter=box"}, "b.exr"));
+    EXPECT_EQ(render_bytes({"--method", "dispersion=split", "--lens", "takumar-50mm-f1.2",
+                            "--focus", "1", "--method", "dispersion=shared"},
+                           "a.exr"),
+              render_bytes(
+                  {"--lens", "takumar-50mm-f1.2", "--focus", "1", "--method", "dispersion=shared"},
+                  "b.exr"));
     // What adds up still does.
     const Picture p = render({"--aov", "depth", "--aov", "albedo,depth"});
     EXPECT_GE(channel_index(p, "depth.Z"), 0);
     EXPECT_GE(channel_index(p, "albedo.R"), 0);
     // A plan's command has what holds, and only that.
-    const Finished plan = run_petzval({"plan", scene_, "--size", "8x8", "--max-depth", "3",
-                                       "--max-depth", "05", "--tolerance", "50%"});
+    const Finished plan = run_petzval({"plan", scene_, "--size", "8x8", "--method", "max-depth=3",
+                                       "--method", "max-depth=05", "--tolerance", "50%"});
     EXPECT_EQ(plan.exit_code, 0) << plan.err;
-    EXPECT_NE(plan.out.find("--max-depth 5"), std::string::npos) << plan.out;
-    EXPECT_EQ(plan.out.find("--max-depth 3"), std::string::npos) << plan.out;
+    EXPECT_NE(plan.out.find("--method max-depth=5"), std::string::npos) << plan.out;
+    EXPECT_EQ(plan.out.find("--method max-depth=3"), std::string::npos) << plan.out;
 }
 
 TEST_F(CliSpelling, UnknownOptionsAreNamedAsTypedAndByWhatWasMeant) {
@@ -65,7 +66,7 @@ TEST_F(CliSpelling, UnknownOptionsAreNamedAsTypedAndByWhatWasMeant) {
     EXPECT_EQ(refused_render({"-spp", "4"}),
               "-spp is no option of petzval render; did you mean --spp?");
     EXPECT_EQ(refused_render({"--max_depth", "4"}),
-              "--max_depth is no option of petzval render; did you mean --max-depth?");
+              "--max_depth is no option of petzval render; did you mean --method max-depth?");
     EXPECT_EQ(refused_render({"--xyzzy"}), "--xyzzy is no option of petzval render");
     // Before what is missing, and before its value is taken for a scene.
     EXPECT_EQ(refused({"render", "--fokus", "1m", scene_}),
@@ -85,7 +86,7 @@ TEST_F(CliSpelling, OptionsOfOtherProgramsAreToldTheirNames) {
               "--width is no option of petzval plan; type --size WIDTHxHEIGHT");
     const std::pair<const char*, const char*> now[] = {
         {"--denoise", "--aov albedo,normal, which a denoiser of another program needs"},
-        {"--max-bounces", "--max-depth NUMBER"},
+        {"--max-bounces", "--method max-depth=NUMBER"},
         {"--hdri", "--env FILE"},
         {"--tone-mapping", "--view NAME"},
         {"--dof", "--fstop NUMBER --focus DISTANCE"},
@@ -114,19 +115,36 @@ TEST_F(CliSpelling, OptionsOfOtherCommandsComeBeforeNearOnes) {
               "--json is no option of petzval lens list; petzval lens check has it");
     // Of several words one, and no option that --help does not show.
     EXPECT_EQ(refused_render({"--depth", "4"}),
-              "--depth is no option of petzval render; did you mean --max-depth or "
-              "--max-clear-depth?");
+              "--depth is no option of petzval render; did you mean --method max-depth or "
+              "--method max-clear-depth?");
     EXPECT_EQ(refused_render({"-q"}), "-q is no option of petzval render; did you mean --quiet?");
     EXPECT_EQ(refused_render({"-s", "4"}), "-s is no option of petzval render");
     EXPECT_EQ(refused_render({"--numbr", "4"}), "--numbr is no option of petzval render");
 }
 
-TEST_F(CliSpelling, OldNamesAreNamedAsTyped) {
-    EXPECT_EQ(refused({"info", scene_, "--chroma", "split"}),
-              "--chroma is no option of petzval info; petzval render has it");
-    const std::string wrong = refused_render({"--chroma", "splitt"});
-    EXPECT_NE(wrong.find("did you mean split?"), std::string::npos) << wrong;
-    EXPECT_NE(wrong.find("(--chroma is called --dispersion now)"), std::string::npos) << wrong;
+TEST_F(CliSpelling, MethodsHaveNamesAndValues) {
+    EXPECT_EQ(refused_render({"--sampler", "owen"}),
+              "--sampler is no option of petzval render; did you mean --method sampler?");
+    EXPECT_EQ(refused_render({"--method", "sampler"}), "--method sampler: needs =VALUE");
+    EXPECT_EQ(refused_render({"--method", "sampel=owen"}),
+              "--method: \"sampel\" is none; did you mean sampler?");
+    EXPECT_EQ(refused_render({"--method", "sampler=own"}),
+              "--method sampler: \"own\" is none of owen, sobol, independent; did you mean owen?");
+}
+
+// Most people need few options, and one look shows them.
+TEST_F(CliSpelling, HelpFitsAScreenAndHasAllWhereItIsAsked) {
+    const std::string brief = run_petzval({"render", "--help"}).out;
+    EXPECT_LE(std::count(brief.begin(), brief.end(), '\n'), 40);
+    const std::string all = run_petzval({"render", "--help", "all"}).out;
+    EXPECT_EQ(run_petzval({"help", "render", "all"}).out, all);
+    EXPECT_EQ(run_petzval({"help", "render"}).out, brief);
+    for (const char* option : {"--output", "--spp", "--lens"})
+        EXPECT_NE(brief.find(option), std::string::npos) << option;
+    for (const char* option : {"--iso", "--method", "iris-sampling"}) {
+        EXPECT_EQ(brief.find(option), std::string::npos) << option;
+        EXPECT_NE(all.find(option), std::string::npos) << option;
+    }
 }
 
 TEST_F(CliSpelling, MisspeltCommandsAreFound) {
@@ -193,7 +211,7 @@ TEST_F(CliSpelling, NearestNamesAreListed) {
         {{"--view", "ACSE"},
          "--view: Petzval's configuration: there is no view \"ACSE\"; there are sRGB, ACES, raw; "
          "did you mean ACES?"},
-        {{"--filter", "blackman"}, "did you mean blackman-harris?"},
+        {{"--method", "filter=blackman"}, "did you mean blackman-harris?"},
         {{"--aov", "albdeo"}, "did you mean albedo?"},
         {{"--fstop", "2", "--focus", "1", "--aperture", "squar"}, "did you mean square?"},
         {{"--illuminant", "d56"}, "the names are d65, a, f11; did you mean d65?"},

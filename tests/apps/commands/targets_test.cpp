@@ -12,8 +12,8 @@ class CliTargets : public CliSpectral {
   protected:
     CliTargets() { scene_ = PETZVAL_ASSETS "/scenes/ornaments.glb"; }
     [[nodiscard]] static Words thin(Words more) {
-        Words words = {"--lens",  "thin", "--fov",  "26",    "--lens-radius", "0.045",
-                       "--focus", "1m",   "--size", "64x42", "--spp",         "5"};
+        Words words = {"--lens",  "thin", "--fov",  "26",    "--method", "lens-radius=0.045",
+                       "--focus", "1m",   "--size", "64x42", "--spp",    "5"};
         words.insert(words.end(), more.begin(), more.end());
         return words;
     }
@@ -30,7 +30,7 @@ class CliTargets : public CliSpectral {
 
 TEST_F(CliTargets, EqualRendersAreEqualFiles) {
     for (const auto& lens : {thin, traced}) {
-        const Words words = lens({"--targets", "auto"});
+        const Words words = lens({"--method", "targets=auto"});
         const auto with = [&](const Words& more) {
             Words all = words;
             all.insert(all.end(), more.begin(), more.end());
@@ -40,7 +40,7 @@ TEST_F(CliTargets, EqualRendersAreEqualFiles) {
         const std::string bytes = file_bytes(path("whole.exr"));
         EXPECT_TRUE(bytes == render_bytes(with({"--threads", "1"})));
         EXPECT_TRUE(bytes == render_bytes(with({"--threads", "4"})));
-        EXPECT_FALSE(bytes == render_bytes(lens({"--targets", "off"})));
+        EXPECT_FALSE(bytes == render_bytes(lens({"--method", "targets=off"})));
         const Picture part = render(with({"--crop", "13,5,40,31"}));
         for (int y = 0; y < 31; ++y)
             for (int x = 0; x < 40; ++x)
@@ -54,8 +54,8 @@ TEST_F(CliTargets, AlphaAndLayersStay) {
     const Words layers = {"--transparent", "--aov", "normal,depth,albedo"};
     for (const auto& lens : {thin, traced}) {
         Words off = layers, automatic = layers;
-        off.insert(off.end(), {"--targets", "off"});
-        automatic.insert(automatic.end(), {"--targets", "auto"});
+        off.insert(off.end(), {"--method", "targets=off"});
+        automatic.insert(automatic.end(), {"--method", "targets=auto"});
         const Picture without = render(lens(off), "off.exr"),
                       with = render(lens(automatic), "auto.exr");
         ASSERT_EQ(with.channels, without.channels);
@@ -81,7 +81,7 @@ TEST_F(CliTargets, NoByteChangesWhereThereAreNone) {
         words.insert(words.end(), {"--size", "40x24", "--spp", "2"});
         const auto pixels = [&](const char* use) {
             Words all = words;
-            all.insert(all.end(), {"--targets", use});
+            all.insert(all.end(), {"--method", "targets=" + std::string(use)});
             return render(all).pixels;
         };
         EXPECT_TRUE(pixels("auto") == pixels("off"));
@@ -90,7 +90,8 @@ TEST_F(CliTargets, NoByteChangesWhereThereAreNone) {
 
 TEST_F(CliTargets, AreCounted) {
     const auto rays = [&](const char* use) {
-        static_cast<void>(render(thin({"--targets", use, "--stats", path("stats.json")})));
+        static_cast<void>(render(
+            thin({"--method", "targets=" + std::string(use), "--stats", path("stats.json")})));
         return json::parse(file_bytes(path("stats.json")))["rays"];
     };
     EXPECT_EQ(rays("off")["to_targets"], 0);
@@ -102,7 +103,9 @@ TEST_F(CliTargets, AreCounted) {
 // Against many samples without targets.
 TEST_F(CliTargets, AreNearerToTheTruth) {
     const auto rendered = [&](const char* use, const char* samples, const char* name) {
-        return render(thin({"--targets", use, "--spp", samples, "--size", "128x84"}), name);
+        return render(
+            thin({"--method", "targets=" + std::string(use), "--spp", samples, "--size", "128x84"}),
+            name);
     };
     const Picture reference = rendered("off", "1024", "reference.exr");
     const auto error = [&](const char* use) {
@@ -112,7 +115,7 @@ TEST_F(CliTargets, AreNearerToTheTruth) {
 }
 
 TEST_F(CliTargets, OtherWordsAreRefused) {
-    EXPECT_NE(error_of({"render", scene_, "-o", path("x.exr"), "--targets", "some"}, 2)
+    EXPECT_NE(error_of({"render", scene_, "-o", path("x.exr"), "--method", "targets=some"}, 2)
                   .find("none of auto, off"),
               std::string::npos);
 }

@@ -131,7 +131,7 @@ TEST_F(CliTime, AShutterBlursOnlyWhatMoves) {
     // the file says of it.
     const Words still = {"--at", "9.25"};
     Words open = still;
-    open.insert(open.end(), {"--shutter", "1/8", "--shutter-curve", "trapezoid"});
+    open.insert(open.end(), {"--shutter", "1/8", "--method", "shutter-curve=trapezoid"});
     EXPECT_EQ(render(still).pixels, render(open).pixels);
     const Picture sharp = render({"--at", "0.5"}),
                   blurred = render({"--at", "0.5", "--shutter", "1"});
@@ -145,7 +145,8 @@ TEST_F(CliTime, AShutterBlursOnlyWhatMoves) {
         "--camera",        "wide"};
     const auto mean = [&](const char* time, const char* curve) {
         Words words = photo;
-        words.insert(words.end(), {"--shutter", time, "--shutter-curve", curve});
+        words.insert(words.end(),
+                     {"--shutter", time, "--method", "shutter-curve=" + std::string(curve)});
         const Picture picture = render(words);
         double sum = 0;
         for (size_t i = 0; i < picture.pixels.size(); i += picture.channels.size())
@@ -158,10 +159,10 @@ TEST_F(CliTime, AShutterBlursOnlyWhatMoves) {
 
 TEST_F(CliTime, CurvesComeFromFiles) {
     const std::string box = text_file("box.csv", "time,open\n3,1\n5,1\n");
-    const Words base = {"--at", "0.5", "--shutter", "0.5", "--shutter-curve"};
+    const Words base = {"--at", "0.5", "--shutter", "0.5", "--method"};
     const auto with = [&](const std::string& curve) {
         Words words = base;
-        words.push_back(curve);
+        words.push_back("shutter-curve=" + curve);
         return words;
     };
     EXPECT_EQ(render(with(box)).pixels, render(with("box")).pixels);
@@ -186,7 +187,7 @@ TEST_F(CliTime, CurvesComeFromFiles) {
 TEST_F(CliTime, VelocitiesArePixelsToTheNextFrame) {
     // Through "plan", 16 px are 3 m wide: the wall goes by 1.6 px and 3.2 px in a second.
     const Words plan = {"--camera", "plan",  "--at",     "0.25",     "--fps",
-                        "4",        "--aov", "velocity", "--filter", "box"};
+                        "4",        "--aov", "velocity", "--method", "filter=box"};
     const Picture flat = render(plan);
     const V2f moved = velocity_of(flat, 8, 8), none = velocity_of(flat, 5, 8);
     EXPECT_NEAR(moved.x, 0.4f, 1e-3f);
@@ -195,7 +196,7 @@ TEST_F(CliTime, VelocitiesArePixelsToTheNextFrame) {
     // "tele" is 2 m from the wall, and 0.1 m nearer in the next frame. Half a picture's height is
     // tan(0.25) of the distance.
     const Words tele = {"--camera", "tele", "--at",  "0",        "--animation", "approach",
-                        "--fps",    "5",    "--aov", "velocity", "--filter",    "box"};
+                        "--fps",    "5",    "--aov", "velocity", "--method",    "filter=box"};
     const Picture grown = render(tele);
     for (const V2i px : {V2i(5, 2), V2i(14, 5), V2i(8, 15)}) {
         const V2f off = V2f(px) + V2f(0.5f) - V2f(8);
@@ -239,13 +240,13 @@ TEST_F(CliTime, VelocitiesThroughALensAreThoseOfItsPictures) {
     scene_ = file.save_glb(folder_.path / "wall.glb").string();
     const auto frame = [&](const char* at) {
         return render({"--lens",       "tessar-100mm-f2.8",
-                       "--fit",        "fov",
+                       "--method",     "fit=fov",
                        "--fstop",      "32",
                        "--focus",      "3",
                        "--at",         at,
                        "--fps",        "1",
                        "--spectral",   "rgb",
-                       "--filter",     "box",
+                       "--method",     "filter=box",
                        "--background", "1,1,1",
                        "--aov",        "uv,velocity",
                        "--spp",        "64"});
@@ -295,8 +296,9 @@ TEST_F(CliTime, RefusesWhatHasNoMeaning) {
         {{"--at", "1", "--shutter", "0deg", "-o", out}, "--shutter"},
         {{"--at", "1", "--shutter", "-1/8", "-o", out}, "--shutter"},
         {{"--shutter", "1/8", "-o", out}, "no effect but with --at"},
-        {{"--at", "1", "--shutter-curve", "box", "-o", out}, "--shutter"},
-        {{"--at", "1", "--shutter", "1", "--shutter-curve", "bow", "-o", out}, "neither box"},
+        {{"--at", "1", "--method", "shutter-curve=box", "-o", out}, "--shutter"},
+        {{"--at", "1", "--shutter", "1", "--method", "shutter-curve=bow", "-o", out},
+         "neither box"},
         {{"--frames", "1:3", "-o", out}, "put ####"},
         {{"--frames", "3:1", "-o", many}, "not a range of frames"},
         {{"--frames", "1:3:0", "-o", many}, "not a range of frames"},

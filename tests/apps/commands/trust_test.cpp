@@ -123,9 +123,9 @@ TEST_F(Trust, AnotherBuildIsRefusedByName) {
         << "the picture is stale";
     EXPECT_NE(run_petzval(again).err.find("is there already"), std::string::npos);
 
-    const Words part = words({"--samples", "4:8", "-o", path("b.state")});
+    const Words part = words({"--spp", "4:8", "-o", path("b.state")});
     ASSERT_EQ(run_with_alarm(part, other).exit_code, 0);
-    run({"--samples", "0:4", "-o", path("a.state")});
+    run({"--spp", "0:4", "-o", path("a.state")});
     const std::string why =
         path("b.state") + ": was written by " + theirs + ", and this is " + ours;
     const Finished merged = merge({"a.state", "b.state"}, {"-o", path("m.exr")});
@@ -145,7 +145,7 @@ TEST_F(Trust, AnotherBuildIsRefusedByName) {
 
 // Nobody writes to the pipe: who opens it waits.
 TEST_F(Trust, AHostileStateDoesNotHoldTheMerge) {
-    run({"--samples", "0:2", "-o", path("a.state")});
+    run({"--spp", "0:2", "-o", path("a.state")});
     const std::string state = file_bytes(path("a.state"));
     for (const std::string& config : {fifo("pipe"), std::string("/proc/self/fd/0")}) {
         write("h.state", with_header(state, [&](auto& h) { h["run"]["display"][2] = config; }));

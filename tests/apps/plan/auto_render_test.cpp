@@ -27,7 +27,8 @@ TEST_F(AutoRender, TakesRgbWhereTheLensDoesNotShow) {
         << text;
     EXPECT_EQ(text.find("spectral: wavelengths"), std::string::npos) << text;
     const Picture picture = read_picture(path("auto.exr"));
-    static_cast<void>(said(lens({"--spectral", "rgb", "--dispersion", "shared"}), "asked.exr"));
+    static_cast<void>(
+        said(lens({"--spectral", "rgb", "--method", "dispersion=shared"}), "asked.exr"));
     EXPECT_EQ(picture.pixels, read_picture(path("asked.exr")).pixels);
     EXPECT_NE(file_bytes(path("auto.exr")).find("petzval:plan"), std::string::npos);
     EXPECT_EQ(file_bytes(path("asked.exr")).find("petzval:plan"), std::string::npos);
@@ -37,7 +38,7 @@ TEST_F(AutoRender, KeepsWavelengthsApartWhereTheToleranceIsTight) {
     const std::string text = said(lens({"--tolerance", "0.001%"}), "auto.exr");
     EXPECT_NE(text.find("spectral: wavelengths, as lens cooke"), std::string::npos) << text;
     EXPECT_NE(text.find("dispersion: hero, as dispersion of "), std::string::npos) << text;
-    static_cast<void>(said(lens({"--dispersion", "hero"}), "asked.exr"));
+    static_cast<void>(said(lens({"--method", "dispersion=hero"}), "asked.exr"));
     EXPECT_EQ(read_picture(path("auto.exr")).pixels, read_picture(path("asked.exr")).pixels);
 }
 
@@ -95,7 +96,7 @@ TEST_F(AutoRender, LooksOnlyWhereItMust) {
     small[5] = "64x40";
     EXPECT_FALSE(piloted(small));
     EXPECT_FALSE(piloted(lens({"--spectral", "rgb"})));
-    EXPECT_FALSE(piloted(lens({"--dispersion", "split"})));
+    EXPECT_FALSE(piloted(lens({"--method", "dispersion=split"})));
     EXPECT_FALSE(piloted({"--fstop", "2", "--focus", "2", "--size", "500x320", "--spp", "1"}));
 }
 

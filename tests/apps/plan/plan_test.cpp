@@ -159,7 +159,8 @@ TEST_F(Plans, ReasonsAreGivenInALineEach) {
         << dispersion;
     EXPECT_NE(dispersion.find(" px: one ray for all wavelengths, off by "), std::string::npos);
     EXPECT_EQ(plan["dispersion"]["chosen"], "shared");
-    plan = planned({"--lens", "double-gauss-100mm-f2", "--focus", "2", "--dispersion", "split"});
+    plan = planned(
+        {"--lens", "double-gauss-100mm-f2", "--focus", "2", "--method", "dispersion=split"});
     EXPECT_EQ(plan["dispersion"]["chosen"], "split");
     EXPECT_EQ(plan["dispersion"]["reason"], "it was asked for");
 }
@@ -212,7 +213,7 @@ TEST_F(Plans, NoiseOfLampsThatFewPathsFindIsAtLeast) {
         if (node.contains("mesh")) node["scale"] = {1e-6, 1e-6, 1e-6};
     use(tiny);
     const json plan = planned({"--fstop", "1.4", "--focus", "0.3", "--tolerance", "100%",
-                               "--background", "0.01,0.01,0.01", "--targets", "off"});
+                               "--background", "0.01,0.01,0.01", "--method", "targets=off"});
     EXPECT_EQ(plan["noise_at_least"], true) << plan;
     EXPECT_NE(plan["noise_at_least_because"].get<std::string>().find("few paths find"),
               std::string::npos)
@@ -230,7 +231,8 @@ TEST_F(Plans, RaysToTargetsMakeLampsKnown) {
     use(tiny);
     const auto with = [&](const char* use) {
         return planned({"--fov", "10", "--fstop", "4", "--focus", "0.5", "--tolerance", "20%",
-                        "--background", "0.5,0.5,0.5", "--targets", use, "--size", "64x36"});
+                        "--background", "0.5,0.5,0.5", "--method", "targets=" + std::string(use),
+                        "--size", "64x36"});
     };
     const json automatic = with("auto"), off = with("off");
     ASSERT_TRUE(automatic.contains("targets")) << automatic << off;
@@ -291,14 +293,14 @@ TEST_F(Plans, TheCommandRenders) {
 TEST_F(Plans, NeedlessOptionsAreLeftOutOfTheCommandAndOddWordsQuoted) {
     scene_ = studio().save_glb(folder_.path / "it's a studio.glb").string();
     const json plan = planned({"--lens", "double-gauss-100mm-f2", "--fstop", "22", "--focus", "2",
-                               "--tolerance", "100%", "--coating", "mgf2", "--transparent"});
+                               "--tolerance", "100%", "--method", "coating=mgf2", "--transparent"});
     ASSERT_EQ(plan["camera"]["chosen"], "pinhole") << plan;
     const auto command = plan["command"].get<std::string>();
     EXPECT_NE(command.find("it'\\''s a studio.glb'"), std::string::npos) << command;
     for (const char* kept : {" --lens pinhole", " --fov ", " --transparent", " --spp "})
         EXPECT_NE(command.find(kept), std::string::npos) << kept << " in " << command;
     for (const char* gone :
-         {"--fstop", "--focus", "--coating", "--tolerance", "--json", "--dispersion"})
+         {"--fstop", "--focus", "coating", "--tolerance", "--json", "dispersion"})
         EXPECT_EQ(command.find(gone), std::string::npos) << gone << " in " << command;
 }
 
@@ -309,7 +311,7 @@ TEST_F(Plans, ArgumentsThatAreWrongEndWithTwo) {
         {{"plan", scene_, "--tolerance", "101%"}, "is not a share such as 1% or 0.01"},
         {{"plan", scene_, "--tolerance", "%"}, "is not a share"},
         {{"plan", scene_, "--lens", "no-such-lens"}, "no-such-lens"},
-        {{"plan", scene_, "--dispersion", "some"}, "none of auto, shared, hero, split"},
+        {{"plan", scene_, "--method", "dispersion=some"}, "none of auto, shared, hero, split"},
         {{"plan", kOrnaments, "--tolerance", "1e-7%", "--size", "8x8"},
          "--tolerance: would take more than 1.1e+09 samples of each pixel; give a larger one"},
         {{"plan", scene_, "--spp", "4"}, "--spp"}};

@@ -18,8 +18,7 @@ namespace {
 const std::map<std::string, std::pair<std::string, std::string>> kTexts{
     {"file", {"a b.glb", "a b.glb"}},
     {"spp", {"010", "10"}},
-    {"samples", {"8:16", "8:16"}},
-    {"time", {"1h30m", "5400"}},
+    {"time-limit", {"1h30m", "5400"}},
     {"seed", {"4294967295", "4294967295"}},
     {"size", {"64 X 48", "64x48"}},
     {"crop", {"1, 2, 3, 4", "1,2,3,4"}},

@@ -36,10 +36,11 @@ TEST(Parse, DurationsAddUp) {
         {"90", 90},   {"90s", 90},       {"1.5m", 90},       {"1m30s", 90},     {"1h", 3600},
         {"2h", 7200}, {"1h30m", 5400},   {"1h 30min", 5400}, {"1H30M5S", 5405}, {"500ms", 0.5},
         {"1:30", 90}, {"1:02:03", 3723}, {"90:00", 5400},    {"1e3", 1000}};
-    for (const auto& [text, s] : cases) EXPECT_EQ(parse_duration_s("--time", text), s) << text;
+    for (const auto& [text, s] : cases)
+        EXPECT_EQ(parse_duration_s("--time-limit", text), s) << text;
     for (const char* text : {"", "0", "0s", "-5", "10d", "s", "1h30", "30s1m", "1m2m", "1:60",
                              "1:5", "1:2:3:4", "1:", "1e300", "1e300h", "inf", "1.2.3s"})
-        EXPECT_THROW((void)parse_duration_s("--time", text), ValueError) << text;
+        EXPECT_THROW((void)parse_duration_s("--time-limit", text), ValueError) << text;
 }
 
 TEST(Parse, SizesTakeWhateverStandsForTimes) {
@@ -53,22 +54,18 @@ TEST(Parse, SizesTakeWhateverStandsForTimes) {
 
 std::string samples_refused(const std::string& text) {
     try {
-        (void)parse_samples("--samples", text, 100);
+        (void)parse_samples("--spp", text, 100);
     } catch (const ValueError& error) {
         return error.what();
     }
     return "none";
 }
 
-TEST(Parse, SamplesAreARangeAndNotTheirNumber) {
-    EXPECT_EQ(parse_samples("--samples", "8:16", 100).first, 8u);
-    EXPECT_EQ(
-        samples_refused("64"),
-        "--samples: \"64\" is not a range A:B, which is a part of the samples; for 64 samples "
-        "of each pixel type ⟨spp⟩ 64");
+TEST(Parse, SamplesAreARange) {
+    EXPECT_EQ(parse_samples("--spp", "8:16", 100).first, 8u);
     for (const char* text : {"", "0", "-4", "x", "8:4", "0:101", "1:2:3"})
         EXPECT_EQ(samples_refused(text),
-                  std::string("--samples: \"") + text +
+                  std::string("--spp: \"") + text +
                       "\" is not a range A:B of samples, from A to before B, with A < B <= 100");
 }
 

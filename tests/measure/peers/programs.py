@@ -40,14 +40,14 @@ class Petzval:
 
     def render(self, a, row, scene, samples, seed, output):
         """Renders to the file; returns the CPU time from start to end, s."""
-        command = [self.path, "render", scene, "--size", a.size, "--spp", str(samples), "--filter", "box",
+        command = [self.path, "render", scene, "--size", a.size, "--spp", str(samples), "--method", "filter=box",
                    "--threads", str(a.threads), "--seed", str(seed), "--quiet", "-o", output,
                    # Cycles counts what comes after the first surface.
-                   "--max-depth", str(a.bounces + 1), "--fov", str(row.vfov_deg),
+                   "--method", "max-depth=%d" % (a.bounces + 1), "--fov", str(row.vfov_deg),
                    "--look-at=" + ",".join(map(str, [*row.eye, *row.target])), *row.petzval]
         command += ["--env", row.sky] if row.sky else []
         if row.lens_radius:
-            command += ["--lens", "thin", "--lens-radius", str(row.lens_radius), "--focus", "%gm" % row.focus]
+            command += ["--lens", "thin", "--method", "lens-radius=%s" % row.lens_radius, "--focus", "%gm" % row.focus]
         else:
             command += ["--lens", "pinhole"]
         return run(command)[0]

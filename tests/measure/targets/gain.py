@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Measures what rays to targets bring: pictures with `--targets off` and `auto`, five seeds of each, by turns.
+"""Measures what rays to targets bring: pictures with `--method targets=off` and `auto`, five seeds of each, by turns.
 
     gain.py PETZVAL NAME -- ARGUMENTS OF RENDER
 
@@ -27,7 +27,7 @@ SEEDS, AROUND = 5, 48
 def render(program, arguments, targets, seed, folder):
     picture = os.path.join(folder, "picture.exr")
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run([program, "render", *arguments, "--seed", str(seed), "--targets", targets, "-o", picture, "--quiet"],
+    subprocess.run([program, "render", *arguments, "--seed", str(seed), "--method", "targets=" + targets, "-o", picture, "--quiet"],
                    check=True)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     pixels = OpenImageIO.ImageBuf(picture).get_pixels(OpenImageIO.FLOAT)[..., :3].astype(float)

@@ -50,7 +50,7 @@ std::string PlanScene::options() const {
     add("--lens", camera.lens);
     add("--fov", camera.fov_deg);
     add("--fstop", camera.fstop);
-    add("--lens-radius", camera.lens_radius_m);
+    if (camera.lens_radius_m) out += fmt::format(" --method lens-radius={}", *camera.lens_radius_m);
     add("--focal-length", camera.focal_length_mm);
     if (camera.sensor_mm)
         out += fmt::format(" --sensor {}x{}", camera.sensor_mm->x, camera.sensor_mm->y);

@@ -33,7 +33,8 @@ CLI::Option* add(CLI::App& app, RenderOrder& order, const RequestField& field) {
         case FieldForm::Argument:
             return app.add_option_function<std::string>("scene", set, help)->required();
         case FieldForm::Switch:
-            return app.add_flag_callback(name, [set] { set("on"); }, help);
+            return app.add_flag_callback(
+                name, [set] { set("on"); }, help);
         case FieldForm::List:
             return app
                 .add_option_function<std::vector<std::string>>(
@@ -43,7 +44,8 @@ CLI::Option* add(CLI::App& app, RenderOrder& order, const RequestField& field) {
                     },
                     help)
                 ->allow_extra_args(false);  // one value each, so that the scene may follow
-        default: return app.add_option_function<std::string>(name, set, help);
+        default:
+            return app.add_option_function<std::string>(name, set, help);
     }
 }
 

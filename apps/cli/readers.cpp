@@ -31,9 +31,8 @@ CLI::Validator number_between(double least, double most, std::span<const Unit> u
 }
 
 CLI::Validator whole_number_between(uint64_t least, uint64_t most) {
-    return reader([=](const std::string& text) {
-        return parse_whole_number("", text, least, most);
-    });
+    return reader(
+        [=](const std::string& text) { return parse_whole_number("", text, least, most); });
 }
 
 }  // namespace petzval

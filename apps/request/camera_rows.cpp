@@ -12,7 +12,6 @@ namespace {
 constexpr double kLeast = 1e-6, kMost = 1e6;
 constexpr NumberRange kFNumbers{kLeast, kMost}, kLengths_mm{kLeast, kMost, kMillimetres};
 
-
 std::string text_of(const V3f& v) {
     return fmt::format("{},{},{}", v.x, v.y, v.z);
 }
@@ -32,11 +31,10 @@ V3f parse_point(const std::string& option, const std::string& text) {
 std::vector<RequestField> place_fields() {
     return {
         text("camera", in::camera(&CameraRequest::name), "camera of the file, by name or index"),
-        parsed("look-at", in::camera(&CameraRequest::look_at),
-               "ex,ey,ez,tx,ty,tz: eye and target in metres", parse_look_at,
-               [](const std::array<V3f, 2>& aim) {
-                   return text_of(aim[0]) + "," + text_of(aim[1]);
-               }),
+        parsed(
+            "look-at", in::camera(&CameraRequest::look_at),
+            "ex,ey,ez,tx,ty,tz: eye and target in metres", parse_look_at,
+            [](const std::array<V3f, 2>& aim) { return text_of(aim[0]) + "," + text_of(aim[1]); }),
         number("orbit", in::camera(&CameraRequest::orbit_deg), {-kMost, kMost, kDegrees},
                "turn the camera about the scene: degrees, counter-clockwise from above"),
         parsed("orbit-about", in::camera(&CameraRequest::orbit_about),
@@ -45,24 +43,26 @@ std::vector<RequestField> place_fields() {
                parse_point, [](const V3f& at) { return text_of(at); }),
         number("fov", in::camera(&CameraRequest::fov_deg),
                {kSmallestFov_deg, kLargestFov_deg, kDegrees}, "vertical angle of view in degrees"),
-        parsed("sensor", in::camera(&CameraRequest::sensor_mm),
-               "WxH in mm, cropped to the picture's aspect (default 36x24, or what a lens covers "
-               "of it)",
-               [](const std::string& option, const std::string& text) {
-                   return parse_sensor(option, text, kLeast, kMost);
-               },
-               [](const V2f& mm) { return fmt::format("{}x{}", mm.x, mm.y); }),
+        parsed(
+            "sensor", in::camera(&CameraRequest::sensor_mm),
+            "WxH in mm, cropped to the picture's aspect (default 36x24, or what a lens covers "
+            "of it)",
+            [](const std::string& option, const std::string& text) {
+                return parse_sensor(option, text, kLeast, kMost);
+            },
+            [](const V2f& mm) { return fmt::format("{}x{}", mm.x, mm.y); }),
         parsed("focus", in::camera(&CameraRequest::focus),
                "sharp plane: its distance from the entrance pupil (1.5m, 30cm, 5ft; 1.5 is "
                "metres), infinity, the pixel x,y, or auto",
                parse_focus, [](const Focus& focus) { return text_of(focus); }),
-        parsed("fstop", in::camera(&CameraRequest::fstop),
-               "f-number of the lens: its iris, as 2 or f/2; traced: 1 / (2 sin u') of a distant "
-               "point, others: focal length / diameter",
-               [](const std::string& option, const std::string& text) {
-                   return static_cast<float>(parse_fnumber(option, text, kFNumbers));
-               },
-               [](float n) { return fmt::format("{}", n); }),
+        parsed(
+            "fstop", in::camera(&CameraRequest::fstop),
+            "f-number of the lens: its iris, as 2 or f/2; traced: 1 / (2 sin u') of a distant "
+            "point, others: focal length / diameter",
+            [](const std::string& option, const std::string& text) {
+                return static_cast<float>(parse_fnumber(option, text, kFNumbers));
+            },
+            [](float n) { return fmt::format("{}", n); }),
         number("lens-radius", in::camera(&CameraRequest::lens_radius_m), {kLeast, kMost, kMetres},
                "of a thin lens, in metres"),
         number("focal-length", in::camera(&CameraRequest::focal_length_mm), kLengths_mm,
@@ -74,8 +74,7 @@ std::vector<RequestField> place_fields() {
 std::string parse_lens(const std::string& option, const std::string& text) {
     if (quantity(text, kMillimetres))
         throw ValueError(
-            option,
-            fmt::format("\"{0}\" is a length; type ⟨lens⟩ thin ⟨focal-length⟩ {0}", text));
+            option, fmt::format("\"{0}\" is a length; type ⟨lens⟩ thin ⟨focal-length⟩ {0}", text));
     for (const char* word : {"pinhole", "thin"})
         if (lower(text) == word) return word;
     return text;
@@ -83,11 +82,11 @@ std::string parse_lens(const std::string& option, const std::string& text) {
 
 std::string complaint_about_iris(const std::string& text) {
     try {
-        static_cast<void>(parse_fnumber("", text, kFNumbers));
+        return fmt::format("{0} is an f-number and no shape; type ⟨fstop⟩ {0}",
+                           parse_fnumber("", text, kFNumbers));
     } catch (const ValueError&) {
         return "";
     }
-    return fmt::format("{0} is an f-number and no shape; type ⟨fstop⟩ {0}", text);
 }
 
 std::vector<RequestField> lens_fields() {
@@ -145,7 +144,8 @@ std::vector<RequestField> exposure_fields() {
                "angle on the film: auto (default: with photographic exposure), on, off; a traced "
                "lens has its own",
                parse_vignetting, [](bool on) { return std::string(on ? "on" : "off"); }),
-        number("iso", in::camera(&CameraRequest::iso), {1e-3, 1e9}, "speed of the film (default 100)"),
+        number("iso", in::camera(&CameraRequest::iso), {1e-3, 1e9},
+               "speed of the film (default 100)"),
         parsed("shutter", in::moment(&MomentRequest::shutter),
                "seconds or degrees: 0.01 or 1/100 (default), 180deg of a frame of ⟨fps⟩; with "
                "⟨at⟩, what moves meanwhile is blurred",

@@ -36,8 +36,7 @@ void check_samples(const SampleRequest& samples, bool bins) {
     if (samples.range && samples.count) refuse("⟨samples⟩", "excludes ⟨spp⟩");
     if (samples.range && samples.time_limit_s) refuse("⟨time⟩", "excludes ⟨samples⟩");
     if (bins && !samples.range && samples.count.value_or(kUsualSamples) < kReplicates)
-        refuse("⟨spp⟩",
-               fmt::format("the standard errors of ⟨bins⟩ need at least {}", kReplicates));
+        refuse("⟨spp⟩", fmt::format("the standard errors of ⟨bins⟩ need at least {}", kReplicates));
 }
 
 }  // namespace

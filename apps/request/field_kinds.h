@@ -24,7 +24,8 @@ inline constexpr bool kIsOptional<std::optional<T>> = true;
 
 /// Type of the value that a member holds, without its std::optional.
 template <class Member>
-using FieldHeld = std::remove_cvref_t<decltype(std::declval<Member>()(std::declval<RenderOrder&>()))>;
+using FieldHeld =
+    std::remove_cvref_t<decltype(std::declval<Member>()(std::declval<RenderOrder&>()))>;
 template <class T>
 struct Unwrapped {
     using Type = T;
@@ -73,8 +74,8 @@ RequestField number(const std::string& name, Member member, const NumberRange& r
         name, member, std::move(help),
         [=](const std::string& option, const std::string& text) {
             if constexpr (std::is_integral_v<T>)
-                return static_cast<T>(parse_whole_number(option, text, uint64_t(range.least),
-                                                         uint64_t(range.most)));
+                return static_cast<T>(
+                    parse_whole_number(option, text, uint64_t(range.least), uint64_t(range.most)));
             else
                 return static_cast<T>(parse_number(option, text, range));
         },
@@ -90,7 +91,8 @@ RequestField choice(const std::string& name, Member member, std::string help,
     using Held = FieldHeld<Member>;
     Choices<Held> words;
     if (absent) words.emplace_back(absent, Held{});
-    for (const auto& [word, value] : kOptionNames<FieldValue<Member>>) words.emplace_back(word, value);
+    for (const auto& [word, value] : kOptionNames<FieldValue<Member>>)
+        words.emplace_back(word, value);
     RequestField field = parsed(
         name, member, std::move(help),
         [=](const std::string& option, const std::string& text) {

@@ -46,7 +46,8 @@ RenderOrder order_of(const std::vector<FieldTexts>& all) {
     for (const FieldTexts& one : all) {
         const auto named = [&](const RequestField& field) { return field.name == one.name; };
         const auto field = std::find_if(fields.begin(), fields.end(), named);
-        if (field == fields.end()) throw ValueError("⟨" + one.name + "⟩", "is no field of a render");
+        if (field == fields.end())
+            throw ValueError("⟨" + one.name + "⟩", "is no field of a render");
         for (const std::string& text : one.texts) field->set(order, text);
     }
     return order;

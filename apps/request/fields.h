@@ -29,7 +29,7 @@ enum class FieldPart : uint8_t {
 enum class FieldForm : uint8_t { Value, Argument, List, Switch };
 
 struct RequestField {
-    std::string name;  ///< as "fstop"
+    std::string name;        ///< as "fstop"
     std::string short_name;  ///< of one letter, as "o"; or empty
     std::string value;       ///< what --help calls its value: NUMBER, WORD, FILE, TEXT
     std::string group, help;

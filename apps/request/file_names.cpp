@@ -70,8 +70,8 @@ fs::path name_of_frame(const std::string& option, const fs::path& path, int fram
     if (end == name.npos) {
         if (!several) return path;
         throw ValueError(
-            option, fmt::format(
-                        "\"{}\" names one file for all frames; put #### where their numbers go",
+            option,
+            fmt::format("\"{}\" names one file for all frames; put #### where their numbers go",
                         path.string()));
     }
     const size_t before = name.find_last_not_of('#', end);
@@ -81,7 +81,8 @@ fs::path name_of_frame(const std::string& option, const fs::path& path, int fram
 }
 
 void number_files(RunRequest& run, int number, bool several) {
-    for (fs::path& output : run.outputs) output = name_of_frame("⟨output⟩", output, number, several);
+    for (fs::path& output : run.outputs)
+        output = name_of_frame("⟨output⟩", output, number, several);
     if (run.stats) run.stats = name_of_frame("⟨stats⟩", *run.stats, number, several);
     if (run.preview) run.preview = name_of_frame("⟨preview⟩", *run.preview, number, false);
 }

@@ -33,46 +33,44 @@ std::vector<RequestField> sample_fields() {
                 return parse_samples(option, text, kMostSamples);
             },
             [](SampleRange range) { return fmt::format("{}:{}", range.first, range.end); }),
-        parsed(
-            "time", in::samples(&SampleRequest::time_limit_s),
-            "render for this long: 60s, 10m, 1h30m, 1:30; with ⟨spp⟩ whichever ends first",
-            parse_duration_s, [](double s) { return fmt::format("{}", s); }),
+        parsed("time", in::samples(&SampleRequest::time_limit_s),
+               "render for this long: 60s, 10m, 1h30m, 1:30; with ⟨spp⟩ whichever ends first",
+               parse_duration_s, [](double s) { return fmt::format("{}", s); }),
         number("seed", in::samples(&SampleRequest::seed), kSeeds, "another seed, another noise")};
 }
 
 std::vector<RequestField> size_fields() {
-    return {parsed(
-                "size", in::scene(&SceneRequest::size),
-                "WIDTHxHEIGHT in pixels (default 1280x720; of a chart 192x108)", parse_size,
-                [](V2i size) { return fmt::format("{}x{}", size.x, size.y); }),
-            parsed(
-                "crop", in::render(&RenderRequest::crop),
-                "x,y,width,height: only these pixels of the full frame", parse_crop,
-                [](const Rect& r) {
-                    return fmt::format("{},{},{},{}", r.x0, r.y0, r.width(), r.height());
-                })};
+    return {parsed("size", in::scene(&SceneRequest::size),
+                   "WIDTHxHEIGHT in pixels (default 1280x720; of a chart 192x108)", parse_size,
+                   [](V2i size) { return fmt::format("{}x{}", size.x, size.y); }),
+            parsed("crop", in::render(&RenderRequest::crop),
+                   "x,y,width,height: only these pixels of the full frame", parse_crop,
+                   [](const Rect& r) {
+                       return fmt::format("{},{},{},{}", r.x0, r.y0, r.width(), r.height());
+                   })};
 }
 
 std::vector<RequestField> file_fields() {
-    return {text("variant", in::file(&GltfChoices::variant),
-                 "variant of the file's materials, by name or index (petzval info lists them)",
-                 no_complaint),
-            text("scene", in::file(&GltfChoices::scene),
-                 "scene of the file, by name or number (default: the one that it names)",
-                 no_complaint),
-            number("point-line-radius", in::file(&GltfChoices::point_line_radius_m),
-                   {1e-9, 1e9, kMetres},
-                   "draw the file's points as spheres and its lines as cylinders of this radius: "
-                   "2mm, 0.01 (default: they are skipped)")};
+    return {
+        text("variant", in::file(&GltfChoices::variant),
+             "variant of the file's materials, by name or index (petzval info lists them)",
+             no_complaint),
+        text("scene", in::file(&GltfChoices::scene),
+             "scene of the file, by name or number (default: the one that it names)", no_complaint),
+        number("point-line-radius", in::file(&GltfChoices::point_line_radius_m),
+               {1e-9, 1e9, kMetres},
+               "draw the file's points as spheres and its lines as cylinders of this radius: "
+               "2mm, 0.01 (default: they are skipped)")};
 }
 
 std::vector<RequestField> time_fields() {
-    return {parsed(
-                "at", in::moment(&MomentRequest::at),
-                "moment of the file's animations: 1.25s, 40ms, frame:30 (default: the pose that "
-                "the file stores)",
-                parse_moment,
-                [](Moment at) { return fmt::format("{}{}", at.is_frame ? "frame:" : "", at.value); }),
+    return {parsed("at", in::moment(&MomentRequest::at),
+                   "moment of the file's animations: 1.25s, 40ms, frame:30 (default: the pose that "
+                   "the file stores)",
+                   parse_moment,
+                   [](Moment at) {
+                       return fmt::format("{}{}", at.is_frame ? "frame:" : "", at.value);
+                   }),
             number("fps", in::moment(&MomentRequest::fps), {1e-3, 1e6},
                    "frames in a second (default 24)"),
             list("animation", in::moment(&MomentRequest::animations),
@@ -89,17 +87,17 @@ std::vector<RequestField> machine_fields() {
 }
 
 std::vector<RequestField> reading_fields() {
-    return {parsed(
-                "max-memory", in::scene(&SceneRequest::picture_memory_bytes),
-                "memory for decoded pictures, as 512MB or 8GB (default: half of what the machine "
-                "or its control group has)",
-                parse_memory_bytes,
-                [](uint64_t bytes) {
-                    return bytes % 1000 == 0 ? fmt::format("{}kB", bytes / 1000)
-                                             : fmt::format("{}KiB", double(bytes) / 1024);
-                }),
-            flag("confine", in::scene(&SceneRequest::scope), FileScope::Confined,
-                 "refuse files that the scene names outside its own folder")};
+    return {
+        parsed("max-memory", in::scene(&SceneRequest::picture_memory_bytes),
+               "memory for decoded pictures, as 512MB or 8GB (default: half of what the machine "
+               "or its control group has)",
+               parse_memory_bytes,
+               [](uint64_t bytes) {
+                   return bytes % 1000 == 0 ? fmt::format("{}kB", bytes / 1000)
+                                            : fmt::format("{}KiB", double(bytes) / 1024);
+               }),
+        flag("confine", in::scene(&SceneRequest::scope), FileScope::Confined,
+             "refuse files that the scene names outside its own folder")};
 }
 
 }  // namespace
@@ -118,10 +116,9 @@ std::vector<RequestField> frame_fields() {
     add("", kAllButInfo, {size_fields()[0]});
     add("", kRender | kChart, {size_fields()[1]});
     add("", kRender | kPlan,
-        {parsed(
-            "tolerance", in::render(&RenderRequest::tolerance),
-            "error that what is chosen for you may bring: 1% (default) or 0.01", parse_share,
-            [](double share) { return fmt::format("{}", share); })});
+        {parsed("tolerance", in::render(&RenderRequest::tolerance),
+                "error that what is chosen for you may bring: 1% (default) or 0.01", parse_share,
+                [](double share) { return fmt::format("{}", share); })});
     add("", kAllButInfo, machine_fields(), FieldPart::Run);
     add("", kAll, reading_fields(), FieldPart::Run);
     add("", kAll, file_fields());

@@ -10,7 +10,6 @@ namespace {
 constexpr uint8_t kAll = kRender | kPlan | kChart;
 constexpr double kMost = 1e6;  ///< keeps every product of two numbers a float
 
-
 std::vector<RequestField> sampling_fields() {
     return {
         number("max-depth", in::path(&PathOptions::max_depth), {0, 10000},
@@ -21,7 +20,8 @@ std::vector<RequestField> sampling_fields() {
                "pixel filter: box, gauss, blackman-harris (default)"),
         number("filter-radius", in::samples(&SampleRequest::filter_radius_px), {0.01, 16, kPixels},
                "pixels (default: box 0.5, the others 1.5)"),
-        choice("sampler", in::samples(&SampleRequest::sampler), "owen (default), sobol, independent"),
+        choice("sampler", in::samples(&SampleRequest::sampler),
+               "owen (default), sobol, independent"),
         choice("light-choice", in::scene(&SceneRequest::light_choice),
                "how one of many lights is chosen: tree (default; power, distance and direction), "
                "power, uniform"),
@@ -51,9 +51,8 @@ std::vector<RequestField> light_fields() {
                "factor on the environment"),
         parsed("background", in::scene(&SceneRequest::background),
                "R,G,B in nits: a uniform environment; with ⟨env⟩ only what the camera sees behind",
-               parse_background, [](const Rgb& b) {
-                   return fmt::format("{},{},{}", b.v[0], b.v[1], b.v[2]);
-               })};
+               parse_background,
+               [](const Rgb& b) { return fmt::format("{},{},{}", b.v[0], b.v[1], b.v[2]); })};
 }
 
 std::vector<RequestField> spectrum_fields() {
@@ -64,7 +63,8 @@ std::vector<RequestField> spectrum_fields() {
         parsed("bins", in::spectral(&SpectralRequest::bins),
                "FIRST:LAST:WIDTH in nm, as 380:730:10: a spectrum for each pixel of the EXR, with "
                "its standard error",
-               parse_bins, [](const Bins& bins) {
+               parse_bins,
+               [](const Bins& bins) {
                    return fmt::format("{}:{}:{}", bins.first_edge_nm, bins.last_edge_nm(),
                                       bins.width_nm);
                }),

@@ -43,8 +43,8 @@ struct Sweep {
 
 /// Pictures that differ in one field.
 struct SequenceRequest {
-    std::vector<int> frames;                     ///< numbers of frames; none: no such sequence
-    std::optional<int> turntable;                ///< number of views all around
+    std::vector<int> frames;       ///< numbers of frames; none: no such sequence
+    std::optional<int> turntable;  ///< number of views all around
     std::optional<Sweep> sweep;
     std::optional<std::filesystem::path> sheet;  ///< all pictures side by side
 

@@ -18,17 +18,17 @@ double time_s(const Moment& at, double fps) {
     constexpr double kMost_s = 1e6;
     const double s = at.is_frame ? at.value / fps : at.value;
     if (!(std::fabs(s) <= kMost_s))
-        throw ValueError("⟨at⟩", fmt::format("frame:{} is not a time of at most {:g} s", at.value,
-                                             kMost_s));
+        throw ValueError(
+            "⟨at⟩", fmt::format("frame:{} is not a time of at most {:g} s", at.value, kMost_s));
     return s;
 }
 
 float shutter_s(const ShutterTime& time, double fps) {
     const auto s = static_cast<float>(time.is_angle ? time.value / 360 / fps : time.value);
     if (!(s >= 1e-9f && s <= 1e9f))
-        throw ValueError("⟨shutter⟩",
-                         fmt::format("{}deg of a frame is not a time of 1e-9 to 1e9 seconds",
-                                     time.value));
+        throw ValueError(
+            "⟨shutter⟩",
+            fmt::format("{}deg of a frame is not a time of 1e-9 to 1e9 seconds", time.value));
     return s;
 }
 

@@ -77,18 +77,17 @@ std::vector<RequestField> sequence_fields() {
         if (order.sequence.frames.empty()) return {};
         return {text_of(order.sequence.frames)};
     };
-    return {
-        frames,
-        number("turntable", in::sequence(&SequenceRequest::turntable), {1, kMostViews},
-               "this number of views, evenly spaced around the scene"),
-        parsed("sweep", in::sequence(&SequenceRequest::sweep),
-               "a picture for each value of an option: fstop=1.4,2,2.8 or lens=NAME,NAME",
-               parse_sweep,
-               [](const Sweep& sweep) {
-                   return fmt::format("{}={}", sweep.field, fmt::join(sweep.values, ";"));
-               }),
-        text("sheet", in::sequence(&SequenceRequest::sheet),
-             "all pictures side by side with labels, as .png or .jpg")};
+    return {frames,
+            number("turntable", in::sequence(&SequenceRequest::turntable), {1, kMostViews},
+                   "this number of views, evenly spaced around the scene"),
+            parsed("sweep", in::sequence(&SequenceRequest::sweep),
+                   "a picture for each value of an option: fstop=1.4,2,2.8 or lens=NAME,NAME",
+                   parse_sweep,
+                   [](const Sweep& sweep) {
+                       return fmt::format("{}={}", sweep.field, fmt::join(sweep.values, ";"));
+                   }),
+            text("sheet", in::sequence(&SequenceRequest::sheet),
+                 "all pictures side by side with labels, as .png or .jpg")};
 }
 
 std::string text_of(const Checkpoint& checkpoint) {

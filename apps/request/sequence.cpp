@@ -27,8 +27,8 @@ std::vector<SequenceItem> swept(const Sweep& sweep) {
                                         "picture");
     std::vector<SequenceItem> items;
     for (const std::string& value : sweep.values)
-        items.push_back({static_cast<int>(items.size()) + 1, sweep.field + " " + value,
-                         sweep.field, value});
+        items.push_back(
+            {static_cast<int>(items.size()) + 1, sweep.field + " " + value, sweep.field, value});
     return items;
 }
 
@@ -39,8 +39,8 @@ std::vector<SequenceItem> items_of(const SequenceRequest& sequence) {
     if (sequence.sweep) return swept(*sequence.sweep);
     std::vector<SequenceItem> items;
     for (const int frame : sequence.frames)
-        items.push_back({frame, fmt::format("frame {}", frame), "at",
-                         fmt::format("frame:{}", frame)});
+        items.push_back(
+            {frame, fmt::format("frame {}", frame), "at", fmt::format("frame:{}", frame)});
     return items;
 }
 

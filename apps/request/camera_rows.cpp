@@ -85,11 +85,11 @@ std::string parse_lens(const std::string& option, const std::string& text) {
 
 std::string complaint_about_iris(const std::string& text) {
     try {
-        static_cast<void>(parse_fnumber("", text, kFNumbers));
+        return fmt::format("{0} is an f-number and no shape; type ⟨fstop⟩ {0}",
+                           parse_fnumber("", text, kFNumbers));
     } catch (const ValueError&) {
         return "";
     }
-    return fmt::format("{0} is an f-number and no shape; type ⟨fstop⟩ {0}", text);
 }
 
 std::vector<RequestField> lens_fields() {

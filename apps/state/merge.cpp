@@ -99,7 +99,7 @@ StateBox covered_box(const std::vector<StateBox>& parts, const std::vector<fs::p
     if (const auto missing = missing_part(whole, boxes))
         throw InputError(names.front().string(), "",
                          "this state and the others leave a gap: {} are in none of them; render "
-                         "them by ⟨samples⟩ {}:{} and, for a part of the frame, ⟨crop⟩",
+                         "them by ⟨spp⟩ {}:{} and, for a part of the frame, ⟨crop⟩",
                          text_of(*missing), (*missing)[2][0], (*missing)[2][1]);
     return {{int(whole[0][0]), int(whole[1][0]), int(whole[0][1]), int(whole[1][1])},
             {uint32_t(whole[2][0]), uint32_t(whole[2][1])}};

@@ -267,7 +267,7 @@ TEST_F(ChartRun, TakesAReferenceFromAFile) {
 
 TEST_F(ChartRun, RefusesATimeThatIsTooShortForAFirstLook) {
     take(1);  // nine samples of the reference alone: its part of 5 s is 2 s
-    EXPECT_NE(refused(request({ChartAxis::Sampler})).find("give more time or a smaller --size"),
+    EXPECT_NE(refused(request({ChartAxis::Sampler})).find("give more time or a smaller ⟨size⟩"),
               std::string::npos);
     EXPECT_NE(refused(request({ChartAxis::Sampler, ChartAxis::Lights}))
                   .find("is too small for each of the axes"),

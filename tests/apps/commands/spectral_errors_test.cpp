@@ -16,13 +16,13 @@ TEST_F(CliSpectralErrors, BinsThatAreNone) {
                       rising = "FIRST must be below LAST", form = "FIRST:LAST:WIDTH in nm",
                       wide = "1 to 1024 bins of at least 0.1 nm";
     std::vector<Case> cases;
-    for (const auto& [bins, part] :
-         std::vector<std::pair<std::string, std::string>>{{"350:730:10", inside},
-                                                          {"730:380:10", rising},
-                                                          {"380:730:11", whole},
-                                                          {"500:501:0.01", wide},
-                                                          {"380:730:nan", form},
-                                                          {"", "--bins: is empty"}})
+    for (const auto& [bins, part] : std::vector<std::pair<std::string, std::string>>{
+             {"350:730:10", inside},
+             {"730:380:10", rising},
+             {"380:730:11", whole},
+             {"500:501:0.01", wide},
+             {"380:730:nan", form},
+             {"", "--bins: \"\" is not FIRST:LAST:WIDTH in nm"}})
         cases.push_back({{"--bins", bins, "--spp", "8"}, part});
     expect_refused(2, cases);
 }

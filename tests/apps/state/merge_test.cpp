@@ -116,8 +116,8 @@ TEST(CoveredBox, SaysHowTheGapIsFilled) {
     EXPECT_EQ(
         complaint({{frame, {0, 16}}, {frame, {32, 64}}, {frame, {64, 65}}}),
         "0.state: this state and the others leave a gap: samples 16:32 of the pixels 0,0,8,4 are "
-        "in none of them; render them by --spp 16:32 and, for a part of the frame, "
-        "--crop");
+        "in none of them; render them by ⟨spp⟩ 16:32 and, for a part of the frame, "
+        "⟨crop⟩");
     EXPECT_EQ(
         complaint({{frame, {0, 16}}, {frame, {15, 64}}}),
         "0.state: has samples that are in 1.state too: samples 0:16 of the pixels 0,0,8,4 and "

@@ -12,6 +12,7 @@
 #include <iterator>
 #include <string_view>
 
+#include "apps/cli/field_options.h"
 #include "apps/request/fields.h"
 #include "apps/request/file_names.h"
 #include "io/base/ascii.h"

@@ -110,8 +110,8 @@ void hide_expert_options(CLI::App& app) {
     if (!app.get_option_no_throw("--method")) return;
     for (const RequestField& field : request_fields())
         if (CLI::Option* const option = app.get_option_no_throw("--" + field.name);
-            option && field.level == FieldLevel::More)
-            option->group("");
+            option && field.form != FieldForm::Argument)
+            option->group(field.level == FieldLevel::Common ? "Options" : "");
     app.get_option("--method")->group("");
     app.footer(
         fmt::format("petzval {0} --help all lists all options. An example:\n"

@@ -324,16 +324,16 @@ TEST_F(CliCamera, RefusesWhatHasNoEffect) {
     const Words thin = {"--lens", "thin", "--fstop", "2", "--focus", "1"};
     const Words singlet = {"--lens", "singlet:schott:N-BK7", "--fstop", "8", "--focus", "1"};
     const Words pinhole = {"--lens", "pinhole"};
-    const std::pair<const char*, const char*> surfaces[] = {{"--method", "coating=uncoated"},
-                                                            {"--method", "lens-precision=double"},
-                                                            {"--method", "focus-by=traced"},
-                                                            {"--method", "fit=fov"}};
+    const std::pair<std::string, std::string> surfaces[] = {{"coating", "uncoated"},
+                                                            {"lens-precision", "double"},
+                                                            {"focus-by", "traced"},
+                                                            {"fit", "fov"}};
     for (const Words& camera : {thin, singlet, pinhole})
-        for (const auto& [option, value] : surfaces) {
+        for (const auto& [method, value] : surfaces) {
             Words words = camera;
-            words.insert(words.end(), {option, value});
+            words.insert(words.end(), {"--method", method + "=" + value});
             const std::string err = refusal(words);
-            EXPECT_NE(err.find(std::string(option) + ": needs a lens that is traced"),
+            EXPECT_NE(err.find("--method " + method + ": needs a lens that is traced"),
                       std::string::npos)
                 << err;
         }

@@ -127,7 +127,7 @@ TEST_F(ReadingOptions, ASceneOfTheFileAndARadiusForItsPoints) {
     plan.insert(plan.end(), more.begin(), more.end());
     const std::string command = run_petzval(plan).out;
     EXPECT_NE(command.find(" --scene night"), std::string::npos) << command;
-    EXPECT_NE(command.find(" --method point-line-radius 0.02"), std::string::npos) << command;
+    EXPECT_NE(command.find(" --method point-line-radius=0.02"), std::string::npos) << command;
 }
 
 // A scene that a stranger sent names what it likes.

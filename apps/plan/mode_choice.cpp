@@ -41,12 +41,12 @@ ModeChoice choose_mode(const PlanRequest& request, const RenderSetup& first,
     };
     const auto split = sampled(DispersionMode::Split), hero = sampled(DispersionMode::Hero);
     const double floor = pilot_floor(pilot, *split);
-    const auto effort = [&](const PilotModel& model) {
-        return noise_of(pilot, model, {split.get(), split.get(), floor}).variances.back().mean *
-               model.rays_per_sample();
+    const auto noise = [&](const PilotModel& model) {
+        return noise_of(pilot, model, {split.get(), split.get(), floor});
     };
-    out.by_effort = {ModeCost{DispersionMode::Hero, effort(*hero)},
-                     ModeCost{DispersionMode::Split, effort(*split)}};
+    const auto ratio = typical_ratio(noise(*hero), noise(*split));
+    out.by_effort = {ModeCost{DispersionMode::Hero, ratio ? *ratio * hero->rays_per_sample() : 0},
+                     ModeCost{DispersionMode::Split, ratio ? split->rays_per_sample() : 0}};
     if (out.by_effort[1].effort < out.by_effort[0].effort)
         std::swap(out.by_effort[0], out.by_effort[1]);
     const RenderSetup shared = with(DispersionMode::Shared);

@@ -13,8 +13,9 @@ namespace petzval {
 /// Dispersion mode without a bias, and how much it takes to bring the noise down.
 struct ModeCost {
     DispersionMode mode;
-    /// Relative variance of a sample times its cost in rays (PilotModel::rays_per_sample): in
-    /// proportion to the time that a given noise takes.
+    /// Variance of a sample, typical over the frame and relative to that of split rays, times its
+    /// cost in rays (PilotModel::rays_per_sample): in proportion to the time that a given noise
+    /// takes.
     double effort;
 };
 

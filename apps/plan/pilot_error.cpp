@@ -176,12 +176,25 @@ Estimate square_error(const Pilot& pilot, const std::vector<PilotTerm>& terms,
     return mean_of(values, pilot.looks().looks);
 }
 
+std::optional<double> typical_ratio(const PilotNoise& noise, const PilotNoise& other) {
+    constexpr size_t kFewest = 8;
+    std::vector<double> ratios;
+    for (size_t b = 0; b < noise.blocks.size(); ++b)
+        if (noise.blocks[b] > 0 && other.blocks[b] > 0)
+            ratios.push_back(noise.blocks[b] / other.blocks[b]);
+    if (ratios.size() < kFewest) return std::nullopt;
+    const auto middle = ratios.begin() + static_cast<ptrdiff_t>(ratios.size() / 2);
+    std::nth_element(ratios.begin(), middle, ratios.end());
+    return *middle;
+}
+
 PilotNoise noise_of(const Pilot& pilot, const PilotModel& model, const PilotScale& scale) {
     PilotNoise out;
     const Scales scales(pilot, scale);
     for (const std::vector<PilotValues>& turn : model.turns()) {
         std::vector<Value> values;
         double sum = 0, squares = 0;
+        out.blocks = {};
         for (size_t p = 0; p < pilot.pixels(); ++p) {
             std::array<double, kPairs.size()> parts{};
             for (size_t n = 0; n < kPairs.size(); ++n)
@@ -196,6 +209,7 @@ PilotNoise noise_of(const Pilot& pilot, const PilotModel& model, const PilotScal
             const double v = pilot.looks().looks[p].weight * mean;
             sum += v;
             squares += v * v;
+            out.blocks[hash32(static_cast<uint32_t>(p)) % out.blocks.size()] += v;
         }
         out.variances.push_back(mean_of(values, pilot.looks().looks));
         out.parts = squares > 0 ? sum * sum / squares : 0;

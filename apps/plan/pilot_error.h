@@ -3,6 +3,8 @@
 // a model is off without noise, and how noisy it is.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <vector>
 
 #include "apps/plan/pilot.h"
@@ -42,7 +44,12 @@ struct PilotNoise {
     /// Number of equal parts that would spread the last of them as unevenly: replicates of pixels
     /// that hold it. (sum of v)^2 / sum of v^2: Kish 1965, "Survey Sampling", section 11.7.
     double parts = 0;
+    /// What looks add to the last of them, in blocks that a hash spreads over the frame.
+    std::array<double, 16> blocks{};
 };
+/// Median over the blocks of the noise of one over that of the other: a few bright samples, which
+/// lie in few blocks, do not turn it. Nothing where hardly a block has noise of both.
+[[nodiscard]] std::optional<double> typical_ratio(const PilotNoise&, const PilotNoise& other);
 [[nodiscard]] PilotNoise noise_of(const Pilot&, const PilotModel&, const PilotScale&);
 
 }  // namespace petzval

@@ -59,6 +59,38 @@ TEST_F(PilotErrors, BiasHasNoBias) {
     EXPECT_TRUE(test::agrees(found, truth, 0.02 * truth)) << found.mean() << ' ' << truth;
 }
 
+PilotNoise noise_in_blocks(double each) {
+    PilotNoise noise;
+    noise.blocks.fill(each);
+    return noise;
+}
+
+// Samples of 10,000 times the light in three blocks of sixteen, of either or of both.
+TEST(TypicalRatio, IsNotTurnedByAFewBrightSamples) {
+    const PilotNoise hero = noise_in_blocks(3), split = noise_in_blocks(1);
+    PilotNoise bright_hero = hero, bright_split = split;
+    for (const size_t b : {2, 7, 11}) bright_hero.blocks[b] *= 1e4;
+    for (const size_t b : {1, 7, 15}) bright_split.blocks[b] *= 1e4;
+    EXPECT_EQ(typical_ratio(hero, split), 3);
+    EXPECT_EQ(typical_ratio(bright_hero, split), 3);
+    EXPECT_EQ(typical_ratio(hero, bright_split), 3);
+    EXPECT_EQ(typical_ratio(bright_hero, bright_split), 3);
+    EXPECT_EQ(typical_ratio(noise_in_blocks(0), split), std::nullopt);
+}
+
+TEST_F(PilotErrors, BlocksAddUpToTheNoise) {
+    const Pilot pilot(request_.size, 500, executor_);
+    const auto model = sky(pilot, 1, true);
+    const PilotNoise noise = noise_of(pilot, *model, {model.get(), model.get(), 0.1});
+    double sum = 0;
+    for (const double block : noise.blocks) {
+        EXPECT_GT(block, 0);
+        EXPECT_LT(block, noise.variances.back().mean / 4) << "they are spread";
+        sum += block;
+    }
+    EXPECT_NEAR(sum, noise.variances.back().mean, 1e-12);
+}
+
 // Twice as bright is as wrong as half as bright.
 TEST_F(PilotErrors, IsSymmetric) {
     const Pilot pilot(request_.size, 500, executor_);

@@ -59,7 +59,7 @@ std::optional<uint64_t> JsonEditor::integer(const char* key) const {
     return at->get<uint64_t>();
 }
 
-std::optional<JsonEditor> JsonEditor::object(const char* key) const {
+std::optional<JsonEditor> JsonEditor::find_object(const char* key) const {
     json* at = find(key);
     if (!at || !at->is_object()) return std::nullopt;
     return JsonEditor(*at, *warnings_, this, key, {});

@@ -32,7 +32,7 @@ class JsonEditor {
     /// The whole number at key, from 0; nothing where there is none.
     [[nodiscard]] std::optional<uint64_t> integer(const char* key) const;
     /// The object at key.
-    [[nodiscard]] std::optional<JsonEditor> object(const char* key) const;
+    [[nodiscard]] std::optional<JsonEditor> find_object(const char* key) const;
     [[nodiscard]] std::optional<JsonEditor> extension(const char* name) const;
     /// Calls visit(editor) for each object in the array at key.
     template <class Visit>

@@ -2,16 +2,13 @@
 // Cameras and lights. One that cannot be shown becomes one of an unknown type, which is left out.
 #include <fmt/format.h>
 
-#include <numbers>
-
 #include "io/gltf/mend/mend.h"
+#include "io/gltf/mend/mend_property.h"
 
 namespace petzval {
 namespace {
 
 using nlohmann::json;
-
-constexpr Range kNotNegative = {0, std::numeric_limits<float>::max()};
 
 bool is_positive(const json* value) {
     return value && value->is_number() && value->get<double>() > 0;
@@ -61,8 +58,8 @@ void mend_orthographic(const JsonEditor& camera, const JsonEditor& view) {
 }
 
 void mend_camera(const JsonEditor& camera) {
-    const auto perspective = camera.object("perspective");
-    const auto orthographic = camera.object("orthographic");
+    const auto perspective = camera.find_object("perspective");
+    const auto orthographic = camera.find_object("orthographic");
     if (!camera.find("type") && perspective.has_value() != orthographic.has_value()) {
         camera.value()["type"] = perspective ? "perspective" : "orthographic";
         camera.warn("has no type; what it holds tells");
@@ -83,12 +80,14 @@ void mend_spot(const JsonEditor& light) {
         light.warn("has no spot; a cone of the default angles is taken");
         light.value()["spot"] = json::object();
     }
-    const auto spot = light.object("spot");
+    const auto spot = light.find_object("spot");
     if (!spot) return;
-    spot->clamp("outerConeAngle", {0, std::numbers::pi / 2});
+    for (const GltfProperty& property : rows_at(schema::kLightRows, "spot"))
+        mend_property(*spot, property);
     const json* outer = spot->find("outerConeAngle");
     if (outer && !outer->is_number()) return;
-    const double outer_rad = outer ? outer->get<double>() : std::numbers::pi / 4;
+    const double outer_rad =
+        outer ? outer->get<double>() : LightRow("outerConeAngle").row.preset[0];
     if (outer_rad == 0) return leave_out(light, "has an outerConeAngle of 0");
     // The fall-off lies between the angles: a hair of it keeps the edge sharp.
     if (const json* inner = spot->find("innerConeAngle"); is_number(inner))
@@ -96,8 +95,8 @@ void mend_spot(const JsonEditor& light) {
 }
 
 void mend_light(const JsonEditor& light) {
-    light.clamp_each("color", kNotNegative);
-    light.clamp("intensity", kNotNegative);
+    for (const GltfProperty& property : rows_at(schema::kLightRows, ""))
+        mend_property(light, property);
     const json* range = light.find("range");
     if (range && !is_positive(range)) light.value().erase("range");  // ignored in any case
     const json* type = light.find("type");

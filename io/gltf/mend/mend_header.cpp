@@ -97,7 +97,7 @@ void declare(const JsonEditor& root, Names& used, const std::string& name, const
 }  // namespace
 
 void mend_header(const JsonEditor& root) {
-    if (const auto asset = root.object("asset")) {
+    if (const auto asset = root.find_object("asset")) {
         mend_version(*asset);
         mend_least_version(*asset);
     }

@@ -31,7 +31,7 @@ void mend_accessor(const JsonEditor& accessor) {
     const auto type = accessor.integer("componentType");
     if (normalized && *normalized == true && (type == 5126u || type == 5125u))
         accessor.drop("normalized", "goes with 8- and 16-bit integers only; it is ignored");
-    const auto sparse = accessor.object("sparse");
+    const auto sparse = accessor.find_object("sparse");
     if (sparse && sparse->integer("count") == 0u)
         accessor.drop("sparse", "replaces no element; it is ignored");
 }
@@ -82,7 +82,7 @@ class MeshMender {
 
     void mend_primitive(const JsonEditor& primitive) {
         if (!primitive.find("attributes")) primitive.value()["attributes"] = json::object();
-        const auto attributes = primitive.object("attributes");
+        const auto attributes = primitive.find_object("attributes");
         if (!attributes) return;
         if (is_empty(primitive, *attributes)) {
             primitive.value()["attributes"] = json::object();

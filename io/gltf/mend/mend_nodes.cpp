@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "io/gltf/mend/mend.h"
+#include "io/gltf/schema/schema.h"
 
 namespace petzval {
 namespace {
@@ -54,8 +55,8 @@ void mend_last_row(const JsonEditor& node) {
 
 /// The value of a part of a transform that does nothing.
 json idle(std::string_view part) {
-    if (part == "translation") return {0, 0, 0};
-    return part == "scale" ? json{1, 1, 1} : json{0, 0, 0, 1};
+    const GltfProperty& row = *std::ranges::find(schema::kNodeRows, part, &GltfProperty::key);
+    return std::vector<double>(row.preset.begin(), row.preset.begin() + row.width);
 }
 
 void mend_transform(const JsonEditor& node) {
@@ -110,7 +111,7 @@ void mend_repeats(const JsonEditor& owner, const char* key, const char* what) {
 /// that are not said to be shares of 1.
 void mend_instancing(const JsonEditor& root, const JsonEditor& node) {
     const auto many = node.extension("EXT_mesh_gpu_instancing");
-    const auto attributes = many ? many->object("attributes") : std::nullopt;
+    const auto attributes = many ? many->find_object("attributes") : std::nullopt;
     json* const accessors = root.array("accessors");
     if (!attributes || !accessors) return;
     for (const char* name : {"TRANSLATION", "ROTATION", "SCALE"}) {

@@ -9,10 +9,12 @@
 // meaningless.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
 #include "io/base/json_cursor.h"
+#include "io/gltf/schema/schema.h"
 #include "io/gltf/validate/accessor.h"
 #include "io/gltf/validate/budget.h"
 #include "io/gltf/validate/source.h"
@@ -37,6 +39,8 @@ struct GltfCheck {
     }
 };
 
+/// Checks types, lengths and ranges of the properties that a thing has.
+void check_properties(const JsonCursor& thing, std::span<const GltfProperty>);
 /// Checks that asset.version is 2.x and asset.minVersion at most 2.0.
 void check_asset(const GltfCheck&);
 /// Lists the extensions of the file in its source. Warns of each that is ignored with an effect, or

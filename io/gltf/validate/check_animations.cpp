@@ -64,8 +64,8 @@ class ClipReader {
         const bool has_node = target.index("node", check_.count("nodes"), "node").has_value();
         if (target.text("path") != "pointer" && !has_node) return;  // for extensions: glTF 2.0, 5.4
         const std::string pointer = target_of(channel.value());
-        const auto kind = kind_of(pointer);
-        if (!kind) {
+        const auto property = property_of(pointer);
+        if (!property) {
             check_.warn(target, fmt::format("animates {}, which Petzval does not read or which is "
                                             "not there; it stays as the file stores it",
                                             pointer.empty() ? "nothing" : printable(pointer)));
@@ -76,14 +76,15 @@ class ClipReader {
             check_.warn(target, "animates what an earlier channel does; that one is taken");
             return;
         }
-        clip.properties.push_back({pointer, read_keys(samplers_[sampler], *kind)});
+        clip.properties.push_back({pointer, read_keys(samplers_[sampler], *property)});
     }
 
-    // Kind of the property that a pointer leads to, weights counted; nothing where all that it
-    // leads through is not there. Its last word may have a default.
-    [[nodiscard]] std::optional<PropertyKind> kind_of(const std::string& pointer) {
-        auto kind = property_kind(pointer);
-        if (!kind) return std::nullopt;
+    // The property that a pointer leads to, weights counted; nothing where all that it leads
+    // through is not there. Its last word may have a default.
+    [[nodiscard]] std::optional<GltfProperty> property_of(const std::string& pointer) {
+        const GltfProperty* const known = animated_property(pointer);
+        if (!known) return std::nullopt;
+        GltfProperty property = *known;
         try {
             const json& root = check_.source.json;
             const json::json_pointer whole(pointer);
@@ -98,12 +99,12 @@ class ClipReader {
             const bool moves = name == "translation" || name == "rotation" || name == "scale";
             if (moves && pointer.starts_with("/nodes/") && owner.contains("matrix"))
                 return std::nullopt;
-            if (kind->width == 0) kind->width = target_count(root, owner);
+            if (property.width == 0) property.width = target_count(root, owner);
         } catch (const json::exception&) {  // no pointer, or an index beyond all numbers
             return std::nullopt;
         }
-        if (kind->width == 0) return std::nullopt;
-        return kind;
+        if (property.width == 0) return std::nullopt;
+        return property;
     }
 
     // Weights that have their default: 0, or at a node those of its mesh. One of them may move.
@@ -127,21 +128,21 @@ class ClipReader {
                      printable(word));
     }
 
-    [[nodiscard]] Keyframes read_keys(const JsonCursor& sampler, const PropertyKind& kind) {
+    [[nodiscard]] Keyframes read_keys(const JsonCursor& sampler, const GltfProperty& property) {
         Keyframes keys;
         keys.interpolation = interpolation_of(sampler);
-        if (kind.yes_or_no) keys.interpolation = Interpolation::Step;
-        keys.rotation = kind.quaternion;
+        if (property.kind == PropertyKind::Yes) keys.interpolation = Interpolation::Step;
+        keys.rotation = property.kind == PropertyKind::Turn;
         const GltfAccessor& input = accessor(sampler, "input");
         if (input.components != 1) sampler.fail("input", "must be an accessor of SCALAR");
         keys.times_s = numbers_of(input, sampler);
         check_times(sampler, keys.times_s);
         const GltfAccessor& output = accessor(sampler, "output");
-        keys.width = kind.width;
+        keys.width = property.width;
         const auto components = static_cast<size_t>(output.components);
         if (components != 1 && components != keys.width)  // numbers of keys would be mixed
             sampler.fail("output", "is an accessor of {}, not of {} numbers",
-                         printable(output.type), kind.width);
+                         printable(output.type), property.width);
         keys.values = numbers_of(output, sampler);
         const size_t parts = keys.interpolation == Interpolation::CubicSpline ? 3 : 1;
         const size_t needed = keys.times_s.size() * parts * keys.width;

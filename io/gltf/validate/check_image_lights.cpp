@@ -47,8 +47,7 @@ void check_image_lights(GltfCheck& check) {
     const auto lights = extension ? extension->objects("lights") : std::vector<JsonCursor>();
     for (const JsonCursor& light : lights) {
         (void)light.text_or("name", "");
-        (void)light.number_or("intensity", 1, {0, kGreatest});
-        (void)light.numbers("rotation", 4);
+        check_properties(light, schema::kImageLightRows);
         light.require("irradianceCoefficients");
         light.require("specularImages");
         check_coefficients(light);

@@ -19,13 +19,6 @@ constexpr int max_tree_depth = 1024;
 /// Count of instances whose product with their bytes fits.
 constexpr uint64_t kMostCounted = uint64_t(1) << 40;
 
-void check_transform(const JsonCursor& node) {
-    (void)node.numbers("matrix", 16);
-    (void)node.numbers("translation", 3);
-    (void)node.numbers("scale", 3);
-    (void)node.numbers("rotation", 4);
-}
-
 class NodeCheck {
   public:
     explicit NodeCheck(GltfCheck& check)
@@ -51,26 +44,20 @@ class NodeCheck {
   private:
     void check_node(size_t index) {
         const JsonCursor& node = nodes_[index];
-        check_transform(node);
+        (void)node.numbers("matrix", 16);
+        check_properties(node, schema::kNodeRows);
         (void)node.index("camera", check_.count("cameras"), "camera");
         const auto mesh = node.index("mesh", meshes_.size(), "mesh");
         (void)node.index("skin", check_.count("skins"), "skin");
         if (mesh) (void)node.numbers("weights", targets_[*mesh]);
         if (const auto light = node.extension("KHR_lights_punctual"))
             (void)light->required_index("light", lights_, "light");
-        if (const auto light = node.extension("EXT_lights_ies")) check_profile_light(*light);
+        if (const auto light = node.extension("EXT_lights_ies"))
+            (void)light->required_index("light", profiles_, "light");
         if (const auto many = node.extension("EXT_mesh_gpu_instancing"))
             check_instancing(node, *many, mesh);
         (void)area_extras(node);
-        if (const auto shown = node.extension("KHR_node_visibility")) shown->check_bool("visible");
         link_children(index);
-    }
-
-    void check_profile_light(const JsonCursor& light) {
-        constexpr Range not_negative = {0, std::numeric_limits<float>::max()};
-        (void)light.required_index("light", profiles_, "light");
-        (void)light.number_or("multiplier", 1, not_negative);
-        (void)light.numbers("color", 3, not_negative);
     }
 
     void check_instancing(const JsonCursor& node, const JsonCursor& many,

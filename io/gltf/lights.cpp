@@ -8,6 +8,7 @@
 #include "io/base/json_cursor.h"
 #include "io/base/json_parse.h"
 #include "io/gltf/animation/thinning.h"
+#include "io/gltf/schema/schema.h"
 #include "io/gltf/spectral.h"
 #include "io/gltf/validate/extras.h"
 
@@ -171,18 +172,21 @@ void move_flat(const NodeMotion& motion, int node, FlatLamp& lamp, GltfTally& ta
     warn_of_turning(*places, node, lamp.beam, tally);
 }
 
-GltfCamera to_camera(const tinygltf::Camera& from, const M44f& to_world) {
+GltfCamera to_camera(const JsonCursor& from, const M44f& to_world) {
+    const auto number = [&](CameraRow name) {
+        return static_cast<float>(std::fabs(number_of(from, name.row)));
+    };
     GltfCamera camera;
     camera.to_world = to_world;
-    camera.orthographic = from.type == "orthographic";
+    const std::string type = from.text("type");
+    camera.orthographic = type == "orthographic";
     if (camera.orthographic) {
-        camera.xmag_m = static_cast<float>(std::fabs(from.orthographic.xmag));
-        camera.ymag_m = static_cast<float>(std::fabs(from.orthographic.ymag));
-        return camera;
+        camera.xmag_m = number("xmag");
+        camera.ymag_m = number("ymag");
+    } else if (type == "perspective") {
+        camera.yfov_rad = number("yfov");
+        if (const float aspect = number("aspectRatio"); aspect > 0) camera.aspect = aspect;
     }
-    camera.yfov_rad = static_cast<float>(from.perspective.yfov);
-    if (from.perspective.aspectRatio > 0)
-        camera.aspect = static_cast<float>(from.perspective.aspectRatio);
     return camera;
 }
 
@@ -351,19 +355,17 @@ std::vector<GltfCamera> read_cameras(const GltfModel& gltf, const GltfNodes& nod
             ++tally.singular_nodes;
             continue;
         }
-        const auto& from = gltf.typed.cameras.at(static_cast<size_t>(node.camera));
+        const JsonCursor& from = json[static_cast<size_t>(node.camera)];
         GltfCamera camera = to_camera(from, *to_world);
         if (const auto* const places = motion.places(index)) {
             for (const M44d& place : *places)
                 camera.steps.push_back(rigid(place).value_or(*to_world));
             ++tally.moving_cameras;
         }
-        camera.name = from.name.empty()
-                          ? JsonCursor(root.value()["nodes"][static_cast<size_t>(index)], gltf.file,
-                                       json_path("nodes", index))
-                                .text_or("name", "")
-                          : from.name;
-        camera.extras = camera_extras(json[static_cast<size_t>(node.camera)]);
+        camera.name = from.text_or("name", "");
+        if (camera.name.empty())
+            camera.name = text_of(root.value()["nodes"][static_cast<size_t>(index)], "name");
+        camera.extras = camera_extras(from);
         if (camera.orthographic && camera.extras.any())
             tally.warnings.push_back(json_path("cameras", node.camera) +
                                      "/extras/petzval: an orthographic camera has no use for it");

@@ -3,13 +3,25 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <variant>
 #include <vector>
 
 #include "core/scene/scene.h"
+#include "io/gltf/schema/schema.h"
 #include "io/gltf/spectral.h"
 #include "io/gltf/textures.h"
 
 namespace petzval {
+
+/// Where the loader puts a property of a material.
+struct MaterialField {
+    MaterialRow name;
+    std::variant<float Material::*, Rgb Material::*, TextureSlot Material::*> member;
+    /// Where it is set, the rest of the extension is read only where this property is above 0. What
+    /// the extension is called among what is honoured.
+    const char* layer = nullptr;
+};
 
 /// Converts materials as primitives ask for them, so that what no primitive uses is never read.
 class GltfMaterials {
@@ -27,15 +39,10 @@ class GltfMaterials {
 
   private:
     [[nodiscard]] Material read(size_t index);
-    void read_specular_glossiness(const JsonCursor&, Material&);
+    /// Reads what has a field of its own.
+    void read(const JsonCursor&, std::span<const MaterialField>, Material&);
+    [[nodiscard]] TextureSlot slot(const JsonCursor&, MaterialRow);
     void read_surface(const JsonCursor&, Material&);
-    void read_specular(const JsonCursor&, Material&);
-    void read_glass(const JsonCursor&, Material&);
-    void read_coat(const JsonCursor&, Material&);
-    void read_sheen(const JsonCursor&, Material&);
-    void read_anisotropy(const JsonCursor&, Material&);
-    void read_iridescence(const JsonCursor&, Material&);
-    void read_diffuse_transmission(const JsonCursor&, Material&);
     void count(const JsonCursor&, const Material&);
 
     const GltfModel& gltf_;

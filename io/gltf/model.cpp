@@ -3,9 +3,6 @@
 
 #include <tiny_gltf.h>
 
-#include <algorithm>
-#include <array>
-
 #include "io/base/error.h"
 #include "io/base/json_cursor.h"
 #include "io/gltf/validate/accessor.h"
@@ -40,26 +37,15 @@ void replace_accessors(json& patched) {
     }
 }
 
-// Replaces cameras of an unknown type, which tinygltf also refuses; they are ignored.
-void replace_cameras(json& patched) {
-    if (!patched.contains("cameras")) return;
-    for (json& camera : patched["cameras"])
-        if (camera["type"] != "perspective" && camera["type"] != "orthographic")
-            camera = {{"type", "perspective"}, {"perspective", {{"yfov", 0}, {"znear", 0}}}};
-}
-
-std::string patched_text(const GltfSource& source) {
-    // Images: tinygltf indexes buffers by their bufferView unchecked. Nodes: there may be millions,
-    // and it takes a kilobyte for each.
-    constexpr std::array<std::string_view, 4> left_out = {"images", "nodes", "animations",
-                                                          "extras"};
+// What tinygltf reads. It parses texts only, and whole: nodes and images in them would take a
+// kilobyte each, and reads at unchecked places; so it is given a text without them.
+std::string text_for(const GltfSource& source) {
     json patched = json::object();
-    for (const auto& [key, value] : source.json.items())
-        if (std::find(left_out.begin(), left_out.end(), key) == left_out.end())
-            patched[key] = value;
+    for (const char* key : {"asset", "accessors", "bufferViews", "meshes", "skins", "textures",
+                            "samplers", "scenes", "scene", "extensions"})
+        if (const auto at = source.json.find(key); at != source.json.end()) patched[key] = *at;
     replace_bytes(patched, source.buffers.size() + 1);
     replace_accessors(patched);
-    replace_cameras(patched);
     return patched.dump();
 }
 
@@ -89,7 +75,7 @@ tinygltf::Model parse_model(const GltfSource& source) {
     std::string error, warning;
     bool parsed = false;
     try {
-        const std::string text = patched_text(source);
+        const std::string text = text_for(source);
         tinygltf::TinyGLTF parser;
         parsed = parser.LoadASCIIFromString(&model, &error, &warning, text.c_str(),
                                             static_cast<unsigned>(text.size()), "");

@@ -12,7 +12,7 @@ class Model;
 
 namespace petzval {
 
-/// Input of the loader's parts. Core properties come from `typed`, extensions and images from
+/// Input of the loader's parts. What parse_model() names comes from `typed`, the rest from
 /// `source.json`, bytes from `source`.
 struct GltfModel {
     const GltfSource& source;
@@ -20,9 +20,9 @@ struct GltfModel {
     const std::string& file;  ///< name of the file, for messages
 };
 
-/// Parses the JSON with tinygltf, which sees neither buffers, images, nodes nor the file system:
-/// these arrays of the model hold nothing of the file's. An accessor without a bufferView has -1
-/// there, a camera of unknown type a yfov of 0. Throws InputError where tinygltf refuses the JSON.
+/// Parses with tinygltf accessors, meshes, skins, textures, samplers, scenes and punctual lights;
+/// the model's other arrays hold nothing of the file's. An accessor without a bufferView has -1
+/// there. Throws InputError where tinygltf refuses the JSON.
 [[nodiscard]] tinygltf::Model parse_model(const GltfSource&);
 
 /// A JSON path: json_path("meshes", 3, "primitives", 0) is "/meshes/3/primitives/0".

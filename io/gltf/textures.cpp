@@ -23,22 +23,17 @@ Wrap to_wrap(int mode) {
 // Matrix offset * rotation * scale of KHR_texture_transform. It turns coordinates counter-clockwise
 // as the image is seen, with v down: so its text says and so its example works out, not the GLSL in
 // it.
-void set_transform(TextureSlot& slot, const JsonCursor& transform) {
-    const auto offset = transform.numbers("offset", 2), scale = transform.numbers("scale", 2);
-    const double angle_rad = transform.number_or("rotation", 0);
+void set_transform(TextureSlot& slot, const JsonCursor& info) {
+    const auto [u, v, u2, v2] = numbers_of(info, SlotRow("offset").row);
+    const auto [su, sv, su2, sv2] = numbers_of(info, SlotRow("scale").row);
+    const double angle_rad = number_of(info, SlotRow("rotation").row);
     const double c = std::cos(angle_rad), s = std::sin(angle_rad);
-    const double su = scale.empty() ? 1 : scale[0], sv = scale.empty() ? 1 : scale[1];
-    const double u = offset.empty() ? 0 : offset[0], v = offset.empty() ? 0 : offset[1];
     const auto to_row = [](double a, double b, double d) {
         return std::array{static_cast<float>(a), static_cast<float>(b), static_cast<float>(d)};
     };
     slot.u_row = to_row(c * su, s * sv, u);
     slot.v_row = to_row(-s * su, c * sv, v);
 }
-
-/// Slots that read alpha alone, which is linear in an image of colours too.
-constexpr std::array<std::string_view, 3> kAlphaOnly = {"specularTexture", "sheenRoughnessTexture",
-                                                        "diffuseTransmissionTexture"};
 
 /// What a normal map looks as if it had gone through, by the mean of its x and y, which is 1/2 for
 /// normals that lean to all sides alike, and 0.735 or 0.214 after the curve of sRGB or back.
@@ -89,27 +84,33 @@ GltfTextures::GltfTextures(const GltfModel& gltf, std::vector<Image>& images, Gl
       decoded_(decoded),
       used_(gltf.source.images.size()) {}
 
-TextureSlot GltfTextures::slot(const JsonCursor& parent, const char* key, Encoding encoding) {
-    const auto info = parent.find_object(key);
-    if (!info) return {};
+TextureSlot GltfTextures::slot(const JsonCursor& material, const GltfProperty& property) {
+    TextureSlot slot;
+    at_place(material, property.place, [&](const JsonCursor& owner) {
+        if (const auto info = owner.find_object(property.key)) slot = read_slot(*info, property);
+    });
+    return slot;
+}
+
+TextureSlot GltfTextures::read_slot(const JsonCursor& info, const GltfProperty& property) {
     const tinygltf::Texture& texture = gltf_.typed.textures.at(
-        info->required_index("index", gltf_.typed.textures.size(), "texture"));
+        info.required_index("index", gltf_.typed.textures.size(), "texture"));
     const bool missing =
         texture.source < 0 || gltf_.source.images[static_cast<size_t>(texture.source)].empty();
     if (missing) {
-        tally_.warnings.add(info->path(),
+        tally_.warnings.add(info.path(),
                             "its texture has no image that can be read; the slot is left without");
         return {};
     }
 
     TextureSlot slot;
-    uint64_t uv_set = info->integer_or("texCoord", 0);
-    if (const auto transform = info->extension("KHR_texture_transform")) {
-        set_transform(slot, *transform);
+    uint64_t uv_set = info.integer_or("texCoord", 0);
+    if (const auto transform = info.extension("KHR_texture_transform")) {
+        set_transform(slot, info);
         uv_set = transform->integer_or("texCoord", uv_set);
     }
     slot.uv_set = set_of(uv_set);
-    slot.encoding = encoding;
+    slot.encoding = property.texels == TexelUse::Colours ? Encoding::Srgb : Encoding::Linear;
     if (texture.sampler >= 0) {
         const auto& sampler = gltf_.typed.samplers.at(static_cast<size_t>(texture.sampler));
         slot.wrap_u = to_wrap(sampler.wrapS);
@@ -118,7 +119,7 @@ TextureSlot GltfTextures::slot(const JsonCursor& parent, const char* key, Encodi
     }
     const auto source = static_cast<size_t>(texture.source);
     slot.image = use_image(source);
-    check_colours(source, info->path(), key, encoding);
+    check_colours(source, info.path(), property);
     return slot;
 }
 
@@ -131,8 +132,8 @@ uint8_t GltfTextures::set_of(uint64_t texcoord) {
     return static_cast<uint8_t>(always + number);  // a material has some twenty slots
 }
 
-void GltfTextures::check_colours(size_t image, const std::string& slot, std::string_view key,
-                                 Encoding encoding) {
+void GltfTextures::check_colours(size_t image, const std::string& slot,
+                                 const GltfProperty& property) {
     Used& used = used_.at(image);
     const std::string place = json_path("images", image);
     if (used.remarks.inks)
@@ -140,24 +141,24 @@ void GltfTextures::check_colours(size_t image, const std::string& slot, std::str
                             "is in CMYK inks; its colours are guessed, as nothing says what "
                             "the inks look like; convert it to RGB");
     used.remarks.inks = false;
-    if (std::find(kAlphaOnly.begin(), kAlphaOnly.end(), key) != kAlphaOnly.end()) return;
-    if (encoding == Encoding::Srgb && !used.remarks.other_space.empty()) {
+    if (property.texels == TexelUse::Alpha) return;  // linear in an image of colours too
+    const bool colours = property.texels == TexelUse::Colours;
+    if (colours && !used.remarks.other_space.empty()) {
         tally_.warnings.add(place,
                             "says that its colours are in {}; glTF takes them for sRGB, so they "
                             "are not those that were meant; convert it to sRGB",
                             used.remarks.other_space);
         used.remarks.other_space.clear();
     }
-    std::string& first = encoding == Encoding::Srgb ? used.colour_slot : used.data_slot;
-    const std::string& other = encoding == Encoding::Srgb ? used.data_slot : used.colour_slot;
+    std::string& first = colours ? used.colour_slot : used.data_slot;
+    const std::string& other = colours ? used.data_slot : used.colour_slot;
     if (first.empty() && !other.empty())
         tally_.warnings.add(place,
                             "is read as colours in sRGB by {}, and as numbers by {}; one of them "
                             "is likely a mistake",
-                            encoding == Encoding::Srgb ? slot : other,
-                            encoding == Encoding::Srgb ? other : slot);
+                            colours ? slot : other, colours ? other : slot);
     if (first.empty()) first = slot;
-    if (key.ends_with("ormalTexture") && !used.normals_checked) {
+    if (std::string_view(property.key).ends_with("ormalTexture") && !used.normals_checked) {
         used.normals_checked = true;
         if (const std::string fault = fault_of_normals(images_[static_cast<size_t>(used.place)]);
             !fault.empty())

@@ -9,6 +9,7 @@
 #include "core/scene/scene.h"
 #include "io/base/json_cursor.h"
 #include "io/gltf/model.h"
+#include "io/gltf/schema/schema.h"
 #include "io/gltf/tally.h"
 #include "io/picture/colour_remarks.h"
 #include "io/picture/picture_budget.h"
@@ -31,9 +32,9 @@ class GltfTextures {
     GltfTextures(const GltfModel&, std::vector<Image>& images, GltfTally&, PictureBudget&,
                  DecodedImages& decoded);
 
-    /// Texture slot from the textureInfo object at `key`, with KHR_texture_transform; a slot
-    /// without a texture where there is none. Throws InputError where the image cannot be decoded.
-    [[nodiscard]] TextureSlot slot(const JsonCursor& parent, const char* key, Encoding);
+    /// Texture slot of a material, with KHR_texture_transform; one without a texture where there is
+    /// none. Throws InputError where the image cannot be decoded.
+    [[nodiscard]] TextureSlot slot(const JsonCursor& material, const GltfProperty&);
     /// What was decoded, for when the images come back: of each image of the scene, its number in
     /// the file and its remarks.
     struct Origin {
@@ -55,9 +56,9 @@ class GltfTextures {
 
     [[nodiscard]] uint8_t set_of(uint64_t texcoord);
     [[nodiscard]] int32_t use_image(size_t image);
-    /// Warns of what is likely a mistake in an image that a slot reads, each once. key: the slot's
-    /// name.
-    void check_colours(size_t image, const std::string& slot, std::string_view key, Encoding);
+    [[nodiscard]] TextureSlot read_slot(const JsonCursor& info, const GltfProperty&);
+    /// Warns of what is likely a mistake in an image that a slot reads, each once. slot: its path.
+    void check_colours(size_t image, const std::string& slot, const GltfProperty&);
 
     const GltfModel& gltf_;
     std::vector<Image>& images_;

@@ -33,6 +33,43 @@ TEST(GltfMaterial, DefaultsAreThoseOfTheSpecification) {
     }
 }
 
+/// Numbers of what extensions say.
+std::vector<float> layers_of(const Material& m) {
+    return {m.emissive[0],
+            m.ior,
+            m.specular,
+            m.specular_color[2],
+            m.transmission,
+            m.attenuation_color[1],
+            m.has_volume ? 1 : 0.f,
+            m.attenuation_distance_m,
+            m.coat,
+            m.coat_roughness,
+            m.coat_normal_scale,
+            m.sheen_color[0],
+            m.sheen_roughness,
+            m.anisotropy,
+            m.anisotropy_rotation_rad,
+            m.iridescence,
+            m.film_ior,
+            m.film_thinnest_nm,
+            m.film_thickest_nm,
+            m.diffuse_transmission,
+            m.diffuse_transmission_color[1]};
+}
+
+TEST(GltfMaterial, ExtensionsThatSayNothingChangeNothing) {
+    const Material none = material_of(json::object());
+    EXPECT_EQ(layers_of(none), layers_of(Material{}));
+    for (const char* name :
+         {"anisotropy", "clearcoat", "diffuse_transmission", "dispersion", "emissive_strength",
+          "ior", "iridescence", "sheen", "specular", "transmission", "volume"})
+        EXPECT_EQ(layers_of(load_material(file_with_extension(
+                      (std::string("KHR_materials_") + name).c_str(), json::object()))),
+                  layers_of(none))
+            << name;
+}
+
 TEST(GltfMaterial, Factors) {
     const Material m = material_of({{"name", "brass"},
                                     {"pbrMetallicRoughness",

@@ -174,7 +174,7 @@ void move_flat(const NodeMotion& motion, int node, FlatLamp& lamp, GltfTally& ta
 
 GltfCamera to_camera(const JsonCursor& from, const M44f& to_world) {
     const auto number = [&](CameraRow name) {
-        return static_cast<float>(std::fabs(number_of(from, name.row)));
+        return static_cast<float>(std::fabs(number_of(from, name)));
     };
     GltfCamera camera;
     camera.to_world = to_world;

@@ -64,17 +64,17 @@ Rgb to_rgb(const std::array<double, 4>& c) {
 }
 
 float number(const JsonCursor& json, MaterialRow name) {
-    return static_cast<float>(number_of(json, name.row));
+    return static_cast<float>(number_of(json, name));
 }
 
 Rgb colour(const JsonCursor& json, MaterialRow name) {
-    return to_rgb(numbers_of(json, name.row));
+    return to_rgb(numbers_of(json, name));
 }
 
 /// Colour and coverage.
 void read_base(const JsonCursor& json, MaterialRow name, Material& material) {
     material.base_color = colour(json, name);
-    material.alpha = static_cast<float>(numbers_of(json, name.row)[3]);
+    material.alpha = static_cast<float>(numbers_of(json, name)[3]);
 }
 
 AlphaMode to_alpha_mode(const std::string& mode) {
@@ -135,14 +135,14 @@ Material GltfMaterials::read(size_t index) {
 }
 
 TextureSlot GltfMaterials::slot(const JsonCursor& json, MaterialRow name) {
-    return textures_.slot(json, name.row);
+    return textures_.slot(json, name);
 }
 
 void GltfMaterials::read(const JsonCursor& json, std::span<const MaterialField> fields,
                          Material& material) {
     std::string_view idle = "none";  // place of a layer that is not there
     for (const auto& [name, member, layer] : fields) {
-        const GltfProperty& property = name.row;
+        const GltfProperty& property = name;
         if (property.place.starts_with(idle)) continue;
         bool there = true;
         if (const auto* factor = std::get_if<float Material::*>(&member))
@@ -174,7 +174,7 @@ void GltfMaterials::read_surface(const JsonCursor& json, Material& material) {
     material.meant_thin = !solid.value_or(true);
     if (material.anisotropy > 0)
         material.anisotropy_rotation_rad = static_cast<float>(std::remainder(
-            number_of(json, MaterialRow("anisotropyRotation").row), 2 * std::numbers::pi));
+            number_of(json, MaterialRow("anisotropyRotation")), 2 * std::numbers::pi));
 }
 
 void GltfMaterials::count(const JsonCursor& json, const Material& material) {

@@ -24,9 +24,9 @@ Wrap to_wrap(int mode) {
 // as the image is seen, with v down: so its text says and so its example works out, not the GLSL in
 // it.
 void set_transform(TextureSlot& slot, const JsonCursor& info) {
-    const auto [u, v, u2, v2] = numbers_of(info, SlotRow("offset").row);
-    const auto [su, sv, su2, sv2] = numbers_of(info, SlotRow("scale").row);
-    const double angle_rad = number_of(info, SlotRow("rotation").row);
+    const auto [u, v, u2, v2] = numbers_of(info, SlotRow("offset"));
+    const auto [su, sv, su2, sv2] = numbers_of(info, SlotRow("scale"));
+    const double angle_rad = number_of(info, SlotRow("rotation"));
     const double c = std::cos(angle_rad), s = std::sin(angle_rad);
     const auto to_row = [](double a, double b, double d) {
         return std::array{static_cast<float>(a), static_cast<float>(b), static_cast<float>(d)};
@@ -110,7 +110,7 @@ TextureSlot GltfTextures::read_slot(const JsonCursor& info, const GltfProperty& 
         uv_set = transform->integer_or("texCoord", uv_set);
     }
     slot.uv_set = set_of(uv_set);
-    slot.encoding = property.texels == TexelUse::Colours ? Encoding::Srgb : Encoding::Linear;
+    slot.encoding = property.kind == PropertyKind::Colours ? Encoding::Srgb : Encoding::Linear;
     if (texture.sampler >= 0) {
         const auto& sampler = gltf_.typed.samplers.at(static_cast<size_t>(texture.sampler));
         slot.wrap_u = to_wrap(sampler.wrapS);
@@ -141,8 +141,8 @@ void GltfTextures::check_colours(size_t image, const std::string& slot,
                             "is in CMYK inks; its colours are guessed, as nothing says what "
                             "the inks look like; convert it to RGB");
     used.remarks.inks = false;
-    if (property.texels == TexelUse::Alpha) return;  // linear in an image of colours too
-    const bool colours = property.texels == TexelUse::Colours;
+    if (property.kind == PropertyKind::Alpha) return;  // linear in an image of colours too
+    const bool colours = property.kind == PropertyKind::Colours;
     if (colours && !used.remarks.other_space.empty()) {
         tally_.warnings.add(place,
                             "says that its colours are in {}; glTF takes them for sRGB, so they "

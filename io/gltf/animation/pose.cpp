@@ -26,7 +26,7 @@ void pose(json& root, std::span<const GltfClip> clips, double time_s, double fra
             const std::vector<double> values = property.keys.at(local_s);
             const PropertyKind kind = animated_property(property.pointer)->kind;
             json& target = root[json::json_pointer(property.pointer)];
-            if (kind == PropertyKind::Yes)
+            if (kind == PropertyKind::Switch)
                 target = values[0] != 0;
             else if (kind == PropertyKind::Number)
                 target = values[0];

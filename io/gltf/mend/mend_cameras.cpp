@@ -86,8 +86,7 @@ void mend_spot(const JsonEditor& light) {
         mend_property(*spot, property);
     const json* outer = spot->find("outerConeAngle");
     if (outer && !outer->is_number()) return;
-    const double outer_rad =
-        outer ? outer->get<double>() : LightRow("outerConeAngle").row.preset[0];
+    const double outer_rad = outer ? outer->get<double>() : LightRow("outerConeAngle").row.preset;
     if (outer_rad == 0) return leave_out(light, "has an outerConeAngle of 0");
     // The fall-off lies between the angles: a hair of it keeps the edge sharp.
     if (const json* inner = spot->find("innerConeAngle"); is_number(inner))

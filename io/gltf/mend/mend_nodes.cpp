@@ -56,7 +56,8 @@ void mend_last_row(const JsonEditor& node) {
 /// The value of a part of a transform that does nothing.
 json idle(std::string_view part) {
     const GltfProperty& row = *std::ranges::find(schema::kNodeRows, part, &GltfProperty::key);
-    return std::vector<double>(row.preset.begin(), row.preset.begin() + row.width);
+    const auto presets = presets_of(row);
+    return std::vector<double>(presets.begin(), presets.begin() + row.width());
 }
 
 void mend_transform(const JsonEditor& node) {

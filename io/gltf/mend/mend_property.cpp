@@ -2,7 +2,6 @@
 #include "io/gltf/mend/mend_property.h"
 
 #include <algorithm>
-#include <ranges>
 
 #include "io/base/ascii.h"
 #include "io/base/json_parse.h"
@@ -21,22 +20,20 @@ void mend_length(const JsonEditor& owner, const char* key, size_t count, double 
     if (numbers->size() < count) numbers->push_back(last);
 }
 
-void mend_word(const JsonEditor& owner, const GltfProperty& property) {
-    json* value = owner.find(property.key);
+/// Mends alphaMode, the one text of which all values are known.
+void mend_word(const JsonEditor& owner, const char* key) {
+    json* value = owner.find(key);
     if (!value || !value->is_string()) return;
     const std::string text = value->get<std::string>();
-    for (const auto part : std::views::split(property.words, ' ')) {
-        const std::string known(part.begin(), part.end());
+    for (const char* known : {"OPAQUE", "MASK", "BLEND"}) {
         if (text == known) return;
         if (lower(text) != lower(known)) continue;
-        owner.warn(property.key, fmt::format("is \"{}\"; {} is taken", printable(text), known));
+        owner.warn(key, fmt::format("is \"{}\"; {} is taken", printable(text), known));
         *value = known;
         return;
     }
-    const std::string first(property.words.substr(0, property.words.find(' ')));
-    owner.warn(property.key,
-               fmt::format("is \"{}\", which is unknown; {} is taken", printable(text), first));
-    *value = first;
+    owner.warn(key, fmt::format("is \"{}\", which is unknown; OPAQUE is taken", printable(text)));
+    *value = "OPAQUE";
 }
 
 void mend_bool(const JsonEditor& owner, const char* key) {
@@ -65,24 +62,22 @@ void mend_emission(const JsonEditor& owner, const char* key) {
 }  // namespace
 
 void mend_property(const JsonEditor& owner, const GltfProperty& property) {
-    const char* const key = property.key;
-    if (property.kind == PropertyKind::Word) return mend_word(owner, property);
-    if (property.kind == PropertyKind::Yes) return mend_bool(owner, key);
-    if (property.mending == Mending::None) return;
-    if (property.kind == PropertyKind::Numbers) {
-        const bool emits = property.mending == Mending::Emission;
-        mend_length(owner, key, property.width, emits ? 0 : 1);
-        owner.clamp_each(key, property.range);
+    const auto& [place, key, kind, preset, range, mending] = property;
+    if (kind == PropertyKind::Word) return mend_word(owner, key);
+    if (kind == PropertyKind::Yes || kind == PropertyKind::Switch) return mend_bool(owner, key);
+    if (mending == Mending::Keep || range.low < -1e30) return;
+    if (kind == PropertyKind::Number) {
+        const json* value = owner.find(key);
+        const double number = value && value->is_number() ? value->get<double>() : 1;
+        if (mending == Mending::DropUnlessPositive && number <= 0)
+            owner.drop(key, fmt::format("is {}; nothing is absorbed", number));
+        else if (mending == Mending::Clamp || (mending == Mending::ClampButZero && number != 0))
+            owner.clamp(key, range);
+    } else if (property.width() > 0) {
+        const bool emits = mending == Mending::Emission;
+        mend_length(owner, key, property.width(), emits ? 0 : 1);
+        owner.clamp_each(key, range);
         if (emits) mend_emission(owner, key);
-        return;
-    }
-    const json* value = owner.find(key);
-    if (!value || !value->is_number()) return;
-    const double number = value->get<double>();
-    if (property.mending != Mending::DropUnlessLit) {
-        if (property.mending != Mending::Zero || number != 0) owner.clamp(key, property.range);
-    } else if (number <= 0) {
-        owner.drop(key, fmt::format("is {}; nothing is absorbed", number));
     }
 }
 

@@ -1,17 +1,68 @@
 // SPDX-License-Identifier: Apache-2.0
-// The properties of a glTF file that are mended, checked, read and animated by their rows. Ranges
-// and defaults are those of glTF 2.0 and of the texts of the extensions
-// (github.com/KhronosGroup/glTF, extensions/2.0).
+// What is known of the properties of a glTF file: a row each. Ranges and defaults are those of glTF
+// 2.0 and of the texts of the extensions (github.com/KhronosGroup/glTF, extensions/2.0).
 #pragma once
 
+#include <limits>
 #include <numbers>
+#include <string_view>
 
-#include "io/gltf/schema/property.h"
+#include "io/base/json_cursor.h"
 
 namespace petzval {
+
+enum class PropertyKind : uint8_t {
+    Number,
+    Pair,
+    Triple,
+    Four,     ///< an array of numbers, as the two before
+    Turn,     ///< likewise: a quaternion
+    Weights,  ///< likewise: as many numbers as there are morph targets
+    Switch,   ///< true or false
+    Yes,      ///< likewise, but no animation changes it
+    Word,     ///< a text
+    Data,
+    Colours,
+    Alpha  ///< a slot: an object that names a texture, and what is read of it, as the two before
+};
+
+/// What is done with numbers that are beyond their range. Without a range nothing is done.
+enum class Mending : uint8_t {
+    Clamp,               ///< they are moved into it; an array that is one short gets a last one
+    ClampButZero,        ///< likewise, but 0 has a meaning of its own
+    Emission,            ///< likewise, but what is above 1 is taken as it stands
+    DropUnlessPositive,  ///< what is not above 0 is taken away
+    Keep                 ///< it is refused, or mended with others (io/gltf/mend/mend_cameras.cpp)
+};
+
+/// One property.
+struct GltfProperty {
+    /// Keys that lead from the thing to the object that has it, with a slash between them.
+    std::string_view place;
+    const char* key;
+    PropertyKind kind;
+    double preset = 0;  ///< the default of each number; of a Turn, none
+    Range range = {};
+    Mending mending = Mending::Clamp;
+
+    /// Numbers of an array; 0: that varies, or it is none.
+    [[nodiscard]] constexpr size_t width() const {
+        if (kind == PropertyKind::Turn) return 4;
+        return kind <= PropertyKind::Four ? static_cast<size_t>(kind) + 1 : 0;
+    }
+    /// Whether an animation may change it.
+    [[nodiscard]] constexpr bool animated() const { return kind <= PropertyKind::Switch; }
+};
+
+/// The tables. Rows of one place stand together.
 namespace schema {
 
-using enum TexelUse;
+using enum PropertyKind;
+using enum Mending;
+inline constexpr Range kUnit = {0, 1}, kNotNegative = {0, Range().high};
+inline constexpr Range kFromOne = {1, Range().high}, kRightAngle = {0, std::numbers::pi / 2};
+inline constexpr Range kSky = {0, 1e20};  // its products with texels stay in a float
+inline constexpr auto kInfinite = std::numeric_limits<double>::infinity();
 inline constexpr std::string_view kPbr = "pbrMetallicRoughness",
                                   kGlossy = "extensions/KHR_materials_pbrSpecularGlossiness",
                                   kSpecular = "extensions/KHR_materials_specular",
@@ -24,108 +75,108 @@ inline constexpr std::string_view kPbr = "pbrMetallicRoughness",
                                   kLeaf = "extensions/KHR_materials_diffuse_transmission";
 
 inline constexpr GltfProperty kMaterialRows[] = {
-    numbers(kPbr, "baseColorFactor", 4, 1, kUnit),
-    number(kPbr, "metallicFactor", 1, kUnit),
-    number(kPbr, "roughnessFactor", 1, kUnit),
-    texture(kPbr, "baseColorTexture", Colours),
-    texture(kPbr, "metallicRoughnessTexture", Data),
-    number("normalTexture", "scale", 1, kAny, kKept),
-    number("occlusionTexture", "strength", 1, kUnit),
-    texture("", "normalTexture", Data),
-    texture("", "occlusionTexture", Data),
-    numbers("", "emissiveFactor", 3, 0, kNotNegative, Mending::Emission),
-    texture("", "emissiveTexture", Colours),
-    word("alphaMode", "OPAQUE MASK BLEND"),
-    number("", "alphaCutoff", 0.5, kNotNegative),
-    yes("", "doubleSided", false, false),
-    number("extensions/KHR_materials_dispersion", "dispersion", 0, kNotNegative),
-    number("extensions/KHR_materials_emissive_strength", "emissiveStrength", 1, kNotNegative),
-    number("extensions/KHR_materials_ior", "ior", 1.5, kFromOne, Mending::Zero),
-    number(kSpecular, "specularFactor", 1, kUnit),
-    texture(kSpecular, "specularTexture", Alpha),
-    numbers(kSpecular, "specularColorFactor", 3, 1, kNotNegative),
-    texture(kSpecular, "specularColorTexture", Colours),
-    numbers(kGlossy, "diffuseFactor", 4, 1, kUnit),
-    numbers(kGlossy, "specularFactor", 3, 1, kUnit),
-    number(kGlossy, "glossinessFactor", 1, kUnit),
-    texture(kGlossy, "diffuseTexture", Colours),
-    texture(kGlossy, "specularGlossinessTexture", Colours),
-    number(kTransmission, "transmissionFactor", 0, kUnit),
-    texture(kTransmission, "transmissionTexture", Data),
-    number(kVolume, "thicknessFactor", 0, kNotNegative),
-    number(kVolume, "attenuationDistance", kInfinite, kNotNegative, Mending::DropUnlessLit),
-    numbers(kVolume, "attenuationColor", 3, 1, kUnit),
-    number(kCoat, "clearcoatFactor", 0, kUnit),
-    texture(kCoat, "clearcoatTexture", Data),
-    number(kCoat, "clearcoatRoughnessFactor", 0, kUnit),
-    texture(kCoat, "clearcoatRoughnessTexture", Data),
-    texture(kCoat, "clearcoatNormalTexture", Data),
-    number("extensions/KHR_materials_clearcoat/clearcoatNormalTexture", "scale", 1, kAny, kKept),
-    numbers(kSheen, "sheenColorFactor", 3, 0, kUnit),
-    texture(kSheen, "sheenColorTexture", Colours),
-    number(kSheen, "sheenRoughnessFactor", 0, kUnit),
-    texture(kSheen, "sheenRoughnessTexture", Alpha),
-    number(kAnisotropy, "anisotropyStrength", 0, kUnit),
-    number(kAnisotropy, "anisotropyRotation", 0, kAny, kKept),
-    texture(kAnisotropy, "anisotropyTexture", Data),
-    number(kIridescence, "iridescenceFactor", 0, kUnit),
-    texture(kIridescence, "iridescenceTexture", Data),
-    number(kIridescence, "iridescenceIor", 1.3, kFromOne),
-    number(kIridescence, "iridescenceThicknessMinimum", 100, kNotNegative),
-    number(kIridescence, "iridescenceThicknessMaximum", 400, kNotNegative),
-    texture(kIridescence, "iridescenceThicknessTexture", Data),
-    number(kLeaf, "diffuseTransmissionFactor", 0, kUnit),
-    texture(kLeaf, "diffuseTransmissionTexture", Alpha),
-    numbers(kLeaf, "diffuseTransmissionColorFactor", 3, 1, kUnit),
-    texture(kLeaf, "diffuseTransmissionColorTexture", Colours),
+    {kPbr, "baseColorFactor", Four, 1, kUnit},
+    {kPbr, "metallicFactor", Number, 1, kUnit},
+    {kPbr, "roughnessFactor", Number, 1, kUnit},
+    {kPbr, "baseColorTexture", Colours},
+    {kPbr, "metallicRoughnessTexture", Data},
+    {"normalTexture", "scale", Number, 1},
+    {"occlusionTexture", "strength", Number, 1, kUnit},
+    {"", "normalTexture", Data},
+    {"", "occlusionTexture", Data},
+    {"", "emissiveFactor", Triple, 0, kNotNegative, Emission},
+    {"", "emissiveTexture", Colours},
+    {"", "alphaMode", Word},
+    {"", "alphaCutoff", Number, 0.5, kNotNegative},
+    {"", "doubleSided", Yes, 0},
+    {"extensions/KHR_materials_dispersion", "dispersion", Number, 0, kNotNegative},
+    {"extensions/KHR_materials_emissive_strength", "emissiveStrength", Number, 1, kNotNegative},
+    {"extensions/KHR_materials_ior", "ior", Number, 1.5, kFromOne, ClampButZero},
+    {kSpecular, "specularFactor", Number, 1, kUnit},
+    {kSpecular, "specularTexture", Alpha},
+    {kSpecular, "specularColorFactor", Triple, 1, kNotNegative},
+    {kSpecular, "specularColorTexture", Colours},
+    {kGlossy, "diffuseFactor", Four, 1, kUnit},
+    {kGlossy, "specularFactor", Triple, 1, kUnit},
+    {kGlossy, "glossinessFactor", Number, 1, kUnit},
+    {kGlossy, "diffuseTexture", Colours},
+    {kGlossy, "specularGlossinessTexture", Colours},
+    {kTransmission, "transmissionFactor", Number, 0, kUnit},
+    {kTransmission, "transmissionTexture", Data},
+    {kVolume, "thicknessFactor", Number, 0, kNotNegative},
+    {kVolume, "attenuationDistance", Number, kInfinite, kNotNegative, DropUnlessPositive},
+    {kVolume, "attenuationColor", Triple, 1, kUnit},
+    {kCoat, "clearcoatFactor", Number, 0, kUnit},
+    {kCoat, "clearcoatTexture", Data},
+    {kCoat, "clearcoatRoughnessFactor", Number, 0, kUnit},
+    {kCoat, "clearcoatRoughnessTexture", Data},
+    {kCoat, "clearcoatNormalTexture", Data},
+    {"extensions/KHR_materials_clearcoat/clearcoatNormalTexture", "scale", Number, 1},
+    {kSheen, "sheenColorFactor", Triple, 0, kUnit},
+    {kSheen, "sheenColorTexture", Colours},
+    {kSheen, "sheenRoughnessFactor", Number, 0, kUnit},
+    {kSheen, "sheenRoughnessTexture", Alpha},
+    {kAnisotropy, "anisotropyStrength", Number, 0, kUnit},
+    {kAnisotropy, "anisotropyRotation", Number},
+    {kAnisotropy, "anisotropyTexture", Data},
+    {kIridescence, "iridescenceFactor", Number, 0, kUnit},
+    {kIridescence, "iridescenceTexture", Data},
+    {kIridescence, "iridescenceIor", Number, 1.3, kFromOne},
+    {kIridescence, "iridescenceThicknessMinimum", Number, 100, kNotNegative},
+    {kIridescence, "iridescenceThicknessMaximum", Number, 400, kNotNegative},
+    {kIridescence, "iridescenceThicknessTexture", Data},
+    {kLeaf, "diffuseTransmissionFactor", Number, 0, kUnit},
+    {kLeaf, "diffuseTransmissionTexture", Alpha},
+    {kLeaf, "diffuseTransmissionColorFactor", Triple, 1, kUnit},
+    {kLeaf, "diffuseTransmissionColorTexture", Colours},
 };
 
 /// Angles, widths and planes are mended together (io/gltf/mend/mend_cameras.cpp).
 inline constexpr GltfProperty kCameraRows[] = {
-    number("perspective", "yfov", 0, kNotNegative, kKept),
-    number("perspective", "znear", 0, kNotNegative, kKept),
-    number("perspective", "aspectRatio", 0, kNotNegative, kKept),
-    number("perspective", "zfar", kInfinite, kNotNegative, kKept),
-    number("orthographic", "xmag", 0, kAny, kKept),
-    number("orthographic", "ymag", 0, kAny, kKept),
-    number("orthographic", "zfar", 0, kNotNegative, kKept),
-    number("orthographic", "znear", 0, kNotNegative, kKept),
+    {"perspective", "yfov", Number, 0, kNotNegative, Keep},
+    {"perspective", "znear", Number, 0, kNotNegative, Keep},
+    {"perspective", "aspectRatio", Number, 0, kNotNegative, Keep},
+    {"perspective", "zfar", Number, kInfinite, kNotNegative, Keep},
+    {"orthographic", "xmag", Number},
+    {"orthographic", "ymag", Number},
+    {"orthographic", "zfar", Number, 0, kNotNegative, Keep},
+    {"orthographic", "znear", Number, 0, kNotNegative, Keep},
 };
 
 inline constexpr GltfProperty kLightRows[] = {
-    numbers("", "color", 3, 1, kNotNegative),
-    number("", "intensity", 1, kNotNegative),
-    number("", "range", kInfinite, kNotNegative, kKept),
-    number("spot", "innerConeAngle", 0, kRightAngle, kKept),
-    number("spot", "outerConeAngle", std::numbers::pi / 4, kRightAngle),
+    {"", "color", Triple, 1, kNotNegative},
+    {"", "intensity", Number, 1, kNotNegative},
+    {"", "range", Number, kInfinite, kNotNegative, Keep},
+    {"spot", "innerConeAngle", Number, 0, kRightAngle, Keep},
+    {"spot", "outerConeAngle", Number, std::numbers::pi / 4, kRightAngle},
 };
 
 inline constexpr GltfProperty kImageLightRows[] = {
-    number("", "intensity", 1, kSky, kKept),
-    turn("", "rotation"),
+    {"", "intensity", Number, 1, kSky, Keep},
+    {"", "rotation", Turn},
 };
 
 inline constexpr GltfProperty kNodeRows[] = {
-    numbers("", "translation", 3, 0, kAny, kKept),
-    numbers("", "scale", 3, 1, kAny, kKept),
-    turn("", "rotation"),
-    numbers("", "weights", 0, 0, kAny, kKept),
-    number("extensions/EXT_lights_ies", "multiplier", 1, kNotNegative, kKept),
-    numbers("extensions/EXT_lights_ies", "color", 3, 1, kNotNegative, kKept),
-    yes("extensions/KHR_node_visibility", "visible", true, true),
+    {"", "translation", Triple},
+    {"", "scale", Triple, 1},
+    {"", "rotation", Turn},
+    {"", "weights", Weights},
+    {"extensions/EXT_lights_ies", "multiplier", Number, 1, kNotNegative, Keep},
+    {"extensions/EXT_lights_ies", "color", Triple, 1, kNotNegative, Keep},
+    {"extensions/KHR_node_visibility", "visible", Switch, 1},
 };
 
 inline constexpr GltfProperty kMeshRows[] = {
-    numbers("", "weights", 0, 0, kAny, kKept),
+    {"", "weights", Weights},
 };
 
 /// One of the weights of a node or mesh.
-inline constexpr GltfProperty kWeightRow = number("weights", "", 0, kAny, kKept);
+inline constexpr GltfProperty kWeightRow = {"weights", "", Number};
 
 inline constexpr GltfProperty kSlotRows[] = {
-    numbers("extensions/KHR_texture_transform", "offset", 2, 0, kAny, kKept),
-    numbers("extensions/KHR_texture_transform", "scale", 2, 1, kAny, kKept),
-    number("extensions/KHR_texture_transform", "rotation", 0, kAny, kKept),
+    {"extensions/KHR_texture_transform", "offset", Pair},
+    {"extensions/KHR_texture_transform", "scale", Pair, 1},
+    {"extensions/KHR_texture_transform", "rotation", Number},
 };
 
 }  // namespace schema

@@ -62,20 +62,26 @@ const GltfProperty* animated_property(std::string_view pointer) {
     constexpr std::string_view slot = "Texture/";
     if (const size_t at = pointer.rfind(slot); !found && at != pointer.npos)
         found = find(kSlotRows, pointer.substr(at + slot.size()));
-    return found && found->animated ? found : nullptr;
+    return found && found->animated() ? found : nullptr;
 }
 
 double number_of(const JsonCursor& thing, const GltfProperty& property) {
-    double number = property.preset[0];
+    double number = property.preset;
     at_place(thing, property.place,
              [&](const JsonCursor& owner) { number = owner.number_or(property.key, number); });
     return number;
 }
 
+std::array<double, 4> presets_of(const GltfProperty& property) {
+    const double one = property.preset;
+    return property.kind == PropertyKind::Turn ? std::array{0., 0., 0., 1.}
+                                               : std::array{one, one, one, one};
+}
+
 std::array<double, 4> numbers_of(const JsonCursor& thing, const GltfProperty& property) {
-    std::array<double, 4> numbers = property.preset;
+    std::array<double, 4> numbers = presets_of(property);
     at_place(thing, property.place, [&](const JsonCursor& owner) {
-        std::ranges::copy(owner.numbers(property.key, property.width), numbers.begin());
+        std::ranges::copy(owner.numbers(property.key, property.width()), numbers.begin());
     });
     return numbers;
 }

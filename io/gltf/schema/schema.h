@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <span>
 #include <string>
 
@@ -29,6 +30,7 @@ struct RowOf {
     const GltfProperty& row;
 
     consteval RowOf(const char* name) : row(*find(name)) {}
+    operator const GltfProperty&() const { return row; }
 
   private:
     static consteval const GltfProperty* find(std::string_view name) {
@@ -53,10 +55,12 @@ using SlotRow = RowOf<schema::kSlotRows>;
 /// KHR_animation_pointer. Null for one that Petzval does not read, or that cannot be animated.
 [[nodiscard]] const GltfProperty* animated_property(std::string_view pointer);
 
+/// Numbers of an array that a thing has, else their defaults.
+[[nodiscard]] std::array<double, 4> numbers_of(const JsonCursor& thing, const GltfProperty&);
+/// The defaults: the first are those of the array.
+[[nodiscard]] std::array<double, 4> presets_of(const GltfProperty&);
 /// Number that a thing has, else its default.
 [[nodiscard]] double number_of(const JsonCursor& thing, const GltfProperty&);
-/// Numbers of an array likewise.
-[[nodiscard]] std::array<double, 4> numbers_of(const JsonCursor& thing, const GltfProperty&);
 
 /// Calls visit(object) for the object at a place of a JsonCursor or JsonEditor, where there is one.
 template <class Object, class Visit>

@@ -64,8 +64,9 @@ class ClipReader {
         const bool has_node = target.index("node", check_.count("nodes"), "node").has_value();
         if (target.text("path") != "pointer" && !has_node) return;  // for extensions: glTF 2.0, 5.4
         const std::string pointer = target_of(channel.value());
-        const auto property = property_of(pointer);
-        if (!property) {
+        const GltfProperty* const property = animated_property(pointer);
+        const size_t width = property ? width_of(*property, pointer) : 0;
+        if (width == 0) {
             check_.warn(target, fmt::format("animates {}, which Petzval does not read or which is "
                                             "not there; it stays as the file stores it",
                                             pointer.empty() ? "nothing" : printable(pointer)));
@@ -76,35 +77,30 @@ class ClipReader {
             check_.warn(target, "animates what an earlier channel does; that one is taken");
             return;
         }
-        clip.properties.push_back({pointer, read_keys(samplers_[sampler], *property)});
+        clip.properties.push_back({pointer, read_keys(samplers_[sampler], property->kind, width)});
     }
 
-    // The property that a pointer leads to, weights counted; nothing where all that it leads
+    // Numbers of the property that a pointer leads to, weights counted; 0 where all that it leads
     // through is not there. Its last word may have a default.
-    [[nodiscard]] std::optional<GltfProperty> property_of(const std::string& pointer) {
-        const GltfProperty* const known = animated_property(pointer);
-        if (!known) return std::nullopt;
-        GltfProperty property = *known;
+    [[nodiscard]] size_t width_of(const GltfProperty& property, const std::string& pointer) {
         try {
             const json& root = check_.source.json;
             const json::json_pointer whole(pointer);
             json::json_pointer at = whole.parent_pointer();
             if (at.back() == "weights") write_out_weights(at);
             if (at.back() == "pbrMetallicRoughness") at.pop_back();
-            if (!root.contains(at)) return std::nullopt;
+            if (!root.contains(at)) return 0;
             const json& owner = root[at];
-            if (!owner.is_object() && !root.contains(whole)) return std::nullopt;
+            if (!owner.is_object() && !root.contains(whole)) return 0;
             // A node has a matrix or is animated: glTF 2.0, section 3.5.3.
             const std::string& name = whole.back();
             const bool moves = name == "translation" || name == "rotation" || name == "scale";
-            if (moves && pointer.starts_with("/nodes/") && owner.contains("matrix"))
-                return std::nullopt;
-            if (property.width == 0) property.width = target_count(root, owner);
+            if (moves && pointer.starts_with("/nodes/") && owner.contains("matrix")) return 0;
+            if (property.kind == PropertyKind::Weights) return target_count(root, owner);
         } catch (const json::exception&) {  // no pointer, or an index beyond all numbers
-            return std::nullopt;
+            return 0;
         }
-        if (property.width == 0) return std::nullopt;
-        return property;
+        return std::max<size_t>(property.width(), 1);
     }
 
     // Weights that have their default: 0, or at a node those of its mesh. One of them may move.
@@ -128,21 +124,21 @@ class ClipReader {
                      printable(word));
     }
 
-    [[nodiscard]] Keyframes read_keys(const JsonCursor& sampler, const GltfProperty& property) {
+    [[nodiscard]] Keyframes read_keys(const JsonCursor& sampler, PropertyKind kind, size_t width) {
         Keyframes keys;
         keys.interpolation = interpolation_of(sampler);
-        if (property.kind == PropertyKind::Yes) keys.interpolation = Interpolation::Step;
-        keys.rotation = property.kind == PropertyKind::Turn;
+        if (kind == PropertyKind::Switch) keys.interpolation = Interpolation::Step;
+        keys.rotation = kind == PropertyKind::Turn;
         const GltfAccessor& input = accessor(sampler, "input");
         if (input.components != 1) sampler.fail("input", "must be an accessor of SCALAR");
         keys.times_s = numbers_of(input, sampler);
         check_times(sampler, keys.times_s);
         const GltfAccessor& output = accessor(sampler, "output");
-        keys.width = property.width;
+        keys.width = width;
         const auto components = static_cast<size_t>(output.components);
         if (components != 1 && components != keys.width)  // numbers of keys would be mixed
             sampler.fail("output", "is an accessor of {}, not of {} numbers",
-                         printable(output.type), property.width);
+                         printable(output.type), width);
         keys.values = numbers_of(output, sampler);
         const size_t parts = keys.interpolation == Interpolation::CubicSpline ? 3 : 1;
         const size_t needed = keys.times_s.size() * parts * keys.width;

@@ -34,26 +34,18 @@ std::vector<JsonCursor> texture_owners(const JsonCursor& material) {
     return owners;
 }
 
+/// Slots are checked apart, as those of extensions that are not known are checked too.
 void check_property(const JsonCursor& owner, const GltfProperty& property) {
     Range range = property.range;
-    if (property.mending == Mending::Zero) range.low = 0;  // what lies between was mended
-    switch (property.kind) {
-        case PropertyKind::Number:
-            (void)owner.number_or(property.key, 0, range);
-            return;
-        case PropertyKind::Numbers:
-        case PropertyKind::Turn:
-            if (property.width > 0) (void)owner.numbers(property.key, property.width, range);
-            return;
-        case PropertyKind::Yes:
-            owner.check_bool(property.key);
-            return;
-        case PropertyKind::Word:
-            (void)owner.text_or(property.key, "");
-            return;
-        case PropertyKind::Texture:
-            return;  // as every slot, also those of extensions that are not known
-    }
+    if (property.mending == Mending::ClampButZero) range.low = 0;  // what lies between was mended
+    if (property.kind == PropertyKind::Number)
+        (void)owner.number_or(property.key, 0, range);
+    else if (property.width() > 0)
+        (void)owner.numbers(property.key, property.width(), range);
+    else if (property.kind == PropertyKind::Yes || property.kind == PropertyKind::Switch)
+        owner.check_bool(property.key);
+    else if (property.kind == PropertyKind::Word)
+        (void)owner.text_or(property.key, "");
 }
 
 }  // namespace

@@ -60,8 +60,11 @@ Said say(const Thing& thing, const GltfProperty& row, const json& value) {
 }
 
 bool is_number(const GltfProperty& row) {
-    return row.kind == PropertyKind::Number || row.kind == PropertyKind::Numbers ||
-           row.kind == PropertyKind::Turn;
+    return row.width() > 0;
+}
+/// Whether the checks see what is wrong with it, and not mending, or none.
+bool is_kept(const GltfProperty& row) {
+    return row.mending == Mending::Keep || row.range.low < 0;
 }
 
 TEST(GltfSchemaChecks, RefuseAValueOfAnotherType) {
@@ -69,7 +72,8 @@ TEST(GltfSchemaChecks, RefuseAValueOfAnotherType) {
         for (const GltfProperty& row : thing.rows) {
             const bool mended = row.place == "perspective" || row.place == "orthographic" ||
                                 row.key == std::string("range");  // as a whole: planes, ranges
-            if (row.width == 0 || mended) continue;
+            if (row.kind == PropertyKind::Weights || row.kind >= PropertyKind::Data || mended)
+                continue;
             const json wrong = row.kind == PropertyKind::Word ? json(7) : json("seven");
             const Said said = say(thing, row, wrong);
             EXPECT_TRUE(has(said.refused, said.path + ": must be ")) << said.path << said.refused;
@@ -79,9 +83,9 @@ TEST(GltfSchemaChecks, RefuseAValueOfAnotherType) {
 TEST(GltfSchemaChecks, RefuseOrMendAListOfAnotherLength) {
     for (const Thing& thing : things())
         for (const GltfProperty& row : thing.rows) {
-            if (!is_number(row) || row.width < 2) continue;
-            const Said said = say(thing, row, json(std::vector<double>(row.width + 2, 1.)));
-            if (row.mending == Mending::None)
+            if (!is_number(row) || row.width() < 2) continue;
+            const Said said = say(thing, row, json(std::vector<double>(row.width() + 2, 1.)));
+            if (is_kept(row))
                 EXPECT_TRUE(has(said.refused, said.path + ": must hold")) << said.path;
             else
                 EXPECT_TRUE(has(said.warnings, said.path + ": holds")) << said.path;
@@ -91,13 +95,14 @@ TEST(GltfSchemaChecks, RefuseOrMendAListOfAnotherLength) {
 TEST(GltfSchemaChecks, RefuseOrMendANumberOutsideItsRange) {
     for (const Thing& thing : things())
         for (const GltfProperty& row : thing.rows) {
-            if (!is_number(row) || row.range.low < 0 || row.width == 0) continue;
+            if (!is_number(row) || row.range.low < 0 || row.width() == 0) continue;
             if (thing.path == "/cameras/0" || row.key == std::string("range") ||
                 row.key == std::string("innerConeAngle"))
                 continue;  // mended together
-            const json low = row.width == 1 ? json(-3) : json(std::vector<double>(row.width, -3.));
+            const json low =
+                row.width() == 1 ? json(-3) : json(std::vector<double>(row.width(), -3.));
             const Said said = say(thing, row, low);
-            const std::string& where = row.mending == Mending::None ? said.refused : said.warnings;
+            const std::string& where = is_kept(row) ? said.refused : said.warnings;
             EXPECT_TRUE(has(where, said.path)) << said.path << said.refused << said.warnings;
         }
 }
@@ -105,9 +110,9 @@ TEST(GltfSchemaChecks, RefuseOrMendANumberOutsideItsRange) {
 TEST(GltfSchemaChecks, RefuseWhatNoFloatHolds) {
     for (const Thing& thing : things())
         for (const GltfProperty& row : thing.rows) {
-            if (!is_number(row) || row.width == 0 || row.key == std::string("range")) continue;
+            if (!is_number(row) || row.width() == 0 || row.key == std::string("range")) continue;
             const json high =
-                row.width == 1 ? json(1e39) : json(std::vector<double>(row.width, 1e39));
+                row.width() == 1 ? json(1e39) : json(std::vector<double>(row.width(), 1e39));
             const Said said = say(thing, row, high);
             EXPECT_TRUE(has(said.refused + said.warnings, thing.path)) << said.path;
         }

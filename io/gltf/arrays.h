@@ -10,6 +10,9 @@
 
 namespace petzval {
 
+/// The accessor of an index, with its format and its bytes.
+[[nodiscard]] const GltfAccessor& accessor_of(const GltfModel&, int accessor);
+
 /// The readers below decode the accessor of that index. Integers become floats, normalised ones as
 /// glTF 2.0, section 3.11 has it; elements that the file leaves undefined are 0; sparse values are
 /// in place. That the accessor has the shape asked for was checked when the file was read.

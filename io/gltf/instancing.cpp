@@ -20,7 +20,7 @@ std::optional<GltfInstancing> read_instancing(const JsonCursor& node) {
 }
 
 InstancePlaces::InstancePlaces(const GltfModel& gltf, const GltfInstancing& from)
-    : count_(gltf.typed.accessors.at(static_cast<size_t>(from.any())).count) {
+    : count_(accessor_of(gltf, from.any()).count) {
     if (from.translation >= 0) translation_ = read_vec3(gltf, from.translation);
     if (from.rotation >= 0) rotation_ = read_vec4(gltf, from.rotation);
     if (from.scale >= 0) scale_ = read_vec3(gltf, from.scale);

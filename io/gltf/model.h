@@ -20,9 +20,8 @@ struct GltfModel {
     const std::string& file;  ///< name of the file, for messages
 };
 
-/// Parses with tinygltf accessors, meshes, skins, textures, samplers, scenes and punctual lights;
-/// the model's other arrays hold nothing of the file's. An accessor without a bufferView has -1
-/// there. Throws InputError where tinygltf refuses the JSON.
+/// Parses with tinygltf meshes, skins, textures, samplers, scenes and punctual lights; the model's
+/// other arrays hold nothing of the file's. Throws InputError where tinygltf refuses the JSON.
 [[nodiscard]] tinygltf::Model parse_model(const GltfSource&);
 
 /// A JSON path: json_path("meshes", 3, "primitives", 0) is "/meshes/3/primitives/0".

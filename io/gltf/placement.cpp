@@ -10,6 +10,7 @@
 
 #include "io/base/error.h"
 #include "io/base/machine.h"
+#include "io/gltf/arrays.h"
 #include "io/gltf/meshes/flat.h"
 
 namespace petzval {
@@ -111,7 +112,7 @@ void PlaceMemory::ask(double bytes, size_t places, size_t parts, const std::stri
 size_t Places::count(int node) {
     const auto many = nodes_.instancing.find(node);
     if (many == nodes_.instancing.end()) return 1;
-    return gltf_.typed.accessors.at(static_cast<size_t>(many->second.any())).count;
+    return accessor_of(gltf_, many->second.any()).count;
 }
 
 const InstancePlaces* Places::instances_of(int node) {

@@ -99,8 +99,7 @@ class PrimitiveReader {
     }
 
     void add_colours(std::vector<V4f>& to, int accessor, float weight) const {
-        const int type = gltf_.typed.accessors[static_cast<size_t>(accessor)].type;
-        if (type == TINYGLTF_TYPE_VEC3)
+        if (accessor_of(gltf_, accessor).components == 3)
             add(to, read_vec3(gltf_, accessor), weight);
         else
             add(to, read_vec4(gltf_, accessor), weight);

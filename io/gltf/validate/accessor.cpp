@@ -1,49 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/gltf/validate/accessor.h"
 
+#include <functional>
+
 namespace petzval {
 namespace {
 
-uint32_t load_unsigned(const uint8_t* at, int component_type) {
-    if (component_type == 5121) return *at;
-    return component_type == 5123 ? load<uint16_t>(at) : load<uint32_t>(at);
-}
-
-double load_number(const uint8_t* at, int component_type, bool normalised) {
-    return with_component_type(component_type, [&](auto type) {
-        return component_value<double>(load<decltype(type)>(at), normalised);
+/// Decodes `count` elements that begin `stride` bytes apart, element i into row slot(i).
+template <class Number, class Slot>
+void decode(const GltfAccessor& accessor, const uint8_t* first, size_t stride, uint64_t count,
+            Number* to, size_t row, Slot slot) {
+    const auto width = static_cast<size_t>(accessor.components);
+    with_component_type(accessor.component_type, [&](auto component) {
+        using T = decltype(component);
+        if constexpr (std::is_same_v<T, Number> && std::is_same_v<Slot, std::identity>)
+            if (width == row && stride == width * sizeof(T)) {
+                std::memcpy(to, first, count * stride);
+                return;
+            }
+        for (uint64_t i = 0; i < count; ++i)
+            for (size_t k = 0; k < width; ++k)
+                to[slot(i) * row + k] = component_value<Number>(
+                    load<T>(first + i * stride + k * sizeof(T)), accessor.normalized);
     });
 }
 
-/// Calls put(element, address) for every element that has data, sparse ones last.
-template <class Put>
-void each_element(const GltfAccessor& accessor, Put put) {
-    if (!accessor.bytes.empty())
-        for (uint64_t i = 0; i < accessor.count; ++i) put(i, &accessor.bytes[i * accessor.stride]);
-    if (!accessor.sparse) return;
+template <class Number>
+void replace_sparse(const GltfAccessor& accessor, Number* to, size_t row) {
     const GltfSparse& sparse = *accessor.sparse;
-    const size_t index_size = component_size(sparse.index_component_type);
+    GltfAccessor indices;
+    indices.component_type = sparse.index_component_type;
+    indices.components = 1;
+    indices.count = sparse.count;
+    indices.stride = component_size(sparse.index_component_type);
+    indices.bytes = sparse.indices;
+    const auto slots = read_all<uint32_t>(indices);
     const size_t size = element_size(accessor.type, accessor.component_type, true);
-    const std::vector<uint8_t> zeros(size);
-    for (uint64_t i = 0; i < sparse.count; ++i) {
-        const uint64_t element =
-            sparse.indices.empty()
-                ? 0
-                : load_unsigned(&sparse.indices[i * index_size], sparse.index_component_type);
-        put(element, sparse.values.empty() ? zeros.data() : &sparse.values[i * size]);
-    }
-}
-
-/// Reads component by component: load_one(address) gives a T.
-template <class T, class LoadOne>
-std::vector<T> read_all(const GltfAccessor& accessor, LoadOne load_one) {
-    const size_t width = size_t(accessor.components);
-    const size_t size = component_size(accessor.component_type);
-    std::vector<T> out(accessor.count * width);
-    each_element(accessor, [&](uint64_t element, const uint8_t* at) {
-        for (size_t c = 0; c < width; ++c) out[element * width + c] = load_one(at + c * size);
-    });
-    return out;
+    const std::vector<uint8_t> zeros(sparse.values.empty() ? size : 0);
+    const bool none = sparse.values.empty();
+    decode(accessor, none ? zeros.data() : sparse.values.data(), none ? 0 : size, sparse.count, to,
+           row, [&](uint64_t i) { return size_t{slots[i]}; });
 }
 
 }  // namespace
@@ -81,20 +77,16 @@ size_t element_size(const std::string& type, int component_type, bool padded) {
     return (columns - 1) * column_stride + (padded ? column_stride : column);
 }
 
-std::vector<uint32_t> read_unsigned(const GltfAccessor& accessor) {
-    const int type = accessor.component_type;
-    return read_all<uint32_t>(accessor,
-                              [type](const uint8_t* at) { return load_unsigned(at, type); });
+template <class Number>
+void read_rows(const GltfAccessor& accessor, Number* to, size_t row) {
+    if (!accessor.bytes.empty())
+        decode(accessor, accessor.bytes.data(), accessor.stride, accessor.count, to, row,
+               std::identity{});
+    if (accessor.sparse) replace_sparse(accessor, to, row);
 }
 
-std::vector<float> read_floats(const GltfAccessor& accessor) {
-    return read_all<float>(accessor, load<float>);
-}
-
-std::vector<double> read_numbers(const GltfAccessor& accessor) {
-    return read_all<double>(accessor, [&](const uint8_t* at) {
-        return load_number(at, accessor.component_type, accessor.normalized);
-    });
-}
+template void read_rows(const GltfAccessor&, float*, size_t);
+template void read_rows(const GltfAccessor&, double*, size_t);
+template void read_rows(const GltfAccessor&, uint32_t*, size_t);
 
 }  // namespace petzval

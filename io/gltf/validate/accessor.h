@@ -52,12 +52,6 @@ struct GltfAccessor {
 /// at multiples of four bytes; padded: including the bytes behind the last column.
 [[nodiscard]] size_t element_size(const std::string& type, int component_type, bool padded);
 
-/// All components of a SCALAR or VECn accessor of an unsigned integer type, sparse ones replaced.
-[[nodiscard]] std::vector<uint32_t> read_unsigned(const GltfAccessor&);
-
-/// All components of a float accessor, sparse ones replaced.
-[[nodiscard]] std::vector<float> read_floats(const GltfAccessor&);
-
 /// Value of a component as a number: of an integer that is normalised, the share of one that glTF
 /// 2.0, section 3.11 gives it.
 template <class Number, class T>
@@ -97,7 +91,18 @@ decltype(auto) with_component_type(int component_type, Visit&& visit) {
     }
 }
 
-/// All components of an accessor, sparse ones replaced, normalised ones as above.
-[[nodiscard]] std::vector<double> read_numbers(const GltfAccessor&);
+/// Writes elements, sparse ones replaced and normalised ones as above, to rows of `row` numbers
+/// each. They must hold what an undefined element reads as. Number: float, double or uint32_t.
+template <class Number>
+void read_rows(const GltfAccessor&, Number* to, size_t row);
+
+/// All components of an accessor likewise.
+template <class Number>
+[[nodiscard]] std::vector<Number> read_all(const GltfAccessor& accessor) {
+    const auto width = static_cast<size_t>(accessor.components);
+    std::vector<Number> out(accessor.count * width);
+    read_rows(accessor, out.data(), width);
+    return out;
+}
 
 }  // namespace petzval

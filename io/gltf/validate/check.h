@@ -27,8 +27,8 @@ struct GltfCheck {
     GltfSource& source;
     JsonCursor root;
     GltfBudget& budget;
-    std::vector<GltfAccessor> accessors;  ///< filled by check_accessors
-    GltfUse use;
+    std::vector<GltfAccessor>& accessors = source.accessors;  ///< filled by check_accessors
+    GltfUse use{};
     std::vector<size_t> played{};       ///< numbers of the animations
     bool reads_all_animations = false;  ///< to tell of faults in the others too
 

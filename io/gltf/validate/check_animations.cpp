@@ -167,7 +167,7 @@ class ClipReader {
                         sizeof(double),
                     sampler);
         over_budget_ = false;
-        return read_numbers(from);
+        return read_all<double>(from);
     }
 
     static void check_times(const JsonCursor& sampler, const std::vector<double>& times_s) {

@@ -133,7 +133,7 @@ class AccessorCheck {
         list.count = sparse.count;
         list.stride = component_size(sparse.index_component_type);
         list.bytes = sparse.indices;
-        const std::vector<uint32_t> values = read_unsigned(list);
+        const std::vector<uint32_t> values = read_all<uint32_t>(list);
         for (size_t i = 0; i < values.size(); ++i)
             if (values[i] >= limit)
                 json.fail(
@@ -171,6 +171,7 @@ void check_buffer_views(GltfCheck& check) {
 
 void check_accessors(GltfCheck& check) {
     AccessorCheck accessors(check);
+    check.accessors.clear();
     const auto cursors = check.root.objects("accessors");
     for (size_t i = 0; i < cursors.size(); ++i) try {
             check.accessors.push_back(accessors.read(cursors[i]));

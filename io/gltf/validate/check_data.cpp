@@ -19,7 +19,7 @@ struct Greatest {
 };
 
 Greatest greatest_of(const GltfAccessor& accessor) {
-    const std::vector<uint32_t> values = read_unsigned(accessor);
+    const std::vector<uint32_t> values = read_all<uint32_t>(accessor);
     const auto at = std::max_element(values.begin(), values.end());
     return {*at, uint64_t(at - values.begin())};
 }
@@ -78,7 +78,7 @@ class IndexCheck {
         const auto [known, is_new] = weighted_.try_emplace({joints_index, weights_index});
         if (!is_new) return known->second;
         const std::vector<bool> weighs = not_zero(check_.accessors[weights_index]);
-        const std::vector<uint32_t> values = read_unsigned(joints);
+        const std::vector<uint32_t> values = read_all<uint32_t>(joints);
         for (size_t i = 0; i < std::min(values.size(), weighs.size()); ++i)
             if (weighs[i]) known->second = std::max<uint64_t>(known->second.value_or(0), values[i]);
         return known->second;
@@ -91,8 +91,8 @@ class IndexCheck {
             return out;
         };
         if (!has_data(accessor)) return {};
-        return accessor.component_type == 5126 ? flags(read_floats(accessor))
-                                               : flags(read_unsigned(accessor));
+        return accessor.component_type == 5126 ? flags(read_all<float>(accessor))
+                                               : flags(read_all<uint32_t>(accessor));
     }
 
     Greatest greatest(size_t accessor) {

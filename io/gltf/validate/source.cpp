@@ -66,7 +66,7 @@ std::vector<ExtensionInFile> read_gltf_extensions(const std::filesystem::path& p
     (void)open_gltf(path, source);
     GltfBudget budget;
     const std::string name = path.string();
-    GltfCheck check{source, JsonCursor(source.json, name), budget, {}, {}, {}};
+    GltfCheck check{source, JsonCursor(source.json, name), budget};
     check_asset(check);
     list_extensions(check);
     return source.extensions;
@@ -84,7 +84,7 @@ GltfSource read_gltf_source(const std::filesystem::path& path, FileScope scope,
     budget.add_owned(opened.file.bytes.size());
 
     const std::string name = path.string();
-    GltfCheck check{source, JsonCursor(source.json, name), budget, {}, {}, {}};
+    GltfCheck check{source, JsonCursor(source.json, name), budget};
     check_asset(check);
     list_extensions(check);
     check_extensions(check);
@@ -113,7 +113,7 @@ void pose_source(GltfSource& source, const AnimationChoice& choice) {
     const std::string name = source.path.string();
     GltfBudget budget;
     for (const auto& buffer : source.buffers) budget.add_owned(buffer.size());
-    GltfCheck check{source, JsonCursor(source.json, name), budget, {}, {}, {}};
+    GltfCheck check{source, JsonCursor(source.json, name), budget};
     check.use = find_used(source.json, {});
     check_accessors(check);
     check_scene_graph(check);

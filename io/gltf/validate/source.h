@@ -12,6 +12,7 @@
 #include "core/spectrum/metal.h"
 #include "io/base/warning_log.h"
 #include "io/gltf/animation/clip.h"
+#include "io/gltf/validate/accessor.h"
 #include "io/gltf/validate/extensions.h"
 
 namespace petzval {
@@ -32,6 +33,7 @@ struct GltfSource {
     /// Encoded bytes of each image (PNG, JPEG ...), whatever way the file stores them. Not yet
     /// decoded: they may be no image. Empty for an image in an undefined buffer.
     std::vector<std::vector<uint8_t>> images;
+    std::vector<GltfAccessor> accessors;      ///< into the buffers; one of no count is broken
     std::vector<ExtensionInFile> extensions;  ///< those that the file lists, by name
     /// Text of each light of EXT_lights_ies; empty for one that is not there.
     std::vector<std::vector<uint8_t>> light_profiles;

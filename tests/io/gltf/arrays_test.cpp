@@ -213,5 +213,21 @@ TEST(GltfArrays, AnExternalBufferWithoutUriReadsAsZeros) {
     EXPECT_TRUE(load_gltf(file.save_gltf(folder.path / "t.gltf")).scene.meshes.empty());
 }
 
+// The checks and the loader read one array alike: what lies below a sparse element is not used.
+TEST(GltfArrays, SparseVertexNumbersWithoutDataAreZeros) {
+    TinyGltf file;
+    const int positions = file.add_positions(kTriangle);
+    const int indices = file.add_accessor<uint32_t>("SCALAR", {1, 2, 4'000'000'000});
+    file.json["accessors"][size_t(indices)]["sparse"] = {
+        {"count", 1},
+        {"indices", {{"bufferView", file.add_view_of<uint8_t>({2})}, {"componentType", 5121}}},
+        {"values", {{"bufferView", file.json["bufferViews"].size()}}}};
+    file.json["bufferViews"].push_back({{"buffer", 1}, {"byteLength", 4}});
+    file.json["buffers"] = {{{"byteLength", file.bin.size()}}, {{"byteLength", 4}}};
+    file.add_root({{"mesh", file.add_mesh({{"attributes", {{"POSITION", positions}}},
+                                           {"indices", indices}})}});
+    EXPECT_EQ(load_mesh(file).triangles, (Triangles{{1, 2, 0}}));
+}
+
 }  // namespace
 }  // namespace petzval

@@ -213,11 +213,11 @@ TEST(Accessor, SparseElementsReplaceTheOthers) {
     accessor.count = 3;
     accessor.stride = 2;
     accessor.bytes = base;
-    EXPECT_EQ(read_unsigned(accessor), (std::vector<uint32_t>{1, 2, 3}));
+    EXPECT_EQ(read_all<uint32_t>(accessor), (std::vector<uint32_t>{1, 2, 3}));
     accessor.sparse = GltfSparse{2, 5121, indices, values};
-    EXPECT_EQ(read_unsigned(accessor), (std::vector<uint32_t>{8, 2, 9}));
+    EXPECT_EQ(read_all<uint32_t>(accessor), (std::vector<uint32_t>{8, 2, 9}));
     accessor.bytes = {};
-    EXPECT_EQ(read_unsigned(accessor), (std::vector<uint32_t>{8, 0, 9}));
+    EXPECT_EQ(read_all<uint32_t>(accessor), (std::vector<uint32_t>{8, 0, 9}));
 }
 
 }  // namespace

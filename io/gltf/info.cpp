@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "io/base/json_parse.h"
-#include "io/gltf/validate/extensions.h"
+#include "io/gltf/schema/extensions.h"
 
 namespace petzval {
 namespace {

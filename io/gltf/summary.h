@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "io/gltf/validate/extensions.h"
+#include "io/gltf/schema/extensions.h"
 
 namespace petzval {
 

@@ -5,8 +5,8 @@
 #include <array>
 
 #include "io/base/json_parse.h"
+#include "io/gltf/schema/extensions.h"
 #include "io/gltf/validate/check.h"
-#include "io/gltf/validate/extensions.h"
 
 namespace petzval {
 namespace {

@@ -6,8 +6,8 @@
 #include "io/base/error.h"
 #include "io/base/json_parse.h"
 #include "io/gltf/compression/meshopt.h"
+#include "io/gltf/schema/extensions.h"
 #include "io/gltf/validate/check.h"
-#include "io/gltf/validate/extensions.h"
 
 namespace petzval {
 namespace {

@@ -12,7 +12,7 @@
 #include "io/base/nearest.h"
 #include "io/base/read_file.h"
 #include "io/base/uri.h"
-#include "io/gltf/validate/extensions.h"
+#include "io/gltf/schema/extensions.h"
 #include "io/spectra/spectra.h"
 
 namespace petzval {

@@ -12,8 +12,8 @@
 #include "core/spectrum/metal.h"
 #include "io/base/warning_log.h"
 #include "io/gltf/animation/clip.h"
+#include "io/gltf/schema/extensions.h"
 #include "io/gltf/validate/accessor.h"
-#include "io/gltf/validate/extensions.h"
 
 namespace petzval {
 

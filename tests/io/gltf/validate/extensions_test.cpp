@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/gltf/validate/extensions.h"
+#include "io/gltf/schema/extensions.h"
 
 #include <gtest/gtest.h>
 

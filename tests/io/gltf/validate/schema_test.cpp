@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "io/base/error.h"
-#include "io/gltf/validate/extensions.h"
+#include "io/gltf/schema/extensions.h"
 #include "io/gltf/validate/source.h"
 #include "tests/support/refusal.h"
 #include "tests/support/tiny_gltf.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Names and places follow the extensions' own texts in Khronos' registry
 // (github.com/KhronosGroup/glTF, extensions/2.0) and in those of VRM and OMI.
-#include "io/gltf/validate/extensions.h"
+#include "io/gltf/schema/extensions.h"
 
 #include <algorithm>
 #include <array>

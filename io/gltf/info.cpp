@@ -121,6 +121,7 @@ void describe_support(const GltfModel& gltf, const GltfTally& tally, GltfFile& f
         ignore(file.holds.animation_count - gltf.source.clips.size(), "animation",
                "⟨animation⟩ plays them");
     ignore(tally.occlusion_textures, "occlusion texture", "path tracing finds occlusion itself");
+    ignore(tally.scattering_volumes, "scattering volume", "light goes straight through them");
     ignore(tally.ranged_lights, "light range", "light falls off with the squared distance");
     ignore(tally.idle_dispersions, "dispersion", "the material refracts nothing");
     constexpr const char* no_surface = "they have no surface; ⟨point-line-radius⟩ gives one";

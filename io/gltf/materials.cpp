@@ -178,6 +178,7 @@ void GltfMaterials::read_surface(const JsonCursor& json, Material& material) {
 }
 
 void GltfMaterials::count(const JsonCursor& json, const Material& material) {
+    tally_.scattering_volumes += hmax(colour(json, "multiscatterColor").v) > 0;
     tally_.occlusion_textures += json.has("occlusionTexture");
     const auto note = [&](bool present, const char* feature) {
         if (present) tally_.honoured.insert(feature);

@@ -22,7 +22,7 @@ struct GltfTally {
     uint64_t hidden_instances = 0;       ///< likewise, or not finite
     uint64_t broken_strokes = 0;         ///< points and lines that are not finite
     uint64_t replaced_normals = 0;       ///< of no length
-    uint64_t occlusion_textures = 0, ranged_lights = 0;
+    uint64_t occlusion_textures = 0, ranged_lights = 0, scattering_volumes = 0;
     uint64_t point_lamps = 0, spot_lamps = 0;             ///< lights with a radius
     uint64_t flat_lamps = 0;                              ///< nodes with an area
     uint64_t moving_instances = 0, deforming_meshes = 0;  ///< while the shutter is open

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Materials: factors and extensions.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -183,6 +184,17 @@ TEST(GltfMaterial, MaterialsThatNothingShowsAreLeftOut) {
     TinyGltf file = file_with({{"name", "used"}});
     file.add("materials", {{"name", "unused"}});
     EXPECT_EQ(load_material(file).name, "used");
+}
+
+TEST(GltfMaterial, ScatteringInsideIsReadAndNamedAsNotRendered) {
+    const auto ignored = [](json scatter) {
+        TinyGltf file = file_with_extension("KHR_materials_volume_scatter", std::move(scatter));
+        return load(file).ignored;
+    };
+    EXPECT_THAT(ignored({{"multiscatterColor", {0, 0.5, 0}}, {"scatterAnisotropy", 0.3}}),
+                testing::ElementsAre("1 scattering volume (light goes straight through them)"));
+    EXPECT_THAT(ignored({{"multiscatterColor", {0, 0, 0}}}), testing::IsEmpty());
+    EXPECT_THAT(ignored(json::object()), testing::IsEmpty());
 }
 
 }  // namespace

@@ -185,6 +185,8 @@ TEST(GltfMend, MaterialExtensions) {
                 "iridescenceThicknessMinimum": -1, "iridescenceThicknessMaximum": -2},
             "KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 7,
                 "diffuseTransmissionColorFactor": [0.5, 0.5]},
+            "KHR_materials_volume_scatter": {"multiscatterColor": [0.5, 2, -1],
+                "scatterAnisotropy": -1.5},
             "KHR_materials_emissive_strength": {"emissiveStrength": -2}})";
     TinyGltf file = full_gltf();
     file.json["materials"][0]["extensions"] = json::parse(all);
@@ -202,6 +204,8 @@ TEST(GltfMend, MaterialExtensions) {
                 "iridescenceThicknessMinimum": 0, "iridescenceThicknessMaximum": 0},
             "KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 1,
                 "diffuseTransmissionColorFactor": [0.5, 0.5, 1]},
+            "KHR_materials_volume_scatter": {"multiscatterColor": [0.5, 1, 0],
+                "scatterAnisotropy": -1},
             "KHR_materials_emissive_strength": {"emissiveStrength": 0}})"));
     EXPECT_GE(source.warnings.lines().size(), 6u);
 }

@@ -197,5 +197,28 @@ TEST(GltfMaterial, ScatteringInsideIsReadAndNamedAsNotRendered) {
     EXPECT_THAT(ignored(json::object()), testing::IsEmpty());
 }
 
+TEST(GltfMaterial, TexturesOfLayersThatAreNotThereAreNotDecoded) {
+    for (const auto& [name, factor, texture] :
+         {std::array{"transmission", "transmissionFactor", "transmissionTexture"},
+          std::array{"clearcoat", "clearcoatFactor", "clearcoatRoughnessTexture"},
+          std::array{"sheen", "sheenColorFactor", "sheenColorTexture"},
+          std::array{"anisotropy", "anisotropyStrength", "anisotropyTexture"},
+          std::array{"iridescence", "iridescenceFactor", "iridescenceThicknessTexture"},
+          std::array{"diffuse_transmission", "diffuseTransmissionFactor",
+                     "diffuseTransmissionColorTexture"}}) {
+        const auto images = [&](json value) {
+            json layer = {{texture, {{"index", 0}}}};
+            if (!value.is_null()) layer[factor] = value;
+            TinyGltf file = file_with_extension((std::string("KHR_materials_") + name).c_str(),
+                                                std::move(layer));
+            (void)add_texture(file, 10);
+            return load(file).scene.images.size();
+        };
+        EXPECT_EQ(images(nullptr), 0u) << name;
+        const bool coloured = std::string_view(name) == "sheen";
+        EXPECT_EQ(images(coloured ? json{1, 1, 1} : json(1)), 1u) << name;
+    }
+}
+
 }  // namespace
 }  // namespace petzval

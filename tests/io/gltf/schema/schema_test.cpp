@@ -105,6 +105,7 @@ TEST(GltfSchema, NamesAreKeysOrEndsOfPaths) {
     EXPECT_EQ(MaterialRow("normalTexture/scale").row.place, "normalTexture");
     for (const char* name : {"io", "r", "/ior", "materials_ior/ior", "ior/ior"})
         EXPECT_FALSE(is_named(MaterialRow("ior").row, name)) << name;
+    EXPECT_FALSE(is_named(MaterialRow("alphaCutoff").row, "xalphaCutoff"));
 }
 
 TEST(GltfSchema, WhatIsAbsentHasItsDefault) {
@@ -116,6 +117,9 @@ TEST(GltfSchema, WhatIsAbsentHasItsDefault) {
     EXPECT_EQ(number_of(material, MaterialRow("ior").row), 2.5);
     EXPECT_EQ(number_of(material, MaterialRow("alphaCutoff").row), 0.5);
     EXPECT_EQ(number_of(material, MaterialRow("iridescenceIor").row), 1.3);
+    EXPECT_EQ(number_of(material, CameraRow("aspectRatio").row), 0);  // none
+    EXPECT_EQ(presets_of(rows_at(schema::kNodeRows, "")[1]), (std::array{1., 1., 1., 1.}));
+    EXPECT_EQ(presets_of(rows_at(schema::kNodeRows, "")[2]), (std::array{0., 0., 0., 1.}));
     EXPECT_EQ(numbers_of(material, MaterialRow("baseColorFactor").row),
               (std::array{0.1, 0.2, 0.3, 0.4}));
     EXPECT_EQ(numbers_of(material, MaterialRow("diffuseFactor").row), (std::array{1., 1., 1., 1.}));

@@ -120,6 +120,15 @@ TEST_F(Source, UndefinedBufferIsEmptyAndSaysSo) {
     EXPECT_EQ(source.warnings.lines()[0], "/buffers/0: has no data; reads as zeros");
 }
 
+TEST_F(Source, HasTheSameAccessorsAtEveryMoment) {
+    (void)file.add_root({{"mesh", file.add_triangle()}});
+    GltfSource source = read(file);
+    const size_t count = file.json["accessors"].size();
+    EXPECT_EQ(source.accessors.size(), count);
+    pose_source(source, {});
+    EXPECT_EQ(source.accessors.size(), count);
+}
+
 TEST_F(Source, BinaryChunkBelongsToTheFirstBufferOnly) {
     file.bin = {1, 2, 3, 4};
     file.json["buffers"] = {{{"byteLength", 3}}, {{"byteLength", 9}}};

@@ -15,7 +15,7 @@ if grep -rnP '"[^"]*(?<![\w-])--[a-z]' core camera integrator io apps/{request,s
 fi
 
 known=$(for command in render chart "lens spot" "image view"; do "$petzval" help $command all; done |
-    grep -oP '((?<=--)|(?<=^  ))[a-z-]+' | sort -u)
+    grep -oP '((?<=--)|(?<=^  ))[a-z][a-z-]*' | sort -u)
 for name in $(grep -rhoP '⟨\K[a-z-]+(?=⟩)' core camera integrator io apps --include='*.cpp' | sort -u); do
     if ! grep -qx -- "$name" <<< "$known"; then
         echo "⟨$name⟩ is the name of no field"

@@ -39,7 +39,7 @@ TEST(PictureBudget, IsSharedAndGivesNumbers) {
     EXPECT_EQ(budget.left_bytes(), uint64_t{6 << 20});
     EXPECT_EQ(budget.take(4 << 20, 3 << 20),
               "needs 7 MiB once it is decoded; of the 10 MiB for pictures other pictures take 4 "
-              "MiB; scale it down, or give more --max-memory");
+              "MiB; scale it down, or give more ⟨max-memory⟩");
     EXPECT_EQ(budget.left_bytes(), uint64_t{6 << 20}) << "what is refused takes nothing";
     EXPECT_EQ(budget.take(6 << 20, 0), "");
     EXPECT_NE(budget.take(1, 0), "");

@@ -17,7 +17,7 @@ namespace petzval {
 /// Commands that take fields; a field has a bit for each.
 enum Taker : uint8_t { kRender = 1, kPlan = 2, kChart = 4, kInfo = 8 };
 
-/// What a field changes.
+/// Part of a render that a field changes.
 enum class FieldPart : uint8_t {
     Picture,  ///< its pixels
     Run,      ///< the way there: memory, threads

@@ -308,10 +308,15 @@ Bins parse_bins(const std::string& option, const std::string& text) {
     return {v[0], v[2], static_cast<int>(std::lround(count))};
 }
 
-void add_aovs(const std::string& option, const std::string& list, std::vector<Aov>& layers) {
-    std::vector<std::string> known;
+std::vector<std::string> layer_names() {
+    std::vector<std::string> names;
     for (int i = 0; i < static_cast<int>(Aov::Count); ++i)
-        known.emplace_back(aov_info(static_cast<Aov>(i)).name);
+        names.emplace_back(aov_info(static_cast<Aov>(i)).name);
+    return names;
+}
+
+void add_aovs(const std::string& option, const std::string& list, std::vector<Aov>& layers) {
+    const std::vector<std::string> known = layer_names();
     for (const std::string_view part : split(list, ',')) {
         const std::string name = lower(std::string(trimmed(part)));
         const auto aov = aov_from_name(name);

@@ -55,6 +55,9 @@ void check_inside(const std::string& option, const Focus&, V2i frame);
 /// Bins from "380:730:10", also with nm: edges of equal bins in nm, inside the wavelengths that
 /// paths carry.
 [[nodiscard]] Bins parse_bins(const std::string& option, const std::string& text);
+/// Names of all layers.
+[[nodiscard]] std::vector<std::string> layer_names();
+
 /// Adds the layers of a list of their names, "albedo,normal", that are not there yet.
 void add_aovs(const std::string& option, const std::string& list, std::vector<Aov>& layers);
 /// Eye and target in metres from "ex,ey,ez,tx,ty,tz": two points.

@@ -34,7 +34,7 @@ struct ShutterTime {
     bool is_angle = false;  ///< degrees, of which 360 are the time of a frame; else seconds
 };
 
-/// What is shown of a scene that moves.
+/// Moment of a scene that moves.
 struct MomentRequest {
     std::optional<Moment> at;             ///< absent: the pose that the file stores
     std::vector<std::string> animations;  ///< names or numbers; none: all that agree

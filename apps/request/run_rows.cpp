@@ -43,9 +43,8 @@ RequestField layer_field() {
     field.name = "aov";
     field.level = FieldLevel::Common;
     field.value = "TEXT";
-    field.help =
-        "layers of the EXR: albedo,normal,depth,position,uv,emission,cost,velocity; may be given "
-        "more than once";
+    field.help = fmt::format("layers of the EXR: {}; may be given more than once",
+                             fmt::join(layer_names(), ","));
     field.form = FieldForm::List;
     field.set = [](RenderOrder& order, const std::string& text) {
         add_aovs("⟨aov⟩", text, order.render.layers);

@@ -112,8 +112,8 @@ class Camera {
     /// Weighted rays of one point of the film, drawn by its sampler: none where the lens lets
     /// nothing through, one that all bands share, or up to four. Thread-safe.
     [[nodiscard]] virtual CameraSample sample(const FilmPoint&, const Bands&) const = 0;
-    /// What sample() gives for each of up to kMostFilmPoints film points, to the bit, which a
-    /// camera may find faster for all at once. All or none of the bands are spectral, and of the
+    /// Samples of up to kMostFilmPoints film points, the same to the bit as sample() gives: a
+    /// camera may find them faster all at once. All or none of the bands are spectral, and of the
     /// points have a pixel filter.
     virtual void sample_all(std::span<const FilmPoint> points, std::span<const Bands> bands,
                             std::span<CameraSample> out) const {

@@ -38,8 +38,8 @@ class Shutter {
     [[nodiscard]] float time(float u) const;
     /// Moves a camera ray to where the camera stands at the ray's time.
     void move(Ray&) const;
-    /// What of a point of the world a camera that stands still in the middle would have to see, to
-    /// see what this one sees of the point at a time.
+    /// Point of the world, at a time, in the place that it has for the camera at mid-exposure: a
+    /// camera that stands still there sees this place as the moving one sees the point.
     [[nodiscard]] V3d seen_from_middle(const V3f& p, float time) const;
 
   private:

@@ -35,7 +35,7 @@ class TooSlow : public ArgumentError {
     using ArgumentError::ArgumentError;
 };
 
-/// What is the same for all cases of a chart.
+/// Settings that all cases of a chart share.
 struct ChartFrame {
     V2i size{192, 108};
     Rect crop;

@@ -26,7 +26,7 @@ void print_line(const std::string& line);
 /// Prints a notice: "petzval: TEXT".
 void print_notice(const std::string& text);
 
-/// What was said during a command.
+/// Messages of a command.
 struct Messages {
     std::vector<std::string> notices, warnings, errors;  ///< warnings without "warning: "
 };
@@ -70,7 +70,7 @@ class Console {
     void log_to(const std::filesystem::path&);
     /// Prints the last event.
     void end(int exit_code);
-    /// What was said since the beginning, or since it was forgotten.
+    /// Messages since the beginning, or since they were forgotten.
     [[nodiscard]] Messages messages() const;
     void forget_messages();
 

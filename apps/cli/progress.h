@@ -30,7 +30,7 @@ class Progress {
     void begin(Phase);
     /// Shows the last of rendering. whole: it ended by its samples or its time, by no signal.
     void end_rendering(bool whole);
-    /// What is there before rendering begins: pixel samples, and the time that they took.
+    /// Sets what an earlier run has done: pixel samples, and the time that they took.
     void set_before(uint64_t pixel_samples, double spent_s);
     /// Ends a picture that need not be rendered.
     void skip();

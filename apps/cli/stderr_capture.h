@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What libraries print on stderr, as lines for somebody else.
+// Capture of what libraries print on stderr, as lines.
 #pragma once
 
 #include <functional>

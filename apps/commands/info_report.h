@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What petzval info found, for people and for programs.
+// Report of `petzval info`, for people and for programs.
 #pragma once
 
 #include <filesystem>

@@ -18,14 +18,14 @@ namespace petzval {
 class KeptState {
   public:
     /// resumed_from: a state whose samples it goes on from, and where it is written. Throws
-    /// ArgumentError where a file lies in its place that would be lost: none of a render, or a
-    /// finished one that nobody asks to replace.
+    /// ArgumentError rather than overwrite a file that is not an unfinished state of this render,
+    /// unless the user asks for it.
     KeptState(const RenderOrder&, RenderFiles files,
               const std::optional<std::filesystem::path>& resumed_from);
 
     [[nodiscard]] const RenderFiles& files() const { return files_; }
 
-    /// What the render is, once that is known.
+    /// Sets the shape, samples and facts of the render, once they are known.
     void set(FilmShape, SampleRange, RenderFacts, const DisplayOptions&);
     [[nodiscard]] const RunRecord& record() const { return record_; }
 

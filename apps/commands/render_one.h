@@ -31,7 +31,7 @@ struct SequencePlace {
     /// That of the pictures before, or null; afterwards that of this one.
     std::unique_ptr<RenderSession> render{};
     RenderSession::Frames frames = RenderSession::Frames::Single;
-    /// What this one found, for other pictures to use.
+    /// Choices that this picture found, for others to use.
     FoundChoices found;
     /// Gets the picture for a display when it is finished, or was there already.
     std::function<void(const PictureRows&, const DisplayOptions&)> show;

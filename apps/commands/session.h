@@ -10,8 +10,8 @@
 
 namespace petzval {
 
-/// What the program hands to its commands: where they talk to, what stops them, and the exit code
-/// of one that ends without an exception.
+/// Console, interrupt and exit code that the program hands to its commands. The exit code is of one
+/// that ends without an exception.
 struct Session {
     Interrupt interrupt;  ///< first: the threads of the others inherit its blocked signals
     Console console;

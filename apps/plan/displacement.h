@@ -16,7 +16,7 @@ struct AskedCamera {
     const Observer& observer;
 };
 
-/// What a cell of the film may be off by where the rays of a camera replace those of another.
+/// Error of the cells of a film where the rays of a camera replace those of another.
 struct Displacement {
     FilmMap square_px;   ///< mean square distance where the scene is met, pixels
     FilmMap brightness;  ///< symmetric square of the mean weights

@@ -39,10 +39,10 @@ struct Looks {
     bool all_certain = false;
     std::vector<FilmRegion> regions;  ///< those that got looks of their own
 
-    /// Upper bound, at 95 %, of what pixels that were not looked at add to the mean of an error of
-    /// at most most(x, y) in each pixel, where they differ from all that were: 0 looks were met
-    /// where 3 were to be expected. Hanley and Lippman-Hand 1983, "If nothing goes wrong, is
-    /// everything all right?", JAMA 249(13).
+    /// 95 % upper bound of the mean error by pixels that were not sampled and differ from all that
+    /// were; `most` bounds the error of one pixel. None of them was met where 3 were to be
+    /// expected: Hanley and Lippman-Hand 1983, "If nothing goes wrong, is everything all right?",
+    /// JAMA 249(13).
     [[nodiscard]] double unseen(V2i size_px, const FilmMap& most) const;
 };
 

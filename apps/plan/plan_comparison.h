@@ -63,11 +63,11 @@ class PlanComparison {
     void add(PlanModel, const SceneRequest&, const FilmMap& most);
     void add_camera(PlanModel, const SceneRequest&);
     void evaluate();
-    /// What errors are relative to: of the models whose picture is hardly another, the one with the
-    /// least noise.
+    /// Model to whose means errors are relative: of those whose pictures are nearly equal, the one
+    /// with the least noise.
     [[nodiscard]] const PilotModel& scale() const { return shared_ ? *shared_ : *full_; }
     [[nodiscard]] PilotScale scale_of(const PilotModel&, double floor) const;
-    /// What may be missed beside what pixels that were not looked at hold.
+    /// Upper bound of the error by light that the pilot did not find, beyond that of unseen pixels.
     [[nodiscard]] double missed(PlanModel, const RareLight&) const;
     [[nodiscard]] bool all_known(bool thorough) const;
 

@@ -63,7 +63,7 @@ struct PlanCandidate {
     [[nodiscard]] double predicted() const {
         return std::sqrt(std::min(square_bias.high(), kMostSymmetricMse));
     }
-    /// What was measured of it.
+    /// Measured error.
     [[nodiscard]] double found() const {
         return std::sqrt(std::clamp(square_bias.mean, 0., kMostSymmetricMse));
     }

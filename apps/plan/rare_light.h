@@ -38,7 +38,7 @@ struct SeenLamp {
 [[nodiscard]] std::vector<V3d> least_means(const Pilot&, const PilotModel&,
                                            const std::vector<SeenLamp>&);
 
-/// What a pilot does not know of a model.
+/// Light that a pilot of a model cannot know.
 struct RareLight {
     /// Seen ones that fewer than kEnoughPaths paths will have met, and spots of the sky likewise.
     size_t lamps = 0, spots = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What --focus auto would find, without a render.
+// Distance that automatic focus finds, without a render.
 #pragma once
 
 #include <string>

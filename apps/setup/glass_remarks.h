@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a user should know of the glass in a scene: bodies without a volume, volumes that are not
-// closed, light that is lost.
+// Remarks on the glass in a scene: bodies without a volume, volumes that are not closed, light that
+// is lost.
 #pragma once
 
 #include <string>

@@ -41,7 +41,7 @@ struct PreparedScene {
     std::string lamp_unit_doubt;        ///< as GltfFile has it
 };
 
-/// What the frames of a sequence, which differ in their time alone, have from those before them.
+/// Data that the frames of a sequence, which differ in their time alone, keep from earlier ones.
 struct FrameReuse {
     std::unique_ptr<GltfReader> reader;
     /// Scene of the frame before. Its images and sky serve the next one once nobody else has it.

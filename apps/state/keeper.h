@@ -17,7 +17,7 @@
 
 namespace petzval {
 
-/// What is written during a render, and how often.
+/// Files that are written during a render, and how often.
 struct KeeperPlan {
     std::optional<double> checkpoint_s;  ///< time between two checkpoints; absent: none
     std::function<void(const PathStats&)> write_checkpoint;

@@ -79,7 +79,7 @@ struct LensTargets::Landing {
         const f8 d = determinant();
         return d < 0.f ? -d : d;
     }
-    /// What the parameters must change for x and y to change by so much.
+    /// Change of the parameters that changes x and y by so much.
     [[nodiscard]] PlanePoint<f8> parameters(f8 by_x, f8 by_y) const {
         const f8 per = 1 / determinant();
         return {(y_by_v * by_x - x_by_v * by_y) * per, (x_by_u * by_y - y_by_u * by_x) * per};

@@ -14,7 +14,7 @@ namespace petzval {
 /// Groups of lights that a choice divides between.
 enum class LightGroup : uint8_t { Outside, Inside };
 
-/// What one light sample of a pilot found.
+/// Result of one light sample of a pilot.
 struct LightRecord {
     V3f p;             ///< of the receiver
     LightGroup group;  ///< that was picked

@@ -43,7 +43,7 @@ class LightTree {
     LightTree(std::span<const std::optional<LightBounds>> lights, float outside);
 
     static constexpr uint32_t kOutside = ~0u;
-    /// What is known of the share of the lights at infinity at a receiver.
+    /// Share of the lights at infinity at a receiver, as far as it is known.
     struct OutsideShare {
         float factor = 1;  ///< on their illuminance
         /// Probability that they have at least, and that they leave, where both kinds of light can

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What moves while the shutter is open. Time runs from 0, as it opens, to 1, as it has closed. What
-// moves is known at time steps that are spread evenly from 0 to 1; between them vertices and
-// matrices run in straight lines, as Embree has it.
+// Motion while the shutter is open. Time runs from 0, as it opens, to 1, as it has closed. Vertices
+// and matrices are known at time steps that are spread evenly from 0 to 1; between them they run in
+// straight lines, as Embree has it.
 #pragma once
 
 #include <array>

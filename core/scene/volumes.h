@@ -8,8 +8,8 @@
 
 namespace petzval {
 
-/// What fills space at a point of a path. Of the closed volumes that the path is in, the one of the
-/// highest priority is there (Schmidt and Budge 2002, "Simple Nested Dielectrics in Ray Traced
+/// Nested dielectrics: the volumes that a point of a path is in. Of closed ones, the one of the
+/// highest priority fills space (Schmidt and Budge 2002, "Simple Nested Dielectrics in Ray Traced
 /// Images"). Of volumes whose surface is not closed only the last one is remembered, and closed
 /// ones come before it.
 class Volumes {

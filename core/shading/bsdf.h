@@ -45,7 +45,7 @@ struct BsdfValue {
     float pdf = 0;  ///< 1/sr
 };
 
-/// What goes straight on through a thin, smooth surface.
+/// Straight transmission through a thin, smooth surface.
 struct StraightThrough {
     f4 value{};        ///< share of light
     float chance = 0;  ///< that Bsdf::sample draws it

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What rough glass scatters more than once: how much that is, and where it goes.
+// Multiple scattering of rough glass: how much light, and where it goes.
 #pragma once
 
 #include <array>

@@ -234,8 +234,8 @@ inline constexpr uint16_t kGlassLoss[9][12][2][2][14] = {
 {{{355,364,378,392,403,410,413,410,404,393,377,359,336,309},{46,73,127,190,256,318,376,430,489,542,587,629,664,696}},{
 {528,525,516,502,483,458,429,396,359,318,275,228,177,121},{72,98,150,211,273,332,385,434,493,547,592,633,667,699}}}},
 };
-/// Of what is scattered once from the side of the lower index, on average, the share that changes
-/// sides at specular 1, in thousandths.
+/// Mean transmittance of single scattering from the side of the lower index, at specular 1, in
+/// thousandths.
 inline constexpr uint16_t kGlassCrossing[9][12] = {
 {1000,1000,1000,1000,1000,1000,1000,1000,1000,1000,1000,1000},
 {996,996,997,998,998,999,999,999,1000,1000,1000,1000},

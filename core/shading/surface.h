@@ -61,7 +61,7 @@ struct ShadingInput {
     Frame frame;       ///< shading frame on wo's side, the normal map applied
     V3f up{0, 0, 1};   ///< Surface::side in the frame
 
-    /// What the surface does with light from `wo`, in world space; throughput as Bsdf has it.
+    /// Scattering of light that leaves along `wo`, in world space; throughput as Bsdf has it.
     [[nodiscard]] CoatedBsdf scatter(const V3f& wo, const Bands& bands,
                                      f4 throughput = splat(1.f)) const {
         return {bsdf, coat, bands, frame.to_local(wo), throughput, up};
@@ -73,7 +73,7 @@ struct MaterialLookups {
     TextureLookup base_color, metallic_roughness, normal, emissive;
     bool emits;  ///< the side that is seen emits
 };
-/// What fills space on the two sides of a face, or null for air.
+/// Materials that fill space on the two sides of a face; null for air.
 struct Fillings {
     const Material* before;  ///< where the ray came from
     const Material* behind;

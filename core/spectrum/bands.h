@@ -39,10 +39,10 @@ struct Bands {
     f4 white{};                 ///< radiance of the white light at 1 nit, W/(m2 sr nm); 1 for RGB
     f4 to_r{}, to_g{}, to_b{};  ///< film's R, G, B for a unit of each lane
     bool spectral = false;      ///< nm holds wavelengths
-    /// Lane whose way is taken where the lanes must part, and that picks one where they carry
-    /// unlike shares. Given the wavelengths, each is as likely to lead, and the lanes follow each
-    /// other in the circle of quantiles (both by Observer::draw). The wavelength that leads is
-    /// stratified over a pixel's samples.
+    /// Lane of the hero wavelength (Wilkie et al. 2014, "Hero Wavelength Spectral Sampling"), along
+    /// which a path goes where the lanes must part. Given the wavelengths, each lane is as likely
+    /// to be the hero, and the lanes follow each other in the circle of quantiles (both by
+    /// Observer::draw). The hero wavelength is stratified over a pixel's samples.
     int lead = 0;
 
     /// Bands whose lanes 0 to 2 carry linear R, G and B.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What was measured of surfaces: complex index of refraction or reflectance by wavelength.
+// Measured surfaces: complex index of refraction or reflectance by wavelength.
 #pragma once
 
 #include <string>

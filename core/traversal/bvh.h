@@ -15,7 +15,7 @@ struct RTCSceneTy;
 
 namespace petzval {
 
-/// What comes through between the ends of a shadow ray.
+/// Light that passes between the ends of a shadow ray.
 struct Passage {
     float left;  ///< share of the light that BLEND surfaces leave; 0: the way is not free
     bool panes;  ///< what may be a pane (Material::may_be_pane) is on the way, which is not in
@@ -42,7 +42,7 @@ class Bvh {
                                                      const PassedBlends* passed) const;
     /// Whether anything but what may be a pane lies in (0, t_max).
     [[nodiscard]] bool occluded(const Ray&) const;
-    /// What comes through (0, t_max). BLEND surfaces are weighed up to PassedBlends::kMost; where
+    /// Light that passes (0, t_max). BLEND surfaces are weighed up to PassedBlends::kMost; where
     /// more are on the way, each is drawn with the chance of its alpha.
     [[nodiscard]] Passage passage(const Ray&) const;
     /// All hits in (0, t_max], in no order, each once. Only of a scene with closed volumes

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What this process may use of the machine: affinity, control groups and resource limits narrow it.
+// Cores and memory that this process may use: affinity, control groups and resource limits.
 #pragma once
 
 #include <cstdint>

@@ -9,7 +9,7 @@
 
 namespace petzval {
 
-/// What became of a file that was to be written.
+/// Outcome of writing a file.
 struct WriteOutcome {
     std::filesystem::path wanted;
     std::string error;             ///< why it could not be written; empty where it was

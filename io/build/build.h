@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What this program was built from. Any of it may change pixels.
+// Sources, compiler and libraries of this program. Any of them may change pixels.
 #pragma once
 
 #include <string>
 
 namespace petzval {
 
-/// What the program was built from, one fact a line: the SHA-256 of its sources, the compiler with
-/// its flags, and its libraries. The same for two checkouts in different folders. The C library is
+/// Facts of the build, one a line: the SHA-256 of the sources, the compiler with its flags, and the
+/// libraries. The same for two checkouts in different folders. The C library is
 /// the one that the program runs with.
 [[nodiscard]] std::string build_description();
 

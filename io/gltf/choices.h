@@ -8,7 +8,7 @@
 
 namespace petzval {
 
-/// What of a glTF file is shown, where it leaves a choice.
+/// Choices that a glTF file leaves to its user.
 struct GltfChoices {
     std::optional<std::string> scene;    ///< its name or number; absent: the default scene
     std::optional<std::string> variant;  ///< of its materials, by name or number; absent: none

@@ -15,7 +15,7 @@ namespace petzval {
 /// trouble counted.
 void describe(const GltfModel&, const GltfTally&, const std::optional<AnimationChoice>&, GltfFile&);
 
-/// What becomes of an extension in one word: rendered, approximated, ignored or refused.
+/// Support of an extension in one word: rendered, approximated, ignored or refused.
 [[nodiscard]] std::string word_of(const ExtensionInFile&);
 /// One line for each extension: its name, what becomes of it, and what that does to the picture.
 [[nodiscard]] std::vector<std::string> table_of(const std::vector<ExtensionInFile>&);

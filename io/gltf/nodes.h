@@ -14,7 +14,7 @@
 
 namespace petzval {
 
-/// What a node holds, as indices; -1 for nothing.
+/// A node: indices of its mesh, skin and so on; -1 for none.
 struct GltfNode {
     int mesh = -1, skin = -1, camera = -1;
     std::vector<double> weights;  ///< of morph targets; empty: those of the mesh

@@ -14,14 +14,14 @@ struct Primitive;
 
 namespace petzval {
 
-/// What a primitive shows.
+/// Kind of shapes that a primitive draws.
 enum class Drawing : uint8_t { Nothing, Points, Lines, Triangles };
 
 /// Kind of a primitive. Nothing is shown by those without positions, which are counted, and by
 /// modes that glTF does not have.
 [[nodiscard]] Drawing drawing_of(const tinygltf::Primitive&, GltfTally&);
 
-/// What is wanted of a primitive.
+/// Options of reading a primitive.
 struct PrimitiveRequest {
     const std::vector<double>& morph_weights;
     bool with_tangents;                      ///< they serve normal maps

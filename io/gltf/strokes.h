@@ -11,7 +11,7 @@
 
 namespace petzval {
 
-/// What a primitive draws: vertices as spheres, and pairs of them as cylinders between spheres.
+/// Shapes of points and lines: vertices as spheres, pairs of them as cylinders between spheres.
 struct StrokeShapes {
     std::vector<uint32_t> spheres;
     std::vector<std::array<uint32_t, 2>> cylinders;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a glTF file holds, in numbers and names: for `petzval info`.
+// Summary of a glTF file, in numbers and names: for `petzval info`.
 #pragma once
 
 #include <cstdint>

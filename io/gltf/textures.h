@@ -35,8 +35,8 @@ class GltfTextures {
     /// Texture slot of a material, with KHR_texture_transform; one without a texture where there is
     /// none. Throws InputError where the image cannot be decoded.
     [[nodiscard]] TextureSlot slot(const JsonCursor& material, const GltfProperty&);
-    /// What was decoded, for when the images come back: of each image of the scene, its number in
-    /// the file and its remarks.
+    /// Origin of each decoded image of the scene, for when the images come back: its number in the
+    /// file and its remarks.
     struct Origin {
         size_t number;
         ColourRemarks remarks;
@@ -46,7 +46,7 @@ class GltfTextures {
     [[nodiscard]] std::vector<uint64_t> take_more_sets() { return std::exchange(more_sets_, {}); }
 
   private:
-    /// What is known of an image of the file.
+    /// Record of an image of the file.
     struct Used {
         int32_t place = -1;  ///< in images_; -1: not needed yet
         ColourRemarks remarks;

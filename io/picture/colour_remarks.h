@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an image of a scene says of its colours, and glTF does not listen to.
+// Colour statements of an image that glTF tells programs to ignore.
 #pragma once
 
 #include <string>

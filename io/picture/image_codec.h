@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the module of io/codec does, as io/image sees it.
+// Interface of the module io/codec, as io/image sees it.
 #pragma once
 
 #include <cstdint>

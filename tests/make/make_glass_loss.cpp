@@ -202,9 +202,9 @@ void print_losses() {
 
 void print_crossings() {
     std::printf(
-        "/// Of what is scattered once from the side of the lower index, on average, the share "
-        "that "
-        "changes\n/// sides at specular 1, in thousandths.\n"
+        "/// Mean transmittance of single scattering from the side of the lower index, at specular "
+        "1, "
+        "in\n/// thousandths.\n"
         "inline constexpr uint16_t kGlassCrossing[%d][%d] = {\n",
         kIndices, kRoughnesses);
     for (int i = 0; i < kIndices; ++i)

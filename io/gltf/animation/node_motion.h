@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What moves while the shutter is open.
+// Motion of nodes while the shutter is open.
 #pragma once
 
 #include <map>
@@ -55,8 +55,8 @@ class NodeMotion {
     std::map<std::string, std::vector<double>> of_cameras_;
 };
 
-/// What of a scene changes while the shutter is open and is shown as it is in the middle, in words:
-/// "materials" say. Of nodes, morph weights and views of cameras nothing.
+/// Kinds of properties that change while the shutter is open and are shown as they are in its
+/// middle, in words as "materials". Nodes, morph weights and views of cameras are none of them.
 [[nodiscard]] std::set<std::string> held_while_open(std::span<const GltfClip>,
                                                     const AnimationChoice&);
 

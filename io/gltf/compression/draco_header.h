@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a Draco stream announces in its first bytes (Draco bitstream 2.2, sections 3 to 5), read
-// without the library: its decoder takes memory by these numbers.
+// Header of a Draco stream: the numbers in its first bytes (Draco bitstream 2.2, sections 3 to 5),
+// read without the library: its decoder takes memory by these numbers.
 #pragma once
 
 #include <cstdint>

@@ -14,7 +14,7 @@ namespace petzval {
 enum class MeshoptMode : uint8_t { Attributes, Triangles, Indices };
 enum class MeshoptFilter : uint8_t { None, Octahedral, Quaternion, Exponential, Color };
 
-/// What a bufferView says of its stream.
+/// Layout of a stream, as its bufferView has it.
 struct MeshoptLayout {
     MeshoptMode mode = MeshoptMode::Attributes;
     MeshoptFilter filter = MeshoptFilter::None;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a file says of the program that wrote it: what that one leaves out, and its units. Facts
-// about Blender: its exporter, github.com/KhronosGroup/glTF-Blender-IO, versions 3.4 to 4.2.
+// Traces of the program that wrote a file: what that program leaves out, and its units. Facts about
+// Blender: its exporter, github.com/KhronosGroup/glTF-Blender-IO, versions 3.4 to 4.2.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,9 +10,9 @@
 
 namespace petzval {
 
-/// What probably was in the scene and is not in its file, a line each, with the sign of it and what
-/// to do; nothing where the file is not Blender's. root: checked JSON; shown: numbers of its nodes
-/// that the scene shows; has_sky: the scene names one.
+/// Losses by the exporter, a line each: what probably was in the scene and is not in its file, the
+/// sign of it, and what to do. None where the file is not Blender's. root: checked JSON; shown:
+/// numbers of its nodes that the scene shows; has_sky: the scene names one.
 [[nodiscard]] std::vector<std::string> lost_by_exporter(const nlohmann::json& root,
                                                         std::span<const int> shown, bool has_sky);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What exporters get wrong in the JSON of a glTF file and what has one plain meaning all the same
-// is put right before the checks see it: in silence where it is rounding, else with a warning that
-// names place, value and what was done. docs/design/refusals.md has the list. What has no plain
-// meaning stays as it is, and the checks refuse it.
+// Mending of a glTF file's JSON, before the checks see it. Mistakes of exporters that have one
+// plain meaning are put right: in silence where it is rounding, else with a warning that names
+// place, value and what was done. docs/design/refusals.md has the list. Mistakes without a plain
+// meaning stay as they are, and the checks refuse them.
 #pragma once
 
 #include "io/gltf/mend/json_editor.h"

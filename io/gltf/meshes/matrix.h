@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a node's matrix does to space.
+// Properties of a node's matrix.
 #pragma once
 
 #include <array>

@@ -13,7 +13,7 @@
 
 namespace petzval {
 
-/// What becomes of an extension.
+/// Support of an extension.
 enum class ExtensionUse : uint8_t {
     Rendered,      ///< as its text says
     Approximated,  ///< with a difference that is named
@@ -49,11 +49,11 @@ struct ExtensionInFile {
     [[nodiscard]] bool refused() const { return required && use == ExtensionUse::Needed; }
 };
 
-/// What to do about a file that cannot be shown without an extension that is not supported.
+/// Advice about a file that cannot be shown without an extension that is not supported.
 [[nodiscard]] std::string_view gltf_extension_advice(std::string_view name);
 
-/// What a buffer or a bufferView has of KHR_meshopt_compression, or of EXT_meshopt_compression: the
-/// second is a part of the first, with the same members.
+/// KHR_meshopt_compression of a buffer or a bufferView, or else EXT_meshopt_compression, which is a
+/// part of the first, with the same members.
 [[nodiscard]] std::optional<JsonCursor> meshopt_extension(const JsonCursor& owner);
 
 }  // namespace petzval

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is known of the properties of a glTF file: a row each. Ranges and defaults are those of glTF
-// 2.0 and of the texts of the extensions (github.com/KhronosGroup/glTF, extensions/2.0).
+// Table of the properties of a glTF file, a row each. Ranges and defaults are those of glTF 2.0 and
+// of the texts of the extensions (github.com/KhronosGroup/glTF, extensions/2.0).
 #pragma once
 
 #include <limits>
@@ -26,7 +26,7 @@ enum class PropertyKind : uint8_t {
     Alpha  ///< a slot: an object that names a texture, and what is read of it, as the two before
 };
 
-/// What is done with numbers that are beyond their range. Without a range nothing is done.
+/// Mending of numbers that are beyond their range. Without a range nothing is done.
 enum class Mending : uint8_t {
     Clamp,               ///< they are moved into it; an array that is one short gets a last one
     ClampButZero,        ///< likewise, but 0 has a meaning of its own

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What follows from the rows: finding, reading, and walking through the properties of a thing.
+// Use of the rows: finds, reads, and walks through the properties of an object.
 #pragma once
 
 #include <algorithm>

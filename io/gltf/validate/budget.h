@@ -13,10 +13,13 @@ inline constexpr uint64_t kInstanceBytes = 600;
 
 /// Limit of the memory that a glTF file may ask for: its accessors (zero-filled or over the same
 /// bytes again and again), vertices that thousands of primitives share, one image listed a million
-/// times. The limit is 256 MiB plus 16 times the bytes that the file and its side files hold: an
-/// honest file asks for about once its own size. What is decoded counts besides: 256 MiB plus 32
-/// times the file is its limit. Accessors may then ask for twice as much more: those that were
-/// decoded, and those in whose place they stand.
+/// times. An honest file asks for about once its own size. `file` is the size of the file with its
+/// side files, `decoded` the size of all that is decoded:
+///
+///     asked for   at most 256 MiB + 16 file + 2 decoded
+///     decoded     at most 256 MiB + 32 file
+///
+/// Decoded data count twice: as accessors, and as the accessors that they replace.
 class GltfBudget {
   public:
     /// Counts bytes that the file and its side files really hold.

@@ -3,10 +3,9 @@
 // throws InputError with the JSON path. They run in the order in which they stand here: later ones
 // rely on what earlier ones found.
 //
-// What has one plain meaning although the specification forbids it was put right before
-// (io/gltf/mend/mend.h), or is accepted here with a warning: docs/design/refusals.md has every
-// rule. The checks refuse what would be read out of bounds, would not end, or would show something
-// meaningless.
+// Mistakes with one plain meaning were put right before (io/gltf/mend/mend.h), or are accepted here
+// with a warning: docs/design/refusals.md has every rule. The checks refuse what would be read out
+// of bounds, would not end, or would show something meaningless.
 #pragma once
 
 #include <span>

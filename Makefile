@@ -21,6 +21,8 @@ gallery: program
 
 test: build
 	ctest --preset release --parallel $$(nproc)
+	@echo "The ten slowest tests, in seconds:"
+	@sed '/^---/,$$d' build/Testing/Temporary/CTestCostData.txt | sort -k3,3 -nr | awk 'NR <= 10 { printf "%7.1f  %s\n", $$3, $$1 }'
 
 # What reads files, under the address and undefined-behaviour sanitizers.
 test-files:

@@ -158,7 +158,7 @@ TEST_F(CliSignalPairs, ThoseIgnoredBeforeStayIgnored) {
     ASSERT_TRUE(wait_for_samples(render, 16 * 16));
     render.signal(SIGHUP);
     render.signal(SIGINT);
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    ASSERT_TRUE(wait_for_samples(render, 4 * 16 * 16)) << "it goes on";
     render.signal(SIGTERM);
     EXPECT_EQ(render.wait().exit_code, 130);
     EXPECT_EQ(nlohmann::json::parse(file_bytes(path("s.json"))).at("stopped_by"), "SIGTERM");

@@ -33,7 +33,7 @@ mapfile -t commands < <(for c in "" image lens; do
 known=$(for c in "${commands[@]}"; do "$petzval" help $c all; done |
     grep -oP '((?<=--)|(?<=^  ))[a-z][a-z-]*' | sort -u)
 [ "$(wc -l <<< "$known")" -gt 80 ] || missing "$petzval" "its help"
-foreign='build|install|prefix|preset|target|gtest_filter|tool|parallel|array|cpus-per-task|axis|scenes|peer|rows|seeds|timed-seeds|petzval|reference-spp|factory-startup|size|help|version|list-presets|formats|crop|out|printstats'
+foreign='build|install|prefix|preset|target|gtest_filter|tool|parallel|array|cpus-per-task|axis|scenes|peer|rows|seeds|timed-seeds|petzval|reference-spp|factory-startup|size|help|version|list-presets|formats|crop|out|printstats|mosaic'
 for page in "${current[@]}"; do
     for option in $(grep -oP '(?<![\w-])--\K[a-z][a-z_-]*\w|--method \K[a-z-]+' "$page" | sort -u); do
         grep -qx -- "$option" <<< "$known" || grep -qxE -- "$foreign" <<< "$option" || missing "$page" "--$option"

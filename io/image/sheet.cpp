@@ -25,7 +25,7 @@ void check_size(const std::string& sheet, const SheetSize& size, int64_t most_px
     if (std::max(size.width_px, size.height_px) <= most_px) return;
     throw InputError(sheet, "",
                      "would be {}x{} pixels, and a contact sheet has {} on a side at "
-                     "most; give it narrower cells, other columns or fewer pictures",
+                     "most; take smaller pictures, or fewer",
                      size.width_px, size.height_px, most_px);
 }
 

@@ -11,15 +11,11 @@
 #include "apps/cli/console.h"
 #include "apps/cli/field_options.h"
 #include "apps/cli/readers.h"
-#include "apps/commands/image/edit.h"
-#include "apps/commands/image/shown.h"
-#include "apps/request/file_names.h"
+#include "apps/commands/image/view.h"
 #include "apps/request/parse.h"
-#include "apps/state/render_facts.h"
 #include "io/base/error.h"
 #include "io/base/overwrite.h"
 #include "io/image/difference.h"
-#include "io/image/output.h"
 #include "io/image/picture_files.h"
 #include "io/image/spectral_layout.h"
 #include "io/image/symmetric_mse.h"
@@ -82,34 +78,6 @@ void add_diff(CLI::App& image) {
     diff->callback([options] { diff_command(*options); });
 }
 
-void add_view(CLI::App& image) {
-    struct ViewOptions {
-        std::string in, out;
-        ShownOptions shown;
-    };
-    auto options = std::make_shared<ViewOptions>();
-    CLI::App* view = image.add_subcommand("view", "write a linear picture as PNG or JPEG");
-    view->add_option("picture", options->in, "linear picture, as .exr")->required();
-    view->add_option("-o,--output", options->out, "picture to write, .png or .jpg")
-        ->required()
-        ->check(complaint_about_display_name);
-    add_shown_options(*view, options->shown);
-    view->callback([options] {
-        begin_showing(options->shown, options->out, {{"the picture to show", options->in}});
-        PictureBudget pictures = options->shown.order.render.scene.pictures();
-        Picture picture = read_picture(options->in, pictures);
-        if (picture.for_display)
-            print_notice(
-                fmt::format("warning: {} holds values for a display already, and goes "
-                            "through the view as if they were light",
-                            options->in));
-        settle_exposure(options->shown, picture);
-        const DisplayOptions& display = options->shown.display;
-        picture.metadata.emplace_back(kDisplayHash, display_hash(display_facts(display)));
-        write_output(options->out, picture, options->shown.display);
-    });
-}
-
 struct SpectrumOptions {
     std::string in, pixel, plot;
     RenderOrder order;
@@ -146,13 +114,11 @@ void add_spectrum(CLI::App& image) {
 }  // namespace
 
 void add_image_commands(CLI::App& app) {
-    CLI::App* image = app.add_subcommand("image", "compare, show and cut pictures");
+    CLI::App* image = app.add_subcommand("image", "compare and show pictures");
     image->require_subcommand(1);
     add_diff(*image);
     add_view(*image);
     add_spectrum(*image);
-    add_sheet(*image);
-    add_crop(*image);
 }
 
 }  // namespace petzval

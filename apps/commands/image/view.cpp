@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/commands/image/view.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include "apps/cli/console.h"
+#include "apps/cli/display_options.h"
+#include "apps/cli/field_options.h"
+#include "apps/request/file_names.h"
+#include "apps/setup/exposure.h"
+#include "apps/setup/input_files.h"
+#include "apps/state/render_facts.h"
+#include "io/image/output.h"
+#include "io/image/picture_files.h"
+
+namespace petzval {
+namespace {
+
+struct ViewRequest {
+    std::string in, out;
+    RenderOrder order;
+};
+
+/// Indices of R, G and B, or of Y as each of them: below 0 where there is none.
+std::array<int, 3> colours_of(const Picture& p) {
+    const int grey = channel_index(p, "Y");
+    const auto from = [&](const char* name) { return grey < 0 ? channel_index(p, name) : grey; };
+    return {from("R"), from("G"), from("B")};
+}
+
+/// Luminances of the pixels that show something, for exposure_for().
+std::vector<double> luminances_of(const Picture& p) {
+    std::vector<double> out;
+    const std::array<int, 3> at = colours_of(p);
+    if (*std::min_element(at.begin(), at.end()) < 0) return out;
+    const int alpha = channel_index(p, "A");
+    for (auto pixel = p.pixels.begin(); pixel != p.pixels.end(); pixel += p.channels.size()) {
+        const double light = double(luminance(Rgb(pixel[at[0]], pixel[at[1]], pixel[at[2]])));
+        const double opaque = alpha < 0 ? 1 : double(pixel[alpha]);
+        if (const double seen = light / opaque; opaque > 0 && seen > 0 && std::isfinite(seen))
+            out.push_back(seen);
+    }
+    return out;
+}
+
+void view_command(ViewRequest& o) {
+    DisplayRequest& asked = o.order.render.display;
+    const auto exposure = asked.exposure.value_or(ExposureRequest());
+    if (const std::string told = resolve_display(asked); !told.empty()) print_notice(told);
+    DisplayOptions display{exposure.ev, find_view(asked.view, asked.config), asked.config};
+    const std::vector<NamedFile> outputs{{"-o", o.out}};
+    refuse_overwriting(outputs, {{"the picture to show", o.in}});
+    refuse_overwriting(outputs, input_files(asked));
+    refuse_overwriting(outputs, own_files());
+    PictureBudget pictures = o.order.render.scene.pictures();
+    Picture picture = read_picture(o.in, pictures);
+    if (picture.for_display)
+        print_notice(
+            fmt::format("warning: {} holds values for a display already, and goes through the view "
+                        "as if they were light",
+                        o.in));
+    if (exposure.is_auto) {
+        display.exposure_ev = exposure_for(luminances_of(picture)).ev;
+        print_notice(fmt::format("exposure: {0} EV (--exposure {0})", display.exposure_ev));
+    }
+    picture.metadata.emplace_back(kDisplayHash, display_hash(display_facts(display)));
+    write_output(o.out, picture, display);
+}
+
+}  // namespace
+
+void add_view(CLI::App& image) {
+    auto options = std::make_shared<ViewRequest>();
+    CLI::App* view = image.add_subcommand("view", "write a linear picture as PNG or JPEG");
+    view->add_option("picture", options->in, "linear picture, as .exr")->required();
+    view->add_option("-o,--output", options->out, "picture to write, .png or .jpg")
+        ->required()
+        ->check(complaint_about_display_name);
+    for (const char* field : {"exposure", "view", "ocio", "max-memory"})
+        add_field_option(*view, options->order, field);
+    view->callback([options] { view_command(*options); });
+}
+
+}  // namespace petzval

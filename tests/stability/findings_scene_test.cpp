@@ -190,6 +190,19 @@ TEST_F(Findings, NestedVolumes) {
     expect_where("0.001 10 0.01 " + number(100 - 100 * apart / touching), {.relative = 0.05});
 }
 
+TEST_F(Findings, StacksOfCards) {
+    take(stacks_of_cards());
+    expect_column("cards", "1 2 4 8 9 16 32 100 1000");
+    // 4096 fixed samples: roundings change few of their choices.
+    expect_column("variance", "0.098 0.144 0.157 0.16 0.55 0.57 0.58 0.59 0.59", {.relative = 0.1});
+    for (size_t i = 0; i < rows(); ++i) {
+        const double error = std::sqrt(value(i, "variance") / 4096);
+        EXPECT_NEAR(value(i, "seen / closed form"), 1, 4 * error) << i;
+        EXPECT_LT(value(i, "rays"), 7) << i;
+        EXPECT_LT(value(i, "to the sun"), 3.2) << i;
+    }
+}
+
 TEST_F(Findings, ManySamples) {
     take(many_samples());
     ASSERT_EQ(rows(), 11u);

@@ -109,6 +109,7 @@ class Draws {
 [[nodiscard]] Finding planned_noise();
 [[nodiscard]] Finding chains_of_glass();
 [[nodiscard]] Finding nested_volumes();
+[[nodiscard]] Finding stacks_of_cards();
 [[nodiscard]] Finding many_samples();
 [[nodiscard]] Finding film_sums();
 
@@ -142,6 +143,7 @@ inline constexpr Sweep kSweeps[] = {
     {"planned-noise", planned_noise},
     {"chains-of-glass", chains_of_glass},
     {"nested-volumes", nested_volumes},
+    {"stacks-of-cards", stacks_of_cards},
     {"many-samples", many_samples},
     {"film-sums", film_sums},
 };

@@ -39,9 +39,9 @@ struct World {
 [[nodiscard]] World lamp_ahead(double side_m, double distance_m);
 
 /// Of the red radiance along rays: mean, variance of one sample over the mean squared, and the
-/// share of samples that brought any light.
+/// share of samples that brought any light. Rays of a sample: of the path, and to lights.
 struct Measured {
-    double mean = 0, relative_variance = 0, found = 0;
+    double mean = 0, relative_variance = 0, found = 0, rays = 0, shadow_rays = 0;
 };
 
 /// ray(sampler) is asked for every sample; 0 samples is an error of the caller.
@@ -61,7 +61,9 @@ template <class MakeRay>
         found += a != 0;
     }
     const double mean = sum / samples;
-    return {mean, mean > 0 ? squares / samples / (mean * mean) - 1 : HUGE_VAL, found / samples};
+    const auto per_sample = [&](uint64_t rays) { return static_cast<double>(rays) / samples; };
+    return {mean, mean > 0 ? squares / samples / (mean * mean) - 1 : HUGE_VAL, found / samples,
+            per_sample(stats.camera_rays + stats.bounce_rays), per_sample(stats.shadow_rays)};
 }
 
 }  // namespace petzval::stability

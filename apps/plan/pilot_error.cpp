@@ -209,7 +209,8 @@ PilotNoise noise_of(const Pilot& pilot, const PilotModel& model, const PilotScal
             const double v = pilot.looks().looks[p].weight * mean;
             sum += v;
             squares += v * v;
-            out.blocks[hash32(static_cast<uint32_t>(p)) % out.blocks.size()] += v;
+            out.blocks[hash32(static_cast<uint32_t>(p)) % out.blocks.size()] +=
+                pilot.looks().looks[p].weight * std::min(mean, kMostSymmetricMse);
         }
         out.variances.push_back(mean_of(values, pilot.looks().looks));
         out.parts = squares > 0 ? sum * sum / squares : 0;

@@ -44,8 +44,8 @@ struct PilotNoise {
     /// Number of equal parts that would spread the last of them as unevenly: replicates of pixels
     /// that hold it. (sum of v)^2 / sum of v^2: Kish 1965, "Survey Sampling", section 11.7.
     double parts = 0;
-    /// Contributions of the looks to the last of them, in blocks that a hash spreads over the
-    /// frame.
+    /// Contributions of the looks to the last of them, each no more than a pixel can be off, in
+    /// blocks that a hash spreads over the frame.
     std::array<double, 16> blocks{};
 };
 /// Median over the blocks of the noise of one over that of the other: a few bright samples, which

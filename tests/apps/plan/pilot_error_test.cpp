@@ -91,6 +91,17 @@ TEST_F(PilotErrors, BlocksAddUpToTheNoise) {
     EXPECT_NEAR(sum, noise.variances.back().mean, 1e-12);
 }
 
+// However bright the samples of a look are, it counts no more than a pixel can be off.
+TEST_F(PilotErrors, BlocksHoldNoMoreThanAPixelCanBeOff) {
+    const Pilot pilot(request_.size, 500, executor_);
+    const auto bright = sky(pilot, 1, true), dark = sky(pilot, 1e-3f, false);
+    const PilotNoise noise = noise_of(pilot, *bright, {dark.get(), dark.get(), 1e-3});
+    EXPECT_GT(noise.variances.back().mean, 1e3);
+    double sum = 0;
+    for (const double block : noise.blocks) sum += block;
+    EXPECT_NEAR(sum, kMostSymmetricMse, 0.05);
+}
+
 // Twice as bright is as wrong as half as bright.
 TEST_F(PilotErrors, IsSymmetric) {
     const Pilot pilot(request_.size, 500, executor_);

@@ -291,8 +291,109 @@ TEST(Blend, LinesOfAHundredThousandEnd) {
     world.scene.sky = Sky::uniform(Rgb(1.f));
     world.finish();
     const double left = std::pow(1 - double{1e-5f}, kCount);
-    const Mean e = seen(world, 64);
+    const Mean e = seen(world, 4);
     EXPECT_TRUE(test::agrees(e, 2 * (1 - left) + left, 1e-5)) << e;
+
+    // A floor, by the sun through them and by what they show.
+    world.scene.sky = {};
+    place(world.scene, sheet(0), diffuse_material(0.8f));
+    world.scene.lights.push_back(SunLight{unit(V3f(0, -3, -4)), Rgb(10.f)});
+    world.finish();
+    const Mean lit =
+        estimate(world, {}, 2, [](V2f) { return ray_to(V3f(.7f, .1f, .9f), V3f(.3f, 0, 0)); });
+    const double due = 0.8 * (10 * 0.8 / std::numbers::pi * left + 2 * (1 - left));
+    EXPECT_TRUE(test::agrees(lit, due, 1e-5)) << lit << ", not " << due;
+}
+
+// White; the left half covers, the right one does not.
+Image half_covered() {
+    Image out;
+    out.width = out.height = 16;
+    std::vector<uint8_t> texels;
+    for (int i = 0; i < 256; ++i)
+        texels.insert(texels.end(), {255, 255, 255, uint8_t(i % 16 < 8 ? 255 : 0)});
+    out.texels = std::move(texels);
+    return out;
+}
+
+// Holes, but for the last card.
+TEST(Mask, LinesOfAHundredThousandEnd) {
+    constexpr int kCount = 100'000;
+    World world;
+    Material card = plain(2, 1);
+    card.alpha_mode = AlphaMode::Mask;
+    card.base_color_texture.image = 0;
+    world.scene.images.push_back(half_covered());
+    for (int i = 0; i < kCount; ++i) {
+        Mesh mesh = sheet(1 + 7e-5f * float(i));
+        const float u = i == 0 ? 0.25f : 0.75f;  // covered, or not
+        mesh.uv[0] = {V2f(u, 0), V2f(u + 0.1f, 0), V2f(u + 0.1f, 1), V2f(u, 1)};
+        place(world.scene, mesh, card);
+    }
+    world.scene.sky = Sky::uniform(Rgb(1.f));
+    world.finish();
+    EXPECT_EQ(seen(world, 1).value, 2);
+    EXPECT_EQ(world.bvh->passage(from_above()).left, 0.f);
+    Ray until_the_last = from_above();
+    until_the_last.t_max = 7.99f;
+    EXPECT_EQ(world.bvh->passage(until_the_last).left, 1.f);
+}
+
+// Of a sheet whose back is a reversed copy, the camera sees each side once: backs are culled. Where
+// both are double-sided, both are seen.
+TEST(Blend, ReversedCopiesShowEachSideOnce) {
+    for (const bool double_sided : {false, true})
+        for (const bool one_mesh : {false, true})
+            for (const bool below : {false, true}) {
+                World world;
+                Material m = plain(2, 0.4f);
+                m.double_sided = double_sided;
+                Mesh there = sheet(1), back = there;
+                for (auto& t : back.triangles) std::swap(t[1], t[2]);
+                if (one_mesh) test::append(there, back);
+                place(world.scene, there, m);
+                if (!one_mesh) place(world.scene, back, m);
+                world.scene.sky = Sky::uniform(Rgb(1.f));
+                world.finish();
+                const Mean e = estimate(world, {}, 16, [&](V2f) {
+                    return ray_to(V3f(0.7f, 0.1f, below ? -9 : 9), V3f(0.3f, 0, 1));
+                });
+                const double left = double_sided ? 0.36 : 0.6;
+                EXPECT_TRUE(test::agrees(e, 2 * (1 - left) + left, 1e-5))
+                    << double_sided << one_mesh << below << ": " << e;
+            }
+}
+
+// Whatever a surface is made of, it counts by its coverage before a sky that is seen beside it.
+TEST(Blend, LayersCountByTheCoverage) {
+    const auto lit = [](Material m, float alpha) {
+        World world;
+        place(world.scene, sheet(1), alpha < 1 ? blended(m, alpha) : m);
+        world.scene.sky = Sky::uniform(Rgb(1.f));
+        world.scene.lights.push_back(SunLight{unit(V3f(0, -3, -4)), Rgb(10.f)});
+        world.finish();
+        return seen(world, 1024, 4);
+    };
+    const auto with = [](auto change) {
+        Material m = diffuse_material(0.5f);
+        change(m);
+        return m;
+    };
+    const auto film = [](Material& m) {
+        m.iridescence = 1, m.film_ior = 1.8f, m.specular = 1, m.roughness = 0.4f;
+    };
+    const auto coat = [](Material& m) { m.coat = 1, m.coat_roughness = 0.3f; };
+    for (const Material& m :
+         {with(film), with(coat), with([&](Material& m) { film(m), coat(m); }),
+          with([](Material& m) { m.metallic = 1, m.roughness = 0.2f; }),
+          with([](Material& m) { m.sheen_color = Rgb(0.8f), m.sheen_roughness = 0.5f; })}) {
+        const Mean whole = lit(m, 1);
+        for (const float alpha : {0.1f, 0.6f}) {
+            const Mean e = lit(m, alpha), due(alpha * whole.value, alpha * whole.error);
+            EXPECT_TRUE(test::agrees(e - due, 1 - double{alpha}, 1e-5)) << alpha << ": " << e;
+            EXPECT_LT(e.error, 0.01 * e.value);
+        }
+    }
 }
 
 TEST(Blend, OddAlphaIsClamped) {

@@ -15,7 +15,7 @@ float coverage(const Scene& scene, uint32_t instance, uint32_t triangle, V2f bar
         const V2f uv = mesh.uv_at(triangle, barycentric, slot.uv_set);
         alpha *= sample_texture(scene.images, slot, uv)[3];
     }
-    if (!mesh.colours.empty()) alpha *= mesh.colour_at(instance, triangle, barycentric).w;
+    if (!mesh.colours.empty()) alpha *= mesh.alpha_at(instance, triangle, barycentric);
     if (material.alpha_mode == AlphaMode::Mask) return alpha >= material.alpha_cutoff ? 1.f : 0.f;
     return clamp_unit(alpha);
 }

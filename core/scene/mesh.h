@@ -57,10 +57,21 @@ struct Mesh {
     }
     /// Colour at a point of a triangle of an instance, where there are colours; b as above.
     [[nodiscard]] V4f colour_at(uint32_t instance, uint32_t triangle, V2f b) const {
+        return interpolate(colours, colours_of(instance, triangle), b);
+    }
+    /// Alpha of that colour: exactly that of the corners where they agree, as it may be a cutoff.
+    [[nodiscard]] float alpha_at(uint32_t instance, uint32_t triangle, V2f b) const {
+        const auto [i, j, k] = colours_of(instance, triangle);
+        const float alpha = colours[i].w;
+        return alpha + (colours[j].w - alpha) * b.x + (colours[k].w - alpha) * b.y;
+    }
+
+  private:
+    [[nodiscard]] std::array<uint32_t, 3> colours_of(uint32_t instance, uint32_t triangle) const {
         std::array<uint32_t, 3> corner = triangles[triangle];
         if (colours_from != kByVertex)
             for (uint32_t& c : corner) c = 2 * (instance - colours_from) + c % 2;
-        return interpolate(colours, corner, b);
+        return corner;
     }
 };
 

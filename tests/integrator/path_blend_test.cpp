@@ -339,6 +339,22 @@ TEST(Mask, LinesOfAHundredThousandEnd) {
     EXPECT_EQ(world.bvh->passage(until_the_last).left, 1.f);
 }
 
+// Colours of vertices of alpha 1: the factor is the cutoff to the last bit, everywhere.
+TEST(Mask, IsWholeAtItsCutoff) {
+    World world;
+    Material card = plain(2, 0.3f);
+    card.alpha_mode = AlphaMode::Mask;
+    card.alpha_cutoff = 0.3f;
+    Mesh mesh = sheet(1);
+    mesh.colours.assign(4, V4f(1, 1, 1, 1));
+    place(world.scene, mesh, card);
+    world.finish();
+    for (uint32_t i = 0; i < 1000; ++i) {
+        const V3f to(to_unit_float(hash32(i, 1)), to_unit_float(hash32(i, 2)), 1);
+        ASSERT_EQ(world.bvh->passage(ray_to(V3f(0.7f, 0.1f, 9), to)).left, 0.f) << i;
+    }
+}
+
 // Of a sheet whose back is a reversed copy, the camera sees each side once: backs are culled. Where
 // both are double-sided, both are seen.
 TEST(Blend, ReversedCopiesShowEachSideOnce) {

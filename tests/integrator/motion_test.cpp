@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/scene/lamp.h"
-#include "integrator/path.h"
+#include "integrator/path/path.h"
 #include "tests/support/blurred.h"
 
 namespace petzval {

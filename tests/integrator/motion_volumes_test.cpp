@@ -3,8 +3,8 @@
 // meet.
 #include <gtest/gtest.h>
 
-#include "integrator/boundary.h"
-#include "integrator/start_volumes.h"
+#include "integrator/path/boundary.h"
+#include "integrator/path/start_volumes.h"
 #include "tests/support/moving.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"

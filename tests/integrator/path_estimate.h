@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/spectrum/colour.h"
-#include "integrator/path.h"
+#include "integrator/path/path.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 

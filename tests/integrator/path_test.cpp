@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "integrator/path.h"
+#include "integrator/path/path.h"
 
 #include <numbers>
 

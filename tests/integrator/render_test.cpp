@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "integrator/render.h"
+#include "integrator/render/render.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <set>
 
 #include "camera/models/thin_lens.h"
-#include "integrator/executor.h"
+#include "integrator/render/executor.h"
 #include "tests/support/traced_world.h"
 
 namespace petzval {

@@ -10,7 +10,7 @@
 #include "camera/models/lens_camera.h"
 #include "core/shading/bsdf.h"
 #include "core/shading/surface.h"
-#include "integrator/path.h"
+#include "integrator/path/path.h"
 #include "io/lens/lens_file.h"
 #include "tests/stability/sweeps.h"
 #include "tests/stability/world.h"

@@ -7,7 +7,7 @@
 #include "core/light/light_choice.h"
 #include "core/scene/scene.h"
 #include "core/traversal/bvh.h"
-#include "integrator/path.h"
+#include "integrator/path/path.h"
 
 namespace petzval::stability {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "integrator/render.h"
+#include "integrator/render/render.h"
 
-#include "integrator/executor.h"
+#include "integrator/render/executor.h"
 
 namespace petzval {
 

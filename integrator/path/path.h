@@ -12,8 +12,8 @@
 #include "core/scene/scene.h"
 #include "core/shading/surface.h"
 #include "core/traversal/bvh.h"
-#include "integrator/path_options.h"
-#include "integrator/stats.h"
+#include "integrator/path/path_options.h"
+#include "integrator/path/stats.h"
 
 namespace petzval {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "integrator/light_pilot.h"
+#include "integrator/prepass/light_pilot.h"
 
-#include "integrator/pilot_pixels.h"
-#include "integrator/render.h"
+#include "integrator/prepass/pilot_pixels.h"
+#include "integrator/render/render.h"
 
 namespace petzval {
 namespace {

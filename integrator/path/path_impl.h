@@ -8,13 +8,13 @@
 #include "core/scene/motion.h"
 #include "core/shading/surface.h"
 #include "core/spectrum/colour.h"
-#include "integrator/blend.h"
-#include "integrator/boundary.h"
-#include "integrator/front_at_back.h"
-#include "integrator/layers.h"
-#include "integrator/panes.h"
-#include "integrator/path.h"
-#include "integrator/start_volumes.h"
+#include "integrator/path/blend.h"
+#include "integrator/path/boundary.h"
+#include "integrator/path/front_at_back.h"
+#include "integrator/path/layers.h"
+#include "integrator/path/panes.h"
+#include "integrator/path/path.h"
+#include "integrator/path/start_volumes.h"
 
 namespace petzval {
 

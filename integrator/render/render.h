@@ -10,10 +10,10 @@
 #include "camera/camera.h"
 #include "core/film/film.h"
 #include "core/spectrum/colour.h"
-#include "integrator/path.h"
-#include "integrator/render_job.h"
-#include "integrator/tiles.h"
-#include "integrator/velocity.h"
+#include "integrator/path/path.h"
+#include "integrator/render/render_job.h"
+#include "integrator/render/tiles.h"
+#include "integrator/render/velocity.h"
 
 namespace petzval {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "integrator/target_pilot.h"
+#include "integrator/prepass/target_pilot.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/film/film.h"
 #include "core/spectrum/colour.h"
-#include "integrator/path.h"
+#include "integrator/path/path.h"
 
 namespace petzval {
 namespace {

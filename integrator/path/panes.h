@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "core/shading/surface.h"
-#include "integrator/stats.h"
+#include "integrator/path/stats.h"
 
 namespace petzval {
 

@@ -8,12 +8,10 @@
 
 #include "core/film/film.h"
 #include "core/light/light_choice.h"
-#include "core/sampling/sampler.h"
-#include "core/scene/scene.h"
-#include "core/shading/surface.h"
+#include "core/light/light_sampling.h"
 #include "core/traversal/bvh.h"
 #include "integrator/path/path_options.h"
-#include "integrator/path/stats.h"
+#include "integrator/path/path_state.h"
 
 namespace petzval {
 
@@ -28,43 +26,71 @@ concept RayCaster = requires(const T t, const Ray& r, const PassedBlends* passed
     { t.all_hits(r) } -> std::same_as<std::vector<Hit>>;
 };
 
+/// Camera ray that a path begins with, and what its camera says of it.
+struct PathStart {
+    Ray ray;
+    m4 lanes{-1, -1, -1, -1};  ///< bands that share the ray; the others get 0
+    /// The ray depends on which lane is the hero (Bands::hero), which must then decide nothing
+    /// else.
+    bool hero_decided = true;
+    /// Chance, above 0, that the path goes on from where it is scattered far and wide; then it
+    /// counts 1 / chance times.
+    float continue_probability = 1;
+    bool fills_layers = false;  ///< the sample's layers are wanted, of all lanes
+};
+
 template <RayCaster Caster = Bvh>
 class PathTracer {
   public:
-    /// Scene, caster and lights must outlive the tracer.
+    /// Scene, caster and lights must outlive the tracer. light_records: gets what each light sample
+    /// brings, for a pilot of the light choice, in one thread.
     PathTracer(const Scene& scene, const Caster& caster, const LightChoice& lights,
-               const PathOptions& options)
-        : scene_(scene), caster_(caster), lights_(lights), options_(options) {}
+               const PathOptions& options, std::vector<LightRecord>* light_records = nullptr)
+        : scene_(scene),
+          caster_(caster),
+          lights_(lights),
+          options_(options),
+          light_records_(light_records) {}
 
-    /// Estimate of the radiance that arrives along a camera ray, in `lanes` of the bands, 0 in the
-    /// others. The sample's alpha and layers are filled in on the way; aovs: layers are wanted, of
-    /// all lanes. led: the ray depends on which lane leads. rest: chance, above 0, that a path goes
-    /// on from where it is scattered far and wide; then it counts 1 / rest times. Pure but for the
-    /// counts.
-    [[nodiscard]] f4 radiance(const Ray&, const Bands&, const Sampler&, bool aovs, FilmSample&,
-                              PathStats&, m4 lanes = m4{-1, -1, -1, -1}, bool led = true,
-                              float rest = 1.f) const;
+    /// Estimate of the radiance that arrives along a camera ray, in its lanes. The sample's alpha
+    /// and layers are filled in on the way. Pure but for the counts and records.
+    [[nodiscard]] f4 radiance(const PathStart&, const Bands&, const Sampler&, FilmSample&,
+                              PathStats&) const;
 
   private:
-    struct Vertex;
-    struct Scattering;
+    enum class Step : uint8_t { Arrived, GoOn, End };
+    struct FoundLight;
     struct DrawnLight;
-    [[nodiscard]] f4 visible_background(const Ray&, const Bands&, FilmSample&) const;
-    [[nodiscard]] f4 escaped(const Ray&, const Bands&, const Vertex& last,
-                             ChanceFinds& by_chance) const;
-    [[nodiscard]] f4 sun_discs(const Ray&, const Bands&, const Vertex& last, bool in_view,
-                               ChanceFinds&) const;
-    [[nodiscard]] f4 emitted(const Surface&, Rgb, const Bands&, const Vertex& last) const;
-    [[nodiscard]] std::optional<DrawnLight> draw_light(const LightReceiver&,
-                                                       const Sampler::VertexNumbers&, const Bands&,
-                                                       float time) const;
-    [[nodiscard]] f4 light_on_smooth(const Scattering&, const DrawnLight&) const;
-    [[nodiscard]] f4 direct_light(const Scattering&, const DrawnLight&) const;
+    struct Scattering;
+    struct Onward;
+
+    // path_steps.h
+    [[nodiscard]] PathState begun(const PathStart&, const Bands&, const Sampler&, PathStats&) const;
+    [[nodiscard]] std::optional<Hit> next_hit(PathState&) const;
+    [[nodiscard]] Step advance_to_surface(PathState&, Arrival&) const;
+    [[nodiscard]] std::optional<Onward> scatter(PathState&, const Scattering&,
+                                                const Sampler::VertexNumbers&) const;
+    [[nodiscard]] bool survives(PathState&, float u) const;
+    static void leave(PathState&, const Scattering&, const Onward&);
+    // found_light.h
+    void add_background(PathState&, FilmSample&) const;
+    [[nodiscard]] f4 visible_background(const PathState&, FilmSample&) const;
+    [[nodiscard]] FoundLight sky_light(const PathState&) const;
+    [[nodiscard]] FoundLight sun_discs(const PathState&) const;
+    [[nodiscard]] FoundLight emitted(const PathState&, const Surface&, const ShadingInput&) const;
+    // sampled_light.h
+    [[nodiscard]] std::optional<DrawnLight> draw_light(const PathState&, const LightReceiver&,
+                                                       const Sampler::VertexNumbers&) const;
+    [[nodiscard]] f4 sampled_light(const PathState&, const Scattering&,
+                                   const std::optional<DrawnLight>&) const;
+    [[nodiscard]] f4 light_on_smooth(const PathState&, const Scattering&, const DrawnLight&) const;
+    [[nodiscard]] f4 direct_light(const PathState&, const Scattering&, const DrawnLight&) const;
 
     const Scene& scene_;
     const Caster& caster_;
     const LightChoice& lights_;
     PathOptions options_;
+    std::vector<LightRecord>* light_records_;
 };
 
 extern template class PathTracer<Bvh>;

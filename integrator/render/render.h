@@ -2,201 +2,14 @@
 // Rendering of a job to a film: progressive passes over tiles.
 #pragma once
 
-#include <array>
-#include <chrono>
 #include <optional>
 #include <vector>
 
-#include "camera/camera.h"
-#include "core/film/film.h"
-#include "core/spectrum/colour.h"
-#include "integrator/path/path.h"
 #include "integrator/render/render_job.h"
+#include "integrator/render/sample_batch.h"
 #include "integrator/render/tiles.h"
-#include "integrator/render/velocity.h"
 
 namespace petzval {
-
-/// Seed of one of the replicates: a hash of the pair.
-[[nodiscard]] inline uint32_t replicate_seed(uint32_t seed, uint32_t replicate) {
-    return hash32(seed, replicate + 1);
-}
-
-/// Factor that makes no number of a colour larger than a limit in magnitude, 1 where none is. Of an
-/// infinite colour NaN comes, which the film counts.
-[[nodiscard]] inline float clamping_share(const Rgb& colour, float limit) {
-    const float largest = std::max({std::abs(colour[0]), std::abs(colour[1]), std::abs(colour[2])});
-    return largest > limit ? limit / largest : 1.f;
-}
-
-/// Samples whose camera rays are found together: what the film gets of each is a pure function of
-/// the job and its id. Holds as many as a camera takes at once; `render` must be called for those
-/// that are left.
-template <class Tracer>
-class SampleBatch {
-  public:
-    /// All must outlive it. film: nullptr where only the paths' counts and records are wanted.
-    SampleBatch(const Tracer& tracer, const Camera& camera, const RenderJob& job, V2i frame_px,
-                Film* film, PathStats& stats)
-        : tracer_(tracer),
-          camera_(camera),
-          job_(job),
-          frame_px_(frame_px),
-          film_(film),
-          stats_(stats) {}
-
-    void add(SampleId id) {
-        ids_[size_++] = id;
-        if (size_ == kMostFilmPoints) render();
-    }
-    /// Renders the samples that are there. The name by which profilers know the sampling: it is
-    /// called for eight samples at once, so that not to inline it costs nothing.
-    [[gnu::noinline]] void render() {
-        if (size_ == 0) return;
-        stats_.timing = job_.timing && is_timed(ids_[0]);
-        stats_.samples += size_;
-        if (stats_.timing) stats_.timed_samples += size_;
-        const SectionTimer whole(stats_, TimedSection::Sample);
-        find_camera_rays();
-        for (size_t i = 0; i < size_; ++i) trace(i);
-        size_ = 0;
-    }
-
-  private:
-    /// One batch in sixteen, spread over pixels and samples.
-    [[nodiscard]] static bool is_timed(SampleId first) {
-        const uint32_t pixel =
-            static_cast<uint32_t>(first.x) + 0x9e3779b9u * static_cast<uint32_t>(first.y);
-        return hash32(hash32(pixel), first.index) % 16 == 0;
-    }
-    void find_camera_rays();
-    void find_target_rays();
-    void find_times();
-    void trace(size_t i);
-    [[nodiscard]] f4 to_targets(size_t i);
-
-    const Tracer& tracer_;
-    const Camera& camera_;
-    const RenderJob& job_;
-    V2i frame_px_;
-    Film* film_;
-    PathStats& stats_;
-    size_t size_ = 0;
-    std::array<SampleId, kMostFilmPoints> ids_;
-    std::array<FilmPoint, kMostFilmPoints> points_;
-    std::array<Bands, kMostFilmPoints> bands_;
-    std::array<CameraSample, kMostFilmPoints> seen_, to_targets_;
-};
-
-template <class Tracer>
-void SampleBatch<Tracer>::find_camera_rays() {
-    const SectionTimer timer(stats_, TimedSection::Camera);
-    const V2f size(frame_px_);
-    for (size_t i = 0; i < size_; ++i) {
-        const SampleId id = ids_[i];
-        const uint32_t replicate = id.index % job_.replicates;
-        const Sampler sampler(
-            job_.sampler, job_.replicates == 1 ? job_.seed : replicate_seed(job_.seed, replicate),
-            {id.x, id.y, id.index / job_.replicates});
-        bands_[i] = job_.observer.spectral() ? job_.observer.draw(sampler.get1(Dim::Wavelength))
-                                             : Bands::rgb();
-        const V2f offset = job_.filter.sample(sampler.get2(Dim::Film));
-        const V2f at = V2f(id.x + 0.5f, id.y + 0.5f) + offset;
-        points_[i] = {at / size, sampler, {&job_.filter, offset, size}};
-    }
-    camera_.sample_all({points_.data(), size_}, {bands_.data(), size_}, {seen_.data(), size_});
-    if (camera_.targets()) find_target_rays();
-    if (camera_.shutter()) find_times();
-}
-
-template <class Tracer>
-void SampleBatch<Tracer>::find_target_rays() {
-    std::array<TargetList, kMostFilmPoints> lists;
-    bool any = false;
-    for (size_t i = 0; i < size_; ++i) {
-        lists[i] = camera_.targets()->at(points_[i].film);
-        to_targets_[i] = {};
-        any = any || !lists[i].empty();
-    }
-    if (any)
-        camera_.sample_targets({points_.data(), size_}, {bands_.data(), size_},
-                               {lists.data(), size_}, {to_targets_.data(), size_});
-}
-
-// Draws a time for each sample, and moves its rays to where the camera stands then.
-template <class Tracer>
-void SampleBatch<Tracer>::find_times() {
-    const Shutter& shutter = *camera_.shutter();
-    for (size_t i = 0; i < size_; ++i) {
-        const float time = shutter.time(points_[i].sampler.get1(Dim::Time));
-        const auto move = [&](CameraSample& sample) {
-            for (CameraPath& path : sample) {
-                path.ray.time = time;
-                shutter.move(path.ray);
-            }
-        };
-        move(seen_[i]);
-        if (camera_.targets()) move(to_targets_[i]);
-    }
-}
-
-template <class Tracer>
-void SampleBatch<Tracer>::trace(size_t i) {
-    const SampleId id = ids_[i];
-    const Bands& bands = bands_[i];
-    const CameraSample& seen = seen_[i];
-    const uint64_t vertices_before = stats_.vertices;
-    stats_.lens_lanes += seen.lanes;
-    FilmSample sample;
-    f4 sum{};
-    float behind = 0.f;  // weight of the rays that left the scene, over all lanes
-    bool layers = film_ && !film_->aovs().empty();  // layers are still to be filled in
-    for (const CameraPath& path : seen) {
-        FilmSample other;
-        FilmSample& of_path = path.fills_layers ? sample : other;
-        of_path.alpha = 0.f;
-        sum += path.weight * path.share *
-               tracer_.radiance(path.ray, bands, points_[i].sampler, layers && path.fills_layers,
-                                of_path, stats_, path.lanes, path.led);
-        if (!path.fills_layers) continue;
-        layers = false;
-        behind += hsum(zero_off(path.lanes, path.weight)) * (1.f - sample.alpha);
-    }
-    if (camera_.targets()) sum += to_targets(i);
-    if (!film_) return;
-    // Light that a lens keeps from the film is black, not transparent.
-    sample.alpha = 1.f - behind / (seen.exposure * static_cast<float>(lane_count(bands.on)));
-    sample.colour = to_rgb(sum, bands);
-    if (job_.clamp_nits)
-        if (const float share = clamping_share(sample.colour, *job_.clamp_nits); share < 1) {
-            sample.colour = sample.colour * share;
-            sum *= splat(share);
-        }
-    if (job_.velocity && sample.hit)
-        sample.aov[static_cast<size_t>(Aov::Velocity)] =
-            job_.velocity->at(sample.first, points_[i].film * V2f(frame_px_));
-    sample.aov[static_cast<size_t>(Aov::Cost)] =
-        V3f(static_cast<float>(stats_.vertices - vertices_before), 0, 0);
-    if (film_->spectral())
-        film_->add(id.x, id.y, id.index, sample,
-                   {id.index % job_.replicates, sum, job_.observer.to_xyz(sum, bands)}, bands);
-    else
-        film_->add(id.x, id.y, id.index, sample);
-}
-
-template <class Tracer>
-f4 SampleBatch<Tracer>::to_targets(size_t i) {
-    f4 sum{};
-    for (const CameraPath& path : to_targets_[i]) {
-        FilmSample other;
-        ++stats_.target_rays;
-        // What surfaces reflect is found by ordinary rays as well: it is worth the share's effort.
-        sum += path.weight * path.share *
-               tracer_.radiance(path.ray, bands_[i], points_[i].sampler, false, other, stats_,
-                                path.lanes, path.led, path.share);
-    }
-    return sum;
-}
 
 /// Renders the samples [first, end) of one pixel: each a pure function of job, pixel and index.
 template <class Tracer>
@@ -286,7 +99,6 @@ RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob&
 }
 
 class TbbExecutor;
-extern template class SampleBatch<PathTracer<>>;
 extern template RenderResult render(const PathTracer<>&, const Camera&, const RenderJob&, Film&,
                                     TbbExecutor&, RenderMonitor&);
 

@@ -29,7 +29,7 @@ struct Tracing {
         FilmSample out;
         PathStats stats;
         const Sampler sampler(SamplerKind::Owen, 3, {0, 0, index});
-        return tracer->radiance(ray, Bands::rgb(), sampler, false, out, stats)[1];
+        return tracer->radiance({ray}, Bands::rgb(), sampler, out, stats)[1];
     }
 };
 

@@ -43,13 +43,15 @@ def profile(program, options, out):
 
 
 def costs(out):
-    """Instructions of each file of the product, and of each of its lines that ran."""
+    """Counts of instructions by file of the product and by line, of those that ran."""
     lines = collections.defaultdict(collections.Counter)
     name, skip = "", False
     for row in open(out):
         if row.startswith(("fl=", "fi=", "fe=")):
             found = PRODUCT.match(row[3:].strip())
-            name = found.group(1) if found and (ROOT / found.group(1)).is_file() else ""
+            name = found.group(1) if found else ""
+            if name and not (ROOT / name).is_file():
+                sys.exit(f"{name} is not there any more: build the program again")
         elif row.startswith("calls="):
             skip = True  # the next row has what the called function took
         elif row[0].isdigit():

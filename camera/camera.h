@@ -38,12 +38,13 @@ struct FilmPoint {
 struct CameraPath {
     Ray ray;
     f4 weight;  ///< radiance along the ray times this is the film's estimate
-    /// Share of the weight that counts for light: rays to targets bring the rest.
-    /// Coverage and layers take the whole weight.
-    float share = 1;
+    /// Weight of multiple importance sampling, on the light: rays to targets bring the rest.
+    /// Coverage and layers do without.
+    float mis_weight = 1;
     m4 lanes;  ///< bands that share this ray
-    /// The ray depends on which lane leads (Bands::lead), which must then decide nothing else.
-    bool led = false;
+    /// The ray depends on which lane is the hero (Bands::hero), which must then decide nothing
+    /// else.
+    bool hero_decided = false;
     /// Fills the sample's alpha; the first path that does fills its layers too.
     bool fills_layers = true;
 };

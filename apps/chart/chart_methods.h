@@ -10,7 +10,7 @@
 
 #include "apps/request/option_names.h"
 #include "apps/setup/render_setup.h"
-#include "integrator/render_job.h"
+#include "integrator/render/render_job.h"
 
 namespace petzval {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "apps/setup/develop.h"
-#include "integrator/render.h"
+#include "integrator/render/render.h"
 #include "io/image/difference.h"
 #include "io/image/picture_files.h"
 #include "io/image/symmetric_mse.h"

@@ -10,7 +10,7 @@
 #include "apps/chart/chart_methods.h"
 #include "apps/chart/chart_points.h"
 #include "core/film/film.h"
-#include "integrator/executor.h"
+#include "integrator/render/executor.h"
 #include "io/base/clock.h"
 #include "io/base/error.h"
 #include "io/image/flip.h"

@@ -6,7 +6,7 @@
 #include <csignal>
 #include <thread>
 
-#include "integrator/render_job.h"
+#include "integrator/render/render_job.h"
 
 namespace petzval {
 

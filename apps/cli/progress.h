@@ -11,7 +11,7 @@
 #include "apps/cli/console.h"
 #include "apps/cli/progress_text.h"
 #include "apps/request/render_order.h"
-#include "integrator/render_job.h"
+#include "integrator/render/render_job.h"
 
 namespace petzval {
 

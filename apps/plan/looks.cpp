@@ -6,7 +6,7 @@
 #include <set>
 
 #include "core/sampling/distribution.h"
-#include "integrator/pilot_pixels.h"
+#include "integrator/prepass/pilot_pixels.h"
 
 namespace petzval {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "apps/plan/plan_types.h"
-#include "integrator/executor.h"
+#include "integrator/render/executor.h"
 
 namespace petzval {
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/sampling/sampler.h"
-#include "integrator/render.h"
+#include "integrator/render/render.h"
 #include "io/base/clock.h"
 
 namespace petzval {
@@ -66,7 +66,7 @@ double PilotModel::lens_rays() const {
 }
 
 // The search for a ray through a traced lens from one start: about what the pilot of the targets
-// counts for it (kTracedCost and kStartCost in integrator/target_pilot.cpp).
+// counts for it (kTracedCost and kStartCost in integrator/prepass/target_pilot.cpp).
 double PilotModel::rays_to_find_targets() const {
     constexpr double kSearch = 12;
     if (stats_.lens_lanes.drawn == 0) return 0;

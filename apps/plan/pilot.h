@@ -10,9 +10,9 @@
 #include "apps/plan/estimate.h"
 #include "apps/plan/looks.h"
 #include "apps/setup/render_setup.h"
-#include "integrator/executor.h"
-#include "integrator/path.h"
-#include "integrator/render_job.h"
+#include "integrator/render/executor.h"
+#include "integrator/path/path.h"
+#include "integrator/render/render_job.h"
 
 namespace petzval {
 

@@ -11,7 +11,7 @@
 #include "apps/plan/mode_choice.h"
 #include "apps/plan/plan_details.h"
 #include "apps/plan/plan_types.h"
-#include "integrator/executor.h"
+#include "integrator/render/executor.h"
 
 namespace petzval {
 

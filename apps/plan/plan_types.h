@@ -10,8 +10,8 @@
 #include "apps/plan/rare_light.h"
 #include "apps/request/render_request.h"
 #include "apps/setup/render_setup.h"
-#include "integrator/path_options.h"
-#include "integrator/render_job.h"
+#include "integrator/path/path_options.h"
+#include "integrator/render/render_job.h"
 #include "io/image/symmetric_mse.h"
 
 namespace petzval {

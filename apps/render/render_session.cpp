@@ -11,7 +11,7 @@
 #include "apps/setup/input_files.h"
 #include "apps/setup/spectral_wording.h"
 #include "apps/state/finished_film.h"
-#include "integrator/render.h"
+#include "integrator/render/render.h"
 #include "io/base/error.h"
 #include "io/base/format.h"
 #include "io/base/printable.h"

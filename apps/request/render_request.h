@@ -12,8 +12,8 @@
 #include "core/film/film.h"
 #include "core/sampling/filter.h"
 #include "core/sampling/sampler.h"
-#include "integrator/path_options.h"
-#include "integrator/render_job.h"
+#include "integrator/path/path_options.h"
+#include "integrator/render/render_job.h"
 
 namespace petzval {
 

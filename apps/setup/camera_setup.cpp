@@ -9,7 +9,7 @@
 #include "apps/setup/thin_setup.h"
 #include "camera/models/zoom_camera.h"
 #include "core/scene/motion.h"
-#include "integrator/autofocus.h"
+#include "integrator/prepass/autofocus.h"
 #include "io/base/error.h"
 #include "io/base/format.h"
 

@@ -110,7 +110,7 @@ Metadata describe_render(const RenderSetup& setup, const RenderJob& job,
                {"petzval:filter", name_of(job.filter.kind())},
                {"petzval:filterRadius_px", job.filter.radius_px()},
                {"petzval:maxDepth", options.max_depth},
-               {"petzval:maxClearDepth", options.max_clear_depth},
+               {"petzval:maxClearDepth", options.max_specular_depth},
                {"petzval:scale", setup.from.scale},
                {"petzval:transparent", int(options.transparent)},
                {"petzval:luminousEfficacy_lm_per_W", kLuminousEfficacy_lm_per_w}};

@@ -4,8 +4,8 @@
 
 #include "apps/setup/render_setup.h"
 #include "core/film/film.h"
-#include "integrator/path_options.h"
-#include "integrator/render_job.h"
+#include "integrator/path/path_options.h"
+#include "integrator/render/render_job.h"
 #include "io/picture/picture.h"
 
 namespace petzval {

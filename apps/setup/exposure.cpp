@@ -8,9 +8,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "integrator/path.h"
-#include "integrator/pilot_pixels.h"
-#include "integrator/render.h"
+#include "integrator/path/path.h"
+#include "integrator/prepass/pilot_pixels.h"
+#include "integrator/render/render.h"
 
 namespace petzval {
 namespace {

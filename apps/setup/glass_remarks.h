@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/scene/scene.h"
-#include "integrator/lost_light.h"
+#include "integrator/prepass/lost_light.h"
 
 namespace petzval {
 

@@ -16,8 +16,8 @@
 #include "core/light/light_choice.h"
 #include "core/scene/scene.h"
 #include "core/traversal/bvh.h"
-#include "integrator/lost_light.h"
-#include "integrator/velocity.h"
+#include "integrator/prepass/lost_light.h"
+#include "integrator/render/velocity.h"
 #include "io/base/notice.h"
 #include "io/gltf/gltf.h"
 

@@ -56,7 +56,7 @@ void for_each_number(Figures& f, const F& each) {
     each("shadow_rays", s.shadow_rays);
     each("target_rays", s.target_rays);
     each("vertices", s.vertices);
-    each("clear_ends", s.clear_ends);
+    each("clear_ends", s.specular_ends);
     each("tiles", s.tiles);
     each("samples", s.samples);
     each("timed_samples", s.timed_samples);
@@ -147,7 +147,7 @@ void write_stats(const std::filesystem::path& path, const StatsPicture& picture,
                    {"all", rays}};
     out["lens_lanes"] = lens_lanes(s.lens_lanes);
     out["path_vertices"] = s.vertices;
-    out["paths_ended_in_clear_glass"] = s.clear_ends;
+    out["paths_ended_in_clear_glass"] = s.specular_ends;
     out["rays_per_cpu_s"] = per_cpu_s(rays);
     out["samples_per_cpu_s"] = per_cpu_s(s.samples);
     out["cpu_time"] = sections(s, figures.render_cpu_s);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/film/film.h"
-#include "integrator/stats.h"
+#include "integrator/path/stats.h"
 #include "io/base/rescue.h"
 
 namespace petzval {

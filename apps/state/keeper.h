@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "core/film/film.h"
-#include "integrator/render_job.h"
+#include "integrator/render/render_job.h"
 #include "io/base/notice.h"
 #include "io/image/output.h"
 #include "io/picture/picture.h"

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "apps/setup/render_setup.h"
-#include "integrator/path_options.h"
-#include "integrator/render_job.h"
+#include "integrator/path/path_options.h"
+#include "integrator/render/render_job.h"
 #include "io/base/overwrite.h"
 #include "io/image/output.h"
 #include "io/picture/picture.h"

@@ -12,11 +12,11 @@ namespace petzval {
 /// measure of rays is the same on both sides of the lens (conservation of etendue). So the ray
 /// could have been drawn for each lane, with a density in proportion to its filter's value and its
 /// draw of the stop, and lane i weighs value_i open_i over the mean of value_j drawn_j, times
-/// drawn / open of the lead and the weight that the lead has by itself (balance heuristic: Veach
+/// drawn / open of the hero and the weight that the hero has by itself (balance heuristic: Veach
 /// 1997, 9.2.3; for wavelengths, Wilkie et al. 2014, "Hero Wavelength Spectral Sampling", equation
 /// 12). Where the stop is drawn in proportion to what it lets through, the shares add up to the
 /// number of lanes that are on.
-[[nodiscard]] inline f4 hero_shares(const PixelFilter& pixel, const FilmLanding& landing, int lead,
+[[nodiscard]] inline f4 hero_shares(const PixelFilter& pixel, const FilmLanding& landing, int hero,
                                     m4 on) {
     f4 value{};
     for (int i = 0; i < 4; ++i)
@@ -24,9 +24,9 @@ namespace petzval {
             value[i] =
                 pixel.filter->value(pixel.offset_px + V2f(landing.dx_px[i], landing.dy_px[i]));
     const float sum = hsum(value * landing.drawn);
-    if (!(sum > 0 && landing.open[lead] > 0)) return f4{};
-    const float of_lead = landing.drawn[lead] / landing.open[lead];
-    return value * landing.open * (static_cast<float>(lane_count(on)) * of_lead / sum);
+    if (!(sum > 0 && landing.open[hero] > 0)) return f4{};
+    const float of_hero = landing.drawn[hero] / landing.open[hero];
+    return value * landing.open * (static_cast<float>(lane_count(on)) * of_hero / sum);
 }
 
 }  // namespace petzval

@@ -11,7 +11,7 @@ namespace petzval {
 /// Request for rays of some lanes.
 struct LaneRequest {
     m4 lanes;     ///< lanes whose rays are wanted
-    int lead;     ///< lane whose ray meets the drawn point
+    int hero;     ///< lane whose ray meets the drawn point
     bool coated;  ///< weights count what the surfaces reflect
 };
 
@@ -31,8 +31,8 @@ struct FilmLanding {
 /// rays(request): rays with weight_of_lanes() (0: lost; counts for all lanes of the bands, however
 /// few were asked for) and `losses`.
 /// ray(rays, lane): a lane's ray in the world, unit direction.
-/// share(rays): share of the weights that counts for light (CameraPath::share).
-/// landing(rays, request): landing of the ray of request.lead.
+/// mis_weight(rays): factor on the weights for light (CameraPath::mis_weight).
+/// landing(rays, request): landing of the ray of request.hero.
 /// exposure(): mean weight of a lane where nothing is lost.
 template <class P>
 concept LensPoint = requires(const P p, const LaneRequest& request,
@@ -40,7 +40,7 @@ concept LensPoint = requires(const P p, const LaneRequest& request,
     { rays.weight_of_lanes() } -> std::same_as<f4>;
     { rays.losses } -> std::convertible_to<LensLosses<uint32_t>>;
     { p.ray(rays, lane) } -> std::same_as<Ray>;
-    { p.share(rays) } -> std::same_as<float>;
+    { p.mis_weight(rays) } -> std::same_as<float>;
     { p.landing(rays, request) } -> std::same_as<FilmLanding>;
     { p.exposure() } -> std::same_as<float>;
 };

@@ -20,8 +20,8 @@ template <LensPoint P, class Rays>
 
 /// One ray for all lanes; `lens` gives them all the same.
 template <LensPoint P>
-[[nodiscard]] CameraSample share_ray(const P& lens, int lead, m4 on) {
-    const auto rays = lens.rays({on, lead, true});
+[[nodiscard]] CameraSample share_ray(const P& lens, int hero, m4 on) {
+    const auto rays = lens.rays({on, hero, true});
     CameraSample out = begun_sample(lens, rays);
     const f4 weight = rays.weight_of_lanes();
     const m4 passed = weight > 0;
@@ -30,7 +30,7 @@ template <LensPoint P>
     if (first == 4) return out;
     CameraPath& path = out.add();
     path.ray = lens.ray(rays, first);
-    path.share = lens.share(rays);
+    path.mis_weight = lens.mis_weight(rays);
     path.lanes = passed;
     path.weight = zero_off(passed, weight);
     return out;
@@ -38,16 +38,16 @@ template <LensPoint P>
 
 /// One ray for each lane.
 template <LensPoint P>
-[[nodiscard]] CameraSample split_rays(const P& lens, int lead, m4 on) {
-    const auto rays = lens.rays({on, lead, true});
+[[nodiscard]] CameraSample split_rays(const P& lens, int hero, m4 on) {
+    const auto rays = lens.rays({on, hero, true});
     CameraSample out = begun_sample(lens, rays);
     const f4 weight = rays.weight_of_lanes();
     for (int lane = 0; lane < 4; ++lane) {
         if (!(weight[lane] > 0)) continue;
         CameraPath& path = out.add();
-        path.led = true;
+        path.hero_decided = true;
         path.ray = lens.ray(rays, lane);
-        path.share = lens.share(rays);
+        path.mis_weight = lens.mis_weight(rays);
         path.lanes = only_lane(lane);
         path.weight = zero_off(path.lanes, weight);
     }
@@ -56,22 +56,22 @@ template <LensPoint P>
 
 /// The ray of one lane, weighed for each lane by where it would have reached the film (hero.h).
 template <LensPoint P>
-[[nodiscard]] CameraSample hero_ray(const P& lens, int lead, m4 on, const PixelFilter& pixel) {
-    const LaneRequest request{only_lane(lead), lead, false};
+[[nodiscard]] CameraSample hero_ray(const P& lens, int hero, m4 on, const PixelFilter& pixel) {
+    const LaneRequest request{only_lane(hero), hero, false};
     const auto rays = lens.rays(request);
     CameraSample out = begun_sample(lens, rays);
-    const float of_lead = rays.weight_of_lanes()[lead];
-    if (!(of_lead > 0)) return out;
+    const float of_hero = rays.weight_of_lanes()[hero];
+    if (!(of_hero > 0)) return out;
     const FilmLanding landing = lens.landing(rays, request);
-    const f4 shares = hero_shares(pixel, landing, lead, on);
+    const f4 shares = hero_shares(pixel, landing, hero, on);
     // One lane's weight counts for all that are on.
-    const f4 weight = shares * landing.transmitted * (of_lead / static_cast<float>(lane_count(on)));
+    const f4 weight = shares * landing.transmitted * (of_hero / static_cast<float>(lane_count(on)));
     const m4 reached = weight > 0;
     if (lane_count(reached) == 0) return out;
     CameraPath& path = out.add();
-    path.led = true;
-    path.ray = lens.ray(rays, lead);
-    path.share = lens.share(rays);
+    path.hero_decided = true;
+    path.ray = lens.ray(rays, hero);
+    path.mis_weight = lens.mis_weight(rays);
     path.weight = weight;
     path.lanes = reached;
     return out;
@@ -82,10 +82,10 @@ template <LensPoint P>
 template <LensPoint P>
 [[nodiscard]] CameraSample sample_lens(const P& lens, DispersionMode mode, const PixelFilter& pixel,
                                        const Bands& bands) {
-    const int lead = bands.lead;
-    if (one_ray(bands, mode)) return share_ray(lens, lead, bands.on);
-    if (mode == DispersionMode::Hero && pixel.filter) return hero_ray(lens, lead, bands.on, pixel);
-    return split_rays(lens, lead, bands.on);
+    const int hero = bands.hero;
+    if (one_ray(bands, mode)) return share_ray(lens, hero, bands.on);
+    if (mode == DispersionMode::Hero && pixel.filter) return hero_ray(lens, hero, bands.on, pixel);
+    return split_rays(lens, hero, bands.on);
 }
 
 }  // namespace petzval

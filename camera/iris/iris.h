@@ -57,7 +57,7 @@ class Iris {
     struct Round {
         double radius_mm;
         float radius;
-        [[nodiscard]] V2f draw(V2f u) const { return uniform_disk(u) * radius; }
+        [[nodiscard]] V2f draw(V2f u) const;
         [[nodiscard]] float transmits(V2f p) const { return p.dot(p) <= sqr(radius) ? 1.f : 0.f; }
         [[nodiscard]] float peak() const { return 1.f; }
         [[nodiscard]] V2f lower() const { return V2f(-radius); }

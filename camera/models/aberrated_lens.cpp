@@ -58,9 +58,9 @@ class AberratedLensCamera::Point {
     };
 
     /// Camera, film point and bands must outlive it.
-    Point(const AberratedLensCamera& camera, const FilmPoint& at, V2f stop_mm, float share,
+    Point(const AberratedLensCamera& camera, const FilmPoint& at, V2f stop_mm, float mis_weight,
           const Bands& bands)
-        : c_(camera), at_(at), bands_(bands), stop_mm_(stop_mm), share_(share) {}
+        : c_(camera), at_(at), bands_(bands), stop_mm_(stop_mm), mis_weight_(mis_weight) {}
 
     [[nodiscard]] Rays rays(const LaneRequest& request) const {
         Rays out;
@@ -87,12 +87,12 @@ class AberratedLensCamera::Point {
         Rays all;
         all.stop_mm = rays.stop_mm;
         find_vergences(bands_.on, splat(1.f), all);
-        const f4 off = all.vergence_per_mm - splat(all.vergence_per_mm[request.lead]);
+        const f4 off = all.vergence_per_mm - splat(all.vergence_per_mm[request.hero]);
         const V2f px = 0.5f * at_.pixel.frame_px / V2f(c_.tan_half_x_, c_.tan_half_y_);
         return {off * (rays.stop_mm.x * px.x), off * (-rays.stop_mm.y * px.y), all.weight,
                 all.weight, vignetting_where(off, rays.stop_mm)};
     }
-    [[nodiscard]] float share(const Rays&) const { return share_; }
+    [[nodiscard]] float mis_weight(const Rays&) const { return mis_weight_; }
     [[nodiscard]] float exposure() const { return c_.in_.exposure; }
 
   private:
@@ -124,16 +124,17 @@ class AberratedLensCamera::Point {
     const FilmPoint& at_;
     const Bands& bands_;
     V2f stop_mm_;
-    float share_;
+    float mis_weight_;
 };
 
 CameraSample AberratedLensCamera::sample(const FilmPoint& at, const Bands& bands) const {
     const V2f stop_mm = in_.iris.sample(at.sampler.get2(Dim::Lens));
     const auto targets = targets_at(at);
-    float share = 1;
+    float mis_weight = 1;
     if (!targets.empty())
-        share = TargetedStop{in_.iris, pencils(at, bands).span()}.share(stop_mm, targets);
-    return sample_lens(Point(*this, at, stop_mm, share, bands), in_.dispersion, at.pixel, bands);
+        mis_weight = TargetedStop{in_.iris, pencils(at, bands).span()}.mis_weight(stop_mm, targets);
+    return sample_lens(Point(*this, at, stop_mm, mis_weight, bands), in_.dispersion, at.pixel,
+                       bands);
 }
 
 std::optional<PreparedTarget> AberratedLensCamera::prepared(const Target& target) const {
@@ -160,20 +161,21 @@ CameraSample AberratedLensCamera::to_target(const FilmPoint& at, const Bands& ba
     const Pencils rays = pencils(at, bands);
     const auto found = TargetedStop{in_.iris, rays.span()}.aim_at_one(at, targets);
     if (!found) return {};
-    CameraSample out = sample_lens(Point(*this, at, found->stop_mm, found->share, bands),
+    CameraSample out = sample_lens(Point(*this, at, found->stop_mm, found->mis_weight, bands),
                                    in_.dispersion, at.pixel, bands);
     out.leave_layers();
     return out;
 }
 
-// Lanes that part share the point of the stop, so each may have drawn it; a hero ray is its lead's.
+// Lanes that part share the point of the stop, so each may have drawn it; a hero ray is its hero
+// lane's.
 AberratedLensCamera::Pencils AberratedLensCamera::pencils(const FilmPoint& at,
                                                           const Bands& bands) const {
     Pencils out;
     const bool led = one_ray(bands, in_.dispersion) ||
                      (in_.dispersion == DispersionMode::Hero && at.pixel.filter);
     for (int lane = 0; lane < 4; ++lane) {
-        if (led ? lane != bands.lead : !bands.on[lane]) continue;
+        if (led ? lane != bands.hero : !bands.on[lane]) continue;
         const SingletOptics optics = optics_at(index_of(bands, lane));
         out.of_lanes[out.count++] = {V2d(tangents(at)), 1e-3 * optics.focal_mm,
                                      1e3 * spherical_coefficient_per_mm(optics, focus_mm_) / 2,

@@ -55,7 +55,7 @@ LensLosses<uint32_t> losses(m4 on, const LensDraw<V>& drawn, MaskOf<V> clear) {
 }
 
 // Balance heuristic of the two ways in which a camera ray may be drawn.
-float share_of(float density, float to_targets) {
+float mis_weight_of(float density, float to_targets) {
     return to_targets > 0.f ? density / (density + to_targets) : 1.f;
 }
 
@@ -117,7 +117,7 @@ class LensCamera::Point {
   public:
     /// Camera, place and rays must outlive it; lane: that of the film point among the rays.
     Point(const LensCamera& camera, const Place& place, const LeadRays& rays, int lane)
-        : c_(camera), at_(place), lead_(rays), lane_(lane) {
+        : c_(camera), at_(place), hero_(rays), lane_(lane) {
         if (at_.achromatic) return;
         if constexpr (std::same_as<V, d4>)
             own_ = lens().exact_indices(lanes_as<d4>(at_.bands.nm));
@@ -131,7 +131,7 @@ class LensCamera::Point {
     [[nodiscard]] Ray ray(const LensDraw<V>& rays, int lane) const {
         return c_.in_world(lane_of(rays.ray, lane));
     }
-    [[nodiscard]] float share(const LensDraw<V>& rays) const { return rays.share; }
+    [[nodiscard]] float mis_weight(const LensDraw<V>& rays) const { return rays.mis_weight; }
     [[nodiscard]] FilmLanding landing(const LensDraw<V>&, const LaneRequest&) const;
     [[nodiscard]] float exposure() const { return c_.exposure_; }
 
@@ -147,7 +147,7 @@ class LensCamera::Point {
 
     const LensCamera& c_;
     const Place& at_;
-    const LeadRays& lead_;
+    const LeadRays& hero_;
     int lane_;
     LensIndices<V> own_;
 };
@@ -161,18 +161,18 @@ template <class V>
 LensDraw<V> LensCamera::Point<V>::rays(const LaneRequest& request) const {
     LensDraw<V> out;
     out.losses.drawn = static_cast<uint32_t>(lane_count(request.lanes));
-    if (!lead_.aimed.found[lane_]) {
+    if (!hero_.aimed.found[lane_]) {
         out.losses.unreached = out.losses.drawn;
         return out;
     }
     const AimedRay<V> aimed =
-        c_.optics_.aimer().cross(PlanePoint<V>(at_.film_mm), broadcast<V>(S(lead_.aimed.l[lane_])),
-                                 broadcast<V>(S(lead_.aimed.m[lane_])), indices());
+        c_.optics_.aimer().cross(PlanePoint<V>(at_.film_mm), broadcast<V>(S(hero_.aimed.l[lane_])),
+                                 broadcast<V>(S(hero_.aimed.m[lane_])), indices());
     // The solver's residual is taken off, so that the lane crosses the iris where it was drawn: an
     // iris may be smaller than the tolerance.
     const PlanePoint<V> at_stop(
-        aimed.ray.origin.x + (S(at_.stop_mm.x) - aimed.ray.origin.x[request.lead]),
-        aimed.ray.origin.y + (S(at_.stop_mm.y) - aimed.ray.origin.y[request.lead]));
+        aimed.ray.origin.x + (S(at_.stop_mm.x) - aimed.ray.origin.x[request.hero]),
+        aimed.ray.origin.y + (S(at_.stop_mm.y) - aimed.ray.origin.y[request.hero]));
     const MaskOf<V> there = lanes_as<MaskOf<V>>(request.lanes) & aimed.ray.alive();
     const V open = select(there, stop_transmission(c_.optics_, at_stop), V{});
     const auto lanes = static_cast<S>(out.losses.drawn);
@@ -188,7 +188,7 @@ LensDraw<V> LensCamera::Point<V>::rays(const LaneRequest& request) const {
                                         out.ray, Clip::Yes));
         const S gain = S(c_.gain_) * static_cast<S>(lane_count(at_.bands.on)) / lanes;
         out.weight = select(aimed.clear & out.ray.alive(), V(open * (gain / density)), V{});
-        out.share = share_of(static_cast<float>(density), at_.to_targets);
+        out.mis_weight = mis_weight_of(static_cast<float>(density), at_.to_targets);
     }
     out.losses = losses(request.lanes, out, aimed.clear);
     if (request.coated && any(out.weight > 0))
@@ -201,13 +201,13 @@ template <class V>
 FilmLanding LensCamera::Point<V>::landing(const LensDraw<V>& rays,
                                           const LaneRequest& request) const {
     const std::array landed = c_.optics_.template land<V, 1>(
-        std::array{DrawnRay<S>{lane_of(rays.ray, request.lead), request.lead, at_.film_mm,
+        std::array{DrawnRay<S>{lane_of(rays.ray, request.hero), request.hero, at_.film_mm,
                                at_.stop_mm, at_.bands.nm}},
         std::array{indices()});
     return c_.in_pixels(landed[0], at_.frame_px);
 }
 
-/// Film point with the ray of the lane that leads, and none but that.
+/// Film point with the ray of the hero lane, and none but that.
 class LensCamera::LeadPoint {
   public:
     struct Rays {
@@ -223,8 +223,8 @@ class LensCamera::LeadPoint {
 
     [[nodiscard]] Rays rays(const LaneRequest&) const;
     [[nodiscard]] Ray ray(const Rays&, int) const { return c_.in_world(lane_of(rays_.ray, lane_)); }
-    [[nodiscard]] float share(const Rays&) const {
-        return share_of(rays_.density[lane_], at_.to_targets);
+    [[nodiscard]] float mis_weight(const Rays&) const {
+        return mis_weight_of(rays_.density[lane_], at_.to_targets);
     }
     [[nodiscard]] FilmLanding landing(const Rays&, const LaneRequest&) const {
         return c_.in_pixels(landing_, at_.frame_px);
@@ -281,10 +281,10 @@ LensDraw<V> LensCamera::draw(V2f film_mm, V2f u, const Bands& bands) const {
     LeadPoints points;
     points.film_mm.fill(film_mm);
     points.u.fill(u);
-    points.nm = splat8(achromatic ? kLineD : bands.nm[bands.lead]);
+    points.nm = splat8(achromatic ? kLineD : bands.nm[bands.hero]);
     const LeadRays rays = optics_.aim(points, indices_of(points, achromatic));
     const Place place{film_mm, rays.stop_mm[0], bands, achromatic, V2f(1.f)};
-    return Point<V>(*this, place, rays, 0).rays({bands.on, bands.lead, true});
+    return Point<V>(*this, place, rays, 0).rays({bands.on, bands.hero, true});
 }
 template LensDraw<f4> LensCamera::draw(V2f, V2f, const Bands&) const;
 template LensDraw<d4> LensCamera::draw(V2f, V2f, const Bands&) const;
@@ -316,9 +316,9 @@ auto LensCamera::batch(std::span<const FilmPoint> points, std::span<const Bands>
         }
         at.film_mm[i] = film_mm(points[i].film);
         at.u[i] = points[i].sampler.get2(Dim::Lens);
-        at.nm[i] = out.achromatic ? kLineD : bands[i].nm[bands[i].lead];
+        at.nm[i] = out.achromatic ? kLineD : bands[i].nm[bands[i].hero];
     }
-    out.of_lead = out.achromatic ||
+    out.of_hero = out.achromatic ||
                   (in_.dispersion == DispersionMode::Hero &&
                    std::all_of(points.begin(), points.end(),
                                [](const FilmPoint& p) { return p.pixel.filter != nullptr; }));
@@ -354,7 +354,7 @@ void LensCamera::finish(const Batch& all, LeadRays& rays,
         }
     };
     if (in_.precision == Precision::Double) return each.template operator()<Point<d4>>();
-    if (!all.of_lead) return each.template operator()<Point<f4>>();
+    if (!all.of_hero) return each.template operator()<Point<f4>>();
     optics_.trace(all.at, all.indices, rays);
     std::array<LensLanding, kMostFilmPoints> landings;
     if (!all.achromatic) land(all.points.size(), all.bands, all.at, rays, landings);
@@ -374,7 +374,7 @@ void LensCamera::land(size_t count, std::span<const Bands> bands, const LeadPoin
     const auto drawn = [&](size_t k) {
         const size_t i = passed[k];
         const auto lane = static_cast<int>(i);
-        return DrawnRay<float>{lane_of(rays.ray, lane), bands[i].lead, at.film_mm[i],
+        return DrawnRay<float>{lane_of(rays.ray, lane), bands[i].hero, at.film_mm[i],
                                rays.stop_mm[lane], bands[i].nm};
     };
     const auto indices = [&](size_t k) {

@@ -19,9 +19,9 @@ namespace petzval {
 /// One draw of the iris, lane by lane. V: f4 or d4.
 template <class V>
 struct LensDraw {
-    V weight{};       ///< 0 where the lane is blocked
-    float share = 1;  ///< CameraPath::share
-    LensRay<V> ray;   ///< in front of the lens
+    V weight{};            ///< 0 where the lane is blocked
+    float mis_weight = 1;  ///< CameraPath::mis_weight
+    LensRay<V> ray;        ///< in front of the lens
     LensLosses<uint32_t> losses;
 
     [[nodiscard]] f4 weight_of_lanes() const {
@@ -74,7 +74,7 @@ class LensCamera final : public Camera {
 
     /// One draw of the iris: the mean of its weights is the film point's irradiance over the
     /// radiance of a scene of the same radiance everywhere. Lanes of the bands; u in [0, 1)^2.
-    /// film_mm: a point of the film. The ray of the lane that leads hits the drawn iris point. V:
+    /// film_mm: a point of the film. The ray of the hero lane hits the drawn iris point. V:
     /// f4 or d4.
     template <class V = f4>
     [[nodiscard]] LensDraw<V> draw(V2f film_mm, V2f u, const Bands&) const;
@@ -101,7 +101,7 @@ class LensCamera final : public Camera {
         std::span<const FilmPoint> points;
         std::span<const Bands> bands;
         bool achromatic;
-        bool of_lead;  ///< each point has one ray, that of the lane that leads
+        bool of_hero;  ///< each point has one ray, that of the hero lane
         LeadPoints at;
         LensIndices<f8> indices;
     };

@@ -79,7 +79,7 @@ std::array<float, kMostFilmPoints> LensCamera::to_targets(
     }
     if (!any_listed) return out;
     PlanePoint<f8> film(f8{}, f8{});
-    if (all.of_lead) {
+    if (all.of_hero) {
         for (int i = 0; i < 8; ++i)
             film.x[i] = all.at.film_mm[size_t(i)].x, film.y[i] = all.at.film_mm[size_t(i)].y;
         const f8 density = targets_.density({film, all.indices, lists}, rays.aimed.l, rays.aimed.m);

@@ -120,10 +120,10 @@ class RayGroup {
         for (int i = 0; i < kLanes<V>; ++i) all[i] = static_cast<S>(value(drawn(i)));
         return all;
     }
-    /// That of the lane that leads, for all lanes of its ray.
-    [[nodiscard]] V of_lead(const V& a) const {
+    /// That of the hero lane, for all lanes of its ray.
+    [[nodiscard]] V of_hero(const V& a) const {
         V all;
-        for (int i = 0; i < kLanes<V>; ++i) all[i] = a[i / 4 * 4 + drawn(i).lead];
+        for (int i = 0; i < kLanes<V>; ++i) all[i] = a[i / 4 * 4 + drawn(i).hero];
         return all;
     }
     /// The rays, back towards the lens.
@@ -138,12 +138,12 @@ class RayGroup {
                          each([](const Drawn& r) { return -r.ray.direction.z; })};
         return ray;
     }
-    /// Where they meet the stop. What rounding and the solver leave shows in the lane that leads,
+    /// Where they meet the stop. What rounding and the solver leave shows in the hero lane,
     /// whose way is known, and is taken off all of them.
     [[nodiscard]] PlanePoint<V> at_stop(const LensRay<V>& ray) const {
         const V x = ray.origin.x, y = ray.origin.y;
-        return {x + (each([](const Drawn& r) { return r.stop_mm.x; }) - of_lead(x)),
-                y + (each([](const Drawn& r) { return r.stop_mm.y; }) - of_lead(y))};
+        return {x + (each([](const Drawn& r) { return r.stop_mm.x; }) - of_hero(x)),
+                y + (each([](const Drawn& r) { return r.stop_mm.y; }) - of_hero(y))};
     }
 
   private:
@@ -184,7 +184,7 @@ std::array<LensLanding, kRaysAtOnce<V, groups>> LensOptics::land(
             (S(film_mm_ - lens_->vertex_mm(ray.counted_from)) - ray.origin.z) / ray.direction.z;
         const V film_x = ray.origin.x + to_film * ray.direction.x;
         const V film_y = ray.origin.y + to_film * ray.direction.y;
-        const V shift_x = film_x - group.of_lead(film_x), shift_y = film_y - group.of_lead(film_y);
+        const V shift_x = film_x - group.of_hero(film_x), shift_y = film_y - group.of_hero(film_y);
         for (int i = 0; i < kLanes<V>; ++i) {
             LensLanding& one = out[k * kEach + size_t(i / 4)];
             const V2f shift(static_cast<float>(shift_x[i]), static_cast<float>(shift_y[i]));

@@ -54,7 +54,7 @@ struct SceneRay {
 template <class S>
 struct DrawnRay {
     SceneRay<S> ray;
-    int lead = 0;  ///< lane that it was drawn for
+    int hero = 0;  ///< lane that it was drawn for
     V2f film_mm{0.f}, stop_mm{0.f};
     f4 nm{};  ///< of all lanes
 };

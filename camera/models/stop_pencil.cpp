@@ -175,7 +175,7 @@ std::optional<V2d> aim(const StopPencil& pencil, const LocalTarget& target, V2f 
         .s[std::min(static_cast<size_t>(pick * static_cast<float>(found.count)), found.count - 1)];
 }
 
-float TargetedStop::share(V2f stop_mm, TargetList targets) const {
+float TargetedStop::mis_weight(V2f stop_mm, TargetList targets) const {
     const auto [open, aimed] = density_of(*this, stop_mm, targets);
     // A point of the very edge may be rounded to where the iris is closed: no ray is aimed there.
     return open > 0 ? static_cast<float>(open / (open + aimed)) : 1;

@@ -60,12 +60,12 @@ struct TargetedStop {
     /// Share of the light that a ray through a drawn point of the stop counts: the density of that
     /// draw over the sum of it and of those of rays that are aimed (balance heuristic, Veach and
     /// Guibas 1995, "Optimally combining sampling techniques for Monte Carlo rendering").
-    [[nodiscard]] float share(V2f stop_mm, TargetList) const;
-    /// Point of the stop from which a ray passes one of the targets, and its share, above 0;
+    [[nodiscard]] float mis_weight(V2f stop_mm, TargetList) const;
+    /// Point of the stop from which a ray passes one of the targets, and its weight, above 0;
     /// nothing where there is none, or the iris is closed there.
     struct Aimed {
         V2f stop_mm;
-        float share;
+        float mis_weight;
     };
     [[nodiscard]] std::optional<Aimed> aim_at_one(const FilmPoint&, TargetList) const;
     /// The target with the share of ordinary rays that pass it; nothing where no ray of the first

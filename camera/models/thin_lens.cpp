@@ -56,7 +56,7 @@ CameraSample ThinLensCamera::sample(const FilmPoint& at, const Bands& bands) con
     CameraSample out = through(at, stop_mm, bands);
     if (const auto targets = targets_at(at); !targets.empty()) {
         const StopPencil rays = pencil(at);
-        out[0].share = TargetedStop{*iris_, {&rays, 1}}.share(stop_mm, targets);
+        out[0].mis_weight = TargetedStop{*iris_, {&rays, 1}}.mis_weight(stop_mm, targets);
     }
     return out;
 }
@@ -86,7 +86,7 @@ CameraSample ThinLensCamera::to_target(const FilmPoint& at, const Bands& bands,
     const auto found = TargetedStop{*iris_, {&rays, 1}}.aim_at_one(at, targets);
     if (!found) return {};
     CameraSample out = through(at, found->stop_mm, bands);
-    out[0].share = found->share;
+    out[0].mis_weight = found->mis_weight;
     out.leave_layers();
     return out;
 }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "core/light/emission.h"
 #include "core/light/spherical_triangle.h"
 #include "core/light/sun_disc.h"
 #include "core/sampling/warp.h"
@@ -19,23 +18,19 @@ namespace {
 constexpr float kWideRatio = 1.f;
 constexpr float kLeastSolidAngle = 1e-4f;  // sr
 
-Beam beam_of(const SpotLight& light) {
-    return {light.direction, light.cos_inner, light.cos_outer};
-}
-
 template <class L>
 std::optional<LightSample> sample_at(const Scene& scene, const L& light, Rgb intensity_cd,
                                      const V3f& p, const Bands& bands) {
     const V3f to_light = light.position - p;
     const float distance2 = to_light.dot(to_light);
     if (!(distance2 > 0.f)) return std::nullopt;
-    return LightSample{to_light / std::sqrt(distance2),
-                       light.position,
-                       false,
-                       uplift_radiance(intensity_cd * (1.f / distance2), bands,
-                                       scene.illuminant(light.illuminant)),
-                       1.f,
-                       true};
+    return LightSample{
+        to_light / std::sqrt(distance2),
+        light.position,
+        false,
+        scene.uplift_radiance(intensity_cd * (1.f / distance2), bands, light.illuminant),
+        1.f,
+        true};
 }
 
 std::optional<LightSample> sample(const Scene& scene, const PointLight& light, const V3f& p, V2f,
@@ -47,7 +42,7 @@ std::optional<LightSample> sample(const Scene& scene, const SpotLight& light, co
                                   const Bands& bands, float) {
     auto drawn = sample_at(scene, light, light.intensity_cd, p, bands);
     if (!drawn) return drawn;
-    const float falloff = beam_of(light).falloff(-drawn->direction.dot(light.direction));
+    const float falloff = light.beam().falloff(-drawn->direction.dot(light.direction));
     if (falloff == 0.f) return std::nullopt;
     drawn->radiance *= falloff;
     return drawn;
@@ -67,15 +62,13 @@ std::optional<LightSample> sample(const Scene& scene, const ProfileLight& light,
 std::optional<LightSample> sample(const Scene& scene, const SunLight& light, const V3f&, V2f u,
                                   const Bands& bands, float) {
     if (light.has_disc())
-        return LightSample{
-            direction_in_disc(light, u),
-            V3f(0.f),
-            true,
-            uplift_radiance(disc_radiance(light), bands, scene.illuminant(light.illuminant)),
-            disc_pdf(light),
-            false};
-    const f4 irradiance =
-        uplift_radiance(light.illuminance_lx, bands, scene.illuminant(light.illuminant));
+        return LightSample{direction_in_disc(light, u),
+                           V3f(0.f),
+                           true,
+                           scene.uplift_radiance(disc_radiance(light), bands, light.illuminant),
+                           disc_pdf(light),
+                           false};
+    const f4 irradiance = scene.uplift_radiance(light.illuminance_lx, bands, light.illuminant);
     return LightSample{-light.direction, {}, true, irradiance, 1.f, true};
 }
 
@@ -98,8 +91,9 @@ V3f plane_error(const Scene& scene, const TriangleLight& light, const V3f& targe
 // The triangle as p sees it, where its directions are drawn by solid angle: where it is wide, as
 // points that are uniform by area are then far from uniform. Not where p is as near to its plane as
 // rounding: a point of the lamp itself would be lit by it.
-std::optional<SphericalTriangle> if_wide(const Scene& scene, const TriangleLight& light,
-                                         const V3f& p, const std::array<V3f, 3>& corner) {
+[[gnu::always_inline]] inline std::optional<SphericalTriangle> if_wide(
+    const Scene& scene, const TriangleLight& light, const V3f& p,
+    const std::array<V3f, 3>& corner) {
     const V3f middle = (corner[0] + corner[1] + corner[2]) / 3.f, to_middle = middle - p;
     float edge2 = 0.f;
     for (size_t i = 0; i < 3; ++i) {
@@ -144,10 +138,10 @@ std::optional<LightSample> sample(const Scene& scene, const TriangleLight& light
     if (!(by_area > 0.f && by_area < kInfinity)) return std::nullopt;
 
     const bool front = (facing > 0.f) != flips_at(scene, light.instance, time);
-    Rgb emitted = emitted_radiance(scene, light.instance, light.triangle, b, front) *
-                  coverage(scene, light.instance, light.triangle, b);
+    Rgb emitted = emitted_radiance(scene, light.instance, light.triangle, b, front);
     const Material& material =
         scene.materials[scene.meshes[scene.instances[light.instance].mesh].material];
+    if (material.cutout()) emitted = emitted * coverage(scene, light.instance, light.triangle, b);
     if (material.beam)
         emitted =
             emitted * material.beam->falloff(
@@ -161,7 +155,7 @@ std::optional<LightSample> sample(const Scene& scene, const TriangleLight& light
     return LightSample{wide ? drawn : to_light / distance,
                        offset_origin(target, error, unit(cross), -to_light),
                        false,
-                       uplift_radiance(emitted, bands, white_of(scene, light.instance)),
+                       scene.uplift_radiance(emitted, bands, material.illuminant),
                        wide ? 1.f / wide->solid_angle() : by_area,
                        false};
 }
@@ -176,110 +170,33 @@ std::optional<LightSample> sample(const Scene& scene, const SkyLight&, const V3f
                        found.pdf,       false};
 }
 
-float area_of(const std::array<V3f, 3>& corner) {
-    return 0.5f * (corner[1] - corner[0]).cross(corner[2] - corner[0]).length();
-}
-
-// Greatest area while the shutter is open: a light that has none at a moment must be picked at
-// others.
-float greatest_area(const Scene& scene, const TriangleLight& light) {
-    const size_t steps = step_count(scene, light.instance);
-    float most = 0.f;
-    for (size_t i = 0; i < steps; ++i)
-        most = std::max(most, area_of(triangle_corners(scene, light.instance, light.triangle,
-                                                       step_time(i, steps))));
-    return most;
-}
-
-// Area of the scene's silhouette from afar, bounded by its sphere; that of a unit sphere where the
-// scene has no extent, so that its lights keep their proportions.
-float silhouette_m2(const Scene& scene) {
-    const float radius2 = scene.bounds.isEmpty() ? 0.f : 0.25f * scene.bounds.size().length2();
-    return kPi * (radius2 > 0.f ? radius2 : 1.f);
-}
-
-// Mean luminance over 16 points, one in each of 16 equal parts of the triangle. Texels may shine
-// between the points: what they miss keeps a thousandth of the untextured value.
-float mean_emission(const Scene& scene, const TriangleLight& light) {
-    const Mesh& mesh = scene.meshes[scene.instances[light.instance].mesh];
-    const Material& material = scene.materials[mesh.material];
-    const float untextured = luminance(material.emissive);
-    if (!material.emissive_texture.present() && !material.cutout()) return untextured;
-    float sum = 0.f;
-    for (int i = 0; i < 16; ++i) {
-        const V2f u((i / 4 + 0.5f) / 4, (i % 4 + 0.5f) / 4);
-        const V2f b = uniform_triangle(u);
-        sum += luminance(emitted_radiance(scene, light.instance, light.triangle, b, true)) *
-               coverage(scene, light.instance, light.triangle, b);
-    }
-    return std::max(sum / 16, 1e-3f * untextured);
-}
-
-// Integral over a beam of the cosine to a triangle's front, or to both of its sides; at least a
-// thousandth of the whole beam where some of it leaves the triangle.
-float projected_beam(const Beam& beam, const Scene& scene, const TriangleLight& light,
-                     bool double_sided) {
-    constexpr int rings = 16, sectors = 16;
-    const auto corner = triangle_corners(scene, light.instance, light.triangle);
-    const V3f cross = unit((corner[1] - corner[0]).cross(corner[2] - corner[0]));
-    const Frame frame = Frame::about(beam.direction);
-    const V3f front =
-        frame.to_local(flips_at(scene, light.instance, kMiddleOfShutter) ? -cross : cross);
-    float whole = 0.f, sum = 0.f;
-    for (int i = 0; i < rings; ++i) {
-        const float cosine = lerp(1.f, beam.cos_outer, (i + 0.5f) / rings);
-        const float sine = safe_sqrt(1.f - sqr(cosine)), falloff = beam.falloff(cosine);
-        for (int k = 0; k < sectors; ++k) {
-            const float phi = 2 * kPi * (k + 0.5f) / sectors;
-            const float facing = front.dot(V3f(sine * std::cos(phi), sine * std::sin(phi), cosine));
-            whole += falloff;
-            sum += falloff * (double_sided ? std::fabs(facing) : std::max(facing, 0.f));
-        }
-    }
-    constexpr float slack = 1e-3f;
-    const bool some = double_sided || front.z > -safe_sqrt(1.f - sqr(beam.cos_outer)) - slack;
-    const float solid_angle = 2 * kPi * (1.f - beam.cos_outer) / (rings * sectors);
-    return some ? std::max(sum, 1e-3f * whole) * solid_angle : 0.f;
-}
-
-float power(const Scene&, const PointLight& light) {
-    return 4 * kPi * luminance(light.intensity_cd);
-}
-
-// Power of a spot: the integral of its falloff over the sphere. The narrowest cones saturate beyond
-// the axis.
-float power(const Scene&, const SpotLight& light) {
-    const float width = beam_of(light).width(), reach = 1.f - light.cos_outer;
-    const float ramp = std::min(reach, width);
-    const float integral = ramp * sqr(ramp / width) / 3 + (reach - ramp);
-    return 2 * kPi * integral * luminance(light.intensity_cd);
-}
-
-float power(const Scene& scene, const ProfileLight& light) {
-    return luminance(light.factor) * scene.profiles[light.profile].flux_lm();
-}
-
-float power(const Scene& scene, const SunLight& light) {
-    return luminance(light.illuminance_lx) * silhouette_m2(scene);
-}
-
-float power(const Scene& scene, const TriangleLight& light) {
-    const Mesh& mesh = scene.meshes[scene.instances[light.instance].mesh];
-    const float area = greatest_area(scene, light);
-    if (!(area > 0.f)) return 0.f;
-    const Material& material = scene.materials[mesh.material];
-    if (material.beam)
-        return projected_beam(*material.beam, scene, light, material.double_sided) * area *
-               mean_emission(scene, light);
-    const float sides = material.double_sided ? 2.f : 1.f;
-    return sides * kPi * area * mean_emission(scene, light);
-}
-
-float power(const Scene& scene, const SkyLight&) {
-    return 4 * kPi * scene.sky.drawn_luminance() * silhouette_m2(scene);
-}
-
 }  // namespace
+
+Rgb emitted_radiance(const Scene& scene, uint32_t instance, uint32_t triangle, V2f barycentric,
+                     bool front) {
+    const Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
+    const Material& material = scene.materials[mesh.material];
+    if (!(front || material.double_sided) || !material.emits() || material.unlit) return Rgb(0.f);
+    const TextureSlot& slot = material.emissive_texture;
+    if (!slot.present()) return material.emissive;
+    const V2f uv = mesh.uv_at(triangle, barycentric, slot.uv_set);
+    f4 texel = sample_texture(scene.images, slot, uv);
+    texel[3] = 0.f;
+    return material.emissive * Rgb(texel);
+}
+
+float share_past_coat(const Scene& scene, uint32_t instance, uint32_t triangle, V2f barycentric,
+                      float cosine) {
+    const Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
+    const Material& material = scene.materials[mesh.material];
+    const TextureSlot& slot = material.coat_texture;
+    float weight = material.coat;
+    if (slot.present()) {
+        const V2f uv = mesh.uv_at(triangle, barycentric, slot.uv_set);
+        weight *= sample_texture(scene.images, slot, uv)[0];
+    }
+    return past_coat(weight, cosine);
+}
 
 std::optional<LightSample> sample_light(const Scene& scene, const Light& light, const V3f& p, V2f u,
                                         const Bands& bands, float time) {
@@ -291,11 +208,7 @@ float triangle_light_pdf(const Scene& scene, const TriangleLight& light, const V
                          float distance_squared, float cosine, float time) {
     const auto corner = triangle_corners(scene, light.instance, light.triangle, time);
     if (const auto wide = if_wide(scene, light, p, corner)) return 1.f / wide->solid_angle();
-    return distance_squared / (std::fabs(cosine) * area_of(corner));
-}
-
-float light_power(const Scene& scene, const Light& light) {
-    return std::visit([&](const auto& kind) { return power(scene, kind); }, light);
+    return distance_squared / (std::fabs(cosine) * triangle_area(corner));
 }
 
 }  // namespace petzval

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "core/light/light_sample.h"
 #include "core/math/ray.h"
 #include "core/scene/light.h"
 #include "core/spectrum/bands.h"
@@ -11,16 +12,6 @@
 namespace petzval {
 
 struct Scene;
-
-/// Light that arrives at a point, before anything in between is known.
-struct LightSample {
-    V3f direction{0.f};  ///< unit, from the point to the light
-    V3f target{0.f};     ///< end of a shadow ray, clear of the light; meaningless when at_infinity
-    bool at_infinity = false;
-    f4 radiance{};       ///< for a delta light: the irradiance on a surface that faces it
-    float pdf = 0;       ///< 1/sr; 1 for a delta light
-    bool delta = false;  ///< a BSDF sample can never find this light
-};
 
 /// Draws a direction from p to the light at a time; u in [0, 1)^2. Nothing where no light can
 /// arrive. A light that has a position is as light_at() has it.
@@ -33,6 +24,18 @@ struct LightSample {
 [[nodiscard]] float triangle_light_pdf(const Scene&, const TriangleLight&, const V3f& p,
                                        float distance_squared, float cosine,
                                        float time = kMiddleOfShutter);
+/// Emitted radiance at a point of a triangle, the same for a ray that hits it and for a light
+/// sample that picks it: nits, towards every direction on the front side, and on the back side
+/// where the material is double-sided; of a beam, along its axis. barycentric: weights of the
+/// second and third vertex. Materials with KHR_materials_unlit emit nothing here.
+[[nodiscard]] Rgb emitted_radiance(const Scene&, uint32_t instance, uint32_t triangle,
+                                   V2f barycentric, bool front);
+
+/// Share of emitted_radiance that comes through the material's clear coat, at a cosine to the
+/// triangle; 1 where it has none.
+[[nodiscard]] float share_past_coat(const Scene&, uint32_t instance, uint32_t triangle,
+                                    V2f barycentric, float cosine);
+
 /// Power for choosing among lights, in lumen up to a common factor.
 [[nodiscard]] float light_power(const Scene&, const Light&);
 

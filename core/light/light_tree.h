@@ -10,17 +10,11 @@
 #include <span>
 #include <vector>
 
+#include "core/light/light_sample.h"
 #include "core/math/lanes.h"
 #include "core/math/math.h"
 
 namespace petzval {
-
-/// Surface point for which a light is chosen.
-struct LightReceiver {
-    V3f p;
-    V3f normal;       ///< unit, of the triangle, on the path's side
-    bool both_sides;  ///< light from behind counts too: the surface transmits
-};
 
 /// Bounds of the position and direction of a light or a cluster: every light of it lies in the box
 /// and has its axis within `spread` of the axis; it shines up to `reach` away from its own.

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <utility>
 
-#include "core/light/emission.h"
+#include "core/light/light_sampling.h"
 #include "core/light/sun_disc.h"
 #include "core/sampling/sampler.h"
 #include "core/scene/motion.h"

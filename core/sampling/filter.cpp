@@ -8,9 +8,6 @@
 namespace petzval {
 namespace {
 
-// Steps of the table on one side: 4 KB.
-constexpr uint32_t kSteps = 1 << 10;
-
 constexpr double kPi_d = std::numbers::pi;
 // a0 to a3 of the window: Harris 1978, table 1.
 constexpr double kA0 = 0.35875, kA1 = 0.48829, kA2 = 0.14128, kA3 = 0.01168;
@@ -78,15 +75,6 @@ Filter::Filter(FilterKind kind, float radius_px) : kind_(kind), radius_px_(radiu
     }
 }
 
-// Branchless: which half it is cannot be predicted.
-float Filter::sample1(float u) const {
-    const float half = u - 0.5f;
-    const float position = std::sqrt(1.f - 2.f * std::fabs(half)) * float{kSteps};
-    const uint32_t step = std::min(static_cast<uint32_t>(position), kSteps - 1);
-    const float* at = &quantiles_[step];
-    return std::copysign(lerp(at[0], at[1], position - static_cast<float>(step)), half);
-}
-
 float Filter::value1(float offset_px) const {
     const float position =
         std::fabs(offset_px) / radius_px_ * static_cast<float>(values_.size() - 1);
@@ -94,10 +82,6 @@ float Filter::value1(float offset_px) const {
     if (!(position < last)) return position == last ? values_.back() : 0.f;
     const auto step = static_cast<size_t>(position);
     return lerp(values_[step], values_[step + 1], position - static_cast<float>(step));
-}
-
-V2f Filter::sample(V2f u) const {
-    return {sample1(u.x), sample1(u.y)};
 }
 
 }  // namespace petzval

@@ -3,6 +3,9 @@
 // the same weight (filter importance sampling: Ernst et al. 2006).
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "core/math/math.h"
@@ -19,7 +22,7 @@ class Filter {
     /// The radius (half the width) must be above 0.
     Filter(FilterKind, float radius_px);
     /// Offset from the pixel's centre, in pixels, distributed as the filter. u in [0, 1)^2.
-    [[nodiscard]] V2f sample(V2f u) const;
+    [[nodiscard]] V2f sample(V2f u) const { return {sample1(u.x), sample1(u.y)}; }
     /// Density of sample() at any offset, up to a factor: 1 at the centre, 0 beyond the radius.
     [[nodiscard]] float value(V2f offset_px) const {
         return value1(offset_px.x) * value1(offset_px.y);
@@ -29,6 +32,7 @@ class Filter {
     [[nodiscard]] float radius_px() const { return radius_px_; }
 
   private:
+    static constexpr uint32_t kSteps = 1 << 10;  ///< of the table on one side: 4 KB
     [[nodiscard]] float sample1(float u) const;
     [[nodiscard]] float value1(float offset_px) const;
 
@@ -37,5 +41,14 @@ class Filter {
     std::vector<float> values_;     ///< profile on half an axis, at equal steps from the centre
     std::vector<float> quantiles_;  ///< of the left half, in pixels; see the constructor
 };
+
+// Branchless: which half it is cannot be predicted.
+inline float Filter::sample1(float u) const {
+    const float half = u - 0.5f;
+    const float position = std::sqrt(1.f - 2.f * std::fabs(half)) * float{kSteps};
+    const uint32_t step = std::min(static_cast<uint32_t>(position), kSteps - 1);
+    const float* at = &quantiles_[step];
+    return std::copysign(lerp(at[0], at[1], position - static_cast<float>(step)), half);
+}
 
 }  // namespace petzval

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "core/math/math.h"
+#include "core/scene/beam.h"
 #include "core/spectrum/bands.h"
 
 namespace petzval {
@@ -22,6 +23,8 @@ struct SpotLight {
     Rgb intensity_cd;
     float cos_inner, cos_outer;
     int32_t illuminant = -1;
+
+    [[nodiscard]] Beam beam() const { return {direction, cos_inner, cos_outer}; }
 };
 /// A point that sends what a LightProfile says: EXT_lights_ies.
 struct ProfileLight {

@@ -55,10 +55,6 @@ Instance moved_instance(const Instance& still, const std::vector<M44f>& places, 
     return out;
 }
 
-bool flips_at(const Scene& scene, uint32_t instance, float time) {
-    return with_instance_at(scene, instance, time, [](const Instance& i) { return i.flips; });
-}
-
 CornerValues moved_corners(const Mesh& mesh, const std::array<uint32_t, 3>& corner,
                            std::vector<V3f> MeshStep::*of, float time) {
     const auto at = step_place(time, mesh.steps.size());
@@ -68,12 +64,22 @@ CornerValues moved_corners(const Mesh& mesh, const std::array<uint32_t, 3>& corn
     return out;
 }
 
-V4f tangent_at(const Mesh& mesh, uint32_t triangle, V2f b, float time) {
+V4f moved_tangent(const Mesh& mesh, uint32_t triangle, V2f b, float time) {
     const auto& corner = mesh.triangles[triangle];
-    if (mesh.steps.empty()) return interpolate(mesh.tangents, corner, b);
     const auto at = step_place(time, mesh.steps.size());
     return interpolate(mesh.steps[at.before].tangents, corner, b) * (1.f - at.share) +
            interpolate(mesh.steps[at.before + 1].tangents, corner, b) * at.share;
+}
+
+std::array<V3f, 3> moved_triangle_corners(const Scene& scene, uint32_t instance, uint32_t triangle,
+                                          float time) {
+    const Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
+    return with_instance_at(scene, instance, time, [&](const Instance& placement) {
+        CornerValues moved;
+        const auto at = corner_positions(mesh, mesh.triangles[triangle], time, moved);
+        return std::array<V3f, 3>{placed(placement, *at[0]), placed(placement, *at[1]),
+                                  placed(placement, *at[2])};
+    });
 }
 
 size_t step_count(const Scene& scene, uint32_t instance) {

@@ -21,9 +21,6 @@ namespace petzval {
 /// Instance as it stands at a time; places: those of one that moves.
 [[nodiscard]] Instance moved_instance(const Instance&, const std::vector<M44f>& places, float time);
 
-/// Whether an instance is mirrored at a time: one that moves may be turned inside out on its way.
-[[nodiscard]] bool flips_at(const Scene&, uint32_t instance, float time);
-
 /// Calls visit(instance) with an instance as it stands at a time; returns what that returns.
 template <class Visit>
 decltype(auto) with_instance_at(const Scene& scene, uint32_t instance, float time, Visit&& visit) {
@@ -31,6 +28,11 @@ decltype(auto) with_instance_at(const Scene& scene, uint32_t instance, float tim
     const auto* const places = still.moves ? places_of(scene, instance) : nullptr;
     if (!places) return visit(still);
     return visit(moved_instance(still, *places, time));
+}
+
+/// Whether an instance is mirrored at a time: one that moves may be turned inside out on its way.
+[[nodiscard]] inline bool flips_at(const Scene& scene, uint32_t instance, float time) {
+    return with_instance_at(scene, instance, time, [](const Instance& i) { return i.flips; });
 }
 
 /// Values at the corners of a triangle of a mesh at a time; of: positions or normals.
@@ -62,7 +64,12 @@ template <bool kStill = false>
     return corners_at<kStill>(mesh, corner, mesh.normals, &MeshStep::normals, time, moved);
 }
 /// Tangent at a point of a triangle at a time, of a mesh that has some; b as in interpolate().
-[[nodiscard]] V4f tangent_at(const Mesh&, uint32_t triangle, V2f b, float time);
+[[nodiscard]] V4f moved_tangent(const Mesh&, uint32_t triangle, V2f b, float time);
+[[nodiscard]] inline V4f tangent_at(const Mesh& mesh, uint32_t triangle, V2f b, float time) {
+    if (!mesh.steps.empty()) [[unlikely]]
+        return moved_tangent(mesh, triangle, b, time);
+    return interpolate(mesh.tangents, mesh.triangles[triangle], b);
+}
 
 /// Point of a triangle at a time, in world space; b as in interpolate().
 [[nodiscard]] inline V3f point_at(const Scene& scene, uint32_t instance, uint32_t triangle, V2f b,

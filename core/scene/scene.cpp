@@ -9,10 +9,6 @@
 namespace petzval {
 namespace {
 
-V3f placed(const Instance& instance, const V3f& position) {
-    return instance.identity ? position : position * instance.to_world;
-}
-
 bool same_place(const Scene& scene, const TextureSlot& a, const TextureSlot& b) {
     if (!a.present() || !b.present()) return false;
     const Image &one = scene.images[a.image], &other = scene.images[b.image];
@@ -123,22 +119,6 @@ Box3f placed_box(const Box3f& box, const M44f& to_world) {
         out.max[i] = high + most * rounding;
     }
     return out;
-}
-
-std::array<V3f, 3> triangle_corners(const Scene& scene, uint32_t instance, uint32_t triangle,
-                                    float time) {
-    const Instance& still = scene.instances[instance];
-    const Mesh& mesh = scene.meshes[still.mesh];
-    const auto& corner = mesh.triangles[triangle];
-    if (!still.moves) [[likely]]
-        return {placed(still, mesh.positions[corner[0]]), placed(still, mesh.positions[corner[1]]),
-                placed(still, mesh.positions[corner[2]])};
-    return with_instance_at(scene, instance, time, [&](const Instance& placement) {
-        CornerValues moved;
-        const auto at = corner_positions(mesh, corner, time, moved);
-        return std::array<V3f, 3>{placed(placement, *at[0]), placed(placement, *at[1]),
-                                  placed(placement, *at[2])};
-    });
 }
 
 }  // namespace petzval

@@ -2,6 +2,7 @@
 // Scene: all that can be seen, as immutable arrays that name each other by index.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "core/math/ray.h"
@@ -48,9 +49,19 @@ struct Scene {
     std::vector<Box3f> volume_boxes;
     bool volumes_meet = false;  ///< some of them may overlap or touch
 
+    /// Whether a point may lie in a closed volume, by the boxes.
+    [[nodiscard]] bool may_be_in_volume(const V3f& p) const {
+        return std::any_of(volume_boxes.begin(), volume_boxes.end(),
+                           [&](const Box3f& box) { return box.intersects(p); });
+    }
     /// Illuminant of an index; nullptr for -1, which means the scene's own white.
     [[nodiscard]] const Illuminant* illuminant(int32_t index) const {
         return index < 0 ? nullptr : &illuminants[static_cast<size_t>(index)];
+    }
+    /// Radiance of a source whose white is the illuminant of an index; -1: the scene's own white.
+    [[nodiscard]] f4 uplift_radiance(Rgb c, const Bands& bands, int32_t white) const {
+        if (white < 0) return petzval::uplift_radiance(c, bands);
+        return petzval::uplift_radiance(c, bands, illuminant(white));
     }
 };
 
@@ -67,8 +78,28 @@ void finish_scene(Scene&);
 /// Box that holds all that is moved by the matrix out of a box, rounding included.
 [[nodiscard]] Box3f placed_box(const Box3f&, const M44f& to_world);
 
+/// Position of a mesh in the world, as an instance places it.
+[[nodiscard]] inline V3f placed(const Instance& instance, const V3f& position) {
+    return instance.identity ? position : position * instance.to_world;
+}
+/// Corners of a triangle of an instance that moves, as triangle_corners() has them.
+[[nodiscard]] std::array<V3f, 3> moved_triangle_corners(const Scene&, uint32_t instance,
+                                                        uint32_t triangle, float time);
 /// Three world-space corners of a triangle at a time.
-[[nodiscard]] std::array<V3f, 3> triangle_corners(const Scene&, uint32_t instance,
-                                                  uint32_t triangle, float time = kMiddleOfShutter);
+[[nodiscard]] inline std::array<V3f, 3> triangle_corners(const Scene& scene, uint32_t instance,
+                                                         uint32_t triangle,
+                                                         float time = kMiddleOfShutter) {
+    const Instance& still = scene.instances[instance];
+    if (still.moves) [[unlikely]]
+        return moved_triangle_corners(scene, instance, triangle, time);
+    const Mesh& mesh = scene.meshes[still.mesh];
+    const auto& corner = mesh.triangles[triangle];
+    return {placed(still, mesh.positions[corner[0]]), placed(still, mesh.positions[corner[1]]),
+            placed(still, mesh.positions[corner[2]])};
+}
+/// Area of a triangle of three corners.
+[[nodiscard]] inline float triangle_area(const std::array<V3f, 3>& corner) {
+    return 0.5f * (corner[1] - corner[0]).cross(corner[2] - corner[0]).length();
+}
 
 }  // namespace petzval

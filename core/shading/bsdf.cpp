@@ -69,15 +69,15 @@ f4 Bsdf::film_reflectance(float wo_m) const {
 // mean; else a lane is drawn in proportion to what of it is not reflected, and the light takes its
 // way. Lanes follow each other in the circle of their wavelengths' quantiles. The rank of the lane
 // that leads is a digit of a random number, and u gives the rest of it.
-int Bsdf::draw_lane(f4 reflectance, float u, bool led) const {
+int Bsdf::draw_lane(f4 reflectance, float u, bool hero_decided) const {
     const float reflected = hsum(share_ * reflectance);
     if (u < reflected) return -1;
     if (!disperses_) return 0;
     float left = u - reflected;
     int first = 0;
-    if (!led && lane_count(on_) == 4) {
-        first = lead_ - rank_of_lead_;
-        left = 0.25f * (static_cast<float>(rank_of_lead_) * (1.f - reflected) + left);
+    if (!hero_decided && lane_count(on_) == 4) {
+        first = hero_ - rank_of_hero_;
+        left = 0.25f * (static_cast<float>(rank_of_hero_) * (1.f - reflected) + left);
     }
     int lane = 3;
     for (int j = 0; j < 4; ++j) {
@@ -195,7 +195,7 @@ V3f Bsdf::draw_lost(float u_side, V2f u) const {
     return u_side < p_crossing_ ? mirror_below(wi) : wi;
 }
 
-std::optional<BsdfSample> Bsdf::sample_delta(float u, bool led) const {
+std::optional<BsdfSample> Bsdf::sample_delta(float u, bool hero_decided) const {
     const V3f mirrored{-wo_.x, -wo_.y, wo_.z};
     if (u < p_spec_) {
         const f4 reflectance = specular_reflectance(wo_.z);
@@ -207,7 +207,7 @@ std::optional<BsdfSample> Bsdf::sample_delta(float u, bool led) const {
     u = (u - p_thin_) / p_glass_;
     const f4 r = zero_off(on_, glass_reflectance(wo_.z));
     const float share = glass_share_ / p_glass_;
-    const int lane = draw_lane(r, u, led);
+    const int lane = draw_lane(r, u, hero_decided);
     if (lane < 0) {
         // Weight 1 for lanes of one index: no rounding, so that nothing is gained or lost.
         const bool alike = !disperses_ && !(film_share_ > 0.f);
@@ -223,7 +223,7 @@ std::optional<BsdfSample> Bsdf::sample_delta(float u, bool led) const {
     return BsdfSample{wi, weight, 0.f, true, true};
 }
 
-std::optional<V3f> Bsdf::draw(float u_lobe, V2f u, bool led) const {
+std::optional<V3f> Bsdf::draw(float u_lobe, V2f u, bool hero_decided) const {
     if (p_lost_ > 0.f) {
         const float u_glass = (u_lobe - p_spec_ - p_thin_) / p_glass_;
         if (u_glass >= 1.f - p_lost_) return draw_lost((u_glass + p_lost_ - 1.f) / p_lost_, u);
@@ -244,7 +244,7 @@ std::optional<V3f> Bsdf::draw(float u_lobe, V2f u, bool led) const {
         return mirrored.z > 0.f ? std::optional(mirror_below(mirrored)) : std::nullopt;
     if (p_glass_ <= 0.f) return std::nullopt;
     const float u_single = (u_lobe - p_thin_) / (p_glass_ * (1.f - p_lost_));
-    const int lane = draw_lane(zero_off(on_, glass_reflectance(wo_m)), u_single, led);
+    const int lane = draw_lane(zero_off(on_, glass_reflectance(wo_m)), u_single, hero_decided);
     if (lane < 0) return mirrored.z > 0.f ? std::optional(mirrored) : std::nullopt;
     const V3f wi = refract(wo_, m, wo_m, eta_[lane]);
     return wi.z < 0.f ? std::optional(wi) : std::nullopt;
@@ -269,8 +269,8 @@ std::optional<V3f> Bsdf::draw_evenly(float u_more, V2f u) const {
     return std::nullopt;
 }
 
-std::optional<BsdfSample> Bsdf::sample_tilted(float u_lobe, V2f u, bool led) const {
-    std::optional<BsdfSample> drawn = sample_lobes(u_lobe, u, led);
+std::optional<BsdfSample> Bsdf::sample_tilted(float u_lobe, V2f u, bool hero_decided) const {
+    std::optional<BsdfSample> drawn = sample_lobes(u_lobe, u, hero_decided);
     if (!drawn) return drawn;
     if (!on_its_side(drawn->wi)) drawn->wi = mirrored_at_surface(drawn->wi);
     if (drawn->delta) return drawn;
@@ -281,7 +281,7 @@ std::optional<BsdfSample> Bsdf::sample_tilted(float u_lobe, V2f u, bool led) con
     return drawn;
 }
 
-std::optional<BsdfSample> Bsdf::sample_lobes(float u_lobe, V2f u, bool led) const {
+std::optional<BsdfSample> Bsdf::sample_lobes(float u_lobe, V2f u, bool hero_decided) const {
     V3f wi;
     if (u_lobe < p_diffuse_) {
         wi = cosine_hemisphere(u);
@@ -292,8 +292,8 @@ std::optional<BsdfSample> Bsdf::sample_lobes(float u_lobe, V2f u, bool led) cons
     } else {
         u_lobe -= p_sheen_;
         if (p_spec_ + p_thin_ + p_glass_ <= 0.f) return std::nullopt;
-        if (delta_) return sample_delta(u_lobe, led);
-        const std::optional<V3f> drawn = draw(u_lobe, u, led);
+        if (delta_) return sample_delta(u_lobe, hero_decided);
+        const std::optional<V3f> drawn = draw(u_lobe, u, hero_decided);
         if (!drawn) return std::nullopt;
         wi = unit(*drawn);
     }

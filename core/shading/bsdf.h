@@ -85,10 +85,12 @@ class Bsdf {
         return tilted_ ? eval_tilted(wi) : eval_lobes(wi);
     }
     /// Draws a direction: u_lobe picks the lobe and the lane, u the direction. Nothing where that
-    /// is absorbed. led: which lane leads (Bands::lead) has decided something already; otherwise it
-    /// picks the lane, which then is the one that leads wherever all carry the same.
-    [[nodiscard]] std::optional<BsdfSample> sample(float u_lobe, V2f u, bool led = true) const {
-        return tilted_ ? sample_tilted(u_lobe, u, led) : sample_lobes(u_lobe, u, led);
+    /// is absorbed. hero_decided: the choice of the hero lane (Bands::hero) has decided something
+    /// already; otherwise it picks the lane, which then is the hero wherever all carry the same.
+    [[nodiscard]] std::optional<BsdfSample> sample(float u_lobe, V2f u,
+                                                   bool hero_decided = true) const {
+        return tilted_ ? sample_tilted(u_lobe, u, hero_decided)
+                       : sample_lobes(u_lobe, u, hero_decided);
     }
     /// Whether some lobe is wide enough for light sampling to help.
     [[nodiscard]] bool has_wide_lobe() const {
@@ -108,8 +110,10 @@ class Bsdf {
     [[nodiscard]] bool on_its_side(const V3f& w) const { return (w.z > 0.f) == (w.dot(up_) > 0.f); }
     [[nodiscard]] BsdfValue eval_lobes(const V3f& wi) const;
     [[nodiscard]] BsdfValue eval_tilted(const V3f& wi) const;
-    [[nodiscard]] std::optional<BsdfSample> sample_lobes(float u_lobe, V2f u, bool led) const;
-    [[nodiscard]] std::optional<BsdfSample> sample_tilted(float u_lobe, V2f u, bool led) const;
+    [[nodiscard]] std::optional<BsdfSample> sample_lobes(float u_lobe, V2f u,
+                                                         bool hero_decided) const;
+    [[nodiscard]] std::optional<BsdfSample> sample_tilted(float u_lobe, V2f u,
+                                                          bool hero_decided) const;
     [[nodiscard]] float pdf_of_normal(float wo_m, float d) const;
     void add_glass(const V3f& wi, BsdfValue&) const;
     void add_lost(const V3f& wi, BsdfValue&) const;
@@ -129,9 +133,9 @@ class Bsdf {
     [[nodiscard, gnu::noinline]] f4 lost_by_two_widths() const;
     [[nodiscard, gnu::noinline]] f4 lost_below_film() const;
     [[gnu::noinline]] void add_sheen(const BsdfInput&);
-    [[nodiscard]] int draw_lane(f4 reflectance, float u, bool led) const;
-    [[nodiscard]] std::optional<BsdfSample> sample_delta(float u_lobe, bool led) const;
-    [[nodiscard]] std::optional<V3f> draw(float u_lobe, V2f u, bool led) const;
+    [[nodiscard]] int draw_lane(f4 reflectance, float u, bool hero_decided) const;
+    [[nodiscard]] std::optional<BsdfSample> sample_delta(float u_lobe, bool hero_decided) const;
+    [[nodiscard]] std::optional<V3f> draw(float u_lobe, V2f u, bool hero_decided) const;
     [[nodiscard, gnu::noinline]] std::optional<V3f> draw_evenly(float u_more, V2f u) const;
 
     V3f wo_, up_;
@@ -164,7 +168,7 @@ class Bsdf {
     f4 film_albedo_;                 ///< of both films, for wo
     float p_spec_, p_diffuse_, p_thin_, p_glass_, p_behind_ = 0, p_sheen_ = 0;
     m4 on_;
-    int lead_, rank_of_lead_ = 0;  ///< rank: number of wavelengths below the one that leads
+    int hero_, rank_of_hero_ = 0;  ///< rank: number of wavelengths below the hero
 };
 
 }  // namespace petzval

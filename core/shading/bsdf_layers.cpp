@@ -41,10 +41,10 @@ Bsdf::Bsdf(const BsdfInput& in, const Bands& bands, const V3f& wo, f4 throughput
       metal_n_(in.metal_n),
       metal_k_(in.metal_k),
       on_(bands.on),
-      lead_(bands.lead) {
+      hero_(bands.hero) {
     share_ *= 1.f / hsum(share_);
     if (disperses_)
-        for (int i = 0; i < 4; ++i) rank_of_lead_ += bands.nm[i] < bands.nm[bands.lead];
+        for (int i = 0; i < 4; ++i) rank_of_hero_ += bands.nm[i] < bands.nm[bands.hero];
     delta_ = alpha_.x < kSmallestAlpha;
     const float schlick = schlick_weight(wo.z);
     const GgxAlbedo ggx = delta_ ? GgxAlbedo{1.f - schlick, schlick} : albedo_of(wo, alpha_);

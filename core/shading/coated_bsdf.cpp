@@ -50,12 +50,12 @@ BsdfValue CoatedBsdf::eval_coated(const V3f& wi) const {
             coat.pdf * coat_->chance + base.pdf * (1.f - coat_->chance)};
 }
 
-std::optional<BsdfSample> CoatedBsdf::sample_coated(float u_lobe, V2f u, bool led) const {
+std::optional<BsdfSample> CoatedBsdf::sample_coated(float u_lobe, V2f u, bool hero_decided) const {
     const bool from_coat = u_lobe < coat_->chance;
     const float chance = from_coat ? coat_->chance : 1.f - coat_->chance;
     const float left = std::min((from_coat ? u_lobe : u_lobe - coat_->chance) / chance, kOneMinus);
     std::optional<BsdfSample> drawn =
-        from_coat ? coat_->lobe.sample(left, u, led) : base_.sample(left, u, led);
+        from_coat ? coat_->lobe.sample(left, u, hero_decided) : base_.sample(left, u, hero_decided);
     if (!drawn) return drawn;
     if (from_coat) drawn->wi = coat_->frame.to_world(drawn->wi);
     if (drawn->delta) {

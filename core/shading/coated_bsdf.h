@@ -30,8 +30,10 @@ class CoatedBsdf {
     [[nodiscard]] BsdfValue eval(const V3f& wi) const {
         return coat_ ? eval_coated(wi) : base_.eval(wi);
     }
-    [[nodiscard]] std::optional<BsdfSample> sample(float u_lobe, V2f u, bool led = true) const {
-        return coat_ ? sample_coated(u_lobe, u, led) : base_.sample(u_lobe, u, led);
+    [[nodiscard]] std::optional<BsdfSample> sample(float u_lobe, V2f u,
+                                                   bool hero_decided = true) const {
+        return coat_ ? sample_coated(u_lobe, u, hero_decided)
+                     : base_.sample(u_lobe, u, hero_decided);
     }
     [[nodiscard]] bool has_wide_lobe() const {
         return base_.has_wide_lobe() || (coat_ && coat_->lobe.has_wide_lobe());
@@ -50,7 +52,8 @@ class CoatedBsdf {
     };
     void add_coat(const CoatInput&, const Bands&, const V3f& wo, f4 throughput, const V3f& up);
     [[nodiscard]] BsdfValue eval_coated(const V3f& wi) const;
-    [[nodiscard]] std::optional<BsdfSample> sample_coated(float u_lobe, V2f u, bool led) const;
+    [[nodiscard]] std::optional<BsdfSample> sample_coated(float u_lobe, V2f u,
+                                                          bool hero_decided) const;
 
     Bsdf base_;
     std::optional<Coat> coat_;

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a material is at a hit: factors times textures, and the layers that glTF's extensions add.
+// What a material is at a hit: factors times textures.
 #include <algorithm>
-#include <optional>
 
 #include "core/scene/motion.h"
-#include "core/shading/surface.h"
+#include "core/shading/material_layers.h"
 
 namespace petzval {
-namespace {
+namespace material_reading {
 
 // It is called for every texture of every hit, so that a call would show.
 [[gnu::always_inline]] inline TextureLookup locate(const Scene& scene, const Surface& s,
@@ -16,6 +15,10 @@ namespace {
                        ? s.uv[slot.uv_set]
                        : s.mesh->uv_at(s.hit.triangle, s.hit.barycentric, slot.uv_set);
     return locate_texture(scene.images, slot, uv);
+}
+
+TextureLookup located(const Scene& scene, const Surface& s, const TextureSlot& slot) {
+    return locate(scene, s, slot);
 }
 
 f4 read(const Scene& scene, const Surface& s, const TextureSlot& slot) {
@@ -28,11 +31,6 @@ Rgb read_rgb(const Scene& scene, const Surface& s, const TextureSlot& slot) {
     return Rgb(texel);
 }
 
-// The part of the mesh's tangent across the normal, and the bitangent, on the front side; nothing
-// where the tangent has no such part.
-struct Tangents {
-    V3f tangent, bitangent;
-};
 std::optional<Tangents> tangents_at(const Scene& scene, const Surface& s) {
     const V4f t4 = tangent_at(*s.mesh, s.hit.triangle, s.hit.barycentric, s.hit.time);
     V3f t(t4.x, t4.y, t4.z);
@@ -49,7 +47,6 @@ std::optional<Tangents> tangents_at(const Scene& scene, const Surface& s) {
     return Tangents{t, s.ns.cross(t) * (t4.w < 0.f ? -flip : flip)};
 }
 
-// The normal map's normal in the frame that the tangents span, on the front side.
 V3f mapped_normal(const Scene& scene, const Surface& s, const TextureLookup& map, float scale) {
     const auto t = tangents_at(scene, s);
     if (!t) return s.ns;
@@ -83,7 +80,6 @@ V3f reflect_outwards(const V3f& n, const V3f& up, const V3f& wo) {
     return unit(up * safe_sqrt(0.5f + 0.5f * cos2) + x * safe_sqrt(0.5f - 0.5f * cos2));
 }
 
-// The shading normal on wo's side; n is on the front side, and from a map if it says so.
 V3f shading_normal(const Surface& s, const V3f& n, bool mapped, const V3f& wo) {
     const V3f facing = face_towards(s.front ? n : -n, wo);
     return mapped ? reflect_outwards(facing, s.side, wo) : facing;
@@ -98,9 +94,6 @@ Rgb dielectric_f0(const Material& m, const Material* outside, Rgb specular_color
     return Rgb(min(f0.v, splat(1.f))) * specular;
 }
 
-// Index of what fills space, null for air. Thin materials do not bend, whatever their glass. A
-// facet between equal indices has no half vector: what hardly differs from air differs by a
-// thousandth, which bends nothing that shows.
 f4 index_of(const Material* m, const Bands& bands) {
     if (!m) return splat(1.f);
     const f4 index = bands.spectral && m->glass && m->has_volume
@@ -125,90 +118,9 @@ bool disperses(const Material* m, const Bands& bands) {
     return m && bands.spectral && m->glass && m->has_volume;
 }
 
-/// Reads the layers that most materials lack.
-class Layers {
-  public:
-    Layers(const Scene& scene, const Surface& s, const V3f& wo, const Bands& bands)
-        : scene_(scene), s_(s), m_(*s.material), wo_(wo), bands_(bands) {}
+}  // namespace material_reading
 
-    [[nodiscard]] float coat_weight() const { return m_.coat * channel(m_.coat_texture, 0); }
-
-    // Without a map of its own the coat has the mesh's normal, whatever the base's map.
-    void read_coat(const Frame& frame, CoatInput& coat) const {
-        if (!(m_.coat > 0.f)) return;
-        coat.weight = coat_weight();
-        coat.roughness = m_.coat_roughness * channel(m_.coat_roughness_texture, 1);
-        const TextureSlot& map = m_.coat_normal_texture;
-        const bool mapped = map.present() && !s_.mesh->tangents.empty();
-        if (!mapped && !m_.normal_texture.present()) return;
-        const V3f n = mapped
-                          ? mapped_normal(scene_, s_, locate(scene_, s_, map), m_.coat_normal_scale)
-                          : s_.ns;
-        coat.normal = unit(frame.to_local(shading_normal(s_, n, mapped, wo_)));
-        if (coat.normal.z > kSameNormal) coat.normal = V3f(0, 0, 1);
-    }
-
-    void read_sheen(BsdfInput& b) const {
-        if (!m_.has_sheen()) return;
-        const Rgb colour = m_.sheen_color * read_rgb(scene_, s_, m_.sheen_color_texture);
-        b.sheen = uplift_reflectance(colour, bands_);
-        b.sheen_most = hmax(colour.v);
-        b.sheen_roughness = m_.sheen_roughness * channel(m_.sheen_roughness_texture, 3);
-    }
-
-    // Turns the frame's x along the wide lobe.
-    void read_anisotropy(Frame& frame, BsdfInput& b) const {
-        if (!(m_.anisotropy > 0.f)) return;
-        b.anisotropy = m_.anisotropy;
-        V2f along(std::cos(m_.anisotropy_rotation_rad), std::sin(m_.anisotropy_rotation_rad));
-        if (m_.anisotropy_texture.present()) {
-            const f4 texel = read(scene_, s_, m_.anisotropy_texture);
-            b.anisotropy *= texel[2];
-            const V2f direction(texel[0] * 2.f - 1.f, texel[1] * 2.f - 1.f);
-            along = V2f(along.x * direction.x - along.y * direction.y,
-                        along.x * direction.y + along.y * direction.x);
-        }
-        if (s_.mesh->tangents.empty()) return;
-        if (const auto t = tangents_at(scene_, s_))
-            frame = Frame::about(frame.z, t->tangent * along.x + t->bitangent * along.y);
-    }
-
-    // outside and front: what lies outside the material, and before the surface; null for air.
-    void read_film(const Material* outside, const Material* front, BsdfInput& b) const {
-        if (!(m_.iridescence > 0.f)) return;
-        b.film_share = m_.iridescence * channel(m_.iridescence_texture, 0);
-        b.film_index = m_.film_ior / index_of(outside, Bands::rgb())[0];
-        // Diffuse light goes in at all angles, and none of them may keep it in for ever.
-        if (m_.diffuse_transmission > 0.f) b.film_index = std::max(b.film_index, 1.f);
-        b.film_index_on_glass = m_.film_ior / index_of(front, Bands::rgb())[0];
-        b.film_thickness_nm =
-            lerp(m_.film_thinnest_nm, m_.film_thickest_nm, channel(m_.film_thickness_texture, 1));
-        if (!(b.film_thickness_nm > 0.f)) b.film_share = 0.f;
-    }
-
-    void read_diffuse_transmission(BsdfInput& b) const {
-        if (!(m_.diffuse_transmission > 0.f)) return;
-        b.diffuse_transmission =
-            m_.diffuse_transmission * channel(m_.diffuse_transmission_texture, 3);
-        b.diffuse_transmission_color =
-            uplift_reflectance(m_.diffuse_transmission_color *
-                                   read_rgb(scene_, s_, m_.diffuse_transmission_color_texture),
-                               bands_);
-    }
-
-  private:
-    [[nodiscard]] float channel(const TextureSlot& slot, int of) const {
-        return slot.present() ? read(scene_, s_, slot)[of] : 1.f;
-    }
-
-    const Scene& scene_;
-    const Surface& s_;
-    const Material& m_;
-    const V3f& wo_;
-    const Bands& bands_;
-};
-
-}  // namespace
+using namespace material_reading;
 
 f4 vertex_colour(const Surface& s) {
     if (s.mesh->colours.empty()) return splat(1.f);
@@ -247,8 +159,7 @@ ShadingInput read_material(const Scene& scene, const Surface& s, const MaterialL
     if (mapped) n = mapped_normal(scene, s, lookups.normal, m.normal_scale);
     out.frame = Frame::about(shading_normal(s, n, mapped, wo));
     const bool layered = m.layered();
-    const Layers layers(scene, s, wo, bands);
-    if (layered) layers.read_anisotropy(out.frame, out.bsdf);
+    if (layered) Layers{scene, s, m, wo, bands}.read_anisotropy(out.frame, out.bsdf);
     if (out.frame.z.dot(s.side) < kSameNormal) out.up = out.frame.to_local(s.side);
     if (lookups.emits) {
         f4 texel = read_texture(lookups.emissive);
@@ -257,7 +168,8 @@ ShadingInput read_material(const Scene& scene, const Surface& s, const MaterialL
         if (m.beam) out.emitted = out.emitted * m.beam->falloff(wo.dot(m.beam->direction));
     }
     if (m.coat > 0.f && lookups.emits)
-        out.emitted = out.emitted * past_coat(layers.coat_weight(), std::fabs(wo.dot(s.ng)));
+        out.emitted = out.emitted * past_coat(Layers{scene, s, m, wo, bands}.coat_weight(),
+                                              std::fabs(wo.dot(s.ng)));
     if (m.unlit) {
         out.unlit = base_color;
         return out;
@@ -295,6 +207,7 @@ ShadingInput read_material(const Scene& scene, const Surface& s, const MaterialL
     b.eta = index_of(sides.behind, bands) / index_of(sides.before, bands);
     if (m.specular_glossiness) read_glossiness(scene, s, specular_color, b);
     if (layered) {
+        const Layers layers{scene, s, m, wo, bands};
         layers.read_coat(out.frame, out.coat);
         layers.read_sheen(b);
         layers.read_film(outside, sides.before, b);

@@ -57,7 +57,7 @@ struct ShadingInput {
     BsdfInput bsdf;
     CoatInput coat;
     Rgb unlit{0.f};    ///< KHR_materials_unlit: shown as it is, nits
-    Rgb emitted{0.f};  ///< as core/light/emission.h says, towards the viewer, nits
+    Rgb emitted{0.f};  ///< as core/light/light_sampling.h says, towards the viewer, nits
     Frame frame;       ///< shading frame on wo's side, the normal map applied
     V3f up{0, 0, 1};   ///< Surface::side in the frame
 

@@ -43,7 +43,7 @@ struct Bands {
     /// which a path goes where the lanes must part. Given the wavelengths, each lane is as likely
     /// to be the hero, and the lanes follow each other in the circle of quantiles (both by
     /// Observer::draw). The hero wavelength is stratified over a pixel's samples.
-    int lead = 0;
+    int hero = 0;
 
     /// Bands whose lanes 0 to 2 carry linear R, G and B.
     [[nodiscard]] static Bands rgb() {
@@ -60,6 +60,14 @@ struct Bands {
 /// Radiance of a source, lane by lane; an Rgb of 1 is 1 nit of the white point.
 [[nodiscard]] inline f4 uplift_radiance(Rgb c, const Bands& bands) {
     return uplift_reflectance(c, bands) * bands.white;
+}
+/// Linear sRGB estimate of one sample, in nits of the white point.
+[[nodiscard]] inline Rgb to_rgb(f4 radiance, const Bands& bands) {
+    return {hsum(radiance * bands.to_r), hsum(radiance * bands.to_g), hsum(radiance * bands.to_b)};
+}
+/// Linear sRGB estimate of a reflectance under the white light.
+[[nodiscard]] inline Rgb reflectance_to_rgb(f4 reflectance, const Bands& bands) {
+    return to_rgb(reflectance * bands.white, bands);
 }
 /// The same number in every lane that is on.
 [[nodiscard]] inline f4 uniform(float a, const Bands& bands) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Conversion of a finished sample's lanes to the film's linear sRGB, and the luminous efficacy.
+// Constants of photometry and of sRGB: the luminous efficacy, and the decoding of values.
 #pragma once
 
 #include "core/spectrum/bands.h"
@@ -10,15 +10,6 @@ namespace petzval {
 /// 683 lm/W at 540 THz that define the candela (CIE 015:2018). The one number between photometric
 /// and radiometric: luminance in nits = 683.002 * integral of ybar(nm) * radiance, W/(m2 sr nm).
 inline constexpr float kLuminousEfficacy_lm_per_w = 683.002f;
-
-/// Linear sRGB estimate of one sample, in nits of the white point.
-[[nodiscard]] inline Rgb to_rgb(f4 radiance, const Bands& bands) {
-    return {hsum(radiance * bands.to_r), hsum(radiance * bands.to_g), hsum(radiance * bands.to_b)};
-}
-/// Linear sRGB estimate of a reflectance under the white light.
-[[nodiscard]] inline Rgb reflectance_to_rgb(f4 reflectance, const Bands& bands) {
-    return to_rgb(reflectance * bands.white, bands);
-}
 
 /// Linear value of an sRGB-encoded one in [0, 1]: IEC 61966-2-1:1999, equation 5 and 6.
 [[nodiscard]] inline float srgb_to_linear(float encoded) {

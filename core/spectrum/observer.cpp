@@ -107,7 +107,7 @@ Bands Observer::at(f4 nm, f4 pdf, m4 on) const {
     bands.pdf = pdf;
     bands.on = on;
     bands.spectral = true;
-    while (bands.lead < 3 && !on[bands.lead]) ++bands.lead;
+    while (bands.hero < 3 && !on[bands.hero]) ++bands.hero;
     const auto lanes = static_cast<float>(lane_count(on));
     std::array<f4, 4> basis{}, out{};
     for (int i = 0; i < 4; ++i) {

@@ -1,21 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/traversal/bvh.h"
-
-#include <embree3/rtcore.h>
+// Rays through the hierarchy: what they pass on their way, and what they meet.
 #include <pmmintrin.h>
 
 #include <algorithm>
-#include <atomic>
-#include <deque>
-#include <map>
-#include <new>
-#include <stdexcept>
-#include <string>
 
 #include "core/scene/coverage.h"
-#include "core/scene/motion.h"
 #include "core/traversal/barycentric.h"
-#include "core/traversal/mask_map.h"
+#include "core/traversal/bvh_impl.h"
 
 namespace petzval {
 namespace {
@@ -69,15 +60,17 @@ struct Asked {
     }
 };
 
-// Embree's filter callbacks; a packet has one ray, as only the single-ray calls are used.
-void filter(const RTCFilterFunctionNArguments* args) {
+}  // namespace
+
+// Lets a ray meet a surface with the chance of its coverage.
+void bvh_filters::draw(const RTCFilterFunctionNArguments* args) {
     if (args->valid[0] != -1) return;
     const Asked asked(args);
     if (asked.passed(asked.covered, *context_of<Context>(args).ray)) args->valid[0] = 0;
 }
 
-// For MASK: the answers of filter(), most of them without the exact place of the hit.
-void filter_mapped(const RTCFilterFunctionNArguments* args) {
+// For MASK: the answers of draw(), most of them without the exact place of the hit.
+void bvh_filters::draw_mapped(const RTCFilterFunctionNArguments* args) {
     if (args->valid[0] != -1) return;
     const auto& hit = *reinterpret_cast<const RTCHit*>(args->hit);
     const auto& ray = *reinterpret_cast<const RTCRay*>(args->ray);  // as long as the way to the hit
@@ -98,7 +91,7 @@ void filter_mapped(const RTCFilterFunctionNArguments* args) {
 }
 
 // For surfaces that paths weigh.
-void filter_weighed(const RTCFilterFunctionNArguments* args) {
+void bvh_filters::draw_weighed(const RTCFilterFunctionNArguments* args) {
     if (args->valid[0] != -1) return;
     const auto& context = context_of<NearestContext>(args);
     const PassedBlends* const passed = context.passed;
@@ -111,10 +104,10 @@ void filter_weighed(const RTCFilterFunctionNArguments* args) {
 
 // For shadow rays: lists what they pass. The product is taken when all is known, in an order of its
 // own.
-void list_weighed(const RTCFilterFunctionNArguments* args) {
+void bvh_filters::list_weighed(const RTCFilterFunctionNArguments* args) {
     if (args->valid[0] != -1) return;
     auto& context = context_of<ShadowContext>(args);
-    if (!context.blends) return filter(args);
+    if (!context.blends) return draw(args);
     const Asked asked(args);
     if (asked.covered >= 1.f) return;
     args->valid[0] = 0;
@@ -126,10 +119,12 @@ void list_weighed(const RTCFilterFunctionNArguments* args) {
 
 // Lets rays that only ask whether the way is free pass panes. What a pane takes from them is not
 // found here, where a triangle may be asked for twice and in any order.
-void pass_pane(const RTCFilterFunctionNArguments* args) {
+void bvh_filters::pass_pane(const RTCFilterFunctionNArguments* args) {
     context_of<ShadowContext>(args).panes = true;
     args->valid[0] = 0;
 }
+
+namespace {
 
 // Notes a hit and goes on. Embree's own coordinates are left out, as barycentric() finds them.
 void note(const RTCFilterFunctionNArguments* args) {
@@ -173,162 +168,30 @@ bool traceable(const Ray& r) {
     return (pairs[0] & pairs[1]) != 0 && r.t_max >= 0.f;
 }
 
-// Embree's callback for memory that it takes (or gives back: below 0).
-bool count_bytes(void* sum, ssize_t bytes, bool) {
-    *static_cast<std::atomic<int64_t>*>(sum) += bytes;
-    return true;
-}
-
 }  // namespace
 
-// Embree takes the widest instructions it finds. Each set rounds otherwise, so it gets the one that
-// every processor has that this program runs on.
-constexpr const char* kDeviceConfig = "isa=avx2";
-
-struct Bvh::Impl {
-    const Scene& scene;
-    RTCDevice device = nullptr;
-    RTCScene top = nullptr;
-    std::vector<RTCScene> shared;  // one for each mesh that instances share, else null
-    bool has_cutouts = false, has_blends = false;
-    std::map<uint32_t, MaskMap> mask_maps;  // by material
-    std::deque<MaskedMesh> masked;
-    std::atomic<int64_t> bytes = 0;
-
-    explicit Impl(const Scene& s) : scene(s) {}
-    ~Impl() {
-        for (RTCScene s : shared)
-            if (s) rtcReleaseScene(s);
-        if (top) rtcReleaseScene(top);
-        if (device) rtcReleaseDevice(device);
-    }
-
-    void check() const {
-        const RTCError error = rtcGetDeviceError(device);
-        if (error == RTC_ERROR_NONE) return;
-        if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
-        throw std::runtime_error("Embree failed with error " + std::to_string(error));
-    }
-
-    RTCScene new_scene(Traversal traversal) const {
-        RTCScene made = rtcNewScene(device);
-        int flags = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
-        if (traversal == Traversal::Robust) flags |= RTC_SCENE_FLAG_ROBUST;
-        rtcSetSceneFlags(made, static_cast<RTCSceneFlags>(flags));
-        rtcSetSceneBuildQuality(made, RTC_BUILD_QUALITY_HIGH);
-        return made;
-    }
-
-    std::optional<Hit> nearest(const Ray& r, float t_min, RTCFilterFunctionN also,
-                               const PassedBlends* passed) const {
-        if (!traceable(r)) return std::nullopt;
-        NearestContext context{Context(r), passed};
-        context.embree.filter = also;
-        RTCRayHit query;
-        query.ray = to_embree(r, t_min);
-        query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect1(top, &context.embree, &query);
-        if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-        // Not Embree's own coordinates: they come from an approximate reciprocal, of which
-        // processors of different makers have different ones.
-        const uint32_t instance = instance_of(query.hit.instID[0], query.hit.geomID);
-        const uint32_t triangle = query.hit.primID;
-        return Hit{barycentric(scene, instance, triangle, r), instance, triangle, r.time};
-    }
-
-    // Whether a ray meets what its context does not let it pass.
-    bool is_met(const Ray& r, ShadowContext& context) const {
-        RTCRay ray = to_embree(r);
-        rtcOccluded1(top, &context.embree, &ray);
-        return ray.tfar < 0.f;
-    }
-
-    RTCGeometry triangles(uint32_t mesh_id) {
-        const Mesh& mesh = scene.meshes[mesh_id];
-        RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-        const auto set_positions = [&](unsigned step, const std::vector<V3f>& positions) {
-            rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, step, RTC_FORMAT_FLOAT3,
-                                       positions.data(), 0, sizeof(V3f), positions.size());
-        };
-        if (mesh.steps.empty())
-            set_positions(0, mesh.positions);
-        else
-            rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(mesh.steps.size()));
-        for (unsigned i = 0; i < mesh.steps.size(); ++i) set_positions(i, mesh.steps[i].positions);
-        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                   mesh.triangles.data(), 0, sizeof(mesh.triangles[0]),
-                                   mesh.triangles.size());
-        const Material& material = scene.materials[mesh.material];
-        if (material.cutout()) {
-            has_cutouts = true;
-            // Embree wants a pointer to something that may change; the filter only reads.
-            rtcSetGeometryUserData(geometry, const_cast<Scene*>(&scene));
-            const bool weighed = material.weighed();
-            has_blends |= weighed;
-            rtcSetGeometryIntersectFilterFunction(geometry, weighed ? filter_weighed : filter);
-            rtcSetGeometryOccludedFilterFunction(geometry, weighed ? list_weighed : filter);
-            const auto [map, added] = mask_maps.try_emplace(mesh.material, scene, material);
-            masked.emplace_back(scene, mesh, map->second);
-            bytes += masked.back().bytes() + (added ? map->second.answers.size() : 0);
-            if (masked.back().empty()) {
-                masked.pop_back();
-            } else {
-                rtcSetGeometryUserData(geometry, &masked.back());
-                rtcSetGeometryIntersectFilterFunction(geometry, filter_mapped);
-                rtcSetGeometryOccludedFilterFunction(geometry, filter_mapped);
-            }
-        }
-        if (material.may_be_pane()) rtcSetGeometryOccludedFilterFunction(geometry, pass_pane);
-        rtcCommitGeometry(geometry);
-        return geometry;
-    }
-};
-
-Bvh::Bvh(const Scene& scene, Traversal traversal) : impl_(std::make_unique<Impl>(scene)) {
-    Impl& d = *impl_;
-    d.device = rtcNewDevice(kDeviceConfig);
-    if (!d.device) d.check();
-    rtcSetDeviceMemoryMonitorFunction(d.device, count_bytes, &d.bytes);
-    d.top = d.new_scene(traversal);
-    d.shared.resize(scene.meshes.size(), nullptr);
-
-    for (uint32_t i = 0; i < scene.instances.size(); ++i) {
-        const Instance& instance = scene.instances[i];
-        RTCGeometry geometry = nullptr;
-        if (instance.identity) {
-            geometry = d.triangles(instance.mesh);
-        } else {
-            RTCScene& part = d.shared[instance.mesh];
-            if (!part) {
-                part = d.new_scene(traversal);
-                RTCGeometry mesh = d.triangles(instance.mesh);
-                rtcAttachGeometry(part, mesh);
-                rtcReleaseGeometry(mesh);
-                rtcCommitScene(part);
-            }
-            geometry = rtcNewGeometry(d.device, RTC_GEOMETRY_TYPE_INSTANCE);
-            rtcSetGeometryInstancedScene(geometry, part);
-            const auto place = [&](unsigned step, const M44f& to_world) {
-                // Imath's rows are Embree's columns.
-                rtcSetGeometryTransform(geometry, step, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR,
-                                        to_world.getValue());
-            };
-            if (const auto* const places = places_of(scene, i)) {
-                rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(places->size()));
-                for (unsigned k = 0; k < places->size(); ++k) place(k, (*places)[k]);
-            } else {
-                place(0, instance.to_world);
-            }
-            rtcCommitGeometry(geometry);
-        }
-        rtcAttachGeometryByID(d.top, geometry, i);
-        rtcReleaseGeometry(geometry);
-    }
-    rtcCommitScene(d.top);
-    d.check();
+[[gnu::always_inline]] inline std::optional<Hit> Bvh::Impl::nearest(
+    const Ray& r, float t_min, RTCFilterFunctionN also, const PassedBlends* passed) const {
+    if (!traceable(r)) return std::nullopt;
+    NearestContext context{Context(r), passed};
+    context.embree.filter = also;
+    RTCRayHit query;
+    query.ray = to_embree(r, t_min);
+    query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(top, &context.embree, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+    // Not Embree's own coordinates: they come from an approximate reciprocal, of which
+    // processors of different makers have different ones.
+    const uint32_t instance = instance_of(query.hit.instID[0], query.hit.geomID);
+    const uint32_t triangle = query.hit.primID;
+    return Hit{barycentric(scene, instance, triangle, r), instance, triangle, r.time};
 }
 
-Bvh::~Bvh() = default;
+bool Bvh::Impl::is_met(const Ray& r, RTCIntersectContext& context) const {
+    RTCRay ray = to_embree(r);
+    rtcOccluded1(top, &context, &ray);
+    return ray.tfar < 0.f;
+}
 
 std::optional<Hit> Bvh::intersect(const Ray& r, const PassedBlends* passed) const {
     if (!passed) return impl_->nearest(r, 0.f, nullptr, nullptr);
@@ -342,23 +205,23 @@ std::optional<Hit> Bvh::intersect_front(const Ray& r, float t_min,
 
 bool Bvh::occluded(const Ray& r) const {
     ShadowContext context{Context(r)};
-    return traceable(r) && impl_->is_met(r, context);
+    return traceable(r) && impl_->is_met(r, context.embree);
 }
 
 Passage Bvh::passage(const Ray& r) const {
     if (!traceable(r)) return {1.f, false};
     ShadowContext context{Context(r)};
     if (!impl_->has_blends) {
-        const bool met = impl_->is_met(r, context);
+        const bool met = impl_->is_met(r, context.embree);
         return {met ? 0.f : 1.f, context.panes};
     }
     PassedBlends blends;
     context.blends = &blends;
-    if (impl_->is_met(r, context)) return {0.f, context.panes};
+    if (impl_->is_met(r, context.embree)) return {0.f, context.panes};
     float left = 1.f;
     if (context.too_many) {
         context.blends = nullptr;
-        left = impl_->is_met(r, context) ? 0.f : 1.f;
+        left = impl_->is_met(r, context.embree) ? 0.f : 1.f;
     } else if (blends.count > 0) {
         const auto begin = blends.passed.begin(), end = begin + blends.count;
         const auto place = [](const auto& p) { return std::pair(p.instance, p.triangle); };

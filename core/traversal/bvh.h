@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ray traversal. The only file pair that sees Embree.
+// Ray traversal. Only this room sees Embree.
 #pragma once
 
 #include <cstdint>

@@ -61,7 +61,7 @@ void sample(benchmark::State& state, const char* name, double fnumber, Dispersio
                      Sampler(SamplerKind::Owen, 0, {0, 0, i}),
                      {&filter, offset, {480, 320}}};
         bands[i] = four_wavelengths(random.next());
-        bands[i].lead = int(random.next() * 4);
+        bands[i].hero = int(random.next() * 4);
     }
     std::array<CameraSample, kMostFilmPoints> out;
     size_t at = 0, passed = 0, all = 0;

@@ -67,7 +67,7 @@ std::array<test::Moments, 4> in_pixel(const Camera& camera, const Filter& filter
     Bands bands = four_wavelengths(0.3f);
     std::array<test::Moments, 4> out;
     for (uint32_t i = 0; i < 1 << 16; ++i) {
-        bands.lead = int(hash32(i) % 4);
+        bands.hero = int(hash32(i) % 4);
         const Sampler sampler(SamplerKind::Independent, seed, {0, 0, i});
         const V2f offset = filter.sample(sampler.get2(Dim::Film));
         const CameraSample seen = camera.sample(

@@ -80,7 +80,7 @@ TEST(LensCameraSample, OneWavelengthAPathIsAllInTheMean) {
         const LensCamera camera(input_of(kTakumar, DispersionMode::Split, 0.5));
         std::array<test::Moments, 4> out;
         for (uint32_t i = 0; i < 1 << 14; ++i) {
-            bands.lead = int(hash32(i) % 4);
+            bands.hero = int(hash32(i) % 4);
             const CameraSample seen =
                 camera.sample(film_point({0.8f, 0.3f}, i), one_by_one ? alone(bands) : bands);
             f4 weight{};

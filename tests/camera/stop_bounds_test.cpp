@@ -138,8 +138,8 @@ TEST(StopDraw, SplitLanesHaveTheMeanOfEachAlone) {
         d4 sum{};
         constexpr uint32_t kDraws = 1 << 18;
         for (uint32_t i = 0; i < kDraws; ++i) {
-            bands.lead = int(i % 4);
-            const V2f u = Sampler(SamplerKind::Owen, 1, {bands.lead, 0, i / 4}).get2(Dim::Lens);
+            bands.hero = int(i % 4);
+            const V2f u = Sampler(SamplerKind::Owen, 1, {bands.hero, 0, i / 4}).get2(Dim::Lens);
             const f4 weight = one_by_one ? 4 * camera.draw({17, 11}, u, test::alone(bands)).weight
                                          : camera.draw({17, 11}, u, bands).weight;
             for (int lane = 0; lane < 4; ++lane) sum[lane] += double(weight[lane]) / kDraws;

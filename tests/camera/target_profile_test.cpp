@@ -129,7 +129,7 @@ void expect_same_profile(const char* name, const Lamp& lamp) {
                 const float t = (centre.z - o.z) / path.ray.direction.z;
                 const V3f p = o + t * path.ray.direction - centre;
                 if (t > 0 && double(p.length()) <= lamp.radius_m)
-                    sum += double(path.weight[0]) * double(path.share);
+                    sum += double(path.weight[0]) * double(path.mis_weight);
             };
             for (const CameraPath& path : camera.sample(at, bands)) add(path);
             CameraSample sent;

@@ -122,7 +122,7 @@ Means means(const Camera& camera, const Observer& observer, V2f film, const V3f&
                 const double light =
                     double(hsum(path.weight)) * light_along(path.ray, lamp, radius_m);
                 whole += light;
-                shared += light * double(path.share);
+                shared += light * double(path.mis_weight);
             };
             for (const CameraPath& path : ordinary[k]) add(path);
             out.ordinary.add(whole);
@@ -262,7 +262,7 @@ TEST(Targets, DensitiesOfTracedLensesAreThoseOfTheDraws) {
             const FilmPoint at{c.film, Sampler(SamplerKind::Independent, 4, {0, 0, i})};
             const CameraSample ordinary = camera.sample(at, bands);
             // The share is p / (p + q), with the densities p of ordinary rays and q.
-            const double share = ordinary.empty() ? 1 : double(ordinary[0].share);
+            const double share = ordinary.empty() ? 1 : double(ordinary[0].mis_weight);
             expected.add((1 - share) / share);
             CameraSample sent;
             camera.sample_targets({&at, 1}, {&bands, 1}, {&list, 1}, {&sent, 1});

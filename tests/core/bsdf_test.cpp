@@ -237,7 +237,7 @@ TEST(Microfacet, FresnelAtNormalIncidenceAndAtTheCriticalAngle) {
                 1e-5f);
 }
 
-// The lane that leads is one of four, all equally likely. Drawn by it, each lane keeps its mean,
+// The hero lane is one of four, all equally likely. Drawn by it, each lane keeps its mean,
 // whatever the lanes carry; where all carry the same, the one that leads is kept.
 TEST(Bsdf, TheLaneThatLeadsPicksTheRefractedOne) {
     Bands bands = Bands::rgb();
@@ -253,14 +253,14 @@ TEST(Bsdf, TheLaneThatLeadsPicksTheRefractedOne) {
         f4 refracted{};
         int drawn = 0, led = 0;
         constexpr int n = 1 << 14;
-        for (bands.lead = 0; bands.lead < 4; ++bands.lead) {
+        for (bands.hero = 0; bands.hero < 4; ++bands.hero) {
             const Bsdf bsdf(in, bands, from_cosine(cosine), throughput);
             for (int i = 0; i < n; ++i) {
                 const auto s = bsdf.sample((float(i) + 0.5f) / n, {0.5f, 0.5f}, false);
                 if (!s || !s->transmitted) continue;
                 refracted += s->weight * (1.f / (4 * n));
                 ++drawn;
-                led += s->weight[bands.lead] > 0.f;
+                led += s->weight[bands.hero] > 0.f;
             }
         }
         for (int lane = 0; lane < 4; ++lane)

@@ -3,7 +3,6 @@
 
 #include <numbers>
 
-#include "core/light/emission.h"
 #include "core/scene/scene.h"
 #include "core/shading/surface.h"
 #include "core/traversal/bvh.h"

@@ -296,7 +296,7 @@ class Trial {
         for (int i = 0; i < 32; ++i) {
             const V2f film = random_.next2() * 40.f - V2f(20.f);
             Bands of_sample = i % 2 ? bands : Bands::rgb();
-            of_sample.lead = i / 2 % lane_count(of_sample.on);
+            of_sample.hero = i / 2 % lane_count(of_sample.on);
             for (int k = 0; k < 4; ++k) bands.nm[k] = float(between(random_, 360, 830));
             const V2f u = random_.next2();
             const auto drawn = made.draw(film, u, of_sample);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Faces back to back: which of the two a ray meets, wherever and in whatever order they lie.
-#include "integrator/front_at_back.h"
+#include "integrator/path/front_at_back.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "integrator/highlights.h"
+#include "integrator/prepass/highlights.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "integrator/light_pilot.h"
+#include "integrator/prepass/light_pilot.h"
 
 #include <gtest/gtest.h>
 
 #include "camera/models/thin_lens.h"
-#include "integrator/executor.h"
-#include "integrator/render.h"
+#include "integrator/render/executor.h"
+#include "integrator/render/render.h"
 #include "tests/support/statistics.h"
 #include "tests/support/traced_world.h"
 

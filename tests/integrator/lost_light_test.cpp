@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lights that no path finds are named, and no others.
-#include "integrator/lost_light.h"
+#include "integrator/prepass/lost_light.h"
 
 #include <gtest/gtest.h>
 

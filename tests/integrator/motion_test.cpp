@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/scene/lamp.h"
-#include "integrator/path.h"
+#include "integrator/path/path.h"
 #include "tests/support/blurred.h"
 
 namespace petzval {
@@ -29,7 +29,7 @@ struct Tracing {
         FilmSample out;
         PathStats stats;
         const Sampler sampler(SamplerKind::Owen, 3, {0, 0, index});
-        return tracer->radiance(ray, Bands::rgb(), sampler, false, out, stats)[1];
+        return tracer->radiance({ray}, Bands::rgb(), sampler, out, stats)[1];
     }
 };
 

@@ -130,7 +130,8 @@ TEST(Blend, AlphaAndLayersAreOfTheFirstThatStops) {
         for (uint32_t i = 0; i < samples; ++i) {
             FilmSample out;
             const Sampler sampler(SamplerKind::Owen, 7, {1, 2, i});
-            (void)tracer.radiance(from_above(), Bands::rgb(), sampler, true, out, stats);
+            (void)tracer.radiance({.ray = from_above(), .fills_layers = true}, Bands::rgb(),
+                                  sampler, out, stats);
             const float z = out.aov[static_cast<size_t>(Aov::Position)].z;
             at[out.hit ? size_t(std::lround((z - 1) / 0.5f)) : size_t(count)] += 1. / samples;
         }

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/spectrum/colour.h"
-#include "integrator/path.h"
+#include "integrator/path/path.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 
@@ -25,8 +25,8 @@ Mean estimate(const World& world, const PathOptions& options, uint32_t samples,
         for (uint32_t i = 0; i < samples; ++i) {
             const Sampler sampler(SamplerKind::Owen, seed, {3, 5, i});
             FilmSample out;
-            mean += tracer.radiance(make_ray(sampler.get2(Dim::Film)), Bands::rgb(), sampler, false,
-                                    out, stats)[0];
+            mean += tracer.radiance({make_ray(sampler.get2(Dim::Film))}, Bands::rgb(), sampler, out,
+                                    stats)[0];
             if (alpha) *alpha += out.alpha / static_cast<float>(samples * replicates);
         }
         means.add(mean / samples);

@@ -109,7 +109,7 @@ Mean furnace(const Material& m, Shape shape, bool behind, uint32_t samples) {
     world.scene.sky = Sky::uniform(Rgb(1.f));
     world.finish();
     PathOptions options;
-    options.max_depth = options.max_clear_depth = 1024;
+    options.max_depth = options.max_specular_depth = 1024;
     return estimate(world, options, samples, [&](V2f u) {
         if (behind && closed(shape))
             return ray_to(V3f(0.1f, 0.05f, 0.2f), V3f(u.x - 0.5f, u.y - 0.5f, -0.4f));
@@ -159,7 +159,7 @@ TEST(Mixtures, AClosedLeafWithAFilmLosesNothing) {
             world.scene.sky = Sky::uniform(Rgb(1.f));
             world.finish();
             PathOptions options;
-            options.max_depth = options.max_clear_depth = 1024;
+            options.max_depth = options.max_specular_depth = 1024;
             const Mean e = estimate(world, options, 64, test::bundle);
             EXPECT_TRUE(test::agrees(e, 1, 0.01))
                 << ior << ' ' << film_ior << ' ' << outside << ": " << e;
@@ -186,8 +186,8 @@ TEST(Mixtures, SamplesOfMetalWithGlassStaySmall) {
     for (uint32_t i = 0; i < 1 << 16; ++i) {
         const Sampler sampler(SamplerKind::Owen, 1, {3, 5, i});
         FilmSample out;
-        most = std::max(most, tracer.radiance(test::bundle(sampler.get2(Dim::Film)), Bands::rgb(),
-                                              sampler, false, out, stats)[0]);
+        most = std::max(most, tracer.radiance({test::bundle(sampler.get2(Dim::Film))}, Bands::rgb(),
+                                              sampler, out, stats)[0]);
     }
     EXPECT_LT(most, 50);  // 1,376 before reflections were drawn by their value
 }

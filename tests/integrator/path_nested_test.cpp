@@ -287,7 +287,7 @@ TEST(NestedVolumes, ALampBeyondAHiddenFaceIsFoundWhole) {
         world.finish();
         PathOptions options;
         options.max_depth = 2;
-        options.max_clear_depth = 4;
+        options.max_specular_depth = 4;
         return estimate(world, options, 1024,
                         [](V2f) { return ray_to(V3f(0.1f, 0.2f, 1), V3f(0.1f, 0.2f, -1)); });
     };

@@ -142,7 +142,7 @@ TEST(Path, CoarseSmoothBallHasNoStepsAtItsTerminator) {
         const Surface s = make_surface(world.scene, ray.direction, *hit);
         if (!(s.ns.dot(ray.direction) < -0.1f)) continue;
         FilmSample out;
-        const float seen = tracer.radiance(ray, Bands::rgb(), sampler, false, out, stats)[0];
+        const float seen = tracer.radiance({ray}, Bands::rgb(), sampler, out, stats)[0];
         const float cosine = s.ns.dot(to_light);
         near_terminator += cosine > 0 && s.ng.dot(to_light) < 0;
         EXPECT_NEAR(seen, std::max(cosine, 0.f), 1e-4f) << s.p;

@@ -245,7 +245,7 @@ TEST(ClearGlass, TenPanesLoseNothing) {
             FilmSample out;
             const Sampler sampler(SamplerKind::Independent, 2, {0, 0, i});
             const Ray ray = ray_to(V3f(0.1f, 0.2f, 1), V3f(0.3f, 0.1f, 0));
-            light.add(double(tracer.radiance(ray, Bands::rgb(), sampler, false, out, stats)[0]));
+            light.add(double(tracer.radiance({ray}, Bands::rgb(), sampler, out, stats)[0]));
         }
         EXPECT_LT(light.variance(), 0.01);
         EXPECT_NEAR(light.mean(), 1, 0.001);
@@ -284,11 +284,11 @@ TEST(ClearGlass, PathsThatCannotLeaveEnd) {
             FilmSample out;
             const Sampler sampler(SamplerKind::Owen, 2, {0, 0, uint32_t(i)});
             const f4 seen =
-                tracer.radiance(ray_to(from, towards), Bands::rgb(), sampler, false, out, stats);
+                tracer.radiance({ray_to(from, towards)}, Bands::rgb(), sampler, out, stats);
             EXPECT_TRUE(std::isfinite(seen[0]));
         }
         EXPECT_LE(stats.camera_rays + stats.bounce_rays, uint64_t(samples) * 258);
-        return stats.clear_ends;
+        return stats.specular_ends;
     };
     Material glass = pane_material(), mirror;
     glass.has_volume = true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "integrator/path.h"
+#include "integrator/path/path.h"
 
 #include <numbers>
 
@@ -284,8 +284,7 @@ TEST(Path, CountsLampsThatMirrorsShow) {
         for (uint32_t i = 0; i < 1000; ++i) {
             const Sampler sampler(SamplerKind::Owen, 0, {0, 0, i});
             FilmSample out;
-            tracer.radiance(bundle(sampler.get2(Dim::Film)), Bands::rgb(), sampler, false, out,
-                            stats);
+            tracer.radiance({bundle(sampler.get2(Dim::Film))}, Bands::rgb(), sampler, out, stats);
         }
         EXPECT_EQ(stats.mirrored.bounces, 1000u);
         if (shown == Shown::Nothing)
@@ -308,9 +307,9 @@ TEST(Path, WhatGoesOnByChanceCountsMore) {
         for (uint32_t i = 0; i < 20000; ++i) {
             const Sampler sampler(SamplerKind::Independent, 3, {1, 1, i});
             FilmSample out;
-            sum.add(
-                double(tracer.radiance(test::bundle(sampler.get2(Dim::Film)), Bands::rgb(), sampler,
-                                       false, out, stats, m4{-1, -1, -1, -1}, true, rest)[0]));
+            sum.add(double(tracer.radiance(
+                {test::bundle(sampler.get2(Dim::Film)), m4{-1, -1, -1, -1}, true, rest},
+                Bands::rgb(), sampler, out, stats)[0]));
         }
         return test::Mean(sum);
     };

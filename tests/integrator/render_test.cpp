@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "integrator/render.h"
+#include "integrator/render/render.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <set>
 
 #include "camera/models/thin_lens.h"
-#include "integrator/executor.h"
+#include "integrator/render/executor.h"
 #include "tests/support/traced_world.h"
 
 namespace petzval {
@@ -144,8 +144,7 @@ class CountingTracer {
   public:
     explicit CountingTracer(int threads) : threads_(threads) {}
 
-    f4 radiance(const Ray&, const Bands&, const Sampler&, bool, FilmSample&, PathStats&, m4, bool,
-                float = 1) const {
+    f4 radiance(const PathStart&, const Bands&, const Sampler&, FilmSample&, PathStats&) const {
         std::unique_lock lock(mutex_);
         if (arrived_.insert(std::this_thread::get_id()).second) {
             all_.notify_all();
@@ -346,9 +345,9 @@ TEST(Render, ATimeLimitWithPausesEndsEvenly) {
 // Not a number for one half of the picture.
 class BadTracer {
   public:
-    f4 radiance(const Ray& ray, const Bands&, const Sampler&, bool, FilmSample&, PathStats&, m4,
-                bool, float = 1) const {
-        return splat(ray.direction.x > 0 ? std::numeric_limits<float>::quiet_NaN() : 2.f);
+    f4 radiance(const PathStart& start, const Bands&, const Sampler&, FilmSample&,
+                PathStats&) const {
+        return splat(start.ray.direction.x > 0 ? std::numeric_limits<float>::quiet_NaN() : 2.f);
     }
 };
 

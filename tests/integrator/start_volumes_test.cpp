@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which volumes hold a point.
-#include "integrator/start_volumes.h"
+#include "integrator/path/start_volumes.h"
 
 #include <gtest/gtest.h>
 

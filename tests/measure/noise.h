@@ -11,8 +11,8 @@
 
 #include "core/film/film.h"
 #include "core/spectrum/colour.h"
-#include "integrator/executor.h"
-#include "integrator/render.h"
+#include "integrator/render/executor.h"
+#include "integrator/render/render.h"
 #include "io/base/clock.h"
 
 namespace petzval {

@@ -6,8 +6,8 @@
 #include <map>
 #include <set>
 
-#include "integrator/path.h"
-#include "integrator/render.h"
+#include "integrator/path/path.h"
+#include "integrator/render/render.h"
 #include "io/image/symmetric_mse.h"
 
 namespace petzval {

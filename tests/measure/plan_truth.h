@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/plan/plan_types.h"
-#include "integrator/executor.h"
+#include "integrator/render/executor.h"
 #include "tests/support/plan_scenes/plan_scenes.h"
 
 namespace petzval {

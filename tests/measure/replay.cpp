@@ -11,9 +11,9 @@
 
 #include "apps/request/parse.h"
 #include "apps/setup/render_setup.h"
-#include "integrator/executor.h"
-#include "integrator/path_impl.h"
-#include "integrator/render.h"
+#include "integrator/render/executor.h"
+#include "integrator/path/path_impl.h"
+#include "integrator/render/render.h"
 #include "io/base/clock.h"
 
 namespace petzval {

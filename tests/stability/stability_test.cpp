@@ -10,7 +10,7 @@
 #include "camera/models/lens_camera.h"
 #include "core/shading/bsdf.h"
 #include "core/shading/surface.h"
-#include "integrator/path.h"
+#include "integrator/path/path.h"
 #include "io/lens/lens_file.h"
 #include "tests/stability/sweeps.h"
 #include "tests/stability/world.h"
@@ -204,7 +204,7 @@ TEST(Stability, ADefocusedHighlightVariesAsItsShareOfTheBlur) {
         const Sampler sampler(SamplerKind::Independent, 9, {0, 0, i});
         const Ray ray = camera.sample({{0.5007f, 0.5004f}, sampler}, Bands::rgb())[0].ray;
         FilmSample out;
-        light.add(double(tracer.radiance(ray, Bands::rgb(), sampler, false, out, stats)[0]));
+        light.add(double(tracer.radiance({ray}, Bands::rgb(), sampler, out, stats)[0]));
     }
     const double share = double(side_m * side_m) / (std::numbers::pi / 4 * 0.225 * 0.225);
     EXPECT_TRUE(test::agrees(light, share)) << light.mean();
@@ -224,7 +224,7 @@ TEST(Stability, PanesLoseWhatTheDepthCutsOff) {
         world.scene.sky = Sky::uniform(Rgb(1.f));
         world.finish();
         PathOptions options;
-        options.max_clear_depth = depth;
+        options.max_specular_depth = depth;
         const PathTracer tracer(world.scene, *world.bvh, *world.lights, options);
         PathStats stats;
         test::Moments light;
@@ -234,7 +234,7 @@ TEST(Stability, PanesLoseWhatTheDepthCutsOff) {
             ray.direction = {0, 0, -1};
             FilmSample out;
             const Sampler sampler(SamplerKind::Independent, 2, {0, 0, i});
-            light.add(double(tracer.radiance(ray, Bands::rgb(), sampler, false, out, stats)[0]));
+            light.add(double(tracer.radiance({ray}, Bands::rgb(), sampler, out, stats)[0]));
         }
         return light;
     };

@@ -175,9 +175,9 @@ Highlight highlight(double side_m, double fstop) {
         for (uint32_t i = 0; i < kEach; ++i) {
             const Sampler sampler(SamplerKind::Owen, seed, {0, 0, i});
             FilmSample sample;
-            mean += double(tracer.radiance(ray(sampler), Bands::rgb(), sampler, false, sample,
-                                           stats)[0]) /
-                    kEach;
+            mean +=
+                double(tracer.radiance({ray(sampler)}, Bands::rgb(), sampler, sample, stats)[0]) /
+                kEach;
         }
         variance += std::pow(mean - out.all.mean, 2) / kMeans;
     }

@@ -52,9 +52,9 @@ double variance_with(const World& world, const Camera& camera) {
         for (const CameraSample& rays : {camera.sample(point, bands), sent})
             for (const CameraPath& path : rays) {
                 FilmSample none;
-                light += double((path.weight * path.share *
-                                 tracer.radiance(path.ray, bands, sampler, false, none, stats,
-                                                 path.lanes, path.led))[0]);
+                light += double((path.weight * path.mis_weight *
+                                 tracer.radiance({path.ray, path.lanes, path.hero_decided}, bands,
+                                                 sampler, none, stats))[0]);
             }
         sum += light;
         squares += light * light;
@@ -139,7 +139,7 @@ Missed missed_by(const std::string& name, double of_circle) {
             const float t = to.dot(target.normal) / path.ray.direction.dot(target.normal);
             if ((t * path.ray.direction - to).length() > target.radius_m) continue;
             ++out.hits;
-            out.missed += path.share > 0.99f;
+            out.missed += path.mis_weight > 0.99f;
         }
     }
     return out;

@@ -34,9 +34,9 @@ World panes(int count) {
 }
 
 // Share of the light that the end of paths in clear glass cuts off.
-double lost(const World& world, int max_clear_depth) {
+double lost(const World& world, int max_specular_depth) {
     PathOptions options;
-    options.max_clear_depth = max_clear_depth;
+    options.max_specular_depth = max_specular_depth;
     return 1 - measure(world, options, 1u << 13, along_z).mean;
 }
 
@@ -56,7 +56,7 @@ double from_lamp_in_slabs(double a, bool closed) {
     world.place(quad(V3f(-5, -5, -2.5f), V3f(10, 0, 0), V3f(0, 10, 0)), glowing(1));
     world.finish();
     PathOptions options;
-    options.roulette_depth = options.max_clear_depth;
+    options.roulette_depth = options.max_specular_depth;
     return measure(world, options, 256, along_z).mean;
 }
 
@@ -92,7 +92,7 @@ Finding chains_of_glass() {
         "A ray onto N clear panes (n = 1.5) in a white sky, 8192 samples: what of 1 is lost "
         "because paths end at --method max-clear-depth, 256 unless it is given.";
     f.table.columns = {"panes", "lost at depth 16", "lost at depth 64", "lost at depth 256"};
-    const int usual = PathOptions().max_clear_depth;
+    const int usual = PathOptions().max_specular_depth;
     for (const int count : {1, 2, 4, 8, 16, 32, 64, 128}) {
         const World world = panes(count);
         add_row(f, std::to_string(count), percent(lost(world, 16)), percent(lost(world, 64)),

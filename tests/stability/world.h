@@ -7,7 +7,7 @@
 #include "core/light/light_choice.h"
 #include "core/scene/scene.h"
 #include "core/traversal/bvh.h"
-#include "integrator/path.h"
+#include "integrator/path/path.h"
 
 namespace petzval::stability {
 
@@ -55,7 +55,7 @@ template <class MakeRay>
         const Sampler sampler(kind, 1, {0, 0, i});
         FilmSample out;
         const double a =
-            double(tracer.radiance(ray(sampler), Bands::rgb(), sampler, false, out, stats)[0]);
+            double(tracer.radiance({ray(sampler)}, Bands::rgb(), sampler, out, stats)[0]);
         sum += a;
         squares += a * a;
         found += a != 0;

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/scene/motion.h"
-#include "integrator/executor.h"
-#include "integrator/render.h"
+#include "integrator/render/executor.h"
+#include "integrator/render/render.h"
 #include "tests/support/moving.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"

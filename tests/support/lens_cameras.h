@@ -52,19 +52,19 @@ inline const std::string kTakumar = "takumar-50mm-f1.2", kGauss = "double-gauss-
     return lane;
 }
 
-/// The bands with another lane in the lead, each equally likely for u in [0, 1).
+/// The bands with another hero, each equally likely for u in [0, 1).
 [[nodiscard]] inline Bands led_by(Bands bands, float u) {
     std::vector<int> lanes;
     for (int i = 0; i < 4; ++i)
         if (bands.on[i]) lanes.push_back(i);
-    bands.lead = lanes[size_t(u * float(lanes.size()))];
+    bands.hero = lanes[size_t(u * float(lanes.size()))];
     return bands;
 }
 
-/// The lane that leads, and no other.
+/// The hero lane, and no other.
 [[nodiscard]] inline Bands alone(Bands bands) {
     bands.on = m4{};
-    bands.on[bands.lead] = -1;
+    bands.on[bands.hero] = -1;
     return bands;
 }
 

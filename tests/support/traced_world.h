@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "integrator/path.h"
+#include "integrator/path/path.h"
 #include "tests/support/scenes.h"
 
 namespace petzval::test {

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "core/scene/coverage.h"
-#include "integrator/path.h"
+#include "integrator/path/path.h"
 #include "tests/support/moving_gltf.h"
 #include "tests/support/scenes.h"
 #include "tests/support/tiny_png.h"
@@ -346,7 +346,7 @@ void expect_as_computed(const Posing& posing, const Paint& paint, bool mask) {
         if (drawn) continue;
         FilmSample out;
         const Sampler sampler(SamplerKind::Owen, 1, {0, 0, i});
-        const f4 light = tracer.radiance(ray, Bands::rgb(), sampler, false, out, stats);
+        const f4 light = tracer.radiance({ray}, Bands::rgb(), sampler, out, stats);
         worst_seen = std::max(worst_seen, std::fabs(double{light[0]} - seen - left * kSky));
     }
     EXPECT_GT(rays, 300);

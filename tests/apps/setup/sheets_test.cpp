@@ -4,7 +4,7 @@
 
 #include "core/scene/motion.h"
 #include "core/traversal/bvh.h"
-#include "integrator/front_at_back.h"
+#include "integrator/path/front_at_back.h"
 #include "tests/support/load_tiny_gltf.h"
 
 namespace petzval {

@@ -8,8 +8,8 @@
 #include "camera/models/thin_lens.h"
 #include "core/spectrum/colorimetry.h"
 #include "core/spectrum/colour.h"
-#include "integrator/executor.h"
-#include "integrator/render.h"
+#include "integrator/render/executor.h"
+#include "integrator/render/render.h"
 #include "io/glass/glass_lookup.h"
 #include "io/spectra/spectra.h"
 #include "tests/support/set_up_observer.h"
@@ -170,7 +170,7 @@ std::array<test::Moments, 4> furnace(const World& world, const Observer& observe
             ray.direction = unit(V3f(u.x - 0.5f, u.y - 0.5f, 0) - ray.origin);
             FilmSample out;
             PathStats stats;
-            const f4 seen = world.tracer->radiance(ray, bands, sampler, false, out, stats);
+            const f4 seen = world.tracer->radiance({ray}, bands, sampler, out, stats);
             for (int lane = 0; lane < 4; ++lane) {
                 const auto k = static_cast<size_t>(
                     std::clamp((static_cast<int>(bands.nm[lane]) - 400) / 75, 0, 3));
@@ -400,8 +400,9 @@ TEST(SpectralRender, HeroAgreesWithOneWavelengthAPath) {
                     const CameraSample seen = camera.sample({at, sampler}, bands);
                     FilmSample out;
                     PathStats stats;
-                    const f4 radiance = world.tracer->radiance(
-                        seen[0].ray, bands, sampler, false, out, stats, seen[0].lanes, seen[0].led);
+                    const f4 radiance =
+                        world.tracer->radiance({seen[0].ray, seen[0].lanes, seen[0].hero_decided},
+                                               bands, sampler, out, stats);
                     const Rgb colour = to_rgb(seen[0].weight * radiance, bands);
                     for (int c = 0; c < 3; ++c) sum[size_t(c)] += colour[c] / samples;
                 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which targets the pilot keeps, and how often rays are sent to each.
-#include "integrator/target_pilot.h"
+#include "integrator/prepass/target_pilot.h"
 
 #include <gtest/gtest.h>
 

@@ -227,10 +227,11 @@ TEST_F(StateFile, ForgedCountsAndSumsAreFound) {
                  first = good.size() - 8 - each * pixels;
     // Behind four sums; the sums of layers come last.
     constexpr size_t kCount = 64, kHits = 68, kBad = 72, kFirstBad = 76, kTooLarge = 80;
+    using Unaligned [[gnu::aligned(1)]] = uint32_t;
     const auto forged = [&](const auto& edit) {
         std::vector<uint8_t> bad = good;
-        const auto at = [&](size_t pixel, size_t offset) -> uint32_t& {
-            return *reinterpret_cast<uint32_t*>(&bad[first + pixel * each + offset]);
+        const auto at = [&](size_t pixel, size_t offset) -> Unaligned& {
+            return *reinterpret_cast<Unaligned*>(&bad[first + pixel * each + offset]);
         };
         edit(at);
         const uint64_t hash = fnv1a(std::span(bad).first(bad.size() - 8));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "integrator/lost_light.h"
+#include "integrator/prepass/lost_light.h"
 
 #include <algorithm>
 #include <map>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "integrator/target_pilot.h"
+#include "integrator/prepass/target_pilot.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/film/film.h"
 #include "core/spectrum/colour.h"
-#include "integrator/path.h"
+#include "integrator/path/path.h"
 
 namespace petzval {
 namespace {
@@ -90,12 +90,13 @@ class CellPilot {
                 f4 light{};
                 for (const CameraPath& path : paths[i]) {
                     FilmSample none;
-                    light += path.weight * tracer_.radiance(path.ray, bands[i], points[i].sampler,
-                                                            false, none, stats, path.lanes,
-                                                            path.led, to ? path.share : 1.f);
+                    light +=
+                        path.weight * tracer_.radiance({path.ray, path.lanes, path.hero_decided,
+                                                        to ? path.mis_weight : 1.f},
+                                                       bands[i], points[i].sampler, none, stats);
                 }
                 out.add(std::fabs(double(luminance(to_rgb(light, bands[i])))),
-                        double(paths[i][0].share));
+                        double(paths[i][0].mis_weight));
             }
         }
         out.cost = steps(stats);

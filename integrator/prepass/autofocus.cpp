@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "integrator/autofocus.h"
+#include "integrator/prepass/autofocus.h"
 
 #include <algorithm>
 #include <vector>
 
 #include "core/shading/surface.h"
-#include "integrator/front_at_back.h"
+#include "integrator/path/front_at_back.h"
 
 namespace petzval {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "integrator/tiles.h"
+#include "integrator/render/tiles.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "integrator/path_impl.h"
+#include "integrator/path/path_impl.h"
 
 namespace petzval {
 

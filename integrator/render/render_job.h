@@ -11,7 +11,7 @@
 #include "core/sampling/filter.h"
 #include "core/sampling/sampler.h"
 #include "core/spectrum/observer.h"
-#include "integrator/stats.h"
+#include "integrator/path/stats.h"
 
 namespace petzval {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "integrator/highlights.h"
+#include "integrator/prepass/highlights.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "camera/ray_bundle.h"
 #include "core/shading/surface.h"
 #include "core/spectrum/colour.h"
-#include "integrator/front_at_back.h"
+#include "integrator/path/front_at_back.h"
 
 namespace petzval {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "integrator/light_pilot.h"
+#include "integrator/prepass/light_pilot.h"
 
-#include "integrator/pilot_pixels.h"
-#include "integrator/render.h"
+#include "integrator/prepass/pilot_pixels.h"
+#include "integrator/render/sample_batch.h"
 
 namespace petzval {
 namespace {
@@ -16,13 +16,12 @@ LightChoice taught_by_pilot(const LightChoice& choice, const Scene& scene, const
                             const Camera& camera, const Observer& observer, V2i frame_px) {
     if (!choice.divides()) return choice;
     const LightChoice even = choice.for_pilot();
-    const PathTracer<> tracer(scene, bvh, even, {});
+    std::vector<LightRecord> records;
+    const PathTracer<> tracer(scene, bvh, even, {}, &records);
     RenderJob job;
     job.seed = kSeed;
     job.observer = observer;
-    std::vector<LightRecord> records;
     PathStats stats;
-    stats.light_records = &records;
     const auto pixels = pilot_pixels(frame_px, kPaths, kSeed);
     SampleBatch batch(tracer, camera, job, frame_px, nullptr, stats);
     for (uint32_t i = 0; i < kPaths; ++i) {

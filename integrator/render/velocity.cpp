@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "integrator/velocity.h"
+#include "integrator/render/velocity.h"
 
 #include "core/scene/motion.h"
 

@@ -14,9 +14,9 @@ namespace petzval {
 enum class Technique { Mis, LightOnly, BsdfOnly };
 
 struct PathOptions {
-    int max_depth = 16;         ///< scatterings but for those at clear glass; 0 shows emitters only
-    int max_clear_depth = 256;  ///< reflections and refractions at clear glass
-    int roulette_depth = 1;     ///< scatterings before Russian roulette begins
+    int max_depth = 16;  ///< scatterings but for those at clear glass; 0 shows emitters only
+    int max_specular_depth = 256;  ///< reflections and refractions at clear glass
+    int roulette_depth = 1;        ///< scatterings before Russian roulette begins
     Technique technique = Technique::Mis;
     /// Background that camera rays see in place of the sky; its light stays.
     std::optional<Rgb> visible_background;

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "core/shading/surface.h"
-#include "integrator/stats.h"
+#include "integrator/path/stats.h"
 
 namespace petzval {
 
@@ -14,34 +14,32 @@ struct WayToLight {
     Ray ray;  ///< up to the point for ray.t_max < 1 of its direction, or without end
     V3f target;
     bool at_infinity;
+    const Material* medium;  ///< volume that the way lies in, or null
+    int most_panes;          ///< that light may pass
 };
 
 /// Share of light that comes through the panes on a way where nothing else stands (but BLEND
 /// surfaces, which count elsewhere), and the chance that a path goes straight through all panes;
-/// nothing where a surface lets no light straight through, or `most` panes are not enough. From
-/// surface to surface in order of distance, as what a lane carries decides on the chance at the
-/// next: `carried` is what the path would carry there, up to a factor. medium: volume that the way
-/// lies in, or null.
+/// nothing where a surface lets no light straight through, or there are too many. From surface to
+/// surface in order of distance, as what a lane carries decides on the chance at the next:
+/// `carried` is what the path would carry there, up to a factor.
 template <class Caster>
 [[nodiscard]] std::optional<StraightThrough> through_panes(const Scene& scene, const Caster& caster,
                                                            WayToLight way, f4 carried,
-                                                           const Material* medium, int most,
                                                            const Bands& bands, PathStats& stats) {
     StraightThrough out{uniform(1.f, bands), 1.f};
     PassedBlends blends;
     blends.all = true;
     V3f from = way.ray.origin;
     for (int n = 0;; ++n) {
-        const std::optional<Hit> hit = [&] {
-            const SectionTimer timer(stats, TimedSection::Traversal);
-            return caster.intersect(way.ray, &blends);
-        }();
+        const std::optional<Hit> hit = timed(stats, TimedSection::Traversal,
+                                             [&] { return caster.intersect(way.ray, &blends); });
         ++stats.shadow_rays;
         if (!hit) return out;
         const Surface s = make_surface(scene, way.ray.direction, *hit);
-        if (n >= most || s.material->unlit) return std::nullopt;
+        if (n >= way.most_panes || s.material->unlit) return std::nullopt;
         const V3f wo = -unit(way.ray.direction);
-        if (medium) carried *= transmittance(*medium, (s.p - from).length(), bands);
+        if (way.medium) carried *= transmittance(*way.medium, (s.p - from).length(), bands);
         const ShadingInput shading = read_material(scene, s, wo, bands);
         if (!(hmax(carried) >= std::numeric_limits<float>::min())) return std::nullopt;
         const StraightThrough pane = shading.scatter(wo, bands, carried).straight_through();

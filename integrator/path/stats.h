@@ -6,10 +6,8 @@
 
 #include <array>
 #include <cstdint>
-#include <vector>
 
 #include "camera/camera.h"
-#include "core/light/light_shares.h"
 
 namespace petzval {
 
@@ -30,17 +28,16 @@ struct ChanceFinds {
 
 struct PathStats {
     uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0;
-    uint64_t target_rays = 0;  ///< of the camera rays, those to targets
-    uint64_t vertices = 0;     ///< hits that were shaded
-    uint64_t clear_ends = 0;   ///< paths that ended at PathOptions::max_clear_depth
-    uint64_t tiles = 0;        ///< tiles that this worker rendered
+    uint64_t target_rays = 0;    ///< of the camera rays, those to targets
+    uint64_t vertices = 0;       ///< hits that were shaded
+    uint64_t specular_ends = 0;  ///< paths that ended at PathOptions::max_specular_depth
+    uint64_t tiles = 0;          ///< tiles that this worker rendered
     LensLosses<uint64_t> lens_lanes;
     ChanceFinds mirrored;  ///< of paths that met smooth surfaces only
     ChanceFinds caustic;   ///< of paths that met a rough one before
     bool timing = false;   ///< the samples under way are among those that are timed
     uint64_t timed_samples = 0, samples = 0;
     std::array<uint64_t, static_cast<size_t>(TimedSection::Count)> ticks{};
-    std::vector<LightRecord>* light_records = nullptr;  ///< where a pilot wants them
 
     PathStats& operator+=(const PathStats& o) {
         camera_rays += o.camera_rays;
@@ -48,7 +45,7 @@ struct PathStats {
         shadow_rays += o.shadow_rays;
         target_rays += o.target_rays;
         vertices += o.vertices;
-        clear_ends += o.clear_ends;
+        specular_ends += o.specular_ends;
         tiles += o.tiles;
         lens_lanes += o.lens_lanes;
         mirrored += o.mirrored;
@@ -76,5 +73,12 @@ class SectionTimer {
     TimedSection section_;
     uint64_t start_;
 };
+
+/// Returns f(), timed as a section.
+template <class F>
+decltype(auto) timed(PathStats& stats, TimedSection section, const F& f) {
+    const SectionTimer timer(stats, section);
+    return f();
+}
 
 }  // namespace petzval

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The volumes that a camera ray begins in.
+// The volumes that a camera ray begins in. Of those that are not closed, the first face that the
+// path meets may say it.
 #pragma once
 
 #include <algorithm>
@@ -46,16 +47,6 @@ template <class Caster>
         out.add(*c.material, std::max(std::min(a, b), std::min(std::max(a, b), d)));
     }
     return out;
-}
-
-/// Volumes that a camera ray begins in; of volumes that are not closed the first face that the path
-/// meets may say it.
-template <class Caster>
-[[nodiscard]] Volumes start_volumes(const Scene& scene, const Caster& caster, const V3f& origin,
-                                    float time = kMiddleOfShutter) {
-    for (const Box3f& box : scene.volume_boxes)
-        if (box.intersects(origin)) return volumes_at(scene, caster, origin, time);
-    return {};
 }
 
 }  // namespace petzval

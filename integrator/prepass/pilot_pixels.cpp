@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "integrator/pilot_pixels.h"
+#include "integrator/prepass/pilot_pixels.h"
 
 #include <algorithm>
 #include <cmath>

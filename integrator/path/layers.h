@@ -7,12 +7,22 @@
 
 namespace petzval {
 
-/// Fills the layers of a sample from its first surface.
-inline void record_layers(const Surface& s, const ShadingInput& shading, Rgb emission,
-                          const V3f& camera, const V3f& wo, const Bands& bands, FilmSample& out) {
+/// Surface that a sample sees first.
+struct FirstSurface {
+    const Surface& surface;
+    const ShadingInput& shading;
+    Rgb emission;
+    V3f wo;  ///< unit, to where the ray came from
+};
+
+/// Fills the layers of a sample from its first surface; camera: where its ray began.
+inline void record_layers(const FirstSurface& first, const V3f& camera, const Bands& bands,
+                          FilmSample& out) {
+    const Surface& s = first.surface;
+    const ShadingInput& shading = first.shading;
     const auto layer = [&](Aov aov) -> V3f& { return out.aov[static_cast<size_t>(aov)]; };
     const auto vector = [](Rgb c) { return V3f(c[0], c[1], c[2]); };
-    const CoatedBsdf bsdf = shading.scatter(wo, bands);
+    const CoatedBsdf bsdf = shading.scatter(first.wo, bands);
     out.hit = true;
     out.first = s.hit;
     layer(Aov::Albedo) =
@@ -21,7 +31,7 @@ inline void record_layers(const Surface& s, const ShadingInput& shading, Rgb emi
     layer(Aov::Depth) = V3f((s.p - camera).length(), 0, 0);
     layer(Aov::Position) = s.p;
     layer(Aov::Uv) = V3f(s.uv[0].x, s.uv[0].y, 0);
-    layer(Aov::Emission) = vector(emission);
+    layer(Aov::Emission) = vector(first.emission);
     layer(Aov::Velocity) = V3f(0.f);  // where nobody tells it
 }
 

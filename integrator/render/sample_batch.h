@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// The way of a sample: from a point of the film through the camera and along its paths to the film.
+#pragma once
+
+#include <array>
+
+#include "camera/camera.h"
+#include "core/film/film.h"
+#include "core/spectrum/colour.h"
+#include "integrator/path/path.h"
+#include "integrator/render/more_rays.h"
+#include "integrator/render/render_job.h"
+#include "integrator/render/velocity.h"
+
+namespace petzval {
+
+/// Seed of one of the replicates: a hash of the pair.
+[[nodiscard]] inline uint32_t replicate_seed(uint32_t seed, uint32_t replicate) {
+    return hash32(seed, replicate + 1);
+}
+
+/// Factor that makes no number of a colour larger than a limit in magnitude, 1 where none is. Of an
+/// infinite colour NaN comes, which the film counts.
+[[nodiscard]] inline float clamping_share(const Rgb& colour, float limit) {
+    const float largest = std::max({std::abs(colour[0]), std::abs(colour[1]), std::abs(colour[2])});
+    return largest > limit ? limit / largest : 1.f;
+}
+
+/// Samples whose camera rays are found together: what the film gets of each is a pure function of
+/// the job and its id. Holds as many as a camera takes at once; `render` must be called for those
+/// that are left.
+template <class Tracer>
+class SampleBatch {
+  public:
+    /// All must outlive it. film: nullptr where only the paths' counts and records are wanted.
+    SampleBatch(const Tracer& tracer, const Camera& camera, const RenderJob& job, V2i frame_px,
+                Film* film, PathStats& stats)
+        : tracer_(tracer),
+          camera_(camera),
+          job_(job),
+          frame_px_(frame_px),
+          film_(film),
+          stats_(stats) {}
+
+    void add(SampleId id) {
+        ids_[size_++] = id;
+        if (size_ == kMostFilmPoints) render();
+    }
+    /// Renders the samples that are there. The name by which profilers know the sampling: it is
+    /// called for eight samples at once, so that not to inline it costs nothing.
+    [[gnu::noinline]] void render() {
+        if (size_ == 0) return;
+        stats_.timing = job_.timing && is_timed(ids_[0]);
+        stats_.samples += size_;
+        if (stats_.timing) stats_.timed_samples += size_;
+        const SectionTimer whole(stats_, TimedSection::Sample);
+        find_camera_rays();
+        for (size_t i = 0; i < size_; ++i) trace(i);
+        size_ = 0;
+    }
+
+  private:
+    /// One batch in sixteen, spread over pixels and samples.
+    [[nodiscard]] static bool is_timed(SampleId first) {
+        const uint32_t pixel =
+            static_cast<uint32_t>(first.x) + 0x9e3779b9u * static_cast<uint32_t>(first.y);
+        return hash32(hash32(pixel), first.index) % 16 == 0;
+    }
+    void find_camera_rays();
+    void trace(size_t i);
+    void add_to_film(size_t i, FilmSample&, f4 light);
+    /// Light that one of the camera's rays brings to a sample.
+    [[nodiscard]] f4 light_along(const CameraPath& path, size_t i, const PathStart& start,
+                                 FilmSample& out) {
+        return path.weight * path.mis_weight *
+               tracer_.radiance(start, bands_[i], points_[i].sampler, out, stats_);
+    }
+
+    const Tracer& tracer_;
+    const Camera& camera_;
+    const RenderJob& job_;
+    V2i frame_px_;
+    Film* film_;
+    PathStats& stats_;
+    size_t size_ = 0;
+    std::array<SampleId, kMostFilmPoints> ids_;
+    std::array<FilmPoint, kMostFilmPoints> points_;
+    std::array<Bands, kMostFilmPoints> bands_;
+    std::array<CameraSample, kMostFilmPoints> samples_;         ///< ordinary rays
+    std::array<CameraSample, kMostFilmPoints> target_samples_;  ///< rays to targets
+};
+
+template <class Tracer>
+void SampleBatch<Tracer>::find_camera_rays() {
+    const SectionTimer timer(stats_, TimedSection::Camera);
+    const V2f size(frame_px_);
+    for (size_t i = 0; i < size_; ++i) {
+        const SampleId id = ids_[i];
+        const uint32_t replicate = id.index % job_.replicates;
+        const Sampler sampler(
+            job_.sampler, job_.replicates == 1 ? job_.seed : replicate_seed(job_.seed, replicate),
+            {id.x, id.y, id.index / job_.replicates});
+        bands_[i] = job_.observer.spectral() ? job_.observer.draw(sampler.get1(Dim::Wavelength))
+                                             : Bands::rgb();
+        const V2f offset = job_.filter.sample(sampler.get2(Dim::Film));
+        const V2f at = V2f(id.x + 0.5f, id.y + 0.5f) + offset;
+        points_[i] = {at / size, sampler, {&job_.filter, offset, size}};
+    }
+    const std::span<const FilmPoint> points(points_.data(), size_);
+    const std::span<const Bands> bands(bands_.data(), size_);
+    const std::span<CameraSample> samples(samples_.data(), size_),
+        to_targets(target_samples_.data(), size_);
+    camera_.sample_all(points, bands, samples);
+    if (camera_.targets()) find_target_rays(camera_, points, bands, to_targets);
+    if (const Shutter* const shutter = camera_.shutter())
+        move_rays(*shutter, points, samples, camera_.targets() ? to_targets : samples.first(0));
+}
+
+// Traces the rays of a sample.
+template <class Tracer>
+void SampleBatch<Tracer>::trace(size_t i) {
+    const CameraSample& rays = samples_[i];
+    const uint64_t vertices_before = stats_.vertices;
+    stats_.lens_lanes += rays.lanes;
+    FilmSample sample;
+    f4 light{};
+    float behind = 0.f;  // weight of the rays that left the scene, over all lanes
+    bool layers = film_ && !film_->aovs().empty();  // layers are still to be filled in
+    for (const CameraPath& path : rays) {
+        FilmSample other;
+        FilmSample& of_path = path.fills_layers ? sample : other;
+        of_path.alpha = 0.f;
+        light += light_along(
+            path, i, {path.ray, path.lanes, path.hero_decided, 1.f, layers && path.fills_layers},
+            of_path);
+        if (!path.fills_layers) continue;
+        layers = false;
+        behind += hsum(zero_off(path.lanes, path.weight)) * (1.f - sample.alpha);
+    }
+    if (camera_.targets()) {
+        f4 from_targets{};
+        for (const CameraPath& path : target_samples_[i]) {
+            FilmSample other;
+            ++stats_.target_rays;
+            // What surfaces reflect is found by ordinary rays as well: it is worth the effort by
+            // the weight.
+            from_targets += light_along(
+                path, i, {path.ray, path.lanes, path.hero_decided, path.mis_weight}, other);
+        }
+        light += from_targets;
+    }
+    if (!film_) return;
+    // Light that a lens keeps from the film is black, not transparent.
+    sample.alpha = 1.f - behind / (rays.exposure * static_cast<float>(lane_count(bands_[i].on)));
+    sample.aov[static_cast<size_t>(Aov::Cost)] =
+        V3f(static_cast<float>(stats_.vertices - vertices_before), 0, 0);
+    add_to_film(i, sample, light);
+}
+
+template <class Tracer>
+void SampleBatch<Tracer>::add_to_film(size_t i, FilmSample& sample, f4 light) {
+    const SampleId id = ids_[i];
+    const Bands& bands = bands_[i];
+    sample.colour = to_rgb(light, bands);
+    if (job_.clamp_nits)
+        if (const float share = clamping_share(sample.colour, *job_.clamp_nits); share < 1) {
+            sample.colour = sample.colour * share;
+            light *= splat(share);
+        }
+    if (job_.velocity && sample.hit)
+        sample.aov[static_cast<size_t>(Aov::Velocity)] =
+            job_.velocity->at(sample.first, points_[i].film * V2f(frame_px_));
+    if (film_->spectral())
+        film_->add(id.x, id.y, id.index, sample,
+                   {id.index % job_.replicates, light, job_.observer.to_xyz(light, bands)}, bands);
+    else
+        film_->add(id.x, id.y, id.index, sample);
+}
+
+extern template class SampleBatch<PathTracer<>>;
+
+}  // namespace petzval

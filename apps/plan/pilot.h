@@ -10,8 +10,8 @@
 #include "apps/plan/estimate.h"
 #include "apps/plan/looks.h"
 #include "apps/setup/render_setup.h"
-#include "integrator/render/executor.h"
 #include "integrator/path/path.h"
+#include "integrator/render/executor.h"
 #include "integrator/render/render_job.h"
 
 namespace petzval {

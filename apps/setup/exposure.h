@@ -8,8 +8,8 @@
 
 #include "apps/setup/render_setup.h"
 #include "core/film/film.h"
-#include "integrator/render/executor.h"
 #include "integrator/path/path_options.h"
+#include "integrator/render/executor.h"
 #include "integrator/render/render_job.h"
 
 namespace petzval {

@@ -11,8 +11,8 @@
 
 #include "apps/request/parse.h"
 #include "apps/setup/render_setup.h"
-#include "integrator/render/executor.h"
 #include "integrator/path/path_impl.h"
+#include "integrator/render/executor.h"
 #include "integrator/render/render.h"
 #include "io/base/clock.h"
 

@@ -4,10 +4,10 @@
 
 #include "camera/models/thin_lens.h"
 #include "camera/setup/target_grid.h"
-#include "integrator/render/executor.h"
 #include "integrator/prepass/highlights.h"
-#include "integrator/render/render.h"
 #include "integrator/prepass/target_pilot.h"
+#include "integrator/render/executor.h"
+#include "integrator/render/render.h"
 #include "tests/support/lens_cameras.h"
 #include "tests/support/statistics.h"
 #include "tests/support/traced_world.h"

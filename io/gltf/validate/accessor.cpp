@@ -28,13 +28,7 @@ void decode(const GltfAccessor& accessor, const uint8_t* first, size_t stride, u
 template <class Number>
 void replace_sparse(const GltfAccessor& accessor, Number* to, size_t row) {
     const GltfSparse& sparse = *accessor.sparse;
-    GltfAccessor indices;
-    indices.component_type = sparse.index_component_type;
-    indices.components = 1;
-    indices.count = sparse.count;
-    indices.stride = component_size(sparse.index_component_type);
-    indices.bytes = sparse.indices;
-    const auto slots = read_all<uint32_t>(indices);
+    const std::vector<uint32_t> slots = indices_of(sparse);
     const size_t size = element_size(accessor.type, accessor.component_type, true);
     const std::vector<uint8_t> zeros(sparse.values.empty() ? size : 0);
     const bool none = sparse.values.empty();
@@ -83,6 +77,16 @@ void read_rows(const GltfAccessor& accessor, Number* to, size_t row) {
         decode(accessor, accessor.bytes.data(), accessor.stride, accessor.count, to, row,
                std::identity{});
     if (accessor.sparse) replace_sparse(accessor, to, row);
+}
+
+std::vector<uint32_t> indices_of(const GltfSparse& sparse) {
+    GltfAccessor list;
+    list.component_type = sparse.index_component_type;
+    list.components = 1;
+    list.count = sparse.count;
+    list.stride = component_size(sparse.index_component_type);
+    list.bytes = sparse.indices;
+    return read_all<uint32_t>(list);
 }
 
 template void read_rows(const GltfAccessor&, float*, size_t);

@@ -105,4 +105,7 @@ template <class Number>
     return out;
 }
 
+/// Indices of the elements that a sparse accessor replaces.
+[[nodiscard]] std::vector<uint32_t> indices_of(const GltfSparse&);
+
 }  // namespace petzval

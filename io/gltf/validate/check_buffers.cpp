@@ -127,13 +127,7 @@ class AccessorCheck {
     /// read all the same: the last one holds.
     static void check_indices(const JsonCursor& json, const GltfSparse& sparse, uint64_t limit) {
         if (sparse.indices.empty()) return;
-        GltfAccessor list;
-        list.component_type = sparse.index_component_type;
-        list.components = 1;
-        list.count = sparse.count;
-        list.stride = component_size(sparse.index_component_type);
-        list.bytes = sparse.indices;
-        const std::vector<uint32_t> values = read_all<uint32_t>(list);
+        const std::vector<uint32_t> values = indices_of(sparse);
         for (size_t i = 0; i < values.size(); ++i)
             if (values[i] >= limit)
                 json.fail(

@@ -3,14 +3,10 @@
 #pragma once
 
 #include <array>
-#include <memory>
-#include <optional>
 #include <span>
-#include <utility>
 
-#include "camera/shutter.h"
-#include "camera/target.h"
 #include "core/math/ray.h"
+#include "core/math/steps.h"
 #include "core/sampling/filter.h"
 #include "core/sampling/sampler.h"
 #include "core/spectrum/bands.h"
@@ -32,6 +28,7 @@ struct FilmPoint {
     V2f film{0.f};
     Sampler sampler{};
     PixelFilter pixel{};
+    float time = kMiddleOfShutter;  ///< share of the exposure that has passed
 };
 
 /// A world-space ray; direction has unit length.
@@ -45,8 +42,8 @@ struct CameraPath {
     /// The ray depends on which lane is the hero (Bands::hero), which must then decide nothing
     /// else.
     bool hero_decided = false;
-    /// Fills the sample's alpha; the first path that does fills its layers too.
-    bool fills_layers = true;
+    /// Aimed at a small lamp: alpha and layers do without.
+    bool to_target = false;
 };
 
 /// Counts of the wavelength lanes that a lens was asked for, by why it lost them; drawn - lost()
@@ -74,13 +71,15 @@ struct LensLosses {
 };
 
 /// Camera paths of one film point. None: vignetted. 1: shared by all lanes. 2 to 4: split by
-/// dispersion.
+/// dispersion. As many again may go to a target.
 class CameraSample {
   public:
-    static constexpr size_t kMostPaths = 4;
+    static constexpr size_t kMostPaths = 8;
 
     LensLosses<uint32_t> lanes;
     float exposure = 1;  ///< mean weight of a lane where nothing is lost
+    /// Density with which a traced lens draws the ray, 1/sr of projected solid angle at the film.
+    float density = 0;
 
     [[nodiscard]] bool empty() const { return size_ == 0; }
     [[nodiscard]] size_t size() const { return size_; }
@@ -92,11 +91,6 @@ class CameraSample {
     [[nodiscard]] const CameraPath* end() const { return paths_.data() + size_; }
     /// Appends a path, to be filled in; at most kMostPaths may be added.
     CameraPath& add() { return paths_[size_++]; }
-    /// Makes this a sample of rays to targets: they fill no layers, and no losses are counted.
-    void leave_layers() {
-        lanes = {};
-        for (CameraPath& path : *this) path.fills_layers = false;
-    }
 
   private:
     size_t size_ = 0;
@@ -106,7 +100,7 @@ class CameraSample {
 /// Most film points that a camera takes at once.
 inline constexpr size_t kMostFilmPoints = 8;
 
-/// A camera: pinhole, thin lens, singlet or real lens.
+/// A camera answers one question: which rays bring the light that lands at a point of the film.
 class Camera {
   public:
     virtual ~Camera() = default;
@@ -121,48 +115,13 @@ class Camera {
         for (size_t i = 0; i < points.size(); ++i) out[i] = sample(points[i], bands[i]);
     }
 
-    /// Whether the camera can send rays to targets.
-    [[nodiscard]] virtual bool takes_targets() const { return false; }
-    /// A target made ready for the film; nothing where no ray seems to meet its middle, or the
-    /// camera takes no targets.
-    [[nodiscard]] virtual std::optional<PreparedTarget> prepared(const Target&) const {
-        return std::nullopt;
-    }
-    /// A target made ready for the film points of a cell, with a chance of 1; nothing where no ray
-    /// from there seems to meet its middle.
-    [[nodiscard]] virtual std::optional<ListedTarget> listed(const PreparedTarget&,
-                                                             const FilmCell&) const {
-        return std::nullopt;
-    }
-    /// Paths of the same film points to one of the targets of each: together with those of
-    /// sample(), by their shares, an estimate without a bias (balance heuristic, Veach and Guibas
-    /// 1995). None for a film point that has no targets, or where the ray is blocked. As
-    /// sample_all().
-    virtual void sample_targets(std::span<const FilmPoint> points, std::span<const Bands>,
-                                std::span<const TargetList>, std::span<CameraSample> out) const {
-        for (size_t i = 0; i < points.size(); ++i) out[i] = {};
-    }
-    /// Targets from here on, made ready by this camera; nullptr: none.
-    void set_targets(std::shared_ptr<const TargetGrid> targets) { targets_ = std::move(targets); }
-    [[nodiscard]] const TargetGrid* targets() const { return targets_.get(); }
-    /// The same, for another camera that has the same rays.
-    [[nodiscard]] const std::shared_ptr<const TargetGrid>& shared_targets() const {
-        return targets_;
-    }
-
-    /// The shutter, for whoever asks for rays: those of the functions above are of its middle.
-    void set_shutter(std::shared_ptr<const Shutter> shutter) { shutter_ = std::move(shutter); }
-    /// nullptr: nothing moves.
-    [[nodiscard]] const Shutter* shutter() const { return shutter_.get(); }
-
   protected:
-    [[nodiscard]] TargetList targets_at(const FilmPoint& at) const {
-        return targets_ ? targets_->at(at.film) : TargetList();
+    /// sample() of a camera that has sample_all().
+    [[nodiscard]] CameraSample one_of_all(const FilmPoint& point, const Bands& bands) const {
+        CameraSample out;
+        sample_all({&point, 1}, {&bands, 1}, {&out, 1});
+        return out;
     }
-
-  private:
-    std::shared_ptr<const TargetGrid> targets_;
-    std::shared_ptr<const Shutter> shutter_;
 };
 
 }  // namespace petzval

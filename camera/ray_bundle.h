@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "camera/camera.h"
+#include "camera/film_cell.h"
 
 namespace petzval {
 

@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "camera/film_cell.h"
+#include "camera/pose.h"
 #include "core/math/math.h"
 
 namespace petzval {
@@ -21,9 +23,6 @@ struct Target {
     bool at_infinity = false;  ///< a spot of the sky
 };
 
-/// Whether camera rays are sent to targets. Auto: where they pay.
-enum class TargetUse : uint8_t { Auto, Off };
-
 /// Target in the space of a camera, in metres, with two axes in its plane.
 struct LocalTarget {
     V3d centre, normal;
@@ -32,6 +31,9 @@ struct LocalTarget {
     V3d across, up;  ///< unit, at right angles to each other and to the normal
 
     LocalTarget(const V3d& centre, const V3d& normal, double radius_m, bool at_infinity);
+    LocalTarget(const Pose& pose, const Target& t)
+        : LocalTarget(pose.local(t.at_infinity ? t.centre : t.centre - pose.origin),
+                      pose.local(t.normal), double(t.radius_m), t.at_infinity) {}
 };
 
 /// A known ray of a lens to the middle of a target, and how it changes: where the search for rays
@@ -47,16 +49,6 @@ struct PreparedTarget {
     LocalTarget target;
     V2f place;                          ///< film point at which the middle of the stop pictures it
     std::vector<TargetStart> starts{};  ///< of a traced lens
-};
-
-/// Part of the film, from corner to corner, as FilmPoint has it.
-struct FilmCell {
-    V2f first, last;
-
-    /// The place of the cell that is nearest to another.
-    [[nodiscard]] V2f nearest(V2f place) const {
-        return {std::clamp(place.x, first.x, last.x), std::clamp(place.y, first.y, last.y)};
-    }
 };
 
 /// A target that is ready for the film points of a cell, and the chance that a ray is sent to it.

@@ -51,7 +51,7 @@ ModeChoice choose_mode(const PlanRequest& request, const RenderSetup& first,
         std::swap(out.by_effort[0], out.by_effort[1]);
     const RenderSetup shared = with(DispersionMode::Shared);
     out.dispersion_px = lateral_dispersion_px(
-        *split->setup().view.camera, *shared.view.camera, split->setup().view.observer,
+        *split->setup().view.still, *shared.view.still, split->setup().view.observer,
         split->setup().from.camera.focus_plane(), request.scene.size);
     out.scene.camera.dispersion = out.mode();
     return out;

@@ -139,11 +139,11 @@ PlanComparison::PlanComparison(const PlanRequest& request, const RenderSetup& fi
 void PlanComparison::compare_dispersion(const RenderSetup& split, const RenderSetup& shared) {
     const V2i size = request_.scene.size;
     const FocusPlane focus = first_.from.camera.focus_plane();
-    dispersion_px_ = lateral_dispersion_px(*split.view.camera, *shared.view.camera,
+    dispersion_px_ = lateral_dispersion_px(*split.view.still, *shared.view.still,
                                            split.view.observer, focus, size);
     dispersed_ = most_error(
-        displacement_of({*split.view.camera, split.view.observer},
-                        {*shared.view.camera, shared.view.observer}, *first_.prepared.scene,
+        displacement_of({*split.view.still, split.view.observer},
+                        {*shared.view.still, shared.view.observer}, *first_.prepared.scene,
                         *first_.prepared.bvh, focus, size, kDispersionRays, true),
         0);
 }
@@ -154,11 +154,10 @@ void PlanComparison::choose_looks(int wanted) {
     const Scene& scene = *first_.prepared.scene;
     const V2i size = request_.scene.size;
     // Lamps that are targets are known one by one.
-    things_ =
-        first_.view.camera->targets() ? things_of(scene, kMostTargetedLamps) : things_of(scene);
+    things_ = first_.view.targets ? things_of(scene, kMostTargetedLamps) : things_of(scene);
     glass_disperses_ = std::any_of(scene.materials.begin(), scene.materials.end(),
                                    [](const Material& m) { return m.glass && m.refracts(); });
-    regions_ = film_regions(*first_.view.camera, size, things_);
+    regions_ = film_regions(*first_.view.still, size, things_);
     lamps_ = seen_lamps(first_, size, things_, regions_);
     pilot_.emplace(
         size,
@@ -187,7 +186,7 @@ void PlanComparison::add(PlanModel kind, const SceneRequest& scene, const FilmMa
 void PlanComparison::add_camera(PlanModel kind, const SceneRequest& scene) {
     const RenderSetup simpler = open(scene), fuller = open(shared_ ? shared_scene_ : full_scene_);
     const Displacement displacement = displacement_of(
-        {*simpler.view.camera, simpler.view.observer}, {*fuller.view.camera, fuller.view.observer},
+        {*simpler.view.still, simpler.view.observer}, {*fuller.view.still, fuller.view.observer},
         *first_.prepared.scene, *first_.prepared.bvh, first_.from.camera.focus_plane(),
         request_.scene.size, kCameraRays, false);
     FilmMap most = most_error(displacement, 0);

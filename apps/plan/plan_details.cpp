@@ -31,8 +31,8 @@ std::optional<PrecisionFound> find_precision(const PlanRequest& request, const R
                       in_double = view_of(first, doubles, executor);
     const V2i size = request.scene.size;
     const Displacement apart =
-        displacement_of({*in_float.view.camera, in_float.view.observer},
-                        {*in_double.view.camera, in_double.view.observer}, *first.prepared.scene,
+        displacement_of({*in_float.view.still, in_float.view.observer},
+                        {*in_double.view.still, in_double.view.observer}, *first.prepared.scene,
                         *first.prepared.bvh, first.from.camera.focus_plane(), size, kRays, true);
     const auto& squares = apart.square_px.values;
     const FilmMap most = most_error(apart, 0);

@@ -37,7 +37,7 @@ std::optional<Ray> ray_in(const RenderSetup& setup, V2i size_px, const FilmRegio
     const Observer& observer = setup.view.observer;
     const Bands bands =
         observer.spectral() ? observer.draw(sampler.get1(Dim::Wavelength)) : Bands::rgb();
-    const CameraSample seen = setup.view.camera->sample({film, sampler}, bands);
+    const CameraSample seen = setup.view.still->sample({film, sampler}, bands);
     if (seen.empty()) return std::nullopt;
     return seen[0].ray;
 }
@@ -60,7 +60,7 @@ bool is_alone(const Thing& lamp) {
 /// targets may hold some and not others: they do not count.
 double sent_to(const RenderSetup& setup, V2i size_px, std::array<int, 2> pixel,
                const SeenLamp& lamp) {
-    const TargetGrid* grid = setup.view.camera->targets();
+    const TargetGrid* grid = setup.view.targets.get();
     if (!grid || !lamp.alone) return 0;
     const V2f film((float(pixel[0]) + 0.5f) / float(size_px.x),
                    (float(pixel[1]) + 0.5f) / float(size_px.y));

@@ -15,7 +15,6 @@
 #include "camera/iris/iris_options.h"
 #include "camera/lens/lens_options.h"
 #include "camera/shutter.h"
-#include "camera/target.h"
 #include "core/light/light_options.h"
 #include "core/math/math.h"
 #include "core/spectrum/bands.h"
@@ -115,6 +114,9 @@ struct SpectralRequest {
 
 /// Name of the built-in environment: what a scene gets that nothing lights.
 inline constexpr const char* kStudioLight = "studio";
+
+/// Whether camera rays are sent to targets. Auto: where they pay.
+enum class TargetUse : uint8_t { Auto, Off };
 
 /// Request for a scene. Everything absent means: as the file has it, else a sensible choice that is
 /// reported.

@@ -283,7 +283,7 @@ CameraSetup set_up_camera(const CameraModel& model, const std::string& scene_fil
                           const Scene& scene, const Bvh& bvh, const Notice& notice) {
     const CameraContext at{model, scene_file, size, scene, bvh, notice};
     CameraSetup setup = still_camera(at);
-    setup.camera->set_shutter(shutter_of(model, scene, setup.zooms));
+    setup.shutter = shutter_of(model, scene, setup.zooms);
     return setup;
 }
 

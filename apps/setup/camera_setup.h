@@ -12,9 +12,10 @@
 namespace petzval {
 
 struct CameraSetup {
-    std::unique_ptr<Camera> camera;
+    std::unique_ptr<Camera> camera;  ///< in the middle of the exposure
     std::unique_ptr<Camera> finder;  ///< pictures the same with a narrow iris
     bool zooms = false;              ///< the camera's view changes while the shutter is open
+    std::shared_ptr<const Shutter> shutter{};  ///< nullptr: nothing moves
     CameraReport report;
 };
 

@@ -11,10 +11,10 @@ SceneRequest equivalent_thin_lens(SceneRequest request, const RenderSetup& setup
     const CameraReport& report = setup.from.camera;
     CameraRequest& camera = request.camera;
     camera.lens = "thin";
-    camera.fov_deg = report.lens.empty()
-                         ? report.yfov_deg
-                         : equivalent_fov_deg(*setup.view.camera, report.focus_plane())
-                               .value_or(report.yfov_deg);
+    camera.fov_deg =
+        report.lens.empty()
+            ? report.yfov_deg
+            : equivalent_fov_deg(*setup.view.still, report.focus_plane()).value_or(report.yfov_deg);
     camera.lens_radius_m = report.lens_radius_m;
     camera.sensor_mm = report.sensor_mm;
     camera.focus = FocusDistance{report.focus_m};

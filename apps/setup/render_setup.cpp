@@ -11,8 +11,10 @@
 #include "apps/setup/camera_setup.h"
 #include "apps/setup/glass_remarks.h"
 #include "apps/setup/input_files.h"
+#include "camera/models/moving_camera.h"
 #include "camera/ray_bundle.h"
-#include "camera/setup/target_grid.h"
+#include "camera/targets/make_target_camera.h"
+#include "camera/targets/target_grid.h"
 #include "core/light/own_light.h"
 #include "core/scene/studio.h"
 #include "integrator/prepass/highlights.h"
@@ -200,14 +202,33 @@ PreparedScene load(SceneRequest request, const Notice& notice, FrameReuse* frame
     return out;
 }
 
-/// Finds small bright things for a camera to send rays to, where that pays.
-void find_targets_of(Camera& camera, V2i size_px, const Scene& scene,
-                     const PreparedScene& prepared) {
+/// Small bright things to which a camera sends rays, where that pays; nullptr: none.
+std::shared_ptr<const TargetGrid> targets_of(TargetCamera& camera, const Camera& still, V2i size_px,
+                                             const PreparedScene& prepared) {
+    const Scene& scene = *prepared.scene;
     std::vector<Thing> things = things_of(scene, kMostTargets);
-    const std::vector<Thing> images = highlights(camera, scene, *prepared.bvh, size_px, things);
+    const std::vector<Thing> images = highlights(still, scene, *prepared.bvh, size_px, things);
     things.insert(things.end(), images.begin(), images.end());
     camera.set_targets(find_targets(camera, size_px, things));
-    camera.set_targets(targets_that_pay(camera, scene, *prepared.bvh, *prepared.lights, size_px));
+    return targets_that_pay(camera, scene, *prepared.bvh, *prepared.lights, size_px);
+}
+
+/// The camera that renders, from the one that stands still: aimed at targets and moved by a
+/// shutter, where there are any.
+void compose_camera(const SceneRequest& asked, const RenderSetup* like,
+                    const PreparedScene& prepared, View& view) {
+    view.camera = view.still;
+    if (asked.targets == TargetUse::Auto)
+        if (auto aims = target_camera(view.still)) {
+            const bool same = like && like->from.asked.targets == TargetUse::Auto &&
+                              like->from.asked.size == asked.size &&
+                              has_same_rays(*view.still, *like->view.still);
+            view.targets =
+                same ? like->view.targets : targets_of(*aims, *view.still, asked.size, prepared);
+            aims->set_targets(view.targets);
+            if (view.targets) view.camera = std::move(aims);
+        }
+    if (view.shutter) view.camera = std::make_shared<MovingCamera>(view.camera, view.shutter);
 }
 
 RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseSink& begins,
@@ -257,21 +278,15 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
 
     CameraSetup camera =
         set_up_camera(model, request.scene.string(), request.size, scene, *prepared.bvh, notice);
-    setup.view.camera = std::move(camera.camera);
+    setup.view.still = std::move(camera.camera);
     setup.view.finder = std::move(camera.finder);
+    setup.view.shutter = std::move(camera.shutter);
     if (model.from) setup.view.of_file = static_cast<size_t>(model.from - prepared.cameras->data());
     if (prepared.lights->divides())
         prepared.lights = std::make_shared<const LightChoice>(
-            taught_by_pilot(*prepared.lights, scene, *prepared.bvh, *setup.view.camera,
+            taught_by_pilot(*prepared.lights, scene, *prepared.bvh, *setup.view.still,
                             setup.view.observer, request.size));
-    if (asked.targets == TargetUse::Auto && setup.view.camera->takes_targets()) {
-        Camera& seen = *setup.view.camera;
-        if (shares && like->from.asked.targets == TargetUse::Auto &&
-            like->from.asked.size == request.size && has_same_rays(seen, *like->view.camera))
-            seen.set_targets(like->view.camera->shared_targets());
-        else
-            find_targets_of(seen, request.size, scene, prepared);
-    }
+    compose_camera(request, shares ? like : nullptr, prepared, setup.view);
     from.camera = std::move(camera.report);
     return setup;
 }

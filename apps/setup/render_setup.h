@@ -13,6 +13,8 @@
 #include "apps/setup/phase.h"
 #include "apps/setup/spectral_setup.h"
 #include "camera/camera.h"
+#include "camera/shutter.h"
+#include "camera/target.h"
 #include "core/light/light_choice.h"
 #include "core/scene/scene.h"
 #include "core/traversal/bvh.h"
@@ -51,8 +53,13 @@ struct FrameReuse {
 
 /// Camera and observer of a prepared scene.
 struct View {
-    std::unique_ptr<Camera> camera, finder;  ///< finder: the same with a narrow iris
-    std::optional<size_t> of_file;           ///< the camera's index among those of the file
+    std::shared_ptr<const Camera> camera;  ///< that renders: with its targets and its shutter
+    /// The same in the middle of the exposure and without targets, for whoever asks where rays go.
+    std::shared_ptr<const Camera> still;
+    std::unique_ptr<Camera> finder;             ///< as still, with a narrow iris
+    std::shared_ptr<const TargetGrid> targets;  ///< nullptr: none
+    std::shared_ptr<const Shutter> shutter;     ///< nullptr: nothing moves
+    std::optional<size_t> of_file;              ///< the camera's index among those of the file
     Observer observer;
     std::optional<Rgb> visible_background;  ///< shown behind the scene in place of the environment
 };

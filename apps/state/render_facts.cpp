@@ -58,7 +58,7 @@ std::string hash_of_learned(const RenderSetup& setup) {
     Hash hash;
     if (const auto& lights = setup.prepared.lights)
         for (const float factor : lights->shares().factors()) hash.add(factor);
-    const TargetGrid* const targets = setup.view.camera ? setup.view.camera->targets() : nullptr;
+    const TargetGrid* const targets = setup.view.targets.get();
     if (!targets) return hash.text();
     for (const Target& target : targets->targets) {
         hash.add(target.centre);

@@ -31,7 +31,7 @@ struct FilmLanding {
 /// rays(request): rays with weight_of_lanes() (0: lost; counts for all lanes of the bands, however
 /// few were asked for) and `losses`.
 /// ray(rays, lane): a lane's ray in the world, unit direction.
-/// mis_weight(rays): factor on the weights for light (CameraPath::mis_weight).
+/// density(rays): CameraSample::density, where the camera has it.
 /// landing(rays, request): landing of the ray of request.hero.
 /// exposure(): mean weight of a lane where nothing is lost.
 template <class P>
@@ -40,7 +40,6 @@ concept LensPoint = requires(const P p, const LaneRequest& request,
     { rays.weight_of_lanes() } -> std::same_as<f4>;
     { rays.losses } -> std::convertible_to<LensLosses<uint32_t>>;
     { p.ray(rays, lane) } -> std::same_as<Ray>;
-    { p.mis_weight(rays) } -> std::same_as<float>;
     { p.landing(rays, request) } -> std::same_as<FilmLanding>;
     { p.exposure() } -> std::same_as<float>;
 };

@@ -15,6 +15,7 @@ template <LensPoint P, class Rays>
     CameraSample out;
     out.lanes = rays.losses;
     out.exposure = lens.exposure();
+    if constexpr (requires { lens.density(rays); }) out.density = lens.density(rays);
     return out;
 }
 
@@ -30,7 +31,6 @@ template <LensPoint P>
     if (first == 4) return out;
     CameraPath& path = out.add();
     path.ray = lens.ray(rays, first);
-    path.mis_weight = lens.mis_weight(rays);
     path.lanes = passed;
     path.weight = zero_off(passed, weight);
     return out;
@@ -47,8 +47,7 @@ template <LensPoint P>
         CameraPath& path = out.add();
         path.hero_decided = true;
         path.ray = lens.ray(rays, lane);
-        path.mis_weight = lens.mis_weight(rays);
-        path.lanes = only_lane(lane);
+            path.lanes = only_lane(lane);
         path.weight = zero_off(path.lanes, weight);
     }
     return out;
@@ -71,7 +70,6 @@ template <LensPoint P>
     CameraPath& path = out.add();
     path.hero_decided = true;
     path.ray = lens.ray(rays, hero);
-    path.mis_weight = lens.mis_weight(rays);
     path.weight = weight;
     path.lanes = reached;
     return out;

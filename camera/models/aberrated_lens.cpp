@@ -41,12 +41,6 @@ AberratedLensCamera::AberratedLensCamera(AberratedLens lens)
     require_stop(in_.singlet, in_.iris.bounding_radius_mm(), focus_mm_);
 }
 
-struct AberratedLensCamera::Pencils {
-    std::array<StopPencil, 4> of_lanes{};
-    size_t count = 0;
-    [[nodiscard]] std::span<const StopPencil> span() const { return {of_lanes.data(), count}; }
-};
-
 class AberratedLensCamera::Point {
   public:
     /// Rays through one point of the lens, which the wavelengths leave with vergences of their own.
@@ -58,9 +52,8 @@ class AberratedLensCamera::Point {
     };
 
     /// Camera, film point and bands must outlive it.
-    Point(const AberratedLensCamera& camera, const FilmPoint& at, V2f stop_mm, float mis_weight,
-          const Bands& bands)
-        : c_(camera), at_(at), bands_(bands), stop_mm_(stop_mm), mis_weight_(mis_weight) {}
+    Point(const AberratedLensCamera& camera, const FilmPoint& at, V2f stop_mm, const Bands& bands)
+        : c_(camera), at_(at), bands_(bands), stop_mm_(stop_mm) {}
 
     [[nodiscard]] Rays rays(const LaneRequest& request) const {
         Rays out;
@@ -92,7 +85,6 @@ class AberratedLensCamera::Point {
         return {off * (rays.stop_mm.x * px.x), off * (-rays.stop_mm.y * px.y), all.weight,
                 all.weight, vignetting_where(off, rays.stop_mm)};
     }
-    [[nodiscard]] float mis_weight(const Rays&) const { return mis_weight_; }
     [[nodiscard]] float exposure() const { return c_.in_.exposure; }
 
   private:
@@ -124,54 +116,21 @@ class AberratedLensCamera::Point {
     const FilmPoint& at_;
     const Bands& bands_;
     V2f stop_mm_;
-    float mis_weight_;
 };
 
 CameraSample AberratedLensCamera::sample(const FilmPoint& at, const Bands& bands) const {
-    const V2f stop_mm = in_.iris.sample(at.sampler.get2(Dim::Lens));
-    const auto targets = targets_at(at);
-    float mis_weight = 1;
-    if (!targets.empty())
-        mis_weight = TargetedStop{in_.iris, pencils(at, bands).span()}.mis_weight(stop_mm, targets);
-    return sample_lens(Point(*this, at, stop_mm, mis_weight, bands), in_.dispersion, at.pixel,
-                       bands);
+    return through(at, drawn_stop_mm(at), bands);
 }
 
-std::optional<PreparedTarget> AberratedLensCamera::prepared(const Target& target) const {
-    const LocalTarget local = pose_.local(target);
-    return PreparedTarget{local, pictured(local.centre, V2f(tan_half_x_, tan_half_y_))};
-}
-
-std::optional<ListedTarget> AberratedLensCamera::listed(const PreparedTarget& target,
-                                                        const FilmCell& cell) const {
-    const FilmPoint at{cell.nearest(target.place)};
-    return TargetedStop{in_.iris, pencils(at, Bands::rgb()).span()}.listed(target.target, at.film);
-}
-
-void AberratedLensCamera::sample_targets(std::span<const FilmPoint> points,
-                                         std::span<const Bands> bands,
-                                         std::span<const TargetList> targets,
-                                         std::span<CameraSample> out) const {
-    for (size_t i = 0; i < points.size(); ++i) out[i] = to_target(points[i], bands[i], targets[i]);
-}
-
-CameraSample AberratedLensCamera::to_target(const FilmPoint& at, const Bands& bands,
-                                            TargetList targets) const {
-    if (targets.empty()) return {};
-    const Pencils rays = pencils(at, bands);
-    const auto found = TargetedStop{in_.iris, rays.span()}.aim_at_one(at, targets);
-    if (!found) return {};
-    CameraSample out = sample_lens(Point(*this, at, found->stop_mm, found->mis_weight, bands),
-                                   in_.dispersion, at.pixel, bands);
-    out.leave_layers();
-    return out;
+CameraSample AberratedLensCamera::through(const FilmPoint& at, V2f stop_mm,
+                                          const Bands& bands) const {
+    return sample_lens(Point(*this, at, stop_mm, bands), in_.dispersion, at.pixel, bands);
 }
 
 // Lanes that part share the point of the stop, so each may have drawn it; a hero ray is its hero
 // lane's.
-AberratedLensCamera::Pencils AberratedLensCamera::pencils(const FilmPoint& at,
-                                                          const Bands& bands) const {
-    Pencils out;
+StopPencils AberratedLensCamera::pencils(const FilmPoint& at, const Bands& bands) const {
+    StopPencils out;
     const bool led = one_ray(bands, in_.dispersion) ||
                      (in_.dispersion == DispersionMode::Hero && at.pixel.filter);
     for (int lane = 0; lane < 4; ++lane) {

@@ -31,21 +31,23 @@ class AberratedLensCamera final : public Camera {
     /// light at all of 360 to 830 nm, or an iris wider than its surfaces or than f(h) > f/2 allows.
     explicit AberratedLensCamera(AberratedLens);
     [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
-    [[nodiscard]] bool takes_targets() const override { return true; }
-    [[nodiscard]] std::optional<PreparedTarget> prepared(const Target&) const override;
-    [[nodiscard]] std::optional<ListedTarget> listed(const PreparedTarget&,
-                                                     const FilmCell&) const override;
-    void sample_targets(std::span<const FilmPoint>, std::span<const Bands>,
-                        std::span<const TargetList>, std::span<CameraSample>) const override;
+    /// Rays of a film point through a point of the stop: one, or one for each lane.
+    [[nodiscard]] CameraSample through(const FilmPoint&, V2f stop_mm, const Bands&) const;
+    /// Point of the stop that the film point's sampler draws.
+    [[nodiscard]] V2f drawn_stop_mm(const FilmPoint& at) const {
+        return in_.iris.sample(at.sampler.get2(Dim::Lens));
+    }
+    /// Pencils of the lanes by whose rays points of the stop are drawn.
+    [[nodiscard]] StopPencils pencils(const FilmPoint&, const Bands&) const;
+    [[nodiscard]] const Iris* iris() const { return &in_.iris; }
+    [[nodiscard]] const Pose& pose() const { return pose_; }
+    /// Tangents of the angles from the axis to the film's right and upper edges.
+    [[nodiscard]] V2f tan_half() const { return {tan_half_x_, tan_half_y_}; }
     [[nodiscard]] double film_distance_mm() const { return film_mm_; }
 
   private:
-    [[nodiscard]] CameraSample to_target(const FilmPoint&, const Bands&, TargetList) const;
     /// A film point's rays, for the strategies of camera/dispersion.
     class Point;
-    /// Pencils of the lanes by whose rays points of the stop are drawn.
-    struct Pencils;
-    [[nodiscard]] Pencils pencils(const FilmPoint&, const Bands&) const;
     [[nodiscard]] V2f tangents(const FilmPoint&) const;
     [[nodiscard]] double index_of(const Bands&, int lane) const;
     [[nodiscard]] SingletOptics optics_at(double n) const;

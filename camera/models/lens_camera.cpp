@@ -54,11 +54,6 @@ LensLosses<uint32_t> losses(m4 on, const LensDraw<V>& drawn, MaskOf<V> clear) {
     return out;
 }
 
-// Balance heuristic of the two ways in which a camera ray may be drawn.
-float mis_weight_of(float density, float to_targets) {
-    return to_targets > 0.f ? density / (density + to_targets) : 1.f;
-}
-
 // One lane of a ray.
 template <class V>
 SceneRay<ScalarOf<V>> lane_of(const LensRay<V>& ray, int i) {
@@ -77,8 +72,6 @@ LensCamera::LensCamera(LensCameraInput in)
       pose_(in_.to_world),
       optics_(in_.lens, in_.iris, in_.coating, in_.film_mm,
               0.5 * std::hypot(in_.film_width_mm, in_.film_height_mm)),
-      targets_(*in_.lens, optics_.aimer(), in_.entrance_pupil_mm,
-               double(in_.iris.bounding_radius_mm()), in_.iris.area_mm2()),
       line_d_(in_.lens->exact_indices(splat(kLineD))),
       line_d_of_all_(in_.lens->exact_indices(splat8(kLineD))),
       exact_line_d_(in_.lens->exact_indices(broadcast<d4>(kLineD_nm))) {}
@@ -131,7 +124,7 @@ class LensCamera::Point {
     [[nodiscard]] Ray ray(const LensDraw<V>& rays, int lane) const {
         return c_.in_world(lane_of(rays.ray, lane));
     }
-    [[nodiscard]] float mis_weight(const LensDraw<V>& rays) const { return rays.mis_weight; }
+    [[nodiscard]] float density(const LensDraw<V>& rays) const { return rays.density; }
     [[nodiscard]] FilmLanding landing(const LensDraw<V>&, const LaneRequest&) const;
     [[nodiscard]] float exposure() const { return c_.exposure_; }
 
@@ -188,7 +181,7 @@ LensDraw<V> LensCamera::Point<V>::rays(const LaneRequest& request) const {
                                         out.ray, Clip::Yes));
         const S gain = S(c_.gain_) * static_cast<S>(lane_count(at_.bands.on)) / lanes;
         out.weight = select(aimed.clear & out.ray.alive(), V(open * (gain / density)), V{});
-        out.mis_weight = mis_weight_of(static_cast<float>(density), at_.to_targets);
+        out.density = static_cast<float>(density);
     }
     out.losses = losses(request.lanes, out, aimed.clear);
     if (request.coated && any(out.weight > 0))
@@ -223,9 +216,7 @@ class LensCamera::LeadPoint {
 
     [[nodiscard]] Rays rays(const LaneRequest&) const;
     [[nodiscard]] Ray ray(const Rays&, int) const { return c_.in_world(lane_of(rays_.ray, lane_)); }
-    [[nodiscard]] float mis_weight(const Rays&) const {
-        return mis_weight_of(rays_.density[lane_], at_.to_targets);
-    }
+    [[nodiscard]] float density(const Rays&) const { return rays_.density[lane_]; }
     [[nodiscard]] FilmLanding landing(const Rays&, const LaneRequest&) const {
         return c_.in_pixels(landing_, at_.frame_px);
     }
@@ -293,16 +284,15 @@ LensIndices<f8> LensCamera::indices_of(const LeadPoints& points, bool achromatic
     return achromatic ? line_d_of_all_ : in_.lens->indices(points.nm);
 }
 
-CameraSample LensCamera::sample(const FilmPoint& point, const Bands& bands) const {
-    CameraSample out;
-    sample_all({&point, 1}, {&bands, 1}, {&out, 1});
-    return out;
-}
-
 // The image stands on its head: what is seen on the right falls on the left of the film.
 V2f LensCamera::film_mm(V2f film) const {
     return {(0.5f - film.x) * static_cast<float>(in_.film_width_mm),
             (film.y - 0.5f) * static_cast<float>(in_.film_height_mm)};
+}
+
+V2f LensCamera::film_of(V2f film_mm) const {
+    return {0.5f - film_mm.x / static_cast<float>(in_.film_width_mm),
+            0.5f + film_mm.y / static_cast<float>(in_.film_height_mm)};
 }
 
 auto LensCamera::batch(std::span<const FilmPoint> points, std::span<const Bands> bands) const
@@ -330,21 +320,13 @@ void LensCamera::sample_all(std::span<const FilmPoint> points, std::span<const B
                             std::span<CameraSample> out) const {
     const Batch all = batch(points, bands);
     LeadRays rays = optics_.aim(all.at, all.indices);
-    std::array<float, kMostFilmPoints> density{};
-    if (targets()) {
-        std::array<TargetList, kMostFilmPoints> lists;
-        for (size_t i = 0; i < points.size(); ++i) lists[i] = targets_at(points[i]);
-        density = to_targets(all, rays, lists);
-    }
-    finish(all, rays, density, out);
+    finish(all, rays, out);
 }
 
-void LensCamera::finish(const Batch& all, LeadRays& rays,
-                        const std::array<float, kMostFilmPoints>& to_targets,
-                        std::span<CameraSample> out) const {
+void LensCamera::finish(const Batch& all, LeadRays& rays, std::span<CameraSample> out) const {
     const auto place = [&](size_t i) {
         return Place{all.at.film_mm[i], rays.stop_mm[static_cast<int>(i)], all.bands[i],
-                     all.achromatic,    all.points[i].pixel.frame_px,      to_targets[i]};
+                     all.achromatic, all.points[i].pixel.frame_px};
     };
     const auto each = [&]<class P>(const auto&... more) {
         for (size_t i = 0; i < all.points.size(); ++i) {

@@ -11,17 +11,17 @@
 #include "camera/lens/lens.h"
 #include "camera/lens/lens_options.h"
 #include "camera/models/lens_optics.h"
-#include "camera/models/lens_targets.h"
 #include "camera/models/thin_lens.h"
+#include "camera/pose.h"
 
 namespace petzval {
 
 /// One draw of the iris, lane by lane. V: f4 or d4.
 template <class V>
 struct LensDraw {
-    V weight{};            ///< 0 where the lane is blocked
-    float mis_weight = 1;  ///< CameraPath::mis_weight
-    LensRay<V> ray;        ///< in front of the lens
+    V weight{};         ///< 0 where the lane is blocked
+    float density = 0;  ///< CameraSample::density
+    LensRay<V> ray;     ///< in front of the lens
     LensLosses<uint32_t> losses;
 
     [[nodiscard]] f4 weight_of_lanes() const {
@@ -50,15 +50,30 @@ class LensCamera final : public Camera {
     LensCamera(const LensCamera&) = delete;
     LensCamera& operator=(const LensCamera&) = delete;
 
-    [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
+    [[nodiscard]] CameraSample sample(const FilmPoint& point, const Bands& bands) const override {
+        return one_of_all(point, bands);
+    }
     void sample_all(std::span<const FilmPoint>, std::span<const Bands>,
                     std::span<CameraSample>) const override;
-    [[nodiscard]] bool takes_targets() const override { return true; }
-    [[nodiscard]] std::optional<PreparedTarget> prepared(const Target&) const override;
-    [[nodiscard]] std::optional<ListedTarget> listed(const PreparedTarget&,
-                                                     const FilmCell&) const override;
-    void sample_targets(std::span<const FilmPoint>, std::span<const Bands>,
-                        std::span<const TargetList>, std::span<CameraSample>) const override;
+
+    /// Film points of a batch, their bands, and what carries the rays that are found for them.
+    struct Batch {
+        std::span<const FilmPoint> points;
+        std::span<const Bands> bands;
+        bool achromatic;
+        bool of_hero;  ///< each point has one ray, that of the hero lane
+        LeadPoints at;
+        LensIndices<f8> indices;
+    };
+    [[nodiscard]] Batch batch(std::span<const FilmPoint>, std::span<const Bands>) const;
+    /// Samples of a batch, from a ray of each point that crosses the stop. Changes those rays.
+    void finish(const Batch&, LeadRays&, std::span<CameraSample>) const;
+    /// Point of the film, mm behind the lens, and the other way round.
+    [[nodiscard]] V2f film_mm(V2f film) const;
+    [[nodiscard]] V2f film_of(V2f film_mm) const;
+    [[nodiscard]] const LensCameraInput& input() const { return in_; }
+    [[nodiscard]] const LensOptics& optics() const { return optics_; }
+    [[nodiscard]] const Pose& pose() const { return pose_; }
 
     /// Scales the weights from here on: they average to the exposure in the middle of the film,
     /// where they averaged to its irradiance(). axial: that irradiance, before the first call.
@@ -86,8 +101,6 @@ class LensCamera final : public Camera {
         const Bands& bands;
         bool achromatic;  ///< all lanes have the indices of line d
         V2f frame_px;     ///< width and height of the full frame, in which landings count
-        /// Density of rays to targets in this direction, 1/sr of projected solid angle at the film.
-        float to_targets = 0;
 
         /// Wavelengths at which coatings count.
         [[nodiscard]] f4 coating_nm() const;
@@ -96,22 +109,6 @@ class LensCamera final : public Camera {
     template <class V>
     class Point;
     class LeadPoint;
-    /// Film points of a batch, their bands, and what carries the rays that are found for them.
-    struct Batch {
-        std::span<const FilmPoint> points;
-        std::span<const Bands> bands;
-        bool achromatic;
-        bool of_hero;  ///< each point has one ray, that of the hero lane
-        LeadPoints at;
-        LensIndices<f8> indices;
-    };
-    [[nodiscard]] Batch batch(std::span<const FilmPoint>, std::span<const Bands>) const;
-    [[nodiscard]] V2f film_mm(V2f film) const;
-    [[nodiscard]] V2f film_of(V2f film_mm) const;
-    [[nodiscard]] std::array<float, kMostFilmPoints> to_targets(
-        const Batch&, const LeadRays&, const std::array<TargetList, kMostFilmPoints>&) const;
-    void finish(const Batch&, LeadRays&, const std::array<float, kMostFilmPoints>& to_targets,
-                std::span<CameraSample>) const;
 
     /// Distance of the ray's origin behind the middle of the entrance pupil.
     template <class S>
@@ -126,7 +123,6 @@ class LensCamera final : public Camera {
     LensCameraInput in_;
     Pose pose_;
     LensOptics optics_;
-    LensTargets targets_;
     LensIndices<f4> line_d_;
     LensIndices<f8> line_d_of_all_;
     LensIndices<d4> exact_line_d_;

@@ -46,49 +46,14 @@ CameraSample ThinLensCamera::through(const FilmPoint& at, V2f stop_mm, const Ban
                     exposure_, weight);
 }
 
-StopPencil ThinLensCamera::pencil(const FilmPoint& at) const {
-    return {V2d(tangents(at)), double(focus_m_), 0, 0, 1e-3 * double(iris_->bounding_radius_mm())};
-}
-
 CameraSample ThinLensCamera::sample(const FilmPoint& at, const Bands& bands) const {
-    if (!iris_) return through(at, V2f(0.f), bands);
-    const V2f stop_mm = iris_->sample(at.sampler.get2(Dim::Lens));
-    CameraSample out = through(at, stop_mm, bands);
-    if (const auto targets = targets_at(at); !targets.empty()) {
-        const StopPencil rays = pencil(at);
-        out[0].mis_weight = TargetedStop{*iris_, {&rays, 1}}.mis_weight(stop_mm, targets);
-    }
-    return out;
+    return through(at, drawn_stop_mm(at), bands);
 }
 
-std::optional<PreparedTarget> ThinLensCamera::prepared(const Target& target) const {
-    const LocalTarget local = pose_.local(target);
-    return PreparedTarget{local, pictured(local.centre, V2f(tan_half_x_, tan_half_y_))};
-}
-
-std::optional<ListedTarget> ThinLensCamera::listed(const PreparedTarget& target,
-                                                   const FilmCell& cell) const {
-    const FilmPoint at{cell.nearest(target.place)};
-    const StopPencil rays = pencil(at);
-    return TargetedStop{*iris_, {&rays, 1}}.listed(target.target, at.film);
-}
-
-void ThinLensCamera::sample_targets(std::span<const FilmPoint> points, std::span<const Bands> bands,
-                                    std::span<const TargetList> targets,
-                                    std::span<CameraSample> out) const {
-    for (size_t i = 0; i < points.size(); ++i) out[i] = to_target(points[i], bands[i], targets[i]);
-}
-
-CameraSample ThinLensCamera::to_target(const FilmPoint& at, const Bands& bands,
-                                       TargetList targets) const {
-    if (targets.empty() || !iris_) return {};
-    const StopPencil rays = pencil(at);
-    const auto found = TargetedStop{*iris_, {&rays, 1}}.aim_at_one(at, targets);
-    if (!found) return {};
-    CameraSample out = through(at, found->stop_mm, bands);
-    out[0].mis_weight = found->mis_weight;
-    out.leave_layers();
-    return out;
+StopPencils ThinLensCamera::pencils(const FilmPoint& at, const Bands&) const {
+    return {{StopPencil{V2d(tangents(at)), double(focus_m_), 0, 0,
+                        1e-3 * double(iris_->bounding_radius_mm())}},
+            1};
 }
 
 OrthographicCamera::OrthographicCamera(const M44f& to_world, float half_width_m,

@@ -8,6 +8,7 @@
 #include "camera/iris/iris.h"
 #include "camera/models/natural_vignetting.h"
 #include "camera/models/stop_pencil.h"
+#include "camera/pose.h"
 
 namespace petzval {
 
@@ -27,18 +28,21 @@ class ThinLensCamera final : public Camera {
   public:
     explicit ThinLensCamera(ThinLens);
     [[nodiscard]] CameraSample sample(const FilmPoint&, const Bands&) const override;
-    [[nodiscard]] bool takes_targets() const override { return iris_.has_value(); }
-    [[nodiscard]] std::optional<PreparedTarget> prepared(const Target&) const override;
-    [[nodiscard]] std::optional<ListedTarget> listed(const PreparedTarget&,
-                                                     const FilmCell&) const override;
-    void sample_targets(std::span<const FilmPoint>, std::span<const Bands>,
-                        std::span<const TargetList>, std::span<CameraSample>) const override;
+    /// The one ray of a film point through a point of the stop.
+    [[nodiscard]] CameraSample through(const FilmPoint&, V2f stop_mm, const Bands&) const;
+    /// Point of the stop that the film point's sampler draws.
+    [[nodiscard]] V2f drawn_stop_mm(const FilmPoint& at) const {
+        return iris_ ? iris_->sample(at.sampler.get2(Dim::Lens)) : V2f(0.f);
+    }
+    /// Its only pencil; a camera with an iris.
+    [[nodiscard]] StopPencils pencils(const FilmPoint&, const Bands&) const;
+    [[nodiscard]] const std::optional<Iris>& iris() const { return iris_; }
+    [[nodiscard]] const Pose& pose() const { return pose_; }
+    /// Tangents of the angles from the axis to the film's right and upper edges.
+    [[nodiscard]] V2f tan_half() const { return {tan_half_x_, tan_half_y_}; }
 
   private:
-    [[nodiscard]] CameraSample to_target(const FilmPoint&, const Bands&, TargetList) const;
     [[nodiscard]] V2f tangents(const FilmPoint&) const;
-    [[nodiscard]] StopPencil pencil(const FilmPoint&) const;
-    [[nodiscard]] CameraSample through(const FilmPoint&, V2f stop_mm, const Bands&) const;
 
     Pose pose_;
     std::optional<Iris> iris_;

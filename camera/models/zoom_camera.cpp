@@ -6,8 +6,7 @@
 namespace petzval {
 
 CameraSample ZoomCamera::sample(const FilmPoint& at, const Bands& bands) const {
-    const float time = shutter() ? shutter()->time(at.sampler.get1(Dim::Time)) : kMiddleOfShutter;
-    const auto [before, share] = step_place(time, at_steps_.size());
+    const auto [before, share] = step_place(at.time, at_steps_.size());
     CameraSample out = at_steps_[before]->sample(at, bands);
     const CameraSample next = at_steps_[before + 1]->sample(at, bands);
     out.exposure = lerp(out.exposure, next.exposure, share);

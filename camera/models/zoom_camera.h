@@ -10,8 +10,7 @@
 namespace petzval {
 
 /// Camera that zooms: it has the rays of other cameras, one for each time step of its shutter, and
-/// lies between the two next to a sample's time. Time is the one that the shutter draws for the
-/// sample too; without a shutter it is the middle. No targets: they are found for one view.
+/// lies between the two next to a film point's time.
 class ZoomCamera final : public Camera {
   public:
     /// at_steps: two at least, evenly from time 0 to 1. Each stands where the others do, and gives

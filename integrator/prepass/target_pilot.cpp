@@ -58,7 +58,7 @@ struct CellFound {
 
 class CellPilot {
   public:
-    CellPilot(const Camera& camera, const PathTracer<>& tracer)
+    CellPilot(const TargetCamera& camera, const PathTracer<>& tracer)
         : camera_(camera), tracer_(tracer) {}
 
     /// Samples at places of a cell; to: a target, or none for ordinary ones.
@@ -78,13 +78,11 @@ class CellPilot {
                 bands[i] = Bands::rgb();
                 points[i] = {place_of(first + i, sampler.get2(Dim::Film)), sampler};
             }
-            if (to) {
-                lists.fill({to, 1});
-                camera_.sample_targets({points.data(), n}, {bands.data(), n}, {lists.data(), n},
-                                       {paths.data(), n});
-            } else {
-                camera_.sample_all({points.data(), n}, {bands.data(), n}, {paths.data(), n});
-            }
+            for (uint32_t i = 0; i < n; ++i)
+                lists[i] = to ? TargetList(to, 1) : camera_.targets()->at(points[i].film);
+            const auto sample = to ? &TargetCamera::sample_targets : &TargetCamera::sample_beside;
+            (camera_.*sample)({points.data(), n}, {bands.data(), n}, {lists.data(), n},
+                              {paths.data(), n});
             for (uint32_t i = 0; i < n; ++i) {
                 if (paths[i].empty()) continue;
                 f4 light{};
@@ -105,7 +103,7 @@ class CellPilot {
     }
 
   private:
-    const Camera& camera_;
+    const TargetCamera& camera_;
     const PathTracer<>& tracer_;
 };
 
@@ -221,10 +219,10 @@ void take_best(std::vector<CellChoice>& cells) {
 
 }  // namespace
 
-std::shared_ptr<const TargetGrid> targets_that_pay(const Camera& camera, const Scene& scene,
+std::shared_ptr<const TargetGrid> targets_that_pay(const TargetCamera& camera, const Scene& scene,
                                                    const Bvh& bvh, const LightChoice& lights,
                                                    V2i frame_px) {
-    const TargetGrid* all = camera.targets();
+    const TargetGrid* const all = camera.targets().get();
     if (!all) return nullptr;
     const PathTracer<> tracer(scene, bvh, lights, {});
     const CellPilot pilot(camera, tracer);

@@ -2,7 +2,7 @@
 // Pilot of the targets: a few rays to each, before the first sample, tell where they pay.
 #pragma once
 
-#include "camera/camera.h"
+#include "camera/target_camera.h"
 #include "core/light/light_choice.h"
 #include "core/scene/scene.h"
 #include "core/traversal/bvh.h"
@@ -14,7 +14,7 @@ namespace petzval {
 /// bring. They pay where they lower the square of the frame's mean noise times its cost. A pure
 /// function of its arguments: at most 32 camera samples are rendered in a cell, in RGB, with
 /// numbers of their own.
-[[nodiscard]] std::shared_ptr<const TargetGrid> targets_that_pay(const Camera&, const Scene&,
+[[nodiscard]] std::shared_ptr<const TargetGrid> targets_that_pay(const TargetCamera&, const Scene&,
                                                                  const Bvh&, const LightChoice&,
                                                                  V2i frame_px);
 

@@ -8,7 +8,6 @@
 #include "core/film/film.h"
 #include "core/spectrum/colour.h"
 #include "integrator/path/path.h"
-#include "integrator/render/more_rays.h"
 #include "integrator/render/render_job.h"
 #include "integrator/render/velocity.h"
 
@@ -86,8 +85,7 @@ class SampleBatch {
     std::array<SampleId, kMostFilmPoints> ids_;
     std::array<FilmPoint, kMostFilmPoints> points_;
     std::array<Bands, kMostFilmPoints> bands_;
-    std::array<CameraSample, kMostFilmPoints> samples_;         ///< ordinary rays
-    std::array<CameraSample, kMostFilmPoints> target_samples_;  ///< rays to targets
+    std::array<CameraSample, kMostFilmPoints> samples_;
 };
 
 template <class Tracer>
@@ -108,12 +106,7 @@ void SampleBatch<Tracer>::find_camera_rays() {
     }
     const std::span<const FilmPoint> points(points_.data(), size_);
     const std::span<const Bands> bands(bands_.data(), size_);
-    const std::span<CameraSample> samples(samples_.data(), size_),
-        to_targets(target_samples_.data(), size_);
-    camera_.sample_all(points, bands, samples);
-    if (camera_.targets()) find_target_rays(camera_, points, bands, to_targets);
-    if (const Shutter* const shutter = camera_.shutter())
-        move_rays(*shutter, points, samples, camera_.targets() ? to_targets : samples.first(0));
+    camera_.sample_all(points, bands, {samples_.data(), size_});
 }
 
 // Traces the rays of a sample.
@@ -128,26 +121,20 @@ void SampleBatch<Tracer>::trace(size_t i) {
     bool layers = film_ && !film_->aovs().empty();  // layers are still to be filled in
     for (const CameraPath& path : rays) {
         FilmSample other;
-        FilmSample& of_path = path.fills_layers ? sample : other;
+        FilmSample& of_path = path.to_target ? other : sample;
         of_path.alpha = 0.f;
+        // What surfaces reflect of a target is found by other rays as well: it is worth the effort
+        // by the weight.
+        const float effort = path.to_target ? path.mis_weight : 1.f;
         light += light_along(
-            path, i, {path.ray, path.lanes, path.hero_decided, 1.f, layers && path.fills_layers},
-            of_path);
-        if (!path.fills_layers) continue;
+            path, i,
+            {path.ray, path.lanes, path.hero_decided, effort, layers && !path.to_target}, of_path);
+        if (path.to_target) {
+            ++stats_.target_rays;
+            continue;
+        }
         layers = false;
         behind += hsum(zero_off(path.lanes, path.weight)) * (1.f - sample.alpha);
-    }
-    if (camera_.targets()) {
-        f4 from_targets{};
-        for (const CameraPath& path : target_samples_[i]) {
-            FilmSample other;
-            ++stats_.target_rays;
-            // What surfaces reflect is found by ordinary rays as well: it is worth the effort by
-            // the weight.
-            from_targets += light_along(
-                path, i, {path.ray, path.lanes, path.hero_decided, path.mis_weight}, other);
-        }
-        light += from_targets;
     }
     if (!film_) return;
     // Light that a lens keeps from the film is black, not transparent.

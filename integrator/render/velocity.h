@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "camera/film_projection.h"
+#include "camera/shutter.h"
 #include "core/film/film.h"
 #include "core/scene/scene.h"
 

@@ -30,7 +30,7 @@ bool same(const CameraSample& a, const CameraSample& b) {
         if (!same_bytes(a[i].ray.origin, b[i].ray.origin) ||
             !same_bytes(a[i].ray.direction, b[i].ray.direction) ||
             !same_bytes(a[i].weight, b[i].weight) || !same_bytes(a[i].lanes, b[i].lanes) ||
-            a[i].hero_decided != b[i].hero_decided || a[i].fills_layers != b[i].fills_layers)
+            a[i].hero_decided != b[i].hero_decided || a[i].to_target != b[i].to_target)
             return false;
     return true;
 }

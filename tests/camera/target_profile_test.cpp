@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "camera/lens/traced_ray.h"
+#include "camera/targets/make_target_camera.h"
 #include "core/sampling/warp.h"
 #include "core/spectrum/glass.h"
 #include "tests/support/lens_cameras.h"
@@ -78,7 +79,8 @@ class LightTracer {
 void expect_same_profile(const char* name, const Lamp& lamp) {
     LensCameraInput in = test::input_of(name, DispersionMode::Shared);
     in.to_world = M44f();
-    LensCamera camera(in);
+    const auto aims = target_camera(std::make_shared<LensCamera>(in));
+    TargetCamera& camera = *aims;
     const LightTracer tracer(in, lamp);
     // The first light that arrives tells where the disc is, the next how large.
     V2d low(INFINITY, INFINITY), high(-INFINITY, -INFINITY);
@@ -132,10 +134,6 @@ void expect_same_profile(const char* name, const Lamp& lamp) {
                     sum += double(path.weight[0]) * double(path.mis_weight);
             };
             for (const CameraPath& path : camera.sample(at, bands)) add(path);
-            CameraSample sent;
-            const TargetList list = grid->lists[0];
-            camera.sample_targets({&at, 1}, {&bands, 1}, {&list, 1}, {&sent, 1});
-            for (const CameraPath& path : sent) add(path);
             found[size_t(b)].add(sum);
         }
     }

@@ -5,8 +5,9 @@
 #include <cmath>
 
 #include "camera/models/aberrated_lens.h"
-#include "camera/models/stop_pencil.h"
 #include "camera/models/thin_lens.h"
+#include "camera/targets/make_target_camera.h"
+#include "camera/targets/targeted_stop.h"
 #include "core/sampling/warp.h"
 #include "core/spectrum/observer.h"
 #include "tests/support/lens_cameras.h"
@@ -96,7 +97,7 @@ constexpr uint32_t kSamples = 16'384;
 struct Means {
     test::Moments ordinary, both;
 };
-Means means(const Camera& camera, const Observer& observer, V2f film, const V3f& lamp,
+Means means(const TargetCamera& camera, const Observer& observer, V2f film, const V3f& lamp,
             float radius_m, TargetList targets) {
     Means out;
     const Filter filter(FilterKind::Box, 0.5f);
@@ -114,7 +115,7 @@ Means means(const Camera& camera, const Observer& observer, V2f film, const V3f&
             const V2f offset = filter.sample(sampler.get2(Dim::Film));
             points[k] = {film + offset / size, sampler, {&filter, offset, size}};
         }
-        camera.sample_all(points, bands, ordinary);
+        camera.sample_beside(points, bands, lists, ordinary);
         camera.sample_targets(points, bands, lists, to_targets);
         for (uint32_t k = 0; k < kMostFilmPoints; ++k) {
             double whole = 0, shared = 0;
@@ -133,7 +134,7 @@ Means means(const Camera& camera, const Observer& observer, V2f film, const V3f&
     return out;
 }
 
-std::shared_ptr<TargetGrid> one_list(const Camera& camera, V2f film,
+std::shared_ptr<TargetGrid> one_list(const TargetCamera& camera, V2f film,
                                      const std::vector<Target>& targets) {
     auto out = std::make_shared<TargetGrid>();
     out->cells = {1, 1};
@@ -171,7 +172,7 @@ struct TestLamp {
 
 /// Targets of the right place and size, and wrong ones: the mean must be the same with all. Returns
 /// the most starts that one of them has.
-int expect_same_mean(Camera& camera, const Observer& observer, const TestLamp& lamp) {
+int expect_same_mean(TargetCamera& camera, const Observer& observer, const TestLamp& lamp) {
     const Ray ray = ray_of(camera, lamp.film, lamp.draw);
     const V3f at = ray.origin + lamp.distance_m * ray.direction, axis = ray.direction;
     const float radius = lamp.radius_m;
@@ -210,8 +211,8 @@ TEST(Targets, ThinLensKeepsItsMean) {
     for (const float distance_m : {0.6f, 4.f}) {
         ThinLens lens{kPose, 0.5f, 1.6f, Iris(ApertureShape(), 20), 1.f};
         lens.vignetting.emplace(50, 1);
-        ThinLensCamera camera(lens);
-        expect_same_mean(camera, Observer(), {V2f(0.5f), distance_m, 0.004f, distance_m > 1});
+        const auto camera = target_camera(std::make_shared<ThinLensCamera>(lens));
+        expect_same_mean(*camera, Observer(), {V2f(0.5f), distance_m, 0.004f, distance_m > 1});
     }
 }
 
@@ -223,8 +224,8 @@ TEST(Targets, SingletKeepsItsMean) {
             AberratedLens lens{
                 kPose, Singlet::bent(glass, 50, 0.8), Iris(ApertureShape(), 9), 1, 0.5f, 1.6f,
                 mode};
-            AberratedLensCamera camera(lens);
-            expect_same_mean(camera, test::plain_observer(),
+            const auto camera = target_camera(std::make_shared<AberratedLensCamera>(lens));
+            expect_same_mean(*camera, test::plain_observer(),
                              {V2f(0.5f), distance_m, 0.001f, distance_m > 1});
         }
 }
@@ -248,7 +249,9 @@ TEST(Targets, DensitiesOfTracedLensesAreThoseOfTheDraws) {
                                   {"minolta-fisheye-16mm-f2.8", corner, 0.3f, 0.002f, 1},
                                   {"schneider-anamorphic-31mm", V2f(0.06f, 0.95f), 0.7f, 0.01f, 1}};
     for (const Case& c : cases) {
-        LensCamera camera(test::input_of(c.lens, DispersionMode::Shared));
+        const auto aims = target_camera(
+            std::make_shared<LensCamera>(test::input_of(c.lens, DispersionMode::Shared)));
+        TargetCamera& camera = *aims;
         const Ray ray = ray_of(camera, c.film, c.draw);
         const bool at_infinity = c.radius_m > 1e3f;
         const Target target = at_infinity ? Target{ray.direction, ray.direction, 0.004f, true}
@@ -260,11 +263,11 @@ TEST(Targets, DensitiesOfTracedLensesAreThoseOfTheDraws) {
         const Bands bands = Bands::rgb();
         for (uint32_t i = 0; i < 4 * kSamples; ++i) {
             const FilmPoint at{c.film, Sampler(SamplerKind::Independent, 4, {0, 0, i})};
-            const CameraSample ordinary = camera.sample(at, bands);
+            CameraSample ordinary, sent;
+            camera.sample_beside({&at, 1}, {&bands, 1}, {&list, 1}, {&ordinary, 1});
             // The share is p / (p + q), with the densities p of ordinary rays and q.
             const double share = ordinary.empty() ? 1 : double(ordinary[0].mis_weight);
             expected.add((1 - share) / share);
-            CameraSample sent;
             camera.sample_targets({&at, 1}, {&bands, 1}, {&list, 1}, {&sent, 1});
             found.add(sent.empty() ? 0 : 1);
         }
@@ -313,8 +316,8 @@ TEST(Targets, TracedLensesKeepTheirMean) {
         SCOPED_TRACE(c.lens);
         LensCameraInput in = test::input_of(c.lens, c.mode);
         in.precision = c.precision;
-        LensCamera camera(in);
-        const int starts = expect_same_mean(camera, test::plain_observer(), c.lamp);
+        const auto camera = target_camera(std::make_shared<LensCamera>(in));
+        const int starts = expect_same_mean(*camera, test::plain_observer(), c.lamp);
         EXPECT_GE(starts, c.folds ? 2 : 1);
     }
 }

@@ -40,7 +40,7 @@ double parted_px(const RenderSetup& split, const RenderJob& job, V2i size, Rect 
     int count = 0;
     for (uint32_t i = 0; i < 4096; ++i) {
         const Sampler sampler(job.sampler, job.seed, {crop.x0, crop.y0, i});
-        const CameraSample seen = split.view.camera->sample({middle / V2f(size), sampler}, bands);
+        const CameraSample seen = split.view.still->sample({middle / V2f(size), sampler}, bands);
         if (seen.size() != 2) continue;
         const auto on_plane = [&](const Ray& ray) {
             const float t =

@@ -101,7 +101,7 @@ double first_ray_ms(const SceneRequest& request, double (*now_ms)() = thread_cpu
             const RenderSetup setup = set_up_render(request, kSilent);
             const Sampler sampler(SamplerKind::Owen, 0, {0, 0, 0});
             const Bands bands = setup.view.observer.draw(0.5f);
-            const CameraSample seen = setup.view.camera->sample({V2f(0.5f, 0.5f), sampler}, bands);
+            const CameraSample seen = setup.view.still->sample({V2f(0.5f, 0.5f), sampler}, bands);
             if (seen.size() > 0) static_cast<void>(setup.prepared.bvh->intersect(seen[0].ray));
         },
         now_ms);

@@ -19,12 +19,15 @@ struct ShippedLens {
     }
     /// Camera at the origin with a film of that size.
     [[nodiscard]] LensCamera camera(double width_mm, double height_mm) const {
+        return LensCamera(input(width_mm, height_mm));
+    }
+    [[nodiscard]] LensCameraInput input(double width_mm, double height_mm) const {
         LensCameraInput in{.lens = lens, .iris = Iris(Disk{}, stop_mm), .to_world = M44f()};
         in.film_mm = lens->film_mm();
         in.film_width_mm = width_mm;
         in.film_height_mm = height_mm;
         in.dispersion = DispersionMode::Shared;
-        return LensCamera(in);
+        return in;
     }
 };
 

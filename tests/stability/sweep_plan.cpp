@@ -37,11 +37,12 @@ Planned planned(double side_m) {
     setup.prepared.lights = borrowed(*world.lights);
     const double film_mm = kFocal_mm / (1 - kFocal_mm / (kFocus_m * 1e3));
     const auto yfov_rad = static_cast<float>(2 * std::atan(kFrame.y * kFilm_px_mm / 2 / film_mm));
-    setup.view.camera = std::make_unique<ThinLensCamera>(
+    setup.view.still = std::make_unique<ThinLensCamera>(
         ThinLens{M44f(), yfov_rad, float(kFrame.x) / float(kFrame.y),
                  Iris(Disk{}, kFocal_mm / (2 * kFstop)), float(kFocus_m)});
+    setup.view.camera = setup.view.still;
     const std::vector<Thing> things = things_of(world.scene);
-    const std::vector<FilmRegion> regions = film_regions(*setup.view.camera, kFrame, things);
+    const std::vector<FilmRegion> regions = film_regions(*setup.view.still, kFrame, things);
     const std::vector<SeenLamp> lamps = seen_lamps(setup, kFrame, things, regions);
     TbbExecutor executor(1);
     const Pilot pilot(kFrame, kFrame.x * kFrame.y, executor);

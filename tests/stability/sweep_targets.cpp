@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "camera/models/thin_lens.h"
+#include "camera/targets/make_target_camera.h"
 #include "tests/stability/shipped_lens.h"
 #include "tests/stability/sweeps.h"
 #include "tests/stability/world.h"
@@ -19,9 +20,9 @@ constexpr float kOutOfFocus = 0.05f;
 const V2f kPixel(0.5007f, 0.5004f);
 const FilmCell kCell{V2f(0.5f), V2f(0.501f)};
 
-ThinLensCamera thin(double fstop, double focus_m) {
-    return ThinLensCamera(
-        {M44f(), 0.47f, 1.5f, Iris(Disk{}, kFocal_mm / (2 * fstop)), float(focus_m)});
+std::unique_ptr<TargetCamera> thin(double fstop, double focus_m) {
+    return target_camera(std::make_shared<ThinLensCamera>(
+        ThinLens{M44f(), 0.47f, 1.5f, Iris(Disk{}, kFocal_mm / (2 * fstop)), float(focus_m)}));
 }
 
 Target facing(const V3f& centre, double radius_m) {
@@ -29,7 +30,7 @@ Target facing(const V3f& centre, double radius_m) {
 }
 
 /// Makes a list of a camera, of equal chances, for all of the film.
-void use(Camera& camera, std::vector<ListedTarget> list) {
+void use(TargetCamera& camera, std::vector<ListedTarget> list) {
     TargetGrid grid{{1, 1}, {}, {}};
     for (ListedTarget& target : list) target.chance = 1.f / static_cast<float>(list.size());
     grid.lists.push_back(std::move(list));
@@ -39,23 +40,19 @@ void use(Camera& camera, std::vector<ListedTarget> list) {
 /// Relative variance of samples of a pixel, each an ordinary ray and one to a target.
 double variance_with(const World& world, const Camera& camera) {
     const PathTracer tracer(world.scene, *world.bvh, *world.lights, PathOptions());
-    const TargetList list = camera.targets()->lists[0];
     PathStats stats;
     double sum = 0, squares = 0;
     for (uint32_t i = 0; i < kSamples; ++i) {
         const Sampler sampler(SamplerKind::Independent, 1, {0, 0, i});
         const FilmPoint point{kPixel, sampler};
         const Bands bands = Bands::rgb();
-        CameraSample sent;
-        camera.sample_targets({&point, 1}, {&bands, 1}, {&list, 1}, {&sent, 1});
         double light = 0;
-        for (const CameraSample& rays : {camera.sample(point, bands), sent})
-            for (const CameraPath& path : rays) {
-                FilmSample none;
-                light += double((path.weight * path.mis_weight *
-                                 tracer.radiance({path.ray, path.lanes, path.hero_decided}, bands,
-                                                 sampler, none, stats))[0]);
-            }
+        for (const CameraPath& path : camera.sample(point, bands)) {
+            FilmSample none;
+            light += double((path.weight * path.mis_weight *
+                             tracer.radiance({path.ray, path.lanes, path.hero_decided}, bands,
+                                             sampler, none, stats))[0]);
+        }
         sum += light;
         squares += light * light;
     }
@@ -69,20 +66,20 @@ struct Sent {
 /// A square lamp out of focus, with a target around it.
 Sent sent_to(double side_m, double fstop, double focus_m) {
     const World world = lamp_ahead(side_m, kAway_m);
-    ThinLensCamera camera = thin(fstop, focus_m);
-    const auto ready = camera.prepared(
+    const auto camera = thin(fstop, focus_m);
+    const auto ready = camera->prepared(
         facing(V3f(0, 0, static_cast<float>(-kAway_m)), side_m / std::numbers::sqrt2));
-    const auto listed = ready ? camera.listed(*ready, kCell) : std::nullopt;
+    const auto listed = ready ? camera->listed(*ready, kCell) : std::nullopt;
     if (!listed) return {};
-    use(camera, {*listed});
-    return {variance_with(world, camera), double(listed->met)};
+    use(*camera, {*listed});
+    return {variance_with(world, *camera), double(listed->met)};
 }
 
 /// Lamps side by side, of which so many are targets: variance of the light of all.
 double variance_of_many(int lamps, int targets) {
     constexpr float kSide_m = 0.004f;
     World world;
-    ThinLensCamera camera = thin(1.4, 1);
+    const auto camera = thin(1.4, 1);
     std::vector<ListedTarget> list;
     for (int i = 0; i < lamps; ++i) {
         const V3f at(0.02f * (float(i % 8) - 3.5f), 0.02f * (float(i / 8) - 3.5f),
@@ -91,11 +88,11 @@ double variance_of_many(int lamps, int targets) {
             quad(at - V3f(kSide_m / 2, kSide_m / 2, 0), V3f(kSide_m, 0, 0), V3f(0, kSide_m, 0)),
             glowing(1));
         if (i < targets)
-            list.push_back(*camera.listed(*camera.prepared(facing(at, kSide_m * 0.71)), kCell));
+            list.push_back(*camera->listed(*camera->prepared(facing(at, kSide_m * 0.71)), kCell));
     }
     world.finish();
-    use(camera, list);
-    return variance_with(world, camera);
+    use(*camera, list);
+    return variance_with(world, *camera);
 }
 
 /// Of rays of a traced lens that pass a target, the share that its search does not find.
@@ -110,7 +107,9 @@ struct Missed {
 Missed missed_by(const std::string& name, double of_circle) {
     constexpr uint32_t kRays = 1u << 18;
     const ShippedLens lens(name);
-    LensCamera camera = lens.camera(2 * lens.half_circle_mm, 2 * lens.half_circle_mm);
+    const auto aims = target_camera(
+        std::make_shared<LensCamera>(lens.input(2 * lens.half_circle_mm, 2 * lens.half_circle_mm)));
+    TargetCamera& camera = *aims;
     const V2f film(static_cast<float>(0.5 - 0.5 * of_circle), 0.5f);
     const FilmPoint middle{film, Sampler(SamplerKind::Owen, 3, {0, 0, 0})};
     const CameraSample seen = camera.sample(middle, Bands::rgb());
@@ -135,6 +134,7 @@ Missed missed_by(const std::string& name, double of_circle) {
         const Sampler sampler(SamplerKind::Independent, 4, {0, 0, i});
         const V2f at = cell.first + sampler.get2(Dim::Film) * (cell.last - cell.first);
         for (const CameraPath& path : camera.sample({at, sampler}, Bands::rgb())) {
+            if (path.to_target) continue;
             const V3f to = target.centre - path.ray.origin;
             const float t = to.dot(target.normal) / path.ray.direction.dot(target.normal);
             if ((t * path.ray.direction - to).length() > target.radius_m) continue;

@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "camera/models/moving_camera.h"
 #include "core/scene/motion.h"
 #include "integrator/render/executor.h"
 #include "integrator/render/render.h"
@@ -118,14 +119,28 @@ class Renderer {
     std::unique_ptr<PathTracer<>> tracer_;
 };
 
-/// The camera of a motion with its shutter.
-[[nodiscard]] inline std::unique_ptr<Camera> shuttered(const Motion& motion) {
+/// Pose of the camera of a motion in the middle of the exposure.
+[[nodiscard]] inline M44f middle_pose(const Motion& motion) {
     const auto& steps = motion.camera_steps;
-    const M44f middle = (steps[(steps.size() - 1) / 2] + steps[steps.size() / 2]) * 0.5f;
-    auto camera = motion.camera(middle);
+    return (steps[(steps.size() - 1) / 2] + steps[steps.size() / 2]) * 0.5f;
+}
+
+/// The camera of a motion, where it stands in the middle of the exposure.
+[[nodiscard]] inline std::shared_ptr<const Camera> middle_camera(const Motion& motion) {
+    return motion.camera(middle_pose(motion));
+}
+
+/// A camera of a motion with its shutter.
+[[nodiscard]] inline std::unique_ptr<Camera> shuttered(const Motion& motion,
+                                                       std::shared_ptr<const Camera> still) {
+    const auto& steps = motion.camera_steps;
     const std::span<const M44f> moves(steps.data(), steps.size() > 1 ? steps.size() : 0);
-    camera->set_shutter(std::make_shared<const Shutter>(motion.curve, moves, middle));
-    return camera;
+    return std::make_unique<MovingCamera>(
+        std::move(still),
+        std::make_shared<const Shutter>(motion.curve, moves, middle_pose(motion)));
+}
+[[nodiscard]] inline std::unique_ptr<Camera> shuttered(const Motion& motion) {
+    return shuttered(motion, middle_camera(motion));
 }
 
 using Pixels = std::vector<Moments>;

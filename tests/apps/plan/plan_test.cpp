@@ -74,15 +74,15 @@ TEST_F(Plans, LateralDispersionIsInPixels) {
     const SceneRequest narrow = tabletop({100, 60});
     const RenderSetup split = set_up_render(with(narrow, DispersionMode::Split), kSilent);
     const auto view = [&](DispersionMode mode) {
-        return set_up_view(split, with(narrow, mode), kSilent).view.camera;
+        return set_up_view(split, with(narrow, mode), kSilent).view.still;
     };
     const auto shared = view(DispersionMode::Shared);
     const auto dispersion_px = [&](const Camera& camera, V2i size) {
         return lateral_dispersion_px(camera, *shared, split.view.observer,
                                      split.from.camera.focus_plane(), size);
     };
-    const double once = dispersion_px(*split.view.camera, {100, 60});
-    EXPECT_NEAR(dispersion_px(*split.view.camera, {400, 240}), 4 * once, 0.02 * once);
+    const double once = dispersion_px(*split.view.still, {100, 60});
+    EXPECT_NEAR(dispersion_px(*split.view.still, {400, 240}), 4 * once, 0.02 * once);
     EXPECT_NEAR(dispersion_px(*shared, {100, 60}), 0, 1e-4 * once);
 }
 

@@ -4,6 +4,7 @@
 
 #include "apps/setup/render_setup.h"
 #include "camera/models/thin_lens.h"
+#include "camera/targets/make_target_camera.h"
 #include "tests/support/blurred.h"
 #include "tests/support/moving_gltf.h"
 
@@ -86,7 +87,7 @@ std::vector<float> picture(const RenderSetup& setup, uint32_t spp, uint32_t seed
 
 void expect_mean_of_stills(const Saved& saved) {
     const RenderSetup open = set_up(saved.at(kAt, true));
-    ASSERT_NE(open.view.camera->shutter(), nullptr);
+    ASSERT_NE(open.view.shutter, nullptr);
     Pixels blurred_pixels, stills;
     Random random(9);
     for (uint32_t seed = 0; seed < 12; ++seed) {
@@ -96,7 +97,7 @@ void expect_mean_of_stills(const Saved& saved) {
         for (int i = 0; i < kTimes; ++i) {
             const double time = (i + double(random.next())) / kTimes;
             const RenderSetup still = set_up(saved.at(kAt + (time - 0.5) * kOpen, false));
-            EXPECT_EQ(still.view.camera->shutter(), nullptr);
+            EXPECT_EQ(still.view.shutter, nullptr);
             const auto one = picture(still, 8, 500 + seed * kTimes + uint32_t(i));
             for (size_t k = 0; k < mean.size(); ++k) mean[k] += one[k] / float(kTimes);
         }
@@ -126,12 +127,12 @@ TEST(MotionSetup, ACameraThatTheUserPlacesStandsStill) {
     saved.request.camera.look_at = std::array{V3f(0.3f, 0, 4), V3f(0.3f, 0, 0)};
     expect_mean_of_stills(saved);
     const RenderSetup open = set_up(saved.at(kAt, true));
-    ASSERT_NE(open.view.camera->shutter(), nullptr);
+    ASSERT_NE(open.view.shutter, nullptr);
     Ray ray;
     ray.origin = V3f(1, 2, 3);
     ray.direction = V3f(0, 0, -1);
     ray.time = 0;
-    open.view.camera->shutter()->move(ray);
+    open.view.shutter->move(ray);
     EXPECT_EQ(ray.origin, V3f(1, 2, 3));
 }
 
@@ -142,7 +143,7 @@ TEST(MotionSetup, AnotherViewOfTheSceneHasAShutterToo) {
     other.camera.look_at = std::array{V3f(0, 0, 4), V3f(0.f)};
     const RenderSetup second = set_up_view(first, other, [](const std::string&) {});
     EXPECT_EQ(second.prepared.scene, first.prepared.scene);
-    ASSERT_NE(second.view.camera->shutter(), nullptr);
+    ASSERT_NE(second.view.shutter, nullptr);
 }
 
 TEST(MotionSetup, ACameraThatAloneMovesHasAShutter) {
@@ -154,7 +155,7 @@ TEST(MotionSetup, ACameraThatAloneMovesHasAShutter) {
     const Saved saved(file);
     const RenderSetup open = set_up(saved.at(kAt, true));
     EXPECT_FALSE(has_motion(*open.prepared.scene));
-    EXPECT_NE(open.view.camera->shutter(), nullptr);
+    EXPECT_NE(open.view.shutter, nullptr);
 }
 
 /// The file with a camera whose view alone is animated besides.
@@ -193,7 +194,7 @@ TEST(MotionSetup, AThinLensThatZoomsGivesTheMeanOfItsStills) {
     saved.request.camera.iso = 1e4f;
     saved.request.targets = TargetUse::Auto;  // none for such a camera
     expect_mean_of_stills(saved);
-    EXPECT_FALSE(set_up(saved.at(kAt, true)).view.camera->takes_targets());
+    EXPECT_EQ(target_camera(set_up(saved.at(kAt, true)).view.still), nullptr);
 }
 
 /// The light of a wall's part above a height, through a camera whose angle of view grows evenly.
@@ -222,7 +223,7 @@ TEST(MotionSetup, AnEdgeThroughAZoomIsBlurredByTheClosedForm) {
     request.choices.animation->open_s = 1;
     request.background = Rgb(0.f);
     const RenderSetup open = set_up(request);
-    ASSERT_NE(open.view.camera->shutter(), nullptr);
+    ASSERT_NE(open.view.shutter, nullptr);
     constexpr uint32_t kSamples = 4096;
     const std::vector<float> found = picture(open, kSamples, 1);
     int partly = 0;
@@ -275,18 +276,18 @@ TEST(MotionSetup, AnAngleThatTheUserGivesDoesNotZoom) {
     const Saved saved(zooming(kPerspective, kYfov, 0.3f, 1.3f));
     SceneRequest asked = saved.at(kAt, true);
     asked.camera.fov_deg = 40;
-    EXPECT_NE(dynamic_cast<const ThinLensCamera*>(set_up(asked).view.camera.get()), nullptr);
+    EXPECT_NE(dynamic_cast<const ThinLensCamera*>(set_up(asked).view.still.get()), nullptr);
     asked.camera.fov_deg = {};
-    EXPECT_EQ(dynamic_cast<const ThinLensCamera*>(set_up(asked).view.camera.get()), nullptr);
+    EXPECT_EQ(dynamic_cast<const ThinLensCamera*>(set_up(asked).view.still.get()), nullptr);
 }
 
 TEST(MotionSetup, NothingThatMovesHasNoShutter) {
     TinyGltf file = file_with(kPerspective);
     file.json.erase("animations");
     const Saved saved(file);
-    EXPECT_EQ(set_up(saved.at(kAt, true)).view.camera->shutter(), nullptr);
+    EXPECT_EQ(set_up(saved.at(kAt, true)).view.shutter, nullptr);
     const Saved moves(file_with(kPerspective));
-    EXPECT_EQ(set_up(moves.at(kAt, false)).view.camera->shutter(), nullptr);
+    EXPECT_EQ(set_up(moves.at(kAt, false)).view.shutter, nullptr);
 }
 
 }  // namespace

@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "camera/models/thin_lens.h"
-#include "camera/setup/target_grid.h"
+#include "camera/targets/make_target_camera.h"
+#include "camera/targets/target_grid.h"
 #include "core/scene/lamp.h"
 #include "tests/support/blurred.h"
 #include "tests/support/lens_cameras.h"
@@ -206,12 +207,14 @@ TEST(MotionBlur, WithRaysToTargets) {
                      emitter_material(200.f / (size * size)), at_steps(5, [&](float time) {
                          return turned(V3f(0.f), V3f(0, 0.35f + 0.05f * size * time, 0));
                      }));
-        const auto shown = shuttered(motion);
         Scene finished = motion.scene;
         finish_scene(finished);
-        shown->set_targets(find_targets(*shown, motion.size, things_of(finished)));
-        ASSERT_NE(shown->targets(), nullptr) << traced;
-        EXPECT_TRUE(same_picture(blurred(motion, *shown, 96), of_stills(motion, 8))) << traced;
+        auto aims = target_camera(middle_camera(motion));
+        aims->set_targets(find_targets(*aims, motion.size, things_of(finished)));
+        ASSERT_NE(aims->targets(), nullptr) << traced;
+        EXPECT_TRUE(same_picture(blurred(motion, *shuttered(motion, std::move(aims)), 96),
+                                 of_stills(motion, 8)))
+            << traced;
     }
 }
 

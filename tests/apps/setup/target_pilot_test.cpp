@@ -8,7 +8,8 @@
 #include <set>
 
 #include "camera/models/thin_lens.h"
-#include "camera/setup/target_grid.h"
+#include "camera/targets/make_target_camera.h"
+#include "camera/targets/target_grid.h"
 #include "tests/support/scenes.h"
 
 namespace petzval {
@@ -49,10 +50,10 @@ struct Grids {
 };
 Grids grids_of(World& world) {
     world.finish();
-    ThinLensCamera camera = wide_lens();
-    camera.set_targets(find_targets(camera, kSize, things_of(world.scene)));
-    return {camera.shared_targets(),
-            targets_that_pay(camera, world.scene, *world.bvh, *world.lights, kSize)};
+    const auto camera = target_camera(std::make_shared<ThinLensCamera>(wide_lens()));
+    camera->set_targets(find_targets(*camera, kSize, things_of(world.scene)));
+    return {camera->targets(),
+            targets_that_pay(*camera, world.scene, *world.bvh, *world.lights, kSize)};
 }
 
 bool is_at(const TargetGrid& grid, const ListedTarget& listed, const V3f& lamp) {

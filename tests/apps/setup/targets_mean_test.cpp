@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "camera/models/thin_lens.h"
-#include "camera/setup/target_grid.h"
+#include "camera/targets/make_target_camera.h"
+#include "camera/targets/target_grid.h"
 #include "integrator/prepass/highlights.h"
 #include "integrator/prepass/target_pilot.h"
 #include "integrator/render/executor.h"
@@ -54,26 +55,28 @@ double noise(const Means& means) {
 }
 
 /// The same means with targets, and less noise. All that is found is used, whether it pays or not.
-void expect_same_mean(TracedWorld& world, Camera& camera, double gain, const char* what) {
+void expect_same_mean(TracedWorld& world, const std::shared_ptr<const Camera>& camera, double gain,
+                      const char* what) {
     world.finish();
     std::vector<Thing> things = things_of(world.scene);
-    const auto images = highlights(camera, world.scene, *world.bvh, kSize, things);
+    const auto images = highlights(*camera, world.scene, *world.bvh, kSize, things);
     things.insert(things.end(), images.begin(), images.end());
-    const Means without = rendered(world, camera, 1);
-    camera.set_targets(find_targets(camera, kSize, things));
-    ASSERT_NE(camera.targets(), nullptr) << what;
-    const Means with = rendered(world, camera, 1000);
+    const Means without = rendered(world, *camera, 1);
+    const auto aims = target_camera(camera);
+    aims->set_targets(find_targets(*aims, kSize, things));
+    ASSERT_NE(aims->targets(), nullptr) << what;
+    const Means with = rendered(world, *aims, 1000);
     EXPECT_GE(least_p(without, with), sidak(kStatisticalTests * static_cast<int>(kParts))) << what;
     EXPECT_LT(noise(with) * gain, noise(without)) << what;
 }
 
-ThinLensCamera thin(float focus_m = 1) {
+std::shared_ptr<const Camera> thin(float focus_m = 1) {
     ThinLens lens;
     lens.to_world = look_at(V3f(0, 0, 0), V3f(0, 0, -1));
     lens.yfov_rad = 0.3f;
     lens.iris = Iris(Disk{}, 20);
     lens.focus_m = focus_m;
-    return ThinLensCamera(lens);
+    return std::make_shared<ThinLensCamera>(lens);
 }
 
 Material mirror(float roughness) {
@@ -102,7 +105,7 @@ void place_lamp(Scene& scene, const V3f& at, float radius_m = 0.006f) {
 TEST(TargetMeans, AreKeptForALampInTheOpen) {
     TracedWorld world;
     place_lamp(world.scene, V3f(0.05f, 0.02f, -3));
-    ThinLensCamera camera = thin();
+    const auto camera = thin();
     expect_same_mean(world, camera, 4, "a lamp");
 }
 
@@ -113,7 +116,7 @@ TEST(TargetMeans, AreKeptForAHalfHiddenLamp) {
         const float edge = 0.05f * -z / 3;
         place(world.scene, quad(V3f(edge, -1, z), V3f(1, 0, 0), V3f(0, 2, 0)),
               diffuse_material(0.3f));
-        ThinLensCamera camera = thin();
+        const auto camera = thin();
         expect_same_mean(world, camera, 1.5, "half hidden");
     }
 }
@@ -123,7 +126,7 @@ TEST(TargetMeans, AreKeptForALampBehindAPane) {
     place_lamp(world.scene, V3f(0.05f, 0.02f, -3));
     const Material pane = clear(0.8f);
     place(world.scene, quad(V3f(-1, -1, -2), V3f(2, 0, 0), V3f(0, 2, 0)), pane);
-    ThinLensCamera camera = thin();
+    const auto camera = thin();
     expect_same_mean(world, camera, 4, "behind a pane");
 }
 
@@ -135,14 +138,14 @@ TEST(TargetMeans, AreKeptForALampInAbsorbingGlass) {
     glass.attenuation_color = Rgb(0.3f, 0.5f, 0.7f);
     glass.attenuation_distance_m = 0.05f;
     place(world.scene, sphere(V3f(0.05f, 0.02f, -3), 0.05f, 48, true), glass);
-    ThinLensCamera camera = thin();
+    const auto camera = thin();
     expect_same_mean(world, camera, 1.5, "in glass");
 }
 
 TEST(TargetMeans, AreKeptAtTheEdgeOfTheFrame) {
     TracedWorld world;
     place_lamp(world.scene, V3f(0.675f, 0.2f, -3));
-    ThinLensCamera camera = thin();
+    const auto camera = thin();
     expect_same_mean(world, camera, 2, "half outside");
 }
 
@@ -152,7 +155,7 @@ TEST(TargetMeans, AreKeptForHighlights) {
         place(world.scene, sphere(V3f(0, 0, -2.5f), 0.1f, 96, true), mirror(roughness));
         place(world.scene, sphere(V3f(0.2f, 0.4f, 1), 0.1f, 12, true), emitter_material(500.f));
         world.scene.sky = Sky::uniform(Rgb(0.1f));
-        ThinLensCamera camera = thin();
+        const auto camera = thin();
         expect_same_mean(world, camera, 5, "a highlight");
     }
 }
@@ -165,7 +168,7 @@ TEST(TargetMeans, AreKeptThroughATracedLens) {
         LensCameraInput in = input_of(kTakumar);
         in.to_world = look_at(V3f(0, 0, 0), V3f(0, 0, -1));
         in.film_mm += 3;
-        LensCamera camera(std::move(in));
+        const auto camera = std::make_shared<LensCamera>(std::move(in));
         expect_same_mean(world, camera, 2, "through the Takumar");
     }
 }
@@ -176,8 +179,8 @@ TEST(TargetMeans, LampsThatOrdinaryRaysMeetAreNoTargets) {
         TracedWorld world;
         place(world.scene, sphere(at, 2.f, 24, true), emitter_material(5.f));
         world.finish();
-        const ThinLensCamera camera = thin();
-        EXPECT_EQ(find_targets(camera, kSize, things_of(world.scene)), nullptr);
+        const auto camera = target_camera(thin());
+        EXPECT_EQ(find_targets(*camera, kSize, things_of(world.scene)), nullptr);
     }
 }
 
@@ -189,12 +192,12 @@ TEST(TargetMeans, AThousandLampsInAPixelAreASanePicture) {
               sphere(V3f(1e-4f * float(i % 32), 1e-4f * float(i / 32), -3), 2e-5f, 3, false),
               emitter_material(1e6f));
     world.finish();
-    ThinLensCamera camera = thin();
-    camera.set_targets(find_targets(camera, kSize, things_of(world.scene, 1024)));
-    ASSERT_NE(camera.targets(), nullptr);
-    for (const auto& list : camera.targets()->lists) EXPECT_LE(list.size(), 16u);
-    camera.set_targets(targets_that_pay(camera, world.scene, *world.bvh, *world.lights, kSize));
-    for (const Moments& part : rendered(world, camera, 1)) EXPECT_TRUE(std::isfinite(part.mean()));
+    const auto camera = target_camera(thin());
+    camera->set_targets(find_targets(*camera, kSize, things_of(world.scene, 1024)));
+    ASSERT_NE(camera->targets(), nullptr);
+    for (const auto& list : camera->targets()->lists) EXPECT_LE(list.size(), 16u);
+    camera->set_targets(targets_that_pay(*camera, world.scene, *world.bvh, *world.lights, kSize));
+    for (const Moments& part : rendered(world, *camera, 1)) EXPECT_TRUE(std::isfinite(part.mean()));
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays of a traced lens to targets, in world space and for each way of carrying wavelengths.
-#include <algorithm>
+#include "camera/targets/lens_target_camera.h"
 
-#include "camera/models/lens_camera.h"
+#include <algorithm>
+#include <utility>
 
 namespace petzval {
 namespace {
@@ -12,32 +12,47 @@ constexpr float kSameDirection = 2e-3f;
 
 }  // namespace
 
-V2f LensCamera::film_of(V2f film_mm) const {
-    return {0.5f - film_mm.x / static_cast<float>(in_.film_width_mm),
-            0.5f + film_mm.y / static_cast<float>(in_.film_height_mm)};
-}
+LensTargetCamera::LensTargetCamera(std::shared_ptr<const LensCamera> camera)
+    : camera_(std::move(camera)),
+      targets_(*camera_->input().lens, camera_->optics().aimer(),
+               camera_->input().entrance_pupil_mm,
+               double(camera_->input().iris.bounding_radius_mm()),
+               camera_->input().iris.area_mm2()) {}
 
-std::optional<PreparedTarget> LensCamera::prepared(const Target& target) const {
-    const V2f half_mm(V2d(in_.film_width_mm / 2, in_.film_height_mm / 2));
-    auto out = targets_.prepared(pose_.local(target), half_mm);
-    if (out) out->place = film_of(out->place);
+std::optional<PreparedTarget> LensTargetCamera::prepared(const Target& target) const {
+    const V2f half_mm(V2d(camera_->input().film_width_mm / 2, camera_->input().film_height_mm / 2));
+    auto out = targets_.prepared({camera_->pose(), target}, half_mm);
+    if (out) out->place = camera_->film_of(out->place);
     return out;
 }
 
-std::optional<ListedTarget> LensCamera::listed(const PreparedTarget& target,
+std::optional<ListedTarget> LensTargetCamera::listed(const PreparedTarget& target,
                                                const FilmCell& cell) const {
-    const V2f a = film_mm(cell.first), b = film_mm(cell.last);
+    const V2f a = camera_->film_mm(cell.first), b = camera_->film_mm(cell.last);
     auto out = targets_.listed(
-        target, film_mm(cell.nearest(target.place)),
+        target, camera_->film_mm(cell.nearest(target.place)),
         {V2f(std::min(a.x, b.x), std::min(a.y, b.y)), V2f(std::max(a.x, b.x), std::max(a.y, b.y))});
     if (out) out->place = cell.nearest(target.place);
     return out;
 }
 
-void LensCamera::sample_targets(std::span<const FilmPoint> points, std::span<const Bands> bands,
+void LensTargetCamera::sample_beside(std::span<const FilmPoint> points,
+                                     std::span<const Bands> bands,
+                                     std::span<const TargetList> listed,
+                                     std::span<CameraSample> out) const {
+    const Batch all = camera_->batch(points, bands);
+    LeadRays rays = camera_->optics().aim(all.at, all.indices);
+    std::array<TargetList, kMostFilmPoints> lists;
+    std::copy(listed.begin(), listed.end(), lists.begin());
+    const std::array<float, kMostFilmPoints> density = to_targets(all, rays, lists);
+    camera_->finish(all, rays, out);
+    weigh(out, density);
+}
+
+void LensTargetCamera::sample_targets(std::span<const FilmPoint> points, std::span<const Bands> bands,
                                 std::span<const TargetList> listed,
                                 std::span<CameraSample> out) const {
-    const Batch all = batch(points, bands);
+    const Batch all = camera_->batch(points, bands);
     std::array<TargetList, kMostFilmPoints> lists;
     std::array<Sampler, kMostFilmPoints> samplers;
     PlanePoint<f8> film(f8{}, f8{});
@@ -50,24 +65,34 @@ void LensCamera::sample_targets(std::span<const FilmPoint> points, std::span<con
     const FoundDirections found = targets_.find({film, all.indices, lists}, choice);
     LeadRays rays;
     static_cast<AimedRay<f8>&>(rays.aimed) =
-        optics_.aimer().cross<f8>(film, found.l, found.m, all.indices);
+        camera_->optics().aimer().cross<f8>(film, found.l, found.m, all.indices);
     rays.stop_mm = {rays.aimed.ray.origin.x, rays.aimed.ray.origin.y};
     // Where the pupil folds, draws of the stop find one of the rays that cross it at a point. Only
     // that one counts, with targets and without.
-    const FoundRays back = optics_.aimer().aim(film, rays.stop_mm, all.indices, all.at.nm);
+    const FoundRays back = camera_->optics().aimer().aim(film, rays.stop_mm, all.indices, all.at.nm);
     const f8 off_l = back.l - found.l, off_m = back.m - found.m;
     rays.aimed.found = found.found & rays.aimed.ray.alive() & back.found &
                        (off_l * off_l + off_m * off_m < sqr(kSameDirection));
     const std::array<float, kMostFilmPoints> density = to_targets(all, rays, lists);
     for (size_t i = 0; i < points.size(); ++i)
         if (!(density[i] > 0.f)) rays.aimed.found[static_cast<int>(i)] = 0;
-    finish(all, rays, density, out);
-    for (size_t i = 0; i < points.size(); ++i) out[i].leave_layers();
+    camera_->finish(all, rays, out);
+    weigh(out, density);
+}
+
+// Balance heuristic of the two ways in which a ray may be drawn.
+void LensTargetCamera::weigh(std::span<CameraSample> samples,
+                             const std::array<float, kMostFilmPoints>& to_targets) {
+    for (size_t i = 0; i < samples.size(); ++i) {
+        if (!(to_targets[i] > 0.f)) continue;
+        const float density = samples[i].density;
+        for (CameraPath& path : samples[i]) path.mis_weight = density / (density + to_targets[i]);
+    }
 }
 
 // Of one lane, or where lanes part and share a direction, the mean over lanes: each may have been
 // the one that it was drawn for.
-std::array<float, kMostFilmPoints> LensCamera::to_targets(
+std::array<float, kMostFilmPoints> LensTargetCamera::to_targets(
     const Batch& all, const LeadRays& rays,
     const std::array<TargetList, kMostFilmPoints>& listed) const {
     std::array<float, kMostFilmPoints> out{};
@@ -89,7 +114,7 @@ std::array<float, kMostFilmPoints> LensCamera::to_targets(
     for (size_t first = 0; first < all.points.size(); first += 2) {
         const std::array<size_t, 2> pair{first, std::min(first + 1, all.points.size() - 1)};
         const LensIndices<f8> indices =
-            in_.lens->indices(joined(all.bands[pair[0]].nm, all.bands[pair[1]].nm));
+            camera_->input().lens->indices(joined(all.bands[pair[0]].nm, all.bands[pair[1]].nm));
         f8 l{}, m{};
         TargetPoints at{film, indices, {}};
         for (int i = 0; i < 8; ++i) {

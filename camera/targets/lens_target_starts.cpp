@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "camera/lens/trace.h"
-#include "camera/models/lens_target_planes.h"
+#include "camera/targets/lens_target_planes.h"
 #include "core/spectrum/glass.h"
 
 namespace petzval {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "camera/setup/target_grid.h"
+#include "camera/targets/target_grid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,9 +43,9 @@ bool may_be_target(const Thing& thing) {
 
 }  // namespace
 
-std::shared_ptr<const TargetGrid> find_targets(const Camera& camera, V2i size_px,
+std::shared_ptr<const TargetGrid> find_targets(const TargetCamera& camera, V2i size_px,
                                                std::span<const Thing> things) {
-    if (!camera.takes_targets() || size_px.x < kCell_px || size_px.y < kCell_px) return nullptr;
+    if (size_px.x < kCell_px || size_px.y < kCell_px) return nullptr;
     std::vector<LampToTry> lamps;
     for (const Thing& thing : things)
         if (may_be_target(thing)) lamps.push_back({thing});

@@ -5,16 +5,16 @@
 #include <memory>
 #include <span>
 
-#include "camera/camera.h"
+#include "camera/target_camera.h"
 #include "core/light/things.h"
 
 namespace petzval {
 
 /// Targets for the lamps among some things: of each cell of 16 x 16 pixels or a little more those
 /// that its rays pass, but few of them, by what each is expected to add to a pixel. nullptr where
-/// there are none, the camera takes no targets, or the frame is smaller than a cell. A function of
+/// there are none, or the frame is smaller than a cell. A function of
 /// the arguments alone. No ray is cast into the scene.
-[[nodiscard]] std::shared_ptr<const TargetGrid> find_targets(const Camera&, V2i size_px,
+[[nodiscard]] std::shared_ptr<const TargetGrid> find_targets(const TargetCamera&, V2i size_px,
                                                              std::span<const Thing>);
 
 }  // namespace petzval

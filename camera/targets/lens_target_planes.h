@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "camera/models/lens_targets.h"
+#include "camera/targets/lens_targets.h"
 
 namespace petzval {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "camera/models/lens_targets.h"
+#include "camera/targets/lens_targets.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "camera/lens/trace.h"
-#include "camera/models/lens_target_planes.h"
+#include "camera/targets/lens_target_planes.h"
 #include "core/sampling/warp.h"
 #include "core/spectrum/glass.h"
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <span>
 
 #include "core/math/ray.h"
@@ -81,6 +82,14 @@ class CameraSample {
     /// Density with which a traced lens draws the ray, 1/sr of projected solid angle at the film.
     float density = 0;
 
+    CameraSample() {}  // NOLINT: paths are not made before they are there
+    CameraSample(const CameraSample& o) { *this = o; }
+    CameraSample& operator=(const CameraSample& o) {
+        lanes = o.lanes, exposure = o.exposure, density = o.density, size_ = o.size_;
+        std::uninitialized_copy(o.begin(), o.end(), begin());
+        return *this;
+    }
+
     [[nodiscard]] bool empty() const { return size_ == 0; }
     [[nodiscard]] size_t size() const { return size_; }
     [[nodiscard]] CameraPath& operator[](size_t i) { return paths_[i]; }
@@ -90,11 +99,13 @@ class CameraSample {
     [[nodiscard]] const CameraPath* begin() const { return paths_.data(); }
     [[nodiscard]] const CameraPath* end() const { return paths_.data() + size_; }
     /// Appends a path, to be filled in; at most kMostPaths may be added.
-    CameraPath& add() { return paths_[size_++]; }
+    CameraPath& add() { return *std::construct_at(&paths_[size_++]); }
 
   private:
     size_t size_ = 0;
-    std::array<CameraPath, kMostPaths> paths_;
+    union {
+        std::array<CameraPath, kMostPaths> paths_;  ///< made by add()
+    };
 };
 
 /// Most film points that a camera takes at once.

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # Runs the checks that take too long for each merge, all of them or those that are named:
 #
-#   tests/long.sh [address] [thread] [fuzz] [coverage] [mutants] [root]
+#   tests/long.sh [files] [address] [thread] [fuzz] [coverage] [mutants] [root]
 #
+#   files     each file of the product compiles by itself
 #   address   all tests under the address and undefined-behaviour sanitizers
 #   thread    the tile loop under the thread sanitizer
 #   fuzz      the readers of files, and random lenses, FUZZ_SECONDS each (600)
@@ -15,8 +16,9 @@
 set -u
 cd "$(dirname "$0")/.."
 parts=("$@")
-[ ${#parts[@]} -gt 0 ] || parts=(address thread fuzz coverage mutants root)
+[ ${#parts[@]} -gt 0 ] || parts=(files address thread fuzz coverage mutants root)
 
+files() { cmake --preset files -DPETZVAL_TESTS=OFF -DPETZVAL_BENCH=OFF && cmake --build --preset files; }
 # The leak checker itself crashes at the end of 1 program in 1,000; a fault of a test fails twice.
 address() {
     cmake --preset asan && cmake --build --preset asan &&

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/sampling/prepass_seed.h"
 #include "core/sampling/sampler.h"
 #include "integrator/render/render.h"
 #include "io/base/clock.h"
@@ -11,7 +12,6 @@
 namespace petzval {
 namespace {
 
-constexpr uint32_t kFirstPilotSeed = 2'000'000;
 
 PathOptions with_background(PathOptions options, const View& view) {
     options.visible_background = view.visible_background;
@@ -108,9 +108,9 @@ void Pilot::sample(PilotModel& model, uint32_t samples) const {
         RenderJob job = model.job_;
         for (uint32_t k = 0; k < kPilotReplicates; ++k) {
             Film film(size_px_, {x, y, x + 1, y + 1}, {});
-            job.seed = kFirstPilotSeed + kPilotReplicates * seed_ + k;
-            render_samples(model.tracer_, *model.setup_.view.camera, job, {x, y}, model.samples_,
-                           samples, film, stats[static_cast<size_t>(worker)]);
+            job.seed = number_of(PrepassSeed::Plan) + kPilotReplicates * seed_ + k;
+            render_samples(model.tracer_, *model.setup_.view.camera, job,
+                           {{x, y}, model.samples_, samples}, film, stats[static_cast<size_t>(worker)]);
             const V4f c = film.colour(x, y);
             model.sums_[look][k] += V3d(c.x, c.y, c.z) * double(film.sample_count(x, y));
         }

@@ -13,7 +13,7 @@ namespace {
 /// Share of what a simpler model may err that floats may take: what they change is seldom more than
 /// a millionth of it.
 constexpr double kFloatShare = 1 / 4.;
-constexpr uint32_t kRays = 64;
+constexpr uint32_t kRaysCompared = 64;
 /// Ratio of efforts from which on the other choice is taken: they are known no better.
 constexpr double kWorthIt = 0.95;
 
@@ -33,7 +33,7 @@ std::optional<PrecisionFound> find_precision(const PlanRequest& request, const R
     const Displacement apart =
         displacement_of({*in_float.view.still, in_float.view.observer},
                         {*in_double.view.still, in_double.view.observer}, *first.prepared.scene,
-                        *first.prepared.bvh, first.from.camera.focus_plane(), size, kRays, true);
+                        *first.prepared.bvh, first.from.camera.focus_plane(), size, kRaysCompared, true);
     const auto& squares = apart.square_px.values;
     const FilmMap most = most_error(apart, 0);
     const double mean = std::accumulate(most.values.begin(), most.values.end(), 0.) /

@@ -10,7 +10,7 @@
 namespace petzval {
 namespace {
 
-constexpr uint32_t kRays = 256;
+constexpr uint32_t kRaysToLamps = 256;
 /// The density of rays at a lamp is that of this many nearest ones.
 constexpr size_t kNearest = 16;
 
@@ -100,7 +100,7 @@ std::vector<SeenLamp> seen_lamps(const RenderSetup& setup, V2i size_px,
         if (!lamp.is_lamp() || regions[n].rects.empty()) continue;
         std::vector<double> squares;
         bool visible = false;
-        for (uint32_t i = 0; i < kRays; ++i) {
+        for (uint32_t i = 0; i < kRaysToLamps; ++i) {
             const auto ray = ray_in(setup, size_px, regions[n], i);
             squares.push_back(ray ? square_distance(*ray, lamp) : INFINITY);
             visible |= ray && i % 8 == 0 && !is_hidden(*setup.prepared.bvh, *ray, lamp);
@@ -111,7 +111,7 @@ std::vector<SeenLamp> seen_lamps(const RenderSetup& setup, V2i size_px,
         // A lamp that is larger than the disk is met by all rays within it.
         const double shown = disk > 0 ? std::min(1., lamp.area_m2 / disk) : 1;
         out.push_back(
-            {regions[n].area_px(), shown * kNearest / kRays, is_alone(lamp), lamp, &regions[n]});
+            {regions[n].area_px(), shown * kNearest / kRaysToLamps, is_alone(lamp), lamp, &regions[n]});
     }
     return out;
 }

@@ -171,10 +171,9 @@ std::vector<RequestField> exposure_fields() {
 }  // namespace
 
 std::vector<RequestField> camera_fields() {
-    constexpr uint8_t kAll = kRender | kPlan | kChart;
-    std::vector<RequestField> all = in_group("Camera", kAll, place_fields());
+    std::vector<RequestField> all = in_group("Camera", kPictures, place_fields());
     for (auto fields : {lens_fields(), exposure_fields()})
-        for (RequestField& field : in_group("Lens", kAll, std::move(fields)))
+        for (RequestField& field : in_group("Lens", kPictures, std::move(fields)))
             all.push_back(std::move(field));
     return all;
 }

@@ -16,6 +16,8 @@ namespace petzval {
 
 /// Commands that take fields; a field has a bit for each.
 enum Taker : uint8_t { kRender = 1, kPlan = 2, kChart = 4, kInfo = 8 };
+/// The commands that render pictures.
+inline constexpr uint8_t kPictures = kRender | kPlan | kChart;
 
 /// Part of a render that a field changes.
 enum class FieldPart : uint8_t {

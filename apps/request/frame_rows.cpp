@@ -9,7 +9,7 @@
 namespace petzval {
 namespace {
 
-constexpr uint8_t kAll = kRender | kPlan | kChart | kInfo, kAllButInfo = kRender | kPlan | kChart;
+constexpr uint8_t kAll = kPictures | kInfo;
 constexpr NumberRange kSeeds{0, double(std::numeric_limits<uint32_t>::max())};
 
 std::string no_complaint(const std::string&) {
@@ -131,13 +131,13 @@ std::vector<RequestField> frame_fields() {
         {argument(common(text("file", in::scene(&SceneRequest::scene), "glTF scene, .gltf or .glb",
                               no_complaint)))});
     add("", kRender, sample_fields());
-    add("", kAllButInfo, {size_fields()[0]});
+    add("", kPictures, {size_fields()[0]});
     add("", kRender | kChart, {size_fields()[1]});
     add("", kRender | kPlan,
         {parsed("tolerance", in::render(&RenderRequest::tolerance),
                 "error that what is chosen for you may bring: 1% (default) or 0.01", parse_share,
                 [](double share) { return fmt::format("{}", share); })});
-    add("", kAllButInfo, machine_fields(), FieldPart::Run);
+    add("", kPictures, machine_fields(), FieldPart::Run);
     add("", kAll, reading_fields(), FieldPart::Run);
     add("", kAll, file_fields());
     add("Time", kAll, time_fields());

@@ -7,8 +7,7 @@
 namespace petzval {
 namespace {
 
-constexpr uint8_t kAll = kRender | kPlan | kChart;
-constexpr double kMost = 1e6;  ///< keeps every product of two numbers a float
+constexpr double kLargest = 1e6;  ///< keeps every product of two numbers a float
 
 std::vector<RequestField> sampling_fields() {
     return {
@@ -49,9 +48,9 @@ std::vector<RequestField> light_fields() {
                 "equirectangular environment picture, .hdr or .exr, or studio: the light that is "
                 "built in")),
             number("env-rotate", in::scene(&SceneRequest::environment_rotate_deg),
-                   {-kMost, kMost, kDegrees}, "degrees about +y, counter-clockwise from above"),
+                   {-kLargest, kLargest, kDegrees}, "degrees about +y, counter-clockwise from above"),
             method(number("env-strength", in::scene(&SceneRequest::environment_strength),
-                          {0, kMost}, "factor on the environment")),
+                          {0, kLargest}, "factor on the environment")),
             common(parsed(
                 "background", in::scene(&SceneRequest::background),
                 "R,G,B in nits: a uniform environment; with ⟨env⟩ only what the camera sees behind",
@@ -88,11 +87,11 @@ std::vector<RequestField> path_fields() {
     const auto add = [&](std::vector<RequestField> fields) {
         for (RequestField& field : fields) all.push_back(std::move(field));
     };
-    add(in_group("Light", kAll, light_fields()));
+    add(in_group("Light", kPictures, light_fields()));
     add(in_group("Light", kRender | kPlan,
                  {flag("transparent", in::path(&PathOptions::transparent), true,
                        "the sky lights the scene but is not seen: alpha 0")}));
-    add(in_group("Spectrum", kAll, spectrum_fields()));
+    add(in_group("Spectrum", kPictures, spectrum_fields()));
     return all;
 }
 

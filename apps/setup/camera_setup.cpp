@@ -16,7 +16,6 @@
 namespace petzval {
 namespace {
 
-constexpr float kDegree = kPi / 180.f;
 
 V3f position(const M44f& m) {
     return {m[3][0], m[3][1], m[3][2]};
@@ -65,7 +64,7 @@ M44f turned(const CameraContext& at, M44f to_world, const V3f& about, CameraRepo
     if (asked.orbit_deg) {
         M44f there, turn, back;
         there.setTranslation(-report.orbit_about);
-        turn.rotate(V3f(0, *asked.orbit_deg * kDegree, 0));
+        turn.rotate(V3f(0, *asked.orbit_deg * kDegree_rad, 0));
         back.setTranslation(report.orbit_about);
         to_world = to_world * there * turn * back;
         report.target = report.target * (there * turn * back);
@@ -176,7 +175,7 @@ CameraSetup with_lens(const CameraContext& at, const LoadedLens& loaded) {
     report.asked = at.model.asked;
     if (report.asked.fit == Fit::Fov && !report.asked.fov_deg) tell_of_held_zoom(at);
     report.dispersive_lens = at.model.dispersive_lens();
-    report.yfov_deg = loaded.yfov_rad / kDegree;
+    report.yfov_deg = loaded.yfov_rad / kDegree_rad;
     const M44f to_world = stand(at, {loaded.yfov_rad, 1e-3 * loaded.focal_length_mm, ""}, report);
     report.focus_m = find_focus(at, to_world, [&](std::optional<float> focus_m) {
         return viewfinder(loaded, to_world, focus_m);
@@ -227,7 +226,7 @@ CameraSetup without_prescription(const CameraContext& at) {
             return std::make_unique<ThinLensCamera>(finder);
         });
     pose.yfov_rad = yfov_at_rad(view, focus_m);
-    if (pose.yfov_rad != view.yfov_rad) report.yfov_deg = pose.yfov_rad / kDegree;
+    if (pose.yfov_rad != view.yfov_rad) report.yfov_deg = pose.yfov_rad / kDegree_rad;
     ThinSetup thin = set_up_thin(at.model, view, pose, focus_m, at.notice);
     report.focus_m = focus_m.value_or(0);
     report.focal_length_mm = static_cast<float>(thin.focal_mm);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/sampling/prepass_seed.h"
 #include "integrator/path/path.h"
 #include "integrator/prepass/pilot_pixels.h"
 #include "integrator/render/render.h"
@@ -29,7 +30,6 @@ struct PilotTurn {
 };
 constexpr std::array<PilotTurn, 4> kTurns{{{2048, 32}, {16384, 4}, {131072, 1}, {1 << 20, 1}}};
 constexpr size_t kEnoughPixels = 16;
-constexpr uint32_t kPilotSeed = 0x65787073;  ///< so that no sample is one of the picture
 
 /// Luminance below which a pixel is as good as black on a display: level 25 of 255 in sRGB.
 constexpr double kBlack = 0.01;
@@ -68,7 +68,7 @@ Seen look(const RenderSetup& setup, const RenderJob& job, const PathTracer<>& tr
     executor.run(static_cast<int>(pixels.size()), [&](int task, int worker) {
         const auto [x, y] = pixels[static_cast<size_t>(task)];
         Film film(size, {x, y, x + 1, y + 1}, {Aov::Depth});
-        render_samples(tracer, *setup.view.camera, job, {x, y}, 0, turn.samples, film,
+        render_samples(tracer, *setup.view.camera, job, {{x, y}, 0, turn.samples}, film,
                        stats[static_cast<size_t>(worker)]);
         found[static_cast<size_t>(task)] = {shown_luminance(film.colour(x, y)),
                                             film.aov(x, y, 0).x > 0};
@@ -112,7 +112,7 @@ FoundExposure find_exposure(const RenderSetup& setup, const RenderJob& job,
     pilot.sampler = job.sampler;
     pilot.filter = job.filter;
     pilot.observer = setup.view.observer;
-    pilot.seed = hash32(job.seed, kPilotSeed);
+    pilot.seed = hash32(job.seed, number_of(PrepassSeed::Exposure));
     Seen seen;
     for (const PilotTurn& turn : kTurns) {
         seen = look(setup, pilot, tracer, turn, executor);

@@ -17,7 +17,6 @@
 namespace petzval {
 namespace {
 
-constexpr float kDegree = kPi / 180.f;
 constexpr float kDefaultFov_deg = 40.f;
 /// Greatest error of the third-order formula without a warning.
 constexpr double kMostFormulaError = 0.1;
@@ -76,7 +75,7 @@ ThinView thin_view(const CameraModel& model, const std::string& scene, float asp
     const float half_mm = view.sensor_mm.y / 2;
     view.focal_mm = or_argument_error(model, [&] { return asked_focal_length_mm(model); });
     const auto of_half = [&](double distance_mm) {
-        return 2 * std::atan(half_mm / static_cast<float>(distance_mm)) / kDegree;
+        return 2 * std::atan(half_mm / static_cast<float>(distance_mm)) / kDegree_rad;
     };
     if (asked.film_distance_mm) {
         view.yfov_deg = of_half(*asked.film_distance_mm);
@@ -90,7 +89,7 @@ ThinView thin_view(const CameraModel& model, const std::string& scene, float asp
     } else if (model.from && !asked.fov_deg && !view.focal_mm) {
         view.angle_of_file = true;
         view.yfov_rad = model.from->yfov_rad;
-        view.yfov_deg = view.yfov_rad / kDegree;
+        view.yfov_deg = view.yfov_rad / kDegree_rad;
     } else if (asked.fov_deg || !view.focal_mm) {
         view.yfov_deg = asked.fov_deg.value_or(kDefaultFov_deg);
     } else {
@@ -100,7 +99,7 @@ ThinView thin_view(const CameraModel& model, const std::string& scene, float asp
                     fmt::format("a focal length of {:g} mm with a sensor {:g} mm high",
                                 *view.focal_mm, view.sensor_mm.y));
     }
-    if (view.yfov_rad == 0) view.yfov_rad = view.yfov_deg * kDegree;
+    if (view.yfov_rad == 0) view.yfov_rad = view.yfov_deg * kDegree_rad;
     if (!view.focal_mm && !asked.film_distance_mm)
         view.focal_mm = half_mm / std::tan(view.yfov_rad / 2);
     return view;

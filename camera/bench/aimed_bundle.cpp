@@ -65,7 +65,7 @@ std::optional<PupilPoint> AimedBundle::solve(std::array<double, 2> stop_mm,
         auto ray = launched<D>({broadcast<d4>(at[0]), broadcast<d4>(1), d4{}},
                                {broadcast<d4>(at[1]), d4{}, broadcast<d4>(1)});
         const auto passed =
-            trace_lens<D>(*lens_, indices_, Towards::Film, {0, lens_->stop()}, ray, Clip::No);
+            trace_lens<D>({*lens_, Towards::Film, {0, lens_->stop()}, Clip::No}, indices_, ray);
         if (!passed[0]) {  // too far: rays there never reach the stop
             if (++halvings > kMostHalvings) return std::nullopt;
             for (size_t k = 0; k < 2; ++k) at[k] = good[k] + (step[k] *= 0.5);
@@ -157,7 +157,7 @@ std::vector<BundleRay> AimedBundle::trace(std::span<const PupilPoint> pupil_poin
             stop_y = hit.point.y;
         };
         const auto passed =
-            trace_lens<d4>(*lens_, indices_, Towards::Film, {0, lens_->last()}, ray, clip, at_stop);
+            trace_lens<d4>({*lens_, Towards::Film, {0, lens_->last()}, clip}, indices_, ray, at_stop);
         for (int i = 0; i < static_cast<int>(count); ++i) {
             if (!passed[i] || !(ray.direction.z[i] > 0)) continue;
             const double slope_x = ray.direction.x[i] / ray.direction.z[i];

@@ -47,7 +47,7 @@ template <LensPoint P>
         CameraPath& path = out.add();
         path.hero_decided = true;
         path.ray = lens.ray(rays, lane);
-            path.lanes = only_lane(lane);
+        path.lanes = only_lane(lane);
         path.weight = zero_off(path.lanes, weight);
     }
     return out;

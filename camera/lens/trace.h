@@ -11,6 +11,23 @@
 
 namespace petzval {
 
+/// A passage through the surfaces of a range, in one of two directions.
+struct LensPassage {
+    const Lens& lens;
+    Towards towards;
+    SurfaceRange range;
+    Clip clip;
+
+    [[nodiscard]] bool to_film() const { return towards == Towards::Film; }
+    [[nodiscard]] bool empty() const { return range.first > range.last; }
+    [[nodiscard]] bool contains(int surface) const {
+        return range.first <= surface && surface <= range.last;
+    }
+    /// The first surface on the way, and what leads from each to the next.
+    [[nodiscard]] int begin() const { return to_film() ? range.first : range.last; }
+    [[nodiscard]] int step() const { return to_film() ? 1 : -1; }
+};
+
 namespace lens_trace {
 
 /// Intersection of a ray with a surface. normal: unit, along the light that crosses the surface.
@@ -297,21 +314,22 @@ struct OnTheWay {
     }
 };
 
-/// Follows a ray to surface i and through it. begin: the first surface.
+/// Follows a ray to surface i of a passage and through it.
 template <class N, class Observer>
-[[gnu::always_inline]] inline void cross_surface(const Lens& lens,
-                                                 const LensIndices<ValueOf<N>>& indices,
-                                                 bool to_film, int begin, int i, Clip clip,
+[[gnu::always_inline]] inline void cross_surface(const LensPassage& through,
+                                                 const LensIndices<ValueOf<N>>& indices, int i,
                                                  const Observer& observe, OnTheWay<N>& on_the_way) {
     using V = ValueOf<N>;
     using S = ScalarOf<N>;
+    const Lens& lens = through.lens;
+    const bool to_film = through.to_film();
     const S sign = to_film ? S(1) : S(-1);
     const SurfaceFacts<S>* const facts = lens.surfaces<S>().data();
     const SurfaceFacts<S>& s = facts[i];
     LensRay<V>& ray = on_the_way.ray;
     RayChanges<N>& changes = on_the_way.changes;
     ray.counted_from = i;
-    if (i != begin) ray.origin.z = ray.origin.z - (to_film ? facts[i - 1].gap_mm : -s.gap_mm);
+    if (i != through.begin()) ray.origin.z = ray.origin.z - (to_film ? facts[i - 1].gap_mm : -s.gap_mm);
     const V to_foot = -dot(ray.origin, ray.direction);
     const Vec3<V> foot = ray.origin + ray.direction * to_foot;
     const Asphere<S>* const asphere =
@@ -325,7 +343,7 @@ template <class N, class Observer>
     const V x = hit.point.x, y = hit.point.y;
     const MaskOf<V> inside =
         x * x + y * y <=
-        (clip == Clip::Yes ? s.semi_diameter2_mm2 : std::numeric_limits<S>::infinity());
+        (through.clip == Clip::Yes ? s.semi_diameter2_mm2 : std::numeric_limits<S>::infinity());
     const int from = to_film ? s.medium_before : s.medium_after;
     const int into = to_film ? s.medium_after : s.medium_before;
     observe(LensHit<V>{i, hit.point, distance, hit.cosine, indices.of_medium[from],
@@ -372,15 +390,13 @@ template <class N, class Observer>
 /// Differentials, sec. 3): a third of what Dual's own arithmetic would cost. Any input has a
 /// defined result; NaN misses.
 template <class N, class Observer = NoObserver>
-[[nodiscard]] MaskOf<N> trace_lens(const Lens& lens, const LensIndices<ValueOf<N>>& indices,
-                                   Towards towards, SurfaceRange range, LensRay<N>& traced,
-                                   Clip clip, const Observer& observe = {}) {
-    if (range.first > range.last) return traced.alive();
-    const bool to_film = towards == Towards::Film;
-    const int begin = to_film ? range.first : range.last;
-    lens_trace::OnTheWay<N> one(lens, traced, begin);
-    for (int left = range.last - range.first, i = begin; left >= 0; --left, i += to_film ? 1 : -1) {
-        lens_trace::cross_surface(lens, indices, to_film, begin, i, clip, observe, one);
+[[nodiscard]] MaskOf<N> trace_lens(const LensPassage& through,
+                                   const LensIndices<ValueOf<N>>& indices, LensRay<N>& traced,
+                                   const Observer& observe = {}) {
+    if (through.empty()) return traced.alive();
+    lens_trace::OnTheWay<N> one(through.lens, traced, through.begin());
+    for (int i = through.begin(); through.contains(i); i += through.step()) {
+        lens_trace::cross_surface(through, indices, i, observe, one);
         if (!any(one.ray.alive())) [[unlikely]]
             break;
     }
@@ -391,18 +407,16 @@ template <class N, class Observer = NoObserver>
 /// Traces two rays side by side, as trace_lens() does each by itself. A ray is a chain in which all
 /// waits for what is before: the second one costs little. The observer gets 0 or 1 first.
 template <class N, class Observer = NoObserver>
-void trace_two(const Lens& lens, const std::array<LensIndices<ValueOf<N>>, 2>& indices,
-               Towards towards, SurfaceRange range, std::array<LensRay<N>, 2>& traced, Clip clip,
-               const Observer& observe = {}) {
-    if (range.first > range.last) return;
-    const bool to_film = towards == Towards::Film;
-    const int begin = to_film ? range.first : range.last;
-    lens_trace::OnTheWay<N> one(lens, traced[0], begin), other(lens, traced[1], begin);
+void trace_two(const LensPassage& through, const std::array<LensIndices<ValueOf<N>>, 2>& indices,
+               std::array<LensRay<N>, 2>& traced, const Observer& observe = {}) {
+    if (through.empty()) return;
+    lens_trace::OnTheWay<N> one(through.lens, traced[0], through.begin()),
+        other(through.lens, traced[1], through.begin());
     const auto of_one = [&](const auto& hit) { observe(0, hit); };
     const auto of_other = [&](const auto& hit) { observe(1, hit); };
-    for (int left = range.last - range.first, i = begin; left >= 0; --left, i += to_film ? 1 : -1) {
-        lens_trace::cross_surface(lens, indices[0], to_film, begin, i, clip, of_one, one);
-        lens_trace::cross_surface(lens, indices[1], to_film, begin, i, clip, of_other, other);
+    for (int i = through.begin(); through.contains(i); i += through.step()) {
+        lens_trace::cross_surface(through, indices[0], i, of_one, one);
+        lens_trace::cross_surface(through, indices[1], i, of_other, other);
         if (!any(one.ray.alive() | other.ray.alive())) [[unlikely]]
             break;
     }

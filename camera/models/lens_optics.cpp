@@ -22,11 +22,11 @@ f4 four(const V& a, int first = 0) {
 
 // Transmittance of a surface for the light that was traced to it, of four lanes from the first one.
 template <class V>
-f4 surface_transmission(const Lens& lens, Coating coating, const LensIndices<V>& indices,
-                        const LensHit<V>& hit, Towards towards, f4 nm, int first = 0) {
-    const auto& s = lens.surfaces<ScalarOf<V>>()[static_cast<size_t>(hit.surface)];
+f4 surface_transmission(const LensPassage& through, Coating coating, const LensIndices<V>& indices,
+                        const LensHit<V>& hit, f4 nm, int first = 0) {
+    const auto& s = through.lens.surfaces<ScalarOf<V>>()[static_cast<size_t>(hit.surface)];
     if (s.medium_before == s.medium_after) return splat(1.f);
-    const int into = towards == Towards::Film ? s.medium_after : s.medium_before;
+    const int into = through.to_film() ? s.medium_after : s.medium_before;
     const Crossing crossing{four(hit.index, first), four(indices.of_medium[into], first),
                             four(hit.cosine, first)};
     return transmittance(coating, crossing, touches_air(s), nm);
@@ -51,7 +51,7 @@ LensOptics::LensOptics(std::shared_ptr<const Lens> lens, Iris iris, Coating coat
         LensRay<f8> ray = aimed.ray;
         return m8(
             aimed.found & aimed.clear &
-            trace_lens<f8>(*lens_, line_d, Towards::Scene, {0, lens_->stop() - 1}, ray, Clip::Yes));
+            trace_lens<f8>({*lens_, Towards::Scene, {0, lens_->stop() - 1}, Clip::Yes}, line_d, ray));
     };
     const auto rim_mm = static_cast<float>(
         lens_->prescription().surfaces[static_cast<size_t>(lens_->stop())].semi_diameter_mm);
@@ -85,21 +85,19 @@ void LensOptics::trace(const LeadPoints& at, const LensIndices<f8>& indices, Lea
     rays.ray = rays.aimed.ray;
     rays.passed = rays.aimed.found & rays.aimed.clear & (rays.open > 0.f) & (rays.density > 0.f);
     if (!any(rays.passed)) return;
-    rays.passed &= trace_lens<f8>(*lens_, indices, Towards::Scene, {0, lens_->stop() - 1}, rays.ray,
-                                  Clip::Yes);
+    rays.passed &= trace_lens<f8>({*lens_, Towards::Scene, {0, lens_->stop() - 1}, Clip::Yes}, indices, rays.ray);
 }
 
 namespace {
 
 // Traces one group of rays, or two side by side. The observer gets the group's index first.
 template <class V, size_t groups, class Observer = NoObserver>
-void trace_groups(const Lens& lens, const std::array<LensIndices<V>, groups>& indices,
-                  SurfaceRange range, std::array<LensRay<V>, groups>& rays, Clip clip,
-                  const Observer& observe = {}) {
+void trace_groups(const LensPassage& through, const std::array<LensIndices<V>, groups>& indices,
+                  std::array<LensRay<V>, groups>& rays, const Observer& observe = {}) {
     if constexpr (groups == 2)
-        trace_two<V>(lens, indices, Towards::Film, range, rays, clip, observe);
+        trace_two<V>(through, indices, rays, observe);
     else
-        static_cast<void>(trace_lens<V>(lens, indices[0], Towards::Film, range, rays[0], clip,
+        static_cast<void>(trace_lens<V>(through, indices[0], rays[0],
                                         [&](const auto& hit) { observe(0, hit); }));
 }
 
@@ -160,21 +158,22 @@ std::array<LensLanding, kRaysAtOnce<V, groups>> LensOptics::land(
     constexpr size_t kEach = kLanes<V> / 4;
     std::array<LensLanding, kRaysAtOnce<V, groups>> out;
     for (LensLanding& one : out) one.transmitted = splat(1.f);
+    const LensPassage to_film{*lens_, Towards::Film, {0, lens_->last()}, Clip::Yes};
     const auto lose = [&](size_t group, const LensHit<V>& hit) {
         if (coating_ == Coating::Ideal) return;
         for (size_t k = 0; k < kEach; ++k)
             out[group * kEach + k].transmitted *=
-                surface_transmission(*lens_, coating_, indices[group], hit, Towards::Film,
-                                     drawn[group * kEach + k].nm, int(4 * k));
+                surface_transmission(to_film, coating_, indices[group], hit, drawn[group * kEach + k].nm, int(4 * k));
     };
     const auto group_at = [&](size_t k) { return RayGroup<V>(&drawn[k * kEach]); };
     std::array<LensRay<V>, groups> rays;
     for (size_t k = 0; k < groups; ++k) rays[k] = group_at(k).rays();
     const int stop = lens_->stop();
-    trace_groups<V>(*lens_, indices, {0, stop - 1}, rays, Clip::Yes, lose);
-    trace_groups<V>(*lens_, indices, {stop, stop}, rays, Clip::No);
+    trace_groups<V>({*lens_, Towards::Film, {0, stop - 1}, Clip::Yes}, indices, rays, lose);
+    trace_groups<V>({*lens_, Towards::Film, {stop, stop}, Clip::No}, indices, rays);
     const std::array<LensRay<V>, groups> at_stop = rays;
-    trace_groups<V>(*lens_, indices, {stop + 1, lens_->last()}, rays, Clip::Yes, lose);
+    trace_groups<V>({*lens_, Towards::Film, {stop + 1, lens_->last()}, Clip::Yes}, indices, rays,
+                    lose);
     for (size_t k = 0; k < groups; ++k) {
         const RayGroup<V> group = group_at(k);
         const LensRay<V>& ray = rays[k];
@@ -209,12 +208,13 @@ template <class V>
 f4 LensOptics::transmitted(V2f film_mm, V l, V m, const LensIndices<V>& indices, f4 nm) const {
     f4 out = splat(1.f);
     if (coating_ == Coating::Ideal) return out;
+    const LensPassage out_of_lens{*lens_, Towards::Scene, {0, lens_->last()}, Clip::No};
     const auto lose = [&](const LensHit<V>& hit) {
-        out *= surface_transmission(*lens_, coating_, indices, hit, Towards::Scene, nm);
+        out *= surface_transmission(out_of_lens, coating_, indices, hit, nm);
     };
     LensRay<V> ray = aimer_.leave<V>(PlanePoint<V>(film_mm), l, m);
     static_cast<void>(
-        trace_lens<V>(*lens_, indices, Towards::Scene, {0, lens_->last()}, ray, Clip::No, lose));
+        trace_lens<V>(out_of_lens, indices, ray, lose));
     return out;
 }
 template f4 LensOptics::transmitted(V2f, f4, f4, const LensIndices<f4>&, f4) const;

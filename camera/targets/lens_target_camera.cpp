@@ -14,10 +14,9 @@ constexpr float kSameDirection = 2e-3f;
 
 LensTargetCamera::LensTargetCamera(std::shared_ptr<const LensCamera> camera)
     : camera_(std::move(camera)),
-      targets_(*camera_->input().lens, camera_->optics().aimer(),
-               camera_->input().entrance_pupil_mm,
-               double(camera_->input().iris.bounding_radius_mm()),
-               camera_->input().iris.area_mm2()) {}
+      targets_(
+          *camera_->input().lens, camera_->optics().aimer(), camera_->input().entrance_pupil_mm,
+          double(camera_->input().iris.bounding_radius_mm()), camera_->input().iris.area_mm2()) {}
 
 std::optional<PreparedTarget> LensTargetCamera::prepared(const Target& target) const {
     const V2f half_mm(V2d(camera_->input().film_width_mm / 2, camera_->input().film_height_mm / 2));
@@ -27,7 +26,7 @@ std::optional<PreparedTarget> LensTargetCamera::prepared(const Target& target) c
 }
 
 std::optional<ListedTarget> LensTargetCamera::listed(const PreparedTarget& target,
-                                               const FilmCell& cell) const {
+                                                     const FilmCell& cell) const {
     const V2f a = camera_->film_mm(cell.first), b = camera_->film_mm(cell.last);
     auto out = targets_.listed(
         target, camera_->film_mm(cell.nearest(target.place)),
@@ -49,9 +48,10 @@ void LensTargetCamera::sample_beside(std::span<const FilmPoint> points,
     weigh(out, density);
 }
 
-void LensTargetCamera::sample_targets(std::span<const FilmPoint> points, std::span<const Bands> bands,
-                                std::span<const TargetList> listed,
-                                std::span<CameraSample> out) const {
+void LensTargetCamera::sample_targets(std::span<const FilmPoint> points,
+                                      std::span<const Bands> bands,
+                                      std::span<const TargetList> listed,
+                                      std::span<CameraSample> out) const {
     const Batch all = camera_->batch(points, bands);
     std::array<TargetList, kMostFilmPoints> lists;
     std::array<Sampler, kMostFilmPoints> samplers;
@@ -69,7 +69,8 @@ void LensTargetCamera::sample_targets(std::span<const FilmPoint> points, std::sp
     rays.stop_mm = {rays.aimed.ray.origin.x, rays.aimed.ray.origin.y};
     // Where the pupil folds, draws of the stop find one of the rays that cross it at a point. Only
     // that one counts, with targets and without.
-    const FoundRays back = camera_->optics().aimer().aim(film, rays.stop_mm, all.indices, all.at.nm);
+    const FoundRays back =
+        camera_->optics().aimer().aim(film, rays.stop_mm, all.indices, all.at.nm);
     const f8 off_l = back.l - found.l, off_m = back.m - found.m;
     rays.aimed.found = found.found & rays.aimed.ray.alive() & back.found &
                        (off_l * off_l + off_m * off_m < sqr(kSameDirection));

@@ -17,7 +17,7 @@ namespace petzval {
 }
 
 /// Guesses for eight film points and points of their targets, from a start of each.
-struct Guess {
+struct LensTargets::Guess {
     f8 l{}, m{};
     void put(int i, const TargetStart& start, V2f film_mm, V2f on) {
         const V2f off = film_mm - start.film_mm;

@@ -13,7 +13,7 @@ namespace {
 /// Rays of a film point that are tried as starts.
 constexpr int kTried = 24;
 /// Of them, those that are tried for a cell.
-constexpr size_t kMostTried = 16;
+constexpr size_t kMostStartsTried = 16;
 /// How far from the iris what is found may lie, in its radii: a target's rim is met from a little
 /// farther away than its middle.
 constexpr float kMostSpanned = 0.25f;
@@ -36,8 +36,7 @@ std::array<TargetStart, 8> LensTargets::starts_at(const TargetPoints& at, const 
     LensRay<Dual<f8>> moved = aimer_.leave(at.film_mm, Dual<f8>{l}, Dual<f8>{m});
     moved.origin.x.du = splat8(1);
     moved.origin.y.dv = splat8(1);
-    static_cast<void>(trace_lens<Dual<f8>>(lens_, at.indices, Towards::Scene, {0, lens_.last()},
-                                           moved, Clip::No));
+    static_cast<void>(trace_lens<Dual<f8>>({lens_, Towards::Scene, {0, lens_.last()}, Clip::No}, at.indices, moved));
     const Landing by_film(moved, goal);
     const PlanePoint<f8> off = here.parameters(here.x, here.y),
                          by_x = here.parameters(-by_film.x_by_u, -by_film.y_by_u),
@@ -164,7 +163,7 @@ void LensTargets::add_ways(std::vector<WayFrom>& out, V2f place_mm, const Goals&
         }
         Landing landing;
         const FoundDirections found =
-            search(at, goal, asked, f8{}, f8{}, guess.l, guess.m, landing);
+            search(at, goal, asked, {f8{}, f8{}}, guess, landing);
         const AimedRay<f8> crossed = aimer_.cross<f8>(at.film_mm, found.l, found.m, indices);
         const f8 met = kPi * crossed.stretch_mm2() / landing.size() / float(iris_mm2_);
         for (size_t i = 0; i < count; ++i) {
@@ -189,7 +188,7 @@ void LensTargets::add_ways(std::vector<WayFrom>& out, V2f place_mm, const Goals&
 // The fewest starts, about, that lead to all ways that are found from a few places of the cell.
 std::optional<ListedTarget> LensTargets::listed(const PreparedTarget& target, V2f place_mm,
                                                 const FilmCell& cell_mm) const {
-    static_assert(kMostTried <= 32);
+    static_assert(kMostStartsTried <= 32);
     ListedTarget out{target.target, 1, 0, V2f(0.f)};
     const LensIndices<f8> indices = lens_.exact_indices(splat8(static_cast<float>(kLineD_nm)));
     std::array<TargetList, 8> lists;
@@ -204,7 +203,7 @@ std::optional<ListedTarget> LensTargets::listed(const PreparedTarget& target, V2
                      [&](const auto* a, const auto* b) { return away_mm(a) < away_mm(b); });
     // Those that are nearest tell whether the target is seen at all.
     constexpr size_t kNearest = 8;
-    starts.resize(std::min(kMostTried, starts.size()));
+    starts.resize(std::min(kMostStartsTried, starts.size()));
     const std::span all(starts);
     std::vector<WayFrom> ways;
     add_ways(ways, place_mm, goal, indices, all.first(std::min(kNearest, all.size())), 0);

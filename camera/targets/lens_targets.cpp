@@ -69,16 +69,17 @@ LensRay<Dual<f8>> LensTargets::trace(const TargetPoints& at, f8 l, f8 m) const {
     LensRay<Dual<f8>> ray =
         aimer_.leave(at.film_mm, Dual<f8>{l, splat8(1), f8{}}, Dual<f8>{m, f8{}, splat8(1)});
     static_cast<void>(
-        trace_lens<Dual<f8>>(lens_, at.indices, Towards::Scene, {0, lens_.last()}, ray, Clip::No));
+        trace_lens<Dual<f8>>({lens_, Towards::Scene, {0, lens_.last()}, Clip::No}, at.indices, ray));
     return ray;
 }
 
-FoundDirections LensTargets::search(const TargetPoints& at, const Goals& goal, m8 wanted, f8 x,
-                                    f8 y, f8 l, f8 m, Landing& last) const {
+FoundDirections LensTargets::search(const TargetPoints& at, const Goals& goal, m8 wanted,
+                                    const PlanePoint<f8>& on, const Guess& from,
+                                    Landing& last) const {
     return find_directions(
-        wanted, l, m, kSame / 3 * cosine_reach_, [&](f8 l_now, f8 m_now) -> DirectionStep {
+        wanted, from.l, from.m, kSame / 3 * cosine_reach_, [&](f8 l_now, f8 m_now) -> DirectionStep {
             last = Landing(trace(at, l_now, m_now), goal);
-            const f8 left_x = x - last.x, left_y = y - last.y;
+            const f8 left_x = on.x - last.x, left_y = on.y - last.y;
             const PlanePoint<f8> by = last.parameters(left_x, left_y);
             const f8 near = kTolerance + kRounding * last.radii;
             return {by.x, by.y, last.ahead & (l_now * l_now + m_now * m_now < 1.f),
@@ -116,7 +117,7 @@ auto LensTargets::ways(const TargetPoints& at, const Goals& goal, m8 wanted, f8 
             guess.put(i, goal.listed[lane]->starts[size_t(b)], at.film_mm[i], {x[i], y[i]});
         }
         Landing landing;
-        const FoundDirections found = search(at, goal, asked, x, y, guess.l, guess.m, landing);
+        const FoundDirections found = search(at, goal, asked, {x, y}, guess, landing);
         const AimedRay<f8> crossed = aimer_.cross<f8>(at.film_mm, found.l, found.m, at.indices);
         const f8 stop_x = crossed.ray.origin.x, stop_y = crossed.ray.origin.y;
         const auto reach = static_cast<float>(stop_reach_mm_);

@@ -64,12 +64,14 @@ class LensTargets {
     static constexpr float kSame = 3e-3f;
 
     struct Goals;
+    struct Guess;
     struct Landing;
     struct Ways;
     [[nodiscard]] Goals goals(const std::array<TargetList, 8>&,
                               const std::array<int, 8>& which) const;
-    [[nodiscard]] FoundDirections search(const TargetPoints&, const Goals&, m8 wanted, f8 x, f8 y,
-                                         f8 l, f8 m, Landing&) const;
+    /// Rays that pass the points `on` of targets, in radii, from guesses of their directions.
+    [[nodiscard]] FoundDirections search(const TargetPoints&, const Goals&, m8 wanted,
+                                         const PlanePoint<f8>& on, const Guess&, Landing&) const;
     [[nodiscard]] Ways ways(const TargetPoints&, const Goals&, m8 wanted, f8 x, f8 y) const;
     /// Whether directions that are so far apart are the same.
     [[nodiscard]] m8 same(f8 l, f8 m) const { return l * l + m * m < sqr(kSame * cosine_reach_); }

@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "camera/setup/film_region.h"
+#include "core/sampling/prepass_seed.h"
 
 namespace petzval {
 namespace {
 
 constexpr int kCell_px = 16;
-constexpr uint32_t kSeed = 0x63656c6c;  ///< so that no ray is one of the picture
 /// Things of a cell that are tried, brightest first, and that may be found.
 constexpr size_t kMostTried = 32, kMostFound = 20;
 /// Rays of a cell that tell which things it may see, and the margin for what lies between them.
@@ -61,7 +61,7 @@ std::shared_ptr<const TargetGrid> find_targets(const TargetCamera& camera, V2i s
         for (int i = 0; i < out->cells.x; ++i) {
             std::vector<ListedTarget>& list = out->lists.emplace_back();
             const FilmCell place = out->cell(i, j, size_px);
-            const RayBundle bundle = bundle_of(camera, place, kSeed, {i, j}, kRays);
+            const RayBundle bundle = bundle_of(camera, place, number_of(PrepassSeed::TargetCells), {i, j}, kRays);
             size_t tried = 0;
             for (LampToTry& lamp : lamps) {
                 if (lamp.hopeless || !passes(bundle, lamp.thing, kMargin)) continue;

@@ -26,6 +26,7 @@ using M44d = Imath::M44d;
 using Box3f = Imath::Box3f;
 
 inline constexpr float kPi = 3.14159265358979323846f;
+inline constexpr float kDegree_rad = kPi / 180.f;
 inline constexpr float kInvPi = 0.31830988618379067154f;
 inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Largest float below 1: the top of every half-open unit interval.

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "camera/ray_bundle.h"
+#include "core/sampling/prepass_seed.h"
 #include "core/shading/surface.h"
 #include "core/spectrum/colour.h"
 #include "integrator/path/front_at_back.h"
@@ -15,7 +16,6 @@
 namespace petzval {
 namespace {
 
-constexpr uint32_t kSeed = 0x676c696e;  ///< so that no ray is one of the picture
 constexpr int kCell_px = 16;
 constexpr int kRaysOfCell = 16;
 /// Rays of the search for a pixel.
@@ -117,9 +117,9 @@ struct Mirrored {
     float angle;  ///< half-width, radians
 };
 
-class Search {
+class HighlightSearch {
   public:
-    Search(const Scene& scene, const Bvh& bvh, int64_t most_rays)
+    HighlightSearch(const Scene& scene, const Bvh& bvh, int64_t most_rays)
         : scene_(scene), bvh_(bvh), rays_left_(most_rays) {}
 
     [[nodiscard]] bool may_go_on() const { return rays_left_ > 0; }
@@ -334,7 +334,7 @@ bool is_same(const Thing& a, const Thing& b, const V3f& eye) {
 }
 
 /// The image of a lamp near a start, as that point of the lens and others see it.
-std::optional<Thing> image_from(Search& search, const Start& start, const std::vector<V3f>& eyes,
+std::optional<Thing> image_from(HighlightSearch& search, const Start& start, const std::vector<V3f>& eyes,
                                 const Source& lamp) {
     const auto found = search.mirrored(start.eye, start.direction, lamp);
     if (!found || search.is_hidden(*found, lamp)) return std::nullopt;
@@ -350,7 +350,7 @@ std::optional<Thing> image_from(Search& search, const Start& start, const std::v
 }
 
 /// Rays of all cells of a frame that meet polished surfaces, the objects by turns.
-std::vector<Start> starts_of(const Camera& camera, Search& search, V2i frame_px,
+std::vector<Start> starts_of(const Camera& camera, HighlightSearch& search, V2i frame_px,
                              std::vector<std::vector<V3f>>& eyes) {
     const V2i cells = frame_px / kCell_px;
     std::map<uint32_t, std::vector<Start>> by_instance;
@@ -358,7 +358,7 @@ std::vector<Start> starts_of(const Camera& camera, Search& search, V2i frame_px,
         for (int i = 0; i < cells.x; ++i) {
             std::vector<V3f>& eyes_of_cell = eyes.emplace_back();
             const FilmCell cell{V2f(V2i(i, j)) / V2f(cells), V2f(V2i(i + 1, j + 1)) / V2f(cells)};
-            for (const Ray& ray : bundle_of(camera, cell, kSeed, {i, j}, kRaysOfCell).rays) {
+            for (const Ray& ray : bundle_of(camera, cell, number_of(PrepassSeed::Highlights), {i, j}, kRaysOfCell).rays) {
                 eyes_of_cell.push_back(ray.origin);
                 if (const auto met = search.meet(ray.origin, ray.direction))
                     by_instance[met->surface.hit.instance].push_back(
@@ -393,10 +393,10 @@ std::vector<Thing> highlights(const Camera& camera, const Scene& scene, const Bv
     const std::vector<Source> lamps = sources_of(scene, things);
     if (lamps.empty() || frame_px.x < kCell_px || frame_px.y < kCell_px) return {};
     const double pixels = double(frame_px.x) * double(frame_px.y);
-    Search first(scene, bvh, INT64_MAX);
+    HighlightSearch first(scene, bvh, INT64_MAX);
     std::vector<std::vector<V3f>> eyes;
     const std::vector<Start> starts = starts_of(camera, first, frame_px, eyes);
-    Search search(scene, bvh, static_cast<int64_t>(kSearchRays * pixels));
+    HighlightSearch search(scene, bvh, static_cast<int64_t>(kSearchRays * pixels));
     std::map<std::pair<uint32_t, size_t>, int> failures;  // by object and lamp
     std::vector<Thing> out;
     for (const Start& start : starts)

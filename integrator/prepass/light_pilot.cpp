@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrator/prepass/light_pilot.h"
 
+#include "core/sampling/prepass_seed.h"
 #include "integrator/prepass/pilot_pixels.h"
 #include "integrator/render/sample_batch.h"
 
@@ -8,7 +9,6 @@ namespace petzval {
 namespace {
 
 constexpr uint32_t kPaths = 8192;
-constexpr uint32_t kSeed = 0x6c696768;  ///< so that no sample is one of the picture
 
 }  // namespace
 
@@ -19,10 +19,10 @@ LightChoice taught_by_pilot(const LightChoice& choice, const Scene& scene, const
     std::vector<LightRecord> records;
     const PathTracer<> tracer(scene, bvh, even, {}, &records);
     RenderJob job;
-    job.seed = kSeed;
+    job.seed = number_of(PrepassSeed::LightShares);
     job.observer = observer;
     PathStats stats;
-    const auto pixels = pilot_pixels(frame_px, kPaths, kSeed);
+    const auto pixels = pilot_pixels(frame_px, kPaths, number_of(PrepassSeed::LightShares));
     SampleBatch batch(tracer, camera, job, frame_px, nullptr, stats);
     for (uint32_t i = 0; i < kPaths; ++i) {
         const auto [x, y] = pixels[i % pixels.size()];

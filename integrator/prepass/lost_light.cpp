@@ -92,9 +92,9 @@ Arrival follow(const Scene& scene, const Bvh& bvh, Ray ray) {
 }
 
 // Names lights of a scene, one by one.
-class Search {
+class LostLightSearch {
   public:
-    Search(const Scene& scene, const Bvh& bvh, const GlassPoints& glass)
+    LostLightSearch(const Scene& scene, const Bvh& bvh, const GlassPoints& glass)
         : scene_(scene), bvh_(bvh), glass_(glass) {}
 
     void add(const PointLight& light, uint32_t index) {
@@ -212,7 +212,7 @@ class Search {
 std::vector<LostLight> lost_light(const Scene& scene, const Bvh& bvh) {
     const GlassPoints glass(scene);
     if (glass.empty()) return {};
-    Search search(scene, bvh, glass);
+    LostLightSearch search(scene, bvh, glass);
     uint32_t punctual = 0;
     for (uint32_t i = 0; i < scene.lights.size(); ++i) {
         if (std::holds_alternative<TriangleLight>(scene.lights[i])) break;  // the file's come first

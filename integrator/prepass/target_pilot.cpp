@@ -5,13 +5,13 @@
 #include <cmath>
 
 #include "core/film/film.h"
+#include "core/sampling/prepass_seed.h"
 #include "core/spectrum/colour.h"
 #include "integrator/path/path.h"
 
 namespace petzval {
 namespace {
 
-constexpr uint32_t kSeed = 0x74617267;  ///< so that no sample is one of the picture
 /// Samples of a cell, rays to all of its targets, and to one of them.
 constexpr uint32_t kOrdinary = 8, kSent = 24, kMostSent = 12;
 /// Ratio of the frame's efforts that is worth it: they are known no better.
@@ -74,7 +74,7 @@ class CellPilot {
             std::array<TargetList, kMostFilmPoints> lists;
             const auto n = std::min(count - first, static_cast<uint32_t>(kMostFilmPoints));
             for (uint32_t i = 0; i < n; ++i) {
-                const Sampler sampler(SamplerKind::Owen, kSeed, {cell.x, cell.y, first + i});
+                const Sampler sampler(SamplerKind::Owen, number_of(PrepassSeed::Targets), {cell.x, cell.y, first + i});
                 bands[i] = Bands::rgb();
                 points[i] = {place_of(first + i, sampler.get2(Dim::Film)), sampler};
             }

@@ -11,12 +11,19 @@
 
 namespace petzval {
 
-/// Renders the samples [first, end) of one pixel: each a pure function of job, pixel and index.
+/// Samples [first, end) of a pixel.
+struct PixelSamples {
+    V2i pixel;
+    uint32_t first, end;
+};
+
+/// Renders samples of one pixel: each a pure function of job, pixel and index.
 template <class Tracer>
-void render_samples(const Tracer& tracer, const Camera& camera, const RenderJob& job, V2i pixel,
-                    uint32_t first, uint32_t end, Film& film, PathStats& stats) {
+void render_samples(const Tracer& tracer, const Camera& camera, const RenderJob& job,
+                    const PixelSamples& wanted, Film& film, PathStats& stats) {
     SampleBatch<Tracer> batch(tracer, camera, job, film.full_size(), &film, stats);
-    for (uint32_t i = first; i < end; ++i) batch.add({pixel.x, pixel.y, i});
+    for (uint32_t i = wanted.first; i < wanted.end; ++i)
+        batch.add({wanted.pixel.x, wanted.pixel.y, i});
     batch.render();
 }
 

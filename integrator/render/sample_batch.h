@@ -127,8 +127,8 @@ void SampleBatch<Tracer>::trace(size_t i) {
         // by the weight.
         const float effort = path.to_target ? path.mis_weight : 1.f;
         light += light_along(
-            path, i,
-            {path.ray, path.lanes, path.hero_decided, effort, layers && !path.to_target}, of_path);
+            path, i, {path.ray, path.lanes, path.hero_decided, effort, layers && !path.to_target},
+            of_path);
         if (path.to_target) {
             ++stats_.target_rays;
             continue;

@@ -14,14 +14,14 @@
 namespace petzval {
 namespace {
 
-constexpr const char* kExtension = "EXT_lights_image_based";
+constexpr const char* kImageBasedLights = "EXT_lights_image_based";
 constexpr int kHarmonicsHeight = 64;
 
 /// The light that the drawn scene names, and its number.
 std::optional<size_t> light_of_scene(const JsonCursor& root, int scene, size_t lights) {
     const auto scenes = root.objects("scenes");
     if (scene < 0) return std::nullopt;
-    const auto extension = scenes[static_cast<size_t>(scene)].extension(kExtension);
+    const auto extension = scenes[static_cast<size_t>(scene)].extension(kImageBasedLights);
     if (!extension) return std::nullopt;
     return extension->required_index("light", lights, "light");
 }
@@ -114,7 +114,7 @@ class Reader {
 std::optional<Sky> read_image_light(const GltfModel& gltf, const GltfNodes& nodes, GltfTally& tally,
                                     PictureBudget& pictures) {
     const JsonCursor root(gltf.source.json, gltf.file);
-    const auto definitions = root.extension(kExtension);
+    const auto definitions = root.extension(kImageBasedLights);
     if (!definitions) return std::nullopt;
     const auto lights = definitions->objects("lights");
     const auto number = light_of_scene(root, nodes.scene, lights.size());

@@ -10,13 +10,13 @@
 namespace petzval {
 namespace {
 
-constexpr const char* kExtension = "KHR_materials_variants";
+constexpr const char* kMaterialVariants = "KHR_materials_variants";
 
 }  // namespace
 
 std::vector<std::string> variant_names(const GltfModel& gltf) {
     std::vector<std::string> names;
-    if (const auto list = JsonCursor(gltf.source.json, gltf.file).extension(kExtension))
+    if (const auto list = JsonCursor(gltf.source.json, gltf.file).extension(kMaterialVariants))
         for (const JsonCursor& variant : list->objects("variants"))
             names.push_back(variant.text_or("name", ""));
     return names;
@@ -36,7 +36,7 @@ int GltfVariant::material_of(int mesh, size_t primitive, int own) const {
     if (!index_) return own;
     const auto& json =
         gltf_.source.json["meshes"][static_cast<size_t>(mesh)]["primitives"][primitive];
-    const auto extension = JsonCursor(json, gltf_.file).extension(kExtension);
+    const auto extension = JsonCursor(json, gltf_.file).extension(kMaterialVariants);
     if (!extension) return own;
     for (const JsonCursor& mapping : extension->objects("mappings")) {
         if (!mapping.has("material") || !mapping.has("variants")) continue;

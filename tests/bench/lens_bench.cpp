@@ -58,7 +58,7 @@ void film_to_scene(benchmark::State& state, const char* name) {
     for (auto _ : state) {
         LensRay<N> ray = rays[i++ % kRays];
         const auto alive =
-            trace_lens(lens, indices, Towards::Scene, {0, lens.last()}, ray, Clip::No);
+            trace_lens({lens, Towards::Scene, {0, lens.last()}, Clip::No}, indices, ray);
         passed += all(alive);
         benchmark::DoNotOptimize(ray);
     }

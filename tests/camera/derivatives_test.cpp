@@ -43,7 +43,7 @@ TEST(Dual, JacobiansAreThoseOfCentralDifferences) {
         const auto end = [&](const LensRay<d4>& start, double u, double v, bool derive) {
             const d4 unit = broadcast<d4>(derive);
             auto ray = moved(start, D{broadcast<d4>(u), unit, {}}, D{broadcast<d4>(v), {}, unit});
-            EXPECT_TRUE(all(trace_lens(lens, indices, Towards::Film, whole(lens), ray, Clip::No)));
+            EXPECT_TRUE(all(trace_lens({lens, Towards::Film, whole(lens), Clip::No}, indices, ray)));
             return ray;
         };
         for (int i = 0; i < 20; ++i) {
@@ -76,8 +76,7 @@ TEST(Dual, DerivativesAreFiniteAtThePoleOfAnOddAsphere) {
     const Lens lens = lens_of({surface});
     auto ray = moved(ray_of<d4>({0, 0, -1}, {0, 0, 1}), D{d4{}, broadcast<d4>(1), {}},
                      D{d4{}, {}, broadcast<d4>(1)});
-    ASSERT_TRUE(all(trace_lens(lens, lens.exact_indices(broadcast<d4>(kLineD_nm)), Towards::Film,
-                               whole(lens), ray, Clip::No)));
+    ASSERT_TRUE(all(trace_lens({lens, Towards::Film, whole(lens), Clip::No}, lens.exact_indices(broadcast<d4>(kLineD_nm)), ray)));
     EXPECT_NEAR(ray.origin.x.du[0], 0.6, 1e-15);
     EXPECT_NEAR(ray.origin.x.dv[0], 0.7, 1e-15);
     EXPECT_NEAR(ray.direction.x.dv[0], 0.7 / 1.6, 1e-15);
@@ -98,7 +97,7 @@ TEST(Dual, JacobiansKeepEtendue) {
         ray.direction = {F{}, q, sqrt(one - q * q)};
         const float entrance = float(first_order(lens, kLineD_nm).entrance_pupil_mm);
         ray.origin = {F{}, F{splat(-entrance * sine), splat(1), {}}, F{}};
-        ASSERT_TRUE(all(trace_lens(lens, indices, Towards::Film, whole(lens), ray, Clip::No)));
+        ASSERT_TRUE(all(trace_lens({lens, Towards::Film, whole(lens), Clip::No}, indices, ray)));
         // Back to the plane of the last vertex.
         const F y = ray.origin.y - ray.origin.z * ray.direction.y / ray.direction.z;
         const F p = ray.direction.y;

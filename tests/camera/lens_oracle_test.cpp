@@ -98,7 +98,7 @@ Worst<V> compare(const Lens& lens, const std::vector<Row>& rows, Towards towards
         const auto add_path = [&path](const LensHit<V>& hit) {
             path = select(hit.reached, V(path + hit.index * hit.distance_mm), path);
         };
-        const auto passed = trace_lens(lens, indices, towards, whole(lens), ray, clip, add_path);
+        const auto passed = trace_lens({lens, towards, whole(lens), clip}, indices, ray, add_path);
         for (int i = 0; i < 4 && first + size_t(i) < rows.size(); ++i) {
             const Row& wanted = row(i);
             const End& end_wanted = clip == Clip::Yes ? wanted.clipped : wanted.unclipped;

@@ -63,9 +63,9 @@ TEST(RandomLens, EveryRayHasADefinedEnd) {
         auto dual = test::with_derivatives(floats);
         SCOPED_TRACE(trial);
         const auto indices = lens.exact_indices(splat(550));
-        (void)trace_lens(lens, lens.exact_indices(d4{} + 550), towards, whole(lens), doubles, clip);
-        (void)trace_lens(lens, indices, towards, whole(lens), floats, clip);
-        (void)trace_lens(lens, indices, towards, whole(lens), dual, clip);
+        (void)trace_lens({lens, towards, whole(lens), clip}, lens.exact_indices(d4{} + 550), doubles);
+        (void)trace_lens({lens, towards, whole(lens), clip}, indices, floats);
+        (void)trace_lens({lens, towards, whole(lens), clip}, indices, dual);
         // Grazing incidence on a sphere loses half the digits.
         ASSERT_EQ(fault_of(doubles, lens, towards, 1e-9), "");
         ASSERT_EQ(fault_of(floats, lens, towards, 0.05), "");
@@ -81,7 +81,7 @@ TEST(RandomLens, EveryRayHasADefinedEnd) {
             const auto& [origin, direction] = lines[size_t(i)];
             one.origin = {float(origin[0]), float(origin[1]), float(origin[2])};
             one.direction = {float(direction[0]), float(direction[1]), float(direction[2])};
-            (void)trace_lens(lens, one_index, towards, whole(lens), one, clip);
+            (void)trace_lens({lens, towards, whole(lens), clip}, one_index, one);
             ASSERT_EQ(one.status(0), floats.status(i));
             ASSERT_EQ(one.end_surface, floats.end_surface[i]);
             ASSERT_EQ(at_lane(one.origin, 0), at_lane(floats.origin, i));
@@ -107,8 +107,7 @@ TEST(RandomLens, PointsAreOnTheSurfacesAndSnellsLawHolds) {
             const LensSurface& surface = lens.prescription().surfaces[size_t(i)];
             const auto& facts = lens.surfaces<double>()[size_t(i)];
             const auto before = ray;
-            (void)trace_lens(lens, indices, to_film ? Towards::Film : Towards::Scene, {i, i}, ray,
-                             Clip::Yes);
+            (void)trace_lens({lens, to_film ? Towards::Film : Towards::Scene, {i, i}, Clip::Yes}, indices, ray);
             double n[] = {indices.of_medium[facts.medium_before][0],
                           indices.of_medium[facts.medium_after][0]};
             if (!to_film) std::swap(n[0], n[1]);
@@ -139,8 +138,7 @@ TEST(RandomLens, NumbersThatAreNoneMiss) {
                 f4* const number[] = {&ray.origin.x,    &ray.origin.y,    &ray.origin.z,
                                       &ray.direction.x, &ray.direction.y, &ray.direction.z};
                 (*number[place])[2] = float(bad);
-                const auto alive = trace_lens(lens, lens.exact_indices(splat(550)), towards,
-                                              whole(lens), ray, Clip::No);
+                const auto alive = trace_lens({lens, towards, whole(lens), Clip::No}, lens.exact_indices(splat(550)), ray);
                 EXPECT_EQ(fault_of(ray, lens, towards, 1e-5), "");
                 EXPECT_EQ(ray.status(2), RayStatus::Missed) << place << ' ' << bad;
                 for (const int i : {0, 1, 3}) EXPECT_TRUE(alive[i]);
@@ -156,8 +154,7 @@ TEST(RandomLens, SlopesWhoseSquaresAreInfiniteMiss) {
         std::array<Line, 4> lines;
         for (auto& line : lines) line = random_line(random, true);
         auto ray = rays_of<d4>(lines);
-        (void)trace_lens(lens, lens.exact_indices(d4{} + 550), Towards::Film, whole(lens), ray,
-                         Clip::No);
+        (void)trace_lens({lens, Towards::Film, whole(lens), Clip::No}, lens.exact_indices(d4{} + 550), ray);
         ASSERT_EQ(fault_of(ray, lens, Towards::Film, 1e-9), "") << trial;
     }
 }

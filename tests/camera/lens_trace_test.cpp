@@ -36,7 +36,7 @@ struct Outcome {
 Outcome traced(const Lens& lens, Three origin, Three direction, Towards towards = Towards::Film,
                Clip clip = Clip::No) {
     auto ray = ray_of<d4>(origin, direction);
-    (void)trace_lens(lens, lens.exact_indices(kD_nm), towards, whole(lens), ray, clip);
+    (void)trace_lens({lens, towards, whole(lens), clip}, lens.exact_indices(kD_nm), ray);
     Three point = at_lane(ray.origin, 0);
     point[2] += lens.vertex_mm(ray.counted_from);
     return {point, at_lane(ray.direction, 0), ray.status(0)};
@@ -230,11 +230,11 @@ TEST(LensTrace, ThereAndBackAndThereAgain) {
             LensRay<V> ray;
             ray.origin = test::vectors_of<V>([&](int i) { return at_lane(start.origin, i); });
             ray.direction = test::vectors_of<V>([&](int i) { return at_lane(start.direction, i); });
-            ASSERT_TRUE(all(trace_lens(lens, indices, Towards::Film, whole(lens), ray, Clip::No)))
+            ASSERT_TRUE(all(trace_lens({lens, Towards::Film, whole(lens), Clip::No}, indices, ray)))
                 << name;
             const auto there = ray;
             ray.direction = ray.direction * ScalarOf<V>(-1);
-            ASSERT_TRUE(all(trace_lens(lens, indices, Towards::Scene, whole(lens), ray, Clip::No)));
+            ASSERT_TRUE(all(trace_lens({lens, Towards::Scene, whole(lens), Clip::No}, indices, ray)));
             EXPECT_EQ(ray.counted_from, 0);
             for (int i = 0; i < 4; ++i) {
                 const Three back = at_lane(ray.direction, i), at = at_lane(ray.origin, i);
@@ -243,7 +243,7 @@ TEST(LensTrace, ThereAndBackAndThereAgain) {
                 expect_near(test::plus(at, back, t), at_lane(start.origin, i), tolerance);
             }
             ray.direction = ray.direction * ScalarOf<V>(-1);
-            ASSERT_TRUE(all(trace_lens(lens, indices, Towards::Film, whole(lens), ray, Clip::No)));
+            ASSERT_TRUE(all(trace_lens({lens, Towards::Film, whole(lens), Clip::No}, indices, ray)));
             EXPECT_EQ(ray.counted_from, lens.last());
             for (int i = 0; i < 4; ++i) {
                 expect_near(at_lane(ray.origin, i), at_lane(there.origin, i), tolerance);
@@ -266,12 +266,11 @@ TEST(LensTrace, InPartsIsLikeInOneGo) {
         for (int i = 0; i < 50; ++i) {
             auto whole_way = usual_ray(lens, random), parts = whole_way;
             const int stop = lens.stop();
-            (void)trace_lens(lens, indices, Towards::Film, whole(lens), whole_way, Clip::Yes);
-            (void)trace_lens(lens, indices, Towards::Film, {0, stop - 1}, parts, Clip::Yes);
-            (void)trace_lens(lens, indices, Towards::Film, {stop, stop}, parts, Clip::Yes);
-            (void)trace_lens(lens, indices, Towards::Film, {stop, stop - 1}, parts, Clip::Yes);
-            (void)trace_lens(lens, indices, Towards::Film, {stop + 1, lens.last()}, parts,
-                             Clip::Yes);
+            (void)trace_lens({lens, Towards::Film, whole(lens), Clip::Yes}, indices, whole_way);
+            (void)trace_lens({lens, Towards::Film, {0, stop - 1}, Clip::Yes}, indices, parts);
+            (void)trace_lens({lens, Towards::Film, {stop, stop}, Clip::Yes}, indices, parts);
+            (void)trace_lens({lens, Towards::Film, {stop, stop - 1}, Clip::Yes}, indices, parts);
+            (void)trace_lens({lens, Towards::Film, {stop + 1, lens.last()}, Clip::Yes}, indices, parts);
             expect_near(at_lane(parts.origin, 0), at_lane(whole_way.origin, 0), 1e-12);
             expect_near(at_lane(parts.direction, 0), at_lane(whole_way.direction, 0), 1e-13);
             EXPECT_EQ(parts.status(0), whole_way.status(0));
@@ -289,8 +288,8 @@ TEST(LensTrace, ABlockedLaneStaysBlocked) {
     std::vector<m4> reached;
     const auto look = [&](const LensHit<f4>& hit) { reached.push_back(hit.reached); };
     const auto indices = lens.indices(splat(550));
-    (void)trace_lens(lens, indices, Towards::Film, {0, 2}, ray, Clip::Yes, look);
-    const auto passed = trace_lens(lens, indices, Towards::Film, {3, 3}, ray, Clip::Yes, look);
+    (void)trace_lens({lens, Towards::Film, {0, 2}, Clip::Yes}, indices, ray, look);
+    const auto passed = trace_lens({lens, Towards::Film, {3, 3}, Clip::Yes}, indices, ray, look);
     const m4 passed_wanted{-1, 0, 0, -1}, ends{0, 0, 2, 0};
     ASSERT_EQ(reached.size(), 4u);
     const m4 reached_wanted[] = {
@@ -305,7 +304,7 @@ TEST(LensTrace, ABlockedLaneStaysBlocked) {
     ray = ray_of<f4>({0, 0, -5}, {0, 0, 1});
     ray.status_code[1] = int(RayStatus::TotallyReflected), ray.end_surface[1] = 3;
     ray.origin.x[1] = std::nanf("");
-    (void)trace_lens(lens, indices, Towards::Film, whole(lens), ray, Clip::Yes);
+    (void)trace_lens({lens, Towards::Film, whole(lens), Clip::Yes}, indices, ray);
     EXPECT_EQ(ray.status(1), RayStatus::TotallyReflected);
     EXPECT_EQ(ray.end_surface[1], 3);
     EXPECT_EQ(at_lane(ray.origin, 1), (Three{}));
@@ -313,7 +312,7 @@ TEST(LensTrace, ABlockedLaneStaysBlocked) {
     // Once all are blocked, nothing is looked at any more.
     reached.clear();
     ray = ray_of<f4>({0, 11, -5}, {0, 0, 1});
-    (void)trace_lens(lens, indices, Towards::Film, whole(lens), ray, Clip::Yes, look);
+    (void)trace_lens({lens, Towards::Film, whole(lens), Clip::Yes}, indices, ray, look);
     EXPECT_EQ(reached.size(), 1u);
 }
 
@@ -322,8 +321,7 @@ TEST(LensTrace, AnObserverSeesPointsIndicesAndDistances) {
     for (const bool to_film : {true, false}) {
         auto ray = ray_of<d4>({0, 0, -4}, {0, 0.6, to_film ? 0.8 : -0.8});
         std::vector<LensHit<d4>> hits;
-        (void)trace_lens(lens, lens.exact_indices(kD_nm), to_film ? Towards::Film : Towards::Scene,
-                         whole(lens), ray, Clip::No, [&](const auto& hit) { hits.push_back(hit); });
+        (void)trace_lens({lens, to_film ? Towards::Film : Towards::Scene, whole(lens), Clip::No}, lens.exact_indices(kD_nm), ray, [&](const auto& hit) { hits.push_back(hit); });
         ASSERT_EQ(hits.size(), 3u);
         const double in_air = 1 / 0.8, in_glass = 1 / std::sqrt(1 - 0.16);
         for (size_t i = 0; i < 3; ++i) {

@@ -153,10 +153,9 @@ class Trial {
             auto dual = test::with_derivatives(floats);
             const auto indices = by_chance(random_, 0.5f) ? lens_.exact_indices(splat(float(nm)))
                                                           : lens_.indices(splat(float(nm)));
-            (void)trace_lens(lens_, lens_.exact_indices(broadcast<d4>(nm)), towards,
-                             test::whole(lens_), doubles, clip);
-            (void)trace_lens(lens_, indices, towards, test::whole(lens_), floats, clip);
-            (void)trace_lens(lens_, indices, towards, test::whole(lens_), dual, clip);
+            (void)trace_lens({lens_, towards, test::whole(lens_), clip}, lens_.exact_indices(broadcast<d4>(nm)), doubles);
+            (void)trace_lens({lens_, towards, test::whole(lens_), clip}, indices, floats);
+            (void)trace_lens({lens_, towards, test::whole(lens_), clip}, indices, dual);
             if (kind_ == Kind::Wild || !has_indices(nm, indices)) continue;
             // Light that grazed a surface comes from so far away that digits are gone.
             defined(doubles, towards, kind_ == Kind::Random ? 1e-9 : 0.01, "doubles");

@@ -241,7 +241,7 @@ void render_replicates(const RenderSetup& setup, const PlanRequest& request,
         for (uint32_t k = 0; k < kTruthReplicates; ++k) {
             job.seed = hash32(kFirstSeed + turn, k);
             Film film(request.scene.size, {at.x, at.y, at.x + 1, at.y + 1}, {});
-            render_samples(tracer, *setup.view.camera, job, {at.x, at.y}, 0, samples[p], film,
+            render_samples(tracer, *setup.view.camera, job, {{at.x, at.y}, 0, samples[p]}, film,
                            stats);
             const V4f c = film.colour(at.x, at.y);
             into[p][k] = V3d(c.x, c.y, c.z);

@@ -11,8 +11,8 @@
 namespace petzval {
 namespace {
 
-// The constants are those of the extension's appendix A.
-constexpr uint64_t kGroup = 16, kTail = 32;
+// Of the extension's appendix A.
+constexpr uint64_t kTail = 32;
 
 /// The low four bits of a stream's first byte; the high four say the mode.
 int version(uint8_t header) {
@@ -23,7 +23,7 @@ int version(uint8_t header) {
 /// elements.
 uint64_t least_attribute_bytes(uint64_t count, uint64_t stride) {
     const auto header = [](uint64_t elements) {
-        return ((elements + kGroup - 1) / kGroup + 3) / 4;
+        return ((elements + kMeshoptGroup - 1) / kMeshoptGroup + 3) / 4;
     };
     const uint64_t block = attributes_in_block(stride);
     return 1 + stride * (count / block * header(block) + header(count % block)) +
@@ -34,7 +34,7 @@ uint64_t least_bytes(const MeshoptLayout& layout, uint8_t header) {
     if (layout.mode == MeshoptMode::Attributes)
         return version(header) == 0 ? least_attribute_bytes(layout.count, layout.stride)
                                     : least_attribute_bytes_1(layout.count, layout.stride);
-    return layout.mode == MeshoptMode::Triangles ? 1 + layout.count / 3 + kGroup
+    return layout.mode == MeshoptMode::Triangles ? 1 + layout.count / 3 + kMeshoptGroup
                                                  : 1 + layout.count + 4;
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 // The numbers are those of the extension's appendix A. Four neighbouring bytes of an element are a
 // channel: their differences from the element before are of one kind.
-constexpr uint64_t kBlockBytes = 8192, kBlockElements = 256, kGroup = 16, kTail = 24, kChannel = 4;
+constexpr uint64_t kBlockBytes = 8192, kBlockElements = 256, kAttributeTail = 24, kChannel = 4;
 constexpr uint8_t kHeader = 0xa1;
 
 /// One byte of each element of a block, rounded up to whole groups.
@@ -19,7 +19,7 @@ using Deltas = std::array<uint8_t, kBlockElements>;
 
 /// Bytes of the first element and of the kinds of its channels, with the zeros before them.
 uint64_t tail_bytes(uint64_t stride) {
-    return std::max(stride + stride / kChannel, kTail);
+    return std::max(stride + stride / kChannel, kAttributeTail);
 }
 
 /// The bytes of a stream, one part after the other.
@@ -44,14 +44,14 @@ class Reader {
 /// Reads the deltas of a group, of 0, 1, 2, 4 or 8 bits each. Below 8 bits, one whose bits are all
 /// set stands for a byte behind the group.
 bool read_group(Reader& in, unsigned bits, uint8_t* deltas) {
-    const uint8_t* const packed = in.take(kGroup * bits / 8);
+    const uint8_t* const packed = in.take(kMeshoptGroup * bits / 8);
     if (!packed) return false;
     if (bits == 0 || bits == 8) {
-        bits == 0 ? std::fill_n(deltas, kGroup, uint8_t(0)) : std::copy_n(packed, kGroup, deltas);
+        bits == 0 ? std::fill_n(deltas, kMeshoptGroup, uint8_t(0)) : std::copy_n(packed, kMeshoptGroup, deltas);
         return true;
     }
     const unsigned all_set = (1u << bits) - 1, in_a_byte = 8 / bits;
-    for (unsigned i = 0; i < kGroup; ++i) {
+    for (unsigned i = 0; i < kMeshoptGroup; ++i) {
         const unsigned place = i % in_a_byte;  // single bits begin with the lowest, others do not
         const unsigned shift = bits * (bits == 1 ? place : in_a_byte - 1 - place);
         const unsigned delta = packed[i / in_a_byte] >> shift & all_set;
@@ -75,10 +75,10 @@ bool read_deltas(Reader& in, unsigned control, size_t count, Deltas& deltas) {
         if (bytes) std::copy_n(bytes, count, deltas.begin());
         return bytes != nullptr;
     }
-    const size_t groups = (count + kGroup - 1) / kGroup;
+    const size_t groups = (count + kMeshoptGroup - 1) / kMeshoptGroup;
     const uint8_t* const header = in.take((groups + 3) / 4);
     for (size_t g = 0; header && g < groups; ++g)
-        if (!read_group(in, kBits[control][header[g / 4] >> g % 4 * 2 & 3], &deltas[g * kGroup]))
+        if (!read_group(in, kBits[control][header[g / 4] >> g % 4 * 2 & 3], &deltas[g * kMeshoptGroup]))
             return false;
     return header != nullptr;
 }
@@ -128,7 +128,7 @@ bool read_channel(Reader& in, uint8_t controls, uint8_t channel, size_t count, u
 }  // namespace
 
 uint64_t attributes_in_block(uint64_t stride) {
-    return std::min(kBlockBytes / stride / kGroup * kGroup, kBlockElements);
+    return std::min(kBlockBytes / stride / kMeshoptGroup * kMeshoptGroup, kBlockElements);
 }
 
 uint64_t least_attribute_bytes_1(uint64_t count, uint64_t stride) {

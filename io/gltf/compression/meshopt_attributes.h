@@ -8,6 +8,9 @@
 
 namespace petzval {
 
+/// Elements of a group, which share a header (appendix A).
+inline constexpr uint64_t kMeshoptGroup = 16;
+
 /// Elements of a whole block of a stream, whatever its version.
 [[nodiscard]] uint64_t attributes_in_block(uint64_t stride);
 

@@ -3,7 +3,7 @@
 
 #include "apps/chart/chart_report.h"
 #include "io/base/error.h"
-#include "io/base/read_file.h"
+#include "io/file/read_file.h"
 #include "io/base/uri.h"
 #include "io/base/xml_text.h"
 #include "io/build/build.h"

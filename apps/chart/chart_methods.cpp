@@ -11,7 +11,7 @@
 #include "camera/iris/iris.h"
 #include "core/film/spectral_film.h"
 #include "io/aperture/aperture_file.h"
-#include "io/base/atomic_file.h"
+#include "io/file/atomic_file.h"
 #include "io/base/error.h"
 #include "io/image/picture_files.h"
 

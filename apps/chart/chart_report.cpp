@@ -9,8 +9,8 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "io/base/atomic_file.h"
-#include "io/base/rescue.h"
+#include "io/file/atomic_file.h"
+#include "io/file/rescue.h"
 #include "io/build/build.h"
 #include "io/image/flip.h"
 #include "io/image/output.h"

@@ -13,7 +13,7 @@
 
 #include "apps/request/option_text.h"
 #include "io/base/ascii.h"
-#include "io/base/atomic_file.h"
+#include "io/file/atomic_file.h"
 #include "io/base/error.h"
 #include "io/base/printable.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/request/render_request.h"
-#include "io/base/overwrite.h"
+#include "io/file/overwrite.h"
 
 namespace petzval {
 

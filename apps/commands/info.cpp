@@ -8,7 +8,7 @@
 #include "apps/cli/console.h"
 #include "apps/cli/field_options.h"
 #include "apps/commands/info_report.h"
-#include "apps/setup/camera_model.h"
+#include "apps/setup/camera/camera_model.h"
 #include "apps/setup/glass_remarks.h"
 #include "io/base/error.h"
 #include "io/gltf/info.h"

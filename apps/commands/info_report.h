@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/setup/auto_focus.h"
+#include "apps/setup/camera/auto_focus.h"
 #include "io/gltf/gltf.h"
 
 namespace petzval {

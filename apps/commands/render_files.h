@@ -10,7 +10,7 @@
 #include "apps/state/finished_film.h"
 #include "core/film/film.h"
 #include "io/base/notice.h"
-#include "io/base/rescue.h"
+#include "io/file/rescue.h"
 
 namespace petzval {
 

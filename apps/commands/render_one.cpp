@@ -19,7 +19,7 @@
 #include "io/base/error.h"
 #include "io/base/format.h"
 #include "io/base/printable.h"
-#include "io/base/read_file.h"
+#include "io/file/read_file.h"
 #include "io/image/display.h"
 #include "io/image/picture_files.h"
 

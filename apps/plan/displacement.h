@@ -2,7 +2,7 @@
 // Displacement between two cameras: how far apart their rays for one film point meet the scene.
 #pragma once
 
-#include "apps/plan/looks.h"
+#include "apps/plan/pilot_pixels.h"
 #include "camera/camera.h"
 #include "camera/setup/focus_plane.h"
 #include "core/spectrum/observer.h"

@@ -25,13 +25,13 @@ RenderSetup view_of(const RenderSetup& first, const SceneRequest& scene, TbbExec
 }
 
 PilotModel::PilotModel(RenderSetup setup, const RenderJob& job, const PathOptions& options,
-                       const std::vector<Look>& looks)
+                       const std::vector<PilotPixel>& looks)
     : setup_(std::move(setup)),
       tracer_(*setup_.prepared.scene, *setup_.prepared.bvh, *setup_.prepared.lights,
               with_background(options, setup_.view)),
       sums_(looks.size()),
       look_s_(looks.size()) {
-    for (const Look& look : looks) weights_.push_back(look.weight);
+    for (const PilotPixel& look : looks) weights_.push_back(look.weight);
     job_.sampler = job.sampler;
     job_.filter = job.filter;
     job_.replicates = job.replicates;
@@ -86,11 +86,11 @@ double PilotModel::cpu_s_per_sample() const {
     return even > 0 ? mean * weighed / weights / even : mean;
 }
 
-Pilot::Pilot(V2i size_px, Looks looks, TbbExecutor& executor, uint32_t seed)
+Pilot::Pilot(V2i size_px, PilotPixels looks, TbbExecutor& executor, uint32_t seed)
     : size_px_(size_px), seed_(seed), looks_(std::move(looks)), executor_(executor) {}
 
 Pilot::Pilot(V2i size_px, int wanted, TbbExecutor& executor, uint32_t seed)
-    : Pilot(size_px, even_looks(size_px, wanted, seed), executor, seed) {}
+    : Pilot(size_px, even_pilot_pixels(size_px, wanted, seed), executor, seed) {}
 
 std::unique_ptr<PilotModel> Pilot::model(RenderSetup setup, const RenderJob& job,
                                          const PathOptions& options) const {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "apps/plan/estimate.h"
-#include "apps/plan/looks.h"
+#include "apps/plan/pilot_pixels.h"
 #include "apps/setup/render_setup.h"
 #include "integrator/path/path.h"
 #include "integrator/render/executor.h"
@@ -42,7 +42,7 @@ class PilotModel {
 
   private:
     friend class Pilot;
-    PilotModel(RenderSetup, const RenderJob&, const PathOptions&, const std::vector<Look>&);
+    PilotModel(RenderSetup, const RenderJob&, const PathOptions&, const std::vector<PilotPixel>&);
     [[nodiscard]] double lens_rays() const;
     [[nodiscard]] double rays_to_find_targets() const;
 
@@ -62,13 +62,13 @@ class PilotModel {
 /// and seed alone.
 class Pilot {
   public:
-    Pilot(V2i size_px, Looks, TbbExecutor&, uint32_t seed = 0);
+    Pilot(V2i size_px, PilotPixels, TbbExecutor&, uint32_t seed = 0);
     /// wanted: about so many pixels, one in each cell of an even grid.
     Pilot(V2i size_px, int wanted, TbbExecutor&, uint32_t seed = 0);
 
     [[nodiscard]] size_t pixels() const { return looks_.looks.size(); }
     [[nodiscard]] V2i size_px() const { return size_px_; }
-    [[nodiscard]] const Looks& looks() const { return looks_; }
+    [[nodiscard]] const PilotPixels& looks() const { return looks_; }
     /// Uses job.sampler, job.filter and job.replicates; ignores the rest.
     [[nodiscard]] std::unique_ptr<PilotModel> model(RenderSetup, const RenderJob&,
                                                     const PathOptions&) const;
@@ -78,7 +78,7 @@ class Pilot {
   private:
     V2i size_px_;
     uint32_t seed_;
-    Looks looks_;
+    PilotPixels looks_;
     TbbExecutor& executor_;
 };
 

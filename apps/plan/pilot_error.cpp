@@ -43,7 +43,7 @@ double inverse_scale(const PilotValues& a, const PilotValues& b, const Pair& pai
 /// Symmetric square from which on a pixel's own brightness is doubted: light that few replicates
 /// met makes the others look dark.
 constexpr double kDoubtful = 8;
-/// Looks of a neighbourhood, on average.
+/// PilotPixels of a neighbourhood, on average.
 constexpr double kNeighbours = 64;
 
 /// Mean of each look's neighbourhood: the other looks in the same cell of a grid. Its own would
@@ -60,7 +60,7 @@ std::vector<V3d> neighbourhoods(const Pilot& pilot, const PilotModel& model) {
     std::vector<V3d> sums(count, V3d(0.));
     std::vector<double> weights(count, 0.);
     for (size_t p = 0; p < pilot.pixels(); ++p) {
-        const Look& look = pilot.looks().looks[p];
+        const PilotPixel& look = pilot.looks().looks[p];
         cell_of.push_back(grid.cell_at(size, look.pixel[0], look.pixel[1]));
         own.emplace_back(0.);
         for (const V3d& v : model.means(p)) own.back() += v * (look.weight / kPilotReplicates);
@@ -112,7 +112,7 @@ struct Value {
     double mean;
     std::array<double, 2> halves;
 };
-Estimate mean_of(const std::vector<Value>& values, const std::vector<Look>& looks) {
+Estimate mean_of(const std::vector<Value>& values, const std::vector<PilotPixel>& looks) {
     double certain = 0, variance = 0, sum = 0, weights = 0, drawn = 0;
     for (size_t p = 0; p < values.size(); ++p) {
         const double weight = looks[p].weight;

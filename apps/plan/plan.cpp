@@ -13,7 +13,7 @@
 namespace petzval {
 namespace {
 
-/// Looks of a plan, and bounds of those of a render that chooses for itself.
+/// PilotPixels of a plan, and bounds of those of a render that chooses for itself.
 constexpr int kLooks = 4096, kFewestLooks = 256, kMostLooks = 8192;
 /// Samples for each pixel of the frame that a render may spend on choosing its model: with the
 /// choice of the mode they stay below a hundredth of 64.

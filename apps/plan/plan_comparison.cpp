@@ -49,8 +49,8 @@ FilmMap with_edges(FilmMap map) {
     return map;
 }
 
-bool has_lamps(const std::vector<Thing>& things) {
-    return std::any_of(things.begin(), things.end(), [](const Thing& t) { return t.is_lamp(); });
+bool has_lamps(const std::vector<SmallFeature>& things) {
+    return std::any_of(things.begin(), things.end(), [](const SmallFeature& t) { return t.is_lamp(); });
 }
 
 }  // namespace
@@ -131,7 +131,7 @@ PlanComparison::PlanComparison(const PlanRequest& request, const RenderSetup& fi
     }
     RenderSetup full = this->open(full_scene_);
     if (shared) compare_dispersion(full, *shared);
-    choose_looks(looks);
+    choose_pilot_pixels(looks);
     if (shared) shared_ = model(*std::move(shared));
     full_ = model(std::move(full));
 }
@@ -150,18 +150,18 @@ void PlanComparison::compare_dispersion(const RenderSetup& split, const RenderSe
 
 // Things that shine or depend on wavelength get looks where their light lands, and so does what a
 // lens with dispersion may change most, its corners and the edges of the frame.
-void PlanComparison::choose_looks(int wanted) {
+void PlanComparison::choose_pilot_pixels(int wanted) {
     const Scene& scene = *first_.prepared.scene;
     const V2i size = request_.scene.size;
     // Lamps that are targets are known one by one.
-    things_ = first_.view.targets ? things_of(scene, kMostTargetedLamps) : things_of(scene);
+    things_ = first_.view.targets ? small_features_of(scene, kMostTargetedLamps) : small_features_of(scene);
     glass_disperses_ = std::any_of(scene.materials.begin(), scene.materials.end(),
                                    [](const Material& m) { return m.glass && m.refracts(); });
     regions_ = film_regions(*first_.view.still, size, things_);
     lamps_ = seen_lamps(first_, size, things_, regions_);
     pilot_.emplace(
         size,
-        petzval::choose_looks(size, wanted, regions_,
+        petzval::choose_pilot_pixels(size, wanted, regions_,
                               with_edges(open_.dispersion ? dispersed_ : even_map(size)), 0),
         executor_);
 }

@@ -49,7 +49,7 @@ class PlanComparison {
         PlanCandidate found;
         const PilotModel* model;
         std::vector<PilotTerm> difference;  ///< from the fullest
-        double unseen;                      ///< Looks::unseen()
+        double unseen;                      ///< PilotPixels::unseen()
         std::unique_ptr<PilotModel> own;    ///< the model, unless it is one of the others'
         bool settled = false;               ///< beyond the tolerance: sampled no more
     };
@@ -59,7 +59,7 @@ class PlanComparison {
     [[nodiscard]] std::unique_ptr<PilotModel> model(RenderSetup) const;
     /// The setups of one ray for each wavelength and of one for all.
     void compare_dispersion(const RenderSetup& split, const RenderSetup& shared);
-    void choose_looks(int wanted);
+    void choose_pilot_pixels(int wanted);
     void add(PlanModel, const SceneRequest&, const FilmMap& most);
     void add_camera(PlanModel, const SceneRequest&);
     void evaluate();
@@ -76,7 +76,7 @@ class PlanComparison {
     PlanOpen open_;
     SceneRequest full_scene_, shared_scene_;
     TbbExecutor& executor_;
-    std::vector<Thing> things_;
+    std::vector<SmallFeature> things_;
     std::vector<FilmRegion> regions_;
     std::vector<SeenLamp> lamps_;
     std::vector<V3d> least_;  ///< least_means() of the looks

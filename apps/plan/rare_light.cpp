@@ -43,7 +43,7 @@ std::optional<Ray> ray_in(const RenderSetup& setup, V2i size_px, const FilmRegio
 }
 
 /// Squared distance at which a ray passes a lamp, in metres, or radians at infinity.
-double square_distance(const Ray& ray, const Thing& lamp) {
+double square_distance(const Ray& ray, const SmallFeature& lamp) {
     if (lamp.at_infinity) return double((ray.direction - lamp.centre).length2());
     const V3f to = lamp.centre - ray.origin;
     const float along = to.dot(ray.direction);
@@ -51,7 +51,7 @@ double square_distance(const Ray& ray, const Thing& lamp) {
 }
 
 /// Whether a thing is one lamp, not several far apart.
-bool is_alone(const Thing& lamp) {
+bool is_alone(const SmallFeature& lamp) {
     const double across = double(kPi) * double(lamp.radius_m) * double(lamp.radius_m);
     return lamp.area_m2 >= kFilled * across;
 }
@@ -76,7 +76,7 @@ double sent_to(const RenderSetup& setup, V2i size_px, std::array<int, 2> pixel,
     return sum;
 }
 
-bool is_hidden(const Bvh& bvh, const Ray& ray, const Thing& lamp) {
+bool is_hidden(const Bvh& bvh, const Ray& ray, const SmallFeature& lamp) {
     Ray shadow;
     shadow.origin = ray.origin;
     if (lamp.at_infinity) {
@@ -92,11 +92,11 @@ bool is_hidden(const Bvh& bvh, const Ray& ray, const Thing& lamp) {
 }  // namespace
 
 std::vector<SeenLamp> seen_lamps(const RenderSetup& setup, V2i size_px,
-                                 const std::vector<Thing>& things,
+                                 const std::vector<SmallFeature>& things,
                                  const std::vector<FilmRegion>& regions) {
     std::vector<SeenLamp> out;
     for (size_t n = 0; n < things.size(); ++n) {
-        const Thing& lamp = things[n];
+        const SmallFeature& lamp = things[n];
         if (!lamp.is_lamp() || regions[n].rects.empty()) continue;
         std::vector<double> squares;
         bool visible = false;

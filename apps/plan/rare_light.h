@@ -8,7 +8,7 @@
 
 #include "apps/plan/pilot_error.h"
 #include "camera/setup/film_region.h"
-#include "core/light/things.h"
+#include "core/light/small_features.h"
 
 namespace petzval {
 
@@ -20,7 +20,7 @@ struct SeenLamp {
     int64_t area_px;     ///< of the film that its light falls on
     double probability;  ///< that a camera ray of this area meets it
     bool alone;          ///< its light is even over the area: one lamp, not several far apart
-    Thing thing;
+    SmallFeature thing;
     const FilmRegion* region;
 
     /// Variance of one sample that it adds where nothing else does, times the squared mean.
@@ -29,7 +29,7 @@ struct SeenLamp {
 
 /// Lamps among the things that no surface hides from the camera, each with its region.
 [[nodiscard]] std::vector<SeenLamp> seen_lamps(const RenderSetup&, V2i size_px,
-                                               const std::vector<Thing>&,
+                                               const std::vector<SmallFeature>&,
                                                const std::vector<FilmRegion>&);
 
 /// Least means of a pilot's looks, as PilotScale wants them: where a lamp is met by less than one

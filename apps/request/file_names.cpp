@@ -7,7 +7,7 @@
 
 #include "apps/request/value_error.h"
 #include "io/base/ascii.h"
-#include "io/base/atomic_file.h"
+#include "io/file/atomic_file.h"
 #include "io/picture/picture_kind.h"
 
 namespace petzval {

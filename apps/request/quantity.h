@@ -14,7 +14,7 @@
 #include <type_traits>
 
 #include "apps/request/value_error.h"
-#include "io/base/text_lines.h"
+#include "io/file/text_lines.h"
 
 namespace petzval {
 

@@ -8,7 +8,7 @@
 #include "apps/request/render_order.h"
 #include "apps/request/value_error.h"
 #include "core/film/spectral_film.h"
-#include "io/base/csv.h"
+#include "io/file/csv.h"
 #include "io/base/machine.h"
 
 namespace petzval {

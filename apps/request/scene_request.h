@@ -20,7 +20,7 @@
 #include "core/spectrum/bands.h"
 #include "core/spectrum/bins.h"
 #include "core/traversal/traversal_options.h"
-#include "io/base/overwrite.h"
+#include "io/file/overwrite.h"
 #include "io/gltf/choices.h"
 #include "io/gltf/validate/source.h"
 #include "io/picture/picture_budget.h"

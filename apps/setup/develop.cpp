@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "apps/request/option_names.h"
-#include "apps/setup/camera_report.h"
+#include "apps/setup/camera/camera_report.h"
 #include "core/spectrum/colour.h"
 #include "io/base/printable.h"
 #include "io/build/build.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/setup/input_files.h"
 
-#include "io/base/assets.h"
+#include "io/file/assets.h"
 #include "io/base/error.h"
 
 namespace petzval {

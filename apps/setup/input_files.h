@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/request/scene_request.h"
-#include "io/base/overwrite.h"
+#include "io/file/overwrite.h"
 #include "io/gltf/gltf.h"
 
 namespace petzval {

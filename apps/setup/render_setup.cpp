@@ -7,8 +7,8 @@
 #include <chrono>
 
 #include "apps/request/option_names.h"
-#include "apps/setup/camera_model.h"
-#include "apps/setup/camera_setup.h"
+#include "apps/setup/camera/camera_model.h"
+#include "apps/setup/camera/camera_setup.h"
 #include "apps/setup/glass_remarks.h"
 #include "apps/setup/input_files.h"
 #include "camera/models/moving_camera.h"
@@ -23,7 +23,7 @@
 #include "io/base/error.h"
 #include "io/base/format.h"
 #include "io/base/printable.h"
-#include "io/base/read_file.h"
+#include "io/file/read_file.h"
 #include "io/gltf/gltf.h"
 #include "io/image/environment.h"
 
@@ -206,8 +206,8 @@ PreparedScene load(SceneRequest request, const Notice& notice, FrameReuse* frame
 std::shared_ptr<const TargetGrid> targets_of(TargetCamera& camera, const Camera& still, V2i size_px,
                                              const PreparedScene& prepared) {
     const Scene& scene = *prepared.scene;
-    std::vector<Thing> things = things_of(scene, kMostTargets);
-    const std::vector<Thing> images = highlights(still, scene, *prepared.bvh, size_px, things);
+    std::vector<SmallFeature> things = small_features_of(scene, kMostTargets);
+    const std::vector<SmallFeature> images = highlights(still, scene, *prepared.bvh, size_px, things);
     things.insert(things.end(), images.begin(), images.end());
     camera.set_targets(find_targets(camera, size_px, things));
     return targets_that_pay(camera, scene, *prepared.bvh, *prepared.lights, size_px);
@@ -284,7 +284,7 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
     if (model.from) setup.view.of_file = static_cast<size_t>(model.from - prepared.cameras->data());
     if (prepared.lights->divides())
         prepared.lights = std::make_shared<const LightChoice>(
-            taught_by_pilot(*prepared.lights, scene, *prepared.bvh, *setup.view.still,
+            fitted_by_pilot(*prepared.lights, scene, *prepared.bvh, *setup.view.still,
                             setup.view.observer, request.size));
     compose_camera(request, shares ? like : nullptr, prepared, setup.view);
     from.camera = std::move(camera.report);

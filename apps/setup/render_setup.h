@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "apps/request/scene_request.h"
-#include "apps/setup/camera_report.h"
+#include "apps/setup/camera/camera_report.h"
 #include "apps/setup/phase.h"
 #include "apps/setup/spectral_setup.h"
 #include "camera/camera.h"

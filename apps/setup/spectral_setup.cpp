@@ -10,7 +10,7 @@
 #include "io/base/ascii.h"
 #include "io/base/error.h"
 #include "io/base/format.h"
-#include "io/base/read_file.h"
+#include "io/file/read_file.h"
 #include "io/spectra/spectra.h"
 
 namespace petzval {

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "io/base/atomic_file.h"
+#include "io/file/atomic_file.h"
 #include "io/build/build.h"
 
 namespace petzval {

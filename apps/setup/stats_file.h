@@ -10,7 +10,7 @@
 
 #include "core/film/film.h"
 #include "integrator/path/stats.h"
-#include "io/base/rescue.h"
+#include "io/file/rescue.h"
 
 namespace petzval {
 

@@ -12,7 +12,7 @@
 #include "apps/setup/develop.h"
 #include "apps/setup/input_files.h"
 #include "io/base/printable.h"
-#include "io/base/read_file.h"
+#include "io/file/read_file.h"
 #include "io/image/display_files.h"
 
 namespace petzval {

@@ -12,7 +12,7 @@
 #include "apps/setup/render_setup.h"
 #include "integrator/path/path_options.h"
 #include "integrator/render/render_job.h"
-#include "io/base/overwrite.h"
+#include "io/file/overwrite.h"
 #include "io/image/output.h"
 #include "io/picture/picture.h"
 #include "io/state/state_file.h"

@@ -39,7 +39,7 @@ RayBundle rays_of(const Camera& camera, V2i size_px, const Rect& cell) {
 }
 
 /// The region in finer and finer cells, until they are pixels or too many.
-FilmRegion refined(const Camera& camera, V2i size_px, const Thing& thing, std::vector<Rect> cells) {
+FilmRegion refined(const Camera& camera, V2i size_px, const SmallFeature& thing, std::vector<Rect> cells) {
     while (!cells.empty() && cells.size() < kMostRects && cells[0].width() > 1) {
         std::vector<Rect> finer;
         for (const Rect& cell : cells)
@@ -53,7 +53,7 @@ FilmRegion refined(const Camera& camera, V2i size_px, const Thing& thing, std::v
 
 /// Whether a thing lies in the cone of a bundle's rays, widened: a quick test, never false where
 /// passes() is true. 1.5: the corners of what the rays span.
-bool may_pass(const RayBundle& bundle, const Thing& thing, float margin) {
+bool may_pass(const RayBundle& bundle, const SmallFeature& thing, float margin) {
     const float wider = 1.5f * (1 + margin);
     const V3f to = thing.at_infinity ? thing.centre : thing.centre - bundle.origin;
     const float away_m = to.length(), beside_m = wider * bundle.reach_m + 1.5f * thing.radius_m;
@@ -67,7 +67,7 @@ bool may_pass(const RayBundle& bundle, const Thing& thing, float margin) {
 
 }  // namespace
 
-bool passes(const RayBundle& bundle, const Thing& thing, float margin) {
+bool passes(const RayBundle& bundle, const SmallFeature& thing, float margin) {
     const V3f w = bundle.direction;
     if (!(w.length2() > 0)) return false;
     if (!may_pass(bundle, thing, margin)) return false;
@@ -110,13 +110,13 @@ std::array<int, 2> FilmRegion::pixel(int64_t i) const {
 }
 
 std::vector<FilmRegion> film_regions(const Camera& camera, V2i size_px,
-                                     std::span<const Thing> things) {
+                                     std::span<const SmallFeature> things) {
     std::vector<FilmRegion> out;
     if (things.empty()) return out;
     const std::vector<Rect> cells = first_cells(size_px);
     std::vector<RayBundle> bundles;
     for (const Rect& cell : cells) bundles.push_back(rays_of(camera, size_px, cell));
-    for (const Thing& thing : things) {
+    for (const SmallFeature& thing : things) {
         std::vector<Rect> met;
         for (size_t i = 0; i < cells.size(); ++i)
             if (passes(bundles[i], thing)) met.push_back(cells[i]);

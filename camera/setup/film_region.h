@@ -7,7 +7,7 @@
 
 #include "camera/ray_bundle.h"
 #include "core/film/film.h"
-#include "core/light/things.h"
+#include "core/light/small_features.h"
 
 namespace petzval {
 
@@ -24,12 +24,12 @@ struct FilmRegion {
 /// Whether rays of the bundle's rectangle pass a thing, as seen in the plane through it across
 /// their mean direction. What the rays span is enlarged by this share on each side: those between
 /// and beyond them, through the rim of the iris, pass outside.
-[[nodiscard]] bool passes(const RayBundle&, const Thing&, float margin = 0.6f);
+[[nodiscard]] bool passes(const RayBundle&, const SmallFeature&, float margin = 0.6f);
 
 /// For each thing, the region of the frame whose camera rays pass it, as coarse as a few dozen
 /// rectangles; empty where none does. What stands between, mirrors and glass are not regarded. Rays
 /// are sampled: margins make up for what lies between them. Cameras are asked in RGB.
 [[nodiscard]] std::vector<FilmRegion> film_regions(const Camera&, V2i size_px,
-                                                   std::span<const Thing>);
+                                                   std::span<const SmallFeature>);
 
 }  // namespace petzval

@@ -23,20 +23,20 @@ constexpr double kMostMet = 0.25;
 constexpr double kLeastLight = 1e-3;
 
 /// Disc that faces a camera at `eye`.
-Target target_of(const Thing& lamp, const V3f& eye) {
+Target target_of(const SmallFeature& lamp, const V3f& eye) {
     if (lamp.at_infinity) return {lamp.centre, lamp.centre, std::tan(lamp.reach_m), true};
     return {lamp.centre, unit(lamp.centre - eye), lamp.reach_m, false};
 }
 
 /// A lamp, and what the camera makes of it once a cell asks for it.
 struct LampToTry {
-    Thing thing;
+    SmallFeature thing;
     uint32_t number = 0;  ///< of its target
     std::optional<PreparedTarget> ready{};
     bool hopeless = false;
 };
 
-bool may_be_target(const Thing& thing) {
+bool may_be_target(const SmallFeature& thing) {
     return thing.is_lamp() && thing.reach_m > 0 && std::isfinite(thing.reach_m) &&
            std::isfinite(thing.radiance) && !(thing.at_infinity && thing.reach_m > 0.5f);
 }
@@ -44,10 +44,10 @@ bool may_be_target(const Thing& thing) {
 }  // namespace
 
 std::shared_ptr<const TargetGrid> find_targets(const TargetCamera& camera, V2i size_px,
-                                               std::span<const Thing> things) {
+                                               std::span<const SmallFeature> things) {
     if (size_px.x < kCell_px || size_px.y < kCell_px) return nullptr;
     std::vector<LampToTry> lamps;
-    for (const Thing& thing : things)
+    for (const SmallFeature& thing : things)
         if (may_be_target(thing)) lamps.push_back({thing});
     if (lamps.empty()) return nullptr;
     std::stable_sort(lamps.begin(), lamps.end(), [](const LampToTry& a, const LampToTry& b) {

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "camera/target_camera.h"
-#include "core/light/things.h"
+#include "core/light/small_features.h"
 
 namespace petzval {
 
@@ -15,6 +15,6 @@ namespace petzval {
 /// there are none, or the frame is smaller than a cell. A function of
 /// the arguments alone. No ray is cast into the scene.
 [[nodiscard]] std::shared_ptr<const TargetGrid> find_targets(const TargetCamera&, V2i size_px,
-                                                             std::span<const Thing>);
+                                                             std::span<const SmallFeature>);
 
 }  // namespace petzval

@@ -37,7 +37,7 @@ class LightChoice {
     /// The same choice with even shares for the pilot: both groups are picked equally often.
     [[nodiscard]] LightChoice for_pilot() const;
     /// The same choice, with what a pilot has found.
-    [[nodiscard]] LightChoice taught(std::span<const LightRecord>) const;
+    [[nodiscard]] LightChoice fitted(std::span<const LightRecord>) const;
     /// Record of a light sample of a choice that divides(): the light, nullopt where none was
     /// picked, and what it brought.
     [[nodiscard]] LightRecord record(const std::optional<uint32_t>& light, const LightReceiver&,

@@ -123,11 +123,11 @@ LightChoice LightChoice::for_pilot() const {
     return even;
 }
 
-LightChoice LightChoice::taught(std::span<const LightRecord> records) const {
-    LightChoice taught = *this;
-    taught.shares_ = LightShares(records);
-    taught.least_share_ = kLeastShare;
-    return taught;
+LightChoice LightChoice::fitted(std::span<const LightRecord> records) const {
+    LightChoice fitted = *this;
+    fitted.shares_ = LightShares(records);
+    fitted.least_share_ = kLeastShare;
+    return fitted;
 }
 
 LightRecord LightChoice::record(const std::optional<uint32_t>& light, const LightReceiver& receiver,

@@ -55,9 +55,9 @@ struct Source {
     [[nodiscard]] bool has_size() const { return reach_m > 0; }
 };
 
-std::vector<Source> sources_of(const Scene& scene, std::span<const Thing> things) {
+std::vector<Source> sources_of(const Scene& scene, std::span<const SmallFeature> things) {
     std::vector<Source> out;
-    for (const Thing& t : things)
+    for (const SmallFeature& t : things)
         if (t.is_lamp() && t.reach_m > 0 && std::isfinite(t.reach_m) && std::isfinite(t.radiance))
             out.push_back({t.centre, t.at_infinity, t.reach_m, t.radiance, t.radiance * t.area_m2});
     for (const Light& light : scene.lights) {
@@ -271,8 +271,8 @@ double luminance_of(const Mirrored& image, const Source& lamp) {
 }
 
 /// The image that several points of the lens see, as a lamp.
-std::optional<Thing> thing_of(std::vector<Mirrored> images, const Source& lamp) {
-    Thing out{Thing::Kind::Lamp, V3f(0.f)};
+std::optional<SmallFeature> thing_of(std::vector<Mirrored> images, const Source& lamp) {
+    SmallFeature out{SmallFeature::Kind::Lamp, V3f(0.f)};
     V3d mean(0.);
     double angle = 0;
     for (const Mirrored& image : images) {
@@ -321,7 +321,7 @@ std::optional<Thing> thing_of(std::vector<Mirrored> images, const Source& lamp) 
 }
 
 /// Whether two images are one, as seen from the lens: how far away it is, is known less well.
-bool is_same(const Thing& a, const Thing& b, const V3f& eye) {
+bool is_same(const SmallFeature& a, const SmallFeature& b, const V3f& eye) {
     constexpr float kSameDistance = 0.1f;
     if (a.at_infinity != b.at_infinity) return false;
     const V3f apart = b.centre - a.centre;
@@ -334,7 +334,7 @@ bool is_same(const Thing& a, const Thing& b, const V3f& eye) {
 }
 
 /// The image of a lamp near a start, as that point of the lens and others see it.
-std::optional<Thing> image_from(HighlightSearch& search, const Start& start, const std::vector<V3f>& eyes,
+std::optional<SmallFeature> image_from(HighlightSearch& search, const Start& start, const std::vector<V3f>& eyes,
                                 const Source& lamp) {
     const auto found = search.mirrored(start.eye, start.direction, lamp);
     if (!found || search.is_hidden(*found, lamp)) return std::nullopt;
@@ -388,8 +388,8 @@ std::vector<Start> starts_of(const Camera& camera, HighlightSearch& search, V2i 
 
 }  // namespace
 
-std::vector<Thing> highlights(const Camera& camera, const Scene& scene, const Bvh& bvh,
-                              V2i frame_px, std::span<const Thing> things) {
+std::vector<SmallFeature> highlights(const Camera& camera, const Scene& scene, const Bvh& bvh,
+                              V2i frame_px, std::span<const SmallFeature> things) {
     const std::vector<Source> lamps = sources_of(scene, things);
     if (lamps.empty() || frame_px.x < kCell_px || frame_px.y < kCell_px) return {};
     const double pixels = double(frame_px.x) * double(frame_px.y);
@@ -398,7 +398,7 @@ std::vector<Thing> highlights(const Camera& camera, const Scene& scene, const Bv
     const std::vector<Start> starts = starts_of(camera, first, frame_px, eyes);
     HighlightSearch search(scene, bvh, static_cast<int64_t>(kSearchRays * pixels));
     std::map<std::pair<uint32_t, size_t>, int> failures;  // by object and lamp
-    std::vector<Thing> out;
+    std::vector<SmallFeature> out;
     for (const Start& start : starts)
         for (size_t l = 0; l < lamps.size(); ++l) {
             const Source& lamp = lamps[l];
@@ -406,7 +406,7 @@ std::vector<Thing> highlights(const Camera& camera, const Scene& scene, const Bv
             int& failed = failures[{start.instance, l}];
             if (failed > kMostFailures) continue;
             const auto thing = image_from(search, start, eyes[start.cell], lamp);
-            const auto same = [&](const Thing& other) { return is_same(other, *thing, start.eye); };
+            const auto same = [&](const SmallFeature& other) { return is_same(other, *thing, start.eye); };
             if (!thing || std::any_of(out.begin(), out.end(), same))
                 ++failed;
             else

@@ -12,7 +12,7 @@ constexpr uint32_t kPaths = 8192;
 
 }  // namespace
 
-LightChoice taught_by_pilot(const LightChoice& choice, const Scene& scene, const Bvh& bvh,
+LightChoice fitted_by_pilot(const LightChoice& choice, const Scene& scene, const Bvh& bvh,
                             const Camera& camera, const Observer& observer, V2i frame_px) {
     if (!choice.divides()) return choice;
     const LightChoice even = choice.for_pilot();
@@ -29,7 +29,7 @@ LightChoice taught_by_pilot(const LightChoice& choice, const Scene& scene, const
         batch.add({x, y, i});
     }
     batch.render();
-    return choice.taught(records);
+    return choice.fitted(records);
 }
 
 }  // namespace petzval

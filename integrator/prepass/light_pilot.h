@@ -10,10 +10,10 @@
 
 namespace petzval {
 
-/// The choice, taught by a pilot where lights at infinity and others share it; the choice itself
+/// The choice, fitted by a pilot where lights at infinity and others share it; the choice itself
 /// elsewhere. A pure function of its arguments: the pilot has a fixed number of paths over the full
 /// frame and numbers of its own.
-[[nodiscard]] LightChoice taught_by_pilot(const LightChoice&, const Scene&, const Bvh&,
+[[nodiscard]] LightChoice fitted_by_pilot(const LightChoice&, const Scene&, const Bvh&,
                                           const Camera&, const Observer&, V2i frame_px);
 
 }  // namespace petzval

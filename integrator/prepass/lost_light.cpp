@@ -129,7 +129,7 @@ class LostLightSearch {
     void add(const TriangleLight&, uint32_t) {}  // its lamp is a thing
     void add(const SkyLight&, uint32_t) {}       // its bright spots are things
 
-    void add(const Thing& lamp) {
+    void add(const SmallFeature& lamp) {
         const double size = 2 * double(lamp.reach_m);
         if (!lamp.at_infinity) {
             // Share of the directions about a surface, by their cosine, that lead to the lamp.
@@ -219,7 +219,7 @@ std::vector<LostLight> lost_light(const Scene& scene, const Bvh& bvh) {
         if (++punctual > kMostPunctual) break;
         std::visit([&](const auto& light) { search.add(light, i); }, scene.lights[i]);
     }
-    for (const Thing& thing : things_of(scene))
+    for (const SmallFeature& thing : small_features_of(scene))
         if (thing.is_lamp()) search.add(thing);
     return search.out;
 }

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/light/things.h"
+#include "core/light/small_features.h"
 #include "core/traversal/bvh.h"
 
 namespace petzval {

@@ -10,8 +10,8 @@
 #include "io/aperture/aperture_file.h"
 #include "io/aperture/svg_path.h"
 #include "io/base/error.h"
-#include "io/base/read_file.h"
-#include "io/base/text_lines.h"
+#include "io/file/read_file.h"
+#include "io/file/text_lines.h"
 
 namespace petzval {
 namespace {

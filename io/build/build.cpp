@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "build_facts.h"  // made by sources.cmake
-#include "io/base/read_file.h"
+#include "io/file/read_file.h"
 
 namespace petzval {
 

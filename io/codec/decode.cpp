@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "io/base/error.h"
-#include "io/base/text_lines.h"
+#include "io/file/text_lines.h"
 #include "io/codec/codec.h"
 #include "io/codec/colour_space.h"
 #include "io/picture/limits.h"

@@ -8,8 +8,8 @@
 #include <sstream>
 
 #include "io/base/error.h"
-#include "io/base/read_file.h"
-#include "io/base/text_lines.h"
+#include "io/file/read_file.h"
+#include "io/file/text_lines.h"
 #include "io/codec/codec.h"
 #include "io/picture/exr_header.h"
 #include "io/picture/limits.h"

@@ -7,9 +7,9 @@
 #include <map>
 #include <stdexcept>
 
-#include "io/base/atomic_file.h"
+#include "io/file/atomic_file.h"
 #include "io/base/error.h"
-#include "io/base/text_lines.h"
+#include "io/file/text_lines.h"
 #include "io/codec/codec.h"
 #include "io/picture/picture_kind.h"
 #include "io/picture/seal.h"

@@ -11,7 +11,7 @@
 #include "io/base/ascii.h"
 #include "io/base/error.h"
 #include "io/base/json_parse.h"
-#include "io/base/text_lines.h"
+#include "io/file/text_lines.h"
 
 namespace petzval {
 namespace {

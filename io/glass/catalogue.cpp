@@ -8,8 +8,8 @@
 #include <tuple>
 
 #include "io/base/ascii.h"
-#include "io/base/assets.h"
-#include "io/base/csv.h"
+#include "io/file/assets.h"
+#include "io/file/csv.h"
 #include "io/base/error.h"
 #include "io/base/nearest.h"
 

@@ -31,11 +31,11 @@ Glass khronos_glass(double nd, double dispersion) {
 
 /// Index of the thing of this name, which is looked up and added where it is not yet there; nothing
 /// where there is none.
-template <class Thing>
-std::optional<int32_t> place_of(std::vector<Thing>& things, const std::string& name,
-                                std::optional<Thing> look_up(const std::string&)) {
+template <class SmallFeature>
+std::optional<int32_t> place_of(std::vector<SmallFeature>& things, const std::string& name,
+                                std::optional<SmallFeature> look_up(const std::string&)) {
     const auto at = std::find_if(things.begin(), things.end(),
-                                 [&](const Thing& thing) { return thing.name == lower(name); });
+                                 [&](const SmallFeature& thing) { return thing.name == lower(name); });
     const auto place = static_cast<int32_t>(at - things.begin());
     if (at != things.end()) return place;
     auto found = look_up(name);

@@ -12,7 +12,7 @@
 #include "io/base/ascii.h"
 #include "io/base/error.h"
 #include "io/base/printable.h"
-#include "io/base/text_lines.h"
+#include "io/file/text_lines.h"
 
 namespace petzval {
 namespace {

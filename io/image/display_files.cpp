@@ -10,8 +10,8 @@
 
 #include "io/base/ascii.h"
 #include "io/base/error.h"
-#include "io/base/read_file.h"
-#include "io/base/text_lines.h"
+#include "io/file/read_file.h"
+#include "io/file/text_lines.h"
 #include "io/image/ocio_config.h"
 
 namespace petzval {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "io/base/atomic_file.h"  // check_writable, for what is no picture
-#include "io/base/rescue.h"
+#include "io/file/atomic_file.h"  // check_writable, for what is no picture
+#include "io/file/rescue.h"
 #include "io/image/display.h"
 #include "io/picture/picture.h"
 

@@ -7,7 +7,7 @@
 #include "io/base/error.h"
 #include "io/base/machine.h"
 #include "io/base/printable.h"
-#include "io/base/program_file.h"
+#include "io/file/program_file.h"
 #include "io/build/build.h"
 #include "io/picture/image_codec.h"
 

@@ -8,7 +8,7 @@
 #include <system_error>
 #include <utility>
 
-#include "io/base/atomic_file.h"
+#include "io/file/atomic_file.h"
 #include "io/base/error.h"
 #include "io/base/printable.h"
 #include "io/image/canvas.h"

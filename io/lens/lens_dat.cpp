@@ -7,7 +7,7 @@
 #include <array>
 
 #include "io/base/error.h"
-#include "io/base/text_lines.h"
+#include "io/file/text_lines.h"
 #include "io/lens/lens_formats.h"
 
 namespace petzval {

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "io/base/ascii.h"
-#include "io/base/atomic_file.h"
+#include "io/file/atomic_file.h"
 #include "io/base/error.h"
 #include "io/base/xml_text.h"
 

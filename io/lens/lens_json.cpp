@@ -9,7 +9,7 @@
 #include "camera/lens/lens.h"
 #include "io/base/json_cursor.h"
 #include "io/base/json_parse.h"
-#include "io/base/text_lines.h"
+#include "io/file/text_lines.h"
 #include "io/lens/lens_formats.h"
 
 namespace petzval {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "io/base/csv.h"
+#include "io/file/csv.h"
 #include "io/base/error.h"
 
 namespace petzval {

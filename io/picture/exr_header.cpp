@@ -9,7 +9,7 @@
 #include <array>
 #include <cstdint>
 
-#include "io/base/read_file.h"
+#include "io/file/read_file.h"
 
 namespace petzval {
 namespace {

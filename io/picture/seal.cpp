@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/base/read_file.h"
+#include "io/file/read_file.h"
 #include "io/picture/picture_kind.h"
 
 namespace petzval {

@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "io/base/atomic_file.h"
+#include "io/file/atomic_file.h"
 #include "io/picture/picture.h"
 
 namespace petzval {

@@ -15,7 +15,7 @@
 #include <memory>
 
 #include "io/base/ascii.h"
-#include "io/base/atomic_file.h"
+#include "io/file/atomic_file.h"
 #include "io/base/error.h"
 #include "io/base/printable.h"
 

@@ -13,8 +13,8 @@
 #include "core/spectrum/colorimetry.h"
 #include "core/spectrum/colour.h"
 #include "io/base/ascii.h"
-#include "io/base/assets.h"
-#include "io/base/csv.h"
+#include "io/file/assets.h"
+#include "io/file/csv.h"
 #include "io/base/error.h"
 #include "io/base/nearest.h"
 

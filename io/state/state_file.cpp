@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "io/base/atomic_file.h"
+#include "io/file/atomic_file.h"
 
 namespace petzval {
 namespace {

@@ -14,7 +14,7 @@
 
 #include "core/film/film.h"
 #include "io/base/error.h"
-#include "io/base/read_file.h"
+#include "io/file/read_file.h"
 
 namespace petzval {
 

@@ -89,7 +89,7 @@ TEST(LightShares, APilotPicksBothGroupsEqually) {
     EXPECT_FALSE(LightChoice(scene, LightChoiceKind::Power).divides());
 }
 
-// What a pilot taught stays within bounds, and picks agree with probabilities.
+// What a pilot fitted stays within bounds, and picks agree with probabilities.
 TEST(LightShares, NoGroupIsEverGivenUp) {
     const Scene scene = lamp_and_sun();
     const LightChoice choice(scene, LightChoiceKind::Tree), even = choice.for_pilot();
@@ -98,8 +98,8 @@ TEST(LightShares, NoGroupIsEverGivenUp) {
         for (int i = 0; i < 500; ++i)
             for (const uint32_t light : {0u, 1u})
                 records.push_back(even.record(light, kBelow, light == 1 ? sun_seen : 1.f));
-        const LightChoice taught = choice.taught(records);
-        const float sun = taught.probability(1, kBelow);
+        const LightChoice fitted = choice.fitted(records);
+        const float sun = fitted.probability(1, kBelow);
         EXPECT_GE(sun, 0.0499f);
         EXPECT_LE(sun, 0.9501f);
         if (sun_seen == 0.f) {
@@ -113,14 +113,14 @@ TEST(LightShares, NoGroupIsEverGivenUp) {
             EXPECT_NEAR(sun, 0.5f, 1e-3f);
         }
         double all = 0;
-        for (uint32_t i = 0; i < scene.lights.size(); ++i) all += taught.probability(i, kBelow);
+        for (uint32_t i = 0; i < scene.lights.size(); ++i) all += fitted.probability(i, kBelow);
         EXPECT_NEAR(all, 1, 1e-6);
         Random random(3);
         int suns = 0;
         for (int i = 0; i < 10000; ++i) {
-            const auto pick = taught.pick(random.next(), kBelow);
+            const auto pick = fitted.pick(random.next(), kBelow);
             ASSERT_TRUE(pick);
-            const float said = taught.probability(pick->light, kBelow);
+            const float said = fitted.probability(pick->light, kBelow);
             ASSERT_NEAR(pick->probability, said, 1e-5f * said);
             suns += pick->light == 1;
         }
@@ -139,7 +139,7 @@ TEST(LightShares, LightsOfVeryUnequalPower) {
         for (int i = 0; i < 500; ++i)
             for (const uint32_t light : {0u, 1u})
                 records.push_back(even.record(light, kBelow, light == 1 ? 0.f : candle));
-        for (const LightChoice& one : {choice, even, choice.taught(records)}) {
+        for (const LightChoice& one : {choice, even, choice.fitted(records)}) {
             double all = 0;
             for (uint32_t i = 0; i < scene.lights.size(); ++i) {
                 const float p = one.probability(i, kBelow);
@@ -155,7 +155,7 @@ TEST(LightShares, LightsOfVeryUnequalPower) {
                             1e-5f * pick->probability);
             }
         }
-        EXPECT_NEAR(choice.taught(records).probability(1, kBelow), 0.05f, 1e-3f);
+        EXPECT_NEAR(choice.fitted(records).probability(1, kBelow), 0.05f, 1e-3f);
     }
 }
 

@@ -5,7 +5,7 @@
 
 #include "core/light/light_choice.h"
 #include "core/light/light_sampling.h"
-#include "core/light/things.h"
+#include "core/light/small_features.h"
 #include "core/scene/lamp.h"
 #include "core/scene/motion.h"
 #include "core/shading/surface.h"
@@ -312,7 +312,7 @@ TEST(MovingLight, OfEachKindRunsStraightBetweenSteps) {
 // A plan must not miss a lamp where it comes to late.
 TEST(MovingLight, IsAThingAsLargeAsWhereItComes) {
     const Scene scene = moving_lamp(5, true);
-    const std::vector<Thing> things = things_of(scene);
+    const std::vector<SmallFeature> things = small_features_of(scene);
     ASSERT_EQ(things.size(), 1u);
     for (int i = 0; i <= 20; ++i)
         for (const V3d& corner : corners_at(scene, 0, 0, i / 20.))

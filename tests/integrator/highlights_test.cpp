@@ -26,8 +26,8 @@ Material mirror(float roughness = 0) {
     return m;
 }
 
-Thing lamp_at(const V3f& centre, float reach_m, bool at_infinity = false) {
-    Thing lamp{Thing::Kind::Lamp, centre, reach_m, reach_m, at_infinity};
+SmallFeature lamp_at(const V3f& centre, float reach_m, bool at_infinity = false) {
+    SmallFeature lamp{SmallFeature::Kind::Lamp, centre, reach_m, reach_m, at_infinity};
     lamp.area_m2 = double(kPi * reach_m * reach_m);
     lamp.radiance = 1000;
     return lamp;
@@ -42,12 +42,12 @@ ThinLensCamera camera() {
     return ThinLensCamera(lens);
 }
 
-std::vector<Thing> seen_in(World& world, const std::vector<Thing>& lamps) {
+std::vector<SmallFeature> seen_in(World& world, const std::vector<SmallFeature>& lamps) {
     world.finish();
     return highlights(camera(), world.scene, *world.bvh, kFrame, lamps);
 }
 
-std::vector<Thing> seen_in_a_ball(const Material& material, const std::vector<Thing>& lamps) {
+std::vector<SmallFeature> seen_in_a_ball(const Material& material, const std::vector<SmallFeature>& lamps) {
     World world;
     place(world.scene, sphere(V3f(0, 0, -1), kRadius_m, 128, true), material);
     return seen_in(world, lamps);
@@ -69,7 +69,7 @@ TEST(Highlights, TakeFewRaysOfTheLens) {
     World world;
     place(world.scene, sphere(V3f(0, 0, -1), kRadius_m, 128, true), mirror());
     world.finish();
-    const std::vector<Thing> lamps{lamp_at(V3f(0, 0, 2), 0.006f)};
+    const std::vector<SmallFeature> lamps{lamp_at(V3f(0, 0, 2), 0.006f)};
     EXPECT_EQ(highlights(BusyCamera(), world.scene, *world.bvh, kFrame, lamps).size(), 1u);
 }
 
@@ -146,7 +146,7 @@ TEST(Highlights, AreSeenThroughCulledBacks) {
         sheet.double_sided = false;
         place(world.scene, quad(V3f(-0.2f, -0.2f, -0.3f), front ? right : up, front ? up : right),
               sheet);
-        const Thing lamp = lamp_at(V3f(0.6f, 0.5f, -0.5f), 0.005f);
+        const SmallFeature lamp = lamp_at(V3f(0.6f, 0.5f, -0.5f), 0.005f);
         EXPECT_EQ(seen_in(world, {lamp}).size(), front ? 0u : 1u);
     }
 }
@@ -158,7 +158,7 @@ TEST(Highlights, OfUnlitSurfacesAreNone) {
 }
 
 TEST(Highlights, OfRoughSurfacesAreWiderAndDarker) {
-    const Thing lamp = lamp_at(V3f(0, 0, 2), 0.004f);
+    const SmallFeature lamp = lamp_at(V3f(0, 0, 2), 0.004f);
     const auto smooth = seen_in_a_ball(mirror(), {lamp});
     const auto rough = seen_in_a_ball(mirror(0.1f), {lamp});
     ASSERT_EQ(smooth.size(), 1u);
@@ -196,7 +196,7 @@ TEST(Highlights, OfImpossibleLampsAreNone) {
     EXPECT_TRUE(seen_in_a_ball(mirror(), {lamp_at(V3f(0, 0, 2), 0)}).empty());
     EXPECT_TRUE(seen_in_a_ball(mirror(), {lamp_at(V3f(0, 0, 2), kInfinity)}).empty());
     EXPECT_TRUE(seen_in_a_ball(mirror(), {lamp_at(V3f(kNan), 0.01f)}).empty());
-    Thing infinite = lamp_at(V3f(0, 0, 2), 0.01f);
+    SmallFeature infinite = lamp_at(V3f(0, 0, 2), 0.01f);
     infinite.radiance = INFINITY;
     EXPECT_TRUE(seen_in_a_ball(mirror(), {infinite}).empty());
 }

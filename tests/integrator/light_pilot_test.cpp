@@ -44,8 +44,8 @@ struct ClosedRoom : World {
         lens.focus_m = 3;
         camera = std::make_unique<ThinLensCamera>(lens);
     }
-    [[nodiscard]] LightChoice taught() const {
-        return taught_by_pilot(*lights, scene, *bvh, *camera, Observer(), kSize);
+    [[nodiscard]] LightChoice fitted() const {
+        return fitted_by_pilot(*lights, scene, *bvh, *camera, Observer(), kSize);
     }
 };
 
@@ -92,23 +92,23 @@ TEST(LightPilot, ASkyThatNobodySeesHardlyCounts) {
     const LightReceiver floor{V3f(0.5f, -2, 0.5f), V3f(0, 1, 0), false};
     const auto sky = static_cast<uint32_t>(room.scene.sky_light);
     EXPECT_GT(room.lights->probability(sky, floor), 0.9f) << "as if nothing stood before it";
-    const LightChoice taught = room.taught();
-    EXPECT_LT(taught.probability(sky, floor), 0.06f);
-    EXPECT_GT(taught.probability(sky, floor), 0.04f);
+    const LightChoice fitted = room.fitted();
+    EXPECT_LT(fitted.probability(sky, floor), 0.06f);
+    EXPECT_GT(fitted.probability(sky, floor), 0.04f);
     // The same picture with less noise: light of the lamp is found 20 times as often.
-    const auto before = picture(room, *room.lights), after = picture(room, taught);
+    const auto before = picture(room, *room.lights), after = picture(room, fitted);
     EXPECT_NEAR(after.mean, before.mean,
                 4 * std::hypot(after.standard_error, before.standard_error));
     EXPECT_LT(after.standard_error, 0.02 * after.mean);
     EXPECT_LT(after.variance, before.variance / 3);
 }
 
-// Another view of the scene starts from what an earlier one was taught, and learns the same.
+// Another view of the scene starts from what an earlier one was fitted, and learns the same.
 TEST(LightPilot, ForgetsWhatAnEarlierOneTaught) {
     ClosedRoom room;
-    const LightChoice one = room.taught();
+    const LightChoice one = room.fitted();
     room.lights = std::make_unique<LightChoice>(one);
-    const LightChoice two = room.taught();
+    const LightChoice two = room.fitted();
     const auto sky = static_cast<uint32_t>(room.scene.sky_light);
     for (const V3f& p : {V3f(0, -2, 0), V3f(1, -2, -1), V3f(-1.5f, -2, 1)})
         EXPECT_EQ(one.probability(sky, {p, V3f(0, 1, 0), false}),
@@ -120,7 +120,7 @@ TEST(LightPilot, LeavesOtherChoicesAlone) {
     room.lights = std::make_unique<LightChoice>(room.scene, LightChoiceKind::Power);
     const LightReceiver floor{V3f(0.5f, -2, 0.5f), V3f(0, 1, 0), false};
     const auto sky = static_cast<uint32_t>(room.scene.sky_light);
-    EXPECT_EQ(room.taught().probability(sky, floor), room.lights->probability(sky, floor));
+    EXPECT_EQ(room.fitted().probability(sky, floor), room.lights->probability(sky, floor));
 }
 
 }  // namespace

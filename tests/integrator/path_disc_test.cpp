@@ -2,7 +2,7 @@
 // Suns with a disc, flat lamps, and lamps that are not seen, against closed forms.
 #include <numbers>
 
-#include "core/light/things.h"
+#include "core/light/small_features.h"
 #include "core/scene/lamp.h"
 #include "tests/integrator/path_estimate.h"
 
@@ -109,7 +109,7 @@ TEST(SunDisc, IsSeenInTheSkyAndInMirrors) {
             const V3f down(leaning(rim).x, 0, -1);
             EXPECT_NEAR(seen(world, V3f(0, 0, 1), down), there, 1e-2 * nits) << unseen << rim;
         }
-        const std::vector<Thing> things = things_of(world.scene);
+        const std::vector<SmallFeature> things = small_features_of(world.scene);
         ASSERT_EQ(things.size(), 1u);
         EXPECT_TRUE(things[0].at_infinity && things[0].is_lamp());
         EXPECT_NEAR(things[0].reach_m, half_rad, 1e-5);

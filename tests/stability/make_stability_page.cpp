@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <exception>
 
-#include "io/base/atomic_file.h"
+#include "io/file/atomic_file.h"
 #include "tests/stability/stability.h"
 
 int main(int count, char** words) {

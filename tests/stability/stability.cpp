@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "core/traversal/bvh.h"
-#include "io/base/csv.h"
+#include "io/file/csv.h"
 #include "io/base/error.h"
 #include "tests/stability/sweeps.h"
 

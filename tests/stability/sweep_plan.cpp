@@ -41,7 +41,7 @@ Planned planned(double side_m) {
         ThinLens{M44f(), yfov_rad, float(kFrame.x) / float(kFrame.y),
                  Iris(Disk{}, kFocal_mm / (2 * kFstop)), float(kFocus_m)});
     setup.view.camera = setup.view.still;
-    const std::vector<Thing> things = things_of(world.scene);
+    const std::vector<SmallFeature> things = small_features_of(world.scene);
     const std::vector<FilmRegion> regions = film_regions(*setup.view.still, kFrame, things);
     const std::vector<SeenLamp> lamps = seen_lamps(setup, kFrame, things, regions);
     TbbExecutor executor(1);

@@ -2,7 +2,7 @@
 // Where the closed forms of a thin lens end.
 #include <fmt/format.h>
 
-#include "apps/setup/thin_setup.h"
+#include "apps/setup/camera/thin_setup.h"
 #include "camera/models/aberrated_lens.h"
 #include "camera/models/thin_lens_optics.h"
 #include "io/glass/glass_lookup.h"

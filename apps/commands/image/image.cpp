@@ -14,7 +14,7 @@
 #include "apps/commands/image/view.h"
 #include "apps/request/parse.h"
 #include "io/base/error.h"
-#include "io/base/overwrite.h"
+#include "io/file/overwrite.h"
 #include "io/image/difference.h"
 #include "io/image/picture_files.h"
 #include "io/image/spectral_layout.h"

@@ -11,10 +11,10 @@
 #include "apps/commands/lens/field.h"
 #include "camera/bench/analysis.h"
 #include "camera/bench/spot.h"
-#include "io/base/atomic_file.h"
-#include "io/base/csv.h"
+#include "io/file/atomic_file.h"
+#include "io/file/csv.h"
 #include "io/base/error.h"
-#include "io/base/rescue.h"
+#include "io/file/rescue.h"
 #include "io/plot/plot.h"
 
 namespace petzval {

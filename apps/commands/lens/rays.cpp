@@ -8,7 +8,7 @@
 #include "apps/commands/lens/field.h"
 #include "apps/commands/lens/request.h"
 #include "camera/lens/traced_ray.h"
-#include "io/base/atomic_file.h"
+#include "io/file/atomic_file.h"
 #include "io/lens/lens_drawing.h"
 #include "io/lens/ray_table.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "camera/lens/lens.h"
-#include "io/base/overwrite.h"
+#include "io/file/overwrite.h"
 
 namespace petzval {
 

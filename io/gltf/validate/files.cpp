@@ -10,7 +10,7 @@
 #include "io/base/json_cursor.h"
 #include "io/base/json_parse.h"
 #include "io/base/nearest.h"
-#include "io/base/read_file.h"
+#include "io/file/read_file.h"
 #include "io/base/uri.h"
 #include "io/gltf/schema/extensions.h"
 #include "io/spectra/spectra.h"

@@ -3,7 +3,7 @@
 
 #include "io/base/error.h"
 #include "io/base/json_parse.h"
-#include "io/base/read_file.h"
+#include "io/file/read_file.h"
 #include "io/gltf/animation/pose.h"
 #include "io/gltf/mend/mend.h"
 #include "io/gltf/validate/budget.h"

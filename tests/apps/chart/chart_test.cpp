@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "apps/chart/chart.h"
-#include "io/base/csv.h"
+#include "io/file/csv.h"
 #include "io/image/symmetric_mse.h"
 #include "tests/support/cli.h"
 #include "tests/support/statistics.h"

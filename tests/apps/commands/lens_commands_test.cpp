@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "io/base/csv.h"
+#include "io/file/csv.h"
 #include "tests/support/cli.h"
 #include "tests/support/lens_json.h"
 

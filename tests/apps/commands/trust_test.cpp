@@ -5,7 +5,7 @@
 #include <cstring>
 #include <regex>
 
-#include "io/base/read_file.h"
+#include "io/file/read_file.h"
 #include "io/picture/seal.h"
 #include "tests/apps/commands/long_renders.h"
 

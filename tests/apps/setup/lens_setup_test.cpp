@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where a lens stands once it is focused: distances and perspective count from the middle of its
 // entrance pupil, which moves with a group that focuses.
-#include "apps/setup/lens_setup.h"
+#include "apps/setup/camera/lens_setup.h"
 
 #include <gtest/gtest.h>
 

@@ -210,7 +210,7 @@ TEST(MotionBlur, WithRaysToTargets) {
         Scene finished = motion.scene;
         finish_scene(finished);
         auto aims = target_camera(middle_camera(motion));
-        aims->set_targets(find_targets(*aims, motion.size, things_of(finished)));
+        aims->set_targets(find_targets(*aims, motion.size, small_features_of(finished)));
         ASSERT_NE(aims->targets(), nullptr) << traced;
         EXPECT_TRUE(same_picture(blurred(motion, *shuttered(motion, std::move(aims)), 96),
                                  of_stills(motion, 8)))

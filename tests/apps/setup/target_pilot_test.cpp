@@ -51,7 +51,7 @@ struct Grids {
 Grids grids_of(World& world) {
     world.finish();
     const auto camera = target_camera(std::make_shared<ThinLensCamera>(wide_lens()));
-    camera->set_targets(find_targets(*camera, kSize, things_of(world.scene)));
+    camera->set_targets(find_targets(*camera, kSize, small_features_of(world.scene)));
     return {camera->targets(),
             targets_that_pay(*camera, world.scene, *world.bvh, *world.lights, kSize)};
 }

@@ -58,7 +58,7 @@ double noise(const Means& means) {
 void expect_same_mean(TracedWorld& world, const std::shared_ptr<const Camera>& camera, double gain,
                       const char* what) {
     world.finish();
-    std::vector<Thing> things = things_of(world.scene);
+    std::vector<SmallFeature> things = small_features_of(world.scene);
     const auto images = highlights(*camera, world.scene, *world.bvh, kSize, things);
     things.insert(things.end(), images.begin(), images.end());
     const Means without = rendered(world, *camera, 1);
@@ -180,7 +180,7 @@ TEST(TargetMeans, LampsThatOrdinaryRaysMeetAreNoTargets) {
         place(world.scene, sphere(at, 2.f, 24, true), emitter_material(5.f));
         world.finish();
         const auto camera = target_camera(thin());
-        EXPECT_EQ(find_targets(*camera, kSize, things_of(world.scene)), nullptr);
+        EXPECT_EQ(find_targets(*camera, kSize, small_features_of(world.scene)), nullptr);
     }
 }
 
@@ -193,7 +193,7 @@ TEST(TargetMeans, AThousandLampsInAPixelAreASanePicture) {
               emitter_material(1e6f));
     world.finish();
     const auto camera = target_camera(thin());
-    camera->set_targets(find_targets(*camera, kSize, things_of(world.scene, 1024)));
+    camera->set_targets(find_targets(*camera, kSize, small_features_of(world.scene, 1024)));
     ASSERT_NE(camera->targets(), nullptr);
     for (const auto& list : camera->targets()->lists) EXPECT_LE(list.size(), 16u);
     camera->set_targets(targets_that_pay(*camera, world.scene, *world.bvh, *world.lights, kSize));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/base/atomic_file.h"
+#include "io/file/atomic_file.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

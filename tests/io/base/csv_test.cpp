@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/base/csv.h"
+#include "io/file/csv.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/base/rescue.h"
+#include "io/file/rescue.h"
 
 #include <gtest/gtest.h>
 
-#include "io/base/atomic_file.h"
+#include "io/file/atomic_file.h"
 #include "io/base/error.h"
 #include "tests/support/file_size_limit.h"
 #include "tests/support/temporary_folder.h"

@@ -6,7 +6,7 @@
 
 #include <random>
 
-#include "io/base/csv.h"
+#include "io/file/csv.h"
 #include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/text_mutation.h"

@@ -8,7 +8,7 @@
 #include "camera/lens/lens.h"
 #include "core/spectrum/glass.h"
 #include "core/spectrum/spectrum_table.h"
-#include "io/base/csv.h"
+#include "io/file/csv.h"
 #include "io/glass/catalogue.h"
 #include "io/glass/glass_lookup.h"
 

@@ -9,7 +9,7 @@
 #include <fstream>
 
 #include "core/spectrum/colour.h"
-#include "io/base/assets.h"
+#include "io/file/assets.h"
 #include "io/base/error.h"
 #include "tests/support/ocio_config.h"
 #include "tests/support/pictures.h"

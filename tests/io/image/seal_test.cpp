@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "io/base/read_file.h"
+#include "io/file/read_file.h"
 #include "tests/support/temporary_folder.h"
 
 namespace petzval {

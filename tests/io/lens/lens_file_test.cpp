@@ -9,7 +9,7 @@
 #include <random>
 
 #include "camera/lens/paraxial.h"
-#include "io/base/text_lines.h"
+#include "io/file/text_lines.h"
 #include "io/lens/lens_formats.h"
 #include "tests/support/lens_text.h"
 #include "tests/support/text_mutation.h"

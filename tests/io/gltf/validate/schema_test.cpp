@@ -16,13 +16,13 @@ namespace {
 using nlohmann::json;
 
 /// A thing of each table, as a file may have it.
-struct Thing {
+struct SmallFeature {
     std::string path;
     json stored;
     std::span<const GltfProperty> rows;
 };
 
-std::vector<Thing> things() {
+std::vector<SmallFeature> things() {
     const json view = {{"yfov", 1}, {"znear", 1}, {"zfar", 2}, {"xmag", 1}, {"ymag", 1}};
     const json light = {{"type", "spot"}, {"spot", json::object()}};
     const auto camera = [&](const char* type) { return json{{"type", type}, {type, view}}; };
@@ -39,7 +39,7 @@ struct Said {
     std::string path, refused, warnings;
 };
 
-Said say(const Thing& thing, const GltfProperty& row, const json& value) {
+Said say(const SmallFeature& thing, const GltfProperty& row, const json& value) {
     const TempFolder folder;
     TinyGltf file;
     file.json["images"] = {{{"uri", "data:image/png;base64,AA=="}}};
@@ -68,7 +68,7 @@ bool is_kept(const GltfProperty& row) {
 }
 
 TEST(GltfSchemaChecks, RefuseAValueOfAnotherType) {
-    for (const Thing& thing : things())
+    for (const SmallFeature& thing : things())
         for (const GltfProperty& row : thing.rows) {
             const bool mended = row.place == "perspective" || row.place == "orthographic" ||
                                 row.key == std::string("range");  // as a whole: planes, ranges
@@ -81,7 +81,7 @@ TEST(GltfSchemaChecks, RefuseAValueOfAnotherType) {
 }
 
 TEST(GltfSchemaChecks, RefuseOrMendAListOfAnotherLength) {
-    for (const Thing& thing : things())
+    for (const SmallFeature& thing : things())
         for (const GltfProperty& row : thing.rows) {
             if (!is_number(row) || row.width() < 2) continue;
             const Said said = say(thing, row, json(std::vector<double>(row.width() + 2, 1.)));
@@ -93,7 +93,7 @@ TEST(GltfSchemaChecks, RefuseOrMendAListOfAnotherLength) {
 }
 
 TEST(GltfSchemaChecks, RefuseOrMendANumberOutsideItsRange) {
-    for (const Thing& thing : things())
+    for (const SmallFeature& thing : things())
         for (const GltfProperty& row : thing.rows) {
             if (!is_number(row) || row.range.low < 0 || row.width() == 0) continue;
             if (thing.path == "/cameras/0" || row.key == std::string("range") ||
@@ -108,7 +108,7 @@ TEST(GltfSchemaChecks, RefuseOrMendANumberOutsideItsRange) {
 }
 
 TEST(GltfSchemaChecks, RefuseWhatNoFloatHolds) {
-    for (const Thing& thing : things())
+    for (const SmallFeature& thing : things())
         for (const GltfProperty& row : thing.rows) {
             if (!is_number(row) || row.width() == 0 || row.key == std::string("range")) continue;
             const json high =
@@ -119,7 +119,7 @@ TEST(GltfSchemaChecks, RefuseWhatNoFloatHolds) {
 }
 
 TEST(GltfSchemaChecks, KnowTheExtensionOfEachRow) {
-    for (const Thing& thing : things())
+    for (const SmallFeature& thing : things())
         for (const GltfProperty& row : thing.rows) {
             constexpr std::string_view in = "extensions/";
             if (!row.place.starts_with(in)) continue;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What read_gltf_source accepts, and what it hands on.
 #include "io/gltf/validate/source.h"
-#include "io/base/read_file.h"
+#include "io/file/read_file.h"
 
 #include <gtest/gtest.h>
 

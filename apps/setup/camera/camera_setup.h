@@ -3,8 +3,8 @@
 // exposure.
 #pragma once
 
-#include "apps/setup/camera_model.h"
-#include "apps/setup/camera_report.h"
+#include "apps/setup/camera/camera_model.h"
+#include "apps/setup/camera/camera_report.h"
 #include "core/scene/scene.h"
 #include "core/traversal/bvh.h"
 #include "io/base/notice.h"

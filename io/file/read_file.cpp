@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/base/read_file.h"
+#include "io/file/read_file.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -13,7 +13,7 @@
 
 #include "io/base/ascii.h"
 #include "io/base/machine.h"
-#include "io/base/text_lines.h"
+#include "io/file/text_lines.h"
 
 namespace petzval {
 namespace {

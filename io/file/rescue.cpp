@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/base/rescue.h"
+#include "io/file/rescue.h"
 
 #include <stdlib.h>
 
@@ -7,7 +7,7 @@
 #include <new>
 #include <optional>
 
-#include "io/base/atomic_file.h"
+#include "io/file/atomic_file.h"
 #include "io/base/error.h"
 
 namespace petzval {

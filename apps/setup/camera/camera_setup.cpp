@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/setup/camera_setup.h"
+#include "apps/setup/camera/camera_setup.h"
 
 #include <fmt/format.h>
 
 #include <limits>
 
-#include "apps/setup/framing.h"
-#include "apps/setup/thin_setup.h"
+#include "apps/setup/camera/framing.h"
+#include "apps/setup/camera/thin_setup.h"
 #include "camera/models/zoom_camera.h"
 #include "core/scene/motion.h"
 #include "integrator/prepass/autofocus.h"

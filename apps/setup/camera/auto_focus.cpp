@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/setup/auto_focus.h"
+#include "apps/setup/camera/auto_focus.h"
 
-#include "apps/setup/camera_setup.h"
+#include "apps/setup/camera/camera_setup.h"
 #include "io/base/error.h"
 
 namespace petzval {

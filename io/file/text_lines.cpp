@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/base/text_lines.h"
+#include "io/file/text_lines.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "io/base/error.h"
-#include "io/base/read_file.h"
+#include "io/file/read_file.h"
 
 namespace petzval {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/light/things.h"
+#include "core/light/small_features.h"
 
 #include <algorithm>
 #include <array>
@@ -112,7 +112,7 @@ std::vector<Cluster> clusters_of(std::vector<Part> parts, size_t most) {
     return clusters;
 }
 
-void add_things(std::vector<Thing>& out, Thing::Kind kind, std::vector<Part> parts, size_t most) {
+void add_things(std::vector<SmallFeature>& out, SmallFeature::Kind kind, std::vector<Part> parts, size_t most) {
     for (const Cluster& cluster : clusters_of(std::move(parts), most)) {
         const Part all = sum_of(cluster.parts);
         out.push_back({kind, all.box.center(), all.box.size().length() / 2, all.reach_m, false,
@@ -216,7 +216,7 @@ class Stride {
     size_t step_, next_ = 0;
 };
 
-void add_surfaces(const Scene& scene, std::vector<Thing>& out, size_t most) {
+void add_surfaces(const Scene& scene, std::vector<SmallFeature>& out, size_t most) {
     size_t emissive = 0, textured = 0, other = 0;
     const auto triangles = [&](const Instance& i) { return scene.meshes[i.mesh].triangles.size(); };
     const auto has_picture = [&](const Instance& i) {
@@ -252,15 +252,15 @@ void add_surfaces(const Scene& scene, std::vector<Thing>& out, size_t most) {
         add_body(lamps, glowing);
         add_body(wavelength, dispersing);
     }
-    add_things(out, Thing::Kind::Wavelength, std::move(wavelength), most);
+    add_things(out, SmallFeature::Kind::Wavelength, std::move(wavelength), most);
     for (const std::vector<Part>& found : {lamps, bright})
         for (std::vector<Part>& of_class : classes_of(found))
-            add_things(out, Thing::Kind::Lamp, std::move(of_class), most);
+            add_things(out, SmallFeature::Kind::Lamp, std::move(of_class), most);
 }
 
 // The sky's sampler draws in proportion to what is above the mean: what is drawn and far above it
 // is a sun.
-void add_sky(const Scene& scene, std::vector<Thing>& out, size_t most) {
+void add_sky(const Scene& scene, std::vector<SmallFeature>& out, size_t most) {
     const Sky& sky = scene.sky;
     if (sky.black() || sky.even()) return;
     std::vector<Part> bright;
@@ -278,7 +278,7 @@ void add_sky(const Scene& scene, std::vector<Thing>& out, size_t most) {
     for (const std::vector<Part>& of_class : classes_of(bright)) {
         std::vector<Part> parts;
         add_body(parts, of_class);
-        add_things(out, Thing::Kind::Lamp, std::move(parts), most);
+        add_things(out, SmallFeature::Kind::Lamp, std::move(parts), most);
     }
     for (size_t i = first; i < out.size(); ++i) {
         out[i].at_infinity = true;
@@ -289,12 +289,12 @@ void add_sky(const Scene& scene, std::vector<Thing>& out, size_t most) {
 }
 
 // The disc of each sun that has one, as wide as where it comes while the shutter is open.
-void add_suns(const Scene& scene, std::vector<Thing>& out, size_t most) {
+void add_suns(const Scene& scene, std::vector<SmallFeature>& out, size_t most) {
     for (size_t i = 0; i < std::min(most, scene.sun_discs.size()); ++i) {
         const uint32_t light = scene.sun_discs[i];
         const auto& sun = std::get<SunLight>(scene.lights[light]);
         const auto disc_rad = 2 * std::asin(std::sqrt(sun.versine / 2));
-        Thing thing{Thing::Kind::Lamp, -sun.direction};
+        SmallFeature thing{SmallFeature::Kind::Lamp, -sun.direction};
         if (const auto* const steps = steps_of_light(scene, light))
             for (const Light& step : *steps) {
                 const V3f apart = std::get<SunLight>(step).direction - sun.direction;
@@ -312,8 +312,8 @@ void add_suns(const Scene& scene, std::vector<Thing>& out, size_t most) {
 
 }  // namespace
 
-std::vector<Thing> things_of(const Scene& scene, size_t most_of_class) {
-    std::vector<Thing> out;
+std::vector<SmallFeature> small_features_of(const Scene& scene, size_t most_of_class) {
+    std::vector<SmallFeature> out;
     add_surfaces(scene, out, most_of_class);
     add_sky(scene, out, most_of_class);
     add_suns(scene, out, most_of_class);

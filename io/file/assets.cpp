@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/base/assets.h"
+#include "io/file/assets.h"
 
 #include <system_error>
 
 #include "io/base/error.h"
-#include "io/base/program_file.h"
+#include "io/file/program_file.h"
 
 namespace petzval {
 

@@ -10,7 +10,7 @@
 namespace petzval {
 
 /// A part of a scene, by the sphere around it.
-struct Thing {
+struct SmallFeature {
     enum class Kind : uint8_t {
         Wavelength,  ///< refracts, reflects or emits by wavelength
         Lamp         ///< emits, or is a bright spot of the sky or the disc of a sun
@@ -32,6 +32,6 @@ struct Thing {
 /// the lamps of one class of brightness, of which there are four, each a hundred times as dark as
 /// the one before. What is found in textures comes from up to 2^18 points. A pure function of the
 /// scene.
-[[nodiscard]] std::vector<Thing> things_of(const Scene&, size_t most_of_class = 32);
+[[nodiscard]] std::vector<SmallFeature> small_features_of(const Scene&, size_t most_of_class = 32);
 
 }  // namespace petzval

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/setup/camera_model.h"
+#include "apps/setup/camera/camera_model.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,7 +12,7 @@
 #include "io/base/error.h"
 #include "io/base/named.h"
 #include "io/base/printable.h"
-#include "io/base/read_file.h"
+#include "io/file/read_file.h"
 #include "io/glass/glass_lookup.h"
 
 namespace petzval {

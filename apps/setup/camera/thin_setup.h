@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "apps/setup/camera_model.h"
+#include "apps/setup/camera/camera_model.h"
 #include "camera/camera.h"
 #include "camera/models/thin_lens.h"
 #include "io/base/notice.h"

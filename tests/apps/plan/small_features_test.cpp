@@ -40,16 +40,16 @@ Scene lamps(const std::vector<V3f>& centres, float side) {
 TEST(Things, LampsThatLieApartAreSeveral) {
     const std::vector<V3f> centres{{-0.5f, 0, -2}, {0.5f, 0.1f, -3}, {0, -0.3f, -4}};
     const Scene scene = lamps(centres, 0.01f);
-    const std::vector<Thing> things = things_of(scene);
+    const std::vector<SmallFeature> things = small_features_of(scene);
     ASSERT_FALSE(things.empty());
     for (const V3f& centre : centres) {
-        const auto near = std::count_if(things.begin(), things.end(), [&](const Thing& t) {
+        const auto near = std::count_if(things.begin(), things.end(), [&](const SmallFeature& t) {
             return (t.centre - centre).length() < 0.01f && t.radius_m < 0.01f;
         });
         EXPECT_GE(near, 1) << centre.x;
     }
     double area = 0;
-    for (const Thing& t : things) {
+    for (const SmallFeature& t : things) {
         EXPECT_TRUE(t.is_lamp());
         EXPECT_NEAR(t.radiance, 100, 1);
         area += t.area_m2;
@@ -61,7 +61,7 @@ TEST(Things, WhatNeitherShinesNorDependsOnWavelengthIsNone) {
     Scene scene;
     place(scene, square({0, 0, -4}, 4.f), diffuse_material(0.5f));
     finish_scene(scene);
-    EXPECT_TRUE(things_of(scene).empty());
+    EXPECT_TRUE(small_features_of(scene).empty());
 }
 
 // A lamp that nobody sees, be it as bright as it likes, does not hide others; nor do big dim ones.
@@ -74,10 +74,10 @@ TEST(Things, LampsAreFoundBesideMuchBrighterAndMuchDarkerOnes) {
     place(scene, square({0, 0, 3}, 0.5f), emitter_material(1e6f));
     place(scene, test::sphere({0, 0, -20}, 15, 16, false), emitter_material(0.1f));
     finish_scene(scene);
-    const std::vector<Thing> things = things_of(scene);
+    const std::vector<SmallFeature> things = small_features_of(scene);
     for (const V3f& centre : centres)
         EXPECT_TRUE(std::any_of(things.begin(), things.end(),
-                                [&](const Thing& t) {
+                                [&](const SmallFeature& t) {
                                     return (t.centre - centre).length() < 0.01f &&
                                            t.radius_m < 0.01f;
                                 }))
@@ -89,7 +89,7 @@ TEST(Things, AFinelyTessellatedLampIsOne) {
         Scene scene;
         place(scene, test::sphere({0.2f, 0.1f, -2}, 0.05f, rows, true), emitter_material(10.f));
         finish_scene(scene);
-        const std::vector<Thing> things = things_of(scene);
+        const std::vector<SmallFeature> things = small_features_of(scene);
         ASSERT_EQ(things.size(), 1u) << rows;
         EXPECT_NEAR(things[0].area_m2, 2 * 3.14159 * 0.05 * 0.05, 0.1 * 0.0157);
         EXPECT_NEAR(things[0].radiance, 10, 1e-3);
@@ -107,7 +107,7 @@ TEST(Things, ManyLampsKeepTheirArea) {
     scene.instances.resize(kLamps, scene.instances[0]);
     finish_scene(scene);
     double area = 0;
-    for (const Thing& t : things_of(scene)) area += t.area_m2;
+    for (const SmallFeature& t : small_features_of(scene)) area += t.area_m2;
     const double truth = kLamps * 0.01 * 0.01 / 4;
     EXPECT_NEAR(area, truth, 0.01 * truth);
 }
@@ -123,11 +123,11 @@ TEST(Things, TexturesThatGlowAreLamps) {
         place(scene, square({0, 0, -2}, 1.f), emitter_material(100.f));
         scene.materials[0].emissive_texture.image = 0;
         finish_scene(scene);
-        const std::vector<Thing> things = things_of(scene);
+        const std::vector<SmallFeature> things = small_features_of(scene);
         ASSERT_FALSE(things.empty());
         const auto& smallest = *std::min_element(
             things.begin(), things.end(),
-            [](const Thing& a, const Thing& b) { return a.radius_m < b.radius_m; });
+            [](const SmallFeature& a, const SmallFeature& b) { return a.radius_m < b.radius_m; });
         if (spot) {
             EXPECT_LT(smallest.radius_m, 0.05f);
             EXPECT_NEAR(double(smallest.centre.x), (20.5 / kSide - 0.5), 0.03);
@@ -144,11 +144,11 @@ TEST(Things, GlassThatDispersesIsOne) {
     glass.transmission = 1;
     glass.has_volume = true;
     place(scene, square({0.2f, 0, -2}, 0.1f), glass);
-    EXPECT_TRUE(things_of(scene).empty());
+    EXPECT_TRUE(small_features_of(scene).empty());
     scene.materials.back().glass.emplace();
-    const auto things = things_of(scene);
+    const auto things = small_features_of(scene);
     ASSERT_FALSE(things.empty());
-    EXPECT_EQ(things[0].kind, Thing::Kind::Wavelength);
+    EXPECT_EQ(things[0].kind, SmallFeature::Kind::Wavelength);
     EXPECT_NEAR(double(things[0].centre.x), 0.2, 0.05);
 }
 
@@ -157,9 +157,9 @@ TEST(Things, AMeasuredReflectanceIsOne) {
     place(scene, square({0.2f, 0, -2}, 0.1f), diffuse_material(0.5f));
     scene.materials.back().reflectance = 0;
     scene.reflectances.emplace_back();
-    const auto things = things_of(scene);
+    const auto things = small_features_of(scene);
     ASSERT_FALSE(things.empty());
-    EXPECT_EQ(things[0].kind, Thing::Kind::Wavelength);
+    EXPECT_EQ(things[0].kind, SmallFeature::Kind::Wavelength);
     EXPECT_NEAR(double(things[0].centre.x), 0.2, 0.05);
 }
 
@@ -170,13 +170,13 @@ TEST(Things, ASunOfASkyIsALamp) {
     Scene scene;
     scene.sky = Sky::picture(rgb, kWidth, kHeight, 0, 1);
     finish_scene(scene);
-    const std::vector<Thing> things = things_of(scene);
+    const std::vector<SmallFeature> things = small_features_of(scene);
     ASSERT_FALSE(things.empty());
     const float azimuth = ((kColumn + 0.5f) / kWidth - 0.5f) * 2 * kPi,
                 polar = (kRow + 0.5f) / kHeight * kPi;
     const V3f sun(std::sin(polar) * std::cos(azimuth), std::cos(polar),
                   std::sin(polar) * std::sin(azimuth));
-    for (const Thing& t : things) {
+    for (const SmallFeature& t : things) {
         EXPECT_TRUE(t.at_infinity);
         EXPECT_LT((t.centre - sun).length(), 0.05f);
     }
@@ -190,7 +190,7 @@ TEST(FilmRegions, HoldTheLightOfALampInFocusAndOutOfFocus) {
         const ThinLensCamera seen = camera(radius_m, focus_m);
         const V3f centre(0.31f, -0.12f, -2.f);
         const Scene scene = lamps({centre}, 0.004f);
-        const auto things = things_of(scene);
+        const auto things = small_features_of(scene);
         const auto regions = film_regions(seen, kSize, things);
         const Bvh bvh(scene, Traversal::Robust);
         int64_t lit = 0, outside = 0;
@@ -222,7 +222,7 @@ TEST(FilmRegions, HoldTheLightOfALampInFocusAndOutOfFocus) {
 
 TEST(FilmRegions, WhatTheCameraDoesNotSeeHasNone) {
     const Scene scene = lamps({{0, 0, 2}}, 0.1f);
-    for (const FilmRegion& r : film_regions(camera(0.02f, 1), kSize, things_of(scene)))
+    for (const FilmRegion& r : film_regions(camera(0.02f, 1), kSize, small_features_of(scene)))
         EXPECT_TRUE(r.rects.empty());
 }
 

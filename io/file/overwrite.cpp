@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/base/overwrite.h"
+#include "io/file/overwrite.h"
 
 #include <fmt/format.h>
 #include <sys/stat.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/setup/camera_report.h"
+#include "apps/setup/camera/camera_report.h"
 
 #include "apps/request/option_names.h"
 #include "camera/lens/focus.h"

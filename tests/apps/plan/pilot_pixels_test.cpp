@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Looks of a pilot: they stand for the frame without a bias, and what they say of the rest holds.
-#include "apps/plan/looks.h"
+// PilotPixels of a pilot: they stand for the frame without a bias, and what they say of the rest holds.
+#include "apps/plan/pilot_pixels.h"
 
 #include <gmock/gmock.h>
 
@@ -21,9 +21,9 @@ std::vector<FilmRegion> regions() {
             of({{5, 80, 8, 83}})};
 }
 
-double share_of(const Looks& looks, const Rect& r) {
+double share_of(const PilotPixels& looks, const Rect& r) {
     double sum = 0;
-    for (const Look& look : looks.looks)
+    for (const PilotPixel& look : looks.looks)
         if (look.pixel[0] >= r.x0 && look.pixel[0] < r.x1 && look.pixel[1] >= r.y0 &&
             look.pixel[1] < r.y1)
             sum += look.weight;
@@ -32,23 +32,23 @@ double share_of(const Looks& looks, const Rect& r) {
 
 // The share of a part of the frame, as a mean over seeds: five parts, one of them within two
 // regions, one within a region that is looked at wholly, one in the corner that is emphasized.
-TEST(Looks, StandForTheFrameWithoutABias) {
+TEST(PilotPixels, StandForTheFrameWithoutABias) {
     for (const Rect part : {Rect{32, 16, 36, 19}, Rect{5, 80, 8, 83}, Rect{0, 0, 30, 20},
                             Rect{90, 40, 140, 80}, Rect{0, 0, 160, 90}}) {
         test::Moments share;
         for (uint32_t seed = 0; seed < 200; ++seed)
-            share.add(share_of(choose_looks(kSize, 400, regions(), kCorner, seed), part));
+            share.add(share_of(choose_pilot_pixels(kSize, 400, regions(), kCorner, seed), part));
         const double truth = double(part.width()) * part.height() / (160. * 90);
         EXPECT_TRUE(test::agrees(share, truth, 1e-9))
             << part.x0 << ' ' << part.y0 << ": " << share.mean() << ' ' << truth;
     }
 }
 
-TEST(Looks, RegionsAndEmphasisGetTheirOwn) {
-    const Looks looks = choose_looks(kSize, 400, regions(), kCorner, 0);
+TEST(PilotPixels, RegionsAndEmphasisGetTheirOwn) {
+    const PilotPixels looks = choose_pilot_pixels(kSize, 400, regions(), kCorner, 0);
     const auto count = [&](const Rect& r) {
         int n = 0;
-        for (const Look& look : looks.looks)
+        for (const PilotPixel& look : looks.looks)
             n += look.pixel[0] >= r.x0 && look.pixel[0] < r.x1 && look.pixel[1] >= r.y0 &&
                  look.pixel[1] < r.y1;
         return n;
@@ -57,16 +57,16 @@ TEST(Looks, RegionsAndEmphasisGetTheirOwn) {
     EXPECT_EQ(count({5, 80, 8, 83}), 9) << "all of a small region";
     EXPECT_GT(count({0, 0, 40, 30}), 2 * count({120, 60, 160, 90}));
     std::set<std::array<int, 2>> pixels;
-    for (const Look& look : looks.looks) pixels.insert(look.pixel);
+    for (const PilotPixel& look : looks.looks) pixels.insert(look.pixel);
     EXPECT_EQ(pixels.size(), looks.looks.size()) << "none twice";
 }
 
 // Dim pictures have small values.
-TEST(Looks, OfAnEmphasisOnlyRatiosCount) {
+TEST(PilotPixels, OfAnEmphasisOnlyRatiosCount) {
     FilmMap dim = kCorner;
     for (double& value : dim.values) value *= 0x1p-40;
-    const Looks looks = choose_looks(kSize, 400, regions(), kCorner, 0),
-                of_dim = choose_looks(kSize, 400, regions(), dim, 0);
+    const PilotPixels looks = choose_pilot_pixels(kSize, 400, regions(), kCorner, 0),
+                of_dim = choose_pilot_pixels(kSize, 400, regions(), dim, 0);
     ASSERT_EQ(of_dim.looks.size(), looks.looks.size());
     for (size_t i = 0; i < looks.looks.size(); ++i) {
         EXPECT_EQ(of_dim.looks[i].pixel, looks.looks[i].pixel);
@@ -75,8 +75,8 @@ TEST(Looks, OfAnEmphasisOnlyRatiosCount) {
     EXPECT_EQ(of_dim.density.values, looks.density.values);
 }
 
-TEST(Looks, SmallFramesAreLookedAtWholly) {
-    const Looks looks = choose_looks({20, 10}, 200, {}, kCorner, 3);
+TEST(PilotPixels, SmallFramesAreLookedAtWholly) {
+    const PilotPixels looks = choose_pilot_pixels({20, 10}, 200, {}, kCorner, 3);
     EXPECT_EQ(looks.looks.size(), 200u);
     EXPECT_TRUE(looks.all_certain);
     EXPECT_NEAR(share_of(looks, {0, 0, 20, 10}), 1, 1e-12);
@@ -85,17 +85,17 @@ TEST(Looks, SmallFramesAreLookedAtWholly) {
 
 // An error that only a part of the frame has, which may be anywhere: as large as it can be while
 // the bound does not cover it, in at most 5 % of the cases no look falls on it.
-TEST(Looks, WhatIsUnseenIsSeldomMoreThanItsBound) {
+TEST(PilotPixels, WhatIsUnseenIsSeldomMoreThanItsBound) {
     const FilmMap even;
     int missed = 0;
     constexpr int kCases = 2000;
     for (int i = 0; i < kCases; ++i) {
         const auto seed = static_cast<uint32_t>(i);
-        const Looks looks = choose_looks(kSize, 300, {}, kCorner, seed);
+        const PilotPixels looks = choose_pilot_pixels(kSize, 300, {}, kCorner, seed);
         const double share = looks.unseen(kSize, even);
         // Scattered pixels: stratified looks would meet what lies together more surely.
         bool met = false;
-        for (const Look& look : looks.looks)
+        for (const PilotPixel& look : looks.looks)
             met = met || hash32(hash32(seed, static_cast<uint32_t>(look.pixel[0])),
                                 static_cast<uint32_t>(look.pixel[1])) < share * 0x1p32;
         missed += !met;
@@ -106,8 +106,8 @@ TEST(Looks, WhatIsUnseenIsSeldomMoreThanItsBound) {
 }
 
 // Grids whose cells do not nest, against every pixel.
-TEST(Looks, UnseenIsTheWorstPixels) {
-    const Looks looks = choose_looks(kSize, 400, {}, kCorner, 0);
+TEST(PilotPixels, UnseenIsTheWorstPixels) {
+    const PilotPixels looks = choose_pilot_pixels(kSize, 400, {}, kCorner, 0);
     FilmMap most{{3, 5}, {}};
     for (uint32_t i = 0; i < 15; ++i) most.values.push_back(to_unit_float(hash32(7, i)));
     double worst = 0;
@@ -117,31 +117,31 @@ TEST(Looks, UnseenIsTheWorstPixels) {
     EXPECT_NEAR(looks.unseen(kSize, most), 3 * worst / (160. * 90), 1e-12);
 }
 
-TEST(Looks, MoreRegionsThanLooksForThemLeaveTheEvenOnes) {
+TEST(PilotPixels, MoreRegionsThanLooksForThemLeaveTheEvenOnes) {
     std::vector<FilmRegion> many;
     for (int i = 0; i < 200; ++i)
         many.push_back({{{i % 40 * 4, i / 40 * 10, i % 40 * 4 + 4, i / 40 * 10 + 5}}});
     test::Moments share;
     for (uint32_t seed = 0; seed < 100; ++seed) {
-        const Looks looks = choose_looks(kSize, 256, many, kCorner, seed);
+        const PilotPixels looks = choose_pilot_pixels(kSize, 256, many, kCorner, seed);
         EXPECT_LE(looks.looks.size(), 300u);
         share.add(share_of(looks, {0, 0, 100, 60}));
     }
     EXPECT_TRUE(test::agrees(share, 100. * 60 / (160. * 90), 1e-9)) << share.mean();
-    const Looks looks = choose_looks(kSize, 256, many, kCorner, 0);
+    const PilotPixels looks = choose_pilot_pixels(kSize, 256, many, kCorner, 0);
     EXPECT_EQ(looks.regions.size(), 64u);
 }
 
-TEST(Looks, UnseenIsLessWhereMoreIsLookedAt) {
+TEST(PilotPixels, UnseenIsLessWhereMoreIsLookedAt) {
     const FilmMap even;
-    const double few = choose_looks(kSize, 300, {}, even, 0).unseen(kSize, even),
-                 many = choose_looks(kSize, 3000, {}, even, 0).unseen(kSize, even);
+    const double few = choose_pilot_pixels(kSize, 300, {}, even, 0).unseen(kSize, even),
+                 many = choose_pilot_pixels(kSize, 3000, {}, even, 0).unseen(kSize, even);
     EXPECT_NEAR(few, 3 / 300., 0.1 * few);
     EXPECT_NEAR(many, 3 / 3000., 0.1 * many);
     // Errors that can only be in the corner, where half of the looks go by emphasis.
     FilmMap corner{{4, 3}, std::vector<double>(12, 0.)};
     corner.values[0] = 1;
-    EXPECT_LT(choose_looks(kSize, 300, {}, corner, 0).unseen(kSize, corner), few / 2);
+    EXPECT_LT(choose_pilot_pixels(kSize, 300, {}, corner, 0).unseen(kSize, corner), few / 2);
 }
 
 }  // namespace

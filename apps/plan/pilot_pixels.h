@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Looks of a pilot: the pixels that it renders, and for how much of the frame each stands.
+// PilotPixels of a pilot: the pixels that it renders, and for how much of the frame each stands.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace petzval {
 
-struct Look {
+struct PilotPixel {
     std::array<int, 2> pixel;
     double weight;         ///< share of the frame that it stands for
     bool certain = false;  ///< it was not drawn: every pixel like it is looked at
@@ -31,8 +31,8 @@ struct FilmMap {
     }
 };
 
-struct Looks {
-    std::vector<Look> looks;
+struct PilotPixels {
+    std::vector<PilotPixel> looks;
     /// Pixels expected to be drawn of each pixel: weight = 1 / (pixels of the frame * density).
     /// Above 0 everywhere; where all are certain it does not matter.
     FilmMap density;
@@ -47,13 +47,13 @@ struct Looks {
 };
 
 /// One pixel in each cell of an even grid, about `wanted` in all.
-[[nodiscard]] Looks even_looks(V2i size_px, int wanted, uint32_t seed);
+[[nodiscard]] PilotPixels even_pilot_pixels(V2i size_px, int wanted, uint32_t seed);
 
 /// About `wanted` looks: half evenly, a quarter in the regions, to equal parts, and a quarter in
 /// proportion to `emphasis`, which must be above 0 somewhere. All pixels, where the frame has no
 /// more. Regions that have no more pixels than their part are looked at wholly; where there are
 /// more regions than looks for them, the largest get none. They follow from the arguments alone.
-[[nodiscard]] Looks choose_looks(V2i size_px, int wanted, std::vector<FilmRegion> regions,
+[[nodiscard]] PilotPixels choose_pilot_pixels(V2i size_px, int wanted, std::vector<FilmRegion> regions,
                                  const FilmMap& emphasis, uint32_t seed);
 
 }  // namespace petzval

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/base/csv.h"
+#include "io/file/csv.h"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "io/base/error.h"
-#include "io/base/read_file.h"
-#include "io/base/text_lines.h"
+#include "io/file/read_file.h"
+#include "io/file/text_lines.h"
 
 namespace petzval {
 

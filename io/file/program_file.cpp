@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/base/program_file.h"
+#include "io/file/program_file.h"
 
 #include <system_error>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/setup/lens_setup.h"
+#include "apps/setup/camera/lens_setup.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/setup/framing.h"
+#include "apps/setup/camera/framing.h"
 
 #include <Imath/ImathMatrixAlgo.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/plan/looks.h"
+#include "apps/plan/pilot_pixels.h"
 
 #include <algorithm>
 #include <map>
@@ -63,8 +63,8 @@ Emphasis emphasis_of(V2i size, const FilmMap& map) {
     return out;
 }
 
-Looks all_pixels(V2i size) {
-    Looks out;
+PilotPixels all_pixels(V2i size) {
+    PilotPixels out;
     const double weight = 1 / (double(size.x) * double(size.y));
     for (int y = 0; y < size.y; ++y)
         for (int x = 0; x < size.x; ++x) out.looks.push_back({{x, y}, weight, true});
@@ -74,7 +74,7 @@ Looks all_pixels(V2i size) {
 
 }  // namespace
 
-double Looks::unseen(V2i size_px, const FilmMap& most) const {
+double PilotPixels::unseen(V2i size_px, const FilmMap& most) const {
     if (all_certain) return 0;
     const double pixels = double(size_px.x) * double(size_px.y);
     double worst = 0;
@@ -86,8 +86,8 @@ double Looks::unseen(V2i size_px, const FilmMap& most) const {
     return kNoneMet * worst / pixels;
 }
 
-Looks even_looks(V2i size_px, int wanted, uint32_t seed) {
-    Looks out;
+PilotPixels even_pilot_pixels(V2i size_px, int wanted, uint32_t seed) {
+    PilotPixels out;
     const auto pixels = pilot_pixels(size_px, wanted, seed);
     const auto count = static_cast<double>(pixels.size());
     const double frame = double(size_px.x) * double(size_px.y);
@@ -98,7 +98,7 @@ Looks even_looks(V2i size_px, int wanted, uint32_t seed) {
     return out;
 }
 
-Looks choose_looks(V2i size_px, int wanted, std::vector<FilmRegion> regions,
+PilotPixels choose_pilot_pixels(V2i size_px, int wanted, std::vector<FilmRegion> regions,
                    const FilmMap& emphasis, uint32_t seed) {
     const double pixels = double(size_px.x) * double(size_px.y);
     if (pixels <= wanted) return all_pixels(size_px);
@@ -112,7 +112,7 @@ Looks choose_looks(V2i size_px, int wanted, std::vector<FilmRegion> regions,
         return a.area_px() < b.area_px();
     });
     if (regions.size() > of_regions) regions.resize(of_regions);
-    Looks out;
+    PilotPixels out;
     const auto each = regions.empty() ? 0 : static_cast<int64_t>(of_regions / regions.size());
     const Emphasis emphasized = emphasis_of(size_px, emphasis);
     const auto of_emphasis = static_cast<uint32_t>(kEmphasisShare * wanted);

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "apps/request/scene_request.h"
-#include "apps/setup/lens_setup.h"
+#include "apps/setup/camera/lens_setup.h"
 #include "core/spectrum/glass.h"
 #include "io/gltf/gltf.h"
 

@@ -12,8 +12,8 @@
 #include "apps/setup/input_files.h"
 #include "apps/setup/memory.h"
 #include "apps/setup/spectral_wording.h"
-#include "io/file/atomic_file.h"
 #include "io/base/error.h"
+#include "io/file/atomic_file.h"
 #include "io/file/rescue.h"
 
 namespace petzval {

@@ -3,10 +3,10 @@
 
 #include "apps/chart/chart_report.h"
 #include "io/base/error.h"
-#include "io/file/read_file.h"
 #include "io/base/uri.h"
 #include "io/base/xml_text.h"
 #include "io/build/build.h"
+#include "io/file/read_file.h"
 #include "io/image/difference.h"
 #include "io/image/symmetric_mse.h"
 

@@ -11,8 +11,8 @@
 #include "camera/iris/iris.h"
 #include "core/film/spectral_film.h"
 #include "io/aperture/aperture_file.h"
-#include "io/file/atomic_file.h"
 #include "io/base/error.h"
+#include "io/file/atomic_file.h"
 #include "io/image/picture_files.h"
 
 namespace petzval {

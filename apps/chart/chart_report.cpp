@@ -9,9 +9,9 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "io/build/build.h"
 #include "io/file/atomic_file.h"
 #include "io/file/rescue.h"
-#include "io/build/build.h"
 #include "io/image/flip.h"
 #include "io/image/output.h"
 #include "io/image/picture_files.h"

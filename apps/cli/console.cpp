@@ -13,9 +13,9 @@
 
 #include "apps/request/option_text.h"
 #include "io/base/ascii.h"
-#include "io/file/atomic_file.h"
 #include "io/base/error.h"
 #include "io/base/printable.h"
+#include "io/file/atomic_file.h"
 
 namespace petzval {
 namespace {

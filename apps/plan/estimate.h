@@ -5,7 +5,7 @@
 
 namespace petzval {
 
-/// A mean over the pixels of a frame, its standard error, and what pixels that were not looked at
+/// A mean over the pixels of a frame, its standard error, and what pixels that were not sampled
 /// may add.
 struct Estimate {
     double mean = 0, error = 0;

@@ -12,7 +12,6 @@
 namespace petzval {
 namespace {
 
-
 PathOptions with_background(PathOptions options, const View& view) {
     options.visible_background = view.visible_background;
     return options;
@@ -25,21 +24,21 @@ RenderSetup view_of(const RenderSetup& first, const SceneRequest& scene, TbbExec
 }
 
 PilotModel::PilotModel(RenderSetup setup, const RenderJob& job, const PathOptions& options,
-                       const std::vector<PilotPixel>& looks)
+                       const std::vector<PilotPixel>& chosen)
     : setup_(std::move(setup)),
       tracer_(*setup_.prepared.scene, *setup_.prepared.bvh, *setup_.prepared.lights,
               with_background(options, setup_.view)),
-      sums_(looks.size()),
-      look_s_(looks.size()) {
-    for (const PilotPixel& look : looks) weights_.push_back(look.weight);
+      sums_(chosen.size()),
+      pixel_s_(chosen.size()) {
+    for (const PilotPixel& pixel : chosen) weights_.push_back(pixel.weight);
     job_.sampler = job.sampler;
     job_.filter = job.filter;
     job_.replicates = job.replicates;
     job_.observer = setup_.view.observer;
 }
 
-PilotValues PilotModel::means(size_t look) const {
-    PilotValues out = sums_[look];
+PilotValues PilotModel::means(size_t pixel) const {
+    PilotValues out = sums_[pixel];
     for (V3d& v : out) v /= double(samples_);
     return out;
 }
@@ -73,21 +72,21 @@ double PilotModel::rays_to_find_targets() const {
     return kSearch * static_cast<double>(stats_.target_rays) / static_cast<double>(stats_.samples);
 }
 
-// The looks are not even over the frame, and what is looked at more may cost more: the times of the
-// looks weigh the CPU time, which other programs do not disturb.
+// The pilot pixels are not even over the frame, and what is sampled more may cost more: the times
+// of the pilot pixels weigh the CPU time, which other programs do not disturb.
 double PilotModel::cpu_s_per_sample() const {
     double even = 0, weighed = 0, weights = 0;
-    for (size_t p = 0; p < look_s_.size(); ++p) {
-        even += look_s_[p] / static_cast<double>(look_s_.size());
-        weighed += look_s_[p] * weights_[p];
+    for (size_t p = 0; p < pixel_s_.size(); ++p) {
+        even += pixel_s_[p] / static_cast<double>(pixel_s_.size());
+        weighed += pixel_s_[p] * weights_[p];
         weights += weights_[p];
     }
     const double mean = cpu_s_ / static_cast<double>(stats_.samples);
     return even > 0 ? mean * weighed / weights / even : mean;
 }
 
-Pilot::Pilot(V2i size_px, PilotPixels looks, TbbExecutor& executor, uint32_t seed)
-    : size_px_(size_px), seed_(seed), looks_(std::move(looks)), executor_(executor) {}
+Pilot::Pilot(V2i size_px, PilotPixels chosen, TbbExecutor& executor, uint32_t seed)
+    : size_px_(size_px), seed_(seed), chosen_(std::move(chosen)), executor_(executor) {}
 
 Pilot::Pilot(V2i size_px, int wanted, TbbExecutor& executor, uint32_t seed)
     : Pilot(size_px, even_pilot_pixels(size_px, wanted, seed), executor, seed) {}
@@ -95,26 +94,27 @@ Pilot::Pilot(V2i size_px, int wanted, TbbExecutor& executor, uint32_t seed)
 std::unique_ptr<PilotModel> Pilot::model(RenderSetup setup, const RenderJob& job,
                                          const PathOptions& options) const {
     return std::unique_ptr<PilotModel>(
-        new PilotModel(std::move(setup), job, options, looks_.looks));
+        new PilotModel(std::move(setup), job, options, chosen_.pixels));
 }
 
 void Pilot::sample(PilotModel& model, uint32_t samples) const {
     std::vector<PathStats> stats(static_cast<size_t>(executor_.threads()));
     const double start_s = process_cpu_s();
     executor_.run(static_cast<int>(pixels()), [&](int task, int worker) {
-        const auto look = static_cast<size_t>(task);
-        const auto [x, y] = looks_.looks[look].pixel;
-        const double look_start_s = steady_s();
+        const auto pixel = static_cast<size_t>(task);
+        const auto [x, y] = chosen_.pixels[pixel].pixel;
+        const double pixel_start_s = steady_s();
         RenderJob job = model.job_;
         for (uint32_t k = 0; k < kPilotReplicates; ++k) {
             Film film(size_px_, {x, y, x + 1, y + 1}, {});
             job.seed = number_of(PrepassSeed::Plan) + kPilotReplicates * seed_ + k;
             render_samples(model.tracer_, *model.setup_.view.camera, job,
-                           {{x, y}, model.samples_, samples}, film, stats[static_cast<size_t>(worker)]);
+                           {{x, y}, model.samples_, samples}, film,
+                           stats[static_cast<size_t>(worker)]);
             const V4f c = film.colour(x, y);
-            model.sums_[look][k] += V3d(c.x, c.y, c.z) * double(film.sample_count(x, y));
+            model.sums_[pixel][k] += V3d(c.x, c.y, c.z) * double(film.sample_count(x, y));
         }
-        model.look_s_[look] += steady_s() - look_start_s;
+        model.pixel_s_[pixel] += steady_s() - pixel_start_s;
     });
     model.cpu_s_ += process_cpu_s() - start_s;
     model.samples_ = std::max(model.samples_, samples);

@@ -30,9 +30,9 @@ class PilotModel {
     [[nodiscard]] const RenderSetup& setup() const { return setup_; }
     [[nodiscard]] uint32_t samples() const { return samples_; }  ///< of each replicate of a pixel
     [[nodiscard]] const PathStats& stats() const { return stats_; }
-    /// Mean of each replicate of a look's pixel.
-    [[nodiscard]] PilotValues means(size_t look) const;
-    /// Means after each turn of Pilot::sample(), by turn and look.
+    /// Mean of each replicate of a pilot pixel.
+    [[nodiscard]] PilotValues means(size_t pixel) const;
+    /// Means after each turn of Pilot::sample(), by turn and pilot pixel.
     [[nodiscard]] const std::vector<std::vector<PilotValues>>& turns() const { return turns_; }
     /// Cost of a sample, the same on every machine: rays that are cast, and up to three more for
     /// the way through glass. Only after sample().
@@ -49,26 +49,26 @@ class PilotModel {
     RenderSetup setup_;
     RenderJob job_;
     PathTracer<> tracer_;
-    std::vector<double> weights_;  ///< of the looks
+    std::vector<double> weights_;  ///< of the pilot pixels
     std::vector<PilotValues> sums_;
     std::vector<std::vector<PilotValues>> turns_;
-    std::vector<double> look_s_;  ///< time that each look took, as the thread saw it
+    std::vector<double> pixel_s_;  ///< time that each pilot pixel took, as the thread saw it
     uint32_t samples_ = 0;
     PathStats stats_;
     double cpu_s_ = 0;
 };
 
-/// Pixels that a pilot renders. They, and all that is measured but times, follow from size, looks
-/// and seed alone.
+/// Pixels that a pilot renders. They, and all that is measured but times, follow from size, pilot
+/// pixels and seed alone.
 class Pilot {
   public:
     Pilot(V2i size_px, PilotPixels, TbbExecutor&, uint32_t seed = 0);
     /// wanted: about so many pixels, one in each cell of an even grid.
     Pilot(V2i size_px, int wanted, TbbExecutor&, uint32_t seed = 0);
 
-    [[nodiscard]] size_t pixels() const { return looks_.looks.size(); }
+    [[nodiscard]] size_t pixels() const { return chosen_.pixels.size(); }
     [[nodiscard]] V2i size_px() const { return size_px_; }
-    [[nodiscard]] const PilotPixels& looks() const { return looks_; }
+    [[nodiscard]] const PilotPixels& chosen() const { return chosen_; }
     /// Uses job.sampler, job.filter and job.replicates; ignores the rest.
     [[nodiscard]] std::unique_ptr<PilotModel> model(RenderSetup, const RenderJob&,
                                                     const PathOptions&) const;
@@ -78,7 +78,7 @@ class Pilot {
   private:
     V2i size_px_;
     uint32_t seed_;
-    PilotPixels looks_;
+    PilotPixels chosen_;
     TbbExecutor& executor_;
 };
 

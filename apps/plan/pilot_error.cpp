@@ -43,11 +43,11 @@ double inverse_scale(const PilotValues& a, const PilotValues& b, const Pair& pai
 /// Symmetric square from which on a pixel's own brightness is doubted: light that few replicates
 /// met makes the others look dark.
 constexpr double kDoubtful = 8;
-/// PilotPixels of a neighbourhood, on average.
+/// Pilot pixels of a neighbourhood, on average.
 constexpr double kNeighbours = 64;
 
-/// Mean of each look's neighbourhood: the other looks in the same cell of a grid. Its own would
-/// hide that the others are dark.
+/// Mean of each pilot pixel's neighbourhood: the other pilot pixels in the same cell of a grid. Its
+/// own would hide that the others are dark.
 std::vector<V3d> neighbourhoods(const Pilot& pilot, const PilotModel& model) {
     const V2i size = pilot.size_px();
     const double cells = static_cast<double>(pilot.pixels()) / kNeighbours;
@@ -60,22 +60,22 @@ std::vector<V3d> neighbourhoods(const Pilot& pilot, const PilotModel& model) {
     std::vector<V3d> sums(count, V3d(0.));
     std::vector<double> weights(count, 0.);
     for (size_t p = 0; p < pilot.pixels(); ++p) {
-        const PilotPixel& look = pilot.looks().looks[p];
-        cell_of.push_back(grid.cell_at(size, look.pixel[0], look.pixel[1]));
+        const PilotPixel& pixel = pilot.chosen().pixels[p];
+        cell_of.push_back(grid.cell_at(size, pixel.pixel[0], pixel.pixel[1]));
         own.emplace_back(0.);
-        for (const V3d& v : model.means(p)) own.back() += v * (look.weight / kPilotReplicates);
+        for (const V3d& v : model.means(p)) own.back() += v * (pixel.weight / kPilotReplicates);
         sums[cell_of[p]] += own[p];
-        weights[cell_of[p]] += look.weight;
+        weights[cell_of[p]] += pixel.weight;
     }
     std::vector<V3d> out;
     for (size_t p = 0; p < pilot.pixels(); ++p) {
-        const double weight = weights[cell_of[p]] - pilot.looks().looks[p].weight;
+        const double weight = weights[cell_of[p]] - pilot.chosen().pixels[p].weight;
         out.push_back(weight > 0 ? (sums[cell_of[p]] - own[p]) / weight : V3d(0.));
     }
     return out;
 }
 
-/// What squares are divided by, for each look.
+/// What squares are divided by, for each pilot pixel.
 class Scales {
   public:
     Scales(const Pilot& pilot, const PilotScale& scale)
@@ -91,13 +91,13 @@ class Scales {
 
     /// A squared deviation over the pixel's own brightness, or where that is doubtful over no less
     /// than what is around it.
-    [[nodiscard]] double over(double square, size_t look, const Pair& pair, size_t channel) const {
+    [[nodiscard]] double over(double square, size_t pixel, const Pair& pair, size_t channel) const {
         const auto with = [&](double at_least) {
             return square *
-                   inverse_scale(a_[look], b_[look], pair, channel, at_least, scale_.floor);
+                   inverse_scale(a_[pixel], b_[pixel], pair, channel, at_least, scale_.floor);
         };
         const double own = with(0);
-        return std::fabs(own) < kDoubtful ? own : with(component(around_[look], channel));
+        return std::fabs(own) < kDoubtful ? own : with(component(around_[pixel], channel));
     }
 
   private:
@@ -106,17 +106,17 @@ class Scales {
     std::vector<PilotValues> a_, b_;
 };
 
-/// Weighted mean over the looks. halves: two independent estimates of each value, which tell the
-/// noise of those that were not drawn.
+/// Weighted mean over the pilot pixels. halves: two independent estimates of each value, which tell
+/// the noise of those that were not drawn.
 struct Value {
     double mean;
     std::array<double, 2> halves;
 };
-Estimate mean_of(const std::vector<Value>& values, const std::vector<PilotPixel>& looks) {
+Estimate mean_of(const std::vector<Value>& values, const std::vector<PilotPixel>& chosen) {
     double certain = 0, variance = 0, sum = 0, weights = 0, drawn = 0;
     for (size_t p = 0; p < values.size(); ++p) {
-        const double weight = looks[p].weight;
-        if (looks[p].certain) {
+        const double weight = chosen[p].weight;
+        if (chosen[p].certain) {
             const auto& [a, b] = values[p].halves;
             certain += weight * values[p].mean;
             variance += std::pow(weight * (a - b) / 2, 2);
@@ -129,10 +129,10 @@ Estimate mean_of(const std::vector<Value>& values, const std::vector<PilotPixel>
     // The weights of those that were drawn hardly vary in sum: what deviates from their mean does.
     const double scale = drawn > 1 ? drawn / (drawn - 1) : 1;
     for (size_t p = 0; p < values.size() && drawn > 0; ++p)
-        if (!looks[p].certain)
+        if (!chosen[p].certain)
             variance +=
                 scale *
-                std::pow(looks[p].weight * (values[p].mean - (drawn > 1 ? sum / weights : 0)), 2);
+                std::pow(chosen[p].weight * (values[p].mean - (drawn > 1 ? sum / weights : 0)), 2);
     return {certain + sum, std::sqrt(variance)};
 }
 
@@ -146,7 +146,7 @@ double pilot_floor(const Pilot& pilot, const PilotModel& model, const std::vecto
         if (!least.empty() && least[p].length2() > 0) mean = least[p];
         floor.add(double(luminance(Rgb(static_cast<float>(mean.x), static_cast<float>(mean.y),
                                        static_cast<float>(mean.z)))),
-                  pilot.looks().looks[p].weight);
+                  pilot.chosen().pixels[p].weight);
     }
     return floor.floor();
 }
@@ -173,7 +173,7 @@ Estimate square_error(const Pilot& pilot, const std::vector<PilotTerm>& terms,
         for (const double s : squares) sum += s / static_cast<double>(kPairs.size());
         values.push_back({sum, {squares[0], squares[1]}});
     }
-    return mean_of(values, pilot.looks().looks);
+    return mean_of(values, pilot.chosen().pixels);
 }
 
 std::optional<double> typical_ratio(const PilotNoise& noise, const PilotNoise& other) {
@@ -206,13 +206,13 @@ PilotNoise noise_of(const Pilot& pilot, const PilotModel& model, const PilotScal
             double mean = 0;
             for (const double part : parts) mean += part / static_cast<double>(kPairs.size());
             values.push_back({mean, {parts[0], parts[1]}});
-            const double v = pilot.looks().looks[p].weight * mean;
+            const double v = pilot.chosen().pixels[p].weight * mean;
             sum += v;
             squares += v * v;
             out.blocks[hash32(static_cast<uint32_t>(p)) % out.blocks.size()] +=
-                pilot.looks().looks[p].weight * std::min(mean, kMostSymmetricMse);
+                pilot.chosen().pixels[p].weight * std::min(mean, kMostSymmetricMse);
         }
-        out.variances.push_back(mean_of(values, pilot.looks().looks));
+        out.variances.push_back(mean_of(values, pilot.chosen().pixels));
         out.parts = squares > 0 ? sum * sum / squares : 0;
     }
     return out;

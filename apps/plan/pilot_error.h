@@ -21,13 +21,13 @@ struct PilotTerm {
 struct PilotScale {
     const PilotModel *a, *b;
     double floor;
-    /// Least mean of each look, where it is known from others that the samples of one pixel are too
-    /// few to find its light; empty: none is.
+    /// Least mean of each pilot pixel, where it is known from others that the samples of one pixel
+    /// are too few to find its light; empty: none is.
     std::vector<V3d> least{};
 };
 
 /// Floor of the symmetric MSE, from what the pilot sees of a picture. least: as in PilotScale; what
-/// a look shows by chance does not count where it is above 0.
+/// a pilot pixel shows by chance does not count where it is above 0.
 [[nodiscard]] double pilot_floor(const Pilot&, const PilotModel&,
                                  const std::vector<V3d>& least = {});
 
@@ -44,8 +44,8 @@ struct PilotNoise {
     /// Number of equal parts that would spread the last of them as unevenly: replicates of pixels
     /// that hold it. (sum of v)^2 / sum of v^2: Kish 1965, "Survey Sampling", section 11.7.
     double parts = 0;
-    /// Contributions of the looks to the last of them, each no more than a pixel can be off, in
-    /// blocks that a hash spreads over the frame.
+    /// Contributions of the pilot pixels to the last of them, each no more than a pixel can be off,
+    /// in blocks that a hash spreads over the frame.
     std::array<double, 16> blocks{};
 };
 /// Median over the blocks of the noise of one over that of the other: a few bright samples, which

@@ -12,7 +12,8 @@ namespace petzval {
 namespace {
 
 constexpr double kRegionShare = 0.25, kEmphasisShare = 0.25;
-/// A region larger than this share of the frame gets no looks of its own: the even ones meet it.
+/// A region larger than this share of the frame gets no pilot pixels of its own: the even ones meet
+/// it.
 constexpr double kLargeRegion = 0.125;
 
 /// Random number in [0, 2^32) for the i-th draw of a purpose.
@@ -67,7 +68,7 @@ PilotPixels all_pixels(V2i size) {
     PilotPixels out;
     const double weight = 1 / (double(size.x) * double(size.y));
     for (int y = 0; y < size.y; ++y)
-        for (int x = 0; x < size.x; ++x) out.looks.push_back({{x, y}, weight, true});
+        for (int x = 0; x < size.x; ++x) out.pixels.push_back({{x, y}, weight, true});
     out.all_certain = true;
     return out;
 }
@@ -76,14 +77,14 @@ PilotPixels all_pixels(V2i size) {
 
 double PilotPixels::unseen(V2i size_px, const FilmMap& most) const {
     if (all_certain) return 0;
-    const double pixels = double(size_px.x) * double(size_px.y);
+    const double frame_px = double(size_px.x) * double(size_px.y);
     double worst = 0;
     // Both maps are constant between the bounds of the cells of both.
     for (const int y : starts(density.cells.y, most.cells.y, size_px.y))
         for (const int x : starts(density.cells.x, most.cells.x, size_px.x))
             worst = std::max(worst, most.at(size_px, x, y) / density.at(size_px, x, y));
     constexpr double kNoneMet = 3;  // -log(0.05)
-    return kNoneMet * worst / pixels;
+    return kNoneMet * worst / frame_px;
 }
 
 PilotPixels even_pilot_pixels(V2i size_px, int wanted, uint32_t seed) {
@@ -92,21 +93,21 @@ PilotPixels even_pilot_pixels(V2i size_px, int wanted, uint32_t seed) {
     const auto count = static_cast<double>(pixels.size());
     const double frame = double(size_px.x) * double(size_px.y);
     for (const auto& pixel : pixels)
-        out.looks.push_back(
+        out.pixels.push_back(
             {pixel, static_cast<double>(pilot_cell_area_px(size_px, wanted, pixel)) / frame});
     out.density.values = {count / frame};
     return out;
 }
 
 PilotPixels choose_pilot_pixels(V2i size_px, int wanted, std::vector<FilmRegion> regions,
-                   const FilmMap& emphasis, uint32_t seed) {
+                                const FilmMap& emphasis, uint32_t seed) {
     const double pixels = double(size_px.x) * double(size_px.y);
     if (pixels <= wanted) return all_pixels(size_px);
     std::erase_if(regions, [&](const FilmRegion& r) {
         const auto area = static_cast<double>(r.area_px());
         return !(area > 0) || area > kLargeRegion * pixels;
     });
-    // Where there are more regions than looks for them, the small ones need them most.
+    // Where there are more regions than pilot pixels for them, the small ones need them most.
     const auto of_regions = static_cast<size_t>(std::max(1., kRegionShare * wanted));
     std::stable_sort(regions.begin(), regions.end(), [](const FilmRegion& a, const FilmRegion& b) {
         return a.area_px() < b.area_px();
@@ -150,7 +151,7 @@ PilotPixels choose_pilot_pixels(V2i size_px, int wanted, std::vector<FilmRegion>
     out.density.values.clear();
     for (const double density : emphasized.density)
         out.density.values.push_back(of_even + of_emphasis * density);
-    for (const auto& pixel : certain) out.looks.push_back({pixel, 1 / pixels, true});
+    for (const auto& pixel : certain) out.pixels.push_back({pixel, 1 / pixels, true});
     for (const auto& [pixel, count] : times) {
         if (certain.contains(pixel)) continue;
         double density =
@@ -159,7 +160,7 @@ PilotPixels choose_pilot_pixels(V2i size_px, int wanted, std::vector<FilmRegion>
         for (const FilmRegion* region : sampled)
             if (region->contains(pixel[0], pixel[1]))
                 density += static_cast<double>(each) / static_cast<double>(region->area_px());
-        out.looks.push_back({pixel, count / (density * pixels)});
+        out.pixels.push_back({pixel, count / (density * pixels)});
     }
     out.regions = std::move(regions);
     return out;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PilotPixels of a pilot: the pixels that it renders, and for how much of the frame each stands.
+// Pixels that a pilot renders, and for how much of the frame each stands.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@ namespace petzval {
 struct PilotPixel {
     std::array<int, 2> pixel;
     double weight;         ///< share of the frame that it stands for
-    bool certain = false;  ///< it was not drawn: every pixel like it is looked at
+    bool certain = false;  ///< it was not drawn: every pixel like it is sampled
 };
 
 /// Value of each cell of a grid over the frame, row by row.
@@ -32,12 +32,12 @@ struct FilmMap {
 };
 
 struct PilotPixels {
-    std::vector<PilotPixel> looks;
+    std::vector<PilotPixel> pixels;
     /// Pixels expected to be drawn of each pixel: weight = 1 / (pixels of the frame * density).
     /// Above 0 everywhere; where all are certain it does not matter.
     FilmMap density;
     bool all_certain = false;
-    std::vector<FilmRegion> regions;  ///< those that got looks of their own
+    std::vector<FilmRegion> regions;  ///< those that got pilot pixels of their own
 
     /// 95 % upper bound of the mean error by pixels that were not sampled and differ from all that
     /// were; `most` bounds the error of one pixel. None of them was met where 3 were to be
@@ -49,11 +49,13 @@ struct PilotPixels {
 /// One pixel in each cell of an even grid, about `wanted` in all.
 [[nodiscard]] PilotPixels even_pilot_pixels(V2i size_px, int wanted, uint32_t seed);
 
-/// About `wanted` looks: half evenly, a quarter in the regions, to equal parts, and a quarter in
-/// proportion to `emphasis`, which must be above 0 somewhere. All pixels, where the frame has no
-/// more. Regions that have no more pixels than their part are looked at wholly; where there are
-/// more regions than looks for them, the largest get none. They follow from the arguments alone.
-[[nodiscard]] PilotPixels choose_pilot_pixels(V2i size_px, int wanted, std::vector<FilmRegion> regions,
-                                 const FilmMap& emphasis, uint32_t seed);
+/// About `wanted` pilot pixels: half evenly, a quarter in the regions, to equal parts, and a
+/// quarter in proportion to `emphasis`, which must be above 0 somewhere. All pixels, where the
+/// frame has no more. Regions that have no more pixels than their part are sampled wholly; where
+/// there are more regions than looks for them, the largest get none. They follow from the arguments
+/// alone.
+[[nodiscard]] PilotPixels choose_pilot_pixels(V2i size_px, int wanted,
+                                              std::vector<FilmRegion> regions,
+                                              const FilmMap& emphasis, uint32_t seed);
 
 }  // namespace petzval

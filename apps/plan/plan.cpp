@@ -13,14 +13,14 @@
 namespace petzval {
 namespace {
 
-/// PilotPixels of a plan, and bounds of those of a render that chooses for itself.
-constexpr int kLooks = 4096, kFewestLooks = 256, kMostLooks = 8192;
+/// Pilot pixels of a plan, and bounds of those of a render that chooses for itself.
+constexpr int kPilotPixels = 4096, kFewestPilotPixels = 256, kMostPilotPixels = 8192;
 /// Samples for each pixel of the frame that a render may spend on choosing its model: with the
 /// choice of the mode they stay below a hundredth of 64.
 constexpr double kPilotShare = 0.2;
-/// Pilot samples of each replicate, for a render: many looks with few samples see more of the
-/// frame.
-constexpr double kLookSamples = 4;
+/// Pilot samples of each replicate, for a render: many pilot pixels with few samples see more of
+/// the frame.
+constexpr double kPilotPixelSamples = 4;
 
 // Factor within which costs count as equal: they are known no better, and the simpler model is
 // taken.
@@ -77,7 +77,7 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
     if (open.dispersion_mode && !open.dispersion)
         return plan_with_bins(request, first, executor, notice, most_samples);
     for (const std::string& text : notices) notice(text);
-    PlanComparison compared(request, first, open, kLooks, executor);
+    PlanComparison compared(request, first, open, kPilotPixels, executor);
     compared.add_simpler_cameras();
     if (open.spectral) compared.add_rgb();
     if (open.dispersion) {
@@ -150,11 +150,12 @@ AutoSetup set_up_planned(const PlanRequest& request, TbbExecutor& executor, cons
     std::optional<SceneRequest> other;  // a request other than what was set up
     const double most_samples = kPilotShare * request.scene.size.x * request.scene.size.y;
     const int models = (open.spectral ? 1 : 0) + (open.dispersion ? 2 : 1);
-    const double looks = most_samples / (kPilotReplicates * kLookSamples * models);
+    const double affordable = most_samples / (kPilotReplicates * kPilotPixelSamples * models);
     double predicted_error = 0;
-    if (open.any() && looks >= kFewestLooks) {
+    if (open.any() && affordable >= kFewestPilotPixels) {
         PlanComparison compared(request, first, open,
-                                static_cast<int>(std::min<double>(looks, kMostLooks)), executor);
+                                static_cast<int>(std::min<double>(affordable, kMostPilotPixels)),
+                                executor);
         if (open.spectral) compared.add_rgb();
         if (open.dispersion) compared.add_shared();
         if (compared.may_find_one()) {

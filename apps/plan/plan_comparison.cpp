@@ -49,8 +49,9 @@ FilmMap with_edges(FilmMap map) {
     return map;
 }
 
-bool has_lamps(const std::vector<SmallFeature>& things) {
-    return std::any_of(things.begin(), things.end(), [](const SmallFeature& t) { return t.is_lamp(); });
+bool has_lamps(const std::vector<SmallFeature>& features) {
+    return std::any_of(features.begin(), features.end(),
+                       [](const SmallFeature& t) { return t.is_lamp(); });
 }
 
 }  // namespace
@@ -115,7 +116,7 @@ PlanOpen::PlanOpen(const SceneRequest& request, const RenderSetup& setup) {
 }
 
 PlanComparison::PlanComparison(const PlanRequest& request, const RenderSetup& first,
-                               const PlanOpen& open, int looks, TbbExecutor& executor)
+                               const PlanOpen& open, int pixels, TbbExecutor& executor)
     : request_(request),
       first_(first),
       open_(open),
@@ -131,7 +132,7 @@ PlanComparison::PlanComparison(const PlanRequest& request, const RenderSetup& fi
     }
     RenderSetup full = this->open(full_scene_);
     if (shared) compare_dispersion(full, *shared);
-    choose_pilot_pixels(looks);
+    choose_pilot_pixels(pixels);
     if (shared) shared_ = model(*std::move(shared));
     full_ = model(std::move(full));
 }
@@ -148,21 +149,22 @@ void PlanComparison::compare_dispersion(const RenderSetup& split, const RenderSe
         0);
 }
 
-// Things that shine or depend on wavelength get looks where their light lands, and so does what a
-// lens with dispersion may change most, its corners and the edges of the frame.
+// Things that shine or depend on wavelength get pilot pixels where their light lands, and so does
+// what a lens with dispersion may change most, its corners and the edges of the frame.
 void PlanComparison::choose_pilot_pixels(int wanted) {
     const Scene& scene = *first_.prepared.scene;
     const V2i size = request_.scene.size;
     // Lamps that are targets are known one by one.
-    things_ = first_.view.targets ? small_features_of(scene, kMostTargetedLamps) : small_features_of(scene);
+    features_ = first_.view.targets ? small_features_of(scene, kMostTargetedLamps)
+                                    : small_features_of(scene);
     glass_disperses_ = std::any_of(scene.materials.begin(), scene.materials.end(),
                                    [](const Material& m) { return m.glass && m.refracts(); });
-    regions_ = film_regions(*first_.view.still, size, things_);
-    lamps_ = seen_lamps(first_, size, things_, regions_);
+    regions_ = film_regions(*first_.view.still, size, features_);
+    lamps_ = seen_lamps(first_, size, features_, regions_);
     pilot_.emplace(
         size,
         petzval::choose_pilot_pixels(size, wanted, regions_,
-                              with_edges(open_.dispersion ? dispersed_ : even_map(size)), 0),
+                                     with_edges(open_.dispersion ? dispersed_ : even_map(size)), 0),
         executor_);
 }
 
@@ -179,7 +181,7 @@ void PlanComparison::add(PlanModel kind, const SceneRequest& scene, const FilmMa
     entries_.push_back({{kind, scene},
                         own.get(),
                         {{own.get(), 1}, {full_.get(), -1}},
-                        pilot_->looks().unseen(request_.scene.size, most),
+                        pilot_->chosen().unseen(request_.scene.size, most),
                         std::move(own)});
 }
 
@@ -193,7 +195,7 @@ void PlanComparison::add_camera(PlanModel kind, const SceneRequest& scene) {
     // What no ray met may lie at another depth, where the cameras differ by more.
     const double not_met = 3 * kMostSymmetricMse / static_cast<double>(displacement.rays + 1);
     add(kind, scene, most);
-    if (!pilot_->looks().all_certain) entries_.back().unseen += not_met;
+    if (!pilot_->chosen().all_certain) entries_.back().unseen += not_met;
 }
 
 void PlanComparison::add_simpler_cameras() {
@@ -220,7 +222,7 @@ void PlanComparison::add_shared() {
     entries_.push_back({{PlanModel::Shared, shared_scene_},
                         shared_.get(),
                         {{shared_.get(), 1}, {full_.get(), -1}},
-                        pilot_->looks().unseen(request_.scene.size, dispersed_),
+                        pilot_->chosen().unseen(request_.scene.size, dispersed_),
                         nullptr});
 }
 
@@ -276,7 +278,7 @@ void PlanComparison::evaluate() {
     const double most = kBiasShare * request_.tolerance * request_.tolerance;
     least_ = least_means(*pilot_, scale(), lamps_);
     const double floor = pilot_floor(*pilot_, scale(), least_);
-    const RareLight rare = rare_light(*pilot_, scale(), lamps_, has_lamps(things_), floor);
+    const RareLight rare = rare_light(*pilot_, scale(), lamps_, has_lamps(features_), floor);
     for (Entry& e : entries_) {
         if (e.difference.empty() || e.settled) continue;
         e.found.square_bias = square_error(*pilot_, e.difference, scale_of(*e.model, floor));
@@ -306,7 +308,7 @@ std::vector<PlanCandidate> PlanComparison::candidates() const {
         found.noise = noise_of(*pilot_, model, scale_of(model, floor));
         // Through another camera lamps fall on other places: those of the pinhole are not blurred.
         if (found.model != PlanModel::Pinhole)
-            found.rare = rare_light(*pilot_, model, lamps_, has_lamps(things_), floor);
+            found.rare = rare_light(*pilot_, model, lamps_, has_lamps(features_), floor);
         found.rays = model.rays_per_sample();
         out.push_back(std::move(found));
     };

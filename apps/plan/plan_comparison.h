@@ -14,9 +14,10 @@ namespace petzval {
 /// Comparison of models by a pilot. What the constructor takes must outlive it.
 class PlanComparison {
   public:
-    /// The fullest model is what the setup shows with one ray for each wavelength; looks: about so
-    /// many pixels are rendered, where things that a few pixels hold have looks of their own.
-    PlanComparison(const PlanRequest&, const RenderSetup&, const PlanOpen&, int looks,
+    /// The fullest model is what the setup shows with one ray for each wavelength; pixels: about so
+    /// many pixels are rendered, where things that a few pixels hold have pilot pixels of their
+    /// own.
+    PlanComparison(const PlanRequest&, const RenderSetup&, const PlanOpen&, int pixels,
                    TbbExecutor&);
 
     /// Adds cameras without glass, and without an iris, in place of the setup's.
@@ -28,7 +29,7 @@ class PlanComparison {
     /// are measured.
     void add_unbiased(PlanModel, DispersionMode);
 
-    /// Whether a candidate can be found to be inside: what pixels that are not looked at may hold
+    /// Whether a candidate can be found to be inside: what pixels that are not sampled may hold
     /// is not too much for all of them.
     [[nodiscard]] bool may_find_one() const;
     /// Doubles the samples until it is known which candidates are inside, or where thorough until
@@ -76,10 +77,10 @@ class PlanComparison {
     PlanOpen open_;
     SceneRequest full_scene_, shared_scene_;
     TbbExecutor& executor_;
-    std::vector<SmallFeature> things_;
+    std::vector<SmallFeature> features_;
     std::vector<FilmRegion> regions_;
     std::vector<SeenLamp> lamps_;
-    std::vector<V3d> least_;  ///< least_means() of the looks
+    std::vector<V3d> least_;  ///< least_means() of the pilot pixels
     FilmMap dispersed_;       ///< most error of rays that do not disperse
     std::optional<Pilot> pilot_;
     std::unique_ptr<PilotModel> full_, shared_;

@@ -30,10 +30,10 @@ std::optional<PrecisionFound> find_precision(const PlanRequest& request, const R
     const RenderSetup in_float = view_of(first, floats, executor),
                       in_double = view_of(first, doubles, executor);
     const V2i size = request.scene.size;
-    const Displacement apart =
-        displacement_of({*in_float.view.still, in_float.view.observer},
-                        {*in_double.view.still, in_double.view.observer}, *first.prepared.scene,
-                        *first.prepared.bvh, first.from.camera.focus_plane(), size, kRaysCompared, true);
+    const Displacement apart = displacement_of(
+        {*in_float.view.still, in_float.view.observer},
+        {*in_double.view.still, in_double.view.observer}, *first.prepared.scene,
+        *first.prepared.bvh, first.from.camera.focus_plane(), size, kRaysCompared, true);
     const auto& squares = apart.square_px.values;
     const FilmMap most = most_error(apart, 0);
     const double mean = std::accumulate(most.values.begin(), most.values.end(), 0.) /

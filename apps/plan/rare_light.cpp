@@ -67,11 +67,11 @@ double sent_to(const RenderSetup& setup, V2i size_px, std::array<int, 2> pixel,
     double sum = 0;
     for (const ListedTarget& listed : grid->at(film)) {
         const Target& target = grid->targets[listed.number];
-        if (target.at_infinity != lamp.thing.at_infinity ||
-            (target.centre - lamp.thing.centre).length() > lamp.thing.radius_m)
+        if (target.at_infinity != lamp.feature.at_infinity ||
+            (target.centre - lamp.feature.centre).length() > lamp.feature.radius_m)
             continue;
         const double disc = double(kPi) * double(target.radius_m) * double(target.radius_m);
-        sum += double(listed.chance) * std::min(1., lamp.thing.area_m2 / disc);
+        sum += double(listed.chance) * std::min(1., lamp.feature.area_m2 / disc);
     }
     return sum;
 }
@@ -92,11 +92,11 @@ bool is_hidden(const Bvh& bvh, const Ray& ray, const SmallFeature& lamp) {
 }  // namespace
 
 std::vector<SeenLamp> seen_lamps(const RenderSetup& setup, V2i size_px,
-                                 const std::vector<SmallFeature>& things,
+                                 const std::vector<SmallFeature>& features,
                                  const std::vector<FilmRegion>& regions) {
     std::vector<SeenLamp> out;
-    for (size_t n = 0; n < things.size(); ++n) {
-        const SmallFeature& lamp = things[n];
+    for (size_t n = 0; n < features.size(); ++n) {
+        const SmallFeature& lamp = features[n];
         if (!lamp.is_lamp() || regions[n].rects.empty()) continue;
         std::vector<double> squares;
         bool visible = false;
@@ -110,8 +110,8 @@ std::vector<SeenLamp> seen_lamps(const RenderSetup& setup, V2i size_px,
         const double disk = double(kPi) * squares[kNearest - 1];
         // A lamp that is larger than the disk is met by all rays within it.
         const double shown = disk > 0 ? std::min(1., lamp.area_m2 / disk) : 1;
-        out.push_back(
-            {regions[n].area_px(), shown * kNearest / kRaysToLamps, is_alone(lamp), lamp, &regions[n]});
+        out.push_back({regions[n].area_px(), shown * kNearest / kRaysToLamps, is_alone(lamp), lamp,
+                       &regions[n]});
     }
     return out;
 }
@@ -125,7 +125,7 @@ std::vector<V3d> least_means(const Pilot& pilot, const PilotModel& model,
         V3d sum(0.);
         double sent = 0;
         for (size_t p = 0; p < pilot.pixels(); ++p) {
-            const auto [x, y] = pilot.looks().looks[p].pixel;
+            const auto [x, y] = pilot.chosen().pixels[p].pixel;
             if (!lamp.region->contains(x, y)) continue;
             on_disc.push_back(p);
             sent += sent_to(model.setup(), pilot.size_px(), {x, y}, lamp);
@@ -135,7 +135,7 @@ std::vector<V3d> least_means(const Pilot& pilot, const PilotModel& model,
         const double met = lamp.probability + sent / static_cast<double>(on_disc.size());
         if (kPilotReplicates * model.samples() * met >= 1) continue;
         sum /= static_cast<double>(on_disc.size());
-        const double expected = lamp.thing.radiance * lamp.probability;
+        const double expected = lamp.feature.radiance * lamp.probability;
         const double seen = double(luminance(Rgb(float(sum.x), float(sum.y), float(sum.z))));
         // Other light is better known, and uneven.
         if (expected < kMostOfTheLight * seen) continue;
@@ -151,31 +151,31 @@ RareLight rare_light(const Pilot& pilot, const PilotModel& model,
     const V2i size = pilot.size_px();
     const double pixels = double(size.x) * double(size.y);
     for (const SeenLamp& lamp : lamps) {
-        double looks = 0, light = 0, sent = 0;
+        double in_region = 0, light = 0, sent = 0;
         for (size_t p = 0; p < pilot.pixels(); ++p) {
-            const auto [x, y] = pilot.looks().looks[p].pixel;
+            const auto [x, y] = pilot.chosen().pixels[p].pixel;
             if (!lamp.region->contains(x, y)) continue;
-            ++looks;
+            ++in_region;
             sent += sent_to(model.setup(), size, {x, y}, lamp);
             for (const V3d& v : model.means(p))
                 light +=
                     double(luminance(Rgb(float(v.x), float(v.y), float(v.z)))) / kPilotReplicates;
         }
         const double samples = kPilotReplicates * model.samples();
-        const double behind = looks > 0 ? light / looks : 0;
+        const double behind = in_region > 0 ? light / in_region : 0;
         const double share = static_cast<double>(lamp.area_px) / pixels;
-        if (samples * (looks * lamp.probability + sent) >= kEnoughPaths) {
+        if (samples * (in_region * lamp.probability + sent) >= kEnoughPaths) {
             // Found as well, or nearly, without rays that are sent there.
-            if (sent < kDecisive * looks * lamp.probability) continue;
+            if (sent < kDecisive * in_region * lamp.probability) continue;
             ++out.targeted;
             out.spared += share * lamp.square() / (behind * behind + floor * floor);
             continue;
         }
-        const double with = behind + lamp.thing.radiance * lamp.probability;
-        const bool at_infinity = lamp.thing.at_infinity;
+        const double with = behind + lamp.feature.radiance * lamp.probability;
+        const bool at_infinity = lamp.feature.at_infinity;
         ++(at_infinity ? out.spots : out.lamps);
         double& largest = at_infinity ? out.largest_spot_rad : out.largest_lamp_m;
-        largest = std::max(largest, 2 * double(lamp.thing.radius_m));
+        largest = std::max(largest, 2 * double(lamp.feature.radius_m));
         if (with > 0) out.noise += share * lamp.square() / (with * with + floor * floor);
         out.lost += share * symmetric_square(behind, with, floor);
     }

@@ -20,11 +20,13 @@ struct SeenLamp {
     int64_t area_px;     ///< of the film that its light falls on
     double probability;  ///< that a camera ray of this area meets it
     bool alone;          ///< its light is even over the area: one lamp, not several far apart
-    SmallFeature thing;
+    SmallFeature feature;
     const FilmRegion* region;
 
     /// Variance of one sample that it adds where nothing else does, times the squared mean.
-    [[nodiscard]] double square() const { return thing.radiance * thing.radiance * probability; }
+    [[nodiscard]] double square() const {
+        return feature.radiance * feature.radiance * probability;
+    }
 };
 
 /// Lamps among the things that no surface hides from the camera, each with its region.
@@ -32,9 +34,9 @@ struct SeenLamp {
                                                const std::vector<SmallFeature>&,
                                                const std::vector<FilmRegion>&);
 
-/// Least means of a pilot's looks, as PilotScale wants them: where a lamp is met by less than one
-/// sample of a look, the mean over all looks at its disc, or what the lamp is expected to bring;
-/// 0 elsewhere. Lamps count as white.
+/// Least means of a pilot's pixels, as PilotScale wants them: where a lamp is met by less than one
+/// sample of a pilot pixel, the mean over all pilot pixels at its disc, or what the lamp is
+/// expected to bring; 0 elsewhere. Lamps count as white.
 [[nodiscard]] std::vector<V3d> least_means(const Pilot&, const PilotModel&,
                                            const std::vector<SeenLamp>&);
 

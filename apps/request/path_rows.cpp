@@ -43,19 +43,20 @@ Rgb parse_background(const std::string& option, const std::string& text) {
 }
 
 std::vector<RequestField> light_fields() {
-    return {common(text(
-                "env", in::scene(&SceneRequest::environment),
-                "equirectangular environment picture, .hdr or .exr, or studio: the light that is "
-                "built in")),
-            number("env-rotate", in::scene(&SceneRequest::environment_rotate_deg),
-                   {-kLargest, kLargest, kDegrees}, "degrees about +y, counter-clockwise from above"),
-            method(number("env-strength", in::scene(&SceneRequest::environment_strength),
-                          {0, kLargest}, "factor on the environment")),
-            common(parsed(
-                "background", in::scene(&SceneRequest::background),
-                "R,G,B in nits: a uniform environment; with ⟨env⟩ only what the camera sees behind",
-                parse_background,
-                [](const Rgb& b) { return fmt::format("{},{},{}", b.v[0], b.v[1], b.v[2]); }))};
+    return {
+        common(
+            text("env", in::scene(&SceneRequest::environment),
+                 "equirectangular environment picture, .hdr or .exr, or studio: the light that is "
+                 "built in")),
+        number("env-rotate", in::scene(&SceneRequest::environment_rotate_deg),
+               {-kLargest, kLargest, kDegrees}, "degrees about +y, counter-clockwise from above"),
+        method(number("env-strength", in::scene(&SceneRequest::environment_strength), {0, kLargest},
+                      "factor on the environment")),
+        common(parsed(
+            "background", in::scene(&SceneRequest::background),
+            "R,G,B in nits: a uniform environment; with ⟨env⟩ only what the camera sees behind",
+            parse_background,
+            [](const Rgb& b) { return fmt::format("{},{},{}", b.v[0], b.v[1], b.v[2]); }))};
 }
 
 std::vector<RequestField> spectrum_fields() {

@@ -8,8 +8,8 @@
 #include "apps/request/render_order.h"
 #include "apps/request/value_error.h"
 #include "core/film/spectral_film.h"
-#include "io/file/csv.h"
 #include "io/base/machine.h"
+#include "io/file/csv.h"
 
 namespace petzval {
 namespace {

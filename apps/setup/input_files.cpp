@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/setup/input_files.h"
 
-#include "io/file/assets.h"
 #include "io/base/error.h"
+#include "io/file/assets.h"
 
 namespace petzval {
 

@@ -206,10 +206,11 @@ PreparedScene load(SceneRequest request, const Notice& notice, FrameReuse* frame
 std::shared_ptr<const TargetGrid> targets_of(TargetCamera& camera, const Camera& still, V2i size_px,
                                              const PreparedScene& prepared) {
     const Scene& scene = *prepared.scene;
-    std::vector<SmallFeature> things = small_features_of(scene, kMostTargets);
-    const std::vector<SmallFeature> images = highlights(still, scene, *prepared.bvh, size_px, things);
-    things.insert(things.end(), images.begin(), images.end());
-    camera.set_targets(find_targets(camera, size_px, things));
+    std::vector<SmallFeature> features = small_features_of(scene, kMostTargets);
+    const std::vector<SmallFeature> images =
+        highlights(still, scene, *prepared.bvh, size_px, features);
+    features.insert(features.end(), images.begin(), images.end());
+    camera.set_targets(find_targets(camera, size_px, features));
     return targets_that_pay(camera, scene, *prepared.bvh, *prepared.lights, size_px);
 }
 

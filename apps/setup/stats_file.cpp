@@ -6,8 +6,8 @@
 
 #include <algorithm>
 
-#include "io/file/atomic_file.h"
 #include "io/build/build.h"
+#include "io/file/atomic_file.h"
 
 namespace petzval {
 namespace {

@@ -156,8 +156,8 @@ std::vector<BundleRay> AimedBundle::trace(std::span<const PupilPoint> pupil_poin
             stop_x = hit.point.x;
             stop_y = hit.point.y;
         };
-        const auto passed =
-            trace_lens<d4>({*lens_, Towards::Film, {0, lens_->last()}, clip}, indices_, ray, at_stop);
+        const auto passed = trace_lens<d4>({*lens_, Towards::Film, {0, lens_->last()}, clip},
+                                           indices_, ray, at_stop);
         for (int i = 0; i < static_cast<int>(count); ++i) {
             if (!passed[i] || !(ray.direction.z[i] > 0)) continue;
             const double slope_x = ray.direction.x[i] / ray.direction.z[i];

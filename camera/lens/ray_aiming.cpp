@@ -97,7 +97,8 @@ AimedRay<V> RayAimer::cross(const PlanePoint<V>& film_mm, V l, V m,
         const auto rim2 = facts[static_cast<size_t>(hit.surface)].semi_diameter2_mm2;
         out.clear &= (x * x + y * y <= rim2) | (hit.reached == 0);
     };
-    static_cast<void>(trace_lens<D>({lens_, Towards::Scene, {lens_.stop(), lens_.last()}, Clip::No}, indices, ray, clip));
+    static_cast<void>(trace_lens<D>({lens_, Towards::Scene, {lens_.stop(), lens_.last()}, Clip::No},
+                                    indices, ray, clip));
     out.ray = lens_trace::converted<V>(ray);
     out.x_by_l = ray.origin.x.du;
     out.y_by_l = ray.origin.y.du;

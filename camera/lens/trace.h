@@ -329,7 +329,8 @@ template <class N, class Observer>
     LensRay<V>& ray = on_the_way.ray;
     RayChanges<N>& changes = on_the_way.changes;
     ray.counted_from = i;
-    if (i != through.begin()) ray.origin.z = ray.origin.z - (to_film ? facts[i - 1].gap_mm : -s.gap_mm);
+    if (i != through.begin())
+        ray.origin.z = ray.origin.z - (to_film ? facts[i - 1].gap_mm : -s.gap_mm);
     const V to_foot = -dot(ray.origin, ray.direction);
     const Vec3<V> foot = ray.origin + ray.direction * to_foot;
     const Asphere<S>* const asphere =

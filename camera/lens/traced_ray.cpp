@@ -37,7 +37,8 @@ TracedRay trace_ray(const Lens& lens, const V3d& origin_mm, const V3d& direction
         out.points.push_back(first_lane(hit.point) + V3d(0, 0, lens.vertex_mm(hit.surface)));
         out.path_mm += hit.index[0] * hit.distance_mm[0];
     };
-    static_cast<void>(trace_lens({lens, towards, SurfaceRange{0, lens.last()}, clip}, lens.exact_indices(broadcast<d4>(nm)), ray, observe));
+    static_cast<void>(trace_lens({lens, towards, SurfaceRange{0, lens.last()}, clip},
+                                 lens.exact_indices(broadcast<d4>(nm)), ray, observe));
     out.status = ray.status(0);
     if (out.status != RayStatus::Passed) {
         out.end_surface = static_cast<int>(ray.end_surface[0]);

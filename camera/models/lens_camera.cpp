@@ -177,7 +177,8 @@ LensDraw<V> LensCamera::Point<V>::rays(const LaneRequest& request) const {
     const S density = sum<V>(of_point * aimed.stretch_mm2()) / lanes;
     out.ray = aimed.ray;
     if (density > 0 && any(aimed.clear & (open > 0))) {
-        static_cast<void>(trace_lens<V>({lens(), Towards::Scene, {0, lens().stop() - 1}, Clip::Yes}, indices(), out.ray));
+        static_cast<void>(trace_lens<V>({lens(), Towards::Scene, {0, lens().stop() - 1}, Clip::Yes},
+                                        indices(), out.ray));
         const S gain = S(c_.gain_) * static_cast<S>(lane_count(at_.bands.on)) / lanes;
         out.weight = select(aimed.clear & out.ray.alive(), V(open * (gain / density)), V{});
         out.density = static_cast<float>(density);

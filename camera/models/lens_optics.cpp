@@ -49,9 +49,9 @@ LensOptics::LensOptics(std::shared_ptr<const Lens> lens, Iris iris, Coating coat
         const FoundRays aimed = aimer_.aim(PlanePoint<f8>(V2f(0.f, height_mm)),
                                            PlanePoint<f8>(x, y), line_d, line_d_nm);
         LensRay<f8> ray = aimed.ray;
-        return m8(
-            aimed.found & aimed.clear &
-            trace_lens<f8>({*lens_, Towards::Scene, {0, lens_->stop() - 1}, Clip::Yes}, line_d, ray));
+        return m8(aimed.found & aimed.clear &
+                  trace_lens<f8>({*lens_, Towards::Scene, {0, lens_->stop() - 1}, Clip::Yes},
+                                 line_d, ray));
     };
     const auto rim_mm = static_cast<float>(
         lens_->prescription().surfaces[static_cast<size_t>(lens_->stop())].semi_diameter_mm);
@@ -85,7 +85,8 @@ void LensOptics::trace(const LeadPoints& at, const LensIndices<f8>& indices, Lea
     rays.ray = rays.aimed.ray;
     rays.passed = rays.aimed.found & rays.aimed.clear & (rays.open > 0.f) & (rays.density > 0.f);
     if (!any(rays.passed)) return;
-    rays.passed &= trace_lens<f8>({*lens_, Towards::Scene, {0, lens_->stop() - 1}, Clip::Yes}, indices, rays.ray);
+    rays.passed &= trace_lens<f8>({*lens_, Towards::Scene, {0, lens_->stop() - 1}, Clip::Yes},
+                                  indices, rays.ray);
 }
 
 namespace {
@@ -97,8 +98,8 @@ void trace_groups(const LensPassage& through, const std::array<LensIndices<V>, g
     if constexpr (groups == 2)
         trace_two<V>(through, indices, rays, observe);
     else
-        static_cast<void>(trace_lens<V>(through, indices[0], rays[0],
-                                        [&](const auto& hit) { observe(0, hit); }));
+        static_cast<void>(
+            trace_lens<V>(through, indices[0], rays[0], [&](const auto& hit) { observe(0, hit); }));
 }
 
 // Four lanes for each of some rays of the scene.
@@ -158,12 +159,13 @@ std::array<LensLanding, kRaysAtOnce<V, groups>> LensOptics::land(
     constexpr size_t kEach = kLanes<V> / 4;
     std::array<LensLanding, kRaysAtOnce<V, groups>> out;
     for (LensLanding& one : out) one.transmitted = splat(1.f);
-    const LensPassage to_film{*lens_, Towards::Film, {0, lens_->last()}, Clip::Yes};
+    const LensPassage all_surfaces{*lens_, Towards::Film, {0, lens_->last()}, Clip::Yes};
     const auto lose = [&](size_t group, const LensHit<V>& hit) {
         if (coating_ == Coating::Ideal) return;
         for (size_t k = 0; k < kEach; ++k)
             out[group * kEach + k].transmitted *=
-                surface_transmission(to_film, coating_, indices[group], hit, drawn[group * kEach + k].nm, int(4 * k));
+                surface_transmission(all_surfaces, coating_, indices[group], hit,
+                                     drawn[group * kEach + k].nm, int(4 * k));
     };
     const auto group_at = [&](size_t k) { return RayGroup<V>(&drawn[k * kEach]); };
     std::array<LensRay<V>, groups> rays;
@@ -213,8 +215,7 @@ f4 LensOptics::transmitted(V2f film_mm, V l, V m, const LensIndices<V>& indices,
         out *= surface_transmission(out_of_lens, coating_, indices, hit, nm);
     };
     LensRay<V> ray = aimer_.leave<V>(PlanePoint<V>(film_mm), l, m);
-    static_cast<void>(
-        trace_lens<V>(out_of_lens, indices, ray, lose));
+    static_cast<void>(trace_lens<V>(out_of_lens, indices, ray, lose));
     return out;
 }
 template f4 LensOptics::transmitted(V2f, f4, f4, const LensIndices<f4>&, f4) const;

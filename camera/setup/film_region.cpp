@@ -39,12 +39,13 @@ RayBundle rays_of(const Camera& camera, V2i size_px, const Rect& cell) {
 }
 
 /// The region in finer and finer cells, until they are pixels or too many.
-FilmRegion refined(const Camera& camera, V2i size_px, const SmallFeature& thing, std::vector<Rect> cells) {
+FilmRegion refined(const Camera& camera, V2i size_px, const SmallFeature& feature,
+                   std::vector<Rect> cells) {
     while (!cells.empty() && cells.size() < kMostRects && cells[0].width() > 1) {
         std::vector<Rect> finer;
         for (const Rect& cell : cells)
             for (const Rect& part : quarters(cell))
-                if (passes(rays_of(camera, size_px, part), thing)) finer.push_back(part);
+                if (passes(rays_of(camera, size_px, part), feature)) finer.push_back(part);
         if (finer.size() > 2 * kMostRects) break;
         cells = std::move(finer);
     }
@@ -53,29 +54,30 @@ FilmRegion refined(const Camera& camera, V2i size_px, const SmallFeature& thing,
 
 /// Whether a thing lies in the cone of a bundle's rays, widened: a quick test, never false where
 /// passes() is true. 1.5: the corners of what the rays span.
-bool may_pass(const RayBundle& bundle, const SmallFeature& thing, float margin) {
+bool may_pass(const RayBundle& bundle, const SmallFeature& feature, float margin) {
     const float wider = 1.5f * (1 + margin);
-    const V3f to = thing.at_infinity ? thing.centre : thing.centre - bundle.origin;
-    const float away_m = to.length(), beside_m = wider * bundle.reach_m + 1.5f * thing.radius_m;
-    if (!thing.at_infinity && away_m <= beside_m) return true;
+    const V3f to = feature.at_infinity ? feature.centre : feature.centre - bundle.origin;
+    const float away_m = to.length(), beside_m = wider * bundle.reach_m + 1.5f * feature.radius_m;
+    if (!feature.at_infinity && away_m <= beside_m) return true;
     // The plane of a wide spot of the sky is far from a cone.
-    if (thing.at_infinity && thing.radius_m > kWide_rad) return true;
-    const float own = thing.at_infinity ? 1.5f * thing.radius_m : std::asin(beside_m / away_m);
+    if (feature.at_infinity && feature.radius_m > kWide_rad) return true;
+    const float own = feature.at_infinity ? 1.5f * feature.radius_m : std::asin(beside_m / away_m);
     const float angle = wider * std::acos(std::min(1.f, bundle.least_cosine)) + own;
     return angle >= kPi / 2 || to.dot(bundle.direction) >= std::cos(angle) * away_m;
 }
 
 }  // namespace
 
-bool passes(const RayBundle& bundle, const SmallFeature& thing, float margin) {
+bool passes(const RayBundle& bundle, const SmallFeature& feature, float margin) {
     const V3f w = bundle.direction;
     if (!(w.length2() > 0)) return false;
-    if (!may_pass(bundle, thing, margin)) return false;
+    if (!may_pass(bundle, feature, margin)) return false;
     const Frame frame = Frame::about(w);
     Imath::Box2f span;
     for (const Ray& ray : bundle.rays) {
-        const V3f to = thing.at_infinity ? thing.centre : thing.centre - ray.origin;
-        if (!thing.at_infinity && to.length2() <= thing.radius_m * thing.radius_m) return true;
+        const V3f to = feature.at_infinity ? feature.centre : feature.centre - ray.origin;
+        if (!feature.at_infinity && to.length2() <= feature.radius_m * feature.radius_m)
+            return true;
         const float forward = ray.direction.dot(w), t = to.dot(w) / forward;
         if (!(forward > 0) || !(t > 0)) continue;
         const V3f beside = t * ray.direction - to;
@@ -83,8 +85,8 @@ bool passes(const RayBundle& bundle, const SmallFeature& thing, float margin) {
     }
     if (span.isEmpty()) return false;
     const V2f middle = span.center(), half = span.size() / 2;
-    return std::fabs(middle.x) <= half.x * (1 + margin) + thing.radius_m &&
-           std::fabs(middle.y) <= half.y * (1 + margin) + thing.radius_m;
+    return std::fabs(middle.x) <= half.x * (1 + margin) + feature.radius_m &&
+           std::fabs(middle.y) <= half.y * (1 + margin) + feature.radius_m;
 }
 
 int64_t FilmRegion::area_px() const {
@@ -110,17 +112,17 @@ std::array<int, 2> FilmRegion::pixel(int64_t i) const {
 }
 
 std::vector<FilmRegion> film_regions(const Camera& camera, V2i size_px,
-                                     std::span<const SmallFeature> things) {
+                                     std::span<const SmallFeature> features) {
     std::vector<FilmRegion> out;
-    if (things.empty()) return out;
+    if (features.empty()) return out;
     const std::vector<Rect> cells = first_cells(size_px);
     std::vector<RayBundle> bundles;
     for (const Rect& cell : cells) bundles.push_back(rays_of(camera, size_px, cell));
-    for (const SmallFeature& thing : things) {
+    for (const SmallFeature& feature : features) {
         std::vector<Rect> met;
         for (size_t i = 0; i < cells.size(); ++i)
-            if (passes(bundles[i], thing)) met.push_back(cells[i]);
-        out.push_back(refined(camera, size_px, thing, std::move(met)));
+            if (passes(bundles[i], feature)) met.push_back(cells[i]);
+        out.push_back(refined(camera, size_px, feature, std::move(met)));
     }
     return out;
 }

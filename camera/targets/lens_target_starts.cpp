@@ -36,7 +36,8 @@ std::array<TargetStart, 8> LensTargets::starts_at(const TargetPoints& at, const 
     LensRay<Dual<f8>> moved = aimer_.leave(at.film_mm, Dual<f8>{l}, Dual<f8>{m});
     moved.origin.x.du = splat8(1);
     moved.origin.y.dv = splat8(1);
-    static_cast<void>(trace_lens<Dual<f8>>({lens_, Towards::Scene, {0, lens_.last()}, Clip::No}, at.indices, moved));
+    static_cast<void>(trace_lens<Dual<f8>>({lens_, Towards::Scene, {0, lens_.last()}, Clip::No},
+                                           at.indices, moved));
     const Landing by_film(moved, goal);
     const PlanePoint<f8> off = here.parameters(here.x, here.y),
                          by_x = here.parameters(-by_film.x_by_u, -by_film.y_by_u),
@@ -162,8 +163,7 @@ void LensTargets::add_ways(std::vector<WayFrom>& out, V2f place_mm, const Goals&
             asked[lane] = -1;
         }
         Landing landing;
-        const FoundDirections found =
-            search(at, goal, asked, {f8{}, f8{}}, guess, landing);
+        const FoundDirections found = search(at, goal, asked, {f8{}, f8{}}, guess, landing);
         const AimedRay<f8> crossed = aimer_.cross<f8>(at.film_mm, found.l, found.m, indices);
         const f8 met = kPi * crossed.stretch_mm2() / landing.size() / float(iris_mm2_);
         for (size_t i = 0; i < count; ++i) {

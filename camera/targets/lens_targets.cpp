@@ -68,23 +68,24 @@ auto LensTargets::goals(const std::array<TargetList, 8>& lists,
 LensRay<Dual<f8>> LensTargets::trace(const TargetPoints& at, f8 l, f8 m) const {
     LensRay<Dual<f8>> ray =
         aimer_.leave(at.film_mm, Dual<f8>{l, splat8(1), f8{}}, Dual<f8>{m, f8{}, splat8(1)});
-    static_cast<void>(
-        trace_lens<Dual<f8>>({lens_, Towards::Scene, {0, lens_.last()}, Clip::No}, at.indices, ray));
+    static_cast<void>(trace_lens<Dual<f8>>({lens_, Towards::Scene, {0, lens_.last()}, Clip::No},
+                                           at.indices, ray));
     return ray;
 }
 
 FoundDirections LensTargets::search(const TargetPoints& at, const Goals& goal, m8 wanted,
                                     const PlanePoint<f8>& on, const Guess& from,
                                     Landing& last) const {
-    return find_directions(
-        wanted, from.l, from.m, kSame / 3 * cosine_reach_, [&](f8 l_now, f8 m_now) -> DirectionStep {
-            last = Landing(trace(at, l_now, m_now), goal);
-            const f8 left_x = on.x - last.x, left_y = on.y - last.y;
-            const PlanePoint<f8> by = last.parameters(left_x, left_y);
-            const f8 near = kTolerance + kRounding * last.radii;
-            return {by.x, by.y, last.ahead & (l_now * l_now + m_now * m_now < 1.f),
-                    left_x * left_x + left_y * left_y < near * near};
-        });
+    return find_directions(wanted, from.l, from.m, kSame / 3 * cosine_reach_,
+                           [&](f8 l_now, f8 m_now) -> DirectionStep {
+                               last = Landing(trace(at, l_now, m_now), goal);
+                               const f8 left_x = on.x - last.x, left_y = on.y - last.y;
+                               const PlanePoint<f8> by = last.parameters(left_x, left_y);
+                               const f8 near = kTolerance + kRounding * last.radii;
+                               return {by.x, by.y,
+                                       last.ahead & (l_now * l_now + m_now * m_now < 1.f),
+                                       left_x * left_x + left_y * left_y < near * near};
+                           });
 }
 
 TargetChoice LensTargets::choose(const std::array<TargetList, 8>& targets,

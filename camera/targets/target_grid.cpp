@@ -30,28 +30,28 @@ Target target_of(const SmallFeature& lamp, const V3f& eye) {
 
 /// A lamp, and what the camera makes of it once a cell asks for it.
 struct LampToTry {
-    SmallFeature thing;
+    SmallFeature feature;
     uint32_t number = 0;  ///< of its target
     std::optional<PreparedTarget> ready{};
     bool hopeless = false;
 };
 
-bool may_be_target(const SmallFeature& thing) {
-    return thing.is_lamp() && thing.reach_m > 0 && std::isfinite(thing.reach_m) &&
-           std::isfinite(thing.radiance) && !(thing.at_infinity && thing.reach_m > 0.5f);
+bool may_be_target(const SmallFeature& feature) {
+    return feature.is_lamp() && feature.reach_m > 0 && std::isfinite(feature.reach_m) &&
+           std::isfinite(feature.radiance) && !(feature.at_infinity && feature.reach_m > 0.5f);
 }
 
 }  // namespace
 
 std::shared_ptr<const TargetGrid> find_targets(const TargetCamera& camera, V2i size_px,
-                                               std::span<const SmallFeature> things) {
+                                               std::span<const SmallFeature> features) {
     if (size_px.x < kCell_px || size_px.y < kCell_px) return nullptr;
     std::vector<LampToTry> lamps;
-    for (const SmallFeature& thing : things)
-        if (may_be_target(thing)) lamps.push_back({thing});
+    for (const SmallFeature& feature : features)
+        if (may_be_target(feature)) lamps.push_back({feature});
     if (lamps.empty()) return nullptr;
     std::stable_sort(lamps.begin(), lamps.end(), [](const LampToTry& a, const LampToTry& b) {
-        return a.thing.radiance > b.thing.radiance;
+        return a.feature.radiance > b.feature.radiance;
     });
     auto out = std::make_shared<TargetGrid>();
     // Cells are no smaller than that, so that a pilot of each stays below a quarter of a sample.
@@ -61,12 +61,13 @@ std::shared_ptr<const TargetGrid> find_targets(const TargetCamera& camera, V2i s
         for (int i = 0; i < out->cells.x; ++i) {
             std::vector<ListedTarget>& list = out->lists.emplace_back();
             const FilmCell place = out->cell(i, j, size_px);
-            const RayBundle bundle = bundle_of(camera, place, number_of(PrepassSeed::TargetCells), {i, j}, kRays);
+            const RayBundle bundle =
+                bundle_of(camera, place, number_of(PrepassSeed::TargetCells), {i, j}, kRays);
             size_t tried = 0;
             for (LampToTry& lamp : lamps) {
-                if (lamp.hopeless || !passes(bundle, lamp.thing, kMargin)) continue;
+                if (lamp.hopeless || !passes(bundle, lamp.feature, kMargin)) continue;
                 if (!lamp.ready) {
-                    const Target target = target_of(lamp.thing, bundle.rays[0].origin);
+                    const Target target = target_of(lamp.feature, bundle.rays[0].origin);
                     lamp.ready = camera.prepared(target);
                     lamp.hopeless = !lamp.ready;
                     if (lamp.hopeless) continue;
@@ -76,7 +77,7 @@ std::shared_ptr<const TargetGrid> find_targets(const TargetCamera& camera, V2i s
                 if (list.size() == kMostFound || ++tried > kMostTried) break;
                 auto target = camera.listed(*lamp.ready, place);
                 if (!target || !(target->met < kMostMet)) continue;
-                target->chance = target->met * static_cast<float>(lamp.thing.radiance);
+                target->chance = target->met * static_cast<float>(lamp.feature.radiance);
                 target->number = lamp.number;
                 list.push_back(*std::move(target));
             }

@@ -112,7 +112,8 @@ std::vector<Cluster> clusters_of(std::vector<Part> parts, size_t most) {
     return clusters;
 }
 
-void add_things(std::vector<SmallFeature>& out, SmallFeature::Kind kind, std::vector<Part> parts, size_t most) {
+void add_things(std::vector<SmallFeature>& out, SmallFeature::Kind kind, std::vector<Part> parts,
+                size_t most) {
     for (const Cluster& cluster : clusters_of(std::move(parts), most)) {
         const Part all = sum_of(cluster.parts);
         out.push_back({kind, all.box.center(), all.box.size().length() / 2, all.reach_m, false,
@@ -294,19 +295,19 @@ void add_suns(const Scene& scene, std::vector<SmallFeature>& out, size_t most) {
         const uint32_t light = scene.sun_discs[i];
         const auto& sun = std::get<SunLight>(scene.lights[light]);
         const auto disc_rad = 2 * std::asin(std::sqrt(sun.versine / 2));
-        SmallFeature thing{SmallFeature::Kind::Lamp, -sun.direction};
+        SmallFeature feature{SmallFeature::Kind::Lamp, -sun.direction};
         if (const auto* const steps = steps_of_light(scene, light))
             for (const Light& step : *steps) {
                 const V3f apart = std::get<SunLight>(step).direction - sun.direction;
-                thing.reach_m =
-                    std::max(thing.reach_m, 2 * std::asin(std::min(1.f, apart.length() / 2)));
+                feature.reach_m =
+                    std::max(feature.reach_m, 2 * std::asin(std::min(1.f, apart.length() / 2)));
             }
-        thing.at_infinity = true;
-        thing.reach_m += disc_rad;
-        thing.radius_m = thing.reach_m;
-        thing.area_m2 = 2 * double(kPi) * double(sun.versine);
-        thing.radiance = double(luminance(disc_radiance(sun)));
-        out.push_back(thing);
+        feature.at_infinity = true;
+        feature.reach_m += disc_rad;
+        feature.radius_m = feature.reach_m;
+        feature.area_m2 = 2 * double(kPi) * double(sun.versine);
+        feature.radiance = double(luminance(disc_radiance(sun)));
+        out.push_back(feature);
     }
 }
 

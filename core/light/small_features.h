@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Things of a scene that a few pixels may hold and a plan must not miss: what depends on
+// Small features of a scene, which a few pixels may hold and a plan must not miss: what depends on
 // wavelength, and what shines.
 #pragma once
 
@@ -23,11 +23,11 @@ struct SmallFeature {
     double area_m2 = 0;        ///< of a lamp: half its surface; at infinity: sr
     double radiance = 0;       ///< of a lamp: mean luminance, nits
 
-    /// Whether the things of this kind are lamps.
+    /// Whether it is a lamp.
     [[nodiscard]] bool is_lamp() const { return kind == Kind::Lamp; }
 };
 
-/// Things of a scene, seldom more than a hundred: an object whose parts lie apart counts as
+/// Small features of a scene, seldom more than a hundred: an object whose parts lie apart counts as
 /// several, and so do bright parts of emissive textures and of the sky. At most so many are made of
 /// the lamps of one class of brightness, of which there are four, each a hundred times as dark as
 /// the one before. What is found in textures comes from up to 2^18 points. A pure function of the

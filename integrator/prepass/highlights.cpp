@@ -55,9 +55,9 @@ struct Source {
     [[nodiscard]] bool has_size() const { return reach_m > 0; }
 };
 
-std::vector<Source> sources_of(const Scene& scene, std::span<const SmallFeature> things) {
+std::vector<Source> sources_of(const Scene& scene, std::span<const SmallFeature> features) {
     std::vector<Source> out;
-    for (const SmallFeature& t : things)
+    for (const SmallFeature& t : features)
         if (t.is_lamp() && t.reach_m > 0 && std::isfinite(t.reach_m) && std::isfinite(t.radiance))
             out.push_back({t.centre, t.at_infinity, t.reach_m, t.radiance, t.radiance * t.area_m2});
     for (const Light& light : scene.lights) {
@@ -334,8 +334,8 @@ bool is_same(const SmallFeature& a, const SmallFeature& b, const V3f& eye) {
 }
 
 /// The image of a lamp near a start, as that point of the lens and others see it.
-std::optional<SmallFeature> image_from(HighlightSearch& search, const Start& start, const std::vector<V3f>& eyes,
-                                const Source& lamp) {
+std::optional<SmallFeature> image_from(HighlightSearch& search, const Start& start,
+                                       const std::vector<V3f>& eyes, const Source& lamp) {
     const auto found = search.mirrored(start.eye, start.direction, lamp);
     if (!found || search.is_hidden(*found, lamp)) return std::nullopt;
     std::vector<Mirrored> images{*found};
@@ -358,7 +358,9 @@ std::vector<Start> starts_of(const Camera& camera, HighlightSearch& search, V2i 
         for (int i = 0; i < cells.x; ++i) {
             std::vector<V3f>& eyes_of_cell = eyes.emplace_back();
             const FilmCell cell{V2f(V2i(i, j)) / V2f(cells), V2f(V2i(i + 1, j + 1)) / V2f(cells)};
-            for (const Ray& ray : bundle_of(camera, cell, number_of(PrepassSeed::Highlights), {i, j}, kRaysOfCell).rays) {
+            for (const Ray& ray :
+                 bundle_of(camera, cell, number_of(PrepassSeed::Highlights), {i, j}, kRaysOfCell)
+                     .rays) {
                 eyes_of_cell.push_back(ray.origin);
                 if (const auto met = search.meet(ray.origin, ray.direction))
                     by_instance[met->surface.hit.instance].push_back(
@@ -389,8 +391,8 @@ std::vector<Start> starts_of(const Camera& camera, HighlightSearch& search, V2i 
 }  // namespace
 
 std::vector<SmallFeature> highlights(const Camera& camera, const Scene& scene, const Bvh& bvh,
-                              V2i frame_px, std::span<const SmallFeature> things) {
-    const std::vector<Source> lamps = sources_of(scene, things);
+                                     V2i frame_px, std::span<const SmallFeature> features) {
+    const std::vector<Source> lamps = sources_of(scene, features);
     if (lamps.empty() || frame_px.x < kCell_px || frame_px.y < kCell_px) return {};
     const double pixels = double(frame_px.x) * double(frame_px.y);
     HighlightSearch first(scene, bvh, INT64_MAX);
@@ -405,12 +407,14 @@ std::vector<SmallFeature> highlights(const Camera& camera, const Scene& scene, c
             if (!search.may_go_on() || out.size() == kMostFound) return out;
             int& failed = failures[{start.instance, l}];
             if (failed > kMostFailures) continue;
-            const auto thing = image_from(search, start, eyes[start.cell], lamp);
-            const auto same = [&](const SmallFeature& other) { return is_same(other, *thing, start.eye); };
-            if (!thing || std::any_of(out.begin(), out.end(), same))
+            const auto feature = image_from(search, start, eyes[start.cell], lamp);
+            const auto same = [&](const SmallFeature& other) {
+                return is_same(other, *feature, start.eye);
+            };
+            if (!feature || std::any_of(out.begin(), out.end(), same))
                 ++failed;
             else
-                out.push_back(*thing);
+                out.push_back(*feature);
         }
     return out;
 }

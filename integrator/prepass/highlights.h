@@ -20,7 +20,8 @@ namespace petzval {
 /// looks for the point whose normal lies half-way between the directions to the lens and to the
 /// lamp. The same for other points of the lens: the image is where the rays seem to meet. At most
 /// an eighth of a ray is cast for a pixel. A pure function of the arguments.
-[[nodiscard]] std::vector<SmallFeature> highlights(const Camera&, const Scene&, const Bvh&, V2i frame_px,
-                                            std::span<const SmallFeature> things);
+[[nodiscard]] std::vector<SmallFeature> highlights(const Camera&, const Scene&, const Bvh&,
+                                                   V2i frame_px,
+                                                   std::span<const SmallFeature> features);
 
 }  // namespace petzval

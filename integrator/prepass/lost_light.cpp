@@ -219,8 +219,8 @@ std::vector<LostLight> lost_light(const Scene& scene, const Bvh& bvh) {
         if (++punctual > kMostPunctual) break;
         std::visit([&](const auto& light) { search.add(light, i); }, scene.lights[i]);
     }
-    for (const SmallFeature& thing : small_features_of(scene))
-        if (thing.is_lamp()) search.add(thing);
+    for (const SmallFeature& feature : small_features_of(scene))
+        if (feature.is_lamp()) search.add(feature);
     return search.out;
 }
 

@@ -74,7 +74,8 @@ class CellPilot {
             std::array<TargetList, kMostFilmPoints> lists;
             const auto n = std::min(count - first, static_cast<uint32_t>(kMostFilmPoints));
             for (uint32_t i = 0; i < n; ++i) {
-                const Sampler sampler(SamplerKind::Owen, number_of(PrepassSeed::Targets), {cell.x, cell.y, first + i});
+                const Sampler sampler(SamplerKind::Owen, number_of(PrepassSeed::Targets),
+                                      {cell.x, cell.y, first + i});
                 bands[i] = Bands::rgb();
                 points[i] = {place_of(first + i, sampler.get2(Dim::Film)), sampler};
             }

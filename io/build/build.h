@@ -11,7 +11,7 @@ namespace petzval {
 /// the one that the program runs with.
 [[nodiscard]] std::string build_description();
 
-/// "petzval 0.1.0 (build 0123456789abcdef)": the number is the FNV-1a hash of build_description().
+/// "petzval 0.2.0 (build 0123456789abcdef)": the number is the FNV-1a hash of build_description().
 [[nodiscard]] std::string program_version();
 
 }  // namespace petzval

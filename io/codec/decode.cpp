@@ -7,9 +7,9 @@
 #include <string_view>
 
 #include "io/base/error.h"
-#include "io/file/text_lines.h"
 #include "io/codec/codec.h"
 #include "io/codec/colour_space.h"
+#include "io/file/text_lines.h"
 #include "io/picture/limits.h"
 #include "io/picture/picture_kind.h"
 #include "io/picture/seal.h"

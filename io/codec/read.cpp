@@ -8,9 +8,9 @@
 #include <sstream>
 
 #include "io/base/error.h"
+#include "io/codec/codec.h"
 #include "io/file/read_file.h"
 #include "io/file/text_lines.h"
-#include "io/codec/codec.h"
 #include "io/picture/exr_header.h"
 #include "io/picture/limits.h"
 #include "io/picture/picture_kind.h"

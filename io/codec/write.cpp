@@ -7,10 +7,10 @@
 #include <map>
 #include <stdexcept>
 
-#include "io/file/atomic_file.h"
 #include "io/base/error.h"
-#include "io/file/text_lines.h"
 #include "io/codec/codec.h"
+#include "io/file/atomic_file.h"
+#include "io/file/text_lines.h"
 #include "io/picture/picture_kind.h"
 #include "io/picture/seal.h"
 

@@ -7,8 +7,8 @@
 #include <new>
 #include <optional>
 
-#include "io/file/atomic_file.h"
 #include "io/base/error.h"
+#include "io/file/atomic_file.h"
 
 namespace petzval {
 namespace {

@@ -8,10 +8,10 @@
 #include <tuple>
 
 #include "io/base/ascii.h"
-#include "io/file/assets.h"
-#include "io/file/csv.h"
 #include "io/base/error.h"
 #include "io/base/nearest.h"
+#include "io/file/assets.h"
+#include "io/file/csv.h"
 
 namespace petzval {
 namespace {

@@ -32,15 +32,16 @@ Glass khronos_glass(double nd, double dispersion) {
 /// Index of the thing of this name, which is looked up and added where it is not yet there; nothing
 /// where there is none.
 template <class SmallFeature>
-std::optional<int32_t> place_of(std::vector<SmallFeature>& things, const std::string& name,
+std::optional<int32_t> place_of(std::vector<SmallFeature>& features, const std::string& name,
                                 std::optional<SmallFeature> look_up(const std::string&)) {
-    const auto at = std::find_if(things.begin(), things.end(),
-                                 [&](const SmallFeature& thing) { return thing.name == lower(name); });
-    const auto place = static_cast<int32_t>(at - things.begin());
-    if (at != things.end()) return place;
+    const auto at =
+        std::find_if(features.begin(), features.end(),
+                     [&](const SmallFeature& feature) { return feature.name == lower(name); });
+    const auto place = static_cast<int32_t>(at - features.begin());
+    if (at != features.end()) return place;
     auto found = look_up(name);
     if (!found) return std::nullopt;
-    things.push_back(*std::move(found));
+    features.push_back(*std::move(found));
     return place;
 }
 

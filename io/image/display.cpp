@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "io/base/ascii.h"
-#include "io/file/assets.h"
 #include "io/base/error.h"
 #include "io/base/nearest.h"
+#include "io/file/assets.h"
 #include "io/file/text_lines.h"
 #include "io/image/ocio_config.h"
 

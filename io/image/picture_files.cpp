@@ -7,8 +7,8 @@
 #include "io/base/error.h"
 #include "io/base/machine.h"
 #include "io/base/printable.h"
-#include "io/file/program_file.h"
 #include "io/build/build.h"
+#include "io/file/program_file.h"
 #include "io/picture/image_codec.h"
 
 namespace petzval {

@@ -8,9 +8,9 @@
 #include <system_error>
 #include <utility>
 
-#include "io/file/atomic_file.h"
 #include "io/base/error.h"
 #include "io/base/printable.h"
+#include "io/file/atomic_file.h"
 #include "io/image/canvas.h"
 #include "io/image/label.h"
 #include "io/image/picture_files.h"

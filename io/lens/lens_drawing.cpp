@@ -6,9 +6,9 @@
 #include <algorithm>
 
 #include "io/base/ascii.h"
-#include "io/file/atomic_file.h"
 #include "io/base/error.h"
 #include "io/base/xml_text.h"
+#include "io/file/atomic_file.h"
 
 namespace petzval {
 namespace {

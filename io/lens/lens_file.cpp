@@ -9,9 +9,9 @@
 
 #include "camera/lens/lens.h"
 #include "io/base/ascii.h"
-#include "io/file/assets.h"
 #include "io/base/error.h"
 #include "io/base/nearest.h"
+#include "io/file/assets.h"
 #include "io/file/text_lines.h"
 #include "io/lens/lens_formats.h"
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <array>
 
-#include "io/file/csv.h"
 #include "io/base/error.h"
+#include "io/file/csv.h"
 
 namespace petzval {
 namespace {

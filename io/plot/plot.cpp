@@ -15,9 +15,9 @@
 #include <memory>
 
 #include "io/base/ascii.h"
-#include "io/file/atomic_file.h"
 #include "io/base/error.h"
 #include "io/base/printable.h"
+#include "io/file/atomic_file.h"
 
 namespace petzval {
 namespace {

@@ -13,10 +13,10 @@
 #include "core/spectrum/colorimetry.h"
 #include "core/spectrum/colour.h"
 #include "io/base/ascii.h"
-#include "io/file/assets.h"
-#include "io/file/csv.h"
 #include "io/base/error.h"
 #include "io/base/nearest.h"
+#include "io/file/assets.h"
+#include "io/file/csv.h"
 
 namespace petzval {
 namespace {

@@ -43,7 +43,8 @@ TEST(Dual, JacobiansAreThoseOfCentralDifferences) {
         const auto end = [&](const LensRay<d4>& start, double u, double v, bool derive) {
             const d4 unit = broadcast<d4>(derive);
             auto ray = moved(start, D{broadcast<d4>(u), unit, {}}, D{broadcast<d4>(v), {}, unit});
-            EXPECT_TRUE(all(trace_lens({lens, Towards::Film, whole(lens), Clip::No}, indices, ray)));
+            EXPECT_TRUE(
+                all(trace_lens({lens, Towards::Film, whole(lens), Clip::No}, indices, ray)));
             return ray;
         };
         for (int i = 0; i < 20; ++i) {
@@ -76,7 +77,8 @@ TEST(Dual, DerivativesAreFiniteAtThePoleOfAnOddAsphere) {
     const Lens lens = lens_of({surface});
     auto ray = moved(ray_of<d4>({0, 0, -1}, {0, 0, 1}), D{d4{}, broadcast<d4>(1), {}},
                      D{d4{}, {}, broadcast<d4>(1)});
-    ASSERT_TRUE(all(trace_lens({lens, Towards::Film, whole(lens), Clip::No}, lens.exact_indices(broadcast<d4>(kLineD_nm)), ray)));
+    ASSERT_TRUE(all(trace_lens({lens, Towards::Film, whole(lens), Clip::No},
+                               lens.exact_indices(broadcast<d4>(kLineD_nm)), ray)));
     EXPECT_NEAR(ray.origin.x.du[0], 0.6, 1e-15);
     EXPECT_NEAR(ray.origin.x.dv[0], 0.7, 1e-15);
     EXPECT_NEAR(ray.direction.x.dv[0], 0.7 / 1.6, 1e-15);

@@ -121,7 +121,8 @@ double quadrature(const LensCameraInput& in, V2f film_mm, double nm = kLineD_nm)
                             ? 1
                             : in.iris.transmits({float(hit.point.x[k]), float(hit.point.y[k])});
             };
-            const l4 passed = trace_lens<d4>({lens, Towards::Scene, {0, lens.last()}, Clip::Yes}, indices, ray, at_stop);
+            const l4 passed = trace_lens<d4>({lens, Towards::Scene, {0, lens.last()}, Clip::Yes},
+                                             indices, ray, at_stop);
             for (int k = 0; k < 4; ++k) {
                 if (!passed[k] || !(open[k] > 0)) continue;
                 sum += open[k] * size_l * size_m / (side * side);
@@ -175,7 +176,8 @@ TEST(LensCamera, IrradianceOnTheAxisIsPiSineSquared) {
             ray.counted_from = lens.last();
             ray.origin.z = d4{} + (in.film_mm - lens.vertex_mm(lens.last()));
             ray.direction = {d4{}, d4{} + sine, d4{} - std::sqrt(1 - sine * sine)};
-            const l4 passed = trace_lens<d4>({lens, Towards::Scene, {0, lens.last()}, Clip::Yes}, lens.exact_indices(d4{} + kLineD_nm), ray);
+            const l4 passed = trace_lens<d4>({lens, Towards::Scene, {0, lens.last()}, Clip::Yes},
+                                             lens.exact_indices(d4{} + kLineD_nm), ray);
             (passed[0] ? passes : fails) = sine;
         }
         const LensCamera camera(in);
@@ -379,7 +381,9 @@ TEST(RayAimer, RaysMeetTheStopWhereTheyShould) {
             ray.origin = {d4{} + film.x, d4{} + film.y,
                           d4{} + (in.film_mm - lens.vertex_mm(lens.last()))};
             ray.direction = {d4{} + l, d4{} + m, d4{} - std::sqrt(1 - l * l - m * m)};
-            static_cast<void>(trace_lens<d4>({lens, Towards::Scene, {lens.stop(), lens.last()}, Clip::No}, lens.exact_indices(d4{} + nm[lane]), ray));
+            static_cast<void>(
+                trace_lens<d4>({lens, Towards::Scene, {lens.stop(), lens.last()}, Clip::No},
+                               lens.exact_indices(d4{} + nm[lane]), ray));
             ASSERT_LE(std::hypot(ray.origin.x[0] - aim.x, ray.origin.y[0] - aim.y), 1.1e-4 * radius)
                 << name;
         }

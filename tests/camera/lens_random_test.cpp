@@ -63,7 +63,8 @@ TEST(RandomLens, EveryRayHasADefinedEnd) {
         auto dual = test::with_derivatives(floats);
         SCOPED_TRACE(trial);
         const auto indices = lens.exact_indices(splat(550));
-        (void)trace_lens({lens, towards, whole(lens), clip}, lens.exact_indices(d4{} + 550), doubles);
+        (void)trace_lens({lens, towards, whole(lens), clip}, lens.exact_indices(d4{} + 550),
+                         doubles);
         (void)trace_lens({lens, towards, whole(lens), clip}, indices, floats);
         (void)trace_lens({lens, towards, whole(lens), clip}, indices, dual);
         // Grazing incidence on a sphere loses half the digits.
@@ -107,7 +108,8 @@ TEST(RandomLens, PointsAreOnTheSurfacesAndSnellsLawHolds) {
             const LensSurface& surface = lens.prescription().surfaces[size_t(i)];
             const auto& facts = lens.surfaces<double>()[size_t(i)];
             const auto before = ray;
-            (void)trace_lens({lens, to_film ? Towards::Film : Towards::Scene, {i, i}, Clip::Yes}, indices, ray);
+            (void)trace_lens({lens, to_film ? Towards::Film : Towards::Scene, {i, i}, Clip::Yes},
+                             indices, ray);
             double n[] = {indices.of_medium[facts.medium_before][0],
                           indices.of_medium[facts.medium_after][0]};
             if (!to_film) std::swap(n[0], n[1]);
@@ -138,7 +140,8 @@ TEST(RandomLens, NumbersThatAreNoneMiss) {
                 f4* const number[] = {&ray.origin.x,    &ray.origin.y,    &ray.origin.z,
                                       &ray.direction.x, &ray.direction.y, &ray.direction.z};
                 (*number[place])[2] = float(bad);
-                const auto alive = trace_lens({lens, towards, whole(lens), Clip::No}, lens.exact_indices(splat(550)), ray);
+                const auto alive = trace_lens({lens, towards, whole(lens), Clip::No},
+                                              lens.exact_indices(splat(550)), ray);
                 EXPECT_EQ(fault_of(ray, lens, towards, 1e-5), "");
                 EXPECT_EQ(ray.status(2), RayStatus::Missed) << place << ' ' << bad;
                 for (const int i : {0, 1, 3}) EXPECT_TRUE(alive[i]);
@@ -154,7 +157,8 @@ TEST(RandomLens, SlopesWhoseSquaresAreInfiniteMiss) {
         std::array<Line, 4> lines;
         for (auto& line : lines) line = random_line(random, true);
         auto ray = rays_of<d4>(lines);
-        (void)trace_lens({lens, Towards::Film, whole(lens), Clip::No}, lens.exact_indices(d4{} + 550), ray);
+        (void)trace_lens({lens, Towards::Film, whole(lens), Clip::No},
+                         lens.exact_indices(d4{} + 550), ray);
         ASSERT_EQ(fault_of(ray, lens, Towards::Film, 1e-9), "") << trial;
     }
 }

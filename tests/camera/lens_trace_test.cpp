@@ -234,7 +234,8 @@ TEST(LensTrace, ThereAndBackAndThereAgain) {
                 << name;
             const auto there = ray;
             ray.direction = ray.direction * ScalarOf<V>(-1);
-            ASSERT_TRUE(all(trace_lens({lens, Towards::Scene, whole(lens), Clip::No}, indices, ray)));
+            ASSERT_TRUE(
+                all(trace_lens({lens, Towards::Scene, whole(lens), Clip::No}, indices, ray)));
             EXPECT_EQ(ray.counted_from, 0);
             for (int i = 0; i < 4; ++i) {
                 const Three back = at_lane(ray.direction, i), at = at_lane(ray.origin, i);
@@ -243,7 +244,8 @@ TEST(LensTrace, ThereAndBackAndThereAgain) {
                 expect_near(test::plus(at, back, t), at_lane(start.origin, i), tolerance);
             }
             ray.direction = ray.direction * ScalarOf<V>(-1);
-            ASSERT_TRUE(all(trace_lens({lens, Towards::Film, whole(lens), Clip::No}, indices, ray)));
+            ASSERT_TRUE(
+                all(trace_lens({lens, Towards::Film, whole(lens), Clip::No}, indices, ray)));
             EXPECT_EQ(ray.counted_from, lens.last());
             for (int i = 0; i < 4; ++i) {
                 expect_near(at_lane(ray.origin, i), at_lane(there.origin, i), tolerance);
@@ -270,7 +272,8 @@ TEST(LensTrace, InPartsIsLikeInOneGo) {
             (void)trace_lens({lens, Towards::Film, {0, stop - 1}, Clip::Yes}, indices, parts);
             (void)trace_lens({lens, Towards::Film, {stop, stop}, Clip::Yes}, indices, parts);
             (void)trace_lens({lens, Towards::Film, {stop, stop - 1}, Clip::Yes}, indices, parts);
-            (void)trace_lens({lens, Towards::Film, {stop + 1, lens.last()}, Clip::Yes}, indices, parts);
+            (void)trace_lens({lens, Towards::Film, {stop + 1, lens.last()}, Clip::Yes}, indices,
+                             parts);
             expect_near(at_lane(parts.origin, 0), at_lane(whole_way.origin, 0), 1e-12);
             expect_near(at_lane(parts.direction, 0), at_lane(whole_way.direction, 0), 1e-13);
             EXPECT_EQ(parts.status(0), whole_way.status(0));
@@ -321,7 +324,9 @@ TEST(LensTrace, AnObserverSeesPointsIndicesAndDistances) {
     for (const bool to_film : {true, false}) {
         auto ray = ray_of<d4>({0, 0, -4}, {0, 0.6, to_film ? 0.8 : -0.8});
         std::vector<LensHit<d4>> hits;
-        (void)trace_lens({lens, to_film ? Towards::Film : Towards::Scene, whole(lens), Clip::No}, lens.exact_indices(kD_nm), ray, [&](const auto& hit) { hits.push_back(hit); });
+        (void)trace_lens({lens, to_film ? Towards::Film : Towards::Scene, whole(lens), Clip::No},
+                         lens.exact_indices(kD_nm), ray,
+                         [&](const auto& hit) { hits.push_back(hit); });
         ASSERT_EQ(hits.size(), 3u);
         const double in_air = 1 / 0.8, in_glass = 1 / std::sqrt(1 - 0.16);
         for (size_t i = 0; i < 3; ++i) {

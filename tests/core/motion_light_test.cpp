@@ -312,12 +312,12 @@ TEST(MovingLight, OfEachKindRunsStraightBetweenSteps) {
 // A plan must not miss a lamp where it comes to late.
 TEST(MovingLight, IsAThingAsLargeAsWhereItComes) {
     const Scene scene = moving_lamp(5, true);
-    const std::vector<SmallFeature> things = small_features_of(scene);
-    ASSERT_EQ(things.size(), 1u);
+    const std::vector<SmallFeature> features = small_features_of(scene);
+    ASSERT_EQ(features.size(), 1u);
     for (int i = 0; i <= 20; ++i)
         for (const V3d& corner : corners_at(scene, 0, 0, i / 20.))
-            EXPECT_LE((V3f(corner) - things[0].centre).length(),
-                      things[0].reach_m * 1.0001f + 1e-4f);
+            EXPECT_LE((V3f(corner) - features[0].centre).length(),
+                      features[0].reach_m * 1.0001f + 1e-4f);
 }
 
 // Its corners are rounded as those of the steps are, between which it is near the receiver.

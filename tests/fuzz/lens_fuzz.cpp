@@ -153,7 +153,8 @@ class Trial {
             auto dual = test::with_derivatives(floats);
             const auto indices = by_chance(random_, 0.5f) ? lens_.exact_indices(splat(float(nm)))
                                                           : lens_.indices(splat(float(nm)));
-            (void)trace_lens({lens_, towards, test::whole(lens_), clip}, lens_.exact_indices(broadcast<d4>(nm)), doubles);
+            (void)trace_lens({lens_, towards, test::whole(lens_), clip},
+                             lens_.exact_indices(broadcast<d4>(nm)), doubles);
             (void)trace_lens({lens_, towards, test::whole(lens_), clip}, indices, floats);
             (void)trace_lens({lens_, towards, test::whole(lens_), clip}, indices, dual);
             if (kind_ == Kind::Wild || !has_indices(nm, indices)) continue;

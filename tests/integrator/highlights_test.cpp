@@ -47,7 +47,8 @@ std::vector<SmallFeature> seen_in(World& world, const std::vector<SmallFeature>&
     return highlights(camera(), world.scene, *world.bvh, kFrame, lamps);
 }
 
-std::vector<SmallFeature> seen_in_a_ball(const Material& material, const std::vector<SmallFeature>& lamps) {
+std::vector<SmallFeature> seen_in_a_ball(const Material& material,
+                                         const std::vector<SmallFeature>& lamps) {
     World world;
     place(world.scene, sphere(V3f(0, 0, -1), kRadius_m, 128, true), material);
     return seen_in(world, lamps);

@@ -109,11 +109,11 @@ TEST(SunDisc, IsSeenInTheSkyAndInMirrors) {
             const V3f down(leaning(rim).x, 0, -1);
             EXPECT_NEAR(seen(world, V3f(0, 0, 1), down), there, 1e-2 * nits) << unseen << rim;
         }
-        const std::vector<SmallFeature> things = small_features_of(world.scene);
-        ASSERT_EQ(things.size(), 1u);
-        EXPECT_TRUE(things[0].at_infinity && things[0].is_lamp());
-        EXPECT_NEAR(things[0].reach_m, half_rad, 1e-5);
-        EXPECT_NEAR(things[0].radiance * things[0].area_m2, 10, 1e-3);
+        const std::vector<SmallFeature> features = small_features_of(world.scene);
+        ASSERT_EQ(features.size(), 1u);
+        EXPECT_TRUE(features[0].at_infinity && features[0].is_lamp());
+        EXPECT_NEAR(features[0].reach_m, half_rad, 1e-5);
+        EXPECT_NEAR(features[0].radiance * features[0].area_m2, 10, 1e-3);
     }
 }
 

@@ -77,8 +77,10 @@ struct Pair {
     };
     Pair out{start, ray_from<d4>(lane_0(start.origin), lane_0(start.direction))};
     const float nm = static_cast<float>(kLineD_nm);
-    static_cast<void>(trace_lens<f4>({lens, Towards::Film, range, Clip::No}, lens.exact_indices(splat(nm)), out.in_floats));
-    static_cast<void>(trace_lens<d4>({lens, Towards::Film, range, Clip::No}, lens.exact_indices(broadcast<d4>(kLineD_nm)), out.in_doubles));
+    static_cast<void>(trace_lens<f4>({lens, Towards::Film, range, Clip::No},
+                                     lens.exact_indices(splat(nm)), out.in_floats));
+    static_cast<void>(trace_lens<d4>({lens, Towards::Film, range, Clip::No},
+                                     lens.exact_indices(broadcast<d4>(kLineD_nm)), out.in_doubles));
     return out;
 }
 

@@ -8,8 +8,8 @@
 #include <sstream>
 
 #include "core/traversal/bvh.h"
-#include "io/file/csv.h"
 #include "io/base/error.h"
+#include "io/file/csv.h"
 #include "tests/stability/sweeps.h"
 
 namespace petzval {

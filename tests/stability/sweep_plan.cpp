@@ -41,9 +41,9 @@ Planned planned(double side_m) {
         ThinLens{M44f(), yfov_rad, float(kFrame.x) / float(kFrame.y),
                  Iris(Disk{}, kFocal_mm / (2 * kFstop)), float(kFocus_m)});
     setup.view.camera = setup.view.still;
-    const std::vector<SmallFeature> things = small_features_of(world.scene);
-    const std::vector<FilmRegion> regions = film_regions(*setup.view.still, kFrame, things);
-    const std::vector<SeenLamp> lamps = seen_lamps(setup, kFrame, things, regions);
+    const std::vector<SmallFeature> features = small_features_of(world.scene);
+    const std::vector<FilmRegion> regions = film_regions(*setup.view.still, kFrame, features);
+    const std::vector<SeenLamp> lamps = seen_lamps(setup, kFrame, features, regions);
     TbbExecutor executor(1);
     const Pilot pilot(kFrame, kFrame.x * kFrame.y, executor);
     RenderJob job;

@@ -44,7 +44,8 @@ Counted count_light(const ShippedLens& of, V2f film_mm) {
                         (stop_x * stop_x + stop_y * stop_y <= stop2_mm2);
                 if (!any(on)) continue;
                 LensRay<f4> ray = c.ray;
-                on &= trace_lens<f4>({lens, Towards::Scene, {0, lens.stop() - 1}, Clip::Yes}, indices, ray);
+                on &= trace_lens<f4>({lens, Towards::Scene, {0, lens.stop() - 1}, Clip::Yes},
+                                     indices, ray);
                 for (int i = 0; i < 4; ++i) {
                     if (!on[i]) continue;
                     ++passed;

@@ -11,9 +11,9 @@
 #include "apps/commands/lens/field.h"
 #include "camera/bench/analysis.h"
 #include "camera/bench/spot.h"
+#include "io/base/error.h"
 #include "io/file/atomic_file.h"
 #include "io/file/csv.h"
-#include "io/base/error.h"
 #include "io/file/rescue.h"
 #include "io/plot/plot.h"
 

@@ -16,7 +16,6 @@
 namespace petzval {
 namespace {
 
-
 V3f position(const M44f& m) {
     return {m[3][0], m[3][1], m[3][2]};
 }

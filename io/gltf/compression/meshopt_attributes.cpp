@@ -47,7 +47,8 @@ bool read_group(Reader& in, unsigned bits, uint8_t* deltas) {
     const uint8_t* const packed = in.take(kMeshoptGroup * bits / 8);
     if (!packed) return false;
     if (bits == 0 || bits == 8) {
-        bits == 0 ? std::fill_n(deltas, kMeshoptGroup, uint8_t(0)) : std::copy_n(packed, kMeshoptGroup, deltas);
+        bits == 0 ? std::fill_n(deltas, kMeshoptGroup, uint8_t(0))
+                  : std::copy_n(packed, kMeshoptGroup, deltas);
         return true;
     }
     const unsigned all_set = (1u << bits) - 1, in_a_byte = 8 / bits;
@@ -78,7 +79,8 @@ bool read_deltas(Reader& in, unsigned control, size_t count, Deltas& deltas) {
     const size_t groups = (count + kMeshoptGroup - 1) / kMeshoptGroup;
     const uint8_t* const header = in.take((groups + 3) / 4);
     for (size_t g = 0; header && g < groups; ++g)
-        if (!read_group(in, kBits[control][header[g / 4] >> g % 4 * 2 & 3], &deltas[g * kMeshoptGroup]))
+        if (!read_group(in, kBits[control][header[g / 4] >> g % 4 * 2 & 3],
+                        &deltas[g * kMeshoptGroup]))
             return false;
     return header != nullptr;
 }

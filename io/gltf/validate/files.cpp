@@ -10,8 +10,8 @@
 #include "io/base/json_cursor.h"
 #include "io/base/json_parse.h"
 #include "io/base/nearest.h"
-#include "io/file/read_file.h"
 #include "io/base/uri.h"
+#include "io/file/read_file.h"
 #include "io/gltf/schema/extensions.h"
 #include "io/spectra/spectra.h"
 

@@ -91,7 +91,7 @@ TEST_F(PilotErrors, BlocksAddUpToTheNoise) {
     EXPECT_NEAR(sum, noise.variances.back().mean, 1e-12);
 }
 
-// However bright the samples of a look are, it counts no more than a pixel can be off.
+// However bright the samples of a pilot pixel are, it counts no more than a pixel can be off.
 TEST_F(PilotErrors, BlocksHoldNoMoreThanAPixelCanBeOff) {
     const Pilot pilot(request_.size, 500, executor_);
     const auto bright = sky(pilot, 1, true), dark = sky(pilot, 1e-3f, false);

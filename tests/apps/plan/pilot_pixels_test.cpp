@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// PilotPixels of a pilot: they stand for the frame without a bias, and what they say of the rest holds.
+// Pixels of a pilot: they stand for the frame without a bias, and what they say of the rest
+// holds.
 #include "apps/plan/pilot_pixels.h"
 
 #include <gmock/gmock.h>
@@ -21,17 +22,17 @@ std::vector<FilmRegion> regions() {
             of({{5, 80, 8, 83}})};
 }
 
-double share_of(const PilotPixels& looks, const Rect& r) {
+double share_of(const PilotPixels& chosen, const Rect& r) {
     double sum = 0;
-    for (const PilotPixel& look : looks.looks)
-        if (look.pixel[0] >= r.x0 && look.pixel[0] < r.x1 && look.pixel[1] >= r.y0 &&
-            look.pixel[1] < r.y1)
-            sum += look.weight;
+    for (const PilotPixel& pixel : chosen.pixels)
+        if (pixel.pixel[0] >= r.x0 && pixel.pixel[0] < r.x1 && pixel.pixel[1] >= r.y0 &&
+            pixel.pixel[1] < r.y1)
+            sum += pixel.weight;
     return sum;
 }
 
 // The share of a part of the frame, as a mean over seeds: five parts, one of them within two
-// regions, one within a region that is looked at wholly, one in the corner that is emphasized.
+// regions, one within a region that is sampled wholly, one in the corner that is emphasized.
 TEST(PilotPixels, StandForTheFrameWithoutABias) {
     for (const Rect part : {Rect{32, 16, 36, 19}, Rect{5, 80, 8, 83}, Rect{0, 0, 30, 20},
                             Rect{90, 40, 140, 80}, Rect{0, 0, 160, 90}}) {
@@ -45,59 +46,59 @@ TEST(PilotPixels, StandForTheFrameWithoutABias) {
 }
 
 TEST(PilotPixels, RegionsAndEmphasisGetTheirOwn) {
-    const PilotPixels looks = choose_pilot_pixels(kSize, 400, regions(), kCorner, 0);
+    const PilotPixels chosen = choose_pilot_pixels(kSize, 400, regions(), kCorner, 0);
     const auto count = [&](const Rect& r) {
         int n = 0;
-        for (const PilotPixel& look : looks.looks)
-            n += look.pixel[0] >= r.x0 && look.pixel[0] < r.x1 && look.pixel[1] >= r.y0 &&
-                 look.pixel[1] < r.y1;
+        for (const PilotPixel& pixel : chosen.pixels)
+            n += pixel.pixel[0] >= r.x0 && pixel.pixel[0] < r.x1 && pixel.pixel[1] >= r.y0 &&
+                 pixel.pixel[1] < r.y1;
         return n;
     };
     EXPECT_GE(count({20, 10, 40, 20}), 25) << "33 of its own, less those drawn twice";
     EXPECT_EQ(count({5, 80, 8, 83}), 9) << "all of a small region";
     EXPECT_GT(count({0, 0, 40, 30}), 2 * count({120, 60, 160, 90}));
     std::set<std::array<int, 2>> pixels;
-    for (const PilotPixel& look : looks.looks) pixels.insert(look.pixel);
-    EXPECT_EQ(pixels.size(), looks.looks.size()) << "none twice";
+    for (const PilotPixel& pixel : chosen.pixels) pixels.insert(pixel.pixel);
+    EXPECT_EQ(pixels.size(), chosen.pixels.size()) << "none twice";
 }
 
 // Dim pictures have small values.
 TEST(PilotPixels, OfAnEmphasisOnlyRatiosCount) {
     FilmMap dim = kCorner;
     for (double& value : dim.values) value *= 0x1p-40;
-    const PilotPixels looks = choose_pilot_pixels(kSize, 400, regions(), kCorner, 0),
-                of_dim = choose_pilot_pixels(kSize, 400, regions(), dim, 0);
-    ASSERT_EQ(of_dim.looks.size(), looks.looks.size());
-    for (size_t i = 0; i < looks.looks.size(); ++i) {
-        EXPECT_EQ(of_dim.looks[i].pixel, looks.looks[i].pixel);
-        EXPECT_EQ(of_dim.looks[i].weight, looks.looks[i].weight);
+    const PilotPixels chosen = choose_pilot_pixels(kSize, 400, regions(), kCorner, 0),
+                      of_dim = choose_pilot_pixels(kSize, 400, regions(), dim, 0);
+    ASSERT_EQ(of_dim.chosen.size(), chosen.pixels.size());
+    for (size_t i = 0; i < chosen.pixels.size(); ++i) {
+        EXPECT_EQ(of_dim.chosen[i].pixel, chosen.pixels[i].pixel);
+        EXPECT_EQ(of_dim.chosen[i].weight, chosen.pixels[i].weight);
     }
-    EXPECT_EQ(of_dim.density.values, looks.density.values);
+    EXPECT_EQ(of_dim.density.values, chosen.density.values);
 }
 
 TEST(PilotPixels, SmallFramesAreLookedAtWholly) {
-    const PilotPixels looks = choose_pilot_pixels({20, 10}, 200, {}, kCorner, 3);
-    EXPECT_EQ(looks.looks.size(), 200u);
-    EXPECT_TRUE(looks.all_certain);
-    EXPECT_NEAR(share_of(looks, {0, 0, 20, 10}), 1, 1e-12);
-    EXPECT_EQ(looks.unseen({20, 10}, kCorner), 0);
+    const PilotPixels chosen = choose_pilot_pixels({20, 10}, 200, {}, kCorner, 3);
+    EXPECT_EQ(chosen.pixels.size(), 200u);
+    EXPECT_TRUE(chosen.all_certain);
+    EXPECT_NEAR(share_of(chosen, {0, 0, 20, 10}), 1, 1e-12);
+    EXPECT_EQ(chosen.unseen({20, 10}, kCorner), 0);
 }
 
 // An error that only a part of the frame has, which may be anywhere: as large as it can be while
-// the bound does not cover it, in at most 5 % of the cases no look falls on it.
+// the bound does not cover it, in at most 5 % of the cases no pilot pixel falls on it.
 TEST(PilotPixels, WhatIsUnseenIsSeldomMoreThanItsBound) {
     const FilmMap even;
     int missed = 0;
     constexpr int kCases = 2000;
     for (int i = 0; i < kCases; ++i) {
         const auto seed = static_cast<uint32_t>(i);
-        const PilotPixels looks = choose_pilot_pixels(kSize, 300, {}, kCorner, seed);
-        const double share = looks.unseen(kSize, even);
-        // Scattered pixels: stratified looks would meet what lies together more surely.
+        const PilotPixels chosen = choose_pilot_pixels(kSize, 300, {}, kCorner, seed);
+        const double share = chosen.unseen(kSize, even);
+        // Scattered pixels: stratified pilot pixels would meet what lies together more surely.
         bool met = false;
-        for (const PilotPixel& look : looks.looks)
-            met = met || hash32(hash32(seed, static_cast<uint32_t>(look.pixel[0])),
-                                static_cast<uint32_t>(look.pixel[1])) < share * 0x1p32;
+        for (const PilotPixel& pixel : chosen.pixels)
+            met = met || hash32(hash32(seed, static_cast<uint32_t>(pixel.pixel[0])),
+                                static_cast<uint32_t>(pixel.pixel[1])) < share * 0x1p32;
         missed += !met;
     }
     const double allowed = 0.05 * kCases;
@@ -107,14 +108,14 @@ TEST(PilotPixels, WhatIsUnseenIsSeldomMoreThanItsBound) {
 
 // Grids whose cells do not nest, against every pixel.
 TEST(PilotPixels, UnseenIsTheWorstPixels) {
-    const PilotPixels looks = choose_pilot_pixels(kSize, 400, {}, kCorner, 0);
+    const PilotPixels chosen = choose_pilot_pixels(kSize, 400, {}, kCorner, 0);
     FilmMap most{{3, 5}, {}};
     for (uint32_t i = 0; i < 15; ++i) most.values.push_back(to_unit_float(hash32(7, i)));
     double worst = 0;
     for (int y = 0; y < kSize.y; ++y)
         for (int x = 0; x < kSize.x; ++x)
-            worst = std::max(worst, most.at(kSize, x, y) / looks.density.at(kSize, x, y));
-    EXPECT_NEAR(looks.unseen(kSize, most), 3 * worst / (160. * 90), 1e-12);
+            worst = std::max(worst, most.at(kSize, x, y) / chosen.density.at(kSize, x, y));
+    EXPECT_NEAR(chosen.unseen(kSize, most), 3 * worst / (160. * 90), 1e-12);
 }
 
 TEST(PilotPixels, MoreRegionsThanLooksForThemLeaveTheEvenOnes) {
@@ -123,13 +124,13 @@ TEST(PilotPixels, MoreRegionsThanLooksForThemLeaveTheEvenOnes) {
         many.push_back({{{i % 40 * 4, i / 40 * 10, i % 40 * 4 + 4, i / 40 * 10 + 5}}});
     test::Moments share;
     for (uint32_t seed = 0; seed < 100; ++seed) {
-        const PilotPixels looks = choose_pilot_pixels(kSize, 256, many, kCorner, seed);
-        EXPECT_LE(looks.looks.size(), 300u);
-        share.add(share_of(looks, {0, 0, 100, 60}));
+        const PilotPixels chosen = choose_pilot_pixels(kSize, 256, many, kCorner, seed);
+        EXPECT_LE(chosen.pixels.size(), 300u);
+        share.add(share_of(chosen, {0, 0, 100, 60}));
     }
     EXPECT_TRUE(test::agrees(share, 100. * 60 / (160. * 90), 1e-9)) << share.mean();
-    const PilotPixels looks = choose_pilot_pixels(kSize, 256, many, kCorner, 0);
-    EXPECT_EQ(looks.regions.size(), 64u);
+    const PilotPixels chosen = choose_pilot_pixels(kSize, 256, many, kCorner, 0);
+    EXPECT_EQ(chosen.regions.size(), 64u);
 }
 
 TEST(PilotPixels, UnseenIsLessWhereMoreIsLookedAt) {
@@ -138,7 +139,7 @@ TEST(PilotPixels, UnseenIsLessWhereMoreIsLookedAt) {
                  many = choose_pilot_pixels(kSize, 3000, {}, even, 0).unseen(kSize, even);
     EXPECT_NEAR(few, 3 / 300., 0.1 * few);
     EXPECT_NEAR(many, 3 / 3000., 0.1 * many);
-    // Errors that can only be in the corner, where half of the looks go by emphasis.
+    // Errors that can only be in the corner, where half of the pilot pixels go by emphasis.
     FilmMap corner{{4, 3}, std::vector<double>(12, 0.)};
     corner.values[0] = 1;
     EXPECT_LT(choose_pilot_pixels(kSize, 300, {}, corner, 0).unseen(kSize, corner), few / 2);

@@ -40,16 +40,17 @@ Scene lamps(const std::vector<V3f>& centres, float side) {
 TEST(Things, LampsThatLieApartAreSeveral) {
     const std::vector<V3f> centres{{-0.5f, 0, -2}, {0.5f, 0.1f, -3}, {0, -0.3f, -4}};
     const Scene scene = lamps(centres, 0.01f);
-    const std::vector<SmallFeature> things = small_features_of(scene);
-    ASSERT_FALSE(things.empty());
+    const std::vector<SmallFeature> features = small_features_of(scene);
+    ASSERT_FALSE(features.empty());
     for (const V3f& centre : centres) {
-        const auto near = std::count_if(things.begin(), things.end(), [&](const SmallFeature& t) {
-            return (t.centre - centre).length() < 0.01f && t.radius_m < 0.01f;
-        });
+        const auto near =
+            std::count_if(features.begin(), features.end(), [&](const SmallFeature& t) {
+                return (t.centre - centre).length() < 0.01f && t.radius_m < 0.01f;
+            });
         EXPECT_GE(near, 1) << centre.x;
     }
     double area = 0;
-    for (const SmallFeature& t : things) {
+    for (const SmallFeature& t : features) {
         EXPECT_TRUE(t.is_lamp());
         EXPECT_NEAR(t.radiance, 100, 1);
         area += t.area_m2;
@@ -74,9 +75,9 @@ TEST(Things, LampsAreFoundBesideMuchBrighterAndMuchDarkerOnes) {
     place(scene, square({0, 0, 3}, 0.5f), emitter_material(1e6f));
     place(scene, test::sphere({0, 0, -20}, 15, 16, false), emitter_material(0.1f));
     finish_scene(scene);
-    const std::vector<SmallFeature> things = small_features_of(scene);
+    const std::vector<SmallFeature> features = small_features_of(scene);
     for (const V3f& centre : centres)
-        EXPECT_TRUE(std::any_of(things.begin(), things.end(),
+        EXPECT_TRUE(std::any_of(features.begin(), features.end(),
                                 [&](const SmallFeature& t) {
                                     return (t.centre - centre).length() < 0.01f &&
                                            t.radius_m < 0.01f;
@@ -89,10 +90,10 @@ TEST(Things, AFinelyTessellatedLampIsOne) {
         Scene scene;
         place(scene, test::sphere({0.2f, 0.1f, -2}, 0.05f, rows, true), emitter_material(10.f));
         finish_scene(scene);
-        const std::vector<SmallFeature> things = small_features_of(scene);
-        ASSERT_EQ(things.size(), 1u) << rows;
-        EXPECT_NEAR(things[0].area_m2, 2 * 3.14159 * 0.05 * 0.05, 0.1 * 0.0157);
-        EXPECT_NEAR(things[0].radiance, 10, 1e-3);
+        const std::vector<SmallFeature> features = small_features_of(scene);
+        ASSERT_EQ(features.size(), 1u) << rows;
+        EXPECT_NEAR(features[0].area_m2, 2 * 3.14159 * 0.05 * 0.05, 0.1 * 0.0157);
+        EXPECT_NEAR(features[0].radiance, 10, 1e-3);
     }
 }
 
@@ -123,10 +124,10 @@ TEST(Things, TexturesThatGlowAreLamps) {
         place(scene, square({0, 0, -2}, 1.f), emitter_material(100.f));
         scene.materials[0].emissive_texture.image = 0;
         finish_scene(scene);
-        const std::vector<SmallFeature> things = small_features_of(scene);
-        ASSERT_FALSE(things.empty());
+        const std::vector<SmallFeature> features = small_features_of(scene);
+        ASSERT_FALSE(features.empty());
         const auto& smallest = *std::min_element(
-            things.begin(), things.end(),
+            features.begin(), features.end(),
             [](const SmallFeature& a, const SmallFeature& b) { return a.radius_m < b.radius_m; });
         if (spot) {
             EXPECT_LT(smallest.radius_m, 0.05f);
@@ -146,10 +147,10 @@ TEST(Things, GlassThatDispersesIsOne) {
     place(scene, square({0.2f, 0, -2}, 0.1f), glass);
     EXPECT_TRUE(small_features_of(scene).empty());
     scene.materials.back().glass.emplace();
-    const auto things = small_features_of(scene);
-    ASSERT_FALSE(things.empty());
-    EXPECT_EQ(things[0].kind, SmallFeature::Kind::Wavelength);
-    EXPECT_NEAR(double(things[0].centre.x), 0.2, 0.05);
+    const auto features = small_features_of(scene);
+    ASSERT_FALSE(features.empty());
+    EXPECT_EQ(features[0].kind, SmallFeature::Kind::Wavelength);
+    EXPECT_NEAR(double(features[0].centre.x), 0.2, 0.05);
 }
 
 TEST(Things, AMeasuredReflectanceIsOne) {
@@ -157,10 +158,10 @@ TEST(Things, AMeasuredReflectanceIsOne) {
     place(scene, square({0.2f, 0, -2}, 0.1f), diffuse_material(0.5f));
     scene.materials.back().reflectance = 0;
     scene.reflectances.emplace_back();
-    const auto things = small_features_of(scene);
-    ASSERT_FALSE(things.empty());
-    EXPECT_EQ(things[0].kind, SmallFeature::Kind::Wavelength);
-    EXPECT_NEAR(double(things[0].centre.x), 0.2, 0.05);
+    const auto features = small_features_of(scene);
+    ASSERT_FALSE(features.empty());
+    EXPECT_EQ(features[0].kind, SmallFeature::Kind::Wavelength);
+    EXPECT_NEAR(double(features[0].centre.x), 0.2, 0.05);
 }
 
 TEST(Things, ASunOfASkyIsALamp) {
@@ -170,13 +171,13 @@ TEST(Things, ASunOfASkyIsALamp) {
     Scene scene;
     scene.sky = Sky::picture(rgb, kWidth, kHeight, 0, 1);
     finish_scene(scene);
-    const std::vector<SmallFeature> things = small_features_of(scene);
-    ASSERT_FALSE(things.empty());
+    const std::vector<SmallFeature> features = small_features_of(scene);
+    ASSERT_FALSE(features.empty());
     const float azimuth = ((kColumn + 0.5f) / kWidth - 0.5f) * 2 * kPi,
                 polar = (kRow + 0.5f) / kHeight * kPi;
     const V3f sun(std::sin(polar) * std::cos(azimuth), std::cos(polar),
                   std::sin(polar) * std::sin(azimuth));
-    for (const SmallFeature& t : things) {
+    for (const SmallFeature& t : features) {
         EXPECT_TRUE(t.at_infinity);
         EXPECT_LT((t.centre - sun).length(), 0.05f);
     }
@@ -190,8 +191,8 @@ TEST(FilmRegions, HoldTheLightOfALampInFocusAndOutOfFocus) {
         const ThinLensCamera seen = camera(radius_m, focus_m);
         const V3f centre(0.31f, -0.12f, -2.f);
         const Scene scene = lamps({centre}, 0.004f);
-        const auto things = small_features_of(scene);
-        const auto regions = film_regions(seen, kSize, things);
+        const auto features = small_features_of(scene);
+        const auto regions = film_regions(seen, kSize, features);
         const Bvh bvh(scene, Traversal::Robust);
         int64_t lit = 0, outside = 0;
         for (int y = 0; y < kSize.y; ++y)

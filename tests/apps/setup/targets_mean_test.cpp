@@ -58,12 +58,12 @@ double noise(const Means& means) {
 void expect_same_mean(TracedWorld& world, const std::shared_ptr<const Camera>& camera, double gain,
                       const char* what) {
     world.finish();
-    std::vector<SmallFeature> things = small_features_of(world.scene);
-    const auto images = highlights(*camera, world.scene, *world.bvh, kSize, things);
-    things.insert(things.end(), images.begin(), images.end());
+    std::vector<SmallFeature> features = small_features_of(world.scene);
+    const auto images = highlights(*camera, world.scene, *world.bvh, kSize, features);
+    features.insert(features.end(), images.begin(), images.end());
     const Means without = rendered(world, *camera, 1);
     const auto aims = target_camera(camera);
-    aims->set_targets(find_targets(*aims, kSize, things));
+    aims->set_targets(find_targets(*aims, kSize, features));
     ASSERT_NE(aims->targets(), nullptr) << what;
     const Means with = rendered(world, *aims, 1000);
     EXPECT_GE(least_p(without, with), sidak(kStatisticalTests * static_cast<int>(kParts))) << what;

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "io/file/atomic_file.h"
 #include "io/base/error.h"
+#include "io/file/atomic_file.h"
 #include "tests/support/file_size_limit.h"
 #include "tests/support/temporary_folder.h"
 

@@ -9,8 +9,8 @@
 #include <fstream>
 
 #include "core/spectrum/colour.h"
-#include "io/file/assets.h"
 #include "io/base/error.h"
+#include "io/file/assets.h"
 #include "tests/support/ocio_config.h"
 #include "tests/support/pictures.h"
 #include "tests/support/temporary_folder.h"

@@ -22,7 +22,7 @@ struct SmallFeature {
     std::span<const GltfProperty> rows;
 };
 
-std::vector<SmallFeature> things() {
+std::vector<SmallFeature> features() {
     const json view = {{"yfov", 1}, {"znear", 1}, {"zfar", 2}, {"xmag", 1}, {"ymag", 1}};
     const json light = {{"type", "spot"}, {"spot", json::object()}};
     const auto camera = [&](const char* type) { return json{{"type", type}, {type, view}}; };
@@ -39,13 +39,13 @@ struct Said {
     std::string path, refused, warnings;
 };
 
-Said say(const SmallFeature& thing, const GltfProperty& row, const json& value) {
+Said say(const SmallFeature& feature, const GltfProperty& row, const json& value) {
     const TempFolder folder;
     TinyGltf file;
     file.json["images"] = {{{"uri", "data:image/png;base64,AA=="}}};
     file.json["textures"] = {{{"source", 0}}};
-    file.json[json::json_pointer(thing.path)] = thing.stored;
-    const std::string place(row.place), in = thing.path + (place.empty() ? "" : "/" + place);
+    file.json[json::json_pointer(feature.path)] = feature.stored;
+    const std::string place(row.place), in = feature.path + (place.empty() ? "" : "/" + place);
     if (place.ends_with("Texture")) file.json[json::json_pointer(in)]["index"] = 0;
     Said said{in + "/" + row.key, "", ""};
     file.json[json::json_pointer(said.path)] = value;
@@ -68,23 +68,23 @@ bool is_kept(const GltfProperty& row) {
 }
 
 TEST(GltfSchemaChecks, RefuseAValueOfAnotherType) {
-    for (const SmallFeature& thing : things())
-        for (const GltfProperty& row : thing.rows) {
+    for (const SmallFeature& feature : features())
+        for (const GltfProperty& row : feature.rows) {
             const bool mended = row.place == "perspective" || row.place == "orthographic" ||
                                 row.key == std::string("range");  // as a whole: planes, ranges
             if (row.kind == PropertyKind::Weights || row.kind >= PropertyKind::Data || mended)
                 continue;
             const json wrong = row.kind == PropertyKind::Word ? json(7) : json("seven");
-            const Said said = say(thing, row, wrong);
+            const Said said = say(feature, row, wrong);
             EXPECT_TRUE(has(said.refused, said.path + ": must be ")) << said.path << said.refused;
         }
 }
 
 TEST(GltfSchemaChecks, RefuseOrMendAListOfAnotherLength) {
-    for (const SmallFeature& thing : things())
-        for (const GltfProperty& row : thing.rows) {
+    for (const SmallFeature& feature : features())
+        for (const GltfProperty& row : feature.rows) {
             if (!is_number(row) || row.width() < 2) continue;
-            const Said said = say(thing, row, json(std::vector<double>(row.width() + 2, 1.)));
+            const Said said = say(feature, row, json(std::vector<double>(row.width() + 2, 1.)));
             if (is_kept(row))
                 EXPECT_TRUE(has(said.refused, said.path + ": must hold")) << said.path;
             else
@@ -93,34 +93,34 @@ TEST(GltfSchemaChecks, RefuseOrMendAListOfAnotherLength) {
 }
 
 TEST(GltfSchemaChecks, RefuseOrMendANumberOutsideItsRange) {
-    for (const SmallFeature& thing : things())
-        for (const GltfProperty& row : thing.rows) {
+    for (const SmallFeature& feature : features())
+        for (const GltfProperty& row : feature.rows) {
             if (!is_number(row) || row.range.low < 0 || row.width() == 0) continue;
-            if (thing.path == "/cameras/0" || row.key == std::string("range") ||
+            if (feature.path == "/cameras/0" || row.key == std::string("range") ||
                 row.key == std::string("innerConeAngle"))
                 continue;  // mended together
             const json low =
                 row.width() == 1 ? json(-3) : json(std::vector<double>(row.width(), -3.));
-            const Said said = say(thing, row, low);
+            const Said said = say(feature, row, low);
             const std::string& where = is_kept(row) ? said.refused : said.warnings;
             EXPECT_TRUE(has(where, said.path)) << said.path << said.refused << said.warnings;
         }
 }
 
 TEST(GltfSchemaChecks, RefuseWhatNoFloatHolds) {
-    for (const SmallFeature& thing : things())
-        for (const GltfProperty& row : thing.rows) {
+    for (const SmallFeature& feature : features())
+        for (const GltfProperty& row : feature.rows) {
             if (!is_number(row) || row.width() == 0 || row.key == std::string("range")) continue;
             const json high =
                 row.width() == 1 ? json(1e39) : json(std::vector<double>(row.width(), 1e39));
-            const Said said = say(thing, row, high);
-            EXPECT_TRUE(has(said.refused + said.warnings, thing.path)) << said.path;
+            const Said said = say(feature, row, high);
+            EXPECT_TRUE(has(said.refused + said.warnings, feature.path)) << said.path;
         }
 }
 
 TEST(GltfSchemaChecks, KnowTheExtensionOfEachRow) {
-    for (const SmallFeature& thing : things())
-        for (const GltfProperty& row : thing.rows) {
+    for (const SmallFeature& feature : features())
+        for (const GltfProperty& row : feature.rows) {
             constexpr std::string_view in = "extensions/";
             if (!row.place.starts_with(in)) continue;
             const std::string_view rest = row.place.substr(in.size());

@@ -68,17 +68,6 @@ class Facets {
     float lambda_o_;
 };
 
-// fresnel_dielectric (core/shading/microfacet.h), eight cosines at once.
-f8 fresnel(f8 cosine, float eta, float specular) {
-    const f8 zero{};
-    const f8 cos2 = 1.f - (1.f - cosine * cosine) / sqr(eta);
-    const f8 behind = sqrt(max(cos2, zero));
-    const f8 parallel = (eta * cosine - behind) / (eta * cosine + behind);
-    const f8 perpendicular = (cosine - eta * behind) / (cosine + eta * behind);
-    const f8 share = 0.5f * specular * (parallel * parallel + perpendicular * perpendicular);
-    return cos2 > 0.f ? share : splat8(1.f);
-}
-
 /// Calls visit with all facets of the long lattice, eight by eight.
 template <class Visit>
 void for_many(const Facets& facets, const Visit& visit) {
@@ -115,7 +104,7 @@ float visible_glass_loss(const V3f& wo, const GgxWidth& alpha, float eta, float 
     const Facets facets(wo, alpha);
     f8 left{};
     for_many(facets, [&](const Facets::Eight& met) {
-        const f8 reflectance = fresnel(met.cosine, eta, specular);
+        const f8 reflectance = of_glass(fresnel_dielectric(met.cosine, eta), specular);
         left += reflectance * met.reflected + (1.f - reflectance) * facets.refracted(met, eta);
     });
     return clamp_unit(1.f - hsum(left) * (1.f / kMany));

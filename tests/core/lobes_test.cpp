@@ -6,6 +6,7 @@
 
 #include <numbers>
 
+#include "core/shading/visible_facets.h"
 #include "tests/core/bsdf_inputs.h"
 #include "tests/support/statistics.h"
 
@@ -91,10 +92,24 @@ TEST(Lobes, GlassAndWhatItLosesShareItsLight) {
         lost.split_from(glass, seen);
         EXPECT_FLOAT_EQ(glass.chance + lost.chance, 0.4f);
         const Mean single = scattered(glass, seen, "glass "), more = scattered(lost, seen, "lost ");
-        const Mean missing{double(glass.albedo(seen)[1]) - more.value, more.error};
+        const f4 albedo = glass.albedo(seen) + lost.albedo(seen);
+        const Mean missing{double(albedo[1]) - more.value, more.error};
         EXPECT_TRUE(agrees(single - missing, 0, 0.005)) << eta;
         EXPECT_GT(more.value, 0.01) << eta;
     }
+}
+
+TEST(Lobes, EachLaneLosesByItsOwnIndex) {
+    const SeenFacets seen{from_cosine(0.4f, 0.3f), {0.7f, 0.2f}};
+    GlassLobe glass = glass_of(1.5f);
+    glass.eta = f4{1.2f, 1.5f, 2.2f, 1.f};
+    glass.disperses = true;
+    LostLobe lost;
+    lost.split_from(glass, seen);
+    for (int i = 0; i < 3; ++i)
+        EXPECT_FLOAT_EQ(lost.weight[i],
+                        0.5f * visible_glass_loss(seen.wo, seen.alpha, glass.eta[i], 1.f));
+    EXPECT_GT(lost.weight[0], 1.1f * lost.weight[2]);
 }
 
 TEST(Lobes, OfSmoothFacetsAreDeltas) {

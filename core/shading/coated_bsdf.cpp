@@ -4,26 +4,14 @@
 #include "core/scene/material.h"
 
 namespace petzval {
-namespace {
-
-BsdfInput lobe_of(const CoatInput& coat, const Bands& bands) {
-    BsdfInput in;
-    in.roughness = coat.roughness;
-    in.dielectric_f0 = uniform(kCoatF0, bands);
-    return in;
-}
-
-Frame frame_of(const CoatInput& coat) {
-    return coat.normal == V3f(0, 0, 1) ? Frame{} : Frame::about(coat.normal);
-}
-
-}  // namespace
 
 void CoatedBsdf::add_coat(const CoatInput& coat, const Bands& bands, const V3f& wo, f4 throughput,
                           const V3f& up) {
-    const Frame frame = frame_of(coat);
-    const Bsdf lobe(lobe_of(coat, bands), bands, frame.to_local(wo), throughput,
-                    frame.to_local(up));
+    const Frame frame = coat.normal == V3f(0, 0, 1) ? Frame{} : Frame::about(coat.normal);
+    BsdfInput in;
+    in.roughness = coat.roughness;
+    in.dielectric_f0 = uniform(kCoatF0, bands);
+    const Bsdf lobe(in, bands, frame.to_local(wo), throughput, frame.to_local(up));
     // All lanes reflect alike: any one that is on tells how much that is.
     const float reflected = coat.weight * hmax(lobe.albedo()), under = 1.f - reflected;
     const f4 share = zero_off(bands.on, throughput);
@@ -50,22 +38,18 @@ BsdfValue CoatedBsdf::eval_coated(const V3f& wi) const {
             coat.pdf * coat_->chance + base.pdf * (1.f - coat_->chance)};
 }
 
-std::optional<BsdfSample> CoatedBsdf::sample_coated(float u_lobe, V2f u, bool hero_decided) const {
-    const bool from_coat = u_lobe < coat_->chance;
+std::optional<BsdfSample> CoatedBsdf::sample_coated(BsdfNumbers u) const {
+    const bool from_coat = u.lobe < coat_->chance;
     const float chance = from_coat ? coat_->chance : 1.f - coat_->chance;
-    const float left = std::min((from_coat ? u_lobe : u_lobe - coat_->chance) / chance, kOneMinus);
+    const float left = std::min((from_coat ? u.lobe : u.lobe - coat_->chance) / chance, kOneMinus);
     std::optional<BsdfSample> drawn =
-        from_coat ? coat_->lobe.sample(left, u, hero_decided) : base_.sample(left, u, hero_decided);
+        (from_coat ? coat_->lobe : base_).sample(left, u.direction, u.hero_decided);
     if (!drawn) return drawn;
     if (from_coat) drawn->wi = coat_->frame.to_world(drawn->wi);
-    if (drawn->delta) {
+    if (drawn->delta)
         drawn->weight *= (from_coat ? coat_->weight : coat_->under) / chance;
-        return drawn;
-    }
-    const BsdfValue value = eval_coated(drawn->wi);
-    if (!(value.pdf > 0.f)) return std::nullopt;
-    drawn->weight = value.f_cos * (1.f / value.pdf);
-    drawn->pdf = value.pdf;
+    else if (!drawn->weigh(eval_coated(drawn->wi)))
+        drawn.reset();
     return drawn;
 }
 

@@ -32,7 +32,7 @@ class CoatedBsdf {
     }
     [[nodiscard]] std::optional<BsdfSample> sample(float u_lobe, V2f u,
                                                    bool hero_decided = true) const {
-        return coat_ ? sample_coated(u_lobe, u, hero_decided)
+        return coat_ ? sample_coated({u_lobe, u, hero_decided})
                      : base_.sample(u_lobe, u, hero_decided);
     }
     [[nodiscard]] bool has_wide_lobe() const {
@@ -48,12 +48,11 @@ class CoatedBsdf {
         Bsdf lobe;
         float weight;
         float under;   ///< share that the base gets
-        float chance;  ///< that sample() draws the coat
+        float chance;  ///< that the coat is drawn
     };
     void add_coat(const CoatInput&, const Bands&, const V3f& wo, f4 throughput, const V3f& up);
     [[nodiscard]] BsdfValue eval_coated(const V3f& wi) const;
-    [[nodiscard]] std::optional<BsdfSample> sample_coated(float u_lobe, V2f u,
-                                                          bool hero_decided) const;
+    [[nodiscard]] std::optional<BsdfSample> sample_coated(BsdfNumbers) const;
 
     Bsdf base_;
     std::optional<Coat> coat_;

@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "core/math/trig.h"
+#include "core/shading/lobes.h"
+#include "core/shading/visible_facets.h"
 
 namespace petzval {
 namespace {
@@ -41,6 +43,36 @@ std::array<float, kCosines> weights_of_mean(float knee) {
         weights[i + 1] += s[4] - mean;
     }
     return weights;
+}
+
+// Directions of one side nearly as the lobe has them, in proportion to cos / (w^2 + cos^2)^(3/2),
+// with the width w = 3 alpha. The ends: 1 / sqrt(w^2 + cos^2) at cosine 0 and 1.
+struct LostDirections {
+    float width, near = 1.f / width, far = 1.f / std::sqrt(sqr(width) + 1.f);
+
+    V3f draw(V2f u) const {
+        const float cosine = clamp_unit(safe_sqrt(1.f / sqr(lerp(near, far, u.y)) - sqr(width)));
+        const float sine = safe_sqrt(1.f - sqr(cosine));
+        const SinCos phi = sincos_turns(u.x);
+        return {sine * phi.cosine, sine * phi.sine, cosine};
+    }
+    float pdf(float cosine) const {  // 1/sr
+        const float square = sqr(width) + sqr(cosine);
+        return cosine / (2.f * kPi * (near - far) * square * std::sqrt(square));
+    }
+};
+
+// What facets of glass lose, where a film reflects more or less than Fresnel's formula: facets hide
+// more or less of what they reflect than of what they refract.
+f4 lost_below_film(f4 lost, const GlassLobe& glass, const SeenFacets& seen) {
+    const FewFacets facets = few_visible_facets(seen.wo, seen.alpha, glass.eta[0]);
+    for (size_t i = 0; i < FewFacets::kCount; ++i) {
+        const float c = facets.cosine[i];
+        const f4 bare = of_glass(fresnel_dielectric(c, glass.eta), glass.specular);
+        const f4 more = glass.reflectance(c) - bare;
+        lost -= more * (facets.reflected[i] - facets.refracted[i]);
+    }
+    return min(max(lost, f4{}), splat(1.f));
 }
 
 }  // namespace
@@ -115,19 +147,38 @@ f4 GlassLoss::lobe(float cosine, bool behind) const {
     return per_loss * lost(cosine, behind) * cosine;
 }
 
-LostDirections::LostDirections(float alpha)
-    : width_(3.f * alpha), near_(1.f / width_), far_(1.f / std::sqrt(sqr(width_) + 1.f)) {}
-
-V3f LostDirections::draw(V2f u) const {
-    const float cosine = clamp_unit(safe_sqrt(1.f / sqr(lerp(near_, far_, u.y)) - sqr(width_)));
-    const float sine = safe_sqrt(1.f - sqr(cosine));
-    const SinCos phi = sincos_turns(u.x);
-    return {sine * phi.cosine, sine * phi.sine, cosine};
+void LostLobe::split_from(GlassLobe& glass, const SeenFacets& seen) {
+    // Without a difference in index all normals would share one direction.
+    f4& eta = glass.eta;
+    eta = eta > 0.999f && eta < 1.001f ? splat(1.001f) : eta;
+    loss = GlassLoss(seen.alpha.x, eta, !glass.disperses, glass.specular);
+    f4 lost = loss.lost(seen.wo.z, false);
+    for (int i = 0; i < 4 && seen.alpha.anisotropic(); ++i)
+        lost[i] = i > 0 && !glass.disperses
+                      ? lost[0]
+                      : visible_glass_loss(seen.wo, seen.alpha, eta[i], glass.specular);
+    if (glass.film_share > 0.f) lost = lost_below_film(lost, glass, seen);
+    lost = zero_off(glass.on, lost);
+    const float all = hsum(glass.carried * lost);
+    crossing = all > 0.f ? hsum(glass.carried * lost * loss.crossing()) / all : 0.f;
+    const float part = std::min(all, 0.95f);  // single scattering has its samples too
+    chance = glass.chance * part;
+    glass.chance *= 1.f - part;
+    weight = glass.weight * lost;
+    tint = glass.tint;
 }
 
-float LostDirections::pdf(float cosine) const {
-    const float square = sqr(width_) + sqr(cosine);
-    return cosine / (2.f * kPi * (near_ - far_) * square * std::sqrt(square));
+BsdfValue LostLobe::value(const SeenFacets& seen, const V3f& wi) const {
+    const bool behind = wi.z < 0.f;
+    const float cosine = std::fabs(wi.z), side = behind ? crossing : 1.f - crossing;
+    const f4 scattered = weight * loss.lobe(cosine, behind);
+    return {behind ? tint * scattered : scattered,
+            chance * side * LostDirections{3.f * seen.alpha.x}.pdf(cosine)};
+}
+
+std::optional<BsdfSample> LostLobe::draw(const SeenFacets& seen, const BsdfNumbers& u) const {
+    const V3f wi = unit(LostDirections{3.f * seen.alpha.x}.draw(u.direction));
+    return BsdfSample::wide(u.lobe / chance < crossing ? mirror_below(wi) : wi);
 }
 
 }  // namespace petzval

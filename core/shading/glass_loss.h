@@ -50,17 +50,4 @@ class GlassLoss {
     std::array<Lane, 4> lane_;
 };
 
-/// Draws directions of one side nearly as the lobe has them, in proportion to
-/// cos / (w^2 + cos^2)^(3/2), with the width w = 3 alpha.
-class LostDirections {
-  public:
-    explicit LostDirections(float alpha);
-
-    [[nodiscard]] V3f draw(V2f u) const;          ///< z > 0
-    [[nodiscard]] float pdf(float cosine) const;  ///< 1/sr
-
-  private:
-    float width_, near_, far_;  ///< 1 / sqrt(w^2 + cos^2) at cosine 0 and 1
-};
-
 }  // namespace petzval

@@ -59,13 +59,20 @@ struct GgxWidth {
 
 /// Unpolarised reflectance of a boundary; eta = index behind over index in front; cosine >= 0 in
 /// front. 1 under total reflection. Born and Wolf 1999, "Principles of Optics", 1.5.2.
-[[nodiscard]] inline f4 fresnel_dielectric(float cosine, f4 eta) {
-    const f4 cos2_behind = splat(1.f) - splat(1.f - sqr(cosine)) / (eta * eta);
-    const f4 cos_behind = sqrt(max(cos2_behind, f4{}));
-    const f4 parallel = (eta * cosine - cos_behind) / (eta * cosine + cos_behind);
-    const f4 perpendicular = (cosine - eta * cos_behind) / (cosine + eta * cos_behind);
-    const f4 share = 0.5f * (parallel * parallel + perpendicular * perpendicular);
-    return cos2_behind > 0.f ? share : splat(1.f);
+template <class Cosine, class Eta>
+[[nodiscard]] auto fresnel_dielectric(Cosine cosine, Eta eta) {
+    using Lanes = decltype(cosine * eta);
+    const Lanes zero{}, cos2_behind = 1.f - (1.f - cosine * cosine) / (eta * eta);
+    const Lanes cos_behind = sqrt(max(cos2_behind, zero));
+    const Lanes parallel = (eta * cosine - cos_behind) / (eta * cosine + cos_behind);
+    const Lanes perpendicular = (cosine - eta * cos_behind) / (cosine + eta * cos_behind);
+    const Lanes share = 0.5f * (parallel * parallel + perpendicular * perpendicular);
+    return cos2_behind > 0.f ? share : zero + 1.f;
+}
+/// Fresnel's reflectance of glass, times KHR_materials_specular's factor but for total reflection.
+template <class Lanes>
+[[nodiscard]] Lanes of_glass(Lanes fresnel, float specular) {
+    return fresnel < 1.f ? fresnel * specular : Lanes{} + 1.f;
 }
 
 /// Unpolarised reflectance of a metal of index n + ik over the index in front. Born and Wolf 1999,

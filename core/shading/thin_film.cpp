@@ -3,7 +3,9 @@
 
 #include "core/math/math.h"
 #include "core/math/trig.h"
+#include "core/shading/lobes.h"
 #include "core/shading/thin_film_table.h"
+#include "core/shading/visible_facets.h"
 
 namespace petzval {
 namespace {
@@ -105,6 +107,23 @@ f4 ThinFilm::in_rgb(float front, const Amplitude& base, float path_nm) const {
 f4 index_for_reflectance(f4 f0) {
     const f4 root = sqrt(min(max(f0, f4{}), splat(0.9999f)));
     return (1.f + root) / (1.f - root);
+}
+
+f4 FilmOver::reflected(float cosine) const {
+    return hmax(weight) > 0.f ? weight * reflectance(cosine) : f4{};
+}
+
+f4 FilmOver::mean(const SeenFacets& seen) const {
+    if (seen.smooth) return reflectance(seen.wo.z);
+    const FewFacets facets = few_visible_facets(seen.wo, seen.alpha, 1.f);
+    f4 sum{};
+    float all = 0;
+    for (size_t i = 0; i < FewFacets::kCount; ++i) {
+        sum += reflectance(facets.cosine[i]) * facets.reflected[i];
+        all += facets.reflected[i];
+    }
+    // What a film of reflectance 1 sends back is known better than a few facets tell.
+    return sum * (all > 0.f ? seen.albedo.total() / all : 0.f);
 }
 
 }  // namespace petzval

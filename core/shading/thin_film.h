@@ -8,6 +8,8 @@
 
 namespace petzval {
 
+struct SeenFacets;
+
 /// Film of one index between air, or whatever lies in front, and a base. Its reflectance is Airy's
 /// sum of what goes to and fro in it (Born and Wolf 1999, "Principles of Optics", 7.6.1; Belcour
 /// and Barla 2017, "A Practical Extension to Microfacet Theory for the Modeling of Varying
@@ -42,5 +44,21 @@ class ThinFilm {
 /// Index of a dielectric with this reflectance at normal incidence, 0 to 1, in air. KHR_materials_
 /// iridescence takes it for that of the base.
 [[nodiscard]] f4 index_for_reflectance(f4 f0);
+
+/// Film over a base of the index n + ik, in place of its bare reflectance.
+struct FilmOver {
+    ThinFilm film;
+    f4 n, k;
+    m4 on;      ///< lanes in use
+    f4 weight;  ///< share of light that meets it
+
+    [[nodiscard]] f4 reflectance(float cosine) const {
+        return zero_off(on, film.reflectance(cosine, n, k));
+    }
+    /// Reflectance on average over the facets.
+    [[nodiscard]] f4 mean(const SeenFacets&) const;
+    /// Share of light that it reflects.
+    [[nodiscard]] f4 reflected(float cosine) const;
+};
 
 }  // namespace petzval

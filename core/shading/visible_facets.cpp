@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/shading/visible_facets.h"
 
+#include <bit>
+
+#include "core/shading/lobes.h"
+
 namespace petzval {
 namespace {
 
@@ -68,17 +72,6 @@ class Facets {
     float lambda_o_;
 };
 
-// fresnel_dielectric (core/shading/microfacet.h), eight cosines at once.
-f8 fresnel(f8 cosine, float eta, float specular) {
-    const f8 zero{};
-    const f8 cos2 = 1.f - (1.f - cosine * cosine) / sqr(eta);
-    const f8 behind = sqrt(max(cos2, zero));
-    const f8 parallel = (eta * cosine - behind) / (eta * cosine + behind);
-    const f8 perpendicular = (cosine - eta * behind) / (cosine + eta * behind);
-    const f8 share = 0.5f * specular * (parallel * parallel + perpendicular * perpendicular);
-    return cos2 > 0.f ? share : splat8(1.f);
-}
-
 /// Calls visit with all facets of the long lattice, eight by eight.
 template <class Visit>
 void for_many(const Facets& facets, const Visit& visit) {
@@ -115,7 +108,7 @@ float visible_glass_loss(const V3f& wo, const GgxWidth& alpha, float eta, float 
     const Facets facets(wo, alpha);
     f8 left{};
     for_many(facets, [&](const Facets::Eight& met) {
-        const f8 reflectance = fresnel(met.cosine, eta, specular);
+        const f8 reflectance = of_glass(fresnel_dielectric(met.cosine, eta), specular);
         left += reflectance * met.reflected + (1.f - reflectance) * facets.refracted(met, eta);
     });
     return clamp_unit(1.f - hsum(left) * (1.f / kMany));
@@ -143,6 +136,22 @@ FewFacets few_visible_facets(const V3f& wo, const GgxWidth& alpha, float eta) {
         }
     }
     return out;
+}
+
+// Facets are drawn until one is met whose light leaves, with the share that masking lets go on.
+V3f SeenFacets::draw_evenly(float u_more, V2f u) const {
+    constexpr uint32_t tries = 64;  // a try fails in three of four cases at most
+    const uint32_t seed =
+        hash32(std::bit_cast<uint32_t>(u_more),
+               hash32(std::bit_cast<uint32_t>(u.x), std::bit_cast<uint32_t>(u.y)));
+    const float all = 1.f + lambda_o;
+    for (uint32_t i = 0; i < tries; ++i) {
+        const V3f wi = reflect(wo, ggx_sample_visible(wo, alpha, u));
+        if (wi.z > 0.f && to_unit_float(hash32(seed, 3 * i)) * (all + ggx_lambda(wi, alpha)) < all)
+            return wi;
+        u = V2f(to_unit_float(hash32(seed, 3 * i + 1)), to_unit_float(hash32(seed, 3 * i + 2)));
+    }
+    return V3f(0.f);
 }
 
 }  // namespace petzval

@@ -301,8 +301,12 @@ TEST(ThinFilmLobe, ColoursWhatGlassReflectsAndRefracts) {
 TEST(DiffuseTransmission, KeepsWhiteWhite) {
     for (const float roughness : kRoughnesses)
         for (const float share : {0.3f, 1.f})
-            for (const float cosine : kCosines)
-                expect_white(leaf(white(roughness), share), cosine, "leaf");
+            for (const float transmission : {0.f, 0.4f})
+                for (const float cosine : kCosines) {
+                    Layered l = leaf(white(roughness), share);
+                    l.in.transmission = transmission;
+                    expect_white(l, cosine, "leaf");
+                }
 }
 
 TEST(DiffuseTransmission, SendsItsShareBehind) {

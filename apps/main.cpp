@@ -20,6 +20,7 @@
 #include "apps/commands/render.h"
 #include "apps/commands/resume.h"
 #include "apps/commands/session.h"
+#include "apps/commands/trace_sample.h"
 #include "apps/request/value_error.h"
 #include "io/build/build.h"
 
@@ -90,6 +91,7 @@ int main(int argc, char** argv) {
     petzval::add_plan_command(app);
     petzval::add_chart_command(app, session);
     petzval::add_info_command(app);
+    petzval::add_trace_sample_command(app, session);
     petzval::add_image_commands(app);
     petzval::add_lens_commands(app);
     petzval::resolve_repeats(app);

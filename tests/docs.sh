@@ -28,7 +28,7 @@ done
 
 # Options and methods of every command.
 mapfile -t commands < <(for c in "" image lens; do
-    "$petzval" $c --help | sed -n '/^Subcommands:/,$p' | grep -oP "^  \K[a-z]+(?=  )" | sed "s/^/$c /"; done |
+    "$petzval" $c --help | sed -n '/^Subcommands:/,$p' | grep -oP "^  \K[a-z-]+(?=  )" | sed "s/^/$c /"; done |
     grep -vxE " (image|lens)")
 known=$(for c in "${commands[@]}"; do "$petzval" help $c all; done |
     grep -oP '((?<=--)|(?<=^  ))[a-z][a-z-]*' | sort -u)
@@ -38,7 +38,7 @@ for page in "${current[@]}"; do
     for option in $(grep -oP '(?<![\w-])--\K[a-z][a-z_-]*\w|--method \K[a-z-]+' "$page" | sort -u); do
         grep -qx -- "$option" <<< "$known" || grep -qxE -- "$foreign" <<< "$option" || missing "$page" "--$option"
     done
-    for command in $(grep -oP '\bpetzval \K(?!help\b)[a-z]+(?= )' "$page" | sort -u); do
+    for command in $(grep -oP '\bpetzval \K(?!help\b)[a-z-]+(?= )' "$page" | sort -u); do
         printf '%s\n' "${commands[@]}" image lens | grep -qE "(^| )$command$" || missing "$page" "petzval $command"
     done
 done

@@ -116,7 +116,10 @@ void hide_expert_options(CLI::App& app) {
     app.footer(
         fmt::format("petzval {0} --help all lists all options. An example:\n"
                     "  petzval {0} scene.glb --lens takumar-50mm-f1.2 --focus 2m{1}",
-                    app.get_name(), app.get_option_no_throw("--output") ? " -o picture.png" : ""));
+                    app.get_name(),
+                    app.get_option_no_throw("--output") ? " -o picture.png"
+                    : app.get_option_no_throw("sample") ? " 640,360,0"
+                                                        : ""));
 }
 
 std::vector<std::string> words_of(const RenderOrder& order) {

@@ -153,6 +153,12 @@ RenderResult RenderSession::render(RenderMonitor& monitor, const RenderRun& run)
     return petzval::render(tracer, *setup_.view.camera, job, *film_, executor_, monitor);
 }
 
+SampleRecord RenderSession::trace_sample(SampleId id) const {
+    const PreparedScene& prepared = setup_.prepared;
+    return SampleRecord::of(*prepared.scene, *prepared.bvh, *prepared.lights, path_,
+                            *setup_.view.camera, job_, scene_.size, id);
+}
+
 // Samples that every pixel has.
 SampleRange RenderSession::complete() const {
     const uint32_t first = job_.first_sample;

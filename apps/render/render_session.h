@@ -13,6 +13,7 @@
 #include "apps/state/render_facts.h"
 #include "integrator/render/executor.h"
 #include "integrator/render/render_job.h"
+#include "integrator/render/sample_record.h"
 #include "io/base/notice.h"
 #include "io/image/output.h"
 #include "io/state/state_file.h"
@@ -70,6 +71,9 @@ class RenderSession {
     /// Renders the samples that the film lacks. Ends early where the monitor says stop; calling
     /// again goes on.
     RenderResult render(RenderMonitor&, const RenderRun& = {});
+
+    /// How a sample comes about, whether the film has it or not; its pixel lies in the full frame.
+    [[nodiscard]] SampleRecord trace_sample(SampleId) const;
 
     /// The picture so far: R, G, B, A in nits, then the layers. Also at a pause.
     [[nodiscard]] PictureRows light() const;

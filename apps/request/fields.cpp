@@ -21,7 +21,11 @@ std::vector<RequestField> in_group(const std::string& group, uint8_t takers,
 std::vector<RequestField> request_fields() {
     std::vector<RequestField> all;
     for (auto fields : {frame_fields(), path_fields(), camera_fields(), run_fields()})
-        for (RequestField& field : fields) all.push_back(std::move(field));
+        for (RequestField& field : fields) {
+            // What a sample follows from.
+            if ((field.takers & kRender) && field.part != FieldPart::Files) field.takers |= kTrace;
+            all.push_back(std::move(field));
+        }
     return all;
 }
 

@@ -133,7 +133,7 @@ std::vector<RequestField> run_fields() {
     add("Output", {layer_field()}, FieldPart::Picture);
     add("Output", console_fields(), FieldPart::Files);
     add("", {flag("quiet", in::run(&RunRequest::quiet), true, "print nothing but errors")},
-        FieldPart::Files, kRender | kPlan | kChart);
+        FieldPart::Files, kPictures | kTrace);
     add("Sequences", sequence_fields(), FieldPart::Files);
     add("Long renders", keep_fields(), FieldPart::Files);
     return all;

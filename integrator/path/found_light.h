@@ -3,8 +3,6 @@
 // light samples that could have found it (multiple importance sampling).
 #pragma once
 
-#include "core/light/sun_disc.h"
-#include "core/scene/motion.h"
 #include "integrator/path/path.h"
 
 namespace petzval {
@@ -17,32 +15,33 @@ namespace petzval {
     return 1.f / (1.f + ratio * ratio);
 }
 
-template <RayCaster Caster>
-struct PathTracer<Caster>::FoundLight {
+template <RayCaster Caster, class Watch>
+struct PathTracer<Caster, Watch>::FoundLight {
     f4 radiance{};
     uint64_t by_chance = 0;  ///< lamps that no light sample could have found
 };
 
 /// Adds the light from behind the scene, where a ray leaves it.
-template <RayCaster Caster>
-[[gnu::always_inline]] inline void PathTracer<Caster>::add_background(PathState& path,
-                                                                      FilmSample& out) const {
+template <RayCaster Caster, class Watch>
+[[gnu::always_inline]] inline void PathTracer<Caster, Watch>::add_background(
+    PathState& path, FilmSample& out) const {
     if (path.surface_seen) {
         const FoundLight sky = sky_light(path);
-        path.radiance += path.throughput * sky.radiance;
+        path.radiance += watch_.adds(PathStep::Sky, path.throughput * sky.radiance);
         path.chance_finds().lamps += sky.by_chance;
     } else {
-        path.radiance += path.throughput * visible_background(path, out);
+        path.radiance +=
+            watch_.adds(PathStep::Sky, path.throughput * visible_background(path, out));
     }
     if (scene_.sun_discs.empty() || (!path.surface_seen && options_.transparent)) return;
     const FoundLight suns = sun_discs(path);
-    path.radiance += path.throughput * suns.radiance;
+    path.radiance += watch_.adds(PathStep::Sky, path.throughput * suns.radiance);
     path.chance_finds().lamps += suns.by_chance;
 }
 
-template <RayCaster Caster>
-[[gnu::always_inline]] inline f4 PathTracer<Caster>::visible_background(const PathState& path,
-                                                                        FilmSample& out) const {
+template <RayCaster Caster, class Watch>
+[[gnu::always_inline]] inline f4 PathTracer<Caster, Watch>::visible_background(
+    const PathState& path, FilmSample& out) const {
     if (options_.transparent) return f4{};
     out.alpha = 1.f;
     return uplift_radiance(options_.visible_background ? *options_.visible_background
@@ -50,8 +49,8 @@ template <RayCaster Caster>
                            path.bands);
 }
 
-template <RayCaster Caster>
-[[gnu::always_inline]] inline auto PathTracer<Caster>::sky_light(const PathState& path) const
+template <RayCaster Caster, class Watch>
+[[gnu::always_inline]] inline auto PathTracer<Caster, Watch>::sky_light(const PathState& path) const
     -> FoundLight {
     if (scene_.sky.black()) return {};
     const Vertex& last = path.last;
@@ -66,30 +65,10 @@ template <RayCaster Caster>
     return out;
 }
 
-template <RayCaster Caster>
-auto PathTracer<Caster>::sun_discs(const PathState& path) const -> FoundLight {
-    const Vertex& last = path.last;
-    FoundLight out;
-    for (const uint32_t light : scene_.sun_discs) {
-        std::optional<Light> moved;
-        const auto& sun = std::get<SunLight>(light_at(scene_, light, path.ray.time, moved));
-        if ((path.in_view && sun.unseen) || !is_in_disc(sun, path.ray.direction)) continue;
-        const f4 radiance = scene_.uplift_radiance(disc_radiance(sun), path.bands, sun.illuminant);
-        out.by_chance += !path.in_view && !last.light_sampled;
-        const float light_pdf =
-            last.light_sampled ? lights_.probability(light, last.receiver) * disc_pdf(sun) : 0.f;
-        if (options_.technique == Technique::LightOnly && light_pdf > 0.f) continue;
-        out.radiance += radiance * (light_pdf > 0.f ? power_heuristic(last.pdf, light_pdf) : 1.f);
-    }
-    return out;
-}
-
 /// Light that a surface sends along the ray; of a lamp weighed, of an unlit one as it is.
-template <RayCaster Caster>
-[[gnu::always_inline]] inline auto PathTracer<Caster>::emitted(const PathState& path,
-                                                               const Surface& s,
-                                                               const ShadingInput& shading) const
-    -> FoundLight {
+template <RayCaster Caster, class Watch>
+[[gnu::always_inline]] inline auto PathTracer<Caster, Watch>::emitted(
+    const PathState& path, const Surface& s, const ShadingInput& shading) const -> FoundLight {
     const Vertex& last = path.last;
     const Material& m = *s.material;
     const bool is_lamp = s.instance->first_light >= 0;

@@ -12,6 +12,7 @@
 #include "core/traversal/bvh.h"
 #include "integrator/path/path_options.h"
 #include "integrator/path/path_state.h"
+#include "integrator/path/watch.h"
 
 namespace petzval {
 
@@ -39,18 +40,21 @@ struct PathStart {
     bool fills_layers = false;  ///< the sample's layers are wanted, of all lanes
 };
 
-template <RayCaster Caster = Bvh>
+/// Watch: Unwatched, or one that has its functions (watch.h).
+template <RayCaster Caster = Bvh, class Watch = Unwatched>
 class PathTracer {
   public:
     /// Scene, caster and lights must outlive the tracer. light_records: gets what each light sample
     /// brings, for a pilot of the light choice, in one thread.
     PathTracer(const Scene& scene, const Caster& caster, const LightChoice& lights,
-               const PathOptions& options, std::vector<LightRecord>* light_records = nullptr)
+               const PathOptions& options, std::vector<LightRecord>* light_records = nullptr,
+               Watch watch = {})
         : scene_(scene),
           caster_(caster),
           lights_(lights),
           options_(options),
-          light_records_(light_records) {}
+          light_records_(light_records),
+          watch_(watch) {}
 
     /// Estimate of the radiance that arrives along a camera ray, in its lanes. The sample's alpha
     /// and layers are filled in on the way. Pure but for the counts and records.
@@ -91,6 +95,7 @@ class PathTracer {
     const LightChoice& lights_;
     PathOptions options_;
     std::vector<LightRecord>* light_records_;
+    [[no_unique_address]] Watch watch_;
 };
 
 extern template class PathTracer<Bvh>;

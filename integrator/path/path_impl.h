@@ -5,17 +5,21 @@
 #include "core/spectrum/colour.h"
 #include "integrator/path/layers.h"
 #include "integrator/path/path_steps.h"
+#include "integrator/path/sun_discs.h"
 
 namespace petzval {
 
-template <RayCaster Caster>
-f4 PathTracer<Caster>::radiance(const PathStart& start, const Bands& bands, const Sampler& sampler,
-                                FilmSample& out, PathStats& stats) const {
+template <RayCaster Caster, class Watch>
+f4 PathTracer<Caster, Watch>::radiance(const PathStart& start, const Bands& bands,
+                                       const Sampler& sampler, FilmSample& out,
+                                       PathStats& stats) const {
     PathState path = begun(start, bands, sampler, stats);
+    watch_.sees({.step = PathStep::Begins, .ray = start.ray});
     for (;;) {
         // Go to the next surface, or leave the scene.
         const std::optional<Hit> hit = next_hit(path);
         if (!hit) {
+            watch_.sees({.step = PathStep::LeavesScene, .ray = path.ray});
             add_background(path, out);
             break;
         }
@@ -43,7 +47,8 @@ f4 PathTracer<Caster>::radiance(const PathStart& start, const Bands& bands, cons
         // Add light that the ray finds.
         const Blend blend = blend_at(scene_, s, path.ray, path.passed());
         const FoundLight found = emitted(path, s, shading);
-        path.radiance += path.throughput * (found.radiance * blend.weight);
+        path.radiance +=
+            watch_.adds(PathStep::Shines, path.throughput * (found.radiance * blend.weight));
         path.chance_finds().lamps += found.by_chance;
         if (!path.surface_seen && blend.stops()) {
             if (start.fills_layers && !out.hit)
@@ -53,8 +58,10 @@ f4 PathTracer<Caster>::radiance(const PathStart& start, const Bands& bands, cons
         }
         const bool at_depth = path.depth >= options_.max_depth;
         if (s.material->unlit || (at_depth && !(s.material->transmission > 0))) {
-            if (blend.weight == 1.f) [[likely]]
+            if (blend.weight == 1.f) [[likely]] {
+                watch_.ends(s.material->unlit ? PathStep::Unlit : PathStep::MaxDepth);
                 break;
+            }
             go_on_behind(path, s, blend, 0.f);
             continue;
         }
@@ -68,7 +75,7 @@ f4 PathTracer<Caster>::radiance(const PathStart& start, const Bands& bands, cons
             path.has_cutouts ? sampler.get_bits(Dim::Coverage, 2 * number + 1) : 0;
         const Scattering scattering{at,       receiver,       shading,    bsdf,
                                     at_depth, samples_lights, alpha_seed, blend.weight};
-        path.radiance += sampled_light(path, scattering, light);
+        path.radiance += watch_.adds(PathStep::Scatters, sampled_light(path, scattering, light));
 
         // Go on behind a BLEND surface, or scatter there.
         if (blend.weight < 1.f) [[unlikely]] {

@@ -18,18 +18,18 @@ inline constexpr float kNarrowPdf = 1;
 inline constexpr float kNearOne = 0.999f;
 
 /// Direction in which a path goes on from a surface.
-template <RayCaster Caster>
-struct PathTracer<Caster>::Onward {
+template <RayCaster Caster, class Watch>
+struct PathTracer<Caster, Watch>::Onward {
     BsdfSample drawn;
     V3f direction;  ///< in the world
     bool straight;  ///< through a pane
 };
 
-template <RayCaster Caster>
-[[gnu::always_inline]] inline PathState PathTracer<Caster>::begun(const PathStart& start,
-                                                                  const Bands& bands,
-                                                                  const Sampler& sampler,
-                                                                  PathStats& stats) const {
+template <RayCaster Caster, class Watch>
+[[gnu::always_inline]] inline PathState PathTracer<Caster, Watch>::begun(const PathStart& start,
+                                                                         const Bands& bands,
+                                                                         const Sampler& sampler,
+                                                                         PathStats& stats) const {
     const bool has_cutouts = caster_.has_cutouts();
     const Ray& ray = start.ray;
     return {bands,
@@ -49,8 +49,8 @@ template <RayCaster Caster>
 
 /// Intersects the next segment with the scene. Its seed stays where the path goes on behind a BLEND
 /// surface: what it does not meet, it does not meet a second time.
-template <RayCaster Caster>
-[[gnu::always_inline]] inline std::optional<Hit> PathTracer<Caster>::next_hit(
+template <RayCaster Caster, class Watch>
+[[gnu::always_inline]] inline std::optional<Hit> PathTracer<Caster, Watch>::next_hit(
     PathState& path) const {
     if (path.has_cutouts)
         path.ray.alpha_seed =
@@ -62,9 +62,9 @@ template <RayCaster Caster>
 
 /// Takes a path to what it sees, and through the volume on the way: not to what is culled, nor to
 /// faces at which nothing changes.
-template <RayCaster Caster>
-[[gnu::always_inline]] inline auto PathTracer<Caster>::advance_to_surface(PathState& path,
-                                                                          Arrival& at) const
+template <RayCaster Caster, class Watch>
+[[gnu::always_inline]] inline auto PathTracer<Caster, Watch>::advance_to_surface(PathState& path,
+                                                                                 Arrival& at) const
     -> Step {
     Surface& s = at.surface;
     // Skip backs of single-sided surfaces, which glTF culls from view, and lamps that are not
@@ -77,6 +77,7 @@ template <RayCaster Caster>
             s = *front;
         } else if (!path.surface_seen || (path.in_view && s.material->unseen)) {
             path.go_on_from(offset_origin(s.p, s.p_error, s.ng, path.ray.direction));
+            watch_.sees({.step = PathStep::Culled, .surface = s});
             return Step::GoOn;
         }
     }
@@ -88,11 +89,14 @@ template <RayCaster Caster>
     if (medium)
         path.throughput *= transmittance(*medium, (s.p - path.segment_start).length(), path.bands);
     at.sides = at.boundary ? at.boundary->sides : Fillings{medium, medium};
+    watch_.sees(
+        {.step = PathStep::Meets, .lanes = path.throughput, .medium = medium, .surface = s});
     if (!at.boundary || !at.boundary->hidden) return Step::Arrived;
-    // Shadow rays do not pass the faces of volumes, so that what the path finds now, they have not
-    // found.
+    watch_.ends(PathStep::Hidden);
+    // Shadow rays stop at the faces of volumes: what the path finds now, they have not found.
     if (path.specular_depth++ == options_.max_specular_depth) {
         ++path.stats.specular_ends;
+        watch_.ends(PathStep::MaxClearDepth);
         return Step::End;
     }
     path.chance_finds().bounces += path.last.light_sampled;
@@ -114,23 +118,24 @@ inline void go_on_behind(PathState& path, const Surface& s, const Blend& blend,
 }
 
 /// Samples the BSDF for the next direction; nothing where the path ends.
-template <RayCaster Caster>
-[[gnu::always_inline]] inline auto PathTracer<Caster>::scatter(
+template <RayCaster Caster, class Watch>
+[[gnu::always_inline]] inline auto PathTracer<Caster, Watch>::scatter(
     PathState& path, const Scattering& at, const Sampler::VertexNumbers& u) const
     -> std::optional<Onward> {
     const auto next = at.bsdf.sample(u.bsdf_lobe, u.bsdf, path.hero_decided);
-    if (!next) return std::nullopt;
+    if (!next) return watch_.ends(PathStep::Absorbed);
     const bool is_clear = next->delta && at.bsdf.is_clear();
     if (is_clear && path.specular_depth == options_.max_specular_depth) {
         ++path.stats.specular_ends;
-        return std::nullopt;
+        return watch_.ends(PathStep::MaxClearDepth);
     }
-    if (!is_clear && at.at_depth) return std::nullopt;
+    if (!is_clear && at.at_depth) return watch_.ends(PathStep::MaxDepth);
     ++(is_clear ? path.specular_depth : path.depth);
     // What is scattered far and wide, ordinary rays find as well. A narrow lobe may be the
     // highlight that the ray was sent for.
     if (path.continue_probability < 1.f && !next->delta && next->pdf < kNarrowPdf) {
-        if (path.sampler.get1(Dim::TargetRest) >= path.continue_probability) return std::nullopt;
+        if (path.sampler.get1(Dim::TargetRest) >= path.continue_probability)
+            return watch_.ends(PathStep::LeftToOthers);
         path.throughput *= 1.f / path.continue_probability;
         path.continue_probability = 1.f;
     }
@@ -138,7 +143,7 @@ template <RayCaster Caster>
     // No ray that is not a number goes on: the film counts the sample and names its pixel.
     if (!std::isfinite(direction.x + direction.y + direction.z)) {
         path.radiance = splat(std::numeric_limits<float>::quiet_NaN());
-        return std::nullopt;
+        return watch_.ends(PathStep::NotFinite);
     }
     // Shadow rays go on through panes: what a path finds behind one, they find as well.
     const bool straight = is_clear && next->transmitted && at.shading.bsdf.thin;
@@ -150,23 +155,27 @@ template <RayCaster Caster>
     path.hero_decided |= next->transmitted && at.shading.bsdf.disperses;
     if (next->transmitted && at.at.boundary) path.volumes = at.at.boundary->behind;
     ++path.scatterings;
+    watch_.sees({.step = PathStep::GoesOn, .drawn = *next, .straight = straight});
     return Onward{*next, direction, straight};
 }
 
 /// Plays Russian roulette, by what the path has lost; u in [0, 1). Returns whether it goes on.
-template <RayCaster Caster>
-[[gnu::always_inline]] inline bool PathTracer<Caster>::survives(PathState& path, float u) const {
+template <RayCaster Caster, class Watch>
+[[gnu::always_inline]] inline bool PathTracer<Caster, Watch>::survives(PathState& path,
+                                                                       float u) const {
     if (path.scatterings <= options_.roulette_depth) return true;
     const float most = std::sqrt(hmax(path.throughput)), survival = most < 1.f ? most : 1.f;
+    watch_.sees({.step = PathStep::Roulette, .number = survival});
     if (u >= survival) return false;
     path.throughput *= 1.f / survival;
     return true;
 }
 
 /// Sets the ray to the segment behind a surface.
-template <RayCaster Caster>
-[[gnu::always_inline]] inline void PathTracer<Caster>::leave(PathState& path, const Scattering& at,
-                                                             const Onward& onward) {
+template <RayCaster Caster, class Watch>
+[[gnu::always_inline]] inline void PathTracer<Caster, Watch>::leave(PathState& path,
+                                                                    const Scattering& at,
+                                                                    const Onward& onward) {
     const Surface& s = at.at.surface;
     if (onward.straight) {
         path.segment_start = s.p;

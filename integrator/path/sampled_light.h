@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/sampling/warp.h"
+#include "core/scene/motion.h"
 #include "integrator/path/found_light.h"
 #include "integrator/path/panes.h"
 
@@ -16,8 +17,8 @@ namespace petzval {
 }
 
 /// Where a path scatters light, and what it has come with.
-template <RayCaster Caster>
-struct PathTracer<Caster>::Scattering {
+template <RayCaster Caster, class Watch>
+struct PathTracer<Caster, Watch>::Scattering {
     const Arrival& at;
     const LightReceiver& receiver;
     const ShadingInput& shading;
@@ -29,8 +30,8 @@ struct PathTracer<Caster>::Scattering {
 };
 
 /// Light sample, and how likely its light was picked.
-template <RayCaster Caster>
-struct PathTracer<Caster>::DrawnLight {
+template <RayCaster Caster, class Watch>
+struct PathTracer<Caster, Watch>::DrawnLight {
     LightSample sample;  ///< meaningless where dark
     bool dark;           ///< the point that was drawn sends nothing
     float pick_probability;
@@ -41,8 +42,8 @@ struct PathTracer<Caster>::DrawnLight {
     std::optional<Sky::Place> sky;
 };
 
-template <RayCaster Caster>
-[[gnu::always_inline]] inline auto PathTracer<Caster>::draw_light(
+template <RayCaster Caster, class Watch>
+[[gnu::always_inline]] inline auto PathTracer<Caster, Watch>::draw_light(
     const PathState& path, const LightReceiver& receiver, const Sampler::VertexNumbers& u) const
     -> std::optional<DrawnLight> {
     if (options_.technique == Technique::BsdfOnly) return std::nullopt;
@@ -67,11 +68,12 @@ template <RayCaster Caster>
 }
 
 /// Light of the lamp that was drawn, if any, as it reaches the camera ray.
-template <RayCaster Caster>
-[[gnu::always_inline]] inline f4 PathTracer<Caster>::sampled_light(
+template <RayCaster Caster, class Watch>
+[[gnu::always_inline]] inline f4 PathTracer<Caster, Watch>::sampled_light(
     const PathState& path, const Scattering& at, const std::optional<DrawnLight>& drawn) const {
     f4 light{};
     if (!at.samples_lights) return light;
+    if (drawn) watch_.sees({.step = PathStep::DrawsLight, .light = drawn->light});
     if (drawn)
         light = path.throughput * (at.at.surface.lifted() && !drawn->sample.at_infinity
                                        ? light_on_smooth(path, at, *drawn)
@@ -87,9 +89,9 @@ template <RayCaster Caster>
 // "Hacking the Shadow Terminator"). Seen from the triangle, the point may lie before it, and seen
 // from the smooth surface, behind the triangle: rays to the one side leave the one point, those to
 // the other side the other, and a point near the triangle's plane is met by both.
-template <RayCaster Caster>
-f4 PathTracer<Caster>::light_on_smooth(const PathState& path, const Scattering& at,
-                                       const DrawnLight& drawn) const {
+template <RayCaster Caster, class Watch>
+f4 PathTracer<Caster, Watch>::light_on_smooth(const PathState& path, const Scattering& at,
+                                              const DrawnLight& drawn) const {
     const Surface& s = at.at.surface;
     const V3f facing = s.facing();
     f4 sum{};
@@ -105,9 +107,9 @@ f4 PathTracer<Caster>::light_on_smooth(const PathState& path, const Scattering& 
     return sum + direct_light(path, at, from_smooth);
 }
 
-template <RayCaster Caster>
-f4 PathTracer<Caster>::direct_light(const PathState& path, const Scattering& at,
-                                    const DrawnLight& drawn) const {
+template <RayCaster Caster, class Watch>
+f4 PathTracer<Caster, Watch>::direct_light(const PathState& path, const Scattering& at,
+                                           const DrawnLight& drawn) const {
     if (drawn.dark) return f4{};
     const Surface& s = at.at.surface;
     LightSample light = drawn.sample;
@@ -134,6 +136,7 @@ f4 PathTracer<Caster>::direct_light(const PathState& path, const Scattering& at,
     ++path.stats.shadow_rays;
     const Passage passage =
         timed(path.stats, TimedSection::Traversal, [&] { return caster_.passage(way.ray); });
+    watch_.sees({.step = PathStep::ShadowRay, .number = passage.left, .ray = way.ray});
     if (!(passage.left > 0.f)) return f4{};
     float chance = value.pdf;
     f4 left = uniform(passage.left, path.bands);

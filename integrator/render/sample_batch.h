@@ -59,6 +59,7 @@ class SampleBatch {
     }
 
   private:
+    friend struct SampleRecord;
     /// One batch in sixteen, spread over pixels and samples.
     [[nodiscard]] static bool is_timed(SampleId first) {
         const uint32_t pixel =

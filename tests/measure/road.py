@@ -29,7 +29,7 @@ ROADS = {
 }
 LONGEST = {"thin lens": (49, 5518), "Takumar": (70, 8609)}  # files, lines
 PRODUCT = re.compile(r"(?:.*/)?((?:core|camera|integrator|io|apps)/\S+)$")
-SAMPLING = "petzval::SampleBatch<petzval::PathTracer<petzval::Bvh> >::render()"
+SAMPLING = "petzval::SampleBatch<petzval::PathTracer<petzval::Bvh, petzval::Unwatched> >::render()"
 
 
 def profile(program, options, out):

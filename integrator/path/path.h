@@ -44,17 +44,10 @@ struct PathStart {
 template <RayCaster Caster = Bvh, class Watch = Unwatched>
 class PathTracer {
   public:
-    /// Scene, caster and lights must outlive the tracer. light_records: gets what each light sample
-    /// brings, for a pilot of the light choice, in one thread.
+    /// Scene, caster and lights must outlive the tracer.
     PathTracer(const Scene& scene, const Caster& caster, const LightChoice& lights,
-               const PathOptions& options, std::vector<LightRecord>* light_records = nullptr,
-               Watch watch = {})
-        : scene_(scene),
-          caster_(caster),
-          lights_(lights),
-          options_(options),
-          light_records_(light_records),
-          watch_(watch) {}
+               const PathOptions& options, Watch watch = {})
+        : scene_(scene), caster_(caster), lights_(lights), options_(options), watch_(watch) {}
 
     /// Estimate of the radiance that arrives along a camera ray, in its lanes. The sample's alpha
     /// and layers are filled in on the way. Pure but for the counts and records.
@@ -94,7 +87,6 @@ class PathTracer {
     const Caster& caster_;
     const LightChoice& lights_;
     PathOptions options_;
-    std::vector<LightRecord>* light_records_;
     [[no_unique_address]] Watch watch_;
 };
 

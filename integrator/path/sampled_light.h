@@ -79,9 +79,7 @@ template <RayCaster Caster, class Watch>
                                        ? light_on_smooth(path, at, *drawn)
                                        : direct_light(path, at, *drawn));
     light *= at.blend_weight;
-    if (light_records_)
-        light_records_->push_back(lights_.record(drawn ? std::optional(drawn->light) : std::nullopt,
-                                                 at.receiver, hsum(light)));
+    watch_.sampled(lights_, drawn ? std::optional(drawn->light) : std::nullopt, at.receiver, light);
     return light;
 }
 

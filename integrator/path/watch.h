@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/light/light_choice.h"
 #include "core/shading/surface.h"
 
 namespace petzval {
@@ -52,10 +53,12 @@ struct Unwatched {
     /// Returns the light, which is added to what the path has found.
     static f4 adds(PathStep, f4 light) { return light; }
     static std::nullopt_t ends(PathStep) { return std::nullopt; }
+    /// Hears of the light that was drawn for a receiver, if any, and of what it brought.
+    static void sampled(const LightChoice&, std::optional<uint32_t>, const LightReceiver&, f4) {}
 };
 
 /// Watch that keeps what it sees, path after path.
-struct PathRecorder {
+struct PathRecorder : Unwatched {
     std::vector<PathEvent>* to;
 
     void sees(const PathEvent& event) const { to->push_back(event); }

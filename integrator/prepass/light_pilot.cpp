@@ -2,6 +2,7 @@
 #include "integrator/prepass/light_pilot.h"
 
 #include "core/sampling/prepass_seed.h"
+#include "integrator/path/path_impl.h"
 #include "integrator/prepass/pilot_pixels.h"
 #include "integrator/render/sample_batch.h"
 
@@ -10,6 +11,16 @@ namespace {
 
 constexpr uint32_t kPaths = 8192;
 
+/// Watch that keeps what each light sample brings.
+struct LightRecorder : Unwatched {
+    std::vector<LightRecord>* to;
+
+    void sampled(const LightChoice& lights, std::optional<uint32_t> light,
+                 const LightReceiver& receiver, f4 brought) const {
+        to->push_back(lights.record(light, receiver, hsum(brought)));
+    }
+};
+
 }  // namespace
 
 LightChoice fitted_by_pilot(const LightChoice& choice, const Scene& scene, const Bvh& bvh,
@@ -17,7 +28,7 @@ LightChoice fitted_by_pilot(const LightChoice& choice, const Scene& scene, const
     if (!choice.divides()) return choice;
     const LightChoice even = choice.for_pilot();
     std::vector<LightRecord> records;
-    const PathTracer<> tracer(scene, bvh, even, {}, &records);
+    const PathTracer<Bvh, LightRecorder> tracer(scene, bvh, even, {}, {{}, &records});
     RenderJob job;
     job.seed = number_of(PrepassSeed::LightShares);
     job.observer = observer;

@@ -43,7 +43,7 @@ SampleRecord SampleRecord::of(const Scene& scene, const Bvh& bvh, const LightCho
                               const RenderJob& job, V2i frame_px, SampleId id) {
     SampleRecord out;
     std::vector<PathEvent> events;
-    const PathTracer<Bvh, PathRecorder> tracer(scene, bvh, lights, options, nullptr, {&events});
+    const PathTracer<Bvh, PathRecorder> tracer(scene, bvh, lights, options, {{}, &events});
     Film film(frame_px, {id.x, id.y, id.x + 1, id.y + 1}, {});
     PathStats stats;
     SampleBatch batch(tracer, camera, job, frame_px, &film, stats);

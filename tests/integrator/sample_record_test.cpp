@@ -60,6 +60,10 @@ TEST(SampleRecord, LightThatArrivesAndLightThatIsBlocked) {
         const SampleRecord sample = world.sample();
         ASSERT_EQ(sample.rays.size(), 1u);
         EXPECT_EQ(sample.ordinary, 1u);
+        const RenderJob job;
+        const Sampler sampler(job.sampler, job.seed, {0, 0, 0});
+        const V2f film = V2f(0.5f) + job.filter.sample(sampler.get2(Dim::Film));
+        EXPECT_NEAR((sample.point_px - film).length(), 0, 1e-6);
         const auto begins = all(sample, PathStep::Begins), meets = all(sample, PathStep::Meets);
         ASSERT_EQ(begins.size(), 1u);
         EXPECT_EQ(begins[0].ray.origin, V3f(0, 0, kCamera_m));

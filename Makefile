@@ -5,7 +5,7 @@ PACKAGES = cmake ninja-build ccache mold libembree-dev libtbb-dev libimath-dev l
     libcli11-dev libpugixml-dev libdraco-dev libmeshoptimizer-dev libfreetype-dev gnuplot-nox \
     fonts-dejavu-core
 TEST_PACKAGES = libgtest-dev libgmock-dev libbenchmark-dev python3-numpy
-LONG_PACKAGES = clang libclang-rt-dev gcovr debootstrap qemu-user
+LONG_PACKAGES = clang clang-tidy libclang-rt-dev gcovr debootstrap qemu-user
 SOURCES = git ls-files '*.h' '*.cpp'
 
 .PHONY: render gallery test test-files test-long program build format format-check

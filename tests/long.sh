@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 # Runs the checks that take too long for each merge, all of them or those that are named:
 #
-#   tests/long.sh [files] [address] [thread] [fuzz] [coverage] [mutants] [root]
+#   tests/long.sh [files] [address] [thread] [tidy] [fuzz] [coverage] [mutants] [root]
 #
 #   files     each file of the product compiles by itself
 #   address   all tests under the address and undefined-behaviour sanitizers
 #   thread    the tile loop under the thread sanitizer
+#   tidy      clang-tidy over the product, by the checks of .clang-tidy
 #   fuzz      the readers of files, and random lenses, FUZZ_SECONDS each (600)
 #   coverage  the share of the product's lines that the tests reach
 #   mutants   small faults on purpose: do the tests notice? MUTANTS of them (20)
@@ -16,7 +17,7 @@
 set -u
 cd "$(dirname "$0")/.."
 parts=("$@")
-[ ${#parts[@]} -gt 0 ] || parts=(files address thread fuzz coverage mutants root)
+[ ${#parts[@]} -gt 0 ] || parts=(files address thread tidy fuzz coverage mutants root)
 
 files() { cmake --preset files -DPETZVAL_TESTS=OFF -DPETZVAL_BENCH=OFF && cmake --build --preset files; }
 # The leak checker itself crashes at the end of 1 program in 1,000; a fault of a test fails twice.
@@ -25,6 +26,12 @@ address() {
         ctest --preset asan --parallel "$(nproc)" --repeat until-pass:2
 }
 thread() { cmake --preset tsan && cmake --build --preset tsan --target integrator_test apps_state_test && ctest --preset tsan; }
+# The build writes the compile commands, and a header that some files include.
+tidy() {
+    cmake --preset files || return 1
+    git ls-files core camera integrator io apps | grep '[.]cpp$' |
+        xargs --max-args=1 --max-procs="$(nproc)" clang-tidy -p build-files --quiet
+}
 fuzz() {
     local seconds=${FUZZ_SECONDS:-600}
     cmake --preset fuzz && cmake --build --preset fuzz || return 1

@@ -85,7 +85,8 @@ void print_sample(const SampleRecord& sample, const Scene& scene, SampleId id) {
             if (bands.on[i]) out += fmt::format("{}{:.4g}", i ? ", " : "", v[i]);
         return out;
     };
-    print_line(fmt::format("sample {} of pixel {},{}", id.index, id.x, id.y));
+    print_line(fmt::format("sample {} of pixel {},{}: film point {:.6g},{:.6g} px", id.index, id.x,
+                           id.y, sample.point_px.x, sample.point_px.y));
     print_line(bands.spectral
                    ? fmt::format("lanes: {} nm; radiance in W/(m² sr nm)", lanes(bands.nm))
                    : "lanes: R, G, B; radiance in nits");

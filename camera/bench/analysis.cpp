@@ -141,7 +141,8 @@ std::vector<StatedFigure> stated_figures(const Lens& lens) {
 FieldAndCircle field_and_circle(const Lens& lens) {
     const Prescription& file = lens.prescription();
     const Section section = stated_section(lens);
-    FieldAndCircle out{.half_field_deg = file.stated_field_half_deg};
+    FieldAndCircle out;
+    out.half_field_deg = file.stated_field_half_deg;
     if (out.half_field_deg)
         if (const auto height_mm = chief_height_mm(
                 lens, {.field_deg = *out.half_field_deg, .section = section}, lens.film_mm()))

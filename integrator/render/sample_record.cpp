@@ -49,6 +49,7 @@ SampleRecord SampleRecord::of(const Scene& scene, const Bvh& bvh, const LightCho
     SampleBatch batch(tracer, camera, job, frame_px, &film, stats);
     batch.add(id);
     batch.render();
+    out.point_px = batch.points_[0].film * V2f(frame_px);
     out.bands = batch.bands_[0];
     out.lens = batch.samples_[0].lanes;
     out.rays.assign(batch.samples_[0].begin(), batch.samples_[0].end());

@@ -11,6 +11,7 @@
 namespace petzval {
 
 struct SampleRecord {
+    V2f point_px{0.f};  ///< on the film, from the top left
     Bands bands;
     LensLosses<uint32_t> lens;
     std::vector<CameraPath> rays;   ///< those to targets last

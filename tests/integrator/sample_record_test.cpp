@@ -60,6 +60,10 @@ TEST(SampleRecord, LightThatArrivesAndLightThatIsBlocked) {
         const SampleRecord sample = world.sample();
         ASSERT_EQ(sample.rays.size(), 1u);
         EXPECT_FALSE(sample.rays[0].to_target);
+        const RenderJob job;
+        const Sampler sampler(job.sampler, job.seed, {0, 0, 0});
+        const V2f film = V2f(0.5f) + job.filter.sample(sampler.get2(Dim::Film));
+        EXPECT_NEAR((sample.point_px - film).length(), 0, 1e-6);
         const auto begins = all(sample, PathStep::Begins), meets = all(sample, PathStep::Meets);
         ASSERT_EQ(begins.size(), 1u);
         EXPECT_EQ(begins[0].ray.origin, V3f(0, 0, kCamera_m));
@@ -165,6 +169,8 @@ TEST(SampleRecord, HolesOnTheWay) {
         net.alpha = 0.2f;
         place(world.scene, sheet(-1), floor ? diffuse_material(0.5f) : net);
         place(world.scene, sheet(1), net);
+        place(world.scene, sheet(kCamera_m + 1), net);  // behind the camera
+        if (floor) place(world.scene, sheet(-2), net);  // and behind the floor
         world.options.max_depth = 0;
         const SampleRecord sample = world.sample();
         EXPECT_EQ(all(sample, PathStep::Meets).size(), floor ? 1u : 0u);
@@ -176,6 +182,20 @@ TEST(SampleRecord, HolesOnTheWay) {
         EXPECT_NEAR(holes[0].number, kCamera_m - 1, 1e-3);
         EXPECT_EQ(sample.events[1].step, PathStep::Hole);
     }
+}
+
+// A pane lets the shadow ray through: it is no blocker.
+TEST(SampleRecord, PanesBlockNothing) {
+    Below world;
+    Material pane = glass_material(1.5f);
+    pane.has_volume = false;
+    place(world.scene, sheet(0), diffuse_material(0.5f));
+    place(world.scene, quad(V3f(0.4f, -1, 0.8f), V3f(0.2f, 0, 0), V3f(0, 2, 0)), pane);
+    world.scene.lights.push_back(PointLight{V3f(1, 0, 2), Rgb(1.f)});
+    const SampleRecord sample = world.sample();
+    EXPECT_EQ(all(sample, PathStep::ShadowRay).at(0).number, 1);
+    EXPECT_TRUE(all(sample, PathStep::Blocks).empty());
+    EXPECT_GT(all(sample, PathStep::Scatters).at(0).lanes[0], 0);
 }
 
 TEST(SampleRecord, BacksArePassed) {

@@ -18,7 +18,7 @@ constexpr std::string_view kDrawnLook = "drawn looks (MToon) are shaded as real 
 constexpr std::string_view kPacked = "the same textures stand in the core material";
 constexpr std::string_view kImageBeside = "textures show the images beside it";
 
-constexpr auto table = std::to_array<GltfExtension>({
+constexpr auto kExtensions = std::to_array<GltfExtension>({
     {"ADOBE_materials_clearcoat_specular", Ignored,
      "clear coats reflect as those of an index of 1.5 do", "materials"},
     {"ADOBE_materials_clearcoat_tint", Ignored, "clear coats have no colour of their own",
@@ -95,7 +95,7 @@ constexpr auto table = std::to_array<GltfExtension>({
     {"VRMC_vrm", Harmless, kMetadata, "root"},
 });
 
-static_assert(std::is_sorted(table.begin(), table.end(),
+static_assert(std::is_sorted(kExtensions.begin(), kExtensions.end(),
                              [](const GltfExtension& a, const GltfExtension& b) {
                                  return a.name < b.name;
                              }));
@@ -103,13 +103,13 @@ static_assert(std::is_sorted(table.begin(), table.end(),
 }  // namespace
 
 std::span<const GltfExtension> gltf_extensions() {
-    return table;
+    return kExtensions;
 }
 
 const GltfExtension* find_gltf_extension(std::string_view name) {
-    const auto at = std::find_if(table.begin(), table.end(),
+    const auto at = std::find_if(kExtensions.begin(), kExtensions.end(),
                                  [&](const GltfExtension& e) { return e.name == name; });
-    return at == table.end() ? nullptr : &*at;
+    return at == kExtensions.end() ? nullptr : &*at;
 }
 
 std::string_view gltf_extension_advice(std::string_view name) {

@@ -57,80 +57,80 @@ class AccessorCheck {
     explicit AccessorCheck(GltfCheck& check)
         : check_(check), views_(check.root.objects("bufferViews")) {}
 
-    GltfAccessor read(const JsonCursor& json) {
+    GltfAccessor read(const JsonCursor& cursor) {
         GltfAccessor accessor;
-        const uint64_t component_type = json.integer("componentType");
+        const uint64_t component_type = cursor.integer("componentType");
         accessor.component_type = component_type <= 5126 ? int(component_type) : 0;
-        accessor.type = json.text("type");
-        accessor.count = json.integer("count");
-        if (accessor.count == 0) json.fail("count", "must be at least 1");
-        accessor.offset = json.integer_or("byteOffset", 0);
-        json.check_bool("normalized");
-        accessor.normalized = json.value().value("normalized", false);
+        accessor.type = cursor.text("type");
+        accessor.count = cursor.integer("count");
+        if (accessor.count == 0) cursor.fail("count", "must be at least 1");
+        accessor.offset = cursor.integer_or("byteOffset", 0);
+        cursor.check_bool("normalized");
+        accessor.normalized = cursor.value().value("normalized", false);
         if (accessor.normalized &&
             (accessor.component_type == 5126 || accessor.component_type == 5125))
-            json.fail("normalized", "only 8- and 16-bit integers can be normalized");
-        accessor.view = json.index("bufferView", views_.size(), "bufferView");
+            cursor.fail("normalized", "only 8- and 16-bit integers can be normalized");
+        accessor.view = cursor.index("bufferView", views_.size(), "bufferView");
         if (component_size(accessor.component_type) > 0)
             accessor.components = component_count(accessor.type);
         if (accessor.components == 0) {
-            check_.warn(json, "is of an unknown type");
+            check_.warn(cursor, "is of an unknown type");
             return accessor;
         }
-        find_data(json, accessor);
-        if (json.has("sparse")) accessor.sparse = read_sparse(json.object("sparse"), accessor);
+        find_data(cursor, accessor);
+        if (cursor.has("sparse")) accessor.sparse = read_sparse(cursor.object("sparse"), accessor);
         return accessor;
     }
 
   private:
-    void find_data(const JsonCursor& json, GltfAccessor& accessor) {
+    void find_data(const JsonCursor& cursor, GltfAccessor& accessor) {
         const size_t size = element_size(accessor.type, accessor.component_type, true);
         accessor.stride = size;
         if (accessor.view) {
             const JsonCursor& view = views_[*accessor.view];
             accessor.stride = view.integer_or("byteStride", size);
             if (accessor.stride < size)
-                json.fail(fmt::format("an element takes {} bytes, but {} has a byteStride of {}",
-                                      size, view.path(), accessor.stride));
-            accessor.bytes =
-                place_in_view(check_, json, view, accessor.offset, accessor.count, accessor.stride,
-                              element_size(accessor.type, accessor.component_type, false));
+                cursor.fail(fmt::format("an element takes {} bytes, but {} has a byteStride of {}",
+                                        size, view.path(), accessor.stride));
+            accessor.bytes = place_in_view(
+                check_, cursor, view, accessor.offset, accessor.count, accessor.stride,
+                element_size(accessor.type, accessor.component_type, false));
         }
-        check_.budget.ask(saturating(accessor.count, size), json);
+        check_.budget.ask(saturating(accessor.count, size), cursor);
     }
 
-    GltfSparse read_sparse(const JsonCursor& json, const GltfAccessor& accessor) {
+    GltfSparse read_sparse(const JsonCursor& cursor, const GltfAccessor& accessor) {
         GltfSparse sparse;
-        sparse.count = json.integer("count");
+        sparse.count = cursor.integer("count");
         if (sparse.count == 0 || sparse.count > accessor.count)
-            json.fail("count", "must be from 1 to the accessor's {}, but is {}", accessor.count,
-                      sparse.count);
-        const JsonCursor indices = json.object("indices");
+            cursor.fail("count", "must be from 1 to the accessor's {}, but is {}", accessor.count,
+                        sparse.count);
+        const JsonCursor indices = cursor.object("indices");
         const uint64_t type = indices.integer("componentType");
         if (type != 5121 && type != 5123 && type != 5125)
             indices.fail("componentType", "must be 5121, 5123 or 5125");
         sparse.index_component_type = int(type);
         sparse.indices = packed(indices, sparse.count, component_size(sparse.index_component_type));
-        sparse.values = packed(json.object("values"), sparse.count,
+        sparse.values = packed(cursor.object("values"), sparse.count,
                                element_size(accessor.type, accessor.component_type, true));
         check_indices(indices, sparse, accessor.count);
         return sparse;
     }
 
-    std::span<const uint8_t> packed(const JsonCursor& json, uint64_t count, size_t size) const {
-        const size_t view = json.required_index("bufferView", views_.size(), "bufferView");
-        return place_in_view(check_, json, views_[view], json.integer_or("byteOffset", 0), count,
-                             size, size);
+    std::span<const uint8_t> packed(const JsonCursor& cursor, uint64_t count, size_t size) const {
+        const size_t view = cursor.required_index("bufferView", views_.size(), "bufferView");
+        return place_in_view(check_, cursor, views_[view], cursor.integer_or("byteOffset", 0),
+                             count, size, size);
     }
 
     /// Checks that sparse indices stay below the accessor's count. Those that do not increase are
     /// read all the same: the last one holds.
-    static void check_indices(const JsonCursor& json, const GltfSparse& sparse, uint64_t limit) {
+    static void check_indices(const JsonCursor& cursor, const GltfSparse& sparse, uint64_t limit) {
         if (sparse.indices.empty()) return;
         const std::vector<uint32_t> values = indices_of(sparse);
         for (size_t i = 0; i < values.size(); ++i)
             if (values[i] >= limit)
-                json.fail(
+                cursor.fail(
                     fmt::format("index {} is beyond the {} elements of the accessor", i, limit));
     }
 

@@ -46,7 +46,8 @@ TEST_F(CliTraceSample, NamesWhatAPathMeets) {
     scene_ = file.save_glb(path("named.glb")).string();
     const std::string out = trace({"--camera", "wide", "12,8,0"});
     for (const char* part :
-         {"sample 0 of pixel 12,8\nlanes: R, G, B; radiance in nits\npath 1, camera ray: from "
+         {"sample 0 of pixel 12,8: film point ",
+          " px\nlanes: R, G, B; radiance in nits\npath 1, camera ray: from "
           "0,0,0 m "
           "towards ",
           "; weight on the film 1, 1, 1\n  meets front of material \"Plaster\" (mesh 0, "

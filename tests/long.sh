@@ -28,7 +28,7 @@ address() {
 thread() { cmake --preset tsan && cmake --build --preset tsan --target integrator_test apps_state_test && ctest --preset tsan; }
 # The build writes the compile commands, and a header that some files include.
 tidy() {
-    cmake --preset files || return 1
+    cmake --preset files && cmake --build --preset files --target petzval_io_build || return 1
     git ls-files core camera integrator io apps | grep '[.]cpp$' |
         xargs --max-args=1 --max-procs="$(nproc)" clang-tidy -p build-files --quiet
 }

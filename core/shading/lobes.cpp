@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/shading/lobes.h"
 
-#include <bit>
-
 #include "core/shading/ggx_albedo_table.h"
 #include "core/shading/visible_facets.h"
 
@@ -36,22 +34,6 @@ GgxAlbedo ggx_albedo(float cosine, float alpha) {
 void SeenFacets::set_rough() {
     lambda_o = ggx_lambda(wo, alpha);
     albedo = alpha.anisotropic() ? visible_albedo(wo, alpha) : ggx_albedo(wo.z, alpha.x);
-}
-
-// Facets are drawn until one is met whose light leaves, with the share that masking lets go on.
-V3f SeenFacets::draw_evenly(float u_more, V2f u) const {
-    constexpr uint32_t tries = 64;  // a try fails in three of four cases at most
-    const uint32_t seed =
-        hash32(std::bit_cast<uint32_t>(u_more),
-               hash32(std::bit_cast<uint32_t>(u.x), std::bit_cast<uint32_t>(u.y)));
-    const float all = 1.f + lambda_o;
-    for (uint32_t i = 0; i < tries; ++i) {
-        const V3f wi = reflect(wo, ggx_sample_visible(wo, alpha, u));
-        if (wi.z > 0.f && to_unit_float(hash32(seed, 3 * i)) * (all + ggx_lambda(wi, alpha)) < all)
-            return wi;
-        u = V2f(to_unit_float(hash32(seed, 3 * i + 1)), to_unit_float(hash32(seed, 3 * i + 2)));
-    }
-    return V3f(0.f);
 }
 
 f4 GlassLobe::reflectance(float wo_m) const {

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/shading/visible_facets.h"
 
+#include <bit>
+
+#include "core/shading/lobes.h"
+
 namespace petzval {
 namespace {
 
@@ -132,6 +136,22 @@ FewFacets few_visible_facets(const V3f& wo, const GgxWidth& alpha, float eta) {
         }
     }
     return out;
+}
+
+// Facets are drawn until one is met whose light leaves, with the share that masking lets go on.
+V3f SeenFacets::draw_evenly(float u_more, V2f u) const {
+    constexpr uint32_t tries = 64;  // a try fails in three of four cases at most
+    const uint32_t seed =
+        hash32(std::bit_cast<uint32_t>(u_more),
+               hash32(std::bit_cast<uint32_t>(u.x), std::bit_cast<uint32_t>(u.y)));
+    const float all = 1.f + lambda_o;
+    for (uint32_t i = 0; i < tries; ++i) {
+        const V3f wi = reflect(wo, ggx_sample_visible(wo, alpha, u));
+        if (wi.z > 0.f && to_unit_float(hash32(seed, 3 * i)) * (all + ggx_lambda(wi, alpha)) < all)
+            return wi;
+        u = V2f(to_unit_float(hash32(seed, 3 * i + 1)), to_unit_float(hash32(seed, 3 * i + 2)));
+    }
+    return V3f(0.f);
 }
 
 }  // namespace petzval

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Averages over the facets of a rough surface that are seen from one direction, where no table has
-// them: lobes of two widths, and reflectances that no Schlick weight describes.
+// What few surfaces ask of the facets that are seen from one direction: averages that no table has,
+// of two widths and of reflectances that no Schlick weight describes; and SeenFacets::draw_evenly.
 #pragma once
 
 #include <array>

@@ -82,21 +82,34 @@ TEST(Lobes, AloneScatterTheirAlbedo) {
 }
 
 // What single scattering loses, the other lobe has: of white glass all is there.
+void expect_whole(GlassLobe glass, const GgxWidth& alpha) {
+    SeenFacets seen{from_cosine(0.3f, 0.4f), alpha};
+    seen.even = true;
+    glass.tint = splat(1.f);
+    LostLobe lost;
+    lost.split_from(glass, seen);
+    EXPECT_FLOAT_EQ(glass.chance + lost.chance, 0.4f);
+    const Mean single = scattered(glass, seen, "glass "), more = scattered(lost, seen, "lost ");
+    const f4 albedo = glass.albedo(seen) + lost.albedo(seen);
+    const Mean missing{double(albedo[1]) - more.value, more.error};
+    EXPECT_TRUE(agrees(single - missing, 0, 0.005))
+        << single << " and " << more << ", index " << glass.eta[0] << ", specular "
+        << glass.specular << ", width " << alpha.y;
+    EXPECT_GT(more.value, 0.01);
+}
+
 TEST(Lobes, GlassAndWhatItLosesShareItsLight) {
-    for (const float eta : {1.5f, 1 / 1.5f}) {
-        SeenFacets seen = facets(0.5f);
-        seen.even = true;
-        GlassLobe glass = glass_of(eta);
-        glass.tint = splat(1.f);
-        LostLobe lost;
-        lost.split_from(glass, seen);
-        EXPECT_FLOAT_EQ(glass.chance + lost.chance, 0.4f);
-        const Mean single = scattered(glass, seen, "glass "), more = scattered(lost, seen, "lost ");
-        const f4 albedo = glass.albedo(seen) + lost.albedo(seen);
-        const Mean missing{double(albedo[1]) - more.value, more.error};
-        EXPECT_TRUE(agrees(single - missing, 0, 0.005)) << eta;
-        EXPECT_GT(more.value, 0.01) << eta;
-    }
+    for (const float eta : {1.5f, 1 / 1.5f})
+        for (const float specular : {0.2f, 1.f}) {
+            GlassLobe glass = glass_of(eta);
+            glass.specular = specular;
+            expect_whole(glass, 0.5f);
+            expect_whole(glass, {0.8f, 0.3f});
+            if (eta < 1) continue;
+            glass.film_share = 1;
+            glass.film = ThinFilm(1.8f, 300.f, Bands::rgb());
+            expect_whole(glass, 0.5f);
+        }
 }
 
 TEST(Lobes, EachLaneLosesByItsOwnIndex) {

@@ -37,8 +37,8 @@ std::string text_of(const Box& b) {
 }
 
 // A part of the whole that no box holds, as long as possible along the samples; nothing where they
-// hold all of it. PilotPixels at the corners of the grid that the edges of all boxes make.
-std::optional<Box> missing_part(const Box& whole, std::vector<Box> boxes) {
+// hold all of it. Looks at the corners of the grid that the edges of all boxes make.
+std::optional<Box> missing_part(const Box& whole, const std::vector<Box>& boxes) {
     const auto edges_of = [&](size_t axis, const std::vector<Box>& from) {
         std::set<int64_t> edges{whole[axis][0], whole[axis][1]};
         for (const Box& b : from) edges.insert(b[axis].begin(), b[axis].end());

@@ -46,6 +46,10 @@ CameraSample ThinLensCamera::through(const FilmPoint& at, V2f stop_mm, const Ban
                     exposure_, weight);
 }
 
+V2f ThinLensCamera::drawn_stop_mm(const FilmPoint& at) const {
+    return iris_ ? iris_->sample(at.sampler.get2(Dim::Lens)) : V2f(0.f);
+}
+
 CameraSample ThinLensCamera::sample(const FilmPoint& at, const Bands& bands) const {
     return through(at, drawn_stop_mm(at), bands);
 }

@@ -31,9 +31,7 @@ class ThinLensCamera final : public Camera {
     /// The one ray of a film point through a point of the stop.
     [[nodiscard]] CameraSample through(const FilmPoint&, V2f stop_mm, const Bands&) const;
     /// Point of the stop that the film point's sampler draws.
-    [[nodiscard]] V2f drawn_stop_mm(const FilmPoint& at) const {
-        return iris_ ? iris_->sample(at.sampler.get2(Dim::Lens)) : V2f(0.f);
-    }
+    [[nodiscard]] V2f drawn_stop_mm(const FilmPoint&) const;
     /// Its only pencil; a camera with an iris.
     [[nodiscard]] StopPencils pencils(const FilmPoint&, const Bands&) const;
     [[nodiscard]] const std::optional<Iris>& iris() const { return iris_; }

@@ -3,6 +3,10 @@
 
 namespace petzval {
 
+LightTree::OutsideShare LightChoice::share_at(const LightReceiver& r) const {
+    return {shares_.factor(r.p), least_share_};
+}
+
 std::optional<LightChoice::Pick> LightChoice::pick(float u, const LightReceiver& receiver) const {
     float probability = 1.f;
     if (tree_) {

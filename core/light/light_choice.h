@@ -52,9 +52,7 @@ class LightChoice {
     std::shared_ptr<const LightTree> tree_;  ///< copies of a choice share it
     LightShares shares_;
     float least_share_ = 0;
-    [[nodiscard]] LightTree::OutsideShare share_at(const LightReceiver& r) const {
-        return {shares_.factor(r.p), least_share_};
-    }
+    [[nodiscard]] LightTree::OutsideShare share_at(const LightReceiver&) const;
 };
 
 }  // namespace petzval

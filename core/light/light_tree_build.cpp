@@ -9,9 +9,9 @@ namespace {
 // Share of the brightest light that each light has at least, or its weight would underflow.
 constexpr float kFaintest = 1e-12f;
 
-// Factor on lights outside the tree where no pilot has fitted better, as clusters are weighed as if
-// nothing stood before them. On lowpoly-village, a landscape with lamps under a sky, 1 to 4 gave a
-// relative MSE of 2.1, 1.97 and 1.91e-3.
+// Factor on lights outside the tree where no pilot has learned better, as clusters are weighed as
+// if nothing stood before them. On lowpoly-village, a landscape with lamps under a sky, 1 to 4 gave
+// a relative MSE of 2.1, 1.97 and 1.91e-3.
 constexpr float kUnshadowed = 2;
 
 float diagonal2(const Box3f& box) {

@@ -14,7 +14,7 @@
 
 namespace petzval {
 
-/// PilotPixels up what the file names, and adds metals, reflectances and illuminants to the scene,
+/// Looks up what the file names, and adds metals, reflectances and illuminants to the scene,
 /// each once. Throws InputError with the JSON path for a name that is in no catalogue.
 class GltfSpectral {
   public:

@@ -103,7 +103,7 @@ TEST(LightPilot, ASkyThatNobodySeesHardlyCounts) {
     EXPECT_LT(after.variance, before.variance / 3);
 }
 
-// Another view of the scene starts from what an earlier one was fitted, and learns the same.
+// Another view of the scene starts from what an earlier one learned, and learns the same.
 TEST(LightPilot, ForgetsWhatAnEarlierOneTaught) {
     ClosedRoom room;
     const LightChoice one = room.fitted();

@@ -52,7 +52,7 @@ V3d srgb_to_lab(const V3d& rgb) {
     return xyz_to_lab(srgb_to_xyz(white1) * rgb, white1);
 }
 
-// PilotPixels along -z at the square [0, width] x [0, height] of the plane z = 0.
+// Looks along -z at the square [0, width] x [0, height] of the plane z = 0.
 OrthographicCamera above(float width, float height) {
     M44f to_world;
     to_world.translate(V3f(width / 2, height / 2, 5));

@@ -25,7 +25,7 @@ constexpr std::array<const char*, static_cast<size_t>(PathStep::NotFinite) + 1> 
     "    goes on: a volume of higher priority fills both sides",
     "    finds light: it sends + {lanes}",
     "    samples light {light}",
-    "    shadow ray to it: a share of {number} comes through",
+    "    shadow ray to it, {goal}: a share of {number} comes through",
     "    it is stopped after {number} m by the {surface}",
     "    scatters sampled light: + {lanes}",
     "    goes on, {lobe}, weight {lanes}",
@@ -52,6 +52,13 @@ SampleId sample_of(const std::string& text, V2i frame) {
 
 std::string place(const V3f& p) {
     return fmt::format("{:.5g},{:.5g},{:.5g}", p.x, p.y, p.z);
+}
+
+/// Where a shadow ray goes, whose direction is as long as the way to a lamp.
+std::string goal(const Ray& ray) {
+    if (ray.t_max > 1) return "towards " + place(ray.direction);
+    return fmt::format("at {} m, {:.5g} m away", place(ray.origin + ray.direction),
+                       ray.direction.length());
 }
 
 std::string name(const Scene& scene, uint32_t instance, uint32_t triangle) {
@@ -113,7 +120,7 @@ void print_sample(const SampleRecord& sample, const Scene& scene, SampleId id) {
                             : "",
             "medium"_a = event.medium ? " in \"" + event.medium->name + "\"" : "",
             "light"_a = event.step == PathStep::DrawsLight ? name_of_light(scene, event.light) : "",
-            "number"_a = fmt::format("{:.5g}", event.number),
+            "goal"_a = goal(event.ray), "number"_a = fmt::format("{:.5g}", event.number),
             "lobe"_a = lobe(event.drawn, event.straight)));
         const bool is_last =
             i + 1 == sample.events.size() || sample.events[i + 1].step == PathStep::Begins;

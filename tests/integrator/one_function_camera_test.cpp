@@ -38,9 +38,9 @@ constexpr int kSize_px = 64;
 /// Brightness of each pixel, row by row, of a lamp in the direction +x that is 2 x 20 degrees wide.
 std::vector<float> picture(const Camera& camera) {
     test::TracedWorld world;
-    place(world.scene,
-          test::sphere(V3f(10, 0, 0), 10 * std::sin(std::numbers::pi_v<float> / 9), 64, true),
-          test::emitter_material(1));
+    test::place(world.scene,
+                test::sphere(V3f(10, 0, 0), 10 * std::sin(std::numbers::pi_v<float> / 9), 64, true),
+                test::emitter_material(1));
     world.finish();
     RenderJob job;
     job.end_sample = 16;

@@ -53,8 +53,8 @@ TEST_F(CliTraceSample, NamesWhatAPathMeets) {
           "; weight on the film 1, 1, 1\n  meets front of material \"Plaster\" (mesh 0, "
           "instance 0, triangle ",
           " m on, at ", " m; throughput 1, 1, 1\n", "    samples light ",
-          ": point\n    shadow ray to it: a share of 1 comes through\n    scatters sampled light: "
-          "+ ",
+          ": point\n    shadow ray to it, at ",
+          " m away: a share of 1 comes through\n    scatters sampled light: + ",
           "    goes on, reflected (diffuse or wide lobe, ", "  ends: "})
         EXPECT_NE(out.find(part), std::string::npos) << out << "\nwithout: " << part;
     const std::string spectral = trace({"--spectral", "wavelengths", "12,8,0"});

@@ -68,10 +68,10 @@ TEST(PilotPixels, OfAnEmphasisOnlyRatiosCount) {
     for (double& value : dim.values) value *= 0x1p-40;
     const PilotPixels chosen = choose_pilot_pixels(kSize, 400, regions(), kCorner, 0),
                       of_dim = choose_pilot_pixels(kSize, 400, regions(), dim, 0);
-    ASSERT_EQ(of_dim.chosen.size(), chosen.pixels.size());
+    ASSERT_EQ(of_dim.pixels.size(), chosen.pixels.size());
     for (size_t i = 0; i < chosen.pixels.size(); ++i) {
-        EXPECT_EQ(of_dim.chosen[i].pixel, chosen.pixels[i].pixel);
-        EXPECT_EQ(of_dim.chosen[i].weight, chosen.pixels[i].weight);
+        EXPECT_EQ(of_dim.pixels[i].pixel, chosen.pixels[i].pixel);
+        EXPECT_EQ(of_dim.pixels[i].weight, chosen.pixels[i].weight);
     }
     EXPECT_EQ(of_dim.density.values, chosen.density.values);
 }

@@ -26,14 +26,14 @@ bool is_visible(const JsonCursor& node) {
     return !extension || extension->value().value("visible", true);
 }
 
-GltfNode read_node(const JsonCursor& json) {
-    GltfNode node{.mesh = index_or_none(json, "mesh"),
-                  .skin = index_or_none(json, "skin"),
-                  .camera = index_or_none(json, "camera"),
-                  .weights = numbers(json, "weights"),
+GltfNode read_node(const JsonCursor& node_json) {
+    GltfNode node{.mesh = index_or_none(node_json, "mesh"),
+                  .skin = index_or_none(node_json, "skin"),
+                  .camera = index_or_none(node_json, "camera"),
+                  .weights = numbers(node_json, "weights"),
                   .children = {},
-                  .visible = is_visible(json)};
-    for (const double child : numbers(json, "children"))
+                  .visible = is_visible(node_json)};
+    for (const double child : numbers(node_json, "children"))
         node.children.push_back(static_cast<int>(child));
     return node;
 }

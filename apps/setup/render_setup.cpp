@@ -214,6 +214,12 @@ std::shared_ptr<const TargetGrid> targets_of(TargetCamera& camera, const Camera&
     return targets_that_pay(camera, scene, *prepared.bvh, *prepared.lights, size_px);
 }
 
+/// A camera that the shutter of a view moves; the same where nothing moves.
+std::shared_ptr<const Camera> moved(std::shared_ptr<const Camera> camera, const View& view) {
+    if (!view.shutter) return camera;
+    return std::make_shared<MovingCamera>(std::move(camera), view.shutter);
+}
+
 /// The camera that renders, from the one that stands still: aimed at targets and moved by a
 /// shutter, where there are any.
 void compose_camera(const SceneRequest& asked, const RenderSetup* like,
@@ -229,7 +235,7 @@ void compose_camera(const SceneRequest& asked, const RenderSetup* like,
             aims->set_targets(view.targets);
             if (view.targets) view.camera = std::move(aims);
         }
-    if (view.shutter) view.camera = std::make_shared<MovingCamera>(view.camera, view.shutter);
+    view.camera = moved(std::move(view.camera), view);
 }
 
 RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseSink& begins,
@@ -284,9 +290,9 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
     setup.view.shutter = std::move(camera.shutter);
     if (model.from) setup.view.of_file = static_cast<size_t>(model.from - prepared.cameras->data());
     if (prepared.lights->divides())
-        prepared.lights = std::make_shared<const LightChoice>(
-            fitted_by_pilot(*prepared.lights, scene, *prepared.bvh, *setup.view.still,
-                            setup.view.observer, request.size));
+        prepared.lights = std::make_shared<const LightChoice>(fitted_by_pilot(
+            *prepared.lights, scene, *prepared.bvh, *moved(setup.view.still, setup.view),
+            setup.view.observer, request.size));
     compose_camera(request, shares ? like : nullptr, prepared, setup.view);
     from.camera = std::move(camera.report);
     return setup;

@@ -5,6 +5,7 @@
 #include "apps/setup/render_setup.h"
 #include "camera/models/thin_lens.h"
 #include "camera/targets/make_target_camera.h"
+#include "integrator/prepass/light_pilot.h"
 #include "tests/support/blurred.h"
 #include "tests/support/moving_gltf.h"
 
@@ -288,6 +289,27 @@ TEST(MotionSetup, NothingThatMovesHasNoShutter) {
     EXPECT_EQ(set_up(saved.at(kAt, true)).view.shutter, nullptr);
     const Saved moves(file_with(kPerspective));
     EXPECT_EQ(set_up(moves.at(kAt, false)).view.shutter, nullptr);
+}
+
+// The pilot that weighs sky and lamps sees what the moving camera sees, not only its middle.
+TEST(MotionSetup, LightSharesAreThoseOfTheMovingCamera) {
+    Saved saved(file_with(kPerspective));
+    saved.request.environment = "studio";
+    const RenderSetup open = set_up(saved.at(kAt, true));
+    ASSERT_NE(open.view.shutter, nullptr);
+    const Scene& scene = *open.prepared.scene;
+    const LightChoice before(scene, LightChoiceKind::Tree);
+    ASSERT_TRUE(before.divides());
+    const auto learned = [&](const Camera& camera) {
+        const LightChoice fitted =
+            fitted_by_pilot(before, scene, *open.prepared.bvh, camera, open.view.observer, kSize);
+        const auto factors = fitted.shares().factors();
+        return std::vector<float>(factors.begin(), factors.end());
+    };
+    const auto factors = open.prepared.lights->shares().factors();
+    const std::vector<float> found(factors.begin(), factors.end());
+    EXPECT_EQ(found, learned(*open.view.camera));
+    EXPECT_NE(found, learned(*open.view.still));
 }
 
 }  // namespace

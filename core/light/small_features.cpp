@@ -112,8 +112,8 @@ std::vector<Cluster> clusters_of(std::vector<Part> parts, size_t most) {
     return clusters;
 }
 
-void add_things(std::vector<SmallFeature>& out, SmallFeature::Kind kind, std::vector<Part> parts,
-                size_t most) {
+void add_features(std::vector<SmallFeature>& out, SmallFeature::Kind kind, std::vector<Part> parts,
+                  size_t most) {
     for (const Cluster& cluster : clusters_of(std::move(parts), most)) {
         const Part all = sum_of(cluster.parts);
         out.push_back({kind, all.box.center(), all.box.size().length() / 2, all.reach_m, false,
@@ -253,10 +253,10 @@ void add_surfaces(const Scene& scene, std::vector<SmallFeature>& out, size_t mos
         add_body(lamps, glowing);
         add_body(wavelength, dispersing);
     }
-    add_things(out, SmallFeature::Kind::Wavelength, std::move(wavelength), most);
+    add_features(out, SmallFeature::Kind::Wavelength, std::move(wavelength), most);
     for (const std::vector<Part>& found : {lamps, bright})
         for (std::vector<Part>& of_class : classes_of(found))
-            add_things(out, SmallFeature::Kind::Lamp, std::move(of_class), most);
+            add_features(out, SmallFeature::Kind::Lamp, std::move(of_class), most);
 }
 
 // The sky's sampler draws in proportion to what is above the mean: what is drawn and far above it
@@ -279,7 +279,7 @@ void add_sky(const Scene& scene, std::vector<SmallFeature>& out, size_t most) {
     for (const std::vector<Part>& of_class : classes_of(bright)) {
         std::vector<Part> parts;
         add_body(parts, of_class);
-        add_things(out, SmallFeature::Kind::Lamp, std::move(parts), most);
+        add_features(out, SmallFeature::Kind::Lamp, std::move(parts), most);
     }
     for (size_t i = first; i < out.size(); ++i) {
         out[i].at_infinity = true;

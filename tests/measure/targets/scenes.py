@@ -243,14 +243,14 @@ def write_fairy(path):
     """200 fairy lights of 3 mm in eight garlands at 1.5 to 6 m, a matt wall behind, a chequered ball at 1 m."""
     draw, file = random.Random(4), Gltf()
     matt = file.add_material((.45, .42, .4), 0, 1)
-    file.add_floor(matt, -.8, 5, 3, -6.5)
-    file.add_wall(matt, -5, 5, -.8, 3, -6.5)
+    file.add_floor(matt, -1.6, 5, 3, -6.5)
+    file.add_wall(matt, -5, 5, -1.6, 3, -6.5)
     file.add_softbox(300)
     file.add_chequered_ball(.08, .1, -.1, -1.08)
     lights = [file.add_mesh(file.add_shining(colour, 2e5), *ball(.0015, 2)) for colour in COLOURS]
     for garland in range(8):
-        ends = [(draw.uniform(1.6, 5.9), side * .34, draw.uniform(-.02, .22)) for side in (-1, 1)]
-        sag = draw.uniform(.1, .28)
+        ends = [(draw.uniform(1.6, 5.9), side * .34, draw.uniform(.24 - .05 * garland, .27 - .05 * garland)) for side in (-1, 1)]
+        sag = draw.uniform(.05, .13)
         for i in range(25):
             t = (i + draw.uniform(.3, .7)) / 25
             away, across, up = (a + (b - a) * t for a, b in zip(*ends))
@@ -272,13 +272,13 @@ def write_dew(path):
 
 
 def write_asphalt(path):
-    """24 street lamps 0.2 m wide, 5 m high, at 10 to 40 m, mirrored in wet asphalt; a chequered ball at 2 m."""
+    """24 street lamps 0.2 m wide, 5 m high, at 10 to 40 m, mirrored in wet asphalt, smoother on the left; a ball at 2 m."""
     file = Gltf()
-    for i, roughness in enumerate((.05, .1, .15)):
+    for left, roughness in ((-9, .05), (0, .15)):
         wet = file.add_material((.03, .03, .035), 0, roughness)
-        file.add_node(mesh=file.add_mesh(wet, *quad(*((x, 0, z) for x, z in (
-            (6 * i - 9, 5), (6 * i - 3, 5), (6 * i - 3, -80), (6 * i - 9, -80))))))
-    file.add_chequered_ball(.12, .15, .12, -2.1)
+        file.add_node(mesh=file.add_mesh(wet, *quad((left, 0, 5), (left + 9, 0, 5), (left + 9, 0, -80), (left, 0, -80))))
+    file.add_softbox(300)
+    file.add_chequered_ball(.12, .05, .12, -2.1)
     lamps = [file.add_mesh(file.add_shining(colour, 4e4), *turned([(0, 0), (.1, 0)])) for colour in ((1, .6, .25), (1, .9, .8))]
     for i in range(12):
         for side, lamp in zip((-1, 1), lamps):
@@ -288,19 +288,19 @@ def write_asphalt(path):
 
 
 def write_tree(path):
-    """A dark cone of 1.5 m at 3.5 m with 40 balls of metal and glass and 60 lights of 4 mm; a chequered ball at 1 m."""
+    """A dark cone of 1.5 m at 3.5 m with 40 balls of metal and glass and 60 lights of 4 mm; a ball at 1.5 m."""
     draw, file = random.Random(6), Gltf()
     matt = file.add_material((.3, .25, .22), 0, 1)
     file.add_floor(matt, -.85, 4, 3, -5)
     file.add_wall(matt, -4, 4, -.85, 3, -5)
-    file.add_softbox(300)
-    file.add_chequered_ball(.07, .2, -.12, -1.07)
+    file.add_softbox(3000)
+    file.add_chequered_ball(.1, .3, -.2, -1.6)
     file.add_node(mesh=file.add_mesh(file.add_material((.01, .04, .015), 0, .9), *turned([(0, 0), (.55, 0), (0, 1.5)])),
                   translation=[0, -.75, -3.5])
     balls = [file.add_material(colour, 1, roughness) for colour, roughness in (
         ((.8, .05, .05), 0), ((.9, .7, .3), 0), ((.1, .2, .8), 0), ((.9, .9, .9), .1))]
-    balls.append(file.add_glass((.9, 1, .95), 1.5, .06))
-    balls = [(file.add_mesh(material, *ball(.03, 5)), .03) for material in balls]
+    balls.append(file.add_glass((.9, 1, .95), 1.5, .09))
+    balls = [(file.add_mesh(material, *ball(.045, 5)), .045) for material in balls]
     lights = [(file.add_mesh(file.add_shining(colour, 2e5), *ball(.002, 2)), .004) for colour in COLOURS]
 
     def hang(meshes, count):
@@ -320,14 +320,14 @@ def write_tree(path):
 def write_workshop(path):
     """40 polished metal balls and cylinders on a dark bench at 0.8 to 2.5 m, two lamps of 2 cm; a ball at 0.6 m."""
     draw, file = random.Random(7), Gltf()
-    file.add_floor(file.add_material((.05, .04, .03), 0, 1), -.25, 2, 1, -4)
-    file.add_chequered_ball(.03, .03, -.13, -.62)
-    lamp = file.add_mesh(file.add_shining((1, .9, .75), 1e6), *turned([(.01, 0), (0, 0)]))
+    file.add_floor(file.add_material((.025, .02, .015), 0, 1), -.18, 2, 1, -4)
+    file.add_chequered_ball(.03, .03, -.15, -.62)
+    lamp = file.add_mesh(file.add_shining((1, .9, .75), 1e6), *turned([(0, 0), (.01, 0)]))
     for x, z in ((-.4, -.7), (.5, -1.6)):
         file.add_node(mesh=lamp, translation=[x, .5, z])
     metals = [file.add_material(colour, 1, 0) for colour in ((.9, .9, .9), (.95, .75, .4), (.9, .6, .5))]
     for row in range(5):
-        radius = .018 + .004 * row
+        radius = .02 + .006 * row
         shapes = [[file.add_mesh(metal, *shape) for metal in metals] for shape in (
             ball(radius, 5), turned([(0, -radius), (.7 * radius, -radius), (.7 * radius, radius), (0, radius)]))]
         for column in range(8):
@@ -335,7 +335,7 @@ def write_workshop(path):
             kind, turn = (row + column) % 2, draw.uniform(0, math.pi)
             a, b = math.sqrt(.5) * math.sin(turn), math.sqrt(.5) * math.cos(turn)
             file.add_node(mesh=draw.choice(shapes[kind]), rotation=[a, a, b, b], translation=[
-                (-.3 + .6 * (column + draw.uniform(.4, .6)) / 8) * away, radius * (.7 if kind else 1) - .2499, -away])
+                (-.3 + .6 * (column + draw.uniform(.2, .8)) / 8) * away, radius * (.7 if kind else 1) - .1799, -away])
     file.write(path)
 
 
@@ -343,12 +343,12 @@ AHEAD = "--look-at 0,0,0,0,0,-1"
 SCENES = {
     "night": (write_night, AHEAD + " --focus 1m"),
     "glints": (write_glints, AHEAD + " --focus 0.4m --env sun.hdr"),
-    "city": (write_city, "--look-at 0,1.6,0,0,1.76,-1 --focus 1.5m"),
+    "city": (write_city, "--look-at 0,1.6,0,0,1.72,-1 --focus 1.5m"),
     "fairy": (write_fairy, AHEAD + " --focus 1m"),
-    "dew": (write_dew, "--look-at 0,0,0,0,-0.2,-1 --focus 0.5m --env sun.hdr --env-rotate 110"),
+    "dew": (write_dew, "--look-at 0,0,0,0,-0.2,-1 --focus 0.5m --fstop 2.8 --env sun.hdr --env-rotate 110"),
     "asphalt": (write_asphalt, "--look-at 0,0.4,0,0,0.4,-1 --focus 2m"),
-    "tree": (write_tree, AHEAD + " --focus 1m"),
-    "workshop": (write_workshop, "--look-at 0,0,0,0,-0.1,-1 --focus 0.6m"),
+    "tree": (write_tree, AHEAD + " --focus 1.5m"),
+    "workshop": (write_workshop, "--look-at 0,0,0,0,-0.06,-1 --focus 0.6m"),
 }
 
 

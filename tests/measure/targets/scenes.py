@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the scenes by which rays to targets are measured, as NAME.gltf, and the sky of two of them, sun.hdr.
+"""Writes the scenes by which rays to targets are measured, as NAME.gltf, and the sky of glints and dew, sun.hdr.
 
     scenes.py FOLDER [NAME ...]
 
@@ -262,7 +262,8 @@ def write_fairy(path):
 def write_dew(path):
     """400 drops of water of 2 to 4 mm on matt green at 0.4 to 1.2 m, against the sun."""
     draw, file = random.Random(5), Gltf()
-    file.add_floor(file.add_material((.02, .07, .01), 0, 1), -.12, 4, 2, -6)
+    leaf = file.add_material((.015, .05, .01), 0, 1, **file.use(KHR_materials_specular={"specularFactor": 0}))
+    file.add_floor(leaf, -.12, 4, 2, -6)
     radii = (.001, .0014, .0017, .002)
     drops = [file.add_mesh(file.add_glass((1, 1, 1), 1.33, 2 * r), *ball(r, 4)) for r in radii]
     for _ in range(400):
@@ -321,9 +322,10 @@ def write_workshop(path):
     """40 polished metal balls and cylinders on a dark bench at 0.8 to 2.5 m, two lamps of 2 cm; a ball at 0.6 m."""
     draw, file = random.Random(7), Gltf()
     file.add_floor(file.add_material((.025, .02, .015), 0, 1), -.18, 2, 1, -4)
+    file.add_softbox(20)
     file.add_chequered_ball(.03, .03, -.15, -.62)
     lamp = file.add_mesh(file.add_shining((1, .9, .75), 1e6), *turned([(0, 0), (.01, 0)]))
-    for x, z in ((-.4, -.7), (.5, -1.6)):
+    for x, z in ((-.4, -.8), (.5, -1.8)):
         file.add_node(mesh=lamp, translation=[x, .5, z])
     metals = [file.add_material(colour, 1, 0) for colour in ((.9, .9, .9), (.95, .75, .4), (.9, .6, .5))]
     for row in range(5):
@@ -348,7 +350,7 @@ SCENES = {
     "dew": (write_dew, "--look-at 0,0,0,0,-0.2,-1 --focus 0.5m --fstop 2.8 --env sun.hdr --env-rotate 110"),
     "asphalt": (write_asphalt, "--look-at 0,0.4,0,0,0.4,-1 --focus 2m"),
     "tree": (write_tree, AHEAD + " --focus 1.5m"),
-    "workshop": (write_workshop, "--look-at 0,0,0,0,-0.06,-1 --focus 0.6m"),
+    "workshop": (write_workshop, "--look-at 0,0,0,0,-0.12,-1 --focus 0.6m"),
 }
 
 

@@ -12,6 +12,7 @@ namespace petzval {
 struct FilmCell {
     V2f first, last;
 
+    [[nodiscard]] float area() const { return (last.x - first.x) * (last.y - first.y); }
     /// The place of the cell that is nearest to another.
     [[nodiscard]] V2f nearest(V2f place) const {
         return {std::clamp(place.x, first.x, last.x), std::clamp(place.y, first.y, last.y)};

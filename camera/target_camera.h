@@ -25,19 +25,20 @@ class TargetCamera : public Camera {
     void set_targets(std::shared_ptr<const TargetGrid> targets) { targets_ = std::move(targets); }
     [[nodiscard]] const std::shared_ptr<const TargetGrid>& targets() const { return targets_; }
 
-    /// A target made ready for the film; nothing where no ray seems to meet its middle.
-    [[nodiscard]] virtual std::optional<PreparedTarget> prepared(const Target&) const = 0;
-    /// A target made ready for the film points of a cell, with a chance of 1; nothing where no ray
-    /// from there seems to meet its middle.
-    [[nodiscard]] virtual std::optional<ListedTarget> listed(const PreparedTarget&,
-                                                             const FilmCell&) const = 0;
-    /// Rays of the other camera, weighed beside those to the targets of each film point.
-    virtual void sample_beside(std::span<const FilmPoint>, std::span<const Bands>,
-                               std::span<const TargetList>, std::span<CameraSample>) const = 0;
+    /// Map of the rays of a cell; nullptr where they are too few.
+    [[nodiscard]] virtual std::shared_ptr<const StopMap> map(const FilmCell&) const = 0;
+    /// A target made ready for the film points of a cell, in a frame of so many pixels; nothing
+    /// where none of their rays passes it.
+    [[nodiscard]] virtual std::optional<ListedTarget> listed(const Target&, const StopMap&,
+                                                             V2i frame_px) const = 0;
+    /// Rays of the other camera, weighed beside those to the targets of each film point, which has
+    /// a pixel filter where it has a cell.
+    virtual void sample_beside(std::span<const FilmPoint>, std::span<const Bands>, CellsOfPoints,
+                               std::span<CameraSample>) const = 0;
     /// Rays of film points to one of the targets of each. None for a film point that has no
     /// targets, or where the ray is blocked.
-    virtual void sample_targets(std::span<const FilmPoint>, std::span<const Bands>,
-                                std::span<const TargetList>, std::span<CameraSample>) const = 0;
+    virtual void sample_targets(std::span<const FilmPoint>, std::span<const Bands>, CellsOfPoints,
+                                std::span<CameraSample>) const = 0;
 
   private:
     std::shared_ptr<const TargetGrid> targets_;

@@ -64,11 +64,10 @@ double PilotModel::lens_rays() const {
     }
 }
 
-// The search for a ray through a traced lens from one start: about what the pilot of the targets
-// counts for it (kTracedCost and kStartCost in integrator/prepass/target_pilot.cpp).
+// The search for a ray to a target: what the pilot of the targets counts for it (kSearchCost in
+// integrator/prepass/target_pilot.cpp).
 double PilotModel::rays_to_find_targets() const {
-    constexpr double kSearch = 12;
-    if (stats_.lens_lanes.drawn == 0) return 0;
+    constexpr double kSearch = 8;
     return kSearch * static_cast<double>(stats_.target_rays) / static_cast<double>(stats_.samples);
 }
 

@@ -65,7 +65,7 @@ double sent_to(const RenderSetup& setup, V2i size_px, std::array<int, 2> pixel,
     const V2f film((float(pixel[0]) + 0.5f) / float(size_px.x),
                    (float(pixel[1]) + 0.5f) / float(size_px.y));
     double sum = 0;
-    for (const ListedTarget& listed : grid->at(film)) {
+    for (const ListedTarget& listed : grid->at(film).targets) {
         const Target& target = grid->targets[listed.number];
         if (target.at_infinity != lamp.feature.at_infinity ||
             (target.centre - lamp.feature.centre).length() > lamp.feature.radius_m)

@@ -62,12 +62,11 @@ std::string hash_of_learned(const RenderSetup& setup) {
     if (!targets) return hash.text();
     for (const Target& target : targets->targets) {
         hash.add(target.centre);
-        hash.add(target.normal);
         hash.add(target.radius_m);
     }
-    for (const auto& list : targets->lists) {
-        hash.add(uint64_t(list.size()));
-        for (const ListedTarget& listed : list) {
+    for (const TargetCell& cell : targets->lists) {
+        hash.add(uint64_t(cell.targets.size()));
+        for (const ListedTarget& listed : cell.targets) {
             hash.add(uint64_t(listed.number));
             hash.add(listed.chance);
         }

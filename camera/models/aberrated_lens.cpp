@@ -89,7 +89,7 @@ class AberratedLensCamera::Point {
 
   private:
     /// Tangents of the angles at which the film point sees the lens's middle, right and up.
-    [[nodiscard]] V2f tangents() const { return c_.tangents(at_); }
+    [[nodiscard]] V2f tangents() const { return c_.tangents(at_.film); }
     /// Natural vignetting where each lane lands, over that of the film point.
     [[nodiscard]] f4 vignetting_where(f4 off, V2f stop_mm) const {
         f4 out = splat(1.f);
@@ -127,24 +127,20 @@ CameraSample AberratedLensCamera::through(const FilmPoint& at, V2f stop_mm,
     return sample_lens(Point(*this, at, stop_mm, bands), in_.dispersion, at.pixel, bands);
 }
 
-// Lanes that part share the point of the stop, so each may have drawn it; a hero ray is its hero
-// lane's.
-StopPencils AberratedLensCamera::pencils(const FilmPoint& at, const Bands& bands) const {
-    StopPencils out;
-    const bool led = one_ray(bands, in_.dispersion) ||
-                     (in_.dispersion == DispersionMode::Hero && at.pixel.filter);
-    for (int lane = 0; lane < 4; ++lane) {
-        if (led ? lane != bands.hero : !bands.on[lane]) continue;
-        const SingletOptics optics = optics_at(index_of(bands, lane));
-        out.of_lanes[out.count++] = {V2d(tangents(at)), 1e-3 * optics.focal_mm,
-                                     1e3 * spherical_coefficient_per_mm(optics, focus_mm_) / 2,
-                                     1e3 / film_mm_, 1e-3 * double(in_.iris.bounding_radius_mm())};
-    }
-    return out;
+bool AberratedLensCamera::is_led(const FilmPoint& at, const Bands& bands) const {
+    return one_ray(bands, in_.dispersion) ||
+           (in_.dispersion == DispersionMode::Hero && at.pixel.filter);
 }
 
-V2f AberratedLensCamera::tangents(const FilmPoint& at) const {
-    return {(2.f * at.film.x - 1.f) * tan_half_x_, (1.f - 2.f * at.film.y) * tan_half_y_};
+StopPencil AberratedLensCamera::pencil(V2f film, double nm) const {
+    const bool shared = in_.dispersion == DispersionMode::Shared;
+    const SingletOptics optics = shared ? at_d_ : optics_at(in_.singlet.glass.index(nm));
+    return {V2d(tangents(film)), 1e-3 * optics.focal_mm,
+            1e3 * spherical_coefficient_per_mm(optics, focus_mm_) / 2, 1e3 / film_mm_};
+}
+
+V2f AberratedLensCamera::tangents(V2f film) const {
+    return {(2.f * film.x - 1.f) * tan_half_x_, (1.f - 2.f * film.y) * tan_half_y_};
 }
 
 double AberratedLensCamera::index_of(const Bands& bands, int lane) const {

@@ -37,18 +37,18 @@ class AberratedLensCamera final : public Camera {
     [[nodiscard]] V2f drawn_stop_mm(const FilmPoint& at) const {
         return in_.iris.sample(at.sampler.get2(Dim::Lens));
     }
-    /// Pencils of the lanes by whose rays points of the stop are drawn.
-    [[nodiscard]] StopPencils pencils(const FilmPoint&, const Bands&) const;
+    /// Rays of a film point at a wavelength.
+    [[nodiscard]] StopPencil pencil(V2f film, double nm) const;
+    /// Whether the rays of a film point are those of the hero lane alone.
+    [[nodiscard]] bool is_led(const FilmPoint&, const Bands&) const;
     [[nodiscard]] const Iris* iris() const { return &in_.iris; }
     [[nodiscard]] const Pose& pose() const { return pose_; }
-    /// Tangents of the angles from the axis to the film's right and upper edges.
-    [[nodiscard]] V2f tan_half() const { return {tan_half_x_, tan_half_y_}; }
     [[nodiscard]] double film_distance_mm() const { return film_mm_; }
 
   private:
     /// A film point's rays, for the strategies of camera/dispersion.
     class Point;
-    [[nodiscard]] V2f tangents(const FilmPoint&) const;
+    [[nodiscard]] V2f tangents(V2f film) const;
     [[nodiscard]] double index_of(const Bands&, int lane) const;
     [[nodiscard]] SingletOptics optics_at(double n) const;
     [[nodiscard]] double zonal_mm(double n, double h_mm) const;

@@ -273,7 +273,8 @@ LensDraw<V> LensCamera::draw(V2f film_mm, V2f u, const Bands& bands) const {
     points.film_mm.fill(film_mm);
     points.u.fill(u);
     points.nm = splat8(achromatic ? kLineD : bands.nm[bands.hero]);
-    const LeadRays rays = optics_.aim(points, indices_of(points, achromatic));
+    const LeadRays rays =
+        optics_.aim(points, optics_.drawn_stop_mm(points), indices_of(points, achromatic));
     const Place place{film_mm, rays.stop_mm[0], bands, achromatic, V2f(1.f)};
     return Point<V>(*this, place, rays, 0).rays({bands.on, bands.hero, true});
 }
@@ -319,7 +320,7 @@ auto LensCamera::batch(std::span<const FilmPoint> points, std::span<const Bands>
 void LensCamera::sample_all(std::span<const FilmPoint> points, std::span<const Bands> bands,
                             std::span<CameraSample> out) const {
     const Batch all = batch(points, bands);
-    LeadRays rays = optics_.aim(all.at, all.indices);
+    LeadRays rays = optics_.aim(all.at, optics_.drawn_stop_mm(all.at), all.indices);
     finish(all, rays, out);
 }
 
@@ -383,7 +384,7 @@ double LensCamera::irradiance(V2f film_mm, uint32_t count) const {
     for (uint32_t first = 0; first < count; first += kMostFilmPoints) {
         for (uint32_t i = 0; i < kMostFilmPoints; ++i)
             at.u[i] = Sampler(SamplerKind::Owen, 0, {0, 0, first + i}).get2(Dim::Lens);
-        LeadRays rays = optics_.aim(at, line_d_of_all_);
+        LeadRays rays = optics_.aim(at, optics_.drawn_stop_mm(at), line_d_of_all_);
         optics_.trace(at, line_d_of_all_, rays);
         for (uint32_t i = 0; i < kMostFilmPoints && first + i < count; ++i)
             if (const int lane = int(i); rays.passed[lane])

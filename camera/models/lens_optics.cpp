@@ -61,15 +61,22 @@ LensOptics::LensOptics(std::shared_ptr<const Lens> lens, Iris iris, Coating coat
                                  std::min(rim_mm, iris_.bounding_radius_mm()), iris_.area_mm2());
 }
 
-LeadRays LensOptics::aim(const LeadPoints& at, const LensIndices<f8>& indices) const {
-    LeadRays out;
-    PlanePoint<f8> film_mm(f8{}, f8{});
+PlanePoint<f8> LensOptics::drawn_stop_mm(const LeadPoints& at) const {
+    PlanePoint<f8> out(f8{}, f8{});
     for (size_t i = 0; i < 8; ++i) {
         const V2f stop = stop_at(at.film_mm[i]).sample(at.u[i]);
-        out.stop_mm.x[i] = stop.x, out.stop_mm.y[i] = stop.y;
-        film_mm.x[i] = at.film_mm[i].x, film_mm.y[i] = at.film_mm[i].y;
+        out.x[i] = stop.x, out.y[i] = stop.y;
     }
-    out.aimed = aimer_.aim(film_mm, out.stop_mm, indices, at.nm);
+    return out;
+}
+
+LeadRays LensOptics::aim(const LeadPoints& at, const PlanePoint<f8>& stop_mm,
+                         const LensIndices<f8>& indices) const {
+    LeadRays out;
+    PlanePoint<f8> film_mm(f8{}, f8{});
+    for (size_t i = 0; i < 8; ++i) film_mm.x[i] = at.film_mm[i].x, film_mm.y[i] = at.film_mm[i].y;
+    out.stop_mm = stop_mm;
+    out.aimed = aimer_.aim(film_mm, stop_mm, indices, at.nm);
     return out;
 }
 

@@ -83,9 +83,11 @@ class LensOptics {
         return stop_mm.dot(stop_mm) <= stop_rim2_mm2_ ? iris_.transmits(stop_mm) : 0.f;
     }
 
-    /// Rays aimed at points of the stop that are drawn for the film points; `aimed` and stop_mm are
-    /// filled in.
-    [[nodiscard]] LeadRays aim(const LeadPoints&, const LensIndices<f8>&) const;
+    /// Points of the stop that are drawn for the film points.
+    [[nodiscard]] PlanePoint<f8> drawn_stop_mm(const LeadPoints&) const;
+    /// Rays aimed at points of the stop; `aimed` and stop_mm are filled in.
+    [[nodiscard]] LeadRays aim(const LeadPoints&, const PlanePoint<f8>& stop_mm,
+                               const LensIndices<f8>&) const;
     /// Traces aimed rays to the scene; the rest is filled in.
     void trace(const LeadPoints&, const LensIndices<f8>&, LeadRays&) const;
 

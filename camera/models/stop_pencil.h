@@ -2,9 +2,6 @@
 // Pencil of a thin lens: the rays of one film point and wavelength, by where they cross the stop.
 #pragma once
 
-#include <array>
-#include <span>
-
 #include "core/math/math.h"
 
 namespace petzval {
@@ -16,7 +13,6 @@ namespace petzval {
 struct StopPencil {
     V2d tangents;  ///< right and up, of the ray through the middle
     double focal_m, half_k_per_m = 0, film_vergence_per_m = 0;
-    double reach_m;  ///< radius of the stop
 
     [[nodiscard]] double vergence_per_m(double h) const {
         return 1 / (focal_m - half_k_per_m * h * h) - film_vergence_per_m;
@@ -24,19 +20,5 @@ struct StopPencil {
     /// Direction of the ray through a point of the stop; z is -1.
     [[nodiscard]] V3d direction(V2d s) const;
 };
-
-/// Pencils of the lanes whose rays a point of the stop is drawn for.
-struct StopPencils {
-    std::array<StopPencil, 4> of_lanes{};
-    size_t count = 0;
-    [[nodiscard]] std::span<const StopPencil> span() const { return {of_lanes.data(), count}; }
-};
-
-/// Film point, as FilmPoint has it, at which the middle of a stop sees a point in front of it.
-/// tan_half: of the angles from the axis to the film's right and upper edges.
-[[nodiscard]] inline V2f pictured(const V3d& point, V2f tan_half) {
-    return {static_cast<float>(0.5 - 0.5 * point.x / point.z / double(tan_half.x)),
-            static_cast<float>(0.5 + 0.5 * point.y / point.z / double(tan_half.y))};
-}
 
 }  // namespace petzval

@@ -34,12 +34,12 @@ ThinLensCamera::ThinLensCamera(ThinLens lens)
       tan_half_x_(std::tan(lens.yfov_rad / 2) * lens.aspect),
       tan_half_y_(std::tan(lens.yfov_rad / 2)) {}
 
-V2f ThinLensCamera::tangents(const FilmPoint& at) const {
-    return {(2.f * at.film.x - 1.f) * tan_half_x_, (1.f - 2.f * at.film.y) * tan_half_y_};
+V2f ThinLensCamera::tangents(V2f film) const {
+    return {(2.f * film.x - 1.f) * tan_half_x_, (1.f - 2.f * film.y) * tan_half_y_};
 }
 
 CameraSample ThinLensCamera::through(const FilmPoint& at, V2f stop_mm, const Bands& bands) const {
-    const V2f slope = tangents(at), stop = stop_mm * 1e-3f;
+    const V2f slope = tangents(at.film), stop = stop_mm * 1e-3f;
     const V3f origin{stop.x, stop.y, 0.f}, direction{slope.x, slope.y, -1.f};
     const float weight = vignetting_ ? exposure_ * vignetting_->factor(slope, stop_mm) : exposure_;
     return one_path(pose_, origin, iris_ ? direction * focus_m_ - origin : direction, bands,
@@ -54,10 +54,8 @@ CameraSample ThinLensCamera::sample(const FilmPoint& at, const Bands& bands) con
     return through(at, drawn_stop_mm(at), bands);
 }
 
-StopPencils ThinLensCamera::pencils(const FilmPoint& at, const Bands&) const {
-    return {{StopPencil{V2d(tangents(at)), double(focus_m_), 0, 0,
-                        1e-3 * double(iris_->bounding_radius_mm())}},
-            1};
+StopPencil ThinLensCamera::pencil(V2f film) const {
+    return {V2d(tangents(film)), double(focus_m_)};
 }
 
 OrthographicCamera::OrthographicCamera(const M44f& to_world, float half_width_m,

@@ -32,15 +32,13 @@ class ThinLensCamera final : public Camera {
     [[nodiscard]] CameraSample through(const FilmPoint&, V2f stop_mm, const Bands&) const;
     /// Point of the stop that the film point's sampler draws.
     [[nodiscard]] V2f drawn_stop_mm(const FilmPoint&) const;
-    /// Its only pencil; a camera with an iris.
-    [[nodiscard]] StopPencils pencils(const FilmPoint&, const Bands&) const;
+    /// Rays of a film point; a camera with an iris.
+    [[nodiscard]] StopPencil pencil(V2f film) const;
     [[nodiscard]] const std::optional<Iris>& iris() const { return iris_; }
     [[nodiscard]] const Pose& pose() const { return pose_; }
-    /// Tangents of the angles from the axis to the film's right and upper edges.
-    [[nodiscard]] V2f tan_half() const { return {tan_half_x_, tan_half_y_}; }
 
   private:
-    [[nodiscard]] V2f tangents(const FilmPoint&) const;
+    [[nodiscard]] V2f tangents(V2f film) const;
 
     Pose pose_;
     std::optional<Iris> iris_;

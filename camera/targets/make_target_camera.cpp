@@ -1,22 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "camera/targets/make_target_camera.h"
 
-#include <utility>
-
-#include "camera/models/aberrated_lens.h"
-#include "camera/models/thin_lens.h"
-#include "camera/targets/lens_target_camera.h"
 #include "camera/targets/stop_target_camera.h"
 
 namespace petzval {
 
 std::unique_ptr<TargetCamera> target_camera(const std::shared_ptr<const Camera>& camera) {
     if (auto lens = std::dynamic_pointer_cast<const LensCamera>(camera))
-        return std::make_unique<LensTargetCamera>(std::move(lens));
+        return std::make_unique<StopTargetCamera>(std::move(lens));
     if (auto lens = std::dynamic_pointer_cast<const AberratedLensCamera>(camera))
-        return std::make_unique<StopTargetCamera<AberratedLensCamera>>(std::move(lens));
+        return std::make_unique<StopTargetCamera>(std::move(lens));
     if (auto lens = std::dynamic_pointer_cast<const ThinLensCamera>(camera); lens && lens->iris())
-        return std::make_unique<StopTargetCamera<ThinLensCamera>>(std::move(lens));
+        return std::make_unique<StopTargetCamera>(std::move(lens));
     return nullptr;
 }
 

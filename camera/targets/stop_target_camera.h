@@ -1,65 +1,65 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays to targets of a camera whose rays have closed forms: its stop is a plane, its pencils thin.
+// Rays to targets of a camera with a stop.
 #pragma once
 
 #include <memory>
-#include <utility>
+#include <vector>
 
 #include "camera/target_camera.h"
-#include "camera/targets/targeted_stop.h"
+#include "camera/targets/stop_camera.h"
+#include "camera/targets/stop_search.h"
 
 namespace petzval {
 
-/// C: ThinLensCamera with an iris, or AberratedLensCamera.
-template <class C>
+/// A camera that draws points of its stop twice: from the iris, and where rays of the film point
+/// pass a target. Some of the latter draw the film point as well, within its pixel. Whatever the
+/// regions are that they draw from, the mean stays: a ray has one density of each draw.
 class StopTargetCamera final : public TargetCamera {
   public:
-    explicit StopTargetCamera(std::shared_ptr<const C> camera) : camera_(std::move(camera)) {}
+    explicit StopTargetCamera(StopCamera camera);
 
-    [[nodiscard]] std::optional<PreparedTarget> prepared(const Target& target) const override {
-        const LocalTarget local(camera_->pose(), target);
-        return PreparedTarget{local, pictured(local.centre, camera_->tan_half())};
-    }
-    [[nodiscard]] std::optional<ListedTarget> listed(const PreparedTarget& target,
-                                                     const FilmCell& cell) const override {
-        const FilmPoint at{cell.nearest(target.place)};
-        const StopPencils rays = camera_->pencils(at, Bands::rgb());
-        return stop(rays).listed(target.target, at.film);
-    }
-    void sample_beside(std::span<const FilmPoint> points, std::span<const Bands> bands,
-                       std::span<const TargetList> targets,
-                       std::span<CameraSample> out) const override {
-        for (size_t i = 0; i < points.size(); ++i) {
-            const V2f stop_mm = camera_->drawn_stop_mm(points[i]);
-            out[i] = camera_->through(points[i], stop_mm, bands[i]);
-            if (targets[i].empty()) continue;
-            const StopPencils rays = camera_->pencils(points[i], bands[i]);
-            weigh(out[i], stop(rays).mis_weight(stop_mm, targets[i]));
-        }
-    }
-    void sample_targets(std::span<const FilmPoint> points, std::span<const Bands> bands,
-                        std::span<const TargetList> targets,
-                        std::span<CameraSample> out) const override {
-        for (size_t i = 0; i < points.size(); ++i) {
-            out[i] = {};
-            if (targets[i].empty()) continue;
-            const StopPencils rays = camera_->pencils(points[i], bands[i]);
-            const auto found = stop(rays).aim_at_one(points[i], targets[i]);
-            if (!found) continue;
-            out[i] = camera_->through(points[i], found->stop_mm, bands[i]);
-            weigh(out[i], found->mis_weight);
-        }
-    }
+    [[nodiscard]] std::shared_ptr<const StopMap> map(const FilmCell&) const override;
+    [[nodiscard]] std::optional<ListedTarget> listed(const Target&, const StopMap&,
+                                                     V2i frame_px) const override;
+    void sample_beside(std::span<const FilmPoint>, std::span<const Bands>, CellsOfPoints,
+                       std::span<CameraSample>) const override;
+    void sample_targets(std::span<const FilmPoint>, std::span<const Bands>, CellsOfPoints,
+                        std::span<CameraSample>) const override;
 
   private:
-    [[nodiscard]] TargetedStop stop(const StopPencils& rays) const {
-        return {*camera_->iris(), rays.span()};
-    }
-    static void weigh(CameraSample& sample, float mis_weight) {
-        for (CameraPath& path : sample) path.mis_weight = mis_weight;
-    }
+    struct Batch {
+        std::span<const FilmPoint> points;
+        std::span<const Bands> bands;
+        CellsOfPoints cells;
+    };
+    /// A film point of a batch, perhaps moved within its pixel, the point of the stop, and the
+    /// density with which its target drew it, 1/mm^2; -1: not known.
+    struct Aimed {
+        size_t of;
+        FilmPoint point;
+        V2f stop_mm;
+        const ListedTarget* target;
+        float density = -1;
+    };
+    [[nodiscard]] std::optional<TargetView> picked(const Batch&, size_t point, uint32_t ray) const;
+    [[nodiscard]] Sampler sampler(const Batch&, size_t point, uint32_t ray) const;
+    void aim_at_stop(const Batch&, uint32_t ray, std::vector<Aimed>&) const;
+    void aim_at_film(const Batch&, uint32_t ray, std::vector<Aimed>&) const;
+    /// Rays to targets of a sample: one, where the lanes part.
+    [[nodiscard]] uint32_t rays_of(const TargetCell&, const FilmPoint&, const Bands&) const;
+    void sample(std::span<const FilmPoint>, std::span<const Bands>, CellsOfPoints,
+                const StopPoints&, std::span<CameraSample>, std::span<const Aimed> = {}) const;
+    /// Density of rays to targets at the crossings of a ray, over that of its film point, in the
+    /// unit of CameraSample::density.
+    [[nodiscard]] float density_to_targets(const StopCrossings&, const FilmPoint&,
+                                           const TargetCell&, const Aimed*) const;
+    /// The same of one target: of points of the stop, and with those of the film point.
+    [[nodiscard]] float density_of_stop(const TargetView&, const StopMap::Rays&, V2f stop_mm) const;
+    [[nodiscard]] float density_of_film(const TargetView&, const FilmPoint&, V2f stop_mm) const;
 
-    std::shared_ptr<const C> camera_;
+    StopCamera camera_;
+    Pose pose_;
+    double iris_mm2_;
 };
 
 }  // namespace petzval

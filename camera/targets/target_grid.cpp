@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "camera/setup/film_region.h"
 #include "core/sampling/prepass_seed.h"
@@ -10,31 +11,24 @@
 namespace petzval {
 namespace {
 
-constexpr int kCell_px = 16;
+/// Side of a cell, so that a pilot of each stays below a quarter of a sample; in small frames it is
+/// less, as a map of the lens is good for a small part of the film.
+constexpr int kCell_px = 16, kLeastCell_px = 2, kFewestCells = 20;
 /// Things of a cell that are tried, brightest first, and that may be found.
-constexpr size_t kMostTried = 32, kMostFound = 20;
+constexpr size_t kMostTried = 256, kMostFound = 64;
 /// Rays of a cell that tell which things it may see, and the margin for what lies between them.
 constexpr int kRays = 64;
 constexpr float kMargin = 0.4f;
-constexpr size_t kMostListed = 16;
+constexpr size_t kMostListed = 48;
 /// Share of a pixel's ordinary rays that may pass a target: where they are more, they do as well.
 constexpr double kMostMet = 0.25;
 /// Share of the light of a cell's brightest target below which another is left out.
 constexpr double kLeastLight = 1e-3;
 
-/// Disc that faces a camera at `eye`.
-Target target_of(const SmallFeature& lamp, const V3f& eye) {
-    if (lamp.at_infinity) return {lamp.centre, lamp.centre, std::tan(lamp.reach_m), true};
-    return {lamp.centre, unit(lamp.centre - eye), lamp.reach_m, false};
+Target target_of(const SmallFeature& lamp) {
+    return {lamp.centre, lamp.at_infinity ? std::tan(lamp.reach_m) : lamp.reach_m,
+            lamp.at_infinity};
 }
-
-/// A lamp, and what the camera makes of it once a cell asks for it.
-struct LampToTry {
-    SmallFeature feature;
-    uint32_t number = 0;  ///< of its target
-    std::optional<PreparedTarget> ready{};
-    bool hopeless = false;
-};
 
 bool may_be_target(const SmallFeature& feature) {
     return feature.is_lamp() && feature.reach_m > 0 && std::isfinite(feature.reach_m) &&
@@ -46,39 +40,34 @@ bool may_be_target(const SmallFeature& feature) {
 std::shared_ptr<const TargetGrid> find_targets(const TargetCamera& camera, V2i size_px,
                                                std::span<const SmallFeature> features) {
     if (size_px.x < kCell_px || size_px.y < kCell_px) return nullptr;
-    std::vector<LampToTry> lamps;
-    for (const SmallFeature& feature : features)
-        if (may_be_target(feature)) lamps.push_back({feature});
+    std::vector<SmallFeature> lamps;
+    std::copy_if(features.begin(), features.end(), std::back_inserter(lamps), may_be_target);
     if (lamps.empty()) return nullptr;
-    std::stable_sort(lamps.begin(), lamps.end(), [](const LampToTry& a, const LampToTry& b) {
-        return a.feature.radiance > b.feature.radiance;
-    });
+    std::stable_sort(lamps.begin(), lamps.end(),
+                     [](const auto& a, const auto& b) { return a.radiance > b.radiance; });
     auto out = std::make_shared<TargetGrid>();
-    // Cells are no smaller than that, so that a pilot of each stays below a quarter of a sample.
-    out->cells = {size_px.x / kCell_px, size_px.y / kCell_px};
+    for (const SmallFeature& lamp : lamps) out->targets.push_back(target_of(lamp));
+    const auto cells = [](int px) {
+        return std::max(px / kCell_px, std::min(px / kLeastCell_px, kFewestCells));
+    };
+    out->cells = {cells(size_px.x), cells(size_px.y)};
     bool any = false;
     for (int j = 0; j < out->cells.y; ++j)
         for (int i = 0; i < out->cells.x; ++i) {
-            std::vector<ListedTarget>& list = out->lists.emplace_back();
+            TargetCell& cell = out->lists.emplace_back();
+            std::vector<ListedTarget>& list = cell.targets;
             const FilmCell place = out->cell(i, j, size_px);
             const RayBundle bundle =
                 bundle_of(camera, place, number_of(PrepassSeed::TargetCells), {i, j}, kRays);
             size_t tried = 0;
-            for (LampToTry& lamp : lamps) {
-                if (lamp.hopeless || !passes(bundle, lamp.feature, kMargin)) continue;
-                if (!lamp.ready) {
-                    const Target target = target_of(lamp.feature, bundle.rays[0].origin);
-                    lamp.ready = camera.prepared(target);
-                    lamp.hopeless = !lamp.ready;
-                    if (lamp.hopeless) continue;
-                    lamp.number = static_cast<uint32_t>(out->targets.size());
-                    out->targets.push_back(target);
-                }
-                if (list.size() == kMostFound || ++tried > kMostTried) break;
-                auto target = camera.listed(*lamp.ready, place);
+            for (size_t n = 0; n < lamps.size(); ++n) {
+                if (!passes(bundle, lamps[n], kMargin)) continue;
+                if (tried == 0) cell.map = camera.map(place);
+                if (!cell.map || list.size() == kMostFound || ++tried > kMostTried) break;
+                auto target = camera.listed(out->targets[n], *cell.map, size_px);
                 if (!target || !(target->met < kMostMet)) continue;
-                target->chance = target->met * static_cast<float>(lamp.feature.radiance);
-                target->number = lamp.number;
+                target->chance = target->met * static_cast<float>(lamps[n].radiance);
+                target->number = static_cast<uint32_t>(n);
                 list.push_back(*std::move(target));
             }
             std::stable_sort(list.begin(), list.end(),
@@ -90,6 +79,7 @@ std::shared_ptr<const TargetGrid> find_targets(const TargetCamera& camera, V2i s
             float sum = 0;
             for (const ListedTarget& t : list) sum += t.chance;
             for (ListedTarget& t : list) t.chance /= sum;
+            if (list.empty()) cell.map = nullptr;
             any = any || !list.empty();
         }
     return any ? out : nullptr;

@@ -67,6 +67,7 @@ Filter::Filter(FilterKind kind, float radius_px) : kind_(kind), radius_px_(radiu
         values_.push_back(
             static_cast<float>(profile(kind, i / static_cast<double>(values)) / profile(kind, 0)));
     const double half = integral(kind, 0);
+    peak_ = static_cast<float>(sqr(profile(kind, 0) / (2 * half * double(radius_px))));
     double x = -1;
     for (uint32_t k = 0; k <= kSteps; ++k) {
         const double root = static_cast<double>(k) / kSteps;

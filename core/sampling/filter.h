@@ -27,6 +27,8 @@ class Filter {
     [[nodiscard]] float value(V2f offset_px) const {
         return value1(offset_px.x) * value1(offset_px.y);
     }
+    /// Density of sample(), 1/px^2.
+    [[nodiscard]] float density_per_px2(V2f offset_px) const { return peak_ * value(offset_px); }
 
     [[nodiscard]] FilterKind kind() const { return kind_; }
     [[nodiscard]] float radius_px() const { return radius_px_; }
@@ -38,6 +40,7 @@ class Filter {
 
     FilterKind kind_;
     float radius_px_;
+    float peak_;                    ///< density in the middle, 1/px^2
     std::vector<float> values_;     ///< profile on half an axis, at equal steps from the centre
     std::vector<float> quantiles_;  ///< of the left half, in pixels; see the constructor
 };

@@ -27,6 +27,7 @@ enum class Dim : uint32_t {
     // Apart from those of paths, so that pictures without targets keep their numbers.
     TargetPoint = 1u << 30,  ///< on a target's disc
     TargetPick,              ///< the target, and how it is reached
+    TargetFilm,              ///< the film point from which it is seen
     TargetRest,              ///< whether a ray to a target brings more than what it finds
     Time                     ///< while the shutter is open
 };
@@ -56,6 +57,14 @@ class Sampler {
           index_(id.index),
           reversed_(reverse_bits(id.index)) {}
 
+    /// Sampler of one of `count` uses of the same numbers by this sample: all samples' uses
+    /// together are stratified as samples are.
+    [[nodiscard]] Sampler branch(uint32_t count, uint32_t number) const {
+        Sampler out = *this;
+        out.index_ = index_ * count + number;
+        out.reversed_ = reverse_bits(out.index_);
+        return out;
+    }
     /// A number in [0, 1) for the named use at a path vertex (0: the camera).
     [[nodiscard]] float get1(Dim dim, uint32_t vertex = 0) const;
     /// A point of [0, 1)^2, stratified in both coordinates together.

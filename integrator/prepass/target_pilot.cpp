@@ -14,18 +14,21 @@ namespace {
 
 /// Samples of a cell, rays to all of its targets, and to one of them.
 constexpr uint32_t kOrdinary = 8, kSent = 24, kMostSent = 12;
+/// Pixels of a cell for each ordinary sample, of which there are at least so many.
+constexpr uint32_t kPixelsPerSample = 32, kFewest = 2;
 /// Ratio of the frame's efforts that is worth it: they are known no better.
 constexpr double kWorthIt = 0.85;
 /// Share of the frame's mean that counts as dark.
 constexpr double kDark = 0.1;
 constexpr int kRounds = 16;
+/// Places of a cell, along each side, at which its targets are told from each other.
+constexpr size_t kPlaces = 4;
 /// Share of the rays that the targets of a cell get evenly, the rest in proportion to their light.
 constexpr double kEvenly = 0.5;
 
-/// Costs in steps of a path, each a ray or a vertex: that of a sample's lens, of a ray to a target
-/// through a thin lens and through a traced one, and for each start of the latter. From counts of
-/// instructions.
-constexpr double kLensCost = 4, kThinCost = 1, kTracedCost = 8, kStartCost = 4;
+/// Costs in steps of a path, each a ray or a vertex: of a sample's lens, and of the search for a
+/// ray to a target. From counts of instructions.
+constexpr double kLensCost = 4, kSearchCost = 8;
 
 double steps(const PathStats& s) {
     return double(s.camera_rays + s.bounce_rays + s.shadow_rays + s.vertices);
@@ -58,31 +61,32 @@ struct CellFound {
 
 class CellPilot {
   public:
-    CellPilot(const TargetCamera& camera, const PathTracer<>& tracer)
-        : camera_(camera), tracer_(tracer) {}
+    CellPilot(const TargetCamera& camera, const PathTracer<>& tracer, V2i frame_px)
+        : camera_(camera), tracer_(tracer), frame_px_(frame_px) {}
 
-    /// Samples at places of a cell; to: a target, or none for ordinary ones.
-    template <class PlaceOf>
-    [[nodiscard]] Found samples(V2i cell, uint32_t count, const ListedTarget* to,
-                                const PlaceOf& place_of) const {
+    /// Samples of even points of a part of the film, which are drawn for a place of the frame; to:
+    /// a target, or none for ordinary ones.
+    [[nodiscard]] Found samples(V2i drawn_for, const FilmCell& part, uint32_t count,
+                                const TargetCell* to) const {
         Found out;
         PathStats stats;
         for (uint32_t first = 0; first < count; first += kMostFilmPoints) {
             std::array<FilmPoint, kMostFilmPoints> points;
             std::array<Bands, kMostFilmPoints> bands;
             std::array<CameraSample, kMostFilmPoints> paths;
-            std::array<TargetList, kMostFilmPoints> lists;
+            std::array<const TargetCell*, kMostFilmPoints> cells{};
             const auto n = std::min(count - first, static_cast<uint32_t>(kMostFilmPoints));
             for (uint32_t i = 0; i < n; ++i) {
                 const Sampler sampler(SamplerKind::Owen, number_of(PrepassSeed::Targets),
-                                      {cell.x, cell.y, first + i});
+                                      {drawn_for.x, drawn_for.y, first + i});
                 bands[i] = Bands::rgb();
-                points[i] = {place_of(first + i, sampler.get2(Dim::Film)), sampler};
+                points[i] =
+                    at(part.first + sampler.get2(Dim::Film) * (part.last - part.first), sampler);
+                cells[i] = to ? to : &camera_.targets()->at(points[i].film);
+                if (cells[i]->empty()) cells[i] = nullptr;
             }
-            for (uint32_t i = 0; i < n; ++i)
-                lists[i] = to ? TargetList(to, 1) : camera_.targets()->at(points[i].film);
             const auto sample = to ? &TargetCamera::sample_targets : &TargetCamera::sample_beside;
-            (camera_.*sample)({points.data(), n}, {bands.data(), n}, {lists.data(), n},
+            (camera_.*sample)({points.data(), n}, {bands.data(), n}, {cells.data(), n},
                               {paths.data(), n});
             for (uint32_t i = 0; i < n; ++i) {
                 if (paths[i].empty()) continue;
@@ -104,12 +108,21 @@ class CellPilot {
     }
 
   private:
+    /// A film point in its pixel.
+    [[nodiscard]] FilmPoint at(V2f film, const Sampler& sampler) const {
+        const V2f px = film * frame_px_;
+        const V2f middle(std::floor(px.x) + 0.5f, std::floor(px.y) + 0.5f);
+        return {film, sampler, {&filter_, px - middle, frame_px_}};
+    }
+
     const TargetCamera& camera_;
     const PathTracer<>& tracer_;
+    V2f frame_px_;
+    Filter filter_{FilterKind::Box, 0.5f};
 };
 
 /// Number of a target in another list; its size where it is not there.
-size_t place_in(TargetList list, const ListedTarget& target) {
+size_t place_in(const std::vector<ListedTarget>& list, const ListedTarget& target) {
     const auto same = [&](const ListedTarget& other) { return other.number == target.number; };
     return static_cast<size_t>(std::find_if(list.begin(), list.end(), same) - list.begin());
 }
@@ -118,7 +131,7 @@ size_t place_in(TargetList list, const ListedTarget& target) {
 CellFound with_neighbours(const TargetGrid& grid, const std::vector<CellFound>& cells, int i,
                           int j) {
     const auto index = [&](int x, int y) { return static_cast<size_t>(y * grid.cells.x + x); };
-    const TargetList list = grid.lists[index(i, j)];
+    const std::vector<ListedTarget>& list = grid.lists[index(i, j)].targets;
     CellFound out{{}, std::vector<Found>(list.size())};
     std::vector<int> counts(list.size());
     int count = 0;
@@ -128,7 +141,7 @@ CellFound with_neighbours(const TargetGrid& grid, const std::vector<CellFound>& 
             out.ordinary.add(cell.ordinary);
             ++count;
             for (size_t k = 0; k < list.size(); ++k) {
-                const size_t there = place_in(grid.lists[index(x, y)], list[k]);
+                const size_t there = place_in(grid.lists[index(x, y)].targets, list[k]);
                 if (there == cell.sent.size()) continue;
                 out.sent[k].add(cell.sent[there]);
                 ++counts[k];
@@ -142,6 +155,8 @@ CellFound with_neighbours(const TargetGrid& grid, const std::vector<CellFound>& 
 /// Noise of a sample of a cell, as a relative standard deviation, and its cost.
 struct Effort {
     double noise = 0, cost = 0;
+    uint32_t rays = 0;   ///< to targets
+    size_t targets = 0;  ///< the first so many of the order
 
     [[nodiscard]] double product() const { return noise * noise * cost; }
 };
@@ -150,14 +165,15 @@ struct Effort {
 struct CellChoice {
     std::vector<size_t> order;
     std::vector<double> roots;    ///< of the mean square of what each target brings
-    std::vector<Effort> efforts;  ///< with the first 0, 1, 2 ... of the order
+    std::vector<Effort> efforts;  ///< with none, and for each number of targets and of rays
     size_t taken = 0;
 };
 
 /// dark: luminance from which on variance is relative to the cell's own.
-CellChoice choice_of(TargetList list, const CellFound& found, double dark) {
+CellChoice choice_of(const TargetCell& cell, const FilmCell& part, const CellFound& found,
+                     double dark) {
     CellChoice out;
-    for (size_t k = 0; k < list.size(); ++k)
+    for (size_t k = 0; k < cell.targets.size(); ++k)
         if (found.sent[k].counted2 > 0) out.order.push_back(k);
     std::stable_sort(out.order.begin(), out.order.end(), [&](size_t a, size_t b) {
         return found.sent[a].spread() > found.sent[b].spread();
@@ -171,17 +187,42 @@ CellChoice choice_of(TargetList list, const CellFound& found, double dark) {
     const double scale = 1 / (mean * mean + dark * dark);
     const double usual = ordinary.cost + kLensCost;
     out.efforts.push_back({std::sqrt(rest * scale), usual});
-    double roots = 0, light = 0, cost = 0;
+    // At places of the cell: what its targets bring that may be seen from there.
+    struct Place {
+        double roots = 0, light = 0, cost = 0;
+    };
+    std::array<Place, kPlaces * kPlaces> places;
+    size_t targets_taken = 0;
     for (const size_t k : out.order) {
+        ++targets_taken;
         const Found& sent = found.sent[k];
         rest -= sent.spread();
-        roots += out.roots[k];
-        light += sent.counted;
-        const int starts = list[k].start_count;
-        cost += out.roots[k] *
-                (sent.cost + (starts > 0 ? kTracedCost + kStartCost * starts : kThinCost));
-        const double variance = std::max(0., rest) + std::max(0., roots * roots - light * light);
-        out.efforts.push_back({std::sqrt(variance * scale), usual + cost / roots});
+        std::array<bool, kPlaces * kPlaces> sees{};
+        double seen = 0;
+        for (size_t n = 0; n < places.size(); ++n) {
+            const V2f within((float(n % kPlaces) + 0.5f) / kPlaces,
+                             (float(n / kPlaces) + 0.5f) / kPlaces);
+            const V2f film = part.first + within * (part.last - part.first);
+            sees[n] = cell.targets[k].seen_from.contains(FilmOctagon::along(film));
+            seen += sees[n] ? 1. / double(places.size()) : 0;
+        }
+        if (seen == 0) sees.fill(true), seen = 1;
+        out.roots[k] /= std::sqrt(seen);
+        double spread = 0, cost = 0;
+        for (size_t n = 0; n < places.size(); ++n) {
+            Place& place = places[n];
+            if (sees[n]) {
+                place.roots += out.roots[k], place.light += sent.counted / seen;
+                place.cost += out.roots[k] * (sent.cost / seen + kSearchCost);
+            }
+            if (place.roots > 0) cost += place.cost / place.roots / double(places.size());
+            spread += std::max(0., place.roots * place.roots - place.light * place.light) /
+                      double(places.size());
+        }
+        // More rays lower what they bring to the variance, and cost more.
+        for (uint32_t rays = 1; rays <= TargetCell::kMostRays; ++rays)
+            out.efforts.push_back({std::sqrt((std::max(0., rest) + spread / rays) * scale),
+                                   usual + rays * cost, rays, targets_taken});
     }
     return out;
 }
@@ -226,27 +267,28 @@ std::shared_ptr<const TargetGrid> targets_that_pay(const TargetCamera& camera, c
     const TargetGrid* const all = camera.targets().get();
     if (!all) return nullptr;
     const PathTracer<> tracer(scene, bvh, lights, {});
-    const CellPilot pilot(camera, tracer);
+    const CellPilot pilot(camera, tracer, frame_px);
+    const auto cell_px =
+        static_cast<uint32_t>(frame_px.x / all->cells.x * (frame_px.y / all->cells.y));
+    const uint32_t ordinary = std::clamp(cell_px / kPixelsPerSample, kFewest, kOrdinary);
     std::vector<CellFound> found;
     double mean = 0;
     for (int j = 0; j < all->cells.y; ++j)
         for (int i = 0; i < all->cells.x; ++i) {
-            const TargetList list = all->lists[found.size()];
-            const FilmCell cell = all->cell(i, j, frame_px);
-            const auto within = [&](V2f u) { return cell.first + u * (cell.last - cell.first); };
+            const TargetCell& cell = all->lists[found.size()];
+            const FilmCell part = all->cell(i, j, frame_px);
             CellFound& here = found.emplace_back();
-            here.ordinary = pilot.samples({i, j}, kOrdinary, nullptr,
-                                          [&](uint32_t, V2f u) { return within(u); });
+            here.ordinary = pilot.samples({i, j}, part, ordinary, nullptr);
             mean += here.ordinary.counted;
-            const uint32_t sent =
-                std::min(kMostSent, kSent / std::max(1u, static_cast<uint32_t>(list.size())));
-            for (ListedTarget target : list) {
-                target.chance = 1;
-                // From where it is seen, and from farther and farther around.
-                here.sent.push_back(pilot.samples({i, j}, sent, &target, [&](uint32_t n, V2f u) {
-                    const float away = (static_cast<float>(n) + 0.5f) / static_cast<float>(sent);
-                    return target.place + (within(u) - target.place) * away;
-                }));
+            const auto targets = static_cast<uint32_t>(cell.targets.size());
+            const uint32_t sent = std::clamp(kSent / std::max(1u, targets), 1u, kMostSent);
+            for (const ListedTarget& target : cell.targets) {
+                TargetCell alone{cell.map, {target}};
+                alone.targets[0].chance = 1;
+                const FilmCell seen = target.seen_from.within(part);
+                Found found_there = pilot.samples({i, j}, seen, sent, &alone);
+                found_there.scale(double(seen.area() / part.area()));
+                here.sent.push_back(found_there);
                 mean += here.sent.back().counted;
             }
         }
@@ -254,8 +296,8 @@ std::shared_ptr<const TargetGrid> targets_that_pay(const TargetCamera& camera, c
     std::vector<CellChoice> cells;
     for (int j = 0; j < all->cells.y; ++j)
         for (int i = 0; i < all->cells.x; ++i)
-            cells.push_back(
-                choice_of(all->lists[cells.size()], with_neighbours(*all, found, i, j), dark));
+            cells.push_back(choice_of(all->lists[cells.size()], all->cell(i, j, frame_px),
+                                      with_neighbours(*all, found, i, j), dark));
     const Effort without = sum_of(cells);
     take_best(cells);
     const Effort with = sum_of(cells);
@@ -264,15 +306,18 @@ std::shared_ptr<const TargetGrid> targets_that_pay(const TargetCamera& camera, c
     out->cells = all->cells;
     out->targets = all->targets;
     for (const CellChoice& cell : cells) {
-        const TargetList list = all->lists[out->lists.size()];
-        std::vector<ListedTarget>& kept = out->lists.emplace_back();
+        const TargetCell& from = all->lists[out->lists.size()];
+        TargetCell& kept = out->lists.emplace_back();
+        const auto [noise, cost, rays, targets] = cell.efforts[cell.taken];
+        if (targets > 0) kept.map = from.map;
+        kept.rays = rays;
         double sum = 0;
-        for (size_t n = 0; n < cell.taken; ++n) sum += cell.roots[cell.order[n]];
-        for (size_t n = 0; n < cell.taken; ++n) {
-            kept.push_back(list[cell.order[n]]);
+        for (size_t n = 0; n < targets; ++n) sum += cell.roots[cell.order[n]];
+        for (size_t n = 0; n < targets; ++n) {
+            kept.targets.push_back(from.targets[cell.order[n]]);
             // Few rays know the light badly: no target that pays is sent next to nothing.
-            const double even = 1. / static_cast<double>(cell.taken);
-            kept.back().chance =
+            const double even = 1. / static_cast<double>(targets);
+            kept.targets.back().chance =
                 static_cast<float>(std::lerp(cell.roots[cell.order[n]] / sum, even, kEvenly));
         }
     }

@@ -268,8 +268,8 @@ TEST_F(Plans, TheCommandRenders) {
     std::istringstream lines(run.out);
     std::vector<std::string> all;
     for (std::string line; std::getline(lines, line);) all.push_back(line);
-    const Words starts{"camera ",  "spectral ", "dispersion ", "precision ",     "lights ",
-                       "samples ", "error ",    "time ",       "petzval render "};
+    const Words starts{"camera ",  "spectral ", "dispersion ", "precision ", "lights ",
+                       "samples ", "targets ",  "error ",      "time ",      "petzval render "};
     ASSERT_EQ(all.size(), starts.size()) << run.out;
     for (size_t i = 0; i < all.size(); ++i) EXPECT_TRUE(all[i].starts_with(starts[i])) << all[i];
     std::istringstream command(all.back());

@@ -76,7 +76,7 @@ TEST_P(TraceSample, GivesWhatTheFilmGets) {
             ASSERT_TRUE(all.equalWithRelError(mean * n, n > 1 ? 1e-5f : 0)) << x << ',' << y;
         }
     EXPECT_GT(bright, 20);
-    EXPECT_EQ(targets > 0, GetParam().fields.back().name == "focus");
+    EXPECT_TRUE(targets > 0 || GetParam().fields.back().name != "focus");
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -62,7 +62,7 @@ bool is_at(const TargetGrid& grid, const ListedTarget& listed, const V3f& lamp) 
 size_t cells_with(const TargetGrid& grid, const V3f& lamp) {
     return static_cast<size_t>(
         std::count_if(grid.lists.begin(), grid.lists.end(), [&](const auto& list) {
-            return std::any_of(list.begin(), list.end(),
+            return std::any_of(list.targets.begin(), list.targets.end(),
                                [&](const ListedTarget& t) { return is_at(grid, t, lamp); });
         }));
 }
@@ -72,18 +72,20 @@ void expect_sane(const Grids& grids) {
     ASSERT_EQ(grids.paying->lists.size(), grids.all->lists.size());
     for (size_t i = 0; i < grids.all->lists.size(); ++i) {
         std::set<uint32_t> found, kept;
-        for (const ListedTarget& t : grids.all->lists[i]) found.insert(t.number);
+        for (const ListedTarget& t : grids.all->lists[i].targets) found.insert(t.number);
         double sum = 0;
-        const auto& list = grids.paying->lists[i];
+        const auto& list = grids.paying->lists[i].targets;
         for (const ListedTarget& t : list) {
             EXPECT_TRUE(kept.insert(t.number).second) << "twice in cell " << i;
             EXPECT_TRUE(found.count(t.number)) << "not of cell " << i;
             EXPECT_GE(t.chance, 0.5f / float(list.size()) - 1e-6f);
             sum += double(t.chance);
         }
-        if (!list.empty()) {
-            EXPECT_NEAR(sum, 1, 1e-6) << "cell " << i;
-        }
+        if (list.empty()) continue;
+        EXPECT_NEAR(sum, 1, 1e-6) << "cell " << i;
+        EXPECT_TRUE(grids.paying->lists[i].map) << "cell " << i;
+        EXPECT_GE(grids.paying->lists[i].rays, 1u) << "cell " << i;
+        EXPECT_LE(grids.paying->lists[i].rays, TargetCell::kMostRays) << "cell " << i;
     }
 }
 
@@ -97,10 +99,10 @@ TEST(TargetPilot, BrightTargetsGetMoreRays) {
     ASSERT_NE(grids.paying, nullptr);
     expect_sane(grids);
     int both = 0;
-    for (const auto& list : grids.paying->lists) {
-        if (list.size() != 2) continue;
+    for (const TargetCell& cell : grids.paying->lists) {
+        if (cell.targets.size() != 2) continue;
         ++both;
-        for (const ListedTarget& t : list)
+        for (const ListedTarget& t : cell.targets)
             EXPECT_NEAR(t.chance, is_at(*grids.paying, t, kOther) ? 0.65f : 0.35f, 0.12f);
     }
     EXPECT_GT(both, 0);

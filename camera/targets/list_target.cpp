@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "camera/targets/list_target.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "camera/targets/stop_region.h"
+
+namespace petzval {
+namespace {
+
+/// Radius of the circle of confusion up to which a target counts as sharp.
+constexpr float kSharp_px = 0.3f;
+/// Distance from the middle of a pixel within which its film points lie, mostly.
+constexpr float kFilter_px = 1.5f;
+/// What a target moves less over the film than at one place of it, and the margin of the part that
+/// sees it.
+constexpr float kCurved = 1.3f, kMore = 0.06f;
+
+/// The target in the frame of a map; nothing where it lies behind.
+std::optional<ListedTarget> in_frame(const StopMap& map, const Pose& pose, const Target& target) {
+    const V3d at = target.at_infinity ? map.turned(pose.local(target.centre))
+                                      : map.local(pose.local(target.centre - pose.origin));
+    if (!(at.z > 0)) return std::nullopt;
+    ListedTarget out{};
+    const float slant = std::sqrt(1 + sqr(map.most_slope()));
+    if (target.at_infinity) {
+        out.centre = V2f(V2d(at.x / at.z, at.y / at.z));
+        out.by_place = 0, out.by_slope = 1;
+        out.radius = target.radius_m * slant * slant;
+    } else {
+        out.centre = V2f(V2d(at.x, at.y));
+        out.by_place = 1, out.by_slope = static_cast<float>(at.z);
+        out.radius = target.radius_m * slant;
+    }
+    return out;
+}
+
+constexpr std::array<std::array<float, 2>, 5> kOfStop{
+    {{0, 0}, {0.9f, 0}, {-0.9f, 0}, {0, 0.9f}, {0, -0.9f}}};
+
+/// Film point of the cell from which the middle of the stop sees a target, or nearly.
+V2f pictured(const StopMap& map, const ListedTarget& target) {
+    V2f film = map.middle();
+    for (int step = 0; step < 3; ++step) {
+        const FilmMotion by(map.rays_by_film(film), target, V2f(0.f));
+        film -= by.film_for(landing(at(map.rays(film, kMiddle_nm), V2f(0.f)), target));
+        film =
+            V2f(std::clamp(film.x, map.middle().x - map.half().x, map.middle().x + map.half().x),
+                std::clamp(film.y, map.middle().y - map.half().y, map.middle().y + map.half().y));
+    }
+    return film;
+}
+
+/// Film points that see a target, by those that do so through points of the stop.
+FilmOctagon seen_from(const StopMap& map, const ListedTarget& target, V2i frame_px) {
+    FilmOctagon out;
+    out.low.fill(INFINITY), out.high.fill(-INFINITY);
+    float error = 0;
+    for (size_t n = 0; n < StopMap::kSquares2; ++n)
+        if (target.squares >> n & 1) error = std::max(error, target.in_radii(map.error(n)));
+    const auto by_film = map.rays_by_film(map.middle());
+    const auto add = [&](const StopMap::Rays& middle, V2f stop) {
+        const FilmMotion by(by_film, target, stop);
+        const V2f film = map.middle() - by.film_for(landing(at(middle, stop), target));
+        // The target's radius, and the reach of a filter.
+        const float wide =
+            (1 + error) * std::sqrt(std::max(by.right.length2(), by.down.length2())) / by.area() +
+            kFilter_px / float(std::min(frame_px.x, frame_px.y));
+        const auto along = FilmOctagon::along(film);
+        for (size_t k = 0; k < 4; ++k) {
+            const float reach = k < 2 ? wide : 1.42f * wide;
+            out.low[k] = std::min(out.low[k], along[k] - reach);
+            out.high[k] = std::max(out.high[k], along[k] + reach);
+        }
+    };
+    for (const float nm : StopMap::kTried_nm) {
+        const StopMap::Rays middle = map.rays(map.middle(), nm);
+        for (const float radius : {0.f, 0.5f, 0.8f, 1.f})
+            for (int i = 0; i < 16; ++i) {
+                const float angle = kPi / 8 * (float(i) + radius);
+                add(middle, V2f(std::cos(angle), std::sin(angle)) * radius);
+            }
+    }
+    for (size_t k = 0; k < 4; ++k) {
+        const float more = kMore * (out.high[k] - out.low[k]);
+        out.low[k] -= more, out.high[k] += more;
+    }
+    return out;
+}
+
+}  // namespace
+
+std::optional<ListedTarget> list_target(const Target& target, const StopMap& map, const Pose& pose,
+                                        V2i frame_px, double iris_mm2) {
+    auto out = in_frame(map, pose, target);
+    if (!out) return out;
+    const StopMap::Rays middle = map.rays(map.middle(), kMiddle_nm);
+    out->squares = ~uint64_t{0};
+    const float moves = out->in_radii(map.moves());
+    const StopRegion seen_by_cell(map, middle, *out, moves);
+    if (seen_by_cell.empty()) return std::nullopt;
+    out->squares = seen_by_cell.squares();
+    const float area = seen_by_cell.area();
+    out->met = static_cast<float>(
+        std::min(1., double(area * map.stretch_mm2() / sqr(1 + moves)) / iris_mm2));
+    // As seen from the film point that sees its middle.
+    const V2f film = pictured(map, *out);
+    const StopMap::Rays seen = map.rays(film, kMiddle_nm);
+    float spread = 0;
+    for (const auto& [x, y] : kOfStop)
+        spread = std::max(
+            spread,
+            (landing(at(seen, V2f(x, y)), *out) - landing(at(seen, V2f(0.f)), *out)).length());
+    const FilmMotion by(map.rays_by_film(film), *out, V2f(0.f));
+    out->is_sharp = spread < kSharp_px * std::min(by.right.length() / float(frame_px.x),
+                                                  by.down.length() / float(frame_px.y));
+    out->seen_from = seen_from(map, *out, frame_px);
+    return out;
+}
+
+}  // namespace petzval

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "camera/targets/stop_search.h"
+
+#include <algorithm>
+
+#include "core/sampling/warp.h"
+
+namespace petzval {
+
+void trace_landings(const StopCamera& camera, std::span<const TargetView> views,
+                    std::span<const V2f> stop_mm, std::span<std::optional<V2f>> out) {
+    std::array<StopPoint, 8> points;
+    for (size_t i = 0; i < 8; ++i) {
+        // Lanes that are left over repeat the last.
+        const size_t k = std::min(i, views.size() - 1);
+        points[i] = {views[k].film, stop_mm[k], views[k].nm};
+    }
+    const std::array<StopRay, 8> rays = rays_through(camera, points);
+    for (size_t i = 0; i < views.size(); ++i) {
+        out[i].reset();
+        if (!rays[i].exists) continue;
+        const auto parts = views[i].map->parts(rays[i]);
+        f4 ray;
+        for (int k = 0; k < 4; ++k) ray[k] = static_cast<float>(parts[size_t(k)]);
+        out[i] = landing(ray, *views[i].target);
+    }
+}
+
+void correct(const StopCamera& camera, std::span<StopSearch> searches) {
+    struct Ellipse {
+        StopSearch* of;
+        size_t shape;
+    };
+    std::array<Ellipse, 8> batch;
+    std::array<TargetView, 8> views;
+    std::array<V2f, 8> stop_mm;
+    size_t count = 0;
+    const auto trace = [&] {
+        std::array<std::optional<V2f>, 8> landed;
+        trace_landings(camera, {views.data(), count}, {stop_mm.data(), count},
+                       {landed.data(), count});
+        for (size_t i = 0; i < count; ++i)
+            if (landed[i]) batch[i].of->region.correct(batch[i].shape, *landed[i]);
+        count = 0;
+    };
+    for (StopSearch& search : searches) {
+        for (size_t shape = 0; shape < search.region.size(); ++shape) {
+            // Beyond the disc the map is not known well enough to lead anywhere near.
+            if (!search.region.is_ellipse(shape) || search.region.middle(shape).length() > 1)
+                continue;
+            batch[count] = {&search, shape};
+            views[count] = search.view;
+            stop_mm[count++] = search.view.map->stop_mm(search.region.middle(shape));
+            if (count == batch.size()) trace();
+        }
+    }
+    if (count > 0) trace();
+}
+
+FilmEllipse::FilmEllipse(const TargetView& view, V2f frame_px, V2f stop_mm, V2f landing)
+    : motion_(view.map->rays_by_film(view.film), *view.target, view.map->on_disc(stop_mm)),
+      landing_(landing) {
+    motion_.right /= frame_px.x, motion_.down /= frame_px.y;
+}
+
+V2f FilmEllipse::sample(V2f u) const {
+    return motion_.film_for(uniform_disk(u) * kCorrectedReach - landing_);
+}
+
+float FilmEllipse::density_per_px2(V2f offset_px) const {
+    const V2f there = landing_ + motion_.right * offset_px.x + motion_.down * offset_px.y;
+    if (!(there.length2() <= sqr(kCorrectedReach))) return 0;
+    return motion_.area() / (kPi * sqr(kCorrectedReach));
+}
+
+}  // namespace petzval

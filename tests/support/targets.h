@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// What tests of rays to targets share: lists of targets, film points in their pixels, lamps.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "camera/target_camera.h"
+#include "tests/support/statistics.h"
+
+namespace petzval::test {
+
+/// Numbers of a draw, by its purpose.
+[[nodiscard]] inline V2f random2(uint32_t i, uint32_t purpose) {
+    return {to_unit_float(hash32(hash32(i, purpose), 0)),
+            to_unit_float(hash32(hash32(i, purpose), 1))};
+}
+
+/// Part of the film of 16 x 16 pixels about a point.
+[[nodiscard]] inline FilmCell cell_about(V2f film, V2i frame_px) {
+    const V2f half = V2f(8) / V2f(frame_px);
+    return {film - half, film + half};
+}
+
+/// Targets made ready for a part of the film, the later the more often taken.
+[[nodiscard]] inline TargetCell listed_in(const TargetCamera& camera, const FilmCell& part,
+                                          V2i frame_px, const std::vector<Target>& targets) {
+    TargetCell out{camera.map(part), {}};
+    float sum = 0;
+    for (size_t i = 0; out.map && i < targets.size(); ++i) {
+        auto listed = camera.listed(targets[i], *out.map, frame_px);
+        if (!listed) continue;
+        listed->chance = float(i + 1);
+        sum += listed->chance;
+        out.targets.push_back(*listed);
+    }
+    for (ListedTarget& listed : out.targets) listed.chance /= sum;
+    return out;
+}
+
+/// The same targets for all of the film.
+[[nodiscard]] inline std::shared_ptr<TargetGrid> grid_of(TargetCell cell) {
+    auto out = std::make_shared<TargetGrid>();
+    out->cells = {1, 1};
+    out->lists.push_back(std::move(cell));
+    return out;
+}
+
+/// A pixel whose film points a filter draws.
+struct Pixel {
+    const Filter* filter;
+    V2f frame_px;
+    V2f middle;  ///< as FilmPoint has it
+
+    [[nodiscard]] FilmPoint draw(const Sampler& sampler) const {
+        const V2f offset = filter->sample(sampler.get2(Dim::Film));
+        return {middle + offset / frame_px, sampler, {filter, offset, frame_px}};
+    }
+};
+
+/// Does a ray pass a ball that is not at infinity, and lies ahead?
+[[nodiscard]] inline bool passes(const Ray& ray, const V3f& centre, float radius_m) {
+    const V3d to = V3d(centre) - V3d(ray.origin), d(ray.direction);
+    const double along = to.dot(d);
+    return along > 0 && (to - along * d).length2() < sqr(double(radius_m));
+}
+
+/// A ray of a film point: that of draw number i, or of the first after it that passes.
+[[nodiscard]] inline Ray ray_of(const Camera& camera, V2f film, uint32_t i) {
+    for (;; ++i) {
+        const FilmPoint at{film, Sampler(SamplerKind::Owen, 5, {0, 0, i})};
+        const CameraSample sample = camera.sample(at, Bands::rgb());
+        if (!sample.empty()) return sample[0].ray;
+    }
+}
+
+/// Estimates of a pixel's light: of ordinary rays and those to the targets of a cell, which share
+/// it; an empty cell has ordinary rays alone. Film points and bands follow from `seed`.
+struct PixelLight {
+    Moments light;
+    int sent = 0;  ///< rays to targets
+};
+/// light: of a ray. bands_of: of a sampler. samples: a multiple of a batch.
+template <class Light, class BandsOf>
+PixelLight light_of(const TargetCamera& camera, const TargetCell& cell, const Pixel& pixel,
+                    uint32_t seed, uint32_t samples, const BandsOf& bands_of, const Light& light) {
+    PixelLight out;
+    std::array<FilmPoint, kMostFilmPoints> points;
+    std::array<Bands, kMostFilmPoints> bands;
+    std::array<const TargetCell*, kMostFilmPoints> cells{};
+    if (!cell.empty()) cells.fill(&cell);
+    std::array<CameraSample, kMostFilmPoints> ordinary, to_targets;
+    for (uint32_t first = 0; first < samples; first += kMostFilmPoints) {
+        for (uint32_t k = 0; k < kMostFilmPoints; ++k) {
+            const Sampler sampler(SamplerKind::Independent, seed, {7, 9, first + k});
+            bands[k] = bands_of(sampler);
+            points[k] = pixel.draw(sampler);
+        }
+        camera.sample_beside(points, bands, cells, ordinary);
+        if (!cell.empty()) camera.sample_targets(points, bands, cells, to_targets);
+        for (uint32_t k = 0; k < kMostFilmPoints; ++k) {
+            double sum = 0;
+            const auto add = [&](const CameraPath& path) {
+                sum +=
+                    double(hsum(path.weight)) * double(light(path.ray)) * double(path.mis_weight);
+            };
+            for (const CameraPath& path : ordinary[k]) add(path);
+            for (const CameraPath& path : to_targets[k]) add(path), ++out.sent;
+            out.light.add(sum);
+        }
+    }
+    return out;
+}
+
+}  // namespace petzval::test

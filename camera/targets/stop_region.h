@@ -61,10 +61,9 @@ struct FilmMotion {
     [[nodiscard]] float area() const { return std::fabs(right.x * down.y - right.y * down.x); }
 };
 
-/// Ellipses and squares, in units of the stop's radius, that cover all points whose rays pass a
-/// target, as the map has them. Each way on which light gets there has an ellipse, by Newton's
-/// method; where ways meet (at a caustic) there are small squares. They may overlap, and may reach
-/// beyond the stop.
+/// Ellipses and rectangles on the disc of a map that cover all points whose rays pass a target, as
+/// the map has them. Each way on which light gets there has an ellipse, by Newton's method; where
+/// ways meet (at a caustic) there are strips. They may overlap, and may reach beyond the disc.
 class StopRegion {
   public:
     /// The rays are those of a film point by the map. wider: distance in radii from the target that
@@ -92,9 +91,9 @@ class StopRegion {
     /// Corrects an ellipse by the landing of its middle, in radii, as the lens itself has it: what
     /// is not known of the map then counts no more.
     void correct(size_t ellipse, V2f landing);
-    /// Density of a point: its covers over their area, of ellipses and of squares by turns.
-    /// (Squares may be large beside what they hold: by area alone, ellipses would be drawn too
-    /// seldom.)
+    /// Density of a point: its covers over their area, half of ellipses and half of strips where
+    /// there are both. (Strips may be large beside what they hold: by area alone, ellipses would be
+    /// drawn too seldom.)
     [[nodiscard]] float density(V2f s) const;
 
   private:

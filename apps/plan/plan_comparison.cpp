@@ -22,8 +22,6 @@ constexpr double kNoiseShare = 0.25;
 constexpr uint32_t kDispersionRays = 64, kCameraRays = 256;
 /// Share of the noise that may come from light that was hardly met.
 constexpr double kKnownShare = 0.1;
-/// Lamps of a class of brightness, where rays are sent to them.
-constexpr size_t kMostTargetedLamps = 128;
 /// Most that RGB may be off in a pixel by itself, where nothing in the scene depends on wavelength
 /// but surfaces reflect each other's colours: a quarter, squared. The worst pixel measured in the
 /// scenes at hand is off by 12 %.
@@ -154,9 +152,7 @@ void PlanComparison::compare_dispersion(const RenderSetup& split, const RenderSe
 void PlanComparison::choose_pilot_pixels(int wanted) {
     const Scene& scene = *first_.prepared.scene;
     const V2i size = request_.scene.size;
-    // Lamps that are targets are known one by one.
-    features_ = first_.view.targets ? small_features_of(scene, kMostTargetedLamps)
-                                    : small_features_of(scene);
+    features_ = features_of(first_);
     glass_disperses_ = std::any_of(scene.materials.begin(), scene.materials.end(),
                                    [](const Material& m) { return m.glass && m.refracts(); });
     regions_ = film_regions(*first_.view.still, size, features_);

@@ -136,26 +136,40 @@ PlanLine lights_line(const Plan& plan) {
             {}};
 }
 
+std::string text_of(const SmallLamps& small) {
+    const auto some = [](size_t count, const char* one, const char* more) {
+        return count == 1 ? one : fmt::format(fmt::runtime(more), count);
+    };
+    std::vector<std::string> out;
+    if (small.lamps > 0)
+        out.push_back(fmt::format("{} of {:.2g} mm at most",
+                                  some(small.lamps, "a lamp", "{} lamps"),
+                                  1e3 * small.largest_lamp_m));
+    if (small.spots > 0)
+        out.push_back(fmt::format("{} of {:.2g}° at most",
+                                  some(small.spots, "a spot of the sky", "{} spots of the sky"),
+                                  small.largest_spot_rad * 180 / double(kPi)));
+    return fmt::format("{}", fmt::join(out, " and "));
+}
+
 }  // namespace
+
+std::optional<std::string> warning_of(const SmallLamps& small) {
+    if (small.count() == 0) return std::nullopt;
+    std::string out = fmt::format(
+        "warning: fewer than {} paths meet {}: {} light is missing, or in single bright pixels",
+        kEnoughPaths, text_of(small), small.count() == 1 ? "its" : "their");
+    if (small.samples <= double(kMostSamples))
+        out += fmt::format("; --spp {} would do", static_cast<uint32_t>(small.samples));
+    return out;
+}
 
 std::string rare_text(const Plan& plan) {
     if (!plan.noise_at_least) return "";
     const RareLight& rare = plan.rare;
-    const auto some = [](size_t count, const char* one, const char* more) {
-        return count == 1 ? one : fmt::format(fmt::runtime(more), count);
-    };
-    std::vector<std::string> small;
-    if (rare.lamps > 0)
-        small.push_back(fmt::format("{} of {:.2g} mm at most",
-                                    some(rare.lamps, "a lamp", "{} lamps"),
-                                    1e3 * rare.largest_lamp_m));
-    if (rare.spots > 0)
-        small.push_back(fmt::format("{} of {:.2g}° at most",
-                                    some(rare.spots, "a spot of the sky", "{} spots of the sky"),
-                                    rare.largest_spot_rad * 180 / double(kPi)));
     if (rare.noise > 0)
-        return fmt::format("{}: few paths find {}", fmt::join(small, " and "),
-                           rare.lamps + rare.spots == 1 ? "it" : "them");
+        return fmt::format("{}: few paths find {}", text_of(rare.seldom),
+                           rare.seldom.count() == 1 ? "it" : "them");
     if (rare.behind_glass > 0) return "lamps behind solid glass: no path finds them, or hardly one";
     if (rare.caustic) return "surfaces lit by lamps through glass or mirrors: few paths find them";
     if (rare.mirrored) return "lamps seen through glass or mirrors: few paths find them";

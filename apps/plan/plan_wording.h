@@ -24,6 +24,8 @@ inline constexpr auto kOptionNames<PlanModel> =
 
 /// Reason why the noise may be larger than a plan says; empty where it is known.
 [[nodiscard]] std::string rare_text(const Plan&);
+/// Warning of lamps that few paths of a render meet; none where there are none.
+[[nodiscard]] std::optional<std::string> warning_of(const SmallLamps&);
 /// Times the samples that the same noise would take without rays to targets; nothing where that is
 /// below 4: then they are not what makes the picture possible.
 [[nodiscard]] std::optional<double> times_without_targets(const Plan&);

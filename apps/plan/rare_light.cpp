@@ -11,6 +11,10 @@ namespace petzval {
 namespace {
 
 constexpr uint32_t kRaysToLamps = 256;
+/// Clusters of lamps of a class of brightness where they are targets.
+constexpr size_t kMostTargetedLamps = 128;
+/// Pixels of a lamp's disc that tell how many rays are sent to it.
+constexpr int64_t kPixelsOfDisc = 256;
 /// The density of rays at a lamp is that of this many nearest ones.
 constexpr size_t kNearest = 16;
 
@@ -56,24 +60,26 @@ bool is_alone(const SmallFeature& lamp) {
     return lamp.area_m2 >= kFilled * across;
 }
 
-/// Chance that a sample of a pixel sends a ray that meets a lamp. Of several lamps far apart,
-/// targets may hold some and not others: they do not count.
+/// Rays of a sample of a pixel that are sent to a lamp and meet it, on average. Of several lamps
+/// far apart, targets may hold some and not others: they do not count.
 double sent_to(const RenderSetup& setup, V2i size_px, std::array<int, 2> pixel,
                const SeenLamp& lamp) {
     const TargetGrid* grid = setup.view.targets.get();
     if (!grid || !lamp.alone) return 0;
     const V2f film((float(pixel[0]) + 0.5f) / float(size_px.x),
                    (float(pixel[1]) + 0.5f) / float(size_px.y));
+    const TargetCell& cell = grid->at(film);
+    const auto along = FilmOctagon::along(film);
     double sum = 0;
-    for (const ListedTarget& listed : grid->at(film).targets) {
+    for (const ListedTarget& listed : cell.targets) {
         const Target& target = grid->targets[listed.number];
-        if (target.at_infinity != lamp.feature.at_infinity ||
+        if (!listed.seen_from.contains(along) || target.at_infinity != lamp.feature.at_infinity ||
             (target.centre - lamp.feature.centre).length() > lamp.feature.radius_m)
             continue;
         const double disc = double(kPi) * double(target.radius_m) * double(target.radius_m);
         sum += double(listed.chance) * std::min(1., lamp.feature.area_m2 / disc);
     }
-    return sum;
+    return sum > 0 ? sum * cell.rays / double(cell.chances(along)) : 0;
 }
 
 bool is_hidden(const Bvh& bvh, const Ray& ray, const SmallFeature& lamp) {
@@ -112,6 +118,42 @@ std::vector<SeenLamp> seen_lamps(const RenderSetup& setup, V2i size_px,
         const double shown = disk > 0 ? std::min(1., lamp.area_m2 / disk) : 1;
         out.push_back({regions[n].area_px(), shown * kNearest / kRaysToLamps, is_alone(lamp), lamp,
                        &regions[n]});
+    }
+    return out;
+}
+
+std::vector<SmallFeature> features_of(const RenderSetup& setup) {
+    const Scene& scene = *setup.prepared.scene;
+    return setup.view.targets ? small_features_of(scene, kMostTargetedLamps)
+                              : small_features_of(scene);
+}
+
+// Of several far apart, the disc of their area.
+void SmallLamps::add(const SeenLamp& lamp) {
+    const SmallFeature& thing = lamp.feature;
+    ++(thing.at_infinity ? spots : lamps);
+    double& largest = thing.at_infinity ? largest_spot_rad : largest_lamp_m;
+    const double radius =
+        lamp.alone ? double(thing.radius_m) : std::sqrt(thing.area_m2 / double(kPi));
+    largest = std::max(largest, 2 * radius);
+}
+
+SmallLamps seldom_met(const RenderSetup& setup, V2i size_px, double samples, double nits) {
+    std::vector<SmallFeature> features = features_of(setup);
+    std::erase_if(features, [&](const SmallFeature& f) {
+        return !f.is_lamp() || f.radiance < samples * nits;
+    });
+    const auto regions = film_regions(*setup.view.still, size_px, features);
+    SmallLamps out;
+    for (const SeenLamp& lamp : seen_lamps(setup, size_px, features, regions)) {
+        const int64_t pixels = std::min(kPixelsOfDisc, lamp.area_px);
+        double sent = 0;
+        for (int64_t i = 0; i < pixels; ++i)
+            sent += sent_to(setup, size_px, lamp.region->pixel(i * lamp.area_px / pixels), lamp);
+        const double met = double(lamp.area_px) * (lamp.probability + sent / double(pixels));
+        if (samples * met >= kEnoughPaths) continue;
+        out.add(lamp);
+        out.samples = std::max(out.samples, std::ceil(kEnoughPaths / met));
     }
     return out;
 }
@@ -172,10 +214,7 @@ RareLight rare_light(const Pilot& pilot, const PilotModel& model,
             continue;
         }
         const double with = behind + lamp.feature.radiance * lamp.probability;
-        const bool at_infinity = lamp.feature.at_infinity;
-        ++(at_infinity ? out.spots : out.lamps);
-        double& largest = at_infinity ? out.largest_spot_rad : out.largest_lamp_m;
-        largest = std::max(largest, 2 * double(lamp.feature.radius_m));
+        out.seldom.add(lamp);
         if (with > 0) out.noise += share * lamp.square() / (with * with + floor * floor);
         out.lost += share * symmetric_square(behind, with, floor);
     }

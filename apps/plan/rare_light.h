@@ -29,6 +29,9 @@ struct SeenLamp {
     }
 };
 
+/// Small features of a scene; lamps that are targets one by one.
+[[nodiscard]] std::vector<SmallFeature> features_of(const RenderSetup&);
+
 /// Lamps among the things that no surface hides from the camera, each with its region.
 [[nodiscard]] std::vector<SeenLamp> seen_lamps(const RenderSetup&, V2i size_px,
                                                const std::vector<SmallFeature>&,
@@ -40,13 +43,26 @@ struct SeenLamp {
 [[nodiscard]] std::vector<V3d> least_means(const Pilot&, const PilotModel&,
                                            const std::vector<SeenLamp>&);
 
+/// Some lamps, and spots of the sky.
+struct SmallLamps {
+    size_t lamps = 0, spots = 0;
+    double largest_lamp_m = 0, largest_spot_rad = 0;
+    double samples = 0;  ///< of each pixel with which enough paths meet all, where it is known
+
+    void add(const SeenLamp&);
+    [[nodiscard]] size_t count() const { return lamps + spots; }
+};
+
+/// Lamps that fewer than kEnoughPaths paths of a frame meet, by the camera alone: those that it
+/// draws and those that it sends there. A lamp counts where one path makes a pixel brighter by at
+/// least so many nits, of so many samples.
+[[nodiscard]] SmallLamps seldom_met(const RenderSetup&, V2i size_px, double samples, double nits);
+
 /// Light that a pilot of a model cannot know.
 struct RareLight {
-    /// Seen ones that fewer than kEnoughPaths paths will have met, and spots of the sky likewise.
-    size_t lamps = 0, spots = 0;
-    double largest_lamp_m = 0, largest_spot_rad = 0;  ///< of them
-    double noise = 0;  ///< symmetric variance of one sample that they would add
-    double lost = 0;   ///< symmetric MSE of a picture without them
+    SmallLamps seldom;  ///< seen ones that fewer than kEnoughPaths paths will have met
+    double noise = 0;   ///< symmetric variance of one sample that they would add
+    double lost = 0;    ///< symmetric MSE of a picture without them
     /// Lamps that rays are sent to, and would seldom be met without, and the variance of one sample
     /// that they would add then.
     size_t targeted = 0;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "apps/plan/plan_wording.h"
@@ -88,6 +89,7 @@ void RenderSession::prepare(const RenderRequest& asked, const Notice& notice,
     job_.observer = setup_.view.observer;
     load_image_codec();  // before hours of work: a picture will be written
     choose_display(notice);
+    warn_of_lamps(notice);
     const V2i size = scene_.size;
     shape_ = {size, asked.crop.value_or(Rect{0, 0, size.x, size.y}), asked.layers,
               scene_.spectral.bins};
@@ -110,6 +112,17 @@ void RenderSession::prepare(const RenderRequest& asked, const Notice& notice,
 }
 
 // Settles exposure and view: as asked, as the scene's file asks, or as a pilot finds; and tells it.
+// What a path adds to a pixel counts from a tenth of what the display shows as white.
+void RenderSession::warn_of_lamps(const Notice& notice) const {
+    constexpr double kSeen = 0.1;
+    if (job_.end_sample == kMostSamples)
+        return;  // a time limit: nobody knows how many there will be
+    const auto samples = static_cast<double>(job_.end_sample - job_.first_sample);
+    const double nits = kSeen * std::exp2(-double(display_.exposure_ev));
+    if (const auto warning = warning_of(seldom_met(setup_, scene_.size, samples, nits)))
+        notice(*warning);
+}
+
 void RenderSession::choose_display(const Notice& notice) {
     const DisplayRequest& asked = request_.display;
     const SceneExtras& file = setup_.prepared.extras;

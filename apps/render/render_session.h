@@ -88,6 +88,7 @@ class RenderSession {
   private:
     [[nodiscard]] SampleRange complete() const;
     void choose_display(const Notice&);
+    void warn_of_lamps(const Notice&) const;
 
     TbbExecutor executor_;
     std::optional<FrameReuse> frames_;

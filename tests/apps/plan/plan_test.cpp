@@ -2,6 +2,8 @@
 // What a pilot finds, what a plan makes of it, and what petzval plan says.
 #include "apps/plan/plan.h"
 
+#include <gmock/gmock.h>
+
 #include <cmath>
 
 #include "apps/plan/plan_wording.h"
@@ -220,6 +222,35 @@ TEST_F(Plans, NoiseOfLampsThatFewPathsFindIsAtLeast) {
         << plan;
 }
 
+// A render says so too, but not where rays are sent to them, nor of lamps that nobody would see.
+TEST_F(Plans, ARenderWarnsOfLampsThatFewPathsMeet) {
+    const auto said = [&](double strength, const char* targets) {
+        json emissive;
+        emissive["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = strength;
+        TinyGltf tiny = lamp(emissive);
+        for (auto& node : tiny.json["nodes"])
+            if (node.contains("mesh"))
+                node.update({{"scale", {1e-4, 1e-4, 1e-4}}, {"translation", {0.05, 0.03, -1}}});
+        use(tiny);
+        const Finished run = run_petzval({"render",       scene_,
+                                          "--threads",    "2",
+                                          "--fov",        "10",
+                                          "--fstop",      "4",
+                                          "--focus",      "0.5",
+                                          "--background", "0.5,0.5,0.5",
+                                          "--size",       "64x36",
+                                          "--spp",        "8",
+                                          "--method",     "targets=" + std::string(targets),
+                                          "-o",           path("lamp.exr")});
+        EXPECT_EQ(run.exit_code, 0) << run.err;
+        return run.err;
+    };
+    const auto warning = testing::HasSubstr("fewer than 16 paths meet a lamp of ");
+    EXPECT_THAT(said(1e5, "off"), warning);
+    EXPECT_THAT(said(1e5, "auto"), testing::Not(warning));
+    EXPECT_THAT(said(1e-3, "off"), testing::Not(warning));
+}
+
 // A plan sees lamps by the rays that are sent to them, and says what they spare.
 TEST_F(Plans, RaysToTargetsMakeLampsKnown) {
     json strong;
@@ -245,16 +276,22 @@ TEST_F(Plans, RaysToTargetsMakeLampsKnown) {
 
 TEST(PlanWords, LampsAreInMillimetresAndSpotsOfTheSkyInDegrees) {
     Plan plan;
-    plan.rare = {.lamps = 30, .spots = 1, .noise = 1};
-    plan.rare.largest_lamp_m = 2e-3;
-    plan.rare.largest_spot_rad = double(kPi) / 360;
+    plan.rare = {.seldom = {.lamps = 30, .spots = 1}, .noise = 1};
+    SmallLamps& seldom = plan.rare.seldom;
+    seldom.largest_lamp_m = 2e-3;
+    seldom.largest_spot_rad = double(kPi) / 360;
     EXPECT_EQ(rare_text(plan), "") << "the noise is known";
     plan.noise_at_least = true;
     EXPECT_EQ(
         rare_text(plan),
         "30 lamps of 2 mm at most and a spot of the sky of 0.5° at most: few paths find them");
-    plan.rare.lamps = 0;
+    seldom.lamps = 0;
     EXPECT_EQ(rare_text(plan), "a spot of the sky of 0.5° at most: few paths find it");
+    seldom.samples = 640;
+    EXPECT_EQ(warning_of(seldom),
+              "warning: fewer than 16 paths meet a spot of the sky of 0.5° at most: its light is "
+              "missing, or in single bright pixels; --spp 640 would do");
+    EXPECT_EQ(warning_of({}), std::nullopt);
 }
 
 // The last line is a command; what it writes is about the tolerance off a long one.

@@ -96,7 +96,7 @@ std::optional<ListedTarget> list_target(const Target& target, const StopMap& map
     auto out = in_frame(map, pose, target);
     if (!out) return out;
     const StopMap::Rays middle = map.rays(map.middle(), kMiddle_nm);
-    out->squares = ~uint64_t{0};
+    out->squares = StopMap::kOnDisc;
     const float moves = out->in_radii(map.moves());
     const StopRegion seen_by_cell(map, middle, *out, moves);
     if (seen_by_cell.empty()) return std::nullopt;

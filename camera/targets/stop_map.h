@@ -67,6 +67,8 @@ class StopMap {
                    float(kSquares) -
                V2f(1.f);
     }
+    /// Squares that hold a part of the disc, by bits: all but the four corners.
+    static constexpr uint64_t kOnDisc = 0x7effffffffffff7e;
     /// Bounds in a square, of a place and of a slope: errors; and second derivatives by the point
     /// of the disc.
     [[nodiscard]] V2f error(size_t square) const { return error_[square]; }

@@ -2,7 +2,9 @@
 #include "camera/targets/stop_region.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <span>
 
 #include "core/sampling/warp.h"
 
@@ -138,43 +140,58 @@ StopRegion::Shape StopRegion::strip(V2f middle, float half, const Landings& at, 
     return out;
 }
 
-/// Eight squares, and what of them may hold a point of the region.
+/// Eight squares, with the curvature of the landing there and the distance that counts as on the
+/// target.
 struct StopRegion::Eight {
-    std::array<V2f, 8> middle{};
-    std::array<float, 8> bend{}, reach{};  ///< curvature, and the distance that counts as there
-    int count = 0;
-    Landings at{};
+    f8 s, t, bend, reach;
+    Landings at;
+    int count;
 
-    void put(V2f square, float curvature, float distance) {
-        const auto n = static_cast<size_t>(count++);
-        middle[n] = square, bend[n] = curvature, reach[n] = distance;
+    void put(float x, float y, float curvature, float distance) {
+        s[count] = x, t[count] = y, bend[count] = curvature, reach[count] = distance;
+        ++count;
     }
-    void land(const LandingMap& map) {
-        f8 s{}, t{};
-        for (int i = 0; i < count; ++i) s[i] = middle[size_t(i)].x, t[i] = middle[size_t(i)].y;
-        at = landings(map, s, t);
+    void put(const Eight& o, int i) {
+        const auto copy = [&](f8& to, const f8& from) { to[count] = from[i]; };
+        copy(at.x, o.at.x), copy(at.y, o.at.y);
+        copy(at.x_by_s, o.at.x_by_s), copy(at.y_by_s, o.at.y_by_s);
+        copy(at.x_by_t, o.at.x_by_t), copy(at.y_by_t, o.at.y_by_t);
+        put(o.s[i], o.t[i], o.bend[i], o.reach[i]);
     }
+    [[nodiscard]] V2f middle(int i) const { return {s[i], t[i]}; }
+};
+
+/// Squares of one size that may hold a point of the region.
+class StopRegion::Squares {
+  public:
+    /// Takes those of eight, whose landings are there, that may hold one.
+    void take(const Eight& eight, float half, uint64_t& of_map) {
+        const f8 wide = eight.reach + eight.bend * (half * half);
+        const m8 kept = eight.at.may_be_near(half, wide) & (eight.reach > 0.f);
+        if (!any(kept)) return;
+        for (int i = 0; i < eight.count; ++i) {
+            if (!kept[i]) continue;
+            of_map |= uint64_t{1} << StopMap::square(eight.middle(i));
+            if (count_ == 0 || eights_[count_ - 1].count == 8) eights_[count_++] = Eight();
+            eights_[count_ - 1].put(eight, i);
+        }
+    }
+    void clear() { count_ = 0; }
+    [[nodiscard]] std::span<const Eight> eights() const { return {eights_.data(), count_}; }
+
+  private:
+    std::array<Eight, kMost / 8> eights_;
+    size_t count_ = 0;
 };
 
 // Ellipses are added by Newton's method, all squares at once. Squares that are left are returned,
 // with the strip of each where the landing is straight there.
 size_t StopRegion::find(const LandingMap& map, const Eight& eight, float half, LeftSquare* left) {
     const float across = half * kRoot2;
-    f8 bend{}, reach{}, s{}, t{};
-    for (int i = 0; i < eight.count; ++i) {
-        const auto n = static_cast<size_t>(i);
-        bend[i] = eight.bend[n], reach[i] = eight.reach[n];
-        s[i] = eight.middle[n].x, t[i] = eight.middle[n].y;
-    }
     Landings now = eight.at;
-    const auto [most, least] = now.stretch();
-    const f8 away2 = now.x * now.x + now.y * now.y,
-             near = reach + most * across + bend * (half * half);
-    const m8 kept = (away2 <= near * near) & (reach > 0.f),
-             smooth = kept & (bend * across < kSmooth * least);
-    for (int i = 0; i < eight.count; ++i)
-        if (kept[i]) squares_ |= uint64_t{1} << StopMap::square(eight.middle[size_t(i)]);
-    if (!any(kept)) return 0;
+    const f8 least = now.stretch()[1];
+    f8 s = eight.s, t = eight.t;
+    const m8 smooth = (eight.bend * across < kSmooth * least) & (eight.reach > 0.f);
     std::array<bool, 8> found{};
     if (any(smooth)) {
         for (int step = 0; step < kSteps; ++step) {
@@ -187,20 +204,19 @@ size_t StopRegion::find(const LandingMap& map, const Eight& eight, float half, L
         for (int i = 0; i < eight.count; ++i) {
             // A way that lies elsewhere says nothing of this square.
             const V2f way(s[i], t[i]);
-            const float away = (way - eight.middle[size_t(i)]).length();
-            if (there[i] && away < 2 * across + 1.5f * reach[i] / least[i])
-                found[size_t(i)] = add_ellipse(way, now, i, reach[i], bend[i]);
+            const float away = (way - eight.middle(i)).length();
+            if (there[i] && away < 2 * across + 1.5f * eight.reach[i] / least[i])
+                found[size_t(i)] = add_ellipse(way, now, i, eight.reach[i], eight.bend[i]);
         }
     }
     size_t lefts = 0;
     for (int i = 0; i < eight.count; ++i) {
-        const auto n = static_cast<size_t>(i);
-        if (!kept[i] || found[n]) continue;
-        const float bent = bend[i] * half * half;
+        if (found[size_t(i)]) continue;
+        const float bent = eight.bend[i] * half * half;
         LeftSquare& out = left[lefts];
-        out.middle = eight.middle[n], out.strip.area = 0;
-        if (bent < kBent * reach[i]) {
-            out.strip = strip(out.middle, half, eight.at, i, reach[i] + bent);
+        out.middle = eight.middle(i), out.strip.area = 0;
+        if (bent < kBent * eight.reach[i]) {
+            out.strip = strip(out.middle, half, eight.at, i, eight.reach[i] + bent);
             if (!(out.strip.area > 0)) continue;
         }
         ++lefts;
@@ -213,22 +229,29 @@ size_t StopRegion::find(const LandingMap& map, const Eight& eight, float half, L
 StopRegion::StopRegion(const StopMap& map, const StopMap::Rays& rays, const ListedTarget& target,
                        float wider) {
     const LandingMap landing(rays, target);
+    const float place = target.by_place / target.radius, slope = target.by_slope / target.radius;
+    const auto reach_of = [&](size_t n) {
+        const V2f error = map.error(n);
+        return 1 + place * error.x + slope * error.y + wider;
+    };
     std::array<LeftSquare, kMost> left;
     size_t lefts = 0;
     float half = 1.f / StopMap::kSquares;
-    Eight eight;
-    const auto flush = [&] {
-        if (eight.count > 0) lefts += find(landing, eight, half, &left[lefts]);
-        eight.count = 0;
+    Squares kept;
+    Eight eight{};
+    const auto take = [&] {
+        if (eight.count > 0) kept.take(eight, half, squares_);
+        eight = Eight();
     };
-    for (size_t n = 0; n < StopMap::kSquares2; ++n) {
-        if (!(target.squares >> n & 1)) continue;
-        const V2f middle = StopMap::middle_of(n);
-        if (!(middle.length() - half * kRoot2 < 1)) continue;
-        eight.put(middle, target.in_radii(map.bend(n)), reach_at(map, target, middle) + wider);
-        if (eight.count == 8) eight.land(landing), flush();
+    for (uint64_t bits = target.squares; bits != 0; bits &= bits - 1) {
+        const auto n = static_cast<size_t>(std::countr_zero(bits));
+        const V2f middle = StopMap::middle_of(n), bend = map.bend(n);
+        eight.put(middle.x, middle.y, place * bend.x + slope * bend.y, reach_of(n));
+        if (eight.count < 8 && (bits & (bits - 1)) != 0) continue;
+        eight.at = landings(landing, eight.s, eight.t);
+        take();
     }
-    eight.land(landing), flush();
+    for (const Eight& squares : kept.eights()) lefts += find(landing, squares, half, &left[lefts]);
     while (lefts > 0) {
         const size_t ellipses = count_;
         std::array<V2f, kMost / 4> divided;
@@ -245,25 +268,22 @@ StopRegion::StopRegion(const StopMap& map, const StopMap::Rays& rays, const List
         }
         half /= 2;
         lefts = 0;
+        kept.clear();
         for (size_t first = 0; first < count; first += 2) {
             for (size_t i = first; i < std::min(first + 2, count); ++i)
                 for (int k = 0; k < 4; ++k) {
                     const V2f middle = divided[i] + V2f(k & 1 ? half : -half, k & 2 ? half : -half);
+                    const size_t n = StopMap::square(middle);
                     const bool on_disc = middle.length() - half * kRoot2 < 1;
-                    eight.put(middle, 0, on_disc ? reach_at(map, target, middle) + wider : 0);
+                    eight.put(middle.x, middle.y, 0,
+                              on_disc && target.squares >> n & 1 ? reach_of(n) : 0);
                 }
-            eight.land(landing);
-            // From the derivatives in the other quarters of the square.
-            for (int i = 0; i < eight.count; ++i)
-                for (int k = i / 4 * 4; k < i / 4 * 4 + 4; ++k) {
-                    const auto n = static_cast<size_t>(i);
-                    if (k == i) continue;
-                    const float apart = (eight.middle[size_t(k)] - eight.middle[n]).length();
-                    eight.bend[n] = std::max(eight.bend[n],
-                                             kBendMargin * eight.at.change(i, eight.at, k) / apart);
-                }
-            flush();
+            eight.at = landings(landing, eight.s, eight.t);
+            eight.bend = kBendMargin * eight.at.curvature(2 * half);
+            take();
         }
+        for (const Eight& squares : kept.eights())
+            lefts += find(landing, squares, half, &left[lefts]);
     }
 }
 

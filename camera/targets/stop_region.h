@@ -22,10 +22,24 @@ struct LandingMap {
 struct Landings {
     f8 x, y, x_by_s, y_by_s, x_by_t, y_by_t;
 
-    /// Change of the derivatives from one to another.
-    [[nodiscard]] float change(int i, const Landings& o, int k) const {
-        return std::sqrt(sqr(x_by_s[i] - o.x_by_s[k]) + sqr(y_by_s[i] - o.y_by_s[k]) +
-                         sqr(x_by_t[i] - o.x_by_t[k]) + sqr(y_by_t[i] - o.y_by_t[k]));
+    /// Curvature by the change of the derivatives between the quarters of two squares, four lanes
+    /// each: left and right below, left and right above, so far apart.
+    [[nodiscard]] f8 curvature(float apart) const {
+        const f8 beside = change2(u32x8{1, 0, 3, 2, 5, 4, 7, 6}),
+                 above = change2(u32x8{2, 3, 0, 1, 6, 7, 4, 5}),
+                 across = change2(u32x8{3, 2, 1, 0, 7, 6, 5, 4});
+        return sqrt(max(max(beside, above), across / 2)) / apart;
+    }
+    /// Whether a straight landing may come as near to the target as that in squares about the
+    /// points: by the largest stretch, and across the longer one of the derivatives.
+    [[nodiscard]] m8 may_be_near(float half, f8 wide) const {
+        const f8 s2 = x_by_s * x_by_s + y_by_s * y_by_s, t2 = x_by_t * x_by_t + y_by_t * y_by_t,
+                 det = abs(x_by_s * y_by_t - x_by_t * y_by_s);
+        const f8 long_x = s2 > t2 ? x_by_s : x_by_t, long_y = s2 > t2 ? y_by_s : y_by_t;
+        const f8 across = long_x * y - long_y * x, more = half * det,
+                 most = wide + stretch()[0] * (1.41421356f * half);
+        const f8 left = max(f8{}, abs(across) - more);
+        return (x * x + y * y <= most * most) & (left * left <= wide * wide * max(s2, t2));
     }
     /// Largest and least stretch: singular values of the derivatives.
     [[nodiscard]] std::array<f8, 2> stretch() const {
@@ -34,10 +48,12 @@ struct Landings {
         const f8 most = sqrt(half + sqrt(max(f8{}, half * half - det * det)));
         return {most, det / most};
     }
-    /// Square of the largest stretch, at most.
-    [[nodiscard]] float stretch2(int i) const {
-        return x_by_s[i] * x_by_s[i] + y_by_s[i] * y_by_s[i] + x_by_t[i] * x_by_t[i] +
-               y_by_t[i] * y_by_t[i];
+
+  private:
+    [[nodiscard]] f8 change2(u32x8 lane) const {
+        const auto change = [&](f8 a) { return a - __builtin_shuffle(a, (m8)lane); };
+        const f8 xs = change(x_by_s), ys = change(y_by_s), xt = change(x_by_t), yt = change(y_by_t);
+        return xs * xs + ys * ys + xt * xt + yt * yt;
     }
 };
 [[nodiscard]] Landings landings(const LandingMap&, f8 s, f8 t);
@@ -107,6 +123,7 @@ class StopRegion {
         [[nodiscard]] bool contains(V2f) const;
     };
     struct Eight;
+    class Squares;
     struct LeftSquare {
         V2f middle;
         Shape strip;  ///< no area: it must be divided

@@ -25,6 +25,7 @@ struct Target {
 /// Eight-sided part of the film: by x, y, x + y and x - y of its points.
 struct FilmOctagon {
     std::array<float, 4> low{}, high{};
+    float beyond = 0;  ///< how far it reaches beyond, along x and y, for the middles of pixels
 
     [[nodiscard]] static std::array<float, 4> along(V2f film) {
         return {film.x, film.y, film.x + film.y, film.x - film.y};
@@ -34,6 +35,17 @@ struct FilmOctagon {
         for (size_t k = 0; k < 4; ++k) in &= along[k] >= low[k] && along[k] <= high[k];
         return in;
     }
+    /// Whether a film point lies in it, the part for the middles of pixels left out.
+    [[nodiscard]] bool contains_point(V2f film) const {
+        const auto at = along(film);
+        bool in = true;
+        for (size_t k = 0; k < 4; ++k) {
+            const float less = k < 2 ? beyond : kRoot2 * beyond;
+            in &= at[k] >= low[k] + less && at[k] <= high[k] - less;
+        }
+        return in;
+    }
+    static constexpr float kRoot2 = 1.41421356f;
     /// Rectangle about its part of a cell; of no area where they do not meet.
     [[nodiscard]] FilmCell within(const FilmCell& cell) const {
         const V2f first = cell.nearest({low[0], low[1]}), last = cell.nearest({high[0], high[1]});
@@ -49,12 +61,13 @@ struct ListedTarget {
     V2f centre;
     float by_place, by_slope;
     float radius;
-    FilmOctagon seen_from;  ///< middles of pixels from which it may be seen
+    FilmOctagon seen_from;  ///< film points that may see it, and middles of their pixels
     /// Squares of the map that rays may cross on their way here, by bits.
     uint64_t squares = 0;
     /// About all of the stop sees it from one pixel: film points are drawn for points of the stop.
     bool is_sharp = false;
     float chance = 1;     ///< that a ray is sent to it, among those that a film point may see
+    float search = 0;     ///< evaluations of the map that a ray to it takes, on average
     float met = 0;        ///< share of ordinary rays that pass it, about
     uint32_t number = 0;  ///< in TargetGrid::targets
 

@@ -64,10 +64,10 @@ double PilotModel::lens_rays() const {
     }
 }
 
-// The search for a ray to a target: what the pilot of the targets counts for it (kSearchCost in
-// integrator/prepass/target_pilot.cpp).
+// The search for a ray to a target. Counted in instructions, with the Takumar: three searches for a
+// ray, of 21 to 28 steps each.
 double PilotModel::rays_to_find_targets() const {
-    constexpr double kSearch = 8;
+    constexpr double kSearch = 60;
     return kSearch * static_cast<double>(stats_.target_rays) / static_cast<double>(stats_.samples);
 }
 

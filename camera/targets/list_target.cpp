@@ -13,9 +13,8 @@ namespace {
 constexpr float kSharp_px = 0.3f;
 /// Distance from the middle of a pixel within which its film points lie, mostly.
 constexpr float kFilter_px = 1.5f;
-/// What a target moves less over the film than at one place of it, and the margin of the part that
-/// sees it.
-constexpr float kCurved = 1.3f, kMore = 0.06f;
+/// Margin of the part of the film that sees a target.
+constexpr float kMore = 0.06f;
 
 /// The target in the frame of a map; nothing where it lies behind.
 std::optional<ListedTarget> in_frame(const StopMap& map, const Pose& pose, const Target& target) {
@@ -56,20 +55,19 @@ V2f pictured(const StopMap& map, const ListedTarget& target) {
 FilmOctagon seen_from(const StopMap& map, const ListedTarget& target, V2i frame_px) {
     FilmOctagon out;
     out.low.fill(INFINITY), out.high.fill(-INFINITY);
-    float error = 0;
-    for (size_t n = 0; n < StopMap::kSquares2; ++n)
-        if (target.squares >> n & 1) error = std::max(error, target.in_radii(map.error(n)));
+    out.beyond = kFilter_px / float(std::min(frame_px.x, frame_px.y));
     const auto by_film = map.rays_by_film(map.middle());
     const auto add = [&](const StopMap::Rays& middle, V2f stop) {
         const FilmMotion by(by_film, target, stop);
         const V2f film = map.middle() - by.film_for(landing(at(middle, stop), target));
+        const float error = target.in_radii(map.error(StopMap::square(stop)));
         // The target's radius, and the reach of a filter.
         const float wide =
             (1 + error) * std::sqrt(std::max(by.right.length2(), by.down.length2())) / by.area() +
-            kFilter_px / float(std::min(frame_px.x, frame_px.y));
+            out.beyond;
         const auto along = FilmOctagon::along(film);
         for (size_t k = 0; k < 4; ++k) {
-            const float reach = k < 2 ? wide : 1.42f * wide;
+            const float reach = k < 2 ? wide : FilmOctagon::kRoot2 * wide;
             out.low[k] = std::min(out.low[k], along[k] - reach);
             out.high[k] = std::max(out.high[k], along[k] + reach);
         }
@@ -87,6 +85,18 @@ FilmOctagon seen_from(const StopMap& map, const ListedTarget& target, V2i frame_
         out.low[k] -= more, out.high[k] += more;
     }
     return out;
+}
+
+/// Evaluations of the map for a ray to a target, on average over places that see it.
+float search_of(const StopMap& map, const ListedTarget& target) {
+    const FilmCell seen =
+        target.seen_from.within({map.middle() - map.half(), map.middle() + map.half()});
+    float sum = 0;
+    for (const V2f& at : {V2f(0.25f), V2f(0.75f, 0.25f), V2f(0.25f, 0.75f), V2f(0.75f)}) {
+        const V2f film = seen.first + at * (seen.last - seen.first);
+        sum += float(StopRegion(map, map.rays(film, kMiddle_nm), target).evaluations());
+    }
+    return sum / 4;
 }
 
 }  // namespace
@@ -116,6 +126,7 @@ std::optional<ListedTarget> list_target(const Target& target, const StopMap& map
     out->is_sharp = spread < kSharp_px * std::min(by.right.length() / float(frame_px.x),
                                                   by.down.length() / float(frame_px.y));
     out->seen_from = seen_from(map, *out, frame_px);
+    out->search = out->is_sharp ? 0 : search_of(map, *out);
     return out;
 }
 

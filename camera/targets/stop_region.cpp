@@ -15,8 +15,9 @@ constexpr float kPi_f = static_cast<float>(kPi);
 /// Change of a derivative over a square, as a share of its least stretch, up to which Newton's
 /// method is left to find the one way there.
 constexpr float kSmooth = 0.5f;
-/// Departure from a straight map, in radii of the target, up to which one stands for it.
-constexpr float kBent = 0.08f;
+/// Departure from a straight map, in what counts as on the target, up to which one stands for it:
+/// in an ellipse, and in a strip.
+constexpr float kBent = 0.08f, kBentStrip = 0.3f;
 /// Roots this near to each other on the target are one.
 constexpr float kSame = 0.2f;
 /// Curvature within a square over the one that its quarters show.
@@ -119,8 +120,11 @@ bool StopRegion::add_ellipse(V2f s, const Landings& at, int i, float reach, floa
 /// of the target: along its largest stretch and across. No area where there is none.
 StopRegion::Shape StopRegion::strip(V2f middle, float half, const Landings& at, int i, float wide) {
     const V2f by_s(at.x_by_s[i], at.y_by_s[i]), by_t(at.x_by_t[i], at.y_by_t[i]);
-    const float angle = std::atan2(2 * by_s.dot(by_t), by_s.length2() - by_t.length2()) / 2;
-    const V2f along(std::cos(angle), std::sin(angle)), across(-along.y, along.x);
+    const float twice = 2 * by_s.dot(by_t), apart = by_s.length2() - by_t.length2(),
+                both = std::sqrt(twice * twice + apart * apart),
+                cosine = both > 0 ? apart / both : 1;  // of twice the angle of the largest stretch
+    const V2f along(std::sqrt((1 + cosine) / 2), std::copysign(std::sqrt((1 - cosine) / 2), twice)),
+        across(-along.y, along.x);
     Shape out{middle, V2f(0.f), V2f(0.f), 4, true, 0};
     const auto cut = [&](V2f axis, V2f& by) {
         const V2f image = by_s * axis.x + by_t * axis.y;
@@ -196,6 +200,7 @@ size_t StopRegion::find(const LandingMap& map, const Eight& eight, float half, L
     if (any(smooth)) {
         for (int step = 0; step < kSteps; ++step) {
             const f8 det = now.x_by_s * now.y_by_t - now.x_by_t * now.y_by_s;
+            ++evaluations_;
             s -= (now.y_by_t * now.x - now.x_by_t * now.y) / det;
             t -= (now.x_by_s * now.y - now.y_by_s * now.x) / det;
             now = landings(map, s, t);
@@ -215,7 +220,7 @@ size_t StopRegion::find(const LandingMap& map, const Eight& eight, float half, L
         const float bent = eight.bend[i] * half * half;
         LeftSquare& out = left[lefts];
         out.middle = eight.middle(i), out.strip.area = 0;
-        if (bent < kBent * eight.reach[i]) {
+        if (bent < kBentStrip * eight.reach[i]) {
             out.strip = strip(out.middle, half, eight.at, i, eight.reach[i] + bent);
             if (!(out.strip.area > 0)) continue;
         }
@@ -239,6 +244,10 @@ StopRegion::StopRegion(const StopMap& map, const StopMap::Rays& rays, const List
     float half = 1.f / StopMap::kSquares;
     Squares kept;
     Eight eight{};
+    const auto land = [&] {
+        eight.at = landings(landing, eight.s, eight.t);
+        ++evaluations_;
+    };
     const auto take = [&] {
         if (eight.count > 0) kept.take(eight, half, squares_);
         eight = Eight();
@@ -248,7 +257,7 @@ StopRegion::StopRegion(const StopMap& map, const StopMap::Rays& rays, const List
         const V2f middle = StopMap::middle_of(n), bend = map.bend(n);
         eight.put(middle.x, middle.y, place * bend.x + slope * bend.y, reach_of(n));
         if (eight.count < 8 && (bits & (bits - 1)) != 0) continue;
-        eight.at = landings(landing, eight.s, eight.t);
+        land();
         take();
     }
     for (const Eight& squares : kept.eights()) lefts += find(landing, squares, half, &left[lefts]);
@@ -278,7 +287,7 @@ StopRegion::StopRegion(const StopMap& map, const StopMap::Rays& rays, const List
                     eight.put(middle.x, middle.y, 0,
                               on_disc && target.squares >> n & 1 ? reach_of(n) : 0);
                 }
-            eight.at = landings(landing, eight.s, eight.t);
+            land();
             eight.bend = kBendMargin * eight.at.curvature(2 * half);
             take();
         }

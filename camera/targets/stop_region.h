@@ -91,6 +91,7 @@ class StopRegion {
     StopRegion& operator=(const StopRegion& o) {
         std::copy_n(o.shapes_.begin(), o.count_, shapes_.begin());
         count_ = o.count_, areas_ = o.areas_, is_whole_ = o.is_whole_, squares_ = o.squares_;
+        evaluations_ = o.evaluations_;
         return *this;
     }
     [[nodiscard]] bool empty() const { return count_ == 0; }
@@ -100,6 +101,8 @@ class StopRegion {
     [[nodiscard]] V2f sample(float pick, V2f on) const;
     /// Squares of the map that may hold a point of the region, by bits.
     [[nodiscard]] uint64_t squares() const { return squares_; }
+    /// How often the map was asked, eight points at a time: what the search took.
+    [[nodiscard]] uint32_t evaluations() const { return evaluations_; }
     /// Number of the shapes, and whether one is an ellipse: a way, of which the middle is known.
     [[nodiscard]] size_t size() const { return count_; }
     [[nodiscard]] bool is_ellipse(size_t shape) const { return !shapes_[shape].is_square; }
@@ -144,6 +147,7 @@ class StopRegion {
     std::array<float, 2> areas_{};  ///< of ellipses and of squares
     bool is_whole_ = false;
     uint64_t squares_ = 0;
+    uint32_t evaluations_ = 0;
 };
 
 /// Distance in radii within which the landing of a ray by the map may be one on the target; 0 where

@@ -15,6 +15,12 @@ V2f middle_of_pixel(const FilmPoint& point) {
     return point.film - point.pixel.offset_px / point.pixel.frame_px;
 }
 
+/// Whether a film point may see a target; along: of the middle of its pixel.
+bool may_see(const ListedTarget& target, V2f film, const std::array<float, 4>& along) {
+    return target.seen_from.contains(along) &&
+           (target.is_sharp || target.seen_from.contains_point(film));
+}
+
 /// Whether the map has the ray through a point of the stop near a target: other rays are neither
 /// sent nor asked for their density.
 bool is_near(const TargetView& view, const StopMap::Rays& rays, V2f stop_mm) {
@@ -72,7 +78,7 @@ float StopTargetCamera::density_to_targets(const StopCrossings& crossings, const
         const StopMap::Rays rays = cell.map->rays(point.film, crossings.nm[k]);
         const V2f stop_mm = crossings.stop_mm[k];
         for (const ListedTarget& target : cell.targets) {
-            if (!target.seen_from.contains(along)) continue;
+            if (!may_see(target, point.film, along)) continue;
             const TargetView view{cell.map.get(), &target, point.film, crossings.nm[k]};
             if (!is_near(view, rays, stop_mm)) continue;
             // The region that a ray was drawn from need not be found again.
@@ -119,7 +125,8 @@ void StopTargetCamera::aim_at_stop(const Batch& batch, uint32_t ray,
     std::array<size_t, kMostFilmPoints> of{};
     for (size_t i = 0; i < batch.points.size(); ++i) {
         const auto view = picked(batch, i, ray);
-        if (!view || view->target->is_sharp) continue;
+        if (!view || view->target->is_sharp || !view->target->seen_from.contains_point(view->film))
+            continue;
         of[searches.size()] = i;
         searches.emplace_back(*view, view->map->rays(view->film, view->nm));
         if (searches.back().region.empty()) searches.pop_back();

@@ -9,6 +9,7 @@ inline constexpr int kFailure = 1;  ///< an input cannot be used, or a limit is 
 inline constexpr int kUsage = 2;    ///< arguments that are wrong
 inline constexpr int kOutputFailed = 3;
 inline constexpr int kOutOfMemory = 4;
+inline constexpr int kNoiseLeft = 5;  ///< pictures are written, with more noise than was asked for
 inline constexpr int kStopped = 130;  ///< by any of the signals that Interrupt waits for
 
 }  // namespace petzval

@@ -35,6 +35,7 @@ Console::Json json_of(const ProgressFigures& f) {
     out["samples_per_s"] = std::round(f.samples_per_s);
     out["elapsed_s"] = to_1e3(f.elapsed_s);
     out["remaining_s"] = nullptr;
+    if (f.noise > 0) out["noise"] = f.noise;
     if (f.left_s) out["remaining_s"] = to_1e3(*f.left_s);
     return out;
 }
@@ -73,7 +74,7 @@ void Progress::end_rendering(bool whole) {
     const std::lock_guard lock(mutex_);
     const uint64_t done = monitor_.pixel_samples_done;
     const ProgressFigures figures =
-        whole ? figures_at_end(done, phase_s()) : figures_under_way(goal_, done, phase_s());
+        whole ? with_noise(figures_at_end(done, phase_s())) : under_way(done);
     rendered_ = true;
     if (style_ == ProgressStyle::Json) console_.event("progress", json_of(figures));
     if (style_ == ProgressStyle::Bar)
@@ -81,6 +82,19 @@ void Progress::end_rendering(bool whole) {
     if (style_ == ProgressStyle::Lines)
         console_.line(progress_line(figures, kUsualColumns, ProgressBar::No));
     if (style_ == ProgressStyle::Percent) show_percent(figures.fraction);
+}
+
+ProgressFigures Progress::with_noise(ProgressFigures figures) const {
+    figures.noise = monitor_.noise;
+    return figures;
+}
+
+// Where a noise is to be reached, what is known of the cells says how many samples there will be.
+ProgressFigures Progress::under_way(uint64_t done) const {
+    ProgressGoal goal = goal_;
+    if (const uint64_t expected = monitor_.expected_pixel_samples; expected > 0 && goal.total)
+        goal.total = std::max(expected, done + 1);
+    return with_noise(figures_under_way(goal, done, phase_s()));
 }
 
 void Progress::show_percent(double fraction) {
@@ -137,8 +151,7 @@ void Progress::watch(const std::stop_token& stop) {
 void Progress::show_now() {
     const bool rendering = phase_ == Phase::Rendering;
     if (rendering && rendered_) return;
-    const ProgressFigures figures =
-        figures_under_way(goal_, monitor_.pixel_samples_done, phase_s());
+    const ProgressFigures figures = under_way(monitor_.pixel_samples_done);
     const auto line = [&](int columns, ProgressBar bar) {
         return rendering ? progress_line(figures, columns, bar)
                          : phase_line(phase_, phase_s(), columns);

@@ -42,6 +42,8 @@ class Progress {
     void show_now();
     void show_percent(double fraction);
     void end_phase();
+    [[nodiscard]] ProgressFigures with_noise(ProgressFigures) const;
+    [[nodiscard]] ProgressFigures under_way(uint64_t pixel_samples) const;
     [[nodiscard]] double phase_s() const;
 
     ProgressStyle style_;

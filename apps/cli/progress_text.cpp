@@ -8,6 +8,8 @@
 #include <cmath>
 #include <vector>
 
+#include "io/base/format.h"
+
 namespace petzval {
 namespace {
 
@@ -85,9 +87,10 @@ ProgressFigures figures_at_end(uint64_t pixel_samples, double elapsed_s) {
 
 std::string progress_line(const ProgressFigures& f, int columns, ProgressBar with_bar) {
     constexpr size_t kShortestBar = 10, kLongestBar = 30, kAroundBar = 3;
-    enum Part { Percent, Rate, Elapsed, Left, Count };
+    enum Part { Percent, Noise, Rate, Elapsed, Left, Count };
     std::array<std::string, Count> texts;
     texts[Percent] = percent_text(f.fraction);
+    if (f.noise > 0) texts[Noise] = "noise " + percent(f.noise);
     texts[Rate] = rate_text(f.samples_per_s);
     texts[Elapsed] = duration_text(f.elapsed_s);
     if (f.fraction < 1) {
@@ -104,13 +107,14 @@ std::string progress_line(const ProgressFigures& f, int columns, ProgressBar wit
         used += wanted;
     };
     add(f.fraction < 1 ? Left : Elapsed);
+    add(Noise);
     const bool barred = with_bar == ProgressBar::Yes && used + kShortestBar + kAroundBar <= room;
     if (barred) used += kShortestBar + kAroundBar;
     add(Rate);
     if (f.fraction < 1) add(Elapsed);
     std::string line;
     if (barred) line = bar(f.fraction, std::min(kLongestBar, kShortestBar + room - used)) + " ";
-    for (const Part part : {Percent, Rate, Elapsed, Left})
+    for (const Part part : {Percent, Noise, Rate, Elapsed, Left})
         if (shown[part]) line += (part == Percent ? "" : "  ") + texts[part];
     return cut(line, columns);
 }

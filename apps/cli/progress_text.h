@@ -27,6 +27,7 @@ struct ProgressFigures {
     double elapsed_s = 0, samples_per_s = 0;
     double fraction = 0;           ///< of the time that it will take; 1 only at the end
     std::optional<double> left_s;  ///< absent while nothing is known
+    double noise = 0;              ///< of the picture so far; 0 where it is not known
 };
 
 /// Figures of a render under way. It cannot end before its first pass, nor later than its total.

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "io/base/error.h"
 #include "io/base/printable.h"
 #include "io/image/output.h"
@@ -96,10 +98,12 @@ std::optional<Film> KeptState::take_up(Compare compare, const Notice& notice) {
 }
 
 void KeptState::write(const fs::path& to, const Film& film, const RunFigures& now,
-                      SampleRange samples) {
+                      SampleRange samples, bool finished) {
     RunRecord record = record_;
     record.figures += now;
-    write_state(to, header_of(record, shape_, samples), film);
+    StateHeader header = header_of(record, shape_, samples);
+    header.is_finished = finished;
+    write_state(to, std::move(header), film);
     wrote_ = true;
 }
 

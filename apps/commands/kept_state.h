@@ -35,7 +35,9 @@ class KeptState {
     [[nodiscard]] std::optional<Film> take_up(Compare, const Notice&);
 
     /// Writes the samples so far, with the figures of this run, to a file. Throws OutputError.
-    void write(const std::filesystem::path&, const Film&, const RunFigures&, SampleRange);
+    /// finished: of a render to a noise, that nothing is left to render.
+    void write(const std::filesystem::path&, const Film&, const RunFigures&, SampleRange,
+               bool finished = false);
     /// Removes what this run and those before wrote, of a render whose pictures are there.
     void remove_unfinished(const std::vector<std::filesystem::path>& pictures) const;
 

@@ -54,7 +54,9 @@ int merge(const MergeOptions& o, Session& session) {
                        false, session.console);
     for (const fs::path& state : states)
         outcomes.push_back(write_or_rescue(state, [&](const fs::path& to) {
-            write_state(to, header_of(merged.record, FilmShape::of(film), merged.samples), film);
+            StateHeader header = header_of(merged.record, FilmShape::of(film), merged.samples);
+            header.is_finished = true;
+            write_state(to, std::move(header), film);
         }));
     if (o.stats)
         outcomes.push_back(write_or_rescue(*o.stats, [&](const fs::path& to) {

@@ -9,6 +9,7 @@
 #include "apps/cli/progress.h"
 #include "apps/commands/kept_state.h"
 #include "apps/commands/render_files.h"
+#include "apps/plan/plan_wording.h"
 #include "apps/setup/develop.h"
 #include "apps/setup/exposure.h"
 #include "apps/setup/input_files.h"
@@ -40,10 +41,7 @@ class OneRender {
           kept_(order, checked_files(order), resumed_from) {
         session_.console.forget_messages();  // of the pictures before
         remarks_ = settle_display(order_, kept_.files());
-        const SceneRequest& scene = order.render.scene;
-        const Rect all{0, 0, scene.size.x, scene.size.y};
-        shape_ = {scene.size, order.render.crop.value_or(all), order.render.layers,
-                  scene.spectral.bins};
+        shape_ = shape_of(order.render);
         require_memory();
         check_outputs(order_, kept_.files());
         samples_ = {job_.first_sample, job_.end_sample};
@@ -57,6 +55,7 @@ class OneRender {
     [[nodiscard]] const DisplayOptions& display() const { return render_->display(); }
     [[nodiscard]] const std::vector<fs::path>& pictures() const { return kept_.files().pictures; }
     [[nodiscard]] const std::optional<fs::path>& state() const { return kept_.files().state; }
+    [[nodiscard]] bool is_complete(const Film&) const;
     [[nodiscard]] bool is_there(const std::optional<Film>&) const;
     [[nodiscard]] RenderResult render(Progress&);
     [[nodiscard]] int write_all(const RenderResult&, Progress&, const SequencePlace&);
@@ -90,13 +89,9 @@ RenderFiles OneRender::checked_files(const RenderOrder& order) {
 
 void OneRender::require_memory() const {
     const SceneRequest& scene = order_.render.scene;
-    const double pixels =
-        static_cast<double>(shape_.crop.width()) * static_cast<double>(shape_.crop.height());
     const uint64_t there_bytes =
         std::min(usable_memory_bytes(), scene.picture_memory_bytes.value_or(UINT64_MAX));
-    const auto pixel_bytes =
-        static_cast<double>(Film::bytes_per_pixel(shape_.layers.size(), shape_.bins));
-    if (const auto shortage = memory_shortage(pixels * pixel_bytes, there_bytes))
+    if (const auto shortage = memory_shortage(double(shape_.bytes()), there_bytes))
         throw OutOfMemory("--size: " + *shortage);
 }
 
@@ -110,11 +105,16 @@ ProgressGoal OneRender::goal(std::pair<int, int> part_of) const {
     return goal;
 }
 
+// Whether a film that was taken up lacks no samples.
+bool OneRender::is_complete(const Film& film) const {
+    if (const auto reached = render_->noise(film)) return reached->open == 0;
+    return film.taken_range().least == samples_.count();
+}
+
 bool OneRender::is_there(const std::optional<Film>& film) const {
     if (!order_.run.skip_existing) return false;
     if (pictures().empty() && !state()) return false;
-    if (kept_.files().state_stays && !(film && film->taken_range().least == samples_.count()))
-        return false;
+    if (kept_.files().state_stays && !(film && is_complete(*film))) return false;
     std::optional<SampleRange> wanted = samples_;
     if (job_.time_limit_s) wanted.reset();
     return std::ranges::all_of(pictures(), [&](const fs::path& output) {
@@ -186,9 +186,12 @@ void OneRender::write_state(const RenderResult& result, const RunFigures& figure
                             std::vector<WriteOutcome>& outcomes) {
     const auto& state = kept_.files().state;
     if (!state || !(result.stopped || kept_.files().state_stays)) return;
-    const SampleRange wanted{samples_.first, result.stopped ? samples_.end : result.end_sample};
-    const WriteOutcome& one = outcomes.emplace_back(write_or_rescue(
-        *state, [&](const fs::path& to) { kept_.write(to, render_->film(), figures, wanted); }));
+    const bool partial = result.stopped || render_->film().has_blocks();
+    const SampleRange wanted{samples_.first, partial ? samples_.end : result.end_sample};
+    const WriteOutcome& one =
+        outcomes.emplace_back(write_or_rescue(*state, [&](const fs::path& to) {
+            kept_.write(to, render_->film(), figures, wanted, !result.stopped);
+        }));
     if (!one.written()) session_.console.error(one.message());
     const fs::path& there = one.written() ? *state : one.rescue;
     if (result.stopped && !there.empty())
@@ -198,8 +201,9 @@ void OneRender::write_state(const RenderResult& result, const RunFigures& figure
 // Writes the statistics of this run and those before it; whether that was possible.
 bool OneRender::write_statistics(RunFigures figures, SampleRange taken, const RunReport& report) {
     figures += kept_.record().figures;
-    const StatsPicture picture{shape_.full_size.x, shape_.full_size.y, taken,
-                               setup().from.exposure_ev, render_->film().left_out()};
+    const StatsPicture picture{
+        shape_.full_size.x,       shape_.full_size.y,         taken,
+        setup().from.exposure_ev, render_->film().left_out(), render_->noise(render_->film())};
     const WriteOutcome stats = write_or_rescue(
         *order_.run.stats, [&](const fs::path& to) { write_stats(to, picture, figures, report); });
     if (!stats.written()) session_.console.error(stats.message());
@@ -215,7 +219,9 @@ int OneRender::write_all(const RenderResult& result, Progress& progress,
     std::vector<WriteOutcome> outcomes;
     write_state(result, figures, outcomes);
     const SampleRange taken{samples_.first, result.end_sample};
-    const FinishedFilm done{render_->film(), taken, kept_.record().facts};
+    const std::optional<NoiseReport> noise = render_->noise(render_->film());
+    const FinishedFilm done{render_->film(), noise ? samples_ : taken, kept_.record().facts, noise};
+    if (noise) notice_(text_of(*noise, *order_.render.samples.noise));
     for (WriteOutcome& one : write_pictures(pictures(), display(), done, stopped, session_.console))
         outcomes.push_back(std::move(one));
     bool written = std::all_of(outcomes.begin(), outcomes.end(),
@@ -229,7 +235,8 @@ int OneRender::write_all(const RenderResult& result, Progress& progress,
             write_statistics(figures, taken, report_of(progress, std::move(outcomes), stopped)) &&
             written;
     if (!written) return kOutputFailed;
-    return stopped ? kStopped : kSuccess;
+    if (stopped) return kStopped;
+    return noise && noise->left > 0 ? kNoiseLeft : kSuccess;
 }
 
 // Shows light through the view that was asked for.

@@ -125,7 +125,7 @@ int Sequence::run() {
         if (one == kSuccess) continue;
         if (code == kSuccess || one == kStopped) code = one;
         if (one == kStopped) break;
-        failed.push_back(items_[i].label);
+        if (one != kNoiseLeft) failed.push_back(items_[i].label);
     }
     if (!failed.empty() && items_.size() > 1)
         session_.console.error(fmt::format("{} of {} pictures failed: {}", failed.size(),

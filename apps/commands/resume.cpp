@@ -13,6 +13,7 @@
 #include "apps/request/value_error.h"
 #include "apps/state/run_record.h"
 #include "io/base/error.h"
+#include "io/base/format.h"
 
 namespace petzval {
 namespace {
@@ -53,7 +54,17 @@ int resume(const ResumeOptions& o, Session& session) {
     } catch (const ValueError& error) {
         throw refuse(fmt::format("holds a request that is not understood: {}", error.what()));
     }
-    if (reader.header().is_complete()) {
+    const std::optional<double> noise = o.order.render.samples.noise;
+    const bool wants_less_noise = noise.has_value();
+    if (noise) {
+        std::optional<double>& before = order.render.samples.noise;
+        if (!before) throw refuse("was rendered without ⟨noise⟩, and cannot take one up");
+        if (*noise > *before)
+            throw refuse(fmt::format("asks for a noise of {}: a higher one is reached already",
+                                     percent(*before)));
+        before = noise;
+    }
+    if (reader.header().is_complete() && !wants_less_noise) {
         if (std::ranges::all_of(order.run.outputs, is_state_name)) {
             session.console.notice(o.state.string() + " is complete: there is nothing to render");
             return kSuccess;
@@ -94,7 +105,7 @@ void add_resume_command(CLI::App& app, Session& session) {
     CLI::App* command =
         app.add_subcommand("resume", "go on with a render that was stopped, from its state");
     command->add_option("state", options->state, "NAME.state of the render")->required();
-    for (const char* field : {"threads", "progress", "quiet"})
+    for (const char* field : {"noise", "threads", "progress", "quiet"})
         add_field_option(*command, options->order, field);
     command->callback([options, command, &session] {
         options->asks_progress = command->count("--progress") > 0;

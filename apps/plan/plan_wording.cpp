@@ -154,6 +154,21 @@ std::string text_of(const SmallLamps& small) {
 
 }  // namespace
 
+std::string text_of(const NoiseReport& reached, double asked) {
+    std::string out =
+        fmt::format("noise: {} in the picture, {} in its worst part, with {:.0f} samples a pixel",
+                    percent(reached.noise), percent(reached.worst_cell), reached.mean_samples);
+    if (reached.left == 0) return out;
+    out +=
+        fmt::format("; {} of {} parts are above {}", reached.left, reached.cells, percent(asked));
+    if (reached.at_least > 0)
+        out += fmt::format(", at least: in {} of them the noise hangs on a few paths",
+                           reached.at_least);
+    else if (reached.samples_for_all > 0)
+        out += fmt::format("; --spp {:.0f} would do", std::ceil(reached.samples_for_all));
+    return out;
+}
+
 std::optional<std::string> warning_of(const SmallLamps& small) {
     if (small.count() == 0) return std::nullopt;
     std::string out = fmt::format(

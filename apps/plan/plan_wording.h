@@ -9,6 +9,7 @@
 
 #include "apps/plan/plan.h"
 #include "apps/request/option_names.h"
+#include "integrator/render/noise_target.h"
 
 namespace petzval {
 
@@ -24,6 +25,8 @@ inline constexpr auto kOptionNames<PlanModel> =
 
 /// Reason why the noise may be larger than a plan says; empty where it is known.
 [[nodiscard]] std::string rare_text(const Plan&);
+/// What a render has reached of a noise that was asked for.
+[[nodiscard]] std::string text_of(const NoiseReport&, double asked);
 /// Warning of lamps that few paths of a render meet; none where there are none.
 [[nodiscard]] std::optional<std::string> warning_of(const SmallLamps&);
 /// Times the samples that the same noise would take without rays to targets; nothing where that is

@@ -138,22 +138,30 @@ void SmallLamps::add(const SeenLamp& lamp) {
     largest = std::max(largest, 2 * radius);
 }
 
-SmallLamps seldom_met(const RenderSetup& setup, V2i size_px, double samples, double nits) {
+std::vector<LampSamples> samples_of_lamps(const RenderSetup& setup, V2i size_px, double nits) {
     std::vector<SmallFeature> features = features_of(setup);
-    std::erase_if(features, [&](const SmallFeature& f) {
-        return !f.is_lamp() || f.radiance < samples * nits;
-    });
-    const auto regions = film_regions(*setup.view.still, size_px, features);
-    SmallLamps out;
+    std::erase_if(features,
+                  [&](const SmallFeature& f) { return !f.is_lamp() || f.radiance < nits; });
+    std::vector<FilmRegion> regions = film_regions(*setup.view.still, size_px, features);
+    std::vector<LampSamples> out;
     for (const SeenLamp& lamp : seen_lamps(setup, size_px, features, regions)) {
         const int64_t pixels = std::min(kPixelsOfDisc, lamp.area_px);
         double sent = 0;
         for (int64_t i = 0; i < pixels; ++i)
             sent += sent_to(setup, size_px, lamp.region->pixel(i * lamp.area_px / pixels), lamp);
         const double met = double(lamp.area_px) * (lamp.probability + sent / double(pixels));
-        if (samples * met >= kEnoughPaths) continue;
-        out.add(lamp);
-        out.samples = std::max(out.samples, std::ceil(kEnoughPaths / met));
+        out.push_back({lamp, *lamp.region, std::ceil(kEnoughPaths / met)});
+        out.back().lamp.region = nullptr;
+    }
+    return out;
+}
+
+SmallLamps seldom_met(const RenderSetup& setup, V2i size_px, double samples, double nits) {
+    SmallLamps out;
+    for (const LampSamples& one : samples_of_lamps(setup, size_px, samples * nits)) {
+        if (samples >= one.samples) continue;
+        out.add(one.lamp);
+        out.samples = std::max(out.samples, one.samples);
     }
     return out;
 }

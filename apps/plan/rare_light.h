@@ -43,6 +43,17 @@ struct SeenLamp {
 [[nodiscard]] std::vector<V3d> least_means(const Pilot&, const PilotModel&,
                                            const std::vector<SeenLamp>&);
 
+/// A lamp, and the samples of each pixel with which kEnoughPaths paths meet it, by the camera
+/// alone: those that it draws and those that it sends there.
+struct LampSamples {
+    SeenLamp lamp;  ///< its region is the next member
+    FilmRegion region;
+    double samples;
+};
+/// Lamps of at least so many nits that no surface hides from the camera.
+[[nodiscard]] std::vector<LampSamples> samples_of_lamps(const RenderSetup&, V2i size_px,
+                                                        double nits);
+
 /// Some lamps, and spots of the sky.
 struct SmallLamps {
     size_t lamps = 0, spots = 0;
@@ -53,9 +64,8 @@ struct SmallLamps {
     [[nodiscard]] size_t count() const { return lamps + spots; }
 };
 
-/// Lamps that fewer than kEnoughPaths paths of a frame meet, by the camera alone: those that it
-/// draws and those that it sends there. A lamp counts where one path makes a pixel brighter by at
-/// least so many nits, of so many samples.
+/// Lamps that fewer than kEnoughPaths paths of a frame meet, by the camera alone. A lamp counts
+/// where one path makes a pixel brighter by at least so many nits, of so many samples.
 [[nodiscard]] SmallLamps seldom_met(const RenderSetup&, V2i size_px, double samples, double nits);
 
 /// Light that a pilot of a model cannot know.

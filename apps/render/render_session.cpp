@@ -7,12 +7,14 @@
 #include <cmath>
 #include <utility>
 
+#include "apps/plan/noise_setup.h"
 #include "apps/plan/plan_wording.h"
 #include "apps/setup/develop.h"
 #include "apps/setup/input_files.h"
 #include "apps/setup/spectral_wording.h"
 #include "apps/state/finished_film.h"
 #include "integrator/render/render.h"
+#include "integrator/render/render_to_noise.h"
 #include "io/base/error.h"
 #include "io/base/format.h"
 #include "io/base/printable.h"
@@ -58,6 +60,12 @@ RenderSetup set_up(const PlanRequest& request, TbbExecutor& executor, const Noti
 
 }  // namespace
 
+FilmShape shape_of(const RenderRequest& request) {
+    const V2i size = request.scene.size;
+    return {size, request.crop.value_or(Rect{0, 0, size.x, size.y}), request.layers,
+            request.scene.spectral.bins, request.samples.noise.has_value()};
+}
+
 RenderSession::RenderSession(int threads, Frames frames) : executor_(threads) {
     limit_picture_threads(threads);
     if (frames == Frames::Sequence) frames_.emplace();
@@ -90,15 +98,16 @@ void RenderSession::prepare(const RenderRequest& asked, const Notice& notice,
     load_image_codec();  // before hours of work: a picture will be written
     choose_display(notice);
     warn_of_lamps(notice);
-    const V2i size = scene_.size;
-    shape_ = {size, asked.crop.value_or(Rect{0, 0, size.x, size.y}), asked.layers,
-              scene_.spectral.bins};
+    shape_ = shape_of(asked);
     if (std::ranges::find(asked.layers, Aov::Velocity) != asked.layers.end()) {
         const double fps = asked.moment.fps;
         next_ = set_up_velocity(setup_, fps);
         job_.velocity = next_->velocity.get();
         setup_.from.metadata.emplace_back("petzval:fps", fmt::format("{}", fps));
     }
+    if (asked.samples.noise)
+        job_.noise =
+            noise_target(setup_, job_, path_, scene_.size, *asked.samples.noise, executor_);
     facts_ = facts_of(setup_, job_, path_, display_);
     for (const auto& [file, hash] : inputs)
         if (name_and_hash(file) != hash)
@@ -111,7 +120,6 @@ void RenderSession::prepare(const RenderRequest& asked, const Notice& notice,
         film_ = shape_.empty_film();
 }
 
-// Settles exposure and view: as asked, as the scene's file asks, or as a pilot finds; and tells it.
 // What a path adds to a pixel counts from a tenth of what the display shows as white.
 void RenderSession::warn_of_lamps(const Notice& notice) const {
     constexpr double kSeen = 0.1;
@@ -123,6 +131,7 @@ void RenderSession::warn_of_lamps(const Notice& notice) const {
         notice(*warning);
 }
 
+// Settles exposure and view: as asked, as the scene's file asks, or as a pilot finds; and tells it.
 void RenderSession::choose_display(const Notice& notice) {
     const DisplayRequest& asked = request_.display;
     const SceneExtras& file = setup_.prepared.extras;
@@ -163,7 +172,14 @@ RenderResult RenderSession::render(RenderMonitor& monitor, const RenderRun& run)
     if (job.time_limit_s) *job.time_limit_s -= run.spent_s;
     job.at_pause = run.at_pause;
     job.timing = run.timing;
-    return petzval::render(tracer, *setup_.view.camera, job, *film_, executor_, monitor);
+    const Camera& camera = *setup_.view.camera;
+    return job.noise ? render_to_noise(tracer, camera, job, *film_, executor_, monitor)
+                     : petzval::render(tracer, camera, job, *film_, executor_, monitor);
+}
+
+std::optional<NoiseReport> RenderSession::noise(const Film& film) const {
+    if (!job_.noise) return std::nullopt;
+    return noise_report(film, *job_.noise, job_.end_sample);
 }
 
 SampleRecord RenderSession::trace_sample(SampleId id) const {
@@ -174,6 +190,7 @@ SampleRecord RenderSession::trace_sample(SampleId id) const {
 
 // Samples that every pixel has.
 SampleRange RenderSession::complete() const {
+    if (job_.noise) return {0, job_.end_sample};
     const uint32_t first = job_.first_sample;
     return {first, first + film_->taken_range().least};
 }
@@ -188,7 +205,7 @@ PictureRows RenderSession::shown() const {
 }
 
 void RenderSession::write(const std::filesystem::path& file) const {
-    write_output(file, picture_for(file, {*film_, complete(), facts_}), display_);
+    write_output(file, picture_for(file, {*film_, complete(), facts_, noise(*film_)}), display_);
 }
 
 FoundExposure RenderSession::find_exposure() {

@@ -12,6 +12,7 @@
 #include "apps/setup/render_setup.h"
 #include "apps/state/render_facts.h"
 #include "integrator/render/executor.h"
+#include "integrator/render/noise_target.h"
 #include "integrator/render/render_job.h"
 #include "integrator/render/sample_record.h"
 #include "io/base/notice.h"
@@ -19,6 +20,9 @@
 #include "io/state/state_file.h"
 
 namespace petzval {
+
+/// What the film of a request keeps.
+[[nodiscard]] FilmShape shape_of(const RenderRequest&);
 
 /// How a render runs; nothing of it changes a sample.
 struct RenderRun {
@@ -74,6 +78,10 @@ class RenderSession {
 
     /// How a sample comes about, whether the film has it or not; its pixel lies in the full frame.
     [[nodiscard]] SampleRecord trace_sample(SampleId) const;
+
+    /// What a film of this render has reached of the noise that is asked for; nothing where none
+    /// is.
+    [[nodiscard]] std::optional<NoiseReport> noise(const Film&) const;
 
     /// The picture so far: R, G, B, A in nits, then the layers. Also at a pause.
     [[nodiscard]] PictureRows light() const;

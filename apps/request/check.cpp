@@ -7,6 +7,7 @@
 #include "apps/request/file_names.h"
 #include "apps/request/parse.h"
 #include "core/film/spectral_film.h"
+#include "integrator/render/noise_target.h"
 
 namespace petzval {
 namespace {
@@ -33,6 +34,12 @@ void check_moment(const MomentRequest& moment, ExposureMode mode) {
 }
 
 void check_samples(const SampleRequest& samples, bool bins) {
+    if (samples.noise && samples.range)
+        refuse("⟨noise⟩",
+               "excludes a range of samples: which of them a pixel needs is known as they come; "
+               "machines share a picture by ⟨crop⟩");
+    if (samples.noise && samples.count && *samples.count < kLeastOfCell)
+        refuse("⟨spp⟩", fmt::format("to tell the noise takes at least {}", kLeastOfCell));
     if (samples.range && samples.count)
         refuse("⟨spp⟩", "is a number of samples or a range of them");
     if (samples.range && samples.time_limit_s)
@@ -51,6 +58,15 @@ void check(const RenderRequest& request) {
     check_moment(request.moment, scene.camera.exposure);
     check_samples(request.samples, scene.spectral.bins.has_value());
     if (request.crop) check_inside("⟨crop⟩", *request.crop, scene.size);
+    if (request.crop && request.samples.noise) {
+        NoiseTarget frame;
+        frame.frame_px = scene.size;
+        if (const Rect whole = frame.whole_cells(*request.crop); whole != *request.crop)
+            refuse("⟨crop⟩", fmt::format("with ⟨noise⟩ is of whole cells of {0}x{0} pixels or a "
+                                         "little more: {1},{2},{3},{4} holds it",
+                                         NoiseTarget::kCell_px, whole.x0, whole.y0, whole.width(),
+                                         whole.height()));
+    }
     if (!scene.environment && scene.environment_rotate_deg != 0)
         refuse("⟨env-rotate⟩", "needs ⟨env⟩");
     if (!scene.environment && scene.environment_strength != 1)

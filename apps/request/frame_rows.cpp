@@ -49,6 +49,10 @@ RequestField spp_field() {
 std::vector<RequestField> sample_fields() {
     return {
         common(spp_field()),
+        common(parsed("noise", in::samples(&SampleRequest::noise),
+                      "render until each part of the picture has at most this noise: 2%; ⟨spp⟩ "
+                      "(default 4096) and ⟨time-limit⟩ bound it",
+                      parse_share, [](double share) { return fmt::format("{}", share); })),
         common(
             parsed("time-limit", in::samples(&SampleRequest::time_limit_s),
                    "render for this long: 60s, 10m, 1h30m, 1:30; with ⟨spp⟩ whichever ends first",

@@ -19,6 +19,8 @@ namespace petzval {
 
 inline constexpr double kUsualTolerance = 0.01;
 inline constexpr uint32_t kUsualSamples = 64;
+/// Most samples of a pixel where a noise is to be reached.
+inline constexpr uint32_t kUsualNoiseSamples = 4096;
 /// Number of samples that no render reaches: what a time limit alone asks for.
 inline constexpr uint32_t kMostSamples = 1u << 30;
 
@@ -46,8 +48,10 @@ struct MomentRequest {
 
 /// Samples of each pixel.
 struct SampleRequest {
-    std::optional<uint32_t> count;       ///< absent: kUsualSamples, or as the time limit allows
-    std::optional<SampleRange> range;    ///< in place of a count: a part of a picture
+    /// Absent: kUsualSamples, or as the time limit allows; with a noise the most of each pixel.
+    std::optional<uint32_t> count;
+    std::optional<double> noise;       ///< of each cell (integrator/render/noise_target.h), above 0
+    std::optional<SampleRange> range;  ///< in place of a count: a part of a picture
     std::optional<double> time_limit_s;  ///< ends with the samples that are under way then
     uint32_t seed = 0;
     SamplerKind sampler = SamplerKind::Owen;

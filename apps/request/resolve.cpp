@@ -86,7 +86,8 @@ RenderJob job_of(const RenderRequest& request) {
     const SampleRequest& samples = request.samples;
     RenderJob job;
     job.time_limit_s = samples.time_limit_s;
-    job.end_sample = samples.count.value_or(job.time_limit_s ? kMostSamples : kUsualSamples);
+    const uint32_t usual = samples.noise ? kUsualNoiseSamples : kUsualSamples;
+    job.end_sample = samples.count.value_or(job.time_limit_s ? kMostSamples : usual);
     if (samples.range) {
         job.first_sample = samples.range->first;
         job.end_sample = samples.range->end;

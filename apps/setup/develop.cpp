@@ -10,6 +10,7 @@
 #include "apps/request/option_names.h"
 #include "apps/setup/camera/camera_report.h"
 #include "core/spectrum/colour.h"
+#include "integrator/render/noise_target.h"
 #include "io/base/printable.h"
 #include "io/build/build.h"
 #include "io/image/spectral_layout.h"
@@ -71,11 +72,24 @@ std::vector<std::string> channels_of(const Film& film) {
         for (const char* name : {"XYZ.X", "XYZ.Y", "XYZ.Z", "stderr.R", "stderr.G", "stderr.B"})
             names.emplace_back(name);
     }
+    if (film.has_blocks())
+        for (const char* name : {"samples.N", "stderr.R", "stderr.G", "stderr.B"})
+            if (std::find(names.begin(), names.end(), name) == names.end())
+                names.emplace_back(name);
     for (const Aov aov : film.aovs()) {
         const AovInfo& info = aov_info(aov);
         for (int i = 0; i < info.channel_count; ++i) names.emplace_back(info.channels[i]);
     }
     return names;
+}
+
+/// Standard error of R, G and B by the difference of the first half of the samples from all: of one
+/// pixel alone, so that it says little of a single one.
+V3f stated_error(const Film& film, int x, int y) {
+    const auto& means = film.parts(x, y).means;
+    V3f out(0.f);
+    for (int i = 0; i < 3; ++i) out[i] = std::abs(means[0][i] - means[1][i]);
+    return out;
 }
 
 /// Writes the values of one pixel in the order of channels_of; returns where the next pixel's go.
@@ -93,6 +107,10 @@ float* develop_pixel(const Film& film, uint32_t first, int x, int y, float* out)
         V3f error = spectral->standard_error(at, dealt_samples(film, first, x, y));
         for (int i = 0; i < 3; ++i) error[i] = std::min(error[i], kUnknownError);
         put(error, 3);
+    }
+    if (film.has_blocks()) {
+        *out++ = static_cast<float>(film.sample_count(x, y));
+        if (!film.spectral()) put(stated_error(film, x, y), 3);
     }
     for (size_t layer = 0; layer < film.aovs().size(); ++layer)
         put(film.aov(x, y, layer), aov_info(film.aovs()[layer]).channel_count);
@@ -114,6 +132,7 @@ Metadata describe_render(const RenderSetup& setup, const RenderJob& job,
                {"petzval:scale", setup.from.scale},
                {"petzval:transparent", int(options.transparent)},
                {"petzval:luminousEfficacy_lm_per_W", kLuminousEfficacy_lm_per_w}};
+    if (job.noise) m.emplace_back(kNoiseTarget, static_cast<float>(job.noise->noise));
     if (job.clamp_nits) m.emplace_back("petzval:clamp_nits", *job.clamp_nits);
     for (const auto& [name, value] : setup.from.metadata) m.emplace_back(name, value);
     if (setup.from.exposure_is_auto) m.emplace_back(kFoundExposure, setup.from.exposure_ev);

@@ -13,7 +13,10 @@ namespace petzval {
 /// Metadata name of an exposure that was found, not asked for: of PNG and JPEG alone.
 inline constexpr const char* kFoundExposure = "petzval:exposure_ev";
 
-/// Metadata name of the samples that a picture has, as "0:64".
+/// Metadata name of the noise that was asked for: another one may go on with the same samples.
+inline constexpr const char* kNoiseTarget = "petzval:noiseTarget";
+
+/// Metadata name of the samples that a picture has, as "0:64"; with a noise to reach, at most.
 inline constexpr const char* kSamples = "petzval:samples";
 
 /// Metadata that say what the pixels of a render follow from: the same for all of its samples and

@@ -128,6 +128,13 @@ void write_stats(const std::filesystem::path& path, const StatsPicture& picture,
     out["size_px"] = {picture.width, picture.height};
     out["samples_per_pixel"] = picture.samples.count();
     out["pixel_samples"] = s.samples;
+    if (const auto& noise = picture.noise)
+        out["noise"] = {{"picture", noise->noise},
+                        {"worst_cell", noise->worst_cell},
+                        {"cells", noise->cells},
+                        {"cells_left", noise->left},
+                        {"cells_at_least", noise->at_least},
+                        {"mean_samples_per_pixel", noise->mean_samples}};
     // The digits that were typed or printed, not those of the float.
     out["exposure_ev"] = nlohmann::ordered_json::parse(fmt::format("{}", picture.exposure_ev));
     out["threads"] = figures.threads;

@@ -4,12 +4,14 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/film/film.h"
 #include "integrator/path/stats.h"
+#include "integrator/render/noise_target.h"
 #include "io/file/rescue.h"
 
 namespace petzval {
@@ -43,6 +45,7 @@ struct StatsPicture {
     SampleRange samples;        ///< that every pixel has
     float exposure_ev = 0;
     Film::LeftOut left_out;
+    std::optional<NoiseReport> noise{};  ///< where one was to be reached
 };
 
 /// Peak resident memory of this process, MiB.

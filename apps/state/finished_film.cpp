@@ -11,6 +11,13 @@ PictureRows picture_for(const std::filesystem::path& path, const FinishedFilm& d
     Metadata metadata = done.facts.metadata;
     metadata.emplace_back(kLightHash,
                           light_hash(done.facts, FilmShape::of(done.film), done.samples));
+    if (const auto& noise = done.noise) {
+        metadata.emplace_back("petzval:noise", static_cast<float>(noise->noise));
+        metadata.emplace_back("petzval:noiseOfWorstCell", static_cast<float>(noise->worst_cell));
+        metadata.emplace_back("petzval:noiseFloor_nits", static_cast<float>(noise->floor_nits));
+        metadata.emplace_back("petzval:noiseCellsLeft", static_cast<int>(noise->left));
+        metadata.emplace_back("petzval:meanSamples", static_cast<float>(noise->mean_samples));
+    }
     const PictureFormat format = picture_format(path);
     if (format != PictureFormat::Exr)
         metadata.emplace_back(kDisplayHash, display_hash(done.facts.display));

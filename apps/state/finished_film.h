@@ -3,9 +3,11 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "apps/state/render_facts.h"
 #include "core/film/film.h"
+#include "integrator/render/noise_target.h"
 #include "io/picture/picture.h"
 
 namespace petzval {
@@ -15,6 +17,7 @@ struct FinishedFilm {
     const Film& film;
     SampleRange samples;
     const RenderFacts& facts;
+    std::optional<NoiseReport> noise{};  ///< where one was to be reached
 };
 
 /// Linear picture of a film, with the metadata of its file: PNG and JPEG say how they were made for

@@ -11,6 +11,7 @@
 
 #include "apps/setup/develop.h"
 #include "apps/setup/input_files.h"
+#include "integrator/render/noise_target.h"
 #include "io/base/printable.h"
 #include "io/file/read_file.h"
 #include "io/image/display_files.h"
@@ -74,6 +75,13 @@ std::string hash_of_learned(const RenderSetup& setup) {
     return hash.text();
 }
 
+// Without the noise that is asked for: samples of another are of the same picture.
+std::string hash_of_noise(const NoiseTarget& target) {
+    Hash hash;
+    hash.add(static_cast<float>(target.floor_nits));
+    return hash.text();
+}
+
 std::string hash_of_files(const std::vector<std::filesystem::path>& files) {
     Hash hash;
     std::vector<std::string> texts;
@@ -98,6 +106,7 @@ std::string shape_text(const FilmShape& shape) {
     std::string text =
         fmt::format("{}x{} px, layers {}", shape.full_size.x, shape.full_size.y,
                     layers.empty() ? "none" : fmt::format("{}", fmt::join(layers, ",")));
+    if (shape.blocks) text += ", what tells the noise";
     if (const auto& b = shape.bins)
         text += fmt::format(", bins {:.9g}:{:.9g}:{:.9g}", b->first_edge_nm, b->last_edge_nm(),
                             b->width_nm);
@@ -108,7 +117,7 @@ RenderFacts::Texts all_of(const ComparedRender& render, Compare compare) {
     const RenderFacts& facts = render.facts;
     RenderFacts::Texts out{{"frame", shape_text(render.shape)}};
     for (const auto& [name, value] : facts.metadata)
-        if (name != kFoundExposure || compare == Compare::Pictures)
+        if (name != kNoiseTarget && (name != kFoundExposure || compare == Compare::Pictures))
             out.emplace_back(short_name(name), text_of(value));
     out.insert(out.end(), facts.inputs.begin(), facts.inputs.end());
     if (compare == Compare::Pictures)
@@ -150,6 +159,7 @@ RenderFacts facts_of(const RenderSetup& setup, const RenderJob& job, const PathO
         if (file.role == kCameraFile) add(file);
     facts.inputs.emplace_back("pose of the camera", hash_of_pose(setup.from.camera));
     facts.inputs.emplace_back("what pilots learned", hash_of_learned(setup));
+    if (job.noise) facts.inputs.emplace_back("what bounds the noise", hash_of_noise(*job.noise));
     facts.display = display_facts(display);
     return facts;
 }

@@ -51,6 +51,7 @@ void Film::reject(size_t at, uint32_t index, bool finite) {
 void Film::accept(Pixel& pixel, size_t at, const FilmSample& sample) {
     for (int i = 0; i < 3; ++i) pixel.sum[static_cast<size_t>(i)].add(sample.colour[i]);
     pixel.sum[3].add(sample.alpha);
+    if (blocks_) blocks_->add(at, {sample.colour[0], sample.colour[1], sample.colour[2]});
     ++pixel.count;
     if (!sample.hit) return;
     ++pixel.hits;

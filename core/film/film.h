@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/film/exact_sum.h"
+#include "core/film/film_blocks.h"
 #include "core/film/sample_range.h"
 #include "core/film/spectral_film.h"
 #include "core/math/ray.h"
@@ -49,11 +50,13 @@ struct FilmSample {
 class Film {
   public:
     /// crop: the part of a full frame that is kept; pixels are named by full-frame coordinates.
-    /// bins: keep a spectral film beside RGB.
-    Film(V2i full_size, Rect crop, std::vector<Aov> aovs, std::optional<Bins> bins = {});
+    /// bins: keep a spectral film beside RGB. blocks: keep what tells the noise.
+    Film(V2i full_size, Rect crop, std::vector<Aov> aovs, std::optional<Bins> bins = {},
+         bool blocks = false);
 
     /// Memory that a film takes for each pixel of its crop.
-    [[nodiscard]] static size_t bytes_per_pixel(size_t layers, const std::optional<Bins>&);
+    [[nodiscard]] static size_t bytes_per_pixel(size_t layers, const std::optional<Bins>&,
+                                                bool blocks = false);
 
     /// Adds a sample. One that is not finite, or too large for the sums (exact_sum.h), is only
     /// counted, and the first such is remembered.
@@ -72,13 +75,21 @@ class Film {
     /// so many layers and these bins; nothing where no film has such sums and counts.
     [[nodiscard]] static std::optional<uint32_t> packed_count(const uint8_t* from, size_t layers,
                                                               const std::optional<Bins>&,
-                                                              SampleRange);
+                                                              bool blocks, SampleRange);
 
     [[nodiscard]] V2i full_size() const { return full_size_; }
     [[nodiscard]] Rect crop() const { return crop_; }
     [[nodiscard]] const std::vector<Aov>& aovs() const { return aovs_; }
     /// Spectral sums: bins, XYZ and errors; nothing unless the film was made with bins.
     [[nodiscard]] const std::optional<SpectralFilm>& spectral() const { return spectral_; }
+    /// Whether the film keeps what tells the noise.
+    [[nodiscard]] bool has_blocks() const { return blocks_.has_value(); }
+    /// Closes a block of a pixel (film_blocks.h).
+    void close_block(int x, int y) { blocks_->close(offset(x, y), mean(x, y)); }
+    /// Parts of a pixel of a film with blocks.
+    [[nodiscard]] FilmBlocks::Parts parts(int x, int y) const {
+        return blocks_->parts(offset(x, y), taken_count(x, y), mean(x, y));
+    }
     /// Index in spectral() of a pixel of the crop.
     [[nodiscard]] size_t offset(int x, int y) const {
         return static_cast<size_t>(y - crop_.y0) * crop_.width() + (x - crop_.x0);
@@ -117,6 +128,10 @@ class Film {
         uint32_t count = 0, hits = 0, left_out = 0, first_left_out = 0;
     };
     void accept(Pixel&, size_t at, const FilmSample&);
+    [[nodiscard]] V3f mean(int x, int y) const {
+        const V4f c = colour(x, y);
+        return {c.x, c.y, c.z};
+    }
     void reject(size_t at, uint32_t index, bool finite);
     template <class Test>
     [[nodiscard]] bool each_number(const FilmSample&, const Test&) const;
@@ -130,6 +145,7 @@ class Film {
         too_large_;  ///< of those that a pixel left out; in Pixel it would take 16 bytes
     std::vector<std::array<FilmSum, 3>> aov_sums_;  ///< pixel-major
     std::optional<SpectralFilm> spectral_;
+    std::optional<FilmBlocks> blocks_;
 };
 
 }  // namespace petzval

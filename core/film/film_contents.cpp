@@ -34,7 +34,7 @@ std::optional<Aov> aov_from_name(std::string_view name) {
     return std::nullopt;
 }
 
-Film::Film(V2i full_size, Rect crop, std::vector<Aov> aovs, std::optional<Bins> bins)
+Film::Film(V2i full_size, Rect crop, std::vector<Aov> aovs, std::optional<Bins> bins, bool blocks)
     : full_size_(full_size),
       crop_(crop),
       aovs_(std::move(aovs)),
@@ -42,11 +42,13 @@ Film::Film(V2i full_size, Rect crop, std::vector<Aov> aovs, std::optional<Bins> 
       too_large_(pixels_.size()),
       aov_sums_(pixels_.size() * aovs_.size()) {
     if (bins) spectral_.emplace(pixels_.size(), *bins);
+    if (blocks) blocks_.emplace(pixels_.size());
 }
 
-size_t Film::bytes_per_pixel(size_t layers, const std::optional<Bins>& bins) {
+size_t Film::bytes_per_pixel(size_t layers, const std::optional<Bins>& bins, bool blocks) {
     return sizeof(Pixel) + sizeof(uint32_t) + layers * sizeof(std::array<FilmSum, 3>) +
-           (bins ? SpectralFilm::bytes_per_pixel(*bins) : 0);
+           (bins ? SpectralFilm::bytes_per_pixel(*bins) : 0) +
+           (blocks ? FilmBlocks::bytes_per_pixel() : 0);
 }
 
 void Film::pack(int x, int y, uint8_t* to) const {
@@ -57,7 +59,11 @@ void Film::pack(int x, int y, uint8_t* to) const {
     to += sizeof(uint32_t);
     for (size_t layer = 0; layer < layers; ++layer)
         to = petzval::pack(std::span<const FilmSum>(aov_sums_[at * layers + layer]), to);
-    if (spectral_) spectral_->pack(at, to);
+    if (spectral_) {
+        spectral_->pack(at, to);
+        to += SpectralFilm::bytes_per_pixel(spectral_->bins());
+    }
+    if (blocks_) blocks_->pack(at, to);
 }
 
 void Film::add_packed(int x, int y, const uint8_t* from) {
@@ -78,17 +84,23 @@ void Film::add_packed(int x, int y, const uint8_t* from) {
     pixel.left_out += other.left_out;
     for (size_t layer = 0; layer < layers; ++layer)
         from = petzval::add_packed(std::span<FilmSum>(aov_sums_[at * layers + layer]), from);
-    if (spectral_) spectral_->add_packed(at, from);
+    if (spectral_) {
+        spectral_->add_packed(at, from);
+        from += SpectralFilm::bytes_per_pixel(spectral_->bins());
+    }
+    if (blocks_) blocks_->add_packed(at, from);
 }
 
 std::optional<uint32_t> Film::packed_count(const uint8_t* from, size_t layers,
-                                           const std::optional<Bins>& bins, SampleRange range) {
+                                           const std::optional<Bins>& bins, bool blocks,
+                                           SampleRange range) {
     Pixel p;
     std::memcpy(&p, from, sizeof p);
     uint32_t too_large;
     std::memcpy(&too_large, from + sizeof p, sizeof too_large);
     const size_t before_layers = sizeof p + sizeof too_large;
-    const std::span rest(from + before_layers, bytes_per_pixel(layers, bins) - before_layers);
+    const std::span rest(from + before_layers,
+                         bytes_per_pixel(layers, bins, blocks) - before_layers);
     const auto reached = [](const FilmSum& sum, uint32_t count) {
         return std::abs(sum.value()) <= double(count) * double(FilmSum::kLimit);
     };

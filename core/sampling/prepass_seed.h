@@ -12,6 +12,7 @@ enum class PrepassSeed : uint32_t {
     Plan = 2'000'000,  ///< the first of those that follow
     TargetCells = 0x63656c6c,
     Exposure = 0x65787073,
+    Noise = 0x6e6f6973,
     Highlights = 0x676c696e,
     LightShares = 0x6c696768,
     Targets = 0x74617267

@@ -2,11 +2,14 @@
 #include "integrator/render/render.h"
 
 #include "integrator/render/executor.h"
+#include "integrator/render/render_to_noise.h"
 
 namespace petzval {
 
 template class SampleBatch<PathTracer<>>;
 template RenderResult render(const PathTracer<>&, const Camera&, const RenderJob&, Film&,
                              TbbExecutor&, RenderMonitor&);
+template RenderResult render_to_noise(const PathTracer<>&, const Camera&, const RenderJob&, Film&,
+                                      TbbExecutor&, RenderMonitor&);
 
 }  // namespace petzval

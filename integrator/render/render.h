@@ -8,6 +8,7 @@
 #include "integrator/render/render_job.h"
 #include "integrator/render/sample_batch.h"
 #include "integrator/render/tiles.h"
+#include "integrator/render/worker_stats.h"
 
 namespace petzval {
 
@@ -55,16 +56,7 @@ RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob&
                     Executor& executor, RenderMonitor& monitor) {
     const double start_s = job.wall_s();
     const std::vector<Rect> tiles = tiles_of(film.crop(), job.tile_size_px);
-    struct alignas(128) Worker {  // a cache-line pair each, so that counting does not contend
-        PathStats stats;
-    };
-    std::vector<Worker> workers(static_cast<size_t>(executor.threads()));
-    const auto total = [&] {
-        PathStats sum;
-        for (const Worker& worker : workers) sum += worker.stats;
-        return sum;
-    };
-
+    WorkerStats workers(executor.threads());
     const auto [before, most] = film.taken_range();
     const uint32_t wanted = job.end_sample - job.first_sample;
     uint32_t done = before;
@@ -77,7 +69,7 @@ RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob&
         }
         executor.run(static_cast<int>(tiles.size()), [&](int task, int worker) {
             if (monitor.stop || monitor.pause) return;
-            PathStats& stats = workers[static_cast<size_t>(worker)].stats;
+            PathStats& stats = workers.of(worker);
             const Rect& tile = tiles[static_cast<size_t>(task)];
             const uint64_t samples_before = stats.samples;
             SampleBatch<Tracer> batch(tracer, camera, job, film.full_size(), &film, stats);
@@ -91,17 +83,17 @@ RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob&
         });
         // The tiles that a pause left out are rendered when the pass is run once more.
         if (monitor.pause.exchange(false)) {
-            if (job.at_pause && !monitor.stop) job.at_pause(total());
+            if (job.at_pause && !monitor.stop) job.at_pause(workers.total());
         } else if (!monitor.stop) {
             done += *pass;
             pass.reset();
         }
     }
     RenderResult result;
-    result.stats = total();
+    result.stats = workers.total();
     result.end_sample = job.first_sample + film.taken_range().least;
     result.stopped = monitor.stop && result.end_sample < job.end_sample;
-    for (const Worker& worker : workers) result.workers += worker.stats.tiles > 0;
+    result.workers = workers.active();
     return result;
 }
 

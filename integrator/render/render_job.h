@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 
 #include "core/sampling/filter.h"
@@ -22,6 +23,7 @@ namespace petzval {
 }
 
 class Velocity;
+struct NoiseTarget;
 
 struct RenderJob {
     uint32_t first_sample = 0, end_sample = 64;  ///< sample indices [first, end) of every pixel
@@ -39,6 +41,8 @@ struct RenderJob {
     const Velocity* velocity = nullptr;  ///< where that layer is wanted; must outlive the job
     /// Largest R, G or B of a sample: a brighter one is made as bright, in its colour.
     std::optional<float> clamp_nits;
+    /// Noise to reach, of a film with blocks. nullptr: all pixels get the same samples.
+    std::shared_ptr<const NoiseTarget> noise;
     bool timing = false;  ///< measure where the time goes, on a sixteenth of the samples
 };
 
@@ -48,6 +52,10 @@ struct RenderMonitor {
     std::atomic<bool> pause =
         false;  ///< likewise; then at_pause() is called, and rendering goes on
     std::atomic<uint64_t> pixel_samples_done = 0;
+    /// Where a job has a target: the noise of the picture so far, and pixel samples that there will
+    /// be, as far as is known; 0 before.
+    std::atomic<double> noise = 0;
+    std::atomic<uint64_t> expected_pixel_samples = 0;
 };
 
 struct RenderResult {

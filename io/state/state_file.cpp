@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kMagic = "PETZVALS";
-constexpr uint64_t kVersion = 2;
+constexpr uint64_t kVersion = 3;
 /// Bytes before the header: the text, the version and the length.
 constexpr size_t kStartBytes = kMagic.size() + 2 * sizeof(uint64_t);
 /// Longest header: a command line and the facts of a scene are far shorter.
@@ -32,7 +32,7 @@ std::span<const uint8_t> bytes_of(const uint64_t& number) {
 }
 
 size_t pixel_bytes(const FilmShape& shape) {
-    return Film::bytes_per_pixel(shape.layers.size(), shape.bins);
+    return Film::bytes_per_pixel(shape.layers.size(), shape.bins, shape.blocks);
 }
 
 Json to_json(const StateHeader& h) {
@@ -44,6 +44,8 @@ Json to_json(const StateHeader& h) {
             {"crop_px", {c.x0, c.y0, c.x1, c.y1}},
             {"layers", std::move(layers)},
             {"bins_nm", std::move(bins)},
+            {"noise_blocks", h.shape.blocks},
+            {"finished", h.is_finished},
             {"samples", {h.samples.first, h.samples.end}},
             {"pixel_samples", h.pixel_samples},
             {"run", h.run}};
@@ -64,6 +66,8 @@ StateHeader from_json(const Json& json) {
     const auto samples = json.at("samples").get<std::array<uint32_t, 2>>();
     h.samples = {samples[0], samples[1]};
     json.at("pixel_samples").get_to(h.pixel_samples);
+    json.at("noise_blocks").get_to(shape.blocks);
+    json.at("finished").get_to(h.is_finished);
     h.run = json.at("run");
     return h;
 }
@@ -86,7 +90,7 @@ uint64_t pixels_of(const Rect& crop) {
 }  // namespace
 
 FilmShape FilmShape::of(const Film& film) {
-    FilmShape shape{film.full_size(), film.crop(), film.aovs(), {}};
+    FilmShape shape{film.full_size(), film.crop(), film.aovs(), {}, film.has_blocks()};
     if (film.spectral()) shape.bins = film.spectral()->bins();
     return shape;
 }
@@ -180,8 +184,8 @@ void StateReader::read_pixels(const Use& use) const {
         hash = fnv1a(row, hash);
         for (int x = shape.crop.x0; x < shape.crop.x1; ++x) {
             const uint8_t* const pixel = row.data() + static_cast<size_t>(x - shape.crop.x0) * each;
-            const auto count =
-                Film::packed_count(pixel, shape.layers.size(), shape.bins, header_.samples);
+            const auto count = Film::packed_count(pixel, shape.layers.size(), shape.bins,
+                                                  shape.blocks, header_.samples);
             if (!count) throw damaged();
             taken += *count;
             use(x, y, pixel);

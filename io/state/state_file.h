@@ -24,10 +24,11 @@ struct FilmShape {
     Rect crop;
     std::vector<Aov> layers;
     std::optional<Bins> bins;
+    bool blocks = false;
 
     bool operator==(const FilmShape&) const = default;
     [[nodiscard]] static FilmShape of(const Film&);
-    [[nodiscard]] Film empty_film() const { return {full_size, crop, layers, bins}; }
+    [[nodiscard]] Film empty_film() const { return {full_size, crop, layers, bins, blocks}; }
     /// Memory that such a film takes.
     [[nodiscard]] uint64_t bytes() const;
 };
@@ -38,10 +39,12 @@ struct StateHeader {
     SampleRange samples;         ///< that the render is to have of each pixel
     uint64_t pixel_samples = 0;  ///< that are there, of all pixels together
     nlohmann::ordered_json run;  ///< what the program says of the render
+    /// Of a render to a noise: nothing is left to render, though pixels have fewer samples.
+    bool is_finished = false;
 
     /// Number of pixel samples that the whole render has.
     [[nodiscard]] uint64_t wanted() const;
-    [[nodiscard]] bool is_complete() const { return pixel_samples == wanted(); }
+    [[nodiscard]] bool is_complete() const { return is_finished || pixel_samples == wanted(); }
 };
 
 /// Writes a state: whole, or not at all. pixel_samples is counted, and may not be above what is

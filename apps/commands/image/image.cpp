@@ -11,6 +11,7 @@
 #include "apps/cli/console.h"
 #include "apps/cli/field_options.h"
 #include "apps/cli/readers.h"
+#include "apps/commands/image/noise.h"
 #include "apps/commands/image/view.h"
 #include "apps/request/parse.h"
 #include "io/base/error.h"
@@ -118,6 +119,7 @@ void add_image_commands(CLI::App& app) {
     image->require_subcommand(1);
     add_diff(*image);
     add_view(*image);
+    add_noise(*image);
     add_spectrum(*image);
 }
 

@@ -8,7 +8,7 @@ class App;
 
 namespace petzval {
 
-/// Adds the subcommands "image diff", "view", "spectrum", "sheet" and "crop"; their callbacks do
+/// Adds the subcommands "image diff", "view", "noise" and "spectrum"; their callbacks do
 /// the work and throw InputError, also for pictures further apart than --fail-above allows.
 void add_image_commands(CLI::App&);
 

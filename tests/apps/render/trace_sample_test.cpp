@@ -82,19 +82,15 @@ TEST_P(TraceSample, GivesWhatTheFilmGets) {
 
 INSTANTIATE_TEST_SUITE_P(
     Of, TraceSample,
-    ::testing::Values(Case{"first_light.glb", {{"seed", {"3"}}}},
-                      Case{"first_light.glb",
-                           {{"transparent", {"on"}}, {"clamp", {"0.5"}}, {"fstop", {"2"}}},
-                           {24, 16},
-                           true},
-                      Case{"ornaments.glb",
-                           {{"lens", {"takumar-50mm-f1.2"}}, {"focus", {"0.5"}}},
-                           {64, 42},
-                           true},
-                      Case{"gem.glb", {{"spectral", {"wavelengths"}}}},
-                      Case{"gem.glb", {{"bins", {"400:700:100"}}}},
-                      Case{"wheels.glb", {{"at", {"0.1s"}}, {"shutter", {"180deg"}}}},
-                      Case{"glass.glb", {{"max-depth", {"3"}}, {"sampler", {"independent"}}}}));
+    ::testing::Values(
+        Case{"first_light.glb", {{"seed", {"3"}}}},
+        Case{"first_light.glb", {{"transparent", {"on"}}, {"clamp", {"0.5"}}, {"fstop", {"2"}}}},
+        Case{
+            "ornaments.glb", {{"lens", {"takumar-50mm-f1.2"}}, {"focus", {"0.5"}}}, {64, 42}, true},
+        Case{"gem.glb", {{"spectral", {"wavelengths"}}}},
+        Case{"gem.glb", {{"bins", {"400:700:100"}}}},
+        Case{"wheels.glb", {{"at", {"0.1s"}}, {"shutter", {"180deg"}}}},
+        Case{"glass.glb", {{"max-depth", {"3"}}, {"sampler", {"independent"}}}}));
 
 }  // namespace
 }  // namespace petzval

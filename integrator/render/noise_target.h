@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// Noise that a render is to reach: which cells of a frame need how many samples. A cell has two
+// sets of pixels, as a chessboard has, and what is decided about one set hangs on the other alone,
+// so that no pixel prefers what it shows.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/film/film.h"
+
+namespace petzval {
+
+/// Noise to reach, for the cells of a full frame. The noise of a cell is the root of the mean, over
+/// its pixels and R, G and B, of variance / (mean^2 + floor^2).
+struct NoiseTarget {
+    double noise = 0;       ///< above 0
+    double floor_nits = 0;  ///< above 0, or all is black
+    V2i frame_px{0, 0};
+    std::vector<uint32_t> least;  ///< samples of each pixel that a cell takes; empty: none
+
+    static constexpr int kCell_px = 16;
+
+    /// Number of cells along each side; a frame smaller than a cell is one.
+    [[nodiscard]] V2i cells() const;
+    [[nodiscard]] Rect cell(int i, int j) const;
+    /// Numbers of the cells of a crop, which must be of whole cells: first.x .. last.x - 1, ...
+    [[nodiscard]] Rect cells_of(const Rect& crop) const;
+    /// The smallest crop of whole cells that holds another.
+    [[nodiscard]] Rect whole_cells(const Rect& crop) const;
+    [[nodiscard]] uint32_t least_of(int i, int j) const {
+        return least.empty() ? 0 : least[static_cast<size_t>(j * cells().x + i)];
+    }
+};
+
+/// Paths on which the noise of a cell must hang for it to be known.
+inline constexpr double kKnownPaths = 16;
+
+/// Set of a pixel: 0 or 1.
+[[nodiscard]] constexpr int set_of(int x, int y) {
+    return (x + y) & 1;
+}
+
+/// Fewest samples of a pixel that tell a noise.
+inline constexpr uint32_t kLeastOfCell = 16;
+
+/// What the pixels of one set of a cell say.
+struct SetNoise {
+    uint32_t taken = 0;  ///< samples of each pixel
+    /// Mean relative square of what the first half of the samples is off from all of them, for the
+    /// largest power of two that there are; and the same for half of that.
+    double late = 0, early = 0;
+    /// Paths on which `late` hangs: (sum of v)^2 / sum of v^2, Kish 1965, "Survey Sampling",
+    /// section 11.7.
+    double paths = 0;
+
+    /// Relative variance of the mean after another number of samples, a power of two or 1.5 times
+    /// one.
+    [[nodiscard]] double variance(uint32_t samples) const;
+};
+
+/// What a cell says.
+struct CellNoise {
+    std::array<SetNoise, 2> sets{};
+
+    /// Samples that each pixel of a set is to have next; as many as it has where it is done.
+    [[nodiscard]] uint32_t next_count(size_t set, const NoiseTarget&, uint32_t least) const;
+    [[nodiscard]] bool is_done(const NoiseTarget&, uint32_t least) const;
+    /// Relative variance of the picture.
+    [[nodiscard]] double variance() const;
+    /// Whether the noise hangs on so few paths that it may be larger.
+    [[nodiscard]] bool is_at_least(const NoiseTarget&) const;
+    /// Samples of a pixel, on average.
+    [[nodiscard]] double samples() const { return (sets[0].taken + sets[1].taken) / 2.; }
+};
+[[nodiscard]] CellNoise cell_noise(const Film&, const Rect& cell, double floor_nits);
+
+/// What a film has reached.
+struct NoiseReport {
+    double noise = 0;       ///< of the picture
+    double worst_cell = 0;  ///< largest noise of a cell
+    double floor_nits = 0;  ///< of both
+    /// All cells; those above the target; and of these those that may take more samples, and those
+    /// whose noise is unknown.
+    size_t cells = 0, left = 0, open = 0, at_least = 0;
+    double mean_samples = 0;  ///< of a pixel
+    /// Pixel samples that there will be, as far as is known: no more of a pixel than may be.
+    double expected_samples = 0;
+    double samples_for_all = 0;  ///< of a pixel of the worst cell, for the target; 0: unknown
+};
+[[nodiscard]] NoiseReport noise_report(const Film&, const NoiseTarget&, uint32_t most_samples);
+
+}  // namespace petzval

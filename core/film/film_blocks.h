@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Blocks of a film: means of the first samples of each pixel, which tell its noise by how they part.
+// Blocks of a film: means of the first samples of each pixel, which tell its noise by how they
+// part.
 #pragma once
 
 #include <algorithm>

@@ -165,7 +165,7 @@ std::string text_of(const NoiseReport& reached, double asked) {
         out += fmt::format(", at least: in {} of them the noise hangs on a few paths",
                            reached.at_least);
     else if (reached.samples_for_all > 0)
-        out += fmt::format("; --spp {:.0f} would do", std::ceil(reached.samples_for_all));
+        out += fmt::format("; ⟨spp⟩ {:.0f} would do", std::ceil(reached.samples_for_all));
     return out;
 }
 
@@ -175,7 +175,7 @@ std::optional<std::string> warning_of(const SmallLamps& small) {
         "warning: fewer than {} paths meet {}: {} light is missing, or in single bright pixels",
         kEnoughPaths, text_of(small), small.count() == 1 ? "its" : "their");
     if (small.samples <= double(kMostSamples))
-        out += fmt::format("; --spp {} would do", static_cast<uint32_t>(small.samples));
+        out += fmt::format("; ⟨spp⟩ {} would do", static_cast<uint32_t>(small.samples));
     return out;
 }
 

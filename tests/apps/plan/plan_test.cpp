@@ -290,7 +290,7 @@ TEST(PlanWords, LampsAreInMillimetresAndSpotsOfTheSkyInDegrees) {
     seldom.samples = 640;
     EXPECT_EQ(warning_of(seldom),
               "warning: fewer than 16 paths meet a spot of the sky of 0.5° at most: its light is "
-              "missing, or in single bright pixels; --spp 640 would do");
+              "missing, or in single bright pixels; ⟨spp⟩ 640 would do");
     EXPECT_EQ(warning_of({}), std::nullopt);
 }
 

@@ -34,6 +34,7 @@ const Wishes kPhotographic = {
 const std::map<std::string, Change> kChanges{
     {"file", {"", {}}},  // the other file
     {"seed", {"7", {}}},
+    {"noise", {"5%", {}}},
     {"size", {"20x10", {}}},
     {"crop", {"1,2,3,4", {}}},
     {"variant", {"red", {}}},

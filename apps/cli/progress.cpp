@@ -85,7 +85,7 @@ void Progress::end_rendering(bool whole) {
 }
 
 ProgressFigures Progress::with_noise(ProgressFigures figures) const {
-    figures.noise = monitor_.noise;
+    if (const double noise = monitor_.noise; std::isfinite(noise)) figures.noise = noise;
     return figures;
 }
 

@@ -55,7 +55,6 @@ int resume(const ResumeOptions& o, Session& session) {
         throw refuse(fmt::format("holds a request that is not understood: {}", error.what()));
     }
     const std::optional<double> noise = o.order.render.samples.noise;
-    const bool wants_less_noise = noise.has_value();
     if (noise) {
         std::optional<double>& before = order.render.samples.noise;
         if (!before) throw refuse("was rendered without ⟨noise⟩, and cannot take one up");
@@ -64,7 +63,7 @@ int resume(const ResumeOptions& o, Session& session) {
                                      percent(*before)));
         before = noise;
     }
-    if (reader.header().is_complete() && !wants_less_noise) {
+    if (reader.header().is_complete() && !noise) {
         if (std::ranges::all_of(order.run.outputs, is_state_name)) {
             session.console.notice(o.state.string() + " is complete: there is nothing to render");
             return kSuccess;

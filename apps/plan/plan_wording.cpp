@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
+
 #include "apps/setup/spectral_wording.h"
 #include "io/base/format.h"
 
@@ -155,6 +157,9 @@ std::string text_of(const SmallLamps& small) {
 }  // namespace
 
 std::string text_of(const NoiseReport& reached, double asked) {
+    if (!std::isfinite(reached.noise))
+        return fmt::format("noise: not known, as parts of the picture have fewer than {} samples",
+                           kLeastOfCell);
     std::string out =
         fmt::format("noise: {} in the picture, {} in its worst part, with {:.0f} samples a pixel",
                     percent(reached.noise), percent(reached.worst_cell), reached.mean_samples);

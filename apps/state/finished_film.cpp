@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/state/finished_film.h"
 
+#include <cmath>
+
 #include "apps/setup/develop.h"
 #include "io/image/picture_files.h"
 #include "io/picture/seal.h"
@@ -11,7 +13,7 @@ PictureRows picture_for(const std::filesystem::path& path, const FinishedFilm& d
     Metadata metadata = done.facts.metadata;
     metadata.emplace_back(kLightHash,
                           light_hash(done.facts, FilmShape::of(done.film), done.samples));
-    if (const auto& noise = done.noise) {
+    if (const auto& noise = done.noise; noise && std::isfinite(noise->noise)) {
         metadata.emplace_back("petzval:noise", static_cast<float>(noise->noise));
         metadata.emplace_back("petzval:noiseOfWorstCell", static_cast<float>(noise->worst_cell));
         metadata.emplace_back("petzval:noiseFloor_nits", static_cast<float>(noise->floor_nits));

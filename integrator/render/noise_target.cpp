@@ -99,7 +99,7 @@ constexpr double kBelieved = 0.7;
 }  // namespace
 
 double SetNoise::variance(uint32_t samples) const {
-    if (taken == 0) return 0;
+    if (taken < kLeastOfCell) return HUGE_VAL;
     const double g = growth(kBelieved * early, late), power = std::log2(g),
                  from = std::bit_floor(taken), to = std::bit_floor(samples);
     return late / (g - 1) * std::pow(from / to, power) * after(g, samples);
@@ -130,7 +130,7 @@ double CellNoise::variance() const {
 bool CellNoise::is_at_least(const NoiseTarget& target) const {
     const double most = target.noise * target.noise;
     return std::any_of(sets.begin(), sets.end(), [&](const SetNoise& s) {
-        return s.taken == 0 ||
+        return s.taken < kLeastOfCell ||
                (s.paths < kKnownPaths && may_be(s.variance(s.taken), s.paths) > most);
     });
 }
@@ -191,7 +191,9 @@ NoiseReport noise_report(const Film& film, const NoiseTarget& target, uint32_t m
             out.at_least += at_least;
             known = known && !at_least;
             const double more = noise / target.noise,
-                         needed = std::max(more * more * cell.samples(), double(least));
+                         needed = std::isfinite(more)
+                                      ? std::max(more * more * cell.samples(), double(least))
+                                      : double(most_samples);
             out.samples_for_all = std::max(out.samples_for_all, needed);
             out.expected_samples +=
                 2 * of_set * std::max(0., std::min(needed, double(most_samples)) - cell.samples());

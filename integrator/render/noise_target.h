@@ -57,7 +57,7 @@ struct SetNoise {
     double paths = 0;
 
     /// Relative variance of the mean after another number of samples, a power of two or 1.5 times
-    /// one.
+    /// one; infinite where the samples that there are tell nothing.
     [[nodiscard]] double variance(uint32_t samples) const;
 };
 
@@ -79,8 +79,8 @@ struct CellNoise {
 
 /// What a film has reached.
 struct NoiseReport {
-    double noise = 0;       ///< of the picture
-    double worst_cell = 0;  ///< largest noise of a cell
+    double noise = 0;       ///< of the picture; infinite where a cell has too few samples to tell
+    double worst_cell = 0;  ///< largest noise of a cell, likewise
     double floor_nits = 0;  ///< of both
     /// All cells; those above the target; and of these those that may take more samples, and those
     /// whose noise is unknown.

@@ -111,8 +111,8 @@ void add_noise(CLI::App& image) {
     add_field_option(*noise, options->order, "max-memory");
     noise->footer(
         "A region is x,y,width,height of the full frame. Its noise is the root of the mean, over "
-        "its "
-        "pixels and R, G and B, of stderr^2 / (mean^2 + f^2); f is that of petzval image diff.");
+        "its pixels and R, G and B, of stderr^2 / (mean^2 + f^2); f is that of petzval image "
+        "diff.");
     noise->callback([options] { noise_command(*options); });
 }
 

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rendering to a noise from the command line: what is said, written and refused.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/cli.h"
+
+namespace petzval {
+namespace {
+
+using testing::HasSubstr;
+
+class CliNoise : public CliTest {
+  protected:
+    [[nodiscard]] Finished noisy(Words more, const std::string& out = "noise.exr") const {
+        Words words{"render", scene_,       "--threads", "2",  "--size",
+                    "48x32",  "--progress", "none",      "-o", path(out)};
+        words.insert(words.end(), more.begin(), more.end());
+        return run_petzval(words);
+    }
+    [[nodiscard]] static float number(const Picture& picture, const std::string& name) {
+        for (const auto& [other, value] : picture.metadata)
+            if (const float* number = std::get_if<float>(&value); number && other == name)
+                return *number;
+        return -1;
+    }
+};
+
+TEST_F(CliNoise, IsReachedAndSaid) {
+    const Finished run = noisy({"--noise", "10%", "--stats", path("stats.json")});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("noise: "));
+    const Picture picture = read_picture(path("noise.exr"));
+    EXPECT_GT(number(picture, "petzval:noise"), 0);
+    EXPECT_LE(number(picture, "petzval:noiseOfWorstCell"), 0.1f);
+    for (const char* channel : {"samples.N", "stderr.R", "stderr.G", "stderr.B"})
+        EXPECT_GE(channel_index(picture, channel), 0) << channel;
+    std::ifstream file(path("stats.json"));
+    EXPECT_EQ(nlohmann::json::parse(file)["noise"]["cells_left"], 0);
+    const Finished said = run_petzval({"image", "noise", path("noise.exr"), "--regions", "2"});
+    EXPECT_EQ(said.exit_code, 0) << said.err;
+    EXPECT_EQ(std::ranges::count(said.out, '\n'), 5);
+}
+
+TEST_F(CliNoise, ABoundHasAnExitCodeOfItsOwn) {
+    const Finished bounded = noisy({"--noise", "0.01%", "--spp", "16"});
+    EXPECT_EQ(bounded.exit_code, 5) << bounded.err;
+    EXPECT_THAT(bounded.err, HasSubstr(" parts are above 0.01 %"));
+    const Finished late = noisy({"--noise", "0.01%", "--time-limit", "0.000001s"});
+    EXPECT_EQ(late.exit_code, 5) << late.err;
+    EXPECT_THAT(late.err, HasSubstr("noise: not known"));
+}
+
+TEST_F(CliNoise, IsPartOfACropOfWholeCells) {
+    ASSERT_EQ(noisy({"--noise", "10%"}).exit_code, 0);
+    ASSERT_EQ(noisy({"--noise", "10%", "--crop", "16,0,32,16"}, "crop.exr").exit_code, 0);
+    const Picture whole = read_picture(path("noise.exr")), crop = read_picture(path("crop.exr"));
+    const size_t channels = whole.channels.size(), row = 32 * channels;
+    ASSERT_EQ(crop.pixels.size(), 16 * row);
+    for (size_t y = 0; y < 16; ++y)
+        EXPECT_TRUE(std::equal(crop.pixels.begin() + std::ptrdiff_t(y * row),
+                               crop.pixels.begin() + std::ptrdiff_t((y + 1) * row),
+                               whole.pixels.begin() + std::ptrdiff_t((48 * y + 16) * channels)))
+            << y;
+    const Finished cut = noisy({"--noise", "10%", "--crop", "3,3,20,8"});
+    EXPECT_EQ(cut.exit_code, 2);
+    EXPECT_THAT(cut.err, HasSubstr("0,0,32,16 holds it"));
+}
+
+TEST_F(CliNoise, GoesOnToALowerOne) {
+    ASSERT_EQ(noisy({"--noise", "20%"}, "kept.state").exit_code, 0);
+    const Finished higher = run_petzval({"resume", path("kept.state"), "--noise", "30%"});
+    EXPECT_EQ(higher.exit_code, 1);
+    EXPECT_THAT(higher.err, HasSubstr("a higher one is reached already"));
+    const Finished lower = run_petzval({"resume", path("kept.state"), "--noise", "10%"});
+    EXPECT_EQ(lower.exit_code, 0) << lower.err;
+    EXPECT_THAT(lower.err, HasSubstr("noise: "));
+}
+
+}  // namespace
+}  // namespace petzval

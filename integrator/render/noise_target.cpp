@@ -124,7 +124,7 @@ bool CellNoise::is_done(const NoiseTarget& target, uint32_t least) const {
 }
 
 double CellNoise::variance() const {
-    return (sets[0].variance(sets[0].taken) + sets[1].variance(sets[1].taken)) / 2;
+    return (sets[1].variance(sets[0].taken) + sets[0].variance(sets[1].taken)) / 2;
 }
 
 bool CellNoise::is_at_least(const NoiseTarget& target) const {

@@ -68,7 +68,7 @@ struct CellNoise {
     /// Samples that each pixel of a set is to have next; as many as it has where it is done.
     [[nodiscard]] uint32_t next_count(size_t set, const NoiseTarget&, uint32_t least) const;
     [[nodiscard]] bool is_done(const NoiseTarget&, uint32_t least) const;
-    /// Relative variance of the picture.
+    /// Relative variance of the picture: of each set by the other one, as decisions have it.
     [[nodiscard]] double variance() const;
     /// Whether the noise hangs on so few paths that it may be larger.
     [[nodiscard]] bool is_at_least(const NoiseTarget&) const;

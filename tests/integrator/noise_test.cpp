@@ -199,7 +199,9 @@ TEST(RenderToNoise, BringsNoBiasAndSaysItsError) {
         const NoiseReport said = noise_report(film, *target, 4096);
         at_least += said.at_least;
         EXPECT_EQ(said.left, said.at_least);
-        if (said.left == 0) EXPECT_LE(said.worst_cell, kTarget) << seed;
+        if (said.left == 0) {
+            EXPECT_LE(said.worst_cell, kTarget) << seed;
+        }
         ratio.add(std::sqrt(off) / said.noise);
     }
     for (const test::Mean mean : light) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -83,12 +84,17 @@ std::vector<std::string> channels_of(const Film& film) {
     return names;
 }
 
-/// Standard error of R, G and B by the difference of the first half of the samples from all: of one
-/// pixel alone, so that it says little of a single one.
+/// Standard error of R, G and B, as if the n samples were independent: the squared difference of
+/// the first half of the first P from these, and of these from all, have the sum (2 n - P) / P
+/// times the variance. Of one pixel alone, so that it says little of a single one.
 V3f stated_error(const Film& film, int x, int y) {
-    const auto& means = film.parts(x, y).means;
+    const auto parts = film.parts(x, y);
+    const V3f late = parts.means[0] - parts.means[1], last = parts.all - parts.means[0];
+    const auto n = static_cast<float>(film.taken_count(x, y));
+    const float power = static_cast<float>(std::bit_floor(film.taken_count(x, y))),
+                share = power / (2 * n - power);
     V3f out(0.f);
-    for (int i = 0; i < 3; ++i) out[i] = std::abs(means[0][i] - means[1][i]);
+    for (int i = 0; i < 3; ++i) out[i] = std::sqrt((late[i] * late[i] + last[i] * last[i]) * share);
     return out;
 }
 

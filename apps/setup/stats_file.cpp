@@ -131,6 +131,7 @@ void write_stats(const std::filesystem::path& path, const StatsPicture& picture,
     if (const auto& noise = picture.noise)
         out["noise"] = {{"picture", noise->noise},
                         {"worst_cell", noise->worst_cell},
+                        {"floor_nits", noise->floor_nits},
                         {"cells", noise->cells},
                         {"cells_left", noise->left},
                         {"cells_at_least", noise->at_least},

@@ -34,16 +34,17 @@ class FilmBlocks {
     }
 
     /// Means of the first P, P / 2 and P / 4 samples, P being the largest power of two that there
-    /// are, and the largest R, G or B of a sample.
+    /// are; of all; and the largest R, G or B of a sample.
     struct Parts {
         std::array<V3f, 3> means;
+        V3f all;
         float largest;
     };
     /// count: samples of the pixel, of which this is the mean.
     [[nodiscard]] Parts parts(size_t pixel, uint32_t count, const V3f& mean) const {
         const Pixel& p = pixels_[pixel];
-        if (!std::has_single_bit(count)) return {p.means, p.largest};
-        return {{mean, p.means[0], p.means[1]}, p.largest};
+        if (!std::has_single_bit(count)) return {p.means, mean, p.largest};
+        return {{mean, p.means[0], p.means[1]}, mean, p.largest};
     }
 
     void pack(size_t pixel, uint8_t* to) const { std::memcpy(to, &pixels_[pixel], sizeof(Pixel)); }

@@ -8,37 +8,43 @@
 namespace petzval {
 namespace {
 
-/// Variance that may be there where an estimate hangs on few paths: with half of those that make it
-/// known twice as much.
+/// Variance that may be there where an estimate hangs on few paths: on one four times as much. If
+/// there were as many paths as that says, so few would be met in one of ten cells (Poisson).
 double may_be(double variance, double paths) {
-    return variance > 0 ? variance * std::max(1., kKnownPaths / paths) : 0;
+    return variance > 0 ? variance * std::sqrt(std::max(1., kKnownPaths / paths)) : 0;
 }
 
-/// 1 / (mean^2 + floor^2) from the means of two parts, which count alike: a bright sample in one of
-/// them must not hide the error that it makes.
+/// 1 / (mean^2 + floor^2) from the means of two parts. A bright sample in one of them must not hide
+/// the error that it makes: where they differ much the darker one counts, else their mean.
 double inverse_scale(double a, double b, double floor2) {
-    const auto one = [&](double mean) {
-        const double scale = mean * mean + floor2;
-        return scale > 0 ? 1 / scale : 0;
-    };
-    return (one(a) + one(b)) / 2;
+    constexpr double kFar = 4;  // a difference of a quarter of the darker one is half far
+    const double low = std::max(0., std::min(a, b)), apart = std::max(0., std::max(a, b) - low),
+                 mean = apart > 0 ? low + apart / 2 * low / (low + kFar * apart) : low,
+                 scale = mean * mean + floor2;
+    return scale > 0 ? 1 / scale : 0;
+}
+
+double square(double a) {
+    return a * a;
 }
 
 /// Relative squares of a pixel, R, G and B: as SetNoise has them, and of its brightest path.
 struct PixelNoise {
-    double late = 0, early = 0, largest = 0;
+    double early = 0, late = 0, last = 0, largest = 0;
 };
 
 PixelNoise pixel_noise(const FilmBlocks::Parts& parts, uint32_t taken, double floor2) {
     PixelNoise out;
     const auto& m = parts.means;
-    const double n = std::bit_floor(taken);
+    const double n = std::bit_floor(taken), share = n / 2 / taken;
     for (int c = 0; c < 3; ++c) {
-        const double all = double(m[0][c]), half = double(m[1][c]), rest = 2 * all - half,
-                     quarter = double(m[2][c]), scale = inverse_scale(half, rest, floor2) / 3,
+        const double all = double(parts.all[c]), power = double(m[0][c]), half = double(m[1][c]),
+                     quarter = double(m[2][c]),
+                     scale = inverse_scale(half, (all - share * half) / (1 - share), floor2) / 3,
                      path = std::max(0., double(parts.largest) - all) / n;
-        out.late += (all - half) * (all - half) * scale;
-        out.early += (half - quarter) * (half - quarter) * scale;
+        out.early += square(half - quarter) * scale;
+        out.late += square(power - half) * scale;
+        out.last += square(all - power) * scale;
         out.largest += path * path * scale;
     }
     return out;
@@ -82,27 +88,51 @@ Rect NoiseTarget::whole_cells(const Rect& crop) const {
 // variance of all: (Owen 1997) p is 1 for independent samples, and more for well spread ones.
 namespace {
 
-/// 2^p, from the squares of differences after n and after n / 2 samples.
-double growth(double early, double late) {
-    return late > 0 ? std::clamp(early / late, 2., 4.) : 2.;
+/// 2^p, from the squares of differences after n and after n / 2 samples; p is at most 3, which
+/// smooth light has (Owen 1997).
+double growth_of(double early, double late) {
+    return late > 0 ? std::clamp(early / late, 2., 8.) : 2.;
 }
 
-/// Variance after n = P or 1.5 P samples over that after P: a set of P and one of P / 2, together.
-double after(double growth, uint32_t samples) {
-    return std::has_single_bit(samples) ? 1 : (4 + growth) / 9;
+/// Variance of a mean of blocks of samples over that of a block of `power`: each bit of `bits` is a
+/// block of so many samples, which count as they are many among `samples`.
+double of_blocks(double growth, uint32_t bits, uint32_t samples, uint32_t power) {
+    double sum = 0;
+    for (; bits != 0; bits -= std::bit_floor(bits)) {
+        const double block = std::bit_floor(bits), share = block / samples;
+        sum += share * share * std::pow(growth, std::log2(power / block));
+    }
+    return sum;
 }
 
-/// Share of what few pixels say of the growth that is believed: too small a variance stops too
-/// early.
-constexpr double kBelieved = 0.7;
+/// Share of what so many pixels say of the growth that is believed: a growth that seems larger than
+/// it is stops too early. A sum of squares that hangs on n pixels is off by a share of 1 / sqrt(n),
+/// and the ratio of two by sqrt(2) times as much; sqrt(2) of that is allowed for.
+double believed(double pixels) {
+    return pixels > 0 ? std::exp(-2 / std::sqrt(pixels)) : 0;
+}
 
 }  // namespace
 
-double SetNoise::variance(uint32_t samples) const {
+double SetNoise::growth() const {
+    return growth_of(believed(pixels) * early, late);
+}
+
+double SetNoise::variance(uint32_t samples, double g) const {
     if (taken < kLeastOfCell) return HUGE_VAL;
-    const double g = growth(kBelieved * early, late), power = std::log2(g),
-                 from = std::bit_floor(taken), to = std::bit_floor(samples);
-    return late / (g - 1) * std::pow(from / to, power) * after(g, samples);
+    const uint32_t power = std::bit_floor(taken), rest = taken - power;
+    const double more = double(rest) / taken,
+                 of_last = more * more + of_blocks(g, rest, taken, power),
+                 of_power = (late + last) / (g - 1 + of_last);
+    return of_power * of_blocks(g, samples, samples, power);
+}
+
+double SetNoise::needed(double most_variance) const {
+    const double more = may_be(variance(taken), paths) / most_variance;
+    if (!(more > 1)) return taken;
+    // With more samples more paths are met too, as many as there are samples.
+    const double falls = std::log2(growth()) + (paths < kKnownPaths ? 0.5 : 0);
+    return taken * std::pow(more, 1 / falls);
 }
 
 uint32_t CellNoise::next_count(size_t set, const NoiseTarget& target, uint32_t least) const {
@@ -113,9 +143,24 @@ uint32_t CellNoise::next_count(size_t set, const NoiseTarget& target, uint32_t l
     const auto is_enough = [&](uint32_t samples) {
         return samples >= least && may_be(other.variance(samples), other.paths) <= most;
     };
-    const uint32_t power = std::bit_floor(taken), between = power + power / 2;
-    if (is_enough(taken)) return taken;
-    return taken == power && is_enough(between) ? between : 2 * power;
+    const uint32_t power = std::bit_floor(taken);
+    uint32_t count = taken;
+    while (count < 2 * power && !is_enough(count))
+        count = std::min(2 * power, count + power / kStepsOfCell);
+    return count;
+}
+
+CellStep CellNoise::next_step(const NoiseTarget& target, uint32_t least, uint32_t most) const {
+    for (const int set : {0, 1})
+        if (const SetNoise& s = sets[static_cast<size_t>(set)]; s.begun > s.taken)
+            return {set, s.begun};
+    const int first = sets[1].taken < sets[0].taken ? 1 : 0;
+    for (const int set : {first, 1 - first}) {
+        const auto k = static_cast<size_t>(set);
+        const uint32_t end = std::min(most, next_count(k, target, least));
+        if (end > sets[k].taken) return {set, end};
+    }
+    return {};
 }
 
 bool CellNoise::is_done(const NoiseTarget& target, uint32_t least) const {
@@ -123,12 +168,21 @@ bool CellNoise::is_done(const NoiseTarget& target, uint32_t least) const {
            next_count(1, target, least) == sets[1].taken;
 }
 
-double CellNoise::variance() const {
+double CellNoise::decided_variance() const {
     return (sets[1].variance(sets[0].taken) + sets[0].variance(sets[1].taken)) / 2;
 }
 
-bool CellNoise::is_at_least(const NoiseTarget& target) const {
+bool CellNoise::is_at_least(const NoiseTarget& target, bool done) const {
     const double most = target.noise * target.noise;
+    if (done) {
+        double sum = 0, squares = 0;
+        for (const SetNoise& s : sets) {
+            const double variance = s.variance(s.taken);
+            sum += variance;
+            if (s.paths > 0) squares += variance * variance / s.paths;
+        }
+        return sum / 2 > most && sum * sum < kKnownPaths * squares;
+    }
     return std::any_of(sets.begin(), sets.end(), [&](const SetNoise& s) {
         return s.taken < kLeastOfCell ||
                (s.paths < kKnownPaths && may_be(s.variance(s.taken), s.paths) > most);
@@ -138,23 +192,29 @@ bool CellNoise::is_at_least(const NoiseTarget& target) const {
 CellNoise cell_noise(const Film& film, const Rect& cell, double floor_nits) {
     CellNoise out;
     const double floor2 = floor_nits * floor_nits;
-    std::array<double, 2> pixels{}, squares{};
+    std::array<double, 2> pixels{}, squares{}, path_squares{};
     for (int y = cell.y0; y < cell.y1; ++y)
         for (int x = cell.x0; x < cell.x1; ++x) {
             const auto k = static_cast<size_t>(set_of(x, y));
             SetNoise& set = out.sets[k];
             ++pixels[k];
-            set.taken = film.taken_count(x, y);
-            if (set.taken < kLeastOfCell) continue;
-            const PixelNoise p = pixel_noise(film.parts(x, y), set.taken, floor2);
-            set.late += p.late, set.early += p.early;
+            const uint32_t taken = film.taken_count(x, y);
+            set.taken = pixels[k] == 1 ? taken : std::min(set.taken, taken);
+            set.begun = std::max(set.begun, taken);
+            if (taken < kLeastOfCell) continue;
+            const PixelNoise p = pixel_noise(film.parts(x, y), taken, floor2);
+            set.early += p.early, set.late += p.late, set.last += p.last;
             // As many paths as the largest fits into the variance, each of its size.
-            squares[k] += p.late * std::min(p.late, p.largest);
+            const double both = p.late + p.last;
+            path_squares[k] += both * std::min(both, p.largest);
+            squares[k] += both * both;
         }
     for (size_t k = 0; k < 2; ++k) {
         SetNoise& set = out.sets[k];
-        set.paths = squares[k] > 0 ? set.late * set.late / squares[k] : 0;
-        set.late /= std::max(1., pixels[k]), set.early /= std::max(1., pixels[k]);
+        const double both = set.late + set.last;
+        const auto kish = [&](double sum) { return sum > 0 ? both * both / sum : 0; };
+        set.paths = kish(path_squares[k]), set.pixels = kish(squares[k]);
+        for (double* sum : {&set.early, &set.late, &set.last}) *sum /= std::max(1., pixels[k]);
     }
     // A cell of one pixel has one set.
     for (size_t k = 0; k < 2; ++k)
@@ -163,44 +223,96 @@ CellNoise cell_noise(const Film& film, const Rect& cell, double floor_nits) {
 }
 
 NoiseReport noise_report(const Film& film, const NoiseTarget& target, uint32_t most_samples) {
+    const Rect cells = target.cells_of(film.crop());
+    std::vector<CellNoise> found;
+    for (int j = cells.y0; j < cells.y1; ++j)
+        for (int i = cells.x0; i < cells.x1; ++i)
+            found.push_back(cell_noise(film, target.cell(i, j), target.floor_nits));
+    return noise_report(found, cells, target, most_samples);
+}
+
+namespace {
+
+/// Growths of a picture by the number of samples: medians over its sets, by the noise that they
+/// have, which a few bright samples do not change. What a single set may believe would make a
+/// picture noisier than it is.
+class Growths {
+  public:
+    explicit Growths(const std::vector<CellNoise>& cells) {
+        std::array<std::vector<std::pair<double, double>>, kLevels> growths;
+        for (const CellNoise& cell : cells)
+            for (const SetNoise& set : cell.sets)
+                if (set.taken >= kLeastOfCell && set.late > 0)
+                    growths[level_of(set)].emplace_back(set.early / set.late, set.late);
+        for (size_t level = 0; level < kLevels; ++level)
+            if (growths[level].size() >= kEnough) medians_[level] = median(growths[level]);
+    }
+    [[nodiscard]] double of(const SetNoise& set) const {
+        const double median = medians_[level_of(set)];
+        return median > 0 ? growth_of(median, 1) : set.growth();
+    }
+
+  private:
+    static constexpr size_t kLevels = 33, kEnough = 8;
+    [[nodiscard]] static size_t level_of(const SetNoise& set) {
+        return static_cast<size_t>(std::bit_width(set.taken));
+    }
+    /// Of values with weights.
+    [[nodiscard]] static double median(std::vector<std::pair<double, double>>& values) {
+        std::sort(values.begin(), values.end());
+        double all = 0, below = 0;
+        for (const auto& [value, weight] : values) all += weight;
+        for (const auto& [value, weight] : values)
+            if (below += weight; below >= all / 2) return value;
+        return 0;
+    }
+    std::array<double, kLevels> medians_{};
+};
+
+}  // namespace
+
+NoiseReport noise_report(const std::vector<CellNoise>& found, const Rect& cells,
+                         const NoiseTarget& target, uint32_t most_samples) {
     NoiseReport out;
+    const Growths growths(found);
     out.floor_nits = target.floor_nits;
     double variances = 0, pixels = 0, samples = 0;
     bool known = true;
-    const Rect cells = target.cells_of(film.crop());
+    auto next = found.begin();
     for (int j = cells.y0; j < cells.y1; ++j)
         for (int i = cells.x0; i < cells.x1; ++i) {
             const Rect rect = target.cell(i, j);
-            const CellNoise cell = cell_noise(film, rect, target.floor_nits);
+            const CellNoise& cell = *next++;
             const double of_set = double(rect.width()) * double(rect.height()) / 2,
-                         noise = std::sqrt(cell.variance());
-            variances += 2 * of_set * cell.variance();
+                         noise = std::sqrt(cell.decided_variance());
+            for (const SetNoise& set : cell.sets)
+                variances += of_set * set.variance(set.taken, growths.of(set));
             samples += 2 * of_set * cell.samples();
             pixels += 2 * of_set;
             ++out.cells;
             out.worst_cell = std::max(out.worst_cell, noise);
             out.expected_samples += 2 * of_set * cell.samples();
             const uint32_t least = target.least_of(i, j);
-            if (cell.is_done(target, least)) continue;
+            const bool done = cell.is_done(target, least),
+                       at_least = cell.is_at_least(target, done);
+            if (done && !at_least) continue;
             ++out.left;
-            out.open += std::any_of(cell.sets.begin(), cell.sets.end(), [&](const SetNoise& s) {
-                const auto set = static_cast<size_t>(&s - cell.sets.data());
-                return s.taken < std::min(most_samples, cell.next_count(set, target, least));
-            });
-            const bool at_least = cell.is_at_least(target);
+            out.open += cell.next_step(target, least, most_samples).end > 0;
             out.at_least += at_least;
             known = known && !at_least;
-            const double more = noise / target.noise,
-                         needed = std::isfinite(more)
-                                      ? std::max(more * more * cell.samples(), double(least))
-                                      : double(most_samples);
-            out.samples_for_all = std::max(out.samples_for_all, needed);
-            out.expected_samples +=
-                2 * of_set * std::max(0., std::min(needed, double(most_samples)) - cell.samples());
+            if (done) continue;
+            for (size_t k = 0; k < 2; ++k) {
+                const double needed =
+                    std::max(cell.sets[1 - k].needed(target.noise * target.noise), double(least));
+                out.samples_for_all = std::max(out.samples_for_all, needed);
+                out.expected_samples +=
+                    of_set *
+                    std::max(0., std::min(needed, double(most_samples)) - cell.sets[k].taken);
+            }
         }
     out.noise = std::sqrt(variances / pixels);
     out.mean_samples = samples / pixels;
-    if (!known) out.samples_for_all = 0;
+    if (!known || !std::isfinite(out.samples_for_all)) out.samples_for_all = 0;
     return out;
 }
 

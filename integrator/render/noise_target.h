@@ -46,19 +46,37 @@ inline constexpr double kKnownPaths = 16;
 /// Fewest samples of a pixel that tell a noise.
 inline constexpr uint32_t kLeastOfCell = 16;
 
+/// Steps from a power of two of samples to the next one.
+inline constexpr uint32_t kStepsOfCell = 8;
+
 /// What the pixels of one set of a cell say.
 struct SetNoise {
     uint32_t taken = 0;  ///< samples of each pixel
-    /// Mean relative square of what the first half of the samples is off from all of them, for the
-    /// largest power of two that there are; and the same for half of that.
-    double late = 0, early = 0;
-    /// Paths on which `late` hangs: (sum of v)^2 / sum of v^2, Kish 1965, "Survey Sampling",
-    /// section 11.7.
-    double paths = 0;
+    uint32_t begun =
+        0;  ///< samples that a pixel has; more than `taken` in a step that is cut short
+    /// Mean relative squares of differences, for the largest power of two P of samples: of the
+    /// first P / 4 and P / 2; of the first P / 2 and P; and of the first P and all.
+    double early = 0, late = 0, last = 0;
+    /// Paths and pixels on which `late` and `last` hang: (sum of v)^2 / sum of v^2, Kish 1965,
+    /// "Survey Sampling", section 11.7.
+    double paths = 0, pixels = 0;
 
-    /// Relative variance of the mean after another number of samples, a power of two or 1.5 times
-    /// one; infinite where the samples that there are tell nothing.
-    [[nodiscard]] double variance(uint32_t samples) const;
+    /// Variance of half the samples over that of all, from 2 for independent samples to 8: as much
+    /// of it as so few pixels can tell.
+    [[nodiscard]] double growth() const;
+    /// Relative variance of the mean after another number of samples; infinite where the samples
+    /// that there are tell nothing.
+    [[nodiscard]] double variance(uint32_t samples, double growth) const;
+    [[nodiscard]] double variance(uint32_t samples) const { return variance(samples, growth()); }
+    /// Samples of a pixel, as far as is known, after which the other set is below a variance;
+    /// infinite where these tell nothing.
+    [[nodiscard]] double needed(double most_variance) const;
+};
+
+/// What a cell renders next: of the pixels of a set the samples before `end`; 0: nothing.
+struct CellStep {
+    int set = 0;
+    uint32_t end = 0;
 };
 
 /// What a cell says.
@@ -67,11 +85,16 @@ struct CellNoise {
 
     /// Samples that each pixel of a set is to have next; as many as it has where it is done.
     [[nodiscard]] uint32_t next_count(size_t set, const NoiseTarget&, uint32_t least) const;
+    /// A step that was cut short is finished, then the set with fewer samples goes on: so it does
+    /// not matter where a cell was interrupted. most: samples of a pixel.
+    [[nodiscard]] CellStep next_step(const NoiseTarget&, uint32_t least, uint32_t most) const;
     [[nodiscard]] bool is_done(const NoiseTarget&, uint32_t least) const;
     /// Relative variance of the picture: of each set by the other one, as decisions have it.
-    [[nodiscard]] double variance() const;
-    /// Whether the noise hangs on so few paths that it may be larger.
-    [[nodiscard]] bool is_at_least(const NoiseTarget&) const;
+    [[nodiscard]] double decided_variance() const;
+    /// Whether the noise hangs on so few paths that it may be larger than the target. Of a cell
+    /// that is done: whether it is above it by itself, because of few paths in a set that did not
+    /// decide.
+    [[nodiscard]] bool is_at_least(const NoiseTarget&, bool done) const;
     /// Samples of a pixel, on average.
     [[nodiscard]] double samples() const { return (sets[0].taken + sets[1].taken) / 2.; }
 };
@@ -79,7 +102,10 @@ struct CellNoise {
 
 /// What a film has reached.
 struct NoiseReport {
-    double noise = 0;       ///< of the picture; infinite where a cell has too few samples to tell
+    /// Of the picture; infinite where a cell has too few samples to tell. Of each set by itself,
+    /// which did not decide about it: what a set decided by is too small on average, as it stops
+    /// the other one where it looks small.
+    double noise = 0;
     double worst_cell = 0;  ///< largest noise of a cell, likewise
     double floor_nits = 0;  ///< of both
     /// All cells; those above the target; and of these those that may take more samples, and those
@@ -90,6 +116,9 @@ struct NoiseReport {
     double expected_samples = 0;
     double samples_for_all = 0;  ///< of a pixel of the worst cell, for the target; 0: unknown
 };
+/// From what the cells of a rectangle of them say, row by row.
+[[nodiscard]] NoiseReport noise_report(const std::vector<CellNoise>&, const Rect& cells,
+                                       const NoiseTarget&, uint32_t most_samples);
 [[nodiscard]] NoiseReport noise_report(const Film&, const NoiseTarget&, uint32_t most_samples);
 
 }  // namespace petzval

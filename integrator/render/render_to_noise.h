@@ -14,40 +14,96 @@
 
 namespace petzval {
 
-/// Renders the next samples of one cell: for the pixels of each set as many as the other one says.
-/// Returns whether there were any that the job allows.
+/// Renders the next step of the rows y0 .. y1 - 1 of a cell. Each pixel gets all of it or nothing.
 template <class Tracer>
-bool render_cell(const Tracer& tracer, const Camera& camera, const RenderJob& job, int i, int j,
-                 Film& film, PathStats& stats) {
-    const NoiseTarget& target = *job.noise;
-    const Rect cell = target.cell(i, j);
-    const CellNoise now = cell_noise(film, cell, target.floor_nits);
+void render_rows(const Tracer& tracer, const Camera& camera, const RenderJob& job, const Rect& rows,
+                 const CellStep& step, Film& film, PathStats& stats) {
     SampleBatch<Tracer> batch(tracer, camera, job, film.full_size(), &film, stats);
-    const auto each_pixel = [&](int set, const auto& use) {
-        for (int y = cell.y0; y < cell.y1; ++y)
-            for (int x = cell.x0; x < cell.x1; ++x)
-                if (set_of(x, y) == set) use(x, y);
+    const auto each_pixel = [&](const auto& use) {
+        for (int y = rows.y0; y < rows.y1; ++y)
+            for (int x = rows.x0; x < rows.x1; ++x)
+                if (set_of(x, y) == step.set) use(x, y);
     };
-    bool any = false;
-    for (int set = 0; set < 2; ++set) {
-        const auto k = static_cast<size_t>(set);
-        uint32_t taken = now.sets[k].taken;
-        const uint32_t end =
-            std::min(job.end_sample, now.next_count(k, target, target.least_of(i, j)));
-        any = any || taken < end;
-        while (taken < end) {
-            if (std::has_single_bit(taken))
-                each_pixel(set, [&](int x, int y) { film.close_block(x, y); });
-            const uint32_t to = std::min(end, 2 * std::max(1u, std::bit_floor(taken)));
-            each_pixel(set, [&](int x, int y) {
-                for (uint32_t n = taken; n < to; ++n) batch.add({x, y, n});
-            });
-            batch.render();
-            taken = to;
-        }
+    bool any = true;
+    while (any) {
+        any = false;
+        each_pixel([&](int x, int y) {
+            const uint32_t taken = film.taken_count(x, y);
+            if (taken >= step.end) return;
+            any = true;
+            if (std::has_single_bit(taken)) film.close_block(x, y);
+            const uint32_t to = std::min(step.end, 2 * std::max(1u, std::bit_floor(taken)));
+            for (uint32_t n = taken; n < to; ++n) batch.add({x, y, n});
+        });
+        batch.render();
     }
-    return any;
 }
+
+/// Cells of a film's crop that are rendered to a noise: what they say, and what each needs next.
+class NoisyCells {
+  public:
+    NoisyCells(const Film& film, const RenderJob& job)
+        : film_(film),
+          target_(*job.noise),
+          most_(job.end_sample),
+          cells_(target_.cells_of(film.crop())),
+          found_(static_cast<size_t>(cells_.width()) * static_cast<size_t>(cells_.height())) {
+        for (int n = 0; n < static_cast<int>(found_.size()); ++n) open_.push_back({n, {}});
+    }
+    /// Looks at the cells that are open: those that are not any more leave.
+    template <class Executor>
+    void look(Executor& executor) {
+        executor.run(static_cast<int>(open_.size()), [&](int task, int) {
+            Open& one = open_[static_cast<size_t>(task)];
+            CellNoise& now = found_[static_cast<size_t>(one.cell)];
+            now = cell_noise(film_, rect_of(one.cell), target_.floor_nits);
+            one.step = now.next_step(
+                target_, target_.least_of(column_of(one.cell), row_of(one.cell)), most_);
+        });
+        std::erase_if(open_, [](const Open& one) { return one.step.end == 0; });
+    }
+    [[nodiscard]] bool any() const { return !open_.empty(); }
+    [[nodiscard]] NoiseReport report() const {
+        return noise_report(found_, cells_, target_, most_);
+    }
+    /// Tasks of the next step: where few cells are open each is several, so that all threads work.
+    [[nodiscard]] int tasks(int threads) {
+        constexpr int kTasksOfThread = 8;
+        parts_ = std::clamp(kTasksOfThread * threads / static_cast<int>(open_.size()), 1,
+                            NoiseTarget::kCell_px);
+        return parts_ * static_cast<int>(open_.size());
+    }
+    struct Task {
+        Rect rows;
+        CellStep step;
+    };
+    [[nodiscard]] Task task(int number) const {
+        const Open& one = open_[static_cast<size_t>(number / parts_)];
+        const Rect cell = rect_of(one.cell);
+        const auto row = [&](int part) { return cell.y0 + cell.height() * part / parts_; };
+        const int part = number % parts_;
+        return {{cell.x0, row(part), cell.x1, row(part + 1)}, one.step};
+    }
+
+  private:
+    struct Open {
+        int cell;
+        CellStep step;
+    };
+    [[nodiscard]] int column_of(int cell) const { return cells_.x0 + cell % cells_.width(); }
+    [[nodiscard]] int row_of(int cell) const { return cells_.y0 + cell / cells_.width(); }
+    [[nodiscard]] Rect rect_of(int cell) const {
+        return target_.cell(column_of(cell), row_of(cell));
+    }
+
+    const Film& film_;
+    const NoiseTarget& target_;
+    uint32_t most_;
+    Rect cells_;
+    std::vector<CellNoise> found_;
+    std::vector<Open> open_;
+    int parts_ = 1;
+};
 
 /// Renders the cells of the film's crop, which must be of whole cells, until each has reached the
 /// job's noise, or its samples or time are over. A cell depends on nothing but itself: not on the
@@ -56,37 +112,35 @@ template <class Executor, class Tracer>
 RenderResult render_to_noise(const Tracer& tracer, const Camera& camera, const RenderJob& job,
                              Film& film, Executor& executor, RenderMonitor& monitor) {
     const double start_s = job.wall_s();
-    const Rect cells = job.noise->cells_of(film.crop());
     WorkerStats workers(executor.threads());
-    std::vector<uint8_t> open(
-        static_cast<size_t>(cells.width()) * static_cast<size_t>(cells.height()), 1);
+    NoisyCells cells(film, job);
     std::atomic<bool> late = false;
-    const auto is_open = [&] { return std::find(open.begin(), open.end(), 1) != open.end(); };
-    while (is_open() && !monitor.stop && !late) {
-        executor.run(static_cast<int>(open.size()), [&](int task, int worker) {
-            uint8_t& is_open_cell = open[static_cast<size_t>(task)];
-            if (monitor.stop || monitor.pause || !is_open_cell) return;
-            if (job.time_limit_s && job.wall_s() - start_s >= *job.time_limit_s) {
-                late = true;
-                return;
-            }
-            PathStats& stats = workers.of(worker);
-            const uint64_t before = stats.samples;
-            is_open_cell = render_cell(tracer, camera, job, cells.x0 + task % cells.width(),
-                                       cells.y0 + task / cells.width(), film, stats);
-            stats.tiles += stats.samples > before;
-            monitor.pixel_samples_done += stats.samples - before;
-        });
-        const NoiseReport reached = noise_report(film, *job.noise, job.end_sample);
+    for (;;) {
+        cells.look(executor);
+        const NoiseReport reached = cells.report();
         monitor.noise = reached.noise;
         monitor.expected_pixel_samples = static_cast<uint64_t>(reached.expected_samples);
         if (monitor.pause.exchange(false) && job.at_pause && !monitor.stop)
             job.at_pause(workers.total());
+        if (!cells.any() || monitor.stop || late) break;
+        executor.run(cells.tasks(executor.threads()), [&](int number, int worker) {
+            if (monitor.stop || monitor.pause) return;
+            if (job.time_limit_s && job.wall_s() - start_s >= *job.time_limit_s) {
+                late = true;
+                return;
+            }
+            const auto [rows, step] = cells.task(number);
+            PathStats& stats = workers.of(worker);
+            const uint64_t before = stats.samples;
+            render_rows(tracer, camera, job, rows, step, film, stats);
+            stats.tiles += stats.samples > before;
+            monitor.pixel_samples_done += stats.samples - before;
+        });
     }
     RenderResult result;
     result.stats = workers.total();
     result.end_sample = film.taken_range().least;
-    result.stopped = monitor.stop && is_open();
+    result.stopped = monitor.stop && cells.any();
     result.workers = workers.active();
     return result;
 }

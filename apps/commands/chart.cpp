@@ -93,7 +93,7 @@ void resolve(ChartOptions& o) {
     check(o.order.render);
     scene = resolved_scene(o.order.render);
     r.frame.size = scene.size;
-    r.frame.crop = o.order.render.crop.value_or(Rect{0, 0, scene.size.x, scene.size.y});
+    r.frame.crop = pixels_of(o.order.render.crop, scene.size);
 }
 
 void print_case(const MeasuredCase& of) {

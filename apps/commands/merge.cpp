@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "apps/commands/render_files.h"
+#include "apps/plan/plan_wording.h"
 #include "apps/request/file_names.h"
 #include "apps/setup/input_files.h"
 #include "apps/state/merge.h"
@@ -49,9 +50,12 @@ int merge(const MergeOptions& o, Session& session) {
     std::vector<fs::path> pictures, states;
     for (const fs::path& output : o.outputs)
         (is_state_name(output) ? states : pictures).push_back(output);
+    const auto notice = [&](const std::string& text) { session.console.notice(text); };
+    const auto noise = reached_noise(merged.record.facts, film, merged.samples);
+    if (noise) notice(text_of(*noise, merged.record.facts.noise->noise));
     std::vector<WriteOutcome> outcomes =
-        write_pictures(pictures, merged.record.display, {film, merged.samples, merged.record.facts},
-                       false, session.console);
+        write_pictures(pictures, merged.record.display,
+                       {film, merged.samples, merged.record.facts, noise}, false, session.console);
     for (const fs::path& state : states)
         outcomes.push_back(write_or_rescue(state, [&](const fs::path& to) {
             StateHeader header = header_of(merged.record, FilmShape::of(film), merged.samples);
@@ -64,7 +68,7 @@ int merge(const MergeOptions& o, Session& session) {
             report.outputs = outcomes;
             write_stats(to,
                         {film.full_size().x, film.full_size().y, merged.samples,
-                         merged.record.display.exposure_ev, film.left_out()},
+                         merged.record.display.exposure_ev, film.left_out(), noise},
                         merged.record.figures, report);
         }));
     bool written = true;
@@ -73,8 +77,9 @@ int merge(const MergeOptions& o, Session& session) {
         const bool told = std::find(pictures.begin(), pictures.end(), one.wanted) != pictures.end();
         if (!one.written() && !told) session.console.error(one.message());
     }
-    tell_bad_samples(film, [&](const std::string& text) { session.console.notice(text); });
-    return written ? kSuccess : kOutputFailed;
+    tell_bad_samples(film, notice);
+    if (!written) return kOutputFailed;
+    return noise && noise->left > 0 ? kNoiseLeft : kSuccess;
 }
 
 }  // namespace

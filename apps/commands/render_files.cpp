@@ -40,7 +40,7 @@ void check_outputs(RenderOrder& order, const RenderFiles& files) {
     refuse_overwriting(outputs, input_files(scene));
     refuse_overwriting(outputs, input_files(asked));
     refuse_overwriting(outputs, own_files());
-    const Rect crop = order.render.crop.value_or(Rect{0, 0, scene.size.x, scene.size.y});
+    const Rect crop = pixels_of(order.render.crop, scene.size);
     const DisplayOptions display{0, asked.view, asked.config};
     for (const auto& picture : files.pictures)
         check_output(picture, display, crop.width(), crop.height());

@@ -62,8 +62,8 @@ RenderSetup set_up(const PlanRequest& request, TbbExecutor& executor, const Noti
 
 FilmShape shape_of(const RenderRequest& request) {
     const V2i size = request.scene.size;
-    return {size, request.crop.value_or(Rect{0, 0, size.x, size.y}), request.layers,
-            request.scene.spectral.bins, request.samples.noise.has_value()};
+    return {size, pixels_of(request.crop, size), request.layers, request.scene.spectral.bins,
+            request.samples.noise.has_value()};
 }
 
 RenderSession::RenderSession(int threads, Frames frames) : executor_(threads) {
@@ -178,8 +178,7 @@ RenderResult RenderSession::render(RenderMonitor& monitor, const RenderRun& run)
 }
 
 std::optional<NoiseReport> RenderSession::noise(const Film& film) const {
-    if (!job_.noise) return std::nullopt;
-    return noise_report(film, *job_.noise, job_.end_sample);
+    return reached_noise(facts_, film, {job_.first_sample, job_.end_sample});
 }
 
 SampleRecord RenderSession::trace_sample(SampleId id) const {

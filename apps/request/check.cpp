@@ -33,6 +33,32 @@ void check_moment(const MomentRequest& moment, ExposureMode mode) {
         refuse("⟨shutter-curve⟩", "needs ⟨shutter⟩");
 }
 
+NoiseTarget cells_of(V2i frame_px) {
+    NoiseTarget out;
+    out.frame_px = frame_px;
+    return out;
+}
+
+void check_crop(const Crop& crop, V2i frame_px, bool to_noise) {
+    const NoiseTarget frame = cells_of(frame_px);
+    if (const auto* band = std::get_if<FrameBand>(&crop)) {
+        if (const int most = frame.cells().y; band->of > most)
+            refuse("⟨crop⟩",
+                   fmt::format("{}/{} asks for {} bands; the number of bands of {} rows is at most "
+                               "{}, as each has {} or a little more",
+                               band->part, band->of, band->of, frame_px.y, most,
+                               NoiseTarget::kCell_px));
+        return;
+    }
+    const Rect rect = std::get<Rect>(crop);
+    check_inside("⟨crop⟩", rect, frame_px);
+    if (const Rect whole = frame.whole_cells(rect); to_noise && whole != rect)
+        refuse("⟨crop⟩", fmt::format("with ⟨noise⟩ is of whole cells of {0}x{0} pixels or a "
+                                     "little more: {1},{2},{3},{4} holds it",
+                                     NoiseTarget::kCell_px, whole.x0, whole.y0, whole.width(),
+                                     whole.height()));
+}
+
 void check_samples(const SampleRequest& samples, bool bins) {
     if (samples.noise && samples.range)
         refuse("⟨noise⟩",
@@ -50,6 +76,16 @@ void check_samples(const SampleRequest& samples, bool bins) {
 
 }  // namespace
 
+Rect pixels_of(const std::optional<Crop>& crop, V2i frame_px) {
+    if (!crop) return {0, 0, frame_px.x, frame_px.y};
+    if (const Rect* rect = std::get_if<Rect>(&*crop)) return *rect;
+    const auto [part, of] = std::get<FrameBand>(*crop);
+    const NoiseTarget frame = cells_of(frame_px);
+    const int rows = frame.cells().y;
+    return {0, frame.cell(0, rows * (part - 1) / of).y0, frame_px.x,
+            frame.cell(0, rows * part / of - 1).y1};
+}
+
 void check(const RenderRequest& request) {
     const SceneRequest& scene = request.scene;
     check_camera(scene.camera, scene.size);
@@ -57,16 +93,7 @@ void check(const RenderRequest& request) {
         refuse("⟨orbit-about⟩", "has no effect but with ⟨orbit⟩ or ⟨turntable⟩");
     check_moment(request.moment, scene.camera.exposure);
     check_samples(request.samples, scene.spectral.bins.has_value());
-    if (request.crop) check_inside("⟨crop⟩", *request.crop, scene.size);
-    if (request.crop && request.samples.noise) {
-        NoiseTarget frame;
-        frame.frame_px = scene.size;
-        if (const Rect whole = frame.whole_cells(*request.crop); whole != *request.crop)
-            refuse("⟨crop⟩", fmt::format("with ⟨noise⟩ is of whole cells of {0}x{0} pixels or a "
-                                         "little more: {1},{2},{3},{4} holds it",
-                                         NoiseTarget::kCell_px, whole.x0, whole.y0, whole.width(),
-                                         whole.height()));
-    }
+    if (request.crop) check_crop(*request.crop, scene.size, request.samples.noise.has_value());
     if (!scene.environment && scene.environment_rotate_deg != 0)
         refuse("⟨env-rotate⟩", "needs ⟨env⟩");
     if (!scene.environment && scene.environment_strength != 1)

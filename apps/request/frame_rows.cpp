@@ -65,11 +65,11 @@ std::vector<RequestField> size_fields() {
         common(parsed("size", in::scene(&SceneRequest::size),
                       "WIDTHxHEIGHT in pixels (default 1280x720; of a chart 192x108)", parse_size,
                       [](V2i size) { return fmt::format("{}x{}", size.x, size.y); })),
-        parsed("crop", in::render(&RenderRequest::crop),
-               "x,y,width,height: only these pixels of the full frame", parse_crop,
-               [](const Rect& r) {
-                   return fmt::format("{},{},{},{}", r.x0, r.y0, r.width(), r.height());
-               })};
+        parsed(
+            "crop", in::render(&RenderRequest::crop),
+            "x,y,width,height: only these pixels of the full frame; I/N: the I-th of N bands, as "
+            "machines share a picture",
+            parse_crop, [](const Crop& crop) { return text_of(crop); })};
 }
 
 std::vector<RequestField> file_fields() {

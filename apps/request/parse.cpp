@@ -84,7 +84,12 @@ V2f parse_sensor(const std::string& option, const std::string& text, double leas
     refuse(option, text, fmt::format("WIDTHxHEIGHT in millimetres, {:g} to {:g}", least, most));
 }
 
-Rect parse_crop(const std::string& option, const std::string& text) {
+Crop parse_crop(const std::string& option, const std::string& text) {
+    if (const auto parts = split(text, '/'); parts.size() == 2) {
+        const auto part = number<int>(trimmed(parts[0])), of = number<int>(trimmed(parts[1]));
+        if (part && of && 1 <= *part && *part <= *of) return FrameBand{*part, *of};
+        refuse(option, text, "I/N, the I-th of N bands of the frame, with I from 1 to N");
+    }
     const auto parts = split(text, ',');
     std::vector<int> v;
     for (const std::string_view part : parts)
@@ -93,8 +98,14 @@ Rect parse_crop(const std::string& option, const std::string& text) {
         return at >= 0 && size >= 1 && at <= kLargestSide_px && size <= kLargestSide_px;
     };
     if (v.size() == 4 && parts.size() == 4 && fits(v[0], v[2]) && fits(v[1], v[3]))
-        return {v[0], v[1], v[0] + v[2], v[1] + v[3]};
-    refuse(option, text, "x,y,width,height inside the frame");
+        return Rect{v[0], v[1], v[0] + v[2], v[1] + v[3]};
+    refuse(option, text, "x,y,width,height inside the frame, or I/N, one of N bands of it");
+}
+
+std::string text_of(const Crop& crop) {
+    if (const auto* band = std::get_if<FrameBand>(&crop))
+        return fmt::format("{}/{}", band->part, band->of);
+    return text_of(std::get<Rect>(crop));
 }
 
 void check_inside(const std::string& option, const Rect& crop, V2i frame) {

@@ -24,8 +24,11 @@ namespace petzval {
 /// Sensor size in millimetres from "36x24" or "36x24mm": two numbers from least to most.
 [[nodiscard]] V2f parse_sensor(const std::string& option, const std::string& text, double least,
                                double most);
-/// Crop from "x,y,w,h" in pixels; must hold one.
-[[nodiscard]] Rect parse_crop(const std::string& option, const std::string& text);
+/// Crop from "x,y,w,h" in pixels, which must hold one, or from "i/n": the i-th of n bands, i
+/// from 1.
+[[nodiscard]] Crop parse_crop(const std::string& option, const std::string& text);
+/// Text that parse_crop() reads.
+[[nodiscard]] std::string text_of(const Crop&);
 /// Throws where a crop does not lie inside a frame.
 void check_inside(const std::string& option, const Rect& crop, V2i frame);
 /// Range of sample indices from "A:B": A below B, and B at most `most`.

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "apps/request/scene_request.h"
@@ -46,6 +47,18 @@ struct MomentRequest {
     std::string shutter_curve;            ///< "box", "trapezoid" or a CSV file; empty: box
 };
 
+/// Band of a frame, over its whole width: the part-th of so many, from 1, from the top. Bands are
+/// of whole cells of a noise (integrator/render/noise_target.h).
+struct FrameBand {
+    int part = 1, of = 1;
+};
+/// Part of a full frame.
+using Crop = std::variant<Rect, FrameBand>;
+
+/// Pixels of a crop of a frame, where it lies inside (check() of a request sees to it); without one
+/// all of them.
+[[nodiscard]] Rect pixels_of(const std::optional<Crop>&, V2i frame_px);
+
 /// Samples of each pixel.
 struct SampleRequest {
     /// Absent: kUsualSamples, or as the time limit allows; with a noise the most of each pixel.
@@ -77,7 +90,7 @@ struct DisplayRequest {
 struct RenderRequest {
     SceneRequest scene;  ///< resolved() sets the times of its animation and of its camera's shutter
     MomentRequest moment;
-    std::optional<Rect> crop;  ///< pixels of the full frame; absent: all of them
+    std::optional<Crop> crop;  ///< absent: the full frame
     std::vector<Aov> layers;
     SampleRequest samples;
     PathOptions path;

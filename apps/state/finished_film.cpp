@@ -9,6 +9,12 @@
 
 namespace petzval {
 
+std::optional<NoiseReport> reached_noise(const RenderFacts& facts, const Film& film,
+                                         SampleRange samples) {
+    if (!facts.noise) return std::nullopt;
+    return noise_report(film, *facts.noise, samples.end);
+}
+
 PictureRows picture_for(const std::filesystem::path& path, const FinishedFilm& done) {
     Metadata metadata = done.facts.metadata;
     metadata.emplace_back(kLightHash,

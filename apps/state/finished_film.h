@@ -20,6 +20,10 @@ struct FinishedFilm {
     std::optional<NoiseReport> noise{};  ///< where one was to be reached
 };
 
+/// Noise that a film has reached, as its facts ask for one; nothing where none is asked for.
+[[nodiscard]] std::optional<NoiseReport> reached_noise(const RenderFacts&, const Film&,
+                                                       SampleRange);
+
 /// Linear picture of a film, with the metadata of its file: PNG and JPEG say how they were made for
 /// a display too.
 [[nodiscard]] PictureRows picture_for(const std::filesystem::path&, const FinishedFilm&);

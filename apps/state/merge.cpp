@@ -10,6 +10,7 @@
 
 #include "apps/setup/memory.h"
 #include "io/base/error.h"
+#include "io/base/format.h"
 #include "io/base/printable.h"
 
 namespace petzval {
@@ -124,6 +125,14 @@ MergedState merge_states(const std::vector<fs::path>& files) {
                 other{record.facts, header.shape, file.string()};
             if (const auto differs = difference(first, other, Compare::Pictures))
                 throw InputError(file.string(), "", "is a state of another render: " + *differs);
+            if (sum->facts.noise && sum->facts.noise->noise != record.facts.noise->noise)
+                throw InputError(
+                    file.string(), "",
+                    "was rendered to a noise of {}, and {} to one of {}; petzval "
+                    "resume STATE ⟨noise⟩ {} brings the other one to the same",
+                    percent(record.facts.noise->noise), first.name,
+                    percent(sum->facts.noise->noise),
+                    percent(std::min(record.facts.noise->noise, sum->facts.noise->noise)));
             sum->figures += record.figures;
         }
         parts.push_back({header.shape.crop, header.samples});

@@ -159,6 +159,7 @@ RenderFacts facts_of(const RenderSetup& setup, const RenderJob& job, const PathO
         if (file.role == kCameraFile) add(file);
     facts.inputs.emplace_back("pose of the camera", hash_of_pose(setup.from.camera));
     facts.inputs.emplace_back("what pilots learned", hash_of_learned(setup));
+    facts.noise = job.noise;
     if (job.noise) facts.inputs.emplace_back("what bounds the noise", hash_of_noise(*job.noise));
     facts.display = display_facts(display);
     return facts;
@@ -173,8 +174,14 @@ Json to_json(const RenderFacts& facts) {
             metadata.push_back({name, *whole});
         else
             metadata.push_back({name, std::get<std::string>(value)});
-    return {
+    Json out{
         {"metadata", std::move(metadata)}, {"inputs", facts.inputs}, {"display", facts.display}};
+    if (const auto& noise = facts.noise)
+        out["noise"] = {{"target", noise->noise},
+                        {"floor_nits", noise->floor_nits},
+                        {"frame_px", {noise->frame_px.x, noise->frame_px.y}},
+                        {"least", noise->least}};
+    return out;
 }
 
 RenderFacts facts_from(const Json& json) {
@@ -192,6 +199,16 @@ RenderFacts facts_from(const Json& json) {
     }
     json.at("inputs").get_to(facts.inputs);
     json.at("display").get_to(facts.display);
+    if (json.contains("noise")) {
+        const Json& noise = json.at("noise");
+        auto target = std::make_shared<NoiseTarget>();
+        target->noise = noise.at("target").get<double>();
+        target->floor_nits = noise.at("floor_nits").get<double>();
+        target->frame_px = {noise.at("frame_px").at(0).get<int>(),
+                            noise.at("frame_px").at(1).get<int>()};
+        noise.at("least").get_to(target->least);
+        facts.noise = std::move(target);
+    }
     return facts;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -26,6 +27,7 @@ struct RenderFacts {
     Metadata metadata;  ///< of pictures
     Texts inputs;   ///< hashes of files that are not in the metadata, and of what pilots learned
     Texts display;  ///< how PNG and JPEG show the picture
+    std::shared_ptr<const NoiseTarget> noise;  ///< that is to be reached; empty: none
 };
 
 /// Facts of how PNG and JPEG show a picture, with a hash of the files that its configuration reads.

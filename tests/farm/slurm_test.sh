@@ -15,7 +15,7 @@ parts=4
 
 # Where this runs as a job of a farm, or with settings for one, they are not ours.
 while read -r name; do unset "$name"; done < <(compgen -v | grep -E '^(SLURM|SBATCH|SQUEUE|SCANCEL|SCONTROL)_' || true)
-unset SCENE OUT SPP PARTS CHECKPOINT RETRIES CPUS MEMORY TIME_LIMIT
+unset SCENE OUT SPP NOISE PARTS CHECKPOINT RETRIES CPUS MEMORY TIME_LIMIT
 
 # Not below TMPDIR: the path of a socket is short.
 folder=$(mktemp -d /tmp/petzval_farm.XXXXXX)
@@ -100,6 +100,16 @@ grep -q 'part 1: exit code 130' "slurm-${array}_1.out" || failed "part 1 did not
 for ending in exr png; do
     cmp "whole.$ending" "$OUT.$ending" || failed "the merged $ending is not that of one render"
 done
+
+step "one render to a noise, and the same in bands"
+timeout 60 "$program" render "$SCENE" "${size[@]}" --noise 20% --quiet -o noise.exr || failed "the render to a noise did not end well within 60 s"
+line=$(NOISE=20% SPP=4096 PARTS=2 OUT="$OUT.noise" bash "$scripts/submit_ranges.sh" "${size[@]}")
+echo "$line"
+merge=${line#*; }
+merge=${merge%% *}
+until_true 90 "the merge of the bands is over" is_over "$merge"
+is "$merge" COMPLETED || failed "the merge of the bands ended as $(state_of "$merge")"
+cmp noise.exr "$OUT.noise.exr" || failed "the merged bands are not the picture of one render"
 
 step "a state gets lost"
 rm "$OUT.parts/part_2.state" "$OUT.exr" "$OUT.png"

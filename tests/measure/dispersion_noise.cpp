@@ -141,8 +141,9 @@ int run(int argc, char** argv) {
     CLI11_PARSE(app, argc, argv);
     request.size = parse_size("--size", size);
     camera.focus = parse_focus("--focus", focus);
-    const Rect crop = crop_text.empty() ? Rect{0, 0, request.size.x, request.size.y}
-                                        : parse_crop("--crop", crop_text);
+    std::optional<Crop> part;
+    if (!crop_text.empty()) part = parse_crop("--crop", crop_text);
+    const Rect crop = pixels_of(part, request.size);
     flush_denormals();
     request.spectral.mode = SpectralMode::Wavelengths;
 

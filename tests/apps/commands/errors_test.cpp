@@ -44,6 +44,9 @@ TEST_F(CliErrors, WordsThatAreNone) {
 TEST_F(CliErrors, ListsThatDoNotFit) {
     expect_refused(2, {{{"--crop", "0,0,17,1"}, "inside the 16x16 frame"},
                        {{"--crop", "0,0,4"}, "x,y,width,height inside the frame"},
+                       {{"--crop", "3/2"}, "I/N, the I-th of N bands of the frame"},
+                       {{"--crop", "0/2"}, "I/N, the I-th of N bands of the frame"},
+                       {{"--crop", "1/2"}, "the number of bands of 16 rows is at most 1"},
                        {{"--look-at", "0,0,0,0,0"}, "--look-at"},
                        {{"--look-at", "1e30,0,0,0,0,0"}, "too far away"},
                        {{"--look-at", "1,2,3,1,2,3"}, "the same point"},

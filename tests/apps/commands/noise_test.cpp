@@ -71,6 +71,36 @@ TEST_F(CliNoise, IsPartOfACropOfWholeCells) {
     EXPECT_THAT(cut.err, HasSubstr("0,0,32,16 holds it"));
 }
 
+// Bands that machines share, of 53 rows.
+TEST_F(CliNoise, BandsMergeToTheBytesOfOneRun) {
+    const Words all = {"--noise", "10%", "--size", "40x53"};
+    const auto with = [&](Words more) {
+        more.insert(more.begin(), all.begin(), all.end());
+        return more;
+    };
+    const Finished whole = noisy(with({"--stats", path("whole.json")}));
+    ASSERT_EQ(whole.exit_code, 0) << whole.err;
+    Words merge = {"merge", "-o", path("merged.exr"), "--stats", path("merged.json")};
+    for (const char* band : {"3/3", "1/3", "2/3"}) {
+        const std::string state = std::string("band") + band[0] + ".state";
+        ASSERT_EQ(noisy(with({"--crop", band}), state).exit_code, 0);
+        merge.push_back(path(state));
+    }
+    const Finished merged = run_petzval(merge);
+    EXPECT_EQ(merged.exit_code, 0) << merged.err;
+    EXPECT_THAT(merged.err, HasSubstr("noise: "));
+    EXPECT_TRUE(file_bytes(path("noise.exr")) == file_bytes(path("merged.exr")));
+    const auto noise = [&](const char* file) {
+        return nlohmann::json::parse(file_bytes(path(file)))["noise"];
+    };
+    EXPECT_EQ(noise("whole.json"), noise("merged.json"));
+    EXPECT_THAT(run_petzval({"resume", path("band1.state"), "--noise", "5%"}).exit_code,
+                testing::AnyOf(0, 5));
+    const Finished unlike = run_petzval(merge);
+    EXPECT_EQ(unlike.exit_code, 1);
+    EXPECT_THAT(unlike.err, HasSubstr("brings the other one to the same"));
+}
+
 TEST_F(CliNoise, GoesOnToALowerOne) {
     ASSERT_EQ(noisy({"--noise", "20%"}, "kept.state").exit_code, 0);
     const Finished higher = run_petzval({"resume", path("kept.state"), "--noise", "30%"});

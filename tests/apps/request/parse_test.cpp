@@ -25,7 +25,10 @@ TEST(Parse, FocusTakesUnitsAndInfinity) {
     const Focus pixel = parse_focus("--focus", "10,79");
     EXPECT_EQ(std::get<FocusPixel>(pixel).y, 79);
     EXPECT_EQ(parse_pixel("pixel", "10, 79"), V2i(10, 79));
-    EXPECT_EQ(parse_crop("--crop", "1, 2, 3, 4").x1, 4);
+    EXPECT_EQ(std::get<Rect>(parse_crop("--crop", "1, 2, 3, 4")).x1, 4);
+    const auto band = std::get<FrameBand>(parse_crop("--crop", "2 / 3"));
+    EXPECT_EQ(band.part, 2);
+    EXPECT_EQ(band.of, 3);
     for (const char* text :
          {"", "m", "0", "-1m", "1.5 x", "1,5m", "-1,8", "nan", "infinite", "1e-9", "1e9km"})
         EXPECT_THROW((void)parse_focus("--focus", text), ValueError) << text;

@@ -12,6 +12,7 @@
 #include "apps/setup/input_files.h"
 #include "apps/setup/memory.h"
 #include "apps/setup/spectral_wording.h"
+#include "integrator/render/noise_target.h"
 #include "io/base/error.h"
 #include "io/file/atomic_file.h"
 #include "io/file/rescue.h"
@@ -65,13 +66,22 @@ void refuse_overwriting_in(const fs::path& folder, const std::vector<NamedFile>&
     for (const NamedFile& one : there) refuse_overwriting({one}, inputs);
 }
 
+/// A noise is that of whole cells.
+void leave_out_part_cells(ChartCase& of, const ChartFrame& frame) {
+    NoiseTarget cells;
+    cells.frame_px = frame.size;
+    if (of.axis != ChartAxis::Noise || cells.whole_cells(frame.crop) == frame.crop) return;
+    of.methods.clear();
+    of.remarks.push_back(as_options("Left out: ⟨crop⟩ is not of whole cells of a noise; I/N is"));
+}
+
 void require_memory(const std::vector<ChartCase>& cases, const ChartFrame& frame) {
     double most = 0;
     for (const ChartCase& of : cases) {
         double per_pixel = 0;
         for (const ChartMethod& method : of.methods) {
             const auto& bins = method.scene.spectral.bins;
-            per_pixel += double(frame.seeds * Film::bytes_per_pixel(0, bins));
+            per_pixel += double(frame.seeds * Film::bytes_per_pixel(0, bins, method.to_noise));
             per_pixel += 12 * 20;  // pictures of the levels
         }
         most = std::max(most, per_pixel);
@@ -114,7 +124,8 @@ ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, Rende
     const SetUpView open = [&](const SceneRequest& one) {
         return executor.inside([&] { return set_up_view(first, one, once); });
     };
-    const std::vector<ChartCase> cases = chart_cases(request.axes, request.subject, open);
+    std::vector<ChartCase> cases = chart_cases(request.axes, request.subject, open);
+    for (ChartCase& of : cases) leave_out_part_cells(of, frame);
     require_memory(cases, frame);
     const bool nothing = std::all_of(cases.begin(), cases.end(),
                                      [](const ChartCase& of) { return of.methods.empty(); });

@@ -304,16 +304,30 @@ std::vector<ChartCase> precision_cases(const ResolvedScene& found, const ChartSu
     return std::move(cases).result();
 }
 
+std::vector<ChartCase> noise_cases(const ResolvedScene& found, const ChartSubject& subject,
+                                   const SetUpView&) {
+    Cases cases(ChartAxis::Noise, subject.job, "noise",
+                "as many samples of each pixel, or as each part of the frame needs");
+    const auto as_it_is = [](SceneRequest&, RenderJob&) {};
+    cases.add("samples", found.request, as_it_is);
+    cases.add("noise", found.request, as_it_is);
+    std::vector<ChartCase> out = std::move(cases).result();
+    out.front().methods.back().to_noise = true;
+    out.front().reference = {"independent points of other seeds", found.request, subject.job};
+    out.front().reference.job.sampler = SamplerKind::Independent;
+    return out;
+}
+
 /// What makes the cases of an axis.
 struct Maker {
     bool needs_lens;
     std::vector<ChartCase> (*make)(const ResolvedScene&, const ChartSubject&, const SetUpView&);
 };
 /// In the order of ChartAxis.
-constexpr Maker kMakers[] = {{true, camera_cases},    {true, dispersion_cases},
-                             {false, spectral_cases}, {true, iris_cases},
-                             {false, sampler_cases},  {false, lights_cases},
-                             {true, targets_cases},   {true, precision_cases}};
+constexpr Maker kMakers[] = {
+    {true, camera_cases},  {true, dispersion_cases}, {false, spectral_cases},
+    {true, iris_cases},    {false, sampler_cases},   {false, lights_cases},
+    {true, targets_cases}, {true, precision_cases},  {false, noise_cases}};
 
 }  // namespace
 

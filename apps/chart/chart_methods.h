@@ -23,7 +23,8 @@ enum class ChartAxis : uint8_t {
     Sampler,
     Lights,
     Targets,
-    Precision
+    Precision,
+    Noise
 };
 
 /// In the order of a report.
@@ -36,12 +37,14 @@ inline constexpr auto kOptionNames<ChartAxis> =
                                           {"sampler", ChartAxis::Sampler},
                                           {"lights", ChartAxis::Lights},
                                           {"targets", ChartAxis::Targets},
-                                          {"precision", ChartAxis::Precision}});
+                                          {"precision", ChartAxis::Precision},
+                                          {"noise", ChartAxis::Noise}});
 
 struct ChartMethod {
     std::string name;
     SceneRequest scene;
     RenderJob job;
+    bool to_noise = false;  ///< instead of a number of samples, n of them stand for 1 / sqrt(n)
 };
 
 /// Methods compared with one reference: those of an axis, or for the iris those of one shape.

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/plan/noise_setup.h"
 #include "apps/setup/develop.h"
 #include "integrator/render/render.h"
+#include "integrator/render/render_to_noise.h"
 #include "io/image/difference.h"
 #include "io/image/picture_files.h"
 #include "io/image/symmetric_mse.h"
@@ -48,8 +50,11 @@ class MethodRenders {
         options.visible_background = setup_.view.visible_background;
         const PreparedScene& prepared = setup_.prepared;
         tracer_.emplace(*prepared.scene, *prepared.bvh, *prepared.lights, options);
+        const double start_s = at_.clock.cpu_s();
+        if (method.to_noise)
+            noise_ = noise_target(setup_, job_, options, at_.frame.size, 1, at_.executor);
+        cpu_s_.resize(seeds, at_.clock.cpu_s() - start_s);
         for (uint32_t i = 0; i < seeds; ++i) films_.push_back(new_film());
-        cpu_s_.resize(seeds, 0.);
     }
 
     /// Continues one seed's render; false where it was stopped.
@@ -66,6 +71,14 @@ class MethodRenders {
     }
 
     [[nodiscard]] uint32_t samples() const { return samples_; }
+    /// Of a pixel, on average over the seeds.
+    [[nodiscard]] uint32_t mean_samples() const {
+        double sum = 0;
+        for (const Film& film : films_) sum += double(film.taken_count());
+        const Rect& crop = at_.frame.crop;
+        return static_cast<uint32_t>(
+            std::lround(sum / double(films_.size()) / crop.width() / crop.height()));
+    }
     [[nodiscard]] uint32_t seed_count() const { return static_cast<uint32_t>(films_.size()); }
     [[nodiscard]] uint32_t seed(uint32_t i) const { return first_seed_ + i; }
     [[nodiscard]] double cpu_s(uint32_t i) const { return cpu_s_[i]; }
@@ -76,15 +89,25 @@ class MethodRenders {
 
   private:
     [[nodiscard]] Film new_film() const {
-        return {at_.frame.size, at_.frame.crop, {}, setup_.view.observer.bins()};
+        return {at_.frame.size, at_.frame.crop, {}, setup_.view.observer.bins(), noise_ != nullptr};
     }
     bool render_into(Film& film, uint32_t seed, uint32_t end, double& cpu_s) {
         RenderJob job = job_;
         job.seed = first_seed_ + seed;
         job.end_sample = end;
+        const Camera& camera = *setup_.view.camera;
         const double start_s = at_.clock.cpu_s();
-        const RenderResult result =
-            render(*tracer_, *setup_.view.camera, job, film, at_.executor, at_.monitor);
+        RenderResult result;
+        if (noise_) {
+            constexpr uint32_t kMostOfLevel = 64;  // times as many as other pictures have
+            auto level = std::make_shared<NoiseTarget>(*noise_);
+            level->noise = 1 / std::sqrt(double(end));
+            job.noise = level;
+            job.end_sample = std::max(kLeastOfCell, kMostOfLevel * end);
+            result = render_to_noise(*tracer_, camera, job, film, at_.executor, at_.monitor);
+        } else {
+            result = render(*tracer_, camera, job, film, at_.executor, at_.monitor);
+        }
         cpu_s += at_.clock.cpu_s() - start_s;
         return !result.stopped;
     }
@@ -93,6 +116,7 @@ class MethodRenders {
     RenderSetup setup_;
     const ChartContext& at_;
     uint32_t first_seed_, samples_ = 0;
+    std::shared_ptr<const NoiseTarget> noise_;  ///< empty: numbers of samples
     std::optional<PathTracer<>> tracer_;
     std::vector<Film> films_;
     std::vector<double> cpu_s_;
@@ -270,7 +294,7 @@ class CaseMeasurement {
             MethodRenders& renders = renders_[i];
             const Stopwatch turn(at_.clock);
             renders.reached(doubled(renders));
-            ChartPoint point{renders.samples(), {}};
+            ChartPoint point{renders.mean_samples(), {}};
             for (uint32_t seed = 0; seed < at_.frame.seeds; ++seed) {
                 Picture picture = renders.picture(seed);
                 ChartSeed& measured =

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdlib>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -42,9 +43,13 @@ std::string quoted(const std::string& word) {
     return out + "'";
 }
 
-// Command that renders by the plan: what was asked for, with the plan's choices in place.
+// Commands that render by the plan: what was asked for, with the plan's choices in place.
+struct Commands {
+    std::string samples;               ///< by a number of them
+    std::optional<std::string> noise;  ///< by the noise that they bring; absent: none
+};
+
 std::string command_of(RenderOrder order, const Plan& plan) {
-    order.render = carried_out(plan, std::move(order.render));
     order.render.tolerance = kUsualTolerance;  // nothing is left to choose
     order.run.quiet = false;
     order.run.outputs = {"out.exr"};
@@ -55,13 +60,26 @@ std::string command_of(RenderOrder order, const Plan& plan) {
     return command;
 }
 
+Commands commands_of(RenderOrder order, const Plan& plan) {
+    order.render = carried_out(plan, std::move(order.render));
+    Commands out{command_of(order, plan), {}};
+    // As many digits as percent() shows.
+    const double noise = std::strtod(fmt::format("{:.1e}", plan.noise).c_str(), nullptr);
+    SampleRequest& samples = order.render.samples;
+    if (!(noise > 0) || samples.range) return out;
+    samples.count.reset();
+    samples.noise = noise;
+    out.noise = command_of(std::move(order), plan);
+    return out;
+}
+
 std::string duration(double s) {
     if (s < 100) return fmt::format("{:.2g} s", s);
     if (s < 6000) return fmt::format("{:.2g} min", s / 60);
     return s < 360000 ? fmt::format("{:.2g} h", s / 3600) : fmt::format("{:.0f} days", s / 86400);
 }
 
-void print(const Plan& plan, const std::string& command) {
+void print(const Plan& plan, const Commands& commands) {
     for (const PlanLine& line : lines_of(plan))
         print_line(fmt::format("{:<10} {}: {}", line.choice, line.chosen, line.reason));
     const std::string rare = rare_text(plan);
@@ -82,10 +100,13 @@ void print(const Plan& plan, const std::string& command) {
                duration(Plan::kMostTime * plan.wall_s()),
                plan.threads == 1 ? "a thread" : fmt::format("{} threads", plan.threads),
                duration(plan.cpu_s));
-    fmt::print("{}\n", command);
+    fmt::print("{}\n", commands.samples);
+    if (commands.noise)
+        fmt::print("{:<10} each part of the picture gets as many as it needs for this noise:\n{}\n",
+                   "or", *commands.noise);
 }
 
-void print_json(const Plan& plan, const std::string& command) {
+void print_json(const Plan& plan, const Commands& commands) {
     nlohmann::ordered_json out;
     for (const PlanLine& line : lines_of(plan)) {
         nlohmann::ordered_json one{{"chosen", line.chosen}, {"reason", line.reason}};
@@ -103,7 +124,8 @@ void print_json(const Plan& plan, const std::string& command) {
     out["predicted_cpu_s"] = plan.cpu_s;
     out["predicted_wall_s"] = {Plan::kLeastTime * plan.wall_s(), plan.wall_s(),
                                Plan::kMostTime * plan.wall_s()};
-    out["command"] = command;
+    out["command"] = commands.samples;
+    out["command_to_noise"] = commands.noise ? nlohmann::ordered_json(*commands.noise) : nullptr;
     // Names of files need not be UTF-8.
     fmt::print("{}\n", out.dump(2, ' ', true, nlohmann::json::error_handler_t::replace));
 }
@@ -121,8 +143,8 @@ void plan_command(PlanOptions& o) {
                   executor, [&](const std::string& text) {
                       if (!order.run.quiet) print_notice(text);
                   });
-    const std::string command = command_of(order, plan);
-    o.json ? print_json(plan, command) : print(plan, command);
+    const Commands commands = commands_of(order, plan);
+    o.json ? print_json(plan, commands) : print(plan, commands);
 }
 
 }  // namespace

@@ -294,7 +294,7 @@ TEST(PlanWords, LampsAreInMillimetresAndSpotsOfTheSkyInDegrees) {
     EXPECT_EQ(warning_of({}), std::nullopt);
 }
 
-// The last line is a command; what it writes is about the tolerance off a long one.
+// The last lines are commands; what they write is about the tolerance off a long render.
 TEST_F(Plans, TheCommandRenders) {
     const Words options = {"--fstop", "2", "--focus", "1.5", "--size", "32x18"};
     scene_ = kOrnaments;
@@ -305,26 +305,32 @@ TEST_F(Plans, TheCommandRenders) {
     std::istringstream lines(run.out);
     std::vector<std::string> all;
     for (std::string line; std::getline(lines, line);) all.push_back(line);
-    const Words starts{"camera ",  "spectral ", "dispersion ", "precision ", "lights ",
-                       "samples ", "targets ",  "error ",      "time ",      "petzval render "};
+    const Words starts{"camera ", "spectral ",       "dispersion ", "precision ",
+                       "lights ", "samples ",        "targets ",    "error ",
+                       "time ",   "petzval render ", "or ",         "petzval render "};
     ASSERT_EQ(all.size(), starts.size()) << run.out;
     for (size_t i = 0; i < all.size(); ++i) EXPECT_TRUE(all[i].starts_with(starts[i])) << all[i];
-    std::istringstream command(all.back());
-    Words parts;
-    for (std::string word; command >> word;) parts.push_back(word);
-    ASSERT_EQ(parts[0], "petzval");
-    ASSERT_EQ(parts.back(), "out.exr");
-    parts.erase(parts.begin());
-    parts.back() = path("out.exr");
-    parts.emplace_back("--quiet");
-    const Finished rendered = run_petzval(parts);
-    ASSERT_EQ(rendered.exit_code, 0) << rendered.err;
     Words long_render = options;
     long_render.insert(long_render.end(), {"--spp", "4096"});
     const Picture reference = render(long_render, "reference.exr");
-    const double mse = *compare(read_picture(path("out.exr")), reference).front().symmetric_mse;
-    EXPECT_LT(std::sqrt(mse), 1.25 * 0.08) << "one picture, and what is predicted is the mean";
-    EXPECT_GT(std::sqrt(mse), 0.08 / 3);
+    for (const size_t line : {starts.size() - 3, starts.size() - 1}) {
+        std::istringstream command(all[line]);
+        Words parts;
+        for (std::string word; command >> word;) parts.push_back(word);
+        ASSERT_EQ(parts[0], "petzval");
+        ASSERT_EQ(parts.back(), "out.exr");
+        parts.erase(parts.begin());
+        parts.back() = path("out.exr");
+        parts.emplace_back("--quiet");
+        const Finished rendered = run_petzval(parts);
+        EXPECT_THAT(rendered.exit_code, testing::AnyOf(0, 5)) << rendered.err;
+        const auto layers = compare(read_picture(path("out.exr")), reference);
+        const auto rgb = std::ranges::find(layers, "RGB", &LayerDifference::layer);
+        ASSERT_NE(rgb, layers.end());
+        const double mse = *rgb->symmetric_mse;
+        EXPECT_LT(std::sqrt(mse), 1.25 * 0.08) << "one picture, and what is predicted is the mean";
+        EXPECT_GT(std::sqrt(mse), 0.08 / 4) << "a part of the picture may need more than others";
+    }
 }
 
 TEST_F(Plans, NeedlessOptionsAreLeftOutOfTheCommandAndOddWordsQuoted) {

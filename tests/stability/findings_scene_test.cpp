@@ -131,6 +131,18 @@ TEST_F(Findings, DefocusedHighlights) {
     expect_where("1 1 1.4 0.321 99 0.0285 999 0.00907 2.82", {.relative = 0.08});
 }
 
+TEST_F(Findings, RenderedNoise) {
+    take(rendered_noise());
+    for (size_t i = 0; i < rows(); ++i) {
+        const double chance = value(i, "share of paths"), samples = value(i, "samples");
+        // Without the lamp 16 samples are enough, with all of it 1.083 / 0.1^2, less its light.
+        EXPECT_GE(samples, 16) << i;
+        EXPECT_LT(samples, 400) << i;
+        if (chance > 0.02) EXPECT_EQ(value(i, "too noisy"), 0) << i;
+        if (chance < 2e-6) EXPECT_GT(value(i, "too noisy"), 90) << i;
+    }
+}
+
 TEST_F(Findings, PlannedNoise) {
     take(planned_noise());
     for (size_t i = 0; i < rows(); ++i) {

@@ -107,6 +107,7 @@ class Draws {
 [[nodiscard]] Finding rays_to_targets();
 [[nodiscard]] Finding search_for_targets();
 [[nodiscard]] Finding planned_noise();
+[[nodiscard]] Finding rendered_noise();
 [[nodiscard]] Finding chains_of_glass();
 [[nodiscard]] Finding nested_volumes();
 [[nodiscard]] Finding stacks_of_cards();
@@ -141,6 +142,7 @@ inline constexpr Sweep kSweeps[] = {
     {"rays-to-targets", rays_to_targets},
     {"search-for-targets", search_for_targets},
     {"planned-noise", planned_noise},
+    {"rendered-noise", rendered_noise},
     {"chains-of-glass", chains_of_glass},
     {"nested-volumes", nested_volumes},
     {"stacks-of-cards", stacks_of_cards},

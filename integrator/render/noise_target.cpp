@@ -14,16 +14,6 @@ double may_be(double variance, double paths) {
     return variance > 0 ? variance * std::sqrt(std::max(1., kKnownPaths / paths)) : 0;
 }
 
-/// 1 / (mean^2 + floor^2) from the means of two parts. A bright sample in one of them must not hide
-/// the error that it makes: where they differ much the darker one counts, else their mean.
-double inverse_scale(double a, double b, double floor2) {
-    constexpr double kFar = 4;  // a difference of a quarter of the darker one is half far
-    const double low = std::max(0., std::min(a, b)), apart = std::max(0., std::max(a, b) - low),
-                 mean = apart > 0 ? low + apart / 2 * low / (low + kFar * apart) : low,
-                 scale = mean * mean + floor2;
-    return scale > 0 ? 1 / scale : 0;
-}
-
 double square(double a) {
     return a * a;
 }
@@ -33,14 +23,22 @@ struct PixelNoise {
     double early = 0, late = 0, last = 0, largest = 0;
 };
 
+/// Mean of the samples but the brightest one, over that of all: a bright sample must not hide the
+/// error that it makes.
+double share_of_others(const FilmBlocks::Parts& parts, double taken) {
+    const double mean = std::max({parts.all.x, parts.all.y, parts.all.z}), sum = mean * taken;
+    if (!(sum > 0)) return 1;
+    return std::clamp((1 - double(parts.largest) / sum) * taken / (taken - 1), 0., 1.);
+}
+
 PixelNoise pixel_noise(const FilmBlocks::Parts& parts, uint32_t taken, double floor2) {
     PixelNoise out;
     const auto& m = parts.means;
-    const double n = std::bit_floor(taken), share = n / 2 / taken;
+    const double n = std::bit_floor(taken), others = share_of_others(parts, taken);
     for (int c = 0; c < 3; ++c) {
         const double all = double(parts.all[c]), power = double(m[0][c]), half = double(m[1][c]),
-                     quarter = double(m[2][c]),
-                     scale = inverse_scale(half, (all - share * half) / (1 - share), floor2) / 3,
+                     quarter = double(m[2][c]), scale2 = square(all * others) + floor2,
+                     scale = scale2 > 0 ? 1 / scale2 / 3 : 0,
                      path = std::max(0., double(parts.largest) - all) / n;
         out.early += square(half - quarter) * scale;
         out.late += square(power - half) * scale;
@@ -233,40 +231,33 @@ NoiseReport noise_report(const Film& film, const NoiseTarget& target, uint32_t m
 
 namespace {
 
-/// Growths of a picture by the number of samples: medians over its sets, by the noise that they
-/// have, which a few bright samples do not change. What a single set may believe would make a
-/// picture noisier than it is.
+/// Growths of a picture by the number of samples, from all its sets together. What a single set may
+/// believe would make a picture noisier than it is.
 class Growths {
   public:
     explicit Growths(const std::vector<CellNoise>& cells) {
-        std::array<std::vector<std::pair<double, double>>, kLevels> growths;
         for (const CellNoise& cell : cells)
-            for (const SetNoise& set : cell.sets)
-                if (set.taken >= kLeastOfCell && set.late > 0)
-                    growths[level_of(set)].emplace_back(set.early / set.late, set.late);
-        for (size_t level = 0; level < kLevels; ++level)
-            if (growths[level].size() >= kEnough) medians_[level] = median(growths[level]);
+            for (const SetNoise& set : cell.sets) {
+                if (set.taken < kLeastOfCell || !(set.pixels > 0)) continue;
+                Level& level = levels_[level_of(set)];
+                level.early += set.early, level.late += set.late;
+                level.squares += set.late * set.late / set.pixels;
+            }
     }
     [[nodiscard]] double of(const SetNoise& set) const {
-        const double median = medians_[level_of(set)];
-        return median > 0 ? growth_of(median, 1) : set.growth();
+        const Level& level = levels_[level_of(set)];
+        const double pixels = level.squares > 0 ? level.late * level.late / level.squares : 0;
+        return growth_of(believed(pixels) * level.early, level.late);
     }
 
   private:
-    static constexpr size_t kLevels = 33, kEnough = 8;
+    struct Level {
+        double early = 0, late = 0, squares = 0;
+    };
     [[nodiscard]] static size_t level_of(const SetNoise& set) {
         return static_cast<size_t>(std::bit_width(set.taken));
     }
-    /// Of values with weights.
-    [[nodiscard]] static double median(std::vector<std::pair<double, double>>& values) {
-        std::sort(values.begin(), values.end());
-        double all = 0, below = 0;
-        for (const auto& [value, weight] : values) all += weight;
-        for (const auto& [value, weight] : values)
-            if (below += weight; below >= all / 2) return value;
-        return 0;
-    }
-    std::array<double, kLevels> medians_{};
+    std::array<Level, 33> levels_{};
 };
 
 }  // namespace

@@ -89,7 +89,7 @@ def measure(program, name, arguments, options, folder):
     each = 2 ** math.ceil(math.log2(min(MOST, max(8, 10 * samples / REFERENCES))))
     fixed = lambda seed, count: of_fixed_samples(program, name, arguments, seed, folder, [*size, "--spp", str(count)], options.keep)
     others = [fixed(1000 + k, each)[0] for k in range(REFERENCES)]
-    truth = Truth(others, runs[0][2]["floor_nits"])
+    truth = Truth(others, runs[0][2]["floor_nits"] or 1e-30)  # black: none is stated
     whole = [root(truth.squares(run[0]).mean()) for run in runs]
     cells = numpy.array([by_cell(truth.squares(run[0])) for run in runs])
     # Over the seeds: of one seed the squares of a cell alone are noisy.

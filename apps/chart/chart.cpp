@@ -12,7 +12,7 @@
 #include "apps/setup/input_files.h"
 #include "apps/setup/memory.h"
 #include "apps/setup/spectral_wording.h"
-#include "integrator/render/noise_target.h"
+#include "integrator/render/noise_cells.h"
 #include "io/base/error.h"
 #include "io/file/atomic_file.h"
 #include "io/file/rescue.h"
@@ -68,8 +68,7 @@ void refuse_overwriting_in(const fs::path& folder, const std::vector<NamedFile>&
 
 /// A noise is that of whole cells.
 void leave_out_part_cells(ChartCase& of, const ChartFrame& frame) {
-    NoiseTarget cells;
-    cells.frame_px = frame.size;
+    const NoiseCells cells{frame.size};
     if (of.axis != ChartAxis::Noise || cells.whole_cells(frame.crop) == frame.crop) return;
     of.methods.clear();
     of.remarks.push_back(as_options("Left out: ⟨crop⟩ is not of whole cells of a noise; I/N is"));

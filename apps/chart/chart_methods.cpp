@@ -58,8 +58,8 @@ class Cases {
         camera.film_distance_mm = std::nullopt;
         return request;
     }
-    void add(std::string name, const SceneRequest& base, const Change& change) {
-        case_.methods.push_back(made(std::move(name), base, change));
+    ChartMethod& add(std::string name, const SceneRequest& base, const Change& change) {
+        return case_.methods.emplace_back(made(std::move(name), base, change));
     }
     void reference(std::string name, const SceneRequest& base, const Change& change) {
         case_.reference = made(std::move(name), base, change);
@@ -310,12 +310,9 @@ std::vector<ChartCase> noise_cases(const ResolvedScene& found, const ChartSubjec
                 "as many samples of each pixel, or as each part of the frame needs");
     const auto as_it_is = [](SceneRequest&, RenderJob&) {};
     cases.add("samples", found.request, as_it_is);
-    cases.add("noise", found.request, as_it_is);
-    std::vector<ChartCase> out = std::move(cases).result();
-    out.front().methods.back().to_noise = true;
-    out.front().reference = {"independent points of other seeds", found.request, subject.job};
-    out.front().reference.job.sampler = SamplerKind::Independent;
-    return out;
+    cases.add("noise", found.request, as_it_is).to_noise = true;
+    cases.independent_reference("the same number of samples", found.request, as_it_is);
+    return std::move(cases).result();
 }
 
 /// What makes the cases of an axis.

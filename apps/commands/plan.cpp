@@ -43,12 +43,13 @@ std::string quoted(const std::string& word) {
     return out + "'";
 }
 
-// Commands that render by the plan: what was asked for, with the plan's choices in place.
+// Commands that render by the plan.
 struct Commands {
     std::string samples;               ///< by a number of them
     std::optional<std::string> noise;  ///< by the noise that they bring; absent: none
 };
 
+// Command of an order that has the plan's choices in place.
 std::string command_of(RenderOrder order, const Plan& plan) {
     order.render.tolerance = kUsualTolerance;  // nothing is left to choose
     order.run.quiet = false;

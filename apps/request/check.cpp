@@ -33,21 +33,15 @@ void check_moment(const MomentRequest& moment, ExposureMode mode) {
         refuse("⟨shutter-curve⟩", "needs ⟨shutter⟩");
 }
 
-NoiseTarget cells_of(V2i frame_px) {
-    NoiseTarget out;
-    out.frame_px = frame_px;
-    return out;
-}
-
 void check_crop(const Crop& crop, V2i frame_px, bool to_noise) {
-    const NoiseTarget frame = cells_of(frame_px);
+    const NoiseCells frame{frame_px};
     if (const auto* band = std::get_if<FrameBand>(&crop)) {
         if (const int most = frame.cells().y; band->of > most)
             refuse("⟨crop⟩",
                    fmt::format("{}/{} asks for {} bands; the number of bands of {} rows is at most "
                                "{}, as each has {} or a little more",
                                band->part, band->of, band->of, frame_px.y, most,
-                               NoiseTarget::kCell_px));
+                               NoiseCells::kCell_px));
         return;
     }
     const Rect rect = std::get<Rect>(crop);
@@ -55,7 +49,7 @@ void check_crop(const Crop& crop, V2i frame_px, bool to_noise) {
     if (const Rect whole = frame.whole_cells(rect); to_noise && whole != rect)
         refuse("⟨crop⟩", fmt::format("with ⟨noise⟩ is of whole cells of {0}x{0} pixels or a "
                                      "little more: {1},{2},{3},{4} holds it",
-                                     NoiseTarget::kCell_px, whole.x0, whole.y0, whole.width(),
+                                     NoiseCells::kCell_px, whole.x0, whole.y0, whole.width(),
                                      whole.height()));
 }
 
@@ -80,7 +74,7 @@ Rect pixels_of(const std::optional<Crop>& crop, V2i frame_px) {
     if (!crop) return {0, 0, frame_px.x, frame_px.y};
     if (const Rect* rect = std::get_if<Rect>(&*crop)) return *rect;
     const auto [part, of] = std::get<FrameBand>(*crop);
-    const NoiseTarget frame = cells_of(frame_px);
+    const NoiseCells frame{frame_px};
     const int rows = frame.cells().y;
     return {0, frame.cell(0, rows * (part - 1) / of).y0, frame_px.x,
             frame.cell(0, rows * part / of - 1).y1};

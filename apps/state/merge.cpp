@@ -129,10 +129,10 @@ MergedState merge_states(const std::vector<fs::path>& files) {
                 throw InputError(
                     file.string(), "",
                     "was rendered to a noise of {}, and {} to one of {}; petzval "
-                    "resume STATE ⟨noise⟩ {} brings the other one to the same",
+                    "resume STATE ⟨noise⟩ {:.3g}% brings the other one to the same",
                     percent(record.facts.noise->noise), first.name,
                     percent(sum->facts.noise->noise),
-                    percent(std::min(record.facts.noise->noise, sum->facts.noise->noise)));
+                    100 * std::min(record.facts.noise->noise, sum->facts.noise->noise));
             sum->figures += record.figures;
         }
         parts.push_back({header.shape.crop, header.samples});

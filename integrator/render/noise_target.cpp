@@ -8,8 +8,8 @@
 namespace petzval {
 namespace {
 
-/// Variance that may be there where an estimate hangs on few paths: on one four times as much. If
-/// there were as many paths as that says, so few would be met in one of ten cells (Poisson).
+/// Variance that may be there where an estimate hangs on few paths: on one four times as much.
+/// Where that is so, only one path is met in 9 cells of 100, and 8 or fewer of 11 in 20 (Poisson).
 double may_be(double variance, double paths) {
     return variance > 0 ? variance * std::sqrt(std::max(1., kKnownPaths / paths)) : 0;
 }
@@ -48,46 +48,12 @@ PixelNoise pixel_noise(const FilmBlocks::Parts& parts, uint32_t taken, double fl
     return out;
 }
 
-/// Cell of a pixel along a side: edges lie at side * i / cells.
-int cell_at(int px, int side_px, int cells) {
-    return static_cast<int>((int64_t{px} * cells + cells - 1) / side_px);
-}
-
-}  // namespace
-
-V2i NoiseTarget::cells() const {
-    return {std::max(1, frame_px.x / kCell_px), std::max(1, frame_px.y / kCell_px)};
-}
-
-Rect NoiseTarget::cell(int i, int j) const {
-    const V2i n = cells();
-    return {frame_px.x * i / n.x, frame_px.y * j / n.y, frame_px.x * (i + 1) / n.x,
-            frame_px.y * (j + 1) / n.y};
-}
-
-Rect NoiseTarget::cells_of(const Rect& crop) const {
-    const V2i n = cells();
-    Rect out{cell_at(crop.x0, frame_px.x, n.x), cell_at(crop.y0, frame_px.y, n.y), 0, 0};
-    // A cell holds a pixel if it begins at it or before.
-    while (out.x0 > 0 && cell(out.x0, 0).x0 > crop.x0) --out.x0;
-    while (out.y0 > 0 && cell(0, out.y0).y0 > crop.y0) --out.y0;
-    out.x1 = out.x0 + 1, out.y1 = out.y0 + 1;
-    while (out.x1 < n.x && cell(out.x1, 0).x0 < crop.x1) ++out.x1;
-    while (out.y1 < n.y && cell(0, out.y1).y0 < crop.y1) ++out.y1;
-    return out;
-}
-
-Rect NoiseTarget::whole_cells(const Rect& crop) const {
-    const Rect n = cells_of(crop), first = cell(n.x0, n.y0), last = cell(n.x1 - 1, n.y1 - 1);
-    return {first.x0, first.y0, last.x1, last.y1};
-}
-
 // With errors that fall as n^-p the squared difference of a half and all is 2^p - 1 times the
-// variance of all: (Owen 1997) p is 1 for independent samples, and more for well spread ones.
-namespace {
+// variance of all: p is 1 for independent samples, and more for well spread ones (Owen 1997,
+// "Scrambled net variance for integrals of smooth functions").
 
 /// 2^p, from the squares of differences after n and after n / 2 samples; p is at most 3, which
-/// smooth light has (Owen 1997).
+/// smooth light has.
 double growth_of(double early, double late) {
     return late > 0 ? std::clamp(early / late, 2., 8.) : 2.;
 }

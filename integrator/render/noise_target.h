@@ -10,26 +10,17 @@
 #include <vector>
 
 #include "core/film/film.h"
+#include "integrator/render/noise_cells.h"
 
 namespace petzval {
 
 /// Noise to reach, for the cells of a full frame. The noise of a cell is the root of the mean, over
 /// its pixels and R, G and B, of variance / (mean^2 + floor^2).
-struct NoiseTarget {
-    double noise = 0;       ///< above 0
-    double floor_nits = 0;  ///< above 0, or all is black
-    V2i frame_px{0, 0};
+struct NoiseTarget : NoiseCells {
+    double noise = 0;             ///< above 0
+    double floor_nits = 0;        ///< above 0, or all is black
     std::vector<uint32_t> least;  ///< samples of each pixel that a cell takes; empty: none
 
-    static constexpr int kCell_px = 16;
-
-    /// Number of cells along each side; a frame smaller than a cell is one.
-    [[nodiscard]] V2i cells() const;
-    [[nodiscard]] Rect cell(int i, int j) const;
-    /// Numbers of the cells of a crop, which must be of whole cells: first.x .. last.x - 1, ...
-    [[nodiscard]] Rect cells_of(const Rect& crop) const;
-    /// The smallest crop of whole cells that holds another.
-    [[nodiscard]] Rect whole_cells(const Rect& crop) const;
     [[nodiscard]] uint32_t least_of(int i, int j) const {
         return least.empty() ? 0 : least[static_cast<size_t>(j * cells().x + i)];
     }
@@ -52,8 +43,7 @@ inline constexpr uint32_t kStepsOfCell = 8;
 /// What the pixels of one set of a cell say.
 struct SetNoise {
     uint32_t taken = 0;  ///< samples of each pixel
-    uint32_t begun =
-        0;  ///< samples that a pixel has; more than `taken` in a step that is cut short
+    uint32_t begun = 0;  ///< most samples of a pixel: above `taken` in a step that is cut short
     /// Mean relative squares of differences, for the largest power of two P of samples: of the
     /// first P / 4 and P / 2; of the first P / 2 and P; and of the first P and all.
     double early = 0, late = 0, last = 0;

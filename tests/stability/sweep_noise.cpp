@@ -15,8 +15,8 @@ namespace {
 constexpr int kCells = 100, kSide_px = 16;
 constexpr double kNoise = 0.1, kMuch = 1.25;
 
-/// Light between 0.5 and 1.5, and a lamp that one path of 1 / chance meets. The lamp adds as much
-/// variance as one sample has mean, whatever its chance.
+/// Light between 0.5 and 1.5, and a lamp that one path of 1 / chance meets. The variance that the
+/// lamp adds to a sample is 1, whatever its chance.
 struct RareLamp {
     double chance;
 
@@ -73,11 +73,10 @@ Finding rendered_noise() {
               .fails = "variance, unknown to the render"};
     f.sweep = fmt::format(
         "A cell of {0} x {0} pixels that is rendered to a noise of {1}, with {2} seeds: even "
-        "light, "
-        "and a lamp that a share of the paths meets. The rarer, the brighter: the variance of a "
+        "light, and a lamp that a share of the paths meets. The rarer, the brighter: the variance "
+        "of a "
         "sample stays. The share of the cells that say \"at least\"; the share of those that do "
-        "not, "
-        "whose true noise is above {3} times the target; and the mean of the samples.",
+        "not, whose true noise is above {3} times the target; and the mean of the samples.",
         kSide_px, percent(kNoise), kCells, number(kMuch));
     f.table.columns = {"share of paths", "at least", "too noisy", "samples"};
     std::optional<double> often;
@@ -91,8 +90,7 @@ Finding rendered_noise() {
     }
     f.where = fmt::format(
         "Where a share of {} of the paths meets a lamp, or less, more than 5 % of the cells are "
-        "noisier "
-        "than they say: {} paths of a cell meet it there",
+        "noisier than they say: {} paths of a cell meet it there",
         number(often), number(met));
     f.instead =
         "A cell on which the light of a lamp lands by camera rays takes so many samples that 16 "

@@ -5,10 +5,10 @@
 #
 #   SCENE=room.glb OUT=out/room SPP=4096 PARTS=16 bash submit_ranges.sh --size 1920x1080 --fstop 2
 #
-# With NOISE=2% instead of SPP each task renders a band of the picture until each part of it has at
-# most that noise. The words at the end are options of `petzval render`. The same line again goes on where it was:
-# finished states are kept, others are resumed. Delete $OUT.parts before you render something else
-# under the same name. All nodes must see the folder of the states.
+# With NOISE=2% each task renders a band of the picture until each part of it has at most that noise,
+# or SPP samples. The words at the end are options of `petzval render`. The same line again goes on
+# where it was: finished states are kept, others are resumed. Delete $OUT.parts before you render
+# something else under the same name. All nodes must see the folder of the states.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 

@@ -98,7 +98,7 @@ TEST_F(CliNoise, BandsMergeToTheBytesOfOneRun) {
                 testing::AnyOf(0, 5));
     const Finished unlike = run_petzval(merge);
     EXPECT_EQ(unlike.exit_code, 1);
-    EXPECT_THAT(unlike.err, HasSubstr("brings the other one to the same"));
+    EXPECT_THAT(unlike.err, HasSubstr("STATE --noise 5% brings the other one to the same"));
 }
 
 TEST_F(CliNoise, GoesOnToALowerOne) {

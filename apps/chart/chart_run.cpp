@@ -89,7 +89,11 @@ class MethodRenders {
 
   private:
     [[nodiscard]] Film new_film() const {
-        return {at_.frame.size, at_.frame.crop, {}, setup_.view.observer.bins(), noise_ != nullptr};
+        return {at_.frame.size,
+                at_.frame.crop,
+                {},
+                setup_.view.observer.bins(),
+                {.blocks = noise_ != nullptr}};
     }
     bool render_into(Film& film, uint32_t seed, uint32_t end, double& cpu_s) {
         RenderJob job = job_;

@@ -51,12 +51,11 @@ std::string without_value(const std::string& option) {
 struct ForeignWord {
     std::string_view word, option, value;
 };
-constexpr std::array<ForeignWord, 13> kForeign{
+constexpr std::array<ForeignWord, 12> kForeign{
     {{"samples", "--spp", "NUMBER"},
      {"width", "--size", "WIDTHxHEIGHT"},
      {"height", "--size", "WIDTHxHEIGHT"},
      {"resolution", "--size", "WIDTHxHEIGHT"},
-     {"denois", "--aov", "albedo,normal, which a denoiser of another program needs"},
      {"bounce", "--method", "max-depth=NUMBER"},
      {"hdri", "--env", "FILE"},
      {"tonemap", "--view", "NAME"},

@@ -121,7 +121,7 @@ std::string progress_line(const ProgressFigures& f, int columns, ProgressBar wit
 
 std::string phase_line(Phase phase, double elapsed_s, int columns) {
     constexpr std::array<const char*, static_cast<size_t>(Phase::Count)> kTexts{
-        "loading", "building the BVH", "choosing settings", "rendering", "writing"};
+        "loading", "building the BVH", "choosing settings", "rendering", "denoising", "writing"};
     return cut(fmt::format("{}  {}", kTexts[static_cast<size_t>(phase)], duration_text(elapsed_s)),
                columns);
 }

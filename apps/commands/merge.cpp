@@ -44,8 +44,10 @@ void check_display(const RunRecord& record) {
 
 int merge(const MergeOptions& o, Session& session) {
     check_files(o);
-    const MergedState merged = merge_states(o.states);
+    MergedState merged = merge_states(o.states);
     const Film& film = merged.film;
+    // Of a render until an error was reached a state has the most samples that there might be.
+    if (film.keeps().halves) merged.samples.end = merged.samples.first + film.taken_range().least;
     check_display(merged.record);
     std::vector<fs::path> pictures, states;
     for (const fs::path& output : o.outputs)
@@ -53,9 +55,17 @@ int merge(const MergeOptions& o, Session& session) {
     const auto notice = [&](const std::string& text) { session.console.notice(text); };
     const auto noise = reached_noise(merged.record.facts, film, merged.samples);
     if (noise) notice(text_of(*noise, merged.record.facts.noise->noise));
-    std::vector<WriteOutcome> outcomes =
-        write_pictures(pictures, merged.record.display,
-                       {film, merged.samples, merged.record.facts, noise}, false, session.console);
+    std::shared_ptr<const DenoisedFilm> denoised;
+    if (film.keeps().halves) {
+        TbbExecutor executor(threads_of(RunRequest{}));
+        session.interrupt.arm();
+        denoised = denoised_film(film, executor, session.interrupt.monitor().stop);
+        if (!denoised) return kStopped;
+        notice(text_of(*denoised));
+    }
+    std::vector<WriteOutcome> outcomes = write_pictures(
+        pictures, merged.record.display,
+        {film, merged.samples, merged.record.facts, noise, denoised}, false, session.console);
     for (const fs::path& state : states)
         outcomes.push_back(write_or_rescue(state, [&](const fs::path& to) {
             StateHeader header = header_of(merged.record, FilmShape::of(film), merged.samples);
@@ -68,7 +78,7 @@ int merge(const MergeOptions& o, Session& session) {
             report.outputs = outcomes;
             write_stats(to,
                         {film.full_size().x, film.full_size().y, merged.samples,
-                         merged.record.display.exposure_ev, film.left_out(), noise},
+                         merged.record.display.exposure_ev, film.left_out(), noise, denoised},
                         merged.record.figures, report);
         }));
     bool written = true;

@@ -96,8 +96,9 @@ void OneRender::require_memory() const {
 }
 
 ProgressGoal OneRender::goal(std::pair<int, int> part_of) const {
+    const Rect there = shape_.pixels();
     const uint64_t pixels =
-        static_cast<uint64_t>(shape_.crop.width()) * static_cast<uint64_t>(shape_.crop.height());
+        static_cast<uint64_t>(there.width()) * static_cast<uint64_t>(there.height());
     ProgressGoal goal{pixels * job_.replicates, {}, job_.time_limit_s};
     if (job_.end_sample < kMostSamples || !job_.time_limit_s)
         goal.total = pixels * samples_.count();
@@ -116,7 +117,7 @@ bool OneRender::is_there(const std::optional<Film>& film) const {
     if (pictures().empty() && !state()) return false;
     if (kept_.files().state_stays && !(film && is_complete(*film))) return false;
     std::optional<SampleRange> wanted = samples_;
-    if (job_.time_limit_s) wanted.reset();
+    if (job_.time_limit_s || job_.denoised_error) wanted.reset();
     return std::ranges::all_of(pictures(), [&](const fs::path& output) {
         return is_up_to_date(output, kept_.record().facts, shape_, wanted);
     });
@@ -145,14 +146,20 @@ RenderResult OneRender::render(Progress& progress) {
                        kept_.write(*state(), film, figures_now(stats, render_->threads()),
                                    samples_);
                    },
-                   run.preview, display(), notice_},
-                  monitor, film);
+                   run.preview, [&] { return render_->look(monitor); }, display(), notice_},
+                  monitor);
     progress.begin(Phase::Rendering);
-    const RenderResult result =
-        render_->render(monitor, {[&](const PathStats& stats) { keeper.at_pause(stats); },
-                                  kept_.record().figures.render_wall_s, run.stats.has_value()});
+    bool rendering = true;
+    const auto next_phase = [&](Phase phase) {
+        progress.end_rendering(true);
+        rendering = false;
+        progress.begin(phase);
+    };
+    const RenderResult result = render_->render(
+        monitor, {[&](const PathStats& stats) { keeper.at_pause(stats); },
+                  kept_.record().figures.render_wall_s, run.stats.has_value(), next_phase});
     keeper.finish();
-    progress.end_rendering(!result.stopped);
+    if (rendering) progress.end_rendering(!result.stopped);
     return result;
 }
 
@@ -186,7 +193,7 @@ void OneRender::write_state(const RenderResult& result, const RunFigures& figure
                             std::vector<WriteOutcome>& outcomes) {
     const auto& state = kept_.files().state;
     if (!state || !(result.stopped || kept_.files().state_stays)) return;
-    const bool partial = result.stopped || render_->film().has_blocks();
+    const bool partial = result.stopped || render_->film().has_blocks() || job_.denoised_error;
     const SampleRange wanted{samples_.first, partial ? samples_.end : result.end_sample};
     const WriteOutcome& one =
         outcomes.emplace_back(write_or_rescue(*state, [&](const fs::path& to) {
@@ -203,7 +210,8 @@ bool OneRender::write_statistics(RunFigures figures, SampleRange taken, const Ru
     figures += kept_.record().figures;
     const StatsPicture picture{
         shape_.full_size.x,       shape_.full_size.y,         taken,
-        setup().from.exposure_ev, render_->film().left_out(), render_->noise(render_->film())};
+        setup().from.exposure_ev, render_->film().left_out(), render_->noise(render_->film()),
+        render_->denoised()};
     const WriteOutcome stats = write_or_rescue(
         *order_.run.stats, [&](const fs::path& to) { write_stats(to, picture, figures, report); });
     if (!stats.written()) session_.console.error(stats.message());
@@ -220,15 +228,17 @@ int OneRender::write_all(const RenderResult& result, Progress& progress,
     write_state(result, figures, outcomes);
     const SampleRange taken{samples_.first, result.end_sample};
     const std::optional<NoiseReport> noise = render_->noise(render_->film());
-    const FinishedFilm done{render_->film(), noise ? samples_ : taken, kept_.record().facts, noise};
+    const FinishedFilm done{render_->film(), noise ? samples_ : taken, kept_.record().facts, noise,
+                            render_->denoised()};
     if (noise) notice_(text_of(*noise, *order_.render.samples.noise));
+    if (const auto& denoised = render_->denoised()) notice_(text_of(*denoised));
     for (WriteOutcome& one : write_pictures(pictures(), display(), done, stopped, session_.console))
         outcomes.push_back(std::move(one));
     bool written = std::all_of(outcomes.begin(), outcomes.end(),
                                [](const WriteOutcome& one) { return one.written(); });
     // Else the state is all that is left.
     if (!stopped && written) kept_.remove_unfinished(pictures());
-    if (!stopped && place.show) show(develop(render_->film(), taken, {}), place);
+    if (!stopped && place.show) place.show(render_->shown(), display());
     if (!stopped) advise_exposure();
     if (order_.run.stats)
         written =
@@ -236,10 +246,13 @@ int OneRender::write_all(const RenderResult& result, Progress& progress,
             written;
     if (!written) return kOutputFailed;
     if (stopped) return kStopped;
-    return noise && noise->left > 0 ? kNoiseLeft : kSuccess;
+    const bool left = noise && noise->left > 0;
+    const bool error_left =
+        job_.denoised_error && render_->denoised()->error.most() > *job_.denoised_error;
+    return left || error_left ? kNoiseLeft : kSuccess;
 }
 
-// Shows light through the view that was asked for.
+// Shows a picture of light through the view that was asked for.
 void OneRender::show(const PictureRows& light, const SequencePlace& place) const {
     const DisplayOptions& d = display();
     place.show(to_display(light, d.exposure_ev, d.view, AlphaUse::Keep, d.config), d);

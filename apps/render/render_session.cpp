@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -62,8 +63,11 @@ RenderSetup set_up(const PlanRequest& request, TbbExecutor& executor, const Noti
 
 FilmShape shape_of(const RenderRequest& request) {
     const V2i size = request.scene.size;
-    return {size, pixels_of(request.crop, size), request.layers, request.scene.spectral.bins,
-            request.samples.noise.has_value()};
+    return {size,
+            pixels_of(request.crop, size),
+            request.layers,
+            request.scene.spectral.bins,
+            {request.samples.noise.has_value() && !request.denoise, request.denoise}};
 }
 
 RenderSession::RenderSession(int threads, Frames frames) : executor_(threads) {
@@ -75,6 +79,7 @@ void RenderSession::prepare(const RenderRequest& asked, const Notice& notice,
                             const PhaseSink& begins) {
     flush_denormals();
     next_.reset();
+    denoised_.reset();
     std::optional<Film> film = std::exchange(film_, std::nullopt);
     const RenderFacts facts = std::exchange(facts_, {});
     const FilmShape shape = std::exchange(shape_, {});
@@ -105,7 +110,7 @@ void RenderSession::prepare(const RenderRequest& asked, const Notice& notice,
         job_.velocity = next_->velocity.get();
         setup_.from.metadata.emplace_back("petzval:fps", fmt::format("{}", fps));
     }
-    if (asked.samples.noise)
+    if (asked.samples.noise && !asked.denoise)
         job_.noise =
             noise_target(setup_, job_, path_, scene_.size, *asked.samples.noise, executor_);
     facts_ = facts_of(setup_, job_, path_, display_);
@@ -173,8 +178,72 @@ RenderResult RenderSession::render(RenderMonitor& monitor, const RenderRun& run)
     job.at_pause = run.at_pause;
     job.timing = run.timing;
     const Camera& camera = *setup_.view.camera;
-    return job.noise ? render_to_noise(tracer, camera, job, *film_, executor_, monitor)
-                     : petzval::render(tracer, camera, job, *film_, executor_, monitor);
+    denoised_.reset();
+    if (job.noise) return render_to_noise(tracer, camera, job, *film_, executor_, monitor);
+    const auto all = [&](const RenderJob& part) {
+        return petzval::render(tracer, camera, part, *film_, executor_, monitor);
+    };
+    if (job.denoised_error) return render_to_denoised(job, all, monitor);
+    RenderResult result = all(job);
+    if (film_->keeps().halves && !result.stopped) {
+        if (run.begins) run.begins(Phase::Denoising);
+        denoised_ = denoised_film(*film_, executor_, monitor.stop);
+        result.stopped = !denoised_;
+    }
+    return result;
+}
+
+// The counts of samples are 16, 24, 32, 48 and so on, so that a stop and its resumption, and other
+// times, end where one run ends.
+RenderResult RenderSession::render_to_denoised(
+    RenderJob job, const std::function<RenderResult(const RenderJob&)>& render_all,
+    RenderMonitor& monitor) {
+    const double start_s = job.wall_s(), target = *job.denoised_error;
+    const std::optional<double> limit_s = job.time_limit_s;
+    const uint32_t most = job.end_sample;
+    const auto at_pause = job.at_pause;
+    RenderResult all;
+    if (at_pause)
+        job.at_pause = [&](const PathStats& stats) {
+            PathStats sum = all.stats;
+            sum += stats;
+            at_pause(sum);
+        };
+    for (uint32_t taken = film_->taken_range().most;;) {
+        uint32_t next = kLeastOfCell;
+        while (next < taken) next += std::bit_floor(next) / 2;
+        job.end_sample = std::min(next, most);
+        if (limit_s) job.time_limit_s = *limit_s - (job.wall_s() - start_s);
+        const RenderResult part = render_all(job);
+        all.stats += part.stats;
+        all.workers = std::max(all.workers, part.workers);
+        all.end_sample = part.end_sample;
+        all.stopped = part.stopped;
+        if (!all.stopped) denoised_ = denoised_film(*film_, executor_, monitor.stop);
+        all.stopped = !denoised_;
+        if (all.stopped) return all;
+        const DenoisedError& error = denoised_->error;
+        monitor.noise = error.most();
+        const bool late = part.end_sample < job.end_sample;
+        if (error.most() <= target || late || job.end_sample == most) return all;
+        // As if the squared error fell with the samples.
+        const double expected = std::pow(error.most() / target, 2) * job.end_sample;
+        const Rect pixels = film_->pixels();
+        monitor.expected_pixel_samples = static_cast<uint64_t>(std::min(expected, double(most)) *
+                                                               pixels.width() * pixels.height());
+        denoised_.reset();
+        taken = part.end_sample + 1;
+    }
+}
+
+Picture RenderSession::look(const RenderMonitor& monitor) {
+    Picture out = colours_of(*film_, 4);
+    if (!film_->keeps().halves) return out;
+    const auto denoised = denoised_ ? denoised_ : denoised_film(*film_, executor_, monitor.stop);
+    for (size_t i = 0; denoised && i < denoised->picture.colour.size(); ++i)
+        for (size_t c = 0; c < 3; ++c)
+            out.pixels[4 * i + c] = denoised->picture.colour[i][static_cast<int>(c)];
+    return out;
 }
 
 std::optional<NoiseReport> RenderSession::noise(const Film& film) const {
@@ -195,16 +264,19 @@ SampleRange RenderSession::complete() const {
 }
 
 PictureRows RenderSession::light() const {
-    return develop(*film_, complete(), facts_.metadata);
+    return develop(*film_, complete(), facts_.metadata, denoised_);
 }
 
 PictureRows RenderSession::shown() const {
     const DisplayOptions& d = display_;
-    return to_display(light(), d.exposure_ev, d.view, AlphaUse::Keep, d.config);
+    const PictureRows rows =
+        denoised_ ? denoised_colours(*film_, complete(), {}, denoised_) : light();
+    return to_display(rows, d.exposure_ev, d.view, AlphaUse::Keep, d.config);
 }
 
 void RenderSession::write(const std::filesystem::path& file) const {
-    write_output(file, picture_for(file, {*film_, complete(), facts_, noise(*film_)}), display_);
+    write_output(file, picture_for(file, {*film_, complete(), facts_, noise(*film_), denoised_}),
+                 display_);
 }
 
 FoundExposure RenderSession::find_exposure() {

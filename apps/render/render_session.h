@@ -8,6 +8,7 @@
 
 #include "apps/plan/plan.h"
 #include "apps/request/render_request.h"
+#include "apps/setup/denoised_film.h"
 #include "apps/setup/exposure.h"
 #include "apps/setup/render_setup.h"
 #include "apps/state/render_facts.h"
@@ -30,6 +31,7 @@ struct RenderRun {
     std::function<void(const PathStats&)> at_pause{};
     double spent_s = 0;   ///< of a time limit, by runs before
     bool timing = false;  ///< measure where the time goes
+    PhaseSink begins{};   ///< gets the phases that begin
 };
 
 /// Session of renders that follow each other: what a request has in common with the one before is
@@ -72,9 +74,15 @@ class RenderSession {
     /// The samples so far.
     [[nodiscard]] const Film& film() const { return *film_; }
 
-    /// Renders the samples that the film lacks. Ends early where the monitor says stop; calling
-    /// again goes on.
+    /// Renders the samples that the film lacks, and denoises them where that is asked for. Ends
+    /// early where the monitor says stop; calling again goes on.
     RenderResult render(RenderMonitor&, const RenderRun& = {});
+
+    /// The denoised picture of all samples; empty where none is asked for, or render() was stopped.
+    [[nodiscard]] const std::shared_ptr<const DenoisedFilm>& denoised() const { return denoised_; }
+    /// The picture so far as it would be shown, R, G, B and A, denoised where that is asked for.
+    /// Also at a pause.
+    [[nodiscard]] Picture look(const RenderMonitor&);
 
     /// How a sample comes about, whether the film has it or not; its pixel lies in the full frame.
     [[nodiscard]] SampleRecord trace_sample(SampleId) const;
@@ -95,6 +103,8 @@ class RenderSession {
 
   private:
     [[nodiscard]] SampleRange complete() const;
+    [[nodiscard]] RenderResult render_to_denoised(
+        RenderJob, const std::function<RenderResult(const RenderJob&)>& render_all, RenderMonitor&);
     void choose_display(const Notice&);
     void warn_of_lamps(const Notice&) const;
 
@@ -110,6 +120,7 @@ class RenderSession {
     RenderFacts facts_;
     std::unique_ptr<NextFrame> next_;
     std::optional<Film> film_;
+    std::shared_ptr<const DenoisedFilm> denoised_;
 };
 
 }  // namespace petzval

@@ -68,6 +68,17 @@ void check_samples(const SampleRequest& samples, bool bins) {
         refuse("⟨spp⟩", fmt::format("the standard errors of ⟨bins⟩ need at least {}", kReplicates));
 }
 
+void check_denoise(const RenderRequest& request) {
+    if (request.scene.spectral.bins)
+        refuse("⟨denoise⟩", "excludes ⟨bins⟩: a film keeps no halves of spectra");
+    if (request.samples.noise && request.crop)
+        refuse("⟨crop⟩",
+               "excludes ⟨noise⟩ with ⟨denoise⟩: the error is that of the full frame; leave out "
+               "one of the three");
+    if (!request.samples.range && request.samples.count && *request.samples.count < kHalves)
+        refuse("⟨denoise⟩", "needs two halves of samples: ⟨spp⟩ 2 at least");
+}
+
 }  // namespace
 
 Rect pixels_of(const std::optional<Crop>& crop, V2i frame_px) {
@@ -88,6 +99,7 @@ void check(const RenderRequest& request) {
     check_moment(request.moment, scene.camera.exposure);
     check_samples(request.samples, scene.spectral.bins.has_value());
     if (request.crop) check_crop(*request.crop, scene.size, request.samples.noise.has_value());
+    if (request.denoise) check_denoise(request);
     if (!scene.environment && scene.environment_rotate_deg != 0)
         refuse("⟨env-rotate⟩", "needs ⟨env⟩");
     if (!scene.environment && scene.environment_strength != 1)

@@ -63,8 +63,10 @@ using Crop = std::variant<Rect, FrameBand>;
 struct SampleRequest {
     /// Absent: kUsualSamples, or as the time limit allows; with a noise the most of each pixel.
     std::optional<uint32_t> count;
-    std::optional<double> noise;       ///< of each cell (integrator/render/noise_target.h), above 0
-    std::optional<SampleRange> range;  ///< in place of a count: a part of a picture
+    /// Of each cell (integrator/render/noise_target.h), or the error of the picture that is
+    /// denoised; above 0.
+    std::optional<double> noise;
+    std::optional<SampleRange> range;    ///< in place of a count: a part of a picture
     std::optional<double> time_limit_s;  ///< ends with the samples that are under way then
     uint32_t seed = 0;
     SamplerKind sampler = SamplerKind::Owen;
@@ -92,6 +94,7 @@ struct RenderRequest {
     MomentRequest moment;
     std::optional<Crop> crop;  ///< absent: the full frame
     std::vector<Aov> layers;
+    bool denoise = false;  ///< and say how large the error is
     SampleRequest samples;
     PathOptions path;
     double tolerance = kUsualTolerance;  ///< of what is chosen for the user, above 0

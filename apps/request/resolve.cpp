@@ -97,7 +97,8 @@ RenderJob job_of(const RenderRequest& request) {
     job.clamp_nits = samples.clamp_nits;
     const float usual_radius_px = samples.filter == FilterKind::Box ? 0.5f : 1.5f;
     job.filter = Filter(samples.filter, samples.filter_radius_px.value_or(usual_radius_px));
-    job.replicates = request.scene.spectral.bins ? kReplicates : 1;
+    if (request.denoise) job.denoised_error = samples.noise;
+    job.replicates = request.scene.spectral.bins ? kReplicates : request.denoise ? kHalves : 1;
     return job;
 }
 

@@ -57,6 +57,12 @@ RequestField layer_field() {
     return field;
 }
 
+RequestField denoise_field() {
+    return common(flag("denoise", in::render(&RenderRequest::denoise), true,
+                       "denoise the picture, and say how large its error is; with ⟨noise⟩ render "
+                       "until it is below that"));
+}
+
 std::vector<RequestField> console_fields() {
     return {text("stats", in::run(&RunRequest::stats), "write counts and times to this JSON file"),
             choice("progress", in::run(&RunRequest::progress),
@@ -130,7 +136,7 @@ std::vector<RequestField> run_fields() {
     };
     add("Output", output_fields(), FieldPart::Files);
     add("Output", display_fields(), FieldPart::Picture);
-    add("Output", {layer_field()}, FieldPart::Picture);
+    add("Output", {layer_field(), denoise_field()}, FieldPart::Picture);
     add("Output", console_fields(), FieldPart::Files);
     add("", {flag("quiet", in::run(&RunRequest::quiet), true, "print nothing but errors")},
         FieldPart::Files, kPictures | kTrace);

@@ -65,7 +65,7 @@ void describe_spectrum(const Film& film, uint32_t first, Metadata& m) {
         m.emplace_back("petzval:meanRelativeError", error);
 }
 
-std::vector<std::string> channels_of(const Film& film) {
+std::vector<std::string> channels_of(const Film& film, bool denoised) {
     std::vector<std::string> names = {"R", "G", "B", "A"};
     if (film.spectral()) {
         const Bins& bins = film.spectral()->bins();
@@ -77,6 +77,9 @@ std::vector<std::string> channels_of(const Film& film) {
         for (const char* name : {"samples.N", "stderr.R", "stderr.G", "stderr.B"})
             if (std::find(names.begin(), names.end(), name) == names.end())
                 names.emplace_back(name);
+    if (denoised)
+        for (const char* name : {"denoised.R", "denoised.G", "denoised.B", "denoised.error"})
+            names.emplace_back(name);
     for (const Aov aov : film.aovs()) {
         const AovInfo& info = aov_info(aov);
         for (int i = 0; i < info.channel_count; ++i) names.emplace_back(info.channels[i]);
@@ -99,7 +102,8 @@ V3f stated_error(const Film& film, int x, int y) {
 }
 
 /// Writes the values of one pixel in the order of channels_of; returns where the next pixel's go.
-float* develop_pixel(const Film& film, uint32_t first, int x, int y, float* out) {
+float* develop_pixel(const Film& film, const DenoisedFilm* denoised, uint32_t first, int x, int y,
+                     float* out) {
     const auto put = [&](const auto& values, int count) {
         for (int i = 0; i < count; ++i) *out++ = values[i];
     };
@@ -118,9 +122,30 @@ float* develop_pixel(const Film& film, uint32_t first, int x, int y, float* out)
         *out++ = static_cast<float>(film.sample_count(x, y));
         if (!film.spectral()) put(stated_error(film, x, y), 3);
     }
+    if (denoised) {
+        const size_t at = denoised->picture.offset(x, y);
+        put(denoised->picture.colour[at], 3);
+        *out++ = denoised->error_about[at];
+    }
     for (size_t layer = 0; layer < film.aovs().size(); ++layer)
         put(film.aov(x, y, layer), aov_info(film.aovs()[layer]).channel_count);
     return out;
+}
+
+/// Layout of a film's picture.
+PictureLayout layout_of(const Film& film, SampleRange samples, std::vector<std::string> channels,
+                        const Metadata& of_render) {
+    const Rect crop = film.crop();
+    PictureLayout layout{.width = crop.width(),
+                         .height = crop.height(),
+                         .x = crop.x0,
+                         .y = crop.y0,
+                         .full_width = film.full_size().x,
+                         .full_height = film.full_size().y,
+                         .channels = std::move(channels),
+                         .metadata = of_render};
+    layout.metadata.emplace_back(kSamples, fmt::format("{}:{}", samples.first, samples.end));
+    return layout;
 }
 
 }  // namespace
@@ -139,6 +164,7 @@ Metadata describe_render(const RenderSetup& setup, const RenderJob& job,
                {"petzval:transparent", int(options.transparent)},
                {"petzval:luminousEfficacy_lm_per_W", kLuminousEfficacy_lm_per_w}};
     if (job.noise) m.emplace_back(kNoiseTarget, static_cast<float>(job.noise->noise));
+    if (job.denoised_error) m.emplace_back(kNoiseTarget, static_cast<float>(*job.denoised_error));
     if (job.clamp_nits) m.emplace_back("petzval:clamp_nits", *job.clamp_nits);
     for (const auto& [name, value] : setup.from.metadata) m.emplace_back(name, value);
     if (setup.from.exposure_is_auto) m.emplace_back(kFoundExposure, setup.from.exposure_ev);
@@ -168,21 +194,28 @@ Picture colours_of(const Film& film, int channels) {
     return out;
 }
 
-PictureRows develop(const Film& film, SampleRange samples, const Metadata& of_render) {
-    const Rect crop = film.crop();
-    PictureLayout layout{.width = crop.width(),
-                         .height = crop.height(),
-                         .x = crop.x0,
-                         .y = crop.y0,
-                         .full_width = film.full_size().x,
-                         .full_height = film.full_size().y,
-                         .channels = channels_of(film),
-                         .metadata = of_render};
-    layout.metadata.emplace_back(kSamples, fmt::format("{}:{}", samples.first, samples.end));
+PictureRows develop(const Film& film, SampleRange samples, const Metadata& of_render,
+                    std::shared_ptr<const DenoisedFilm> denoised) {
+    PictureLayout layout =
+        layout_of(film, samples, channels_of(film, denoised != nullptr), of_render);
     if (film.spectral()) describe_spectrum(film, samples.first, layout.metadata);
-    return {std::move(layout), [&film, crop, first = samples.first](int y, float* row) {
+    return {std::move(layout),
+            [&film, crop = film.crop(), first = samples.first, denoised](int y, float* row) {
                 for (int x = crop.x0; x < crop.x1; ++x)
-                    row = develop_pixel(film, first, x, crop.y0 + y, row);
+                    row = develop_pixel(film, denoised.get(), first, x, crop.y0 + y, row);
+            }};
+}
+
+PictureRows denoised_colours(const Film& film, SampleRange samples, const Metadata& of_render,
+                             std::shared_ptr<const DenoisedFilm> denoised) {
+    return {layout_of(film, samples, {"R", "G", "B", "A"}, of_render),
+            [&film, crop = film.crop(), denoised](int y, float* row) {
+                for (int x = crop.x0; x < crop.x1; ++x) {
+                    const V3f c =
+                        denoised->picture.colour[denoised->picture.offset(x, crop.y0 + y)];
+                    for (int i = 0; i < 3; ++i) *row++ = c[i];
+                    *row++ = film.colour(x, crop.y0 + y).w;
+                }
             }};
 }
 

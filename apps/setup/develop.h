@@ -2,6 +2,7 @@
 // From a film to a picture with its layers and everything needed to make it again.
 #pragma once
 
+#include "apps/setup/denoised_film.h"
 #include "apps/setup/render_setup.h"
 #include "core/film/film.h"
 #include "integrator/path/path_options.h"
@@ -29,8 +30,14 @@ inline constexpr const char* kSamples = "petzval:samples";
 
 /// Picture of a film that has these samples: R, G, B, A in nits of the white point; with bins the
 /// channels S0 of io/image/spectral_layout.h, XYZ in nits and the standard errors of R, G and B;
-/// then the film's layers as "layer.channel". Metadata: those of the render, with the samples and
-/// what bins mean; no times, so that equal renders are equal files. The film must outlive the rows.
-[[nodiscard]] PictureRows develop(const Film&, SampleRange, const Metadata&);
+/// then the denoised picture and its error, where there is one, and the film's layers as
+/// "layer.channel". Metadata: those of the render, with the samples and what bins mean; no times,
+/// so that equal renders are equal files. The film must outlive the rows.
+[[nodiscard]] PictureRows develop(const Film&, SampleRange, const Metadata&,
+                                  std::shared_ptr<const DenoisedFilm> = {});
+
+/// Picture for a display: the denoised R, G, B in nits, and A.
+[[nodiscard]] PictureRows denoised_colours(const Film&, SampleRange, const Metadata&,
+                                           std::shared_ptr<const DenoisedFilm>);
 
 }  // namespace petzval

@@ -136,6 +136,16 @@ void write_stats(const std::filesystem::path& path, const StatsPicture& picture,
                         {"cells_left", noise->left},
                         {"cells_at_least", noise->at_least},
                         {"mean_samples_per_pixel", noise->mean_samples}};
+    if (const auto& denoised = picture.denoised) {
+        const auto json = [](const DenoisedError& error) -> nlohmann::ordered_json {
+            return {{"error", error.value()},
+                    {"is_at_most", error.is_at_most()},
+                    {"bounds", {error.least(), error.most()}}};
+        };
+        out["denoised"] = {{"picture", json(denoised->error)},
+                           {"noisy_picture", json(denoised->noisy)},
+                           {"floor_nits", denoised->floor_nits}};
+    }
     // The digits that were typed or printed, not those of the float.
     out["exposure_ev"] = nlohmann::ordered_json::parse(fmt::format("{}", picture.exposure_ev));
     out["threads"] = figures.threads;

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "apps/setup/denoised_film.h"
 #include "core/film/film.h"
 #include "integrator/path/stats.h"
 #include "integrator/render/noise_target.h"
@@ -45,7 +47,8 @@ struct StatsPicture {
     SampleRange samples;        ///< that every pixel has
     float exposure_ev = 0;
     Film::LeftOut left_out;
-    std::optional<NoiseReport> noise{};  ///< where one was to be reached
+    std::optional<NoiseReport> noise{};              ///< where one was to be reached
+    std::shared_ptr<const DenoisedFilm> denoised{};  ///< where it was denoised
 };
 
 /// Peak resident memory of this process, MiB.

@@ -30,7 +30,16 @@ PictureRows picture_for(const std::filesystem::path& path, const FinishedFilm& d
     if (format != PictureFormat::Exr)
         metadata.emplace_back(kDisplayHash, display_hash(done.facts.display));
     if (format != PictureFormat::Png) metadata.emplace_back(kSealName, kUnsealed);
-    return develop(done.film, done.samples, metadata);
+    if (const auto& denoised = done.denoised) {
+        metadata.emplace_back("petzval:denoisedError", static_cast<float>(denoised->error.value()));
+        metadata.emplace_back("petzval:denoisedErrorAtMost",
+                              static_cast<float>(denoised->error.most()));
+        metadata.emplace_back("petzval:denoisedFloor_nits",
+                              static_cast<float>(denoised->floor_nits));
+        if (format != PictureFormat::Exr)
+            return denoised_colours(done.film, done.samples, metadata, denoised);
+    }
+    return develop(done.film, done.samples, metadata, done.denoised);
 }
 
 }  // namespace petzval

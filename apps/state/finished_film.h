@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "apps/setup/denoised_film.h"
 #include "apps/state/render_facts.h"
 #include "core/film/film.h"
 #include "integrator/render/noise_target.h"
@@ -17,7 +18,8 @@ struct FinishedFilm {
     const Film& film;
     SampleRange samples;
     const RenderFacts& facts;
-    std::optional<NoiseReport> noise{};  ///< where one was to be reached
+    std::optional<NoiseReport> noise{};              ///< where one was to be reached
+    std::shared_ptr<const DenoisedFilm> denoised{};  ///< where it was denoised
 };
 
 /// Noise that a film has reached, as its facts ask for one; nothing where none is asked for.
@@ -25,7 +27,7 @@ struct FinishedFilm {
                                                        SampleRange);
 
 /// Linear picture of a film, with the metadata of its file: PNG and JPEG say how they were made for
-/// a display too.
+/// a display too, and show what was denoised.
 [[nodiscard]] PictureRows picture_for(const std::filesystem::path&, const FinishedFilm&);
 
 }  // namespace petzval

@@ -9,8 +9,6 @@
 #include <limits>
 #include <utility>
 
-#include "apps/setup/develop.h"
-
 namespace petzval {
 namespace {
 
@@ -21,10 +19,9 @@ constexpr double kPreview_s = 3, kPreviewShare = 1. / 20;
 
 }  // namespace
 
-Keeper::Keeper(KeeperPlan plan, RenderMonitor& monitor, const Film& film)
+Keeper::Keeper(KeeperPlan plan, RenderMonitor& monitor)
     : plan_(std::move(plan)),
       monitor_(monitor),
-      film_(film),
       checkpoint_due_s_(steady_s() + plan_.checkpoint_s.value_or(kNever_s)),
       preview_due_s_(plan_.preview ? steady_s() + 1 : kNever_s) {
     if (plan_.checkpoint_s || plan_.preview)
@@ -35,7 +32,7 @@ void Keeper::finish() {
     if (!thread_.joinable()) return;
     thread_.request_stop();
     thread_.join();
-    if (plan_.preview) attempt([&] { write_preview(colours_of(film_, 4)); }, preview_told_);
+    if (plan_.preview) attempt([&] { write_preview(plan_.look()); }, preview_told_);
 }
 
 void Keeper::at_pause(const PathStats& stats) {
@@ -48,8 +45,10 @@ void Keeper::at_pause(const PathStats& stats) {
     }
     if (checkpoint) attempt([&] { plan_.write_checkpoint(stats); }, checkpoint_told_);
     std::optional<Picture> now;
-    if (preview) attempt([&] { now = colours_of(film_, 4); }, preview_told_);
+    const double start_s = steady_s();
+    if (preview) attempt([&] { now = plan_.look(); }, preview_told_);
     const std::lock_guard lock(mutex_);
+    look_s_ = steady_s() - start_s;
     if (checkpoint) checkpoint_due_s_ = steady_s() + *plan_.checkpoint_s;
     if (preview) {
         to_show_ = std::move(now);
@@ -64,8 +63,8 @@ void Keeper::watch(const std::stop_token& stop) {
         if (to_show_) {
             const Picture picture = std::move(*to_show_);
             to_show_.reset();
+            const double start_s = steady_s() - look_s_;
             lock.unlock();
-            const double start_s = steady_s();
             attempt([&] { write_preview(picture); }, preview_told_);
             const double pause_s = std::max(kPreview_s, (steady_s() - start_s) / kPreviewShare);
             lock.lock();

@@ -9,7 +9,6 @@
 #include <optional>
 #include <thread>
 
-#include "core/film/film.h"
 #include "integrator/render/render_job.h"
 #include "io/base/notice.h"
 #include "io/image/output.h"
@@ -22,6 +21,7 @@ struct KeeperPlan {
     std::optional<double> checkpoint_s;  ///< time between two checkpoints; absent: none
     std::function<void(const PathStats&)> write_checkpoint;
     std::optional<std::filesystem::path> preview;  ///< .png or .jpg; absent: none
+    std::function<Picture()> look;                 ///< the picture so far, for the preview
     DisplayOptions display;
     Notice notice;  ///< gets one line where a preview or a checkpoint cannot be written
 };
@@ -32,7 +32,7 @@ struct KeeperPlan {
 class Keeper {
   public:
     /// All must outlive it.
-    Keeper(KeeperPlan, RenderMonitor&, const Film&);
+    Keeper(KeeperPlan, RenderMonitor&);
     Keeper(const Keeper&) = delete;
     Keeper& operator=(const Keeper&) = delete;
 
@@ -48,11 +48,11 @@ class Keeper {
 
     KeeperPlan plan_;
     RenderMonitor& monitor_;
-    const Film& film_;
     std::mutex mutex_;
     std::condition_variable_any wake_;
     double checkpoint_due_s_, preview_due_s_;  ///< by steady_s(); infinite: never
     std::optional<Picture> to_show_;           ///< snapshot that is to be written
+    double look_s_ = 0;                        ///< that it took
     /// Whether it was told that one cannot be written.
     bool checkpoint_told_ = false, preview_told_ = false;
     std::jthread thread_;  // last: it uses the rest, and ends first

@@ -143,13 +143,23 @@ MergedState merge_states(const std::vector<fs::path>& files) {
     shape.crop = box.crop;
     if (const auto shortage = memory_shortage(double(shape.bytes())))
         throw OutOfMemory("the merged picture " + *shortage);
+    // What a denoiser needs around a part, other parts have: each pixel is taken from its own.
+    const bool of_crops = std::ranges::any_of(
+        headers, [&](const StateHeader& header) { return header.shape.crop != shape.crop; });
+    if (of_crops && shape.pixels() != shape.crop)
+        throw InputError(files.front().string(), "",
+                         "this state and the others are parts of a frame that is denoised: give "
+                         "those of all of the frame");
     Film film = shape.empty_film();
     for (size_t i = 0; i < files.size(); ++i) {
         StateReader reader(files[i]);
         if (reader.header().shape != headers[i].shape ||
             reader.header().samples != headers[i].samples)
             throw InputError(files[i].string(), "", "was replaced meanwhile; merge again");
-        reader.add_to(film);
+        if (of_crops)
+            reader.add_to(film, headers[i].shape.crop);
+        else
+            reader.add_to(film);
     }
     return {std::move(film), box.samples, std::move(*sum)};
 }

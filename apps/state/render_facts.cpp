@@ -106,7 +106,8 @@ std::string shape_text(const FilmShape& shape) {
     std::string text =
         fmt::format("{}x{} px, layers {}", shape.full_size.x, shape.full_size.y,
                     layers.empty() ? "none" : fmt::format("{}", fmt::join(layers, ",")));
-    if (shape.blocks) text += ", what tells the noise";
+    if (shape.keeps.blocks) text += ", what tells the noise";
+    if (shape.keeps.halves) text += ", what a denoiser needs";
     if (const auto& b = shape.bins)
         text += fmt::format(", bins {:.9g}:{:.9g}:{:.9g}", b->first_edge_nm, b->last_edge_nm(),
                             b->width_nm);

@@ -60,6 +60,9 @@ using FilmSum = ExactSum<48>;
 /// Sum of spectral radiances in W/(m2 sr nm): a nit of daylight has about 1e-5 of them.
 using SpectralSum = ExactSum<64>;
 
+/// Sum of squares of nits: to 5.8e-11, up to 2.3e18.
+using SquareSum = ExactSum<34>;
+
 static_assert(std::endian::native == std::endian::little, "packed sums are little-endian");
 
 /// Writes sums as 16 bytes each, little-endian; returns where the next ones go.

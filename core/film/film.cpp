@@ -15,7 +15,7 @@ constexpr auto kIsFinite = [](float a) { return std::isfinite(a); };
 void Film::add(int x, int y, uint32_t index, const FilmSample& sample) {
     const size_t at = offset(x, y);
     if (each_number(sample, kInRange))
-        accept(pixels_[at], at, sample);
+        accept(pixels_[at], at, index, sample);
     else
         reject(at, index, each_number(sample, kIsFinite));
 }
@@ -25,7 +25,7 @@ void Film::add(int x, int y, uint32_t index, const FilmSample& sample,
     const size_t at = offset(x, y);
     if (!each_number(sample, kInRange) || !spectral_->holds(spectral, bands))
         return reject(at, index, each_number(sample, kIsFinite) && spectral.finite());
-    accept(pixels_[at], at, sample);
+    accept(pixels_[at], at, index, sample);
     spectral_->add(at, sample.colour, spectral, bands);
 }
 
@@ -48,10 +48,12 @@ void Film::reject(size_t at, uint32_t index, bool finite) {
     too_large_[at] += finite;
 }
 
-void Film::accept(Pixel& pixel, size_t at, const FilmSample& sample) {
+void Film::accept(Pixel& pixel, size_t at, uint32_t index, const FilmSample& sample) {
     for (int i = 0; i < 3; ++i) pixel.sum[static_cast<size_t>(i)].add(sample.colour[i]);
     pixel.sum[3].add(sample.alpha);
-    if (blocks_) blocks_->add(at, {sample.colour[0], sample.colour[1], sample.colour[2]});
+    const V3f colour(sample.colour[0], sample.colour[1], sample.colour[2]);
+    if (blocks_) blocks_->add(at, colour);
+    if (halves_) halves_->add(at, index, colour, sample.guide);
     ++pixel.count;
     if (!sample.hit) return;
     ++pixel.hits;

@@ -11,6 +11,7 @@
 
 #include "core/film/exact_sum.h"
 #include "core/film/film_blocks.h"
+#include "core/film/film_halves.h"
 #include "core/film/sample_range.h"
 #include "core/film/spectral_film.h"
 #include "core/math/ray.h"
@@ -45,18 +46,28 @@ struct FilmSample {
     bool hit = false;                                      ///< the layers below hold something
     Hit first{};                                           ///< of the surface that they are of
     std::array<V3f, static_cast<size_t>(Aov::Count)> aov;  ///< unset where nothing was hit
+    Guide guide{};                                         ///< of a film with halves
+};
+
+/// What a film keeps beside its sums.
+struct FilmKeeps {
+    bool blocks = false;  ///< what tells the noise
+    bool halves = false;  ///< what a denoiser needs
+    bool operator==(const FilmKeeps&) const = default;
 };
 
 class Film {
   public:
     /// crop: the part of a full frame that is kept; pixels are named by full-frame coordinates.
-    /// bins: keep a spectral film beside RGB. blocks: keep what tells the noise.
+    /// bins: keep a spectral film beside RGB.
     Film(V2i full_size, Rect crop, std::vector<Aov> aovs, std::optional<Bins> bins = {},
-         bool blocks = false);
+         FilmKeeps keeps = {});
 
-    /// Memory that a film takes for each pixel of its crop.
+    /// Memory that a film takes for each pixel that it has.
     [[nodiscard]] static size_t bytes_per_pixel(size_t layers, const std::optional<Bins>&,
-                                                bool blocks = false);
+                                                FilmKeeps = {});
+    /// Pixels that a film has: its crop, and what a denoiser needs around it.
+    [[nodiscard]] static Rect pixels_for(const Rect& crop, V2i full_size, FilmKeeps);
 
     /// Adds a sample. One that is not finite, or too large for the sums (exact_sum.h), is only
     /// counted, and the first such is remembered.
@@ -74,11 +85,18 @@ class Film {
     /// Number of samples, of this range of indices, in what pack() wrote of a pixel of a film with
     /// so many layers and these bins; nothing where no film has such sums and counts.
     [[nodiscard]] static std::optional<uint32_t> packed_count(const uint8_t* from, size_t layers,
-                                                              const std::optional<Bins>&,
-                                                              bool blocks, SampleRange);
+                                                              const std::optional<Bins>&, FilmKeeps,
+                                                              SampleRange);
 
     [[nodiscard]] V2i full_size() const { return full_size_; }
     [[nodiscard]] Rect crop() const { return crop_; }
+    /// Pixels that are there: the crop, and with halves some around it.
+    [[nodiscard]] Rect pixels() const { return kept_; }
+    [[nodiscard]] FilmKeeps keeps() const { return {blocks_.has_value(), halves_.has_value()}; }
+    /// Means of a half of a pixel of a film with halves.
+    [[nodiscard]] FilmHalves::Half half(int x, int y, uint32_t half) const {
+        return halves_->half(offset(x, y), half);
+    }
     [[nodiscard]] const std::vector<Aov>& aovs() const { return aovs_; }
     /// Spectral sums: bins, XYZ and errors; nothing unless the film was made with bins.
     [[nodiscard]] const std::optional<SpectralFilm>& spectral() const { return spectral_; }
@@ -90,9 +108,9 @@ class Film {
     [[nodiscard]] FilmBlocks::Parts parts(int x, int y) const {
         return blocks_->parts(offset(x, y), taken_count(x, y), mean(x, y));
     }
-    /// Index in spectral() of a pixel of the crop.
+    /// Index in spectral() of a pixel.
     [[nodiscard]] size_t offset(int x, int y) const {
-        return static_cast<size_t>(y - crop_.y0) * crop_.width() + (x - crop_.x0);
+        return static_cast<size_t>(y - kept_.y0) * kept_.width() + (x - kept_.x0);
     }
     [[nodiscard]] uint32_t sample_count(int x, int y) const { return pixel(x, y).count; }
     /// Number of samples of a pixel that were left out.
@@ -127,7 +145,7 @@ class Film {
         std::array<FilmSum, 4> sum{};
         uint32_t count = 0, hits = 0, left_out = 0, first_left_out = 0;
     };
-    void accept(Pixel&, size_t at, const FilmSample&);
+    void accept(Pixel&, size_t at, uint32_t index, const FilmSample&);
     [[nodiscard]] V3f mean(int x, int y) const {
         const V4f c = colour(x, y);
         return {c.x, c.y, c.z};
@@ -138,7 +156,7 @@ class Film {
     [[nodiscard]] const Pixel& pixel(int x, int y) const { return pixels_[offset(x, y)]; }
 
     V2i full_size_;
-    Rect crop_;
+    Rect crop_, kept_;
     std::vector<Aov> aovs_;
     std::vector<Pixel> pixels_;
     std::vector<uint32_t>
@@ -146,6 +164,7 @@ class Film {
     std::vector<std::array<FilmSum, 3>> aov_sums_;  ///< pixel-major
     std::optional<SpectralFilm> spectral_;
     std::optional<FilmBlocks> blocks_;
+    std::optional<FilmHalves> halves_;
 };
 
 }  // namespace petzval

@@ -34,21 +34,32 @@ std::optional<Aov> aov_from_name(std::string_view name) {
     return std::nullopt;
 }
 
-Film::Film(V2i full_size, Rect crop, std::vector<Aov> aovs, std::optional<Bins> bins, bool blocks)
+Film::Film(V2i full_size, Rect crop, std::vector<Aov> aovs, std::optional<Bins> bins,
+           FilmKeeps keeps)
     : full_size_(full_size),
       crop_(crop),
+      kept_(pixels_for(crop, full_size, keeps)),
       aovs_(std::move(aovs)),
-      pixels_(static_cast<size_t>(crop.width()) * crop.height()),
+      pixels_(static_cast<size_t>(kept_.width()) * kept_.height()),
       too_large_(pixels_.size()),
       aov_sums_(pixels_.size() * aovs_.size()) {
     if (bins) spectral_.emplace(pixels_.size(), *bins);
-    if (blocks) blocks_.emplace(pixels_.size());
+    if (keeps.blocks) blocks_.emplace(pixels_.size());
+    if (keeps.halves) halves_.emplace(pixels_.size());
 }
 
-size_t Film::bytes_per_pixel(size_t layers, const std::optional<Bins>& bins, bool blocks) {
+Rect Film::pixels_for(const Rect& crop, V2i full_size, FilmKeeps keeps) {
+    if (!keeps.halves) return crop;
+    constexpr int kMore = kDenoiserReach_px;
+    return {std::max(0, crop.x0 - kMore), std::max(0, crop.y0 - kMore),
+            std::min(full_size.x, crop.x1 + kMore), std::min(full_size.y, crop.y1 + kMore)};
+}
+
+size_t Film::bytes_per_pixel(size_t layers, const std::optional<Bins>& bins, FilmKeeps keeps) {
     return sizeof(Pixel) + sizeof(uint32_t) + layers * sizeof(std::array<FilmSum, 3>) +
            (bins ? SpectralFilm::bytes_per_pixel(*bins) : 0) +
-           (blocks ? FilmBlocks::bytes_per_pixel() : 0);
+           (keeps.blocks ? FilmBlocks::bytes_per_pixel() : 0) +
+           (keeps.halves ? FilmHalves::bytes_per_pixel() : 0);
 }
 
 void Film::pack(int x, int y, uint8_t* to) const {
@@ -63,7 +74,11 @@ void Film::pack(int x, int y, uint8_t* to) const {
         spectral_->pack(at, to);
         to += SpectralFilm::bytes_per_pixel(spectral_->bins());
     }
-    if (blocks_) blocks_->pack(at, to);
+    if (blocks_) {
+        blocks_->pack(at, to);
+        to += FilmBlocks::bytes_per_pixel();
+    }
+    if (halves_) halves_->pack(at, to);
 }
 
 void Film::add_packed(int x, int y, const uint8_t* from) {
@@ -88,11 +103,15 @@ void Film::add_packed(int x, int y, const uint8_t* from) {
         spectral_->add_packed(at, from);
         from += SpectralFilm::bytes_per_pixel(spectral_->bins());
     }
-    if (blocks_) blocks_->add_packed(at, from);
+    if (blocks_) {
+        blocks_->add_packed(at, from);
+        from += FilmBlocks::bytes_per_pixel();
+    }
+    if (halves_) halves_->add_packed(at, from);
 }
 
 std::optional<uint32_t> Film::packed_count(const uint8_t* from, size_t layers,
-                                           const std::optional<Bins>& bins, bool blocks,
+                                           const std::optional<Bins>& bins, FilmKeeps keeps,
                                            SampleRange range) {
     Pixel p;
     std::memcpy(&p, from, sizeof p);
@@ -100,7 +119,7 @@ std::optional<uint32_t> Film::packed_count(const uint8_t* from, size_t layers,
     std::memcpy(&too_large, from + sizeof p, sizeof too_large);
     const size_t before_layers = sizeof p + sizeof too_large;
     const std::span rest(from + before_layers,
-                         bytes_per_pixel(layers, bins, blocks) - before_layers);
+                         bytes_per_pixel(layers, bins, keeps) - before_layers);
     const auto reached = [](const FilmSum& sum, uint32_t count) {
         return std::abs(sum.value()) <= double(count) * double(FilmSum::kLimit);
     };
@@ -116,6 +135,10 @@ std::optional<uint32_t> Film::packed_count(const uint8_t* from, size_t layers,
     }
     if (p.count == 0)
         possible = possible && std::all_of(rest.begin(), rest.end(), [](auto b) { return b == 0; });
+    if (keeps.halves)
+        possible =
+            possible && FilmHalves::is_possible(
+                            rest.data() + rest.size() - FilmHalves::bytes_per_pixel(), p.count);
     return possible ? std::optional(p.count + p.left_out) : std::nullopt;
 }
 

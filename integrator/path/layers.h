@@ -35,4 +35,11 @@ inline void record_layers(const FirstSurface& first, const V3f& camera, const Ba
     layer(Aov::Velocity) = V3f(0.f);  // where nobody tells it
 }
 
+/// Fills what guides a denoiser, from the first surface that is not perfectly smooth.
+inline void record_guide(const Surface& s, const V3f& normal, f4 albedo, const V3f& camera,
+                         const Bands& bands, Guide& out) {
+    const Rgb c = reflectance_to_rgb(albedo, bands);
+    out = {true, V3f(c[0], c[1], c[2]), normal, (s.p - camera).length()};
+}
+
 }  // namespace petzval

@@ -38,6 +38,7 @@ struct PathStart {
     /// counts 1 / chance times.
     float continue_probability = 1;
     bool fills_layers = false;  ///< the sample's layers are wanted, of all lanes
+    bool fills_guide = false;   ///< likewise its guide of a denoiser
 };
 
 /// Watch: Unwatched, or one that has its functions (watch.h).

@@ -56,8 +56,13 @@ f4 PathTracer<Caster, Watch>::radiance(const PathStart& start, const Bands& band
                               bands, out);
             out.alpha = 1.f;
         }
+        const auto guides = [&](const auto& albedo) {
+            if (start.fills_guide && !out.guide.hit)
+                record_guide(s, shading.frame.z, albedo(), start.ray.origin, bands, out.guide);
+        };
         const bool at_depth = path.depth >= options_.max_depth;
         if (s.material->unlit || (at_depth && !(s.material->transmission > 0))) {
+            guides([&] { return s.material->unlit ? f4{} : shading.scatter(wo, bands).albedo(); });
             if (blend.weight == 1.f) [[likely]] {
                 watch_.ends(s.material->unlit ? PathStep::Unlit : PathStep::MaxDepth);
                 break;
@@ -88,6 +93,7 @@ f4 PathTracer<Caster, Watch>::radiance(const PathStart& start, const Bands& band
             path.throughput *= blend.weight / chance;
         }
         path.surface_seen = true;
+        if (bsdf.has_wide_lobe()) guides([&] { return bsdf.albedo(); });
 
         // Scatter, and go on with the chance of what is left.
         const std::optional<Onward> onward = scatter(path, scattering, u);

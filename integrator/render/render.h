@@ -55,7 +55,7 @@ template <class Executor, class Tracer>
 RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob& job, Film& film,
                     Executor& executor, RenderMonitor& monitor) {
     const double start_s = job.wall_s();
-    const std::vector<Rect> tiles = tiles_of(film.crop(), job.tile_size_px);
+    const std::vector<Rect> tiles = tiles_of(film.pixels(), job.tile_size_px);
     WorkerStats workers(executor.threads());
     const auto [before, most] = film.taken_range();
     const uint32_t wanted = job.end_sample - job.first_sample;

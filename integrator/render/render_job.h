@@ -43,6 +43,9 @@ struct RenderJob {
     std::optional<float> clamp_nits;
     /// Noise to reach, of a film with blocks. nullptr: all pixels get the same samples.
     std::shared_ptr<const NoiseTarget> noise;
+    /// Error that the denoised picture is to have at most, of a film with halves; the samples end
+    /// where it has.
+    std::optional<double> denoised_error;
     bool timing = false;  ///< measure where the time goes, on a sixteenth of the samples
 };
 

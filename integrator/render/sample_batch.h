@@ -118,8 +118,10 @@ void SampleBatch<Tracer>::trace(size_t i) {
     stats_.lens_lanes += rays.lanes;
     FilmSample sample;
     f4 light{};
-    float behind = 0.f;  // weight of the rays that left the scene, over all lanes
-    bool layers = film_ && !film_->aovs().empty();  // layers are still to be filled in
+    float behind = 0.f;             // weight of the rays that left the scene, over all lanes
+    bool first = film_ != nullptr;  // layers are still to be filled in
+    const bool has_layers = film_ && !film_->aovs().empty();
+    const bool has_guide = film_ && film_->keeps().halves;
     for (const CameraPath& path : rays) {
         FilmSample other;
         FilmSample& of_path = path.to_target ? other : sample;
@@ -128,13 +130,15 @@ void SampleBatch<Tracer>::trace(size_t i) {
         // by the weight.
         const float effort = path.to_target ? path.mis_weight : 1.f;
         light += light_along(
-            path, i, {path.ray, path.lanes, path.hero_decided, effort, layers && !path.to_target},
+            path, i,
+            {path.ray, path.lanes, path.hero_decided, effort,
+             has_layers && first && !path.to_target, has_guide && first && !path.to_target},
             of_path);
         if (path.to_target) {
             ++stats_.target_rays;
             continue;
         }
-        layers = false;
+        first = false;
         behind += hsum(zero_off(path.lanes, path.weight)) * (1.f - sample.alpha);
     }
     if (!film_) return;

@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kMagic = "PETZVALS";
-constexpr uint64_t kVersion = 3;
+constexpr uint64_t kVersion = 4;
 /// Bytes before the header: the text, the version and the length.
 constexpr size_t kStartBytes = kMagic.size() + 2 * sizeof(uint64_t);
 /// Longest header: a command line and the facts of a scene are far shorter.
@@ -32,7 +32,7 @@ std::span<const uint8_t> bytes_of(const uint64_t& number) {
 }
 
 size_t pixel_bytes(const FilmShape& shape) {
-    return Film::bytes_per_pixel(shape.layers.size(), shape.bins, shape.blocks);
+    return Film::bytes_per_pixel(shape.layers.size(), shape.bins, shape.keeps);
 }
 
 Json to_json(const StateHeader& h) {
@@ -44,7 +44,8 @@ Json to_json(const StateHeader& h) {
             {"crop_px", {c.x0, c.y0, c.x1, c.y1}},
             {"layers", std::move(layers)},
             {"bins_nm", std::move(bins)},
-            {"noise_blocks", h.shape.blocks},
+            {"noise_blocks", h.shape.keeps.blocks},
+            {"halves", h.shape.keeps.halves},
             {"finished", h.is_finished},
             {"samples", {h.samples.first, h.samples.end}},
             {"pixel_samples", h.pixel_samples},
@@ -66,7 +67,8 @@ StateHeader from_json(const Json& json) {
     const auto samples = json.at("samples").get<std::array<uint32_t, 2>>();
     h.samples = {samples[0], samples[1]};
     json.at("pixel_samples").get_to(h.pixel_samples);
-    json.at("noise_blocks").get_to(shape.blocks);
+    json.at("noise_blocks").get_to(shape.keeps.blocks);
+    json.at("halves").get_to(shape.keeps.halves);
     json.at("finished").get_to(h.is_finished);
     h.run = json.at("run");
     return h;
@@ -83,28 +85,28 @@ bool is_possible(const StateHeader& h) {
            (!s.bins || (s.bins->count > 0 && s.bins->count <= kMostBins && s.bins->width_nm > 0));
 }
 
-uint64_t pixels_of(const Rect& crop) {
-    return static_cast<uint64_t>(crop.width()) * static_cast<uint64_t>(crop.height());
+uint64_t area_of(const Rect& rect) {
+    return static_cast<uint64_t>(rect.width()) * static_cast<uint64_t>(rect.height());
 }
 
 }  // namespace
 
 FilmShape FilmShape::of(const Film& film) {
-    FilmShape shape{film.full_size(), film.crop(), film.aovs(), {}, film.has_blocks()};
+    FilmShape shape{film.full_size(), film.crop(), film.aovs(), {}, film.keeps()};
     if (film.spectral()) shape.bins = film.spectral()->bins();
     return shape;
 }
 
 uint64_t FilmShape::bytes() const {
-    return pixels_of(crop) * pixel_bytes(*this);
+    return area_of(pixels()) * pixel_bytes(*this);
 }
 
 uint64_t StateHeader::wanted() const {
-    return pixels_of(shape.crop) * samples.count();
+    return area_of(shape.pixels()) * samples.count();
 }
 
 void write_state(const std::filesystem::path& path, StateHeader header, const Film& film) {
-    const Rect& crop = header.shape.crop;
+    const Rect pixels = header.shape.pixels();
     header.pixel_samples = film.taken_count();
     if (header.pixel_samples > header.wanted())
         throw std::logic_error("a film has more samples than its state may have");
@@ -121,10 +123,10 @@ void write_state(const std::filesystem::path& path, StateHeader header, const Fi
     put(bytes_of(text.size()));
     put(bytes_of(text));
     const size_t each = pixel_bytes(header.shape);
-    std::vector<uint8_t> row(static_cast<size_t>(crop.width()) * each);
-    for (int y = crop.y0; y < crop.y1; ++y) {
-        for (int x = crop.x0; x < crop.x1; ++x)
-            film.pack(x, y, row.data() + static_cast<size_t>(x - crop.x0) * each);
+    std::vector<uint8_t> row(static_cast<size_t>(pixels.width()) * each);
+    for (int y = pixels.y0; y < pixels.y1; ++y) {
+        for (int x = pixels.x0; x < pixels.x1; ++x)
+            film.pack(x, y, row.data() + static_cast<size_t>(x - pixels.x0) * each);
         put(row);
     }
     file.write(bytes_of(hash), offset);
@@ -177,15 +179,16 @@ template <class Use>
 void StateReader::read_pixels(const Use& use) const {
     const FilmShape& shape = header_.shape;
     const size_t each = pixel_bytes(shape);
-    std::vector<uint8_t> row(static_cast<size_t>(shape.crop.width()) * each);
+    const Rect pixels = shape.pixels();
+    std::vector<uint8_t> row(static_cast<size_t>(pixels.width()) * each);
     uint64_t taken = 0, hash = hash_, at = pixels_at_, written = 0;
-    for (int y = shape.crop.y0; y < shape.crop.y1; ++y, at += row.size()) {
+    for (int y = pixels.y0; y < pixels.y1; ++y, at += row.size()) {
         if (file_.read(row, at) != row.size()) throw damaged();
         hash = fnv1a(row, hash);
-        for (int x = shape.crop.x0; x < shape.crop.x1; ++x) {
-            const uint8_t* const pixel = row.data() + static_cast<size_t>(x - shape.crop.x0) * each;
+        for (int x = pixels.x0; x < pixels.x1; ++x) {
+            const uint8_t* const pixel = row.data() + static_cast<size_t>(x - pixels.x0) * each;
             const auto count = Film::packed_count(pixel, shape.layers.size(), shape.bins,
-                                                  shape.blocks, header_.samples);
+                                                  shape.keeps, header_.samples);
             if (!count) throw damaged();
             taken += *count;
             use(x, y, pixel);
@@ -201,8 +204,11 @@ void StateReader::check() const {
     read_pixels([](int, int, const uint8_t*) {});
 }
 
-void StateReader::add_to(Film& film) const {
-    read_pixels([&](int x, int y, const uint8_t* pixel) { film.add_packed(x, y, pixel); });
+void StateReader::add_to(Film& film, const Rect& some) const {
+    read_pixels([&](int x, int y, const uint8_t* pixel) {
+        if (x >= some.x0 && x < some.x1 && y >= some.y0 && y < some.y1)
+            film.add_packed(x, y, pixel);
+    });
 }
 
 }  // namespace petzval

@@ -24,11 +24,13 @@ struct FilmShape {
     Rect crop;
     std::vector<Aov> layers;
     std::optional<Bins> bins;
-    bool blocks = false;
+    FilmKeeps keeps{};
 
     bool operator==(const FilmShape&) const = default;
     [[nodiscard]] static FilmShape of(const Film&);
-    [[nodiscard]] Film empty_film() const { return {full_size, crop, layers, bins, blocks}; }
+    [[nodiscard]] Film empty_film() const { return {full_size, crop, layers, bins, keeps}; }
+    /// Pixels that such a film has.
+    [[nodiscard]] Rect pixels() const { return Film::pixels_for(crop, full_size, keeps); }
     /// Memory that such a film takes.
     [[nodiscard]] uint64_t bytes() const;
 };
@@ -62,9 +64,10 @@ class StateReader {
     /// Reads the file to its end. Throws InputError where the bytes are not those that were
     /// written, or the pixels do not have the samples that the header says.
     void check() const;
-    /// Adds the sums to a film whose crop holds the state's, with the same layers and bins. Throws
-    /// InputError likewise; the film is of no use then.
-    void add_to(Film&) const;
+    /// Adds the sums to a film that has the state's pixels, with the same layers and bins; some:
+    /// only of these pixels. Throws InputError likewise; the film is of no use then.
+    void add_to(Film& film) const { add_to(film, header_.shape.pixels()); }
+    void add_to(Film&, const Rect& some) const;
 
   private:
     [[nodiscard]] InputError damaged() const;

@@ -54,7 +54,7 @@ RenderJob job_of(const std::shared_ptr<NoiseTarget>& target, uint32_t seed, uint
 }
 
 Film empty_film(V2i frame, Rect crop) {
-    return {frame, crop, {}, {}, true};
+    return {frame, crop, {}, {}, {.blocks = true}};
 }
 
 RenderResult render_on(Film& film, const RenderJob& job, int threads = 1) {
@@ -291,7 +291,7 @@ TEST(RenderToNoise, ACellDependsOnNothingButItself) {
     int runs = 0;
     for (bool stopped = true; stopped; ++runs) {
         Film next = empty_film(frame, {0, 0, 50, 35});
-        std::vector<uint8_t> pixel(Film::bytes_per_pixel(0, {}, true));
+        std::vector<uint8_t> pixel(Film::bytes_per_pixel(0, {}, {.blocks = true}));
         for (int y = 0; y < 35; ++y)
             for (int x = 0; x < 50; ++x) {
                 kept.pack(x, y, pixel.data());

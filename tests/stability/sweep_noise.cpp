@@ -52,7 +52,7 @@ Ends ends_with(double chance) {
         job.sampler = SamplerKind::Independent;
         job.filter = Filter(FilterKind::Box, 0.5f);
         job.noise = target;
-        Film film(target->frame_px, {0, 0, kSide_px, kSide_px}, {}, {}, true);
+        Film film(target->frame_px, {0, 0, kSide_px, kSide_px}, {}, {}, {.blocks = true});
         ThreadExecutor executor(1);
         RenderMonitor monitor;
         const test::FilmCamera camera;

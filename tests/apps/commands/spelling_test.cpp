@@ -85,7 +85,6 @@ TEST_F(CliSpelling, OptionsOfOtherProgramsAreToldTheirNames) {
     EXPECT_EQ(refused({"plan", scene_, "--width=64"}),
               "--width is no option of petzval plan; type --size WIDTHxHEIGHT");
     const std::pair<const char*, const char*> now[] = {
-        {"--denoise", "--aov albedo,normal, which a denoiser of another program needs"},
         {"--max-bounces", "--method max-depth=NUMBER"},
         {"--hdri", "--env FILE"},
         {"--tone-mapping", "--view NAME"},

@@ -35,6 +35,7 @@ const std::map<std::string, Change> kChanges{
     {"file", {"", {}}},  // the other file
     {"seed", {"7", {}}},
     {"noise", {"5%", {}}},
+    {"denoise", {"on", {}}},
     {"size", {"20x10", {}}},
     {"crop", {"1,2,3,4", {}}},
     {"variant", {"red", {}}},

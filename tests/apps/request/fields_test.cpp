@@ -21,6 +21,7 @@ const std::map<std::string, std::pair<std::string, std::string>> kTexts{
     {"time-limit", {"1h30m", "5400"}},
     {"seed", {"4294967295", "4294967295"}},
     {"noise", {"5%", "0.05"}},
+    {"denoise", {"on", "on"}},
     {"size", {"64 X 48", "64x48"}},
     {"crop", {"1, 2, 3, 4", "1,2,3,4"}},
     {"tolerance", {"2.5%", "0.025"}},

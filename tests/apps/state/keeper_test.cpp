@@ -5,6 +5,7 @@
 
 #include <thread>
 
+#include "apps/setup/develop.h"
 #include "io/base/error.h"
 #include "io/image/picture_files.h"
 #include "tests/support/temporary_folder.h"
@@ -37,8 +38,7 @@ int answer_pauses(Keeper& keeper, RenderMonitor& monitor, int wanted) {
 
 TEST(Keeper, WithoutAPlanNothingPauses) {
     RenderMonitor monitor;
-    const Film film = grey_film();
-    Keeper keeper({}, monitor, film);
+    Keeper keeper({}, monitor);
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     EXPECT_FALSE(monitor.pause);
     keeper.at_pause({});
@@ -46,12 +46,11 @@ TEST(Keeper, WithoutAPlanNothingPauses) {
 
 TEST(Keeper, WritesCheckpointsAgainAndAgain) {
     RenderMonitor monitor;
-    const Film film = grey_film();
     int written = 0;
     KeeperPlan plan;
     plan.checkpoint_s = 0.01;
     plan.write_checkpoint = [&](const PathStats&) { ++written; };
-    Keeper keeper(plan, monitor, film);
+    Keeper keeper(plan, monitor);
     EXPECT_EQ(answer_pauses(keeper, monitor, 5), 5);
     EXPECT_GE(written, 4) << "a pause may come before its time";
 }
@@ -59,7 +58,6 @@ TEST(Keeper, WritesCheckpointsAgainAndAgain) {
 // A disk that is full for a while: it is told once, tried again, and nothing is thrown.
 TEST(Keeper, GoesOnWhereACheckpointCannotBeWritten) {
     RenderMonitor monitor;
-    const Film film = grey_film();
     int tries = 0;
     std::vector<std::string> said;
     KeeperPlan plan;
@@ -69,7 +67,7 @@ TEST(Keeper, GoesOnWhereACheckpointCannotBeWritten) {
         throw OutputError("a.state", "", "cannot be written: no space");
     };
     plan.notice = [&](const std::string& text) { said.push_back(text); };
-    Keeper keeper(plan, monitor, film);
+    Keeper keeper(plan, monitor);
     EXPECT_EQ(answer_pauses(keeper, monitor, 5), 5);
     EXPECT_GE(tries, 4);
     ASSERT_EQ(said.size(), 1u);
@@ -82,8 +80,9 @@ TEST(Keeper, WritesAPreviewOfWhatThereIs) {
     const Film film = grey_film();
     KeeperPlan plan;
     plan.preview = folder / "now.png";
+    plan.look = [&] { return colours_of(film, 4); };
     {
-        Keeper keeper(plan, monitor, film);
+        Keeper keeper(plan, monitor);
         EXPECT_EQ(answer_pauses(keeper, monitor, 1), 1);
         for (int i = 0; i < 1000 && !std::filesystem::exists(*plan.preview); ++i)
             std::this_thread::sleep_for(std::chrono::milliseconds(10));

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/setup/denoised_film.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/spectrum/bands.h"
+#include "io/base/format.h"
+#include "io/image/symmetric_mse.h"
+
+namespace petzval {
+namespace {
+
+/// Side of the blocks whose means are taken as independent of each other.
+constexpr int kBlock_px = 8;
+/// Two-sided 95 % of a normal distribution.
+constexpr double kDeviations = 1.96;
+
+/// Sums over blocks of a picture, by block.
+struct Blocks {
+    int across = 0, down = 0;
+    std::vector<double> sum, count;
+    std::vector<double> variance;  ///< of half of the samples, in the same units
+
+    Blocks(int width, int height)
+        : across((width + kBlock_px - 1) / kBlock_px),
+          down((height + kBlock_px - 1) / kBlock_px),
+          sum(static_cast<size_t>(across) * static_cast<size_t>(down)),
+          count(sum.size()),
+          variance(sum.size()) {}
+    void add(int x, int y, double value, double its_variance) {
+        const auto at = static_cast<size_t>(y / kBlock_px * across + x / kBlock_px);
+        sum[at] += value;
+        variance[at] += its_variance;
+        count[at] += 1;
+    }
+    /// Mean over a rectangle of blocks, and its deviation: from how the blocks part, or what it is
+    /// where noise that is in single pixels is as likely in each pixel of their block. Errors of
+    /// neighbours are alike, as they share a window: two by two blocks are taken together.
+    [[nodiscard]] DenoisedError over(const Rect& blocks) const;
+};
+
+DenoisedError Blocks::over(const Rect& r) const {
+    double all = 0, pixels = 0;
+    const auto each = [&](const auto& use) {
+        for (int y = r.y0; y < r.y1; y += 2)
+            for (int x = r.x0; x < r.x1; x += 2) {
+                double s = 0, n = 0;
+                for (int v = y; v < std::min(y + 2, r.y1); ++v)
+                    for (int u = x; u < std::min(x + 2, r.x1); ++u) {
+                        s += sum[static_cast<size_t>(v * across + u)];
+                        n += count[static_cast<size_t>(v * across + u)];
+                    }
+                use(s, n);
+            }
+    };
+    each([&](double s, double n) { all += s, pixels += n; });
+    const double mean = all / pixels;
+    double chance = 0;  // the product of two halves' noise, in a block
+    for (int y = r.y0; y < r.y1; ++y)
+        for (int x = r.x0; x < r.x1; ++x) {
+            const auto at = static_cast<size_t>(y * across + x);
+            chance += variance[at] * variance[at] / count[at];
+        }
+    double squares = 0, groups = 0;
+    each([&](double s, double n) {
+        squares += (s - n * mean) * (s - n * mean);
+        groups += 1;
+    });
+    const double parted = groups > 1 ? squares * groups / (groups - 1) : all * all;
+    return {mean, std::sqrt(std::max(parted, chance)) / pixels};
+}
+
+// Root of a mean that is known to be no less than nothing.
+float shown(const DenoisedError& error) {
+    return static_cast<float>(std::sqrt(std::max(error.squared, error.deviation)));
+}
+
+// Error about each block: squares of blocks double until one knows its error well enough.
+std::vector<float> errors_about(const Blocks& blocks) {
+    constexpr double kKnown = 0.6;  // of the square: 30 % of the root
+    std::vector<float> out(blocks.sum.size(),
+                           shown(blocks.over({0, 0, blocks.across, blocks.down})));
+    std::vector<bool> known(out.size());
+    for (int side = 4; side < std::max(blocks.across, blocks.down); side *= 2)
+        for (int y = 0; y < blocks.down; y += side)
+            for (int x = 0; x < blocks.across; x += side) {
+                const Rect square{x, y, std::min(x + side, blocks.across),
+                                  std::min(y + side, blocks.down)};
+                const DenoisedError error = blocks.over(square);
+                if (!(error.deviation <= kKnown * error.squared)) continue;
+                for (int v = square.y0; v < square.y1; ++v)
+                    for (int u = square.x0; u < square.x1; ++u) {
+                        const auto at = static_cast<size_t>(v * blocks.across + u);
+                        if (!known[at]) out[at] = shown(error);
+                        known[at] = true;
+                    }
+            }
+    return out;
+}
+
+// Brightness by which the error of a pixel is told.
+class Surroundings {
+  public:
+    explicit Surroundings(const Denoised& picture)
+        : width_(picture.crop.width()),
+          height_(picture.crop.height()),
+          sums_(static_cast<size_t>(width_ + 1) * static_cast<size_t>(height_ + 1)) {
+        for (int y = 0; y < height_; ++y)
+            for (int x = 0; x < width_; ++x)
+                sum(x + 1, y + 1) =
+                    Imath::V3d(
+                        picture.colour[static_cast<size_t>(y) * size_t(width_) + size_t(x)]) +
+                    sum(x, y + 1) + sum(x + 1, y) - sum(x, y);
+    }
+    /// Mean over the square about a pixel, as far as it lies in the picture.
+    [[nodiscard]] Imath::V3d mean(int x, int y) {
+        constexpr int kRadius_px = 3;
+        const int x0 = std::max(0, x - kRadius_px), x1 = std::min(width_, x + kRadius_px + 1),
+                  y0 = std::max(0, y - kRadius_px), y1 = std::min(height_, y + kRadius_px + 1);
+        return (sum(x1, y1) - sum(x0, y1) - sum(x1, y0) + sum(x0, y0)) /
+               (double(x1 - x0) * double(y1 - y0));
+    }
+
+  private:
+    [[nodiscard]] Imath::V3d& sum(int x, int y) {
+        return sums_[static_cast<size_t>(y) * static_cast<size_t>(width_ + 1) +
+                     static_cast<size_t>(x)];
+    }
+    int width_, height_;
+    std::vector<Imath::V3d> sums_;  ///< of all pixels above and to the left
+};
+
+double floor_of(const Denoised& picture) {
+    SymmetricFloor floor;
+    for (const V3f& c : picture.colour) floor.add(double(luminance({c.x, c.y, c.z})));
+    return floor.floor();
+}
+
+}  // namespace
+
+double DenoisedError::least() const {
+    return std::sqrt(std::max(0., squared - kDeviations * deviation));
+}
+
+double DenoisedError::most() const {
+    return std::sqrt(std::max(0., squared + kDeviations * deviation));
+}
+
+double DenoisedError::value() const {
+    return is_at_most() ? most() : std::sqrt(squared);
+}
+
+std::string text_of(const DenoisedFilm& film) {
+    const auto text = [](const DenoisedError& error) {
+        return error.is_at_most() ? fmt::format("at most {}", percent(error.most()))
+                                  : fmt::format("{} ({} to {})", percent(error.value()),
+                                                percent(error.least()), percent(error.most()));
+    };
+    return fmt::format("denoised: error {}, and {} without", text(film.error), text(film.noisy));
+}
+
+std::shared_ptr<const DenoisedFilm> denoised_film(const Film& film, TbbExecutor& executor,
+                                                  const std::atomic<bool>& stop) {
+    std::optional<Denoised> picture = denoise(film, executor, &stop);
+    if (!picture) return nullptr;
+    auto out = std::make_shared<DenoisedFilm>();
+    out->picture = std::move(*picture);
+    out->floor_nits = floor_of(out->picture);
+    const Rect crop = film.crop();
+    Blocks denoised(crop.width(), crop.height()), noisy = denoised;
+    Surroundings surroundings(out->picture);
+    for (int y = crop.y0; y < crop.y1; ++y)
+        for (int x = crop.x0; x < crop.x1; ++x) {
+            const size_t at = out->picture.offset(x, y);
+            const V3f error = out->picture.squared_error[at];
+            const auto a = film.half(x, y, 0), b = film.half(x, y, 1);
+            const V3f apart = a.colour - b.colour;
+            const Imath::V3d bright = surroundings.mean(x - crop.x0, y - crop.y0);
+            double squares = 0, noise = 0, variance = 0;
+            for (int c = 0; c < 3; ++c) {
+                const double scale =
+                    3 * (bright[c] * bright[c] + out->floor_nits * out->floor_nits);
+                if (!(scale > 0)) continue;
+                squares += double(error[c]) / scale;
+                noise += double(apart[c]) * double(apart[c]) / (4 * scale);
+                variance += (double(a.variance[c]) + double(b.variance[c])) / (2 * scale);
+            }
+            denoised.add(x - crop.x0, y - crop.y0, squares, variance);
+            noisy.add(x - crop.x0, y - crop.y0, noise, 0);
+        }
+    const Rect all{0, 0, denoised.across, denoised.down};
+    out->error = denoised.over(all);
+    out->noisy = noisy.over(all);
+    const std::vector<float> about = errors_about(denoised);
+    out->error_about.reserve(out->picture.colour.size());
+    for (int y = 0; y < crop.height(); ++y)
+        for (int x = 0; x < crop.width(); ++x)
+            out->error_about.push_back(
+                about[static_cast<size_t>(y / kBlock_px * denoised.across + x / kBlock_px)]);
+    return out;
+}
+
+}  // namespace petzval

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "integrator/denoise/denoise.h"
+
+#include <immintrin.h>
+
+#include <vector>
+
+#include "integrator/denoise/half_tile.h"
+
+namespace petzval {
+namespace {
+
+constexpr int kTile = kDenoiserTile_px, kSide = HalfTile::kSide;
+/// Radius of the window, whose pixels a pixel is estimated from.
+constexpr int kWindow_px = 7;
+constexpr int kOffsets = (2 * kWindow_px + 1) * (2 * kWindow_px + 1);
+static_assert(kWindow_px + 1 + 2 + 2 <= kDenoiserReach_px,
+              "the window, patches, shared variances and lonely pixels");
+
+// Factors on differences of guides that bring them to about 1: of the distance's logarithm, where
+// it is a fourth more.
+constexpr float guide_scale(size_t g) {
+    return g < 3 ? 2.f : g == 6 ? 266.f : 1.f;
+}
+
+/// e^-a for a >= 0, to 2e-4: 2^x by its bits, and a polynomial in between.
+f8 exp_minus(f8 a) {
+    const f8 x = max(-1.44269504f * a, splat8(-100.f));
+    const m8 whole = __builtin_convertvector(x, m8) - 1;  // towards 0 and less: the rest is 0 to 1
+    const f8 rest = x - __builtin_convertvector(whole, f8);
+    const f8 half = 0.5f * rest;  // 2^rest is the square of 2^half
+    const f8 root =
+        1.f + half * (0.6931472f + half * (0.2402265f + half * (0.0555041f + half * 0.0096838f)));
+    return root * root * (f8)((whole + 127) << 23);
+}
+
+/// Weights of the pixels of a window, for all pixels of a tile.
+class WindowWeights {
+  public:
+    explicit WindowWeights(const HalfTile& half) : half_(half), weights_(kOffsets * kTile * kTile) {
+        int n = 0;
+        for (int dy = -kWindow_px; dy <= kWindow_px; ++dy)
+            for (int dx = -kWindow_px; dx <= kWindow_px; ++dx)
+                weigh(dy * kSide + dx, &weights_[static_cast<size_t>(kTile * kTile * n++)]);
+    }
+    /// Of eight pixels of the tile, and the n-th pixel of their windows.
+    [[nodiscard]] f8 of(int n, int x, int y) const {
+        return load8(&weights_[static_cast<size_t>((n * kTile + y) * kTile + x)]);
+    }
+
+  private:
+    void weigh(int offset, float* to) const;
+    [[nodiscard]] f8 distance(int i, int offset, f8& both) const;
+
+    const HalfTile& half_;
+    std::vector<float> weights_;
+};
+
+// Squared difference of eight pixels from others, without what their noise adds, in units of it
+// (Rousselle, Knaus and Zwicker 2012, "Adaptive Rendering with Non-Local Means Filtering",
+// equation 3).
+f8 WindowWeights::distance(int i, int offset, f8& both) const {
+    constexpr float kPrecision = 0.25f;  // k^2 of that equation
+    const auto p = static_cast<size_t>(i), q = static_cast<size_t>(i + offset);
+    f8 sum = splat8(0);
+    for (size_t c = 0; c < 3; ++c) {
+        const f8 e = load8(&half_.colour[c][p]) - load8(&half_.colour[c][q]);
+        const f8 own = load8(&half_.variance[c][p]), other = load8(&half_.variance[c][q]);
+        sum += (e * e - (own + min(own, other))) / (1e-10f + kPrecision * (own + other));
+    }
+    both = load8(&half_.inside[p]) * load8(&half_.inside[q]);
+    return both * (1.f / 3.f) * sum;
+}
+
+// Patches are of 3 x 3 pixels.
+void WindowWeights::weigh(int offset, float* to) const {
+    constexpr int kRow = kTile + 8;
+    std::array<float, (kTile + 2) * kRow> across, valid;  // sums of three in a row, and of pixels
+    std::array<float, kRow + 8> row, there;
+    for (int y = -1; y <= kTile; ++y) {
+        for (int x = -1; x < kTile + 1; x += 8) {
+            f8 both;
+            store8(&row[size_t(x + 1)], distance(HalfTile::index(x, y), offset, both));
+            store8(&there[size_t(x + 1)], both);
+        }
+        const auto at = static_cast<size_t>((y + 1) * kRow);
+        for (size_t x = 0; x < kTile; x += 8) {
+            store8(&across[at + x], load8(&row[x]) + load8(&row[x + 1]) + load8(&row[x + 2]));
+            store8(&valid[at + x], load8(&there[x]) + load8(&there[x + 1]) + load8(&there[x + 2]));
+        }
+    }
+    for (size_t y = 0; y < kTile; ++y)
+        for (size_t x = 0; x < kTile; x += 8) {
+            const size_t at = y * kRow + x;
+            const f8 sum =
+                load8(&across[at]) + load8(&across[at + kRow]) + load8(&across[at + 2 * kRow]);
+            const f8 count =
+                load8(&valid[at]) + load8(&valid[at + kRow]) + load8(&valid[at + 2 * kRow]);
+            const f8 mean = max(sum / max(count, splat8(1)), splat8(0));
+            const int other = HalfTile::index(static_cast<int>(x), static_cast<int>(y)) + offset;
+            store8(to + y * kTile + x,
+                   load8(&half_.inside[static_cast<size_t>(other)]) * exp_minus(mean));
+        }
+}
+
+/// Regressors of a pixel of the window: 1, differences of the guides, and its place.
+constexpr size_t kRegressors = 1 + kGuideNumbers + 2;
+using Regressors = std::array<f8, kRegressors>;
+
+/// Linear regression about eight pixels. The estimate of a pixel is the regression's value there: a
+/// sum over its window, of which the shares are solved for.
+class Regression {
+  public:
+    Regression(const HalfTile& half, const WindowWeights& weights, int x, int y)
+        : half_(half), weights_(weights), x_(x), y_(y), centre_(HalfTile::index(x, y)) {
+        for (size_t g = 0; g < kGuideNumbers; ++g)
+            own_[g] = load8(&half.guide[g][static_cast<size_t>(centre_)]);
+        add_up();
+        solve();
+    }
+    /// Estimates of R, G and B. Shares below 0 are left out: no estimate lies beyond the window's
+    /// values, none is negative.
+    [[nodiscard]] std::array<f8, 3> colour() const;
+
+  private:
+    // Calls use(weight, regressors, index) for the pixels of the window that have a weight.
+    template <class Use>
+    void each_pixel(const Use& use) const {
+        int n = 0;
+        for (int dy = -kWindow_px; dy <= kWindow_px; ++dy)
+            for (int dx = -kWindow_px; dx <= kWindow_px; ++dx, ++n) {
+                const f8 weight = weights_.of(n, x_, y_);
+                constexpr float kLeast = 1e-4f;
+                const m8 counts = weight > kLeast;
+                if (_mm256_movemask_ps((__m256)counts) == 0) continue;
+                const auto q = static_cast<size_t>(centre_ + dy * kSide + dx);
+                Regressors at;
+                at[0] = splat8(1);
+                for (size_t g = 0; g < kGuideNumbers; ++g)
+                    at[1 + g] = guide_scale(g) * (load8(&half_.guide[g][q]) - own_[g]);
+                at[1 + kGuideNumbers] = splat8(float(dx) / kWindow_px);
+                at[2 + kGuideNumbers] = splat8(float(dy) / kWindow_px);
+                use(counts ? weight : splat8(0), at, q);
+            }
+    }
+    void add_up();
+    void solve();
+
+    const HalfTile& half_;
+    const WindowWeights& weights_;
+    int x_, y_, centre_;
+    std::array<f8, kGuideNumbers> own_;
+    std::array<Regressors, kRegressors> matrix_{};  ///< lower half; then its Cholesky factor
+    Regressors shares_;
+};
+
+void Regression::add_up() {
+    each_pixel([&](f8 weight, const Regressors& at, size_t) {
+        for (size_t a = 0; a < kRegressors; ++a) {
+            const f8 weighted = weight * at[a];
+            for (size_t b = 0; b <= a; ++b) matrix_[a][b] += weighted * at[b];
+        }
+    });
+}
+
+// Solves matrix shares = (1, 0 ... 0), with a ridge (Hoerl and Kennard 1970) where the guides do
+// not vary.
+void Regression::solve() {
+    constexpr float kRidge = 1e-2f;
+    const f8 ridge = kRidge * matrix_[0][0] + 1e-12f;
+    for (size_t a = 1; a < kRegressors; ++a) matrix_[a][a] += ridge;
+    matrix_[0][0] += 1e-12f;
+    for (size_t a = 0; a < kRegressors; ++a)
+        for (size_t b = 0; b <= a; ++b) {
+            f8 rest = matrix_[a][b];
+            for (size_t k = 0; k < b; ++k) rest -= matrix_[a][k] * matrix_[b][k];
+            matrix_[a][b] = a == b ? sqrt(max(rest, splat8(1e-12f))) : rest / matrix_[b][b];
+        }
+    Regressors z;
+    for (size_t a = 0; a < kRegressors; ++a) {
+        f8 rest = splat8(a == 0 ? 1.f : 0.f);
+        for (size_t k = 0; k < a; ++k) rest -= matrix_[a][k] * z[k];
+        z[a] = rest / matrix_[a][a];
+    }
+    for (size_t a = kRegressors; a-- > 0;) {
+        f8 rest = z[a];
+        for (size_t k = a + 1; k < kRegressors; ++k) rest -= matrix_[k][a] * shares_[k];
+        shares_[a] = rest / matrix_[a][a];
+    }
+}
+
+std::array<f8, 3> Regression::colour() const {
+    f8 all = splat8(0);
+    std::array<f8, 3> sum{};
+    each_pixel([&](f8 weight, const Regressors& at, size_t q) {
+        f8 share = splat8(0);
+        for (size_t a = 0; a < kRegressors; ++a) share += shares_[a] * at[a];
+        share = weight * max(share, splat8(0));
+        all += share;
+        for (size_t c = 0; c < 3; ++c) sum[c] += share * load8(&half_.colour[c][q]);
+    });
+    // A pixel always has a weight for itself; beyond the frame there is none.
+    for (f8& c : sum) c /= max(all, splat8(1e-30f));
+    return sum;
+}
+
+using TileColours = std::array<std::array<float, kTile * kTile>, 3>;
+
+// Estimates of a tile from one half of its samples.
+void denoise_half(const Film& film, const Rect& tile, uint32_t number, TileColours& out) {
+    const auto half = std::make_unique<HalfTile>(film, V2i(tile.x0, tile.y0), number);
+    const WindowWeights weights(*half);
+    for (int y = 0; y < tile.height(); ++y)
+        for (int x = 0; x < tile.width(); x += 8) {
+            const auto colour = Regression(*half, weights, x, y).colour();
+            for (size_t c = 0; c < 3; ++c)
+                store8(&out[c][static_cast<size_t>(y * kTile + x)], colour[c]);
+        }
+}
+
+}  // namespace
+
+// The error follows from what is known of independent halves A and B: D(A) knows nothing of B's
+// noise, so that A B - D(A) B - D(B) A + ((D(A) + D(B)) / 2)^2 is on average the square of what the
+// mean of D(A) and D(B) is off.
+void denoise_tile(const Film& film, const Rect& tile, Denoised& out) {
+    std::array<TileColours, kHalves> found;
+    for (uint32_t half = 0; half < kHalves; ++half) denoise_half(film, tile, half, found[half]);
+    for (int y = tile.y0; y < tile.y1; ++y)
+        for (int x = tile.x0; x < tile.x1; ++x) {
+            const auto at = static_cast<size_t>((y - tile.y0) * kTile + (x - tile.x0));
+            const V3f a = film.half(x, y, 0).colour, b = film.half(x, y, 1).colour;
+            V3f &colour = out.colour[out.offset(x, y)],
+                &error = out.squared_error[out.offset(x, y)];
+            for (int c = 0; c < 3; ++c) {
+                const double of_a = double(found[0][size_t(c)][at]),
+                             of_b = double(found[1][size_t(c)][at]), mean = (of_a + of_b) / 2;
+                colour[c] = static_cast<float>(mean);
+                error[c] = static_cast<float>(double(a[c]) * double(b[c]) - of_a * double(b[c]) -
+                                              of_b * double(a[c]) + mean * mean);
+            }
+        }
+}
+
+}  // namespace petzval

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// Denoising from the command line: what is written, said and refused.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/cli.h"
+
+namespace petzval {
+namespace {
+
+using testing::HasSubstr;
+
+class CliDenoise : public CliTest {
+  protected:
+    [[nodiscard]] Finished denoised(Words more, const std::string& out = "a.exr") const {
+        Words words{"render", scene_,   "--threads",  "2",    "--size", "64x48",  "--denoise",
+                    "--env",  "studio", "--progress", "none", "-o",     path(out)};
+        words.insert(words.end(), more.begin(), more.end());
+        return run_petzval(words);
+    }
+    [[nodiscard]] nlohmann::json stats() const {
+        std::ifstream file(path("stats.json"));
+        return nlohmann::json::parse(file);
+    }
+};
+
+TEST_F(CliDenoise, TheDenoisedPictureStandsBesideTheOther) {
+    const Finished run = denoised({"--spp", "16", "--stats", path("stats.json")});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("denoised: error "));
+    const Picture picture = read_picture(path("a.exr"));
+    for (const char* channel : {"R", "denoised.R", "denoised.G", "denoised.B", "denoised.error"})
+        EXPECT_GE(channel_index(picture, channel), 0) << channel;
+    const nlohmann::json json = stats()["denoised"];
+    EXPECT_LE(json["picture"]["bounds"][0], json["picture"]["error"]);
+    EXPECT_LE(json["picture"]["error"], json["picture"]["bounds"][1]);
+    EXPECT_GT(json["noisy_picture"]["error"], 0);
+}
+
+TEST_F(CliDenoise, ADisplayShowsTheDenoisedPicture) {
+    ASSERT_EQ(denoised({"--spp", "4", "-o", path("a.png")}).exit_code, 0);
+    ASSERT_EQ(run_petzval({"image", "view", path("a.exr"), "-o", path("noisy.png")}).exit_code, 0);
+    EXPECT_NE(read_picture(path("a.png")).pixels, read_picture(path("noisy.png")).pixels);
+}
+
+TEST_F(CliDenoise, ACropHasTheBytesOfTheFrame) {
+    ASSERT_EQ(denoised({"--spp", "4"}).exit_code, 0);
+    ASSERT_EQ(denoised({"--spp", "4", "--crop", "20,10,21,13"}, "crop.exr").exit_code, 0);
+    const Picture whole = read_picture(path("a.exr")), crop = read_picture(path("crop.exr"));
+    ASSERT_EQ(crop.channels, whole.channels);
+    const size_t channels = whole.channels.size();
+    const auto red = static_cast<size_t>(channel_index(whole, "denoised.R"));
+    for (size_t y = 0; y < 13; ++y)
+        for (size_t x = 0; x < 21; ++x)
+            for (size_t c = red; c < red + 3; ++c)
+                ASSERT_EQ(crop.pixels[(y * 21 + x) * channels + c],
+                          whole.pixels[((y + 10) * 64 + x + 20) * channels + c]);
+}
+
+// Ranges of samples, and parts of the frame, that machines share.
+TEST_F(CliDenoise, StatesMergeToTheBytesOfOneRun) {
+    ASSERT_EQ(denoised({"--spp", "8"}).exit_code, 0);
+    const auto merged = [&](const Words& states) {
+        Words words{"merge"};
+        for (const auto& state : states) words.push_back(path(state));
+        words.insert(words.end(), {"-o", path("merged.exr")});
+        const Finished run = run_petzval(words);
+        EXPECT_EQ(run.exit_code, 0) << run.err;
+        return file_bytes(path("merged.exr"));
+    };
+    ASSERT_EQ(denoised({"--spp", "0:3"}, "1.state").exit_code, 0);
+    ASSERT_EQ(denoised({"--spp", "3:8"}, "2.state").exit_code, 0);
+    EXPECT_EQ(merged({"1.state", "2.state"}), file_bytes(path("a.exr")));
+    ASSERT_EQ(denoised({"--spp", "0:8", "--crop", "0,0,64,20"}, "3.state").exit_code, 0);
+    ASSERT_EQ(denoised({"--spp", "0:8", "--crop", "0,20,64,28"}, "4.state").exit_code, 0);
+    EXPECT_EQ(merged({"3.state", "4.state"}), file_bytes(path("a.exr")));
+    ASSERT_EQ(denoised({"--spp", "0:8", "--crop", "0,20,30,28"}, "5.state").exit_code, 0);
+    ASSERT_EQ(denoised({"--spp", "0:8", "--crop", "30,20,30,28"}, "6.state").exit_code, 0);
+    const Finished apart =
+        run_petzval({"merge", path("5.state"), path("6.state"), "-o", path("merged.exr")});
+    EXPECT_EQ(apart.exit_code, 1);
+    EXPECT_THAT(apart.err, HasSubstr("give those of all of the frame"));
+}
+
+TEST_F(CliDenoise, RendersUntilItsErrorIsBelowANoise) {
+    const Finished run = denoised({"--noise", "5%", "--stats", path("stats.json")});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_LE(stats()["denoised"]["picture"]["bounds"][1], 0.05);
+    const Finished bounded = denoised({"--noise", "0.01%", "--spp", "16"});
+    EXPECT_EQ(bounded.exit_code, 5) << bounded.err;
+    // A state goes on to a lower one, to the bytes of one run.
+    ASSERT_EQ(denoised({"--noise", "20%"}, "kept.state").exit_code, 0);
+    ASSERT_EQ(denoised({"--noise", "20%"}).exit_code, 0);
+    ASSERT_EQ(run_petzval({"merge", path("kept.state"), "-o", path("merged.exr")}).exit_code, 0);
+    EXPECT_EQ(file_bytes(path("merged.exr")), file_bytes(path("a.exr")));
+    const Finished on = run_petzval({"resume", path("kept.state"), "--noise", "5%"});
+    ASSERT_EQ(on.exit_code, 0) << on.err;
+    ASSERT_EQ(run_petzval({"merge", path("kept.state"), "-o", path("merged.exr")}).exit_code, 0);
+    ASSERT_EQ(denoised({"--noise", "5%"}).exit_code, 0);
+    EXPECT_EQ(file_bytes(path("merged.exr")), file_bytes(path("a.exr")));
+}
+
+TEST_F(CliDenoise, WhatDoesNotGoTogetherIsRefused) {
+    const std::pair<Words, const char*> wrong[] = {
+        {{"--noise", "5%", "--crop", "0,0,16,16"}, "the error is that of the full frame"},
+        {{"--bins", "400:700:20"}, "a film keeps no halves of spectra"},
+        {{"--spp", "1"}, "needs two halves of samples"}};
+    for (const auto& [words, why] : wrong) {
+        const Finished run = denoised(words);
+        EXPECT_EQ(run.exit_code, 2);
+        EXPECT_THAT(run.err, HasSubstr(why));
+    }
+}
+
+}  // namespace
+}  // namespace petzval

@@ -22,22 +22,25 @@ constexpr double kDeviations = 1.96;
 struct Blocks {
     int across = 0, down = 0;
     std::vector<double> sum, count;
-    std::vector<double> variance;  ///< of half of the samples, in the same units
+    /// Variances of half of the samples in the same units, and their squares.
+    std::vector<double> variance, variance_squares;
 
     Blocks(int width, int height)
         : across((width + kBlock_px - 1) / kBlock_px),
           down((height + kBlock_px - 1) / kBlock_px),
           sum(static_cast<size_t>(across) * static_cast<size_t>(down)),
           count(sum.size()),
-          variance(sum.size()) {}
+          variance(sum.size()),
+          variance_squares(sum.size()) {}
     void add(int x, int y, double value, double its_variance) {
         const auto at = static_cast<size_t>(y / kBlock_px * across + x / kBlock_px);
         sum[at] += value;
         variance[at] += its_variance;
+        variance_squares[at] += its_variance * its_variance;
         count[at] += 1;
     }
     /// Mean over a rectangle of blocks, and its deviation: from how the blocks part, or what it is
-    /// where noise that is in single pixels is as likely in each pixel of their block. Errors of
+    /// where noise that is in single pixels is as likely in others about them. Errors of
     /// neighbours are alike, as they share a window: two by two blocks are taken together.
     [[nodiscard]] DenoisedError over(const Rect& blocks) const;
 };
@@ -62,7 +65,11 @@ DenoisedError Blocks::over(const Rect& r) const {
     for (int y = r.y0; y < r.y1; ++y)
         for (int x = r.x0; x < r.x1; ++x) {
             const auto at = static_cast<size_t>(y * across + x);
-            chance += variance[at] * variance[at] / count[at];
+            if (!(variance[at] > 0)) continue;
+            // Pixels that have the noise, by how even it is (Kish 1965); but no less than 4 x 4.
+            constexpr double kLeastShare = 0.25;
+            const double alike = variance[at] * variance[at] / variance_squares[at];
+            chance += variance[at] * variance[at] / std::max(alike, kLeastShare * count[at]);
         }
     double squares = 0, groups = 0;
     each([&](double s, double n) {

@@ -19,9 +19,9 @@ namespace petzval {
 /// What guides a denoiser: the first surface that a sample sees which is not perfectly smooth, so
 /// that glass and mirrors are looked through.
 struct Guide {
-    bool hit = false;
-    V3f albedo{0.f}, normal{0.f};
-    float distance_m = 0;  ///< along the path
+    bool hit;  ///< or the rest is unset
+    V3f albedo, normal;
+    float distance_m;  ///< from the camera
 };
 
 /// Numbers of a guide, each within -1 and 1: albedo, normal, distance, and 1 where something was

@@ -39,7 +39,9 @@ class SampleBatch {
           job_(job),
           frame_px_(frame_px),
           film_(film),
-          stats_(stats) {}
+          stats_(stats),
+          has_layers_(film && !film->aovs().empty()),
+          has_guide_(film && film->keeps().halves) {}
 
     void add(SampleId id) {
         ids_[size_++] = id;
@@ -82,6 +84,7 @@ class SampleBatch {
     V2i frame_px_;
     Film* film_;
     PathStats& stats_;
+    bool has_layers_, has_guide_;
     size_t size_ = 0;
     std::array<SampleId, kMostFilmPoints> ids_;
     std::array<FilmPoint, kMostFilmPoints> points_;
@@ -118,10 +121,8 @@ void SampleBatch<Tracer>::trace(size_t i) {
     stats_.lens_lanes += rays.lanes;
     FilmSample sample;
     f4 light{};
-    float behind = 0.f;             // weight of the rays that left the scene, over all lanes
-    bool first = film_ != nullptr;  // layers are still to be filled in
-    const bool has_layers = film_ && !film_->aovs().empty();
-    const bool has_guide = film_ && film_->keeps().halves;
+    float behind = 0.f;  // weight of the rays that left the scene, over all lanes
+    bool layers = has_layers_, guide = has_guide_;  // are still to be filled in
     for (const CameraPath& path : rays) {
         FilmSample other;
         FilmSample& of_path = path.to_target ? other : sample;
@@ -129,16 +130,15 @@ void SampleBatch<Tracer>::trace(size_t i) {
         // What surfaces reflect of a target is found by other rays as well: it is worth the effort
         // by the weight.
         const float effort = path.to_target ? path.mis_weight : 1.f;
-        light += light_along(
-            path, i,
-            {path.ray, path.lanes, path.hero_decided, effort,
-             has_layers && first && !path.to_target, has_guide && first && !path.to_target},
-            of_path);
+        light += light_along(path, i,
+                             {path.ray, path.lanes, path.hero_decided, effort,
+                              layers && !path.to_target, guide && !path.to_target},
+                             of_path);
         if (path.to_target) {
             ++stats_.target_rays;
             continue;
         }
-        first = false;
+        layers = guide = false;
         behind += hsum(zero_off(path.lanes, path.weight)) * (1.f - sample.alpha);
     }
     if (!film_) return;

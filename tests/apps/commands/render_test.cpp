@@ -283,7 +283,8 @@ TEST_F(Cli, StatsOfARunHaveASchema) {
     EXPECT_TRUE(s.at("stopped_by").is_null());
     for (const char* phase : {"loading", "bvh", "planning", "rendering", "writing"})
         EXPECT_GT(s.at("phase_s").at(phase), 0) << phase;
-    EXPECT_EQ(s.at("phase_s").size(), 5u);
+    EXPECT_EQ(s.at("phase_s").at("denoising"), 0);
+    EXPECT_EQ(s.at("phase_s").size(), 6u);
     EXPECT_EQ(s.at("outputs").size(), 1u);
     EXPECT_NE(s.at("notices").dump().find("nothing lights this scene"), std::string::npos);
     const std::string warnings = s.at("warnings").dump();

@@ -232,6 +232,12 @@ void denoise_tile(const Film& film, const Rect& tile, Denoised& out) {
             const V3f a = film.half(x, y, 0).colour, b = film.half(x, y, 1).colour;
             V3f &colour = out.colour[out.offset(x, y)],
                 &error = out.squared_error[out.offset(x, y)];
+            if (film.sample_count(x, y) < kHalves) {  // one half knows nothing
+                const V4f all = film.colour(x, y);
+                colour = {all.x, all.y, all.z};
+                error = colour * colour;
+                continue;
+            }
             for (int c = 0; c < 3; ++c) {
                 const double of_a = double(found[0][size_t(c)][at]),
                              of_b = double(found[1][size_t(c)][at]), mean = (of_a + of_b) / 2;

@@ -172,6 +172,9 @@ TEST(Denoiser, BlackPicturesAndSinglePixelsAreNoFault) {
     for (const uint32_t samples : {0u, 1u, 2u, 3u})
         for (const V3f& colour : denoised(film_of(kSmooth, samples, 1, 6)).colour)
             for (int c = 0; c < 3; ++c) ASSERT_TRUE(std::isfinite(colour[c])) << samples;
+    // One sample stays as it is: the half without samples does not make it darker.
+    const Film single = film_of(kSmooth, 1, 1, 6);
+    EXPECT_EQ(denoised(single).colour[3 * kFrame.x + 5].x, single.colour(5, 3).x);
     Film film({1, 1}, {0, 0, 1, 1}, {}, {}, {.halves = true});
     FilmSample sample;
     sample.colour = Rgb(0.5f, 1, 2);

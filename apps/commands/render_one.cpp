@@ -193,7 +193,7 @@ void OneRender::write_state(const RenderResult& result, const RunFigures& figure
                             std::vector<WriteOutcome>& outcomes) {
     const auto& state = kept_.files().state;
     if (!state || !(result.stopped || kept_.files().state_stays)) return;
-    const bool partial = result.stopped || render_->film().has_blocks() || job_.denoised_error;
+    const bool partial = result.stopped || render_->film().keeps().blocks || job_.denoised_error;
     const SampleRange wanted{samples_.first, partial ? samples_.end : result.end_sample};
     const WriteOutcome& one =
         outcomes.emplace_back(write_or_rescue(*state, [&](const fs::path& to) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/spectrum/bands.h"
 #include "io/base/format.h"
@@ -17,6 +18,15 @@ namespace {
 constexpr int kBlock_px = 8;
 /// Two-sided 95 % of a normal distribution.
 constexpr double kDeviations = 1.96;
+
+// By how much wider such bounds are where a deviation is known from few numbers, which are its
+// degrees of freedom and one more: Student's t over kDeviations, Abramowitz and Stegun
+// 1964, 26.7.5.
+double widening(double numbers) {
+    constexpr double z = kDeviations, cube = z * z * z, fifth = cube * z * z;
+    const double degrees = numbers - 1;
+    return 1 + ((cube + z) / 4 + (5 * fifth + 16 * cube + 3 * z) / (96 * degrees)) / (degrees * z);
+}
 
 /// Sums over blocks of a picture, by block.
 struct Blocks {
@@ -76,35 +86,38 @@ DenoisedError Blocks::over(const Rect& r) const {
         squares += (s - n * mean) * (s - n * mean);
         groups += 1;
     });
-    const double parted = groups > 1 ? squares * groups / (groups - 1) : all * all;
-    return {mean, std::sqrt(std::max(parted, chance)) / pixels};
+    if (groups < 2) return {mean, std::sqrt(std::max(all * all, chance)) / pixels};
+    const double parted = squares * groups / (groups - 1);
+    return {mean, widening(groups) * std::sqrt(std::max(parted, chance)) / pixels};
 }
 
-// Root of a mean that is known to be no less than nothing.
-float shown(const DenoisedError& error) {
-    return static_cast<float>(std::sqrt(std::max(error.squared, error.deviation)));
-}
-
-// Error about each block: squares of blocks double until one knows its error well enough.
+// Error about each block. Squares of blocks double until one knows its error well enough; what a
+// smaller one knows to be less stays.
 std::vector<float> errors_about(const Blocks& blocks) {
     constexpr double kKnown = 0.6;  // of the square: 30 % of the root
-    std::vector<float> out(blocks.sum.size(),
-                           shown(blocks.over({0, 0, blocks.across, blocks.down})));
+    std::vector<float> out(blocks.sum.size(), std::numeric_limits<float>::infinity());
     std::vector<bool> known(out.size());
-    for (int side = 4; side < std::max(blocks.across, blocks.down); side *= 2)
+    const int longest = std::max(blocks.across, blocks.down);
+    const auto look = [&](int side) {
         for (int y = 0; y < blocks.down; y += side)
             for (int x = 0; x < blocks.across; x += side) {
                 const Rect square{x, y, std::min(x + side, blocks.across),
                                   std::min(y + side, blocks.down)};
                 const DenoisedError error = blocks.over(square);
-                if (!(error.deviation <= kKnown * error.squared)) continue;
+                const bool knows = error.deviation <= kKnown * error.squared;
+                const auto told =
+                    static_cast<float>(knows ? std::sqrt(error.squared) : error.most());
                 for (int v = square.y0; v < square.y1; ++v)
                     for (int u = square.x0; u < square.x1; ++u) {
                         const auto at = static_cast<size_t>(v * blocks.across + u);
-                        if (!known[at]) out[at] = shown(error);
-                        known[at] = true;
+                        if (!known[at]) out[at] = std::min(out[at], told);
+                        known[at] = known[at] || knows;
                     }
             }
+    };
+    int side = 4;
+    for (; side < longest; side *= 2) look(side);
+    look(side);
     return out;
 }
 

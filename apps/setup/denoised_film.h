@@ -17,7 +17,7 @@ namespace petzval {
 /// pixel's own brightness an error would look too small: light that is there by chance makes both.
 struct DenoisedError {
     double squared = 0;    ///< by the two halves, without bias: it may be negative
-    double deviation = 0;  ///< standard error of `squared`
+    double deviation = 0;  ///< standard error of `squared`, wider where few blocks tell it
 
     /// Bounds of the root with a chance of 95 %.
     [[nodiscard]] double least() const;
@@ -35,7 +35,7 @@ struct DenoisedFilm {
     DenoisedError error;    ///< of the whole
     DenoisedError noisy;    ///< of the picture that is not denoised, by the same measure
     /// Error about each pixel: of the smallest square that tells it to about a third, from 32
-    /// pixels on, or of the whole.
+    /// pixels on; or the least upper bound of squares about it, where that is less.
     std::vector<float> error_about;
 };
 

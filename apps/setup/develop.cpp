@@ -73,7 +73,7 @@ std::vector<std::string> channels_of(const Film& film, bool denoised) {
         for (const char* name : {"XYZ.X", "XYZ.Y", "XYZ.Z", "stderr.R", "stderr.G", "stderr.B"})
             names.emplace_back(name);
     }
-    if (film.has_blocks())
+    if (film.keeps().blocks)
         for (const char* name : {"samples.N", "stderr.R", "stderr.G", "stderr.B"})
             if (std::find(names.begin(), names.end(), name) == names.end())
                 names.emplace_back(name);
@@ -118,7 +118,7 @@ float* develop_pixel(const Film& film, const DenoisedFilm* denoised, uint32_t fi
         for (int i = 0; i < 3; ++i) error[i] = std::min(error[i], kUnknownError);
         put(error, 3);
     }
-    if (film.has_blocks()) {
+    if (film.keeps().blocks) {
         *out++ = static_cast<float>(film.sample_count(x, y));
         if (!film.spectral()) put(stated_error(film, x, y), 3);
     }

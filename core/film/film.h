@@ -100,8 +100,6 @@ class Film {
     [[nodiscard]] const std::vector<Aov>& aovs() const { return aovs_; }
     /// Spectral sums: bins, XYZ and errors; nothing unless the film was made with bins.
     [[nodiscard]] const std::optional<SpectralFilm>& spectral() const { return spectral_; }
-    /// Whether the film keeps what tells the noise.
-    [[nodiscard]] bool has_blocks() const { return blocks_.has_value(); }
     /// Closes a block of a pixel (film_blocks.h).
     void close_block(int x, int y) { blocks_->close(offset(x, y), mean(x, y)); }
     /// Parts of a pixel of a film with blocks.

@@ -22,13 +22,14 @@ namespace {
 
 std::string layer_of(const std::string& channel) {
     if (channel == "R" || channel == "G" || channel == "B") return "RGB";
+    if (channel.ends_with(".error")) return channel;  // of the layer, not a part of it
     const size_t point = channel.rfind('.');
     return point == std::string::npos ? channel : channel.substr(0, point);
 }
 
 /// Whether a layer is the light that luminances are made of.
 bool is_light(const std::string& layer) {
-    return layer == "RGB" || layer == "Y";
+    return layer == "RGB" || layer == "Y" || layer == "denoised";
 }
 
 /// Sums over the values of one layer.

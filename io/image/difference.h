@@ -19,8 +19,8 @@ namespace petzval {
 inline constexpr double kRelativeMseEpsilon = 0.01;
 
 /// Differences in one layer: "RGB", "A", or the name before the last point in the names of its
-/// channels. Values that are not finite in either picture are counted and left out of everything
-/// else.
+/// channels; the error of a layer is a layer of its own. Values that are not finite in either
+/// picture are counted and left out of everything else.
 struct LayerDifference {
     std::string layer;
     uint64_t value_count = 0;  ///< compared: pixels times channels

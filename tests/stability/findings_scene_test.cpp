@@ -143,6 +143,32 @@ TEST_F(Findings, RenderedNoise) {
     }
 }
 
+// Seeds are fixed: what may change are roundings, and with them which pixels are alike.
+TEST_F(Findings, DenoisedRareLight) {
+    take(denoised_rare_light());
+    for (size_t i = 0; i < rows(); ++i) {
+        const double found = value(i, "found"), kept = value(i, "kept");
+        EXPECT_LT(value(i, "squares"), 0.3) << i;
+        if (found > 20000) EXPECT_GT(kept, 98) << i;
+        if (found < 1000) EXPECT_LT(kept, 50) << i;
+        if (found > 20) EXPECT_GE(value(i, "held"), 90) << i;
+        if (found < 0.5) EXPECT_LE(value(i, "held"), 50) << i;
+    }
+    expect_where("0.01 1e-6");
+}
+
+TEST_F(Findings, DenoisedDetail) {
+    take(denoised_detail());
+    for (size_t i = 0; i < rows(); ++i) {
+        const double noise = value(i, "noise over detail"), kept = value(i, "kept");
+        EXPECT_LT(value(i, "squares"), 0.4) << i;
+        EXPECT_GE(value(i, "held"), 90) << i;
+        if (noise < 0.2) EXPECT_GT(kept, 98) << i;
+        if (noise > 0.9) EXPECT_LT(kept, 50) << i;
+    }
+    expect_where("1");
+}
+
 TEST_F(Findings, PlannedNoise) {
     take(planned_noise());
     for (size_t i = 0; i < rows(); ++i) {

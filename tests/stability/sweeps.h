@@ -108,6 +108,8 @@ class Draws {
 [[nodiscard]] Finding search_for_targets();
 [[nodiscard]] Finding planned_noise();
 [[nodiscard]] Finding rendered_noise();
+[[nodiscard]] Finding denoised_rare_light();
+[[nodiscard]] Finding denoised_detail();
 [[nodiscard]] Finding chains_of_glass();
 [[nodiscard]] Finding nested_volumes();
 [[nodiscard]] Finding stacks_of_cards();
@@ -143,6 +145,8 @@ inline constexpr Sweep kSweeps[] = {
     {"search-for-targets", search_for_targets},
     {"planned-noise", planned_noise},
     {"rendered-noise", rendered_noise},
+    {"denoised-rare-light", denoised_rare_light},
+    {"denoised-detail", denoised_detail},
     {"chains-of-glass", chains_of_glass},
     {"nested-volumes", nested_volumes},
     {"stacks-of-cards", stacks_of_cards},

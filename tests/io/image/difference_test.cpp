@@ -33,6 +33,18 @@ TEST(ImageDiff, EqualPictures) {
     EXPECT_EQ(layers[0].psnr_db, std::numeric_limits<double>::infinity());
 }
 
+// Else a per cent would be compared with nits.
+TEST(ImageDiff, TheErrorOfALayerIsALayerOfItsOwn) {
+    const Picture p =
+        noise(4, 3, {"R", "G", "B", "denoised.R", "denoised.G", "denoised.B", "denoised.error"});
+    const auto layers = compare(p, p);
+    ASSERT_EQ(layers.size(), 3u);
+    EXPECT_EQ(layers[1].layer, "denoised");
+    EXPECT_EQ(layers[1].symmetric_mse, 0.);
+    EXPECT_EQ(layers[2].layer, "denoised.error");
+    EXPECT_FALSE(layers[2].symmetric_mse);
+}
+
 TEST(ImageDiff, MatchesTheFormulas) {
     Picture a = picture(2, 1, {"R", "G", "B"}, {1.f, 2.f, 3.f, 0.f, 0.f, 0.f});
     Picture b = picture(2, 1, {"R", "G", "B"}, {1.f, 2.5f, 3.f, 0.f, 0.f, -2.f});

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is said of a denoised picture's error, where the truth is known.
+#include "apps/setup/denoised_film.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/statistics.h"
+
+namespace petzval {
+namespace {
+
+constexpr V2i kFrame{96, 96};
+constexpr float kTruth_nits = 2;
+
+/// Even light. A sample is the truth times a number whose mean is 1; `chance`: that it is not 0.
+std::shared_ptr<const DenoisedFilm> denoised_even_light(uint32_t seed, float chance_left,
+                                                        float chance_right) {
+    Film film(kFrame, {0, 0, kFrame.x, kFrame.y}, {}, {}, {.halves = true});
+    test::Random random(seed);
+    for (int y = 0; y < kFrame.y; ++y)
+        for (int x = 0; x < kFrame.x; ++x) {
+            const float chance = x < kFrame.x / 2 ? chance_left : chance_right;
+            for (uint32_t i = 0; i < 16; ++i) {
+                const float u = random.next(), v = random.next();
+                FilmSample sample;
+                sample.colour = Rgb(u < chance ? kTruth_nits * 2 * v / chance : 0.f);
+                film.add(x, y, i, sample);
+            }
+        }
+    TbbExecutor executor(1);
+    return denoised_film(film, executor, false);
+}
+
+/// Mean squared error of columns by the measure that DenoisedError states. The light is even, so
+/// that its mean over any square is the truth but for a few per cent.
+double true_squared(const DenoisedFilm& film, int x0, int x1) {
+    double squares = 0;
+    for (int y = 0; y < kFrame.y; ++y)
+        for (int x = x0; x < x1; ++x)
+            for (int c = 0; c < 3; ++c) {
+                const V3f& colour = film.picture.colour[film.picture.offset(x, y)];
+                squares += std::pow(double(colour[c]) - double(kTruth_nits), 2);
+            }
+    const double scale = double(kTruth_nits) * double(kTruth_nits);
+    return squares / (3. * (x1 - x0) * kFrame.y * (scale + film.floor_nits * film.floor_nits));
+}
+
+TEST(DenoisedFilm, ItsBoundsHoldTheTruth) {
+    constexpr int kPictures = 40;
+    for (const float chance : {1.f, 0.2f}) {
+        int outside = 0;
+        for (uint32_t seed = 0; seed < kPictures; ++seed) {
+            const auto film = denoised_even_light(seed + 1, chance, chance);
+            const double truth = std::sqrt(true_squared(*film, 0, kFrame.x));
+            outside += truth < film->error.least() || truth > film->error.most();
+        }
+        // Chance of so many, where each is outside with 5 %.
+        const double p = test::incomplete_beta(outside, kPictures - outside + 1, 0.05);
+        EXPECT_TRUE(outside == 0 || p > test::sidak()) << chance << ": " << outside;
+    }
+}
+
+// A noisy half beside a quiet one: each is told its own error, not that of the whole.
+TEST(DenoisedFilm, PartsAreToldTheirOwnError) {
+    constexpr int kPictures = 8, kMargin = 16;
+    double left = 0, right = 0, told_left = 0, told_right = 0;
+    for (uint32_t seed = 0; seed < kPictures; ++seed) {
+        const auto film = denoised_even_light(seed + 100, 0.05f, 1);
+        left += true_squared(*film, 0, kFrame.x / 2 - kMargin) / kPictures;
+        right += true_squared(*film, kFrame.x / 2 + kMargin, kFrame.x) / kPictures;
+        const int width = kFrame.x / 2 - kMargin;
+        for (int y = 0; y < kFrame.y; ++y)
+            for (int x = 0; x < width; ++x) {
+                const auto told = [&](int column) {
+                    const float error = film->error_about[film->picture.offset(column, y)];
+                    return double(error) * double(error) / (kPictures * width * kFrame.y);
+                };
+                told_left += told(x);
+                told_right += told(kFrame.x - 1 - x);
+            }
+    }
+    EXPECT_GT(left, 16 * right);
+    EXPECT_NEAR(std::sqrt(told_left / left), 1, 0.3);
+    // Less than its own noise: an upper bound, and still nothing of the left half.
+    EXPECT_GT(told_right, right);
+    EXPECT_LT(told_right, 9 * right);
+}
+
+TEST(DenoisedError, SaysAtMostWhereItIsBelowItsOwnNoise) {
+    const DenoisedError known{0.01, 0.001}, unknown{0.001, 0.001}, negative{-0.01, 0.001};
+    EXPECT_FALSE(known.is_at_most());
+    EXPECT_DOUBLE_EQ(known.value(), 0.1);
+    EXPECT_DOUBLE_EQ(known.least(), std::sqrt(0.01 - 0.00196));
+    EXPECT_DOUBLE_EQ(known.most(), std::sqrt(0.01 + 0.00196));
+    EXPECT_TRUE(unknown.is_at_most());
+    EXPECT_DOUBLE_EQ(unknown.value(), unknown.most());
+    EXPECT_EQ(unknown.least(), 0);
+    EXPECT_EQ(negative.most(), 0);
+}
+
+}  // namespace
+}  // namespace petzval

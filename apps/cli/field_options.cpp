@@ -32,7 +32,7 @@ CLI::Option* add(CLI::App& app, RenderOrder& order, const RequestField& field) {
     const std::string help = as_options(field.help);
     switch (field.form) {
         case FieldForm::Argument:
-            return app.add_option_function<std::string>("scene", set, help)->required();
+            return app.add_option_function<std::string>("SCENE", set, help)->required();
         case FieldForm::Switch:
             return app.add_flag_callback(
                 name, [set] { set("on"); }, help);

@@ -12,9 +12,9 @@ namespace petzval {
 namespace {
 
 struct Context {
-    RTCIntersectContext embree;  // first: Embree hands back a pointer to it
-    const Ray* ray;              // in world space; Embree's own is in that of the instance
-    explicit Context(const Ray& r) : ray(&r) { rtcInitIntersectContext(&embree); }
+    embree::Context of_embree = embree::new_context();  // first: Embree hands back a pointer to it
+    const Ray* ray;  // in world space; Embree's own is in that of the instance
+    explicit Context(const Ray& r) : ray(&r) {}
 };
 
 // Of a ray that looks for the nearest hit, and of one that wants all hits.
@@ -174,11 +174,10 @@ bool traceable(const Ray& r) {
     const Ray& r, float t_min, RTCFilterFunctionN also, const PassedBlends* passed) const {
     if (!traceable(r)) return std::nullopt;
     NearestContext context{Context(r), passed};
-    context.embree.filter = also;
     RTCRayHit query;
     query.ray = to_embree(r, t_min);
     query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(top, &context.embree, &query);
+    embree::intersect(top, context.of_embree, also, query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
     // Not Embree's own coordinates: they come from an approximate reciprocal, of which
     // processors of different makers have different ones.
@@ -187,9 +186,9 @@ bool traceable(const Ray& r) {
     return Hit{barycentric(scene, instance, triangle, r), instance, triangle, r.time};
 }
 
-bool Bvh::Impl::is_met(const Ray& r, RTCIntersectContext& context) const {
+bool Bvh::Impl::is_met(const Ray& r, embree::Context& context) const {
     RTCRay ray = to_embree(r);
-    rtcOccluded1(top, &context, &ray);
+    embree::occlude(top, context, ray);
     return ray.tfar < 0.f;
 }
 
@@ -205,23 +204,23 @@ std::optional<Hit> Bvh::intersect_front(const Ray& r, float t_min,
 
 bool Bvh::occluded(const Ray& r) const {
     ShadowContext context{Context(r)};
-    return traceable(r) && impl_->is_met(r, context.embree);
+    return traceable(r) && impl_->is_met(r, context.of_embree);
 }
 
 Passage Bvh::passage(const Ray& r) const {
     if (!traceable(r)) return {1.f, false};
     ShadowContext context{Context(r)};
     if (!impl_->has_blends) {
-        const bool met = impl_->is_met(r, context.embree);
+        const bool met = impl_->is_met(r, context.of_embree);
         return {met ? 0.f : 1.f, context.panes};
     }
     PassedBlends blends;
     context.blends = &blends;
-    if (impl_->is_met(r, context.embree)) return {0.f, context.panes};
+    if (impl_->is_met(r, context.of_embree)) return {0.f, context.panes};
     float left = 1.f;
     if (context.too_many) {
         context.blends = nullptr;
-        left = impl_->is_met(r, context.embree) ? 0.f : 1.f;
+        left = impl_->is_met(r, context.of_embree) ? 0.f : 1.f;
     } else if (blends.count > 0) {
         const auto begin = blends.passed.begin(), end = begin + blends.count;
         const auto place = [](const auto& p) { return std::pair(p.instance, p.triangle); };
@@ -235,11 +234,10 @@ std::vector<Hit> Bvh::all_hits(const Ray& r) const {
     std::vector<Hit> hits;
     if (!traceable(r) || impl_->scene.volume_boxes.empty()) return hits;
     AllContext context{{Context(r), nullptr}, &hits};
-    context.embree.filter = note;
     RTCRayHit query;
     query.ray = to_embree(r);
     query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(impl_->top, &context.embree, &query);
+    embree::intersect(impl_->top, context.of_embree, note, query);
     const auto place = [](const Hit& h) { return std::pair(h.instance, h.triangle); };
     std::sort(hits.begin(), hits.end(),
               [&](const Hit& a, const Hit& b) { return place(a) < place(b); });

@@ -37,7 +37,7 @@ void Bvh::Impl::check() const {
 
 RTCScene Bvh::Impl::new_scene(Traversal traversal) const {
     RTCScene made = rtcNewScene(device);
-    int flags = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
+    int flags = embree::kFilterOfCall;
     if (traversal == Traversal::Robust) flags |= RTC_SCENE_FLAG_ROBUST;
     rtcSetSceneFlags(made, static_cast<RTCSceneFlags>(flags));
     rtcSetSceneBuildQuality(made, RTC_BUILD_QUALITY_HIGH);

@@ -2,13 +2,12 @@
 // What a Bvh holds, for the files that build it and ask it.
 #pragma once
 
-#include <embree3/rtcore.h>
-
 #include <atomic>
 #include <deque>
 #include <map>
 
 #include "core/traversal/bvh.h"
+#include "core/traversal/embree.h"
 #include "core/traversal/mask_map.h"
 
 namespace petzval {
@@ -39,7 +38,7 @@ struct Bvh::Impl {
     [[nodiscard]] std::optional<Hit> nearest(const Ray&, float t_min, RTCFilterFunctionN also,
                                              const PassedBlends*) const;
     /// Whether a ray meets what its context does not let it pass.
-    [[nodiscard]] bool is_met(const Ray&, RTCIntersectContext&) const;
+    [[nodiscard]] bool is_met(const Ray&, embree::Context&) const;
 };
 
 }  // namespace petzval

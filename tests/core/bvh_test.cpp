@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/traversal/bvh.h"
 
-#include <embree3/rtcore.h>
 #include <gtest/gtest.h>
 
 #include <random>
@@ -9,6 +8,7 @@
 #include "core/light/light_sampling.h"
 #include "core/sampling/warp.h"
 #include "core/shading/surface.h"
+#include "core/traversal/embree.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 

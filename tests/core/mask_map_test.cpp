@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/traversal/mask_map.h"
 
-#include <embree3/rtcore.h>
 #include <gtest/gtest.h>
 
 #include <random>
@@ -9,6 +8,7 @@
 #include "core/sampling/warp.h"
 #include "core/scene/coverage.h"
 #include "core/traversal/barycentric.h"
+#include "core/traversal/embree.h"
 #include "tests/support/scenes.h"
 
 namespace petzval {
@@ -157,15 +157,14 @@ TEST(MaskMap, AnswersAsTheExactPlaceDoes) {
             for (int i = 0; i < 100000; ++i) {
                 const bool hard = i % 2 == 0;
                 const Ray ray = ray_to_some_triangle(scene, random, hard);
-                RTCIntersectContext context;
-                rtcInitIntersectContext(&context);
+                embree::Context context = embree::new_context();
                 RTCRayHit q{};
                 q.ray.org_x = ray.origin.x, q.ray.org_y = ray.origin.y, q.ray.org_z = ray.origin.z;
                 q.ray.dir_x = ray.direction.x, q.ray.dir_y = ray.direction.y;
                 q.ray.dir_z = ray.direction.z;
                 q.ray.tfar = kInfinity, q.ray.mask = ~0u;
                 q.hit.geomID = q.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-                rtcIntersect1(bvh.native(), &context, &q);
+                embree::intersect(bvh.native(), context, nullptr, q);
                 if (q.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
                 ++hits, easy += !hard;
                 const uint32_t instance = kind.instanced ? q.hit.instID[0] : 0;

@@ -3,7 +3,6 @@
 // nothing around the library's calls. One thread, CPU time, everything in one run.
 //
 //   replay SCENE [--look-at ...] [--fov ...] [--env ...] [--size ...] [--spp ...] [--traversal ...]
-#include <embree3/rtcore.h>
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -11,6 +10,7 @@
 
 #include "apps/request/parse.h"
 #include "apps/setup/render_setup.h"
+#include "core/traversal/embree.h"
 #include "integrator/path/path_impl.h"
 #include "integrator/render/executor.h"
 #include "integrator/render/render.h"
@@ -52,22 +52,21 @@ RTCRay bare(const Ray& r) {
 // Seconds to trace what was recorded, in the order of the render.
 double retrace_s(RTCScene scene, const std::vector<Ray>& nearest, const std::vector<Ray>& shadow) {
     struct {  // as in core/traversal/bvh.cpp: its filter reads the ray
-        RTCIntersectContext embree;
+        embree::Context of_embree = embree::new_context();
         const Ray* ray = nullptr;
     } context;
-    rtcInitIntersectContext(&context.embree);
     const double start_s = process_cpu_s();
     for (const Ray& r : nearest) {
         context.ray = &r;
         RTCRayHit query;
         query.ray = bare(r);
         query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect1(scene, &context.embree, &query);
+        embree::intersect(scene, context.of_embree, nullptr, query);
     }
     for (const Ray& r : shadow) {
         context.ray = &r;
         RTCRay query = bare(r);
-        rtcOccluded1(scene, &context.embree, &query);
+        embree::occlude(scene, context.of_embree, query);
     }
     return process_cpu_s() - start_s;
 }

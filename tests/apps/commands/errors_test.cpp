@@ -72,9 +72,9 @@ TEST_F(CliErrors, CommandLinesThatSayTooLittle) {
     EXPECT_NE(error_of({}, 2).find("needs a command"), std::string::npos);
     EXPECT_NE(error_of({"paint"}, 2).find("no command"), std::string::npos);
     EXPECT_NE(error_of({"image"}, 2).find("needs a command"), std::string::npos);
-    EXPECT_NE(error_of({"info"}, 2).find("scene"), std::string::npos);
+    EXPECT_NE(error_of({"info"}, 2).find("SCENE"), std::string::npos);
     EXPECT_NE(error_of({"render", scene_}, 2).find("--output"), std::string::npos);
-    EXPECT_NE(error_of({"render", "-o", path("out.exr")}, 2).find("scene"), std::string::npos);
+    EXPECT_NE(error_of({"render", "-o", path("out.exr")}, 2).find("SCENE"), std::string::npos);
 }
 
 TEST_F(CliErrors, WhatTheFileDoesNotHave) {

@@ -358,7 +358,7 @@ TEST_F(Plans, NeedlessOptionsAreLeftOutOfTheCommandAndOddWordsQuoted) {
 
 TEST_F(Plans, ArgumentsThatAreWrongEndWithTwo) {
     const std::pair<Words, const char*> cases[] = {
-        {{"plan"}, "scene is required"},
+        {{"plan"}, "SCENE is required"},
         {{"plan", scene_, "--tolerance", "0"}, "--tolerance: \"0\" is not a share"},
         {{"plan", scene_, "--tolerance", "101%"}, "is not a share such as 1% or 0.01"},
         {{"plan", scene_, "--tolerance", "%"}, "is not a share"},

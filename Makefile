@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-# Two commands for a fresh Debian 12: make render, make test. Everything else is CMake's.
+# Two commands for a fresh Debian 12 or 13: make render, make test. Everything else is CMake's.
 PACKAGES = cmake ninja-build ccache mold libembree-dev libtbb-dev libimath-dev libopenimageio-dev \
     openimageio-tools libopencolorio-dev libtinygltf-dev nlohmann-json3-dev libfmt-dev \
-    libcli11-dev libpugixml-dev libdraco-dev libmeshoptimizer-dev libfreetype-dev gnuplot-nox \
-    fonts-dejavu-core
-TEST_PACKAGES = libgtest-dev libgmock-dev libbenchmark-dev python3-numpy
+    libcli11-dev libpugixml-dev libdraco-dev libmeshoptimizer-dev libfreetype-dev
+# What draws plots, and the letters on contact sheets.
+OPTIONAL_PACKAGES = gnuplot-nox fonts-dejavu-core
+TEST_PACKAGES = $(OPTIONAL_PACKAGES) libgtest-dev libgmock-dev libbenchmark-dev python3-numpy
 LONG_PACKAGES = clang clang-tidy libclang-rt-dev gcovr debootstrap qemu-user
 SOURCES = git ls-files '*.h' '*.cpp'
+PREFIX = /usr/local
 
-.PHONY: render gallery test test-files test-long program build format format-check
+.PHONY: render gallery test test-files test-long program build install uninstall deb tarball format format-check
 
 render: program
 	mkdir -p out
@@ -17,6 +19,7 @@ render: program
 
 # About half an hour of CPU time; GALLERY_SPP=16 for a first look.
 gallery: program
+	@.ci/install_packages $(OPTIONAL_PACKAGES)
 	GALLERY_DOCS=docs/pictures/gallery tests/make/gallery.sh
 
 test: build
@@ -47,6 +50,25 @@ build:
 	@.ci/install_packages $(PACKAGES) $(TEST_PACKAGES)
 	cmake --preset release
 	cmake --build --preset release
+
+# The program, its manual, and what other programs link: under PREFIX, below DESTDIR.
+install: program
+	cmake --install build --prefix $(PREFIX)
+
+# Removes what was installed last, and the folders of its own that are empty then.
+uninstall:
+	sed 's|^|$(DESTDIR)|' build/install_manifest.txt | tr '\n' '\0' | xargs --null rm --force
+	sed 's|^|$(DESTDIR)|; s|/[^/]*$$||' build/install_manifest.txt | grep -i '/[a-z]*petzval' | sort --reverse --unique | \
+	    tr '\n' '\0' | xargs --null --no-run-if-empty rmdir --ignore-fail-on-non-empty
+
+# Debian packages for the release that this runs on: build/packages/*.deb
+deb: program
+	@.ci/install_packages dpkg-dev
+	cd build && cpack -G DEB -B packages
+
+# A folder with its libraries, for any Linux with glibc 2.36 or newer: build-tarball/petzval-*.tar.xz
+tarball:
+	apps/package/tarball.sh $(PACKAGES)
 
 format:
 	@.ci/install_packages clang-format

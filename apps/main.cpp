@@ -10,19 +10,11 @@
 #include <vector>
 
 #include "apps/cli/command_line.h"
-#include "apps/commands/chart.h"
+#include "apps/commands/all.h"
 #include "apps/commands/failure.h"
-#include "apps/commands/image/image.h"
-#include "apps/commands/info.h"
-#include "apps/commands/lens/lens.h"
-#include "apps/commands/merge.h"
-#include "apps/commands/plan.h"
-#include "apps/commands/render.h"
 #include "apps/commands/resume.h"
 #include "apps/commands/session.h"
-#include "apps/commands/trace_sample.h"
 #include "apps/request/value_error.h"
-#include "io/build/build.h"
 
 namespace {
 
@@ -79,23 +71,8 @@ int main(int argc, char** argv) {
     std::vector<std::string> words(argv + 1, argv + argc);
     const petzval::ConsoleWish wish = petzval::console_wish_of(words);
     Session session(wish.style, wish.quiet);
-    CLI::App app("A path tracer whose camera is a lens. Every command has --help.");
-    app.name("petzval");
-    app.option_defaults()->take_last();  // of an option that is given twice
-    app.set_version_flag("--version",
-                         petzval::program_version() + "\n" + petzval::build_description());
-    app.require_subcommand(1);
-    petzval::add_render_command(app, session);
-    petzval::add_resume_command(app, session);
-    petzval::add_merge_command(app, session);
-    petzval::add_plan_command(app);
-    petzval::add_chart_command(app, session);
-    petzval::add_info_command(app);
-    petzval::add_trace_sample_command(app, session);
-    petzval::add_image_commands(app);
-    petzval::add_lens_commands(app);
-    petzval::resolve_repeats(app);
-    app.footer("petzval help COMMAND prints what a command takes.");
+    CLI::App app;
+    petzval::add_all_commands(app, session);
     const int exit_code = finish_stdout(session, run(app, std::move(words), session));
     session.console.end(exit_code);
     return exit_code;

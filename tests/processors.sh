@@ -42,6 +42,12 @@ if ldd "$program" | grep -q libasan; then
     echo "qemu-user does not run the address sanitizer: no other processors"
 elif command -v qemu-x86_64 > /dev/null; then
     for cpu in Haswell EPYC; do compare "$cpu" qemu-x86_64 -cpu "$cpu" "$program" 2> /dev/null; done
+    # Older ones are told what they lack, and by no signal.
+    for cpu in Nehalem SandyBridge Haswell,-bmi2; do
+        qemu-x86_64 -cpu "$cpu" "$program" --version > "$out/said" 2>&1 && failed=1
+        grep -q '^petzval: this processor lacks .*BMI2.*; Petzval needs x86-64-v3' "$out/said" || failed=1
+        cat "$out/said"
+    done
 else
     echo "qemu-user is not installed: no other processors"
 fi

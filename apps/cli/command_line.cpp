@@ -12,6 +12,7 @@
 #include <iterator>
 #include <string_view>
 
+#include "apps/cli/command_tree.h"
 #include "apps/cli/field_options.h"
 #include "apps/request/fields.h"
 #include "apps/request/file_names.h"
@@ -27,15 +28,6 @@ using Words = std::vector<std::string>;
 
 bool is(const CLI::ParseError& error, CLI::ExitCodes code) {
     return error.get_exit_code() == static_cast<int>(code);
-}
-
-std::vector<const CLI::App*> commands_of(const CLI::App& app) {
-    return app.get_subcommands(std::function<bool(const CLI::App*)>());
-}
-
-// "petzval lens spot".
-std::string full_name(const CLI::App& app) {
-    return (app.get_parent() ? full_name(*app.get_parent()) + " " : "") + app.get_name();
 }
 
 bool is_option(const std::string& word) {

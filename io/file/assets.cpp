@@ -9,14 +9,11 @@
 namespace petzval {
 
 std::filesystem::path asset(const std::string& relative) {
-    namespace fs = std::filesystem;
+    std::filesystem::path there =
+        installed_file(std::filesystem::path(PETZVAL_ASSETS_FROM_BIN) / relative);
     std::error_code error;
-    const fs::path installed = file_beside_program(fs::path(PETZVAL_ASSETS_FROM_BIN) / relative);
-    if (fs::exists(installed, error)) return installed;
-    const fs::path in_source = fs::path(PETZVAL_SOURCE_ASSETS) / relative;
-    if (fs::exists(in_source, error)) return in_source;
-    throw InputError(installed.string(), "",
-                     "is missing; install Petzval again with cmake --install");
+    if (std::filesystem::exists(there, error)) return there;
+    throw InputError(there.string(), "", "is missing; install Petzval again with cmake --install");
 }
 
 }  // namespace petzval

@@ -7,8 +7,8 @@
 
 namespace petzval {
 
-/// Path of an asset: relative to the running program if that is an installed one, else in the
-/// source tree it was built from. relative: "color/config.ocio". Throws InputError if in neither.
+/// Path of an asset, of which that in the folder assets is relative: "color/config.ocio". Throws
+/// InputError where it is missing.
 [[nodiscard]] std::filesystem::path asset(const std::string& relative);
 
 }  // namespace petzval

@@ -1,14 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/file/program_file.h"
 
+#include <sys/auxv.h>
+
 #include <system_error>
 
-namespace petzval {
+// Folder of Petzval's own program, in those that PetzvalConfig.cmake gives this function.
+extern "C" [[gnu::weak]] const char* petzval_installed_bin();
 
-std::filesystem::path file_beside_program(const std::filesystem::path& relative) {
+namespace petzval {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Without /proc it is the name by which the program was started.
+fs::path own_folder() {
     std::error_code error;
-    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
-    return error ? std::filesystem::path{} : (program.parent_path() / relative).lexically_normal();
+    const fs::path linked = fs::read_symlink("/proc/self/exe", error);
+    if (!error) return linked.parent_path();
+    const auto* const started = reinterpret_cast<const char*>(::getauxval(AT_EXECFN));
+    return started ? fs::canonical(started, error).parent_path() : fs::path{};
+}
+
+}  // namespace
+
+fs::path installed_file(const fs::path& relative) {
+    std::error_code error;
+    fs::path beside = (own_folder() / relative).lexically_normal();
+    if (!petzval_installed_bin || fs::exists(beside, error)) return beside;
+    return (fs::path(petzval_installed_bin()) / relative).lexically_normal();
 }
 
 }  // namespace petzval

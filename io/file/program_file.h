@@ -5,8 +5,9 @@
 
 namespace petzval {
 
-/// Path of a file that is installed with this program, from its path relative to the program's
-/// folder. The file need not be there. Empty where the program's own path is not known.
-[[nodiscard]] std::filesystem::path file_beside_program(const std::filesystem::path& relative);
+/// Path of a file that is installed with Petzval, from its path relative to the folder of programs.
+/// It lies beside this program, or in the installation that a program of others found by
+/// find_package(Petzval). The file need not be there. Relative where nothing is known.
+[[nodiscard]] std::filesystem::path installed_file(const std::filesystem::path& relative);
 
 }  // namespace petzval

@@ -14,15 +14,6 @@
 namespace petzval {
 namespace {
 
-std::filesystem::path module_path() {
-    const std::filesystem::path path = file_beside_program(PETZVAL_IMAGE_CODEC_FROM_BIN);
-    if (path.empty())
-        throw InputError("/proc/self/exe", "",
-                         "cannot be read, and with it not found what is "
-                         "installed beside the program; mount /proc");
-    return path;
-}
-
 InputError cannot_load(const std::filesystem::path& path, const std::string& why) {
     return {path.string(), "",
             fmt::format("cannot be loaded ({}); install Petzval again with cmake --install", why)};
@@ -30,7 +21,7 @@ InputError cannot_load(const std::filesystem::path& path, const std::string& why
 
 /// The module's functions. The linker loads it once, and never unloads it.
 const ImageCodec& image_codec() {
-    const std::filesystem::path path = module_path();
+    const std::filesystem::path path = installed_file(PETZVAL_IMAGE_CODEC_FROM_BIN);
     const auto reason = [] {
         const char* text = ::dlerror();
         return std::string(text ? text : "no reason given");

@@ -1,0 +1,82 @@
+#!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
+# Makes a folder that runs on any Linux with glibc 2.36 or newer, without packages, and packs it:
+#
+#   apps/package/tarball.sh        build-tarball/petzval-VERSION-linux-x86_64.tar.xz
+#
+# OpenImageIO is built from the source that Debian 13 has, with the formats alone that Petzval reads and
+# writes: as Debian builds it, it needs 220 packages, some of them under the GPL. On Debian 12, whose
+# glibc is the oldest that is promised.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+source=$PWD build=$PWD/build-tarball
+mkdir -p "$build"
+.ci/install_packages "$@" libopenexr-dev libpng-dev libjpeg-dev libtiff-dev libwebp-dev zlib1g-dev \
+    robin-map-dev libboost-dev libboost-filesystem-dev libboost-thread-dev dpkg-dev xz-utils
+export SOURCE_DATE_EPOCH
+SOURCE_DATE_EPOCH=$(git log -1 --format=%ct)
+
+oiio=$build/oiio
+if [[ ! -f $oiio/lib/libOpenImageIO.so ]]; then
+    mkdir -p "$build/apt/lists/partial"
+    mirror=$(cat /etc/apt/sources.list /etc/apt/sources.list.d/* 2> /dev/null |
+        grep -oE 'https?://[^ ]*debian/?$|https?://[^ ]*debian ' | grep -v security | head -1)
+    echo "deb-src [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $mirror trixie main" \
+        > "$build/apt/sources.list"
+    (
+        cd "$build/apt"
+        from=(-o "Dir::Etc::SourceList=$PWD/sources.list" -o Dir::Etc::SourceParts=/dev/null
+            -o "Dir::State::Lists=$PWD/lists" -o APT::Sandbox::User=root)
+        apt-get "${from[@]}" update
+        apt-get "${from[@]}" source --tar-only --download-only openimageio
+        mkdir -p source
+        tar xf openimageio_*.orig.tar.xz -C source --strip-components=1
+    )
+    off=()
+    for format in bmp cineon dds dpx fits ico iff null pnm psd rla sgi softimage targa term tiff zfile; do
+        off+=("-DENABLE_${format^^}=OFF")
+    done
+    for package in PYTHON QT OPENCOLORIO FREETYPE OPENCV TBB GIF LIBHEIF LIBRAW OPENJPEG OPENVDB PTEX DCMTK \
+        FFMPEG NUKE R3DSDK; do
+        off+=("-DUSE_$package=OFF")
+    done
+    cmake -S "$build/apt/source" -B "$build/oiio-build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+        -DCMAKE_CXX_FLAGS="-ffile-prefix-map=$build=." -DCMAKE_CXX_STANDARD=17 \
+        -DCMAKE_INSTALL_PREFIX="$oiio" -DCMAKE_INSTALL_LIBDIR=lib -DEMBEDPLUGINS=ON \
+        -DOIIO_BUILD_TOOLS=OFF -DOIIO_BUILD_TESTS=OFF -DINSTALL_DOCS=OFF -DINSTALL_FONTS=OFF \
+        -DSTOP_ON_WARNING=OFF "${off[@]}"
+    cmake --build "$build/oiio-build"
+    cmake --install "$build/oiio-build" --strip
+fi
+
+cmake --preset tarball
+cmake --build --preset tarball
+version=$(sed -n 's/^CMAKE_PROJECT_VERSION:STATIC=//p' "$build/program/CMakeCache.txt")
+name=petzval-$version-linux-x86_64
+folder=$build/$name
+rm -rf "$folder"
+cmake --install "$build/program" --prefix "$folder" --strip --component program
+
+# Libraries that it needs, but for those of the C library; and what each of them is licensed under.
+mkdir -p "$folder/lib" "$folder/share/doc/petzval/licenses"
+needed() { ldd "$1" | sed -nE 's/.* => (\/[^ ]+) .*/\1/p'; }
+{
+    needed "$folder/bin/petzval"
+    LD_LIBRARY_PATH=$oiio/lib needed "$folder/lib/petzval/petzval_io_codec.so"
+} | sort -u | while read -r library; do
+    case ${library##*/} in libc.so.* | libm.so.* | libdl.so.* | libpthread.so.* | librt.so.*) continue ;; esac
+    install -m 644 "$library" "$folder/lib/"
+    if [[ $library == "$oiio"/* ]]; then
+        install -m 644 "$build/apt/source/LICENSE.md" "$folder/share/doc/petzval/licenses/openimageio"
+        continue
+    fi
+    package=$(dpkg-query --search "$(realpath "$library")" | sed 's/:.*//' | head -1)
+    install -m 644 "/usr/share/doc/$package/copyright" "$folder/share/doc/petzval/licenses/$package"
+done
+for package in libdraco-dev libmeshoptimizer-dev libfmt-dev libcli11-dev nlohmann-json3-dev libtinygltf-dev; do
+    install -m 644 "/usr/share/doc/$package/copyright" "$folder/share/doc/petzval/licenses/$package"
+done
+
+tar --create --sort=name --owner=0 --group=0 --numeric-owner --mtime="@$SOURCE_DATE_EPOCH" \
+    --mode=u+rwX,go+rX,go-w --directory "$build" "$name" | xz -6 --threads=1 > "$folder.tar.xz"
+ls -l "$folder.tar.xz"

@@ -5,9 +5,28 @@
 add_executable(petzval_manual apps/package/main.cpp)
 target_link_libraries(petzval_manual PRIVATE petzval_apps_commands petzval_apps_package)
 set(manual ${CMAKE_BINARY_DIR}/manual)
-add_custom_command(OUTPUT ${manual}/man/petzval.1 COMMAND petzval_manual ${manual}
+add_custom_command(OUTPUT ${manual}/man/petzval.1.gz
+    COMMAND ${CMAKE_COMMAND} -E rm -rf ${manual}
+    COMMAND petzval_manual ${manual}
+    COMMAND gzip --recursive --no-name --best ${manual}/man
     DEPENDS petzval_manual COMMENT "Writing manual pages and completions" VERBATIM)
-add_custom_target(petzval_manual_pages ALL DEPENDS ${manual}/man/petzval.1)
+add_custom_target(petzval_manual_pages ALL DEPENDS ${manual}/man/petzval.1.gz)
+
+# What Debian wants to know of a package: the date of its version, and its licence.
+file(STRINGS CHANGELOG.md released REGEX "^## ${PROJECT_VERSION}, ")
+string(REPLACE "## ${PROJECT_VERSION}, " "" released "${released}")
+execute_process(COMMAND date --utc --rfc-email --date "${released}"
+    OUTPUT_VARIABLE released OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+set(maintainer "Petzval's developers <petzval@example.org>")
+set(about ${CMAKE_BINARY_DIR}/about)
+file(CONFIGURE OUTPUT ${about}/changelog CONTENT
+"petzval (${PROJECT_VERSION}) unstable; urgency=medium
+
+  * petzval-doc has them: /usr/share/doc/petzval-doc/CHANGELOG.md.
+
+ -- ${maintainer}  ${released}
+")
+execute_process(COMMAND gzip --no-name --best --force ${about}/changelog COMMAND_ERROR_IS_FATAL ANY)
 
 set(docs ${CMAKE_INSTALL_DATADIR}/doc)
 install(TARGETS petzval COMPONENT program)
@@ -19,9 +38,13 @@ install(DIRECTORY ${manual}/bash/ COMPONENT program
     DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
 install(DIRECTORY ${manual}/zsh/ COMPONENT program
     DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
-install(FILES LICENSE DESTINATION ${docs}/petzval COMPONENT program)
-install(FILES LICENSE DESTINATION ${docs}/petzval-doc COMPONENT doc)
-install(FILES LICENSE DESTINATION ${docs}/libpetzval-dev COMPONENT dev)
+foreach(package petzval:program petzval-doc:doc libpetzval-dev:dev)
+    string(REPLACE ":" ";" package ${package})
+    list(GET package 0 name)
+    list(GET package 1 component)
+    install(FILES apps/package/copyright ${about}/changelog.gz DESTINATION ${docs}/${name}
+        COMPONENT ${component})
+endforeach()
 install(DIRECTORY docs DESTINATION ${docs}/petzval-doc COMPONENT doc)
 install(FILES README.md CHANGELOG.md DESTINATION ${docs}/petzval-doc COMPONENT doc)
 
@@ -63,7 +86,7 @@ install(FILES ${CMAKE_BINARY_DIR}/PetzvalConfig.cmake ${CMAKE_BINARY_DIR}/Petzva
 # Debian packages, by cpack -G DEB.
 set(CPACK_GENERATOR DEB)
 set(CPACK_COMPONENTS_ALL program doc dev)
-set(CPACK_PACKAGE_CONTACT "Petzval's developers <petzval@example.org>")
+set(CPACK_PACKAGE_CONTACT "${maintainer}")
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE
     GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
@@ -76,18 +99,18 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "fonts-dejavu-core")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "gnuplot-nox, petzval-doc")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "spectral path tracer whose camera is a real lens
- Petzval renders glTF scenes. Each wavelength's ray is traced through the glass
- surfaces of a lens prescription. Pictures are written as EXR, PNG and JPEG.")
+Petzval renders glTF scenes. Each wavelength's ray is traced through the glass
+surfaces of a lens prescription. Pictures are written as EXR, PNG and JPEG.")
 set(CPACK_DEBIAN_DOC_PACKAGE_NAME petzval-doc)
 set(CPACK_DEBIAN_DOC_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_DOC_PACKAGE_SECTION doc)
 set(CPACK_COMPONENT_DOC_DESCRIPTION "documentation of the path tracer Petzval
- Guides, the design, what was measured, and pictures.")
+Guides, the design, what was measured, and pictures.")
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libpetzval-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "petzval (= ${PROJECT_VERSION}), libembree-dev, libtbb-dev, \
 libimath-dev, libopencolorio-dev, libtinygltf-dev, nlohmann-json3-dev, libfmt-dev, libpugixml-dev, \
 libdraco-dev, libmeshoptimizer-dev")
 set(CPACK_COMPONENT_DEV_DESCRIPTION "headers and archives of the path tracer Petzval
- For programs that trace lenses, or that render scenes through them.")
+For programs that trace lenses, or that render scenes through them.")
 include(CPack)

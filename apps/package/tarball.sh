@@ -56,6 +56,7 @@ name=petzval-$version-linux-x86_64
 folder=$build/$name
 rm -rf "$folder"
 cmake --install "$build/program" --prefix "$folder" --strip --component program
+install -m 644 LICENSE "$folder/"
 
 # Libraries that it needs, but for those of the C library; and what each of them is licensed under.
 mkdir -p "$folder/lib" "$folder/share/doc/petzval/licenses"

@@ -26,14 +26,15 @@ scene="$there/share/petzval/scenes/first_light.glb"
 cmp "$out/program.exr" "$out/build.exr"
 
 # The manual has every option of --help, and nothing that a formatter does not understand.
-page="$there/share/man/man1/petzval-render.1"
+page="$out/render.1"
+zcat "$there/share/man/man1/petzval-render.1.gz" > "$page"
 "$there/bin/petzval" render --help all | grep -oE '^ +(-o,)?--[a-z-]+' | tr -d ' ' | sed 's/^-o,//' |
     while read -r option; do
         grep -qF -- "${option//-/\\-}" "$page" || fail "$page has no $option"
     done
 if command -v groff > /dev/null; then
-    for page in "$there"/share/man/man1/*.1; do
-        said=$(groff -man -Tutf8 -ww -z "$page" 2>&1)
+    for page in "$there"/share/man/man1/*.1.gz; do
+        said=$(zcat "$page" | groff -man -Tutf8 -ww -z 2>&1)
         [[ -z $said ]] || fail "$page: $said"
     done
 fi

@@ -11,7 +11,7 @@
 #   fuzz      the readers of files, and random lenses, FUZZ_SECONDS each (600)
 #   coverage  the share of the product's lines that the tests reach
 #   mutants   small faults on purpose: do the tests notice? MUTANTS of them (20)
-#   root      README's commands in a bare Debian 12 (root only)
+#   root      README's commands and packages in bare Debians 12 and 13 (root only)
 #
 # Goes on after a failure. Ends with a line for each part, and fails where one failed.
 set -u
@@ -48,7 +48,7 @@ coverage() {
         gcovr --root . --filter '(core|camera|integrator|io|apps)/' --sort-percentage --print-summary build-coverage
 }
 mutants() { python3 tests/measure/mutants.py --count "${MUTANTS:-20}"; }
-root() { tests/measure/roots.sh 12; }
+root() { tests/measure/roots.sh 12 && tests/measure/roots.sh 13; }
 
 status=0 results=()
 for part in "${parts[@]}"; do

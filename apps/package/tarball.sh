@@ -19,10 +19,8 @@ SOURCE_DATE_EPOCH=$(git log -1 --format=%ct)
 oiio=$build/oiio
 if [[ ! -f $oiio/lib/libOpenImageIO.so ]]; then
     mkdir -p "$build/apt/lists/partial"
-    mirror=$(cat /etc/apt/sources.list /etc/apt/sources.list.d/* 2> /dev/null |
-        grep -oE 'https?://[^ ]*debian/?$|https?://[^ ]*debian ' | grep -v security | head -1)
-    echo "deb-src [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $mirror trixie main" \
-        > "$build/apt/sources.list"
+    signed='[signed-by=/usr/share/keyrings/debian-archive-keyring.gpg]'
+    echo "deb-src $signed $(.ci/debian_mirror) trixie main" > "$build/apt/sources.list"
     (
         cd "$build/apt"
         from=(-o "Dir::Etc::SourceList=$PWD/sources.list" -o Dir::Etc::SourceParts=/dev/null
@@ -44,7 +42,7 @@ if [[ ! -f $oiio/lib/libOpenImageIO.so ]]; then
         -DCMAKE_CXX_FLAGS="-ffile-prefix-map=$build=." -DCMAKE_CXX_STANDARD=17 \
         -DCMAKE_INSTALL_PREFIX="$oiio" -DCMAKE_INSTALL_LIBDIR=lib -DEMBEDPLUGINS=ON \
         -DOIIO_BUILD_TOOLS=OFF -DOIIO_BUILD_TESTS=OFF -DINSTALL_DOCS=OFF -DINSTALL_FONTS=OFF \
-        -DSTOP_ON_WARNING=OFF "${off[@]}"
+        -DSTOP_ON_WARNING=OFF -DCMAKE_SKIP_RPATH=ON "${off[@]}"
     cmake --build "$build/oiio-build"
     cmake --install "$build/oiio-build" --strip
 fi
@@ -71,7 +69,9 @@ needed() { ldd "$1" | sed -nE 's/.* => (\/[^ ]+) .*/\1/p'; }
         install -m 644 "$build/apt/source/LICENSE.md" "$folder/share/doc/petzval/licenses/openimageio"
         continue
     fi
-    package=$(dpkg-query --search "$(realpath "$library")" | sed 's/:.*//' | head -1)
+    # Debian 12 knows some of them by their place before /lib became a link.
+    real=$(realpath "$library")
+    package=$({ dpkg-query --search "$real" "${real#/usr}" 2> /dev/null || true; } | sed -n '1s/:.*//p')
     install -m 644 "/usr/share/doc/$package/copyright" "$folder/share/doc/petzval/licenses/$package"
 done
 for package in libdraco-dev libmeshoptimizer-dev libfmt-dev libcli11-dev nlohmann-json3-dev libtinygltf-dev; do

@@ -402,12 +402,14 @@ int run(int argc, char** argv) {
         for (const auto& at : watched) {
             const uint64_t since_ms = at.since_ms, now = now_ms();
             if (since_ms == 0 || since_ms == UINT64_MAX || now < since_ms + 120000) continue;
-            fmt::print("FAULT: lens {} of seed {} takes over two minutes\n", at.number, seed);
+            fmt::print("FAULT: lens {} of seed {} takes over two minutes\n", at.number.load(),
+                       seed);
             std::fflush(stdout);
             std::_Exit(1);
         }
         if (ticks % 600 == 0) {
-            fmt::print("{} lenses, {} s, {} faults\n", tally.lenses, now_ms() / 1000, faults);
+            fmt::print("{} lenses, {} s, {} faults\n", tally.lenses.load(), now_ms() / 1000,
+                       faults.load());
             std::fflush(stdout);
         }
     }
@@ -416,8 +418,9 @@ int run(int argc, char** argv) {
         "{} lenses of seed {} from {} in {} s: {} faults; {} std::invalid_argument\n"
         "{} rays, {} passed, {} have another status as Duals; {} cameras, {} lit; {} focused; "
         "slowest lens {}: {} ms\n",
-        tally.lenses, seed, first, now_ms() / 1000, faults, tally.refused, tally.rays, tally.passed,
-        tally.differ, tally.cameras, tally.lit, tally.focused, tally.slowest, tally.slowest_ms);
+        tally.lenses.load(), seed, first, now_ms() / 1000, faults.load(), tally.refused.load(),
+        tally.rays.load(), tally.passed.load(), tally.differ.load(), tally.cameras.load(),
+        tally.lit.load(), tally.focused.load(), tally.slowest.load(), tally.slowest_ms.load());
     return faults > 0;
 }
 

@@ -3,6 +3,8 @@
 // observer.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/shading/thin_film.h"
 #include "core/spectrum/colorimetry.h"
 #include "io/spectra/spectra.h"

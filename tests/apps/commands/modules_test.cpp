@@ -18,6 +18,8 @@ class CliModules : public CliTest {
     /// A copy of the program in a folder bin, without its modules.
     [[nodiscard]] std::string installed_program() const {
         std::filesystem::create_directories(path("there/bin"));
+        std::filesystem::create_directories(path("there/share"));
+        std::filesystem::create_symlink(PETZVAL_ASSETS, path("there/share/petzval"));
         std::filesystem::copy_file(PETZVAL_PROGRAM, path("there/bin/petzval"));
         return path("there/bin/petzval");
     }

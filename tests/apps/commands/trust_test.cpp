@@ -106,6 +106,8 @@ TEST_F(Trust, AnotherBuildIsRefusedByName) {
     ASSERT_NE(ours, theirs);
     const fs::path there = (other.parent_path() / module).lexically_normal();
     fs::create_directories(there.parent_path());
+    fs::create_directories(folder_.path / "other/share");
+    fs::create_symlink(PETZVAL_ASSETS, folder_.path / "other/share/petzval");
     fs::copy_file(fs::path(PETZVAL_PROGRAM).parent_path() / module, there);
     const Words picture = words({"--spp", "2", "-o", path("p.exr")});
     const Finished unlike = run_with_alarm(picture, other);

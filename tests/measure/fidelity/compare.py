@@ -86,7 +86,8 @@ def read_png(path):
     with tempfile.TemporaryDirectory() as folder:
         def plane(what, planes):
             raw = os.path.join(folder, "picture.pnm")
-            run(read + ["--ch", what, "-d", "uint8", "-o", raw])
+            # OpenImageIO 2.5 writes PNM upside down where it is not told otherwise, and reads it so.
+            run(read + ["--ch", what, "-d", "uint8", "--attrib:type=int", "pnm:pfmflip", "0", "-o", raw])
             size = width * height * planes
             with open(raw, "rb") as file:
                 return numpy.frombuffer(file.read()[-size:], numpy.uint8).reshape(height, width, planes).astype(float)
@@ -101,7 +102,7 @@ def write_png(path, rgb):
         with open(raw, "wb") as file:
             file.write(b"P6 %d %d 255\n" % (rgb.shape[1], rgb.shape[0]))
             file.write(rgb.round().clip(0, 255).astype(numpy.uint8).tobytes())
-        run(["oiiotool", raw, "-o", path])
+        run(["oiiotool", "--iconfig", "pnm:pfmflip", "0", raw, "-o", path])
 
 
 def on_white(rgba):

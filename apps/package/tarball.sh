@@ -42,7 +42,8 @@ if [[ ! -f $oiio/lib/libOpenImageIO.so ]]; then
         -DCMAKE_CXX_FLAGS="-ffile-prefix-map=$build=." -DCMAKE_CXX_STANDARD=17 \
         -DCMAKE_INSTALL_PREFIX="$oiio" -DCMAKE_INSTALL_LIBDIR=lib -DEMBEDPLUGINS=ON \
         -DOIIO_BUILD_TOOLS=OFF -DOIIO_BUILD_TESTS=OFF -DINSTALL_DOCS=OFF -DINSTALL_FONTS=OFF \
-        -DSTOP_ON_WARNING=OFF -DCMAKE_SKIP_RPATH=ON "${off[@]}"
+        -DSTOP_ON_WARNING=OFF -DCMAKE_SKIP_RPATH=ON -DCMAKE_BUILD_WITH_INSTALL_RPATH=ON \
+        -DCMAKE_SHARED_LINKER_FLAGS=-Wl,--build-id=none "${off[@]}"
     cmake --build "$build/oiio-build"
     cmake --install "$build/oiio-build" --strip
 fi

@@ -54,12 +54,11 @@ build:
 # The program, its manual, and what other programs link: under PREFIX, below DESTDIR.
 install: program
 	cmake --install build --prefix $(PREFIX)
+	cp build/install_manifest.txt build/installed_files.txt  # tests install too
 
-# Removes what was installed last, and the folders of its own that are empty then.
+# With the same DESTDIR.
 uninstall:
-	sed 's|^|$(DESTDIR)|' build/install_manifest.txt | tr '\n' '\0' | xargs --null rm --force
-	sed 's|^|$(DESTDIR)|; s|/[^/]*$$||' build/install_manifest.txt | grep -i '/[a-z]*petzval' | sort --reverse --unique | \
-	    tr '\n' '\0' | xargs --null --no-run-if-empty rmdir --ignore-fail-on-non-empty
+	DESTDIR=$(DESTDIR) apps/package/uninstall.sh build/installed_files.txt
 
 # Debian packages for the release that this runs on: build/packages/*.deb
 deb: program

@@ -55,6 +55,12 @@ expect "$(complete_in_bash render "")" ""
 bash -n "$there/share/bash-completion/completions/petzval"
 if command -v zsh > /dev/null; then zsh -n "$there/share/zsh/vendor-completions/_petzval"; fi
 
+# Nothing of its own stays after it is removed.
+DESTDIR="$out/root" cmake --install "$build" --prefix /opt > "$out/log"
+DESTDIR="$out/root" "$source/apps/package/uninstall.sh" "$build/install_manifest.txt"
+left=$(find "$out/root" -iname '*petzval*' -o -type f)
+[[ -z $left ]] || fail "left after it was removed: $left"
+
 # Programs of others. What is linked is as it was built, with sanitizers or without.
 flags=$(sed -n 's/^CMAKE_CXX_FLAGS:STRING=//p' "$build/CMakeCache.txt")
 cmake -S "$source/tests/examples/outside" -B "$out/outside" -G Ninja -DCMAKE_BUILD_TYPE=Release \

@@ -1,0 +1,16 @@
+#!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
+# Removes what was installed last, and the folders of its own that are empty then:
+#
+#   [DESTDIR=...] apps/package/uninstall.sh LIST
+#
+# LIST: the install_manifest.txt that cmake --install wrote.
+set -euo pipefail
+sed "s|^|${DESTDIR:-}|" "$1" | while read -r file || [[ -n $file ]]; do
+    rm -f "$file"
+    folder=${file%/*}
+    while [[ $folder =~ /(lib)?[Pp]etzval(-dev|-doc|/|$) ]]; do
+        rmdir "$folder" 2> /dev/null || break
+        folder=${folder%/*}
+    done
+done

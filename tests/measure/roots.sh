@@ -32,11 +32,7 @@ if [[ $# -lt 2 ]]; then trap 'leave remove' EXIT; else trap leave EXIT; fi
 
 debootstrap --variant=minbase "$suite" "$folder/bare" "$mirror"
 cp -r /etc/apt/apt.conf.d "$folder/bare/etc/apt/"
-if [[ $suite == bookworm ]]; then
-    cp -r /etc/apt/sources.list* "$folder/bare/etc/apt/"
-else
-    echo "deb $mirror $suite main" > "$folder/bare/etc/apt/sources.list"
-fi
+echo "deb $mirror $suite main" > "$folder/bare/etc/apt/sources.list"
 cp /etc/resolv.conf "$folder/bare/etc/" 2> /dev/null || true
 chroot "$folder/bare" apt-get update
 cp -a "$folder/bare" "$folder/build"

@@ -53,19 +53,19 @@ build:
 
 # The program, its manual, and what other programs link: under PREFIX, below DESTDIR.
 install: program
-	cmake --install build --prefix $(PREFIX)
+	cmake --install build --prefix "$(PREFIX)"
 	cp build/install_manifest.txt build/installed_files.txt  # tests install too
 
 # With the same DESTDIR.
 uninstall:
-	DESTDIR=$(DESTDIR) apps/package/uninstall.sh build/installed_files.txt
+	DESTDIR="$(DESTDIR)" apps/package/uninstall.sh build/installed_files.txt
 
 # Debian packages for the release that this runs on: build/packages/*.deb
 deb: program
-	@.ci/install_packages dpkg-dev
+	@.ci/install_packages dpkg-dev file
 	cd build && cpack -G DEB -B packages
 
-# A folder with its libraries, for any Linux with glibc 2.36 or newer: build-tarball/petzval-*.tar.xz
+# A folder with its libraries, for any Linux with this one's glibc or newer: build-tarball/petzval-*.tar.xz
 tarball:
 	apps/package/tarball.sh $(PACKAGES)
 

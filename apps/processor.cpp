@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Asks the processor for what the program is built for, before any of that runs: this file is built
 // for every x86-64 processor.
+#include <cpuid.h>
 #include <unistd.h>
 
 #include <cstring>
@@ -26,10 +27,14 @@ void say(const char* text) {
     need(__builtin_cpu_supports("avx2"), "AVX2");
     need(__builtin_cpu_supports("bmi"), "BMI1");
     need(__builtin_cpu_supports("bmi2"), "BMI2");
-    need(__builtin_cpu_supports("f16c"), "F16C");
     need(__builtin_cpu_supports("fma"), "FMA");
-    need(__builtin_cpu_supports("lzcnt"), "LZCNT");
-    need(__builtin_cpu_supports("movbe"), "MOVBE");
+    // Compilers have no names for these, or only new ones: AMD 2024, "APM volume 3", appendix E.
+    unsigned a = 0, b = 0, basic = 0, extended = 0, d = 0;
+    __get_cpuid(1, &a, &b, &basic, &d);
+    __get_cpuid(0x80000001, &a, &b, &extended, &d);
+    need((basic >> 29 & 1) != 0, "F16C");
+    need((extended >> 5 & 1) != 0, "LZCNT");
+    need((basic >> 22 & 1) != 0, "MOVBE");
     if (!lacks) return;
     say("; Petzval needs " PETZVAL_PROCESSOR
         ", as Intel has it since Haswell (2013) and AMD since Excavator (2015)\n");

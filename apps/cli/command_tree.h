@@ -44,9 +44,11 @@ namespace petzval {
     return option.get_expected_max() > 0;
 }
 
-/// Whether its values are names of files.
-[[nodiscard]] inline bool takes_file(const CLI::Option& option) {
-    return option.get_type_name().find("FILE") != std::string::npos;
+/// Whether its values may be names of files: they are no numbers, and not one of some words.
+[[nodiscard]] inline bool may_take_file(const CLI::Option& option) {
+    for (const char* other : {"NUMBER", "INT", "FLOAT", "WORD"})
+        if (option.get_type_name().find(other) != std::string::npos) return false;
+    return true;
 }
 
 }  // namespace petzval

@@ -56,7 +56,7 @@ std::string zsh_option(const CLI::Option& option) {
         if (option.get_items_expected_max() > 1) spec = '*' + spec;
         if (takes_value(option))
             spec += ':' + escaped(option.get_type_name(), ":\\") + ':' +
-                    (takes_file(option) ? "_files" : "");
+                    (may_take_file(option) ? "_files" : "");
         out += ' ' + zsh_word(spec);
     }
     return out;

@@ -36,8 +36,14 @@ install(DIRECTORY assets/ DESTINATION ${CMAKE_INSTALL_DATADIR}/petzval COMPONENT
 install(DIRECTORY ${manual}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
 install(DIRECTORY ${manual}/bash/ COMPONENT program
     DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
-install(DIRECTORY ${manual}/zsh/ COMPONENT program
-    DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
+# Where Debian's zsh looks: for packages, and below /usr/local.
+install(CODE "set(folder site-functions)
+    if(CMAKE_INSTALL_PREFIX MATCHES \"/usr\$\")
+        set(folder vendor-completions)
+    endif()
+    file(INSTALL \"${manual}/zsh/_petzval\"
+        DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/zsh/\${folder}\")"
+    COMPONENT program)
 foreach(package petzval:program petzval-doc:doc libpetzval-dev:dev)
     string(REPLACE ":" ";" package ${package})
     list(GET package 0 name)

@@ -1,15 +1,14 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Makes a folder that runs on any Linux with glibc 2.36 or newer, without packages, and packs it:
+# Makes a folder that runs on any Linux with this one's glibc or newer, without packages, and packs it:
 #
 #   apps/package/tarball.sh        build-tarball/petzval-VERSION-linux-x86_64.tar.xz
 #
 # OpenImageIO is built from the source that Debian 13 has, with the formats alone that Petzval reads and
-# writes: as Debian builds it, it needs 220 packages, some of them under the GPL. On Debian 12, whose
-# glibc is the oldest that is promised.
+# writes: as Debian builds it, it needs 220 packages, some of them under the GPL.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-source=$PWD build=$PWD/build-tarball
+build=$PWD/build-tarball
 mkdir -p "$build"
 .ci/install_packages "$@" libopenexr-dev libpng-dev libjpeg-dev libtiff-dev libwebp-dev zlib1g-dev \
     robin-map-dev libboost-dev libboost-filesystem-dev libboost-thread-dev dpkg-dev xz-utils
@@ -39,7 +38,7 @@ if [[ ! -f $oiio/lib/libOpenImageIO.so ]]; then
         off+=("-DUSE_$package=OFF")
     done
     cmake -S "$build/apt/source" -B "$build/oiio-build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
-        -DCMAKE_CXX_FLAGS="-ffile-prefix-map=$build=." -DCMAKE_CXX_STANDARD=17 \
+        -DCMAKE_CXX_FLAGS="'-ffile-prefix-map=$build=.'" -DCMAKE_CXX_STANDARD=17 \
         -DCMAKE_INSTALL_PREFIX="$oiio" -DCMAKE_INSTALL_LIBDIR=lib -DEMBEDPLUGINS=ON \
         -DOIIO_BUILD_TOOLS=OFF -DOIIO_BUILD_TESTS=OFF -DINSTALL_DOCS=OFF -DINSTALL_FONTS=OFF \
         -DSTOP_ON_WARNING=OFF -DCMAKE_SKIP_RPATH=ON -DCMAKE_BUILD_WITH_INSTALL_RPATH=ON \
@@ -59,7 +58,7 @@ install -m 644 LICENSE "$folder/"
 
 # Libraries that it needs, but for those of the C library; and what each of them is licensed under.
 mkdir -p "$folder/lib" "$folder/share/doc/petzval/licenses"
-needed() { ldd "$1" | sed -nE 's/.* => (\/[^ ]+) .*/\1/p'; }
+needed() { ldd "$1" | sed -nE 's/.* => (\/.*) \(0x[0-9a-f]+\)$/\1/p'; }
 {
     needed "$folder/bin/petzval"
     LD_LIBRARY_PATH=$oiio/lib needed "$folder/lib/petzval/petzval_io_codec.so"
@@ -79,6 +78,10 @@ for package in libdraco-dev libmeshoptimizer-dev libfmt-dev libcli11-dev nlohman
     install -m 644 "/usr/share/doc/$package/copyright" "$folder/share/doc/petzval/licenses/$package"
 done
 
+promised="glibc 2.36" # of Debian 12
+if [[ $(getconf GNU_LIBC_VERSION) != "$promised" ]]; then
+    echo "made here, it needs $(getconf GNU_LIBC_VERSION); made on Debian 12, $promised is enough" >&2
+fi
 tar --create --sort=name --owner=0 --group=0 --numeric-owner --mtime="@$SOURCE_DATE_EPOCH" \
     --mode=u+rwX,go+rX,go-w --directory "$build" "$name" | xz -6 --threads=1 > "$folder.tar.xz"
 ls -l "$folder.tar.xz"

@@ -6,11 +6,12 @@
 #
 # LIST: the install_manifest.txt that cmake --install wrote.
 set -euo pipefail
-sed "s|^|${DESTDIR:-}|" "$1" | while read -r file || [[ -n $file ]]; do
+while read -r file || [[ -n $file ]]; do
+    file=${DESTDIR:-}$file
     rm -f "$file"
     folder=${file%/*}
     while [[ $folder =~ /(lib)?[Pp]etzval(-dev|-doc|/|$) ]]; do
         rmdir "$folder" 2> /dev/null || break
         folder=${folder%/*}
     done
-done
+done < "$1"

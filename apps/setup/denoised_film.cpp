@@ -25,6 +25,7 @@ constexpr double kDeviations = 1.96;
 double widening(double numbers) {
     constexpr double z = kDeviations, cube = z * z * z, fifth = cube * z * z;
     const double degrees = numbers - 1;
+    if (degrees < 3) return (degrees < 2 ? 12.706 : 4.303) / z;  // too few for the series
     return 1 + ((cube + z) / 4 + (5 * fifth + 16 * cube + 3 * z) / (96 * degrees)) / (degrees * z);
 }
 
@@ -105,8 +106,9 @@ std::vector<float> errors_about(const Blocks& blocks) {
                                   std::min(y + side, blocks.down)};
                 const DenoisedError error = blocks.over(square);
                 const bool knows = error.deviation <= kKnown * error.squared;
-                const auto told =
-                    static_cast<float>(knows ? std::sqrt(error.squared) : error.most());
+                // An estimate below 0 is noise, and not a better bound.
+                const double most = std::max(error.squared, 0.) + kDeviations * error.deviation;
+                const auto told = static_cast<float>(std::sqrt(knows ? error.squared : most));
                 for (int v = square.y0; v < square.y1; ++v)
                     for (int u = square.x0; u < square.x1; ++u) {
                         const auto at = static_cast<size_t>(v * blocks.across + u);

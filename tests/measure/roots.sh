@@ -72,6 +72,7 @@ chroot "$folder/bare" bash -ec '
 if [[ $suite == bookworm ]]; then
     chroot "$folder/build" make -C /petzval tarball
     debootstrap --variant=minbase trixie "$folder/newer" "$mirror"
+    mount -t proc proc "$folder/newer/proc"
     tar xf "$folder"/build/petzval/build-tarball/petzval-*.tar.xz -C "$folder/newer/tmp"
     chroot "$folder/newer" bash -ec '
         cd /tmp/petzval-*/

@@ -53,7 +53,7 @@ expect "$(complete_in_bash render x.glb --fst)" "--fstop"
 expect "$(complete_in_bash lens render --spp)" ""
 expect "$(complete_in_bash render "")" ""
 bash -n "$there/share/bash-completion/completions/petzval"
-if command -v zsh > /dev/null; then zsh -n "$there/share/zsh/vendor-completions/_petzval"; fi
+if command -v zsh > /dev/null; then zsh -n "$there/share/zsh/site-functions/_petzval"; fi
 
 # Nothing of its own stays after it is removed.
 DESTDIR="$out/root" cmake --install "$build" --prefix /opt > "$out/log"

@@ -9,6 +9,10 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 build=$PWD/build-tarball
+if [[ $build == *[[:space:]]* ]]; then
+    echo "$build: compilers take a name with blanks for two; copy the sources to a folder without" >&2
+    exit 1
+fi
 mkdir -p "$build"
 .ci/install_packages "$@" libopenexr-dev libpng-dev libjpeg-dev libtiff-dev libwebp-dev zlib1g-dev \
     robin-map-dev libboost-dev libboost-filesystem-dev libboost-thread-dev dpkg-dev xz-utils
@@ -38,7 +42,7 @@ if [[ ! -f $oiio/lib/libOpenImageIO.so ]]; then
         off+=("-DUSE_$package=OFF")
     done
     cmake -S "$build/apt/source" -B "$build/oiio-build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
-        -DCMAKE_CXX_FLAGS="'-ffile-prefix-map=$build=.'" -DCMAKE_CXX_STANDARD=17 \
+        -DCMAKE_CXX_FLAGS="-ffile-prefix-map=$build=." -DCMAKE_CXX_STANDARD=17 \
         -DCMAKE_INSTALL_PREFIX="$oiio" -DCMAKE_INSTALL_LIBDIR=lib -DEMBEDPLUGINS=ON \
         -DOIIO_BUILD_TOOLS=OFF -DOIIO_BUILD_TESTS=OFF -DINSTALL_DOCS=OFF -DINSTALL_FONTS=OFF \
         -DSTOP_ON_WARNING=OFF -DCMAKE_SKIP_RPATH=ON -DCMAKE_BUILD_WITH_INSTALL_RPATH=ON \

@@ -5,6 +5,8 @@
 
 #include <system_error>
 
+#include "io/base/error.h"
+
 // Folder of Petzval's own program, in those that PetzvalConfig.cmake gives this function.
 extern "C" [[gnu::weak]] const char* petzval_installed_bin();
 
@@ -19,7 +21,11 @@ fs::path own_folder() {
     const fs::path linked = fs::read_symlink("/proc/self/exe", error);
     if (!error) return linked.parent_path();
     const auto* const started = reinterpret_cast<const char*>(::getauxval(AT_EXECFN));
-    return started ? fs::canonical(started, error).parent_path() : fs::path{};
+    const fs::path named = fs::canonical(started ? started : "", error);
+    if (!error) return named.parent_path();
+    throw InputError("/proc/self/exe", "",
+                     "cannot be read, and with it not found what is installed beside the program; "
+                     "mount /proc");
 }
 
 }  // namespace

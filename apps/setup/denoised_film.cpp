@@ -129,7 +129,7 @@ class Surroundings {
     explicit Surroundings(const Denoised& picture)
         : width_(picture.crop.width()),
           height_(picture.crop.height()),
-          sums_(static_cast<size_t>(width_ + 1) * static_cast<size_t>(height_ + 1)) {
+          sums_(static_cast<size_t>(width_ + 1) * static_cast<size_t>(height_ + 1), Imath::V3d(0)) {
         for (int y = 0; y < height_; ++y)
             for (int x = 0; x < width_; ++x)
                 sum(x + 1, y + 1) =

@@ -9,10 +9,12 @@
 #include <string_view>
 
 #include "apps/request/option_text.h"
+#include "apps/request/value_error.h"
 #include "apps/setup/input_files.h"
 #include "apps/setup/memory.h"
 #include "apps/setup/spectral_wording.h"
 #include "integrator/render/noise_cells.h"
+#include "io/base/ascii.h"
 #include "io/base/error.h"
 #include "io/file/atomic_file.h"
 #include "io/file/rescue.h"
@@ -93,6 +95,26 @@ void require_memory(const std::vector<ChartCase>& cases, const ChartFrame& frame
 }
 
 }  // namespace
+
+ChartRequest chart_of(ChartRequest chart, const RenderRequest& render,
+                      const std::string& folder_option) {
+    // Endings of files: a folder that is named so was meant as one.
+    constexpr std::array<std::string_view, 6> kFiles{".csv",  ".exr", ".html",
+                                                     ".json", ".md",  ".png"};
+    const std::filesystem::path& folder = chart.subject.folder;
+    if (std::ranges::find(kFiles, lower(folder.extension().string())) != kFiles.end())
+        throw ValueError(
+            folder_option,
+            fmt::format("a report is a folder, and \"{}\" is named as a file; call it {}",
+                        folder.string(), (folder.parent_path() / folder.stem()).string()));
+    if (render.scene.spectral.bins)
+        throw ValueError("⟨bins⟩", "is for render; a chart's axis spectral has its own");
+    check(render);
+    chart.subject.request = resolved_scene(render);
+    chart.frame.size = chart.subject.request.size;
+    chart.frame.crop = pixels_of(render.crop, chart.frame.size);
+    return chart;
+}
 
 ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, RenderMonitor& monitor,
                        const Notice& notice,

@@ -4,6 +4,7 @@
 
 #include "apps/chart/chart_report.h"
 #include "apps/chart/chart_run.h"
+#include "apps/request/render_request.h"
 
 namespace petzval {
 
@@ -14,6 +15,11 @@ struct ChartRequest {
     double budget_s = 600;
     std::optional<std::filesystem::path> reference;  ///< in place of those that are rendered
 };
+
+/// The request about the scene, size and part of the frame of a render's. folder_option: name of
+/// the option that names the folder. Throws ValueError.
+[[nodiscard]] ChartRequest chart_of(ChartRequest, const RenderRequest&,
+                                    const std::string& folder_option);
 
 struct ChartOutcome {
     size_t measured = 0;   ///< cases whose files are written

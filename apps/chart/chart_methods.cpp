@@ -2,16 +2,20 @@
 #include "apps/chart/chart_methods.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "apps/chart/traversal_leaks.h"
 #include "apps/request/option_text.h"
+#include "apps/request/value_error.h"
 #include "apps/setup/equivalent_camera.h"
 #include "camera/iris/iris.h"
 #include "core/film/spectral_film.h"
 #include "io/aperture/aperture_file.h"
 #include "io/base/error.h"
+#include "io/base/nearest.h"
 #include "io/file/atomic_file.h"
 #include "io/image/picture_files.h"
 
@@ -342,6 +346,31 @@ std::vector<ChartCase> chart_cases(const std::vector<ChartAxis>& axes, const Cha
         for (ChartCase& one : maker.make(found, subject, open)) cases.push_back(std::move(one));
     }
     return cases;
+}
+
+std::vector<std::string> axis_words() {
+    std::vector<std::string> words;
+    for (const auto& [word, axis] : kOptionNames<ChartAxis>) words.emplace_back(word);
+    words.emplace_back("all");
+    return words;
+}
+
+std::vector<ChartAxis> parse_axes(const std::string& option,
+                                  const std::vector<std::string>& words) {
+    std::vector<ChartAxis> axes;
+    for (const auto& [word, axis] : kOptionNames<ChartAxis>) {
+        const auto asked = [&, name = word](const std::string& w) {
+            return w == name || w == "all";
+        };
+        if (words.empty() || std::any_of(words.begin(), words.end(), asked)) axes.push_back(axis);
+    }
+    const std::vector<std::string> known = axis_words();
+    for (const std::string& word : words)
+        if (std::ranges::find(known, word) == known.end())
+            throw ValueError(option,
+                             fmt::format("\"{}\" is none of {}{}", word, fmt::join(known, ", "),
+                                         did_you_mean(word, known)));
+    return axes;
 }
 
 }  // namespace petzval

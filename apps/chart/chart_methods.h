@@ -40,6 +40,12 @@ inline constexpr auto kOptionNames<ChartAxis> =
                                           {"precision", ChartAxis::Precision},
                                           {"noise", ChartAxis::Noise}});
 
+/// Words for the axes, and "all".
+[[nodiscard]] std::vector<std::string> axis_words();
+/// Axes of these words; all of them where there is none. Throws ValueError.
+[[nodiscard]] std::vector<ChartAxis> parse_axes(const std::string& option,
+                                                const std::vector<std::string>& words);
+
 struct ChartMethod {
     std::string name;
     SceneRequest scene;

@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <memory>
 #include <system_error>
 
@@ -14,8 +13,6 @@
 #include "apps/cli/readers.h"
 #include "apps/commands/session.h"
 #include "apps/request/parse.h"
-#include "io/base/ascii.h"
-#include "io/base/nearest.h"
 #include "io/image/picture_files.h"
 
 namespace petzval {
@@ -29,25 +26,13 @@ struct ChartOptions {
     std::string budget = "10m";
 };
 
-/// Endings of files: a folder that is named so was meant as one.
-constexpr std::array<std::string_view, 6> kFiles{".csv", ".exr", ".html", ".json", ".md", ".png"};
-
-std::vector<std::string> axis_words() {
-    std::vector<std::string> words;
-    for (const auto& [word, axis] : kOptionNames<ChartAxis>) words.emplace_back(word);
-    words.emplace_back("all");
-    return words;
-}
-
-std::string known_axes() {
-    return fmt::format("{}", fmt::join(axis_words(), ", "));
-}
-
 void add_chart_options(CLI::App& app, ChartOptions& o) {
     ChartRequest& r = o.request;
     o.order.render.scene.size = {192, 108};
     add_field_options(app, o.order, kChart);
-    app.add_option("--axis", o.axes, known_axes() + "; default all; may be given more than once")
+    app.add_option("--axis", o.axes,
+                   fmt::format("{}", fmt::join(axis_words(), ", ")) +
+                       "; default all; may be given more than once")
         ->allow_extra_args(false);
     app.add_option("-o,--output", r.subject.folder, "folder of the report; made if need be")
         ->required();
@@ -60,40 +45,11 @@ void add_chart_options(CLI::App& app, ChartOptions& o) {
         ->transform(number_between(-100, 100, kStops));
 }
 
-std::vector<ChartAxis> parse_axes(const std::vector<std::string>& words) {
-    std::vector<ChartAxis> axes;
-    for (const auto& [word, axis] : kOptionNames<ChartAxis>) {
-        const auto asked = [&, name = word](const std::string& w) {
-            return w == name || w == "all";
-        };
-        if (words.empty() || std::any_of(words.begin(), words.end(), asked)) axes.push_back(axis);
-    }
-    for (const std::string& word : words) {
-        const auto named = [&](const auto& known) { return known.name == word; };
-        if (word != "all" && std::ranges::none_of(kOptionNames<ChartAxis>, named))
-            throw ValueError("--axis", fmt::format("\"{}\" is none of {}{}", word, known_axes(),
-                                                   did_you_mean(word, axis_words())));
-    }
-    return axes;
-}
-
 void resolve(ChartOptions& o) {
     ChartRequest& r = o.request;
-    SceneRequest& scene = r.subject.request;
-    const std::filesystem::path& folder = r.subject.folder;
-    if (std::ranges::find(kFiles, lower(folder.extension().string())) != kFiles.end())
-        throw ValueError(
-            "--output",
-            fmt::format("a report is a folder, and \"{}\" is named as a file; type -o {}",
-                        folder.string(), (folder.parent_path() / folder.stem()).string()));
-    r.axes = parse_axes(o.axes);
+    r.axes = parse_axes("--axis", o.axes);
     r.budget_s = parse_duration_s("--budget", o.budget);
-    if (o.order.render.scene.spectral.bins)
-        throw ValueError("--bins", "is for render; a chart's axis spectral has its own");
-    check(o.order.render);
-    scene = resolved_scene(o.order.render);
-    r.frame.size = scene.size;
-    r.frame.crop = pixels_of(o.order.render.crop, scene.size);
+    r = chart_of(std::move(r), o.order.render, "--output");
 }
 
 void print_case(const MeasuredCase& of) {

@@ -87,7 +87,7 @@ int merge(const MergeOptions& o, Session& session) {
         const bool told = std::find(pictures.begin(), pictures.end(), one.wanted) != pictures.end();
         if (!one.written() && !told) session.console.error(one.message());
     }
-    tell_bad_samples(film, notice);
+    if (const auto told = left_out_text(film)) notice(*told);
     if (!written) return kOutputFailed;
     return noise && noise->left > 0 ? kNoiseLeft : kSuccess;
 }

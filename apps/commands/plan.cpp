@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <cstdlib>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "apps/cli/console.h"
 #include "apps/cli/field_options.h"
 #include "apps/plan/plan.h"
+#include "apps/plan/plan_json.h"
 #include "apps/plan/plan_wording.h"
 #include "apps/setup/input_files.h"
 #include "io/base/format.h"
@@ -108,23 +108,7 @@ void print(const Plan& plan, const Commands& commands) {
 }
 
 void print_json(const Plan& plan, const Commands& commands) {
-    nlohmann::ordered_json out;
-    for (const PlanLine& line : lines_of(plan)) {
-        nlohmann::ordered_json one{{"chosen", line.chosen}, {"reason", line.reason}};
-        one["predicted_error"] = line.error ? nlohmann::ordered_json(*line.error) : nullptr;
-        out[line.choice] = one;
-    }
-    out["samples"] = plan.samples;
-    if (const auto times = times_without_targets(plan))
-        out["targets"] = {{"lamps", plan.rare.targeted}, {"times_samples_without", *times}};
-    out["predicted_error"] = plan.error();
-    out["predicted_bias"] = plan.bias;
-    out["predicted_noise"] = plan.noise;
-    out["noise_at_least"] = plan.noise_at_least;
-    if (plan.noise_at_least) out["noise_at_least_because"] = rare_text(plan);
-    out["predicted_cpu_s"] = plan.cpu_s;
-    out["predicted_wall_s"] = {Plan::kLeastTime * plan.wall_s(), plan.wall_s(),
-                               Plan::kMostTime * plan.wall_s()};
+    nlohmann::ordered_json out = json_of(plan);
     out["command"] = commands.samples;
     out["command_to_noise"] = commands.noise ? nlohmann::ordered_json(*commands.noise) : nullptr;
     // Names of files need not be UTF-8.

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cinttypes>
 
-#include "apps/cli/display_options.h"
 #include "apps/setup/develop.h"
+#include "apps/setup/display_setup.h"
 #include "apps/setup/input_files.h"
 #include "io/base/error.h"
 #include "io/image/picture_files.h"
@@ -67,24 +67,6 @@ std::vector<std::string> settle_display(RenderOrder& order, const RenderFiles& f
     if (std::string told = resolve_display(display); !told.empty())
         remarks.push_back(std::move(told));
     return remarks;
-}
-
-void tell_bad_samples(const Film& film, const Notice& notice) {
-    const Film::LeftOut bad = film.left_out();
-    if (bad.count() == 0) return;
-    std::string text;
-    if (bad.not_finite > 0) text = fmt::format("{} samples were not finite", bad.not_finite);
-    if (bad.too_large > 0)
-        text += fmt::format(
-            "{}{} samples were brighter than {:.2g} nits{}, which is more than a film holds",
-            text.empty() ? "" : "; ", bad.too_large, FilmSum::kLimit,
-            film.spectral() ? fmt::format(", or than {:.2g} W/(m2 sr nm)", SpectralSum::kLimit)
-            : film.aovs().empty() ? ""
-                                  : ", or a layer was as large");
-    text += fmt::format("; they are left out, the first is sample {} of pixel {},{}", bad.index,
-                        bad.x, bad.y);
-    if (bad.too_large > 0) text += "; --clamp keeps them, or give the lights less strength";
-    notice("warning: " + text);
 }
 
 std::vector<WriteOutcome> write_pictures(const std::vector<fs::path>& outputs,

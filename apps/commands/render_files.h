@@ -28,9 +28,6 @@ void check_outputs(RenderOrder&, const RenderFiles&);
                                                        const DisplayOptions&, const FinishedFilm&,
                                                        bool stopped, Console&);
 
-/// Tells of samples that were left out of a film.
-void tell_bad_samples(const Film&, const Notice&);
-
 /// Whether a picture is there already that was made from the same command and inputs. Without
 /// samples any number of them will do, as where a time limit decides.
 [[nodiscard]] bool is_up_to_date(const std::filesystem::path&, const RenderFacts&, const FilmShape&,

@@ -13,7 +13,6 @@
 #include "apps/setup/develop.h"
 #include "apps/setup/exposure.h"
 #include "apps/setup/input_files.h"
-#include "apps/setup/memory.h"
 #include "apps/setup/stats_file.h"
 #include "apps/state/keeper.h"
 #include "io/base/clock.h"
@@ -42,7 +41,6 @@ class OneRender {
         session_.console.forget_messages();  // of the pictures before
         remarks_ = settle_display(order_, kept_.files());
         shape_ = shape_of(order.render);
-        require_memory();
         check_outputs(order_, kept_.files());
         samples_ = {job_.first_sample, job_.end_sample};
     }
@@ -50,7 +48,6 @@ class OneRender {
 
   private:
     [[nodiscard]] static RenderFiles checked_files(const RenderOrder&);
-    void require_memory() const;
     [[nodiscard]] const RenderSetup& setup() const { return render_->setup(); }
     [[nodiscard]] const DisplayOptions& display() const { return render_->display(); }
     [[nodiscard]] const std::vector<fs::path>& pictures() const { return kept_.files().pictures; }
@@ -85,14 +82,6 @@ class OneRender {
 RenderFiles OneRender::checked_files(const RenderOrder& order) {
     check(order);
     return files_of(order);
-}
-
-void OneRender::require_memory() const {
-    const SceneRequest& scene = order_.render.scene;
-    const uint64_t there_bytes =
-        std::min(usable_memory_bytes(), scene.picture_memory_bytes.value_or(UINT64_MAX));
-    if (const auto shortage = memory_shortage(double(shape_.bytes()), there_bytes))
-        throw OutOfMemory("--size: " + *shortage);
 }
 
 ProgressGoal OneRender::goal(std::pair<int, int> part_of) const {
@@ -272,7 +261,7 @@ FoundChoices OneRender::found() const {
     FoundChoices found;
     const CameraRequest& asked = order_.render.scene.camera;
     const CameraReport& camera = setup().from.camera;
-    if (setup().prepared.cameras->empty() && !asked.look_at)
+    if (setup().prepared.cameras->empty() && !asked.look_at && !asked.pose)
         found.look_at = {camera.eye, camera.target};
     if (asked.orbit_deg && !asked.orbit_about) found.orbit_about = camera.orbit_about;
     const bool is_open = !asked.focus || std::holds_alternative<FocusAuto>(*asked.focus);
@@ -310,7 +299,7 @@ int OneRender::run(SequencePlace& place) {
     session_.interrupt.monitor().pixel_samples_done = before;
     progress.set_before(before, kept_.record().figures.render_wall_s);
     const RenderResult result = render(progress);
-    tell_bad_samples(render_->film(), notice_);
+    if (const auto told = left_out_text(render_->film())) notice_(*told);
     return write_all(result, progress, place);
 }
 

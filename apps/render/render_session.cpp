@@ -12,6 +12,7 @@
 #include "apps/plan/plan_wording.h"
 #include "apps/setup/develop.h"
 #include "apps/setup/input_files.h"
+#include "apps/setup/memory.h"
 #include "apps/setup/spectral_wording.h"
 #include "apps/state/finished_film.h"
 #include "integrator/render/render.h"
@@ -85,6 +86,11 @@ void RenderSession::prepare(const RenderRequest& asked, const Notice& notice,
     const FilmShape shape = std::exchange(shape_, {});
     RenderSetup before = std::exchange(setup_, {});
     check(asked);
+    shape_ = shape_of(asked);
+    const uint64_t there_bytes =
+        std::min(usable_memory_bytes(), asked.scene.picture_memory_bytes.value_or(UINT64_MAX));
+    if (const auto shortage = memory_shortage(double(shape_.bytes()), there_bytes))
+        throw OutOfMemory("⟨size⟩: " + *shortage);
     SceneRequest scene = resolved_scene(asked);
     const auto inputs = hashes_of_inputs(scene);
     const uint32_t first = job_.first_sample;
@@ -103,7 +109,6 @@ void RenderSession::prepare(const RenderRequest& asked, const Notice& notice,
     load_image_codec();  // before hours of work: a picture will be written
     choose_display(notice);
     warn_of_lamps(notice);
-    shape_ = shape_of(asked);
     if (std::ranges::find(asked.layers, Aov::Velocity) != asked.layers.end()) {
         const double fps = asked.moment.fps;
         next_ = set_up_velocity(setup_, fps);
@@ -274,9 +279,12 @@ PictureRows RenderSession::shown() const {
     return to_display(rows, d.exposure_ev, d.view, AlphaUse::Keep, d.config);
 }
 
+PictureRows RenderSession::picture(const std::filesystem::path& file) const {
+    return picture_for(file, {*film_, complete(), facts_, noise(*film_), denoised_});
+}
+
 void RenderSession::write(const std::filesystem::path& file) const {
-    write_output(file, picture_for(file, {*film_, complete(), facts_, noise(*film_), denoised_}),
-                 display_);
+    write_output(file, picture(file), display_);
 }
 
 FoundExposure RenderSession::find_exposure() {

@@ -95,6 +95,8 @@ class RenderSession {
     [[nodiscard]] PictureRows light() const;
     /// The picture so far as a display shows it.
     [[nodiscard]] PictureRows shown() const;
+    /// The picture so far with what a file of that name says of it. Also at a pause.
+    [[nodiscard]] PictureRows picture(const std::filesystem::path&) const;
     /// Writes the picture so far, as the command line writes it. Throws OutputError.
     void write(const std::filesystem::path&) const;
 

@@ -36,6 +36,10 @@ std::vector<RequestField> place_fields() {
             "look-at", in::camera(&CameraRequest::look_at),
             "ex,ey,ez,tx,ty,tz: eye and target in metres", parse_look_at,
             [](const std::array<V3f, 2>& aim) { return text_of(aim[0]) + "," + text_of(aim[1]); })),
+        parsed("pose", in::camera(&CameraRequest::pose),
+               "12 numbers, the rows of a 3x4 matrix to the world in metres: its columns point "
+               "right, up and back, and to the eye",
+               parse_pose, text_of_pose),
         number("orbit", in::camera(&CameraRequest::orbit_deg), {-kMost, kMost, kDegrees},
                "turn the camera about the scene: degrees, counter-clockwise from above"),
         method(parsed(
@@ -46,14 +50,16 @@ std::vector<RequestField> place_fields() {
         common(number("fov", in::camera(&CameraRequest::fov_deg),
                       {kSmallestFov_deg, kLargestFov_deg, kDegrees},
                       "vertical angle of view in degrees")),
-        parsed(
-            "sensor", in::camera(&CameraRequest::sensor_mm),
-            "WxH in mm, cropped to the picture's aspect (default 36x24, or what a lens covers "
-            "of it)",
-            [](const std::string& option, const std::string& text) {
-                return parse_sensor(option, text, kLeast, kMost);
-            },
-            [](const V2f& mm) { return fmt::format("{}x{}", mm.x, mm.y); }),
+        with_between(
+            parsed(
+                "sensor", in::camera(&CameraRequest::sensor_mm),
+                "WxH in mm, cropped to the picture's aspect (default 36x24, or what a lens covers "
+                "of it)",
+                [](const std::string& option, const std::string& text) {
+                    return parse_sensor(option, text, kLeast, kMost);
+                },
+                [](const V2f& mm) { return fmt::format("{}x{}", mm.x, mm.y); }),
+            'x'),
         common(parsed("focus", in::camera(&CameraRequest::focus),
                       "sharp plane: its distance from the entrance pupil (1.5m, 30cm, 5ft; 1.5 is "
                       "metres), infinity, the pixel x,y, or auto",

@@ -159,6 +159,11 @@ RequestField list(const std::string& name, Member member, std::string help, Comp
     return field;
 }
 
+/// The field, as one whose numbers have this between them.
+inline RequestField with_between(RequestField field, char between) {
+    field.between = between;
+    return field;
+}
 /// The field, as one that most people need.
 inline RequestField common(RequestField field) {
     field.level = FieldLevel::Common;

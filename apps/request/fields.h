@@ -43,6 +43,7 @@ struct RequestField {
     FieldPart part = FieldPart::Picture;
     FieldForm form = FieldForm::Value;
     FieldLevel level = FieldLevel::More;
+    char between = ',';  ///< numbers of a text that holds several
     /// Reads a value from its text. Throws ValueError.
     std::function<void(RenderOrder&, const std::string& text)> set;
     /// Texts from which set() reads what an order holds; none where it holds nothing.

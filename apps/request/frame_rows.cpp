@@ -28,6 +28,7 @@ RequestField spp_field() {
     field.help =
         "samples of each pixel (default 64); or A:B: only these of them, and their sums in "
         "NAME.state, for petzval merge";
+    field.between = ':';
     field.set = [](RenderOrder& order, const std::string& text) {
         SampleRequest& samples = order.render.samples;
         samples.count.reset();
@@ -62,9 +63,11 @@ std::vector<RequestField> sample_fields() {
 
 std::vector<RequestField> size_fields() {
     return {
-        common(parsed("size", in::scene(&SceneRequest::size),
-                      "WIDTHxHEIGHT in pixels (default 1280x720; of a chart 192x108)", parse_size,
-                      [](V2i size) { return fmt::format("{}x{}", size.x, size.y); })),
+        common(with_between(
+            parsed("size", in::scene(&SceneRequest::size),
+                   "WIDTHxHEIGHT in pixels (default 1280x720; of a chart 192x108)", parse_size,
+                   [](V2i size) { return fmt::format("{}x{}", size.x, size.y); }),
+            'x')),
         parsed(
             "crop", in::render(&RenderRequest::crop),
             "x,y,width,height: only these pixels of the full frame; I/N: the I-th of N bands, as "

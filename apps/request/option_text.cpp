@@ -23,7 +23,7 @@ std::string option_of(const std::string& name) {
 
 }  // namespace
 
-std::string as_options(const std::string& message) {
+std::string with_names(const std::string& message, const NameSpelling& spelling) {
     constexpr std::string_view kOpen = "⟨", kClose = "⟩";
     std::string text;
     size_t done = 0;
@@ -36,16 +36,21 @@ std::string as_options(const std::string& message) {
             return (c >= 'a' && c <= 'z') || c == '-';
         });
         text += message.substr(done, open - done);
-        if (is_name)
-            text += option_of(name);
-        else
-            text += message.substr(open, name_at - open);
         done = is_name ? close + kClose.size() : name_at;
-        if (is_name && done < message.size() && message[done] == '=' && !is_method(name)) {
-            text += ' ';
-            ++done;
+        if (!is_name) {
+            text += kOpen;
+            continue;
         }
+        const bool has_value = done < message.size() && message[done] == '=';
+        text += spelling(name, has_value);
+        done += has_value;
     }
+}
+
+std::string as_options(const std::string& message) {
+    return with_names(message, [](const std::string& name, bool has_value) {
+        return option_of(name) + (!has_value ? "" : is_method(name) ? "=" : " ");
+    });
 }
 
 }  // namespace petzval

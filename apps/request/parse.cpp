@@ -56,6 +56,13 @@ std::vector<float> parse_all(const std::string& option, const std::string& text,
     return values;
 }
 
+// Keeps what is computed from a place inside the numbers of a camera.
+void require_near(const std::string& option, float m) {
+    constexpr float kFarthest_m = 1e12f;
+    if (std::fabs(m) > kFarthest_m)
+        throw ValueError(option, fmt::format("{:g} m is too far away", m));
+}
+
 }  // namespace
 
 std::vector<float> parse_numbers(const std::string& option, const std::string& text, size_t n) {
@@ -340,15 +347,43 @@ void add_aovs(const std::string& option, const std::string& list, std::vector<Ao
 }
 
 std::array<V3f, 2> parse_look_at(const std::string& option, const std::string& text) {
-    constexpr float kFarthest_m = 1e12f, kNearest_m = 1e-12f;
+    constexpr float kNearest_m = 1e-12f;
     const auto v = parse_lengths_m(option, text, 6);
-    for (const float x : v)
-        if (std::fabs(x) > kFarthest_m)
-            throw ValueError(option, fmt::format("{:g} m is too far away", x));
+    for (const float x : v) require_near(option, x);
     const std::array<V3f, 2> aim{V3f(v[0], v[1], v[2]), V3f(v[3], v[4], v[5])};
     if ((aim[0] - aim[1]).length() < kNearest_m)
         throw ValueError(option, "eye and target are the same point");
     return aim;
+}
+
+M44f parse_pose(const std::string& option, const std::string& text) {
+    constexpr float kSlack = 1e-3f;  ///< matrices are written with few digits
+    const auto v = parse_numbers(option, text, 12);
+    M44f pose;
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 4; ++column) pose[column][row] = v[size_t(4 * row + column)];
+    const V3f right(pose[0][0], pose[0][1], pose[0][2]), up(pose[1][0], pose[1][1], pose[1][2]),
+        back(pose[2][0], pose[2][1], pose[2][2]);
+    for (const V3f& axis : {right, up, back})
+        if (std::fabs(axis.length() - 1) > kSlack)
+            throw ValueError(
+                option,
+                fmt::format("its columns 1 to 3 must have length 1, not {:.4g}", axis.length()));
+    for (const float cosine : {right.dot(up), up.dot(back), back.dot(right)})
+        if (std::fabs(cosine) > kSlack)
+            throw ValueError(option, "its columns 1 to 3 must be square to each other");
+    if (right.cross(up).dot(back) < 0)
+        throw ValueError(option, "mirrors: its columns must point right, up and back");
+    for (int i = 0; i < 3; ++i) require_near(option, pose[3][i]);
+    return pose;
+}
+
+std::string text_of_pose(const M44f& pose) {
+    std::string text;
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 4; ++column)
+            text += fmt::format("{}{}", text.empty() ? "" : ",", pose[column][row]);
+    return text;
 }
 
 std::vector<int> parse_frames(const std::string& option, const std::string& text) {

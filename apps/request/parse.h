@@ -65,6 +65,11 @@ void check_inside(const std::string& option, const Focus&, V2i frame);
 void add_aovs(const std::string& option, const std::string& list, std::vector<Aov>& layers);
 /// Eye and target in metres from "ex,ey,ez,tx,ty,tz": two points.
 [[nodiscard]] std::array<V3f, 2> parse_look_at(const std::string& option, const std::string& text);
+/// Pose of a camera: 12 numbers, the rows of a 3x4 matrix from the camera's space to the world, in
+/// metres. Its first three columns must be a rotation.
+[[nodiscard]] M44f parse_pose(const std::string& option, const std::string& text);
+/// Text that parse_pose() reads.
+[[nodiscard]] std::string text_of_pose(const M44f&);
 /// Numbers of frames from "1:48" (both are rendered), "1:48:2" (every second one) or "7": whole
 /// numbers from 0, at most 100,000 of them.
 [[nodiscard]] std::vector<int> parse_frames(const std::string& option, const std::string& text);

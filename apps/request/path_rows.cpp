@@ -65,14 +65,16 @@ std::vector<RequestField> spectrum_fields() {
             "spectral", in::spectral(&SpectralRequest::mode),
             "what a path carries: rgb, wavelengths (four), or auto (default): wavelengths where "
             "something depends on them and rgb is not surely within ⟨tolerance⟩")),
-        parsed("bins", in::spectral(&SpectralRequest::bins),
-               "FIRST:LAST:WIDTH in nm, as 380:730:10: a spectrum for each pixel of the EXR, with "
-               "its standard error",
-               parse_bins,
-               [](const Bins& bins) {
-                   return fmt::format("{}:{}:{}", bins.first_edge_nm, bins.last_edge_nm(),
-                                      bins.width_nm);
-               }),
+        with_between(
+            parsed("bins", in::spectral(&SpectralRequest::bins),
+                   "FIRST:LAST:WIDTH in nm, as 380:730:10: a spectrum for each pixel of the EXR, "
+                   "with its standard error",
+                   parse_bins,
+                   [](const Bins& bins) {
+                       return fmt::format("{}:{}:{}", bins.first_edge_nm, bins.last_edge_nm(),
+                                          bins.width_nm);
+                   }),
+            ':'),
         text("illuminant", in::spectral(&SpectralRequest::illuminant),
              "what white RGB light means: d65 (default), a, f11, FILE.csv"),
         text("response", in::spectral(&SpectralRequest::response),

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/state/finished_film.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "apps/setup/develop.h"
@@ -13,6 +15,24 @@ std::optional<NoiseReport> reached_noise(const RenderFacts& facts, const Film& f
                                          SampleRange samples) {
     if (!facts.noise) return std::nullopt;
     return noise_report(film, *facts.noise, samples.end);
+}
+
+std::optional<std::string> left_out_text(const Film& film) {
+    const Film::LeftOut bad = film.left_out();
+    if (bad.count() == 0) return std::nullopt;
+    std::string text;
+    if (bad.not_finite > 0) text = fmt::format("{} samples were not finite", bad.not_finite);
+    if (bad.too_large > 0)
+        text += fmt::format(
+            "{}{} samples were brighter than {:.2g} nits{}, which is more than a film holds",
+            text.empty() ? "" : "; ", bad.too_large, FilmSum::kLimit,
+            film.spectral() ? fmt::format(", or than {:.2g} W/(m2 sr nm)", SpectralSum::kLimit)
+            : film.aovs().empty() ? ""
+                                  : ", or a layer was as large");
+    text += fmt::format("; they are left out, the first is sample {} of pixel {},{}", bad.index,
+                        bad.x, bad.y);
+    if (bad.too_large > 0) text += "; ⟨clamp⟩ keeps them, or give the lights less strength";
+    return "warning: " + text;
 }
 
 PictureRows picture_for(const std::filesystem::path& path, const FinishedFilm& done) {

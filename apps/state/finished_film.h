@@ -26,6 +26,9 @@ struct FinishedFilm {
 [[nodiscard]] std::optional<NoiseReport> reached_noise(const RenderFacts&, const Film&,
                                                        SampleRange);
 
+/// Warning of the samples that a film left out; nothing where there are none.
+[[nodiscard]] std::optional<std::string> left_out_text(const Film&);
+
 /// Linear picture of a film, with the metadata of its file: PNG and JPEG say how they were made for
 /// a display too, and show what was denoised.
 [[nodiscard]] PictureRows picture_for(const std::filesystem::path&, const FinishedFilm&);

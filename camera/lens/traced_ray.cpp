@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "camera/lens/traced_ray.h"
 
+#include <algorithm>
+#include <limits>
+
 #include "camera/lens/trace.h"
 
 namespace petzval {
@@ -47,6 +50,50 @@ TracedRay trace_ray(const Lens& lens, const V3d& origin_mm, const V3d& direction
     out.point = first_lane(ray.origin) + V3d(0, 0, lens.vertex_mm(ray.counted_from));
     out.direction = first_lane(ray.direction);
     return out;
+}
+
+void trace_rays(const Lens& lens, const RaysIn& in, Towards towards, Clip clip,
+                const RaysOut& out) {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    const int begin = towards == Towards::Film ? 0 : lens.last();
+    const double begin_mm = lens.vertex_mm(begin);
+    const size_t count = in.origins_mm.size();
+    d4 nm = broadcast<d4>(in.nm.empty() ? kLineD_nm : in.nm[0]);
+    LensIndices<d4> indices = lens.exact_indices(nm);
+    for (size_t first = 0; first < count; first += 4) {
+        LensRay<d4> ray;
+        ray.counted_from = begin;
+        d4 wanted_nm = nm;
+        for (size_t k = 0; k < 4; ++k) {
+            const size_t i = std::min(first + k, count - 1);
+            const V3d& origin = in.origins_mm[i];
+            const V3d direction = in.directions[i].normalized();
+            ray.origin.x[k] = origin.x, ray.origin.y[k] = origin.y;
+            ray.origin.z[k] = origin.z - begin_mm;
+            ray.direction.x[k] = direction.x, ray.direction.y[k] = direction.y;
+            ray.direction.z[k] = direction.z;
+            if (in.nm.size() > 1) wanted_nm[k] = in.nm[i];
+        }
+        if (!all(wanted_nm == nm)) indices = lens.exact_indices(nm = wanted_nm);
+        d4 path_mm{};
+        const auto observe = [&](const LensHit<d4>& hit) {
+            path_mm += select(hit.reached, hit.index * hit.distance_mm, d4{});
+        };
+        const auto passed =
+            trace_lens({lens, towards, SurfaceRange{0, lens.last()}, clip}, indices, ray, observe);
+        const double end_mm = lens.vertex_mm(ray.counted_from);
+        for (size_t k = 0; k < 4 && first + k < count; ++k) {
+            const size_t i = first + k;
+            const bool on = passed[k] != 0;
+            out.status[i] = ray.status(int(k));
+            out.end_surfaces[i] = on ? -1 : int(ray.end_surface[k]);
+            out.paths_mm[i] = on ? path_mm[k] : kNone;
+            out.points_mm[i] =
+                on ? V3d(ray.origin.x[k], ray.origin.y[k], ray.origin.z[k] + end_mm) : V3d(kNone);
+            out.directions[i] =
+                on ? V3d(ray.direction.x[k], ray.direction.y[k], ray.direction.z[k]) : V3d(kNone);
+        }
+    }
 }
 
 }  // namespace petzval

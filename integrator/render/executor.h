@@ -4,10 +4,12 @@
 #pragma once
 
 #include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <atomic>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -18,9 +20,13 @@ namespace petzval {
 class TbbExecutor {
   public:
     /// threads >= 1; more than the machine has cores is allowed.
-    explicit TbbExecutor(int threads)
-        : limit_(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads)),
-          arena_(threads) {}
+    explicit TbbExecutor(int threads) : arena_(threads) {
+        // A limit is one for all of the process, and the smallest of several holds. So there is
+        // none but where it allows more.
+        if (threads > tbb::info::default_concurrency())
+            limit_.emplace(tbb::global_control::max_allowed_parallelism,
+                           static_cast<size_t>(threads));
+    }
     [[nodiscard]] int threads() const { return arena_.max_concurrency(); }
 
     template <class F>
@@ -42,7 +48,7 @@ class TbbExecutor {
     }
 
   private:
-    tbb::global_control limit_;
+    std::optional<tbb::global_control> limit_;
     tbb::task_arena arena_;
 };
 

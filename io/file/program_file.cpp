@@ -32,9 +32,11 @@ fs::path own_folder() {
 
 fs::path installed_file(const fs::path& relative) {
     std::error_code error;
-    fs::path beside = (own_folder() / relative).lexically_normal();
-    if (!petzval_installed_bin || fs::exists(beside, error)) return beside;
-    return (fs::path(petzval_installed_bin()) / relative).lexically_normal();
+    if (petzval_installed_bin) {
+        fs::path installed = (fs::path(petzval_installed_bin()) / relative).lexically_normal();
+        if (fs::exists(installed, error)) return installed;
+    }
+    return (own_folder() / relative).lexically_normal();
 }
 
 }  // namespace petzval

@@ -6,9 +6,9 @@
 namespace petzval {
 
 /// Path of a file that is installed with Petzval, from its path relative to the folder of programs.
-/// It lies beside this program, or in the installation that a program of others found by
-/// find_package(Petzval). The file need not be there. Throws InputError where the program does not
-/// know its own place.
+/// It lies in the installation that a program of others found by find_package(Petzval), or that
+/// Python's module belongs to; else beside this program. The file need not be there. Throws
+/// InputError where the program does not know its own place.
 [[nodiscard]] std::filesystem::path installed_file(const std::filesystem::path& relative);
 
 }  // namespace petzval

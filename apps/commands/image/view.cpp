@@ -10,9 +10,9 @@
 #include <memory>
 
 #include "apps/cli/console.h"
-#include "apps/cli/display_options.h"
 #include "apps/cli/field_options.h"
 #include "apps/request/file_names.h"
+#include "apps/setup/display_setup.h"
 #include "apps/setup/exposure.h"
 #include "apps/setup/input_files.h"
 #include "apps/state/render_facts.h"

@@ -234,7 +234,7 @@ CameraModel choose_camera_model(const CameraRequest& request, const std::filesys
     model.asked = request;
     if (request.name)
         model.from = &find_camera(*request.name, scene.string(), cameras);
-    else if (!request.look_at && !cameras.empty())
+    else if (!request.look_at && !request.pose && !cameras.empty())
         model.from = &cameras.front();
     CameraRequest& asked = model.asked;
     if (model.from && model.from->orthographic) {

@@ -2,6 +2,7 @@
 #include "apps/setup/camera/camera_report.h"
 
 #include "apps/request/option_names.h"
+#include "apps/request/parse.h"
 #include "camera/lens/focus.h"
 #include "io/base/format.h"
 
@@ -37,6 +38,7 @@ void describe_camera(const CameraReport& c, Metadata& m) {
     m.emplace_back("petzval:camera", c.name);
     m.emplace_back("petzval:cameraEye_m", with_commas(c.eye));
     m.emplace_back("petzval:cameraTarget_m", with_commas(c.target));
+    if (c.asked.pose) m.emplace_back("petzval:cameraPose", text_of_pose(*c.asked.pose));
     if (c.asked.orbit_deg) m.emplace_back("petzval:orbit_deg", *c.asked.orbit_deg);
     if (c.orthographic) return;
     m.emplace_back("petzval:fov_deg", c.yfov_deg);

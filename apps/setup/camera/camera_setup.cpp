@@ -82,6 +82,10 @@ M44f stand(const CameraContext& at, const UnplacedView& view, CameraReport& repo
         report.target = position(from->to_world) + forward(from->to_world);
         return turned(at, from->to_world, middle, report);
     }
+    if (asked.pose) {
+        report.target = position(*asked.pose) + forward(*asked.pose);
+        return turned(at, *asked.pose, middle, report);
+    }
     const auto aim = asked.look_at ? *asked.look_at : framed(at, view);
     report.target = aim[1];
     return turned(at, look_at(aim[0], aim[1]), asked.look_at ? aim[1] : middle, report);

@@ -346,8 +346,8 @@ TEST_F(ChartCli, RefusesWhatItCannotDo) {
     expect({"--budget", "1s", "-o", path("r")}, 2, "--budget");
     expect({"--axis", "sampler", "--seeds", "4", "-o", path("r")}, 2, "--seeds");
     expect({"--axis", "sampler", "-o", path("x.csv")}, 2,
-           path("x.csv") + "\" is named as a file; type -o " + path("x"));
-    expect({"--axis", "sampler", "-o", path("x.MD")}, 2, "type -o " + path("x"));
+           path("x.csv") + "\" is named as a file; call it " + path("x"));
+    expect({"--axis", "sampler", "-o", path("x.MD")}, 2, "call it " + path("x"));
     expect({"--axis", "sampler", "-o", scene_}, 3, "cannot be made a folder");
     expect({"--axis", "sampler", "-o", scene_ + "/none"}, 3, "studio.glb/none");
     expect({"--axis", "camera", "--camera", "plan", "-o", path("r")}, 2, "orthographic");

@@ -66,6 +66,7 @@ const std::map<std::string, Change> kChanges{
     {"white-balance", {"illuminant", kWavelengths}},
     {"camera", {"right", {}}},
     {"look-at", {"0,1,3,0,0,-1", {}}},
+    {"pose", {"0,1,0,0,-1,0,0,1,0,0,1,3", {}}},
     {"orbit", {"90", {}}},
     {"orbit-about", {"1,2,3", {{"orbit", "30"}}}},
     {"fov", {"41", {}}},

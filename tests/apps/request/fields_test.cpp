@@ -56,6 +56,7 @@ const std::map<std::string, std::pair<std::string, std::string>> kTexts{
     {"white-balance", {"illuminant", "illuminant"}},
     {"camera", {"left", "left"}},
     {"look-at", {"0,1m,30cm,0,0,-1", "0,1,0.3,0,0,-1"}},
+    {"pose", {"0,1,0,1e-1,-1,0,0,1,0,0,1,3", "0,1,0,0.1,-1,0,0,1,0,0,1,3"}},
     {"orbit", {"90deg", "90"}},
     {"orbit-about", {"1,2,3", "1,2,3"}},
     {"fov", {"40.1", "40.1"}},

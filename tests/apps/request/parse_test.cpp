@@ -34,6 +34,18 @@ TEST(Parse, FocusTakesUnitsAndInfinity) {
         EXPECT_THROW((void)parse_focus("--focus", text), ValueError) << text;
 }
 
+TEST(Parse, PosesAreRotations) {
+    const M44f pose = parse_pose("--pose", "0,0,1,1, 0,1,0,2, -1,0,0,3");
+    EXPECT_EQ(V3f(pose[3][0], pose[3][1], pose[3][2]), V3f(1, 2, 3));
+    EXPECT_EQ(V3f(pose[2][0], pose[2][1], pose[2][2]), V3f(1, 0, 0));
+    EXPECT_EQ(parse_pose("--pose", text_of_pose(pose)), pose);
+    for (const char* text :
+         {"1,0,0,0,0,1,0,0,0,0,1", "1,0,0,0,0,1,0,0,0,0,-1,0", "2,0,0,0,0,1,0,0,0,0,1,0",
+          "1,0,0.1,0,0,1,0,0,0,0,1,0", "1,0,0,1e13,0,1,0,0,0,0,1,0", "1,0,0,nan,0,1,0,0,0,0,1,0",
+          "0,0,0,0,0,0,0,0,0,0,0,0"})
+        EXPECT_THROW((void)parse_pose("--pose", text), ValueError) << text;
+}
+
 TEST(Parse, DurationsAddUp) {
     const std::pair<const char*, double> cases[] = {
         {"90", 90},   {"90s", 90},       {"1.5m", 90},       {"1m30s", 90},     {"1h", 3600},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/cli/display_options.h"
+#include "apps/setup/display_setup.h"
 
 #include <fmt/format.h>
 
@@ -19,13 +19,13 @@ std::string resolve_display(DisplayRequest& o) {
         // By its name first, to tell what is wrong with the configuration from what with the view.
         if (foreign) static_cast<void>(find_view("", o.config));
     } catch (const InputError& error) {
-        throw ValueError(from_environment ? "$OCIO" : "--ocio", error.what());
+        throw ValueError(from_environment ? "$OCIO" : "⟨ocio⟩", error.what());
     }
     std::string view;
     try {
         view = find_view(o.view, o.config);
     } catch (const InputError& error) {
-        throw ValueError("--view", error.what());
+        throw ValueError("⟨view⟩", error.what());
     }
     if (!foreign) return "";
     return fmt::format("display: view {} of {}{}", view, o.config.string(),

@@ -5,12 +5,13 @@ PACKAGES = cmake ninja-build ccache mold libembree-dev libtbb-dev libimath-dev l
     libcli11-dev libpugixml-dev libdraco-dev libmeshoptimizer-dev libfreetype-dev
 # What draws plots, and the letters on contact sheets.
 OPTIONAL_PACKAGES = gnuplot-nox fonts-dejavu-core
-TEST_PACKAGES = $(OPTIONAL_PACKAGES) libgtest-dev libgmock-dev libbenchmark-dev python3-numpy
+PYTHON_PACKAGES = pybind11-dev python3-dev python3-numpy
+TEST_PACKAGES = $(OPTIONAL_PACKAGES) $(PYTHON_PACKAGES) libgtest-dev libgmock-dev libbenchmark-dev python3-pytest
 LONG_PACKAGES = clang clang-tidy libclang-rt-dev gcovr debootstrap qemu-user
 SOURCES = git ls-files '*.h' '*.cpp'
 PREFIX = /usr/local
 
-.PHONY: render gallery test test-files test-long program build install uninstall deb tarball format format-check
+.PHONY: render gallery test test-files test-long program python build install uninstall deb tarball format format-check
 
 render: program
 	mkdir -p out
@@ -45,6 +46,12 @@ program:
 	cmake --preset program
 	cmake --build --preset program
 
+# For PYTHONPATH=build/python
+python:
+	@.ci/install_packages $(PACKAGES) $(PYTHON_PACKAGES)
+	cmake --preset program
+	cmake --build --preset program --target all petzval_python
+
 # Everything: the program, the tests, the measuring programs.
 build:
 	@.ci/install_packages $(PACKAGES) $(TEST_PACKAGES)
@@ -61,7 +68,7 @@ uninstall:
 	DESTDIR="$(DESTDIR)" apps/package/uninstall.sh build/installed_files.txt
 
 # Debian packages for the release that this runs on: build/packages/*.deb
-deb: program
+deb: python
 	@.ci/install_packages dpkg-dev file
 	cd build && cpack -G DEB -B packages
 

@@ -44,7 +44,11 @@ install(CODE "set(folder site-functions)
     file(INSTALL \"${manual}/zsh/_petzval\"
         DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/zsh/\${folder}\")"
     COMPONENT program)
-foreach(package petzval:program petzval-doc:doc libpetzval-dev:dev)
+set(packages petzval:program petzval-doc:doc libpetzval-dev:dev)
+if(TARGET petzval_python)
+    list(APPEND packages python3-petzval:python)
+endif()
+foreach(package ${packages})
     string(REPLACE ":" ";" package ${package})
     list(GET package 0 name)
     list(GET package 1 component)
@@ -59,7 +63,7 @@ install(FILES README.md CHANGELOG.md DESTINATION ${docs}/petzval-doc COMPONENT d
 get_property(render_rooms GLOBAL PROPERTY petzval_rooms)
 set(lens_rooms core/math core/sampling core/spectrum camera camera/lens camera/iris camera/dispersion
     camera/models camera/bench io/base io/file io/glass io/lens)
-list(FILTER render_rooms EXCLUDE REGEX "^(apps/(cli|commands|package|chart)|io/(codec|plot))")
+list(FILTER render_rooms EXCLUDE REGEX "^(apps/(cli|commands|package|chart|python)|io/(codec|plot))")
 list(REMOVE_ITEM render_rooms ${lens_rooms})
 foreach(archive lens render)
     set(objects)
@@ -91,7 +95,7 @@ install(FILES ${CMAKE_BINARY_DIR}/PetzvalConfig.cmake ${CMAKE_BINARY_DIR}/Petzva
 
 # Debian packages, by cpack -G DEB.
 set(CPACK_GENERATOR DEB)
-set(CPACK_COMPONENTS_ALL program doc dev)
+list(TRANSFORM packages REPLACE ".*:" "" OUTPUT_VARIABLE CPACK_COMPONENTS_ALL)
 set(CPACK_PACKAGE_CONTACT "${maintainer}")
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE
@@ -119,4 +123,12 @@ libimath-dev, libopencolorio-dev, libtinygltf-dev, nlohmann-json3-dev, libfmt-de
 libdraco-dev, libmeshoptimizer-dev")
 set(CPACK_COMPONENT_DEV_DESCRIPTION "headers and archives of the path tracer Petzval
 For programs that trace lenses, or that render scenes through them.")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-petzval)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+math(EXPR python_after "0${Python3_VERSION_MINOR} + 1")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "petzval (= ${PROJECT_VERSION}), python3-numpy, \
+python3 (>= 3.${Python3_VERSION_MINOR}), python3 (<< 3.${python_after})")
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION "path tracer Petzval from Python
+Renders glTF scenes through real lenses to numpy arrays, and traces lenses.")
 include(CPack)

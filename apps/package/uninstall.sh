@@ -9,8 +9,9 @@ set -euo pipefail
 while read -r file || [[ -n $file ]]; do
     file=${DESTDIR:-}$file
     rm -f "$file"
+    [[ $file != *.py ]] || rm -rf "${file%/*}/__pycache__"
     folder=${file%/*}
-    while [[ $folder =~ /(lib)?[Pp]etzval(-dev|-doc|/|$) ]]; do
+    while [[ $folder =~ /(lib|python3-)?[Pp]etzval(-dev|-doc|/|$) ]]; do
         rmdir "$folder" 2> /dev/null || break
         folder=${folder%/*}
     done

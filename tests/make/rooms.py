@@ -20,7 +20,7 @@ def rooms():
     """Dict of each room's list of rooms and libraries that it knows."""
     text = re.sub(r"#.*", "", (ROOT / "CMakeLists.txt").read_text())
     found = {}
-    for call in re.findall(r"\npetzval_room\(([^)]*)\)", text):
+    for call in re.findall(r"\n *petzval_room\(([^)]*)\)", text):
         name, *rest = call.split()
         found[name] = [word for word in rest if word not in ("MODULE", "SHOWS", "USES")]
     return found

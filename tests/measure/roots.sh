@@ -67,7 +67,10 @@ chroot "$folder/bare" bash -ec '
     cmake --build outside/build
     outside/build/spot double-gauss-100mm-f2 10
     outside/build/photograph /usr/share/petzval/scenes/first_light.glb photograph.png
-    ls -l photograph.png'
+    ls -l photograph.png
+    apt-get install --yes --no-install-recommends ./python3-petzval_*.deb
+    python3 -c "import petzval as p
+print(p.render(p.Scene(\"/usr/share/petzval/scenes/first_light.glb\"), samples=4, size=(96, 54)))"'
 
 if [[ $suite == bookworm ]]; then
     chroot "$folder/build" make -C /petzval tarball

@@ -61,12 +61,22 @@ DESTDIR="$out/root" "$source/apps/package/uninstall.sh" "$build/install_manifest
 left=$(find "$out/root" -iname '*petzval*' -o -type f)
 [[ -z $left ]] || fail "left after it was removed: $left"
 
+if [[ -f $build/python/petzval/_fields.py ]]; then
+    python=$(sed -n 's/^_Python3_EXECUTABLE:INTERNAL=//p' "$build/CMakeCache.txt")
+    PYTHONPATH=$(echo "$there"/lib/python3*/dist-packages) PYTHONDONTWRITEBYTECODE=1 "$python" -c "
+import petzval
+scene = petzval.Scene('$scene')
+petzval.render(scene, lens='double-gauss-100mm-f2', size=(96, 64), samples=16).save('$out/python.exr')"
+    cmp "$out/python.exr" "$out/build.exr"
+fi
+
 # Programs of others. What is linked is as it was built, with sanitizers or without.
 flags=$(sed -n 's/^CMAKE_CXX_FLAGS:STRING=//p' "$build/CMakeCache.txt")
 cmake -S "$source/tests/examples/outside" -B "$out/outside" -G Ninja -DCMAKE_BUILD_TYPE=Release \
     -DCMAKE_CXX_FLAGS="$flags" -DCMAKE_PREFIX_PATH="$there" > "$out/log" || fail "$(cat "$out/log")"
 cmake --build "$out/outside" > "$out/log" || fail "$(cat "$out/log")"
-"$out/outside/spot" double-gauss-100mm-f2 10
+"$out/outside/spot" double-gauss-100mm-f2 10 > "$out/spot"
+"$out/outside/spot_shared" double-gauss-100mm-f2 10 | cmp - "$out/spot"
 echo "linked: $(ldd "$out/outside/spot" | grep -cE 'libembree|libtbb|OpenImageIO|OpenColorIO' || true)" |
     grep -qx 'linked: 0' || fail "the lens alone links what only scenes need"
 "$out/outside/photograph" "$scene" "$out/photograph.exr"

@@ -7,11 +7,11 @@ PACKAGES = cmake ninja-build ccache mold libembree-dev libtbb-dev libimath-dev l
 OPTIONAL_PACKAGES = gnuplot-nox fonts-dejavu-core
 PYTHON_PACKAGES = pybind11-dev python3-dev python3-numpy
 TEST_PACKAGES = $(OPTIONAL_PACKAGES) $(PYTHON_PACKAGES) libgtest-dev libgmock-dev libbenchmark-dev python3-pytest
-LONG_PACKAGES = clang clang-tidy libclang-rt-dev gcovr debootstrap qemu-user
+LONG_PACKAGES = clang clang-tidy libclang-rt-dev gcovr debootstrap qemu-user blender xvfb
 SOURCES = git ls-files '*.h' '*.cpp'
 PREFIX = /usr/local
 
-.PHONY: render gallery test test-files test-long program python build install uninstall deb tarball format format-check
+.PHONY: render gallery test test-files test-long program python blender build install uninstall deb tarball format format-check
 
 render: program
 	mkdir -p out
@@ -75,6 +75,10 @@ deb: python
 # A folder with its libraries, for any Linux with this one's glibc or newer: build-tarball/petzval-*.tar.xz
 tarball:
 	apps/package/tarball.sh $(PACKAGES)
+
+# The add-on for Blender, to be installed in its preferences: build/petzval_blender.zip
+blender:
+	apps/blender/pack.sh build/petzval_blender.zip
 
 format:
 	@.ci/install_packages clang-format

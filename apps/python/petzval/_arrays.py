@@ -151,7 +151,6 @@ class _Glb:
                 name = f"reflectance-{len(self._materials)}.csv"
                 of.reflectance.save(self.folder / name)  # type: ignore[union-attr]
             out["extras"] = {"petzval": {"reflectance": name}}
-            surface.pop("baseColorFactor", None)
         emission = numbers("emission_nits", of.emission_nits, (3,))
         strength = float(emission.max())
         if strength > 0:

@@ -110,8 +110,12 @@ def write_meshes(scene, path, lost):
 
 def add_lamp(glb, one, matrix, lost):
     lamp = one.data
-    strength = lamp.energy
+    strength = lamp.energy * 2 ** getattr(lamp, "exposure", 0)
     color = list(lamp.color)
+    if getattr(lamp, "use_temperature", False):
+        color = [a * b for a, b in zip(color, lamp.temperature_color)]
+    if not getattr(lamp, "normalize", True):
+        lost.add(f"the strength of lamp {one.name}, which is not normalised")
     if lamp.use_nodes and lamp.node_tree:
         shader = meshes.surface_of(lamp, "OUTPUT_LIGHT")
         if shader is None:
@@ -126,7 +130,7 @@ def add_lamp(glb, one, matrix, lost):
     if strength < 0 or min(color) < 0:
         lost.add(f"lamp {one.name}, which takes light away")
         return
-    if not getattr(getattr(lamp, "cycles", None), "cast_shadow", True):
+    if not getattr(getattr(lamp, "cycles", None), "cast_shadow", lamp.use_shadow):
         lost.add(f"no shadow: {one.name}")
     light = {"name": one.name, "color": color}
     node = {"name": one.name}
@@ -163,7 +167,8 @@ def add_lamp(glb, one, matrix, lost):
         round_ = lamp.shape in ("DISK", "ELLIPSE")
         if round_:
             area["shape"] = "ellipse"
-        area.update(intensity_cd=strength / 4, color=color, visible=False)  # measured: P / (4 A) of radiance
+        # Radiance P / (4 A) before Blender 4.0, P / (pi A) since (projects.blender.org/blender/blender/issues/109404).
+        area.update(intensity_cd=strength / (4 if bpy.app.version < (4, 0) else math.pi), color=color, visible=False)
         if getattr(lamp, "spread", math.pi) < math.pi - 1e-4:
             lost.add(f"spread of area lamp {one.name}")
         glb.place(node, turn)

@@ -246,6 +246,8 @@ class Materials:
             self._lost.add(f"{picture.bl_label} at {socket.name} of material {name}: bake it")
         elif picture.image is None or not picture.image.has_data and not picture.image.size[0]:
             self._lost.add(f"the missing picture at {socket.name} of material {name}")
+        elif picture.image.is_float:
+            self._lost.add(f"the exact colours of the picture of floats {picture.image.name}: make it one of 8 bits")
         elif picture.inputs["Vector"].is_linked:
             place = picture.inputs["Vector"].links[0]
             if place.from_node.type not in ("UVMAP", "MAPPING") and place.from_socket.name != "UV":

@@ -29,7 +29,7 @@ def material(name, kind="ShaderNodeBsdfDiffuse", color=(0.5, 0.5, 0.5, 1), **val
     surface = nodes.new(kind)
     (surface.inputs.get("Color") or surface.inputs["Base Color"]).default_value = color
     for key, value in values.items():
-        surface.inputs[key].default_value = value
+        surface.inputs[key if key in surface.inputs else "Specular IOR Level"].default_value = value
     out.node_tree.links.new(surface.outputs[0], nodes.new("ShaderNodeOutputMaterial").inputs["Surface"])
     return out
 
@@ -252,8 +252,9 @@ def mirrored():
 def looks():
     """Materials that glTF says otherwise: textures on other shaders, colours that are not used, alpha, black."""
     even_world()
-    image = bpy.data.images.new("dots", 8, 8, float_buffer=True)
-    image.pixels = [x for i in range(64) for x in ((0.9, 0.1, 0.1, 1) if (i + i // 8) % 2 else (0.1, 0.1, 0.9, 1))]
+    # Large fields: between texels Cycles mixes what a display shows, and Petzval light.
+    image = bpy.data.images.new("fields", 32, 32)
+    image.pixels = [x for i in range(1024) for x in ((0.9, 0.1, 0.1, 1) if (i // 16 + i // 512) % 2 else (0.1, 0.1, 0.9, 1))]
     image.pack()
     for i, kind in enumerate(("ShaderNodeBsdfDiffuse", "ShaderNodeBsdfGlossy")):
         look = material("textured", kind)

@@ -85,8 +85,8 @@ def command_of(scene, glb, picture, preview=None):
     """Words of the command that renders an exported scene."""
     own, render = scene.petzval, scene.render
     scale = render.resolution_percentage / 100
-    words = [find_program(), "render", glb, "--size", f"{max(1, round(render.resolution_x * scale))}x"
-             f"{max(1, round(render.resolution_y * scale))}"]
+    words = [find_program(), "render", glb, *export.frame_words(scene, max(1, round(render.resolution_x * scale)),
+                                                                max(1, round(render.resolution_y * scale)))]
     if own.stop_at == "noise":
         words += ["--noise", f"{own.noise:g}%"]
     else:
@@ -123,12 +123,12 @@ class PETZVAL_OT_render(bpy.types.Operator):
 
     def _begin(self, context):
         scene = context.scene
+        self._before = scene.frame_current
         if not find_program():
             raise run.Failed("Petzval's program is not found; install it, or name it in the add-on's preferences")
         self._frames = list(range(scene.frame_start, scene.frame_end + 1, scene.frame_step)) if self.animation else []
         if self.animation and scene.render.filepath.startswith("//") and not bpy.data.filepath:
             raise run.Failed("save the file first, or name a folder for the frames in the output properties")
-        self._before = scene.frame_current
         # Blender removes it when it ends; until then the picture is read from there.
         self._folder = tempfile.mkdtemp(prefix="petzval-", dir=bpy.app.tempdir)
         self._begin_frame(context)
@@ -141,7 +141,7 @@ class PETZVAL_OT_render(bpy.types.Operator):
             picture = os.path.splitext(scene.render.frame_path(frame=scene.frame_current))[0] + ".exr"
             os.makedirs(os.path.dirname(picture) or ".", exist_ok=True)
         glb = os.path.join(self._folder, "scene.glb")
-        scene.petzval.lost = "\n".join(export.export(glb, scene))
+        scene.petzval.lost = "\n".join(export.export(glb, scene, framed=True))
         preview = None if self.animation else os.path.join(self._folder, "preview.png")
         self._render = run.Render(command_of(scene, glb, picture, preview), picture, preview)
 

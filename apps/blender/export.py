@@ -196,17 +196,43 @@ def inner_angle(outer, blend):
 # Cameras -----------------------------------------------------------------------------------------------------------
 
 
-def add_camera(glb, scene, one, matrix, lost):
+def is_wide(camera, width, height):
+    """Whether the sensor fits the picture's width."""
+    return camera.sensor_fit == "HORIZONTAL" or (camera.sensor_fit == "AUTO" and width >= height)
+
+
+def half_height(camera, width, height):
+    """Tangent of half the vertical angle of view."""
+    side = camera.sensor_height if camera.sensor_fit == "VERTICAL" else camera.sensor_width
+    return side / (2 * camera.lens) * (height / width if is_wide(camera, width, height) else 1)
+
+
+def frame_words(scene, width, height):
+    """Words of the command line for a picture of this size: with lens shift, a part of a larger frame about the axis."""
+    camera = scene.camera and scene.camera.data
+    if not camera or camera.type != "PERSP" or not (camera.shift_x or camera.shift_y):
+        return ["--size", f"{width}x{height}"]
+    side = width if is_wide(camera, width, height) else height
+    right, up = round(2 * camera.shift_x * side), round(2 * camera.shift_y * side)  # in halves of a pixel
+    full = width + abs(right), height + abs(up)
+    upright = half_height(camera, width, height) * full[1] / height
+    words = ["--size", f"{full[0]}x{full[1]}", "--crop", f"{(abs(right) + right) // 2},{(abs(up) - up) // 2},{width},{height}",
+             "--fov", f"{math.degrees(2 * math.atan(upright)):.7g}"]
+    if camera.dof.use_dof:
+        tall = 2 * camera.lens * upright
+        words += ["--sensor", f"{tall * full[0] / full[1]:.7g}x{tall:.7g}"]
+    return words
+
+
+def add_camera(glb, scene, one, matrix, framed, lost):
     camera = one.data
     render = scene.render
     width = render.resolution_x * render.pixel_aspect_x
     height = render.resolution_y * render.pixel_aspect_y
     out = {"name": one.name}
-    wide = camera.sensor_fit == "HORIZONTAL" or (camera.sensor_fit == "AUTO" and width >= height)
+    wide = is_wide(camera, width, height)
     if camera.type == "PERSP":
-        side = camera.sensor_height if camera.sensor_fit == "VERTICAL" else camera.sensor_width
-        half = side / (2 * camera.lens)  # tangent, along the side that fits
-        upright = half * height / width if wide else half
+        upright = half_height(camera, width, height)
         out["type"] = "perspective"
         out["perspective"] = {"yfov": 2 * math.atan(upright), "aspectRatio": width / height,
                               "znear": max(camera.clip_start, 1e-4)}
@@ -229,7 +255,7 @@ def add_camera(glb, scene, one, matrix, lost):
             if abs(camera.dof.aperture_ratio - 1) > 1e-3:
                 lost.add(f"aperture ratio of camera {one.name}")
     elif camera.type == "ORTHO":
-        half = camera.ortho_scale / 2
+        half = camera.ortho_scale / 2  # along the side that fits
         if camera.dof.use_dof:
             lost.add(f"depth of field of orthographic camera {one.name}")
         out["type"] = "orthographic"
@@ -238,8 +264,9 @@ def add_camera(glb, scene, one, matrix, lost):
     else:
         lost.add(f"panoramic camera {one.name}")
         return
-    if camera.shift_x or camera.shift_y:
-        lost.add(f"lens shift of camera {one.name}")
+    if (camera.shift_x or camera.shift_y) and not (framed and camera.type == "PERSP"):
+        words = "" if camera.type == "ORTHO" else f": render with {' '.join(frame_words(scene, int(width), int(height)))}"
+        lost.add(f"lens shift of camera {one.name} is not in the file{words}")
     if matrix.determinant() < 0:
         lost.add(f"the mirror of camera {one.name}")
     glb.place({"name": one.name, "camera": glb.add("cameras", out)}, unscaled(matrix))
@@ -391,8 +418,9 @@ def add_film(glb, scene, lost):
             lost.add(text)
 
 
-def export(path, scene=None):
-    """Writes the scene at its frame. Returns what Petzval does not render, a line each."""
+def export(path, scene=None, framed=False):
+    """Writes the scene at its frame. framed: the command has frame_words(). Returns what Petzval does not render, a line
+    each."""
     scene = scene or bpy.context.scene
     lost = Lost()
     others, materials = write_meshes(scene, path, lost)
@@ -410,7 +438,7 @@ def export(path, scene=None):
     else:
         lost.add("a camera: the scene has none that is active, and Petzval takes the first, or frames it")
     for one, matrix in cameras:
-        add_camera(glb, scene, one, matrix, lost)
+        add_camera(glb, scene, one, matrix, framed and one.name == scene.camera.name, lost)
     for one, matrix in others:
         if one.type == "LIGHT":
             add_lamp(glb, one, matrix, lost)

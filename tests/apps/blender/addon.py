@@ -46,6 +46,11 @@ said = addon.run.shown(addon.command_of(scene, "scene.glb", "picture.exr"))
 assert said == ("petzval render scene.glb --size 64x36 --spp 4 --lens takumar-50mm-f1.2 --method fit=fov --fstop 2 "
                 "--aov depth,normal -o picture.exr"), said
 
+scene.camera.data.shift_x = 0.1
+assert bpy.ops.petzval.render() == {"FINISHED"} and "shift" not in own.lost
+assert "--size 77x36 --crop 13,0,64,36 --fov" in addon.run.shown(addon.command_of(scene, "s.glb", "p.exr"))
+scene.camera.data.shift_x = 0
+
 # Frames.
 scene.render.filepath = os.path.join(own_folder, "frames", "f")
 scene.frame_end = 2

@@ -206,6 +206,15 @@ def blur():
     dof.use_dof, dof.aperture_fstop, dof.focus_object = True, 0.4, bpy.data.objects["Plane"]
 
 
+def shift():
+    """Lens shift with depth of field."""
+    blur()
+    camera = bpy.context.scene.camera.data
+    camera.shift_x, camera.shift_y = 0.21, -0.13
+    camera.dof.aperture_fstop = 0.2
+    cube(material("box", color=(0.7, 0.3, 0.1, 1)), size=0.6, location=(0.7, 0.5, 0.8))
+
+
 def ortho():
     even_world()
     camera = bpy.context.scene.camera.data
@@ -283,7 +292,7 @@ def looks():
     first.rotation_euler = (math.pi, 0, 0)
 
 
-SCENES = {one.__name__: one for one in (point, ball, spot, rim, sun, area, disk, emission, sky, glass, placed, blur, ortho,
+SCENES = {one.__name__: one for one in (point, ball, spot, rim, sun, area, disk, emission, sky, glass, placed, blur, shift, ortho,
                                           settings, mirrored, looks)}
 
 
@@ -304,7 +313,7 @@ def compare(name, program, folder):
     before = {kind: len(getattr(bpy.data, kind)) for kind in ("objects", "meshes", "scenes", "images")}
     lost = export.export(there + ".glb")
     complaints = [f"export left {kind} behind" for kind, count in before.items() if len(getattr(bpy.data, kind)) != count]
-    subprocess.run([program, "render", there + ".glb", "--size", f"{SIZE[0]}x{SIZE[1]}", "--spp", str(SAMPLES), "--method",
+    subprocess.run([program, "render", there + ".glb", *export.frame_words(bpy.context.scene, *SIZE), "--spp", str(SAMPLES), "--method",
                     "filter=gauss", "--spectral", "rgb", "--quiet", "-o", there + ".petzval.exr"], check=True)
     bpy.context.scene.render.filepath = there + ".cycles.exr"
     bpy.ops.render.render(write_still=True)

@@ -198,6 +198,28 @@ def placed():
     scene.frame_set(11)
 
 
+def linked():
+    """A collection of another file, whose material has the name of one here."""
+    even_world()
+    path = os.path.join(bpy.app.tempdir, "library.blend")
+    shared = bpy.data.collections.new("shared")
+    one = cube(material("red", color=(0.8, 0.1, 0.1, 1)), size=0.5, location=(0, 0, 0.25))
+    one.modifiers.new("round", "SUBSURF").render_levels = 2
+    one.modifiers["round"].levels = 2
+    bpy.context.scene.collection.objects.unlink(one)
+    shared.objects.link(one)
+    bpy.data.libraries.write(path, {shared})
+    for kind, owner in ((bpy.data.collections, shared), (bpy.data.objects, one)):
+        kind.remove(owner)
+    bpy.data.materials.remove(bpy.data.materials["red"])
+    cube(material("red", color=(0.1, 0.2, 0.8, 1)), size=0.4, location=(1, -0.6, 0.2))
+    with bpy.data.libraries.load(path, link=True) as (_, wanted):
+        wanted.collections = ["shared"]
+    for place in ((-0.7, 0, 0), (0.3, 0.5, 0)):
+        holder = add_object("holder", None, place, (0, 0, 30))
+        holder.instance_type, holder.instance_collection = "COLLECTION", bpy.data.collections["shared"]
+
+
 def blur():
     """Depth of field: a lamp out of focus."""
     plane(material("lamp", "ShaderNodeEmission", (1, 1, 1, 1), Strength=20), size=0.1, location=(0, 0, 1.5))
@@ -292,7 +314,7 @@ def looks():
     first.rotation_euler = (math.pi, 0, 0)
 
 
-SCENES = {one.__name__: one for one in (point, ball, spot, rim, sun, area, disk, emission, sky, glass, placed, blur, shift, ortho,
+SCENES = {one.__name__: one for one in (point, ball, spot, rim, sun, area, disk, emission, sky, glass, placed, linked, blur, shift, ortho,
                                           settings, mirrored, looks)}
 
 

@@ -86,7 +86,7 @@ def write_meshes(scene, path, lost):
     rendered = {one for layer in layers for one in layer.collection.objects if not one.hide_render}
     back = meshes.as_in_renders(scene, rendered, layers, lost)
     try:
-        plain = meshes.Meshes(scene, bpy.context.evaluated_depsgraph_get(), rendered, lost)
+        plain = meshes.Meshes(bpy.context.evaluated_depsgraph_get(), rendered, lost)
     finally:
         back()
     window = bpy.context.window

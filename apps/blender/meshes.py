@@ -70,11 +70,18 @@ def list_flags(one, lost):
 class Meshes:
     """A scene of plain copies of all meshes, which is exported and then removed."""
 
-    def __init__(self, scene, depsgraph, rendered, lost):
+    def __init__(self, depsgraph, rendered, lost):
         self.scene = bpy.data.scenes.new("Petzval")
         self.materials = Materials(lost)
         self.others = []  # lamps and cameras, with their places
-        self._meshes, self._override = {}, scene.view_layers[0].material_override
+        self._meshes, self._made, self._override = {}, [], bpy.context.view_layer.material_override
+        try:
+            self._add_all(depsgraph, rendered, lost)
+        except Exception:
+            self.remove()  # nothing of it stays in the file
+            raise
+
+    def _add_all(self, depsgraph, rendered, lost):
         for one in depsgraph.object_instances:
             real = one.object.original
             holder = one.parent.original if one.is_instance and one.parent else real
@@ -103,9 +110,10 @@ class Meshes:
     def _plain(self, one, looks, matrix):
         """Mesh of an object after its modifiers; None where it has no faces."""
         mesh = bpy.data.meshes.new_from_object(one)  # as it is evaluated: that of an instance, where it is one
-        if mesh is None or not mesh.polygons:
-            if mesh:
-                bpy.data.meshes.remove(mesh)
+        if mesh is None:
+            return None
+        self._made.append(mesh)
+        if not mesh.polygons:
             return None
         mesh.name = one.name
         if matrix:
@@ -131,9 +139,8 @@ class Meshes:
         for one in list(self.scene.collection.objects):
             bpy.data.objects.remove(one)
         bpy.data.scenes.remove(self.scene)
-        for mesh in self._meshes.values():
-            if mesh:
-                bpy.data.meshes.remove(mesh)
+        for mesh in self._made:
+            bpy.data.meshes.remove(mesh)
         self.materials.remove()
 
 

@@ -18,7 +18,8 @@
 
 namespace petzval {
 
-inline constexpr uint32_t kChartSeeds = 5;           ///< at least: for an interval of confidence
+inline constexpr uint32_t kChartSeeds = 5;  ///< at least: for an interval of confidence
+inline constexpr uint32_t kMostChartSeeds = 1000;
 inline constexpr double kLeastChartBudget_s = 4;     ///< for each case of weight 1
 inline constexpr uint32_t kReferenceReplicates = 4;  ///< independent renders
 inline constexpr uint32_t kFirstReferenceSeed = 1'000'000;

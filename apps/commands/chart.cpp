@@ -40,7 +40,7 @@ void add_chart_options(CLI::App& app, ChartOptions& o) {
     app.add_option("--reference", r.reference,
                    "EXR of the same frame, in place of references that are rendered");
     app.add_option("--seeds", r.frame.seeds, "renders of each method (default 5)")
-        ->transform(whole_number_between(kChartSeeds, 1000));
+        ->transform(whole_number_between(kChartSeeds, kMostChartSeeds));
     app.add_option("--exposure", r.frame.exposure_ev, "stops, of pictures and of FLIP")
         ->transform(number_between(-100, 100, kStops));
 }

@@ -236,6 +236,13 @@ void bind_lens(py::module_& module) {
         .def("irradiance", &BenchLens::irradiance, py::call_guard<py::gil_scoped_release>())
         .def("surfaces", surfaces)
         .def("facts", facts);
+    module.attr("LINE_F_NM") = kLineF_nm;
+    module.attr("LINE_D_NM") = kLineD_nm;
+    module.attr("LINE_C_NM") = kLineC_nm;
+    module.attr("PASSED") = int(RayStatus::Passed);
+    module.attr("VIGNETTED") = int(RayStatus::Vignetted);
+    module.attr("TOTALLY_REFLECTED") = int(RayStatus::TotallyReflected);
+    module.attr("MISSED") = int(RayStatus::Missed);
     module.def("lens_names", [] {
         std::vector<std::string> names;
         for (const LensSummary& lens : list_lenses()) names.push_back(lens.name);

@@ -78,8 +78,8 @@ def main():
                      'axes: Sequence[str] = (), budget: Number = "10m", seeds: int = 5, '
                      "folder: str | os.PathLike[str] | None = None, ",
                      "chart_fields(scene, camera, axes, budget, seeds, folder, locals())",
-                     "Error against CPU time, measured along these axes, as points.json of `petzval chart` has it. folder keeps the report "
-                     "with its plots.", [one for one in fields if "chart" in one["takers"]])
+                     "Error against CPU time, measured along these axes, as points.json of `petzval chart` has it. "
+                     "folder keeps the report with its plots.", [one for one in fields if "chart" in one["takers"]])
     with open(sys.argv[2], "w", encoding="utf-8") as file:
         file.write(text)
 

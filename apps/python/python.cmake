@@ -3,7 +3,7 @@
 set(python_folder ${CMAKE_BINARY_DIR}/python/petzval)
 file(MAKE_DIRECTORY ${python_folder})
 file(GLOB python_files CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}/apps/python/petzval
-    apps/python/petzval/*.py apps/python/petzval/*.pyi apps/python/petzval/py.typed)
+    apps/python/petzval/*.py apps/python/petzval/py.typed)
 foreach(file ${python_files})
     file(CREATE_LINK ${CMAKE_SOURCE_DIR}/apps/python/petzval/${file} ${python_folder}/${file} SYMBOLIC)
 endforeach()

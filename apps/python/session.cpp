@@ -69,6 +69,7 @@ class PythonSession {
     std::shared_ptr<RenderedImage> render(const Keywords& keywords, const OnProgress& progress) {
         require_own_threads();
         const OnlyOne only(busy_);
+        refuse_when_closing();
         RenderRequest request = order_of(keywords).render;
         RenderMonitor monitor;
         std::atomic<Phase> phase = Phase::Loading;
@@ -97,7 +98,7 @@ class PythonSession {
                 image = std::make_shared<RenderedImage>(*session_, request.scene, notices);
             },
             [&] {
-                if (closing_) throw ValueError("scene", "is closed, as Python ends");
+                refuse_when_closing();
                 if (!progress) return;
                 const Phase now = phase;
                 progress(kPhaseNames[static_cast<size_t>(now)], before + monitor.pixel_samples_done,
@@ -108,6 +109,9 @@ class PythonSession {
     }
 
   private:
+    void refuse_when_closing() const {
+        if (closing_) throw ValueError("scene", "is closed, as Python ends");
+    }
     [[nodiscard]] static uint64_t expected(const RenderRequest& request,
                                            const RenderMonitor& monitor) {
         if (const uint64_t known = monitor.expected_pixel_samples) return known;
@@ -179,6 +183,9 @@ void bind_session(py::module_& module) {
         .def(py::init<int>())
         .def("render", &PythonSession::render)
         .def("close", &PythonSession::close);
+    module.attr("MOST_THREADS") = kMostThreads;
+    module.attr("LEAST_SEEDS") = kChartSeeds;
+    module.attr("MOST_SEEDS") = kMostChartSeeds;
     module.def("plan", plan_of);
     module.def("chart", make_chart);
 }

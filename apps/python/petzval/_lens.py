@@ -13,8 +13,13 @@ from . import _core  # type: ignore[attr-defined]
 from ._errors import FieldError
 from ._keywords import numbers, path_text, whole
 
-LINE_F_NM, LINE_D_NM, LINE_C_NM = 486.1327, 587.5618, 656.2725
-PASSED, VIGNETTED, TOTALLY_REFLECTED, MISSED = range(4)
+LINE_F_NM: float = _core.LINE_F_NM
+LINE_D_NM: float = _core.LINE_D_NM
+LINE_C_NM: float = _core.LINE_C_NM
+PASSED: int = _core.PASSED
+VIGNETTED: int = _core.VIGNETTED
+TOTALLY_REFLECTED: int = _core.TOTALLY_REFLECTED
+MISSED: int = _core.MISSED
 
 
 class Rays(NamedTuple):

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from ._fields import Camera, Scene
 
 OPENCV_TO_GLTF = np.diag([1.0, -1.0, -1.0, 1.0])
-MOST_THREADS, LEAST_SEEDS, MOST_SEEDS = 1024, 5, 1000
+_SESSIONS: weakref.WeakSet[Any] = weakref.WeakSet()
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class SceneBase:
 
     def __init__(self, file: str | os.PathLike[str], threads: int, values: Mapping[str, Any]) -> None:
         self.path = path_text("file", file)
-        self.threads = whole("threads", threads, 0, MOST_THREADS)
+        self.threads = whole("threads", threads, 0, _core.MOST_THREADS)
         self._fields = Fields(values)
         self._session: Any = None
         self._arrays: tuple[list[Mesh], list[Light], Files] | None = None
@@ -82,7 +82,7 @@ class SceneBase:
         """What renders."""
         if not self._session:
             self._session = _core.Session(self.threads)
-            _close_at_exit(weakref.ref(self._session))
+            _SESSIONS.add(self._session)
         return self._session
 
 
@@ -90,12 +90,11 @@ def _remade_scene(cls: Any, path: str, arrays: tuple[list[Mesh], list[Light]] | 
     return cls.from_arrays(*arrays, **values) if arrays else cls(path, **values)
 
 
-def _close_at_exit(session: weakref.ref[Any]) -> None:
-    """Ends a render of another thread before Python goes."""
-    @atexit.register
-    def close() -> None:
-        if living := session():
-            living.close()
+@atexit.register
+def _close() -> None:
+    """Ends renders of other threads before Python goes."""
+    for session in list(_SESSIONS):
+        session.close()
 
 
 class CameraBase:
@@ -306,7 +305,7 @@ def plan_fields(scene: SceneBase, camera: CameraBase | None, values: Mapping[str
 def chart_fields(scene: SceneBase, camera: CameraBase | None, axes: Sequence[str], budget: float | str, seeds: int,
                  folder: str | os.PathLike[str] | None, values: Mapping[str, Any]) -> dict[str, Any]:
     """Measures; _fields.chart() says how."""
-    seeds = whole("seeds", seeds, LEAST_SEEDS, MOST_SEEDS)
+    seeds = whole("seeds", seeds, _core.LEAST_SEEDS, _core.MOST_SEEDS)
     request = _Request(scene, camera, {**values, "size": values.get("size") or (192, 108)})
     words = [axes] if isinstance(axes, str) else [str(axis) for axis in axes]
     with tempfile.TemporaryDirectory(prefix="petzval-") as own:

@@ -51,6 +51,14 @@ assert bpy.ops.petzval.render() == {"FINISHED"} and "shift" not in own.lost
 assert "--size 77x36 --crop 13,0,64,36 --fov" in addon.run.shown(addon.command_of(scene, "s.glb", "p.exr"))
 scene.camera.data.shift_x = 0
 
+# An export that fails leaves nothing in the file.
+kinds = ("scenes", "objects", "meshes", "materials")
+counts = [len(getattr(bpy.data, kind)) for kind in kinds]
+whole, addon.export.meshes.is_closed = addon.export.meshes.is_closed, None
+assert "NoneType" in refused()
+addon.export.meshes.is_closed = whole
+assert counts == [len(getattr(bpy.data, kind)) for kind in kinds]
+
 # Frames.
 scene.render.filepath = os.path.join(own_folder, "frames", "f")
 scene.frame_end = 2

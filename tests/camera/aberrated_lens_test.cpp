@@ -20,7 +20,7 @@ Glass n_sf11() {  // Schott's catalogue of 2023
             Sellmeier{
                 {{1.73759695, 0.013188707}, {0.313747346, 0.0623068142}, {1.89878101, 155.23629}}}};
 }
-Glass constant(double n) {
+Glass glass_of_index(double n) {
     return {"constant", IndexTable{{{587, n}}}};
 }
 
@@ -33,14 +33,14 @@ Bands wavelengths(f4 nm) {
 }
 const f4 kLines{486.1327f, 546.074f, 587.5618f, 656.2725f};
 
-FilmPoint at(V2f film, uint32_t index) {
+FilmPoint film_point(V2f film, uint32_t index) {
     return {film, Sampler(SamplerKind::Owen, 7, {3, 4, index})};
 }
 
 // A ray of the camera's space as a straight line over the distance ahead of the lens.
-struct Line {
+struct StraightLine {
     V2f start, slope;  // m, and m a metre
-    explicit Line(const Ray& ray)
+    explicit StraightLine(const Ray& ray)
         : start(ray.origin.x, ray.origin.y),
           slope(V2f(ray.direction.x, ray.direction.y) / -ray.direction.z) {}
 };
@@ -48,7 +48,7 @@ struct Line {
 // Where on the film, in mm from its centre towards the stop point of the ray, ends the light that
 // comes through that stop point from z_m on the axis? To aim the ray there, its slope must change
 // by as much as the slope through the lens's centre does, and the film stands upside down.
-double landing_mm(const Line& from_centre, double film_mm, double z_m) {
+double landing_mm(const StraightLine& from_centre, double film_mm, double z_m) {
     const double h = from_centre.start.length();
     const double slope = from_centre.start.dot(from_centre.slope) / h;
     return (h / z_m + slope) * film_mm;
@@ -65,12 +65,12 @@ AberratedLens plain(Glass glass, double q, double radius_mm, double focus_m) {
 
 TEST(AberratedLens, FilmAndPoseAreThoseOfTheThinLens) {
     const M44f pose = look_at({1, 2, 3}, {-2, 1, -4});
-    AberratedLens lens = plain(constant(1.5), 0.7, 0.2, 2);
+    AberratedLens lens = plain(glass_of_index(1.5), 0.7, 0.2, 2);
     lens.to_world = pose;
     const AberratedLensCamera aberrated(lens);
     const ThinLensCamera ideal({pose, 0.4f, 1.5f, Iris(Disk{}, 0.2), 2});
     for (uint32_t i = 0; i < 64; ++i) {
-        const FilmPoint point = at({(i % 8) / 7.f, (i / 8) / 7.f}, i);
+        const FilmPoint point = film_point({(i % 8) / 7.f, (i / 8) / 7.f}, i);
         const CameraSample a = aberrated.sample(point, Bands::rgb());
         const CameraSample b = ideal.sample(point, Bands::rgb());
         ASSERT_EQ(a.size(), 1u);
@@ -86,10 +86,10 @@ TEST(AberratedLens, FilmAndPoseAreThoseOfTheThinLens) {
 
 // What is in focus is a plane: near the axis of the lens, all rays of a film point meet there.
 TEST(AberratedLens, FocusIsAPlane) {
-    const AberratedLensCamera camera(plain(constant(1.5), 0.7, 0.5, 2));
+    const AberratedLensCamera camera(plain(glass_of_index(1.5), 0.7, 0.5, 2));
     for (const V2f& film : {V2f(0, 0), V2f(0.9f, 0.3f)})
         for (uint32_t i = 0; i < 16; ++i) {
-            const Line line(camera.sample(at(film, i), Bands::rgb())[0].ray);
+            const StraightLine line(camera.sample(film_point(film, i), Bands::rgb())[0].ray);
             const V2f met = line.start + line.slope * 2;
             EXPECT_NEAR(met.x, (2 * film.x - 1) * std::tan(0.2) * 1.5 * 2, 2e-6);
             EXPECT_NEAR(met.y, (1 - 2 * film.y) * std::tan(0.2) * 2, 2e-6);
@@ -107,13 +107,14 @@ double blur_diameter_mm(double focal_mm, double stop_diameter_mm, double object_
 // The blur of a point on the axis, from the rays that the cameras draw, against the closed form,
 // which knows no aberrations: hence the narrow stop of the camera that has them.
 TEST(AberratedLens, BlurIsTheCircleOfConfusion) {
-    const AberratedLensCamera aberrated(plain(constant(1.5), 5. / 7, 0.1, 2));
+    const AberratedLensCamera aberrated(plain(glass_of_index(1.5), 5. / 7, 0.1, 2));
     const ThinLensCamera ideal({look_at({0, 0, 0}, {0, 0, -1}), 0.4f, 1.5f, Iris(Disk{}, 10), 2});
     const auto expect_blur = [&](const Camera& camera, double radius_mm, double z_m) {
         double widest = 0, square = 0;
         const int rays = 4096;
         for (uint32_t i = 0; i < rays; ++i) {
-            const Line line(camera.sample(at({0.5f, 0.5f}, i), Bands::rgb())[0].ray);
+            const StraightLine line(
+                camera.sample(film_point({0.5f, 0.5f}, i), Bands::rgb())[0].ray);
             const double mm = landing_mm(line, aberrated.film_distance_mm(), z_m);
             widest = std::max(widest, std::fabs(mm));
             square += mm * mm / rays;
@@ -132,14 +133,14 @@ TEST(AberratedLens, BlurIsTheCircleOfConfusion) {
 // Rays leave through the shape, upright and not mirrored, all over it.
 TEST(AberratedLens, IrisShapesTheBundle) {
     const Iris iris(regular_polygon(3, 20), 8);
-    AberratedLens lens = plain(constant(1.5), 0.5, 8, 2);
+    AberratedLens lens = plain(glass_of_index(1.5), 0.5, 8, 2);
     lens.iris = iris;
     const AberratedLensCamera aberrated(lens);
     const ThinLensCamera ideal({look_at({0, 0, 0}, {0, 0, -1}), 0.4f, 1.5f, iris, 2});
     const auto expect_shape = [&](const Camera& camera) {
         V2f lowest(100), highest(-100);
         for (uint32_t i = 0; i < 4096; ++i) {
-            const V3f from = camera.sample(at({0.5f, 0.5f}, i), Bands::rgb())[0].ray.origin;
+            const V3f from = camera.sample(film_point({0.5f, 0.5f}, i), Bands::rgb())[0].ray.origin;
             // A little smaller, as points on the very edge may fall on either side of it.
             const V2f mm = V2f(from.x, from.y) * 999.9f;
             EXPECT_EQ(iris.transmits(mm), 1) << mm.x << ' ' << mm.y;
@@ -167,10 +168,11 @@ TEST(AberratedLens, AxisCrossingsShowTheFormulasAberration) {
             const double film_mm = camera.film_distance_mm();
             int seen = 0;
             for (uint32_t i = 0; i < 64; ++i) {
-                const CameraSample rays = camera.sample(at({0.5f, 0.5f}, i), wavelengths(kLines));
+                const CameraSample rays =
+                    camera.sample(film_point({0.5f, 0.5f}, i), wavelengths(kLines));
                 ASSERT_EQ(rays.size(), 4u);
                 for (int k = 0; k < 4; ++k) {
-                    const Line line(rays[k].ray);
+                    const StraightLine line(rays[k].ray);
                     const double h_mm = line.start.length() * 1e3;
                     if (h_mm < 0.5) continue;  // too little to measure in floats
                     const SingletOptics optics = lens.singlet.at(double(kLines[k]));
@@ -199,7 +201,7 @@ TEST(AberratedLens, AxisCrossingsShowTheFormulasAberration) {
 
 TEST(AberratedLens, WavelengthsPartOnlyWhereTheyDiffer) {
     const AberratedLensCamera dispersing(plain(n_sf11(), 0.5, 5, 1));
-    const CameraSample parted = dispersing.sample(at({0.3f, 0.3f}, 1), wavelengths(kLines));
+    const CameraSample parted = dispersing.sample(film_point({0.3f, 0.3f}, 1), wavelengths(kLines));
     ASSERT_EQ(parted.size(), 4u);
     for (int k = 0; k < 4; ++k)
         for (int lane = 0; lane < 4; ++lane) {
@@ -207,7 +209,7 @@ TEST(AberratedLens, WavelengthsPartOnlyWhereTheyDiffer) {
             EXPECT_EQ(parted[k].weight[lane], k == lane ? 1 : 0);
         }
     const auto count = [](const Camera& camera, const Bands& bands) {
-        return camera.sample(at({0.3f, 0.3f}, 1), bands).size();
+        return camera.sample(film_point({0.3f, 0.3f}, 1), bands).size();
     };
     EXPECT_EQ(count(dispersing, Bands::rgb()), 1);
     AberratedLens shared = plain(n_sf11(), 0.5, 5, 1);
@@ -228,16 +230,16 @@ TEST(AberratedLens, RefusesWhatItCannotImage) {
         }
         return "";
     };
-    EXPECT_NE(refusal(constant(1.5), 0, 5, 0.05).find("focal length"), std::string::npos);
-    EXPECT_NE(refusal(constant(1.5), 0, -1, 1).find("radius"), std::string::npos);
-    EXPECT_NE(refusal(constant(1.5), 0, NAN, 1).find("radius"), std::string::npos);
-    EXPECT_NE(refusal(constant(1.5), 0, 5, NAN).find("object distance"), std::string::npos);
-    EXPECT_NE(refusal(constant(1.5), 0, 51, 1).find("too wide"), std::string::npos);
-    EXPECT_NE(refusal(constant(1.5), 20, 3, 1).find("too wide"), std::string::npos);
-    EXPECT_NE(refusal(constant(1.5), -1.5, 25, 1).find("too wide"), std::string::npos);
+    EXPECT_NE(refusal(glass_of_index(1.5), 0, 5, 0.05).find("focal length"), std::string::npos);
+    EXPECT_NE(refusal(glass_of_index(1.5), 0, -1, 1).find("radius"), std::string::npos);
+    EXPECT_NE(refusal(glass_of_index(1.5), 0, NAN, 1).find("radius"), std::string::npos);
+    EXPECT_NE(refusal(glass_of_index(1.5), 0, 5, NAN).find("object distance"), std::string::npos);
+    EXPECT_NE(refusal(glass_of_index(1.5), 0, 51, 1).find("too wide"), std::string::npos);
+    EXPECT_NE(refusal(glass_of_index(1.5), 20, 3, 1).find("too wide"), std::string::npos);
+    EXPECT_NE(refusal(glass_of_index(1.5), -1.5, 25, 1).find("too wide"), std::string::npos);
     // Past a surface's edge though f(h) is above f/2; f(h) below f/2 though within the surfaces.
-    EXPECT_NE(refusal(constant(1.5), 5. / 7, 31, 1).find("too wide"), std::string::npos);
-    EXPECT_NE(refusal(constant(4), 0, 50, 1).find("too wide"), std::string::npos);
+    EXPECT_NE(refusal(glass_of_index(1.5), 5. / 7, 31, 1).find("too wide"), std::string::npos);
+    EXPECT_NE(refusal(glass_of_index(4), 0, 50, 1).find("too wide"), std::string::npos);
     const Glass fades{"fades", IndexTable{{{400, 1.5}, {800, 1.0}}}};
     EXPECT_NE(refusal(fades, 0, 5, 1).find("gather"), std::string::npos);
 }
@@ -250,12 +252,12 @@ TEST(AberratedLens, RaysAreAlwaysNumbers) {
             {{360, 1.5}, {546, 1.5}, {546.05, 1.0}, {546.1, 1.0}, {546.2, 1.5}, {830, 1.5}}}};
     for (const AberratedLens& lens :
          {plain(n_sf11(), 0, 1e-9, kInf), plain(n_sf11(), 0, 10, kInf),
-          plain(n_sf11(), 2, 10, 0.0501), plain(constant(1 + 1e-6), 0, 1e-6, 1),
+          plain(n_sf11(), 2, 10, 0.0501), plain(glass_of_index(1 + 1e-6), 0, 1e-6, 1),
           plain(n_sf11(), 1e6, 1e-6, 1), plain(gap, 0, 5, 1)}) {
         const AberratedLensCamera camera(lens);
         for (uint32_t i = 0; i < 64; ++i) {
             const CameraSample rays =
-                camera.sample(at({(i % 8) / 6.f, (i / 8) / 6.f}, i), wavelengths(kLines));
+                camera.sample(film_point({(i % 8) / 6.f, (i / 8) / 6.f}, i), wavelengths(kLines));
             EXPECT_GE(rays.size(), 1u);
             for (size_t k = 0; k < rays.size(); ++k) {
                 EXPECT_NEAR(rays[k].ray.direction.length(), 1, 1e-5);
@@ -264,7 +266,7 @@ TEST(AberratedLens, RaysAreAlwaysNumbers) {
         }
     }
     const CameraSample rays =
-        AberratedLensCamera(plain(gap, 0, 5, 1)).sample(at({0, 0}, 1), wavelengths(kLines));
+        AberratedLensCamera(plain(gap, 0, 5, 1)).sample(film_point({0, 0}, 1), wavelengths(kLines));
     ASSERT_EQ(rays.size(), 3u) << "where there is no lens there is no ray";
     for (size_t k = 0; k < rays.size(); ++k) EXPECT_EQ(rays[k].lanes[1], 0);
 }

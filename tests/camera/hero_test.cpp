@@ -17,9 +17,9 @@ namespace {
 
 using test::least_p;
 
-const V2f kFrame_px(48, 32);
+const V2f kFilter_px(48, 32);
 
-Bands four_wavelengths(float u) {
+Bands drawn_wavelengths(float u) {
     static const Observer observer = test::plain_observer();
     return observer.draw(u);
 }
@@ -64,14 +64,14 @@ AberratedLensCamera thin(DispersionMode dispersion, double blue, double red) {
 /// what it sees, at infinity.
 std::array<test::Moments, 4> in_pixel(const Camera& camera, const Filter& filter, uint32_t seed) {
     const V2f centre(34.5f, 24.5f);
-    Bands bands = four_wavelengths(0.3f);
+    Bands bands = drawn_wavelengths(0.3f);
     std::array<test::Moments, 4> out;
     for (uint32_t i = 0; i < 1 << 16; ++i) {
         bands.hero = int(hash32(i) % 4);
         const Sampler sampler(SamplerKind::Independent, seed, {0, 0, i});
         const V2f offset = filter.sample(sampler.get2(Dim::Film));
         const CameraSample seen = camera.sample(
-            {(centre + offset) / kFrame_px, sampler, {&filter, offset, kFrame_px}}, bands);
+            {(centre + offset) / kFilter_px, sampler, {&filter, offset, kFilter_px}}, bands);
         f4 sum{};
         for (size_t k = 0; k < seen.size(); ++k) {
             const CameraPath& path = seen[k];
@@ -145,12 +145,12 @@ TEST(Hero, RaysInDoublesAreThoseInFloats) {
     const LensCamera floats(in);
     in.precision = Precision::Double;
     const LensCamera doubles(in);
-    const Bands bands = four_wavelengths(0.7f);
+    const Bands bands = drawn_wavelengths(0.7f);
     int compared = 0;
     for (uint32_t i = 0; i < 1000; ++i) {
         const FilmPoint at{V2f(0.4f, 0.6f),
                            Sampler(SamplerKind::Owen, 1, {0, 0, i}),
-                           {&filters()[0], V2f(0.2f), kFrame_px}};
+                           {&filters()[0], V2f(0.2f), kFilter_px}};
         const CameraSample a = floats.sample(at, bands), b = doubles.sample(at, bands);
         ASSERT_LE(a.size(), 1u);
         if (a.empty() || b.empty()) continue;
@@ -164,7 +164,7 @@ TEST(Hero, RaysInDoublesAreThoseInFloats) {
 // The lanes' weights of a ray that all of them let through add up to what they are without
 // dispersion, where the stop is drawn in proportion to what it lets through.
 TEST(Hero, SharesAddUpToTheNumberOfLanes) {
-    const PixelFilter pixel{&filters()[0], V2f(0.3f, -0.2f), kFrame_px};
+    const PixelFilter pixel{&filters()[0], V2f(0.3f, -0.2f), kFilter_px};
     const m4 all{-1, -1, -1, -1}, three{-1, 0, -1, -1};
     const auto shares = [&](f4 dx_px, f4 dy_px, m4 on, f4 open) {
         return hero_shares(pixel, {dx_px, dy_px, open, open, splat(1)}, 0, on);
@@ -192,8 +192,8 @@ TEST(Hero, WithoutAFilterLanesAreSplit) {
     int parted = 0;
     for (uint32_t i = 0; i < 100; ++i) {
         const FilmPoint at{V2f(0.5f, 0.6f), Sampler(SamplerKind::Owen, 1, {3, 2, i})};
-        const CameraSample a = hero.sample(at, four_wavelengths(0.2f)),
-                           b = split.sample(at, four_wavelengths(0.2f));
+        const CameraSample a = hero.sample(at, drawn_wavelengths(0.2f)),
+                           b = split.sample(at, drawn_wavelengths(0.2f));
         ASSERT_EQ(a.size(), b.size());
         for (size_t k = 0; k < a.size(); ++k) EXPECT_EQ(a[k].ray.direction, b[k].ray.direction);
         parted += a.size() == 4;

@@ -34,7 +34,7 @@ LensSurface face(double curvature_1_mm, std::optional<Glass> behind) {
     return surface;
 }
 
-Lens lens_of(std::vector<LensSurface> faces) {
+Lens touching_lens(std::vector<LensSurface> faces) {
     LensSurface stop = face(0, std::nullopt);
     stop.stop = true;
     faces.insert(faces.begin(), stop);
@@ -57,7 +57,7 @@ double focus_mm(const Lens& lens, double nm) {
 TEST(LensColour, ASingletFocusesBlueInFrontOfRed) {
     const Glass glass = n_bk7();
     const double bend = 1 / (2 * kFocal_mm * (glass.index(kLineD_nm) - 1));
-    const Lens lens = lens_of({face(bend, glass), face(-bend, std::nullopt)});
+    const Lens lens = touching_lens({face(bend, glass), face(-bend, std::nullopt)});
     const double d = focus_mm(lens, kLineD_nm);
     EXPECT_NEAR(d, kFocal_mm, 1e-3);
     const double blue = focus_mm(lens, kLineF_nm), red = focus_mm(lens, kLineC_nm);
@@ -81,8 +81,8 @@ TEST(LensColour, AnAchromatCrossesTwice) {
     const double bend1 = power1 / (crown.index(kLineD_nm) - 1);
     const double bend2 = power2 / (flint.index(kLineD_nm) - 1);
     const double front = bend1 / 2;
-    const Lens lens = lens_of({face(front, crown), face(front - bend1, flint),
-                               face(front - bend1 - bend2, std::nullopt)});
+    const Lens lens = touching_lens({face(front, crown), face(front - bend1, flint),
+                                     face(front - bend1 - bend2, std::nullopt)});
     const double d = focus_mm(lens, kLineD_nm), blue = focus_mm(lens, kLineF_nm);
     EXPECT_NEAR(d, kFocal_mm, 1e-3);
     EXPECT_NEAR(blue, focus_mm(lens, kLineC_nm), 1e-3);

@@ -20,7 +20,6 @@ using test::kOracleLenses;
 using test::read_lens;
 using test::read_oracle;
 using test::Three;
-using test::unit;
 using test::vectors_of;
 using test::whole;
 
@@ -91,7 +90,7 @@ Worst<V> compare(const Lens& lens, const std::vector<Row>& rows, Towards towards
             origin[2] -= lens.vertex_mm(begin);
             return origin;
         });
-        ray.direction = vectors_of<V>([&](int i) { return unit(row(i).direction); });
+        ray.direction = vectors_of<V>([&](int i) { return test::unit(row(i).direction); });
         const auto indices =
             lens.exact_indices(test::lanes_of<V>([&](int i) { return row(i).nm; }));
         V path{};

@@ -24,7 +24,7 @@ using test::Three;
 using test::usual_ray;
 using test::whole;
 
-constexpr double kDegree = 3.14159265358979323846 / 180;
+constexpr double kDegree_rad = 3.14159265358979323846 / 180;
 const d4 kD_nm = d4{} + kLineD_nm;
 
 struct Outcome {
@@ -49,8 +49,8 @@ void expect_near(Three a, Three b, double tolerance) {
 TEST(LensTrace, APlateMovesARayAside) {
     const Lens plate = lens_of({surface_of(0, 10, 1.5), surface_of(0, 10, 1)});
     for (const double degrees : {0., 30., 60., 89.}) {
-        const double sine = std::sin(degrees * kDegree), in_glass = std::asin(sine / 1.5);
-        const Three direction{0.6 * sine, 0.8 * sine, std::cos(degrees * kDegree)};
+        const double sine = std::sin(degrees * kDegree_rad), in_glass = std::asin(sine / 1.5);
+        const Three direction{0.6 * sine, 0.8 * sine, std::cos(degrees * kDegree_rad)};
         const auto out = traced(plate, {0, 0, 0}, direction);
         EXPECT_EQ(out.status, RayStatus::Passed);
         expect_near(out.direction, direction, 1e-13);
@@ -87,7 +87,8 @@ TEST(LensTrace, SurfacesAboutThePointAimedAtBendNothing) {
     // A shell about (0, 0, 20); rays to its centre from up to 89 degrees beside the axis.
     const Lens shell = lens_of({surface_of(1. / 20, 8, 1.8), surface_of(1. / 12, 20, 1)});
     for (const double degrees : {0., 45., 80., 89.}) {
-        const double sine = std::sin(degrees * kDegree), cosine = std::cos(degrees * kDegree);
+        const double sine = std::sin(degrees * kDegree_rad),
+                     cosine = std::cos(degrees * kDegree_rad);
         const Three direction{sine, 0, cosine};
         for (const double from : {50., 20., 5., -30.}) {
             SCOPED_TRACE(::testing::Message() << degrees << " degrees from " << from << " mm");
@@ -207,7 +208,8 @@ TEST(LensTrace, FisheyesRimIsAnEndWithoutAGap) {
     int passed = 0, blocked = 0;
     for (double degrees = 60; degrees <= 120; degrees += 0.5)
         for (double aim = -30; aim <= 0; aim += 0.25) {
-            const Three direction{0, std::sin(degrees * kDegree), std::cos(degrees * kDegree)};
+            const Three direction{0, std::sin(degrees * kDegree_rad),
+                                  std::cos(degrees * kDegree_rad)};
             for (const Clip clip : {Clip::Yes, Clip::No}) {
                 const auto origin = test::plus({0, aim, 4}, direction, -50);
                 const auto out = traced(lens, origin, direction, Towards::Film, clip);

@@ -15,8 +15,8 @@
 namespace petzval {
 namespace {
 
-constexpr double kFocal_mm = 50, kFocus_m = 1;
-const double kFilm_mm = image_distance_mm(kFocal_mm, 1e3 * kFocus_m);
+constexpr double kThinFocal_mm = 50, kThinFocus_m = 1;
+const double kFilm_mm = image_distance_mm(kThinFocal_mm, 1e3 * kThinFocus_m);
 
 // Share of an even scene's radiance times pi that a film point off the axis gets from a round stop:
 // Foote 1915, the illumination of an element parallel to a disk.
@@ -26,7 +26,7 @@ double foote(double radius_mm, double distance_mm, double off_axis_mm) {
     return 0.5 * (1 - (h2 + r2 - a2) / std::sqrt(sum * sum - 4 * r2 * a2));
 }
 
-Glass n_bk7() {  // Schott's catalogue of 2023
+Glass index_of_bk7() {  // Schott's catalogue of 2023
     return {"N-BK7", Sellmeier{{{1.03961212, 0.00600069867},
                                 {0.231792344, 0.0200179144},
                                 {1.01046945, 103.560653}}}};
@@ -66,21 +66,21 @@ TEST(NaturalVignetting, OfAPinholeIsCosToTheFourth) {
 
 TEST(NaturalVignetting, OfThinLensAndSingletIsFootes) {
     for (const double fnumber : {1., 1.4, 2.8, 22.}) {
-        const double radius_mm = kFocal_mm / (2 * fnumber);
+        const double radius_mm = kThinFocal_mm / (2 * fnumber);
         const NaturalVignetting vignetting(kFilm_mm,
                                            NaturalVignetting::axial_mean(radius_mm, kFilm_mm));
         ThinLens thin;
         thin.yfov_rad = kYfov_rad;
         thin.aspect = kAspect;
-        thin.focus_m = kFocus_m;
+        thin.focus_m = kThinFocus_m;
         thin.iris = Iris(Disk{}, radius_mm);
         thin.exposure = 3;
         thin.vignetting = vignetting;
         std::vector<std::unique_ptr<Camera>> cameras;
         cameras.push_back(std::make_unique<ThinLensCamera>(thin));
         if (fnumber > 2) {
-            AberratedLens glass{thin.to_world, Singlet::bent(n_bk7(), kFocal_mm, 0.7),
-                                *thin.iris,    kFocus_m,
+            AberratedLens glass{thin.to_world, Singlet::bent(index_of_bk7(), kThinFocal_mm, 0.7),
+                                *thin.iris,    kThinFocus_m,
                                 kYfov_rad,     kAspect};
             glass.exposure = 3;
             glass.vignetting = vignetting;
@@ -119,12 +119,12 @@ TEST(NaturalVignetting, HasTheSameMeanInEachWayToCarryWavelengths) {
     bands.nm = f4{430.f, 520.f, 590.f, 680.f};
     bands.on = m4{-1, -1, -1, -1};
     bands.spectral = true;
-    const double radius_mm = kFocal_mm / (2 * 2.8);
+    const double radius_mm = kThinFocal_mm / (2 * 2.8);
     const auto camera = [&](DispersionMode mode) {
         AberratedLens glass{M44f(),
-                            Singlet::bent(n_bk7(), kFocal_mm, 0.7),
+                            Singlet::bent(index_of_bk7(), kThinFocal_mm, 0.7),
                             Iris(Disk{}, radius_mm),
-                            kFocus_m,
+                            kThinFocus_m,
                             kYfov_rad,
                             kAspect};
         glass.dispersion = mode;

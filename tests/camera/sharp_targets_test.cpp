@@ -14,30 +14,30 @@ namespace {
 
 using test::Mean;
 
-const V2i kFrame_px(320, 200);
-constexpr float kYfov_rad = 0.5f, kAspect = 1.6f, kFocus_m = 2;
+const V2i kSharp_px(320, 200);
+constexpr float kSharpYfov_rad = 0.5f, kSharpAspect = 1.6f, kSharpFocus_m = 2;
 
-std::unique_ptr<TargetCamera> thin_lens() {
+std::unique_ptr<TargetCamera> sharp_lens() {
     return target_camera(std::make_shared<ThinLensCamera>(
-        ThinLens{M44f(), kYfov_rad, kAspect, Iris(Disk{}, 20), kFocus_m}));
+        ThinLens{M44f(), kSharpYfov_rad, kSharpAspect, Iris(Disk{}, 20), kSharpFocus_m}));
 }
 /// Width of a pixel, where a thin lens is in focus.
 float pixel_m() {
-    return 2 * std::tan(kYfov_rad / 2) * kFocus_m / float(kFrame_px.y);
+    return 2 * std::tan(kSharpYfov_rad / 2) * kSharpFocus_m / float(kSharp_px.y);
 }
 
 /// Light of a lamp of radiance 1 in a pixel, some pixels right of its middle and below. Its targets
 /// are as wide as it is and stand so many of its radii beside it.
 test::PixelLight light_of(const TargetCamera& camera, const Filter& filter, V2f off_px,
                           float radius_m, uint32_t rays, const std::vector<float>& beside = {0}) {
-    const V2f frame(kFrame_px), middle = V2f(160.5f, 100.5f) / frame;
+    const V2f frame(kSharp_px), middle = V2f(160.5f, 100.5f) / frame;
     const V2f off = ((middle - V2f(0.5f)) * frame + off_px) * pixel_m();
-    const V3f lamp(off.x, -off.y, -kFocus_m);
+    const V3f lamp(off.x, -off.y, -kSharpFocus_m);
     std::vector<Target> targets;
     for (const float radii : beside)
         targets.push_back({lamp + V3f(radii * radius_m, 0, 0), radius_m});
     TargetCell cell =
-        test::listed_in(camera, test::cell_about(middle, kFrame_px), kFrame_px, targets);
+        test::listed_in(camera, test::cell_about(middle, kSharp_px), kSharp_px, targets);
     EXPECT_EQ(cell.targets.size(), targets.size());
     for (const ListedTarget& target : cell.targets) EXPECT_TRUE(target.is_sharp);
     cell.rays = rays;
@@ -50,7 +50,7 @@ test::PixelLight light_of(const TargetCamera& camera, const Filter& filter, V2f 
 // A lamp with a 10,000th of the pixel's area brings its area over the pixel's, times the filter
 // there.
 TEST(SharpTargets, BringTheLightOfALampInClosedForm) {
-    const auto camera = thin_lens();
+    const auto camera = sharp_lens();
     const float radius_m = pixel_m() * 0.0056f;
     const double area_px2 = double(kPi) * sqr(double(radius_m) / double(pixel_m()));
     for (const auto& filter : {Filter(FilterKind::Box, 0.5f), Filter(FilterKind::BlackmanHarris, 2),
@@ -71,7 +71,7 @@ TEST(SharpTargets, BringTheLightOfALampInClosedForm) {
 
 // What is drawn for one target and lands on another beside it has both densities.
 TEST(SharpTargets, MayOverlap) {
-    const auto camera = thin_lens();
+    const auto camera = sharp_lens();
     const float radius_m = pixel_m() * 0.0056f;
     const double expected = double(kPi) * sqr(double(radius_m) / double(pixel_m()));
     const Filter filter(FilterKind::Box, 0.5f);
@@ -131,12 +131,12 @@ TEST(SharpTargets, TracedLensesKeepTheirMean) {
 
 // A film point whose pixel nobody knows has ordinary rays alone, with their whole weight.
 TEST(SharpTargets, NeedAPixel) {
-    const auto camera = thin_lens();
+    const auto camera = sharp_lens();
     camera->set_targets(test::grid_of(test::listed_in(
-        *camera, test::cell_about(V2f(0.5f), kFrame_px), kFrame_px, {{V3f(0, 0, -2), 1e-5f}})));
+        *camera, test::cell_about(V2f(0.5f), kSharp_px), kSharp_px, {{V3f(0, 0, -2), 1e-5f}})));
     const Filter filter(FilterKind::Box, 0.5f);
     const Sampler sampler(SamplerKind::Independent, 1, {0, 0, 0});
-    FilmPoint point{V2f(0.5f), sampler, {&filter, V2f(0.f), V2f(kFrame_px)}};
+    FilmPoint point{V2f(0.5f), sampler, {&filter, V2f(0.f), V2f(kSharp_px)}};
     EXPECT_EQ(camera->sample(point, Bands::rgb()).size(), 2u);
     point.pixel.filter = nullptr;
     const CameraSample alone = camera->sample(point, Bands::rgb());

@@ -16,7 +16,7 @@ using test::Mean;
 using test::Moments;
 using test::Random;
 
-const V2i kFrame_px(960, 640);
+const V2i kStop_px(960, 640);
 
 /// A cell of a camera's film.
 struct Seen {
@@ -104,7 +104,7 @@ struct Counts {
     int rays = 0, unlisted = 0, unseen = 0, beyond_reach = 0, outside = 0, squares = 0;
 };
 Counts counts_of(const Seen& seen, uint32_t seed) {
-    const FilmCell cell = test::cell_about(seen.film, kFrame_px);
+    const FilmCell cell = test::cell_about(seen.film, kStop_px);
     const auto map = StopMap::of(seen.camera, cell);
     Random random(seed);
     Counts out;
@@ -112,7 +112,7 @@ Counts counts_of(const Seen& seen, uint32_t seed) {
     for (int batch = 0; batch < 250; ++batch)
         for (const DrawnRay& drawn : clear_rays(seen, cell, random, batch % 2 == 1)) {
             const Target target = target_on(seen, drawn.ray, random);
-            const auto listed = list_target(target, *map, pose_of(seen.camera), kFrame_px,
+            const auto listed = list_target(target, *map, pose_of(seen.camera), kStop_px,
                                             iris_area_mm2(seen.camera));
             if (listed && (listed->is_sharp || listed->met > 0.25f)) continue;
             ++out.rays;
@@ -121,7 +121,7 @@ Counts counts_of(const Seen& seen, uint32_t seed) {
                 continue;
             }
             // The film point may lie anywhere in its pixel.
-            const V2f middle = drawn.at.film + (random.next2() - V2f(0.5f)) / V2f(kFrame_px);
+            const V2f middle = drawn.at.film + (random.next2() - V2f(0.5f)) / V2f(kStop_px);
             out.unseen += !listed->seen_from.contains(FilmOctagon::along(middle));
             const V2f stop = map->on_disc(drawn.at.stop_mm);
             const StopMap::Rays rays = map->rays(drawn.at.film, drawn.at.nm);
@@ -159,7 +159,7 @@ TEST(StopRegions, HoldTheRaysThatPassTheirTarget) {
 TEST(StopRegions, DrawTheirPointsByTheirDensity) {
     int overlaps = 0, of_squares = 0;
     for (const Seen& seen : cameras()) {
-        const FilmCell cell = test::cell_about(seen.film, kFrame_px);
+        const FilmCell cell = test::cell_about(seen.film, kStop_px);
         const auto map = StopMap::of(seen.camera, cell);
         ASSERT_TRUE(map) << seen.name;
         Random random(2);
@@ -168,7 +168,7 @@ TEST(StopRegions, DrawTheirPointsByTheirDensity) {
             const DrawnRay drawn = clear_rays(seen, cell, random, false)[0];
             const auto listed =
                 list_target(target_on(seen, drawn.ray, random), *map, pose_of(seen.camera),
-                            kFrame_px, iris_area_mm2(seen.camera));
+                            kStop_px, iris_area_mm2(seen.camera));
             if (!listed || listed->is_sharp || listed->met > 0.25f) continue;
             StopSearch search({map.get(), &*listed, drawn.at.film, drawn.at.nm},
                               map->rays(drawn.at.film, drawn.at.nm));
@@ -211,7 +211,7 @@ TEST(StopRegions, DrawTheirPointsByTheirDensity) {
 // By how much the map is off is known: places and slopes of rays that it was not fitted to.
 TEST(StopMaps, AreAsGoodAsTheySay) {
     for (const Seen& seen : cameras()) {
-        const FilmCell cell = test::cell_about(seen.film, kFrame_px);
+        const FilmCell cell = test::cell_about(seen.film, kStop_px);
         const auto map = StopMap::of(seen.camera, cell);
         ASSERT_TRUE(map) << seen.name;
         Random random(3);
@@ -251,7 +251,7 @@ TEST(StopMaps, AreAsGoodAsTheySay) {
 }
 
 TEST(StopMaps, PointsOfTheDiscAreThoseOfTheStop) {
-    const auto map = StopMap::of(lens(test::kTakumar), test::cell_about(V2f(0.1f), kFrame_px));
+    const auto map = StopMap::of(lens(test::kTakumar), test::cell_about(V2f(0.1f), kStop_px));
     ASSERT_TRUE(map);
     for (const V2f& s : {V2f(0.f), V2f(0.9f, 0.1f), V2f(-0.3f, 0.7f)})
         EXPECT_LT((map->on_disc(map->stop_mm(s)) - s).length(), 1e-5f);

@@ -13,7 +13,7 @@ namespace {
 
 using namespace test;
 
-struct Case {
+struct BsdfCase {
     const char* name;
     BsdfInput in;
     float cosine;
@@ -25,7 +25,7 @@ struct Case {
 /// 60 degrees off the shading normal.
 const V3f kTilted = from_cosine(0.5f, 2.2f);
 
-class BsdfSampling : public testing::TestWithParam<Case> {};
+class BsdfSampling : public testing::TestWithParam<BsdfCase> {};
 
 TEST_P(BsdfSampling, DirectionsFollowTheDensity) {
     const Bsdf bsdf(GetParam().in, Bands::rgb(), from_cosine(GetParam().cosine, 0.7f),
@@ -60,23 +60,26 @@ TEST_P(BsdfSampling, WeightsIntegrateTheValue) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, BsdfSampling,
-    testing::Values(
-        Case{"diffuse", dielectric(1.f), 0.7f}, Case{"coat", dielectric(0.4f), 0.4f},
-        Case{"metal", metal(0.5f), 0.6f}, Case{"grazing metal", metal(0.7f), 0.1f},
-        Case{"glass in", glass(0.5f, 1.5f), 0.7f}, Case{"glass out", glass(0.5f, 1 / 1.5f), 0.8f},
-        Case{"thin", thin_glass(0.6f), 0.5f}, Case{"gold", gold(0.5f), 0.6f},
-        Case{"dispersing in", dispersing(0.5f, false), 0.7f, 0},
-        Case{"dispersing out", dispersing(0.5f, true), 0.8f, 2},
-        Case{"one lane left", dispersing(0.5f, true), 0.8f, 2, f4{0, 0, 1, 0}},
-        Case{"unequal lanes", dispersing(0.4f, false), 0.6f, 1, f4{1, 0.2f, 3, 0}},
-        Case{"metal and glass", half_metal(glass(1.f, 1 / 1.5f)), 0.6f},
-        Case{"metal and a rough pane", half_metal(thin_glass(0.6f)), 0.3f},
-        Case{"tilted metal and glass", half_metal(glass(0.7f, 1.5f)), 0.6f, 1, splat(1.f), kTilted},
-        Case{"tilted diffuse", dielectric(1.f), 0.7f, 1, splat(1.f), kTilted},
-        Case{"tilted metal", metal(0.4f), 0.6f, 1, splat(1.f), kTilted},
-        Case{"tilted thin", thin_glass(0.5f), 0.5f, 1, splat(1.f), kTilted},
-        Case{"tilted glass", glass(0.5f, 1.5f), 0.7f, 1, splat(1.f), kTilted},
-        Case{"tilted dispersing", dispersing(0.5f, true), 0.8f, 2, splat(1.f), kTilted}),
+    testing::Values(BsdfCase{"diffuse", dielectric(1.f), 0.7f},
+                    BsdfCase{"coat", dielectric(0.4f), 0.4f}, BsdfCase{"metal", metal(0.5f), 0.6f},
+                    BsdfCase{"grazing metal", metal(0.7f), 0.1f},
+                    BsdfCase{"glass in", glass(0.5f, 1.5f), 0.7f},
+                    BsdfCase{"glass out", glass(0.5f, 1 / 1.5f), 0.8f},
+                    BsdfCase{"thin", thin_glass(0.6f), 0.5f}, BsdfCase{"gold", gold(0.5f), 0.6f},
+                    BsdfCase{"dispersing in", dispersing(0.5f, false), 0.7f, 0},
+                    BsdfCase{"dispersing out", dispersing(0.5f, true), 0.8f, 2},
+                    BsdfCase{"one lane left", dispersing(0.5f, true), 0.8f, 2, f4{0, 0, 1, 0}},
+                    BsdfCase{"unequal lanes", dispersing(0.4f, false), 0.6f, 1, f4{1, 0.2f, 3, 0}},
+                    BsdfCase{"metal and glass", half_metal(glass(1.f, 1 / 1.5f)), 0.6f},
+                    BsdfCase{"metal and a rough pane", half_metal(thin_glass(0.6f)), 0.3f},
+                    BsdfCase{"tilted metal and glass", half_metal(glass(0.7f, 1.5f)), 0.6f, 1,
+                             splat(1.f), kTilted},
+                    BsdfCase{"tilted diffuse", dielectric(1.f), 0.7f, 1, splat(1.f), kTilted},
+                    BsdfCase{"tilted metal", metal(0.4f), 0.6f, 1, splat(1.f), kTilted},
+                    BsdfCase{"tilted thin", thin_glass(0.5f), 0.5f, 1, splat(1.f), kTilted},
+                    BsdfCase{"tilted glass", glass(0.5f, 1.5f), 0.7f, 1, splat(1.f), kTilted},
+                    BsdfCase{"tilted dispersing", dispersing(0.5f, true), 0.8f, 2, splat(1.f),
+                             kTilted}),
     [](const auto& case_info) {
         std::string name = case_info.param.name;
         for (char& c : name) c = c == ' ' ? '_' : c;

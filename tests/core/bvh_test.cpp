@@ -21,9 +21,9 @@ using test::place;
 using test::quad;
 using test::sphere;
 
-class Random {
+class Triangles {
   public:
-    explicit Random(unsigned seed) : engine_(seed) {}
+    explicit Triangles(unsigned seed) : engine_(seed) {}
     float operator()() { return std::min(uniform_(engine_), kOneMinus); }
     V3f direction() {
         const float a = (*this)(), b = (*this)();
@@ -42,7 +42,7 @@ struct Crossing {
 // Rays from inside a closed convex mesh: each must hit; what leaves the hit outward must hit
 // nothing, what leaves it inward must hit the other side.
 Crossing cross_convex(const Scene& scene, const Bvh& bvh, V3f centre, float radius, int rays) {
-    Random random(17);
+    Triangles random(17);
     Crossing count;
     for (int i = 0; i < rays; ++i) {
         Ray ray;
@@ -132,7 +132,7 @@ TEST(Bvh, CoordinatesOfAHitFollowFromRayAndTriangleAlone) {
         instance.to_local = M33f(0.5f, 0, 0, 0, 0.25f, 0, 0, 0, 2.f);
         finish_scene(scene);
         const Bvh bvh(scene, Traversal::Robust);
-        Random random(23);
+        Triangles random(23);
         int differing = 0;
         for (int i = 0; i < 20000; ++i) {
             Ray ray;
@@ -207,7 +207,7 @@ TEST(Bvh, MirroredInstancesKeepTheirFrontOutside) {
         instance.to_local = linear_part(m.inverse());
         finish_scene(scene);
         const Bvh bvh(scene, Traversal::Robust);
-        Random random(3);
+        Triangles random(3);
         for (int i = 0; i < 1000; ++i) {
             Ray ray;
             const V3f outward = random.direction();
@@ -282,7 +282,7 @@ TEST(Bvh, CutoutsAnswerTheSameHoweverOftenTheyAreAsked) {
         const Scene scene = leaf_scene(mode);
         const Bvh robust(scene, Traversal::Robust), fast(scene, Traversal::Fast);
         EXPECT_TRUE(robust.has_cutouts());
-        Random random(23);
+        Triangles random(23);
         int differ = 0, hits = 0;
         for (int i = 0; i < 40000; ++i) {
             Ray ray;

@@ -22,12 +22,12 @@ double box(double) {
     return 1;
 }
 
-struct Case {
+struct FilterCase {
     FilterKind kind;
     double (*profile)(double);
 };
 
-class Filters : public ::testing::TestWithParam<Case> {};
+class Filters : public ::testing::TestWithParam<FilterCase> {};
 
 TEST_P(Filters, OffsetsAreDistributedAsTheFilter) {
     constexpr double kRadius = 1.5;
@@ -76,10 +76,10 @@ TEST_P(Filters, TailsHoldWhatTheProfileHas) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Filters,
-                         ::testing::Values(Case{FilterKind::Box, box},
-                                           Case{FilterKind::Gauss, gauss},
-                                           Case{FilterKind::BlackmanHarris, blackman_harris}));
+INSTANTIATE_TEST_SUITE_P(
+    All, Filters,
+    ::testing::Values(FilterCase{FilterKind::Box, box}, FilterCase{FilterKind::Gauss, gauss},
+                      FilterCase{FilterKind::BlackmanHarris, blackman_harris}));
 
 TEST(Filters, BoxOfHalfAPixelIsThePixel) {
     const Filter filter(FilterKind::Box, 0.5f);

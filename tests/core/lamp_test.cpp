@@ -17,7 +17,7 @@ Scene lit_by(const BallLamp& lamp, size_t count = 1) {
     return scene;
 }
 
-V3f direction_of(uint32_t i) {
+V3f lamp_direction(uint32_t i) {
     const auto unit_float = [](uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; };
     return uniform_sphere(V2f(unit_float(sobol_0(i)), unit_float(sobol_1(i))));
 }
@@ -38,7 +38,7 @@ TEST(BallLamp, SendsItsIntensityInAllDirections) {
     double sum = 0, least = kInfinity, most = 0;
     constexpr uint32_t count = 4096;
     for (uint32_t i = 0; i < count; ++i) {
-        const double found = intensity(scene, direction_of(i));
+        const double found = intensity(scene, lamp_direction(i));
         sum += found;
         least = std::min(least, found);
         most = std::max(most, found);

@@ -67,7 +67,7 @@ CoatedBsdf bsdf_of(const Layered& l, const V3f& wo, const V3f& up = V3f(0, 0, 1)
 }
 
 // Mean weight over a jittered grid: lobes along one axis, directions along the two others.
-V3f albedo_of(const Layered& l, const V3f& wo, const V3f& up = V3f(0, 0, 1)) {
+V3f layered_albedo(const Layered& l, const V3f& wo, const V3f& up = V3f(0, 0, 1)) {
     const CoatedBsdf bsdf = bsdf_of(l, wo, up);
     constexpr int lobes = 24, side = 64;
     test::Random random(7);
@@ -87,12 +87,12 @@ V3f albedo_of(const Layered& l, const V3f& wo, const V3f& up = V3f(0, 0, 1)) {
     return V3f(sum / (lobes * side * side));
 }
 
-constexpr float kCosines[] = {0.05f, 0.2f, 0.5f, 0.8f, 1.f};
-constexpr float kRoughnesses[] = {0.f, 0.1f, 0.3f, 0.6f, 1.f};
+constexpr float kLayerCosines[] = {0.05f, 0.2f, 0.5f, 0.8f, 1.f};
+constexpr float kLayerRoughnesses[] = {0.f, 0.1f, 0.3f, 0.6f, 1.f};
 
 void expect_white(const Layered& l, float cosine, const std::string& what,
                   const V3f& up = V3f(0, 0, 1), float tolerance = 0.01f) {
-    const V3f albedo = albedo_of(l, from_cosine(cosine), up);
+    const V3f albedo = layered_albedo(l, from_cosine(cosine), up);
     for (int c = 0; c < 3; ++c)
         EXPECT_NEAR(albedo[c], 1.f, tolerance)
             << what << ", roughness " << l.in.roughness << ", metallic " << l.in.metallic
@@ -101,9 +101,9 @@ void expect_white(const Layered& l, float cosine, const std::string& what,
 
 TEST(Coat, KeepsWhiteWhite) {
     for (const float metallic : {0.f, 1.f})
-        for (const float roughness : kRoughnesses)
-            for (const float coat : kRoughnesses)
-                for (const float cosine : kCosines)
+        for (const float roughness : kLayerRoughnesses)
+            for (const float coat : kLayerRoughnesses)
+                for (const float cosine : kLayerCosines)
                     expect_white(coated(white(roughness, metallic), coat, 0.8f), cosine,
                                  "coat " + std::to_string(coat));
 }
@@ -139,9 +139,9 @@ TEST(Coat, ReflectsSchlicksShare) {
     black.in.base_color = f4{};
     black.in.dielectric_f0 = f4{};
     black.in.dielectric_f90 = 0;
-    for (const float cosine : kCosines) {
+    for (const float cosine : kLayerCosines) {
         const float schlick = 0.04f + 0.96f * std::pow(1 - cosine, 5.f);
-        EXPECT_NEAR(albedo_of(black, from_cosine(cosine)).x, 0.7f * schlick, 2e-4f) << cosine;
+        EXPECT_NEAR(layered_albedo(black, from_cosine(cosine)).x, 0.7f * schlick, 2e-4f) << cosine;
         EXPECT_NEAR(bsdf_of(black, from_cosine(cosine)).albedo()[0], 0.7f * schlick, 1e-6f);
     }
 }
@@ -177,7 +177,7 @@ TEST(SheenLobe, LeavesGlassWhatItDoesNotScatter) {
 TEST(SheenLobe, TakesFromBelowWhatItsStrongestColourScatters) {
     const Rgb colour(0.2f, 0.5f, 0.9f);
     const float cosine = 0.3f;
-    const V3f albedo = albedo_of(with_sheen(white(0.5f), 0.4f, colour), from_cosine(cosine));
+    const V3f albedo = layered_albedo(with_sheen(white(0.5f), 0.4f, colour), from_cosine(cosine));
     const float scattered = Sheen(0.4f, cosine).albedo();
     for (int c = 0; c < 3; ++c)
         EXPECT_NEAR(albedo[c], 1 - scattered * (0.9f - colour[c]), 0.01f) << c;
@@ -207,7 +207,7 @@ TEST(Anisotropy, KeepsWhiteWhite) {
     for (const float metallic : {0.f, 1.f})
         for (const float roughness : {0.f, 0.05f, 0.1f, 0.3f, 0.6f, 1.f})
             for (const float strength : {0.02f, 0.3f, 0.7f, 1.f})
-                for (const float cosine : kCosines)
+                for (const float cosine : kLayerCosines)
                     expect_white(brushed(white(roughness, metallic), strength), cosine,
                                  "strength " + std::to_string(strength));
 }
@@ -217,7 +217,7 @@ TEST(Anisotropy, OfGlassKeepsWhiteWhite) {
     for (const float eta : {1.5f, 1 / 1.5f})
         for (const float roughness : {0.f, 0.1f, 0.3f, 0.6f})
             for (const float strength : {0.3f, 0.7f, 1.f})
-                for (const float cosine : kCosines)
+                for (const float cosine : kLayerCosines)
                     expect_white(
                         brushed(glass(roughness, eta), strength), cosine,
                         "index " + std::to_string(eta) + ", strength " + std::to_string(strength),
@@ -269,7 +269,7 @@ TEST(ThinFilmLobe, OverWhiteKeepsWhiteWhite) {
 
 TEST(ThinFilmLobe, NothingIsGainedByGlass) {
     for (const float eta : {1.5f, 1 / 1.5f})
-        for (const float cosine : kCosines) {
+        for (const float cosine : kLayerCosines) {
             expect_white(filmed(glass(0.f, eta), 400.f, eta > 1 ? 1.3f : 1.3f / 1.5f), cosine,
                          "glass");
             for (const float roughness : {0.3f, 0.5f, 1.f})
@@ -299,10 +299,10 @@ TEST(ThinFilmLobe, ColoursWhatGlassReflectsAndRefracts) {
 }
 
 TEST(DiffuseTransmission, KeepsWhiteWhite) {
-    for (const float roughness : kRoughnesses)
+    for (const float roughness : kLayerRoughnesses)
         for (const float share : {0.3f, 1.f})
             for (const float transmission : {0.f, 0.4f})
-                for (const float cosine : kCosines) {
+                for (const float cosine : kLayerCosines) {
                     Layered l = leaf(white(roughness), share);
                     l.in.transmission = transmission;
                     expect_white(l, cosine, "leaf");
@@ -356,7 +356,7 @@ TEST(Layers, LobesAreReciprocal) {
     }
 }
 
-struct Case {
+struct LayerCase {
     const char* name;
     Layered layered;
     float cosine;
@@ -364,9 +364,9 @@ struct Case {
     V3f up{0, 0, 1};
 };
 
-const V3f kTilted = from_cosine(0.6f, 2.2f);
+const V3f kTiltedLayer = from_cosine(0.6f, 2.2f);
 
-class LayerSampling : public testing::TestWithParam<Case> {};
+class LayerSampling : public testing::TestWithParam<LayerCase> {};
 
 TEST_P(LayerSampling, DirectionsFollowTheDensity) {
     const CoatedBsdf bsdf =
@@ -401,28 +401,29 @@ TEST_P(LayerSampling, WeightsIntegrateTheValue) {
 INSTANTIATE_TEST_SUITE_P(
     All, LayerSampling,
     testing::Values(
-        Case{"coat", coated(white(0.8f), 0.3f), 0.6f},
-        Case{"coat of its own normal", coated(white(0.5f, 1), 0.3f, 0.9f, from_cosine(0.85f, 2.f)),
-             0.8f},
-        Case{"tilted coat", coated(white(0.6f), 0.4f, 1, from_cosine(0.9f, 4.f)), 0.7f, 1, kTilted},
-        Case{"coated glass", coated(glass(0.5f, 1.5f), 0.4f), 0.7f},
-        Case{"sheen", with_sheen(white(0.6f), 0.3f, Rgb(0.9f, 0.6f, 0.1f)), 0.4f},
-        Case{"tilted sheen", with_sheen(white(0.6f), 0.5f), 0.6f, 1, kTilted},
-        Case{"coated sheen", coated(with_sheen(white(0.7f), 0.4f), 0.3f, 0.6f), 0.5f},
-        Case{"brushed metal", brushed(white(0.3f, 1), 0.6f), 0.6f},
-        Case{"brushed and grazing", brushed(white(0.4f, 1), 1.f), 0.15f},
-        Case{"tilted brushed metal", brushed(white(0.4f, 1), 0.5f), 0.6f, 1, kTilted},
-        Case{"brushed glass", brushed(glass(0.4f, 1.5f), 0.6f), 0.7f},
-        Case{"film", filmed(white(0.5f), 400.f, 1.6f), 0.6f, 2},
-        Case{"film on metal", filmed(white(0.4f, 1), 300.f), 0.6f, 0},
-        Case{"film on glass", filmed(glass(0.5f, 1.5f), 300.f), 0.6f, 0},
-        Case{"leaf", leaf(white(0.5f), 0.4f), 0.6f},
-        Case{"tilted leaf", leaf(white(0.5f), 0.4f), 0.7f, 1, kTilted},
-        Case{"all",
-             coated(with_sheen(leaf(brushed(filmed(white(0.4f, 0.3f), 400.f), 0.5f), 0.3f), 0.4f,
-                               Rgb(0.5f)),
-                    0.2f, 0.5f),
-             0.7f}),
+        LayerCase{"coat", coated(white(0.8f), 0.3f), 0.6f},
+        LayerCase{"coat of its own normal",
+                  coated(white(0.5f, 1), 0.3f, 0.9f, from_cosine(0.85f, 2.f)), 0.8f},
+        LayerCase{"tilted coat", coated(white(0.6f), 0.4f, 1, from_cosine(0.9f, 4.f)), 0.7f, 1,
+                  kTiltedLayer},
+        LayerCase{"coated glass", coated(glass(0.5f, 1.5f), 0.4f), 0.7f},
+        LayerCase{"sheen", with_sheen(white(0.6f), 0.3f, Rgb(0.9f, 0.6f, 0.1f)), 0.4f},
+        LayerCase{"tilted sheen", with_sheen(white(0.6f), 0.5f), 0.6f, 1, kTiltedLayer},
+        LayerCase{"coated sheen", coated(with_sheen(white(0.7f), 0.4f), 0.3f, 0.6f), 0.5f},
+        LayerCase{"brushed metal", brushed(white(0.3f, 1), 0.6f), 0.6f},
+        LayerCase{"brushed and grazing", brushed(white(0.4f, 1), 1.f), 0.15f},
+        LayerCase{"tilted brushed metal", brushed(white(0.4f, 1), 0.5f), 0.6f, 1, kTiltedLayer},
+        LayerCase{"brushed glass", brushed(glass(0.4f, 1.5f), 0.6f), 0.7f},
+        LayerCase{"film", filmed(white(0.5f), 400.f, 1.6f), 0.6f, 2},
+        LayerCase{"film on metal", filmed(white(0.4f, 1), 300.f), 0.6f, 0},
+        LayerCase{"film on glass", filmed(glass(0.5f, 1.5f), 300.f), 0.6f, 0},
+        LayerCase{"leaf", leaf(white(0.5f), 0.4f), 0.6f},
+        LayerCase{"tilted leaf", leaf(white(0.5f), 0.4f), 0.7f, 1, kTiltedLayer},
+        LayerCase{"all",
+                  coated(with_sheen(leaf(brushed(filmed(white(0.4f, 0.3f), 400.f), 0.5f), 0.3f),
+                                    0.4f, Rgb(0.5f)),
+                         0.2f, 0.5f),
+                  0.7f}),
     [](const auto& case_info) {
         std::string name = case_info.param.name;
         for (char& c : name) c = c == ' ' ? '_' : c;

@@ -14,9 +14,9 @@
 namespace petzval {
 namespace {
 
-class Random {
+class Draws {
   public:
-    explicit Random(unsigned seed) : engine_(seed) {}
+    explicit Draws(unsigned seed) : engine_(seed) {}
     float operator()(float low = 0, float high = 1) {
         return std::uniform_real_distribution<float>(low, high)(engine_);
     }
@@ -66,7 +66,7 @@ struct Kind {
 };
 
 // Loose triangles of many sizes and shapes, at world coordinates, or placed five times.
-Scene triangles(const Kind& kind, Random& random, bool bytes = true) {
+Scene triangles(const Kind& kind, Draws& random, bool bytes = true) {
     Scene scene;
     scene.images.push_back(blobs(160, 120, bytes));
     Material m = masked_material(kind.u, kind.v);
@@ -116,7 +116,7 @@ V3f corner(const Scene& scene, uint32_t instance, uint32_t vertex) {
 }
 
 // A ray to a random point of a triangle; hard: from far and along its plane too.
-Ray ray_to_some_triangle(const Scene& scene, Random& random, bool hard = true) {
+Ray ray_to_some_triangle(const Scene& scene, Draws& random, bool hard = true) {
     const auto pick = [&](size_t count) {
         return std::min(static_cast<uint32_t>(random() * float(count)), uint32_t(count - 1));
     };
@@ -142,7 +142,7 @@ constexpr Kind kKinds[] = {{Wrap::Repeat, Wrap::ClampToEdge, false},
 // The opaque scene tells what Embree's coordinates are; what the map says of them must be what
 // coverage() says of the exact ones.
 TEST(MaskMap, AnswersAsTheExactPlaceDoes) {
-    Random random(5);
+    Draws random(5);
     for (const Kind& kind : kKinds)
         for (const Traversal traversal : {Traversal::Robust, Traversal::Fast}) {
             const Scene scene = triangles(kind, random);
@@ -197,7 +197,7 @@ TEST(MaskMap, AnswersAsTheExactPlaceDoes) {
 // A texture of floats has no map.
 TEST(MaskMap, RaysMeetTheSameWithoutIt) {
     for (const Kind& kind : kKinds) {
-        Random random(6), again(6);
+        Draws random(6), again(6);
         const Scene scene = triangles(kind, random), exact = triangles(kind, again, false);
         ASSERT_TRUE(MaskMap(exact, exact.materials[0]).answers.empty());
         const Bvh with(scene, Traversal::Robust), without(exact, Traversal::Robust);

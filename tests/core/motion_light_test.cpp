@@ -20,7 +20,7 @@ namespace {
 
 using namespace test;
 
-const Bands kRgb = Bands::rgb();
+const Bands kMovingRgb = Bands::rgb();
 
 /// The lamp of one triangle, turning and flying away; it may grow as well.
 Scene moving_lamp(size_t steps, bool deforms, bool two_sided = false) {
@@ -61,7 +61,7 @@ TEST(MovingLight, SamplesFollowTheDensityAtTheirTime) {
                                           static_cast<float>(normal.dot(V3d(w))), time);
             };
             const auto draw = [&](Random& random) -> std::optional<V3f> {
-                const auto s = sample_light(scene, light, p, random.next2(), kRgb, time);
+                const auto s = sample_light(scene, light, p, random.next2(), kMovingRgb, time);
                 if (!s) return std::nullopt;
                 const double said = pdf(s->direction);
                 EXPECT_NEAR(double(s->pdf), said > 0 ? said : double(s->pdf), 2e-3 * said);
@@ -93,7 +93,8 @@ TEST(MovingLight, BringsTheIrradianceOfItsTime) {
         Random random(seed++);
         Moments moments;
         for (int i = 0; i < 30000; ++i) {
-            const auto s = sample_light(scene, scene.lights[0], p, random.next2(), kRgb, time);
+            const auto s =
+                sample_light(scene, scene.lights[0], p, random.next2(), kMovingRgb, time);
             moments.add(s ? double(s->radiance[1] * s->direction.dot(n) / s->pdf) : 0);
         }
         EXPECT_TRUE(agrees(moments, 3 * lambert(c, V3d(p), V3d(n)), 1e-5)) << Mean(moments);
@@ -139,7 +140,7 @@ TEST(MovingLight, ShinesOnTheSideThatRaysFindShining) {
             const Surface s = make_surface(scene, ray.direction, *hit);
             if (std::fabs(s.ng.dot(ray.direction)) < 0.02f) continue;
             const auto drawn =
-                sample_light(scene, scene.lights[0], ray.origin, V2f(0.4f), kRgb, time);
+                sample_light(scene, scene.lights[0], ray.origin, V2f(0.4f), kMovingRgb, time);
             ASSERT_EQ(drawn.has_value(), s.front) << number << " at " << time;
             ++(s.front ? bright : dark);
         }
@@ -209,7 +210,7 @@ TEST(MovingLight, KeepsAChanceWheneverItReachesTheReceiver) {
                 for (uint32_t k = 0; k < scene.lights.size(); ++k) {
                     std::optional<Light> moved;
                     const auto drawn = sample_light(scene, light_at(scene, k, time, moved),
-                                                    receiver.p, random.next2(), kRgb, time);
+                                                    receiver.p, random.next2(), kMovingRgb, time);
                     if (!drawn || !(drawn->direction.dot(receiver.normal) > 1e-3f)) continue;
                     ++reached;
                     ASSERT_GT(choice.probability(k, receiver), 0.f)
@@ -263,9 +264,10 @@ TEST(MovingLight, KeepsAChanceWhereItTurnsToTheReceiverLate) {
     const LightReceiver never{V3f(-2, 0.2f, 0), V3f(1, 0, 0), false};
     for (uint32_t i = 0; i < scene.lights.size(); ++i) {
         std::optional<Light> moved;
-        EXPECT_TRUE(sample_light(scene, light_at(scene, i, 1, moved), late.p, V2f(0.4f), kRgb, 1));
-        EXPECT_FALSE(
-            sample_light(scene, light_at(scene, i, 0.5f, moved), late.p, V2f(0.4f), kRgb, 0.5f));
+        EXPECT_TRUE(
+            sample_light(scene, light_at(scene, i, 1, moved), late.p, V2f(0.4f), kMovingRgb, 1));
+        EXPECT_FALSE(sample_light(scene, light_at(scene, i, 0.5f, moved), late.p, V2f(0.4f),
+                                  kMovingRgb, 0.5f));
         EXPECT_GT(choice.probability(i, late), 0.f);
     }
     EXPECT_EQ(choice.probability(0, never), 0.f);
@@ -339,8 +341,8 @@ TEST(MovingLight, IsNotInItsOwnShadowOnAFastFlight) {
             // Beside the lamp's own plane, rounding decides on which side of it the receiver is.
             const V3d normal = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
             if (std::fabs(normal.dot(V3d(ray.origin) - c[0])) < 0.2) continue;
-            const auto s =
-                sample_light(moving, moving.lights[0], ray.origin, random.next2(), kRgb, time);
+            const auto s = sample_light(moving, moving.lights[0], ray.origin, random.next2(),
+                                        kMovingRgb, time);
             if (!s) continue;
             ++drawn;
             ray.direction = s->target - ray.origin;

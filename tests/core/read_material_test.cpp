@@ -32,7 +32,7 @@ struct Square {
     }
 };
 
-void expect_near(const V3f& a, const V3f& b) {
+void expect_near_rgb(const V3f& a, const V3f& b) {
     EXPECT_NEAR((a - b).length(), 0.f, 0.01f) << a << " and " << b;
 }
 
@@ -123,7 +123,7 @@ TEST(MaterialLayers, MappedNormalsAreBentUntilReflectionsLeave) {
                     EXPECT_GT(n.dot(to_eye), 0.f) << tilt_deg << ' ' << view_deg;
                     EXPECT_GT(height(n), 0.9f * most) << tilt_deg << ' ' << view_deg;
                     if (map.dot(to_eye) > 0.01f && height(map) > 0.02f) {
-                        expect_near(n, map);
+                        expect_near_rgb(n, map);
                         ++kept;
                     } else if (map.dot(to_eye) > 0.01f && height(map) < 0.f) {
                         EXPECT_NEAR(height(n), most, 1e-4f) << tilt_deg << ' ' << view_deg;
@@ -146,20 +146,20 @@ TEST(MaterialLayers, CoatAndBaseHaveNormalsOfTheirOwn) {
             if (base) s.m.normal_texture = s.texel(204, 128, 230);
             if (coat) s.m.coat_normal_texture = s.texel(128, 204, 230);
             const ShadingInput in = s.at_middle();
-            expect_near(in.frame.z, base ? along_x : V3f(0, 0, 1));
-            expect_near(in.frame.to_world(in.coat.normal), coat ? along_y : V3f(0, 0, 1));
+            expect_near_rgb(in.frame.z, base ? along_x : V3f(0, 0, 1));
+            expect_near_rgb(in.frame.to_world(in.coat.normal), coat ? along_y : V3f(0, 0, 1));
         }
 }
 
 TEST(MaterialLayers, AnisotropyTurnsFromTheTangentTowardsTheBitangent) {
     Square plain;
     plain.m.anisotropy = 0.5f;
-    expect_near(plain.at_middle().frame.x, V3f(1, 0, 0));
+    expect_near_rgb(plain.at_middle().frame.x, V3f(1, 0, 0));
     EXPECT_EQ(plain.at_middle().bsdf.anisotropy, 0.5f);
     Square turned;
     turned.m.anisotropy = 0.5f;
     turned.m.anisotropy_rotation_rad = kPi / 6;
-    expect_near(turned.at_middle().frame.x, V3f(std::sqrt(0.75f), 0.5f, 0));
+    expect_near_rgb(turned.at_middle().frame.x, V3f(std::sqrt(0.75f), 0.5f, 0));
     // The texture's direction, (1, 1/2), turned further; its strength is blue.
     Square mapped;
     mapped.m.anisotropy = 0.5f;
@@ -167,7 +167,7 @@ TEST(MaterialLayers, AnisotropyTurnsFromTheTangentTowardsTheBitangent) {
     mapped.m.anisotropy_texture = mapped.texel(255, 191, 102);
     const ShadingInput in = mapped.at_middle();
     const float angle_rad = std::atan(0.5f) + kPi / 6;
-    expect_near(in.frame.x, V3f(std::cos(angle_rad), std::sin(angle_rad), 0));
+    expect_near_rgb(in.frame.x, V3f(std::cos(angle_rad), std::sin(angle_rad), 0));
     EXPECT_NEAR(in.bsdf.anisotropy, 0.2f, 1e-6f);
 }
 

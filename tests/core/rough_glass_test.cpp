@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rough glass sends on all that it meets, from both sides, the same way forwards and backwards.
+// Rough rough_glass sends on all that it meets, from both sides, the same way forwards and
+// backwards.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -14,12 +15,12 @@
 namespace petzval {
 namespace {
 
-V3f from_cosine(float cosine, float azimuth = 0.f) {
+V3f leaning(float cosine, float azimuth = 0.f) {
     const float sine = safe_sqrt(1 - sqr(cosine));
     return {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine};
 }
 
-BsdfInput glass(float roughness, float eta) {
+BsdfInput rough_glass(float roughness, float eta) {
     BsdfInput in;
     in.base_color = uniform(1.f, Bands::rgb());
     in.roughness = roughness;
@@ -30,9 +31,9 @@ BsdfInput glass(float roughness, float eta) {
     return in;
 }
 
-/// A dispersive glass, its indices 3 % apart as those of flint are.
+/// A dispersive rough_glass, its indices 3 % apart as those of flint are.
 BsdfInput flint(float roughness, float eta) {
-    BsdfInput in = glass(roughness, eta);
+    BsdfInput in = rough_glass(roughness, eta);
     in.eta = f4{eta * 0.985f, eta, eta * 1.015f, 1.f};
     in.disperses = true;
     return in;
@@ -102,12 +103,12 @@ class Directions {
     float alpha_, eta_;
 };
 
-constexpr int kSide = 32, kRepeats = 8;
+constexpr int kDraws_per_side = 32, kRepeats = 8;
 
 V2f jittered(int i, int j, test::Random& random) {
     const V2f u = random.next2();
-    return {std::min((static_cast<float>(i) + u.x) / kSide, kOneMinus),
-            std::min((static_cast<float>(j) + u.y) / kSide, kOneMinus)};
+    return {std::min((static_cast<float>(i) + u.x) / kDraws_per_side, kOneMinus),
+            std::min((static_cast<float>(j) + u.y) / kDraws_per_side, kOneMinus)};
 }
 
 /// Share of the light that leaves, by the values alone.
@@ -118,13 +119,13 @@ test::Moments by_values(const BsdfInput& in, const V3f& wo, int lane, test::Rand
     for (int repeat = 0; repeat < kRepeats; ++repeat) {
         double sum = 0;
         for (int way = 0; way < 4; ++way)
-            for (int i = 0; i < kSide; ++i)
-                for (int j = 0; j < kSide; ++j) {
+            for (int i = 0; i < kDraws_per_side; ++i)
+                for (int j = 0; j < kDraws_per_side; ++j) {
                     const V3f wi = directions.draw(way, jittered(i, j, random));
                     if (wi.z == 0 || (way >= 2 && (way == 2) != (wi.z > 0))) continue;
                     sum += double(bsdf.eval(wi).f_cos[lane]) / directions.pdf(wi);
                 }
-        albedo.add(sum / (4 * kSide * kSide));
+        albedo.add(sum / (4 * kDraws_per_side * kDraws_per_side));
     }
     return albedo;
 }
@@ -140,16 +141,16 @@ Sampled by_samples(const BsdfInput& in, const V3f& wo, int lane, test::Random& r
     for (int repeat = 0; repeat < kRepeats; ++repeat) {
         double sum = 0, reflected = 0;
         for (int lobe = 0; lobe < 8; ++lobe)
-            for (int i = 0; i < kSide; ++i)
-                for (int j = 0; j < kSide; ++j) {
+            for (int i = 0; i < kDraws_per_side; ++i)
+                for (int j = 0; j < kDraws_per_side; ++j) {
                     const float u = (static_cast<float>(lobe) + random.next()) / 8;
                     const auto s = bsdf.sample(std::min(u, kOneMinus), jittered(i, j, random));
                     if (!s) continue;
                     sum += double(s->weight[lane]);
                     if (!s->transmitted) reflected += double(s->weight[lane]);
                 }
-        sampled.all.add(sum / (8 * kSide * kSide));
-        sampled.reflected.add(reflected / (8 * kSide * kSide));
+        sampled.all.add(sum / (8 * kDraws_per_side * kDraws_per_side));
+        sampled.reflected.add(reflected / (8 * kDraws_per_side * kDraws_per_side));
     }
     return sampled;
 }
@@ -169,7 +170,7 @@ TEST(RoughGlass, ValuesHoldAllTheLight) {
     for (int i = 0; i < kPlaces; ++i) {
         const Place p = any_place(random);
         EXPECT_TRUE(
-            keeps_all(by_values(glass(p.roughness, p.eta()), from_cosine(p.cosine), 1, random)))
+            keeps_all(by_values(rough_glass(p.roughness, p.eta()), leaning(p.cosine), 1, random)))
             << p;
     }
 }
@@ -179,7 +180,7 @@ TEST(RoughGlass, SamplesHoldAllTheLight) {
     for (int i = 0; i < kPlaces; ++i) {
         const Place p = any_place(random);
         EXPECT_TRUE(keeps_all(
-            by_samples(glass(p.roughness, p.eta()), from_cosine(p.cosine), 1, random).all))
+            by_samples(rough_glass(p.roughness, p.eta()), leaning(p.cosine), 1, random).all))
             << p;
     }
 }
@@ -191,8 +192,8 @@ TEST(RoughGlass, EachLaneOfDispersiveGlassHoldsAllItsLight) {
         p.index = 1.13f + (p.index - 1.1f) * 0.9f;  // the lanes are up to 1.5 % off it
         const BsdfInput in = flint(p.roughness, p.eta());
         for (const int lane : {0, 2}) {
-            EXPECT_TRUE(keeps_all(by_values(in, from_cosine(p.cosine), lane, random))) << p;
-            EXPECT_TRUE(keeps_all(by_samples(in, from_cosine(p.cosine), lane, random).all)) << p;
+            EXPECT_TRUE(keeps_all(by_values(in, leaning(p.cosine), lane, random))) << p;
+            EXPECT_TRUE(keeps_all(by_samples(in, leaning(p.cosine), lane, random).all)) << p;
         }
     }
 }
@@ -222,15 +223,15 @@ TEST(RoughGlass, TheLobeOfWhatIsLostHoldsItAll) {
     }
 }
 
-// What glass takes from reflection goes into transmission; less is promised of that fit.
+// What rough_glass takes from reflection goes into transmission; less is promised of that fit.
 TEST(RoughGlass, WeakReflectionHoldsAllTheLight) {
     test::Random random(24);
     for (int i = 0; i < 60; ++i) {
         const Place p = any_place(random);
         for (const float specular : {0.f, 0.3f}) {
-            BsdfInput in = glass(p.roughness, p.eta());
+            BsdfInput in = rough_glass(p.roughness, p.eta());
             in.dielectric_f90 = specular;
-            EXPECT_TRUE(keeps_all(by_values(in, from_cosine(p.cosine), 1, random), 0.983, 1.006))
+            EXPECT_TRUE(keeps_all(by_values(in, leaning(p.cosine), 1, random), 0.983, 1.006))
                 << p << " specular " << specular;
         }
     }
@@ -241,10 +242,10 @@ TEST(RoughGlass, TintDarkensWhatIsTransmitted) {
     test::Random random(25);
     for (int i = 0; i < 30; ++i) {
         const Place p = any_place(random);
-        BsdfInput in = glass(p.roughness, p.eta());
-        const Sampled white = by_samples(in, from_cosine(p.cosine), 1, random);
+        BsdfInput in = rough_glass(p.roughness, p.eta());
+        const Sampled white = by_samples(in, leaning(p.cosine), 1, random);
         in.base_color = uniform(0.25f, Bands::rgb());
-        const Sampled tinted = by_samples(in, from_cosine(p.cosine), 1, random);
+        const Sampled tinted = by_samples(in, leaning(p.cosine), 1, random);
         const double reflected = white.reflected.mean();
         EXPECT_NEAR(tinted.reflected.mean(), reflected, 0.01) << p;
         EXPECT_NEAR(tinted.all.mean(), reflected + 0.25 * (white.all.mean() - reflected), 0.01)
@@ -256,10 +257,10 @@ TEST(RoughGlass, HalfOfItBesideAPlasticHoldsAllTheLight) {
     test::Random random(26);
     for (int i = 0; i < 30; ++i) {
         const Place p = any_place(random);
-        BsdfInput in = glass(p.roughness, p.eta());
+        BsdfInput in = rough_glass(p.roughness, p.eta());
         in.transmission = 0.5f;
         // Plastic is promised 0.5 % either way, and below a cosine of 0.05 nothing.
-        EXPECT_TRUE(keeps_all(by_samples(in, from_cosine(std::max(p.cosine, 0.05f)), 1, random).all,
+        EXPECT_TRUE(keeps_all(by_samples(in, leaning(std::max(p.cosine, 0.05f)), 1, random).all,
                               0.99, 1.005))
             << p;
     }
@@ -269,10 +270,11 @@ TEST(RoughGlass, HoldsAllTheLightAtEveryTilt) {
     test::Random random(27);
     for (int i = 0; i < 60; ++i) {
         const Place p = any_place(random);
-        const V3f wo = from_cosine(p.cosine);
-        const V3f up = from_cosine(0.1f + 0.9f * random.next(), 6.f * random.next());
+        const V3f wo = leaning(p.cosine);
+        const V3f up = leaning(0.1f + 0.9f * random.next(), 6.f * random.next());
         if (wo.dot(up) < 1e-3f) continue;
-        EXPECT_TRUE(keeps_all(by_samples(glass(p.roughness, p.eta()), wo, 1, random, up).all)) << p;
+        EXPECT_TRUE(keeps_all(by_samples(rough_glass(p.roughness, p.eta()), wo, 1, random, up).all))
+            << p;
     }
 }
 
@@ -282,14 +284,14 @@ TEST(RoughGlass, IsReciprocal) {
     test::Random random(28);
     for (int i = 0; i < 20000; ++i) {
         const Place p = any_place(random);
-        const V3f wo = from_cosine(p.cosine);
+        const V3f wo = leaning(p.cosine);
         const V3f wi = random.direction();
         if (std::fabs(wi.z) < 0.01f) continue;
         const bool through = wi.z < 0;
         const auto turned = [&](const V3f& w) { return through ? V3f(w.x, w.y, -w.z) : w; };
-        const Bsdf forwards(glass(p.roughness, p.eta()), Bands::rgb(), wo);
-        const Bsdf backwards(glass(p.roughness, through ? 1 / p.eta() : p.eta()), Bands::rgb(),
-                             turned(wi));
+        const Bsdf forwards(rough_glass(p.roughness, p.eta()), Bands::rgb(), wo);
+        const Bsdf backwards(rough_glass(p.roughness, through ? 1 / p.eta() : p.eta()),
+                             Bands::rgb(), turned(wi));
         const float index2 = through ? sqr(p.eta()) : 1.f;
         const double there = double(forwards.eval(wi).f_cos[1] / (index2 * std::fabs(wi.z)));
         const double back = double(backwards.eval(turned(wo)).f_cos[1] / wo.z);
@@ -306,7 +308,7 @@ TEST(RoughGlass, OtherIndicesStayInBounds) {
                 for (const float cosine : {1e-3f, 0.01f, 0.1f, 1.f}) {
                     const Place p{index, roughness, cosine, from_inside};
                     const Sampled s =
-                        by_samples(glass(roughness, p.eta()), from_cosine(cosine), 1, random);
+                        by_samples(rough_glass(roughness, p.eta()), leaning(cosine), 1, random);
                     EXPECT_LT(std::fabs(s.all.mean() - 1), 0.15) << p << " keeps " << s.all.mean();
                 }
 }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kRows = 96;
 
-V3f direction_of(int row, int column, int rows) {
+V3f towards(int row, int column, int rows) {
     const double polar = std::numbers::pi * (row + 0.5) / rows;
     const double azimuth = std::numbers::pi * (column + 0.5) / rows;
     return {static_cast<float>(std::sin(polar) * std::cos(azimuth)),
@@ -26,7 +26,7 @@ double white_nits(const Sky& sky, const V3f& normal) {
         const double step = std::numbers::pi / kRows;
         const double solid_angle = step * step * std::sin(step * (i + 0.5));
         for (int j = 0; j < 2 * kRows; ++j) {
-            const V3f w = direction_of(i, j, kRows);
+            const V3f w = towards(i, j, kRows);
             sum += solid_angle * std::max(0.f, w.dot(normal)) * luminance(sky.radiance(w));
         }
     }
@@ -38,7 +38,7 @@ TEST(StudioSky, ShowsShapesAndClipsNothingMatt) {
     double least = 1e9, most = 0;
     for (int i = 0; i < 8; ++i)
         for (int j = 0; j < 16; ++j) {
-            const double nits = white_nits(sky, direction_of(i, j, 8));
+            const double nits = white_nits(sky, towards(i, j, 8));
             least = std::min(least, nits);
             most = std::max(most, nits);
         }
@@ -57,7 +57,7 @@ TEST(StudioSky, IsGreyAndItsBoxesStandOutOfTheUsualView) {
     const Sky sky = studio_sky();
     for (int i = 0; i < 24; ++i)
         for (int j = 0; j < 48; ++j) {
-            const Rgb found = sky.radiance(direction_of(i, j, 24));
+            const Rgb found = sky.radiance(towards(i, j, 24));
             EXPECT_EQ(found[0], found[1]);
             EXPECT_EQ(found[0], found[2]);
         }

@@ -15,7 +15,7 @@ namespace {
 
 using test::Random;
 
-const Bands kRgb = Bands::rgb();
+const Bands kTriangleRgb = Bands::rgb();
 
 std::array<V3d, 3> corners(const Scene& scene, const TriangleLight& light) {
     const auto c = triangle_corners(scene, light.instance, light.triangle);
@@ -24,7 +24,7 @@ std::array<V3d, 3> corners(const Scene& scene, const TriangleLight& light) {
 
 // Distance along w from p to the triangle's plane, and whether the point is inside. Double
 // precision.
-std::optional<double> meet(const std::array<V3d, 3>& c, const V3d& p, const V3d& w) {
+std::optional<double> meet_triangle(const std::array<V3d, 3>& c, const V3d& p, const V3d& w) {
     const V3d n = (c[1] - c[0]).cross(c[2] - c[0]);
     const double t = (c[0] - p).dot(n) / w.dot(n);
     const V3d at = p + w * t;
@@ -42,13 +42,13 @@ TEST(TriangleLight, SamplesFollowTheDensity) {
     const V3d normal = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
     for (const V3f& p : {V3f(0.2f, 0.1f, -0.3f), V3f(0.2f, 1.5f, -0.3f), V3f(0.3f, 1.9f, 0.3f)}) {
         const auto pdf = [&](const V3f& w) -> double {
-            const auto t = meet(c, V3d(p), V3d(w));
+            const auto t = meet_triangle(c, V3d(p), V3d(w));
             if (!t) return 0;
             return triangle_light_pdf(scene, light, p, static_cast<float>(*t * *t),
                                       static_cast<float>(normal.dot(V3d(w))));
         };
         const auto draw = [&](V2f u) -> std::optional<V3f> {
-            const auto s = sample_light(scene, light, p, u, kRgb);
+            const auto s = sample_light(scene, light, p, u, kTriangleRgb);
             if (!s) return std::nullopt;
             EXPECT_NEAR(s->pdf, pdf(s->direction) > 0 ? pdf(s->direction) : s->pdf, 1e-3 * s->pdf);
             return s->direction;
@@ -72,7 +72,7 @@ TEST(TriangleLight, StaysFiniteForAPointOfItself) {
                          c[0] * 2.f - c[1], c[0] * 1.1f - c[1] * 0.05f - c[2] * 0.05f}) {
         Random random(4);
         for (int i = 0; i < 1000; ++i) {
-            const auto s = sample_light(scene, light, p, random.next2(), kRgb);
+            const auto s = sample_light(scene, light, p, random.next2(), kTriangleRgb);
             if (!s) continue;  // rounding may leave p a little before the plane
             ASSERT_TRUE(s->pdf > 0 && std::isfinite(s->pdf)) << p;
             ASSERT_NEAR(s->direction.length(), 1, 1e-3) << p;
@@ -105,7 +105,7 @@ TEST(TriangleLight, EstimatesLambertsIrradiance) {
         Random random(seed++);
         test::Moments moments;
         for (int i = 0; i < 50000; ++i) {
-            const auto s = sample_light(*scene, light, p, random.next2(), kRgb);
+            const auto s = sample_light(*scene, light, p, random.next2(), kTriangleRgb);
             moments.add(s ? s->radiance[1] * s->direction.dot(n) / s->pdf : 0);
         }
         const double expected = 2 * lambert_irradiance(corners(*scene, light), V3d(p), V3d(n));
@@ -132,11 +132,11 @@ TEST(TriangleLight, EstimatesLambertsIrradianceNearALargeLamp) {
         Random random(7);
         test::Moments moments;
         for (int i = 0; i < 100000; ++i) {
-            const auto s = sample_light(scene, light, p, random.next2(), kRgb);
+            const auto s = sample_light(scene, light, p, random.next2(), kTriangleRgb);
             const float cosine = s ? s->direction.dot(wall) : 0;
             moments.add(cosine > 0 ? double(s->radiance[1] * cosine / s->pdf) : 0);
         }
-        // By a grid of directions: those that meet the lamp.
+        // By a grid of directions: those that meet_triangle the lamp.
         double expected = 0;
         constexpr int kSide = 2000;
         for (int i = 0; i < kSide; ++i)
@@ -144,7 +144,7 @@ TEST(TriangleLight, EstimatesLambertsIrradianceNearALargeLamp) {
                 const float z = 1 - 2 * (float(j) + 0.5f) / kSide;
                 const float r = std::sqrt(1 - z * z), a = 2 * kPi * (float(i) + 0.5f) / kSide;
                 const V3f w(r * std::cos(a), z, r * std::sin(a));
-                if (w.dot(wall) > 0 && meet(c, V3d(p), V3d(w)))
+                if (w.dot(wall) > 0 && meet_triangle(c, V3d(p), V3d(w)))
                     expected += double(w.dot(wall)) * 4 * std::numbers::pi / (kSide * kSide);
             }
         EXPECT_NEAR(moments.mean(), expected, 0.01 * expected) << size;
@@ -161,15 +161,16 @@ TEST(TriangleLight, ShinesOnTheSideThatItsMaterialSays) {
             if (mirrored) scene.instances[0] = test::placed(0, mirror);
             finish_scene(scene);
             const TriangleLight light{0, 0};
-            EXPECT_TRUE(sample_light(scene, light, below, V2f(0.4f), kRgb)) << mirrored;
-            EXPECT_EQ(sample_light(scene, light, above, V2f(0.4f), kRgb).has_value(), double_sided);
+            EXPECT_TRUE(sample_light(scene, light, below, V2f(0.4f), kTriangleRgb)) << mirrored;
+            EXPECT_EQ(sample_light(scene, light, above, V2f(0.4f), kTriangleRgb).has_value(),
+                      double_sided);
         }
     // Mirrored and already in world space: the corners stand as they are, only the sides change.
     Scene scene = test::lamp_scene(Rgb(1.f));
     scene.instances[0].flips = true;
     finish_scene(scene);
-    EXPECT_FALSE(sample_light(scene, TriangleLight{0, 0}, below, V2f(0.4f), kRgb));
-    EXPECT_TRUE(sample_light(scene, TriangleLight{0, 0}, above, V2f(0.4f), kRgb));
+    EXPECT_FALSE(sample_light(scene, TriangleLight{0, 0}, below, V2f(0.4f), kTriangleRgb));
+    EXPECT_TRUE(sample_light(scene, TriangleLight{0, 0}, above, V2f(0.4f), kTriangleRgb));
 }
 
 Image checker() {
@@ -188,7 +189,8 @@ TEST(TriangleLight, ShowsWhatAHitShows) {
     const auto c = corners(scene, light);
     Random random(5);
     for (int i = 0; i < 1000; ++i) {
-        const auto s = sample_light(scene, light, V3f(0.3f, 0.2f, 0.1f), random.next2(), kRgb);
+        const auto s =
+            sample_light(scene, light, V3f(0.3f, 0.2f, 0.1f), random.next2(), kTriangleRgb);
         if (!s) continue;  // a black texel
         const V3d at = V3d(s->target) - c[0], e1 = c[1] - c[0], e2 = c[2] - c[0];
         const V3d n = e1.cross(e2);
@@ -214,7 +216,7 @@ TEST(TriangleLight, ASurfaceEmitsWhatLightSamplesSay) {
                 const V2f b = random.next2() * 0.5f;
                 const V3f along = random.direction();
                 const Surface s = make_surface(scene, along, Hit{b, 0, 0});
-                const Rgb found = read_material(scene, s, -along, kRgb).emitted;
+                const Rgb found = read_material(scene, s, -along, kTriangleRgb).emitted;
                 const Rgb expected = emitted_radiance(scene, 0, 0, b, s.front);
                 for (int k = 0; k < 3; ++k) ASSERT_EQ(found[k], expected[k]);
             }
@@ -227,7 +229,8 @@ TEST(TriangleLight, CutoutsShineWithTheirCoverage) {
     finish_scene(scene);
     const auto radiance = [&](AlphaMode mode) {
         scene.materials[0].alpha_mode = mode;
-        const auto s = sample_light(scene, TriangleLight{0, 0}, V3f(0.2f, 0, 0), V2f(0.5f), kRgb);
+        const auto s =
+            sample_light(scene, TriangleLight{0, 0}, V3f(0.2f, 0, 0), V2f(0.5f), kTriangleRgb);
         return s ? s->radiance[0] : 0.f;
     };
     EXPECT_FLOAT_EQ(radiance(AlphaMode::Opaque), 8);
@@ -237,7 +240,7 @@ TEST(TriangleLight, CutoutsShineWithTheirCoverage) {
     EXPECT_FLOAT_EQ(radiance(AlphaMode::Mask), 8);
 }
 
-// A shadow ray to the target must not meet the light itself, at any scale and distance.
+// A shadow ray to the target must not meet_triangle the light itself, at any scale and distance.
 TEST(TriangleLight, ShadowRaysEndBeforeTheLight) {
     Random random(6);
     for (int i = 0; i < 20000; ++i) {
@@ -251,9 +254,9 @@ TEST(TriangleLight, ShadowRaysEndBeforeTheLight) {
                                            centre + random.direction() * scale)};
         scene.instances.resize(1);
         const V3f p = centre + random.direction() * (distance * scale);
-        const auto s = sample_light(scene, TriangleLight{0, 0}, p, random.next2(), kRgb);
+        const auto s = sample_light(scene, TriangleLight{0, 0}, p, random.next2(), kTriangleRgb);
         if (!s) continue;
-        const auto t = meet(corners(scene, {0, 0}), V3d(p), V3d(s->target - p));
+        const auto t = meet_triangle(corners(scene, {0, 0}), V3d(p), V3d(s->target - p));
         ASSERT_GT(t.value_or(kInfinity), 1.0) << "scale " << scale << " distance " << distance;
     }
 }
@@ -275,8 +278,8 @@ TEST(TriangleLight, TheTraversalAgrees) {
             for (int k = 0; k < 300; ++k) {
                 Ray shadow;
                 shadow.origin = random.direction() * (100 * random.next() * scale);
-                const auto s =
-                    sample_light(scene, TriangleLight{0, 0}, shadow.origin, random.next2(), kRgb);
+                const auto s = sample_light(scene, TriangleLight{0, 0}, shadow.origin,
+                                            random.next2(), kTriangleRgb);
                 if (!s) continue;
                 shadow.direction = s->target - shadow.origin;
                 shadow.t_max = kOneMinus;
@@ -298,7 +301,7 @@ TEST(TriangleLight, ZeroAreaIsNoLight) {
     scene.instances.resize(1);
     finish_scene(scene);
     EXPECT_EQ(light_power(scene, scene.lights[0]), 0.f);
-    EXPECT_FALSE(sample_light(scene, scene.lights[0], V3f(0.f), V2f(0.5f), kRgb));
+    EXPECT_FALSE(sample_light(scene, scene.lights[0], V3f(0.f), V2f(0.5f), kTriangleRgb));
 }
 
 TEST(TriangleLight, PowerIsAreaTimesPiTimesSides) {

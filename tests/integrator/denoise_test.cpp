@@ -17,13 +17,13 @@ constexpr V2i kFrame{96, 80};
 constexpr Rect kWhole{0, 0, kFrame.x, kFrame.y};
 
 /// A picture: the true colour of a pixel, and what guides there.
-struct Scene {
+struct NoisyPicture {
     std::function<V3f(int x, int y)> truth;
     std::function<Guide(int x, int y)> guide = [](int, int) { return Guide{}; };
 };
 
 /// A sample is the truth times a number, whose mean is 1. chance: that it is not 0.
-Film film_of(const Scene& scene, uint32_t samples, float chance, uint32_t seed,
+Film film_of(const NoisyPicture& scene, uint32_t samples, float chance, uint32_t seed,
              Rect crop = kWhole) {
     Film film(kFrame, crop, {}, {}, {.halves = true});
     const Rect there = film.pixels();
@@ -53,7 +53,7 @@ struct Errors {
     double z = 0;  ///< of stated - denoised, by blocks of 16 x 16 pixels
 };
 
-Errors errors_of(const Film& film, const Denoised& picture, const Scene& scene) {
+Errors errors_of(const Film& film, const Denoised& picture, const NoisyPicture& scene) {
     constexpr int kBlock = 16;
     Errors out;
     std::vector<double> blocks(size_t(kFrame.x / kBlock * (kFrame.y / kBlock)));
@@ -82,12 +82,13 @@ float wave(int x, int y) {
     return 2 + std::sin(0.07f * static_cast<float>(x)) * std::cos(0.05f * static_cast<float>(y));
 }
 
-const Scene kSmooth{[](int x, int y) { return V3f(wave(x, y)); }};
+const NoisyPicture kSmooth{[](int x, int y) { return V3f(wave(x, y)); }};
 /// Fine stripes that the albedo has too, in smooth light.
-const Scene kStripes{[](int x, int y) { return V3f((x + y) % 4 < 2 ? 0.6f : 0.4f) * wave(x, y); },
-                     [](int x, int y) {
-                         return Guide{true, V3f((x + y) % 4 < 2 ? 0.6f : 0.4f), V3f(0, 0, 1), 3};
-                     }};
+const NoisyPicture kStripes{
+    [](int x, int y) { return V3f((x + y) % 4 < 2 ? 0.6f : 0.4f) * wave(x, y); },
+    [](int x, int y) {
+        return Guide{true, V3f((x + y) % 4 < 2 ? 0.6f : 0.4f), V3f(0, 0, 1), 3};
+    }};
 
 TEST(Denoiser, SmoothLightHasFarLessNoise) {
     const Film film = film_of(kSmooth, 32, 0.5f, 1);
@@ -100,7 +101,7 @@ TEST(Denoiser, TexturesAreKept) {
     const Film film = film_of(kStripes, 32, 0.5f, 2);
     const Errors errors = errors_of(film, denoised(film), kStripes);
     EXPECT_LT(errors.denoised, 0.1 * errors.noisy);
-    Scene blind = kStripes;
+    NoisyPicture blind = kStripes;
     blind.guide = kSmooth.guide;
     const Film unguided = film_of(blind, 32, 0.5f, 2);
     EXPECT_LT(errors.denoised, 0.5 * errors_of(unguided, denoised(unguided), blind).denoised);
@@ -110,7 +111,7 @@ TEST(Denoiser, TexturesAreKept) {
 // one half saw the other one would state too little.
 TEST(Denoiser, ItsStatedErrorIsTheTrueOne) {
     constexpr uint32_t kPictures = 6;
-    for (const Scene* scene : {&kSmooth, &kStripes})
+    for (const NoisyPicture* scene : {&kSmooth, &kStripes})
         for (const float chance : {1.f, 0.1f}) {
             double stated = 0, truth = 0, z = 0;
             for (uint32_t seed = 0; seed < kPictures; ++seed) {
@@ -127,7 +128,7 @@ TEST(Denoiser, ItsStatedErrorIsTheTrueOne) {
 
 // A window never makes light: what comes of a pixel lies within what is about it.
 TEST(Denoiser, NothingIsNegativeOrBrighterThanItsSamples) {
-    const Scene edges{
+    const NoisyPicture edges{
         [](int x, int y) { return V3f(x < 40 ? 1e-3f : 1e4f, y < 30 ? 0.f : 1.f, 5); }};
     const Film film = film_of(edges, 4, 0.3f, 3);
     const Denoised picture = denoised(film);
@@ -156,7 +157,7 @@ TEST(Denoiser, FirefliesDoNotSpread) {
 
 // A small lamp that every sample meets stays as it is, and its surroundings stay dark.
 TEST(Denoiser, ALampOfOnePixelIsKept) {
-    const Scene lamp{[](int x, int y) { return V3f(x == 50 && y == 40 ? 1e4f : 1.f); }};
+    const NoisyPicture lamp{[](int x, int y) { return V3f(x == 50 && y == 40 ? 1e4f : 1.f); }};
     const Film film = film_of(lamp, 64, 1, 5);
     const Denoised picture = denoised(film);
     EXPECT_NEAR(picture.colour[picture.offset(50, 40)].x, 1e4, 3e3);
@@ -167,7 +168,7 @@ TEST(Denoiser, ALampOfOnePixelIsKept) {
 }
 
 TEST(Denoiser, BlackPicturesAndSinglePixelsAreNoFault) {
-    const Scene black{[](int, int) { return V3f(0.f); }};
+    const NoisyPicture black{[](int, int) { return V3f(0.f); }};
     for (const V3f& colour : denoised(film_of(black, 4, 1, 6)).colour) ASSERT_EQ(colour, V3f(0));
     for (const uint32_t samples : {0u, 1u, 2u, 3u})
         for (const V3f& colour : denoised(film_of(kSmooth, samples, 1, 6)).colour)

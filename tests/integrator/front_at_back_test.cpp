@@ -27,7 +27,7 @@ Mesh reversed(Mesh mesh) {
     for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
     return mesh;
 }
-M44f turned(float angle_rad, const V3f& axis) {
+M44f turned_about(float angle_rad, const V3f& axis) {
     M44f m;
     m.setAxisAngle(axis, angle_rad);
     return m;
@@ -100,7 +100,7 @@ TEST_P(Order, ARayMeetsTheSideThatFacesIt) {
 
 TEST_P(Order, AnywhereInTheWorld) {
     for (int i = 0; i < 8; ++i) {
-        M44f m = turned(0.7f + float(i), unit(V3f(1, -2, 0.5f)));
+        M44f m = turned_about(0.7f + float(i), unit(V3f(1, -2, 0.5f)));
         const float far = std::pow(10.f, float(i - 4));
         for (int j = 0; j < 3; ++j) m[3][j] = far * float(j + 1);
         SCOPED_TRACE(i);
@@ -119,8 +119,8 @@ M44f half_turn(const V3f& axis) {
     return m;
 }
 
-// The back may be the same mesh, mirrored or turned: its corners are rounded otherwise, and its
-// quads may be split along the other diagonal.
+// The back may be the same mesh, mirrored or turned_about: its corners are rounded otherwise, and
+// its quads may be split along the other diagonal.
 TEST(FrontAtBack, TheBackMayBeAnInstanceOfTheSameMesh) {
     M44f mirrored;
     mirrored.setScale(V3f(1, 1, -1));
@@ -128,7 +128,7 @@ TEST(FrontAtBack, TheBackMayBeAnInstanceOfTheSameMesh) {
                              half_turn(V3f(1, 0, 0)), half_turn(V3f(0, 1, 0))})
         for (float angle : {0.f, 0.3f, 2.f})
             for (const bool back_first : {false, true}) {
-                M44f m = turned(angle, unit(V3f(1, 2, 3)));
+                M44f m = turned_about(angle, unit(V3f(1, 2, 3)));
                 for (int j = 0; j < 3; ++j) m[3][j] = angle * float(j);
                 Scene scene;
                 test::place(scene, kSheet, one_sided());

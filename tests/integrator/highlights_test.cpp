@@ -14,7 +14,7 @@ namespace {
 
 using namespace test;
 
-const V2i kFrame(96, 64);
+const V2i kGlint_px(96, 64);
 constexpr float kRadius_m = 0.1f;
 /// Of the ball's 50 mm: its facets lie up to 8 um below it, and the lens sees depth by 2 degrees.
 constexpr float kDepth_m = 6e-4f;
@@ -44,7 +44,7 @@ ThinLensCamera camera() {
 
 std::vector<SmallFeature> seen_in(World& world, const std::vector<SmallFeature>& lamps) {
     world.finish();
-    return highlights(camera(), world.scene, *world.bvh, kFrame, lamps);
+    return highlights(camera(), world.scene, *world.bvh, kGlint_px, lamps);
 }
 
 std::vector<SmallFeature> seen_in_a_ball(const Material& material,
@@ -60,7 +60,7 @@ struct BusyCamera : Camera {
     mutable std::atomic<int> asked = 0;
 
     [[nodiscard]] CameraSample sample(const FilmPoint& at, const Bands& bands) const override {
-        if (++asked > kFrame.x * kFrame.y / 8) throw std::runtime_error("asked too often");
+        if (++asked > kGlint_px.x * kGlint_px.y / 8) throw std::runtime_error("asked too often");
         return of.sample(at, bands);
     }
 };
@@ -71,7 +71,7 @@ TEST(Highlights, TakeFewRaysOfTheLens) {
     place(world.scene, sphere(V3f(0, 0, -1), kRadius_m, 128, true), mirror());
     world.finish();
     const std::vector<SmallFeature> lamps{lamp_at(V3f(0, 0, 2), 0.006f)};
-    EXPECT_EQ(highlights(BusyCamera(), world.scene, *world.bvh, kFrame, lamps).size(), 1u);
+    EXPECT_EQ(highlights(BusyCamera(), world.scene, *world.bvh, kGlint_px, lamps).size(), 1u);
 }
 
 // Paraxial mirror: 1/s' = 1/s + 2/R, behind the vertex (Born and Wolf 1999, 4.4).

@@ -62,7 +62,7 @@ void expect_paths_of_stills(const Scene& moving, PathOptions options = {}) {
 }
 
 /// A floor and a wall.
-Scene room() {
+Scene moving_room() {
     Scene scene;
     place(scene, quad(V3f(-4, 0, -2), V3f(0, 0, 6), V3f(8, 0, 0)), diffuse_material(0.6f));
     place(scene, quad(V3f(-4, 0, -2), V3f(8, 0, 0), V3f(0, 4, 0)), diffuse_material(0.7f));
@@ -83,7 +83,7 @@ M44f flies(float time) {
 }
 
 TEST(MotionPath, OfLampsThatGrowAndTurn) {
-    Scene scene = room();
+    Scene scene = moving_room();
     Material lamp = emitter_material(9.f, 0.3f);
     lamp.double_sided = false;
     place_moving(scene, box(V3f(-0.3f), V3f(0.3f)), lamp, at_steps(9, [](float time) {
@@ -97,7 +97,7 @@ TEST(MotionPath, OfLampsThatGrowAndTurn) {
 }
 
 TEST(MotionPath, OfCoarseSmoothThingsInLightThatMoves) {
-    Scene scene = room();
+    Scene scene = moving_room();
     add_light(scene);
     place_moving(
         scene, box(V3f(-0.1f), V3f(0.1f)), emitter_material(60.f),
@@ -119,7 +119,7 @@ Material tinted_glass(float ior, float roughness = 0) {
 
 TEST(MotionPath, OfAGlassWithADrinkThatTurnTogether) {
     for (const float roughness : {0.f, 0.4f}) {
-        Scene scene = room();
+        Scene scene = moving_room();
         add_light(scene);
         scene.sky = Sky::uniform(Rgb(0.5f));
         const auto flight = at_steps(9, flies);
@@ -132,7 +132,7 @@ TEST(MotionPath, OfAGlassWithADrinkThatTurnTogether) {
 }
 
 TEST(MotionPath, OfPanesAndLeaves) {
-    Scene scene = room();
+    Scene scene = moving_room();
     add_light(scene);
     Material pane = diffuse_material(0.4f), leaf = diffuse_material(0.9f);
     pane.roughness = 0;
@@ -149,7 +149,7 @@ TEST(MotionPath, OfPanesAndLeaves) {
 
 // A normal map on what turns, is mirrored on its way, and bends.
 TEST(MotionPath, OfMappedNormals) {
-    Scene scene = room();
+    Scene scene = moving_room();
     add_light(scene);
     Material mapped = diffuse_material(0.9f);
     mapped.normal_texture.image = 0;

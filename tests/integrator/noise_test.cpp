@@ -32,7 +32,7 @@ struct NoisyTracer {
     }
 };
 
-constexpr V2i kFrame{32, 16};
+constexpr V2i kNoise_px{32, 16};
 constexpr double kTarget = 0.2;
 
 std::shared_ptr<NoiseTarget> target_of(V2i frame, double noise = kTarget) {
@@ -63,7 +63,7 @@ RenderResult render_on(Film& film, const RenderJob& job, int threads = 1) {
     return render_to_noise(NoisyTracer(), FilmCamera(), job, film, executor, monitor);
 }
 
-Film picture(V2i frame, const RenderJob& job, int threads = 1) {
+Film noisy_film(V2i frame, const RenderJob& job, int threads = 1) {
     Film film = empty_film(frame, {0, 0, frame.x, frame.y});
     (void)render_on(film, job, threads);
     return film;
@@ -206,12 +206,12 @@ TEST(NoiseDecisions, FinishStepsThatWereCutShort) {
 // that is printed against the true one.
 TEST(RenderToNoise, BringsNoBiasAndSaysItsError) {
     constexpr int kPictures = 400;
-    const auto target = target_of(kFrame);
+    const auto target = target_of(kNoise_px);
     std::array<test::Moments, 2> light;
     test::Moments ratio;
     size_t at_least = 0;
     for (uint32_t seed = 0; seed < kPictures; ++seed) {
-        const Film film = picture(kFrame, job_of(target, seed));
+        const Film film = noisy_film(kNoise_px, job_of(target, seed));
         double off = 0;
         for (size_t cell = 0; cell < 2; ++cell) {
             const double mean = NoisyTracer::mean(cell == 1);
@@ -243,8 +243,8 @@ TEST(RenderToNoise, BringsNoBiasAndSaysItsError) {
 }
 
 TEST(RenderToNoise, ReachesItsTargetInEachCell) {
-    const auto target = target_of(kFrame);
-    const Film film = picture(kFrame, job_of(target, 3));
+    const auto target = target_of(kNoise_px);
+    const Film film = noisy_film(kNoise_px, job_of(target, 3));
     const NoiseReport said = noise_report(film, *target, 4096);
     EXPECT_EQ(said.cells, 2u);
     EXPECT_EQ(said.left, 0u);
@@ -256,8 +256,8 @@ TEST(RenderToNoise, ReachesItsTargetInEachCell) {
 }
 
 TEST(RenderToNoise, SaysWhatItDidNotReach) {
-    const auto strict = target_of(kFrame, 0.01);
-    Film film = empty_film(kFrame, {0, 0, 32, 16});
+    const auto strict = target_of(kNoise_px, 0.01);
+    Film film = empty_film(kNoise_px, {0, 0, 32, 16});
     const RenderJob job = job_of(strict, 1, 64);
     const RenderResult result = render_on(film, job);
     EXPECT_FALSE(result.stopped);
@@ -270,9 +270,9 @@ TEST(RenderToNoise, SaysWhatItDidNotReach) {
 
 // A lamp that is known to be there, and to be met by one path in ten thousand.
 TEST(RenderToNoise, TakesTheSamplesThatItMust) {
-    auto target = target_of(kFrame);
+    auto target = target_of(kNoise_px);
     target->least = {300, 0};
-    const Film film = picture(kFrame, job_of(target, 3));
+    const Film film = noisy_film(kNoise_px, job_of(target, 3));
     EXPECT_GE(film.taken_count(3, 3), 300u);
 }
 
@@ -280,8 +280,8 @@ TEST(RenderToNoise, ACellDependsOnNothingButItself) {
     constexpr V2i frame(50, 35);
     const auto target = target_of(frame);
     const RenderJob job = job_of(target, 5);
-    const Film whole = picture(frame, job);
-    expect_same(whole, picture(frame, job, 3), {0, 0, 50, 35});
+    const Film whole = noisy_film(frame, job);
+    expect_same(whole, noisy_film(frame, job, 3), {0, 0, 50, 35});
     const Rect crop = target->whole_cells({20, 20, 21, 21});
     Film part = empty_film(frame, crop);
     (void)render_on(part, job);
@@ -321,9 +321,9 @@ TEST(RenderToNoise, ABlackPictureIsDone) {
             return f4{};
         }
     };
-    const auto target = target_of(kFrame);
+    const auto target = target_of(kNoise_px);
     target->floor_nits = 0;
-    Film film = empty_film(kFrame, {0, 0, 32, 16});
+    Film film = empty_film(kNoise_px, {0, 0, 32, 16});
     ThreadExecutor executor(1);
     RenderMonitor monitor;
     (void)render_to_noise(Black(), FilmCamera(), job_of(target, 1), film, executor, monitor);

@@ -36,7 +36,7 @@ class Fisheye final : public Camera {
 constexpr int kSize_px = 64;
 
 /// Brightness of each pixel, row by row, of a lamp in the direction +x that is 2 x 20 degrees wide.
-std::vector<float> picture(const Camera& camera) {
+std::vector<float> camera_picture(const Camera& camera) {
     test::TracedWorld world;
     test::place(world.scene,
                 test::sphere(V3f(10, 0, 0), 10 * std::sin(std::numbers::pi_v<float> / 9), 64, true),
@@ -55,12 +55,12 @@ std::vector<float> picture(const Camera& camera) {
     return out;
 }
 
-/// Of the lamp's picture, the share of the film's area, and where its middle is.
+/// Of the lamp's camera_picture, the share of the film's area, and where its middle is.
 struct Seen {
     double share = 0;
     V2d middle{0.};
 };
-Seen seen_in(const std::vector<float>& pixels) {
+Seen seen_through(const std::vector<float>& pixels) {
     Seen out;
     for (size_t i = 0; i < pixels.size(); ++i) {
         const V2d film((double(i % kSize_px) + 0.5) / kSize_px,
@@ -88,7 +88,7 @@ double share_due() {
 }
 
 TEST(OneFunctionCamera, IsEnoughForAPicture) {
-    const Seen seen = seen_in(picture(Fisheye()));
+    const Seen seen = seen_through(camera_picture(Fisheye()));
     EXPECT_NEAR(seen.share, share_due(), 0.01 * share_due());
     EXPECT_NEAR(seen.middle.x, 0.75, 0.01);
     EXPECT_NEAR(seen.middle.y, 0.5, 0.002);
@@ -101,7 +101,7 @@ TEST(OneFunctionCamera, IsMovedFromOutside) {
     const std::array steps{quarter, quarter};
     const MovingCamera camera(std::make_shared<Fisheye>(),
                               std::make_shared<Shutter>(ShutterCurve::box(), steps, still));
-    const Seen seen = seen_in(picture(camera));
+    const Seen seen = seen_through(camera_picture(camera));
     EXPECT_NEAR(seen.share, share_due(), 0.01 * share_due());
     EXPECT_NEAR(seen.middle.x, 0.5, 0.002);
     EXPECT_NEAR(seen.middle.y, 0.75, 0.01);

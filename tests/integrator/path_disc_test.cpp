@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Suns with a disc, flat lamps, and lamps that are not seen, against closed forms.
+// Suns with a disc, flat lamps, and lamps that are not disc_seen, against closed forms.
 #include <numbers>
 
 #include "core/light/small_features.h"
@@ -44,7 +44,7 @@ Ray to_floor(V2f) {
 }
 
 /// Radiance along one ray.
-double seen(const World& world, const V3f& from, const V3f& direction) {
+double disc_seen(const World& world, const V3f& from, const V3f& direction) {
     return estimate(world, PathOptions(), 2, [&](V2f) { return ray_to(from, from + direction); })
         .value;
 }
@@ -105,9 +105,10 @@ TEST(SunDisc, IsSeenInTheSkyAndInMirrors) {
         };
         for (const double rim : {0., 0.99, 1.01}) {
             const double there = rim < 1 ? nits : 0;
-            EXPECT_NEAR(seen(world, V3f(0, 0, 1), leaning(rim)), unseen ? 0 : there, 1e-2 * nits);
+            EXPECT_NEAR(disc_seen(world, V3f(0, 0, 1), leaning(rim)), unseen ? 0 : there,
+                        1e-2 * nits);
             const V3f down(leaning(rim).x, 0, -1);
-            EXPECT_NEAR(seen(world, V3f(0, 0, 1), down), there, 1e-2 * nits) << unseen << rim;
+            EXPECT_NEAR(disc_seen(world, V3f(0, 0, 1), down), there, 1e-2 * nits) << unseen << rim;
         }
         const std::vector<SmallFeature> features = small_features_of(world.scene);
         ASSERT_EQ(features.size(), 1u);
@@ -176,12 +177,12 @@ TEST(FlatLamp, ShinesFromItsFrontAlone) {
     for (const bool unseen : {false, true}) {
         lamp.unseen = unseen;
         const World world = floor_under(lamp);
-        const double below = seen(world, V3f(0.1f, 0, 0.5f), V3f(0, 0, 1));
+        const double below = disc_seen(world, V3f(0.1f, 0, 0.5f), V3f(0, 0, 1));
         EXPECT_NEAR(below, unseen ? 0 : nits, 1e-4 * nits);
-        EXPECT_NEAR(seen(world, V3f(0.25f, 0, 0.5f), V3f(0, 0, 1)), 0, 1e-6);
+        EXPECT_NEAR(disc_seen(world, V3f(0.25f, 0, 0.5f), V3f(0, 0, 1)), 0, 1e-6);
         // From behind it is not there: the lit floor shows.
-        EXPECT_GT(seen(world, V3f(0, 0, 2), V3f(0, 0, -1)), 0.1);
-        EXPECT_LT(seen(world, V3f(0, 0, 2), V3f(0, 0, -1)), 6);
+        EXPECT_GT(disc_seen(world, V3f(0, 0, 2), V3f(0, 0, -1)), 0.1);
+        EXPECT_LT(disc_seen(world, V3f(0, 0, 2), V3f(0, 0, -1)), 6);
     }
     lamp.to_world = M44f();
     lamp.to_world.rotate(V3f(kPi, 0, 0));  // upwards
@@ -189,7 +190,7 @@ TEST(FlatLamp, ShinesFromItsFrontAlone) {
     EXPECT_EQ(estimate(floor_under(lamp), PathOptions(), 64, to_floor).value, 0);
 }
 
-// What is not seen lights and is mirrored; panes before it change nothing of that.
+// What is not disc_seen lights and is mirrored; panes before it change nothing of that.
 TEST(UnseenLamp, IsNotSeenThroughPanesEither) {
     Material pane = glass_material(1.5f), mirror;
     pane.has_volume = false;
@@ -205,9 +206,9 @@ TEST(UnseenLamp, IsNotSeenThroughPanesEither) {
         place(world.scene, quad(V3f(-5, 4, 0), V3f(10, 0, 0), V3f(0, 0, 5)), mirror);
         add_lamps(world.scene, std::array{ball});
         world.finish();
-        EXPECT_EQ(seen(world, V3f(0, 0, 2), V3f(0, 0, 1)) > 5, !unseen);
-        EXPECT_EQ(seen(world, V3f(0, 0, 0.5f), V3f(0, 0, 1)) > 5, !unseen) << "behind a pane";
-        EXPECT_GT(seen(world, V3f(0, 0, 2), V3f(0, 4, 0.5f)), 5) << "in the mirror";
+        EXPECT_EQ(disc_seen(world, V3f(0, 0, 2), V3f(0, 0, 1)) > 5, !unseen);
+        EXPECT_EQ(disc_seen(world, V3f(0, 0, 0.5f), V3f(0, 0, 1)) > 5, !unseen) << "behind a pane";
+        EXPECT_GT(disc_seen(world, V3f(0, 0, 2), V3f(0, 4, 0.5f)), 5) << "in the mirror";
         EXPECT_GT(estimate(world, PathOptions(), 64, to_floor).value, 0.1);
     }
 }

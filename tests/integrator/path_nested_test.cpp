@@ -43,7 +43,7 @@ World of_layers(std::vector<Layer> layers, bool reversed = false) {
     return world;
 }
 
-Mean seen(const World& world, V3f eye, V3f target, uint32_t samples = 16) {
+Mean nested_seen(const World& world, V3f eye, V3f target, uint32_t samples = 16) {
     return estimate(world, no_roulette(), samples, [&](V2f) { return ray_to(eye, target); });
 }
 
@@ -70,16 +70,16 @@ TEST(NestedVolumes, AbsorbAsWhatFillsSpace) {
     for (const Case& c : cases)
         for (const bool reversed : {false, true}) {
             const World world = of_layers(c.layers, reversed);
-            EXPECT_NEAR(seen(world, V3f(0.1f, 0.2f, 3), V3f(0.1f, 0.2f, 0)).value, c.due,
+            EXPECT_NEAR(nested_seen(world, V3f(0.1f, 0.2f, 3), V3f(0.1f, 0.2f, 0)).value, c.due,
                         1e-4 * c.due)
                 << c.what;
-            EXPECT_NEAR(seen(world, V3f(0.3f, 0.1f, -9), V3f(0.3f, 0.1f, 0)).value, c.due,
+            EXPECT_NEAR(nested_seen(world, V3f(0.3f, 0.1f, -9), V3f(0.3f, 0.1f, 0)).value, c.due,
                         1e-4 * c.due)
                 << c.what << ", from behind";
         }
 }
 
-// The same, seen aslant from far, where t is rounded more than points: no face is missed.
+// The same, nested_seen aslant from far, where t is rounded more than points: no face is missed.
 TEST(NestedVolumes, FacesThatCoincideAreOneBoundaryFromAfar) {
     const World world = of_layers({{0, -3, 1, 0.5f, 40}, {-2, -3, 1, 0.25f, 39}});
     for (int i = 0; i < 200; ++i) {
@@ -93,7 +93,7 @@ TEST(NestedVolumes, FacesThatCoincideAreOneBoundaryFromAfar) {
         const double slant = 1 / std::sqrt(1 - sine * sine);
         if (slant > 1.7) continue;  // it reflects more than comes through
         const double due = std::pow(0.25, slant) * std::pow(0.25, slant);
-        EXPECT_NEAR(seen(world, eye, target, 1).value, due, 2e-3 * due) << i;
+        EXPECT_NEAR(nested_seen(world, eye, target, 1).value, due, 2e-3 * due) << i;
     }
 }
 
@@ -119,8 +119,8 @@ double reflectance(double a, double b) {
 }
 
 // The front of a small volume coincides with that of a large one, or lies a little before it or
-// behind it, as seen from near and from far, where t is rounded more than points are. Bodies of
-// each overlap, so that nothing puts a wrong count right.
+// behind it, as nested_seen from near and from far, where t is rounded more than points are. Bodies
+// of each overlap, so that nothing puts a wrong count right.
 TEST(NestedVolumes, FacesThatNearlyCoincideAreEachCrossedOnce) {
     const Turned turned;
     for (const float off : {0.f, 1e-6f, -1e-6f, 1e-5f, -1e-5f, 3e-5f, -3e-5f, 1e-4f, -1e-4f})
@@ -132,7 +132,7 @@ TEST(NestedVolumes, FacesThatNearlyCoincideAreEachCrossedOnce) {
             Mesh bodies = layer(off, -0.8f, 1.3f);
             append(bodies, layer(-0.6f, -1, 1.2f));
             place(world.scene, turned(bodies), glass_material(1.6f, 0.25f));
-            // Only what goes through is seen.
+            // Only what goes through is nested_seen.
             place(world.scene, turned(test::quad(V3f(-30, -30, -4), V3f(60, 0, 0), V3f(0, 60, 0))),
                   test::emitter_material(1));
             world.finish();
@@ -153,8 +153,8 @@ TEST(NestedVolumes, FacesThatNearlyCoincideAreEachCrossedOnce) {
         }
 }
 
-// Faces that count as one boundary, as seen from far, do not shade each other: light samples leave
-// clear of both.
+// Faces that count as one boundary, as nested_seen from far, do not shade each other: light samples
+// leave clear of both.
 TEST(NestedVolumes, FacesThatCoincideDoNotShadeEachOther) {
     const Turned turned;
     const auto light = [&](bool coincide) {
@@ -227,8 +227,8 @@ TEST(NestedVolumes, RefractByTheIndexOfBothSides) {
     }
 }
 
-// What is seen through a slab of 3 m whose faces lie within clear volumes of higher priority, half
-// a metre to each side.
+// What is nested_seen through a slab of 3 m whose faces lie within clear volumes of higher
+// priority, half a metre to each side.
 double seen_with_hidden_faces(const Material& m) {
     World world;
     place(world.scene, layer(0, -3, 40), m);
@@ -236,7 +236,7 @@ double seen_with_hidden_faces(const Material& m) {
     place(world.scene, layer(-2.5f, -3.5f), glass_material(1));
     world.scene.sky = Sky::uniform(Rgb(1.f));
     world.finish();
-    return seen(world, V3f(0.1f, 0.2f, 3), V3f(0.1f, 0.2f, 0)).value;
+    return nested_seen(world, V3f(0.1f, 0.2f, 3), V3f(0.1f, 0.2f, 0)).value;
 }
 
 // The face's roughness and tint are not there either.
@@ -267,8 +267,8 @@ TEST(NestedVolumes, TheFaceOfTheHigherPriorityShades) {
             large(), small();
         world.scene.sky = Sky::uniform(Rgb(1.f));
         world.finish();
-        EXPECT_NEAR(seen(world, V3f(0.1f, 0.2f, 3), V3f(0.1f, 0.2f, 0)).value, 0.5, 1e-4);
-        EXPECT_NEAR(seen(world, V3f(0.1f, 0.2f, -9), V3f(0.1f, 0.2f, 0)).value, 0.5, 1e-4);
+        EXPECT_NEAR(nested_seen(world, V3f(0.1f, 0.2f, 3), V3f(0.1f, 0.2f, 0)).value, 0.5, 1e-4);
+        EXPECT_NEAR(nested_seen(world, V3f(0.1f, 0.2f, -9), V3f(0.1f, 0.2f, 0)).value, 0.5, 1e-4);
     }
 }
 
@@ -328,7 +328,7 @@ TEST(NestedVolumes, BodiesOfOneMaterialThatTouchAreOne) {
     block.scene.sky = Sky::uniform(Rgb(1.f));
     block.finish();
     const V3f eye(0.3f, 0.2f, 3), target(0.1f, 0.2f, 0);
-    const Mean a = seen(world, eye, target, 2048), b = seen(block, eye, target, 2048);
+    const Mean a = nested_seen(world, eye, target, 2048), b = nested_seen(block, eye, target, 2048);
     EXPECT_TRUE(agrees(a - b, 0)) << a << " and " << b;
     EXPECT_LT(a.error, 0.01);
 }
@@ -343,7 +343,8 @@ TEST(NestedVolumes, TheCameraKnowsWhereItStands) {
                                               {-5.5f, std::pow(0.1, 0.5)},
                                               {-7, 1}};
     for (const auto& [z, due] : cases)
-        EXPECT_NEAR(seen(world, V3f(0.3f, 0.2f, z), V3f(0.3f, 0.2f, -20)).value, due, 1e-4 * due)
+        EXPECT_NEAR(nested_seen(world, V3f(0.3f, 0.2f, z), V3f(0.3f, 0.2f, -20)).value, due,
+                    1e-4 * due)
             << z;
     // A lamp ahead of the next face: nothing on the way says where the camera is.
     World with_lamp;
@@ -351,18 +352,18 @@ TEST(NestedVolumes, TheCameraKnowsWhereItStands) {
     place(with_lamp.scene, test::quad(V3f(-1, -1, -3.5f), V3f(2, 0, 0), V3f(0, 2, 0)),
           test::emitter_material(1.f));
     with_lamp.finish();
-    EXPECT_NEAR(seen(with_lamp, V3f(0.3f, 0.2f, -3), V3f(0.3f, 0.2f, -20)).value, std::sqrt(0.5),
-                1e-4);
+    EXPECT_NEAR(nested_seen(with_lamp, V3f(0.3f, 0.2f, -3), V3f(0.3f, 0.2f, -20)).value,
+                std::sqrt(0.5), 1e-4);
 }
 
-// A lone volume, and what is seen in it is no face of glass.
+// A lone volume, and what is nested_seen in it is no face of glass.
 TEST(NestedVolumes, TheCameraKnowsThatItIsInWater) {
     World world;
     place(world.scene, box(V3f(-3), V3f(3)), glass_material(1.33f, 0.5f));
     place(world.scene, test::quad(V3f(-1, -1, -2), V3f(2, 0, 0), V3f(0, 2, 0)),
           test::emitter_material(1.f));
     world.finish();
-    EXPECT_NEAR(seen(world, V3f(0.1f, 0.2f, 0), V3f(0.1f, 0.2f, -1)).value, 0.25, 1e-4);
+    EXPECT_NEAR(nested_seen(world, V3f(0.1f, 0.2f, 0), V3f(0.1f, 0.2f, -1)).value, 0.25, 1e-4);
 }
 
 // A long and a short box of one mesh, whose fronts and sides lie in one plane: where the ray leaves

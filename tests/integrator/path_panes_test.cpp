@@ -176,8 +176,9 @@ TEST(Panes, AWhiteSkyComesThrough) {
     }
 }
 
-// The glazed room: sun, sky and lamps stand outside, and the room inside is coloured.
-World room(bool glazed, const Material& pane) {
+// The glazed room_with_pane: sun, sky and lamps stand outside, and the room_with_pane inside is
+// coloured.
+World room_with_pane(bool glazed, const Material& pane) {
     World world;
     const auto wall = [&](V3f corner, V3f a, V3f b, float albedo) {
         place(world.scene, quad(corner, a, b), diffuse_material(albedo));
@@ -207,7 +208,7 @@ TEST(Panes, TechniquesAgree) {
     rough.roughness = 0.3f;
     mixed.transmission = 0.6f;
     for (const Material& pane : {pane_material(0.7f), mixed, rough}) {
-        const World world = room(true, pane);
+        const World world = room_with_pane(true, pane);
         PathOptions options;
         options.max_depth = 3;
         const Mean mis = test::expect_techniques_agree(world, options, 2048, into_room, 0.2);
@@ -216,8 +217,9 @@ TEST(Panes, TechniquesAgree) {
 }
 
 TEST(Panes, AGlazedRoomHasTheNoiseOfAnOpenOne) {
-    const Mean open = estimate(room(false, {}), PathOptions(), 2048, into_room);
-    const Mean glazed = estimate(room(true, pane_material()), PathOptions(), 2048, into_room);
+    const Mean open = estimate(room_with_pane(false, {}), PathOptions(), 2048, into_room);
+    const Mean glazed =
+        estimate(room_with_pane(true, pane_material()), PathOptions(), 2048, into_room);
     EXPECT_LT(glazed.error / glazed.value, 1.5 * open.error / open.value);
     EXPECT_GT(glazed.value, 0.85 * open.value);
     EXPECT_LT(glazed.value, open.value);

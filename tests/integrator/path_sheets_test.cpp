@@ -14,23 +14,23 @@ using test::estimate;
 using test::Mean;
 using test::World;
 
-Mesh sheet(bool faces_camera, float z = 0, float size = 2) {
+Mesh thick_sheet(bool faces_camera, float z = 0, float size = 2) {
     Mesh mesh = test::quad(V3f(-size / 2, -size / 2, z), V3f(size, 0, 0), V3f(0, size, 0));
     if (!faces_camera)
         for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
     return mesh;
 }
 
-Material one_sided(float albedo, float nits = 0) {
+Material one_sided_sheet(float albedo, float nits = 0) {
     Material m = test::emitter_material(nits, albedo);
     m.double_sided = false;
     return m;
 }
 
 void add(World& world, bool back_first, const Material& front, const Material& back) {
-    if (back_first) test::place(world.scene, sheet(false), back);
-    test::place(world.scene, sheet(true), front);
-    if (!back_first) test::place(world.scene, sheet(false), back);
+    if (back_first) test::place(world.scene, thick_sheet(false), back);
+    test::place(world.scene, thick_sheet(true), front);
+    if (!back_first) test::place(world.scene, thick_sheet(false), back);
 }
 
 class Sheets : public testing::TestWithParam<bool> {};
@@ -38,7 +38,7 @@ class Sheets : public testing::TestWithParam<bool> {};
 TEST_P(Sheets, EachSideShowsItsMaterial) {
     World world;
     world.scene.sky = Sky::uniform(Rgb(1.f));
-    add(world, GetParam(), one_sided(0.5f), one_sided(0.2f));
+    add(world, GetParam(), one_sided_sheet(0.5f), one_sided_sheet(0.2f));
     world.finish();
     PathOptions options;
     options.transparent = true;
@@ -55,12 +55,12 @@ TEST_P(Sheets, EachSideShowsItsMaterial) {
 TEST_P(Sheets, LampsShineFromTheSideThatFaces) {
     const auto wall_under = [&](bool paired) {
         World world;
-        test::place(world.scene, sheet(true, -1.f, 6), one_sided(0.5f));
-        const Material down = one_sided(0, 3), up = one_sided(0, 7);
+        test::place(world.scene, thick_sheet(true, -1.f, 6), one_sided_sheet(0.5f));
+        const Material down = one_sided_sheet(0, 3), up = one_sided_sheet(0, 7);
         if (paired)
             add(world, GetParam(), up, down);
         else
-            test::place(world.scene, sheet(false), down);
+            test::place(world.scene, thick_sheet(false), down);
         world.finish();
         const auto at_wall = [](V2f u) {
             return test::ray_to(V3f(2.5f, 0, 0), V3f(u.x - 0.5f, u.y - 0.5f, -1.f));
@@ -72,12 +72,12 @@ TEST_P(Sheets, LampsShineFromTheSideThatFaces) {
     EXPECT_LT(pair.error, 0.01 * pair.value);
 }
 
-// Both stop light: behind a sheet there is none.
+// Both stop light: behind a thick_sheet there is none.
 TEST_P(Sheets, NoLightPassesThem) {
     World world;
-    test::place(world.scene, sheet(true, -1.f, 1), one_sided(0.5f));
+    test::place(world.scene, thick_sheet(true, -1.f, 1), one_sided_sheet(0.5f));
     world.scene.lights.push_back(PointLight{V3f(0, 0, 1), Rgb(1.f)});
-    add(world, GetParam(), one_sided(0.5f), one_sided(0.2f));
+    add(world, GetParam(), one_sided_sheet(0.5f), one_sided_sheet(0.2f));
     world.finish();
     const auto at_wall = [](V2f u) {
         return test::ray_to(V3f(0, -3.f, -0.5f), V3f(u.x * 0.2f, u.y * 0.2f, -1.f));
@@ -85,11 +85,11 @@ TEST_P(Sheets, NoLightPassesThem) {
     EXPECT_EQ(estimate(world, {}, 64, at_wall).value, 0);
 }
 
-// Half of the rays pass a sheet of BLEND 0.5, as those of a sheet without a back.
+// Half of the rays pass a thick_sheet of BLEND 0.5, as those of a thick_sheet without a back.
 TEST_P(Sheets, BlendCountsOnce) {
     World world;
     world.scene.sky = Sky::uniform(Rgb(1.f));
-    Material half = one_sided(0.f);
+    Material half = one_sided_sheet(0.f);
     half.alpha_mode = AlphaMode::Blend;
     half.alpha = 0.5f;
     add(world, GetParam(), half, half);

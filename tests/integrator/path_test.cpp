@@ -55,7 +55,7 @@ TEST(Path, WhiteObjectsVanishInAWhiteSky) {
         }
 }
 
-World floor_under(Light light) {
+World lit_floor(Light light) {
     World world;
     place(world.scene, quad(V3f(-50, -50, 0), V3f(100, 0, 0), V3f(0, 100, 0)),
           diffuse_material(0.5f));
@@ -67,12 +67,12 @@ World floor_under(Light light) {
 TEST(Path, PunctualLightsGiveTheirIlluminance) {
     const auto centre = [](V2f) { return ray_to(V3f(0, 0, 4), V3f(0.f)); };
     const double albedo_over_pi = 0.5 / std::numbers::pi;
-    const World point = floor_under(PointLight{V3f(0, 3, 4), Rgb(100.f)});
+    const World point = lit_floor(PointLight{V3f(0, 3, 4), Rgb(100.f)});
     expect_agrees(estimate(point, PathOptions(), 16, centre), albedo_over_pi * 100 / 25 * 0.8,
                   "point");
-    const World sun = floor_under(SunLight{unit(V3f(0, -3, -4)), Rgb(10.f)});
+    const World sun = lit_floor(SunLight{unit(V3f(0, -3, -4)), Rgb(10.f)});
     expect_agrees(estimate(sun, PathOptions(), 16, centre), albedo_over_pi * 10 * 0.8, "sun");
-    const World spot = floor_under(SpotLight{V3f(0, 0, 2), V3f(0, 0, -1), Rgb(8.f), 0.9f, 0.8f});
+    const World spot = lit_floor(SpotLight{V3f(0, 0, 2), V3f(0, 0, -1), Rgb(8.f), 0.9f, 0.8f});
     expect_agrees(estimate(spot, PathOptions(), 16, centre), albedo_over_pi * 8 / 4, "spot");
 }
 

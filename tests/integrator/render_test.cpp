@@ -36,26 +36,27 @@ struct Studio : test::TracedWorld {
     }
 };
 
-const V2i kSize(53, 37);
-const Rect kWhole{0, 0, kSize.x, kSize.y};
+const V2i kRender_px(53, 37);
+const Rect kAllPixels{0, 0, kRender_px.x, kRender_px.y};
 
 template <class Executor>
-Film picture(Executor executor, RenderJob job, Rect crop = kWhole, RenderResult* result = nullptr) {
-    static const Studio studio(kSize);
-    Film film(kSize, crop, {Aov::Albedo, Aov::Normal, Aov::Depth});
+Film film_with(Executor executor, RenderJob job, Rect crop = kAllPixels,
+               RenderResult* result = nullptr) {
+    static const Studio studio(kRender_px);
+    Film film(kRender_px, crop, {Aov::Albedo, Aov::Normal, Aov::Depth});
     RenderMonitor monitor;
     const RenderResult r = render(*studio.tracer, *studio.camera, job, film, executor, monitor);
     if (result) *result = r;
     return film;
 }
 
-RenderJob job_of(uint32_t spp) {
+RenderJob job_with(uint32_t spp) {
     RenderJob job;
     job.end_sample = spp;
     return job;
 }
 
-void expect_same_bytes(const Film& a, const Film& b, Rect where = kWhole) {
+void expect_same_bytes(const Film& a, const Film& b, Rect where = kAllPixels) {
     int differ = 0;
     for (int y = where.y0; y < where.y1; ++y)
         for (int x = where.x0; x < where.x1; ++x) {
@@ -94,44 +95,45 @@ TEST(Tiles, NeighboursInTimeTouch) {
 }
 
 TEST(Render, PixelsDoNotDependOnThreads) {
-    const Film one = picture(ThreadExecutor(1), job_of(8));
-    expect_same_bytes(one, picture(ThreadExecutor(2), job_of(8)));
-    expect_same_bytes(one, picture(ThreadExecutor(5), job_of(8)));
+    const Film one = film_with(ThreadExecutor(1), job_with(8));
+    expect_same_bytes(one, film_with(ThreadExecutor(2), job_with(8)));
+    expect_same_bytes(one, film_with(ThreadExecutor(5), job_with(8)));
 }
 
 TEST(RenderTbb, PixelsDoNotDependOnThreads) {
-    const Film one = picture(ThreadExecutor(1), job_of(8));
+    const Film one = film_with(ThreadExecutor(1), job_with(8));
     for (const int threads : {1, 2, 5}) {
         TbbExecutor executor(threads);
-        static const Studio studio(kSize);
-        Film film(kSize, kWhole, {Aov::Albedo, Aov::Normal, Aov::Depth});
+        static const Studio studio(kRender_px);
+        Film film(kRender_px, kAllPixels, {Aov::Albedo, Aov::Normal, Aov::Depth});
         RenderMonitor monitor;
-        (void)render(*studio.tracer, *studio.camera, job_of(8), film, executor, monitor);
+        (void)render(*studio.tracer, *studio.camera, job_with(8), film, executor, monitor);
         expect_same_bytes(one, film);
     }
 }
 
 TEST(Render, PixelsDoNotDependOnTileSize) {
-    RenderJob small = job_of(8);
+    RenderJob small = job_with(8);
     small.tile_size_px = 8;
-    expect_same_bytes(picture(ThreadExecutor(2), job_of(8)), picture(ThreadExecutor(2), small));
+    expect_same_bytes(film_with(ThreadExecutor(2), job_with(8)),
+                      film_with(ThreadExecutor(2), small));
 }
 
 TEST(Render, ACropIsAPartOfTheWhole) {
     const Rect crop{11, 6, 30, 29};
-    expect_same_bytes(picture(ThreadExecutor(2), job_of(8)),
-                      picture(ThreadExecutor(2), job_of(8), crop), crop);
+    expect_same_bytes(film_with(ThreadExecutor(2), job_with(8)),
+                      film_with(ThreadExecutor(2), job_with(8), crop), crop);
 }
 
 // The first 16 samples of 64 are the 16 samples of 16: stopped there, both films are the same.
 TEST(Render, AShorterRenderIsAPrefixOfALongerOne) {
-    const Film whole = picture(ThreadExecutor(2), job_of(64));
-    const Film first = picture(ThreadExecutor(2), job_of(16));
-    RenderJob rest = job_of(64);
+    const Film whole = film_with(ThreadExecutor(2), job_with(64));
+    const Film first = film_with(ThreadExecutor(2), job_with(16));
+    RenderJob rest = job_with(64);
     rest.first_sample = 16;
-    const Film last = picture(ThreadExecutor(2), rest);
-    for (int y = 0; y < kSize.y; ++y)
-        for (int x = 0; x < kSize.x; ++x)
+    const Film last = film_with(ThreadExecutor(2), rest);
+    for (int y = 0; y < kRender_px.y; ++y)
+        for (int x = 0; x < kRender_px.x; ++x)
             for (int i = 0; i < 4; ++i)
                 EXPECT_NEAR(whole.colour(x, y)[i],
                             (first.colour(x, y)[i] + 3 * last.colour(x, y)[i]) / 4,
@@ -167,17 +169,17 @@ template <class Executor>
 void expect_all_threads_work(int threads) {
     const CountingTracer tracer(threads);
     const ThinLensCamera camera((ThinLens()));
-    Film film(kSize, kWhole, {});
+    Film film(kRender_px, kAllPixels, {});
     RenderMonitor monitor;
     Executor executor(threads);
-    const RenderResult result = render(tracer, camera, job_of(5), film, executor, monitor);
+    const RenderResult result = render(tracer, camera, job_with(5), film, executor, monitor);
     EXPECT_EQ(result.workers, threads);
     EXPECT_GE(tracer.arrived(), threads);  // threads of a later pass may have other names
     EXPECT_EQ(result.end_sample, 5u);
-    EXPECT_EQ(result.stats.samples, 5u * kSize.x * kSize.y);
+    EXPECT_EQ(result.stats.samples, 5u * kRender_px.x * kRender_px.y);
     EXPECT_EQ(monitor.pixel_samples_done, result.stats.samples);
-    for (int y = 0; y < kSize.y; ++y)
-        for (int x = 0; x < kSize.x; ++x) {
+    for (int y = 0; y < kRender_px.y; ++y)
+        for (int x = 0; x < kRender_px.x; ++x) {
             EXPECT_EQ(film.sample_count(x, y), 5u);
             EXPECT_EQ(film.colour(x, y)[0], 1.f);
         }
@@ -192,13 +194,13 @@ TEST(RenderTbb, EveryPixelIsSampledExactlySppTimesByAllThreads) {
 }
 
 TEST(Render, StopsWhenTold) {
-    static const Studio studio(kSize);
-    Film film(kSize, kWhole, {});
+    static const Studio studio(kRender_px);
+    Film film(kRender_px, kAllPixels, {});
     RenderMonitor monitor;
     monitor.stop = true;
     ThreadExecutor executor(2);
     const RenderResult result =
-        render(*studio.tracer, *studio.camera, job_of(8), film, executor, monitor);
+        render(*studio.tracer, *studio.camera, job_with(8), film, executor, monitor);
     EXPECT_TRUE(result.stopped);
     EXPECT_EQ(result.end_sample, 0u);
 }
@@ -227,12 +229,12 @@ class InterruptingExecutor {
 };
 
 TEST(Render, PausesChangeNothing) {
-    static const Studio studio(kSize);
-    const Film whole = picture(ThreadExecutor(2), job_of(24));
+    static const Studio studio(kRender_px);
+    const Film whole = film_with(ThreadExecutor(2), job_with(24));
     for (const uint64_t samples : {1, 300, 1000, 1961, 5000}) {
-        Film film(kSize, kWhole, {Aov::Albedo, Aov::Normal, Aov::Depth});
+        Film film(kRender_px, kAllPixels, {Aov::Albedo, Aov::Normal, Aov::Depth});
         RenderMonitor monitor;
-        RenderJob job = job_of(24);
+        RenderJob job = job_with(24);
         int pauses = 0;
         job.at_pause = [&](const PathStats&) { ++pauses; };
         InterruptingExecutor executor(monitor, monitor.pause, samples);
@@ -240,44 +242,44 @@ TEST(Render, PausesChangeNothing) {
             render(*studio.tracer, *studio.camera, job, film, executor, monitor);
         EXPECT_FALSE(result.stopped);
         EXPECT_GT(pauses, 2) << samples;
-        EXPECT_EQ(result.stats.samples, uint64_t(kSize.x) * kSize.y * 24);
+        EXPECT_EQ(result.stats.samples, uint64_t(kRender_px.x) * kRender_px.y * 24);
         expect_same_bytes(whole, film);
     }
 }
 
 // Stopped again and again in the middle of a pass, with tiles that are ahead of others.
 TEST(Render, GoesOnWhereItWasStopped) {
-    static const Studio studio(kSize);
-    const Film whole = picture(ThreadExecutor(2), job_of(24));
+    static const Studio studio(kRender_px);
+    const Film whole = film_with(ThreadExecutor(2), job_with(24));
     for (const uint64_t interval : {300, 1961, 5000}) {
-        Film film(kSize, kWhole, {Aov::Albedo, Aov::Normal, Aov::Depth});
+        Film film(kRender_px, kAllPixels, {Aov::Albedo, Aov::Normal, Aov::Depth});
         uint64_t samples = 0;
         int runs = 0;
         RenderResult result;
         for (result.stopped = true; result.stopped; ++runs) {
             RenderMonitor monitor;
             InterruptingExecutor executor(monitor, monitor.stop, interval);
-            result = render(*studio.tracer, *studio.camera, job_of(24), film, executor, monitor);
+            result = render(*studio.tracer, *studio.camera, job_with(24), film, executor, monitor);
             samples += result.stats.samples;
         }
         EXPECT_GT(runs, 3) << interval;
-        EXPECT_EQ(samples, uint64_t(kSize.x) * kSize.y * 24);
+        EXPECT_EQ(samples, uint64_t(kRender_px.x) * kRender_px.y * 24);
         expect_same_bytes(whole, film);
     }
 }
 
 // Ranges of samples, each in a film of its own, add up to the film of all.
 TEST(Render, RangesAddUpToTheWhole) {
-    static const Studio studio(kSize);
-    const Film whole = picture(ThreadExecutor(2), job_of(24));
-    Film sum(kSize, kWhole, {Aov::Albedo, Aov::Normal, Aov::Depth});
+    static const Studio studio(kRender_px);
+    const Film whole = film_with(ThreadExecutor(2), job_with(24));
+    Film sum(kRender_px, kAllPixels, {Aov::Albedo, Aov::Normal, Aov::Depth});
     std::vector<uint8_t> packed(Film::bytes_per_pixel(3, {}));
     for (const SampleRange range : {SampleRange{7, 20}, SampleRange{0, 7}, SampleRange{20, 24}}) {
-        RenderJob job = job_of(range.end);
+        RenderJob job = job_with(range.end);
         job.first_sample = range.first;
-        const Film part = picture(ThreadExecutor(2), job);
-        for (int y = 0; y < kSize.y; ++y)
-            for (int x = 0; x < kSize.x; ++x) {
+        const Film part = film_with(ThreadExecutor(2), job);
+        for (int y = 0; y < kRender_px.y; ++y)
+            for (int x = 0; x < kRender_px.x; ++x) {
                 part.pack(x, y, packed.data());
                 sum.add_packed(x, y, packed.data());
             }
@@ -288,21 +290,22 @@ TEST(Render, RangesAddUpToTheWhole) {
 // As any number of samples is rendered by a machine that takes a second for one of every pixel, or
 // another time that it is given: the samples at which a time limit ends it.
 uint32_t samples_within(double limit_s, uint32_t spp, double (*time_of_s)(double samples)) {
-    static const Studio studio(kSize);
-    Film film(kSize, kWhole, {});
+    static const Studio studio(kRender_px);
+    Film film(kRender_px, kAllPixels, {});
     RenderMonitor monitor;
-    RenderJob job = job_of(spp);
+    RenderJob job = job_with(spp);
     job.time_limit_s = limit_s;
     job.wall_s = [&] {
-        const double samples = double(monitor.pixel_samples_done) / (kSize.x * kSize.y);
+        const double samples = double(monitor.pixel_samples_done) / (kRender_px.x * kRender_px.y);
         return 1e6 + time_of_s(samples);  // a clock starts anywhere
     };
     ThreadExecutor executor(2);
     const RenderResult result =
         render(*studio.tracer, *studio.camera, job, film, executor, monitor);
     EXPECT_FALSE(result.stopped);
-    for (int y = 0; y < kSize.y; ++y)
-        for (int x = 0; x < kSize.x; ++x) EXPECT_EQ(film.sample_count(x, y), result.end_sample);
+    for (int y = 0; y < kRender_px.y; ++y)
+        for (int x = 0; x < kRender_px.x; ++x)
+            EXPECT_EQ(film.sample_count(x, y), result.end_sample);
     return result.end_sample;
 }
 
@@ -323,14 +326,15 @@ TEST(Render, ATimeLimitEndsAWholePass) {
 // Pauses in the middle of a pass, by a clock that runs faster and faster: a pass that was begun is
 // finished in every pixel, whatever the time is then.
 TEST(Render, ATimeLimitWithPausesEndsEvenly) {
-    static const Studio studio(kSize);
+    static const Studio studio(kRender_px);
     for (const double limit_s : {60., 200., 900.}) {
-        Film film(kSize, kWhole, {});
+        Film film(kRender_px, kAllPixels, {});
         RenderMonitor monitor;
-        RenderJob job = job_of(1u << 30);
+        RenderJob job = job_with(1u << 30);
         job.time_limit_s = limit_s;
         job.wall_s = [&] {
-            const double samples = double(monitor.pixel_samples_done) / (kSize.x * kSize.y);
+            const double samples =
+                double(monitor.pixel_samples_done) / (kRender_px.x * kRender_px.y);
             return samples * samples;
         };
         InterruptingExecutor executor(monitor, monitor.pause, 700);
@@ -342,7 +346,7 @@ TEST(Render, ATimeLimitWithPausesEndsEvenly) {
     }
 }
 
-// Not a number for one half of the picture.
+// Not a number for one half of the film_with.
 class BadTracer {
   public:
     f4 radiance(const PathStart& start, const Bands&, const Sampler&, FilmSample&,
@@ -353,14 +357,14 @@ class BadTracer {
 
 TEST(Render, SamplesThatAreNotFiniteAreCountedAndLeftOut) {
     const ThinLensCamera camera((ThinLens()));
-    Film film(kSize, kWhole, {});
+    Film film(kRender_px, kAllPixels, {});
     RenderMonitor monitor;
     ThreadExecutor executor(2);
-    (void)render(BadTracer(), camera, job_of(4), film, executor, monitor);
+    (void)render(BadTracer(), camera, job_with(4), film, executor, monitor);
     EXPECT_GT(film.left_out().not_finite, 0u);
     EXPECT_EQ(film.left_out().y, 0);
-    for (int y = 0; y < kSize.y; ++y)
-        for (int x = 0; x < kSize.x; ++x) EXPECT_TRUE(std::isfinite(film.colour(x, y)[0]));
+    for (int y = 0; y < kRender_px.y; ++y)
+        for (int x = 0; x < kRender_px.x; ++x) EXPECT_TRUE(std::isfinite(film.colour(x, y)[0]));
     EXPECT_EQ(film.colour(3, 3)[0], 2.f);
 }
 

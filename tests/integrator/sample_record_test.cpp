@@ -18,7 +18,7 @@ using test::quad;
 
 constexpr float kCamera_m = 5;
 
-Mesh sheet(float z) {
+Mesh lit_sheet(float z) {
     return quad(V3f(-1, -1.5f, z), V3f(2, 0, 0), V3f(0, 3, 0));
 }
 
@@ -52,7 +52,7 @@ std::vector<PathEvent> all(const SampleRecord& sample, PathStep step) {
 TEST(SampleRecord, LightThatArrivesAndLightThatIsBlocked) {
     for (const bool blocked : {false, true}) {
         Below world;
-        place(world.scene, sheet(0), diffuse_material(0.5f));
+        place(world.scene, lit_sheet(0), diffuse_material(0.5f));
         if (blocked)
             place(world.scene, quad(V3f(0.4f, -1, 0.8f), V3f(0.2f, 0, 0), V3f(0, 2, 0)),
                   diffuse_material(0.5f));
@@ -101,7 +101,7 @@ TEST(SampleRecord, LightThatArrivesAndLightThatIsBlocked) {
 // The light of the steps adds up to the sample, and distances run from place to place.
 TEST(SampleRecord, StepsAddUp) {
     Below world;
-    place(world.scene, sheet(0), emitter_material(0.25f, 0.8f));
+    place(world.scene, lit_sheet(0), emitter_material(0.25f, 0.8f));
     place(world.scene, quad(V3f(-9, -9, 8), V3f(0, 18, 0), V3f(18, 0, 0)), diffuse_material(0.5f));
     world.scene.sky = Sky::uniform(Rgb(0.5f, 1, 2));
     world.scene.lights.push_back(PointLight{V3f(0, 1, 3), Rgb(3.f)});
@@ -167,10 +167,10 @@ TEST(SampleRecord, HolesOnTheWay) {
         Material net = diffuse_material(0.5f);
         net.alpha_mode = AlphaMode::Mask;
         net.alpha = 0.2f;
-        place(world.scene, sheet(-1), floor ? diffuse_material(0.5f) : net);
-        place(world.scene, sheet(1), net);
-        place(world.scene, sheet(kCamera_m + 1), net);  // behind the camera
-        if (floor) place(world.scene, sheet(-2), net);  // and behind the floor
+        place(world.scene, lit_sheet(-1), floor ? diffuse_material(0.5f) : net);
+        place(world.scene, lit_sheet(1), net);
+        place(world.scene, lit_sheet(kCamera_m + 1), net);  // behind the camera
+        if (floor) place(world.scene, lit_sheet(-2), net);  // and behind the floor
         world.options.max_depth = 0;
         const SampleRecord sample = world.sample();
         EXPECT_EQ(all(sample, PathStep::Meets).size(), floor ? 1u : 0u);
@@ -189,7 +189,7 @@ TEST(SampleRecord, PanesBlockNothing) {
     Below world;
     Material pane = glass_material(1.5f);
     pane.has_volume = false;
-    place(world.scene, sheet(0), diffuse_material(0.5f));
+    place(world.scene, lit_sheet(0), diffuse_material(0.5f));
     place(world.scene, quad(V3f(0.4f, -1, 0.8f), V3f(0.2f, 0, 0), V3f(0, 2, 0)), pane);
     world.scene.lights.push_back(PointLight{V3f(1, 0, 2), Rgb(1.f)});
     const SampleRecord sample = world.sample();
@@ -203,7 +203,7 @@ TEST(SampleRecord, BacksArePassed) {
     Material single = diffuse_material(0.5f);
     single.double_sided = false;
     place(world.scene, quad(V3f(-1, -1, 1), V3f(0, 3, 0), V3f(2, 0, 0)), single);
-    place(world.scene, sheet(0), diffuse_material(0.5f));
+    place(world.scene, lit_sheet(0), diffuse_material(0.5f));
     const SampleRecord sample = world.sample();
     const auto culled = all(sample, PathStep::Culled), meets = all(sample, PathStep::Meets);
     ASSERT_EQ(culled.size(), 1u);
@@ -215,7 +215,7 @@ TEST(SampleRecord, BacksArePassed) {
 TEST(SampleRecord, WhyAPathEnds) {
     const auto end = [](const Material& m, const auto& change) {
         Below world;
-        place(world.scene, sheet(0), m);
+        place(world.scene, lit_sheet(0), m);
         change(world);
         return world.sample().events.back().step;
     };

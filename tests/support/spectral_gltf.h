@@ -12,7 +12,7 @@
 namespace petzval::test {
 
 /// A triangle for each material.
-inline TinyGltf file_with(std::vector<nlohmann::json> materials) {
+inline TinyGltf file_with_materials(std::vector<nlohmann::json> materials) {
     TinyGltf file;
     file.json["extensionsUsed"] = {"KHR_materials_dispersion",   "KHR_materials_ior",
                                    "KHR_materials_transmission", "KHR_materials_volume",
@@ -54,22 +54,22 @@ inline nlohmann::json lamp(nlohmann::json extras, const char* type = "point") {
 
 /// A node for each light.
 inline TinyGltf lit(std::vector<nlohmann::json> lights) {
-    TinyGltf file = file_with({});
+    TinyGltf file = file_with_materials({});
     for (size_t i = 0; i < lights.size(); ++i)
         file.add_root({{"extensions", {{"KHR_lights_punctual", {{"light", i}}}}}});
     file.json["extensions"]["KHR_lights_punctual"]["lights"] = std::move(lights);
     return file;
 }
 
-inline Material material_of(nlohmann::json material) {
-    return load(file_with({std::move(material)})).scene.materials.at(0);
+inline Material spectral_material_of(nlohmann::json material) {
+    return load(file_with_materials({std::move(material)})).scene.materials.at(0);
 }
 
 inline std::string refused(const TinyGltf& file) {
     return refusal([&] { (void)load(file); });
 }
 inline std::string refused(nlohmann::json material) {
-    return refused(file_with({std::move(material)}));
+    return refused(file_with_materials({std::move(material)}));
 }
 
 }  // namespace petzval::test

@@ -41,8 +41,8 @@ struct TempFolder {
 };
 
 /// Writes bytes to a file and returns its path.
-inline std::filesystem::path write_bytes(const std::filesystem::path& path,
-                                         std::span<const uint8_t> bytes) {
+inline std::filesystem::path save_bytes(const std::filesystem::path& path,
+                                        std::span<const uint8_t> bytes) {
     std::ofstream out(path, std::ios::binary);
     out.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
     return path;
@@ -160,7 +160,7 @@ struct TinyGltf {
     /// Saves text().
     std::filesystem::path save_gltf(const std::filesystem::path& path) const {
         const std::string out = text();
-        return write_bytes(path, {reinterpret_cast<const uint8_t*>(out.data()), out.size()});
+        return save_bytes(path, {reinterpret_cast<const uint8_t*>(out.data()), out.size()});
     }
 
     /// Saves as a binary container, the buffer in its BIN chunk.
@@ -180,7 +180,7 @@ struct TinyGltf {
         file.insert(file.end(), text.begin(), text.end());
         if (bin_chunk) put_words(file, {uint32_t(padded.size()), 0x004E4942});
         file.insert(file.end(), padded.begin(), padded.end());
-        return write_bytes(path, file);
+        return save_bytes(path, file);
     }
 
     /// Appends 32-bit little-endian words: the headers of a .glb.

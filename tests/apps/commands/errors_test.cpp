@@ -95,8 +95,8 @@ TEST_F(CliErrors, FilesThatCannotBeRead) {
         return error_of(words, 1);
     };
     const auto broken = [&](const std::string& name, const std::string& text) {
-        return write_bytes(folder_.path / name,
-                           {reinterpret_cast<const uint8_t*>(text.data()), text.size()})
+        return save_bytes(folder_.path / name,
+                          {reinterpret_cast<const uint8_t*>(text.data()), text.size()})
             .string();
     };
     EXPECT_EQ(render(path("none.glb")), "petzval: error: " + path("none.glb") + ": no such file");

@@ -115,7 +115,7 @@ TEST_F(CliOutputs, NoneIsAnInput) {
     write_exr(path("sky.exr"), sky);
     const std::string mask = path("iris.png"), lens = path("lens.json"), white = path("w.csv");
     const auto png = tiny_png(2, 2, std::vector<uint8_t>(16, 255));
-    write_bytes(mask, png);
+    save_bytes(mask, png);
     fs::copy_file(PETZVAL_ASSETS "/lenses/tessar-100mm-f2.8.json", lens);
     fs::copy_file(PETZVAL_ASSETS "/spectra/a.csv", white);
     fs::copy_file(PETZVAL_ASSETS "/spectra/cie1931.csv", path("r.csv"));
@@ -150,8 +150,8 @@ TEST_F(CliOutputs, NoneIsAnInput) {
 
 TEST_F(CliOutputs, NoneIsAFileThatTheSceneNames) {
     TinyGltf file = studio();
-    write_bytes(folder_.path / "wood.png", tiny_png(2, 2, std::vector<uint8_t>(16, 200)));
-    write_bytes(folder_.path / "data.json", file.bin);
+    save_bytes(folder_.path / "wood.png", tiny_png(2, 2, std::vector<uint8_t>(16, 200)));
+    save_bytes(folder_.path / "data.json", file.bin);
     fs::copy_file(PETZVAL_ASSETS "/lenses/tessar-100mm-f2.8.json", path("lens.json"));
     file.json["buffers"] = {{{"byteLength", file.bin.size()}, {"uri", "data.json"}}};
     file.json["images"] = {{{"uri", "wood.png"}}};
@@ -189,7 +189,7 @@ TEST_F(CliOutputs, OfOtherCommandsNoneIsAnInput) {
     text_file("rays.csv", "x,y,z,dx,dy,dz,nm\n0,0,-10,0,0,1,550\n");
     fs::create_symlink(lens, path("lens.svg"));
     fs::create_symlink(lens, path("lens.csv"));
-    write_bytes(folder_.path / "a.png", tiny_png(2, 2, std::vector<uint8_t>(16, 9)));
+    save_bytes(folder_.path / "a.png", tiny_png(2, 2, std::vector<uint8_t>(16, 9)));
     const std::string is_lens = "would overwrite the lens";
     expect_unharmed({"lens", "draw", lens, "-o", path("lens.svg")}, lens, is_lens);
     expect_unharmed({"lens", "spot", lens, "-o", path("lens.svg")}, lens, is_lens);
@@ -210,7 +210,7 @@ TEST_F(CliOutputs, OfOtherCommandsNoneIsAnInput) {
 TEST_F(CliOutputs, AChartSparesItsInputs) {
     fs::create_directories(path("pictures"));
     TinyGltf file = studio();
-    write_bytes(folder_.path / "pictures/wood.png", tiny_png(2, 2, std::vector<uint8_t>(16, 200)));
+    save_bytes(folder_.path / "pictures/wood.png", tiny_png(2, 2, std::vector<uint8_t>(16, 200)));
     file.json["images"] = {{{"uri", "pictures/wood.png"}}};
     const std::string scene = file.save_gltf(folder_.path / "files.gltf").string();
     expect_unharmed({"chart", scene, "-o", folder_.path.string(), "--axis", "lights", "--budget",

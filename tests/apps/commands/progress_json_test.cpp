@@ -85,7 +85,7 @@ TEST_F(CliProgressJson, ATimeLimitEndsAtOne) {
 TEST_F(CliProgressJson, WhatLibrariesPrintIsInItToo) {
     auto png = tiny_png(2, 2, std::vector<uint8_t>(16, 200));
     png[png.size() - 20] ^= 0x55;  // in the data
-    write_bytes(folder_.path / "iris.png", png);
+    save_bytes(folder_.path / "iris.png", png);
     const Words iris = {"--lens", "tessar-100mm-f2.8", "--aperture", path("iris.png")};
     Words words = {"-o", path("out.exr"), "--progress", "none"};
     words.insert(words.end(), iris.begin(), iris.end());

@@ -16,7 +16,7 @@ namespace {
 
 using test::diffuse_material, test::emitter_material, test::place, test::quad;
 
-constexpr V2i kSize{320, 180};
+constexpr V2i kFrame_px{320, 180};
 
 ThinLensCamera camera(float radius_m, float focus_m) {
     ThinLens lens{look_at(V3f(0.f), V3f(0, 0, -1)), 0.6f, 320 / 180.f, {}};
@@ -192,16 +192,17 @@ TEST(FilmRegions, HoldTheLightOfALampInFocusAndOutOfFocus) {
         const V3f centre(0.31f, -0.12f, -2.f);
         const Scene scene = lamps({centre}, 0.004f);
         const auto features = small_features_of(scene);
-        const auto regions = film_regions(seen, kSize, features);
+        const auto regions = film_regions(seen, kFrame_px, features);
         const Bvh bvh(scene, Traversal::Robust);
         int64_t lit = 0, outside = 0;
-        for (int y = 0; y < kSize.y; ++y)
-            for (int x = 0; x < kSize.x; ++x) {
+        for (int y = 0; y < kFrame_px.y; ++y)
+            for (int x = 0; x < kFrame_px.x; ++x) {
                 bool met = false;
                 for (uint32_t i = 0; i < 2000 && !met; ++i) {
                     const Sampler sampler(SamplerKind::Owen, 0, {x, y, i});
                     const V2f at = V2f(float(x), float(y)) + sampler.get2(Dim::Film);
-                    const CameraSample rays = seen.sample({at / V2f(kSize), sampler}, Bands::rgb());
+                    const CameraSample rays =
+                        seen.sample({at / V2f(kFrame_px), sampler}, Bands::rgb());
                     // All pixels far from the lamp would take long.
                     const V3f d = rays[0].ray.direction, o = rays[0].ray.origin;
                     const V3f on_plane = o + d * ((centre.z - o.z) / d.z);
@@ -223,7 +224,7 @@ TEST(FilmRegions, HoldTheLightOfALampInFocusAndOutOfFocus) {
 
 TEST(FilmRegions, WhatTheCameraDoesNotSeeHasNone) {
     const Scene scene = lamps({{0, 0, 2}}, 0.1f);
-    for (const FilmRegion& r : film_regions(camera(0.02f, 1), kSize, small_features_of(scene)))
+    for (const FilmRegion& r : film_regions(camera(0.02f, 1), kFrame_px, small_features_of(scene)))
         EXPECT_TRUE(r.rects.empty());
 }
 
@@ -249,7 +250,7 @@ TEST(Displacement, IsTheCircleOfConfusion) {
     const ThinLensCamera lens = camera(0.02f, 2), pinhole = camera(0, 2);
     const Observer rgb;
     const Displacement found = displacement_of({pinhole, rgb}, {lens, rgb}, scene, bvh,
-                                               {V3f(0.f), V3f(0, 0, -1), 2}, kSize, 256, false);
+                                               {V3f(0.f), V3f(0, 0, -1), 2}, kFrame_px, 256, false);
     const double pixel = 2 * std::tan(0.3) / 180;
     const double radius_px = 0.02 * (1 / 2. - 1 / 4.) / pixel;
     const auto& squares = found.square_px.values;
@@ -262,9 +263,10 @@ TEST(Displacement, IsTheCircleOfConfusion) {
     place(sharp, square({0, 0, -2}, 20.f), diffuse_material(0.5f));
     finish_scene(sharp);
     const Bvh sharp_bvh(sharp, Traversal::Robust);
-    const FilmMap most = most_error(displacement_of({pinhole, rgb}, {lens, rgb}, sharp, sharp_bvh,
-                                                    {V3f(0.f), V3f(0, 0, -1), 2}, kSize, 64, false),
-                                    0);
+    const FilmMap most =
+        most_error(displacement_of({pinhole, rgb}, {lens, rgb}, sharp, sharp_bvh,
+                                   {V3f(0.f), V3f(0, 0, -1), 2}, kFrame_px, 64, false),
+                   0);
     for (const double m : most.values) EXPECT_LT(m, 1e-3);
 }
 

@@ -10,7 +10,7 @@
 namespace petzval {
 namespace {
 
-const Notice kSilent = [](const std::string&) {};
+const Notice kUnheard = [](const std::string&) {};
 
 /// A scene with fields of `petzval render`.
 struct Case {
@@ -53,7 +53,7 @@ TEST_P(TraceSample, GivesWhatTheFilmGets) {
     request.samples.range = SampleRange{index, index + 1};
     if (request.scene.spectral.bins) request.samples.range = SampleRange{0, kReplicates};
     RenderSession session(1);
-    session.prepare(request, kSilent);
+    session.prepare(request, kUnheard);
     RenderMonitor monitor;
     ASSERT_FALSE(session.render(monitor).stopped);
     const Film& film = session.film();

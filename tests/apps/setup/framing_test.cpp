@@ -16,8 +16,8 @@ using test::diffuse_material;
 using test::place;
 using test::quad;
 
-/// The twelve sides of a box.
-Scene box(V3f low, V3f high) {
+/// The twelve sides of a scene_with_box.
+Scene scene_with_box(V3f low, V3f high) {
     Scene scene;
     const V3f s = high - low, x(s.x, 0, 0), y(0, s.y, 0), z(0, 0, s.z);
     for (const auto& [corner, a, b] :
@@ -100,7 +100,7 @@ TEST(Framing, TouchesTheMarginsOnOppositeSides) {
         {{-1e-3f, 0, 0}, {1e-3f, 1e-3f, 2e-3f}, 90, 2},
         {{-1e3f, 0, 0}, {1e3f, 1e3f, 2e3f}, 10, 0.4f}};
     for (const Case& c : cases) {
-        const Scene scene = box(c.low, c.high);
+        const Scene scene = scene_with_box(c.low, c.high);
         const float yfov_rad = c.fov_deg * kPi / 180;
         const auto aim = frame_scene(scene, yfov_rad, c.aspect, 0);
         ASSERT_TRUE(aim);
@@ -113,7 +113,7 @@ TEST(Framing, TouchesTheMarginsOnOppositeSides) {
 
 TEST(Framing, ShowsTheBroadSideOfWhatIsFlat) {
     const auto area = [](const V3f& low, const V3f& high) {
-        const Scene scene = box(low, high);
+        const Scene scene = scene_with_box(low, high);
         const Covered of = covered(scene, *frame_scene(scene, 0.7f, 1, 0), 0.7f, 1);
         return (of.right - of.left) * (of.top - of.bottom) / 4;
     };
@@ -139,21 +139,21 @@ TEST(Framing, ShowsTheBroadSideOfWhatLeans) {
 }
 
 TEST(Framing, WidestViewsAndPoints) {
-    const Scene scene = box({-1, -1, -1}, {1, 1, 1});
+    const Scene scene = scene_with_box({-1, -1, -1}, {1, 1, 1});
     for (const float fov_deg : {120.f, 179.f}) {
         const float yfov_rad = fov_deg * kPi / 180;
         const Covered of = covered(scene, *frame_scene(scene, yfov_rad, 1, 0), yfov_rad, 1);
         EXPECT_LT(of.most(), 0.94f);
     }
-    const auto point = frame_scene(box({1, 2, 3}, {1, 2, 3}), 0.7f, 1, 0);
+    const auto point = frame_scene(scene_with_box({1, 2, 3}, {1, 2, 3}), 0.7f, 1, 0);
     ASSERT_TRUE(point);
     EXPECT_NE((*point)[0], (*point)[1]);
     EXPECT_TRUE(frame_scene(Scene(), 0.7f, 1, 0));
-    EXPECT_FALSE(frame_scene(box({0, 0, 0}, {1e17f, 1, 1}), 0.7f, 1, 0));
+    EXPECT_FALSE(frame_scene(scene_with_box({0, 0, 0}, {1e17f, 1, 1}), 0.7f, 1, 0));
 }
 
 TEST(Framing, StandsBackForALensThatIsFocusedNear) {
-    const Scene scene = box({-1, -1, -1}, {1, 1, 1});
+    const Scene scene = scene_with_box({-1, -1, -1}, {1, 1, 1});
     const auto near = frame_scene(scene, 0.7f, 1, 0), far = frame_scene(scene, 0.7f, 1, 0.5);
     EXPECT_NEAR(((*far)[0] - (*near)[0]).length(), 0.5f, 1e-5f);
     EXPECT_LT(((*far)[1] - (*near)[1]).length(), 1e-5f);

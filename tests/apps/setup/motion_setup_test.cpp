@@ -14,8 +14,8 @@ namespace {
 
 using namespace test;
 
-constexpr double kAt = 0.5, kOpen = 0.6;
-constexpr V2i kSize(8, 6);
+constexpr double kMoment_s = 0.5, kMomentOpen_s = 0.6;
+constexpr V2i kSmall_px(8, 6);
 
 /// A body that swings before a wall, lit by a lamp that flies, and a camera that turns.
 TinyGltf file_with(json camera) {
@@ -50,13 +50,13 @@ struct Saved {
 
     explicit Saved(const TinyGltf& file) {
         request.scene = file.save_glb(folder.path / "moves.glb");
-        request.size = kSize;
+        request.size = kSmall_px;
         request.targets = TargetUse::Off;
         request.spectral.mode = SpectralMode::Rgb;
     }
     [[nodiscard]] SceneRequest at(double time_s, bool opens) const {
         SceneRequest out = request;
-        out.choices.animation = AnimationChoice{time_s, {}, false, opens ? kOpen : 0};
+        out.choices.animation = AnimationChoice{time_s, {}, false, opens ? kMomentOpen_s : 0};
         if (opens) out.camera.shutter_curve = ShutterCurve::box();
         return out;
     }
@@ -76,28 +76,29 @@ std::vector<float> picture(const RenderSetup& setup, uint32_t spp, uint32_t seed
     job.seed = seed;
     job.observer = setup.view.observer;
     job.filter = Filter(FilterKind::Box, 0.5f);
-    Film film(kSize, {0, 0, kSize.x, kSize.y}, {});
+    Film film(kSmall_px, {0, 0, kSmall_px.x, kSmall_px.y}, {});
     ThreadExecutor executor(1);
     RenderMonitor monitor;
     (void)render(tracer, *setup.view.camera, job, film, executor, monitor);
     std::vector<float> out;
-    for (int y = 0; y < kSize.y; ++y)
-        for (int x = 0; x < kSize.x; ++x) out.push_back(film.colour(x, y)[1]);
+    for (int y = 0; y < kSmall_px.y; ++y)
+        for (int x = 0; x < kSmall_px.x; ++x) out.push_back(film.colour(x, y)[1]);
     return out;
 }
 
 void expect_mean_of_stills(const Saved& saved) {
-    const RenderSetup open = set_up(saved.at(kAt, true));
+    const RenderSetup open = set_up(saved.at(kMoment_s, true));
     ASSERT_NE(open.view.shutter, nullptr);
     Pixels blurred_pixels, stills;
     Random random(9);
     for (uint32_t seed = 0; seed < 12; ++seed) {
         add(blurred_pixels, picture(open, 128, seed));
-        std::vector<float> mean(size_t(kSize.x * kSize.y));
+        std::vector<float> mean(size_t(kSmall_px.x * kSmall_px.y));
         constexpr int kTimes = 12;
         for (int i = 0; i < kTimes; ++i) {
             const double time = (i + double(random.next())) / kTimes;
-            const RenderSetup still = set_up(saved.at(kAt + (time - 0.5) * kOpen, false));
+            const RenderSetup still =
+                set_up(saved.at(kMoment_s + (time - 0.5) * kMomentOpen_s, false));
             EXPECT_EQ(still.view.shutter, nullptr);
             const auto one = picture(still, 8, 500 + seed * kTimes + uint32_t(i));
             for (size_t k = 0; k < mean.size(); ++k) mean[k] += one[k] / float(kTimes);
@@ -127,7 +128,7 @@ TEST(MotionSetup, ACameraThatTheUserPlacesStandsStill) {
     Saved saved(file_with(kPerspective));
     saved.request.camera.look_at = std::array{V3f(0.3f, 0, 4), V3f(0.3f, 0, 0)};
     expect_mean_of_stills(saved);
-    const RenderSetup open = set_up(saved.at(kAt, true));
+    const RenderSetup open = set_up(saved.at(kMoment_s, true));
     ASSERT_NE(open.view.shutter, nullptr);
     Ray ray;
     ray.origin = V3f(1, 2, 3);
@@ -139,8 +140,8 @@ TEST(MotionSetup, ACameraThatTheUserPlacesStandsStill) {
 
 TEST(MotionSetup, AnotherViewOfTheSceneHasAShutterToo) {
     const Saved saved(file_with(kPerspective));
-    const RenderSetup first = set_up(saved.at(kAt, true));
-    SceneRequest other = saved.at(kAt, true);
+    const RenderSetup first = set_up(saved.at(kMoment_s, true));
+    SceneRequest other = saved.at(kMoment_s, true);
     other.camera.look_at = std::array{V3f(0, 0, 4), V3f(0.f)};
     const RenderSetup second = set_up_view(first, other, [](const std::string&) {});
     EXPECT_EQ(second.prepared.scene, first.prepared.scene);
@@ -154,7 +155,7 @@ TEST(MotionSetup, ACameraThatAloneMovesHasAShutter) {
         return !file.json["nodes"][channel["target"]["node"].get<size_t>()].contains("camera");
     });
     const Saved saved(file);
-    const RenderSetup open = set_up(saved.at(kAt, true));
+    const RenderSetup open = set_up(saved.at(kMoment_s, true));
     EXPECT_FALSE(has_motion(*open.prepared.scene));
     EXPECT_NE(open.view.shutter, nullptr);
 }
@@ -195,7 +196,7 @@ TEST(MotionSetup, AThinLensThatZoomsGivesTheMeanOfItsStills) {
     saved.request.camera.iso = 1e4f;
     saved.request.targets = TargetUse::Auto;  // none for such a camera
     expect_mean_of_stills(saved);
-    EXPECT_EQ(target_camera(set_up(saved.at(kAt, true)).view.still), nullptr);
+    EXPECT_EQ(target_camera(set_up(saved.at(kMoment_s, true)).view.still), nullptr);
 }
 
 /// The light of a wall's part above a height, through a camera whose angle of view grows evenly.
@@ -228,13 +229,13 @@ TEST(MotionSetup, AnEdgeThroughAZoomIsBlurredByTheClosedForm) {
     constexpr uint32_t kSamples = 4096;
     const std::vector<float> found = picture(open, kSamples, 1);
     int partly = 0;
-    for (int y = 0; y < kSize.y; ++y) {
+    for (int y = 0; y < kSmall_px.y; ++y) {
         // A height h of the film, 1 at the picture's rim, sees the wall while h tan(angle / 2) is
         // above a half.
         double share = 0;
         constexpr int kHeights = 4000;
         for (int i = 0; i < kHeights; ++i) {
-            const double h = 1 - 2 * (y + (i + 0.5) / kHeights) / kSize.y;
+            const double h = 1 - 2 * (y + (i + 0.5) / kHeights) / kSmall_px.y;
             if (h <= 0) continue;
             const double from = (2 * std::atan(0.5 / h) - first) / (last - first);
             share += std::clamp(1 - from, 0., 1.) / kHeights;
@@ -242,8 +243,8 @@ TEST(MotionSetup, AnEdgeThroughAZoomIsBlurredByTheClosedForm) {
         partly += share > 0.05 && share < 0.95;
         // 5 standard errors of as many independent samples, and a thousandth for the time steps.
         const double tolerance = 5 * std::sqrt(share * (1 - share) / kSamples) + 1e-3;
-        for (int x = 0; x < kSize.x; ++x)
-            EXPECT_NEAR(found[size_t(y * kSize.x + x)], share, tolerance) << x << ' ' << y;
+        for (int x = 0; x < kSmall_px.x; ++x)
+            EXPECT_NEAR(found[size_t(y * kSmall_px.x + x)], share, tolerance) << x << ' ' << y;
     }
     EXPECT_GE(partly, 2);
 }
@@ -255,7 +256,7 @@ TEST(MotionSetup, ALensThatCannotZoomIsHeldAndSaysSo) {
         (void)set_up_render(request, [&](const std::string& line) { all += line + '\n'; });
         return all.find("its lens cannot: the angle of view stays") != all.npos;
     };
-    SceneRequest asked = saved.at(kAt, true);
+    SceneRequest asked = saved.at(kMoment_s, true);
     EXPECT_FALSE(told(asked));
     asked.camera.focus = FocusDistance{2};
     asked.camera.fstop = 8;
@@ -275,7 +276,7 @@ TEST(MotionSetup, ALensThatCannotZoomIsHeldAndSaysSo) {
 
 TEST(MotionSetup, AnAngleThatTheUserGivesDoesNotZoom) {
     const Saved saved(zooming(kPerspective, kYfov, 0.3f, 1.3f));
-    SceneRequest asked = saved.at(kAt, true);
+    SceneRequest asked = saved.at(kMoment_s, true);
     asked.camera.fov_deg = 40;
     EXPECT_NE(dynamic_cast<const ThinLensCamera*>(set_up(asked).view.still.get()), nullptr);
     asked.camera.fov_deg = {};
@@ -286,23 +287,23 @@ TEST(MotionSetup, NothingThatMovesHasNoShutter) {
     TinyGltf file = file_with(kPerspective);
     file.json.erase("animations");
     const Saved saved(file);
-    EXPECT_EQ(set_up(saved.at(kAt, true)).view.shutter, nullptr);
+    EXPECT_EQ(set_up(saved.at(kMoment_s, true)).view.shutter, nullptr);
     const Saved moves(file_with(kPerspective));
-    EXPECT_EQ(set_up(moves.at(kAt, false)).view.shutter, nullptr);
+    EXPECT_EQ(set_up(moves.at(kMoment_s, false)).view.shutter, nullptr);
 }
 
 // The pilot that weighs sky and lamps sees what the moving camera sees, not only its middle.
 TEST(MotionSetup, LightSharesAreThoseOfTheMovingCamera) {
     Saved saved(file_with(kPerspective));
     saved.request.environment = "studio";
-    const RenderSetup open = set_up(saved.at(kAt, true));
+    const RenderSetup open = set_up(saved.at(kMoment_s, true));
     ASSERT_NE(open.view.shutter, nullptr);
     const Scene& scene = *open.prepared.scene;
     const LightChoice before(scene, LightChoiceKind::Tree);
     ASSERT_TRUE(before.divides());
     const auto learned = [&](const Camera& camera) {
-        const LightChoice fitted =
-            fitted_by_pilot(before, scene, *open.prepared.bvh, camera, open.view.observer, kSize);
+        const LightChoice fitted = fitted_by_pilot(before, scene, *open.prepared.bvh, camera,
+                                                   open.view.observer, kSmall_px);
         const auto factors = fitted.shares().factors();
         return std::vector<float>(factors.begin(), factors.end());
     };

@@ -57,7 +57,7 @@ Motion lit_room() {
     return motion;
 }
 
-void expect_mean_of_stills(const Motion& motion, uint32_t spp = 96) {
+void expect_bands_mean_of_stills(const Motion& motion, uint32_t spp = 96) {
     const auto camera = shuttered(motion);
     EXPECT_TRUE(same_picture(blurred(motion, *camera, spp), of_stills(motion, spp / kStills)));
 }
@@ -70,7 +70,7 @@ TEST(MotionBlur, OfATurningThingAndItsShadow) {
     Motion motion = lit_room();
     place_moving(motion.scene, box(V3f(-0.9f, -0.15f, -0.1f), V3f(0.9f, 0.15f, 0.1f)),
                  diffuse_material(0.8f), at_steps(9, swings));
-    expect_mean_of_stills(motion);
+    expect_bands_mean_of_stills(motion);
 }
 
 TEST(MotionBlur, OfAThingThatDeforms) {
@@ -83,7 +83,7 @@ TEST(MotionBlur, OfAThingThatDeforms) {
         },
         [](const V3f& n, float time) { return unit(n + V3f(0, 0, 0.8f * time)); });
     place(motion.scene, soft, diffuse_material(0.8f));
-    expect_mean_of_stills(motion);
+    expect_bands_mean_of_stills(motion);
 }
 
 TEST(MotionBlur, OfAThingThatDeformsOnItsFlight) {
@@ -95,7 +95,7 @@ TEST(MotionBlur, OfAThingThatDeformsOnItsFlight) {
     place_moving(motion.scene, 2, at_steps(2, [](float time) {
                      return turned(V3f(0.f), V3f(-1.2f, 0.3f + time, 0.5f), V3f(-0.7f, 0.7f, 0.7f));
                  }));
-    expect_mean_of_stills(motion);
+    expect_bands_mean_of_stills(motion);
 }
 
 // A lamp that grows and turns its one bright side away, by all ways to its light.
@@ -110,7 +110,7 @@ TEST(MotionBlur, OfALampByEveryTechnique) {
                          return turned(V3f(0.3f, 0, 3 * time), V3f(2 * time - 1, 1.2f, 0),
                                        V3f(0.3f + 1.4f * time));
                      }));
-        expect_mean_of_stills(motion, technique == Technique::BsdfOnly ? 192 : 96);
+        expect_bands_mean_of_stills(motion, technique == Technique::BsdfOnly ? 192 : 96);
     }
 }
 
@@ -126,7 +126,7 @@ TEST(MotionBlur, OfManyLamps) {
                                        V3f(0.4f * float(i) - 2.2f, 0.2f + time, float(i % 4) - 2));
                      }));
     }
-    expect_mean_of_stills(motion);
+    expect_bands_mean_of_stills(motion);
 }
 
 TEST(MotionBlur, OfPointAndSpotLightsAndSuns) {
@@ -146,7 +146,7 @@ TEST(MotionBlur, OfPointAndSpotLightsAndSuns) {
     add_moving([](float time) -> Light {
         return SunLight{unit(V3f(time - 0.2f, -1, -0.4f)), Rgb(1.f)};
     });
-    expect_mean_of_stills(motion);
+    expect_bands_mean_of_stills(motion);
 }
 
 TEST(MotionBlur, OfBallsThatShine) {
@@ -159,7 +159,7 @@ TEST(MotionBlur, OfBallsThatShine) {
                 at_steps(2, back)};
     add_lamps(motion.scene, balls);
     motion.options.max_depth = 2;
-    expect_mean_of_stills(motion);
+    expect_bands_mean_of_stills(motion);
 }
 
 std::vector<M44f> camera_flight() {
@@ -178,7 +178,7 @@ TEST(MotionBlur, OfACameraThatMoves) {
         place(motion.scene, box(V3f(-0.5f, 0, -0.5f), V3f(0.5f, 1, 0.5f)), diffuse_material(0.3f));
         place_moving(motion.scene, box(V3f(-0.2f), V3f(0.2f)), emitter_material(3.f),
                      at_steps(3, swings));
-        expect_mean_of_stills(motion);
+        expect_bands_mean_of_stills(motion);
     }
 }
 
@@ -233,7 +233,7 @@ TEST(MotionBlur, OfGlassThatFlies) {
     place_moving(
         motion.scene, sphere(V3f(0.f), 0.6f, 10, true), tinted_glass(1.3f),
         at_steps(5, [](float time) { return turned(V3f(0.f), V3f(2 * time - 1, 0.9f, 0.4f)); }));
-    expect_mean_of_stills(motion);
+    expect_bands_mean_of_stills(motion);
 }
 
 // Glass that passes over the camera, elsewhere in the middle of the exposure, and a ball of another
@@ -246,7 +246,7 @@ TEST(MotionBlur, OfACameraThatGlassPassesOver) {
         motion.scene, box(V3f(-0.9f), V3f(0.9f)), tinted_glass(1.4f),
         at_steps(5, [](float time) { return turned(V3f(0.f), V3f(4 * time, 0.7f, 4.1f)); }));
     place(motion.scene, sphere(V3f(0, 0.6f, 3.6f), 0.15f, 8, true), tinted_glass(1.2f));
-    expect_mean_of_stills(motion);
+    expect_bands_mean_of_stills(motion);
 }
 
 // One glass flies into another, from which it is apart in the middle of the exposure.
@@ -258,7 +258,7 @@ TEST(MotionBlur, OfGlassThatFliesIntoGlass) {
     place_moving(
         motion.scene, box(V3f(-0.3f), V3f(0.3f)), tinted_glass(1.6f),
         at_steps(5, [](float time) { return turned(V3f(0.f), V3f(3 * time - 2.2f, 0.7f, 0)); }));
-    expect_mean_of_stills(motion);
+    expect_bands_mean_of_stills(motion);
 }
 
 // A drink in a glass that it touches, which turn together.
@@ -273,7 +273,7 @@ TEST(MotionBlur, OfADrinkInAGlass) {
                  tinted_glass(1.3f), flight);
     place_moving(motion.scene, box(V3f(-0.5f, 0.1f, -0.4f), V3f(0.5f, 0.5f, 0.4f)),
                  tinted_glass(1.6f), flight);
-    expect_mean_of_stills(motion);
+    expect_bands_mean_of_stills(motion);
 }
 
 // Few triangles with smooth normals, lit across their edges by lights that move.
@@ -295,7 +295,7 @@ TEST(MotionBlur, OfACoarseSmoothThing) {
         }
         place(motion.scene, sphere(V3f(0, 0.8f, 0.6f), 0.9f, 3, true), diffuse_material(0.8f));
         motion.scene.materials.back().double_sided = false;
-        expect_mean_of_stills(motion, 192);
+        expect_bands_mean_of_stills(motion, 192);
     }
 }
 
@@ -309,7 +309,7 @@ TEST(MotionBlur, OfALeafThatIsPartlyThere) {
         for (const float alpha : {0.f, 1.f, 0.7f, 0.2f})
             mesh.colours.push_back(V4f(1, 1, 1, alpha));
         place_moving(motion.scene, mesh, leaf, at_steps(9, swings));
-        expect_mean_of_stills(motion);
+        expect_bands_mean_of_stills(motion);
     }
 }
 
@@ -321,7 +321,7 @@ TEST(MotionBlur, OfAPane) {
     pane.transmission = 1;
     place_moving(motion.scene, quad(V3f(-0.7f, -0.4f, 0), V3f(1.4f, 0, 0), V3f(0, 0.8f, 0)), pane,
                  at_steps(9, swings));
-    expect_mean_of_stills(motion);
+    expect_bands_mean_of_stills(motion);
 }
 
 TEST(MotionBlur, GivesTheSameBytesForAnyThreadsAndTiles) {

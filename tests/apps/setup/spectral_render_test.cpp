@@ -217,9 +217,9 @@ TEST(SpectralRender, RoughDispersionNeitherGainsNorLoses) {
     }
 }
 
-// A prism of 60 degrees: apex at the top, long axis z, base from (-1, 0) to (1, 0).
+// A prism_mesh of 60 degrees: apex at the top, long axis z, base from (-1, 0) to (1, 0).
 constexpr float kPrismHeight = std::numbers::sqrt3_v<float>;
-Mesh prism() {
+Mesh prism_mesh() {
     Mesh out;
     for (const float z : {-5.f, 5.f})
         out.positions.insert(out.positions.end(),
@@ -229,11 +229,11 @@ Mesh prism() {
     return out;
 }
 
-// A ray through a prism of 60 degrees leaves each wavelength at the angle of Snell's law, computed
-// here from the catalogue's figures alone.
+// A ray through a prism_mesh of 60 degrees leaves each wavelength at the angle of Snell's law,
+// computed here from the catalogue's figures alone.
 TEST(SpectralRender, PrismBendsEachWavelengthAsSnellSays) {
     World world;
-    place(world.scene, prism(), glass_material("schott:N-SF11", 0.f));
+    place(world.scene, prism_mesh(), glass_material("schott:N-SF11", 0.f));
     world.finish();
     const Observer observer = observer_of({});
     const double incidence = 60. / 180 * std::numbers::pi, apex = 60. / 180 * std::numbers::pi;
@@ -359,12 +359,12 @@ TEST(SpectralRender, HeroAgreesWithOneWavelengthAPath) {
     EXPECT_GE(test::chi_square_p(squares / (30. / 28), 75), test::sidak()) << squares;
 }
 
-// Rough glass parts the wavelengths twice. The lane that led into the prism has been chosen by the
-// hero, so that the hero must not choose the lane that leads out of it. A lamp behind the prism
-// gets the short wavelengths alone.
+// Rough glass parts the wavelengths twice. The lane that led into the prism_mesh has been chosen by
+// the hero, so that the hero must not choose the lane that leads out of it. A lamp behind the
+// prism_mesh gets the short wavelengths alone.
 TEST(SpectralRender, ARoughPrismAgreesWithOneWavelengthAPath) {
     World world;
-    place(world.scene, prism(), glass_material("schott:N-SF11", 0.1f));
+    place(world.scene, prism_mesh(), glass_material("schott:N-SF11", 0.1f));
     constexpr float out_deg = -40, distance = 4;  // of 530 nm, about
     const float out = out_deg / 180 * std::numbers::pi_v<float>;
     const V3f ahead(std::cos(out), std::sin(out), 0), to_long(-ahead.y, ahead.x, 0);

@@ -17,7 +17,7 @@ namespace {
 
 using namespace test;
 
-const V2i kSize(128, 96);
+const V2i kPilot_px(128, 96);
 constexpr float kFar_m = 3;
 
 /// Two lamps whose discs overlap, and are a cell wide.
@@ -51,9 +51,9 @@ struct Grids {
 Grids grids_of(World& world) {
     world.finish();
     const auto camera = target_camera(std::make_shared<ThinLensCamera>(wide_lens()));
-    camera->set_targets(find_targets(*camera, kSize, small_features_of(world.scene)));
+    camera->set_targets(find_targets(*camera, kPilot_px, small_features_of(world.scene)));
     return {camera->targets(),
-            targets_that_pay(*camera, world.scene, *world.bvh, *world.lights, kSize)};
+            targets_that_pay(*camera, world.scene, *world.bvh, *world.lights, kPilot_px)};
 }
 
 bool is_at(const TargetGrid& grid, const ListedTarget& listed, const V3f& lamp) {

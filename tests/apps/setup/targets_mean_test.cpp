@@ -97,14 +97,14 @@ Material clear(float albedo) {
 }
 
 /// A lamp before a wall.
-void place_lamp(Scene& scene, const V3f& at, float radius_m = 0.006f) {
+void place_small_lamp(Scene& scene, const V3f& at, float radius_m = 0.006f) {
     place(scene, sphere(at, radius_m, 12, true), emitter_material(500.f));
     place(scene, quad(V3f(-2, -2, -4), V3f(4, 0, 0), V3f(0, 4, 0)), diffuse_material(0.5f));
 }
 
 TEST(TargetMeans, AreKeptForALampInTheOpen) {
     TracedWorld world;
-    place_lamp(world.scene, V3f(0.05f, 0.02f, -3));
+    place_small_lamp(world.scene, V3f(0.05f, 0.02f, -3));
     const auto camera = thin();
     expect_same_mean(world, camera, 4, "a lamp");
 }
@@ -112,7 +112,7 @@ TEST(TargetMeans, AreKeptForALampInTheOpen) {
 TEST(TargetMeans, AreKeptForAHalfHiddenLamp) {
     for (const float z : {-0.5f, -1.5f, -2.95f}) {
         TracedWorld world;
-        place_lamp(world.scene, V3f(0.05f, 0.02f, -3));
+        place_small_lamp(world.scene, V3f(0.05f, 0.02f, -3));
         const float edge = 0.05f * -z / 3;
         place(world.scene, quad(V3f(edge, -1, z), V3f(1, 0, 0), V3f(0, 2, 0)),
               diffuse_material(0.3f));
@@ -123,7 +123,7 @@ TEST(TargetMeans, AreKeptForAHalfHiddenLamp) {
 
 TEST(TargetMeans, AreKeptForALampBehindAPane) {
     TracedWorld world;
-    place_lamp(world.scene, V3f(0.05f, 0.02f, -3));
+    place_small_lamp(world.scene, V3f(0.05f, 0.02f, -3));
     const Material pane = clear(0.8f);
     place(world.scene, quad(V3f(-1, -1, -2), V3f(2, 0, 0), V3f(0, 2, 0)), pane);
     const auto camera = thin();
@@ -132,7 +132,7 @@ TEST(TargetMeans, AreKeptForALampBehindAPane) {
 
 TEST(TargetMeans, AreKeptForALampInAbsorbingGlass) {
     TracedWorld world;
-    place_lamp(world.scene, V3f(0.05f, 0.02f, -3));
+    place_small_lamp(world.scene, V3f(0.05f, 0.02f, -3));
     Material glass = clear(1);
     glass.has_volume = true;
     glass.attenuation_color = Rgb(0.3f, 0.5f, 0.7f);
@@ -144,7 +144,7 @@ TEST(TargetMeans, AreKeptForALampInAbsorbingGlass) {
 
 TEST(TargetMeans, AreKeptAtTheEdgeOfTheFrame) {
     TracedWorld world;
-    place_lamp(world.scene, V3f(0.675f, 0.2f, -3));
+    place_small_lamp(world.scene, V3f(0.675f, 0.2f, -3));
     const auto camera = thin();
     expect_same_mean(world, camera, 2, "half outside");
 }
@@ -164,7 +164,7 @@ TEST(TargetMeans, AreKeptForHighlights) {
 TEST(TargetMeans, AreKeptThroughATracedLens) {
     for (const V2f& at : {V2f(0.1f, 0.05f), V2f(0.62f, 0.4f)}) {
         TracedWorld world;
-        place_lamp(world.scene, V3f(at.x, at.y, -3), 0.008f);
+        place_small_lamp(world.scene, V3f(at.x, at.y, -3), 0.008f);
         LensCameraInput in = input_of(kTakumar);
         in.to_world = look_at(V3f(0, 0, 0), V3f(0, 0, -1));
         in.film_mm += 3;

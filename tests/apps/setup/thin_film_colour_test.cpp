@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What RGB shows of a thin film, against its light at each wavelength seen by the standard
+// What RGB shows of a thin film, against its light at each wavelength colour_seen by the standard
 // observer.
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 namespace petzval {
 namespace {
 
-V3d seen(float film, float thickness_nm, float n, float cosine) {
+V3d colour_seen(float film, float thickness_nm, float n, float cosine) {
     const auto xyz_bar = standard_observer();
     const SpectrumTable d65 = find_illuminant("d65");
     Bands bands = Bands::rgb();
@@ -38,7 +38,7 @@ TEST(ThinFilmColour, IsThatOfTheObserver) {
         for (const float thickness_nm : {60.f, 100.f, 170.f, 250.f, 333.f, 400.f, 700.f, 1000.f})
             for (const float n : {1.f, 1.5f, 3.f, 12.f})
                 for (const float cosine : {0.1f, 0.4f, 0.8f, 1.f}) {
-                    const V3d truth = seen(film, thickness_nm, n, cosine);
+                    const V3d truth = colour_seen(film, thickness_nm, n, cosine);
                     const f4 rgb = ThinFilm(film, thickness_nm, Bands::rgb())
                                        .reflectance(cosine, splat(n), f4{});
                     for (int c = 0; c < 3; ++c) {

@@ -13,7 +13,7 @@ using namespace test;
 using nlohmann::json;
 
 TEST(NeedsWavelengths, NothingInAnOrdinaryScene) {
-    TinyGltf file = file_with({prism(), json::object()});
+    TinyGltf file = file_with_materials({prism(), json::object()});
     file.json["materials"][1]["emissiveFactor"] = {1, 1, 1};
     const GltfFile loaded = load(file);
     EXPECT_TRUE(scene_reasons(loaded.scene).empty());
@@ -25,10 +25,11 @@ TEST(NeedsWavelengths, OneReasonForEachKind) {
     json bulb = thing({{"illuminant", "a"}}), nameless = prism(dispersing(1));
     bulb["emissiveFactor"] = {1, 1, 1};
     nameless.erase("name");
-    Scene scene = load(file_with({prism({}, {{"glass", "schott:N-SF11"}}), thing({{"metal", "au"}}),
+    Scene scene =
+        load(file_with_materials({prism({}, {{"glass", "schott:N-SF11"}}), thing({{"metal", "au"}}),
                                   thing({{"reflectance", "colorchecker:red"}}), bulb, nameless,
                                   prism(dispersing(2)), bulb}))
-                      .scene;
+            .scene;
     scene.lights = {PointLight{V3f(0.f), Rgb(1.f), 0}, PointLight{V3f(0.f), Rgb(1.f)}};
     using Kind = WavelengthReason::Kind;
     const std::vector<WavelengthReason> reasons = scene_reasons(scene);
@@ -44,16 +45,16 @@ TEST(NeedsWavelengths, OneReasonForEachKind) {
               "material \"thing\" has a measured reflectance (colorchecker:red); "
               "material \"thing\" shines as illuminant a, and 1 more; "
               "a light shines as illuminant a");
-    EXPECT_EQ(text_of(scene_reasons(load(file_with({nameless})).scene)),
+    EXPECT_EQ(text_of(scene_reasons(load(file_with_materials({nameless})).scene)),
               "a material without a name disperses (KHR_materials_dispersion)");
 }
 
 TEST(NeedsWavelengths, GlassThatIsNotKnownEverywhere) {
     const json flint = prism({}, {{"glass", "schott:N-SF11"}});
-    const Scene scene =
-        load(file_with({flint, flint, prism(dispersing(1)), thing({{"glass", "schott:N-SF57"}}),
-                        prism({}, {{"glass", "schott:N-BK7"}})}))
-            .scene;
+    const Scene scene = load(file_with_materials({flint, flint, prism(dispersing(1)),
+                                                  thing({{"glass", "schott:N-SF57"}}),
+                                                  prism({}, {{"glass", "schott:N-BK7"}})}))
+                            .scene;
     EXPECT_EQ(glass_range_warnings(scene),
               std::vector<std::string>{"glass schott:N-SF11 is known from 370 to 2500 nm: "
                                        "the value at the end is held outside"});

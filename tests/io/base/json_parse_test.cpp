@@ -9,10 +9,10 @@
 namespace petzval {
 namespace {
 
-const std::string file = "a.gltf";
+const std::string kGltf = "a.gltf";
 
 std::string refused(const std::string& text) {
-    return refusal([&] { (void)parse_json(text, file); });
+    return refusal([&] { (void)parse_json(text, kGltf); });
 }
 
 std::string nested(int levels) {
@@ -20,7 +20,7 @@ std::string nested(int levels) {
 }
 
 TEST(JsonParse, LimitsDepthBeforeTheStackEnds) {
-    EXPECT_NO_THROW((void)parse_json(nested(max_json_depth), file));
+    EXPECT_NO_THROW((void)parse_json(nested(max_json_depth), kGltf));
     EXPECT_TRUE(has(refused(nested(max_json_depth + 1)), "nested more than 128"));
     EXPECT_TRUE(has(refused(nested(1'000'000)), "nested more than 128"));
     EXPECT_TRUE(has(refused(std::string(5'000'000, '[')), "nested more than 128"));
@@ -35,7 +35,7 @@ TEST(JsonParse, ReadsAMillionElementsOneByOne) {
     std::string text = "[";
     for (size_t i = 0; i < count; ++i) text += i % 2 ? "[0]," : "{},";
     text.back() = ']';
-    const auto json = parse_json(text, file);
+    const auto json = parse_json(text, kGltf);
     EXPECT_EQ(json.size(), count);
     EXPECT_EQ(json[0], nlohmann::json::object());
     EXPECT_EQ(json[count - 1], nlohmann::json::array({0}));
@@ -43,9 +43,9 @@ TEST(JsonParse, ReadsAMillionElementsOneByOne) {
 
 TEST(JsonParse, BuildsWhatIsNested) {
     const std::string text = R"({"a":[1,{"b":[],"c":{"d":null}},"x"],"e":true,"f":-0.5,"":{}})";
-    EXPECT_EQ(parse_json(text, file), nlohmann::json::parse(text));
+    EXPECT_EQ(parse_json(text, kGltf), nlohmann::json::parse(text));
     for (const char* single : {"7", "null", "\"s\"", "[]", " {} "})
-        EXPECT_EQ(parse_json(single, file), nlohmann::json::parse(single)) << single;
+        EXPECT_EQ(parse_json(single, kGltf), nlohmann::json::parse(single)) << single;
 }
 
 TEST(JsonParse, SaysWhereTheTextBreaks) {
@@ -61,15 +61,15 @@ TEST(JsonParse, RefusesWhatReadersDisagreeOn) {
     EXPECT_EQ(refused("{\"a\": 1, \"b\": {\"a\": 2},\n \"a\": 3}"),
               "a.gltf: line 2, column 4: the key that ends here stands in its object already");
     EXPECT_TRUE(has(refused("[\"\xFF\"]"), "not valid JSON"));
-    EXPECT_NO_THROW((void)parse_json(R"([{"a": 1}, {"a": {"a": 2}}])", file));
+    EXPECT_NO_THROW((void)parse_json(R"([{"a": 1}, {"a": {"a": 2}}])", kGltf));
 }
 
 TEST(JsonParse, SkipsAByteOrderMark) {
-    EXPECT_EQ(parse_json("\xEF\xBB\xBF{}", file), nlohmann::json::object());
+    EXPECT_EQ(parse_json("\xEF\xBB\xBF{}", kGltf), nlohmann::json::object());
 }
 
 TEST(JsonParse, MakesWholeNumbersIntegers) {
-    const auto json = parse_json("[3.0, -2e0, 0.25, 1e300, 18014398509481984.0]", file);
+    const auto json = parse_json("[3.0, -2e0, 0.25, 1e300, 18014398509481984.0]", kGltf);
     EXPECT_TRUE(json[0].is_number_integer());
     EXPECT_EQ(json[0], 3);
     EXPECT_EQ(json[1], -2);
@@ -84,7 +84,7 @@ class Cursor : public testing::Test {
     const nlohmann::json json = nlohmann::json::parse(R"({
         "i": 5, "minus": -1, "f": 0.5, "big": 1e40, "s": "text", "b": true, "n": null,
         "list": [1, 2, 2], "o": {"x": {"y": []}}, "objects": [{}, 7], "a/b~c": 1})");
-    const JsonCursor root{json, file};
+    const JsonCursor root{json, kGltf};
 };
 
 TEST_F(Cursor, ReadsWhatIsThere) {
@@ -134,10 +134,10 @@ TEST_F(Cursor, NamesThePlaceOfEveryMismatch) {
         },
         "a.gltf: /list/1: must be from 0 to 1, but is 2");
     says([&] { (void)root.index("i", 5, "thing"); },
-         "a.gltf: /i: there is no thing 5; the file has 5");
+         "a.gltf: /i: there is no thing 5; the kGltf has 5");
     says([&] { (void)root.indices("list", 3, "thing"); }, "a.gltf: /list/2: names thing 2 again");
     EXPECT_TRUE(has(refusal([&] { (void)root.number("big"); }), "/big: must be from"));
-    EXPECT_TRUE(has(refusal([&] { JsonCursor(json["list"], file); }), "must be an object"));
+    EXPECT_TRUE(has(refusal([&] { JsonCursor(json["list"], kGltf); }), "must be an object"));
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ class CurrentFolder {
     fs::path before_;
 };
 
-std::string text_of(const fs::path& path) {
+std::string text_in(const fs::path& path) {
     const auto bytes = test::read_bytes(path);
     return {bytes.begin(), bytes.end()};
 }
@@ -43,7 +43,7 @@ TEST(Rescue, AFileThatCanBeWrittenIsWritten) {
     const WriteOutcome out = write(folder / "a.txt");
     EXPECT_TRUE(out.written());
     EXPECT_EQ(out.rescue, "");
-    EXPECT_EQ(text_of(folder / "a.txt"), "work");
+    EXPECT_EQ(text_in(folder / "a.txt"), "work");
     EXPECT_EQ(folder.count(), 1u);
 }
 
@@ -55,8 +55,8 @@ TEST(Rescue, ACopyLiesBesideANameThatIsTaken) {
     const WriteOutcome out = write(folder / "a.txt");
     EXPECT_NE(out.error.find("it is a folder"), std::string::npos) << out.error;
     EXPECT_EQ(out.rescue, folder / "a.rescue-3.txt");
-    EXPECT_EQ(text_of(out.rescue), "work");
-    EXPECT_EQ(text_of(folder / "a.rescue.txt"), "of before");
+    EXPECT_EQ(text_in(out.rescue), "work");
+    EXPECT_EQ(text_in(folder / "a.rescue.txt"), "of before");
     EXPECT_FALSE(fs::exists(folder / "nothing"));
     EXPECT_EQ(out.message(), out.error + "; a copy is in " + out.rescue.string());
 }
@@ -66,7 +66,7 @@ TEST(Rescue, WithoutItsFolderACopyLiesInTheCurrentOne) {
     const CurrentFolder here(folder.path());
     const WriteOutcome out = write(folder / "gone" / "a.txt");
     EXPECT_EQ(out.rescue, folder / "a.rescue.txt");
-    EXPECT_EQ(text_of(out.rescue), "work");
+    EXPECT_EQ(text_in(out.rescue), "work");
     // A device has no place for a copy either.
     EXPECT_EQ(write("/dev/full").rescue, folder / "full.rescue");
 }
@@ -81,7 +81,7 @@ TEST(Rescue, WithoutThatInTheTemporaryOne) {
     EXPECT_EQ(out.rescue.filename(), "a.rescue.txt");
     EXPECT_EQ(out.rescue.parent_path().parent_path(), fs::temp_directory_path());
     EXPECT_EQ(fs::status(out.rescue.parent_path()).permissions(), fs::perms::owner_all);
-    EXPECT_EQ(text_of(out.rescue), "work");
+    EXPECT_EQ(text_in(out.rescue), "work");
     fs::remove_all(out.rescue.parent_path());
     fs::current_path(folder.path());
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Animations that are wrong. What a channel with a fault moves stays, with a warning that names the
-// place; an animation that is none is refused where it is played. Of others there is a warning, and
-// petzval info names every fault.
+// place; an animation that is none is why_refused where it is played. Of others there is a warning,
+// and petzval info names every fault.
 #include <gtest/gtest.h>
 
 #include "tests/support/animation/animated_gltf.h"
@@ -36,7 +36,7 @@ json& channel_of(TinyGltf& file) {
     return file.json["animations"][0]["channels"][0];
 }
 
-std::string refused(const TinyGltf& file) {
+std::string why_refused(const TinyGltf& file) {
     return refusal([&] { (void)load_at(file, moment(0.5, {"wrong"})); });
 }
 
@@ -83,7 +83,7 @@ TEST(AnimationRefusal, TimesMustBeInOrderAndFrom0) {
 TEST(AnimationRefusal, ThereMustBeKeys) {
     AnimatedGltf file = moving();
     file.json["accessors"][sampler_of(file)["input"].get<size_t>()]["count"] = 0;
-    EXPECT_TRUE(has(refused(file), "/count: must be at least 1"));
+    EXPECT_TRUE(has(why_refused(file), "/count: must be at least 1"));
     EXPECT_TRUE(contains_line(told(file), "/animations/0/channels/0 is left out"));
 }
 
@@ -177,19 +177,19 @@ TEST(AnimationRefusal, ReferencesMustLeadSomewhere) {
     EXPECT_TRUE(has(left_out(file), "/animations/0/channels/0/target/path"));
     file = moving();
     file.json["animations"][0].erase("samplers");
-    EXPECT_TRUE(has(refused(file), "/animations/0"));
+    EXPECT_TRUE(has(why_refused(file), "/animations/0"));
     file = moving();
     file.json["animations"][0].erase("channels");
-    EXPECT_TRUE(has(refused(file), "/animations/0"));
+    EXPECT_TRUE(has(why_refused(file), "/animations/0"));
     file = moving();
     file.json["animations"][0]["channels"] = 7;
-    EXPECT_TRUE(has(refused(file), "/animations/0/channels"));
+    EXPECT_TRUE(has(why_refused(file), "/animations/0/channels"));
 }
 
 TEST(AnimationRefusal, AnAccessorOfAPlayedAnimationIsCheckedAsOthersAre) {
     AnimatedGltf file = moving();
     file.json["accessors"][sampler_of(file)["output"].get<size_t>()]["count"] = 3000;
-    EXPECT_TRUE(has(refused(file), "/accessors/"));
+    EXPECT_TRUE(has(why_refused(file), "/accessors/"));
     EXPECT_EQ(load_at(file, moment(1, {"idle"})).scene.meshes.size(), 1u);
 }
 
@@ -368,9 +368,9 @@ TEST(AnimationRefusal, ASamplerThatNoChannelUsesMayBeBroken) {
 TEST(AnimationRefusal, AListThatIsNoneIsRefused) {
     AnimatedGltf file = moving();
     file.json["animations"] = {{"name", "no list"}};
-    EXPECT_TRUE(has(refused(file), "/animations"));
+    EXPECT_TRUE(has(why_refused(file), "/animations"));
     file.json["animations"] = {5};
-    EXPECT_TRUE(has(refused(file), "/animations/0"));
+    EXPECT_TRUE(has(why_refused(file), "/animations/0"));
 }
 
 /// Zeros that the file need not hold, at ever more nodes: some kilobytes would ask for gigabytes.
@@ -388,7 +388,7 @@ TEST(AnimationRefusal, TheSameValuesAtManyNodesMustNotAskForAllMemory) {
         const int node = file.add("nodes", {{"name", "one of many"}});
         animation["channels"].push_back({{"sampler", 0}, {"target", node_target(node, "scale")}});
     }
-    EXPECT_TRUE(has(refused(file), "/animations/0/samplers/0: asks for "));
+    EXPECT_TRUE(has(why_refused(file), "/animations/0/samplers/0: asks for "));
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 namespace petzval::test {
 namespace {
 
-const std::filesystem::path kOpen = PETZVAL_SHARED "/scenes/open";
+const std::filesystem::path kOpenScenes = PETZVAL_SHARED "/scenes/open";
 
 struct Moving {
     std::string file;
@@ -19,19 +19,19 @@ struct Moving {
 class MovingScene : public testing::TestWithParam<Moving> {};
 
 TEST_P(MovingScene, StandsWhereTheReferenceSays) {
-    const auto path = kOpen / GetParam().file;
+    const auto path = kOpenScenes / GetParam().file;
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
     const GltfSource source = read_gltf_source(path);
     ASSERT_EQ(source.json.value("animations", nlohmann::json::array()).size(),
               GetParam().animations);
-    constexpr int kTimes = 8;
+    constexpr int kMoments = 8;
     for (size_t number = 0; number < GetParam().animations; ++number) {
         double end = 0;
         const AnimationTruth still(source.json, source.buffers);
         for (const auto& sampler : source.json["animations"][number]["samplers"])
             end = std::max(end, still.numbers(sampler["input"]).back());
-        for (int i = 0; i < kTimes; ++i) {
-            const double time = end * (i + 0.37) / kTimes;
+        for (int i = 0; i < kMoments; ++i) {
+            const double time = end * (i + 0.37) / kMoments;
             SCOPED_TRACE(testing::Message() << "animation " << number << " at " << time);
             AnimationTruth truth = still;
             truth.play(number, time);
@@ -44,7 +44,7 @@ TEST_P(MovingScene, StandsWhereTheReferenceSays) {
                       load_at(path, moment(1)), GetParam().steps);
 }
 
-std::vector<Moving> moving() {
+std::vector<Moving> moving_scene() {
     std::vector<Moving> out = {{"fox/Fox.glb", 3, 2},
                                {"two-cylinder-engine/2CylinderEngine.glb", 0, 2},
                                // Eight targets are added up in floats.
@@ -62,9 +62,9 @@ std::vector<Moving> moving() {
 
 /// A moment makes the loader check and mend the file's JSON once more.
 TEST(StillScene, IsAtAnyTimeAsItIsStored) {
-    if (!std::filesystem::exists(kOpen)) GTEST_SKIP() << kOpen << " is not here";
+    if (!std::filesystem::exists(kOpenScenes)) GTEST_SKIP() << kOpenScenes << " is not here";
     constexpr uint64_t kMostBytes = 4 << 20;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(kOpen)) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(kOpenScenes)) {
         const auto& path = entry.path();
         if (path.extension() != ".gltf" && path.extension() != ".glb") continue;
         if (path.string().find("/bad/") != std::string::npos || entry.file_size() > kMostBytes)
@@ -89,7 +89,7 @@ TEST(StillScene, IsAtAnyTimeAsItIsStored) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Open, MovingScene, testing::ValuesIn(moving()), [](const auto& one) {
+INSTANTIATE_TEST_SUITE_P(Open, MovingScene, testing::ValuesIn(moving_scene()), [](const auto& one) {
     std::string name = std::filesystem::path(one.param.file).stem();
     for (char& c : name)
         if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';

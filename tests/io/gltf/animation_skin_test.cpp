@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-const std::vector<double> kLooks = {0, 0.2, 0.5, 0.9, 1, 1.4, 1.8};
+const std::vector<double> kSkinLooks = {0, 0.2, 0.5, 0.9, 1, 1.4, 1.8};
 
 /// Eight joints in two chains of four, each of which turns and moves; nothing is skinned yet.
 AnimatedGltf chains() {
@@ -60,7 +60,7 @@ TEST(AnimatedSkin, VerticesFollowFourJoints) {
     file.add("skins", {{"joints", {0, 1, 2, 3, 4, 5, 6, 7}},
                        {"inverseBindMatrices", add_bind_matrices(file, 8)}});
     file.add_root({{"mesh", 0}, {"skin", 0}, {"translation", {50, 50, 50}}});
-    expect_truth(file, kLooks);
+    expect_truth(file, kSkinLooks);
 }
 
 TEST(AnimatedSkin, VerticesMayFollowEightJoints) {
@@ -76,7 +76,7 @@ TEST(AnimatedSkin, VerticesMayFollowEightJoints) {
     file.add("skins", {{"joints", {0, 1, 2, 3, 4, 5, 6, 7}},
                        {"inverseBindMatrices", add_bind_matrices(file, 8)}});
     file.add_root({{"mesh", 0}, {"skin", 0}});
-    expect_truth(file, kLooks);
+    expect_truth(file, kSkinLooks);
 }
 
 TEST(AnimatedSkin, TwoMeshesShareASkin) {
@@ -89,7 +89,7 @@ TEST(AnimatedSkin, TwoMeshesShareASkin) {
                        {"inverseBindMatrices", add_bind_matrices(file, 8)}});
     file.add_root({{"mesh", 0}, {"skin", 0}});
     file.add_root({{"mesh", 1}, {"skin", 0}});
-    expect_truth(file, kLooks);
+    expect_truth(file, kSkinLooks);
 }
 
 TEST(AnimatedSkin, OneMeshMayHaveTwoSkins) {
@@ -99,7 +99,7 @@ TEST(AnimatedSkin, OneMeshMayHaveTwoSkins) {
     file.add("skins", {{"joints", {7, 6, 5, 4, 3, 2, 1, 0}}});
     file.add_root({{"mesh", 0}, {"skin", 0}});
     file.add_root({{"mesh", 0}, {"skin", 1}});
-    expect_truth(file, kLooks);
+    expect_truth(file, kSkinLooks);
 }
 
 TEST(AnimatedSkin, BonesMayMirror) {
@@ -111,7 +111,7 @@ TEST(AnimatedSkin, BonesMayMirror) {
           influences(file, kJoints, {1, 0, 0, 0, 0, 1, 0, 0, 0.5f, 0.5f, 0, 0, 0, 0, 1, 0})}});
     file.add("skins", {{"joints", {0, 1, 2, 3, 4, 5, 6, 7}}});
     file.add_root({{"mesh", 0}, {"skin", 0}});
-    expect_truth(file, kLooks);
+    expect_truth(file, kSkinLooks);
 }
 
 TEST(AnimatedSkin, WeightsThatDoNotAddUpToOneAreScaled) {
@@ -122,7 +122,7 @@ TEST(AnimatedSkin, WeightsThatDoNotAddUpToOneAreScaled) {
     file.add("skins", {{"joints", {0, 1, 2, 3, 4, 5, 6, 7}},
                        {"inverseBindMatrices", add_bind_matrices(file, 8)}});
     file.add_root({{"mesh", 0}, {"skin", 0}});
-    expect_truth(file, kLooks);
+    expect_truth(file, kSkinLooks);
 }
 
 TEST(AnimatedSkin, JointsThatShrinkToNothingTakeTheirVerticesAlong) {
@@ -165,7 +165,7 @@ AnimatedGltf morphed(const std::vector<float>& weights) {
 TEST(AnimatedMorph, NormalsAreMorphedAndTurned) {
     AnimatedGltf file = morphed({0, 0, 1, 0.5f});
     file.json["nodes"][0]["scale"] = {1, 2, 3};
-    expect_truth(file, kLooks, 8);
+    expect_truth(file, kSkinLooks, 8);
 }
 
 TEST(AnimatedMorph, TangentsAreMorphed) {
@@ -195,15 +195,15 @@ TEST(AnimatedMorph, TargetsMayBeSparse) {
     file.add_root({{"mesh", 0}});
     file.add_channel(node_target(0, "weights"), {0, 2}, "SCALAR", {0, 2});
     EXPECT_EQ(load_at(file, 1).scene.meshes.at(0).positions.at(1), V3f(2, 2, 3));
-    expect_truth(file, kLooks, 4);
+    expect_truth(file, kSkinLooks, 4);
 }
 
 TEST(AnimatedMorph, WeightsOfANodeMoveThatNodeOnly) {
     AnimatedGltf file = morphed({0, 0, 1, 0});
     file.add_root({{"mesh", 0}, {"translation", {0, 0, 9}}});
-    expect_truth(file, kLooks, 8);
+    expect_truth(file, kSkinLooks, 8);
     file.json["meshes"][0]["weights"] = {0.5, 0.25};
-    expect_truth(file, kLooks, 8);
+    expect_truth(file, kSkinLooks, 8);
 }
 
 TEST(AnimatedMorph, AMeshIsSkinnedAfterItIsMorphed) {
@@ -215,7 +215,7 @@ TEST(AnimatedMorph, AMeshIsSkinnedAfterItIsMorphed) {
                        {"inverseBindMatrices", add_bind_matrices(file, 8)}});
     const int node = file.add_root({{"mesh", 0}, {"skin", 0}});
     file.add_channel(node_target(node, "weights"), {0, 1, 2}, "SCALAR", {0, 1, -1});
-    expect_truth(file, kLooks, 4);
+    expect_truth(file, kSkinLooks, 4);
 }
 
 }  // namespace

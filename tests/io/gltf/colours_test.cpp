@@ -13,7 +13,7 @@ using nlohmann::json;
 using Bytes = std::vector<uint8_t>;
 
 /// A triangle with this material, whose texture 0 is the image.
-TinyGltf shown(json material, const Bytes& image, const char* mime_type = "image/png") {
+TinyGltf shown_colour(json material, const Bytes& image, const char* mime_type = "image/png") {
     TinyGltf file;
     file.add_image(image, mime_type);
     file.add("textures", {{"source", 0}});
@@ -43,24 +43,26 @@ size_t lines_with(const std::vector<std::string>& lines, const std::string& part
 TEST(GltfColours, OtherSpacesAreNamedWhereColoursAreRead) {
     const Bytes image =
         png_of(1, 2, 3, png_profile_chunk(tiny_profile(kAdobePrimaries, 2.2, "Adobe RGB (1998)")));
-    const GltfFile colours = load(shown(kBase, image));
+    const GltfFile colours = load(shown_colour(kBase, image));
     EXPECT_EQ(lines_with(colours.warnings,
                          "/images/0: says that its colours are in the profile "
                          "Adobe RGB (1998); glTF takes them for sRGB"),
               1u);
     EXPECT_TRUE(
-        load(shown({{"pbrMetallicRoughness", {{"metallicRoughnessTexture", kTexture}}}}, image))
+        load(shown_colour({{"pbrMetallicRoughness", {{"metallicRoughnessTexture", kTexture}}}},
+                          image))
             .warnings.empty());
-    EXPECT_TRUE(load(shown(kBase, png_of(1, 2, 3))).warnings.empty());
+    EXPECT_TRUE(load(shown_colour(kBase, png_of(1, 2, 3))).warnings.empty());
 }
 
 TEST(GltfColours, InksAreNamed) {
     const Bytes image = tiny_jpeg({.components = {{1}, {2}, {3}, {4}}, .adobe_transform = 0});
-    EXPECT_EQ(lines_with(load(shown(kBase, image, "image/jpeg")).warnings, "is in CMYK inks"), 1u);
+    EXPECT_EQ(
+        lines_with(load(shown_colour(kBase, image, "image/jpeg")).warnings, "is in CMYK inks"), 1u);
 }
 
 TEST(GltfColours, OneImageAsColoursAndAsNumbers) {
-    const GltfFile both = load(shown(kBoth, png_of(128, 128, 255)));
+    const GltfFile both = load(shown_colour(kBoth, png_of(128, 128, 255)));
     EXPECT_EQ(lines_with(both.warnings,
                          "/images/0: is read as colours in sRGB by "
                          "/materials/0/pbrMetallicRoughness/baseColorTexture, and as numbers by "
@@ -76,7 +78,7 @@ TEST(GltfColours, OneImageAsColoursAndAsNumbers) {
     alpha["extensions"]["KHR_materials_specular"] = {{"specularTexture", kTexture},
                                                      {"specularColorTexture", kTexture}};
     for (const json& fine : {emissive, numbers, alpha}) {
-        TinyGltf file = shown(fine, png_of(128, 128, 255));
+        TinyGltf file = shown_colour(fine, png_of(128, 128, 255));
         file.json["extensionsUsed"] = {"KHR_materials_specular"};
         EXPECT_TRUE(load(file).warnings.empty()) << fine;
     }
@@ -84,14 +86,15 @@ TEST(GltfColours, OneImageAsColoursAndAsNumbers) {
 
 TEST(GltfColours, NormalMapsThatWentThroughTheCurveOfSrgb) {
     // 1/2 encoded is 0.735, and decoded 0.214.
-    EXPECT_EQ(lines_with(load(shown(kNormal, png_of(188, 187, 255))).warnings,
+    EXPECT_EQ(lines_with(load(shown_colour(kNormal, png_of(188, 187, 255))).warnings,
                          "0.74 on average instead of 0.5, as if it had been encoded as sRGB"),
               1u);
-    EXPECT_EQ(lines_with(load(shown(kNormal, png_of(55, 54, 250))).warnings, "decoded from sRGB"),
-              1u);
+    EXPECT_EQ(
+        lines_with(load(shown_colour(kNormal, png_of(55, 54, 250))).warnings, "decoded from sRGB"),
+        1u);
     for (const Bytes& good : {png_of(128, 128, 255), png_of(188, 128, 255), png_of(188, 187, 100)})
-        EXPECT_TRUE(load(shown(kNormal, good)).warnings.empty());
-    EXPECT_TRUE(load(shown(kBase, png_of(188, 187, 255))).warnings.empty());
+        EXPECT_TRUE(load(shown_colour(kNormal, good)).warnings.empty());
+    EXPECT_TRUE(load(shown_colour(kBase, png_of(188, 187, 255))).warnings.empty());
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ TinyGltf glossy(json values) {
     return file_with({{"extensions", {{kName, std::move(values)}}}});
 }
 
-int add_texture(TinyGltf& file, std::vector<uint8_t> rgba) {
+int add_rgba_texture(TinyGltf& file, std::vector<uint8_t> rgba) {
     return file.add("textures", {{"source", file.add_image(tiny_png(1, 1, std::move(rgba)))}});
 }
 
@@ -102,8 +102,8 @@ TEST(GltfGlossiness, TexturesScaleTheFactors) {
     json& material = file.json["materials"][0];
     material["alphaMode"] = "BLEND";
     json& values = material["extensions"][kName];
-    values["diffuseTexture"] = {{"index", add_texture(file, {200, 100, 50, 102})}};
-    values["specularGlossinessTexture"] = {{"index", add_texture(file, {60, 255, 120, 51})}};
+    values["diffuseTexture"] = {{"index", add_rgba_texture(file, {200, 100, 50, 102})}};
+    values["specularGlossinessTexture"] = {{"index", add_rgba_texture(file, {60, 255, 120, 51})}};
     const float specular[3] = {0.5f * srgb_to_linear(60 / 255.f), 0.25f,
                                srgb_to_linear(120 / 255.f)};
     const float diffuse[3] = {0.5f * srgb_to_linear(200 / 255.f),
@@ -125,7 +125,7 @@ TEST(GltfGlossiness, TexturesScaleTheFactors) {
 TEST(GltfGlossiness, GoesBeforeTheCoreMaterialAndItsLayers) {
     TinyGltf file = glossy({{"diffuseFactor", {0.2, 0.2, 0.2, 1}}, {"glossinessFactor", 0}});
     json& material = file.json["materials"][0];
-    const int image = add_texture(file, {1, 2, 3, 4});
+    const int image = add_rgba_texture(file, {1, 2, 3, 4});
     material["pbrMetallicRoughness"] = {{"baseColorTexture", {{"index", image}}},
                                         {"metallicRoughnessTexture", {{"index", image}}}};
     material["extensions"]["KHR_materials_transmission"] = {{"transmissionFactor", 1}};

@@ -10,8 +10,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kName = "EXT_mesh_gpu_instancing";
-const std::filesystem::path kOpen = PETZVAL_SHARED "/scenes/open";
+constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
+const std::filesystem::path kInstancesOpen = PETZVAL_SHARED "/scenes/open";
 
 struct Place {
     std::array<float, 3> translation;
@@ -34,25 +34,25 @@ std::vector<float> values(std::array<float, N> Place::*part) {
 }
 
 /// A triangle in a node that is turned and mirrored itself; more: of the node.
-TinyGltf file_with(json more) {
+TinyGltf file_with_instances(json more) {
     TinyGltf file;
     const int normals = file.add_accessor<float>("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1});
     file.add_triangle({{"attributes", {{"NORMAL", normals}}}});
     more.update(R"({"translation": [10, 0, -3], "rotation": [0, 0.6, 0, 0.8],
                     "scale": [1, -2, 1]})"_json);
     file.add_root(std::move(more));
-    file.json["extensionsUsed"] = {kName};
+    file.json["extensionsUsed"] = {kInstancing};
     return file;
 }
 
 /// Adds these attributes to the node.
 void instance(TinyGltf& file, const json& attributes) {
     file.json["nodes"][0]["mesh"] = 0;
-    file.json["nodes"][0]["extensions"][kName]["attributes"] = attributes;
+    file.json["nodes"][0]["extensions"][kInstancing]["attributes"] = attributes;
 }
 
 TinyGltf instanced() {
-    TinyGltf file = file_with(json::object());
+    TinyGltf file = file_with_instances(json::object());
     const int t = file.add_accessor("VEC3", values(&Place::translation));
     const int r = file.add_accessor("VEC4", values(&Place::rotation));
     const int s = file.add_accessor("VEC3", values(&Place::scale));
@@ -73,7 +73,7 @@ void expect_same_instances(const Scene& a, const Scene& b) {
 }
 
 TEST(GltfInstancing, IsANodeForEachPlace) {
-    TinyGltf nodes = file_with({{"children", json::array()}});
+    TinyGltf nodes = file_with_instances({{"children", json::array()}});
     for (const Place& place : kPlaces)
         nodes.json["nodes"][0]["children"].push_back(
             nodes.add("nodes", {{"mesh", 0},
@@ -84,7 +84,7 @@ TEST(GltfInstancing, IsANodeForEachPlace) {
     EXPECT_EQ(many.scene.meshes.size(), 1u);
     EXPECT_EQ(many.scene.instances.size(), kPlaces.size());
     EXPECT_TRUE(many.warnings.empty());
-    EXPECT_TRUE(renders(many, kName));
+    EXPECT_TRUE(renders(many, kInstancing));
     expect_same_instances(many.scene, load(nodes).scene);
 }
 
@@ -97,7 +97,7 @@ TEST(GltfInstancing, AMeshHasOneGeometryForAllItsNodes) {
 }
 
 TEST(GltfInstancing, EachAttributeMayBeAbsent) {
-    TinyGltf file = file_with(json::object());
+    TinyGltf file = file_with_instances(json::object());
     instance(file, {{"SCALE", file.add_accessor<float>("VEC3", {1, 1, 1, 2, 2, 2})}});
     file.json["nodes"][0].erase("rotation");
     const Scene scene = load(file).scene;
@@ -106,7 +106,7 @@ TEST(GltfInstancing, EachAttributeMayBeAbsent) {
 }
 
 TEST(GltfInstancing, RotationsMayBeShort) {
-    TinyGltf file = file_with(json::object());
+    TinyGltf file = file_with_instances(json::object());
     const int r =
         file.add_accessor<int8_t>("VEC4", {0, 0, 0, 127, 0, 0, 90, 90}, {{"normalized", true}});
     instance(file, {{"ROTATION", r}});
@@ -124,7 +124,7 @@ TEST(GltfInstancing, RotationsMayBeShort) {
 }
 
 TEST(GltfInstancing, OnePlaceIsStoredInTheWorld) {
-    TinyGltf file = file_with(json::object());
+    TinyGltf file = file_with_instances(json::object());
     instance(file, {{"TRANSLATION", file.add_accessor<float>("VEC3", {1, 0, 0})}});
     file.json["nodes"][0].erase("rotation");
     const Scene scene = load(file).scene;
@@ -134,7 +134,7 @@ TEST(GltfInstancing, OnePlaceIsStoredInTheWorld) {
 }
 
 TEST(GltfInstancing, PlacesWhereNothingCanBeAreSkipped) {
-    TinyGltf file = file_with(json::object());
+    TinyGltf file = file_with_instances(json::object());
     const float nan = std::nanf(""), infinity = INFINITY;
     const int t = file.add_accessor<float>("VEC3", {0, 0, 0, nan, 0, 0, 0, infinity, 0, 1, 0, 0});
     const int s = file.add_accessor<float>("VEC3", {1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0});
@@ -146,11 +146,11 @@ TEST(GltfInstancing, PlacesWhereNothingCanBeAreSkipped) {
 
 TEST(GltfInstancing, AttributesOfTheFilesOwnAreNamed) {
     TinyGltf file = instanced();
-    file.json["nodes"][0]["extensions"][kName]["attributes"]["_ID"] = 99;
+    file.json["nodes"][0]["extensions"][kInstancing]["attributes"]["_ID"] = 99;
     const GltfFile loaded = load(file);
     EXPECT_EQ(loaded.scene.instances.size(), kPlaces.size());
     EXPECT_TRUE(contains_line(loaded.warnings, "_ID is an attribute of the file's own"));
-    TinyGltf bare = file_with(json::object());
+    TinyGltf bare = file_with_instances(json::object());
     instance(bare, {{"_ID", 0}});
     const GltfFile once = load(bare);
     EXPECT_EQ(once.scene.instances.size(), 1u);
@@ -166,7 +166,7 @@ TEST(GltfInstancing, NoInstancesShowNothing) {
 }
 
 TEST(GltfInstancing, BrokenOnesAreRefusedByPlace) {
-    const std::string place = std::string("/nodes/0/extensions/") + kName + "/attributes/";
+    const std::string place = std::string("/nodes/0/extensions/") + kInstancing + "/attributes/";
     TinyGltf counts = instanced();
     counts.json["accessors"][5]["count"] = 3;
     EXPECT_TRUE(has(refusal([&] { (void)load(counts); }), place + "SCALE: has 3 elements"));
@@ -175,17 +175,18 @@ TEST(GltfInstancing, BrokenOnesAreRefusedByPlace) {
     format.json["accessors"][3]["normalized"] = true;
     EXPECT_TRUE(has(refusal([&] { (void)load(format); }), place + "TRANSLATION: is VEC3 of"));
     TinyGltf index = instanced();
-    index.json["nodes"][0]["extensions"][kName]["attributes"]["SCALE"] = 6;
+    index.json["nodes"][0]["extensions"][kInstancing]["attributes"]["SCALE"] = 6;
     EXPECT_TRUE(has(refusal([&] { (void)load(index); }), place + "SCALE"));
 }
 
 TEST(GltfInstancing, ASmallFileMustNotFillTheMemory) {
-    TinyGltf zeros = file_with(json::object());  // instances that take nothing in the file
+    TinyGltf zeros =
+        file_with_instances(json::object());  // instances that take nothing in the file
     instance(zeros, {{"TRANSLATION", zeros.add("accessors", {{"componentType", 5126},
                                                              {"type", "VEC3"},
                                                              {"count", 2'000'000}})}});
     EXPECT_TRUE(has(refusal([&] { (void)load(zeros); }), "/nodes/0: asks for"));
-    TinyGltf shared = file_with(json::object());  // the same ones again and again
+    TinyGltf shared = file_with_instances(json::object());  // the same ones again and again
     const int t = shared.add_accessor("VEC3", std::vector<float>(300'000, 1.f));
     instance(shared, {{"TRANSLATION", t}});
     const json node = shared.json["nodes"][0];
@@ -194,7 +195,7 @@ TEST(GltfInstancing, ASmallFileMustNotFillTheMemory) {
 }
 
 TEST(GltfInstancing, AnInstancedFileIsTheExpandedOne) {
-    const auto folder = kOpen / "grass-field";
+    const auto folder = kInstancesOpen / "grass-field";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not here";
     const GltfFile many = load_gltf(folder / "grass-field-gpu-instancing.glb");
     EXPECT_EQ(many.scene.instances.size(), 3001u);

@@ -10,7 +10,7 @@ namespace {
 using nlohmann::json;
 
 /// A node with this light.
-TinyGltf lit(json light, json node = json::object()) {
+TinyGltf lit_by(json light, json node = json::object()) {
     TinyGltf file;
     file.json["extensionsUsed"] = {"KHR_lights_punctual"};
     file.json["extensions"]["KHR_lights_punctual"]["lights"] = json::array({std::move(light)});
@@ -35,8 +35,8 @@ const json kLookUp = {std::sqrt(0.5), 0, 0, std::sqrt(0.5)};
 
 TEST(GltfLights, PointLight) {
     const auto light = only_light<PointLight>(
-        lit({{"type", "point"}, {"color", {0.5, 1, 0.25}}, {"intensity", 100}},
-            {{"translation", {1, 2, 3}}, {"scale", {5, 5, 5}}}));
+        lit_by({{"type", "point"}, {"color", {0.5, 1, 0.25}}, {"intensity", 100}},
+               {{"translation", {1, 2, 3}}, {"scale", {5, 5, 5}}}));
     EXPECT_EQ(light.position, V3f(1, 2, 3));
     EXPECT_EQ(light.intensity_cd[0], 50.f);  // scale does not change a light
     EXPECT_EQ(light.intensity_cd[1], 100.f);
@@ -44,24 +44,25 @@ TEST(GltfLights, PointLight) {
 }
 
 TEST(GltfLights, DirectionalLightShinesAlongMinusZ) {
-    const auto plain = only_light<SunLight>(lit({{"type", "directional"}}));
+    const auto plain = only_light<SunLight>(lit_by({{"type", "directional"}}));
     EXPECT_EQ(plain.direction, V3f(0, 0, -1));
     EXPECT_EQ(plain.illuminance_lx[0], 1.f);
-    const auto turned = only_light<SunLight>(lit({{"type", "directional"}, {"intensity", 6830}},
-                                                 {{"rotation", kLookUp}, {"scale", {3, 3, 3}}}));
+    const auto turned = only_light<SunLight>(lit_by({{"type", "directional"}, {"intensity", 6830}},
+                                                    {{"rotation", kLookUp}, {"scale", {3, 3, 3}}}));
     expect_near(turned.direction, {0, 1, 0});
     EXPECT_EQ(turned.illuminance_lx[1], 6830.f);
 }
 
 TEST(GltfLights, SpotLight) {
     const auto light = only_light<SpotLight>(
-        lit({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.25}, {"outerConeAngle", 0.5}}}},
-            {{"translation", {1, 2, 3}}, {"rotation", kLookUp}}));
+        lit_by({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.25}, {"outerConeAngle", 0.5}}}},
+               {{"translation", {1, 2, 3}}, {"rotation", kLookUp}}));
     EXPECT_EQ(light.position, V3f(1, 2, 3));
     expect_near(light.direction, {0, 1, 0});
     EXPECT_EQ(light.cos_inner, static_cast<float>(std::cos(0.25)));
     EXPECT_EQ(light.cos_outer, static_cast<float>(std::cos(0.5)));
-    const auto standard = only_light<SpotLight>(lit({{"type", "spot"}, {"spot", json::object()}}));
+    const auto standard =
+        only_light<SpotLight>(lit_by({{"type", "spot"}, {"spot", json::object()}}));
     EXPECT_EQ(standard.cos_inner, 1.f);
     EXPECT_NEAR(standard.cos_outer, std::sqrt(0.5), 1e-7);
 }
@@ -69,7 +70,7 @@ TEST(GltfLights, SpotLight) {
 // With the radius that this extras object gives.
 TinyGltf ball(json light, json extras) {
     light["extras"] = std::move(extras);
-    return lit(std::move(light), {{"translation", {1, 2, 3}}, {"scale", {5, 5, 5}}});
+    return lit_by(std::move(light), {{"translation", {1, 2, 3}}, {"scale", {5, 5, 5}}});
 }
 
 TEST(GltfLights, ARadiusMakesABall) {
@@ -135,12 +136,12 @@ TEST(GltfLights, ARadiusThatCannotBeIsNamed) {
 }
 
 TEST(GltfLights, DarkOnesAreLeftOut) {
-    EXPECT_TRUE(load(lit({{"type", "point"}, {"intensity", 0}})).scene.lights.empty());
-    EXPECT_TRUE(load(lit({{"type", "point"}, {"color", {0, 0, 0}}})).scene.lights.empty());
+    EXPECT_TRUE(load(lit_by({{"type", "point"}, {"intensity", 0}})).scene.lights.empty());
+    EXPECT_TRUE(load(lit_by({{"type", "point"}, {"color", {0, 0, 0}}})).scene.lights.empty());
 }
 
 TEST(GltfLights, AreListed) {
-    const GltfFile loaded = load(lit({{"type", "point"}, {"range", 5}}));
+    const GltfFile loaded = load(lit_by({{"type", "point"}, {"range", 5}}));
     EXPECT_TRUE(contains_line(loaded.contents,
                               "lights: 1 point, 0 spot, 0 directional, 0 emissive meshes"));
     EXPECT_TRUE(contains_line(loaded.ignored, "1 light range"));

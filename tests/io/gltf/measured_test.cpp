@@ -13,8 +13,8 @@ using namespace test;
 using nlohmann::json;
 
 TEST(GltfExtras, MeasuredMetal) {
-    TinyGltf file =
-        file_with({thing({{"metal", "Au"}}), thing({{"metal", "ag"}}), thing({{"metal", "au"}})});
+    TinyGltf file = file_with_materials(
+        {thing({{"metal", "Au"}}), thing({{"metal", "ag"}}), thing({{"metal", "au"}})});
     file.json["materials"][0]["pbrMetallicRoughness"] = {{"baseColorFactor", {0, 0, 1, 0.5}},
                                                          {"baseColorTexture", {{"index", 0}}}};
     file.add("textures", {{"source", file.add_image(tiny_png(1, 1, {1, 2, 3, 4}))}});
@@ -47,7 +47,7 @@ TEST(GltfExtras, MeasuredMetal) {
 TEST(GltfExtras, MetalThatIsNotSeenIsWarnedOf) {
     json dull = thing({{"metal", "cu"}});
     dull["pbrMetallicRoughness"]["metallicFactor"] = 0;
-    const GltfFile loaded = load(file_with({dull}));
+    const GltfFile loaded = load(file_with_materials({dull}));
     EXPECT_TRUE(contains_line(loaded.warnings, "/materials/0/extras/petzval/metal: is not seen"));
 }
 
@@ -55,13 +55,13 @@ TEST(GltfExtras, MeasuredReflectance) {
     const TempFolder folder;
     const std::string text = "nm,r\n400,0.25\n";
     for (const char* name : {"Paint.csv", "paint.csv"})
-        (void)write_bytes(folder.path / name,
-                          {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
-    TinyGltf file = file_with({thing({{"reflectance", "colorchecker:Red"}}),
-                               thing({{"reflectance", "Paint.csv"}}),
-                               thing({{"reflectance", "colorchecker:red"}}),
-                               prism({}, {{"reflectance", "paint.csv"}, {"glass", "schott:N-BK7"}}),
-                               thing({{"reflectance", "Paint.csv"}})});
+        (void)save_bytes(folder.path / name,
+                         {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
+    TinyGltf file = file_with_materials(
+        {thing({{"reflectance", "colorchecker:Red"}}), thing({{"reflectance", "Paint.csv"}}),
+         thing({{"reflectance", "colorchecker:red"}}),
+         prism({}, {{"reflectance", "paint.csv"}, {"glass", "schott:N-BK7"}}),
+         thing({{"reflectance", "Paint.csv"}})});
     const auto loaded = [&] { return load_gltf(file.save_glb(folder.path / "test.glb")); };
     const GltfFile first = loaded();
     const Scene& scene = first.scene;
@@ -82,13 +82,13 @@ TEST(GltfExtras, MeasuredReflectance) {
     EXPECT_EQ(first.files,
               (std::vector<std::filesystem::path>{
                   folder.path / "test.glb", folder.path / "Paint.csv", folder.path / "paint.csv"}));
-    (void)write_bytes(folder.path / "paint.csv",
-                      std::vector<uint8_t>{'n', ',', 'r', '\n', '5', '0', '0', ',', '1', '\n'});
+    (void)save_bytes(folder.path / "paint.csv",
+                     std::vector<uint8_t>{'n', ',', 'r', '\n', '5', '0', '0', ',', '1', '\n'});
     EXPECT_NE(loaded().hash, first.hash);
 }
 
 TEST(GltfExtras, AReflectanceHasNoTextureButACutoutsHoles) {
-    TinyGltf file = file_with({thing({{"reflectance", "colorchecker:red"}})});
+    TinyGltf file = file_with_materials({thing({{"reflectance", "colorchecker:red"}})});
     file.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
     file.add("textures", {{"source", file.add_image(tiny_png(1, 1, {1, 2, 3, 4}))}});
     file.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] =

@@ -46,7 +46,7 @@ TEST(GltfMotion, AViewThatIsNoneForAWhileIsHeld) {
 }
 
 template <class L>
-void expect_near(const L& one, const Light& light) {
+void expect_near_lamp(const L& one, const Light& light) {
     const L& other = std::get<L>(light);
     if constexpr (requires { one.position; }) {
         EXPECT_LT((one.position - other.position).length(), 1e-4f);
@@ -83,7 +83,8 @@ TEST(GltfMotion, LightsStandWhereTheStillsHaveThem) {
             std::optional<Light> moved;
             const Light& light = light_at(open.scene, k, time, moved);
             ASSERT_EQ(light.index(), still.scene.lights[k].index());
-            std::visit([&](const auto& one) { expect_near(one, still.scene.lights[k]); }, light);
+            std::visit([&](const auto& one) { expect_near_lamp(one, still.scene.lights[k]); },
+                       light);
         }
     }
 }

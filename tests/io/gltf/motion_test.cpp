@@ -11,7 +11,7 @@ namespace {
 
 using namespace test;
 
-struct Case {
+struct MotionCase {
     const char* name;
     TinyGltf file;
     size_t moving, deforming;  ///< instances that move, meshes that have steps
@@ -53,8 +53,8 @@ TinyGltf skinned() {
     return file;
 }
 
-std::vector<Case> cases() {
-    std::vector<Case> out;
+std::vector<MotionCase> motion_cases() {
+    std::vector<MotionCase> out;
     TinyGltf parent;
     const int mesh = add_wedge(parent);
     const int root = parent.add_root({{"children", {1}}, {"translation", {1, 2, 3}}});
@@ -101,7 +101,7 @@ std::vector<Case> cases() {
 }
 
 TEST(GltfMotion, StepsAreTheStillsOfTheirTimes) {
-    for (const auto& [name, file, moves, deforms] : cases()) {
+    for (const auto& [name, file, moves, deforms] : motion_cases()) {
         const SavedGltf saved(file);
         const GltfFile open = saved.at(kAt, kOpen);
         EXPECT_EQ(open.scene.motions.size(), moves) << name;
@@ -125,7 +125,7 @@ TEST(GltfMotion, StepsAreTheStillsOfTheirTimes) {
 }
 
 TEST(GltfMotion, TheArraysOfTheSceneAreThoseOfTheMiddle) {
-    for (const auto& [name, file, moves, deforms] : cases()) {
+    for (const auto& [name, file, moves, deforms] : motion_cases()) {
         const SavedGltf saved(file);
         GltfFile open = saved.at(kAt, kOpen);
         const GltfFile still = saved.at(kAt);
@@ -159,7 +159,7 @@ TEST(GltfMotion, NormalsOfADeformingMeshAreThoseOfTheStills) {
 }
 
 TEST(GltfMotion, NothingMovesWhereTheShutterOrTheAnimationStandsStill) {
-    for (const auto& [name, file, moves, deforms] : cases()) {
+    for (const auto& [name, file, moves, deforms] : motion_cases()) {
         const SavedGltf saved(file);
         expect_still(saved.at(kAt, 0));
         expect_still(saved.at(7, kOpen, false));  // its end stays
@@ -175,7 +175,7 @@ TEST(GltfMotion, WhatChangesButIsNotBlurredIsTold) {
         const char *pointer, *type, *word;
         std::vector<float> first, last;
     };
-    const Held cases[] = {
+    const Held motion_cases[] = {
         {"/materials/0/pbrMetallicRoughness/roughnessFactor", "SCALAR", "materials", {0}, {1}},
         {"/materials/0/normalTexture/extensions/KHR_texture_transform/offset",
          "VEC2",
@@ -188,7 +188,7 @@ TEST(GltfMotion, WhatChangesButIsNotBlurredIsTold) {
          {1, 0, 0},
          {0, 1, 0}},
         {"/nodes/1/extensions/KHR_node_visibility/visible", "SCALAR", "what is visible", {1}, {0}}};
-    for (const Held& held : cases) {
+    for (const Held& held : motion_cases) {
         TinyGltf file;
         file.json["extensionsUsed"] = {"KHR_lights_punctual", "KHR_node_visibility"};
         file.add("materials",

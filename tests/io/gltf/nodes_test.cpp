@@ -25,7 +25,7 @@ Mesh placed(nlohmann::json node) {
     return load_mesh(file);
 }
 
-void expect_near(const V3f& a, const V3f& b) {
+void expect_near_matrix(const V3f& a, const V3f& b) {
     EXPECT_LT((a - b).length(), 1e-6f) << a << " is not " << b;
 }
 
@@ -34,17 +34,17 @@ TEST(GltfNodes, TranslationRotationScale) {
     const double h = std::sqrt(0.5);
     const Mesh mesh =
         placed({{"translation", {10, 20, 30}}, {"rotation", {0, 0, h, h}}, {"scale", {2, 3, 4}}});
-    expect_near(mesh.positions[0], {10, 20, 30});
-    expect_near(mesh.positions[1], {10, 22, 30});
-    expect_near(mesh.positions[2], {7, 20, 30});
-    expect_near(mesh.normals[0], {0, 0, 1});
+    expect_near_matrix(mesh.positions[0], {10, 20, 30});
+    expect_near_matrix(mesh.positions[1], {10, 22, 30});
+    expect_near_matrix(mesh.positions[2], {7, 20, 30});
+    expect_near_matrix(mesh.normals[0], {0, 0, 1});
 }
 
 TEST(GltfNodes, RotationsAboutEachAxis) {
     const double h = std::sqrt(0.5);
-    expect_near(placed({{"rotation", {h, 0, 0, h}}}).positions[2], {0, 0, 1});   // y to z
-    expect_near(placed({{"rotation", {0, h, 0, h}}}).positions[1], {0, 0, -1});  // x to -z
-    expect_near(placed({{"rotation", {0, h, 0, h}}}).normals[1], {1, 0, 0});     // z to x
+    expect_near_matrix(placed({{"rotation", {h, 0, 0, h}}}).positions[2], {0, 0, 1});   // y to z
+    expect_near_matrix(placed({{"rotation", {0, h, 0, h}}}).positions[1], {0, 0, -1});  // x to -z
+    expect_near_matrix(placed({{"rotation", {0, h, 0, h}}}).normals[1], {1, 0, 0});     // z to x
 }
 
 TEST(GltfNodes, MatrixIsColumnMajor) {
@@ -57,7 +57,7 @@ TEST(GltfNodes, NormalsByTheInverseTranspose) {
     const int normals = file.add_accessor<float>("VEC3", {1, 1, 0, 1, 1, 0, 1, 1, 0});
     file.add_triangle({{"attributes", {{"NORMAL", normals}}}});
     file.add_root({{"mesh", 0}, {"scale", {2, 1, 1}}});
-    expect_near(load_mesh(file).normals[0], V3f(0.5f, 1, 0).normalized());
+    expect_near_matrix(load_mesh(file).normals[0], V3f(0.5f, 1, 0).normalized());
 }
 
 TEST(GltfNodes, ChildrenStandInTheirParents) {
@@ -253,7 +253,7 @@ TEST(GltfNodes, AnEmptyFileIsAnEmptyScene) {
 }
 
 /// Two joints, of which the second stands 10 to the right and is bound where the first is.
-TinyGltf skinned(const std::vector<float>& weights) {
+TinyGltf skinned_node(const std::vector<float>& weights) {
     TinyGltf file;
     const int positions = file.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
     const int joints = file.add_accessor<uint8_t>("VEC4", {0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0});
@@ -272,21 +272,21 @@ TinyGltf skinned(const std::vector<float>& weights) {
 }
 
 TEST(GltfSkin, VerticesFollowTheirJointsAndNotTheNode) {
-    const Mesh mesh = load_mesh(skinned({1, 0, 0, 0, 0, 1, 0, 0, 0.5f, 0.5f, 0, 0}));
+    const Mesh mesh = load_mesh(skinned_node({1, 0, 0, 0, 0, 1, 0, 0, 0.5f, 0.5f, 0, 0}));
     EXPECT_EQ(mesh.positions[0], V3f(0, 0, 0));   // first joint: scaled by 2
     EXPECT_EQ(mesh.positions[1], V3f(11, 5, 0));  // second: bound 5 up, moved 10 right
     EXPECT_EQ(mesh.positions[2], V3f(5, 4, 0));   // halfway between (0, 2) and (10, 6)
 }
 
 TEST(GltfSkin, WeightsAreScaledToOne) {
-    const Mesh mesh = load_mesh(skinned({0, 0, 0, 0, 0, 2, 0, 0, 0.25f, 0.25f, 0, 0}));
+    const Mesh mesh = load_mesh(skinned_node({0, 0, 0, 0, 0, 2, 0, 0, 0.25f, 0.25f, 0, 0}));
     EXPECT_EQ(mesh.positions[0], V3f(0, 0, 0));
     EXPECT_EQ(mesh.positions[1], V3f(11, 5, 0));
     EXPECT_EQ(mesh.positions[2], V3f(5, 4, 0));
 }
 
 TEST(GltfSkin, WithoutInverseBindMatricesTheyAreIdentity) {
-    TinyGltf file = skinned({0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0});
+    TinyGltf file = skinned_node({0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0});
     file.json["skins"][0].erase("inverseBindMatrices");
     EXPECT_EQ(load_mesh(file).positions[1], V3f(11, 0, 0));
 }

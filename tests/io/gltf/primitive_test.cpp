@@ -114,7 +114,7 @@ TEST(GltfPrimitive, NormalsComeOutUnitAndZeroOnesAreReplaced) {
     EXPECT_TRUE(contains_line(loaded.warnings, "1 normal without a length"));
 }
 
-TinyGltf morphed() {
+TinyGltf morphed_primitive() {
     TinyGltf file;
     const int positions = file.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
     const int normals = file.add_accessor<float>("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1});
@@ -127,7 +127,7 @@ TinyGltf morphed() {
 }
 
 TEST(GltfPrimitive, MorphTargetsTakeTheMeshsWeights) {
-    TinyGltf file = morphed();
+    TinyGltf file = morphed_primitive();
     EXPECT_EQ(load_mesh(file).positions[1], V3f(1, 0, 0));
     file.json["meshes"][0]["weights"] = {0.5, 0.25};
     const Mesh mesh = load_mesh(file);
@@ -137,7 +137,7 @@ TEST(GltfPrimitive, MorphTargetsTakeTheMeshsWeights) {
 }
 
 TEST(GltfPrimitive, MorphWeightsOfANodeOverrideTheMeshs) {
-    TinyGltf file = morphed();
+    TinyGltf file = morphed_primitive();
     file.json["meshes"][0]["weights"] = {0.5, 0};
     file.json["nodes"][0]["weights"] = {1, 0};
     file.add_root({{"mesh", 0}});

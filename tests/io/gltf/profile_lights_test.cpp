@@ -20,7 +20,7 @@ std::span<const uint8_t> bytes_of(const std::string& text) {
 }
 
 /// A node with a light of this profile.
-TinyGltf lit(json profile, json node = json::object(), json light = json::object()) {
+TinyGltf lit_by_profile(json profile, json node = json::object(), json light = json::object()) {
     TinyGltf file;
     file.json["extensionsUsed"] = {"EXT_lights_ies"};
     file.json["extensions"]["EXT_lights_ies"]["lights"] = json::array({std::move(profile)});
@@ -43,7 +43,7 @@ double candela(const Scene& scene, const V3f& direction) {
 }
 
 TEST(GltfProfileLights, ShineAlongMinusZ) {
-    const GltfFile loaded = load(lit(embedded(kProfile), {{"translation", {1, 2, 3}}}));
+    const GltfFile loaded = load(lit_by_profile(embedded(kProfile), {{"translation", {1, 2, 3}}}));
     EXPECT_EQ(std::get<ProfileLight>(loaded.scene.lights.at(0)).position, V3f(1, 2, 3));
     EXPECT_NEAR(candela(loaded.scene, V3f(0, 0, -1)), 8, 1e-5);
     EXPECT_NEAR(candela(loaded.scene, V3f(1, 0, -1e-6f)), 4, 1e-4);
@@ -59,32 +59,33 @@ TEST(GltfProfileLights, TurnAndMirrorButDoNotScale) {
     // A quarter turn about x: -z becomes y, and y becomes z.
     const json turn = {std::sqrt(0.5), 0, 0, std::sqrt(0.5)};
     const GltfFile turned =
-        load(lit(embedded(kProfile), {{"rotation", turn}, {"scale", {3, 2, 5}}}));
+        load(lit_by_profile(embedded(kProfile), {{"rotation", turn}, {"scale", {3, 2, 5}}}));
     EXPECT_NEAR(candela(turned.scene, V3f(0, 1, 0)), 8, 1e-5);
     EXPECT_NEAR(candela(turned.scene, V3f(1, 1e-6f, 0)), 4, 1e-4);
     EXPECT_NEAR(candela(turned.scene, V3f(0, 1e-6f, 1)), 2, 1e-4);
-    const GltfFile mirrored = load(lit(embedded(kProfile), {{"scale", {-1, 1, 1}}}));
+    const GltfFile mirrored = load(lit_by_profile(embedded(kProfile), {{"scale", {-1, 1, 1}}}));
     EXPECT_NEAR(candela(mirrored.scene, V3f(-1, 0, -1e-6f)), 4, 1e-4);
     EXPECT_NEAR(candela(mirrored.scene, V3f(0, 1, -1e-6f)), 2, 1e-4);
-    const GltfFile flat = load(lit(embedded(kProfile), {{"scale", {1, 0, 1}}}));
+    const GltfFile flat = load(lit_by_profile(embedded(kProfile), {{"scale", {1, 0, 1}}}));
     EXPECT_TRUE(flat.scene.lights.empty());
     EXPECT_TRUE(contains_line(flat.warnings, "its light is left out"));
 }
 
 TEST(GltfProfileLights, MultiplierAndColourAreFactors) {
     const GltfFile loaded =
-        load(lit(embedded(kProfile), {}, {{"multiplier", 10}, {"color", {0.5, 1, 3}}}));
+        load(lit_by_profile(embedded(kProfile), {}, {{"multiplier", 10}, {"color", {0.5, 1, 3}}}));
     const auto& light = std::get<ProfileLight>(loaded.scene.lights.at(0));
     EXPECT_EQ(light.factor[0], 5.f);
     EXPECT_EQ(light.factor[1], 10.f);
     EXPECT_EQ(light.factor[2], 10.f);  // the specification clamps colours to 1
-    EXPECT_TRUE(load(lit(embedded(kProfile), {}, {{"multiplier", 0}})).scene.lights.empty());
+    EXPECT_TRUE(
+        load(lit_by_profile(embedded(kProfile), {}, {{"multiplier", 0}})).scene.lights.empty());
 }
 
 TEST(GltfProfileLights, LieInViewsAndFilesAndAreReadOnce) {
     const TempFolder folder;
-    write_bytes(folder.path / "a.ies", bytes_of(kProfile));
-    TinyGltf file = lit({{"uri", "a.ies"}});
+    save_bytes(folder.path / "a.ies", bytes_of(kProfile));
+    TinyGltf file = lit_by_profile({{"uri", "a.ies"}});
     auto& lights = file.json["extensions"]["EXT_lights_ies"]["lights"];
     lights.push_back({{"bufferView", file.add_view(bytes_of(kProfile))},
                       {"mimeType", "application/x-ies-lm-63"}});
@@ -97,14 +98,14 @@ TEST(GltfProfileLights, LieInViewsAndFilesAndAreReadOnce) {
 }
 
 TEST(GltfProfileLights, OnesThatAreNotThereAreLeftOut) {
-    const GltfFile loaded = load(lit({{"uri", "none.ies"}}));
+    const GltfFile loaded = load(lit_by_profile({{"uri", "none.ies"}}));
     EXPECT_TRUE(loaded.scene.lights.empty());
     EXPECT_TRUE(contains_line(loaded.warnings, "there is no file \"none.ies\"; its light is left"));
-    EXPECT_TRUE(contains_line(load(lit({{"uri", "http://a/b.ies"}})).warnings,
+    EXPECT_TRUE(contains_line(load(lit_by_profile({{"uri", "http://a/b.ies"}})).warnings,
                               "is not a relative path to a file; its light is left out"));
     const GltfFile tilted =
-        load(lit(embedded("IESNA91\nTILT=a.tlt\n1 -1 1 2 1 1 2 0 0 0\n1 1 60\n"
-                          "0 180\n0\n5 5\n")));
+        load(lit_by_profile(embedded("IESNA91\nTILT=a.tlt\n1 -1 1 2 1 1 2 0 0 0\n1 1 60\n"
+                                     "0 180\n0\n5 5\n")));
     EXPECT_TRUE(contains_line(tilted.warnings, "/lights/0: its factors for tilted lamps"));
 }
 
@@ -117,13 +118,14 @@ TEST(GltfProfileLights, BrokenOnesAreRefused) {
         EXPECT_NE(refused(file).find(message), std::string::npos) << refused(file);
     };
     const std::string place = "/extensions/EXT_lights_ies/lights/0";
-    expect(lit(embedded("hello")), place + ": is no IES profile");
-    expect(lit(embedded(kProfile.substr(0, 70))), place + ": IES profile, line ");
-    expect(lit(json::object()), place + ": has neither a uri nor a bufferView");
-    expect(lit({{"bufferView", 3}}), place + "/bufferView");
-    expect(lit(embedded(kProfile), {}, {{"multiplier", -1}}), "/EXT_lights_ies/multiplier");
-    expect(lit(embedded(kProfile), {}, {{"color", {1, 1}}}), "/EXT_lights_ies/color");
-    TinyGltf beyond = lit(embedded(kProfile));
+    expect(lit_by_profile(embedded("hello")), place + ": is no IES profile");
+    expect(lit_by_profile(embedded(kProfile.substr(0, 70))), place + ": IES profile, line ");
+    expect(lit_by_profile(json::object()), place + ": has neither a uri nor a bufferView");
+    expect(lit_by_profile({{"bufferView", 3}}), place + "/bufferView");
+    expect(lit_by_profile(embedded(kProfile), {}, {{"multiplier", -1}}),
+           "/EXT_lights_ies/multiplier");
+    expect(lit_by_profile(embedded(kProfile), {}, {{"color", {1, 1}}}), "/EXT_lights_ies/color");
+    TinyGltf beyond = lit_by_profile(embedded(kProfile));
     beyond.json["nodes"][0]["extensions"]["EXT_lights_ies"]["light"] = 1;
     expect(beyond, "/nodes/0/extensions/EXT_lights_ies/light: there is no light 1");
 }

@@ -10,7 +10,7 @@
 namespace petzval {
 namespace {
 
-const std::filesystem::path kOpen = PETZVAL_SHARED "/scenes/open";
+const std::filesystem::path kScenesOpen = PETZVAL_SHARED "/scenes/open";
 
 struct Expected {
     const char* file;
@@ -22,9 +22,9 @@ class RealScene : public testing::TestWithParam<Expected> {};
 
 TEST_P(RealScene, Loads) {
     const Expected& expected = GetParam();
-    if (!std::filesystem::exists(kOpen / expected.file))
-        GTEST_SKIP() << kOpen / expected.file << " is not here";
-    const GltfFile loaded = load_gltf(kOpen / expected.file);
+    if (!std::filesystem::exists(kScenesOpen / expected.file))
+        GTEST_SKIP() << kScenesOpen / expected.file << " is not here";
+    const GltfFile loaded = load_gltf(kScenesOpen / expected.file);
     const Scene& scene = loaded.scene;
     size_t stored = 0, placed = 0;
     for (const Mesh& mesh : scene.meshes) stored += mesh.triangles.size();
@@ -68,13 +68,13 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 TEST(RealScene, TrianglesWithoutAreaAreCounted) {
-    const auto path = kOpen / "two-cylinder-engine/2CylinderEngine.glb";
+    const auto path = kScenesOpen / "two-cylinder-engine/2CylinderEngine.glb";
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
     EXPECT_TRUE(contains_line(load_gltf(path).warnings, "10419 triangles without area skipped"));
 }
 
 TEST(AssetGenerator, FilesLoadOrAreRefusedAsListed) {
-    const auto folder = kOpen / "asset-generator";
+    const auto folder = kScenesOpen / "asset-generator";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not here";
     std::ifstream stream(folder / "manifest.json");
     for (const auto& category : nlohmann::json::parse(stream))

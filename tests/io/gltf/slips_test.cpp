@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
 
 /// A quad of two triangles, the first vertex of the second one as given.
 TinyGltf quad(float x) {
@@ -25,7 +25,7 @@ TinyGltf quad(float x) {
 }
 
 TEST(GltfSlips, TrianglesWithACornerThatIsNotFiniteAreSkipped) {
-    for (const float bad : {kNan, INFINITY, -INFINITY}) {
+    for (const float bad : {kNotANumber, INFINITY, -INFINITY}) {
         const GltfFile loaded = load(quad(bad));
         ASSERT_EQ(loaded.scene.meshes.size(), 1u);
         EXPECT_EQ(loaded.scene.meshes[0].triangles.size(), 1u);
@@ -40,9 +40,9 @@ TEST(GltfSlips, OtherValuesThatAreNotFiniteAreReplaced) {
     TinyGltf file = quad(1);
     auto& attributes = file.json["meshes"][0]["primitives"][0]["attributes"];
     std::vector<float> uv(12, 0.5f), colours(24, 0.25f), normals(18, 0.f);
-    uv[3] = kNan;
+    uv[3] = kNotANumber;
     colours[0] = INFINITY;
-    normals[1] = kNan;
+    normals[1] = kNotANumber;
     attributes["TEXCOORD_0"] = file.add_accessor<float>("VEC2", uv);
     attributes["COLOR_0"] = file.add_accessor<float>("VEC4", colours);
     attributes["NORMAL"] = file.add_accessor<float>("VEC3", normals);

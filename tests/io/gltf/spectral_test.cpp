@@ -15,7 +15,7 @@ using nlohmann::json;
 using nlohmann::literals::operator""_json;
 
 TEST(GltfDispersion, IsCauchysFormulaThroughTheIndex) {
-    const Material m = material_of(prism(dispersing(0.36, 2.42)));
+    const Material m = spectral_material_of(prism(dispersing(0.36, 2.42)));
     ASSERT_TRUE(m.glass.has_value());
     EXPECT_EQ(m.ior, 2.42f);
     EXPECT_NEAR(m.glass->index(kLineD_nm), 2.42, 1e-6);
@@ -29,7 +29,8 @@ TEST(GltfDispersion, IsCauchysFormulaThroughTheIndex) {
 }
 
 TEST(GltfDispersion, IndexOf1_5WhereTheFileHasNone) {
-    const Material m = material_of(prism({{"KHR_materials_dispersion", {{"dispersion", 1}}}}));
+    const Material m =
+        spectral_material_of(prism({{"KHR_materials_dispersion", {{"dispersion", 1}}}}));
     ASSERT_TRUE(m.glass.has_value());
     EXPECT_NEAR(m.glass->index(kLineD_nm), 1.5, 1e-6);
     EXPECT_NEAR(m.glass->abbe(), 20, 1e-6);
@@ -37,7 +38,7 @@ TEST(GltfDispersion, IndexOf1_5WhereTheFileHasNone) {
 
 TEST(GltfDispersion, NeverBelowAnIndexOf1) {
     for (const double dispersion : {26., 30., 1e3, 3e38}) {
-        const Material m = material_of(prism(dispersing(dispersion, 2)));
+        const Material m = spectral_material_of(prism(dispersing(dispersion, 2)));
         ASSERT_TRUE(m.glass.has_value());
         for (int nm = kFirst_nm; nm <= kLast_nm; ++nm) {
             const double asked = 2 + dispersion / 20 * (523655 / (double(nm) * nm) - 1.5168);
@@ -51,7 +52,9 @@ TEST(GltfDispersion, NeverBelowAnIndexOf1) {
 }
 
 TEST(GltfDispersion, NothingDispersesWhereNothingBends) {
-    const auto has_glass = [](json material) { return material_of(material).glass.has_value(); };
+    const auto has_glass = [](json material) {
+        return spectral_material_of(material).glass.has_value();
+    };
     EXPECT_TRUE(has_glass(prism(dispersing(1))));
     EXPECT_FALSE(has_glass(prism(dispersing(0))));
     EXPECT_FALSE(has_glass(prism({{"KHR_materials_dispersion", json::object()}})));
@@ -64,7 +67,7 @@ TEST(GltfDispersion, NothingDispersesWhereNothingBends) {
     metallic["pbrMetallicRoughness"]["metallicFactor"] = 1;
     unlit["extensions"]["KHR_materials_unlit"] = json::object();
     for (const json& idle : {thin, opaque, metallic, unlit}) {
-        const GltfFile loaded = load(file_with({idle}));
+        const GltfFile loaded = load(file_with_materials({idle}));
         EXPECT_FALSE(loaded.scene.materials[0].glass.has_value()) << idle;
         EXPECT_TRUE(contains_line(loaded.ignored, "1 dispersion (")) << idle;
         EXPECT_FALSE(contains_line(loaded.honoured, "dispersion of light")) << idle;
@@ -73,7 +76,7 @@ TEST(GltfDispersion, NothingDispersesWhereNothingBends) {
 
 TEST(GltfDispersion, WrongOnesAreRefused) {
     const std::string path = "/materials/0/extensions/KHR_materials_dispersion/dispersion: must be";
-    const GltfFile negative = load(file_with({prism(dispersing(-0.5))}));
+    const GltfFile negative = load(file_with_materials({prism(dispersing(-0.5))}));
     EXPECT_FALSE(negative.scene.materials[0].glass.has_value()) << "0 is taken";
     EXPECT_TRUE(contains_line(negative.warnings, "/dispersion: is -0.5 and must not be below 0"));
     json text = prism(dispersing(1));
@@ -82,7 +85,7 @@ TEST(GltfDispersion, WrongOnesAreRefused) {
 }
 
 TEST(GltfDispersion, IsListed) {
-    const GltfFile loaded = load(file_with({prism(dispersing(1))}));
+    const GltfFile loaded = load(file_with_materials({prism(dispersing(1))}));
     EXPECT_TRUE(renders(loaded, "KHR_materials_dispersion"));
     EXPECT_TRUE(contains_line(loaded.honoured, "dispersion of light"));
     EXPECT_FALSE(contains_line(loaded.ignored, "dispersion"));
@@ -90,7 +93,7 @@ TEST(GltfDispersion, IsListed) {
 }
 
 TEST(GltfExtras, GlassOfTheCatalogue) {
-    const GltfFile loaded = load(file_with({prism({}, {{"glass", "Schott:n-sf11"}})}));
+    const GltfFile loaded = load(file_with_materials({prism({}, {{"glass", "Schott:n-sf11"}})}));
     const Material& m = loaded.scene.materials[0];
     ASSERT_TRUE(m.glass.has_value());
     EXPECT_EQ(m.glass->name, "schott:N-SF11");
@@ -103,7 +106,7 @@ TEST(GltfExtras, GlassOfTheCatalogue) {
 }
 
 TEST(GltfExtras, GlassOfOneMakerNeedsNoMaker) {
-    const GltfFile loaded = load(file_with({prism({}, {{"glass", "n-sf11"}})}));
+    const GltfFile loaded = load(file_with_materials({prism({}, {{"glass", "n-sf11"}})}));
     ASSERT_TRUE(loaded.scene.materials[0].glass.has_value());
     EXPECT_EQ(loaded.scene.materials[0].glass->name, "schott:N-SF11");
     EXPECT_TRUE(contains_line(loaded.honoured, "named glass schott:N-SF11"));
@@ -111,7 +114,7 @@ TEST(GltfExtras, GlassOfOneMakerNeedsNoMaker) {
 
 TEST(GltfExtras, GlassStandsInPlaceOfTheExtensions) {
     const GltfFile loaded =
-        load(file_with({prism(dispersing(5, 2.42), {{"glass", "schott:N-BK7"}})}));
+        load(file_with_materials({prism(dispersing(5, 2.42), {{"glass", "schott:N-BK7"}})}));
     EXPECT_EQ(loaded.scene.materials[0].glass->name, "schott:N-BK7");
     EXPECT_NEAR(loaded.scene.materials[0].ior, 1.5168, 5e-6);
     EXPECT_TRUE(loaded.warnings.empty());  // they are what other programs show
@@ -141,7 +144,7 @@ TEST(GltfExtras, NamedGlassIsSolidUnlessItIsSaidToBeThin) {
         auto& more = material["extensions"];
         more["KHR_materials_transmission"]["transmissionFactor"] = 1;
         if (one.thickness) more["KHR_materials_volume"]["thicknessFactor"] = 0.1;
-        const GltfFile loaded = load(file_with({material}));
+        const GltfFile loaded = load(file_with_materials({material}));
         const Material& m = loaded.scene.materials[0];
         EXPECT_EQ(m.refracts(), one.solid) << one.extras;
         EXPECT_EQ(m.meant_thin, one.extras.contains("solid") && !one.solid) << one.extras;
@@ -154,7 +157,7 @@ TEST(GltfExtras, SolidGlassDispersesAndAbsorbsWithoutAThickness) {
     json material = prism(dispersing(1), {{"solid", true}});
     material["extensions"]["KHR_materials_volume"] = {
         {"thicknessFactor", 0}, {"attenuationColor", {0.5, 1, 1}}, {"attenuationDistance", 0.2}};
-    const GltfFile loaded = load(file_with({material}));
+    const GltfFile loaded = load(file_with_materials({material}));
     EXPECT_TRUE(loaded.scene.materials[0].glass.has_value());
     EXPECT_TRUE(contains_line(loaded.honoured, "dispersion of light"));
     EXPECT_EQ(loaded.scene.materials[0].attenuation_distance_m, 0.2f);
@@ -162,7 +165,7 @@ TEST(GltfExtras, SolidGlassDispersesAndAbsorbsWithoutAThickness) {
 
 TEST(GltfExtras, SolidIsWarnedOfWhereNothingIsRefracted) {
     const auto warns = [](json material) {
-        const GltfFile loaded = load(file_with({std::move(material)}));
+        const GltfFile loaded = load(file_with_materials({std::move(material)}));
         return contains_line(loaded.warnings,
                              "extras/petzval/solid: has no effect, as the material does not");
     };
@@ -175,7 +178,7 @@ TEST(GltfExtras, SolidIsWarnedOfWhereNothingIsRefracted) {
 }
 
 TEST(GltfExtras, GlassThatRefractsNothingIsWarnedOf) {
-    const GltfFile loaded = load(file_with({thing({{"glass", "schott:N-BK7"}})}));
+    const GltfFile loaded = load(file_with_materials({thing({{"glass", "schott:N-BK7"}})}));
     EXPECT_NEAR(loaded.scene.materials[0].ior, 1.5168, 5e-6);
     EXPECT_TRUE(contains_line(loaded.warnings, "extras/petzval/glass: disperses nothing"));
     EXPECT_FALSE(contains_line(loaded.honoured, "dispersion of light"));
@@ -185,7 +188,7 @@ TEST(GltfExtras, IlluminantOfAMaterial) {
     json bulb = thing({{"illuminant", "A"}, {"metal", "al"}}),
          tube = thing({{"illuminant", "f11"}}), wire = thing({{"illuminant", "a"}});
     for (json* shining : {&bulb, &tube, &wire}) (*shining)["emissiveFactor"] = {1, 1, 1};
-    const GltfFile loaded = load(file_with({bulb, tube, wire, json::object()}));
+    const GltfFile loaded = load(file_with_materials({bulb, tube, wire, json::object()}));
     const Scene& scene = loaded.scene;
     ASSERT_EQ(scene.illuminants.size(), 2u);
     EXPECT_EQ(scene.illuminants[0].name, "a");
@@ -198,7 +201,7 @@ TEST(GltfExtras, IlluminantOfAMaterial) {
     EXPECT_TRUE(contains_line(loaded.honoured, "illuminant f11"));
     EXPECT_TRUE(loaded.warnings.empty());
 
-    const GltfFile dark = load(file_with({thing({{"illuminant", "a"}})}));
+    const GltfFile dark = load(file_with_materials({thing({{"illuminant", "a"}})}));
     EXPECT_TRUE(dark.scene.illuminants.empty());
     EXPECT_EQ(dark.scene.materials[0].illuminant, -1);
     EXPECT_TRUE(contains_line(dark.warnings, "/materials/0/extras/petzval/illuminant: is not"));
@@ -225,7 +228,7 @@ TEST(GltfExtras, UnlitMaterialsHaveNoUseForThem) {
          bare = thing({{"reflectance", "colorchecker:red"}});
     for (json* m : {&unlit, &bare}) {
         (*m)["extensions"]["KHR_materials_unlit"] = json::object();
-        const GltfFile loaded = load(file_with({*m}));
+        const GltfFile loaded = load(file_with_materials({*m}));
         EXPECT_EQ(loaded.scene.materials[0].metal, -1);
         EXPECT_EQ(loaded.scene.materials[0].reflectance, -1);
         EXPECT_EQ(loaded.scene.materials[0].base_color[2], 1.f);
@@ -237,14 +240,14 @@ TEST(GltfExtras, UnlitMaterialsHaveNoUseForThem) {
 TEST(GltfExtras, ThoseOfOthersAreIgnored) {
     for (const json& extras : {R"(1)"_json, R"("petzval")"_json, R"([{"petzval": 1}])"_json,
                                R"({"glass": "x", "petzvaL": {"glass": 1}})"_json}) {
-        TinyGltf file = file_with({{{"extras", extras}}});
+        TinyGltf file = file_with_materials({{{"extras", extras}}});
         for (const char* other : {"meshes", "asset"}) {
             json& owner = file.json[other];
             (owner.is_array() ? owner[0] : owner)["extras"]["petzval"] = 1;
         }
         EXPECT_TRUE(load(file).warnings.empty()) << extras;
     }
-    const Material m = material_of(thing(json::object()));
+    const Material m = spectral_material_of(thing(json::object()));
     EXPECT_FALSE(m.glass.has_value());
     EXPECT_EQ(m.metal, -1);
     EXPECT_EQ(m.illuminant, -1);

@@ -20,13 +20,13 @@ Mesh with_tangents(const Mesh& mesh) {
     return source.mesh;
 }
 
-void expect_near(const V4f& a, const V4f& b) {
+void expect_near_vector(const V4f& a, const V4f& b) {
     EXPECT_LT((a - b).length(), 1e-6f) << a << " is not " << b;
 }
 
-/// The unit square in the plane z = 0, seen from +z, with the texture upright on it: u to the
-/// right, v down.
-Mesh square() {
+/// The unit textured_square in the plane z = 0, seen from +z, with the texture upright on it: u to
+/// the right, v down.
+Mesh textured_square() {
     Mesh mesh;
     mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
     mesh.normals.assign(4, V3f(0, 0, 1));
@@ -36,27 +36,27 @@ Mesh square() {
 }
 
 TEST(GltfTangents, UprightTexture) {
-    Mesh mesh = square();
+    Mesh mesh = textured_square();
     add_tangents(mesh, {});
     ASSERT_EQ(mesh.tangents.size(), 4u);
     // bitangent = w * cross(normal, tangent) = +y: where green points, against v.
-    for (const V4f& tangent : mesh.tangents) expect_near(tangent, {1, 0, 0, 1});
+    for (const V4f& tangent : mesh.tangents) expect_near_vector(tangent, {1, 0, 0, 1});
 }
 
 TEST(GltfTangents, TurnedAndMirroredTextures) {
-    Mesh turned = square();
+    Mesh turned = textured_square();
     turned.uv[0] = {{0, 0}, {0, 1}, {1, 1}, {1, 0}};  // u up, v to the right
     add_tangents(turned, {});
-    for (const V4f& tangent : turned.tangents) expect_near(tangent, {0, 1, 0, 1});
+    for (const V4f& tangent : turned.tangents) expect_near_vector(tangent, {0, 1, 0, 1});
 
-    Mesh mirrored = square();
+    Mesh mirrored = textured_square();
     for (V2f& uv : mirrored.uv[0]) uv.x = -uv.x;
     add_tangents(mirrored, {});
-    for (const V4f& tangent : mirrored.tangents) expect_near(tangent, {-1, 0, 0, -1});
+    for (const V4f& tangent : mirrored.tangents) expect_near_vector(tangent, {-1, 0, 0, -1});
 }
 
 TEST(GltfTangents, FollowTheTextureTransformAndTheSetOfTheNormalMap) {
-    Mesh mesh = square();
+    Mesh mesh = textured_square();
     mesh.uv[1] = mesh.uv[0];
     mesh.uv[0].assign(4, V2f(0.f));
     TextureSlot map;
@@ -64,16 +64,16 @@ TEST(GltfTangents, FollowTheTextureTransformAndTheSetOfTheNormalMap) {
     map.u_row = {0, -3, 0};  // u of the map grows against v: up
     map.v_row = {3, 0, 0};
     add_tangents(mesh, map);
-    for (const V4f& tangent : mesh.tangents) expect_near(tangent, {0, 1, 0, 1});
+    for (const V4f& tangent : mesh.tangents) expect_near_vector(tangent, {0, 1, 0, 1});
 }
 
 TEST(GltfTangents, LieAcrossTheNormal) {
-    Mesh mesh = square();
+    Mesh mesh = textured_square();
     const V3f tilted = V3f(1, 0, 1).normalized();
     mesh.normals.assign(4, tilted);
     add_tangents(mesh, {});
     const float h = std::sqrt(0.5f);
-    for (const V4f& tangent : mesh.tangents) expect_near(tangent, {h, 0, -h, 1});
+    for (const V4f& tangent : mesh.tangents) expect_near_vector(tangent, {h, 0, -h, 1});
 }
 
 TEST(GltfTangents, AreAveragedByAngle) {
@@ -84,13 +84,13 @@ TEST(GltfTangents, AreAveragedByAngle) {
     mesh.uv[0] = {{0, 0}, {1, 0}, {0, -1}, {1, -1}, {1, 0}};
     mesh.triangles = {{0, 1, 2}, {0, 4, 3}};
     add_tangents(mesh, {});
-    expect_near(mesh.tangents[0], {2 / std::sqrt(5.f), 1 / std::sqrt(5.f), 0, 1});
-    expect_near(mesh.tangents[1], {1, 0, 0, 1});
-    expect_near(mesh.tangents[3], {0, 1, 0, 1});
+    expect_near_vector(mesh.tangents[0], {2 / std::sqrt(5.f), 1 / std::sqrt(5.f), 0, 1});
+    expect_near_vector(mesh.tangents[1], {1, 0, 0, 1});
+    expect_near_vector(mesh.tangents[3], {0, 1, 0, 1});
 }
 
 TEST(GltfTangents, AVertexBetweenMirroredFacesIsSplit) {
-    Mesh mesh = square();
+    Mesh mesh = textured_square();
     mesh.colours.assign(4, V4f(0.5f));
     mesh.uv[0][3] = {2, 1};  // the second face's u runs the other way about
     mesh = with_tangents(mesh);
@@ -106,7 +106,7 @@ TEST(GltfTangents, AVertexBetweenMirroredFacesIsSplit) {
 }
 
 TEST(GltfTangents, EqualVerticesShareTheirTangent) {
-    Mesh shared = square(), repeated = square();
+    Mesh shared = textured_square(), repeated = textured_square();
     shared.uv[0][3] = repeated.uv[0][3] = {0, -1};  // the faces' own tangents differ
     repeated.triangles = {{0, 1, 2}, {4, 5, 3}};
     for (const size_t vertex : {0, 2}) {
@@ -123,7 +123,7 @@ TEST(GltfTangents, EqualVerticesShareTheirTangent) {
 }
 
 TEST(GltfTangents, FlatMeshesGetOneForEachFace) {
-    Mesh mesh = square();
+    Mesh mesh = textured_square();
     mesh.normals.clear();
     mesh.positions[3] = {0, 1, -1};
     mesh.positions[0] = {0, 0, -1};
@@ -131,25 +131,25 @@ TEST(GltfTangents, FlatMeshesGetOneForEachFace) {
     ASSERT_EQ(mesh.positions.size(), 6u);
     EXPECT_TRUE(mesh.normals.empty());
     const float h = std::sqrt(0.5f);
-    for (const V4f& tangent : mesh.tangents) expect_near(tangent, {h, 0, h, 1});
+    for (const V4f& tangent : mesh.tangents) expect_near_vector(tangent, {h, 0, h, 1});
 }
 
 TEST(GltfTangents, UselessTextureCoordinatesStillGiveAFrame) {
-    Mesh mesh = square();
+    Mesh mesh = textured_square();
     mesh.uv[0].assign(4, V2f(0.5f));
     add_tangents(mesh, {});
     for (const V4f& t : mesh.tangents) {
         EXPECT_NEAR(V3f(t.x, t.y, t.z).length(), 1, 1e-6);
         EXPECT_NEAR(t.z, 0, 1e-6);
     }
-    Mesh none = square();
+    Mesh none = textured_square();
     none.uv[0].clear();
     add_tangents(none, {});
     EXPECT_TRUE(none.tangents.empty());
 }
 
 TEST(GltfTangents, RepairMakesThemUnit) {
-    Mesh mesh = square();
+    Mesh mesh = textured_square();
     mesh.tangents = {{2, 0, 0, 0.5f}, {0, 0, 0, -1}, {0, 0, 3, 1}, {0, 1, 0, -7}};
     repair_tangents(mesh);
     EXPECT_EQ(mesh.tangents[0], V4f(1, 0, 0, 1));
@@ -159,16 +159,16 @@ TEST(GltfTangents, RepairMakesThemUnit) {
 }
 
 TEST(GltfBake, MirroredTangentsKeepTheirBitangent) {
-    Mesh mesh = square();
+    Mesh mesh = textured_square();
     add_tangents(mesh, {});
     bake(mesh, M44d(-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1));
-    expect_near(mesh.tangents[0], {-1, 0, 0, -1});
+    expect_near_vector(mesh.tangents[0], {-1, 0, 0, -1});
     const V4f& t = mesh.tangents[0];
     const V3f bitangent = mesh.normals[0].cross(V3f(t.x, t.y, t.z)) * t.w;
     EXPECT_LT((bitangent - V3f(0, 1, 0)).length(), 1e-6f);
 }
 
-/// A square with a normal map, its own tangents along y.
+/// A textured_square with a normal map, its own tangents along y.
 TinyGltf normal_mapped() {
     TinyGltf file;
     file.add("textures", {{"source", file.add_image(tiny_png(1, 1, {128, 128, 255, 255}))}});
@@ -189,13 +189,13 @@ TEST(GltfTangents, TheFilesOwnAreUsedWhereThereIsANormalMap) {
     EXPECT_EQ(load_mesh(file).tangents[0], V4f(0, 1, 0, 1));
 
     primitive["attributes"].erase("TANGENT");
-    expect_near(load_mesh(file).tangents.at(0), {1, 0, 0, 1});
+    expect_near_vector(load_mesh(file).tangents.at(0), {1, 0, 0, 1});
 
     file = normal_mapped();
     file.json["meshes"][0]["primitives"][0]["attributes"].erase("NORMAL");
     const Mesh flat = load_mesh(file);  // tangents without normals do not count
     EXPECT_TRUE(flat.normals.empty());
-    expect_near(flat.tangents.at(0), {1, 0, 0, 1});
+    expect_near_vector(flat.tangents.at(0), {1, 0, 0, 1});
 
     file = normal_mapped();
     file.json["materials"][0].erase("normalTexture");

@@ -25,15 +25,15 @@ using test::read_bytes;
 using test::TemporaryFolder;
 using test::write_bytes;
 
-Image decode(const Bytes& bytes, const std::string& file, const std::string& place) {
+Image decode_file(const Bytes& bytes, const std::string& file, const std::string& place) {
     PictureBudget budget;
     return decode_image(bytes, file, place, budget);
 }
 Bytes texels8(const Bytes& png) {
-    return std::get<std::vector<uint8_t>>(decode(png, "a.gltf", "/images/0").texels);
+    return std::get<std::vector<uint8_t>>(decode_file(png, "a.gltf", "/images/0").texels);
 }
 std::vector<float> texels_float(const Bytes& png) {
-    return std::get<std::vector<float>>(decode(png, "a.gltf", "/images/0").texels);
+    return std::get<std::vector<float>>(decode_file(png, "a.gltf", "/images/0").texels);
 }
 Bytes png_chunk(std::string_view type, const Bytes& data) {
     Bytes chunk;
@@ -94,7 +94,8 @@ TEST(DecodeImage, SixteenBitsBecomeFloats) {
 
 TEST(DecodeImage, RefusesWhatIsNoImageAndSaysWhere) {
     for (const Bytes& bytes : {Bytes{}, Bytes{0x89, 'P'}, Bytes{'G', 'I', 'F', '8', '9', 'a'}}) {
-        const std::string message = message_of([&] { (void)decode(bytes, "a.gltf", "/images/3"); });
+        const std::string message =
+            message_of([&] { (void)decode_file(bytes, "a.gltf", "/images/3"); });
         EXPECT_EQ(message.find("a.gltf: /images/3: "), 0u) << message;
         EXPECT_NE(message.find("PNG, JPEG or WebP"), std::string::npos) << message;
     }
@@ -103,13 +104,13 @@ TEST(DecodeImage, RefusesWhatIsNoImageAndSaysWhere) {
 TEST(DecodeImage, RefusesASmallFileThatAsksForGigabytes) {
     for (const uint32_t side : {20000u, 32768u, 40000u, 1000000u})
         EXPECT_THROW(
-            (void)decode(tiny_png(side, side, 8, PngColour::Rgba, {{0, 0, 0, 0}}), "a", "b"),
+            (void)decode_file(tiny_png(side, side, 8, PngColour::Rgba, {{0, 0, 0, 0}}), "a", "b"),
             InputError);
     const std::string message = message_of([] {
-        (void)decode(tiny_png(20000, 20000, 8, PngColour::Rgba, {{0, 0, 0, 0}}), "a", "b");
+        (void)decode_file(tiny_png(20000, 20000, 8, PngColour::Rgba, {{0, 0, 0, 0}}), "a", "b");
     });
     EXPECT_NE(message.find("claims 20000x20000 pixels"), std::string::npos) << message;
-    EXPECT_THROW((void)decode(tiny_png(0, 1, 8, PngColour::Rgba, {}), "a", "b"), InputError);
+    EXPECT_THROW((void)decode_file(tiny_png(0, 1, 8, PngColour::Rgba, {}), "a", "b"), InputError);
 }
 
 TEST(SizeComplaint, AllowsWhatDeflateCanPackAndNoMore) {
@@ -128,10 +129,10 @@ TEST(DecodeImage, RefusesFilesCutShort) {
     for (const char* name : {"a.png", "a.jpg"}) {
         write_8bit(folder / name, noise(64, 64, {"R", "G", "B"}));
         const Bytes whole = read_bytes(folder / name);
-        EXPECT_EQ(decode(whole, name, "").width, 64);
+        EXPECT_EQ(decode_file(whole, name, "").width, 64);
         for (const double part : {0.01, 0.2, 0.5, 0.9}) {
             const Bytes cut(whole.begin(), whole.begin() + ptrdiff_t(part * double(whole.size())));
-            EXPECT_THROW((void)decode(cut, name, ""), InputError) << name << " " << part;
+            EXPECT_THROW((void)decode_file(cut, name, ""), InputError) << name << " " << part;
         }
     }
 }
@@ -293,7 +294,7 @@ TEST(EightBit, PngHoldsJustTheCrop) {
     p.y = 6;
     p.full_width = p.full_height = 50;
     write_8bit(folder / "a.png", p);
-    const Image image = decode(read_bytes(folder / "a.png"), "a.png", "");
+    const Image image = decode_file(read_bytes(folder / "a.png"), "a.png", "");
     EXPECT_EQ(image.width, 3);
     EXPECT_EQ(image.height, 2);
     const auto& texels = std::get<std::vector<uint8_t>>(image.texels);
@@ -350,7 +351,7 @@ TEST(Fuzz, BrokenFilesDoNoHarm) {
             const bool texture = name == "a.png" || name == "a.jpg";
             refused += !message_of([&] {
                             if (texture)
-                                (void)decode(bytes, "a.gltf", "/images/0");
+                                (void)decode_file(bytes, "a.gltf", "/images/0");
                             else
                                 (void)read_picture(broken);
                         }).empty();

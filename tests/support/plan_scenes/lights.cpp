@@ -5,20 +5,20 @@
 namespace petzval::test {
 namespace {
 
-struct Lens {
+struct FastLens {
     const char* name;
     float focal_mm, fstop, nearest_m;
 };
-constexpr std::array<Lens, 5> kFast{{{"takumar-50mm-f1.2", 50, 1.2f, 0.6f},
-                                     {"tessar-100mm-f2.8", 100, 2.8f, 1.2f},
-                                     {"biotar-58mm-f1.4", 58, 1.4f, 0.8f},
-                                     {"primoplan-58mm-f1.5", 58, 1.5f, 0.8f},
-                                     {"double-gauss-100mm-f2", 100, 2, 1.2f}}};
+constexpr std::array<FastLens, 5> kFast{{{"takumar-50mm-f1.2", 50, 1.2f, 0.6f},
+                                         {"tessar-100mm-f2.8", 100, 2.8f, 1.2f},
+                                         {"biotar-58mm-f1.4", 58, 1.4f, 0.8f},
+                                         {"primoplan-58mm-f1.5", 58, 1.5f, 0.8f},
+                                         {"double-gauss-100mm-f2", 100, 2, 1.2f}}};
 
 /// Sets a fast lens; returns its diameter and focus in metres.
 V2f set_fast_lens(PlanWorld& w, float farther) {
     if (w.dice.chance(0.6f)) {
-        const Lens& lens = w.dice.pick(kFast);
+        const FastLens& lens = w.dice.pick(kFast);
         const float focus_m = lens.nearest_m * w.dice.between(1, farther);
         w.real_lens(lens.name, lens.focal_mm, focus_m);
         return {lens.focal_mm / 1000 / lens.fstop, focus_m};

@@ -33,7 +33,7 @@ PlanScene plan_scene(uint32_t index) {
 SceneRequest PlanScene::save(const std::filesystem::path& folder) const {
     SceneRequest out = request;
     out.scene = folder / "scene.gltf";
-    write_bytes(out.scene, {reinterpret_cast<const uint8_t*>(gltf.data()), gltf.size()});
+    save_bytes(out.scene, {reinterpret_cast<const uint8_t*>(gltf.data()), gltf.size()});
     return out;
 }
 

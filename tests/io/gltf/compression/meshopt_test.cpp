@@ -14,12 +14,12 @@ namespace {
 using test::Grid;
 using Bytes = std::vector<uint8_t>;
 
-MeshoptLayout attributes(uint64_t count, uint64_t stride,
-                         MeshoptFilter filter = MeshoptFilter::None) {
+MeshoptLayout attributes_layout(uint64_t count, uint64_t stride,
+                                MeshoptFilter filter = MeshoptFilter::None) {
     return {MeshoptMode::Attributes, filter, count, stride};
 }
 
-Bytes decoded(const MeshoptLayout& layout, const Bytes& stream) {
+Bytes decoded_stream(const MeshoptLayout& layout, const Bytes& stream) {
     EXPECT_EQ(meshopt_fault(layout, stream), "");
     return decode_meshopt(layout, stream).value();
 }
@@ -30,26 +30,26 @@ Bytes copy(std::span<const uint8_t> bytes) {
 
 TEST(Meshopt, GivesTheBytesBack) {
     const Grid grid(21);
-    EXPECT_EQ(decoded(attributes(grid.points(), 12),
-                      test::encode_attributes(test::bytes_of(grid.positions), 12)),
+    EXPECT_EQ(decoded_stream(attributes_layout(grid.points(), 12),
+                             test::encode_attributes(test::bytes_of(grid.positions), 12)),
               copy(test::bytes_of(grid.positions)));
-    EXPECT_EQ(decoded(attributes(grid.points(), 4),
-                      test::encode_attributes(test::bytes_of(grid.colours), 4)),
+    EXPECT_EQ(decoded_stream(attributes_layout(grid.points(), 4),
+                             test::encode_attributes(test::bytes_of(grid.colours), 4)),
               grid.colours);
-    EXPECT_EQ(decoded({MeshoptMode::Indices, MeshoptFilter::None, grid.indices.size(), 4},
-                      test::encode_indices(grid.indices, grid.points())),
+    EXPECT_EQ(decoded_stream({MeshoptMode::Indices, MeshoptFilter::None, grid.indices.size(), 4},
+                             test::encode_indices(grid.indices, grid.points())),
               copy(test::bytes_of(grid.indices)));
     const std::vector<uint16_t> shorts(grid.indices.begin(), grid.indices.end());
-    EXPECT_EQ(decoded({MeshoptMode::Indices, MeshoptFilter::None, grid.indices.size(), 2},
-                      test::encode_indices(grid.indices, grid.points())),
+    EXPECT_EQ(decoded_stream({MeshoptMode::Indices, MeshoptFilter::None, grid.indices.size(), 2},
+                             test::encode_indices(grid.indices, grid.points())),
               copy(test::bytes_of(shorts)));
 }
 
 TEST(Meshopt, TrianglesMayTurnButStay) {
     const Grid grid(21);
     const Bytes bytes =
-        decoded({MeshoptMode::Triangles, MeshoptFilter::None, grid.indices.size(), 4},
-                test::encode_triangles(grid.indices, grid.points()));
+        decoded_stream({MeshoptMode::Triangles, MeshoptFilter::None, grid.indices.size(), 4},
+                       test::encode_triangles(grid.indices, grid.points()));
     std::vector<uint32_t> indices(grid.indices.size());
     std::memcpy(indices.data(), bytes.data(), bytes.size());
     for (size_t i = 0; i < indices.size(); i += 3) {
@@ -67,9 +67,9 @@ TEST(Meshopt, KnowsTheFewestBytes) {
     for (const uint64_t stride : {4u, 12u, 32u, 36u, 100u, 256u})
         for (const uint64_t count : {1u, 16u, 17u, 255u, 256u, 257u, 1000u, 4096u}) {
             const Bytes stream = test::encode_attributes(Bytes(count * stride, 7), stride);
-            EXPECT_EQ(meshopt_fault(attributes(count, stride), stream), "");
+            EXPECT_EQ(meshopt_fault(attributes_layout(count, stride), stream), "");
             const Bytes shorter(stream.begin(), stream.end() - 1);
-            EXPECT_NE(meshopt_fault(attributes(count, stride), shorter), "")
+            EXPECT_NE(meshopt_fault(attributes_layout(count, stride), shorter), "")
                 << count << " of " << stride;
         }
     const std::vector<uint32_t> same(300, 0);
@@ -104,7 +104,7 @@ TEST(Meshopt, RefusesWhatTheExtensionForbids) {
     EXPECT_NE(fault(Triangles, Exponential, 3, 4, 0xe1), "");
     EXPECT_EQ(fault(Indices, None, 4, 2, 0xd1), "");
     EXPECT_NE(fault(Indices, None, 4, 3, 0xd1), "");
-    EXPECT_NE(meshopt_fault(attributes(1, 4), {}), "");
+    EXPECT_NE(meshopt_fault(attributes_layout(1, 4), {}), "");
     EXPECT_NE(fault(Attributes, None, uint64_t(1) << 53, 256, 0xa0), "");
 }
 
@@ -112,8 +112,8 @@ TEST(Meshopt, SeesThatAStreamIsBroken) {
     const Grid grid(21);
     Bytes stream = test::encode_attributes(test::bytes_of(grid.positions), 12);
     stream.resize(stream.size() - 40);
-    EXPECT_EQ(meshopt_fault(attributes(grid.points(), 12), stream), "");
-    EXPECT_FALSE(decode_meshopt(attributes(grid.points(), 12), stream));
+    EXPECT_EQ(meshopt_fault(attributes_layout(grid.points(), 12), stream), "");
+    EXPECT_FALSE(decode_meshopt(attributes_layout(grid.points(), 12), stream));
 }
 
 /// Random unit vectors, four numbers each.
@@ -201,7 +201,8 @@ TEST(MeshoptFilters, LeaveRubbishInBounds) {
         Bytes rubbish(8 * 1000);
         for (size_t i = 64; i < rubbish.size(); ++i) rubbish[i] = uint8_t(random());
         const auto stream = test::encode_attributes(rubbish, 8);
-        EXPECT_EQ(decoded(attributes(1000, 8, filter), stream).size(), rubbish.size());
+        EXPECT_EQ(decoded_stream(attributes_layout(1000, 8, filter), stream).size(),
+                  rubbish.size());
     }
 }
 

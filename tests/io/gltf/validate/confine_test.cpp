@@ -29,7 +29,7 @@ class Confine : public testing::Test {
     Confine() {
         fs::create_directories(folder_.path / "scene/below");
         for (const char* name : {"scene/inside.bin", "scene/below/deep.bin", "outside.bin"})
-            write_bytes(folder_.path / name, std::vector<uint8_t>(8, 7));
+            save_bytes(folder_.path / name, std::vector<uint8_t>(8, 7));
     }
     [[nodiscard]] std::string refused(const std::string& address, FileScope scope) const {
         const nlohmann::json json = {{"asset", {{"version", "2.0"}}},
@@ -69,7 +69,7 @@ TEST_F(Confine, FollowsLinks) {
 // A folder whose name begins as the scene's does is another one.
 TEST_F(Confine, TakesNamesWhole) {
     fs::create_directories(folder_.path / "scene2");
-    write_bytes(folder_.path / "scene2/a.bin", std::vector<uint8_t>(8, 7));
+    save_bytes(folder_.path / "scene2/a.bin", std::vector<uint8_t>(8, 7));
     EXPECT_TRUE(has(refused("../scene2/a.bin", FileScope::Confined), "lies outside"));
 }
 

@@ -76,7 +76,7 @@ Count fuzz(const Bytes& original, int times) {
     for (int i = 0; i < times; ++i) {
         Bytes bytes = original;
         mutate(bytes, random);
-        const fs::path path = write_bytes(folder.path / std::to_string(i), bytes);
+        const fs::path path = save_bytes(folder.path / std::to_string(i), bytes);
         try {
             (void)read_gltf_source(path);
             ++count.accepted;

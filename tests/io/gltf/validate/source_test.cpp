@@ -28,7 +28,7 @@ class Source : public testing::Test {
     }
     Bytes text_file(const char* name, const std::string& text) {
         const Bytes bytes(text.begin(), text.end());
-        write_bytes(folder.path / name, bytes);
+        save_bytes(folder.path / name, bytes);
         return bytes;
     }
 
@@ -54,7 +54,7 @@ TEST_F(Source, SameContentFromTextAndBinary) {
 
 TEST_F(Source, SaysWhatLiesInPlaceOfAScene) {
     const auto of_bytes = [&](const Bytes& bytes) {
-        write_bytes(folder.path / "a.glb", bytes);
+        save_bytes(folder.path / "a.glb", bytes);
         return refusal([&] { (void)read_gltf_source(folder.path / "a.glb"); });
     };
     const std::string name = (folder.path / "a.glb").string();

@@ -1,40 +1,41 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Plain copies of what renders show of a scene, for Blender's own exporter to write: meshes and materials."""
+"""Plain copies of what renders show of a scene, for Blender's own exporter to write."""
 import bpy
+import numpy as np
 from mathutils import Matrix
 
-SHADERS = {"BSDF_PRINCIPLED", "BSDF_DIFFUSE", "BSDF_GLOSSY", "BSDF_GLASS", "EMISSION", "BSDF_TRANSPARENT"}
+from .materials import Materials
+from .nodes import nodes_of
 
-# Objects -----------------------------------------------------------------------------------------------------------
-
-
-def layers_in(layer):
-    """A layer collection and those in it that renders have."""
-    if layer.exclude or layer.collection.hide_render:
-        return
-    yield layer
-    for child in layer.children:
-        yield from layers_in(child)
+FLAGS = {"is_holdout": "holdout", "is_shadow_catcher": "shadow catcher", "visible_camera": "invisible to the camera",
+         "visible_shadow": "no shadow", "visible_diffuse": "no diffuse rays", "visible_glossy": "no glossy rays",
+         "visible_transmission": "no rays through glass"}
+SETTINGS = {"use_active_scene": True, "export_cameras": False, "export_lights": False, "export_animations": False,
+            "export_apply": False, "export_extras": False, "export_skins": False, "export_morph": False,
+            "export_tangents": False, "export_yup": True}
 
 
-def as_in_renders(scene, objects, layers, lost):
+def as_in_renders(view_layer, lost):
     """Gives what is seen in the window the settings of renders. Returns what takes them back."""
-    wishes = [(layer, "hide_viewport", False) for layer in layers]
-    wishes += [(layer.collection, "hide_viewport", False) for layer in layers]
-    if scene.render.use_simplify:
-        wishes += [(scene.render, "simplify_subdivision", scene.render.simplify_subdivision_render)]
-    for one in objects:
-        wishes += [(one, "hide_viewport", False),
-                   (one, "show_instancer_for_viewport", one.show_instancer_for_render)]
+    wishes = [(one, "hide_viewport", one.hide_render) for one in (*bpy.data.collections, *bpy.data.objects)]
+    wishes += [(layer, "hide_viewport", False) for layer in layers_in(view_layer.layer_collection)]
+    wishes += [(scene.render, "simplify_subdivision", scene.render.simplify_subdivision_render) for scene in bpy.data.scenes]
+    for one in bpy.data.objects:
+        wishes += [(one, "show_instancer_for_viewport", one.show_instancer_for_render)]
         for modifier in one.modifiers:
             wishes += [(modifier, "show_viewport", modifier.show_render)]
             if hasattr(modifier, "render_levels"):
                 wishes += [(modifier, "levels", modifier.render_levels)]
-        if one.type in ("CURVE", "SURFACE", "FONT") and one.data.render_resolution_u:
-            wishes += [(one.data, "resolution_u", one.data.render_resolution_u)]
-        if one.type == "META":
-            wishes += [(one.data, "resolution", one.data.render_resolution)]
+        for name in ("resolution", "resolution_u", "resolution_v"):  # 0: that of the window
+            wishes += [(one.data, name, getattr(one.data, "render_" + name))] if getattr(one.data, "render_" + name, 0) else []
     undo = []
+
+    def back():
+        for owner, name, before in reversed(undo):
+            setattr(owner, name, before)
+        for one in hidden:
+            one.hide_set(True)
+
     for owner, name, value in wishes:
         before = getattr(owner, name)
         if before != value:
@@ -42,62 +43,73 @@ def as_in_renders(scene, objects, layers, lost):
                 setattr(owner, name, value)
                 undo.append((owner, name, before))
             except AttributeError:  # of a library
-                lost.add(f"{name} of renders of {owner.name}, which is linked")
-    hidden = [one for one in objects if one.hide_get()]
+                lost.append(f"{name} of renders of {owner.name}, which is linked")
+    hidden = [one for one in view_layer.objects if one.hide_get()]
     for one in hidden:
         one.hide_set(False)
-
-    def back():
-        for one in hidden:
-            one.hide_set(True)
-        for owner, name, before in reversed(undo):
-            setattr(owner, name, before)
-
     return back
 
 
-def list_flags(one, lost):
-    for flag, wanted, text in (("is_holdout", False, "holdout"), ("is_shadow_catcher", False, "shadow catcher"),
-                               ("visible_camera", True, "invisible to the camera"), ("visible_shadow", True, "no shadow"),
-                               ("visible_diffuse", True, "no diffuse rays"), ("visible_glossy", True, "no glossy rays"),
-                               ("visible_transmission", True, "no rays through glass")):
-        if getattr(one, flag, wanted) != wanted:
-            lost.add(f"{text}: {one.name}")
-    if any(system.settings.type == "HAIR" for system in one.particle_systems):
-        lost.add(f"hair of {one.name}")
+def layers_in(layer):
+    yield layer
+    for child in layer.children:
+        yield from layers_in(child)
+
+
+def list_flags(one, layer, lost):
+    lost += [f"{text}: {one.name}" for flag, text in FLAGS.items() if getattr(one, flag, True) == flag.startswith("is_")]
+    if one.holdout_get(view_layer=layer) or one.indirect_only_get(view_layer=layer):
+        lost.append(f"holdout or indirect only: {one.name}")
+    if any(system.settings.type == "HAIR" and system.settings.render_type == "PATH" for system in one.particle_systems):
+        lost.append(f"hair of {one.name}")
+
+
+def is_closed(mesh):
+    """Whether each edge that has faces has two."""
+    edges = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("edge_index", edges)
+    return set(np.bincount(edges)) <= {0, 2}
 
 
 class Meshes:
     """A scene of plain copies of all meshes, which is exported and then removed."""
 
-    def __init__(self, depsgraph, rendered, lost):
+    def __init__(self, depsgraph, lost):
         self.scene = bpy.data.scenes.new("Petzval")
         self.materials = Materials(lost)
         self.others = []  # lamps and cameras, with their places
-        self._meshes, self._made, self._override = {}, [], bpy.context.view_layer.material_override
+        self._meshes, self._made, self._override = {}, [], depsgraph.view_layer.material_override
         try:
-            self._add_all(depsgraph, rendered, lost)
+            for one in depsgraph.object_instances:
+                if one.is_instance or one.show_self:
+                    self._add(one.object, one.matrix_world.copy(), depsgraph.view_layer_eval, lost)
         except Exception:
             self.remove()  # nothing of it stays in the file
             raise
 
-    def _add_all(self, depsgraph, rendered, lost):
-        for one in depsgraph.object_instances:
-            real = one.object.original
-            holder = one.parent.original if one.is_instance and one.parent else real
-            if holder not in rendered or real.hide_render or not (one.is_instance or one.show_self):
-                continue
-            self._add(one.object, one.matrix_world.copy(), lost)
+    def export(self, path):
+        """Writes it."""
+        window, known = bpy.context.window, bpy.ops.export_scene.gltf.get_rna_type().properties.keys()
+        before = window and window.scene
+        try:
+            if window:
+                window.scene = self.scene
+            bpy.ops.export_scene.gltf(filepath=path, export_format="GLB",
+                                      **{key: value for key, value in SETTINGS.items() if key in known})
+        finally:
+            if window:
+                window.scene = before
 
-    def _add(self, one, matrix, lost):
+    def _add(self, one, matrix, layer, lost):
         if one.type in ("LIGHT", "CAMERA"):
             self.others.append((one.original, matrix))
         elif one.type in ("MESH", "CURVE", "SURFACE", "FONT", "META"):
-            list_flags(one, lost)
+            list_flags(one, layer, lost)
             looks = tuple(slot.material.original if slot.material else None for slot in one.material_slots)
             sheared = max(abs(a - b) for row, other in zip(matrix, Matrix.LocRotScale(*matrix.decompose()))
                           for a, b in zip(row, other)) > 1e-5 * max(1, matrix.median_scale)
-            key = (one.data.as_pointer() if one.data else one.name, looks, tuple(map(tuple, matrix)) if sheared else None)
+            shape = one.data if one.type == "MESH" else one.original
+            key = (shape.as_pointer(), looks, tuple(map(tuple, matrix)) if sheared else None)
             if key not in self._meshes:
                 self._meshes[key] = self._plain(one, looks, matrix if sheared else None)
             if self._meshes[key]:
@@ -105,10 +117,10 @@ class Meshes:
                 copy.matrix_world = Matrix.Identity(4) if sheared else matrix
                 self.scene.collection.objects.link(copy)
         elif one.type not in ("EMPTY", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE"):
-            lost.add(f"{one.type.lower()} {one.name}")
+            lost.append(f"{one.type.lower()} {one.name}")
 
     def _plain(self, one, looks, matrix):
-        """Mesh of an object after its modifiers; None where it has no faces."""
+        """Mesh of an object after its modifiers; None where it has no faces. matrix: that its points take."""
         mesh = bpy.data.meshes.new_from_object(one)  # as it is evaluated: that of an instance, where it is one
         if mesh is None:
             return None
@@ -120,16 +132,13 @@ class Meshes:
             mesh.transform(matrix)
             if matrix.determinant() < 0:
                 mesh.flip_normals()
-        for i in range(len(mesh.materials)):
-            look = looks[i] if i < len(looks) else mesh.materials[i]
-            mesh.materials[i] = self._override or look
-        if self._override and not mesh.materials:
-            mesh.materials.append(self._override)
         closed, colored = is_closed(mesh), False
-        for i, look in enumerate(mesh.materials):
-            if look:
-                mesh.materials[i] = self.materials.copy_of(look, closed)
-                colored = colored or any(node.type in ("VERTEX_COLOR", "ATTRIBUTE") for node in nodes_of(look))
+        if not mesh.materials:
+            mesh.materials.append(None)
+        for i, own in enumerate(mesh.materials):
+            look = self._override or (looks[i] if i < len(looks) else own)
+            mesh.materials[i] = self.materials.copy_of(look, closed)
+            colored |= bool(look) and any(node.type in ("VERTEX_COLOR", "ATTRIBUTE") for node in nodes_of(look))
         if not colored:  # glTF multiplies by them
             for attribute in list(mesh.color_attributes):
                 mesh.color_attributes.remove(attribute)
@@ -142,120 +151,3 @@ class Meshes:
         for mesh in self._made:
             bpy.data.meshes.remove(mesh)
         self.materials.remove()
-
-
-def is_closed(mesh):
-    """Whether each edge has two faces."""
-    count = [0] * len(mesh.edges)
-    for polygon in mesh.polygons:
-        for index in polygon.loop_indices:
-            count[mesh.loops[index].edge_index] += 1
-    return bool(count) and all(n == 2 for n in count)
-
-
-# Materials ---------------------------------------------------------------------------------------------------------
-
-def nodes_of(owner):
-    return owner.node_tree.nodes if owner.use_nodes and owner.node_tree else ()
-
-
-def surface_of(owner, output="OUTPUT_MATERIAL"):
-    """Node that a material's surface, or a lamp, is made by; None where it has none."""
-    found = next((node for node in nodes_of(owner) if node.type == output and node.is_active_output), None)
-    link = found and found.inputs["Surface"].links
-    return link[0].from_node if link else None
-
-
-class Materials:
-    """Copies that Blender's exporter understands: other shaders become a Principled BSDF with the same links."""
-
-    def __init__(self, lost):
-        self.facts = {}  # by the copy's name: name, shader, and whether all its meshes are closed
-        self._copies, self._lost = {}, lost
-
-    def copy_of(self, material, closed):
-        if material not in self._copies:
-            copy = self._copies[material] = material.copy()
-            copy.name = f"petzval {len(self._copies)}"
-            copy.use_backface_culling = False  # which Cycles does not have
-            self.facts[copy.name] = [material.name, self._mend(copy, material.name), True]
-        self.facts[self._copies[material].name][2] &= closed
-        return self._copies[material]
-
-    def remove(self):
-        for copy in self._copies.values():
-            bpy.data.materials.remove(copy)
-
-    def _mend(self, copy, name):
-        """Makes the copy's surface a Principled BSDF. Returns what it was."""
-        if not nodes_of(copy):
-            copy.use_nodes = True
-            copy.node_tree.nodes.clear()
-            self._principled(copy).inputs["Base Color"].default_value = copy.diffuse_color
-            return "BSDF_DIFFUSE"
-        if any(node.type == "OUTPUT_MATERIAL" and node.inputs["Volume"].is_linked for node in nodes_of(copy)):
-            self._lost.add(f"volume of material {name}")
-        if any(node.type == "OUTPUT_MATERIAL" and node.inputs["Displacement"].is_linked for node in nodes_of(copy)):
-            self._lost.add(f"displacement of material {name}")
-        surface = surface_of(copy)
-        if surface is None:
-            return "NONE"
-        if surface.type not in SHADERS:
-            self._lost.add(f"{surface.bl_label} of material {name}")
-            return surface.type
-        for socket in surface.inputs:
-            self._simplify(copy, socket, name)
-        if surface.type in ("BSDF_DIFFUSE", "BSDF_GLOSSY", "BSDF_GLASS"):
-            own = self._principled(copy)
-            for old, new in (("Color", "Base Color"), ("Roughness", "Roughness"), ("Normal", "Normal"), ("IOR", "IOR")):
-                if old in surface.inputs and not (old == "Roughness" and surface.type == "BSDF_DIFFUSE"):
-                    if surface.inputs[old].is_linked:
-                        copy.node_tree.links.new(surface.inputs[old].links[0].from_socket, own.inputs[new])
-                    elif old != "Normal":
-                        own.inputs[new].default_value = surface.inputs[old].default_value
-            if surface.type == "BSDF_DIFFUSE" and surface.inputs["Roughness"].default_value > 0:
-                self._lost.add(f"roughness of diffuse material {name}")
-        if surface.type == "BSDF_PRINCIPLED":
-            subsurface = surface.inputs.get("Subsurface") or surface.inputs.get("Subsurface Weight")
-            if subsurface and (subsurface.is_linked or subsurface.default_value > 0):
-                self._lost.add(f"subsurface scattering of material {name}")
-            alpha = surface.inputs["Alpha"]
-            copy.blend_method = "BLEND" if alpha.is_linked or alpha.default_value < 1 else "OPAQUE"
-        return surface.type
-
-    def _principled(self, copy):
-        nodes, links = copy.node_tree.nodes, copy.node_tree.links
-        output = next((node for node in nodes if node.type == "OUTPUT_MATERIAL" and node.is_active_output), None)
-        own = nodes.new("ShaderNodeBsdfPrincipled")
-        links.new(own.outputs[0], (output or nodes.new("ShaderNodeOutputMaterial")).inputs["Surface"])
-        return own
-
-    def _simplify(self, copy, socket, name):
-        """Takes numbers for nodes of numbers, and names what the exporter passes over."""
-        if not socket.is_linked:
-            return
-        source = socket.links[0].from_node
-        if source.type in ("RGB", "VALUE"):
-            value = source.outputs[0].default_value
-            copy.node_tree.links.remove(socket.links[0])
-            socket.default_value = value
-            return
-        picture = source
-        if source.type == "NORMAL_MAP" and source.inputs["Color"].is_linked:
-            picture = source.inputs["Color"].links[0].from_node
-        elif source.type in ("SEPRGB", "SEPARATE_COLOR") and source.inputs[0].is_linked:
-            picture = source.inputs[0].links[0].from_node
-        elif source.type == "TEX_IMAGE" and socket.name in ("Roughness", "Metallic"):
-            self._lost.add(f"the picture at {socket.name} of material {name}: put Separate Color before it")
-        if picture.type in ("VERTEX_COLOR", "ATTRIBUTE") and socket.name in ("Color", "Base Color"):
-            socket.default_value = (1, 1, 1, 1)
-        elif picture.type != "TEX_IMAGE":
-            self._lost.add(f"{picture.bl_label} at {socket.name} of material {name}: bake it")
-        elif picture.image is None or not picture.image.has_data and not picture.image.size[0]:
-            self._lost.add(f"the missing picture at {socket.name} of material {name}")
-        elif picture.image.is_float:
-            self._lost.add(f"the exact colours of the picture of floats {picture.image.name}: make it one of 8 bits")
-        elif picture.inputs["Vector"].is_linked:
-            place = picture.inputs["Vector"].links[0]
-            if place.from_node.type not in ("UVMAP", "MAPPING") and place.from_socket.name != "UV":
-                self._lost.add(f"{place.from_node.bl_label} coordinates of material {name}")

@@ -7,7 +7,7 @@ cd "$(dirname "$0")"
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 mkdir -p "$folder/petzval_blender" "$(dirname "$zip")"
-install -m 644 ./*.py "$folder/petzval_blender/"
+install -m 644 ./*.py blender_manifest.toml "$folder/petzval_blender/"
 rm -f "$zip"
 cd "$folder"
 python3 -m zipfile -c "$zip" petzval_blender

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A render of Petzval's program as it runs beside Blender."""
+"""Renders of Petzval's program beside Blender."""
 import ctypes
 import json
 import os
@@ -7,9 +7,13 @@ import shlex
 import shutil
 import signal
 import subprocess
+import tempfile
 import threading
 
 import bpy
+
+from . import cameras
+from .scene import export
 
 PR_SET_PDEATHSIG = 1  # prctl(2)
 
@@ -18,111 +22,145 @@ class Failed(Exception):
     """What the user is told."""
 
 
+class Now:
+    """The one render that runs, and the folder of the picture that is shown."""
+    work, stop_asked, folder = None, False, ""
+
+
+def find_program():
+    """Path of the program: of the preferences, beside the add-on, or on the path; None where there is none."""
+    addon = bpy.context.preferences.addons.get(__package__)
+    named = addon and addon.preferences and bpy.path.abspath(addon.preferences.program)
+    here = os.path.dirname(os.path.abspath(__file__))
+    for path in [named] if named else [os.path.join(here, "petzval"), os.path.join(here, "bin", "petzval"),
+                                       shutil.which("petzval")]:
+        if path and os.path.isfile(path) and os.access(path, os.X_OK):
+            return path
+    return None
+
+
+def command_of(scene, glb="scene.glb", picture="picture.exr", preview=None):
+    """Words of the command that renders an exported scene."""
+    own = scene.petzval
+    lens = "" if own.lens == "camera" else own.lens
+    words = [find_program(), "render", glb, *cameras.frame_words(scene, with_sensor=lens)]
+    words += ["--noise", f"{own.noise:g}%"] if own.stop_at == "noise" else ["--spp", str(own.samples)]
+    if lens and own.keep_framing and scene.camera:
+        words += ["--method", "fit=fov"]
+    if lens and own.dispersion != "auto":
+        words += ["--method", f"dispersion={own.dispersion}"]
+    words += ["--denoise"] * own.denoise + ["--transparent"] * scene.render.film_transparent
+    for option, value in (("--lens", lens), ("--fstop", own.fstop and f"{own.fstop:g}"), ("--aperture", own.aperture),
+                          ("--aov", own.layers), ("--preview", preview), ("-o", picture)):
+        words += [option, value] if value else []
+    return words
+
+
 def shown(words):
     """The words as a shell takes them, the program by its name."""
     return shlex.join([os.path.basename(words[0] or "petzval"), *words[1:]])
+
+
+def begin(scene, animation):
+    """Begins a render of the frame, or of all. Now.work then gives phase and fraction each time it is asked, until it ends;
+    its close() stops it. What is not finished is removed."""
+    Now.work, Now.stop_asked = _render(scene, animation), False
+
+
+def _render(scene, animation):
+    before, folder = scene.frame_current, None
+    try:
+        if not find_program():
+            raise Failed("Petzval's program is not found; install it, or name it in the add-on's preferences")
+        if animation and scene.render.filepath.startswith("//") and not bpy.data.filepath:
+            raise Failed("save the file first, or name a folder for the frames in the output properties")
+        folder = tempfile.mkdtemp(prefix="petzval-", dir=bpy.app.tempdir)  # which Blender removes when it ends
+        glb, preview, picture = (os.path.join(folder, name) for name in ("scene.glb", "preview.png", "Petzval.exr"))
+        for frame in range(scene.frame_start, scene.frame_end + 1, scene.frame_step) if animation else [before]:
+            if animation:
+                scene.frame_set(frame)
+                preview, picture = None, os.path.splitext(scene.render.frame_path(frame=frame))[0] + ".exr"
+                os.makedirs(os.path.dirname(picture) or ".", exist_ok=True)
+            scene.petzval.lost = "\n".join(export(glb, scene, framed=True))
+            yield from follow(command_of(scene, glb, picture, preview), picture, preview)
+        scene.petzval.status = "done"
+        if not animation:
+            _load(picture)
+            shutil.rmtree(Now.folder, ignore_errors=True)
+            Now.folder, folder = folder, None
+    except GeneratorExit:
+        scene.petzval.status = "stopped"
+        raise
+    except Exception as error:
+        scene.petzval.status = str(error)
+        raise
+    finally:
+        if animation:
+            scene.frame_set(before)
+        shutil.rmtree(folder or "", ignore_errors=True)
+        Now.work = None
 
 
 def _end_with_blender():
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
 
 
-class Render:
-    """One run of the program. At most one at a time: running."""
+def follow(words, picture, preview=None):
+    """Runs the program: gives phase and fraction each time it is asked, until it has ended. Raises Failed where there is no
+    picture. close() ends it; what it has goes too."""
+    said, errors, seen = {"phase": "loading", "fraction": 0.0}, [], None
 
-    running = None
-    kept = ""  # folder of the picture that is shown
-
-    @classmethod
-    def keep(cls, folder):
-        """Keeps a folder in place of the one before."""
-        shutil.rmtree(cls.kept, ignore_errors=True)
-        cls.kept = folder
-
-    def __init__(self, words, picture, preview):
-        self.picture, self.preview = picture, preview
-        self.phase, self.fraction, self.stop_asked = "loading", 0.0, False
-        self._errors, self._seen = [], None
-        environment = {key: value for key, value in os.environ.items() if key not in ("OCIO", "LD_LIBRARY_PATH")}
-        self._process = subprocess.Popen([*words, "--progress", "json"], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
-                                         text=True, errors="replace", env=environment, preexec_fn=_end_with_blender)
-        self._reader = threading.Thread(target=self._read, daemon=True)
-        self._reader.start()
-        Render.running = self
-
-    def _read(self):
-        for line in self._process.stderr:
+    def listen():
+        for line in process.stderr:
             try:
-                said = json.loads(line)
+                new = json.loads(line)
             except ValueError:
-                self._errors.append(line.strip())
-                continue
-            if said.get("event") == "error":
-                self._errors.append(said.get("error", line.strip()))
-            self.phase = said.get("phase") or self.phase
-            self.fraction = said.get("fraction", self.fraction)
+                new = {"error": line.strip()}
+            errors.extend([new["error"]] if new.get("error") else [])
+            said.update((key, value) for key, value in new.items() if value is not None)
 
-    def has_ended(self):
-        return self._process.poll() is not None
-
-    def wait(self, seconds):
+    environment = {key: value for key, value in os.environ.items() if key not in ("OCIO", "LD_LIBRARY_PATH")}
+    with subprocess.Popen([*words, "--progress", "json"], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+                          errors="replace", env=environment, preexec_fn=_end_with_blender) as process:
+        listener = threading.Thread(target=listen, daemon=True)
+        listener.start()
         try:
-            self._process.wait(seconds)
-        except subprocess.TimeoutExpired:
-            pass
-
-    def stop(self):
-        """Ends it; what it has goes with its folder."""
-        self._process.terminate()
-        try:
-            self._process.wait(5)
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-            self._process.wait()
-        name, ending = os.path.splitext(self.picture)
-        for left in (f"{name}.partial{ending}", name + ".state"):
-            if os.path.exists(left):
-                os.remove(left)
-
-    def show_preview(self):
-        """Brings the picture so far to the image "Petzval"."""
-        if self.preview and os.path.exists(self.preview):
-            changed = os.stat(self.preview).st_mtime_ns
-            if changed != self._seen:
-                self._seen = changed
-                _load(self.preview)
-
-    def finish(self, scene):
-        """Shows the picture. Raises Failed where there is none."""
-        self._reader.join(5)
-        if self._process.returncode != 0:
-            raise Failed("; ".join(self._errors) or f"Petzval ended with {self._process.returncode}")
-        if self.preview:
-            _load(self.picture)
-        scene.petzval.status = "done"
+            while process.poll() is None:
+                yield said["phase"], said["fraction"]
+                changed = os.stat(preview).st_mtime_ns if preview and os.path.exists(preview) else seen
+                if changed != seen:
+                    seen = changed
+                    _load(preview)
+        except GeneratorExit:
+            process.terminate()
+            try:
+                process.wait(5)
+            except subprocess.TimeoutExpired:
+                process.kill()
+            process.wait()
+            name, ending = os.path.splitext(picture)
+            for left in (f"{name}.partial{ending}", name + ".state"):
+                if os.path.exists(left):
+                    os.remove(left)
+            raise
+        listener.join(5)
+    if process.returncode:
+        raise Failed("; ".join(errors) or f"Petzval ended with {process.returncode}")
 
 
 def _load(path):
+    """Shows a file as the image "Petzval"."""
     image = bpy.data.images.get("Petzval")
-    kind = "FLOAT" if path.endswith(".exr") else "BYTE"
-    if image and image.get("kind") != kind:
+    if image and os.path.splitext(image.filepath)[1] != os.path.splitext(path)[1]:
         bpy.data.images.remove(image)
         image = None
-    if image is None:
-        image = bpy.data.images.load(path)
-        image.name = "Petzval"
-        image["kind"] = kind
-        _show(image)
-    else:
+    if image:
         image.filepath = path
         image.reload()
-
-
-def _show(image):
-    if not bpy.context.window_manager:
         return
-    for window in bpy.context.window_manager.windows:
+    image = bpy.data.images.load(path)
+    image.name = "Petzval"
+    for window in bpy.context.window_manager.windows if bpy.context.window_manager else ():
         for area in window.screen.areas:
-            if area.type == "IMAGE_EDITOR" and (area.spaces.active.image is None or
-                                                area.spaces.active.image.name.startswith("Petzval")):
+            if area.type == "IMAGE_EDITOR" and not (area.spaces.active.image and area.spaces.active.image.type != "RENDER_RESULT"):
                 area.spaces.active.image = image

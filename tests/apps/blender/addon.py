@@ -42,21 +42,22 @@ assert bpy.ops.petzval.render() == {"FINISHED"} and own.status == "done"
 assert "takes its place" in own.lost
 image = bpy.data.images["Petzval"]
 assert image.size[:] is not None and image.type == "MULTILAYER" and os.path.exists(image.filepath)
-said = addon.run.shown(addon.command_of(scene, "scene.glb", "picture.exr"))
-assert said == ("petzval render scene.glb --size 64x36 --spp 4 --lens takumar-50mm-f1.2 --method fit=fov --fstop 2 "
-                "--aov depth,normal -o picture.exr"), said
+said = addon.run.shown(addon.run.command_of(scene, "scene.glb", "picture.exr"))
+assert said == ("petzval render scene.glb --size 64x36 --sensor 36x20.25 --spp 4 --method fit=fov --lens takumar-50mm-f1.2 "
+                "--fstop 2 --aov depth,normal -o picture.exr"), said
 
 scene.camera.data.shift_x = 0.1
 assert bpy.ops.petzval.render() == {"FINISHED"} and "shift" not in own.lost
-assert "--size 77x36 --crop 13,0,64,36 --fov" in addon.run.shown(addon.command_of(scene, "s.glb", "p.exr"))
+assert "--size 77x36 --crop 13,0,64,36 --fov" in addon.run.shown(addon.run.command_of(scene, "s.glb", "p.exr"))
 scene.camera.data.shift_x = 0
 
 # An export that fails leaves nothing in the file.
 kinds = ("scenes", "objects", "meshes", "materials")
 counts = [len(getattr(bpy.data, kind)) for kind in kinds]
-whole, addon.export.meshes.is_closed = addon.export.meshes.is_closed, None
-assert "NoneType" in refused()
-addon.export.meshes.is_closed = whole
+meshes = sys.modules[addon.__name__ + ".meshes"]
+whole, meshes.is_closed = meshes.is_closed, None
+assert "NoneType" in refused() and own.status
+meshes.is_closed = whole
 assert counts == [len(getattr(bpy.data, kind)) for kind in kinds]
 
 # Frames.
@@ -89,16 +90,20 @@ assert len(left()) == len(before) == 1  # of the last picture
 
 # Two at once are refused; one that is stopped is gone; one whose Blender dies goes too.
 own.samples = 1 << 20
-words = addon.command_of(scene, os.path.join(left()[-1], "no.glb"), "x.exr")
+words = addon.run.command_of(scene, os.path.join(left()[-1], "no.glb"), "x.exr")
 bpy.ops.export_scene.gltf(filepath=os.path.join(own_folder, "s.glb"))
 words[2] = os.path.join(own_folder, "s.glb")
 words[-1] = os.path.join(own_folder, "x.exr")
-one = addon.run.Render(words, words[-1], None)
-assert "poll" in refused()
+one = addon.run.follow(words, words[-1])
+assert next(one)[0]
 time.sleep(1)
-one.stop()
-addon.run.Render.running = None
-assert one.has_ended() and sorted(os.listdir(own_folder)) == ["frames", "petzval", "s.glb"]
+one.close()
+assert sorted(os.listdir(own_folder)) == ["frames", "petzval", "s.glb"]
+addon.run.begin(scene, False)
+next(addon.run.Now.work)
+assert "poll" in refused()
+addon.run.Now.work.close()
+assert own.status == "stopped" and not addon.run.Now.work and len(left()) == 1
 child = subprocess.Popen([sys.executable if "python" in sys.executable else "python3", "-c", f"""
 import ctypes, signal, subprocess, time
 print(subprocess.Popen({words!r}, preexec_fn=lambda: ctypes.CDLL(None).prctl(1, signal.SIGTERM)).pid, flush=True)

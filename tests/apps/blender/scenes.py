@@ -16,7 +16,7 @@ import bpy
 import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "../../../apps/blender"))
-import export  # noqa: E402
+from export import scene as petzval  # noqa: E402
 
 SIZE, SAMPLES, MOST = (96, 64), 256, 0.02
 
@@ -333,9 +333,9 @@ def compare(name, program, folder):
     bpy.context.view_layer.update()
     there = os.path.join(folder, name)
     before = {kind: len(getattr(bpy.data, kind)) for kind in ("objects", "meshes", "scenes", "images")}
-    lost = export.export(there + ".glb")
+    lost = petzval.export(there + ".glb")
     complaints = [f"export left {kind} behind" for kind, count in before.items() if len(getattr(bpy.data, kind)) != count]
-    subprocess.run([program, "render", there + ".glb", *export.frame_words(bpy.context.scene, *SIZE), "--spp", str(SAMPLES), "--method",
+    subprocess.run([program, "render", there + ".glb", *petzval.frame_words(bpy.context.scene), "--spp", str(SAMPLES), "--method",
                     "filter=gauss", "--spectral", "rgb", "--quiet", "-o", there + ".petzval.exr"], check=True)
     bpy.context.scene.render.filepath = there + ".cycles.exr"
     bpy.ops.render.render(write_still=True)

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Cameras, and the part of the frame that a render shows."""
+import math
+
+from mathutils import Matrix
+
+from .glb import extras, unscaled
+
+
+def size_of(scene):
+    """Width and height of the whole frame, pixels."""
+    part = scene.render.resolution_percentage / 100
+    return max(1, int(scene.render.resolution_x * part)), max(1, int(scene.render.resolution_y * part))
+
+
+def is_wide(camera, width, height):
+    """Whether the sensor fits the picture's width."""
+    return camera.sensor_fit == "HORIZONTAL" or (camera.sensor_fit == "AUTO" and width >= height)
+
+
+def half_height(camera, width, height):
+    """Tangent of half the vertical angle of view."""
+    side = camera.sensor_height if camera.sensor_fit == "VERTICAL" else camera.sensor_width
+    return side / (2 * camera.lens) * (height / width if is_wide(camera, width, height) else 1)
+
+
+def frame_words(scene, with_sensor=False):
+    """Words of the command line for a scene's picture. With a lens shift it is a part of a larger frame about the axis; a
+    render region is a part of it too."""
+    (width, height), render, camera = size_of(scene), scene.render, scene.camera and scene.camera.data
+    right = up = 0  # in halves of a pixel
+    is_perspective = camera and camera.type == "PERSP"
+    if is_perspective:
+        side = width if is_wide(camera, width, height) else height
+        right, up = round(2 * camera.shift_x * side), round(2 * camera.shift_y * side)
+    full = width + abs(right), height + abs(up)
+    left, right_end, bottom, top = 0, width, 0, height
+    if render.use_border:
+        left, right_end = int(render.border_min_x * width), int(render.border_max_x * width)
+        bottom, top = int(render.border_min_y * height), int(render.border_max_y * height)
+    crop = (abs(right) + right) // 2 + left, (abs(up) - up) // 2 + height - top, right_end - left, top - bottom
+    words = ["--size", f"{full[0]}x{full[1]}"]
+    if crop != (0, 0, *full):
+        words += ["--crop", ",".join(map(str, crop))]
+    if is_perspective:
+        upright = half_height(camera, width, height) * full[1] / height
+        tall = 2 * camera.lens * upright
+        if right or up:
+            words += ["--fov", f"{math.degrees(2 * math.atan(upright)):.7g}"]
+        if with_sensor or camera.dof.use_dof and (right or up):
+            words += ["--sensor", f"{tall * full[0] / full[1]:.7g}x{tall:.7g}"]
+    return words
+
+
+def add_camera(glb, scene, one, matrix, framed, lost):
+    """framed: the command has frame_words()."""
+    camera, render = one.data, scene.render
+    width, height = render.resolution_x * render.pixel_aspect_x, render.resolution_y * render.pixel_aspect_y
+    out = {"name": one.name}
+    wide = is_wide(camera, width, height)
+    if camera.type == "PERSP":
+        upright = half_height(camera, width, height)
+        out["type"] = "perspective"
+        out["perspective"] = {"yfov": 2 * math.atan(upright), "aspectRatio": width / height,
+                              "znear": max(camera.clip_start, 1e-4)}
+        if camera.dof.use_dof and camera.dof.aperture_fstop > 0:
+            extras(out).update(depth_of_field(camera, one.name, matrix, lost),
+                               sensor_mm=[2 * camera.lens * upright * width / height, 2 * camera.lens * upright])
+        if (camera.shift_x or camera.shift_y) and not framed:
+            lost.append(f"lens shift of camera {one.name} is not in the file: render with {' '.join(frame_words(scene))}")
+    elif camera.type == "ORTHO":
+        half = camera.ortho_scale / 2  # along the side that fits
+        if camera.dof.use_dof:
+            lost.append(f"depth of field of orthographic camera {one.name}")
+        out["type"] = "orthographic"
+        out["orthographic"] = {"xmag": half if wide else half * width / height,
+                               "ymag": half * height / width if wide else half, "znear": 1e-3, "zfar": 1e4}
+    else:
+        lost.append(f"panoramic camera {one.name}")
+        return
+    if matrix.determinant() < 0:
+        lost.append(f"the mirror of camera {one.name}")
+    place = unscaled(matrix)
+    if camera.type == "ORTHO":
+        place @= Matrix.Translation((2 * half * camera.shift_x, 2 * half * camera.shift_y, 0))
+    glb.place({"name": one.name, "camera": glb.add("cameras", out)}, place)
+
+
+def depth_of_field(camera, name, matrix, lost):
+    """Extras of a camera: f-number, focus, iris."""
+    dof, own = camera.dof, {"fstop": camera.dof.aperture_fstop}
+    focus = dof.focus_distance
+    if dof.focus_object:
+        focus = -(unscaled(matrix).inverted() @ dof.focus_object.matrix_world.translation).z
+    if focus > 0:
+        own["focus_m"] = focus
+    else:
+        lost.append(f"the focus of camera {name}, which lies behind it")
+    if dof.aperture_blades >= 3:
+        own["aperture"] = f"polygon:{dof.aperture_blades},{math.degrees(dof.aperture_rotation):g}"
+    if abs(dof.aperture_ratio - 1) > 1e-3:
+        lost.append(f"aperture ratio of camera {name}")
+    return own

@@ -32,7 +32,7 @@ class Materials:
             copy.name = f"petzval {len(self._copies)}"
             copy.use_backface_culling = False  # which Cycles does not have
             self.originals[copy.name] = [look, True]
-            if nodes_of(copy):
+            if look and nodes_of(copy):
                 self._mend(copy, look.name)
         self.originals[self._copies[look].name][1] &= closed
         return self._copies[look]
@@ -117,8 +117,6 @@ def mend_material(glb, out, look, closed, lost):
     if kind == "BSDF_TRANSPARENT":
         metal["baseColorFactor"] = [1, 1, 1, 0]
         out["alphaMode"] = "BLEND"
-    elif kind == "BSDF_GLASS" and "baseColorTexture" not in metal:  # whose colour is that of its reflections too
-        extensions.setdefault("KHR_materials_specular", {})["specularColorFactor"] = metal.get("baseColorFactor", [1] * 4)[:3]
     elif kind == "BSDF_PRINCIPLED":
         mend_principled(extensions, metal, values)
     clear = extensions.get("KHR_materials_transmission", {}).get("transmissionFactor", 0)
@@ -171,6 +169,7 @@ def list_losses(look, surface, values, clear, closed, name, lost):
             (kind == "BSDF_DIFFUSE" and has("Roughness"), f"roughness of diffuse material {name}"),
             (kind == "BSDF_GLOSSY" and has("Anisotropy"), f"anisotropy of material {name}"),
             (kind == "BSDF_TRANSPARENT" and values["Color"] != (1, 1, 1, 1), f"colour of transparent material {name}"),
+            (kind == "BSDF_GLASS" and values["Color"] != (1, 1, 1, 1), f"the colour of what glass {name} reflects"),
             (IS_OLD and has("Specular Tint"), f"specular tint of material {name}"),
             (kind == "BSDF_PRINCIPLED" and not IS_OLD and clear > 0 and (clear < 1 or values["Base Color"] is None),
              f"the exact colour of glass {name}: twice as deep where transmission is below 1 or a picture gives the colour"),
@@ -178,6 +177,7 @@ def list_losses(look, surface, values, clear, closed, name, lost):
              "light of Principled bodies, up to 25 % from the side: before Blender 4.0 their gloss takes nothing from it"),
             ((glossy or clear > 0) and rough > 0.2 and surface.distribution != "MULTI_GGX",
              "the light that rough metal and glass lose in Cycles, unless they have Multiscatter GGX"),
-            (glossy and rough > 0.7, "how dark very rough metal is in Cycles: up to a fifth of the light of grey metal")):
+            ((glossy or clear > 0) and rough > 0.6,
+             "how dark very rough metal and glass of a colour are in Cycles: up to 30 % of what is dark")):
         if is_lost:
             lost.append(text)

@@ -78,9 +78,9 @@ def add_camera(glb, scene, one, matrix, framed, lost):
     else:
         lost.append(f"panoramic camera {one.name}")
         return
-    if matrix.determinant() < 0:
-        lost.append(f"the mirror of camera {one.name}")
     place = unscaled(matrix)
+    if any((a.xyz.normalized() - b.xyz).length > 1e-3 for a, b in zip(matrix.col[:3], place.col)):
+        lost.append(f"mirror or shear of camera {one.name}")
     if camera.type == "ORTHO":
         place @= Matrix.Translation((2 * half * camera.shift_x, 2 * half * camera.shift_y, 0))
     glb.place({"name": one.name, "camera": glb.add("cameras", out)}, place)

@@ -15,7 +15,7 @@ SHADERS = {*AS_PRINCIPLED, "BSDF_PRINCIPLED", "EMISSION", "BSDF_TRANSPARENT"}
 NOT_RENDERED = {"Subsurface": "subsurface scattering", "Subsurface Weight": "subsurface scattering", "Sheen": "sheen",
                 "Sheen Weight": "the exact sheen", "Anisotropic": "anisotropy", "Diffuse Roughness": "roughness",
                 "Transmission Roughness": "roughness of the transmission", "Thin Film Thickness": "thin film",
-                "Thin Wall": "thin wall"}
+                "Thin Wall": "thin wall", "Coat Weight": "the exact coat"}
 
 
 class Materials:
@@ -89,6 +89,9 @@ class Materials:
             self._lost.append(f"the missing picture at {socket.name} of material {name}")
         elif picture.image.is_float:
             self._lost.append(f"the exact colours of the picture of floats {picture.image.name}: make it one of 8 bits")
+        elif socket.links[0].from_socket.name != "Alpha" and not (
+                picture.image.colorspace_settings.name == "sRGB" if socket.type == "RGBA" else picture.image.colorspace_settings.is_data):
+            self._lost.append(f"the colour space of picture {picture.image.name} at {socket.name}")
         elif picture.image.source not in ("FILE", "GENERATED"):
             self._lost.append(f"all but one picture of {picture.image.name}, of the kind {picture.image.source.lower()}")
         elif picture.projection != "FLAT":

@@ -12,7 +12,7 @@ FLAGS = {"is_holdout": "holdout", "is_shadow_catcher": "shadow catcher", "visibl
          "visible_transmission": "no rays through glass"}
 SETTINGS = {"use_active_scene": True, "export_cameras": False, "export_lights": False, "export_animations": False,
             "export_apply": False, "export_extras": False, "export_skins": False, "export_morph": False,
-            "export_tangents": False, "export_yup": True}
+            "export_tangents": False, "export_vertex_color": "ACTIVE", "export_all_vertex_colors": False, "export_yup": True}
 
 
 def as_in_renders(view_layer, lost):
@@ -71,6 +71,12 @@ def is_closed(mesh):
     return set(np.bincount(edges)) <= {0, 2}
 
 
+def is_pattern(one):
+    """Whether an instance is what its parent places on vertices or faces, which renders show there alone."""
+    parent = one.object.parent
+    return bool(parent) and parent.instance_type in ("VERTS", "FACES") and not (one.is_instance and one.parent == parent)
+
+
 class Meshes:
     """A scene of plain copies of all meshes, which is exported and then removed."""
 
@@ -81,7 +87,7 @@ class Meshes:
         self._meshes, self._made, self._override = {}, [], depsgraph.view_layer.material_override
         try:
             for one in depsgraph.object_instances:
-                if one.is_instance or one.show_self:
+                if (one.is_instance or one.show_self) and not is_pattern(one):
                     self._add(one.object, one.matrix_world.copy(), depsgraph.view_layer_eval, lost)
         except Exception:
             self.remove()  # nothing of it stays in the file
@@ -132,16 +138,20 @@ class Meshes:
             mesh.transform(matrix)
             if matrix.determinant() < 0:
                 mesh.flip_normals()
-        closed, colored = is_closed(mesh), False
+        closed, shown = is_closed(mesh), set()
         if not mesh.materials:
             mesh.materials.append(None)
         for i, own in enumerate(mesh.materials):
             look = self._override or (looks[i] if i < len(looks) else own)
             mesh.materials[i] = self.materials.copy_of(look, closed)
-            colored |= bool(look) and any(node.type in ("VERTEX_COLOR", "ATTRIBUTE") for node in nodes_of(look))
-        if not colored:  # glTF multiplies by them
-            for attribute in list(mesh.color_attributes):
-                mesh.color_attributes.remove(attribute)
+            for node in nodes_of(look) if look else ():
+                if node.type in ("VERTEX_COLOR", "ATTRIBUTE"):
+                    name = getattr(node, "layer_name", None) or getattr(node, "attribute_name", None)
+                    shown.add(name or mesh.color_attributes.default_color_name)
+        for name in [one.name for one in mesh.color_attributes if one.name not in shown]:  # glTF multiplies by them
+            mesh.color_attributes.remove(mesh.color_attributes[name])
+        if mesh.color_attributes:
+            mesh.color_attributes.render_color_index = 0
         return mesh
 
     def remove(self):

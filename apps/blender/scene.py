@@ -39,9 +39,11 @@ def export(path, scene=None, framed=False):
         lost.append("a camera: the scene has none that is active, and Petzval takes the first, or frames it")
     for one, matrix in views:
         add_camera(glb, scene, one, matrix, framed and one.name == scene.camera.name, lost)
-    for one, matrix in plain.others:
-        if one.type == "LIGHT":
-            add_lamp(glb, one, matrix, lost)
+    lamps = [(one, matrix) for one, matrix in plain.others if one.type == "LIGHT"]
+    for one, matrix in lamps:
+        add_lamp(glb, one, matrix, lost)
+    if len(lamps) > 1 and any(one.data.type == "AREA" for one, _ in lamps):
+        lost.append("light of lamps through other lamps: here those with a size block it")
     add_world(glb, scene.world, path, lost)
     add_film(glb, scene, framed, lost)
     glb.save(path)

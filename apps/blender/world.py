@@ -106,6 +106,7 @@ def add_film(glb, scene, framed, lost):
                           (view.look != "None" or abs(view.gamma - 1) > 1e-6 or view.use_curve_mapping,
                            "look, gamma and curves of colour management"),
                           (render.use_border and not framed, f"the render region: {' '.join(frame_words(scene))}"),
+                          (cycles and cycles.film_exposure != 1, "film exposure, in EXR files: PNG and JPEG have it"),
                           (render.use_motion_blur, "motion blur"),
                           (abs(render.pixel_aspect_x - render.pixel_aspect_y) > 1e-6, "pixels that are not square"),
                           (cycles and cycles.sample_clamp_direct > 0, "clamped direct light"),

@@ -7,12 +7,6 @@ from mathutils import Matrix
 from .glb import extras, unscaled
 
 
-def size_of(scene):
-    """Width and height of the whole frame, pixels."""
-    part = scene.render.resolution_percentage / 100
-    return max(1, int(scene.render.resolution_x * part)), max(1, int(scene.render.resolution_y * part))
-
-
 def is_wide(camera, width, height):
     """Whether the sensor fits the picture's width."""
     return camera.sensor_fit == "HORIZONTAL" or (camera.sensor_fit == "AUTO" and width >= height)
@@ -27,7 +21,8 @@ def half_height(camera, width, height):
 def frame_words(scene, with_sensor=False):
     """Words of the command line for a scene's picture. With a lens shift it is a part of a larger frame about the axis; a
     render region is a part of it too."""
-    (width, height), render, camera = size_of(scene), scene.render, scene.camera and scene.camera.data
+    render, camera = scene.render, scene.camera and scene.camera.data
+    width, height = (max(1, side * render.resolution_percentage // 100) for side in (render.resolution_x, render.resolution_y))
     right = up = 0  # in halves of a pixel
     is_perspective = camera and camera.type == "PERSP"
     if is_perspective:

@@ -19,6 +19,10 @@ class Glb:
         self.json.setdefault("scenes", [{}])
 
     def save(self, path):
+        kinds = [self.json, *self.json.get("materials", []), *self.json.get("nodes", [])]
+        used = {*self.json.get("extensionsUsed", []), *(key for one in kinds for key in one.get("extensions", {}))}
+        if used:
+            self.json["extensionsUsed"] = sorted(used)
         text = json.dumps(self.json, ensure_ascii=False).encode()
         text += b" " * (-len(text) % 4)
         with open(path, "wb") as file:
@@ -29,11 +33,6 @@ class Glb:
         """Index of the value, which is added to those of its kind."""
         self.json.setdefault(kind, []).append(value)
         return len(self.json[kind]) - 1
-
-    def use(self, extension):
-        used = self.json.setdefault("extensionsUsed", [])
-        if extension not in used:
-            used.append(extension)
 
     def place(self, node, matrix):
         """Adds a node to the scene; matrix: to Blender's world."""

@@ -74,7 +74,6 @@ def add_lamp(glb, one, matrix, lost):
         extras(light).update(own)
     most = max(1, *color)
     light.update(color=[c / most for c in color], intensity=light["intensity"] * most)
-    glb.use("KHR_lights_punctual")
     lights = glb.json.setdefault("extensions", {}).setdefault("KHR_lights_punctual", {}).setdefault("lights", [])
     lights.append(light)
     node["extensions"] = {"KHR_lights_punctual": {"light": len(lights) - 1}}

@@ -4,6 +4,7 @@ import math
 
 import bpy
 
+from .glb import extras
 from .nodes import find, nodes_of, surface_of, value_of
 
 IS_OLD = bpy.app.version < (4, 0)
@@ -103,7 +104,7 @@ class Materials:
                 self._lost.append(f"{place.bl_label} coordinates of material {name}")
 
 
-def mend_material(glb, out, look, closed, lost):
+def mend_material(out, look, closed, lost):
     """Puts right glTF's material of a Blender material."""
     name = out["name"] = look.name if look else "none"
     metal = out.setdefault("pbrMetallicRoughness", {})
@@ -124,10 +125,8 @@ def mend_material(glb, out, look, closed, lost):
         mend_principled(extensions, metal, values)
     clear = extensions.get("KHR_materials_transmission", {}).get("transmissionFactor", 0)
     if clear > 0:
-        out.setdefault("extras", {}).setdefault("petzval", {})["solid"] = closed
+        extras(out)["solid"] = closed
     list_losses(look, surface, values, clear, closed, name, lost)
-    for extension in extensions:
-        glb.use(extension)
     if not extensions:
         del out["extensions"]
 

@@ -10,16 +10,16 @@ from .nodes import nodes_of
 FLAGS = {"is_holdout": "holdout", "is_shadow_catcher": "shadow catcher", "visible_camera": "invisible to the camera",
          "visible_shadow": "no shadow", "visible_diffuse": "no diffuse rays", "visible_glossy": "no glossy rays",
          "visible_transmission": "no rays through glass"}
-SETTINGS = {"use_active_scene": True, "export_cameras": False, "export_lights": False, "export_animations": False,
-            "export_apply": False, "export_extras": False, "export_skins": False, "export_morph": False,
-            "export_tangents": False, "export_vertex_color": "ACTIVE", "export_all_vertex_colors": False, "export_yup": True}
+SETTINGS = {"export_format": "GLB", "use_active_scene": True, "export_animations": False, "export_vertex_color": "ACTIVE",
+            "export_all_vertex_colors": False}
 
 
 def as_in_renders(view_layer, lost):
     """Gives what is seen in the window the settings of renders. Returns what takes them back."""
     wishes = [(one, "hide_viewport", one.hide_render) for one in (*bpy.data.collections, *bpy.data.objects)]
     wishes += [(layer, "hide_viewport", False) for layer in layers_in(view_layer.layer_collection)]
-    wishes += [(scene.render, "simplify_subdivision", scene.render.simplify_subdivision_render) for scene in bpy.data.scenes]
+    render = view_layer.id_data.render
+    wishes += [(render, "simplify_subdivision", render.simplify_subdivision_render)]
     for one in bpy.data.objects:
         wishes += [(one, "show_instancer_for_viewport", one.show_instancer_for_render)]
         for modifier in one.modifiers:
@@ -100,8 +100,7 @@ class Meshes:
         try:
             if window:
                 window.scene = self.scene
-            bpy.ops.export_scene.gltf(filepath=path, export_format="GLB",
-                                      **{key: value for key, value in SETTINGS.items() if key in known})
+            bpy.ops.export_scene.gltf(filepath=path, **{key: value for key, value in SETTINGS.items() if key in known})
         finally:
             if window:
                 window.scene = before

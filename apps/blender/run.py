@@ -3,6 +3,7 @@
 import ctypes
 import json
 import os
+import pathlib
 import shlex
 import shutil
 import signal
@@ -32,11 +33,7 @@ def find_program():
     addon = bpy.context.preferences.addons.get(__package__)
     named = addon and addon.preferences and bpy.path.abspath(addon.preferences.program)
     here = os.path.dirname(os.path.abspath(__file__))
-    for path in [named] if named else [os.path.join(here, "petzval"), os.path.join(here, "bin", "petzval"),
-                                       shutil.which("petzval")]:
-        if path and os.path.isfile(path) and os.access(path, os.X_OK):
-            return path
-    return None
+    return shutil.which(named or "petzval", path=os.pathsep.join([here, os.path.join(here, "bin"), os.environ.get("PATH", "")]))
 
 
 def command_of(scene, glb="scene.glb", picture="picture.exr", preview=None):
@@ -137,11 +134,9 @@ def follow(words, picture, preview=None):
                 process.wait(5)
             except subprocess.TimeoutExpired:
                 process.kill()
-            process.wait()
-            name, ending = os.path.splitext(picture)
-            for left in (f"{name}.partial{ending}", name + ".state"):
-                if os.path.exists(left):
-                    os.remove(left)
+            picture = pathlib.Path(picture)
+            for left in (picture.with_suffix(".partial" + picture.suffix), picture.with_suffix(".state")):
+                left.unlink(missing_ok=True)
             raise
         listener.join(5)
     if process.returncode:
@@ -149,18 +144,14 @@ def follow(words, picture, preview=None):
 
 
 def _load(path):
-    """Shows a file as the image "Petzval"."""
+    """Shows a file as the image "Petzval", in image editors that have no other."""
     image = bpy.data.images.get("Petzval")
-    if image and os.path.splitext(image.filepath)[1] != os.path.splitext(path)[1]:
-        bpy.data.images.remove(image)
-        image = None
+    windows = bpy.context.window_manager.windows if bpy.context.window_manager else ()
+    spaces = [area.spaces.active for window in windows for area in window.screen.areas if area.type == "IMAGE_EDITOR"]
+    spaces = [one for one in spaces if one.image in (None, image) or one.image.type == "RENDER_RESULT"]
     if image:
-        image.filepath = path
-        image.reload()
-        return
+        bpy.data.images.remove(image)
     image = bpy.data.images.load(path)
     image.name = "Petzval"
-    for window in bpy.context.window_manager.windows if bpy.context.window_manager else ():
-        for area in window.screen.areas:
-            if area.type == "IMAGE_EDITOR" and not (area.spaces.active.image and area.spaces.active.image.type != "RENDER_RESULT"):
-                area.spaces.active.image = image
+    for one in spaces:
+        one.image = image

@@ -27,7 +27,7 @@ def export(path, scene=None, framed=False):
         plain.export(path)
         glb = Glb(path)
         for out in glb.json.get("materials", []):
-            mend_material(glb, out, *plain.materials.originals[out["name"]], lost)
+            mend_material(out, *plain.materials.originals[out["name"]], lost)
     finally:
         plain.remove()
     # Cycles takes the scene's camera wherever it is, shown or not.

@@ -18,7 +18,7 @@ import numpy as np
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "../../../apps/blender"))
 from export import scene as petzval  # noqa: E402
 
-SIZE, SAMPLES, MOST = (96, 64), 256, 0.02
+SIZE, SAMPLES, MOST = (96, 64), 144, 0.02
 
 
 def material(name, kind="ShaderNodeBsdfDiffuse", color=(0.5, 0.5, 0.5, 1), **values):
@@ -117,6 +117,11 @@ def sun():
     cube(material("box"), size=0.5, location=(0, 0, 0.5))
 
 
+def wide_sun():
+    add_lamp("SUN", rotation_deg=(30, 20, 0), energy=3, angle=math.radians(80))
+    cube(material("box"), size=0.5, location=(0, 0, 0.5))
+
+
 def area():
     lamp = add_lamp("AREA", rotation_deg=(20, 0, 30), energy=50, shape="RECTANGLE", size=1, size_y=0.5)
     lamp.scale = (0.5, 2, 1)
@@ -198,6 +203,36 @@ def placed():
     scene.frame_set(11)
 
 
+def instances():
+    """Collections with lamps in instances under a mirror that moves; patterns on vertices and faces; several materials."""
+    even_world((0.1, 0.1, 0.1))
+    shared = bpy.data.collections.new("shared")
+    one = cube(material("red", color=(0.8, 0.1, 0.1, 1)), size=0.4, location=(0, 0, 0.2))
+    one.data.materials.append(material("blue", color=(0.1, 0.1, 0.9, 1)))
+    for i, polygon in enumerate(one.data.polygons):
+        polygon.material_index = i % 2
+    round_ = one.modifiers.new("round", "SUBSURF")
+    round_.levels, round_.render_levels = 0, 3
+    one.modifiers.new("thick", "SOLIDIFY").material_offset = 1
+    for thing in (one, add_lamp("POINT", energy=20, location=(0.3, 0, 1), shadow_soft_size=0.05)):
+        bpy.context.scene.collection.objects.unlink(thing)
+        shared.objects.link(thing)
+    parent = add_object("parent", None)
+    parent.scale.x = -1
+    parent.keyframe_insert("location", frame=1)
+    parent.location.x = 0.8
+    parent.keyframe_insert("location", frame=21)
+    for x in (-0.8, 0.3):
+        holder = add_object("holder", None, (x, 0.2, 0), (0, 0, 30))
+        holder.instance_type, holder.instance_collection, holder.parent = "COLLECTION", shared, parent
+    for kind, x in (("VERTS", -0.9), ("FACES", 0.9)):
+        pattern = cube(material(kind, color=(0.8, 0.8, 0.1, 1)), size=0.2)
+        pattern.parent = plane(material("holder"), size=0.6, location=(x, -0.8, 0.3))
+        pattern.parent.instance_type = kind
+        pattern.parent.show_instancer_for_render = kind == "FACES"
+    bpy.context.scene.frame_set(11)
+
+
 def linked():
     """A collection of another file, whose material has the name of one here."""
     even_world()
@@ -237,10 +272,21 @@ def shift():
     cube(material("box", color=(0.7, 0.3, 0.1, 1)), size=0.6, location=(0.7, 0.5, 0.8))
 
 
+def region():
+    """A part of a frame with lens shift, a sensor that fits the height, a percentage of the size."""
+    even_world()
+    camera, render = bpy.context.scene.camera.data, bpy.context.scene.render
+    camera.shift_x, camera.shift_y, camera.sensor_fit, camera.sensor_height = -0.125, 0.0625, "VERTICAL", 26
+    render.resolution_x, render.resolution_y, render.resolution_percentage = 2 * SIZE[0] + 1, 2 * SIZE[1] + 1, 50
+    render.use_border = render.use_crop_to_border = True
+    render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y = 0.1, 0.9, 0.05, 0.8
+    cube(material("box", color=(0.2, 0.7, 0.3, 1)), size=0.5, location=(0.5, 0, 0.25))
+
+
 def ortho():
     even_world()
     camera = bpy.context.scene.camera.data
-    camera.type, camera.ortho_scale = "ORTHO", 4
+    camera.type, camera.ortho_scale, camera.shift_x, camera.shift_y = "ORTHO", 4, 0.2, -0.15
     cube(material("box", color=(0.2, 0.7, 0.3, 1)), size=0.5, location=(0.5, 0, 0.25))
 
 
@@ -314,8 +360,56 @@ def looks():
     first.rotation_euler = (math.pi, 0, 0)
 
 
-SCENES = {one.__name__: one for one in (point, ball, spot, rim, sun, area, disk, emission, sky, glass, placed, linked, blur, shift, ortho,
-                                          settings, mirrored, looks)}
+def gloss():
+    """The gloss of black dielectrics alone, as bodies differ before Blender 4; glass of a colour."""
+    even_world()
+    for i, level in enumerate((0.2, 1)):
+        black = material("black", "ShaderNodeBsdfPrincipled", (0, 0, 0, 1), Specular=level, Roughness=0.2, IOR=1.5)
+        plane(black, size=0.9, location=(-0.9, 0.7 - i, 0.05))
+    clear = material("clear", "ShaderNodeBsdfPrincipled", (0.8, 0.5, 0.2, 1), Roughness=0, IOR=1.5)
+    principled = clear.node_tree.nodes["Principled BSDF"]
+    (principled.inputs.get("Transmission") or principled.inputs["Transmission Weight"]).default_value = 1
+    add_mesh(bpy.ops.mesh.primitive_uv_sphere_add, clear, radius=0.6, location=(0.5, 0, 0.7), segments=64, ring_count=32)
+    bpy.ops.object.shade_smooth()
+
+
+def maps():
+    """Pictures that are turned, scaled and moved, or lie on a second map; colours of vertices, of several."""
+    even_world()
+    image = bpy.data.images.new("quarters", 64, 64)
+    pixels = np.ones((64, 64, 4), np.float32)
+    pixels[:32, :32], pixels[32:, :32], pixels[:32, 32:] = (0.9, 0.1, 0.1, 1), (0.1, 0.9, 0.1, 1), (0.1, 0.1, 0.9, 1)
+    image.pixels = pixels.ravel().tolist()
+    image.pack()
+    for kind, x in (("Mapping", -0.8), ("UVMap", 0.8)):
+        look = material(kind)
+        tree = look.node_tree
+        texture, place, bend = tree.nodes.new("ShaderNodeTexImage"), tree.nodes.new("ShaderNode" + kind), tree.nodes.new("NodeReroute")
+        texture.image = image
+        for a, b in ((place.outputs[0], texture.inputs[0]), (texture.outputs[0], bend.inputs[0]),
+                     (bend.outputs[0], tree.nodes["Diffuse BSDF"].inputs[0])):
+            tree.links.new(a, b)
+        card = plane(look, size=1.2, location=(x, 0.6, 0.05))
+        if kind == "UVMap":
+            place.uv_map = card.data.uv_layers.new(name="second").name
+            for one in card.data.uv_layers["second"].data:
+                one.uv = (0.5 * one.uv[0] + 0.1, 2 * one.uv[1])
+        else:
+            tree.links.new(tree.nodes.new("ShaderNodeTexCoord").outputs["UV"], place.inputs[0])
+            place.inputs["Rotation"].default_value = (0, 0, 0.5)
+            place.inputs["Scale"].default_value, place.inputs["Location"].default_value = (1.7, 0.8, 1), (0.3, 0.2, 0)
+    look = material("painted")
+    node = look.node_tree.nodes.new("ShaderNodeVertexColor")
+    node.layer_name = "second"
+    look.node_tree.links.new(node.outputs[0], look.node_tree.nodes["Diffuse BSDF"].inputs[0])
+    card = plane(look, size=0.9, location=(0, -0.8, 0.05))
+    for name, color in (("first", (0.9, 0.1, 0.1, 1)), ("second", (0.1, 0.8, 0.3, 1))):
+        for one in card.data.color_attributes.new(name, "FLOAT_COLOR", "POINT").data:
+            one.color = color
+
+
+SCENES = {one.__name__: one for one in (point, ball, spot, rim, sun, wide_sun, area, disk, emission, sky, glass, placed, instances, linked,
+                                          blur, shift, region, ortho, settings, mirrored, looks, gloss, maps)}
 
 
 def pixels_of(path):

@@ -2,6 +2,7 @@
 """Add-on for Blender 3.4 and newer: renders the scene with Petzval, through a real lens."""
 import os
 import subprocess
+import textwrap
 import time
 
 import bpy
@@ -197,7 +198,8 @@ class PETZVAL_PT_render(PetzvalPanel, bpy.types.Panel):
             box = layout.box()
             box.label(text="Not rendered:", icon="INFO")
             for line in own.lost.split("\n"):
-                box.label(text=line)
+                for part in textwrap.wrap("– " + line, 56):
+                    box.label(text=part)
 
 
 class PETZVAL_PT_camera(PetzvalPanel, bpy.types.Panel):

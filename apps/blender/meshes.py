@@ -96,14 +96,12 @@ class Meshes:
     def export(self, path):
         """Writes it."""
         window, known = bpy.context.window, bpy.ops.export_scene.gltf.get_rna_type().properties.keys()
-        before = window and window.scene
+        before, window.scene = window.scene, self.scene
         try:
-            if window:
-                window.scene = self.scene
-            bpy.ops.export_scene.gltf(filepath=path, **{key: value for key, value in SETTINGS.items() if key in known})
+            with bpy.context.temp_override(window=window, area=None, region=None):  # an area of properties has a scene of its own
+                bpy.ops.export_scene.gltf(filepath=path, **{key: value for key, value in SETTINGS.items() if key in known})
         finally:
-            if window:
-                window.scene = before
+            window.scene = before
 
     def _add(self, one, matrix, layer, lost):
         if one.type in ("LIGHT", "CAMERA"):

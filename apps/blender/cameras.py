@@ -23,6 +23,7 @@ def frame_words(scene, with_sensor=False):
     render region is a part of it too."""
     render, camera = scene.render, scene.camera and scene.camera.data
     width, height = (max(1, side * render.resolution_percentage // 100) for side in (render.resolution_x, render.resolution_y))
+    width = max(1, round(width * render.pixel_aspect_x / render.pixel_aspect_y))  # as it is shown: Petzval's pixels are square
     right = up = 0  # in halves of a pixel
     is_perspective = camera and camera.type == "PERSP"
     if is_perspective:

@@ -162,6 +162,7 @@ def list_losses(look, surface, values, clear, closed, name, lost):
 
     kind, glossy = surface and surface.type, surface and (surface.type == "BSDF_GLOSSY" or has("Metallic"))
     rough = values.get("Roughness") if values.get("Roughness") is not None else 1
+    color = values.get("Color") or values.get("Base Color") or ()
     if look:
         lost += [f"{word.lower()} of material {name}" for word in ("Volume", "Displacement") if surface_of(look, socket=word)]
     lost += [f"{text} of material {name}" for key, text in NOT_RENDERED.items() if has(key)]
@@ -170,8 +171,11 @@ def list_losses(look, surface, values, clear, closed, name, lost):
             (clear > 0 and not closed, f"refraction of material {name}: a mesh that has it is open, and counts as a thin pane"),
             (kind == "BSDF_DIFFUSE" and has("Roughness"), f"roughness of diffuse material {name}"),
             (kind == "BSDF_GLOSSY" and has("Anisotropy"), f"anisotropy of material {name}"),
-            (kind == "BSDF_TRANSPARENT" and values["Color"] != (1, 1, 1, 1), f"colour of transparent material {name}"),
-            (kind == "BSDF_GLASS" and values["Color"] != (1, 1, 1, 1), f"the colour of what glass {name} reflects"),
+            (kind == "BSDF_TRANSPARENT" and color != (1, 1, 1, 1), f"colour of transparent material {name}"),
+            (kind == "BSDF_GLASS" and color != (1, 1, 1, 1), f"the colour of what glass {name} reflects"),
+            ((values.get("IOR") or 1) < 1, f"the index below 1 of material {name}"),
+            (kind != "EMISSION" and any(not 0 <= x <= 1 for x in color), f"colours beyond 0 and 1 of material {name}"),
+            ((values.get("Strength") or 0) < 0, f"emission of material {name}, which takes light away"),
             (IS_OLD and has("Specular Tint"), f"specular tint of material {name}"),
             (kind == "BSDF_PRINCIPLED" and not IS_OLD and clear > 0 and (clear < 1 or values["Base Color"] is None),
              f"the exact colour of glass {name}: twice as deep where transmission is below 1 or a picture gives the colour"),

@@ -108,7 +108,7 @@ def add_film(glb, scene, framed, lost):
                           (render.use_border and not framed, f"the render region: {' '.join(frame_words(scene))}"),
                           (cycles and cycles.film_exposure != 1, "film exposure, in EXR files: PNG and JPEG have it"),
                           (render.use_motion_blur, "motion blur"),
-                          (abs(render.pixel_aspect_x - render.pixel_aspect_y) > 1e-6, "pixels that are not square"),
+                          (abs(render.pixel_aspect_x - render.pixel_aspect_y) > 1e-6, "pixels that are not square: the picture is as wide as they are shown"),
                           (cycles and cycles.sample_clamp_direct > 0, "clamped direct light"),
                           (cycles and cycles.max_bounces < 4, "few bounces: --method max-depth=N sets them"),
                           (cycles and getattr(cycles, "use_fast_gi", False), "fast global illumination")):

@@ -70,20 +70,19 @@ class PetzvalSettings(bpy.types.PropertyGroup):
 
 
 class PETZVAL_OT_render(bpy.types.Operator):
-    """Render the scene with Petzval. Escape stops"""
+    """Render the scene with Petzval, or stop. Escape stops too"""
     bl_idname = "petzval.render"
     bl_label = "Render with Petzval"
     bl_options = {"REGISTER"}
 
     animation: BoolProperty(name="Animation", options={"SKIP_SAVE"})
 
-    @classmethod
-    def poll(cls, _):
-        return not run.Now.work
-
     def execute(self, context):
         """Renders before it returns, as a script wants it."""
-        run.begin(context.scene, self.animation)
+        if run.Now.work:
+            self.report({"ERROR"}, "a render runs already")
+            return {"CANCELLED"}
+        run.Now.work = run.render(context.scene, self.animation)
         while not (result := self._step(context)):
             time.sleep(0.1)
         return result
@@ -102,23 +101,23 @@ class PETZVAL_OT_render(bpy.types.Operator):
         return None
 
     def invoke(self, context, _event):
+        if run.Now.work:  # then the button says so
+            run.Now.work.close()
+            return {"FINISHED"}
         if bpy.app.background:
             return self.execute(context)
-        run.begin(context.scene, self.animation)
+        run.Now.work = run.render(context.scene, self.animation)
         context.window_manager.progress_begin(0, 100)
         self._timer = context.window_manager.event_timer_add(0.2, window=context.window)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
     def modal(self, context, event):
-        result = None
-        if not run.Now.work or run.Now.stop_asked or event.type == "ESC":
-            if run.Now.work:
-                run.Now.work.close()
-            result = {"CANCELLED"}
-        elif event.type != "TIMER":
+        if run.Now.work and event.type == "ESC":
+            run.Now.work.close()
+        if run.Now.work and event.type != "TIMER":
             return {"PASS_THROUGH"}
-        result = result or self._step(context)
+        result = self._step(context) if run.Now.work else {"CANCELLED"}
         for area in context.screen.areas if context.screen else ():
             if area.type in ("IMAGE_EDITOR", "PROPERTIES"):
                 area.tag_redraw()
@@ -127,16 +126,6 @@ class PETZVAL_OT_render(bpy.types.Operator):
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.progress_end()
         return result
-
-
-class PETZVAL_OT_stop(bpy.types.Operator):
-    """Stop the render"""
-    bl_idname = "petzval.stop"
-    bl_label = "Stop"
-
-    def execute(self, _):
-        run.Now.stop_asked = True
-        return {"FINISHED"}
 
 
 class PETZVAL_OT_copy_command(bpy.types.Operator):
@@ -180,10 +169,11 @@ class PETZVAL_PT_render(PetzvalPanel, bpy.types.Panel):
         layout, own = self.layout, context.scene.petzval
         layout.use_property_split = True
         row = layout.row(align=True)
-        row.operator("petzval.render", icon="RENDER_STILL")
-        row.operator("petzval.render", text="Animation", icon="RENDER_ANIMATION").animation = True
         if run.Now.work:
-            layout.operator("petzval.stop", icon="CANCEL")
+            row.operator("petzval.render", text="Stop", icon="CANCEL")
+        else:
+            row.operator("petzval.render", icon="RENDER_STILL")
+            row.operator("petzval.render", text="Animation", icon="RENDER_ANIMATION").animation = True
         if own.status:
             layout.label(text=own.status)
         for name in ("stop_at", own.stop_at, "denoise", "layers"):
@@ -216,15 +206,14 @@ class PETZVAL_PT_camera(PetzvalPanel, bpy.types.Panel):
         layout.operator("petzval.draw_lens", icon="FILE_IMAGE")
         for name in ("keep_framing", "fstop", "aperture", "dispersion"):
             layout.prop(own, name)
-        layout.prop(camera.dof, "use_dof", text="Focus as set here")
-        layout.prop(camera.dof, "focus_object")
-        layout.prop(camera.dof, "focus_distance")
+        for name in ("use_dof", "focus_object", "focus_distance"):
+            layout.prop(camera.dof, name)
         layout.prop(camera, "sensor_fit")
         layout.prop(camera, "sensor_height" if camera.sensor_fit == "VERTICAL" else "sensor_width")
 
 
-CLASSES = (PetzvalPreferences, PetzvalSettings, PETZVAL_OT_render, PETZVAL_OT_stop, PETZVAL_OT_copy_command,
-           PETZVAL_OT_draw_lens, PETZVAL_PT_render, PETZVAL_PT_camera)
+CLASSES = (PetzvalPreferences, PetzvalSettings, PETZVAL_OT_render, PETZVAL_OT_copy_command, PETZVAL_OT_draw_lens,
+           PETZVAL_PT_render, PETZVAL_PT_camera)
 
 
 def register():

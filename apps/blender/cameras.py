@@ -30,11 +30,9 @@ def frame_words(scene, with_sensor=False):
         side = width if is_wide(camera, width, height) else height
         right, up = round(2 * camera.shift_x * side), round(2 * camera.shift_y * side)
     full = width + abs(right), height + abs(up)
-    left, right_end, bottom, top = 0, width, 0, height
-    if render.use_border:
-        left, right_end = int(render.border_min_x * width), int(render.border_max_x * width)
-        bottom, top = int(render.border_min_y * height), int(render.border_max_y * height)
-    crop = (abs(right) + right) // 2 + left, (abs(up) - up) // 2 + height - top, right_end - left, top - bottom
+    border = (render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y)
+    x0, x1, y0, y1 = (int(a * b) for a, b in zip(border if render.use_border else (0, 1, 0, 1), (width, width, height, height)))
+    crop = (abs(right) + right) // 2 + x0, (abs(up) - up) // 2 + height - y1, x1 - x0, y1 - y0
     words = ["--size", f"{full[0]}x{full[1]}"]
     if crop != (0, 0, *full):
         words += ["--crop", ",".join(map(str, crop))]

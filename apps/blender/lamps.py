@@ -66,7 +66,10 @@ def add_lamp(glb, one, matrix, lost):
         own["radius_m"] = lamp.shadow_soft_size
     if lamp.type == "SPOT":
         outer = min(lamp.spot_size / 2, math.pi / 2)
-        light["spot"] = {"outerConeAngle": outer, "innerConeAngle": inner_angle(outer, lamp.spot_blend)}
+        # Cycles' rim is a smooth step in the cosine, glTF's a square: they part least, by 0.11, where the square ends after
+        # 0.8 of the step.
+        inner = math.acos(min(1, math.cos(outer) + 0.8 * lamp.spot_blend * (1 - math.cos(outer))))
+        light["spot"] = {"outerConeAngle": outer, "innerConeAngle": min(inner, outer * 0.999)}
         if IS_OLD:  # they fall off with the cosine too, as a flat lamp does
             size_m = max(1e-4, 2 * lamp.shadow_soft_size)
             extras(node).update(area=[size_m, size_m], shape="ellipse", visible=False)
@@ -78,10 +81,3 @@ def add_lamp(glb, one, matrix, lost):
     lights.append(light)
     node["extensions"] = {"KHR_lights_punctual": {"light": len(lights) - 1}}
     glb.place(node, unscaled(matrix))
-
-
-def inner_angle(outer, blend):
-    """Half angle of the full cone of a spot as glTF has it. Cycles' rim is a smooth step in the cosine, glTF's a square:
-    they part least, by 0.11, where the square ends after 0.8 of the step."""
-    cosine = math.cos(outer)
-    return min(math.acos(min(1.0, cosine + 0.8 * blend * (1 - cosine))), outer * 0.999)

@@ -51,14 +51,12 @@ class Materials:
         if surface.type in AS_PRINCIPLED:
             links, own = copy.node_tree.links, copy.node_tree.nodes.new("ShaderNodeBsdfPrincipled")
             for old, new in (("Color", "Base Color"), ("Roughness", "Roughness"), ("Normal", "Normal"), ("IOR", "IOR")):
-                if old in surface.inputs:
+                if old in surface.inputs and new not in AS_PRINCIPLED[surface.type]:
                     if surface.inputs[old].is_linked:
                         links.new(surface.inputs[old].links[0].from_socket, own.inputs[new])
                     elif old != "Normal":
                         own.inputs[new].default_value = surface.inputs[old].default_value
             for key, value in AS_PRINCIPLED[surface.type].items():
-                for link in own.inputs[key].links:
-                    links.remove(link)
                 own.inputs[key].default_value = value
             links.new(own.outputs[0], surface.outputs[0].links[0].to_socket)
         if surface.type == "BSDF_PRINCIPLED":

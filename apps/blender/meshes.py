@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Plain copies of what renders show of a scene, for Blender's own exporter to write."""
+import contextlib
+
 import bpy
 import numpy as np
 from mathutils import Matrix
@@ -14,8 +16,9 @@ SETTINGS = {"export_format": "GLB", "use_active_scene": True, "export_animations
             "export_all_vertex_colors": False}
 
 
+@contextlib.contextmanager
 def as_in_renders(view_layer, lost):
-    """Gives what is seen in the window the settings of renders. Returns what takes them back."""
+    """Gives what is seen in the window the settings of renders."""
     wishes = [(one, "hide_viewport", one.hide_render) for one in (*bpy.data.collections, *bpy.data.objects)]
     wishes += [(layer, "hide_viewport", False) for layer in layers_in(view_layer.layer_collection)]
     render = view_layer.id_data.render
@@ -29,13 +32,6 @@ def as_in_renders(view_layer, lost):
         for name in ("resolution", "resolution_u", "resolution_v"):  # 0: that of the window
             wishes += [(one.data, name, getattr(one.data, "render_" + name))] if getattr(one.data, "render_" + name, 0) else []
     undo = []
-
-    def back():
-        for owner, name, before in reversed(undo):
-            setattr(owner, name, before)
-        for one in hidden:
-            one.hide_set(True)
-
     for owner, name, value in wishes:
         before = getattr(owner, name)
         if before != value:
@@ -47,7 +43,13 @@ def as_in_renders(view_layer, lost):
     hidden = [one for one in view_layer.objects if one.hide_get()]
     for one in hidden:
         one.hide_set(False)
-    return back
+    try:
+        yield
+    finally:
+        for owner, name, before in reversed(undo):
+            setattr(owner, name, before)
+        for one in hidden:
+            one.hide_set(True)
 
 
 def layers_in(layer):
@@ -80,18 +82,17 @@ def is_pattern(one):
 class Meshes:
     """A scene of plain copies of all meshes, which is exported and then removed."""
 
-    def __init__(self, depsgraph, lost):
+    def __init__(self, lost):
         self.scene = bpy.data.scenes.new("Petzval")
         self.materials = Materials(lost)
         self.others = []  # lamps and cameras, with their places
-        self._meshes, self._made, self._override = {}, [], depsgraph.view_layer.material_override
-        try:
-            for one in depsgraph.object_instances:
-                if (one.is_instance or one.show_self) and not is_pattern(one):
-                    self._add(one.object, one.matrix_world.copy(), depsgraph.view_layer_eval, lost)
-        except Exception:
-            self.remove()  # nothing of it stays in the file
-            raise
+        self._meshes, self._made, self._lost = {}, [], lost
+
+    def add_all(self, depsgraph):
+        self._override = depsgraph.view_layer.material_override
+        for one in depsgraph.object_instances:
+            if (one.is_instance or one.show_self) and not is_pattern(one):
+                self._add(one.object, one.matrix_world.copy(), depsgraph.view_layer_eval)
 
     def export(self, path):
         """Writes it."""
@@ -103,12 +104,12 @@ class Meshes:
         finally:
             window.scene = before
 
-    def _add(self, one, matrix, layer, lost):
+    def _add(self, one, matrix, layer):
         if one.type in ("LIGHT", "CAMERA"):
             self.others.append((one.original, matrix))
         elif one.type in ("MESH", "CURVE", "SURFACE", "FONT", "META"):
-            list_flags(one, layer, lost)
-            looks = tuple(slot.material.original if slot.material else None for slot in one.material_slots)
+            list_flags(one, layer, self._lost)
+            looks = tuple(slot.material and slot.material.original for slot in one.material_slots)
             sheared = max(abs(a - b) for row, other in zip(matrix, Matrix.LocRotScale(*matrix.decompose()))
                           for a, b in zip(row, other)) > 1e-5 * max(1, matrix.median_scale)
             shape = one.data if one.type == "MESH" else one.original
@@ -120,7 +121,7 @@ class Meshes:
                 copy.matrix_world = Matrix.Identity(4) if sheared else matrix
                 self.scene.collection.objects.link(copy)
         elif one.type not in ("EMPTY", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE"):
-            lost.append(f"{one.type.lower()} {one.name}")
+            self._lost.append(f"{one.type.lower()} {one.name}")
 
     def _plain(self, one, looks, matrix):
         """Mesh of an object after its modifiers; None where it has no faces. matrix: that its points take."""

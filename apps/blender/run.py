@@ -24,8 +24,8 @@ class Failed(Exception):
 
 
 class Now:
-    """The one render that runs, and the folder of the picture that is shown."""
-    work, stop_asked, folder = None, False, ""
+    """The one render that runs, a generator of render(), and the folder of the picture that is shown."""
+    work, folder = None, ""
 
 
 def find_program():
@@ -58,13 +58,9 @@ def shown(words):
     return shlex.join([os.path.basename(words[0] or "petzval"), *words[1:]])
 
 
-def begin(scene, animation):
-    """Begins a render of the frame, or of all. Now.work then gives phase and fraction each time it is asked, until it ends;
-    its close() stops it. What is not finished is removed."""
-    Now.work, Now.stop_asked = _render(scene, animation), False
-
-
-def _render(scene, animation):
+def render(scene, animation):
+    """Renders the frame, or all. Gives phase and fraction each time it is asked, until it ends; close() stops it. What is
+    not finished is removed."""
     before, folder = scene.frame_current, None
     try:
         if not find_program():
@@ -85,11 +81,8 @@ def _render(scene, animation):
             _load(picture)
             shutil.rmtree(Now.folder, ignore_errors=True)
             Now.folder, folder = folder, None
-    except GeneratorExit:
-        scene.petzval.status = "stopped"
-        raise
-    except Exception as error:
-        scene.petzval.status = str(error)
+    except BaseException as error:
+        scene.petzval.status = "stopped" if isinstance(error, GeneratorExit) else str(error)
         raise
     finally:
         if animation:

@@ -18,12 +18,10 @@ def export(path, scene=None, framed=False):
     """Writes the scene at its frame. framed: the command has frame_words(). Returns what Petzval does not render, a line
     each."""
     scene, layer, lost = scene or bpy.context.scene, bpy.context.view_layer, []
-    back = as_in_renders(layer, lost)
+    plain = Meshes(lost)
     try:
-        plain = Meshes(bpy.context.evaluated_depsgraph_get(), lost)
-    finally:
-        back()
-    try:
+        with as_in_renders(layer, lost):
+            plain.add_all(bpy.context.evaluated_depsgraph_get())
         plain.export(path)
         glb = Glb(path)
         for out in glb.json.get("materials", []):

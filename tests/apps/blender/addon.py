@@ -99,9 +99,9 @@ assert next(one)[0]
 time.sleep(1)
 one.close()
 assert sorted(os.listdir(own_folder)) == ["frames", "petzval", "s.glb"]
-addon.run.begin(scene, False)
+addon.run.Now.work = addon.run.render(scene, False)
 next(addon.run.Now.work)
-assert "poll" in refused()
+assert "runs already" in refused()
 addon.run.Now.work.close()
 assert own.status == "stopped" and not addon.run.Now.work and len(left()) == 1
 child = subprocess.Popen([sys.executable if "python" in sys.executable else "python3", "-c", f"""

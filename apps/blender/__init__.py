@@ -112,6 +112,11 @@ class PETZVAL_OT_render(bpy.types.Operator):
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
+    def cancel(self, _):
+        """Blender opens another file."""
+        if run.Now.work:
+            run.Now.work.close()
+
     def modal(self, context, event):
         if run.Now.work and event.type == "ESC":
             run.Now.work.close()

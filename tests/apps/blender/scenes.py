@@ -455,11 +455,48 @@ def compare(name, program, folder):
     return [f"{name}: {text}" for text in complaints]
 
 
+def check_losses(folder):
+    """Complaints about what is lost in silence."""
+    begin()
+    scene = bpy.context.scene
+    is_old = bpy.app.version < (4, 0)
+    looks = [material("noise"), material("mixed", "ShaderNodeBsdfToon"), material("tinted", "ShaderNodeBsdfGlass", (0.8, 0.5, 0.2, 1)),
+             material("dark", "ShaderNodeBsdfGlossy", Roughness=1), material("plastic", "ShaderNodeBsdfPrincipled"),
+             material("bright", color=(2, 0.5, 0.5, 1)), material("stretched", "ShaderNodeBsdfPrincipled", Anisotropic=0.5)]
+    tree = looks[0].node_tree
+    tree.links.new(tree.nodes.new("ShaderNodeTexNoise").outputs[0], tree.nodes["Diffuse BSDF"].inputs[0])
+    image = bpy.data.images.new("numbers", 4, 4)
+    image.colorspace_settings.name = "Non-Color"
+    looks.append(material("numbers"))
+    tree = looks[-1].node_tree
+    texture = tree.nodes.new("ShaderNodeTexImage")
+    texture.image = image
+    tree.links.new(texture.outputs[0], tree.nodes["Diffuse BSDF"].inputs[0])
+    for look in looks:
+        plane(look)
+    bpy.context.object.is_holdout = True
+    add_lamp("POINT", energy=1, shadow_soft_size=0.6)
+    add_lamp("AREA", energy=1, spread=1)
+    parent = add_object("parent", None)
+    parent.scale, scene.camera.parent = (1, 1, 3), parent
+    mixed = scene.world.node_tree.nodes.new("ShaderNodeTexSky")
+    scene.world.node_tree.links.new(mixed.outputs[0], background().inputs["Color"])
+    scene.cycles.film_exposure, scene.render.use_motion_blur, scene.render.pixel_aspect_x = 2, True, 2
+    bpy.context.view_layer.update()
+    lost = "\n".join(petzval.export(os.path.join(folder, "losses.glb")))
+    wanted = ["Noise Texture at Color of material noise", "Toon BSDF of material mixed", "what glass tinted reflects", "open",
+              "how dark very rough metal", "colours beyond 0 and 1 of material bright", "anisotropy of material stretched",
+              "colour space of picture numbers", "holdout", "falloff near lamp", "spread of area lamp", "through other lamps",
+              "shear of camera", "the world's Sky Texture", "film exposure", "motion blur", "not square"]
+    wanted += ["light of Principled bodies", "unless they have Multiscatter GGX"] if is_old else []
+    return [f"{text}: is lost in silence" for text in wanted if text not in lost]
+
+
 def main():
     program, *names = sys.argv[sys.argv.index("--") + 1:]
     with tempfile.TemporaryDirectory() as folder:
         folder = os.environ.get("KEEP", folder)
-        complaints = [text for name in names or SCENES for text in compare(name, program, folder)]
+        complaints = [text for name in names or SCENES for text in compare(name, program, folder)] + check_losses(folder)
     for text in complaints:
         print(text)
     print(f"{len(names or SCENES)} scenes, {len(complaints)} complaints")

@@ -160,6 +160,7 @@ def list_losses(look, surface, values, clear, closed, name, lost):
 
     kind, glossy = surface and surface.type, surface and (surface.type == "BSDF_GLOSSY" or has("Metallic"))
     rough = values.get("Roughness") if values.get("Roughness") is not None else 1
+    is_body = has(SPECULAR) and values[TRANSMISSION] != 1 and values["Metallic"] != 1
     color = values.get("Color") or values.get("Base Color") or ()
     if look:
         lost += [f"{word.lower()} of material {name}" for word in ("Volume", "Displacement") if surface_of(look, socket=word)]
@@ -177,7 +178,8 @@ def list_losses(look, surface, values, clear, closed, name, lost):
             (IS_OLD and has("Specular Tint"), f"specular tint of material {name}"),
             (kind == "BSDF_PRINCIPLED" and not IS_OLD and clear > 0 and (clear < 1 or values["Base Color"] is None),
              f"the exact colour of glass {name}: twice as deep where transmission is below 1 or a picture gives the colour"),
-            (IS_OLD and kind == "BSDF_PRINCIPLED" and has(SPECULAR) and values[TRANSMISSION] != 1 and values["Metallic"] != 1,
+            (is_body, "gloss of Principled bodies, up to 17 % of it at 45°: Schlick's formula takes the place of Fresnel's"),
+            (is_body and IS_OLD,
              "light of Principled bodies, up to 25 % from the side: before Blender 4.0 their gloss takes nothing from it"),
             ((glossy or clear > 0) and rough > 0.2 and surface.distribution != "MULTI_GGX",
              "the light that rough metal and glass lose in Cycles, unless they have Multiscatter GGX"),

@@ -5,6 +5,7 @@
 """
 import importlib
 import os
+import pathlib
 import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -15,5 +16,10 @@ if __name__ == "__main__":
     words = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
     if len(words) != 1:
         sys.exit("blender -b FILE.blend -P export.py -- OUT.glb")
-    for line in scene.export(os.path.abspath(words[0])):
-        print(f"petzval: not rendered: {line}")
+    try:
+        for line in scene.export(os.path.abspath(words[0])):
+            print(f"petzval: not rendered: {line}")
+    except (OSError, RuntimeError) as error:  # Blender's exporter gives a whole traceback
+        for left in (words[0], os.path.splitext(words[0])[0] + ".sky.exr"):
+            pathlib.Path(left).unlink(missing_ok=True)
+        sys.exit(f"petzval: {([line for line in str(error).splitlines() if 'Error' in line] or [error])[-1]}")

@@ -17,6 +17,7 @@ class Glb:
         self.json = json.loads(data[20:20 + length])
         self._rest = data[20 + length:]
         self.json.setdefault("scenes", [{}])
+        self.json["asset"]["generator"] = "Petzval's add-on"  # so that nobody guesses what another exporter lost
 
     def save(self, path):
         kinds = [self.json, *self.json.get("materials", []), *self.json.get("nodes", [])]

@@ -16,6 +16,8 @@ VIEWS = {"Standard": "sRGB", "Raw": "raw", "Filmic": "ACES", "Filmic Log": "ACES
 def write_sky(path, colors):
     """Writes an EXR of floats; colors: rows from the bottom, columns, R, G, B."""
     height, width = colors.shape[:2]
+    with open(path, "wb") as file:  # on a full disk Blender would say nothing
+        os.posix_fallocate(file.fileno(), 0, 16 * width * height + 4096)
     image = bpy.data.images.new("petzval sky", width, height, float_buffer=True)
     try:
         image.colorspace_settings.is_data = True

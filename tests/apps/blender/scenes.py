@@ -18,7 +18,7 @@ import numpy as np
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "../../../apps/blender"))
 from export import scene as petzval  # noqa: E402
 
-SIZE, SAMPLES, MOST = (96, 64), 144, 0.02
+SIZE, SAMPLES, MOST = (96, 64), 96, 0.02
 
 
 def material(name, kind="ShaderNodeBsdfDiffuse", color=(0.5, 0.5, 0.5, 1), **values):

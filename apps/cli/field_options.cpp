@@ -8,9 +8,27 @@
 #include "apps/request/option_text.h"
 #include "apps/request/value_error.h"
 #include "io/base/nearest.h"
+#include "io/base/printable.h"
 
 namespace petzval {
 namespace {
+
+// Word quoted for a shell, where it needs it. What is hidden is written as escapes, which bash, ksh
+// and zsh read back between $' and '.
+std::string quoted(const std::string& word) {
+    constexpr std::string_view kPlain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./:,=%+@";
+    if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+    if (visible(word) != word) {
+        std::string escaped;
+        for (const char c : word)
+            escaped += c == '\\' || c == '\'' ? std::string("\\") + c : std::string(1, c);
+        return "$'" + visible(escaped) + "'";
+    }
+    std::string out = "'";
+    for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return out + "'";
+}
 
 // Calls f; what it refuses becomes an error of the command line.
 template <class F>
@@ -138,6 +156,12 @@ std::vector<std::string> words_of(const RenderOrder& order) {
         }
     }
     return words;
+}
+
+std::string render_command(const RenderOrder& order) {
+    std::string command = "petzval render";
+    for (const std::string& word : words_of(order)) command += " " + quoted(word);
+    return command;
 }
 
 }  // namespace petzval

@@ -29,4 +29,7 @@ void hide_expert_options(CLI::App&);
 /// option follows the option that it is for.
 [[nodiscard]] std::vector<std::string> words_of(const RenderOrder&);
 
+/// Command that renders an order, quoted for a shell where that is needed.
+[[nodiscard]] std::string render_command(const RenderOrder&);
+
 }  // namespace petzval

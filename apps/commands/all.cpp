@@ -6,6 +6,7 @@
 #include "apps/commands/image/image.h"
 #include "apps/commands/info.h"
 #include "apps/commands/lens/lens.h"
+#include "apps/commands/live.h"
 #include "apps/commands/merge.h"
 #include "apps/commands/plan.h"
 #include "apps/commands/render.h"
@@ -26,6 +27,7 @@ void add_all_commands(CLI::App& app, Session& session) {
     add_merge_command(app, session);
     add_plan_command(app);
     add_chart_command(app, session);
+    add_live_command(app, session);
     add_info_command(app);
     add_trace_sample_command(app, session);
     add_image_commands(app);

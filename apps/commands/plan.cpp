@@ -26,23 +26,6 @@ struct PlanOptions {
     bool json = false;
 };
 
-// Word quoted for a shell, where it needs it. What is hidden is written as escapes, which bash, ksh
-// and zsh read back between $' and '.
-std::string quoted(const std::string& word) {
-    constexpr std::string_view kPlain =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./:,=%+@";
-    if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
-    if (visible(word) != word) {
-        std::string escaped;
-        for (const char c : word)
-            escaped += c == '\\' || c == '\'' ? std::string("\\") + c : std::string(1, c);
-        return "$'" + visible(escaped) + "'";
-    }
-    std::string out = "'";
-    for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return out + "'";
-}
-
 // Commands that render by the plan.
 struct Commands {
     std::string samples;               ///< by a number of them
@@ -56,9 +39,7 @@ std::string command_of(RenderOrder order, const Plan& plan) {
     order.run.outputs = {"out.exr"};
     for (const NamedFile& input : input_files(plan.scene))
         if (same_file(input.path, "out.exr")) order.run.outputs = {"picture.exr"};
-    std::string command = "petzval render";
-    for (const std::string& word : words_of(order)) command += " " + quoted(word);
-    return command;
+    return render_command(order);
 }
 
 Commands commands_of(RenderOrder order, const Plan& plan) {

@@ -135,7 +135,7 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
 namespace {
 
 RenderSetup set_up_like(const PlanRequest& request, const Notice& notice, const PhaseSink& begins) {
-    if (request.like) return set_up_view(*request.like, request.scene, notice);
+    if (request.like) return set_up_view(*request.like, request.scene, notice, begins);
     return set_up_render(request.scene, notice, begins, request.frames);
 }
 

@@ -76,15 +76,34 @@ RenderSession::RenderSession(int threads, Frames frames) : executor_(threads) {
     if (frames == Frames::Sequence) frames_.emplace();
 }
 
+void RenderSession::take(LoadedScene scene) {
+    setup_ = {};
+    setup_.prepared = std::move(scene.prepared);
+    setup_.from.asked = std::move(scene.asked);
+}
+
 void RenderSession::prepare(const RenderRequest& asked, const Notice& notice,
                             const PhaseSink& begins) {
+    const LoadedScene loaded = frames_ ? LoadedScene() : scene();
+    if (begins) executor_.before_task([&] { begins(Phase::Planning); });  // pilots are part of it
+    try {
+        prepare_like(std::exchange(setup_, {}), asked, notice, begins);
+    } catch (...) {
+        executor_.before_task({});
+        take(loaded);
+        throw;
+    }
+    executor_.before_task({});
+}
+
+void RenderSession::prepare_like(RenderSetup before, const RenderRequest& asked,
+                                 const Notice& notice, const PhaseSink& begins) {
     flush_denormals();
     next_.reset();
     denoised_.reset();
     std::optional<Film> film = std::exchange(film_, std::nullopt);
     const RenderFacts facts = std::exchange(facts_, {});
     const FilmShape shape = std::exchange(shape_, {});
-    RenderSetup before = std::exchange(setup_, {});
     check(asked);
     shape_ = shape_of(asked);
     const uint64_t there_bytes =

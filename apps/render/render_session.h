@@ -34,15 +34,22 @@ struct RenderRun {
     PhaseSink begins{};   ///< gets the phases that begin
 };
 
+/// A scene that is loaded, and the request that it was loaded for. Copies are cheap.
+struct LoadedScene {
+    PreparedScene prepared;  ///< nothing in it: none is loaded
+    SceneRequest asked;
+};
+
 /// Session of renders that follow each other: what a request has in common with the one before is
 /// kept. The same scene is not loaded again; the same light keeps its samples, so that more of them
 /// or another exposure cost only what is new.
 ///
 /// Threads: calls come from one thread at a time; a monitor may be used from any. Rendering takes
 /// the threads of the session and the calling one, whose denormals become zero. Errors: an
-/// exception leaves the session without a render, ready for the next request. Lifetime: what is
-/// returned by reference, and rows of a picture, hold until the next call of prepare(). Bytes: a
-/// picture depends on its request alone, not on the requests before, on pauses or on threads.
+/// exception leaves the session without a render, ready for the next request, with the scene that
+/// it had. Lifetime: what is returned by reference, and rows of a picture, hold until the next call
+/// of prepare(). Bytes: a picture depends on its request alone, not on the requests before, on
+/// pauses or on threads.
 class RenderSession {
   public:
     /// Frames: whether most requests will differ in their time alone, so that each frame takes what
@@ -60,6 +67,11 @@ class RenderSession {
     /// choice and oddity, `begins` the phases. Throws InputError; ArgumentError where the request
     /// does not fit its scene.
     void prepare(const RenderRequest&, const Notice& notice, const PhaseSink& begins = {});
+
+    /// Takes a scene that another session has loaded: a request for the same one shares it.
+    void take(LoadedScene);
+    /// The scene that is loaded.
+    [[nodiscard]] LoadedScene scene() const { return {setup_.prepared, setup_.from.asked}; }
 
     /// The scene with all choices made. After prepare(), as the functions below.
     [[nodiscard]] const RenderSetup& setup() const { return setup_; }
@@ -104,6 +116,7 @@ class RenderSession {
     [[nodiscard]] FoundExposure find_exposure();
 
   private:
+    void prepare_like(RenderSetup before, const RenderRequest&, const Notice&, const PhaseSink&);
     [[nodiscard]] SampleRange complete() const;
     [[nodiscard]] RenderResult render_to_denoised(
         RenderJob, const std::function<RenderResult(const RenderJob&)>& render_all, RenderMonitor&);

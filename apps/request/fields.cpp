@@ -22,8 +22,11 @@ std::vector<RequestField> request_fields() {
     std::vector<RequestField> all;
     for (auto fields : {frame_fields(), path_fields(), camera_fields(), run_fields()})
         for (RequestField& field : fields) {
-            // What a sample follows from.
-            if ((field.takers & kRender) && field.part != FieldPart::Files) field.takers |= kTrace;
+            // What a sample follows from. A view finder shows whole frames.
+            if ((field.takers & kRender) && field.part != FieldPart::Files) {
+                field.takers |= kTrace;
+                if (field.name != "crop") field.takers |= kLive;
+            }
             all.push_back(std::move(field));
         }
     return all;

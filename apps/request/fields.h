@@ -15,7 +15,7 @@
 namespace petzval {
 
 /// Commands that take fields; a field has a bit for each.
-enum Taker : uint8_t { kRender = 1, kPlan = 2, kChart = 4, kInfo = 8, kTrace = 16 };
+enum Taker : uint8_t { kRender = 1, kPlan = 2, kChart = 4, kInfo = 8, kTrace = 16, kLive = 32 };
 /// The commands that render pictures.
 inline constexpr uint8_t kPictures = kRender | kPlan | kChart;
 

@@ -16,7 +16,7 @@ enum class Phase : uint8_t { Loading, Bvh, Planning, Rendering, Denoising, Writi
 inline constexpr std::array<const char*, static_cast<size_t>(Phase::Count)> kPhaseNames{
     "loading", "bvh", "planning", "rendering", "denoising", "writing"};
 
-/// Receives each phase when it begins.
+/// Receives each phase when it begins, and Planning before each task of it, from any thread.
 using PhaseSink = std::function<void(Phase)>;
 
 }  // namespace petzval

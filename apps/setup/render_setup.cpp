@@ -187,6 +187,7 @@ PreparedScene load(SceneRequest request, const Notice& notice, FrameReuse* frame
     out.environment = request.environment;
     out.environment_rotate_deg = request.environment_rotate_deg;
     out.extras = std::move(file.extras);
+    out.holds = std::make_shared<GltfSummary>(std::move(file.holds));
     out.lamp_unit_doubt = std::move(file.lamp_unit_doubt);
     if (request.environment || request.background)  // instead of the file's own
         take_sky(request, notice, out, scene->sky, before.get(),
@@ -204,13 +205,16 @@ PreparedScene load(SceneRequest request, const Notice& notice, FrameReuse* frame
 
 /// Small bright things to which a camera sends rays, where that pays; nullptr: none.
 std::shared_ptr<const TargetGrid> targets_of(TargetCamera& camera, const Camera& still, V2i size_px,
-                                             const PreparedScene& prepared) {
+                                             const PreparedScene& prepared,
+                                             const std::function<void()>& next_step) {
     const Scene& scene = *prepared.scene;
     std::vector<SmallFeature> features = small_features_of(scene, kMostTargets);
     const std::vector<SmallFeature> images =
         highlights(still, scene, *prepared.bvh, size_px, features);
     features.insert(features.end(), images.begin(), images.end());
-    camera.set_targets(find_targets(camera, size_px, features));
+    next_step();
+    camera.set_targets(find_targets(camera, size_px, features, next_step));
+    next_step();
     return targets_that_pay(camera, scene, *prepared.bvh, *prepared.lights, size_px);
 }
 
@@ -223,15 +227,17 @@ std::shared_ptr<const Camera> moved(std::shared_ptr<const Camera> camera, const 
 /// The camera that renders, from the one that stands still: aimed at targets and moved by a
 /// shutter, where there are any.
 void compose_camera(const SceneRequest& asked, const RenderSetup* like,
-                    const PreparedScene& prepared, View& view) {
+                    const PreparedScene& prepared, View& view,
+                    const std::function<void()>& next_step) {
     view.camera = view.still;
     if (asked.targets == TargetUse::Auto)
         if (auto aims = target_camera(view.still)) {
-            const bool same = like && like->from.asked.targets == TargetUse::Auto &&
+            const bool same = like && like->view.still &&
+                              like->from.asked.targets == TargetUse::Auto &&
                               like->from.asked.size == asked.size &&
                               has_same_rays(*view.still, *like->view.still);
-            view.targets =
-                same ? like->view.targets : targets_of(*aims, *view.still, asked.size, prepared);
+            view.targets = same ? like->view.targets
+                                : targets_of(*aims, *view.still, asked.size, prepared, next_step);
             aims->set_targets(view.targets);
             if (view.targets) view.camera = std::move(aims);
         }
@@ -289,11 +295,14 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
     setup.view.finder = std::move(camera.finder);
     setup.view.shutter = std::move(camera.shutter);
     if (model.from) setup.view.of_file = static_cast<size_t>(model.from - prepared.cameras->data());
+    const auto next_step = [&] { begin(Phase::Planning); };
+    next_step();
     if (prepared.lights->divides())
         prepared.lights = std::make_shared<const LightChoice>(fitted_by_pilot(
             *prepared.lights, scene, *prepared.bvh, *moved(setup.view.still, setup.view),
             setup.view.observer, request.size));
-    compose_camera(request, shares ? like : nullptr, prepared, setup.view);
+    next_step();
+    compose_camera(request, shares ? like : nullptr, prepared, setup.view, next_step);
     from.camera = std::move(camera.report);
     return setup;
 }
@@ -340,9 +349,10 @@ std::unique_ptr<NextFrame> set_up_velocity(const RenderSetup& setup, double fps)
     return out;
 }
 
-RenderSetup set_up_view(const RenderSetup& like, const SceneRequest& asked, const Notice& notice) {
+RenderSetup set_up_view(const RenderSetup& like, const SceneRequest& asked, const Notice& notice,
+                        const PhaseSink& begins) {
     return naming_file(asked.scene.string(),
-                       [&] { return set_up(asked, notice, {}, &like, nullptr); });
+                       [&] { return set_up(asked, notice, begins, &like, nullptr); });
 }
 
 }  // namespace petzval

@@ -34,13 +34,14 @@ struct PreparedScene {
     /// As asked, that of the file, or what a dark scene gets.
     std::optional<std::filesystem::path> environment;
     float environment_rotate_deg = 0;
-    std::string environment_text;       ///< its name and hash, as it was read
-    uint64_t hash = 0;                  ///< of the file
-    std::vector<NamedFile> files;       ///< that the scene names
-    PictureBudget pictures;             ///< what the scene and its sky left of it
-    std::vector<LostLight> lost_light;  ///< that no path finds
-    SceneExtras extras;                 ///< what the file asks for
-    std::string lamp_unit_doubt;        ///< as GltfFile has it
+    std::string environment_text;              ///< its name and hash, as it was read
+    uint64_t hash = 0;                         ///< of the file
+    std::vector<NamedFile> files;              ///< that the scene names
+    PictureBudget pictures;                    ///< what the scene and its sky left of it
+    std::vector<LostLight> lost_light;         ///< that no path finds
+    SceneExtras extras;                        ///< what the file asks for
+    std::shared_ptr<const GltfSummary> holds;  ///< of the file
+    std::string lamp_unit_doubt;               ///< as GltfFile has it
 };
 
 /// Data that the frames of a sequence, which differ in their time alone, keep from earlier ones.
@@ -85,7 +86,8 @@ struct RenderSetup {
 
 /// Loads the file, its sky and its camera. `notice` gets one line for everything that was chosen
 /// for the user or is odd in the file, but for the spectral decision: spectral_wording.h words it.
-/// `begins` gets Loading, Bvh and Planning. `frames`: of a sequence, which it is part of. Throws
+/// `begins` gets Loading, Bvh and Planning, and Planning again between the steps of it: an
+/// exception of it ends the setup soon. `frames`: of a sequence, which it is part of. Throws
 /// InputError, of which ArgumentError where the request does not fit the file.
 [[nodiscard]] RenderSetup set_up_render(const SceneRequest&, const Notice& notice,
                                         const PhaseSink& begins = {}, FrameReuse* frames = nullptr);
@@ -102,7 +104,7 @@ struct NextFrame {
 
 /// Another view of a scene that is set up already. What the request asks for in the same way is
 /// shared, and notices about it are not repeated; the rest is loaded anew.
-[[nodiscard]] RenderSetup set_up_view(const RenderSetup&, const SceneRequest&,
-                                      const Notice& notice);
+[[nodiscard]] RenderSetup set_up_view(const RenderSetup&, const SceneRequest&, const Notice& notice,
+                                      const PhaseSink& begins = {});
 
 }  // namespace petzval

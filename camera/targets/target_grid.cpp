@@ -38,7 +38,8 @@ bool may_be_target(const SmallFeature& feature) {
 }  // namespace
 
 std::shared_ptr<const TargetGrid> find_targets(const TargetCamera& camera, V2i size_px,
-                                               std::span<const SmallFeature> features) {
+                                               std::span<const SmallFeature> features,
+                                               const std::function<void()>& at_row) {
     if (size_px.x < kCell_px || size_px.y < kCell_px) return nullptr;
     std::vector<SmallFeature> lamps;
     std::copy_if(features.begin(), features.end(), std::back_inserter(lamps), may_be_target);
@@ -52,7 +53,8 @@ std::shared_ptr<const TargetGrid> find_targets(const TargetCamera& camera, V2i s
     };
     out->cells = {cells(size_px.x), cells(size_px.y)};
     bool any = false;
-    for (int j = 0; j < out->cells.y; ++j)
+    for (int j = 0; j < out->cells.y; ++j) {
+        at_row();
         for (int i = 0; i < out->cells.x; ++i) {
             TargetCell& cell = out->lists.emplace_back();
             std::vector<ListedTarget>& list = cell.targets;
@@ -82,6 +84,7 @@ std::shared_ptr<const TargetGrid> find_targets(const TargetCamera& camera, V2i s
             if (list.empty()) cell.map = nullptr;
             any = any || !list.empty();
         }
+    }
     return any ? out : nullptr;
 }
 

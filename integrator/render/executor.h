@@ -9,8 +9,10 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <atomic>
+#include <functional>
 #include <optional>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace petzval {
@@ -28,6 +30,9 @@ class TbbExecutor {
                            static_cast<size_t>(threads));
     }
     [[nodiscard]] int threads() const { return arena_.max_concurrency(); }
+    /// Sets what is called before each task, by several threads at once; empty: nothing. Where it
+    /// throws, no more tasks are begun, and run() throws the same.
+    void before_task(std::function<void()> f) { before_task_ = std::move(f); }
 
     template <class F>
     void run(int count, const F& f) {
@@ -36,7 +41,10 @@ class TbbExecutor {
                 tbb::blocked_range<int>(0, count, 1),
                 [&](const tbb::blocked_range<int>& range) {
                     const int worker = tbb::this_task_arena::current_thread_index();
-                    for (int i = range.begin(); i < range.end(); ++i) f(i, worker);
+                    for (int i = range.begin(); i < range.end(); ++i) {
+                        if (before_task_) before_task_();
+                        f(i, worker);
+                    }
                 },
                 tbb::simple_partitioner());
         });
@@ -50,6 +58,7 @@ class TbbExecutor {
   private:
     std::optional<tbb::global_control> limit_;
     tbb::task_arena arena_;
+    std::function<void()> before_task_;
 };
 
 class ThreadExecutor {

@@ -31,6 +31,8 @@ inline constexpr size_t kMaxSurfaces = 250;
 struct LensSummary {
     std::string name, title, patent, grade;
     double focal_length_mm = 0, fnumber = 0, field_half_deg = 0;
+    double image_circle_mm = 0;
+    int year = 0;  ///< of the design
 };
 
 /// The lenses that ship, by name. Throws InputError where the program is not whole.

@@ -194,7 +194,9 @@ LensSummary read_lens_summary(std::string_view text, const std::string& file) {
             at.text("grade"),
             at.number("focal_length", kLength),
             at.number("fnumber", kFnumber),
-            at.number("field_half_angle_deg", kField)};
+            at.number("field_half_angle_deg", kField),
+            at.number_or("image_circle", 0, kLength),
+            static_cast<int>(at.integer_or("year", 0))};
 }
 
 }  // namespace petzval

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/commands/live.h"
+
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdlib>
+#include <memory>
+#include <thread>
+
+#include "apps/cli/field_options.h"
+#include "apps/live/live_server.h"
+#include "io/base/error.h"
+#include "io/image/picture_files.h"
+
+namespace petzval {
+namespace {
+
+// Opens an address as the desktop does; without a desktop, or where nobody watches, it does not.
+void open_in_browser(const std::string& address) {
+    if (!isatty(STDOUT_FILENO) || (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")))
+        return;
+    std::string program = "xdg-open", word = address;
+    char* const words[] = {program.data(), word.data(), nullptr};
+    pid_t child = 0;
+    if (posix_spawnp(&child, program.c_str(), nullptr, nullptr, words, environ) == 0)
+        waitpid(child, nullptr, 0);
+}
+
+std::string command_of(RenderOrder order) {
+    order.run.outputs = {"picture.exr"};
+    return render_command(order);
+}
+
+void serve(const LiveOptions& options, Session& session) {
+    const auto& scene = options.start.render.scene.scene;
+    if (std::error_code none; !std::filesystem::is_regular_file(scene, none))
+        throw InputError(scene.string(), "", "no such file");
+    load_image_codec();
+    RenderMonitor& monitor = session.interrupt.monitor();
+    session.interrupt.arm();
+    const LiveServer server(options);
+    fmt::print("{}\n", server.address());
+    std::fflush(stdout);
+    if (options.listen)
+        session.console.notice(
+            "whoever knows this address can use it, and it is not encrypted: not for open "
+            "networks");
+    else
+        open_in_browser(server.address());
+    session.console.notice("Ctrl-C ends it");
+    while (!monitor.stop) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+}
+
+}  // namespace
+
+void add_live_command(CLI::App& app, Session& session) {
+    auto options = std::make_shared<LiveOptions>();
+    CLI::App* command =
+        app.add_subcommand("live", "show a scene in the browser, to look for a picture");
+    add_field_options(*command, options->start, kLive);
+    command->add_option("--port", options->port, "port of the address (default: a free one)")
+        ->check(CLI::Range(0, 65535));
+    command->add_option("--listen", options->listen,
+                        "address to listen on, as 0.0.0.0, for a browser on another machine "
+                        "(default: this machine alone)");
+    command->callback([options, &session] {
+        options->command = command_of;
+        serve(*options, session);
+    });
+}
+
+}  // namespace petzval

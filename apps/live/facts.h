@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a page is told, as JSON: of the program once, of the scene when it is loaded, of a view
+// finder whenever it changes.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "apps/live/page_request.h"
+#include "apps/live/viewer.h"
+
+namespace petzval {
+
+/// {"scene": name of the file, "start": fields that the page begins with, "fields": those that a
+/// page may set, "lenses": those that ship, "views": of the display}.
+[[nodiscard]] nlohmann::json program_facts(const PageRules&);
+
+/// {"cameras", "animations", "variants": names in the file; "bytes": memory that pages share}.
+[[nodiscard]] nlohmann::json scene_facts(const LoadedScene&);
+
+/// The members of a status; messages spell fields as options.
+[[nodiscard]] nlohmann::json status_facts(const LiveStatus&);
+
+/// Text of JSON; bytes that are no UTF-8 become U+FFFD.
+[[nodiscard]] std::string text_of(const nlohmann::json&);
+
+}  // namespace petzval

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// View finder of one page: what it last asked for, as a picture that grows.
+#pragma once
+
+#include <array>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "apps/render/render_session.h"
+#include "apps/request/render_request.h"
+
+namespace petzval {
+
+/// Picture as a page draws it.
+struct LivePicture {
+    V2i size_px{0};
+    std::vector<uint8_t> rgba;  ///< of a display, alpha unassociated, row 0 at the top
+};
+
+enum class LiveStage : uint8_t {
+    Idle,       ///< nothing is asked for
+    Preparing,  ///< nothing of this request is seen yet
+    Rough,      ///< a rough picture is, which is no part of what will be saved
+    Growing,    ///< the true one is, with some of its samples
+    Done,       ///< with all of them
+    Failed      ///< see error
+};
+
+/// Camera as it was set up, for what a page does with it.
+struct LiveCamera {
+    std::string pose;   ///< as the field of that name has it
+    float focus_m = 0;  ///< 0: a pinhole
+    float yfov_deg = 0,
+          middle_m = 0;  ///< middle_m: depth of the picture's middle; 0: nothing there
+};
+
+/// State of a view finder.
+struct LiveStatus {
+    uint64_t number = 0;   ///< grows with each change of the others
+    uint64_t version = 0;  ///< of the request, as the page numbers them
+    LiveStage stage = LiveStage::Idle;
+    Phase phase = Phase::Loading;
+    uint64_t picture = 0;          ///< number of the newest picture; 0: none yet
+    uint32_t samples = 0, of = 0;  ///< of each pixel, at least; of: 0 where nobody knows
+    double noise = 0, elapsed_s = 0;
+    float exposure_ev = 0;
+    std::optional<LiveCamera> camera;
+    std::vector<std::string> notices;
+    std::string error;
+};
+
+/// A scene that pages share.
+struct SharedScene {
+    LoadedScene loaded;
+    std::string stamp;  ///< sizes and times of its files when they were read
+};
+
+/// Renders what was asked for last, in a thread of its own; what a newer request has in common with
+/// the one before is kept. All functions may be called from any thread.
+class Viewer {
+  public:
+    /// Starts with nothing to do. scene: one that is loaded already, or nothing. Files that change
+    /// are read anew by the next request.
+    Viewer(int threads, SharedScene scene);
+    ~Viewer();
+    Viewer(const Viewer&) = delete;
+    Viewer& operator=(const Viewer&) = delete;
+
+    /// Asks for another picture; what is under way ends at once.
+    void ask(uint64_t version, RenderRequest);
+    /// Stops what is under way, until ask() is called again.
+    void leave();
+
+    [[nodiscard]] LiveStatus status() const;
+    /// Waits until the status has another number than that, or for so long.
+    [[nodiscard]] LiveStatus wait(uint64_t number, std::chrono::milliseconds) const;
+    /// The newest picture; nullptr: none yet.
+    [[nodiscard]] std::shared_ptr<const LivePicture> picture() const;
+    /// The scene as it is loaded; empty before.
+    [[nodiscard]] SharedScene scene() const;
+
+    /// Writes the picture of a request once it is done, as the command line writes it. Throws
+    /// InputError where it is not the one that is shown, or not done.
+    void write(uint64_t version, const std::filesystem::path&);
+
+  private:
+    struct Job {
+        uint64_t ticket = 0, version = 0;
+        RenderRequest request;
+    };
+    void work(const std::stop_token&);
+    void show(const Job&);
+    void show_rough(const Job&);
+    void show_true(const Job&);
+    void prepare(const Job&, const RenderRequest&, std::vector<std::string>& notices);
+    void render(const Job&, RenderMonitor&, const RenderRun&);
+    [[nodiscard]] bool stale(const Job&) const;
+    void publish(const Job&, const std::function<void(LiveStatus&)>& change,
+                 std::shared_ptr<const LivePicture> picture = nullptr);
+
+    mutable std::mutex mutex_;  ///< of all but session_ and what is said to be the thread's own
+    mutable std::condition_variable_any changed_;
+    uint64_t ticket_ = 0;  ///< of the newest request, or of having left
+    std::optional<Job> next_;
+    RenderMonitor* running_ = nullptr;
+    LiveStatus status_;
+    std::shared_ptr<const LivePicture> picture_;
+    SharedScene scene_;
+
+    std::mutex session_mutex_;  ///< of the session: held while a job is under way
+    RenderSession session_;
+    std::optional<RenderRequest> rendered_;  ///< the thread's own: what the film is of
+    std::vector<std::string> of_scene_;      ///< likewise: what loading the scene told
+    double samples_per_s_ = 0;               ///< likewise: of rough pictures
+    std::jthread thread_;                    ///< last: it uses the others
+};
+
+}  // namespace petzval

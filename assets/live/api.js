@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the server is asked. Addresses are relative, so that a token in the page's own stays in them.
+
+/** Facts of the program: scene, start, fields, lenses, views. */
+export async function readFacts() {
+  return (await fetch("api/facts")).json();
+}
+
+/** Address of the drawing of a lens that ships. */
+export function drawingOf(lens) {
+  return `api/lens.svg?name=${encodeURIComponent(lens)}`;
+}
+
+/** A connection to the server: a stream of events, and requests that belong to it. */
+export class Connection extends EventTarget {
+  #page = "";
+  #waiting = null;
+  #busy = false;
+  #stream = null;
+
+  /** Opens the stream; events "open", "lost", "scene" and "status" follow. */
+  open() {
+    this.close();
+    const stream = new EventSource("api/events");
+    this.#stream = stream;
+    stream.addEventListener("page", (event) => {
+      this.#page = JSON.parse(event.data).page;
+      this.dispatchEvent(new Event("open"));
+    });
+    for (const name of ["scene", "status"])
+      stream.addEventListener(name, (event) =>
+        this.dispatchEvent(new CustomEvent(name, { detail: JSON.parse(event.data) })));
+    stream.addEventListener("error", () => {
+      if (this.#stream !== stream) return;
+      this.close();
+      this.dispatchEvent(new Event("lost"));
+    });
+  }
+
+  /** Closes the stream, which ends the work for this page. */
+  close() {
+    this.#stream?.close();
+    this.#stream = null;
+    this.#page = "";
+  }
+
+  get connected() {
+    return this.#page !== "";
+  }
+
+  /** Asks for a picture. Of requests that wait for the one before only the last is sent. */
+  ask(version, fields) {
+    this.#waiting = { version, fields };
+    this.#send();
+  }
+
+  async #send() {
+    if (this.#busy || !this.#waiting || !this.#page) return;
+    const { version, fields } = this.#waiting;
+    this.#waiting = null;
+    this.#busy = true;
+    try {
+      const answer = await fetch("api/request", {
+        method: "POST",
+        headers: { "Content-Type": "application/json" },
+        body: JSON.stringify({ page: this.#page, version, fields }),
+      });
+      this.dispatchEvent(new CustomEvent("answer", { detail: { version, ...(await answer.json()) } }));
+    } catch {
+      // The stream tells that the server is gone.
+    }
+    this.#busy = false;
+    this.#send();
+  }
+
+  /** The newest picture, as ImageData. */
+  async picture(number) {
+    const answer = await fetch(`api/picture?page=${this.#page}&number=${number}`);
+    if (!answer.ok) return null;
+    const [width, height] = answer.headers.get("X-Size").split("x").map(Number);
+    return new ImageData(new Uint8ClampedArray(await answer.arrayBuffer()), width, height);
+  }
+
+  /** Address of the picture of a request as a file. */
+  fileOf(version, name) {
+    return `api/file?page=${this.#page}&version=${version}&name=${name}`;
+  }
+}

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page of `petzval live`: settings, view finder and server brought together.
+import { Connection, readFacts } from "./api.js";
+import { Controls } from "./controls.js";
+import { Finder } from "./finder.js";
+import { addressOf, fieldsOfAddress, Settings, textOfFloat } from "./state.js";
+
+const kUsualSize = "640x360";
+const kAgain_ms = 1000;
+
+const element = (id) => document.getElementById(id);
+const show = (node, text) => {
+  node.textContent = text;
+  node.hidden = text === "";
+};
+
+const facts = await readFacts();
+const start = { size: [kUsualSize], ...facts.start };
+const asked = fieldsOfAddress(location.hash);
+const settings = new Settings(Object.keys(asked).length > 0 ? asked : start);
+const connection = new Connection();
+const finder = new Finder(element("picture"), element("mark"), element("drag"), settings);
+const controls = new Controls(element("controls"), settings, facts);
+let version = 0;
+let focusing = 0; // version that is to find a focus
+let drawn = 0;
+let drawing = false;
+let last = null; // status
+
+function ask() {
+  ++version;
+  focusing = /^\d+,\d+$/.test(settings.text("focus")) ? version : 0;
+  const size = (settings.text("size") || "1280x720").split("x").map(Number);
+  if (size.every((length) => length > 0)) finder.shape(...size);
+  show(element("error"), "");
+  connection.ask(version, settings.fields);
+  for (const id of ["save-exr", "save-png"]) element(id).disabled = true;
+}
+
+function textOfStage(status) {
+  const seconds = `${status.elapsed_s.toFixed(1)} s`;
+  const noise = status.noise > 0 ? `, noise ${(100 * status.noise).toPrecision(2)} %` : "";
+  switch (status.stage) {
+    case "preparing":
+      return status.phase === "loading" ? "Loading the scene" : `Preparing: ${status.phase}`;
+    case "rough":
+      return "Rough picture; the true one is being prepared";
+    case "growing":
+      return status.of > 0
+        ? `${status.samples} of ${status.of} samples${noise}, ${seconds}`
+        : `${status.samples} samples${noise}, ${seconds}`;
+    case "done":
+      return `Done: ${status.samples} samples${noise}, ${seconds}`;
+    case "failed":
+      return "Not rendered";
+    default:
+      return "";
+  }
+}
+
+async function draw() {
+  if (drawing || !last || last.picture === drawn) return;
+  drawing = true;
+  const number = last.picture;
+  try {
+    const image = await connection.picture(number);
+    if (image) finder.draw(image);
+    drawn = number;
+  } catch {
+    // The stream tells that the server is gone.
+  }
+  drawing = false;
+  if (connection.connected) draw();
+}
+
+connection.addEventListener("open", () => {
+  drawn = 0;
+  last = null;
+  ask();
+});
+connection.addEventListener("lost", () => {
+  element("stage").textContent = "The server does not answer; trying again";
+  for (const id of ["save-exr", "save-png"]) element(id).disabled = true;
+  setTimeout(() => !document.hidden && connection.open(), kAgain_ms);
+});
+connection.addEventListener("scene", ({ detail }) => detail && controls.meet(detail));
+connection.addEventListener("answer", ({ detail }) => {
+  if (detail.version !== version) return;
+  if (detail.error) show(element("error"), detail.error);
+  controls.refuse((detail.field ?? "").replace(/[⟨⟩]/g, ""));
+  if (detail.command) element("command").value = detail.command;
+});
+connection.addEventListener("status", ({ detail: status }) => {
+  last = status;
+  draw();
+  if (status.version !== version) return;
+  element("stage").textContent = textOfStage(status);
+  element("stage").dataset.stage = status.stage;
+  element("stage").dataset.version = status.version;
+  element("progress").value = status.stage === "done" ? 1 : status.of > 0 ? status.samples / status.of : 0;
+  if (status.error) show(element("error"), status.error);
+  element("notices").replaceChildren(
+    ...status.notices.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
+  const done = status.stage === "done";
+  for (const id of ["save-exr", "save-png"]) element(id).disabled = !done;
+  if (status.camera && (status.stage === "growing" || done)) {
+    finder.meet(status.camera);
+    if (focusing === version && status.camera.focus_m > 0) settings.settle("focus", textOfFloat(status.camera.focus_m));
+  } else if (status.camera && status.stage === "rough") {
+    finder.meet(status.camera);
+  }
+});
+
+finder.addEventListener("pinhole", () =>
+  show(element("error"), "A pinhole is sharp everywhere. Choose a lens, or an f-number, to focus."));
+settings.addEventListener("change", () => {
+  history.replaceState(null, "", addressOf(settings.fields));
+  element("undo").disabled = !settings.canUndo;
+  element("redo").disabled = !settings.canRedo;
+  ask();
+});
+addEventListener("hashchange", () => {
+  const fields = fieldsOfAddress(location.hash);
+  if (addressOf(fields) !== addressOf(settings.fields)) settings.replace(fields);
+});
+element("undo").addEventListener("click", () => settings.undo());
+element("redo").addEventListener("click", () => settings.redo());
+element("reset").addEventListener("click", () => settings.replace(start));
+element("undo").disabled = element("redo").disabled = true;
+addEventListener("keydown", (event) => {
+  if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z") return;
+  if (event.target.matches?.("input, textarea")) return; // they undo what is typed
+  event.preventDefault();
+  event.shiftKey ? settings.redo() : settings.undo();
+});
+element("copy").addEventListener("click", async () => {
+  await navigator.clipboard.writeText(element("command").value);
+  element("copy").textContent = "Copied";
+  setTimeout(() => (element("copy").textContent = "Copy"), 1500);
+});
+for (const kind of ["exr", "png"])
+  element(`save-${kind}`).addEventListener("click", () => {
+    const name = `picture.${kind}`;
+    Object.assign(document.createElement("a"), { href: connection.fileOf(version, name), download: name }).click();
+  });
+// A page that nobody sees does no work.
+document.addEventListener("visibilitychange", () => {
+  if (document.hidden) connection.close();
+  else connection.open();
+});
+element("scene").textContent = facts.scene;
+document.title = `${facts.scene} - Petzval`;
+if (!document.hidden) connection.open();

@@ -1,0 +1,285 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The page of `petzval live` in Chromium, used as a person uses it: browser.py PROGRAM SCENE [FOLDER]
+
+FOLDER gets pictures of the page. AXE names axe-core's axe.min.js; without it accessibility is not looked at.
+"""
+import json
+import os
+import pathlib
+import shlex
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+try:
+    from selenium import webdriver
+    from selenium.webdriver.common.action_chains import ActionChains
+    from selenium.webdriver.common.by import By
+    from selenium.webdriver.common.keys import Keys
+    from selenium.webdriver.support.ui import Select, WebDriverWait
+except ImportError:
+    print("skipped: no selenium (Debian's python3-selenium)")
+    sys.exit(77)
+
+from live import Live
+
+PROGRAM, SCENE = sys.argv[1], sys.argv[2]
+PICTURES = pathlib.Path(sys.argv[3]) if len(sys.argv) > 3 else None
+DRIVER = "/usr/bin/chromedriver"
+START = ("--size", "96x64", "--spp", "4", "--threads", "2")
+
+
+def open_browser(width=1280, height=900, **preferences):
+    options = webdriver.ChromeOptions()
+    for word in ("--headless=new", "--no-sandbox", "--disable-gpu", f"--window-size={width},{height}", "--lang=en",
+                 "--force-prefers-reduced-motion"):
+        options.add_argument(word)
+    options.add_experimental_option("prefs", preferences)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    return webdriver.Chrome(service=webdriver.chrome.service.Service(DRIVER), options=options)
+
+
+class Browser(unittest.TestCase):
+    def setUp(self):
+        self.live = Live(PROGRAM, SCENE, *START)
+        self.addCleanup(self.live.__exit__)
+        self.downloads = tempfile.TemporaryDirectory()
+        self.addCleanup(self.downloads.cleanup)
+        self.browser = open_browser(**{"download.default_directory": self.downloads.name})
+        self.addCleanup(self.browser.quit)
+        self.browser.get(self.live.address)
+        self.wait_done()
+
+    def tearDown(self):
+        for entry in self.browser.get_log("browser"):
+            # A fetch that the server refuses on purpose is told as SEVERE too.
+            if entry["level"] == "SEVERE" and "Failed to load resource" not in entry["message"] and \
+                    "net::ERR" not in entry["message"]:
+                self.fail(entry["message"])
+
+    def find(self, name):
+        return self.browser.find_element(By.ID, name)
+
+    def field(self, name):
+        return self.browser.find_element(By.CSS_SELECTOR, f"form > fieldset [name='{name}']")
+
+    def wait(self, condition, seconds=60):
+        return WebDriverWait(self.browser, seconds, 0.05).until(condition)
+
+    def wait_done(self):
+        self.wait(lambda _: not self.find("save-exr").get_property("disabled"))
+
+    def command(self):
+        return self.find("command").get_property("value")
+
+    def picture(self):
+        """Colours of a few points of the canvas, and its size."""
+        return self.browser.execute_script("""
+            const canvas = document.getElementById("picture"), all = [];
+            const data = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+            for (let i = 0; i < data.length; i += 404) all.push(data[i]);
+            return [canvas.width, canvas.height, all];""")
+
+    def shot(self, name):
+        if PICTURES:
+            self.browser.save_screenshot(str(PICTURES / f"{name}.png"))
+
+    def drag(self, dx, dy):
+        ActionChains(self.browser, duration=20).move_to_element(self.find("picture")).click_and_hold().move_by_offset(
+            dx // 2, dy // 2).move_by_offset(dx - dx // 2, dy - dy // 2).release().perform()
+
+    def test_a_person_looks_for_a_picture(self):
+        self.assertEqual(self.picture()[:2], [96, 64])
+        first = self.picture()
+        self.shot("first")
+        self.drag(120, 30)
+        self.wait(lambda _: "--pose" in self.command())
+        self.wait_done()
+        self.assertNotEqual(self.picture(), first)
+
+        Select(self.field("lens")).select_by_value("takumar-50mm-f1.2")
+        self.wait(lambda _: "--lens takumar-50mm-f1.2" in self.command())
+        self.wait(lambda _: self.find("drawing").get_property("naturalWidth") > 0)
+        self.wait_done()
+
+        picture = self.find("picture")
+        size = picture.size
+        ActionChains(self.browser).move_to_element_with_offset(picture, size["width"] // 8, size["height"] // 8).click(
+        ).perform()
+        # The pixel that was clicked becomes the distance that lies there.
+        self.wait(lambda _: self.field("focus").get_property("value").count(".") == 1)
+        self.wait_done()
+        distance = self.field("focus").get_property("value")
+        self.assertIn(f"--focus {distance}", self.command())
+        pixel = [round((0.5 + 1 / 8) * 96 - 0.5), round((0.5 + 1 / 8) * 64 - 0.5)]
+        # Depths count from the film's side of the lens, focus from its entrance pupil.
+        self.assertAlmostEqual(self.depth_at(*pixel), float(distance), delta=0.1)
+
+        self.browser.find_element(By.XPATH, "//div[@class='ring']/button[text()='f/4']").click()
+        self.wait(lambda _: "--fstop 4" in self.command())
+        self.wait_done()
+        self.shot("lens")
+        self.saved_is_the_commands()
+
+        for _ in range(3):
+            self.find("undo").click()
+        self.wait(lambda _: "--lens" not in self.command())
+        self.find("redo").click()
+        self.wait(lambda _: "--lens takumar" in self.command())
+        self.assertIn("lens=takumar", self.browser.current_url)
+        self.wait_done()
+
+    def depth_at(self, x, y):
+        """Depth by a render of the layer, at a pixel."""
+        with tempfile.TemporaryDirectory() as folder:
+            words = shlex.split(self.command())
+            words[0] = PROGRAM
+            words[words.index("picture.exr")] = f"{folder}/depth.exr"
+            subprocess.run(words + ["--aov", "depth", "--fstop", "16", "--quiet"], check=True)
+            pixel = f"{folder}/pixel.exr"
+            subprocess.run(["oiiotool", f"{folder}/depth.exr", "--ch", "depth.Z", "--cut", f"1x1+{x}+{y}", "-o", pixel],
+                           check=True)
+            text = subprocess.run(["oiiotool", "--stats", pixel], capture_output=True, text=True, check=True).stdout
+            return float(text.split("Stats Avg:")[1].split()[0])
+
+    def saved_is_the_commands(self):
+        self.find("save-exr").click()
+        saved = pathlib.Path(self.downloads.name, "picture.exr")
+        self.wait(lambda _: saved.exists() and saved.stat().st_size > 0)
+        with tempfile.TemporaryDirectory() as folder:
+            words = shlex.split(self.command())
+            words[0] = PROGRAM
+            words[words.index("picture.exr")] = f"{folder}/picture.exr"
+            subprocess.run(words + ["--quiet"], check=True)
+            self.assertEqual(saved.read_bytes(), pathlib.Path(folder, "picture.exr").read_bytes())
+
+    def test_keys_alone(self):
+        self.find("picture").send_keys(Keys.ARROW_LEFT, Keys.ARROW_UP, "+")
+        self.wait(lambda _: "--pose" in self.command())
+        before = self.command()
+        self.find("picture").send_keys(Keys.SHIFT, Keys.ARROW_LEFT)
+        self.wait(lambda _: self.command() != before)
+        self.find("picture").send_keys(Keys.ENTER)
+        self.wait(lambda _: "pinhole" in self.find("error").text)
+        self.field("fstop").send_keys("2", Keys.TAB)
+        self.wait(lambda _: "--fstop 2" in self.command())
+        self.wait_done()
+        self.assertFalse(self.find("error").is_displayed())
+        self.find("picture").send_keys(Keys.ENTER)
+        self.wait(lambda _: "--focus" in self.command())
+        self.find("picture").send_keys(Keys.CONTROL, "z")
+        self.wait(lambda _: "--focus" not in self.command())
+        # From the picture every control is reached by Tab.
+        reached = set()
+        self.browser.execute_script("document.getElementById('picture').focus()")
+        for _ in range(40):
+            ActionChains(self.browser).send_keys(Keys.TAB).perform()
+            active = self.browser.switch_to.active_element
+            reached.add(active.get_attribute("id") or active.get_attribute("name") or active.tag_name)
+        for name in ("drag", "save-exr", "command", "copy", "set-lens", "set-fstop", "set-focus", "set-size", "set-env"):
+            self.assertIn(name, reached)
+        self.wait_done()
+
+    def test_what_is_wrong_is_said(self):
+        box = self.field("fstop")
+        box.send_keys("wide", Keys.TAB)
+        self.wait(lambda _: self.find("error").is_displayed())
+        self.assertIn("--fstop", self.find("error").text)
+        self.assertIn("wrong", box.get_attribute("class"))
+        self.shot("wrong")
+        self.find("undo").click()
+        self.wait_done()
+        self.wait(lambda _: not self.find("error").is_displayed())
+
+    def test_the_address_holds_the_state(self):
+        self.browser.get(self.live.address + "#size=48x32&spp=2&orbit=90")
+        self.browser.refresh()
+        self.wait_done()
+        self.assertEqual(self.picture()[:2], [48, 32])
+        self.assertIn("--orbit 90", self.command())
+        self.browser.get(self.live.address + "#size=48x32&spp=2&lens=%3Cimg%20src%3Dx%20onerror%3Dalert(1)%3E")
+        self.browser.refresh()
+        self.wait(lambda _: self.find("error").is_displayed())
+        self.assertEqual(self.browser.find_elements(By.CSS_SELECTOR, "img[src='x']"), [])
+
+    def test_the_server_is_lost_and_comes_back(self):
+        port = self.live.port
+        self.live.__exit__()
+        self.wait(lambda _: "does not answer" in self.find("stage").text)
+        self.shot("lost")
+        self.live = Live(PROGRAM, SCENE, *START, "--port", str(port))
+        self.addCleanup(self.live.__exit__)
+        self.wait_done()
+        self.assertIn("Done", self.find("stage").text)
+
+    def test_two_pages_do_not_disturb_each_other(self):
+        first = self.picture()
+        self.browser.switch_to.new_window("window")
+        self.browser.get(self.live.address + "#size=48x32&spp=3&orbit=120")
+        self.wait_done()
+        self.assertEqual(self.picture()[:2], [48, 32])
+        self.browser.close()
+        self.browser.switch_to.window(self.browser.window_handles[0])
+        self.wait_done()
+        self.assertEqual(self.picture(), first)
+
+    def test_other_windows(self):
+        for name, (width, height) in {"phone": (390, 844), "wide": (1600, 900)}.items():
+            self.browser.set_window_size(width, height)
+            self.wait_done()
+            over = self.browser.execute_script(
+                "return document.documentElement.scrollWidth - document.documentElement.clientWidth")
+            self.assertLessEqual(over, 0, name)
+            self.shot(name)
+        self.browser.execute_cdp_cmd("Emulation.setEmulatedMedia",
+                                     {"features": [{"name": "prefers-color-scheme", "value": "dark"}]})
+        self.shot("dark")
+
+    def test_a_storm_of_moves(self):
+        picture = self.find("picture")
+        box = picture.rect
+        before = self.live.memory_bytes()
+        self.browser.execute_script("""
+            const picture = document.getElementById("picture"), box = picture.getBoundingClientRect();
+            const send = (type, i) => picture.dispatchEvent(new PointerEvent(type, {pointerId: 1, button: 0, buttons: 1,
+                clientX: box.left + box.width * (0.5 + 0.3 * Math.sin(i / 17)),
+                clientY: box.top + box.height * (0.5 + 0.2 * Math.cos(i / 23)), bubbles: true}));
+            picture.setPointerCapture = () => {};
+            send("pointerdown", 0);
+            let i = 0;
+            window.storm = setInterval(() => {
+                if (++i < 600) return send("pointermove", i);
+                clearInterval(window.storm);
+                send("pointerup", i);
+                document.body.dataset.storm = "over";
+            }, 10);""")
+        self.wait(lambda _: self.browser.execute_script("return document.body.dataset.storm") == "over")
+        self.wait_done()
+        self.assertLess(self.live.memory_bytes() - before, 60e6)
+        self.assertGreater(box["width"], 0)
+        self.saved_is_the_commands()
+
+    def test_nothing_serious_for_those_who_cannot_see(self):
+        axe = os.environ.get("AXE")
+        if not axe:
+            self.skipTest("AXE does not name axe-core's axe.min.js")
+        # The page's policy lets no foreign script in but by the driver.
+        self.browser.execute_script(pathlib.Path(axe).read_text(encoding="utf-8"))
+        found = self.browser.execute_async_script(
+            "const done = arguments[arguments.length - 1]; axe.run().then((r) => done(r.violations))")
+        serious = [f"{one['id']}: {node['html']}" for one in found if one["impact"] in ("serious", "critical")
+                   for node in one["nodes"]]
+        self.assertEqual(serious, [])
+
+
+if __name__ == "__main__":
+    if not pathlib.Path(DRIVER).exists():
+        print(f"skipped: no {DRIVER} (Debian's chromium-driver)")
+        sys.exit(77)
+    if PICTURES:
+        PICTURES.mkdir(parents=True, exist_ok=True)
+    unittest.main(argv=sys.argv[:1], verbosity=2)

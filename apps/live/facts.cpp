@@ -35,11 +35,6 @@ Json lens_facts() {
     return out;
 }
 
-// JSON has no infinity.
-Json number_or_null(double value) {
-    return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 Json camera_facts(const LiveCamera& camera) {
     return {{"pose", camera.pose},
             {"focus_m", number_or_null(camera.focus_m)},
@@ -48,6 +43,10 @@ Json camera_facts(const LiveCamera& camera) {
 }
 
 }  // namespace
+
+Json number_or_null(double value) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
 
 Json program_facts(const PageRules& rules) {
     Json fields = Json::array();
@@ -94,6 +93,7 @@ Json status_facts(const LiveStatus& status) {
             {"elapsed_s", status.elapsed_s},
             {"exposure_ev", status.exposure_ev},
             {"camera", status.camera ? camera_facts(*status.camera) : Json(nullptr)},
+            {"channels", status.channels},
             {"notices", std::move(notices)},
             {"error", as_options(status.error)}};
 }

@@ -20,6 +20,9 @@ namespace petzval {
 /// The members of a status; messages spell fields as options.
 [[nodiscard]] nlohmann::json status_facts(const LiveStatus&);
 
+/// A number in JSON, which has no infinity: that, and what is no number, become null.
+[[nodiscard]] nlohmann::json number_or_null(double);
+
 /// Text of JSON; bytes that are no UTF-8 become U+FFFD.
 [[nodiscard]] std::string text_of(const nlohmann::json&);
 

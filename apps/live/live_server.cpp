@@ -67,6 +67,18 @@ uint64_t number_of(const Request& request, const char* name) {
     return out;
 }
 
+std::vector<float> channel_of(const PictureRows& light, const std::string& name) {
+    const int channel = channel_index(light.layout, name);
+    if (channel < 0) throw ValueError("channel", "is none of this picture");
+    const size_t width = size_t(light.layout.width), count = light.layout.channels.size();
+    std::vector<float> row(width * count), out;
+    for (int y = 0; y < light.layout.height; ++y) {
+        light.row(y, row.data());
+        for (size_t x = 0; x < width; ++x) out.push_back(row[x * count + size_t(channel)]);
+    }
+    return out;
+}
+
 std::string event_of(const char* name, const Json& json) {
     return fmt::format("event: {}\ndata: {}\n\n", name, text_of(json));
 }
@@ -148,11 +160,11 @@ class LiveServer::Pages {
                     refuse(response, kBadRequest, fault.what());
                 }
             });
-        const std::map<std::string, Handler> gets{{"/api/facts", &Pages::tell_facts},
-                                                  {"/api/events", &Pages::stream_events},
-                                                  {"/api/picture", &Pages::send_picture},
-                                                  {"/api/file", &Pages::send_file},
-                                                  {"/api/lens.svg", &Pages::draw_lens}};
+        const std::map<std::string, Handler> gets{
+            {"/api/facts", &Pages::tell_facts},     {"/api/events", &Pages::stream_events},
+            {"/api/picture", &Pages::send_picture}, {"/api/file", &Pages::send_file},
+            {"/api/values", &Pages::send_values},   {"/api/pixel", &Pages::tell_pixel},
+            {"/api/lens.svg", &Pages::draw_lens}};
         server_.Get(".*", [this, gets](const Request& request, Response& response) {
             const std::string path = path_behind_token(request.path, gate_);
             if (const auto found = gets.find(path); found != gets.end())
@@ -268,6 +280,36 @@ class LiveServer::Pages {
             saved_file(name,
                        [&](const std::filesystem::path& path) { viewer->write(version, path); }),
             "application/octet-stream");
+    }
+
+    // Values of a channel, 32-bit floats row by row.
+    void send_values(const Request& request, Response& response) {
+        const std::string name = request.get_param_value("channel");
+        std::vector<float> values;
+        viewer_of(request.get_param_value("page"))
+            ->inspect(number_of(request, "version"), [&](const RenderSession& session) {
+                values = channel_of(session.light(), name);
+            });
+        response.set_content(reinterpret_cast<const char*>(values.data()),
+                             values.size() * sizeof(float), "application/octet-stream");
+    }
+
+    // All channels of a pixel.
+    void tell_pixel(const Request& request, Response& response) {
+        Json pixel = Json::object();
+        const uint64_t x = number_of(request, "x"), y = number_of(request, "y");
+        viewer_of(request.get_param_value("page"))
+            ->inspect(number_of(request, "version"), [&](const RenderSession& session) {
+                const PictureRows light = session.light();
+                if (x >= uint64_t(light.layout.width) || y >= uint64_t(light.layout.height))
+                    throw ValueError("x,y", "lies outside of the picture");
+                const std::vector<std::string>& channels = light.layout.channels;
+                std::vector<float> row(channels.size() * size_t(light.layout.width));
+                light.row(static_cast<int>(y), row.data());
+                for (size_t i = 0; i < channels.size(); ++i)
+                    pixel[channels[i]] = number_or_null(double(row[x * channels.size() + i]));
+            });
+        answer(response, pixel);
     }
 
     void draw_lens(const Request& request, Response& response) {

@@ -22,6 +22,10 @@ namespace {
 /// A newer request came.
 struct Outdated {};
 
+ArgumentError other_picture() {
+    return {"picture", "", "is another one by now"};
+}
+
 // 8 bits as PNG files have them.
 LivePicture picture_of(const PictureRows& shown) {
     LivePicture out{{shown.layout.width, shown.layout.height}, {}};
@@ -128,12 +132,47 @@ SharedScene Viewer::scene() const {
     return scene_;
 }
 
+void Viewer::inspect(uint64_t version, const std::function<void(const RenderSession&)>& f) {
+    std::future<void> answered;
+    {
+        const std::lock_guard lock(mutex_);
+        const bool is_true =
+            status_.stage == LiveStage::Growing || status_.stage == LiveStage::Done;
+        if (!is_true || status_.version != version) throw other_picture();
+        answered = questions_.emplace_back(f).answered.get_future();
+        if (running_) running_->pause = true;
+        changed_.notify_all();
+    }
+    answered.get();
+}
+
 void Viewer::write(uint64_t version, const std::filesystem::path& file) {
-    const std::lock_guard session_lock(session_mutex_);
-    const LiveStatus now = status();
-    if (now.stage != LiveStage::Done || now.version != version)
-        throw ArgumentError("picture", "", "is not done yet; wait until all samples are there");
-    session_.write(file);
+    inspect(version, [&](const RenderSession& session) {
+        if (status().stage != LiveStage::Done)
+            throw ArgumentError("picture", "", "is not done yet; wait until all samples are there");
+        session.write(file);
+    });
+}
+
+void Viewer::answer_questions() {
+    std::vector<Question> all;
+    {
+        const std::lock_guard lock(mutex_);
+        all.swap(questions_);
+    }
+    for (Question& one : all) try {
+            one.f(session_);
+            one.answered.set_value();
+        } catch (...) {
+            one.answered.set_exception(std::current_exception());
+        }
+}
+
+void Viewer::refuse_questions() {
+    const std::lock_guard lock(mutex_);
+    for (Question& one : questions_)
+        one.answered.set_exception(std::make_exception_ptr(other_picture()));
+    questions_.clear();
 }
 
 bool Viewer::stale(const Job& job) const {
@@ -159,10 +198,15 @@ void Viewer::publish(const Job& job, const std::function<void(LiveStatus&)>& cha
 void Viewer::work(const std::stop_token& end) {
     for (;;) {
         std::unique_lock lock(mutex_);
-        if (!changed_.wait(lock, end, [&] { return next_.has_value(); })) return;
-        const Job job = *std::exchange(next_, std::nullopt);
+        changed_.wait(lock, end, [&] { return next_ || !questions_.empty(); });
+        const bool goes_on = !end.stop_requested();
+        const std::optional<Job> asked = std::exchange(next_, std::nullopt);
         lock.unlock();
-        const std::lock_guard session_lock(session_mutex_);
+        if (goes_on && !asked) answer_questions();
+        if (!goes_on || asked) refuse_questions();
+        if (!goes_on) return;
+        if (!asked) continue;
+        const Job& job = *asked;
         try {
             try {
                 show(job);
@@ -174,6 +218,7 @@ void Viewer::work(const std::stop_token& end) {
                 });
             }
         } catch (const Outdated&) {
+            refuse_questions();
         }
     }
 }
@@ -261,6 +306,7 @@ void Viewer::show_true(const Job& job) {
         if (std::ranges::find(notices, line) == notices.end()) notices.push_back(line);
     rendered_ = job.request;
     const LiveCamera camera = camera_of(session_.setup());
+    const std::vector<std::string> channels = session_.light().layout.channels;
     const SampleRequest& samples = job.request.samples;
     RenderMonitor monitor;
     double look_s = 0, looked_s = 0;  // a denoised picture takes its time
@@ -285,12 +331,14 @@ void Viewer::show_true(const Job& job) {
                 now.elapsed_s = steady_s() - start_s;
                 now.exposure_ev = session_.display().exposure_ev;
                 now.camera = camera;
+                now.channels = channels;
                 now.notices = notices;
             },
             std::make_shared<const LivePicture>(seen));
     };
     RenderRun run;
     run.at_pause = [&](const PathStats&) {
+        answer_questions();
         if (session_.film().taken_range().least == 0) return;  // the rough one has no holes
         const double now_s = steady_s();
         if (now_s - looked_s < 4 * look_s) return;

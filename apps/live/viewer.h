@@ -4,6 +4,7 @@
 
 #include <array>
 #include <condition_variable>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -50,6 +51,7 @@ struct LiveStatus {
     double noise = 0, elapsed_s = 0;
     float exposure_ev = 0;
     std::optional<LiveCamera> camera;
+    std::vector<std::string> channels;  ///< that the true picture has
     std::vector<std::string> notices;
     std::string error;
 };
@@ -84,8 +86,12 @@ class Viewer {
     /// The scene as it is loaded; empty before.
     [[nodiscard]] SharedScene scene() const;
 
+    /// Calls f with the session while no sample is under way, and waits for it; the film may be
+    /// read. Throws what f throws, and ArgumentError where the true picture of that request is not
+    /// what is shown.
+    void inspect(uint64_t version, const std::function<void(const RenderSession&)>& f);
     /// Writes the picture of a request once it is done, as the command line writes it. Throws
-    /// InputError where it is not the one that is shown, or not done.
+    /// InputError, also where it is not done.
     void write(uint64_t version, const std::filesystem::path&);
 
   private:
@@ -93,7 +99,13 @@ class Viewer {
         uint64_t ticket = 0, version = 0;
         RenderRequest request;
     };
+    struct Question {
+        std::function<void(const RenderSession&)> f;
+        std::promise<void> answered;
+    };
     void work(const std::stop_token&);
+    void answer_questions();
+    void refuse_questions();
     void show(const Job&);
     void show_rough(const Job&);
     void show_true(const Job&);
@@ -103,7 +115,7 @@ class Viewer {
     void publish(const Job&, const std::function<void(LiveStatus&)>& change,
                  std::shared_ptr<const LivePicture> picture = nullptr);
 
-    mutable std::mutex mutex_;  ///< of all but session_ and what is said to be the thread's own
+    mutable std::mutex mutex_;  ///< of all that is not said to be the thread's own
     mutable std::condition_variable_any changed_;
     uint64_t ticket_ = 0;  ///< of the newest request, or of having left
     std::optional<Job> next_;
@@ -111,10 +123,10 @@ class Viewer {
     LiveStatus status_;
     std::shared_ptr<const LivePicture> picture_;
     SharedScene scene_;
+    std::vector<Question> questions_;
 
-    std::mutex session_mutex_;  ///< of the session: held while a job is under way
-    RenderSession session_;
-    std::optional<RenderRequest> rendered_;  ///< the thread's own: what the film is of
+    RenderSession session_;                  ///< the thread's own
+    std::optional<RenderRequest> rendered_;  ///< likewise: what the film is of
     std::vector<std::string> of_scene_;      ///< likewise: what loading the scene told
     double samples_per_s_ = 0;               ///< likewise: of rough pictures
     std::jthread thread_;                    ///< last: it uses the others

@@ -81,6 +81,19 @@ export class Connection extends EventTarget {
     return new ImageData(new Uint8ClampedArray(await answer.arrayBuffer()), width, height);
   }
 
+  /** Values of a channel of a picture, row by row; null where it is another picture by now. */
+  async values(version, channel) {
+    const name = encodeURIComponent(channel);
+    const answer = await fetch(`api/values?page=${this.#page}&version=${version}&channel=${name}`);
+    return answer.ok ? new Float32Array(await answer.arrayBuffer()) : null;
+  }
+
+  /** Channels of a pixel by their names; null likewise. */
+  async pixel(version, x, y) {
+    const answer = await fetch(`api/pixel?page=${this.#page}&version=${version}&x=${x}&y=${y}`);
+    return answer.ok ? answer.json() : null;
+  }
+
   /** Address of the picture of a request as a file. */
   fileOf(version, name) {
     return `api/file?page=${this.#page}&version=${version}&name=${name}`;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The form beside the picture: what photographers turn, then every other option by its name.
 import { drawingOf } from "./api.js";
+import { make } from "./make.js";
 
 const kFstops = [1, 1.2, 1.4, 2, 2.8, 4, 5.6, 8, 11, 16, 22];
 const kIrises = [
@@ -21,16 +22,6 @@ const kDispersions = [
   ["hero", "a ray for each wavelength"],
   ["split", "split at the lens"],
 ];
-
-/** An element with attributes and children. */
-function make(tag, attributes = {}, ...children) {
-  const element = document.createElement(tag);
-  for (const [name, value] of Object.entries(attributes))
-    if (name in element) element[name] = value;
-    else element.setAttribute(name, value);
-  element.append(...children);
-  return element;
-}
 
 /** Builds the form into an element; it follows the settings, and sets them. */
 export class Controls {

@@ -3,6 +3,7 @@
 import { Connection, readFacts } from "./api.js";
 import { Controls } from "./controls.js";
 import { Finder } from "./finder.js";
+import { Looking } from "./looking.js";
 import { addressOf, fieldsOfAddress, Settings, textOfFloat } from "./state.js";
 
 const kUsualSize = "640x360";
@@ -20,6 +21,7 @@ const asked = fieldsOfAddress(location.hash);
 const settings = new Settings(Object.keys(asked).length > 0 ? asked : start);
 const connection = new Connection();
 const finder = new Finder(element("picture"), element("mark"), element("drag"), settings);
+const looking = new Looking(element("looking"), element("picture"), connection, () => element("command").value);
 const controls = new Controls(element("controls"), settings, facts);
 let version = 0;
 let focusing = 0; // version that is to find a focus
@@ -64,7 +66,7 @@ async function draw() {
   const number = last.picture;
   try {
     const image = await connection.picture(number);
-    if (image) finder.draw(image);
+    if (image) finder.draw(await looking.seen(image));
     drawn = number;
   } catch {
     // The stream tells that the server is gone.
@@ -92,6 +94,7 @@ connection.addEventListener("answer", ({ detail }) => {
 });
 connection.addEventListener("status", ({ detail: status }) => {
   last = status;
+  looking.meet(status);
   draw();
   if (status.version !== version) return;
   element("stage").textContent = textOfStage(status);
@@ -111,6 +114,10 @@ connection.addEventListener("status", ({ detail: status }) => {
   }
 });
 
+looking.addEventListener("show", () => {
+  drawn = 0;
+  draw();
+});
 finder.addEventListener("pinhole", () =>
   show(element("error"), "A pinhole is sharp everywhere. Choose a lens, or an f-number, to focus."));
 settings.addEventListener("change", () => {

@@ -184,6 +184,57 @@ class Browser(unittest.TestCase):
             self.assertIn(name, reached)
         self.wait_done()
 
+    def test_looking_closely(self):
+        self.browser.get(self.live.address + "#size=96x64")
+        self.browser.refresh()
+        self.wait_done()
+        self.field("noise").send_keys("20%", Keys.TAB)
+        self.wait(lambda _: "--noise" in self.command())
+        self.wait_done()
+        shown = self.picture()
+        picture = self.find("picture")
+        ActionChains(self.browser).move_to_element_with_offset(picture, 30, -20).perform()
+        self.wait(lambda _: "nits" in self.find("pixel").text)
+        where, rest = self.find("pixel").text.split(": ", 1)
+        self.assertIn("xy ", rest)
+        self.assertIn("samples.N", rest)
+        self.find("save-exr").click()
+        saved = pathlib.Path(self.downloads.name, "picture.exr")
+        self.wait(lambda _: saved.exists() and saved.stat().st_size > 0)
+        x, y = where.split(",")
+        pixel = f"{self.downloads.name}/pixel.exr"
+        subprocess.run(["oiiotool", str(saved), "--ch", "R,G,B", "--cut", f"1x1+{x}+{y}", "-o", pixel], check=True)
+        stats = subprocess.run(["oiiotool", "--stats", pixel], capture_output=True, text=True, check=True).stdout
+        truth = [float(word) for word in stats.split("Stats Avg:")[1].split()[:3]]
+        for read, true in zip(rest.split(" nits")[0].split(", "), truth):
+            self.assertAlmostEqual(float(read), true, delta=1e-3 * true + 1e-6)
+        self.assertIn("clipped", self.find("histogram").text)
+
+        Select(self.find("show")).select_by_value("samples.N")
+        self.wait(lambda _: "samples.N: from" in self.find("scale").text)
+        self.assertNotEqual(self.picture(), shown)
+        self.shot("false_colours")
+        Select(self.find("show")).select_by_value("")
+        self.wait(lambda _: self.picture() == shown)
+
+        self.find("keep").click()
+        Select(self.field("aperture")).select_by_value("star:5")
+        self.wait(lambda _: self.browser.execute_script("return document.getElementById('kept').hidden") is False)
+        self.browser.find_element(By.XPATH, "//div[@class='ring']/button[text()='f/2']").click()
+        self.wait_done()
+        self.shot("compared")
+        Select(self.find("zoom")).select_by_value("8")
+        self.shot("zoomed")
+
+    def test_a_spectrum_under_the_pointer(self):
+        self.browser.get(self.live.address + "#size=48x32&spp=16&bins=400:700:50")
+        self.browser.refresh()
+        self.wait_done()
+        ActionChains(self.browser).move_to_element_with_offset(self.find("picture"), 5, 60).perform()
+        self.wait(lambda _: "nm, at most" in self.find("spectrum").text)
+        self.assertIn("from 425 to 675 nm", self.find("spectrum").text)
+        self.shot("spectrum")
+
     def test_what_is_wrong_is_said(self):
         box = self.field("fstop")
         box.send_keys("wide", Keys.TAB)

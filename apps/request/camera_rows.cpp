@@ -134,8 +134,8 @@ std::vector<RequestField> lens_fields() {
                    "auto")),
         method(
             choice("coating", in::camera(&CameraRequest::coating),
-                   "light lost at each surface: ideal (default, none), uncoated, mgf2 (one layer "
-                   "against air)")),
+                   "light lost at each surface: ideal (default, none), uncoated, against air "
+                   "mgf2 (one layer), v-coat (two), broadband (three), or as filed with the lens")),
         method(choice("lens-precision", in::camera(&CameraRequest::precision),
                       "rays through the lens in float (default) or double"))};
 }

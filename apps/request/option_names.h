@@ -40,8 +40,12 @@ inline constexpr auto kOptionNames<IrisSampling> =
                                              {"triangles", IrisSampling::Triangles},
                                              {"alias", IrisSampling::Alias}});
 template <>
-inline constexpr auto kOptionNames<Coating> = std::to_array<OptionName<Coating>>(
-    {{"ideal", Coating::Ideal}, {"uncoated", Coating::Uncoated}, {"mgf2", Coating::MgF2}});
+inline constexpr auto kOptionNames<Coating> = [] {
+    std::array<OptionName<Coating>, kCoatingNames.size()> names{};
+    for (size_t i = 0; i < names.size(); ++i)
+        names[i] = {kCoatingNames[i].first, kCoatingNames[i].second};
+    return names;
+}();
 template <>
 inline constexpr auto kOptionNames<Precision> = std::to_array<OptionName<Precision>>(
     {{"float", Precision::Float}, {"double", Precision::Double}});

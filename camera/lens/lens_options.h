@@ -2,14 +2,27 @@
 // Options of a lens, without the machinery that carries them out.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <string_view>
+#include <utility>
 
 namespace petzval {
 
 /// Coating of surfaces. Ideal: nothing is lost. Uncoated: Fresnel's reflection at every change of
 /// index. MgF2: one layer of magnesium fluoride, a quarter wave thick at 550 nm and normal
-/// incidence, on every surface that touches air; cemented ones stay bare.
-enum class Coating : uint8_t { Ideal, Uncoated, MgF2 };
+/// incidence, on every surface that touches air; cemented ones stay bare. So with VCoat, two layers
+/// for one wavelength, and Broadband, three for the visible (layers_of() has them). Filed: what the
+/// lens's file says of each surface.
+enum class Coating : uint8_t { Ideal, Uncoated, MgF2, VCoat, Broadband, Filed };
+/// The name of each.
+inline constexpr std::array<std::pair<std::string_view, Coating>, 6> kCoatingNames{
+    {{"ideal", Coating::Ideal},
+     {"uncoated", Coating::Uncoated},
+     {"mgf2", Coating::MgF2},
+     {"v-coat", Coating::VCoat},
+     {"broadband", Coating::Broadband},
+     {"filed", Coating::Filed}}};
 
 enum class FocusBy : uint8_t {
     Paraxial,  ///< line d, rays near the axis

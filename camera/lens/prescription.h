@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "camera/lens/layer_stack.h"
 #include "core/spectrum/glass.h"
 
 namespace petzval {
@@ -26,8 +27,9 @@ struct LensSurface {
     Profile profile = Profile::Rotational;
     double thickness_mm = 0;  ///< to the next vertex; of the last surface: to the film
     double semi_diameter_mm = 0;
-    bool stop = false;           ///< the plane of the iris; glass does not change there
-    std::optional<Glass> glass;  ///< medium behind the surface; air where there is none
+    bool stop = false;                     ///< the plane of the iris; glass does not change there
+    std::optional<Glass> glass;            ///< medium behind the surface; air where there is none
+    SurfaceCoat coat = Coating::Uncoated;  ///< not Filed
 };
 
 /// Lens in millimetres. Light travels towards +z, from the scene to the sensor; z = 0 at the first

@@ -22,14 +22,14 @@ f4 four(const V& a, int first = 0) {
 
 // Transmittance of a surface for the light that was traced to it, of four lanes from the first one.
 template <class V>
-f4 surface_transmission(const LensPassage& through, Coating coating, const LensIndices<V>& indices,
-                        const LensHit<V>& hit, f4 nm, int first = 0) {
+f4 transmittance_at(const LensPassage& through, const CoatTables& coats,
+                    const LensIndices<V>& indices, const LensHit<V>& hit, f4 nm, int first = 0) {
     const auto& s = through.lens.surfaces<ScalarOf<V>>()[static_cast<size_t>(hit.surface)];
     if (s.medium_before == s.medium_after) return splat(1.f);
     const int into = through.to_film() ? s.medium_after : s.medium_before;
-    const Crossing crossing{four(hit.index, first), four(indices.of_medium[into], first),
-                            four(hit.cosine, first)};
-    return transmittance(coating, crossing, touches_air(s), nm);
+    const f4 index_into = four(indices.of_medium[into], first);
+    return coats.transmittance(hit.surface,
+                               {four(hit.index, first), index_into, four(hit.cosine, first)}, nm);
 }
 
 }  // namespace
@@ -38,10 +38,10 @@ LensOptics::LensOptics(std::shared_ptr<const Lens> lens, Iris iris, Coating coat
                        double film_reach_mm)
     : lens_(std::move(lens)),
       iris_(std::move(iris)),
-      coating_(coating),
       film_mm_(film_mm),
       stop_rim2_mm2_(lens_->surfaces<float>()[size_t(lens_->stop())].semi_diameter2_mm2),
       aimer_(*lens_, film_mm, film_reach_mm) {
+    if (coating != Coating::Ideal) coats_.emplace(*lens_, coating);
     if (!lens_->of_revolution()) return;
     const auto line_d_nm = splat8(static_cast<float>(kLineD_nm));
     const LensIndices<f8> line_d = lens_->exact_indices(line_d_nm);
@@ -168,11 +168,11 @@ std::array<LensLanding, kRaysAtOnce<V, groups>> LensOptics::land(
     for (LensLanding& one : out) one.transmitted = splat(1.f);
     const LensPassage all_surfaces{*lens_, Towards::Film, {0, lens_->last()}, Clip::Yes};
     const auto lose = [&](size_t group, const LensHit<V>& hit) {
-        if (coating_ == Coating::Ideal) return;
+        if (!coats_) return;
         for (size_t k = 0; k < kEach; ++k)
             out[group * kEach + k].transmitted *=
-                surface_transmission(all_surfaces, coating_, indices[group], hit,
-                                     drawn[group * kEach + k].nm, int(4 * k));
+                transmittance_at(all_surfaces, *coats_, indices[group], hit,
+                                 drawn[group * kEach + k].nm, int(4 * k));
     };
     const auto group_at = [&](size_t k) { return RayGroup<V>(&drawn[k * kEach]); };
     std::array<LensRay<V>, groups> rays;
@@ -216,10 +216,10 @@ template std::array<LensLanding, 4> LensOptics::land(const std::array<DrawnRay<f
 template <class V>
 f4 LensOptics::transmitted(V2f film_mm, V l, V m, const LensIndices<V>& indices, f4 nm) const {
     f4 out = splat(1.f);
-    if (coating_ == Coating::Ideal) return out;
+    if (!coats_) return out;
     const LensPassage out_of_lens{*lens_, Towards::Scene, {0, lens_->last()}, Clip::No};
     const auto lose = [&](const LensHit<V>& hit) {
-        out *= surface_transmission(out_of_lens, coating_, indices, hit, nm);
+        out *= transmittance_at(out_of_lens, *coats_, indices, hit, nm);
     };
     LensRay<V> ray = aimer_.leave<V>(PlanePoint<V>(film_mm), l, m);
     static_cast<void>(trace_lens<V>(out_of_lens, indices, ray, lose));

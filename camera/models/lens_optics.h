@@ -5,12 +5,12 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "camera/dispersion/lens_point.h"
 #include "camera/iris/iris.h"
-#include "camera/lens/coating.h"
-#include "camera/lens/lens.h"
+#include "camera/lens/lens_coats.h"
 #include "camera/lens/lens_options.h"
 #include "camera/lens/ray_aiming.h"
 #include "camera/lens/stop_bounds.h"
@@ -106,7 +106,7 @@ class LensOptics {
   private:
     std::shared_ptr<const Lens> lens_;
     Iris iris_;
-    Coating coating_;
+    std::optional<CoatTables> coats_;  ///< none: Ideal
     double film_mm_;
     float stop_rim2_mm2_;
     RayAimer aimer_;

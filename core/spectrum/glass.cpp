@@ -29,15 +29,18 @@ double index_of(const IndexSeries& formula, double um) {
     return sum_of_powers(formula.terms, um);
 }
 
-double index_of(const IndexTable& table, double um) {
-    const auto& points = table.points;
-    const double nm = um * 1e3;
+// Value at nm of points joined by straight lines; held beyond their ends. At least one.
+double joined(const std::vector<std::array<double, 2>>& points, double nm) {
     const auto next = std::upper_bound(points.begin(), points.end(), nm,
                                        [](double x, const auto& point) { return x < point[0]; });
     if (next == points.begin()) return points.front()[1];
     if (next == points.end()) return points.back()[1];
     const double t = (nm - next[-1][0]) / ((*next)[0] - next[-1][0]);
     return next[-1][1] * (1 - t) + (*next)[1] * t;
+}
+
+double index_of(const IndexTable& table, double um) {
+    return joined(table.points, um * 1e3);
 }
 
 }  // namespace
@@ -51,6 +54,10 @@ f4 Glass::index(f4 nm) const {
     f4 n{};
     for (int i = 0; i < 4; ++i) n[i] = static_cast<float>(index(double(nm[i])));
     return n;
+}
+
+double Glass::absorption(double nm) const {
+    return absorption_per_mm.empty() ? 0 : joined(absorption_per_mm, nm);
 }
 
 double Glass::abbe() const {

@@ -44,9 +44,15 @@ struct Glass {
     std::string name;
     std::variant<Sellmeier, PowerSeries, IndexSeries, IndexTable> formula;
     double first_nm = 0, last_nm = 1e9;  ///< range that the formula was fitted to
+    /// Absorption {nm, 1/mm}, rising in nm, joined by straight lines and held beyond its ends;
+    /// none: nothing is known of it, and the glass is clear.
+    std::vector<std::array<double, 2>> absorption_per_mm{};
 
     [[nodiscard]] double index(double nm) const;
     [[nodiscard]] f4 index(f4 nm) const;
+    /// Absorption at a wavelength, 1/mm: exp(-mm times it) of the light is left after a way in
+    /// glass.
+    [[nodiscard]] double absorption(double nm) const;
     /// Abbe number (nd - 1) / (nF - nC); infinite where nothing disperses.
     [[nodiscard]] double abbe() const;
     bool operator==(const Glass&) const = default;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -108,6 +109,11 @@ AgfCatalog::AgfCatalog(std::string_view text, const std::filesystem::path& file)
         } else if (key == "ld" && word.size() > 2) {
             entry.first_um = number_or_nan(word[1]);
             entry.last_um = number_or_nan(word[2]);
+        } else if (key == "it" && word.size() > 3) {
+            const double um = number_or_nan(word[1]), share = number_or_nan(word[2]),
+                         mm = number_or_nan(word[3]);
+            if (um > 0 && share >= 0 && share <= 1 && mm > 0)
+                entry.absorption_per_mm.push_back({um * 1e3, absorption_of(share, mm)});
         }
     }
     if (entries_.empty())
@@ -149,9 +155,15 @@ Glass AgfCatalog::glass_of(const Entry& entry) const {
         glass.first_nm = entry.first_um * 1e3;
         glass.last_nm = entry.last_um * 1e3;
     }
+    glass.absorption_per_mm = entry.absorption_per_mm;
+    std::sort(glass.absorption_per_mm.begin(), glass.absorption_per_mm.end());
     if (!has_index_of_glass(glass))
         throw fail("has coefficients (CD) that give no index from 1 to 5 in the visible");
     return glass;
+}
+
+double absorption_of(double transmittance, double thickness_mm) {
+    return -std::log(std::max(transmittance, 1e-6)) / thickness_mm;
 }
 
 bool has_index_of_glass(const Glass& glass) {

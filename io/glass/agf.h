@@ -2,6 +2,7 @@
 // Glass catalogues as makers of glass give them out: AGF, the format of Zemax.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -25,8 +26,9 @@ class AgfCatalog {
     [[nodiscard]] const std::string& name_of(size_t i) const { return entries_[i].name; }
 
     /// Glass of that name, whatever the case; the result is called "maker:NAME". Nothing where
-    /// there is none. Throws InputError with its line where its formula is one that Petzval does
-    /// not have, or is not whole, or does not give an index from 1 to 5 from 360 to 830 nm.
+    /// there is none. Its absorption is that of the lines IT. Throws InputError with its line where
+    /// its formula is one that Petzval does not have, or is not whole, or does not give an index
+    /// from 1 to 5 from 360 to 830 nm.
     [[nodiscard]] std::optional<Glass> find(const std::string& name) const;
 
   private:
@@ -36,12 +38,17 @@ class AgfCatalog {
         double formula = 0;
         std::vector<double> coefficients;  ///< NaN where the file has something else
         double first_um = 0, last_um = 0;
+        std::vector<std::array<double, 2>> absorption_per_mm;
     };
     [[nodiscard]] Glass glass_of(const Entry&) const;
 
     std::string file_, maker_;
     std::vector<Entry> entries_;
 };
+
+/// Absorption, 1/mm, of an internal transmittance of a thickness above 0; one below 1e-6 counts as
+/// that.
+[[nodiscard]] double absorption_of(double transmittance, double thickness_mm);
 
 /// Whether the index is from 1 to 5 at every nm from 360 to 830.
 [[nodiscard]] bool has_index_of_glass(const Glass&);

@@ -12,6 +12,7 @@
 #include "io/base/nearest.h"
 #include "io/file/assets.h"
 #include "io/file/csv.h"
+#include "io/glass/agf.h"
 
 namespace petzval {
 namespace {
@@ -67,6 +68,25 @@ Glass parse(const CsvText& catalog, size_t index) {
     return glass;
 }
 
+// Adds what assets/glass/transmittance.csv says of glasses: pairs of nm and the internal
+// transmittance of 10 mm. Both files are sorted by maker and name.
+void add_absorption(std::vector<Glass>& glasses) {
+    constexpr double thickness_mm = 10;
+    const CsvText known = read_csv_text(asset("glass/transmittance.csv"));
+    auto glass = glasses.begin();
+    for (size_t i = 0; i < known.rows.size(); ++i) {
+        const auto& row = known.rows[i];
+        glass = std::find_if(glass, glasses.end(),
+                             [name = full_name(row)](const Glass& g) { return g.name == name; });
+        const auto points = pairs(numbers(row.back()));
+        if (glass == glasses.end() || points.empty())
+            throw InputError(known.file, known.place(i),
+                             "is not a glass; install Petzval again with cmake --install");
+        for (const auto& [nm, share] : points)
+            glass->absorption_per_mm.push_back({nm, absorption_of(share, thickness_mm)});
+    }
+}
+
 CsvText read_catalog() {
     CsvText catalog = read_csv_text(asset("glass/catalog.csv"));
     if (catalog.names.size() <= Last_nm)
@@ -81,6 +101,7 @@ std::vector<Glass> glass_catalog() {
     const CsvText catalog = read_catalog();
     std::vector<Glass> glasses;
     for (size_t i = 0; i < catalog.rows.size(); ++i) glasses.push_back(parse(catalog, i));
+    add_absorption(glasses);
     return glasses;
 }
 

@@ -2,10 +2,12 @@
 // The readers of the formats of lenses; io/lens/lens_file.h chooses among them.
 #pragma once
 
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
 
+#include "io/base/json_cursor.h"
 #include "io/glass/glass_lookup.h"
 #include "io/lens/lens_file.h"
 
@@ -17,6 +19,9 @@ inline constexpr double kMaxRadius_mm = 1e9, kMaxThickness_mm = 1e5, kMaxSemiDia
 inline constexpr double kMaxConic = 1e9;
 /// Smallest length of a lens file; less is an error in the unit.
 inline constexpr double kMinLength_mm = 1e-4;
+
+/// Refuses keys of an object other than these. what: "a lens here".
+void allow_keys(const JsonCursor&, std::initializer_list<const char*> keys, const char* what);
 
 /// Readers of each format: they read text from a file of that name and throw InputError. name: of
 /// the lens, unless the file says it.

@@ -10,6 +10,7 @@
 #include "io/base/json_cursor.h"
 #include "io/base/json_parse.h"
 #include "io/file/text_lines.h"
+#include "io/lens/coat_file.h"
 #include "io/lens/lens_formats.h"
 
 namespace petzval {
@@ -19,10 +20,7 @@ constexpr Range kLength{kMinLength_mm, kMaxRadius_mm}, kFnumber{0.1, 1000}, kFie
 constexpr Range kIndex{1, 5}, kAbbe{1, 1e4};
 
 void allow(const JsonCursor& at, std::initializer_list<const char*> keys) {
-    for (const auto& item : at.value().items())
-        if (std::find(keys.begin(), keys.end(), item.key()) == keys.end())
-            at.fail(item.key(), "is not a key of a lens here; the keys are {}",
-                    fmt::join(keys, ", "));
+    allow_keys(at, keys, "a lens here");
 }
 
 // Text to be shown: in one line, with spaces for control characters.
@@ -74,9 +72,18 @@ std::vector<std::array<double, 2>> read_asphere(const JsonCursor& surface) {
     return terms;
 }
 
+SurfaceCoat read_surface_coat(const JsonCursor& surface) {
+    if (!surface.has("coating")) return Coating::Uncoated;
+    if (surface.value().at("coating").is_object()) return read_layers(surface.object("coating"));
+    const auto coating = coating_named(surface.text("coating"));
+    if (!coating || *coating == Coating::Filed)
+        surface.fail("coating", "must be layers, or one of {}, but not filed", coating_names());
+    return *coating;
+}
+
 LensSurface read_surface(const JsonCursor& at, LensGlasses& glasses) {
     allow(at, {"radius", "thickness", "medium", "semi_diameter", "conic", "asphere", "cylinder",
-               "stop"});
+               "coating", "stop"});
     LensSurface surface;
     at.require("radius");
     if (!at.value().at("radius").is_null()) {
@@ -98,6 +105,7 @@ LensSurface read_surface(const JsonCursor& at, LensGlasses& glasses) {
     at.check_bool("stop");
     surface.stop = at.value().value("stop", false);
     surface.glass = read_medium(at, glasses);
+    surface.coat = read_surface_coat(at);
     return surface;
 }
 
@@ -110,7 +118,10 @@ std::vector<LensSurface> read_surfaces(const JsonCursor& lens, LensGlasses& glas
     std::vector<LensSurface> surfaces;
     const JsonCursor* stop = nullptr;
     for (const JsonCursor& at : items) {
+        const auto before = surfaces.empty() ? std::nullopt : surfaces.back().glass;
         surfaces.push_back(read_surface(at, glasses));
+        if (at.has("coating") && surfaces.back().glass == before)
+            at.fail("coating", "needs another medium on each side of the surface");
         if (!surfaces.back().stop) continue;
         if (stop) at.fail("stop", "is the second; {} is the stop already", stop->path());
         stop = &at;
@@ -160,6 +171,12 @@ std::string source_of(const JsonCursor& at) {
 }
 
 }  // namespace
+
+void allow_keys(const JsonCursor& at, std::initializer_list<const char*> keys, const char* what) {
+    for (const auto& item : at.value().items())
+        if (std::find(keys.begin(), keys.end(), item.key()) == keys.end())
+            at.fail(item.key(), "is not a key of {}; the keys are {}", what, fmt::join(keys, ", "));
+}
 
 LensFile read_lens_json(std::string_view text, const std::string& file, const std::string& name,
                         LensGlasses& glasses) {

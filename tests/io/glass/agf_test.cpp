@@ -131,6 +131,22 @@ TEST_F(Agf, IsReadAsProgramsWriteIt) {
     expect_two_glasses(read(big));
 }
 
+TEST_F(Agf, HasTheAbsorptionOfItsLinesIT) {
+    const auto glass = [&](const char* lines) {
+        const std::string text =
+            replaced(kTwoGlasses, "IT 3.80000E-01 9.05000E-01 1.00000E+01\n", lines);
+        return *read(text).find("hikari_j-lasf08a");
+    };
+    const auto known =
+        glass("IT 0.5 0.98 10\nIT 0.4 0.81 25\nIT 0.6 x 10\nIT 0.7 1.2 10\nIT 0.8\n");
+    EXPECT_NEAR(std::exp(-25 * known.absorption(400)), 0.81, 1e-12);
+    EXPECT_NEAR(known.absorption(450), (std::log(0.81) / -25 + std::log(0.98) / -10) / 2, 1e-12);
+    EXPECT_EQ(known.absorption(300), known.absorption(400));
+    EXPECT_EQ(known.absorption(830), known.absorption(500));
+    EXPECT_EQ(glass("").absorption(400), 0);
+    EXPECT_TRUE(std::isfinite(glass("IT 0.4 0 25\n").absorption(400)));
+}
+
 TEST_F(Agf, FindsNothingForAnotherName) {
     EXPECT_FALSE(read(kTwoGlasses).find("N-BK7"));
     EXPECT_FALSE(read(kTwoGlasses).find(""));

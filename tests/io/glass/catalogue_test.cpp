@@ -248,6 +248,24 @@ TEST(GlassCatalog, NamesOfOneMakerNeedNoMaker) {
               "schott:P-BK7, sumita:K-BK7");
 }
 
+// Internal transmittance of 10 mm as Schott's data sheets print it.
+TEST(GlassCatalog, AbsorbsAsDataSheetsSay) {
+    struct Printed {
+        const char* name;
+        double nm, share;
+    };
+    for (const auto& [name, nm, share] : {Printed{"schott:N-SK16", 400, 0.988},
+                                          {"schott:F2", 400, 0.994},
+                                          {"schott:N-BK7", 400, 0.997}}) {
+        const auto glass = find_glass(name);
+        ASSERT_TRUE(glass) << name;
+        EXPECT_NEAR(std::exp(-10 * glass->absorption(nm)), share, 1e-3) << name;
+    }
+    for (const Glass& glass : glass_catalog())
+        for (const auto& [nm, per_mm] : glass.absorption_per_mm)
+            EXPECT_TRUE(per_mm >= 0 && per_mm < 2) << glass.name << ' ' << nm;
+}
+
 TEST(GlassCatalog, SuggestsWhatWasMeant) {
     const auto first = [](const std::string& text) { return glasses_near(text).front(); };
     EXPECT_EQ(first("N-SF11"), "schott:N-SF11");

@@ -10,6 +10,7 @@
 
 #include "camera/lens/paraxial.h"
 #include "io/file/text_lines.h"
+#include "io/lens/coat_file.h"
 #include "io/lens/lens_formats.h"
 #include "tests/support/lens_text.h"
 #include "tests/support/text_mutation.h"
@@ -145,6 +146,37 @@ TEST_F(LensText, OurJsonIsRead) {
         R"({"surfaces": [{"radius": null, "thickness": 1, "medium": null, "semi_diameter": 1,
             "stop": true}]})";
     EXPECT_EQ(read("a.json", minimal).lens.image_circle_mm, 0);
+}
+
+TEST_F(LensText, CoatingsAreReadByNameAndByLayer) {
+    EXPECT_EQ(read("a.json", kJson).lens.surfaces[0].coat, SurfaceCoat(Coating::Uncoated));
+    const auto first = [&](const std::string& coating) {
+        return with(kJson, "\"radius\": 50", "\"coating\": " + coating + ", \"radius\": 50");
+    };
+    const auto coat = [&](const char* coating) {
+        return read("a.json", first(coating)).lens.surfaces[0].coat;
+    };
+    EXPECT_EQ(coat("\"Broadband\""), SurfaceCoat(Coating::Broadband));
+    const char* const layers = R"({"layers": [{"thickness_nm": 99.6, "index": 1.38},
+        {"thickness_nm": 0, "index": 2.1, "cauchy_um2": 0.01, "extinction": 0.002}]})";
+    const SurfaceCoat two = LayerStack{{99.6, 1.38}, {0, 2.1, 0.01, 0.002}};
+    EXPECT_EQ(coat(layers), two);
+    test::write_text(folder_ / "two.json", layers);
+    EXPECT_EQ(read_coat((folder_ / "two.json").string()), two);
+    EXPECT_EQ(read_coat("MgF2"), SurfaceCoat(Coating::MgF2));
+    EXPECT_TRUE(has(refusal([] { (void)read_coat("brodband"); }), "did you mean broadband?"));
+    for (const auto& [bad, message] :
+         {std::pair("\"filed\"", "/surfaces/0/coating: must be layers, or one of"),
+          {"\"magic\"", "/surfaces/0/coating: must be layers, or one of ideal, uncoated"},
+          {"7", "/surfaces/0/coating"},
+          {R"({"layers": 3})", "/surfaces/0/coating/layers"},
+          {R"({"layer": []})", "/surfaces/0/coating/layer: is not a key of a coating"},
+          {R"({"layers": [{"index": 1.4}]})", "/layers/0: has no \"thickness_nm\""},
+          {R"({"layers": [{"thickness_nm": -1, "index": 1.4}]})", "/layers/0/thickness_nm: must"},
+          {R"({"layers": [{"thickness_nm": 1, "index": 0}]})", "/layers/0/index: must be from"}})
+        EXPECT_TRUE(has(refused("a.json", first(bad)), message)) << bad;
+    EXPECT_TRUE(has(refused("a.json", with(kJson, "\"stop\"", "\"coating\": \"mgf2\", \"stop\"")),
+                    "/surfaces/3/coating: needs another medium on each side"));
 }
 
 TEST_F(LensText, TheExampleOfTheDocsIsALens) {

@@ -81,17 +81,18 @@ Points steps(const Points& points) {
 }
 
 /// Rows of numbers as gnuplot reads them, without what cannot be drawn.
-std::string rows(const PlotSeries& series, bool logarithmic) {
+std::string rows(const PlotSeries& series, bool logarithmic_x, bool logarithmic_y) {
     const bool is_steps = series.style == PlotStyle::Steps;
     const Points points = is_steps ? steps(series.points) : series.points;
     std::string text;
     for (size_t i = 0; i < points.size(); ++i) {
         const auto [x, y] = points[i];
-        if (!std::isfinite(x) || !std::isfinite(y) || (logarithmic && !(x > 0 && y > 0))) continue;
+        if (!std::isfinite(x) || !std::isfinite(y)) continue;
+        if ((logarithmic_x && !(x > 0)) || (logarithmic_y && !(y > 0))) continue;
         text += fmt::format("{} {}", x, y);
         if (!series.y_bounds.empty()) {
             auto [low, high] = series.y_bounds[i];
-            if (logarithmic && !(low > 0)) low = y / 10;
+            if (logarithmic_y && !(low > 0)) low = y / 10;
             text += fmt::format(" {} {}", low, high);
         }
         text += '\n';
@@ -106,11 +107,13 @@ std::string script(const char* terminal_name, const Plot& plot) {
         "set title {}\nset xlabel {}\nset ylabel {}\nset grid\nset offsets 0, 0, graph 0.05, 0\n",
         terminal_name, quoted(plot.title), quoted(plot.x_label), quoted(plot.y_label));
     if (plot.logarithmic) text += "set logscale xy\nset offsets 0, 0, 0, 0\n";
+    if (plot.logarithmic_y) text += "set logscale y\nset offsets 0, 0, 0, 0\nset key outside\n";
     if (plot.equal_scale) text += "set size ratio -1\n";
     std::string lines;
     for (size_t i = 0; i < plot.series.size(); ++i) {
         const PlotSeries& series = plot.series[i];
-        text += fmt::format("$series{} << end\n{}end\n", i, rows(series, plot.logarithmic));
+        text += fmt::format("$series{} << end\n{}end\n", i,
+                            rows(series, plot.logarithmic, plot.logarithmic || plot.logarithmic_y));
         const bool bars = !series.y_bounds.empty();
         lines +=
             fmt::format("{}$series{} using {} with {} linewidth 2 {}{}", i == 0 ? "plot " : ", ", i,

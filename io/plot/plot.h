@@ -33,8 +33,9 @@ struct Plot {
     std::string title, x_label, y_label;  ///< labels with units
     std::vector<PlotSeries> series;       ///< at least one
     bool equal_scale = false;             ///< a unit of x is as long as one of y
-    bool logarithmic = false;  ///< both axes; a point that is not above 0 is left out, and an end
-                               ///< of a bar is drawn at a tenth of its point
+    bool logarithmic = false;    ///< both axes; a point that is not above 0 is left out, and an end
+                                 ///< of a bar is drawn at a tenth of its point
+    bool logarithmic_y = false;  ///< y alone, likewise; the key stands beside
 };
 
 /// Checks early that a plot can be written. Throws InputError where the name ends in neither .svg

@@ -41,6 +41,7 @@ void add_lens_commands(CLI::App& app) {
     add_lens_table_commands(*lens);
     add_lens_trace_commands(*lens);
     add_lens_analysis_commands(*lens);
+    add_lens_light_commands(*lens);
 }
 
 }  // namespace petzval

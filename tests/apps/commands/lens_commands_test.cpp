@@ -370,6 +370,40 @@ TEST_F(LensCli, ALensThatLightsHardlyAnyOfTheFilmIsAWarning) {
     EXPECT_FALSE(holds(said({"--sensor", "0.36x0.24"}), " of the film"));
 }
 
+TEST_F(LensCli, SaysWhereTheLightGoes) {
+    const std::string coat = text_file("coat.json", R"({"layers": [
+        {"thickness_nm": 99.6377, "index": 1.38}]})");
+    // A file of one quarter wave is mgf2.
+    const auto transmittances = [&](const std::string& coating) {
+        const std::string out = output_of({"transmittance", kLens, "--coating", coating});
+        return out.substr(out.find('\n'));
+    };
+    EXPECT_EQ(transmittances(coat), transmittances("mgf2"));
+    EXPECT_NE(transmittances("filed"), transmittances("mgf2"));
+    EXPECT_TRUE(holds(transmittances("uncoated"), "     560   0.62"));
+    const std::string csv = path("a.csv");
+    const std::string budget = output_of({"budget", kLens, "--coating", "V-Coat", "--field", "0,10",
+                                          "--csv", csv, "-o", path("a.svg")});
+    EXPECT_EQ(count_of(budget, " 100.000\n"), 6u) << budget;
+    const CsvTable table = read_csv(csv);
+    ASSERT_EQ(table.rows.size(), 6u);
+    for (const auto& row : table.rows) {
+        double sum = 0;
+        for (size_t i = 2; i < row.size(); ++i) sum += row[i];
+        EXPECT_NEAR(sum, 1, 1e-3);
+    }
+    EXPECT_TRUE(holds(file_bytes(path("a.svg")), "share (%)"));
+    const std::string ghosts = output_of({"ghosts", kLens, "-o", path("b.svg")});
+    EXPECT_TRUE(holds(ghosts, "A better coating of surface 8 would help most")) << ghosts;
+    EXPECT_TRUE(holds(ghosts, "veiling glare of a black hole in a white field: 3.9")) << ghosts;
+    EXPECT_EQ(count_of(file_bytes(path("b.svg")), "class=\"ray\""), 9u);
+    expect_error({"budget", kLens, "--coating", "brodband"}, 2, "did you mean broadband?");
+    expect_error({"budget", kLens, "--coating", coat, "--csv", coat}, 2, "would overwrite");
+    expect_error({"ghosts", kLens, "-o", path("b.png")}, 2, ".svg");
+    expect_error({"ghosts", kLens, "--coating", "ideal", "-o", path("b.svg")}, 2, "no ghost");
+    expect_error({"transmittance", kLens, "--field", "70"}, 2, "smaller --field");
+}
+
 TEST_F(LensCli, RefusesBadRequests) {
     const std::string out = path("a.svg");
     expect_error({"show", "no-such-lens"}, 2, "cooke-triplet-50mm-f5");

@@ -34,7 +34,7 @@ LightMeeting LightWalk::meet(const LightRay& in) const {
     const int into = to_film ? surface.medium_after : surface.medium_before;
     // Lane 0 is refracted. Lane 1 is reflected: as if refracted into an index of the other sign,
     // which gives the ray along its line backwards (Welford 1986, Aberrations of Optical Systems,
-    // 4.4).
+    // ch. 4).
     LensIndices<d4> indices;
     indices.of_medium[from] = indices_.of_medium[from];
     indices.of_medium[into] = indices_.of_medium[into];

@@ -70,7 +70,7 @@ f4 CoatTables::transmittance(int surface, const Crossing& c, f4 nm) const {
     const Table& table = tables_[size_t(surface)];
     if (table.step_nm == 0) return petzval::transmittance(coating_, c, table.touches_air, nm);
     // A surface lets as much through from one side as from the other, absorbing or not (Macleod
-    // 2010, 2.7), so the table has the side on which no light is totally reflected.
+    // 2010, ch. 2), so the table has the side on which no light is totally reflected.
     const f4 ratio = max(c.index_from / c.index_into, splat(1.f));
     const f4 cosine = sqrt(max(1 - ratio * ratio * (1 - c.cosine * c.cosine), f4{}));
     const int last = (kLast_nm - kFirst_nm) / table.step_nm;

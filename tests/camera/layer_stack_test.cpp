@@ -23,7 +23,7 @@ double cosine_of(double deg) {
     return std::cos(deg * kPi / 180);
 }
 
-// Macleod 2010, 6.1: admittance of (high low)^pairs high on glass.
+// Macleod 2010, ch. 6: admittance of (high low)^pairs high on glass.
 TEST(LayerStack, AQuarterWaveStackIsAMirror) {
     const double high = 2.3, low = 1.38, glass = 1.52;
     for (const int pairs : {0, 1, 4, 10}) {

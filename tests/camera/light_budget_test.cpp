@@ -56,7 +56,7 @@ TEST(LightBudget, OfAPlateIsAGeometricSeries) {
 }
 
 // Seen from the film's middle, a thin plate's glare comes from where its light in order comes from.
-TEST(VeilingGlare, OfAnAbsorbingPlateIsTheShareThatIsReflectedTwice) {
+TEST(VeilingGlare, OfAPlateIsTheShareThatIsReflectedTwice) {
     Prescription file = glass_plate(glass_of(1.8), 0.01);
     for (LensSurface& s : file.surfaces) s.semi_diameter_mm = 1;
     file.surfaces[2].thickness_mm = 100;

@@ -41,7 +41,7 @@ with tempfile.TemporaryDirectory() as folder:
             best = re.search(r"coating of surface (\d+)", text).group(1)
             glares[name, coating] = float(glare), best
 print(f"{checked} budgets add up to 1.\n")
-print("| lens | " + " | ".join(PARTS) + " |\n|---" * 1 + "|---" * len(PARTS) + "|")
+print("| lens | " + " | ".join(PARTS) + " |\n" + "|---" * (len(PARTS) + 1) + "|")
 for name in names:
     cells = [" / ".join(f"{100 * budgets[name, c][part]:.2f}" for c in ("uncoated", "broadband")) for part in PARTS]
     print(f"| `{name}` | " + " | ".join(cells) + " |")

@@ -98,10 +98,10 @@ LightBudget budget_of(const LightOptions& o, const CoatedLens& lens, const LensC
 Plot budget_plot(const LightOptions& o, const CoatedLens& lens, const LensCoats& coats) {
     constexpr int steps = 10;
     constexpr double nm = 550, least = 1e-5;
-    Plot plot{.title = fmt::format("{}, coating {}: light that meets the first surface, {} nm",
-                                   lens.lens().prescription().name, o.coating, nm),
+    Plot plot{.title = fmt::format("{}, coating {}, {} nm", lens.lens().prescription().name,
+                                   o.coating, nm),
               .x_label = "field (degrees)",
-              .y_label = "share (%)",
+              .y_label = "share of the light on the first surface (%)",
               .logarithmic_y = true};
     for (const auto& [name, part] : kBudgetParts)
         plot.series.push_back({{}, PlotStyle::LinesAndPoints, name});

@@ -44,6 +44,11 @@ std::string shape_of(const LensSurface& s) {
     if (s.conic != 0) out += fmt::format(" k = {:g}", s.conic);
     for (const auto& [power, coefficient] : s.asphere)
         out += fmt::format(" A{} = {:g}", power, coefficient);
+    if (const auto* layers = std::get_if<LayerStack>(&s.coat))
+        out += fmt::format(" coating of {} layers", layers->size());
+    for (const auto& [name, coating] : kCoatingNames)
+        if (coating != Coating::Uncoated && s.coat == SurfaceCoat(coating))
+            out += fmt::format(" coating {}", name);
     return out;
 }
 

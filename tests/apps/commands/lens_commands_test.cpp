@@ -392,7 +392,7 @@ TEST_F(LensCli, SaysWhereTheLightGoes) {
         for (size_t i = 2; i < row.size(); ++i) sum += row[i];
         EXPECT_NEAR(sum, 1, 1e-3);
     }
-    EXPECT_TRUE(holds(file_bytes(path("a.svg")), "share (%)"));
+    EXPECT_TRUE(holds(file_bytes(path("a.svg")), "share of the light"));
     const std::string ghosts = output_of({"ghosts", kLens, "-o", path("b.svg")});
     EXPECT_TRUE(holds(ghosts, "A better coating of surface 8 would help most")) << ghosts;
     EXPECT_TRUE(holds(ghosts, "veiling glare of a black hole in a white field: 3.9")) << ghosts;

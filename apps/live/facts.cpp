@@ -38,6 +38,7 @@ Json lens_facts() {
 Json camera_facts(const LiveCamera& camera) {
     return {{"pose", camera.pose},
             {"focus_m", number_or_null(camera.focus_m)},
+            {"sensor_mm", {camera.sensor_mm.x, camera.sensor_mm.y}},
             {"yfov_deg", camera.yfov_deg},
             {"middle_m", number_or_null(camera.middle_m)}};
 }

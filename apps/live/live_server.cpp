@@ -14,12 +14,14 @@
 
 #include "apps/live/facts.h"
 #include "apps/live/guard.h"
+#include "apps/live/lens_bench.h"
 #include "apps/live/page_files.h"
 #include "apps/live/saved_file.h"
 #include "apps/request/option_text.h"
 #include "apps/request/value_error.h"
 #include "camera/lens/lens.h"
 #include "io/base/error.h"
+#include "io/file/atomic_file.h"
 #include "io/lens/lens_drawing.h"
 #include "io/lens/lens_file.h"
 
@@ -164,6 +166,7 @@ class LiveServer::Pages {
             {"/api/facts", &Pages::tell_facts},     {"/api/events", &Pages::stream_events},
             {"/api/picture", &Pages::send_picture}, {"/api/file", &Pages::send_file},
             {"/api/values", &Pages::send_values},   {"/api/pixel", &Pages::tell_pixel},
+{"/api/lens", &Pages::send_lens},
             {"/api/lens.svg", &Pages::draw_lens}};
         server_.Get(".*", [this, gets](const Request& request, Response& response) {
             const std::string path = path_behind_token(request.path, gate_);
@@ -171,9 +174,13 @@ class LiveServer::Pages {
                 return (this->*found->second)(request, response);
             send_page(path == "/" ? "index.html" : path.substr(1), response);
         });
-        server_.Post(".*", [this](const Request& request, Response& response) {
-            if (path_behind_token(request.path, gate_) == "/api/request")
-                return take_request(request, response);
+        const std::map<std::string, Handler> posts{{"/api/request", &Pages::take_request},
+                                                   {"/api/bench", &Pages::measure_lens},
+                                                   {"/api/lens", &Pages::take_lens}};
+        server_.Post(".*", [this, posts](const Request& request, Response& response) {
+            if (const auto found = posts.find(path_behind_token(request.path, gate_));
+                found != posts.end())
+                return (this->*found->second)(request, response);
             refuse(response, kNotFound, "there is nothing under this address");
         });
     }
@@ -194,6 +201,14 @@ class LiveServer::Pages {
         return found->second;
     }
 
+    PageRules rules_for(const std::string& page) {
+        PageRules rules = rules_;
+        const std::lock_guard lock(mutex_);
+        if (const auto own = folders_.find(page); own != folders_.end())
+            rules.folders.push_back(own->second->path());
+        return rules;
+    }
+
     // A page is there as long as its stream of events is.
     std::string open_page() {
         const std::lock_guard lock(mutex_);
@@ -212,6 +227,7 @@ class LiveServer::Pages {
             found->second->leave();
             viewer = std::move(found->second);
             viewers_.erase(found);
+            folders_.erase(page);
         }
     }
 
@@ -258,7 +274,7 @@ class LiveServer::Pages {
             !asked.contains("fields") || !asked["fields"].is_object())
             return refuse(response, kBadRequest,
                           "a request is {\"page\": ..., \"version\": 1, \"fields\": {...}}");
-        const RenderOrder order = order_of_page(asked["fields"], rules_);
+        const RenderOrder order = order_of_page(asked["fields"], rules_for(asked["page"]));
         viewer_of(asked["page"])->ask(asked["version"], order.render);
         answer(response, {{"command", options_.command(order)}});
     }
@@ -312,6 +328,34 @@ class LiveServer::Pages {
         answer(response, pixel);
     }
 
+    // {"lens": name, "edited": text of a file, "height_mm", "focus_m", "fstop"}: all but the name
+    // may lack.
+    void measure_lens(const Request& request, Response& response) {
+        const Json asked = Json::parse(request.body);
+        answer(response,
+               bench_facts({asked.at("lens"), asked.value("edited", ""), asked.value("height_mm", 0.),
+                            asked.value("focus_m", 0.), asked.value("fstop", 0.)}));
+    }
+
+    void send_lens(const Request& request, Response& response) {
+        response.set_content(lens_text(request.get_param_value("name")), "application/json");
+    }
+
+    // Keeps a changed lens as a file as long as the page is there; a new one each time, so that no
+    // picture is of another lens than its name says.
+    void take_lens(const Request& request, Response& response) {
+        const Json asked = Json::parse(request.body);
+        const std::string page = asked.at("page"), text = asked.at("lens");
+        (void)viewer_of(page);
+        (void)parse_lens(text, "lens");
+        const std::lock_guard lock(mutex_);
+        auto& folder = folders_[page];
+        if (!folder) folder = std::make_unique<OwnFolder>();
+        const auto file = folder->path() / fmt::format("lens-{}.json", ++lenses_);
+        write_file_atomically(file, text);
+        answer(response, {{"lens", file.string()}});
+    }
+
     void draw_lens(const Request& request, Response& response) {
         const std::string name = request.get_param_value("name");
         for (const LensSummary& known : list_lenses())
@@ -332,9 +376,11 @@ class LiveServer::Pages {
     Json facts_;
     ServerGate gate_;
     std::atomic<bool> closing_ = false;
-    std::mutex mutex_;  ///< of the two below
+    std::mutex mutex_;  ///< of the four below
     std::map<std::string, std::shared_ptr<Viewer>> viewers_;
     SharedScene scene_;
+    std::map<std::string, std::unique_ptr<OwnFolder>> folders_;  ///< of pages
+    uint64_t lenses_ = 0;
     httplib::Server server_;
     std::jthread thread_;  ///< last: it uses the others
 };

@@ -7,6 +7,21 @@
 
 namespace petzval {
 
+/// A new folder below that of temporary files, gone with what is in it when this goes. Throws
+/// OutputError where there can be none.
+class OwnFolder {
+  public:
+    OwnFolder();
+    ~OwnFolder();
+    OwnFolder(const OwnFolder&) = delete;
+    OwnFolder& operator=(const OwnFolder&) = delete;
+
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+  private:
+    std::filesystem::path path_;
+};
+
 /// Bytes of a picture as a writer of files writes it, by a name without folders whose ending says
 /// the format: .exr, .png, .jpg. Throws ValueError for another name, InputError where there is no
 /// room for it.

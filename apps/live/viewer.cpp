@@ -43,7 +43,7 @@ LivePicture picture_of(const PictureRows& shown) {
 
 LiveCamera camera_of(const RenderSetup& setup) {
     const CameraReport& camera = setup.from.camera;
-    LiveCamera out{text_of_pose(camera.to_world), camera.focus_m, camera.yfov_deg, 0};
+    LiveCamera out{text_of_pose(camera.to_world), camera.focus_m, camera.sensor_mm, camera.yfov_deg, 0};
     const PreparedScene& prepared = setup.prepared;
     const V3f axis = (camera.target - camera.eye).normalized();
     if (const auto depth_m = depth_under(*prepared.scene, *prepared.bvh, *setup.view.finder,

@@ -36,6 +36,7 @@ enum class LiveStage : uint8_t {
 struct LiveCamera {
     std::string pose;   ///< as the field of that name has it
     float focus_m = 0;  ///< 0: a pinhole
+    V2f sensor_mm{0.f};    ///< as much of it as the picture shows
     float yfov_deg = 0,
           middle_m = 0;  ///< middle_m: depth of the picture's middle; 0: nothing there
 };

@@ -59,16 +59,8 @@ export class Connection extends EventTarget {
     const { version, fields } = this.#waiting;
     this.#waiting = null;
     this.#busy = true;
-    try {
-      const answer = await fetch("api/request", {
-        method: "POST",
-        headers: { "Content-Type": "application/json" },
-        body: JSON.stringify({ page: this.#page, version, fields }),
-      });
-      this.dispatchEvent(new CustomEvent("answer", { detail: { version, ...(await answer.json()) } }));
-    } catch {
-      // The stream tells that the server is gone.
-    }
+    const answer = await this.#post("api/request", { page: this.#page, version, fields });
+    if (answer) this.dispatchEvent(new CustomEvent("answer", { detail: { version, ...answer } }));
     this.#busy = false;
     this.#send();
   }
@@ -92,6 +84,31 @@ export class Connection extends EventTarget {
   async pixel(version, x, y) {
     const answer = await fetch(`api/pixel?page=${this.#page}&version=${version}&x=${x}&y=${y}`);
     return answer.ok ? answer.json() : null;
+  }
+
+  /** Text of the file of a lens that ships; null where there is none. */
+  async lens(name) {
+    const answer = await fetch(`api/lens?name=${encodeURIComponent(name)}`);
+    return answer.ok ? answer.text() : null;
+  }
+
+  /** What the bench finds of a lens; its "error" where that cannot be; null where nobody answers. */
+  bench(asked) {
+    return this.#post("api/bench", asked);
+  }
+
+  /** Name of the file that the server keeps of a lens as long as the page is there; likewise. */
+  keepLens(text) {
+    return this.#post("api/lens", { page: this.#page, lens: text });
+  }
+
+  async #post(address, body) {
+    try {
+      const headers = { "Content-Type": "application/json" };
+      return await (await fetch(address, { method: "POST", headers, body: JSON.stringify(body) })).json();
+    } catch {
+      return null; // the stream tells that the server is gone
+    }
   }
 
   /** Address of the picture of a request as a file. */

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of `petzval live`: settings, view finder and server brought together.
 import { Connection, readFacts } from "./api.js";
+import { Bench } from "./bench.js";
 import { Controls } from "./controls.js";
 import { Finder } from "./finder.js";
 import { Looking } from "./looking.js";
@@ -22,6 +23,7 @@ const settings = new Settings(Object.keys(asked).length > 0 ? asked : start);
 const connection = new Connection();
 const finder = new Finder(element("picture"), element("mark"), element("drag"), settings);
 const looking = new Looking(element("looking"), element("picture"), connection, () => element("command").value);
+const bench = new Bench(element("bench"), element("picture"), connection, settings);
 const controls = new Controls(element("controls"), settings, facts);
 let version = 0;
 let focusing = 0; // version that is to find a focus
@@ -108,6 +110,7 @@ connection.addEventListener("status", ({ detail: status }) => {
   for (const id of ["save-exr", "save-png"]) element(id).disabled = !done;
   if (status.camera && (status.stage === "growing" || done)) {
     finder.meet(status.camera);
+    bench.meet(status.camera);
     if (focusing === version && status.camera.focus_m > 0) settings.settle("focus", textOfFloat(status.camera.focus_m));
   } else if (status.camera && status.stage === "rough") {
     finder.meet(status.camera);

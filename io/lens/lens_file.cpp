@@ -74,6 +74,13 @@ LensFile load_lens(const std::string& name_or_file, std::span<const AgfCatalog> 
     return lens;
 }
 
+LensFile parse_lens(std::string_view json, const std::string& name) {
+    LensGlasses glasses({});
+    LensFile lens = read_lens_json(json, name, name, glasses);
+    check_size(lens.lens, name);
+    return lens;
+}
+
 std::vector<LensSummary> list_lenses() {
     std::vector<LensSummary> lenses;
     for (const fs::path& file : shipped())

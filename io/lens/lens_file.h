@@ -5,6 +5,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "camera/lens/prescription.h"
@@ -24,6 +25,10 @@ struct LensFile {
 /// path; for a name that is neither, an ArgumentError that lists the names there are.
 [[nodiscard]] LensFile load_lens(const std::string& name_or_file,
                                  std::span<const AgfCatalog> catalogs = {});
+
+/// Reads a lens from the text of our JSON; name: of the file, for messages. Throws InputError
+/// likewise.
+[[nodiscard]] LensFile parse_lens(std::string_view json, const std::string& name);
 
 inline constexpr size_t kMaxSurfaces = 250;
 

@@ -7,6 +7,7 @@
 #include "apps/cli/readers.h"
 #include "apps/commands/lens/field.h"
 #include "apps/commands/lens/request.h"
+#include "camera/bench/ray_path.h"
 #include "camera/lens/traced_ray.h"
 #include "io/file/atomic_file.h"
 #include "io/lens/lens_drawing.h"
@@ -21,22 +22,6 @@ struct DrawOptions {
     int rays = 5;
 };
 
-// Path of a ray from a little before the first face, or its plane, to the film or to where it ends.
-Outline path_of(const Lens& lens, const AimedBundle& bundle, PupilPoint pupil_point, double film_mm,
-                double lead_mm) {
-    const size_t axis = bundle.object().section == Section::X ? 0 : 1;
-    const AimedBundle::Line line = bundle.line(pupil_point);
-    const TracedRay ray =
-        trace_ray(lens, line.origin_mm, line.direction, bundle.nm(), Towards::Film, Clip::Yes);
-    const auto height = [axis](const V3d& p) { return axis == 0 ? p.x : p.y; };
-    const V3d first = ray.points.empty() ? line.origin_mm : ray.points.front();
-    const V3d start = first - line.direction * lead_mm;
-    Outline out{{start.z, height(start)}};
-    for (const V3d& p : ray.points) out.push_back({p.z, height(p)});
-    if (const auto film = ray.at_plane(film_mm)) out.push_back({film_mm, (*film)[axis]});
-    return out;
-}
-
 void draw_command(const DrawOptions& o) {
     refuse_overwriting({{"-o", o.out}}, o.field.request);
     check_drawing(o.out);
@@ -46,22 +31,14 @@ void draw_command(const DrawOptions& o) {
         .section = setup.section, .film_mm = setup.film_mm, .rays = {}, .caption = {}};
     drawing.film_radius_mm = lens.prescription().image_circle_mm / 2;
     const double lead_mm = 0.25 * setup.film_mm;
-    const size_t tangential = 1;
     std::string fields;
     for (const double deg : setup.fields_deg) {
         fields += fmt::format("{}{:.4g}°", fields.empty() ? "" : ", ", deg);
         for (const SpectralLine& line : kSpectralLines) {
             const AimedBundle bundle = aim(setup, deg, line.nm);
-            for (int i = 0; i < o.rays; ++i) {
-                PupilPoint pupil_point = bundle.chief();
-                const double least = bundle.least()[tangential], most = bundle.most()[tangential];
-                if (o.rays > 1) {
-                    // The box has a margin; the outermost rays should pass.
-                    const double at = 0.04 + 0.92 * i / (o.rays - 1);
-                    pupil_point[tangential] = least + (most - least) * at;
-                }
+            for (const PupilPoint point : section_points(bundle, o.rays)) {
                 drawing.rays.push_back(
-                    {path_of(lens, bundle, pupil_point, setup.film_mm, lead_mm), line.colour});
+                    {ray_path(lens, bundle, point, setup.film_mm, lead_mm), line.colour});
                 if (drawing.rays.back().path.size() == size_t(lens.size()) + 2)
                     drawing.film_radius_mm = std::max(drawing.film_radius_mm,
                                                       std::abs(drawing.rays.back().path.back()[1]));

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -14,6 +13,7 @@
 
 #include "apps/cli/field_options.h"
 #include "apps/live/live_server.h"
+#include "apps/request/value_error.h"
 #include "io/base/error.h"
 #include "io/image/picture_files.h"
 
@@ -26,9 +26,12 @@ void open_in_browser(const std::string& address) {
         return;
     std::string program = "xdg-open", word = address;
     char* const words[] = {program.data(), word.data(), nullptr};
+    posix_spawnattr_t apart;  // Ctrl-C here does not end the browser
+    posix_spawnattr_init(&apart);
+    posix_spawnattr_setflags(&apart, POSIX_SPAWN_SETSID);
     pid_t child = 0;
-    if (posix_spawnp(&child, program.c_str(), nullptr, nullptr, words, environ) == 0)
-        waitpid(child, nullptr, 0);
+    posix_spawnp(&child, program.c_str(), nullptr, &apart, words, environ);
+    posix_spawnattr_destroy(&apart);
 }
 
 std::string command_of(RenderOrder order) {
@@ -37,6 +40,8 @@ std::string command_of(RenderOrder order) {
 }
 
 void serve(const LiveOptions& options, Session& session) {
+    if (options.listen && options.listen->empty())
+        throw ValueError("--listen", "needs an address, as 0.0.0.0");
     const auto& scene = options.start.render.scene.scene;
     if (std::error_code none; !std::filesystem::is_regular_file(scene, none))
         throw InputError(scene.string(), "", "no such file");

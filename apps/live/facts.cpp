@@ -40,7 +40,8 @@ Json camera_facts(const LiveCamera& camera) {
             {"focus_m", number_or_null(camera.focus_m)},
             {"sensor_mm", {camera.sensor_mm.x, camera.sensor_mm.y}},
             {"yfov_deg", camera.yfov_deg},
-            {"middle_m", number_or_null(camera.middle_m)}};
+            {"camera", camera.name},
+            {"middle_m", camera.middle_m > 0 ? number_or_null(camera.middle_m) : Json(nullptr)}};
 }
 
 }  // namespace

@@ -23,10 +23,15 @@ std::string refusal_of(const RequestHead& head, const ServerGate& gate) {
         return "The address lacks its token; take the address that petzval live printed.";
     if (!head.origin.empty() && head.origin != "http://" + head.host)
         return "Requests of other pages are not answered.";
-    if (!head.fetch_site.empty() && head.fetch_site != "same-origin" && head.fetch_site != "none")
+    // A link of another page may lead to this one.
+    const bool is_link = head.method == "GET" && head.fetch_mode == "navigate" &&
+                         path_behind_token(head.path, gate) == "/";
+    if (!head.fetch_site.empty() && head.fetch_site != "same-origin" && head.fetch_site != "none" &&
+        !is_link)
         return "Requests of other pages are not answered.";
     if (head.method == "POST" && !head.content_type.starts_with("application/json"))
         return "A request must be JSON.";
+    if (head.encoded) return "A body must be sent as it is, with its length.";
     return "";
 }
 

@@ -13,7 +13,9 @@ struct RequestHead {
     std::string method, path;  ///< path: without a query
     std::string host, origin;  ///< origin: empty where it is not said
     std::string fetch_site;    ///< Sec-Fetch-Site (W3C Fetch Metadata); empty: not said
+    std::string fetch_mode;    ///< Sec-Fetch-Mode
     std::string content_type;
+    bool encoded = false;  ///< a body that is compressed, or whose length is not said
 };
 
 /// Rules of a server.

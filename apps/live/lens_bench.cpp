@@ -59,17 +59,19 @@ Bench set_up(const BenchRequest& request) {
         if (const auto wanted_mm = stop_radius_for(open, request.fstop))
             radius_mm = std::min(radius_mm, *wanted_mm);
     }
-    auto sharp = focused_from_pupil(Lens(std::move(prescription)), out.distance_mm,
-                                    FocusBy::Paraxial);
-    if (!sharp)
-        throw ArgumentError(request.lens, "", "forms no image at that distance");
+    auto sharp =
+        focused_from_pupil(Lens(std::move(prescription)), out.distance_mm, FocusBy::Paraxial);
+    if (!sharp) throw ArgumentError(request.lens, "", "forms no image at that distance");
     out.lens = std::make_shared<const Lens>(std::move(sharp->lens));
     out.film_mm = out.lens->film_mm();
-    const auto field_deg = field_of_height_deg(*out.lens, request.height_mm, out.film_mm);
-    if (!field_deg)
-        throw ArgumentError(request.lens, "", "lets no light through to {:.3g} mm from the middle",
-                            request.height_mm);
-    out.field_deg = *field_deg;
+    if (request.height_mm > 0) {
+        const auto field_deg = field_of_height_deg(*out.lens, request.height_mm, out.film_mm);
+        if (!field_deg)
+            throw ArgumentError(request.lens, "",
+                                "lets no light through to {:.3g} mm from the middle of the film",
+                                request.height_mm);
+        out.field_deg = *field_deg;
+    }
     return out;
 }
 
@@ -82,8 +84,7 @@ void add_section(const Bench& bench, Json& out) {
     }
     out["stop"] = {{"surface", lens.stop()},
                    {"z", lens.vertex_mm(lens.stop())},
-                   {"radius",
-                    lens.prescription().surfaces[size_t(lens.stop())].semi_diameter_mm}};
+                   {"radius", lens.prescription().surfaces[size_t(lens.stop())].semi_diameter_mm}};
     out["film"] = {{"z", bench.film_mm}, {"radius", lens.prescription().image_circle_mm / 2}};
 }
 
@@ -110,8 +111,8 @@ void add_rays(const Bench& bench, Json& out) {
         for (const auto& [name, along] :
              {std::pair{"tangential", Section::Y}, {"sagittal", Section::X}}) {
             Json fan = Json::array();
-            for (const FanPoint& point : ray_fan(*bench.lens, bundle, along, bench.film_mm,
-                                                 centre[0].film_mm, kFanRays))
+            for (const FanPoint& point :
+                 ray_fan(*bench.lens, bundle, along, bench.film_mm, centre[0].film_mm, kFanRays))
                 fan.push_back({point.stop, kMicrons * point.from_mm[along == Section::X ? 0 : 1]});
             out["fans"][name].push_back({{"nm", nm}, {"um", std::move(fan)}});
         }
@@ -144,8 +145,7 @@ void add_figures(const Bench& bench, double height_mm, Json& out) {
     shown("f-number", fmt::format("{:.3g}", fnumber_of(lens, out["stop"]["radius"])));
     shown("field", fmt::format("{:.2f}°, {:.2f} mm from the middle", bench.field_deg, height_mm));
     if (bench.field_deg > 0 && bench.field_deg < 89)
-        if (const auto found =
-                distortion(lens, bench.field_deg, bench.film_mm, bench.distance_mm))
+        if (const auto found = distortion(lens, bench.field_deg, bench.film_mm, bench.distance_mm))
             shown("distortion", fmt::format("{:+.2f} %", 100 * found->relative()));
     const auto light = film_irradiance(bench.lens, bench.film_mm, {0, height_mm});
     if (light[0] > 0)
@@ -157,7 +157,8 @@ void add_figures(const Bench& bench, double height_mm, Json& out) {
 std::string lens_text(const std::string& name) {
     const auto known = list_lenses();
     const auto is = [&](const LensSummary& lens) { return lens.name == name; };
-    if (std::ranges::none_of(known, is)) throw ArgumentError(name, "", "no lens of that name ships");
+    if (std::ranges::none_of(known, is))
+        throw ArgumentError(name, "", "no lens of that name ships");
     const FileBytes file = read_file(asset("lenses/" + name + ".json"));
     if (!file.error.empty()) throw InputError(name, "", file.error);
     return {file.bytes.begin(), file.bytes.end()};

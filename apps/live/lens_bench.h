@@ -18,9 +18,9 @@ struct BenchRequest {
 /// Text of the file of a lens that ships. Throws ArgumentError for another name.
 [[nodiscard]] std::string lens_text(const std::string& name);
 
-/// {"elements", "faces", "stop", "film": the section, mm; "rays": of F, d, C; "spots": um from their
-/// middle; "fans", "mtf"; "figures": [name, text]}. Throws InputError where the lens is not as it
-/// must be or passes no light there.
+/// {"elements", "faces", "stop", "film": the section, mm; "rays": of F, d, C; "spots": um from
+/// their middle; "fans", "mtf"; "figures": [name, text]}. Throws InputError where the lens is not
+/// as it must be or passes no light there.
 [[nodiscard]] nlohmann::json bench_facts(const BenchRequest&);
 
 }  // namespace petzval

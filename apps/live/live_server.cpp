@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 #include <httplib.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <charconv>
 #include <chrono>
@@ -69,6 +72,15 @@ uint64_t number_of(const Request& request, const char* name) {
     return out;
 }
 
+// As an address names a host: one that means all addresses of a machine is no name of it.
+std::string name_in_address(const std::string& host) {
+    if (host == "0.0.0.0" || host == "::") {
+        std::array<char, 256> name{};
+        return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "localhost";
+    }
+    return host.find(':') == std::string::npos ? host : "[" + host + "]";
+}
+
 std::vector<float> channel_of(const PictureRows& light, const std::string& name) {
     const int channel = channel_index(light.layout, name);
     if (channel < 0) throw ValueError("channel", "is none of this picture");
@@ -125,29 +137,38 @@ class LiveServer::Pages {
         if (port < 0)
             throw ValueError(
                 options_.port == 0 ? "--listen" : "--port",
-                fmt::format("nobody can listen on {}{}; another program may do so "
-                            "already; --port 0 takes a free port",
-                            host, options_.port == 0 ? "" : fmt::format(":{}", options_.port)));
+                fmt::format("nobody can listen on {}{}: either the address is none of this "
+                            "machine's, or another program listens there; --port 0 takes a free "
+                            "port",
+                            host,
+                            options_.port == 0 ? "" : fmt::format(", port {}", options_.port)));
         for (const char* name : {"127.0.0.1", "localhost"})
             gate_.hosts.push_back(fmt::format("{}:{}", name, port));
         thread_ = std::jthread([this] { server_.listen_after_bind(); });
         while (!server_.is_running())  // before that stop() does nothing
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        return fmt::format("http://{}:{}/{}", host, port,
+        return fmt::format("http://{}:{}/{}", name_in_address(host), port,
                            gate_.token.empty() ? "" : gate_.token + "/");
     }
 
   private:
+    struct OpenPage {
+        std::shared_ptr<Viewer> viewer;
+        std::unique_ptr<OwnFolder> folder;  ///< of changed lenses; nullptr: none yet
+        bool connected = false;
+        uint64_t left = 0;  ///< the how many-th that left
+    };
     using Handler = void (Pages::*)(const Request&, Response&);
 
     void route() {
         server_.set_pre_routing_handler([this](const Request& request, Response& response) {
             add_security_headers(response);
             const auto header = [&](const char* name) { return request.get_header_value(name); };
-            const std::string why =
-                refusal_of({request.method, request.path, header("Host"), header("Origin"),
-                            header("Sec-Fetch-Site"), header("Content-Type")},
-                           gate_);
+            const std::string why = refusal_of(
+                {request.method, request.path, header("Host"), header("Origin"),
+                 header("Sec-Fetch-Site"), header("Sec-Fetch-Mode"), header("Content-Type"),
+                 request.has_header("Content-Encoding") || request.has_header("Transfer-Encoding")},
+                gate_);
             if (why.empty()) return httplib::Server::HandlerResponse::Unhandled;
             refuse(response, kForbidden, why);
             return httplib::Server::HandlerResponse::Handled;
@@ -166,8 +187,7 @@ class LiveServer::Pages {
             {"/api/facts", &Pages::tell_facts},     {"/api/events", &Pages::stream_events},
             {"/api/picture", &Pages::send_picture}, {"/api/file", &Pages::send_file},
             {"/api/values", &Pages::send_values},   {"/api/pixel", &Pages::tell_pixel},
-{"/api/lens", &Pages::send_lens},
-            {"/api/lens.svg", &Pages::draw_lens}};
+            {"/api/lens", &Pages::send_lens},       {"/api/lens.svg", &Pages::draw_lens}};
         server_.Get(".*", [this, gets](const Request& request, Response& response) {
             const std::string path = path_behind_token(request.path, gate_);
             if (const auto found = gets.find(path); found != gets.end())
@@ -196,46 +216,57 @@ class LiveServer::Pages {
 
     std::shared_ptr<Viewer> viewer_of(const std::string& page) {
         const std::lock_guard lock(mutex_);
-        const auto found = viewers_.find(page);
-        if (found == viewers_.end()) throw ValueError("page", "is not connected; load it again");
-        return found->second;
+        const auto found = pages_.find(page);
+        if (found == pages_.end()) throw ValueError("page", "is not connected; load it again");
+        return found->second.viewer;
     }
 
     PageRules rules_for(const std::string& page) {
         PageRules rules = rules_;
         const std::lock_guard lock(mutex_);
-        if (const auto own = folders_.find(page); own != folders_.end())
-            rules.folders.push_back(own->second->path());
+        if (const auto found = pages_.find(page); found != pages_.end() && found->second.folder)
+            rules.folders.push_back(found->second.folder->path());
         return rules;
     }
 
-    // A page is there as long as its stream of events is.
-    std::string open_page() {
+    // A page that comes back finds its picture, unless others took its place. Empty: none is free.
+    std::string open_page(const std::string& wanted) {
+        OpenPage gone;  // ends without the lock
         const std::lock_guard lock(mutex_);
-        if (viewers_.size() >= kMostPages) return "";
+        if (const auto found = pages_.find(wanted);
+            found != pages_.end() && !found->second.connected) {
+            found->second.connected = true;
+            return wanted;
+        }
+        if (pages_.size() >= kMostPages) {
+            const auto oldest = std::ranges::min_element(pages_, {}, [](const auto& page) {
+                return page.second.connected ? UINT64_MAX : page.second.left;
+            });
+            if (oldest->second.connected) return "";
+            gone = std::move(oldest->second);
+            pages_.erase(oldest);
+        }
         const std::string page = random_token();
-        viewers_[page] = std::make_shared<Viewer>(threads_of(options_.start.run), scene_);
+        pages_[page] = {std::make_shared<Viewer>(threads_of(options_.start.run), scene_), nullptr,
+                        true, 0};
         return page;
     }
 
     void close_page(const std::string& page) {
-        std::shared_ptr<Viewer> viewer;
         const std::lock_guard lock(mutex_);
-        if (const auto found = viewers_.find(page); found != viewers_.end()) {
-            if (SharedScene scene = found->second->scene(); scene.loaded.prepared.scene)
-                scene_ = std::move(scene);  // for the page that comes next
-            found->second->leave();
-            viewer = std::move(found->second);
-            viewers_.erase(found);
-            folders_.erase(page);
-        }
+        OpenPage& closed = pages_.at(page);
+        if (SharedScene scene = closed.viewer->scene(); scene.loaded.prepared.scene)
+            scene_ = std::move(scene);  // for the page that comes next
+        closed.viewer->leave();
+        closed.connected = false;
+        closed.left = ++leavings_;
     }
 
-    void stream_events(const Request&, Response& response) {
-        const std::string page = open_page();
+    void stream_events(const Request& request, Response& response) {
+        const std::string page = open_page(request.get_param_value("page"));
         if (page.empty())
             return refuse(response, kUnavailable,
-                          fmt::format("{} pages are open already; close one", kMostPages));
+                          fmt::format("{} pages are open already; close or hide one", kMostPages));
         struct Told {
             uint64_t number = 0;
             const Scene* scene = nullptr;
@@ -274,8 +305,10 @@ class LiveServer::Pages {
             !asked.contains("fields") || !asked["fields"].is_object())
             return refuse(response, kBadRequest,
                           "a request is {\"page\": ..., \"version\": 1, \"fields\": {...}}");
+        const auto viewer = viewer_of(asked["page"]);
+        viewer->leave();  // what is shown is of other settings, even if these are refused
         const RenderOrder order = order_of_page(asked["fields"], rules_for(asked["page"]));
-        viewer_of(asked["page"])->ask(asked["version"], order.render);
+        viewer->ask(asked["version"], order.render);
         answer(response, {{"command", options_.command(order)}});
     }
 
@@ -332,9 +365,9 @@ class LiveServer::Pages {
     // may lack.
     void measure_lens(const Request& request, Response& response) {
         const Json asked = Json::parse(request.body);
-        answer(response,
-               bench_facts({asked.at("lens"), asked.value("edited", ""), asked.value("height_mm", 0.),
-                            asked.value("focus_m", 0.), asked.value("fstop", 0.)}));
+        answer(response, bench_facts({asked.at("lens"), asked.value("edited", ""),
+                                      asked.value("height_mm", 0.), asked.value("focus_m", 0.),
+                                      asked.value("fstop", 0.)}));
     }
 
     void send_lens(const Request& request, Response& response) {
@@ -349,7 +382,7 @@ class LiveServer::Pages {
         (void)viewer_of(page);
         (void)parse_lens(text, "lens");
         const std::lock_guard lock(mutex_);
-        auto& folder = folders_[page];
+        auto& folder = pages_.at(page).folder;
         if (!folder) folder = std::make_unique<OwnFolder>();
         const auto file = folder->path() / fmt::format("lens-{}.json", ++lenses_);
         write_file_atomically(file, text);
@@ -377,10 +410,9 @@ class LiveServer::Pages {
     ServerGate gate_;
     std::atomic<bool> closing_ = false;
     std::mutex mutex_;  ///< of the four below
-    std::map<std::string, std::shared_ptr<Viewer>> viewers_;
+    std::map<std::string, OpenPage> pages_;
+    uint64_t leavings_ = 0, lenses_ = 0;
     SharedScene scene_;
-    std::map<std::string, std::unique_ptr<OwnFolder>> folders_;  ///< of pages
-    uint64_t lenses_ = 0;
     httplib::Server server_;
     std::jthread thread_;  ///< last: it uses the others
 };

@@ -11,8 +11,9 @@
 
 namespace petzval {
 
-/// Pages that may be open at once. They share the scene; each has a picture of its own.
-inline constexpr size_t kMostPages = 8;
+/// Pages that may be open at once: a browser keeps six connections to a server, of which each page
+/// takes one. They share the scene; each has a picture of its own.
+inline constexpr size_t kMostPages = 5;
 
 struct LiveOptions {
     RenderOrder start;  ///< what a page begins with

@@ -70,6 +70,9 @@ RenderOrder order_of_page(const nlohmann::json& fields, const PageRules& rules) 
         const auto field = find_field(name);
         if (!field || !is_for_pages(*field))
             throw ValueError("⟨" + name + "⟩", "is no field that a page may set");
+        const auto is_text = [](const nlohmann::json& one) { return one.is_string(); };
+        if (!texts.is_array() || texts.empty() || !std::ranges::all_of(texts, is_text))
+            throw ValueError("⟨" + name + "⟩", "must be a list of texts");
         all.push_back({name, texts.get<std::vector<std::string>>()});
     }
     RenderOrder order = order_of(all);

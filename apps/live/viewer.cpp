@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "apps/live/rough.h"
+#include "apps/plan/plan_wording.h"
 #include "apps/request/parse.h"
 #include "apps/setup/display_setup.h"
 #include "apps/state/finished_film.h"
@@ -43,7 +44,12 @@ LivePicture picture_of(const PictureRows& shown) {
 
 LiveCamera camera_of(const RenderSetup& setup) {
     const CameraReport& camera = setup.from.camera;
-    LiveCamera out{text_of_pose(camera.to_world), camera.focus_m, camera.sensor_mm, camera.yfov_deg, 0};
+    LiveCamera out{text_of_pose(camera.to_world),
+                   setup.view.of_file ? std::to_string(*setup.view.of_file) : "",
+                   camera.focus_m,
+                   camera.sensor_mm,
+                   camera.yfov_deg,
+                   0};
     const PreparedScene& prepared = setup.prepared;
     const V3f axis = (camera.target - camera.eye).normalized();
     if (const auto depth_m = depth_under(*prepared.scene, *prepared.bvh, *setup.view.finder,
@@ -56,10 +62,12 @@ LiveCamera camera_of(const RenderSetup& setup) {
 std::string stamp_of(const LoadedScene& loaded) {
     std::string out;
     std::error_code none;
-    for (const NamedFile& file : loaded.prepared.files)
-        out += fmt::format(
-            "{} {};", std::filesystem::file_size(file.path, none),
-            std::filesystem::last_write_time(file.path, none).time_since_epoch().count());
+    const auto add = [&](const std::filesystem::path& file) {
+        out += fmt::format("{} {};", std::filesystem::file_size(file, none),
+                           std::filesystem::last_write_time(file, none).time_since_epoch().count());
+    };
+    for (const NamedFile& file : loaded.prepared.files) add(file.path);
+    if (loaded.prepared.environment) add(*loaded.prepared.environment);
     return out;
 }
 
@@ -257,11 +265,11 @@ void Viewer::prepare(const Job& job, const RenderRequest& asked,
         });
     LoadedScene now = session_.scene();
     if (now.prepared.scene == before.loaded.prepared.scene) return;
-    // The next request shares it in silence.
-    of_scene_.assign(notices.begin(), notices.begin() + std::ptrdiff_t(told_in_loading));
     std::string stamp = stamp_of(now);
     const std::lock_guard lock(mutex_);
-    scene_ = {std::move(now), std::move(stamp)};
+    scene_ = {std::move(now),
+              std::move(stamp),
+              {notices.begin(), notices.begin() + std::ptrdiff_t(told_in_loading)}};
 }
 
 void Viewer::render(const Job& job, RenderMonitor& monitor, const RenderRun& run) {
@@ -302,7 +310,8 @@ void Viewer::show_true(const Job& job) {
     std::vector<std::string> notices;
     const double start_s = steady_s();
     prepare(job, job.request, notices);
-    for (const std::string& line : of_scene_)
+    // Who shares a scene does so in silence.
+    for (const std::string& line : scene().notices)
         if (std::ranges::find(notices, line) == notices.end()) notices.push_back(line);
     rendered_ = job.request;
     const LiveCamera camera = camera_of(session_.setup());
@@ -324,9 +333,9 @@ void Viewer::show_true(const Job& job) {
                 now.stage = stage;
                 now.phase = Phase::Rendering;
                 now.samples = session_.film().taken_range().least;
-                now.of = samples.noise || samples.time_limit_s
-                             ? 0
-                             : samples.count.value_or(kUsualSamples);
+                now.of = samples.noise || samples.time_limit_s ? 0
+                         : samples.range                       ? samples.range->count()
+                                         : samples.count.value_or(kUsualSamples);
                 now.noise = monitor.noise;
                 now.elapsed_s = steady_s() - start_s;
                 now.exposure_ev = session_.display().exposure_ev;
@@ -351,6 +360,8 @@ void Viewer::show_true(const Job& job) {
         render(job, monitor, run);
     }
     if (const auto told = left_out_text(session_.film())) notices.push_back(*told);
+    if (const auto reached = session_.noise(session_.film()))
+        notices.push_back(text_of(*reached, *samples.noise));
     publish_picture(LiveStage::Done);
 }
 

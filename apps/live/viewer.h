@@ -34,9 +34,10 @@ enum class LiveStage : uint8_t {
 
 /// Camera as it was set up, for what a page does with it.
 struct LiveCamera {
-    std::string pose;   ///< as the field of that name has it
-    float focus_m = 0;  ///< 0: a pinhole
-    V2f sensor_mm{0.f};    ///< as much of it as the picture shows
+    std::string pose;    ///< as the field of that name has it
+    std::string name;    ///< index of the file\'s camera; empty: none of its
+    float focus_m = 0;   ///< 0: a pinhole
+    V2f sensor_mm{0.f};  ///< as much of it as the picture shows
     float yfov_deg = 0,
           middle_m = 0;  ///< middle_m: depth of the picture's middle; 0: nothing there
 };
@@ -60,7 +61,8 @@ struct LiveStatus {
 /// A scene that pages share.
 struct SharedScene {
     LoadedScene loaded;
-    std::string stamp;  ///< sizes and times of its files when they were read
+    std::string stamp;                   ///< sizes and times of its files when they were read
+    std::vector<std::string> notices{};  ///< what loading it told
 };
 
 /// Renders what was asked for last, in a thread of its own; what a newer request has in common with
@@ -128,7 +130,6 @@ class Viewer {
 
     RenderSession session_;                  ///< the thread's own
     std::optional<RenderRequest> rendered_;  ///< likewise: what the film is of
-    std::vector<std::string> of_scene_;      ///< likewise: what loading the scene told
     double samples_per_s_ = 0;               ///< likewise: of rough pictures
     std::jthread thread_;                    ///< last: it uses the others
 };

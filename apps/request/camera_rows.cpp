@@ -38,7 +38,7 @@ std::vector<RequestField> place_fields() {
             [](const std::array<V3f, 2>& aim) { return text_of(aim[0]) + "," + text_of(aim[1]); })),
         parsed("pose", in::camera(&CameraRequest::pose),
                "12 numbers, the rows of a 3x4 matrix to the world in metres: its columns point "
-               "right, up and back, and to the eye",
+               "right, up and back, and to the eye; with ⟨camera⟩ that camera stands there",
                parse_pose, text_of_pose),
         number("orbit", in::camera(&CameraRequest::orbit_deg), {-kMost, kMost, kDegrees},
                "turn the camera about the scene: degrees, counter-clockwise from above"),

@@ -18,7 +18,6 @@ void refuse(const char* option, const std::string& why) {
 
 void check_camera(const CameraRequest& camera, V2i frame) {
     if (camera.look_at && camera.name) refuse("⟨look-at⟩", "excludes ⟨camera⟩");
-    if (camera.pose && camera.name) refuse("⟨pose⟩", "excludes ⟨camera⟩");
     if (camera.pose && camera.look_at) refuse("⟨pose⟩", "excludes ⟨look-at⟩");
     if (camera.fstop && camera.lens_radius_m) refuse("⟨fstop⟩", "excludes ⟨lens-radius⟩");
     if (camera.focus) check_inside("⟨focus⟩", *camera.focus, frame);

@@ -56,7 +56,7 @@ inline constexpr float kSmallestFov_deg = 0.001f, kLargestFov_deg = 179.f;
 struct CameraRequest {
     std::optional<std::string> name;            ///< of the file's cameras, or its index
     std::optional<std::array<V3f, 2>> look_at;  ///< eye and target
-    std::optional<M44f> pose;                   ///< to the world, of a camera that looks along -z
+    std::optional<M44f> pose;  ///< to the world, of a camera that looks along -z: that of the name
     /// Turn of the camera about a vertical axis, counter-clockwise from above. Given, a camera that
     /// frames the scene stands where it sees all of it from all around.
     std::optional<float> orbit_deg;

@@ -294,7 +294,8 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
     setup.view.still = std::move(camera.camera);
     setup.view.finder = std::move(camera.finder);
     setup.view.shutter = std::move(camera.shutter);
-    if (model.from) setup.view.of_file = static_cast<size_t>(model.from - prepared.cameras->data());
+    if (model.from && !asked.camera.pose)
+        setup.view.of_file = static_cast<size_t>(model.from - prepared.cameras->data());
     const auto next_step = [&] { begin(Phase::Planning); };
     next_step();
     if (prepared.lights->divides())

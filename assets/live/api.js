@@ -14,6 +14,7 @@ export function drawingOf(lens) {
 /** A connection to the server: a stream of events, and requests that belong to it. */
 export class Connection extends EventTarget {
   #page = "";
+  #last = ""; // that it had; the server may still have its picture
   #waiting = null;
   #busy = false;
   #stream = null;
@@ -21,19 +22,22 @@ export class Connection extends EventTarget {
   /** Opens the stream; events "open", "lost", "scene" and "status" follow. */
   open() {
     this.close();
-    const stream = new EventSource("api/events");
+    const stream = new EventSource(`api/events?page=${this.#last}`);
     this.#stream = stream;
     stream.addEventListener("page", (event) => {
-      this.#page = JSON.parse(event.data).page;
+      this.#page = this.#last = JSON.parse(event.data).page;
       this.dispatchEvent(new Event("open"));
     });
     for (const name of ["scene", "status"])
       stream.addEventListener(name, (event) =>
         this.dispatchEvent(new CustomEvent(name, { detail: JSON.parse(event.data) })));
-    stream.addEventListener("error", () => {
+    stream.addEventListener("error", async () => {
       if (this.#stream !== stream) return;
+      const was = this.connected;
       this.close();
-      this.dispatchEvent(new Event("lost"));
+      const there = !was && (await fetch("api/facts").then((answer) => answer.ok, () => false));
+      this.dispatchEvent(new CustomEvent("lost", { detail: there ? "Other pages take all places; close or hide one"
+        : "The server does not answer; trying again" }));
     });
   }
 
@@ -111,8 +115,10 @@ export class Connection extends EventTarget {
     }
   }
 
-  /** Address of the picture of a request as a file. */
-  fileOf(version, name) {
-    return `api/file?page=${this.#page}&version=${version}&name=${name}`;
+  /** The picture of a request as a file. Throws an Error that says why there is none. */
+  async file(version, name) {
+    const answer = await fetch(`api/file?page=${this.#page}&version=${version}&name=${name}`);
+    if (!answer.ok) throw new Error((await answer.json()).error);
+    return answer.blob();
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The lens beside the picture: its section with rays, its figures at the field point under the pointer, and its
 // numbers, which may be changed.
-import { make } from "./make.js";
+import { make, offer, short } from "./make.js";
 
 const kColours = { 486: "#2f6fe4", 587: "#c08a00", 656: "#d0342c" }; // of F, d, C by their whole nanometres
 const colourOf = (nm) => kColours[Math.floor(nm)];
@@ -128,9 +128,9 @@ export class Bench {
     const most = Math.max(...["tangential", "sagittal"].flatMap((name) =>
       found.fans[name].flatMap((fan) => fan.um.map(([, um]) => Math.abs(um)))), 1e-3);
     this.#plots.replaceChildren(
-      this.#plot(`Spot, ${reach.toPrecision(2)} µm to each side`, [-reach, reach, -reach, reach], spots, true),
-      this.#plot(`Fan along the field, ±${most.toPrecision(2)} µm`, [-1.05, 1.05, -most, most], fans("tangential")),
-      this.#plot(`Fan across it, ±${most.toPrecision(2)} µm`, [-1.05, 1.05, -most, most], fans("sagittal")),
+      this.#plot(`Spot, ${short(reach)} µm to each side`, [-reach, reach, -reach, reach], spots, true),
+      this.#plot(`Fan along the field, ±${short(most)} µm`, [-1.05, 1.05, -most, most], fans("tangential")),
+      this.#plot(`Fan across it, ±${short(most)} µm`, [-1.05, 1.05, -most, most], fans("sagittal")),
       this.#plot("Contrast to 80 cycles/mm, geometric; bold: along the field", [0, 80, 0, 1],
         [["currentColor bold", found.mtf.tangential], ["currentColor", found.mtf.sagittal]]));
   }
@@ -225,8 +225,7 @@ export class Bench {
 
   #save() {
     if (!this.#lens) return;
-    const url = URL.createObjectURL(new Blob([JSON.stringify(this.#lens, null, 1)], { type: "application/json" }));
-    Object.assign(document.createElement("a"), { href: url, download: `${this.#lens.name ?? "lens"}-changed.json` }).click();
-    URL.revokeObjectURL(url);
+    const blob = new Blob([JSON.stringify(this.#lens, null, 1)], { type: "application/json" });
+    offer(blob, `${this.#lens.name ?? "lens"}-changed.json`);
   }
 }

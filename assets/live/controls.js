@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The form beside the picture: what photographers turn, then every other option by its name.
 import { drawingOf } from "./api.js";
-import { make } from "./make.js";
+import { make, short } from "./make.js";
 
 const kFstops = [1, 1.2, 1.4, 2, 2.8, 4, 5.6, 8, 11, 16, 22];
 const kIrises = [
@@ -29,20 +29,26 @@ export class Controls {
   #settings;
   #facts;
   #shown = []; // functions that show the settings
+  #ofScene = []; // likewise, of what the scene has
+  #ids = new Set();
+  #scene = "";
 
   constructor(form, settings, facts) {
     this.#form = form;
     this.#settings = settings;
     this.#facts = facts;
     form.addEventListener("submit", (event) => event.preventDefault());
-    form.append(this.#lens(), this.#picture(), this.#scene(null), this.#all());
+    form.append(this.#lens(), this.#picture(), this.#sceneOf(null), this.#all());
     settings.addEventListener("change", () => this.#show());
     this.#show();
   }
 
   /** Takes what the scene has, once it is loaded. */
   meet(scene) {
-    this.#form.children[2].replaceWith(this.#scene(scene));
+    const { triangles, ...shown } = scene;
+    if (JSON.stringify(shown) === this.#scene) return; // a control may be in somebody's hand
+    this.#scene = JSON.stringify(shown);
+    this.#form.children[2].replaceWith(this.#sceneOf(scene));
     this.#show();
   }
 
@@ -56,17 +62,19 @@ export class Controls {
   }
 
   #show() {
-    for (const show of this.#shown) show();
+    for (const show of [...this.#shown, ...this.#ofScene]) show();
   }
 
   #row(label, input) {
-    input.id = `set-${input.name || label}`.replace(/\W+/g, "-");
+    const id = `set-${input.name}`;
+    input.id = this.#ids.has(id) ? `${id}-again` : id;
+    this.#ids.add(id);
     return make("div", { className: "row" }, make("label", { htmlFor: input.id }, label), input);
   }
 
-  #select(name, label, options) {
+  #select(name, label, options, also = {}) {
     const input = make("select", { name }, ...options.map(([value, text]) => make("option", { value }, text)));
-    input.addEventListener("change", () => this.#settings.set({ [name]: input.value }));
+    input.addEventListener("change", () => this.#settings.set({ [name]: input.value, ...also }));
     this.#shown.push(() => {
       const value = this.#settings.text(name);
       if (![...input.options].some((option) => option.value === value))
@@ -92,20 +100,30 @@ export class Controls {
     return this.#row(label, input);
   }
 
-  #range(name, label, least, most, step, unit, text) {
+  // A text that is no number with that unit, such as frame:30, is shown as it is.
+  #range(name, label, least, most, step, unit) {
     const input = make("input", { name, type: "range", min: least, max: most, step });
     const title = make("label", {}, label);
-    input.addEventListener("input", () =>
-      this.#settings.set({ [name]: Number(input.value) === 0 ? null : text(input.value) }, `range ${name}`));
+    input.addEventListener("input", () => this.#settings.set({ [name]: input.value + unit }, `range ${name}`));
     this.#shown.push(() => {
       const set = this.#settings.text(name);
-      input.value = Number.parseFloat(set) || 0;
-      title.textContent = `${label} ${set || 0}${set.endsWith(unit) ? "" : unit}`;
+      const number = Number(unit && set.endsWith(unit) ? set.slice(0, -unit.length) : set);
+      if (set === "" || Number.isFinite(number)) input.value = number;
+      title.textContent = `${label}: ${set === "" ? "as it is" : Number.isFinite(number) ? short(number) + unit : set}`;
     });
     const row = this.#row(label, input);
     title.htmlFor = input.id;
     row.firstChild.replaceWith(title);
     return row;
+  }
+
+  // A value on each line.
+  #lines(name, label) {
+    const input = make("textarea", { name, rows: 2 });
+    input.addEventListener("change", () =>
+      this.#settings.set({ [name]: input.value.split("\n").map((line) => line.trim()).filter(Boolean) }));
+    this.#shown.push(() => (input.value = (this.#settings.fields[name] ?? []).join("\n")));
+    return this.#row(label, input);
   }
 
   #lens() {
@@ -160,22 +178,28 @@ export class Controls {
       this.#input("spp", "Samples", { placeholder: "64", inputMode: "numeric" }),
       this.#input("noise", "Until noise", { placeholder: "2%" }),
       this.#switch("denoise", "Denoise"),
-      this.#range("exposure", "Exposure", -8, 8, 0.25, " EV", (value) => value),
+      this.#range("exposure", "Exposure, EV", -8, 8, 0.25, ""),
       this.#select("view", "View", [["", "as the scene asks"], ...this.#facts.views.map((view) => [view, view])]));
   }
 
-  #scene(scene) {
+  #sceneOf(scene) {
+    const others = this.#shown;
+    this.#shown = [];
+    for (const name of ["camera", "variant", "at", "env", "env-rotate"]) this.#ids.delete(`set-${name}`);
     const rows = [];
     if (scene?.cameras.length > 1)
       rows.push(this.#select("camera", "Camera", [["", "first"],
-        ...scene.cameras.map((name, i) => [String(i), name || `number ${i}`])]));
+        ...scene.cameras.map((name, i) => [String(i), name || `number ${i}`])],
+        { pose: null, "look-at": null, orbit: null, "orbit-about": null }));
     if (scene?.variants.length > 0)
       rows.push(this.#select("variant", "Variant", [["", "first"], ...scene.variants.map((name) => [name, name])]));
     const duration_s = Math.max(0, ...(scene?.animations ?? []).map((one) => one.duration_s ?? 0));
     if (duration_s > 0)
-      rows.push(this.#range("at", "Time", 0, duration_s, duration_s / 200, " s", (value) => `${value}s`));
+      rows.push(this.#range("at", "Time", 0, duration_s, duration_s / 200, "s"));
     rows.push(this.#input("env", "Sky", { placeholder: "studio, or a file beside the scene" }),
-      this.#range("env-rotate", "Sky turned", -180, 180, 5, "°", (value) => value));
+      this.#range("env-rotate", "Sky turned, degrees", -180, 180, 5, ""));
+    this.#ofScene = this.#shown;
+    this.#shown = others;
     return make("fieldset", {}, make("legend", {}, "Scene"), ...rows);
   }
 
@@ -191,7 +215,8 @@ export class Controls {
       const group = make("details", {}, make("summary", {}, title));
       for (const field of fields)
         group.append(
-          field.kind === "switch" ? this.#switch(field.name, field.name) : this.#input(field.name, field.name),
+          field.kind === "switch" ? this.#switch(field.name, field.name)
+            : field.kind === "list" ? this.#lines(field.name, field.name) : this.#input(field.name, field.name),
           make("p", { className: "help" }, field.help));
       all.append(group);
     }

@@ -38,8 +38,7 @@ export class Finder extends EventTarget {
   /** Takes the camera that the server has set up for the settings as they are. */
   meet(camera) {
     this.#camera = camera;
-    if (this.#pointers.size === 0) this.#ahead_m = camera.middle_m ?? camera.focus_m ?? this.#ahead_m;
-    if (!(this.#ahead_m > 0)) this.#ahead_m = 1;
+    if (this.#pointers.size === 0) this.#ahead_m = camera.middle_m || camera.focus_m || this.#ahead_m;
   }
 
   /** Draws a picture, whatever its size, over the whole canvas. */
@@ -56,13 +55,15 @@ export class Finder extends EventTarget {
   }
 
   get #pose() {
-    const set = this.#settings.text("pose");
-    return set ? numbersOf(set) : this.#camera ? numbersOf(this.#camera.pose) : null;
+    const set = numbersOf(this.#settings.text("pose"));
+    if (set.length === 12 && set.every(Number.isFinite)) return set;
+    return this.#camera ? numbersOf(this.#camera.pose) : null;
   }
 
   #setPose(pose, step) {
-    // The other ways to say where the camera stands are none beside a pose.
-    this.#settings.set({ pose: textOf(pose), "look-at": null, orbit: null, "orbit-about": null }, step);
+    // The other ways to say where the camera stands are none beside a pose; the camera's lens and angle stay.
+    const camera = this.#settings.text("camera") || this.#camera.camera;
+    this.#settings.set({ pose: textOf(pose), camera, "look-at": null, orbit: null, "orbit-about": null }, step);
   }
 
   #turn(yaw, pitch, mode, step) {
@@ -91,7 +92,7 @@ export class Finder extends EventTarget {
     }
     const [width, height] = (this.#settings.text("size") || "1280x720").split("x").map(Number);
     const pixel = (share, count) => Math.max(0, Math.min(count - 1, Math.floor(share * count)));
-    this.#settings.set({ focus: `${pixel(u, width)},${pixel(v, height)}` });
+    this.#settings.try({ focus: `${pixel(u, width)},${pixel(v, height)}` });
     this.#mark.style.left = `${100 * u}%`;
     this.#mark.style.top = `${100 * v}%`;
     this.#mark.hidden = false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Looking closely at a picture: pixels, values, false colours, histogram, and another picture beside it.
-import { make } from "./make.js";
+import { make, short } from "./make.js";
 
 const kShown = ["R", "G", "B", "A"];
 // Viridis at five places (S. van der Walt, N. Smith 2015, matplotlib), dark to bright.
@@ -35,8 +35,6 @@ export function falseColours(values, width, height) {
   });
   return { image, least, most };
 }
-
-const short = (number) => (number === null ? "none" : Number(number.toPrecision(4)).toString());
 
 /** A plot of points as an SVG path of 200 x 60. */
 function path(points, most, colour) {

@@ -5,10 +5,12 @@ import { Bench } from "./bench.js";
 import { Controls } from "./controls.js";
 import { Finder } from "./finder.js";
 import { Looking } from "./looking.js";
+import { offer } from "./make.js";
 import { addressOf, fieldsOfAddress, Settings, textOfFloat } from "./state.js";
 
 const kUsualSize = "640x360";
 const kAgain_ms = 1000;
+const kAddress_ms = 300;
 
 const element = (id) => document.getElementById(id);
 const show = (node, text) => {
@@ -82,15 +84,19 @@ connection.addEventListener("open", () => {
   last = null;
   ask();
 });
-connection.addEventListener("lost", () => {
-  element("stage").textContent = "The server does not answer; trying again";
+connection.addEventListener("lost", ({ detail: why }) => {
+  element("stage").textContent = why;
   for (const id of ["save-exr", "save-png"]) element(id).disabled = true;
-  setTimeout(() => !document.hidden && connection.open(), kAgain_ms);
+  setTimeout(() => !document.hidden && !connection.connected && connection.open(), kAgain_ms);
 });
 connection.addEventListener("scene", ({ detail }) => detail && controls.meet(detail));
 connection.addEventListener("answer", ({ detail }) => {
   if (detail.version !== version) return;
-  if (detail.error) show(element("error"), detail.error);
+  if (detail.error) {
+    show(element("error"), detail.error);
+    element("stage").textContent = "Not rendered";
+    element("command").value = "";
+  }
   controls.refuse((detail.field ?? "").replace(/[⟨⟩]/g, ""));
   if (detail.command) element("command").value = detail.command;
 });
@@ -108,10 +114,13 @@ connection.addEventListener("status", ({ detail: status }) => {
     ...status.notices.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
   const done = status.stage === "done";
   for (const id of ["save-exr", "save-png"]) element(id).disabled = !done;
+  const focused = focusing === version;
+  if (focused && status.stage === "failed") settings.settle("focus", "infinity"); // nothing is there
   if (status.camera && (status.stage === "growing" || done)) {
     finder.meet(status.camera);
     bench.meet(status.camera);
-    if (focusing === version && status.camera.focus_m > 0) settings.settle("focus", textOfFloat(status.camera.focus_m));
+    const { focus_m } = status.camera;
+    if (focused) settings.settle("focus", focus_m === null ? "infinity" : textOfFloat(focus_m));
   } else if (status.camera && status.stage === "rough") {
     finder.meet(status.camera);
   }
@@ -123,11 +132,17 @@ looking.addEventListener("show", () => {
 });
 finder.addEventListener("pinhole", () =>
   show(element("error"), "A pinhole is sharp everywhere. Choose a lens, or an f-number, to focus."));
+// Browsers refuse an address that changes with every move of the pointer.
+let telling = 0;
+function tellAddress() {
+  clearTimeout(telling);
+  telling = setTimeout(() => history.replaceState(null, "", addressOf(settings.fields)), kAddress_ms);
+}
 settings.addEventListener("change", () => {
-  history.replaceState(null, "", addressOf(settings.fields));
   element("undo").disabled = !settings.canUndo;
   element("redo").disabled = !settings.canRedo;
   ask();
+  tellAddress();
 });
 addEventListener("hashchange", () => {
   const fields = fieldsOfAddress(location.hash);
@@ -144,14 +159,22 @@ addEventListener("keydown", (event) => {
   event.shiftKey ? settings.redo() : settings.undo();
 });
 element("copy").addEventListener("click", async () => {
-  await navigator.clipboard.writeText(element("command").value);
+  if (navigator.clipboard) await navigator.clipboard.writeText(element("command").value);
+  else {
+    // Plain HTTP from another machine has no clipboard of the new kind.
+    element("command").select();
+    document.execCommand("copy");
+  }
   element("copy").textContent = "Copied";
   setTimeout(() => (element("copy").textContent = "Copy"), 1500);
 });
 for (const kind of ["exr", "png"])
-  element(`save-${kind}`).addEventListener("click", () => {
-    const name = `picture.${kind}`;
-    Object.assign(document.createElement("a"), { href: connection.fileOf(version, name), download: name }).click();
+  element(`save-${kind}`).addEventListener("click", async () => {
+    try {
+      offer(await connection.file(version, `picture.${kind}`), `picture.${kind}`);
+    } catch (fault) {
+      show(element("error"), `Not saved: ${fault.message}`);
+    }
   });
 // A page that nobody sees does no work.
 document.addEventListener("visibilitychange", () => {

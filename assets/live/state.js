@@ -15,7 +15,7 @@ export function textOfFloat(number) {
 
 /** Fields of the part of an address behind "#". */
 export function fieldsOfAddress(hash) {
-  const fields = {};
+  const fields = Object.create(null); // an address may name anything
   for (const [name, text] of new URLSearchParams(hash.replace(/^#/, ""))) (fields[name] ??= []).push(text);
   return fields;
 }
@@ -33,6 +33,7 @@ export class Settings extends EventTarget {
   #past = [];
   #future = [];
   #step = "";
+  #before = null; // fields before what is tried
 
   constructor(fields) {
     super();
@@ -51,8 +52,14 @@ export class Settings extends EventTarget {
   /** Sets fields; null or "" takes one away. Changes of one step, such as a drag, are undone at once. */
   set(changes, step = "") {
     const next = { ...this.#fields };
+    // What was tried and is not settled by now is dropped: it was meant for the picture as it was.
+    if (this.#before) {
+      delete next.focus;
+      if (this.#before.focus) next.focus = this.#before.focus;
+      this.#before = null;
+    }
     for (const [name, text] of Object.entries(changes))
-      if (text === null || text === "") delete next[name];
+      if (text === null || text.length === 0) delete next[name];
       else next[name] = Array.isArray(text) ? text : [String(text)];
     if (addressOf(next) === addressOf(this.#fields)) return;
     if (!step || step !== this.#step) this.#past.push(this.#fields);
@@ -62,8 +69,16 @@ export class Settings extends EventTarget {
     this.#show(next);
   }
 
+  /** Sets fields for which settle() is to follow. */
+  try(changes) {
+    const before = this.#fields;
+    this.set(changes);
+    if (this.#fields !== before) this.#before = before;
+  }
+
   /** Sets a field to what the server found it to be, which is no step of the user's. */
   settle(name, text) {
+    this.#before = null;
     this.#show({ ...this.#fields, [name]: [text] });
   }
 
@@ -75,6 +90,7 @@ export class Settings extends EventTarget {
   }
   undo() {
     if (!this.canUndo) return;
+    this.#before = null;
     this.#future.push(this.#fields);
     this.#step = "";
     this.#show(this.#past.pop());
@@ -88,6 +104,8 @@ export class Settings extends EventTarget {
   /** All fields anew, as one step. */
   replace(fields) {
     this.#past.push(this.#fields);
+    this.#future = [];
+    this.#before = null;
     this.#step = "";
     this.#show(fields);
   }

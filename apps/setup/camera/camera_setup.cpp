@@ -77,8 +77,9 @@ M44f turned(const CameraContext& at, M44f to_world, const V3f& about, CameraRepo
 M44f stand(const CameraContext& at, const UnplacedView& view, CameraReport& report) {
     const CameraRequest& asked = at.model.asked;
     const V3f middle = at.scene.bounds.isEmpty() ? V3f(0.f) : at.scene.bounds.center();
-    if (const GltfCamera* from = at.model.from) {
-        report.name = from->name;
+    const GltfCamera* const from = at.model.from;
+    if (from) report.name = from->name;
+    if (from && !asked.pose) {
         report.target = position(from->to_world) + forward(from->to_world);
         return turned(at, from->to_world, middle, report);
     }
@@ -265,10 +266,10 @@ CameraSetup still_camera(const CameraContext& at) {
 // The shutter, where something moves while it is open.
 std::shared_ptr<const Shutter> shutter_of(const CameraModel& model, const Scene& scene,
                                           bool zooms) {
-    const bool moves = zooms || (model.from && !model.from->steps.empty());
+    const GltfCamera* const carrier = model.asked.pose ? nullptr : model.from;
+    const bool moves = zooms || (carrier && !carrier->steps.empty());
     if (!model.asked.shutter_curve || !(moves || has_motion(scene))) return nullptr;
-    return shutter_with(*model.asked.shutter_curve, model.from,
-                        model.from ? model.from->to_world : M44f());
+    return shutter_with(*model.asked.shutter_curve, carrier, carrier ? carrier->to_world : M44f());
 }
 
 }  // namespace

@@ -175,6 +175,7 @@ class Browser(unittest.TestCase):
         self.wait(lambda _: "--focus" not in self.command())
         # From the picture every control is reached by Tab.
         reached = set()
+        self.wait_done()  # before that there is nothing to save
         self.browser.execute_script("document.getElementById('picture').focus()")
         for _ in range(40):
             ActionChains(self.browser).send_keys(Keys.TAB).perform()
@@ -234,6 +235,50 @@ class Browser(unittest.TestCase):
         self.wait(lambda _: "nm, at most" in self.find("spectrum").text)
         self.assertIn("from 425 to 675 nm", self.find("spectrum").text)
         self.shot("spectrum")
+
+    def test_a_lens_on_the_bench(self):
+        self.browser.get(self.live.address + "#size=96x64&spp=4&lens=cooke-triplet-50mm-f5&focus=1")
+        self.browser.refresh()
+        self.wait_done()
+        self.browser.execute_script("document.getElementById('bench').open = true")
+        self.wait(lambda _: "50.02 mm" in self.find("figures").text)
+        # The point under the pointer.
+        ActionChains(self.browser).move_to_element_with_offset(self.find("picture"), 200, 0).perform()
+        self.wait(lambda _: "field" in self.find("figures").text and "field\n0.00" not in self.find("figures").text)
+        self.assertIn("distortion", self.find("figures").text)
+        self.assertGreater(len(self.browser.find_elements(By.CSS_SELECTOR, "#section .ray")), 12)
+        self.shot("bench")
+        shown = self.picture()
+        # Another number: section, figures and picture follow.
+        box = self.browser.find_element(By.CSS_SELECTOR, "[aria-label='radius, mm, surface 1']")
+        box.clear()
+        box.send_keys("30", Keys.TAB)
+        self.wait(lambda _: "50.02 mm" not in self.find("figures").text)
+        self.wait(lambda _: "lens-" in self.command())
+        self.wait_done()
+        self.assertNotEqual(self.picture(), shown)
+        self.saved_is_the_commands()
+        # A face is dragged: the glass becomes thicker.
+        thickness = self.browser.find_element(By.CSS_SELECTOR, "[aria-label='thickness, mm, surface 1']")
+        before = float(thickness.get_property("value"))
+        face = self.browser.find_element(By.CSS_SELECTOR, "#section [data-face='1']")
+        ActionChains(self.browser, duration=20).move_to_element(face).click_and_hold().move_by_offset(8, 0).release().perform()
+        self.wait(lambda _: float(self.browser.find_element(
+            By.CSS_SELECTOR, "[aria-label='thickness, mm, surface 1']").get_property("value")) > before)
+        self.wait_done()
+        self.find("save-lens").click()
+        saved = pathlib.Path(self.downloads.name, "cooke-triplet-50mm-f5-changed.json")
+        self.wait(lambda _: saved.exists() and saved.stat().st_size > 0)
+        done = subprocess.run([PROGRAM, "lens", "show", str(saved)], capture_output=True, text=True, check=True)
+        self.assertIn(" 30 ", done.stdout)
+        # Nonsense is said, and the next number mends it.
+        glass = self.browser.find_element(By.CSS_SELECTOR, "[aria-label='glass, surface 1']")
+        glass.clear()
+        glass.send_keys("schott:NO-SUCH", Keys.TAB)
+        self.wait(lambda _: "NO-SUCH" in self.find("bench-fault").text)
+        self.find("restore-lens").click()
+        self.wait(lambda _: "50.02 mm" in self.find("figures").text)
+        self.assertIn("--lens cooke-triplet-50mm-f5 ", self.command())
 
     def test_what_is_wrong_is_said(self):
         box = self.field("fstop")
@@ -318,6 +363,9 @@ class Browser(unittest.TestCase):
         axe = os.environ.get("AXE")
         if not axe:
             self.skipTest("AXE does not name axe-core's axe.min.js")
+        Select(self.field("lens")).select_by_value("takumar-50mm-f1.2")
+        self.browser.execute_script("for (const one of document.querySelectorAll('details')) one.open = true")
+        self.wait(lambda _: "focal length" in self.find("figures").text)
         # The page's policy lets no foreign script in but by the driver.
         self.browser.execute_script(pathlib.Path(axe).read_text(encoding="utf-8"))
         found = self.browser.execute_async_script(

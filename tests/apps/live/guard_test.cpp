@@ -46,6 +46,26 @@ TEST(LiveGuard, RequestsOfOtherPagesAreRefused) {
     }
 }
 
+TEST(LiveGuard, ALinkOfAnotherPageMayLeadToThisOne) {
+    RequestHead head = head_of("127.0.0.1:8123");
+    head.path = "/";
+    head.fetch_site = "cross-site";
+    EXPECT_NE(refusal_of(head, kLocal), "");
+    head.fetch_mode = "navigate";
+    EXPECT_EQ(refusal_of(head, kLocal), "");
+    head.path = "/api/events";
+    EXPECT_NE(refusal_of(head, kLocal), "");
+}
+
+// Its length is what bounds it.
+TEST(LiveGuard, ABodyIsSentAsItIs) {
+    RequestHead head = head_of("127.0.0.1:8123");
+    head.method = "POST";
+    head.content_type = "application/json";
+    head.encoded = true;
+    EXPECT_NE(refusal_of(head, kLocal), "");
+}
+
 // What a form of another page can send is no JSON.
 TEST(LiveGuard, WhatIsPostedIsJson) {
     RequestHead head = head_of("127.0.0.1:8123");

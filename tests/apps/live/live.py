@@ -50,10 +50,10 @@ class Live:
 class Page:
     """The stream of events of a page, and its requests."""
 
-    def __init__(self, live):
+    def __init__(self, live, wanted=""):
         self.live = live
         self.connection = http.client.HTTPConnection(live.host, live.port, timeout=120)
-        self.connection.request("GET", live.folder.rstrip("/") + "/api/events")
+        self.connection.request("GET", live.folder.rstrip("/") + f"/api/events?page={wanted}")
         self.stream = self.connection.getresponse()
         self.status_code = self.stream.status
         self.page = self.next("page")["page"] if self.status_code == 200 else None

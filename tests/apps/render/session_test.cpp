@@ -59,6 +59,47 @@ TEST(RenderSession, AnotherExposureKeepsTheSamples) {
     EXPECT_NE(values_of(session.shown()), shown);
 }
 
+// A prepass that somebody ends, and a scene that another session has loaded.
+TEST(RenderSession, KeepsItsSceneWhenARequestIsAbandoned) {
+    struct Enough {};
+    RenderSession session(2);
+    RenderRequest request = request_of();
+    render(session, request);
+    const auto* const scene = session.scene().prepared.scene.get();
+    request.scene.camera.orbit_deg = 30;
+    int planned = 0;
+    const auto end_soon = [&](Phase phase) {
+        if (phase == Phase::Planning && ++planned == 3) throw Enough();
+    };
+    EXPECT_THROW(session.prepare(request, kSilent, end_soon), Enough);
+    EXPECT_EQ(session.scene().prepared.scene.get(), scene);
+    EXPECT_EQ(render(session, request), 0u);
+    EXPECT_EQ(session.scene().prepared.scene.get(), scene);
+    EXPECT_EQ(values_of(session.light()), alone(request));
+
+    RenderSession other(1);
+    other.take(session.scene());
+    EXPECT_EQ(render(other, request), 0u);
+    EXPECT_EQ(other.scene().prepared.scene.get(), scene);
+    EXPECT_EQ(values_of(other.light()), alone(request));
+}
+
+TEST(RenderSession, APoseMovesTheCameraThatIsNamedAndLeavesItsLens) {
+    RenderRequest request = request_of();
+    request.scene.camera.name = "0";
+    RenderSession session(1);
+    render(session, request);
+    const CameraReport camera = session.setup().from.camera;
+    const auto light = values_of(session.light());
+    request.scene.camera.pose = camera.to_world;
+    render(session, request);
+    EXPECT_EQ(values_of(session.light()), light);
+    request.scene.camera.pose = camera.to_world * M44f().translate(V3f(0.1f, 0, 0));
+    render(session, request);
+    EXPECT_EQ(session.setup().from.camera.yfov_deg, camera.yfov_deg);
+    EXPECT_NE(values_of(session.light()), light);
+}
+
 TEST(RenderSession, MoreSamplesAreAddedToThoseThatAreThere) {
     RenderSession session(2);
     RenderRequest request = request_of();

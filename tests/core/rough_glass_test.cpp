@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rough rough_glass sends on all that it meets, from both sides, the same way forwards and
+// Rough glass sends on all that it meets, from both sides, the same way forwards and
 // backwards.
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ BsdfInput rough_glass(float roughness, float eta) {
     return in;
 }
 
-/// A dispersive rough_glass, its indices 3 % apart as those of flint are.
+/// A dispersive glass, its indices 3 % apart as those of flint are.
 BsdfInput flint(float roughness, float eta) {
     BsdfInput in = rough_glass(roughness, eta);
     in.eta = f4{eta * 0.985f, eta, eta * 1.015f, 1.f};
@@ -223,7 +223,7 @@ TEST(RoughGlass, TheLobeOfWhatIsLostHoldsItAll) {
     }
 }
 
-// What rough_glass takes from reflection goes into transmission; less is promised of that fit.
+// What glass takes from reflection goes into transmission; less is promised of that fit.
 TEST(RoughGlass, WeakReflectionHoldsAllTheLight) {
     test::Random random(24);
     for (int i = 0; i < 60; ++i) {

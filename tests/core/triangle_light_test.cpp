@@ -136,7 +136,7 @@ TEST(TriangleLight, EstimatesLambertsIrradianceNearALargeLamp) {
             const float cosine = s ? s->direction.dot(wall) : 0;
             moments.add(cosine > 0 ? double(s->radiance[1] * cosine / s->pdf) : 0);
         }
-        // By a grid of directions: those that meet_triangle the lamp.
+        // By a grid of directions: those that meet the lamp.
         double expected = 0;
         constexpr int kSide = 2000;
         for (int i = 0; i < kSide; ++i)
@@ -240,7 +240,7 @@ TEST(TriangleLight, CutoutsShineWithTheirCoverage) {
     EXPECT_FLOAT_EQ(radiance(AlphaMode::Mask), 8);
 }
 
-// A shadow ray to the target must not meet_triangle the light itself, at any scale and distance.
+// A shadow ray to the target must not meet the light itself, at any scale and distance.
 TEST(TriangleLight, ShadowRaysEndBeforeTheLight) {
     Random random(6);
     for (int i = 0; i < 20000; ++i) {

@@ -119,7 +119,7 @@ M44f half_turn(const V3f& axis) {
     return m;
 }
 
-// The back may be the same mesh, mirrored or turned_about: its corners are rounded otherwise, and
+// The back may be the same mesh, mirrored or turned: its corners are rounded otherwise, and
 // its quads may be split along the other diagonal.
 TEST(FrontAtBack, TheBackMayBeAnInstanceOfTheSameMesh) {
     M44f mirrored;

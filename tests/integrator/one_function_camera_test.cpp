@@ -55,7 +55,7 @@ std::vector<float> camera_picture(const Camera& camera) {
     return out;
 }
 
-/// Of the lamp's camera_picture, the share of the film's area, and where its middle is.
+/// Of the lamp's picture, the share of the film's area, and where its middle is.
 struct Seen {
     double share = 0;
     V2d middle{0.};

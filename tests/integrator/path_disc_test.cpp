@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Suns with a disc, flat lamps, and lamps that are not disc_seen, against closed forms.
+// Suns with a disc, flat lamps, and lamps that are not seen, against closed forms.
 #include <numbers>
 
 #include "core/light/small_features.h"
@@ -190,7 +190,7 @@ TEST(FlatLamp, ShinesFromItsFrontAlone) {
     EXPECT_EQ(estimate(floor_under(lamp), PathOptions(), 64, to_floor).value, 0);
 }
 
-// What is not disc_seen lights and is mirrored; panes before it change nothing of that.
+// What is not seen lights and is mirrored; panes before it change nothing of that.
 TEST(UnseenLamp, IsNotSeenThroughPanesEither) {
     Material pane = glass_material(1.5f), mirror;
     pane.has_volume = false;

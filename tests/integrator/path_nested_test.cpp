@@ -79,7 +79,7 @@ TEST(NestedVolumes, AbsorbAsWhatFillsSpace) {
         }
 }
 
-// The same, nested_seen aslant from far, where t is rounded more than points: no face is missed.
+// The same, seen aslant from far, where t is rounded more than points: no face is missed.
 TEST(NestedVolumes, FacesThatCoincideAreOneBoundaryFromAfar) {
     const World world = of_layers({{0, -3, 1, 0.5f, 40}, {-2, -3, 1, 0.25f, 39}});
     for (int i = 0; i < 200; ++i) {
@@ -119,7 +119,7 @@ double reflectance(double a, double b) {
 }
 
 // The front of a small volume coincides with that of a large one, or lies a little before it or
-// behind it, as nested_seen from near and from far, where t is rounded more than points are. Bodies
+// behind it, as seen from near and from far, where t is rounded more than points are. Bodies
 // of each overlap, so that nothing puts a wrong count right.
 TEST(NestedVolumes, FacesThatNearlyCoincideAreEachCrossedOnce) {
     const Turned turned;
@@ -132,7 +132,7 @@ TEST(NestedVolumes, FacesThatNearlyCoincideAreEachCrossedOnce) {
             Mesh bodies = layer(off, -0.8f, 1.3f);
             append(bodies, layer(-0.6f, -1, 1.2f));
             place(world.scene, turned(bodies), glass_material(1.6f, 0.25f));
-            // Only what goes through is nested_seen.
+            // Only what goes through is seen.
             place(world.scene, turned(test::quad(V3f(-30, -30, -4), V3f(60, 0, 0), V3f(0, 60, 0))),
                   test::emitter_material(1));
             world.finish();
@@ -153,7 +153,7 @@ TEST(NestedVolumes, FacesThatNearlyCoincideAreEachCrossedOnce) {
         }
 }
 
-// Faces that count as one boundary, as nested_seen from far, do not shade each other: light samples
+// Faces that count as one boundary, as seen from far, do not shade each other: light samples
 // leave clear of both.
 TEST(NestedVolumes, FacesThatCoincideDoNotShadeEachOther) {
     const Turned turned;
@@ -227,7 +227,7 @@ TEST(NestedVolumes, RefractByTheIndexOfBothSides) {
     }
 }
 
-// What is nested_seen through a slab of 3 m whose faces lie within clear volumes of higher
+// What is seen through a slab of 3 m whose faces lie within clear volumes of higher
 // priority, half a metre to each side.
 double seen_with_hidden_faces(const Material& m) {
     World world;
@@ -356,7 +356,7 @@ TEST(NestedVolumes, TheCameraKnowsWhereItStands) {
                 std::sqrt(0.5), 1e-4);
 }
 
-// A lone volume, and what is nested_seen in it is no face of glass.
+// A lone volume, and what is seen in it is no face of glass.
 TEST(NestedVolumes, TheCameraKnowsThatItIsInWater) {
     World world;
     place(world.scene, box(V3f(-3), V3f(3)), glass_material(1.33f, 0.5f));

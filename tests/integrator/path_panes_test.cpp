@@ -176,7 +176,7 @@ TEST(Panes, AWhiteSkyComesThrough) {
     }
 }
 
-// The glazed room_with_pane: sun, sky and lamps stand outside, and the room_with_pane inside is
+// The glazed room: sun, sky and lamps stand outside, and the room inside is
 // coloured.
 World room_with_pane(bool glazed, const Material& pane) {
     World world;

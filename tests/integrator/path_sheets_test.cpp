@@ -72,7 +72,7 @@ TEST_P(Sheets, LampsShineFromTheSideThatFaces) {
     EXPECT_LT(pair.error, 0.01 * pair.value);
 }
 
-// Both stop light: behind a thick_sheet there is none.
+// Both stop light: behind a sheet there is none.
 TEST_P(Sheets, NoLightPassesThem) {
     World world;
     test::place(world.scene, thick_sheet(true, -1.f, 1), one_sided_sheet(0.5f));
@@ -85,7 +85,7 @@ TEST_P(Sheets, NoLightPassesThem) {
     EXPECT_EQ(estimate(world, {}, 64, at_wall).value, 0);
 }
 
-// Half of the rays pass a thick_sheet of BLEND 0.5, as those of a thick_sheet without a back.
+// Half of the rays pass a sheet of BLEND 0.5, as those of a sheet without a back.
 TEST_P(Sheets, BlendCountsOnce) {
     World world;
     world.scene.sky = Sky::uniform(Rgb(1.f));

@@ -346,7 +346,7 @@ TEST(Render, ATimeLimitWithPausesEndsEvenly) {
     }
 }
 
-// Not a number for one half of the film_with.
+// Not a number for one half of the picture.
 class BadTracer {
   public:
     f4 radiance(const PathStart& start, const Bands&, const Sampler&, FilmSample&,

@@ -154,10 +154,10 @@ TEST_F(CliSpelling, MisspeltCommandsAreFound) {
     EXPECT_EQ(refused({"image", "blur"}),
               "\"blur\" is no command; there are petzval image diff, view, noise, spectrum");
     EXPECT_EQ(refused({"version"}), "\"version\" is no command; did you mean --version?");
-    EXPECT_EQ(
-        refused({}),
-        "petzval needs a command: render, resume, merge, plan, chart, info, trace-sample, image, "
-        "lens");
+    EXPECT_EQ(refused({}),
+              "petzval needs a command: render, resume, merge, plan, chart, live, info, "
+              "trace-sample, image, "
+              "lens");
     EXPECT_EQ(refused({"image"}), "petzval image needs a command: diff, view, noise, spectrum");
     EXPECT_EQ(refused({"studio.glb"}),
               "\"studio.glb\" is no command; to render it type petzval render studio.glb -o "

@@ -16,7 +16,7 @@ using test::diffuse_material;
 using test::place;
 using test::quad;
 
-/// The twelve sides of a scene_with_box.
+/// The twelve sides of a box.
 Scene scene_with_box(V3f low, V3f high) {
     Scene scene;
     const V3f s = high - low, x(s.x, 0, 0), y(0, s.y, 0), z(0, 0, s.z);

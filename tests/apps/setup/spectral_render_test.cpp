@@ -217,7 +217,7 @@ TEST(SpectralRender, RoughDispersionNeitherGainsNorLoses) {
     }
 }
 
-// A prism_mesh of 60 degrees: apex at the top, long axis z, base from (-1, 0) to (1, 0).
+// A prism of 60 degrees: apex at the top, long axis z, base from (-1, 0) to (1, 0).
 constexpr float kPrismHeight = std::numbers::sqrt3_v<float>;
 Mesh prism_mesh() {
     Mesh out;
@@ -229,7 +229,7 @@ Mesh prism_mesh() {
     return out;
 }
 
-// A ray through a prism_mesh of 60 degrees leaves each wavelength at the angle of Snell's law,
+// A ray through a prism of 60 degrees leaves each wavelength at the angle of Snell's law,
 // computed here from the catalogue's figures alone.
 TEST(SpectralRender, PrismBendsEachWavelengthAsSnellSays) {
     World world;
@@ -359,9 +359,9 @@ TEST(SpectralRender, HeroAgreesWithOneWavelengthAPath) {
     EXPECT_GE(test::chi_square_p(squares / (30. / 28), 75), test::sidak()) << squares;
 }
 
-// Rough glass parts the wavelengths twice. The lane that led into the prism_mesh has been chosen by
+// Rough glass parts the wavelengths twice. The lane that led into the prism has been chosen by
 // the hero, so that the hero must not choose the lane that leads out of it. A lamp behind the
-// prism_mesh gets the short wavelengths alone.
+// prism gets the short wavelengths alone.
 TEST(SpectralRender, ARoughPrismAgreesWithOneWavelengthAPath) {
     World world;
     place(world.scene, prism_mesh(), glass_material("schott:N-SF11", 0.1f));

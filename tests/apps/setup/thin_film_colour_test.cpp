@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What RGB shows of a thin film, against its light at each wavelength colour_seen by the standard
+// What RGB shows of a thin film, against its light at each wavelength seen by the standard
 // observer.
 #include <gtest/gtest.h>
 

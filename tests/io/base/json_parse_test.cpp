@@ -134,7 +134,7 @@ TEST_F(Cursor, NamesThePlaceOfEveryMismatch) {
         },
         "a.gltf: /list/1: must be from 0 to 1, but is 2");
     says([&] { (void)root.index("i", 5, "thing"); },
-         "a.gltf: /i: there is no thing 5; the kGltf has 5");
+         "a.gltf: /i: there is no thing 5; the file has 5");
     says([&] { (void)root.indices("list", 3, "thing"); }, "a.gltf: /list/2: names thing 2 again");
     EXPECT_TRUE(has(refusal([&] { (void)root.number("big"); }), "/big: must be from"));
     EXPECT_TRUE(has(refusal([&] { JsonCursor(json["list"], kGltf); }), "must be an object"));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Animations that are wrong. What a channel with a fault moves stays, with a warning that names the
-// place; an animation that is none is why_refused where it is played. Of others there is a warning,
+// place; an animation that is none is refused where it is played. Of others there is a warning,
 // and petzval info names every fault.
 #include <gtest/gtest.h>
 

@@ -24,7 +24,7 @@ void expect_near_vector(const V4f& a, const V4f& b) {
     EXPECT_LT((a - b).length(), 1e-6f) << a << " is not " << b;
 }
 
-/// The unit textured_square in the plane z = 0, seen from +z, with the texture upright on it: u to
+/// The unit square in the plane z = 0, seen from +z, with the texture upright on it: u to
 /// the right, v down.
 Mesh textured_square() {
     Mesh mesh;
@@ -168,7 +168,7 @@ TEST(GltfBake, MirroredTangentsKeepTheirBitangent) {
     EXPECT_LT((bitangent - V3f(0, 1, 0)).length(), 1e-6f);
 }
 
-/// A textured_square with a normal map, its own tangents along y.
+/// A square with a normal map, its own tangents along y.
 TinyGltf normal_mapped() {
     TinyGltf file;
     file.add("textures", {{"source", file.add_image(tiny_png(1, 1, {128, 128, 255, 255}))}});

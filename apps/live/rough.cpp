@@ -48,10 +48,11 @@ bool keeps_samples(const RenderRequest& a, const RenderRequest& b) {
     });
 }
 
-int rough_divisor(V2i size_px, double samples_per_s) {
+int rough_divisor(V2i size_px, double samples_per_s, double set_up_s) {
     constexpr double kUnmeasured_per_s = 3e5;  // of two slow cores
     const double pixels = double(size_px.x) * size_px.y;
-    const double most = kRough_s * (samples_per_s > 0 ? samples_per_s : kUnmeasured_per_s);
+    const double most = std::max(kRough_s - set_up_s, kLeastSampling_s) *
+                        (samples_per_s > 0 ? samples_per_s : kUnmeasured_per_s);
     return static_cast<int>(std::clamp(std::ceil(std::sqrt(pixels / most)), 1., 1e5));
 }
 

@@ -14,12 +14,13 @@ namespace petzval {
 /// many there are and how they are shown alone. Then nothing rough is needed.
 [[nodiscard]] bool keeps_samples(const RenderRequest&, const RenderRequest&);
 
-/// Divisor of the next rough picture, so that it takes kRough_s. Measured samples per second: 0
-/// where none were taken yet.
-[[nodiscard]] int rough_divisor(V2i size_px, double samples_per_s);
+/// Divisor of the next rough picture, so that it is there in time. Measured of those before, 0
+/// where there was none: how many samples a second brings, and how long the setting up takes.
+[[nodiscard]] int rough_divisor(V2i size_px, double samples_per_s, double set_up_s);
 
-/// Time for the samples of a rough picture: with the setting up of its camera it stays within 150
-/// ms.
-inline constexpr double kRough_s = 0.08;
+/// Time from a request to its rough picture; the way to the page and back makes it 150 ms.
+inline constexpr double kRough_s = 0.11;
+/// Least time for its samples: with fewer nothing would be seen.
+inline constexpr double kLeastSampling_s = 0.03;
 
 }  // namespace petzval

@@ -288,10 +288,13 @@ void Viewer::render(const Job& job, RenderMonitor& monitor, const RenderRun& run
 
 void Viewer::show_rough(const Job& job) {
     const V2i size = job.request.scene.size;
-    const RenderRequest rough = rough_of(job.request, rough_divisor(size, samples_per_s_));
+    const RenderRequest rough =
+        rough_of(job.request, rough_divisor(size, samples_per_s_, set_up_s_));
     std::vector<std::string> unheard;
+    const double asked_s = steady_s();
     prepare(job, rough, unheard);
     const double start_s = steady_s();
+    set_up_s_ = start_s - asked_s;
     RenderMonitor monitor;
     render(job, monitor, {});
     samples_per_s_ =

@@ -128,10 +128,10 @@ class Viewer {
     SharedScene scene_;
     std::vector<Question> questions_;
 
-    RenderSession session_;                  ///< the thread's own
-    std::optional<RenderRequest> rendered_;  ///< likewise: what the film is of
-    double samples_per_s_ = 0;               ///< likewise: of rough pictures
-    std::jthread thread_;                    ///< last: it uses the others
+    RenderSession session_;                    ///< the thread's own
+    std::optional<RenderRequest> rendered_;    ///< likewise: what the film is of
+    double samples_per_s_ = 0, set_up_s_ = 0;  ///< likewise: of rough pictures
+    std::jthread thread_;                      ///< last: it uses the others
 };
 
 }  // namespace petzval

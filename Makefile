@@ -7,7 +7,7 @@ PACKAGES = cmake ninja-build ccache mold pkg-config libembree-dev libtbb-dev lib
 OPTIONAL_PACKAGES = gnuplot-nox fonts-dejavu-core
 PYTHON_PACKAGES = pybind11-dev python3-dev python3-numpy
 TEST_PACKAGES = $(OPTIONAL_PACKAGES) $(PYTHON_PACKAGES) libgtest-dev libgmock-dev libbenchmark-dev python3-pytest
-LONG_PACKAGES = clang clang-tidy libclang-rt-dev gcovr debootstrap qemu-user blender
+LONG_PACKAGES = clang clang-tidy libclang-rt-dev gcovr debootstrap qemu-user blender chromium-driver python3-selenium
 SOURCES = git ls-files '*.h' '*.cpp'
 PREFIX = /usr/local
 

@@ -10,7 +10,11 @@ namespace {
 const ServerGate kLocal{{"127.0.0.1:8123", "localhost:8123"}, ""};
 
 RequestHead head_of(const std::string& host) {
-    return {"GET", "/api/facts", host, "", "", ""};
+    RequestHead head;
+    head.method = "GET";
+    head.path = "/api/facts";
+    head.host = host;
+    return head;
 }
 
 TEST(LiveGuard, ItsOwnPageIsAnswered) {

@@ -40,8 +40,8 @@ Json camera_facts(const LiveCamera& camera) {
             {"focus_m", number_or_null(camera.focus_m)},
             {"sensor_mm", {camera.sensor_mm.x, camera.sensor_mm.y}},
             {"yfov_deg", camera.yfov_deg},
-            {"camera", camera.name},
-            {"middle_m", camera.middle_m > 0 ? number_or_null(camera.middle_m) : Json(nullptr)}};
+            {"camera", camera.of_file},
+            {"middle_m", camera.middle_m ? number_or_null(*camera.middle_m) : Json(nullptr)}};
 }
 
 }  // namespace
@@ -56,10 +56,8 @@ Json program_facts(const PageRules& rules) {
         if (is_for_pages(field))
             fields.push_back({{"name", field.name},
                               {"kind", kind_of(field)},
-                              {"value", field.value},
                               {"group", field.group},
-                              {"help", as_options(field.help)},
-                              {"common", field.level == FieldLevel::Common}});
+                              {"help", as_options(field.help)}});
     return {{"scene", rules.start.render.scene.scene.filename().string()},
             {"start", fields_for_page(rules.start)},
             {"fields", std::move(fields)},
@@ -77,8 +75,7 @@ Json scene_facts(const LoadedScene& loaded) {
             {{"name", one.name}, {"duration_s", number_or_null(one.duration_s.value_or(NAN))}});
     return {{"cameras", std::move(cameras)},
             {"animations", std::move(animations)},
-            {"variants", holds.variants},
-            {"triangles", holds.triangles_placed}};
+            {"variants", holds.variants}};
 }
 
 Json status_facts(const LiveStatus& status) {
@@ -93,7 +90,6 @@ Json status_facts(const LiveStatus& status) {
             {"of", status.of},
             {"noise", status.noise},
             {"elapsed_s", status.elapsed_s},
-            {"exposure_ev", status.exposure_ev},
             {"camera", status.camera ? camera_facts(*status.camera) : Json(nullptr)},
             {"channels", status.channels},
             {"notices", std::move(notices)},

@@ -14,7 +14,7 @@ namespace petzval {
 /// page may set, "lenses": those that ship, "views": of the display}.
 [[nodiscard]] nlohmann::json program_facts(const PageRules&);
 
-/// {"cameras", "animations", "variants": names in the file; "bytes": memory that pages share}.
+/// {"cameras", "animations", "variants": of the file, by name}; null where none is loaded.
 [[nodiscard]] nlohmann::json scene_facts(const LoadedScene&);
 
 /// The members of a status; messages spell fields as options.

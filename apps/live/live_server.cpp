@@ -12,19 +12,18 @@
 #include <charconv>
 #include <chrono>
 #include <map>
-#include <mutex>
 #include <thread>
 
 #include "apps/live/facts.h"
 #include "apps/live/guard.h"
 #include "apps/live/lens_bench.h"
+#include "apps/live/open_pages.h"
 #include "apps/live/page_files.h"
 #include "apps/live/saved_file.h"
 #include "apps/request/option_text.h"
 #include "apps/request/value_error.h"
 #include "camera/lens/lens.h"
 #include "io/base/error.h"
-#include "io/file/atomic_file.h"
 #include "io/lens/lens_drawing.h"
 #include "io/lens/lens_file.h"
 
@@ -99,13 +98,13 @@ std::string event_of(const char* name, const Json& json) {
 
 }  // namespace
 
-class LiveServer::Pages {
+class LiveServer::Site {
   public:
-    explicit Pages(LiveOptions options)
+    explicit Site(LiveOptions options)
         : options_(std::move(options)),
-          rules_(rules_of(options_.start)),
+          pages_(options_.start),
           files_(read_page_files()),
-          facts_(program_facts(rules_)) {
+          facts_(program_facts(pages_.rules())) {
         if (options_.listen) gate_.token = random_token();
         // A browser keeps six connections, each of which keeps a thread.
         server_.new_task_queue = [] { return new httplib::ThreadPool(8 * kMostPages); };
@@ -121,7 +120,7 @@ class LiveServer::Pages {
         route();
     }
 
-    ~Pages() {
+    ~Site() {
         closing_ = true;
         server_.stop();
     }
@@ -142,8 +141,9 @@ class LiveServer::Pages {
                             "port",
                             host,
                             options_.port == 0 ? "" : fmt::format(", port {}", options_.port)));
+        constexpr int kUsualPort = 80;  // which browsers leave out
         for (const char* name : {"127.0.0.1", "localhost"})
-            gate_.hosts.push_back(fmt::format("{}:{}", name, port));
+            gate_.hosts.push_back(port == kUsualPort ? name : fmt::format("{}:{}", name, port));
         thread_ = std::jthread([this] { server_.listen_after_bind(); });
         while (!server_.is_running())  // before that stop() does nothing
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -152,13 +152,7 @@ class LiveServer::Pages {
     }
 
   private:
-    struct OpenPage {
-        std::shared_ptr<Viewer> viewer;
-        std::unique_ptr<OwnFolder> folder;  ///< of changed lenses; nullptr: none yet
-        bool connected = false;
-        uint64_t left = 0;  ///< the how many-th that left
-    };
-    using Handler = void (Pages::*)(const Request&, Response&);
+    using Handler = void (Site::*)(const Request&, Response&);
 
     void route() {
         server_.set_pre_routing_handler([this](const Request& request, Response& response) {
@@ -184,19 +178,19 @@ class LiveServer::Pages {
                 }
             });
         const std::map<std::string, Handler> gets{
-            {"/api/facts", &Pages::tell_facts},     {"/api/events", &Pages::stream_events},
-            {"/api/picture", &Pages::send_picture}, {"/api/file", &Pages::send_file},
-            {"/api/values", &Pages::send_values},   {"/api/pixel", &Pages::tell_pixel},
-            {"/api/lens", &Pages::send_lens},       {"/api/lens.svg", &Pages::draw_lens}};
+            {"/api/facts", &Site::tell_facts},     {"/api/events", &Site::stream_events},
+            {"/api/picture", &Site::send_picture}, {"/api/file", &Site::send_file},
+            {"/api/values", &Site::send_values},   {"/api/pixel", &Site::tell_pixel},
+            {"/api/lens", &Site::send_lens},       {"/api/lens.svg", &Site::draw_lens}};
         server_.Get(".*", [this, gets](const Request& request, Response& response) {
             const std::string path = path_behind_token(request.path, gate_);
             if (const auto found = gets.find(path); found != gets.end())
                 return (this->*found->second)(request, response);
             send_page(path == "/" ? "index.html" : path.substr(1), response);
         });
-        const std::map<std::string, Handler> posts{{"/api/request", &Pages::take_request},
-                                                   {"/api/bench", &Pages::measure_lens},
-                                                   {"/api/lens", &Pages::take_lens}};
+        const std::map<std::string, Handler> posts{{"/api/request", &Site::take_request},
+                                                   {"/api/bench", &Site::measure_lens},
+                                                   {"/api/lens", &Site::take_lens}};
         server_.Post(".*", [this, posts](const Request& request, Response& response) {
             if (const auto found = posts.find(path_behind_token(request.path, gate_));
                 found != posts.end())
@@ -214,56 +208,12 @@ class LiveServer::Pages {
 
     void tell_facts(const Request&, Response& response) { answer(response, facts_); }
 
-    std::shared_ptr<Viewer> viewer_of(const std::string& page) {
-        const std::lock_guard lock(mutex_);
-        const auto found = pages_.find(page);
-        if (found == pages_.end()) throw ValueError("page", "is not connected; load it again");
-        return found->second.viewer;
-    }
-
-    PageRules rules_for(const std::string& page) {
-        PageRules rules = rules_;
-        const std::lock_guard lock(mutex_);
-        if (const auto found = pages_.find(page); found != pages_.end() && found->second.folder)
-            rules.folders.push_back(found->second.folder->path());
-        return rules;
-    }
-
-    // A page that comes back finds its picture, unless others took its place. Empty: none is free.
-    std::string open_page(const std::string& wanted) {
-        OpenPage gone;  // ends without the lock
-        const std::lock_guard lock(mutex_);
-        if (const auto found = pages_.find(wanted);
-            found != pages_.end() && !found->second.connected) {
-            found->second.connected = true;
-            return wanted;
-        }
-        if (pages_.size() >= kMostPages) {
-            const auto oldest = std::ranges::min_element(pages_, {}, [](const auto& page) {
-                return page.second.connected ? UINT64_MAX : page.second.left;
-            });
-            if (oldest->second.connected) return "";
-            gone = std::move(oldest->second);
-            pages_.erase(oldest);
-        }
-        const std::string page = random_token();
-        pages_[page] = {std::make_shared<Viewer>(threads_of(options_.start.run), scene_), nullptr,
-                        true, 0};
-        return page;
-    }
-
-    void close_page(const std::string& page) {
-        const std::lock_guard lock(mutex_);
-        OpenPage& closed = pages_.at(page);
-        if (SharedScene scene = closed.viewer->scene(); scene.loaded.prepared.scene)
-            scene_ = std::move(scene);  // for the page that comes next
-        closed.viewer->leave();
-        closed.connected = false;
-        closed.left = ++leavings_;
+    std::shared_ptr<Viewer> viewer_of(const Request& request) {
+        return pages_.viewer_of(request.get_param_value("page"));
     }
 
     void stream_events(const Request& request, Response& response) {
-        const std::string page = open_page(request.get_param_value("page"));
+        const std::string page = pages_.open(request.get_param_value("page"));
         if (page.empty())
             return refuse(response, kUnavailable,
                           fmt::format("{} pages are open already; close or hide one", kMostPages));
@@ -275,7 +225,7 @@ class LiveServer::Pages {
         const auto told = std::make_shared<Told>();
         response.set_chunked_content_provider(
             "text/event-stream",
-            [this, page, told, viewer = viewer_of(page)](size_t, httplib::DataSink& sink) {
+            [this, page, told, viewer = pages_.viewer_of(page)](size_t, httplib::DataSink& sink) {
                 std::string text;
                 if (!told->greeted) {
                     told->greeted = true;
@@ -295,7 +245,7 @@ class LiveServer::Pages {
                 if (closing_ || !sink.is_writable()) return false;
                 return text.empty() || sink.write(text.data(), text.size());
             },
-            [this, page](bool) { close_page(page); });
+            [this, page](bool) { pages_.close(page); });
     }
 
     void take_request(const Request& request, Response& response) {
@@ -305,15 +255,15 @@ class LiveServer::Pages {
             !asked.contains("fields") || !asked["fields"].is_object())
             return refuse(response, kBadRequest,
                           "a request is {\"page\": ..., \"version\": 1, \"fields\": {...}}");
-        const auto viewer = viewer_of(asked["page"]);
+        const auto viewer = pages_.viewer_of(asked["page"]);
         viewer->leave();  // what is shown is of other settings, even if these are refused
-        const RenderOrder order = order_of_page(asked["fields"], rules_for(asked["page"]));
+        const RenderOrder order = order_of_page(asked["fields"], pages_.rules_for(asked["page"]));
         viewer->ask(asked["version"], order.render);
         answer(response, {{"command", options_.command(order)}});
     }
 
     void send_picture(const Request& request, Response& response) {
-        const auto picture = viewer_of(request.get_param_value("page"))->picture();
+        const auto picture = viewer_of(request)->picture();
         if (!picture) return refuse(response, kNotFound, "there is no picture yet");
         response.set_header("X-Size", fmt::format("{}x{}", picture->size_px.x, picture->size_px.y));
         response.set_content(reinterpret_cast<const char*>(picture->rgba.data()),
@@ -322,7 +272,7 @@ class LiveServer::Pages {
 
     void send_file(const Request& request, Response& response) {
         const std::string name = request.get_param_value("name");
-        const auto viewer = viewer_of(request.get_param_value("page"));
+        const auto viewer = viewer_of(request);
         const uint64_t version = number_of(request, "version");
         response.set_header("Content-Disposition", "attachment");
         response.set_content(
@@ -335,10 +285,9 @@ class LiveServer::Pages {
     void send_values(const Request& request, Response& response) {
         const std::string name = request.get_param_value("channel");
         std::vector<float> values;
-        viewer_of(request.get_param_value("page"))
-            ->inspect(number_of(request, "version"), [&](const RenderSession& session) {
-                values = channel_of(session.light(), name);
-            });
+        viewer_of(request)->inspect(
+            number_of(request, "version"),
+            [&](const RenderSession& session) { values = channel_of(session.light(), name); });
         response.set_content(reinterpret_cast<const char*>(values.data()),
                              values.size() * sizeof(float), "application/octet-stream");
     }
@@ -347,8 +296,8 @@ class LiveServer::Pages {
     void tell_pixel(const Request& request, Response& response) {
         Json pixel = Json::object();
         const uint64_t x = number_of(request, "x"), y = number_of(request, "y");
-        viewer_of(request.get_param_value("page"))
-            ->inspect(number_of(request, "version"), [&](const RenderSession& session) {
+        viewer_of(request)->inspect(
+            number_of(request, "version"), [&](const RenderSession& session) {
                 const PictureRows light = session.light();
                 if (x >= uint64_t(light.layout.width) || y >= uint64_t(light.layout.height))
                     throw ValueError("x,y", "lies outside of the picture");
@@ -361,64 +310,46 @@ class LiveServer::Pages {
         answer(response, pixel);
     }
 
-    // {"lens": name, "edited": text of a file, "height_mm", "focus_m", "fstop"}: all but the name
-    // may lack.
+    // {"lens": text of a lens file, "height_mm", "focus_m", "fstop"}.
     void measure_lens(const Request& request, Response& response) {
         const Json asked = Json::parse(request.body);
-        answer(response, bench_facts({asked.at("lens"), asked.value("edited", ""),
-                                      asked.value("height_mm", 0.), asked.value("focus_m", 0.),
-                                      asked.value("fstop", 0.)}));
+        answer(response, bench_facts({asked.at("lens"), asked.at("height_mm"), asked.at("focus_m"),
+                                      asked.at("fstop")}));
     }
 
     void send_lens(const Request& request, Response& response) {
-        response.set_content(lens_text(request.get_param_value("name")), "application/json");
+        response.set_content(text_of_shipped(request.get_param_value("name")), "application/json");
     }
 
-    // Keeps a changed lens as a file as long as the page is there; a new one each time, so that no
-    // picture is of another lens than its name says.
     void take_lens(const Request& request, Response& response) {
         const Json asked = Json::parse(request.body);
-        const std::string page = asked.at("page"), text = asked.at("lens");
-        (void)viewer_of(page);
+        const std::string text = asked.at("lens");
         (void)parse_lens(text, "lens");
-        const std::lock_guard lock(mutex_);
-        auto& folder = pages_.at(page).folder;
-        if (!folder) folder = std::make_unique<OwnFolder>();
-        const auto file = folder->path() / fmt::format("lens-{}.json", ++lenses_);
-        write_file_atomically(file, text);
-        answer(response, {{"lens", file.string()}});
+        answer(response, {{"lens", pages_.keep_lens(asked.at("page"), text).string()}});
     }
 
     void draw_lens(const Request& request, Response& response) {
         const std::string name = request.get_param_value("name");
-        for (const LensSummary& known : list_lenses())
-            if (known.name == name) {
-                const Lens lens(load_lens(name).lens);
-                const LensDrawing drawing{.film_mm = lens.film_mm(),
-                                          .film_radius_mm = lens.prescription().image_circle_mm / 2,
-                                          .rays = {},
-                                          .caption = ""};
-                return response.set_content(lens_svg(lens, drawing), "image/svg+xml");
-            }
-        refuse(response, kNotFound, "no lens of that name ships");
+        const Lens lens(parse_lens(text_of_shipped(name), name).lens);
+        const LensDrawing drawing{.film_mm = lens.film_mm(),
+                                  .film_radius_mm = lens.prescription().image_circle_mm / 2,
+                                  .rays = {},
+                                  .caption = ""};
+        response.set_content(lens_svg(lens, drawing), "image/svg+xml");
     }
 
     LiveOptions options_;
-    PageRules rules_;
+    OpenPages pages_;
     std::map<std::string, PageFile> files_;
     Json facts_;
     ServerGate gate_;
     std::atomic<bool> closing_ = false;
-    std::mutex mutex_;  ///< of the four below
-    std::map<std::string, OpenPage> pages_;
-    uint64_t leavings_ = 0, lenses_ = 0;
-    SharedScene scene_;
     httplib::Server server_;
     std::jthread thread_;  ///< last: it uses the others
 };
 
-LiveServer::LiveServer(LiveOptions options) : pages_(std::make_unique<Pages>(std::move(options))) {
-    address_ = pages_->start();
+LiveServer::LiveServer(LiveOptions options) : site_(std::make_unique<Site>(std::move(options))) {
+    address_ = site_->start();
 }
 
 LiveServer::~LiveServer() = default;

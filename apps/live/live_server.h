@@ -11,10 +11,6 @@
 
 namespace petzval {
 
-/// Pages that may be open at once: a browser keeps six connections to a server, of which each page
-/// takes one. They share the scene; each has a picture of its own.
-inline constexpr size_t kMostPages = 5;
-
 struct LiveOptions {
     RenderOrder start;  ///< what a page begins with
     /// Address to listen on; absent: 127.0.0.1. With one, pages need a token, as others can reach
@@ -39,9 +35,9 @@ class LiveServer {
     [[nodiscard]] const std::string& address() const { return address_; }
 
   private:
-    class Pages;
+    class Site;
     std::string address_;
-    std::unique_ptr<Pages> pages_;
+    std::unique_ptr<Site> site_;
 };
 
 }  // namespace petzval

@@ -44,18 +44,15 @@ LivePicture picture_of(const PictureRows& shown) {
 
 LiveCamera camera_of(const RenderSetup& setup) {
     const CameraReport& camera = setup.from.camera;
-    LiveCamera out{text_of_pose(camera.to_world),
-                   setup.view.of_file ? std::to_string(*setup.view.of_file) : "",
-                   camera.focus_m,
-                   camera.sensor_mm,
-                   camera.yfov_deg,
-                   0};
     const PreparedScene& prepared = setup.prepared;
     const V3f axis = (camera.target - camera.eye).normalized();
-    if (const auto depth_m = depth_under(*prepared.scene, *prepared.bvh, *setup.view.finder,
-                                         camera.eye, axis, {0.5f, 0.5f}))
-        out.middle_m = *depth_m;
-    return out;
+    return {text_of_pose(camera.to_world),
+            setup.view.of_file ? std::to_string(*setup.view.of_file) : "",
+            camera.focus_m,
+            camera.sensor_mm,
+            camera.yfov_deg,
+            depth_under(*prepared.scene, *prepared.bvh, *setup.view.finder, camera.eye, axis,
+                        {0.5f, 0.5f})};
 }
 
 // Another text where a file of the scene was changed.
@@ -240,7 +237,11 @@ void Viewer::show(const Job& job) {
         now.notices.clear();
         now.error.clear();
     });
-    if (!rendered_ || !keeps_samples(*rendered_, job.request)) show_rough(job);
+    if (!rendered_ || !keeps_samples(*rendered_, job.request)) try {
+            show_rough(job);
+        } catch (const std::exception&) {
+            // Whatever is wrong, the true one tells: what is asked for may be right without haste.
+        }
     show_true(job);
 }
 
@@ -303,7 +304,6 @@ void Viewer::show_rough(const Job& job) {
         job,
         [&](LiveStatus& now) {
             now.stage = LiveStage::Rough;
-            now.exposure_ev = session_.display().exposure_ev;
             now.camera = camera_of(session_.setup());
         },
         std::make_shared<const LivePicture>(picture_of(session_.shown())));
@@ -341,7 +341,6 @@ void Viewer::show_true(const Job& job) {
                                          : samples.count.value_or(kUsualSamples);
                 now.noise = monitor.noise;
                 now.elapsed_s = steady_s() - start_s;
-                now.exposure_ev = session_.display().exposure_ev;
                 now.camera = camera;
                 now.channels = channels;
                 now.notices = notices;

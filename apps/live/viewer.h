@@ -2,7 +2,6 @@
 // View finder of one page: what it last asked for, as a picture that grows.
 #pragma once
 
-#include <array>
 #include <condition_variable>
 #include <future>
 #include <memory>
@@ -34,12 +33,12 @@ enum class LiveStage : uint8_t {
 
 /// Camera as it was set up, for what a page does with it.
 struct LiveCamera {
-    std::string pose;    ///< as the field of that name has it
-    std::string name;    ///< index of the file\'s camera; empty: none of its
-    float focus_m = 0;   ///< 0: a pinhole
-    V2f sensor_mm{0.f};  ///< as much of it as the picture shows
-    float yfov_deg = 0,
-          middle_m = 0;  ///< middle_m: depth of the picture's middle; 0: nothing there
+    std::string pose;     ///< as the field of that name has it
+    std::string of_file;  ///< index of the file's camera that stands where it stands; empty: none
+    float focus_m = 0;    ///< 0: a pinhole
+    V2f sensor_mm{0.f};   ///< as much of it as the picture shows
+    float yfov_deg = 0;
+    std::optional<float> middle_m;  ///< depth of the picture's middle; absent: nothing is there
 };
 
 /// State of a view finder.
@@ -51,7 +50,6 @@ struct LiveStatus {
     uint64_t picture = 0;          ///< number of the newest picture; 0: none yet
     uint32_t samples = 0, of = 0;  ///< of each pixel, at least; of: 0 where nobody knows
     double noise = 0, elapsed_s = 0;
-    float exposure_ev = 0;
     std::optional<LiveCamera> camera;
     std::vector<std::string> channels;  ///< that the true picture has
     std::vector<std::string> notices;

@@ -3,8 +3,6 @@
 // numbers, which may be changed.
 import { make, offer, short } from "./make.js";
 
-const kColours = { 486: "#2f6fe4", 587: "#c08a00", 656: "#d0342c" }; // of F, d, C by their whole nanometres
-const colourOf = (nm) => kColours[Math.floor(nm)];
 const kColumns = [["radius", "radius, mm"], ["thickness", "thickness, mm"], ["semi_diameter", "half height, mm"], ["glass", "glass"]];
 const svg = (name, attributes = {}, ...children) => {
   const element = document.createElementNS("http://www.w3.org/2000/svg", name);
@@ -94,7 +92,7 @@ export class Bench {
     const focus_m = this.#camera?.focus_m ?? 0;
     const fstop = Number.parseFloat(this.#settings.text("fstop").replace(/^f\//, "")) || 0;
     const found = await this.#connection.bench({
-      lens: this.#name, edited: JSON.stringify(this.#lens), height_mm: this.#height_mm, focus_m, fstop });
+      lens: JSON.stringify(this.#lens), height_mm: this.#height_mm, focus_m, fstop });
     this.#busy = false;
     this.#fault.textContent = found?.error ?? "";
     if (found && !found.error) this.#draw(found);
@@ -114,7 +112,7 @@ export class Bench {
     this.#section.replaceChildren(
       svg("path", { class: "axis", d: `M${left} 0H${left + width}` }),
       ...found.elements.map((points) => svg("path", { class: "glass", d: line(points, true) })),
-      ...found.rays.map((ray) => svg("path", { class: "ray", d: line(ray.path), stroke: colourOf(ray.nm) })),
+      ...found.rays.map((ray) => svg("path", { class: "ray", d: line(ray.path), stroke: ray.colour })),
       ...found.faces.map((points, i) => svg("path", { class: "face", d: line(points), "data-face": i })),
       svg("path", { class: "stop", d: `M${z} ${-radius}V${-top}M${z} ${radius}V${top}`, "data-face": found.stop.surface }),
       svg("path", { class: "stop", d: `M${found.film.z} ${-found.film.radius}V${found.film.radius}` }));
@@ -122,9 +120,9 @@ export class Bench {
       ...found.figures.flatMap(([name, text]) => [make("dt", {}, name), make("dd", {}, text)]));
     const middle = found.middle_mm;
     const spots = found.spots.map((spot) =>
-      [colourOf(spot.nm), spot.film_mm.map((point) => [1000 * (point[0] - middle[0]), 1000 * (point[1] - middle[1])])]);
+      [spot.colour, spot.film_mm.map((point) => [1000 * (point[0] - middle[0]), 1000 * (point[1] - middle[1])])]);
     const reach = Math.max(...spots.flatMap(([, points]) => points.flat().map(Math.abs)), 1e-3);
-    const fans = (name) => found.fans[name].map((fan) => [colourOf(fan.nm), fan.um]);
+    const fans = (name) => found.fans[name].map((fan) => [fan.colour, fan.um]);
     const most = Math.max(...["tangential", "sagittal"].flatMap((name) =>
       found.fans[name].flatMap((fan) => fan.um.map(([, um]) => Math.abs(um)))), 1e-3);
     this.#plots.replaceChildren(

@@ -45,9 +45,8 @@ export class Controls {
 
   /** Takes what the scene has, once it is loaded. */
   meet(scene) {
-    const { triangles, ...shown } = scene;
-    if (JSON.stringify(shown) === this.#scene) return; // a control may be in somebody's hand
-    this.#scene = JSON.stringify(shown);
+    if (JSON.stringify(scene) === this.#scene) return; // a control may be in somebody's hand
+    this.#scene = JSON.stringify(scene);
     this.#form.children[2].replaceWith(this.#sceneOf(scene));
     this.#show();
   }

@@ -62,7 +62,7 @@ export class Finder extends EventTarget {
 
   #setPose(pose, step) {
     // The other ways to say where the camera stands are none beside a pose; the camera's lens and angle stay.
-    const camera = this.#settings.text("camera") || this.#camera.camera;
+    const camera = this.#settings.text("camera") || (this.#camera?.camera ?? "");
     this.#settings.set({ pose: textOf(pose), camera, "look-at": null, orbit: null, "orbit-about": null }, step);
   }
 
@@ -86,7 +86,7 @@ export class Finder extends EventTarget {
   }
 
   #focusAt(u, v) {
-    if (this.#camera && !(this.#camera.focus_m !== 0)) {
+    if (this.#camera?.focus_m === 0) {
       this.dispatchEvent(new Event("pinhole"));
       return;
     }

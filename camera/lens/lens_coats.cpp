@@ -2,16 +2,17 @@
 #include "camera/lens/lens_coats.h"
 
 #include <algorithm>
-#include <numeric>
+#include <cmath>
+#include <random>
 
 namespace petzval {
 namespace {
 
-constexpr int kCosines = 128;
+// Cells of the coarsest table, of 10 nm, and how many times finer one may be each way.
+constexpr int kWaves = (kLast_nm - kFirst_nm) / 10, kCosines = 128, kMostFiner = 4;
 
-double thickness_nm(const LayerStack& layers) {
-    return std::accumulate(layers.begin(), layers.end(), 0.,
-                           [](double sum, const Layer& a) { return sum + a.thickness_nm; });
+double wave_nm(double cell, int waves) {
+    return kFirst_nm + cell * (kLast_nm - kFirst_nm) / waves;
 }
 
 }  // namespace
@@ -43,47 +44,78 @@ SurfaceShares LensCoats::at(int surface, Towards towards, const Incidence& light
 }
 
 CoatTables::CoatTables(const Lens& lens, Coating coating)
-    : coating_(coating), tables_(size_t(lens.size())) {
-    const LensCoats coats(lens, coating);
+    : lens_(&lens), coating_(coating), coats_(lens, coating), tables_(size_t(lens.size())) {
     for (int i = 0; i < lens.size(); ++i) {
         Table& table = tables_[size_t(i)];
         const auto& s = lens.surfaces<double>()[size_t(i)];
         table.touches_air = touches_air(s);
-        if (coating <= Coating::MgF2 || s.medium_before == s.medium_after) continue;
-        table.step_nm = thickness_nm(coats.layers(i)) > 2000 ? 1 : 10;
-        for (int nm = kFirst_nm; nm <= kLast_nm; nm += table.step_nm) {
-            const double before = lens.media()[s.medium_before].index(double(nm)),
-                         after = lens.media()[s.medium_after].index(double(nm));
-            const bool to_film = before <= after;
-            for (int k = 0; k <= kCosines; ++k)
-                table.share.push_back(
-                    static_cast<float>(coats
-                                           .at(i, to_film ? Towards::Film : Towards::Scene,
-                                               {std::min(before, after), std::max(before, after),
-                                                double(k) / kCosines, double(nm)})
-                                           .transmitted));
-        }
+        table.formula = coating <= Coating::MgF2 || s.medium_before == s.medium_after;
+        if (table.formula) continue;
+        int finer = 1;
+        while (finer <= kMostFiner && !fits(i, finer * kWaves, finer * kCosines)) finer *= 2;
+        if (finer > kMostFiner) continue;
+        table.waves = finer * kWaves;
+        table.cosines = finer * kCosines;
+        for (int j = 0; j <= table.waves; ++j)
+            for (int k = 0; k <= table.cosines; ++k)
+                table.share.push_back(static_cast<float>(
+                    exact(i, double(k) / table.cosines, wave_nm(j, table.waves))));
     }
+}
+
+// A surface lets as much through from one side as from the other, absorbing or not (Macleod 2010,
+// ch. 2), so this is the side on which no light is totally reflected.
+double CoatTables::exact(int surface, double cosine, double nm) const {
+    const auto& s = lens_->surfaces<double>()[size_t(surface)];
+    const double before = lens_->media()[s.medium_before].index(nm),
+                 after = lens_->media()[s.medium_after].index(nm);
+    return coats_
+        .at(surface, before <= after ? Towards::Film : Towards::Scene,
+            {std::min(before, after), std::max(before, after), cosine, nm})
+        .transmitted;
+}
+
+// Whether so many cells are enough, by cells drawn with a fixed seed: straight lines are worst in
+// their middle.
+bool CoatTables::fits(int surface, int waves, int cosines) const {
+    constexpr int kDraws = 200;
+    constexpr double kClose = 5e-4, kLeastCosine = 0.1;
+    std::minstd_rand random(1);
+    const auto draw = [&](int first, int end) {
+        return first + int(random() % unsigned(end - first));
+    };
+    for (int n = 0; n < kDraws; ++n) {
+        const int j = draw(0, waves), k = draw(int(kLeastCosine * cosines), cosines);
+        const auto at = [&](double wave, double cosine) {
+            return exact(surface, (k + cosine) / cosines, wave_nm(j + wave, waves));
+        };
+        const double joined = (at(0, 0) + at(0, 1) + at(1, 0) + at(1, 1)) / 4;
+        if (std::fabs(joined - at(0.5, 0.5)) > kClose) return false;
+    }
+    return true;
 }
 
 f4 CoatTables::transmittance(int surface, const Crossing& c, f4 nm) const {
     const Table& table = tables_[size_t(surface)];
-    if (table.step_nm == 0) return petzval::transmittance(coating_, c, table.touches_air, nm);
-    // A surface lets as much through from one side as from the other, absorbing or not (Macleod
-    // 2010, ch. 2), so the table has the side on which no light is totally reflected.
+    if (table.formula) return petzval::transmittance(coating_, c, table.touches_air, nm);
     const f4 ratio = max(c.index_from / c.index_into, splat(1.f));
-    const f4 cosine = sqrt(max(1 - ratio * ratio * (1 - c.cosine * c.cosine), f4{}));
-    const int last = (kLast_nm - kFirst_nm) / table.step_nm;
+    const f4 cosine =
+        min(sqrt(max(1 - ratio * ratio * (1 - c.cosine * c.cosine), f4{})), splat(1.f));
     f4 out;
     for (int lane = 0; lane < 4; ++lane) {
-        const float x = std::clamp(cosine[lane], 0.f, 1.f) * kCosines;
-        const float y =
-            std::clamp((nm[lane] - float(kFirst_nm)) / float(table.step_nm), 0.f, float(last));
-        const int i = std::min(int(x), kCosines - 1), j = std::min(int(y), last - 1);
+        if (table.waves == 0) {
+            out[lane] = float(exact(surface, double(cosine[lane]), double(nm[lane])));
+            continue;
+        }
+        const float x = cosine[lane] * float(table.cosines);
+        const float y = std::clamp(
+            (nm[lane] - float(kFirst_nm)) * float(table.waves) / float(kLast_nm - kFirst_nm), 0.f,
+            float(table.waves));
+        const int i = std::min(int(x), table.cosines - 1), j = std::min(int(y), table.waves - 1);
         const float u = x - float(i), v = y - float(j);
-        const float* const at = table.share.data() + j * (kCosines + 1) + i;
+        const float* const at = table.share.data() + j * (table.cosines + 1) + i;
         const auto row = [u](const float* a) { return a[0] * (1 - u) + a[1] * u; };
-        out[lane] = row(at) * (1 - v) + row(at + kCosines + 1) * v;
+        out[lane] = row(at) * (1 - v) + row(at + table.cosines + 1) * v;
     }
     return out;
 }

@@ -37,22 +37,28 @@ class LensCoats {
 /// Transmittance of the surfaces of a lens, for rendering.
 class CoatTables {
   public:
-    /// Makes tables for the coatings that have no formula of their own in coating.h, of LensCoats:
-    /// some ms a surface, or ten times that where a coat is thicker than 2 um.
+    /// The lens must outlive it. Makes tables for the coatings that have no formula of their own in
+    /// coating.h, as fine as each stack needs: some ms a surface. One that is too thick for a table
+    /// has none.
     CoatTables(const Lens&, Coating);
 
-    /// Transmittance, a share of light, of a surface where the medium changes; linear between
-    /// entries of 10 nm (1 nm for a thick coat) and cosines of 1/128 in the medium of the lower
-    /// index: within 2e-3 of LensCoats up to 84 degrees, within 1e-3 up to 35.
+    /// Transmittance, a share of light, of a surface where the medium changes: within 2e-3 of
+    /// LensCoats up to 84 degrees in the medium of the lower index.
     [[nodiscard]] f4 transmittance(int surface, const Crossing&, f4 nm) const;
 
   private:
     struct Table {
         bool touches_air = false;
-        int step_nm = 0;           ///< 0: of its formula
-        std::vector<float> share;  ///< by wavelength, by cosine
+        bool formula = true;         ///< of coating.h, and no table
+        int waves = 0, cosines = 0;  ///< cells; 0: too many would be needed
+        std::vector<float> share;    ///< by wavelength, by cosine
     };
+    [[nodiscard]] double exact(int surface, double cosine, double nm) const;
+    [[nodiscard]] bool fits(int surface, int waves, int cosines) const;
+
+    const Lens* lens_;
     Coating coating_;
+    LensCoats coats_;
     std::vector<Table> tables_;
 };
 

@@ -81,6 +81,12 @@ LensFile parse_lens(std::string_view json, const std::string& name) {
     return lens;
 }
 
+std::string text_of_shipped(const std::string& name) {
+    for (const fs::path& file : shipped())
+        if (file.stem() == lower(name)) return text_of_file(file);
+    throw ArgumentError(name, "", "is no lens that ships; petzval lens list names them");
+}
+
 std::vector<LensSummary> list_lenses() {
     std::vector<LensSummary> lenses;
     for (const fs::path& file : shipped())

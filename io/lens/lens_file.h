@@ -30,6 +30,9 @@ struct LensFile {
 /// likewise.
 [[nodiscard]] LensFile parse_lens(std::string_view json, const std::string& name);
 
+/// Text of the file of a lens that ships. Throws ArgumentError for another name.
+[[nodiscard]] std::string text_of_shipped(const std::string& name);
+
 inline constexpr size_t kMaxSurfaces = 250;
 
 /// Facts of a lens for a list of lenses.

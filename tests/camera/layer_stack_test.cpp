@@ -187,5 +187,32 @@ TEST(CoatTables, AreTheStacksWithinWhatTheySay) {
                   transmittance(coating, c, true, splat(450))[0]);
 }
 
+// Of any layers, from thin ones to some whose fringes are narrower than a nanometre.
+TEST(CoatTables, AreThatNearForLayersOfAnyThickness) {
+    test::Random random(7);
+    Prescription file = test::read_lens("cooke-triplet-50mm-f5");
+    for (int n = 0; n < 120; ++n) {
+        LayerStack layers(1 + size_t(6 * random.next()));
+        const double scale_nm = std::pow(10., 1 + 3.5 * double(random.next()));
+        for (Layer& layer : layers) {
+            layer.index = 1.3 + 1.2 * double(random.next());
+            layer.thickness_nm = scale_nm * double(random.next());
+        }
+        file.surfaces[0].coat = layers;
+        const Lens lens(file);
+        const CoatTables tables(lens, Coating::Filed);
+        const LensCoats coats(lens, Coating::Filed);
+        for (int k = 0; k < 200; ++k) {
+            const float nm = 360 + 470 * random.next(), cosine = 0.1f + 0.9f * random.next();
+            const double glass = lens.media()[1].index(double(nm));
+            const float t = tables.transmittance(0, {splat(1), splat(float(glass)), splat(cosine)},
+                                                 splat(nm))[0];
+            const double exact =
+                coats.at(0, Towards::Film, {1, glass, double(cosine), double(nm)}).transmitted;
+            ASSERT_NEAR(t, exact, 2e-3) << scale_nm << ' ' << nm << ' ' << cosine;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace petzval

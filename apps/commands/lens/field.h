@@ -3,7 +3,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,17 +10,10 @@
 #include "apps/commands/lens/request.h"
 #include "apps/request/parse.h"
 #include "camera/bench/aimed_bundle.h"
+#include "camera/bench/spectral_lines.h"
 #include "camera/lens/focus.h"
 
 namespace petzval {
-
-struct SpectralLine {
-    const char* name;
-    double nm;
-    const char* colour;
-};
-inline constexpr std::array<SpectralLine, 3> kSpectralLines{
-    {{"F", kLineF_nm, "#2060d0"}, {"d", kLineD_nm, "#d09000"}, {"C", kLineC_nm, "#c02020"}}};
 
 struct FieldRequest {
     LensRequest request;

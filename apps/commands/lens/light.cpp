@@ -102,6 +102,7 @@ Plot budget_plot(const LightOptions& o, const CoatedLens& lens, const LensCoats&
                                    o.coating, nm),
               .x_label = "field (degrees)",
               .y_label = "share of the light on the first surface (%)",
+              .series = {},
               .logarithmic_y = true};
     for (const auto& [name, part] : kBudgetParts)
         plot.series.push_back({{}, PlotStyle::LinesAndPoints, name});

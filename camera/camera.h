@@ -45,6 +45,7 @@ struct CameraPath {
     bool hero_decided = false;
     /// Aimed at a small lamp: alpha and layers do without.
     bool to_target = false;
+    bool of_ghost = false;  ///< brings light that the lens reflects; to_target as well
 };
 
 /// Counts of the wavelength lanes that a lens was asked for, by why it lost them; drawn - lost()
@@ -72,10 +73,10 @@ struct LensLosses {
 };
 
 /// Camera paths of one film point. None: vignetted. 1: shared by all lanes. 2 to 4: split by
-/// dispersion. As many again may go to a target.
+/// dispersion. As many again may go to a target, and five may bring light of ghosts.
 class CameraSample {
   public:
-    static constexpr size_t kMostPaths = 8;
+    static constexpr size_t kMostPaths = 13;
 
     LensLosses<uint32_t> lanes;
     float exposure = 1;  ///< mean weight of a lane where nothing is lost

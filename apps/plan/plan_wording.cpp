@@ -222,6 +222,7 @@ RenderRequest carried_out(const Plan& plan, RenderRequest request) {
         camera.focal_length_mm = nothing.focal_length_mm;
         camera.film_distance_mm = nothing.film_distance_mm;
         camera.coating = nothing.coating;
+        camera.ghosts = nothing.ghosts;
         camera.precision = nothing.precision;
         camera.focus_by = nothing.focus_by;
         camera.glasses = nothing.glasses;

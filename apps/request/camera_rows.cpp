@@ -136,6 +136,9 @@ std::vector<RequestField> lens_fields() {
             choice("coating", in::camera(&CameraRequest::coating),
                    "light lost at each surface: ideal (default, none), uncoated, against air "
                    "mgf2 (one layer), v-coat (two), broadband (three), or as filed with the lens")),
+        choice("ghosts", in::camera(&CameraRequest::ghosts),
+               "light that two surfaces of a traced lens reflect: auto (default; where the ⟨coating⟩ "
+               "reflects any), off, only"),
         method(choice("lens-precision", in::camera(&CameraRequest::precision),
                       "rays through the lens in float (default) or double"))};
 }

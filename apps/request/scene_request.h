@@ -48,6 +48,10 @@ enum class ExposureMode : uint8_t { Normalised, Photographic };
 /// scaled.
 enum class Fit : uint8_t { Lens, Fov };
 
+/// Ghosts of a traced lens: light that two of its surfaces reflect. Auto: wherever its coating
+/// reflects any; Only: they alone make the picture.
+enum class GhostUse : uint8_t { Auto, Off, Only };
+
 /// Vertical angles of view that a perspective camera may be asked for.
 inline constexpr float kSmallestFov_deg = 0.001f, kLargestFov_deg = 179.f;
 
@@ -77,6 +81,7 @@ struct CameraRequest {
     std::optional<IrisSampling> iris_sampling;
     std::optional<DispersionMode> dispersion;  ///< absent: as a plan finds, or dispersion_by()
     Coating coating = Coating::Ideal;
+    GhostUse ghosts = GhostUse::Auto;
     Precision precision = Precision::Float;
     ExposureMode exposure = ExposureMode::Normalised;
     float iso = 100, shutter_s = 0.01f;

@@ -21,6 +21,7 @@ SceneRequest equivalent_thin_lens(SceneRequest request, const RenderSetup& setup
     camera.fstop = camera.focal_length_mm = camera.film_distance_mm = std::nullopt;
     camera.fit = Fit::Lens;
     camera.coating = Coating::Ideal;
+    camera.ghosts = GhostUse::Auto;
     camera.precision = Precision::Float;
     camera.focus_by = FocusBy::Paraxial;
     camera.glasses.clear();

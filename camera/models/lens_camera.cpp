@@ -95,6 +95,10 @@ Ray LensCamera::in_world(const SceneRay<S>& ray) const {
     return out;
 }
 
+Ray LensCamera::in_world(const LensRay<f4>& ray, int lane) const {
+    return in_world(lane_of(ray, lane));
+}
+
 // The image stands on its head.
 FilmLanding LensCamera::in_pixels(const LensLanding& at, V2f frame_px) const {
     return {at.shift_x_mm / -static_cast<float>(in_.film_width_mm) * frame_px.x,

@@ -74,6 +74,10 @@ class LensCamera final : public Camera {
     [[nodiscard]] const LensCameraInput& input() const { return in_; }
     [[nodiscard]] const LensOptics& optics() const { return optics_; }
     [[nodiscard]] const Pose& pose() const { return pose_; }
+    /// Factor of the weights for the exposure.
+    [[nodiscard]] float gain() const { return gain_; }
+    /// One lane of a ray in front of the lens, in the world.
+    [[nodiscard]] Ray in_world(const LensRay<f4>&, int lane) const;
 
     /// Scales the weights from here on: they average to the exposure in the middle of the film,
     /// where they averaged to its irradiance(). axial: that irradiance, before the first call.

@@ -34,11 +34,11 @@ template <class Test>
 bool Film::each_number(const FilmSample& sample, const Test& passes) const {
     const Rgb& c = sample.colour;
     bool all = passes(c[0]) && passes(c[1]) && passes(c[2]) && passes(sample.alpha);
-    if (sample.hit)
-        for (const Aov aov : aovs_) {
-            const V3f& value = sample.aov[static_cast<size_t>(aov)];
-            all = all && passes(value.x) && passes(value.y) && passes(value.z);
-        }
+    for (const Aov aov : aovs_) {
+        if (!sample.hit && aov != Aov::Ghosts) continue;
+        const V3f& value = sample.aov[static_cast<size_t>(aov)];
+        all = all && passes(value.x) && passes(value.y) && passes(value.z);
+    }
     return all;
 }
 
@@ -55,9 +55,9 @@ void Film::accept(Pixel& pixel, size_t at, uint32_t index, const FilmSample& sam
     if (blocks_) blocks_->add(at, colour);
     if (halves_) halves_->add(at, index, colour, sample.guide);
     ++pixel.count;
-    if (!sample.hit) return;
-    ++pixel.hits;
+    pixel.hits += sample.hit;
     for (size_t layer = 0; layer < aovs_.size(); ++layer) {
+        if (!sample.hit && aovs_[layer] != Aov::Ghosts) continue;
         const V3f& value = sample.aov[static_cast<size_t>(aovs_[layer])];
         auto& to = aov_sums_[at * aovs_.size() + layer];
         for (int i = 0; i < 3; ++i) to[static_cast<size_t>(i)].add(value[i]);

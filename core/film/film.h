@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -20,7 +21,18 @@
 namespace petzval {
 
 /// Layers beside the picture (AOVs): values at the first surface that a sample sees.
-enum class Aov : uint8_t { Albedo, Normal, Depth, Position, Uv, Emission, Cost, Velocity, Count };
+enum class Aov : uint8_t {
+    Albedo,
+    Normal,
+    Depth,
+    Position,
+    Uv,
+    Emission,
+    Cost,
+    Velocity,
+    Ghosts,  ///< light that the lens reflects: of all samples, whatever they see
+    Count
+};
 
 /// Name and channels of a layer, as they stand in files and on the command line.
 struct AovInfo {
@@ -83,8 +95,9 @@ class Film {
     void add_packed(int x, int y, const uint8_t* from);
 
     /// Number of samples, of this range of indices, in what pack() wrote of a pixel of a film with
-    /// so many layers and these bins; nothing where no film has such sums and counts.
-    [[nodiscard]] static std::optional<uint32_t> packed_count(const uint8_t* from, size_t layers,
+    /// these layers and bins; nothing where no film has such sums and counts.
+    [[nodiscard]] static std::optional<uint32_t> packed_count(const uint8_t* from,
+                                                              std::span<const Aov> layers,
                                                               const std::optional<Bins>&, FilmKeeps,
                                                               SampleRange);
 
@@ -126,7 +139,7 @@ class Film {
     }
     /// Mean linear RGB in nits, and alpha; zero where there is no sample.
     [[nodiscard]] V4f colour(int x, int y) const;
-    /// Mean of a layer over the samples that hit something; zero where none did.
+    /// Mean of a layer over the samples that hit something, of ghosts over all; zero without such.
     [[nodiscard]] V3f aov(int x, int y, size_t layer) const;
 
     /// Samples that were left out, and the first of them in scan order, of either kind.

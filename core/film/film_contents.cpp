@@ -20,6 +20,7 @@ constexpr std::array<AovInfo, static_cast<size_t>(Aov::Count)> kAovs{{
     {"emission", {"emission.R", "emission.G", "emission.B"}, 3},
     {"cost", {"cost.N", "", ""}, 1},
     {"velocity", {"velocity.X", "velocity.Y", ""}, 2},
+    {"ghosts", {"ghosts.R", "ghosts.G", "ghosts.B"}, 3},
 }};
 
 }  // namespace
@@ -110,7 +111,7 @@ void Film::add_packed(int x, int y, const uint8_t* from) {
     if (halves_) halves_->add_packed(at, from);
 }
 
-std::optional<uint32_t> Film::packed_count(const uint8_t* from, size_t layers,
+std::optional<uint32_t> Film::packed_count(const uint8_t* from, std::span<const Aov> layers,
                                            const std::optional<Bins>& bins, FilmKeeps keeps,
                                            SampleRange range) {
     Pixel p;
@@ -119,7 +120,7 @@ std::optional<uint32_t> Film::packed_count(const uint8_t* from, size_t layers,
     std::memcpy(&too_large, from + sizeof p, sizeof too_large);
     const size_t before_layers = sizeof p + sizeof too_large;
     const std::span rest(from + before_layers,
-                         bytes_per_pixel(layers, bins, keeps) - before_layers);
+                         bytes_per_pixel(layers.size(), bins, keeps) - before_layers);
     const auto reached = [](const FilmSum& sum, uint32_t count) {
         return std::abs(sum.value()) <= double(count) * double(FilmSum::kLimit);
     };
@@ -128,10 +129,10 @@ std::optional<uint32_t> Film::packed_count(const uint8_t* from, size_t layers,
     if (p.left_out > 0)
         possible = possible && p.first_left_out >= range.first && p.first_left_out < range.end;
     for (const FilmSum& sum : p.sum) possible = possible && reached(sum, p.count);
-    for (size_t i = 0; i < 3 * layers; ++i) {
+    for (size_t i = 0; i < 3 * layers.size(); ++i) {
         FilmSum sum;
         std::memcpy(&sum, rest.data() + i * sizeof sum, sizeof sum);
-        possible = possible && reached(sum, p.hits);
+        possible = possible && reached(sum, layers[i / 3] == Aov::Ghosts ? p.count : p.hits);
     }
     if (p.count == 0)
         possible = possible && std::all_of(rest.begin(), rest.end(), [](auto b) { return b == 0; });
@@ -150,8 +151,9 @@ V4f Film::colour(int x, int y) const {
 }
 
 V3f Film::aov(int x, int y, size_t layer) const {
-    const uint32_t hits = pixel(x, y).hits;
-    const double scale = hits > 0 ? 1.0 / hits : 0.0;
+    const Pixel& p = pixel(x, y);
+    const uint32_t count = aovs_[layer] == Aov::Ghosts ? p.count : p.hits;
+    const double scale = count > 0 ? 1.0 / count : 0.0;
     const auto& sum = aov_sums_[offset(x, y) * aovs_.size() + layer];
     const auto mean = [&](int i) { return static_cast<float>(sum[size_t(i)].value() * scale); };
     return {mean(0), mean(1), mean(2)};

@@ -29,7 +29,9 @@ enum class Dim : uint32_t {
     TargetPick,              ///< the target, and how it is reached
     TargetFilm,              ///< the film point from which it is seen
     TargetRest,              ///< whether a ray to a target brings more than what it finds
-    Time                     ///< while the shutter is open
+    Time,                    ///< while the shutter is open
+    GhostPick,               ///< the two surfaces that reflect, and whether a ray is sent
+    GhostPoint               ///< on the last surface of the lens
 };
 
 struct SampleId {

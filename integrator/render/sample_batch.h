@@ -70,7 +70,9 @@ class SampleBatch {
     }
     void find_camera_rays();
     void trace(size_t i);
-    void add_to_film(size_t i, FilmSample&, f4 light);
+    /// Light of a sample as the film takes it: clamped.
+    [[nodiscard]] f4 kept(f4 light, const Bands&) const;
+    void add_to_film(size_t i, FilmSample&, f4 light, f4 ghosts);
     /// Light that one of the camera's rays brings to a sample.
     [[nodiscard]] f4 light_along(const CameraPath& path, size_t i, const PathStart& start,
                                  FilmSample& out) {
@@ -120,7 +122,7 @@ void SampleBatch<Tracer>::trace(size_t i) {
     const uint64_t vertices_before = stats_.vertices;
     stats_.lens_lanes += rays.lanes;
     FilmSample sample;
-    f4 light{};
+    f4 light{}, ghosts{};
     float behind = 0.f;  // weight of the rays that left the scene, over all lanes
     bool layers = has_layers_, guide = has_guide_;  // are still to be filled in
     for (const CameraPath& path : rays) {
@@ -130,7 +132,7 @@ void SampleBatch<Tracer>::trace(size_t i) {
         // What surfaces reflect of a target is found by other rays as well: it is worth the effort
         // by the weight.
         const float effort = path.to_target ? path.mis_weight : 1.f;
-        light += light_along(path, i,
+        (path.of_ghost ? ghosts : light) += light_along(path, i,
                              {path.ray, path.lanes, path.hero_decided, effort,
                               layers && !path.to_target, guide && !path.to_target},
                              of_path);
@@ -146,19 +148,24 @@ void SampleBatch<Tracer>::trace(size_t i) {
     sample.alpha = 1.f - behind / (rays.exposure * static_cast<float>(lane_count(bands_[i].on)));
     sample.aov[static_cast<size_t>(Aov::Cost)] =
         V3f(static_cast<float>(stats_.vertices - vertices_before), 0, 0);
-    add_to_film(i, sample, light);
+    add_to_film(i, sample, kept(light, bands_[i]), kept(ghosts, bands_[i]));
 }
 
 template <class Tracer>
-void SampleBatch<Tracer>::add_to_film(size_t i, FilmSample& sample, f4 light) {
+f4 SampleBatch<Tracer>::kept(f4 light, const Bands& bands) const {
+    if (!job_.clamp_nits) return light;
+    return light * splat(clamping_share(to_rgb(light, bands), *job_.clamp_nits));
+}
+
+// Ghosts are clamped by themselves and added last, so that the rest is that of a picture without.
+template <class Tracer>
+void SampleBatch<Tracer>::add_to_film(size_t i, FilmSample& sample, f4 light, f4 ghosts) {
     const SampleId id = ids_[i];
     const Bands& bands = bands_[i];
-    sample.colour = to_rgb(light, bands);
-    if (job_.clamp_nits)
-        if (const float share = clamping_share(sample.colour, *job_.clamp_nits); share < 1) {
-            sample.colour = sample.colour * share;
-            light *= splat(share);
-        }
+    const Rgb of_ghosts = to_rgb(ghosts, bands);
+    sample.colour = to_rgb(light, bands) + of_ghosts;
+    light += ghosts;
+    sample.aov[static_cast<size_t>(Aov::Ghosts)] = V3f(of_ghosts[0], of_ghosts[1], of_ghosts[2]);
     if (job_.velocity && sample.hit)
         sample.aov[static_cast<size_t>(Aov::Velocity)] =
             job_.velocity->at(sample.first, points_[i].film * V2f(frame_px_));

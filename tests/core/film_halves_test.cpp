@@ -79,7 +79,7 @@ TEST(FilmHalves, CountsThatAreForgedAreSeen) {
     for (uint32_t i = 0; i < 5; ++i) film.add(0, 0, i, sample_of(Rgb(1.f)));
     std::vector<uint8_t> packed(Film::bytes_per_pixel(0, {}, kHalved));
     film.pack(0, 0, packed.data());
-    const auto count = [&] { return Film::packed_count(packed.data(), 0, {}, kHalved, {0, 8}); };
+    const auto count = [&] { return Film::packed_count(packed.data(), {}, {}, kHalved, {0, 8}); };
     EXPECT_EQ(count(), 5u);
     const size_t halves = packed.size() - FilmHalves::bytes_per_pixel();
     for (const size_t at : {size_t(15), size_t(48 + 15), size_t(96 + 7)}) {  // sums, highest byte

@@ -156,6 +156,7 @@ void check_no_prescription(const CameraRequest& asked, bool has_glass) {
     };
     if (asked.fit == Fit::Fov) refuse("⟨fit⟩");
     if (asked.coating != Coating::Ideal) refuse("⟨coating⟩");
+    if (asked.ghosts == GhostUse::Only) refuse("⟨ghosts⟩ only");
     if (asked.precision != Precision::Float) refuse("⟨lens-precision⟩");
     if (asked.focus_by != FocusBy::Paraxial) refuse("⟨focus-by⟩");
     if (!asked.glasses.empty() && !has_glass) refuse("⟨glasses⟩");

@@ -27,6 +27,7 @@ void describe_glass(const CameraReport& c, Metadata& m) {
     m.emplace_back("petzval:stopRadius_mm", static_cast<float>(c.stop_radius_mm));
     m.emplace_back("petzval:focusBy", name_of(c.asked.focus_by));
     m.emplace_back("petzval:coating", name_of(c.asked.coating));
+    m.emplace_back("petzval:ghosts", name_of(c.asked.ghosts));
     m.emplace_back("petzval:lensPrecision", name_of(c.asked.precision));
     m.emplace_back("petzval:fit", name_of(c.asked.fit));
     m.emplace_back("petzval:dispersion", name_of(c.dispersion()));

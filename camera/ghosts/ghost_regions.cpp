@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "camera/ghosts/ghost_regions.h"
+
+#include <algorithm>
+
+#include "camera/ghosts/ghost_search.h"
+
+namespace petzval {
+namespace {
+
+constexpr size_t kMostLamps = 8;
+/// Of the brightest lamp's light, below which a lamp is left to rays over all of the last surface.
+constexpr double kDarkest = 1e-3;
+/// Cells across the longer side of the film.
+constexpr int kCells = 64;
+constexpr size_t kMostInCell = 2048;
+/// Of the last surface's area, from which on a region is no better than the surface.
+constexpr float kWidest = 0.25f;
+/// Share of the draws that goes to a rectangle so many times as long and as wide: what a region
+/// misses lies close beside it.
+constexpr float kWideShare = 0.125f, kWider = 3;
+
+/// A lamp as the lens sees it; none where it lies in the lens or spreads too far for straight
+/// lines.
+std::optional<GhostLamp> lamp_of(const SmallFeature& f, const LensCamera& camera) {
+    const Pose& pose = camera.pose();
+    if (f.at_infinity) {
+        if (!(f.radius_m < 0.5f)) return {};
+        return GhostLamp{pose.local(f.centre), std::tan(double(f.reach_m)), true,
+                         f.radiance * f.area_m2};
+    }
+    const V3d at_m = pose.local(f.centre - pose.origin);
+    const double away_m = at_m.length(), reach_m = double(f.reach_m);
+    if (!(reach_m < 0.5 * away_m)) return {};
+    return GhostLamp{at_m * 1e3 + V3d(0, 0, camera.input().entrance_pupil_mm), reach_m * 1e3, false,
+                     f.radiance * f.area_m2 / 2 / (away_m * away_m)};
+}
+
+bool is_in(const GhostRegion& region, V2f off, float times) {
+    const V2f across(-region.long_axis.y, region.long_axis.x);
+    return std::fabs(off.dot(region.long_axis)) <= times * region.half.x &&
+           std::fabs(off.dot(across)) <= times * region.half.y;
+}
+
+}  // namespace
+
+GhostRegions::GhostRegions(const GhostOptics& optics, std::span<const SmallFeature> things) {
+    std::vector<GhostLamp> lamps;
+    for (const SmallFeature& thing : things)
+        if (thing.is_lamp())
+            if (const auto lamp = lamp_of(thing, optics.camera()); lamp && lamp->nits_sr > 0)
+                lamps.push_back(*lamp);
+    std::ranges::stable_sort(lamps, std::greater(), &GhostLamp::nits_sr);
+    lamps.resize(std::min(lamps.size(), kMostLamps));
+    std::erase_if(lamps, [most = lamps.empty() ? 0 : lamps[0].nits_sr](const GhostLamp& lamp) {
+        return lamp.nits_sr < kDarkest * most;
+    });
+    if (lamps.empty()) return;
+    const GhostSearch search(optics);
+    for (const GhostLamp& lamp : lamps)
+        for (uint32_t pair = 0; pair < optics.pairs().size(); ++pair)
+            search.find(pair, lamp, regions_);
+    std::erase_if(regions_, [&](const GhostRegion& r) {
+        return !(r.light > 0) || 4 * r.half.x * r.half.y > kWidest * optics.rear_mm2();
+    });
+    film_mm_ = V2f(float(optics.camera().input().film_width_mm),
+                   float(optics.camera().input().film_height_mm));
+    const float longer = std::max(film_mm_.x, film_mm_.y);
+    const auto count = [&](float mm) { return std::max(1, int(std::lround(kCells * mm / longer))); };
+    cells_ = {count(film_mm_.x), count(film_mm_.y)};
+    list_regions();
+}
+
+template <class F>
+void GhostRegions::each_cell(const GhostRegion& r, const F& f) const {
+    // Edges of the region in cells, from the film's corner.
+    const auto low = (r.film_low / film_mm_ + V2f(0.5f)) * V2f(cells_),
+               high = (r.film_high / film_mm_ + V2f(0.5f)) * V2f(cells_);
+    const auto first = [](float at, int cells) { return int(std::clamp(at, 0.f, float(cells - 1))); };
+    const auto share = [](float from, float to, int cell) {
+        return std::max(0.f, std::min(to, float(cell + 1)) - std::max(from, float(cell)));
+    };
+    for (int y = first(low.y, cells_.y); y <= first(high.y, cells_.y); ++y)
+        for (int x = first(low.x, cells_.x); x <= first(high.x, cells_.x); ++x)
+            f(size_t(y) * size_t(cells_.x) + size_t(x),
+              share(low.x, high.x, x) * share(low.y, high.y, y));
+}
+
+void GhostRegions::list_regions() {
+    struct Member {
+        uint32_t region;
+        float light;
+    };
+    std::vector<std::vector<Member>> lists(size_t(cells_.x) * size_t(cells_.y));
+    for (uint32_t k = 0; k < regions_.size(); ++k)
+        each_cell(regions_[k], [&](size_t cell, float share) {
+            lists[cell].push_back({k, regions_[k].light * share});
+        });
+    const auto pair_of = [&](const Member& m) { return regions_[m.region].pair; };
+    cells_begin_.push_back(0);
+    for (std::vector<Member>& list : lists) {
+        std::ranges::stable_sort(list, std::greater(), &Member::light);
+        list.resize(std::min(list.size(), kMostInCell));
+        std::ranges::stable_sort(list, {}, pair_of);
+        float all = 0, sum = 0;
+        for (const Member& m : list) all += m.light;
+        for (size_t i = 0; i < list.size(); ++i) {
+            const auto at = uint32_t(members_.size());
+            if (i == 0 || pair_of(list[i]) != pair_of(list[i - 1]))
+                groups_.push_back({pair_of(list[i]), 0, at, at});
+            sum += list[i].light;
+            members_.push_back(list[i].region);
+            groups_.back().end = at + 1;
+            groups_.back().up_to = all > 0 ? sum / all : 1;
+        }
+        cells_begin_.push_back(uint32_t(groups_.size()));
+    }
+}
+
+auto GhostRegions::groups_at(V2f film_mm) const -> std::span<const Group> {
+    if (regions_.empty()) return {};
+    const auto cell = [](float mm, float size_mm, int cells) {
+        return size_t(std::clamp(int((mm / size_mm + 0.5f) * float(cells)), 0, cells - 1));
+    };
+    const size_t at = cell(film_mm.y, film_mm_.y, cells_.y) * size_t(cells_.x) +
+                      cell(film_mm.x, film_mm_.x, cells_.x);
+    return std::span(groups_).subspan(cells_begin_[at], cells_begin_[at + 1] - cells_begin_[at]);
+}
+
+float GhostRegions::light_of(const Group& group, V2f film_mm) const {
+    float sum = 0;
+    for (uint32_t i = group.first; i < group.end; ++i)
+        if (const GhostRegion& r = regions_[members_[i]]; r.serves(film_mm)) sum += r.light;
+    return sum;
+}
+
+auto GhostRegions::draw(V2f film_mm, float wave, float pick, V2f u) const -> std::optional<Drawn> {
+    const auto groups = groups_at(film_mm);
+    if (groups.empty()) return {};
+    auto group = std::ranges::upper_bound(groups, pick, {}, &Group::up_to);
+    if (group == groups.end()) --group;
+    const float before = group == groups.begin() ? 0 : (group - 1)->up_to;
+    float left = (pick - before) / (group->up_to - before) * light_of(*group, film_mm);
+    const GhostRegion* chosen = nullptr;
+    for (uint32_t i = group->first; i < group->end; ++i) {
+        const GhostRegion& r = regions_[members_[i]];
+        if (!r.serves(film_mm)) continue;
+        chosen = &r;
+        if (left < r.light) break;
+        left -= r.light;
+    }
+    if (!chosen) return {};
+    const bool wide = u.x < kWideShare;
+    const float x = wide ? u.x / kWideShare : (u.x - kWideShare) / (1 - kWideShare);
+    const V2f at = V2f(2 * x - 1, 2 * u.y - 1) * chosen->half * (wide ? kWider : 1.f);
+    const V2f across(-chosen->long_axis.y, chosen->long_axis.x);
+    return Drawn{chosen->pair,
+                 chosen->middle(film_mm, wave) + chosen->long_axis * at.x + across * at.y};
+}
+
+float GhostRegions::density(V2f film_mm, float wave, const Drawn& drawn) const {
+    const auto groups = groups_at(film_mm);
+    const auto group = std::ranges::lower_bound(groups, drawn.pair, {}, &Group::pair);
+    if (group == groups.end() || group->pair != drawn.pair) return 0;
+    float all = 0, sum = 0;
+    for (uint32_t i = group->first; i < group->end; ++i) {
+        const GhostRegion& r = regions_[members_[i]];
+        if (!r.serves(film_mm)) continue;
+        all += r.light;
+        const V2f off = drawn.rear_mm - r.middle(film_mm, wave);
+        if (!is_in(r, off, kWider)) continue;
+        const float per_mm2 = r.light / (4 * r.half.x * r.half.y);
+        sum += per_mm2 *
+               (kWideShare / (kWider * kWider) + (is_in(r, off, 1) ? 1 - kWideShare : 0.f));
+    }
+    const float before = group == groups.begin() ? 0 : (group - 1)->up_to;
+    return sum > 0 ? sum / all * (group->up_to - before) : 0.f;
+}
+
+}  // namespace petzval

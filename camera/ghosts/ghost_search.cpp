@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "camera/ghosts/ghost_search.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "camera/ghosts/lens_face.h"
+#include "core/sampling/warp.h"
+#include "core/spectrum/glass.h"
+
+namespace petzval {
+namespace {
+
+/// Parts of the first surface along its diameter. Batches of eight rays through each that tell its
+/// region; and that tell whether any light passes, of a part of the whole.
+constexpr int kParts = 8;
+constexpr uint32_t kBatches = 4, kFirstBatches = 32;
+/// A part is divided in four, so many times at most, where fewer than this of the points of its
+/// region see the lamp; and at first where fewer of its rays pass all rims.
+constexpr int kDivisions = 5, kDivisionsByRims = 2;
+constexpr double kGood = 0.15;
+/// Beyond what the rays of a part show: rims of film parts, and errors of straight lines.
+constexpr float kFilmMargin = 0.25f, kErrorMargin = 1.5f;
+constexpr size_t kUnknowns = 6;
+
+/// Square of the first surface, across the axis.
+struct Part {
+    V2d corner_mm;
+    double side_mm;
+};
+
+/// A ray of a lamp that reached the film's plane, lane by lane.
+struct Record {
+    V2d film_mm, rear_mm;
+    V2d on_lamp;  ///< of its disc of radius 1
+    double wave;
+    double light_mm2;  ///< that enters with it; 0 where a rim or the iris stops it, or the film ends
+};
+
+/// Least squares for both coordinates of the point on the last surface, by the film point, the
+/// point of the lamp and the wavelength.
+class StraightFit {
+  public:
+    explicit StraightFit(const std::vector<Record>& records) {
+        for (const Record& r : records) film_ += r.film_mm / double(records.size());
+        std::array<std::array<double, kUnknowns + 2>, kUnknowns> m{};
+        for (const Record& r : records) {
+            const auto a = terms(r);
+            for (size_t i = 0; i < kUnknowns; ++i) {
+                for (size_t j = 0; j < kUnknowns; ++j) m[i][j] += a[i] * a[j];
+                m[i][kUnknowns] += a[i] * r.rear_mm.x;
+                m[i][kUnknowns + 1] += a[i] * r.rear_mm.y;
+            }
+        }
+        // What the rays do not tell apart counts as no change.
+        for (size_t i = 1; i < kUnknowns; ++i) m[i][i] += 1e-9 * (m[0][0] + m[i][i]);
+        for (size_t i = 0; i < kUnknowns; ++i) {
+            for (size_t j = 0; j < kUnknowns; ++j) {
+                if (j == i) continue;
+                const double by = m[j][i] / m[i][i];
+                for (size_t k = i; k < kUnknowns + 2; ++k) m[j][k] -= by * m[i][k];
+            }
+        }
+        for (size_t i = 0; i < kUnknowns; ++i)
+            by_[i] = V2d(m[i][kUnknowns], m[i][kUnknowns + 1]) / m[i][i];
+    }
+    [[nodiscard]] V2d film_mm() const { return film_; }
+    [[nodiscard]] V2d rear_mm() const { return by_[0]; }
+    [[nodiscard]] V2d by_film_x() const { return by_[1]; }
+    [[nodiscard]] V2d by_film_y() const { return by_[2]; }
+    [[nodiscard]] V2d by_lamp_x() const { return by_[3]; }
+    [[nodiscard]] V2d by_lamp_y() const { return by_[4]; }
+    [[nodiscard]] V2d by_wave() const { return by_[5]; }
+    [[nodiscard]] V2d error(const Record& r) const {
+        V2d out = r.rear_mm;
+        const auto a = terms(r);
+        for (size_t i = 0; i < kUnknowns; ++i) out -= by_[i] * a[i];
+        return out;
+    }
+
+  private:
+    [[nodiscard]] std::array<double, kUnknowns> terms(const Record& r) const {
+        const V2d film = r.film_mm - film_;
+        return {1, film.x, film.y, r.on_lamp.x, r.on_lamp.y, r.wave};
+    }
+
+    V2d film_{0.};
+    std::array<V2d, kUnknowns> by_{};
+};
+
+/// Long axis of the ellipse into which two vectors make the unit disc, and its half axes.
+std::pair<V2d, V2d> ellipse_of(V2d a, V2d b) {
+    const double xx = a.x * a.x + b.x * b.x, yy = a.y * a.y + b.y * b.y, xy = a.x * a.y + b.x * b.y;
+    const double mean = (xx + yy) / 2, apart = std::hypot((xx - yy) / 2, xy);
+    const double angle = std::atan2(2 * xy, xx - yy) / 2;
+    return {{std::cos(angle), std::sin(angle)},
+            {std::sqrt(mean + apart), std::sqrt(std::max(mean - apart, 0.))}};
+}
+
+/// Rays of a lamp by way of a pair.
+class LampRays {
+  public:
+    LampRays(const GhostOptics& optics, const std::vector<LampDraws>& draws, uint32_t pair,
+             const GhostLamp& lamp)
+        : optics_(optics),
+          lens_(optics.lens()),
+          draws_(draws),
+          pair_(optics.pairs()[pair]),
+          lamp_(lamp),
+          reach_mm_(lens_.prescription().surfaces.front().semi_diameter_mm) {
+        const V3d to_lamp = lamp.centre_mm / lamp.centre_mm.length();
+        const V3d beside = std::fabs(to_lamp.x) < 0.9 ? V3d(1, 0, 0) : V3d(0, 1, 0);
+        constexpr double kBeyond = 0.55;
+        reach_of_film_ = V2d(optics.camera().input().film_width_mm,
+                             optics.camera().input().film_height_mm) *
+                         kBeyond;
+        across_ = to_lamp.cross(beside).normalized();
+        along_ = to_lamp.cross(across_);
+    }
+    /// Rays through a square of the first surface; none where it lies beside.
+    /// Clip::Yes: only those that no rim stops.
+    [[nodiscard]] std::vector<Record> through(const Part& part, uint32_t batches,
+                                              Clip clip) const {
+        std::vector<Record> out;
+        const double half = part.side_mm / 2;
+        if ((part.corner_mm + V2d(half)).length() > reach_mm_ + 1.5 * half) return out;
+        for (uint32_t batch = 0; batch < batches; ++batch) trace(part, draws_[batch], clip, out);
+        for (Record& r : out) r.light_mm2 /= 8 * batches;
+        return out;
+    }
+    [[nodiscard]] Part whole() const { return {V2d(-reach_mm_), 2 * reach_mm_}; }
+
+  private:
+    void trace(const Part&, const LampDraws&, Clip, std::vector<Record>&) const;
+
+    const GhostOptics& optics_;
+    const Lens& lens_;
+    const std::vector<LampDraws>& draws_;
+    GhostPair pair_;
+    GhostLamp lamp_;
+    double reach_mm_;
+    V2d reach_of_film_;  ///< and a little beyond
+    V3d across_, along_;
+};
+
+void LampRays::trace(const Part& part, const LampDraws& draws, Clip clip,
+                     std::vector<Record>& out) const {
+    LensRay<f8> ray;
+    std::array<float, 8> enters{};
+    for (int i = 0; i < 8; ++i) {
+        const V2d at = part.corner_mm + draws.in_part[size_t(i)] * part.side_mm;
+        const V2d on_lamp = draws.on_lamp[size_t(i)];
+        ray.direction.z[i] = 1;
+        const auto face = at.length() <= reach_mm_ ? face_point(lens_, 0, at) : std::nullopt;
+        if (!face) continue;
+        const V3d off =
+            (across_ * on_lamp.x + along_ * on_lamp.y) * lamp_.radius_mm;
+        V3d d = lamp_.at_infinity ? -(lamp_.centre_mm + off)
+                                  : face->point_mm - (lamp_.centre_mm + off);
+        d.normalize();
+        const double cosine = d.dot(face->normal);
+        if (!(cosine > 0)) continue;
+        enters[size_t(i)] = float(cosine / face->normal.z);
+        ray.origin.x[i] = float(face->point_mm.x), ray.origin.y[i] = float(face->point_mm.y),
+        ray.origin.z[i] = float(face->point_mm.z);
+        ray.direction.x[i] = float(d.x), ray.direction.y[i] = float(d.y),
+        ray.direction.z[i] = float(d.z);
+    }
+    f8 inside{};
+    for (int i = 0; i < 8; ++i) inside[i] = enters[size_t(i)] > 0 ? 1.f : 0.f;
+    PlanePoint<f8> rear(f8{}, f8{});
+    const auto observe = [&](const LensHit<f8>& hit, const GhostStep&) {
+        const f8 &x = hit.point.x, &y = hit.point.y;
+        const float rim2 = lens_.surfaces<float>()[size_t(hit.surface)].semi_diameter2_mm2;
+        inside = x * x + y * y <= rim2 ? inside : f8{};
+        if (hit.surface == lens_.last()) rear.x = x, rear.y = y;
+        if (hit.surface != lens_.stop()) return;
+        for (int i = 0; i < 8; ++i)
+            if (inside[i] > 0) inside[i] *= optics_.camera().optics().transmits({x[i], y[i]});
+    };
+    const m8 passed =
+        trace_ghost<f8>(lens_, pair_, Towards::Film, clip, draws.indices, ray, observe);
+    const double z_mm = optics_.camera().input().film_mm - lens_.vertex_mm(lens_.last());
+    for (int i = 0; i < 8; ++i) {
+        if (!passed[i] || !(enters[size_t(i)] > 0) || !(ray.direction.z[i] > 0)) continue;
+        const double t = (z_mm - double(ray.origin.z[i])) / double(ray.direction.z[i]);
+        const V2d film(double(ray.origin.x[i]) + t * double(ray.direction.x[i]),
+                       double(ray.origin.y[i]) + t * double(ray.direction.y[i]));
+        const V2d at_rear(double(rear.x[i]), double(rear.y[i]));
+        if (!is_finite(film) || at_rear.length() > 2 * optics_.rear_mm()) continue;
+        const bool on_film = std::fabs(film.x) < reach_of_film_.x && std::fabs(film.y) < reach_of_film_.y;
+        const double enters_mm2 =
+            on_film ? double(enters[size_t(i)] * inside[i]) * part.side_mm * part.side_mm : 0;
+        out.push_back({film, at_rear, draws.on_lamp[size_t(i)], double(wave_of(draws.nm[i])),
+                       enters_mm2});
+    }
+}
+
+/// The region of a part's rays, and shares about: of its points that see the lamp, and of the rays
+/// that pass all rims.
+struct PartRegion {
+    GhostRegion region{};
+    double sees = 0, open = 0;
+};
+PartRegion region_of(const std::vector<Record>& records) {
+    const StraightFit fit(records);
+    auto [axis, half] = ellipse_of(fit.by_lamp_x(), fit.by_lamp_y());
+    const double of_lamp = kPi / 4 * half.x * half.y;
+    const V2d across(-axis.y, axis.x);
+    V2d error(0.), low = records.front().film_mm, high = low;
+    double open = 0;
+    for (const Record& r : records) {
+        const V2d e = fit.error(r);
+        error.x = std::max(error.x, std::fabs(e.dot(axis)));
+        error.y = std::max(error.y, std::fabs(e.dot(across)));
+        low = {std::min(low.x, r.film_mm.x), std::min(low.y, r.film_mm.y)};
+        high = {std::max(high.x, r.film_mm.x), std::max(high.y, r.film_mm.y)};
+        open += r.light_mm2 > 0;
+    }
+    constexpr double kLeast_mm = 1e-4;  // what floats err
+    half += error * double(kErrorMargin) + V2d(kLeast_mm);
+    const V2d margin = (high - low) * double(kFilmMargin) + V2d(kLeast_mm);
+    PartRegion found{{}, of_lamp / (half.x * half.y), open / (8 * kBatches)};
+    GhostRegion& out = found.region;
+    out.film_low = V2f(low - margin), out.film_high = V2f(high + margin);
+    out.film = V2f(fit.film_mm()), out.rear = V2f(fit.rear_mm());
+    out.by_x = V2f(fit.by_film_x()), out.by_y = V2f(fit.by_film_y());
+    out.by_wave = V2f(fit.by_wave());
+    out.long_axis = V2f(axis), out.half = V2f(half);
+    return found;
+}
+
+/// Search of one pair's regions.
+class PairSearch {
+  public:
+    /// unit: light on the film for each mm^2 of light that enters.
+    PairSearch(const GhostOptics& optics, const LampRays& rays, uint32_t pair, double unit,
+                std::vector<GhostRegion>& out)
+        : rays_(rays), pair_(pair), unit_(unit), out_(out) {
+        const V2f corner = optics.camera().film_mm(V2f(0.f));
+        film_ = {std::fabs(corner.x), std::fabs(corner.y)};
+    }
+    /// Finds those of count x count parts of a square, each by itself, divisions times finer where
+    /// that helps.
+    void find(const Part& whole, int count, int divisions) const;
+
+  private:
+    [[nodiscard]] bool meets_film(const GhostRegion& r) const {
+        return r.film_low.x <= film_.x && r.film_high.x >= -film_.x && r.film_low.y <= film_.y &&
+               r.film_high.y >= -film_.y;
+    }
+
+    const LampRays& rays_;
+    uint32_t pair_;
+    double unit_;
+    std::vector<GhostRegion>& out_;
+    V2f film_;
+};
+
+void PairSearch::find(const Part& whole, int count, int divisions) const {
+    const double side = whole.side_mm / count;
+    const auto part_of = [&](int k) {
+        return Part{whole.corner_mm + V2d(k % count, k / count) * side, side};
+    };
+    const uint32_t batches = std::max(kBatches, kFirstBatches >> (kDivisions - divisions));
+    std::vector<double> light_mm2;
+    for (int k = 0; k < count * count; ++k) {
+        light_mm2.push_back(0);
+        for (const Record& r : rays_.through(part_of(k), batches, Clip::Yes))
+            light_mm2.back() += r.light_mm2;
+    }
+    const auto light_near = [&](int k) {
+        double near = 0;
+        for (int j = std::max(k / count - 1, 0); j <= std::min(k / count + 1, count - 1); ++j)
+            for (int i = std::max(k % count - 1, 0); i <= std::min(k % count + 1, count - 1); ++i)
+                near = std::max(near, light_mm2[size_t(j * count + i)]);
+        return near;
+    };
+    for (int k = 0; k < count * count; ++k) {
+        const double near = light_near(k), light = light_mm2[size_t(k)];
+        if (!(near > 0)) continue;
+        const std::vector<Record> records = rays_.through(part_of(k), kBatches, Clip::No);
+        const bool tells = records.size() > kUnknowns + 2;
+        auto [region, sees, open] = tells ? region_of(records) : PartRegion{};
+        const bool by_rims = open < kGood && divisions > kDivisions - kDivisionsByRims;
+        if (divisions > 0 && light > 0 && (sees < kGood || by_rims)) {
+            find(part_of(k), 2, divisions - 1);
+            continue;
+        }
+        if (!tells || !meets_film(region)) continue;
+        region.pair = pair_;
+        const V2f size = region.film_high - region.film_low;
+        // Rays between those that were traced may pass where these did not.
+        constexpr double kLeastShare = 0.05;
+        region.light = float(unit_ * std::max(light, kLeastShare * near) /
+                             double(size.x * size.y));
+        out_.push_back(region);
+    }
+}
+
+}  // namespace
+
+GhostSearch::GhostSearch(const GhostOptics& optics) : optics_(optics), draws_(kFirstBatches) {
+    const bool achromatic = optics.camera().input().dispersion == DispersionMode::Shared;
+    for (uint32_t batch = 0; batch < draws_.size(); ++batch) {
+        LampDraws& draws = draws_[batch];
+        for (uint32_t i = 0; i < 8; ++i) {
+            const Sampler sampler(SamplerKind::Owen, 1, {0, 0, 8 * batch + i});
+            draws.in_part[i] = V2d(sampler.get2(Dim::Lens));
+            draws.on_lamp[i] = V2d(uniform_disk(sampler.get2(Dim::LightPoint)));
+            draws.nm[int(i)] =
+                achromatic ? float(kLineD_nm) : 400 + 300 * sampler.get1(Dim::Wavelength);
+        }
+        draws.indices = optics.lens().indices(draws.nm);
+    }
+}
+
+void GhostSearch::find(uint32_t pair, const GhostLamp& lamp, std::vector<GhostRegion>& out) const {
+    const LampRays rays(optics_, draws_, pair, lamp);
+    const double unit = lamp.nits_sr * double(optics_.reflects(optics_.pairs()[pair]));
+    PairSearch(optics_, rays, pair, unit, out).find(rays.whole(), kParts, kDivisions);
+}
+
+}  // namespace petzval

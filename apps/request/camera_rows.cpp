@@ -135,7 +135,8 @@ std::vector<RequestField> lens_fields() {
         method(
             choice("coating", in::camera(&CameraRequest::coating),
                    "light lost at each surface: ideal (default, none), uncoated, against air "
-                   "mgf2 (one layer), v-coat (two), broadband (three), or as filed with the lens")),
+                   "mgf2 (one layer), v-coat (two), broadband (three), as filed with the lens, or the "
+                   "usual one of its year")),
         choice("ghosts", in::camera(&CameraRequest::ghosts),
                "light that two surfaces of a traced lens reflect: auto (default; where the ⟨coating⟩ "
                "reflects any), off, only"),

@@ -9,9 +9,9 @@
 #include "apps/request/option_names.h"
 #include "apps/setup/camera/camera_model.h"
 #include "apps/setup/camera/camera_setup.h"
+#include "apps/setup/ghosts.h"
 #include "apps/setup/glass_remarks.h"
 #include "apps/setup/input_files.h"
-#include "camera/ghosts/ghost_camera.h"
 #include "camera/models/moving_camera.h"
 #include "camera/ray_bundle.h"
 #include "camera/targets/make_target_camera.h"
@@ -225,24 +225,6 @@ std::shared_ptr<const Camera> moved(std::shared_ptr<const Camera> camera, const 
     return std::make_shared<MovingCamera>(std::move(camera), view.shutter);
 }
 
-/// Lets the camera that renders show its lens's ghosts, where there are any.
-void add_ghosts(const CameraRequest& asked, const Scene& scene, View& view) {
-    const auto lens = std::dynamic_pointer_cast<const LensCamera>(view.still);
-    if (!lens || asked.ghosts == GhostUse::Off) return;
-    if (asked.coating == Coating::Ideal) {
-        if (asked.ghosts != GhostUse::Only) return;
-        throw ArgumentError("⟨ghosts⟩ only", "",
-                            "shows what the surfaces of the lens reflect, and those of ⟨coating⟩ "
-                            "ideal reflect nothing: give ⟨coating⟩ year or another");
-    }
-    GhostOptics optics(lens);
-    if (optics.pairs().empty() && asked.ghosts != GhostUse::Only) return;
-    GhostRegions regions(optics, small_features_of(scene));
-    view.camera = std::make_shared<GhostCamera>(
-        asked.ghosts == GhostUse::Only ? nullptr : view.camera, std::move(optics),
-        std::move(regions));
-}
-
 /// The camera that renders, from the one that stands still: aimed at targets and moved by a
 /// shutter, where there are any.
 void compose_camera(const SceneRequest& asked, const RenderSetup* like,
@@ -260,7 +242,7 @@ void compose_camera(const SceneRequest& asked, const RenderSetup* like,
             aims->set_targets(view.targets);
             if (view.targets) view.camera = std::move(aims);
         }
-    add_ghosts(asked.camera, *prepared.scene, view);
+    view.camera = with_ghosts(asked.camera, view, *prepared.scene);
     next_step();
     view.camera = moved(std::move(view.camera), view);
 }
@@ -325,6 +307,9 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
             setup.view.observer, request.size));
     next_step();
     compose_camera(request, shares ? like : nullptr, prepared, setup.view, next_step);
+    if (!shares)
+        if (const auto remark = ghost_remark(request.camera, setup.view, scene, *prepared.bvh))
+            notice(*remark);
     from.camera = std::move(camera.report);
     return setup;
 }

@@ -40,12 +40,20 @@ struct SurfaceShares {
 [[nodiscard]] SurfaceShares surface_shares(const LayerStack&, bool reversed, const Incidence&);
 
 /// Layers of a named coating between air and glass of an index, from the air; none for Ideal,
-/// Uncoated and Filed. All are designed for 550 nm and normal incidence.
+/// Uncoated, Filed and Year. All are designed for 550 nm and normal incidence.
 ///
 /// MgF2: a quarter wave. VCoat: MgF2 over a layer of index 2.05, as thick as it takes to reflect
 /// nothing (Moys 1974, Thin Solid Films 21, 145); from an index of 1.38^2 on, MgF2 alone.
 /// Broadband: quarter, half and quarter wave of MgF2, index 2.05 and index 1.38 sqrt(glass), after
 /// Cox, Hass and Thelen 1962, J. Opt. Soc. Am. 52, 965.
 [[nodiscard]] LayerStack layers_of(Coating, double glass_index);
+
+/// Coating that lenses designed in a year usually had: none before 1945, one layer up to 1970, and
+/// Broadband from 1971 on. (Smakula's patent for Zeiss is of November 1935, and coated lenses were
+/// sold widely after the war; Asahi sold the first lenses with several layers on all surfaces in
+/// 1971.) Single lenses were earlier or later.
+[[nodiscard]] constexpr Coating usual_in(int year) {
+    return year < 1945 ? Coating::Uncoated : year < 1971 ? Coating::MgF2 : Coating::Broadband;
+}
 
 }  // namespace petzval

@@ -15,9 +15,14 @@ double wave_nm(double cell, int waves) {
     return kFirst_nm + cell * (kLast_nm - kFirst_nm) / waves;
 }
 
+Coating named(Coating coating, const Lens& lens) {
+    return coating == Coating::Year ? usual_in(lens.prescription().year) : coating;
+}
+
 }  // namespace
 
-LensCoats::LensCoats(const Lens& lens, Coating coating) : coats_(size_t(lens.size())) {
+LensCoats::LensCoats(const Lens& lens, Coating asked) : coats_(size_t(lens.size())) {
+    const Coating coating = named(asked, lens);
     for (size_t i = 0; i < coats_.size(); ++i) {
         const auto& s = lens.surfaces<double>()[i];
         const SurfaceCoat& filed = lens.prescription().surfaces[i].coat;
@@ -44,12 +49,15 @@ SurfaceShares LensCoats::at(int surface, Towards towards, const Incidence& light
 }
 
 CoatTables::CoatTables(const Lens& lens, Coating coating)
-    : lens_(&lens), coating_(coating), coats_(lens, coating), tables_(size_t(lens.size())) {
+    : lens_(&lens),
+      coating_(named(coating, lens)),
+      coats_(lens, coating_),
+      tables_(size_t(lens.size())) {
     for (int i = 0; i < lens.size(); ++i) {
         Table& table = tables_[size_t(i)];
         const auto& s = lens.surfaces<double>()[size_t(i)];
         table.touches_air = touches_air(s);
-        table.formula = coating <= Coating::MgF2 || s.medium_before == s.medium_after;
+        table.formula = coating_ <= Coating::MgF2 || s.medium_before == s.medium_after;
         if (table.formula) continue;
         int finer = 1;
         while (finer <= kMostFiner && !fits(i, finer * kWaves, finer * kCosines)) finer *= 2;

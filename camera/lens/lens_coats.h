@@ -12,7 +12,8 @@ namespace petzval {
 /// Coatings of all surfaces of a lens, for analyses: exact, in doubles.
 class LensCoats {
   public:
-    /// coating: of every surface, or Filed. A coating by name leaves a surface bare that does not
+    /// coating: of every surface, Filed, or Year, for which the lens must have one. A coating by
+    /// name leaves a surface bare that does not
     /// touch air.
     LensCoats(const Lens&, Coating);
 

@@ -13,16 +13,17 @@ namespace petzval {
 /// index. MgF2: one layer of magnesium fluoride, a quarter wave thick at 550 nm and normal
 /// incidence, on every surface that touches air; cemented ones stay bare. So with VCoat, two layers
 /// for one wavelength, and Broadband, three for the visible (layers_of() has them). Filed: what the
-/// lens's file says of each surface.
-enum class Coating : uint8_t { Ideal, Uncoated, MgF2, VCoat, Broadband, Filed };
+/// lens's file says of each surface. Year: the usual one when the lens was designed (usual_in()).
+enum class Coating : uint8_t { Ideal, Uncoated, MgF2, VCoat, Broadband, Filed, Year };
 /// The name of each.
-inline constexpr std::array<std::pair<std::string_view, Coating>, 6> kCoatingNames{
+inline constexpr std::array<std::pair<std::string_view, Coating>, 7> kCoatingNames{
     {{"ideal", Coating::Ideal},
      {"uncoated", Coating::Uncoated},
      {"mgf2", Coating::MgF2},
      {"v-coat", Coating::VCoat},
      {"broadband", Coating::Broadband},
-     {"filed", Coating::Filed}}};
+     {"filed", Coating::Filed},
+     {"year", Coating::Year}}};
 
 enum class FocusBy : uint8_t {
     Paraxial,  ///< line d, rays near the axis

@@ -76,8 +76,9 @@ SurfaceCoat read_surface_coat(const JsonCursor& surface) {
     if (!surface.has("coating")) return Coating::Uncoated;
     if (surface.value().at("coating").is_object()) return read_layers(surface.object("coating"));
     const auto coating = coating_named(surface.text("coating"));
-    if (!coating || *coating == Coating::Filed)
-        surface.fail("coating", "must be layers, or one of {}, but not filed", coating_names());
+    if (!coating || *coating >= Coating::Filed)
+        surface.fail("coating", "must be layers, or one of {}, but neither filed nor year",
+                     coating_names());
     return *coating;
 }
 
@@ -190,7 +191,7 @@ LensFile read_lens_json(std::string_view text, const std::string& file, const st
     lens.title = shown(at, "title");
     lens.source = source_of(at);
     for (const char* key : {"grade", "notes"}) (void)shown(at, key);
-    (void)at.integer_or("year", 0);
+    lens.year = static_cast<int>(at.integer_or("year", 0));
     lens.stated_focal_length_mm = number_if(at, "focal_length", kLength);
     lens.stated_fnumber = number_if(at, "fnumber", kFnumber);
     lens.stated_field_half_deg = number_if(at, "field_half_angle_deg", kField);

@@ -41,6 +41,10 @@ CoatedLens set_up_coated(const LightOptions& o, const std::vector<double>& share
     const SurfaceCoat coat = read_coat(o.coating);
     if (const auto* name = std::get_if<Coating>(&coat)) {
         out.coating = *name;
+        if (out.coating == Coating::Year && out.lens().prescription().year == 0)
+            throw ArgumentError(o.field.request.lens, "",
+                                "its file states no year, by which --coating year goes: give "
+                                "--coating filed, or another");
     } else {
         Prescription file = out.lens().prescription();
         for (size_t i = 0; i < file.surfaces.size(); ++i)

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/setup/ghosts.h"
+
+#include "camera/ghosts/ghost_camera.h"
+#include "core/light/small_features.h"
+#include "io/base/error.h"
+
+namespace petzval {
+namespace {
+
+std::shared_ptr<const LensCamera> traced_lens(const View& view) {
+    return std::dynamic_pointer_cast<const LensCamera>(view.still);
+}
+
+/// Whether a lamp in front of the camera is seen from the middle of its entrance pupil.
+bool shines_in(const SmallFeature& lamp, const Pose& pose, const Bvh& bvh) {
+    constexpr float kLeastCosine = 0.17f;  // light from 80 degrees and more hardly enters
+    const V3f to = lamp.at_infinity ? lamp.centre : lamp.centre - pose.origin;
+    const float away = to.length();
+    if (!(away > lamp.radius_m) && !lamp.at_infinity) return false;
+    Ray ray;
+    ray.origin = pose.origin;
+    ray.direction = to / away;
+    if (!(-ray.direction.dot(pose.back) > kLeastCosine)) return false;
+    if (!lamp.at_infinity) ray.t_max = away - 1.01f * lamp.radius_m;
+    return !bvh.intersect(ray);
+}
+
+}  // namespace
+
+std::shared_ptr<const Camera> with_ghosts(const CameraRequest& asked, const View& view,
+                                          const Scene& scene) {
+    const auto lens = traced_lens(view);
+    const bool only = asked.ghosts == GhostUse::Only;
+    if (!lens || asked.ghosts == GhostUse::Off) return view.camera;
+    if (asked.coating == Coating::Ideal && !only) return view.camera;
+    GhostOptics optics(lens);
+    if (optics.pairs().empty()) {
+        if (!only) return view.camera;
+        throw ArgumentError("⟨ghosts⟩ only", "",
+                            "shows light that two surfaces of the lens reflect, and here none "
+                            "do: give ⟨coating⟩ year or another, and a lens of more surfaces");
+    }
+    GhostRegions regions(optics, small_features_of(scene));
+    return std::make_shared<GhostCamera>(only ? nullptr : view.camera, std::move(optics),
+                                         std::move(regions));
+}
+
+std::optional<std::string> ghost_remark(const CameraRequest& asked, const View& view,
+                                        const Scene& scene, const Bvh& bvh) {
+    const auto lens = traced_lens(view);
+    if (!lens || asked.coating != Coating::Ideal || asked.ghosts == GhostUse::Off) return {};
+    for (const SmallFeature& thing : small_features_of(scene))
+        if (thing.is_lamp() && shines_in(thing, lens->pose(), bvh))
+            return "a lamp shines into the lens, whose surfaces reflect nothing here: ⟨coating⟩ "
+                   "year shows its ghosts";
+    return {};
+}
+
+}  // namespace petzval

@@ -132,14 +132,15 @@ std::vector<RequestField> lens_fields() {
                    "wavelengths that leave the lens apart: auto (default: as a test render finds, "
                    "docs/guide/plan.md; in charts as hero), shared, hero, split",
                    "auto")),
-        method(
-            choice("coating", in::camera(&CameraRequest::coating),
-                   "light lost at each surface: ideal (default, none), uncoated, against air "
-                   "mgf2 (one layer), v-coat (two), broadband (three), as filed with the lens, or the "
-                   "usual one of its year")),
-        choice("ghosts", in::camera(&CameraRequest::ghosts),
-               "light that two surfaces of a traced lens reflect: auto (default; where the ⟨coating⟩ "
-               "reflects any), off, only"),
+        method(choice(
+            "coating", in::camera(&CameraRequest::coating),
+            "light lost at each surface: ideal (default, none), uncoated, against air "
+            "mgf2 (one layer), v-coat (two), broadband (three), as filed with the lens, or the "
+            "usual one of its year")),
+        choice(
+            "ghosts", in::camera(&CameraRequest::ghosts),
+            "light that two surfaces of a traced lens reflect: auto (default; where the ⟨coating⟩ "
+            "reflects any), off, only"),
         method(choice("lens-precision", in::camera(&CameraRequest::precision),
                       "rays through the lens in float (default) or double"))};
 }

@@ -60,8 +60,12 @@ void GhostCamera::add_ghosts(const FilmPoint& point, const Bands& bands, CameraS
     const LensCamera& camera = optics_.camera();
     const bool shared = one_ray(bands, camera.input().dispersion);
     const f4 nm = bands.spectral ? bands.nm : splat(float(kLineD_nm));
-    Place place{camera.film_mm(point.film), bands, shared,
-                shared ? line_d_ : optics_.lens().indices(bands.nm), nm, f4{}};
+    Place place{camera.film_mm(point.film),
+                bands,
+                shared,
+                shared ? line_d_ : optics_.lens().indices(bands.nm),
+                nm,
+                f4{}};
     if (!shared)
         for (int i = 0; i < 4; ++i) place.wave[i] = wave_of(nm[i]);
     const Sampler& sampler = point.sampler;

@@ -52,8 +52,7 @@ std::optional<GhostRay> GhostOptics::ray(GhostPair pair, V2f film_mm, V2f rear_m
     const double cosine_at_lens = -d.dot(face->normal);
     if (!(cosine_at_lens > 0) || !(d.z < 0)) return {};
     GhostRay out;
-    out.sr_per_mm2 =
-        static_cast<float>(-d.z * cosine_at_lens / (face->normal.z * length * length));
+    out.sr_per_mm2 = static_cast<float>(-d.z * cosine_at_lens / (face->normal.z * length * length));
     const auto all_lanes = [](const V3d& v) {
         return Vec3<f4>{splat(float(v.x)), splat(float(v.y)), splat(float(v.z))};
     };
@@ -70,7 +69,8 @@ std::optional<GhostRay> GhostOptics::ray(GhostPair pair, V2f film_mm, V2f rear_m
         hits.push_back({hit.surface, step.passage.towards, step.mirrors, hit.cosine, hit.index});
         if (hit.surface != stop) return;
         for (int i = 0; i < 4; ++i)
-            if (open[i] > 0) open[i] *= camera_->optics().transmits({hit.point.x[i], hit.point.y[i]});
+            if (open[i] > 0)
+                open[i] *= camera_->optics().transmits({hit.point.x[i], hit.point.y[i]});
     };
     out.ray = start;
     const m4 passed =
@@ -85,7 +85,8 @@ std::optional<GhostRay> GhostOptics::ray(GhostPair pair, V2f film_mm, V2f rear_m
 f4 GhostOptics::coat_share(const CoatHit& hit, const LensIndices<f4>& indices, f4 nm) const {
     const auto& s = lens().surfaces<float>()[size_t(hit.surface)];
     if (s.medium_before == s.medium_after) return splat(1.f);
-    const f4& into = indices.of_medium[hit.towards == Towards::Film ? s.medium_after : s.medium_before];
+    const f4& into =
+        indices.of_medium[hit.towards == Towards::Film ? s.medium_after : s.medium_before];
     if (!hit.mirrors) return tables_.transmittance(hit.surface, {hit.index, into, hit.cosine}, nm);
     f4 out{};
     for (int i = 0; i < 4; ++i)
@@ -109,7 +110,8 @@ float GhostOptics::reflects(GhostPair pair) const {
             .reflected;
     };
     double sum = 0;
-    for (const double nm : kVisible_nm) sum += along_axis(pair.first, nm) * along_axis(pair.second, nm);
+    for (const double nm : kVisible_nm)
+        sum += along_axis(pair.first, nm) * along_axis(pair.second, nm);
     return static_cast<float>(sum / kVisible_nm.size());
 }
 

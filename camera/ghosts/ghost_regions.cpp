@@ -18,7 +18,7 @@ constexpr size_t kMostInCell = 2048;
 constexpr float kWidest = 0.25f;
 /// Share of the draws that goes to a rectangle so many times as long and as wide: what a region
 /// misses lies close beside it.
-constexpr float kWideShare = 0.125f, kWider = 3;
+constexpr float kWideShare = 0.1f, kWider = 8;
 
 /// A lamp as the lens sees it; none where it lies in the lens or spreads too far for straight
 /// lines.
@@ -66,7 +66,9 @@ GhostRegions::GhostRegions(const GhostOptics& optics, std::span<const SmallFeatu
     film_mm_ = V2f(float(optics.camera().input().film_width_mm),
                    float(optics.camera().input().film_height_mm));
     const float longer = std::max(film_mm_.x, film_mm_.y);
-    const auto count = [&](float mm) { return std::max(1, int(std::lround(kCells * mm / longer))); };
+    const auto count = [&](float mm) {
+        return std::max(1, int(std::lround(kCells * mm / longer)));
+    };
     cells_ = {count(film_mm_.x), count(film_mm_.y)};
     list_regions();
 }
@@ -76,7 +78,9 @@ void GhostRegions::each_cell(const GhostRegion& r, const F& f) const {
     // Edges of the region in cells, from the film's corner.
     const auto low = (r.film_low / film_mm_ + V2f(0.5f)) * V2f(cells_),
                high = (r.film_high / film_mm_ + V2f(0.5f)) * V2f(cells_);
-    const auto first = [](float at, int cells) { return int(std::clamp(at, 0.f, float(cells - 1))); };
+    const auto first = [](float at, int cells) {
+        return int(std::clamp(at, 0.f, float(cells - 1)));
+    };
     const auto share = [](float from, float to, int cell) {
         return std::max(0.f, std::min(to, float(cell + 1)) - std::max(from, float(cell)));
     };
@@ -170,8 +174,8 @@ float GhostRegions::density(V2f film_mm, float wave, const Drawn& drawn) const {
         const V2f off = drawn.rear_mm - r.middle(film_mm, wave);
         if (!is_in(r, off, kWider)) continue;
         const float per_mm2 = r.light / (4 * r.half.x * r.half.y);
-        sum += per_mm2 *
-               (kWideShare / (kWider * kWider) + (is_in(r, off, 1) ? 1 - kWideShare : 0.f));
+        sum +=
+            per_mm2 * (kWideShare / (kWider * kWider) + (is_in(r, off, 1) ? 1 - kWideShare : 0.f));
     }
     const float before = group == groups.begin() ? 0 : (group - 1)->up_to;
     return sum > 0 ? sum / all * (group->up_to - before) : 0.f;

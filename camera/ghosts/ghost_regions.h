@@ -15,11 +15,11 @@ namespace petzval {
 /// in straight lines: light of one lamp, by way of one pair and of one part of the first surface,
 /// comes through it. Lengths in mm.
 struct GhostRegion {
-    uint32_t pair;              ///< in GhostOptics::pairs()
-    V2f film_low, film_high;    ///< film points that it is for
-    V2f film{0.f}, rear{0.f};   ///< where the middle is, for one film point at line d
-    V2f by_x{0.f}, by_y{0.f};   ///< change of the middle by the film point
-    V2f by_wave{0.f};           ///< and by wave_of()
+    uint32_t pair;             ///< in GhostOptics::pairs()
+    V2f film_low, film_high;   ///< film points that it is for
+    V2f film{0.f}, rear{0.f};  ///< where the middle is, for one film point at line d
+    V2f by_x{0.f}, by_y{0.f};  ///< change of the middle by the film point
+    V2f by_wave{0.f};          ///< and by wave_of()
     V2f long_axis{1.f, 0.f}, half{0.f};
     float light = 0;  ///< irradiance that it brings to the film, in any unit
 
@@ -65,7 +65,7 @@ class GhostRegions {
     /// Regions of one pair that serve film points of a cell.
     struct Group {
         uint32_t pair;
-        float up_to;  ///< share of the cell's light of this pair and those before
+        float up_to;          ///< share of the cell's light of this pair and those before
         uint32_t first, end;  ///< in members_
     };
     void list_regions();

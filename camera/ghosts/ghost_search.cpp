@@ -16,12 +16,14 @@ namespace {
 /// region; and that tell whether any light passes, of a part of the whole.
 constexpr int kParts = 8;
 constexpr uint32_t kBatches = 4, kFirstBatches = 32;
-/// A part is divided in four, so many times at most, where fewer than this of the points of its
-/// region see the lamp; and at first where fewer of its rays pass all rims.
-constexpr int kDivisions = 5, kDivisionsByRims = 2;
-constexpr double kGood = 0.15;
-/// Beyond what the rays of a part show: rims of film parts, and errors of straight lines.
-constexpr float kFilmMargin = 0.25f, kErrorMargin = 1.5f;
+/// A part is divided in four, so many times at most, where few of the points of its region see the
+/// lamp: fewer than a share; the last times, fewer than another. And at first where few of its rays
+/// pass all rims.
+constexpr int kDivisions = 6, kLastDivisions = 1, kDivisionsByRims = 2;
+constexpr double kGood = 0.15, kBad = 0.02;
+/// Beyond what the rays of a part show, as a share of it: film points, and errors of straight lines
+/// and so many times that where few points of a region see the lamp.
+constexpr double kFilmMargin = 0.25, kErrorMargin = 0.5, kMarginsWhereBent = 2;
 constexpr size_t kUnknowns = 6;
 
 /// Square of the first surface, across the axis.
@@ -35,7 +37,8 @@ struct Record {
     V2d film_mm, rear_mm;
     V2d on_lamp;  ///< of its disc of radius 1
     double wave;
-    double light_mm2;  ///< that enters with it; 0 where a rim or the iris stops it, or the film ends
+    double
+        light_mm2;  ///< that enters with it; 0 where a rim or the iris stops it, or the film ends
 };
 
 /// Least squares for both coordinates of the point on the last surface, by the film point, the
@@ -112,16 +115,15 @@ class LampRays {
         const V3d to_lamp = lamp.centre_mm / lamp.centre_mm.length();
         const V3d beside = std::fabs(to_lamp.x) < 0.9 ? V3d(1, 0, 0) : V3d(0, 1, 0);
         constexpr double kBeyond = 0.55;
-        reach_of_film_ = V2d(optics.camera().input().film_width_mm,
-                             optics.camera().input().film_height_mm) *
-                         kBeyond;
+        reach_of_film_ =
+            V2d(optics.camera().input().film_width_mm, optics.camera().input().film_height_mm) *
+            kBeyond;
         across_ = to_lamp.cross(beside).normalized();
         along_ = to_lamp.cross(across_);
     }
     /// Rays through a square of the first surface; none where it lies beside.
     /// Clip::Yes: only those that no rim stops.
-    [[nodiscard]] std::vector<Record> through(const Part& part, uint32_t batches,
-                                              Clip clip) const {
+    [[nodiscard]] std::vector<Record> through(const Part& part, uint32_t batches, Clip clip) const {
         std::vector<Record> out;
         const double half = part.side_mm / 2;
         if ((part.corner_mm + V2d(half)).length() > reach_mm_ + 1.5 * half) return out;
@@ -154,10 +156,9 @@ void LampRays::trace(const Part& part, const LampDraws& draws, Clip clip,
         ray.direction.z[i] = 1;
         const auto face = at.length() <= reach_mm_ ? face_point(lens_, 0, at) : std::nullopt;
         if (!face) continue;
-        const V3d off =
-            (across_ * on_lamp.x + along_ * on_lamp.y) * lamp_.radius_mm;
-        V3d d = lamp_.at_infinity ? -(lamp_.centre_mm + off)
-                                  : face->point_mm - (lamp_.centre_mm + off);
+        const V3d off = (across_ * on_lamp.x + along_ * on_lamp.y) * lamp_.radius_mm;
+        V3d d =
+            lamp_.at_infinity ? -(lamp_.centre_mm + off) : face->point_mm - (lamp_.centre_mm + off);
         d.normalize();
         const double cosine = d.dot(face->normal);
         if (!(cosine > 0)) continue;
@@ -189,11 +190,12 @@ void LampRays::trace(const Part& part, const LampDraws& draws, Clip clip,
                        double(ray.origin.y[i]) + t * double(ray.direction.y[i]));
         const V2d at_rear(double(rear.x[i]), double(rear.y[i]));
         if (!is_finite(film) || at_rear.length() > 2 * optics_.rear_mm()) continue;
-        const bool on_film = std::fabs(film.x) < reach_of_film_.x && std::fabs(film.y) < reach_of_film_.y;
+        const bool on_film =
+            std::fabs(film.x) < reach_of_film_.x && std::fabs(film.y) < reach_of_film_.y;
         const double enters_mm2 =
             on_film ? double(enters[size_t(i)] * inside[i]) * part.side_mm * part.side_mm : 0;
-        out.push_back({film, at_rear, draws.on_lamp[size_t(i)], double(wave_of(draws.nm[i])),
-                       enters_mm2});
+        out.push_back(
+            {film, at_rear, draws.on_lamp[size_t(i)], double(wave_of(draws.nm[i])), enters_mm2});
     }
 }
 
@@ -219,9 +221,11 @@ PartRegion region_of(const std::vector<Record>& records) {
         open += r.light_mm2 > 0;
     }
     constexpr double kLeast_mm = 1e-4;  // what floats err
-    half += error * double(kErrorMargin) + V2d(kLeast_mm);
-    const V2d margin = (high - low) * double(kFilmMargin) + V2d(kLeast_mm);
+    half += error * (1 + kErrorMargin) + V2d(kLeast_mm);
     PartRegion found{{}, of_lamp / (half.x * half.y), open / (8 * kBatches)};
+    const double times = found.sees < kGood ? kMarginsWhereBent : 1;
+    half += error * kErrorMargin * (times - 1);
+    const V2d margin = (high - low) * (kFilmMargin * times) + V2d(kLeast_mm);
     GhostRegion& out = found.region;
     out.film_low = V2f(low - margin), out.film_high = V2f(high + margin);
     out.film = V2f(fit.film_mm()), out.rear = V2f(fit.rear_mm());
@@ -236,14 +240,14 @@ class PairSearch {
   public:
     /// unit: light on the film for each mm^2 of light that enters.
     PairSearch(const GhostOptics& optics, const LampRays& rays, uint32_t pair, double unit,
-                std::vector<GhostRegion>& out)
+               std::vector<GhostRegion>& out)
         : rays_(rays), pair_(pair), unit_(unit), out_(out) {
         const V2f corner = optics.camera().film_mm(V2f(0.f));
         film_ = {std::fabs(corner.x), std::fabs(corner.y)};
     }
     /// Finds those of count x count parts of a square, each by itself, divisions times finer where
-    /// that helps.
-    void find(const Part& whole, int count, int divisions) const;
+    /// that helps. batches: of rays that tell whether light passes a part.
+    void find(const Part& whole, int count, int divisions, uint32_t batches) const;
 
   private:
     [[nodiscard]] bool meets_film(const GhostRegion& r) const {
@@ -258,17 +262,18 @@ class PairSearch {
     V2f film_;
 };
 
-void PairSearch::find(const Part& whole, int count, int divisions) const {
+void PairSearch::find(const Part& whole, int count, int divisions, uint32_t batches) const {
     const double side = whole.side_mm / count;
     const auto part_of = [&](int k) {
         return Part{whole.corner_mm + V2d(k % count, k / count) * side, side};
     };
-    const uint32_t batches = std::max(kBatches, kFirstBatches >> (kDivisions - divisions));
-    std::vector<double> light_mm2;
+    std::vector<double> light_mm2, lit;
     for (int k = 0; k < count * count; ++k) {
-        light_mm2.push_back(0);
-        for (const Record& r : rays_.through(part_of(k), batches, Clip::Yes))
+        light_mm2.push_back(0), lit.push_back(0);
+        for (const Record& r : rays_.through(part_of(k), batches, Clip::Yes)) {
             light_mm2.back() += r.light_mm2;
+            lit.back() += r.light_mm2 > 0;
+        }
     }
     const auto light_near = [&](int k) {
         double near = 0;
@@ -284,17 +289,24 @@ void PairSearch::find(const Part& whole, int count, int divisions) const {
         const bool tells = records.size() > kUnknowns + 2;
         auto [region, sees, open] = tells ? region_of(records) : PartRegion{};
         const bool by_rims = open < kGood && divisions > kDivisions - kDivisionsByRims;
-        if (divisions > 0 && light > 0 && (sees < kGood || by_rims)) {
-            find(part_of(k), 2, divisions - 1);
-            continue;
+        if (divisions > 0 && light > 0 &&
+            (sees < (divisions > kLastDivisions ? kGood : kBad) || by_rims)) {
+            const size_t before = out_.size();
+            // As many rays as it takes to meet the light again.
+            const double rays = 8 * batches / lit[size_t(k)];
+            find(part_of(k), 2, divisions - 1,
+                 std::clamp(uint32_t(rays / 4), kBatches, kFirstBatches));
+            if (out_.size() > before) continue;  // else its rays slip through between others
         }
         if (!tells || !meets_film(region)) continue;
         region.pair = pair_;
-        const V2f size = region.film_high - region.film_low;
+        // Of the part of its film points that the film has: the light counts there alone.
+        const V2f low(std::max(region.film_low.x, -film_.x), std::max(region.film_low.y, -film_.y)),
+            high(std::min(region.film_high.x, film_.x), std::min(region.film_high.y, film_.y));
+        const V2f size = high - low;
         // Rays between those that were traced may pass where these did not.
         constexpr double kLeastShare = 0.05;
-        region.light = float(unit_ * std::max(light, kLeastShare * near) /
-                             double(size.x * size.y));
+        region.light = float(unit_ * std::max(light, kLeastShare * near) / double(size.x * size.y));
         out_.push_back(region);
     }
 }
@@ -319,7 +331,8 @@ GhostSearch::GhostSearch(const GhostOptics& optics) : optics_(optics), draws_(kF
 void GhostSearch::find(uint32_t pair, const GhostLamp& lamp, std::vector<GhostRegion>& out) const {
     const LampRays rays(optics_, draws_, pair, lamp);
     const double unit = lamp.nits_sr * double(optics_.reflects(optics_.pairs()[pair]));
-    PairSearch(optics_, rays, pair, unit, out).find(rays.whole(), kParts, kDivisions);
+    PairSearch(optics_, rays, pair, unit, out)
+        .find(rays.whole(), kParts, kDivisions, kFirstBatches);
 }
 
 }  // namespace petzval

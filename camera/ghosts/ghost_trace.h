@@ -50,13 +50,15 @@ template <class N, class Observer>
     const int near = to_film ? pair.first : pair.second, far = to_film ? pair.second : pair.first;
     const auto pass = [&](Towards way, SurfaceRange range) {
         const LensPassage through{lens, way, range, clip};
-        return any(trace_lens<N>(through, indices, ray,
-                                 [&](const auto& hit) { observe(hit, {through, false}); }));
+        return any(trace_lens<N>(through, indices, ray, [&](const auto& hit) {
+            observe(hit, {through, false});
+        }));
     };
     const auto mirror = [&](Towards way, int surface) {
         const LensPassage at{lens, way, {surface, surface}, clip};
-        ghost_trace::reflect<N>(at, indices, ray,
-                                [&](const auto& hit) { observe(hit, {at, true}); });
+        ghost_trace::reflect<N>(at, indices, ray, [&](const auto& hit) {
+            observe(hit, {at, true});
+        });
         return any(ray.alive());
     };
     const SurfaceRange before_first{0, pair.first - 1}, behind_second{pair.second + 1, lens.last()},

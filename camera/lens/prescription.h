@@ -36,7 +36,7 @@ struct LensSurface {
 /// vertex.
 struct Prescription {
     std::string name, title, source;
-    int year = 0;  ///< of the design; 0: not known
+    int year = 0;                       ///< of the design; 0: not known
     std::vector<LensSurface> surfaces;  ///< at least one; exactly one is the stop
     double image_circle_mm = 0;         ///< diameter
     std::optional<double> stated_focal_length_mm, stated_fnumber, stated_field_half_deg;

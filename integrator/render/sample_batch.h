@@ -132,10 +132,11 @@ void SampleBatch<Tracer>::trace(size_t i) {
         // What surfaces reflect of a target is found by other rays as well: it is worth the effort
         // by the weight.
         const float effort = path.to_target ? path.mis_weight : 1.f;
-        (path.of_ghost ? ghosts : light) += light_along(path, i,
-                             {path.ray, path.lanes, path.hero_decided, effort,
-                              layers && !path.to_target, guide && !path.to_target},
-                             of_path);
+        (path.of_ghost ? ghosts : light) +=
+            light_along(path, i,
+                        {path.ray, path.lanes, path.hero_decided, effort, layers && !path.to_target,
+                         guide && !path.to_target},
+                        of_path);
         if (path.to_target) {
             ++stats_.target_rays;
             continue;

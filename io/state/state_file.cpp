@@ -187,8 +187,8 @@ void StateReader::read_pixels(const Use& use) const {
         hash = fnv1a(row, hash);
         for (int x = pixels.x0; x < pixels.x1; ++x) {
             const uint8_t* const pixel = row.data() + static_cast<size_t>(x - pixels.x0) * each;
-            const auto count = Film::packed_count(pixel, shape.layers, shape.bins,
-                                                  shape.keeps, header_.samples);
+            const auto count =
+                Film::packed_count(pixel, shape.layers, shape.bins, shape.keeps, header_.samples);
             if (!count) throw damaged();
             taken += *count;
             use(x, y, pixel);

@@ -127,9 +127,8 @@ TEST(Ghosts, HaveTheLightOfAWalkThroughTheLensPairByPair) {
         double deg;
     };
     constexpr uint32_t kWalks = 40000, kDraws = 200000;
-    for (const auto& [name, deg] :
-         {Case{"takumar-50mm-f1.2", 10}, Case{"canon-14mm-f2.8-asph", 30},
-          Case{"schneider-anamorphic-31mm", 8}}) {
+    for (const auto& [name, deg] : {Case{"takumar-50mm-f1.2", 10}, Case{"canon-14mm-f2.8-asph", 30},
+                                    Case{"schneider-anamorphic-31mm", 8}}) {
         SCOPED_TRACE(name);
         const auto camera = ghostly(name, Coating::Uncoated);
         const GhostOptics optics(camera);
@@ -169,7 +168,9 @@ TEST(GhostCamera, OfALampKeepTheirMeanWithRegionsAndWithout) {
     const double error = std::sqrt(with.variance(kCount) + without.variance(kCount));
     EXPECT_LT(error, 0.08 * without.sum);
     EXPECT_NEAR(with.sum, without.sum, 4 * error);
-    EXPECT_LT(with.variance(kCount) * 4, without.variance(kCount)) << with.sum << " " << without.sum << " " << with.variance(kCount) << " " << without.variance(kCount);
+    EXPECT_LT(with.variance(kCount) * 4, without.variance(kCount))
+        << with.sum << " " << without.sum << " " << with.variance(kCount) << " "
+        << without.variance(kCount);
 }
 
 /// Height and angle, in the medium, of a ray near the axis.
@@ -196,9 +197,10 @@ TEST(Ghosts, OfASmallAngleLieWhereParaxialOpticsSays) {
                                  (step == -1 && surface == pair.second);
             const double into =
                 mirrors ? -index
-                        : std::copysign(n.of_medium[step == 1 ? s.medium_after : s.medium_before][0],
-                                        index);
-            ray.u = (index * ray.u - ray.y * (into - index) * surfaces[size_t(surface)].curvature_1_mm) /
+                        : std::copysign(
+                              n.of_medium[step == 1 ? s.medium_after : s.medium_before][0], index);
+            ray.u = (index * ray.u -
+                     ray.y * (into - index) * surfaces[size_t(surface)].curvature_1_mm) /
                     into;
             index = into;
             if (mirrors) {
@@ -234,7 +236,8 @@ TEST(Ghosts, OfASmallAngleLieWhereParaxialOpticsSays) {
             continue;
         const double to_film =
             camera->input().film_mm - lens.vertex_mm(traced.counted_from) - traced.origin.z[0];
-        const double y = traced.origin.y[0] + to_film * traced.direction.y[0] / traced.direction.z[0];
+        const double y =
+            traced.origin.y[0] + to_film * traced.direction.y[0] / traced.direction.z[0];
         EXPECT_NEAR(y, ray.y, 1e-3 * std::fabs(ray.y) + 1e-7) << pair.first << "," << pair.second;
         ++tested;
     }
@@ -253,8 +256,8 @@ TEST(Ghosts, TakeTheSameWayBackwards) {
         const GhostPair pair = optics.pairs()[i % optics.pairs().size()];
         const V2f film = camera->film_mm(sampler.get2(Dim::Film));
         const V2f rear = (sampler.get2(Dim::Lens) * 2.f - V2f(1)) * float(optics.rear_mm());
-        const auto found = optics.ray(pair, film, rear, optics.lens().exact_indices(nm), nm,
-                                      m4{-1, 0, 0, 0});
+        const auto found =
+            optics.ray(pair, film, rear, optics.lens().exact_indices(nm), nm, m4{-1, 0, 0, 0});
         if (!found) continue;
         EXPECT_GT(found->share[0], 0.f);
         EXPECT_LT(found->share[0], 0.1f);
@@ -268,8 +271,8 @@ TEST(Ghosts, TakeTheSameWayBackwards) {
         back.counted_from = found->ray.counted_from;
         ASSERT_TRUE(trace_ghost<d4>(optics.lens(), pair, Towards::Film, Clip::No, indices, back,
                                     [](const auto&, const GhostStep&) {})[0]);
-        const double to_film = camera->input().film_mm -
-                               optics.lens().vertex_mm(back.counted_from) - back.origin.z[0];
+        const double to_film =
+            camera->input().film_mm - optics.lens().vertex_mm(back.counted_from) - back.origin.z[0];
         EXPECT_NEAR(back.origin.x[0] + to_film * back.direction.x[0] / back.direction.z[0],
                     double(film.x), 0.02);
         EXPECT_NEAR(back.origin.y[0] + to_film * back.direction.y[0] / back.direction.z[0],

@@ -85,6 +85,7 @@ const std::map<std::string, Change> kChanges{
     {"iris-sampling", {"rejection", kThin}},
     {"dispersion", {"hero", kSinglet}},
     {"coating", {"mgf2", kGlass}},
+    {"ghosts", {"off", kGlass}},
     {"lens-precision", {"double", kGlass}},
     {"exposure-mode", {"photographic", kThin}},
     {"natural-vignetting", {"off", kPhotographic}},

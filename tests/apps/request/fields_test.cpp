@@ -75,6 +75,7 @@ const std::map<std::string, std::pair<std::string, std::string>> kTexts{
     {"iris-sampling", {"alias", "alias"}},
     {"dispersion", {"hero", "hero"}},
     {"coating", {"mgf2", "mgf2"}},
+    {"ghosts", {"only", "only"}},
     {"lens-precision", {"double", "double"}},
     {"exposure-mode", {"photographic", "photographic"}},
     {"natural-vignetting", {"off", "off"}},

@@ -238,6 +238,43 @@ class Start(unittest.TestCase):
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("none.glb", done.stderr)
 
+    def test_the_page_to_learn_from(self):
+        with Live(PROGRAM, "--learn", "--threads", "2") as live:
+            text = live.ask("GET", "/")[2].decode()
+            self.assertIn("learn.js", text)
+            for name in ("/learn.js", "/plots.js", "/live.css"):
+                self.assertEqual(live.ask("GET", name)[0], 200)
+                self.assertNotIn("https://", live.ask("GET", name)[2].decode())
+            self.assertEqual(live.ask("GET", "/learn.html")[0], 404)
+
+            def lesson(name, **fields):
+                texts = {one.replace("_", "-"): [text] for one, text in fields.items()}
+                status, _, data = live.ask("POST", "/api/lesson", json.dumps({"lesson": name, "fields": texts}))
+                return status, json.loads(data)
+            takumar = {"lens": "takumar-50mm-f1.2", "fstop": "2", "focus": "1m"}
+            status, found = lesson("confusion", **takumar)
+            self.assertEqual(status, 200)
+            self.assertEqual(len(found["plots"]), 2)
+            for name, fields in (("none", takumar), ("depth", {}), ("depth", {**takumar, "focus": "auto"}),
+                                 ("depth", {**takumar, "focus": "3cm"}), ("depth", {**takumar, "fstop": "wide"}),
+                                 ("bokeh", {**takumar, "aperture": "/etc/passwd"}),
+                                 ("spherical", {**takumar, "lens": "singlet:NONE"}), ("depth", {**takumar, "lens": "/etc/passwd"})):
+                status, found = lesson(name, **fields)
+                self.assertEqual(status, 400, (name, fields))
+                self.assertTrue(found["error"])
+            for body in ("", "[]", "{}", '{"lesson": 1, "fields": {}}', '{"lesson": "depth", "fields": []}'):
+                self.assertEqual(live.ask("POST", "/api/lesson", body)[0], 400, body)
+            page = Page(live)
+            page.ask(1, **takumar, **SMALL)
+            self.assertEqual(page.end(1)["stage"], "done")
+            page.close()
+
+    def test_a_scene_or_the_page_to_learn_from(self):
+        for words in (["--learn", SCENE], []):
+            done = subprocess.run([PROGRAM, "live", *words], capture_output=True, text=True, check=False, timeout=60)
+            self.assertNotEqual(done.returncode, 0)
+            self.assertIn("SCENE", done.stderr)
+
     def test_with_listen_an_address_has_a_token(self):
         with Live(PROGRAM, SCENE, "--listen", "127.0.0.1") as live:
             self.assertEqual(len(live.folder), 34)

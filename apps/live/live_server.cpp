@@ -112,7 +112,9 @@ class LiveServer::Site {
         if (options_.listen) gate_.token = random_token();
         // A browser keeps six connections, each of which keeps a thread.
         server_.new_task_queue = [] { return new httplib::ThreadPool(8 * kMostPages); };
-        server_.set_keep_alive_timeout(2);
+        constexpr time_t kPatience_s = 2;  // with a client that stops in the middle of a request
+        server_.set_keep_alive_timeout(kPatience_s);
+        server_.set_read_timeout(kPatience_s);
         server_.set_keep_alive_max_count(10'000);
         server_.set_payload_max_length(kMostBody_bytes);
         server_.set_tcp_nodelay(true);

@@ -143,11 +143,15 @@ element("copy").addEventListener("click", async () => {
 });
 for (const kind of ["exr", "png"])
   element(`save-${kind}`).addEventListener("click", async () => {
+    const before = element("stage").textContent;
+    const saving = "Saving; a change waits until the file is there";
+    element("stage").textContent = saving;
     try {
       offer(await connection.file(version, `picture.${kind}`), `picture.${kind}`);
     } catch (fault) {
       show(element("error"), `Not saved: ${fault.message}`);
     }
+    if (element("stage").textContent === saving) element("stage").textContent = before;
   });
 element("scene").textContent = facts.scene;
 document.title = `${facts.scene} - Petzval`;

@@ -162,6 +162,21 @@ class Server(unittest.TestCase):
                 connection.sendall(text)
         self.assertEqual(self.ask("GET", "/")[0], 200)
 
+    def test_clients_that_stop_halfway_lose_their_place(self):
+        stopped = []
+        for text in (b"", b"GET / HTTP/1.1\r\nHost", b"POST /api/request HTTP/1.1\r\nHost: " +
+                     f"{self.live.host}:{self.live.port}".encode() +
+                     b"\r\nContent-Type: application/json\r\nContent-Length: 5000\r\n\r\n{") * 20:
+            connection = socket.create_connection((self.live.host, self.live.port))
+            connection.sendall(text)
+            stopped.append(connection)
+        self.assertEqual(self.ask("GET", "/")[0], 200)  # waits for one of 40 places, then is answered
+        for connection in stopped:
+            connection.settimeout(60)
+            while connection.recv(4096):  # until the server has closed it
+                pass
+            connection.close()
+
     def test_names_of_files_stay_inside_the_folder(self):
         page = Page(self.live)
         page.ask(1, **SMALL)

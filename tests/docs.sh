@@ -1,6 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Fails where README or a page names a path, a link, an option, a method or a command that is not there:
+# Fails where README or a page names a path, a link, an option, a method or a command that is not there,
+# or a page is not what its program prints:
 #
 #   tests/docs.sh PETZVAL
 #
@@ -25,6 +26,9 @@ for page in "${pages[@]}"; do
         [ -e "$(dirname "$page")/$link" ] || missing "$page" "$link"
     done
 done
+
+python3 tests/make/learn_page.py | cmp -s - docs/guide/learn.md ||
+    missing docs/guide/learn.md "what tests/make/learn_page.py prints"
 
 # Options and methods of every command.
 mapfile -t commands < <(for c in "" image lens; do

@@ -15,6 +15,7 @@
 #include "apps/live/live_server.h"
 #include "apps/request/value_error.h"
 #include "io/base/error.h"
+#include "io/file/assets.h"
 #include "io/image/picture_files.h"
 
 namespace petzval {
@@ -68,6 +69,10 @@ void add_live_command(CLI::App& app, Session& session) {
     CLI::App* command =
         app.add_subcommand("live", "show a scene in the browser, to look for a picture");
     add_field_options(*command, options->start, kLive);
+    command->get_option("SCENE")->required(false);
+    command->add_flag("--learn", options->learn,
+                      "a page to learn from, in place of a scene: blur, depth of field, bokeh and "
+                      "aberrations, each with its formula and pictures");
     command->add_option("--port", options->port, "port of the address (default: a free one)")
         ->check(CLI::Range(0, 65535));
     command->add_option("--listen", options->listen,
@@ -75,6 +80,11 @@ void add_live_command(CLI::App& app, Session& session) {
                         "(default: this machine alone)");
     command->callback([options, &session] {
         options->command = command_of;
+        auto& file = options->start.render.scene.scene;
+        if (options->learn != file.empty())
+            throw ValueError("SCENE", options->learn ? "is none of --learn, which has its own"
+                                                     : "is missing: give a .gltf or .glb file");
+        if (options->learn) file = asset("scenes/ornaments.glb");
         serve(*options, session);
     });
 }

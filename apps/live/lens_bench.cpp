@@ -3,11 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <memory>
 
 #include "camera/bench/analysis.h"
 #include "camera/bench/ray_path.h"
@@ -15,7 +13,7 @@
 #include "camera/bench/spot.h"
 #include "camera/lens/focus.h"
 #include "camera/lens/profile.h"
-#include "camera/setup/focused_lens.h"
+#include "camera/setup/lens_bench.h"
 #include "io/base/error.h"
 #include "io/lens/lens_file.h"
 
@@ -29,39 +27,27 @@ constexpr int kRays = 7, kSpotSide = 24, kFanRays = 33, kMtfSteps = 40;
 constexpr double kMostCycles_per_mm = 80;
 
 /// A lens in focus, and the point that is looked at.
-struct Bench {
-    std::shared_ptr<const Lens> lens;
-    double film_mm = 0, distance_mm = std::numeric_limits<double>::infinity(), field_deg = 0;
+struct Bench : LensBench {
+    double field_deg = 0;
 
-    [[nodiscard]] const std::string& name() const { return lens->prescription().name; }
     [[nodiscard]] ArgumentError dark() const {
-        return {name(), "", "lets no light through to that point of the film"};
+        return {lens->prescription().name, "", "lets no light through to that point of the film"};
     }
     [[nodiscard]] AimedBundle bundle(double nm) const {
-        auto found = AimedBundle::aim(*lens, {field_deg, distance_mm, Section::Y}, nm);
+        auto found = aim(field_deg, nm);
         if (!found) throw dark();
         return *std::move(found);
     }
 };
 
-Prescription stopped_down(Prescription file, double fstop) {
-    const Lens open(file);
-    double& radius_mm = file.surfaces[size_t(open.stop())].semi_diameter_mm;
-    if (const auto wanted_mm = stop_radius_for(open, fstop))
-        radius_mm = std::min(radius_mm, *wanted_mm);
-    return file;
-}
-
 Bench set_up(const BenchRequest& request) {
-    Bench out;
-    if (request.focus_m > 0) out.distance_mm = 1000 * request.focus_m;
     Prescription file = parse_lens(request.lens, "the lens").lens;
     if (request.fstop > 0) file = stopped_down(std::move(file), request.fstop);
-    const std::string name = file.name;
-    auto sharp = focused_from_pupil(Lens(std::move(file)), out.distance_mm);
-    if (!sharp) throw ArgumentError(name, "", "forms no image at that distance");
-    out.lens = std::make_shared<const Lens>(std::move(sharp->lens));
-    out.film_mm = out.lens->film_mm();
+    const double distance_mm =
+        request.focus_m > 0 ? 1000 * request.focus_m : std::numeric_limits<double>::infinity();
+    auto sharp = LensBench::focused(Lens(file), distance_mm);
+    if (!sharp) throw ArgumentError(file.name, "", "forms no image at that distance");
+    Bench out{*std::move(sharp)};
     if (!(request.height_mm > 0)) return out;
     const auto field_deg = field_of_height_deg(*out.lens, request.height_mm, out.film_mm);
     // In a plane at a distance nothing lies aside of the lens, or behind.

@@ -17,6 +17,7 @@
 #include "apps/live/facts.h"
 #include "apps/live/guard.h"
 #include "apps/live/lens_bench.h"
+#include "apps/live/lessons.h"
 #include "apps/live/open_pages.h"
 #include "apps/live/page_files.h"
 #include "apps/live/saved_file.h"
@@ -105,10 +106,15 @@ class LiveServer::Site {
           pages_(options_.start),
           files_(read_page_files()),
           facts_(program_facts(pages_.rules())) {
+        // Its pictures are of a scene of its own.
+        auto learn = files_.extract("learn.html");
+        if (options_.learn) files_.at("index.html") = std::move(learn.mapped());
         if (options_.listen) gate_.token = random_token();
         // A browser keeps six connections, each of which keeps a thread.
         server_.new_task_queue = [] { return new httplib::ThreadPool(8 * kMostPages); };
-        server_.set_keep_alive_timeout(2);
+        constexpr time_t kPatience_s = 2;  // with a client that stops in the middle of a request
+        server_.set_keep_alive_timeout(kPatience_s);
+        server_.set_read_timeout(kPatience_s);
         server_.set_keep_alive_max_count(10'000);
         server_.set_payload_max_length(kMostBody_bytes);
         server_.set_tcp_nodelay(true);
@@ -190,6 +196,7 @@ class LiveServer::Site {
         });
         const std::map<std::string, Handler> posts{{"/api/request", &Site::take_request},
                                                    {"/api/bench", &Site::measure_lens},
+                                                   {"/api/lesson", &Site::teach},
                                                    {"/api/lens", &Site::take_lens}};
         server_.Post(".*", [this, posts](const Request& request, Response& response) {
             if (const auto found = posts.find(path_behind_token(request.path, gate_));
@@ -315,6 +322,13 @@ class LiveServer::Site {
         const Json asked = Json::parse(request.body);
         answer(response, bench_facts({asked.at("lens"), asked.at("height_mm"), asked.at("focus_m"),
                                       asked.at("fstop")}));
+    }
+
+    // {"lesson": its name, "fields": as of a request}.
+    void teach(const Request& request, Response& response) {
+        const Json asked = Json::parse(request.body);
+        answer(response,
+               lesson_facts(asked.at("lesson"), order_of_page(asked.at("fields"), pages_.rules())));
     }
 
     void send_lens(const Request& request, Response& response) {

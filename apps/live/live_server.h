@@ -16,7 +16,8 @@ struct LiveOptions {
     /// Address to listen on; absent: 127.0.0.1. With one, pages need a token, as others can reach
     /// it.
     std::optional<std::string> listen;
-    int port = 0;  ///< 0: a free one
+    int port = 0;        ///< 0: a free one
+    bool learn = false;  ///< the page to learn from, in place of the view finder
     /// Command line of an order.
     std::function<std::string(const RenderOrder&)> command;
 };

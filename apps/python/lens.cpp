@@ -14,7 +14,7 @@
 #include "camera/bench/spot.h"
 #include "camera/lens/focus.h"
 #include "camera/lens/traced_ray.h"
-#include "camera/setup/focused_lens.h"
+#include "camera/setup/lens_bench.h"
 #include "io/lens/lens_file.h"
 
 namespace petzval {
@@ -50,34 +50,23 @@ Array array_of_pairs(const std::vector<BundleRay>& rays, std::array<double, 2> B
 /// Lens with its film, and the distance of what it is focused on.
 class BenchLens {
   public:
-    BenchLens(const std::string& name, const std::vector<std::string>& glasses) {
-        std::vector<AgfCatalog> catalogs;
-        for (const std::string& file : glasses) catalogs.emplace_back(file);
-        LensFile file = load_lens(name, catalogs);
-        warnings = std::move(file.warnings);
-        lens_ = std::make_shared<const Lens>(std::move(file.lens));
-        film_mm = lens_->film_mm();
-    }
+    BenchLens(const std::string& name, const std::vector<std::string>& glasses)
+        : BenchLens(read(name, glasses)) {}
 
-    [[nodiscard]] const Lens& lens() const { return *lens_; }
-    [[nodiscard]] const Prescription& file() const { return lens_->prescription(); }
+    [[nodiscard]] const Lens& lens() const { return *bench.lens; }
+    [[nodiscard]] const Prescription& file() const { return lens().prescription(); }
 
     [[nodiscard]] BenchLens focused(double distance, bool traced) const {
         auto sharp =
-            focused_from_pupil(*lens_, distance, traced ? FocusBy::Traced : FocusBy::Paraxial);
+            LensBench::focused(lens(), distance, traced ? FocusBy::Traced : FocusBy::Paraxial);
         if (!sharp)
             throw ValueError("distance_m",
                              fmt::format("{} cannot be focused at {:g} mm; give a greater distance",
                                          file().name, distance));
-        BenchLens out = *this;
-        out.lens_ = std::make_shared<const Lens>(std::move(sharp->lens));
-        out.film_mm = out.lens_->film_mm();
-        out.distance_mm = distance;
-        return out;
+        return {*std::move(sharp), warnings};
     }
     [[nodiscard]] double best_film_shift() const {
-        const double pupil_mm = first_order(*lens_, kLineD_nm).entrance_pupil_mm;
-        const auto shift = best_film_shift_mm(*lens_, film_mm, pupil_mm - distance_mm);
+        const auto shift = bench.best_film_shift_mm();
         if (!shift) throw dark(0);
         return *shift;
     }
@@ -85,27 +74,35 @@ class BenchLens {
                                               bool to_x) const {
         if (!(std::fabs(field_deg) < 90))
             throw ValueError("field_deg", fmt::format("{} is not between -90 and 90", field_deg));
-        const auto bundle =
-            AimedBundle::aim(*lens_, {field_deg, distance_mm, to_x ? Section::X : Section::Y}, nm);
+        const auto bundle = bench.aim(field_deg, nm, to_x ? Section::X : Section::Y);
         if (!bundle) throw dark(field_deg);
-        auto found = bundle->trace(bundle->grid(side), film_mm);
+        auto found = bundle->trace(bundle->grid(side), bench.film_mm);
         if (found.empty()) throw dark(field_deg);
         return found;
     }
     [[nodiscard]] std::vector<double> irradiance(const std::vector<double>& heights_mm) const {
-        return film_irradiance(lens_, film_mm, heights_mm);
+        return film_irradiance(bench.lens, bench.film_mm, heights_mm);
     }
 
-    double film_mm = 0, distance_mm = std::numeric_limits<double>::infinity();
+    LensBench bench;
     std::vector<std::string> warnings;
 
   private:
+    BenchLens(LensBench of, std::vector<std::string> told)
+        : bench(std::move(of)), warnings(std::move(told)) {}
+    [[nodiscard]] static BenchLens read(const std::string& name,
+                                        const std::vector<std::string>& glasses) {
+        std::vector<AgfCatalog> catalogs;
+        for (const std::string& file : glasses) catalogs.emplace_back(file);
+        LensFile file = load_lens(name, catalogs);
+        return {LensBench(std::make_shared<const Lens>(std::move(file.lens))),
+                std::move(file.warnings)};
+    }
     [[nodiscard]] ValueError dark(double field_deg) const {
         return {"field_deg", fmt::format("no light of the field {:g}° reaches the film of {}; give "
                                          "a smaller one",
                                          field_deg, file().name)};
     }
-    std::shared_ptr<const Lens> lens_;
 };
 
 py::tuple trace(const BenchLens& self, const Array& origins, const Array& directions,
@@ -172,7 +169,8 @@ py::tuple heights(const BenchLens& self, const std::vector<double>& fields_deg) 
     for (const double field_deg : fields_deg) {
         if (!(field_deg > 0 && field_deg < 90))
             throw ValueError("fields_deg", fmt::format("{} is not between 0 and 90", field_deg));
-        const auto found = distortion(self.lens(), field_deg, self.film_mm, self.distance_mm);
+        const auto found =
+            distortion(self.lens(), field_deg, self.bench.film_mm, self.bench.distance_mm);
         real.push_back(found ? found->height_mm : std::nan(""));
         ideal.push_back(found ? found->ideal_height_mm : std::nan(""));
     }
@@ -208,7 +206,7 @@ py::dict facts(const BenchLens& self, double nm) {
         file.image_circle_mm > 0 ? py::object(py::float_(file.image_circle_mm)) : py::none();
     out["half_field_deg"] = field_half_deg(file);
     out["fnumber"] = fnumber_of(self.lens(), stop_mm);
-    out["film_mm"] = self.film_mm;
+    out["film_mm"] = self.bench.film_mm;
     out["focal_length_mm"] = first.focal_length_mm;
     out["back_focus_mm"] = first.back_focus_mm;
     out["entrance_pupil_mm"] = first.entrance_pupil_mm;
@@ -224,8 +222,11 @@ void bind_lens(py::module_& module) {
     py::class_<BenchLens>(module, "Lens")
         .def(py::init<const std::string&, const std::vector<std::string>&>(),
              py::call_guard<py::gil_scoped_release>())
-        .def_readwrite("film_mm", &BenchLens::film_mm)
-        .def_readonly("distance_mm", &BenchLens::distance_mm)
+        .def_property(
+            "film_mm", [](const BenchLens& self) { return self.bench.film_mm; },
+            [](BenchLens& self, double mm) { self.bench.film_mm = mm; })
+        .def_property_readonly("distance_mm",
+                               [](const BenchLens& self) { return self.bench.distance_mm; })
         .def("focused", &BenchLens::focused, py::call_guard<py::gil_scoped_release>())
         .def("best_film_shift", &BenchLens::best_film_shift,
              py::call_guard<py::gil_scoped_release>())

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the server is asked. Addresses are relative, so that a token in the page's own stays in them.
 
+const kAgain_ms = 1000;
+
 /** Facts of the program: scene, start, fields, lenses, views. */
 export async function readFacts() {
   return (await fetch("api/facts")).json();
@@ -39,6 +41,14 @@ export class Connection extends EventTarget {
       this.dispatchEvent(new CustomEvent("lost", { detail: there ? "Other pages take all places; close or hide one"
         : "The server does not answer; trying again" }));
     });
+  }
+
+  /** Opens the stream, and again where it is lost; a page that nobody sees has none, and does no work. */
+  stay() {
+    document.addEventListener("visibilitychange", () => (document.hidden ? this.close() : this.open()));
+    this.addEventListener("lost", () =>
+      setTimeout(() => !document.hidden && !this.connected && this.open(), kAgain_ms));
+    if (!document.hidden) this.open();
   }
 
   /** Closes the stream, which ends the work for this page. */
@@ -99,6 +109,11 @@ export class Connection extends EventTarget {
   /** What the bench finds of a lens; its "error" where that cannot be; null where nobody answers. */
   bench(asked) {
     return this.#post("api/bench", asked);
+  }
+
+  /** Plots and figures of a lesson for the settings of a picture; likewise. */
+  lesson(name, fields) {
+    return this.#post("api/lesson", { lesson: name, fields });
   }
 
   /** Name of the file that the server keeps of a lens as long as the page is there; likewise. */

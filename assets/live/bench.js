@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The lens beside the picture: its section with rays, its figures at the field point under the pointer, and its
 // numbers, which may be changed.
-import { make, offer, short } from "./make.js";
+import { make, offer, oneAtATime, short } from "./make.js";
+import { line, plot, svg } from "./plots.js";
 
 const kColumns = [["radius", "radius, mm"], ["thickness", "thickness, mm"], ["semi_diameter", "half height, mm"], ["glass", "glass"]];
-const svg = (name, attributes = {}, ...children) => {
-  const element = document.createElementNS("http://www.w3.org/2000/svg", name);
-  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
-  element.append(...children);
-  return element;
-};
-const line = (points, closed = false) => points.length > 0 ? `M${points.map(([z, h]) => `${z} ${0 - h}`).join("L")}${closed ? "Z" : ""}` : "";
-
 /** Bench of the lens that the settings name. It sets the field "lens" when the lens is changed. */
 export class Bench {
   #parent;
@@ -22,8 +15,6 @@ export class Bench {
   #file = ""; // that the server keeps of the changed one
   #camera = null;
   #height_mm = 0;
-  #busy = false;
-  #again = false;
   #section = svg("svg", { id: "section", role: "img", "aria-label": "Section of the lens with rays of three wavelengths" });
   #plots = make("div", { className: "plots" });
   #figures = make("dl", { id: "figures" });
@@ -81,26 +72,15 @@ export class Bench {
     this.#measure();
   }
 
-  // One question at a time; the last one that came meanwhile follows.
-  async #measure() {
+  #measure = oneAtATime(async () => {
     if (!this.#parent.open || !this.#lens) return;
-    if (this.#busy) {
-      this.#again = true;
-      return;
-    }
-    this.#busy = true;
     const focus_m = this.#camera?.focus_m ?? 0;
     const fstop = Number.parseFloat(this.#settings.text("fstop").replace(/^f\//, "")) || 0;
     const found = await this.#connection.bench({
       lens: JSON.stringify(this.#lens), height_mm: this.#height_mm, focus_m, fstop });
-    this.#busy = false;
     this.#fault.textContent = found?.error ?? "";
     if (found && !found.error) this.#draw(found);
-    if (this.#again) {
-      this.#again = false;
-      this.#measure();
-    }
-  }
+  });
 
   #draw(found) {
     const heights = found.faces.flat().map(([, h]) => Math.abs(h));
@@ -119,28 +99,21 @@ export class Bench {
     this.#figures.replaceChildren(
       ...found.figures.flatMap(([name, text]) => [make("dt", {}, name), make("dd", {}, text)]));
     const middle = found.middle_mm;
-    const spots = found.spots.map((spot) =>
-      [spot.colour, spot.film_mm.map((point) => [1000 * (point[0] - middle[0]), 1000 * (point[1] - middle[1])])]);
-    const reach = Math.max(...spots.flatMap(([, points]) => points.flat().map(Math.abs)), 1e-3);
-    const fans = (name) => found.fans[name].map((fan) => [fan.colour, fan.um]);
-    const most = Math.max(...["tangential", "sagittal"].flatMap((name) =>
-      found.fans[name].flatMap((fan) => fan.um.map(([, um]) => Math.abs(um)))), 1e-3);
+    const spots = found.spots.map(({ colour, film_mm }) => ({ style: "dots", colour,
+      paths: [film_mm.map((point) => [1000 * (point[0] - middle[0]), 1000 * (point[1] - middle[1])])] }));
+    const most = (series) => Math.max(...series.flatMap(({ paths }) => paths[0].flat().map(Math.abs)), 1e-3);
+    const reach = most(spots);
+    const fans = ["tangential", "sagittal"].map((name) =>
+      found.fans[name].map(({ colour, um }) => ({ style: "", colour, paths: [um] })));
+    const um = Math.max(...fans.flat().flatMap(({ paths }) => paths[0].map((point) => Math.abs(point[1]))), 1e-3);
+    const square = (title, x, y, series) => plot({ title, x, y, series, square: true });
     this.#plots.replaceChildren(
-      this.#plot(`Spot, ${short(reach)} µm to each side`, [-reach, reach, -reach, reach], spots, true),
-      this.#plot(`Fan along the field, ±${short(most)} µm`, [-1.05, 1.05, -most, most], fans("tangential")),
-      this.#plot(`Fan across it, ±${short(most)} µm`, [-1.05, 1.05, -most, most], fans("sagittal")),
-      this.#plot("Contrast to 80 cycles/mm, geometric; bold: along the field", [0, 80, 0, 1],
-        [["currentColor bold", found.mtf.tangential], ["currentColor", found.mtf.sagittal]]));
-  }
-
-  #plot(title, [x0, x1, y0, y1], series, dots = false) {
-    const at = ([x, y]) => [(100 * (x - x0)) / (x1 - x0), (100 * (y - y1)) / (y1 - y0)];
-    const paths = series.map(([colour, points]) =>
-      dots
-        ? svg("path", { class: "dots", stroke: colour, d: points.map((p) => `M${at(p)[0]} ${-at(p)[1]}h0`).join("") })
-        : svg("path", { class: colour.endsWith("bold") ? "bold" : "", stroke: colour.split(" ")[0], d: line(points.map(at)) }));
-    return make("figure", {}, svg("svg", { viewBox: "0 0 100 100", role: "img", "aria-label": title },
-      svg("path", { class: "axis", d: "M0 50H100M50 0V100" }), ...paths), make("figcaption", {}, title));
+      square(`Spot, ${short(reach)} µm to each side`, [-reach, reach], [-reach, reach], spots),
+      square(`Fan along the field, ±${short(um)} µm`, [-1.05, 1.05], [-um, um], fans[0]),
+      square(`Fan across it, ±${short(um)} µm`, [-1.05, 1.05], [-um, um], fans[1]),
+      square("Contrast to 80 cycles/mm, geometric; bold: along the field", [0, 80], [0, 1],
+        [["bold", found.mtf.tangential], ["", found.mtf.sagittal]].map(([style, path]) =>
+          ({ style, colour: "currentColor", paths: [path] }))));
   }
 
   #list() {

@@ -5,11 +5,10 @@ import { Bench } from "./bench.js";
 import { Controls } from "./controls.js";
 import { Finder } from "./finder.js";
 import { Looking } from "./looking.js";
-import { offer } from "./make.js";
+import { offer, oneAtATime, textOfStage } from "./make.js";
 import { addressOf, fieldsOfAddress, Settings, textOfFloat } from "./state.js";
 
 const kUsualSize = "640x360";
-const kAgain_ms = 1000;
 const kAddress_ms = 300;
 
 const element = (id) => document.getElementById(id);
@@ -30,7 +29,6 @@ const controls = new Controls(element("controls"), settings, facts);
 let version = 0;
 let focusing = 0; // version that is to find a focus
 let drawn = 0;
-let drawing = false;
 let last = null; // status
 
 function ask() {
@@ -43,30 +41,8 @@ function ask() {
   for (const id of ["save-exr", "save-png"]) element(id).disabled = true;
 }
 
-function textOfStage(status) {
-  const seconds = `${status.elapsed_s.toFixed(1)} s`;
-  const noise = status.noise > 0 ? `, noise ${(100 * status.noise).toPrecision(2)} %` : "";
-  switch (status.stage) {
-    case "preparing":
-      return status.phase === "loading" ? "Loading the scene" : `Preparing: ${status.phase}`;
-    case "rough":
-      return "Rough picture; the true one is being prepared";
-    case "growing":
-      return status.of > 0
-        ? `${status.samples} of ${status.of} samples${noise}, ${seconds}`
-        : `${status.samples} samples${noise}, ${seconds}`;
-    case "done":
-      return `Done: ${status.samples} samples${noise}, ${seconds}`;
-    case "failed":
-      return "Not rendered";
-    default:
-      return "";
-  }
-}
-
-async function draw() {
-  if (drawing || !last || last.picture === drawn) return;
-  drawing = true;
+const draw = oneAtATime(async () => {
+  if (!last || last.picture === drawn) return;
   const number = last.picture;
   try {
     const image = await connection.picture(number);
@@ -75,9 +51,7 @@ async function draw() {
   } catch {
     // The stream tells that the server is gone.
   }
-  drawing = false;
-  if (connection.connected) draw();
-}
+});
 
 connection.addEventListener("open", () => {
   drawn = 0;
@@ -87,7 +61,6 @@ connection.addEventListener("open", () => {
 connection.addEventListener("lost", ({ detail: why }) => {
   element("stage").textContent = why;
   for (const id of ["save-exr", "save-png"]) element(id).disabled = true;
-  setTimeout(() => !document.hidden && !connection.connected && connection.open(), kAgain_ms);
 });
 connection.addEventListener("scene", ({ detail }) => detail && controls.meet(detail));
 connection.addEventListener("answer", ({ detail }) => {
@@ -170,17 +143,16 @@ element("copy").addEventListener("click", async () => {
 });
 for (const kind of ["exr", "png"])
   element(`save-${kind}`).addEventListener("click", async () => {
+    const before = element("stage").textContent;
+    const saving = "Saving; a change waits until the file is there";
+    element("stage").textContent = saving;
     try {
       offer(await connection.file(version, `picture.${kind}`), `picture.${kind}`);
     } catch (fault) {
       show(element("error"), `Not saved: ${fault.message}`);
     }
+    if (element("stage").textContent === saving) element("stage").textContent = before;
   });
-// A page that nobody sees does no work.
-document.addEventListener("visibilitychange", () => {
-  if (document.hidden) connection.close();
-  else connection.open();
-});
 element("scene").textContent = facts.scene;
 document.title = `${facts.scene} - Petzval`;
-if (!document.hidden) connection.open();
+connection.stay();

@@ -21,3 +21,44 @@ export function make(tag, attributes = {}, ...children) {
   element.append(...children);
   return element;
 }
+
+/** An async function that runs once at a time; of the calls that come meanwhile the last one follows. */
+export function oneAtATime(f) {
+  let busy = false;
+  let again = false;
+  return async function run() {
+    again = busy;
+    if (busy) return;
+    busy = true;
+    try {
+      do {
+        again = false;
+        await f();
+      } while (again);
+    } finally {
+      busy = false;
+    }
+  };
+}
+
+/** What the status of a picture says to people. */
+export function textOfStage(status) {
+  const seconds = `${status.elapsed_s.toFixed(1)} s`;
+  const noise = status.noise > 0 ? `, noise ${(100 * status.noise).toPrecision(2)} %` : "";
+  switch (status.stage) {
+    case "preparing":
+      return status.phase === "loading" ? "Loading the scene" : `Preparing: ${status.phase}`;
+    case "rough":
+      return "Rough picture; the true one is being prepared";
+    case "growing":
+      return status.of > 0
+        ? `${status.samples} of ${status.of} samples${noise}, ${seconds}`
+        : `${status.samples} samples${noise}, ${seconds}`;
+    case "done":
+      return `Done: ${status.samples} samples${noise}, ${seconds}`;
+    case "failed":
+      return "Not rendered";
+    default:
+      return "";
+  }
+}

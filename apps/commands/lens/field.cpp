@@ -4,12 +4,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 
 #include "apps/cli/choice.h"
 #include "camera/bench/analysis.h"
 #include "camera/lens/blockage.h"
-#include "camera/setup/focused_lens.h"
 #include "io/base/error.h"
 
 namespace petzval {
@@ -24,11 +22,10 @@ std::vector<double> parse_fields(const std::string& text, double widest_deg) {
     return out;
 }
 
-std::shared_ptr<const Lens> in_focus(const Lens& lens, const FieldRequest& request,
-                                     double distance_mm) {
-    auto sharp =
-        focused_from_pupil(lens, distance_mm, request.focus_by.value_or(FocusBy::Paraxial));
-    if (sharp) return std::make_shared<const Lens>(std::move(sharp->lens));
+LensBench in_focus(const Lens& lens, const FieldRequest& request, double distance_mm) {
+    if (auto sharp =
+            LensBench::focused(lens, distance_mm, request.focus_by.value_or(FocusBy::Paraxial)))
+        return *std::move(sharp);
     if (!std::isfinite(distance_mm))
         throw ArgumentError(request.request.lens, "",
                             "forms no image of a distant object; give --focus a distance");
@@ -64,14 +61,12 @@ void add_field_request(CLI::App& app, FieldRequest& request, bool with_fields) {
 }
 
 FieldSetup set_up(const FieldRequest& request, const std::vector<double>& shares) {
-    FieldSetup out;
-    out.section = request.section == "x" ? Section::X : Section::Y;
-    out.distance_mm = request.focus.empty()
-                          ? std::numeric_limits<double>::infinity()
-                          : 1e3 * double(parse_focus_distance_m("--focus", request.focus));
-    const bool near = std::isfinite(out.distance_mm);
-    out.lens = open_lens(request.request);
-    const double widest_deg = near ? kWidestNear_deg : kWidest_deg;
+    FieldSetup out{LensBench(open_lens(request.request)),
+                   {},
+                   request.section == "x" ? Section::X : Section::Y};
+    if (!request.focus.empty())
+        out.distance_mm = 1e3 * double(parse_focus_distance_m("--focus", request.focus));
+    const double widest_deg = std::isfinite(out.distance_mm) ? kWidestNear_deg : kWidest_deg;
     if (!request.fields.empty()) {
         out.fields_deg = parse_fields(request.fields, widest_deg);
     } else if (!shares.empty()) {
@@ -83,11 +78,9 @@ FieldSetup set_up(const FieldRequest& request, const std::vector<double>& shares
             out.fields_deg.push_back(std::min(share * *half, widest_deg));
     }
     if (!request.focus.empty() || request.focus_by)
-        out.lens = in_focus(*out.lens, request, out.distance_mm);
-    out.film_mm = out.lens->film_mm();
+        static_cast<LensBench&>(out) = in_focus(*out.lens, request, out.distance_mm);
     if (request.film_shift == "best") {
-        const double pupil_mm = first_order(*out.lens, kLineD_nm).entrance_pupil_mm;
-        const auto shift = best_film_shift_mm(*out.lens, out.film_mm, pupil_mm - out.distance_mm);
+        const auto shift = out.best_film_shift_mm();
         if (!shift)
             throw ArgumentError(request.request.lens, "",
                                 "no ray along the axis reaches the film; give --film-shift in mm");
@@ -104,7 +97,7 @@ void require_light(const Lens& lens) {
 }
 
 AimedBundle aim(const FieldSetup& setup, double field_deg, double nm) {
-    auto bundle = AimedBundle::aim(*setup.lens, {field_deg, setup.distance_mm, setup.section}, nm);
+    auto bundle = setup.aim(field_deg, nm, setup.section);
     if (!bundle)
         throw ArgumentError(setup.lens->prescription().name, "",
                             "no ray at {:g}° and {:g} nm reaches the middle of the stop; give a "

@@ -9,9 +9,9 @@
 
 #include "apps/commands/lens/request.h"
 #include "apps/request/parse.h"
-#include "camera/bench/aimed_bundle.h"
 #include "camera/bench/spectral_lines.h"
 #include "camera/lens/focus.h"
+#include "camera/setup/lens_bench.h"
 
 namespace petzval {
 
@@ -26,11 +26,9 @@ struct FieldRequest {
 /// Adds the options of a lens request, --focus, --focus-by, --film-shift, --section; and --field.
 void add_field_request(CLI::App&, FieldRequest&, bool with_fields = true);
 
-struct FieldSetup {
-    std::shared_ptr<const Lens> lens;  ///< in focus; as filed where the request is silent
+/// A lens in focus; as filed where the request is silent.
+struct FieldSetup : LensBench {
     std::vector<double> fields_deg;
-    double distance_mm = 0;  ///< from the lens's entrance pupil; infinite by default
-    double film_mm = 0;
     Section section = Section::Y;
 };
 /// Opens the lens. shares: fields as shares of the half field, where --field does not say. Throws

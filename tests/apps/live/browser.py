@@ -43,9 +43,13 @@ def open_browser(width=1280, height=900, **preferences):
     return webdriver.Chrome(service=webdriver.chrome.service.Service(DRIVER), options=options)
 
 
-class Browser(unittest.TestCase):
+class Driven(unittest.TestCase):
+    """A page in a browser."""
+
+    WORDS = (SCENE, *START)
+
     def setUp(self):
-        self.live = Live(PROGRAM, SCENE, *START)
+        self.live = Live(PROGRAM, *self.WORDS)
         self.addCleanup(self.live.__exit__)
         self.downloads = tempfile.TemporaryDirectory()
         self.addCleanup(self.downloads.cleanup)
@@ -70,6 +74,32 @@ class Browser(unittest.TestCase):
     def wait(self, condition, seconds=60):
         return WebDriverWait(self.browser, seconds, 0.05).until(condition)
 
+    def shot(self, name):
+        if PICTURES:
+            self.browser.save_screenshot(str(PICTURES / f"{name}.png"))
+
+    def is_too_wide(self):
+        return self.browser.execute_script(
+            "return document.documentElement.scrollWidth > document.documentElement.clientWidth")
+
+    def dark(self):
+        self.browser.execute_cdp_cmd("Emulation.setEmulatedMedia",
+                                     {"features": [{"name": "prefers-color-scheme", "value": "dark"}]})
+
+    def serious_faults(self):
+        """What axe-core finds."""
+        axe = os.environ.get("AXE")
+        if not axe:
+            self.skipTest("AXE does not name axe-core's axe.min.js")
+        # The page's policy lets no foreign script in but by the driver.
+        self.browser.execute_script(pathlib.Path(axe).read_text(encoding="utf-8"))
+        found = self.browser.execute_async_script(
+            "const done = arguments[arguments.length - 1]; axe.run().then((r) => done(r.violations))")
+        return [f"{one['id']}: {node['html']}" for one in found if one["impact"] in ("serious", "critical")
+                for node in one["nodes"]]
+
+
+class Browser(Driven):
     def wait_done(self):
         self.wait(lambda _: not self.find("save-exr").get_property("disabled"))
 
@@ -83,10 +113,6 @@ class Browser(unittest.TestCase):
             const data = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
             for (let i = 0; i < data.length; i += 404) all.push(data[i]);
             return [canvas.width, canvas.height, all];""")
-
-    def shot(self, name):
-        if PICTURES:
-            self.browser.save_screenshot(str(PICTURES / f"{name}.png"))
 
     def drag(self, dx, dy):
         ActionChains(self.browser, duration=20).move_to_element(self.find("picture")).click_and_hold().move_by_offset(
@@ -156,6 +182,21 @@ class Browser(unittest.TestCase):
             words[words.index("picture.exr")] = f"{folder}/picture.exr"
             subprocess.run(words + ["--quiet"], check=True)
             self.assertEqual(saved.read_bytes(), pathlib.Path(folder, "picture.exr").read_bytes())
+
+    def test_saving_is_told_while_it_lasts(self):
+        self.browser.execute_script("""
+            const ask = window.fetch;
+            window.fetch = async (...of) => {
+                if (of[0].startsWith("api/file")) await new Promise((done) => (window.letSave = done));
+                return ask(...of);
+            };""")
+        done = self.find("stage").text
+        self.find("save-exr").click()
+        self.wait(lambda _: "Saving" in self.find("stage").text)
+        self.browser.execute_script("window.letSave()")
+        self.wait(lambda _: self.find("stage").text == done)
+        saved = pathlib.Path(self.downloads.name, "picture.exr")
+        self.wait(lambda _: saved.exists() and saved.stat().st_size > 0)
 
     def test_keys_alone(self):
         self.find("picture").send_keys(Keys.ARROW_LEFT, Keys.ARROW_UP, "+")
@@ -247,6 +288,9 @@ class Browser(unittest.TestCase):
         self.wait(lambda _: "field" in self.find("figures").text and "field\n0.00" not in self.find("figures").text)
         self.assertIn("distortion", self.find("figures").text)
         self.assertGreater(len(self.browser.find_elements(By.CSS_SELECTOR, "#section .ray")), 12)
+        self.assertEqual(self.browser.execute_script("""
+            const dots = [...document.querySelectorAll("#bench .dots")].map((one) => getComputedStyle(one).stroke);
+            return new Set(dots).size"""), 3, "colours of the lines")
         self.shot("bench")
         shown = self.picture()
         # Another number: section, figures and picture follow.
@@ -327,12 +371,9 @@ class Browser(unittest.TestCase):
         for name, (width, height) in {"phone": (390, 844), "wide": (1600, 900)}.items():
             self.browser.set_window_size(width, height)
             self.wait_done()
-            over = self.browser.execute_script(
-                "return document.documentElement.scrollWidth - document.documentElement.clientWidth")
-            self.assertLessEqual(over, 0, name)
+            self.assertFalse(self.is_too_wide(), name)
             self.shot(name)
-        self.browser.execute_cdp_cmd("Emulation.setEmulatedMedia",
-                                     {"features": [{"name": "prefers-color-scheme", "value": "dark"}]})
+        self.dark()
         self.shot("dark")
 
     def test_a_storm_of_moves(self):
@@ -360,19 +401,116 @@ class Browser(unittest.TestCase):
         self.saved_is_the_commands()
 
     def test_nothing_serious_for_those_who_cannot_see(self):
-        axe = os.environ.get("AXE")
-        if not axe:
-            self.skipTest("AXE does not name axe-core's axe.min.js")
         Select(self.field("lens")).select_by_value("takumar-50mm-f1.2")
         self.browser.execute_script("for (const one of document.querySelectorAll('details')) one.open = true")
         self.wait(lambda _: "focal length" in self.find("figures").text)
-        # The page's policy lets no foreign script in but by the driver.
-        self.browser.execute_script(pathlib.Path(axe).read_text(encoding="utf-8"))
-        found = self.browser.execute_async_script(
-            "const done = arguments[arguments.length - 1]; axe.run().then((r) => done(r.violations))")
-        serious = [f"{one['id']}: {node['html']}" for one in found if one["impact"] in ("serious", "critical")
-                   for node in one["nodes"]]
-        self.assertEqual(serious, [])
+        self.assertEqual(self.serious_faults(), [])
+
+
+class Learn(Driven):
+    WORDS = ("--learn", "--size", "96x64", "--spp", "1", "--threads", "2")
+
+    def lessons(self):
+        return self.browser.find_elements(By.CSS_SELECTOR, "section[data-fields]")
+
+    def wait_done(self):
+        self.wait(lambda _: all(one.get_attribute("data-stage") == "done" for one in self.lessons()), 240)
+
+    def state(self, lesson):
+        """Paths of the drawings, figures, command line and colours of the picture."""
+        return self.browser.execute_script("""
+            const [lesson] = arguments, canvas = lesson.querySelector("canvas");
+            return [[...lesson.querySelectorAll("figure svg path")].map((one) => one.getAttribute("d")).join(),
+              lesson.querySelector("dl").textContent, lesson.querySelector("code.command").textContent,
+              [...canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data].join()]""", lesson)
+
+    def test_every_control_moves_drawing_and_picture(self):
+        self.assertEqual(len(self.lessons()), 8)
+        for lesson in self.lessons():
+            for control in lesson.find_elements(By.CSS_SELECTOR, "input[type=range]"):
+                name = f"{lesson.get_attribute('id')} {control.get_attribute('name')}"
+                before = self.state(lesson)
+                self.assertIn("petzval render", before[2], name)
+                self.browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", control)
+                width = control.size["width"]
+                value = control.get_property("value")
+                # From the middle towards an end, by the pointer.
+                ActionChains(self.browser, duration=20).move_to_element(control).click_and_hold().move_by_offset(
+                    -width // 4, 0).release().perform()
+                self.assertNotEqual(control.get_property("value"), value, name)
+                self.wait(lambda _: self.state(lesson)[2] != before[2])
+                self.wait_done()
+                after = self.state(lesson)
+                self.assertNotEqual(after[3], before[3], f"{name}: picture")
+                # The points of a triangle have nothing to do with the iris.
+                if lesson.get_attribute("id") != "triangle":
+                    self.wait(lambda _: self.state(lesson)[0] != before[0])
+                self.assertEqual(lesson.find_element(By.CLASS_NAME, "fault").text, "", name)
+        self.command_gives_the_picture()
+
+    def command_gives_the_picture(self):
+        """What is seen is what the command line renders."""
+        lesson = self.lessons()[0]
+        with tempfile.TemporaryDirectory() as folder:
+            words = shlex.split(lesson.find_element(By.CSS_SELECTOR, "code.command").text)
+            words[0] = PROGRAM
+            words[words.index("picture.exr")] = f"{folder}/picture.png"
+            subprocess.run(words + ["--quiet"], check=True)
+            subprocess.run(["oiiotool", f"{folder}/picture.png", "--ch", "R,G,B", "-d", "uint8", "-o",
+                            f"{folder}/picture.ppm"], check=True)
+            truth = pathlib.Path(folder, "picture.ppm").read_bytes()[-96 * 64 * 3:]
+        seen = [int(n) for n in self.state(lesson)[3].split(",")]
+        self.assertEqual([n for i, n in enumerate(seen) if i % 4 < 3], list(truth))
+
+    def test_keys_alone(self):
+        lesson = self.lessons()[0]
+        controls = self.browser.find_elements(By.CSS_SELECTOR, "main input, main nav a")
+        reached = []
+        for _ in controls:
+            ActionChains(self.browser).send_keys(Keys.TAB).perform()
+            reached.append(self.browser.switch_to.active_element)
+        self.assertEqual(reached, controls)
+        control = lesson.find_element(By.NAME, "focus")
+        before = self.state(lesson)
+        control.send_keys(*[Keys.ARROW_RIGHT] * 10)
+        self.assertEqual(control.get_attribute("aria-valuetext"), "1.5 m")
+        self.wait(lambda _: "--focus 1.5" in self.state(lesson)[2])
+        self.wait(lambda _: self.state(lesson)[0] != before[0])
+        self.wait_done()
+        self.shot("learn_keys")
+
+    def test_screens_and_nothing_serious_for_those_who_cannot_see(self):
+        self.shot("learn")
+        self.dark()
+        self.shot("learn_dark")
+        self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                                     {"width": 390, "height": 844, "deviceScaleFactor": 1, "mobile": True})
+        self.assertFalse(self.is_too_wide())
+        self.browser.execute_script("document.getElementById('bokeh').scrollIntoView()")
+        self.shot("learn_phone")
+        self.assertEqual(self.serious_faults(), [])
+
+    def test_what_is_wrong_is_said_and_mended(self):
+        lesson = self.browser.find_element(By.ID, "spherical")
+        control = lesson.find_element(By.NAME, "fstop")
+        self.browser.execute_script("arguments[0].min = 0.3; arguments[0].value = 0.3;"
+                                    "arguments[0].dispatchEvent(new Event('input'))", control)
+        self.wait(lambda _: lesson.find_element(By.CLASS_NAME, "fault").text)
+        self.wait(lambda _: lesson.get_attribute("data-stage") == "failed")
+        self.browser.execute_script("arguments[0].value = 4; arguments[0].dispatchEvent(new Event('input'))", control)
+        self.wait_done()
+        self.wait(lambda _: lesson.find_element(By.CLASS_NAME, "fault").text == "")
+
+    def test_the_server_is_lost_and_comes_back(self):
+        self.live.__exit__()
+        self.wait(lambda _: "does not answer" in self.find("stage").text)
+        self.live = Live(PROGRAM, *self.WORDS, "--port", str(self.live.port))
+        self.addCleanup(self.live.__exit__)
+        self.wait(lambda _: self.find("stage").text == "")
+        control = self.lessons()[0].find_element(By.NAME, "focus")
+        control.send_keys(Keys.ARROW_RIGHT)
+        self.wait(lambda _: "--focus 1.05" in self.state(self.lessons()[0])[2])
+        self.wait_done()
 
 
 if __name__ == "__main__":

@@ -12,9 +12,10 @@ import urllib.parse
 class Live:
     """`petzval live` while a with statement lasts."""
 
-    def __init__(self, program, scene, *options):
+    def __init__(self, program, *options):
+        """options: the scene among them."""
         self.program = program
-        self.process = subprocess.Popen([program, "live", scene, *options], stdout=subprocess.PIPE,
+        self.process = subprocess.Popen([program, "live", *options], stdout=subprocess.PIPE,
                                         stderr=subprocess.PIPE, text=True)
         self.address = self.process.stdout.readline().strip()
         if not self.address:

@@ -162,6 +162,21 @@ class Server(unittest.TestCase):
                 connection.sendall(text)
         self.assertEqual(self.ask("GET", "/")[0], 200)
 
+    def test_clients_that_stop_halfway_lose_their_place(self):
+        stopped = []
+        for text in (b"", b"GET / HTTP/1.1\r\nHost", b"POST /api/request HTTP/1.1\r\nHost: " +
+                     f"{self.live.host}:{self.live.port}".encode() +
+                     b"\r\nContent-Type: application/json\r\nContent-Length: 5000\r\n\r\n{") * 20:
+            connection = socket.create_connection((self.live.host, self.live.port))
+            connection.sendall(text)
+            stopped.append(connection)
+        self.assertEqual(self.ask("GET", "/")[0], 200)  # waits for one of 40 places, then is answered
+        for connection in stopped:
+            connection.settimeout(60)
+            while connection.recv(4096):  # until the server has closed it
+                pass
+            connection.close()
+
     def test_names_of_files_stay_inside_the_folder(self):
         page = Page(self.live)
         page.ask(1, **SMALL)
@@ -237,6 +252,43 @@ class Start(unittest.TestCase):
         done = subprocess.run([PROGRAM, "live", "none.glb"], capture_output=True, text=True, check=False, timeout=60)
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("none.glb", done.stderr)
+
+    def test_the_page_to_learn_from(self):
+        with Live(PROGRAM, "--learn", "--threads", "2") as live:
+            text = live.ask("GET", "/")[2].decode()
+            self.assertIn("learn.js", text)
+            for name in ("/learn.js", "/plots.js", "/live.css"):
+                self.assertEqual(live.ask("GET", name)[0], 200)
+                self.assertNotIn("https://", live.ask("GET", name)[2].decode())
+            self.assertEqual(live.ask("GET", "/learn.html")[0], 404)
+
+            def lesson(name, **fields):
+                texts = {one.replace("_", "-"): [text] for one, text in fields.items()}
+                status, _, data = live.ask("POST", "/api/lesson", json.dumps({"lesson": name, "fields": texts}))
+                return status, json.loads(data)
+            takumar = {"lens": "takumar-50mm-f1.2", "fstop": "2", "focus": "1m"}
+            status, found = lesson("confusion", **takumar)
+            self.assertEqual(status, 200)
+            self.assertEqual(len(found["plots"]), 2)
+            for name, fields in (("none", takumar), ("depth", {}), ("depth", {**takumar, "focus": "auto"}),
+                                 ("depth", {**takumar, "focus": "3cm"}), ("depth", {**takumar, "fstop": "wide"}),
+                                 ("bokeh", {**takumar, "aperture": "/etc/passwd"}),
+                                 ("spherical", {**takumar, "lens": "singlet:NONE"}), ("depth", {**takumar, "lens": "/etc/passwd"})):
+                status, found = lesson(name, **fields)
+                self.assertEqual(status, 400, (name, fields))
+                self.assertTrue(found["error"])
+            for body in ("", "[]", "{}", '{"lesson": 1, "fields": {}}', '{"lesson": "depth", "fields": []}'):
+                self.assertEqual(live.ask("POST", "/api/lesson", body)[0], 400, body)
+            page = Page(live)
+            page.ask(1, **takumar, **SMALL)
+            self.assertEqual(page.end(1)["stage"], "done")
+            page.close()
+
+    def test_a_scene_or_the_page_to_learn_from(self):
+        for words in (["--learn", SCENE], []):
+            done = subprocess.run([PROGRAM, "live", *words], capture_output=True, text=True, check=False, timeout=60)
+            self.assertNotEqual(done.returncode, 0)
+            self.assertIn("SCENE", done.stderr)
 
     def test_with_listen_an_address_has_a_token(self):
         with Live(PROGRAM, SCENE, "--listen", "127.0.0.1") as live:

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Point spread: the image of a point by waves, the contrast that it leaves, and the same by a
+// direct sum.
+#pragma once
+
+#include <complex>
+#include <span>
+
+#include "camera/waves/pupil_function.h"
+
+namespace petzval {
+
+/// Image of a point on a grid of the film. Sample (i, j) lies (i - side / 2, j - side / 2) steps
+/// along x and y from the image point.
+struct PointSpread {
+    std::array<double, 2> image_mm{};
+    double step_mm = 0;
+    int side = 0;
+    std::vector<double> share;  ///< of the light, on the square about each sample, row by row
+
+    [[nodiscard]] double offset_mm(size_t i) const {
+        return step_mm * (static_cast<double>(i) - side / 2);
+    }
+};
+/// Point spread of a pupil function by a fast Fourier transform. side: a power of 2, twice that of
+/// the grid at least; the larger, the finer are the samples. It covers side * step_mm = wavelength
+/// / PupilGrid::step of the film; light from beyond is folded in.
+[[nodiscard]] PointSpread point_spread(const PupilFunction&, int side);
+
+/// Light of a point spread along one axis, summed across: what the image of a line is.
+struct LineSpread {
+    double step_mm = 0;
+    std::vector<double> share;
+};
+[[nodiscard]] LineSpread line_spread(const PointSpread&, Section along);
+
+/// Optical transfer function about the image point: its modulus is the MTF. By a direct sum, so
+/// that any frequency will do.
+[[nodiscard]] std::complex<double> transfer(const LineSpread&, double cycles_per_mm);
+
+/// Radius about the image point that holds a share of the light, mm.
+[[nodiscard]] double radius_of_share_mm(const PointSpread&, double share = 0.5);
+
+/// Light per mm^2 at points of the film (offsets from the image point), over all light of the
+/// bundle: a direct sum of Huygens's wavelets from side x side patches of the reference sphere, at
+/// their true distances. It shares with pupil_function() the trace and nothing else. Where the
+/// exit pupil is at infinity, or in the film, a sphere of 1 m takes its place.
+[[nodiscard]] std::vector<double> huygens_spread(const AimedBundle&, double film_mm,
+                                                 std::array<double, 2> image_mm,
+                                                 std::span<const std::array<double, 2>> offsets_mm,
+                                                 int side);
+
+}  // namespace petzval

@@ -97,7 +97,7 @@ void apply_iris(PupilFunction& pupil, const StopTransmission& iris, double radiu
 }  // namespace
 
 std::optional<PupilGrid> pupil_grid(const AimedBundle& bundle, const ReferenceSphere& sphere,
-                                    double depth_mm) {
+                                    int least, double depth_mm) {
     // Cells that a wave's slope may turn by half a wavelength, of which this share is used.
     constexpr double used = 0.9, margin = 0.03;
     VisiblePart seen;
@@ -119,7 +119,7 @@ std::optional<PupilGrid> pupil_grid(const AimedBundle& bundle, const ReferenceSp
     PupilGrid out;
     const double across = width * (1 + 2 * margin);
     out.needed = across * 2 * reach_mm / (used * bundle.nm() * 1e-6);
-    const double side = std::clamp(out.needed, double(kLeastPupilSide), double(kMostPupilSide));
+    const double side = std::clamp(out.needed, double(least), double(kMostPupilSide));
     out.side = static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::ceil(side))));
     out.step = across / out.side;
     for (size_t i = 0; i < 2; ++i)

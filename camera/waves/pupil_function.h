@@ -20,7 +20,8 @@ struct PupilGrid {
     double needed = 0;
     [[nodiscard]] bool resolves() const { return side >= needed; }
 };
-inline constexpr int kLeastPupilSide = 256, kMostPupilSide = 1024;
+/// Sides of grids: for images, for figures of the wave alone, and the largest.
+inline constexpr int kImagePupilSide = 256, kFiguresPupilSide = 128, kMostPupilSide = 1024;
 
 /// Wave in the exit pupil as seen from an image point. Cells row by row, p first.
 ///
@@ -48,10 +49,11 @@ struct PupilFunction {
 /// Share of the light that an iris lets through at a point of the stop, x and y in mm.
 using StopTransmission = std::function<double(double, double)>;
 
-/// Grid that holds the wave, as fine as it needs within kLeastPupilSide and kMostPupilSide.
-/// depth_mm: how far from the film images are wanted too. Nothing where no light arrives.
+/// Grid that holds the wave, of a power of 2 of cells from `least` on: as fine as it needs, and of
+/// kMostPupilSide at most. depth_mm: how far from the film images are wanted too. Nothing where no
+/// light arrives.
 [[nodiscard]] std::optional<PupilGrid> pupil_grid(const AimedBundle&, const ReferenceSphere&,
-                                                  double depth_mm = 0);
+                                                  int least = kImagePupilSide, double depth_mm = 0);
 
 /// Pupil function on a grid. Each cell's ray is found by Newton's method with the trace's own
 /// derivatives. Edges of rims count by the share of a cell that they leave. The stop's rim is one

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "camera/waves/pupil_rays.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -122,18 +123,26 @@ void find_pupil_rays(const AimedBundle& bundle, const ReferenceSphere& sphere,
     if (!chief) return;
     const int groups = grid.side / 4, middle_group = finder.nearest(chief->cosines[0], 0) / 4,
               middle_row = finder.nearest(chief->cosines[1], 1);
+    // Returns whether the row may go on: not where it leads away from the stop.
+    double last_r2 = 0;
     const auto group = [&](int number, int row, Known& from, bool rightwards) {
+        constexpr double far = 1.5;  // square of the stop's radius
         const FourRays four = finder.cells(4 * number, row, from);
-        for (int k = 0; k < 4; ++k)
-            if (four.found[size_t(k)])
-                tell(size_t(row) * size_t(grid.side) + size_t(4 * number + k),
-                     {1 / std::fabs(four.determinant(k)),
-                      four.rays.opd_mm[k],
-                      {four.rays.stop_x[k], four.rays.stop_y[k]},
-                      four.rays.inside[k]});
+        double r2 = INFINITY;
+        for (int k = 0; k < 4; ++k) {
+            if (!four.found[size_t(k)]) continue;
+            const std::array stop{four.rays.stop_x[k], four.rays.stop_y[k]};
+            r2 = std::min(r2, square(stop[0]) + square(stop[1]));
+            tell(size_t(row) * size_t(grid.side) + size_t(4 * number + k),
+                 {1 / std::fabs(four.determinant(k)), four.rays.opd_mm[k], stop,
+                  four.rays.inside[k]});
+        }
         for (int k = 0; k < 4; ++k)
             if (const int last = rightwards ? k : 3 - k; four.found[size_t(last)])
                 from = four.known(last);
+        const bool leads_away = r2 > far && r2 >= last_r2;
+        last_r2 = r2;
+        return !leads_away;
     };
     for (const int up : {1, -1}) {
         Known row_start = *chief;
@@ -142,9 +151,11 @@ void find_pupil_rays(const AimedBundle& bundle, const ReferenceSphere& sphere,
             Known from = row_start;
             group(middle_group, row, from, true);
             row_start = from;
-            for (int i = middle_group + 1; i < groups; ++i) group(i, row, from, true);
+            const double middle_r2 = last_r2;
+            for (int i = middle_group + 1; i < groups && group(i, row, from, true);) ++i;
             from = row_start;
-            for (int i = middle_group - 1; i >= 0; --i) group(i, row, from, false);
+            last_r2 = middle_r2;
+            for (int i = middle_group - 1; i >= 0 && group(i, row, from, false);) --i;
         }
     }
 }

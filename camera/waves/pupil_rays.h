@@ -16,8 +16,9 @@ struct PupilRay {
     double inside;               ///< as BundlePassage has it
 };
 
-/// Finds the ray of each cell that has one, whether rims stop it or not, and tells it with the
-/// cell's number. From the chief ray outwards, each by its neighbour; four cells of a row at once.
+/// Finds the rays of the cells, whether rims stop them or not, and tells each with the number of
+/// its cell; cells that have none, or one far beyond the stop's rim, are left out. From the chief
+/// ray outwards, each by its neighbour; four cells of a row at once.
 void find_pupil_rays(const AimedBundle&, const ReferenceSphere&, const PupilGrid&,
                      const std::function<void(size_t, const PupilRay&)>&);
 

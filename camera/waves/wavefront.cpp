@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <cstdlib>
 #include <numbers>
 
 namespace petzval {
@@ -53,41 +52,54 @@ std::vector<double> fit_opd(const PupilFunction& pupil, size_t count, const Func
     return found;
 }
 
-struct NollIndices {
-    int n, m;  ///< m < 0: the sine
+// Zernike polynomial: norm times radial polynomial times cosine or sine of m angles.
+struct ZernikeTerm {
+    int m = 0;
+    bool sine = false;
+    std::vector<double> radial{};  ///< of r^m r^(2 k), norm included
+
+    [[nodiscard]] double at(double x, double y) const {
+        const double r2 = x * x + y * y;
+        double sum = 0;
+        for (size_t k = radial.size(); k-- > 0;) sum = sum * r2 + radial[k];
+        std::complex<double> turned = 1;  // r^m e^(i m angle)
+        for (int i = 0; i < m; ++i) turned *= std::complex(x, y);
+        return sum * (sine ? turned.imag() : turned.real());
+    }
 };
 
 // Within a radial order |m| rises, and even numbers are cosines.
-NollIndices noll(int j) {
+ZernikeTerm zernike_term(int j) {
     int n = 0, first = 1;
     while (first + n + 1 <= j) first += ++n;
     const int place = j - first;
-    const int m = n % 2 == 0 ? (place + 1) / 2 * 2 : place / 2 * 2 + 1;
-    return {n, j % 2 == 0 ? m : -m};
+    ZernikeTerm out{.m = n % 2 == 0 ? (place + 1) / 2 * 2 : place / 2 * 2 + 1};
+    out.sine = out.m > 0 && j % 2 != 0;
+    // (-1)^k (n - k)! / (k! ((n + m) / 2 - k)! ((n - m) / 2 - k)!) r^(n - 2 k), each from the one
+    // before.
+    const int more = (n + out.m) / 2, less = (n - out.m) / 2;
+    double term = std::tgamma(n + 1) / (std::tgamma(more + 1) * std::tgamma(less + 1)) *
+                  std::sqrt(out.m == 0 ? n + 1. : 2 * (n + 1.));
+    out.radial.resize(static_cast<size_t>(less) + 1);
+    for (int k = 0; k <= less; ++k) {
+        out.radial[static_cast<size_t>(less - k)] = term;
+        term *= -double(more - k) * (less - k) / ((k + 1) * double(n - k));
+    }
+    return out;
 }
 
 }  // namespace
 
 double zernike(int j, double x, double y) {
-    const auto [n, signed_m] = noll(j);
-    const int m = std::abs(signed_m);
-    const double r = std::hypot(x, y);
-    // Terms (-1)^k (n - k)! / (k! ((n + m) / 2 - k)! ((n - m) / 2 - k)!), each from the one before.
-    double radial = 0, term = std::tgamma(n + 1) /
-                              (std::tgamma((n + m) / 2 + 1) * std::tgamma((n - m) / 2 + 1));
-    for (int k = 0; k <= (n - m) / 2; ++k) {
-        radial += term * std::pow(r, n - 2 * k);
-        term *= -double((n + m) / 2 - k) * ((n - m) / 2 - k) / ((k + 1) * double(n - k));
-    }
-    if (m == 0) return std::sqrt(n + 1.) * radial;
-    const double angle = m * std::atan2(y, x);
-    return std::sqrt(2 * (n + 1.)) * radial * (signed_m > 0 ? std::cos(angle) : std::sin(angle));
+    return zernike_term(j).at(x, y);
 }
 
 std::vector<double> zernike_coefficients_mm(const PupilFunction& pupil, int count) {
-    return fit_opd(pupil, static_cast<size_t>(count), [&](size_t cell, std::vector<double>& value) {
+    std::vector<ZernikeTerm> terms;
+    for (int j = 1; j <= count; ++j) terms.push_back(zernike_term(j));
+    return fit_opd(pupil, terms.size(), [&](size_t cell, std::vector<double>& value) {
         for (size_t i = 0; i < value.size(); ++i)
-            value[i] = zernike(static_cast<int>(i) + 1, pupil.stop[cell][0], pupil.stop[cell][1]);
+            value[i] = terms[i].at(pupil.stop[cell][0], pupil.stop[cell][1]);
     });
 }
 

@@ -44,19 +44,12 @@ struct Bench {
     }
 };
 
-Prescription stopped_down(Prescription file, double fstop) {
-    const Lens open(file);
-    double& radius_mm = file.surfaces[size_t(open.stop())].semi_diameter_mm;
-    if (const auto wanted_mm = stop_radius_for(open, fstop))
-        radius_mm = std::min(radius_mm, *wanted_mm);
-    return file;
-}
-
 Bench set_up(const BenchRequest& request) {
     Bench out;
     if (request.focus_m > 0) out.distance_mm = 1000 * request.focus_m;
     Prescription file = parse_lens(request.lens, "the lens").lens;
-    if (request.fstop > 0) file = stopped_down(std::move(file), request.fstop);
+    if (request.fstop > 0)
+        if (auto stopped = stopped_down(Lens(file), request.fstop)) file = *std::move(stopped);
     const std::string name = file.name;
     auto sharp = focused_from_pupil(Lens(std::move(file)), out.distance_mm);
     if (!sharp) throw ArgumentError(name, "", "forms no image at that distance");

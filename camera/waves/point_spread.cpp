@@ -44,6 +44,17 @@ PointSpread point_spread(const PupilFunction& pupil, int side) {
     return spread;
 }
 
+double PointSpread::per_mm2(double x_mm, double y_mm) const {
+    const double x = x_mm / step_mm + side / 2, y = y_mm / step_mm + side / 2;
+    if (!(x >= 0 && y >= 0 && x < side - 1 && y < side - 1)) return 0;
+    const auto i = static_cast<size_t>(x), j = static_cast<size_t>(y);
+    const double u = x - double(i), v = y - double(j);
+    const double* const low = &share[j * static_cast<size_t>(side) + i];
+    const double* const high = low + side;
+    return ((1 - v) * ((1 - u) * low[0] + u * low[1]) + v * ((1 - u) * high[0] + u * high[1])) /
+           (step_mm * step_mm);
+}
+
 LineSpread line_spread(const PointSpread& spread, Section along) {
     const auto n = static_cast<size_t>(spread.side);
     LineSpread out{spread.step_mm, std::vector<double>(n)};
@@ -64,13 +75,16 @@ std::complex<double> transfer(const LineSpread& line, double cycles_per_mm) {
     return sum;
 }
 
-double radius_of_share_mm(const PointSpread& spread, double share) {
-    const auto n = static_cast<size_t>(spread.side);
+double radius_of_share_mm(std::span<const PointSpread> spreads, std::span<const double> weights,
+                          double share) {
     std::vector<std::array<double, 2>> rings;
-    rings.reserve(n * n);
-    for (size_t cell = 0; cell < n * n; ++cell)
-        rings.push_back({std::hypot(spread.offset_mm(cell % n), spread.offset_mm(cell / n)),
-                         spread.share[cell]});
+    for (size_t i = 0; i < spreads.size(); ++i) {
+        const auto n = static_cast<size_t>(spreads[i].side);
+        for (size_t cell = 0; cell < n * n; ++cell)
+            rings.push_back(
+                {std::hypot(spreads[i].offset_mm(cell % n), spreads[i].offset_mm(cell / n)),
+                 weights[i] * spreads[i].share[cell]});
+    }
     std::sort(rings.begin(), rings.end());
     double sum = 0;
     for (const auto& [radius_mm, light] : rings)

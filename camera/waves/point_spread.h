@@ -18,6 +18,8 @@ struct PointSpread {
     int side = 0;
     std::vector<double> share;  ///< of the light, on the square about each sample, row by row
 
+    /// Light per mm^2 at a place about the image point, linear between samples; 0 beyond them.
+    [[nodiscard]] double per_mm2(double x_mm, double y_mm) const;
     [[nodiscard]] double offset_mm(size_t i) const {
         return step_mm * (static_cast<double>(i) - side / 2);
     }
@@ -38,8 +40,10 @@ struct LineSpread {
 /// that any frequency will do.
 [[nodiscard]] std::complex<double> transfer(const LineSpread&, double cycles_per_mm);
 
-/// Radius about the image point that holds a share of the light, mm.
-[[nodiscard]] double radius_of_share_mm(const PointSpread&, double share = 0.5);
+/// Radius about their common image point that holds a share of the light of point spreads, each by
+/// its weight, mm; weights add up to 1.
+[[nodiscard]] double radius_of_share_mm(std::span<const PointSpread>,
+                                        std::span<const double> weights, double share);
 
 /// Light per mm^2 at points of the film (offsets from the image point), over all light of the
 /// bundle: a direct sum of Huygens's wavelets from side x side patches of the reference sphere, at

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "apps/cli/choice.h"
+#include "apps/cli/console.h"
 #include "camera/bench/analysis.h"
 #include "camera/lens/blockage.h"
 #include "camera/setup/focused_lens.h"
@@ -37,6 +38,20 @@ std::shared_ptr<const Lens> in_focus(const Lens& lens, const FieldRequest& reque
                         lens.prescription().focus_group ? "the group that focuses" : "the lens");
 }
 
+std::shared_ptr<const Lens> at_fstop(const std::shared_ptr<const Lens>& lens,
+                                     const std::string& text) {
+    const double fnumber = parse_fnumber("--fstop", text, {1e-2, 1e6});
+    if (auto stopped = stopped_down(*lens, fnumber))
+        return std::make_shared<const Lens>(*std::move(stopped));
+    const auto stop = static_cast<size_t>(lens->stop());
+    print_notice(
+        fmt::format("warning: {} opens to f/{:.3g} at most, not to f/{:g}: an f-number is {}",
+                    lens->prescription().name,
+                    fnumber_of(*lens, lens->prescription().surfaces[stop].semi_diameter_mm),
+                    fnumber, kTracedFnumber));
+    return lens;
+}
+
 }  // namespace
 
 void add_field_request(CLI::App& app, FieldRequest& request, bool with_fields) {
@@ -59,6 +74,9 @@ void add_field_request(CLI::App& app, FieldRequest& request, bool with_fields) {
     app.add_option("--film-shift", request.film_shift,
                    "mm that the film lies behind that place, or best: where the spot on the axis "
                    "has the least RMS radius (default 0)");
+    app.add_option("--fstop", request.fstop,
+                   "f-number, as 8 or f/8: the iris closes (default: as wide as the lens's file "
+                   "says)");
     add_choice<std::string>(app, "--section", request.section, {{"y", "y"}, {"x", "x"}},
                             "the side to which the field is: y (default), x");
 }
@@ -71,6 +89,7 @@ FieldSetup set_up(const FieldRequest& request, const std::vector<double>& shares
                           : 1e3 * double(parse_focus_distance_m("--focus", request.focus));
     const bool near = std::isfinite(out.distance_mm);
     out.lens = open_lens(request.request);
+    if (!request.fstop.empty()) out.lens = at_fstop(out.lens, request.fstop);
     const double widest_deg = near ? kWidestNear_deg : kWidest_deg;
     if (!request.fields.empty()) {
         out.fields_deg = parse_fields(request.fields, widest_deg);

@@ -21,13 +21,15 @@ struct FieldRequest {
     std::string focus;   ///< metres
     std::optional<FocusBy> focus_by;
     std::string film_shift;  ///< mm, or best
+    std::string fstop;
     std::string section = "y";
 };
-/// Adds the options of a lens request, --focus, --focus-by, --film-shift, --section; and --field.
+/// Adds the options of a lens request, --focus, --focus-by, --film-shift, --section, --fstop; and
+/// --field.
 void add_field_request(CLI::App&, FieldRequest&, bool with_fields = true);
 
 struct FieldSetup {
-    std::shared_ptr<const Lens> lens;  ///< in focus; as filed where the request is silent
+    std::shared_ptr<const Lens> lens;  ///< stopped down and in focus, as far as asked
     std::vector<double> fields_deg;
     double distance_mm = 0;  ///< from the lens's entrance pupil; infinite by default
     double film_mm = 0;

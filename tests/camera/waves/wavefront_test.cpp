@@ -63,8 +63,9 @@ struct GaussianWave {
 };
 
 // W = S1/8 r^4 + S2/2 r^3 cos + S3/2 r^2 cos^2 + (S3 + S4)/4 r^2 + S5/2 r cos: Welford 1986,
-// Aberrations of Optical Systems, ch. 8. At a small aperture and field the traced opd has nothing else. Each is told from the others
-// by its symmetry; the signs follow from a pupil that is upright.
+// Aberrations of Optical Systems, ch. 8. At a small aperture and field the traced opd has nothing
+// else. Each is told from the others by its symmetry; the signs follow from a pupil that is
+// upright.
 TEST(Wavefront, ThirdOrderAberrationsAreSeidels) {
     for (const char* name : {"double-gauss-100mm-f2", "cooke-triplet-50mm-f5",
                              "kodak-petzval-100mm-f2", "takumar-50mm-f1.2"}) {
@@ -75,7 +76,9 @@ TEST(Wavefront, ThirdOrderAberrationsAreSeidels) {
         const SeidelSums sums = seidel(lens, std::tan(deg * kTurn / 360)).total;
         const GaussianWave axis(lens, 0), field(lens, deg);
         const auto of = [](const GaussianWave& wave, double r) {
-            struct Parts { double even_y, odd_y, even_x; } parts{};
+            struct Parts {
+                double even_y, odd_y, even_x;
+            } parts{};
             const double up = wave.opd_mm(0, r), down = wave.opd_mm(0, -r);
             parts.even_y = (up + down) / 2;
             parts.odd_y = (up - down) / 2;
@@ -87,15 +90,19 @@ TEST(Wavefront, ThirdOrderAberrationsAreSeidels) {
         // Odd parts at r and r / 2 part coma from distortion.
         const double w131 = (full.odd_y - 2 * half.odd_y) / 0.75, w311 = full.odd_y - w131;
         const double sagittal = full.even_x - w040, tangential = full.even_y - w040;
-        const struct { const char* what; double found, wanted; } rows[] = {
-            {"W040", w040, sums[0] / 8},
-            {"W131", w131, sums[1] / 2},
-            {"W222", tangential - sagittal, sums[2] / 2},
-            {"W220", sagittal, (sums[2] + sums[3]) / 4},
-            {"W311", w311, sums[4] / 2}};
+        const struct {
+            const char* what;
+            double found, wanted;
+        } rows[] = {{"W040", w040, sums[0] / 8},
+                    {"W131", w131, sums[1] / 2},
+                    {"W222", tangential - sagittal, sums[2] / 2},
+                    {"W220", sagittal, (sums[2] + sums[3]) / 4},
+                    {"W311", w311, sums[4] / 2}};
         for (const auto& row : rows) {
-            printf("%s %s %.6g nm, Seidel %.6g nm, %.2f %%\n", name, row.what, row.found * 1e6, row.wanted * 1e6, 100 * (row.found / row.wanted - 1));
-            EXPECT_NEAR(row.found, row.wanted, 0.04 * std::fabs(row.wanted) + 1.5e-8) << name << row.what;
+            printf("%s %s %.6g nm, Seidel %.6g nm, %.2f %%\n", name, row.what, row.found * 1e6,
+                   row.wanted * 1e6, 100 * (row.found / row.wanted - 1));
+            EXPECT_NEAR(row.found, row.wanted, 0.04 * std::fabs(row.wanted) + 1.5e-8)
+                << name << row.what;
         }
     }
 }
@@ -135,19 +142,21 @@ TEST(Wavefront, ZernikePolynomialsAreOrthonormal) {
 TEST(Wavefront, StrehlIsMahajansBelowAFourteenthOfAWave) {
     int compared = 0;
     double worst = 0;
-    for (const char* name : {"double-gauss-100mm-f2", "cooke-triplet-50mm-f5", "canon-14mm-f2.8-asph"})
+    for (const char* name :
+         {"double-gauss-100mm-f2", "cooke-triplet-50mm-f5", "canon-14mm-f2.8-asph"})
         for (const double factor : {0.15, 0.25, 0.35, 0.5})
-            for (const double deg : {0., 3.}) for (const double shift : {-0.02, 0., 0.02}) {
-                const Lens lens(with_stop(read_lens(name), factor));
-                const auto wave = wave_of(lens, {.field_deg = deg}, shift, kFiguresPupilSide);
-                const WavefrontFigures figures = wavefront_figures(wave.pupil);
-                const double sigma = figures.rms_mm / wave.pupil.wavelength_mm();
-                if (sigma > 1 / 14.) continue;
-                ++compared;
-                const double wanted = std::exp(-std::pow(kTurn * sigma, 2));
-                worst = std::max(worst, std::fabs(figures.strehl / wanted - 1));
-                EXPECT_NEAR(figures.strehl, wanted, 0.01 * wanted) << name << factor << deg;
-            }
+            for (const double deg : {0., 3.})
+                for (const double shift : {-0.02, 0., 0.02}) {
+                    const Lens lens(with_stop(read_lens(name), factor));
+                    const auto wave = wave_of(lens, {.field_deg = deg}, shift, kFiguresPupilSide);
+                    const WavefrontFigures figures = wavefront_figures(wave.pupil);
+                    const double sigma = figures.rms_mm / wave.pupil.wavelength_mm();
+                    if (sigma > 1 / 14.) continue;
+                    ++compared;
+                    const double wanted = std::exp(-std::pow(kTurn * sigma, 2));
+                    worst = std::max(worst, std::fabs(figures.strehl / wanted - 1));
+                    EXPECT_NEAR(figures.strehl, wanted, 0.01 * wanted) << name << factor << deg;
+                }
     printf("Strehl: %d compared, worst %.3f %%\n", compared, 100 * worst);
     EXPECT_GE(compared, 20);
 }
@@ -179,8 +188,7 @@ TEST(Wavefront, ZernikeCoefficientsOfALensAddUpToItsRms) {
     for (size_t i = 3; i < found.size(); ++i) sum += found[i] * found[i];
     const double rms = wavefront_figures(wave.pupil).rms_mm;
     EXPECT_NEAR(std::sqrt(sum), rms, 0.01 * rms);
-    for (const size_t j : {2, 3, 5, 6, 7, 8, 9, 10})
-        EXPECT_NEAR(found[j - 1], 0, 1e-3 * rms) << j;
+    for (const size_t j : {2, 3, 5, 6, 7, 8, 9, 10}) EXPECT_NEAR(found[j - 1], 0, 1e-3 * rms) << j;
 }
 
 // Stops before, in and behind the front focal plane: the exit pupil goes through infinity, and
@@ -229,12 +237,14 @@ TEST(Wavefront, FastTransformAndHuygensAgree) {
         double stop, field_deg, shift_mm, distance_mm = INFINITY;
         Section section = Section::Y;
     };
-    for (const Case& c :
-         {Case{"cooke-triplet-50mm-f5", 1, 0, 0}, {"cooke-triplet-50mm-f5", 1, 14, 0.05},
-          {"double-gauss-100mm-f2", 0.5, 10, -0.1}, {"takumar-50mm-f1.2", 0.4, 15, 0},
-          {"canon-14mm-f2.8-asph", 1, 30, 0}, {"minolta-fisheye-16mm-f2.8", 0.5, 60, 0},
-          {"schneider-anamorphic-31mm", 0.3, 8, 0.02, INFINITY, Section::X},
-          {"takumar-50mm-f1.2", 0.25, 0, 0.9, 3000}}) {
+    for (const Case& c : {Case{"cooke-triplet-50mm-f5", 1, 0, 0},
+                          {"cooke-triplet-50mm-f5", 1, 14, 0.05},
+                          {"double-gauss-100mm-f2", 0.5, 10, -0.1},
+                          {"takumar-50mm-f1.2", 0.4, 15, 0},
+                          {"canon-14mm-f2.8-asph", 1, 30, 0},
+                          {"minolta-fisheye-16mm-f2.8", 0.5, 60, 0},
+                          {"schneider-anamorphic-31mm", 0.3, 8, 0.02, INFINITY, Section::X},
+                          {"takumar-50mm-f1.2", 0.25, 0, 0.9, 3000}}) {
         const Lens lens(with_stop(read_lens(c.name), c.stop));
         const auto wave = wave_of(lens, {c.field_deg, c.distance_mm, c.section}, c.shift_mm,
                                   kImagePupilSide, kLineF_nm);
@@ -254,9 +264,12 @@ TEST(Wavefront, FastTransformAndHuygensAgree) {
                                           wave.pupil.sphere.image_mm, points, 240);
         double worst = 0;
         for (size_t i = 0; i < found.size(); ++i)
-            worst = std::max(worst, std::fabs(found[i] - wanted[i]) * std::pow(spread.step_mm, 2) / peak);
-        printf("Huygens %s %g %g: %zu points, worst %.4f of the peak, strehl %.3f side %d R %g\n", c.name,
-               c.stop, c.field_deg, points.size(), worst, wavefront_figures(wave.pupil).strehl, wave.pupil.grid.side, 1 / wave.pupil.sphere.curvature_1_mm);
+            worst = std::max(worst,
+                             std::fabs(found[i] - wanted[i]) * std::pow(spread.step_mm, 2) / peak);
+        printf("Huygens %s %g %g: %zu points, worst %.4f of the peak, strehl %.3f side %d R %g\n",
+               c.name, c.stop, c.field_deg, points.size(), worst,
+               wavefront_figures(wave.pupil).strehl, wave.pupil.grid.side,
+               1 / wave.pupil.sphere.curvature_1_mm);
         EXPECT_LT(worst, 0.01) << c.name << c.field_deg;
     }
 }

@@ -75,8 +75,9 @@ std::complex<double> transfer(const LineSpread& line, double cycles_per_mm) {
     return sum;
 }
 
-double radius_of_share_mm(std::span<const PointSpread> spreads, std::span<const double> weights,
-                          double share) {
+std::vector<double> radii_of_shares_mm(std::span<const PointSpread> spreads,
+                                       std::span<const double> weights,
+                                       std::span<const double> shares) {
     std::vector<std::array<double, 2>> rings;
     for (size_t i = 0; i < spreads.size(); ++i) {
         const auto n = static_cast<size_t>(spreads[i].side);
@@ -86,10 +87,12 @@ double radius_of_share_mm(std::span<const PointSpread> spreads, std::span<const 
                  weights[i] * spreads[i].share[cell]});
     }
     std::sort(rings.begin(), rings.end());
+    std::vector<double> out;
     double sum = 0;
-    for (const auto& [radius_mm, light] : rings)
-        if ((sum += light) >= share) return radius_mm;
-    return rings.back()[0];
+    for (size_t i = 0; i < rings.size() && out.size() < shares.size(); ++i)
+        if ((sum += rings[i][1]) >= shares[out.size()]) out.push_back(rings[i][0]);
+    out.resize(shares.size(), rings.back()[0]);
+    return out;
 }
 
 }  // namespace petzval

@@ -40,10 +40,11 @@ struct LineSpread {
 /// that any frequency will do.
 [[nodiscard]] std::complex<double> transfer(const LineSpread&, double cycles_per_mm);
 
-/// Radius about their common image point that holds a share of the light of point spreads, each by
-/// its weight, mm; weights add up to 1.
-[[nodiscard]] double radius_of_share_mm(std::span<const PointSpread>,
-                                        std::span<const double> weights, double share);
+/// Radii about their common image point that hold shares of the light of point spreads, each by
+/// its weight, mm; weights add up to 1, and shares rise.
+[[nodiscard]] std::vector<double> radii_of_shares_mm(std::span<const PointSpread>,
+                                                     std::span<const double> weights,
+                                                     std::span<const double> shares);
 
 /// Light per mm^2 at points of the film (offsets from the image point), over all light of the
 /// bundle: a direct sum of Huygens's wavelets from side x side patches of the reference sphere, at

@@ -112,8 +112,9 @@ std::optional<PupilGrid> pupil_grid(const AimedBundle& bundle, const ReferenceSp
         for (size_t i = 0; i < 2; ++i)
             seen.reach_mm[i] =
                 std::max(seen.reach_mm[i], std::fabs(ray.film_mm[i] - sphere.image_mm[i]));
+    constexpr double parallel = 1e-9;
     const double width = std::max(seen.most[0] - seen.least[0], seen.most[1] - seen.least[1]);
-    if (!(width > 0)) return std::nullopt;
+    if (!(width > parallel)) return std::nullopt;
     const double reach_mm =
         std::max(seen.reach_mm[0], seen.reach_mm[1]) + std::fabs(depth_mm) * width;
     PupilGrid out;

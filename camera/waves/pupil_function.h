@@ -51,7 +51,7 @@ using StopTransmission = std::function<double(double, double)>;
 
 /// Grid that holds the wave, of a power of 2 of cells from `least` on: as fine as it needs, and of
 /// kMostPupilSide at most. depth_mm: how far from the film images are wanted too. Nothing where no
-/// light arrives.
+/// light arrives, or rays arrive parallel.
 [[nodiscard]] std::optional<PupilGrid> pupil_grid(const AimedBundle&, const ReferenceSphere&,
                                                   int least = kImagePupilSide, double depth_mm = 0);
 

@@ -112,10 +112,13 @@ std::string script(const char* terminal_name, const Plot& plot) {
         terminal_name, quoted(plot.title), quoted(plot.x_label), quoted(plot.y_label));
     if (plot.logarithmic) text += "set logscale xy\nset offsets 0, 0, 0, 0\n";
     if (plot.logarithmic_y) text += "set logscale y\nset offsets 0, 0, 0, 0\nset key outside\n";
+    constexpr size_t most_in_key = 8;  // more would hide the curves
+    if (plot.series.size() > most_in_key) text += "set key outside\n";
     if (plot.equal_scale) text += "set size ratio -1\n";
     if (!plot.value_label.empty())
         text += fmt::format(
-            "set cblabel {}\nset palette defined (0 '#440154', 1 '#3b528b', 2 '#21918c', "
+            "set offsets 0, 0, 0, 0\nset autoscale fix\nset cblabel {}\nset palette defined (0 "
+            "'#440154', 1 '#3b528b', 2 '#21918c', "
             "3 '#5ec962', 4 '#fde725')\n",
             quoted(plot.value_label));
     std::string lines;

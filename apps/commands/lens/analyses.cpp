@@ -20,8 +20,6 @@ void append(std::vector<BundleRay>& all, const std::vector<BundleRay>& more) {
 }
 
 void print_spot(double field_deg, const char* line, const SpotSize& size) {
-    // Not -0.000000.
-    const auto shown = [](double mm) { return std::fabs(mm) < 5e-7 ? 0 : mm; };
     fmt::print("{:>10.4g} {:>6} {:>12.6f} {:>12.6f} {:>12.4f}\n", field_deg, line,
                shown(size.centroid_mm[0]), shown(size.centroid_mm[1]), kMicrons * size.rms_mm);
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "io/base/error.h"
 #include "io/file/atomic_file.h"
@@ -11,6 +12,10 @@
 #include "io/file/rescue.h"
 
 namespace petzval {
+
+double shown(double mm) {
+    return std::fabs(mm) < 5e-7 ? 0 : mm;
+}
 
 std::string title_of(const Lens& lens, const std::string& what) {
     return fmt::format("{}: {}", lens.prescription().name, what);
@@ -49,12 +54,11 @@ std::shared_ptr<AnalysisOptions> add_analysis(CLI::App& lens, const char* name, 
         const bool with_csv = !options->csv.empty();
         std::vector<NamedFile> outputs{{"-o", options->plot}};
         if (with_csv) outputs.push_back({"--csv", options->csv});
-        if (!options->more_plot.empty()) {
-            outputs.push_back({"the second plot", options->more_plot});
-            check_plot(options->more_plot);
-        }
+        if (!options->more_plot.empty())
+            outputs.push_back({options->more_plot_option, options->more_plot});
         refuse_overwriting(outputs, options->field.request);
         check_plot(options->plot);
+        if (!options->more_plot.empty()) check_plot(options->more_plot);
         if (with_csv) check_writable(options->csv);
         const Found found = analyse(*options);
         const auto& all = found.plot.series;
@@ -70,9 +74,10 @@ std::shared_ptr<AnalysisOptions> add_analysis(CLI::App& lens, const char* name, 
     return options;
 }
 
-void add_more_plot(CLI::App& command, AnalysisOptions& options, const char* name,
+void add_more_plot(CLI::App& command, AnalysisOptions& options, const char* option,
                    const char* help) {
-    command.add_option(name, options.more_plot, help);
+    options.more_plot_option = option;
+    command.add_option(option, options.more_plot, help);
 }
 
 }  // namespace petzval

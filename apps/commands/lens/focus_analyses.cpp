@@ -29,7 +29,8 @@ double depth_of(const FieldSetup& setup, double cycles) {
     double off_mm = 0;
     for (const double deg : setup.fields_deg)
         if (const auto focus = field_focus(aim(setup, deg, kLineD_nm), setup.film_mm))
-            off_mm = std::max({off_mm, std::fabs(focus->tangential_mm), std::fabs(focus->sagittal_mm)});
+            off_mm =
+                std::max({off_mm, std::fabs(focus->tangential_mm), std::fabs(focus->sagittal_mm)});
     const double depth_mm = blur_mm + std::min(off_mm, 5 * blur_mm);
     if (!std::isfinite(depth_mm))
         throw ArgumentError(lens.prescription().name, "", "no ray along the axis reaches the film");
@@ -71,11 +72,11 @@ void write_spots(const AnalysisOptions& o, const FieldSetup& setup, double depth
                     }
             }
     write_plot(o.more_plot,
-               {.title = title_of(*setup.lens,
-                                  fmt::format("spots, film shifted by {:.3g} mm to {:.3g} mm from "
-                                              "left to right, fields {:.4g}° downwards",
-                                              -depth_mm / 2, depth_mm / 2,
-                                              fmt::join(setup.fields_deg, "°, "))),
+               {.title = title_of(
+                    *setup.lens,
+                    fmt::format("spots, film from {:+.2g} to {:+.2g} mm, fields "
+                                "{:.4g}° downwards",
+                                -depth_mm / 2, depth_mm / 2, fmt::join(setup.fields_deg, "°, "))),
                 .x_label = "µm",
                 .y_label = "µm",
                 .series = std::move(series),
@@ -126,16 +127,17 @@ Found through_focus_analysis(const AnalysisOptions& o) {
                 lines[k].points.push_back({shift_mm, contrast[k]});
                 if (contrast[k] > best[k][1]) best[k] = {shift_mm, contrast[k]};
             }
-            out.rows.push_back({deg, shift_mm, contrast[0], contrast[1],
-                                spot_size(all, shift_mm).rms_mm});
+            out.rows.push_back(
+                {deg, shift_mm, contrast[0], contrast[1], spot_size(all, shift_mm).rms_mm});
         }
         fmt::print("{:>10.4g} {:>17.4f} {:>9.4f} ({:>5.3f}) {:>9.4f} ({:>5.3f})\n", deg,
                    best_shift_mm(all), best[0][0], best[0][1], best[1][0], best[1][1]);
         for (PlotSeries& line : lines) out.plot.series.push_back(std::move(line));
     }
     if (!o.more_plot.empty()) write_spots(o, setup, depth_mm, rays, light);
-    out.plot.title = title_of(*setup.lens, fmt::format("{} MTF at {:g} cycles per mm",
-                                                       o.wave ? "wave" : "geometric", o.most_cycles));
+    out.plot.title = title_of(
+        *setup.lens,
+        fmt::format("{} MTF at {:g} cycles per mm", o.wave ? "wave" : "geometric", o.most_cycles));
     out.plot.x_label = "film shifted away from the lens (mm)";
     out.plot.y_label = "contrast";
     return out;
@@ -148,8 +150,8 @@ Found field_curvature_analysis(const AnalysisOptions& o) {
     out.plot.series = {{.style = PlotStyle::Lines, .label = "tangential"},
                        {.style = PlotStyle::Lines, .label = "sagittal"}};
     for (const double deg : setup.fields_deg) {
-        const auto bundle = AimedBundle::aim(
-            *setup.lens, {deg, setup.distance_mm, setup.section}, kLineD_nm);
+        const auto bundle =
+            AimedBundle::aim(*setup.lens, {deg, setup.distance_mm, setup.section}, kLineD_nm);
         const auto focus = bundle ? field_focus(*bundle, setup.film_mm) : std::nullopt;
         if (!focus) continue;
         out.rows.push_back({deg, focus->tangential_mm, focus->sagittal_mm});
@@ -172,10 +174,11 @@ Found focal_shift_analysis(const AnalysisOptions& o) {
                        {.style = PlotStyle::Lines, .label = "least spot, whole iris"}};
     const double object_mm = first_order(lens, kLineD_nm).entrance_pupil_mm - setup.distance_mm;
     for (int nm = first_nm; nm <= last_nm; nm += step_nm) {
-        const double paraxial_mm = lens.vertex_mm(lens.last()) - setup.film_mm +
-                                   (std::isfinite(object_mm)
-                                        ? image_of(lens, object_mm, nm, setup.section).from_last_vertex_mm
-                                        : first_order(lens, nm, setup.section).back_focus_mm);
+        const double paraxial_mm =
+            lens.vertex_mm(lens.last()) - setup.film_mm +
+            (std::isfinite(object_mm)
+                 ? image_of(lens, object_mm, nm, setup.section).from_last_vertex_mm
+                 : first_order(lens, nm, setup.section).back_focus_mm);
         const auto rays = traced(aim(setup, 0, nm), setup.film_mm, side);
         if (rays.empty()) refuse_dark(lens, 0);
         out.rows.push_back({double(nm), paraxial_mm, best_shift_mm(rays)});
@@ -222,8 +225,7 @@ Found lateral_colour_analysis(const AnalysisOptions& o) {
 
 void add_lens_focus_commands(CLI::App& lens) {
     const auto through = add_analysis(
-        lens, "through-focus", "contrast and spots as the film moves", true,
-        through_focus_analysis,
+        lens, "through-focus", "contrast and spots as the film moves", true, through_focus_analysis,
         "MTF at one frequency, tangential and sagittal. The table says where spots are smallest "
         "and contrast is greatest, and how great.");
     CLI::App& command = *lens.get_subcommand("through-focus");

@@ -26,12 +26,11 @@ LineWave least_wave(const FieldSetup& setup, double field_deg, double nm) {
     if (!image_mm) refuse_dark(*setup.lens, field_deg);
     for (int i = 0;; ++i) {
         const ReferenceSphere sphere = reference_sphere(bundle, setup.film_mm, *image_mm);
-        const auto grid = pupil_grid(bundle, sphere, kFiguresPupilSide);
-        if (!grid) refuse_dark(*setup.lens, field_deg);
-        PupilGrid coarse = *grid;  // figures need no more
-        coarse.step *= double(grid->side) / kFiguresPupilSide;
+        const PupilGrid grid = require_grid(bundle, sphere, kFiguresPupilSide);
+        PupilGrid coarse = grid;  // figures need no more
+        coarse.step *= double(grid.side) / kFiguresPupilSide;
         coarse.side = kFiguresPupilSide;
-        for (double& first : coarse.first) first += (coarse.step - grid->step) / 2;
+        for (double& first : coarse.first) first += (coarse.step - grid.step) / 2;
         PupilFunction pupil = pupil_function(bundle, sphere, coarse);
         const WavefrontFigures figures = wavefront_figures(pupil);
         if (!(figures.rms_mm >= 0)) refuse_dark(*setup.lens, field_deg);
@@ -40,21 +39,21 @@ LineWave least_wave(const FieldSetup& setup, double field_deg, double nm) {
     }
 }
 
-void print_figures(double field_deg, const LightLine& line, const LineWave& wave) {
+std::string figures_row(double field_deg, const LightLine& line, const LineWave& wave) {
     const double wavelength_mm = wave.pupil.wavelength_mm();
-    const auto shown = [](double mm) { return std::fabs(mm) < 5e-7 ? 0 : mm; };
-    fmt::print("{:>10.4g} {:>8} {:>11.6f} {:>11.6f} {:>10.4f} {:>10.4f} {:>8.4f} {:>9.3f}\n",
-               field_deg, line.name, shown(wave.figures.image_mm[0]),
-               shown(wave.figures.image_mm[1]), wave.figures.rms_mm / wavelength_mm,
-               wave.figures.peak_to_valley_mm / wavelength_mm, wave.figures.strehl,
-               wave.figures.fnumber);
+    return fmt::format(
+        "{:>10.4g} {:>8} {:>11.6f} {:>11.6f} {:>10.4f} {:>10.4f} {:>8.4f} {:>9.3f}\n", field_deg,
+        line.name, shown(wave.figures.image_mm[0]), shown(wave.figures.image_mm[1]),
+        wave.figures.rms_mm / wavelength_mm, wave.figures.peak_to_valley_mm / wavelength_mm,
+        wave.figures.strehl, wave.figures.fnumber);
 }
 
 void print_zernikes(const std::vector<std::string>& heads,
                     const std::vector<std::vector<double>>& columns) {
-    fmt::print("\nZernike coefficients, waves (Noll 1976; the unit circle is the rim of the iris)\n"
-               "{:>4}",
-               "");
+    fmt::print(
+        "\nZernike coefficients, waves (Noll 1976; the unit circle is the rim of the iris)\n"
+        "{:>4}",
+        "");
     for (const std::string& head : heads) fmt::print(" {:>12}", head);
     for (size_t j = 1; j < kZernikes; ++j) {
         fmt::print("\n{:>4}", fmt::format("Z{}", j + 1));
@@ -103,9 +102,9 @@ Found wavefront_analysis(const AnalysisOptions& o) {
     const auto light = light_of(o, *setup.lens);
     Found out;
     out.names = {"field_deg", "nm", "tangential", "stop_radii", "opd_mm"};
-    Plot maps{.title = title_of(*setup.lens, fmt::format("wavefront at {}, fields {}, left to right",
-                                                         light[light.size() / 2].name,
-                                                         listed(setup.fields_deg))),
+    Plot maps{.title = title_of(
+                  *setup.lens, fmt::format("wavefront at {}, fields {}, left to right",
+                                           light[light.size() / 2].name, listed(setup.fields_deg))),
               .x_label = "x in the stop (radii)",
               .y_label = "y in the stop (radii)",
               .series = {},
@@ -113,15 +112,15 @@ Found wavefront_analysis(const AnalysisOptions& o) {
               .value_label = "ahead of the sphere (waves)"};
     std::vector<std::string> heads;
     std::vector<std::vector<double>> columns;
-    fmt::print("film at {:.6f} mm\n{:>10} {:>8} {:>11} {:>11} {:>10} {:>10} {:>8} {:>9}\n",
-               setup.film_mm, "field (°)", "line", "x (mm)", "y (mm)", "RMS (λ)", "P-V (λ)",
-               "Strehl", "f-number");
+    std::string table = fmt::format(
+        "film at {:.6f} mm\n{:>10} {:>8} {:>11} {:>11} {:>10} {:>10} {:>8} {:>9}\n", setup.film_mm,
+        "field (°)", "line", "x (mm)", "y (mm)", "RMS (λ)", "P-V (λ)", "Strehl", "f-number");
     for (const double deg : setup.fields_deg) {
         // All fans of a field about the point of the middle line, which shows lateral colour.
         const auto centre = least_wave(setup, deg, light[light.size() / 2].nm);
         for (const LightLine& line : light) {
             const LineWave wave = least_wave(setup, deg, line.nm);
-            print_figures(deg, line, wave);
+            table += figures_row(deg, line, wave);
             heads.push_back(fmt::format("{:.4g}° {}", deg, line.name));
             columns.push_back(zernike_coefficients_mm(wave.pupil, kZernikes));
             for (double& c : columns.back()) c /= wave.pupil.wavelength_mm();
@@ -142,6 +141,7 @@ Found wavefront_analysis(const AnalysisOptions& o) {
         }
         add_map(maps, centre, 2.1 * static_cast<double>(maps.series.size()));
     }
+    fmt::print("{}", table);
     print_zernikes(heads, columns);
     if (!o.more_plot.empty()) write_plot(o.more_plot, maps);
     out.plot.title = title_of(*setup.lens, "wavefront fans");
@@ -154,7 +154,8 @@ Found wavefront_analysis(const AnalysisOptions& o) {
 double white_per_mm2(const std::vector<PointSpread>& spreads, const std::vector<LightLine>& light,
                      double x_mm, double y_mm) {
     double sum = 0;
-    for (size_t i = 0; i < spreads.size(); ++i) sum += light[i].weight * spreads[i].per_mm2(x_mm, y_mm);
+    for (size_t i = 0; i < spreads.size(); ++i)
+        sum += light[i].weight * spreads[i].per_mm2(x_mm, y_mm);
     return sum;
 }
 
@@ -167,27 +168,28 @@ Found psf_analysis(const AnalysisOptions& o) {
     out.names = {"field_deg", "x_mm", "y_mm", "per_mm2"};
     std::vector<std::vector<PointSpread>> of_field;
     double half_mm = 0, window_mm = INFINITY;
-    fmt::print("film at {:.6f} mm\n{:>10} {:>11} {:>11} {:>14} {:>14} {:>14}\n", setup.film_mm,
-               "field (°)", "x (mm)", "y (mm)", "half in (µm)", "80 % in (µm)", "Airy (µm)");
+    std::string table =
+        fmt::format("film at {:.6f} mm\n{:>10} {:>11} {:>11} {:>14} {:>14} {:>14}\n", setup.film_mm,
+                    "field (°)", "x (mm)", "y (mm)", "half in (µm)", "80 % in (µm)", "Airy (µm)");
     for (const double deg : setup.fields_deg) {
         const auto waves = require_waves(setup, deg, light);
         std::vector<PointSpread> spreads;
-        double airy_mm = 0, half_light_mm = 0, most_light_mm = 0;
+        double airy_mm = 0;
         for (size_t i = 0; i < waves.size(); ++i) {
             spreads.push_back(point_spread(waves[i], std::max(finest, 2 * waves[i].grid.side)));
-            airy_mm += light[i].weight *
-                       airy_radius_mm(light[i].nm, wavefront_figures(waves[i]).fnumber);
+            airy_mm +=
+                light[i].weight * airy_radius_mm(light[i].nm, wavefront_figures(waves[i]).fnumber);
             window_mm = std::min(window_mm, spreads[i].step_mm * (spreads[i].side / 2 - 1));
         }
-        half_light_mm = radius_of_share_mm(spreads, weights_of(light), 0.5);
-        most_light_mm = radius_of_share_mm(spreads, weights_of(light), 0.8);
+        const auto radii_mm = radii_of_shares_mm(spreads, weights_of(light), std::array{0.5, 0.8});
         const auto& image_mm = waves[0].sphere.image_mm;
-        fmt::print("{:>10.4g} {:>11.6f} {:>11.6f} {:>14.4f} {:>14.4f} {:>14.4f}\n", deg,
-                   image_mm[0], image_mm[1], kMicrons * half_light_mm, kMicrons * most_light_mm,
-                   kMicrons * airy_mm);
-        half_mm = std::max({half_mm, 4 * airy_mm, 1.5 * most_light_mm});
+        table += fmt::format("{:>10.4g} {:>11.6f} {:>11.6f} {:>14.4f} {:>14.4f} {:>14.4f}\n", deg,
+                             shown(image_mm[0]), shown(image_mm[1]), kMicrons * radii_mm[0],
+                             kMicrons * radii_mm[1], kMicrons * airy_mm);
+        half_mm = std::max({half_mm, 4 * airy_mm, 1.5 * radii_mm[1]});
         of_field.push_back(std::move(spreads));
     }
+    fmt::print("{}", table);
     half_mm = std::min(half_mm, window_mm);
     for (size_t field = 0; field < of_field.size(); ++field) {
         PlotSeries cells{.style = PlotStyle::Cells};
@@ -199,14 +201,16 @@ Found psf_analysis(const AnalysisOptions& o) {
                 const double here = white_per_mm2(of_field[field], light, x, y);
                 peak = std::max(peak, here);
                 out.rows.push_back({setup.fields_deg[field], x, y, here});
-                cells.points.push_back({kMicrons * (x + 2.1 * half_mm * double(field)), kMicrons * y});
+                cells.points.push_back(
+                    {kMicrons * (x + 2.1 * half_mm * double(field)), kMicrons * y});
                 cells.values.push_back(here);
             }
         for (double& value : cells.values) value = std::log10(std::max(value / peak, least));
         out.plot.series.push_back(std::move(cells));
     }
-    out.plot.title = title_of(*setup.lens, fmt::format("point spread of the fields {}, left to right",
-                                                       listed(setup.fields_deg)));
+    out.plot.title = title_of(
+        *setup.lens,
+        fmt::format("point spread of the fields {}, left to right", listed(setup.fields_deg)));
     out.plot.x_label = "x from each image point (µm)";
     out.plot.y_label = "y from the image point (µm)";
     out.plot.equal_scale = true;

@@ -17,9 +17,10 @@ constexpr double kLeast_nm = 100, kMost_nm = 20000;
 void warn_beyond_range(const Lens& lens, double nm) {
     for (const Glass& glass : lens.media())
         if (nm < glass.first_nm || nm > glass.last_nm)
-            print_notice(fmt::format("warning: {:g} nm is beyond {:g} to {:g} nm, for which the "
-                                     "formula of {} is made: its index is held there",
-                                     nm, glass.first_nm, glass.last_nm, glass.name));
+            print_notice(
+                fmt::format("warning: {:g} nm is beyond {:g} to {:g} nm, for which the "
+                            "formula of {} is made: its index is held there",
+                            nm, glass.first_nm, glass.last_nm, glass.name));
 }
 
 // Middle of the image of all lines together, by rays.
@@ -38,8 +39,7 @@ std::array<double, 2> middle_of(const FieldSetup& setup, double field_deg,
 double radius_of_half_mm(std::vector<BundleRay> rays, const std::array<double, 2>& middle_mm) {
     std::vector<double> radii;
     for (const BundleRay& ray : rays)
-        radii.push_back(
-            std::hypot(ray.film_mm[0] - middle_mm[0], ray.film_mm[1] - middle_mm[1]));
+        radii.push_back(std::hypot(ray.film_mm[0] - middle_mm[0], ray.film_mm[1] - middle_mm[1]));
     const auto half = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
     std::nth_element(radii.begin(), half, radii.end());
     return *half;
@@ -62,8 +62,8 @@ std::vector<LightLine> light_of(const AnalysisOptions& o, const Lens& lens) {
             const auto words = split(part, ':');
             if (words.size() > 2)
                 throw ValueError("--light", o.light + " is not like 450:0.3,550:1,650:0.5");
-            const double nm = parse_number("--light", std::string(words[0]),
-                                           {kLeast_nm, kMost_nm, kNanometres});
+            const double nm =
+                parse_number("--light", std::string(words[0]), {kLeast_nm, kMost_nm, kNanometres});
             const double weight =
                 words.size() < 2 ? 1 : parse_number("--light", std::string(words[1]), {1e-9, 1e9});
             out.push_back({fmt::format("{:g} nm", nm), nm, weight});
@@ -89,6 +89,16 @@ double ray_contrast(const std::vector<std::vector<BundleRay>>& rays,
     return std::abs(sum);
 }
 
+PupilGrid require_grid(const AimedBundle& bundle, const ReferenceSphere& sphere, int least,
+                       double depth_mm) {
+    const auto grid = pupil_grid(bundle, sphere, least, depth_mm);
+    if (!grid)
+        throw ArgumentError(bundle.lens().prescription().name, "",
+                            "the rays of the field {:g}° leave it parallel: there is no image",
+                            bundle.object().field_deg);
+    return *grid;
+}
+
 std::vector<PupilFunction> field_waves(const FieldSetup& setup, double field_deg,
                                        const std::vector<LightLine>& light, double depth_mm) {
     std::vector<AimedBundle> bundles;
@@ -97,10 +107,9 @@ std::vector<PupilFunction> field_waves(const FieldSetup& setup, double field_deg
     std::vector<PupilFunction> out;
     for (const AimedBundle& bundle : bundles) {
         const ReferenceSphere sphere = reference_sphere(bundle, setup.film_mm, image_mm);
-        const auto grid = pupil_grid(bundle, sphere, kImagePupilSide, depth_mm);
-        if (!grid) refuse_dark(*setup.lens, field_deg);
-        if (!grid->resolves()) return {};
-        out.push_back(pupil_function(bundle, sphere, *grid));
+        const PupilGrid grid = require_grid(bundle, sphere, kImagePupilSide, depth_mm);
+        if (!grid.resolves()) return {};
+        out.push_back(pupil_function(bundle, sphere, grid));
     }
     return out;
 }
@@ -142,15 +151,16 @@ void print_wave_spots(const FieldSetup& setup) {
         const auto rays = traced(aim(setup, deg, kLineD_nm), setup.film_mm, side);
         const auto waves = field_waves(setup, deg, line_d);
         if (waves.empty()) {
-            fmt::print("{:>10.4g} {:>12.4f} {:>12}  the wave bends too much to tell: rays are "
-                       "near the truth\n",
-                       deg, kMicrons * radius_of_half_mm(rays, spot_size(rays).centroid_mm), "");
+            fmt::print(
+                "{:>10.4g} {:>12.4f} {:>12}  the wave bends too much to tell: rays are "
+                "near the truth\n",
+                deg, kMicrons * radius_of_half_mm(rays, spot_size(rays).centroid_mm), "");
             continue;
         }
         const PupilFunction& wave = waves[0];
         const double by_rays = radius_of_half_mm(rays, wave.sphere.image_mm);
         const std::array spread{point_spread(wave, std::max(finest, 2 * wave.grid.side))};
-        const double by_waves = radius_of_share_mm(spread, weights_of(line_d), 0.5);
+        const double by_waves = radii_of_shares_mm(spread, weights_of(line_d), std::array{0.5})[0];
         const double airy_mm = airy_radius_mm(kLineD_nm, wavefront_figures(wave).fnumber);
         fmt::print("{:>10.4g} {:>12.4f} {:>12.4f}  {}; Airy's disc has a radius of {:.4f}\n", deg,
                    kMicrons * by_rays, kMicrons * by_waves,

@@ -27,6 +27,10 @@ void add_light(CLI::App&, AnalysisOptions&);
                                   const std::vector<LightLine>&, double cycles_per_mm,
                                   Section along);
 
+/// Grid of pupil_grid(). Throws ArgumentError where there is none.
+[[nodiscard]] PupilGrid require_grid(const AimedBundle&, const ReferenceSphere&, int least,
+                                     double depth_mm = 0);
+
 /// Pupil functions of a field, one for each line, all about the middle of the whole image. Empty
 /// where the largest grid is too coarse for the wave. Throws ArgumentError where no light arrives.
 /// depth_mm: how far from the film images are wanted too.

@@ -96,8 +96,8 @@ TEST(Diffraction, AiryPatternAndItsFirstZero) {
         EXPECT_NEAR(
             std::pow(std::cyl_bessel_j(0., half_v), 2) + std::pow(std::cyl_bessel_j(1., half_v), 2),
             0.5, 1e-4);
-        EXPECT_NEAR(radius_of_share_mm({&spread, 1}, std::array{1.}, 0.5), half_v / (k * sine),
-                    0.02 * zero_mm);
+        EXPECT_NEAR(radii_of_shares_mm({&spread, 1}, std::array{1.}, std::array{0.5})[0],
+                    half_v / (k * sine), 0.02 * zero_mm);
     }
 }
 

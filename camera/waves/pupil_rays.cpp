@@ -133,9 +133,11 @@ void find_pupil_rays(const AimedBundle& bundle, const ReferenceSphere& sphere,
             if (!four.found[size_t(k)]) continue;
             const std::array stop{four.rays.stop_x[k], four.rays.stop_y[k]};
             r2 = std::min(r2, square(stop[0]) + square(stop[1]));
-            tell(size_t(row) * size_t(grid.side) + size_t(4 * number + k),
-                 {1 / std::fabs(four.determinant(k)), four.rays.opd_mm[k], stop,
-                  four.rays.inside[k]});
+            const double light = 1 / std::fabs(four.determinant(k));
+            // Glasses without an index have no path.
+            if (std::isfinite(light) && std::isfinite(four.rays.opd_mm[k]))
+                tell(size_t(row) * size_t(grid.side) + size_t(4 * number + k),
+                     {light, four.rays.opd_mm[k], stop, four.rays.inside[k]});
         }
         for (int k = 0; k < 4; ++k)
             if (const int last = rightwards ? k : 3 - k; four.found[size_t(last)])

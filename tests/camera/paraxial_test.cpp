@@ -89,7 +89,7 @@ TEST_P(OracleFirstOrder, SeidelSumsOfEachSurface) {
 
 // A textbook's Cooke triplet in another program, OpticStudio 2026 R1: its figures stand in the
 // issue tracker of HarrisonKramer/optiland, number 710. Stop on the fourth surface; SK16 is
-// Hikari's and F2 Schott's, by the formulas in refractiveindex.info: of 36 pairs of such glasses
+// Hikari's and F2 Schott's, by the formulas in refractiveindex.info: of 35 pairs of such glasses
 // the only one that gives all digits. The image is the textbook's, 42.20778 mm behind the last
 // vertex.
 TEST(Paraxial, CookeTripletIsThatOfAnOpticsProgram) {

@@ -16,8 +16,7 @@ constexpr const char* kTriplet = "cooke-triplet-50mm-f5";
 class LensWaves : public CliTest {
   protected:
     Finished analysed(const char* analysis, const Words& more) {
-        Words words{"lens",   analysis, kTriplet, "-o", path("a.svg"),
-                    "--csv", path("a.csv")};
+        Words words{"lens", analysis, kTriplet, "-o", path("a.svg"), "--csv", path("a.csv")};
         words.insert(words.end(), more.begin(), more.end());
         const Finished run = run_petzval(words);
         EXPECT_EQ(run.exit_code, 0) << run.err;
@@ -109,8 +108,8 @@ TEST_F(LensWaves, MtfByWavesIsThatOfAnIdealLensWhenStoppedDown) {
     EXPECT_LT(worst, 0.01);
     // Weights are shares.
     const CsvTable usual = table("mtf", {"--wave", "--field", "0"});
-    const CsvTable same = table("mtf", {"--wave", "--field", "0", "--light",
-                                        "486.1327nm:2,587.5618:2,656.2725:2"});
+    const CsvTable same =
+        table("mtf", {"--wave", "--field", "0", "--light", "486.1327nm:2,587.5618:2,656.2725:2"});
     const CsvTable blue = table("mtf", {"--wave", "--field", "0", "--light", "486.1327"});
     for (size_t i = 0; i < usual.rows.size(); ++i)
         EXPECT_NEAR(usual.rows[i][2], same.rows[i][2], 1e-9);
@@ -127,8 +126,8 @@ TEST_F(LensWaves, SpotAndMtfSayWhereRaysAreTooSharp) {
     const std::string mtf = analysed("mtf", {"--fstop", "22", "--field", "0"}).out;
     EXPECT_NE(mtf.find("contrast at 50 cycles per mm"), std::string::npos) << mtf;
     EXPECT_NE(mtf.find("rays alone are too sharp by 0."), std::string::npos) << mtf;
-    const Finished bent = run_petzval(
-        {"lens", "mtf", "takumar-50mm-f1.2", "--field", "21", "-o", path("a.svg")});
+    const Finished bent =
+        run_petzval({"lens", "mtf", "takumar-50mm-f1.2", "--field", "21", "-o", path("a.svg")});
     EXPECT_NE(bent.out.find("rays are near the truth"), std::string::npos) << bent.out << bent.err;
 }
 
@@ -147,8 +146,7 @@ TEST_F(LensWaves, FociOverFilmFieldAndColour) {
     double most = 0;
     for (const auto& row : waves.rows) most = std::max(most, row[2]);
     const double s = 30 * 11 * 550e-6;  // no lens is better than an ideal one
-    EXPECT_LT(most,
-              2 / std::numbers::pi * (std::acos(s) - s * std::sqrt(1 - s * s)) + 0.005);
+    EXPECT_LT(most, 2 / std::numbers::pi * (std::acos(s) - s * std::sqrt(1 - s * s)) + 0.005);
     EXPECT_GT(most, 0.7);
 
     const CsvTable field = table("field-curvature", {});

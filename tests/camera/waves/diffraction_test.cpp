@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/camera/waves/stigmatic_lens.h"
 #include "tests/camera/waves/wave.h"
-#include "tests/support/stigmatic_lens.h"
 
 namespace petzval {
 namespace {
@@ -79,8 +79,6 @@ TEST(Diffraction, AiryPatternAndItsFirstZero) {
         }
         const double zero = first_zero_mm(spread);
         EXPECT_NEAR(zero, zero_mm, 0.005 * zero_mm);
-        printf("Airy f/%g: zero %.6f um, closed form %.6f um, %.4f %%\n", fnumber, zero * 1e3,
-               zero_mm * 1e3, 100 * (zero / zero_mm - 1));
         // By Huygens's wavelets.
         double least = INFINITY, least_mm = 0;
         std::vector<std::array<double, 2>> points;
@@ -124,7 +122,6 @@ TEST(Diffraction, AnAnnulusHasItsPattern) {
     constexpr double wanted_zero = 3.1443;  // J1(v) = e J1(e v)
     EXPECT_NEAR(jinc(wanted_zero), e * e * jinc(e * wanted_zero), 1e-4);
     EXPECT_NEAR(zero, wanted_zero, 0.005 * wanted_zero);
-    printf("annulus: zero at v = %.4f\n", zero);
 }
 
 // Born and Wolf 1999, sec. 8.8.2: on the axis (sin(u/4) / (u/4))^2, u = 2 pi / wavelength * z
@@ -170,7 +167,6 @@ TEST(Diffraction, MtfOfAnIdealLens) {
                 EXPECT_NEAR(found, wanted, fnumber > 10 ? 0.005 : 0.02) << s << ' ' << fnumber;
             }
         }
-        printf("MTF f/%g: worst %.5f\n", fnumber, worst);
     }
 }
 

@@ -9,9 +9,10 @@
 #include "camera/bench/spot.h"
 #include "camera/iris/iris.h"
 #include "camera/lens/focus.h"
+#include "tests/camera/waves/stigmatic_lens.h"
 #include "tests/camera/waves/wave.h"
 #include "tests/support/lens_json.h"
-#include "tests/support/stigmatic_lens.h"
+#include "tests/support/nasty_lens.h"
 
 namespace petzval {
 namespace {
@@ -62,7 +63,8 @@ TEST(WaveLimits, AMaskOfManyHolesIsAGrating) {
     const PupilFunction pupil =
         pupil_function(wave.bundle, wave.pupil.sphere, wave.pupil.grid, mask);
     double light = 0, open = 0;
-    for (size_t i = 0; i < pupil.light.size(); ++i) light += pupil.light[i], open += wave.pupil.light[i];
+    for (size_t i = 0; i < pupil.light.size(); ++i)
+        light += pupil.light[i], open += wave.pupil.light[i];
     EXPECT_NEAR(light / open, 0.25 * 2 / std::numbers::pi, 0.005);
     const PointSpread spread = point_spread(pupil, 1024);
     // Of a grating of half-open slits the first order has (2 / pi)^2 of the zeroth one's light.
@@ -89,7 +91,8 @@ TEST(WaveLimits, AnIrisOfBladesHasSpikes) {
             return double(iris.transmits({float(x), float(y)}));
         });
     double light = 0, open = 0;
-    for (size_t i = 0; i < pupil.light.size(); ++i) light += pupil.light[i], open += wave.pupil.light[i];
+    for (size_t i = 0; i < pupil.light.size(); ++i)
+        light += pupil.light[i], open += wave.pupil.light[i];
     EXPECT_NEAR(light / open, 1.5 * std::sqrt(3.) / std::numbers::pi, 0.003);
     const PointSpread spread = point_spread(pupil, 1024);
     // Light on a ring far out, by direction.
@@ -194,8 +197,7 @@ TEST(WaveLimits, FieldCurvatureIsSeidels) {
         constexpr double deg = 1.5;
         const auto bundle = AimedBundle::aim(lens, {.field_deg = deg}, kLineD_nm);
         const FirstOrder first = first_order(lens, kLineD_nm);
-        const auto found =
-            field_focus(*bundle, lens.vertex_mm(lens.last()) + first.back_focus_mm);
+        const auto found = field_focus(*bundle, lens.vertex_mm(lens.last()) + first.back_focus_mm);
         ASSERT_TRUE(found);
         const SeidelSums sums = seidel(lens, std::tan(deg * std::numbers::pi / 180)).total;
         const double scale = -2 * first.fnumber * first.fnumber;
@@ -214,6 +216,50 @@ TEST(WaveLimits, StoppingDownIsByTheTracedFnumber) {
                 8, 1e-6);
     EXPECT_NEAR(wavefront_figures(wave_of(Lens(*stopped)).pupil).fnumber, 8, 0.05);
     EXPECT_FALSE(stopped_down(lens, 0.5));
+}
+
+// Lenses that nobody would build: each has figures, or nothing.
+TEST(WaveLimits, NastyLensesHaveFiniteFiguresOrNone) {
+    test::Random random(48);
+    int waves = 0;
+    for (int i = 0; i < 800; ++i) {
+        std::optional<Lens> lens;
+        try {
+            lens.emplace(i % 2 ? test::nasty_prescription(random, i % 4 == 1)
+                               : test::random_prescription(random));
+        } catch (const std::invalid_argument&) {
+            continue;
+        }
+        const ObjectPoint object{.field_deg = i % 3 ? test::between(random, 0, 100) : 0,
+                                 .distance_mm = i % 5 ? INFINITY : 700};
+        const auto bundle = AimedBundle::aim(*lens, object, kLineD_nm);
+        if (!bundle) continue;
+        const auto image_mm = image_point(*bundle, lens->film_mm());
+        if (!image_mm) continue;
+        const ReferenceSphere sphere = reference_sphere(*bundle, lens->film_mm(), *image_mm);
+        const auto grid = pupil_grid(*bundle, sphere, 32);
+        if (!grid) continue;
+        PupilGrid coarse = *grid;
+        coarse.step *= coarse.side / 32.;
+        coarse.side = 32;
+        const PupilFunction pupil = pupil_function(*bundle, sphere, coarse);
+        double light = 0;
+        for (size_t cell = 0; cell < pupil.light.size(); ++cell) {
+            ASSERT_TRUE(std::isfinite(pupil.amplitude[cell])) << i;
+            ASSERT_TRUE(std::isfinite(pupil.opd_mm[cell])) << i;
+            light += pupil.light[cell];
+        }
+        if (!(light > 0)) continue;
+        ++waves;
+        const WavefrontFigures figures = wavefront_figures(pupil);
+        ASSERT_TRUE(std::isfinite(figures.rms_mm)) << i;
+        ASSERT_GE(figures.strehl, 0) << i;
+        ASSERT_LE(figures.strehl, 1 + 1e-9) << i;
+        for (const double c : zernike_coefficients_mm(pupil, 11))
+            ASSERT_TRUE(std::isfinite(c)) << i;
+        ASSERT_LE(sum_of_shares(point_spread(pupil, 64)), 1 + 1e-9) << i;
+    }
+    EXPECT_GT(waves, 60);
 }
 
 }  // namespace

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/camera/waves/stigmatic_lens.h"
 #include "tests/camera/waves/wave.h"
 #include "tests/support/lens_json.h"
-#include "tests/support/stigmatic_lens.h"
 
 namespace petzval {
 namespace {
@@ -99,8 +99,6 @@ TEST(Wavefront, ThirdOrderAberrationsAreSeidels) {
                     {"W220", sagittal, (sums[2] + sums[3]) / 4},
                     {"W311", w311, sums[4] / 2}};
         for (const auto& row : rows) {
-            printf("%s %s %.6g nm, Seidel %.6g nm, %.2f %%\n", name, row.what, row.found * 1e6,
-                   row.wanted * 1e6, 100 * (row.found / row.wanted - 1));
             EXPECT_NEAR(row.found, row.wanted, 0.04 * std::fabs(row.wanted) + 1.5e-8)
                 << name << row.what;
         }
@@ -157,7 +155,6 @@ TEST(Wavefront, StrehlIsMahajansBelowAFourteenthOfAWave) {
                     worst = std::max(worst, std::fabs(figures.strehl / wanted - 1));
                     EXPECT_NEAR(figures.strehl, wanted, 0.01 * wanted) << name << factor << deg;
                 }
-    printf("Strehl: %d compared, worst %.3f %%\n", compared, 100 * worst);
     EXPECT_GE(compared, 20);
 }
 
@@ -266,10 +263,6 @@ TEST(Wavefront, FastTransformAndHuygensAgree) {
         for (size_t i = 0; i < found.size(); ++i)
             worst = std::max(worst,
                              std::fabs(found[i] - wanted[i]) * std::pow(spread.step_mm, 2) / peak);
-        printf("Huygens %s %g %g: %zu points, worst %.4f of the peak, strehl %.3f side %d R %g\n",
-               c.name, c.stop, c.field_deg, points.size(), worst,
-               wavefront_figures(wave.pupil).strehl, wave.pupil.grid.side,
-               1 / wave.pupil.sphere.curvature_1_mm);
         EXPECT_LT(worst, 0.01) << c.name << c.field_deg;
     }
 }

@@ -189,6 +189,29 @@ TEST(WaveLimits, ManyWavesAreRays) {
     EXPECT_NEAR(y, 0, 0.02 * rms);
 }
 
+// A wave that is moved is the one that is traced to the other film, off the axis too.
+TEST(WaveLimits, MovedWavesAreThoseOfTheOtherFilm) {
+    const Lens lens(with_stop_mm(read_lens("takumar-50mm-f1.2"), 5));
+    const auto here = wave_of(lens, {.field_deg = 15});
+    for (const double shift_mm : {-0.1, 0.06}) {
+        const auto there = wave_of(lens, {.field_deg = 15}, shift_mm);
+        const PupilFunction by_moving = moved(here.pupil, shift_mm);
+        for (size_t k = 0; k < 2; ++k)
+            EXPECT_NEAR(by_moving.sphere.image_mm[k], there.pupil.sphere.image_mm[k], 2e-5);
+        const double rms = wavefront_figures(there.pupil).rms_mm;
+        EXPECT_NEAR(wavefront_figures(by_moving).rms_mm, rms, 0.005 * rms);
+        const PointSpread spread = point_spread(by_moving, 1024),
+                          wanted = point_spread(there.pupil, 1024);
+        for (const Section along : {Section::X, Section::Y}) {
+            const LineSpread line = line_spread(spread, along);
+            const LineSpread as_traced = line_spread(wanted, along);
+            for (const double cycles : {10., 30., 60.})
+                EXPECT_LT(std::abs(transfer(line, cycles) - transfer(as_traced, cycles)), 0.01)
+                    << shift_mm << ' ' << cycles;
+        }
+    }
+}
+
 // Focus by close rays is Seidel's: -2 f-number^2 (S3 + S4) sagittal and (3 S3 + S4) tangential.
 TEST(WaveLimits, FieldCurvatureIsSeidels) {
     for (const char* name :

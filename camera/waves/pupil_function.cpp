@@ -57,10 +57,8 @@ std::vector<double> coverage(const std::vector<double>& margin, int side) {
             if (!(here > kOutside)) continue;
             const double slope = std::hypot(change(at(x - 1, y), here, at(x + 1, y)),
                                             change(at(x, y - 1), here, at(x, y + 1)));
-            out[size_t(y) * size_t(side) + size_t(x)] = std::clamp(slope > 0  ? 0.5 + here / slope
-                                                                   : here > 0 ? 1.
-                                                                              : 0.,
-                                                                   0., 1.);
+            const double share = slope > 0 ? 0.5 + here / slope : here > 0;
+            out[size_t(y) * size_t(side) + size_t(x)] = std::clamp(share, 0., 1.);
         }
     return out;
 }

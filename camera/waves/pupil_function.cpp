@@ -14,30 +14,6 @@ namespace {
 
 constexpr double kOutside = -1e9;
 
-// Visible part of a bundle: what a lattice of its pupil points says.
-struct VisiblePart {
-    std::array<double, 2> least{INFINITY, INFINITY}, most{-INFINITY, -INFINITY};  ///< of p, q
-    std::array<double, 2> reach_mm{};  ///< of rays from the image point, on the film
-    double slopes = 0;                 ///< width of their slopes
-};
-
-// Calls a function with each ray that passes the stop and all rims, or only just does not.
-template <class Use>
-void for_visible(const AimedBundle& bundle, const ReferenceSphere& sphere, const Use& use) {
-    constexpr int side = 48;
-    constexpr double beyond = 0.1;  // of the squared radius: about a cell of the lattice
-    const auto points = bundle.grid(side);
-    for (size_t i = 0; i < points.size(); i += 4) {
-        d4 s{}, t{};
-        for (size_t k = 0; k < 4; ++k) s[k] = points[i + k][0], t[k] = points[i + k][1];
-        const auto rays = meet_reference<d4>(bundle, sphere, s, t);
-        for (int k = 0; k < 4; ++k)
-            if (rays.passed[k] && rays.inside[k] > -beyond &&
-                square(rays.stop_x[k]) + square(rays.stop_y[k]) < 1 + beyond)
-                use(rays, k);
-    }
-}
-
 // Margin to the rims: above 0 inside; its change from cell to cell tells the distance in cells.
 std::vector<double> coverage(const std::vector<double>& margin, int side) {
     std::vector<double> out(margin.size());
@@ -63,67 +39,74 @@ std::vector<double> coverage(const std::vector<double>& margin, int side) {
     return out;
 }
 
-// Mean of an iris over each cell, by points that neighbours' places in the stop say.
+// Mean of an iris over each cell, at points of the stop that the next cells' places tell.
 void apply_iris(PupilFunction& pupil, const StopTransmission& iris, double radius_mm) {
     constexpr int points = 6;
     const auto side = static_cast<size_t>(pupil.grid.side);
-    const auto& stop = pupil.stop;
-    for (size_t cell = 0; cell < stop.size(); ++cell) {
+    for (size_t cell = 0; cell < pupil.stop.size(); ++cell) {
         if (!(pupil.amplitude[cell] > 0)) continue;
-        const auto by = [&](size_t step, bool first, bool last) {
-            const size_t a = first ? cell : cell - step, b = last ? cell : cell + step;
-            const double over = first || last ? 1 : 2;
-            return std::array{(stop[b][0] - stop[a][0]) / over, (stop[b][1] - stop[a][1]) / over};
-        };
-        const size_t column = cell % side, row = cell / side;
-        const auto by_p = by(1, column == 0, column + 1 == side);
-        const auto by_q = by(side, row == 0, row + 1 == side);
+        const auto here = pupil.stop[cell], right = pupil.stop[cell + (cell % side + 1 < side)],
+                   above = pupil.stop[cell + (cell / side + 1 < side ? side : 0)];
         double amplitude = 0, light = 0;
-        for (int i = 0; i < points; ++i)
-            for (int j = 0; j < points; ++j) {
-                const double u = (i + 0.5) / points - 0.5, v = (j + 0.5) / points - 0.5;
-                const double passed = iris(radius_mm * (stop[cell][0] + u * by_p[0] + v * by_q[0]),
-                                           radius_mm * (stop[cell][1] + u * by_p[1] + v * by_q[1]));
-                light += passed;
-                amplitude += std::sqrt(passed);
-            }
-        pupil.amplitude[cell] *= amplitude / (points * points);
-        pupil.light[cell] *= light / (points * points);
+        for (int i = 0; i < points * points; ++i) {
+            const double u = (i % points + 0.5) / points - 0.5,
+                         v = (i / points + 0.5) / points - 0.5;
+            const auto at = [&](size_t k) {
+                return radius_mm * (here[k] + u * (right[k] - here[k]) + v * (above[k] - here[k]));
+            };
+            const double passed = iris(at(0), at(1)) / (points * points);
+            light += passed;
+            amplitude += std::sqrt(passed) / points;
+        }
+        pupil.amplitude[cell] *= amplitude;
+        pupil.light[cell] *= light;
     }
 }
 
 }  // namespace
 
-std::optional<PupilGrid> pupil_grid(const AimedBundle& bundle, const ReferenceSphere& sphere,
-                                    int least, double depth_mm) {
-    // Cells that a wave's slope may turn by half a wavelength, of which this share is used.
-    constexpr double used = 0.9, margin = 0.03;
-    VisiblePart seen;
-    for_visible(bundle, sphere, [&](const auto& rays, int k) {
-        const std::array at{rays.p[k], rays.q[k]};
-        for (size_t i = 0; i < 2; ++i) {
-            seen.least[i] = std::min(seen.least[i], at[i]);
-            seen.most[i] = std::max(seen.most[i], at[i]);
-        }
-    });
-    for (const BundleRay& ray : bundle.trace(bundle.grid(48), sphere.film_mm))
-        for (size_t i = 0; i < 2; ++i)
-            seen.reach_mm[i] =
-                std::max(seen.reach_mm[i], std::fabs(ray.film_mm[i] - sphere.image_mm[i]));
-    constexpr double parallel = 1e-9;
-    const double width = std::max(seen.most[0] - seen.least[0], seen.most[1] - seen.least[1]);
-    if (!(width > parallel)) return std::nullopt;
-    const double reach_mm =
-        std::max(seen.reach_mm[0], seen.reach_mm[1]) + std::fabs(depth_mm) * width;
-    PupilGrid out;
-    const double across = width * (1 + 2 * margin);
-    out.needed = across * 2 * reach_mm / (used * bundle.nm() * 1e-6);
-    const double side = std::clamp(out.needed, double(least), double(kMostPupilSide));
-    out.side = static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::ceil(side))));
-    out.step = across / out.side;
-    for (size_t i = 0; i < 2; ++i)
-        out.first[i] = (seen.least[i] + seen.most[i] - across + out.step) / 2;
+PupilGrid PupilGrid::with_side(int cells) const {
+    PupilGrid out{.step = step * side / cells, .side = cells, .needed = needed};
+    for (size_t k = 0; k < 2; ++k) out.first[k] = first[k] + (out.step - step) / 2;
     return out;
+}
+
+std::optional<PupilGrid> pupil_grid(const AimedBundle& bundle, const ReferenceSphere& sphere,
+                                    double depth_mm) {
+    // used: of the slope at which neighbours differ by half a wavelength. beyond: rays that only
+    // just do not pass, by about a cell of the lattice.
+    constexpr int lattice = 48;
+    constexpr double used = 0.9, margin = 0.03, beyond = 0.1, parallel = 1e-9;
+    std::array<double, 2> least{INFINITY, INFINITY}, most{-INFINITY, -INFINITY};
+    double reach_mm = 0;
+    const auto points = bundle.grid(lattice);
+    for (size_t i = 0; i < points.size(); i += 4) {
+        d4 s{}, t{};
+        for (size_t k = 0; k < 4; ++k) s[k] = points[i + k][0], t[k] = points[i + k][1];
+        const auto rays = meet_reference<d4>(bundle, sphere, s, t);
+        for (int k = 0; k < 4; ++k) {
+            if (!rays.passed[k] || !(rays.inside[k] > -beyond) ||
+                !(square(rays.stop_x[k]) + square(rays.stop_y[k]) < 1 + beyond))
+                continue;
+            const std::array at{rays.p[k], rays.q[k]};
+            for (size_t j = 0; j < 2; ++j) {
+                least[j] = std::min(least[j], at[j]);
+                most[j] = std::max(most[j], at[j]);
+            }
+        }
+    }
+    for (const BundleRay& ray : bundle.trace(points, sphere.film_mm))
+        for (size_t k = 0; k < 2; ++k)
+            reach_mm = std::max(reach_mm, std::fabs(ray.film_mm[k] - sphere.image_mm[k]));
+    const double width = std::max(most[0] - least[0], most[1] - least[1]);
+    if (!(width > parallel)) return std::nullopt;
+    const double across = width * (1 + 2 * margin);
+    const double needed =
+        across * 2 * (reach_mm + std::fabs(depth_mm) * width) / (used * bundle.nm() * 1e-6);
+    const double side = std::clamp(needed, double(kImagePupilSide), double(kMostPupilSide));
+    PupilGrid whole{.step = across, .side = 1, .needed = needed};
+    for (size_t k = 0; k < 2; ++k) whole.first[k] = (least[k] + most[k]) / 2;
+    return whole.with_side(static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::ceil(side)))));
 }
 
 PupilFunction pupil_function(const AimedBundle& bundle, const ReferenceSphere& sphere,

@@ -16,12 +16,15 @@ struct PupilGrid {
     double step = 0;
     int side = 0;
     /// Cells across that the wave needs, so that neighbours differ by less than half a wavelength;
-    /// a grid of fewer shows figures of the wave, and no image.
+    /// with fewer there are figures of the wave, and no image.
     double needed = 0;
+
     [[nodiscard]] bool resolves() const { return side >= needed; }
+    /// Grid of other cells over the same square.
+    [[nodiscard]] PupilGrid with_side(int cells) const;
 };
-/// Sides of grids: for images, for figures of the wave alone, and the largest.
-inline constexpr int kImagePupilSide = 256, kFiguresPupilSide = 128, kMostPupilSide = 1024;
+/// Sides of grids for figures of the wave alone, and for images.
+inline constexpr int kFiguresPupilSide = 128, kImagePupilSide = 256, kMostPupilSide = 1024;
 
 /// Wave in the exit pupil as seen from an image point. Cells row by row, p first.
 ///
@@ -49,11 +52,11 @@ struct PupilFunction {
 /// Share of the light that an iris lets through at a point of the stop, x and y in mm.
 using StopTransmission = std::function<double(double, double)>;
 
-/// Grid that holds the wave, of a power of 2 of cells from `least` on: as fine as it needs, and of
-/// kMostPupilSide at most. depth_mm: how far from the film images are wanted too. Nothing where no
-/// light arrives, or rays arrive parallel.
+/// Grid that holds the wave, of a power of 2 of cells across: as many as images need, from
+/// kImagePupilSide to kMostPupilSide. depth_mm: how far from the film images are wanted too.
+/// Nothing where no light arrives, or rays arrive parallel.
 [[nodiscard]] std::optional<PupilGrid> pupil_grid(const AimedBundle&, const ReferenceSphere&,
-                                                  int least = kImagePupilSide, double depth_mm = 0);
+                                                  double depth_mm = 0);
 
 /// Pupil function on a grid. Each cell's ray is found by Newton's method with the trace's own
 /// derivatives. Edges of rims count by the share of a cell that they leave. The stop's rim is one

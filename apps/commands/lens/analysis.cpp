@@ -54,11 +54,10 @@ std::shared_ptr<AnalysisOptions> add_analysis(CLI::App& lens, const char* name, 
         const bool with_csv = !options->csv.empty();
         std::vector<NamedFile> outputs{{"-o", options->plot}};
         if (with_csv) outputs.push_back({"--csv", options->csv});
-        if (!options->more_plot.empty())
-            outputs.push_back({options->more_plot_option, options->more_plot});
+        if (!options->map.empty()) outputs.push_back({"--map", options->map});
         refuse_overwriting(outputs, options->field.request);
         check_plot(options->plot);
-        if (!options->more_plot.empty()) check_plot(options->more_plot);
+        if (!options->map.empty()) check_plot(options->map);
         if (with_csv) check_writable(options->csv);
         const Found found = analyse(*options);
         const auto& all = found.plot.series;
@@ -72,12 +71,6 @@ std::shared_ptr<AnalysisOptions> add_analysis(CLI::App& lens, const char* name, 
                      [&] { write_plot(options->plot, found.plot); }});
     });
     return options;
-}
-
-void add_more_plot(CLI::App& command, AnalysisOptions& options, const char* option,
-                   const char* help) {
-    options.more_plot_option = option;
-    command.add_option(option, options.more_plot, help);
 }
 
 }  // namespace petzval

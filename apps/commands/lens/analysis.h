@@ -20,7 +20,7 @@ struct Found {
 struct AnalysisOptions {
     FieldRequest field;
     std::string plot, csv, light;
-    std::string more_plot, more_plot_option;  ///< file of a second plot, and its option
+    std::string map;  ///< file of a second plot, which the analysis writes
     double most_cycles = 100, image_circle_mm = 0;
     bool wave = false;
 };
@@ -33,9 +33,6 @@ inline constexpr double kMicrons = 1000;  // in a mm
 std::shared_ptr<AnalysisOptions> add_analysis(CLI::App& lens, const char* name, const char* help,
                                               bool with_fields, const Analysis&,
                                               const char* footer);
-/// Adds an option for the file of a second plot, which the analysis writes.
-void add_more_plot(CLI::App& command, AnalysisOptions&, const char* option, const char* help);
-
 /// A length as tables with six decimals show it: not -0.000000.
 [[nodiscard]] double shown(double mm);
 [[nodiscard]] std::string title_of(const Lens&, const std::string& what);

@@ -20,12 +20,14 @@ std::vector<double> shares_from(int first, int steps) {
     return out;
 }
 
+double open_fnumber(const Lens& lens) {
+    const auto stop = static_cast<size_t>(lens.stop());
+    return fnumber_of(lens, lens.prescription().surfaces[stop].semi_diameter_mm);
+}
+
 // Films at which a field is looked at: contrast has gone at the ends, and foci lie between.
 double depth_of(const FieldSetup& setup, double cycles) {
-    const Lens& lens = *setup.lens;
-    const auto stop = static_cast<size_t>(lens.stop());
-    const double fnumber = fnumber_of(lens, lens.prescription().surfaces[stop].semi_diameter_mm);
-    const double blur_mm = 2 * fnumber / cycles;
+    const double blur_mm = 2 * open_fnumber(*setup.lens) / cycles;
     double off_mm = 0;
     for (const double deg : setup.fields_deg)
         if (const auto focus = field_focus(aim(setup, deg, kLineD_nm), setup.film_mm))
@@ -33,7 +35,8 @@ double depth_of(const FieldSetup& setup, double cycles) {
                 std::max({off_mm, std::fabs(focus->tangential_mm), std::fabs(focus->sagittal_mm)});
     const double depth_mm = blur_mm + std::min(off_mm, 5 * blur_mm);
     if (!std::isfinite(depth_mm))
-        throw ArgumentError(lens.prescription().name, "", "no ray along the axis reaches the film");
+        throw ArgumentError(setup.lens->prescription().name, "",
+                            "no ray along the axis reaches the film");
     return depth_mm;
 }
 
@@ -41,46 +44,6 @@ std::vector<BundleRay> moved_rays(std::vector<BundleRay> rays, double shift_mm) 
     for (BundleRay& ray : rays)
         for (size_t k = 0; k < 2; ++k) ray.film_mm[k] += shift_mm * ray.slope[k];
     return rays;
-}
-
-// Spots at five films, a row for each field.
-void write_spots(const AnalysisOptions& o, const FieldSetup& setup, double depth_mm,
-                 const std::vector<std::vector<std::vector<BundleRay>>>& rays,
-                 const std::vector<LightLine>& light) {
-    constexpr int films = 5;
-    double reach_mm = 1e-6;
-    std::vector<PlotSeries> series;
-    for (const LightLine& line : light)
-        series.push_back({.style = PlotStyle::Dots, .label = line.name});
-    for (const bool drawing : {false, true})
-        for (size_t field = 0; field < rays.size(); ++field)
-            for (int i = 0; i < films; ++i) {
-                const double shift_mm = depth_mm * (2. * i / (films - 1) - 1) / 2;
-                std::vector<BundleRay> all;
-                for (const auto& of_line : rays[field])
-                    all.insert(all.end(), of_line.begin(), of_line.end());
-                const auto middle = spot_size(all, shift_mm).centroid_mm;
-                for (size_t line = 0; line < light.size(); ++line)
-                    for (const BundleRay& ray : moved_rays(rays[field][line], shift_mm)) {
-                        const double x = ray.film_mm[0] - middle[0], y = ray.film_mm[1] - middle[1];
-                        if (!drawing)
-                            reach_mm = std::max({reach_mm, std::fabs(x), std::fabs(y)});
-                        else
-                            series[line].points.push_back(
-                                {kMicrons * (x + 2.4 * reach_mm * i),
-                                 kMicrons * (y - 2.4 * reach_mm * double(field))});
-                    }
-            }
-    write_plot(o.more_plot,
-               {.title = title_of(
-                    *setup.lens,
-                    fmt::format("spots, film from {:+.2g} to {:+.2g} mm, fields "
-                                "{:.4g}° downwards",
-                                -depth_mm / 2, depth_mm / 2, fmt::join(setup.fields_deg, "°, "))),
-                .x_label = "µm",
-                .y_label = "µm",
-                .series = std::move(series),
-                .equal_scale = true});
 }
 
 Found through_focus_analysis(const AnalysisOptions& o) {
@@ -134,7 +97,6 @@ Found through_focus_analysis(const AnalysisOptions& o) {
                    best_shift_mm(all), best[0][0], best[0][1], best[1][0], best[1][1]);
         for (PlotSeries& line : lines) out.plot.series.push_back(std::move(line));
     }
-    if (!o.more_plot.empty()) write_spots(o, setup, depth_mm, rays, light);
     out.plot.title = title_of(
         *setup.lens,
         fmt::format("{} MTF at {:g} cycles per mm", o.wave ? "wave" : "geometric", o.most_cycles));
@@ -143,81 +105,75 @@ Found through_focus_analysis(const AnalysisOptions& o) {
     return out;
 }
 
+// A diagram of what is found at each x: a series for each name, times a factor for the eye.
+Found curves(const std::string& title, const char* x_label, const char* y_label,
+             std::vector<std::string> names, std::vector<std::vector<double>> rows,
+             double factor = 1) {
+    Found out{{title, x_label, y_label, {}}, std::move(names), std::move(rows)};
+    for (size_t k = 1; k < out.names.size(); ++k) {
+        PlotSeries series{.label = out.names[k].substr(0, out.names[k].rfind('_'))};
+        for (const auto& row : out.rows) series.points.push_back({row[0], factor * row[k]});
+        out.plot.series.push_back(std::move(series));
+    }
+    return out;
+}
+
 Found field_curvature_analysis(const AnalysisOptions& o) {
     const FieldSetup setup = set_up_lit(o.field, shares_from(0, 40));
-    Found out;
-    out.names = {"field_deg", "tangential_mm", "sagittal_mm"};
-    out.plot.series = {{.style = PlotStyle::Lines, .label = "tangential"},
-                       {.style = PlotStyle::Lines, .label = "sagittal"}};
+    std::vector<std::vector<double>> rows;
     for (const double deg : setup.fields_deg) {
         const auto bundle =
             AimedBundle::aim(*setup.lens, {deg, setup.distance_mm, setup.section}, kLineD_nm);
-        const auto focus = bundle ? field_focus(*bundle, setup.film_mm) : std::nullopt;
-        if (!focus) continue;
-        out.rows.push_back({deg, focus->tangential_mm, focus->sagittal_mm});
-        out.plot.series[0].points.push_back({deg, focus->tangential_mm});
-        out.plot.series[1].points.push_back({deg, focus->sagittal_mm});
+        if (const auto focus = bundle ? field_focus(*bundle, setup.film_mm) : std::nullopt)
+            rows.push_back({deg, focus->tangential_mm, focus->sagittal_mm});
     }
-    out.plot.title = title_of(*setup.lens, "field curvature and astigmatism, line d");
-    out.plot.x_label = "field (degrees)";
-    out.plot.y_label = "focus behind the film (mm)";
-    return out;
+    return curves(title_of(*setup.lens, "field curvature and astigmatism, line d"),
+                  "field (degrees)", "focus behind the film (mm)",
+                  {"field_deg", "tangential_mm", "sagittal_mm"}, std::move(rows));
 }
 
 Found focal_shift_analysis(const AnalysisOptions& o) {
     constexpr int first_nm = 400, last_nm = 700, step_nm = 5, side = 64;
     const FieldSetup setup = set_up_lit(o.field, {});
     const Lens& lens = *setup.lens;
-    Found out;
-    out.names = {"nm", "paraxial_mm", "least_spot_mm"};
-    out.plot.series = {{.style = PlotStyle::Lines, .label = "paraxial"},
-                       {.style = PlotStyle::Lines, .label = "least spot, whole iris"}};
     const double object_mm = first_order(lens, kLineD_nm).entrance_pupil_mm - setup.distance_mm;
+    std::vector<std::vector<double>> rows;
     for (int nm = first_nm; nm <= last_nm; nm += step_nm) {
-        const double paraxial_mm =
-            lens.vertex_mm(lens.last()) - setup.film_mm +
-            (std::isfinite(object_mm)
-                 ? image_of(lens, object_mm, nm, setup.section).from_last_vertex_mm
-                 : first_order(lens, nm, setup.section).back_focus_mm);
+        const double image_mm =
+            std::isfinite(object_mm)
+                ? image_of(lens, object_mm, nm, setup.section).from_last_vertex_mm
+                : first_order(lens, nm, setup.section).back_focus_mm;
         const auto rays = traced(aim(setup, 0, nm), setup.film_mm, side);
         if (rays.empty()) refuse_dark(lens, 0);
-        out.rows.push_back({double(nm), paraxial_mm, best_shift_mm(rays)});
-        for (size_t k = 0; k < 2; ++k)
-            out.plot.series[k].points.push_back({double(nm), out.rows.back()[k + 1]});
+        rows.push_back({double(nm), lens.vertex_mm(lens.last()) + image_mm - setup.film_mm,
+                        best_shift_mm(rays)});
     }
-    out.plot.title = title_of(lens, "chromatic focal shift on the axis");
-    out.plot.x_label = "wavelength (nm)";
-    out.plot.y_label = "focus behind the film (mm)";
-    return out;
+    return curves(title_of(lens, "chromatic focal shift on the axis"), "wavelength (nm)",
+                  "focus behind the film (mm)", {"nm", "paraxial_mm", "least_spot_mm"},
+                  std::move(rows));
 }
 
 Found lateral_colour_analysis(const AnalysisOptions& o) {
     const FieldSetup setup = set_up_lit(o.field, shares_from(0, 40));
-    Found out;
-    out.names = {"field_deg", "F_mm", "C_mm", "airy_mm"};
-    out.plot.series = {{.style = PlotStyle::Lines, .label = "F"},
-                       {.style = PlotStyle::Lines, .label = "C"},
-                       {.style = PlotStyle::Dashes, .label = "radius of Airy's disc", .grey = true},
-                       {.style = PlotStyle::Dashes, .grey = true}};
-    const auto stop = static_cast<size_t>(setup.lens->stop());
-    const double airy_mm = airy_radius_mm(
-        kLineD_nm,
-        fnumber_of(*setup.lens, setup.lens->prescription().surfaces[stop].semi_diameter_mm));
+    const double airy_mm = airy_radius_mm(kLineD_nm, open_fnumber(*setup.lens));
+    std::vector<std::vector<double>> rows;
     for (const double deg : setup.fields_deg) {
         const auto height = [&](double nm) {
             return chief_height_mm(*setup.lens, {deg, setup.distance_mm, setup.section},
                                    setup.film_mm, nm);
         };
         const auto f = height(kLineF_nm), d = height(kLineD_nm), c = height(kLineC_nm);
-        if (!f || !d || !c) continue;
-        out.rows.push_back({deg, *f - *d, *c - *d, airy_mm});
-        const double shown[]{*f - *d, *c - *d, airy_mm, -airy_mm};
-        for (size_t k = 0; k < 4; ++k)
-            out.plot.series[k].points.push_back({deg, kMicrons * shown[k]});
+        if (f && d && c) rows.push_back({deg, *f - *d, *c - *d, airy_mm, -airy_mm});
     }
-    out.plot.title = title_of(*setup.lens, "lateral colour");
-    out.plot.x_label = "field (degrees)";
-    out.plot.y_label = "chief ray from that of line d on the film (µm)";
+    Found out = curves(title_of(*setup.lens, "lateral colour"), "field (degrees)",
+                       "chief ray from that of line d on the film (µm)",
+                       {"field_deg", "F_mm", "C_mm", "airy_mm", "minus_airy_mm"}, std::move(rows),
+                       kMicrons);
+    for (const size_t k : {2, 3}) {
+        out.plot.series[k].style = PlotStyle::Dashes;
+        out.plot.series[k].grey = true;
+        out.plot.series[k].label = k == 2 ? "radius of Airy's disc" : "";
+    }
     return out;
 }
 
@@ -234,8 +190,6 @@ void add_lens_focus_commands(CLI::App& lens) {
         ->transform(number_between(1e-3, 1e5));
     command.add_flag("--wave", through->wave, "by waves (default: by rays alone)");
     add_light(command, *through);
-    add_more_plot(command, *through, "--spots",
-                  "spots at five places of the film to draw too, .svg or .png");
     add_analysis(lens, "field-curvature", "sagittal and tangential focus over the field", true,
                  field_curvature_analysis,
                  "Of line d, by rays close to the one through the middle of the stop; between the "

@@ -26,12 +26,8 @@ LineWave least_wave(const FieldSetup& setup, double field_deg, double nm) {
     if (!image_mm) refuse_dark(*setup.lens, field_deg);
     for (int i = 0;; ++i) {
         const ReferenceSphere sphere = reference_sphere(bundle, setup.film_mm, *image_mm);
-        const PupilGrid grid = require_grid(bundle, sphere, kFiguresPupilSide);
-        PupilGrid coarse = grid;  // figures need no more
-        coarse.step *= double(grid.side) / kFiguresPupilSide;
-        coarse.side = kFiguresPupilSide;
-        for (double& first : coarse.first) first += (coarse.step - grid.step) / 2;
-        PupilFunction pupil = pupil_function(bundle, sphere, coarse);
+        PupilFunction pupil = pupil_function(
+            bundle, sphere, require_grid(bundle, sphere).with_side(kFiguresPupilSide));
         const WavefrontFigures figures = wavefront_figures(pupil);
         if (!(figures.rms_mm >= 0)) refuse_dark(*setup.lens, field_deg);
         if (i == 1) return {std::move(bundle), std::move(pupil), figures};
@@ -63,33 +59,17 @@ void print_zernikes(const std::vector<std::string>& heads,
     fmt::print("\n");
 }
 
-// Map of the opd over the stop, for one wave.
-void add_map(Plot& plot, const LineWave& wave, double aside) {
-    constexpr int side = 96;
-    const auto n = static_cast<size_t>(wave.pupil.grid.side);
+// Map of the opd over the pupil, as seen from the image point.
+void add_map(Plot& plot, const PupilFunction& pupil, size_t place) {
     PlotSeries cells{.style = PlotStyle::Cells};
-    // The cell whose ray crosses the stop nearest to each point.
-    std::vector<double> values(side * side, NAN), distance(side * side, INFINITY);
-    for (size_t cell = 0; cell < n * n; ++cell) {
-        if (!(wave.pupil.amplitude[cell] > 0)) continue;
-        const auto [x, y] = wave.pupil.stop[cell];
-        for (int dx = -1; dx <= 1; ++dx)
-            for (int dy = -1; dy <= 1; ++dy) {
-                const int i = static_cast<int>(std::floor((x + 1) / 2 * side)) + dx,
-                          j = static_cast<int>(std::floor((y + 1) / 2 * side)) + dy;
-                if (i < 0 || j < 0 || i >= side || j >= side) continue;
-                const double off =
-                    std::hypot((2 * i + 1.) / side - 1 - x, (2 * j + 1.) / side - 1 - y);
-                const auto at = static_cast<size_t>(j * side + i);
-                if (off >= distance[at]) continue;
-                distance[at] = off;
-                values[at] = wave.pupil.opd_mm[cell] / wave.pupil.wavelength_mm();
-            }
+    const auto middle = pupil.cosines(pupil.light.size() / 2 + size_t(pupil.grid.side) / 2);
+    for (size_t cell = 0; cell < pupil.light.size(); ++cell) {
+        const auto [p, q] = pupil.cosines(cell);
+        cells.points.push_back(
+            {p - middle[0] + pupil.grid.step * pupil.grid.side * double(place), q - middle[1]});
+        cells.values.push_back(
+            pupil.amplitude[cell] > 0 ? pupil.opd_mm[cell] / pupil.wavelength_mm() : NAN);
     }
-    for (int j = 0; j < side; ++j)
-        for (int i = 0; i < side; ++i)
-            cells.points.push_back({(2 * i + 1.) / side - 1 + aside, (2 * j + 1.) / side - 1});
-    cells.values = std::move(values);
     plot.series.push_back(std::move(cells));
 }
 
@@ -105,8 +85,8 @@ Found wavefront_analysis(const AnalysisOptions& o) {
     Plot maps{.title = title_of(
                   *setup.lens, fmt::format("wavefront at {}, fields {}, left to right",
                                            light[light.size() / 2].name, listed(setup.fields_deg))),
-              .x_label = "x in the stop (radii)",
-              .y_label = "y in the stop (radii)",
+              .x_label = "p from each middle (direction cosine)",
+              .y_label = "q from the middle (direction cosine)",
               .series = {},
               .equal_scale = true,
               .value_label = "ahead of the sphere (waves)"};
@@ -139,11 +119,11 @@ Found wavefront_analysis(const AnalysisOptions& o) {
                 out.plot.series.push_back(std::move(fan));
             }
         }
-        add_map(maps, centre, 2.1 * static_cast<double>(maps.series.size()));
+        add_map(maps, centre.pupil, maps.series.size());
     }
     fmt::print("{}", table);
     print_zernikes(heads, columns);
-    if (!o.more_plot.empty()) write_plot(o.more_plot, maps);
+    if (!o.map.empty()) write_plot(o.map, maps);
     out.plot.title = title_of(*setup.lens, "wavefront fans");
     out.plot.x_label = "where the ray crosses the stop (radii)";
     out.plot.y_label = "ahead of the reference sphere (waves)";
@@ -229,8 +209,9 @@ void add_lens_wave_commands(CLI::App& lens) {
         "(mean and tilt taken out), fans about that of the middle line. Strehl: light at that "
         "point over that of a wave without error.");
     add_light(*lens.get_subcommand("wavefront"), *wavefront);
-    add_more_plot(*lens.get_subcommand("wavefront"), *wavefront, "--map",
-                  "maps over the iris to write too, of the middle line, .svg or .png");
+    lens.get_subcommand("wavefront")
+        ->add_option("--map", wavefront->map,
+                     "maps of the pupil to write too, of the middle line, .svg or .png");
     const auto psf = add_analysis(
         lens, "psf", "images of points by waves", true, psf_analysis,
         "By a Fourier transform of the wave in the exit pupil. The radii that hold half and 80 % "

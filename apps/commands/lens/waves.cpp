@@ -89,9 +89,8 @@ double ray_contrast(const std::vector<std::vector<BundleRay>>& rays,
     return std::abs(sum);
 }
 
-PupilGrid require_grid(const AimedBundle& bundle, const ReferenceSphere& sphere, int least,
-                       double depth_mm) {
-    const auto grid = pupil_grid(bundle, sphere, least, depth_mm);
+PupilGrid require_grid(const AimedBundle& bundle, const ReferenceSphere& sphere, double depth_mm) {
+    const auto grid = pupil_grid(bundle, sphere, depth_mm);
     if (!grid)
         throw ArgumentError(bundle.lens().prescription().name, "",
                             "the rays of the field {:g}° leave it parallel: there is no image",
@@ -107,7 +106,7 @@ std::vector<PupilFunction> field_waves(const FieldSetup& setup, double field_deg
     std::vector<PupilFunction> out;
     for (const AimedBundle& bundle : bundles) {
         const ReferenceSphere sphere = reference_sphere(bundle, setup.film_mm, image_mm);
-        const PupilGrid grid = require_grid(bundle, sphere, kImagePupilSide, depth_mm);
+        const PupilGrid grid = require_grid(bundle, sphere, depth_mm);
         if (!grid.resolves()) return {};
         out.push_back(pupil_function(bundle, sphere, grid));
     }

@@ -28,7 +28,7 @@ void add_light(CLI::App&, AnalysisOptions&);
                                   Section along);
 
 /// Grid of pupil_grid(). Throws ArgumentError where there is none.
-[[nodiscard]] PupilGrid require_grid(const AimedBundle&, const ReferenceSphere&, int least,
+[[nodiscard]] PupilGrid require_grid(const AimedBundle&, const ReferenceSphere&,
                                      double depth_mm = 0);
 
 /// Pupil functions of a field, one for each line, all about the middle of the whole image. Empty

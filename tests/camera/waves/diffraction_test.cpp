@@ -30,13 +30,8 @@ double rim_sine(const test::TestWave& wave) {
 
 // Point spread by a coarse grid of the pupil, so that samples on the film are fine.
 PointSpread fine_spread(const test::TestWave& wave, const StopTransmission& iris = {}) {
-    PupilGrid grid = wave.pupil.grid;
-    while (grid.side > 64) {
-        for (double& first : grid.first) first += grid.step / 2;
-        grid.step *= 2;
-        grid.side /= 2;
-    }
-    return point_spread(pupil_function(wave.bundle, wave.pupil.sphere, grid, iris), 2048);
+    return point_spread(
+        pupil_function(wave.bundle, wave.pupil.sphere, wave.pupil.grid.with_side(64), iris), 2048);
 }
 
 // First zero of the field along x, between samples.

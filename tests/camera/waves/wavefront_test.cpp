@@ -243,8 +243,8 @@ TEST(Wavefront, FastTransformAndHuygensAgree) {
                           {"schneider-anamorphic-31mm", 0.3, 8, 0.02, INFINITY, Section::X},
                           {"takumar-50mm-f1.2", 0.25, 0, 0.9, 3000}}) {
         const Lens lens(with_stop(read_lens(c.name), c.stop));
-        const auto wave = wave_of(lens, {c.field_deg, c.distance_mm, c.section}, c.shift_mm,
-                                  kImagePupilSide, kLineF_nm);
+        const auto wave =
+            wave_of(lens, {c.field_deg, c.distance_mm, c.section}, c.shift_mm, 0, kLineF_nm);
         EXPECT_TRUE(wave.pupil.grid.resolves());
         const PointSpread spread = point_spread(wave.pupil, 4 * wave.pupil.grid.side);
         const auto n = size_t(spread.side);

@@ -59,17 +59,19 @@ void print_zernikes(const std::vector<std::string>& heads,
     fmt::print("\n");
 }
 
-// Map of the opd over the pupil, as seen from the image point.
-void add_map(Plot& plot, const PupilFunction& pupil, size_t place) {
+// Map of the opd over the pupil, as seen from the image point; `from` is where it begins, and then
+// where it ends.
+void add_map(Plot& plot, const PupilFunction& pupil, double& from) {
     PlotSeries cells{.style = PlotStyle::Cells};
+    const double half = pupil.grid.step * pupil.grid.side / 2;
     const auto middle = pupil.cosines(pupil.light.size() / 2 + size_t(pupil.grid.side) / 2);
     for (size_t cell = 0; cell < pupil.light.size(); ++cell) {
         const auto [p, q] = pupil.cosines(cell);
-        cells.points.push_back(
-            {p - middle[0] + pupil.grid.step * pupil.grid.side * double(place), q - middle[1]});
+        cells.points.push_back({from + half + p - middle[0], q - middle[1]});
         cells.values.push_back(
             pupil.amplitude[cell] > 0 ? pupil.opd_mm[cell] / pupil.wavelength_mm() : NAN);
     }
+    from += 2 * half;
     plot.series.push_back(std::move(cells));
 }
 
@@ -85,11 +87,12 @@ Found wavefront_analysis(const AnalysisOptions& o) {
     Plot maps{.title = title_of(
                   *setup.lens, fmt::format("wavefront at {}, fields {}, left to right",
                                            light[light.size() / 2].name, listed(setup.fields_deg))),
-              .x_label = "p from each middle (direction cosine)",
+              .x_label = "p (direction cosines, side by side)",
               .y_label = "q from the middle (direction cosine)",
               .series = {},
               .equal_scale = true,
               .value_label = "ahead of the sphere (waves)"};
+    double maps_end = 0;
     std::vector<std::string> heads;
     std::vector<std::vector<double>> columns;
     std::string table = fmt::format(
@@ -119,7 +122,7 @@ Found wavefront_analysis(const AnalysisOptions& o) {
                 out.plot.series.push_back(std::move(fan));
             }
         }
-        add_map(maps, centre.pupil, maps.series.size());
+        add_map(maps, centre.pupil, maps_end);
     }
     fmt::print("{}", table);
     print_zernikes(heads, columns);
